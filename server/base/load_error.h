@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every load_ function throws when its input is wrong: which file, where in it, and what.
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace wellspring {
+
+struct LoadError : std::runtime_error {
+  std::string file;   // path as the caller gave it
+  std::string where;  // place inside: a JSON pointer, "line 12", "byte 80"; may be empty
+  std::string what_;  // one sentence, no full stop needed
+  LoadError(std::string file_, std::string where_, std::string what__)
+      : std::runtime_error(file_ + (where_.empty() ? "" : ": " + where_) + ": " + what__),
+        file(std::move(file_)), where(std::move(where_)), what_(std::move(what__)) {}
+};
+
+}  // namespace wellspring

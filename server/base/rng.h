@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random numbers that can be replayed: a sample's stream is a function of (seed, x, y, index) alone,
+// never of the thread that drew it. Generator: PCG-XSH-RR 64/32, O'Neill 2014, sections 6.3 and 7.1.
+#pragma once
+#include <cstdint>
+
+namespace wellspring {
+
+// A good 64-bit mixer (SplitMix64's finaliser; Steele, Lea, Flood 2014).
+inline uint64_t mix64(uint64_t z) {
+  z += 0x9e3779b97f4a7c15ull;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return z ^ (z >> 31);
+}
+
+// The address of one pixel sample as a seed.
+inline uint64_t sample_seed(uint64_t seed, uint32_t x, uint32_t y, uint32_t index) {
+  return mix64(mix64(seed ^ (uint64_t(x) << 32 | y)) ^ index);
+}
+
+struct Rng {
+  uint64_t state = 0, increment = 1;
+  explicit Rng(uint64_t seed = 0) : increment((mix64(seed ^ 0x5851f42d4c957f2dull) << 1) | 1) {
+    next();
+    state += seed;
+    next();
+  }
+  uint32_t next() {
+    uint64_t old = state;
+    state = old * 6364136223846793005ull + increment;
+    uint32_t shifted = uint32_t(((old >> 18) ^ old) >> 27), rotation = uint32_t(old >> 59);
+    return (shifted >> rotation) | (shifted << ((32 - rotation) & 31));
+  }
+  // Uniform in [0, 1): 24 bits, never 1.
+  float uniform() { return float(next() >> 8) * 0x1p-24f; }
+};
+
+}  // namespace wellspring

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture in linear light, as a technique or the render cache leaves it and the tone map takes it.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace wellspring {
+
+// Row-major, top row first; every plane is width*height long or empty where nobody needs it.
+struct Frame {
+  int width = 0, height = 0;
+  std::vector<vec3> color;        // linear Rec. 709 radiance
+  std::vector<float> depth;       // metres along the viewing axis; infinity: nothing hit
+  std::vector<uint32_t> object;   // 0: nothing hit
+  std::vector<float> confidence;  // 0 (guessed) to 1 (converged)
+};
+
+// 8-bit sRGB, 3 bytes a pixel, top row first.
+struct Image8 {
+  int width = 0, height = 0;
+  std::vector<uint8_t> rgb;
+};
+
+}  // namespace wellspring

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures on disk. .png .jpg are tone-mapped 8-bit, .pfm .exr linear radiance (32-bit float).
+#pragma once
+#include <string>
+
+#include "frame/frame.h"
+#include "frame/tonemap.h"
+
+namespace wellspring {
+
+// True for a file name whose ending we can write.
+bool is_picture_name(const std::string& path);
+// Writes to a temporary name and renames, so a reader never sees half a file. Throws LoadError.
+void save_picture(const std::string& path, const Frame& frame, const Tonemap& settings);
+void save_image8(const std::string& path, const Image8& image);  // .png or .jpg
+// Linear pictures back (.pfm .exr): colour only. Throws LoadError.
+Frame load_linear_picture(const std::string& path);
+
+}  // namespace wellspring

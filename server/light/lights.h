@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// All light sources of a world, ready to be sampled: emissive triangles, punctual lights, environment.
+// Built once per scene (moving meshes do not emit).
+#pragma once
+#include <atomic>
+#include <memory>
+
+#include "world/bvh.h"
+
+namespace wellspring {
+
+struct LightTables;  // alias tables, triangle lists, environment distribution: light/light_tables.h
+
+struct Lights {
+  std::shared_ptr<const LightTables> tables;
+  // NaN, infinite or negative samples that were dropped instead of reaching a Frame.
+  std::shared_ptr<std::atomic<uint64_t>> bad_samples;
+};
+
+Lights make_lights(const World& world);
+
+}  // namespace wellspring

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// One connected peer as both sides see it: `stream` owns the socket, the show owns the visit, and this
+// is all they share. Pictures: one slot, newest wins. Text: short bounded queues. No call blocks.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/latest.h"
+#include "wire/packet.h"
+
+namespace wellspring {
+
+enum class LinkKind : uint8_t { visit, eye };  // /api/v1/visit, /api/v1/eye
+
+class Link {
+ public:
+  static constexpr size_t max_texts_in = 256;  // more unread: the oldest are dropped and counted
+  static constexpr size_t max_texts_out = 64;  // more unsent: the link is closed (a reader this slow is gone)
+
+  Link(uint64_t id, LinkKind kind, std::string peer) : id(id), kind(kind), peer(std::move(peer)) {}
+  const uint64_t id;
+  const LinkKind kind;
+  const std::string peer;  // address, for the log
+
+  // ---- called by the show ----
+  std::vector<std::string> take_texts();             // all that arrived since the last call, in order
+  void send_text(std::string text);                  // small JSON
+  void send_picture(std::shared_ptr<const Packet>);  // replaces an unsent one
+  void send_sound(std::shared_ptr<const Packet>);    // kept in order with texts, bounded with them
+  bool picture_pending() const { return picture_.full(); }  // the last picture has not been taken yet
+  void close(std::string reason);                    // asks the socket to close
+  bool closed() const { return closed_; }
+
+  // ---- called by stream ----
+  struct Out {  // next thing to write: text, or binary
+    bool binary = false;
+    std::string text;
+    std::shared_ptr<const Packet> packet;
+  };
+  bool take_out(Out& out);          // texts and sounds before pictures; false: nothing to send
+  void push_text_in(std::string);   // a message arrived
+  void set_wake(std::function<void()> wake);  // called (from any thread) after something became sendable
+  void mark_closed();               // the socket is gone; the show will notice
+  bool close_requested(std::string& reason) const;
+  uint64_t pictures_dropped() const { return picture_.dropped(); }
+  std::atomic<uint64_t> bytes_sent{0}, pictures_sent{0};
+
+ private:
+  void wake();
+  mutable std::mutex mutex_;
+  std::deque<std::string> in_;
+  std::deque<Out> out_;
+  Latest<std::shared_ptr<const Packet>> picture_;
+  std::function<void()> wake_;
+  std::string close_reason_;
+  bool close_requested_ = false;
+  std::atomic<bool> closed_{false};
+};
+
+}  // namespace wellspring

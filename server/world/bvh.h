@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where rays end: a thin wrapper of Embree (3 or 4; world/embree.h hides the difference). The static scene
+// is built once; moving meshes (the storyteller) are refitted each tick.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "world/scene.h"
+
+namespace wellspring {
+
+struct Ray {
+  vec3 origin{0};
+  float t_min = 0;
+  vec3 direction{0, 0, -1};
+  float t_max = std::numeric_limits<float>::infinity();
+};
+
+struct Hit {
+  float t = std::numeric_limits<float>::infinity();
+  uint32_t instance = 0xffffffffu;  // index into the World's instances; none: nothing hit
+  uint32_t triangle = 0;
+  vec2 barycentric{0};  // weights of the triangle's second and third corner
+  bool valid() const { return instance != 0xffffffffu; }
+};
+
+// A scene with what moves in it. Instances [0, scene.instances.size()) are the scene's; the rest are
+// `moving`, whose vertices are already in world space. Built once per exhibit; not copyable.
+class World {
+ public:
+  // Borrows `scene` for its lifetime. `moving` meshes keep their triangle count for ever.
+  // moving_object[i] is the object id samples of moving[i] carry (append the name to scene.objects first).
+  World(const Scene& scene, std::vector<Mesh> moving = {}, std::vector<uint32_t> moving_object = {});
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  const Scene& scene() const;
+  int instance_count() const;
+  const Mesh& mesh_of(uint32_t instance) const;
+  const Material& material_of(uint32_t instance) const;
+  uint32_t object_of(uint32_t instance) const;
+  const mat4& to_world(uint32_t instance) const;       // identity for moving ones
+  const mat3& normal_to_world(uint32_t instance) const;  // inverse transpose of the upper 3x3
+  bool is_moving(uint32_t instance) const;
+
+  // Replaces a moving mesh's vertices (same counts) and shows or hides it. Call commit() afterwards,
+  // while no ray is being traced.
+  void move(int moving, std::span<const vec3> positions, std::span<const vec3> normals);
+  void show(int moving, bool visible);
+  void commit();
+
+  // Nearest hit. Surfaces with alpha are passed through where their alpha says so (mask: cut-off;
+  // blend: stochastically, decided by a hash of the ray and the hit, so that a replay agrees).
+  // Thread-safe between commits.
+  Hit intersect(const Ray& ray) const;
+  // Anything between t_min and t_max? Alpha as above. Glass counts as opaque.
+  bool occluded(const Ray& ray) const;
+  // `count` coherent rays at once; results are those of intersect().
+  void intersect_many(const Ray* rays, Hit* hits, int count) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace wellspring

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// What exists: immutable once made, shared by every visitor and every thread. Plain data; indices, not
+// pointers. Positions are relative to `origin`, so that a scene far from zero keeps its precision.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "world/emitter.h"
+#include "world/material.h"
+
+namespace wellspring {
+
+// Indexed triangles of one material. `normals` is never empty (made from the faces if the file had none);
+// uv, colors and tangents are empty or as long as positions.
+struct Mesh {
+  std::string name;
+  std::vector<vec3> positions;
+  std::vector<vec3> normals;   // unit length
+  std::vector<vec4> tangents;  // w: sign of the bitangent
+  std::vector<vec2> uv[2];
+  std::vector<vec4> colors;    // linear, multiply base_color
+  std::vector<uvec3> triangles;
+  int material = 0;
+};
+
+struct Instance {
+  int mesh = 0;
+  mat4 to_world{1};     // relative to Scene::origin
+  uint32_t object = 0;  // index into Scene::objects; the render cache never blends across objects
+};
+
+// A glTF camera or an exhibit's viewpoint.
+struct Viewpoint {
+  std::string name;
+  dvec3 position{0};  // absolute world coordinates
+  float yaw = 0;      // radians about +Y, 0 looks down -Z, positive turns left
+  float pitch = 0;    // positive looks up
+  float fov = 1.0f;   // vertical, radians
+};
+
+struct Scene {
+  std::string name;
+  dvec3 origin{0};  // absolute world position of this scene's (0, 0, 0)
+  std::vector<Image> images;
+  std::vector<Texture> textures;
+  std::vector<Material> materials;  // never empty: 0 is the default where a file had none
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<std::string> objects;  // names; objects[0] is "" (nothing)
+  std::vector<PunctualLight> lights;
+  Environment environment;
+  std::vector<Viewpoint> viewpoints;
+  std::vector<std::string> warnings;  // what the file asks for that is not done, each said once
+};
+
+struct Bounds {
+  vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
+};
+Bounds scene_bounds(const Scene& scene);
+size_t triangle_count(const Scene& scene);  // instances counted
+// A light that can shine: an emissive material in use, a punctual light or a lit environment.
+bool has_light(const Scene& scene);
+
+}  // namespace wellspring

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// A hit made into a place with a material: interpolated, textured, ready for a BSDF. No randomness.
+#pragma once
+#include "world/bvh.h"
+
+namespace wellspring {
+
+struct Surface {
+  vec3 position{0};
+  vec3 geometric_normal{0, 1, 0};  // unit, on the side the ray came from
+  vec3 normal{0, 1, 0};            // shading normal after normal map, same hemisphere as geometric_normal
+  bool front = true;               // the ray came from the side the triangle's winding faces
+  vec2 uv{0};
+  uint32_t instance = 0, triangle = 0, object = 0;
+  vec2 barycentric{0};
+  int material = 0;
+  // Resolved material values at this place (textures and vertex colours applied).
+  vec3 base_color{1};
+  float alpha = 1;
+  float metallic = 0, roughness = 1;
+  vec3 emission{0};  // 0 when seen from the back of a single-sided material
+  float transmission = 0, thickness = 0;
+};
+
+// `hit` must be valid().
+Surface eval_surface(const World& world, const Ray& ray, const Hit& hit);
+// Position and geometric normal (towards its winding) of a triangle at barycentric weights.
+vec3 eval_position(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric);
+// An origin for a ray leaving `surface` along `direction` that does not hit the same surface again
+// (Waechter and Binder, Ray Tracing Gems chapter 6).
+vec3 offset_origin(const Surface& surface, vec3 direction);
+
+}  // namespace wellspring
