@@ -36,7 +36,6 @@ pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
 find_package(GTest REQUIRED)
 find_package(Boost REQUIRED)
 find_package(pugixml QUIET)
-find_package(OpenCV QUIET COMPONENTS core imgproc videoio objdetect video calib3d imgcodecs)
 
 # Embree 4 where there is one, else 3; server/world/embree.h hides the difference.
 find_package(embree 4 QUIET)
@@ -72,9 +71,14 @@ add_library(boost_any INTERFACE)
 target_include_directories(boost_any SYSTEM INTERFACE ${Boost_INCLUDE_DIRS})
 target_link_libraries(boost_any INTERFACE Threads::Threads)
 
+# Headers and libraries by name: OpenCV's own CMake files come only with the whole libopencv-dev.
+find_path(OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
 add_library(opencv_any INTERFACE)
-target_include_directories(opencv_any SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
-target_link_libraries(opencv_any INTERFACE ${OpenCV_LIBS})
+target_include_directories(opencv_any SYSTEM INTERFACE ${OPENCV_INCLUDE})
+foreach(module core imgproc videoio objdetect video)
+  find_library(OPENCV_${module} opencv_${module} REQUIRED)
+  target_link_libraries(opencv_any INTERFACE ${OPENCV_${module}})
+endforeach()
 
 # Frame writes PNG through stb; it is a header of its own, not part of a layer's interface.
 include_directories(SYSTEM ${STB_INCLUDE})
