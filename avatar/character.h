@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// An H-Anim humanoid ready to be posed (ISO/IEC 19774-1): joints, a skin (or rigid segments, which are
+// skins with one joint each), displacers, and how the surfaces look. Plain data, immutable once loaded.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace wellspring {
+
+struct Joint {
+  std::string name;  // H-Anim v2 name ("l_shoulder"); aliases and prefixes of the file resolved
+  int parent = -1;   // always smaller than the joint's own index; -1: the root
+  vec3 center{0};    // humanoid space at rest, metres
+  quat rest_rotation{1, 0, 0, 0};
+  std::vector<vec2> limits;  // empty, or lower/upper radians for x, y, z
+};
+
+struct Segment {
+  std::string name;
+  int joint = 0;
+};
+
+struct Site {
+  std::string name;
+  int joint = 0;
+  vec3 position{0};  // humanoid space at rest
+};
+
+// Moves some vertices by weight * displacement: a closed lid, a smile, a mouth shape.
+struct Displacer {
+  std::string name;
+  std::vector<uint32_t> vertices;   // into Character::positions
+  std::vector<vec3> displacements;  // humanoid space at rest
+};
+
+// How a part of the figure looks (X3D 4 PhysicalMaterial; older Material is converted).
+struct Look {
+  std::string name;
+  vec3 base_color{0.8f};
+  float metallic = 0, roughness = 0.7f, alpha = 1;
+  vec3 emission{0};
+  std::string texture;  // path of an image beside the file; empty: none
+  bool double_sided = false;
+};
+
+// Triangles of one look.
+struct Part {
+  std::string name;
+  int look = 0;
+  std::vector<uvec3> triangles;  // into Character::positions
+};
+
+struct JointWeight {
+  uint16_t joint = 0;
+  float weight = 0;
+};
+
+struct Character {
+  std::string name;
+  int loa = -1;  // level of articulation as found in the joints
+  std::vector<Joint> joints;
+  std::vector<Segment> segments;
+  std::vector<Site> sites;
+  std::vector<Displacer> displacers;
+  std::vector<Look> looks;
+  std::vector<Part> parts;
+  // Vertices, shared by all parts; at rest, in humanoid space (metres, +Y up, facing +Z, feet at y = 0).
+  std::vector<vec3> positions;
+  std::vector<vec3> normals;
+  std::vector<vec2> uv;  // empty, or one a vertex
+  // Joints that move vertex v: weights[first_weight[v] .. first_weight[v + 1]), sum 1.
+  std::vector<uint32_t> first_weight;
+  std::vector<JointWeight> weights;
+  std::vector<std::string> motions;   // names of motions in the file
+  std::vector<std::string> warnings;  // unknown or unsupported things, each said once
+};
+
+int find_joint(const Character& character, std::string_view name);      // -1: none
+int find_displacer(const Character& character, std::string_view name);  // -1: none
+
+}  // namespace wellspring

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// The render cache of one visitor (Walter, Drettakis, Parker 1999, "Interactive Rendering using the Render
+// Cache"): samples as points in space, reprojected every frame, and where to look next.
+// One frame: project -> attend -> plan -> (trace) -> remember -> reconstruct. All functions use all cores,
+// never fail and never block; memory is bounded by the sizes given to resize().
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "frame/frame.h"
+#include "light/sample.h"
+#include "world/view.h"
+
+namespace wellspring {
+
+struct CacheSettings {
+  float points_per_pixel = 1.25f;      // capacity over pixels (paper, section 4.3: slightly larger)
+  float depth_threshold = 0.1f;        // paper, section 3.1
+  float color_change = 0.25f;          // relative change of a resampled point that ages its neighbours
+  float budget_share_old = 1;          // weight of age against emptiness in the priority
+  bool attention = true;               // false: samples spread evenly
+};
+
+struct PointCache;  // cache/point_cache.h: the points
+struct PointImage;  // cache/point_image.h: what projects where, priorities
+
+// What the last frame looked like, in numbers (for /metrics, the status page and tests).
+struct CacheStats {
+  int points = 0;       // in use
+  float fresh = 0, reprojected = 0, filled = 0, empty = 0;  // shares of the picture's pixels
+  float mean_age = 0;   // frames, of the visible points
+  float converged = 0;  // share of pixels whose point has reached its sample goal
+};
+
+class RenderCache {
+ public:
+  explicit RenderCache(const CacheSettings& settings = {});
+  ~RenderCache();
+  RenderCache(RenderCache&&) noexcept;
+  RenderCache& operator=(RenderCache&&) noexcept;
+
+  // Sets the picture's size; keeps the points that still fit. Cheap when nothing changes.
+  void resize(int width, int height);
+  // Points on moving meshes follow their triangles; ages advance. Call once a frame after World::commit().
+  void move_points(const World& world);
+  // Where every point falls in `view`; depth cull.
+  void project(const View& view);
+  // Priority of every pixel (paper, section 4).
+  void attend();
+  // Exactly `budget` (or fewer when there is nothing left to learn) requests by error diffusion;
+  // resampled points are passed exactly. `seed` makes the choice and the samples repeatable.
+  void plan(const View& view, int budget, uint64_t seed, std::vector<Request>& requests);
+  // Puts answers into the cache and into the current projection.
+  void remember(const View& view, std::span<const Request> requests, std::span<const Sample> samples);
+  // The picture: overwrites `frame` (color, confidence; depth and object for those who ask later).
+  void reconstruct(const View& view, Frame& frame);
+  // Forgets everything (lights toggled, exhibit changed).
+  void clear();
+
+  const CacheStats& stats() const;
+  size_t memory_bytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace wellspring
