@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One connected peer as both sides see it: `stream` owns the socket, the show owns the visit, and this
 // is all they share. Pictures: one slot, newest wins. Text: short bounded queues. No call blocks.
+// Every call may come from any thread. After close() or mark_closed() sending does nothing; texts that had
+// arrived by then can still be taken.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -49,9 +51,11 @@ class Link {
   void mark_closed();               // the socket is gone; the show will notice
   bool close_requested(std::string& reason) const;
   uint64_t pictures_dropped() const { return picture_.dropped(); }
+  uint64_t texts_dropped() const { return texts_dropped_; }  // arrived, never read by the show
   std::atomic<uint64_t> bytes_sent{0}, pictures_sent{0};
 
  private:
+  void send(Out out);
   void wake();
   mutable std::mutex mutex_;
   std::deque<std::string> in_;
@@ -61,6 +65,7 @@ class Link {
   std::string close_reason_;
   bool close_requested_ = false;
   std::atomic<bool> closed_{false};
+  std::atomic<uint64_t> texts_dropped_{0};
 };
 
 }  // namespace wellspring

@@ -16,6 +16,7 @@ namespace wellspring {
 
 struct Expression {  // 0..1 each
   float joy = 0, sadness = 0, anger = 0, fear = 0, disgust = 0, surprise = 0;
+  bool operator==(const Expression&) const = default;
 };
 
 // One person. position: metres from the screen's centre, +x to the right as the
@@ -29,6 +30,7 @@ struct Person {
   float confidence = 0;
   std::optional<Expression> expression;  // absent where the kiosk does not estimate it
   std::string gesture;                   // empty: none
+  bool operator==(const Person&) const = default;
 };
 
 enum class Presence : uint8_t { absent, motion, person };
@@ -38,6 +40,7 @@ struct Observation {
   double time = 0;  // seconds, the kiosk's clock (a video file's own time)
   Presence state = Presence::absent;
   std::vector<Person> people;  // nearest first
+  bool operator==(const Observation&) const = default;
 };
 
 // ---- browser to server ----
@@ -45,43 +48,53 @@ struct Observation {
 struct Hello {
   std::string exhibit, lang, role, kiosk;  // role: "visitor" or "kiosk"; empty exhibit: the default one
   int width = 1280, height = 720;
+  bool operator==(const Hello&) const = default;
 };
 struct Input {
   uint32_t seq = 0;
   vec3 move{0};  // right, up, forward, metres a second, kept until the next input
   vec2 look{0};  // yaw, pitch to turn by now
+  bool operator==(const Input&) const = default;
 };
 struct CameraTo {
   uint32_t seq = 0;
   dvec3 position{0};
   float yaw = 0, pitch = 0;
+  bool operator==(const CameraTo&) const = default;
 };
 struct ViewpointTo {
   uint32_t seq = 0;
   std::string name;
+  bool operator==(const ViewpointTo&) const = default;
 };
 enum class TourAction : uint8_t { play, pause, stop };
 struct Tour {
   TourAction action = TourAction::play;
   std::string name;  // empty: the first
+  bool operator==(const Tour&) const = default;
 };
 struct StorytellerOrder {
   std::optional<bool> visible, humanlike;
   std::string story;   // id of a story to tell; empty: no change
   std::string action;  // "play", "pause", "stop", "restart", "skip" or empty
+  bool operator==(const StorytellerOrder&) const = default;
 };
 struct Settings {
   std::optional<float> fps;
   std::optional<bool> attention;
   std::optional<int> quality, max_quality, width, height;
   std::string lang;
+  bool operator==(const Settings&) const = default;
 };
 struct Ack {
   uint32_t frame = 0;
   float decoded_ms = 0;
   bool shown = true;
+  bool operator==(const Ack&) const = default;
 };
-struct Bye {};
+struct Bye {
+  bool operator==(const Bye&) const = default;
+};
 
 using BrowserMessage = std::variant<Hello, Input, CameraTo, ViewpointTo, Tour, StorytellerOrder, Settings, Ack, Bye>;
 

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads checked fields out of one JSON object; for the readers of this folder. The first thing wrong is
+// kept in `error` with the field's full name and turns every later call into nothing, so a reader asks
+// for its fields one after the other and looks at the error once.
+#pragma once
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "base/vec.h"
+#include "wire/json.h"
+
+namespace wellspring {
+
+enum class Need : uint8_t { optional, required };
+
+class Fields {
+ public:
+  // `prefix` names the object in messages ("people[2]."). Both are borrowed by the caller's scope.
+  Fields(const nlohmann::json& object, std::string prefix, std::optional<WireError>& error);
+
+  // True when the field is there and good; the value is written only then.
+  bool number(const char* name, double low, double high, double& value, Need need = Need::optional);
+  bool number(const char* name, double low, double high, float& value, Need need = Need::optional);
+  bool whole(const char* name, double low, double high, double& value, Need need = Need::optional);
+  bool u32(const char* name, uint32_t& value, Need need = Need::optional);
+  bool integer(const char* name, int low, int high, int& value, Need need = Need::optional);
+  bool boolean(const char* name, bool& value, Need need = Need::optional);
+  // At most max_name_bytes, no control characters; required ones must not be empty.
+  bool text(const char* name, std::string& value, Need need = Need::optional);
+  // One of `words`; with Need::optional also the empty string.
+  bool word(const char* name, std::initializer_list<const char*> words, std::string& value,
+            Need need = Need::optional);
+  // An array of exactly `count` numbers, each within +-limit.
+  bool numbers(const char* name, int count, double limit, double* values, Need need = Need::optional);
+  bool vector(const char* name, double limit, vec2& value, Need need = Need::optional);
+  bool vector(const char* name, double limit, vec3& value, Need need = Need::optional);
+  bool vector(const char* name, double limit, dvec3& value, Need need = Need::optional);
+  // The member itself when it is there and of that type.
+  const nlohmann::json* object(const char* name);
+  const nlohmann::json* array(const char* name, size_t max_size);
+
+  // Only read when the field is there: makes std::optional members short to write.
+  template <class T, class Read>
+  void maybe(std::optional<T>& out, const Read& read) {
+    T value{};
+    if (read(value)) out = value;
+  }
+
+  void fail(const std::string& name, const std::string& what);
+  bool good() const { return !error_; }
+
+ private:
+  const nlohmann::json* find(const char* name, Need need);
+  bool check_number(const std::string& name, const nlohmann::json& value, double low, double high,
+                    double& out);
+
+  const nlohmann::json& object_;
+  std::string prefix_;
+  std::optional<WireError>& error_;
+};
+
+// The object of a message whose size, syntax and depth are good and which has a "type" of type string.
+struct Envelope {
+  nlohmann::json object;
+  std::string type;
+};
+std::variant<Envelope, WireError> open_envelope(std::string_view text);
+
+// A piece of a stranger's text made fit for a message of ours: short, no control characters.
+std::string short_quote(std::string_view text);
+
+}  // namespace wellspring

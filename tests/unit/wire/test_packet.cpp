@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "wire/packet.h"
+
+using namespace wellspring;
+
+static Packet golden_picture() {
+  std::ifstream file(std::string(WELLSPRING_SOURCE) + "/tests/protocol/picture.hex");
+  EXPECT_TRUE(file);
+  Packet bytes;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with('#')) continue;
+    std::istringstream words(line);
+    for (std::string word; words >> word;) bytes.push_back(uint8_t(std::stoi(word, nullptr, 16)));
+  }
+  return bytes;
+}
+
+static constexpr PacketHeader golden_header{.frame = 0x04030201,
+                                            .seq = 0x14131211,
+                                            .time_us = 0x2827262524232221,
+                                            .width = 1280,
+                                            .height = 720,
+                                            .quality = 85,
+                                            .flags = packet_still | packet_complete};
+
+TEST(Packet, is_written_as_the_golden_bytes) {
+  Packet packet = golden_picture();
+  std::fill_n(packet.begin(), packet_header_bytes, uint8_t(0xee));
+  write_packet_header(golden_header, packet);
+  EXPECT_EQ(packet, golden_picture());
+}
+
+TEST(Packet, is_read_from_the_golden_bytes) {
+  const Packet packet = golden_picture();
+  const auto view = read_packet(packet);
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->header.frame, golden_header.frame);
+  EXPECT_EQ(view->header.seq, golden_header.seq);
+  EXPECT_EQ(view->header.time_us, golden_header.time_us);
+  EXPECT_EQ(view->header.width, 1280);
+  EXPECT_EQ(view->header.height, 720);
+  EXPECT_EQ(view->header.quality, 85);
+  EXPECT_EQ(view->header.flags, 3);
+  EXPECT_EQ(std::vector(view->payload.begin(), view->payload.end()),
+            (std::vector<uint8_t>{0xff, 0xd8, 0xff, 0xd9}));
+}
+
+TEST(Packet, longer_headers_of_the_future_are_skipped) {
+  Packet packet = golden_picture();
+  packet.insert(packet.begin() + packet_header_bytes, {1, 2, 3, 4});
+  packet[26] = 32;
+  const auto view = read_packet(packet);
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->payload.size(), 4u);
+  EXPECT_EQ(view->payload[0], 0xff);
+}
+
+TEST(Packet, an_empty_payload_is_a_picture_message) {
+  Packet packet = golden_picture();
+  packet.resize(packet_header_bytes);
+  ASSERT_TRUE(read_packet(packet));
+  EXPECT_TRUE(read_packet(packet)->payload.empty());
+}
+
+TEST(Packet, what_is_no_picture_is_refused) {
+  const Packet good = golden_picture();
+  for (size_t size = 0; size < packet_header_bytes; size++)
+    EXPECT_FALSE(read_packet(std::span(good).first(size))) << size;
+  for (size_t i = 0; i < 4; i++) {
+    Packet bad = good;
+    bad[i] ^= 1;
+    EXPECT_FALSE(read_packet(bad)) << i;
+  }
+  Packet bad = good;
+  bad[26] = 27;  // header too short
+  EXPECT_FALSE(read_packet(bad));
+  bad[26] = uint8_t(good.size() + 1);  // header past the end
+  EXPECT_FALSE(read_packet(bad));
+  bad[26] = uint8_t(good.size());
+  EXPECT_TRUE(read_packet(bad));
+  bad[27] = 0xff;
+  EXPECT_FALSE(read_packet(bad));
+}
