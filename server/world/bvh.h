@@ -27,6 +27,16 @@ struct Hit {
   bool valid() const { return instance != 0xffffffffu; }
 };
 
+// All there is to know about an instance of a World, in one place for the shading loop.
+struct PlacedMesh {
+  const Mesh* mesh = nullptr;
+  const Material* material = nullptr;
+  uint32_t object = 0;
+  bool moving = false;
+  mat4 to_world{1};
+  mat3 normal_to_world{1};  // inverse transpose of the upper 3x3 up to a positive factor: normalise after
+};
+
 // A scene with what moves in it. Instances [0, scene.instances.size()) are the scene's; the rest are
 // `moving`, whose vertices are already in world space. Built once per exhibit; not copyable.
 class World {
@@ -44,18 +54,19 @@ class World {
   const Material& material_of(uint32_t instance) const;
   uint32_t object_of(uint32_t instance) const;
   const mat4& to_world(uint32_t instance) const;       // identity for moving ones
-  const mat3& normal_to_world(uint32_t instance) const;  // inverse transpose of the upper 3x3
+  const mat3& normal_to_world(uint32_t instance) const;  // as in PlacedMesh
   bool is_moving(uint32_t instance) const;
+  const PlacedMesh& placed(uint32_t instance) const;  // all of the above at once
 
   // Replaces a moving mesh's vertices (same counts) and shows or hides it. Call commit() afterwards,
-  // while no ray is being traced.
+  // while no ray is being traced. A vertex that is not finite stays where it was.
   void move(int moving, std::span<const vec3> positions, std::span<const vec3> normals);
   void show(int moving, bool visible);
   void commit();
 
   // Nearest hit. Surfaces with alpha are passed through where their alpha says so (mask: cut-off;
   // blend: stochastically, decided by a hash of the ray and the hit, so that a replay agrees).
-  // Thread-safe between commits.
+  // Thread-safe between commits. A ray that is not finite hits nothing.
   Hit intersect(const Ray& ray) const;
   // Anything between t_min and t_max? Alpha as above. Glass counts as opaque.
   bool occluded(const Ray& ray) const;

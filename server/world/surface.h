@@ -20,14 +20,19 @@ struct Surface {
   float metallic = 0, roughness = 1;
   vec3 emission{0};  // 0 when seen from the back of a single-sided material
   float transmission = 0, thickness = 0;
+  float extent = 0;  // largest coordinate of the triangle's corners: bounds the error of `position`
 };
 
 // `hit` must be valid().
 Surface eval_surface(const World& world, const Ray& ray, const Hit& hit);
-// Position and geometric normal (towards its winding) of a triangle at barycentric weights.
+// Position on a triangle at barycentric weights of its second and third corner, world space.
 vec3 eval_position(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric);
+// Unit geometric normal towards the side the winding faces (0, 1, 0 for a triangle without area), and
+// the triangle's area through `area` if given, both in world space.
+vec3 eval_face(const World& world, uint32_t instance, uint32_t triangle, float* area = nullptr);
 // An origin for a ray leaving `surface` along `direction` that does not hit the same surface again
-// (Waechter and Binder, Ray Tracing Gems chapter 6).
+// (Waechter and Binder, Ray Tracing Gems chapter 6), widened where a large triangle's corners make its
+// places less exact than their own coordinates.
 vec3 offset_origin(const Surface& surface, vec3 direction);
 
 }  // namespace wellspring

@@ -36,6 +36,9 @@ struct TextureRef {
 };
 
 // Linear RGBA at (u, v). Any finite uv; non-finite uv gives texel 0. Texels that are not finite read as 0.
+// An image without texels reads as 1 everywhere.
 vec4 eval_texture(const Image& image, const Texture& texture, vec2 uv);
+// The linear value of an 8-bit sRGB code (IEC 61966-2-1).
+float decode_srgb(uint8_t code);
 
 }  // namespace wellspring

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one place that knows which Embree this is: 3 (contexts carry flags) or 4 (arguments carry
+// contexts). Only bvh*.cpp include it.
+#pragma once
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace wellspring::embree {
+
+#if RTC_VERSION_MAJOR >= 4
+
+using Context = RTCRayQueryContext;
+inline void init(Context& context) { rtcInitRayQueryContext(&context); }
+
+inline RTCIntersectArguments intersect_arguments(Context& context, bool coherent) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+  return arguments;
+}
+inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray) {
+  RTCIntersectArguments arguments = intersect_arguments(context, false);
+  rtcIntersect1(scene, &ray, &arguments);
+}
+inline void intersect8(RTCScene scene, Context& context, const int* valid, RTCRayHit8& rays) {
+  RTCIntersectArguments arguments = intersect_arguments(context, true);
+  rtcIntersect8(valid, scene, &rays, &arguments);
+}
+inline void occluded1(RTCScene scene, Context& context, RTCRay& ray) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context;
+  rtcOccluded1(scene, &ray, &arguments);
+}
+
+#else
+
+using Context = RTCIntersectContext;
+inline void init(Context& context) { rtcInitIntersectContext(&context); }
+
+inline void intersect1(RTCScene scene, Context& context, RTCRayHit& ray) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  rtcIntersect1(scene, &context, &ray);
+}
+inline void intersect8(RTCScene scene, Context& context, const int* valid, RTCRayHit8& rays) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &context, &rays);
+}
+inline void occluded1(RTCScene scene, Context& context, RTCRay& ray) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  rtcOccluded1(scene, &context, &ray);
+}
+
+#endif
+
+}  // namespace wellspring::embree

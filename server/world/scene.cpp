@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/scene.h"
+
+namespace wellspring {
+
+Bounds scene_bounds(const Scene& scene) {
+  Bounds bounds;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
+    for (const uvec3& triangle : mesh.triangles)
+      for (int corner = 0; corner < 3; corner++) {
+        vec3 p = vec3(instance.to_world * vec4(mesh.positions[triangle[corner]], 1));
+        if (!is_finite(p)) continue;
+        bounds.low = glm::min(bounds.low, p);
+        bounds.high = glm::max(bounds.high, p);
+      }
+  }
+  return bounds;
+}
+
+size_t triangle_count(const Scene& scene) {
+  size_t count = 0;
+  for (const Instance& instance : scene.instances)
+    count += scene.meshes[size_t(instance.mesh)].triangles.size();
+  return count;
+}
+
+bool has_light(const Scene& scene) {
+  if (max_component(scene.environment.radiance) > 0) return true;
+  for (const PunctualLight& light : scene.lights)
+    if (max_component(light.intensity) > 0) return true;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
+    if (!mesh.triangles.empty() &&
+        max_component(scene.materials[size_t(mesh.material)].emission) > 0)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/view.h"
+
+#include <cmath>
+
+namespace wellspring {
+namespace {
+
+View make_view_from_axes(const Scene& scene, dvec3 position, vec3 forward, vec3 right, float fov,
+                         int width, int height) {
+  View view;
+  view.position = vec3(position - scene.origin);
+  if (!is_finite(view.position)) view.position = vec3(0);
+  view.forward = forward;
+  view.right = right;
+  view.up = cross(right, forward);
+  if (!std::isfinite(fov)) fov = 1;
+  view.tan_half_fov = std::tan(0.5f * glm::clamp(fov, 1e-4f, pi - 1e-3f));
+  view.width = glm::max(width, 1);
+  view.height = glm::max(height, 1);
+  return view;
+}
+
+}  // namespace
+
+View make_view(const Scene& scene, dvec3 position, float yaw, float pitch, float fov, int width,
+               int height) {
+  if (!std::isfinite(yaw)) yaw = 0;
+  if (!std::isfinite(pitch)) pitch = 0;
+  vec3 forward{-std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch)};
+  vec3 right{std::cos(yaw), 0, -std::sin(yaw)};
+  return make_view_from_axes(scene, position, forward, right, fov, width, height);
+}
+
+View make_view_towards(const Scene& scene, dvec3 eye, dvec3 target, vec3 up, float fov, int width,
+                       int height) {
+  dvec3 line = target - eye;
+  double length = glm::length(line);
+  vec3 forward = std::isfinite(length) && length > 0 ? vec3(line / length) : vec3(0, 0, -1);
+  if (!is_finite(up) || dot(up, up) == 0) up = vec3(0, 1, 0);
+  vec3 right = cross(forward, normalize(up));
+  if (dot(right, right) < 1e-8f) {  // parallel: any axis that is not
+    vec3 other = std::abs(forward.z) < 0.9f ? vec3(0, 0, -1) : vec3(0, 1, 0);
+    right = cross(forward, other);
+  }
+  return make_view_from_axes(scene, eye, forward, normalize(right), fov, width, height);
+}
+
+Ray view_ray(const View& view, float x, float y) {
+  float scale = 2 * view.tan_half_fov / float(view.height);
+  vec3 direction = view.forward + view.right * ((x - 0.5f * float(view.width)) * scale) +
+                   view.up * ((0.5f * float(view.height) - y) * scale);
+  Ray ray;
+  ray.origin = view.position;
+  ray.direction = normalize(direction);
+  return ray;
+}
+
+}  // namespace wellspring
