@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frame/jpeg.h"
+
+#include <turbojpeg.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "base/load_error.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int largest_side = 16384;
+
+struct CloseHandle {
+  void operator()(void* handle) const { tjDestroy(handle); }
+};
+using Handle = std::unique_ptr<void, CloseHandle>;
+
+// What one thread keeps between pictures: the codec's state and room for its output.
+struct Compressor {
+  Handle handle{tjInitCompress()};
+  std::vector<uint8_t> room;
+};
+
+}  // namespace
+
+void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector<uint8_t>& out) {
+  if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side ||
+      image.rgb.size() != size_t(image.width) * size_t(image.height) * 3)
+    throw std::invalid_argument("encode_jpeg: no picture of a size JPEG can hold");
+  thread_local Compressor compressor;
+  int chroma = full_chroma ? TJSAMP_444 : TJSAMP_420;
+  size_t bound = tjBufSize(image.width, image.height, chroma);
+  if (compressor.room.size() < bound) compressor.room.resize(bound);
+  unsigned char* bytes = compressor.room.data();
+  unsigned long size = bound;
+  if (!compressor.handle ||
+      tjCompress2(compressor.handle.get(), image.rgb.data(), image.width, 0, image.height, TJPF_RGB, &bytes,
+                  &size, chroma, std::clamp(quality, 1, 100), TJFLAG_NOREALLOC) != 0)
+    throw std::runtime_error(std::string("encode_jpeg: ") + tjGetErrorStr2(compressor.handle.get()));
+  out.assign(bytes, bytes + size);
+}
+
+Image8 decode_jpeg(std::span<const uint8_t> bytes, const char* file) {
+  Handle handle(tjInitDecompress());
+  if (!handle) throw LoadError(file, "", tjGetErrorStr2(nullptr));
+  Image8 image;
+  int chroma = 0, colorspace = 0;
+  if (tjDecompressHeader3(handle.get(), bytes.data(), bytes.size(), &image.width, &image.height, &chroma,
+                          &colorspace) != 0)
+    throw LoadError(file, "JPEG header", tjGetErrorStr2(handle.get()));
+  if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side)
+    throw LoadError(file, "JPEG header",
+                    "picture of " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+                        " is larger than 16384 a side");
+  image.rgb.resize(size_t(image.width) * size_t(image.height) * 3);
+  if (tjDecompress2(handle.get(), bytes.data(), bytes.size(), image.rgb.data(), image.width, 0, image.height,
+                    TJPF_RGB, TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) != 0)
+    throw LoadError(file, "JPEG data", tjGetErrorStr2(handle.get()));
+  return image;
+}
+
+}  // namespace wellspring
