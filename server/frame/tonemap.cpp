@@ -19,6 +19,7 @@ constexpr float shoulder_height = 1 - shoulder_start;
 constexpr float desaturation = 0.15f;
 constexpr float brightest = 1e8f;  // stands for infinity, so that no inf/inf arises
 
+inline float larger(float a, float b) { return a > b ? a : b; }
 inline float usable(float x) {
   x = x > 0 ? x : 0.0f;  // false for NaN
   return x < brightest ? x : brightest;
@@ -28,9 +29,9 @@ struct Shoulder {
   float scale, offset;  // channel = radiance * scale + offset
 };
 
-// Branch-free, so that a row of pixels becomes vector code.
-inline Shoulder shoulder(float peak) {
-  float above = peak > shoulder_start ? peak : shoulder_start;
+// Branch-free, so that a loop over pixels becomes vector code.
+// `above`: the colour's largest channel, at least shoulder_start.
+inline Shoulder shoulder(float above) {
   float squeezed =
       1 - shoulder_height * shoulder_height / (above + (shoulder_height - shoulder_start));
   float keep = 1 / (desaturation * (above - squeezed) + 1);
@@ -46,18 +47,20 @@ inline float encode_fast(float x) {
                      s * (-1.89947641f +
                           s * (3.89844127f + s * (-5.00316832f + s * (3.4186871f - s * 0.947671543f)))));
   float line = 12.92f * x;
-  return x < 0.0031308f ? line : curve;
+  float low = x < 0.0031308f ? 1.0f : 0.0f;  // a choice by arithmetic: no branch, so vector code
+  return curve + low * (line - curve);
 }
 
 inline float encode_exact(float x) {
   return x < 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
 }
 
-constexpr int block = 64;  // pixels at once: three planes of them stay in the first-level cache
+// Pixels at once: their planes stay in the first-level cache. Each step is a loop of its own over one or
+// three planes, which is what compilers turn into vector code.
+constexpr int block = 64;
 
 void tonemap_block(const vec3* color, int count, float exposure, uint8_t* rgb) {
   float red[block], green[block], blue[block];
-  uint8_t out_red[block], out_green[block], out_blue[block];
   for (int i = 0; i < count; i++) {
     red[i] = color[i].x;
     green[i] = color[i].y;
@@ -66,18 +69,22 @@ void tonemap_block(const vec3* color, int count, float exposure, uint8_t* rgb) {
   std::fill(red + count, red + block, 0.0f);
   std::fill(green + count, green + block, 0.0f);
   std::fill(blue + count, blue + block, 0.0f);
+  for (float* plane : {red, green, blue})
+    for (int i = 0; i < block; i++) plane[i] = usable(plane[i] * exposure);
+  float peak[block], scale[block], offset[block];
+  for (int i = 0; i < block; i++)
+    peak[i] = larger(larger(red[i], green[i]), larger(blue[i], shoulder_start));
   for (int i = 0; i < block; i++) {
-    float r = usable(red[i] * exposure), g = usable(green[i] * exposure), b = usable(blue[i] * exposure);
-    float larger = r > g ? r : g;
-    Shoulder s = shoulder(larger > b ? larger : b);
-    out_red[i] = uint8_t(int(encode_fast(r * s.scale + s.offset) * 255 + 0.5f));
-    out_green[i] = uint8_t(int(encode_fast(g * s.scale + s.offset) * 255 + 0.5f));
-    out_blue[i] = uint8_t(int(encode_fast(b * s.scale + s.offset) * 255 + 0.5f));
+    Shoulder s = shoulder(peak[i]);
+    scale[i] = s.scale;
+    offset[i] = s.offset;
   }
+  for (float* plane : {red, green, blue})
+    for (int i = 0; i < block; i++) plane[i] = encode_fast(plane[i] * scale[i] + offset[i]) * 255 + 0.5f;
   for (int i = 0; i < count; i++) {
-    rgb[3 * i] = out_red[i];
-    rgb[3 * i + 1] = out_green[i];
-    rgb[3 * i + 2] = out_blue[i];
+    rgb[3 * i] = uint8_t(red[i]);
+    rgb[3 * i + 1] = uint8_t(green[i]);
+    rgb[3 * i + 2] = uint8_t(blue[i]);
   }
 }
 
@@ -100,7 +107,7 @@ void tonemap(const Frame& frame, const Tonemap& settings, Image8& out) {
 vec3 tonemap_color(vec3 radiance, const Tonemap& settings) {
   vec3 c(usable(radiance.x * settings.exposure), usable(radiance.y * settings.exposure),
          usable(radiance.z * settings.exposure));
-  Shoulder s = shoulder(max_component(c));
+  Shoulder s = shoulder(larger(max_component(c), shoulder_start));
   return {encode_exact(c.x * s.scale + s.offset), encode_exact(c.y * s.scale + s.offset),
           encode_exact(c.z * s.scale + s.offset)};
 }
