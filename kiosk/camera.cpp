@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kiosk/camera.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "base/clock.h"
+#include "base/load_error.h"
+#include "kiosk/figure.h"
+
+namespace wellspring {
+
+namespace {
+
+// Luminance at no more than `width` pixels across. False for what is not a picture.
+bool to_gray(const cv::Mat& picture, int width, GrayFrame& frame) {
+  if (picture.empty() || picture.cols < 16 || picture.rows < 16) return false;
+  if (picture.depth() != CV_8U) return false;
+  cv::Mat gray = picture;
+  if (picture.channels() == 3) cv::cvtColor(picture, gray, cv::COLOR_BGR2GRAY);
+  else if (picture.channels() == 4) cv::cvtColor(picture, gray, cv::COLOR_BGRA2GRAY);
+  else if (picture.channels() != 1) return false;
+  if (gray.cols > width) {
+    cv::Mat small;
+    int height = std::max(16, int(std::lround(double(gray.rows) * width / gray.cols)));
+    cv::resize(gray, small, {width, height}, 0, 0, cv::INTER_AREA);
+    gray = small;
+  }
+  frame.width = gray.cols;
+  frame.height = gray.rows;
+  frame.pixels.resize(size_t(gray.cols) * size_t(gray.rows));
+  gray.copyTo(cv::Mat(gray.rows, gray.cols, CV_8U, frame.pixels.data()));
+  return true;
+}
+
+class FileCamera : public Camera {
+ public:
+  explicit FileCamera(const CameraSettings& settings) : settings_(settings) {
+    const std::string& path = settings.source;
+    std::error_code ec;
+    if (!std::filesystem::exists(path, ec)) throw LoadError(path, "", "no such file");
+    if (!std::filesystem::is_regular_file(path, ec)) throw LoadError(path, "", "not a file");
+    open();
+    if (!read(first_)) throw LoadError(path, "", "not a video that can be read");
+    has_first_ = true;
+  }
+  bool live() const override { return false; }
+
+  Got next(GrayFrame& frame) override {
+    if (has_first_) {
+      has_first_ = false;
+      std::swap(frame, first_);
+      return Got::frame;
+    }
+    if (read(frame)) return Got::frame;
+    if (!settings_.loop) return Got::end;
+    begin_ = last_ + step();
+    open();
+    return read(frame) ? Got::frame : Got::end;
+  }
+
+ private:
+  void open() {
+    index_ = 0;
+    try {
+      capture_.open(settings_.source);
+    } catch (const cv::Exception&) {
+    }
+    double fps = capture_.isOpened() ? capture_.get(cv::CAP_PROP_FPS) : 0;
+    fps_ = std::isfinite(fps) && fps >= 1 && fps <= 1000 ? fps : 25;
+  }
+  double step() const { return 1 / fps_; }
+
+  // The next frame that can be decoded. Its time is the file's own where that grows, else the frame rate's.
+  bool read(GrayFrame& frame) {
+    try {
+      for (int bad = 0; bad < 100 && capture_.isOpened() && capture_.read(picture_); bad++) {
+        double own = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000;
+        double time = index_ == 0 ? begin_ : last_ + step();
+        if (index_ > 0 && std::isfinite(own) && begin_ + own > last_ + 1e-4 &&
+            begin_ + own < last_ + 10)
+          time = begin_ + own;
+        if (!to_gray(picture_, settings_.width, frame)) continue;
+        index_++;
+        frame.time = last_ = time;
+        return true;
+      }
+    } catch (const cv::Exception&) {  // a broken stream ends where it breaks
+    }
+    return false;
+  }
+
+  CameraSettings settings_;
+  cv::VideoCapture capture_;
+  cv::Mat picture_;
+  GrayFrame first_;
+  bool has_first_ = false;
+  long index_ = 0;
+  double begin_ = 0, last_ = 0, fps_ = 25;
+};
+
+class DeviceCamera : public Camera {
+ public:
+  explicit DeviceCamera(const CameraSettings& settings) : settings_(settings) {
+    setenv("OPENCV_VIDEOIO_V4L_SELECT_TIMEOUT", "2", 0);  // seconds; OpenCV's own default is 10
+  }
+  bool live() const override { return true; }
+
+  Got next(GrayFrame& frame) override {
+    try {
+      if (!capture_.isOpened() && !open()) return Got::lost;
+      if (!capture_.read(picture_) || !to_gray(picture_, settings_.width, frame)) return lose();
+    } catch (const cv::Exception&) {
+      return lose();
+    }
+    frame.time = seconds_now();
+    // A sensor's noise never repeats: a picture that does comes from a driver that has stopped.
+    if (frame.pixels == last_) {
+      if (frame.time - changed_ > 2) return lose();
+    } else {
+      last_ = frame.pixels;
+      changed_ = frame.time;
+    }
+    return Got::frame;
+  }
+
+ private:
+  bool open() {
+    const std::string& source = settings_.source;
+    std::string path = source;
+    if (!source.empty() && std::all_of(source.begin(), source.end(), ::isdigit)) path = "/dev/video" + source;
+    if (!std::filesystem::exists(path)) return false;
+    if (!capture_.open(path, cv::CAP_V4L2)) return false;
+    capture_.set(cv::CAP_PROP_FRAME_WIDTH, settings_.width);
+    capture_.set(cv::CAP_PROP_FRAME_HEIGHT, settings_.width * 3 / 4);
+    capture_.set(cv::CAP_PROP_FPS, settings_.rate);
+    capture_.set(cv::CAP_PROP_BUFFERSIZE, 1);
+    changed_ = seconds_now();
+    last_.clear();
+    return true;
+  }
+  Got lose() {
+    capture_.release();
+    return Got::lost;
+  }
+
+  CameraSettings settings_;
+  cv::VideoCapture capture_;
+  cv::Mat picture_;
+  std::vector<uint8_t> last_;
+  double changed_ = 0;
+};
+
+class SyntheticCamera : public Camera {
+ public:
+  explicit SyntheticCamera(const CameraSettings& settings) : settings_(settings) {
+    room_.width = std::clamp(settings.width, 160, 1280);
+    room_.height = room_.width * 3 / 4;
+  }
+  bool live() const override { return false; }
+  Got next(GrayFrame& frame) override {
+    double time = double(index_++) / settings_.rate;
+    if (settings_.synthetic_ends && time >= figure_round) return Got::end;
+    frame = draw_figure(room_, settings_.mount, figure_at(time), time);
+    return Got::frame;
+  }
+
+ private:
+  CameraSettings settings_;
+  FigureRoom room_;
+  long index_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Camera> make_camera(const CameraSettings& settings) {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  const std::string& source = settings.source;
+  if (source == "synthetic") return std::make_unique<SyntheticCamera>(settings);
+  bool number = !source.empty() && source.size() < 4 && std::all_of(source.begin(), source.end(), ::isdigit);
+  if (number || source.rfind("/dev/", 0) == 0) return std::make_unique<DeviceCamera>(settings);
+  return std::make_unique<FileCamera>(settings);
+}
+
+}  // namespace wellspring
