@@ -14,6 +14,8 @@ struct Joint {
   std::string name;  // H-Anim v2 name ("l_shoulder"); aliases and prefixes of the file resolved
   int parent = -1;   // always smaller than the joint's own index; -1: the root
   vec3 center{0};    // humanoid space at rest, metres
+  // How the file turns the joint, relative to its parent. Not part of the rest pose, which is the H-Anim
+  // default pose (no joint turned); a Pose of these rotations shows the figure as the file does.
   quat rest_rotation{1, 0, 0, 0};
   std::vector<vec2> limits;  // empty, or lower/upper radians for x, y, z
 };
@@ -70,7 +72,7 @@ struct Character {
   // Vertices, shared by all parts; at rest, in humanoid space (metres, +Y up, facing +Z, feet at y = 0).
   std::vector<vec3> positions;
   std::vector<vec3> normals;
-  std::vector<vec2> uv;  // empty, or one a vertex
+  std::vector<vec2> uv;  // empty, or one a vertex; (0, 0) is the picture's top left, as in glTF
   // Joints that move vertex v: weights[first_weight[v] .. first_weight[v + 1]), sum 1.
   std::vector<uint32_t> first_weight;
   std::vector<JointWeight> weights;

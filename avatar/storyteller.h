@@ -29,6 +29,8 @@ struct StorytellerInput {
   bool kiosk_motion = false;  // something moves before a kiosk but nobody is recognised yet
   std::vector<Guest> guests;
   bool humanlike = true;  // noise for human-like behaviour; off: bit-identical replays
+  float speaking = 0;     // mouth activity 0..1: it says something right now
+  bool telling = false;   // a story is being told (Mood::telling while no greeting or farewell is due)
 };
 
 // What happened in this tick, for subtitles and messages.
@@ -51,5 +53,14 @@ struct StorytellerState {
 // One tick: notices, decides, moves. Overwrites `pose` and `events`. Never fails.
 void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
                       const StorytellerInput& input, Pose& pose, StorytellerEvents& events);
+
+// Where the storyteller looks, for messages and measurements.
+struct StorytellerGaze {
+  vec3 target{0};             // world: what it wants to look at
+  float yaw = 0, pitch = 0;   // of its line of sight as posed now, from the body's facing; radians, yaw
+                              // positive to its own left, pitch positive up
+  uint32_t guest = 0;         // whom it looks at; 0: nobody
+};
+StorytellerGaze eval_gaze(const StorytellerState& state, const Storyteller& storyteller, const Pose& pose);
 
 }  // namespace wellspring
