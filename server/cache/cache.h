@@ -56,6 +56,7 @@ class RenderCache {
   void remember(const View& view, std::span<const Request> requests, std::span<const Sample> samples);
   // The picture: overwrites `frame` (color, confidence; depth and object for those who ask later).
   void reconstruct(const View& view, Frame& frame);
+  void set_attention(bool on);  // CacheSettings::attention
   // Forgets everything (lights toggled, exhibit changed).
   void clear();
 

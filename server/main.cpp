@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// wellspring run: flags -> load -> threads. The only place that knows both `show` and `stream`.
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <iostream>
+#include <spdlog/fmt/fmt.h>
+#include <thread>
+
+#include "base/clock.h"
+#include "base/load_error.h"
+#include "base/log.h"
+#include "show/answer.h"
+#include "show/exhibit_load.h"
+#include "show/pages.h"
+#include "show/show.h"
+#include "show/still.h"
+#include "stream/stream.h"
+
+namespace {
+
+using namespace wellspring;
+
+volatile std::sig_atomic_t asked_to_stop = 0;
+
+struct Options {
+  std::string content = "content", web = "web", exhibit = "castle";
+  StreamSettings stream;
+  ShowSettings show;
+};
+
+int read_options(Options& options, int argc, char** argv) {
+  CLI::App app{"Serves a museum exhibit to browsers and kiosks."};
+  int port = 8080;
+  app.add_option("--exhibit", options.exhibit, "the exhibit's id: a folder below content")->capture_default_str();
+  app.add_option("--port", port, "0: any free one")->check(CLI::Range(0, 65535))->capture_default_str();
+  app.add_option("--host", options.stream.host, "address to listen on")->capture_default_str();
+  app.add_option("--allow-origin", options.stream.allowed_origin,
+                 "a further Origin whose pages may open a visit; * for any");
+  app.add_option("--content", options.content, "folder of exhibit packages")->capture_default_str();
+  app.add_option("--web", options.web, "folder of the pages")->capture_default_str();
+  app.add_option("--fps", options.show.fps, "pictures a second for each visitor")
+      ->check(CLI::Range(1.0, 120.0))->capture_default_str();
+  app.add_option("--max-visitors", options.show.max_visitors)->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--technique", options.show.technique, "how light is sampled")->capture_default_str();
+  app.add_option("--max-depth", options.show.transport.max_depth)->check(CLI::Range(1, 64))->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (!find_technique(options.show.technique)) {
+    std::cerr << "--technique: there is no '" << options.show.technique << "'; there are:";
+    for (const Technique& technique : techniques()) std::cerr << " " << technique.name;
+    std::cerr << "\n";
+    return 2;
+  }
+  options.stream.port = uint16_t(port);
+  return -1;
+}
+
+std::string stream_metrics(const Server& server) {
+  StreamCounters counters = server.counters();
+  auto line = [](const char* name, const char* type, uint64_t value) {
+    return fmt::format("# TYPE wellspring_{0} {1}\nwellspring_{0} {2}\n", name, type, value);
+  };
+  return line("connections_accepted_total", "counter", counters.accepted) +
+         line("connections_refused_total", "counter", counters.refused) +
+         line("connections", "gauge", counters.open) +
+         line("http_requests_total", "counter", counters.http_requests) +
+         line("websockets_total", "counter", counters.websockets) +
+         line("slow_readers_closed_total", "counter", counters.slow_closed);
+}
+
+int serve(const Options& options) {
+  std::string folder = options.content + "/" + options.exhibit;
+  auto pages = load_pages(options.web);
+  auto show = make_show(load_exhibit(folder), options.show);
+  StillRoom stills(*show);
+  ReportBoard board;
+  Arrivals arrivals;
+  std::unique_ptr<Server> server;
+
+  AnswerSources sources;
+  sources.exhibit = &show->exhibit;
+  sources.pages = &pages;
+  sources.board = &board;
+  sources.make_still = [&](const StillOrder& order) { return stills.make(order); };
+  sources.stream_metrics = [&] { return server ? stream_metrics(*server) : std::string(); };
+  Doors doors;
+  doors.answer = [&](const HttpQuestion& question) { return answer(sources, question); };
+  doors.joined = [&](std::shared_ptr<Link> link) { arrivals.put(std::move(link)); };
+  board.publish(make_report(*show));
+  server = std::make_unique<Server>(options.stream, doors);
+  std::cout << "Wellspring serves '" << options.exhibit << "' at http://" << options.stream.host << ":"
+            << server->port() << "/" << std::endl;
+
+  double reported = -1;
+  while (!asked_to_stop) {
+    double began = seconds_now();
+    tick(*show, arrivals, began);
+    if (began - reported > 0.25) {
+      reported = began;
+      board.publish(make_report(*show));
+    }
+    double wait = seconds_to_next_tick(*show, began, seconds_now());
+    if (wait > 0) std::this_thread::sleep_for(std::chrono::duration<double>(wait));
+  }
+  log::info("stopping");
+  server->stop();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  log::start("server");
+  Options options;
+  if (int status = read_options(options, argc, argv); status >= 0) return status;
+  std::signal(SIGINT, [](int) { asked_to_stop = 1; });
+  std::signal(SIGTERM, [](int) { asked_to_stop = 1; });
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    return serve(options);
+  } catch (const ExhibitError& error) {
+    for (const Problem& problem : error.problems)
+      std::cerr << (problem.fatal ? "error: " : "note: ") << to_string(problem) << "\n";
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << "\n";
+  }
+  return 1;
+}

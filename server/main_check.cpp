@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// wellspring check content/ID: lists every problem of an exhibit package with file and place.
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "base/log.h"
+#include "show/exhibit_load.h"
+
+int main(int argc, char** argv) {
+  wellspring::log::start("check");
+  CLI::App app{"Validates an exhibit package and lists every problem with file and place."};
+  std::string folder;
+  app.add_option("package", folder, "folder of the exhibit, e.g. content/castle")->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  std::vector<wellspring::Problem> problems;
+  int fatal = 0;
+  try {
+    wellspring::read_exhibit(folder, problems);
+  } catch (const std::exception& error) {
+    problems.push_back({folder, "", error.what(), true});
+  }
+  for (const wellspring::Problem& problem : problems) {
+    std::cout << (problem.fatal ? "error: " : "note: ") << to_string(problem) << "\n";
+    fatal += problem.fatal;
+  }
+  if (fatal == 0) std::cout << folder << ": good, " << problems.size() << " notes\n";
+  else std::cout << folder << ": " << fatal << " errors, " << problems.size() - size_t(fatal) << " notes\n";
+  return fatal == 0 ? 0 : 1;
+}

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/exhibit_load.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "avatar/character_load.h"
+#include "base/load_error.h"
+#include "base/log.h"
+#include "show/json_fields.h"
+#include "wire/json.h"
+#include "world/scene_load.h"
+
+namespace wellspring {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+constexpr size_t max_manifest_bytes = 8 << 20;
+constexpr double degree = 3.14159265358979323846 / 180;
+
+std::string join(const std::vector<Problem>& problems) {
+  std::string all;
+  for (const Problem& problem : problems)
+    if (problem.fatal) all += (all.empty() ? "" : "\n") + to_string(problem);
+  return all;
+}
+
+bool is_identifier(const std::string& id) {
+  return !id.empty() && id.size() <= 100 && std::all_of(id.begin(), id.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '-' || c == '_' || c == '.';
+  });
+}
+
+// A file of the package: inside its folder and there. Empty when not, with the problem noted.
+std::string package_file(Fields& fields, const char* field, const std::string& folder,
+                         const std::string& name) {
+  if (name.empty()) return "";
+  fs::path relative(name);
+  bool escapes = relative.is_absolute() ||
+                 std::any_of(relative.begin(), relative.end(), [](const fs::path& p) { return p == ".."; });
+  if (escapes) {
+    fields.problem(field, "'" + name + "' leaves the package's folder");
+    return "";
+  }
+  std::error_code ec;
+  fs::path path = fs::path(folder) / relative;
+  fs::path real = fs::weakly_canonical(path, ec), root = fs::weakly_canonical(folder, ec);
+  auto mismatch = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
+  if (ec || mismatch.first != root.end()) {
+    fields.problem(field, "'" + name + "' leaves the package's folder");
+    return "";
+  }
+  if (!fs::is_regular_file(path, ec)) {
+    fields.problem(field, "there is no file '" + name + "' in the package");
+    return "";
+  }
+  return path.string();
+}
+
+void read_walk(Exhibit& exhibit, Fields fields) {
+  WalkRules walk;
+  walk.eye_height = float(fields.number("eye_height", false, 1.65, 0.2, 10));
+  walk.speed = float(fields.number("speed", false, 1.4, 0.05, 20));
+  walk.radius = float(fields.number("radius", false, 0.25, 0.01, 5));
+  fields.object("bounds", false, [&](Fields box) {
+    dvec3 low = box.triple("low", true), high = box.triple("high", true);
+    if (!(low.x < high.x && low.y < high.y && low.z < high.z))
+      box.problem("", "low must be below high on every axis");
+    walk.bounds = Bounds{vec3(low), vec3(high)};
+    box.finish();
+  });
+  fields.finish();
+  exhibit.walk = walk;
+}
+
+void read_viewpoints(Exhibit& exhibit, Fields& root) {
+  root.objects("viewpoints", false, [&](Fields fields) {
+    ExhibitViewpoint viewpoint;
+    viewpoint.view.name = fields.text("name", true);
+    if (find_viewpoint(exhibit, viewpoint.view.name) >= 0)
+      fields.problem("name", "'" + viewpoint.view.name + "' is taken by another viewpoint");
+    viewpoint.title = fields.local_text("title", false);
+    viewpoint.view.position = fields.triple("position", true);
+    viewpoint.view.yaw = float(fields.number("yaw_deg", false, 0, -720, 720) * degree);
+    viewpoint.view.pitch = float(fields.number("pitch_deg", false, 0, -89, 89) * degree);
+    viewpoint.view.fov = float(fields.number("fov_deg", false, 55, 5, 150) * degree);
+    fields.finish();
+    exhibit.viewpoints.push_back(std::move(viewpoint));
+  });
+}
+
+int read_viewpoint_name(const Exhibit& exhibit, Fields& fields, const char* name, bool required) {
+  std::string viewpoint = fields.text(name, required);
+  if (viewpoint.empty()) return 0;
+  int index = find_viewpoint(exhibit, viewpoint);
+  if (index < 0) fields.problem(name, "there is no viewpoint '" + viewpoint + "'");
+  return std::max(index, 0);
+}
+
+void read_storyteller(Exhibit& exhibit, Fields fields, std::vector<Problem>& problems) {
+  StorytellerPlace place;
+  place.figure = fields.text("figure", true);
+  place.name = fields.local_text("name", false);
+  place.position = fields.triple("position", true);
+  place.yaw = float(fields.number("yaw_deg", false, 0, -720, 720) * degree);
+  place.greetings = fields.local_lines("greetings", false);
+  place.farewells = fields.local_lines("farewells", false);
+  place.kiosk_viewpoint = read_viewpoint_name(exhibit, fields, "kiosk_viewpoint", false);
+  for (const std::string& lang : exhibit.languages) {
+    if (!place.greetings.contains(lang))
+      fields.problem("greetings", "has nothing in '" + lang + "'", false);
+    if (!place.farewells.contains(lang))
+      fields.problem("farewells", "has nothing in '" + lang + "'", false);
+  }
+  std::string path = package_file(fields, "figure", exhibit.folder, place.figure);
+  if (!path.empty()) {
+    try {
+      exhibit.character = load_character(path);
+      for (const std::string& warning : exhibit.character->warnings)
+        problems.push_back({path, "", warning, false});
+    } catch (const LoadError& error) {
+      problems.push_back({error.file, error.where, error.what_});
+    }
+  }
+  fields.finish();
+  exhibit.storyteller = std::move(place);
+}
+
+void read_tours_and_stories(Exhibit& exhibit, Fields& root) {
+  root.objects("tours", false, [&](Fields fields) {
+    TourPlan tour;
+    tour.id = fields.text("id", true);
+    tour.title = fields.local_text("title", false);
+    fields.objects("stops", true, [&](Fields stop_fields) {
+      TourStop stop;
+      stop.viewpoint = read_viewpoint_name(exhibit, stop_fields, "viewpoint", true);
+      stop.travel_seconds = float(stop_fields.number("travel_seconds", false, 5, 0, 600));
+      stop.stay_seconds = float(stop_fields.number("stay_seconds", false, 6, 0, 3600));
+      stop.text = stop_fields.local_text("text", false);
+      stop_fields.finish();
+      tour.stops.push_back(std::move(stop));
+    });
+    if (tour.stops.empty()) fields.problem("stops", "must name at least one stop");
+    fields.finish();
+    exhibit.tours.push_back(std::move(tour));
+  });
+  root.objects("stories", false, [&](Fields fields) {
+    StoryText story;
+    story.id = fields.text("id", true);
+    story.title = fields.local_text("title", false);
+    story.text = fields.local_lines("text", true);
+    fields.finish();
+    exhibit.stories.push_back(std::move(story));
+  });
+}
+
+void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
+  std::string path = package_file(root, "scene", exhibit.folder, root.text("scene", true));
+  if (!path.empty()) {
+    try {
+      SceneLoadOptions options;
+      options.package = exhibit.folder;
+      exhibit.scene = load_scene(path, options);
+      for (const std::string& warning : exhibit.scene.warnings) problems.push_back({path, "", warning, false});
+    } catch (const LoadError& error) {
+      problems.push_back({error.file, error.where, error.what_});
+    }
+  }
+  root.object("environment", false, [&](Fields fields) {
+    exhibit.scene.environment.radiance = vec3(fields.triple("radiance", false, dvec3(1)));
+    std::string picture = fields.text("image", false);
+    std::string picture_path = package_file(fields, "image", exhibit.folder, picture);
+    if (!picture_path.empty()) {
+      try {
+        load_environment(picture_path, exhibit.scene);
+      } catch (const LoadError& error) {
+        problems.push_back({error.file, error.where, error.what_});
+      }
+    }
+    fields.finish();
+  });
+  if (!path.empty() && !has_light(exhibit.scene))
+    root.problem("environment", "the scene has no light of any kind; it will be black", false);
+}
+
+void read_points(Exhibit& exhibit, Fields& root) {
+  root.members("objects", [&](const std::string& id, Fields fields) {
+    PointOfInterest point;
+    point.id = id;
+    point.node = fields.text("node", true);
+    point.title = fields.local_text("title", false);
+    const auto& names = exhibit.scene.objects;
+    auto found = std::find(names.begin(), names.end(), point.node);
+    if (found == names.end() || point.node.empty())
+      fields.problem("node", "the scene has no node '" + point.node + "'");
+    else
+      point.object = uint32_t(found - names.begin());
+    fields.finish();
+    exhibit.points.push_back(std::move(point));
+  });
+}
+
+}  // namespace
+
+std::string to_string(const Problem& problem) {
+  return problem.file + (problem.where.empty() ? "" : ": " + problem.where) + ": " + problem.what;
+}
+
+ExhibitError::ExhibitError(std::vector<Problem> problems_)
+    : std::runtime_error(join(problems_)), problems(std::move(problems_)) {}
+
+Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) {
+  Exhibit exhibit;
+  std::error_code ec;
+  exhibit.folder = folder;
+  exhibit.id = fs::weakly_canonical(folder, ec).filename().string();
+  std::string file = (fs::path(folder) / "exhibit.json").string();
+  if (!is_identifier(exhibit.id))
+    problems.push_back({folder, "", "the folder's name must be letters, digits, '-', '_' or '.'"});
+  std::ifstream in(file, std::ios::binary);
+  auto size = fs::file_size(file, ec);
+  if (!in || ec) {
+    problems.push_back({file, "", "cannot be read"});
+    return exhibit;
+  }
+  if (size > max_manifest_bytes) {
+    problems.push_back({file, "", "is larger than 8 MiB"});
+    return exhibit;
+  }
+  std::stringstream text;
+  text << in.rdbuf();
+  auto parsed = parse_json(text.str());
+  if (const WireError* error = std::get_if<WireError>(&parsed)) {
+    problems.push_back({file, "", error->message});
+    return exhibit;
+  }
+  Fields root(std::get<json>(parsed), file, "", problems);
+  std::string id = root.text("id", false, exhibit.id);
+  if (id != exhibit.id) root.problem("id", "'" + id + "' is not the folder's name '" + exhibit.id + "'");
+  exhibit.title = root.local_text("title", true);
+  exhibit.description = root.local_text("description", false);
+  if (auto languages = root.texts("languages"); !languages.empty()) exhibit.languages = languages;
+  exhibit.exposure = float(root.number("exposure", false, 1, 1e-6, 1e6));
+  root.object("walk", false, [&](Fields fields) { read_walk(exhibit, std::move(fields)); });
+  read_scene(exhibit, root, problems);
+  read_viewpoints(exhibit, root);
+  for (const Viewpoint& view : exhibit.scene.viewpoints)
+    if (find_viewpoint(exhibit, view.name) < 0) exhibit.viewpoints.push_back({view, {}});
+  if (exhibit.viewpoints.empty())
+    root.problem("viewpoints", "there is no viewpoint here and no camera in the scene");
+  exhibit.start = read_viewpoint_name(exhibit, root, "start", false);
+  root.object("storyteller", false,
+              [&](Fields fields) { read_storyteller(exhibit, std::move(fields), problems); });
+  read_tours_and_stories(exhibit, root);
+  read_points(exhibit, root);
+  root.finish();
+  return exhibit;
+}
+
+Exhibit load_exhibit(const std::string& folder) {
+  std::vector<Problem> problems;
+  Exhibit exhibit = read_exhibit(folder, problems);
+  if (std::any_of(problems.begin(), problems.end(), [](const Problem& p) { return p.fatal; }))
+    throw ExhibitError(std::move(problems));
+  for (const Problem& problem : problems) log::warn("{}", to_string(problem));
+  return exhibit;
+}
+
+std::vector<std::string> list_exhibits(const std::string& content) {
+  std::vector<std::string> names;
+  std::error_code ec;
+  for (const auto& entry : fs::directory_iterator(content, ec))
+    if (fs::is_regular_file(entry.path() / "exhibit.json", ec))
+      names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace wellspring

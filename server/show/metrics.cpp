@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+
+#include <fstream>
+#include <unistd.h>
+
+#include "show/answer.h"
+
+namespace wellspring {
+
+namespace {
+
+void metric(std::string& out, const char* name, const char* type, const char* help, double value) {
+  out += fmt::format("# HELP wellspring_{0} {1}\n# TYPE wellspring_{0} {2}\nwellspring_{0} {3}\n", name, help,
+                     type, value);
+}
+
+template <class Value>
+void per_visitor(std::string& out, const ShowReport& report, const char* name, const char* help,
+                 const Value& value) {
+  if (report.visitors.empty()) return;
+  out += fmt::format("# HELP wellspring_visitor_{0} {1}\n# TYPE wellspring_visitor_{0} gauge\n", name, help);
+  for (const VisitorReport& one : report.visitors)
+    out += fmt::format("wellspring_visitor_{}{{visitor=\"{}\",role=\"{}\"}} {}\n", name, one.id,
+                       one.kiosk ? "kiosk" : "visitor", value(one));
+}
+
+double resident_bytes() {
+  std::ifstream in("/proc/self/statm");
+  double total = 0, resident = 0;
+  in >> total >> resident;
+  return resident * double(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+std::string write_metrics(const ShowReport& report) {
+  std::string out;
+  const ShowTotals& totals = report.totals;
+  metric(out, "up_seconds", "counter", "Seconds since the show began", report.time);
+  metric(out, "ticks_total", "counter", "Ticks of the show", double(report.ticks));
+  metric(out, "tick_milliseconds", "gauge", "Length of the last tick", totals.tick_ms);
+  metric(out, "animate_milliseconds", "gauge", "The storyteller's part of it", totals.animate_ms);
+  metric(out, "samples_per_second", "gauge", "Samples a second while tracing, all cores",
+         report.samples_per_second);
+  metric(out, "samples_total", "counter", "Samples traced", double(totals.samples));
+  metric(out, "bad_samples_total", "counter", "Samples dropped for not being finite or positive",
+         double(report.bad_samples));
+  metric(out, "pictures_total", "counter", "Pictures made", double(totals.pictures));
+  metric(out, "picture_bytes_total", "counter", "Bytes of pictures made", double(totals.picture_bytes));
+  metric(out, "messages_total", "counter", "Messages from browsers", double(totals.messages));
+  metric(out, "refused_messages_total", "counter", "Messages refused", double(totals.refused_messages));
+  metric(out, "visits_total", "counter", "Visits begun", double(totals.visits));
+  metric(out, "visits_turned_away_total", "counter", "Visits refused because the house was full",
+         double(totals.turned_away));
+  metric(out, "visitors", "gauge", "Visitors now", double(report.visitors.size()));
+  metric(out, "kiosk_cameras", "gauge", "Kiosk cameras connected", report.kiosks);
+  metric(out, "kiosk_observations_total", "counter", "Observations received", double(totals.observations));
+  metric(out, "greetings_total", "counter", "Greetings said", double(totals.greetings));
+  metric(out, "farewells_total", "counter", "Farewells said", double(totals.farewells));
+  metric(out, "stories_total", "counter", "Stories begun", double(totals.stories));
+  metric(out, "resident_bytes", "gauge", "Memory of the server process", resident_bytes());
+  per_visitor(out, report, "pictures_per_second", "Pictures a second", [](auto& v) { return v.fps; });
+  per_visitor(out, report, "round_trip_milliseconds", "Picture sent to acknowledged",
+              [](auto& v) { return v.round_trip_ms; });
+  per_visitor(out, report, "display_milliseconds", "Reprojection and reconstruction",
+              [](auto& v) { return v.display_ms; });
+  per_visitor(out, report, "trace_milliseconds", "Tracing samples", [](auto& v) { return v.trace_ms; });
+  per_visitor(out, report, "tonemap_milliseconds", "Tone mapping", [](auto& v) { return v.tonemap_ms; });
+  per_visitor(out, report, "encode_milliseconds", "JPEG encoding", [](auto& v) { return v.encode_ms; });
+  per_visitor(out, report, "samples_per_picture", "Samples traced for a picture",
+              [](auto& v) { return v.budget; });
+  per_visitor(out, report, "converged_ratio", "Share of converged pixels",
+              [](auto& v) { return v.converged; });
+  per_visitor(out, report, "empty_ratio", "Share of pixels without a point", [](auto& v) { return v.empty; });
+  per_visitor(out, report, "fresh_ratio", "Share of pixels sampled in this picture",
+              [](auto& v) { return v.fresh; });
+  per_visitor(out, report, "mean_age_pictures", "Age of the visible points", [](auto& v) { return v.mean_age; });
+  per_visitor(out, report, "jpeg_quality", "Quality of moving pictures", [](auto& v) { return v.quality; });
+  per_visitor(out, report, "cache_bytes", "Memory of the render cache", [](auto& v) { return v.cache_bytes; });
+  per_visitor(out, report, "pictures_dropped_total", "Pictures replaced before they were sent",
+              [](auto& v) { return v.dropped; });
+  return out;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/news.h"
+
+#include <nlohmann/json.hpp>
+
+namespace wellspring {
+
+using nlohmann::json;
+
+namespace {
+
+json triple(dvec3 v) {
+  auto round = [](double x) { return std::round(x * 1e4) / 1e4; };
+  return json::array({round(v.x), round(v.y), round(v.z)});
+}
+
+const char* tour_word(TourRide::State state) {
+  switch (state) {
+    case TourRide::State::playing: return "playing";
+    case TourRide::State::paused: return "paused";
+    default: return "none";
+  }
+}
+
+}  // namespace
+
+std::string welcome_news(const Show& show, const Visitor& visitor) {
+  const Exhibit& exhibit = show.exhibit;
+  auto text = [&](const LocalText& local) { return text_in(local, visitor.lang, exhibit.languages); };
+  json news = {{"type", "welcome"},
+               {"protocol", "wellspring.v1"},
+               {"session", visitor.link->id},
+               {"exhibit", exhibit.id},
+               {"title", text(exhibit.title)},
+               {"description", text(exhibit.description)},
+               {"lang", visitor.lang},
+               {"languages", exhibit.languages},
+               {"width", visitor.width},
+               {"height", visitor.height},
+               {"walk_speed", exhibit.walk ? exhibit.walk->speed : 2.0f},
+               {"viewpoints", json::array()},
+               {"tours", json::array()},
+               {"stories", json::array()}};
+  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints) {
+    std::string title = text(viewpoint.title);
+    news["viewpoints"].push_back(
+        {{"name", viewpoint.view.name}, {"title", title.empty() ? viewpoint.view.name : title}});
+  }
+  for (const TourPlan& tour : exhibit.tours)
+    news["tours"].push_back({{"id", tour.id}, {"title", text(tour.title)}, {"stops", tour.stops.size()}});
+  for (const StoryText& story : exhibit.stories)
+    news["stories"].push_back({{"id", story.id}, {"title", text(story.title)}});
+  if (exhibit.storyteller)
+    news["storyteller"] = {{"name", text(exhibit.storyteller->name)},
+                           {"visible", show.storyteller_visible},
+                           {"position", triple(exhibit.storyteller->position)}};
+  else
+    news["storyteller"] = nullptr;
+  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string state_news(const Visitor& visitor, const Exhibit& exhibit) {
+  const CacheStats& stats = visitor.cache.stats();
+  json news = {{"type", "state"},
+               {"seq", visitor.seq},
+               {"position", triple(visitor.view.position)},
+               {"yaw", visitor.view.yaw},
+               {"pitch", visitor.view.pitch},
+               {"fov", visitor.view.fov},
+               {"fps", std::round(visitor.measured_fps * 10) / 10},
+               {"converged", std::round(stats.converged * 1000) / 1000},
+               {"viewpoint", nullptr},
+               {"tour", nullptr}};
+  if (visitor.viewpoint >= 0) news["viewpoint"] = exhibit.viewpoints[size_t(visitor.viewpoint)].view.name;
+  if (visitor.tour.state != TourRide::State::none)
+    news["tour"] = {{"id", exhibit.tours[size_t(visitor.tour.tour)].id},
+                    {"state", tour_word(visitor.tour.state)},
+                    {"stop", visitor.tour.stop}};
+  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string subtitle_news(const std::string& text, const std::string& lang, const std::string& speaker,
+                          float seconds) {
+  json news = {{"type", "subtitle"}, {"text", text}, {"lang", lang}, {"speaker", speaker},
+               {"seconds", seconds}};
+  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string agent_news(const Show& show) {
+  json news = {{"type", "agent"},
+               {"mood", to_string(show.mind.mood)},
+               {"visible", show.storyteller_visible},
+               {"humanlike", show.humanlike},
+               {"story", show.voice.story.empty() ? json(nullptr) : json(show.voice.story)},
+               {"paused", show.voice.paused}};
+  StorytellerGaze gaze = eval_gaze(show.mind, show.storyteller, show.pose);
+  news["looking_at"] = triple(dvec3(gaze.target) + show.exhibit.scene.origin);
+  news["gaze"] = {std::round(gaze.yaw * 1e4) / 1e4, std::round(gaze.pitch * 1e4) / 1e4};
+  news["guest"] = gaze.guest;
+  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string kiosk_news(const Audience& audience, size_t cameras) {
+  json news = {{"type", "kiosk"},
+               {"state", to_string(audience.state)},
+               {"people", audience.guests.size()},
+               {"cameras", cameras}};
+  return news.dump();
+}
+
+}  // namespace wellspring

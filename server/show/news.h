@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The server's words to a browser: JSON text of welcome, state, subtitle, agent and kiosk. Pure functions.
+#pragma once
+#include <string>
+
+#include "show/exhibit.h"
+#include "show/show.h"
+#include "show/visitor.h"
+
+namespace wellspring {
+
+std::string welcome_news(const Show& show, const Visitor& visitor);
+std::string state_news(const Visitor& visitor, const Exhibit& exhibit);
+// Empty text: the subtitle disappears.
+std::string subtitle_news(const std::string& text, const std::string& lang, const std::string& speaker,
+                          float seconds);
+std::string agent_news(const Show& show);
+std::string kiosk_news(const Audience& audience, size_t cameras);
+
+}  // namespace wellspring

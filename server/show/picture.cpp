@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/picture.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/clock.h"
+#include "base/rng.h"
+#include "frame/jpeg.h"
+#include "wire/packet.h"
+
+namespace wellspring {
+
+namespace {
+
+constexpr double still_after = 0.25;   // seconds without motion until a picture counts as a still
+constexpr int least_budget = 2000;     // samples a picture, however slow the machine
+constexpr double slack = 0.0015;       // seconds kept free of every period
+constexpr double resting_rate = 4;     // pictures a second when nothing in them changes any more
+constexpr float nearly_all = 0.999f;   // converged
+
+float milliseconds_since(double began) { return float(1000 * (seconds_now() - began)); }
+void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
+
+bool same_view(const View& a, const View& b) {
+  return a.position == b.position && a.forward == b.forward && a.up == b.up &&
+         a.tan_half_fov == b.tan_half_fov && a.width == b.width && a.height == b.height;
+}
+
+// The figure's bounding sphere touches the view's cone: the picture never rests.
+bool sees_figure(const Show& show, const View& view) {
+  if (!show.figure || !show.storyteller_visible) return false;
+  vec3 centre = vec3(show.storyteller.placement * vec4(0, 0.9f, 0, 1));
+  vec3 d = centre - view.position;
+  float depth = dot(d, view.forward), radius = 1.3f;
+  if (depth < -radius) return false;
+  float aspect = float(view.width) / float(view.height);
+  float slope = view.tan_half_fov * std::sqrt(1 + aspect * aspect);
+  return glm::length(d - view.forward * depth) < slope * std::max(depth, 0.0f) + radius * std::sqrt(1 + slope * slope);
+}
+
+int sample_budget(const Show& show, const Visitor& visitor, int busy) {
+  double period = 1 / picture_rate(show, visitor);
+  double share = (period - slack) / std::max(busy, 1) - 0.001 * (visitor.times.display + visitor.times.tonemap);
+  double budget = share * show.samples_per_second;
+  return int(std::clamp(budget, double(least_budget), 0.5 * visitor.width * visitor.height));
+}
+
+uint64_t microseconds_now() {
+  using namespace std::chrono;
+  return uint64_t(duration_cast<microseconds>(system_clock::now().time_since_epoch()).count());
+}
+
+// On another core: the tick goes on meanwhile, and waits before it touches the image again.
+void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool still) {
+  Encoder* encoder = visitor.encoder.get();
+  std::shared_ptr<Link> link = visitor.link;
+  encoder->task.run([encoder, link, header, still] {
+    double began = seconds_now();
+    encode_jpeg(encoder->image, header.quality, still, encoder->jpeg);
+    auto packet = std::make_shared<Packet>(packet_header_bytes + encoder->jpeg.size());
+    write_packet_header(header, *packet);
+    std::copy(encoder->jpeg.begin(), encoder->jpeg.end(), packet->begin() + packet_header_bytes);
+    encoder->bytes = packet->size();
+    encoder->milliseconds = milliseconds_since(began);
+    link->send_picture(std::move(packet));
+  });
+}
+
+}  // namespace
+
+double picture_rate(const Show& show, const Visitor& visitor) {
+  double rate = visitor.fps > 0 ? visitor.fps : show.settings.fps;
+  bool resting = visitor.frame_number > 0 && visitor.cache.stats().converged >= nearly_all &&
+                 show.time - visitor.moved_at > still_after && visitor.velocity == vec3(0) &&
+                 !sees_figure(show, visitor.last_view);
+  return std::clamp(resting ? std::min(rate, resting_rate) : rate, 1.0, 120.0);
+}
+
+bool wants_picture(const Show& show, const Visitor& visitor) {
+  if (show.time - visitor.pictured_at < 1 / picture_rate(show, visitor) - 0.004) return false;
+  return !visitor.link->picture_pending() && may_send(visitor.flow, show.time);
+}
+
+void make_picture(Show& show, Visitor& visitor, int busy) {
+  RenderCache& cache = visitor.cache;
+  const Viewpoint& at = visitor.view;
+  View view = make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, visitor.width,
+                        visitor.height);
+  if (!same_view(view, visitor.last_view)) visitor.moved_at = show.time;
+  bool still = show.time - visitor.moved_at > still_after;
+  visitor.last_view = view;
+  uint32_t seq = visitor.seq;
+  double began = seconds_now();
+
+  cache.resize(view.width, view.height);
+  cache.move_points(*show.world);
+  cache.project(view);
+  cache.attend();
+  uint64_t seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
+  visitor.budget = sample_budget(show, visitor, busy);
+  cache.plan(view, visitor.budget, seed, visitor.requests);
+  double planned = seconds_now();
+  visitor.samples.resize(visitor.requests.size());
+  trace(*show.technique, *show.world, show.lights, show.settings.transport, visitor.requests, visitor.samples);
+  double traced = seconds_now();
+  cache.remember(view, visitor.requests, visitor.samples);
+  cache.reconstruct(view, visitor.frame);
+  double reconstructed = seconds_now();
+
+  Encoder& encoder = *visitor.encoder;
+  encoder.task.wait();
+  if (visitor.frame_number > 0) {
+    show.totals.picture_bytes += encoder.bytes;
+    smooth(visitor.times.encode, encoder.milliseconds);
+  }
+  double waited = seconds_now();
+  tonemap(visitor.frame, Tonemap{show.exhibit.exposure}, encoder.image);
+  smooth(visitor.times.tonemap, milliseconds_since(waited));
+
+  PacketHeader header;
+  header.frame = ++visitor.frame_number;
+  header.seq = seq;
+  header.time_us = microseconds_now();
+  header.width = uint16_t(view.width);
+  header.height = uint16_t(view.height);
+  header.quality = uint8_t(still ? visitor.still_quality : suggest_quality(visitor.flow, visitor.best_quality));
+  header.flags = uint8_t(packet_complete | (still ? packet_still : 0));
+  note_sent(visitor.flow, header.frame, show.time);
+  encode_and_publish(visitor, header, still);
+
+  if (!visitor.requests.empty() && traced > planned) {
+    float rate = float(double(visitor.requests.size()) / (traced - planned));
+    show.samples_per_second += (rate - show.samples_per_second) * 0.1f;
+  }
+  smooth(visitor.times.display, float(1000 * ((planned - began) + (reconstructed - traced))));
+  smooth(visitor.times.trace, float(1000 * (traced - planned)));
+  smooth(visitor.times.whole, milliseconds_since(began));
+  if (visitor.pictured_at > 0 && show.time > visitor.pictured_at)
+    smooth(visitor.measured_fps, float(1 / (show.time - visitor.pictured_at)));
+  visitor.pictured_at = show.time;
+  show.totals.pictures++;
+  show.totals.samples += visitor.requests.size();
+}
+
+}  // namespace wellspring

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/report.h"
+
+#include "show/show.h"
+
+namespace wellspring {
+
+ShowReport make_report(const Show& show) {
+  ShowReport report;
+  report.ready = true;
+  report.time = show.time;
+  report.ticks = show.ticks;
+  report.bad_samples = show.lights.bad_samples ? show.lights.bad_samples->load() : 0;
+  report.samples_per_second = show.samples_per_second;
+  report.kiosks = int(show.eyes.size());
+  report.audience = to_string(show.audience.state);
+  report.mood = to_string(show.mind.mood);
+  report.totals = show.totals;
+  for (const Visitor& visitor : show.visitors) {
+    const CacheStats& stats = visitor.cache.stats();
+    VisitorReport one;
+    one.id = visitor.link->id;
+    one.width = visitor.width;
+    one.height = visitor.height;
+    one.budget = visitor.budget;
+    one.quality = suggest_quality(visitor.flow, visitor.best_quality);
+    one.fps = visitor.measured_fps;
+    one.round_trip_ms = 1000 * visitor.flow.round_trip;
+    one.display_ms = visitor.times.display;
+    one.trace_ms = visitor.times.trace;
+    one.tonemap_ms = visitor.times.tonemap;
+    one.encode_ms = visitor.times.encode;
+    one.fresh = stats.fresh;
+    one.empty = stats.empty;
+    one.converged = stats.converged;
+    one.mean_age = stats.mean_age;
+    one.cache_bytes = visitor.cache.memory_bytes();
+    one.dropped = visitor.link->pictures_dropped();
+    one.kiosk = visitor.kiosk;
+    report.visitors.push_back(one);
+  }
+  return report;
+}
+
+}  // namespace wellspring

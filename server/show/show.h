@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// One running exhibit: the world, its storyteller, the visitors and the kiosks' eyes. tick() is the whole
+// of it, one straight function of visible values: notice -> behave -> animate -> (per visitor) picture.
+// Everything here belongs to the thread that calls tick(), except Arrivals and the published ShowReport.
+#pragma once
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "avatar/storyteller.h"
+#include "light/technique.h"
+#include "show/audience.h"
+#include "show/exhibit.h"
+#include "show/figure.h"
+#include "show/report.h"
+#include "show/visitor.h"
+#include "show/voice.h"
+
+namespace wellspring {
+
+struct ShowSettings {
+  float fps = 40;             // pictures a second a visitor gets, machine permitting
+  int max_visitors = 16;      // more are told to come back
+  std::string technique = "path";
+  TransportSettings transport{.max_depth = 6, .clamp = 12};
+  int max_pixels = 1920 * 1200;
+};
+
+// New links, handed over by the I/O threads.
+class Arrivals {
+ public:
+  void put(std::shared_ptr<Link> link);
+  std::vector<std::shared_ptr<Link>> take();
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::shared_ptr<Link>> links_;
+};
+
+struct Show {
+  ShowSettings settings;
+  Exhibit exhibit;  // the scene inside has the figure's materials and object added
+  std::unique_ptr<World> world;
+  Lights lights;
+  const Technique* technique = nullptr;
+
+  // The storyteller.
+  std::optional<Figure> figure;
+  Storyteller storyteller;
+  StorytellerState mind;
+  Pose pose;
+  SkinScratch scratch;
+  Voice voice;
+  bool storyteller_visible = true, humanlike = true;
+  size_t greetings = 0, farewells = 0;
+  std::string kiosk_news;   // the last kiosk message, to send only changes
+  double agent_sent_at = -1e9;
+  Mood agent_mood = Mood::idle;
+
+  std::list<Visitor> visitors;
+  std::vector<Eye> eyes;
+  Audience audience;
+
+  uint64_t ticks = 0;
+  double time = 0;             // of the present tick, seconds
+  float samples_per_second = 200000;  // measured, all cores
+  ShowTotals totals;
+};
+
+// Takes the exhibit over. Throws std::invalid_argument for an unknown technique.
+std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
+
+// One step at time `now` (seconds, any clock that does not run backwards; steps longer than a second
+// are taken as one second). Never throws, never waits for a peer.
+void tick(Show& show, Arrivals& arrivals, double now);
+
+// How long the caller may sleep after a tick that began at `began` (both on the clock of `now`).
+double seconds_to_next_tick(const Show& show, double began, double now);
+
+}  // namespace wellspring

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/still.h"
+
+#include <algorithm>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include "frame/jpeg.h"
+#include "frame/tonemap.h"
+
+namespace wellspring {
+
+namespace {
+constexpr size_t most_kept = 12;
+constexpr int still_jpeg_quality = 90;
+
+bool same(const StillOrder& a, const StillOrder& b) {
+  return a.viewpoint == b.viewpoint && a.width == b.width && a.height == b.height && a.spp == b.spp;
+}
+}  // namespace
+
+StillRoom::StillRoom(const Show& show)
+    : exhibit_(show.exhibit), technique_(show.technique), transport_(show.settings.transport) {
+  // The moving meshes as they are now: at the show's start.
+  std::vector<Mesh> moving;
+  std::vector<uint32_t> moving_object;
+  for (int i = int(exhibit_.scene.instances.size()); i < show.world->instance_count(); i++) {
+    moving.push_back(show.world->mesh_of(uint32_t(i)));
+    moving_object.push_back(show.world->object_of(uint32_t(i)));
+  }
+  world_ = std::make_unique<World>(exhibit_.scene, std::move(moving), std::move(moving_object));
+  world_->commit();
+  lights_ = make_lights(*world_);
+  transport_.clamp = 0;
+}
+
+std::string StillRoom::make(const StillOrder& order) {
+  std::lock_guard lock(mutex_);
+  auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return same(kept.order, order); });
+  if (found != kept_.end()) {
+    kept_.splice(kept_.begin(), kept_, found);
+    return kept_.front().jpeg;
+  }
+  const Viewpoint& at = exhibit_.viewpoints[size_t(order.viewpoint)].view;
+  View view = make_view(exhibit_.scene, at.position, at.yaw, at.pitch, at.fov, order.width, order.height);
+  StillSettings settings;
+  settings.spp = order.spp;
+  settings.transport = transport_;
+  std::vector<uint8_t> bytes;
+  int cores = std::max(1, oneapi::tbb::info::default_concurrency() / 2);
+  oneapi::tbb::task_arena arena(cores, 1, oneapi::tbb::task_arena::priority::low);
+  arena.execute([&] {
+    Frame frame = render_still(*technique_, *world_, lights_, view, settings);
+    Image8 image;
+    tonemap(frame, Tonemap{exhibit_.exposure}, image);
+    encode_jpeg(image, still_jpeg_quality, true, bytes);
+  });
+  kept_.push_front({order, std::string(bytes.begin(), bytes.end())});
+  if (kept_.size() > most_kept) kept_.pop_back();
+  return kept_.front().jpeg;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tick: one straight function. See show.h.
+#include <algorithm>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "frame/jpeg.h"
+#include "show/news.h"
+#include "show/orders.h"
+#include "show/picture.h"
+#include "show/show.h"
+#include "wire/json.h"
+#include "wire/packet.h"
+
+namespace wellspring {
+
+namespace {
+
+constexpr double agent_interval = 0.1;  // seconds between agent messages while somebody listens
+constexpr double state_interval = 0.5;
+
+void welcome_links(Show& show, Arrivals& arrivals) {
+  for (std::shared_ptr<Link>& link : arrivals.take()) {
+    if (link->kind == LinkKind::eye) {
+      log::info("kiosk camera {} connected from {}", link->id, link->peer);
+      show.eyes.push_back(Eye{std::move(link), {}, -1e9, 0, 0});
+    } else if (int(show.visitors.size()) >= show.settings.max_visitors) {
+      show.totals.turned_away++;
+      link->send_text(write_error({"full", "this exhibit has as many visitors as it can serve; please "
+                                           "come back in a moment"}));
+      link->close("full");
+    } else {
+      log::info("visitor {} connected from {}", link->id, link->peer);
+      Visitor& visitor = show.visitors.emplace_back();
+      visitor.link = std::move(link);
+    }
+  }
+}
+
+void hear_visitors(Show& show) {
+  for (Visitor& visitor : show.visitors)
+    for (const std::string& text : visitor.link->take_texts()) {
+      show.totals.messages++;
+      auto message = read_browser_message(text);
+      std::optional<WireError> error;
+      if (const WireError* bad = std::get_if<WireError>(&message)) error = *bad;
+      else error = obey(show, visitor, std::get<BrowserMessage>(message));
+      if (!error) continue;
+      show.totals.refused_messages++;
+      visitor.link->send_text(write_error(*error));
+    }
+  std::erase_if(show.visitors, [](Visitor& visitor) {
+    bool gone = visitor.left || visitor.link->closed();
+    if (gone) {
+      visitor.encoder->task.wait();
+      visitor.link->close("bye");
+      log::info("visitor {} left", visitor.link->id);
+    }
+    return gone;
+  });
+}
+
+void hear_eyes(Show& show) {
+  for (Eye& eye : show.eyes)
+    for (const std::string& text : eye.link->take_texts()) {
+      auto observation = read_observation(text);
+      if (const WireError* bad = std::get_if<WireError>(&observation)) {
+        eye.refused++;
+        show.totals.refused_messages++;
+        eye.link->send_text(write_error(*bad));
+        continue;
+      }
+      eye.seen = std::move(std::get<Observation>(observation));
+      eye.received = show.time;
+      eye.observations++;
+      show.totals.observations++;
+    }
+  std::erase_if(show.eyes, [](const Eye& eye) {
+    if (eye.link->closed()) log::info("kiosk camera {} disconnected", eye.link->id);
+    return eye.link->closed();
+  });
+}
+
+void broadcast(Show& show, const std::string& news) {
+  for (Visitor& visitor : show.visitors)
+    if (visitor.welcomed) visitor.link->send_text(news);
+}
+
+void show_subtitle(Show& show, const Utterance* utterance) {
+  const Exhibit& exhibit = show.exhibit;
+  for (Visitor& visitor : show.visitors) {
+    if (!visitor.welcomed) continue;
+    std::string text, speaker;
+    if (utterance) text = text_in(utterance->text, visitor.lang, exhibit.languages);
+    if (exhibit.storyteller) speaker = text_in(exhibit.storyteller->name, visitor.lang, exhibit.languages);
+    visitor.link->send_text(subtitle_news(text, visitor.lang, speaker, utterance ? utterance->seconds : 0));
+  }
+}
+
+View kiosk_view(const Exhibit& exhibit) {
+  const Viewpoint& at = exhibit.viewpoints[size_t(exhibit.storyteller->kiosk_viewpoint)].view;
+  return make_view(exhibit.scene, at.position, at.yaw, at.pitch, at.fov, 16, 9);
+}
+
+// Storyteller: notices, decides, speaks, moves its skin. Left out while nobody could see or hear it.
+void behave_and_animate(Show& show, float dt) {
+  if (!show.figure) return;
+  show.audience = gather_audience(show.eyes, kiosk_view(show.exhibit), show.time);
+  std::string news = kiosk_news(show.audience, show.eyes.size());
+  if (news != show.kiosk_news) broadcast(show, show.kiosk_news = news);
+  if (show.visitors.empty() && show.eyes.empty()) return;
+
+  StorytellerInput input;
+  input.time = show.time;
+  input.dt = dt;
+  input.kiosk_motion = show.audience.state == Presence::motion;
+  input.guests = show.audience.guests;
+  input.humanlike = show.humanlike;
+  input.speaking = speaking(show.voice);
+  input.telling = !show.voice.story.empty();
+  for (const Visitor& visitor : show.visitors) {
+    if (!visitor.welcomed || visitor.kiosk) continue;  // a kiosk page's eyes are its camera
+    Guest guest;
+    guest.id = uint32_t(visitor.link->id);
+    guest.head = vec3(visitor.view.position - show.exhibit.scene.origin);
+    input.guests.push_back(guest);
+  }
+  StorytellerEvents events;
+  tick_storyteller(show.mind, show.storyteller, input, show.pose, events);
+  const StorytellerPlace& place = *show.exhibit.storyteller;
+  if (events.greeted) {
+    show.totals.greetings++;
+    if (show.voice.story.empty()) say(show.voice, nth_line(place.greetings, show.greetings++), true);
+  }
+  if (events.farewelled) {
+    show.totals.farewells++;
+    say(show.voice, nth_line(place.farewells, show.farewells++), true);
+  }
+  VoiceEvents said = advance_voice(show.voice, dt);
+  if (said.begun) show_subtitle(show, said.begun);
+  else if (said.fell_silent) show_subtitle(show, nullptr);
+
+  bool news_due = show.time - show.agent_sent_at >= agent_interval || show.mind.mood != show.agent_mood;
+  if (news_due) {
+    show.agent_sent_at = show.time;
+    show.agent_mood = show.mind.mood;
+    broadcast(show, agent_news(show));
+  }
+  show_figure(*show.world, *show.figure, show.storyteller_visible);
+  if (show.storyteller_visible && !show.visitors.empty())
+    pose_figure(*show.world, *show.figure, *show.exhibit.character, show.pose,
+                show.storyteller.placement, show.scratch);
+  show.world->commit();
+}
+
+void send_state(Show& show, Visitor& visitor) {
+  if (show.time - visitor.state_sent_at < state_interval) return;
+  visitor.state_sent_at = show.time;
+  visitor.link->send_text(state_news(visitor, show.exhibit));
+}
+
+void announce_stop(Show& show, Visitor& visitor, const TourStep& step) {
+  if (step.arrived < 0) return;
+  const TourStop& stop = show.exhibit.tours[size_t(visitor.tour.tour)].stops[size_t(step.arrived)];
+  const std::string& text = text_in(stop.text, visitor.lang, show.exhibit.languages);
+  visitor.state_sent_at = -1e9;
+  if (!text.empty()) visitor.link->send_text(subtitle_news(text, visitor.lang, "", stop.stay_seconds));
+}
+
+}  // namespace
+
+void tick(Show& show, Arrivals& arrivals, double now) {
+  float dt = show.ticks == 0 ? 0 : float(std::clamp(now - show.time, 0.0, 1.0));
+  show.time = std::max(show.time, now);
+  show.ticks++;
+  double began = seconds_now();
+
+  welcome_links(show, arrivals);
+  hear_visitors(show);
+  hear_eyes(show);
+  behave_and_animate(show, dt);
+  show.totals.animate_ms = float(1000 * (seconds_now() - began));
+
+  int busy = 0;
+  for (const Visitor& visitor : show.visitors) busy += visitor.welcomed && wants_picture(show, visitor);
+  for (Visitor& visitor : show.visitors) {
+    if (!visitor.welcomed) continue;
+    TourStep step;
+    move_visitor(visitor, *show.world, show.exhibit, dt, step);
+    announce_stop(show, visitor, step);
+    if (wants_picture(show, visitor)) make_picture(show, visitor, busy);
+    send_state(show, visitor);
+  }
+  show.totals.tick_ms = float(1000 * (seconds_now() - began));
+}
+
+double seconds_to_next_tick(const Show& show, double began, double now) {
+  double period = 1 / 20.0;  // nobody looks: only clocks and doors
+  for (const Visitor& visitor : show.visitors)
+    if (visitor.welcomed) period = std::min(period, 1.0 / picture_rate(show, visitor));
+  return std::clamp(began + period - now, 0.0, period);
+}
+
+}  // namespace wellspring

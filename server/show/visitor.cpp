@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/visitor.h"
+
+#include <cmath>
+
+#include "show/walk.h"
+
+namespace wellspring {
+
+namespace {
+constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
+}
+
+void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint) {
+  visitor.view = exhibit.viewpoints[size_t(viewpoint)].view;
+  visitor.viewpoint = viewpoint;
+  visitor.move = visitor.velocity = vec3(0);
+  visitor.tour = TourRide{};
+}
+
+void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, float dt,
+                  TourStep& tour_step) {
+  tour_step = TourStep{};
+  if (visitor.tour.state != TourRide::State::none) {
+    if (glm::length(visitor.move) > 0) {
+      visitor.tour.state = TourRide::State::paused;  // the visitor walks off: the tour waits
+    } else if (visitor.tour.state == TourRide::State::playing) {
+      tour_step = advance_tour(visitor.tour, exhibit, dt);
+      visitor.view = tour_step.view;
+      visitor.viewpoint = -1;
+      return;
+    }
+  }
+  visitor.velocity += (visitor.move - visitor.velocity) * (1 - std::exp(-dt / ease_seconds));
+  if (visitor.move == vec3(0) && glm::length(visitor.velocity) < 0.01f) visitor.velocity = vec3(0);
+  if (visitor.velocity == vec3(0)) return;
+  visitor.viewpoint = -1;
+  visitor.view.position = walk(world, exhibit.walk, visitor.view.position,
+                               move_direction(visitor.velocity, visitor.view.yaw), dt);
+}
+
+}  // namespace wellspring

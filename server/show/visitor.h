@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// One browser's visit: where it stands, what it has asked for, and the picture being made for it.
+#pragma once
+#include <memory>
+#include <oneapi/tbb/task_group.h>
+#include <string>
+#include <vector>
+
+#include "cache/cache.h"
+#include "frame/tonemap.h"
+#include "show/flow.h"
+#include "show/tour.h"
+#include "wire/link.h"
+#include "wire/messages.h"
+#include "world/view.h"
+
+namespace wellspring {
+
+// Milliseconds of the last picture's stages, smoothed: for the status page and the budget.
+struct StageTimes {
+  float display = 0, trace = 0, tonemap = 0, encode = 0, whole = 0;
+};
+
+// The JPEG made on another core while the next tick begins.
+struct Encoder {
+  oneapi::tbb::task_group task;
+  Image8 image;
+  std::vector<uint8_t> jpeg;
+  float milliseconds = 0;
+  size_t bytes = 0;
+};
+
+struct Visitor {
+  std::shared_ptr<Link> link;
+  bool welcomed = false, left = false;
+  bool kiosk = false;
+  std::string lang = "en", name;
+  // Place.
+  Viewpoint view;
+  vec3 move{0};      // as last asked for: right, up, forward
+  vec3 velocity{0};  // what the visitor does: follows `move` smoothly
+  uint32_t seq = 0;  // of the last input, camera or viewpoint message
+  int viewpoint = 0;  // index of the named viewpoint last jumped to, while the visitor stays there; else -1
+  TourRide tour;
+  // Picture.
+  int width = 1280, height = 720;
+  float fps = 0;  // wanted; 0: the show's
+  int best_quality = 82, still_quality = 92;
+  RenderCache cache;
+  std::unique_ptr<Encoder> encoder = std::make_unique<Encoder>();
+  Frame frame;
+  std::vector<Request> requests;
+  std::vector<Sample> samples;
+  uint32_t frame_number = 0;
+  View last_view;
+  double moved_at = 0;       // show time of the last change of view
+  double pictured_at = -1e9;  // show time of the last picture
+  Flow flow;
+  StageTimes times;
+  int budget = 0;  // samples of the last tick
+  double state_sent_at = -1e9;
+  float measured_fps = 0;
+};
+
+
+// Moves a visitor by `dt`: tour, or walking by its own input.
+void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, float dt, TourStep& tour_step);
+void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint);
+
+}  // namespace wellspring
