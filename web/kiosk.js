@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kiosk's screen: the storyteller's view, dim until somebody comes; no controls to get lost in.
+import { make_connection } from './connection.js';
+import { make_picture, wanted_size } from './picture.js';
+import { make_subtitles } from './subtitles.js';
+import { first_language, word } from './words.js';
+
+const by_id = (id) => document.getElementById(id);
+const lang = first_language();
+const subtitles = make_subtitles(by_id('subtitle'));
+by_id('invite').textContent = word(lang, 'invite');
+
+const picture = make_picture(by_id('picture'), (shown) => {
+  connection.send({ type: 'ack', frame: shown.frame, decoded_ms: Math.round(shown.decoded_ms * 10) / 10, shown: true });
+  by_id('picture').dataset.frame = shown.frame;
+});
+
+const connection = make_connection({
+  hello: () => ({ type: 'hello', exhibit: '', lang, role: 'kiosk', kiosk: new URLSearchParams(location.search).get('kiosk') ?? '', ...wanted_size() }),
+  open() { by_id('notice').hidden = true; },
+  lost() {
+    by_id('notice').textContent = word(lang, 'lost');
+    by_id('notice').hidden = false;
+  },
+  message(message) {
+    if (message.type === 'welcome') { by_id('title').textContent = message.title; document.title = message.title; }
+    if (message.type === 'subtitle') subtitles.show(message);
+    if (message.type === 'kiosk') {
+      document.body.classList.remove('absent', 'motion', 'person');
+      // Without a camera the screen is simply bright.
+      document.body.classList.add(message.cameras === 0 ? 'person' : message.state);
+    }
+    if (message.type === 'agent') document.body.dataset.mood = message.mood;
+  },
+  binary: (buffer) => picture.receive(buffer),
+});
+addEventListener('resize', () => connection.send({ type: 'settings', ...wanted_size() }));

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// The side menu and the row of places: made from what the server says there is.
+import { language_names, translate_page, word } from './words.js';
+
+const by_id = (id) => document.getElementById(id);
+
+function button(text, on_click) {
+  const element = document.createElement('button');
+  element.type = 'button';
+  element.textContent = text;
+  element.addEventListener('click', on_click);
+  return element;
+}
+
+// orders: {viewpoint(name), tour(action, id?), story(id), story_action(action), storyteller(fields), lang(tag), subtitles(on)}
+export function make_menu(orders) {
+  const menu = by_id('menu'), opener = by_id('menu-button');
+  let lang = 'en', viewpoints = [];
+  const open = (yes) => {
+    menu.hidden = !yes;
+    opener.setAttribute('aria-expanded', String(yes));
+    (yes ? by_id('menu-close') : by_id('picture')).focus();
+  };
+  opener.addEventListener('click', () => open(menu.hidden));
+  by_id('menu-close').addEventListener('click', () => open(false));
+  addEventListener('keydown', (event) => { if (event.key === 'Escape' && !menu.hidden) open(false); });
+
+  by_id('tour-stop').addEventListener('click', () => orders.tour('stop'));
+  by_id('tour-pause').addEventListener('click', (event) => orders.tour(event.target.dataset.next ?? 'pause'));
+  by_id('story-stop').addEventListener('click', () => orders.story_action('stop'));
+  by_id('story-restart').addEventListener('click', () => orders.story_action('restart'));
+  by_id('story-pause').addEventListener('click', (event) => orders.story_action(event.target.dataset.next ?? 'pause'));
+  by_id('storyteller-visible').addEventListener('change', (event) => orders.storyteller({ visible: event.target.checked }));
+  by_id('storyteller-humanlike').addEventListener('change', (event) => orders.storyteller({ humanlike: event.target.checked }));
+  by_id('subtitles-on').addEventListener('change', (event) => orders.subtitles(event.target.checked));
+
+  // A button that pauses or goes on.
+  function set_pause(element, paused) {
+    element.dataset.next = paused ? 'play' : 'pause';
+    element.textContent = word(lang, paused ? 'resume' : 'pause');
+  }
+
+  return {
+    welcome(message) {
+      lang = message.lang;
+      translate_page(lang);
+      document.title = message.title;
+      by_id('title').textContent = message.title;
+      by_id('description').textContent = message.description;
+      viewpoints = message.viewpoints;
+      by_id('places').replaceChildren(...viewpoints.map(({ name, title }) => {
+        const element = button(title, () => orders.viewpoint(name));
+        element.dataset.viewpoint = name;
+        return element;
+      }));
+      by_id('tours').replaceChildren(...message.tours.map((tour) => button(tour.title, () => { orders.tour('play', tour.id); open(false); })));
+      by_id('tours-section').hidden = message.tours.length === 0;
+      by_id('stories').replaceChildren(...message.stories.map((story) => {
+        const element = button(story.title, () => { orders.story(story.id); open(false); });
+        element.dataset.story = story.id;
+        return element;
+      }));
+      by_id('stories-section').hidden = message.stories.length === 0 || !message.storyteller;
+      by_id('storyteller-section').hidden = !message.storyteller;
+      by_id('languages').replaceChildren(...message.languages.map((tag) => {
+        const element = button(language_names[tag] ?? tag, () => orders.lang(tag));
+        element.setAttribute('aria-pressed', String(tag === lang || tag === lang.split('-')[0]));
+        return element;
+      }));
+    },
+    state(message) {
+      for (const element of by_id('places').children)
+        element.setAttribute('aria-current', String(element.dataset.viewpoint === message.viewpoint));
+      by_id('tour-controls').hidden = !message.tour;
+      if (message.tour) set_pause(by_id('tour-pause'), message.tour.state === 'paused');
+    },
+    agent(message) {
+      by_id('storyteller-visible').checked = message.visible;
+      by_id('storyteller-humanlike').checked = message.humanlike;
+      by_id('story-controls').hidden = !message.story;
+      set_pause(by_id('story-pause'), message.paused);
+      for (const element of by_id('stories').children)
+        element.setAttribute('aria-pressed', String(element.dataset.story === message.story));
+    },
+    figures(text) { if (!menu.hidden) by_id('figures').textContent = text; },
+    place: (index) => viewpoints[index]?.name,
+  };
+}

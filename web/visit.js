@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// The visitor's page: joins connection, picture, controls and menu.
+import { make_connection } from './connection.js';
+import { make_controls } from './controls.js';
+import { make_menu } from './menu.js';
+import { make_picture, wanted_size } from './picture.js';
+import { make_subtitles } from './subtitles.js';
+import { first_language, translate_page, word } from './words.js';
+
+const by_id = (id) => document.getElementById(id);
+const canvas = by_id('picture');
+let lang = first_language(), seq = 0, state = null, walk_speed = 1.4, round_trip = 0, full = false;
+const asked = new Map();  // seq -> time it was sent, until a picture shows it
+translate_page(lang);
+by_id('veil-text').textContent = word(lang, 'opening');
+
+const subtitles = make_subtitles(by_id('subtitle'));
+const picture = make_picture(canvas, (shown) => {
+  connection.send({ type: 'ack', frame: shown.frame, decoded_ms: Math.round(shown.decoded_ms * 10) / 10, shown: true });
+  by_id('veil').classList.add('lifted');
+  const sent = asked.get(shown.seq);
+  if (sent) round_trip += (performance.now() - sent - round_trip) * 0.2;
+  for (const old of asked.keys()) if (old <= shown.seq) asked.delete(old);
+  canvas.dataset.frame = shown.frame;
+  canvas.dataset.seq = shown.seq;
+});
+
+function notice(text) {
+  by_id('notice').textContent = text;
+  by_id('notice').hidden = !text;
+}
+
+const connection = make_connection({
+  hello: () => ({ type: 'hello', exhibit: '', lang, role: 'visitor', ...wanted_size() }),
+  open() {
+    notice('');
+    full = false;
+    seq = 0;
+    asked.clear();
+    // After a broken line: back to where the visitor stood.
+    if (state) connection.send({ type: 'camera', seq: next(), position: state.position, yaw: state.yaw, pitch: state.pitch });
+  },
+  lost() { if (!full) notice(word(lang, 'lost')); },
+  message(message) {
+    switch (message.type) {
+      case 'welcome': walk_speed = message.walk_speed; lang = message.lang; menu.welcome(message); by_id('veil-title').textContent = message.title; break;
+      case 'state':
+        state = message;
+        menu.state(message);
+        menu.figures(`${picture.rate()} fps · ${Math.round(round_trip)} ms · ${canvas.width}×${canvas.height} · ${Math.round(message.converged * 100)} %`);
+        break;
+      case 'subtitle': subtitles.show(message); break;
+      case 'agent': menu.agent(message); document.body.dataset.mood = message.mood; break;
+      case 'kiosk': document.body.dataset.kiosk = message.state; break;
+      case 'error':
+        if (message.code === 'full') { full = true; notice(word(lang, 'full')); }
+        else console.warn(`${message.code}: ${message.message}`);
+        break;
+    }
+  },
+  binary: (buffer) => picture.receive(buffer),
+});
+
+function next() {
+  asked.set(++seq, performance.now());
+  return seq;
+}
+
+const menu = make_menu({
+  viewpoint: (name) => connection.send({ type: 'viewpoint', seq: next(), name }),
+  tour: (action, name) => connection.send({ type: 'tour', action, ...(name && { name }) }),
+  story: (story) => connection.send({ type: 'storyteller', story }),
+  story_action: (action) => connection.send({ type: 'storyteller', action }),
+  storyteller: (fields) => connection.send({ type: 'storyteller', ...fields }),
+  lang(tag) { lang = tag; localStorage.setItem('wellspring.lang', tag); connection.send({ type: 'settings', lang: tag }); },
+  subtitles: (on) => subtitles.enable(on),
+});
+
+make_controls(canvas, by_id('stick'), by_id('stick-knob'), {
+  send: ({ move, look }) => connection.send({ type: 'input', seq: next(), move, look }),
+  fov: () => state?.fov ?? 1,
+  speed: () => walk_speed,
+  place(index) { const name = menu.place(index); if (name) connection.send({ type: 'viewpoint', seq: next(), name }); },
+});
+
+let resize_timer = 0;
+addEventListener('resize', () => {
+  clearTimeout(resize_timer);
+  resize_timer = setTimeout(() => connection.send({ type: 'settings', ...wanted_size() }), 200);
+});
+// A hidden page costs next to nothing.
+document.addEventListener('visibilitychange', () => connection.send({ type: 'settings', fps: document.hidden ? 1 : 0 }));
+
+// Controls fade while nobody touches them.
+let quiet_timer = 0;
+function wake() {
+  document.body.classList.remove('quiet');
+  clearTimeout(quiet_timer);
+  quiet_timer = setTimeout(() => document.body.classList.add('quiet'), 6000);
+}
+for (const event of ['pointermove', 'pointerdown', 'keydown', 'touchstart']) addEventListener(event, wake, { passive: true });
+wake();
+canvas.focus();

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page's own words. The exhibit's words come from the server.
+const words = {
+  en: { menu: 'Menu', close: 'Close', places: 'Places', tours: 'Guided tour', stories: 'Stories', storyteller: 'Storyteller',
+    shown: 'Shown', lively: 'Lively movements', language: 'Language', subtitles: 'Subtitles', walking: 'Getting about',
+    key_walk: 'walk', key_arrows: 'walk and turn', key_drag_name: 'Drag', key_drag: 'look round', key_places: 'go to a place',
+    pause: 'Pause', resume: 'Go on', stop: 'Stop', restart: 'From the start', opening: 'Opening the doors…',
+    lost: 'The line to the museum is broken. Trying again…', full: 'The museum is full just now. Please come back in a moment.',
+    invite: 'Step closer, and the castle will tell you its story.' },
+  de: { menu: 'Menü', close: 'Schließen', places: 'Orte', tours: 'Rundgang', stories: 'Geschichten', storyteller: 'Erzählerin',
+    shown: 'Sichtbar', lively: 'Lebendige Bewegungen', language: 'Sprache', subtitles: 'Untertitel', walking: 'Bewegen',
+    key_walk: 'gehen', key_arrows: 'gehen und drehen', key_drag_name: 'Ziehen', key_drag: 'umsehen', key_places: 'zu einem Ort',
+    pause: 'Pause', resume: 'Weiter', stop: 'Beenden', restart: 'Von vorn', opening: 'Die Türen öffnen sich…',
+    lost: 'Die Verbindung zum Museum ist unterbrochen. Neuer Versuch…', full: 'Das Museum ist gerade voll. Bitte kommen Sie gleich wieder.',
+    invite: 'Treten Sie näher, dann erzählt die Burg ihre Geschichte.' },
+  sk: { menu: 'Ponuka', close: 'Zavrieť', places: 'Miesta', tours: 'Prehliadka', stories: 'Príbehy', storyteller: 'Rozprávačka',
+    shown: 'Viditeľná', lively: 'Živé pohyby', language: 'Jazyk', subtitles: 'Titulky', walking: 'Pohyb',
+    key_walk: 'chôdza', key_arrows: 'chôdza a otáčanie', key_drag_name: 'Ťahanie', key_drag: 'rozhliadanie', key_places: 'na miesto',
+    pause: 'Pauza', resume: 'Ďalej', stop: 'Ukončiť', restart: 'Od začiatku', opening: 'Otvárame brány…',
+    lost: 'Spojenie s múzeom sa prerušilo. Skúšame znova…', full: 'Múzeum je práve plné. Príďte, prosím, o chvíľu.',
+    invite: 'Pristúpte bližšie a hrad vám rozpovie svoj príbeh.' },
+};
+export const language_names = { en: 'English', de: 'Deutsch', sk: 'Slovenčina', fr: 'Français', es: 'Español', cs: 'Čeština', pl: 'Polski', hu: 'Magyar', it: 'Italiano' };
+
+export function word(lang, name) {
+  return (words[lang] ?? words[lang?.split('-')[0]] ?? words.en)[name] ?? words.en[name] ?? name;
+}
+
+// Fills every element that carries data-word, data-word-title or data-word-label.
+export function translate_page(lang) {
+  document.documentElement.lang = lang;
+  for (const element of document.querySelectorAll('[data-word]')) element.textContent = word(lang, element.dataset.word);
+  for (const element of document.querySelectorAll('[data-word-title]')) element.title = word(lang, element.dataset.wordTitle);
+  for (const element of document.querySelectorAll('[data-word-label]')) element.setAttribute('aria-label', word(lang, element.dataset.wordLabel));
+}
+
+// The visitor's language: asked for in the address, chosen before, or the browser's.
+export function first_language() {
+  return new URLSearchParams(location.search).get('lang') ?? localStorage.getItem('wellspring.lang') ?? navigator.language ?? 'en';
+}
