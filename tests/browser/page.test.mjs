@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page in headless Chromium: the picture follows keys, places change it, a restart is survived.
+import assert from 'node:assert/strict';
+import { existsSync, mkdtempSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { load_module, sleep, start_server } from '../server.mjs';
+
+const { chromium } = load_module('playwright-core');
+const executable = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
+const skip = !executable && 'no Chromium on this machine';
+const pictures = process.env.WELLSPRING_PICTURES;  // a folder for screenshots, for people to look at
+
+let server, browser;
+before(async () => {
+  if (skip) return;
+  server = await start_server();
+  browser = await chromium.launchPersistentContext(mkdtempSync(join(tmpdir(), 'wellspring-chromium-')), {
+    executablePath: executable, headless: true, viewport: { width: 960, height: 540 },
+    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
+  });
+});
+after(async () => {
+  if (browser) await browser.close();
+  if (server) await server.stop();
+});
+
+async function open(path = '/', size) {
+  const page = await browser.newPage();
+  const problems = [];
+  page.on('pageerror', (error) => problems.push(String(error)));
+  page.on('console', (message) => { if (message.type() === 'error' && !/WebSocket connection|ERR_CONNECTION_REFUSED/.test(message.text())) problems.push(message.text()); });
+  if (size) await page.setViewportSize(size);
+  await page.goto(server.url + path);
+  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3, null, { timeout: 30000 });
+  return { page, problems };
+}
+
+// Mean colours of a grid of cells of the canvas.
+const look = (page) => page.evaluate(() => {
+  const canvas = document.getElementById('picture'), small = document.createElement('canvas');
+  small.width = 24; small.height = 14;
+  const context = small.getContext('2d');
+  context.drawImage(canvas, 0, 0, 24, 14);
+  return [...context.getImageData(0, 0, 24, 14).data];
+});
+const difference = (a, b) => a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
+const shot = async (page, name) => { if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`) }); };
+
+test('a lit picture appears and keys move it', { skip }, async () => {
+  const { page, problems } = await open();
+  await sleep(2500);
+  const before_key = await look(page);
+  const light = before_key.reduce((sum, value) => sum + value, 0) / before_key.length;
+  assert.ok(light > 50 && light < 230, `mean level ${light}`);
+  await shot(page, 'hall');
+  await page.keyboard.down('ArrowLeft');
+  await sleep(700);
+  await page.keyboard.up('ArrowLeft');
+  await sleep(800);
+  const turned = await look(page);
+  assert.ok(difference(before_key, turned) > 8, `turning changed the picture by ${difference(before_key, turned)}`);
+  await page.keyboard.down('KeyW');
+  await sleep(700);
+  await page.keyboard.up('KeyW');
+  await sleep(800);
+  assert.ok(difference(turned, await look(page)) > 3);
+  await page.mouse.move(480, 270);
+  await page.mouse.down();
+  await page.mouse.move(620, 270, { steps: 8 });
+  await page.mouse.up();
+  await sleep(600);
+  assert.deepEqual(problems, []);
+  await page.close();
+});
+
+test('places, menu, language and story', { skip }, async () => {
+  const { page, problems } = await open();
+  await sleep(1000);
+  const places = page.locator('#places button');
+  assert.ok(await places.count() >= 5);
+  const start = await look(page);
+  await places.nth(2).click();
+  await page.waitForFunction(() => document.querySelectorAll('#places button')[2].getAttribute('aria-current') === 'true');
+  await sleep(1500);
+  assert.ok(difference(start, await look(page)) > 8);
+  await shot(page, 'place');
+  await page.locator('#menu-button').click();
+  await page.locator('#languages button', { hasText: 'Deutsch' }).click();
+  await page.waitForFunction(() => document.documentElement.lang === 'de');
+  await shot(page, 'menu');
+  await page.locator('#stories button').first().click();
+  await page.waitForFunction(() => !document.getElementById('subtitle').hidden);
+  assert.equal(await page.getAttribute('#subtitle', 'lang'), 'de');
+  assert.ok(await page.locator('#menu').isHidden());
+  await shot(page, 'story');
+  assert.deepEqual(problems, []);
+  await page.evaluate(() => localStorage.clear());
+  await page.close();
+});
+
+test('phone and kiosk sizes hold everything inside the window', { skip }, async () => {
+  for (const [path, width, height] of [['/', 390, 844], ['/', 844, 390], ['/', 1920, 1080], ['/kiosk', 1080, 1920]]) {
+    const { page, problems } = await open(path, { width, height });
+    await sleep(1200);
+    const overflow = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth || document.documentElement.scrollHeight > innerHeight);
+    assert.equal(overflow, false, `${path} at ${width}x${height} overflows`);
+    const size = await page.evaluate(() => { const c = document.getElementById('picture'); return [c.width, c.height]; });
+    assert.ok(Math.abs(size[0] / size[1] - width / height) < 0.06, `picture ${size} in window ${width}x${height}`);
+    await shot(page, `page-${width}x${height}${path === '/' ? '' : '-kiosk'}`);
+    assert.deepEqual(problems, []);
+    await page.close();
+  }
+});
+
+test('the page comes back after a server restart, where the visitor stood', { skip }, async () => {
+  const { page } = await open();
+  await page.locator('#places button').nth(1).click();
+  await page.waitForFunction(() => document.querySelectorAll('#places button')[1].getAttribute('aria-current') === 'true');
+  await sleep(1500);
+  const before_restart = await look(page);
+  const { port } = server;
+  await server.stop();
+  await page.waitForFunction(() => !document.getElementById('notice').hidden);
+  await shot(page, 'lost');
+  server = await start_server([], { port });
+  await page.waitForFunction(() => document.getElementById('notice').hidden, null, { timeout: 30000 });
+  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3, null, { timeout: 20000 });
+  await sleep(2000);
+  assert.ok(difference(before_restart, await look(page)) < 12);
+  await page.close();
+});
+
+test('the status page tells figures', { skip }, async () => {
+  const page = await browser.newPage();
+  await page.goto(`${server.url}/status`);
+  await page.waitForFunction(() => document.getElementById('health').textContent === 'serving');
+  assert.match(await page.textContent('#server'), /Memory/);
+  await shot(page, 'status');
+  await page.close();
+});

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Starts the real programs for the scripted tests, and speaks to them.
+import { spawn } from 'node:child_process';
+import { createRequire } from 'node:module';
+import { join } from 'node:path';
+
+export const source = process.env.WELLSPRING_SOURCE;
+export const data = process.env.WELLSPRING_DATA ?? '';
+const bin = process.env.WELLSPRING_BIN;
+const require = createRequire(join(process.env.WELLSPRING_NODE, 'index.js'));
+export const WebSocket = require('ws');
+export const load_module = (name) => require(name);
+
+export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+// Runs a program to its end: {status, stdout, stderr}.
+export function run(name, args, { timeout = 60000 } = {}) {
+  return new Promise((resolve) => {
+    const child = spawn(join(bin, name), args, { stdio: ['ignore', 'pipe', 'pipe'] });
+    let stdout = '', stderr = '';
+    child.stdout.on('data', (chunk) => { stdout += chunk; });
+    child.stderr.on('data', (chunk) => { stderr += chunk; });
+    const timer = setTimeout(() => child.kill('SIGKILL'), timeout);
+    child.on('close', (status, signal) => { clearTimeout(timer); resolve({ status: signal ?? status, stdout, stderr }); });
+  });
+}
+
+// A running server: {port, url, ws, child, stop()}. Resolves when it has printed its address.
+export function start_server(args = [], { port = 0, content = join(source, 'content') } = {}) {
+  return new Promise((resolve, reject) => {
+    const child = spawn(join(bin, 'wellspring_server'),
+      ['--content', content, '--web', join(source, 'web'), '--port', String(port), ...args],
+      { stdio: ['ignore', 'pipe', 'pipe'] });
+    let stdout = '', stderr = '';
+    const timer = setTimeout(() => { child.kill('SIGKILL'); reject(new Error(`no address within 60 s\n${stderr}`)); }, 60000);
+    child.stderr.on('data', (chunk) => { stderr += chunk; });
+    child.on('close', (status) => { clearTimeout(timer); reject(new Error(`server ended with ${status}\n${stderr}`)); });
+    child.stdout.on('data', (chunk) => {
+      stdout += chunk;
+      const match = /http:\/\/[^:]+:(\d+)\//.exec(stdout);
+      if (!match) return;
+      clearTimeout(timer);
+      const found = Number(match[1]);
+      resolve({
+        child, port: found, url: `http://127.0.0.1:${found}`, ws: `ws://127.0.0.1:${found}`, log: () => stderr,
+        stop: (signal = 'SIGTERM') => new Promise((done) => {
+          if (child.exitCode !== null || child.signalCode !== null) return done(child.exitCode);
+          child.on('close', (status) => done(status));
+          child.kill(signal);
+        }),
+      });
+    });
+  });
+}
+
+export function read_picture(bytes) {
+  if (bytes.length < 28 || bytes.toString('latin1', 0, 4) !== 'WSF1') return null;
+  return {
+    frame: bytes.readUInt32LE(4), seq: bytes.readUInt32LE(8), time_us: bytes.readBigUInt64LE(12),
+    width: bytes.readUInt16LE(20), height: bytes.readUInt16LE(22), quality: bytes[24], flags: bytes[25],
+    header: bytes.readUInt16LE(26), jpeg: bytes.subarray(bytes.readUInt16LE(26)),
+  };
+}
+
+// A scripted visitor: collects messages and pictures, acknowledges every picture.
+export class Visitor {
+  constructor(server, { path = '/api/v1/visit', protocol = 'wellspring.v1', acknowledge = true } = {}) {
+    this.messages = [];
+    this.pictures = 0;
+    this.waiting = [];
+    this.socket = new WebSocket(server.ws + path, protocol);
+    this.closed = new Promise((resolve) => this.socket.on('close', (code, reason) => resolve({ code, reason: String(reason) })));
+    this.socket.on('error', () => {});
+    this.opened = new Promise((resolve, reject) => { this.socket.on('open', resolve); this.socket.on('error', reject); });
+    this.socket.on('message', (bytes, binary) => {
+      const item = binary ? { picture: read_picture(bytes), at: performance.now() } : { message: JSON.parse(String(bytes)) };
+      if (binary) {
+        this.pictures++;
+        this.last = item.picture;
+        if (acknowledge) this.send({ type: 'ack', frame: item.picture.frame, decoded_ms: 1, shown: true });
+      } else {
+        this.messages.push(item.message);
+      }
+      this.waiting = this.waiting.filter((waiter) => !waiter(item));
+    });
+  }
+  send(message) {
+    if (this.socket.readyState === WebSocket.OPEN)
+      this.socket.send(typeof message === 'string' ? message : JSON.stringify(message));
+  }
+  // Resolves with the first item from now on that `test` accepts.
+  next(test, what = 'an expected message', timeout = 15000) {
+    return new Promise((resolve, reject) => {
+      const timer = setTimeout(() => reject(new Error(`no ${what} within ${timeout} ms`)), timeout);
+      this.waiting.push((item) => {
+        if (!test(item)) return false;
+        clearTimeout(timer);
+        resolve(item);
+        return true;
+      });
+    });
+  }
+  message(type, test = () => true) {
+    return this.next((item) => item.message?.type === type && test(item.message), `message ${type}`).then((item) => item.message);
+  }
+  picture(test = () => true, timeout = 15000) {
+    return this.next((item) => item.picture && test(item.picture), 'picture', timeout).then((item) => item.picture);
+  }
+  async hello(fields = {}) {
+    await this.opened;
+    const welcome = this.message('welcome');
+    this.send({ type: 'hello', exhibit: '', width: 320, height: 180, lang: 'en', role: 'visitor', ...fields });
+    return welcome;
+  }
+  close() { this.socket.close(); return this.closed; }
+}

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line's promises: exit status 0 done, 1 the input is wrong, 2 the command line is wrong.
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync, mkdirSync, statSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, test } from 'node:test';
+import { run, source } from '../server.mjs';
+
+const folder = mkdtempSync(join(tmpdir(), 'wellspring-'));
+after(() => rmSync(folder, { recursive: true, force: true }));
+const castle = join(source, 'content', 'castle');
+
+const triangle = {
+  asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0, name: 'Sail' }],
+  meshes: [{ primitives: [{ attributes: { POSITION: 0 }, material: 0 }] }],
+  materials: [{ emissiveFactor: [1, 0.5, 0.25], doubleSided: true }],
+  accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: 'VEC3', min: [-1, -1, 0], max: [1, 1, 0] }],
+  bufferViews: [{ buffer: 0, byteLength: 36 }],
+  buffers: [{ byteLength: 36, uri: 'data:application/octet-stream;base64,' +
+    Buffer.from(new Float32Array([-1, -1, 0, 1, -1, 0, 0, 1, 0]).buffer).toString('base64') }],
+};
+const scene = join(folder, 'triangle.gltf');
+writeFileSync(scene, JSON.stringify(triangle));
+
+test('render writes linear and tone-mapped pictures', async () => {
+  for (const name of ['out.png', 'out.jpg', 'out.pfm', 'out.exr']) {
+    const out = join(folder, name);
+    const args = [scene, '--technique', 'path', '--eye', '0,0,3', '--target', '0,0,0', '--fov', '50', '--size', '32x24', '--spp', '4', '--seed', '3', '--out', out];
+    const { status, stderr } = await run('wellspring_render', args);
+    assert.equal(status, 0, stderr);
+    assert.ok(statSync(out).size > 100);
+  }
+  // The middle of the picture is the emitter's radiance, exactly.
+  const pfm = readFileSync(join(folder, 'out.pfm'));
+  const header = pfm.toString('latin1', 0, 40).split('\n').slice(0, 3).join('\n').length + 1;
+  const at = (x, y, c) => pfm.readFloatLE(header + 4 * (3 * (y * 32 + x) + c));
+  assert.deepEqual([0, 1, 2].map((c) => at(16, 10, c)), [1, 0.5, 0.25]);
+});
+
+test('the same seed gives the same bits', async () => {
+  const picture = async (name, threads) => {
+    const out = join(folder, name);
+    const { status, stderr } = await run('wellspring_render', [scene, '--technique', 'path', '--size', '24x24', '--spp', '3', '--seed', '7', '--threads', String(threads), '--out', out]);
+    assert.equal(status, 0, stderr);
+    return readFileSync(out);
+  };
+  assert.deepEqual(await picture('a.pfm', 1), await picture('b.pfm', 3));
+});
+
+test('techniques are listed by name', async () => {
+  const { status, stdout } = await run('wellspring_render', ['--list-techniques']);
+  assert.equal(status, 0);
+  for (const name of ['path', 'direct']) assert.match(stdout, new RegExp(`^${name}\\b`, 'm'));
+});
+
+test('a wrong command line is 2', async () => {
+  const out = join(folder, 'x.png');
+  for (const args of [[], [scene], [scene, '--out', out, '--technique', 'magic'], [scene, '--out', out, '--size', '10'], [scene, '--out', out, '--spp', '0'], [scene, '--out', join(folder, 'x.tiff')], [scene, '--out', out, '--camera', 'nowhere']]) {
+    const { status, stderr } = await run('wellspring_render', args);
+    assert.equal(status, 2, `${args.join(' ')}\n${stderr}`);
+    assert.ok(stderr.length > 0);
+  }
+  assert.equal((await run('wellspring_server', ['--port', 'eighty'])).status, 2);
+  assert.equal((await run('wellspring_server', ['--technique', 'magic'])).status, 2);
+  assert.equal((await run('wellspring_kiosk', [])).status, 2);
+  assert.equal((await run('wellspring_check', [])).status, 2);
+  assert.equal((await run('wellspring_avatar', [])).status, 2);
+});
+
+test('wrong input is 1 and named', async () => {
+  const bad = join(folder, 'bad.gltf');
+  writeFileSync(bad, JSON.stringify({ ...triangle, accessors: [{ ...triangle.accessors[0], count: 400 }] }));
+  const { status, stderr } = await run('wellspring_render', [bad, '--out', join(folder, 'x.png'), '--size', '8x8', '--spp', '1']);
+  assert.equal(status, 1);
+  assert.match(stderr, /bad\.gltf/);
+  assert.match(stderr, /accessors\/0/);
+  assert.equal((await run('wellspring_render', [join(folder, 'none.glb'), '--out', join(folder, 'x.png')])).status, 1);
+  assert.equal((await run('wellspring_avatar', [join(folder, 'none.x3d'), '--info'])).status, 1);
+  assert.equal((await run('wellspring_kiosk', ['--camera', join(folder, 'none.mp4'), '--print'])).status, 1);
+});
+
+test('check accepts the castle and lists every problem of a bad package', async () => {
+  const good = await run('wellspring_check', [castle]);
+  assert.equal(good.status, 0, good.stdout);
+  const bad = join(folder, 'broken');
+  mkdirSync(bad);
+  writeFileSync(join(bad, 'exhibit.json'), JSON.stringify({
+    id: 'other', title: { en: 'Broken' }, scene: '../castle/scene.glb', exposure: -1, typo: 1,
+    viewpoints: [{ name: 'a', position: [0, 0], fov_deg: 400 }], start: 'b', tours: [{ id: 't', stops: [{ viewpoint: 'c' }] }],
+  }));
+  const { status, stdout } = await run('wellspring_check', [bad]);
+  assert.equal(status, 1);
+  for (const place of ['/id', '/scene', '/exposure', '/typo', '/viewpoints/0/position', '/viewpoints/0/fov_deg', '/start', '/tours/0/stops/0/viewpoint'])
+    assert.ok(stdout.includes(place), `${place} is not named in\n${stdout}`);
+  assert.equal((await run('wellspring_check', [join(folder, 'nothing')])).status, 1);
+});
+
+test('avatar tells the storyteller\'s joints', async () => {
+  const { status, stdout, stderr } = await run('wellspring_avatar', [join(castle, 'figures', 'storyteller.x3d'), '--json']);
+  assert.equal(status, 0, stderr);
+  const info = JSON.parse(stdout);
+  const names = info.joints.map((joint) => joint.name);
+  for (const name of ['humanoid_root', 'sacroiliac', 'l_hip', 'r_knee', 'skullbase', 'l_shoulder', 'r_elbow', 'l_radiocarpal'])
+    assert.ok(names.includes(name), `${name} is missing`);
+});

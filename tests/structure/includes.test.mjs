@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The include direction of ARCHITECTURE.md, and what else the tree promises about itself.
+import assert from 'node:assert/strict';
+import { readFileSync, readdirSync } from 'node:fs';
+import { join, relative } from 'node:path';
+import { test } from 'node:test';
+
+const root = process.env.WELLSPRING_SOURCE;
+
+// layer -> layers it may include, besides itself.
+const may_include = {
+  base: [],
+  wire: ['base'],
+  frame: ['base'],
+  world: ['base'],
+  light: ['world', 'frame', 'base'],
+  cache: ['light', 'world', 'frame', 'base'],
+  avatar: ['base'],
+  show: ['cache', 'light', 'world', 'frame', 'avatar', 'wire', 'base'],
+  stream: ['wire', 'base'],
+  kiosk: ['wire', 'base'],
+};
+// Heavy headers appear in .cpp files of these layers only.
+const heavy = [
+  [/^(boost\/(beast|asio)|boost\/)/, ['stream', 'kiosk']],
+  [/^opencv2?\//, ['kiosk']],
+  [/^embree[34]?\//, ['world']],
+  [/^tiny_gltf/, ['world']],
+  [/^pugixml/, ['avatar']],
+  [/^(turbojpeg|OpenEXR|Imf)/, ['frame']],
+];
+
+function* sources(folder) {
+  for (const entry of readdirSync(folder, { withFileTypes: true })) {
+    const path = join(folder, entry.name);
+    if (entry.isDirectory()) yield* sources(path);
+    else if (/\.(h|cpp)$/.test(entry.name)) yield path;
+  }
+}
+
+function files() {
+  const found = [];
+  for (const top of ['server', 'avatar', 'kiosk'])
+    for (const path of sources(join(root, top))) {
+      const name = relative(root, path);
+      const parts = name.split('/');
+      const layer = parts[0] === 'server' ? (parts.length > 2 ? parts[1] : 'main') : parts[0];
+      const text = readFileSync(path, 'utf8');
+      const includes = [...text.matchAll(/^\s*#\s*include\s*[<"]([^>"]+)[>"]/gm)].map((match) => match[1]);
+      found.push({ name, layer: /main[^/]*\.cpp$/.test(name) ? 'main' : layer, text, includes, lines: text.split('\n').length });
+    }
+  return found;
+}
+
+const all = files();
+
+test('there are sources to check', () => assert.ok(all.length > 50));
+
+test('includes follow the direction of the layers', () => {
+  const wrong = [];
+  for (const { name, layer, includes } of all) {
+    if (layer === 'main') continue;
+    assert.ok(may_include[layer], `${name} belongs to no known layer`);
+    for (const include of includes) {
+      const target = include.split('/')[0];
+      if (!include.includes('/') || !(target in may_include)) continue;
+      if (target !== layer && !may_include[layer].includes(target)) wrong.push(`${name} includes ${include}`);
+    }
+  }
+  assert.deepEqual(wrong, []);
+});
+
+test('heavy headers stay in .cpp files of their own layer', () => {
+  const wrong = [];
+  for (const { name, layer, includes } of all)
+    for (const include of includes)
+      for (const [pattern, layers] of heavy)
+        if (pattern.test(include)) {
+          const program = layer === 'main' && name.startsWith('kiosk/');
+          const own_header = name.endsWith('.h') && include.startsWith('embree') && name === 'server/world/embree.h';
+          if (!(layers.includes(layer) || program)) wrong.push(`${name} includes ${include}`);
+          else if (name.endsWith('.h') && !own_header) wrong.push(`the header ${name} includes ${include}`);
+        }
+  assert.deepEqual(wrong, []);
+});
+
+test('one licence line per file, include guards, and no file over 500 lines', () => {
+  const wrong = [];
+  for (const { name, text, lines } of all) {
+    if (!text.startsWith('// SPDX-License-Identifier: Apache-2.0\n')) wrong.push(`${name}: no SPDX line`);
+    if (name.endsWith('.h') && !text.includes('#pragma once')) wrong.push(`${name}: no #pragma once`);
+    if (lines > 500) wrong.push(`${name}: ${lines} lines`);
+  }
+  assert.deepEqual(wrong, []);
+});
