@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A glTF 2.0 file taken apart: its JSON, checked, and its bytes, bounded. Everything after load_gltf()
+// may rely on types, required properties, index ranges and layouts (gltf_schema.cpp, gltf_layout.cpp).
+//
+// Refused (LoadError): what makes geometry or material mean something else than the file says - wrong
+// types, missing properties, indices out of range, bytes beyond a buffer, nodes with two parents or
+// cycles, formats an attribute cannot have, files that are missing or outside the package, required
+// extensions this program does not know.
+// Warned of (Scene::warnings): what is merely odd and still has one meaning - unknown properties, empty
+// lists, misaligned or oddly strided but readable data, wrong min and max, vectors that are not unit
+// length, weights that do not add to one, values that are not finite (the triangle is dropped).
+// One parser reads the JSON that the checks saw, so the two cannot disagree about it.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace wellspring::gltf {
+
+using json = nlohmann::json;
+using Bytes = std::vector<uint8_t>;
+
+struct File {
+  std::string path;               // as the caller gave it, for messages
+  std::filesystem::path folder;   // what URIs are relative to
+  std::filesystem::path package;  // canonical; files read must lie inside
+  json root;
+  Bytes binary;  // the GLB's binary chunk
+  bool has_binary = false;
+  std::vector<Bytes> buffers;  // filled on first use
+  std::vector<char> buffer_ready;
+  int64_t numbers_read = 0;    // out of accessors so far; bounded by total_limit
+  int64_t triangles_made = 0;  // bounded by triangle_limit
+  std::vector<std::string> warnings;
+  std::set<std::string> said;
+};
+
+// Reads, splits and checks a file. Throws LoadError.
+File load_gltf(const std::string& path, const std::string& package);
+
+[[noreturn]] void refuse(const File& file, const std::string& where, const std::string& what);
+// Adds a warning; the same `what` is said once, with its first place.
+void warn(File& file, const std::string& where, const std::string& what);
+
+// Bytes of a data URI or of a file inside the package. Throws LoadError.
+Bytes read_uri(const File& file, const std::string& where, const std::string& uri);
+// A whole file, at most `limit` bytes.
+Bytes read_bytes(const std::string& path, size_t limit);
+
+// The steps of load_gltf.
+void check_schema(File& file);      // types, required properties, ranges, references
+void check_layout(File& file);      // buffer views within buffers, accessors within buffer views
+void check_extensions(File& file);  // required ones must be known
+
+// Helpers over checked JSON.
+const json& items(const json& object, const char* key);  // an empty array where there is none
+const json* find(const json& object, const char* key);   // null where there is none
+const json* extension(const json& object, const char* name);
+int64_t integer(const json& object, const char* key, int64_t otherwise);
+double number(const json& object, const char* key, double otherwise);
+bool boolean(const json& object, const char* key, bool otherwise);
+std::string text(const json& object, const char* key, const std::string& otherwise = "");
+std::string at(const std::string& where, size_t index);              // where + "/index"
+std::string at(const std::string& where, const std::string& key);    // escaped as RFC 6901 says
+// A number as a float that is finite: what is too large becomes +-1e30.
+float to_float(double value);
+
+}  // namespace wellspring::gltf

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/gltf_animation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "world/gltf_data.h"
+
+namespace wellspring::gltf {
+namespace {
+
+enum class Path { none, translation, rotation, scale, weights };
+enum class Curve { step, linear, cubic };
+
+// A channel with its data: `width` numbers a key, three times as many for cubic curves.
+struct Track {
+  Path path = Path::none;
+  Curve curve = Curve::linear;
+  size_t node = 0;
+  size_t width = 0;
+  std::vector<float> times, values;
+};
+
+Path path_of(const std::string& name) {
+  if (name == "translation") return Path::translation;
+  if (name == "rotation") return Path::rotation;
+  if (name == "scale") return Path::scale;
+  if (name == "weights") return Path::weights;
+  return Path::none;
+}
+
+Curve curve_of(File& file, const json& sampler, const std::string& where) {
+  std::string name = text(sampler, "interpolation", "LINEAR");
+  if (name == "STEP") return Curve::step;
+  if (name == "CUBICSPLINE") return Curve::cubic;
+  if (name != "LINEAR") warn(file, where + "/interpolation", "unknown; taken as LINEAR");
+  return Curve::linear;
+}
+
+void check_formats(File& file, const json& sampler, const std::string& where, const Track& track) {
+  size_t input = size_t(integer(sampler, "input", 0)), output = size_t(integer(sampler, "output", 0));
+  Form in = form_of(file, input), out = form_of(file, output);
+  if (in.components != 1 || in.component_type != float_component)
+    refuse(file, where + "/input", "must be SCALAR of FLOAT, not " + describe(file, input));
+  int components = track.path == Path::rotation ? 4 : track.path == Path::weights ? 1 : 3;
+  bool fraction = out.component_type == float_component ||
+                  (out.normalized && out.component_type != unsigned_int);
+  bool whole_allowed = track.path == Path::rotation || track.path == Path::weights;
+  if (out.components != components || out.component_type == 0 || !fraction ||
+      (out.component_type != float_component && !whole_allowed))
+    refuse(file, where + "/output", "cannot be " + describe(file, output) + " for this path");
+  int64_t a_key = track.curve == Curve::cubic ? 3 : 1;
+  int64_t expected = in.count * a_key * (track.path == Path::weights ? int64_t(track.width) : 1);
+  if (track.curve == Curve::cubic && in.count < 2)
+    refuse(file, where + "/input", "a cubic curve needs two keys at least");
+  if (out.count != expected)
+    refuse(file, where + "/output", "has " + std::to_string(out.count) + " elements where " +
+                                        std::to_string(expected) + " are needed");
+}
+
+void read_track(File& file, const json& sampler, const std::string& where, Track& track) {
+  track.times = read_floats(file, size_t(integer(sampler, "input", 0)));
+  track.values = read_floats(file, size_t(integer(sampler, "output", 0)));
+  for (size_t i = 0; i < track.times.size(); i++) {
+    if (!std::isfinite(track.times[i]) || (i > 0 && track.times[i] <= track.times[i - 1]))
+      refuse(file, where + "/input", "times do not increase at key " + std::to_string(i));
+    if (track.times[i] < 0) warn(file, where + "/input", "a key before time 0");
+  }
+  for (float value : track.values)
+    if (!std::isfinite(value)) refuse(file, where + "/output", "holds a value that is not finite");
+}
+
+// Appendix C.3 to C.5. Cubic keys are laid out in-tangent, value, out-tangent.
+std::vector<double> eval_track(const Track& track, double time) {
+  size_t width = track.width, keys = track.times.size();
+  bool cubic = track.curve == Curve::cubic;
+  auto value = [&](size_t key, size_t part, size_t i) {
+    return double(track.values[(cubic ? (key * 3 + part) : key) * width + i]);
+  };
+  size_t next = size_t(std::upper_bound(track.times.begin(), track.times.end(), float(time)) -
+                       track.times.begin());
+  size_t first = next == 0 ? 0 : next - 1;
+  next = std::min(next, keys - 1);
+  double span = double(track.times[next]) - track.times[first];
+  double t = span > 0 ? glm::clamp((time - track.times[first]) / span, 0.0, 1.0) : 0.0;
+  std::vector<double> result(width);
+  if (track.curve == Curve::step || span <= 0) {
+    for (size_t i = 0; i < width; i++) result[i] = value(first, 1, i);
+  } else if (cubic) {
+    double t2 = t * t, t3 = t2 * t;
+    for (size_t i = 0; i < width; i++)
+      result[i] = (2 * t3 - 3 * t2 + 1) * value(first, 1, i) +
+                  span * (t3 - 2 * t2 + t) * value(first, 2, i) +
+                  (-2 * t3 + 3 * t2) * value(next, 1, i) + span * (t3 - t2) * value(next, 0, i);
+  } else if (track.path == Path::rotation) {
+    auto key = [&](size_t k) {
+      return glm::dquat(value(k, 1, 3), value(k, 1, 0), value(k, 1, 1), value(k, 1, 2));
+    };
+    glm::dquat q = glm::slerp(key(first), key(next), t);
+    result = {q.x, q.y, q.z, q.w};
+  } else {
+    for (size_t i = 0; i < width; i++)
+      result[i] = value(first, 1, i) * (1 - t) + value(next, 1, i) * t;
+  }
+  return result;
+}
+
+void apply(const Track& track, double time, Node& node) {
+  std::vector<double> v = eval_track(track, time);
+  switch (track.path) {
+    case Path::translation: node.translation = {v[0], v[1], v[2]}; break;
+    case Path::scale: node.scale = {v[0], v[1], v[2]}; break;
+    case Path::rotation: node.rotation = glm::dquat(v[3], v[0], v[1], v[2]); break;
+    case Path::weights: node.weights = v; break;
+    case Path::none: break;
+  }
+}
+
+}  // namespace
+
+void animate(File& file, double time, std::vector<Node>& nodes) {
+  const json& animations = items(file.root, "animations");
+  for (size_t a = 0; a < animations.size(); a++) {
+    const std::string where = at("/animations", a);
+    const json& samplers = items(animations[a], "samplers");
+    const json& channels = items(animations[a], "channels");
+    std::set<std::pair<size_t, Path>> targets;
+    for (size_t c = 0; c < channels.size(); c++) {
+      const std::string place = at(where + "/channels", c);
+      size_t index = size_t(integer(channels[c], "sampler", 0));
+      if (index >= samplers.size())
+        refuse(file, place + "/sampler", "there is no sampler " + std::to_string(index));
+      const json& target = channels[c]["target"];
+      Track track;
+      track.path = path_of(text(target, "path"));
+      if (track.path == Path::none) warn(file, place + "/target/path", "unknown and ignored");
+      if (track.path == Path::none || !find(target, "node")) continue;
+      track.node = size_t(integer(target, "node", 0));
+      Node& node = nodes[track.node];
+      if (node.has_matrix && track.path != Path::weights) {
+        warn(file, place, "a node given by a matrix cannot be animated");
+        continue;
+      }
+      if (track.path == Path::weights && node.weights.empty()) {
+        warn(file, place, "a node without morph targets has no weights to animate");
+        continue;
+      }
+      const std::string sampler_place = at(where + "/samplers", index);
+      track.curve = curve_of(file, samplers[index], sampler_place);
+      track.width = track.path == Path::rotation  ? 4
+                    : track.path == Path::weights ? node.weights.size()
+                                                  : 3;
+      check_formats(file, samplers[index], sampler_place, track);
+      if (!targets.insert({track.node, track.path}).second) {
+        warn(file, place, "a second channel for the same target is ignored");
+        continue;
+      }
+      if (a > 0) continue;
+      read_track(file, samplers[index], sampler_place, track);
+      if (time != 0 && std::isfinite(time) && !track.times.empty()) apply(track, time, node);
+    }
+  }
+  if (animations.size() > 1 && time != 0)
+    warn(file, "/animations", "has several animations; the first one is shown");
+}
+
+}  // namespace wellspring::gltf

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers out of a glTF file's buffers: every accessor form of section 3.6.2 - interleaved, normalised,
+// sparse, each component type, and none at all (zeros). Layouts were checked when the file was loaded.
+#pragma once
+#include <span>
+
+#include "world/gltf.h"
+
+namespace wellspring::gltf {
+
+enum ComponentType {
+  byte_component = 5120,
+  unsigned_byte = 5121,
+  short_component = 5122,
+  unsigned_short = 5123,
+  unsigned_int = 5125,
+  float_component = 5126,
+};
+
+// What an accessor says about itself.
+struct Form {
+  int64_t count = 0;
+  int components = 0;      // 1..16; 0: of a type unknown to glTF 2.0
+  int component_type = 0;  // 0: unknown
+  bool normalized = false;
+};
+Form form_of(const File& file, size_t accessor);
+std::string describe(const File& file, size_t accessor);  // "VEC3 of FLOAT", for messages
+
+// Numbers one accessor may hold, and numbers that may be read in total: many accessors over the same
+// bytes, or over none, cannot make a small file take unbounded memory.
+constexpr int64_t accessor_limit = int64_t(1) << 28;
+constexpr int64_t total_limit = int64_t(1) << 29;
+
+// All elements as floats, `components` after one another. Matrices lose their column padding.
+// Throws LoadError if the accessor's type is unknown or its bytes are missing.
+std::vector<float> read_floats(File& file, size_t accessor);
+// Elements of an unsigned integer accessor. Throws LoadError.
+std::vector<uint32_t> read_integers(File& file, size_t accessor);
+// The bytes of a buffer view.
+std::span<const uint8_t> view_bytes(File& file, size_t view);
+
+}  // namespace wellspring::gltf

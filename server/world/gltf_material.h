@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Materials, textures and samplers of a glTF file. Only pictures that a material uses are opened.
+#pragma once
+#include "world/gltf.h"
+#include "world/scene.h"
+
+namespace wellspring::gltf {
+
+// Fills scene.materials (0 is the default material, i + 1 the file's material i), textures and images.
+void load_materials(File& file, Scene& scene);
+
+}  // namespace wellspring::gltf

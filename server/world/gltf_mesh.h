@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Primitives of a glTF file to triangles: topologies, attributes, morph targets, skins (glTF 2.0
+// section 3.7).
+#pragma once
+#include "base/vec.h"
+#include "world/gltf.h"
+#include "world/scene.h"
+
+namespace wellspring::gltf {
+
+// What poses a primitive's vertices: morph weights and, for skinned ones, a matrix per joint.
+struct Deformation {
+  std::vector<double> weights;
+  std::vector<dmat4> joints;  // joint to world; empty: not skinned
+};
+
+// A mesh and where its vertices' zero lies, so that positions far from zero keep their precision.
+struct BuiltMesh {
+  Mesh mesh;
+  dvec3 centre{0};
+};
+
+// Builds primitive `primitive` of mesh `mesh`. No triangles: points, lines or nothing at all; a warning
+// says so. Positions are in the mesh's space, or in world space if skinned. `normal_map_uv`: the set of
+// texture coordinates its material's normal map uses, so that tangents are made; -1: no normal map.
+BuiltMesh build_primitive(File& file, size_t mesh, size_t primitive, const Deformation& deformation,
+                          int normal_map_uv);
+
+// The joints and bind matrices of a skin, `global` being every node's transform.
+std::vector<dmat4> joint_matrices(File& file, size_t skin, const std::vector<dmat4>& global);
+
+}  // namespace wellspring::gltf
