@@ -39,6 +39,8 @@ struct StillSettings {
   uint64_t seed = 1;
   TransportSettings transport;
 };
+// Sample `index` of pixel (x, y) as render_still asks for it: tracing it alone gives the same bits.
+Request pixel_request(const View& view, uint64_t seed, int x, int y, int index);
 Frame render_still(const Technique& technique, const World& world, const Lights& lights, const View& view,
                    const StillSettings& settings);
 

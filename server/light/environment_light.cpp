@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/environment_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wellspring {
+namespace {
+
+constexpr int most_columns = 1024, most_rows = 512;
+
+// +Y is the top row, -Z the middle column, +X to the right of it.
+vec2 uv_of(vec3 d) {
+  return {0.5f + std::atan2(d.x, -d.z) / (2 * pi), std::acos(glm::clamp(d.y, -1.0f, 1.0f)) / pi};
+}
+
+vec3 look_up(const EnvironmentLight& light, vec2 uv) {
+  Texture texture;
+  texture.wrap_u = Wrap::repeat;
+  texture.wrap_v = Wrap::clamp;
+  return glm::max(vec3(eval_texture(*light.image, texture, uv)), vec3(0));
+}
+
+// cos of the polar angle at a row's upper edge.
+float edge(const EnvironmentLight& light, int row) { return std::cos(pi * float(row) / float(light.rows)); }
+
+}  // namespace
+
+EnvironmentLight make_environment_light(const Scene& scene) {
+  EnvironmentLight light;
+  light.radiance = scene.environment.radiance;
+  int index = scene.environment.image;
+  if (index < 0 || size_t(index) >= scene.images.size() || scene.images[size_t(index)].width <= 0) {
+    light.mean_luminance = luminance(light.radiance);
+    return light;
+  }
+  light.image = &scene.images[size_t(index)];
+  light.columns = std::min(light.image->width, most_columns);
+  light.rows = std::min(light.image->height, most_rows);
+  // Several look-ups a cell, so that a picture finer than the grid and the filter's reach both count.
+  int across = std::clamp(2 * light.image->width / light.columns, 2, 16);
+  int down = std::clamp(2 * light.image->height / light.rows, 2, 16);
+  std::vector<float> weights;
+  weights.reserve(size_t(light.columns) * size_t(light.rows));
+  for (int y = 0; y < light.rows; y++) {
+    float solid = edge(light, y) - edge(light, y + 1);
+    for (int x = 0; x < light.columns; x++) {
+      float sum = 0;
+      for (int j = 0; j < down; j++)
+        for (int i = 0; i < across; i++)
+          sum += luminance(look_up(light, {(float(x) + (float(i) + 0.5f) / float(across)) / float(light.columns),
+                                           (float(y) + (float(j) + 0.5f) / float(down)) / float(light.rows)}));
+      weights.push_back(sum / float(across * down) * solid);
+    }
+  }
+  light.cells = make_alias_table(weights);
+  light.mean_luminance = float(light.cells.total / (2.0 * light.columns)) * luminance(light.radiance);
+  if (!(luminance(light.radiance) > 0)) light.cells = {};
+  return light;
+}
+
+vec3 eval_environment(const EnvironmentLight& light, vec3 direction) {
+  return light.image ? light.radiance * look_up(light, uv_of(direction)) : light.radiance;
+}
+
+EnvironmentSample sample_environment(const EnvironmentLight& light, Sampler& sampler) {
+  vec2 u = sampler.next2();
+  AliasPick pick = sample_alias(light.cells, u.x);
+  int row = int(pick.index) / light.columns, column = int(pick.index) % light.columns;
+  float top = edge(light, row), bottom = edge(light, row + 1);
+  float y = glm::mix(top, bottom, u.y);
+  float phi = ((float(column) + pick.u) / float(light.columns) - 0.5f) * 2 * pi;
+  float radius = std::sqrt(std::max(0.0f, 1 - y * y));
+  float solid = (top - bottom) * 2 * pi / float(light.columns);
+  return {{radius * std::sin(phi), y, -radius * std::cos(phi)},
+          light.cells.cells[pick.index].probability / solid};
+}
+
+float sample_environment_pdf(const EnvironmentLight& light, vec3 direction) {
+  if (light.cells.cells.empty()) return 0;
+  vec2 uv = uv_of(direction);
+  int column = std::clamp(int(uv.x * float(light.columns)), 0, light.columns - 1);
+  int row = std::clamp(int(uv.y * float(light.rows)), 0, light.rows - 1);
+  float solid = (edge(light, row) - edge(light, row + 1)) * 2 * pi / float(light.columns);
+  return light.cells.cells[size_t(row) * size_t(light.columns) + size_t(column)].probability / solid;
+}
+
+}  // namespace wellspring

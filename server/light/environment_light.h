@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light from infinity: its radiance by direction, and for pictures a choice of direction by brightness
+// (a grid over the latitude-longitude picture, uniform in solid angle within a cell).
+#pragma once
+#include "light/alias_table.h"
+#include "light/sampler.h"
+#include "world/scene.h"
+
+namespace wellspring {
+
+// Borrows the scene's image.
+struct EnvironmentLight {
+  vec3 radiance{0};
+  const Image* image = nullptr;  // none: `radiance` from everywhere
+  int columns = 0, rows = 0;     // of the grid; none for a constant environment
+  AliasTable cells;
+  float mean_luminance = 0;  // over the sphere
+};
+
+EnvironmentLight make_environment_light(const Scene& scene);
+
+// `direction` unit.
+vec3 eval_environment(const EnvironmentLight& light, vec3 direction);
+
+struct EnvironmentSample {
+  vec3 direction{0};
+  float pdf = 0;  // over solid angle
+};
+// Only where there are cells; constant light is found by scattering, which no choice of ours can better.
+EnvironmentSample sample_environment(const EnvironmentLight& light, Sampler& sampler);
+float sample_environment_pdf(const EnvironmentLight& light, vec3 direction);
+
+}  // namespace wellspring

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// What make_lights() gathers from a world: every emitting triangle in world space with its chance of being
+// picked, punctual lights, the environment, and what the shading loop wants to know of each material.
+#pragma once
+#include <vector>
+
+#include "light/albedo_table.h"
+#include "light/environment_light.h"
+#include "world/bvh.h"
+
+namespace wellspring {
+
+inline constexpr uint32_t no_emitter = 0xffffffffu;
+
+struct EmitterTriangle {
+  uint32_t instance = 0, triangle = 0;
+  vec3 corner{0}, edge1{0}, edge2{0};  // world space; p = corner + b1 edge1 + b2 edge2
+  vec3 normal{0, 1, 0};                // towards the side that shines
+  float area = 0, extent = 0;
+  vec3 emission{0};     // where uniform
+  bool uniform = true;  // neither texture nor alpha: emission is the same all over
+  bool double_sided = false;
+};
+
+struct MaterialTraits {
+  const AlbedoTable* coat = nullptr;
+  bool maybe_pane = false;  // some place of it may be a thin smooth pane
+};
+
+struct LightTables {
+  std::vector<EmitterTriangle> emitters;     // whole instances, in order of their triangles
+  AliasTable emitter_choice;                 // by power
+  std::vector<uint32_t> first_emitter;       // of each instance, or no_emitter
+  EnvironmentLight environment;
+  std::vector<PunctualLight> punctual;       // those of any power
+  float emitter_share = 0;      // of samples spent on emitters; the rest of area light is environment
+  float area_share = 1;         // where one light is sampled: emitters and environment against punctual
+  std::vector<MaterialTraits> materials;
+  bool any_pane = false;
+};
+
+// Radiance a hit surface shows towards the ray: its emission, or its base colour where it is unlit.
+vec3 surface_emission(const struct Surface& surface, const Material& material);
+
+}  // namespace wellspring

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "light/light_tables.h"
+#include "world/surface.h"
+
+namespace wellspring {
+namespace {
+
+bool is_emitter(const Material& m) {
+  return m.unlit ? max_component(vec3(m.base_color)) > 0 : max_component(m.emission) > 0;
+}
+
+// Mean emission over a triangle by a fixed pattern of look-ups, more where its texture is finer.
+vec3 mean_emission(const World& world, const EmitterTriangle& e, int look_ups) {
+  vec3 sum{0};
+  Ray ray;
+  ray.origin = e.corner + e.normal;
+  ray.direction = -e.normal;
+  for (int i = 0; i < look_ups; i++) {
+    // Points of a rank-1 lattice (Korobov; the plastic number), folded into the triangle.
+    float a = std::fmod(0.5f + float(i) * 0.7548776662f, 1.0f), b = std::fmod(0.5f + float(i) * 0.5698402910f, 1.0f);
+    if (a + b > 1) a = 1 - a, b = 1 - b;
+    Hit hit;
+    hit.t = 1;
+    hit.instance = e.instance;
+    hit.triangle = e.triangle;
+    hit.barycentric = {a, b};
+    Surface s = eval_surface(world, ray, hit);
+    sum += surface_emission(s, world.material_of(e.instance)) * s.alpha;
+  }
+  return sum / float(look_ups);
+}
+
+// Texels of the emission's picture that a triangle covers.
+float texels_covered(const Scene& scene, const Mesh& mesh, const TextureRef& reference, uvec3 corner) {
+  if (reference.texture < 0 || mesh.uv[reference.uv_set].empty()) return 1;
+  int index = scene.textures[size_t(reference.texture)].image;
+  if (index < 0) return 1;
+  const Image& image = scene.images[size_t(index)];
+  const auto& uv = mesh.uv[reference.uv_set];
+  auto texel = [&](uint32_t v) {
+    return vec2(reference.uv_transform * vec3(uv[v], 1)) * vec2(float(image.width), float(image.height));
+  };
+  vec2 a = texel(corner.y) - texel(corner.x), b = texel(corner.z) - texel(corner.x);
+  return 0.5f * std::abs(a.x * b.y - a.y * b.x);
+}
+
+// The emission at one place of a uniform emitter, or an estimate of its mean.
+void gather_instance(const World& world, uint32_t instance, LightTables& tables, std::vector<float>& power) {
+  const Mesh& mesh = world.mesh_of(instance);
+  const Material& material = world.material_of(instance);
+  tables.first_emitter[instance] = uint32_t(tables.emitters.size());
+  bool uniform = material.alpha_mode == AlphaMode::opaque &&
+                 (material.unlit ? material.base_color_texture.texture < 0 && mesh.colors.empty()
+                                 : material.emission_texture.texture < 0);
+  const TextureRef& picture = material.unlit ? material.base_color_texture : material.emission_texture;
+  // Big pictures on big meshes: a bounded amount of work in all.
+  float budget = 4e6f / float(std::max<size_t>(mesh.triangles.size(), 1));
+  for (uint32_t t = 0; t < mesh.triangles.size(); t++) {
+    EmitterTriangle e;
+    e.instance = instance;
+    e.triangle = t;
+    e.corner = eval_position(world, instance, t, {0, 0});
+    e.edge1 = eval_position(world, instance, t, {1, 0}) - e.corner;
+    e.edge2 = eval_position(world, instance, t, {0, 1}) - e.corner;
+    e.normal = eval_face(world, instance, t, &e.area);
+    e.extent = max_component(glm::max(glm::abs(e.corner), glm::max(glm::abs(e.corner + e.edge1),
+                                                                   glm::abs(e.corner + e.edge2))));
+    e.uniform = uniform;
+    e.double_sided = material.double_sided || material.unlit;
+    vec3 mean{0};
+    if (std::isfinite(e.area) && e.area > 0) {
+      float look_ups = uniform ? 1 : std::min(texels_covered(world.scene(), mesh, picture, mesh.triangles[t]), budget);
+      mean = mean_emission(world, e, int(std::clamp(look_ups, uniform ? 1.0f : 4.0f, 256.0f)));
+      e.emission = uniform ? mean : vec3(0);
+    }
+    power.push_back(luminance(mean) * e.area * pi * (e.double_sided ? 2 : 1));
+    tables.emitters.push_back(e);
+  }
+}
+
+float power_of(const PunctualLight& light, float scene_radius) {
+  float strength = luminance(light.intensity);
+  switch (light.type) {
+    case PunctualType::point: return strength * 4 * pi;
+    case PunctualType::spot: return strength * 2 * pi * (1 - std::cos(light.outer_cone));
+    case PunctualType::directional: return strength * pi * scene_radius * scene_radius;
+  }
+  return 0;
+}
+
+// The share of the first of two kinds of light; neither is starved, since power says little of one place.
+float share_of(double first, double second) {
+  if (!(first > 0)) return 0;
+  if (!(second > 0)) return 1;
+  return float(std::clamp(first / (first + second), 0.25, 0.75));
+}
+
+}  // namespace
+
+vec3 surface_emission(const Surface& surface, const Material& material) {
+  return material.unlit ? surface.base_color : surface.emission;
+}
+
+Lights make_lights(const World& world) {
+  const Scene& scene = world.scene();
+  auto tables = std::make_shared<LightTables>();
+  tables->first_emitter.assign(size_t(world.instance_count()), no_emitter);
+  std::vector<float> power;
+  for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
+    if (!world.is_moving(i) && is_emitter(world.material_of(i))) gather_instance(world, i, *tables, power);
+  tables->emitter_choice = make_alias_table(power);
+
+  Bounds bounds = scene_bounds(scene);
+  float radius = 0.5f * length(bounds.high - bounds.low);
+  if (!std::isfinite(radius)) radius = 1;
+  tables->environment = make_environment_light(scene);
+  const EnvironmentLight& environment = tables->environment;
+  double environment_power =
+      environment.cells.cells.empty() ? 0 : double(environment.mean_luminance) * pi * pi * 4 * radius * radius;
+  tables->emitter_share = share_of(tables->emitter_choice.total, environment_power);
+
+  double punctual_power = 0;
+  for (const PunctualLight& light : scene.lights) {
+    float p = power_of(light, radius);
+    bool finite = is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
+    if (!(p > 0) || !std::isfinite(p) || !finite) continue;
+    tables->punctual.push_back(light);
+    punctual_power += double(p);
+  }
+  tables->area_share = share_of(tables->emitter_choice.total + environment_power, punctual_power);
+
+  for (const Material& material : scene.materials) {
+    bool pane = material.transmission > 0 && !(material.thickness > 0);
+    tables->materials.push_back({&dielectric_albedo(material.ior == 0 ? 1e6f : material.ior), pane});
+    tables->any_pane = tables->any_pane || pane;
+  }
+  return {tables, std::make_shared<std::atomic<uint64_t>>(0)};
+}
+
+}  // namespace wellspring

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// One light seen from one place, and whether anything stands between. Two kinds, because only the first
+// can also be met by a scattered ray: area light (emitting triangles, environment pictures) and punctual.
+#pragma once
+#include "light/bsdf.h"
+#include "light/light_tables.h"
+
+namespace wellspring {
+
+// Everything a sample needs to know of what stays the same during a call.
+struct Transport {
+  const World& world;
+  const LightTables& tables;
+};
+
+struct LightSample {
+  vec3 direction{0};
+  vec3 radiance{0};  // punctual: intensity over squared distance, as if pdf were 1
+  vec3 target{0};    // end of the shadow ray, already clear of the emitter
+  float distance = std::numeric_limits<float>::infinity();
+  float pdf = 0;     // over solid angle; 0: nothing
+};
+
+// Picks a triangle by power, or a direction of the environment by brightness.
+LightSample sample_area_light(const Transport& transport, const Surface& from, Sampler& sampler);
+// Densities with which sample_area_light(from that place) would have found what a ray has met.
+float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 direction, const Surface& met);
+float sample_sky_pdf(const LightTables& tables, vec3 direction);
+
+// Picks one of up to sixteen candidates by its unshadowed effect on a surface that scatters to its own
+// side, or (`through`) to both sides. `radiance` is already divided by the chance of the pick.
+LightSample sample_punctual_light(const Transport& transport, const Surface& from, vec3 normal, bool through,
+                                  Sampler& sampler);
+
+// What part of the light arrives: 0 or 1, or the tint of the thin panes in between.
+vec3 eval_visibility(const Transport& transport, const Surface& from, const LightSample& light);
+
+inline constexpr int most_panes = 64;  // straight through so many in a row, then the light is lost
+
+}  // namespace wellspring

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "light/warp.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int roulette_depth = 3;  // edges that are never cut short
+
+// Emission met by a ray, weighted against the chance that light sampling had found it where the ray left.
+vec3 met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
+                  const Material& material) {
+  vec3 emission = surface_emission(surface, material);
+  if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(emission) > 0)) return emission;
+  float other = walk.area_share * sample_emitter_pdf(transport.tables, walk.from, walk.ray.direction, surface);
+  return emission * mis_weight(walk.pdf, other);
+}
+
+vec3 met_sky(const Transport& transport, const Walk& walk) {
+  vec3 radiance = eval_environment(transport.tables.environment, walk.ray.direction);
+  if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(radiance) > 0)) return radiance;
+  float other = walk.area_share * sample_sky_pdf(transport.tables, walk.ray.direction);
+  return radiance * mis_weight(walk.pdf, other);
+}
+
+// Russian roulette: survivors carry the share of those that stop. False: this one stops.
+bool survives(Walk& walk, Sampler& sampler) {
+  if (!(max_component(walk.throughput) > 0)) return false;
+  if (walk.depth <= roulette_depth) return true;
+  float chance = std::min(0.95f, max_component(walk.throughput) * walk.density);
+  if (sampler.next() >= chance) return false;
+  walk.throughput /= chance;
+  return true;
+}
+
+}  // namespace
+
+vec3 eval_absorption(const Transport& transport, int medium, float length) {
+  if (medium < 0 || !std::isfinite(length)) return vec3(1);
+  const Material& m = transport.world.scene().materials[size_t(medium)];
+  if (!std::isfinite(m.attenuation_distance) || !(m.attenuation_distance > 0)) return vec3(1);
+  float lengths = length / m.attenuation_distance;
+  vec3 c = glm::clamp(m.attenuation_color, vec3(0), vec3(1));
+  return {std::pow(c.x, lengths), std::pow(c.y, lengths), std::pow(c.z, lengths)};
+}
+
+int medium_before(const Walk& walk, const Surface& surface, const Material& material) {
+  if (walk.medium >= 0) return walk.medium;
+  bool left_solid = !surface.front && material.thickness > 0 && surface.transmission > 0;
+  return left_solid ? surface.material : -1;
+}
+
+bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered) {
+  if (!(max_component(scattered.weight) > 0)) return false;
+  walk.throughput *= scattered.weight;
+  walk.ray.direction = scattered.direction;
+  walk.ray.origin = offset_origin(surface, scattered.direction);
+  if (scattered.bounce == Bounce::pass) return ++walk.panes <= most_panes;
+  walk.panes = 0;
+  walk.depth++;
+  walk.pdf = scattered.pdf;
+  walk.from = surface.position;
+  walk.scattered += scattered.pdf > 0;
+  if (scattered.bounce == Bounce::refract) walk.medium = surface.front ? surface.material : -1;
+  return true;
+}
+
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk, const Surface& surface,
+                                const Bsdf& bsdf, bool apart, Sampler& sampler) {
+  const LightTables& tables = transport.tables;
+  DirectLight direct;
+  bool area = tables.area_share > 0, punctual = !tables.punctual.empty();
+  float area_chance = 1, punctual_chance = 1;
+  if (!apart && area && punctual) {
+    area_chance = tables.area_share;
+    punctual_chance = 1 - area_chance;
+    (sampler.next() < area_chance ? punctual : area) = false;
+  }
+  if (area) {
+    LightSample light = sample_area_light(transport, surface, sampler);
+    float light_pdf = light.pdf * area_chance;
+    if (light.pdf > 0 && max_component(light.radiance) > 0) {
+      BsdfValue value = eval_bsdf(bsdf, light.direction);
+      if (max_component(value.diffuse + value.specular) > 0) {
+        vec3 arrives = light.radiance * eval_visibility(transport, surface, light) *
+                       eval_absorption(transport, walk.medium, light.distance) / light_pdf;
+        float both = sample_bsdf_pdf(bsdf, value, Lobes::all);
+        direct.area_diffuse = value.diffuse * arrives * mis_weight(light_pdf, apart ? value.diffuse_pdf : both);
+        direct.specular = value.specular * arrives * mis_weight(light_pdf, apart ? value.specular_pdf : both);
+      }
+    }
+  }
+  if (punctual) {
+    bool through = max_component(bsdf.transmit) > 0;
+    LightSample light = sample_punctual_light(transport, surface, bsdf.normal, through, sampler);
+    if (light.pdf > 0) {
+      BsdfValue value = eval_bsdf(bsdf, light.direction);
+      if (max_component(value.diffuse + value.specular) > 0) {
+        vec3 arrives = light.radiance * eval_visibility(transport, surface, light) *
+                       eval_absorption(transport, walk.medium, light.distance) / punctual_chance;
+        direct.punctual_diffuse = value.diffuse * arrives;
+        direct.specular += value.specular * arrives;
+      }
+    }
+  }
+  return direct;
+}
+
+vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler) {
+  const World& world = transport.world;
+  vec3 radiance(0);
+  while (true) {
+    Hit hit = world.intersect(walk.ray);
+    if (!hit.valid()) return radiance + walk.throughput * met_sky(transport, walk);
+    Surface surface = eval_surface(world, walk.ray, hit);
+    const Material& material = world.material_of(hit.instance);
+    walk.medium = medium_before(walk, surface, material);
+    walk.throughput *= eval_absorption(transport, walk.medium, hit.t);
+    radiance += walk.throughput * met_emission(transport, walk, surface, material);
+    if (material.unlit) return radiance;
+
+    bool last = walk.scattered >= rules.scatterings || walk.depth >= rules.max_depth;
+    if (last) {  // only straight on, where a shadow ray would have gone too
+      if (!is_pane(surface, material)) return radiance;
+      BsdfSample straight;
+      straight.direction = walk.ray.direction;
+      straight.weight = pane_transmittance(surface, material, walk.ray.direction);
+      straight.bounce = Bounce::pass;
+      if (!advance(walk, surface, straight)) return radiance;
+      continue;
+    }
+    Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
+                          *transport.tables.materials[size_t(surface.material)].coat);
+    bool smooth = is_smooth(bsdf);
+    if (!smooth)
+      radiance += walk.throughput * sample_direct_light(transport, walk, surface, bsdf, false, sampler).sum();
+    BsdfSample scattered = sample_bsdf(bsdf, Lobes::all, sampler);
+    if (!advance(walk, surface, scattered)) return radiance;
+    if (scattered.bounce != Bounce::pass) walk.area_share = scattered.pdf > 0 ? transport.tables.area_share : 0;
+    if (scattered.bounce == Bounce::refract) walk.density *= bsdf.eta * bsdf.eta;
+    if (!survives(walk, sampler)) return radiance;
+  }
+}
+
+}  // namespace wellspring

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The random walk that `path` and `direct` share: next-event estimation and scattering combined by multiple
+// importance sampling (Veach 1997, chapter 9), with thin smooth panes passed straight by light and eye
+// alike. The first surface is treated with more care, because its parts are told apart in the Sample.
+#pragma once
+#include "light/sample_light.h"
+#include "light/technique.h"
+
+namespace wellspring {
+
+struct WalkRules {
+  int max_depth = 8;     // edges, panes passed straight not counted
+  int scatterings = 1 << 30;  // surfaces that may scatter other than perfectly; then one edge more
+};
+
+// One walk in flight: the ray that comes next, and what must be known of where it left.
+struct Walk {
+  Ray ray;
+  vec3 throughput{1};
+  int depth = 1;        // this ray's number, counted from the eye
+  float pdf = 0;        // density of its direction where it last scattered; 0: perfect, or the eye
+  vec3 from{0};         // there
+  float area_share = 0;   // chance that area light was sampled there; 0: it was not
+  int medium = -1;      // material of the solid it runs in
+  float density = 1;    // radiance is denser by this factor in there (squared index), for the roulette
+  int scattered = 0;
+  int panes = 0;        // passed in a row
+};
+
+// Radiance that comes back along the walk, times its throughput.
+vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler);
+
+// The walk's next ray after `surface` scattered it; false: it ends here.
+bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered);
+
+// Light arriving at a surface from one area light and one punctual light, scattered towards the viewer.
+struct DirectLight {
+  vec3 area_diffuse{0}, punctual_diffuse{0}, specular{0};
+  vec3 sum() const { return area_diffuse + punctual_diffuse + specular; }
+};
+// `apart`: the caller samples the diffuse and specular lobes one by one (else as a mixture), and both kinds
+// of light are sampled (else one of them, by area_share).
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk, const Surface& surface,
+                                const Bsdf& bsdf, bool apart, Sampler& sampler);
+
+// Share of light left after a length of the solid it runs in (Beer's law).
+vec3 eval_absorption(const Transport& transport, int medium, float length);
+// The solid a ray ran in before it met `surface`.
+int medium_before(const Walk& walk, const Surface& surface, const Material& material);
+
+// The whole of a sample: what trace functions of techniques call.
+Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request);
+
+}  // namespace wellspring
