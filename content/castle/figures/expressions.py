@@ -1,0 +1,348 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the face can do: each displacer is a field of small movements over the head, evaluated in rest.
+
+Fields work in head space and are symmetric unless they name a side. Visemes combine simple movements with an
+opening of the jaw, so that one displacer is one mouth shape.
+"""
+from math import atan2, pi, sin
+
+from eyes import center
+from face import LID_POINTS
+from face_form import EYE, EYE_RADIUS, LID_RADIUS, MOUTH_HALF, lower_lip_y, part_y, upper_lip_y
+from form import add, bell, clamp, lerp, mul, rotate, smoothstep, sub
+from rig import TMJ
+
+ZERO = (0.0, 0.0, 0.0)
+
+
+class Vertex:
+    """One vertex of the head in rest."""
+    __slots__ = ("p", "tag", "part", "jaw")
+
+    def __init__(self, part, p, tag, jaw):
+        self.part, self.p, self.tag, self.jaw = part, p, tag, jaw
+
+
+# ---- eyelids ------------------------------------------------------------------------------------------
+def lid_place(v):
+    """(side, place along the lid ring, distance 0..1 from the margin) or None."""
+    tag = v.tag
+    if not tag:
+        return None
+    if tag[0] == "lid":
+        return (1 if v.p[0] > 0 else -1), tag[2], tag[1]
+    if tag[0] == "rim":
+        return tag[3], tag[2], 0.0
+    if tag[0] == "lash":
+        return tag[2], tag[1], 0.0
+    return None
+
+
+class Lids:
+    """Turns lid margins about the eye's centre, so that they stay on the eyeball's curve."""
+
+    def __init__(self, face):
+        self.angle = {}
+        for k, side in ((0, 1), (1, -1)):
+            c = center(side)
+            self.angle[side] = [atan2(face.rest[i][1] - c[1], face.rest[i][2] - c[2]) for i in face.eye_rings[k][0]]
+
+    def at(self, side, place):
+        ring = self.angle[side]
+        i = int(place)
+        return lerp(ring[i % len(ring)], ring[(i + 1) % len(ring)], place - i)
+
+    def move(self, v, upper, lower, only=None):
+        """upper, lower: how far each lid goes towards the closing line (1 closes, negative opens)."""
+        place = lid_place(v)
+        if place is None or (only and place[0] != only):
+            return ZERO
+        side, k, s = place
+        if k == 0 or k == LID_POINTS:
+            return ZERO
+        is_upper = 0 < k < LID_POINTS
+        other = 2 * LID_POINTS - k
+        mine, theirs = self.at(side, k), self.at(side, other)
+        top, low = (mine, theirs) if is_upper else (theirs, mine)
+        meet = lerp(low, top, 0.16)
+        meet += 0.012 if not is_upper else -0.014  # overlap: no gap of light
+        amount = upper if is_upper else lower
+        reach = 0.66 if is_upper else 0.55
+        w = clamp(1 - s / reach) ** 1.25
+        if w <= 0 or amount == 0:
+            return ZERO
+        c = center(side)
+        turn = (meet - mine) * amount * w
+        q = rotate(v.p, c, (1.0, 0.0, 0.0), -turn)
+        if v.tag[0] == "lid" and is_upper and amount > 0:  # the cornea lifts the closing lid a little
+            d = sub(q, c)
+            n = (d[0] ** 2 + d[1] ** 2 + d[2] ** 2) ** 0.5
+            least = LID_RADIUS + 0.00045 * w
+            if n < least and abs(d[0]) < 0.0125:
+                q = add(c, mul(d, least / n))
+        return sub(q, v.p)
+
+
+# ---- mouth --------------------------------------------------------------------------------------------
+def upper_side(v):
+    if v.tag and v.tag[0] in ("upper", "lower"):
+        return v.tag[0] == "upper"
+    if v.tag and v.tag[0] == "lining":
+        return v.tag[2]
+    return v.p[1] >= part_y(abs(v.p[0]))
+
+
+def soft(v):
+    """1 for skin, fading into the mouth; 0 for teeth, tongue and everything that is not face."""
+    if v.part == "face":
+        return smoothstep(0.025, 0.055, v.p[2])
+    if v.part == "mouth":
+        return smoothstep(0.020, 0.004, v.tag[3])
+    return 0.0
+
+
+def near_lips(v, rx=0.026, up=0.017, down=0.020):
+    """1 on the lips, fading around them."""
+    x = abs(v.p[0])
+    top, low = upper_lip_y(min(x, MOUTH_HALF)), lower_lip_y(min(x, MOUTH_HALF))
+    y = v.p[1]
+    dy = (y - top) / up if y > top else (low - y) / down if y < low else 0.0
+    dx = max(0.0, x - 0.9 * MOUTH_HALF) / rx
+    return soft(v) * clamp(1 - dy) ** 1.5 * clamp(1 - dx) ** 1.5 if dy < 1 and dx < 1 else 0.0
+
+
+def corner(v, side, radius=0.019):
+    x, y = v.p[0] * side, v.p[1]
+    if x < 0:
+        return 0.0
+    return soft(v) * bell(x - MOUTH_HALF, radius * (0.85 if x < MOUTH_HALF else 1.0)) * bell(y - part_y(MOUTH_HALF), radius)
+
+
+def smile(v, side):
+    x, y = v.p[0] * side, v.p[1]
+    if x < -0.004:
+        return ZERO
+    k = corner(v, side) * smoothstep(-0.004, 0.012, x)
+    cheek = soft(v) * bell(x - 0.036, 0.016) * bell(y + 0.036, 0.016) if v.part == "face" else 0.0
+    under = soft(v) * bell(x - 0.034, 0.018) * bell(y + 0.013, 0.007) if v.part == "face" else 0.0
+    return (side * (0.0062 * k + 0.0012 * cheek), 0.0062 * k + 0.0042 * cheek + 0.0012 * under,
+            -0.0042 * k + 0.0026 * cheek + 0.0004 * under)
+
+
+def frown(v):
+    total = ZERO
+    for side in (1, -1):
+        k = corner(v, side, 0.016)
+        total = add(total, (side * 0.0008 * k, -0.0050 * k, -0.0010 * k))
+    chin = soft(v) * bell(v.p[0], 0.016) * bell(v.p[1] + 0.088, 0.009) if v.part == "face" else 0.0
+    return add(total, (0, 0.0022 * chin, 0.0008 * chin))
+
+
+def pucker(v):
+    k = near_lips(v)
+    x, y = v.p[0], v.p[1]
+    middle = bell(x, 0.022)
+    gather = (part_y(abs(x)) - y) * 0.10
+    return (-0.40 * x * k, (gather - 0.0020 * (abs(x) / MOUTH_HALF) ** 2) * k, (0.0065 * middle + 0.0020) * k)
+
+
+def wide(v):
+    total = ZERO
+    for side in (1, -1):
+        k = corner(v, side)
+        total = add(total, (side * 0.0068 * k, 0.0002 * k, -0.0040 * k))
+    return total
+
+
+def press(v):
+    k = near_lips(v, up=0.008, down=0.008)
+    s = -1 if upper_side(v) else 1
+    edge = bell(v.p[1] - part_y(abs(v.p[0])), 0.008)
+    return (0, s * 0.0013 * k * edge, -0.0021 * k * edge)
+
+
+def lip_up(v):
+    if not upper_side(v):
+        return ZERO
+    k = near_lips(v, up=0.020)
+    return (0, 0.0052 * k * (1 - 0.55 * (abs(v.p[0]) / MOUTH_HALF) ** 2 if abs(v.p[0]) < MOUTH_HALF else 0.45 * 0), 0.0010 * k)
+
+
+def lip_down(v):
+    if upper_side(v):
+        return ZERO
+    k = near_lips(v, down=0.022)
+    u = abs(v.p[0]) / MOUTH_HALF
+    return (0, -0.0058 * k * max(0.0, 1 - 0.9 * u * u), 0.0008 * k * max(0.0, 1 - u * u))
+
+
+def tuck(v):
+    """The lower lip under the upper teeth, as for f."""
+    if upper_side(v):
+        return ZERO
+    k = near_lips(v, down=0.016) * max(0.0, 1 - (abs(v.p[0]) / MOUTH_HALF) ** 2)
+    return (0, 0.0022 * k, -0.0052 * k)
+
+
+def jaw(v, angle):
+    if v.jaw <= 0:
+        return ZERO
+    return sub(rotate(v.p, TMJ, (1.0, 0.0, 0.0), angle * v.jaw), v.p)
+
+
+def tongue(v, up, forward):
+    if v.part != "tongue":
+        return ZERO
+    tip = (1 - v.tag[1]) ** 1.6
+    return (0, up * tip, forward * (1 - v.tag[1]) ** 1.2)
+
+
+# ---- cheeks, nose, brows -------------------------------------------------------------------------------
+def puff(v):
+    if v.part != "face":
+        return ZERO
+    total = ZERO
+    for side in (1, -1):
+        x = v.p[0] * side
+        k = smoothstep(0.0, 0.012, x) * bell(x - 0.040, 0.018) * bell(v.p[1] + 0.056, 0.018) * smoothstep(0.0, 0.03, v.p[2])
+        total = add(total, (side * 0.0068 * k, 0.0004 * k, 0.0052 * k))
+    k = near_lips(v) * 0.25
+    return add(total, (0, 0, 0.004 * k))
+
+
+def wrinkle(v):
+    if v.part not in ("face",):
+        return ZERO
+    x, y = abs(v.p[0]), v.p[1]
+    wing = bell(x - 0.012, 0.009) * bell(y + 0.036, 0.010) * soft(v)
+    side = bell(x - 0.010, 0.009) * bell(y + 0.008, 0.012) * soft(v)
+    brow = bell(x - 0.012, 0.012) * bell(y - 0.019, 0.009) * soft(v)
+    s = 1 if v.p[0] > 0 else -1
+    return add((s * 0.0010 * wing, 0.0030 * wing + 0.0010 * side - 0.0024 * brow, 0.0006 * side), mul(lip_up(v), 0.35))
+
+
+def brow_band(v):
+    """1 on the brows and the forehead just above; the lids below hardly move."""
+    if v.part not in ("face", "brows"):
+        return 0.0
+    y = v.p[1]
+    low = 0.0085 + 0.35 * max(0.0, abs(v.p[0]) - 0.030)
+    return smoothstep(low - 0.001, 0.0185, y) * smoothstep(0.066, 0.026, y) * smoothstep(0.015, 0.045, v.p[2])
+
+
+def brow_up(v, side):
+    x = v.p[0] * side
+    k = brow_band(v) * smoothstep(0.000, 0.020, x) * smoothstep(0.066, 0.048, x)
+    return (0, 0.0066 * k, -0.0010 * k)
+
+
+def brow_inner_up(v):
+    x = abs(v.p[0])
+    k = brow_band(v) * bell(x - 0.008, 0.013)
+    outer = brow_band(v) * bell(x - 0.044, 0.011)
+    s = 1 if v.p[0] > 0 else -1
+    return (-s * 0.0012 * k * smoothstep(0, 0.006, x), 0.0066 * k - 0.0014 * outer, 0.0004 * k)
+
+
+def brow_down(v):
+    x = abs(v.p[0])
+    k = brow_band(v) * bell(x - 0.014, 0.017)
+    s = 1 if v.p[0] > 0 else -1
+    return (-s * 0.0024 * k * smoothstep(0, 0.008, x), -0.0050 * k, 0.0011 * k)
+
+
+# ---- the list -----------------------------------------------------------------------------------------
+VISEMES = {  # jaw (radians), then movements
+    "pp": (0.0, {press: 1.0}, None),
+    "ff": (0.018, {tuck: 1.0, lip_up: 0.30}, None),
+    "th": (0.060, {lip_down: 0.20, lip_up: 0.15}, (0.0030, 0.0115)),
+    "dd": (0.045, {lip_down: 0.30, lip_up: 0.15, wide: 0.15}, (0.0060, 0.0020)),
+    "kk": (0.070, {lip_down: 0.20, lip_up: 0.10, wide: 0.10}, (-0.0010, -0.0040)),
+    "ch": (0.030, {pucker: 0.50, lip_down: 0.45, lip_up: 0.45}, (0.0030, 0.0)),
+    "ss": (0.016, {wide: 0.40, lip_down: 0.45, lip_up: 0.25}, (0.0030, 0.0)),
+    "nn": (0.055, {lip_down: 0.20, lip_up: 0.10, wide: 0.10}, (0.0065, 0.0010)),
+    "rr": (0.050, {pucker: 0.38, lip_down: 0.25, lip_up: 0.10}, (0.0040, -0.0030)),
+    "aa": (0.185, {lip_down: 0.20, lip_up: 0.22}, (-0.0010, 0.0)),
+    "e": (0.100, {wide: 0.45, lip_down: 0.20, lip_up: 0.18}, (0.0, 0.0020)),
+    "ih": (0.055, {wide: 0.60, lip_down: 0.30, lip_up: 0.20}, (0.0020, 0.0020)),
+    "oh": (0.135, {pucker: 0.62, lip_up: 0.15}, (-0.0010, -0.0020)),
+    "ou": (0.050, {pucker: 0.98, lip_down: 0.22, lip_up: 0.20}, (0.0, -0.0030)),
+}
+
+
+def shape(v, angle, movements, tongue_move):
+    total = jaw(v, angle) if angle else ZERO
+    for movement, amount in movements.items():
+        total = add(total, mul(movement(v), amount))
+    return add(total, tongue(v, *tongue_move)) if tongue_move else total
+
+
+def controls(lids):
+    """{name: movement of a Vertex}."""
+    def caruncle(v, amount):
+        return (0, 0, -0.0016 * amount) if v.tag and v.tag[0] == "caruncle" else ZERO
+
+    table = {
+        "blink_l": lambda v: lids.move(v, 1.0, 1.0, 1),
+        "blink_r": lambda v: lids.move(v, 1.0, 1.0, -1),
+        "lid_wide": lambda v: lids.move(v, -0.26, -0.35),
+        "squint": lambda v: add(lids.move(v, 0.20, 1.35), (0, 0.0010 * k, 0.0004 * k) if
+                                (k := bell(abs(v.p[0]) - 0.034, 0.017) * bell(v.p[1] + 0.014, 0.006)
+                                 * (v.part == "face")) else ZERO),
+        "brow_up_l": lambda v: brow_up(v, 1),
+        "brow_up_r": lambda v: brow_up(v, -1),
+        "brow_inner_up": brow_inner_up,
+        "brow_down": brow_down,
+        "smile_l": lambda v: smile(v, 1),
+        "smile_r": lambda v: smile(v, -1),
+        "frown": frown,
+        "mouth_open": lambda v: shape(v, 0.24, {lip_down: 0.10, lip_up: 0.10}, None),
+        "lips_pucker": pucker,
+        "lips_wide": wide,
+        "lips_press": press,
+        "upper_lip_up": lip_up,
+        "lower_lip_down": lip_down,
+        "cheek_puff": puff,
+        "nose_wrinkle": wrinkle,
+    }
+    for name, (angle, movements, tongue_move) in VISEMES.items():
+        table["viseme_" + name] = lambda v, a=angle, m=movements, t=tongue_move: shape(v, a, m, t)
+    return table
+
+
+def breathe(p):
+    """The chest widens and rises; figure space."""
+    k = bell(p[1] - 1.25, 0.13)
+    front = smoothstep(-0.06, 0.12, p[2])
+    side = 1 if p[0] > 0 else -1
+    return (side * 0.0022 * k * smoothstep(0.0, 0.10, abs(p[0])) * smoothstep(0.24, 0.16, abs(p[0])),
+            0.0028 * smoothstep(1.05, 1.30, p[1]) * smoothstep(1.47, 1.36, p[1]) * front, 0.0062 * k * front)
+
+
+LEAST = 4e-5  # metres: smaller movements are left out
+
+
+def add_displacers(figure):
+    heads = [p for p in figure.patches if hasattr(p, "rest")]
+    face = figure.patch("face")
+    vertices = []
+    for patch in heads:
+        if patch.look in ("hair", "roll", "pearl", "eye"):
+            continue
+        for i, p in enumerate(patch.rest):
+            jaw_share = patch.weights[i].get("temporomandibular", 0.0)
+            vertices.append((patch.first + i, Vertex(patch.name, p, patch.tags[i], jaw_share)))
+    for name, move in controls(Lids(face)).items():
+        moved = {}
+        for index, v in vertices:
+            d = move(v)
+            if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > LEAST * LEAST:
+                moved[index] = d
+        figure.displacers.append(("skullbase", name, moved))
+    moved = {}
+    for patch, i, index in figure.vertices():
+        if patch.tags[i] and patch.tags[i][0] in ("chest", "linen"):
+            d = breathe(patch.positions[i])
+            if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > LEAST * LEAST:
+                moved[index] = d
+    figure.displacers.append(("vt6", "breathe", moved))

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The sculpture of the head: bone and flesh as blended volumes, finer things as relief on top.
+
+Head space: metres, y = 0 on the line between the pupils, z = 0 through the ears, x to the figure's left.
+Proportions are a woman's in her fifties: eyes halfway up the head, 22 cm from chin to crown.
+"""
+from math import sqrt
+
+from form import bell, capsule, carve, clamp, curve, ellipsoid, join, mad, gradient, cast, smoothstep, sphere
+
+HEAD = (0.0, 1.562, 0.022)  # head space in the figure's space
+
+EYE = (0.0312, 0.0, 0.0680)  # centre of the left eyeball
+EYE_RADIUS = 0.0132
+LID_RADIUS = EYE_RADIUS + 0.0013
+
+MOUTH_Y = -0.0665  # where the lips part, at the middle
+MOUTH_HALF = 0.0262  # middle to corner
+
+
+# ---- mouth lines, functions of x >= 0 ----------------------------------------------------------------
+def part_y(x):
+    """Parting line: a soft bow whose corners turn up in a closed-mouth smile."""
+    u = clamp(x / MOUTH_HALF, 0, 1.3)
+    return MOUTH_Y - 0.0006 * bell(u, 0.28) - 0.0009 * bell(u - 0.5, 0.3) + 0.0034 * u ** 2.6
+
+
+def upper_lip_y(x):
+    """Upper edge of the red: two peaks (the philtrum's), sinking to the corner."""
+    u = clamp(x / MOUTH_HALF, 0, 1)
+    height = 0.0066 - 0.0012 * bell(u, 0.13) + 0.0004 * bell(u - 0.2, 0.12)
+    return part_y(x) + height * (1 - u ** 2.0) ** 0.9 + 0.0004
+
+
+def lower_lip_y(x):
+    u = clamp(x / MOUTH_HALF, 0, 1)
+    return part_y(x) - 0.0088 * (1 - u ** 2.3) ** 0.85 - 0.0004
+
+
+# ---- the volumes --------------------------------------------------------------------------------------
+def bone(p):
+    """Head and neck without eyelids; symmetric."""
+    x, y, z = abs(p[0]), p[1], p[2]
+    p = (x, y, z)
+    d = ellipsoid(p, (0, 0.026, -0.006), (0.0715, 0.083, 0.0985))  # cranium
+    d = join(d, ellipsoid(p, (0, -0.030, 0.030), (0.0575, 0.078, 0.0600)), 0.030)  # face
+    d = join(d, capsule(p, (0.043, -0.074, 0.008), (0.014, -0.096, 0.070), 0.0135, 0.0125), 0.026)  # jaw
+    d = join(d, ellipsoid(p, (0, -0.0955, 0.0755), (0.0195, 0.0150, 0.0185)), 0.016)  # chin
+    d = join(d, ellipsoid(p, (0, -0.066, 0.072), (0.031, 0.024, 0.0265)), 0.018)  # muzzle
+    d = join(d, ellipsoid(p, (0.0450, -0.0215, 0.0560), (0.0180, 0.0125, 0.0190)), 0.022)  # cheekbone
+    d = join(d, capsule(p, (0.050, -0.016, 0.045), (0.0655, -0.008, 0.006), 0.009, 0.006), 0.016)
+    d = join(d, ellipsoid(p, (0.0350, -0.0440, 0.0650), (0.0190, 0.0190, 0.0190)), 0.020)  # cheek
+    d = join(d, capsule(p, (0.007, 0.0165, 0.0815), (0.041, 0.0165, 0.0640), 0.0085, 0.0085), 0.014)
+    d = carve(d, ellipsoid(p, (0.0310, 0.0005, 0.0890), (0.0190, 0.0120, 0.0150)), 0.014)  # eye socket
+    # neck: leans forward going up; the muscle from behind the ear to the breastbone shows a little
+    neck = capsule(p, (0, -0.045, -0.022), (0, -0.235, -0.045), 0.0505, 0.0560)
+    neck = join(neck, capsule(p, (0.052, -0.050, -0.018), (0.014, -0.205, 0.010), 0.010, 0.0075), 0.022)
+    neck = join(neck, capsule(p, (0.020, -0.195, -0.030), (0.130, -0.215, -0.045), 0.040, 0.036), 0.050)
+    return join(d, neck, 0.022)
+
+
+def nose(p, d):
+    """Adds the nose to the distance `d`; `p` has x >= 0."""
+    d = join(d, capsule(p, (0, 0.008, 0.0795), (0, -0.0300, 0.1015), 0.0065, 0.0068), 0.0085)  # bridge
+    d = join(d, ellipsoid(p, (0, -0.0350, 0.1035), (0.0088, 0.0080, 0.0088)), 0.006)  # tip
+    d = join(d, capsule(p, (0, -0.0395, 0.1040), (0, -0.0440, 0.0930), 0.0036, 0.0042), 0.005)
+    d = join(d, ellipsoid(p, (0.0112, -0.0385, 0.0950), (0.0062, 0.0064, 0.0090)), 0.0045)  # wing
+    return carve(d, ellipsoid(p, (0.0062, -0.0450, 0.0985), (0.0030, 0.0036, 0.0052)), 0.0022)  # nostril
+
+
+def face(p):
+    """Everything but the relief."""
+    q = (abs(p[0]), p[1], p[2])
+    d = bone(q)
+    if q[0] < 0.03 and -0.06 < q[1] < 0.03 and q[2] > 0.05:
+        d = nose(q, d)
+    if q[2] > 0.05 and abs(q[1]) < 0.03:
+        d = join(d, sphere(q, EYE, LID_RADIUS), 0.0035)
+    return d
+
+
+# ---- relief: millimetres along the normal ------------------------------------------------------------
+def lips(x, y):
+    """Height of the lips over the muzzle; x >= 0."""
+    u = x / MOUTH_HALF
+    if u > 1.25 or y < -0.085 or y > -0.052:
+        return 0.0
+    fade = clamp(1 - u ** 3) ** 0.8 if u < 1 else 0.0
+    middle = part_y(x)
+    if y >= middle:
+        q = (y - middle) / max(upper_lip_y(x) - middle, 8e-4)
+        top = 0.0030 * fade
+        height = top * (sqrt(min(q, 1.0) / 0.35) if q < 0.35 else 1.0)
+        if q > 0.35:
+            height *= 1 - 0.45 * smoothstep(0.35, 1.0, q)
+        if q > 1.0:
+            height = top * 0.55 * bell(q - 1.0, 0.9)
+    else:
+        q = (middle - y) / max(middle - lower_lip_y(x), 8e-4)
+        top = 0.0040 * fade
+        height = top * (sqrt(q / 0.40) if q < 0.40 else 1.0)
+        if q > 0.40:
+            height *= 1 - 0.72 * smoothstep(0.40, 1.05, q)
+        if q > 1.0:
+            height = top * 0.28 * bell(q - 1.05, 0.5)
+    crease = -0.0018 * bell(y - middle, 0.0007) * (1 if u < 1 else bell(u - 1, 0.08))
+    corner = -0.0022 * bell(x - MOUTH_HALF * 1.04, 0.0042) * bell(y - part_y(x), 0.0040)
+    return height + crease + corner
+
+
+def fold(x, y, line, depth, width, raise_outside=0.0):
+    """A crease along a polyline [(x, y)]; the side away from the middle may stand higher."""
+    best, side = 1e9, 0.0
+    for (ax, ay), (bx, by) in zip(line, line[1:]):
+        dx, dy = bx - ax, by - ay
+        h = clamp(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy))
+        ex, ey = x - ax - dx * h, y - ay - dy * h
+        d = ex * ex + ey * ey
+        if d < best:
+            best = d
+            side = 1.0 if ex * -dy + ey * dx > 0 else -1.0
+            along = h
+    d = sqrt(best)
+    return -depth * bell(d, width) + raise_outside * (d / width) * bell(d, 2.5 * width) * side
+
+
+SMILE_LINE = [(0.0165, -0.0345), (0.0205, -0.0420), (0.0262, -0.0530), (0.0315, -0.0640)]
+TEAR_LINE = [(0.0165, -0.0070), (0.0230, -0.0150), (0.0330, -0.0190)]
+UPPER_LID_LINE = [(0.0165, 0.0020), (0.0205, 0.0082), (0.0275, 0.0112), (0.0350, 0.0112), (0.0420, 0.0080),
+                  (0.0478, 0.0030)]
+
+
+def relief(p):
+    x, y, z = abs(p[0]), p[1], p[2]
+    if z < 0.02:
+        return 0.0
+    front = smoothstep(0.02, 0.05, z)
+    h = lips(x, y)
+    h -= 0.0020 * bell(y + 0.0815, 0.0042) * bell(x, 0.015)  # under the lower lip
+    h -= 0.0009 * bell(x, 0.0028) * smoothstep(-0.0455, -0.0490, y) * smoothstep(-0.0605, -0.0570, y)
+    h += 0.0004 * bell(x - 0.0042, 0.0022) * smoothstep(-0.0465, -0.0500, y) * smoothstep(-0.062, -0.058, y)
+    h += fold(x, y, SMILE_LINE, 0.0008, 0.0030, -0.0006)
+    h += fold(x, y, TEAR_LINE, 0.0006, 0.0028)
+    h -= 0.0011 * bell(x - 0.0125, 0.0035) * bell(y + 0.0330, 0.0050) * bell(z - 0.092, 0.012)  # wing crease
+    return h * front
+
+
+def on_face(p):
+    """A point of the sculpture moved onto the relief."""
+    h = relief(p)
+    return mad(p, gradient(face, p), h) if abs(h) > 1e-6 else p
+
+
+def front_point(x, y):
+    """The point of the face seen at (x, y) from the front."""
+    return on_face(cast(face, (x, y, 0.0), (0.0, 0.0, 1.0), 0.13, -0.02))
+
+
+# ---- rays that sweep the head from crown to collar -----------------------------------------------------
+# v (metres, like a height) -> height of the ray's start on the axis, its slope
+ORIGIN = [(-0.235, -0.225), (-0.19, -0.182), (-0.15, -0.115), (-0.118, -0.045), (-0.10, -0.030),
+          (0.0, -0.014), (0.06, 0.005), (0.14, 0.02)]
+SLOPE = [(-0.235, -0.10), (-0.19, -0.35), (-0.15, -0.85), (-0.118, -0.95), (-0.10, -0.68),
+         (-0.05, -0.33), (0.0, 0.13), (0.06, 0.62), (0.11, 1.10), (0.14, 1.50)]
+
+
+def ray(theta, v):
+    from math import cos, sin
+    a = curve(SLOPE, v)
+    return (0.0, curve(ORIGIN, v), 0.0), (sin(theta) * cos(a), sin(a), cos(theta) * cos(a))
+
+
+def sweep(theta, v):
+    origin, direction = ray(theta, v)
+    return on_face(cast(face, origin, direction, 0.16))
+
+
+def unroll(p):
+    """(theta, v) of a point: the inverse of `sweep`."""
+    from math import atan2, cos, sin
+    theta = atan2(p[0], p[2])
+    rho = sqrt(p[0] * p[0] + p[2] * p[2])
+    low, high = -0.235, 0.14
+    for _ in range(40):
+        v = 0.5 * (low + high)
+        a = curve(SLOPE, v)
+        if (p[1] - curve(ORIGIN, v)) * cos(a) - rho * sin(a) > 0:
+            low = v
+        else:
+            high = v
+    return theta, 0.5 * (low + high)

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Hair parted in the middle and combed over the ears, the padded roll, the linen veil. Head space."""
+from math import cos, pi, sin
+
+from dress import body
+from face_form import HEAD, face
+from form import (add, bell, capsule, cast, circle, clamp, cross, curve, dot, ellipsoid, gradient, join, lerp, mad, mix,
+                  noise, smoothstep, sphere, sub, unit)
+from patch import Patch
+from rig import blend, scaled, spine
+
+CENTER = (0.0, 0.005, -0.010)
+
+# edges of the left half of the hair, from the parting to the nape: along the forehead, and over the crown
+HAIRLINE = [(0.0, 0.0735, 0.078), (0.014, 0.0730, 0.076), (0.030, 0.0660, 0.070), (0.044, 0.0530, 0.061),
+            (0.0545, 0.0350, 0.051), (0.061, 0.0130, 0.043), (0.0655, -0.0080, 0.034), (0.0675, -0.0260, 0.021),
+            (0.0640, -0.0420, 0.002), (0.054, -0.0500, -0.025), (0.035, -0.0540, -0.055)]
+CROWN = [(0.0, 0.1120, -0.040), (0.018, 0.1100, -0.044), (0.036, 0.1000, -0.050), (0.052, 0.0840, -0.056),
+         (0.064, 0.0620, -0.062), (0.070, 0.0400, -0.066), (0.070, 0.0200, -0.068), (0.066, 0.0000, -0.070),
+         (0.060, -0.0200, -0.070), (0.050, -0.0360, -0.068), (0.035, -0.0500, -0.062)]
+
+
+def hair(p):
+    q = (abs(p[0]), p[1], p[2])
+    d = ellipsoid(q, (0, 0.028, -0.008), (0.0745, 0.0860, 0.1010))
+    return join(d, ellipsoid(q, (0.0600, -0.0060, -0.0060), (0.0165, 0.0360, 0.0330)), 0.024)
+
+
+def along(points, s):
+    x = s * (len(points) - 1)
+    i = min(int(x), len(points) - 2)
+    t = x - i
+    a = points[max(i - 1, 0)]
+    b, c = points[i], points[i + 1]
+    d = points[min(i + 2, len(points) - 1)]
+    return tuple(0.5 * (2 * q + (r - p) * t + (2 * p - 5 * q + 4 * r - e) * t * t + (3 * q - p - 3 * r + e) * t ** 3)
+                 for p, q, r, e in zip(a, b, c, d))
+
+
+def strand_point(side, c, s):
+    """Point of the hair's surface; c: 0 at the hairline .. 1 over the crown, s: 0 parting .. 1 nape."""
+    p = mix(along(HAIRLINE, s), along(CROWN, s), c)
+    d = unit(sub(p, CENTER))
+    lay = cast(face, CENTER, d, 0.16)
+    top = cast(hair, CENTER, d, 0.16)
+    wave = 0.0011 * sin(19 * s + 5 * c + side) * smoothstep(0.1, 0.35, s)
+    wave += 0.0011 * noise((c * 26 + side * 40, s * 2.2, 0.3), 1.0) + 0.0005 * noise((c * 70, s * 3.0, side), 1.0)
+    full = max(dot(sub(top, CENTER), d), dot(sub(lay, CENTER), d) + 0.0045) + 0.002 + wave
+    skin = dot(sub(lay, CENTER), d)
+    rise = smoothstep(0.0, 0.13, c) ** 0.7
+    part = 0.35 + 0.65 * smoothstep(0.0, 0.13, s)
+    r = lerp(skin - 0.0016, full, rise * part if rise * part < 1 else 1)
+    p = mad(CENTER, d, r)
+    return (side * p[0], p[1], p[2])
+
+
+def make_hair(look):
+    patch = Patch("hair", look)
+    nc, ns = 27, 34
+    for side in (1, -1):
+        rows = []
+        for i in range(nc + 1):
+            c = (i / nc) ** 1.35
+            row = []
+            for j in range(ns + 1):
+                s = j / ns
+                p = strand_point(side, c, s ** 1.15)
+                row.append(patch.vertex(p, (c * 1.6 + (0.31 if side < 0 else 0), s * 1.0), {"skullbase": 1.0}, ("hair",)))
+            rows.append(row)
+        patch.grid(rows, flip=side < 0)
+    return patch
+
+
+# ---- roll ---------------------------------------------------------------------------------------------
+def roll_path(a):
+    """Middle of the padded roll; a: 0 on top, + to the figure's left, pi at the nape."""
+    top, low = (0, 0.117, 0.010), (0, -0.050, -0.088)
+    middle, half = mix(top, low, 0.5), mad(mul_half(top), mul_half(low), -1)
+    p = add(add(middle, tuple(x * cos(a) for x in half)), (0.0835 * sin(a), 0, 0.010 * sin(a) ** 2))
+    d = unit(sub(p, CENTER))
+    return mad(cast(hair, CENTER, d, 0.17), d, 0.0050 + 0.0015 * cos(a))
+
+
+def mul_half(p):
+    return tuple(0.5 * x for x in p)
+
+
+def make_roll(look):
+    patch = Patch("roll", look)
+    n, m = 78, 10
+    ring = [roll_path(a) for a in circle(n)]
+    rows = []
+    for i in range(n + 1):
+        p = ring[i % n]
+        ahead, behind = ring[(i + 1) % n], ring[i - 1]
+        t = unit(sub(ahead, behind))
+        out = unit(sub(p, CENTER))
+        side = unit(cross(t, out))
+        out = cross(side, t)
+        a = 2 * pi * i / n
+        r = 0.0125 - 0.0035 * smoothstep(0.6, 2.2, min(a, 2 * pi - a))
+        r *= 1 + 0.045 * abs(sin(a * 13)) ** 0.5
+        row = []
+        for j in range(m + 1):
+            b = 2 * pi * j / m
+            q = mad(mad(p, out, r * 0.92 * sin(b)), side, r * 1.08 * cos(b))
+            row.append(patch.vertex(q, (i / n * 13, j / m), {"skullbase": 1.0}, ("roll",)))
+        rows.append(row)
+    patch.grid(rows, flip=True)
+    return patch
+
+
+def make_pearls(look):
+    """A row of small pearls along the front of the roll."""
+    patch = Patch("pearls", look)
+    for k in range(-11, 12):
+        a = 0.128 * k
+        p = roll_path(a)
+        d = unit(sub(p, CENTER))
+        front = unit((d[0] * 0.3, d[1] * 0.3 + 0.15, 1.0))
+        c = mad(p, unit(mix(d, front, 0.62)), 0.0118)
+        ball(patch, c, 0.0029 if k % 2 else 0.0022, {"skullbase": 1.0})
+    return patch
+
+
+def ball(patch, c, r, weights, segments=7, rings=4):
+    top = patch.vertex((c[0], c[1] + r, c[2]), (0.5, 1), weights)
+    rows = []
+    for i in range(1, rings):
+        a = pi * i / rings
+        rows.append([patch.vertex((c[0] + r * sin(a) * sin(b), c[1] + r * cos(a), c[2] + r * sin(a) * cos(b)),
+                                  (0.5, 0.5), weights) for b in circle(segments)])
+    patch.fan(top, rows[0])
+    patch.grid(rows, closed=True, flip=True)
+    patch.fan(patch.vertex((c[0], c[1] - r, c[2]), (0.5, 0), weights), rows[-1], flip=True)
+
+
+# ---- veil ---------------------------------------------------------------------------------------------
+def veil_weights(p):
+    """Head at the top, the back at the lower edge; figure space."""
+    y = p[1]
+    head = smoothstep(1.36, 1.50, y)
+    side = "l_" if p[0] >= 0 else "r_"
+    shoulder = 0.25 * smoothstep(0.06, 0.17, abs(p[0]))
+    back = scaled(spine(min(max(y, 1.30), 1.47)), (1 - head) * (1 - shoulder))
+    return blend([("skullbase", head), (side + "acromioclavicular", (1 - head) * shoulder)] + back)
+
+
+def make_veil(look):
+    """Linen pinned over the roll, falling behind the shoulders. Figure space."""
+    patch = Patch("veil", look)
+    columns, upper, lower = 52, 12, 17
+    rows = [[] for _ in range(upper + lower + 1)]
+    o = (0.0, 0.020, -0.020)
+    for i in range(columns + 1):
+        u = 2 * i / columns - 1  # -1 right .. 1 left
+        psi = u * 2.22
+        start = roll_path(psi)
+        start = mad(start, unit(sub(start, CENTER)), 0.0080)
+        start = (start[0], start[1], start[2] - 0.004)
+        beta = u * 1.58
+        d0, d1 = unit(sub(start, o)), unit((sin(beta), -0.16 - 0.20 * abs(u), -cos(beta)))
+        r0 = dot(sub(start, o), d0)
+        middle = None
+        for k in range(upper + 1):
+            t = k / upper
+            d = unit(mix(d0, d1, t * t * (3 - 2 * t) * 0.5 + t * 0.5))
+            r = dot(sub(cast(hair, o, d, 0.18), o), d) + lerp(0.010, 0.0165, t)
+            if k == 0:
+                r = r0
+            middle = mad(o, d, r)
+            fold = 0.0022 * t * sin(beta * 9 + 1.5 * t)
+            rows[k].append((add(HEAD, mad(middle, d, fold)), (u, 0.5 * t)))
+        middle = add(HEAD, middle)
+        out = unit((sin(beta), 0, -cos(beta)))
+        drop = lerp(0.275, 0.215, abs(u) ** 2)
+        p = middle
+        for k in range(1, lower + 1):
+            t = k / lower
+            flare = 0.055 * t ** 1.4
+            q = mad((middle[0], middle[1] - drop * t, middle[2]), out, flare)
+            for _ in range(12):  # lie on the shoulders
+                gap = body(q) - 0.026
+                if gap > 0:
+                    break
+                q = mad(q, gradient(body, q), -gap)
+            amount = 0.0035 + 0.0105 * smoothstep(0, 1, t)
+            fold = amount * (sin(beta * 11 + 0.8 * sin(3 * t + u)) + 0.35 * sin(beta * 23 + 2 * t))
+            q = mad(q, out, fold + 0.35 * amount)
+            rows[upper + k].append((q, (u, 0.5 + 0.5 * t)))
+    ids = [[patch.vertex(p, (uv[0] * 2.2, uv[1] * 3.2), veil_weights(p), ("veil",)) for p, uv in row] for row in rows]
+    patch.grid(ids)
+    return patch
