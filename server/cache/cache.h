@@ -16,7 +16,7 @@
 namespace wellspring {
 
 struct CacheSettings {
-  float points_per_pixel = 1.25f;      // capacity over pixels (paper, section 4.3: slightly larger)
+  float points_per_pixel = 1.0625f;    // capacity over pixels (paper, section 4.3: slightly larger)
   float depth_threshold = 0.1f;        // paper, section 3.1
   float color_change = 0.25f;          // relative change of a resampled point that ages its neighbours
   float budget_share_old = 1;          // weight of age against emptiness in the priority
@@ -30,7 +30,7 @@ struct PointImage;  // cache/point_image.h: what projects where, priorities
 struct CacheStats {
   int points = 0;       // in use
   float fresh = 0, reprojected = 0, filled = 0, empty = 0;  // shares of the picture's pixels
-  float mean_age = 0;   // frames, of the visible points
+  float mean_age = 0;   // of the visible points, 0 (new) to 254; see age_points()
   float converged = 0;  // share of pixels whose point has reached its sample goal
 };
 

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/attention.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int change_ageing = 64;
+constexpr uint8_t changed_count = 2;  // samples a point near a change still vouches for
+
+void age_tile(PointCache& points, const PointImage& image, int tx, int ty) {
+  int x1 = std::min((tx + 1) * change_tile, image.width), y1 = std::min((ty + 1) * change_tile, image.height);
+  for (int y = ty * change_tile; y < y1; y++)
+    for (int x = tx * change_tile; x < x1; x++) {
+      uint32_t point = image.point[size_t(y) * size_t(image.width) + size_t(x)];
+      if (point == no_point || points.age[point] == evicted_age) continue;
+      points.age[point] = uint8_t(std::min(points.age[point] + change_ageing, 254));
+      points.count[point] = std::min(points.count[point], changed_count);
+    }
+}
+
+}  // namespace
+
+void age_changed(PointCache& points, PointImage& image) {
+  int width = image.changed_width, height = image.changed_height;
+  const std::vector<uint8_t>& changed = image.changed;
+  if (std::none_of(changed.begin(), changed.end(), [](uint8_t c) { return c != 0; })) return;
+  parallel_ranges(height, 4, [&](int begin, int end) {
+    for (int ty = begin; ty < end; ty++)
+      for (int tx = 0; tx < width; tx++) {
+        bool near = false;
+        for (int y = std::max(ty - 1, 0); y <= std::min(ty + 1, height - 1); y++)
+          for (int x = std::max(tx - 1, 0); x <= std::min(tx + 1, width - 1); x++)
+            near |= changed[size_t(y) * size_t(width) + size_t(x)] != 0;
+        if (near) age_tile(points, image, tx, ty);
+      }
+  });
+  std::fill(image.changed.begin(), image.changed.end(), uint8_t(0));
+}
+
+void prioritise(const PointCache& points, const CacheSettings& settings, PointImage& image) {
+  int width = image.width, height = image.height;
+  if (!settings.attention) {
+    std::fill(image.priority.begin(), image.priority.end(), uint8_t(255));
+    return;
+  }
+  std::array<uint8_t, 256> by_age{}, by_count{};
+  for (int i = 0; i < 256; i++) {
+    by_age[size_t(i)] = uint8_t(std::clamp(float(i) * 0.5f * settings.budget_share_old, 1.0f, 127.0f));
+    by_count[size_t(i)] = uint8_t(40 / std::sqrt(float(std::max(i, 1))));
+  }
+  parallel_ranges(height, 8, [&](int begin, int end) {
+    thread_local std::vector<float> blank;
+    blank.assign(size_t(width), 0.0f);
+    thread_local std::vector<uint8_t> column;
+    column.assign(size_t(width) + 2, 0);
+    for (int y = begin; y < end; y++) {
+      size_t start = size_t(y) * size_t(width);
+      const float* row = image.depth.data() + start;
+      const float* above = y > 0 ? row - width : blank.data();
+      const float* below = y + 1 < height ? row + width : blank.data();
+      uint8_t* around = column.data() + 1;  // points in this column of the three rows
+      for (int x = 0; x < width; x++)
+        around[x] = uint8_t(int(above[x] > 0.0f) + int(row[x] > 0.0f) + int(below[x] > 0.0f));
+      uint8_t* priority = image.priority.data() + start;
+      for (int x = 0; x < width; x++)
+        priority[x] = uint8_t(255 - 14 * (around[x - 1] + around[x] + around[x + 1]));
+      const uint32_t* point = image.point.data() + start;
+      for (int x = 0; x < width; x++)
+        if (point[x] != no_point) priority[x] = uint8_t(by_age[points.age[point[x]]] + by_count[points.count[point[x]]]);
+    }
+  });
+}
+
+}  // namespace wellspring

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// How urgent a new sample is at every pixel (Walter 1999, section 4 and 4.1).
+#pragma once
+#include "cache/cache.h"
+#include "cache/point_cache.h"
+#include "cache/point_image.h"
+
+namespace wellspring {
+
+// Where resampled points had changed, points nearby get older by a quarter of the scale and forget most of
+// their samples. Uses up image.changed.
+void age_changed(PointCache& points, PointImage& image);
+
+// Overwrites image.priority: empty pixels 255 (alone) to 143 (surrounded by points); pixels with a point
+// by its age (up to 127) and by how few samples it holds. 255 everywhere counts when attention is off.
+void prioritise(const PointCache& points, const CacheSettings& settings, PointImage& image);
+
+}  // namespace wellspring

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/cache.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/rng.h"
+#include "cache/attention.h"
+#include "cache/cells.h"
+#include "cache/plan.h"
+#include "cache/point_cache.h"
+#include "cache/point_image.h"
+#include "cache/project.h"
+#include "cache/reconstruct.h"
+#include "cache/remember.h"
+#include "cache/scratch.h"
+#include "cache/still_image.h"
+
+namespace wellspring {
+namespace {
+
+bool same_view(const View& a, const View& b) {
+  return a.position == b.position && a.right == b.right && a.up == b.up && a.forward == b.forward &&
+         a.tan_half_fov == b.tan_half_fov && a.width == b.width && a.height == b.height;
+}
+
+constexpr int largest_side = 16384;
+constexpr uint8_t moving_mean = 48, still_mean = 255;  // samples a point's mean looks back on
+
+}  // namespace
+
+struct RenderCache::Impl {
+  CacheSettings settings;
+  PointCache points;
+  PointImage image;
+  StillImage still;
+  Cells cells;
+  Scratch scratch;
+  View view;                  // of the last projection
+  bool projected = false;
+  int still_frames = 0;       // projections of the same view before the last
+  float new_points = 0;       // a frame, smoothed
+  int fresh = 0;              // samples of this frame that show
+  uint32_t frames = 0;
+  std::vector<uint32_t> targets;
+  CacheStats stats;
+
+  bool is_still() const { return still_frames >= 2; }
+  void forget_still() {
+    still_frames = 0;
+    std::fill(still.count.begin(), still.count.end(), uint8_t(0));
+  }
+  void count(const SurfaceCounts& counts, bool known);
+};
+
+RenderCache::RenderCache(const CacheSettings& settings) : impl_(std::make_unique<Impl>()) {
+  impl_->settings = settings;
+}
+RenderCache::~RenderCache() = default;
+RenderCache::RenderCache(RenderCache&&) noexcept = default;
+RenderCache& RenderCache::operator=(RenderCache&&) noexcept = default;
+
+void RenderCache::resize(int width, int height) {
+  Impl& c = *impl_;
+  width = std::clamp(width, 1, largest_side);
+  height = std::clamp(height, 1, largest_side);
+  if (width == c.image.width && height == c.image.height) return;
+  size_t pixels = size_t(width) * size_t(height);
+  double capacity = double(std::max(c.settings.points_per_pixel, 0.1f)) * double(pixels);
+  resize_points(c.points, int(std::min(capacity, double(max_capacity))));
+  resize_image(c.image, width, height);
+  for (auto& plane : c.still.mean) plane = std::vector<uint16_t>(pixels);
+  c.still.count = std::vector<uint8_t>(pixels);
+  c.scratch.release();
+  c.projected = false;
+  c.forget_still();
+}
+
+void RenderCache::move_points(const World& world) {
+  Impl& c = *impl_;
+  move_anchored_points(c.points, world);
+  age_points(c.points, c.new_points);
+}
+
+void RenderCache::project(const View& view) {
+  Impl& c = *impl_;
+  resize(view.width, view.height);
+  bool same = c.projected && same_view(view, c.view);
+  if (same) c.still_frames = std::min(c.still_frames + 1, 1 << 20);
+  else if (c.still_frames > 0) c.forget_still();
+  c.view = view;
+  c.projected = true;
+  c.frames++;
+  c.fresh = 0;
+  project_points(c.points, view, same, c.scratch, c.image);
+  depth_cull(c.points, c.settings.depth_threshold, c.image);
+}
+
+void RenderCache::attend() {
+  Impl& c = *impl_;
+  age_changed(c.points, c.image);
+  prioritise(c.points, c.settings, c.image);
+}
+
+void RenderCache::plan(const View& view, int budget, uint64_t seed, std::vector<Request>& requests) {
+  Impl& c = *impl_;
+  if (view.width != c.image.width || view.height != c.image.height) {
+    requests.clear();
+    return;
+  }
+  plan_requests(c.points, view, {budget, seed, c.is_still()}, c.image, requests);
+}
+
+void RenderCache::remember(const View& view, std::span<const Request> requests, std::span<const Sample> samples) {
+  Impl& c = *impl_;
+  RememberSettings settings;
+  settings.color_change = c.settings.color_change;
+  settings.current = c.projected && same_view(view, c.view);
+  settings.still = settings.current && c.is_still();
+  settings.longest_mean = settings.still ? still_mean : moving_mean;
+  Remembered result = remember_samples(c.points, view, requests, samples, settings, c.image, c.targets);
+  c.new_points += (float(result.kept) - c.new_points) * 0.1f;
+  if (settings.current) c.fresh += result.kept;
+  if (!settings.still) return;
+  for (size_t i = 0; i < c.targets.size(); i++)
+    if (c.targets[i] != no_point && requests[i].resample != c.targets[i])
+      c.still.count[requests[i].pixel] |= still_fresh;
+}
+
+void RenderCache::reconstruct(const View& view, Frame& frame) {
+  Impl& c = *impl_;
+  int width = std::clamp(view.width, 1, largest_side), height = std::clamp(view.height, 1, largest_side);
+  size_t pixels = size_t(width) * size_t(height);
+  frame.width = width;
+  frame.height = height;
+  frame.color.resize(pixels);
+  frame.depth.resize(pixels);
+  frame.object.resize(pixels);
+  frame.confidence.resize(pixels);
+  if (!c.projected || !same_view(view, c.view)) project(view);
+  c.scratch.start(surface_bytes(pixels) + cells_bytes(width, height));
+  SurfaceImage surface{c.scratch.take<uint32_t>(pixels), c.scratch.take<uint32_t>(pixels),
+                       c.scratch.take<uint16_t>(pixels)};
+  take_cells(c.cells, width, height, c.scratch);
+  SurfaceCounts counts = gather_surface(c.points, c.image, surface, frame);
+  build_cells(view, c.image, surface, frame, c.cells);
+  filter_cells(view, c.cells);
+  bool known = fill_cells(view, c.cells);
+  c.count(counts, known);
+  fill_holes(view, c.image, c.cells, known, surface, frame);
+  compose(view, c.points, c.image, surface, c.cells, frame);
+  if (c.is_still()) accumulate_still(c.points, c.image, c.frames, c.still, frame);
+}
+
+void RenderCache::clear() {
+  Impl& c = *impl_;
+  clear_points(c.points);
+  std::fill(c.image.point.begin(), c.image.point.end(), no_point);
+  std::fill(c.image.depth.begin(), c.image.depth.end(), 0.0f);
+  std::fill(c.image.changed.begin(), c.image.changed.end(), uint8_t(0));
+  c.forget_still();
+}
+
+void RenderCache::Impl::count(const SurfaceCounts& counts, bool known) {
+  float pixels = float(image.point.size()), shown = float(counts.points);
+  stats.points = int(std::count_if(points.age.begin(), points.age.end(), [](uint8_t a) { return a != evicted_age; }));
+  stats.fresh = std::min(float(fresh), shown) / pixels;
+  stats.reprojected = shown / pixels - stats.fresh;
+  stats.filled = known ? 1 - shown / pixels : 0.0f;
+  stats.empty = known ? 0.0f : 1 - shown / pixels;
+  stats.mean_age = shown > 0 ? float(counts.ages) / shown : 0.0f;
+  stats.converged = float(counts.converged) / pixels;
+}
+
+const CacheStats& RenderCache::stats() const { return impl_->stats; }
+
+size_t RenderCache::memory_bytes() const {
+  const Impl& c = *impl_;
+  auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  size_t sum = points_bytes(c.points) + bytes(c.image.point) + bytes(c.image.depth) + bytes(c.image.priority) +
+               bytes(c.image.changed) + bytes(c.still.count) + bytes(c.targets) + c.scratch.bytes();
+  for (const auto& plane : c.still.mean) sum += bytes(plane);
+  return sum;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Colours and normals in few bits, so that a visitor's whole cache stays below 64 MB at 1280x720.
+// Light is stored with a shared exponent and rounded stochastically: a running mean of many samples then
+// stays unbiased although each step is smaller than the least bit.
+#pragma once
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "base/vec.h"
+
+namespace wellspring {
+
+// The largest value the shared exponent format holds.
+inline constexpr float rgb9e5_max = 65408.0f;
+
+// Radiance, 9 bits a channel and a common exponent of 5. NaN and negative become 0. `random` decides the
+// rounding: its three bytes are the dither of the channels; 0x808080 rounds to nearest.
+inline uint32_t pack_rgb9e5(vec3 c, uint32_t random = 0x808080u) {
+  float r = c.x > 0 ? std::min(c.x, rgb9e5_max) : 0.0f;
+  float g = c.y > 0 ? std::min(c.y, rgb9e5_max) : 0.0f;
+  float b = c.z > 0 ? std::min(c.z, rgb9e5_max) : 0.0f;
+  float largest = std::max(r, std::max(g, b));
+  // Exponent such that largest * 2^-(exponent-15-9) stays below 511 after rounding up.
+  int exponent = std::max(0, int(std::bit_cast<uint32_t>(largest * (512.0f / 511.0f)) >> 23) - 127 + 16);
+  exponent = std::min(exponent, 31);
+  float scale = std::bit_cast<float>(uint32_t(127 + 24 - exponent) << 23);
+  float dr = float(random & 255) * (1.0f / 256), dg = float((random >> 8) & 255) * (1.0f / 256),
+        db = float((random >> 16) & 255) * (1.0f / 256);
+  uint32_t ir = std::min(511u, uint32_t(r * scale + dr)), ig = std::min(511u, uint32_t(g * scale + dg)),
+           ib = std::min(511u, uint32_t(b * scale + db));
+  return ir | ig << 9 | ib << 18 | uint32_t(exponent) << 27;
+}
+inline vec3 unpack_rgb9e5(uint32_t p) {
+  float scale = std::bit_cast<float>(((p >> 27) + 127 - 24) << 23);
+  return vec3(float(p & 511), float((p >> 9) & 511), float((p >> 18) & 511)) * scale;
+}
+
+// Reflectance in [0, 1], 11:11:10 bits of its square root.
+inline uint32_t pack_albedo(vec3 c) {
+  auto level = [](float v, float steps) {
+    float root = std::sqrt(v > 0 ? std::min(v, 1.0f) : 0.0f);
+    return uint32_t(root * steps + 0.5f);
+  };
+  return level(c.x, 2047) | level(c.y, 2047) << 11 | level(c.z, 1023) << 22;
+}
+inline vec3 unpack_albedo(uint32_t p) {
+  float r = float(p & 2047) * (1.0f / 2047), g = float((p >> 11) & 2047) * (1.0f / 2047),
+        b = float(p >> 22) * (1.0f / 1023);
+  return vec3(r * r, g * g, b * b);
+}
+
+// Unit vectors on an octahedron (Meyer et al. 2010), 8 bits an axis: within one degree.
+inline uint16_t pack_normal(vec3 n) {
+  float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  if (!(sum > 0) || !std::isfinite(sum)) return 127 | 127 << 8;
+  float x = n.x / sum, y = n.y / sum;
+  if (n.z < 0) {
+    float fx = (1 - std::abs(y)) * (x >= 0 ? 1.0f : -1.0f);
+    y = (1 - std::abs(x)) * (y >= 0 ? 1.0f : -1.0f);
+    x = fx;
+  }
+  auto level = [](float v) { return uint16_t(std::clamp(v * 127.0f + 127.5f, 0.0f, 254.0f)); };
+  return uint16_t(level(x) | level(y) << 8);
+}
+// Not normalised: the point on the octahedron (length 0.57 to 1), enough for signs of dot products.
+inline vec3 unpack_octahedron(uint16_t p) {
+  float x = float(p & 255) * (1.0f / 127) - 1, y = float(p >> 8) * (1.0f / 127) - 1;
+  float z = 1 - std::abs(x) - std::abs(y);
+  float t = z < 0 ? -z : 0.0f;
+  x += x >= 0 ? -t : t;
+  y += y >= 0 ? -t : t;
+  return vec3(x, y, z);
+}
+inline vec3 unpack_normal(uint16_t p) {
+  vec3 n = unpack_octahedron(p);
+  return n * (1 / std::sqrt(dot(n, n)));
+}
+
+// A standard deviation on a logarithmic scale of 1/8 octave, 2^-20 to 2^11; 0 is exactly 0.
+inline uint8_t pack_deviation(float s) {
+  if (!(s > 1e-6f)) return 0;
+  return uint8_t(std::clamp(std::log2(s) * 8 + 161.5f, 1.0f, 255.0f));
+}
+inline float unpack_deviation(uint8_t p) { return p ? std::exp2((float(p) - 161) * 0.125f) : 0.0f; }
+
+// IEEE half floats for positive numbers; `random` in [0, 65536) dithers the bits that are cut.
+inline uint16_t pack_half(float v, uint32_t random = 0x1000) {
+  v = v > 0 ? std::min(v, 65000.0f) : 0.0f;
+  uint32_t bits = std::bit_cast<uint32_t>(v * 0x1p-112f) + (random & 0x1fff);
+  return uint16_t(bits >> 13);
+}
+inline float unpack_half(uint16_t h) { return std::bit_cast<float>(uint32_t(h) << 13) * 0x1p112f; }
+
+}  // namespace wellspring

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/plan.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "base/rng.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int band_rows = 16;
+
+Request make_request(const PointCache& points, const View& view, const PlanSettings& settings,
+                     const PointImage& image, size_t pixel) {
+  uint32_t x = uint32_t(pixel % size_t(image.width)), y = uint32_t(pixel / size_t(image.width));
+  Request request;
+  request.pixel = uint32_t(pixel);
+  request.seed = sample_seed(settings.seed, x, y, 0);
+  uint64_t random = mix64(request.seed ^ 0x706c616e);
+  uint32_t point = image.point[pixel];
+  // Standing still, one in four is still resampled exactly: those can tell that the light has changed.
+  bool exact = point != no_point && (!settings.still || (random >> 62) == 0);
+  if (exact) {
+    vec3 position(points.x[point], points.y[point], points.z[point]);
+    bool infinite = points.flags[point] & point_infinite;
+    vec3 along = infinite ? position : position - view.position;
+    request.ray.origin = view.position;
+    request.ray.direction = normalize(along);
+    request.resample = point;
+  } else {
+    float dx = float(random & 0xffffff) * 0x1p-24f, dy = float((random >> 24) & 0xffffff) * 0x1p-24f;
+    request.ray = view_ray(view, float(x) + dx, float(y) + dy);
+  }
+  return request;
+}
+
+// Dithers the rows [begin, end) with `share` requests to give away; returns how many it chose.
+int dither_band(PointImage& image, int begin, int end, int share, float threshold, uint64_t seed,
+                uint32_t* chosen) {
+  int width = image.width, count = 0;
+  thread_local std::vector<float> below;
+  below.resize(size_t(width));
+  // Start as if bands above had left the usual remainders, so that no band starves at its first row.
+  uint64_t hash = mix64(seed ^ uint64_t(begin) * 0x9e3779b97f4a7c15ull);
+  for (int x = 0; x < width; x++) {
+    hash = hash * 6364136223846793005ull + 1442695040888963407ull;
+    below[size_t(x)] = float(hash >> 40) * 0x1p-24f * threshold * 0.5f;
+  }
+  bool upwards = (seed >> 1) & 1;  // what a band runs short of at its end is not always the same rows
+  float carry = float(mix64(hash) >> 40) * 0x1p-24f * threshold * 0.5f;
+  for (int i = 0; i < end - begin; i++) {
+    int y = upwards ? end - 1 - i : begin + i;
+    uint8_t* priority = image.priority.data() + size_t(y) * size_t(width);
+    int step = ((i ^ int(seed)) & 1) ? -1 : 1, x = step > 0 ? 0 : width - 1;
+    for (int n = 0; n < width; n++, x += step) {
+      float value = float(priority[x]) + carry + below[size_t(x)];
+      if (value >= threshold && count < share && priority[x] != 0) {
+        chosen[count++] = uint32_t(size_t(y) * size_t(width) + size_t(x));
+        priority[x] = 0;
+        value -= threshold;
+      }
+      value = std::min(value, 2 * threshold);
+      carry = value * 0.5f;
+      below[size_t(x)] = carry;
+    }
+  }
+  return count;
+}
+
+// Chooses further pixels at random, by priority, until the budget is spent.
+void top_up(PointImage& image, uint64_t seed, size_t budget, std::vector<uint32_t>& chosen) {
+  size_t pixels = image.priority.size();
+  Rng rng(mix64(seed ^ 0x746f7075));
+  for (size_t tries = (budget - chosen.size()) * 16; tries > 0 && chosen.size() < budget; tries--) {
+    size_t pixel = size_t(uint64_t(rng.next()) * pixels >> 32);
+    uint8_t& priority = image.priority[pixel];
+    if (priority == 0 || priority < (rng.next() & 127)) continue;
+    priority = 0;
+    chosen.push_back(uint32_t(pixel));
+  }
+  size_t start = size_t(uint64_t(rng.next()) * pixels >> 32);
+  for (size_t i = 0; i < pixels && chosen.size() < budget; i++) {
+    size_t pixel = start + i < pixels ? start + i : start + i - pixels;
+    if (image.priority[pixel] == 0) continue;
+    image.priority[pixel] = 0;
+    chosen.push_back(uint32_t(pixel));
+  }
+}
+
+}  // namespace
+
+void plan_requests(const PointCache& points, const View& view, const PlanSettings& settings,
+                   PointImage& image, std::vector<Request>& requests) {
+  requests.clear();
+  int width = image.width, height = image.height;
+  size_t pixels = image.priority.size();
+  size_t budget = size_t(std::max(settings.budget, 0));
+  budget = std::min(budget, pixels);
+  int bands = (height + band_rows - 1) / band_rows;
+  if (budget == 0 || bands == 0) return;
+
+  // What each band's priorities add up to decides its share.
+  std::vector<uint64_t> sums(size_t(bands) + 1, 0);
+  parallel_for(bands, [&](int band) {
+    size_t first = size_t(band) * band_rows * size_t(width);
+    size_t last = std::min(pixels, first + size_t(band_rows) * size_t(width));
+    uint64_t sum = 0;
+    for (size_t i = first; i < last; i++) sum += image.priority[i];
+    sums[size_t(band) + 1] = sum;
+  });
+  std::partial_sum(sums.begin(), sums.end(), sums.begin());
+  uint64_t total = sums.back();
+  if (total == 0) return;
+  float threshold = float(double(total) / double(budget));
+  auto share_before = [&](int band) { return size_t(double(budget) * (double(sums[size_t(band)]) / double(total))); };
+
+  std::vector<uint32_t> chosen(budget);
+  std::vector<int> counts(static_cast<size_t>(bands));
+  uint64_t seed = mix64(settings.seed);
+  parallel_for(bands, [&](int band) {
+    size_t from = share_before(band), to = band + 1 == bands ? budget : share_before(band + 1);
+    int begin = band * band_rows, end = std::min(height, begin + band_rows);
+    counts[size_t(band)] = dither_band(image, begin, end, int(to - from), threshold, seed, chosen.data() + from);
+  });
+  size_t used = 0;
+  for (int band = 0; band < bands; band++) {
+    size_t from = share_before(band), count = size_t(counts[size_t(band)]);
+    std::copy_n(chosen.begin() + ptrdiff_t(from), count, chosen.begin() + ptrdiff_t(used));
+    used += count;
+  }
+  chosen.resize(used);
+  if (used < budget) top_up(image, seed, budget, chosen);
+
+  requests.resize(chosen.size());
+  parallel_ranges(int(chosen.size()), 512, [&](int begin, int end) {
+    for (int i = begin; i < end; i++)
+      requests[size_t(i)] = make_request(points, view, settings, image, chosen[size_t(i)]);
+  });
+}
+
+}  // namespace wellspring

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/point_cache.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "cache/packing.h"
+
+namespace wellspring {
+
+void resize_points(PointCache& points, int capacity) {
+  capacity = std::clamp(capacity, int(group_size), max_capacity);
+  size_t size = (size_t(capacity) + group_size - 1) / group_size * group_size;
+  if (size == points.x.size()) return;
+  constexpr float nowhere = std::numeric_limits<float>::quiet_NaN();
+  auto fit = [size](auto& values, auto fill) {
+    values.resize(size, fill);
+    values.shrink_to_fit();
+  };
+  fit(points.x, nowhere);
+  fit(points.y, nowhere);
+  fit(points.z, nowhere);
+  fit(points.normal, uint16_t(0));
+  fit(points.flags, uint8_t(0));
+  fit(points.age, evicted_age);
+  fit(points.count, uint8_t(0));
+  fit(points.noise, uint8_t(0));
+  fit(points.color, PointColor{});
+  fit(points.seen, uint64_t(0));
+  points.seen.resize((size + 63) / 64);
+  points.seen.shrink_to_fit();
+  std::erase_if(points.anchors, [size](const Anchor& a) { return a.point >= size; });
+  points.anchors.reserve(size_t(max_anchors(int(size))));
+  points.next_group = 0;
+}
+
+void clear_points(PointCache& points) {
+  std::fill(points.flags.begin(), points.flags.end(), uint8_t(0));
+  std::fill(points.age.begin(), points.age.end(), evicted_age);
+  std::fill(points.count.begin(), points.count.end(), uint8_t(0));
+  std::fill(points.x.begin(), points.x.end(), std::numeric_limits<float>::quiet_NaN());
+  points.anchors.clear();
+  points.next_group = 0;
+}
+
+int max_anchors(int capacity) { return std::max(64, capacity / 8); }
+
+void age_points(PointCache& points, float new_points) {
+  int capacity = points.capacity();
+  if (capacity == 0) return;
+  float step = 128 * std::clamp(new_points, 0.0f, float(capacity)) / float(capacity);
+  points.age_carry += step;
+  int whole = int(points.age_carry);
+  points.age_carry -= float(whole);
+  whole = std::min(whole, 85);
+  if (whole == 0) return;
+  uint8_t* age = points.age.data();
+  const uint8_t* flags = points.flags.data();
+  parallel_ranges(capacity, 1 << 15, [=](int begin, int end) {
+    uint16_t base = uint16_t(whole);
+    for (int i = begin; i < end; i++) {
+      uint16_t f = flags[i];
+      uint16_t fast = (f & (point_specular | point_moving)) ? uint16_t(base * 2) : uint16_t(0);
+      uint16_t unseen = (f & point_visible) ? uint16_t(0) : base;
+      uint16_t limit = (f & point_visible) ? uint16_t(254) : uint16_t(255);
+      uint16_t older = uint16_t(age[i] + base + fast + unseen);
+      // A seen point that was evicted meanwhile stays evicted.
+      uint16_t result = older < limit ? older : limit;
+      age[i] = age[i] == evicted_age ? evicted_age : uint8_t(result);
+    }
+  });
+}
+
+void move_anchored_points(PointCache& points, const World& world) {
+  auto& anchors = points.anchors;
+  if (anchors.empty()) return;
+  // The newest anchor of a point counts: walk backwards, keep the first seen of each living point.
+  std::fill(points.seen.begin(), points.seen.end(), 0);
+  uint32_t instances = uint32_t(world.instance_count());
+  size_t kept = anchors.size();
+  for (size_t i = anchors.size(); i-- > 0;) {
+    const Anchor& a = anchors[i];
+    uint64_t bit = uint64_t(1) << (a.point & 63);
+    bool alive = (points.flags[a.point] & point_moving) && is_alive(points, a.point);
+    if (!alive || (points.seen[a.point >> 6] & bit) || a.instance >= instances) continue;
+    if (a.triangle >= world.mesh_of(a.instance).triangles.size()) continue;
+    points.seen[a.point >> 6] |= bit;
+    anchors[--kept] = a;
+  }
+  anchors.erase(anchors.begin(), anchors.begin() + ptrdiff_t(kept));
+  parallel_ranges(int(anchors.size()), 2048, [&](int begin, int end) {
+    for (int i = begin; i < end; i++) {
+      const Anchor& a = anchors[size_t(i)];
+      const Mesh& mesh = world.mesh_of(a.instance);
+      uvec3 corner = mesh.triangles[a.triangle];
+      float u = float(a.u) * (1.0f / 65535), v = float(a.v) * (1.0f / 65535), w = 1 - u - v;
+      vec3 p = w * mesh.positions[corner.x] + u * mesh.positions[corner.y] + v * mesh.positions[corner.z];
+      vec3 n = w * mesh.normals[corner.x] + u * mesh.normals[corner.y] + v * mesh.normals[corner.z];
+      if (!world.is_moving(a.instance)) {  // a scene instance that a technique marked as moving
+        p = vec3(world.to_world(a.instance) * vec4(p, 1));
+        n = world.normal_to_world(a.instance) * n;
+      }
+      // Keep the side the point was seen from (normals of samples face the viewer).
+      vec3 old = unpack_normal(points.normal[a.point]);
+      if (dot(old, n) < 0) n = -n;
+      points.x[a.point] = p.x;
+      points.y[a.point] = p.y;
+      points.z[a.point] = p.z;
+      points.normal[a.point] = pack_normal(n);
+    }
+  });
+}
+
+size_t points_bytes(const PointCache& points) {
+  auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return bytes(points.x) + bytes(points.y) + bytes(points.z) + bytes(points.normal) + bytes(points.flags) +
+         bytes(points.age) + bytes(points.count) + bytes(points.noise) + bytes(points.color) +
+         bytes(points.anchors) + bytes(points.seen);
+}
+
+}  // namespace wellspring

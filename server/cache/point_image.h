@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What projects where (Walter 1999, figure 4: the point image), the priorities of the pixels, and where
+// the light was seen to change.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+namespace wellspring {
+
+inline constexpr uint32_t no_point = 0xffffffffu;
+inline constexpr float infinite_depth = 1e18f;  // of points at infinity; Frame::depth says infinity
+inline constexpr int change_tile = 8;           // pixels a side of one cell of `changed`
+
+struct PointImage {
+  int width = 0, height = 0;
+  std::vector<uint32_t> point;    // index into the cache, or no_point
+  std::vector<float> depth;       // along the viewing axis; 0 where there is no point
+  std::vector<uint8_t> priority;  // 0: nothing to learn or already asked; 255: most urgent
+  std::vector<uint8_t> changed;   // tiles where a resampled point had changed; used up by attend()
+  int changed_width = 0, changed_height = 0;
+};
+
+inline void resize_image(PointImage& image, int width, int height) {
+  size_t pixels = size_t(width) * size_t(height);
+  image.width = width;
+  image.height = height;
+  image.changed_width = (width + change_tile - 1) / change_tile;
+  image.changed_height = (height + change_tile - 1) / change_tile;
+  auto fit = [](auto& values, size_t size, auto fill) {
+    values.assign(size, fill);
+    values.shrink_to_fit();
+  };
+  fit(image.point, pixels, no_point);
+  fit(image.depth, pixels, 0.0f);
+  fit(image.priority, pixels, uint8_t(0));
+  fit(image.changed, size_t(image.changed_width) * size_t(image.changed_height), uint8_t(0));
+}
+
+}  // namespace wellspring

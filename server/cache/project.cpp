@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/project.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "base/parallel.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int tile_bits = 6, tile_size = 1 << tile_bits, tile_pixels = tile_size * tile_size;
+constexpr int chunk_points = 8192;    // transformed and sorted together; offsets fit 16 bits
+constexpr float near_depth = 1e-4f;   // metres
+constexpr float facing_away = 0.15f;  // cosine by which a (shading) normal may point away
+
+// An entry of a bin: 28 bits of depth, 24 of the point, 12 of the pixel in its tile.
+constexpr int point_shift = 12, depth_shift = 36, depth_cut = 3;
+constexpr uint64_t point_mask = (1u << 24) - 1;
+
+struct Tiles {
+  int x, y;
+  int count() const { return x * y; }
+};
+Tiles tiles_of(int width, int height) {
+  return {(width + tile_size - 1) >> tile_bits, (height + tile_size - 1) >> tile_bits};
+}
+int chunks_of(int capacity) { return (capacity + chunk_points - 1) / chunk_points; }
+
+// Everything a point needs to find its pixel.
+struct Transform {
+  vec3 eye, right, up, forward;
+  float focal, half_width, half_height, width, height;
+  int tiles_x, no_tile;
+};
+
+// Where the points of one chunk fall: the tile (no_tile: nowhere), the pixel in it, the depth.
+struct ChunkPlaces {
+  alignas(64) int32_t tile[chunk_points];
+  alignas(64) int32_t local[chunk_points];
+  alignas(64) uint32_t depth[chunk_points];
+};
+
+// Branch-free so that it vectorises; every comparison with NaN is false and leads to no_tile.
+void transform_chunk(const Transform& t, const PointCache& points, int begin, int count,
+                     ChunkPlaces& places) {
+  const float* px = points.x.data() + begin;
+  const float* py = points.y.data() + begin;
+  const float* pz = points.z.data() + begin;
+  const uint16_t* normal = points.normal.data() + begin;
+  const uint8_t* flags = points.flags.data() + begin;
+  const uint8_t* age = points.age.data() + begin;
+  int32_t* __restrict tile = places.tile;
+  int32_t* __restrict local = places.local;
+  uint32_t* __restrict depth_bits = places.depth;
+  for (int i = 0; i < count; i++) {
+    int32_t flag = flags[i];
+    int32_t infinite = (flag >> 1) & 1;
+    float here = float(1 - infinite);
+    float dx = px[i] - t.eye.x * here, dy = py[i] - t.eye.y * here, dz = pz[i] - t.eye.z * here;
+    float depth = dx * t.forward.x + dy * t.forward.y + dz * t.forward.z;
+    float across = dx * t.right.x + dy * t.right.y + dz * t.right.z;
+    float above = dx * t.up.x + dy * t.up.y + dz * t.up.z;
+    float scale = t.focal / depth;
+    float sx = across * scale + t.half_width, sy = t.half_height - above * scale;
+
+    int32_t packed = normal[i];
+    float ox = float(packed & 255) * (1.0f / 127) - 1, oy = float(packed >> 8) * (1.0f / 127) - 1;
+    float oz = 1 - std::abs(ox) - std::abs(oy);
+    float fold = oz < 0 ? -oz : 0.0f;
+    ox += ox >= 0 ? -fold : fold;
+    oy += oy >= 0 ? -fold : fold;
+    float away = ox * dx + oy * dy + oz * dz;
+
+    int32_t good = int32_t(depth > near_depth) & int32_t(sx >= 0.0f) & int32_t(sx < t.width) &
+                   int32_t(sy >= 0.0f) & int32_t(sy < t.height) & int32_t(away <= facing_away * depth) &
+                   int32_t(age[i] != evicted_age) & flag;
+    float cx = sx > 0.0f ? sx : 0.0f, cy = sy > 0.0f ? sy : 0.0f;
+    cx = cx < t.width ? cx : 0.0f;
+    cy = cy < t.height ? cy : 0.0f;
+    int32_t ix = int32_t(cx), iy = int32_t(cy);
+    int32_t where = (iy >> tile_bits) * t.tiles_x + (ix >> tile_bits);
+    tile[i] = good ? where : t.no_tile;
+    local[i] = (iy & (tile_size - 1)) << tile_bits | (ix & (tile_size - 1));
+    float stored = infinite ? infinite_depth : depth;
+    depth_bits[i] = std::bit_cast<uint32_t>(stored) >> depth_cut;
+  }
+}
+
+}  // namespace
+
+size_t project_scratch_bytes(int capacity, int width, int height) {
+  size_t offsets = size_t(chunks_of(capacity)) * size_t(tiles_of(width, height).count() + 1);
+  return Scratch::rounded<uint64_t>(size_t(capacity)) + Scratch::rounded<uint16_t>(offsets);
+}
+
+void project_points(PointCache& points, const View& view, bool same_view, Scratch& scratch,
+                    PointImage& image) {
+  int capacity = points.capacity();
+  Tiles tiles = tiles_of(view.width, view.height);
+  int chunks = chunks_of(capacity), tile_count = tiles.count();
+  scratch.start(project_scratch_bytes(capacity, view.width, view.height));
+  std::span<uint64_t> entries = scratch.take<uint64_t>(size_t(capacity));
+  std::span<uint16_t> offsets = scratch.take<uint16_t>(size_t(chunks) * size_t(tile_count + 1));
+
+  Transform transform{view.position, view.right, view.up, view.forward,
+                      float(view.height) * 0.5f / view.tan_half_fov, 0.5f * float(view.width),
+                      0.5f * float(view.height), float(view.width), float(view.height), tiles.x, tile_count};
+  uint8_t keep = uint8_t(~(point_visible | (same_view ? 0 : point_verified)));
+
+  // Pass 1: transform, then sort each chunk's points by tile into the chunk's part of `entries`.
+  parallel_for(chunks, [&](int chunk) {
+    thread_local ChunkPlaces places;
+    thread_local std::vector<uint32_t> next;
+    int begin = chunk * chunk_points, count = std::min(chunk_points, capacity - begin);
+    transform_chunk(transform, points, begin, count, places);
+    uint8_t* flags = points.flags.data() + begin;
+    for (int i = 0; i < count; i++) flags[i] &= keep;
+    next.assign(size_t(tile_count) + 2, 0);
+    for (int i = 0; i < count; i++) next[size_t(places.tile[i]) + 1]++;
+    uint16_t* offset = offsets.data() + size_t(chunk) * size_t(tile_count + 1);
+    uint32_t sum = 0;
+    for (int t = 0; t <= tile_count; t++) {
+      sum += next[size_t(t)];
+      next[size_t(t)] = sum;
+      offset[t] = uint16_t(sum);
+    }
+    uint64_t* part = entries.data() + begin;
+    for (int i = 0; i < count; i++) {
+      uint32_t place = next[size_t(places.tile[i])]++;
+      part[place] = uint64_t(places.depth[i]) << depth_shift | uint64_t(begin + i) << point_shift |
+                    uint64_t(places.local[i]);
+    }
+  });
+
+  // Pass 2: z-buffer tile by tile.
+  parallel_for(tile_count, [&](int tile) {
+    alignas(64) uint64_t nearest[tile_pixels];
+    std::memset(nearest, 0xff, sizeof nearest);
+    for (int chunk = 0; chunk < chunks; chunk++) {
+      const uint16_t* offset = offsets.data() + size_t(chunk) * size_t(tile_count + 1) + tile;
+      const uint64_t* part = entries.data() + size_t(chunk) * chunk_points;
+      for (uint32_t i = offset[0]; i < offset[1]; i++) {
+        uint64_t entry = part[i], &slot = nearest[entry & (tile_pixels - 1)];
+        uint64_t key = entry >> point_shift;
+        slot = key < slot ? key : slot;
+      }
+    }
+    int x0 = (tile % tiles.x) << tile_bits, y0 = (tile / tiles.x) << tile_bits;
+    int columns = std::min(tile_size, view.width - x0), rows = std::min(tile_size, view.height - y0);
+    for (int y = 0; y < rows; y++) {
+      const uint64_t* row = nearest + (y << tile_bits);
+      size_t at = size_t(y0 + y) * size_t(view.width) + size_t(x0);
+      for (int x = 0; x < columns; x++) {
+        bool any = row[x] != ~uint64_t(0);
+        uint32_t point = uint32_t(row[x] & point_mask);
+        uint32_t bits = uint32_t(row[x] >> (depth_shift - point_shift)) << depth_cut;
+        image.point[at + size_t(x)] = any ? point : no_point;
+        image.depth[at + size_t(x)] = any ? std::bit_cast<float>(bits) : 0.0f;
+        if (any) points.flags[point] |= point_visible;
+      }
+    }
+  });
+}
+
+}  // namespace wellspring

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/remember.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "cache/packing.h"
+
+namespace wellspring {
+namespace {
+
+constexpr float same_place = 0.01f;    // of the distance: farther off is another surface
+constexpr float same_normal = 0.8f;    // cosine
+constexpr float quiet_noise = 0.1f;    // of the mean: points this quiet may testify to a change
+constexpr float unseen_bonus = 96;     // in age: unseen points are overwritten before seen ones
+constexpr int noise_memory = 8;        // samples the noise estimate looks back on
+
+bool is_usable(const Sample& sample) {
+  return is_finite(sample.position) && is_finite(sample.normal) && is_finite(sample.albedo) &&
+         is_finite(sample.smooth) && is_finite(sample.rest);
+}
+
+bool is_infinite(const Sample& sample) { return !(sample.flags & sample_hit); }
+
+vec3 position_of(const PointCache& points, uint32_t i) { return {points.x[i], points.y[i], points.z[i]}; }
+
+// The sample saw the surface the point lies on, at the point (`exact`) or near it in the same pixel.
+bool is_same_surface(const PointCache& points, uint32_t i, const View& view, const Sample& sample, bool exact) {
+  bool infinite = points.flags[i] & point_infinite;
+  if (infinite != is_infinite(sample) || points.color[i].object != sample.object) return false;
+  if (infinite) return true;
+  vec3 normal = unpack_normal(points.normal[i]), offset = sample.position - position_of(points, i);
+  if (dot(normal, sample.normal) < same_normal) return false;
+  float distance = length(sample.position - view.position);
+  float away = exact ? length(offset) : std::abs(dot(offset, normal));
+  return away <= same_place * distance;
+}
+
+uint8_t flags_of(const Sample& sample) {
+  uint8_t flags = point_used;
+  if (is_infinite(sample)) flags |= point_infinite;
+  if (sample.flags & sample_specular) flags |= point_specular;
+  if (sample.flags & sample_moving) flags |= point_moving;
+  return flags;
+}
+
+void place_point(PointCache& points, uint32_t i, const View& view, const Sample& sample) {
+  vec3 p = sample.position, n = sample.normal;
+  // At infinity, and where a technique gave no normal, the point faces the viewer.
+  if (is_infinite(sample)) n = -p;
+  else if (!(dot(n, n) > 0)) n = view.position - p;
+  points.x[i] = p.x;
+  points.y[i] = p.y;
+  points.z[i] = p.z;
+  points.normal[i] = pack_normal(n);
+  points.age[i] = 0;
+  points.color[i].albedo = pack_albedo(sample.albedo);
+}
+
+void begin_point(PointCache& points, uint32_t i, const View& view, const Sample& sample, uint32_t random) {
+  place_point(points, i, view, sample);
+  points.flags[i] = flags_of(sample);
+  points.count[i] = 1;
+  points.noise[i] = 0;
+  points.color[i].smooth = pack_rgb9e5(sample.smooth, random);
+  points.color[i].rest = pack_rgb9e5(sample.rest, random >> 4);
+  points.color[i].object = sample.object;
+}
+
+// Adds one sample to the means. True when the point was quiet and yet the light at it has changed.
+bool improve_point(PointCache& points, uint32_t i, const View& view, const Sample& sample, bool exact,
+                   const RememberSettings& settings, uint32_t random) {
+  vec3 smooth = unpack_rgb9e5(points.color[i].smooth), rest = unpack_rgb9e5(points.color[i].rest);
+  int n = points.count[i];
+  float deviation = unpack_deviation(points.noise[i]);
+  float before = luminance(rest), now = luminance(max(sample.rest, vec3(0))), step = std::abs(now - before);
+  float level = std::max(before, now), whole = luminance(unpack_albedo(points.color[i].albedo) * smooth) + level;
+  bool quiet = n >= 2 && deviation <= quiet_noise * level;
+  if (exact && quiet && step > settings.color_change * whole && step > 4 * deviation &&
+      !(points.flags[i] & point_specular)) {
+    begin_point(points, i, view, sample, random);
+    return true;
+  }
+  float memory = float(std::min(n, noise_memory));
+  float variance = n == 1 ? 0.5f * step * step
+                          : (deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) / memory;
+  points.noise[i] = pack_deviation(std::sqrt(variance));
+  float share = 1 / float(std::min(n, int(settings.longest_mean) - 1) + 1);
+  smooth += (max(sample.smooth, vec3(0)) - smooth) * share;
+  rest += (max(sample.rest, vec3(0)) - rest) * share;
+  if (exact) {
+    points.age[i] = 0;
+  } else {
+    place_point(points, i, view, sample);
+    points.flags[i] = uint8_t(flags_of(sample) | (points.flags[i] & point_visible));
+  }
+  points.count[i] = uint8_t(std::min(n + 1, int(settings.longest_mean)));
+  points.color[i].smooth = pack_rgb9e5(smooth, random);
+  points.color[i].rest = pack_rgb9e5(rest, random >> 4);
+  return false;
+}
+
+// The point of the group that is missed least.
+uint32_t choose_victim(const PointCache& points, uint32_t group) {
+  uint32_t first = group * group_size, best = first;
+  float best_score = -1;
+  for (uint32_t i = first; i < first + group_size; i++) {
+    float score = float(points.age[i]) + ((points.flags[i] & point_visible) ? 0 : unseen_bonus);
+    if (!is_alive(points, i)) score = 1000;
+    if (score > best_score) best = i, best_score = score;
+  }
+  return best;
+}
+
+// A point about to be overwritten must not show at its old place.
+void hide_point(const PointCache& points, const View& view, uint32_t i, PointImage& image) {
+  vec3 p = position_of(points, i);
+  if (points.flags[i] & point_infinite) p += view.position;
+  Projected at = project_point(view, p);
+  int cx = int(std::clamp(at.x, 0.0f, float(image.width - 1)));
+  int cy = int(std::clamp(at.y, 0.0f, float(image.height - 1)));
+  for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, image.height - 1); y++)
+    for (int x = std::max(cx - 1, 0); x <= std::min(cx + 1, image.width - 1); x++) {
+      size_t pixel = size_t(y) * size_t(image.width) + size_t(x);
+      if (image.point[pixel] != i) continue;
+      image.point[pixel] = no_point;
+      image.depth[pixel] = 0;
+    }
+}
+
+void show_point(PointCache& points, const View& view, uint32_t i, size_t pixel, PointImage& image) {
+  bool infinite = points.flags[i] & point_infinite;
+  float depth = infinite ? infinite_depth : dot(position_of(points, i) - view.position, view.forward);
+  if (!(depth > 0)) return;
+  uint32_t before = image.point[pixel];
+  if (before != no_point && before != i) points.flags[before] &= uint8_t(~point_visible);
+  image.point[pixel] = i;
+  image.depth[pixel] = depth;
+  points.flags[i] |= point_visible | point_verified;
+}
+
+void mark_changed(PointImage& image, size_t pixel) {
+  size_t x = pixel % size_t(image.width) / change_tile, y = pixel / size_t(image.width) / change_tile;
+  std::atomic_ref<uint8_t>(image.changed[y * size_t(image.changed_width) + x]).store(1, std::memory_order_relaxed);
+}
+
+void add_anchors(PointCache& points, std::span<const Sample> samples, const std::vector<uint32_t>& targets) {
+  size_t most = size_t(max_anchors(points.capacity()));
+  auto level = [](float v) { return uint16_t(std::clamp(v, 0.0f, 1.0f) * 65535 + 0.5f); };
+  for (size_t i = 0; i < samples.size(); i++) {
+    const Sample& s = samples[i];
+    if (!(s.flags & sample_moving) || targets[i] == no_point) continue;
+    if (points.anchors.size() < most)
+      points.anchors.push_back({targets[i], s.instance, s.triangle, level(s.barycentric.x), level(s.barycentric.y)});
+    else
+      points.age[targets[i]] = evicted_age;  // shows in this frame, then goes: better a gap than a ghost
+  }
+}
+
+}  // namespace
+
+Remembered remember_samples(PointCache& points, const View& view, std::span<const Request> requests,
+                            std::span<const Sample> samples, const RememberSettings& settings,
+                            PointImage& image, std::vector<uint32_t>& targets) {
+  size_t count = std::min(requests.size(), samples.size()), pixels = image.point.size();
+  uint32_t capacity = uint32_t(points.capacity()), groups = capacity / group_size;
+  Remembered result;
+  targets.assign(count, no_point);
+  if (groups == 0) return result;
+
+  // Sort out which samples have a point to join. Late answers find theirs only by its place.
+  std::vector<uint32_t> additions;
+  for (size_t i = 0; i < count; i++) {
+    const Request& request = requests[i];
+    if (!is_usable(samples[i]) || request.pixel >= pixels) {
+      result.rejected++;
+      continue;
+    }
+    uint32_t point = request.resample;
+    if (point >= capacity || !is_alive(points, point)) point = no_point;
+    if (settings.current && point == no_point) point = image.point[request.pixel];
+    if (!settings.current && point != no_point && !is_same_surface(points, point, view, samples[i], true))
+      point = no_point;
+    targets[i] = point;
+    if (point == no_point) additions.push_back(uint32_t(i));
+  }
+
+  auto random_of = [&](size_t i) { return uint32_t(mix64(requests[i].seed ^ 0x72656d65)); };
+  std::atomic<int> merged{0}, changed{0};
+  parallel_ranges(int(count), 512, [&](int begin, int end) {
+    int merged_here = 0, changed_here = 0;
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      uint32_t point = targets[i];
+      if (point == no_point) continue;
+      bool exact = requests[i].resample == point, altered = false;
+      if (is_same_surface(points, point, view, samples[i], exact)) {
+        altered = improve_point(points, point, view, samples[i], exact, settings, random_of(i));
+        merged_here++;
+      } else {
+        begin_point(points, point, view, samples[i], random_of(i));
+        altered = exact && !(samples[i].flags & sample_specular);
+      }
+      if (altered) mark_changed(image, requests[i].pixel);
+      changed_here += altered;
+      if (settings.current) show_point(points, view, point, requests[i].pixel, image);
+    }
+    merged += merged_here;
+    changed += changed_here;
+  });
+
+  // New points: each looks at a group of its own; rounds, should there be more of them than groups.
+  for (size_t start = 0; start < additions.size(); start += groups) {
+    size_t round = std::min(size_t(groups), additions.size() - start);
+    parallel_ranges(int(round), 512, [&](int begin, int end) {
+      for (size_t k = size_t(begin); k < size_t(end); k++) {
+        size_t i = additions[start + k];
+        uint32_t group = uint32_t((points.next_group + k) % groups);
+        uint32_t point = choose_victim(points, group);
+        if (points.flags[point] & point_visible) hide_point(points, view, point, image);
+        begin_point(points, point, view, samples[i], random_of(i));
+        if (settings.current) show_point(points, view, point, requests[i].pixel, image);
+        targets[i] = point;
+      }
+    });
+    points.next_group = uint32_t((points.next_group + round) % groups);
+  }
+  add_anchors(points, samples.first(count), targets);
+  result.kept = int(count) - result.rejected;
+  result.merged = merged;
+  result.changed = changed;
+  result.added = int(additions.size());
+  return result;
+}
+
+}  // namespace wellspring
