@@ -4,15 +4,17 @@
 //
 // Refused (LoadError): what makes geometry or material mean something else than the file says - wrong
 // types, missing properties, indices out of range, bytes beyond a buffer, nodes with two parents or
-// cycles, formats an attribute cannot have, files that are missing or outside the package, required
-// extensions this program does not know.
+// cycles, formats an attribute cannot have, missing buffers, files outside the package, broken pictures,
+// required extensions this program does not know.
 // Warned of (Scene::warnings): what is merely odd and still has one meaning - unknown properties, empty
 // lists, misaligned or oddly strided but readable data, wrong min and max, vectors that are not unit
-// length, weights that do not add to one, values that are not finite (the triangle is dropped).
+// length, weights that do not add to one, values that are not finite (the triangle is dropped), a
+// picture that is not there (the material's factors stand alone).
 // One parser reads the JSON that the checks saw, so the two cannot disagree about it.
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -46,8 +48,9 @@ File load_gltf(const std::string& path, const std::string& package);
 // Adds a warning; the same `what` is said once, with its first place.
 void warn(File& file, const std::string& where, const std::string& what);
 
-// Bytes of a data URI or of a file inside the package. Throws LoadError.
-Bytes read_uri(const File& file, const std::string& where, const std::string& uri);
+// Bytes of a data URI or of a file inside the package; nothing if the package has no such file. Throws
+// LoadError for all else that is wrong.
+std::optional<Bytes> read_uri(const File& file, const std::string& where, const std::string& uri);
 // A whole file, at most `limit` bytes.
 Bytes read_bytes(const std::string& path, size_t limit);
 

@@ -62,8 +62,10 @@ void read_track(File& file, const json& sampler, const std::string& where, Track
   track.times = read_floats(file, size_t(integer(sampler, "input", 0)));
   track.values = read_floats(file, size_t(integer(sampler, "output", 0)));
   for (size_t i = 0; i < track.times.size(); i++) {
-    if (!std::isfinite(track.times[i]) || (i > 0 && track.times[i] <= track.times[i - 1]))
+    if (!std::isfinite(track.times[i]) || (i > 0 && track.times[i] < track.times[i - 1]))
       refuse(file, where + "/input", "times do not increase at key " + std::to_string(i));
+    if (i > 0 && track.times[i] == track.times[i - 1])
+      warn(file, where + "/input", "two keys at the same time");
     if (track.times[i] < 0) warn(file, where + "/input", "a key before time 0");
   }
   for (float value : track.values)

@@ -17,7 +17,7 @@ std::string family(const std::string& semantic) {
 
 bool is_quantized(const File& file) {
   for (const json& name : items(file.root, "extensionsUsed"))
-    if (name == "KHR_mesh_quantization") return true;
+    if (name.get_ref<const std::string&>() == "KHR_mesh_quantization") return true;
   return false;
 }
 
@@ -81,6 +81,12 @@ std::vector<Vector> read_vectors(File& file, const json& attributes, const std::
 
 }  // namespace
 
+std::string numbered(const char* semantic, int set) {
+  std::string name = semantic;
+  name += std::to_string(set);
+  return name;
+}
+
 void check_primitive(File& file, const json& primitive, const std::string& where) {
   const json& attributes = primitive["attributes"];
   int64_t count = -1;
@@ -93,8 +99,8 @@ void check_primitive(File& file, const json& primitive, const std::string& where
   for (size_t i = 0; i < targets.size(); i++)
     check_attributes(file, targets[i], count, true, at(where + "/targets", i));
   for (int set = 0;; set++) {
-    bool joints = find(attributes, ("JOINTS_" + std::to_string(set)).c_str());
-    bool weights = find(attributes, ("WEIGHTS_" + std::to_string(set)).c_str());
+    bool joints = find(attributes, numbered("JOINTS_", set).c_str());
+    bool weights = find(attributes, numbered("WEIGHTS_", set).c_str());
     if (joints != weights)
       refuse(file, where + "/attributes", "joints without weights, or weights without joints");
     if (!joints) break;

@@ -10,6 +10,8 @@ namespace wellspring::gltf {
 // Checks formats and counts of a primitive's attributes, targets and indices without reading them.
 void check_primitive(File& file, const json& primitive, const std::string& where);
 
+std::string numbered(const char* semantic, int set);  // "JOINTS_", 1 -> "JOINTS_1"
+
 // Values of an attribute, an empty list where the object has none. A COLOR or WEIGHTS accessor of
 // integers that forgot to say "normalized" is read as if it had. Colours of three components gain a 1.
 std::vector<float> read_attribute(File& file, const json& attributes, const std::string& semantic);

@@ -176,7 +176,8 @@ void check_view(File& file, size_t index) {
   if (offset > available || length > available - offset)
     refuse(file, where, "reaches beyond buffer " + std::to_string(buffer) + " of " +
                             std::to_string(available) + " bytes");
-  int64_t stride = integer(view, "byteStride", 4);
+  if (!find(view, "byteStride")) return;
+  int64_t stride = integer(view, "byteStride", 0);
   if (stride > (int64_t(1) << 30)) refuse(file, where + "/byteStride", "is out of range");
   if (stride % 4 != 0 || stride > 252)
     warn(file, where + "/byteStride", "a stride that is not a multiple of 4 up to 252");
@@ -189,12 +190,16 @@ const Bytes& buffer_bytes(File& file, size_t index) {
     const json& buffer = items(file.root, "buffers")[index];
     size_t length = size_t(integer(buffer, "byteLength", 0));
     Bytes& bytes = file.buffers[index];
-    if (const json* uri = find(buffer, "uri"))
-      bytes = read_uri(file, where + "/uri", uri->get<std::string>());
-    else if (index == 0 && file.has_binary)
+    if (const json* uri = find(buffer, "uri")) {
+      std::optional<Bytes> found = read_uri(file, where + "/uri", uri->get<std::string>());
+      if (!found)
+        refuse(file, where + "/uri", "no such file: " + uri->get<std::string>().substr(0, 200));
+      bytes = std::move(*found);
+    } else if (index == 0 && file.has_binary) {
       bytes = std::move(file.binary);
-    else
+    } else {
       refuse(file, where, "has no data");
+    }
     if (bytes.size() < length)
       refuse(file, where + "/byteLength", "says " + std::to_string(length) + " bytes, there are " +
                                               std::to_string(bytes.size()));
@@ -267,6 +272,13 @@ std::span<const uint8_t> view_bytes(File& file, size_t view) {
   const Bytes& buffer = buffer_bytes(file, size_t(integer(object, "buffer", 0)));
   return {buffer.data() + integer(object, "byteOffset", 0),
           size_t(integer(object, "byteLength", 0))};
+}
+
+bool has_data(const File& file, size_t accessor) {
+  const json* view = find(items(file.root, "accessors")[accessor], "bufferView");
+  if (!view) return true;
+  size_t buffer = size_t(integer(items(file.root, "bufferViews")[view->get<size_t>()], "buffer", 0));
+  return find(items(file.root, "buffers")[buffer], "uri") || (buffer == 0 && file.has_binary);
 }
 
 std::vector<float> read_floats(File& file, size_t accessor) {

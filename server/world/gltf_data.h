@@ -32,6 +32,9 @@ std::string describe(const File& file, size_t accessor);  // "VEC3 of FLOAT", fo
 constexpr int64_t accessor_limit = int64_t(1) << 28;
 constexpr int64_t total_limit = int64_t(1) << 29;
 
+// Whether an accessor's bytes exist at all: glTF lets a buffer be declared without content.
+bool has_data(const File& file, size_t accessor);
+
 // All elements as floats, `components` after one another. Matrices lose their column padding.
 // Throws LoadError if the accessor's type is unknown or its bytes are missing.
 std::vector<float> read_floats(File& file, size_t accessor);

@@ -43,16 +43,20 @@ void check_depth(const File& file, const char* begin, const char* end) {
 }
 
 void parse_json(File& file, const char* begin, const char* end) {
+  if (begin == end) refuse(file, "", "the file is empty");
   if (size_t(end - begin) > json_limit) refuse(file, "", "more than 256 MiB of JSON");
   check_depth(file, begin, end);
   if (end - begin >= 3 && std::memcmp(begin, "\xef\xbb\xbf", 3) == 0)
     warn(file, "byte 0", "the text starts with a byte order mark");
   try {
     file.root = json::parse(begin, end);
-  } catch (const json::parse_error& error) {
-    refuse(file, "byte " + std::to_string(error.byte), "not valid JSON");
-  } catch (const json::exception&) {
-    refuse(file, "", "not valid JSON: a number or text in it cannot be represented");
+  } catch (const json::exception& error) {
+    std::string reason = error.what();  // "[json.exception.parse_error.101] parse error at line ..."
+    size_t bracket = reason.find("] ");
+    if (bracket != std::string::npos) reason.erase(0, bracket + 2);
+    const auto* syntax = dynamic_cast<const json::parse_error*>(&error);
+    refuse(file, syntax ? "byte " + std::to_string(syntax->byte) : "",
+           "not valid JSON: " + reason.substr(0, 200));
   }
 }
 
@@ -175,7 +179,7 @@ Bytes read_bytes(const std::string& path, size_t limit) {
   return bytes;
 }
 
-Bytes read_uri(const File& file, const std::string& where, const std::string& uri) {
+std::optional<Bytes> read_uri(const File& file, const std::string& where, const std::string& uri) {
   if (uri.compare(0, 5, "data:") == 0) return decode_data_uri(file, where, uri);
   std::string name = percent_decode(file, where, uri);
   auto outside = [&] {
@@ -196,6 +200,7 @@ Bytes read_uri(const File& file, const std::string& where, const std::string& ur
   auto [end_of_package, rest] =
       std::mismatch(file.package.begin(), file.package.end(), resolved.begin(), resolved.end());
   if (end_of_package != file.package.end()) outside();
+  if (!fs::exists(resolved, error)) return std::nullopt;
   try {
     return read_bytes(resolved.string(), file_limit);
   } catch (const LoadError& problem) {

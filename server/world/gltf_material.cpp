@@ -180,6 +180,7 @@ class Materials {
     }
     Texture made;
     made.image = image(source->get<size_t>(), srgb);
+    if (made.image < 0) return -1;
     if (const json* sampler = find(object, "sampler")) {
       const std::string place = at("/samplers", sampler->get<size_t>());
       const json& s = items(file_.root, "samplers")[sampler->get<size_t>()];
@@ -211,8 +212,12 @@ class Materials {
     made.name = text(object, "name", uri_text.compare(0, 5, "data:") ? uri_text.substr(0, 100) : "");
     std::string problem;
     if (const json* uri = find(object, "uri")) {
-      Bytes bytes = read_uri(file_, where + "/uri", uri->get<std::string>());
-      problem = decode_image(bytes, srgb, made, texels_left_);
+      std::optional<Bytes> bytes = read_uri(file_, where + "/uri", uri->get<std::string>());
+      if (!bytes) {
+        warn(file_, where + "/uri", "no such picture: " + uri->get<std::string>().substr(0, 200));
+        return -1;
+      }
+      problem = decode_image(*bytes, srgb, made, texels_left_);
     } else if (const json* view = find(object, "bufferView")) {
       problem = decode_image(view_bytes(file_, view->get<size_t>()), srgb, made, texels_left_);
     } else {

@@ -87,15 +87,15 @@ void apply_skin(File& file, const json& primitive, const std::string& where,
   std::vector<dmat4> blend(draft.positions.size(), dmat4(0));
   std::vector<double> sum(draft.positions.size(), 0);
   for (int set = 0;; set++) {
-    const std::string suffix = "_" + std::to_string(set);
-    const json* accessor = find(attributes, ("JOINTS" + suffix).c_str());
+    const std::string name = numbered("JOINTS_", set);
+    const json* accessor = find(attributes, name.c_str());
     if (!accessor) break;
     std::vector<uint32_t> joint = read_integers(file, accessor->get<size_t>());
-    std::vector<float> weight = read_attribute(file, attributes, "WEIGHTS" + suffix);
+    std::vector<float> weight = read_attribute(file, attributes, numbered("WEIGHTS_", set));
     for (size_t i = 0; i < std::min(joint.size(), weight.size()); i++) {
       if (!(weight[i] > 0) || !std::isfinite(weight[i])) continue;
       if (joint[i] >= joints.size())
-        refuse(file, where + "/attributes/JOINTS" + suffix,
+        refuse(file, where + "/attributes/" + name,
                "vertex " + std::to_string(i / 4) + " hangs on joint " + std::to_string(joint[i]) +
                    " of " + std::to_string(joints.size()));
       blend[i / 4] += joints[joint[i]] * double(weight[i]);

@@ -8,6 +8,7 @@
 
 #include "base/load_error.h"
 #include "world/gltf_attributes.h"
+#include "world/gltf_data.h"
 #include "world/gltf_image.h"
 #include "world/gltf_material.h"
 #include "world/gltf_mesh.h"
@@ -143,11 +144,21 @@ class Builder {
     for (size_t m = 0; m < used_.size(); m++) {
       if (used_[m]) continue;
       warn(file_, at("/meshes", m), "a mesh that no shown node uses");
-      for (size_t p = 0; p < items(file_.root, "meshes")[m]["primitives"].size(); p++)
-        build_primitive(file_, m, p, {}, -1);
+      const json& primitives = items(file_.root, "meshes")[m]["primitives"];
+      for (size_t p = 0; p < primitives.size(); p++) {
+        bool readable = true;
+        for (const json& accessor : primitives[p]["attributes"])
+          readable = readable && has_data(file_, accessor.get<size_t>());
+        if (const json* indices = find(primitives[p], "indices"))
+          readable = readable && has_data(file_, indices->get<size_t>());
+        if (readable) build_primitive(file_, m, p, {}, -1);
+      }
     }
-    for (size_t s = 0; s < items(file_.root, "skins").size(); s++)
-      joint_matrices(file_, s, global_);
+    const json& skins = items(file_.root, "skins");
+    for (size_t s = 0; s < skins.size(); s++) {
+      const json* matrices = find(skins[s], "inverseBindMatrices");
+      if (!matrices || has_data(file_, matrices->get<size_t>())) joint_matrices(file_, s, global_);
+    }
   }
 
   // Looks down the node's -Z; roll is not kept.
