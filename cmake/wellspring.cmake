@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Compiler settings, packages, and the two words CMakeLists.txt is written in:
 # wellspring_layer(NAME FOLDER LINKS ...)  a static library of every .cpp in FOLDER but main*.cpp
-# wellspring_program(NAME FILE LINKS ...)  an executable of one main file
+# wellspring_program(NAME FILES LINKS ...)  an executable of one main file, or of all that match
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -97,11 +97,11 @@ function(wellspring_layer name folder)
   endif()
 endfunction()
 
-function(wellspring_program name file)
+function(wellspring_program name files)
   cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
-  if(EXISTS ${PROJECT_SOURCE_DIR}/${file})
-    get_filename_component(folder ${file} DIRECTORY)
-    add_executable(${name} ${file})
+  file(GLOB sources CONFIGURE_DEPENDS ${files})
+  if(sources)
+    add_executable(${name} ${sources})
     target_link_libraries(${name} PRIVATE ${ARG_LINKS})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
   endif()

@@ -57,6 +57,7 @@ RenderCache::RenderCache(const CacheSettings& settings) : impl_(std::make_unique
   impl_->settings = settings;
 }
 RenderCache::~RenderCache() = default;
+void RenderCache::set_attention(bool on) { impl_->settings.attention = on; }
 RenderCache::RenderCache(RenderCache&&) noexcept = default;
 RenderCache& RenderCache::operator=(RenderCache&&) noexcept = default;
 
@@ -143,7 +144,7 @@ void RenderCache::reconstruct(const View& view, Frame& frame) {
                        c.scratch.take<uint16_t>(pixels)};
   take_cells(c.cells, width, height, c.scratch);
   SurfaceCounts counts = gather_surface(c.points, c.image, surface, frame);
-  build_cells(view, c.image, surface, frame, c.cells);
+  build_cells(view, c.points, c.image, surface, frame, c.cells);
   filter_cells(view, c.cells);
   bool known = fill_cells(view, c.cells);
   c.count(counts, known);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+namespace wellspring {
+
+using nlohmann::json;
+
+void BenchReport::add(const std::string& name, double value, const std::string& unit, json fields) {
+  json result = {{"name", name}, {"metric", name.substr(name.rfind('.') + 1)}, {"value", value}, {"unit", unit}};
+  std::string about;
+  for (const auto& [key, field] : fields.items()) {
+    result[key] = field;
+    about += " " + key + "=" + (field.is_string() ? field.get<std::string>() : field.dump());
+  }
+  std::printf("%-34s %12.4g %-10s%s\n", name.c_str(), value, unit.c_str(), about.c_str());
+  std::fflush(stdout);
+  results_.push_back(std::move(result));
+}
+
+void BenchReport::save(const std::string& file) const {
+  std::ofstream out(file);
+  out << json{{"machine", describe_machine()}, {"results", results_}}.dump(1) << "\n";
+  if (!out.flush()) throw std::runtime_error(file + ": cannot be written");
+}
+
+json describe_machine() {
+  json machine = {{"cores", std::thread::hardware_concurrency()}, {"compiler", __VERSION__}};
+  std::ifstream cpu("/proc/cpuinfo");
+  for (std::string line; std::getline(cpu, line);)
+    if (line.starts_with("model name")) {
+      machine["cpu"] = line.substr(line.find(": ") + 2);
+      break;
+    }
+  std::ifstream load("/proc/loadavg");
+  double one = 0;
+  load >> one;
+  machine["load_at_end"] = one;
+  return machine;
+}
+
+double quantile(std::vector<double> values, double p) {
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  size_t rank = size_t(std::ceil(p * double(values.size())));
+  return values[std::clamp(rank, size_t(1), values.size()) - 1];
+}
+
+}  // namespace wellspring

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The benchmark's report: named values with units, and the machine they were measured on.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace wellspring {
+
+struct BenchOptions {
+  bool quick = false;
+  std::string content = "content", web = "web";
+  std::string programs;  // folder of the other programs
+};
+
+class BenchReport {
+ public:
+  // Prints the line as it is added. `fields`: scene, technique and whatever else tells results apart.
+  void add(const std::string& name, double value, const std::string& unit, nlohmann::json fields = {});
+  // Writes {"machine":{..},"results":[..]}; throws std::runtime_error when the file cannot be written.
+  void save(const std::string& file) const;
+  size_t size() const { return results_.size(); }
+
+ private:
+  nlohmann::json results_ = nlohmann::json::array();
+};
+
+nlohmann::json describe_machine();
+// The p-quantile (0..1) of values, by the nearest rank; NaN of none.
+double quantile(std::vector<double> values, double p);
+
+// One function a part; each adds its results.
+void bench_stream(BenchReport& report, const BenchOptions& options);
+void bench_cache(BenchReport& report, const BenchOptions& options);
+void bench_light(BenchReport& report, const BenchOptions& options);
+void bench_avatar(BenchReport& report, const BenchOptions& options);
+
+}  // namespace wellspring

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole way as a visitor has it: a server process, a scripted client that strolls through the castle
+// at 1280x720 over loopback, and the time from sending an input to receiving the picture that shows it.
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <deque>
+#include <fcntl.h>
+#include <spawn.h>
+#include <stdexcept>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "report.h"
+#include "stream/ws_client.h"
+#include "wire/json.h"
+#include "wire/packet.h"
+
+extern char** environ;
+
+namespace wellspring {
+
+namespace {
+
+// A server of its own on a free port, ended with this value.
+class ServerProcess {
+ public:
+  ServerProcess(const BenchOptions& options, const std::string& exhibit) {
+    int out[2];
+    if (pipe(out) != 0) throw std::runtime_error("pipe failed");
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, out[1], 1);
+    posix_spawn_file_actions_addclose(&actions, out[0]);
+    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
+    std::string program = options.programs + "/wellspring_server";
+    std::vector<std::string> words = {program, "--port", "0", "--exhibit", exhibit, "--content", options.content,
+                                      "--web", options.web};
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    int failed = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close(out[1]);
+    if (failed) throw std::runtime_error(program + ": cannot be started; build all programs first");
+    std::string text;
+    char part[256];
+    for (ssize_t n; (n = read(out[0], part, sizeof part)) > 0 && text.find('\n') == std::string::npos;)
+      text.append(part, size_t(n));
+    close(out[0]);
+    size_t colon = text.rfind(':');
+    if (colon == std::string::npos) throw std::runtime_error(program + ": did not print its address");
+    port = uint16_t(std::stoi(text.substr(colon + 1)));
+  }
+  ~ServerProcess() {
+    kill(pid_, SIGTERM);
+    waitpid(pid_, nullptr, 0);
+  }
+  // Resident memory in bytes.
+  double resident() const {
+    std::FILE* file = std::fopen(("/proc/" + std::to_string(pid_) + "/statm").c_str(), "r");
+    double total = 0, pages = 0;
+    if (file) {
+      if (std::fscanf(file, "%lf %lf", &total, &pages) != 2) pages = 0;
+      std::fclose(file);
+    }
+    return pages * double(sysconf(_SC_PAGESIZE));
+  }
+  uint16_t port = 0;
+
+ private:
+  pid_t pid_ = 0;
+};
+
+}  // namespace
+
+void bench_stream(BenchReport& report, const BenchOptions& options) {
+  const double warm_up = 2, seconds = options.quick ? 6 : 20;
+  ServerProcess server(options, "castle");
+  WsClient client;
+  WsTarget target;
+  target.port = server.port;
+  client.connect(target);
+  Hello hello;
+  hello.role = "visitor";
+  hello.lang = "en";
+  client.send_text(write_message(hello));
+
+  std::deque<std::pair<uint32_t, double>> asked;  // seq, when sent
+  std::vector<double> latencies, arrivals, bytes;
+  uint32_t seq = 0;
+  double began = seconds_now(), next_input = began;
+  WsMessage message;
+  while (seconds_now() - began < warm_up + seconds) {
+    double now = seconds_now(), t = now - began;
+    if (now >= next_input) {
+      // A stroll: forward, swaying round, turning back at intervals so that the hall's walls come and go.
+      Input input;
+      input.seq = ++seq;
+      input.move = {0.2f * std::sin(float(t)), 0, 1.2f};
+      input.look = {0.012f * std::sin(float(t) * 0.7f) + 0.008f, 0.002f * std::cos(float(t))};
+      client.send_text(write_message(input));
+      asked.emplace_back(seq, seconds_now());
+      next_input += 1.0 / 30;
+    }
+    auto got = client.receive(message, std::clamp(next_input - seconds_now(), 0.0, 0.03));
+    if (got == WsClient::Got::closed) throw std::runtime_error("the server closed the visit");
+    if (got != WsClient::Got::message || !message.binary) continue;
+    auto packet = read_packet(message.bytes);
+    if (!packet) continue;
+    double arrived = seconds_now();
+    client.send_text(write_message(Ack{packet->header.frame, 1, true}));
+    bool counts = arrived - began > warm_up;
+    while (!asked.empty() && int32_t(packet->header.seq - asked.front().first) >= 0) {
+      if (counts) latencies.push_back(1000 * (arrived - asked.front().second));
+      asked.pop_front();
+    }
+    if (counts) {
+      arrivals.push_back(arrived);
+      bytes.push_back(double(message.bytes.size()));
+    }
+  }
+  if (arrivals.size() < 2) throw std::runtime_error("hardly any picture arrived");
+  std::vector<double> gaps;
+  for (size_t i = 1; i < arrivals.size(); i++) gaps.push_back(1000 * (arrivals[i] - arrivals[i - 1]));
+  nlohmann::json where = {{"scene", "castle"}, {"size", "1280x720"}};
+  report.add("stream.walk.fps", double(arrivals.size() - 1) / (arrivals.back() - arrivals.front()), "1/s", where);
+  report.add("stream.walk.latency_p50_ms", quantile(latencies, 0.5), "ms", where);
+  report.add("stream.walk.latency_p95_ms", quantile(latencies, 0.95), "ms", where);
+  report.add("stream.walk.gap_p95_ms", quantile(gaps, 0.95), "ms", where);
+  report.add("stream.walk.picture_bytes_p50", quantile(bytes, 0.5), "B", where);
+  report.add("stream.walk.server_memory", server.resident() / (1 << 20), "MiB", where);
+  client.close();
+}
+
+}  // namespace wellspring
