@@ -173,20 +173,23 @@ void World::Impl::filter(const RTCFilterFunctionNArguments* arguments) {
   }
 }
 
-// A triangle geometry with its own copy of the vertices, in world space if `to_world` is given.
+// A triangle geometry with its own copy of the vertices, in world space if `to_world` is given. Embree
+// has no empty buffers, so an empty mesh becomes one point, which nothing hits.
 RTCGeometry World::Impl::make_geometry(const Mesh& mesh, const mat4* to_world, const Tag& tag,
                                        RTCBuildQuality quality) {
   RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* positions = static_cast<vec3*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3),
-                              mesh.positions.size()));
+                              std::max<size_t>(mesh.positions.size(), 1)));
   auto* triangles = static_cast<uvec3*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3),
-                              mesh.triangles.size()));
+                              std::max<size_t>(mesh.triangles.size(), 1)));
   if (!positions || !triangles) {
     rtcReleaseGeometry(geometry);
     throw std::bad_alloc();
   }
+  positions[0] = vec3(0);
+  triangles[0] = uvec3(0);
   for (size_t i = 0; i < mesh.positions.size(); i++)
     positions[i] = to_world ? vec3(*to_world * vec4(mesh.positions[i], 1)) : mesh.positions[i];
   std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles);

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "base/rng.h"
+#include "world/view.h"
+
+namespace wellspring {
+namespace {
+
+constexpr float degrees = pi / 180;
+
+void expect_orthonormal(const View& view) {
+  EXPECT_NEAR(length(view.right), 1, 1e-5f);
+  EXPECT_NEAR(length(view.up), 1, 1e-5f);
+  EXPECT_NEAR(length(view.forward), 1, 1e-5f);
+  EXPECT_NEAR(dot(view.right, view.up), 0, 1e-5f);
+  EXPECT_NEAR(dot(view.right, view.forward), 0, 1e-5f);
+  EXPECT_NEAR(dot(cross(view.right, view.up), -view.forward), 1, 1e-5f);  // right-handed
+}
+
+TEST(View, YawAndPitchTurnAsSaid) {
+  Scene scene;
+  View ahead = make_view(scene, dvec3(0), 0, 0, 1, 64, 64);
+  EXPECT_NEAR(ahead.forward.z, -1, 1e-6f);
+  View left = make_view(scene, dvec3(0), pi / 2, 0, 1, 64, 64);
+  EXPECT_NEAR(left.forward.x, -1, 1e-6f);  // positive turns left
+  View up = make_view(scene, dvec3(0), 0, pi / 2, 1, 64, 64);
+  EXPECT_NEAR(up.forward.y, 1, 1e-6f);
+  for (const View& view : {ahead, left, up}) expect_orthonormal(view);
+}
+
+TEST(View, RayAndProjectionAreInverse) {
+  Scene scene;
+  scene.origin = dvec3(100, 200, 300);
+  Rng rng(7);
+  for (float fov : {5 * degrees, 60 * degrees, 150 * degrees})
+    for (int i = 0; i < 200; i++) {
+      View view = make_view(scene, dvec3(101, 199, 305), 6 * rng.uniform(), 3 * rng.uniform() - 1.5f,
+                            fov, 640, 360);
+      expect_orthonormal(view);
+      float x = 640 * rng.uniform(), y = 360 * rng.uniform();
+      Ray ray = view_ray(view, x, y);
+      EXPECT_NEAR(length(ray.direction), 1, 1e-5f);
+      EXPECT_EQ(ray.origin, vec3(1, -1, 5));
+      float distance = 0.1f + 10 * rng.uniform();
+      Projected p = project_point(view, ray.origin + ray.direction * distance);
+      EXPECT_NEAR(p.x, x, 0.02f);
+      EXPECT_NEAR(p.y, y, 0.02f);
+      EXPECT_NEAR(p.depth, distance * dot(ray.direction, view.forward), 1e-4f);
+    }
+}
+
+TEST(View, FieldOfViewSpansTheHeight) {
+  View view = make_view(Scene(), dvec3(0), 0, 0, 90 * degrees, 200, 100);
+  EXPECT_NEAR(view_ray(view, 100, 0).direction.y, std::sqrt(0.5f), 1e-5f);
+  EXPECT_NEAR(view_ray(view, 100, 100).direction.y, -std::sqrt(0.5f), 1e-5f);
+  EXPECT_GT(view_ray(view, 150, 50).direction.x, 0);  // x grows to the right
+}
+
+TEST(View, TargetIsInTheMiddle) {
+  Scene scene;
+  scene.origin = dvec3(1e6, 0, 0);
+  View view = make_view_towards(scene, dvec3(1e6, 1, 2), dvec3(1e6 + 3, 0.5, -4), vec3(0, 1, 0), 1,
+                                80, 60);
+  expect_orthonormal(view);
+  Projected p = project_point(view, vec3(3, 0.5f, -4));
+  EXPECT_NEAR(p.x, 40, 1e-3f);
+  EXPECT_NEAR(p.y, 30, 1e-3f);
+  EXPECT_GT(view.up.y, 0);
+}
+
+TEST(View, ParallelUpStillGivesAxes) {
+  Scene scene;
+  for (vec3 up : {vec3(0, 1, 0), vec3(0, -5, 0), vec3(0), vec3(std::nanf(""), 0, 0)}) {
+    expect_orthonormal(make_view_towards(scene, dvec3(0), dvec3(0, 3, 0), up, 1, 8, 8));
+    expect_orthonormal(make_view_towards(scene, dvec3(0), dvec3(0, -3, 0), up, 1, 8, 8));
+  }
+  expect_orthonormal(make_view_towards(scene, dvec3(0), dvec3(0, 0, -2), vec3(0, 0, 1), 1, 8, 8));
+  expect_orthonormal(make_view_towards(scene, dvec3(1), dvec3(1), vec3(0, 1, 0), 1, 8, 8));
+}
+
+TEST(View, BadNumbersGiveAUsableView) {
+  double nan = std::nan("");
+  View view = make_view(Scene(), dvec3(nan, 0, 0), float(nan), float(nan), float(nan), 0, -3);
+  expect_orthonormal(view);
+  EXPECT_TRUE(is_finite(view.position));
+  EXPECT_EQ(view.width, 1);
+  EXPECT_EQ(view.height, 1);
+  EXPECT_TRUE(is_finite(view_ray(view, 0, 0).direction));
+  View wide = make_view(Scene(), dvec3(0), 0, 0, 100, 8, 8);
+  EXPECT_GT(wide.tan_half_fov, 0);
+  EXPECT_TRUE(std::isfinite(wide.tan_half_fov));
+}
+
+}  // namespace
+}  // namespace wellspring
