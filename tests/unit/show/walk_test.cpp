@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "show/walk.h"
+#include "tiny_exhibit.h"
+
+namespace wellspring {
+namespace {
+
+struct Walk : testing::TestWithParam<double> {
+  dvec3 origin = dvec3(GetParam(), 0, -GetParam());
+  Exhibit exhibit = make_tiny_exhibit(origin);
+  World world{exhibit.scene};
+  dvec3 go(dvec3 from, vec3 velocity, float seconds, float dt = 0.02f) {
+    dvec3 position = origin + from;
+    for (float t = 0; t < seconds; t += dt) position = walk(world, exhibit.walk, position, velocity, dt);
+    return position - origin;
+  }
+};
+
+TEST_P(Walk, StraightOverFreeFloor) {
+  dvec3 end = go({-2, 1.6, 3}, {0, 0, -1}, 1.5f);
+  EXPECT_NEAR(end.z, 1.5, 0.05);
+  EXPECT_NEAR(end.x, -2, 1e-3);
+  EXPECT_NEAR(end.y, 1.6, 1e-3);
+}
+
+TEST_P(Walk, StopsBeforeAWallAndKeepsItsDistance) {
+  dvec3 end = go({-2, 1.6, 3}, {0, 0, -1.4f}, 10);
+  EXPECT_GT(end.z, 0.2);
+  EXPECT_LT(end.z, 0.4);
+}
+
+TEST_P(Walk, SlidesAlongAWall) {
+  dvec3 end = go({-3, 1.6, 1}, {1, 0, -1}, 3);
+  EXPECT_GT(end.x, -1);
+  EXPECT_GT(end.z, 0.2);
+}
+
+TEST_P(Walk, GoesThroughTheOpening) {
+  dvec3 end = go({2.5, 1.6, 1}, {0, 0, -1.4f}, 2);
+  EXPECT_LT(end.z, -1.2);
+}
+
+TEST_P(Walk, ClimbsAStepAndComesDownAgain) {
+  dvec3 up = go({3, 1.6, 1}, {0, 0, 1}, 2);
+  EXPECT_GT(up.z, 2.5);
+  EXPECT_NEAR(up.y, 1.8, 0.02);
+  dvec3 down = go(up, {0, 0, -1}, 2);
+  EXPECT_NEAR(down.y, 1.6, 0.02);
+}
+
+TEST_P(Walk, NeverLeavesTheRoomWhateverTheStep) {
+  for (float dt : {1e-6f, 0.01f, 0.25f, 5.0f})
+    for (int angle = 0; angle < 16; angle++) {
+      float a = float(angle) * pi / 8;
+      dvec3 end = go({-2, 1.6, 2}, 20.0f * vec3(std::cos(a), 0, std::sin(a)), std::min(1.0f, 200 * dt), dt);
+      EXPECT_LT(std::abs(end.x), 4);
+      EXPECT_LT(std::abs(end.z), 4);
+      EXPECT_GT(end.y, 1);
+    }
+}
+
+TEST_P(Walk, NonsenseVelocityMovesNobody) {
+  dvec3 from = origin + dvec3(-2, 1.6, 3);
+  EXPECT_EQ(walk(world, exhibit.walk, from, vec3(NAN, 0, 0), 0.02f), from);
+  EXPECT_EQ(walk(world, exhibit.walk, from, vec3(0, 0, INFINITY), 0.02f), from);
+}
+
+TEST_P(Walk, BoundsHold) {
+  exhibit.walk->bounds = Bounds{vec3(origin + dvec3(-3, 0, 1)), vec3(origin + dvec3(-1, 3, 3.5))};
+  EXPECT_GE(go({-2, 1.6, 3}, {-1, 0, 0}, 5).x, -3.01 - std::abs(GetParam()) * 1e-7);
+}
+
+INSTANTIATE_TEST_SUITE_P(NearAndFar, Walk, testing::Values(0.0, 1e6));
+
+TEST(WalkFree, WithoutRulesAVisitorFlies) {
+  Exhibit exhibit = make_tiny_exhibit();
+  World world(exhibit.scene);
+  dvec3 end = walk(world, {}, dvec3(0, 1, 0), vec3(0, 2, 0), 0.1f);
+  EXPECT_NEAR(end.y, 1.2, 1e-6);
+}
+
+TEST(MoveDirection, FollowsTheYaw) {
+  vec3 ahead = move_direction({0, 0, 1}, 0), left = move_direction({0, 0, 1}, pi / 2);
+  EXPECT_NEAR(ahead.z, -1, 1e-6);
+  EXPECT_NEAR(left.x, -1, 1e-6);
+  vec3 right = move_direction({1, 0, 0}, pi / 2);
+  EXPECT_NEAR(right.z, -1, 1e-6);
+}
+
+}  // namespace
+}  // namespace wellspring
