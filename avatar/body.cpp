@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "avatar/body.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wellspring {
+namespace {
+
+quat about_x(float a) { return glm::angleAxis(a, vec3(1, 0, 0)); }
+quat about_y(float a) { return glm::angleAxis(a, vec3(0, 1, 0)); }
+quat about_z(float a) { return glm::angleAxis(a, vec3(0, 0, 1)); }
+
+// Turns a chain from the frame below it so that its last joint has the rotation `wanted` (humanoid space);
+// each link takes its share of the same turn.
+void bend_chain(const std::vector<WeightedJoint>& chain, quat below, quat wanted, Pose& pose) {
+  if (chain.empty()) return;
+  quat turn = glm::conjugate(below) * wanted;
+  if (turn.w < 0) turn = -turn;
+  float half = std::atan2(glm::length(vec3(turn.x, turn.y, turn.z)), turn.w);
+  vec3 axis = half > 1e-6f ? glm::normalize(vec3(turn.x, turn.y, turn.z)) : vec3(0, 1, 0);
+  for (const WeightedJoint& link : chain)
+    pose.rotations[size_t(link.joint)] = glm::angleAxis(2 * half * link.share, axis);
+}
+
+quat parent_rotation(const Rig& rig, const Pose& pose, int joint) {
+  int parent = rig.character->joints[size_t(joint)].parent;
+  return parent < 0 ? quat(1, 0, 0, 0) : eval_joint_frame(*rig.character, pose, parent).rotation;
+}
+
+void pose_arm(const Rig& rig, int side, const ArmPose& arm, float shoulders_up, Pose& pose) {
+  const ArmRig& bones = rig.arm[size_t(side)];
+  float s = side == 0 ? 1.0f : -1.0f;
+  if (bones.collar >= 0) {
+    float raised = std::max(arm.side, 0.6f * arm.forward);
+    pose.rotations[size_t(bones.collar)] = about_z(s * (shoulders_up + 0.12f * std::max(raised - 0.6f, 0.0f)));
+  }
+  if (bones.shoulder < 0 || bones.elbow < 0) return;
+  quat shoulder = about_z(s * arm.side) * about_x(-arm.forward) * about_y(-s * arm.turn);
+  quat elbow = about_x(-arm.elbow) * about_y(-s * 0.6f * arm.pronate);
+  quat wrist = about_y(-s * 0.4f * arm.pronate) * about_z(-s * arm.flex) * about_x(-arm.tilt);
+  pose.rotations[size_t(bones.shoulder)] = shoulder * bones.upper_hangs;
+  pose.rotations[size_t(bones.elbow)] = glm::conjugate(bones.upper_hangs) * elbow * bones.fore_hangs;
+  if (bones.wrist >= 0)
+    pose.rotations[size_t(bones.wrist)] = glm::conjugate(bones.fore_hangs) * wrist * bones.hand_hangs;
+  for (const FingerJoint& finger : bones.fingers) {
+    // Relaxed fingers bend more towards the little one and less at the tips.
+    constexpr float share[3] = {0.8f, 1.35f, 0.85f};
+    float wanted = arm.curl * share[finger.knuckle] * (0.75f + 0.13f * float(finger.finger));
+    float turn = std::max(wanted - finger.bent, -0.15f);
+    pose.rotations[size_t(finger.joint)] = glm::angleAxis(turn, bones.curl_axis);
+  }
+}
+
+mat3 limb_frame(vec3 along, vec3 pole) {
+  vec3 side = cross(pole, along);
+  float length = glm::length(side);
+  side = length > 1e-5f ? side / length : vec3(1, 0, 0);
+  return mat3(side, along, cross(side, along));
+}
+
+// Two bones from the posed hip to the planted ankle.
+void pose_leg(const Rig& rig, int side, const FootPlan& foot, Pose& pose) {
+  const LegRig& leg = rig.leg[size_t(side)];
+  const Character& character = *rig.character;
+  vec3 hip0 = character.joints[size_t(leg.hip)].center, knee0 = character.joints[size_t(leg.knee)].center;
+  vec3 ankle0 = character.joints[size_t(leg.ankle)].center;
+  vec3 axis = character.joints[size_t(rig.root)].center;
+  axis.y = 0;
+  quat facing = about_y(foot.facing);
+  vec3 ankle = axis + facing * (ankle0 - axis) + vec3(0, foot.lift, 0);
+  pose.rotations[size_t(leg.hip)] = quat(1, 0, 0, 0);
+  JointFrame hip = eval_joint_frame(character, pose, leg.hip);
+  float a = glm::length(knee0 - hip0), b = glm::length(ankle0 - knee0);
+  vec3 way = ankle - hip.center;
+  float d = std::clamp(glm::length(way), std::abs(a - b) + 1e-3f, (a + b) * 0.99995f);
+  vec3 along = glm::normalize(way);
+  float forward = (a * a - b * b + d * d) / (2 * d);
+  vec3 pole = facing * leg.pole;
+  pole = glm::normalize(pole - along * dot(pole, along));
+  vec3 knee = hip.center + along * forward + pole * std::sqrt(std::max(a * a - forward * forward, 0.0f));
+  vec3 end = hip.center + along * d;
+  auto turn = [&](vec3 from, vec3 to) {
+    mat3 m = limb_frame(glm::normalize(to), facing * leg.pole) * glm::transpose(limb_frame(glm::normalize(from), leg.pole));
+    return glm::normalize(glm::quat_cast(m));
+  };
+  quat thigh = turn(knee0 - hip0, knee - hip.center), shin = turn(ankle0 - knee0, end - knee);
+  pose.rotations[size_t(leg.hip)] = glm::conjugate(hip.rotation) * thigh;
+  pose.rotations[size_t(leg.knee)] = glm::conjugate(thigh) * shin;
+  // The toes hang a little while the foot is up.
+  pose.rotations[size_t(leg.ankle)] = glm::conjugate(shin) * facing * about_x(4 * foot.lift);
+}
+
+// Each eye points at the same place.
+void pose_eye(const Rig& rig, int side, vec3 point, Pose& pose) {
+  int joint = rig.eye[size_t(side)];
+  pose.rotations[size_t(joint)] = quat(1, 0, 0, 0);
+  JointFrame eye = eval_joint_frame(*rig.character, pose, joint);
+  vec3 way = glm::conjugate(eye.rotation) * (point - eye.center);
+  if (dot(way, way) < 1e-6f) return;
+  float yaw = std::clamp(std::atan2(way.x, way.z), -eye_limit_yaw, eye_limit_yaw);
+  float pitch = std::atan2(way.y, glm::length(vec2(way.x, way.z)));
+  pitch = std::clamp(pitch, -eye_limit_down, eye_limit_up);
+  pose.rotations[size_t(joint)] = about_y(yaw) * about_x(-pitch);
+}
+
+}  // namespace
+
+JointFrame eval_joint_frame(const Character& character, const Pose& pose, int joint) {
+  // From the joint up to the root: p' = c + r (p - c).
+  quat rotation(1, 0, 0, 0);
+  vec3 place = character.joints[size_t(joint)].center;
+  for (int j = joint; j >= 0; j = character.joints[size_t(j)].parent) {
+    quat turn = pose.rotations[size_t(j)];
+    vec3 center = character.joints[size_t(j)].center;
+    place = center + turn * (place - center);
+    rotation = turn * rotation;
+    if (character.joints[size_t(j)].parent < 0) place += pose.translation;
+  }
+  return {rotation, place};
+}
+
+void eval_body(const Rig& rig, const BodyPlan& plan, Pose& pose) {
+  quat heading = about_y(plan.heading);
+  quat pelvis = heading * about_y(plan.pelvis_turn.x) * about_x(plan.pelvis_turn.y) * about_z(plan.pelvis_turn.z);
+  bool legs = rig.leg[0].complete() && rig.leg[1].complete();
+  pose.translation = heading * plan.pelvis;
+  if (!legs) pose.translation = vec3(0), pelvis = heading;  // nothing to hold the feet in their place
+  pose.rotations[size_t(rig.root)] = pelvis;
+
+  quat chest = heading * about_y(plan.torso.x) * about_x(plan.torso.y) * about_z(plan.torso.z);
+  if (!rig.spine.empty())
+    bend_chain(rig.spine, parent_rotation(rig, pose, rig.spine[0].joint), chest, pose);
+  if (!rig.neck.empty()) {
+    quat head = about_y(plan.head.x) * about_x(-plan.head.y) * about_z(plan.head.z);
+    bend_chain(rig.neck, parent_rotation(rig, pose, rig.neck[0].joint), head, pose);
+  }
+  for (int side = 0; side < 2; side++) {
+    pose_arm(rig, side, plan.arm[size_t(side)], plan.shoulders_up, pose);
+    if (legs) pose_leg(rig, side, plan.foot[size_t(side)], pose);
+    if (rig.eyes_move) pose_eye(rig, side, plan.gaze_point, pose);
+  }
+}
+
+}  // namespace wellspring

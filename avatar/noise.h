@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Smooth noise over time: a function of (channel, time) alone, so there is nothing to drift.
+// Gradient noise in one dimension (Perlin 1985, with the quintic fade of Perlin 2002).
+#pragma once
+#include <cmath>
+
+#include "base/rng.h"
+
+namespace wellspring {
+
+// About -1..1 with mean 0; changes about once a second. `time` in seconds times the wanted frequency.
+inline float smooth_noise(uint32_t channel, double time) {
+  double cell = std::floor(time);
+  float t = float(time - cell);
+  auto slope = [&](double at) {
+    uint64_t h = mix64(mix64(channel) ^ uint64_t(int64_t(at)));
+    return float(int64_t(h >> 40)) * 0x1p-23f - 1.0f;
+  };
+  float a = slope(cell) * t, b = slope(cell + 1) * (t - 1);
+  float fade = t * t * t * (t * (t * 6 - 15) + 10);
+  return 2 * (a + (b - a) * fade);
+}
+
+}  // namespace wellspring
