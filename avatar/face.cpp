@@ -69,6 +69,8 @@ void eval_face(const Rig& rig, const FacePose& face, Pose& pose) {
   set(rig.brow_inner_up, face.brow_inner_up);
   set(rig.breathe, face.breath);
   for (size_t i = 0; i < 15; i++) set(rig.viseme[i], face.viseme[i]);
+  // Mouth shapes bring their own opening of the jaw.
+  if (rig.viseme[10] >= 0) return;
   if (rig.jaw_moves) pose.rotations[size_t(rig.jaw)] = glm::angleAxis(12_deg * std::min(face.open, 1.0f), vec3(1, 0, 0));
   else set(rig.mouth_open, 0.8f * face.open);
 }

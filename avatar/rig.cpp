@@ -2,6 +2,7 @@
 #include "avatar/rig.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string>
 
@@ -68,7 +69,6 @@ ArmRig make_arm(const Character& character, int side) {
 
   for (int f = 2; f <= 5; f++) {
     vec3 before = at(arm.wrist);
-    vec3 last_bone(0);
     for (int k = 0; k < 3; k++) {
       int joint = find(knuckles[k] + std::to_string(f));
       if (joint < 0) break;
@@ -78,7 +78,6 @@ ArmRig make_arm(const Character& character, int side) {
       float bent = std::asin(std::clamp(dot(cross(bone, ahead), arm.curl_axis), -1.0f, 1.0f));
       arm.fingers.push_back({joint, f - 1, k, bent});
       before = at(joint);
-      last_bone = bone;
     }
   }
   return arm;
@@ -165,7 +164,12 @@ Rig make_rig(const Character& character) {
   rig.mouth_open = displacer("mouth_open");
   rig.breathe = displacer("breathe");
   const char* visemes[15] = {"sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "ih", "oh", "ou"};
-  for (size_t i = 0; i < 15; i++) rig.viseme[i] = displacer(std::string("viseme_") + visemes[i]);
+  for (size_t i = 0; i < 15; i++) {
+    std::string name = std::string("viseme_") + visemes[i], small = name;
+    for (char& c : small) c = char(std::tolower(static_cast<unsigned char>(c)));
+    rig.viseme[i] = displacer(name);
+    if (rig.viseme[i] < 0) rig.viseme[i] = displacer(small);
+  }
   return rig;
 }
 

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// wellspring avatar FILE: inspects an H-Anim figure, and takes a picture of it as it stands there and breathes.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+
+#include "avatar/character_load.h"
+#include "avatar/describe.h"
+#include "avatar/storyteller.h"
+#include "base/load_error.h"
+#include "base/log.h"
+#include "frame/picture_file.h"
+#include "show/studio.h"
+
+namespace wellspring {
+namespace {
+
+struct Options {
+  std::string file, out, size = "720x1080";
+  std::vector<std::string> displacers;
+  std::vector<float> guest;
+  bool info = false, json = false, close = false, rest = false, calm = false;
+  double time = 0;
+  float turn = 0, speaking = 0;
+  int spp = 64;
+};
+
+bool read_size(const std::string& text, StudioShot& shot) {
+  char rest = 0;
+  return std::sscanf(text.c_str(), "%dx%d%c", &shot.width, &shot.height, &rest) == 2 && shot.width >= 16 &&
+         shot.height >= 16 && shot.width <= 8192 && shot.height <= 8192;
+}
+
+// The figure after `time` seconds of standing there, alone or before a guest.
+Pose pose_at(const Character& character, const Options& options) {
+  Pose pose = make_rest_pose(character);
+  if (options.rest) return pose;
+  Storyteller storyteller{&character, mat4(1)};
+  StorytellerState state;
+  StorytellerInput input;
+  StorytellerEvents events;
+  input.humanlike = !options.calm;
+  input.speaking = options.speaking;
+  if (options.guest.size() == 3)
+    input.guests = {{1, {options.guest[0], options.guest[1], options.guest[2]}, vec3(0), true}};
+  constexpr double step = 1.0 / 30;
+  tick_storyteller(state, storyteller, input, pose, events);
+  for (double t = 0; t < options.time; t += step) {
+    input.dt = float(std::min(step, options.time - t));
+    input.time = t + double(input.dt);
+    tick_storyteller(state, storyteller, input, pose, events);
+  }
+  return pose;
+}
+
+int fail(const std::string& text, int status) {
+  std::cerr << text << "\n";
+  return status;
+}
+
+int run(const Options& options) {
+  StudioShot shot;
+  if (!read_size(options.size, shot)) return fail("--size wants WIDTHxHEIGHT, 16 to 8192 each", 2);
+  if (!options.out.empty() && !is_picture_name(options.out)) return fail("--out: no kind of picture we write", 2);
+  if (!(options.time >= 0 && options.time <= 86400)) return fail("--time wants 0 to 86400 seconds", 2);
+  if (!options.guest.empty() && options.guest.size() != 3) return fail("--guest wants x,y,z", 2);
+  shot.close = options.close;
+  shot.turn = options.turn * pi / 180;
+  shot.spp = options.spp;
+
+  Character character = load_character(options.file);
+  if (options.json) std::cout << describe_json(character);
+  else if (options.info || options.out.empty()) std::cout << describe_text(character);
+  if (options.out.empty()) return 0;
+
+  Pose pose = pose_at(character, options);
+  for (const std::string& setting : options.displacers) {
+    size_t equals = setting.find('=');
+    int index = find_displacer(character, setting.substr(0, equals));
+    if (index < 0) return fail("--displacer: the figure has no '" + setting.substr(0, equals) + "'", 2);
+    pose.displacers[size_t(index)] = equals == std::string::npos ? 1 : float(std::atof(setting.c_str() + equals + 1));
+  }
+  std::vector<std::string> warnings;
+  Frame frame = render_studio(character, pose, shot, warnings);
+  for (const std::string& warning : warnings) std::cerr << "note: " << warning << "\n";
+  save_picture(options.out, frame, Tonemap{});
+  return 0;
+}
+
+}  // namespace
+}  // namespace wellspring
+
+int main(int argc, char** argv) {
+  using namespace wellspring;
+  log::start("avatar");
+  CLI::App app{"Inspects an H-Anim figure and takes pictures of it."};
+  Options options;
+  app.add_option("file", options.file, "X3D file of the figure")->required();
+  app.add_flag("--info", options.info, "tell what the figure consists of (the default without --out)");
+  app.add_flag("--json", options.json, "the same for programs");
+  app.add_option("--out", options.out, "picture to write: .png .jpg .pfm .exr");
+  app.add_option("--time", options.time, "seconds it has stood there");
+  app.add_option("--size", options.size, "WIDTHxHEIGHT of the picture");
+  app.add_option("--spp", options.spp, "samples a pixel")->check(CLI::Range(1, 65536));
+  app.add_flag("--close", options.close, "head and shoulders");
+  app.add_option("--turn", options.turn, "degrees the camera goes round the figure, to its left");
+  app.add_flag("--rest", options.rest, "the rest pose of the file instead of idling");
+  app.add_flag("--calm", options.calm, "without human-like noise");
+  app.add_option("--guest", options.guest, "a person's eyes at x,y,z before it: it greets and looks there")->delimiter(',');
+  app.add_option("--speaking", options.speaking, "mouth activity, 0 to 1")->check(CLI::Range(0.0f, 1.0f));
+  app.add_option("--displacer", options.displacers, "NAME or NAME=WEIGHT over the pose, may repeat");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    return run(options);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
+}
