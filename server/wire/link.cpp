@@ -8,13 +8,22 @@ std::vector<std::string> Link::take_texts() {
   std::vector<std::string> texts(std::make_move_iterator(in_.begin()),
                                  std::make_move_iterator(in_.end()));
   in_.clear();
+  bytes_in_ = 0;
   return texts;
 }
 
-void Link::send_text(std::string text) { send({.binary = false, .text = std::move(text), .packet = {}}); }
+void Link::send_text(std::string text) {
+  Out out;
+  out.text = std::move(text);
+  send(std::move(out));
+}
 
 void Link::send_sound(std::shared_ptr<const Packet> packet) {
-  if (packet) send({.binary = true, .text = {}, .packet = std::move(packet)});
+  if (!packet) return;
+  Out out;
+  out.binary = true;
+  out.packet = std::move(packet);
+  send(std::move(out));
 }
 
 void Link::send(Out out) {
@@ -59,7 +68,9 @@ bool Link::take_out(Out& out) {
     return true;
   }
   if (auto picture = picture_.take()) {
-    out = {.binary = true, .text = {}, .packet = std::move(*picture)};
+    out = Out{};
+    out.binary = out.picture = true;
+    out.packet = std::move(*picture);
     return true;
   }
   return false;
@@ -67,11 +78,13 @@ bool Link::take_out(Out& out) {
 
 void Link::push_text_in(std::string text) {
   std::lock_guard lock(mutex_);
-  if (in_.size() >= max_texts_in) {
+  bytes_in_ += text.size();
+  in_.push_back(std::move(text));
+  while (in_.size() > max_texts_in || (bytes_in_ > max_bytes_in && in_.size() > 1)) {
+    bytes_in_ -= in_.front().size();
     in_.pop_front();
     texts_dropped_++;
   }
-  in_.push_back(std::move(text));
 }
 
 void Link::set_wake(std::function<void()> wake) {

@@ -23,6 +23,7 @@ enum class LinkKind : uint8_t { visit, eye };  // /api/v1/visit, /api/v1/eye
 class Link {
  public:
   static constexpr size_t max_texts_in = 256;  // more unread: the oldest are dropped and counted
+  static constexpr size_t max_bytes_in = 1 << 20;  // likewise
   static constexpr size_t max_texts_out = 64;  // more unsent: the link is closed (a reader this slow is gone)
 
   Link(uint64_t id, LinkKind kind, std::string peer) : id(id), kind(kind), peer(std::move(peer)) {}
@@ -42,6 +43,7 @@ class Link {
   // ---- called by stream ----
   struct Out {  // next thing to write: text, or binary
     bool binary = false;
+    bool picture = false;
     std::string text;
     std::shared_ptr<const Packet> packet;
   };
@@ -59,6 +61,7 @@ class Link {
   void wake();
   mutable std::mutex mutex_;
   std::deque<std::string> in_;
+  size_t bytes_in_ = 0;
   std::deque<Out> out_;
   Latest<std::shared_ptr<const Packet>> picture_;
   std::function<void()> wake_;

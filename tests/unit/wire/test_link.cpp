@@ -30,6 +30,17 @@ TEST(Link, beyond_the_bound_the_oldest_text_is_dropped_and_counted) {
   EXPECT_EQ(link.texts_dropped(), 3u);
 }
 
+TEST(Link, unread_texts_are_bounded_in_bytes_too) {
+  Link link(1, LinkKind::visit, "");
+  for (int i = 0; i < 40; i++) link.push_text_in(std::string(60'000, char('A' + i)));
+  const auto texts = link.take_texts();
+  ASSERT_EQ(texts.size(), Link::max_bytes_in / 60'000);
+  EXPECT_EQ(texts.back()[0], 'A' + 39);
+  EXPECT_EQ(link.texts_dropped(), 40 - texts.size());
+  link.push_text_in("later");
+  EXPECT_EQ(link.take_texts().size(), 1u);
+}
+
 TEST(Link, texts_and_sounds_in_order_then_the_newest_picture) {
   Link link(1, LinkKind::visit, "");
   link.send_picture(packet(1));

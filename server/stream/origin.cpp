@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stream/origin.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace wellspring {
+
+static std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c += 'a' - 'A';
+  return out;
+}
+
+struct Authority {
+  std::string host, port;
+  bool operator==(const Authority&) const = default;
+};
+
+// "host", "host:80", "[::1]:80"; nothing for what is neither.
+static std::optional<Authority> read_authority(std::string_view text, std::string_view default_port) {
+  size_t end = text.find(':');
+  if (text.starts_with('[')) {
+    end = text.find(']');
+    if (end == text.npos) return std::nullopt;
+    end++;
+  }
+  end = std::min(end, text.size());
+  Authority authority{std::string(text.substr(0, end)), std::string(default_port)};
+  if (end < text.size()) {
+    if (text[end] != ':') return std::nullopt;
+    authority.port = std::string(text.substr(end + 1));
+  }
+  const bool digits = std::ranges::all_of(authority.port, [](char c) { return c >= '0' && c <= '9'; });
+  if (authority.host.empty() || authority.port.empty() || authority.port.size() > 5 || !digits)
+    return std::nullopt;
+  if (authority.host.find_first_of("/@?#\\ \t,") != std::string::npos) return std::nullopt;
+  return authority;
+}
+
+bool origin_allowed(const std::vector<std::string_view>& origins, std::string_view host,
+                    std::string_view allowed) {
+  if (origins.empty()) return true;
+  if (origins.size() > 1) return false;
+  if (allowed == "*") return true;
+  const std::string origin = lower(origins[0]);
+  if (!allowed.empty() && origin == lower(allowed)) return true;
+  const size_t colon = origin.find("://");
+  if (colon == origin.npos) return false;  // also "null"
+  const std::string scheme = origin.substr(0, colon);
+  if (scheme != "http" && scheme != "https") return false;
+  const std::string_view default_port = scheme == "http" ? "80" : "443";
+  const auto theirs = read_authority(std::string_view(origin).substr(colon + 3), default_port);
+  const auto ours = read_authority(lower(host), default_port);
+  return theirs && ours && *theirs == *ours;
+}
+
+bool offers_protocol(std::string_view header, std::string_view wanted) {
+  while (!header.empty()) {
+    const size_t end = std::min(header.find(','), header.size());
+    std::string_view offer = header.substr(0, end);
+    header.remove_prefix(std::min(end + 1, header.size()));
+    while (!offer.empty() && (offer.front() == ' ' || offer.front() == '\t')) offer.remove_prefix(1);
+    while (!offer.empty() && (offer.back() == ' ' || offer.back() == '\t')) offer.remove_suffix(1);
+    if (offer == wanted) return true;
+  }
+  return false;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// One connection from accept to end, as a coroutine on a strand of its own: HTTP requests one after the
+// other (session_http.cpp) and, after an upgrade, a WebSocket (session_websocket.cpp: this coroutine reads, a
+// second one writes). Only for the .cpp files of this folder (heavy).
+#pragma once
+#include <memory>
+#include <string>
+
+#include "stream/asio.h"
+#include "stream/core.h"
+#include "stream/rate.h"
+#include "wire/http.h"
+#include "wire/link.h"
+
+namespace wellspring {
+
+inline constexpr size_t max_header_bytes = 16 * 1024;
+inline constexpr size_t max_body_bytes = 64 * 1024;
+inline constexpr double http_write_timeout = 30;       // seconds for a whole reply
+inline constexpr double max_messages_a_second = 400;   // WebSocket, pings and pongs included
+inline constexpr double max_bytes_a_second = 1 << 20;  // WebSocket
+inline constexpr double burst_seconds = 2;
+
+// Stale pictures must not pile up where newest-wins cannot reach them, in the kernel. A send buffer of 256 KiB holds one
+// large or two usual pictures of 1280x720 and still fills 40 Mbit/s at 50 ms; of that, no more than 64 KiB may
+// be waiting unsent (TCP_NOTSENT_LOWAT), the rest is on its way. It is also all the memory that a viewer who
+// stopped reading can hold, besides the one picture being written.
+inline constexpr int send_buffer_bytes = 256 * 1024;
+inline constexpr int unsent_bytes = 64 * 1024;
+
+using Request = http::request<http::string_body>;
+
+// Lets one coroutine wait for others of the same strand; a raise before the wait is not lost.
+class Signal {
+ public:
+  explicit Signal(const net::any_io_executor& strand) : timer_(strand) {}
+  void raise();
+  net::awaitable<void> wait();
+
+ private:
+  net::steady_timer timer_;
+  bool raised_ = false;
+};
+
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  Session(std::shared_ptr<Core> core, tcp::socket socket, uint64_t id, std::string peer);
+  void start(bool refused);  // refused: 503 whatever it asks
+  // From any thread. Politely: the answer being made is still written, a WebSocket closed with 1001.
+  // Else the socket is closed at once.
+  void stop(bool politely);
+
+ private:
+  net::awaitable<void> run(bool refused);
+  void cut(const char* why);
+
+  // session_http.cpp
+  net::awaitable<void> serve_http();  // returns at the end or with upgrade_ set
+  net::awaitable<int> read_request(Request& request);
+  net::awaitable<void> write_refusal(HttpQuestion question, int status, std::string message);
+  net::awaitable<HttpReply> ask(HttpQuestion question);
+  net::awaitable<bool> write_reply(HttpQuestion question, HttpReply reply, unsigned version,
+                                   bool keep_alive);
+  net::awaitable<void> linger();
+  HttpReply judge_upgrade(const HttpQuestion& question, const Request& request) const;
+
+  // session_websocket.cpp
+  net::awaitable<void> serve_websocket();
+  net::awaitable<bool> accept_websocket();
+  net::awaitable<void> read_messages();
+  net::awaitable<void> write_messages();
+  void want_close(websocket::close_code code, std::string reason);
+  bool count_input(double messages, double bytes);
+  void start_deadline();
+  void end_deadline();
+  void wake_writer();  // from any thread
+
+  beast::tcp_stream& stream() { return ws_.next_layer(); }
+
+  const std::shared_ptr<Core> core_;
+  const uint64_t id_;
+  const std::string peer_;
+  websocket::stream<beast::tcp_stream, false> ws_;  // false: no permessage-deflate; JPEG does not shrink
+  beast::flat_buffer buffer_;
+  bool stopping_ = false;    // stop() was called
+  bool reading_ = false;     // HTTP: waiting for a request
+  Signal answered_;
+
+  std::unique_ptr<Request> upgrade_;  // the request that asked for a WebSocket
+  std::shared_ptr<Link> link_;
+  Signal writable_, writer_ended_;
+  std::atomic<bool> wake_posted_{false};
+  net::steady_timer deadline_;
+  uint64_t deadline_number_ = 0;
+  websocket::close_reason close_reason_{websocket::close_code::none};
+  bool ended_ = false;
+  RateBound messages_{max_messages_a_second, max_messages_a_second * burst_seconds};
+  RateBound bytes_{max_bytes_a_second, max_bytes_a_second * burst_seconds};
+};
+
+}  // namespace wellspring

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stream/target.h"
+
+#include <optional>
+
+namespace wellspring {
+
+static int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+static bool is_escape(std::string_view text, size_t at) {
+  return at + 2 < text.size() && text[at] == '%' && hex_digit(text[at + 1]) >= 0 &&
+         hex_digit(text[at + 2]) >= 0;
+}
+
+static std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space) {
+  std::string out;
+  out.reserve(text.size());
+  for (size_t i = 0; i < text.size(); i++) {
+    if (text[i] == '%') {
+      if (!is_escape(text, i)) return std::nullopt;
+      out += char(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2]));
+      i += 2;
+    } else {
+      out += plus_is_space && text[i] == '+' ? ' ' : text[i];
+    }
+  }
+  return out;
+}
+
+static bool is_utf8(std::string_view text) {
+  for (size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const size_t more = lead < 0x80 ? 0 : lead < 0xc2 ? 9 : lead < 0xe0 ? 1 : lead < 0xf0 ? 2 : lead < 0xf5 ? 3 : 9;
+    if (i + more >= text.size()) return false;
+    for (size_t k = 1; k <= more; k++)
+      if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return false;
+    const auto second = more ? static_cast<unsigned char>(text[i + 1]) : 0;
+    if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second > 0x9f) ||
+        (lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second > 0x8f))
+      return false;  // overlong, surrogate, beyond U+10FFFF
+    i += more + 1;
+  }
+  return true;
+}
+
+static bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+static bool good_path(std::string_view path) {
+  if (path.empty() || path[0] != '/' || !is_utf8(path)) return false;
+  for (size_t i = 0; i < path.size(); i++)
+    if (path[i] == '\\' || is_control(path[i]) || is_escape(path, i)) return false;
+  for (size_t begin = 1; begin < path.size();) {  // a slash at the very end is fine
+    const size_t end = std::min(path.find('/', begin), path.size());
+    const std::string_view segment = path.substr(begin, end - begin);
+    if (segment.empty() || segment == "." || segment == "..") return false;
+    begin = end + 1;
+  }
+  return true;
+}
+
+static bool has_encoded_slash(std::string_view path) {
+  for (size_t i = 0; i + 2 < path.size(); i++)
+    if (path[i] == '%' && path[i + 1] == '2' && (path[i + 2] == 'f' || path[i + 2] == 'F')) return true;
+  return false;
+}
+
+static bool read_query(std::string_view text, HttpQuestion& question) {
+  size_t fields = 0;
+  while (!text.empty()) {
+    const size_t end = std::min(text.find('&'), text.size());
+    const std::string_view field = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (field.empty()) continue;
+    if (++fields > max_query_fields) return false;
+    const size_t equals = std::min(field.find('='), field.size());
+    const auto name = percent_decode(field.substr(0, equals), true);
+    const auto value = percent_decode(field.substr(std::min(equals + 1, field.size())), true);
+    if (!name || !value || !is_utf8(*name) || !is_utf8(*value)) return false;
+    if (name->find('\0') != std::string::npos || value->find('\0') != std::string::npos) return false;
+    question.query[*name] = *value;
+  }
+  return true;
+}
+
+int read_target(std::string_view target, HttpQuestion& question) {
+  if (target.size() > max_target_bytes) return 414;
+  if (target.starts_with("http://") || target.starts_with("https://")) {  // as proxies ask
+    const size_t slash = target.find('/', target.find("//") + 2);
+    target = slash == target.npos ? "/" : target.substr(slash);
+  }
+  if (target.find('#') != target.npos) return 400;
+  const size_t mark = std::min(target.find('?'), target.size());
+  const std::string_view raw_path = target.substr(0, mark);
+  const auto path = percent_decode(raw_path, false);
+  if (!path || has_encoded_slash(raw_path) || !good_path(*path)) return 400;
+  question.path = *path;
+  question.query.clear();
+  return read_query(target.substr(std::min(mark + 1, target.size())), question) ? 200 : 400;
+}
+
+}  // namespace wellspring
