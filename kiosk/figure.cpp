@@ -14,6 +14,9 @@ namespace {
 // neck. Metres.
 const vec3 head_radii{0.077f, 0.118f, 0.095f};
 const vec3 eyes_to_center{0, -0.012f, -0.085f};  // from between the eyes to the ellipsoid's centre
+// What stands out of the face: the mouth's part with the chin, and the nose. {centre, radii}
+const vec3 jaw_center{0, -0.058f, 0.045f}, jaw_radii{0.050f, 0.056f, 0.056f};
+const vec3 nose_center{0, -0.012f, 0.090f}, nose_radii{0.014f, 0.028f, 0.026f};
 
 float smooth(float a, float b, float x) {
   float t = glm::clamp((x - a) / (b - a), 0.f, 1.f);
@@ -76,10 +79,16 @@ float room_at(float u, float v) {
   return wall;
 }
 
-// Standard normal from two uniform numbers of a hash (Box and Muller 1958).
-float gauss(uint64_t bits) {
-  float a = float((bits >> 40) + 1) * 0x1p-24f, b = float(bits & 0xffffff) * 0x1p-24f;
-  return std::sqrt(-2 * std::log(a)) * std::cos(2 * pi * b);
+// Standard normal numbers (Box and Muller 1958), a table to draw from: a picture needs 300,000 of them.
+const std::vector<float>& normal_numbers() {
+  static const std::vector<float> numbers = [] {
+    std::vector<float> out(1 << 13);
+    Rng rng(7);
+    for (float& n : out)
+      n = std::sqrt(-2 * std::log(1 - rng.uniform())) * std::cos(2 * pi * rng.uniform());
+    return out;
+  }();
+  return numbers;
 }
 
 }  // namespace
@@ -108,7 +117,8 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
   const vec3 lens = mount.offset;
   const vec3 lamp = glm::normalize(vec3(-0.35f, 0.75f, -0.9f));
   const vec3 neck = center + vec3(0, -0.15f, 0.02f), torso = center + vec3(0, -0.52f, 0.03f);
-  const uint64_t key = mix64(room.seed ^ uint64_t(std::llround(time * 1000)));
+  const std::vector<float>& normal = normal_numbers();
+  Rng rng(mix64(room.seed ^ uint64_t(std::llround(time * 1000))));
   for (int y = 0; y < room.height; y++)
     for (int x = 0; x < room.width; x++) {
       float grey = room_at((x + 0.5f) / room.width, (y + 0.5f) / room.height);
@@ -117,7 +127,8 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
         Ray ray{lens, camera_to_screen(mount, camera) - lens};
         Ray in_head{to_head * (ray.origin - center), to_head * ray.direction};
         float t = hit_ellipsoid(in_head, vec3(0), head_radii);
-        float nose = hit_ellipsoid(in_head, vec3(0, -0.012f, 0.090f), vec3(0.013f, 0.026f, 0.020f));
+        float nose = hit_ellipsoid(in_head, nose_center, nose_radii);
+        float jaw = hit_ellipsoid(in_head, jaw_center, jaw_radii);
         float best = 1e9f;
         auto shade = [&](float at, vec3 normal, float albedo) {
           best = at;
@@ -127,11 +138,15 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
           vec3 p = in_head.origin + t * in_head.direction;
           shade(t, glm::transpose(to_head) * glm::normalize(p / (head_radii * head_radii)), head_albedo(p));
         }
-        if (nose > 0 && nose < best) {
-          vec3 p = in_head.origin + nose * in_head.direction;
-          vec3 n = glm::normalize((p - vec3(0, -0.012f, 0.090f)) / vec3(0.013f, 0.026f, 0.020f));
-          shade(nose, glm::transpose(to_head) * n, head_albedo({p.x, p.y, 0.05f}));
-        }
+        // Features are drawn by where they lie across the face, whatever bulges below them.
+        auto feature = [&](float at, vec3 c, vec3 radii, float soften) {
+          if (!(at > 0 && at < best)) return;
+          vec3 p = in_head.origin + at * in_head.direction;
+          vec3 n = glm::normalize(glm::mix((p - c) / (radii * radii), p / (head_radii * head_radii), soften));
+          shade(at, glm::transpose(to_head) * n, head_albedo({p.x, p.y, 0.05f}));
+        };
+        feature(jaw, jaw_center, jaw_radii, 0.7f);
+        feature(nose, nose_center, nose_radii, 0.3f);
         auto body = [&](vec3 c, vec3 radii, float albedo) {
           float at = hit_ellipsoid(ray, c, radii);
           if (at > 0 && at < best) {
@@ -143,7 +158,7 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
         body(torso, {0.24f, 0.34f, 0.13f}, 0.24f);
       }
       size_t i = size_t(y) * room.width + x;
-      float level = 255 * room.light * grey + room.noise * gauss(mix64(key + i));
+      float level = 255 * room.light * grey + room.noise * normal[rng.next() & (normal.size() - 1)];
       frame.pixels[i] = uint8_t(glm::clamp(level + 0.5f, 0.f, 255.f));
     }
   return frame;

@@ -78,4 +78,11 @@ mat3 rotation_as_seen(const Mount& mount, vec3 angles, vec3 camera) {
                                rotation_matrix(angles));
 }
 
+vec3 rotation_to_center(vec3 position) {
+  float length = glm::length(position);
+  if (!(length > 1e-6f)) return vec3(0);
+  vec3 forward = -position / length;
+  return {std::atan2(forward.x, -forward.z), std::asin(glm::clamp(forward.y, -1.f, 1.f)), 0};
+}
+
 }  // namespace wellspring

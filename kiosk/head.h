@@ -47,4 +47,7 @@ vec3 yaw_pitch_roll(const mat3& rotation);
 vec3 rotation_on_screen(const Mount& mount, const mat3& seen, vec3 camera);
 mat3 rotation_as_seen(const Mount& mount, vec3 yaw_pitch_roll, vec3 camera);
 
+// The rotation, in screen axes, of a head at `position` (on the screen's visitor side) that faces the screen's centre.
+vec3 rotation_to_center(vec3 position);
+
 }  // namespace wellspring

@@ -32,6 +32,7 @@ struct Observer::Impl {
     double seen_time = 0;
   };
   std::map<uint32_t, Head> heads;
+  GrayFrame previous;
   double last_time = -1e9;
 
   explicit Impl(const ObserverSettings& s)
@@ -44,10 +45,12 @@ struct Observer::Impl {
     vec3 bearing = step_one_euro(head.bearing, bearing_filter, frame.time, {raw.x / raw.z, raw.y / raw.z, 0});
     vec3 away = step_one_euro(head.distance, distance_filter, frame.time, {std::log(raw.z), 0, 0});
     vec3 camera = vec3(bearing.x, bearing.y, 1) * std::exp(away.x);
-    mat3 seen = step_turn(head.turn, frame, who.face, who.seen);
-    vec3 rotation = rotation_on_screen(mount, seen, camera);
     head.person.id = who.id;
     head.person.position = camera_to_screen(mount, camera);
+    const float rest =
+        yaw_pitch_roll(rotation_as_seen(mount, rotation_to_center(head.person.position), camera)).y;
+    const mat3 seen = head.turn.step(previous, frame, who.face, who.seen, rest);
+    const vec3 rotation = rotation_on_screen(mount, seen, camera);
     head.person.rotation = step_one_euro(head.rotation, rotation_filter, frame.time, rotation);
     head.person.confidence = std::clamp(who.face.confidence, 0.f, 1.f);
     head.seen_time = frame.time;
@@ -95,6 +98,7 @@ Observation Observer::step(const GrayFrame& frame) {
   std::erase_if(m.heads, [&](const auto& head) {
     return frame.time - head.second.seen_time > m.settings.people.recall;
   });
+  m.previous = frame;
   return m.finish(frame.time, motion.moving, face);
 }
 
