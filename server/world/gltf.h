@@ -14,6 +14,8 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -35,8 +37,12 @@ struct File {
   bool has_binary = false;
   std::vector<Bytes> buffers;  // filled on first use
   std::vector<char> buffer_ready;
-  int64_t numbers_read = 0;    // out of accessors so far; bounded by total_limit
-  int64_t triangles_made = 0;  // bounded by triangle_limit
+  // Accessors decoded lately: primitives of one mesh often share them. Dropped when they grow large.
+  std::map<size_t, std::shared_ptr<const std::vector<float>>> decoded;
+  int64_t decoded_numbers = 0;  // held in `decoded`
+  std::vector<uint32_t> renamed;  // scratch of gltf_mesh.cpp: all unseen between primitives
+  // Bounds of what a file may cost (gltf_data.h).
+  int64_t numbers_read = 0, vertices_made = 0, triangles_made = 0;
   std::vector<std::string> warnings;
   std::set<std::string> said;
 };

@@ -59,8 +59,8 @@ void check_formats(File& file, const json& sampler, const std::string& where, co
 }
 
 void read_track(File& file, const json& sampler, const std::string& where, Track& track) {
-  track.times = read_floats(file, size_t(integer(sampler, "input", 0)));
-  track.values = read_floats(file, size_t(integer(sampler, "output", 0)));
+  track.times = *read_floats(file, size_t(integer(sampler, "input", 0)));
+  track.values = *read_floats(file, size_t(integer(sampler, "output", 0)));
   for (size_t i = 0; i < track.times.size(); i++) {
     if (!std::isfinite(track.times[i]) || (i > 0 && track.times[i] < track.times[i - 1]))
       refuse(file, where + "/input", "times do not increase at key " + std::to_string(i));

@@ -71,8 +71,9 @@ void check_attributes(File& file, const json& attributes, int64_t count, bool is
 }
 
 template <class Vector>
-std::vector<Vector> read_vectors(File& file, const json& attributes, const std::string& semantic) {
-  std::vector<float> values = read_attribute(file, attributes, semantic);
+std::vector<Vector> read_vectors(File& file, const json& attributes, const std::string& semantic,
+                                 const Used& used) {
+  std::vector<float> values = read_attribute(file, attributes, semantic, used);
   constexpr size_t length = sizeof(Vector) / sizeof(float);
   std::vector<Vector> result(values.size() / length);
   if (!result.empty()) std::memcpy(result.data(), values.data(), result.size() * sizeof(Vector));
@@ -115,37 +116,52 @@ void check_primitive(File& file, const json& primitive, const std::string& where
   if (integer(primitive, "mode", 4) > 6) refuse(file, where + "/mode", "is no topology of glTF 2.0");
 }
 
-std::vector<float> read_attribute(File& file, const json& attributes, const std::string& semantic) {
+int64_t vertex_bound(const File& file, const json& primitive) {
+  const json* position = find(primitive["attributes"], "POSITION");
+  if (!position || integer(primitive, "mode", 4) < 4) return 0;
+  int64_t count = form_of(file, position->get<size_t>()).count;
+  const json* indices = find(primitive, "indices");
+  return indices ? std::min(count, form_of(file, indices->get<size_t>()).count) : count;
+}
+
+std::vector<float> read_attribute(File& file, const json& attributes, const std::string& semantic,
+                                  const Used& used) {
   const json* accessor = find(attributes, semantic.c_str());
   if (!accessor) return {};
   size_t index = accessor->get<size_t>();
-  std::vector<float> values = read_floats(file, index);
+  std::shared_ptr<const std::vector<float>> all = read_floats(file, index);
   Form form = form_of(file, index);
   std::string name = family(semantic);
+  size_t components = size_t(form.components);
+  bool widen = name == "COLOR" && components == 3;
+  std::vector<float> values;
+  values.reserve(used.size() * (widen ? 4 : components));
+  for (uint32_t vertex : used) {
+    auto element = all->begin() + std::ptrdiff_t(vertex * components);
+    values.insert(values.end(), element, element + std::ptrdiff_t(components));
+    if (widen) values.push_back(1);
+  }
   if ((name == "COLOR" || name == "WEIGHTS") && !form.normalized &&
       form.component_type != float_component) {
     warn(file, at("/accessors", index), name + " of integers is read as normalised");
     float largest = form.component_type == unsigned_byte ? 255.0f : 65535.0f;
-    for (float& value : values) value /= largest;
-  }
-  if (name == "COLOR" && form.components == 3) {
-    std::vector<float> wide;
-    wide.reserve(values.size() / 3 * 4);
-    for (size_t i = 0; i + 2 < values.size(); i += 3)
-      wide.insert(wide.end(), {values[i], values[i + 1], values[i + 2], 1.0f});
-    return wide;
+    for (size_t i = 0; i < values.size(); i++)
+      if (!widen || i % 4 != 3) values[i] /= largest;
   }
   return values;
 }
 
-std::vector<vec2> read_vec2s(File& file, const json& attributes, const std::string& semantic) {
-  return read_vectors<vec2>(file, attributes, semantic);
+std::vector<vec2> read_vec2s(File& file, const json& attributes, const std::string& semantic,
+                             const Used& used) {
+  return read_vectors<vec2>(file, attributes, semantic, used);
 }
-std::vector<vec3> read_vec3s(File& file, const json& attributes, const std::string& semantic) {
-  return read_vectors<vec3>(file, attributes, semantic);
+std::vector<vec3> read_vec3s(File& file, const json& attributes, const std::string& semantic,
+                             const Used& used) {
+  return read_vectors<vec3>(file, attributes, semantic, used);
 }
-std::vector<vec4> read_vec4s(File& file, const json& attributes, const std::string& semantic) {
-  return read_vectors<vec4>(file, attributes, semantic);
+std::vector<vec4> read_vec4s(File& file, const json& attributes, const std::string& semantic,
+                             const Used& used) {
+  return read_vectors<vec4>(file, attributes, semantic, used);
 }
 
 }  // namespace wellspring::gltf

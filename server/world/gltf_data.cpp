@@ -143,8 +143,9 @@ void check_accessor(File& file, size_t index) {
   int64_t component_type = integer(accessor, "componentType", 0);
   int bytes = component_type <= float_component ? component_size(int(component_type)) : 0;
   int64_t count = integer(accessor, "count", 0);
-  if (count > accessor_limit / 16)
-    refuse(file, where + "/count", "more than " + std::to_string(accessor_limit / 16) + " elements");
+  int64_t limit = find(accessor, "bufferView") ? element_limit : dataless_limit;
+  if (count > limit)
+    refuse(file, where + "/count", "more than " + std::to_string(limit) + " elements");
   if (!type || bytes == 0) {
     warn(file, where, "an accessor of unknown type");
     return;  // refused where it is used
@@ -223,7 +224,7 @@ const NamedType& readable_type(const File& file, size_t accessor, const Form& fo
 
 void charge(File& file, size_t accessor, const Form& form) {
   file.numbers_read += form.count * form.components;
-  if (file.numbers_read > total_limit)
+  if (file.numbers_read > numbers_limit)
     refuse(file, accessor_place(accessor), "the file makes too much data out of its bytes");
 }
 
@@ -281,14 +282,16 @@ bool has_data(const File& file, size_t accessor) {
   return find(items(file.root, "buffers")[buffer], "uri") || (buffer == 0 && file.has_binary);
 }
 
-std::vector<float> read_floats(File& file, size_t accessor) {
+std::shared_ptr<const std::vector<float>> read_floats(File& file, size_t accessor) {
+  if (auto known = file.decoded.find(accessor); known != file.decoded.end()) return known->second;
   Form form = form_of(file, accessor);
   const NamedType& type = readable_type(file, accessor, form);
   const json& object = items(file.root, "accessors")[accessor];
   ElementLayout layout = layout_of(type, form.component_type);
   charge(file, accessor, form);
-  std::vector<float> values(size_t(form.count) * size_t(layout.components), 0.0f);
-  if (form.count == 0) return values;
+  auto made = std::make_shared<std::vector<float>>(size_t(form.count) * size_t(layout.components));
+  std::vector<float>& values = *made;
+  if (form.count == 0) return made;
   if (const json* view_index = find(object, "bufferView")) {
     const json& view = items(file.root, "bufferViews")[view_index->get<size_t>()];
     read_elements(form.component_type, start_of(file, object), form.count,
@@ -305,7 +308,14 @@ std::vector<float> read_floats(File& file, size_t accessor) {
                       form.normalized, &values[replaced[i] * size_t(layout.components)]);
     }
   }
-  return values;
+  constexpr int64_t keep = int64_t(1) << 26;
+  if (file.decoded_numbers + int64_t(values.size()) > keep) {
+    file.decoded.clear();
+    file.decoded_numbers = 0;
+  }
+  file.decoded_numbers += int64_t(values.size());
+  file.decoded[accessor] = made;
+  return made;
 }
 
 std::vector<uint32_t> read_integers(File& file, size_t accessor) {

@@ -27,17 +27,20 @@ struct Form {
 Form form_of(const File& file, size_t accessor);
 std::string describe(const File& file, size_t accessor);  // "VEC3 of FLOAT", for messages
 
-// Numbers one accessor may hold, and numbers that may be read in total: many accessors over the same
-// bytes, or over none, cannot make a small file take unbounded memory.
-constexpr int64_t accessor_limit = int64_t(1) << 28;
-constexpr int64_t total_limit = int64_t(1) << 29;
+// What a file may cost: many accessors over the same bytes, or over none, cannot make a small file take
+// unbounded memory or time.
+constexpr int64_t element_limit = int64_t(1) << 24;      // of one accessor
+constexpr int64_t dataless_limit = int64_t(1) << 22;     // of one accessor without bytes of its own
+constexpr int64_t numbers_limit = int64_t(1) << 29;      // decoded in all
+constexpr int64_t vertices_limit = 48'000'000;           // kept in all
+constexpr int64_t triangles_limit = 32'000'000;          // kept in all
 
 // Whether an accessor's bytes exist at all: glTF lets a buffer be declared without content.
 bool has_data(const File& file, size_t accessor);
 
 // All elements as floats, `components` after one another. Matrices lose their column padding.
 // Throws LoadError if the accessor's type is unknown or its bytes are missing.
-std::vector<float> read_floats(File& file, size_t accessor);
+std::shared_ptr<const std::vector<float>> read_floats(File& file, size_t accessor);
 // Elements of an unsigned integer accessor. Throws LoadError.
 std::vector<uint32_t> read_integers(File& file, size_t accessor);
 // The bytes of a buffer view.

@@ -11,18 +11,22 @@
 namespace wellspring::gltf {
 namespace {
 
-constexpr int64_t triangle_limit = 32'000'000;
 constexpr float farthest = 1e15f;  // beyond it squares of distances leave the range of float
 
 // A primitive on its way to a mesh; positions in double until the joints have moved them.
 struct Draft {
   Mesh mesh;
   std::vector<dvec3> positions;
+  Used used;  // vertex i of the mesh is the file's vertex used[i]
 };
 
 std::vector<uvec3> read_triangles(File& file, const json& primitive, const std::string& where,
                                   size_t vertex_count) {
   int64_t mode = integer(primitive, "mode", 4);
+  if (mode < 4) {
+    warn(file, where, "points and lines are not drawn");
+    return {};
+  }
   std::vector<uint32_t> list;
   if (const json* indices = find(primitive, "indices")) {
     list = read_integers(file, indices->get<size_t>());
@@ -35,16 +39,12 @@ std::vector<uvec3> read_triangles(File& file, const json& primitive, const std::
     list.resize(vertex_count);
     for (size_t i = 0; i < vertex_count; i++) list[i] = uint32_t(i);
   }
-  if (mode < 4) {
-    warn(file, where, "points and lines are not drawn");
-    return {};
-  }
   size_t count = mode == 4 ? list.size() / 3 : list.size() < 3 ? 0 : list.size() - 2;
   if (count == 0) warn(file, where, "a primitive without triangles");
   if (mode == 4 && list.size() % 3 != 0)
     warn(file, where, "the number of indices is not a multiple of three; the rest is ignored");
-  if ((file.triangles_made += int64_t(count)) > triangle_limit)
-    refuse(file, where, "the file makes more than " + std::to_string(triangle_limit) + " triangles");
+  if ((file.triangles_made += int64_t(count)) > triangles_limit)
+    refuse(file, where, "the file makes more than " + std::to_string(triangles_limit) + " triangles");
   std::vector<uvec3> triangles;
   triangles.reserve(count);
   for (size_t i = 0; i < count; i++) {
@@ -55,6 +55,25 @@ std::vector<uvec3> read_triangles(File& file, const json& primitive, const std::
     if (t.x != t.y && t.y != t.z && t.z != t.x) triangles.push_back(t);
   }
   return triangles;
+}
+
+// Keeps only vertices that a triangle uses: exporters let many primitives share one long list.
+void choose_vertices(File& file, const std::string& where, size_t vertex_count, Draft& draft) {
+  constexpr uint32_t unseen = 0xffffffffu;
+  std::vector<uint32_t>& renamed = file.renamed;
+  if (renamed.size() < vertex_count) renamed.resize(vertex_count, unseen);
+  for (uvec3& triangle : draft.mesh.triangles)
+    for (int corner = 0; corner < 3; corner++) {
+      uint32_t& name = renamed[triangle[corner]];
+      if (name == unseen) {
+        name = uint32_t(draft.used.size());
+        draft.used.push_back(triangle[corner]);
+      }
+      triangle[corner] = name;
+    }
+  for (uint32_t vertex : draft.used) renamed[vertex] = unseen;
+  if ((file.vertices_made += int64_t(draft.used.size())) > vertices_limit)
+    refuse(file, where, "the file makes more than " + std::to_string(vertices_limit) + " vertices");
 }
 
 template <class Values, class Deltas>
@@ -71,12 +90,12 @@ void apply_targets(File& file, const json& primitive, const std::vector<double>&
   Mesh& mesh = draft.mesh;
   for (size_t i = 0; i < std::min(targets.size(), weights.size()); i++) {
     if (weights[i] == 0) continue;
-    add_scaled(draft.positions, read_vec3s(file, targets[i], "POSITION"), weights[i]);
-    add_scaled(mesh.normals, read_vec3s(file, targets[i], "NORMAL"), weights[i]);
-    add_scaled(mesh.tangents, read_vec3s(file, targets[i], "TANGENT"), weights[i]);
-    add_scaled(mesh.uv[0], read_vec2s(file, targets[i], "TEXCOORD_0"), weights[i]);
-    add_scaled(mesh.uv[1], read_vec2s(file, targets[i], "TEXCOORD_1"), weights[i]);
-    add_scaled(mesh.colors, read_vec4s(file, targets[i], "COLOR_0"), weights[i]);
+    add_scaled(draft.positions, read_vec3s(file, targets[i], "POSITION", draft.used), weights[i]);
+    add_scaled(mesh.normals, read_vec3s(file, targets[i], "NORMAL", draft.used), weights[i]);
+    add_scaled(mesh.tangents, read_vec3s(file, targets[i], "TANGENT", draft.used), weights[i]);
+    add_scaled(mesh.uv[0], read_vec2s(file, targets[i], "TEXCOORD_0", draft.used), weights[i]);
+    add_scaled(mesh.uv[1], read_vec2s(file, targets[i], "TEXCOORD_1", draft.used), weights[i]);
+    add_scaled(mesh.colors, read_vec4s(file, targets[i], "COLOR_0", draft.used), weights[i]);
   }
 }
 
@@ -90,15 +109,17 @@ void apply_skin(File& file, const json& primitive, const std::string& where,
     const std::string name = numbered("JOINTS_", set);
     const json* accessor = find(attributes, name.c_str());
     if (!accessor) break;
-    std::vector<uint32_t> joint = read_integers(file, accessor->get<size_t>());
-    std::vector<float> weight = read_attribute(file, attributes, numbered("WEIGHTS_", set));
-    for (size_t i = 0; i < std::min(joint.size(), weight.size()); i++) {
+    std::vector<uint32_t> all = read_integers(file, accessor->get<size_t>());
+    std::vector<float> weight =
+        read_attribute(file, attributes, numbered("WEIGHTS_", set), draft.used);
+    for (size_t i = 0; i < weight.size(); i++) {
       if (!(weight[i] > 0) || !std::isfinite(weight[i])) continue;
-      if (joint[i] >= joints.size())
+      uint32_t joint = all[draft.used[i / 4] * size_t(4) + i % 4];
+      if (joint >= joints.size())
         refuse(file, where + "/attributes/" + name,
-               "vertex " + std::to_string(i / 4) + " hangs on joint " + std::to_string(joint[i]) +
-                   " of " + std::to_string(joints.size()));
-      blend[i / 4] += joints[joint[i]] * double(weight[i]);
+               "vertex " + std::to_string(draft.used[i / 4]) + " hangs on joint " +
+                   std::to_string(joint) + " of " + std::to_string(joints.size()));
+      blend[i / 4] += joints[joint] * double(weight[i]);
       sum[i / 4] += double(weight[i]);
     }
   }
@@ -190,15 +211,19 @@ BuiltMesh build_primitive(File& file, size_t mesh_index, size_t primitive_index,
   Mesh& mesh = draft.mesh;
   mesh.name = text(mesh_object, "name");
   mesh.material = int(integer(primitive, "material", -1)) + 1;
-  std::vector<vec3> positions = read_vec3s(file, attributes, "POSITION");
-  mesh.triangles = read_triangles(file, primitive, where, positions.size());
+  const json* accessor = find(attributes, "POSITION");
+  if (!accessor) return {};
+  size_t vertex_count = size_t(form_of(file, accessor->get<size_t>()).count);
+  mesh.triangles = read_triangles(file, primitive, where, vertex_count);
   if (mesh.triangles.empty()) return {};
+  choose_vertices(file, where, vertex_count, draft);
+  std::vector<vec3> positions = read_vec3s(file, attributes, "POSITION", draft.used);
   draft.positions.assign(positions.begin(), positions.end());
-  mesh.normals = read_vec3s(file, attributes, "NORMAL");
-  if (!mesh.normals.empty()) mesh.tangents = read_vec4s(file, attributes, "TANGENT");
-  mesh.uv[0] = read_vec2s(file, attributes, "TEXCOORD_0");
-  mesh.uv[1] = read_vec2s(file, attributes, "TEXCOORD_1");
-  mesh.colors = read_vec4s(file, attributes, "COLOR_0");
+  mesh.normals = read_vec3s(file, attributes, "NORMAL", draft.used);
+  if (!mesh.normals.empty()) mesh.tangents = read_vec4s(file, attributes, "TANGENT", draft.used);
+  mesh.uv[0] = read_vec2s(file, attributes, "TEXCOORD_0", draft.used);
+  mesh.uv[1] = read_vec2s(file, attributes, "TEXCOORD_1", draft.used);
+  mesh.colors = read_vec4s(file, attributes, "COLOR_0", draft.used);
   apply_targets(file, primitive, deformation.weights, draft);
   if (!deformation.joints.empty())
     apply_skin(file, primitive, where, deformation.joints, draft);
@@ -231,7 +256,7 @@ std::vector<dmat4> joint_matrices(File& file, size_t skin, const std::vector<dma
   if (form.count < int64_t(joints.size()))
     refuse(file, where, "has " + std::to_string(form.count) + " matrices for " +
                             std::to_string(joints.size()) + " joints");
-  std::vector<float> values = read_floats(file, accessor->get<size_t>());
+  const std::vector<float>& values = *read_floats(file, accessor->get<size_t>());
   for (size_t j = 0; j < result.size(); j++) {
     dmat4 bind(1);
     for (int i = 0; i < 16; i++) {

@@ -32,9 +32,15 @@ class Builder {
     load_materials(file, scene);
     const json& meshes = items(file.root, "meshes");
     used_.assign(meshes.size(), 0);
+    int64_t vertices = 0;
     for (size_t m = 0; m < meshes.size(); m++)
-      for (size_t p = 0; p < meshes[m]["primitives"].size(); p++)
-        check_primitive(file, meshes[m]["primitives"][p], at(at("/meshes", m) + "/primitives", p));
+      for (size_t p = 0; p < meshes[m]["primitives"].size(); p++) {
+        const std::string where = at(at("/meshes", m) + "/primitives", p);
+        check_primitive(file, meshes[m]["primitives"][p], where);
+        vertices += vertex_bound(file, meshes[m]["primitives"][p]);
+        if (vertices > vertices_limit)
+          refuse(file, where, "the file has more than " + std::to_string(vertices_limit) + " vertices");
+      }
     nodes_ = make_pose(file, time);
     for (const Node& node : nodes_) global_.push_back(node.global);
     scene.objects.push_back("");

@@ -180,14 +180,36 @@ TEST(Accessor, SparseBoundsAreChecked) {
 }
 
 TEST(Accessor, SmallFilesCannotAskForEndlessMemory) {
-  // A thousand primitives over one accessor of sixteen million zeros.
+  // A thousand primitives over one accessor of four million zeros.
   Asset asset;
-  int position = asset.add_accessor(-1, 5126, "VEC3", 16'000'000);
-  json primitive = {{"attributes", {{"POSITION", position}}}, {"mode", 0}};
+  int position = asset.add_accessor(-1, 5126, "VEC3", 4'000'000);
+  json primitive = {{"attributes", {{"POSITION", position}}}};
   asset.add_mesh(primitive);
   for (int i = 0; i < 1000; i++) asset.root["meshes"][0]["primitives"].push_back(primitive);
   asset.add_node({{"mesh", 0}});
-  EXPECT_EQ(refused(asset).where, "/accessors/0");
+  EXPECT_NE(refused(asset).what_.find("vertices"), std::string::npos);
+  asset.root["accessors"][0]["count"] = 5'000'000;  // and no data to show for it
+  EXPECT_EQ(refused(asset).where, "/accessors/0/count");
+}
+
+TEST(Accessor, PrimitivesThatShareAListKeepOnlyTheirOwnVertices) {
+  Asset asset;
+  std::vector<float> row;
+  for (int i = 0; i < 300; i++) row.insert(row.end(), {float(i), float(i % 2), 0});
+  int position = asset.add_floats("VEC3", 3, row);
+  std::vector<uint16_t> first = {7, 8, 9}, second = {299, 4, 299 - 1};
+  int a = asset.add_accessor(asset.add_view(first), 5123, "SCALAR", 3);
+  int b = asset.add_accessor(asset.add_view(second), 5123, "SCALAR", 3);
+  asset.add_mesh({{"attributes", {{"POSITION", position}}}, {"indices", a}});
+  asset.root["meshes"][0]["primitives"].push_back(
+      {{"attributes", {{"POSITION", position}}}, {"indices", b}});
+  asset.add_node({{"mesh", 0}});
+  Scene scene = load(asset);
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  EXPECT_EQ(scene.meshes[0].positions.size(), 3u);
+  EXPECT_EQ(corner_of(scene, 0, 0, 1), vec3(8, 0, 0));
+  EXPECT_EQ(corner_of(scene, 1, 0, 0), vec3(299, 1, 0));
+  EXPECT_EQ(corner_of(scene, 1, 0, 1), vec3(4, 0, 0));
 }
 
 }  // namespace
