@@ -14,8 +14,8 @@ struct Key {
 };
 
 // The right hand opens towards the guest, the head and chest bow a little.
-const ArmPose open_hand{32_deg, 14_deg, -18_deg, 78_deg, -62_deg, -8_deg, 6_deg, 6_deg};
-const ArmPose open_hand_wide{36_deg, 20_deg, -30_deg, 66_deg, -70_deg, -14_deg, 4_deg, 4_deg};
+const ArmPose open_hand{30_deg, 12_deg, 2_deg, 72_deg, -58_deg, -6_deg, 6_deg, 8_deg};
+const ArmPose open_hand_wide{36_deg, 16_deg, -16_deg, 58_deg, -66_deg, -12_deg, 4_deg, 5_deg};
 // A raised hand, palm to the front.
 const ArmPose raised_hand{38_deg, 26_deg, -6_deg, 112_deg, 62_deg, -14_deg, 0, 3_deg};
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "avatar/hanim_names.h"
 #include "base/load_error.h"
@@ -33,7 +34,7 @@ bool is_silent(const std::string& type) {
   return false;
 }
 
-// Preorder without recursion; calls found(node, matrix) for each HAnimHumanoid.
+// Preorder without recursion, each node once; calls found(node, matrix) for each HAnimHumanoid.
 template <class Found>
 void find_humanoids(const X3dFile& file, const Found& found) {
   struct Item {
@@ -41,10 +42,11 @@ void find_humanoids(const X3dFile& file, const Found& found) {
     mat4 matrix;
   };
   std::vector<Item> stack{{0, mat4(1)}};
-  int visits = 0;
-  while (!stack.empty() && visits++ < max_visits) {
+  std::vector<uint8_t> seen(file.nodes.size(), 0);
+  while (!stack.empty()) {
     Item item = stack.back();
     stack.pop_back();
+    if (std::exchange(seen[size_t(item.node)], 1)) continue;
     const X3dNode& node = file.nodes[size_t(item.node)];
     if (node.type == "HAnimHumanoid") {
       if (!found(item.node, item.matrix)) return;
@@ -220,9 +222,15 @@ void HumanoidReader::read_skeleton(int humanoid) {
     return;
   // Only a flat list: joints in it that no other joint of it contains are roots.
   std::unordered_set<int> inside;
-  for (const X3dNode& node : file.nodes)
-    if (node.type == "HAnimJoint" || is_group(node.type))
-      for (const X3dChild& child : node.children) inside.insert(child.node);
+  std::vector<int> open;
+  for (const X3dChild& child : children)
+    if (type_of(child) == "HAnimJoint") open.push_back(child.node);
+  while (!open.empty()) {
+    int index = open.back();
+    open.pop_back();
+    for (const X3dChild& child : file.nodes[size_t(index)].children)
+      if (inside.insert(child.node).second) open.push_back(child.node);
+  }
   walk_roots([&](const X3dChild& child) {
     return type_of(child) == "HAnimJoint" && !inside.count(child.node) && !seen_joints.count(child.node);
   });
