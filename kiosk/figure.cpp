@@ -119,10 +119,20 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
   const vec3 neck = center + vec3(0, -0.15f, 0.02f), torso = center + vec3(0, -0.52f, 0.03f);
   const std::vector<float>& normal = normal_numbers();
   Rng rng(mix64(room.seed ^ uint64_t(std::llround(time * 1000))));
+  // Rays are cast only where the figure can be: in the rectangle around a box around it.
+  float left = 1e9f, right = -1e9f, top = 1e9f, bottom = -1e9f;
+  for (int corner = 0; pose.visible && corner < 8; corner++) {
+    vec3 at = screen_to_camera(mount, center + vec3(corner & 1 ? 0.25f : -0.25f, corner & 2 ? 0.15f : -0.9f,
+                                                    corner & 4 ? 0.2f : -0.2f));
+    float u = at.x / std::max(at.z, 0.05f) * focal + room.width / 2.f;
+    float v = at.y / std::max(at.z, 0.05f) * focal + room.height / 2.f;
+    left = std::min(left, u), right = std::max(right, u);
+    top = std::min(top, v), bottom = std::max(bottom, v);
+  }
   for (int y = 0; y < room.height; y++)
     for (int x = 0; x < room.width; x++) {
       float grey = room_at((x + 0.5f) / room.width, (y + 0.5f) / room.height);
-      if (pose.visible) {
+      if (x >= left && x <= right && y >= top && y <= bottom) {
         vec3 camera{(x + 0.5f - room.width / 2.f) / focal, (y + 0.5f - room.height / 2.f) / focal, 1};
         Ray ray{lens, camera_to_screen(mount, camera) - lens};
         Ray in_head{to_head * (ray.origin - center), to_head * ray.direction};

@@ -65,7 +65,7 @@ struct Observer::Impl {
     if (out.state == Presence::person)
       for (const auto& [id, head] : heads) {  // one just lost stays where it was, less and less surely
         double age = time - head.seen_time;
-        if (age < 0 || age >= hold) continue;
+        if (age < 0 || age > hold) continue;
         Person person = head.person;
         person.confidence *= float(1 - age / hold);
         out.people.push_back(person);

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kiosk/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "base/clock.h"
+#include "base/load_error.h"
+#include "kiosk/feed.h"
+#include "kiosk/figure.h"
+
+namespace wellspring {
+namespace {
+
+std::unique_ptr<Camera> open(const std::string& source, bool loop = false) {
+  CameraSettings settings;
+  settings.source = source;
+  settings.loop = loop;
+  return make_camera(settings);
+}
+
+TEST(Camera, a_missing_file_and_a_file_that_is_no_video_are_named) {
+  for (auto [name, content] : {std::pair<const char*, const char*>{"missing.mp4", nullptr},
+                               {"empty.mp4", ""}, {"text.mp4", "not a video at all\n"}}) {
+    const auto path = std::filesystem::path(testing::TempDir()) / (std::string("kiosk_") + name);
+    std::filesystem::remove(path);
+    if (content) std::ofstream(path) << content;
+    try {
+      open(path.string());
+      ADD_FAILURE() << name << ": no error";
+    } catch (const LoadError& error) {
+      EXPECT_EQ(error.file, path.string());
+      EXPECT_FALSE(error.what_.empty());
+    }
+    std::filesystem::remove(path);
+  }
+  EXPECT_THROW(open(testing::TempDir()), LoadError);
+}
+
+TEST(Camera, a_device_that_is_not_there_is_lost_and_stays_patient) {
+  auto camera = open("/dev/wellspring_no_such_camera");
+  EXPECT_TRUE(camera->live());
+  GrayFrame frame;
+  EXPECT_EQ(camera->next(frame), Got::lost);
+  EXPECT_EQ(camera->next(frame), Got::lost);
+}
+
+TEST(Camera, the_synthetic_one_repeats_itself_exactly_and_ends_on_demand) {
+  CameraSettings settings;
+  settings.source = "synthetic";
+  settings.width = 160;
+  settings.rate = 4;
+  settings.synthetic_ends = true;
+  auto a = make_camera(settings), b = make_camera(settings);
+  GrayFrame x, y;
+  int frames = 0;
+  while (a->next(x) == Got::frame) {
+    ASSERT_EQ(b->next(y), Got::frame);
+    EXPECT_EQ(x.time, frames / 4.0);
+    EXPECT_EQ(x.pixels, y.pixels);
+    frames++;
+  }
+  EXPECT_EQ(frames, int(figure_round * 4));
+}
+
+TEST(Camera, a_mirrored_mount_draws_the_mirror_image) {
+  FigurePose pose;
+  pose.visible = true;
+  pose.position = {0.2f, 0, 0.8f};
+  Mount plain, mirrored;
+  mirrored.mirrored = true;
+  GrayFrame a = draw_figure({320, 240, 1, 0, 1}, plain, pose, 0);
+  GrayFrame b = draw_figure({320, 240, 1, 0, 1}, mirrored, pose, 0);
+  // The torso is dark: on the screen's right, so at the image's left, and the other way round in a mirror.
+  auto at = [](const GrayFrame& f, int x) { return int(f.pixels[size_t(230) * 320 + size_t(x)]); };
+  EXPECT_LT(at(a, 90) + 10, at(a, 300));
+  EXPECT_LT(at(b, 230) + 10, at(b, 20));
+}
+
+// A camera whose frames and failures a test decides.
+struct Scripted : Camera {
+  int frames = 5;
+  double step = 0.05;
+  bool is_live = false, hang = false;
+  std::atomic<bool>* release = nullptr;
+  int made = 0;
+  Got next(GrayFrame& frame) override {
+    while (hang && made == frames && !*release) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (made == frames) return is_live ? Got::lost : Got::end;
+    frame = {made++ * step, 16, 16, std::vector<uint8_t>(256, 1)};
+    return Got::frame;
+  }
+  bool live() const override { return is_live; }
+};
+
+TEST(Feed, without_pace_every_frame_arrives_in_order_however_slow_the_reader) {
+  auto camera = std::make_unique<Scripted>();
+  camera->frames = 20;
+  Feed feed(std::move(camera), false);
+  GrayFrame frame;
+  for (int i = 0; i < 20; i++) {
+    if (i % 5 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_EQ(feed.take(frame, 5), Fed::frame);
+    EXPECT_DOUBLE_EQ(frame.time, i * 0.05);
+  }
+  EXPECT_EQ(feed.take(frame, 5), Fed::end);
+  EXPECT_EQ(feed.take(frame, 5), Fed::end);
+}
+
+TEST(Feed, with_pace_a_file_takes_its_own_time_and_the_last_frame_arrives) {
+  auto camera = std::make_unique<Scripted>();
+  camera->frames = 6;
+  const double begin = seconds_now();
+  Feed feed(std::move(camera), true);
+  GrayFrame frame;
+  double last = -1;
+  Fed fed;
+  while ((fed = feed.take(frame, 5)) == Fed::frame) {
+    EXPECT_GT(frame.time, last);
+    last = frame.time;
+  }
+  EXPECT_EQ(fed, Fed::end);
+  EXPECT_DOUBLE_EQ(last, 0.25);
+  EXPECT_GE(seconds_now() - begin, 0.24);
+}
+
+TEST(Feed, a_camera_that_hangs_does_not_hang_the_reader) {
+  static std::atomic<bool> release{false};
+  auto camera = std::make_unique<Scripted>();
+  camera->is_live = camera->hang = true;
+  camera->frames = 1;
+  camera->release = &release;
+  Feed feed(std::move(camera), true);
+  GrayFrame frame;
+  EXPECT_EQ(feed.take(frame, 5), Fed::frame);
+  EXPECT_EQ(feed.take(frame, 0.05), Fed::nothing);
+  release = true;
+}
+
+}  // namespace
+}  // namespace wellspring

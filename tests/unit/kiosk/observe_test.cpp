@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole eye on the synthetic camera, whose truth is known.
+#include "kiosk/observe.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include "base/load_error.h"
+#include "kiosk/camera.h"
+#include "kiosk/figure.h"
+#include "kiosk/turn.h"
+
+namespace wellspring {
+namespace {
+
+constexpr double rate = 10;
+
+std::vector<Observation> watch_round(const Mount& mount, double until = figure_round) {
+  CameraSettings settings;
+  settings.source = "synthetic";
+  settings.width = 320;
+  settings.rate = rate;
+  settings.synthetic_ends = true;
+  settings.mount = mount;
+  auto camera = make_camera(settings);
+  ObserverSettings eye;
+  eye.mount = mount;
+  Observer observer(eye);
+  std::vector<Observation> seen;
+  GrayFrame frame;
+  while (camera->next(frame) == Got::frame && frame.time < until) seen.push_back(observer.step(frame));
+  return seen;
+}
+
+TEST(Observe, a_visitor_comes_is_followed_and_leaves) {
+  auto seen = watch_round({});
+  ASSERT_EQ(seen.size(), size_t(std::ceil(figure_round * rate)));
+  std::vector<std::pair<double, Presence>> changes;
+  for (size_t i = 1; i < seen.size(); i++)
+    if (seen[i].state != seen[i - 1].state) changes.push_back({seen[i].time, seen[i].state});
+  ASSERT_EQ(changes.size(), 4u);
+  const PresenceSettings presence;
+  EXPECT_EQ(changes[0].second, Presence::motion);
+  EXPECT_GT(changes[0].first, figure_enters);
+  EXPECT_EQ(changes[1].second, Presence::person);
+  EXPECT_LT(changes[1].first, figure_stands + presence.confirm_after + 0.6);
+  EXPECT_EQ(changes[2].second, Presence::motion);
+  EXPECT_EQ(changes[3].second, Presence::absent);
+  EXPECT_GT(changes[2].first, figure_leaves + presence.hold_person - 0.1);
+  EXPECT_LT(changes[3].first, figure_gone + presence.hold_motion + 1);
+
+  double position[3] = {}, rotation[3] = {};
+  int frames = 0;
+  for (const Observation& o : seen) {
+    EXPECT_EQ(o.state == Presence::person, !o.people.empty()) << "at " << o.time;
+    EXPECT_LE(o.people.size(), 1u) << "at " << o.time;
+    if (o.time < figure_stands + 1.5 || o.time > figure_leaves) continue;
+    ASSERT_FALSE(o.people.empty()) << "at " << o.time;
+    const Person& p = o.people[0];
+    const FigurePose truth = figure_at(o.time);
+    EXPECT_EQ(p.id, 1u);
+    EXPECT_GT(p.confidence, 0.3f);
+    for (int k = 0; k < 3; k++) {
+      position[k] += std::pow(p.position[k] - truth.position[k], 2);
+      rotation[k] += std::pow(p.rotation[k] - truth.rotation[k], 2);
+    }
+    frames++;
+  }
+  ASSERT_GT(frames, 80);
+  auto rms = [&](double sum) { return std::sqrt(sum / frames); };
+  EXPECT_LT(rms(position[0]), 0.02);
+  EXPECT_LT(rms(position[1]), 0.02);
+  EXPECT_LT(rms(position[2]), 0.12);
+  EXPECT_LT(rms(rotation[0]), 0.19);  // the figure's own: 0.27
+  EXPECT_LT(rms(rotation[1]), 0.10);
+  EXPECT_LT(rms(rotation[2]), 0.05);
+}
+
+TEST(Observe, a_camera_above_the_screen_that_looks_down_gives_the_same_place) {
+  Mount mount;
+  mount.fov = 75 * pi / 180;
+  mount.offset = {0.1f, 0.35f, 0};
+  mount.pitch = -0.35f;
+  double worst[3] = {};
+  int frames = 0;
+  for (const Observation& o : watch_round(mount, 9)) {
+    if (o.time < figure_stands + 1.5 || o.people.empty()) continue;
+    vec3 truth = figure_at(o.time).position;
+    for (int k = 0; k < 3; k++) worst[k] += std::abs(o.people[0].position[k] - truth[k]);
+    frames++;
+  }
+  ASSERT_GT(frames, 30);
+  EXPECT_LT(worst[0] / frames, 0.03);
+  EXPECT_LT(worst[1] / frames, 0.06);
+  EXPECT_LT(worst[2] / frames, 0.15);
+}
+
+TEST(Observe, a_face_that_never_stirs_is_a_picture) {
+  ObserverSettings settings;
+  settings.people.still = 3;
+  Observer observer(settings);
+  FigurePose pose;
+  pose.visible = true;
+  bool person_early = false;
+  for (int i = 0; i < 8 * 10; i++) {
+    const double time = 0.1 * i;
+    Observation o = observer.step(draw_figure({320, 240, 1, 2.5f, 9}, {}, pose, time));
+    person_early |= time < 3 && o.state == Presence::person;
+    if (time > 3 + 2 + 0.5) EXPECT_NE(o.state, Presence::person) << "at " << time;
+  }
+  EXPECT_TRUE(person_early);
+}
+
+TEST(Observe, a_blind_camera_lets_everything_run_out) {
+  Observer observer;
+  FigurePose pose;
+  pose.visible = true;
+  Observation o;
+  for (int i = 0; i < 25; i++) {
+    pose.position.x = 0.02f * std::sin(float(i));
+    o = observer.step(draw_figure({320, 240, 1, 2.5f, 9}, {}, pose, 0.1 * i));
+  }
+  ASSERT_EQ(o.state, Presence::person);
+  const float sure = o.people.at(0).confidence;
+  o = observer.step_blind(3.4);
+  ASSERT_EQ(o.people.size(), 1u);
+  EXPECT_LT(o.people[0].confidence, 0.7f * sure);
+  for (double time = 4; time < 6.5; time += 0.5) o = observer.step_blind(time);
+  EXPECT_EQ(o.state, Presence::absent);
+  EXPECT_TRUE(o.people.empty());
+}
+
+TEST(Observe, the_midline_knows_left_from_right) {
+  FaceFinder finder;
+  for (float yaw : {-0.3f, 0.3f}) {
+    FigurePose pose;
+    pose.visible = true;
+    pose.position = {0, 0, 0.7f};
+    pose.rotation = {yaw, 0, 0};
+    GrayFrame frame = draw_figure({640, 480, 1, 1, 2}, {}, pose, 0);
+    const float side = focal_length({}, 640) * face_box_metres / 0.7f;
+    Face face{{320 - side / 2, 240 - eyes_in_box * side, side, side}, FaceView::frontal, 1, {}};
+    // The eyes as the figure has them: 31 mm to each side of the middle of the face, which is at (0, 0, 0.7).
+    const mat3 turn = rotation_matrix(pose.rotation);
+    std::array<vec2, 2> eyes;
+    for (int k = 0; k < 2; k++) {
+      vec3 p = screen_to_camera({}, pose.position + turn * vec3(k ? -0.031f : 0.031f, 0, 0));
+      eyes[size_t(k)] = vec2(p.x, p.y) / p.z * focal_length({}, 640) + vec2(320, 240);
+    }
+    face.eyes = eyes;
+    auto measured = yaw_of_midline(frame, face);
+    ASSERT_TRUE(measured) << yaw;
+    EXPECT_GT(*measured * yaw, 0) << yaw;
+  }
+}
+
+TEST(Observe, a_missing_cascade_is_named_with_its_package) {
+  ObserverSettings settings;
+  settings.face.cascades = "/nowhere";
+  try {
+    Observer observer(settings);
+    FAIL() << "no error";
+  } catch (const LoadError& error) {
+    EXPECT_EQ(error.file.rfind("/nowhere/", 0), 0u) << error.file;
+    EXPECT_NE(std::string(error.what()).find("opencv-data"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace wellspring
