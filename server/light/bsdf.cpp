@@ -47,7 +47,7 @@ struct FacetColor {
 FacetColor facet_color(const Bsdf& b, float cosine) {
   float f = fresnel_dielectric(std::min(cosine, 1.0f), b.eta);
   FacetColor c;
-  c.reflect = vec3((1 - b.metallic) * f);
+  c.reflect = vec3((1 - b.metallic) * b.gloss_gain * f);
   if (b.metallic > 0) c.reflect += b.metallic * fresnel_schlick(b.metal, cosine) * b.metal_gain;
   c.transmit = (1 - f) * b.transmit;
   float r = max_component(c.reflect), t = max_component(c.transmit);
@@ -93,14 +93,6 @@ void eval_refraction(const Bsdf& b, vec3 l, BsdfValue& value) {
   value.specular_pdf = (1 - color.reflect_share) * ggx_masking(b.view, b.alpha) * common * b.eta * b.eta;
 }
 
-// The direction beyond a boundary with facet normal h; false: total reflection.
-bool refract(vec3 v, vec3 h, float eta, vec3& out) {
-  float cosine = dot(v, h), sin2 = (1 - cosine * cosine) / (eta * eta);
-  if (sin2 >= 1) return false;
-  out = -v / eta + (cosine / eta - std::sqrt(1 - sin2)) * h;
-  return true;
-}
-
 BsdfSample sample_smooth(const Bsdf& b, float u) {
   BsdfSample s;
   FacetColor color = facet_color(b, b.view.z);
@@ -117,7 +109,7 @@ BsdfSample sample_smooth(const Bsdf& b, float u) {
   }
   s.bounce = Bounce::refract;
   vec3 l;
-  if (!refract(b.view, vec3(0, 0, 1), b.eta, l)) return {};
+  if (!refract_at(b.view, vec3(0, 0, 1), b.eta, l)) return {};
   s.direction = to_world(b, l);
   s.weight /= b.eta * b.eta;
   if (dot(s.direction, b.geometric_normal) >= 0) s.weight = vec3(0);
@@ -134,14 +126,14 @@ vec3 sample_rough(const Bsdf& b, Sampler& sampler) {
   if (u < facet_color(b, cosine).reflect_share) return reflected.z > 0 ? to_world(b, reflected) : vec3(0);
   if (b.thin) return reflected.z > 0 ? to_world(b, {reflected.x, reflected.y, -reflected.z}) : vec3(0);
   vec3 l;
-  if (!refract(b.view, h, b.eta, l) || l.z >= 0) return vec3(0);
+  if (!refract_at(b.view, h, b.eta, l) || l.z >= 0) return vec3(0);
   return to_world(b, normalize(l));
 }
 
 }  // namespace
 
 Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
-               const AlbedoTable& outside) {
+               const DielectricAlbedo& albedo) {
   Bsdf b;
   vec3 v = -direction;
   b.geometric_normal = surface.geometric_normal;
@@ -170,7 +162,13 @@ Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
       b.metal_gain = vec3(1) + base * ((1 - single) / std::max(single, 0.1f));
     }
   }
-  b.coat = albedo_row(outside, b.alpha);
+  if (b.alpha > 0 && transmission > 0) {
+    const AlbedoTable& kept = b.thin ? mirror_albedo() : b.eta < 1 ? albedo.out_of : albedo.into;
+    float gain = 1 / std::max(eval_albedo(albedo_row(kept, b.alpha), b.view.z), 0.1f);
+    b.gloss_gain = glm::mix(1.0f, gain, transmission);
+    b.transmit *= gain;
+  }
+  b.coat = albedo_row(albedo.coat, b.alpha);
   b.coat_passes = 1 - eval_albedo(b.coat, b.view.z);
   b.coat_scale = 1 / std::max(1 - b.coat.average, 1e-3f);
   float diffuse = luminance(b.diffuse) * b.coat_passes;

@@ -23,6 +23,7 @@ struct Bsdf {
   vec3 diffuse{0};       // diffuse reflectance
   vec3 metal{1};         // reflectance of the metal at normal incidence
   vec3 metal_gain{1};    // what single scattering loses, given back
+  float gloss_gain = 1;  // likewise for the reflection of rough glass; `transmit` has its own in it
   float metallic = 0;
   vec3 transmit{0};      // tint of what goes through
   float alpha = 1;       // 0: perfectly smooth
@@ -34,8 +35,8 @@ struct Bsdf {
   float diffuse_share = 1;  // probability that sampling takes the diffuse lobe
 };
 
-// `direction`: of the ray that found the surface. `outside`: dielectric_albedo(material.ior).
-Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction, const AlbedoTable& outside);
+// `direction`: of the ray that found the surface. `albedo`: dielectric_albedo(material.ior).
+Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction, const DielectricAlbedo& albedo);
 
 bool has_diffuse(const Bsdf& bsdf);
 bool has_specular(const Bsdf& bsdf);

@@ -23,7 +23,7 @@ struct EmitterTriangle {
 };
 
 struct MaterialTraits {
-  const AlbedoTable* coat = nullptr;
+  const DielectricAlbedo* albedo = nullptr;
   bool maybe_pane = false;  // some place of it may be a thin smooth pane
 };
 

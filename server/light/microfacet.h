@@ -49,6 +49,14 @@ inline float fresnel_dielectric(float cosine, float eta) {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
+// The direction beyond a boundary with facet normal h, v on this side; false: total reflection.
+inline bool refract_at(vec3 v, vec3 h, float eta, vec3& out) {
+  float cosine = dot(v, h), sin2 = (1 - cosine * cosine) / (eta * eta);
+  if (sin2 >= 1) return false;
+  out = -v / eta + (cosine / eta - std::sqrt(1 - sin2)) * h;
+  return true;
+}
+
 // Schlick 1994, with glTF's f90 = 1.
 inline vec3 fresnel_schlick(vec3 f0, float cosine) {
   float m = 1 - glm::clamp(cosine, 0.0f, 1.0f), m2 = m * m;

@@ -101,7 +101,7 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
     vec3 absorption = eval_absorption(transport, walk.medium, hit.t);
     foreground.tint *= absorption;
     Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
-                          *transport.tables.materials[size_t(surface.material)].coat);
+                          *transport.tables.materials[size_t(surface.material)].albedo);
     bool clear = is_pane(surface, material) && !has_diffuse(bsdf) && bsdf.metallic == 0 && !material.unlit;
     if (clear && walk.panes < most_panes) {
       sample.rest += foreground.tint * surface.emission;

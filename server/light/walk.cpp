@@ -134,7 +134,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
       continue;
     }
     Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
-                          *transport.tables.materials[size_t(surface.material)].coat);
+                          *transport.tables.materials[size_t(surface.material)].albedo);
     bool smooth = is_smooth(bsdf);
     if (!smooth)
       radiance += walk.throughput * sample_direct_light(transport, walk, surface, bsdf, false, sampler).sum();
