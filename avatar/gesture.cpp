@@ -98,7 +98,7 @@ ArmPose hanging_arm(float spread) {
 ArmPose folded_arm(int side) {
   // The left hand lies over the right wrist.
   float over = side == 0 ? 5_deg : 0;
-  return {14_deg + over, 9_deg, 38_deg, 74_deg + over, 22_deg, 8_deg, -6_deg, 26_deg};
+  return {9_deg + over, 9_deg, 38_deg, 72_deg + over, 22_deg, 8_deg, -6_deg, 26_deg};
 }
 
 }  // namespace wellspring

@@ -30,6 +30,11 @@ void tick_stance(StanceState& state, bool has_legs, float aim, float reach, floa
     }
   Foot &left = state.foot[0], &right = state.foot[1];
   if (left.phase >= 1 && right.phase >= 1) {
+    // Whole turns are taken back, so that years of turning one way lose no precision.
+    float whole = 2 * pi * std::round(state.heading.value / (2 * pi));
+    state.heading.value -= whole;
+    state.wanted -= whole;
+    for (Foot& foot : state.foot) foot.from -= whole, foot.to -= whole;
     float left_off = state.wanted - left.to, right_off = state.wanted - right.to;
     // Turning left begins with the left foot, so that the feet never cross.
     int first = std::abs(left_off) < least_step ? 1 : std::abs(right_off) < least_step ? 0
@@ -45,13 +50,6 @@ void tick_stance(StanceState& state, bool has_legs, float aim, float reach, floa
   settle(state.heading, 0.5f * (left.facing() + right.facing()), 7, dt);
   float stand = left.phase < 1 ? -1.0f : right.phase < 1 ? 1.0f : 0.0f;
   settle(state.lean, 0.035f * stand, 9, dt);
-  // Whole turns are taken back, so that years of turning one way lose no precision.
-  float whole = 2 * pi * std::round(state.heading.value / (2 * pi));
-  if (whole != 0 && left.phase >= 1 && right.phase >= 1) {
-    state.heading.value -= whole;
-    state.wanted -= whole;
-    for (Foot& foot : state.foot) foot.from -= whole, foot.to -= whole;
-  }
 }
 
 }  // namespace wellspring
