@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where rays end: a thin wrapper of Embree (3 or 4; world/embree.h hides the difference). The static scene
-// is built once; moving meshes (the storyteller) are refitted each tick.
+// Where rays end: a thin wrapper of Embree (3 or 4; world/embree.h hides the difference). The
+// static scene is built once; moving meshes (the storyteller) are refitted each tick.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -33,17 +33,21 @@ struct PlacedMesh {
   const Material* material = nullptr;
   uint32_t object = 0;
   bool moving = false;
+  bool mirrored = false;  // to_world turns the winding round (glTF 2.0 section 3.7.4)
   mat4 to_world{1};
-  mat3 normal_to_world{1};  // inverse transpose of the upper 3x3 up to a positive factor: normalise after
+  mat3 normal_to_world{
+      1};  // inverse transpose of the upper 3x3 up to a positive factor: normalise after
 };
 
-// A scene with what moves in it. Instances [0, scene.instances.size()) are the scene's; the rest are
-// `moving`, whose vertices are already in world space. Built once per exhibit; not copyable.
+// A scene with what moves in it. Instances [0, scene.instances.size()) are the scene's; the rest
+// are `moving`, whose vertices are already in world space. Built once per exhibit; not copyable.
 class World {
  public:
   // Borrows `scene` for its lifetime. `moving` meshes keep their triangle count for ever.
-  // moving_object[i] is the object id samples of moving[i] carry (append the name to scene.objects first).
-  World(const Scene& scene, std::vector<Mesh> moving = {}, std::vector<uint32_t> moving_object = {});
+  // moving_object[i] is the object id samples of moving[i] carry (append the name to scene.objects
+  // first).
+  World(const Scene& scene, std::vector<Mesh> moving = {},
+        std::vector<uint32_t> moving_object = {});
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
@@ -53,13 +57,13 @@ class World {
   const Mesh& mesh_of(uint32_t instance) const;
   const Material& material_of(uint32_t instance) const;
   uint32_t object_of(uint32_t instance) const;
-  const mat4& to_world(uint32_t instance) const;       // identity for moving ones
+  const mat4& to_world(uint32_t instance) const;         // identity for moving ones
   const mat3& normal_to_world(uint32_t instance) const;  // as in PlacedMesh
   bool is_moving(uint32_t instance) const;
   const PlacedMesh& placed(uint32_t instance) const;  // all of the above at once
 
-  // Replaces a moving mesh's vertices (same counts) and shows or hides it. Call commit() afterwards,
-  // while no ray is being traced. A vertex that is not finite stays where it was.
+  // Replaces a moving mesh's vertices (same counts) and shows or hides it. Call commit()
+  // afterwards, while no ray is being traced. A vertex that is not finite stays where it was.
   void move(int moving, std::span<const vec3> positions, std::span<const vec3> normals);
   void show(int moving, bool visible);
   void commit();

@@ -49,7 +49,8 @@ bool passes(const Scene& scene, const PlacedMesh& placed, uint32_t instance, uin
     const Texture& texture = scene.textures[size_t(reference.texture)];
     if (texture.image >= 0)
       alpha *= eval_texture(scene.images[size_t(texture.image)], texture,
-                            vec2(reference.uv_transform * vec3(uv, 1))).w;
+                            vec2(reference.uv_transform * vec3(uv, 1)))
+                   .w;
   }
   if (material.alpha_mode == AlphaMode::mask) return alpha < material.alpha_cutoff;
   return uniform_of(ray, instance, triangle) >= alpha;

@@ -7,8 +7,9 @@ namespace wellspring {
 
 // Can any place of this mesh be passed through? Only such meshes get a filter function.
 bool may_pass(const Mesh& mesh, const Material& material);
-// Is this hit passed through? Mask: alpha below the cut-off. Blend: with probability 1 - alpha, decided
-// by a hash of the ray's origin and direction and of which triangle it is, so the answer repeats.
+// Is this hit passed through? Mask: alpha below the cut-off. Blend: with probability 1 - alpha,
+// decided by a hash of the ray's origin and direction and of which triangle it is, so the answer
+// repeats.
 bool passes(const Scene& scene, const PlacedMesh& placed, uint32_t instance, uint32_t triangle,
             vec2 barycentric, const Ray& ray);
 

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF 2.0 file taken apart: its JSON, checked, and its bytes, bounded. Everything after load_gltf()
-// may rely on types, required properties, index ranges and layouts (gltf_schema.cpp, gltf_layout.cpp).
+// A glTF 2.0 file taken apart: its JSON, checked, and its bytes, bounded. Everything after
+// load_gltf() may rely on types, required properties, index ranges and layouts (gltf_schema.cpp,
+// gltf_layout.cpp).
 //
-// Refused (LoadError): what makes geometry or material mean something else than the file says - wrong
-// types, missing properties, indices out of range, bytes beyond a buffer, nodes with two parents or
-// cycles, formats an attribute cannot have, missing buffers, files outside the package, broken pictures,
-// required extensions this program does not know.
-// Warned of (Scene::warnings): what is merely odd and still has one meaning - unknown properties, empty
-// lists, misaligned or oddly strided but readable data, wrong min and max, vectors that are not unit
-// length, weights that do not add to one, values that are not finite (the triangle is dropped), a
-// picture that is not there (the material's factors stand alone).
-// One parser reads the JSON that the checks saw, so the two cannot disagree about it.
+// Refused (LoadError): what makes geometry or material mean something else than the file says -
+// wrong types, missing properties, indices out of range, bytes beyond a buffer, nodes with two
+// parents or cycles, formats an attribute cannot have, missing buffers, files outside the package,
+// broken pictures, required extensions this program does not know. Warned of (Scene::warnings):
+// what is merely odd and still has one meaning - unknown properties, empty lists, misaligned or
+// oddly strided but readable data, wrong min and max, vectors that are not unit length, weights
+// that do not add to one, values that are not finite (the triangle is dropped), a picture that is
+// not there (the material's factors stand alone). One parser reads the JSON that the checks saw, so
+// the two cannot disagree about it.
 #pragma once
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace wellspring::gltf {
 
@@ -37,9 +37,10 @@ struct File {
   bool has_binary = false;
   std::vector<Bytes> buffers;  // filled on first use
   std::vector<char> buffer_ready;
-  // Accessors decoded lately: primitives of one mesh often share them. Dropped when they grow large.
+  // Accessors decoded lately: primitives of one mesh often share them. Dropped when they grow
+  // large.
   std::map<size_t, std::shared_ptr<const std::vector<float>>> decoded;
-  int64_t decoded_numbers = 0;  // held in `decoded`
+  int64_t decoded_numbers = 0;    // held in `decoded`
   std::vector<uint32_t> renamed;  // scratch of gltf_mesh.cpp: all unseen between primitives
   // Bounds of what a file may cost (gltf_data.h).
   int64_t numbers_read = 0, vertices_made = 0, triangles_made = 0;
@@ -54,8 +55,8 @@ File load_gltf(const std::string& path, const std::string& package);
 // Adds a warning; the same `what` is said once, with its first place.
 void warn(File& file, const std::string& where, const std::string& what);
 
-// Bytes of a data URI or of a file inside the package; nothing if the package has no such file. Throws
-// LoadError for all else that is wrong.
+// Bytes of a data URI or of a file inside the package; nothing if the package has no such file.
+// Throws LoadError for all else that is wrong.
 std::optional<Bytes> read_uri(const File& file, const std::string& where, const std::string& uri);
 // A whole file, at most `limit` bytes.
 Bytes read_bytes(const std::string& path, size_t limit);
@@ -73,8 +74,8 @@ int64_t integer(const json& object, const char* key, int64_t otherwise);
 double number(const json& object, const char* key, double otherwise);
 bool boolean(const json& object, const char* key, bool otherwise);
 std::string text(const json& object, const char* key, const std::string& otherwise = "");
-std::string at(const std::string& where, size_t index);              // where + "/index"
-std::string at(const std::string& where, const std::string& key);    // escaped as RFC 6901 says
+std::string at(const std::string& where, size_t index);            // where + "/index"
+std::string at(const std::string& where, const std::string& key);  // escaped as RFC 6901 says
 // A number as a float that is finite: what is too large becomes +-1e30.
 float to_float(double value);
 

@@ -38,7 +38,8 @@ Curve curve_of(File& file, const json& sampler, const std::string& where) {
 }
 
 void check_formats(File& file, const json& sampler, const std::string& where, const Track& track) {
-  size_t input = size_t(integer(sampler, "input", 0)), output = size_t(integer(sampler, "output", 0));
+  size_t input = size_t(integer(sampler, "input", 0)),
+         output = size_t(integer(sampler, "output", 0));
   Form in = form_of(file, input), out = form_of(file, output);
   if (in.components != 1 || in.component_type != float_component)
     refuse(file, where + "/input", "must be SCALAR of FLOAT, not " + describe(file, input));
@@ -54,8 +55,9 @@ void check_formats(File& file, const json& sampler, const std::string& where, co
   if (track.curve == Curve::cubic && in.count < 2)
     refuse(file, where + "/input", "a cubic curve needs two keys at least");
   if (out.count != expected)
-    refuse(file, where + "/output", "has " + std::to_string(out.count) + " elements where " +
-                                        std::to_string(expected) + " are needed");
+    refuse(file, where + "/output",
+           "has " + std::to_string(out.count) + " elements where " + std::to_string(expected) +
+               " are needed");
 }
 
 void read_track(File& file, const json& sampler, const std::string& where, Track& track) {
@@ -110,11 +112,20 @@ std::vector<double> eval_track(const Track& track, double time) {
 void apply(const Track& track, double time, Node& node) {
   std::vector<double> v = eval_track(track, time);
   switch (track.path) {
-    case Path::translation: node.translation = {v[0], v[1], v[2]}; break;
-    case Path::scale: node.scale = {v[0], v[1], v[2]}; break;
-    case Path::rotation: node.rotation = glm::dquat(v[3], v[0], v[1], v[2]); break;
-    case Path::weights: node.weights = v; break;
-    case Path::none: break;
+    case Path::translation:
+      node.translation = {v[0], v[1], v[2]};
+      break;
+    case Path::scale:
+      node.scale = {v[0], v[1], v[2]};
+      break;
+    case Path::rotation:
+      node.rotation = glm::dquat(v[3], v[0], v[1], v[2]);
+      break;
+    case Path::weights:
+      node.weights = v;
+      break;
+    case Path::none:
+      break;
   }
 }
 

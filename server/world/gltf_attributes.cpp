@@ -34,8 +34,8 @@ bool is_allowed(const std::string& name, const Form& form, bool is_target, bool 
     return form.components == (is_target ? 3 : 4) &&
            (is_float || (quantized && is_signed && form.normalized));
   if (name == "TEXCOORD")
-    return form.components == 2 && (is_float || quantized || is_unsigned ||
-                                    (is_target && is_signed && form.normalized));
+    return form.components == 2 &&
+           (is_float || quantized || is_unsigned || (is_target && is_signed && form.normalized));
   if (name == "COLOR")
     return (form.components == 3 || form.components == 4) &&
            (is_float || is_unsigned || (is_target && form.normalized));
@@ -57,7 +57,8 @@ void check_attributes(File& file, const json& attributes, int64_t count, bool is
   for (auto it = attributes.begin(); it != attributes.end(); ++it) {
     std::string name = family(it.key());
     if (!is_known(name)) {
-      if (name.empty() || name[0] != '_') warn(file, where, "unknown vertex attributes are ignored");
+      if (name.empty() || name[0] != '_')
+        warn(file, where, "unknown vertex attributes are ignored");
       continue;
     }
     size_t accessor = it.value().get<size_t>();
@@ -65,8 +66,8 @@ void check_attributes(File& file, const json& attributes, int64_t count, bool is
     if (!is_allowed(name, form, is_target, quantized))
       refuse(file, at(where, it.key()), "cannot be " + describe(file, accessor));
     if (count >= 0 && form.count != count)
-      refuse(file, at(where, it.key()), "has " + std::to_string(form.count) + " elements, POSITION " +
-                                            std::to_string(count));
+      refuse(file, at(where, it.key()),
+             "has " + std::to_string(form.count) + " elements, POSITION " + std::to_string(count));
   }
 }
 
@@ -113,7 +114,8 @@ void check_primitive(File& file, const json& primitive, const std::string& where
     if (!whole || form.components != 1 || form.normalized)
       refuse(file, where + "/indices", "cannot be " + describe(file, indices->get<size_t>()));
   }
-  if (integer(primitive, "mode", 4) > 6) refuse(file, where + "/mode", "is no topology of glTF 2.0");
+  if (integer(primitive, "mode", 4) > 6)
+    refuse(file, where + "/mode", "is no topology of glTF 2.0");
 }
 
 int64_t vertex_bound(const File& file, const json& primitive) {

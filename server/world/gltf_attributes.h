@@ -15,14 +15,17 @@ std::string numbered(const char* semantic, int set);  // "JOINTS_", 1 -> "JOINTS
 // How many vertices a primitive can use at most.
 int64_t vertex_bound(const File& file, const json& primitive);
 
-// Values of an attribute at the vertices `used`, an empty list where the object has none. A COLOR or
-// WEIGHTS accessor of integers that forgot to say "normalized" is read as if it had. Colours of three
-// components gain a 1.
+// Values of an attribute at the vertices `used`, an empty list where the object has none. A COLOR
+// or WEIGHTS accessor of integers that forgot to say "normalized" is read as if it had. Colours of
+// three components gain a 1.
 using Used = std::vector<uint32_t>;
 std::vector<float> read_attribute(File& file, const json& attributes, const std::string& semantic,
                                   const Used& used);
-std::vector<vec2> read_vec2s(File&, const json& attributes, const std::string& semantic, const Used&);
-std::vector<vec3> read_vec3s(File&, const json& attributes, const std::string& semantic, const Used&);
-std::vector<vec4> read_vec4s(File&, const json& attributes, const std::string& semantic, const Used&);
+std::vector<vec2> read_vec2s(File&, const json& attributes, const std::string& semantic,
+                             const Used&);
+std::vector<vec3> read_vec3s(File&, const json& attributes, const std::string& semantic,
+                             const Used&);
+std::vector<vec4> read_vec4s(File&, const json& attributes, const std::string& semantic,
+                             const Used&);
 
 }  // namespace wellspring::gltf

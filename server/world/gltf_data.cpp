@@ -23,23 +23,32 @@ const NamedType* type_named(const std::string& name) {
 int component_size(int component_type) {
   switch (component_type) {
     case byte_component:
-    case unsigned_byte: return 1;
+    case unsigned_byte:
+      return 1;
     case short_component:
-    case unsigned_short: return 2;
+    case unsigned_short:
+      return 2;
     case unsigned_int:
-    case float_component: return 4;
+    case float_component:
+      return 4;
   }
   return 0;
 }
 
 const char* component_name(int component_type) {
   switch (component_type) {
-    case byte_component: return "BYTE";
-    case unsigned_byte: return "UNSIGNED_BYTE";
-    case short_component: return "SHORT";
-    case unsigned_short: return "UNSIGNED_SHORT";
-    case unsigned_int: return "UNSIGNED_INT";
-    case float_component: return "FLOAT";
+    case byte_component:
+      return "BYTE";
+    case unsigned_byte:
+      return "UNSIGNED_BYTE";
+    case short_component:
+      return "SHORT";
+    case unsigned_short:
+      return "UNSIGNED_SHORT";
+    case unsigned_int:
+      return "UNSIGNED_INT";
+    case float_component:
+      return "FLOAT";
   }
   return "an unknown component type";
 }
@@ -65,7 +74,8 @@ template <class T>
 float component(const uint8_t* p, bool normalized) {
   T value;
   std::memcpy(&value, p, sizeof value);
-  if constexpr (std::is_same_v<T, float>) return value;
+  if constexpr (std::is_same_v<T, float>)
+    return value;
   else {
     if (!normalized) return float(value);
     // Section 3.11: signed ones reach -1 twice.
@@ -94,7 +104,8 @@ void read_elements(int component_type, const uint8_t* data, int64_t count, int64
       return read_elements<uint16_t>(data, count, stride, layout, normalized, out);
     case unsigned_int:
       return read_elements<uint32_t>(data, count, stride, layout, normalized, out);
-    default: return read_elements<float>(data, count, stride, layout, normalized, out);
+    default:
+      return read_elements<float>(data, count, stride, layout, normalized, out);
   }
 }
 
@@ -116,8 +127,9 @@ void check_fit(const File& file, const std::string& where, const json& reader, i
   int64_t offset = integer(reader, "byteOffset", 0);
   if (count <= 0) return;
   if (count > length || offset > length || (count - 1) * stride + size > length - offset)
-    refuse(file, where, "reaches beyond bufferView " + std::to_string(view) + " of " +
-                            std::to_string(length) + " bytes");
+    refuse(file, where,
+           "reaches beyond bufferView " + std::to_string(view) + " of " + std::to_string(length) +
+               " bytes");
 }
 
 void check_sparse(const File& file, const json& accessor, int64_t count, int64_t size,
@@ -161,8 +173,9 @@ void check_accessor(File& file, size_t index) {
   const json& view = items(file.root, "bufferViews")[view_index->get<size_t>()];
   int64_t stride = integer(view, "byteStride", layout.size);
   if (stride < layout.size)
-    refuse(file, where, "elements of " + std::to_string(layout.size) +
-                            " bytes are longer than their stride of " + std::to_string(stride));
+    refuse(file, where,
+           "elements of " + std::to_string(layout.size) +
+               " bytes are longer than their stride of " + std::to_string(stride));
   if (integer(accessor, "byteOffset", 0) % bytes != 0)
     warn(file, where + "/byteOffset", "misaligned data");
   check_fit(file, where, accessor, count, stride, layout.size);
@@ -175,8 +188,9 @@ void check_view(File& file, size_t index) {
   int64_t available = integer(items(file.root, "buffers")[size_t(buffer)], "byteLength", 0);
   int64_t offset = integer(view, "byteOffset", 0), length = integer(view, "byteLength", 0);
   if (offset > available || length > available - offset)
-    refuse(file, where, "reaches beyond buffer " + std::to_string(buffer) + " of " +
-                            std::to_string(available) + " bytes");
+    refuse(file, where,
+           "reaches beyond buffer " + std::to_string(buffer) + " of " + std::to_string(available) +
+               " bytes");
   if (!find(view, "byteStride")) return;
   int64_t stride = integer(view, "byteStride", 0);
   if (stride > (int64_t(1) << 30)) refuse(file, where + "/byteStride", "is out of range");
@@ -202,8 +216,9 @@ const Bytes& buffer_bytes(File& file, size_t index) {
       refuse(file, where, "has no data");
     }
     if (bytes.size() < length)
-      refuse(file, where + "/byteLength", "says " + std::to_string(length) + " bytes, there are " +
-                                              std::to_string(bytes.size()));
+      refuse(
+          file, where + "/byteLength",
+          "says " + std::to_string(length) + " bytes, there are " + std::to_string(bytes.size()));
     file.buffer_ready[index] = 1;
   }
   return file.buffers[index];
@@ -239,9 +254,9 @@ std::vector<uint32_t> sparse_indices(File& file, const json& sparse, int64_t cou
   for (int64_t i = 0; i < replaced; i++) {
     list[size_t(i)] = unsigned_component(data + i * bytes, type);
     if (list[size_t(i)] >= count)
-      refuse(file, where + "/sparse/indices", "element " + std::to_string(i) + " is " +
-                                                  std::to_string(list[size_t(i)]) + ", of " +
-                                                  std::to_string(count) + " elements");
+      refuse(file, where + "/sparse/indices",
+             "element " + std::to_string(i) + " is " + std::to_string(list[size_t(i)]) + ", of " +
+                 std::to_string(count) + " elements");
   }
   return list;
 }
@@ -258,8 +273,8 @@ Form form_of(const File& file, size_t accessor) {
   const NamedType* type = type_named(text(object, "type"));
   int64_t component_type = integer(object, "componentType", 0);
   bool known = component_type <= float_component && component_size(int(component_type)) > 0;
-  return {integer(object, "count", 0), type ? type->components : 0,
-          known ? int(component_type) : 0, boolean(object, "normalized", false)};
+  return {integer(object, "count", 0), type ? type->components : 0, known ? int(component_type) : 0,
+          boolean(object, "normalized", false)};
 }
 
 std::string describe(const File& file, size_t accessor) {
@@ -278,7 +293,8 @@ std::span<const uint8_t> view_bytes(File& file, size_t view) {
 bool has_data(const File& file, size_t accessor) {
   const json* view = find(items(file.root, "accessors")[accessor], "bufferView");
   if (!view) return true;
-  size_t buffer = size_t(integer(items(file.root, "bufferViews")[view->get<size_t>()], "buffer", 0));
+  size_t buffer =
+      size_t(integer(items(file.root, "bufferViews")[view->get<size_t>()], "buffer", 0));
   return find(items(file.root, "buffers")[buffer], "uri") || (buffer == 0 && file.has_binary);
 }
 
@@ -295,8 +311,7 @@ std::shared_ptr<const std::vector<float>> read_floats(File& file, size_t accesso
   if (const json* view_index = find(object, "bufferView")) {
     const json& view = items(file.root, "bufferViews")[view_index->get<size_t>()];
     read_elements(form.component_type, start_of(file, object), form.count,
-                  integer(view, "byteStride", layout.size), layout, form.normalized,
-                  values.data());
+                  integer(view, "byteStride", layout.size), layout, form.normalized, values.data());
   }
   if (const json* sparse = find(object, "sparse")) {
     std::vector<uint32_t> replaced =
@@ -324,8 +339,8 @@ std::vector<uint32_t> read_integers(File& file, size_t accessor) {
   const json& object = items(file.root, "accessors")[accessor];
   if (form.component_type != unsigned_byte && form.component_type != unsigned_short &&
       form.component_type != unsigned_int)
-    refuse(file, accessor_place(accessor), "must hold unsigned integers, not " +
-                                               describe(file, accessor));
+    refuse(file, accessor_place(accessor),
+           "must hold unsigned integers, not " + describe(file, accessor));
   charge(file, accessor, form);
   int bytes = component_size(form.component_type), components = form.components;
   std::vector<uint32_t> values(size_t(form.count) * size_t(components), 0);

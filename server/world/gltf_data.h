@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers out of a glTF file's buffers: every accessor form of section 3.6.2 - interleaved, normalised,
-// sparse, each component type, and none at all (zeros). Layouts were checked when the file was loaded.
+// Numbers out of a glTF file's buffers: every accessor form of section 3.6.2 - interleaved,
+// normalised, sparse, each component type, and none at all (zeros). Layouts were checked when the
+// file was loaded.
 #pragma once
 #include <span>
 
@@ -27,13 +28,13 @@ struct Form {
 Form form_of(const File& file, size_t accessor);
 std::string describe(const File& file, size_t accessor);  // "VEC3 of FLOAT", for messages
 
-// What a file may cost: many accessors over the same bytes, or over none, cannot make a small file take
-// unbounded memory or time.
-constexpr int64_t element_limit = int64_t(1) << 24;      // of one accessor
-constexpr int64_t dataless_limit = int64_t(1) << 22;     // of one accessor without bytes of its own
-constexpr int64_t numbers_limit = int64_t(1) << 29;      // decoded in all
-constexpr int64_t vertices_limit = 48'000'000;           // kept in all
-constexpr int64_t triangles_limit = 32'000'000;          // kept in all
+// What a file may cost: many accessors over the same bytes, or over none, cannot make a small file
+// take unbounded memory or time.
+constexpr int64_t element_limit = int64_t(1) << 24;   // of one accessor
+constexpr int64_t dataless_limit = int64_t(1) << 22;  // of one accessor without bytes of its own
+constexpr int64_t numbers_limit = int64_t(1) << 29;   // decoded in all
+constexpr int64_t vertices_limit = 48'000'000;        // kept in all
+constexpr int64_t triangles_limit = 32'000'000;       // kept in all
 
 // Whether an accessor's bytes exist at all: glTF lets a buffer be declared without content.
 bool has_data(const File& file, size_t accessor);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From path to JSON and bytes: the GLB container (glTF 2.0 section 4), nesting limits, URIs, the package.
+// From path to JSON and bytes: the GLB container (glTF 2.0 section 4), nesting limits, URIs, the
+// package.
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -28,8 +29,10 @@ void check_depth(const File& file, const char* begin, const char* end) {
   bool in_string = false;
   for (const char* p = begin; p < end; p++) {
     if (in_string) {
-      if (*p == '\\') p++;
-      else if (*p == '"') in_string = false;
+      if (*p == '\\')
+        p++;
+      else if (*p == '"')
+        in_string = false;
     } else if (*p == '"') {
       in_string = true;
     } else if (*p == '[' || *p == '{') {
@@ -51,7 +54,8 @@ void parse_json(File& file, const char* begin, const char* end) {
   try {
     file.root = json::parse(begin, end);
   } catch (const json::exception& error) {
-    std::string reason = error.what();  // "[json.exception.parse_error.101] parse error at line ..."
+    std::string reason =
+        error.what();  // "[json.exception.parse_error.101] parse error at line ..."
     size_t bracket = reason.find("] ");
     if (bracket != std::string::npos) reason.erase(0, bracket + 2);
     const auto* syntax = dynamic_cast<const json::parse_error*>(&error);
@@ -66,8 +70,9 @@ void split_glb(File& file, const Bytes& bytes) {
     refuse(file, "byte 4", "GLB version " + std::to_string(word(bytes, 4)) + " is not 2");
   size_t length = word(bytes, 8);
   if (length > bytes.size())
-    refuse(file, "byte 8", "GLB says it has " + std::to_string(length) + " bytes but the file ends at " +
-                               std::to_string(bytes.size()));
+    refuse(file, "byte 8",
+           "GLB says it has " + std::to_string(length) + " bytes but the file ends at " +
+               std::to_string(bytes.size()));
   if (length < bytes.size()) warn(file, "byte 8", "data after the end of the GLB is ignored");
   bool has_json = false;
   for (size_t offset = 12; offset < length;) {
@@ -277,9 +282,12 @@ std::string at(const std::string& where, size_t index) {
 std::string at(const std::string& where, const std::string& key) {
   std::string escaped = where + "/";
   for (char c : key.substr(0, 100)) {
-    if (c == '~') escaped += "~0";
-    else if (c == '/') escaped += "~1";
-    else escaped += c;
+    if (c == '~')
+      escaped += "~0";
+    else if (c == '/')
+      escaped += "~1";
+    else
+      escaped += c;
   }
   return escaped;
 }

@@ -51,14 +51,15 @@ std::string check_size(std::span<const uint8_t> bytes, int64_t texels_left) {
 
 std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image,
                          int64_t& texels_left) {
-  bool png = starts_with(bytes, "\x89PNG\r\n\x1a\n", 8), jpeg = starts_with(bytes, "\xff\xd8\xff", 3);
+  bool png = starts_with(bytes, "\x89PNG\r\n\x1a\n", 8),
+       jpeg = starts_with(bytes, "\xff\xd8\xff", 3);
   if (!png && !jpeg) return "picture is neither PNG nor JPEG";
   if (std::string problem = check_size(bytes, texels_left); !problem.empty()) return problem;
   int size = int(bytes.size()), components = 0;
   size_t count = 0;
   if (png && stbi_is_16_bit_from_memory(bytes.data(), size)) {
-    std::unique_ptr<uint16_t, Free> texels(stbi_load_16_from_memory(
-        bytes.data(), size, &image.width, &image.height, &components, 4));
+    std::unique_ptr<uint16_t, Free> texels(
+        stbi_load_16_from_memory(bytes.data(), size, &image.width, &image.height, &components, 4));
     if (!texels) return std::string("picture cannot be decoded: ") + stbi_failure_reason();
     count = size_t(image.width) * size_t(image.height);
     image.srgb = false;
@@ -69,8 +70,8 @@ std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image
         image.texels[i][c] = srgb && c < 3 ? decode_srgb16(t[c]) : float(t[c]) / 65535.0f;
     }
   } else {
-    std::unique_ptr<uint8_t, Free> texels(stbi_load_from_memory(
-        bytes.data(), size, &image.width, &image.height, &components, 4));
+    std::unique_ptr<uint8_t, Free> texels(
+        stbi_load_from_memory(bytes.data(), size, &image.width, &image.height, &components, 4));
     if (!texels) return std::string("picture cannot be decoded: ") + stbi_failure_reason();
     count = size_t(image.width) * size_t(image.height);
     image.srgb = srgb;

@@ -55,8 +55,7 @@ class Materials {
     for (int i = 0; i < N; i++) {
       float value = to_float((*list)[size_t(i)].get<double>());
       result[i] = glm::clamp(value, low, high);
-      if (result[i] != value)
-        warn(file_, where, std::string(key) + " is out of range and clamped");
+      if (result[i] != value) warn(file_, where, std::string(key) + " is out of range and clamped");
     }
     return result;
   }
@@ -95,16 +94,19 @@ class Materials {
     }
     vec3 from_diffuse = vec3(diffuse) * (rest / (1 - dielectric) / std::max(1 - m.metallic, 1e-4f));
     vec3 from_specular = (specular - dielectric * (1 - m.metallic)) / std::max(m.metallic, 1e-4f);
-    m.base_color = vec4(glm::clamp(glm::mix(from_diffuse, from_specular, m.metallic * m.metallic),
-                                   0.0f, 1.0f),
-                        diffuse.w);
+    m.base_color =
+        vec4(glm::clamp(glm::mix(from_diffuse, from_specular, m.metallic * m.metallic), 0.0f, 1.0f),
+             diffuse.w);
   }
 
   void alpha(const json& object, const std::string& where, Material& m) {
     std::string mode = text(object, "alphaMode", "OPAQUE");
-    if (mode == "MASK") m.alpha_mode = AlphaMode::mask;
-    else if (mode == "BLEND") m.alpha_mode = AlphaMode::blend;
-    else if (mode != "OPAQUE") warn(file_, where + "/alphaMode", "unknown; shown opaque");
+    if (mode == "MASK")
+      m.alpha_mode = AlphaMode::mask;
+    else if (mode == "BLEND")
+      m.alpha_mode = AlphaMode::blend;
+    else if (mode != "OPAQUE")
+      warn(file_, where + "/alphaMode", "unknown; shown opaque");
     m.alpha_cutoff = factor(object, "alphaCutoff", where, 0.5f, 0, 1e9f);
   }
 
@@ -194,9 +196,12 @@ class Materials {
 
   Wrap wrap(const json& sampler, const char* key, const std::string& where) {
     switch (integer(sampler, key, 10497)) {
-      case 33071: return Wrap::clamp;
-      case 33648: return Wrap::mirror;
-      case 10497: return Wrap::repeat;
+      case 33071:
+        return Wrap::clamp;
+      case 33648:
+        return Wrap::mirror;
+      case 10497:
+        return Wrap::repeat;
     }
     warn(file_, where + "/" + key, "unknown wrap mode; the picture repeats");
     return Wrap::repeat;
@@ -209,7 +214,8 @@ class Materials {
     const json& object = items(file_.root, "images")[index];
     Image made;
     std::string uri_text = text(object, "uri");
-    made.name = text(object, "name", uri_text.compare(0, 5, "data:") ? uri_text.substr(0, 100) : "");
+    made.name =
+        text(object, "name", uri_text.compare(0, 5, "data:") ? uri_text.substr(0, 100) : "");
     std::string problem;
     if (const json* uri = find(object, "uri")) {
       std::optional<Bytes> bytes = read_uri(file_, where + "/uri", uri->get<std::string>());

@@ -6,7 +6,8 @@
 
 namespace wellspring::gltf {
 
-// Fills scene.materials (0 is the default material, i + 1 the file's material i), textures and images.
+// Fills scene.materials (0 is the default material, i + 1 the file's material i), textures and
+// images.
 void load_materials(File& file, Scene& scene);
 
 }  // namespace wellspring::gltf

@@ -32,9 +32,9 @@ std::vector<uvec3> read_triangles(File& file, const json& primitive, const std::
     list = read_integers(file, indices->get<size_t>());
     for (size_t i = 0; i < list.size(); i++)
       if (list[i] >= vertex_count)
-        refuse(file, where + "/indices", "element " + std::to_string(i) + " is vertex " +
-                                             std::to_string(list[i]) + " of " +
-                                             std::to_string(vertex_count));
+        refuse(file, where + "/indices",
+               "element " + std::to_string(i) + " is vertex " + std::to_string(list[i]) + " of " +
+                   std::to_string(vertex_count));
   } else {
     list.resize(vertex_count);
     for (size_t i = 0; i < vertex_count; i++) list[i] = uint32_t(i);
@@ -44,14 +44,18 @@ std::vector<uvec3> read_triangles(File& file, const json& primitive, const std::
   if (mode == 4 && list.size() % 3 != 0)
     warn(file, where, "the number of indices is not a multiple of three; the rest is ignored");
   if ((file.triangles_made += int64_t(count)) > triangles_limit)
-    refuse(file, where, "the file makes more than " + std::to_string(triangles_limit) + " triangles");
+    refuse(file, where,
+           "the file makes more than " + std::to_string(triangles_limit) + " triangles");
   std::vector<uvec3> triangles;
   triangles.reserve(count);
   for (size_t i = 0; i < count; i++) {
     uvec3 t;  // section 3.7.2.1: the order keeps the winding
-    if (mode == 4) t = {list[3 * i], list[3 * i + 1], list[3 * i + 2]};
-    else if (mode == 5) t = {list[i], list[i + 1 + i % 2], list[i + 2 - i % 2]};
-    else t = {list[i + 1], list[i + 2], list[0]};
+    if (mode == 4)
+      t = {list[3 * i], list[3 * i + 1], list[3 * i + 2]};
+    else if (mode == 5)
+      t = {list[i], list[i + 1 + i % 2], list[i + 2 - i % 2]};
+    else
+      t = {list[i + 1], list[i + 2], list[0]};
     if (t.x != t.y && t.y != t.z && t.z != t.x) triangles.push_back(t);
   }
   return triangles;
@@ -138,7 +142,8 @@ void apply_skin(File& file, const json& primitive, const std::string& where,
   }
 }
 
-// Drops triangles with a corner at no finite place and mends the other lists where they are not finite.
+// Drops triangles with a corner at no finite place and mends the other lists where they are not
+// finite.
 void drop_bad_values(File& file, const std::string& where, Draft& draft) {
   Mesh& mesh = draft.mesh;
   auto is_bad = [&](uint32_t i) {
@@ -146,11 +151,11 @@ void drop_bad_values(File& file, const std::string& where, Draft& draft) {
     return !(p.x < farthest && p.y < farthest && p.z < farthest);
   };
   size_t before = mesh.triangles.size();
-  std::erase_if(mesh.triangles,
-                [&](uvec3 t) { return is_bad(t.x) || is_bad(t.y) || is_bad(t.z); });
+  std::erase_if(mesh.triangles, [&](uvec3 t) { return is_bad(t.x) || is_bad(t.y) || is_bad(t.z); });
   if (mesh.triangles.size() < before)
-    warn(file, where, std::to_string(before - mesh.triangles.size()) +
-                          " triangles with a corner at no finite place are dropped");
+    warn(file, where,
+         std::to_string(before - mesh.triangles.size()) +
+             " triangles with a corner at no finite place are dropped");
   for (uint32_t i = 0; i < draft.positions.size(); i++)
     if (is_bad(i)) draft.positions[i] = dvec3(0);
   bool mended = false;
@@ -165,7 +170,8 @@ void drop_bad_values(File& file, const std::string& where, Draft& draft) {
   if (mended) warn(file, where, "texture coordinates or colours that are not finite are replaced");
 }
 
-// Where to put the mesh's own zero: where it is, unless the mesh is small against its distance from it.
+// Where to put the mesh's own zero: where it is, unless the mesh is small against its distance from
+// it.
 dvec3 choose_centre(const Draft& draft) {
   dvec3 low(1e300), high(-1e300);
   for (const uvec3& t : draft.mesh.triangles)
@@ -203,8 +209,7 @@ void finish_tangents(File& file, const std::string& where, Mesh& mesh, int norma
 BuiltMesh build_primitive(File& file, size_t mesh_index, size_t primitive_index,
                           const Deformation& deformation, int normal_map_uv) {
   const json& mesh_object = items(file.root, "meshes")[mesh_index];
-  const std::string where =
-      at(at("/meshes", mesh_index) + "/primitives", primitive_index);
+  const std::string where = at(at("/meshes", mesh_index) + "/primitives", primitive_index);
   const json& primitive = mesh_object["primitives"][primitive_index];
   const json& attributes = primitive["attributes"];
   Draft draft;
@@ -225,8 +230,7 @@ BuiltMesh build_primitive(File& file, size_t mesh_index, size_t primitive_index,
   mesh.uv[1] = read_vec2s(file, attributes, "TEXCOORD_1", draft.used);
   mesh.colors = read_vec4s(file, attributes, "COLOR_0", draft.used);
   apply_targets(file, primitive, deformation.weights, draft);
-  if (!deformation.joints.empty())
-    apply_skin(file, primitive, where, deformation.joints, draft);
+  if (!deformation.joints.empty()) apply_skin(file, primitive, where, deformation.joints, draft);
   drop_bad_values(file, where, draft);
 
   BuiltMesh built;
@@ -254,8 +258,9 @@ std::vector<dmat4> joint_matrices(File& file, size_t skin, const std::vector<dma
   if (form.components != 16 || form.component_type != float_component)
     refuse(file, where, "must be MAT4 of FLOAT, not " + describe(file, accessor->get<size_t>()));
   if (form.count < int64_t(joints.size()))
-    refuse(file, where, "has " + std::to_string(form.count) + " matrices for " +
-                            std::to_string(joints.size()) + " joints");
+    refuse(file, where,
+           "has " + std::to_string(form.count) + " matrices for " + std::to_string(joints.size()) +
+               " joints");
   const std::vector<float>& values = *read_floats(file, accessor->get<size_t>());
   for (size_t j = 0; j < result.size(); j++) {
     dmat4 bind(1);

@@ -20,9 +20,10 @@ struct BuiltMesh {
   dvec3 centre{0};
 };
 
-// Builds primitive `primitive` of mesh `mesh`. No triangles: points, lines or nothing at all; a warning
-// says so. Positions are in the mesh's space, or in world space if skinned. `normal_map_uv`: the set of
-// texture coordinates its material's normal map uses, so that tangents are made; -1: no normal map.
+// Builds primitive `primitive` of mesh `mesh`. No triangles: points, lines or nothing at all; a
+// warning says so. Positions are in the mesh's space, or in world space if skinned.
+// `normal_map_uv`: the set of texture coordinates its material's normal map uses, so that tangents
+// are made; -1: no normal map.
 BuiltMesh build_primitive(File& file, size_t mesh, size_t primitive, const Deformation& deformation,
                           int normal_map_uv);
 

@@ -47,7 +47,8 @@ Node read_node(File& file, size_t index) {
     for (int i = 0; i < 16; i++) node.matrix[i / 4][i % 4] = (*matrix)[size_t(i)].get<double>();
     if (node.matrix[0][3] != 0 || node.matrix[1][3] != 0 || node.matrix[2][3] != 0 ||
         node.matrix[3][3] != 1) {
-      warn(file, where + "/matrix", "a matrix whose last row is not 0 0 0 1 is taken as if it were");
+      warn(file, where + "/matrix",
+           "a matrix whose last row is not 0 0 0 1 is taken as if it were");
       for (int i = 0; i < 4; i++) node.matrix[i][3] = i == 3;
     }
   }
@@ -122,14 +123,14 @@ void mark_shown(File& file, std::vector<Node>& nodes, const std::vector<size_t>&
 
 std::vector<Node> make_pose(File& file, double time) {
   std::vector<Node> nodes;
-  for (size_t i = 0; i < items(file.root, "nodes").size(); i++)
-    nodes.push_back(read_node(file, i));
+  for (size_t i = 0; i < items(file.root, "nodes").size(); i++) nodes.push_back(read_node(file, i));
   std::vector<size_t> order = parents_first(file, nodes);
   animate(file, time, nodes);
   for (size_t i : order) {
     Node& node = nodes[i];
     if (!node.has_matrix) {
-      node.matrix = glm::translate(dmat4(1), node.translation) * glm::mat4_cast(unit(node.rotation));
+      node.matrix =
+          glm::translate(dmat4(1), node.translation) * glm::mat4_cast(unit(node.rotation));
       node.matrix = glm::scale(node.matrix, node.scale);
     }
     node.global = node.parent < 0 ? node.matrix : nodes[size_t(node.parent)].global * node.matrix;

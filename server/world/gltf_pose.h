@@ -13,13 +13,13 @@ struct Node {
   glm::dquat rotation{1, 0, 0, 0};
   bool has_matrix = false;
   dmat4 matrix{1};
-  dmat4 global{1};                // parent.global * local
-  std::vector<double> weights;    // morph weights of the node's mesh
-  bool shown = false;             // part of the scene that is shown
+  dmat4 global{1};              // parent.global * local
+  std::vector<double> weights;  // morph weights of the node's mesh
+  bool shown = false;           // part of the scene that is shown
 };
 
-// All nodes of the file at `time` of its first animation; at 0 the rest pose. Throws LoadError for nodes
-// with two parents, cycles, and animations that cannot be read.
+// All nodes of the file at `time` of its first animation; at 0 the rest pose. Throws LoadError for
+// nodes with two parents, cycles, and animations that cannot be read.
 std::vector<Node> make_pose(File& file, double time);
 
 }  // namespace wellspring::gltf

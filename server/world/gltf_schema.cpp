@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The glTF 2.0 schema (section 5) as one table, and a walker that holds a file's JSON against it. The
-// table also names what every index points into, so no reference survives unchecked.
+// The glTF 2.0 schema (section 5) as one table, and a walker that holds a file's JSON against it.
+// The table also names what every index points into, so no reference survives unchecked.
 #include <cmath>
 #include <map>
 
@@ -14,18 +14,18 @@ enum class Kind {
   integer,
   number,
   text,
-  index,     // into the root list `target`
-  object,    // of type `target`
-  map,       // of names to indices into `target`
-  numbers,   // list of numbers
-  texts,     // list of strings
-  indices,   // list of indices into `target`
-  objects,   // list of objects of type `target`
-  maps,      // list of maps
+  index,    // into the root list `target`
+  object,   // of type `target`
+  map,      // of names to indices into `target`
+  numbers,  // list of numbers
+  texts,    // list of strings
+  indices,  // list of indices into `target`
+  objects,  // list of objects of type `target`
+  maps,     // list of maps
 };
 
 struct Rule {
-  const char* type;      // of the object that has the property
+  const char* type;  // of the object that has the property
   const char* property;
   Kind kind;
   const char* target = "";
@@ -230,15 +230,26 @@ class Walker {
       case Kind::boolean:
         if (!value.is_boolean()) refuse(file_, where, "must be true or false");
         break;
-      case Kind::integer: check_integer(value, rule.low, where); break;
-      case Kind::number: check_number(value, where); break;
+      case Kind::integer:
+        check_integer(value, rule.low, where);
+        break;
+      case Kind::number:
+        check_number(value, where);
+        break;
       case Kind::text:
         if (!value.is_string()) refuse(file_, where, "must be a string");
         break;
-      case Kind::index: check_index(value, rule.target, where); break;
-      case Kind::object: check_object(value, rule.target, where); break;
-      case Kind::map: check_map(value, rule.target, where); break;
-      default: check_list(value, rule, where);
+      case Kind::index:
+        check_index(value, rule.target, where);
+        break;
+      case Kind::object:
+        check_object(value, rule.target, where);
+        break;
+      case Kind::map:
+        check_map(value, rule.target, where);
+        break;
+      default:
+        check_list(value, rule, where);
     }
   }
 
@@ -259,8 +270,9 @@ class Walker {
     check_integer(value, 0, where);
     size_t count = list_size(target);
     if (value.get<double>() >= double(count))
-      refuse(file_, where, "refers to " + std::string(target) + " " + value.dump() +
-                               ", of which there are " + std::to_string(count));
+      refuse(file_, where,
+             "refers to " + std::string(target) + " " + value.dump() + ", of which there are " +
+                 std::to_string(count));
   }
 
   void check_map(const json& value, const char* target, const std::string& where) {
@@ -278,13 +290,20 @@ class Walker {
     for (size_t i = 0; i < value.size(); i++) {
       const std::string place = at(where, i);
       switch (rule.kind) {
-        case Kind::numbers: check_number(value[i], place); break;
+        case Kind::numbers:
+          check_number(value[i], place);
+          break;
         case Kind::texts:
           if (!value[i].is_string()) refuse(file_, place, "must be a string");
           break;
-        case Kind::indices: check_index(value[i], rule.target, place); break;
-        case Kind::objects: check_object(value[i], rule.target, place); break;
-        default: check_map(value[i], rule.target, place);
+        case Kind::indices:
+          check_index(value[i], rule.target, place);
+          break;
+        case Kind::objects:
+          check_object(value[i], rule.target, place);
+          break;
+        default:
+          check_map(value[i], rule.target, place);
       }
     }
   }
@@ -316,7 +335,8 @@ void check_version(File& file) {
     std::string version = text(asset, key);
     char extra = 0;
     if (std::sscanf(version.c_str(), "%5d.%5d%c", &major, &minor, &extra) != 2)
-      refuse(file, std::string("/asset/") + key, "not a version: \"" + version.substr(0, 20) + "\"");
+      refuse(file, std::string("/asset/") + key,
+             "not a version: \"" + version.substr(0, 20) + "\"");
   };
   int major = 0, minor = 0;
   parse("version", major, minor);
@@ -339,9 +359,11 @@ void check_schema(File& file) {
 
 void check_extensions(File& file) {
   static const std::set<std::string> known = {
-      "KHR_texture_transform", "KHR_materials_emissive_strength", "KHR_materials_transmission",
-      "KHR_materials_ior", "KHR_materials_volume", "KHR_materials_unlit", "KHR_lights_punctual",
-      "KHR_materials_pbrSpecularGlossiness", "KHR_mesh_quantization"};
+      "KHR_texture_transform",      "KHR_materials_emissive_strength",
+      "KHR_materials_transmission", "KHR_materials_ior",
+      "KHR_materials_volume",       "KHR_materials_unlit",
+      "KHR_lights_punctual",        "KHR_materials_pbrSpecularGlossiness",
+      "KHR_mesh_quantization"};
   const json& required = items(file.root, "extensionsRequired");
   for (size_t i = 0; i < required.size(); i++)
     if (!known.count(required[i].get<std::string>()))

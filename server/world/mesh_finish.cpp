@@ -85,7 +85,8 @@ int repair_normals(Mesh& mesh) {
 
 void make_tangents(Mesh& mesh, int uv_set) {
   const std::vector<vec2>& uv = mesh.uv[uv_set];
-  // Side 0 and 1: vertices seen from faces whose picture is not mirrored, and from those where it is.
+  // Side 0 and 1: vertices seen from faces whose picture is not mirrored, and from those where it
+  // is.
   struct Sides {
     dvec3 sum[2] = {dvec3(0), dvec3(0)};
     char used[2] = {0, 0};
@@ -102,8 +103,10 @@ void make_tangents(Mesh& mesh, int uv_set) {
     int side = determinant > 0;  // v points down in glTF, so an upright picture has it negative
     dvec3 tangent = e1 * d2.y - e2 * d1.y;
     double length = glm::length(tangent);
-    if (determinant == 0 || !(length > 0) || !std::isfinite(length)) tangent = dvec3(0);
-    else tangent *= (determinant < 0 ? -1 : 1) / length * glm::length(cross(e1, e2));
+    if (determinant == 0 || !(length > 0) || !std::isfinite(length))
+      tangent = dvec3(0);
+    else
+      tangent *= (determinant < 0 ? -1 : 1) / length * glm::length(cross(e1, e2));
     side_of[i] = char(side);
     for (int corner = 0; corner < 3; corner++) {
       sides[t[corner]].sum[side] += tangent;

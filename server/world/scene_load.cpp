@@ -39,7 +39,8 @@ class Builder {
         check_primitive(file, meshes[m]["primitives"][p], where);
         vertices += vertex_bound(file, meshes[m]["primitives"][p]);
         if (vertices > vertices_limit)
-          refuse(file, where, "the file has more than " + std::to_string(vertices_limit) + " vertices");
+          refuse(file, where,
+                 "the file has more than " + std::to_string(vertices_limit) + " vertices");
       }
     nodes_ = make_pose(file, time);
     for (const Node& node : nodes_) global_.push_back(node.global);
@@ -109,15 +110,16 @@ class Builder {
       Placement placement;
       placement.mesh = made;
       placement.object = id;
-      placement.to_world = glm::translate(skinned ? dmat4(1) : nodes_[index].global,
-                                          centres_[size_t(made)]);
+      placement.to_world =
+          glm::translate(skinned ? dmat4(1) : nodes_[index].global, centres_[size_t(made)]);
       placements_.push_back(placement);
     }
   }
 
   // Index of the new scene mesh, -1 if it has no triangles.
   int add_mesh(size_t mesh, size_t primitive, const Deformation& deformation) {
-    BuiltMesh built = build_primitive(file_, mesh, primitive, deformation, normal_map_uv(mesh, primitive));
+    BuiltMesh built =
+        build_primitive(file_, mesh, primitive, deformation, normal_map_uv(mesh, primitive));
     if (built.mesh.triangles.empty()) return -1;
     check_texture_coordinates(built.mesh, mesh, primitive);
     scene_.meshes.push_back(std::move(built.mesh));
@@ -201,8 +203,10 @@ class Builder {
     PunctualLight light;
     light.name = text(items(file_.root, "nodes")[index], "name", text(object, "name"));
     std::string type = text(object, "type");
-    if (type == "directional") light.type = PunctualType::directional;
-    else if (type == "spot") light.type = PunctualType::spot;
+    if (type == "directional")
+      light.type = PunctualType::directional;
+    else if (type == "spot")
+      light.type = PunctualType::spot;
     else if (type != "point") {
       warn(file_, where, "a light of unknown type is ignored");
       return;
@@ -234,7 +238,8 @@ class Builder {
     light_positions_.push_back(dvec3(m[3]));
   }
 
-  // Zero, unless all there is to see lies far away from it: then a whole number of metres in its middle.
+  // Zero, unless all there is to see lies far away from it: then a whole number of metres in its
+  // middle.
   void choose_origin() {
     dvec3 low(1e300), high(-1e300);
     for (const Placement& p : placements_) {
@@ -249,7 +254,8 @@ class Builder {
                 corner & 4 ? box.high.z : box.low.z);
         v = dvec3(p.to_world * glm::dvec4(v, 1));
         if (!(glm::length(v) < 1e15))
-          refuse(file_, "", "object \"" + scene_.objects[p.object] + "\" reaches beyond 1e15 metres");
+          refuse(file_, "",
+                 "object \"" + scene_.objects[p.object] + "\" reaches beyond 1e15 metres");
         low = glm::min(low, v);
         high = glm::max(high, v);
       }
@@ -279,7 +285,8 @@ Scene load_scene(const std::string& path, const SceneLoadOptions& options) {
   Scene scene;
   scene.name = std::filesystem::path(path).stem().string();
   const json& scenes = items(file.root, "scenes");
-  if (!scenes.empty()) scene.name = text(scenes[size_t(integer(file.root, "scene", 0))], "name", scene.name);
+  if (!scenes.empty())
+    scene.name = text(scenes[size_t(integer(file.root, "scene", 0))], "name", scene.name);
   Builder(file, scene, options.time).build();
   scene.warnings = std::move(file.warnings);
   return scene;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 files (.gltf, .glb, embedded data) to a Scene. Parsing is tinygltf's; every count, offset and
-// index is checked here first, because the parser does not. Files a package names must lie inside the
-// package's folder. Cost is linear in the file; may block on the disk.
+// glTF 2.0 files (.gltf, .glb, embedded data) to a Scene. Parsing is tinygltf's; every count,
+// offset and index is checked here first, because the parser does not. Files a package names must
+// lie inside the package's folder. Cost is linear in the file; may block on the disk.
 #pragma once
 #include <string>
 
@@ -10,11 +10,14 @@
 namespace wellspring {
 
 struct SceneLoadOptions {
-  double time = 0;      // seconds: the pose of the file's first animation at this time; 0 is the rest pose
-  std::string package;  // folder that referenced files must stay inside; empty: the file's own folder
+  double time =
+      0;  // seconds: the pose of the file's first animation at this time; 0 is the rest pose
+  std::string
+      package;  // folder that referenced files must stay inside; empty: the file's own folder
 };
 
-// Throws LoadError naming file, JSON pointer and problem. What is only odd is told in Scene::warnings.
+// Throws LoadError naming file, JSON pointer and problem. What is only odd is told in
+// Scene::warnings.
 Scene load_scene(const std::string& path, const SceneLoadOptions& options = {});
 
 // Latitude-longitude environment picture (.hdr) appended to the scene's images. Throws LoadError.

@@ -34,13 +34,12 @@ Face face_of(const PlacedMesh& placed, uvec3 index) {
     face.corner[i] = placed.moving ? p : vec3(placed.to_world * vec4(p, 1));
   }
   face.cross_product = cross(face.corner[1] - face.corner[0], face.corner[2] - face.corner[0]);
-  // A mirroring transform turns the winding round (glTF 2.0 section 3.7.4).
-  if (!placed.moving && glm::determinant(mat3(placed.to_world)) < 0)
-    face.cross_product = -face.cross_product;
+  if (placed.mirrored) face.cross_product = -face.cross_product;
   return face;
 }
 
-// Unit vector, or `otherwise` where there is no direction. Scaled first: slivers must not underflow.
+// Unit vector, or `otherwise` where there is no direction. Scaled first: slivers must not
+// underflow.
 vec3 unit_or(vec3 v, vec3 otherwise) {
   float largest = max_component(glm::abs(v));
   if (!(largest > 1e-30f) || !std::isfinite(largest)) return otherwise;
@@ -69,7 +68,7 @@ vec3 mapped_normal(const Scene& scene, const PlacedMesh& placed, const Corners& 
   vec3 tangent = placed.moving ? vec3(local) : mat3(placed.to_world) * vec3(local);
   tangent = unit_or(tangent - normal * dot(normal, tangent), vec3(0));
   vec3 bitangent = cross(normal, tangent) * (mesh.tangents[at.index.x].w < 0 ? -1.0f : 1.0f);
-  if (!placed.moving && glm::determinant(mat3(placed.to_world)) < 0) bitangent = -bitangent;
+  if (placed.mirrored) bitangent = -bitangent;
   return unit_or(tangent * map.x + bitangent * map.y + normal * map.z, normal);
 }
 
@@ -114,8 +113,8 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
   surface.object = placed.object;
   surface.barycentric = hit.barycentric;
   surface.material = mesh.material;
-  surface.position = face.corner[0] * at.weight.x + face.corner[1] * at.weight.y +
-                     face.corner[2] * at.weight.z;
+  surface.position =
+      face.corner[0] * at.weight.x + face.corner[1] * at.weight.y + face.corner[2] * at.weight.z;
   surface.extent = max_component(glm::max(
       glm::max(glm::abs(face.corner[0]), glm::abs(face.corner[1])), glm::abs(face.corner[2])));
 
@@ -144,8 +143,7 @@ vec3 eval_position(const World& world, uint32_t instance, uint32_t triangle, vec
   const PlacedMesh& placed = world.placed(instance);
   Corners at = corners_of(*placed.mesh, triangle, barycentric);
   Face face = face_of(placed, at.index);
-  return face.corner[0] * at.weight.x + face.corner[1] * at.weight.y +
-         face.corner[2] * at.weight.z;
+  return face.corner[0] * at.weight.x + face.corner[1] * at.weight.y + face.corner[2] * at.weight.z;
 }
 
 vec3 eval_face(const World& world, uint32_t instance, uint32_t triangle, float* area) {

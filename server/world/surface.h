@@ -8,8 +8,8 @@ namespace wellspring {
 struct Surface {
   vec3 position{0};
   vec3 geometric_normal{0, 1, 0};  // unit, on the side the ray came from
-  vec3 normal{0, 1, 0};            // shading normal after normal map, same hemisphere as geometric_normal
-  bool front = true;               // the ray came from the side the triangle's winding faces
+  vec3 normal{0, 1, 0};  // shading normal after normal map, same hemisphere as geometric_normal
+  bool front = true;     // the ray came from the side the triangle's winding faces
   vec2 uv{0};
   uint32_t instance = 0, triangle = 0, object = 0;
   vec2 barycentric{0};
@@ -27,12 +27,12 @@ struct Surface {
 Surface eval_surface(const World& world, const Ray& ray, const Hit& hit);
 // Position on a triangle at barycentric weights of its second and third corner, world space.
 vec3 eval_position(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric);
-// Unit geometric normal towards the side the winding faces (0, 1, 0 for a triangle without area), and
-// the triangle's area through `area` if given, both in world space.
+// Unit geometric normal towards the side the winding faces (0, 1, 0 for a triangle without area),
+// and the triangle's area through `area` if given, both in world space.
 vec3 eval_face(const World& world, uint32_t instance, uint32_t triangle, float* area = nullptr);
 // An origin for a ray leaving `surface` along `direction` that does not hit the same surface again
-// (Waechter and Binder, Ray Tracing Gems chapter 6), widened where a large triangle's corners make its
-// places less exact than their own coordinates.
+// (Waechter and Binder, Ray Tracing Gems chapter 6), widened where a large triangle's corners make
+// its places less exact than their own coordinates.
 vec3 offset_origin(const Surface& surface, vec3 direction);
 
 }  // namespace wellspring

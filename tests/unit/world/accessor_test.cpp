@@ -42,12 +42,14 @@ TEST(Accessor, IndexTypes) {
 TEST(Accessor, SparseOverData) {
   Asset asset;
   int base = asset.add_view<float>({0, 0, 0, 1, 0, 0, 0, 1, 0});
-  int indices = asset.add_view<uint16_t>({1, 2}), values = asset.add_view<float>({5, 0, 0, 0, 7, 0});
-  int position = asset.add_accessor(base, 5126, "VEC3", 3,
-                                    {{"sparse",
-                                      {{"count", 2},
-                                       {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
-                                       {"values", {{"bufferView", values}}}}}});
+  int indices = asset.add_view<uint16_t>({1, 2}),
+      values = asset.add_view<float>({5, 0, 0, 0, 7, 0});
+  int position =
+      asset.add_accessor(base, 5126, "VEC3", 3,
+                         {{"sparse",
+                           {{"count", 2},
+                            {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                            {"values", {{"bufferView", values}}}}}});
   asset.add_mesh({{"attributes", {{"POSITION", position}}}});
   asset.add_node({{"mesh", 0}});
   Scene scene = load(asset);
@@ -59,11 +61,12 @@ TEST(Accessor, SparseOverData) {
 TEST(Accessor, SparseOverZerosAndSparseIndices) {
   Asset asset;
   int which = asset.add_view<uint8_t>({1, 3}), values = asset.add_view<float>({4, 0, 0, 0, 4, 0});
-  int position = asset.add_accessor(-1, 5126, "VEC3", 4,
-                                    {{"sparse",
-                                      {{"count", 2},
-                                       {"indices", {{"bufferView", which}, {"componentType", 5121}}},
-                                       {"values", {{"bufferView", values}}}}}});
+  int position =
+      asset.add_accessor(-1, 5126, "VEC3", 4,
+                         {{"sparse",
+                           {{"count", 2},
+                            {"indices", {{"bufferView", which}, {"componentType", 5121}}},
+                            {"values", {{"bufferView", values}}}}}});
   int base = asset.add_view<uint16_t>({0, 1, 2}), slot = asset.add_view<uint32_t>({2}),
       value = asset.add_view<uint16_t>({3});
   int indices = asset.add_accessor(base, 5123, "SCALAR", 3,
@@ -111,7 +114,8 @@ TEST(Accessor, QuantizedPositionsAndNormals) {
   int normal = asset.add_accessor(bytes, 5120, "VEC3", 3, {{"normalized", true}});
   asset.add_mesh({{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}});
   asset.add_node({{"mesh", 0}});
-  EXPECT_EQ(refused(asset).where, "/meshes/0/primitives/0/attributes/NORMAL");  // not without saying so
+  EXPECT_EQ(refused(asset).where,
+            "/meshes/0/primitives/0/attributes/NORMAL");  // not without saying so
   asset.root["extensionsUsed"] = asset.root["extensionsRequired"] = {"KHR_mesh_quantization"};
   Scene scene = load(asset);
   expect_near(corner_of(scene, 0, 0, 1), vec3(1, 0, 0), 1e-6f);
@@ -164,11 +168,12 @@ TEST(Accessor, SparseBoundsAreChecked) {
     Asset asset;
     int indices = asset.add_view<uint16_t>({0, last});
     int values = asset.add_view(std::vector<float>(size_t(values_count) * 3));
-    int position = asset.add_accessor(-1, 5126, "VEC3", 3,
-                                      {{"sparse",
-                                        {{"count", count},
-                                         {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
-                                         {"values", {{"bufferView", values}}}}}});
+    int position =
+        asset.add_accessor(-1, 5126, "VEC3", 3,
+                           {{"sparse",
+                             {{"count", count},
+                              {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                              {"values", {{"bufferView", values}}}}}});
     asset.add_mesh({{"attributes", {{"POSITION", position}}}});
     asset.add_node({{"mesh", 0}});
     return refused(asset).where;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small glTF files made by the tests themselves, in a folder of their own that goes away afterwards.
+// Small glTF files made by the tests themselves, in a folder of their own that goes away
+// afterwards.
 #pragma once
+#include <gtest/gtest.h>
+#include <unistd.h>
+
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
-
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "base/load_error.h"
 #include "world/scene_load.h"
@@ -47,8 +48,7 @@ inline std::string base64(const std::string& bytes) {
   std::string out;
   for (size_t i = 0; i < bytes.size(); i += 3) {
     uint32_t v = 0;
-    for (size_t k = 0; k < 3; k++)
-      v = v << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
+    for (size_t k = 0; k < 3; k++) v = v << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
     for (size_t k = 0; k < 4; k++)
       out += i + k > bytes.size() ? '=' : digits[v >> (18 - 6 * k) & 63];
   }
@@ -63,7 +63,8 @@ struct Asset {
   template <class T>
   int add_view(const std::vector<T>& values, int stride = 0) {
     while (bytes.size() % 4) bytes += '\0';
-    json view = {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}};
+    json view = {
+        {"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}};
     if (stride) view["byteStride"] = stride;
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
     root["bufferViews"].push_back(view);

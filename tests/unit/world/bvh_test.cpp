@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <cmath>
+#include "world/bvh.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/rng.h"
-#include "world/bvh.h"
 
 namespace wellspring {
 namespace {
@@ -70,7 +71,8 @@ Hit brute_force(const World& world, const Ray& ray) {
       if (determinant == 0) continue;
       double u = dot(cross(d, b), s) / determinant, v = dot(cross(s, a), d) / determinant;
       double distance = dot(cross(s, a), b) / determinant;
-      if (u < 0 || v < 0 || u + v > 1 || distance < double(ray.t_min) || distance >= nearest) continue;
+      if (u < 0 || v < 0 || u + v > 1 || distance < double(ray.t_min) || distance >= nearest)
+        continue;
       nearest = distance;
       best.t = float(distance);
       best.instance = i;
@@ -87,11 +89,11 @@ void expect_same(const World& world, int rays, uint64_t seed) {
   for (int i = 0; i < rays; i++) {
     Ray ray = random_ray(rng);
     Hit expected = brute_force(world, ray), got = world.intersect(ray);
-    bool same = expected.valid() == got.valid() &&
-                (!got.valid() || (got.instance == expected.instance &&
-                                  got.triangle == expected.triangle &&
-                                  std::abs(got.t - expected.t) < 1e-3f &&
-                                  length(got.barycentric - expected.barycentric) < 1e-2f));
+    bool same =
+        expected.valid() == got.valid() &&
+        (!got.valid() || (got.instance == expected.instance && got.triangle == expected.triangle &&
+                          std::abs(got.t - expected.t) < 1e-3f &&
+                          length(got.barycentric - expected.barycentric) < 1e-2f));
     edge_cases += !same;  // a ray through an edge may go either way
     hits += got.valid();
     EXPECT_EQ(world.occluded(ray), got.valid());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real files: all valid ones load, and each bad one is refused or loads as the policy in world/gltf.h says.
+// Real files: all valid ones load, and each bad one is refused or loads as the policy in
+// world/gltf.h says.
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -29,7 +30,8 @@ void check_scene(const Scene& scene) {
     size_t count = mesh.positions.size();
     ASSERT_EQ(mesh.normals.size(), count);
     ASSERT_LT(size_t(mesh.material), scene.materials.size());
-    for (size_t length : {mesh.uv[0].size(), mesh.uv[1].size(), mesh.colors.size(), mesh.tangents.size()})
+    for (size_t length :
+         {mesh.uv[0].size(), mesh.uv[1].size(), mesh.colors.size(), mesh.tangents.size()})
       ASSERT_TRUE(length == 0 || length == count);
     for (const vec3& p : mesh.positions) ASSERT_TRUE(is_finite(p));
     for (const vec3& n : mesh.normals) ASSERT_NEAR(length(n), 1, 1e-3f);
@@ -39,7 +41,8 @@ void check_scene(const Scene& scene) {
     ASSERT_LT(size_t(instance.mesh), scene.meshes.size());
     ASSERT_LT(instance.object, scene.objects.size());
   }
-  for (const Texture& texture : scene.textures) ASSERT_LT(size_t(texture.image), scene.images.size());
+  for (const Texture& texture : scene.textures)
+    ASSERT_LT(size_t(texture.image), scene.images.size());
   World world(scene);
   Bounds bounds = scene_bounds(scene);
   Ray ray;  // through the middle of the scene along its diagonal
@@ -119,7 +122,7 @@ const std::map<std::string, const char*> only_odd = {
 // Without errors for the validator and still refused, and why.
 const std::map<std::string, const char*> cannot_be_shown = {
     {"asset/min_version_valid.gltf", "needs glTF 2.1"},
-    {"root/named_objects.gltf", "has no data"},   // a shown mesh over a buffer without content
+    {"root/named_objects.gltf", "has no data"},  // a shown mesh over a buffer without content
     {"root/unused_objects.gltf", "has no data"},
 };
 
@@ -142,8 +145,10 @@ TEST(Corpus, ValidatorFilesFollowThePolicy) {
     std::string file = (folder / fields[0]).string(), name = fields[0].substr(15);
     SCOPED_TRACE(name);
     bool has_errors = fields[2] != "0";
-    std::vector<std::string> codes = has_errors ? split(fields[6], ',') : std::vector<std::string>();
-    bool odd = std::all_of(codes.begin(), codes.end(), [](auto& c) { return only_odd.count(c) > 0; });
+    std::vector<std::string> codes =
+        has_errors ? split(fields[6], ',') : std::vector<std::string>();
+    bool odd =
+        std::all_of(codes.begin(), codes.end(), [](auto& c) { return only_odd.count(c) > 0; });
     try {
       check_scene(load_scene(file));
       EXPECT_TRUE(odd) << "loaded in spite of " << fields[6];

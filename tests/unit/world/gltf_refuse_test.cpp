@@ -70,7 +70,8 @@ TEST(Refuse, WrongTypesAndMissingPropertiesNameTheirPlace) {
 }
 
 TEST(Refuse, RequiredExtensionsAreNamed) {
-  for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu"}) {
+  for (const char* name :
+       {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu"}) {
     Asset asset = triangle_asset();
     asset.root["extensionsUsed"] = asset.root["extensionsRequired"] = json::array({name});
     EXPECT_NE(refused(asset).what_.find(name), std::string::npos);
@@ -150,11 +151,12 @@ TEST(Refuse, FilesOutsideThePackage) {
   };
   std::string absolute = (folder.path() / "secret.bin").string();
   for (const std::string& uri :
-       {std::string("../secret.bin"), std::string("%2e%2e/secret.bin"), std::string("%2E%2e%2fsecret.bin"),
-        std::string("sub/../../secret.bin"), std::string("..\\secret.bin"), absolute,
-        "file://" + absolute, "%2f" + absolute.substr(1), std::string("link.bin"),
-        std::string("up/secret.bin"), std::string("../package2/other.bin"), std::string("http://a/b.bin"),
-        std::string("inside.bin%00.png"), std::string("inside.bin%0"), std::string("")}) {
+       {std::string("../secret.bin"), std::string("%2e%2e/secret.bin"),
+        std::string("%2E%2e%2fsecret.bin"), std::string("sub/../../secret.bin"),
+        std::string("..\\secret.bin"), absolute, "file://" + absolute, "%2f" + absolute.substr(1),
+        std::string("link.bin"), std::string("up/secret.bin"), std::string("../package2/other.bin"),
+        std::string("http://a/b.bin"), std::string("inside.bin%00.png"),
+        std::string("inside.bin%0"), std::string("")}) {
     try {
       load_scene(with(uri));
       ADD_FAILURE() << uri;
@@ -165,7 +167,7 @@ TEST(Refuse, FilesOutsideThePackage) {
   }
   for (const char* uri : {"inside.bin", "sub/deep.bin", "./inside.bin", "good.bin"})
     EXPECT_TRUE(loads(with(uri))) << uri;
-  EXPECT_FALSE(loads(with("sub")));          // a folder
+  EXPECT_FALSE(loads(with("sub")));  // a folder
   EXPECT_FALSE(loads(with("missing.bin")));
   // A wider package allows what the file's own folder does not, up to its own edge.
   SceneLoadOptions wider;
@@ -199,7 +201,7 @@ TEST(Refuse, GlbContainers) {
   EXPECT_FALSE(loads(with_word(8, 16)));            // half a chunk header
   EXPECT_FALSE(loads(with_word(12, 0xffffffffu)));  // chunk beyond the file
   EXPECT_FALSE(loads(with_word(12, 0xfffffff4u)));
-  EXPECT_FALSE(loads(with_word(16, 0x004e4942)));   // binary first
+  EXPECT_FALSE(loads(with_word(16, 0x004e4942)));  // binary first
   for (size_t length = 0; length < good.size(); length += 97)
     EXPECT_FALSE(loads(folder.write("cut.glb", good.substr(0, length)))) << length;
 }
@@ -235,8 +237,9 @@ void mutate(json& value, const json& root, const TempFolder& folder, int& loaded
     return;
   }
   json before = value;
-  for (const json& other : {json(-1), json(0), json(1), json(2147483648.0), json(9007199254740992.0),
-                            json(1e300), json(0.5), json("x"), json(nullptr), json::array(), json::object()}) {
+  for (const json& other :
+       {json(-1), json(0), json(1), json(2147483648.0), json(9007199254740992.0), json(1e300),
+        json(0.5), json("x"), json(nullptr), json::array(), json::object()}) {
     value = other;
     loaded += loads(folder.write("mutant.gltf", root.dump()));
   }
@@ -248,10 +251,12 @@ TEST(Refuse, EveryValueReplaced) {
   int delta = asset.add_floats("VEC3", 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
   json& primitive = asset.root["meshes"][0]["primitives"][0];
   primitive["targets"] = {{{"POSITION", delta}}};
-  primitive["indices"] = asset.add_accessor(asset.add_view<uint16_t>({0, 1, 2, 0}), 5123, "SCALAR", 3);
+  primitive["indices"] =
+      asset.add_accessor(asset.add_view<uint16_t>({0, 1, 2, 0}), 5123, "SCALAR", 3);
   primitive["attributes"]["JOINTS_0"] =
       asset.add_accessor(asset.add_view(std::vector<uint8_t>(12)), 5121, "VEC4", 3);
-  primitive["attributes"]["WEIGHTS_0"] = asset.add_floats("VEC4", 4, {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  primitive["attributes"]["WEIGHTS_0"] =
+      asset.add_floats("VEC4", 4, {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
   asset.root["meshes"][0]["weights"] = {0.5};
   asset.root["nodes"][0]["skin"] = 0;
   asset.root["skins"] = {{{"joints", {0}}}};

@@ -35,8 +35,9 @@ std::string make_png(uint32_t width, uint32_t height, int bits, const std::strin
 }
 
 std::string small_png() {
-  return make_png(2, 1, 8, std::string("\0", 1) + "\xff" + std::string("\0\0", 2) + "\xff" +
-                               std::string("\0", 1) + "\x80" + std::string("\0", 1) + "\x40");
+  return make_png(2, 1, 8,
+                  std::string("\0", 1) + "\xff" + std::string("\0\0", 2) + "\xff" +
+                      std::string("\0", 1) + "\x80" + std::string("\0", 1) + "\x40");
 }
 
 Asset textured(const std::string& uri, json material = json::object()) {
@@ -67,21 +68,23 @@ TEST(Material, DefaultsAndFactors) {
   EXPECT_EQ(plain.alpha_mode, AlphaMode::opaque);
   EXPECT_TRUE(scene.images.empty());  // what no material uses is not opened
 
-  scene = load(textured(
-      "unused",
-      {{"pbrMetallicRoughness",
-        {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.6}}},
-       {"emissiveFactor", {0.5, 0, 1}},
-       {"alphaMode", "MASK"},
-       {"alphaCutoff", 0.25},
-       {"doubleSided", true},
-       {"extensions",
-        {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
-         {"KHR_materials_ior", {{"ior", 1.33}}},
-         {"KHR_materials_transmission", {{"transmissionFactor", 0.9}}},
-         {"KHR_materials_volume",
-          {{"thicknessFactor", 2}, {"attenuationDistance", 3}, {"attenuationColor", {1, 0.5, 0.25}}}},
-         {"KHR_materials_unlit", json::object()}}}}));
+  scene = load(textured("unused", {{"pbrMetallicRoughness",
+                                    {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}},
+                                     {"metallicFactor", 0.5},
+                                     {"roughnessFactor", 0.6}}},
+                                   {"emissiveFactor", {0.5, 0, 1}},
+                                   {"alphaMode", "MASK"},
+                                   {"alphaCutoff", 0.25},
+                                   {"doubleSided", true},
+                                   {"extensions",
+                                    {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
+                                     {"KHR_materials_ior", {{"ior", 1.33}}},
+                                     {"KHR_materials_transmission", {{"transmissionFactor", 0.9}}},
+                                     {"KHR_materials_volume",
+                                      {{"thicknessFactor", 2},
+                                       {"attenuationDistance", 3},
+                                       {"attenuationColor", {1, 0.5, 0.25}}}},
+                                     {"KHR_materials_unlit", json::object()}}}}));
   const Material& m = scene.materials[1];
   EXPECT_EQ(m.base_color, vec4(0.1f, 0.2f, 0.3f, 0.4f));
   EXPECT_EQ(m.metallic, 0.5f);
@@ -149,7 +152,8 @@ TEST(Material, PicturesFromUriViewAndFile) {
 
 TEST(Material, SixteenBitPicturesKeepTheirPrecision) {
   // Two texels: red 0x0102 and 0xffff.
-  std::string rows = std::string("\0\x01\x02\0\0\0\0\xff\xff", 9) + std::string("\xff\xff\0\0\0\0\xff\xff", 8);
+  std::string rows =
+      std::string("\0\x01\x02\0\0\0\0\xff\xff", 9) + std::string("\xff\xff\0\0\0\0\xff\xff", 8);
   std::string uri = "data:image/png;base64," + base64(make_png(2, 1, 16, rows));
   json linear = {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}};
   Image image = load(textured(uri, linear)).images[0];
@@ -162,8 +166,9 @@ TEST(Material, SixteenBitPicturesKeepTheirPrecision) {
 }
 
 TEST(Material, OnePictureAsColourAndAsNumbers) {
-  json material = {{"pbrMetallicRoughness",
-                    {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 0}}}}}};
+  json material = {
+      {"pbrMetallicRoughness",
+       {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 0}}}}}};
   Scene scene = load(textured("data:image/png;base64," + base64(small_png()), material));
   ASSERT_EQ(scene.images.size(), 2u);
   auto image_of = [&](const TextureRef& r) {
@@ -197,12 +202,14 @@ TEST(Material, MissingPicturesAreWarnedOfBrokenOnesRefused) {
   EXPECT_TRUE(warns_of(scene, "nowhere.png"));
   EXPECT_EQ(scene.materials[1].base_color_texture.texture, -1);
   EXPECT_EQ(refused(textured("data:image/png;base64,AAAA")).where, "/images/0");
-  EXPECT_EQ(refused(textured("data:image/png;base64," + base64("GIF89a......"))).where, "/images/0");
+  EXPECT_EQ(refused(textured("data:image/png;base64," + base64("GIF89a......"))).where,
+            "/images/0");
   EXPECT_EQ(refused(textured("data:image/png;base64,*")).where, "/images/0/uri");
   EXPECT_EQ(refused(textured("data:image/png;base64")).where, "/images/0/uri");
   std::string png = small_png();
   for (size_t cut = 8; cut + 16 < png.size(); cut += 3)
-    EXPECT_EQ(refused(textured("data:image/png;base64," + base64(png.substr(0, cut)))).where, "/images/0");
+    EXPECT_EQ(refused(textured("data:image/png;base64," + base64(png.substr(0, cut)))).where,
+              "/images/0");
   Asset asset = textured("x.png");
   asset.root["textures"][0].erase("source");  // only an extension could say which picture
   EXPECT_TRUE(warns_of(load(asset), "no picture"));
@@ -239,8 +246,8 @@ TEST(Material, TangentsAreMadeForNormalMaps) {
 
 TEST(Material, MirroredPicturesSplitTheirSharedVertices) {
   // Two triangles over a shared edge, the picture mirrored from one to the other.
-  Asset asset = textured("data:image/png;base64," + base64(small_png()),
-                         {{"normalTexture", {{"index", 0}}}});
+  Asset asset =
+      textured("data:image/png;base64," + base64(small_png()), {{"normalTexture", {{"index", 0}}}});
   int position = asset.add_floats("VEC3", 3, {0, 0, 0, 0, 1, 0, -1, 0, 0, 1, 0, 0});
   int normal = asset.add_floats("VEC3", 3, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
   int uv = asset.add_floats("VEC2", 2, {0, 1, 0, 0, 1, 1, 1, 1});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a file says and what the scene then is: topologies, transforms, normals, cameras, lights, poses.
+// What a file says and what the scene then is: topologies, transforms, normals, cameras, lights,
+// poses.
 #include <cmath>
 
 #include "asset.h"
@@ -12,7 +13,8 @@ Asset points_asset(int mode, std::vector<uint16_t> indices) {
   int position = asset.add_floats("VEC3", 3, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0});
   json primitive = {{"attributes", {{"POSITION", position}}}, {"mode", mode}};
   if (!indices.empty())
-    primitive["indices"] = asset.add_accessor(asset.add_view(indices), 5123, "SCALAR", indices.size());
+    primitive["indices"] =
+        asset.add_accessor(asset.add_view(indices), 5123, "SCALAR", indices.size());
   asset.add_mesh(primitive);
   asset.add_node({{"mesh", 0}});
   return asset;
@@ -123,7 +125,8 @@ TEST(SceneLoad, Cameras) {
   float h = std::sqrt(0.5f);
   asset.root["cameras"] = {
       {{"type", "perspective"}, {"name", "lens"}, {"perspective", {{"yfov", 0.7}, {"znear", 1}}}},
-      {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 9}, {"znear", 1}}}}};
+      {{"type", "orthographic"},
+       {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 9}, {"znear", 1}}}}};
   asset.add_node({{"camera", 0}, {"translation", {1, 2, 3}}});
   asset.add_node({{"camera", 0}, {"name", "left"}, {"rotation", {0, h, 0, h}}});
   asset.add_node({{"camera", 0}, {"rotation", {-h, 0, 0, h}}});
@@ -174,7 +177,8 @@ TEST(SceneLoad, MorphTargetsAtRestAndAnimated) {
   Asset asset = triangle_asset();
   int delta = asset.add_floats("VEC3", 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
   int shift = asset.add_floats("VEC3", 3, {2, 0, 0, 2, 0, 0, 2, 0, 0});
-  asset.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", delta}}, {{"POSITION", shift}}};
+  asset.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", delta}},
+                                                         {{"POSITION", shift}}};
   asset.root["meshes"][0]["weights"] = {0.5, 0};
   int times = asset.add_floats("SCALAR", 1, {0, 2});
   int weights = asset.add_floats("SCALAR", 1, {0, 0, 1, 0.5f});
@@ -225,11 +229,13 @@ Asset skinned_asset() {
   Asset asset;
   int position = asset.add_floats("VEC3", 3, {0, 0, 0, 1, 0, 0, 0, 1, 0});
   int normal = asset.add_floats("VEC3", 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
-  int joints = asset.add_accessor(
-      asset.add_view<uint8_t>({0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}), 5121, "VEC4", 3);
+  int joints = asset.add_accessor(asset.add_view<uint8_t>({0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}),
+                                  5121, "VEC4", 3);
   int weights = asset.add_floats("VEC4", 4, {1, 0, 0, 0, 0.5f, 0.5f, 0, 0, 2, 0, 0, 0});
   asset.add_mesh({{"attributes",
-                   {{"POSITION", position}, {"NORMAL", normal}, {"JOINTS_0", joints},
+                   {{"POSITION", position},
+                    {"NORMAL", normal},
+                    {"JOINTS_0", joints},
                     {"WEIGHTS_0", weights}}}});
   std::vector<float> bind;
   for (int m = 0; m < 2; m++)
@@ -266,16 +272,18 @@ TEST(SceneLoad, BrokenSkinsAreRefused) {
 TEST(SceneLoad, ValuesThatAreNotFiniteNeverReachTheScene) {
   float nan = std::nanf(""), infinity = INFINITY;
   Asset asset;
-  int position = asset.add_floats("VEC3", 3, {0, 0, 0, 1, 0, 0, 0, 1, 0, nan, 0, 0, 0, infinity, 1e30f, 0, 0, 1});
-  int normal = asset.add_floats(
-      "VEC3", 3, {nan, 0, 0, 0, 0, 0, infinity, 0, 0, 0, 0, 5, 0, 0, 1, 0, 0, 1});
+  int position = asset.add_floats(
+      "VEC3", 3, {0, 0, 0, 1, 0, 0, 0, 1, 0, nan, 0, 0, 0, infinity, 1e30f, 0, 0, 1});
+  int normal =
+      asset.add_floats("VEC3", 3, {nan, 0, 0, 0, 0, 0, infinity, 0, 0, 0, 0, 5, 0, 0, 1, 0, 0, 1});
   int uv = asset.add_floats("VEC2", 2, {nan, 0, infinity, 0, 0.5f, 0.5f, 0, 0, 0, 0, 0, 0});
   int color = asset.add_floats("VEC3", 3, std::vector<float>(18, nan));
-  int indices = asset.add_accessor(
-      asset.add_view<uint8_t>({0, 1, 2, 0, 1, 3, 0, 1, 4, 5, 0, 1}), 5121, "SCALAR", 12);
-  asset.add_mesh({{"attributes",
-                   {{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", uv}, {"COLOR_0", color}}},
-                  {"indices", indices}});
+  int indices = asset.add_accessor(asset.add_view<uint8_t>({0, 1, 2, 0, 1, 3, 0, 1, 4, 5, 0, 1}),
+                                   5121, "SCALAR", 12);
+  asset.add_mesh(
+      {{"attributes",
+        {{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", uv}, {"COLOR_0", color}}},
+       {"indices", indices}});
   asset.add_node({{"mesh", 0}});
   Scene scene = load(asset);
   EXPECT_EQ(triangle_count(scene), 2u);

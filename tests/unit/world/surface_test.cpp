@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
+#include "world/surface.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/rng.h"
-#include "world/surface.h"
 
 namespace wellspring {
 namespace {
@@ -153,7 +154,8 @@ TEST(Surface, NormalMapLeansAlongThePicture) {
   for (bool mirrored : {false, true}) {
     Scene scene = square_scene();
     scene.meshes[0].tangents.assign(4, vec4(1, 0, 0, 1));
-    int right = add_texture(scene, {218, 128, 218, 255}), up = add_texture(scene, {128, 218, 218, 255});
+    int right = add_texture(scene, {218, 128, 218, 255}),
+        up = add_texture(scene, {128, 218, 218, 255});
     if (mirrored) scene.instances[0].to_world = glm::scale(mat4(1), vec3(-1, 1, 1));
     World world(scene);
     float side = mirrored ? -1.0f : 1.0f;
@@ -165,7 +167,8 @@ TEST(Surface, NormalMapLeansAlongThePicture) {
     n = look(world, vec3(0.5f * side, 0.25f, 2), vec3(0, 0, -1)).normal;
     EXPECT_NEAR(n.y, std::sqrt(0.5f), 0.01f);
     EXPECT_NEAR(n.x, 0, 0.01f);
-    n = look(world, vec3(0.5f * side, 0.25f, -2), vec3(0, 0, 1)).normal;  // from behind: turned over
+    n = look(world, vec3(0.5f * side, 0.25f, -2), vec3(0, 0, 1))
+            .normal;  // from behind: turned over
     EXPECT_NEAR(n.y, -std::sqrt(0.5f), 0.01f);
     EXPECT_LT(n.z, 0);
     scene.materials[0].normal_scale = 0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-#include <limits>
+#include "world/texture.h"
 
 #include <gtest/gtest.h>
 
-#include "world/texture.h"
+#include <cmath>
+#include <limits>
 
 namespace wellspring {
 namespace {
@@ -28,7 +28,8 @@ float red(Wrap wrap, bool nearest, float u) {
 
 TEST(Texture, TexelCentresAreExact) {
   for (Wrap wrap : {Wrap::repeat, Wrap::mirror, Wrap::clamp})
-    for (int i = 0; i < 4; i++) EXPECT_NEAR(red(wrap, false, (float(i) + 0.5f) / 4), 0.25f * i, 1e-6f);
+    for (int i = 0; i < 4; i++)
+      EXPECT_NEAR(red(wrap, false, (float(i) + 0.5f) / 4), 0.25f * i, 1e-6f);
 }
 
 TEST(Texture, BilinearBetweenCentres) {
@@ -74,7 +75,7 @@ TEST(Texture, SrgbIsDecodedBeforeFiltering) {
   EXPECT_NEAR(middle.w, 0.5f, 1e-6f);
   image.texels8 = {188, 188, 188, 188, 188, 188, 188, 188};
   vec4 grey = eval_texture(image, texture, vec2(0.3f, 0.5f));
-  EXPECT_NEAR(grey.x, 0.5029f, 1e-3f);         // IEC 61966-2-1
+  EXPECT_NEAR(grey.x, 0.5029f, 1e-3f);          // IEC 61966-2-1
   EXPECT_NEAR(grey.w, 188.0f / 255.0f, 1e-6f);  // alpha is never encoded
   image.srgb = false;
   EXPECT_NEAR(eval_texture(image, texture, vec2(0.3f, 0.5f)).x, 188.0f / 255.0f, 1e-6f);
@@ -111,7 +112,9 @@ TEST(Texture, BadTexelsReadAsZero) {
   EXPECT_EQ(value, vec4(0, 0, 2, 1));
 }
 
-TEST(Texture, NoTexelsMeansOne) { EXPECT_EQ(eval_texture(Image(), Texture(), vec2(0.5f)), vec4(1)); }
+TEST(Texture, NoTexelsMeansOne) {
+  EXPECT_EQ(eval_texture(Image(), Texture(), vec2(0.5f)), vec4(1));
+}
 
 }  // namespace
 }  // namespace wellspring

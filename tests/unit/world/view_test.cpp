@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
+#include "world/view.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/rng.h"
-#include "world/view.h"
 
 namespace wellspring {
 namespace {
@@ -37,8 +38,8 @@ TEST(View, RayAndProjectionAreInverse) {
   Rng rng(7);
   for (float fov : {5 * degrees, 60 * degrees, 150 * degrees})
     for (int i = 0; i < 200; i++) {
-      View view = make_view(scene, dvec3(101, 199, 305), 6 * rng.uniform(), 3 * rng.uniform() - 1.5f,
-                            fov, 640, 360);
+      View view = make_view(scene, dvec3(101, 199, 305), 6 * rng.uniform(),
+                            3 * rng.uniform() - 1.5f, fov, 640, 360);
       expect_orthonormal(view);
       float x = 640 * rng.uniform(), y = 360 * rng.uniform();
       Ray ray = view_ray(view, x, y);
@@ -62,8 +63,8 @@ TEST(View, FieldOfViewSpansTheHeight) {
 TEST(View, TargetIsInTheMiddle) {
   Scene scene;
   scene.origin = dvec3(1e6, 0, 0);
-  View view = make_view_towards(scene, dvec3(1e6, 1, 2), dvec3(1e6 + 3, 0.5, -4), vec3(0, 1, 0), 1,
-                                80, 60);
+  View view =
+      make_view_towards(scene, dvec3(1e6, 1, 2), dvec3(1e6 + 3, 0.5, -4), vec3(0, 1, 0), 1, 80, 60);
   expect_orthonormal(view);
   Projected p = project_point(view, vec3(3, 0.5f, -4));
   EXPECT_NEAR(p.x, 40, 1e-3f);
