@@ -35,8 +35,8 @@ struct PlacedMesh {
   bool moving = false;
   bool mirrored = false;  // to_world turns the winding round (glTF 2.0 section 3.7.4)
   mat4 to_world{1};
-  mat3 normal_to_world{
-      1};  // inverse transpose of the upper 3x3 up to a positive factor: normalise after
+  // Inverse transpose of the upper 3x3 up to a positive factor: normalise after using it.
+  mat3 normal_to_world{1};
 };
 
 // A scene with what moves in it. Instances [0, scene.instances.size()) are the scene's; the rest

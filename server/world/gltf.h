@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // A glTF 2.0 file taken apart: its JSON, checked, and its bytes, bounded. Everything after
 // load_gltf() may rely on types, required properties, index ranges and layouts (gltf_schema.cpp,
-// gltf_layout.cpp).
+// gltf_data.cpp).
 //
 // Refused (LoadError): what makes geometry or material mean something else than the file says -
 // wrong types, missing properties, indices out of range, bytes beyond a buffer, nodes with two
 // parents or cycles, formats an attribute cannot have, missing buffers, files outside the package,
-// broken pictures, required extensions this program does not know. Warned of (Scene::warnings):
-// what is merely odd and still has one meaning - unknown properties, empty lists, misaligned or
+// broken pictures, required extensions this program does not know.
+//
+// Warned of (Scene::warnings): what is merely odd and still has one meaning - unknown properties, empty lists, misaligned or
 // oddly strided but readable data, wrong min and max, vectors that are not unit length, weights
 // that do not add to one, values that are not finite (the triangle is dropped), a picture that is
-// not there (the material's factors stand alone). One parser reads the JSON that the checks saw, so
+// not there (the material's factors stand alone).
+//
+// One parser reads the JSON that the checks saw, so
 // the two cannot disagree about it.
 #pragma once
 #include <cstdint>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 files (.gltf, .glb, embedded data) to a Scene. Parsing is tinygltf's; every count,
-// offset and index is checked here first, because the parser does not. Files a package names must
-// lie inside the package's folder. Cost is linear in the file; may block on the disk.
+// glTF 2.0 files (.gltf, .glb, embedded data) to a Scene. Every type, count, offset and index is
+// checked before anything is read (world/gltf.h says what is refused and what is only warned of).
+// Files a package names must lie inside the package's folder. Cost is linear in the file and
+// bounded; may block on the disk.
 #pragma once
 #include <string>
 
@@ -10,10 +11,10 @@
 namespace wellspring {
 
 struct SceneLoadOptions {
-  double time =
-      0;  // seconds: the pose of the file's first animation at this time; 0 is the rest pose
-  std::string
-      package;  // folder that referenced files must stay inside; empty: the file's own folder
+  // Seconds: the pose of the file's first animation at this time; 0 is the rest pose.
+  double time = 0;
+  // Folder that referenced files must stay inside; empty: the file's own folder.
+  std::string package;
 };
 
 // Throws LoadError naming file, JSON pointer and problem. What is only odd is told in

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inside of a World, shared by bvh.cpp (rays) and bvh_build.cpp (trees). Two Embree scenes:
+// what stands still, built once at high quality, and what moves, refitted by commit(). A ray visits
+// the still one, then the moving one if it meets its box before the hit. Measured against one scene
+// with an instance per moving mesh: no instance transform on the way to walls, and commit() costs
+// nothing that grows with the museum.
+#pragma once
+#include "world/bvh.h"
+#include "world/embree.h"
+
+namespace wellspring {
+
+// One device for the whole process, never released: its threads outlive every World.
+RTCDevice shared_device();
+Bounds box_of(const std::vector<vec3>& positions);
+
+struct World::Impl {
+  // What a filter function needs to know about the geometry it is called for.
+  struct Tag {
+    const Impl* impl;
+    uint32_t instance;  // unused inside an Embree instance, whose own id says which it is
+    bool instanced;
+  };
+  struct Query : embree::Context {
+    const Ray* rays;
+  };
+
+  const Scene* scene = nullptr;
+  std::vector<Mesh> moving;
+  std::vector<PlacedMesh> placed;
+  std::vector<Tag> tags;  // reserved up front: geometries point into it
+  RTCScene still_scene = nullptr, moving_scene = nullptr;
+  std::vector<RTCScene> mesh_scenes;     // of the instanced meshes
+  std::vector<uint32_t> still_instance;  // Embree geometry id -> instance
+  std::vector<RTCGeometry> moving_geometry;
+  std::vector<char> visible;
+  std::vector<Bounds> moving_boxes;
+  std::vector<float> built_area;  // of a moving mesh's box when its tree was last built anew
+  Bounds moving_bounds;           // of all that is visible
+  bool moved = false;             // since the last commit
+
+  ~Impl() {
+    for (RTCGeometry geometry : moving_geometry) rtcReleaseGeometry(geometry);
+    if (still_scene) rtcReleaseScene(still_scene);
+    if (moving_scene) rtcReleaseScene(moving_scene);
+    for (RTCScene s : mesh_scenes) rtcReleaseScene(s);
+  }
+
+  static void filter(const RTCFilterFunctionNArguments* arguments);
+  RTCGeometry make_geometry(const Mesh& mesh, const mat4* to_world, const Tag& tag,
+                            RTCBuildQuality);
+  void build_still();
+  void build_moving();
+  void update_moving_bounds();
+  Hit to_hit(unsigned geometry, unsigned instance, unsigned primitive, float u, float v, float t,
+             bool is_moving_hit) const {
+    Hit hit;
+    if (geometry == RTC_INVALID_GEOMETRY_ID) return hit;
+    hit.t = t;
+    hit.triangle = primitive;
+    hit.barycentric = {u, v};
+    if (is_moving_hit)
+      hit.instance = uint32_t(scene->instances.size()) + geometry;
+    else
+      hit.instance = still_instance[instance != RTC_INVALID_GEOMETRY_ID ? instance : geometry];
+    return hit;
+  }
+  void intersect8(const Ray* rays, Hit* hits, int count) const;
+};
+
+}  // namespace wellspring
