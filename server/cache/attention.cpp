@@ -51,8 +51,8 @@ void prioritise(const PointCache& points, const CacheSettings& settings, PointIm
   }
   std::array<uint8_t, 256> by_age{}, by_count{};
   for (int i = 0; i < 256; i++) {
-    by_age[size_t(i)] = uint8_t(std::clamp(float(i) * 0.5f * settings.budget_share_old, 1.0f, 127.0f));
-    by_count[size_t(i)] = uint8_t(40 / std::sqrt(float(std::max(i, 1))));
+    by_age[size_t(i)] = uint8_t(std::clamp(float(i) * 0.35f * settings.budget_share_old, 1.0f, 127.0f));
+    by_count[size_t(i)] = uint8_t(30 / std::sqrt(float(std::max(i, 1))));
   }
   parallel_ranges(height, 8, [&](int begin, int end) {
     thread_local std::vector<float> blank;

@@ -10,7 +10,7 @@
 namespace wellspring {
 namespace {
 
-constexpr int float_planes = 3 * 6 + 6;  // all but object
+constexpr int float_planes = 3 * 6 + 9;  // all but object
 
 size_t padded(int width, int height) {
   int columns = (width + cell_size - 1) / cell_size, rows = (height + cell_size - 1) / cell_size;
@@ -34,10 +34,12 @@ struct Gathered {
   uint32_t object = no_object;
   vec3 albedo{0}, rest{0}, smooth{0}, normal{0};
   float x = 0, y = 0, inverse_depth = 0, samples = 0, points = 0, sum = 0, sum2 = 0;
+  float rest_sum2 = 0, rest_noise = 0, rest_known = 0;
 };
 
 // The object most pixels of a cell see (majority vote of Boyer and Moore), then the mean over it.
-Gathered gather_cell(const PointImage& image, const SurfaceImage& surface, const Frame& frame, int cx, int cy) {
+Gathered gather_cell(const PointCache& points, const PointImage& image, const SurfaceImage& surface,
+                     const Frame& frame, int cx, int cy) {
   int x0 = cx * cell_size, y0 = cy * cell_size;
   int x1 = std::min(x0 + cell_size, image.width), y1 = std::min(y0 + cell_size, image.height);
   Gathered g;
@@ -63,7 +65,15 @@ Gathered gather_cell(const PointImage& image, const SurfaceImage& surface, const
     float samples = frame.confidence[i];
     vec3 smooth = frame.color[i];
     g.albedo += unpack_albedo(surface.albedo[i]);
-    g.rest += unpack_rgb9e5(surface.rest[i]);
+    vec3 rest = unpack_rgb9e5(surface.rest[i]);
+    g.rest += rest * samples;
+    float rest_light = luminance(rest);
+    g.rest_sum2 += samples * rest_light * rest_light;
+    if (samples > 1) {
+      float deviation = unpack_deviation(points.noise[image.point[i]]);
+      g.rest_noise += deviation * deviation;
+      g.rest_known += 1;
+    }
     g.smooth += smooth * samples;
     g.normal += normal;
     g.x += float(i % size_t(image.width)) + 0.5f;
@@ -97,24 +107,25 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch) {
   };
   for (auto* triple : {&cells.albedo, &cells.rest, &cells.smooth, &cells.spare, &cells.normal, &cells.plane})
     for (auto& plane : *triple) plane = take();
-  for (auto* plane : {&cells.depth, &cells.samples, &cells.points, &cells.sum, &cells.sum2, &cells.patience})
+  for (auto* plane : {&cells.depth, &cells.samples, &cells.points, &cells.sum, &cells.sum2, &cells.patience,
+                      &cells.rest_sum2, &cells.rest_noise, &cells.rest_known})
     *plane = take();
   cells.object = scratch.take<uint32_t>(count);
   std::fill(cells.object.begin(), cells.object.end(), no_object);
 }
 
-void build_cells(const View& view, const PointImage& image, const SurfaceImage& surface, const Frame& frame,
-                 Cells& cells) {
+void build_cells(const View& view, const PointCache& points, const PointImage& image,
+                 const SurfaceImage& surface, const Frame& frame, Cells& cells) {
   PixelRays rays(view);
   mat3 to_view = transpose(mat3(view.right, view.up, view.forward));
   parallel_ranges(cells.height, 4, [&](int begin, int end) {
     for (int cy = begin; cy < end; cy++)
       for (int cx = 0; cx < cells.width; cx++) {
-        Gathered g = gather_cell(image, surface, frame, cx, cy);
+        Gathered g = gather_cell(points, image, surface, frame, cx, cy);
         size_t i = size_t(cells.index(cx, cy));
         if (g.points == 0) continue;
         float share = 1 / g.points, per_sample = 1 / std::max(g.samples, 1.0f);
-        vec3 albedo = g.albedo * share, rest = g.rest * share, smooth = g.smooth * per_sample;
+        vec3 albedo = g.albedo * share, rest = g.rest * per_sample, smooth = g.smooth * per_sample;
         vec3 normal = to_view * g.normal;
         normal /= std::max(length(normal), 1e-6f);
         float x = rays.x(g.x * share), y = rays.y(g.y * share);
@@ -133,6 +144,9 @@ void build_cells(const View& view, const PointImage& image, const SurfaceImage& 
         cells.points[i] = g.points;
         cells.sum[i] = g.sum;
         cells.sum2[i] = g.sum2;
+        cells.rest_sum2[i] = g.rest_sum2;
+        cells.rest_noise[i] = g.rest_noise;
+        cells.rest_known[i] = g.rest_known;
         cells.object[i] = g.object;
       }
   });

@@ -28,6 +28,10 @@ struct Cells {
   std::span<float> points;     // pixels averaged
   std::span<float> sum, sum2;  // luminance moments of smooth over samples; then variance of its mean
   std::span<float> patience;   // samples a pixel needs before its own light counts for half
+  // `rest` is sharp where it repeats itself and noise where it does not (glossy reflections).
+  std::span<float> rest_sum2;    // second moment of its luminance over points; then variance of its detail
+  std::span<float> rest_noise;   // sum of known variances of one sample; then variance of one sample
+  std::span<float> rest_known;   // points with a known variance; then variance of the cell's mean
   std::span<uint32_t> object;  // no_object: nothing known here
   int index(int x, int y) const { return (y + cell_pad) * stride + x + cell_pad; }
 };
@@ -36,9 +40,10 @@ size_t cells_bytes(int width, int height);
 // Carves the planes out of `scratch` for a picture of this size and empties them.
 void take_cells(Cells& cells, int width, int height, Scratch& scratch);
 // Averages the pixels of each cell that see its object.
-void build_cells(const View& view, const PointImage& image, const SurfaceImage& surface, const Frame& frame,
-                 Cells& cells);
-// Filters smooth light as widely as its noise asks for, never across objects, creases or steps.
+void build_cells(const View& view, const PointCache& points, const PointImage& image,
+                 const SurfaceImage& surface, const Frame& frame, Cells& cells);
+// Filters smooth light and the noisy part of the rest as widely as their noise asks for, never across
+// objects, creases or steps.
 void filter_cells(const View& view, Cells& cells);
 // Cells that know nothing take what their surroundings know, the nearer the better. False: nothing known
 // anywhere.

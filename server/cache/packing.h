@@ -78,12 +78,18 @@ inline vec3 unpack_normal(uint16_t p) {
   return n * (1 / std::sqrt(dot(n, n)));
 }
 
-// A standard deviation on a logarithmic scale of 1/8 octave, 2^-20 to 2^11; 0 is exactly 0.
+// A standard deviation with 4 bits of exponent and 4 of mantissa, steps of 3 to 6 %: 2^-11 to 2^5; 0 is
+// exactly 0. It is the rounded top of the number's own bits, so both ways take a few instructions.
 inline uint8_t pack_deviation(float s) {
-  if (!(s > 1e-6f)) return 0;
-  return uint8_t(std::clamp(std::log2(s) * 8 + 161.5f, 1.0f, 255.0f));
+  constexpr int least = (127 - 11) << 4;
+  if (!(s > 0x1p-12f)) return 0;
+  int bits = int((std::bit_cast<uint32_t>(std::min(s, 31.0f)) + (1u << 18)) >> 19);
+  return uint8_t(std::clamp(bits - least, 1, 255));
 }
-inline float unpack_deviation(uint8_t p) { return p ? std::exp2((float(p) - 161) * 0.125f) : 0.0f; }
+inline float unpack_deviation(uint8_t p) {
+  constexpr uint32_t least = (127 - 11) << 4;
+  return p ? std::bit_cast<float>((uint32_t(p) + least) << 19) : 0.0f;
+}
 
 // IEEE half floats for positive numbers; `random` in [0, 65536) dithers the bits that are cut.
 inline uint16_t pack_half(float v, uint32_t random = 0x1000) {
@@ -92,5 +98,11 @@ inline uint16_t pack_half(float v, uint32_t random = 0x1000) {
   return uint16_t(bits >> 13);
 }
 inline float unpack_half(uint16_t h) { return std::bit_cast<float>(uint32_t(h) << 13) * 0x1p112f; }
+
+// value where the condition holds, else 0: as bits, because GCC makes a branch of the other ways to say it
+// and then does not vectorise the loop around.
+inline float keep_if(bool condition, float value) {
+  return std::bit_cast<float>(std::bit_cast<uint32_t>(value) & (0u - uint32_t(condition)));
+}
 
 }  // namespace wellspring

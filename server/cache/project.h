@@ -16,9 +16,10 @@ namespace wellspring {
 void project_points(PointCache& points, const View& view, bool same_view, Scratch& scratch,
                     PointImage& image);
 
-// Removes points that show through gaps of a nearer surface (paper, section 3.1): a point is removed when
-// neighbours nearer by more than `threshold` (relative) lie around it in its 3x3 neighbourhood. Neighbours
-// on one side only are a silhouette, and points seen from this very view stay.
+// Removes points that show through gaps of a nearer surface (paper, section 3.1, on 5x5 instead of 3x3
+// neighbours): a point is removed when neighbours nearer by more than `threshold` (relative) lie around
+// it, or are almost all there are. Neighbours on one side only are a silhouette and prove nothing, which
+// the paper's average does not tell apart; points seen from this very view stay.
 void depth_cull(PointCache& points, float threshold, PointImage& image);
 
 // Bytes project_points() takes from the scratch.

@@ -12,8 +12,9 @@
 
 namespace wellspring {
 
-// Gives every pixel without a point a surface: from its 3x3 neighbours (weights 2 and 1, the object with
-// most weight), else from the cells around. `known`: what fill_cells() said.
+// Gives every pixel without a point a surface: from its 3x3 neighbours (weights 2 and 1 for reflectance,
+// the nearest for the rest; those of the object with most weight), else from the cells around. `known`:
+// what fill_cells() said.
 void fill_holes(const View& view, const PointImage& image, const Cells& cells, bool known,
                 SurfaceImage& surface, Frame& frame);
 
