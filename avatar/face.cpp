@@ -30,16 +30,16 @@ void tick_face(FaceState& state, float speaking, float smile, float brow, bool h
     float p = float(state.syllables - index);
     size_t consonant = 1 + size_t(of(index, 0) % 9), vowel = 10 + size_t(of(index, 1) % 5);
     size_t vowel_before = 10 + size_t(of(index - 1, 1) % 5);
-    float stress = 0.55f + 0.45f * float(of(index, 1) >> 40) * 0x1p-24f;
+    float stress = 0.40f + 0.35f * float(of(index, 1) >> 40) * 0x1p-24f;
     float on = blend(0, 0.2f, p) * (1 - blend(0.22f, 0.45f, p));
-    face.viseme[consonant] += state.talking * on;
-    face.viseme[vowel_before] += state.talking * 0.7f * (1 - blend(0, 0.22f, p));
+    face.viseme[consonant] += state.talking * (consonant == 1 ? 0.9f : 0.6f) * on;  // only p, b, m must close
+    face.viseme[vowel_before] += state.talking * 0.4f * (1 - blend(0, 0.22f, p));
     face.viseme[vowel] += state.talking * stress * blend(0.2f, 0.5f, p);
     for (size_t i = 0; i < 15; i++) face.open += face.viseme[i] * jaw_of[i];
     if (consonant == 1) face.open *= 1 - on;  // lips meet for p, b and m
   }
   // A mouth that speaks smiles less.
-  float level = state.smile.value * (1 - 0.35f * state.talking);
+  float level = state.smile.value * (1 - 0.45f * state.talking);
   face.smile = {level, level};
   face.brow_up = {state.brow.value, state.brow.value};
   face.squint = 0.35f * level;

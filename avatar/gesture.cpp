@@ -17,7 +17,7 @@ struct Key {
 const ArmPose open_hand{30_deg, 12_deg, 2_deg, 72_deg, -58_deg, -6_deg, 6_deg, 8_deg};
 const ArmPose open_hand_wide{36_deg, 16_deg, -16_deg, 58_deg, -66_deg, -12_deg, 4_deg, 5_deg};
 // A raised hand, palm to the front.
-const ArmPose raised_hand{38_deg, 26_deg, -6_deg, 112_deg, 62_deg, -14_deg, 0, 3_deg};
+const ArmPose raised_hand{34_deg, 34_deg, -16_deg, 110_deg, 62_deg, -14_deg, 0, 3_deg};
 
 constexpr float welcome_seconds = 2.9f, wave_seconds = 3.0f, nod_seconds = 0.9f;
 

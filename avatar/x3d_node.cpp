@@ -59,7 +59,11 @@ X3dFile parse_x3d(const std::string& path, const std::string& text) {
   while (start < text.size() && std::strchr(" \t\r\n", text[start]) && text[start]) start++;
   bool wide = text.size() >= 2 && (text.substr(0, 4).find('\0') != std::string::npos);
   if (wide || (start < text.size() && text[start] == '<')) return parse_x3d_xml(path, text);
-  throw LoadError(path, "", "is no X3D in XML: its first sign is not '<'");
+  if (start < text.size() && text[start] == '{') return parse_x3d_json(path, text);
+  std::string_view head = std::string_view(text).substr(start, 20);
+  if (head.rfind("#X3D", 0) == 0 || head.rfind("#VRML V2", 0) == 0) return parse_x3d_classic(path, text);
+  if (head.rfind("#VRML V1", 0) == 0) throw LoadError(path, "line 1", "is VRML 1, which knows no H-Anim");
+  throw LoadError(path, "", "is no X3D (XML, ClassicVRML, JSON) and no VRML 97");
 }
 
 void resolve_uses(X3dFile& file, const std::vector<X3dPendingUse>& pending) {
@@ -68,10 +72,14 @@ void resolve_uses(X3dFile& file, const std::vector<X3dPendingUse>& pending) {
   std::unordered_map<std::string, std::vector<int>> defined;  // ascending node indices
   for (size_t i = 0; i < file.nodes.size(); i++)
     if (!file.nodes[i].def.empty()) defined[file.nodes[i].def].push_back(int(i));
-  std::vector<std::pair<int, size_t>> unknown;
+  std::vector<std::pair<int, size_t>> unknown;  // to be taken out
   for (const X3dPendingUse& use : pending) {
     auto found = defined.find(use.name);
     X3dChild& child = file.nodes[size_t(use.parent)].children[use.child];
+    if (file.nodes[size_t(use.parent)].type == "Script") {  // a script may well hold itself; it has no surface
+      unknown.push_back({use.parent, use.child});
+      continue;
+    }
     if (found == defined.end()) {
       warn_once(file.warnings, "line " + std::to_string(use.line) + ": USE of '" + use.name.substr(0, 60) +
                                    "', which is defined nowhere");

@@ -44,6 +44,8 @@ inline constexpr int x3d_max_depth = 400;
 // Parses `text` (the content of `path`), whichever encoding it is in. Throws LoadError with the line.
 X3dFile parse_x3d(const std::string& path, const std::string& text);
 X3dFile parse_x3d_xml(const std::string& path, const std::string& text);
+X3dFile parse_x3d_classic(const std::string& path, const std::string& text);  // ClassicVRML and VRML97
+X3dFile parse_x3d_json(const std::string& path, const std::string& text);
 
 // For the parsers: "Joint" -> "HAnimJoint", "x3d:Shape" -> "Shape".
 std::string x3d_type_name(std::string_view name);

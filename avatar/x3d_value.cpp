@@ -124,9 +124,13 @@ std::string string_of(const X3dNode& node, std::string_view name) {
   const std::string* text = find_field(node, name);
   if (!text) return "";
   std::string value = trimmed(*text);
-  if (value.size() >= 2 && value.front() == '"' && value.back() == '"')
-    value = trimmed(std::string_view(value).substr(1, value.size() - 2));
-  return value;
+  if (value.size() < 2 || value.front() != '"' || value.back() != '"') return value;
+  std::string plain;
+  for (size_t i = 1; i + 1 < value.size(); i++) {
+    if (value[i] == '\\' && i + 2 < value.size()) i++;
+    plain += value[i];
+  }
+  return trimmed(plain);
 }
 
 std::vector<std::string> strings_of(const X3dNode& node, std::string_view name) {
