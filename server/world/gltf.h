@@ -8,13 +8,12 @@
 // parents or cycles, formats an attribute cannot have, missing buffers, files outside the package,
 // broken pictures, required extensions this program does not know.
 //
-// Warned of (Scene::warnings): what is merely odd and still has one meaning - unknown properties, empty lists, misaligned or
-// oddly strided but readable data, wrong min and max, vectors that are not unit length, weights
-// that do not add to one, values that are not finite (the triangle is dropped), a picture that is
-// not there (the material's factors stand alone).
+// Warned of (Scene::warnings): what is merely odd and still has one meaning - unknown properties,
+// empty lists, misaligned or oddly strided but readable data, wrong min and max, vectors that are
+// not unit length, weights that do not add to one, values that are not finite (the triangle is
+// dropped), a picture that is not there (the material's factors stand alone).
 //
-// One parser reads the JSON that the checks saw, so
-// the two cannot disagree about it.
+// One parser reads the JSON that the checks saw, so the two cannot disagree about it.
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -114,7 +114,9 @@ class Materials {
     const std::string place = where + "/extensions/";
     if (const json* ior = extension(object, "KHR_materials_ior")) {
       m.ior = to_float(number(*ior, "ior", 1.5));
-      if (m.ior != 0 && m.ior < 1) {  // 0 means a mirror-like Fresnel of 1 everywhere
+      if (m.ior == 0) {
+        m.ior = 1000;  // 0 stands for reflecting all light at every angle: 99.6 % of it
+      } else if (m.ior < 1) {
         warn(file_, place + "KHR_materials_ior", "an index of refraction below 1 is taken as 1");
         m.ior = 1;
       }

@@ -239,7 +239,8 @@ TEST(Material, TangentsAreMadeForNormalMaps) {
   }
   asset.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
       asset.add_floats("VEC2", 2, {0, 0, 1, 0, 0, 1});  // upside down
-  for (const vec4& t : load(asset).meshes[0].tangents) EXPECT_EQ(t.w, -1);
+  scene = load(asset);
+  for (const vec4& t : scene.meshes[0].tangents) EXPECT_EQ(t.w, -1);
   asset.root["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
   EXPECT_TRUE(warns_of(load(asset), "no effect"));
 }
