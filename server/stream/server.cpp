@@ -11,6 +11,7 @@ namespace wellspring {
 static constexpr size_t max_refusals = 64;  // connections being told 503 at a time; more are just closed
 static constexpr auto accept_pause = std::chrono::milliseconds(100);
 static constexpr auto polite_stop = std::chrono::seconds(1);
+static constexpr auto forced_stop = std::chrono::seconds(5);
 
 struct Server::Impl {
   std::shared_ptr<Core> core;
@@ -130,7 +131,10 @@ void Server::Impl::stop() {
     core->workers.stop();
     core->slow_workers.stop();
     if (!wait_until_empty(polite_stop)) stop_sessions(false);
-    while (!wait_until_empty(std::chrono::seconds(5))) log::warn("waiting for connections to end");
+    if (!wait_until_empty(forced_stop)) {
+      log::error("connections do not end; they are left behind");
+      core->io.stop();
+    }
     work.reset();
     for (auto& thread : threads) thread.join();
   });

@@ -67,7 +67,7 @@ class Session : public std::enable_shared_from_this<Session> {
   // session_websocket.cpp
   net::awaitable<void> serve_websocket();
   net::awaitable<bool> accept_websocket();
-  net::awaitable<void> read_messages();
+  net::awaitable<bool> read_messages();
   net::awaitable<void> write_messages();
   void want_close(websocket::close_code code, std::string reason);
   bool count_input(double messages, double bytes);

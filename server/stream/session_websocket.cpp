@@ -42,7 +42,11 @@ net::awaitable<bool> Session::accept_websocket() {
     for (const auto& [name, value] : security_headers()) response.set(name, value);
     if (echo) response.set(http::field::sec_websocket_protocol, "wellspring.v1");
   }));
-  ws_.control_callback([this](websocket::frame_type, beast::string_view) { count_input(1, 0); });
+  ws_.control_callback([this](websocket::frame_type type, beast::string_view) {
+    count_input(1, 0);
+    // The visit is over, though the peer may take its time to close the socket.
+    if (type == websocket::frame_type::close && link_) link_->mark_closed();
+  });
   error_code ec;
   co_await ws_.async_accept(*upgrade_, net::redirect_error(net::use_awaitable, ec));
   if (ec) fail(ec, "WebSocket handshake");
@@ -77,11 +81,13 @@ net::awaitable<void> Session::serve_websocket() {
     want_close(websocket::close_code::internal_error, "internal error");
   }
   if (stopping_) want_close(websocket::close_code::going_away, "server stops");
-  co_await read_messages();
-  ended_ = true;
-  link_->mark_closed();
-  stream().close();
-  writable_.raise();
+  const bool connected = co_await read_messages();
+  if (!connected) {
+    ended_ = true;
+    link_->mark_closed();
+    stream().close();
+    writable_.raise();
+  }
   co_await writer_ended_.wait();
   end_deadline();
   core_->websockets--;
@@ -89,24 +95,27 @@ net::awaitable<void> Session::serve_websocket() {
             link_->pictures_sent.load(), link_->bytes_sent.load());
 }
 
-// Until the connection ends. After a close was wanted, what still comes is read and thrown away, as the
-// closing handshake asks; Beast's and our own deadlines end it if the peer does not.
-net::awaitable<void> Session::read_messages() {
+// Until the connection ends (false) or is to be closed (true; the writer's async_close then reads and throws
+// away what still comes). No read may be started once a close was: where the peer's close frame has already
+// been received and there is a control callback, such a read keeps Beast's read lock while it waits for the
+// write lock, and the close the other way round, for ever (Boost 1.74 and 1.81).
+net::awaitable<bool> Session::read_messages() {
   beast::flat_buffer buffer;
-  for (;;) {
+  while (close_reason_.code == websocket::close_code::none) {
     error_code ec;
     const size_t bytes = co_await ws_.async_read(buffer, net::redirect_error(net::use_awaitable, ec));
     if (ec) {
       fail(ec, "WebSocket read");
-      co_return;
+      co_return false;
     }
     const bool counted = count_input(1, double(bytes));
     if (counted && !ws_.got_text())
       want_close(websocket::close_code::unknown_data, "text messages only");
-    else if (counted && close_reason_.code == websocket::close_code::none)
+    else if (counted)
       link_->push_text_in(beast::buffers_to_string(buffer.data()));
     buffer.consume(buffer.size());
   }
+  co_return true;
 }
 
 // False: more than a peer may say, the connection is being closed.
@@ -125,6 +134,7 @@ void Session::want_close(websocket::close_code code, std::string reason) {
   close_reason_.code = code;
   reason.resize(std::min(reason.size(), size_t(120)));  // a control frame holds 125 bytes
   close_reason_.reason = websocket::reason_string(reason.data(), reason.size());
+  link_->mark_closed();  // nothing more goes either way
   writable_.raise();
 }
 

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// A server on a free port with an answer that echoes what it was asked, and the links it was given.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "raw_client.h"
+#include "stream/stream.h"
+
+namespace wellspring::test {
+
+inline StreamSettings quick_settings() {
+  StreamSettings settings;
+  settings.port = 0;
+  return settings;
+}
+
+// Waits until `condition` holds; false when it does not within `timeout` seconds.
+inline bool eventually(const std::function<bool()>& condition, double timeout = 5) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+struct House {
+  std::mutex mutex;
+  std::condition_variable news;
+  std::vector<std::shared_ptr<Link>> links;
+  Server server;
+
+  explicit House(const StreamSettings& settings = quick_settings(),
+                 std::function<HttpReply(const HttpQuestion&)> answer = echo,
+                 std::function<bool(const HttpQuestion&)> slow = {})
+      : server(settings, {.answer = std::move(answer),
+                          .joined =
+                              [this](std::shared_ptr<Link> link) {
+                                std::lock_guard lock(mutex);
+                                links.push_back(std::move(link));
+                                news.notify_all();
+                              },
+                          .slow = std::move(slow)}) {}
+  ~House() { server.stop(); }
+  uint16_t port() const { return server.port(); }
+
+  // The number-th link that joined; null when there are not that many within 5 s.
+  std::shared_ptr<Link> link(size_t number = 0) {
+    std::unique_lock lock(mutex);
+    news.wait_for(lock, std::chrono::seconds(5), [&] { return links.size() > number; });
+    return links.size() > number ? links[number] : nullptr;
+  }
+
+  // The only text that the peer of `link` said since the last call, within 5 s.
+  static std::string text_from(const std::shared_ptr<Link>& link) {
+    std::vector<std::string> texts;
+    eventually([&] { return !(texts = link->take_texts()).empty(); });
+    EXPECT_EQ(texts.size(), 1u);
+    return texts.empty() ? "nothing came" : texts.front();
+  }
+
+  static HttpReply echo(const HttpQuestion& question) {
+    HttpReply reply;
+    reply.content_type = "text/plain; charset=utf-8";
+    reply.body = question.path;
+    for (const auto& [name, value] : question.query) reply.body += "|" + name + "=" + value;
+    if (question.path == "/missing") reply.status = 404;
+    if (question.path == "/tagged") reply.headers["ETag"] = "\"v1\"";
+    if (question.path == "/throws") throw std::runtime_error("oh");
+    return reply;
+  }
+};
+
+inline std::shared_ptr<const Packet> picture(uint32_t number, size_t bytes = 1000) {
+  Packet packet(std::max(bytes, packet_header_bytes), 0x55);
+  write_packet_header({.frame = number, .width = 16, .height = 16}, packet);
+  return std::make_shared<const Packet>(std::move(packet));
+}
+
+inline uint32_t picture_number(std::string_view bytes) {
+  const auto view =
+      read_packet(std::span(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()));
+  return view ? view->header.frame : 0;
+}
+
+}  // namespace wellspring::test
