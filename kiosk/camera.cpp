@@ -109,8 +109,12 @@ class DeviceCamera : public Camera {
  public:
   explicit DeviceCamera(const CameraSettings& settings) : settings_(settings) {
     setenv("OPENCV_VIDEOIO_V4L_SELECT_TIMEOUT", "2", 0);  // seconds; OpenCV's own default is 10
+    const std::string& source = settings.source;
+    bool number = std::all_of(source.begin(), source.end(), ::isdigit);
+    path_ = number ? "/dev/video" + source : source;
   }
   bool live() const override { return true; }
+  std::string name() const override { return path_; }
 
   Got next(GrayFrame& frame) override {
     try {
@@ -132,11 +136,8 @@ class DeviceCamera : public Camera {
 
  private:
   bool open() {
-    const std::string& source = settings_.source;
-    std::string path = source;
-    if (!source.empty() && std::all_of(source.begin(), source.end(), ::isdigit)) path = "/dev/video" + source;
-    if (!std::filesystem::exists(path)) return false;
-    if (!capture_.open(path, cv::CAP_V4L2)) return false;
+    std::error_code ec;
+    if (!std::filesystem::exists(path_, ec) || !capture_.open(path_, cv::CAP_V4L2)) return false;
     capture_.set(cv::CAP_PROP_FRAME_WIDTH, settings_.width);
     capture_.set(cv::CAP_PROP_FRAME_HEIGHT, settings_.width * 3 / 4);
     capture_.set(cv::CAP_PROP_FPS, settings_.rate);
@@ -151,6 +152,7 @@ class DeviceCamera : public Camera {
   }
 
   CameraSettings settings_;
+  std::string path_;
   cv::VideoCapture capture_;
   cv::Mat picture_;
   std::vector<uint8_t> last_;
@@ -180,7 +182,9 @@ class SyntheticCamera : public Camera {
 }  // namespace
 
 std::unique_ptr<Camera> make_camera(const CameraSettings& settings) {
+  // Errors are told in our own words.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   const std::string& source = settings.source;
   if (source == "synthetic") return std::make_unique<SyntheticCamera>(settings);
   bool number = !source.empty() && source.size() < 4 && std::all_of(source.begin(), source.end(), ::isdigit);

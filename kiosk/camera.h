@@ -22,6 +22,7 @@ class Camera {
   virtual Got next(GrayFrame& frame) = 0;
   // A device runs on its own clock (seconds_now()); everything else has times of its own, from 0.
   virtual bool live() const = 0;
+  virtual std::string name() const { return "camera"; }  // for messages
 };
 
 struct CameraSettings {

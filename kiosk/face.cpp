@@ -15,6 +15,7 @@ namespace {
 
 constexpr int follow_side = 44;  // pixels of a followed face in its window
 constexpr int eyes_side = 110;   // pixels of a face in which eyes are searched
+constexpr float least_tilt = 0.2f;  // radians; cascades do not mind less
 
 cv::CascadeClassifier load_cascade(const std::string& folder, const char* name) {
   const std::string path = (std::filesystem::path(folder) / name).string();
@@ -117,6 +118,36 @@ struct FaceFinder::Impl {
     if (apart > 0.2f && apart < 0.6f && std::abs(tilt) < 0.3f) face.eyes = eyes;
   }
 
+  // The surroundings of a face, turned upright about their middle, are a small frame of their own.
+  std::optional<Face> follow_tilted(const GrayFrame& frame, const Box& last, float roll) {
+    GrayFrame upright;
+    upright.width = upright.height = int(std::ceil(2.2f * last.width));
+    upright.pixels.resize(size_t(upright.width) * size_t(upright.height));
+    const float c = std::cos(roll), s = std::sin(roll), half = float(upright.width) / 2;
+    const float u = last.center_x(), v = last.center_y();
+    // From the upright window to the frame: a tilt towards image left turns it against the clock.
+    auto to_frame = [&](vec2 p) {
+      vec2 q = p - vec2(half);
+      return vec2(u + c * q.x + s * q.y, v - s * q.x + c * q.y);
+    };
+    const vec2 corner = to_frame(vec2(0));
+    cv::Mat map = (cv::Mat_<double>(2, 3) << c, s, corner.x, -s, c, corner.y);
+    cv::Mat out(upright.height, upright.width, CV_8U, upright.pixels.data());
+    cv::warpAffine(view_of(frame), out, map, out.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+                   cv::BORDER_REPLICATE);
+    auto window = cut(upright, {0, 0, 2 * half, 2 * half}, follow_side / last.width);
+    if (!window) return {};
+    auto face = best(haar, *window, follow_side, 2, FaceView::frontal);
+    if (!face) return {};
+    find_eyes(upright, *face);
+    const vec2 middle = to_frame({face->box.center_x(), face->box.center_y()});
+    face->box.x = middle.x - face->box.width / 2;
+    face->box.y = middle.y - face->box.height / 2;
+    if (face->eyes)
+      for (vec2& eye : *face->eyes) eye = to_frame(eye);
+    return face;
+  }
+
   void add(std::vector<Face>& faces, Face face) {
     for (Face& other : faces)
       if (overlap(other.box, face.box) > 0.3f) {
@@ -174,9 +205,10 @@ std::vector<Face> FaceFinder::search_thoroughly(const GrayFrame& frame, const Bo
   return faces;
 }
 
-std::optional<Face> FaceFinder::follow(const GrayFrame& frame, const Box& last) {
+std::optional<Face> FaceFinder::follow(const GrayFrame& frame, const Box& last, float roll) {
   Impl& m = *impl_;
   if (!(last.width > 4)) return {};
+  if (std::abs(roll) > least_tilt) return m.follow_tilted(frame, last, roll);
   auto window = cut(frame, grown(last, 2.0f), follow_side / last.width);
   if (!window) return {};
   auto face = m.best(m.haar, *window, follow_side, 2, FaceView::frontal);

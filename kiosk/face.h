@@ -38,8 +38,9 @@ class FaceFinder {
   std::vector<Face> search(const GrayFrame& frame);
   // The same within `zone`, with the slower and more sensitive Haar cascade alone.
   std::vector<Face> search_thoroughly(const GrayFrame& frame, const Box& zone);
-  // The face near `last` (one frame to half a second later), frontal or in profile; about 2 ms.
-  std::optional<Face> follow(const GrayFrame& frame, const Box& last);
+  // The face near `last` (one frame to half a second later), frontal or in profile; about 2 ms. `roll` is how far the head was
+  // tilted (positive: its top towards image left); the cascades know upright faces, so the window is turned back by it.
+  std::optional<Face> follow(const GrayFrame& frame, const Box& last, float roll = 0);
 
  private:
   struct Impl;

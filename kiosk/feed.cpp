@@ -52,12 +52,12 @@ struct Feed::Shared {
       Got got = camera->next(frame);
       if (got == Got::end) break;
       if (got == Got::lost) {
-        if (!lost) log::warn("the camera gives no picture; trying again every second");
+        if (!lost) log::warn("{} gives no picture; trying again every second", camera->name());
         lost = true;
         if (!rest(1)) break;
         continue;
       }
-      if (lost) log::info("the camera is back");
+      if (lost) log::info("{} is back", camera->name());
       lost = false;
       if (!live && pace) {
         if (first) begin = seconds_now() - frame.time;

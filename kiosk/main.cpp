@@ -61,7 +61,7 @@ void parse(Options& options, int argc, char** argv, CLI::App& app) {
   app.add_option("--width", options.camera.width, "pixels across: asked of a webcam; wider frames are reduced")
       ->check(CLI::Range(160, 1920))
       ->capture_default_str();
-  app.add_option("--rate", options.camera.rate, "frames a second at most")
+  app.add_option("--rate", options.camera.rate, "frames a second at most; all of a file with --no-pace")
       ->check(CLI::Range(1.0, 120.0))
       ->capture_default_str();
   app.add_option("--cascades", options.observer.face.cascades, "folder of OpenCV's cascades")
@@ -83,29 +83,28 @@ bool print(const std::string& line) {
 }
 
 void watch(const Options& options, Observer& observer, Feed& feed, ServerLink* link) {
-  constexpr double patience = 2;  // seconds without a picture before nobody is seen
-  double waited_since = seconds_now(), last_time = 0, next_due = -1e9;
-  bool any = false;
+  constexpr double patience = 2;      // seconds without a picture before nobody is seen
+  constexpr double blind_every = 0.5; // seconds between observations of a blind camera
+  const double step = 1 / options.camera.rate;
+  double frame_at = seconds_now(), frame_time = frame_at, blind_at = 0, due = -1e9;
   Presence told = Presence::absent;
   GrayFrame frame;
   while (!stop_asked) {
-    Fed fed = feed.take(frame, 0.1);
+    const Fed fed = feed.take(frame, 0.1);
     if (fed == Fed::end) return;
     Observation seen;
     if (fed == Fed::frame) {
-      waited_since = seconds_now();
-      last_time = frame.time;
-      // Faster cameras are thinned out; half a frame of tolerance keeps one that is just as fast.
-      if (any && frame.time > last_time - 1 && frame.time < next_due - 0.5 / options.camera.rate) continue;
-      next_due = std::max(next_due, frame.time - 1 / options.camera.rate) + 1 / options.camera.rate;
-      any = true;
+      frame_at = seconds_now();
+      frame_time = frame.time;
+      // A camera faster than the rate is thinned out; half a frame of tolerance keeps one that is just as fast.
+      if (options.pace && frame.time < due - 0.5 * step) continue;
+      due = std::max(due, frame.time - step) + step;
       seen = observer.step(frame);
     } else {
-      double silent = seconds_now() - waited_since;
-      if (silent < patience) continue;
-      waited_since += 0.5;  // twice a second from now on
-      last_time = options.camera.source == "synthetic" ? last_time + 0.5 : last_time + silent;
-      seen = observer.step_blind(last_time);
+      const double now = seconds_now();
+      if (now - frame_at < patience || now - blind_at < blind_every) continue;
+      blind_at = now;
+      seen = observer.step_blind(frame_time + now - frame_at);
     }
     if (seen.state != told) log::info("{} -> {}", to_string(told), to_string(seen.state));
     told = seen.state;

@@ -50,6 +50,7 @@ struct Observer::Impl {
     const float rest =
         yaw_pitch_roll(rotation_as_seen(mount, rotation_to_center(head.person.position), camera)).y;
     const mat3 seen = head.turn.step(previous, frame, who.face, who.seen, rest);
+    people.tilt(who.id, yaw_pitch_roll(seen).z);
     const vec3 rotation = rotation_on_screen(mount, seen, camera);
     head.person.rotation = step_one_euro(head.rotation, rotation_filter, frame.time, rotation);
     head.person.confidence = std::clamp(who.face.confidence, 0.f, 1.f);

@@ -42,6 +42,7 @@ struct People::Impl {
   PeopleSettings settings;
   struct Track {
     Followed who;
+    float roll = 0;
     cv::Mat patch;  // the face at patch_side when a detector last saw it
   };
   std::vector<Track> tracks;
@@ -108,6 +109,11 @@ People::People(FaceFinder& finder, const PeopleSettings& settings)
     : impl_(new Impl{finder, settings, {}, {}}) {}
 People::~People() = default;
 
+void People::tilt(uint32_t id, float roll) {
+  for (Impl::Track& track : impl_->tracks)
+    if (track.who.id == id) track.roll = roll;
+}
+
 const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& motion,
                                           const MotionWatch& watch) {
   Impl& m = *impl_;
@@ -119,7 +125,7 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
     Followed& who = track.who;
     who.seen = false;
     // A face long lost is left to the search; its window would only meet others.
-    auto face = time - who.seen_time < m.settings.carry ? m.finder.follow(frame, who.face.box)
+    auto face = time - who.seen_time < m.settings.carry ? m.finder.follow(frame, who.face.box, track.roll)
                                                        : std::optional<Face>();
     if (face) m.see(track, frame, *face);
     else m.carry(track, frame);
@@ -137,7 +143,9 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
     for (const Face& face : m.finder.search(frame)) m.meet(frame, face);
     somebody = std::any_of(m.tracks.begin(), m.tracks.end(), [](auto& t) { return t.who.visible; });
   }
-  if (!somebody && time - m.searched_thoroughly >= m.settings.thorough) {
+  const bool worth = !somebody || !motion.zones.empty();
+  if (worth && time - m.searched_thoroughly >=
+                   (somebody ? m.settings.thorough_more : m.settings.thorough)) {
     m.searched_thoroughly = time;
     Box zone{0, 0, float(frame.width), float(frame.height)};
     if (!motion.zones.empty()) {  // with room for the head above a body in plain clothes

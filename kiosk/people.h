@@ -15,6 +15,7 @@ struct PeopleSettings {
   double search_alone = 0.1;   // seconds between searches of the whole frame while nobody is followed
   double search_more = 0.5;    // ... while somebody is
   double thorough = 0.6;       // ... with the slower detector, while nobody is followed
+  double thorough_more = 2;    // ... while somebody is and something moves
   double carry = 1.2;          // seconds a face is carried on by texture alone
   double recall = 4;           // seconds after which a lost face's number is forgotten
   double still = 20;           // seconds without any movement: a picture
@@ -39,6 +40,8 @@ class People {
   // Called once a frame after motion.step(frame). The result is nearest (largest) first.
   const std::vector<Followed>& step(const GrayFrame& frame, const Motion& motion,
                                     const MotionWatch& watch);
+  // How far that head is tilted, radians, for the next frame's search (FaceFinder::follow).
+  void tilt(uint32_t id, float roll);
 
  private:
   struct Impl;

@@ -157,6 +157,27 @@ TEST(Observe, the_midline_knows_left_from_right) {
   }
 }
 
+TEST(Observe, a_tilted_head_is_found_when_its_tilt_is_known) {
+  FaceFinder finder;
+  for (float roll : {-0.6f, 0.6f}) {
+    FigurePose pose;
+    pose.visible = true;
+    pose.position = {0.05f, 0, 0.7f};
+    pose.rotation = {0, 0, roll};
+    GrayFrame frame = draw_figure({640, 480, 1, 1, 2}, {}, pose, 0);
+    const float focal = focal_length({}, 640), side = focal * face_box_metres / 0.7f;
+    const float u = 320 - 0.05f / 0.7f * focal, v = 240;
+    const Box last{u - side / 2, v - eyes_in_box * side, side, side};
+    auto face = finder.follow(frame, last, roll);
+    ASSERT_TRUE(face) << roll;
+    EXPECT_NEAR(face->box.center_x(), u, 0.3f * side);
+    EXPECT_NEAR(face->box.center_y(), v + 0.1f * side, 0.3f * side);
+    ASSERT_TRUE(face->eyes) << roll;
+    vec2 d = (*face->eyes)[1] - (*face->eyes)[0];
+    EXPECT_NEAR(std::atan2(-d.y, d.x), roll, 0.12f);
+  }
+}
+
 TEST(Observe, a_missing_cascade_is_named_with_its_package) {
   ObserverSettings settings;
   settings.face.cascades = "/nowhere";
