@@ -20,19 +20,19 @@ LIP_POINTS = 34  # along one lip
 UNROLL = 0.085  # metres of the plane for one radian
 
 # rings round the eye: 0 the lid margin .. 1 the rim of the socket
-EYE_RINGS = [0.0, 0.045, 0.10, 0.17, 0.25, 0.34, 0.44, 0.56, 0.70, 0.86, 1.0]
+EYE_RINGS = [0.0, 0.045, 0.10, 0.17, 0.23, 0.29, 0.35, 0.42, 0.50, 0.60, 0.72, 0.86, 1.0]
 # rings round the mouth: 0 the parting line, 1 the edge of the red, 2 the outermost
 LIP_RINGS = [0.0, 0.07, 0.17, 0.30, 0.45, 0.62, 0.80, 0.93, 1.05, 1.20, 1.42, 1.70, 2.0]
 
 
 def lid_opening(t, upper):
     """The lid margin in the eye's front view (x outwards from the eye centre); t: 0 inner .. 1 outer corner."""
-    x = lerp(-0.0142, 0.0138, t)
+    x = lerp(-0.0146, 0.0142, t)
     base = lerp(-0.0016, 0.0010, t)
     arch = 4 * t * (1 - t)
     if upper:
-        return x, base + 0.0066 * arch ** 0.72 * (1 + 0.22 * (0.5 - t))
-    return x, base - 0.0044 * arch ** 0.95 * (1 - 0.30 * (0.5 - t))
+        return x, base + 0.0062 * arch ** 0.74 * (1 + 0.22 * (0.5 - t))
+    return x, base - 0.0043 * arch ** 0.95 * (1 - 0.30 * (0.5 - t))
 
 
 def eye_ring(s):
@@ -74,7 +74,7 @@ def spacing(theta, v):
     """How far apart scattered points lie."""
     front = smoothstep(2.2, 0.9, abs(theta))
     d = lerp(0.016, 0.0052, front)
-    if v < -0.135:
+    if v < -0.18:
         d = lerp(d, 0.009, front)
     if v > 0.055:
         d = lerp(d, 0.010, smoothstep(0.055, 0.09, v))
@@ -145,22 +145,22 @@ def make_face(look):
     # everything else, scattered
     rng = random.Random(7)
     border = pi * UNROLL
-    v = -0.235
-    while v < 0.14:  # the seam at the back and the middle line in front come first: they must be straight
+    v = form.LOW
+    while v < form.HIGH:  # the seam at the back and the middle line in front come first: they must be straight
         for theta in (0.0, pi):
             uv = (theta * UNROLL, v)
             if points.free(uv, 0.6 * spacing(theta, v)):
                 points.put(uv, form.sweep(theta, v))
         v += 0.004
-    for theta_i in range(0, 40):
-        for v in (-0.235, 0.14):
-            theta = pi * theta_i / 40
+    for theta_i in range(1, 48):
+        for v in (form.LOW, form.HIGH):
+            theta = pi * theta_i / 48
             if points.free((theta * UNROLL, v), 0.003):
                 points.put((theta * UNROLL, v), form.sweep(theta, v))
     eye_border = [points.plane[i] for i in eye[-1]]
     mouth_border = ([points.plane[i] for i in upper[-1]] + [points.plane[i] for i in reversed(lower[-1])])
     for _ in range(60000):
-        uv = (rng.uniform(0, border), rng.uniform(-0.235, 0.14))
+        uv = (rng.uniform(0, border), rng.uniform(form.LOW, form.HIGH))
         d = spacing(uv[0] / UNROLL, uv[1])
         if uv[0] < 0.4 * d or uv[0] > border - 0.4 * d:
             continue

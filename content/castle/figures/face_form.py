@@ -10,8 +10,8 @@ from form import bell, capsule, carve, clamp, curve, ellipsoid, join, mad, gradi
 
 HEAD = (0.0, 1.562, 0.022)  # head space in the figure's space
 
-EYE = (0.0312, 0.0, 0.0680)  # centre of the left eyeball
-EYE_RADIUS = 0.0132
+EYE = (0.0315, 0.0, 0.0676)  # centre of the left eyeball
+EYE_RADIUS = 0.0136
 LID_RADIUS = EYE_RADIUS + 0.0013
 
 MOUTH_Y = -0.0665  # where the lips part, at the middle
@@ -28,13 +28,13 @@ def part_y(x):
 def upper_lip_y(x):
     """Upper edge of the red: two peaks (the philtrum's), sinking to the corner."""
     u = clamp(x / MOUTH_HALF, 0, 1)
-    height = 0.0066 - 0.0012 * bell(u, 0.13) + 0.0004 * bell(u - 0.2, 0.12)
-    return part_y(x) + height * (1 - u ** 2.0) ** 0.9 + 0.0004
+    height = 0.0056 - 0.0012 * bell(u, 0.12) + 0.0006 * bell(u - 0.22, 0.13)
+    return part_y(x) + height * (1 - u ** 1.7) ** 0.95 + 0.0004
 
 
 def lower_lip_y(x):
     u = clamp(x / MOUTH_HALF, 0, 1)
-    return part_y(x) - 0.0088 * (1 - u ** 2.3) ** 0.85 - 0.0004
+    return part_y(x) - 0.0080 * (1 - u ** 2.2) ** 0.95 - 0.0004
 
 
 # ---- the volumes --------------------------------------------------------------------------------------
@@ -42,27 +42,26 @@ def bone(p):
     """Head and neck without eyelids; symmetric."""
     x, y, z = abs(p[0]), p[1], p[2]
     p = (x, y, z)
-    d = ellipsoid(p, (0, 0.026, -0.006), (0.0715, 0.083, 0.0985))  # cranium
-    d = join(d, ellipsoid(p, (0, -0.030, 0.030), (0.0575, 0.078, 0.0600)), 0.030)  # face
-    d = join(d, capsule(p, (0.043, -0.074, 0.008), (0.014, -0.096, 0.070), 0.0135, 0.0125), 0.026)  # jaw
-    d = join(d, ellipsoid(p, (0, -0.0955, 0.0755), (0.0195, 0.0150, 0.0185)), 0.016)  # chin
+    d = ellipsoid(p, (0, 0.026, -0.006), (0.0695, 0.083, 0.0985))  # cranium
+    d = join(d, ellipsoid(p, (0, -0.030, 0.030), (0.0520, 0.078, 0.0600)), 0.030)  # face
+    d = join(d, capsule(p, (0.0375, -0.069, 0.008), (0.0075, -0.0962, 0.071), 0.0110, 0.0100), 0.024)  # jaw
+    d = join(d, ellipsoid(p, (0, -0.0955, 0.0755), (0.0165, 0.0140, 0.0180)), 0.020)  # chin
     d = join(d, ellipsoid(p, (0, -0.066, 0.072), (0.031, 0.024, 0.0265)), 0.018)  # muzzle
     d = join(d, ellipsoid(p, (0.0450, -0.0215, 0.0560), (0.0180, 0.0125, 0.0190)), 0.022)  # cheekbone
-    d = join(d, capsule(p, (0.050, -0.016, 0.045), (0.0655, -0.008, 0.006), 0.009, 0.006), 0.016)
-    d = join(d, ellipsoid(p, (0.0350, -0.0440, 0.0650), (0.0190, 0.0190, 0.0190)), 0.020)  # cheek
+    d = join(d, capsule(p, (0.050, -0.016, 0.045), (0.0625, -0.008, 0.006), 0.009, 0.006), 0.016)
+    d = join(d, ellipsoid(p, (0.0350, -0.0440, 0.0650), (0.0175, 0.0180, 0.0190)), 0.020)  # cheek
     d = join(d, capsule(p, (0.007, 0.0165, 0.0815), (0.041, 0.0165, 0.0640), 0.0085, 0.0085), 0.014)
     d = carve(d, ellipsoid(p, (0.0310, 0.0005, 0.0890), (0.0190, 0.0120, 0.0150)), 0.014)  # eye socket
     # neck: leans forward going up; the muscle from behind the ear to the breastbone shows a little
-    neck = capsule(p, (0, -0.045, -0.022), (0, -0.235, -0.045), 0.0505, 0.0560)
-    neck = join(neck, capsule(p, (0.052, -0.050, -0.018), (0.014, -0.205, 0.010), 0.010, 0.0075), 0.022)
-    neck = join(neck, capsule(p, (0.020, -0.195, -0.030), (0.130, -0.215, -0.045), 0.040, 0.036), 0.050)
+    neck = capsule(p, (0, -0.045, -0.020), (0, -0.250, -0.045), 0.0430, 0.0480)
+    neck = join(neck, capsule(p, (0.048, -0.045, -0.016), (0.013, -0.200, 0.004), 0.009, 0.0075), 0.020)
     return join(d, neck, 0.022)
 
 
 def nose(p, d):
     """Adds the nose to the distance `d`; `p` has x >= 0."""
     d = join(d, capsule(p, (0, 0.008, 0.0795), (0, -0.0300, 0.1015), 0.0065, 0.0068), 0.0085)  # bridge
-    d = join(d, ellipsoid(p, (0, -0.0350, 0.1035), (0.0088, 0.0080, 0.0088)), 0.006)  # tip
+    d = join(d, ellipsoid(p, (0, -0.0350, 0.1035), (0.0080, 0.0076, 0.0086)), 0.006)  # tip
     d = join(d, capsule(p, (0, -0.0395, 0.1040), (0, -0.0440, 0.0930), 0.0036, 0.0042), 0.005)
     d = join(d, ellipsoid(p, (0.0112, -0.0385, 0.0950), (0.0062, 0.0064, 0.0090)), 0.0045)  # wing
     return carve(d, ellipsoid(p, (0.0062, -0.0450, 0.0985), (0.0030, 0.0036, 0.0052)), 0.0022)  # nostril
@@ -124,10 +123,22 @@ def fold(x, y, line, depth, width, raise_outside=0.0):
     return -depth * bell(d, width) + raise_outside * (d / width) * bell(d, 2.5 * width) * side
 
 
+def lid_fold(x, y):
+    """The crease of the upper lid and the soft skin that rests on it, heavier outwards."""
+    if not 0.013 < x < 0.056 or not 0.0 < y < 0.024:
+        return 0.0
+    line = curve(UPPER_LID_LINE, x)
+    ends = smoothstep(0.0150, 0.0200, x) * smoothstep(0.0545, 0.0470, x)
+    above = y - line
+    hood = 0.0011 + 0.0005 * smoothstep(0.030, 0.044, x)
+    rest = hood * bell(above - 0.0030, 0.0026) if above > 0 else -0.0002 * bell(above, 0.003)
+    return ends * (rest - 0.0009 * bell(above, 0.0009))
+
+
 SMILE_LINE = [(0.0165, -0.0345), (0.0205, -0.0420), (0.0262, -0.0530), (0.0315, -0.0640)]
 TEAR_LINE = [(0.0165, -0.0070), (0.0230, -0.0150), (0.0330, -0.0190)]
-UPPER_LID_LINE = [(0.0165, 0.0020), (0.0205, 0.0082), (0.0275, 0.0112), (0.0350, 0.0112), (0.0420, 0.0080),
-                  (0.0478, 0.0030)]
+UPPER_LID_LINE = [(0.0150, 0.0020), (0.0185, 0.0064), (0.0235, 0.0092), (0.0300, 0.0104), (0.0365, 0.0098), (0.0430, 0.0074),
+                  (0.0490, 0.0030), (0.0550, -0.0010)]
 
 
 def relief(p):
@@ -141,6 +152,7 @@ def relief(p):
     h += 0.0004 * bell(x - 0.0042, 0.0022) * smoothstep(-0.0465, -0.0500, y) * smoothstep(-0.062, -0.058, y)
     h += fold(x, y, SMILE_LINE, 0.0008, 0.0030, -0.0006)
     h += fold(x, y, TEAR_LINE, 0.0006, 0.0028)
+    h += lid_fold(x, y)
     h -= 0.0011 * bell(x - 0.0125, 0.0035) * bell(y + 0.0330, 0.0050) * bell(z - 0.092, 0.012)  # wing crease
     return h * front
 
@@ -158,10 +170,11 @@ def front_point(x, y):
 
 # ---- rays that sweep the head from crown to collar -----------------------------------------------------
 # v (metres, like a height) -> height of the ray's start on the axis, its slope
-ORIGIN = [(-0.235, -0.225), (-0.19, -0.182), (-0.15, -0.115), (-0.118, -0.045), (-0.10, -0.030),
-          (0.0, -0.014), (0.06, 0.005), (0.14, 0.02)]
-SLOPE = [(-0.235, -0.10), (-0.19, -0.35), (-0.15, -0.85), (-0.118, -0.95), (-0.10, -0.68),
-         (-0.05, -0.33), (0.0, 0.13), (0.06, 0.62), (0.11, 1.10), (0.14, 1.50)]
+ORIGIN = [(-0.26, -0.215), (-0.20, -0.155), (-0.165, -0.105), (-0.13, -0.080), (-0.10, -0.078), (-0.085, -0.080),
+          (-0.06, -0.060), (0.02, 0.020), (0.06, 0.030), (0.14, 0.030)]
+SLOPE = [(-0.26, -0.10), (-0.20, -0.55), (-0.165, -0.85), (-0.13, -0.66), (-0.10, -0.25), (-0.085, -0.05), (-0.07, 0.0),
+         (0.02, 0.0), (0.06, 0.45), (0.11, 1.00), (0.14, 1.50)]
+LOW, HIGH = -0.26, 0.14  # of v
 
 
 def ray(theta, v):
@@ -180,7 +193,7 @@ def unroll(p):
     from math import atan2, cos, sin
     theta = atan2(p[0], p[2])
     rho = sqrt(p[0] * p[0] + p[2] * p[2])
-    low, high = -0.235, 0.14
+    low, high = LOW, HIGH
     for _ in range(40):
         v = 0.5 * (low + high)
         a = curve(SLOPE, v)

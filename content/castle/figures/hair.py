@@ -12,18 +12,18 @@ from rig import blend, scaled, spine
 CENTER = (0.0, 0.005, -0.010)
 
 # edges of the left half of the hair, from the parting to the nape: along the forehead, and over the crown
-HAIRLINE = [(0.0, 0.0735, 0.078), (0.014, 0.0730, 0.076), (0.030, 0.0660, 0.070), (0.044, 0.0530, 0.061),
-            (0.0545, 0.0350, 0.051), (0.061, 0.0130, 0.043), (0.0655, -0.0080, 0.034), (0.0675, -0.0260, 0.021),
-            (0.0640, -0.0420, 0.002), (0.054, -0.0500, -0.025), (0.035, -0.0540, -0.055)]
+HAIRLINE = [(0.0, 0.0680, 0.080), (0.014, 0.0675, 0.079), (0.029, 0.0615, 0.073), (0.042, 0.0490, 0.064),
+            (0.0515, 0.0315, 0.055), (0.0575, 0.0110, 0.047), (0.0625, -0.0090, 0.038), (0.0660, -0.0270, 0.023),
+            (0.0650, -0.0410, 0.000), (0.058, -0.0460, -0.032), (0.042, -0.0470, -0.070)]
 CROWN = [(0.0, 0.1120, -0.040), (0.018, 0.1100, -0.044), (0.036, 0.1000, -0.050), (0.052, 0.0840, -0.056),
-         (0.064, 0.0620, -0.062), (0.070, 0.0400, -0.066), (0.070, 0.0200, -0.068), (0.066, 0.0000, -0.070),
-         (0.060, -0.0200, -0.070), (0.050, -0.0360, -0.068), (0.035, -0.0500, -0.062)]
+         (0.064, 0.0620, -0.062), (0.070, 0.0400, -0.066), (0.070, 0.0200, -0.068), (0.066, 0.0000, -0.074),
+         (0.060, -0.0180, -0.078), (0.050, -0.0300, -0.080), (0.040, -0.0400, -0.080)]
 
 
 def hair(p):
     q = (abs(p[0]), p[1], p[2])
     d = ellipsoid(q, (0, 0.028, -0.008), (0.0745, 0.0860, 0.1010))
-    return join(d, ellipsoid(q, (0.0600, -0.0060, -0.0060), (0.0165, 0.0360, 0.0330)), 0.024)
+    return join(d, ellipsoid(q, (0.0610, -0.0080, -0.0040), (0.0180, 0.0370, 0.0340)), 0.024)
 
 
 def along(points, s):
@@ -154,12 +154,12 @@ def make_veil(look):
     o = (0.0, 0.020, -0.020)
     for i in range(columns + 1):
         u = 2 * i / columns - 1  # -1 right .. 1 left
-        psi = u * 2.22
+        psi = u * 2.30
         start = roll_path(psi)
         start = mad(start, unit(sub(start, CENTER)), 0.0080)
-        start = (start[0], start[1], start[2] - 0.004)
-        beta = u * 1.58
-        d0, d1 = unit(sub(start, o)), unit((sin(beta), -0.16 - 0.20 * abs(u), -cos(beta)))
+        start = (start[0], start[1], start[2] - 0.005)
+        beta = u * 1.22
+        d0, d1 = unit(sub(start, o)), unit((sin(beta), -0.10 - 0.45 * abs(u) ** 3, -cos(beta)))
         r0 = dot(sub(start, o), d0)
         middle = None
         for k in range(upper + 1):
@@ -172,21 +172,20 @@ def make_veil(look):
             fold = 0.0022 * t * sin(beta * 9 + 1.5 * t)
             rows[k].append((add(HEAD, mad(middle, d, fold)), (u, 0.5 * t)))
         middle = add(HEAD, middle)
-        out = unit((sin(beta), 0, -cos(beta)))
-        drop = lerp(0.275, 0.215, abs(u) ** 2)
-        p = middle
+        out = unit((sin(beta) * 1.0, 0, -cos(beta)))
+        end_y = lerp(1.215, 1.270, abs(u) ** 2.0)
         for k in range(1, lower + 1):
             t = k / lower
-            flare = 0.055 * t ** 1.4
-            q = mad((middle[0], middle[1] - drop * t, middle[2]), out, flare)
-            for _ in range(12):  # lie on the shoulders
-                gap = body(q) - 0.026
-                if gap > 0:
-                    break
-                q = mad(q, gradient(body, q), -gap)
-            amount = 0.0035 + 0.0105 * smoothstep(0, 1, t)
-            fold = amount * (sin(beta * 11 + 0.8 * sin(3 * t + u)) + 0.35 * sin(beta * 23 + 2 * t))
-            q = mad(q, out, fold + 0.35 * amount)
+            q = mad((middle[0], lerp(middle[1], end_y, t), middle[2]), out, 0.030 * t ** 1.2)
+            gap = body(q) - 0.024
+            if gap < 0.012:  # lie softly on the shoulders
+                q = mad(q, out, 0.0)
+                far = cast(lambda p: body(p) - 0.024, (0.0, q[1], -0.03), out, 0.35)
+                reach = (far[0] - q[0]) * out[0] + (far[2] - q[2]) * out[2]
+                q = mad(q, out, max(reach, 0.0))
+            amount = 0.0030 + 0.0095 * smoothstep(0, 0.8, t)
+            fold = amount * (sin(beta * 13 + 0.8 * sin(3 * t + u)) + 0.35 * sin(beta * 27 + 2 * t))
+            q = mad(q, out, fold + 0.55 * amount)
             rows[upper + k].append((q, (u, 0.5 + 0.5 * t)))
     ids = [[patch.vertex(p, (uv[0] * 2.2, uv[1] * 3.2), veil_weights(p), ("veil",)) for p, uv in row] for row in rows]
     patch.grid(ids)

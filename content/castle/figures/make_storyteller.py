@@ -12,6 +12,7 @@ import export_x3d
 import expressions
 import rig
 import storyteller
+import textures
 
 
 def main():
@@ -21,6 +22,7 @@ def main():
     path = os.path.abspath(arguments[0])
     figure = storyteller.make_storyteller()
     expressions.add_displacers(figure)
+    textures.make_textures(figure, os.path.dirname(path))
     skeleton = rig.make_joints()
     export_x3d.write_figure(figure, skeleton, rig.make_sites(), path, os.path.basename(path),
                             "The storyteller of the castle: a chatelaine of about 1530, with face controls and visemes")

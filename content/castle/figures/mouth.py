@@ -2,9 +2,10 @@
 """Inside of the lips, mouth, teeth and tongue. Head space; see face_form.py."""
 from math import cos, pi, sin
 
-from face_form import MOUTH_HALF, MOUTH_Y
+from face_form import MOUTH_Y, part_y
 from form import bell, circle, clamp, lerp, smoothstep
 from patch import Patch
+from rig import jaw_weight
 
 SKULL, JAW = {"skullbase": 1.0}, {"temporomandibular": 1.0}
 
@@ -33,7 +34,8 @@ def make_lining(face, look):
             x = p[0] * keep
             back = depth if depth < 0.02 else depth
             y = lerp(p[1], MOUTH_Y + 0.0004, smoothstep(0.004, 0.02, depth)) + s * half * lid
-            w = 0.5 if lid == 0 else (0.0 if upper else 1.0)
+            w = jaw_weight((p[0], part_y(abs(p[0])) + s * 2e-4, p[2]))
+            w = lerp(w, 0.5 if lid == 0 else (0.0 if upper else 1.0), smoothstep(0.006, 0.030, depth))
             row.append(patch.vertex((x, y, p[2] - back), (0.5, clamp(depth / 0.03)), share(w),
                                     ("lining", t, upper, depth)))
         rows.append(row)
@@ -67,7 +69,7 @@ def make_teeth(upper, tooth_look, gum_look):
     weights = SKULL if upper else JAW
     tag = (name + "_teeth",)
     grow = -1 if upper else 1  # direction from gum to edge
-    edge_y = MOUTH_Y - 0.0008 if upper else MOUTH_Y - 0.0022
+    edge_y = MOUTH_Y - 0.0028 if upper else MOUTH_Y - 0.0036
     widths = WIDTHS if upper else LOWER_WIDTHS
     heights = [0.0098, 0.0086, 0.0096, 0.0080, 0.0074, 0.0070, 0.0065] if upper else \
         [0.0078, 0.0080, 0.0088, 0.0078, 0.0072, 0.0068, 0.0065]

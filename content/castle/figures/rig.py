@@ -11,7 +11,7 @@ SPINE_Z = [(1.000, -0.030), (1.12, -0.036), (1.25, -0.062), (1.35, -0.062), (1.4
 SKULLBASE = (0.0, 1.524, 0.010)
 
 # the arm hangs beside the body, a hand's breadth away at the wrist
-SHOULDER = (0.158, 1.372, -0.022)
+SHOULDER = (0.150, 1.352, -0.022)
 ELBOW = (0.196, 1.098, -0.030)
 WRIST = (0.226, 0.862, -0.008)
 HIP, KNEE, ANKLE = (0.088, 0.880, 0.000), (0.090, 0.478, 0.012), (0.090, 0.078, -0.022)
@@ -43,7 +43,7 @@ def make_joints():
     joints["temporomandibular"] = ("skullbase", add(HEAD, (0.0, TMJ[1], TMJ[2])))
     for side, s in (("l", 1), ("r", -1)):
         chain = [("sternoclavicular", "vt1", (0.022, 1.388, 0.022)),
-                 ("acromioclavicular", "sternoclavicular", (0.118, 1.404, -0.022)),
+                 ("acromioclavicular", "sternoclavicular", (0.112, 1.385, -0.022)),
                  ("shoulder", "acromioclavicular", SHOULDER), ("elbow", "shoulder", ELBOW),
                  ("radiocarpal", "elbow", WRIST)]
         for name, parent, c in chain:
@@ -92,7 +92,7 @@ def jaw_weight(p):
     below = (-0.050 * (z - TMJ[2]) / 0.077 + TMJ[1] - y) * 0.84  # under the line from hinge to mouth corner
     cheek = smoothstep(-0.008, 0.030, below)
     u = x / MOUTH_HALF
-    lips = smoothstep(1.35, 0.70, u)
+    lips = (1 - min(u, 1.0) ** 2.2) ** 0.7  # the opening mouth is an oval
     w = lerp(cheek, 1.0 if y < part_y(x) else 0.0, lips)
     w *= smoothstep(-0.158, -0.108, y) * smoothstep(0.0, 0.035, z)
     return w
@@ -113,7 +113,7 @@ def torso_weights(p, arm_share=1.0):
     x = abs(p[0])
     high = smoothstep(1.22, 1.36, p[1])
     clavicle = 0.75 * smoothstep(0.03, 0.13, x) * high
-    arm = 0.85 * smoothstep(0.118, 0.205, x) * smoothstep(1.20, 1.30, p[1]) * arm_share
+    arm = 0.85 * smoothstep(0.108, 0.195, x) * smoothstep(1.18, 1.28, p[1]) * arm_share
     rest = (1 - arm) * (1 - clavicle)
     return blend(scaled(spine(p[1]), rest) + [(side + "sternoclavicular", 0.5 * (1 - arm) * clavicle),
                                               (side + "acromioclavicular", 0.5 * (1 - arm) * clavicle),

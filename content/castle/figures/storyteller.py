@@ -11,6 +11,7 @@ import rig
 from face_form import HEAD
 from form import add
 from patch import Figure, Look
+from skin import texture_place
 
 
 def make_looks(figure):
@@ -53,6 +54,7 @@ def make_storyteller():
     figure = Figure()
     make_looks(figure)
     skin = face.make_face("skin")
+    skin.uv = [texture_place(plane) for plane in skin.uv]
     parts = [eyes.make_eyeball(1, "eye"), eyes.make_eyeball(-1, "eye"), eyes.make_lid_rims(skin, "flesh"),
              eyes.make_lashes(skin, "lash"), mouth.make_lining(skin, "mouth"), *mouth.make_teeth(True, "tooth", "gum"),
              *mouth.make_teeth(False, "tooth", "gum"), mouth.make_tongue("tongue"), hair.make_hair("hair"),

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The tiles of cloth, embroidery, hair and fur. Every colour function repeats with period 1 in u and v."""
+from math import cos, hypot, pi, sin
+
+from form import bell, clamp, lerp, noise, smoothstep
+from paint import mixed, rgb, times
+
+
+def wrap_noise(u, v, fu, fv, seed):
+    """Noise that repeats with the tile: walked on a torus."""
+    a, b = 2 * pi * u, 2 * pi * v
+    return noise((cos(a) * fu + 3.7 * cos(b) * fv, sin(a) * fu + 2.9 * sin(b) * fv, sin(b) * fv * 1.7 + seed), 1.0, seed)
+
+
+def weave(u, v, n):
+    """Threads over and under, -1..1."""
+    i, j = int(u * n), int(v * n)
+    over = (i + j) % 4 < 2
+    fu, fv = u * n - i, v * n - j
+    return (sin(pi * fv) if over else sin(pi * fu)) * 2 - 1
+
+
+def pomegranate(u, v):
+    """The figure of renaissance damask: a fruit in a pointed oval, staggered; 0 ground .. 1 figure."""
+    best = 0.0
+    for du, dv in ((0, 0), (0.5, 0.5), (-0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)):
+        x, y = u - 0.5 + du, v - 0.5 + dv
+        x = (x + 0.5) % 1 - 0.5 if du == 0 else x
+        ax = abs(x)
+        frame = ax / 0.235 + (abs(y) / 0.47) ** 1.7
+        ring = bell(frame - 0.93, 0.055)
+        fruit = smoothstep(1.05, 0.95, hypot(ax / 0.075, (y + 0.02) / 0.115))
+        seeds = 0.55 * smoothstep(0.35, 0.0, hypot(((x * 30) % 1) - 0.5, ((y * 30) % 1) - 0.5)) if fruit > 0.5 else 0
+        crown = smoothstep(0.030, 0.018, abs(ax - 0.30 * max(0.0, y - 0.085))) * (0.085 < y < 0.20)
+        leaf_x, leaf_y = ax - 0.105, y + 0.10
+        leaf = smoothstep(1.1, 0.9, hypot((leaf_x * 0.8 + leaf_y * 0.6) / 0.030, (leaf_y * 0.8 - leaf_x * 0.6) / 0.105))
+        stem = smoothstep(0.016, 0.009, ax) * (-0.36 < y < -0.12)
+        best = max(best, ring, fruit - seeds, crown, leaf, stem)
+    return clamp(best)
+
+
+def gown_color(u, v):
+    d = pomegranate(u, v)
+    w = weave(u, v, 128)
+    c = mixed(rgb("5e1420"), rgb("7d2230"), d)
+    return times(c, 1 + 0.10 * w * (1 - 0.5 * d) + 0.10 * wrap_noise(u, v, 2.5, 2.5, 2))
+
+
+def velvet_color(u, v):
+    c = rgb("1d2b2a")
+    return times(c, 1 + 0.25 * wrap_noise(u, v, 3, 3, 5) + 0.18 * wrap_noise(u, v, 22, 22, 6))
+
+
+def linen_color(u, v):
+    slub = wrap_noise(u, v * 1.0, 1.5, 14, 7) + wrap_noise(u, v, 14, 1.5, 8)
+    return times(rgb("e6dfd0"), 0.985 + 0.045 * weave(u, v, 96) + 0.03 * slub)
+
+
+def trim_color(u, v):
+    """Gold thread on dark silk: an interlaced band between two cords. u along, v across."""
+    ground = rgb("2c1418")
+    gold = rgb("c99a45")
+    thread = 0.5 + 0.5 * sin(2 * pi * (u * 34 + v * 9))
+    c = times(ground, 1 + 0.1 * weave(u, v, 40))
+    height = 0.0
+    for phase in (0.0, 0.5):
+        y = 0.5 + 0.24 * sin(2 * pi * (u + phase))
+        height = max(height, smoothstep(0.085, 0.055, abs(v - y)))
+    for cx in (0.0, 0.5, 1.0):
+        height = max(height, smoothstep(0.17, 0.13, abs(u - cx) * 1.6 + abs(v - 0.5)))
+    for cx in (0.25, 0.75):
+        for cy in (0.24, 0.76):
+            height = max(height, smoothstep(0.065, 0.045, hypot((u - cx) * 1.3, v - cy)))
+    for edge in (0.06, 0.94):
+        height = max(height, smoothstep(0.055, 0.035, abs(v - edge)))
+    return mixed(c, times(gold, 0.72 + 0.42 * thread), clamp(height))
+
+
+def roll_color(u, v):
+    """Twisted stripes round the padded roll: wine red, gold cord, dark green."""
+    s = (u + v) % 1.0
+    cord = 0.5 + 0.5 * sin(2 * pi * (v * 60 - u * 12))
+    fine = 1 + 0.10 * weave(u, v, 64)
+    c = rgb("6a1a26") if s < 0.62 else rgb("22332f")
+    gold = max(bell(s - 0.62, 0.045), bell(s - 0.99, 0.045), bell(s + 0.01, 0.045))
+    return mixed(times(c, fine), times(rgb("cfa04a"), 0.65 + 0.45 * cord), clamp(1.3 * gold))
+
+
+def fur_color(u, v):
+    hairs = wrap_noise(u, v, 26, 5, 3) + 0.7 * wrap_noise(u, v, 50, 8, 4)
+    return mixed(rgb("3b2417"), rgb("8a6446"), clamp(0.42 + 0.55 * hairs))
+
+
+def leather_color(u, v):
+    return times(rgb("4b2d1c"), 1 + 0.16 * wrap_noise(u, v, 9, 9, 2) - 0.35 * max(bell(v - 0.12, 0.04), bell(v - 0.88, 0.04)))
+
+
+def hair_color(u, v):
+    """Strands run along v; u 0 lies at the hairline, where some have turned grey."""
+    across = u * 150
+    strand = noise((across, v * 2.0, 0.0), 1.0, 1) + 0.8 * noise((across * 2.7, v * 3.0, 0.0), 1.0, 2)
+    lock = noise((u * 26, v * 1.6, 0.0), 1.0, 3)
+    c = mixed(rgb("4a3223"), rgb("7c573b"), clamp(0.38 + 0.42 * strand + 0.30 * lock))
+    grey = smoothstep(0.22, 0.62, noise((across * 1.3, v * 1.2, 0.0), 1.0, 6) + 0.15)
+    near = bell((u % 0.5) / 0.5, 0.42)
+    c = mixed(c, rgb("a99c90"), 0.62 * grey * near)
+    return times(c, 1.0 - 0.30 * smoothstep(0.05, 0.0, v))
