@@ -14,26 +14,25 @@ constexpr int index_steps = 128;  // over (n - 1) / (n + 1) in [0, 1]; the last 
 
 enum class Kind { mirror, coat, glass };
 
-// Mean over the visible normals, on a fixed grid of numbers, of what is reflected (and for glass refracted)
+// Mean over the visible normals, on a Fibonacci lattice of numbers, of what is reflected (and for glass refracted)
 // times its shadowing.
 float integrate(float cosine, float alpha, float eta, Kind kind) {
   if (alpha <= 0) return kind == Kind::coat ? fresnel_dielectric(cosine, eta) : 1;
-  constexpr int steps = 20;
+  constexpr int points = 610, generator = 377;
   vec3 v(std::sqrt(std::max(0.0f, 1 - cosine * cosine)), 0, cosine);
   double sum = 0;
-  for (int i = 0; i < steps; i++)
-    for (int j = 0; j < steps; j++) {
-      vec2 u((float(i) + 0.5f) / steps, (float(j) + 0.5f) / steps);
-      vec3 h = sample_visible_normal(v, alpha, u);
-      float c = std::min(dot(v, h), 1.0f), f = kind == Kind::mirror ? 1 : fresnel_dielectric(c, eta);
-      vec3 reflected = 2 * c * h - v;
-      float kept = reflected.z > 0 ? f * ggx_shadowing(v, reflected, alpha) : 0;
-      vec3 refracted;
-      if (kind == Kind::glass && refract_at(v, h, eta, refracted) && refracted.z < 0)
-        kept += (1 - f) * ggx_shadowing(v, {refracted.x, refracted.y, -refracted.z}, alpha);
-      sum += double(kept / ggx_masking(v, alpha));
-    }
-  return float(sum / (steps * steps));
+  for (int i = 0; i < points; i++) {
+    vec2 u(float(i * generator % points) / points, (float(i) + 0.5f) / points);
+    vec3 h = sample_visible_normal(v, alpha, u);
+    float c = std::min(dot(v, h), 1.0f), f = kind == Kind::mirror ? 1 : fresnel_dielectric(c, eta);
+    vec3 reflected = 2 * c * h - v;
+    float kept = reflected.z > 0 ? f * ggx_shadowing(v, reflected, alpha) : 0;
+    vec3 refracted;
+    if (kind == Kind::glass && refract_at(v, h, eta, refracted) && refracted.z < 0)
+      kept += (1 - f) * ggx_shadowing(v, {refracted.x, refracted.y, -refracted.z}, alpha);
+    sum += double(kept / ggx_masking(v, alpha));
+  }
+  return float(sum / points);
 }
 
 void fill(AlbedoTable& table, float eta, Kind kind) {

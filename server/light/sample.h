@@ -20,14 +20,17 @@ struct Request {
 
 enum SampleFlags : uint8_t {
   sample_hit = 1,       // something was hit; else position is the ray's unit direction (at infinity)
-  sample_specular = 2,  // a mirror or glass: the picture there moves with the view
+  sample_specular = 2,  // a mirror, glass or polished metal: the picture there moves with the view
   sample_moving = 4,    // on a moving mesh: (instance, triangle, barycentric) place it in later ticks
 };
 
+// Clear thin panes (a vitrine's glass) are looked through: the sample describes what is behind them, `albedo`
+// tinted by the panes, and `rest` carries their mirror image. Mirrors and solid glass are described where they
+// are, with everything in `rest`.
 struct Sample {
   vec3 position{0};
   vec3 normal{0};  // shading normal, unit
-  float distance = 0;
+  float distance = 0;  // along the ray; infinity: nothing was hit
   uint32_t object = 0;
   uint32_t instance = 0, triangle = 0;
   vec2 barycentric{0};
