@@ -77,7 +77,8 @@ class FileCamera : public Camera {
   }
   double step() const { return 1 / fps_; }
 
-  // The next frame that can be decoded. Its time is the file's own where that grows, else the frame rate's.
+  // The next frame that can be decoded. Its time is the file's own where that grows, else the frame
+  // rate's.
   bool read(GrayFrame& frame) {
     try {
       for (int bad = 0; bad < 100 && capture_.isOpened() && capture_.read(picture_); bad++) {
@@ -187,7 +188,8 @@ std::unique_ptr<Camera> make_camera(const CameraSettings& settings) {
   setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   const std::string& source = settings.source;
   if (source == "synthetic") return std::make_unique<SyntheticCamera>(settings);
-  bool number = !source.empty() && source.size() < 4 && std::all_of(source.begin(), source.end(), ::isdigit);
+  bool number =
+      !source.empty() && source.size() < 4 && std::all_of(source.begin(), source.end(), ::isdigit);
   if (number || source.rfind("/dev/", 0) == 0) return std::make_unique<DeviceCamera>(settings);
   return std::make_unique<FileCamera>(settings);
 }

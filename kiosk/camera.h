@@ -18,7 +18,8 @@ enum class Got : uint8_t {
 class Camera {
  public:
   virtual ~Camera() = default;
-  // Blocks until there is a frame, at most about two seconds for a device. `frame` keeps its memory.
+  // Blocks until there is a frame, at most about two seconds for a device. `frame` keeps its
+  // memory.
   virtual Got next(GrayFrame& frame) = 0;
   // A device runs on its own clock (seconds_now()); everything else has times of its own, from 0.
   virtual bool live() const = 0;
@@ -34,8 +35,8 @@ struct CameraSettings {
   Mount mount;              // of the synthetic camera
 };
 
-// Throws LoadError for a file that is missing or holds no picture. A device that is not there is no error:
-// next() says lost.
+// Throws LoadError for a file that is missing or holds no picture. A device that is not there is no
+// error: next() says lost.
 std::unique_ptr<Camera> make_camera(const CameraSettings& settings);
 
 }  // namespace wellspring

@@ -158,7 +158,8 @@ struct FaceFinder::Impl {
   }
 
   static void largest_first(std::vector<Face>& faces) {
-    std::sort(faces.begin(), faces.end(), [](auto& a, auto& b) { return a.box.width > b.box.width; });
+    std::sort(faces.begin(), faces.end(),
+              [](auto& a, auto& b) { return a.box.width > b.box.width; });
     if (faces.size() > 8) faces.resize(8);
   }
 };

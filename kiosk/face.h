@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faces in a picture, by the cascades of Debian's opencv-data (Viola and Jones 2001; Liao et al. 2007 for LBP): a
-// quick LBP search proposes, a Haar cascade confirms; around a face already followed Haar alone searches a small
-// window. All that the rest of the kiosk knows of detection is in this header, so another detector can stand here.
+// Faces in a picture, by the cascades of Debian's opencv-data (Viola and Jones 2001; Liao et al.
+// 2007 for LBP): a quick LBP search proposes, a Haar cascade confirms; around a face already
+// followed Haar alone searches a small window. All that the rest of the kiosk knows of detection is
+// in this header, so another detector can stand here.
 #pragma once
 #include <array>
 #include <memory>
@@ -14,7 +15,11 @@
 
 namespace wellspring {
 
-enum class FaceView : uint8_t { frontal, image_left, image_right };  // a profile looks to that side of the image
+enum class FaceView : uint8_t {
+  frontal,
+  image_left,
+  image_right
+};  // a profile looks to that side of the image
 
 struct Face {
   Box box;                  // the frontal cascade's square
@@ -38,8 +43,9 @@ class FaceFinder {
   std::vector<Face> search(const GrayFrame& frame);
   // The same within `zone`, with the slower and more sensitive Haar cascade alone.
   std::vector<Face> search_thoroughly(const GrayFrame& frame, const Box& zone);
-  // The face near `last` (one frame to half a second later), frontal or in profile; about 2 ms. `roll` is how far the head was
-  // tilted (positive: its top towards image left); the cascades know upright faces, so the window is turned back by it.
+  // The face near `last` (one frame to half a second later), frontal or in profile; about 2 ms.
+  // `roll` is how far the head was tilted (positive: its top towards image left); the cascades know
+  // upright faces, so the window is turned back by it.
   std::optional<Face> follow(const GrayFrame& frame, const Box& last, float roll = 0);
 
  private:

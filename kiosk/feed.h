@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera read in a thread of its own, so that a device that hangs never hangs the kiosk. A live camera: the newest
-// frame wins and a lost one is tried again every second. Anything else: every frame in order, at the pace of
-// its times or as fast as they are taken.
+// A camera read in a thread of its own, so that a device that hangs never hangs the kiosk. A live
+// camera: the newest frame wins and a lost one is tried again every second. Anything else: every
+// frame in order, at the pace of its times or as fast as they are taken.
 #pragma once
 #include <memory>
 

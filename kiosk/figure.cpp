@@ -10,8 +10,8 @@ namespace wellspring {
 
 namespace {
 
-// Head frame: x to the visitor's right, y up, z out of the face; origin between the eyes' depth and the
-// neck. Metres.
+// Head frame: x to the visitor's right, y up, z out of the face; origin between the eyes' depth and
+// the neck. Metres.
 const vec3 head_radii{0.077f, 0.118f, 0.095f};
 const vec3 eyes_to_center{0, -0.012f, -0.085f};  // from between the eyes to the ellipsoid's centre
 // What stands out of the face: the mouth's part with the chin, and the nose. {centre, radii}
@@ -79,7 +79,8 @@ float room_at(float u, float v) {
   return wall;
 }
 
-// Standard normal numbers (Box and Muller 1958), a table to draw from: a picture needs 300,000 of them.
+// Standard normal numbers (Box and Muller 1958), a table to draw from: a picture needs 300,000 of
+// them.
 const std::vector<float>& normal_numbers() {
   static const std::vector<float> numbers = [] {
     std::vector<float> out(1 << 13);
@@ -102,15 +103,18 @@ FigurePose figure_at(double time) {
   float s = std::max(0.f, t - float(figure_stands)) * (1 - out);
   pose.position = {1.1f * (1 - in) - 1.1f * out + 0.10f * std::sin(0.8f * s),
                    0.03f + 0.012f * std::sin(1.7f * s), 0.85f + 0.08f * std::sin(0.5f * s)};
-  pose.rotation = {0.38f * std::sin(1.1f * s), 0.14f * std::sin(0.9f * s), 0.12f * std::sin(0.7f * s)};
+  pose.rotation = {0.38f * std::sin(1.1f * s), 0.14f * std::sin(0.9f * s),
+                   0.12f * std::sin(0.7f * s)};
   return pose;
 }
 
-GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePose& pose, double time) {
+GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePose& pose,
+                      double time) {
   GrayFrame frame{time, room.width, room.height, {}};
   frame.pixels.resize(size_t(room.width) * room.height);
   const float focal = focal_length(mount, room.width);
-  const mat3 head = rotation_matrix(pose.rotation);  // head axes in screen axes; z points away from the screen
+  const mat3 head =
+      rotation_matrix(pose.rotation);  // head axes in screen axes; z points away from the screen
   // Head frame of the texture: z out of the face, towards the screen; x stays the visitor's right.
   const mat3 to_head = glm::transpose(mat3(head[0], head[1], -head[2]));
   const vec3 center = pose.position + glm::transpose(to_head) * eyes_to_center;
@@ -122,8 +126,9 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
   // Rays are cast only where the figure can be: in the rectangle around a box around it.
   float left = 1e9f, right = -1e9f, top = 1e9f, bottom = -1e9f;
   for (int corner = 0; pose.visible && corner < 8; corner++) {
-    vec3 at = screen_to_camera(mount, center + vec3(corner & 1 ? 0.25f : -0.25f, corner & 2 ? 0.15f : -0.9f,
-                                                    corner & 4 ? 0.2f : -0.2f));
+    vec3 at = screen_to_camera(
+        mount, center + vec3(corner & 1 ? 0.25f : -0.25f, corner & 2 ? 0.15f : -0.9f,
+                             corner & 4 ? 0.2f : -0.2f));
     float u = at.x / std::max(at.z, 0.05f) * focal + room.width / 2.f;
     float v = at.y / std::max(at.z, 0.05f) * focal + room.height / 2.f;
     left = std::min(left, u), right = std::max(right, u);
@@ -133,7 +138,8 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
     for (int x = 0; x < room.width; x++) {
       float grey = room_at((x + 0.5f) / room.width, (y + 0.5f) / room.height);
       if (x >= left && x <= right && y >= top && y <= bottom) {
-        vec3 camera{(x + 0.5f - room.width / 2.f) / focal, (y + 0.5f - room.height / 2.f) / focal, 1};
+        vec3 camera{(x + 0.5f - room.width / 2.f) / focal, (y + 0.5f - room.height / 2.f) / focal,
+                    1};
         Ray ray{lens, camera_to_screen(mount, camera) - lens};
         Ray in_head{to_head * (ray.origin - center), to_head * ray.direction};
         float t = hit_ellipsoid(in_head, vec3(0), head_radii);
@@ -146,13 +152,15 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
         };
         if (t > 0) {
           vec3 p = in_head.origin + t * in_head.direction;
-          shade(t, glm::transpose(to_head) * glm::normalize(p / (head_radii * head_radii)), head_albedo(p));
+          shade(t, glm::transpose(to_head) * glm::normalize(p / (head_radii * head_radii)),
+                head_albedo(p));
         }
         // Features are drawn by where they lie across the face, whatever bulges below them.
         auto feature = [&](float at, vec3 c, vec3 radii, float soften) {
           if (!(at > 0 && at < best)) return;
           vec3 p = in_head.origin + at * in_head.direction;
-          vec3 n = glm::normalize(glm::mix((p - c) / (radii * radii), p / (head_radii * head_radii), soften));
+          vec3 n = glm::normalize(
+              glm::mix((p - c) / (radii * radii), p / (head_radii * head_radii), soften));
           shade(at, glm::transpose(to_head) * n, head_albedo({p.x, p.y, 0.05f}));
         };
         feature(jaw, jaw_center, jaw_radii, 0.7f);

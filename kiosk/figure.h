@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The synthetic camera's world: a room with a wall and a picture frame, and a visitor who walks in, stands, looks
-// about and leaves. The head is ray-cast (an ellipsoid with a nose, drawn features and one lamp), so its
-// position and rotation are known exactly and the same cascades that find people find it.
+// The synthetic camera's world: a room with a wall and a picture frame, and a visitor who walks in,
+// stands, looks about and leaves. The head is ray-cast (an ellipsoid with a nose, drawn features
+// and one lamp), so its position and rotation are known exactly and the same cascades that find
+// people find it.
 #pragma once
 #include "base/vec.h"
 #include "kiosk/gray_frame.h"
@@ -16,8 +17,9 @@ struct FigurePose {
   vec3 rotation{0};
 };
 
-// The script, one round of `figure_round` seconds and then again: empty room, the visitor comes in from
-// the screen's right, stands and looks around from `figure_stands` on, and is gone at `figure_gone`.
+// The script, one round of `figure_round` seconds and then again: empty room, the visitor comes in
+// from the screen's right, stands and looks around from `figure_stands` on, and is gone at
+// `figure_gone`.
 inline constexpr double figure_enters = 2.0, figure_stands = 3.5, figure_leaves = 14.0,
                         figure_gone = 15.5, figure_round = 22.0;
 FigurePose figure_at(double time);
@@ -30,6 +32,7 @@ struct FigureRoom {
 };
 
 // The picture that a camera mounted as `mount` says would take. Deterministic.
-GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePose& pose, double time);
+GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePose& pose,
+                      double time);
 
 }  // namespace wellspring

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture of the camera: luminance only, row by row, top row first. It lives in this process for
-// the time of one observation; nothing writes it to a file or a socket.
+// One picture of the camera: luminance only, row by row, top row first. It lives in this process
+// for the time of one observation; nothing writes it to a file or a socket.
 #pragma once
 #include <algorithm>
 #include <cstdint>

@@ -13,7 +13,8 @@ mat3 camera_axes(const Mount& mount) {
   return {vec3(-1, 0, 0), vec3(0, -c, s), vec3(0, s, c)};
 }
 
-// Columns: right, up and towards the visitor of somebody at `camera` (screen axes), as if the lens were the screen.
+// Columns: right, up and towards the visitor of somebody at `camera` (screen axes), as if the lens
+// were the screen.
 mat3 lens_axes(const Mount& mount, vec3 camera) {
   vec3 out = camera_axes(mount) * camera;
   float length = glm::length(out);

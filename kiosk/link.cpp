@@ -37,7 +37,8 @@ namespace {
 constexpr size_t largest_answer = 64 * 1024;  // what a server may say to a kiosk in one message
 
 std::chrono::steady_clock::duration seconds(double s) {
-  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(s));
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(s));
 }
 auto into(error_code& ec) { return asio::redirect_error(asio::use_awaitable, ec); }
 
@@ -126,12 +127,14 @@ struct ServerLink::Impl {
     socket->set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
       request.set(beast::http::field::user_agent, "wellspring-kiosk");
     }));
-    const std::string host = address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
+    const std::string host =
+        address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
     co_await socket->async_handshake(host + ":" + address.port, address.path, into(ec));
     if (ec) co_return ec;
     beast::get_lowest_layer(*socket).expires_never();
     // A server that vanished without a word is noticed by its missing answer to a ping.
-    websocket::stream_base::timeout limits{seconds(settings.patience), seconds(2 * settings.patience), true};
+    websocket::stream_base::timeout limits{seconds(settings.patience),
+                                           seconds(2 * settings.patience), true};
     socket->set_option(limits);
     socket->text(true);
 
@@ -173,10 +176,12 @@ struct ServerLink::Impl {
       error_code ec = co_await talk();
       if (leaving) break;
       if (connections != before) attempt = 0, told = false;
-      if (!told) log::warn("no connection to {}:{} ({}); trying again", address.host, address.port, ec.message());
+      if (!told)
+        log::warn("no connection to {}:{} ({}); trying again", address.host, address.port,
+                  ec.message());
       told = true;
-      asio::steady_timer pause(io, seconds(retry_pause(++attempt, settings.first_pause, settings.longest_pause,
-                                                       uniform(random))));
+      asio::steady_timer pause(io, seconds(retry_pause(++attempt, settings.first_pause,
+                                                       settings.longest_pause, uniform(random))));
       error_code ignored;
       co_await pause.async_wait(into(ignored));
     }
@@ -195,7 +200,8 @@ ServerLink::ServerLink(const ServerAddress& address, const ServerLinkSettings& s
 ServerLink::~ServerLink() {
   impl_->leaving = true;
   // One second for the last words where somebody listens; none where nobody does.
-  auto limit = std::make_shared<asio::steady_timer>(impl_->io, seconds(impl_->connected ? 1.0 : 0.0));
+  auto limit =
+      std::make_shared<asio::steady_timer>(impl_->io, seconds(impl_->connected ? 1.0 : 0.0));
   limit->async_wait([impl = impl_.get(), limit](error_code) { impl->io.stop(); });
   impl_->nudge();
   impl_->thread.join();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way to the server: a WebSocket that is kept open in a thread of its own. The newest text wins, nothing queues, no
-// call blocks; a lost connection is tried again after a pause that doubles up to a limit, with jitter
-// so that many kiosks do not come back in step.
+// The way to the server: a WebSocket that is kept open in a thread of its own. The newest text
+// wins, nothing queues, no call blocks; a lost connection is tried again after a pause that doubles
+// up to a limit, with jitter so that many kiosks do not come back in step.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -13,10 +13,12 @@ namespace wellspring {
 struct ServerAddress {
   std::string host, port = "80", path;
 };
-// ws://HOST[:PORT][/PATH], an IPv6 address in brackets; no path: /api/v1/eye. Nothing for anything else.
+// ws://HOST[:PORT][/PATH], an IPv6 address in brackets; no path: /api/v1/eye. Nothing for anything
+// else.
 std::optional<ServerAddress> parse_address(const std::string& url);
 
-// Seconds to wait before attempt 1, 2, ...: first * 2^(attempt - 1), at most `longest`, times 0.5 to 1 by `jitter` (0..1).
+// Seconds to wait before attempt 1, 2, ...: first * 2^(attempt - 1), at most `longest`, times 0.5
+// to 1 by `jitter` (0..1).
 double retry_pause(int attempt, double first, double longest, double jitter);
 
 struct ServerLinkSettings {

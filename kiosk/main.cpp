@@ -49,7 +49,8 @@ void parse(Options& options, int argc, char** argv, CLI::App& app) {
       ->check(CLI::Range(10.0, 170.0))
       ->capture_default_str();
   app.add_option("--mount-offset", options.offset,
-                 "the lens from the screen's centre, metres: right as the visitor sees it, up, towards the visitor")
+                 "the lens from the screen's centre, metres: right as the visitor sees it, up, "
+                 "towards the visitor")
       ->delimiter(',')
       ->expected(3)
       ->check(CLI::Range(-10.0, 10.0))
@@ -58,10 +59,12 @@ void parse(Options& options, int argc, char** argv, CLI::App& app) {
       ->check(CLI::Range(-80.0, 80.0))
       ->capture_default_str();
   app.add_flag("--mirrored", options.camera.mount.mirrored, "the camera delivers a mirror image");
-  app.add_option("--width", options.camera.width, "pixels across: asked of a webcam; wider frames are reduced")
+  app.add_option("--width", options.camera.width,
+                 "pixels across: asked of a webcam; wider frames are reduced")
       ->check(CLI::Range(160, 1920))
       ->capture_default_str();
-  app.add_option("--rate", options.camera.rate, "frames a second at most; all of a file with --no-pace")
+  app.add_option("--rate", options.camera.rate,
+                 "frames a second at most; all of a file with --no-pace")
       ->check(CLI::Range(1.0, 120.0))
       ->capture_default_str();
   app.add_option("--cascades", options.observer.face.cascades, "folder of OpenCV's cascades")
@@ -96,7 +99,8 @@ void watch(const Options& options, Observer& observer, Feed& feed, ServerLink* l
     if (fed == Fed::frame) {
       frame_at = seconds_now();
       frame_time = frame.time;
-      // A camera faster than the rate is thinned out; half a frame of tolerance keeps one that is just as fast.
+      // A camera faster than the rate is thinned out; half a frame of tolerance keeps one that is
+      // just as fast.
       if (options.pace && frame.time < due - 0.5 * step) continue;
       due = std::max(due, frame.time - step) + step;
       seen = observer.step(frame);

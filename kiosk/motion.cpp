@@ -47,8 +47,8 @@ struct MotionWatch::Impl {
     last_time = time;
   }
 
-  // The gain that brings most pixels of `small` to the reference: the median of their ratios, which people covering
-  // less than half of the picture do not move.
+  // The gain that brings most pixels of `small` to the reference: the median of their ratios, which
+  // people covering less than half of the picture do not move.
   double gain(const cv::Mat& small) const {
     cv::Mat now, ratio;
     small.convertTo(now, CV_32F, 1, 4);
@@ -70,8 +70,10 @@ Motion MotionWatch::step(const GrayFrame& frame) {
   const cv::Mat full(frame.height, frame.width, CV_8U, const_cast<uint8_t*>(frame.pixels.data()));
   m.scale = std::min(1.f, float(m.settings.width) / float(std::max(frame.width, frame.height)));
   cv::Mat small;
-  cv::resize(full, small, {std::max(8, int(std::lround(frame.width * m.scale))),
-                           std::max(8, int(std::lround(frame.height * m.scale)))}, 0, 0, cv::INTER_AREA);
+  cv::resize(full, small,
+             {std::max(8, int(std::lround(frame.width * m.scale))),
+              std::max(8, int(std::lround(frame.height * m.scale)))},
+             0, 0, cv::INTER_AREA);
   cv::GaussianBlur(small, small, {3, 3}, 0);
   if (!m.model || frame.width != m.frame_width || frame.height != m.frame_height) {
     m.frame_width = frame.width;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Is something moving in front of the camera, and where? A background model of the empty room (Zivkovic's mixture of
-// Gaussians, ICPR 2004) on a small picture whose brightness was first brought to that of the background, so
-// lamps, clouds and the camera's own exposure are not taken for people. A region counts only if it both differs from the
-// background and has changed within the last second: a bag left behind or a ghost of somebody gone does not.
+// Is something moving in front of the camera, and where? A background model of the empty room
+// (Zivkovic's mixture of Gaussians, ICPR 2004) on a small picture whose brightness was first
+// brought to that of the background, so lamps, clouds and the camera's own exposure are not taken
+// for people. A region counts only if it both differs from the background and has changed within
+// the last second: a bag left behind or a ghost of somebody gone does not.
 #pragma once
 #include <memory>
 #include <vector>
@@ -15,7 +16,7 @@ struct MotionSettings {
   int width = 160;             // pixels of the working picture's longer side
   double adapt = 15;           // seconds until a changed background is believed
   float moving_share = 0.015f; // of the picture: less is not motion
-  float light_share = 0.7f;    // more than this at once is a change of light: the background starts anew
+  float light_share = 0.7f;    // more at once is a change of light: the background starts anew
 };
 
 struct Motion {

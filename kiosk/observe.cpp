@@ -12,7 +12,8 @@ namespace wellspring {
 
 namespace {
 
-// Bearings are steady and must not lag; the distance follows the box's size, which trembles by a few per cent.
+// Bearings are steady and must not lag; the distance follows the box's size, which trembles by a
+// few per cent.
 constexpr OneEuroSettings bearing_filter{1.5f, 8.f, 1.f};    // tangents
 constexpr OneEuroSettings distance_filter{0.5f, 1.5f, 1.f};  // logarithm of metres
 constexpr OneEuroSettings rotation_filter{1.2f, 1.5f, 1.f};  // radians
@@ -42,7 +43,8 @@ struct Observer::Impl {
     const Mount& mount = settings.mount;
     const float focal = focal_length(mount, frame.width);
     vec3 raw = face_in_camera(who.face.box, focal, frame.width, frame.height);
-    vec3 bearing = step_one_euro(head.bearing, bearing_filter, frame.time, {raw.x / raw.z, raw.y / raw.z, 0});
+    vec3 bearing =
+        step_one_euro(head.bearing, bearing_filter, frame.time, {raw.x / raw.z, raw.y / raw.z, 0});
     vec3 away = step_one_euro(head.distance, distance_filter, frame.time, {std::log(raw.z), 0, 0});
     vec3 camera = vec3(bearing.x, bearing.y, 1) * std::exp(away.x);
     head.person.id = who.id;
@@ -64,7 +66,8 @@ struct Observer::Impl {
     out.state = step_presence(presence, settings.presence, time, moving, face);
     const double hold = settings.presence.hold_person;
     if (out.state == Presence::person)
-      for (const auto& [id, head] : heads) {  // one just lost stays where it was, less and less surely
+      for (const auto& [id, head] :
+           heads) {  // one just lost stays where it was, less and less surely
         double age = time - head.seen_time;
         if (age < 0 || age > hold) continue;
         Person person = head.person;

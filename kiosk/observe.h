@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One frame in, one observation out: motion, faces, heads, presence, in that order. What leaves is numbers.
+// One frame in, one observation out: motion, faces, heads, presence, in that order. What leaves is
+// numbers.
 #pragma once
 #include <memory>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one-euro filter (Casiez, Roussel, Vogel, CHI 2012, section 3): a low pass whose cut-off rises with the
-// speed of the signal, so a resting head is calm and a quick one is not late. First lower `min_cutoff` until
-// rest is still, then raise `beta` until motion does not lag.
+// The one-euro filter (Casiez, Roussel, Vogel, CHI 2012, section 3): a low pass whose cut-off rises
+// with the speed of the signal, so a resting head is calm and a quick one is not late. First lower
+// `min_cutoff` until rest is still, then raise `beta` until motion does not lag.
 #pragma once
 #include <cmath>
 
@@ -26,8 +26,8 @@ inline float one_euro_alpha(float cutoff, float step) {
   return 1 / (1 + tau / step);
 }
 
-// Returns the filtered value of `raw` seen at `time` seconds. The first value passes as it is; a value that is not
-// finite, or not later than the last one, changes nothing.
+// Returns the filtered value of `raw` seen at `time` seconds. The first value passes as it is; a
+// value that is not finite, or not later than the last one, changes nothing.
 inline vec3 step_one_euro(OneEuro& filter, const OneEuroSettings& settings, double time, vec3 raw) {
   if (!is_finite(raw)) return filter.value;
   if (!filter.started) {

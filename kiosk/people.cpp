@@ -52,7 +52,8 @@ struct People::Impl {
 
   void see(Track& track, const GrayFrame& frame, const Face& face) {
     Followed& who = track.who;
-    float confidence = who.hits ? 0.8f * who.face.confidence + 0.2f * face.confidence : face.confidence;
+    float confidence =
+        who.hits ? 0.8f * who.face.confidence + 0.2f * face.confidence : face.confidence;
     who.face = face;
     who.face.confidence = confidence;
     who.seen = who.visible = true;
@@ -65,7 +66,8 @@ struct People::Impl {
   void carry(Track& track, const GrayFrame& frame) {
     Followed& who = track.who;
     who.visible = false;
-    if (track.patch.empty() || frame.time - who.seen_time > settings.carry || who.hits < hits_to_count)
+    if (track.patch.empty() || frame.time - who.seen_time > settings.carry ||
+        who.hits < hits_to_count)
       return;
     const Box& b = who.face.box;
     Box around{b.x - 0.35f * b.width, b.y - 0.35f * b.height, 1.7f * b.width, 1.7f * b.height};
@@ -92,7 +94,8 @@ struct People::Impl {
     }
     Track* known = nullptr;
     for (Track& track : tracks)
-      if (!track.who.seen && could_be(track.who.face.box, face.box, frame.time - track.who.seen_time))
+      if (!track.who.seen &&
+          could_be(track.who.face.box, face.box, frame.time - track.who.seen_time))
         if (!known || track.who.seen_time > known->who.seen_time) known = &track;
     if (!known) {
       if (int(tracks.size()) >= settings.most) return;
@@ -125,8 +128,9 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
     Followed& who = track.who;
     who.seen = false;
     // A face long lost is left to the search; its window would only meet others.
-    auto face = time - who.seen_time < m.settings.carry ? m.finder.follow(frame, who.face.box, track.roll)
-                                                       : std::optional<Face>();
+    auto face = time - who.seen_time < m.settings.carry
+                    ? m.finder.follow(frame, who.face.box, track.roll)
+                    : std::optional<Face>();
     if (face) m.see(track, frame, *face);
     else m.carry(track, frame);
   }
@@ -137,7 +141,8 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
           overlap(m.tracks[i].who.face.box, m.tracks[j].who.face.box) > 0.4f)
         m.tracks.erase(m.tracks.begin() + long(j));
 
-  bool somebody = std::any_of(m.tracks.begin(), m.tracks.end(), [](auto& t) { return t.who.visible; });
+  bool somebody =
+      std::any_of(m.tracks.begin(), m.tracks.end(), [](auto& t) { return t.who.visible; });
   if (time - m.searched >= (somebody ? m.settings.search_more : m.settings.search_alone)) {
     m.searched = time;
     for (const Face& face : m.finder.search(frame)) m.meet(frame, face);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is there: faces followed from frame to frame under a number each. A followed face is sought in a small window;
-// the whole frame only now and then, for newcomers. A face that turns away is carried on for a moment by its
-// own texture. A face that never stirs is a picture on the wall and does not count as a person.
+// Who is there: faces followed from frame to frame under a number each. A followed face is sought
+// in a small window; the whole frame only now and then, for newcomers. A face that turns away is
+// carried on for a moment by its own texture. A face that never stirs is a picture on the wall and
+// does not count as a person.
 #pragma once
 #include <memory>
 #include <vector>
@@ -12,7 +13,7 @@
 namespace wellspring {
 
 struct PeopleSettings {
-  double search_alone = 0.1;   // seconds between searches of the whole frame while nobody is followed
+  double search_alone = 0.1;   // seconds between searches of the frame while nobody is followed
   double search_more = 0.5;    // ... while somebody is
   double thorough = 0.6;       // ... with the slower detector, while nobody is followed
   double thorough_more = 2;    // ... while somebody is and something moves

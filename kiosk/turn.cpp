@@ -19,12 +19,13 @@ constexpr float center_in_box = -0.06f;
 constexpr int most_points = 60, fewest_points = 10, wanted_points = 40;
 constexpr double longest_gap = 0.3;  // seconds between frames that flow may bridge
 // Seconds in which a cue from single frames moves the estimate by two thirds.
-constexpr float pull_roll = 0.4f, pull_yaw = 4, pull_profile = 0.4f, pull_pitch = 8, pull_place = 0.6f;
+constexpr float pull_roll = 0.4f, pull_yaw = 4, pull_profile = 0.4f, pull_pitch = 8;
 // How far nostrils and lips stand before the eyes, in eye distances.
 constexpr float axis_depth = 0.4f;
 constexpr float profile_yaw = 0.9f;  // what a profile view means, radians
 
-// Image axes (u right, v down, into the room) to the visitor's (right, up, towards the visitor's back), and back.
+// Image axes (u right, v down, into the room) to the visitor's (right, up, towards the visitor's
+// back), and back.
 const mat3 axes(vec3(-1, 0, 0), vec3(0, -1, 0), vec3(0, 0, 1));
 
 cv::Mat view_of(const GrayFrame& frame, const cv::Rect& area) {
@@ -74,9 +75,11 @@ struct Turn::Impl {
     center = {face.box.center_x(), face.box.center_y() + center_in_box * face.box.height};
   }
 
-  // Where the ray through a pixel meets the near side of the head, in head axes; false: it passes by.
+  // Where the ray through a pixel meets the near side of the head, in head axes; false: it passes
+  // by.
   bool on_head(cv::Point2f at, vec3& model) const {
-    vec3 q = glm::transpose(rotation) * vec3((at.x - center.x) / scale, (at.y - center.y) / scale, 0);
+    vec3 q =
+        glm::transpose(rotation) * vec3((at.x - center.x) / scale, (at.y - center.y) / scale, 0);
     vec3 d = glm::transpose(rotation) * vec3(0, 0, 1);
     vec3 o = q / radii, e = d / radii;
     float a = glm::dot(e, e), b = glm::dot(o, e), c = glm::dot(o, o) - 1, disc = b * b - a * c;
@@ -91,13 +94,15 @@ struct Turn::Impl {
     area &= cv::Rect(0, 0, frame.width, frame.height);
     if (area.width < 16 || area.height < 16) return;
     cv::Mat pixels = view_of(frame, area), mask = cv::Mat::zeros(area.size(), CV_8U);
-    cv::ellipse(mask, {area.width / 2, area.height / 2}, {int(0.40 * area.width), int(0.5 * area.height)}, 0,
-                0, 360, 255, cv::FILLED);
+    cv::ellipse(mask, {area.width / 2, area.height / 2},
+                {int(0.40 * area.width), int(0.5 * area.height)}, 0, 0, 360, 255, cv::FILLED);
     const float apart = std::max(3.f, 0.06f * b.width);
     for (const Point& p : points)
-      cv::circle(mask, cv::Point(int(p.at.x) - area.x, int(p.at.y) - area.y), int(apart), 0, cv::FILLED);
+      cv::circle(mask, cv::Point(int(p.at.x) - area.x, int(p.at.y) - area.y), int(apart), 0,
+                 cv::FILLED);
     std::vector<cv::Point2f> corners;
-    cv::goodFeaturesToTrack(pixels, corners, most_points - int(points.size()), 0.02, apart, mask, 3);
+    cv::goodFeaturesToTrack(pixels, corners, most_points - int(points.size()), 0.02, apart, mask,
+                            3);
     for (cv::Point2f c : corners) {
       Point p;
       p.at = {c.x + float(area.x), c.y + float(area.y)};
@@ -113,7 +118,8 @@ struct Turn::Impl {
       top = std::min(top, p.at.y), bottom = std::max(bottom, p.at.y);
     }
     const int rim = 24;
-    cv::Rect area(int(left) - rim, int(top) - rim, int(right - left) + 2 * rim, int(bottom - top) + 2 * rim);
+    cv::Rect area(int(left) - rim, int(top) - rim, int(right - left) + 2 * rim,
+                  int(bottom - top) + 2 * rim);
     area &= cv::Rect(0, 0, frame.width, frame.height);
     if (area.width < 32 || area.height < 32) return points.clear();
     const cv::Mat before = view_of(previous, area), now = view_of(frame, area);
@@ -136,7 +142,8 @@ struct Turn::Impl {
     points = kept;
   }
 
-  // Gauss-Newton over a small rotation, the centre and the scale. Returns the number of points that agree.
+  // Gauss-Newton over a small rotation, the centre and the scale. Returns the number of points that
+  // agree.
   int fit() {
     const float reach = std::max(2.f, 0.035f * scale * face_box_metres);  // pixels, Tukey's limit
     int agree = 0;
@@ -158,7 +165,8 @@ struct Turn::Impl {
         }
       }
       if (agree < fewest_points) return agree;
-      for (int i = 0; i < 3; i++) a[i][i] *= 1.001;  // rotations and shifts are nearly alike on a small face
+      for (int i = 0; i < 3; i++)
+        a[i][i] *= 1.001;  // rotations and shifts are nearly alike on a small face
       if (!solve(a)) return 0;
       const vec3 turn{float(a[0][6]), float(a[1][6]), float(a[2][6])};
       if (!is_finite(turn) || glm::length(turn) > 0.5f) return 0;
@@ -243,14 +251,16 @@ std::optional<float> yaw_of_midline(const GrayFrame& frame, const Face& face) {
   const vec2 left = (*face.eyes)[0], right = (*face.eyes)[1];
   const float apart = glm::length(right - left);
   if (!(apart > 8)) return {};
-  // The strip from below the eyes to the lips, turned upright, 24 pixels between the eyes. What lies across it, nostrils
-  // and lips, is as symmetric in side light as in front light; the sides of the nose are less so and count less.
+  // The strip from below the eyes to the lips, turned upright, 24 pixels between the eyes. What
+  // lies across it, nostrils and lips, is as symmetric in side light as in front light; the sides
+  // of the nose are less so and count less.
   constexpr int eyes_apart = 24, width = 49, height = 27, half = 13;
   constexpr float side = 0.6f;  // what a vertical edge counts against a horizontal one
   const vec2 u = (right - left) / apart, v{-u.y, u.x}, middle = (left + right) * 0.5f;
   const float step = apart / eyes_apart;
   const vec2 origin = middle + v * (0.1f * apart) - u * (step * (width / 2));
-  cv::Mat map = (cv::Mat_<double>(2, 3) << u.x * step, v.x * step, origin.x, u.y * step, v.y * step, origin.y);
+  cv::Mat map = (cv::Mat_<double>(2, 3) << u.x * step, v.x * step, origin.x, u.y * step, v.y * step,
+                 origin.y);
   cv::Mat whole = view_of(frame, {0, 0, frame.width, frame.height}), strip, across, along;
   cv::warpAffine(whole, strip, map, {width, height}, cv::INTER_AREA | cv::WARP_INVERSE_MAP,
                  cv::BORDER_REPLICATE);
@@ -274,7 +284,8 @@ std::optional<float> yaw_of_midline(const GrayFrame& frame, const Face& face) {
   if (best <= half || best >= width - half - 1 || score[best] < 0.5f) return {};
   float bend = score[best - 1] - 2 * score[best] + score[best + 1];
   float sub = bend < 0 ? 0.5f * (score[best - 1] - score[best + 1]) / bend : 0;
-  float shift = (float(best) + sub - width / 2) / eyes_apart;  // image right positive, in eye distances
+  float shift =
+      (float(best) + sub - width / 2) / eyes_apart;  // image right positive, in eye distances
   return glm::clamp(std::atan(-shift / axis_depth), -0.5f, 0.5f);
 }
 

@@ -76,7 +76,8 @@ TEST(Camera, a_mirrored_mount_draws_the_mirror_image) {
   mirrored.mirrored = true;
   GrayFrame a = draw_figure({320, 240, 1, 0, 1}, plain, pose, 0);
   GrayFrame b = draw_figure({320, 240, 1, 0, 1}, mirrored, pose, 0);
-  // The torso is dark: on the screen's right, so at the image's left, and the other way round in a mirror.
+  // The torso is dark: on the screen's right, so at the image's left, and the other way round in a
+  // mirror.
   auto at = [](const GrayFrame& f, int x) { return int(f.pixels[size_t(230) * 320 + size_t(x)]); };
   EXPECT_LT(at(a, 90) + 10, at(a, 300));
   EXPECT_LT(at(b, 230) + 10, at(b, 20));
@@ -90,7 +91,8 @@ struct Scripted : Camera {
   std::atomic<bool>* release = nullptr;
   int made = 0;
   Got next(GrayFrame& frame) override {
-    while (hang && made == frames && !*release) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (hang && made == frames && !*release)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
     if (made == frames) return is_live ? Got::lost : Got::end;
     frame = {made++ * step, 16, 16, std::vector<uint8_t>(256, 1)};
     return Got::frame;

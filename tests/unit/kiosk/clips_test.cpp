@@ -22,7 +22,8 @@ std::vector<Observation> watch(const std::filesystem::path& file, double until) 
   Observer observer;
   std::vector<Observation> seen;
   GrayFrame frame;
-  while (camera->next(frame) == Got::frame && frame.time < until) seen.push_back(observer.step(frame));
+  while (camera->next(frame) == Got::frame && frame.time < until)
+    seen.push_back(observer.step(frame));
   return seen;
 }
 

@@ -13,7 +13,9 @@ void expect_near(vec3 a, vec3 b, float limit) {
 }
 
 // A box whose eyes are at (u, v).
-Box box_at(float u, float v, float side) { return {u - side / 2, v - eyes_in_box * side, side, side}; }
+Box box_at(float u, float v, float side) {
+  return {u - side / 2, v - eyes_in_box * side, side, side};
+}
 
 TEST(Head, a_known_box_gives_known_metres) {
   Mount mount;
@@ -39,7 +41,8 @@ TEST(Head, offset_and_pitch_of_the_camera) {
   mount.offset = {0.1f, 0.4f, 0.02f};
   expect_near(camera_to_screen(mount, {0, 0, 1}), {0.1f, 0.4f, 1.02f}, 1e-6f);
   mount.pitch = -30 * pi / 180;  // down: what lies ahead of the lens lies lower
-  expect_near(camera_to_screen(mount, {0, 0, 1}), {0.1f, 0.4f - 0.5f, 0.02f + std::sqrt(0.75f)}, 1e-5f);
+  expect_near(camera_to_screen(mount, {0, 0, 1}), {0.1f, 0.4f - 0.5f, 0.02f + std::sqrt(0.75f)},
+              1e-5f);
   for (bool mirrored : {false, true}) {
     mount.mirrored = mirrored;
     vec3 p{0.3f, -0.2f, 1.4f};
@@ -61,7 +64,8 @@ TEST(Head, angles_survive_the_matrix) {
         expect_near(yaw_pitch_roll(rotation_matrix({yaw, pitch, roll})), {yaw, pitch, roll}, 1e-5f);
 }
 
-// A face that looks straight into the lens from the side is turned by its bearing, not square to the screen.
+// A face that looks straight into the lens from the side is turned by its bearing, not square to
+// the screen.
 TEST(Head, the_bearing_is_taken_out) {
   Mount mount;
   vec3 camera{0.5f, 0, 1};  // image right: on the screen's left, so it looks to the right
@@ -74,7 +78,8 @@ TEST(Head, the_tilt_of_the_camera_is_taken_out_as_a_rotation) {
   Mount mount;
   mount.offset = {0, 0.4f, 0};
   mount.pitch = -0.4f;
-  // Looking into a camera that is above and tilted down, straight along its axis: looking up by as much.
+  // Looking into a camera that is above and tilted down, straight along its axis: looking up by as
+  // much.
   expect_near(rotation_on_screen(mount, mat3(1), {0, 0, 1}), {0, 0.4f, 0}, 1e-5f);
   // A head turned by yaw alone is seen with pitch and roll, and comes back as yaw alone.
   for (bool mirrored : {false, true}) {

@@ -70,8 +70,8 @@ TEST(Link, addresses) {
   EXPECT_EQ(a->port, "9");
   EXPECT_EQ(a->path, "/api/v1/eye");
   for (const char* bad : {"", "ws://", "wss://a", "http://a", "127.0.0.1:80", "ws://a:", "ws://a:0",
-                          "ws://a:65536", "ws://a:x", "ws://:80", "ws://[::1", "ws://[::1]x", "ws://a b",
-                          "ws://::1:80", "ws://a/\r\nX: y", "ws://a@b"})
+                          "ws://a:65536", "ws://a:x", "ws://:80", "ws://[::1", "ws://[::1]x",
+                          "ws://a b", "ws://::1:80", "ws://a/\r\nX: y", "ws://a@b"})
     EXPECT_FALSE(parse_address(bad)) << bad;
 }
 
@@ -130,7 +130,8 @@ TEST(Link, a_server_that_reads_nothing_costs_one_text) {
   ServerLink link({"127.0.0.1", std::to_string(server.port()), "/api/v1/eye"}, settings);
   auto stream = server.accept();
   ASSERT_TRUE(wait_for([&] { return link.connected(); }));
-  // Far more than the socket's buffers hold; every call returns at once and only the newest is kept.
+  // Far more than the socket's buffers hold; every call returns at once and only the newest is
+  // kept.
   const std::string big(256 * 1024, 'x');
   for (int i = 0; i < 400; i++) link.send(big);
   link.send("last");

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double rate = 15;
 
-GrayFrame room(double time, float light = 1, float noise = 2.5f, bool visitor = false, float x = 0) {
+GrayFrame room(double time, float light = 1, float noise = 2.5f, bool visitor = false,
+               float x = 0) {
   FigurePose pose;
   pose.visible = visitor;
   pose.position = {x, 0.03f, 0.9f};
@@ -62,7 +63,8 @@ TEST(Motion, what_was_left_behind_stops_being_motion) {
   for (int i = 0; i < 30; i++) watch.step(room(i / rate));
   bool began = false;
   for (int i = 30; i < 75; i++) {
-    Motion m = watch.step(room(i / rate, 1, 2.5f, true, 0));  // appears and then stands like a statue
+    Motion m =
+        watch.step(room(i / rate, 1, 2.5f, true, 0));  // appears and then stands like a statue
     began |= m.moving;
     if (i > 50) EXPECT_FALSE(m.moving) << "frame " << i;
   }

@@ -31,7 +31,8 @@ std::vector<Observation> watch_round(const Mount& mount, double until = figure_r
   Observer observer(eye);
   std::vector<Observation> seen;
   GrayFrame frame;
-  while (camera->next(frame) == Got::frame && frame.time < until) seen.push_back(observer.step(frame));
+  while (camera->next(frame) == Got::frame && frame.time < until)
+    seen.push_back(observer.step(frame));
   return seen;
 }
 
@@ -143,7 +144,8 @@ TEST(Observe, the_midline_knows_left_from_right) {
     GrayFrame frame = draw_figure({640, 480, 1, 1, 2}, {}, pose, 0);
     const float side = focal_length({}, 640) * face_box_metres / 0.7f;
     Face face{{320 - side / 2, 240 - eyes_in_box * side, side, side}, FaceView::frontal, 1, {}};
-    // The eyes as the figure has them: 31 mm to each side of the middle of the face, which is at (0, 0, 0.7).
+    // The eyes as the figure has them: 31 mm to each side of the middle of the face, which is at
+    // (0, 0, 0.7).
     const mat3 turn = rotation_matrix(pose.rotation);
     std::array<vec2, 2> eyes;
     for (int k = 0; k < 2; k++) {

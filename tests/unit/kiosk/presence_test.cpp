@@ -169,7 +169,8 @@ TEST(Presence, a_clock_set_back_neither_frees_nor_freezes) {
 TEST(Presence, a_time_that_is_no_number_changes_nothing) {
   PresenceState state;
   step_presence(state, {}, 1, true, true);
-  EXPECT_EQ(step_presence(state, {}, std::numeric_limits<double>::quiet_NaN(), true, true), Presence::absent);
+  EXPECT_EQ(step_presence(state, {}, std::numeric_limits<double>::quiet_NaN(), true, true),
+            Presence::absent);
   EXPECT_EQ(state.last_time, 1);
 }
 
