@@ -11,13 +11,16 @@ namespace wellspring {
 namespace {
 
 constexpr int change_ageing = 64;
+constexpr int change_witnesses = 3;   // changed points in 3x3 tiles that make it a change
 constexpr uint8_t changed_count = 2;  // samples a point near a change still vouches for
 
-void age_tile(PointCache& points, const PointImage& image, int tx, int ty) {
+void age_tile(PointCache& points, const PointImage& image, StillImage& still, int tx, int ty) {
   int x1 = std::min((tx + 1) * change_tile, image.width), y1 = std::min((ty + 1) * change_tile, image.height);
   for (int y = ty * change_tile; y < y1; y++)
     for (int x = tx * change_tile; x < x1; x++) {
-      uint32_t point = image.point[size_t(y) * size_t(image.width) + size_t(x)];
+      size_t at = size_t(y) * size_t(image.width) + size_t(x);
+      uint32_t point = image.point[at];
+      if (at < still.count.size()) still.count[at] = 0;
       if (point == no_point || points.age[point] == evicted_age) continue;
       points.age[point] = uint8_t(std::min(points.age[point] + change_ageing, 254));
       points.count[point] = std::min(points.count[point], changed_count);
@@ -26,18 +29,18 @@ void age_tile(PointCache& points, const PointImage& image, int tx, int ty) {
 
 }  // namespace
 
-void age_changed(PointCache& points, PointImage& image) {
+void age_changed(PointCache& points, PointImage& image, StillImage& still) {
   int width = image.changed_width, height = image.changed_height;
   const std::vector<uint8_t>& changed = image.changed;
   if (std::none_of(changed.begin(), changed.end(), [](uint8_t c) { return c != 0; })) return;
   parallel_ranges(height, 4, [&](int begin, int end) {
     for (int ty = begin; ty < end; ty++)
       for (int tx = 0; tx < width; tx++) {
-        bool near = false;
+        int near = 0;
         for (int y = std::max(ty - 1, 0); y <= std::min(ty + 1, height - 1); y++)
           for (int x = std::max(tx - 1, 0); x <= std::min(tx + 1, width - 1); x++)
-            near |= changed[size_t(y) * size_t(width) + size_t(x)] != 0;
-        if (near) age_tile(points, image, tx, ty);
+            near += changed[size_t(y) * size_t(width) + size_t(x)];
+        if (near >= change_witnesses) age_tile(points, image, still, tx, ty);
       }
   });
   std::fill(image.changed.begin(), image.changed.end(), uint8_t(0));

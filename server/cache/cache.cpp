@@ -99,7 +99,7 @@ void RenderCache::project(const View& view) {
 
 void RenderCache::attend() {
   Impl& c = *impl_;
-  age_changed(c.points, c.image);
+  age_changed(c.points, c.image, c.still);
   prioritise(c.points, c.settings, c.image);
 }
 

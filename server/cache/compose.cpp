@@ -134,9 +134,9 @@ void light_block(const Packed& __restrict packed, Block& __restrict p) {
     uint32_t albedo = packed.albedo[i];
     float r = float(int32_t(albedo & 2047)) * (1.0f / 2047), g = float(int32_t((albedo >> 11) & 2047)) * (1.0f / 2047),
           b = float(int32_t(albedo >> 22)) * (1.0f / 1023);
-    p.r[i] = r * r * p.r[i] + p.rest_r[i];
-    p.g[i] = g * g * p.g[i] + p.rest_g[i];
-    p.b[i] = b * b * p.b[i] + p.rest_b[i];
+    r = r * r * p.r[i] + p.rest_r[i], g = g * g * p.g[i] + p.rest_g[i], b = b * b * p.b[i] + p.rest_b[i];
+    // Shares that add up to one by a rounding too much can leave a hair of negative light.
+    p.r[i] = 0.5f * (r + std::abs(r)), p.g[i] = 0.5f * (g + std::abs(g)), p.b[i] = 0.5f * (b + std::abs(b));
   }
 }
 

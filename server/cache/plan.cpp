@@ -10,7 +10,8 @@
 namespace wellspring {
 namespace {
 
-constexpr int band_rows = 16;
+constexpr int band_rows = 64;  // dithered by one thread
+constexpr int warm_rows = 12;  // dithered without effect before, to start with the usual remainders
 
 Request make_request(const PointCache& points, const View& view, const PlanSettings& settings,
                      const PointImage& image, size_t pixel) {
@@ -36,13 +37,13 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
   return request;
 }
 
-// Dithers the rows [begin, end) with `share` requests to give away; returns how many it chose.
+// Dithers the rows [begin, end) with `share` requests to give away; returns how many it chose. A band whose
+// first row started from nothing would starve there, so its first rows are dithered once for practice.
 int dither_band(PointImage& image, int begin, int end, int share, float threshold, uint64_t seed,
                 uint32_t* chosen) {
-  int width = image.width, count = 0;
+  int width = image.width, rows = end - begin, count = 0;
   thread_local std::vector<float> below;
   below.resize(size_t(width));
-  // Start as if bands above had left the usual remainders, so that no band starves at its first row.
   uint64_t hash = mix64(seed ^ uint64_t(begin) * 0x9e3779b97f4a7c15ull);
   for (int x = 0; x < width; x++) {
     hash = hash * 6364136223846793005ull + 1442695040888963407ull;
@@ -50,15 +51,19 @@ int dither_band(PointImage& image, int begin, int end, int share, float threshol
   }
   bool upwards = (seed >> 1) & 1;  // what a band runs short of at its end is not always the same rows
   float carry = float(mix64(hash) >> 40) * 0x1p-24f * threshold * 0.5f;
-  for (int i = 0; i < end - begin; i++) {
-    int y = upwards ? end - 1 - i : begin + i;
-    uint8_t* priority = image.priority.data() + size_t(y) * size_t(width);
+  for (int i = -std::min(warm_rows, rows); i < rows; i++) {
+    bool practice = i < 0;
+    int line = practice ? -1 - i : i;
+    size_t start = size_t(upwards ? end - 1 - line : begin + line) * size_t(width);
+    uint8_t* priority = image.priority.data() + start;
     int step = ((i ^ int(seed)) & 1) ? -1 : 1, x = step > 0 ? 0 : width - 1;
     for (int n = 0; n < width; n++, x += step) {
       float value = float(priority[x]) + carry + below[size_t(x)];
-      if (value >= threshold && count < share && priority[x] != 0) {
-        chosen[count++] = uint32_t(size_t(y) * size_t(width) + size_t(x));
-        priority[x] = 0;
+      if (value >= threshold && priority[x] != 0) {
+        if (!practice && count < share) {
+          chosen[count++] = uint32_t(start + size_t(x));
+          priority[x] = 0;
+        }
         value -= threshold;
       }
       value = std::min(value, 2 * threshold);

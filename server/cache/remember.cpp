@@ -14,6 +14,7 @@ namespace {
 
 constexpr float same_place = 0.01f;    // of the distance: farther off is another surface
 constexpr float same_normal = 0.8f;    // cosine
+constexpr float same_albedo = 0.03f;
 constexpr float quiet_noise = 0.1f;    // of the mean: points this quiet may testify to a change
 constexpr float unseen_bonus = 96;     // in age: unseen points are overwritten before seen ones
 constexpr int noise_memory = 8;        // samples the noise estimate looks back on
@@ -79,7 +80,10 @@ bool improve_point(PointCache& points, uint32_t i, const View& view, const Sampl
   float before = luminance(rest), now = luminance(max(sample.rest, vec3(0))), step = std::abs(now - before);
   float level = std::max(before, now), whole = luminance(unpack_albedo(points.color[i].albedo) * smooth) + level;
   bool quiet = n >= 2 && deviation <= quiet_noise * level;
-  if (exact && quiet && step > settings.color_change * whole && step > 4 * deviation &&
+  // Elsewhere in the pixel a texture may differ too: only an equal reflectance tells about light.
+  vec3 reflectance = unpack_albedo(points.color[i].albedo);
+  bool comparable = exact || max_component(abs(reflectance - sample.albedo)) <= same_albedo;
+  if (comparable && quiet && step > settings.color_change * whole && step > 4 * deviation &&
       !(points.flags[i] & point_specular)) {
     begin_point(points, i, view, sample, random);
     return true;
@@ -144,7 +148,9 @@ void show_point(PointCache& points, const View& view, uint32_t i, size_t pixel, 
 
 void mark_changed(PointImage& image, size_t pixel) {
   size_t x = pixel % size_t(image.width) / change_tile, y = pixel / size_t(image.width) / change_tile;
-  std::atomic_ref<uint8_t>(image.changed[y * size_t(image.changed_width) + x]).store(1, std::memory_order_relaxed);
+  std::atomic_ref<uint8_t> tile(image.changed[y * size_t(image.changed_width) + x]);
+  // At most one sample a pixel, 64 a tile: no overflow within a frame.
+  tile.fetch_add(1, std::memory_order_relaxed);
 }
 
 void add_anchors(PointCache& points, std::span<const Sample> samples, const std::vector<uint32_t>& targets) {

@@ -5,14 +5,16 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 #include "base/clock.h"
 #include "cache/cache.h"
 #include "frame/compare.h"
 #include "frame/picture_file.h"
+#include "light/technique.h"
 #include "unit/cache/room.h"
-#include "world/bvh.h"
+#include "world/scene_load.h"
 
 namespace wellspring {
 namespace {
@@ -83,6 +85,63 @@ TEST(Pictures, RoomWalkTurnAndRest) {
     if (i == 5 || i == 30 || i == 90 || i == 150) look(view, "rest" + std::to_string(i), i == 150);
   }
   std::printf("memory %.1f MB\n", double(visit.cache.memory_bytes()) / 1e6);
+}
+
+// The same in the castle's hall with the real path tracer. WELLSPRING_PICTURES_TRUTH=samples a pixel of
+// the references (none without).
+TEST(Pictures, CastleWalkAndRest) {
+  const char* folder = std::getenv("WELLSPRING_PICTURES");
+  if (!folder) GTEST_SKIP() << "WELLSPRING_PICTURES names no folder to write to";
+  const std::string file = std::string(WELLSPRING_SOURCE) + "/content/castle/scene.glb";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+  const char* truth_text = std::getenv("WELLSPRING_PICTURES_TRUTH");
+  int truth_spp = truth_text ? std::atoi(truth_text) : 0;
+  int width = truth_spp > 0 ? 640 : 1280, height = width * 9 / 16, budget = width * height / 50;
+  Scene scene = load_scene(file);
+  World world(scene);
+  Lights lights = make_lights(world);
+  const Technique& path = *find_technique("path");
+  RenderCache cache;
+  std::vector<Request> requests;
+  std::vector<Sample> samples;
+  Frame frame;
+  uint64_t tick = 1;
+  TransportSettings transport;
+  auto step = [&](const View& view) {
+    cache.resize(view.width, view.height);
+    cache.move_points(world);
+    cache.project(view);
+    cache.attend();
+    cache.plan(view, budget, tick++, requests);
+    samples.resize(requests.size());
+    trace(path, world, lights, transport, requests, samples);
+    cache.remember(view, requests, samples);
+    cache.reconstruct(view, frame);
+  };
+  auto look = [&](const View& view, const std::string& name) {
+    save_picture(std::string(folder) + "/castle_" + name + ".png", frame, {});
+    CacheStats s = cache.stats();
+    std::printf("castle %-8s reprojected %.3f filled %.3f converged %.3f", name.c_str(), s.reprojected, s.filled, s.converged);
+    if (truth_spp > 0) {
+      StillSettings still;
+      still.spp = truth_spp;
+      Frame truth = render_still(path, world, lights, view, still);
+      save_picture(std::string(folder) + "/castle_" + name + "_truth.png", truth, {});
+      std::printf("  rmse %.4f relmse %.4f", rmse(frame, truth), relative_mse(frame, truth));
+    }
+    std::printf("\n");
+  };
+  View view;
+  for (int i = 0; i < 60; i++) {
+    float s = float(i) / 30;
+    view = make_view(scene, dvec3(6.3 - 1.2 * s, 1.65, 0.45), 1.55f + 0.08f * s, -0.05f, 0.96f, width, height);
+    step(view);
+    if (i == 0 || i == 4 || i == 29 || i == 59) look(view, "walk" + std::to_string(i + 1));
+  }
+  for (int i = 1; i <= 90; i++) {
+    step(view);
+    if (i == 30 || i == 90) look(view, "rest" + std::to_string(i));
+  }
 }
 
 }  // namespace

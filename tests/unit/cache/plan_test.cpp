@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the next samples go.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "cache/attention.h"
+#include "cache/packing.h"
+#include "cache/plan.h"
+#include "unit/cache/room.h"
+
+namespace wellspring {
+namespace {
+
+struct Planner {
+  PointCache points;
+  PointImage image;
+  View view = look_at(vec3(0), vec3(0, 0, -1), 60, 160, 90);
+  std::vector<Request> requests;
+  Planner() {
+    resize_points(points, 160 * 90);
+    resize_image(image, 160, 90);
+  }
+  void plan(int budget, uint64_t seed, bool still = false) {
+    plan_requests(points, view, {budget, seed, still}, image, requests);
+  }
+};
+
+TEST(Plan, ExactBudgetAndNoPixelTwice) {
+  for (int budget : {0, 1, 7, 288, 5000, 14400, 1000000}) {
+    Planner p;
+    std::fill(p.image.priority.begin(), p.image.priority.end(), uint8_t(90));
+    p.plan(budget, 5);
+    EXPECT_EQ(int(p.requests.size()), std::min(budget, 14400));
+    std::set<uint32_t> pixels;
+    for (const Request& r : p.requests) EXPECT_TRUE(pixels.insert(r.pixel).second);
+  }
+}
+
+TEST(Plan, NothingToLearnNothingAsked) {
+  Planner p;
+  p.plan(100, 1);
+  EXPECT_TRUE(p.requests.empty());
+  p.image.priority[33] = 1;
+  p.plan(100, 1);
+  ASSERT_EQ(p.requests.size(), 1u);
+  EXPECT_EQ(p.requests[0].pixel, 33u);
+}
+
+TEST(Plan, DenserWherePriorityIsHigher) {
+  double left = 0, right = 0;
+  for (uint64_t seed = 0; seed < 20; seed++) {
+    Planner p;
+    for (size_t i = 0; i < p.image.priority.size(); i++) p.image.priority[i] = i % 160 < 80 ? 200 : 50;
+    p.plan(720, seed);
+    for (const Request& r : p.requests) (r.pixel % 160 < 80 ? left : right) += 1;
+  }
+  EXPECT_NEAR(left / right, 4, 0.4);
+}
+
+TEST(Plan, SpreadsEvenlyWithoutClumps) {
+  // Every 16x10 patch of an even picture gets its share within a factor, in every frame.
+  for (uint64_t seed = 1; seed < 6; seed++) {
+    Planner p;
+    std::fill(p.image.priority.begin(), p.image.priority.end(), uint8_t(120));
+    p.plan(1440, seed);
+    std::vector<int> patch(90, 0);
+    for (const Request& r : p.requests) patch[size_t(r.pixel / 160 / 10 * 10 + r.pixel % 160 / 16)]++;
+    for (int n : patch) {
+      EXPECT_GE(n, 8);
+      EXPECT_LE(n, 24);
+    }
+  }
+}
+
+TEST(Plan, EveryPixelIsReachedInTime) {
+  Planner p;
+  std::vector<int> waits(14400, 0);
+  std::set<uint32_t> seen;
+  for (uint64_t frame = 0; frame < 400; frame++) {
+    for (size_t i = 0; i < waits.size(); i++) p.image.priority[i] = uint8_t(std::min(1 + waits[i]++ * 2, 255));
+    p.plan(288, frame);
+    for (const Request& r : p.requests) seen.insert(r.pixel), waits[r.pixel] = 0;
+  }
+  EXPECT_EQ(seen.size(), 14400u);
+}
+
+TEST(Plan, RaysPassThroughTheirPixelOrExactlyThroughTheOldPoint) {
+  Planner p;
+  vec3 d = view_ray(p.view, 30.2f, 40.7f).direction;
+  vec3 place = d * 7.0f;
+  p.points.x[9] = place.x, p.points.y[9] = place.y, p.points.z[9] = place.z;
+  p.points.flags[9] = point_used;
+  p.image.point[40 * 160 + 30] = 9;
+  std::fill(p.image.priority.begin(), p.image.priority.end(), uint8_t(100));
+  p.plan(14400, 3);
+  int resamples = 0;
+  for (const Request& r : p.requests) {
+    Projected at = project_point(p.view, r.ray.origin + r.ray.direction * 5.0f);
+    EXPECT_NEAR(at.x, float(r.pixel % 160) + 0.5f, 0.501f);
+    EXPECT_NEAR(at.y, float(r.pixel / 160) + 0.5f, 0.501f);
+    if (r.resample == no_cache_id) continue;
+    resamples++;
+    EXPECT_EQ(r.resample, 9u);
+    EXPECT_GT(dot(r.ray.direction, d), 1 - 1e-6f);
+  }
+  EXPECT_EQ(resamples, 1);
+}
+
+TEST(Plan, SameSeedSamePlan) {
+  Planner a, b;
+  for (auto* p : {&a, &b}) {
+    for (size_t i = 0; i < p->image.priority.size(); i++) p->image.priority[i] = uint8_t(i * 7 % 251);
+    p->plan(500, 77);
+  }
+  ASSERT_EQ(a.requests.size(), b.requests.size());
+  for (size_t i = 0; i < a.requests.size(); i++) {
+    EXPECT_EQ(a.requests[i].pixel, b.requests[i].pixel);
+    EXPECT_EQ(a.requests[i].seed, b.requests[i].seed);
+    EXPECT_EQ(a.requests[i].ray.direction, b.requests[i].ray.direction);
+  }
+}
+
+TEST(Attention, EmptyBeforeOldBeforeFresh) {
+  Planner p;
+  auto put = [&](int x, int y, uint32_t i, uint8_t age, uint8_t count) {
+    p.image.point[size_t(y * 160 + x)] = i;
+    p.image.depth[size_t(y * 160 + x)] = 2;
+    p.points.age[i] = age;
+    p.points.count[i] = count;
+    p.points.flags[i] = point_used;
+  };
+  put(10, 10, 1, 0, 20);
+  put(30, 10, 2, 250, 20);
+  put(50, 10, 3, 0, 1);
+  prioritise(p.points, {}, p.image);
+  auto at = [&](int x, int y) { return int(p.image.priority[size_t(y * 160 + x)]); };
+  EXPECT_EQ(at(100, 50), 255);
+  EXPECT_LT(at(11, 10), 255);
+  EXPECT_GT(at(11, 10), at(30, 10));
+  EXPECT_GT(at(30, 10), at(50, 10));
+  EXPECT_GT(at(50, 10), at(10, 10));
+  EXPECT_GT(at(10, 10), 0);
+  CacheSettings even;
+  even.attention = false;
+  prioritise(p.points, even, p.image);
+  EXPECT_EQ(at(10, 10), at(100, 50));
+}
+
+TEST(Attention, AChangeAgesTheNeighbourhoodOnce) {
+  Planner p;
+  for (uint32_t i = 0; i < 14400; i++) p.image.point[i] = i, p.points.age[i] = 10, p.points.count[i] = 30;
+  StillImage still;
+  uint8_t& witnesses = p.image.changed[size_t(5 * p.image.changed_width + 5)];
+  witnesses = 1;
+  age_changed(p.points, p.image, still);
+  EXPECT_EQ(p.points.age[44 * 160 + 44], 10);  // one may err
+  witnesses = 3;
+  age_changed(p.points, p.image, still);
+  EXPECT_EQ(p.points.age[44 * 160 + 44], 74);
+  EXPECT_LE(p.points.count[44 * 160 + 44], 2);
+  EXPECT_EQ(p.points.age[34 * 160 + 34], 74);
+  EXPECT_EQ(p.points.age[44 * 160 + 90], 10);
+  age_changed(p.points, p.image, still);
+  EXPECT_EQ(p.points.age[44 * 160 + 44], 74);
+}
+
+}  // namespace
+}  // namespace wellspring

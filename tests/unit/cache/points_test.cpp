@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points: how they are packed, projected, culled, aged, moved and replaced.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/rng.h"
+#include "cache/packing.h"
+#include "cache/project.h"
+#include "cache/remember.h"
+#include "unit/cache/room.h"
+
+namespace wellspring {
+namespace {
+
+struct Stage {
+  PointCache points;
+  PointImage image;
+  Scratch scratch;
+  View view = look_at(vec3(0), vec3(0, 0, -1), 60, 64, 48);
+  Stage(int capacity = 1024) {
+    resize_points(points, capacity);
+    resize_image(image, view.width, view.height);
+  }
+  // A point that faces the viewer.
+  void put(uint32_t i, vec3 p, uint32_t object = 1, bool infinite = false) {
+    points.x[i] = p.x, points.y[i] = p.y, points.z[i] = p.z;
+    points.normal[i] = pack_normal(infinite ? -p : view.position - p);
+    points.flags[i] = uint8_t(point_used | (infinite ? point_infinite : 0));
+    points.age[i] = 0;
+    points.count[i] = 1;
+    points.color[i].object = object;
+  }
+  void project() { project_points(points, view, false, scratch, image); }
+  uint32_t at(int x, int y) const { return image.point[size_t(y * image.width + x)]; }
+  int shown() const {
+    int count = 0;
+    for (uint32_t p : image.point) count += p != no_point;
+    return count;
+  }
+};
+
+Sample sample_at(vec3 p, vec3 n, uint32_t object, vec3 smooth = vec3(1)) {
+  Sample s;
+  s.position = p;
+  s.normal = n;
+  s.distance = length(p);
+  s.object = object;
+  s.albedo = vec3(0.5f);
+  s.smooth = smooth;
+  s.flags = sample_hit;
+  return s;
+}
+
+TEST(Packing, ColoursKeepTheirValue) {
+  Rng rng(1);
+  for (int i = 0; i < 2000; i++) {
+    vec3 c = vec3(rng.uniform(), rng.uniform(), rng.uniform()) * std::exp2(rng.uniform() * 20 - 8);
+    vec3 back = unpack_rgb9e5(pack_rgb9e5(c));
+    EXPECT_LE(max_component(abs(back - c)), max_component(c) / 500 + 1e-6f);
+    vec3 a(rng.uniform(), rng.uniform(), rng.uniform());
+    EXPECT_LE(max_component(abs(unpack_albedo(pack_albedo(a)) - a)), 0.0012f);
+    float s = std::exp2(rng.uniform() * 14 - 10);
+    EXPECT_NEAR(unpack_deviation(pack_deviation(s)) / s, 1, 0.04);
+    EXPECT_NEAR(unpack_half(pack_half(s)) / s, 1, 0.001);
+  }
+  EXPECT_EQ(unpack_deviation(pack_deviation(0)), 0);
+}
+
+TEST(Packing, StochasticRoundingIsUnbiased) {
+  vec3 value(1.0f, 0.3337f, 0.0071f), sum(0);
+  Rng rng(2);
+  for (int i = 0; i < 40000; i++) sum += unpack_rgb9e5(pack_rgb9e5(value, rng.next()));
+  // One step is 1/256 here, its mean over 40000 within 4 standard errors of 1/256/2/200.
+  EXPECT_LE(max_component(abs(sum / 40000.0f - value)), 4e-5f + 1e-5f);
+}
+
+TEST(Packing, NonsenseBecomesBlack) {
+  float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(unpack_rgb9e5(pack_rgb9e5(vec3(nan, -1, 0))), vec3(0));
+  EXPECT_TRUE(is_finite(unpack_rgb9e5(pack_rgb9e5(vec3(inf, 1, 1)))));
+  EXPECT_EQ(unpack_albedo(pack_albedo(vec3(nan))), vec3(0));
+  for (vec3 n : {vec3(nan), vec3(0), vec3(inf, 0, 0)}) EXPECT_NEAR(length(unpack_normal(pack_normal(n))), 1, 1e-3);
+}
+
+TEST(Packing, NormalsWithinADegree) {
+  Rng rng(3);
+  for (int i = 0; i < 5000; i++) {
+    float z = rng.uniform() * 2 - 1, phi = rng.uniform() * 2 * pi, r = std::sqrt(1 - z * z);
+    vec3 n(r * std::cos(phi), r * std::sin(phi), z);
+    EXPECT_GT(dot(unpack_normal(pack_normal(n)), n), std::cos(1.1f * pi / 180));
+  }
+}
+
+TEST(Project, EveryPointFallsWhereTheViewSays) {
+  for (float fov : {5.0f, 60.0f, 150.0f}) {
+    Stage stage(4096);
+    vec3 eye(1e4f, -20, 300);
+    stage.view = look_at(eye, eye + vec3(0.3f, -0.2f, -1), fov, 100, 70);
+    resize_image(stage.image, 100, 70);
+    Rng rng(7);
+    for (uint32_t i = 0; i < 4096; i++) {
+      vec3 p = eye + (vec3(rng.uniform(), rng.uniform(), rng.uniform()) - 0.5f) * 40.0f;
+      stage.put(i, fov > 10 ? p : eye + (p - eye) * vec3(0.1f, 0.1f, 1));
+    }
+    stage.project();
+    // The nearest point of every pixel by brute force.
+    std::vector<float> nearest(7000, 1e30f);
+    int compared = 0;
+    for (uint32_t i = 0; i < 4096; i++) {
+      Projected at = project_point(stage.view, vec3(stage.points.x[i], stage.points.y[i], stage.points.z[i]));
+      if (at.depth <= 1e-3f || !(at.x >= 0 && at.y >= 0 && at.x < 100 && at.y < 70)) continue;
+      float& d = nearest[size_t(int(at.y) * 100 + int(at.x))];
+      d = std::min(d, at.depth);
+    }
+    for (size_t i = 0; i < nearest.size(); i++) {
+      if (nearest[i] > 1e29f) continue;
+      uint32_t p = stage.image.point[i];
+      compared++;
+      if (p == no_point) continue;  // rounded into the next pixel; counted below
+      EXPECT_NEAR(stage.image.depth[i], nearest[i], nearest[i] * 2e-3f + 2e-3f) << "pixel " << i << " fov " << fov;
+      Projected at = project_point(stage.view, vec3(stage.points.x[p], stage.points.y[p], stage.points.z[p]));
+      EXPECT_NEAR(at.x, float(i % 100) + 0.5f, 0.51f);
+      EXPECT_NEAR(at.y, float(i / 100) + 0.5f, 0.51f);
+    }
+    EXPECT_GT(compared, fov < 10 ? 3 : 200);
+    EXPECT_NEAR(stage.shown(), compared, std::max(2, compared / 100));
+  }
+}
+
+TEST(Project, HardPlacesFallNowhere) {
+  Stage stage;
+  float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  vec3 bad[] = {vec3(0, 0, 1), vec3(0, 0, 0), vec3(1, 1, 0), vec3(nan, 0, -1), vec3(0, 0, nan), vec3(inf, 0, -1),
+                vec3(0, 0, -inf), vec3(0, 0, -1e-7f), vec3(1e30f, 0, -1), vec3(5, 0, -1), vec3(0, -5, -1)};
+  for (uint32_t i = 0; i < std::size(bad); i++) stage.put(i, bad[i]);
+  stage.project();
+  EXPECT_EQ(stage.shown(), 0);
+  stage.put(0, vec3(0, 0, -3));
+  stage.project();
+  EXPECT_EQ(stage.at(32, 24), 0u);
+  EXPECT_TRUE(stage.points.flags[0] & point_visible);
+}
+
+TEST(Project, NearestWinsAndBackFacesAndEvictedAreSkipped) {
+  Stage stage;
+  stage.put(5, vec3(0, 0, -4));
+  stage.put(6, vec3(0, 0, -2));
+  stage.put(7, vec3(0, 0, -3));
+  stage.put(900, vec3(0, 0, -1), 1, true);  // background behind everything
+  stage.project();
+  EXPECT_EQ(stage.at(32, 24), 6u);
+  EXPECT_FALSE(stage.points.flags[5] & point_visible);
+  stage.points.normal[6] = pack_normal(vec3(0, 0, -1));
+  stage.project();
+  EXPECT_EQ(stage.at(32, 24), 7u);
+  stage.points.age[7] = evicted_age;
+  stage.project();
+  EXPECT_EQ(stage.at(32, 24), 5u);
+  stage.points.flags[5] = 0;
+  stage.project();
+  EXPECT_EQ(stage.at(32, 24), 900u);
+  EXPECT_NEAR(stage.image.depth[size_t(24 * 64 + 32)] / infinite_depth, 1, 1e-5);
+}
+
+TEST(Project, InfinitePointsIgnoreWhereTheViewerStands) {
+  Stage stage;
+  stage.put(0, vec3(0, 0, -1), 0, true);
+  stage.view = look_at(vec3(500, 3, -9), vec3(500, 3, -10), 60, 64, 48);
+  stage.project();
+  EXPECT_EQ(stage.at(32, 24), 0u);
+}
+
+// A wall at depth 2 with gaps, another at depth 4 behind; every second gap shows the wall behind.
+TEST(DepthCull, RemovesWhatShowsThroughAndKeepsSilhouettes) {
+  Stage stage(8192);
+  uint32_t next = 0;
+  auto put_pixel = [&](int x, int y, float depth) {
+    vec3 d = view_ray(stage.view, float(x) + 0.5f, float(y) + 0.5f).direction;
+    stage.put(next++, d * (depth / -d.z));
+  };
+  for (int y = 0; y < 48; y++)
+    for (int x = 0; x < 64; x++) {
+      bool left = x < 32, gap = x % 5 == 2 && y % 5 == 2;
+      put_pixel(x, y, left && !gap ? 2.0f : 4.0f);
+    }
+  stage.project();
+  ASSERT_EQ(stage.shown(), 64 * 48);
+  depth_cull(stage.points, 0.1f, stage.image);
+  for (int y = 3; y < 45; y++)
+    for (int x = 3; x < 61; x++) {
+      bool gap = x < 32 && x % 5 == 2 && y % 5 == 2;
+      EXPECT_EQ(stage.at(x, y) == no_point, gap) << x << " " << y;
+    }
+  // Verified by this very view: kept.
+  for (auto& f : stage.points.flags) f |= point_verified;
+  project_points(stage.points, stage.view, true, stage.scratch, stage.image);
+  depth_cull(stage.points, 0.1f, stage.image);
+  EXPECT_EQ(stage.shown(), 64 * 48);
+}
+
+TEST(DepthCull, LeavesASlantedFloorAlone) {
+  Stage stage(8192);
+  stage.view = look_at(vec3(0, 1.6f, 0), vec3(0, 1.6f, -1), 60, 64, 48);
+  uint32_t next = 0;
+  for (int y = 26; y < 48; y++)
+    for (int x = 0; x < 64; x++) {
+      vec3 d = view_ray(stage.view, float(x) + 0.5f, float(y) + 0.5f).direction;
+      stage.put(next, stage.view.position + d * (-1.6f / d.y));
+      stage.points.normal[next++] = pack_normal(vec3(0, 1, 0));
+    }
+  stage.project();
+  int before = stage.shown();
+  depth_cull(stage.points, 0.1f, stage.image);
+  EXPECT_GE(stage.shown(), before * 99 / 100);  // but for single points at the horizon
+}
+
+TEST(Ageing, FollowsTheRateOfNewPoints) {
+  PointCache points;
+  resize_points(points, 8000);
+  for (uint32_t i = 0; i < 8000; i++) points.flags[i] = point_used | point_visible, points.age[i] = 0;
+  points.flags[1] = point_used;
+  points.flags[2] = point_used | point_visible | point_specular;
+  for (int i = 0; i < 40; i++) age_points(points, 200);  // a fortieth of the cache a frame
+  EXPECT_NEAR(points.age[0], 128, 2);
+  EXPECT_EQ(points.age[1], evicted_age);
+  EXPECT_EQ(points.age[2], 254);
+  for (int i = 0; i < 1000; i++) age_points(points, 200);
+  EXPECT_EQ(points.age[0], 254);  // seen points are never evicted
+  age_points(points, std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(points.age[0], 254);
+}
+
+TEST(Remember, ResampledPointsImproveInPlaceAndNewOnesReplaceTheOldest) {
+  Stage stage(64);
+  vec3 p(0, 0, -3);
+  for (uint32_t i = 0; i < 64; i++) stage.put(i, vec3(0, 0, 5)), stage.points.age[i] = 10;
+  stage.put(20, p, 3);
+  stage.points.color[20].albedo = pack_albedo(vec3(0.5f));
+  stage.points.color[20].smooth = pack_rgb9e5(vec3(1));
+  stage.points.age[5] = 200;  // the oldest of the first group
+  stage.project();
+  std::vector<Request> requests(2);
+  requests[0].pixel = 24 * 64 + 32, requests[0].resample = 20;
+  requests[1].pixel = 7;
+  vec3 side = view_ray(stage.view, 7.5f, 0.5f).direction * 4.0f;
+  std::vector<Sample> samples{sample_at(p, vec3(0, 0, 1), 3, vec3(3)), sample_at(side, vec3(0, 0, 1), 4)};
+  std::vector<uint32_t> targets;
+  Remembered r = remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
+  EXPECT_EQ(r.merged, 1);
+  EXPECT_EQ(r.added, 1);
+  EXPECT_EQ(targets[0], 20u);
+  EXPECT_EQ(targets[1], 5u);
+  EXPECT_EQ(stage.points.count[20], 2);
+  EXPECT_NEAR(unpack_rgb9e5(stage.points.color[20].smooth).x, 2, 0.02);
+  EXPECT_EQ(stage.at(7, 0), 5u);
+  EXPECT_EQ(stage.points.color[5].object, 4u);
+  EXPECT_EQ(stage.points.next_group, 1u);
+}
+
+TEST(Remember, OverwrittenPointsVanishFromTheirPixel) {
+  Stage stage(8);
+  for (uint32_t i = 0; i < 8; i++) {
+    vec3 d = view_ray(stage.view, float(10 + i) + 0.5f, 20.5f).direction;
+    stage.put(i, d * 2.0f);
+    stage.points.age[i] = uint8_t(100 + i);
+  }
+  stage.project();
+  ASSERT_EQ(stage.at(17, 20), 7u);
+  std::vector<Request> requests(1);
+  requests[0].pixel = 5;
+  std::vector<uint32_t> targets;
+  std::vector<Sample> samples{sample_at(view_ray(stage.view, 5.5f, 0.5f).direction, vec3(0, 0, 1), 2)};
+  remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
+  EXPECT_EQ(targets[0], 7u);
+  EXPECT_EQ(stage.at(17, 20), no_point);
+  EXPECT_EQ(stage.at(5, 0), 7u);
+}
+
+TEST(Remember, RejectsWhatIsNotFiniteAndWhatDoesNotFit) {
+  Stage stage(64);
+  float nan = std::numeric_limits<float>::quiet_NaN();
+  std::vector<Request> requests(4);
+  requests[2].pixel = 1u << 30;
+  requests[3].resample = 1u << 30;
+  std::vector<Sample> samples(4, sample_at(vec3(0, 0, -1), vec3(0, 0, 1), 1));
+  samples[0].position.y = nan;
+  samples[1].rest = vec3(std::numeric_limits<float>::infinity());
+  std::vector<uint32_t> targets;
+  Remembered r = remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
+  EXPECT_EQ(r.rejected, 3);
+  EXPECT_EQ(r.kept, 1);
+}
+
+TEST(Remember, AQuietPointThatChangesMarksItsNeighbourhood) {
+  Stage stage(64);
+  vec3 p(0, 0, -3);
+  stage.put(20, p, 3);
+  stage.project();
+  std::vector<Request> requests(1);
+  requests[0].pixel = 24 * 64 + 32, requests[0].resample = 20;
+  std::vector<Sample> samples{sample_at(p, vec3(0, 0, 1), 3, vec3(0))};
+  samples[0].rest = vec3(1);
+  std::vector<uint32_t> targets;
+  auto changed = [&] { return remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets).changed; };
+  stage.points.color[20].rest = pack_rgb9e5(vec3(1));
+  for (int i = 0; i < 4; i++) EXPECT_EQ(changed(), 0);
+  samples[0].rest = vec3(0.2f);
+  EXPECT_EQ(changed(), 1);
+  EXPECT_EQ(stage.points.count[20], 1);
+  EXPECT_NEAR(unpack_rgb9e5(stage.points.color[20].rest).x, 0.2, 0.01);
+  EXPECT_EQ(stage.image.changed[size_t(24 / change_tile * stage.image.changed_width + 32 / change_tile)], 1);
+  // A noisy point proves nothing.
+  Rng rng(4);
+  int cries = 0;
+  for (int i = 0; i < 300; i++) {
+    samples[0].rest = vec3(-std::log(1 - rng.uniform() * 0.999f));
+    requests[0].seed = uint64_t(i);
+    cries += changed();
+  }
+  EXPECT_LE(cries, 6);
+}
+
+}  // namespace
+}  // namespace wellspring
