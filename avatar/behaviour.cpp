@@ -6,11 +6,13 @@
 namespace wellspring {
 namespace {
 
-constexpr double same_person_seconds = 1.5;   // a new number at the place of one lost this short is the same person
-constexpr double no_second_greeting = 20;     // nor is anybody greeted twice within this time at one place
-constexpr double group_seconds = 1.5;         // who comes this soon after a greeting was greeted with it
-constexpr double motion_hold = 2.5;           // keeps noticing after the last motion
-constexpr float same_place = 0.7f;            // metres
+constexpr double same_person_seconds =
+    1.5;  // a new number at the place of one lost this short is the same person
+constexpr double no_second_greeting =
+    20;                                // nor is anybody greeted twice within this time at one place
+constexpr double group_seconds = 1.5;  // who comes this soon after a greeting was greeted with it
+constexpr double motion_hold = 2.5;    // keeps noticing after the last motion
+constexpr float same_place = 0.7f;     // metres
 constexpr size_t most_people = 32;
 
 using Person = BehaviourState::Person;
@@ -75,7 +77,8 @@ const char* to_string(Mood mood) {
   return "idle";
 }
 
-void decide(BehaviourState& state, const StorytellerInput& input, double now, StorytellerEvents& events) {
+void decide(BehaviourState& state, const StorytellerInput& input, double now,
+            StorytellerEvents& events) {
   events = {};
   see_people(state, input, now);
   bool anyone = false;
@@ -111,7 +114,8 @@ void decide(BehaviourState& state, const StorytellerInput& input, double now, St
   bool greeting = state.mood == Mood::greeting && now - state.since < greeting_seconds;
   bool parting = state.mood == Mood::farewell && now - state.since < farewell_seconds;
   if (greeting || parting) return;
-  bool stirred = anyone || now - state.last_motion < motion_hold || (!state.people.empty() && !state.company);
+  bool stirred =
+      anyone || now - state.last_motion < motion_hold || (!state.people.empty() && !state.company);
   if (input.telling) become(Mood::telling);
   else if (state.company) become(Mood::attending);
   else if (stirred) become(Mood::noticing);

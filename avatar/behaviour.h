@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the storyteller is doing: idle -> noticing -> greeting -> attending (or telling) -> farewell -> idle.
-// Time is an argument. Detectors flicker: a person is somebody seen for 0.25 s, lost after 2 s, and the same one
-// when another number stands where it stood.
+// What the storyteller is doing: idle -> noticing -> greeting -> attending (or telling) -> farewell
+// -> idle. Time is an argument. Detectors flicker: a person is somebody seen for 0.25 s, lost after
+// 2 s, and the same one when another number stands where it stood.
 #pragma once
 #include "avatar/storyteller_io.h"
 
@@ -18,17 +18,19 @@ struct BehaviourState {
   };
   std::vector<Person> people;  // in front of kiosks, now or a moment ago
   Mood mood = Mood::idle;
-  double since = 0;           // when the mood began
+  double since = 0;  // when the mood began
   double last_motion = -1e30;
   double last_company = -1e30;  // when a kiosk guest was last seen
   double last_greeting = -1e30;
-  bool company = false;       // somebody was greeted and not yet bid farewell
-  uint32_t addressed = 0;     // the last one greeted
+  bool company = false;    // somebody was greeted and not yet bid farewell
+  uint32_t addressed = 0;  // the last one greeted
 };
 
-inline constexpr double confirm_seconds = 0.25, lost_seconds = 2.0, greeting_seconds = 3.0, farewell_seconds = 3.0;
+inline constexpr double confirm_seconds = 0.25, lost_seconds = 2.0, greeting_seconds = 3.0,
+                        farewell_seconds = 3.0;
 
 // Overwrites `events`. `now` must not run backwards.
-void decide(BehaviourState& state, const StorytellerInput& input, double now, StorytellerEvents& events);
+void decide(BehaviourState& state, const StorytellerInput& input, double now,
+            StorytellerEvents& events);
 
 }  // namespace wellspring

@@ -14,7 +14,8 @@ struct BlinkState {
 
 // How far the lids are closed, 0..1. `humanlike` false: one blink every 4 seconds.
 float tick_blink(BlinkState& state, Rng& rng, double now, bool humanlike);
-// A blink now unless one is under way or has just been: the eyes blink with a large turn of the gaze.
+// A blink now unless one is under way or has just been: the eyes blink with a large turn of the
+// gaze.
 void ask_blink(BlinkState& state, double now);
 
 }  // namespace wellspring

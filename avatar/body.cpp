@@ -11,8 +11,8 @@ quat about_x(float a) { return glm::angleAxis(a, vec3(1, 0, 0)); }
 quat about_y(float a) { return glm::angleAxis(a, vec3(0, 1, 0)); }
 quat about_z(float a) { return glm::angleAxis(a, vec3(0, 0, 1)); }
 
-// Turns a chain from the frame below it so that its last joint has the rotation `wanted` (humanoid space);
-// each link takes its share of the same turn.
+// Turns a chain from the frame below it so that its last joint has the rotation `wanted` (humanoid
+// space); each link takes its share of the same turn.
 void bend_chain(const std::vector<WeightedJoint>& chain, quat below, quat wanted, Pose& pose) {
   if (chain.empty()) return;
   quat turn = glm::conjugate(below) * wanted;
@@ -33,16 +33,19 @@ void pose_arm(const Rig& rig, int side, const ArmPose& arm, float shoulders_up, 
   float s = side == 0 ? 1.0f : -1.0f;
   if (bones.collar >= 0) {
     float raised = std::max(arm.side, 0.6f * arm.forward);
-    pose.rotations[size_t(bones.collar)] = about_z(s * (shoulders_up + 0.12f * std::max(raised - 0.6f, 0.0f)));
+    pose.rotations[size_t(bones.collar)] =
+        about_z(s * (shoulders_up + 0.12f * std::max(raised - 0.6f, 0.0f)));
   }
   if (bones.shoulder < 0 || bones.elbow < 0) return;
   quat shoulder = about_z(s * arm.side) * about_x(-arm.forward) * about_y(-s * arm.turn);
   quat elbow = about_x(-arm.elbow) * about_y(-s * 0.6f * arm.pronate);
   quat wrist = about_y(-s * 0.4f * arm.pronate) * about_z(-s * arm.flex) * about_x(-arm.tilt);
   pose.rotations[size_t(bones.shoulder)] = shoulder * bones.upper_hangs;
-  pose.rotations[size_t(bones.elbow)] = glm::conjugate(bones.upper_hangs) * elbow * bones.fore_hangs;
+  pose.rotations[size_t(bones.elbow)] =
+      glm::conjugate(bones.upper_hangs) * elbow * bones.fore_hangs;
   if (bones.wrist >= 0)
-    pose.rotations[size_t(bones.wrist)] = glm::conjugate(bones.fore_hangs) * wrist * bones.hand_hangs;
+    pose.rotations[size_t(bones.wrist)] =
+        glm::conjugate(bones.fore_hangs) * wrist * bones.hand_hangs;
   for (const FingerJoint& finger : bones.fingers) {
     // Relaxed fingers bend more towards the little one and less at the tips.
     constexpr float share[3] = {0.8f, 1.35f, 0.85f};
@@ -63,7 +66,8 @@ mat3 limb_frame(vec3 along, vec3 pole) {
 void pose_leg(const Rig& rig, int side, const FootPlan& foot, Pose& pose) {
   const LegRig& leg = rig.leg[size_t(side)];
   const Character& character = *rig.character;
-  vec3 hip0 = character.joints[size_t(leg.hip)].center, knee0 = character.joints[size_t(leg.knee)].center;
+  vec3 hip0 = character.joints[size_t(leg.hip)].center,
+       knee0 = character.joints[size_t(leg.knee)].center;
   vec3 ankle0 = character.joints[size_t(leg.ankle)].center;
   vec3 axis = character.joints[size_t(rig.root)].center;
   axis.y = 0;
@@ -78,10 +82,12 @@ void pose_leg(const Rig& rig, int side, const FootPlan& foot, Pose& pose) {
   float forward = (a * a - b * b + d * d) / (2 * d);
   vec3 pole = facing * leg.pole;
   pole = glm::normalize(pole - along * dot(pole, along));
-  vec3 knee = hip.center + along * forward + pole * std::sqrt(std::max(a * a - forward * forward, 0.0f));
+  vec3 knee =
+      hip.center + along * forward + pole * std::sqrt(std::max(a * a - forward * forward, 0.0f));
   vec3 end = hip.center + along * d;
   auto turn = [&](vec3 from, vec3 to) {
-    mat3 m = limb_frame(glm::normalize(to), facing * leg.pole) * glm::transpose(limb_frame(glm::normalize(from), leg.pole));
+    mat3 m = limb_frame(glm::normalize(to), facing * leg.pole) *
+             glm::transpose(limb_frame(glm::normalize(from), leg.pole));
     return glm::normalize(glm::quat_cast(m));
   };
   quat thigh = turn(knee0 - hip0, knee - hip.center), shin = turn(ankle0 - knee0, end - knee);
@@ -122,10 +128,12 @@ JointFrame eval_joint_frame(const Character& character, const Pose& pose, int jo
 
 void eval_body(const Rig& rig, const BodyPlan& plan, Pose& pose) {
   quat heading = about_y(plan.heading);
-  quat pelvis = heading * about_y(plan.pelvis_turn.x) * about_x(plan.pelvis_turn.y) * about_z(plan.pelvis_turn.z);
+  quat pelvis = heading * about_y(plan.pelvis_turn.x) * about_x(plan.pelvis_turn.y) *
+                about_z(plan.pelvis_turn.z);
   bool legs = rig.leg[0].complete() && rig.leg[1].complete();
   pose.translation = heading * plan.pelvis;
-  if (!legs) pose.translation = vec3(0), pelvis = heading;  // nothing to hold the feet in their place
+  if (!legs)
+    pose.translation = vec3(0), pelvis = heading;  // nothing to hold the feet in their place
   pose.rotations[size_t(rig.root)] = pelvis;
 
   quat chest = heading * about_y(plan.torso.x) * about_x(plan.torso.y) * about_z(plan.torso.z);

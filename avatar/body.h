@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From intentions to joints: where pelvis, chest, head, eyes, arms and feet shall be -> a Pose. No state, no
-// randomness. A figure without some joints moves the others.
+// From intentions to joints: where pelvis, chest, head, eyes, arms and feet shall be -> a Pose. No
+// state, no randomness. A figure without some joints moves the others.
 #pragma once
 #include <array>
 

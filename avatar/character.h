@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An H-Anim humanoid ready to be posed (ISO/IEC 19774-1): joints, a skin (or rigid segments, which are
-// skins with one joint each), displacers, and how the surfaces look. Plain data, immutable once loaded.
+// An H-Anim humanoid ready to be posed (ISO/IEC 19774-1): joints, a skin (or rigid segments, which
+// are skins with one joint each), displacers, and how the surfaces look. Plain data, immutable once
+// loaded.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -14,8 +15,9 @@ struct Joint {
   std::string name;  // H-Anim v2 name ("l_shoulder"); aliases and prefixes of the file resolved
   int parent = -1;   // always smaller than the joint's own index; -1: the root
   vec3 center{0};    // humanoid space at rest, metres
-  // How the file turns the joint, relative to its parent. Not part of the rest pose, which is the H-Anim
-  // default pose (no joint turned); a Pose of these rotations shows the figure as the file does.
+  // How the file turns the joint, relative to its parent. Not part of the rest pose, which is the
+  // H-Anim default pose (no joint turned); a Pose of these rotations shows the figure as the file
+  // does.
   quat rest_rotation{1, 0, 0, 0};
   std::vector<vec2> limits;  // empty, or lower/upper radians for x, y, z
 };
@@ -69,7 +71,8 @@ struct Character {
   std::vector<Displacer> displacers;
   std::vector<Look> looks;
   std::vector<Part> parts;
-  // Vertices, shared by all parts; at rest, in humanoid space (metres, +Y up, facing +Z, feet at y = 0).
+  // Vertices, shared by all parts; at rest, in humanoid space (metres, +Y up, facing +Z, feet at y
+  // = 0).
   std::vector<vec3> positions;
   std::vector<vec3> normals;
   std::vector<vec2> uv;  // empty, or one a vertex; (0, 0) is the picture's top left, as in glTF

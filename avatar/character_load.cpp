@@ -22,7 +22,8 @@ std::string read_file(const std::string& path) {
     throw LoadError(path, "", "is larger than " + std::to_string(x3d_max_bytes >> 20) + " MiB");
   std::string text(size_t(size), '\0');
   std::ifstream file(path, std::ios::binary);
-  if (!file.read(text.data(), std::streamsize(text.size())) && size > 0) throw LoadError(path, "", "cannot be read");
+  if (!file.read(text.data(), std::streamsize(text.size())) && size > 0)
+    throw LoadError(path, "", "cannot be read");
   return text;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// H-Anim files to a Character. Throws LoadError naming file and line (or node). Cost linear in the file.
+// H-Anim files to a Character. Throws LoadError naming file and line (or node). Cost linear in the
+// file.
 #pragma once
 #include <string>
 

@@ -64,16 +64,18 @@ std::string describe_text(const Character& character) {
   std::string text = "name         " + (character.name.empty() ? "(none)" : character.name) + "\n";
   text += format("articulation LOA %d;", character.loa);
   for (int level = 1; level <= 4; level++)
-    text += format(" %d of %d joints of LOA %d%s", joints_of_level(character, level), hanim_joint_count(level), level,
-                   level < 4 ? "," : "\n");
-  text += format("surface      %zu vertices, %zu triangles, %zu parts, %zu looks, up to %zu joints a vertex\n",
-                 character.positions.size(), triangle_count(character), character.parts.size(),
-                 character.looks.size(), most_weights(character));
+    text += format(" %d of %d joints of LOA %d%s", joints_of_level(character, level),
+                   hanim_joint_count(level), level, level < 4 ? "," : "\n");
+  text += format(
+      "surface      %zu vertices, %zu triangles, %zu parts, %zu looks, up to %zu joints a vertex\n",
+      character.positions.size(), triangle_count(character), character.parts.size(),
+      character.looks.size(), most_weights(character));
   text += format("joints       %zu (name, parent, centre in metres)\n", character.joints.size());
   for (size_t j = 0; j < character.joints.size(); j++) {
     const Joint& joint = character.joints[j];
-    text += format("  %-38s %-38s %8.4f %8.4f %8.4f%s\n", joint.name.c_str(), parent_name(character, int(j)).c_str(),
-                   double(joint.center.x), double(joint.center.y), double(joint.center.z),
+    text += format("  %-38s %-38s %8.4f %8.4f %8.4f%s\n", joint.name.c_str(),
+                   parent_name(character, int(j)).c_str(), double(joint.center.x),
+                   double(joint.center.y), double(joint.center.z),
                    hanim_joint_level(joint.name) < 0 ? "  (not H-Anim)" : "");
   }
   std::vector<std::string> segments, sites, displacers;
@@ -98,7 +100,9 @@ std::string describe_json(const Character& character) {
   all["joints"] = json::array();
   for (size_t j = 0; j < character.joints.size(); j++) {
     const Joint& joint = character.joints[j];
-    json entry = {{"name", joint.name}, {"parent", nullptr}, {"center", triple(joint.center)},
+    json entry = {{"name", joint.name},
+                  {"parent", nullptr},
+                  {"center", triple(joint.center)},
                   {"level", hanim_joint_level(joint.name)}};
     if (joint.parent >= 0) entry["parent"] = parent_name(character, int(j));
     all["joints"].push_back(entry);
@@ -109,10 +113,13 @@ std::string describe_json(const Character& character) {
     all["segments"].push_back({{"name", segment.name}, {"joint", joint_name(segment.joint)}});
   all["sites"] = json::array();
   for (const Site& site : character.sites)
-    all["sites"].push_back({{"name", site.name}, {"joint", joint_name(site.joint)}, {"position", triple(site.position)}});
+    all["sites"].push_back({{"name", site.name},
+                            {"joint", joint_name(site.joint)},
+                            {"position", triple(site.position)}});
   all["displacers"] = json::array();
   for (const Displacer& displacer : character.displacers)
-    all["displacers"].push_back({{"name", displacer.name}, {"vertices", displacer.vertices.size()}});
+    all["displacers"].push_back(
+        {{"name", displacer.name}, {"vertices", displacer.vertices.size()}});
   all["skin"] = {{"vertices", character.positions.size()},
                  {"triangles", triangle_count(character)},
                  {"parts", character.parts.size()},

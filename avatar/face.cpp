@@ -6,15 +6,18 @@
 namespace wellspring {
 namespace {
 
-// How far the jaw opens for each viseme, 0..1 (ARKit blends of the viseme table, jawOpen scaled to 0.65 = 1).
-constexpr float jaw_of[15] = {0, 0, 0.06f, 0.15f, 0.14f, 0.24f, 0.10f, 0.06f, 0.16f, 0.16f, 0.85f, 0.50f, 0.24f, 0.60f, 0.24f};
+// How far the jaw opens for each viseme, 0..1 (ARKit blends of the viseme table, jawOpen scaled to
+// 0.65 = 1).
+constexpr float jaw_of[15] = {0,     0,     0.06f, 0.15f, 0.14f, 0.24f, 0.10f, 0.06f,
+                              0.16f, 0.16f, 0.85f, 0.50f, 0.24f, 0.60f, 0.24f};
 constexpr double syllables_a_second = 4.6;
 
 float blend(float low, float high, float x) { return smooth_step(low, high, x); }
 
 }  // namespace
 
-void tick_face(FaceState& state, float speaking, float smile, float brow, bool humanlike, double now, float dt, FacePose& face) {
+void tick_face(FaceState& state, float speaking, float smile, float brow, bool humanlike,
+               double now, float dt, FacePose& face) {
   speaking = speaking > 0 ? std::min(speaking, 1.0f) : 0;  // NaN is silence
   state.talking = approach(state.talking, speaking, 0.07f, dt);
   if (state.talking < 1e-4f) state.talking = 0;
@@ -25,14 +28,17 @@ void tick_face(FaceState& state, float speaking, float smile, float brow, bool h
     double pace = syllables_a_second * (1 + 0.2 * double(smooth_noise(40, state.syllables * 0.7)));
     state.syllables = std::fmod(state.syllables + pace * double(dt), 1e6);
     // Each syllable: a consonant, then a vowel; the vowel carries over into the next consonant.
-    auto of = [](double index, uint64_t salt) { return mix64(uint64_t(int64_t(index)) * 2 + salt); };
+    auto of = [](double index, uint64_t salt) {
+      return mix64(uint64_t(int64_t(index)) * 2 + salt);
+    };
     double index = std::floor(state.syllables);
     float p = float(state.syllables - index);
     size_t consonant = 1 + size_t(of(index, 0) % 9), vowel = 10 + size_t(of(index, 1) % 5);
     size_t vowel_before = 10 + size_t(of(index - 1, 1) % 5);
     float stress = 0.40f + 0.35f * float(of(index, 1) >> 40) * 0x1p-24f;
     float on = blend(0, 0.2f, p) * (1 - blend(0.22f, 0.45f, p));
-    face.viseme[consonant] += state.talking * (consonant == 1 ? 0.9f : 0.6f) * on;  // only p, b, m must close
+    face.viseme[consonant] +=
+        state.talking * (consonant == 1 ? 0.9f : 0.6f) * on;  // only p, b, m must close
     face.viseme[vowel_before] += state.talking * 0.4f * (1 - blend(0, 0.22f, p));
     face.viseme[vowel] += state.talking * stress * blend(0.2f, 0.5f, p);
     for (size_t i = 0; i < 15; i++) face.open += face.viseme[i] * jaw_of[i];
@@ -60,7 +66,8 @@ void eval_face(const Rig& rig, const FacePose& face, Pose& pose) {
   for (size_t side = 0; side < 2; side++) {
     float closed = std::clamp(face.closed[side], 0.0f, 1.0f);
     if (rig.blink[side] >= 0) set(rig.blink[side], closed);
-    else if (rig.lids_move) pose.rotations[size_t(rig.lid[side])] = glm::angleAxis(38_deg * closed, vec3(1, 0, 0));
+    else if (rig.lids_move)
+      pose.rotations[size_t(rig.lid[side])] = glm::angleAxis(38_deg * closed, vec3(1, 0, 0));
     set(rig.smile[side], face.smile[side]);
     set(rig.brow_up[side], face.brow_up[side]);
     set(rig.squint[side], face.squint * (1 - closed));
@@ -71,7 +78,9 @@ void eval_face(const Rig& rig, const FacePose& face, Pose& pose) {
   for (size_t i = 0; i < 15; i++) set(rig.viseme[i], face.viseme[i]);
   // Mouth shapes bring their own opening of the jaw.
   if (rig.viseme[10] >= 0) return;
-  if (rig.jaw_moves) pose.rotations[size_t(rig.jaw)] = glm::angleAxis(12_deg * std::min(face.open, 1.0f), vec3(1, 0, 0));
+  if (rig.jaw_moves)
+    pose.rotations[size_t(rig.jaw)] =
+        glm::angleAxis(12_deg * std::min(face.open, 1.0f), vec3(1, 0, 0));
   else set(rig.mouth_open, 0.8f * face.open);
 }
 

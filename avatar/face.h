@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The face as numbers 0..1, and the mouth of somebody who speaks. Timed visemes of real speech will take the place
-// of the syllables made up here; the way from viseme weights to a figure stays.
+// The face as numbers 0..1, and the mouth of somebody who speaks. Timed visemes of real speech will
+// take the place of the syllables made up here; the way from viseme weights to a figure stays.
 #pragma once
 #include <array>
 
@@ -12,21 +12,23 @@ namespace wellspring {
 
 struct FaceState {
   Spring smile, brow;
-  float talking = 0;       // 0..1, follows StorytellerInput::speaking
-  double syllables = 0;    // spoken so far
+  float talking = 0;     // 0..1, follows StorytellerInput::speaking
+  double syllables = 0;  // spoken so far
 };
 
 struct FacePose {
   std::array<float, 2> closed{0, 0};  // lids, left and right
   std::array<float, 2> smile{0, 0}, brow_up{0, 0};
   float brow_inner_up = 0, squint = 0, wide = 0, breath = 0;
-  float open = 0;                     // jaw
-  std::array<float, 15> viseme{};     // as Rig::viseme
+  float open = 0;                  // jaw
+  std::array<float, 15> viseme{};  // as Rig::viseme
 };
 
 // Mouth, smile and brows. `smile` is the wanted level 0..1.
-void tick_face(FaceState& state, float speaking, float smile, float brow, bool humanlike, double now, float dt, FacePose& face);
-// Writes the face into displacers, and into lid and jaw joints where the figure has vertices on them.
+void tick_face(FaceState& state, float speaking, float smile, float brow, bool humanlike,
+               double now, float dt, FacePose& face);
+// Writes the face into displacers, and into lid and jaw joints where the figure has vertices on
+// them.
 void eval_face(const Rig& rig, const FacePose& face, Pose& pose);
 
 }  // namespace wellspring

@@ -7,15 +7,16 @@ namespace wellspring {
 namespace {
 
 constexpr float eye_rate = 28, head_rate = 6, calm_head_rate = 3.5f, torso_rate = 2.5f;
-constexpr float eye_reach_yaw = 22_deg, eye_reach_pitch = 15_deg;  // beyond it the head must come along
+constexpr float eye_reach_yaw = 22_deg,
+                eye_reach_pitch = 15_deg;  // beyond it the head must come along
 constexpr float head_reach = 55_deg, torso_reach = 18_deg;
 
 float nearest_turn(float angle, float to) {
   return angle + 2 * pi * std::round((to - angle) / (2 * pi));
 }
 
-// The guest to look at: kiosk guests before remote ones, the nearest first, the present one kept unless
-// another is clearly nearer. nullptr: nobody.
+// The guest to look at: kiosk guests before remote ones, the nearest first, the present one kept
+// unless another is clearly nearer. nullptr: nobody.
 const Guest* choose_guest(const GazeState& state, const std::vector<Guest>& guests, vec3 from) {
   const Guest* best = nullptr;
   float least = 1e30f;
@@ -29,14 +30,16 @@ const Guest* choose_guest(const GazeState& state, const std::vector<Guest>& gues
   return best;
 }
 
-void choose_target(GazeState& state, const BehaviourState& behaviour, const std::vector<Guest>& guests, vec3 from,
-                   float heading, bool motion, bool humanlike, Rng& rng, double now) {
+void choose_target(GazeState& state, const BehaviourState& behaviour,
+                   const std::vector<Guest>& guests, vec3 from, float heading, bool motion,
+                   bool humanlike, Rng& rng, double now) {
   const Guest* guest = choose_guest(state, guests, from);
   if (guest && guest->kiosk) {
     state.kiosk_known = true;
     state.kiosk_place = guest->head;
   }
-  bool waits = behaviour.mood == Mood::farewell || behaviour.company || motion || behaviour.mood == Mood::greeting;
+  bool waits = behaviour.mood == Mood::farewell || behaviour.company || motion ||
+               behaviour.mood == Mood::greeting;
   if (!(guest && guest->kiosk) && waits && (!guest || behaviour.mood != Mood::telling)) {
     state.at_guest = false;
     state.guest = 0;
@@ -46,7 +49,8 @@ void choose_target(GazeState& state, const BehaviourState& behaviour, const std:
   if (guest && !guest->kiosk && humanlike && now >= state.glance_until) {
     // A long look, a short rest for both.
     state.glancing_away = state.at_guest && !state.glancing_away;
-    state.glance_until = now + (state.glancing_away ? 1.2 + 1.5 * double(rng.uniform()) : 8 + 6 * double(rng.uniform()));
+    state.glance_until = now + (state.glancing_away ? 1.2 + 1.5 * double(rng.uniform())
+                                                    : 8 + 6 * double(rng.uniform()));
     if (state.glancing_away) state.wander_until = 0;
   }
   if (guest && (guest->kiosk || !humanlike || !state.glancing_away)) {
@@ -67,7 +71,8 @@ void choose_target(GazeState& state, const BehaviourState& behaviour, const std:
     state.wander_until = now + 1.5 + 3.5 * double(rng.uniform());
   }
   float yaw = heading + state.wander.x, pitch = state.wander.y;
-  state.target = from + state.wander.z * vec3(std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch));
+  state.target = from + state.wander.z * vec3(std::sin(yaw) * std::cos(pitch), std::sin(pitch),
+                                              std::cos(yaw) * std::cos(pitch));
 }
 
 }  // namespace
@@ -81,12 +86,14 @@ vec3 eyes_origin(const Rig& rig, float heading) {
 vec3 gaze_point(const GazeState& state, const Rig& rig, float heading) {
   float yaw = state.yaw.value + state.saccade.x, pitch = state.pitch.value + state.saccade.y;
   float distance = 1 / std::clamp(state.nearness.value, 0.01f, 4.0f);
-  return eyes_origin(rig, heading) +
-         distance * vec3(std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch));
+  return eyes_origin(rig, heading) + distance * vec3(std::sin(yaw) * std::cos(pitch),
+                                                     std::sin(pitch),
+                                                     std::cos(yaw) * std::cos(pitch));
 }
 
-bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour, const std::vector<Guest>& guests,
-               float heading, bool kiosk_motion, bool humanlike, Rng& rng, double now, float dt) {
+bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour,
+               const std::vector<Guest>& guests, float heading, bool kiosk_motion, bool humanlike,
+               Rng& rng, double now, float dt) {
   vec3 from = eyes_origin(rig, heading);
   vec3 before = state.target;
   choose_target(state, behaviour, guests, from, heading, kiosk_motion, humanlike, rng, now);
@@ -110,7 +117,8 @@ bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour
   float head = eyes ? 0.85f * std::copysign(std::max(std::abs(turn) - 3_deg, 0.0f), turn) : turn;
   if (eyes) head = std::clamp(head, turn - eye_reach_yaw, turn + eye_reach_yaw);
   head = std::clamp(head, torso - head_reach, torso + head_reach);
-  float nod = eyes ? std::clamp(0.65f * pitch, pitch - eye_reach_pitch, pitch + eye_reach_pitch) : pitch;
+  float nod =
+      eyes ? std::clamp(0.65f * pitch, pitch - eye_reach_pitch, pitch + eye_reach_pitch) : pitch;
   nod = std::clamp(nod, -32_deg, 28_deg);
 
   bool jump = state.begun && glm::length(state.target - before) > 0.35f * distance;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the storyteller looks, and how its eyes, head and chest share the way: eyes first and fast, then the head,
-// then the chest. Angles are in humanoid space, about +Y from +Z (positive to its own left) and up.
+// Where the storyteller looks, and how its eyes, head and chest share the way: eyes first and fast,
+// then the head, then the chest. Angles are in humanoid space, about +Y from +Z (positive to its
+// own left) and up.
 #pragma once
 #include "avatar/behaviour.h"
 #include "avatar/rig.h"
@@ -16,22 +17,23 @@ struct GazeState {
   bool at_guest = false;
   uint32_t guest = 0;
   bool kiosk_known = false;
-  vec3 kiosk_place{0};       // where the last kiosk guest's eyes were, humanoid space
-  double glance_until = 0;   // remote guests: not stared at without end
+  vec3 kiosk_place{0};      // where the last kiosk guest's eyes were, humanoid space
+  double glance_until = 0;  // remote guests: not stared at without end
   bool glancing_away = false;
   double wander_until = 0;
-  vec3 wander{0, 0, 4};      // yaw, pitch, distance while looking at nobody
+  vec3 wander{0, 0, 4};  // yaw, pitch, distance while looking at nobody
   double next_saccade = 0;
-  vec2 saccade{0};           // small step of the eyes around the target
-  vec3 target{0, 1.6f, 4};   // what is looked at, humanoid space
-  Spring yaw, pitch, nearness{0.25f, 0};  // line of sight of the eyes; nearness = 1 / distance
-  Spring head_yaw, head_pitch, torso_yaw; // torso_yaw: relative to the heading
+  vec2 saccade{0};                         // small step of the eyes around the target
+  vec3 target{0, 1.6f, 4};                 // what is looked at, humanoid space
+  Spring yaw, pitch, nearness{0.25f, 0};   // line of sight of the eyes; nearness = 1 / distance
+  Spring head_yaw, head_pitch, torso_yaw;  // torso_yaw: relative to the heading
 };
 
-// One tick. `guests` are input.guests with their heads in humanoid space; `heading` is where the body faces.
-// Returns true when the gaze has made a large jump (the eyes like to blink then).
-bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour, const std::vector<Guest>& guests,
-               float heading, bool kiosk_motion, bool humanlike, Rng& rng, double now, float dt);
+// One tick. `guests` are input.guests with their heads in humanoid space; `heading` is where the
+// body faces. Returns true when the gaze has made a large jump (the eyes like to blink then).
+bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour,
+               const std::vector<Guest>& guests, float heading, bool kiosk_motion, bool humanlike,
+               Rng& rng, double now, float dt);
 
 // The middle between the eyes while the body faces `heading`, standing still.
 vec3 eyes_origin(const Rig& rig, float heading);

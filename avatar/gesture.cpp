@@ -79,7 +79,8 @@ GestureMotion tick_gesture(GestureState& state, float dt) {
   if (state.gesture == Gesture::wave) {
     GestureMotion motion = eval(farewell, t);
     // Three waves from the elbow and the wrist while the hand is up.
-    float swing = std::sin(2 * pi * 1.7f * (t - 0.5f)) * smooth_step(0.5f, 0.8f, t) * (1 - smooth_step(2.1f, 2.6f, t));
+    float swing = std::sin(2 * pi * 1.7f * (t - 0.5f)) * smooth_step(0.5f, 0.8f, t) *
+                  (1 - smooth_step(2.1f, 2.6f, t));
     motion.arm[1].turn += 9_deg * swing;
     motion.arm[1].tilt += 12_deg * swing;
     return motion;

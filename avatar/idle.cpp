@@ -5,7 +5,8 @@
 
 namespace wellspring {
 
-IdleMotion tick_idle(IdleState& state, Rng& rng, float lively, bool hands_busy, bool humanlike, double now, float dt) {
+IdleMotion tick_idle(IdleState& state, Rng& rng, float lively, bool hands_busy, bool humanlike,
+                     double now, float dt) {
   IdleMotion motion;
   double pace = 0.23 + 0.07 * double(lively);  // breaths a second
   if (humanlike) pace *= 1 + 0.12 * double(smooth_noise(1, now * 0.1));
@@ -33,13 +34,17 @@ IdleMotion tick_idle(IdleState& state, Rng& rng, float lively, bool hands_busy, 
   motion.head_turn.z = 0.8_deg * side;
   if (!humanlike) return motion;
 
-  auto noise = [&](uint32_t channel, double frequency) { return smooth_noise(channel, now * frequency); };
+  auto noise = [&](uint32_t channel, double frequency) {
+    return smooth_noise(channel, now * frequency);
+  };
   motion.pelvis += vec3(0.004f * noise(10, 0.31), 0, 0.005f * noise(11, 0.27));
-  motion.torso_turn += vec3(0.8_deg * noise(12, 0.23), 0.5_deg * noise(13, 0.29), 0.5_deg * noise(14, 0.21));
-  motion.head_turn += vec3(1.2_deg * noise(15, 0.35) + 0.5_deg * noise(16, 0.9), 0.9_deg * noise(17, 0.4),
-                           1.6_deg * noise(18, 0.25));
+  motion.torso_turn +=
+      vec3(0.8_deg * noise(12, 0.23), 0.5_deg * noise(13, 0.29), 0.5_deg * noise(14, 0.21));
+  motion.head_turn += vec3(1.2_deg * noise(15, 0.35) + 0.5_deg * noise(16, 0.9),
+                           0.9_deg * noise(17, 0.4), 1.6_deg * noise(18, 0.25));
   for (uint32_t s = 0; s < 2; s++) {
-    motion.arm[s] = {1.2_deg * noise(20 + 4 * s, 0.3), 0.5_deg * noise(21 + 4 * s, 0.24), 2.0_deg * noise(22 + 4 * s, 0.36)};
+    motion.arm[s] = {1.2_deg * noise(20 + 4 * s, 0.3), 0.5_deg * noise(21 + 4 * s, 0.24),
+                     2.0_deg * noise(22 + 4 * s, 0.36)};
     motion.curl[s] = 5_deg * noise(23 + 4 * s, 0.33);
   }
   return motion;

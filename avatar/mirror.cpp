@@ -18,9 +18,11 @@ float wanted(float angle, float limit) {
 
 void tick_mirror(MirrorState& state, bool present, vec3 rotation, double now, float dt) {
   vec2 target(0);
-  if (present && is_finite(rotation)) target = {wanted(rotation.x, 25_deg), wanted(rotation.y, 12_deg)};
+  if (present && is_finite(rotation))
+    target = {wanted(rotation.x, 25_deg), wanted(rotation.y, 12_deg)};
   int size = int(state.heard.size());
-  vec2 newest = state.count ? state.heard[size_t((state.first + state.count - 1) % size)].wanted : state.arrived;
+  vec2 newest = state.count ? state.heard[size_t((state.first + state.count - 1) % size)].wanted
+                            : state.arrived;
   if (target != newest) {
     // A full ring (very fast ticks) replaces its newest entry: the latest word counts.
     if (state.count < size) state.count++;
@@ -30,7 +32,8 @@ void tick_mirror(MirrorState& state, bool present, vec3 rotation, double now, fl
   double time = now - dt;
   auto advance = [&](double until) {
     float step = float(std::max(until - time, 0.0));
-    for (int i = 0; i < 2; i++) state.angle[i] = approach(state.angle[i], state.arrived[i], mirror_lag, step);
+    for (int i = 0; i < 2; i++)
+      state.angle[i] = approach(state.angle[i], state.arrived[i], mirror_lag, step);
     time = std::max(time, until);
   };
   while (state.count) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lazy mirror: the guest's head rotation, halved, late and soft, to be added to the storyteller's own.
-// Source: storyteller and kiosk paper, "a delayed and lazy mirror"; its numbers are ours.
+// The lazy mirror: the guest's head rotation, halved, late and soft, to be added to the
+// storyteller's own. Source: storyteller and kiosk paper, "a delayed and lazy mirror"; its numbers
+// are ours.
 #pragma once
 #include <array>
 
@@ -21,7 +22,8 @@ struct MirrorState {
   vec2 angle{0};    // yaw to its own left (the guest's right), pitch up; radians
 };
 
-// `rotation` as Guest::rotation; `present` false: the wanted angle is 0. `now` is the clock after `dt`.
+// `rotation` as Guest::rotation; `present` false: the wanted angle is 0. `now` is the clock after
+// `dt`.
 void tick_mirror(MirrorState& state, bool present, vec3 rotation, double now, float dt);
 
 }  // namespace wellspring

@@ -8,7 +8,8 @@
 
 namespace wellspring {
 
-// About -1..1 with mean 0; changes about once a second. `time` in seconds times the wanted frequency.
+// About -1..1 with mean 0; changes about once a second. `time` in seconds times the wanted
+// frequency.
 inline float smooth_noise(uint32_t channel, double time) {
   double cell = std::floor(time);
   float t = float(time - cell);

@@ -20,7 +20,9 @@ void eval_joints(const Character& character, const Pose& pose, std::vector<mat4>
     mat4 local = glm::mat4_cast(turn);
     local[3] = vec4(joint.center - mat3(local) * joint.center, 1);  // turns about the centre
     if (joint.parent >= 0) to_humanoid[j] = to_humanoid[size_t(joint.parent)] * local;
-    else to_humanoid[j] = is_finite(pose.translation) ? glm::translate(mat4(1), pose.translation) * local : local;
+    else
+      to_humanoid[j] =
+          is_finite(pose.translation) ? glm::translate(mat4(1), pose.translation) * local : local;
   }
 }
 

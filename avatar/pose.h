@@ -15,7 +15,8 @@ struct Pose {
 
 Pose make_rest_pose(const Character& character);
 
-// Where each joint's frame is: `to_humanoid[j]` maps a rest-pose point moved by joint j into humanoid space.
+// Where each joint's frame is: `to_humanoid[j]` maps a rest-pose point moved by joint j into
+// humanoid space.
 void eval_joints(const Character& character, const Pose& pose, std::vector<mat4>& to_humanoid);
 
 }  // namespace wellspring

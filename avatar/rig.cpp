@@ -59,7 +59,8 @@ ArmRig make_arm(const Character& character, int side) {
   vec3 hand = unit(at(middle) - at(arm.wrist), fore);
   arm.hand_hangs = turn_between(arm.fore_hangs * hand, down, vec3(1, 0, 0)) * arm.fore_hangs;
   if (base[1] < 0 || base[4] < 0) return arm;
-  // The palm looks to where fingers close; across it run the knuckles from the little finger to the index.
+  // The palm looks to where fingers close; across it run the knuckles from the little finger to the
+  // index.
   vec3 across = unit(at(base[1]) - at(base[4]), vec3(0, 0, 1));
   vec3 palm = unit(cross(hand, across) * outward, vec3(-outward, 0, 0));
   arm.curl_axis = unit(cross(hand, palm), vec3(0, 0, -outward));
@@ -100,7 +101,8 @@ LegRig make_leg(const Character& character, int side) {
   }
   vec3 along = unit(line, down);
   vec3 off = thigh - along * dot(thigh, along);
-  leg.pole = off.z > 0.004f ? unit(off, vec3(0, 0, 1)) : unit(vec3(0, 0, 1) - along * along.z, vec3(0, 0, 1));
+  leg.pole = off.z > 0.004f ? unit(off, vec3(0, 0, 1))
+                            : unit(vec3(0, 0, 1) - along * along.z, vec3(0, 0, 1));
   return leg;
 }
 
@@ -142,7 +144,8 @@ Rig make_rig(const Character& character) {
     rig.leg[size_t(side)] = make_leg(character, side);
   }
   if (rig.eyes_move) {
-    rig.eyes_center = 0.5f * (character.joints[size_t(rig.eye[0])].center + character.joints[size_t(rig.eye[1])].center);
+    rig.eyes_center = 0.5f * (character.joints[size_t(rig.eye[0])].center +
+                              character.joints[size_t(rig.eye[1])].center);
   } else if (rig.skull >= 0) {
     rig.eyes_center = character.joints[size_t(rig.skull)].center + vec3(0, 0.06f, 0.08f);
   } else {
@@ -152,7 +155,9 @@ Rig make_rig(const Character& character) {
   }
 
   auto displacer = [&](const std::string& name) { return find_displacer(character, name); };
-  auto pair = [&](const std::string& name) { return std::array<int, 2>{displacer(name + "_l"), displacer(name + "_r")}; };
+  auto pair = [&](const std::string& name) {
+    return std::array<int, 2>{displacer(name + "_l"), displacer(name + "_r")};
+  };
   rig.blink = pair("blink");
   rig.smile = pair("smile");
   rig.brow_up = pair("brow_up");
@@ -163,7 +168,8 @@ Rig make_rig(const Character& character) {
   rig.brow_inner_up = displacer("brow_inner_up");
   rig.mouth_open = displacer("mouth_open");
   rig.breathe = displacer("breathe");
-  const char* visemes[15] = {"sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS", "nn", "RR", "aa", "E", "ih", "oh", "ou"};
+  const char* visemes[15] = {"sil", "PP", "FF", "TH", "DD", "kk", "CH", "SS",
+                             "nn",  "RR", "aa", "E",  "ih", "oh", "ou"};
   for (size_t i = 0; i < 15; i++) {
     std::string name = std::string("viseme_") + visemes[i], small = name;
     for (char& c : small) c = char(std::tolower(static_cast<unsigned char>(c)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A character seen by those who move it: which joints are its spine, neck, arms, legs and eyes, and how its
-// arms must turn to hang straight down, so that one gesture fits figures drawn in I-, A- or T-pose. Whatever a
-// figure lacks is -1 and stays still. Made once per character.
+// A character seen by those who move it: which joints are its spine, neck, arms, legs and eyes, and
+// how its arms must turn to hang straight down, so that one gesture fits figures drawn in I-, A- or
+// T-pose. Whatever a figure lacks is -1 and stays still. Made once per character.
 #pragma once
 #include <array>
 
@@ -16,14 +16,15 @@ struct WeightedJoint {
 
 struct FingerJoint {
   int joint = -1;
-  int finger = 0;     // 0 thumb .. 4 little
-  int knuckle = 0;    // 0 at the palm, 1, 2
-  float bent = 0;     // flexion at rest, radians
+  int finger = 0;   // 0 thumb .. 4 little
+  int knuckle = 0;  // 0 at the palm, 1, 2
+  float bent = 0;   // flexion at rest, radians
 };
 
 struct ArmRig {
   int collar = -1, shoulder = -1, elbow = -1, wrist = -1;
-  // Rotations of the rest pose (humanoid space) that make upper arm, forearm and hand hang straight down, palm in.
+  // Rotations of the rest pose (humanoid space) that make upper arm, forearm and hand hang straight
+  // down, palm in.
   quat upper_hangs{1, 0, 0, 0}, fore_hangs{1, 0, 0, 0}, hand_hangs{1, 0, 0, 0};
   float spread = 0;  // how far the upper arm stands off at rest, radians
   std::vector<FingerJoint> fingers;
@@ -42,7 +43,7 @@ struct Rig {
   int root = 0;
   std::vector<WeightedJoint> spine, neck;  // from below
   int skull = -1, jaw = -1;
-  std::array<int, 2> eye{-1, -1}, lid{-1, -1};  // left, right; joints
+  std::array<int, 2> eye{-1, -1}, lid{-1, -1};                   // left, right; joints
   bool jaw_moves = false, lids_move = false, eyes_move = false;  // the joint has vertices
   std::array<ArmRig, 2> arm;
   std::array<LegRig, 2> leg;

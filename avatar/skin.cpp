@@ -16,8 +16,8 @@ vec3 unit_or(vec3 v, vec3 otherwise) {
   return squared > 1e-30f && squared < 1e30f ? v / std::sqrt(squared) : otherwise;
 }
 
-// Triangles around the vertices that displacers move, so that their normals can follow. Vertices that were
-// split for a texture seam share one sum.
+// Triangles around the vertices that displacers move, so that their normals can follow. Vertices
+// that were split for a texture seam share one sum.
 void make_folds(const Character& character, SkinFolds& folds) {
   folds = {};
   folds.character = &character;
@@ -50,7 +50,8 @@ void make_folds(const Character& character, SkinFolds& folds) {
   for (size_t v = 0; v < moves.size(); v++) {
     if (!turns[v]) continue;
     vec3 n = glm::round(character.normals[v] * 1024.0f) + vec3(0);  // + 0: no negative zeros
-    auto [place, added] = groups.emplace(Key{character.positions[v] + vec3(0), n}, uint32_t(groups.size()));
+    auto [place, added] =
+        groups.emplace(Key{character.positions[v] + vec3(0), n}, uint32_t(groups.size()));
     group_of[v] = place->second;
     folds.vertices.push_back(uint32_t(v));
     folds.group.push_back(place->second);
@@ -115,10 +116,12 @@ void skin(const Character& character, const Pose& pose, const mat4& placement, S
     // A vertex's own normal turns as the mean of the faces around it does.
     parallel_ranges(int(folds.group_count), 256, [&](int begin, int end) {
       for (int g = begin; g < end; g++) {
-        vec3 now = eval_fold_normal(folds, uint32_t(g), *rest), before = folds.rest_normal[size_t(g)];
-        folds.turn[size_t(g)] = now == before || now == vec3(0) || before == vec3(0) || dot(now, before) < -0.999f
-                                    ? quat(1, 0, 0, 0)
-                                    : glm::normalize(quat(1 + dot(before, now), cross(before, now)));
+        vec3 now = eval_fold_normal(folds, uint32_t(g), *rest),
+             before = folds.rest_normal[size_t(g)];
+        folds.turn[size_t(g)] =
+            now == before || now == vec3(0) || before == vec3(0) || dot(now, before) < -0.999f
+                ? quat(1, 0, 0, 0)
+                : glm::normalize(quat(1 + dot(before, now), cross(before, now)));
       }
     });
     for (size_t i = 0; i < folds.vertices.size(); i++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moves the vertices: displacers, then linear blend skinning; normals follow. All cores, no allocation
-// after the first call. Called once a tick.
+// Moves the vertices: displacers, then linear blend skinning; normals follow. All cores, no
+// allocation after the first call. Called once a tick.
 #pragma once
 #include <vector>
 
@@ -12,9 +12,10 @@ namespace wellspring {
 struct SkinFolds {
   const Character* character = nullptr;  // whom the rest was made for
   size_t vertex_count = 0;
-  std::vector<uint32_t> vertices, group;  // vertices whose normal may turn, and the group each belongs to
-  uint32_t group_count = 0;               // vertices at one place with one normal
-  std::vector<uint32_t> first;            // triangles[first[g] .. first[g + 1]) lie around group g
+  std::vector<uint32_t> vertices,
+      group;                    // vertices whose normal may turn, and the group each belongs to
+  uint32_t group_count = 0;     // vertices at one place with one normal
+  std::vector<uint32_t> first;  // triangles[first[g] .. first[g + 1]) lie around group g
   std::vector<uvec3> triangles;
   std::vector<vec3> rest_normal;  // mean of the faces at rest
   std::vector<quat> turn;         // from there to the present displacement
@@ -22,13 +23,14 @@ struct SkinFolds {
 
 // Working memory of skin(); one per figure and thread. Made by the first call.
 struct SkinScratch {
-  std::vector<mat4> joints;  // after skin(): eval_joints() of the pose
+  std::vector<mat4> joints;       // after skin(): eval_joints() of the pose
   std::vector<glm::mat3x4> rows;  // the same in the world, first three rows of each
   std::vector<vec3> displaced, displaced_normals;
   SkinFolds folds;
 };
 
-// `placement` takes humanoid space to the world. Output vectors are resized to the character's vertices.
+// `placement` takes humanoid space to the world. Output vectors are resized to the character's
+// vertices.
 void skin(const Character& character, const Pose& pose, const mat4& placement, SkinScratch& scratch,
           std::vector<vec3>& positions, std::vector<vec3>& normals);
 

@@ -10,7 +10,8 @@ constexpr float step_seconds = 0.55f, widest_step = 50_deg, least_step = 8_deg;
 
 float Foot::lift() const { return phase < 1 ? 0.045f * std::sin(pi * phase) : 0; }
 
-void tick_stance(StanceState& state, bool has_legs, float aim, float reach, float patience, double now, float dt) {
+void tick_stance(StanceState& state, bool has_legs, float aim, float reach, float patience,
+                 double now, float dt) {
   float turn = std::abs(aim - state.heading.value);
   bool away = reach < 0 ? state.wanted != 0 : turn > reach;
   if (!away) state.turned_away = -1e30;
@@ -37,9 +38,10 @@ void tick_stance(StanceState& state, bool has_legs, float aim, float reach, floa
     for (Foot& foot : state.foot) foot.from -= whole, foot.to -= whole;
     float left_off = state.wanted - left.to, right_off = state.wanted - right.to;
     // Turning left begins with the left foot, so that the feet never cross.
-    int first = std::abs(left_off) < least_step ? 1 : std::abs(right_off) < least_step ? 0
-                : left_off > 0                  ? (left_off >= right_off ? 0 : 1)
-                                                : (right_off <= left_off ? 1 : 0);
+    int first = std::abs(left_off) < least_step    ? 1
+                : std::abs(right_off) < least_step ? 0
+                : left_off > 0                     ? (left_off >= right_off ? 0 : 1)
+                                                   : (right_off <= left_off ? 1 : 0);
     float off = first == 0 ? left_off : right_off;
     if (std::abs(off) >= least_step) {
       Foot& foot = state.foot[size_t(first)];

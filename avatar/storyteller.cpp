@@ -32,22 +32,29 @@ void tick_stance_and_gaze(StorytellerState& state, const Rig& rig, const Storyte
                           const std::vector<Guest>& guests, float dt) {
   double now = state.clock;
   bool motion = now - state.behaviour.last_motion < 2.5;
-  if (tick_gaze(state.gaze, rig, state.behaviour, guests, state.stance.heading.value, motion, input.humanlike,
-                state.rng, now, dt) && input.humanlike)
+  if (tick_gaze(state.gaze, rig, state.behaviour, guests, state.stance.heading.value, motion,
+                input.humanlike, state.rng, now, dt) &&
+      input.humanlike)
     ask_blink(state.blink, now);
-  bool kiosk = state.behaviour.company || state.mood == Mood::greeting || state.mood == Mood::farewell;
+  bool kiosk =
+      state.behaviour.company || state.mood == Mood::greeting || state.mood == Mood::farewell;
   float reach = kiosk ? 30_deg : state.gaze.at_guest ? 60_deg : -1.0f;
-  float patience = state.mood == Mood::greeting ? 0.15f : kiosk ? 0.5f : state.gaze.at_guest ? 1.2f : 4.0f;
+  float patience = state.mood == Mood::greeting ? 0.15f
+                   : kiosk                      ? 0.5f
+                   : state.gaze.at_guest        ? 1.2f
+                                                : 4.0f;
   vec3 way = state.gaze.target - eyes_origin(rig, state.stance.heading.value);
   float aim = state.stance.heading.value;
   if (glm::length(vec2(way.x, way.z)) > 0.05f) {
     aim = std::atan2(way.x, way.z);
     aim += 2 * pi * std::round((state.stance.heading.value - aim) / (2 * pi));
   }
-  tick_stance(state.stance, rig.leg[0].complete() && rig.leg[1].complete(), aim, reach, patience, now, dt);
+  tick_stance(state.stance, rig.leg[0].complete() && rig.leg[1].complete(), aim, reach, patience,
+              now, dt);
 }
 
-void tick_gestures(StorytellerState& state, const StorytellerInput& input, const StorytellerEvents& events) {
+void tick_gestures(StorytellerState& state, const StorytellerInput& input,
+                   const StorytellerEvents& events) {
   double now = state.clock;
   GestureState& gesture = state.gesture;
   if (events.farewelled) start_gesture(gesture, Gesture::wave);
@@ -88,8 +95,8 @@ void lids_follow(const Rig& rig, const Pose& pose, float closing, FacePose& face
 
 }  // namespace
 
-void tick_storyteller(StorytellerState& state, const Storyteller& storyteller, const StorytellerInput& input,
-                      Pose& pose, StorytellerEvents& events) {
+void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
+                      const StorytellerInput& input, Pose& pose, StorytellerEvents& events) {
   events = {};
   if (!storyteller.character || storyteller.character->joints.empty()) return;
   const Character& character = *storyteller.character;
@@ -113,9 +120,11 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller, c
   tick_stance_and_gaze(state, rig, input, guests, dt);
   tick_gestures(state, input, events);
   GestureMotion gesture = tick_gesture(state.gesture, dt);
-  bool hands_busy = gesture.weight[0] > 0 || gesture.weight[1] > 0 || state.gesture.gesture == Gesture::welcome ||
+  bool hands_busy = gesture.weight[0] > 0 || gesture.weight[1] > 0 ||
+                    state.gesture.gesture == Gesture::welcome ||
                     state.gesture.gesture == Gesture::wave;
-  IdleMotion idle = tick_idle(state.idle, state.rng, state.face.talking, hands_busy, input.humanlike, now, dt);
+  IdleMotion idle =
+      tick_idle(state.idle, state.rng, state.face.talking, hands_busy, input.humanlike, now, dt);
   const Guest* mirrored = nullptr;
   for (const Guest& guest : guests)
     if (guest.kiosk && state.gaze.at_guest && guest.id == state.gaze.guest) mirrored = &guest;
@@ -128,11 +137,13 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller, c
   plan.pelvis_turn = idle.pelvis_turn;
   plan.pelvis_turn.y += 0.4f * gesture.bow;
   plan.torso = idle.torso_turn + vec3(state.gaze.torso_yaw.value, gesture.bow, 0);
-  plan.head = {state.gaze.head_yaw.value + state.mirror.angle.x, state.gaze.head_pitch.value + state.mirror.angle.y, 0};
+  plan.head = {state.gaze.head_yaw.value + state.mirror.angle.x,
+               state.gaze.head_pitch.value + state.mirror.angle.y, 0};
   plan.head += vec3(idle.head_turn.x, -idle.head_turn.y, idle.head_turn.z);
   plan.head.y -= gesture.nod + 0.5f * gesture.bow;
   if (input.humanlike)  // emphasis while speaking
-    plan.head.y -= 2.2_deg * state.face.talking * std::sin(float(std::fmod(state.face.syllables * 1.9, 2 * double(pi))));
+    plan.head.y -= 2.2_deg * state.face.talking *
+                   std::sin(float(std::fmod(state.face.syllables * 1.9, 2 * double(pi))));
   plan.gaze_point = gaze_point(state.gaze, rig, plan.heading);
   plan.shoulders_up = 1.0_deg * idle.breath;
   for (int side = 0; side < 2; side++) {
@@ -156,15 +167,18 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller, c
   eval_face(rig, face, pose);
 }
 
-StorytellerGaze eval_gaze(const StorytellerState& state, const Storyteller& storyteller, const Pose& pose) {
+StorytellerGaze eval_gaze(const StorytellerState& state, const Storyteller& storyteller,
+                          const Pose& pose) {
   StorytellerGaze gaze;
   gaze.target = vec3(storyteller.placement * vec4(state.gaze.target, 1));
   gaze.guest = state.gaze.at_guest ? state.gaze.guest : 0;
   const Rig* rig = state.rig.get();
-  if (!rig || rig->character != storyteller.character || pose.rotations.size() != rig->joints) return gaze;
+  if (!rig || rig->character != storyteller.character || pose.rotations.size() != rig->joints)
+    return gaze;
   vec3 sight(0);
   if (rig->eyes_move) {
-    for (int eye : rig->eye) sight += eval_joint_frame(*rig->character, pose, eye).rotation * vec3(0, 0, 1);
+    for (int eye : rig->eye)
+      sight += eval_joint_frame(*rig->character, pose, eye).rotation * vec3(0, 0, 1);
   } else {
     int joint = rig->skull >= 0 ? rig->skull : rig->root;
     sight = eval_joint_frame(*rig->character, pose, joint).rotation * vec3(0, 0, 1);

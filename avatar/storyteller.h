@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The storyteller's mind and body, tick by tick: whom it notices, what it says, how it stands. State is a
-// value; time is an argument, so a test can run hours in a moment and a replay is bit-identical.
-// Source: the storyteller and kiosk paper (agent's two layers, lazy mirror, farewell override).
+// The storyteller's mind and body, tick by tick: whom it notices, what it says, how it stands.
+// State is a value; time is an argument, so a test can run hours in a moment and a replay is
+// bit-identical. Source: the storyteller and kiosk paper (agent's two layers, lazy mirror, farewell
+// override).
 #pragma once
 #include <memory>
 #include <vector>
@@ -45,11 +46,12 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
 
 // Where the storyteller looks, for messages and measurements.
 struct StorytellerGaze {
-  vec3 target{0};             // world: what it wants to look at
-  float yaw = 0, pitch = 0;   // of its line of sight as posed now, from the way the placement faces; radians,
-                              // yaw positive to its own left, pitch positive up
-  uint32_t guest = 0;         // whom it looks at; 0: nobody
+  vec3 target{0};            // world: what it wants to look at
+  float yaw = 0, pitch = 0;  // of its line of sight as posed now, from the way the placement faces;
+                             // radians, yaw positive to its own left, pitch positive up
+  uint32_t guest = 0;  // whom it looks at; 0: nobody
 };
-StorytellerGaze eval_gaze(const StorytellerState& state, const Storyteller& storyteller, const Pose& pose);
+StorytellerGaze eval_gaze(const StorytellerState& state, const Storyteller& storyteller,
+                          const Pose& pose);
 
 }  // namespace wellspring

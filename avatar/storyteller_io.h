@@ -12,9 +12,10 @@ namespace wellspring {
 struct Guest {
   uint32_t id = 0;
   vec3 head{0};      // between the eyes
-  vec3 rotation{0};  // yaw, pitch, roll of the head relative to facing the storyteller squarely; yaw positive
-                     // to the guest's right, pitch positive up
-  bool kiosk = false;  // a person in front of a kiosk (is greeted); else a remote visitor's camera (is looked at)
+  vec3 rotation{0};  // yaw, pitch, roll of the head relative to facing the storyteller squarely;
+                     // yaw positive to the guest's right, pitch positive up
+  bool kiosk = false;  // a person in front of a kiosk (is greeted); else a remote visitor's camera
+                       // (is looked at)
 };
 
 // What the storyteller is doing, for the page and for tests.
@@ -22,13 +23,14 @@ enum class Mood : uint8_t { idle, noticing, greeting, attending, telling, farewe
 const char* to_string(Mood mood);
 
 struct StorytellerInput {
-  double time = 0;  // seconds, the show's clock
-  float dt = 0;     // since the last tick; any size from 0 to hours is safe
+  double time = 0;            // seconds, the show's clock
+  float dt = 0;               // since the last tick; any size from 0 to hours is safe
   bool kiosk_motion = false;  // something moves before a kiosk but nobody is recognised yet
   std::vector<Guest> guests;
   bool humanlike = true;  // noise for human-like behaviour; off: bit-identical replays
   float speaking = 0;     // mouth activity 0..1: it says something right now
-  bool telling = false;   // a story is being told (Mood::telling while no greeting or farewell is due)
+  bool telling =
+      false;  // a story is being told (Mood::telling while no greeting or farewell is due)
 };
 
 // What happened in this tick, for subtitles and messages.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// ClassicVRML (ISO/IEC 19776-2) and VRML97 onto the node tree. Fields need no types to be read: a value is a
-// node, a list in brackets, or what follows up to the next name. Instances of the H-Anim 1 prototypes become
-// H-Anim nodes; other prototypes are named and left out.
+// ClassicVRML (ISO/IEC 19776-2) and VRML97 onto the node tree. Fields need no types to be read: a
+// value is a node, a list in brackets, or what follows up to the next name. Instances of the H-Anim
+// 1 prototypes become H-Anim nodes; other prototypes are named and left out.
 #include <algorithm>
 #include <cstring>
 
@@ -32,7 +32,8 @@ struct Parser {
   }
 
   std::string shown() const {
-    return token.type == TokenType::end ? "the end of the file" : "'" + std::string(token.text.substr(0, 40)) + "'";
+    return token.type == TokenType::end ? "the end of the file"
+                                        : "'" + std::string(token.text.substr(0, 40)) + "'";
   }
 
   void advance() {
@@ -75,7 +76,9 @@ struct Parser {
     }
   }
 
-  bool is_word(const char* word) const { return token.type == TokenType::word && token.text == word; }
+  bool is_word(const char* word) const {
+    return token.type == TokenType::word && token.text == word;
+  }
   bool is_any(std::initializer_list<const char*> words) const {
     return std::any_of(words.begin(), words.end(), [&](const char* word) { return is_word(word); });
   }
@@ -101,7 +104,8 @@ struct Parser {
     int depth = 0;
     do {
       if (token.type == TokenType::open_brace || token.type == TokenType::open_bracket) depth++;
-      else if (token.type == TokenType::close_brace || token.type == TokenType::close_bracket) depth--;
+      else if (token.type == TokenType::close_brace || token.type == TokenType::close_bracket)
+        depth--;
       else if (token.type == TokenType::end) fail("a bracket is never closed");
       advance();
     } while (depth > 0);
@@ -130,7 +134,8 @@ struct Parser {
     if (is_any({"PROFILE", "COMPONENT"})) {
       advance();
       take_word("a name");
-      while (token.type == TokenType::word && (token.text[0] == ':' || is_number())) advance();  // "name : level"
+      while (token.type == TokenType::word && (token.text[0] == ':' || is_number()))
+        advance();  // "name : level"
       return true;
     }
     if (is_word("META")) {
@@ -161,8 +166,10 @@ struct Parser {
 
   // A node statement into a field of `parent`.
   void parse_node(int parent, const std::string& field, int depth) {
-    if (depth > x3d_max_depth) fail("nodes are nested deeper than " + std::to_string(x3d_max_depth));
-    if (file.nodes.size() >= size_t(x3d_max_nodes)) fail("more than " + std::to_string(x3d_max_nodes) + " nodes");
+    if (depth > x3d_max_depth)
+      fail("nodes are nested deeper than " + std::to_string(x3d_max_depth));
+    if (file.nodes.size() >= size_t(x3d_max_nodes))
+      fail("more than " + std::to_string(x3d_max_nodes) + " nodes");
     int index = int(file.nodes.size());
     if (is_word("USE")) {
       int use_line = token.line;
@@ -190,8 +197,8 @@ struct Parser {
   }
 
   void parse_field(int index, int depth) {
-    if (is_any({"eventIn", "eventOut", "field", "exposedField", "inputOnly", "outputOnly", "initializeOnly",
-                "inputOutput"})) {
+    if (is_any({"eventIn", "eventOut", "field", "exposedField", "inputOnly", "outputOnly",
+                "initializeOnly", "inputOutput"})) {
       bool valued = !is_any({"eventIn", "eventOut", "inputOnly", "outputOnly"});
       advance();
       take_word("a field's type");
@@ -220,9 +227,11 @@ struct Parser {
       advance();
       bool plain = false;
       while (token.type != TokenType::close_bracket) {
-        if (token.type == TokenType::end) fail("the list of field '" + name.substr(0, 40) + "' is never closed");
+        if (token.type == TokenType::end)
+          fail("the list of field '" + name.substr(0, 40) + "' is never closed");
         if (skip_statement()) continue;
-        bool value = token.type == TokenType::string || is_number() || is_any({"TRUE", "FALSE", "true", "false"});
+        bool value = token.type == TokenType::string || is_number() ||
+                     is_any({"TRUE", "FALSE", "true", "false"});
         if (value) {
           add_text(all);
           plain = true;

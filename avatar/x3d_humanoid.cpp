@@ -15,21 +15,24 @@ namespace {
 constexpr int max_visits = 2'000'000;
 
 bool is_group(const std::string& type) {
-  for (const char* name : {"Transform", "Group", "StaticGroup", "Anchor", "Collision", "Billboard", "LOD",
-                           "Switch", "CADLayer", "CADAssembly", "CADPart", "Layer", "LayerSet", "ScreenGroup"})
+  for (const char* name :
+       {"Transform", "Group", "StaticGroup", "Anchor", "Collision", "Billboard", "LOD", "Switch",
+        "CADLayer", "CADAssembly", "CADPart", "Layer", "LayerSet", "ScreenGroup"})
     if (type == name) return true;
   return false;
 }
 
 // Nodes that have no shape and need no word.
 bool is_silent(const std::string& type) {
-  for (const char* end : {"Sensor", "Interpolator", "Light", "Trigger", "Sequencer", "Viewpoint", "Sound"})
-    if (type.size() >= std::strlen(end) && type.compare(type.size() - std::strlen(end), std::string::npos, end) == 0)
+  for (const char* end :
+       {"Sensor", "Interpolator", "Light", "Trigger", "Sequencer", "Viewpoint", "Sound"})
+    if (type.size() >= std::strlen(end) &&
+        type.compare(type.size() - std::strlen(end), std::string::npos, end) == 0)
       return true;
   if (type.rfind("Metadata", 0) == 0) return true;
-  for (const char* name : {"WorldInfo", "NavigationInfo", "Background", "Fog", "Script", "HAnimDisplacer",
-                           "Coordinate", "Normal", "TextureCoordinate", "HAnimMotion", "IndexedFaceSet",
-                           "Appearance", "Material", "AudioClip"})
+  for (const char* name : {"WorldInfo", "NavigationInfo", "Background", "Fog", "Script",
+                           "HAnimDisplacer", "Coordinate", "Normal", "TextureCoordinate",
+                           "HAnimMotion", "IndexedFaceSet", "Appearance", "Material", "AudioClip"})
     if (type == name) return true;
   return false;
 }
@@ -53,7 +56,8 @@ void find_humanoids(const X3dFile& file, const Found& found) {
       continue;
     }
     mat4 matrix = node.type == "Transform" ? item.matrix * transform_of(file, node) : item.matrix;
-    for (size_t i = node.children.size(); i-- > 0;) stack.push_back({node.children[i].node, matrix});
+    for (size_t i = node.children.size(); i-- > 0;)
+      stack.push_back({node.children[i].node, matrix});
   }
 }
 
@@ -82,7 +86,8 @@ void check_face_joints(Character& character) {
     vec3 from_skull = joint.center - character.joints[size_t(skull)].center;
     float length = glm::length(from_skull);
     if (length > 0.25f || from_skull.y < -0.08f)
-      warn_once(character.warnings, "joint " + joint.name + " lies " + std::to_string(int(length * 100 + 0.5f)) +
+      warn_once(character.warnings, "joint " + joint.name + " lies " +
+                                        std::to_string(int(length * 100 + 0.5f)) +
                                         " cm from skullbase: misplaced");
   }
 }
@@ -96,7 +101,8 @@ void stand_on_floor(Character& character) {
     for (const Joint& joint : character.joints) low = std::min(low, joint.center.y - 0.02f);
   if (!std::isfinite(low) || std::abs(low) < 0.03f) return;
   char text[100];
-  std::snprintf(text, sizeof text, "feet are at y = %.3f m: the figure is moved to stand on 0", double(low));
+  std::snprintf(text, sizeof text, "feet are at y = %.3f m: the figure is moved to stand on 0",
+                double(low));
   warn_once(character.warnings, text);
   for (vec3& p : character.positions) p.y -= low;
   for (Joint& joint : character.joints) joint.center.y -= low;
@@ -108,9 +114,11 @@ void stand_on_floor(Character& character) {
 void HumanoidReader::walk_children(int index, const Context& context) {
   for (size_t i = 0; i < file.nodes[size_t(index)].children.size(); i++) {
     const X3dChild child = file.nodes[size_t(index)].children[i];
-    bool elsewhere = false;  // lists of USEs and nodes that are not part of the scene graph below this one
-    for (const char* field : {"joints", "segments", "sites", "viewpoints", "displacers", "skin", "skinCoord",
-                              "skinNormal", "motions", "metadata", "coord", "skinBindingCoords"})
+    bool elsewhere =
+        false;  // lists of USEs and nodes that are not part of the scene graph below this one
+    for (const char* field :
+         {"joints", "segments", "sites", "viewpoints", "displacers", "skin", "skinCoord",
+          "skinNormal", "motions", "metadata", "coord", "skinBindingCoords"})
       elsewhere = elsewhere || child.field == field;
     if (!elsewhere) walk(child.node, context);
   }
@@ -168,7 +176,8 @@ void HumanoidReader::read_joint(int index, Context context) {
     warn_once(file.warnings, "joint name '" + written.substr(0, 60) + "' is not one of H-Anim");
   }
   if (find_joint(character, joint.name) >= 0) {
-    warn_once(file.warnings, where(node) + ": second joint of the name " + joint.name.substr(0, 60));
+    warn_once(file.warnings,
+              where(node) + ": second joint of the name " + joint.name.substr(0, 60));
     joint.name = written + "_" + std::to_string(character.joints.size());
   }
   joint.parent = context.joint;
@@ -177,7 +186,8 @@ void HumanoidReader::read_joint(int index, Context context) {
   joint.rest_rotation = rotation_of(file, node, "rotation");
   if (std::abs(joint.rest_rotation.w) < 0.9999f)
     warn_once(file.warnings, "the file poses the figure: rest is the H-Anim default pose instead");
-  if (!is_finite(joint.center)) throw LoadError(file.path, where(node), "its place is beyond all numbers");
+  if (!is_finite(joint.center))
+    throw LoadError(file.path, where(node), "its place is beyond all numbers");
   std::vector<float> low = floats_of(file, node, "llimit"), high = floats_of(file, node, "ulimit");
   if (low.size() >= 3 && high.size() >= 3)
     for (size_t i = 0; i < 3; i++) joint.limits.push_back({low[i], high[i]});
@@ -207,7 +217,9 @@ void HumanoidReader::read_segment(int index, Context context) {
 void HumanoidReader::read_skeleton(int humanoid) {
   const std::vector<X3dChild> children = file.nodes[size_t(humanoid)].children;
   Context context{root, -1, -1};
-  auto type_of = [&](const X3dChild& child) -> const std::string& { return file.nodes[size_t(child.node)].type; };
+  auto type_of = [&](const X3dChild& child) -> const std::string& {
+    return file.nodes[size_t(child.node)].type;
+  };
   auto walk_roots = [&](auto&& wanted) {
     for (const X3dChild& child : children)
       if (wanted(child)) walk(child.node, context);
@@ -216,8 +228,10 @@ void HumanoidReader::read_skeleton(int humanoid) {
   if (walk_roots([](const X3dChild& child) { return child.field == "skeleton"; })) return;
   // The field forgotten: a joint's default field is "children".
   if (walk_roots([&](const X3dChild& child) {
-        bool anywhere = child.field.empty() || child.field == "children" || child.field == "humanoidBody";
-        return anywhere && (type_of(child) == "HAnimJoint" || is_group(type_of(child))) && !child.use;
+        bool anywhere =
+            child.field.empty() || child.field == "children" || child.field == "humanoidBody";
+        return anywhere && (type_of(child) == "HAnimJoint" || is_group(type_of(child))) &&
+               !child.use;
       }))
     return;
   // Only a flat list: joints in it that no other joint of it contains are roots.
@@ -232,7 +246,8 @@ void HumanoidReader::read_skeleton(int humanoid) {
       if (inside.insert(child.node).second) open.push_back(child.node);
   }
   walk_roots([&](const X3dChild& child) {
-    return type_of(child) == "HAnimJoint" && !inside.count(child.node) && !seen_joints.count(child.node);
+    return type_of(child) == "HAnimJoint" && !inside.count(child.node) &&
+           !seen_joints.count(child.node);
   });
   if (!character.joints.empty())
     warn_once(file.warnings, "the humanoid has no skeleton field: its list of joints is used");
@@ -258,7 +273,8 @@ Character character_from_x3d(X3dFile& file) {
   Character& character = reader.character;
   character.name = node_name(node);
   reader.read_skeleton(humanoid);
-  if (character.joints.empty()) throw LoadError(file.path, where(node), "the humanoid has no joints");
+  if (character.joints.empty())
+    throw LoadError(file.path, where(node), "the humanoid has no joints");
   reader.read_skin(humanoid);
 
   for (const X3dNode& motion : file.nodes)
@@ -268,8 +284,8 @@ Character character_from_x3d(X3dFile& file) {
   character.loa = level_of_articulation(names);
   std::vector<int> said = ints_of(file, node, "loa");
   if (!said.empty() && said[0] >= 0 && said[0] != character.loa)
-    warn_once(file.warnings, "the file says loa " + std::to_string(said[0]) + ", its joints are those of loa " +
-                                 std::to_string(character.loa));
+    warn_once(file.warnings, "the file says loa " + std::to_string(said[0]) +
+                                 ", its joints are those of loa " + std::to_string(character.loa));
   for (const char* field : {"jointBindingPositions", "jointBindingRotations", "jointBindingScales"})
     if (find_field(node, field)) warn_once(file.warnings, std::string(field) + " is not used");
   if (character.parts.empty()) warn_once(file.warnings, "the figure has no surface");
@@ -278,7 +294,8 @@ Character character_from_x3d(X3dFile& file) {
   check_face_joints(character);
   for (const Joint& joint : character.joints)
     if (glm::length(joint.center) > 20)
-      warn_once(character.warnings, "the figure is more than 20 m large: perhaps its unit is not the metre");
+      warn_once(character.warnings,
+                "the figure is more than 20 m large: perhaps its unit is not the metre");
   return std::move(reader.character);
 }
 

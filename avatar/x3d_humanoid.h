@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the first HAnimHumanoid of a node tree: x3d_humanoid.cpp walks the skeleton, x3d_skin.cpp binds the
-// surfaces. Rest is the H-Anim default pose: what the file turns or moves a joint by is only noted.
+// Reads the first HAnimHumanoid of a node tree: x3d_humanoid.cpp walks the skeleton, x3d_skin.cpp
+// binds the surfaces. Rest is the H-Anim default pose: what the file turns or moves a joint by is
+// only noted.
 #pragma once
 #include <map>
 #include <unordered_set>
@@ -18,11 +19,13 @@ struct HumanoidReader {
   explicit HumanoidReader(X3dFile& from) : file(from) { character.first_weight = {0}; }
   X3dFile& file;
   Character character;
-  mat4 root{1};                   // humanoid's own coordinates to humanoid space
-  std::vector<mat4> rest;         // per joint: humanoid's own coordinates to humanoid space, scales of joints included
-  std::vector<int> joint_node;    // per joint: its node
+  mat4 root{1};  // humanoid's own coordinates to humanoid space
+  std::vector<mat4>
+      rest;  // per joint: humanoid's own coordinates to humanoid space, scales of joints included
+  std::vector<int> joint_node;  // per joint: its node
   std::unordered_set<int> seen_joints;
-  std::map<std::tuple<int, int, int>, int> looks;  // (appearance, geometry with colours, solid) -> look
+  std::map<std::tuple<int, int, int>, int>
+      looks;  // (appearance, geometry with colours, solid) -> look
   int visits = 0, depth = 0;
   size_t bytes_read = 0;  // of geometry
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The JSON encoding (X3D JSON, ISO/IEC 19776-5 draft) onto the node tree: "@name" is a field, "-name" holds nodes.
+// The JSON encoding (X3D JSON, ISO/IEC 19776-5 draft) onto the node tree: "@name" is a field,
+// "-name" holds nodes.
 #include <nlohmann/json.hpp>
 
 #include "avatar/x3d_node.h"
@@ -44,10 +45,13 @@ struct Builder {
   }
 
   // {"Group": {...}} or a list of such.
-  void add_nodes(const json& value, int parent, const std::string& field, const std::string& place, int depth) {
-    if (depth > x3d_max_depth) fail(place.substr(0, 200), "nodes are nested deeper than " + std::to_string(x3d_max_depth));
+  void add_nodes(const json& value, int parent, const std::string& field, const std::string& place,
+                 int depth) {
+    if (depth > x3d_max_depth)
+      fail(place.substr(0, 200), "nodes are nested deeper than " + std::to_string(x3d_max_depth));
     if (value.is_array()) {
-      for (size_t i = 0; i < value.size(); i++) add_nodes(value[i], parent, field, place + "/" + std::to_string(i), depth + 1);
+      for (size_t i = 0; i < value.size(); i++)
+        add_nodes(value[i], parent, field, place + "/" + std::to_string(i), depth + 1);
       return;
     }
     if (!value.is_object()) return;
@@ -67,10 +71,12 @@ struct Builder {
 
   void add_node(const std::string& type, const json& content, int parent, const std::string& field,
                 const std::string& place, int depth) {
-    if (file.nodes.size() >= size_t(x3d_max_nodes)) fail("", "more than " + std::to_string(x3d_max_nodes) + " nodes");
+    if (file.nodes.size() >= size_t(x3d_max_nodes))
+      fail("", "more than " + std::to_string(x3d_max_nodes) + " nodes");
     int index = int(file.nodes.size());
     std::string container = field;
-    if (auto it = content.find("@containerField"); it != content.end()) container = text_of(*it, place);
+    if (auto it = content.find("@containerField"); it != content.end())
+      container = text_of(*it, place);
     if (auto it = content.find("@USE"); it != content.end()) {
       uses.push_back({parent, file.nodes[size_t(parent)].children.size(), text_of(*it, place), 0});
       file.nodes[size_t(parent)].children.push_back({container, index - 1, false});
@@ -89,12 +95,14 @@ struct Builder {
     file.nodes[size_t(parent)].children.push_back({container, index, false});
     file.nodes.push_back(std::move(node));
     for (const auto& [name, value] : content.items()) {
-      if (name.size() > 1 && name[0] == '-') add_nodes(value, index, name.substr(1), place + "/" + name, depth + 1);
+      if (name.size() > 1 && name[0] == '-')
+        add_nodes(value, index, name.substr(1), place + "/" + name, depth + 1);
       if (name != "fieldValue") continue;
       for (const json& one : value.is_array() ? value : json::array({value})) {
         if (!one.is_object()) continue;
         std::string field_name = one.contains("@name") ? text_of(one["@name"], place) : "";
-        if (one.contains("@value")) file.nodes[size_t(index)].fields.push_back({field_name, text_of(one["@value"], place)});
+        if (one.contains("@value"))
+          file.nodes[size_t(index)].fields.push_back({field_name, text_of(one["@value"], place)});
         for (const auto& [key, nodes] : one.items())
           if (key[0] == '-') add_nodes(nodes, index, field_name, place + "/fieldValue", depth + 1);
       }
@@ -102,7 +110,8 @@ struct Builder {
   }
 };
 
-// The parser's own stack is no limit, but what is built from 100,000 nested brackets cannot be handled safely.
+// The parser's own stack is no limit, but what is built from 100,000 nested brackets cannot be
+// handled safely.
 void refuse_deep(const std::string& path, const std::string& text) {
   int depth = 0, line = 1;
   bool in_string = false;
@@ -116,7 +125,8 @@ void refuse_deep(const std::string& path, const std::string& text) {
       in_string = true;
     } else if (c == '{' || c == '[') {
       if (++depth > 4 * x3d_max_depth)
-        throw LoadError(path, "line " + std::to_string(line), "brackets are nested deeper than " + std::to_string(4 * x3d_max_depth));
+        throw LoadError(path, "line " + std::to_string(line),
+                        "brackets are nested deeper than " + std::to_string(4 * x3d_max_depth));
     } else if (c == '}' || c == ']') {
       depth--;
     }
@@ -136,7 +146,8 @@ X3dFile parse_x3d_json(const std::string& path, const std::string& text) {
   if (!document.is_object() || !document.contains("X3D") || !document["X3D"].is_object())
     throw LoadError(path, "/X3D", "there is no object of this name");
   const json& root = document["X3D"];
-  if (!root.contains("Scene") || !root["Scene"].is_object()) throw LoadError(path, "/X3D/Scene", "there is no object of this name");
+  if (!root.contains("Scene") || !root["Scene"].is_object())
+    throw LoadError(path, "/X3D/Scene", "there is no object of this name");
   X3dFile file;
   file.path = path;
   file.nodes.push_back({.type = "Scene", .def = "", .line = 0, .fields = {}, .children = {}});
@@ -144,14 +155,16 @@ X3dFile parse_x3d_json(const std::string& path, const std::string& text) {
     const json& units = root["head"]["unit"];
     for (const json& unit : units.is_array() ? units : json::array({units})) {
       bool length = unit.is_object() && unit.contains("@category") && unit["@category"] == "length";
-      if (!length || !unit.contains("@conversionFactor") || !unit["@conversionFactor"].is_number()) continue;
+      if (!length || !unit.contains("@conversionFactor") || !unit["@conversionFactor"].is_number())
+        continue;
       float factor = unit["@conversionFactor"].get<float>();
       if (factor > 1e-6f && factor < 1e6f) file.length_unit = factor;
     }
   }
   Builder builder{file, {}};
   for (const auto& [name, value] : root["Scene"].items())
-    if (!name.empty() && name[0] == '-') builder.add_nodes(value, 0, name.substr(1), "/X3D/Scene/" + name, 1);
+    if (!name.empty() && name[0] == '-')
+      builder.add_nodes(value, 0, name.substr(1), "/X3D/Scene/" + name, 1);
   resolve_uses(file, builder.uses);
   return file;
 }

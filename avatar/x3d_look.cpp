@@ -31,7 +31,8 @@ std::string find_picture(X3dFile& file, const X3dNode& node) {
     if (fs::is_regular_file(full, error)) return full.string();
   }
   if (!urls.empty())
-    warn_once(file.warnings, where(node) + ": no picture '" + urls[0].substr(0, 80) + "' beside the file");
+    warn_once(file.warnings,
+              where(node) + ": no picture '" + urls[0].substr(0, 80) + "' beside the file");
   return "";
 }
 
@@ -72,13 +73,15 @@ X3dLook make_x3d_look(X3dFile& file, int appearance, const vec3* color) {
     look.alpha = 1 - glm::clamp(float_of(file, m, "transparency", 0), 0.0f, 1.0f);
     vec3 emissive = glm::max(vec3_of(file, m, "emissiveColor", vec3(0)), vec3(0));
     if (m.type == "PhysicalMaterial") {
-      if (!color) look.base_color = glm::clamp(vec3_of(file, m, "baseColor", vec3(1)), vec3(0), vec3(1));
+      if (!color)
+        look.base_color = glm::clamp(vec3_of(file, m, "baseColor", vec3(1)), vec3(0), vec3(1));
       look.metallic = glm::clamp(float_of(file, m, "metallic", 1), 0.0f, 1.0f);
       look.roughness = glm::clamp(float_of(file, m, "roughness", 1), 0.0f, 1.0f);
       look.emission = emissive;
       int base = find_child(file, m, "baseTexture", {});
       if (base >= 0) picture = base;
-      for (const char* unused : {"normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture"})
+      for (const char* unused :
+           {"normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture"})
         if (find_child(file, m, unused, {}) >= 0)
           warn_once(file.warnings, std::string(unused) + " of a PhysicalMaterial is not used");
     } else if (m.type == "UnlitMaterial") {
@@ -87,10 +90,12 @@ X3dLook make_x3d_look(X3dFile& file, int appearance, const vec3* color) {
     } else {
       if (!color) look.base_color = linear_from_srgb(vec3_of(file, m, "diffuseColor", vec3(0.8f)));
       look.emission = linear_from_srgb(emissive);
-      // Blinn-Phong exponent 128 * shininess as a GGX roughness, as far as there is a highlight at all.
+      // Blinn-Phong exponent 128 * shininess as a GGX roughness, as far as there is a highlight at
+      // all.
       float exponent = 128 * glm::clamp(float_of(file, m, "shininess", 0.2f), 0.0f, 1.0f);
       float shiny = std::sqrt(std::sqrt(2 / (exponent + 2)));
-      float highlight = glm::clamp(2 * max_component(vec3_of(file, m, "specularColor", vec3(0))), 0.0f, 1.0f);
+      float highlight =
+          glm::clamp(2 * max_component(vec3_of(file, m, "specularColor", vec3(0))), 0.0f, 1.0f);
       look.roughness = glm::mix(0.9f, shiny, highlight);
       int diffuse = find_child(file, m, "diffuseTexture", {});
       if (diffuse >= 0) picture = diffuse;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// X3D Appearance to a Look. PhysicalMaterial is taken as it is (linear factors). The older Material is
-// converted: its colours are display values (sRGB), its highlight sets the roughness.
+// X3D Appearance to a Look. PhysicalMaterial is taken as it is (linear factors). The older Material
+// is converted: its colours are display values (sRGB), its highlight sets the roughness.
 #pragma once
 #include "avatar/character.h"
 #include "avatar/x3d_node.h"
@@ -12,7 +12,8 @@ struct X3dLook {
   mat3 uv_transform{1};  // TextureTransform, for X3D texture coordinates
 };
 
-// `appearance` < 0: the default look. `color`: the geometry's own colour, which replaces the material's.
+// `appearance` < 0: the default look. `color`: the geometry's own colour, which replaces the
+// material's.
 X3dLook make_x3d_look(X3dFile& file, int appearance, const vec3* color);
 
 }  // namespace wellspring

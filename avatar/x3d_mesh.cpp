@@ -41,9 +41,10 @@ vec3 polygon_normal(const Faces& faces, size_t face, const std::vector<vec3>& po
   return sum * 0.5f;
 }
 
-// One corner's normal: the mean of the faces around its point that turn away less than the crease angle
-// (X3D 4, 11.2.3).
-std::vector<vec3> crease_normals(const Faces& faces, const std::vector<vec3>& points, float crease) {
+// One corner's normal: the mean of the faces around its point that turn away less than the crease
+// angle (X3D 4, 11.2.3).
+std::vector<vec3> crease_normals(const Faces& faces, const std::vector<vec3>& points,
+                                 float crease) {
   size_t count = faces.count();
   std::vector<vec3> area(count), unit(count);
   std::vector<uint32_t> first(points.size() + 1, 0), around(faces.corners.size());
@@ -71,7 +72,8 @@ std::vector<vec3> crease_normals(const Faces& faces, const std::vector<vec3>& po
   return normals;
 }
 
-// Ears of one polygon, projected along its normal; what cannot be cut (crossing edges) becomes a fan.
+// Ears of one polygon, projected along its normal; what cannot be cut (crossing edges) becomes a
+// fan.
 void cut_polygon(const Faces& faces, size_t face, const std::vector<vec3>& points, bool convex,
                  const std::vector<uint32_t>& vertex_of, std::vector<uvec3>& out) {
   uint32_t begin = faces.first[face], n = faces.first[face + 1] - begin;
@@ -93,7 +95,9 @@ void cut_polygon(const Faces& faces, size_t face, const std::vector<vec3>& point
     flat[i] = {dot(p, u), dot(p, v)};
     left[i] = i;
   }
-  auto area = [](vec2 a, vec2 b, vec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); };
+  auto area = [](vec2 a, vec2 b, vec2 c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  };
   while (left.size() > 3) {
     size_t m = left.size(), ear = m;
     for (size_t i = 0; i < m && ear == m; i++) {
@@ -115,7 +119,8 @@ void cut_polygon(const Faces& faces, size_t face, const std::vector<vec3>& point
   for (size_t i = 1; i + 1 < left.size(); i++) emit(left[0], left[i], left[i + 1]);
 }
 
-// The default mapping of X3D 4, 11.2.2: s along the longest side of the bounding box, t along the second.
+// The default mapping of X3D 4, 11.2.2: s along the longest side of the bounding box, t along the
+// second.
 std::vector<vec2> default_uv(const X3dMesh& mesh) {
   vec3 low(INFINITY), high(-INFINITY);
   for (vec3 p : mesh.points) low = glm::min(low, p), high = glm::max(high, p);
@@ -147,7 +152,8 @@ struct Reader {
       return;
     }
     if (faces.corners.size() + face.size() > max_corners)
-      throw LoadError(file.path, where(node), "has more than " + std::to_string(max_corners) + " corners");
+      throw LoadError(file.path, where(node),
+                      "has more than " + std::to_string(max_corners) + " corners");
     faces.corners.insert(faces.corners.end(), face.begin(), face.end());
     faces.first.push_back(uint32_t(faces.corners.size()));
   }
@@ -196,7 +202,8 @@ struct Reader {
     auto corner = [&](size_t i) { return Corner{index[i], index[i], index[i]}; };
     if (type.find("Triangle") != std::string::npos && type.find("Strip") == std::string::npos &&
         type.find("Fan") == std::string::npos) {
-      for (size_t i = 0; i + 2 < index.size(); i += 3) add({corner(i), corner(i + 1), corner(i + 2)});
+      for (size_t i = 0; i + 2 < index.size(); i += 3)
+        add({corner(i), corner(i + 1), corner(i + 2)});
     } else if (type.find("Quad") != std::string::npos) {
       for (size_t i = 0; i + 3 < index.size(); i += 4)
         add({corner(i), corner(i + 1), corner(i + 2), corner(i + 3)});
@@ -245,7 +252,8 @@ struct Reader {
     }
     float crease = 0;
     if (node.type == "IndexedFaceSet") crease = float_of(file, node, "creaseAngle", 0);
-    else if (node.type.rfind("Indexed", 0) == 0 && bool_of(node, "normalPerVertex", true)) crease = pi;
+    else if (node.type.rfind("Indexed", 0) == 0 && bool_of(node, "normalPerVertex", true))
+      crease = pi;
     return crease_normals(faces, mesh.points, crease);
   }
 
@@ -257,7 +265,8 @@ struct Reader {
     size_t step = colors.type == "ColorRGBA" ? 4 : 3, count = values.size() / step;
     if (count == 0) return;
     vec3 sum(0);
-    for (size_t i = 0; i < count; i++) sum += vec3(values[i * step], values[i * step + 1], values[i * step + 2]);
+    for (size_t i = 0; i < count; i++)
+      sum += vec3(values[i * step], values[i * step + 1], values[i * step + 2]);
     mesh.color = sum / float(count);
     warn_once(file.warnings, "colours of single vertices are averaged to one colour a part");
   }
@@ -278,7 +287,8 @@ struct Reader {
                                    " faces with an index out of range are left out");
     std::vector<vec3> normals = read_normals(faces);
     std::vector<vec2> given_uv;
-    int uv_node = find_child(file, node, "texCoord", {"TextureCoordinate", "MultiTextureCoordinate"});
+    int uv_node =
+        find_child(file, node, "texCoord", {"TextureCoordinate", "MultiTextureCoordinate"});
     if (uv_node >= 0 && file.nodes[size_t(uv_node)].type == "MultiTextureCoordinate")
       uv_node = find_child(file, file.nodes[size_t(uv_node)], "texCoord", {"TextureCoordinate"});
     if (uv_node >= 0 && file.nodes[size_t(uv_node)].type == "TextureCoordinate") {
@@ -294,7 +304,9 @@ struct Reader {
             bool convex) {
     struct Key {
       uint32_t word[6];
-      bool operator==(const Key& other) const { return std::memcmp(word, other.word, sizeof word) == 0; }
+      bool operator==(const Key& other) const {
+        return std::memcmp(word, other.word, sizeof word) == 0;
+      }
     };
     struct Hash {
       size_t operator()(const Key& key) const {
@@ -309,7 +321,8 @@ struct Reader {
       const Corner& corner = faces.corners[i];
       vec2 uv(0);
       if (corner.uv >= 0 && size_t(corner.uv) < given_uv.size()) uv = given_uv[size_t(corner.uv)];
-      vec3 n = glm::round(normals[i] * 4096.0f);  // normals of one smooth surface differ in their last bits
+      vec3 n = glm::round(normals[i] *
+                          4096.0f);  // normals of one smooth surface differ in their last bits
       int32_t q[3] = {int32_t(n.x), int32_t(n.y), int32_t(n.z)};
       Key key{};
       key.word[0] = uint32_t(corner.point);
@@ -335,9 +348,9 @@ X3dMesh make_x3d_mesh(X3dFile& file, int geometry) {
   X3dMesh mesh;
   for (const char* type : {"Box", "Sphere", "Cylinder", "Cone"})
     if (node.type == type) return make_x3d_primitive(file, node);
-  for (const char* type : {"IndexedFaceSet", "IndexedTriangleSet", "TriangleSet", "IndexedTriangleStripSet",
-                           "TriangleStripSet", "IndexedTriangleFanSet", "TriangleFanSet", "IndexedQuadSet",
-                           "QuadSet"})
+  for (const char* type :
+       {"IndexedFaceSet", "IndexedTriangleSet", "TriangleSet", "IndexedTriangleStripSet",
+        "TriangleStripSet", "IndexedTriangleFanSet", "TriangleFanSet", "IndexedQuadSet", "QuadSet"})
     if (node.type == type) {
       Reader{file, node, mesh}.read();
       return mesh;

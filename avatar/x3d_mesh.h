@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// X3D geometry nodes as triangles: polygons cut, normals made, corners that agree in everything welded.
+// X3D geometry nodes as triangles: polygons cut, normals made, corners that agree in everything
+// welded.
 #pragma once
 #include <optional>
 
@@ -18,8 +19,8 @@ struct X3dMesh {
   std::optional<vec3> color;       // mean of the Color node, as written
 };
 
-// Triangles of a geometry node; no triangles where the type is none that has a surface or is unsupported
-// (a warning names it). Faces with indices out of range are left out with a warning.
+// Triangles of a geometry node; no triangles where the type is none that has a surface or is
+// unsupported (a warning names it). Faces with indices out of range are left out with a warning.
 X3dMesh make_x3d_mesh(X3dFile& file, int geometry);
 
 // The mesh of Box, Sphere, Cylinder or Cone.

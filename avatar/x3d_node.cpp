@@ -42,8 +42,9 @@ void refuse_cycles(const X3dFile& file) {
       const X3dChild& child = node.children[top.next++];
       uint8_t& seen = color[size_t(child.node)];
       if (seen == 1)
-        throw LoadError(file.path, where(node),
-                        "USE of '" + file.nodes[size_t(child.node)].def + "' puts a node inside itself");
+        throw LoadError(
+            file.path, where(node),
+            "USE of '" + file.nodes[size_t(child.node)].def + "' puts a node inside itself");
       if (seen == 0) {
         seen = 1;
         stack.push_back({child.node, 0});
@@ -61,14 +62,17 @@ X3dFile parse_x3d(const std::string& path, const std::string& text) {
   if (wide || (start < text.size() && text[start] == '<')) return parse_x3d_xml(path, text);
   if (start < text.size() && text[start] == '{') return parse_x3d_json(path, text);
   std::string_view head = std::string_view(text).substr(start, 20);
-  if (head.rfind("#X3D", 0) == 0 || head.rfind("#VRML V2", 0) == 0) return parse_x3d_classic(path, text);
-  if (head.rfind("#VRML V1", 0) == 0) throw LoadError(path, "line 1", "is VRML 1, which knows no H-Anim");
+  if (head.rfind("#X3D", 0) == 0 || head.rfind("#VRML V2", 0) == 0)
+    return parse_x3d_classic(path, text);
+  if (head.rfind("#VRML V1", 0) == 0)
+    throw LoadError(path, "line 1", "is VRML 1, which knows no H-Anim");
   throw LoadError(path, "", "is no X3D (XML, ClassicVRML, JSON) and no VRML 97");
 }
 
 void resolve_uses(X3dFile& file, const std::vector<X3dPendingUse>& pending) {
   if (pending.empty()) return;
-  // A name may be defined again: a USE means the nearest definition before it, else the first one after.
+  // A name may be defined again: a USE means the nearest definition before it, else the first one
+  // after.
   std::unordered_map<std::string, std::vector<int>> defined;  // ascending node indices
   for (size_t i = 0; i < file.nodes.size(); i++)
     if (!file.nodes[i].def.empty()) defined[file.nodes[i].def].push_back(int(i));
@@ -76,13 +80,14 @@ void resolve_uses(X3dFile& file, const std::vector<X3dPendingUse>& pending) {
   for (const X3dPendingUse& use : pending) {
     auto found = defined.find(use.name);
     X3dChild& child = file.nodes[size_t(use.parent)].children[use.child];
-    if (file.nodes[size_t(use.parent)].type == "Script") {  // a script may well hold itself; it has no surface
+    if (file.nodes[size_t(use.parent)].type ==
+        "Script") {  // a script may well hold itself; it has no surface
       unknown.push_back({use.parent, use.child});
       continue;
     }
     if (found == defined.end()) {
-      warn_once(file.warnings, "line " + std::to_string(use.line) + ": USE of '" + use.name.substr(0, 60) +
-                                   "', which is defined nowhere");
+      warn_once(file.warnings, "line " + std::to_string(use.line) + ": USE of '" +
+                                   use.name.substr(0, 60) + "', which is defined nowhere");
       unknown.push_back({use.parent, use.child});
       continue;
     }

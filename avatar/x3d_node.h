@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An X3D or VRML file as a plain tree of nodes, whatever its encoding. The parsers (x3d_xml.cpp, ...)
-// fill it; character_from_x3d.cpp reads it. Values stay text until somebody asks for them by type.
+// An X3D or VRML file as a plain tree of nodes, whatever its encoding. The parsers (x3d_xml.cpp,
+// ...) fill it; character_from_x3d.cpp reads it. Values stay text until somebody asks for them by
+// type.
 #pragma once
 #include <optional>
 #include <string>
@@ -22,7 +23,8 @@ struct X3dChild {
 };
 
 struct X3dNode {
-  std::string type;  // X3D 4 name: "HAnimJoint" also where the file says "Joint" (H-Anim 1) or a PROTO of it
+  std::string type;  // X3D 4 name: "HAnimJoint" also where the file says "Joint" (H-Anim 1) or a
+                     // PROTO of it
   std::string def;
   int line = 0;  // 0: unknown
   std::vector<X3dField> fields;
@@ -41,16 +43,19 @@ inline constexpr size_t x3d_max_bytes = size_t(128) << 20;
 inline constexpr int x3d_max_nodes = 500'000;
 inline constexpr int x3d_max_depth = 400;
 
-// Parses `text` (the content of `path`), whichever encoding it is in. Throws LoadError with the line.
+// Parses `text` (the content of `path`), whichever encoding it is in. Throws LoadError with the
+// line.
 X3dFile parse_x3d(const std::string& path, const std::string& text);
 X3dFile parse_x3d_xml(const std::string& path, const std::string& text);
-X3dFile parse_x3d_classic(const std::string& path, const std::string& text);  // ClassicVRML and VRML97
+X3dFile parse_x3d_classic(const std::string& path,
+                          const std::string& text);  // ClassicVRML and VRML97
 X3dFile parse_x3d_json(const std::string& path, const std::string& text);
 
 // For the parsers: "Joint" -> "HAnimJoint", "x3d:Shape" -> "Shape".
 std::string x3d_type_name(std::string_view name);
-// For the parsers: USE children carry their name in `pending` until all nodes are known. Resolves them
-// (an unknown name is a warning and the child goes) and throws LoadError where they make a cycle.
+// For the parsers: USE children carry their name in `pending` until all nodes are known. Resolves
+// them (an unknown name is a warning and the child goes) and throws LoadError where they make a
+// cycle.
 struct X3dPendingUse {
   int parent = 0;
   size_t child = 0;
@@ -64,25 +69,27 @@ void warn_once(std::vector<std::string>& warnings, const std::string& text);
 
 std::string where(const X3dNode& node);  // "line 12 (HAnimJoint l_hip)"
 
-// Values of a node's field; nothing where the field is absent. Throw LoadError where it is malformed,
-// has a number that is not finite or has too few of them.
+// Values of a node's field; nothing where the field is absent. Throw LoadError where it is
+// malformed, has a number that is not finite or has too few of them.
 const std::string* find_field(const X3dNode& node, std::string_view name);
 std::vector<float> floats_of(const X3dFile& file, const X3dNode& node, std::string_view name);
 std::vector<int> ints_of(const X3dFile& file, const X3dNode& node, std::string_view name);
 float float_of(const X3dFile& file, const X3dNode& node, std::string_view name, float otherwise);
 vec3 vec3_of(const X3dFile& file, const X3dNode& node, std::string_view name, vec3 otherwise);
-quat rotation_of(const X3dFile& file, const X3dNode& node, std::string_view name);  // identity if absent
+quat rotation_of(const X3dFile& file, const X3dNode& node,
+                 std::string_view name);  // identity if absent
 bool bool_of(const X3dNode& node, std::string_view name, bool otherwise);
 std::string string_of(const X3dNode& node, std::string_view name);  // trimmed, unquoted
 std::vector<std::string> strings_of(const X3dNode& node, std::string_view name);
 std::vector<vec3> points_of(const X3dFile& file, const X3dNode& node, std::string_view name);
 
-// First child in one of these fields (an empty field name matches the default) or of one of these types.
+// First child in one of these fields (an empty field name matches the default) or of one of these
+// types.
 int find_child(const X3dFile& file, const X3dNode& node, std::string_view field,
                std::initializer_list<std::string_view> types);
 
-// translation * center * rotation * scaleOrientation * scale * ... of Transform, HAnimJoint, HAnimSite,
-// HAnimHumanoid (X3D 4, 10.4.4).
+// translation * center * rotation * scaleOrientation * scale * ... of Transform, HAnimJoint,
+// HAnimSite, HAnimHumanoid (X3D 4, 10.4.4).
 mat4 transform_of(const X3dFile& file, const X3dNode& node);
 
 }  // namespace wellspring

@@ -75,9 +75,12 @@ X3dMesh make_x3d_primitive(const X3dFile& file, const X3dNode& node) {
   float normal_radius = cone && slope > 0 ? 2 * half / slope : 1;
   float normal_y = cone && slope > 0 ? radius / slope : 0;
   if (bool_of(node, "side", true))
-    revolve(mesh, {{radius, -half, normal_radius, normal_y, 0}, {top_radius, half, normal_radius, normal_y, 1}});
-  if (bool_of(node, "bottom", true)) revolve(mesh, {{0, -half, 0, -1, 0}, {radius, -half, 0, -1, 1}});
-  if (!cone && bool_of(node, "top", true)) revolve(mesh, {{radius, half, 0, 1, 0}, {0, half, 0, 1, 1}});
+    revolve(mesh, {{radius, -half, normal_radius, normal_y, 0},
+                   {top_radius, half, normal_radius, normal_y, 1}});
+  if (bool_of(node, "bottom", true))
+    revolve(mesh, {{0, -half, 0, -1, 0}, {radius, -half, 0, -1, 1}});
+  if (!cone && bool_of(node, "top", true))
+    revolve(mesh, {{radius, half, 0, 1, 0}, {0, half, 0, 1, 1}});
   return mesh;
 }
 

@@ -10,7 +10,8 @@ namespace wellspring {
 namespace {
 
 // Gathers skinCoordIndex/skinCoordWeight of all joints by point, normalised.
-SkinPoints read_weights(X3dFile& file, const std::vector<int>& joint_node, int coordinate, size_t count) {
+SkinPoints read_weights(X3dFile& file, const std::vector<int>& joint_node, int coordinate,
+                        size_t count) {
   struct Entry {
     uint32_t point;
     JointWeight weight;
@@ -85,7 +86,8 @@ void HumanoidReader::add_shape(int shape, const mat4& matrix, int joint, const S
   int geometry = -1;
   for (const X3dChild& child : node.children) {
     const std::string& type = file.nodes[size_t(child.node)].type;
-    if (child.field == "geometry" || (child.field.empty() && type != "Appearance" && type.rfind("Metadata", 0) != 0))
+    if (child.field == "geometry" ||
+        (child.field.empty() && type != "Appearance" && type.rfind("Metadata", 0) != 0))
       geometry = child.node;
   }
   if (geometry < 0) return;
@@ -96,24 +98,29 @@ void HumanoidReader::add_shape(int shape, const mat4& matrix, int joint, const S
   // A shape may be used very often: what is read in all is bounded.
   for (const X3dField& field : file.nodes[size_t(geometry)].fields) bytes_read += field.text.size();
   for (const X3dChild& child : file.nodes[size_t(geometry)].children)
-    for (const X3dField& field : file.nodes[size_t(child.node)].fields) bytes_read += field.text.size();
+    for (const X3dField& field : file.nodes[size_t(child.node)].fields)
+      bytes_read += field.text.size();
   if (bytes_read > 4 * x3d_max_bytes)
     throw LoadError(file.path, where(node), "shapes used over and over are too large in all");
   X3dMesh mesh = make_x3d_mesh(file, geometry);
   if (mesh.triangles.empty()) return;
   uint32_t first = uint32_t(character.positions.size());
   if (first + mesh.point_of.size() > max_vertices)
-    throw LoadError(file.path, where(node), "more than " + std::to_string(max_vertices) + " vertices");
+    throw LoadError(file.path, where(node),
+                    "more than " + std::to_string(max_vertices) + " vertices");
   int appearance = find_child(file, node, "appearance", {"Appearance"});
   X3dLook look = make_x3d_look(file, appearance, mesh.color ? &*mesh.color : nullptr);
-  auto [place, added] = looks.emplace(
-      std::tuple(appearance, mesh.color ? geometry : -1, int(mesh.solid)), int(character.looks.size()));
+  auto [place, added] =
+      looks.emplace(std::tuple(appearance, mesh.color ? geometry : -1, int(mesh.solid)),
+                    int(character.looks.size()));
   if (added) {
     look.look.double_sided = look.look.double_sided || !mesh.solid;
     character.looks.push_back(look.look);
   }
-  Part part{.name = node.def.empty() ? look.look.name : node.def, .look = place->second, .triangles = {}};
-  if (!character.segments.empty() && !skin && node.def.empty()) part.name = character.segments.back().name;
+  Part part{
+      .name = node.def.empty() ? look.look.name : node.def, .look = place->second, .triangles = {}};
+  if (!character.segments.empty() && !skin && node.def.empty())
+    part.name = character.segments.back().name;
 
   for (size_t v = 0; v < mesh.point_of.size(); v++) {
     uint32_t point = mesh.point_of[v];
@@ -129,7 +136,8 @@ void HumanoidReader::add_shape(int shape, const mat4& matrix, int joint, const S
       character.weights.push_back({uint16_t(joint), 1});
     }
     vec3 position(to_rest * vec4(mesh.points[point], 1));
-    if (!is_finite(position)) throw LoadError(file.path, where(node), "a point lies beyond all numbers");
+    if (!is_finite(position))
+      throw LoadError(file.path, where(node), "a point lies beyond all numbers");
     character.positions.push_back(position);
     character.normals.push_back(safe_normal(to_rest, mesh.normals[v]));
     vec3 uv = look.uv_transform * vec3(mesh.uv[v], 1);
@@ -157,8 +165,9 @@ void HumanoidReader::add_displacers(int index, const mat4& direction, int coordi
     std::vector<int> points = ints_of(file, node, "coordIndex");
     std::vector<vec3> moves = points_of(file, node, "displacements");
     if (points.size() != moves.size())
-      warn_once(file.warnings, where(node) + ": " + std::to_string(points.size()) + " indices but " +
-                                   std::to_string(moves.size()) + " displacements");
+      warn_once(file.warnings, where(node) + ": " + std::to_string(points.size()) +
+                                   " indices but " + std::to_string(moves.size()) +
+                                   " displacements");
     std::map<uint32_t, vec3> by_point;
     size_t outside = 0, point_count = 0;
     for (const Placed& place : placed)
@@ -168,7 +177,8 @@ void HumanoidReader::add_displacers(int index, const mat4& direction, int coordi
       else by_point[uint32_t(points[i])] += moves[i];
     }
     if (outside)
-      warn_once(file.warnings, where(node) + ": " + std::to_string(outside) + " indices out of range, left out");
+      warn_once(file.warnings,
+                where(node) + ": " + std::to_string(outside) + " indices out of range, left out");
     for (const Placed& place : placed) {
       if (place.coordinate != coordinate) continue;
       mat3 turn = mat3(direction) * mat3(place.matrix);
@@ -184,7 +194,8 @@ void HumanoidReader::add_displacers(int index, const mat4& direction, int coordi
     int same = find_displacer(character, displacer.name);
     if (same >= 0) {  // one control on several surfaces or joints
       Displacer& other = character.displacers[size_t(same)];
-      other.vertices.insert(other.vertices.end(), displacer.vertices.begin(), displacer.vertices.end());
+      other.vertices.insert(other.vertices.end(), displacer.vertices.begin(),
+                            displacer.vertices.end());
       other.displacements.insert(other.displacements.end(), displacer.displacements.begin(),
                                  displacer.displacements.end());
     } else {
@@ -198,7 +209,8 @@ void HumanoidReader::read_skin(int humanoid) {
   std::vector<std::pair<int, mat4>> shapes, open;
   for (const X3dChild& child : node.children) {
     const std::string& type = file.nodes[size_t(child.node)].type;
-    bool skin = child.field == "skin" || ((child.field.empty() || child.field == "children") && type == "Shape");
+    bool skin = child.field == "skin" ||
+                ((child.field.empty() || child.field == "children") && type == "Shape");
     if (skin) open.push_back({child.node, mat4(1)});
   }
   for (int guard = 0; !open.empty(); guard++) {
@@ -217,15 +229,18 @@ void HumanoidReader::read_skin(int humanoid) {
     }
   }
   auto coordinate_of = [&](int shape) {
-    int geometry = find_child(file, file.nodes[size_t(shape)], "geometry",
-                              {"IndexedFaceSet", "IndexedTriangleSet", "TriangleSet", "IndexedTriangleStripSet",
-                               "IndexedTriangleFanSet", "IndexedQuadSet"});
+    int geometry =
+        find_child(file, file.nodes[size_t(shape)], "geometry",
+                   {"IndexedFaceSet", "IndexedTriangleSet", "TriangleSet",
+                    "IndexedTriangleStripSet", "IndexedTriangleFanSet", "IndexedQuadSet"});
     return geometry < 0 ? -1
-                        : find_child(file, file.nodes[size_t(geometry)], "coord", {"Coordinate", "CoordinateDouble"});
+                        : find_child(file, file.nodes[size_t(geometry)], "coord",
+                                     {"Coordinate", "CoordinateDouble"});
   };
   int skin_coordinate = find_child(file, node, "skinCoord", {"Coordinate", "CoordinateDouble"});
   bool has_weights = false;
-  for (int j : joint_node) has_weights = has_weights || find_field(file.nodes[size_t(j)], "skinCoordIndex");
+  for (int j : joint_node)
+    has_weights = has_weights || find_field(file.nodes[size_t(j)], "skinCoordIndex");
   if (skin_coordinate < 0 && has_weights && !shapes.empty()) {
     skin_coordinate = coordinate_of(shapes[0].first);
     warn_once(file.warnings, "the humanoid has no skinCoord: the first skin's Coordinate is taken");
@@ -242,12 +257,15 @@ void HumanoidReader::read_skin(int humanoid) {
     if (!fits && coordinate >= 0 && skin_coordinate >= 0) {
       size_t count = points_of(file, file.nodes[size_t(coordinate)], "point").size();
       fits = count == skin.count;
-      if (fits) warn_once(file.warnings, "the skin's Coordinate is not the skinCoord node but as long: taken as it");
+      if (fits)
+        warn_once(file.warnings,
+                  "the skin's Coordinate is not the skinCoord node but as long: taken as it");
     }
     if (fits) {
       add_shape(shape, matrix, -1, &skin);
     } else {
-      warn_once(file.warnings, where(file.nodes[size_t(shape)]) + ": skin without skinCoord follows the root joint");
+      warn_once(file.warnings, where(file.nodes[size_t(shape)]) +
+                                   ": skin without skinCoord follows the root joint");
       add_shape(shape, rest[0] * matrix, 0, nullptr);
     }
   }

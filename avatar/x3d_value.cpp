@@ -13,12 +13,14 @@ bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == ',' || c == '[' || c == ']';
 }
 
-[[noreturn]] void fail(const X3dFile& file, const X3dNode& node, std::string_view field, std::string what) {
+[[noreturn]] void fail(const X3dFile& file, const X3dNode& node, std::string_view field,
+                       std::string what) {
   throw LoadError(file.path, where(node), "field '" + std::string(field) + "' " + what);
 }
 
 template <class Number, class Parse>
-std::vector<Number> numbers(const X3dFile& file, const X3dNode& node, std::string_view name, Parse parse) {
+std::vector<Number> numbers(const X3dFile& file, const X3dNode& node, std::string_view name,
+                            Parse parse) {
   std::vector<Number> result;
   const std::string* text = find_field(node, name);
   if (!text) return result;
@@ -32,8 +34,9 @@ std::vector<Number> numbers(const X3dFile& file, const X3dNode& node, std::strin
     if (!stop || (stop < end && !is_space(*stop))) {
       const char* word = p;
       while (word < end && !is_space(*word)) word++;
-      fail(file, node, name, "holds '" + std::string(p, std::min<ptrdiff_t>(word - p, 40)) +
-                                 "', which is no finite number");
+      fail(file, node, name,
+           "holds '" + std::string(p, std::min<ptrdiff_t>(word - p, 40)) +
+               "', which is no finite number");
     }
     result.push_back(value);
     p = stop;
@@ -70,23 +73,26 @@ const std::string* find_field(const X3dNode& node, std::string_view name) {
 }
 
 std::vector<float> floats_of(const X3dFile& file, const X3dNode& node, std::string_view name) {
-  return numbers<float>(file, node, name, [](const char* p, const char* end, float& value) -> const char* {
-    if (*p == '+') p++;
-    double wide = 0;  // so that 1e-60 reads as 0 instead of an error
-    auto [stop, error] = std::from_chars(p, end, wide);
-    if (error == std::errc::result_out_of_range) wide = std::abs(wide) < 1 ? 0 : INFINITY;
-    else if (error != std::errc()) return nullptr;
-    value = float(wide);
-    return std::isfinite(value) ? stop : nullptr;
-  });
+  return numbers<float>(file, node, name,
+                        [](const char* p, const char* end, float& value) -> const char* {
+                          if (*p == '+') p++;
+                          double wide = 0;  // so that 1e-60 reads as 0 instead of an error
+                          auto [stop, error] = std::from_chars(p, end, wide);
+                          if (error == std::errc::result_out_of_range)
+                            wide = std::abs(wide) < 1 ? 0 : INFINITY;
+                          else if (error != std::errc()) return nullptr;
+                          value = float(wide);
+                          return std::isfinite(value) ? stop : nullptr;
+                        });
 }
 
 std::vector<int> ints_of(const X3dFile& file, const X3dNode& node, std::string_view name) {
-  return numbers<int>(file, node, name, [](const char* p, const char* end, int& value) -> const char* {
-    if (*p == '+') p++;
-    auto [stop, error] = std::from_chars(p, end, value);
-    return error == std::errc() ? stop : nullptr;
-  });
+  return numbers<int>(file, node, name,
+                      [](const char* p, const char* end, int& value) -> const char* {
+                        if (*p == '+') p++;
+                        auto [stop, error] = std::from_chars(p, end, value);
+                        return error == std::errc() ? stop : nullptr;
+                      });
 }
 
 float float_of(const X3dFile& file, const X3dNode& node, std::string_view name, float otherwise) {
@@ -168,7 +174,8 @@ int find_child(const X3dFile& file, const X3dNode& node, std::string_view field,
     if (!field.empty() && child.field == field) return child.node;
     const std::string& type = file.nodes[size_t(child.node)].type;
     bool right_type = std::find(types.begin(), types.end(), type) != types.end();
-    if (right_type && (child.field.empty() || field.empty() || child.field == "children")) return child.node;
+    if (right_type && (child.field.empty() || field.empty() || child.field == "children"))
+      return child.node;
   }
   return -1;
 }

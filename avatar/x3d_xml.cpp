@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The XML encoding (ISO/IEC 19776-1) onto the node tree. PROTO instances become nodes of the PROTO's name.
+// The XML encoding (ISO/IEC 19776-1) onto the node tree. PROTO instances become nodes of the
+// PROTO's name.
 #include <algorithm>
 #include <cstring>
 #include <pugixml.hpp>
@@ -52,7 +53,8 @@ struct Builder {
   };
 
   void build(const pugi::xml_node& scene) {
-    file.nodes.push_back({.type = "Scene", .def = "", .line = line(scene), .fields = {}, .children = {}});
+    file.nodes.push_back(
+        {.type = "Scene", .def = "", .line = line(scene), .fields = {}, .children = {}});
     std::vector<Open> stack{{scene.first_child(), 0, ""}};
     while (!stack.empty()) {
       Open& top = stack.back();
@@ -108,7 +110,8 @@ struct Builder {
     for (const pugi::xml_attribute& attribute : xml.attributes()) {
       const char* name = local_name(attribute.name());
       if (std::strcmp(name, "DEF") == 0) node.def = attribute.value();
-      else if (std::strcmp(name, "containerField") != 0 && !(instance && std::strcmp(name, "name") == 0))
+      else if (std::strcmp(name, "containerField") != 0 &&
+               !(instance && std::strcmp(name, "name") == 0))
         node.fields.push_back({name, attribute.value()});
     }
     file.nodes[size_t(parent)].children.push_back(child);
@@ -129,8 +132,8 @@ struct Builder {
 X3dFile parse_x3d_xml(const std::string& path, const std::string& text) {
   Lines lines(text);
   pugi::xml_document document;
-  pugi::xml_parse_result result =
-      document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_ws_pcdata_single);
+  pugi::xml_parse_result result = document.load_buffer(
+      text.data(), text.size(), pugi::parse_default | pugi::parse_ws_pcdata_single);
   if (!result) {
     int line = lines.at(result.offset);
     throw LoadError(path, line ? "line " + std::to_string(line) : "",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring avatar FILE: inspects an H-Anim figure, and takes a picture of it as it stands there and breathes.
+// wellspring avatar FILE: inspects an H-Anim figure, and takes a picture of it as it stands there
+// and breathes.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
@@ -27,8 +28,8 @@ struct Options {
 
 bool read_size(const std::string& text, StudioShot& shot) {
   char rest = 0;
-  return std::sscanf(text.c_str(), "%dx%d%c", &shot.width, &shot.height, &rest) == 2 && shot.width >= 16 &&
-         shot.height >= 16 && shot.width <= 8192 && shot.height <= 8192;
+  return std::sscanf(text.c_str(), "%dx%d%c", &shot.width, &shot.height, &rest) == 2 &&
+         shot.width >= 16 && shot.height >= 16 && shot.width <= 8192 && shot.height <= 8192;
 }
 
 // The figure after `time` seconds of standing there, alone or before a guest.
@@ -61,8 +62,10 @@ int fail(const std::string& text, int status) {
 int run(const Options& options) {
   StudioShot shot;
   if (!read_size(options.size, shot)) return fail("--size wants WIDTHxHEIGHT, 16 to 8192 each", 2);
-  if (!options.out.empty() && !is_picture_name(options.out)) return fail("--out: no kind of picture we write", 2);
-  if (!(options.time >= 0 && options.time <= 86400)) return fail("--time wants 0 to 86400 seconds", 2);
+  if (!options.out.empty() && !is_picture_name(options.out))
+    return fail("--out: no kind of picture we write", 2);
+  if (!(options.time >= 0 && options.time <= 86400))
+    return fail("--time wants 0 to 86400 seconds", 2);
   if (!options.guest.empty() && options.guest.size() != 3) return fail("--guest wants x,y,z", 2);
   shot.close = options.close;
   shot.turn = options.turn * pi / 180;
@@ -77,8 +80,10 @@ int run(const Options& options) {
   for (const std::string& setting : options.displacers) {
     size_t equals = setting.find('=');
     int index = find_displacer(character, setting.substr(0, equals));
-    if (index < 0) return fail("--displacer: the figure has no '" + setting.substr(0, equals) + "'", 2);
-    pose.displacers[size_t(index)] = equals == std::string::npos ? 1 : float(std::atof(setting.c_str() + equals + 1));
+    if (index < 0)
+      return fail("--displacer: the figure has no '" + setting.substr(0, equals) + "'", 2);
+    pose.displacers[size_t(index)] =
+        equals == std::string::npos ? 1 : float(std::atof(setting.c_str() + equals + 1));
   }
   std::vector<std::string> warnings;
   Frame frame = render_studio(character, pose, shot, warnings);
@@ -96,7 +101,8 @@ int main(int argc, char** argv) {
   CLI::App app{"Inspects an H-Anim figure and takes pictures of it."};
   Options options;
   app.add_option("file", options.file, "X3D file of the figure")->required();
-  app.add_flag("--info", options.info, "tell what the figure consists of (the default without --out)");
+  app.add_flag("--info", options.info,
+               "tell what the figure consists of (the default without --out)");
   app.add_flag("--json", options.json, "the same for programs");
   app.add_option("--out", options.out, "picture to write: .png .jpg .pfm .exr");
   app.add_option("--time", options.time, "seconds it has stood there");
@@ -106,9 +112,13 @@ int main(int argc, char** argv) {
   app.add_option("--turn", options.turn, "degrees the camera goes round the figure, to its left");
   app.add_flag("--rest", options.rest, "the rest pose of the file instead of idling");
   app.add_flag("--calm", options.calm, "without human-like noise");
-  app.add_option("--guest", options.guest, "a person's eyes at x,y,z before it: it greets and looks there")->delimiter(',');
-  app.add_option("--speaking", options.speaking, "mouth activity, 0 to 1")->check(CLI::Range(0.0f, 1.0f));
-  app.add_option("--displacer", options.displacers, "NAME or NAME=WEIGHT over the pose, may repeat");
+  app.add_option("--guest", options.guest,
+                 "a person's eyes at x,y,z before it: it greets and looks there")
+      ->delimiter(',');
+  app.add_option("--speaking", options.speaking, "mouth activity, 0 to 1")
+      ->check(CLI::Range(0.0f, 1.0f));
+  app.add_option("--displacer", options.displacers,
+                 "NAME or NAME=WEIGHT over the pose, may repeat");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

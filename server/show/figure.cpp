@@ -15,7 +15,8 @@ int add_picture(Scene& scene, const std::string& path, int64_t& texels_left) {
   std::ifstream file(path, std::ios::binary);
   std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
   Image image;
-  std::string problem = file.is_open() ? decode_image(bytes, true, image, texels_left) : "cannot be read";
+  std::string problem =
+      file.is_open() ? decode_image(bytes, true, image, texels_left) : "cannot be read";
   if (!problem.empty()) {
     scene.warnings.push_back(path + ": " + problem);
     return -1;

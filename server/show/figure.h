@@ -22,12 +22,14 @@ struct Figure {
   std::vector<vec3> positions, normals, part_positions, part_normals;
 };
 
-// Appends the character's materials, pictures and its object to `scene`, and its meshes (at rest, in humanoid
-// space) to `moving`. Pictures that cannot be read leave a warning in the scene. Called once.
+// Appends the character's materials, pictures and its object to `scene`, and its meshes (at rest,
+// in humanoid space) to `moving`. Pictures that cannot be read leave a warning in the scene. Called
+// once.
 Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& moving,
                    std::vector<uint32_t>& moving_object);
 
-// Skins the character and moves its meshes; call World::commit() afterwards. Once a tick; all cores.
+// Skins the character and moves its meshes; call World::commit() afterwards. Once a tick; all
+// cores.
 void pose_figure(World& world, Figure& figure, const Character& character, const Pose& pose,
                  const mat4& placement, SkinScratch& scratch);
 

@@ -34,7 +34,8 @@ Mesh make_sweep(float size) {
   std::vector<std::pair<vec2, vec2>> profile{{{9 * size, 0}, {0, 1}}};  // (z, y), normal
   for (int i = 0; i <= bend; i++) {
     float a = 0.5f * pi * float(i) / bend;
-    profile.push_back({{back - radius * std::sin(a), radius * (1 - std::cos(a))}, {std::sin(a), std::cos(a)}});
+    profile.push_back(
+        {{back - radius * std::sin(a), radius * (1 - std::cos(a))}, {std::sin(a), std::cos(a)}});
   }
   profile.push_back({{back - radius, 9 * size}, {1, 0}});
   for (auto [p, n] : profile)
@@ -79,7 +80,8 @@ Frame render_studio(const Character& character, const Pose& pose, const StudioSh
   if (positions.empty()) low = vec3(-0.5f, 0, -0.5f), high = vec3(0.5f, 1.8f, 0.5f);
   float height = std::max({high.y - low.y, high.x - low.x, 0.05f});
 
-  // The camera circles the figure; the lights keep their place before and behind it as seen from there.
+  // The camera circles the figure; the lights keep their place before and behind it as seen from
+  // there.
   vec3 centre = 0.5f * (low + high);
   float reach = 0.55f * height, fov = 0.42f;
   int skull = find_joint(character, "skullbase");
@@ -120,7 +122,8 @@ Frame render_studio(const Character& character, const Pose& pose, const StudioSh
   pose_figure(world, figure, character, pose, mat4(1), scratch);
   world.commit();
   Lights lights = make_lights(world);
-  View view = make_view_towards(scene, dvec3(eye), dvec3(centre), vec3(0, 1, 0), fov, shot.width, shot.height);
+  View view = make_view_towards(scene, dvec3(eye), dvec3(centre), vec3(0, 1, 0), fov, shot.width,
+                                shot.height);
   StillSettings settings;
   settings.spp = shot.spp;
   settings.transport.clamp = 8;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A figure in a photographer's studio, to look at: soft area lights, a floor that curves up into the background.
+// A figure in a photographer's studio, to look at: soft area lights, a floor that curves up into
+// the background.
 #pragma once
 #include "avatar/character.h"
 #include "avatar/pose.h"
@@ -10,7 +11,8 @@ namespace wellspring {
 struct StudioShot {
   int width = 720, height = 1080, spp = 64;
   bool close = false;  // head and shoulders instead of the whole figure
-  float turn = 0;      // camera's way round the figure, radians; 0: before its face, positive: to its left
+  float turn =
+      0;  // camera's way round the figure, radians; 0: before its face, positive: to its left
 };
 
 // All cores; seconds. Pictures of the figure that cannot be read are named in `warnings`.

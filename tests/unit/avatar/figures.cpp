@@ -13,9 +13,12 @@ std::string whole_figure() {
     std::string name, parent;
     vec3 center;
   };
-  std::vector<Bone> bones = {{"humanoid_root", "", {0, 0.9f, 0}},       {"sacroiliac", "humanoid_root", {0, 0.93f, 0}},
-                             {"vl5", "humanoid_root", {0, 1.0f, -0.03f}}, {"vt6", "vl5", {0, 1.25f, -0.05f}},
-                             {"vc4", "vt6", {0, 1.45f, -0.03f}},         {"skullbase", "vc4", {0, 1.52f, 0}},
+  std::vector<Bone> bones = {{"humanoid_root", "", {0, 0.9f, 0}},
+                             {"sacroiliac", "humanoid_root", {0, 0.93f, 0}},
+                             {"vl5", "humanoid_root", {0, 1.0f, -0.03f}},
+                             {"vt6", "vl5", {0, 1.25f, -0.05f}},
+                             {"vc4", "vt6", {0, 1.45f, -0.03f}},
+                             {"skullbase", "vc4", {0, 1.52f, 0}},
                              {"temporomandibular", "skullbase", {0, 1.51f, 0.01f}}};
   for (std::string s : {"l_", "r_"}) {
     float x = s == "l_" ? 1.0f : -1.0f;
@@ -30,22 +33,27 @@ std::string whole_figure() {
       std::string n = std::to_string(f);
       float z = 0.03f - 0.02f * float(f - 2);
       bones.push_back({s + "metacarpophalangeal_" + n, s + "radiocarpal", {0.225f * x, 0.77f, z}});
-      bones.push_back({s + "carpal_proximal_interphalangeal_" + n, s + "metacarpophalangeal_" + n, {0.225f * x, 0.73f, z}});
+      bones.push_back({s + "carpal_proximal_interphalangeal_" + n,
+                       s + "metacarpophalangeal_" + n,
+                       {0.225f * x, 0.73f, z}});
     }
   }
   std::map<std::string, std::vector<const Bone*>> children;
   for (const Bone& bone : bones) children[bone.parent].push_back(&bone);
   std::ostringstream out;
   std::function<void(const Bone&, bool)> write = [&](const Bone& bone, bool first) {
-    out << "<HAnimJoint name='" << bone.name << "' center='" << bone.center.x << ' ' << bone.center.y << ' '
-        << bone.center.z << "'" << (first ? " containerField='skeleton'" : "") << ">\n";
-    out << "<HAnimSegment name='s_" << bone.name << "'><Transform translation='" << bone.center.x << ' '
-        << bone.center.y << ' ' << bone.center.z << "'><Shape><Box size='0.03 0.03 0.03'/></Shape></Transform>";
+    out << "<HAnimJoint name='" << bone.name << "' center='" << bone.center.x << ' '
+        << bone.center.y << ' ' << bone.center.z << "'"
+        << (first ? " containerField='skeleton'" : "") << ">\n";
+    out << "<HAnimSegment name='s_" << bone.name << "'><Transform translation='" << bone.center.x
+        << ' ' << bone.center.y << ' ' << bone.center.z
+        << "'><Shape><Box size='0.03 0.03 0.03'/></Shape></Transform>";
     if (bone.name == "skullbase") {
-      out << "<Shape><IndexedFaceSet coordIndex='0 1 2 -1'><Coordinate DEF='lids' point='0 1.6 0.1 0.01 1.6 0.1 0 1.61 "
+      out << "<Shape><IndexedFaceSet coordIndex='0 1 2 -1'><Coordinate DEF='lids' point='0 1.6 0.1 "
+             "0.01 1.6 0.1 0 1.61 "
              "0.1'/></IndexedFaceSet></Shape><Coordinate USE='lids' containerField='coord'/>";
-      for (const char* name : {"blink_l", "blink_r", "smile_l", "smile_r", "mouth_open", "breathe", "viseme_aa",
-                               "viseme_PP", "lid_wide"})
+      for (const char* name : {"blink_l", "blink_r", "smile_l", "smile_r", "mouth_open", "breathe",
+                               "viseme_aa", "viseme_PP", "lid_wide"})
         out << "<HAnimDisplacer name='" << name << "' coordIndex='2' displacements='0 -0.01 0'/>";
     }
     out << "</HAnimSegment>\n";

@@ -18,7 +18,9 @@ class TemporaryFile {
   explicit TemporaryFile(const std::string& text, const std::string& ending = ".x3d") {
     static std::atomic<int> count = 0;
     path_ = (std::filesystem::temp_directory_path() /
-             ("wellspring_avatar_" + std::to_string(::getpid()) + "_" + std::to_string(count++) + ending)).string();
+             ("wellspring_avatar_" + std::to_string(::getpid()) + "_" + std::to_string(count++) +
+              ending))
+                .string();
     std::ofstream(path_, std::ios::binary) << text;
   }
   ~TemporaryFile() { std::filesystem::remove(path_); }
@@ -30,8 +32,9 @@ class TemporaryFile {
 };
 
 inline std::string x3d(const std::string& scene) {
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<X3D profile='Immersive' version='4.0'>\n<Scene>\n" + scene +
-         "\n</Scene>\n</X3D>\n";
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<X3D profile='Immersive' "
+         "version='4.0'>\n<Scene>\n" +
+         scene + "\n</Scene>\n</X3D>\n";
 }
 
 inline Character load_text(const std::string& text, const std::string& ending = ".x3d") {
@@ -40,11 +43,13 @@ inline Character load_text(const std::string& text, const std::string& ending = 
 }
 
 // Two joints and a skin of one square (points 0..3), the upper two points half and half.
-inline std::string small_skin(const std::string& elbow_extra = "", const std::string& humanoid_extra = "") {
+inline std::string small_skin(const std::string& elbow_extra = "",
+                              const std::string& humanoid_extra = "") {
   return x3d(R"(<HAnimHumanoid name='Small' )" + humanoid_extra + R"(>
   <HAnimJoint containerField='skeleton' name='humanoid_root' DEF='root' center='0 0 0'
       skinCoordIndex='0 1 2' skinCoordWeight='1 1 0.5'>
-    <HAnimJoint name='vl5' DEF='vl5' center='0 1 0' skinCoordIndex='2 3' skinCoordWeight='0.5 1'>)" + elbow_extra + R"(
+    <HAnimJoint name='vl5' DEF='vl5' center='0 1 0' skinCoordIndex='2 3' skinCoordWeight='0.5 1'>)" +
+             elbow_extra + R"(
     </HAnimJoint>
   </HAnimJoint>
   <HAnimJoint USE='root' containerField='joints'/>
@@ -59,7 +64,8 @@ inline std::string small_skin(const std::string& elbow_extra = "", const std::st
 </HAnimHumanoid>)");
 }
 
-// A figure with all that the storyteller can move: LOA 1, hands, eyes, lids by displacers. Boxes for flesh.
+// A figure with all that the storyteller can move: LOA 1, hands, eyes, lids by displacers. Boxes
+// for flesh.
 std::string whole_figure();
 
 }  // namespace wellspring::test

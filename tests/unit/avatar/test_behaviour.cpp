@@ -209,7 +209,8 @@ TEST(Behaviour, ManyPeopleDoNotGrowMemory) {
   Play play;
   for (uint32_t i = 0; i < 500; i++) {
     play.present({});
-    for (uint32_t k = 0; k < 50; k++) play.input.guests.push_back({i * 100 + k, {float(k), 0, 0}, vec3(0), true});
+    for (uint32_t k = 0; k < 50; k++)
+      play.input.guests.push_back({i * 100 + k, {float(k), 0, 0}, vec3(0), true});
     play.tick(0.05);
   }
   EXPECT_LE(play.state.people.size(), 32u);

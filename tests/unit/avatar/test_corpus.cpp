@@ -35,7 +35,8 @@ TEST(Corpus, EveryFileLoadsOrIsRefusedWithAReason) {
       for (size_t j = 0; j < c.joints.size(); j++) EXPECT_LT(c.joints[j].parent, int(j));
       for (vec3 n : c.normals) EXPECT_NEAR(glm::length(n), 1, 1e-3f);
       std::set<std::string> names;
-      for (const Joint& joint : c.joints) EXPECT_TRUE(names.insert(joint.name).second) << entry.path() << joint.name;
+      for (const Joint& joint : c.joints)
+        EXPECT_TRUE(names.insert(joint.name).second) << entry.path() << joint.name;
     } catch (const LoadError& error) {
       refused++;
       EXPECT_FALSE(error.what_.empty());
@@ -55,12 +56,15 @@ TEST(Corpus, StandardSkeletonsHaveTheirLevelOfArticulation) {
   EXPECT_EQ(four.joints.size(), 146u);
   EXPECT_EQ(four.segments.size(), 119u);
   for (const Joint& joint : four.joints) EXPECT_GE(hanim_joint_level(joint.name), 0) << joint.name;
-  auto parent = [&](const char* name) { return four.joints[size_t(four.joints[size_t(find_joint(four, name))].parent)].name; };
+  auto parent = [&](const char* name) {
+    return four.joints[size_t(four.joints[size_t(find_joint(four, name))].parent)].name;
+  };
   EXPECT_EQ(parent("skullbase"), "vc1");
   EXPECT_EQ(parent("l_shoulder"), "l_acromioclavicular");
   EXPECT_EQ(parent("r_carpometacarpal_5"), "r_midcarpal_4_5");
   bool misplaced = false;
-  for (const std::string& w : four.warnings) misplaced = misplaced || w.find("l_eyeball_joint") != std::string::npos;
+  for (const std::string& w : four.warnings)
+    misplaced = misplaced || w.find("l_eyeball_joint") != std::string::npos;
   EXPECT_TRUE(misplaced);
 }
 

@@ -52,7 +52,8 @@ Transform { scale 2, 2, 2 children [ # a comment }
 ROUTE R.rotation_changed TO V.set_rotation
 )";
 
-const std::string in_json = R"({ "X3D": { "encoding": "UTF-8", "@profile": "Immersive", "head": { "meta": [ { "@name": "title", "@content": "x" } ] },
+const std::string in_json =
+    R"({ "X3D": { "encoding": "UTF-8", "@profile": "Immersive", "head": { "meta": [ { "@name": "title", "@content": "x" } ] },
  "Scene": { "-children": [ { "#comment": "hello" }, { "Transform": { "@scale": [2, 2, 2], "-children": [
   { "HAnimHumanoid": { "@DEF": "H", "@name": "Twin", "@loa": 0,
     "-skeleton": [ { "HAnimJoint": { "@DEF": "R", "@name": "HumanoidRoot", "@center": [0, 1, 0], "@skinCoordIndex": [0, 1, 2],
@@ -108,7 +109,8 @@ void expect_same(const Character& a, const Character& b, const char* what) {
 }
 
 TEST(Encodings, OneFigureThreeWays) {
-  Character xml = load_text(in_xml), classic = load_text(in_classic, ".x3dv"), json = load_text(in_json, ".json");
+  Character xml = load_text(in_xml), classic = load_text(in_classic, ".x3dv"),
+            json = load_text(in_json, ".json");
   ASSERT_EQ(xml.joints.size(), 2u);
   EXPECT_EQ(xml.joints[1].center, vec3(0, 2.2f, -0.03f));
   EXPECT_EQ(xml.parts.size(), 3u);
@@ -133,7 +135,8 @@ DEF Human Humanoid { name "Old one" version "1.1"
                DEF hanim_l_wrist Joint { name "l_wrist" center .2 .8 0 } ] } ]
   joints [ USE hanim_HumanoidRoot, USE hanim_l_wrist ]
   segments [ USE hanim_sacrum ] }
-)", ".wrl");
+)",
+                          ".wrl");
   EXPECT_EQ(c.name, "Old one");
   ASSERT_EQ(c.joints.size(), 2u);
   EXPECT_EQ(c.joints[1].name, "l_radiocarpal");
@@ -157,18 +160,22 @@ TEST(Encodings, BrokenClassicNamesTheLine) {
   std::string deep = "#X3D V3.0 utf8\n";
   for (int i = 0; i < 100000; i++) deep += "Group { children [ ";
   EXPECT_NE(refusal(deep).find("deeper"), std::string::npos);
-  EXPECT_NE(refusal("#X3D V3.0 utf8\nPROTO X [ " + std::string(100000, '[')).find("never closed"), std::string::npos);
+  EXPECT_NE(refusal("#X3D V3.0 utf8\nPROTO X [ " + std::string(100000, '[')).find("never closed"),
+            std::string::npos);
 }
 
 TEST(Encodings, BrokenJsonIsRefused) {
-  for (const std::string& text : {std::string("{"), std::string("{}"), std::string("{\"X3D\":[]}"), std::string("{\"X3D\":{\"Scene\":3}}"),
-                                  "{\"X3D\":" + std::string(100000, '['), std::string("{\"X3D\":{\"Scene\":{\"-children\":[{\"HAnimHumanoid\":{"
-                                  "\"-skeleton\":[{\"HAnimJoint\":{\"@center\":[[1],2,3]}}]}}]}}}")})
+  for (const std::string& text :
+       {std::string("{"), std::string("{}"), std::string("{\"X3D\":[]}"),
+        std::string("{\"X3D\":{\"Scene\":3}}"), "{\"X3D\":" + std::string(100000, '['),
+        std::string("{\"X3D\":{\"Scene\":{\"-children\":[{\"HAnimHumanoid\":{"
+                    "\"-skeleton\":[{\"HAnimJoint\":{\"@center\":[[1],2,3]}}]}}]}}}")})
     EXPECT_THROW(load_text(text, ".json"), LoadError) << text.substr(0, 60);
 }
 
 TEST(Encodings, EveryTruncationAndFlippedByte) {
-  for (const auto& [text, ending] : {std::pair(in_classic, ".x3dv"), std::pair(in_json, ".json"), std::pair(in_xml, ".x3d")}) {
+  for (const auto& [text, ending] :
+       {std::pair(in_classic, ".x3dv"), std::pair(in_json, ".json"), std::pair(in_xml, ".x3d")}) {
     test::TemporaryFile file("", ending);
     for (size_t at = 0; at < text.size(); at += 7) {
       for (bool cut : {true, false}) {
@@ -186,7 +193,8 @@ TEST(Encodings, EveryTruncationAndFlippedByte) {
 }
 
 TEST(Encodings, JoeIsTheSameInXmlAndClassic) {
-  std::filesystem::path kit = std::filesystem::path(WELLSPRING_DATA) / "2_x3d_hanim/hanim_utility_kit";
+  std::filesystem::path kit =
+      std::filesystem::path(WELLSPRING_DATA) / "2_x3d_hanim/hanim_utility_kit";
   if (!std::filesystem::exists(kit)) GTEST_SKIP() << "no H-Anim files at " << kit;
   for (const char* name : {"JoeHAnimKick1a", "JoeDemo5JoeSkin5"}) {
     Character xml = load_character((kit / (std::string(name) + ".x3d")).string());

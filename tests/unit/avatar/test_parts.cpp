@@ -74,7 +74,8 @@ vec2 mirror_after(vec3 rotation, double seconds, float dt) {
 TEST(Mirror, StepOfThirtyDegreesEndsAtFifteenWithoutOvershoot) {
   vec3 turned(30 * deg, 0, 0);
   EXPECT_EQ(mirror_after(turned, 0.34, 0.02f).x, 0);
-  EXPECT_NEAR(mirror_after(turned, mirror_delay + mirror_lag, 0.02f).x / (15 * deg), 1 - std::exp(-1.0f), 0.01f);
+  EXPECT_NEAR(mirror_after(turned, mirror_delay + mirror_lag, 0.02f).x / (15 * deg),
+              1 - std::exp(-1.0f), 0.01f);
   EXPECT_NEAR(mirror_after(turned, 8, 0.02f).x, 15 * deg, 0.001f);
   float last = 0;
   for (double t = 0; t < 6; t += 0.1) {
@@ -175,7 +176,8 @@ TEST(Stance, TurnsInStepsWithOneFootOnTheGround) {
     EXPECT_FALSE(left_steps && right_steps);
     if (!left_steps && state.foot[0].lift() == 0 && i > 0) left = state.foot[0].facing();
     (void)right;
-    EXPECT_LT(std::abs(state.foot[0].facing() - state.foot[1].facing()), 1.0f) << "feet never cross";
+    EXPECT_LT(std::abs(state.foot[0].facing() - state.foot[1].facing()), 1.0f)
+        << "feet never cross";
   }
   EXPECT_NEAR(state.heading.value, 1.5f, 0.15f);
   EXPECT_NEAR(left, 1.5f, 0.15f);

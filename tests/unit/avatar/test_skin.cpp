@@ -72,7 +72,8 @@ TEST(Skin, JointsTurnAboutTheirCentresAndCarryTheirChildren) {
 
 TEST(Skin, PlacementMovesPositionsAndTurnsNormals) {
   Character c = test::load_text(test::small_skin());
-  mat4 placement = glm::translate(mat4(1), vec3(10, 0, 0)) * glm::mat4_cast(glm::angleAxis(pi / 2, vec3(0, 1, 0)));
+  mat4 placement = glm::translate(mat4(1), vec3(10, 0, 0)) *
+                   glm::mat4_cast(glm::angleAxis(pi / 2, vec3(0, 1, 0)));
   placement = glm::scale(placement, vec3(1, 2, 1));
   Posed posed = pose_it(c, make_rest_pose(c), placement);
   size_t v = vertex_at(c, {1, 2, 0});
@@ -87,7 +88,8 @@ TEST(Skin, MirroringPlacementKeepsNormalsOutside) {
 }
 
 TEST(Skin, DisplacersMoveBeforeJointsAndNormalsFollowTheFold) {
-  Character c = test::load_text(test::small_skin("<HAnimDisplacer name='rise' coordIndex='2 3' displacements='0 -2 2 0 -2 2'/>"));
+  Character c = test::load_text(test::small_skin(
+      "<HAnimDisplacer name='rise' coordIndex='2 3' displacements='0 -2 2 0 -2 2'/>"));
   Pose pose = make_rest_pose(c);
   pose.displacers[0] = 0.5f;
   Posed half = pose_it(c, pose);
@@ -104,7 +106,8 @@ TEST(Skin, DisplacersMoveBeforeJointsAndNormalsFollowTheFold) {
 }
 
 TEST(Skin, ScratchMayBeUsedForAnotherFigure) {
-  Character a = test::load_text(test::small_skin("<HAnimDisplacer name='x' coordIndex='3' displacements='0 0 1'/>"));
+  Character a = test::load_text(
+      test::small_skin("<HAnimDisplacer name='x' coordIndex='3' displacements='0 0 1'/>"));
   Character b = test::load_text(test::whole_figure());
   SkinScratch scratch;
   std::vector<vec3> positions, normals;

@@ -31,7 +31,9 @@ struct Stage {
   JointFrame frame(const char* joint) const {
     return eval_joint_frame(character, pose, find_joint(character, joint));
   }
-  float displacer(const char* name) const { return pose.displacers[size_t(find_displacer(character, name))]; }
+  float displacer(const char* name) const {
+    return pose.displacers[size_t(find_displacer(character, name))];
+  }
   bool finite() const {
     if (!is_finite(pose.translation)) return false;
     for (quat q : pose.rotations)
@@ -42,7 +44,9 @@ struct Stage {
   }
 };
 
-float angle_between(vec3 a, vec3 b) { return std::acos(std::clamp(dot(normalize(a), normalize(b)), -1.0f, 1.0f)); }
+float angle_between(vec3 a, vec3 b) {
+  return std::acos(std::clamp(dot(normalize(a), normalize(b)), -1.0f, 1.0f));
+}
 
 // How far an eye looks past a point of humanoid space.
 float eye_error(const Stage& stage, const char* eye, vec3 target) {
@@ -52,8 +56,9 @@ float eye_error(const Stage& stage, const char* eye, vec3 target) {
 
 TEST(Gaze, BothEyesReachAGuestWithinTwoDegrees) {
   for (bool humanlike : {false, true})
-    for (vec3 place : {vec3(0, 1.6f, 1.2f), vec3(0.8f, 1.7f, 1), vec3(-1, 1.2f, 1.5f), vec3(-0.4f, 1.9f, 0.9f),
-                       vec3(2, 1.6f, -0.5f), vec3(0.1f, 1.55f, 0.6f), vec3(-0.3f, 1.6f, -2)}) {
+    for (vec3 place :
+         {vec3(0, 1.6f, 1.2f), vec3(0.8f, 1.7f, 1), vec3(-1, 1.2f, 1.5f), vec3(-0.4f, 1.9f, 0.9f),
+          vec3(2, 1.6f, -0.5f), vec3(0.1f, 1.55f, 0.6f), vec3(-0.3f, 1.6f, -2)}) {
       Stage stage;
       stage.input.humanlike = humanlike;
       stage.input.guests = {{5, place, vec3(0), true}};
@@ -76,7 +81,8 @@ TEST(Gaze, EyesLeadTheHeadAndTheHeadLeadsTheBody) {
   stage.input.guests = {{5, {0.9f, 1.6f, 1.0f}, vec3(0), true}};
   vec3 place = stage.input.guests[0].head;
   stage.run(0.2);
-  EXPECT_LT(eye_error(stage, "l_eyeball_joint", place), 8 * deg) << "the eyes are nearly there after 0.2 s";
+  EXPECT_LT(eye_error(stage, "l_eyeball_joint", place), 8 * deg)
+      << "the eyes are nearly there after 0.2 s";
   float wanted = std::atan2(0.9f, 1.0f);
   auto yaw = [&](const char* joint) {
     vec3 ahead = stage.frame(joint).rotation * vec3(0, 0, 1);
@@ -90,12 +96,14 @@ TEST(Gaze, EyesLeadTheHeadAndTheHeadLeadsTheBody) {
 
 TEST(Gaze, WorksInAnyPlacement) {
   Stage stage;
-  stage.storyteller.placement = glm::rotate(glm::translate(mat4(1), vec3(10, 2, -5)), 2.0f, vec3(0, 1, 0));
+  stage.storyteller.placement =
+      glm::rotate(glm::translate(mat4(1), vec3(10, 2, -5)), 2.0f, vec3(0, 1, 0));
   vec3 here(0.3f, 1.6f, 1.3f), world(stage.storyteller.placement * vec4(here, 1));
   stage.input.guests = {{5, world, vec3(0), true}};
   stage.run(6);
   EXPECT_LT(eye_error(stage, "l_eyeball_joint", here), 2 * deg);
-  EXPECT_LT(glm::length(eval_gaze(stage.state, stage.storyteller, stage.pose).target - world), 1e-3f);
+  EXPECT_LT(glm::length(eval_gaze(stage.state, stage.storyteller, stage.pose).target - world),
+            1e-3f);
 }
 
 TEST(Gaze, KioskGuestsBeforeRemoteOnesAndOnlyNearOnes) {
@@ -119,7 +127,8 @@ TEST(Gaze, TwoGuestsAtTheSameDistanceDoNotMakeItWaver) {
   uint32_t last = 0;
   for (int i = 0; i < 600; i++) {
     float jitter = i % 2 ? 0.05f : -0.05f;
-    stage.input.guests = {{1, {0.5f, 1.6f, 1.2f + jitter}, vec3(0), true}, {2, {-0.5f, 1.6f, 1.2f - jitter}, vec3(0), true}};
+    stage.input.guests = {{1, {0.5f, 1.6f, 1.2f + jitter}, vec3(0), true},
+                          {2, {-0.5f, 1.6f, 1.2f - jitter}, vec3(0), true}};
     stage.tick(1 / 30.0f);
     uint32_t now = eval_gaze(stage.state, stage.storyteller, stage.pose).guest;
     changes += now != last;
@@ -129,9 +138,11 @@ TEST(Gaze, TwoGuestsAtTheSameDistanceDoNotMakeItWaver) {
 }
 
 TEST(Gaze, FigureWithoutEyesTurnsItsHead) {
-  Character character = test::load_text(test::x3d(
-      "<HAnimHumanoid><HAnimJoint name='HumanoidRoot' containerField='skeleton' center='0 0.9 0'><HAnimJoint name='vl5' "
-      "center='0 1 0'><HAnimJoint name='skullbase' center='0 1.5 0'/></HAnimJoint></HAnimJoint></HAnimHumanoid>"));
+  Character character =
+      test::load_text(test::x3d("<HAnimHumanoid><HAnimJoint name='HumanoidRoot' "
+                                "containerField='skeleton' center='0 0.9 0'><HAnimJoint name='vl5' "
+                                "center='0 1 0'><HAnimJoint name='skullbase' center='0 1.5 "
+                                "0'/></HAnimJoint></HAnimJoint></HAnimHumanoid>"));
   Storyteller storyteller{&character, mat4(1)};
   StorytellerState state;
   StorytellerInput input;
@@ -208,12 +219,15 @@ TEST(Storyteller, ArmsHangTheSameInEveryRestPose) {
   // The same arm drawn hanging, at 45 degrees and level: posed, the wrists meet.
   auto make = [](float a) {
     auto at = [&](float along) {
-      return std::to_string(0.17f + along * std::sin(a)) + " " + std::to_string(1.4f - along * std::cos(a)) + " 0";
+      return std::to_string(0.17f + along * std::sin(a)) + " " +
+             std::to_string(1.4f - along * std::cos(a)) + " 0";
     };
-    return test::load_text(test::x3d("<HAnimHumanoid><HAnimJoint name='humanoid_root' containerField='skeleton'>"
-                                     "<HAnimJoint name='l_shoulder' center='" + at(0) + "'><HAnimJoint name='l_elbow' center='" +
-                                     at(0.28f) + "'><HAnimJoint name='l_wrist' center='" + at(0.53f) +
-                                     "'/></HAnimJoint></HAnimJoint></HAnimJoint></HAnimHumanoid>"));
+    return test::load_text(
+        test::x3d("<HAnimHumanoid><HAnimJoint name='humanoid_root' containerField='skeleton'>"
+                  "<HAnimJoint name='l_shoulder' center='" +
+                  at(0) + "'><HAnimJoint name='l_elbow' center='" + at(0.28f) +
+                  "'><HAnimJoint name='l_wrist' center='" + at(0.53f) +
+                  "'/></HAnimJoint></HAnimJoint></HAnimJoint></HAnimHumanoid>"));
   };
   vec3 wrist[3];
   int i = 0;
@@ -304,7 +318,8 @@ TEST(Storyteller, AnyTimeStepIsSafe) {
   Stage stage;
   stage.input.guests = {{1, {0.5f, 1.6f, 1}, vec3(0.5f, 0.1f, 0), true}};
   stage.input.speaking = 1;
-  for (float dt : {0.0f, 1e-9f, 1 / 60.0f, 3600.0f, 0.0f, -5.0f, NAN, INFINITY, 1e-9f, 86400.0f, 1e30f, 0.03f}) {
+  for (float dt : {0.0f, 1e-9f, 1 / 60.0f, 3600.0f, 0.0f, -5.0f, NAN, INFINITY, 1e-9f, 86400.0f,
+                   1e30f, 0.03f}) {
     stage.tick(dt);
     EXPECT_TRUE(stage.finite()) << dt;
   }
@@ -320,7 +335,8 @@ TEST(Storyteller, NoTimeIsNoMovement) {
   stage.run(5);
   Pose before = stage.pose;
   stage.tick(0);
-  for (size_t j = 0; j < before.rotations.size(); j++) EXPECT_LT(glm::length(before.rotations[j] - stage.pose.rotations[j]), 1e-5f);
+  for (size_t j = 0; j < before.rotations.size(); j++)
+    EXPECT_LT(glm::length(before.rotations[j] - stage.pose.rotations[j]), 1e-5f);
 }
 
 TEST(Storyteller, MotionIsContinuous) {
@@ -352,7 +368,8 @@ TEST(Storyteller, ADayOfIdlingDoesNotDrift) {
 
 bool same(const Pose& a, const Pose& b) {
   return a.rotations.size() == b.rotations.size() &&
-         std::memcmp(a.rotations.data(), b.rotations.data(), a.rotations.size() * sizeof(quat)) == 0 &&
+         std::memcmp(a.rotations.data(), b.rotations.data(), a.rotations.size() * sizeof(quat)) ==
+             0 &&
          a.displacers == b.displacers && a.translation == b.translation;
 }
 
@@ -390,7 +407,8 @@ TEST(Storyteller, CalmMeansNoNoise) {
   float largest = 0;
   for (int i = 0; i < 600; i++) {
     stage.tick(1 / 30.0f);
-    largest = std::max(largest, angle_between(head, stage.frame("skullbase").rotation * vec3(0, 0, 1)));
+    largest =
+        std::max(largest, angle_between(head, stage.frame("skullbase").rotation * vec3(0, 0, 1)));
   }
   EXPECT_LT(largest, 1 * deg) << "only the breath";
   Stage lively;
@@ -399,7 +417,8 @@ TEST(Storyteller, CalmMeansNoNoise) {
   largest = 0;
   for (int i = 0; i < 600; i++) {
     lively.tick(1 / 30.0f);
-    largest = std::max(largest, angle_between(head, lively.frame("skullbase").rotation * vec3(0, 0, 1)));
+    largest =
+        std::max(largest, angle_between(head, lively.frame("skullbase").rotation * vec3(0, 0, 1)));
   }
   EXPECT_GT(largest, 3 * deg);
 }
@@ -412,11 +431,17 @@ TEST(Storyteller, AnyFigureAndNoFigure) {
   tick_storyteller(state, Storyteller{}, input, pose, events);
   for (const std::string& skeleton :
        {std::string("<HAnimJoint name='humanoid_root' containerField='skeleton'/>"),
-        std::string("<HAnimJoint name='strange' containerField='skeleton'><HAnimJoint name='other'/></HAnimJoint>"),
-        std::string("<HAnimJoint name='l_shoulder' containerField='skeleton'><HAnimJoint name='l_elbow'/></HAnimJoint>"),
-        std::string("<HAnimJoint name='humanoid_root' containerField='skeleton'><HAnimJoint name='l_hip'><HAnimJoint "
-                    "name='l_knee'><HAnimJoint name='l_ankle'/></HAnimJoint></HAnimJoint><HAnimJoint name='skullbase'/></HAnimJoint>")}) {
-    Character character = test::load_text(test::x3d("<HAnimHumanoid>" + skeleton + "</HAnimHumanoid>"));
+        std::string("<HAnimJoint name='strange' containerField='skeleton'><HAnimJoint "
+                    "name='other'/></HAnimJoint>"),
+        std::string("<HAnimJoint name='l_shoulder' containerField='skeleton'><HAnimJoint "
+                    "name='l_elbow'/></HAnimJoint>"),
+        std::string(
+            "<HAnimJoint name='humanoid_root' containerField='skeleton'><HAnimJoint "
+            "name='l_hip'><HAnimJoint "
+            "name='l_knee'><HAnimJoint name='l_ankle'/></HAnimJoint></HAnimJoint><HAnimJoint "
+            "name='skullbase'/></HAnimJoint>")}) {
+    Character character =
+        test::load_text(test::x3d("<HAnimHumanoid>" + skeleton + "</HAnimHumanoid>"));
     Storyteller storyteller{&character, mat4(1)};
     input.guests = {{1, {0, 0, 0}, vec3(0), true}, {2, {1e9f, 0, 0}, vec3(0), true}};
     for (int i = 0; i < 300; i++) {
