@@ -2,6 +2,7 @@
 #include "avatar/describe.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -93,7 +94,8 @@ std::string describe_text(const Character& character) {
 
 std::string describe_json(const Character& character) {
   using json = nlohmann::ordered_json;
-  auto triple = [](vec3 v) { return json::array({v.x, v.y, v.z}); };
+  auto micro = [](float v) { return std::round(double(v) * 1e6) / 1e6; };
+  auto triple = [&](vec3 v) { return json::array({micro(v.x), micro(v.y), micro(v.z)}); };
   json all;
   all["name"] = character.name;
   all["loa"] = character.loa;
