@@ -93,14 +93,21 @@ void blend_light(const Surroundings& __restrict s, Block& __restrict p) {
     p.b[i] = own * cut * p.b[i] + (1 - own) * b;
 
     float known = keep_if(p.deviation[i] >= 0, 1.0f);
+    // The same for the rest, unless it is known to repeat itself: then it is a highlight, not a lucky path.
+    float rest_r = s.rest_r[i] * share, rest_g = s.rest_g[i] * share, rest_b = s.rest_b[i] * share;
+    float own_rest = 0.2126f * p.rest_r[i] + 0.7152f * p.rest_g[i] + 0.0722f * p.rest_b[i];
+    float quiet = known * keep_if(p.deviation[i] <= 0.1f * own_rest, 1.0f);
+    float most_rest = (0.2126f * rest_r + 0.7152f * rest_g + 0.0722f * rest_b) * (3 + samples) + 1e-4f;
+    most_rest += (quiet + alone) * own_rest;
+    float over_rest = own_rest - most_rest, rest_cut = most_rest / (most_rest + 0.5f * (over_rest + std::abs(over_rest)));
     float variance = (1 - known) * s.noise[i] * share + known * p.deviation[i] * p.deviation[i];
     variance /= samples + keep_if(samples < 1, 1.0f);
     float detail = s.detail[i] * share;
     float keep = (detail + 1e-9f) / (detail + variance + 1e-9f);
     keep = keep + (1 - keep) * alone;
-    p.rest_r[i] = keep * p.rest_r[i] + (1 - keep) * s.rest_r[i] * share;
-    p.rest_g[i] = keep * p.rest_g[i] + (1 - keep) * s.rest_g[i] * share;
-    p.rest_b[i] = keep * p.rest_b[i] + (1 - keep) * s.rest_b[i] * share;
+    p.rest_r[i] = keep * rest_cut * p.rest_r[i] + (1 - keep) * rest_r;
+    p.rest_g[i] = keep * rest_cut * p.rest_g[i] + (1 - keep) * rest_g;
+    p.rest_b[i] = keep * rest_cut * p.rest_b[i] + (1 - keep) * rest_b;
   }
 }
 
@@ -174,7 +181,7 @@ void compose(const View& view, const PointCache& points, const PointImage& image
           p.r[i] = frame.color[at].x, p.g[i] = frame.color[at].y, p.b[i] = frame.color[at].z;
           p.samples[i] = frame.confidence[at];
           p.object[i] = frame.object[at];
-          p.deviation[i] = p.samples[i] > 2 ? unpack_deviation(points.noise[image.point[at]]) : -1.0f;
+          p.deviation[i] = p.samples[i] > 1 ? unpack_deviation(points.noise[image.point[at]]) : -1.0f;
         }
         unpack_block(to_view, packed, p);
         look_around(cells, bx, by, p, s);

@@ -256,7 +256,7 @@ TEST(Cache, ALongVisitNeitherDriftsNorGrows) {
     float s = walking ? float(i % 200) / 30 : 0;
     View view = look_at(vec3(-1 + std::sin(s), 1.6f, 4 - s * 0.2f), vec3(-0.2f, 0.9f, -2), 60, 48, 27);
     v.step(walking ? view : rest, 60);
-    if (i % 500 == 0) ASSERT_TRUE(v.finite());
+    if (i % 500 == 0) { ASSERT_TRUE(v.finite()); }
     if (i == 599) first = rmse(v.frame, render_room(v.room, v.room.noisy ? view : rest, 4)), memory = v.cache.memory_bytes();
   }
   for (int i = 0; i < 200; i++) v.step(rest, 60);
