@@ -28,7 +28,7 @@ def build(folder):
     furniture.make_furniture()
     treasury.make_treasury()
     statues.make_horse()
-    statues.make_bust(7.35, 3.3, -60)
+    statues.make_bust(0.1, -3.8, 155)
     statues.make_armour(-7.35, 2.1, 90, 'Armour')
     lights.make_sun()
 

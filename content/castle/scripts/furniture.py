@@ -3,7 +3,7 @@
 import math
 
 from .hall import CROWN, wall_frame
-from .lights import make_point
+from .lights import make_point, make_spot
 from .mesh import Mesh, catmull_rom, translation, turn, turn_z
 from .noise import generator
 from .statues import HORSE
@@ -25,8 +25,8 @@ def frame(mesh, s, z, width, picture, ratio, rich=1.0):
     keep = mesh.transform
     for cs, cz in ((-1, -1), (1, -1), (1, 1), (-1, 1)):                    # carved leaves at the corners
         mesh.transform = keep @ translation(s + cs * (w + 0.05 * k), y - 0.045 * k, z + cz * (h + 0.05 * k))
-        for leaf in range(5):
-            a = math.radians(-90 + 45 * leaf) + math.atan2(cz, cs)
+        for leaf in range(3):
+            a = math.radians(-80 + 80 * leaf) + math.atan2(cz, cs)
             mesh.ellipsoid((0.042 * k * math.cos(a), 0, 0.042 * k * math.sin(a)), (0.034 * k, 0.016, 0.034 * k), 'gilt', 8, 4)
         mesh.ellipsoid((0, -0.012, 0), (0.03 * k, 0.02, 0.03 * k), 'gilt', 8, 4)
     mesh.transform = keep
@@ -46,6 +46,8 @@ def make_pictures():
     frame(mesh, -3.0, 2.5, 1.3, 'moonlight', 1.412, 1.1)
     frame(mesh, 3.0, 2.5, 1.3, 'forest', 1.412, 1.1)
     mesh.finish(location=(2.0, -4.45, 2.55))
+    for name, x, reach in (('Castle', 2.0, 34), ('Portraits', 6.0, 36), ('Captain', -6.0, 34)):
+        make_spot('Light ' + name, (x, -1.9, 4.75), (x, -4.4, 2.3), 11.0, reach, (1.0, 0.86, 0.68), 0.7)
 
 
 def tapestry(mesh, s, top, width, height, material):
@@ -66,7 +68,7 @@ def tapestry(mesh, s, top, width, height, material):
         mesh.tube(ring, 0.004, 'brass', 5, closed=True)
     fringe = [(s - width / 2 + width * (i + 0.5) / 110, top - height) for i in range(110)]
     for t, z in fringe:
-        mesh.box((t - 0.005, -0.05, z - 0.07), (t + 0.005, -0.042, z + 0.005), 'fringe')
+        mesh.quad((t - 0.006, -0.046, z - 0.07), (t + 0.006, -0.046, z - 0.07), (t + 0.005, -0.046, z + 0.005), (t - 0.005, -0.046, z + 0.005), 'fringe')
 
 
 def make_hangings():
@@ -153,10 +155,10 @@ def bulb(mesh, z, radius, height):
 def make_chandelier(name, x, candles=6, height=3.75):
     mesh = Mesh(name)
     mesh.transform = translation(x, 0, height)
-    ring = [(0.62 * math.cos(a), 0.62 * math.sin(a), 0) for a in (2 * math.pi * i / 48 for i in range(48))]
+    ring = [(0.62 * math.cos(a), 0.62 * math.sin(a), 0) for a in (2 * math.pi * i / 36 for i in range(36))]
     mesh.sweep([(-0.012, -0.035), (0.012, -0.035), (0.016, 0.0), (0.012, 0.035), (-0.012, 0.035), (-0.016, 0.0)], ring, 'brass', [(0, 0, 1)], closed=True)
     for z in (-0.035, 0.035):
-        mesh.tube([(px, py, z) for px, py, _ in ring], 0.012, 'brass', 6, closed=True)
+        mesh.tube([(px, py, z) for px, py, _ in ring], 0.012, 'brass', 5, closed=True)
     mesh.lathe([(0.0, -0.20), (0.03, -0.19), (0.045, -0.15), (0.025, -0.11), (0.05, -0.06), (0.085, 0.0), (0.05, 0.07), (0.025, 0.11),
                 (0.03, 0.30), (0.016, 0.33), (0.016, 0.62), (0.0, 0.63)], 20, 'brass')
     for k in range(candles):
@@ -178,7 +180,7 @@ def make_chandelier(name, x, candles=6, height=3.75):
         mesh.transform = translation(x, 0, height + 0.62 + 0.052 * k + 0.02) @ turn_z(90 * (k % 2))
         mesh.tube([(0.016 * math.cos(a), 0, 0.034 * math.sin(a)) for a in (2 * math.pi * i / 8 for i in range(8))], 0.0055, 'iron', 5, closed=True)
     mesh.finish(location=(x, 0, height))
-    make_point(name + ' Light', (x, 0, height + 0.42), 4.0)
+    make_point(name + ' Light', (x, 0, height + 0.42), 8.0)
 
 
 def make_bench(mesh, x, y, angle, length=1.7):

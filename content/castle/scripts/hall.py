@@ -134,7 +134,7 @@ def arch_height(v):
 
 def vault(mesh):
     half_x, half_y = 2.0, WIDTH / 2
-    steps = [math.sin(math.pi / 2 * i / 12) for i in range(-9, 10)]
+    steps = [math.sin(math.pi / 2 * i / 9) for i in range(-9, 10)]
     rows = [0.0, 0.12, 0.28, 0.46, 0.64, 0.82, 0.93, 1.0]
     for centre in BAYS:
         for axis, sign in ((1, 1), (1, -1), (0, 1), (0, -1)):
@@ -155,7 +155,7 @@ def ribs(mesh):
     profile = [(-0.11, -0.06), (0.11, -0.06), (0.11, 0.05), (0.075, 0.085), (0.05, 0.14), (-0.05, 0.14),
                (-0.075, 0.085), (-0.11, 0.05)]
     slim = [(s * 0.72, z * 0.72) for s, z in profile]
-    steps = [math.sin(math.pi / 2 * i / 14) for i in range(-10, 11)]
+    steps = [math.sin(math.pi / 2 * i / 10) for i in range(-10, 11)]
     for x in (-8.0, -4.0, 0.0, 4.0, 8.0):
         path = [(x, WIDTH / 2 * s, SPRING + arch_height(s)) for s in steps]
         mesh.sweep(profile, path, 'stone', [(x - p[0], -p[1], SPRING - 0.2 - p[2]) for p in path], scale=1.5)
@@ -191,9 +191,9 @@ def shaft(mesh, x, y):
             (0.175, 0.42), (0.15, 0.45), (r, 0.48)]
     capital = [(r, 2.86), (0.165, 2.875), (0.165, 2.905), (0.145, 2.92), (0.155, 3.02), (0.20, 3.12), (0.27, 3.19),
                (0.29, 3.20), (0.29, 3.27), (0.32, 3.29), (0.32, 3.35), (0.0, 3.36)]
-    mesh.lathe(base, 24, 'stone', repeat=(1, 0.6))
-    mesh.lathe([(r, 0.48), (r, 2.86)], 24, 'stone', repeat=(0.8, 2))
-    mesh.lathe(capital, 24, 'stone', repeat=(1, 0.6))
+    mesh.lathe(base, 16, 'stone', repeat=(1, 0.6))
+    mesh.lathe([(r, 0.48), (r, 2.86)], 16, 'stone', repeat=(0.8, 2))
+    mesh.lathe(capital, 16, 'stone', repeat=(1, 0.6))
     for k in range(8):                                        # curled leaves around the bell
         mesh.transform = translation(x, y, 0) @ turn_z(45 * k + 22.5)
         leaf = bezier([(0.15, 0, 2.93), (0.165, 0, 3.04), (0.21, 0, 3.18), (0.275, 0, 3.17), (0.265, 0, 3.11)], 4)

@@ -262,13 +262,17 @@ def sky():
     c = Canvas(2048, 768, (0.7, 0.8, 0.95), rng)
     c.gradient([(0, (0.60, 0.77, 0.99)), (0.45, (0.76, 0.87, 0.99)), (0.72, (0.93, 0.955, 0.97)), (0.78, (0.97, 0.96, 0.92))])
     clouds(c, -0.2, 0.72, (1.0, 0.99, 0.97), (0.80, 0.85, 0.93), 0.5, (1.0, 0.5))
+    far = None
     for base, height, colour, fade in ((0.775, 0.09, (0.66, 0.74, 0.80), (0.76, 0.81, 0.83)), (0.81, 0.08, (0.50, 0.60, 0.62), (0.62, 0.69, 0.66)),
                                        (0.855, 0.07, (0.37, 0.47, 0.38), (0.46, 0.55, 0.40))):
-        c.ridge(base, height, 2.4, colour, 18, (fade, 0.06))
-    mask, line = c.ridge(0.90, 0.05, 2.4, (0.36, 0.45, 0.24), 12, ((0.42, 0.48, 0.24), 0.1))
+        _, line = c.ridge(base, height, 2.4, colour, 18, (fade, 0.06))
+        far = line if far is None else np.minimum(far, line)
+    mask, _ = c.ridge(0.90, 0.05, 2.4, (0.36, 0.45, 0.24), 12, ((0.42, 0.48, 0.24), 0.1))
     woods = smoothstep(0.50, 0.6, c.noise(1.6, 6, 120, (1.6, 1.0)))
     c.lay((0.22, 0.31, 0.16), mask * woods, 0.75)
+    land = smoothstep(-0.002, 0.002, c.y - far)
+    grey = c.pixels.mean(axis=-1, keepdims=True)
+    c.pixels = mix(c.pixels, (c.pixels * 0.6 + grey * 0.4) * np.array([0.60, 0.61, 0.63]), land)
     for x, s in ((0.9, 0.075), (2.05, 0.09)):
-        column = line[int(x * c.height) % c.width]
         castle(c, x, 0.80, s, (0.80, 0.76, 0.70), (0.56, 0.42, 0.38))
     return c.pixels

@@ -6,7 +6,7 @@ import bpy
 from mathutils import Vector
 
 SUN_ELEVATION, SUN_AZIMUTH = 40.0, 28.0        # degrees; azimuth from straight into the windows, towards -x
-SUN_IRRADIANCE = (12.0, 10.7, 8.9)
+SUN_IRRADIANCE = (12.0, 10.8, 9.1)
 WARM = (1.0, 0.80, 0.56)
 
 

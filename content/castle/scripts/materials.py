@@ -52,11 +52,11 @@ TABLE = [
     M('soot', colour=(0.035, 0.03, 0.027), roughness=0.95),
     M('water', colour=(0.02, 0.035, 0.035), roughness=0.03),
     # Metals
-    M('gold', colour=(1.0, 0.73, 0.32), metallic=1.0, roughness=0.16),
+    M('gold', colour=(1.0, 0.73, 0.32), metallic=1.0, roughness=0.20),
     M('gilt', picture='gilt', metallic=1.0, roughness=0.33),
-    M('brass', colour=(0.80, 0.58, 0.28), metallic=1.0, roughness=0.24),
-    M('silver', colour=(0.93, 0.92, 0.89), metallic=1.0, roughness=0.14),
-    M('steel', colour=(0.58, 0.58, 0.585), metallic=1.0, roughness=0.22),
+    M('brass', colour=(0.80, 0.58, 0.28), metallic=1.0, roughness=0.30),
+    M('silver', colour=(0.93, 0.92, 0.89), metallic=1.0, roughness=0.20),
+    M('steel', colour=(0.58, 0.58, 0.585), metallic=1.0, roughness=0.26),
     M('dark steel', colour=(0.30, 0.30, 0.31), metallic=1.0, roughness=0.32),
     M('iron', colour=(0.055, 0.052, 0.05), metallic=0.6, roughness=0.5),
     M('bronze', picture='bronze', packed='bronze_packed'),
@@ -85,7 +85,7 @@ TABLE = [
     M('pearl', colour=(0.85, 0.80, 0.74), roughness=0.2),
     # Light
     # A pane that glows and lets the sun through (refractive index 1: it mirrors nothing).
-    M('sky', colour=(1.0, 1.0, 1.0), roughness=0.0, emission=(6.0, 6.0, 6.0), glow='sky', pane=1.0),
+    M('sky', colour=(1.0, 1.0, 1.0), roughness=0.0, emission=(14.0, 14.0, 14.0), glow='sky', pane=1.0),
     M('far sky', picture='sky', roughness=1.0),
     M('bulb', colour=(0.0, 0.0, 0.0), roughness=1.0, emission=(10.0, 6.4, 3.2)),
     M('ember', colour=(0.02, 0.01, 0.01), roughness=1.0, emission=(4.5, 1.35, 0.28)),

@@ -200,7 +200,7 @@ class Mesh:
         bpy.context.scene.collection.objects.link(thing)
         if bevel:
             modifier = thing.modifiers.new('Bevel', 'BEVEL')
-            modifier.width, modifier.segments = bevel, 2
+            modifier.width, modifier.segments = bevel, 1
             modifier.limit_method, modifier.angle_limit = 'ANGLE', math.radians(40)
             modifier.harden_normals = True
             modifier.use_clamp_overlap = True

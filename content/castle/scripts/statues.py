@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from .mesh import Mesh, catmull_rom, circle, translation, turn, turn_z
+from .lights import make_spot
+from .mesh import Mesh, catmull_rom, translation, turn, turn_z
 from .sculpt import Clay
 
 HORSE = (-4.5, -2.1)
@@ -67,7 +68,8 @@ def make_horse():
     horse.transform = pedestal.transform @ translation(0.06, 0, 1.035) @ turn_z(0)
     vertices, faces = horse_clay(0.0115).skin(2)
     horse.surface(vertices, faces, 'bronze', scale=0.8)
-    horse.finish(auto_smooth=180, decimate=0.30, location=(*HORSE, 0.97))
+    make_spot('Light Horse', (-3.4, 0.2, 4.6), (HORSE[0], HORSE[1], 1.6), 13.0, 20, (1.0, 0.88, 0.72), 0.6)
+    horse.finish(auto_smooth=180, decimate=0.24, location=(*HORSE, 0.97))
 
 
 def bust_clay(step):
@@ -122,7 +124,7 @@ def make_bust(x, y, angle):
     bust.transform = translation(x, y, 1.22) @ turn_z(angle)
     vertices, faces = bust_clay(0.0062).skin(1)
     bust.surface(vertices, faces, 'marble', scale=0.6)
-    bust.finish(auto_smooth=180, decimate=0.26, location=(x, y, 1.22))
+    bust.finish(auto_smooth=180, decimate=0.15, location=(x, y, 1.22))
 
 
 def oval(cx, cy, z, rx, ry, count=20, front=0.0):

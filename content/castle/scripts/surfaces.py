@@ -110,7 +110,7 @@ def marble_floor():
     pale = mix(solid(shape, (0.90, 0.855, 0.765)), (0.80, 0.725, 0.61), cloud * 0.8)
     pale = mix(pale, (0.60, 0.49, 0.37), pale_vein * 0.5)
     deep_vein = veins(shape, rng, 3, 0.014, 190)
-    deep = mix(solid(shape, (0.235, 0.275, 0.26)), (0.33, 0.365, 0.335), spectral(shape, rng, 2.2, 2, 90))
+    deep = mix(solid(shape, (0.29, 0.33, 0.315)), (0.39, 0.425, 0.395), spectral(shape, rng, 2.2, 2, 90))
     deep = mix(deep, (0.72, 0.74, 0.69), deep_vein * 0.55)
     pale, deep = warp(pale, oy, ox), warp(deep, oy, ox)
     colour = np.where(dark[..., None], deep, pale) * (0.93 + 0.12 * rng.random(count))[tile][..., None]
@@ -134,7 +134,7 @@ def marble_floor():
     return np.clip(colour, 0, 1), packed
 
 
-def oak(base=(0.47, 0.31, 0.18), name='oak', gloss=0.42):
+def oak(base=(0.53, 0.355, 0.21), name='oak', gloss=0.42):
     """Quarter-sawn oak, grain along u. 1.2 m long, 0.6 m across; colour, normals, roughness."""
     rng, shape = generator(name), (512, 1024)
     y, x = np.mgrid[0:shape[0], 0:shape[1]].astype(float)

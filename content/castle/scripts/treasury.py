@@ -11,8 +11,9 @@ from .mesh import Mesh, catmull_rom, translation, turn, turn_z
 PLINTH = 0.02       # the velvet floor's thickness
 
 
-def vitrine(name, x, y, angle, width, depth, base, top, cloth='green velvet', lamps=1, candela=2.4):
-    """A dark plinth, a glass case with brass edges and lamps in its lid; returns its floor's frame."""
+def vitrine(name, x, y, angle, width, depth, base, top, cloth='green velvet', lamps=1, candela=2.4, desk=False):
+    """A dark plinth and a glass case with brass edges; lamps in its lid, or, on a `desk` to look into from
+    above, under its front edge. Returns its floor's frame."""
     place = translation(x, y, 0) @ turn_z(angle)
     case, glass = Mesh('Vitrine ' + name), Mesh('Glass ' + name)
     case.transform = glass.transform = place
@@ -20,9 +21,10 @@ def vitrine(name, x, y, angle, width, depth, base, top, cloth='green velvet', la
     case.box((-w + 0.03, -d + 0.03, 0.0), (w - 0.03, d - 0.03, 0.07), 'iron')
     case.box((-w, -d, 0.07), (w, d, base - 0.02), 'plinth')
     case.box((-w + 0.018, -d + 0.018, base - 0.01), (w - 0.018, d - 0.018, base + PLINTH), cloth)
-    case.box((-w, -d, top + 0.012), (w, d, top + 0.09), 'plinth')
+    if not desk:
+        case.box((-w, -d, top + 0.012), (w, d, top + 0.09), 'plinth')
+        case.box((-w - 0.012, -d - 0.012, top - 0.008), (w + 0.012, d + 0.012, top + 0.016), 'brass')
     case.box((-w - 0.012, -d - 0.012, base - 0.03), (w + 0.012, d + 0.012, base), 'brass')
-    case.box((-w - 0.012, -d - 0.012, top - 0.008), (w + 0.012, d + 0.012, top + 0.016), 'brass')
     for sx in (-1, 1):
         for sy in (-1, 1):
             case.box((sx * w - 0.010, sy * d - 0.010, base), (sx * w + 0.010, sy * d + 0.010, top), 'brass')
@@ -30,6 +32,11 @@ def vitrine(name, x, y, angle, width, depth, base, top, cloth='green velvet', la
         case.transform = place @ turn_z(side)
         y0, z0 = -d - 0.002, base - 0.20
         case.quad((-0.085, y0, z0), (0.085, y0, z0), (0.085, y0, z0 + 0.117), (-0.085, y0, z0 + 0.117), 'label', uv=[(0, 0), (1, 0), (1, 1), (0, 1)])
+    if desk:
+        for side in (-1, 1):
+            case.box((-w, side * d - 0.010, top - 0.010), (w, side * d + 0.010, top + 0.010), 'brass')
+            case.box((side * w - 0.010, -d, top - 0.010), (side * w + 0.010, d, top + 0.010), 'brass')
+        glass.quad((-w, -d, top), (w, -d, top), (w, d, top), (-w, d, top), 'glass')
     g = 0.003
     corners = [(-w + g, -d + g), (w - g, -d + g), (w - g, d - g), (-w + g, d - g)]
     for a, b in zip(corners, corners[1:] + corners[:1]):
@@ -38,7 +45,8 @@ def vitrine(name, x, y, angle, width, depth, base, top, cloth='green velvet', la
     glass.finish(location=(x, y, base))
     for i in range(lamps):
         s = (i - (lamps - 1) / 2) * width * 0.6
-        make_spot(f'Lamp {name} {i + 1}', place @ Vector((s, -d * 0.45, top - 0.02)), place @ Vector((s, 0.0, base)), candela / lamps, 44)
+        make_spot(f'Lamp {name} {i + 1}', place @ Vector((s, -d * (0.9 if desk else 0.45), top - 0.03)),
+                  place @ Vector((s * 0.8, 0.0, base)), candela / lamps, 50 if desk else 44)
     return place @ translation(0, 0, base + PLINTH)
 
 
@@ -255,7 +263,7 @@ def make_ammonite(place):
     """A polished ammonite, a coil of ribbed tube, on a brass stand."""
     mesh = Mesh('Ammonite')
     mesh.transform = place @ translation(0, 0, 0.21) @ turn(-12, 'X')
-    turns, steps, around = 3.6, 64, 14
+    turns, steps, around = 3.6, 44, 12
     rings = []
     for i in range(int(turns * steps) + 1):
         a = 2 * math.pi * i / steps
@@ -281,6 +289,6 @@ def make_treasury():
     make_goblet(vitrine('Goblet', 4.0, 3.35, 0, 0.56, 0.56, 1.05, 1.70, 'green velvet'))
     make_helmet(vitrine('Helmet', 0.0, 3.35, 0, 0.60, 0.60, 1.00, 1.70, 'red velvet'))
     make_ammonite(vitrine('Ammonite', -4.0, 3.35, 0, 0.60, 0.60, 1.00, 1.68, 'green velvet'))
-    make_sword(vitrine('Sword', -4.9, 0.95, 0, 1.50, 0.56, 0.92, 1.38, 'red velvet', lamps=2, candela=2.4))
-    make_book(vitrine('Book', 4.9, -2.6, 28, 0.86, 0.66, 0.90, 1.40, 'green velvet', candela=1.8))
+    make_sword(vitrine('Sword', -4.9, 0.95, 0, 1.50, 0.56, 0.88, 1.26, 'red velvet', lamps=2, candela=2.0, desk=True))
+    make_book(vitrine('Book', 4.9, -2.6, 28, 0.86, 0.66, 0.86, 1.26, 'green velvet', candela=1.4, desk=True))
     make_jug(vitrine('Jug', -7.3, -1.95, 90, 0.50, 0.50, 1.02, 1.66, 'blue velvet'))
