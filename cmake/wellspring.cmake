@@ -70,6 +70,9 @@ target_include_directories(cli11_any SYSTEM INTERFACE ${CLI11_INCLUDE})
 add_library(boost_any INTERFACE)
 target_include_directories(boost_any SYSTEM INTERFACE ${Boost_INCLUDE_DIRS})
 target_link_libraries(boost_any INTERFACE Threads::Threads)
+if(WELLSPRING_SANITIZE MATCHES thread)  # it does not know memory fences, Asio does without
+  target_compile_definitions(boost_any INTERFACE BOOST_ASIO_DISABLE_FENCED_BLOCK)
+endif()
 
 # Headers and libraries by name: OpenCV's own CMake files come only with the whole libopencv-dev.
 find_path(OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)

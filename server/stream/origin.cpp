@@ -19,7 +19,8 @@ struct Authority {
 };
 
 // "host", "host:80", "[::1]:80"; nothing for what is neither.
-static std::optional<Authority> read_authority(std::string_view text, std::string_view default_port) {
+static std::optional<Authority> read_authority(std::string_view text,
+                                               std::string_view default_port) {
   size_t end = text.find(':');
   if (text.starts_with('[')) {
     end = text.find(']');
@@ -32,7 +33,8 @@ static std::optional<Authority> read_authority(std::string_view text, std::strin
     if (text[end] != ':') return std::nullopt;
     authority.port = std::string(text.substr(end + 1));
   }
-  const bool digits = std::ranges::all_of(authority.port, [](char c) { return c >= '0' && c <= '9'; });
+  const bool digits =
+      std::ranges::all_of(authority.port, [](char c) { return c >= '0' && c <= '9'; });
   if (authority.host.empty() || authority.port.empty() || authority.port.size() > 5 || !digits)
     return std::nullopt;
   if (authority.host.find_first_of("/@?#\\ \t,") != std::string::npos) return std::nullopt;
@@ -61,7 +63,8 @@ bool offers_protocol(std::string_view header, std::string_view wanted) {
     const size_t end = std::min(header.find(','), header.size());
     std::string_view offer = header.substr(0, end);
     header.remove_prefix(std::min(end + 1, header.size()));
-    while (!offer.empty() && (offer.front() == ' ' || offer.front() == '\t')) offer.remove_prefix(1);
+    while (!offer.empty() && (offer.front() == ' ' || offer.front() == '\t'))
+      offer.remove_prefix(1);
     while (!offer.empty() && (offer.back() == ' ' || offer.back() == '\t')) offer.remove_suffix(1);
     if (offer == wanted) return true;
   }

@@ -51,7 +51,8 @@ bool etag_matches(const std::string& if_none_match, const std::string& etag) {
 }
 
 static bool fits_a_line(std::string_view text) {
-  return std::ranges::all_of(text, [](unsigned char c) { return (c >= 0x20 && c != 0x7f) || c == '\t'; });
+  return std::ranges::all_of(text,
+                             [](unsigned char c) { return (c >= 0x20 && c != 0x7f) || c == '\t'; });
 }
 
 void finish_reply(const HttpQuestion& question, HttpReply& reply) {
@@ -62,7 +63,8 @@ void finish_reply(const HttpQuestion& question, HttpReply& reply) {
   if (reply.status == 304) reply.body.clear();
   reply.headers.try_emplace("Cache-Control", "no-cache");
   std::erase_if(reply.headers, [&](const auto& header) {
-    const bool bad = header.first.empty() || !fits_a_line(header.first) || !fits_a_line(header.second) ||
+    const bool bad = header.first.empty() || !fits_a_line(header.first) ||
+                     !fits_a_line(header.second) ||
                      header.first.find_first_of(": ") != std::string::npos;
     if (bad) log::warn("reply to {}: header that fits no line dropped", question.path);
     return bad;

@@ -9,15 +9,16 @@
 
 namespace wellspring {
 
-// Headers of every reply, WebSocket handshakes included: what the page may load (all from here), that types are
-// not guessed, that no page of others frames ours, that no page gets the camera or microphone.
+// Headers of every reply, WebSocket handshakes included: what the page may load (all from here),
+// that types are not guessed, that no page of others frames ours, that no page gets the camera or
+// microphone.
 std::span<const std::pair<const char*, const char*>> security_headers();
 
 // {"error": {"status":.., "message":..}}
 HttpReply make_refusal(int status, const std::string& message);
 
-// Makes a good reply whose ETag the asker already has a 304 without body, sets Cache-Control: no-cache
-// where nothing is said, and drops headers that no header line can hold.
+// Makes a good reply whose ETag the asker already has a 304 without body, sets Cache-Control:
+// no-cache where nothing is said, and drops headers that no header line can hold.
 void finish_reply(const HttpQuestion& question, HttpReply& reply);
 
 // If-None-Match as RFC 9110 section 13.1.2: "*", or a list with an equal tag (weak comparison).

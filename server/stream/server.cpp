@@ -8,7 +8,8 @@
 
 namespace wellspring {
 
-static constexpr size_t max_refusals = 64;  // connections being told 503 at a time; more are just closed
+// Connections being told 503 at a time; more are just closed.
+static constexpr size_t max_refusals = 64;
 static constexpr auto accept_pause = std::chrono::milliseconds(100);
 static constexpr auto polite_stop = std::chrono::seconds(1);
 static constexpr auto forced_stop = std::chrono::seconds(5);
@@ -38,8 +39,8 @@ struct Server::Impl {
 void Server::Impl::listen() {
   const StreamSettings& settings = core->settings;
   const auto throw_error = [&](const error_code& ec) {
-    throw std::runtime_error("cannot listen on " + settings.host + ":" + std::to_string(settings.port) +
-                             ": " + ec.message());
+    throw std::runtime_error("cannot listen on " + settings.host + ":" +
+                             std::to_string(settings.port) + ": " + ec.message());
   };
   error_code ec;
   tcp::resolver resolver(core->io);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stream/session.h"
 
-
 #include "base/log.h"
 #include "stream/reply.h"
 

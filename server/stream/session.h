@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One connection from accept to end, as a coroutine on a strand of its own: HTTP requests one after the
-// other (session_http.cpp) and, after an upgrade, a WebSocket (session_websocket.cpp: this coroutine reads, a
-// second one writes). Only for the .cpp files of this folder (heavy).
+// One connection from accept to end, as a coroutine on a strand of its own: HTTP requests one after
+// the other (session_http.cpp) and, after an upgrade, a WebSocket (session_websocket.cpp: this
+// coroutine reads, a second one writes). Only for the .cpp files of this folder (heavy).
 #pragma once
 #include <memory>
 #include <string>
@@ -21,10 +21,11 @@ inline constexpr double max_messages_a_second = 400;   // WebSocket, pings and p
 inline constexpr double max_bytes_a_second = 1 << 20;  // WebSocket
 inline constexpr double burst_seconds = 2;
 
-// Stale pictures must not pile up where newest-wins cannot reach them, in the kernel. A send buffer of 256 KiB holds one
-// large or two usual pictures of 1280x720 and still fills 40 Mbit/s at 50 ms; of that, no more than 64 KiB may
-// be waiting unsent (TCP_NOTSENT_LOWAT), the rest is on its way. It is also all the memory that a viewer who
-// stopped reading can hold, besides the one picture being written.
+// Stale pictures must not pile up where newest-wins cannot reach them, in the kernel. A send buffer
+// of 256 KiB holds one large or two usual pictures of 1280x720 and still fills 40 Mbit/s at 50 ms;
+// of that, no more than 64 KiB may be waiting unsent (TCP_NOTSENT_LOWAT), the rest is on its way.
+// It is also all the memory that a viewer who stopped reading can hold, besides the one picture
+// being written.
 inline constexpr int send_buffer_bytes = 256 * 1024;
 inline constexpr int unsent_bytes = 64 * 1024;
 
@@ -46,8 +47,8 @@ class Session : public std::enable_shared_from_this<Session> {
  public:
   Session(std::shared_ptr<Core> core, tcp::socket socket, uint64_t id, std::string peer);
   void start(bool refused);  // refused: 503 whatever it asks
-  // From any thread. Politely: the answer being made is still written, a WebSocket closed with 1001.
-  // Else the socket is closed at once.
+  // From any thread. Politely: the answer being made is still written, a WebSocket closed with
+  // 1001. Else the socket is closed at once.
   void stop(bool politely);
 
  private:
@@ -80,10 +81,10 @@ class Session : public std::enable_shared_from_this<Session> {
   const std::shared_ptr<Core> core_;
   const uint64_t id_;
   const std::string peer_;
-  websocket::stream<beast::tcp_stream, false> ws_;  // false: no permessage-deflate; JPEG does not shrink
+  websocket::stream<beast::tcp_stream, false> ws_;  // false: no permessage-deflate, JPEG is packed
   beast::flat_buffer buffer_;
-  bool stopping_ = false;    // stop() was called
-  bool reading_ = false;     // HTTP: waiting for a request
+  bool stopping_ = false;  // stop() was called
+  bool reading_ = false;   // HTTP: waiting for a request
   Signal answered_;
 
   std::unique_ptr<Request> upgrade_;  // the request that asked for a WebSocket

@@ -32,11 +32,13 @@ net::awaitable<int> Session::read_request(Request& request) {
   stream().expires_after(seconds(core_->settings.header_timeout));  // for all of it, however slow
   error_code ec;
   reading_ = true;  // stop() may close
-  co_await http::async_read_header(stream(), buffer_, parser, net::redirect_error(net::use_awaitable, ec));
+  co_await http::async_read_header(stream(), buffer_, parser,
+                                   net::redirect_error(net::use_awaitable, ec));
   const http::verb method = ec ? http::verb::unknown : parser.get().method();
   if (!ec && method != http::verb::get && method != http::verb::head) co_return 405;
   if (!ec && !parser.is_done())
-    co_await http::async_read(stream(), buffer_, parser, net::redirect_error(net::use_awaitable, ec));
+    co_await http::async_read(stream(), buffer_, parser,
+                              net::redirect_error(net::use_awaitable, ec));
   if (!ec) {
     request = parser.release();
     co_return 200;
@@ -77,8 +79,7 @@ net::awaitable<void> Session::serve_http() {
     }
     question.if_none_match = std::string(request[http::field::if_none_match]);
 
-    const bool websocket_path =
-        question.path == "/api/v1/visit" || question.path == "/api/v1/eye";
+    const bool websocket_path = question.path == "/api/v1/visit" || question.path == "/api/v1/eye";
     const bool upgrade = websocket::is_upgrade(request);
     HttpReply reply;
     if (websocket_path || upgrade) {
@@ -112,7 +113,8 @@ HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& re
     reply.headers["Sec-WebSocket-Version"] = "13";
     return reply;
   }
-  if (request[http::field::sec_websocket_key].size() != 24) return make_refusal(400, "bad Sec-WebSocket-Key");
+  if (request[http::field::sec_websocket_key].size() != 24)
+    return make_refusal(400, "bad Sec-WebSocket-Key");
   if (buffer_.size() != 0) return make_refusal(400, "WebSocket data before the handshake");
 
   std::vector<std::string_view> origins;
@@ -156,7 +158,8 @@ net::awaitable<HttpReply> Session::ask(HttpQuestion question) {
   co_return std::move(*reply);
 }
 
-net::awaitable<void> Session::write_refusal(HttpQuestion question, int status, std::string message) {
+net::awaitable<void> Session::write_refusal(HttpQuestion question, int status,
+                                            std::string message) {
   HttpReply reply = make_refusal(status, message);
   if (status == 405) reply.headers["Allow"] = "GET, HEAD";
   co_await write_reply(std::move(question), std::move(reply), 11, false);
@@ -165,7 +168,8 @@ net::awaitable<void> Session::write_refusal(HttpQuestion question, int status, s
 
 // Headers of any message but Content-Length.
 template <class Message>
-static void put_headers(const HttpReply& reply, unsigned version, bool keep_alive, Message& message) {
+static void put_headers(const HttpReply& reply, unsigned version, bool keep_alive,
+                        Message& message) {
   message.version(version);
   message.result(unsigned(reply.status));
   message.set(http::field::server, "wellspring");
@@ -175,7 +179,8 @@ static void put_headers(const HttpReply& reply, unsigned version, bool keep_aliv
     message.set(http::field::content_type, reply.content_type);
   for (const auto& [name, value] : reply.headers) message.set(name, value);
   message.keep_alive(keep_alive);
-  if (reply.status == 426) message.set(http::field::connection, keep_alive ? "Upgrade" : "Upgrade, close");
+  if (reply.status == 426)
+    message.set(http::field::connection, keep_alive ? "Upgrade" : "Upgrade, close");
 }
 
 // True: the connection may be used again.
@@ -207,7 +212,8 @@ net::awaitable<bool> Session::write_reply(HttpQuestion question, HttpReply reply
   co_return !ec && keep_alive;
 }
 
-// Ends the connection so that the peer gets the reply whole: closing a socket with unread input would reset it.
+// Ends the connection so that the peer gets the reply whole: closing a socket with unread input
+// would reset it.
 net::awaitable<void> Session::linger() {
   error_code ec;
   stream().socket().shutdown(tcp::socket::shutdown_send, ec);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The WebSocket half of a session. Two coroutines on one strand: the session's own reads, a second one
-// writes, one message at a time, and is the only one that starts a close.
+// The WebSocket half of a session. Two coroutines on one strand: the session's own reads, a second
+// one writes, one message at a time, and is the only one that starts a close.
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
@@ -19,8 +19,8 @@ static void set_socket_options(tcp::socket& socket) {
   socket.set_option(net::socket_base::send_buffer_size(send_buffer_bytes), ec);
   if (ec) fail(ec, "send buffer");
 #ifdef TCP_NOTSENT_LOWAT
-  const int bytes = unsent_bytes;
-  if (setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &bytes, sizeof(bytes)) != 0)
+  const int bytes = unsent_bytes, fd = socket.native_handle();
+  if (setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &bytes, sizeof(bytes)) != 0)
     fail(error_code(errno, net::error::get_system_category()), "unsent bytes");
 #endif
 }
@@ -95,15 +95,17 @@ net::awaitable<void> Session::serve_websocket() {
             link_->pictures_sent.load(), link_->bytes_sent.load());
 }
 
-// Until the connection ends (false) or is to be closed (true; the writer's async_close then reads and throws
-// away what still comes). No read may be started once a close was: where the peer's close frame has already
-// been received and there is a control callback, such a read keeps Beast's read lock while it waits for the
-// write lock, and the close the other way round, for ever (Boost 1.74 and 1.81).
+// Until the connection ends (false) or is to be closed (true; the writer's async_close then reads
+// and throws away what still comes). No read may be started once a close was: where the peer's
+// close frame has already been received and there is a control callback, such a read keeps Beast's
+// read lock while it waits for the write lock, and the close the other way round, for ever
+// (Boost 1.74 and 1.81).
 net::awaitable<bool> Session::read_messages() {
   beast::flat_buffer buffer;
   while (close_reason_.code == websocket::close_code::none) {
     error_code ec;
-    const size_t bytes = co_await ws_.async_read(buffer, net::redirect_error(net::use_awaitable, ec));
+    const size_t bytes =
+        co_await ws_.async_read(buffer, net::redirect_error(net::use_awaitable, ec));
     if (ec) {
       fail(ec, "WebSocket read");
       co_return false;
@@ -146,10 +148,10 @@ void Session::wake_writer() {
   });
 }
 
-// Beast bounds silence, not a write that is pending: a peer that reads nothing but pings now and then would
-// hold its picture for ever. This clock runs only while something is being written.
+// Beast bounds silence, not a write that is pending: a peer that reads nothing but pings now and
+// then would hold its picture for ever. This clock runs only while something is being written.
 void Session::start_deadline() {
-  deadline_.expires_after( seconds(core_->settings.write_timeout));
+  deadline_.expires_after(seconds(core_->settings.write_timeout));
   deadline_.async_wait([self = shared_from_this(), number = ++deadline_number_](error_code ec) {
     if (ec || number != self->deadline_number_) return;
     self->core_->slow_closed++;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stream/target.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace wellspring {
@@ -35,7 +36,8 @@ static std::optional<std::string> percent_decode(std::string_view text, bool plu
 static bool is_utf8(std::string_view text) {
   for (size_t i = 0; i < text.size();) {
     const auto lead = static_cast<unsigned char>(text[i]);
-    const size_t more = lead < 0x80 ? 0 : lead < 0xc2 ? 9 : lead < 0xe0 ? 1 : lead < 0xf0 ? 2 : lead < 0xf5 ? 3 : 9;
+    if ((lead >= 0x80 && lead < 0xc2) || lead > 0xf4) return false;  // starts no character
+    const size_t more = lead < 0x80 ? 0 : lead < 0xe0 ? 1 : lead < 0xf0 ? 2 : 3;
     if (i + more >= text.size()) return false;
     for (size_t k = 1; k <= more; k++)
       if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return false;
@@ -65,7 +67,8 @@ static bool good_path(std::string_view path) {
 
 static bool has_encoded_slash(std::string_view path) {
   for (size_t i = 0; i + 2 < path.size(); i++)
-    if (path[i] == '%' && path[i + 1] == '2' && (path[i + 2] == 'f' || path[i + 2] == 'F')) return true;
+    if (path[i] == '%' && path[i + 1] == '2' && (path[i + 2] == 'f' || path[i + 2] == 'F'))
+      return true;
   return false;
 }
 
@@ -81,7 +84,8 @@ static bool read_query(std::string_view text, HttpQuestion& question) {
     const auto name = percent_decode(field.substr(0, equals), true);
     const auto value = percent_decode(field.substr(std::min(equals + 1, field.size())), true);
     if (!name || !value || !is_utf8(*name) || !is_utf8(*value)) return false;
-    if (name->find('\0') != std::string::npos || value->find('\0') != std::string::npos) return false;
+    if (name->find('\0') != std::string::npos || value->find('\0') != std::string::npos)
+      return false;
     question.query[*name] = *value;
   }
   return true;

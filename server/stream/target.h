@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The target of a request line ("/a/b?c=d") to path and query. Strict, so that whoever gets the path may
-// append it to a folder's name: decoded once, no "." or ".." or empty segments, no backslash, no control
-// characters, no encoded slash, nothing that a second decoding would turn into one of these.
+// The target of a request line ("/a/b?c=d") to path and query. Strict, so that whoever gets the
+// path may append it to a folder's name: decoded once, no "." or ".." or empty segments, no
+// backslash, no control characters, no encoded slash, nothing that a second decoding would turn
+// into one of these.
 #pragma once
 #include <string>
 #include <string_view>

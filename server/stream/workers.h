@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A few threads and a bounded queue, for work that may take long and must not hold up input and output.
+// A few threads and a bounded queue, for work that may take long and must not hold up input and
+// output.
 #pragma once
 #include <condition_variable>
 #include <deque>

@@ -10,8 +10,8 @@ namespace wellspring {
 
 static constexpr size_t max_answer_bytes = 64 << 20;  // one message from the server
 
-// Every call starts an operation and turns the io_context until that one is done or its time is over. A
-// read that is still waiting then goes on in the next call.
+// Every call starts an operation and turns the io_context until that one is done or its time is
+// over. A read that is still waiting then goes on in the next call.
 struct WsClient::Impl {
   net::io_context io{1};
   websocket::stream<beast::tcp_stream, false> ws{io};
@@ -27,7 +27,8 @@ struct WsClient::Impl {
     const auto end = std::chrono::steady_clock::now() + seconds(timeout);
     io.restart();
     for (;;) {
-      while (!done() && io.poll_one() > 0) {}
+      while (!done() && io.poll_one() > 0) {
+      }
       if (done()) return true;
       if (std::chrono::steady_clock::now() >= end) return false;
       io.restart();
@@ -63,8 +64,8 @@ void WsClient::Impl::shake_hands(const WsTarget& target, double timeout) {
   const std::string port = std::to_string(target.port);
   const auto check = [&](const error_code& ec, const std::string& what) {
     if (ec)
-      throw std::runtime_error("ws://" + target.host + ":" + port + target.path + ": " + what + ": " +
-                               ec.message());
+      throw std::runtime_error("ws://" + target.host + ":" + port + target.path + ": " + what +
+                               ": " + ec.message());
   };
   error_code ec;
   tcp::resolver resolver(io);
@@ -72,7 +73,8 @@ void WsClient::Impl::shake_hands(const WsTarget& target, double timeout) {
   check(ec, "resolve");
   auto& tcp_stream = beast::get_lowest_layer(ws);
   ec = finish(timeout, [&](auto handler) {
-    tcp_stream.async_connect(found, [handler](error_code ec, const tcp::endpoint&) { handler(ec); });
+    tcp_stream.async_connect(found,
+                             [handler](error_code ec, const tcp::endpoint&) { handler(ec); });
   });
   check(ec, "connect");
   tcp_stream.socket().set_option(tcp::no_delay(true), ec);
@@ -86,7 +88,8 @@ void WsClient::Impl::shake_hands(const WsTarget& target, double timeout) {
   websocket::response_type response;
   const bool v6 = target.host.find(':') != std::string::npos;
   const std::string host = (v6 ? "[" + target.host + "]" : target.host) + ":" + port;
-  ec = finish(timeout, [&](auto handler) { ws.async_handshake(response, host, target.path, handler); });
+  ec = finish(timeout,
+              [&](auto handler) { ws.async_handshake(response, host, target.path, handler); });
   if (ec == websocket::error::upgrade_declined)
     check(ec, "HTTP status " + std::to_string(response.result_int()));
   check(ec, "handshake");
@@ -137,7 +140,8 @@ WsClient::Got WsClient::receive(WsMessage& message, double timeout) {
 void WsClient::close(double timeout) {
   Impl& impl = *impl_;
   if (!impl.open) return;
-  impl.finish(timeout, [&](auto handler) { impl.ws.async_close(websocket::close_code::normal, handler); });
+  impl.finish(timeout,
+              [&](auto handler) { impl.ws.async_close(websocket::close_code::normal, handler); });
   impl.drop();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A WebSocket client for our own programs and tests: one connection, one thread, calls that block up to a
-// given time. Knows no message; wire/json.h and wire/packet.h do.
+// A WebSocket client for our own programs and tests: one connection, one thread, calls that block
+// up to a given time. Knows no message; wire/json.h and wire/packet.h do.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -21,7 +21,9 @@ struct WsTarget {
 struct WsMessage {
   bool binary = false;
   std::vector<uint8_t> bytes;
-  std::string_view text() const { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+  std::string_view text() const {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
 };
 
 class WsClient {
@@ -33,22 +35,24 @@ class WsClient {
   WsClient(WsClient&&) noexcept;
   WsClient& operator=(WsClient&&) noexcept;
 
-  // Resolves, connects and shakes hands within `timeout` seconds. Throws std::runtime_error naming the
-  // address and the cause (for a refused handshake: the HTTP status). Connects anew when called again.
+  // Resolves, connects and shakes hands within `timeout` seconds. Throws std::runtime_error naming
+  // the address and the cause (for a refused handshake: the HTTP status). Connects anew when called
+  // again.
   void connect(const WsTarget& target, double timeout = 5);
 
-  // False: the connection is gone, or the message could not be handed to the kernel in time (then the
-  // connection is dropped, since a half-written message cannot be taken back).
+  // False: the connection is gone, or the message could not be handed to the kernel in time (then
+  // the connection is dropped, since a half-written message cannot be taken back).
   bool send_text(std::string_view text, double timeout = 5);
 
   // The next message, within `timeout` seconds (0: only what is there already). After `nothing` the
-  // connection is as before; after `closed` close_code() and close_reason() tell what the server said.
+  // connection is as before; after `closed` close_code() and close_reason() tell what the server
+  // said.
   Got receive(WsMessage& message, double timeout);
 
   void close(double timeout = 2);  // with the closing handshake
   bool connected() const;
-  std::string subprotocol() const;    // that the server chose
-  int close_code() const;             // 0: none was received
+  std::string subprotocol() const;  // that the server chose
+  int close_code() const;           // 0: none was received
   std::string close_reason() const;
 
  private:

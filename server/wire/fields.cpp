@@ -137,8 +137,8 @@ bool Fields::numbers(const char* name, int count, double limit, double* values, 
   if (!field->is_array() || int(field->size()) != count)
     return fail(name, "must be an array of " + std::to_string(count) + " numbers"), false;
   for (int i = 0; i < count; i++)
-    if (!check_number(std::string(name) + "[" + std::to_string(i) + "]", (*field)[size_t(i)], -limit,
-                      limit, values[i]))
+    if (!check_number(std::string(name) + "[" + std::to_string(i) + "]", (*field)[size_t(i)],
+                      -limit, limit, values[i]))
       return false;
   return true;
 }
@@ -182,7 +182,8 @@ const json* Fields::array(const char* name, size_t max_size) {
 
 std::variant<Envelope, WireError> open_envelope(std::string_view text) {
   if (text.size() > max_message_bytes)
-    return WireError{"too_large", "message of more than " + std::to_string(max_message_bytes) + " bytes"};
+    return WireError{"too_large",
+                     "message of more than " + std::to_string(max_message_bytes) + " bytes"};
   auto parsed = parse_json(text);
   if (auto* error = std::get_if<WireError>(&parsed)) return std::move(*error);
   Envelope envelope{std::move(std::get<json>(parsed)), {}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads checked fields out of one JSON object; for the readers of this folder. The first thing wrong is
-// kept in `error` with the field's full name and turns every later call into nothing, so a reader asks
-// for its fields one after the other and looks at the error once.
+// Reads checked fields out of one JSON object; for the readers of this folder. The first thing
+// wrong is kept in `error` with the field's full name and turns every later call into nothing, so a
+// reader asks for its fields one after the other and looks at the error once.
 #pragma once
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -33,7 +33,8 @@ class Fields {
   bool word(const char* name, std::initializer_list<const char*> words, std::string& value,
             Need need = Need::optional);
   // An array of exactly `count` numbers, each within +-limit.
-  bool numbers(const char* name, int count, double limit, double* values, Need need = Need::optional);
+  bool numbers(const char* name, int count, double limit, double* values,
+               Need need = Need::optional);
   bool vector(const char* name, double limit, vec2& value, Need need = Need::optional);
   bool vector(const char* name, double limit, vec3& value, Need need = Need::optional);
   bool vector(const char* name, double limit, dvec3& value, Need need = Need::optional);
@@ -61,7 +62,8 @@ class Fields {
   std::optional<WireError>& error_;
 };
 
-// The object of a message whose size, syntax and depth are good and which has a "type" of type string.
+// The object of a message whose size, syntax and depth are good and which has a "type" of type
+// string.
 struct Envelope {
   nlohmann::json object;
   std::string type;

@@ -8,7 +8,8 @@ namespace wellspring {
 
 static constexpr uint8_t picture_magic[4] = {'W', 'S', 'F', '1'};
 
-// Byte by byte, so that the layout is little-endian on every machine and no pointer need be aligned.
+// Byte by byte, so that the layout is little-endian on every machine and no pointer need be
+// aligned.
 template <class T>
 static void put(std::span<uint8_t> bytes, size_t at, T value) {
   for (size_t i = 0; i < sizeof(T); i++) bytes[at + i] = uint8_t(uint64_t(value) >> (8 * i));

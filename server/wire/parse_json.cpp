@@ -10,8 +10,8 @@ using nlohmann::json;
 
 namespace {
 
-// What the parser tells us, put together. The parser itself keeps its state in a vector, so depth costs
-// no stack while parsing.
+// What the parser tells us, put together. The parser itself keeps its state in a vector, so depth
+// costs no stack while parsing.
 class TreeBuilder {
  public:
   explicit TreeBuilder(int max_depth) : max_depth_(max_depth) {}

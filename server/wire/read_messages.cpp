@@ -68,7 +68,7 @@ static StorytellerOrder read_storyteller(Fields& fields) {
 static Settings read_settings(Fields& fields) {
   Settings settings;
   const auto integer = [&](const char* name, int low, int high) {
-    return [&fields, name, low, high](int& value) { return fields.integer(name, low, high, value); };
+    return [&fields, name, low, high](int& v) { return fields.integer(name, low, high, v); };
   };
   fields.maybe(settings.fps, [&](float& v) { return fields.number("fps", min_fps, max_fps, v); });
   fields.maybe(settings.attention, [&](bool& v) { return fields.boolean("attention", v); });
@@ -95,16 +95,26 @@ std::variant<BrowserMessage, WireError> read_browser_message(std::string_view te
   std::optional<WireError> error;
   Fields fields(object, type + ".", error);
   BrowserMessage message;
-  if (type == "hello") message = read_hello(fields);
-  else if (type == "input") message = read_input(fields);
-  else if (type == "camera") message = read_camera(fields);
-  else if (type == "viewpoint") message = read_viewpoint(fields);
-  else if (type == "tour") message = read_tour(fields);
-  else if (type == "storyteller") message = read_storyteller(fields);
-  else if (type == "settings") message = read_settings(fields);
-  else if (type == "ack") message = read_ack(fields);
-  else if (type == "bye") message = Bye{};
-  else return WireError{"unknown_type", "unknown type " + short_quote(type)};
+  if (type == "hello")
+    message = read_hello(fields);
+  else if (type == "input")
+    message = read_input(fields);
+  else if (type == "camera")
+    message = read_camera(fields);
+  else if (type == "viewpoint")
+    message = read_viewpoint(fields);
+  else if (type == "tour")
+    message = read_tour(fields);
+  else if (type == "storyteller")
+    message = read_storyteller(fields);
+  else if (type == "settings")
+    message = read_settings(fields);
+  else if (type == "ack")
+    message = read_ack(fields);
+  else if (type == "bye")
+    message = Bye{};
+  else
+    return WireError{"unknown_type", "unknown type " + short_quote(type)};
   if (error) return std::move(*error);
   return message;
 }

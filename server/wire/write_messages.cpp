@@ -20,8 +20,9 @@ static double rounded(double value) { return std::round(value * 1e4) / 1e4 + 0.0
 static json rounded(vec3 v) { return json::array({rounded(v.x), rounded(v.y), rounded(v.z)}); }
 
 static json to_json(const Expression& e) {
-  return {{"joy", rounded(e.joy)},   {"sadness", rounded(e.sadness)}, {"anger", rounded(e.anger)},
-          {"fear", rounded(e.fear)}, {"disgust", rounded(e.disgust)}, {"surprise", rounded(e.surprise)}};
+  return {{"joy", rounded(e.joy)},         {"sadness", rounded(e.sadness)},
+          {"anger", rounded(e.anger)},     {"fear", rounded(e.fear)},
+          {"disgust", rounded(e.disgust)}, {"surprise", rounded(e.surprise)}};
 }
 
 std::string write_observation(const Observation& observation) {
@@ -105,7 +106,8 @@ static json to_json(const Settings& settings) {
 }
 
 static json to_json(const Ack& ack) {
-  return {{"type", "ack"}, {"frame", ack.frame}, {"decoded_ms", ack.decoded_ms}, {"shown", ack.shown}};
+  return {
+      {"type", "ack"}, {"frame", ack.frame}, {"decoded_ms", ack.decoded_ms}, {"shown", ack.shown}};
 }
 
 static json to_json(const Bye&) { return {{"type", "bye"}}; }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A socket that says exactly the bytes it is told to, for tests of what no proper client would send.
+// A socket that says exactly the bytes it is told to, for tests of what no proper client would
+// send.
 #pragma once
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -48,7 +49,8 @@ class RawClient {
     return true;
   }
 
-  // Reads more into `input`; false at the end of the stream, an error, or when nothing came in time.
+  // Reads more into `input`; false at the end of the stream, an error, or when nothing came in
+  // time.
   bool more(double timeout = 5) {
     if (fd_ < 0) return false;
     pollfd waiting{fd_, POLLIN, 0};
@@ -108,7 +110,8 @@ class RawClient {
   Reply upgrade(const std::string& path = "/api/v1/visit", const std::string& more_headers = "") {
     return ask(path,
                "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" + more_headers);
+               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+                   more_headers);
   }
 
   // first: FIN, reserved bits and opcode, as on the wire (0x81: a whole text).
@@ -125,7 +128,8 @@ class RawClient {
     }
     const char mask[4] = {0x11, 0x22, 0x33, 0x44};
     if (masked) out.append(mask, 4);
-    for (size_t i = 0; i < payload.size(); i++) out += masked ? char(payload[i] ^ mask[i % 4]) : payload[i];
+    for (size_t i = 0; i < payload.size(); i++)
+      out += masked ? char(payload[i] ^ mask[i % 4]) : payload[i];
     return out;
   }
 
@@ -133,7 +137,8 @@ class RawClient {
     int opcode = 0;
     std::string payload;
     int close_code() const {
-      return opcode != 8 || payload.size() < 2 ? 0 : uint8_t(payload[0]) * 256 + uint8_t(payload[1]);
+      return opcode != 8 || payload.size() < 2 ? 0
+                                               : uint8_t(payload[0]) * 256 + uint8_t(payload[1]);
     }
   };
   std::optional<Frame> next_frame(double timeout = 5) {

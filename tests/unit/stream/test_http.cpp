@@ -53,7 +53,8 @@ TEST(Http, every_reply_carries_the_security_headers) {
     const auto reply = client.ask(target);
     EXPECT_EQ(reply.header("X-Content-Type-Options"), "nosniff") << target;
     EXPECT_EQ(reply.header("Referrer-Policy"), "no-referrer") << target;
-    EXPECT_TRUE(reply.header("Content-Security-Policy").starts_with("default-src 'none'; ")) << target;
+    EXPECT_TRUE(reply.header("Content-Security-Policy").starts_with("default-src 'none'; "))
+        << target;
     EXPECT_EQ(reply.header("Permissions-Policy"), "camera=(), microphone=()") << target;
     EXPECT_FALSE(reply.header("Cache-Control").empty()) << target;
     EXPECT_FALSE(reply.header("Date").empty()) << target;
@@ -92,8 +93,9 @@ TEST(Http, an_answer_that_throws_is_a_500_and_no_end) {
 TEST(Http, no_target_leads_out) {
   House house;
   for (const char* target :
-       {"/../etc/passwd", "/a/../../x", "/%2e%2e/x", "/%2E%2e%2Fx", "/%252e%252e/x", "/..%2fx", "/%2F..%2F",
-        "//etc/passwd", "/..\\x", "/a%5c..%5cx", "/a%00.js", "/./a", "/a//b", "http://x/../y", "/%c0%ae/"}) {
+       {"/../etc/passwd", "/a/../../x", "/%2e%2e/x", "/%2E%2e%2Fx", "/%252e%252e/x", "/..%2fx",
+        "/%2F..%2F", "//etc/passwd", "/..\\x", "/a%5c..%5cx", "/a%00.js", "/./a", "/a//b",
+        "http://x/../y", "/%c0%ae/"}) {
     RawClient client(house.port());
     const auto reply = client.ask(target);
     EXPECT_EQ(reply.status, 400) << target;
@@ -104,11 +106,13 @@ TEST(Http, no_target_leads_out) {
 TEST(Http, what_is_not_http_is_refused_and_closed) {
   House house;
   for (const char* bytes :
-       {"hello\r\n\r\n", "GET\r\n\r\n", "GET /a\r\n\r\n", "GET /a HTTP/9.9\r\n\r\n", "GET /a b HTTP/1.1\r\n\r\n",
-        "GET /a HTTP/1.1\r\nHost localhost\r\n\r\n", "GET /a HTTP/1.1\r\nHost: a\r\nContent-Length: x\r\n\r\n",
+       {"hello\r\n\r\n", "GET\r\n\r\n", "GET /a\r\n\r\n", "GET /a HTTP/9.9\r\n\r\n",
+        "GET /a b HTTP/1.1\r\n\r\n", "GET /a HTTP/1.1\r\nHost localhost\r\n\r\n",
+        "GET /a HTTP/1.1\r\nHost: a\r\nContent-Length: x\r\n\r\n",
         "GET /a HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n", "GET /a HTTP/1.1\r\n\r\n",
         "GET /a HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n",
-        "GET /a HTTP/1.1\r\nHost: a\r\nContent-Length: 1\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
+        "GET /a HTTP/1.1\r\nHost: a\r\nContent-Length: 1\r\nTransfer-Encoding: "
+        "chunked\r\n\r\n0\r\n\r\n",
         "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n"}) {
     RawClient client(house.port());
     client.send(bytes);
@@ -186,9 +190,8 @@ TEST(Http, a_slow_answer_holds_up_nobody_else) {
   }
   RawClient quick(house.port());
   for (int i = 0; i < 5; i++) EXPECT_EQ(quick.ask("/healthz").status, 200);
-  EXPECT_TRUE(eventually([&] {
-    return std::erase_if(waiting, [](auto& client) { return client->more(0); }) == 1;
-  }));
+  EXPECT_TRUE(eventually(
+      [&] { return std::erase_if(waiting, [](auto& client) { return client->more(0); }) == 1; }));
   gate.set_value();
   int answered = 0;
   EXPECT_EQ(waiting.size(), 10u);
@@ -221,7 +224,8 @@ TEST(Http, out_of_descriptors_the_door_stays_open) {
   House house;
   rlimit old{};
   getrlimit(RLIMIT_NOFILE, &old);
-  // A connection made now fills the last descriptor: the limit is the lowest number that is still free.
+  // A connection made now fills the last descriptor: the limit is the lowest number that is still
+  // free.
   const int free_fd = dup(0);
   close(free_fd);
   rlimit tight = old;
@@ -247,7 +251,8 @@ TEST(Http, a_port_in_use_is_named) {
     Server second(settings, {});
     FAIL() << "two servers on one port";
   } catch (const std::runtime_error& e) {
-    EXPECT_NE(std::string(e.what()).find("127.0.0.1:" + std::to_string(house.port())), std::string::npos)
+    EXPECT_NE(std::string(e.what()).find("127.0.0.1:" + std::to_string(house.port())),
+              std::string::npos)
         << e.what();
   }
   settings.host = "no.such.host.invalid";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readers that do not read: they see newer pictures, cost no memory that grows, disturb nobody, and are cut.
+// Readers that do not read: they see newer pictures, cost no memory that grows, disturb nobody, and
+// are cut.
 #include <fstream>
 
 #include "fixture.h"
@@ -27,7 +28,8 @@ TEST(SlowReader, is_cut_although_it_pings_while_others_see_on) {
   auto good_link = house.link(1);
   ASSERT_TRUE(slow_link && good_link);
 
-  const auto big = picture(1, 400'000);  // of one allocation, so that memory seen to grow is the server's
+  const auto big =
+      picture(1, 400'000);  // of one allocation, so that memory seen to grow is the server's
   const auto small = picture(2);
   const long before = resident_kib();
   long most = 0;

@@ -27,7 +27,8 @@ TEST(Upgrade, visit_and_eye_become_links_of_their_kind) {
 TEST(Upgrade, no_compression_is_agreed_on) {
   House house;
   RawClient client(house.port());
-  const auto reply = client.upgrade("/api/v1/visit", "Sec-WebSocket-Extensions: permessage-deflate\r\n");
+  const auto reply =
+      client.upgrade("/api/v1/visit", "Sec-WebSocket-Extensions: permessage-deflate\r\n");
   EXPECT_EQ(reply.status, 101);
   EXPECT_EQ(reply.header("Sec-WebSocket-Extensions"), "");
 }
@@ -43,7 +44,8 @@ TEST(Upgrade, subprotocol_is_echoed_when_offered_and_refused_when_only_others_ar
                          "Sec-WebSocket-Protocol: x\r\nSec-WebSocket-Protocol: wellspring.v1\r\n")
                 .status,
             101);
-  EXPECT_EQ(other.upgrade("/api/v1/visit", "Sec-WebSocket-Protocol: wellspring.v2\r\n").status, 400);
+  EXPECT_EQ(other.upgrade("/api/v1/visit", "Sec-WebSocket-Protocol: wellspring.v2\r\n").status,
+            400);
   EXPECT_FALSE(house.server.counters().websockets > 2);
 }
 
@@ -56,9 +58,10 @@ TEST(Upgrade, elsewhere_is_404_and_a_plain_get_is_426) {
   EXPECT_EQ(reply.status, 426);
   EXPECT_EQ(reply.header("Upgrade"), "websocket");
   EXPECT_EQ(plain.ask("/a").status, 200);
-  const auto version = old.ask("/api/v1/visit",
-                               "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 8\r\n"
-                               "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n");
+  const auto version =
+      old.ask("/api/v1/visit",
+              "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 8\r\n"
+              "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n");
   EXPECT_EQ(version.status, 426);
   EXPECT_EQ(version.header("Sec-WebSocket-Version"), "13");
   EXPECT_EQ(keyless
@@ -73,18 +76,21 @@ TEST(Upgrade, elsewhere_is_404_and_a_plain_get_is_426) {
                      "POST")
                 .status,
             405);
-  early.send("GET /api/v1/visit HTTP/1.1\r\nHost: a\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
-             "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n" +
-             RawClient::frame(0x81, "x"));
+  early.send(
+      "GET /api/v1/visit HTTP/1.1\r\nHost: a\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n" +
+      RawClient::frame(0x81, "x"));
   EXPECT_EQ(early.reply().status, 400);
   EXPECT_EQ(house.server.counters().websockets, 0u);
 }
 
 static int status_with_origin(House& house, const std::string& headers) {
   RawClient client(house.port());
-  client.send("GET /api/v1/visit HTTP/1.1\r\nHost: museum.org:8080\r\nConnection: Upgrade\r\n"
-              "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-              "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" + headers + "\r\n");
+  client.send(
+      "GET /api/v1/visit HTTP/1.1\r\nHost: museum.org:8080\r\nConnection: Upgrade\r\n"
+      "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+      headers + "\r\n");
   return client.reply().status;
 }
 
@@ -93,11 +99,14 @@ TEST(Upgrade, foreign_origins_are_refused_before_it) {
   EXPECT_EQ(status_with_origin(house, ""), 101);
   EXPECT_EQ(status_with_origin(house, "Origin: http://museum.org:8080\r\n"), 101);
   EXPECT_EQ(status_with_origin(house, "Origin: HTTP://Museum.Org:8080\r\n"), 101);
-  for (const char* origin : {"http://museum.org", "http://museum.org:8081", "https://museum.org", "null",
-                             "http://museum.org:8080.evil.net", "http://museum.org.evil.net:8080",
-                             "http://evil-museum.org:8080", "http://museum.or:8080"})
+  for (const char* origin :
+       {"http://museum.org", "http://museum.org:8081", "https://museum.org", "null",
+        "http://museum.org:8080.evil.net", "http://museum.org.evil.net:8080",
+        "http://evil-museum.org:8080", "http://museum.or:8080"})
     EXPECT_EQ(status_with_origin(house, "Origin: " + std::string(origin) + "\r\n"), 403) << origin;
-  EXPECT_EQ(status_with_origin(house, "Origin: http://museum.org:8080\r\nOrigin: http://evil.net\r\n"), 403);
+  EXPECT_EQ(
+      status_with_origin(house, "Origin: http://museum.org:8080\r\nOrigin: http://evil.net\r\n"),
+      403);
   EXPECT_EQ(status_with_origin(
                 house, "Origin: http://museum.org:8080\r\nOrigin: http://museum.org:8080\r\n"),
             403);
@@ -225,7 +234,8 @@ TEST(Client, errors_name_address_and_cause) {
             std::string::npos);
   const uint16_t port = house.port();
   house.server.stop();
-  EXPECT_NE(message_of({.port = port}).find("127.0.0.1:" + std::to_string(port)), std::string::npos);
+  EXPECT_NE(message_of({.port = port}).find("127.0.0.1:" + std::to_string(port)),
+            std::string::npos);
   WsMessage message;
   EXPECT_EQ(client.receive(message, 0.1), WsClient::Got::closed);
 }

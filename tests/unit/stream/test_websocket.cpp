@@ -95,7 +95,8 @@ TEST(WebSocket, breaches_of_the_protocol_close_with_1002) {
 }
 
 TEST(WebSocket, what_is_not_utf8_closes_with_1007) {
-  for (const std::string text : {"\xff", "a\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "cut\xc3"}) {
+  for (const std::string text :
+       {"\xff", "a\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "cut\xc3"}) {
     Talk talk;
     EXPECT_EQ(talk.say(frame(0x81, text)), 1007) << text;
   }
@@ -115,7 +116,9 @@ TEST(WebSocket, messages_of_64_kib_are_fine_and_one_byte_more_closes_with_1009) 
   const std::string part(max_message_bytes / 2, 'x');
   EXPECT_EQ(fragments.say(frame(0x01, part) + frame(0x00, part) + frame(0x80, "x")), 1009);
   Talk announced;  // by the header alone, before any of it has come
-  EXPECT_EQ(announced.say(std::string("\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xff\x11\x22\x33\x44", 14)), 1009);
+  EXPECT_EQ(
+      announced.say(std::string("\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xff\x11\x22\x33\x44", 14)),
+      1009);
 }
 
 TEST(WebSocket, binary_messages_close_with_1003) {
@@ -128,8 +131,8 @@ TEST(WebSocket, binary_messages_close_with_1003) {
   EXPECT_TRUE(talk.link->take_texts().empty());
 }
 
-// The peer's close frame is there before the server has sent its own: both sides close at once, whatever
-// else is in the buffer.
+// The peer's close frame is there before the server has sent its own: both sides close at once,
+// whatever else is in the buffer.
 TEST(WebSocket, closes_that_cross_end_the_connection) {
   const std::string bye = frame(0x88, "\x03\xe8");
   for (int round = 0; round < 40; round++) {

@@ -90,7 +90,8 @@ TEST(Messages, of_equal_names_the_last_counts) {
 
 TEST(Messages, odd_floats_survive_the_round_trip) {
   for (const float value : {0.1f, -1e-30f, 99.99999f, 1.0f / 3}) {
-    const BrowserMessage message = CameraTo{.seq = 1, .position = {value, 1e-9, -1e5}, .yaw = value};
+    const BrowserMessage message =
+        CameraTo{.seq = 1, .position = {value, 1e-9, -1e5}, .yaw = value};
     EXPECT_TRUE(std::get<BrowserMessage>(read_browser_message(write_message(message))) == message);
   }
 }
@@ -98,14 +99,15 @@ TEST(Messages, odd_floats_survive_the_round_trip) {
 TEST(Messages, invalid_utf8_is_no_json) {
   for (const std::string bytes : {"\xff", "\xc3", "\xed\xa0\x80", "\xc0\xaf", "\xf4\x90\x80\x80"})
     EXPECT_EQ(std::get<WireError>(
-                  read_browser_message(R"({"type":"viewpoint","seq":1,"name":")" + bytes + "\"}")).code,
+                  read_browser_message(R"({"type":"viewpoint","seq":1,"name":")" + bytes + "\"}"))
+                  .code,
               "bad_json");
 }
 
 TEST(Messages, names_may_be_200_bytes) {
   const auto with_name = [](size_t bytes) {
-    return read_browser_message(R"({"type":"viewpoint","seq":1,"name":")" + std::string(bytes, 'n') +
-                                "\"}");
+    return read_browser_message(R"({"type":"viewpoint","seq":1,"name":")" +
+                                std::string(bytes, 'n') + "\"}");
   };
   EXPECT_EQ(error_of(with_name(200)), "");
   EXPECT_EQ(std::get<WireError>(with_name(201)).code, "bad_field");
