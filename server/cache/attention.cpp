@@ -15,7 +15,8 @@ constexpr int change_witnesses = 3;   // changed points in 3x3 tiles that make i
 constexpr uint8_t changed_count = 2;  // samples a point near a change still vouches for
 
 void age_tile(PointCache& points, const PointImage& image, StillImage& still, int tx, int ty) {
-  int x1 = std::min((tx + 1) * change_tile, image.width), y1 = std::min((ty + 1) * change_tile, image.height);
+  int x1 = std::min((tx + 1) * change_tile, image.width),
+      y1 = std::min((ty + 1) * change_tile, image.height);
   for (int y = ty * change_tile; y < y1; y++)
     for (int x = tx * change_tile; x < x1; x++) {
       size_t at = size_t(y) * size_t(image.width) + size_t(x);
@@ -54,7 +55,8 @@ void prioritise(const PointCache& points, const CacheSettings& settings, PointIm
   }
   std::array<uint8_t, 256> by_age{}, by_count{};
   for (int i = 0; i < 256; i++) {
-    by_age[size_t(i)] = uint8_t(std::clamp(float(i) * 0.35f * settings.budget_share_old, 1.0f, 127.0f));
+    by_age[size_t(i)] =
+        uint8_t(std::clamp(float(i) * 0.35f * settings.budget_share_old, 1.0f, 127.0f));
     by_count[size_t(i)] = uint8_t(30 / std::sqrt(float(std::max(i, 1))));
   }
   parallel_ranges(height, 8, [&](int begin, int end) {
@@ -75,7 +77,8 @@ void prioritise(const PointCache& points, const CacheSettings& settings, PointIm
         priority[x] = uint8_t(255 - 14 * (around[x - 1] + around[x] + around[x + 1]));
       const uint32_t* point = image.point.data() + start;
       for (int x = 0; x < width; x++)
-        if (point[x] != no_point) priority[x] = uint8_t(by_age[points.age[point[x]]] + by_count[points.count[point[x]]]);
+        if (point[x] != no_point)
+          priority[x] = uint8_t(by_age[points.age[point[x]]] + by_count[points.count[point[x]]]);
     }
   });
 }

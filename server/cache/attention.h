@@ -8,13 +8,14 @@
 
 namespace wellspring {
 
-// Where several resampled points close by had changed (one may err), points nearby get older by a quarter
-// of the scale and forget most of their samples, and the picture's mean there starts over. Uses up
-// image.changed.
+// Where several resampled points close by had changed (one may err), points nearby get older by a
+// quarter of the scale and forget most of their samples, and the picture's mean there starts over.
+// Uses up image.changed.
 void age_changed(PointCache& points, PointImage& image, StillImage& still);
 
-// Overwrites image.priority: empty pixels 255 (alone) to 143 (surrounded by points); pixels with a point
-// by its age (up to 127) and by how few samples it holds. 255 everywhere counts when attention is off.
+// Overwrites image.priority: empty pixels 255 (alone) to 143 (surrounded by points); pixels with a
+// point by its age (up to 127) and by how few samples it holds. 255 everywhere counts when
+// attention is off.
 void prioritise(const PointCache& points, const CacheSettings& settings, PointImage& image);
 
 }  // namespace wellspring

@@ -36,11 +36,11 @@ struct RenderCache::Impl {
   StillImage still;
   Cells cells;
   Scratch scratch;
-  View view;                  // of the last projection
+  View view;  // of the last projection
   bool projected = false;
-  int still_frames = 0;       // projections of the same view before the last
-  float new_points = 0;       // a frame, smoothed
-  int fresh = 0;              // samples of this frame that show
+  int still_frames = 0;  // projections of the same view before the last
+  float new_points = 0;  // a frame, smoothed
+  int fresh = 0;         // samples of this frame that show
   uint32_t frames = 0;
   std::vector<uint32_t> targets;
   CacheStats stats;
@@ -87,8 +87,10 @@ void RenderCache::project(const View& view) {
   Impl& c = *impl_;
   resize(view.width, view.height);
   bool same = c.projected && same_view(view, c.view);
-  if (same) c.still_frames = std::min(c.still_frames + 1, 1 << 20);
-  else if (c.still_frames > 0) c.forget_still();
+  if (same)
+    c.still_frames = std::min(c.still_frames + 1, 1 << 20);
+  else if (c.still_frames > 0)
+    c.forget_still();
   c.view = view;
   c.projected = true;
   c.frames++;
@@ -103,7 +105,8 @@ void RenderCache::attend() {
   prioritise(c.points, c.settings, c.image);
 }
 
-void RenderCache::plan(const View& view, int budget, uint64_t seed, std::vector<Request>& requests) {
+void RenderCache::plan(const View& view, int budget, uint64_t seed,
+                       std::vector<Request>& requests) {
   Impl& c = *impl_;
   if (view.width != c.image.width || view.height != c.image.height) {
     requests.clear();
@@ -112,14 +115,16 @@ void RenderCache::plan(const View& view, int budget, uint64_t seed, std::vector<
   plan_requests(c.points, view, {budget, seed, c.is_still()}, c.image, requests);
 }
 
-void RenderCache::remember(const View& view, std::span<const Request> requests, std::span<const Sample> samples) {
+void RenderCache::remember(const View& view, std::span<const Request> requests,
+                           std::span<const Sample> samples) {
   Impl& c = *impl_;
   RememberSettings settings;
   settings.color_change = c.settings.color_change;
   settings.current = c.projected && same_view(view, c.view);
   settings.still = settings.current && c.is_still();
   settings.longest_mean = settings.still ? still_mean : moving_mean;
-  Remembered result = remember_samples(c.points, view, requests, samples, settings, c.image, c.targets);
+  Remembered result =
+      remember_samples(c.points, view, requests, samples, settings, c.image, c.targets);
   c.new_points += (float(result.kept) - c.new_points) * 0.1f;
   if (settings.current) c.fresh += result.kept;
   if (!settings.still) return;
@@ -130,7 +135,8 @@ void RenderCache::remember(const View& view, std::span<const Request> requests, 
 
 void RenderCache::reconstruct(const View& view, Frame& frame) {
   Impl& c = *impl_;
-  int width = std::clamp(view.width, 1, largest_side), height = std::clamp(view.height, 1, largest_side);
+  int width = std::clamp(view.width, 1, largest_side),
+      height = std::clamp(view.height, 1, largest_side);
   size_t pixels = size_t(width) * size_t(height);
   frame.width = width;
   frame.height = height;
@@ -164,7 +170,8 @@ void RenderCache::clear() {
 
 void RenderCache::Impl::count(const SurfaceCounts& counts, bool known) {
   float pixels = float(image.point.size()), shown = float(counts.points);
-  stats.points = int(std::count_if(points.age.begin(), points.age.end(), [](uint8_t a) { return a != evicted_age; }));
+  stats.points = int(std::count_if(points.age.begin(), points.age.end(),
+                                   [](uint8_t a) { return a != evicted_age; }));
   stats.fresh = std::min(float(fresh), shown) / pixels;
   stats.reprojected = shown / pixels - stats.fresh;
   stats.filled = known ? 1 - shown / pixels : 0.0f;
@@ -178,8 +185,9 @@ const CacheStats& RenderCache::stats() const { return impl_->stats; }
 size_t RenderCache::memory_bytes() const {
   const Impl& c = *impl_;
   auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  size_t sum = points_bytes(c.points) + bytes(c.image.point) + bytes(c.image.depth) + bytes(c.image.priority) +
-               bytes(c.image.changed) + bytes(c.still.count) + bytes(c.targets) + c.scratch.bytes();
+  size_t sum = points_bytes(c.points) + bytes(c.image.point) + bytes(c.image.depth) +
+               bytes(c.image.priority) + bytes(c.image.changed) + bytes(c.still.count) +
+               bytes(c.targets) + c.scratch.bytes();
   for (const auto& plane : c.still.mean) sum += bytes(plane);
   return sum;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The render cache of one visitor (Walter, Drettakis, Parker 1999, "Interactive Rendering using the Render
-// Cache"): samples as points in space, reprojected every frame, and where to look next.
-// One frame: project -> attend -> plan -> (trace) -> remember -> reconstruct. All functions use all cores,
-// never fail and never block; memory is bounded by the sizes given to resize().
+// The render cache of one visitor (Walter, Drettakis, Parker 1999, "Interactive Rendering using the
+// Render Cache"): samples as points in space, reprojected every frame, and where to look next. One
+// frame: project -> attend -> plan -> (trace) -> remember -> reconstruct. All functions use all
+// cores, never fail and never block; memory is bounded by the sizes given to resize().
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -16,11 +16,11 @@
 namespace wellspring {
 
 struct CacheSettings {
-  float points_per_pixel = 1.0625f;    // capacity over pixels (paper, section 4.3: slightly larger)
-  float depth_threshold = 0.1f;        // paper, section 3.1
-  float color_change = 0.25f;          // relative change of a resampled point that ages its neighbours
-  float budget_share_old = 1;          // weight of age against emptiness in the priority
-  bool attention = true;               // false: samples spread evenly
+  float points_per_pixel = 1.0625f;  // capacity over pixels (paper, section 4.3: slightly larger)
+  float depth_threshold = 0.1f;      // paper, section 3.1
+  float color_change = 0.25f;  // relative change of a resampled point that ages its neighbours
+  float budget_share_old = 1;  // weight of age against emptiness in the priority
+  bool attention = true;       // false: samples spread evenly
 };
 
 struct PointCache;  // cache/point_cache.h: the points
@@ -28,7 +28,7 @@ struct PointImage;  // cache/point_image.h: what projects where, priorities
 
 // What the last frame looked like, in numbers (for /metrics, the status page and tests).
 struct CacheStats {
-  int points = 0;       // in use
+  int points = 0;                                           // in use
   float fresh = 0, reprojected = 0, filled = 0, empty = 0;  // shares of the picture's pixels
   float mean_age = 0;   // of the visible points, 0 (new) to 254; see age_points()
   float converged = 0;  // share of pixels whose point has reached its sample goal
@@ -43,7 +43,8 @@ class RenderCache {
 
   // Sets the picture's size; keeps the points that still fit. Cheap when nothing changes.
   void resize(int width, int height);
-  // Points on moving meshes follow their triangles; ages advance. Call once a frame after World::commit().
+  // Points on moving meshes follow their triangles; ages advance. Call once a frame after
+  // World::commit().
   void move_points(const World& world);
   // Where every point falls in `view`; depth cull.
   void project(const View& view);
@@ -53,7 +54,8 @@ class RenderCache {
   // resampled points are passed exactly. `seed` makes the choice and the samples repeatable.
   void plan(const View& view, int budget, uint64_t seed, std::vector<Request>& requests);
   // Puts answers into the cache and into the current projection.
-  void remember(const View& view, std::span<const Request> requests, std::span<const Sample> samples);
+  void remember(const View& view, std::span<const Request> requests,
+                std::span<const Sample> samples);
   // The picture: overwrites `frame` (color, confidence; depth and object for those who ask later).
   void reconstruct(const View& view, Frame& frame);
   void set_attention(bool on);  // CacheSettings::attention

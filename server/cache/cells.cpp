@@ -17,11 +17,13 @@ size_t padded(int width, int height) {
   return size_t(columns + 2 * cell_pad) * size_t(rows + 2 * cell_pad) + cell_run;
 }
 
-// Plane through a place, seen at ray (x, y, 1) in depth z: coefficients of inverse depth over the picture.
+// Plane through a place, seen at ray (x, y, 1) in depth z: coefficients of inverse depth over the
+// picture.
 vec3 inverse_depth_plane(vec3 normal, float x, float y, float z) {
   vec3 ray(x, y, 1);
   float facing = dot(normal, ray);
-  // A plane seen edge-on would reach from the eye to infinity within a pixel; bend it towards the viewer.
+  // A plane seen edge-on would reach from the eye to infinity within a pixel; bend it towards the
+  // viewer.
   float least = -0.05f * length(ray);
   if (!(facing < least)) {
     normal = normalize(normal - ray * ((facing - least) / dot(ray, ray)));
@@ -60,8 +62,10 @@ Gathered gather_cell(const PointCache& points, const PointImage& image, const Su
     size_t i = pixels[k];
     if (frame.object[i] != g.object) continue;
     vec3 normal = unpack_normal(surface.normal[i]);
-    if (g.points == 0) reference = normal;
-    else if (dot(normal, reference) < 0.7f) continue;  // beyond a crease
+    if (g.points == 0)
+      reference = normal;
+    else if (dot(normal, reference) < 0.7f)
+      continue;  // beyond a crease
     float samples = frame.confidence[i];
     vec3 smooth = frame.color[i];
     g.albedo += unpack_albedo(surface.albedo[i]);
@@ -105,10 +109,11 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch) {
     std::fill(plane.begin(), plane.end(), 0.0f);
     return plane;
   };
-  for (auto* triple : {&cells.albedo, &cells.rest, &cells.smooth, &cells.spare, &cells.normal, &cells.plane})
+  for (auto* triple :
+       {&cells.albedo, &cells.rest, &cells.smooth, &cells.spare, &cells.normal, &cells.plane})
     for (auto& plane : *triple) plane = take();
-  for (auto* plane : {&cells.depth, &cells.samples, &cells.points, &cells.sum, &cells.sum2, &cells.patience,
-                      &cells.rest_sum2, &cells.rest_noise, &cells.rest_known})
+  for (auto* plane : {&cells.depth, &cells.samples, &cells.points, &cells.sum, &cells.sum2,
+                      &cells.patience, &cells.rest_sum2, &cells.rest_noise, &cells.rest_known})
     *plane = take();
   cells.object = scratch.take<uint32_t>(count);
   std::fill(cells.object.begin(), cells.object.end(), no_object);
@@ -130,7 +135,8 @@ void build_cells(const View& view, const PointCache& points, const PointImage& i
         normal /= std::max(length(normal), 1e-6f);
         float x = rays.x(g.x * share), y = rays.y(g.y * share);
         vec3 plane = inverse_depth_plane(normal, x, y, g.points / g.inverse_depth);
-        float middle_x = rays.x((float(cx) + 0.5f) * cell_size), middle_y = rays.y((float(cy) + 0.5f) * cell_size);
+        float middle_x = rays.x((float(cx) + 0.5f) * cell_size),
+              middle_y = rays.y((float(cy) + 0.5f) * cell_size);
         float at_middle = dot(plane, vec3(middle_x, middle_y, 1)), mean = g.inverse_depth * share;
         cells.depth[i] = 1 / std::clamp(at_middle, 0.5f * mean, 2 * mean);
         for (int c = 0; c < 3; c++) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A quarter-resolution picture of surfaces and their light. Smooth light is filtered here, edge-aware and
-// guided by its variance (a-trous: Dammertz et al. 2010; variance: Schied et al. 2017), and holes of every
-// size are filled from it. A cell stands for one surface: the object most of its pixels see.
+// A quarter-resolution picture of surfaces and their light. Smooth light is filtered here,
+// edge-aware and guided by its variance (a-trous: Dammertz et al. 2010; variance: Schied et al.
+// 2017), and holes of every size are filled from it. A cell stands for one surface: the object most
+// of its pixels see.
 #pragma once
 #include <array>
 #include <span>
@@ -11,28 +12,31 @@
 
 namespace wellspring {
 
-inline constexpr int cell_size = 4;   // pixels a side
-inline constexpr int cell_pad = 8;    // empty cells around, so that filters need no bounds
-inline constexpr int cell_run = 32;      // cells the filter reads at once, maybe beyond the last row
+inline constexpr int cell_size = 4;  // pixels a side
+inline constexpr int cell_pad = 8;   // empty cells around, so that filters need no bounds
+inline constexpr int cell_run = 32;  // cells the filter reads at once, maybe beyond the last row
 inline constexpr uint32_t no_object = 0xffffffffu;
 
 // Planes of stride * (height + 2 * pad); cell (x, y) lies at index(x, y).
 struct Cells {
   int width = 0, height = 0, stride = 0;
-  std::array<std::span<float>, 3> albedo, rest, smooth, spare;  // spare: the other side of the a-trous steps
+  std::array<std::span<float>, 3> albedo, rest, smooth,
+      spare;                               // spare: the other side of the a-trous steps
   std::array<std::span<float>, 3> normal;  // view coordinates, unit
   // Inverse depth along the cell's plane is dot(plane, (ray x, ray y, 1)).
   std::array<std::span<float>, 3> plane;
-  std::span<float> depth;      // of the plane at the cell's centre
-  std::span<float> samples;    // behind `smooth`; 0: no point fell here
-  std::span<float> points;     // pixels averaged
-  std::span<float> sum, sum2;  // luminance moments of smooth over samples; then variance of its mean
-  std::span<float> patience;   // samples a pixel needs before its own light counts for half
+  std::span<float> depth;    // of the plane at the cell's centre
+  std::span<float> samples;  // behind `smooth`; 0: no point fell here
+  std::span<float> points;   // pixels averaged
+  std::span<float> sum,
+      sum2;                   // luminance moments of smooth over samples; then variance of its mean
+  std::span<float> patience;  // samples a pixel needs before its own light counts for half
   // `rest` is sharp where it repeats itself and noise where it does not (glossy reflections).
-  std::span<float> rest_sum2;    // second moment of its luminance over points; then variance of its detail
-  std::span<float> rest_noise;   // sum of known variances of one sample; then variance of one sample
-  std::span<float> rest_known;   // points with a known variance; then variance of the cell's mean
-  std::span<uint32_t> object;  // no_object: nothing known here
+  std::span<float>
+      rest_sum2;  // second moment of its luminance over points; then variance of its detail
+  std::span<float> rest_noise;  // sum of known variances of one sample; then variance of one sample
+  std::span<float> rest_known;  // points with a known variance; then variance of the cell's mean
+  std::span<uint32_t> object;   // no_object: nothing known here
   int index(int x, int y) const { return (y + cell_pad) * stride + x + cell_pad; }
 };
 
@@ -42,11 +46,11 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch);
 // Averages the pixels of each cell that see its object.
 void build_cells(const View& view, const PointCache& points, const PointImage& image,
                  const SurfaceImage& surface, const Frame& frame, Cells& cells);
-// Filters smooth light and the noisy part of the rest as widely as their noise asks for, never across
-// objects, creases or steps.
+// Filters smooth light and the noisy part of the rest as widely as their noise asks for, never
+// across objects, creases or steps.
 void filter_cells(const View& view, Cells& cells);
-// Cells that know nothing take what their surroundings know, the nearer the better. False: nothing known
-// anywhere.
+// Cells that know nothing take what their surroundings know, the nearer the better. False: nothing
+// known anywhere.
 bool fill_cells(const View& view, Cells& cells);
 
 }  // namespace wellspring

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Holes: the known cells are gathered into coarser and coarser levels, then every unknown cell takes what
-// the level above knows (push and pull, Gortler et al. 1996), one object at a time.
+// Holes: the known cells are gathered into coarser and coarser levels, then every unknown cell
+// takes what the level above knows (push and pull, Gortler et al. 1996), one object at a time.
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +20,8 @@ struct Level {
   int width = 0, height = 0;
   std::vector<Coarse> cells;
   const Coarse& at(int x, int y) const {
-    return cells[size_t(std::clamp(y, 0, height - 1)) * size_t(width) + size_t(std::clamp(x, 0, width - 1))];
+    return cells[size_t(std::clamp(y, 0, height - 1)) * size_t(width) +
+                 size_t(std::clamp(x, 0, width - 1))];
   }
 };
 
@@ -73,7 +74,8 @@ Coarse read_cell(const Cells& cells, int x, int y) {
 // Children at (2x, 2y) .. (2x+1, 2y+1).
 template <class Read>
 Coarse reduce(const Read& read, int x, int y) {
-  Coarse child[4] = {read(2 * x, 2 * y), read(2 * x + 1, 2 * y), read(2 * x, 2 * y + 1), read(2 * x + 1, 2 * y + 1)};
+  Coarse child[4] = {read(2 * x, 2 * y), read(2 * x + 1, 2 * y), read(2 * x, 2 * y + 1),
+                     read(2 * x + 1, 2 * y + 1)};
   const Coarse* candidates[4] = {&child[0], &child[1], &child[2], &child[3]};
   float weights[4];
   for (int k = 0; k < 4; k++) weights[k] = child[k].weight;
@@ -85,7 +87,8 @@ Coarse reduce(const Read& read, int x, int y) {
 // What the level above knows around the middle of cell (x, y): its four nearest cells, bilinear.
 Coarse pull(const Level& above, int x, int y) {
   int px = x >> 1, py = y >> 1, sx = x & 1 ? 1 : -1, sy = y & 1 ? 1 : -1;
-  const Coarse* candidates[4] = {&above.at(px, py), &above.at(px + sx, py), &above.at(px, py + sy), &above.at(px + sx, py + sy)};
+  const Coarse* candidates[4] = {&above.at(px, py), &above.at(px + sx, py), &above.at(px, py + sy),
+                                 &above.at(px + sx, py + sy)};
   constexpr float bilinear[4] = {9, 3, 3, 1};
   float weights[4];
   for (int k = 0; k < 4; k++) weights[k] = candidates[k]->object == no_object ? 0.0f : bilinear[k];
@@ -95,7 +98,8 @@ Coarse pull(const Level& above, int x, int y) {
 void write_cell(const PixelRays& rays, const Coarse& c, int x, int y, Cells& cells) {
   size_t i = size_t(cells.index(x, y));
   vec3 ray(rays.x((float(x) + 0.5f) * cell_size), rays.y((float(y) + 0.5f) * cell_size), 1);
-  // Without points of its own the cell faces the viewer: its depth is a guess, a slope would be a bolder one.
+  // Without points of its own the cell faces the viewer: its depth is a guess, a slope would be a
+  // bolder one.
   vec3 plane = vec3(0, 0, c.inverse_depth);
   for (int k = 0; k < 3; k++) {
     cells.albedo[size_t(k)][i] = c.albedo[k];
@@ -114,7 +118,8 @@ bool fill_cells(const View& view, Cells& cells) {
   PixelRays rays(view);
   bool all = true;
   for (int y = 0; y < cells.height && all; y++)
-    for (int x = 0; x < cells.width; x++) all &= cells.object[size_t(cells.index(x, y))] != no_object;
+    for (int x = 0; x < cells.width; x++)
+      all &= cells.object[size_t(cells.index(x, y))] != no_object;
   if (all) return true;
 
   std::vector<Level> levels;
@@ -129,7 +134,8 @@ bool fill_cells(const View& view, Cells& cells) {
     };
     parallel_ranges(height, 8, [&](int begin, int end) {
       for (int y = begin; y < end; y++)
-        for (int x = 0; x < width; x++) level.cells[size_t(y) * size_t(width) + size_t(x)] = reduce(read, x, y);
+        for (int x = 0; x < width; x++)
+          level.cells[size_t(y) * size_t(width) + size_t(x)] = reduce(read, x, y);
     });
     levels.push_back(std::move(level));
   } while (width > 1 || height > 1);

@@ -9,10 +9,11 @@
 namespace wellspring {
 namespace {
 
-constexpr int steps = 4;                 // taps 1, 2, 4 and 8 cells apart
-constexpr float plane_tolerance = 0.03f; // relative depth off the other cell's plane that halves a weight
-constexpr float light_tolerance = 9;     // squared, in variances of the mean
-constexpr int lanes = cell_run;          // cells handled together
+constexpr int steps = 4;  // taps 1, 2, 4 and 8 cells apart
+constexpr float plane_tolerance =
+    0.03f;  // relative depth off the other cell's plane that halves a weight
+constexpr float light_tolerance = 9;  // squared, in variances of the mean
+constexpr int lanes = cell_run;       // cells handled together
 
 // Sums over a cell and its eight neighbours of the same object.
 struct Pool {
@@ -30,7 +31,8 @@ Pool pool_around(const Cells& cells, int x, int y) {
       pool.points += cells.points[j];
       pool.sum += cells.sum[j];
       pool.sum2 += cells.sum2[j];
-      pool.rest += cells.samples[j] * luminance(vec3(cells.rest[0][j], cells.rest[1][j], cells.rest[2][j]));
+      pool.rest +=
+          cells.samples[j] * luminance(vec3(cells.rest[0][j], cells.rest[1][j], cells.rest[2][j]));
       pool.rest2 += cells.rest_sum2[j];
       pool.rest_noise += cells.rest_noise[j];
       pool.rest_known += cells.rest_known[j];
@@ -43,33 +45,38 @@ struct Estimate {
   float mean_variance = 0, patience = 0, rest_detail = 0, rest_noise = 0, rest_mean_variance = 0;
 };
 
-// Where few points tell, smooth light is assumed to deviate by as much as its mean, and what varies in the
-// rest to be noise by `rest_share`.
-Estimate estimate_cell(const Pool& pool, float samples, float light, float rest_light, float rest_share) {
+// Where few points tell, smooth light is assumed to deviate by as much as its mean, and what varies
+// in the rest to be noise by `rest_share`.
+Estimate estimate_cell(const Pool& pool, float samples, float light, float rest_light,
+                       float rest_share) {
   constexpr float guess_points = 3;
   Estimate e;
-  float mean = pool.sum / pool.samples, spread = std::max(0.0f, pool.sum2 - pool.samples * mean * mean);
+  float mean = pool.sum / pool.samples,
+        spread = std::max(0.0f, pool.sum2 - pool.samples * mean * mean);
   float guess = mean * mean + 1e-6f;
   float variance = (spread + guess * guess_points) / (pool.points + guess_points);
   e.patience = std::clamp(48 * variance / guess, 0.5f, 192.0f);
   e.mean_variance = variance / samples;
   // What varies from place to place beyond what varies from sample to sample is detail.
   float rest_mean = pool.rest / pool.samples;
-  float per_sample = std::max(0.0f, pool.rest2 - pool.samples * rest_mean * rest_mean) / std::max(pool.points - 1, 1.0f);
+  float per_sample = std::max(0.0f, pool.rest2 - pool.samples * rest_mean * rest_mean) /
+                     std::max(pool.points - 1, 1.0f);
   float guessed = per_sample * rest_share;
   e.rest_noise = (pool.rest_noise + guessed) / (pool.rest_known + 1);
   float each = pool.samples / pool.points;  // samples a point
   e.rest_detail = std::max(0.0f, per_sample - e.rest_noise) / each;
   e.rest_mean_variance = e.rest_noise / samples;
-  // A cell far brighter than those around it owes that to a lucky path, unless many samples say so or,
-  // of the rest, it stays so from sample to sample.
+  // A cell far brighter than those around it owes that to a lucky path, unless many samples say so
+  // or, of the rest, it stays so from sample to sample.
   float others = pool.samples - samples;
   if (others >= 3) {
     float confirmed = 2.5f + 0.05f * samples;
-    float around = (pool.sum - light * samples) / others, rest_around = (pool.rest - rest_light * samples) / others;
+    float around = (pool.sum - light * samples) / others,
+          rest_around = (pool.rest - rest_light * samples) / others;
     if (light > confirmed * around) e.scale = (confirmed * around + 1e-6f) / (light + 1e-6f);
     bool noisy = e.rest_noise > 0.25f * rest_light * rest_light;
-    if (noisy && rest_light > confirmed * rest_around) e.rest_scale = (confirmed * rest_around + 1e-6f) / (rest_light + 1e-6f);
+    if (noisy && rest_light > confirmed * rest_around)
+      e.rest_scale = (confirmed * rest_around + 1e-6f) / (rest_light + 1e-6f);
   }
   return e;
 }
@@ -89,9 +96,11 @@ void estimate_variance(Cells& cells) {
       float mean = luminance(vec3(cells.rest[0][i], cells.rest[1][i], cells.rest[2][i]));
       noise += double(std::min(cells.rest_noise[i], 1.0f));
       known += 1;
-      spread += double(std::max(0.0f, std::min(cells.rest_sum2[i] - cells.samples[i] * mean * mean, 1.0f)));
+      spread += double(
+          std::max(0.0f, std::min(cells.rest_sum2[i] - cells.samples[i] * mean * mean, 1.0f)));
     }
-  float rest_share = known > 0 ? float(std::clamp(noise / (noise + spread + 1e-9), 0.5, 1.0)) : 0.5f;
+  float rest_share =
+      known > 0 ? float(std::clamp(noise / (noise + spread + 1e-9), 0.5, 1.0)) : 0.5f;
   std::vector<Estimate> estimates(size_t(cells.width) * size_t(cells.height));
   parallel_ranges(cells.height, 4, [&](int begin, int end) {
     for (int y = begin; y < end; y++)
@@ -128,10 +137,12 @@ struct Row {
   const uint32_t* object;
 };
 
-// One a-trous step over a run of `lanes` cells, of which `count` are written; taps `step` cells apart.
-void filter_run(const Row& source, const float* depth, const float* ray_x, float ray_y, int stride, int step,
-                int count, float* r, float* g, float* b, float* variance) {
-  alignas(64) float sr[lanes], sg[lanes], sb[lanes], sv[lanes], sw[lanes], light[lanes], tolerance[lanes];
+// One a-trous step over a run of `lanes` cells, of which `count` are written; taps `step` cells
+// apart.
+void filter_run(const Row& source, const float* depth, const float* ray_x, float ray_y, int stride,
+                int step, int count, float* r, float* g, float* b, float* variance) {
+  alignas(64) float sr[lanes], sg[lanes], sb[lanes], sv[lanes], sw[lanes], light[lanes],
+      tolerance[lanes];
   for (int i = 0; i < lanes; i++) {
     sr[i] = 4 * source.r[i], sg[i] = 4 * source.g[i], sb[i] = 4 * source.b[i];
     sv[i] = 16 * source.variance[i], sw[i] = 4;
@@ -145,10 +156,14 @@ void filter_run(const Row& source, const float* depth, const float* ray_x, float
       float kernel = dx != 0 && dy != 0 ? 1.0f : 2.0f;
       for (int i = 0; i < lanes; i++) {
         float qr = source.r[i + at], qg = source.g[i + at], qb = source.b[i + at];
-        float facing = source.nx[i] * source.nx[i + at] + source.ny[i] * source.ny[i + at] + source.nz[i] * source.nz[i + at];
-        facing = 0.5f * (facing + std::abs(facing));  // not below 0, and no branch in the compiler's eyes
+        float facing = source.nx[i] * source.nx[i + at] + source.ny[i] * source.ny[i + at] +
+                       source.nz[i] * source.nz[i + at];
+        facing = 0.5f *
+                 (facing + std::abs(facing));  // not below 0, and no branch in the compiler's eyes
         facing *= facing, facing *= facing, facing *= facing;
-        float off = depth[i] * (source.px[i + at] * ray_x[i] + source.py[i + at] * ray_y + source.pz[i + at]) - 1;
+        float off = depth[i] * (source.px[i + at] * ray_x[i] + source.py[i + at] * ray_y +
+                                source.pz[i + at]) -
+                    1;
         off *= 1 / plane_tolerance;
         float differs = 0.2126f * qr + 0.7152f * qg + 0.0722f * qb - light[i];
         float lit = differs * differs * tolerance[i];
@@ -170,7 +185,8 @@ void filter_run(const Row& source, const float* depth, const float* ray_x, float
 
 namespace {
 
-// All steps over one colour and the variance of its mean; `spare` and `spare_variance` are overwritten.
+// All steps over one colour and the variance of its mean; `spare` and `spare_variance` are
+// overwritten.
 void filter_light(const PixelRays& rays, const std::vector<float>& ray_x, Cells& cells,
                   std::array<std::span<float>, 3>& light, std::span<float>& variance,
                   std::span<float>& spare_variance) {
@@ -180,12 +196,13 @@ void filter_light(const PixelRays& rays, const std::vector<float>& ray_x, Cells&
       for (int y = begin; y < end; y++)
         for (int x = 0; x < cells.width; x += lanes) {
           size_t i = size_t(cells.index(x, y));
-          Row row{&light[0][i], &light[1][i], &light[2][i], &variance[i], &cells.normal[0][i],
-                  &cells.normal[1][i], &cells.normal[2][i], &cells.plane[0][i], &cells.plane[1][i],
-                  &cells.plane[2][i], &cells.object[i]};
-          filter_run(row, &cells.depth[i], &ray_x[size_t(x + cell_pad)], rays.y((float(y) + 0.5f) * cell_size),
-                     cells.stride, 1 << k, std::min(lanes, cells.width - x), &spare[0][i], &spare[1][i],
-                     &spare[2][i], &spare_variance[i]);
+          Row row{&light[0][i],        &light[1][i],        &light[2][i],        &variance[i],
+                  &cells.normal[0][i], &cells.normal[1][i], &cells.normal[2][i], &cells.plane[0][i],
+                  &cells.plane[1][i],  &cells.plane[2][i],  &cells.object[i]};
+          filter_run(row, &cells.depth[i], &ray_x[size_t(x + cell_pad)],
+                     rays.y((float(y) + 0.5f) * cell_size), cells.stride, 1 << k,
+                     std::min(lanes, cells.width - x), &spare[0][i], &spare[1][i], &spare[2][i],
+                     &spare_variance[i]);
         }
     });
     std::swap(light, spare);
@@ -199,7 +216,8 @@ void filter_cells(const View& view, Cells& cells) {
   estimate_variance(cells);
   PixelRays rays(view);
   std::vector<float> ray_x(size_t(cells.stride) + lanes);
-  for (int x = 0; x < int(ray_x.size()); x++) ray_x[size_t(x)] = rays.x((float(x - cell_pad) + 0.5f) * cell_size);
+  for (int x = 0; x < int(ray_x.size()); x++)
+    ray_x[size_t(x)] = rays.x((float(x - cell_pad) + 0.5f) * cell_size);
   filter_light(rays, ray_x, cells, cells.smooth, cells.sum, cells.sum2);
   filter_light(rays, ray_x, cells, cells.rest, cells.rest_known, cells.sum2);
 }

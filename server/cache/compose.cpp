@@ -44,23 +44,28 @@ struct Block {
 struct Surroundings {
   alignas(32) float r[block_pixels], g[block_pixels], b[block_pixels];
   alignas(32) float rest_r[block_pixels], rest_g[block_pixels], rest_b[block_pixels];
-  alignas(32) float patience[block_pixels], detail[block_pixels], noise[block_pixels], weight[block_pixels];
+  alignas(32) float patience[block_pixels], detail[block_pixels], noise[block_pixels],
+      weight[block_pixels];
 };
 
-void look_around(const Cells& cells, int bx, int by, const Block& __restrict p, Surroundings& __restrict s) {
+void look_around(const Cells& cells, int bx, int by, const Block& __restrict p,
+                 Surroundings& __restrict s) {
   std::memset(&s, 0, sizeof s);
   for (int k = 0; k < 4; k++) {
-    int cx = std::clamp(bx - 1 + (k & 1), 0, cells.width - 1), cy = std::clamp(by - 1 + (k >> 1), 0, cells.height - 1);
+    int cx = std::clamp(bx - 1 + (k & 1), 0, cells.width - 1),
+        cy = std::clamp(by - 1 + (k >> 1), 0, cells.height - 1);
     size_t c = size_t(cells.index(cx, cy));
     uint32_t object = cells.object[c];
-    float cr = cells.smooth[0][c], cg = cells.smooth[1][c], cb = cells.smooth[2][c], wait = cells.patience[c];
+    float cr = cells.smooth[0][c], cg = cells.smooth[1][c], cb = cells.smooth[2][c],
+          wait = cells.patience[c];
     float er = cells.rest[0][c], eg = cells.rest[1][c], eb = cells.rest[2][c];
     float detail = cells.rest_sum2[c], noise = cells.rest_noise[c];
     float nx = cells.normal[0][c], ny = cells.normal[1][c], nz = cells.normal[2][c];
     float px = cells.plane[0][c], py = cells.plane[1][c], pz = cells.plane[2][c];
     for (int i = 0; i < block_pixels; i++) {
       float facing = nx * p.nx[i] + ny * p.ny[i] + nz * p.nz[i];
-      facing = 0.5f * (facing + std::abs(facing));  // not below 0, and no branch in the compiler's eyes
+      facing =
+          0.5f * (facing + std::abs(facing));  // not below 0, and no branch in the compiler's eyes
       facing *= facing, facing *= facing, facing *= facing;
       float off = (p.depth[i] * (px * p.x[i] + py * p.y[i] + pz) - 1) * (1 / plane_tolerance);
       float same = keep_if(object == p.object[i], bilinear.weight[k][i]);
@@ -73,11 +78,12 @@ void look_around(const Cells& cells, int bx, int by, const Block& __restrict p, 
   }
 }
 
-// Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the more
-// of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
+// Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
+// more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
 void blend_light(const Surroundings& __restrict s, Block& __restrict p) {
   for (int i = 0; i < block_pixels; i++) {
-    // Arithmetic instead of conditions, so that it vectorises. `alone`: no cell lies on this surface.
+    // Arithmetic instead of conditions, so that it vectorises. `alone`: no cell lies on this
+    // surface.
     float alone = keep_if(s.weight[i] <= 1e-4f, 1.0f), share = (1 - alone) / (s.weight[i] + alone);
     float samples = p.samples[i];
     float r = s.r[i] * share, g = s.g[i] * share, b = s.b[i] * share;
@@ -93,13 +99,16 @@ void blend_light(const Surroundings& __restrict s, Block& __restrict p) {
     p.b[i] = own * cut * p.b[i] + (1 - own) * b;
 
     float known = keep_if(p.deviation[i] >= 0, 1.0f);
-    // The same for the rest, unless it is known to repeat itself: then it is a highlight, not a lucky path.
+    // The same for the rest, unless it is known to repeat itself: then it is a highlight, not a
+    // lucky path.
     float rest_r = s.rest_r[i] * share, rest_g = s.rest_g[i] * share, rest_b = s.rest_b[i] * share;
     float own_rest = 0.2126f * p.rest_r[i] + 0.7152f * p.rest_g[i] + 0.0722f * p.rest_b[i];
     float quiet = known * keep_if(p.deviation[i] <= 0.1f * own_rest, 1.0f);
-    float most_rest = (0.2126f * rest_r + 0.7152f * rest_g + 0.0722f * rest_b) * (3 + samples) + 1e-4f;
+    float most_rest =
+        (0.2126f * rest_r + 0.7152f * rest_g + 0.0722f * rest_b) * (3 + samples) + 1e-4f;
     most_rest += (quiet + alone) * own_rest;
-    float over_rest = own_rest - most_rest, rest_cut = most_rest / (most_rest + 0.5f * (over_rest + std::abs(over_rest)));
+    float over_rest = own_rest - most_rest,
+          rest_cut = most_rest / (most_rest + 0.5f * (over_rest + std::abs(over_rest)));
     float variance = (1 - known) * s.noise[i] * share + known * p.deviation[i] * p.deviation[i];
     variance /= samples + keep_if(samples < 1, 1.0f);
     float detail = s.detail[i] * share;
@@ -119,7 +128,8 @@ struct Packed {
 
 void unpack_block(const mat3& to_view, const Packed& __restrict packed, Block& __restrict p) {
   for (int i = 0; i < block_pixels; i++) {
-    float x = float(packed.normal[i] & 255) * (1.0f / 127) - 1, y = float(packed.normal[i] >> 8) * (1.0f / 127) - 1;
+    float x = float(packed.normal[i] & 255) * (1.0f / 127) - 1,
+          y = float(packed.normal[i] >> 8) * (1.0f / 127) - 1;
     float z = 1 - std::abs(x) - std::abs(y), fold = z < 0 ? -z : 0.0f;
     x += x >= 0 ? -fold : fold;
     y += y >= 0 ? -fold : fold;
@@ -139,11 +149,14 @@ void unpack_block(const mat3& to_view, const Packed& __restrict packed, Block& _
 void light_block(const Packed& __restrict packed, Block& __restrict p) {
   for (int i = 0; i < block_pixels; i++) {
     uint32_t albedo = packed.albedo[i];
-    float r = float(int32_t(albedo & 2047)) * (1.0f / 2047), g = float(int32_t((albedo >> 11) & 2047)) * (1.0f / 2047),
+    float r = float(int32_t(albedo & 2047)) * (1.0f / 2047),
+          g = float(int32_t((albedo >> 11) & 2047)) * (1.0f / 2047),
           b = float(int32_t(albedo >> 22)) * (1.0f / 1023);
-    r = r * r * p.r[i] + p.rest_r[i], g = g * g * p.g[i] + p.rest_g[i], b = b * b * p.b[i] + p.rest_b[i];
+    r = r * r * p.r[i] + p.rest_r[i], g = g * g * p.g[i] + p.rest_g[i],
+    b = b * b * p.b[i] + p.rest_b[i];
     // Shares that add up to one by a rounding too much can leave a hair of negative light.
-    p.r[i] = 0.5f * (r + std::abs(r)), p.g[i] = 0.5f * (g + std::abs(g)), p.b[i] = 0.5f * (b + std::abs(b));
+    p.r[i] = 0.5f * (r + std::abs(r)), p.g[i] = 0.5f * (g + std::abs(g)),
+    p.b[i] = 0.5f * (b + std::abs(b));
   }
 }
 
@@ -155,8 +168,8 @@ struct Places {
 
 }  // namespace
 
-void compose(const View& view, const PointCache& points, const PointImage& image, const SurfaceImage& surface,
-             const Cells& cells, Frame& frame) {
+void compose(const View& view, const PointCache& points, const PointImage& image,
+             const SurfaceImage& surface, const Cells& cells, Frame& frame) {
   PixelRays rays(view);
   mat3 to_view = transpose(mat3(view.right, view.up, view.forward));
   int width = image.width, height = image.height;
@@ -181,7 +194,8 @@ void compose(const View& view, const PointCache& points, const PointImage& image
           p.r[i] = frame.color[at].x, p.g[i] = frame.color[at].y, p.b[i] = frame.color[at].z;
           p.samples[i] = frame.confidence[at];
           p.object[i] = frame.object[at];
-          p.deviation[i] = p.samples[i] > 1 ? unpack_deviation(points.noise[image.point[at]]) : -1.0f;
+          p.deviation[i] =
+              p.samples[i] > 1 ? unpack_deviation(points.noise[image.point[at]]) : -1.0f;
         }
         unpack_block(to_view, packed, p);
         look_around(cells, bx, by, p, s);
@@ -199,8 +213,8 @@ void compose(const View& view, const PointCache& points, const PointImage& image
   });
 }
 
-void accumulate_still(const PointCache& points, const PointImage& image, uint32_t seed, StillImage& still,
-                      Frame& frame) {
+void accumulate_still(const PointCache& points, const PointImage& image, uint32_t seed,
+                      StillImage& still, Frame& frame) {
   parallel_ranges(image.height, 8, [&](int begin, int end) {
     size_t first = size_t(begin) * size_t(image.width), last = size_t(end) * size_t(image.width);
     for (size_t i = first; i < last; i++) {
@@ -210,11 +224,14 @@ void accumulate_still(const PointCache& points, const PointImage& image, uint32_
         continue;
       }
       int n = still.count[i] & ~still_fresh;
-      vec3 mean(unpack_half(still.mean[0][i]), unpack_half(still.mean[1][i]), unpack_half(still.mean[2][i]));
+      vec3 mean(unpack_half(still.mean[0][i]), unpack_half(still.mean[1][i]),
+                unpack_half(still.mean[2][i]));
       if (still.count[i] & still_fresh) {
         n = std::min(n + 1, still_longest);
         // Later samples count more: the light they were shown in was known better.
-        mean += (frame.color[i] - (n == 1 ? vec3(0) : mean)) * (n == 1 ? 1.0f : 1.5f / (float(n) + 0.5f)) - (n == 1 ? mean : vec3(0));
+        mean += (frame.color[i] - (n == 1 ? vec3(0) : mean)) *
+                    (n == 1 ? 1.0f : 1.5f / (float(n) + 0.5f)) -
+                (n == 1 ? mean : vec3(0));
         uint64_t random = mix64(uint64_t(seed) << 32 | i);
         for (size_t c = 0; c < 3; c++)
           still.mean[c][i] = pack_half(mean[int(c)], uint32_t(random >> (16 * c)));

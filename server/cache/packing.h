@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours and normals in few bits, so that a visitor's whole cache stays below 64 MB at 1280x720.
-// Light is stored with a shared exponent and rounded stochastically: a running mean of many samples then
-// stays unbiased although each step is smaller than the least bit.
+// Light is stored with a shared exponent and rounded stochastically: a running mean of many samples
+// then stays unbiased although each step is smaller than the least bit.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -15,20 +15,22 @@ namespace wellspring {
 // The largest value the shared exponent format holds.
 inline constexpr float rgb9e5_max = 65408.0f;
 
-// Radiance, 9 bits a channel and a common exponent of 5. NaN and negative become 0. `random` decides the
-// rounding: its three bytes are the dither of the channels; 0x808080 rounds to nearest.
+// Radiance, 9 bits a channel and a common exponent of 5. NaN and negative become 0. `random`
+// decides the rounding: its three bytes are the dither of the channels; 0x808080 rounds to nearest.
 inline uint32_t pack_rgb9e5(vec3 c, uint32_t random = 0x808080u) {
   float r = c.x > 0 ? std::min(c.x, rgb9e5_max) : 0.0f;
   float g = c.y > 0 ? std::min(c.y, rgb9e5_max) : 0.0f;
   float b = c.z > 0 ? std::min(c.z, rgb9e5_max) : 0.0f;
   float largest = std::max(r, std::max(g, b));
   // Exponent such that largest * 2^-(exponent-15-9) stays below 511 after rounding up.
-  int exponent = std::max(0, int(std::bit_cast<uint32_t>(largest * (512.0f / 511.0f)) >> 23) - 127 + 16);
+  int exponent =
+      std::max(0, int(std::bit_cast<uint32_t>(largest * (512.0f / 511.0f)) >> 23) - 127 + 16);
   exponent = std::min(exponent, 31);
   float scale = std::bit_cast<float>(uint32_t(127 + 24 - exponent) << 23);
   float dr = float(random & 255) * (1.0f / 256), dg = float((random >> 8) & 255) * (1.0f / 256),
         db = float((random >> 16) & 255) * (1.0f / 256);
-  uint32_t ir = std::min(511u, uint32_t(r * scale + dr)), ig = std::min(511u, uint32_t(g * scale + dg)),
+  uint32_t ir = std::min(511u, uint32_t(r * scale + dr)),
+           ig = std::min(511u, uint32_t(g * scale + dg)),
            ib = std::min(511u, uint32_t(b * scale + db));
   return ir | ig << 9 | ib << 18 | uint32_t(exponent) << 27;
 }
@@ -78,8 +80,9 @@ inline vec3 unpack_normal(uint16_t p) {
   return n * (1 / std::sqrt(dot(n, n)));
 }
 
-// A standard deviation with 4 bits of exponent and 4 of mantissa, steps of 3 to 6 %: 2^-11 to 2^5; 0 is
-// exactly 0. It is the rounded top of the number's own bits, so both ways take a few instructions.
+// A standard deviation with 4 bits of exponent and 4 of mantissa, steps of 3 to 6 %: 2^-11 to 2^5;
+// 0 is exactly 0. It is the rounded top of the number's own bits, so both ways take a few
+// instructions.
 inline uint8_t pack_deviation(float s) {
   constexpr int least = (127 - 11) << 4;
   if (!(s > 0x1p-12f)) return 0;
@@ -99,8 +102,8 @@ inline uint16_t pack_half(float v, uint32_t random = 0x1000) {
 }
 inline float unpack_half(uint16_t h) { return std::bit_cast<float>(uint32_t(h) << 13) * 0x1p112f; }
 
-// value where the condition holds, else 0: as bits, because GCC makes a branch of the other ways to say it
-// and then does not vectorise the loop around.
+// value where the condition holds, else 0: as bits, because GCC makes a branch of the other ways to
+// say it and then does not vectorise the loop around.
 inline float keep_if(bool condition, float value) {
   return std::bit_cast<float>(std::bit_cast<uint32_t>(value) & (0u - uint32_t(condition)));
 }

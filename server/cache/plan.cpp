@@ -21,7 +21,8 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
   request.seed = sample_seed(settings.seed, x, y, 0);
   uint64_t random = mix64(request.seed ^ 0x706c616e);
   uint32_t point = image.point[pixel];
-  // Standing still, one in four is still resampled exactly: those can tell that the light has changed.
+  // Standing still, one in four is still resampled exactly: those can tell that the light has
+  // changed.
   bool exact = point != no_point && (!settings.still || (random >> 62) == 0);
   if (exact) {
     vec3 position(points.x[point], points.y[point], points.z[point]);
@@ -31,14 +32,16 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
     request.ray.direction = normalize(along);
     request.resample = point;
   } else {
-    float dx = float(random & 0xffffff) * 0x1p-24f, dy = float((random >> 24) & 0xffffff) * 0x1p-24f;
+    float dx = float(random & 0xffffff) * 0x1p-24f,
+          dy = float((random >> 24) & 0xffffff) * 0x1p-24f;
     request.ray = view_ray(view, float(x) + dx, float(y) + dy);
   }
   return request;
 }
 
-// Dithers the rows [begin, end) with `share` requests to give away; returns how many it chose. A band whose
-// first row started from nothing would starve there, so its first rows are dithered once for practice.
+// Dithers the rows [begin, end) with `share` requests to give away; returns how many it chose. A
+// band whose first row started from nothing would starve there, so its first rows are dithered once
+// for practice.
 int dither_band(PointImage& image, int begin, int end, int share, float threshold, uint64_t seed,
                 uint32_t* chosen) {
   int width = image.width, rows = end - begin, count = 0;
@@ -49,7 +52,8 @@ int dither_band(PointImage& image, int begin, int end, int share, float threshol
     hash = hash * 6364136223846793005ull + 1442695040888963407ull;
     below[size_t(x)] = float(hash >> 40) * 0x1p-24f * threshold * 0.5f;
   }
-  bool upwards = (seed >> 1) & 1;  // what a band runs short of at its end is not always the same rows
+  bool upwards =
+      (seed >> 1) & 1;  // what a band runs short of at its end is not always the same rows
   float carry = float(mix64(hash) >> 40) * 0x1p-24f * threshold * 0.5f;
   for (int i = -std::min(warm_rows, rows); i < rows; i++) {
     bool practice = i < 0;
@@ -119,7 +123,9 @@ void plan_requests(const PointCache& points, const View& view, const PlanSetting
   uint64_t total = sums.back();
   if (total == 0) return;
   float threshold = float(double(total) / double(budget));
-  auto share_before = [&](int band) { return size_t(double(budget) * (double(sums[size_t(band)]) / double(total))); };
+  auto share_before = [&](int band) {
+    return size_t(double(budget) * (double(sums[size_t(band)]) / double(total)));
+  };
 
   std::vector<uint32_t> chosen(budget);
   std::vector<int> counts(static_cast<size_t>(bands));
@@ -127,7 +133,8 @@ void plan_requests(const PointCache& points, const View& view, const PlanSetting
   parallel_for(bands, [&](int band) {
     size_t from = share_before(band), to = band + 1 == bands ? budget : share_before(band + 1);
     int begin = band * band_rows, end = std::min(height, begin + band_rows);
-    counts[size_t(band)] = dither_band(image, begin, end, int(to - from), threshold, seed, chosen.data() + from);
+    counts[size_t(band)] =
+        dither_band(image, begin, end, int(to - from), threshold, seed, chosen.data() + from);
   });
   size_t used = 0;
   for (int band = 0; band < bands; band++) {

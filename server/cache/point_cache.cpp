@@ -96,7 +96,8 @@ void move_anchored_points(PointCache& points, const World& world) {
       const Mesh& mesh = world.mesh_of(a.instance);
       uvec3 corner = mesh.triangles[a.triangle];
       float u = float(a.u) * (1.0f / 65535), v = float(a.v) * (1.0f / 65535), w = 1 - u - v;
-      vec3 p = w * mesh.positions[corner.x] + u * mesh.positions[corner.y] + v * mesh.positions[corner.z];
+      vec3 p = w * mesh.positions[corner.x] + u * mesh.positions[corner.y] +
+               v * mesh.positions[corner.z];
       vec3 n = w * mesh.normals[corner.x] + u * mesh.normals[corner.y] + v * mesh.normals[corner.z];
       if (!world.is_moving(a.instance)) {  // a scene instance that a technique marked as moving
         p = vec3(world.to_world(a.instance) * vec4(p, 1));
@@ -115,9 +116,9 @@ void move_anchored_points(PointCache& points, const World& world) {
 
 size_t points_bytes(const PointCache& points) {
   auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return bytes(points.x) + bytes(points.y) + bytes(points.z) + bytes(points.normal) + bytes(points.flags) +
-         bytes(points.age) + bytes(points.count) + bytes(points.noise) + bytes(points.color) +
-         bytes(points.anchors) + bytes(points.seen);
+  return bytes(points.x) + bytes(points.y) + bytes(points.z) + bytes(points.normal) +
+         bytes(points.flags) + bytes(points.age) + bytes(points.count) + bytes(points.noise) +
+         bytes(points.color) + bytes(points.anchors) + bytes(points.seen);
 }
 
 }  // namespace wellspring

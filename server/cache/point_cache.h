@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The points of a render cache (Walter 1999, section 3 and figure 4): what was seen, where, how long ago.
-// Fixed capacity. What is walked every frame lies in arrays of its own; what is looked up only for points
-// that show (PointColor) lies together, one cache line fetch a point. 34 bytes a point.
+// The points of a render cache (Walter 1999, section 3 and figure 4): what was seen, where, how
+// long ago. Fixed capacity. What is walked every frame lies in arrays of its own; what is looked up
+// only for points that show (PointColor) lies together, one cache line fetch a point. 34 bytes a
+// point.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -15,9 +16,9 @@ enum PointFlags : uint8_t {
   point_used = 1,
   point_infinite = 2,  // position is a unit direction
   point_specular = 4,
-  point_moving = 8,    // has an anchor
-  point_visible = 16,  // shows in the current projection
-  point_verified = 32, // was sampled from exactly the current view: surely not hidden
+  point_moving = 8,     // has an anchor
+  point_visible = 16,   // shows in the current projection
+  point_verified = 32,  // was sampled from exactly the current view: surely not hidden
 };
 
 struct PointColor {
@@ -33,35 +34,37 @@ struct Anchor {
   uint16_t u = 0, v = 0;  // barycentric weights, 65535 = 1
 };
 
-inline constexpr uint32_t group_size = 8;       // replacement looks at this many (paper, section 4.3)
-inline constexpr uint8_t evicted_age = 255;     // such a point is never shown again
+inline constexpr uint32_t group_size = 8;    // replacement looks at this many (paper, section 4.3)
+inline constexpr uint8_t evicted_age = 255;  // such a point is never shown again
 inline constexpr int max_capacity = (1 << 24) - 8;
 
 struct PointCache {
   std::vector<float> x, y, z;
   std::vector<uint16_t> normal;  // pack_normal
   std::vector<uint8_t> flags;
-  std::vector<uint8_t> age;      // 0 new; see age_points()
-  std::vector<uint8_t> count;    // samples in the means, at most 255
-  std::vector<uint8_t> noise;    // pack_deviation: of one sample's `rest` luminance, known from count 2 on
+  std::vector<uint8_t> age;    // 0 new; see age_points()
+  std::vector<uint8_t> count;  // samples in the means, at most 255
+  std::vector<uint8_t>
+      noise;  // pack_deviation: of one sample's `rest` luminance, known from count 2 on
   std::vector<PointColor> color;
   std::vector<Anchor> anchors;
-  std::vector<uint64_t> seen;    // scratch of move_points(): one bit a point
-  uint32_t next_group = 0;       // round robin of replacement
-  float age_carry = 0;           // fraction of an age step not yet applied
+  std::vector<uint64_t> seen;  // scratch of move_points(): one bit a point
+  uint32_t next_group = 0;     // round robin of replacement
+  float age_carry = 0;         // fraction of an age step not yet applied
   int capacity() const { return int(x.size()); }
 };
 
 // Keeps the points that fit into `capacity` (rounded up to whole groups, at most max_capacity).
 void resize_points(PointCache& points, int capacity);
 void clear_points(PointCache& points);
-// One frame passes. Ages advance so that a point reaches about 128 by the time `new_points` a frame have
-// replaced all (Walter 2002); specular and moving points age three times as fast, unseen ones twice.
-// Unseen points that reach 255 are evicted; seen ones stop at 254.
+// One frame passes. Ages advance so that a point reaches about 128 by the time `new_points` a frame
+// have replaced all (Walter 2002); specular and moving points age three times as fast, unseen ones
+// twice. Unseen points that reach 255 are evicted; seen ones stop at 254.
 void age_points(PointCache& points, float new_points);
 // Points with anchors follow their triangles; anchors of overwritten points are dropped.
 void move_anchored_points(PointCache& points, const World& world);
-// Most anchors a cache of this capacity may hold; moving points beyond are forgotten after one frame.
+// Most anchors a cache of this capacity may hold; moving points beyond are forgotten after one
+// frame.
 int max_anchors(int capacity);
 size_t points_bytes(const PointCache& points);
 

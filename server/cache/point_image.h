@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What projects where (Walter 1999, figure 4: the point image), the priorities of the pixels, and where
-// the light was seen to change.
+// What projects where (Walter 1999, figure 4: the point image), the priorities of the pixels, and
+// where the light was seen to change.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -16,7 +16,8 @@ struct PointImage {
   std::vector<uint32_t> point;    // index into the cache, or no_point
   std::vector<float> depth;       // along the viewing axis; 0 where there is no point
   std::vector<uint8_t> priority;  // 0: nothing to learn or already asked; 255: most urgent
-  std::vector<uint8_t> changed;   // resampled points of each tile that had changed; used up by attend()
+  std::vector<uint8_t>
+      changed;  // resampled points of each tile that had changed; used up by attend()
   int changed_width = 0, changed_height = 0;
 };
 

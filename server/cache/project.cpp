@@ -74,8 +74,8 @@ void transform_chunk(const Transform& t, const PointCache& points, int begin, in
     float away = ox * dx + oy * dy + oz * dz;
 
     int32_t good = int32_t(depth > near_depth) & int32_t(sx >= 0.0f) & int32_t(sx < t.width) &
-                   int32_t(sy >= 0.0f) & int32_t(sy < t.height) & int32_t(away <= facing_away * depth) &
-                   int32_t(age[i] != evicted_age) & flag;
+                   int32_t(sy >= 0.0f) & int32_t(sy < t.height) &
+                   int32_t(away <= facing_away * depth) & int32_t(age[i] != evicted_age) & flag;
     float cx = sx > 0.0f ? sx : 0.0f, cy = sy > 0.0f ? sy : 0.0f;
     cx = cx < t.width ? cx : 0.0f;
     cy = cy < t.height ? cy : 0.0f;
@@ -104,9 +104,17 @@ void project_points(PointCache& points, const View& view, bool same_view, Scratc
   std::span<uint64_t> entries = scratch.take<uint64_t>(size_t(capacity));
   std::span<uint16_t> offsets = scratch.take<uint16_t>(size_t(chunks) * size_t(tile_count + 1));
 
-  Transform transform{view.position, view.right, view.up, view.forward,
-                      float(view.height) * 0.5f / view.tan_half_fov, 0.5f * float(view.width),
-                      0.5f * float(view.height), float(view.width), float(view.height), tiles.x, tile_count};
+  Transform transform{view.position,
+                      view.right,
+                      view.up,
+                      view.forward,
+                      float(view.height) * 0.5f / view.tan_half_fov,
+                      0.5f * float(view.width),
+                      0.5f * float(view.height),
+                      float(view.width),
+                      float(view.height),
+                      tiles.x,
+                      tile_count};
   uint8_t keep = uint8_t(~(point_visible | (same_view ? 0 : point_verified)));
 
   // Pass 1: transform, then sort each chunk's points by tile into the chunk's part of `entries`.
@@ -148,7 +156,8 @@ void project_points(PointCache& points, const View& view, bool same_view, Scratc
       }
     }
     int x0 = (tile % tiles.x) << tile_bits, y0 = (tile / tiles.x) << tile_bits;
-    int columns = std::min(tile_size, view.width - x0), rows = std::min(tile_size, view.height - y0);
+    int columns = std::min(tile_size, view.width - x0),
+        rows = std::min(tile_size, view.height - y0);
     for (int y = 0; y < rows; y++) {
       const uint64_t* row = nearest + (y << tile_bits);
       size_t at = size_t(y0 + y) * size_t(view.width) + size_t(x0);

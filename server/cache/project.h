@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Projection of all points with a z-buffer in two tiled passes (Walter, Drettakis, Greenberg 2002): points
-// are transformed in order and sorted into picture tiles, then every tile is z-buffered by one thread in
-// its first-level cache. No atomics, and the same picture whatever the number of threads.
+// Projection of all points with a z-buffer in two tiled passes (Walter, Drettakis, Greenberg 2002):
+// points are transformed in order and sorted into picture tiles, then every tile is z-buffered by
+// one thread in its first-level cache. No atomics, and the same picture whatever the number of
+// threads.
 #pragma once
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
@@ -11,15 +12,16 @@
 namespace wellspring {
 
 // Overwrites image.point and image.depth (image has the view's size) and the points' visible flag.
-// Points behind the camera, facing away, evicted or not finite fall nowhere. The nearest wins; of equals
-// the lower index. `same_view`: keeps the verified flags.
+// Points behind the camera, facing away, evicted or not finite fall nowhere. The nearest wins; of
+// equals the lower index. `same_view`: keeps the verified flags.
 void project_points(PointCache& points, const View& view, bool same_view, Scratch& scratch,
                     PointImage& image);
 
-// Removes points that show through gaps of a nearer surface (paper, section 3.1, on 5x5 instead of 3x3
-// neighbours): a point is removed when neighbours nearer by more than `threshold` (relative) lie around
-// it, or are almost all there are. Neighbours on one side only are a silhouette and prove nothing, which
-// the paper's average does not tell apart; points seen from this very view stay.
+// Removes points that show through gaps of a nearer surface (paper, section 3.1, on 5x5 instead of
+// 3x3 neighbours): a point is removed when neighbours nearer by more than `threshold` (relative)
+// lie around it, or are almost all there are. Neighbours on one side only are a silhouette and
+// prove nothing, which the paper's average does not tell apart; points seen from this very view
+// stay.
 void depth_cull(PointCache& points, float threshold, PointImage& image);
 
 // Bytes project_points() takes from the scratch.

@@ -13,7 +13,8 @@
 
 namespace wellspring {
 
-SurfaceCounts gather_surface(const PointCache& points, const PointImage& image, SurfaceImage& surface, Frame& frame) {
+SurfaceCounts gather_surface(const PointCache& points, const PointImage& image,
+                             SurfaceImage& surface, Frame& frame) {
   constexpr size_t ahead = 24;  // pixels by which point data is fetched early
   std::atomic<int64_t> shown{0}, ages{0}, converged{0};
   parallel_ranges(image.height, 8, [&](int begin, int end) {
@@ -57,8 +58,8 @@ namespace {
 
 constexpr int run = 64;  // pixels filled together
 
-// Three rows of the picture around the one being filled, padded by an empty pixel in front and a run at
-// the end. Pixels without a point have object no_object.
+// Three rows of the picture around the one being filled, padded by an empty pixel in front and a
+// run at the end. Pixels without a point have object no_object.
 struct Rows {
   std::vector<uint32_t> object, albedo;
   std::vector<float> depth;
@@ -66,7 +67,8 @@ struct Rows {
   size_t start(int y) const { return size_t(y + 1) % 3 * stride + 1; }
 };
 
-void load_row(const PointImage& image, const SurfaceImage& surface, const Frame& frame, int y, Rows& rows) {
+void load_row(const PointImage& image, const SurfaceImage& surface, const Frame& frame, int y,
+              Rows& rows) {
   size_t to = rows.start(y), from = size_t(y) * size_t(image.width);
   bool outside = y < 0 || y >= image.height;
   for (size_t x = 0; x < size_t(image.width); x++) {
@@ -77,8 +79,9 @@ void load_row(const PointImage& image, const SurfaceImage& surface, const Frame&
   }
 }
 
-// What the eight neighbours of each pixel of a run say: sums over those of the object with most weight
-// (weighted majority vote: exact where one object has more than half), and which of them is nearest.
+// What the eight neighbours of each pixel of a run say: sums over those of the object with most
+// weight (weighted majority vote: exact where one object has more than half), and which of them is
+// nearest.
 struct Neighbours {
   alignas(64) uint32_t object[run];
   alignas(64) int32_t votes[run], weight[run], red[run], green[run], blue[run], nearest[run];
@@ -96,11 +99,13 @@ constexpr int around_x[8] = {-1, 1, 0, 0, -1, 1, -1, 1}, around_y[8] = {0, 0, -1
     n.votes[i] = (votes ^ lost) - lost;
   }
 }
-[[gnu::noinline]] void add_elected(const uint32_t* __restrict other, const uint32_t* __restrict albedo,
-                                   const float* __restrict depth, int32_t k, int32_t w, Neighbours& __restrict n) {
+[[gnu::noinline]] void add_elected(const uint32_t* __restrict other,
+                                   const uint32_t* __restrict albedo, const float* __restrict depth,
+                                   int32_t k, int32_t w, Neighbours& __restrict n) {
   float weight = float(w);
   for (int i = 0; i < run; i++) {
-    int32_t same = -int32_t(other[i] == n.object[i]) & -int32_t(other[i] != no_object), share = same & w;
+    int32_t same = -int32_t(other[i] == n.object[i]) & -int32_t(other[i] != no_object),
+            share = same & w;
     int32_t color = int32_t(albedo[i]);
     n.weight[i] += share;
     n.red[i] += share * (color & 2047);
@@ -115,22 +120,26 @@ void ask_neighbours(const Rows& rows, int x0, int y, Neighbours& n) {
   std::memset(&n, 0, sizeof n);
   std::fill_n(n.object, run, no_object);
   size_t at[8];
-  for (int k = 0; k < 8; k++) at[k] = rows.start(y + around_y[k]) + size_t(x0 + 1 + around_x[k]) - 1;
+  for (int k = 0; k < 8; k++)
+    at[k] = rows.start(y + around_y[k]) + size_t(x0 + 1 + around_x[k]) - 1;
   for (int k = 0; k < 8; k++) vote(rows.object.data() + at[k], k < 4 ? 2 : 1, n);
   // The nearest last, so that it stays.
   for (int k = 7; k >= 0; k--)
-    add_elected(rows.object.data() + at[k], rows.albedo.data() + at[k], rows.depth.data() + at[k], k, k < 4 ? 2 : 1, n);
+    add_elected(rows.object.data() + at[k], rows.albedo.data() + at[k], rows.depth.data() + at[k],
+                k, k < 4 ? 2 : 1, n);
 }
 
 // A pixel from the cells around it: bilinear among those of the object with most weight.
-void fill_from_cells(const PixelRays& rays, const mat3& to_world, const Cells& cells, int x, int y, size_t i,
-                     SurfaceImage& surface, Frame& frame) {
+void fill_from_cells(const PixelRays& rays, const mat3& to_world, const Cells& cells, int x, int y,
+                     size_t i, SurfaceImage& surface, Frame& frame) {
   int cx = (x + cell_size / 2) / cell_size - 1, cy = (y + cell_size / 2) / cell_size - 1;
-  float fx = (float(x) + 0.5f) / cell_size - 0.5f - float(cx), fy = (float(y) + 0.5f) / cell_size - 0.5f - float(cy);
+  float fx = (float(x) + 0.5f) / cell_size - 0.5f - float(cx),
+        fy = (float(y) + 0.5f) / cell_size - 0.5f - float(cy);
   size_t cell[4];
   float weight[4];
   for (int k = 0; k < 4; k++) {
-    int ax = std::clamp(cx + (k & 1), 0, cells.width - 1), ay = std::clamp(cy + (k >> 1), 0, cells.height - 1);
+    int ax = std::clamp(cx + (k & 1), 0, cells.width - 1),
+        ay = std::clamp(cy + (k >> 1), 0, cells.height - 1);
     cell[k] = size_t(cells.index(ax, ay));
     weight[k] = ((k & 1) ? fx : 1 - fx) * ((k >> 1) ? fy : 1 - fy) + 1e-4f;
   }
@@ -202,7 +211,8 @@ void fill_holes(const View& view, const PointImage& image, const Cells& cells, b
           int k = n.nearest[i];
           size_t from = size_t(y + around_y[k]) * size_t(width) + size_t(x + around_x[k]);
           float share = 1 / float(n.weight[i]);
-          surface.albedo[at] = uint32_t(float(n.red[i]) * share + 0.5f) | uint32_t(float(n.green[i]) * share + 0.5f) << 11 |
+          surface.albedo[at] = uint32_t(float(n.red[i]) * share + 0.5f) |
+                               uint32_t(float(n.green[i]) * share + 0.5f) << 11 |
                                uint32_t(float(n.blue[i]) * share + 0.5f) << 22;
           surface.rest[at] = surface.rest[from];
           surface.normal[at] = surface.normal[from];

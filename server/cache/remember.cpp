@@ -12,12 +12,12 @@
 namespace wellspring {
 namespace {
 
-constexpr float same_place = 0.01f;    // of the distance: farther off is another surface
-constexpr float same_normal = 0.8f;    // cosine
+constexpr float same_place = 0.01f;  // of the distance: farther off is another surface
+constexpr float same_normal = 0.8f;  // cosine
 constexpr float same_albedo = 0.03f;
-constexpr float quiet_noise = 0.1f;    // of the mean: points this quiet may testify to a change
-constexpr float unseen_bonus = 96;     // in age: unseen points are overwritten before seen ones
-constexpr int noise_memory = 8;        // samples the noise estimate looks back on
+constexpr float quiet_noise = 0.1f;  // of the mean: points this quiet may testify to a change
+constexpr float unseen_bonus = 96;   // in age: unseen points are overwritten before seen ones
+constexpr int noise_memory = 8;      // samples the noise estimate looks back on
 
 bool is_usable(const Sample& sample) {
   return is_finite(sample.position) && is_finite(sample.normal) && is_finite(sample.albedo) &&
@@ -26,10 +26,14 @@ bool is_usable(const Sample& sample) {
 
 bool is_infinite(const Sample& sample) { return !(sample.flags & sample_hit); }
 
-vec3 position_of(const PointCache& points, uint32_t i) { return {points.x[i], points.y[i], points.z[i]}; }
+vec3 position_of(const PointCache& points, uint32_t i) {
+  return {points.x[i], points.y[i], points.z[i]};
+}
 
-// The sample saw the surface the point lies on, at the point (`exact`) or near it in the same pixel.
-bool is_same_surface(const PointCache& points, uint32_t i, const View& view, const Sample& sample, bool exact) {
+// The sample saw the surface the point lies on, at the point (`exact`) or near it in the same
+// pixel.
+bool is_same_surface(const PointCache& points, uint32_t i, const View& view, const Sample& sample,
+                     bool exact) {
   bool infinite = points.flags[i] & point_infinite;
   if (infinite != is_infinite(sample) || points.color[i].object != sample.object) return false;
   if (infinite) return true;
@@ -51,8 +55,10 @@ uint8_t flags_of(const Sample& sample) {
 void place_point(PointCache& points, uint32_t i, const View& view, const Sample& sample) {
   vec3 p = sample.position, n = sample.normal;
   // At infinity, and where a technique gave no normal, the point faces the viewer.
-  if (is_infinite(sample)) n = -p;
-  else if (!(dot(n, n) > 0)) n = view.position - p;
+  if (is_infinite(sample))
+    n = -p;
+  else if (!(dot(n, n) > 0))
+    n = view.position - p;
   points.x[i] = p.x;
   points.y[i] = p.y;
   points.z[i] = p.z;
@@ -61,7 +67,8 @@ void place_point(PointCache& points, uint32_t i, const View& view, const Sample&
   points.color[i].albedo = pack_albedo(sample.albedo);
 }
 
-void begin_point(PointCache& points, uint32_t i, const View& view, const Sample& sample, uint32_t random) {
+void begin_point(PointCache& points, uint32_t i, const View& view, const Sample& sample,
+                 uint32_t random) {
   place_point(points, i, view, sample);
   points.flags[i] = flags_of(sample);
   points.count[i] = 1;
@@ -72,13 +79,15 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Sample&
 }
 
 // Adds one sample to the means. True when the point was quiet and yet the light at it has changed.
-bool improve_point(PointCache& points, uint32_t i, const View& view, const Sample& sample, bool exact,
-                   const RememberSettings& settings, uint32_t random) {
+bool improve_point(PointCache& points, uint32_t i, const View& view, const Sample& sample,
+                   bool exact, const RememberSettings& settings, uint32_t random) {
   vec3 smooth = unpack_rgb9e5(points.color[i].smooth), rest = unpack_rgb9e5(points.color[i].rest);
   int n = points.count[i];
   float deviation = unpack_deviation(points.noise[i]);
-  float before = luminance(rest), now = luminance(max(sample.rest, vec3(0))), step = std::abs(now - before);
-  float level = std::max(before, now), whole = luminance(unpack_albedo(points.color[i].albedo) * smooth) + level;
+  float before = luminance(rest), now = luminance(max(sample.rest, vec3(0))),
+        step = std::abs(now - before);
+  float level = std::max(before, now),
+        whole = luminance(unpack_albedo(points.color[i].albedo) * smooth) + level;
   bool quiet = n >= 2 && deviation <= quiet_noise * level;
   // Elsewhere in the pixel a texture may differ too: only an equal reflectance tells about light.
   vec3 reflectance = unpack_albedo(points.color[i].albedo);
@@ -89,8 +98,10 @@ bool improve_point(PointCache& points, uint32_t i, const View& view, const Sampl
     return true;
   }
   float memory = float(std::min(n, noise_memory));
-  float variance = n == 1 ? 0.5f * step * step
-                          : (deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) / memory;
+  float variance =
+      n == 1
+          ? 0.5f * step * step
+          : (deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) / memory;
   points.noise[i] = pack_deviation(std::sqrt(variance));
   float share = 1 / float(std::min(n, int(settings.longest_mean) - 1) + 1);
   smooth += (max(sample.smooth, vec3(0)) - smooth) * share;
@@ -137,7 +148,8 @@ void hide_point(const PointCache& points, const View& view, uint32_t i, PointIma
 
 void show_point(PointCache& points, const View& view, uint32_t i, size_t pixel, PointImage& image) {
   bool infinite = points.flags[i] & point_infinite;
-  float depth = infinite ? infinite_depth : dot(position_of(points, i) - view.position, view.forward);
+  float depth =
+      infinite ? infinite_depth : dot(position_of(points, i) - view.position, view.forward);
   if (!(depth > 0)) return;
   uint32_t before = image.point[pixel];
   if (before != no_point && before != i) points.flags[before] &= uint8_t(~point_visible);
@@ -147,22 +159,26 @@ void show_point(PointCache& points, const View& view, uint32_t i, size_t pixel, 
 }
 
 void mark_changed(PointImage& image, size_t pixel) {
-  size_t x = pixel % size_t(image.width) / change_tile, y = pixel / size_t(image.width) / change_tile;
+  size_t x = pixel % size_t(image.width) / change_tile,
+         y = pixel / size_t(image.width) / change_tile;
   std::atomic_ref<uint8_t> tile(image.changed[y * size_t(image.changed_width) + x]);
   // At most one sample a pixel, 64 a tile: no overflow within a frame.
   tile.fetch_add(1, std::memory_order_relaxed);
 }
 
-void add_anchors(PointCache& points, std::span<const Sample> samples, const std::vector<uint32_t>& targets) {
+void add_anchors(PointCache& points, std::span<const Sample> samples,
+                 const std::vector<uint32_t>& targets) {
   size_t most = size_t(max_anchors(points.capacity()));
   auto level = [](float v) { return uint16_t(std::clamp(v, 0.0f, 1.0f) * 65535 + 0.5f); };
   for (size_t i = 0; i < samples.size(); i++) {
     const Sample& s = samples[i];
     if (!(s.flags & sample_moving) || targets[i] == no_point) continue;
     if (points.anchors.size() < most)
-      points.anchors.push_back({targets[i], s.instance, s.triangle, level(s.barycentric.x), level(s.barycentric.y)});
+      points.anchors.push_back(
+          {targets[i], s.instance, s.triangle, level(s.barycentric.x), level(s.barycentric.y)});
     else
-      points.age[targets[i]] = evicted_age;  // shows in this frame, then goes: better a gap than a ghost
+      points.age[targets[i]] =
+          evicted_age;  // shows in this frame, then goes: better a gap than a ghost
   }
 }
 
@@ -188,7 +204,8 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
     uint32_t point = request.resample;
     if (point >= capacity || !is_alive(points, point)) point = no_point;
     if (settings.current && point == no_point) point = image.point[request.pixel];
-    if (!settings.current && point != no_point && !is_same_surface(points, point, view, samples[i], true))
+    if (!settings.current && point != no_point &&
+        !is_same_surface(points, point, view, samples[i], true))
       point = no_point;
     targets[i] = point;
     if (point == no_point) additions.push_back(uint32_t(i));

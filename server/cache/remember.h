@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Answers of the renderer enter the cache (Walter 1999, sections 4.1 to 4.3): a resampled point is
-// improved in place, or begins anew if it was found changed; a new point overwrites the oldest of eight.
+// improved in place, or begins anew if it was found changed; a new point overwrites the oldest of
+// eight.
 #pragma once
 #include <span>
 #include <vector>
@@ -14,8 +15,8 @@ namespace wellspring {
 
 struct RememberSettings {
   float color_change = 0.25f;
-  bool current = true;   // `view` is the one the image was projected for: answers show at once
-  bool still = false;    // answers are spread over their pixel and join the point that shows there
+  bool current = true;  // `view` is the one the image was projected for: answers show at once
+  bool still = false;   // answers are spread over their pixel and join the point that shows there
   uint8_t longest_mean = 64;  // samples a mean looks back on
 };
 
@@ -23,8 +24,9 @@ struct Remembered {
   int kept = 0, merged = 0, added = 0, changed = 0, rejected = 0;
 };
 
-// Samples that are not finite are rejected; negative light counts as none. `targets` is overwritten with
-// the point each sample went to, or no_point. The result does not depend on the number of threads.
+// Samples that are not finite are rejected; negative light counts as none. `targets` is overwritten
+// with the point each sample went to, or no_point. The result does not depend on the number of
+// threads.
 Remembered remember_samples(PointCache& points, const View& view, std::span<const Request> requests,
                             std::span<const Sample> samples, const RememberSettings& settings,
                             PointImage& image, std::vector<uint32_t>& targets);

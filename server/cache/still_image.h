@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// While the view stands still, rays are spread over their pixels; the mean of what a pixel showed after
-// each of its samples is the antialiased picture. 7 bytes a pixel.
+// While the view stands still, rays are spread over their pixels; the mean of what a pixel showed
+// after each of its samples is the antialiased picture. 7 bytes a pixel.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,8 +8,9 @@
 
 namespace wellspring {
 
-inline constexpr uint8_t still_fresh = 128;  // bit of `count`: a sample arrived since the last picture
-inline constexpr int still_longest = 100;    // the mean looks back on about this many samples
+inline constexpr uint8_t still_fresh =
+    128;  // bit of `count`: a sample arrived since the last picture
+inline constexpr int still_longest = 100;  // the mean looks back on about this many samples
 
 struct StillImage {
   std::array<std::vector<uint16_t>, 3> mean;  // pack_half

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the points say about every pixel, before light is put together: the planes that reconstruction
-// works on. Borrowed from a Scratch for the length of one frame.
+// What the points say about every pixel, before light is put together: the planes that
+// reconstruction works on. Borrowed from a Scratch for the length of one frame.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -27,7 +27,8 @@ inline size_t surface_bytes(size_t pixels) {
 struct PixelRays {
   float half_width, half_height, inverse_focal;
   explicit PixelRays(const View& view)
-      : half_width(0.5f * float(view.width)), half_height(0.5f * float(view.height)),
+      : half_width(0.5f * float(view.width)),
+        half_height(0.5f * float(view.height)),
         inverse_focal(view.tan_half_fov * 2 / float(view.height)) {}
   float x(float column) const { return (column - half_width) * inverse_focal; }
   float y(float row) const { return (half_height - row) * inverse_focal; }
@@ -41,8 +42,9 @@ struct SurfaceCounts {
 };
 inline constexpr int converged_samples = 32;
 
-// Reads every visible point: fills the planes and, of `frame`, color (the point's own smooth light),
-// confidence (its samples), depth and object; pixels without a point get 0 everywhere.
-SurfaceCounts gather_surface(const PointCache& points, const PointImage& image, SurfaceImage& surface, Frame& frame);
+// Reads every visible point: fills the planes and, of `frame`, color (the point's own smooth
+// light), confidence (its samples), depth and object; pixels without a point get 0 everywhere.
+SurfaceCounts gather_surface(const PointCache& points, const PointImage& image,
+                             SurfaceImage& surface, Frame& frame);
 
 }  // namespace wellspring

@@ -16,7 +16,8 @@
 namespace wellspring {
 namespace {
 
-constexpr std::array<const char*, 6> stage_names{"move", "project", "attend", "plan", "remember", "reconstruct"};
+constexpr std::array<const char*, 6> stage_names{"move", "project",  "attend",
+                                                 "plan", "remember", "reconstruct"};
 using Stages = std::array<double, stage_names.size()>;
 
 // A hall with four columns: enough surfaces and edges to be like a museum, answered in nanoseconds.
@@ -35,7 +36,8 @@ Sample answer(const Request& request) {
     sample.object = uint32_t(1 + axis * 2 + (d[axis] > 0));
   }
   for (uint32_t k = 0; k < 4; k++) {
-    vec2 center(k & 1 ? 2.5f : -2.5f, k & 2 ? 3.0f : -3.0f), to = vec2(o.x, o.z) - center, flat(d.x, d.z);
+    vec2 center(k & 1 ? 2.5f : -2.5f, k & 2 ? 3.0f : -3.0f), to = vec2(o.x, o.z) - center,
+                                                             flat(d.x, d.z);
     float a = dot(flat, flat), b = dot(to, flat), c = dot(to, to) - 0.16f, disc = b * b - a * c;
     float t = disc > 0 && a > 0 ? (-b - std::sqrt(disc)) / a : -1.0f;
     if (t <= 0 || t >= nearest) continue;
@@ -49,7 +51,8 @@ Sample answer(const Request& request) {
   sample.distance = nearest;
   sample.flags = sample_hit;
   vec3 p = sample.position * 4.0f;
-  float pattern = (int(std::floor(p.x)) + int(std::floor(p.y)) + int(std::floor(p.z))) & 1 ? 0.7f : 0.3f;
+  float pattern =
+      (int(std::floor(p.x)) + int(std::floor(p.y)) + int(std::floor(p.z))) & 1 ? 0.7f : 0.3f;
   sample.albedo = vec3(pattern, pattern * 0.9f, pattern * 0.7f);
   sample.smooth = vec3(-std::log(1 - 0.999f * rng.uniform()));
   if (rng.uniform() < 0.25f) sample.rest = vec3(0.1f * rng.uniform());
@@ -142,7 +145,8 @@ double measure_yardstick(int width, int height, int points, int frames) {
   for (size_t i = 0; i < position.size(); i++) {
     // As the plan would: sweeps over the picture, each a fortieth of its pixels.
     uint64_t random = mix64(i);
-    float y = float(i % (position.size() / 40 + 1)) / float(position.size() / 40 + 1) * float(height);
+    float y =
+        float(i % (position.size() / 40 + 1)) / float(position.size() / 40 + 1) * float(height);
     Request request;
     request.ray = view_ray(view, float(random & 0xffff) / 65536 * float(width), y);
     position[i] = answer(request).position;
@@ -156,7 +160,8 @@ double measure_yardstick(int width, int height, int points, int frames) {
     for (size_t i = 0; i < position.size(); i++) {
       vec3 d = position[i] - view.position;
       float z = dot(d, view.forward), inverse = scale / z;
-      float x = dot(d, view.right) * inverse + 0.5f * float(width), y = 0.5f * float(height) - dot(d, view.up) * inverse;
+      float x = dot(d, view.right) * inverse + 0.5f * float(width),
+            y = 0.5f * float(height) - dot(d, view.up) * inverse;
       if (!(z > 0 && x >= 0 && y >= 0 && x < float(width) && y < float(height))) continue;
       size_t pixel = size_t(y) * size_t(width) + size_t(x);
       if (z >= depth[pixel]) continue;
@@ -188,7 +193,8 @@ std::vector<NamedValue> report_cache_display(int width, int height, bool quick) 
   values.push_back({"cache.display.yardstick_ms_one_core", "ms", yardstick});
   values.push_back({"cache.display.yardstick_ratio", "", one.total / yardstick});
   for (size_t k = 0; k < stage_names.size(); k++)
-    values.push_back({std::string("cache.display.") + stage_names[k] + ".ms_one_core", "ms", one.stages[k]});
+    values.push_back(
+        {std::string("cache.display.") + stage_names[k] + ".ms_one_core", "ms", one.stages[k]});
   values.push_back({"cache.display.memory", "MB", double(stroll.cache.memory_bytes()) / 1e6});
   return values;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the render cache's display process takes: move_points, project, attend, plan, remember and
-// reconstruct, without the tracing, of a visitor who strolls through a hall.
+// How long the render cache's display process takes: move_points, project, attend, plan, remember
+// and reconstruct, without the tracing, of a visitor who strolls through a hall.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,9 +12,9 @@ struct NamedValue {
   double value = 0;
 };
 
-// cache.display.ms (all cores), .ms_one_core, .yardstick_ms_one_core (the bare loop "transform, divide,
-// z-test, store" over the same points), .yardstick_ratio (one core over the yardstick),
-// and cache.display.STAGE.ms_one_core. Medians over the frames of a stroll once the cache is full.
+// cache.display.ms (all cores), .ms_one_core, .yardstick_ms_one_core (the bare loop "transform,
+// divide, z-test, store" over the same points), .yardstick_ratio (one core over the yardstick), and
+// cache.display.STAGE.ms_one_core. Medians over the frames of a stroll once the cache is full.
 std::vector<NamedValue> report_cache_display(int width, int height, bool quick);
 
 }  // namespace wellspring

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole cache as a visitor meets it.
+#include "cache/cache.h"
+
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
 #include <cmath>
 #include <limits>
 
-#include "cache/cache.h"
 #include "cache/packing.h"
 #include "cache/point_cache.h"
 #include "frame/compare.h"
@@ -38,15 +39,19 @@ struct Visitor {
   testing::AssertionResult finite() const {
     for (size_t i = 0; i < frame.color.size(); i++) {
       vec3 c = frame.color[i];
-      if (!is_finite(c) || c.x < 0 || c.y < 0 || c.z < 0 || !(frame.depth[i] > 0) || !std::isfinite(frame.confidence[i]))
-        return testing::AssertionFailure() << "pixel " << i << ": " << c.x << " " << c.y << " " << c.z << " depth "
-                                           << frame.depth[i] << " confidence " << frame.confidence[i];
+      if (!is_finite(c) || c.x < 0 || c.y < 0 || c.z < 0 || !(frame.depth[i] > 0) ||
+          !std::isfinite(frame.confidence[i]))
+        return testing::AssertionFailure()
+               << "pixel " << i << ": " << c.x << " " << c.y << " " << c.z << " depth "
+               << frame.depth[i] << " confidence " << frame.confidence[i];
     }
     return testing::AssertionSuccess();
   }
 };
 
-View hall(int width = 160, int height = 90) { return look_at(vec3(-1, 1.6f, 4), vec3(-0.2f, 0.9f, -2), 60, width, height); }
+View hall(int width = 160, int height = 90) {
+  return look_at(vec3(-1, 1.6f, 4), vec3(-0.2f, 0.9f, -2), 60, width, height);
+}
 
 float wrong_objects(const Frame& frame, const Frame& truth) {
   int wrong = 0;
@@ -105,7 +110,8 @@ TEST(Cache, WalkingShowsTheRightSurfaces) {
 }
 
 TEST(Cache, ColoursNeverLeakAcrossObjects) {
-  // Red and blue walls, nothing red or blue elsewhere: whatever object a pixel shows, its hue is that one's.
+  // Red and blue walls, nothing red or blue elsewhere: whatever object a pixel shows, its hue is
+  // that one's.
   Visitor v;
   v.room.noisy = false;
   View view = hall();
@@ -129,7 +135,8 @@ TEST(Cache, ColoursNeverLeakAcrossObjects) {
 TEST(Cache, TeleportLeavesNothingOfTheOldView) {
   Visitor v;
   for (int i = 0; i < 60; i++) v.step(hall(), 400);
-  View other = look_at(vec3(2, 1.5f, -3), vec3(3.9f, 1.4f, -3), 60, 160, 90);  // close before the blue wall
+  View other =
+      look_at(vec3(2, 1.5f, -3), vec3(3.9f, 1.4f, -3), 60, 160, 90);  // close before the blue wall
   v.step(other, 400);
   v.step(other, 400);
   EXPECT_LT(wrong_objects(v.frame, render_room(v.room, other, 1)), 0.12);
@@ -234,7 +241,8 @@ TEST(Cache, TheSameBitsWhateverTheThreads) {
   auto visit = [] {
     Visitor v;
     for (int i = 0; i < 12; i++)
-      v.step(look_at(vec3(-1 + 0.05f * float(i / 2), 1.6f, 4), vec3(0, 0.9f, -2), 60, 200, 120), 600);
+      v.step(look_at(vec3(-1 + 0.05f * float(i / 2), 1.6f, 4), vec3(0, 0.9f, -2), 60, 200, 120),
+             600);
     return v.frame;
   };
   Frame many = visit();
@@ -254,10 +262,15 @@ TEST(Cache, ALongVisitNeitherDriftsNorGrows) {
   for (int i = 0; i < 6000; i++) {
     bool walking = i / 200 % 2;
     float s = walking ? float(i % 200) / 30 : 0;
-    View view = look_at(vec3(-1 + std::sin(s), 1.6f, 4 - s * 0.2f), vec3(-0.2f, 0.9f, -2), 60, 48, 27);
+    View view =
+        look_at(vec3(-1 + std::sin(s), 1.6f, 4 - s * 0.2f), vec3(-0.2f, 0.9f, -2), 60, 48, 27);
     v.step(walking ? view : rest, 60);
-    if (i % 500 == 0) { ASSERT_TRUE(v.finite()); }
-    if (i == 599) first = rmse(v.frame, render_room(v.room, v.room.noisy ? view : rest, 4)), memory = v.cache.memory_bytes();
+    if (i % 500 == 0) {
+      ASSERT_TRUE(v.finite());
+    }
+    if (i == 599)
+      first = rmse(v.frame, render_room(v.room, v.room.noisy ? view : rest, 4)),
+      memory = v.cache.memory_bytes();
   }
   for (int i = 0; i < 200; i++) v.step(rest, 60);
   EXPECT_LE(v.cache.memory_bytes(), memory + 4096);
@@ -278,10 +291,10 @@ TEST(Cache, MovingPointsFollowTheirTriangle) {
   points.flags[3] = point_used | point_moving | point_visible;
   points.age[3] = 0;
   points.normal[3] = pack_normal(vec3(0, 0, 1));
-  points.anchors.push_back({3, 0, 0, 0, 65535});           // replaced by the newer one
+  points.anchors.push_back({3, 0, 0, 0, 65535});  // replaced by the newer one
   points.anchors.push_back({3, 0, 0, 65535 / 2, 65535 / 4});
-  points.anchors.push_back({4, 0, 0, 0, 0});               // of a point that lives no more
-  points.anchors.push_back({3 + 64 * 0, 7, 0, 0, 0});      // of an instance that is not there
+  points.anchors.push_back({4, 0, 0, 0, 0});           // of a point that lives no more
+  points.anchors.push_back({3 + 64 * 0, 7, 0, 0, 0});  // of an instance that is not there
   std::vector<vec3> moved = mesh.positions, normals = mesh.normals;
   for (vec3& p : moved) p += vec3(5, 2, -1);
   world.move(0, moved, normals);

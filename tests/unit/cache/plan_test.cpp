@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the next samples go.
+#include "cache/plan.h"
+
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "cache/attention.h"
 #include "cache/packing.h"
-#include "cache/plan.h"
 #include "unit/cache/room.h"
 
 namespace wellspring {
@@ -51,7 +52,8 @@ TEST(Plan, DenserWherePriorityIsHigher) {
   double left = 0, right = 0;
   for (uint64_t seed = 0; seed < 20; seed++) {
     Planner p;
-    for (size_t i = 0; i < p.image.priority.size(); i++) p.image.priority[i] = i % 160 < 80 ? 200 : 50;
+    for (size_t i = 0; i < p.image.priority.size(); i++)
+      p.image.priority[i] = i % 160 < 80 ? 200 : 50;
     p.plan(720, seed);
     for (const Request& r : p.requests) (r.pixel % 160 < 80 ? left : right) += 1;
   }
@@ -65,7 +67,8 @@ TEST(Plan, SpreadsEvenlyWithoutClumps) {
     std::fill(p.image.priority.begin(), p.image.priority.end(), uint8_t(120));
     p.plan(1440, seed);
     std::vector<int> patch(90, 0);
-    for (const Request& r : p.requests) patch[size_t(r.pixel / 160 / 10 * 10 + r.pixel % 160 / 16)]++;
+    for (const Request& r : p.requests)
+      patch[size_t(r.pixel / 160 / 10 * 10 + r.pixel % 160 / 16)]++;
     for (int n : patch) {
       EXPECT_GE(n, 8);
       EXPECT_LE(n, 24);
@@ -78,7 +81,8 @@ TEST(Plan, EveryPixelIsReachedInTime) {
   std::vector<int> waits(14400, 0);
   std::set<uint32_t> seen;
   for (uint64_t frame = 0; frame < 400; frame++) {
-    for (size_t i = 0; i < waits.size(); i++) p.image.priority[i] = uint8_t(std::min(1 + waits[i]++ * 2, 255));
+    for (size_t i = 0; i < waits.size(); i++)
+      p.image.priority[i] = uint8_t(std::min(1 + waits[i]++ * 2, 255));
     p.plan(288, frame);
     for (const Request& r : p.requests) seen.insert(r.pixel), waits[r.pixel] = 0;
   }
@@ -110,7 +114,8 @@ TEST(Plan, RaysPassThroughTheirPixelOrExactlyThroughTheOldPoint) {
 TEST(Plan, SameSeedSamePlan) {
   Planner a, b;
   for (auto* p : {&a, &b}) {
-    for (size_t i = 0; i < p->image.priority.size(); i++) p->image.priority[i] = uint8_t(i * 7 % 251);
+    for (size_t i = 0; i < p->image.priority.size(); i++)
+      p->image.priority[i] = uint8_t(i * 7 % 251);
     p->plan(500, 77);
   }
   ASSERT_EQ(a.requests.size(), b.requests.size());
@@ -149,7 +154,8 @@ TEST(Attention, EmptyBeforeOldBeforeFresh) {
 
 TEST(Attention, AChangeAgesTheNeighbourhoodOnce) {
   Planner p;
-  for (uint32_t i = 0; i < 14400; i++) p.image.point[i] = i, p.points.age[i] = 10, p.points.count[i] = 30;
+  for (uint32_t i = 0; i < 14400; i++)
+    p.image.point[i] = i, p.points.age[i] = 10, p.points.count[i] = 30;
   StillImage still;
   uint8_t& witnesses = p.image.changed[size_t(5 * p.image.changed_width + 5)];
   witnesses = 1;

@@ -81,7 +81,8 @@ TEST(Packing, NonsenseBecomesBlack) {
   EXPECT_EQ(unpack_rgb9e5(pack_rgb9e5(vec3(nan, -1, 0))), vec3(0));
   EXPECT_TRUE(is_finite(unpack_rgb9e5(pack_rgb9e5(vec3(inf, 1, 1)))));
   EXPECT_EQ(unpack_albedo(pack_albedo(vec3(nan))), vec3(0));
-  for (vec3 n : {vec3(nan), vec3(0), vec3(inf, 0, 0)}) EXPECT_NEAR(length(unpack_normal(pack_normal(n))), 1, 1e-3);
+  for (vec3 n : {vec3(nan), vec3(0), vec3(inf, 0, 0)})
+    EXPECT_NEAR(length(unpack_normal(pack_normal(n))), 1, 1e-3);
 }
 
 TEST(Packing, NormalsWithinADegree) {
@@ -109,7 +110,8 @@ TEST(Project, EveryPointFallsWhereTheViewSays) {
     std::vector<float> nearest(7000, 1e30f);
     int compared = 0;
     for (uint32_t i = 0; i < 4096; i++) {
-      Projected at = project_point(stage.view, vec3(stage.points.x[i], stage.points.y[i], stage.points.z[i]));
+      Projected at =
+          project_point(stage.view, vec3(stage.points.x[i], stage.points.y[i], stage.points.z[i]));
       if (at.depth <= 1e-3f || !(at.x >= 0 && at.y >= 0 && at.x < 100 && at.y < 70)) continue;
       float& d = nearest[size_t(int(at.y) * 100 + int(at.x))];
       d = std::min(d, at.depth);
@@ -119,8 +121,10 @@ TEST(Project, EveryPointFallsWhereTheViewSays) {
       uint32_t p = stage.image.point[i];
       compared++;
       if (p == no_point) continue;  // rounded into the next pixel; counted below
-      EXPECT_NEAR(stage.image.depth[i], nearest[i], nearest[i] * 2e-3f + 2e-3f) << "pixel " << i << " fov " << fov;
-      Projected at = project_point(stage.view, vec3(stage.points.x[p], stage.points.y[p], stage.points.z[p]));
+      EXPECT_NEAR(stage.image.depth[i], nearest[i], nearest[i] * 2e-3f + 2e-3f)
+          << "pixel " << i << " fov " << fov;
+      Projected at =
+          project_point(stage.view, vec3(stage.points.x[p], stage.points.y[p], stage.points.z[p]));
       EXPECT_NEAR(at.x, float(i % 100) + 0.5f, 0.51f);
       EXPECT_NEAR(at.y, float(i / 100) + 0.5f, 0.51f);
     }
@@ -132,8 +136,9 @@ TEST(Project, EveryPointFallsWhereTheViewSays) {
 TEST(Project, HardPlacesFallNowhere) {
   Stage stage;
   float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-  vec3 bad[] = {vec3(0, 0, 1), vec3(0, 0, 0), vec3(1, 1, 0), vec3(nan, 0, -1), vec3(0, 0, nan), vec3(inf, 0, -1),
-                vec3(0, 0, -inf), vec3(0, 0, -1e-7f), vec3(1e30f, 0, -1), vec3(5, 0, -1), vec3(0, -5, -1)};
+  vec3 bad[] = {vec3(0, 0, 1),      vec3(0, 0, 0),    vec3(1, 1, 0),    vec3(nan, 0, -1),
+                vec3(0, 0, nan),    vec3(inf, 0, -1), vec3(0, 0, -inf), vec3(0, 0, -1e-7f),
+                vec3(1e30f, 0, -1), vec3(5, 0, -1),   vec3(0, -5, -1)};
   for (uint32_t i = 0; i < std::size(bad); i++) stage.put(i, bad[i]);
   stage.project();
   EXPECT_EQ(stage.shown(), 0);
@@ -219,7 +224,8 @@ TEST(DepthCull, LeavesASlantedFloorAlone) {
 TEST(Ageing, FollowsTheRateOfNewPoints) {
   PointCache points;
   resize_points(points, 8000);
-  for (uint32_t i = 0; i < 8000; i++) points.flags[i] = point_used | point_visible, points.age[i] = 0;
+  for (uint32_t i = 0; i < 8000; i++)
+    points.flags[i] = point_used | point_visible, points.age[i] = 0;
   points.flags[1] = point_used;
   points.flags[2] = point_used | point_visible | point_specular;
   for (int i = 0; i < 40; i++) age_points(points, 200);  // a fortieth of the cache a frame
@@ -245,9 +251,11 @@ TEST(Remember, ResampledPointsImproveInPlaceAndNewOnesReplaceTheOldest) {
   requests[0].pixel = 24 * 64 + 32, requests[0].resample = 20;
   requests[1].pixel = 7;
   vec3 side = view_ray(stage.view, 7.5f, 0.5f).direction * 4.0f;
-  std::vector<Sample> samples{sample_at(p, vec3(0, 0, 1), 3, vec3(3)), sample_at(side, vec3(0, 0, 1), 4)};
+  std::vector<Sample> samples{sample_at(p, vec3(0, 0, 1), 3, vec3(3)),
+                              sample_at(side, vec3(0, 0, 1), 4)};
   std::vector<uint32_t> targets;
-  Remembered r = remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
+  Remembered r =
+      remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
   EXPECT_EQ(r.merged, 1);
   EXPECT_EQ(r.added, 1);
   EXPECT_EQ(targets[0], 20u);
@@ -271,7 +279,8 @@ TEST(Remember, OverwrittenPointsVanishFromTheirPixel) {
   std::vector<Request> requests(1);
   requests[0].pixel = 5;
   std::vector<uint32_t> targets;
-  std::vector<Sample> samples{sample_at(view_ray(stage.view, 5.5f, 0.5f).direction, vec3(0, 0, 1), 2)};
+  std::vector<Sample> samples{
+      sample_at(view_ray(stage.view, 5.5f, 0.5f).direction, vec3(0, 0, 1), 2)};
   remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
   EXPECT_EQ(targets[0], 7u);
   EXPECT_EQ(stage.at(17, 20), no_point);
@@ -288,7 +297,8 @@ TEST(Remember, RejectsWhatIsNotFiniteAndWhatDoesNotFit) {
   samples[0].position.y = nan;
   samples[1].rest = vec3(std::numeric_limits<float>::infinity());
   std::vector<uint32_t> targets;
-  Remembered r = remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
+  Remembered r =
+      remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
   EXPECT_EQ(r.rejected, 3);
   EXPECT_EQ(r.kept, 1);
 }
@@ -303,14 +313,19 @@ TEST(Remember, AQuietPointThatChangesMarksItsNeighbourhood) {
   std::vector<Sample> samples{sample_at(p, vec3(0, 0, 1), 3, vec3(0))};
   samples[0].rest = vec3(1);
   std::vector<uint32_t> targets;
-  auto changed = [&] { return remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets).changed; };
+  auto changed = [&] {
+    return remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets)
+        .changed;
+  };
   stage.points.color[20].rest = pack_rgb9e5(vec3(1));
   for (int i = 0; i < 4; i++) EXPECT_EQ(changed(), 0);
   samples[0].rest = vec3(0.2f);
   EXPECT_EQ(changed(), 1);
   EXPECT_EQ(stage.points.count[20], 1);
   EXPECT_NEAR(unpack_rgb9e5(stage.points.color[20].rest).x, 0.2, 0.01);
-  EXPECT_EQ(stage.image.changed[size_t(24 / change_tile * stage.image.changed_width + 32 / change_tile)], 1);
+  EXPECT_EQ(
+      stage.image.changed[size_t(24 / change_tile * stage.image.changed_width + 32 / change_tile)],
+      1);
   // A noisy point proves nothing.
   Rng rng(4);
   int cries = 0;

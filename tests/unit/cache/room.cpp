@@ -27,19 +27,26 @@ struct Ball {
   bool mirror;
 };
 
-float checker(float u, float v) { return (int(std::floor(u)) + int(std::floor(v))) & 1 ? 1.0f : 0.0f; }
+float checker(float u, float v) {
+  return (int(std::floor(u)) + int(std::floor(v))) & 1 ? 1.0f : 0.0f;
+}
 
 vec3 wall_albedo(uint32_t object, vec3 p) {
   switch (object) {
-    case 1: return mix(vec3(0.25f, 0.16f, 0.1f), vec3(0.75f, 0.68f, 0.55f), checker(p.x * 2, p.z * 2));
-    case 2: return vec3(0.85f);
-    case 3: return vec3(0.7f, 0.25f, 0.2f);
-    case 4: return vec3(0.25f, 0.4f, 0.7f);
+    case 1:
+      return mix(vec3(0.25f, 0.16f, 0.1f), vec3(0.75f, 0.68f, 0.55f), checker(p.x * 2, p.z * 2));
+    case 2:
+      return vec3(0.85f);
+    case 3:
+      return vec3(0.7f, 0.25f, 0.2f);
+    case 4:
+      return vec3(0.25f, 0.4f, 0.7f);
     default: {
       // Back and front walls carry pictures of fine stripes.
       bool frame = std::abs(std::fmod(p.x + 8, 2.0f) - 1) < 0.7f && p.y > 1 && p.y < 2.2f;
       if (!frame) return vec3(0.7f, 0.68f, 0.6f);
-      return mix(vec3(0.1f, 0.3f, 0.15f), vec3(0.9f, 0.8f, 0.4f), checker(p.x * 8 + 5 * std::sin(p.y * 4), p.y * 8));
+      return mix(vec3(0.1f, 0.3f, 0.15f), vec3(0.9f, 0.8f, 0.4f),
+                 checker(p.x * 8 + 5 * std::sin(p.y * 4), p.y * 8));
     }
   }
 }
@@ -53,7 +60,9 @@ RoomHit hit_room(const Room& room, vec3 o, vec3 d) {
     hit.t = t;
     hit.normal = vec3(0);
     hit.normal[axis] = d[axis] > 0 ? -1.0f : 1.0f;
-    hit.object = axis == 1 ? (d.y < 0 ? 1u : 2u) : axis == 0 ? (d.x < 0 ? 3u : 4u) : (d.z < 0 ? 5u : 6u);
+    hit.object = axis == 1   ? (d.y < 0 ? 1u : 2u)
+                 : axis == 0 ? (d.x < 0 ? 3u : 4u)
+                             : (d.z < 0 ? 5u : 6u);
   }
   vec3 p = o + d * hit.t;
   hit.albedo = wall_albedo(hit.object, p);
@@ -61,10 +70,11 @@ RoomHit hit_room(const Room& room, vec3 o, vec3 d) {
     hit.emission = lamp_radiance;
     hit.object = 7;
   }
-  const Ball balls[4] = {{vec3(-1.2f, 0.6f, -1.5f) + room.ball_offset, 0.6f, vec3(0.8f, 0.75f, 0.2f), false},
-                         {vec3(1.3f, 0.8f, -2.6f), 0.8f, vec3(0.2f, 0.7f, 0.3f), false},
-                         {vec3(0.2f, 0.35f, -0.4f), 0.35f, vec3(0.8f), false},
-                         {vec3(2.6f, 0.7f, -0.8f), 0.7f, vec3(0), true}};
+  const Ball balls[4] = {
+      {vec3(-1.2f, 0.6f, -1.5f) + room.ball_offset, 0.6f, vec3(0.8f, 0.75f, 0.2f), false},
+      {vec3(1.3f, 0.8f, -2.6f), 0.8f, vec3(0.2f, 0.7f, 0.3f), false},
+      {vec3(0.2f, 0.35f, -0.4f), 0.35f, vec3(0.8f), false},
+      {vec3(2.6f, 0.7f, -0.8f), 0.7f, vec3(0), true}};
   for (uint32_t i = 0; i < 4; i++) {
     vec3 to = o - balls[i].center;
     float b = dot(to, d), c = dot(to, to) - balls[i].radius * balls[i].radius, disc = b * b - c;
@@ -82,7 +92,9 @@ RoomHit hit_room(const Room& room, vec3 o, vec3 d) {
   return hit;
 }
 
-bool blocked(const Room& room, vec3 p, vec3 d, float far) { return hit_room(room, p, d).t < far - 2e-3f; }
+bool blocked(const Room& room, vec3 p, vec3 d, float far) {
+  return hit_room(room, p, d).t < far - 2e-3f;
+}
 
 vec3 spot_light(const Room& room, vec3 p, vec3 n) {
   if (!room.spot) return vec3(0);
@@ -106,8 +118,10 @@ vec3 lamp_light(const Room& room, vec3 p, vec3 n, float u, float v) {
 
 vec3 scatter(vec3 n, float u, float v) {
   float r = std::sqrt(u), phi = 2 * pi * v;
-  vec3 a = std::abs(n.x) > 0.5f ? vec3(0, 1, 0) : vec3(1, 0, 0), t = normalize(cross(a, n)), b = cross(n, t);
-  return normalize(t * (r * std::cos(phi)) + b * (r * std::sin(phi)) + n * std::sqrt(std::max(0.0f, 1 - u)));
+  vec3 a = std::abs(n.x) > 0.5f ? vec3(0, 1, 0) : vec3(1, 0, 0), t = normalize(cross(a, n)),
+       b = cross(n, t);
+  return normalize(t * (r * std::cos(phi)) + b * (r * std::sin(phi)) +
+                   n * std::sqrt(std::max(0.0f, 1 - u)));
 }
 
 // Light falling on p by other ways than straight from the spot, over albedo.
@@ -130,7 +144,9 @@ vec3 indirect(const Room& room, vec3 p, vec3 n, Rng& rng) {
   return sum;
 }
 
-vec3 plain_light(vec3 p, vec3 n) { return vec3(0.6f + 0.2f * n.y + 0.1f * std::sin(p.x) + 0.1f * std::cos(p.z)); }
+vec3 plain_light(vec3 p, vec3 n) {
+  return vec3(0.6f + 0.2f * n.y + 0.1f * std::sin(p.x) + 0.1f * std::cos(p.z));
+}
 
 }  // namespace
 
@@ -153,7 +169,8 @@ Sample trace_room(const Room& room, const Request& request) {
     reflectance = vec3(0.9f);
     hit = hit_room(room, o, d);
   }
-  vec3 p = o + d * hit.t, n = dot(hit.normal, d) > 0 ? -hit.normal : hit.normal, from = p + n * 1e-3f;
+  vec3 p = o + d * hit.t, n = dot(hit.normal, d) > 0 ? -hit.normal : hit.normal,
+       from = p + n * 1e-3f;
   vec3 smooth = room.noisy ? indirect(room, from, n, rng) : plain_light(p, n);
   vec3 rest = hit.emission + (room.noisy ? hit.albedo * spot_light(room, from, n) : vec3(0));
   if (hit.emission != vec3(0)) smooth = vec3(0), hit.albedo = vec3(0);
@@ -193,7 +210,9 @@ Frame render_room(const Room& room, const View& view, int spp, uint64_t seed) {
         request.ray = view_ray(view, float(x) + u, float(y) + v);
         Sample sample = trace_room(room, request);
         frame.color[at] += sample.radiance() / float(spp);
-        if (i == 0) frame.object[at] = sample.object, frame.depth[at] = dot(sample.position - view.position, view.forward);
+        if (i == 0)
+          frame.object[at] = sample.object,
+          frame.depth[at] = dot(sample.position - view.position, view.forward);
       }
     }
   });

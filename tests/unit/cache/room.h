@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene in a few lines, for tests of the render cache without a World: a room with a textured floor and
-// pictures on a wall, three matt spheres, a mirror sphere, a lamp in the ceiling and a sharp spot light.
-// Answers requests as a path tracer would, one noisy path a sample.
+// A scene in a few lines, for tests of the render cache without a World: a room with a textured
+// floor and pictures on a wall, three matt spheres, a mirror sphere, a lamp in the ceiling and a
+// sharp spot light. Answers requests as a path tracer would, one noisy path a sample.
 #pragma once
 #include <span>
 #include <vector>
@@ -15,8 +15,8 @@ namespace wellspring {
 
 struct Room {
   bool lamp = true, spot = true;
-  bool noisy = true;          // false: smooth light is a plain function of the place, no randomness
-  vec3 ball_offset{0};        // moves the first sphere
+  bool noisy = true;    // false: smooth light is a plain function of the place, no randomness
+  vec3 ball_offset{0};  // moves the first sphere
   int bounces = 3;
 };
 
