@@ -159,6 +159,8 @@ void apply_environment(const std::string& text, Scene& scene) {
     std::cerr << "the scene has no light: lit by a uniform environment of radiance 1 "
                  "(--environment none to see it dark)\n";
     scene.environment = {vec3(1), -1};
+  } else if (scene.lights.empty() && max_component(scene.environment.radiance) <= 0) {
+    std::cerr << "the scene is lit by its emitting surfaces alone (--environment 1,1,1 adds light from everywhere)\n";
   }
 }
 
@@ -257,6 +259,7 @@ void render(const Options& o) {
   View view = choose_view(o, scene, size);
   World world(scene);
   Lights lights = make_lights(world);
+  if (auto* prepare = find_technique(o.technique)->prepare) prepare(world, std::span(&view.position, 1), lights);
   StillSettings settings;
   settings.spp = o.spp;
   settings.seed = o.seed;

@@ -22,6 +22,11 @@ struct EmitterTriangle {
   bool double_sided = false;
 };
 
+// A spot light's fall-off: clamp((cosine - outer) * scale), squared.
+struct SpotCone {
+  float outer = 0, scale = 1;
+};
+
 struct MaterialTraits {
   const DielectricAlbedo* albedo = nullptr;
   bool maybe_pane = false;  // some place of it may be a thin smooth pane
@@ -33,6 +38,7 @@ struct LightTables {
   std::vector<uint32_t> first_emitter;       // of each instance, or no_emitter
   EnvironmentLight environment;
   std::vector<PunctualLight> punctual;       // those of any power
+  std::vector<SpotCone> cones;               // of each of them
   float emitter_share = 0;      // of samples spent on emitters; the rest of area light is environment
   float area_share = 1;         // where one light is sampled: emitters and environment against punctual
   std::vector<MaterialTraits> materials;

@@ -130,6 +130,8 @@ Lights make_lights(const World& world) {
     bool finite = is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
     if (!(p > 0) || !std::isfinite(p) || !finite) continue;
     tables->punctual.push_back(light);
+    float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
+    tables->cones.push_back({outer, 1 / std::max(0.001f, inner - outer)});
     punctual_power += double(p);
   }
   tables->area_share = share_of(tables->emitter_choice.total + environment_power, punctual_power);
@@ -139,7 +141,7 @@ Lights make_lights(const World& world) {
     tables->materials.push_back({&dielectric_albedo(material.ior == 0 ? 1e6f : material.ior), pane});
     tables->any_pane = tables->any_pane || pane;
   }
-  return {tables, std::make_shared<std::atomic<uint64_t>>(0)};
+  return {tables, std::make_shared<std::atomic<uint64_t>>(0), nullptr};
 }
 
 }  // namespace wellspring

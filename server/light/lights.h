@@ -9,12 +9,15 @@
 
 namespace wellspring {
 
+struct RadianceGrid;  // light/radiance_grid.h
 struct LightTables;  // alias tables, triangle lists, environment distribution: light/light_tables.h
 
 struct Lights {
   std::shared_ptr<const LightTables> tables;
   // NaN, infinite or negative samples that were dropped instead of reaching a Frame.
   std::shared_ptr<std::atomic<uint64_t>> bad_samples;
+  // Of techniques that keep light; null until they prepare it.
+  std::shared_ptr<const RadianceGrid> grid = nullptr;
 };
 
 Lights make_lights(const World& world);

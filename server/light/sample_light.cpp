@@ -57,7 +57,7 @@ LightSample sample_emitter(const Transport& transport, const Surface& from, Samp
 }
 
 // glTF KHR_lights_punctual: inverse square, range window, cone.
-LightSample eval_punctual(const PunctualLight& punctual, const Surface& from) {
+LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot, const Surface& from) {
   LightSample light;
   if (punctual.type == PunctualType::directional) {
     light.direction = -punctual.direction;
@@ -77,9 +77,8 @@ LightSample eval_punctual(const PunctualLight& punctual, const Surface& from) {
     strength *= glm::clamp(1 - r2 * r2, 0.0f, 1.0f);
   }
   if (punctual.type == PunctualType::spot) {
-    float inner = std::cos(punctual.inner_cone), outer = std::cos(punctual.outer_cone);
     float cosine = -dot(light.direction, punctual.direction);
-    float t = glm::clamp((cosine - outer) / std::max(0.001f, inner - outer), 0.0f, 1.0f);
+    float t = glm::clamp((cosine - spot.outer) * spot.scale, 0.0f, 1.0f);
     strength *= t * t;
   }
   light.radiance = punctual.intensity * strength;
@@ -125,24 +124,33 @@ LightSample sample_punctual_light(const Transport& transport, const Surface& fro
   size_t count = lights.size(), taken = std::min(count, most);
   float step = float(count) / float(taken);
   float start = count > most ? sampler.next() : 0;
-  LightSample chosen;
-  float sum = 0, chosen_effect = 0;
+  // Two draws, near lights and distant ones, and then one of the two: the sun outshines every lamp wherever
+  // it would shine, and indoors it rarely does, so it may not crowd the lamps out.
+  LightSample drawn[2];
+  float drawn_effect[2] = {0, 0}, sum[2] = {0, 0};
   for (size_t i = 0; i < taken; i++) {
     size_t index = count > most ? std::min(size_t((float(i) + start) * step), count - 1) : i;
-    LightSample light = eval_punctual(lights[index], from);
+    LightSample light = eval_punctual(lights[index], transport.tables.cones[index], from);
     if (light.pdf <= 0) continue;
     float cosine = dot(light.direction, normal);
     if (cosine <= 0 && !through) continue;
     // The floor keeps a chance for glossy lobes at grazing angles.
     float effect = luminance(light.radiance) * (std::abs(cosine) + 0.05f);
     if (!(effect > 0) || !std::isfinite(effect)) continue;
-    sum += effect;
-    if (sampler.next() * sum < effect) {
-      chosen = light;
-      chosen_effect = effect;
+    int group = lights[index].type == PunctualType::directional;
+    sum[group] += effect;
+    if (sampler.next() * sum[group] < effect) {
+      drawn[group] = light;
+      drawn_effect[group] = effect;
     }
   }
-  if (chosen.pdf > 0) chosen.radiance *= step * sum / chosen_effect;
+  if (!(sum[0] + sum[1] > 0)) return {};
+  float chance = 0.15f + 0.7f * sum[1] / (sum[0] + sum[1]);  // of the distant one
+  if (sum[0] == 0) chance = 1;
+  if (sum[1] == 0) chance = 0;
+  int group = sampler.next() < chance;
+  LightSample chosen = drawn[group];
+  chosen.radiance *= step * sum[group] / (drawn_effect[group] * (group ? chance : 1 - chance));
   return chosen;
 }
 

@@ -11,6 +11,7 @@ namespace wellspring {
 struct Transport {
   const World& world;
   const LightTables& tables;
+  const struct RadianceGrid* grid = nullptr;  // light that stays, where a technique may use it
 };
 
 struct LightSample {

@@ -15,6 +15,8 @@ namespace {
 constexpr Technique list[] = {
     {"path", "unbiased path tracing: all light, the reference", trace_path},
     {"direct", "emission, direct light and chains of perfect mirrors and glass", trace_direct},
+    {"gather", "path to the first rough surface beyond the eye's, kept light from there: quick, a little biased",
+     trace_gather, prepare_gather},
 };
 
 bool is_light(vec3 c) { return is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0; }

@@ -23,6 +23,9 @@ struct Technique {
   // Never throws; results are finite and not negative (dropped samples count in Lights::bad_samples).
   Sample (*trace)(const World& world, const Lights& lights, const TransportSettings& settings,
                   const Request& request);
+  // What must be known before the first sample, for eyes near `places` (scene coordinates); may take
+  // seconds. nullptr: nothing.
+  void (*prepare)(const World& world, std::span<const vec3> places, Lights& lights) = nullptr;
 };
 
 std::span<const Technique> techniques();

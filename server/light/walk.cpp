@@ -4,28 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/radiance_grid.h"
 #include "light/warp.h"
 
 namespace wellspring {
 namespace {
 
-constexpr int roulette_depth = 3;  // edges that are never cut short
-
-// Emission met by a ray, weighted against the chance that light sampling had found it where the ray left.
-vec3 met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
-                  const Material& material) {
-  vec3 emission = surface_emission(surface, material);
-  if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(emission) > 0)) return emission;
-  float other = walk.area_share * sample_emitter_pdf(transport.tables, walk.from, walk.ray.direction, surface);
-  return emission * mis_weight(walk.pdf, other);
-}
-
-vec3 met_sky(const Transport& transport, const Walk& walk) {
-  vec3 radiance = eval_environment(transport.tables.environment, walk.ray.direction);
-  if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(radiance) > 0)) return radiance;
-  float other = walk.area_share * sample_sky_pdf(transport.tables, walk.ray.direction);
-  return radiance * mis_weight(walk.pdf, other);
-}
+constexpr int roulette_depth = 2;  // edges that are never cut short
 
 // Russian roulette: survivors carry the share of those that stop. False: this one stops.
 bool survives(Walk& walk, Sampler& sampler) {
@@ -38,6 +23,21 @@ bool survives(Walk& walk, Sampler& sampler) {
 }
 
 }  // namespace
+
+vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
+                       const Material& material) {
+  vec3 emission = surface_emission(surface, material);
+  if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(emission) > 0)) return emission;
+  float other = walk.area_share * sample_emitter_pdf(transport.tables, walk.from, walk.ray.direction, surface);
+  return emission * mis_weight(walk.pdf, other);
+}
+
+vec3 walk_met_sky(const Transport& transport, const Walk& walk) {
+  vec3 radiance = eval_environment(transport.tables.environment, walk.ray.direction);
+  if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(radiance) > 0)) return radiance;
+  float other = walk.area_share * sample_sky_pdf(transport.tables, walk.ray.direction);
+  return radiance * mis_weight(walk.pdf, other);
+}
 
 vec3 eval_absorption(const Transport& transport, int medium, float length) {
   if (medium < 0 || !std::isfinite(length)) return vec3(1);
@@ -115,12 +115,12 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
   vec3 radiance(0);
   while (true) {
     Hit hit = world.intersect(walk.ray);
-    if (!hit.valid()) return radiance + walk.throughput * met_sky(transport, walk);
+    if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
     Surface surface = eval_surface(world, walk.ray, hit);
     const Material& material = world.material_of(hit.instance);
     walk.medium = medium_before(walk, surface, material);
     walk.throughput *= eval_absorption(transport, walk.medium, hit.t);
-    radiance += walk.throughput * met_emission(transport, walk, surface, material);
+    radiance += walk.throughput * walk_met_emission(transport, walk, surface, material);
     if (material.unlit) return radiance;
 
     bool last = walk.scattered >= rules.scatterings || walk.depth >= rules.max_depth;
@@ -135,6 +135,10 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
     }
     Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
                           *transport.tables.materials[size_t(surface.material)].albedo);
+    vec3 kept;
+    if (transport.grid && walk.pdf > 0 &&
+        eval_grid(*transport.grid, surface, bsdf, world.is_moving(hit.instance), hit.t / std::sqrt(walk.pdf), kept))
+      return radiance + walk.throughput * kept;
     bool smooth = is_smooth(bsdf);
     if (!smooth)
       radiance += walk.throughput * sample_direct_light(transport, walk, surface, bsdf, false, sampler).sum();

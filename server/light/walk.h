@@ -30,6 +30,12 @@ struct Walk {
 // Radiance that comes back along the walk, times its throughput.
 vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler);
 
+// Emission met by the walk's ray, weighted against the chance that light sampling had found it where the
+// ray left.
+vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
+                       const Material& material);
+vec3 walk_met_sky(const Transport& transport, const Walk& walk);
+
 // The walk's next ray after `surface` scattered it; false: it ends here.
 bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered);
 

@@ -21,6 +21,12 @@ inline vec3 sample_cosine_hemisphere(vec2 u) {
   return {radius * std::cos(phi), radius * std::sin(phi), std::sqrt(std::max(0.0f, 1 - u.x))};
 }
 
+// Uniform over the sphere.
+inline vec3 sample_sphere(vec2 u) {
+  float z = 1 - 2 * u.x, radius = std::sqrt(std::max(0.0f, 1 - z * z)), phi = 2 * pi * u.y;
+  return {radius * std::cos(phi), radius * std::sin(phi), z};
+}
+
 // Barycentric weights of the second and third corner, uniform over the triangle.
 inline vec2 sample_triangle(vec2 u) {
   float root = std::sqrt(u.x);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Technique `gather`: path tracing whose walks end where a wide ray meets light that is already known
+// (RadianceGrid). Static light and geometry make that light worth keeping; one gathering bounce hides its
+// cells. Without a grid it is `path`.
+#include "light/radiance_grid.h"
+#include "light/technique_list.h"
+#include "light/walk.h"
+
+namespace wellspring {
+
+Sample trace_gather(const World& world, const Lights& lights, const TransportSettings& settings,
+                    const Request& request) {
+  WalkRules rules;
+  rules.max_depth = settings.max_depth;
+  return finish_sample(lights, settings, trace_sample({world, *lights.tables, lights.grid.get()}, rules, request));
+}
+
+void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights) {
+  lights.grid = make_radiance_grid({world, *lights.tables}, places);
+}
+
+}  // namespace wellspring
