@@ -41,15 +41,18 @@ int read_options(Options& options, int argc, char** argv) {
   app.add_option("--fps", options.show.fps, "pictures a second for each visitor")
       ->check(CLI::Range(1.0, 120.0))->capture_default_str();
   app.add_option("--max-visitors", options.show.max_visitors)->check(CLI::Range(1, 1000))->capture_default_str();
-  app.add_option("--technique", options.show.technique, "how light is sampled")->capture_default_str();
+  app.add_option("--technique", options.show.technique, "how light is sampled in motion")->capture_default_str();
+  app.add_option("--still-technique", options.show.still_technique, "how light is sampled at rest")
+      ->capture_default_str();
   app.add_option("--max-depth", options.show.transport.max_depth)->check(CLI::Range(1, 64))->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (!find_technique(options.show.technique)) {
-    std::cerr << "--technique: there is no '" << options.show.technique << "'; there are:";
+  for (const std::string& name : {options.show.technique, options.show.still_technique}) {
+    if (find_technique(name)) continue;
+    std::cerr << "--technique: there is no '" << name << "'; there are:";
     for (const Technique& technique : techniques()) std::cerr << " " << technique.name;
     std::cerr << "\n";
     return 2;

@@ -102,7 +102,8 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   cache.plan(view, visitor.budget, seed, visitor.requests);
   double planned = seconds_now();
   visitor.samples.resize(visitor.requests.size());
-  trace(*show.technique, *show.world, show.lights, show.settings.transport, visitor.requests, visitor.samples);
+  const Technique& technique = still ? *show.still_technique : *show.technique;
+  trace(technique, *show.world, show.lights, show.settings.transport, visitor.requests, visitor.samples);
   double traced = seconds_now();
   cache.remember(view, visitor.requests, visitor.samples);
   cache.reconstruct(view, visitor.frame);

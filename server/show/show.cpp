@@ -17,17 +17,34 @@ std::vector<std::shared_ptr<Link>> Arrivals::take() {
   return std::exchange(links_, {});
 }
 
+namespace {
+
 mat4 place_storyteller(const StorytellerPlace& place, const Scene& scene) {
   // A humanoid faces +Z, a yaw of 0 faces -Z: half a turn between them.
   return glm::rotate(glm::translate(mat4(1), vec3(place.position - scene.origin)), place.yaw + pi,
                      vec3(0, 1, 0));
 }
 
+// Where visitors' eyes are likely to be: the viewpoints, and places on the way between them.
+std::vector<vec3> places_of(const Exhibit& exhibit) {
+  std::vector<vec3> places;
+  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints)
+    places.push_back(vec3(viewpoint.view.position - exhibit.scene.origin));
+  for (size_t i = 1, count = places.size(); i < count; i++)
+    places.push_back(0.5f * (places[i - 1] + places[i]));
+  return places;
+}
+
+}  // namespace
+
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   auto show = std::make_unique<Show>();
   show->settings = settings;
   show->technique = find_technique(settings.technique);
-  if (!show->technique) throw std::invalid_argument("unknown technique '" + settings.technique + "'");
+  show->still_technique = find_technique(settings.still_technique);
+  for (const auto& [technique, name] : {std::pair(show->technique, settings.technique),
+                                        std::pair(show->still_technique, settings.still_technique)})
+    if (!technique) throw std::invalid_argument("unknown technique '" + name + "'");
   show->exhibit = std::move(exhibit);
   Scene& scene = show->exhibit.scene;
   std::vector<Mesh> moving;
@@ -47,6 +64,9 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
     show->world->commit();
   }
   show->lights = make_lights(*show->world);
+  std::vector<vec3> places = places_of(show->exhibit);
+  for (const Technique* technique : {show->technique, show->still_technique})
+    if (technique->prepare) technique->prepare(*show->world, places, show->lights);
   log::info("exhibit '{}': {} triangles, {} viewpoints, {} materials", show->exhibit.id,
             triangle_count(scene), show->exhibit.viewpoints.size(), scene.materials.size());
   return show;

@@ -23,7 +23,8 @@ namespace wellspring {
 struct ShowSettings {
   float fps = 40;             // pictures a second a visitor gets, machine permitting
   int max_visitors = 16;      // more are told to come back
-  std::string technique = "path";
+  std::string technique = "gather";      // while anything moves
+  std::string still_technique = "path";  // while the visitor stands still: the picture becomes the reference
   TransportSettings transport{.max_depth = 6, .clamp = 12};
   int max_pixels = 1920 * 1200;
 };
@@ -45,6 +46,7 @@ struct Show {
   std::unique_ptr<World> world;
   Lights lights;
   const Technique* technique = nullptr;
+  const Technique* still_technique = nullptr;
 
   // The storyteller.
   std::optional<Figure> figure;

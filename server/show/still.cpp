@@ -20,7 +20,7 @@ bool same(const StillOrder& a, const StillOrder& b) {
 }  // namespace
 
 StillRoom::StillRoom(const Show& show)
-    : exhibit_(show.exhibit), technique_(show.technique), transport_(show.settings.transport) {
+    : exhibit_(show.exhibit), technique_(show.still_technique), transport_(show.settings.transport) {
   // The moving meshes as they are now: at the show's start.
   std::vector<Mesh> moving;
   std::vector<uint32_t> moving_object;

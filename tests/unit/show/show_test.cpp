@@ -95,7 +95,7 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
   StillSettings settings;
   settings.spp = 256;
   settings.transport = show->settings.transport;
-  Frame reference = render_still(*show->technique, *show->world, show->lights, visitor.last_view, settings);
+  Frame reference = render_still(*show->still_technique, *show->world, show->lights, visitor.last_view, settings);
   double error = 0, size = 0;
   for (size_t i = 0; i < reference.color.size(); i++) {
     error += std::abs(luminance(visitor.frame.color[i]) - luminance(reference.color[i]));
