@@ -68,9 +68,12 @@ class FileCamera : public Camera {
  private:
   void open() {
     index_ = 0;
-    try {
-      capture_.open(settings_.source);
-    } catch (const cv::Exception&) {
+    // By name: left to itself OpenCV would go on to look for cameras on the USB bus.
+    for (int reader : {cv::CAP_FFMPEG, cv::CAP_GSTREAMER, cv::CAP_OPENCV_MJPEG}) {
+      try {
+        if (capture_.open(settings_.source, reader)) break;
+      } catch (const cv::Exception&) {
+      }
     }
     double fps = capture_.isOpened() ? capture_.get(cv::CAP_PROP_FPS) : 0;
     fps_ = std::isfinite(fps) && fps >= 1 && fps <= 1000 ? fps : 25;
