@@ -10,7 +10,7 @@ from .mesh import Mesh, bezier, pointed_arch, translation, turn_z
 LENGTH, WIDTH = 16.0, 9.0
 BAYS = (-6.0, -2.0, 2.0, 6.0)
 SPRING, CROWN = 3.3, 5.9
-WINDOW_DEPTH, WINDOW_HALF = 0.62, 1.02
+WINDOW_DEPTH, WINDOW_HALF = 0.34, 1.02   # shallow: deep bright jambs are noise, they are no lamps
 SKY_HORIZON = 0.16            # where the horizon lies in the sky's picture
 FOOT = -0.001
 
@@ -92,11 +92,11 @@ def lattice(mesh, outline, depth, spacing=0.21, slope=1.45, bar=0.0065):
 def window(walls, tracery, glazing, portal, centre):
     opening = Opening(centre, WINDOW_HALF, 1.15, 3.05, 1.55, 10)
     inner, outer = opening.outline(), opening.outline(0.13)
-    reveal(walls, inner, outer, WINDOW_DEPTH, 'plaster', 3.0)
+    reveal(walls, inner, outer, WINDOW_DEPTH, 'ashlar', 2.4)
     moulding(walls, inner, 0.0, [(-0.17, 0.0), (0.0, 0.0), (0.0, 0.03), (-0.03, 0.06), (-0.08, 0.045),
                                  (-0.13, 0.07), (-0.17, 0.05)])
     walls.box((centre - 1.2, -0.14, 1.09), (centre + 1.2, 0.02, 1.15), 'stone', 1.5)
-    depth = 0.44
+    depth = 0.22
     frame = opening.outline(0.11)
     moulding(tracery, frame, depth, [(-0.05, -0.07), (0.055, -0.07), (0.055, -0.03), (0.02, 0.06), (-0.05, 0.06)])
     rib = [(-0.05, -0.03), (-0.02, -0.07), (0.02, -0.07), (0.05, -0.03), (0.05, 0.0), (0.02, 0.06),
