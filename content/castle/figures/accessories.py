@@ -2,8 +2,8 @@
 """Belt with the keys of the castle, shoes. Figure space."""
 from math import cos, pi, sin
 
-from dress import WAIST_Y, disc, skirt_point, trunk
-from form import add, cast, circle, cross, ellipsoid, gradient, lerp, mad, mix, smoothstep, sub, unit
+from dress import WAIST_Y, disc, skirt_point
+from form import circle, cross, dot, lerp, mad, smoothstep, sub, unit
 from patch import Patch
 from rig import blend, skirt_weights
 
@@ -17,7 +17,7 @@ def tube(patch, points, radius, weights, segments=8, closed=False):
         a = points[i - 1] if i or closed else p
         b = points[(i + 1) % n] if i + 1 < n or closed else p
         t = unit(sub(b, a))
-        side = unit(cross(t, (0.31, 0.23, 0.92))) if side is None else unit(mad(side, t, -sum(x * y for x, y in zip(side, t))))
+        side = unit(cross(t, (0.31, 0.23, 0.92))) if side is None else unit(mad(side, t, -dot(side, t)))
         up = cross(t, side)
         r = radius(i / max(n - 1, 1)) if callable(radius) else radius
         rows.append([patch.vertex(mad(mad(p, side, r * cos(b)), up, r * sin(b)), (i * 0.3, j / segments), weights)
@@ -28,6 +28,10 @@ def tube(patch, points, radius, weights, segments=8, closed=False):
     if not closed:
         patch.fan(patch.vertex(points[0], (0, 0), weights), rows[0], flip=True)
         patch.fan(patch.vertex(points[-1], (0, 0), weights), rows[-1])
+
+
+def oval(c, u, a, v, b, count):
+    return [mad(mad(c, u, a * cos(t)), v, b * sin(t)) for t in circle(count)]
 
 
 def belt_point(phi, y, lift):
@@ -61,7 +65,7 @@ def make_keys(metal_look):
     phi = 0.62
     top = belt_point(phi, 1.048, 0.012)
     weights = blend([("sacroiliac", 0.72), ("l_hip", 0.28)])
-    links = 11
+    links = 9
     y0 = top[1]
     out = unit((sin(phi), 0, cos(phi)))
     across = unit(cross((0, 1, 0), out))
@@ -72,26 +76,30 @@ def make_keys(metal_look):
         return (p[0] + out[0] * lift, y, p[2] + out[2] * lift)
 
     def front(y):  # a chain hangs straight: keep in front of everything above
-        best = max((hang(y0 - 0.01 * i) for i in range(int((y0 - y) / 0.01) + 1)), key=lambda q: q[0] * out[0] + q[2] * out[2])
+        above = [hang(y0 - 0.01 * i) for i in range(int((y0 - y) / 0.01) + 1)]
+        best = max(above, key=lambda q: dot(q, out))
         p = hang(y)
         s = (best[0] - p[0]) * out[0] + (best[2] - p[2]) * out[2]
         return mad(p, out, s)
 
     for k in range(links):
-        c = front(y0 - 0.0065 - 0.0125 * k)
+        c = front(y0 - 0.0065 - 0.0135 * k)
         u = across if k % 2 else out
-        tube(patch, [mad(mad(c, (0, 1, 0), 0.0085 * cos(a)), u, 0.0048 * sin(a)) for a in circle(8)], 0.0014, weights, 4, True)
-    y = y0 - 0.0065 - 0.0125 * links - 0.014
+        tube(patch, oval(c, (0, 1, 0), 0.0090, u, 0.0048, 8), 0.0014, weights, 4, True)
+    y = y0 - 0.0065 - 0.0135 * links - 0.014
     c = front(y)
-    tube(patch, [mad(mad(c, (0, 1, 0), 0.018 * cos(a)), across, 0.018 * sin(a)) for a in circle(16)], 0.0018, weights, 5, True)
+    tube(patch, oval(c, (0, 1, 0), 0.018, across, 0.018, 16), 0.0018, weights, 5, True)
     for angle, size, fan_out in ((-0.22, 0.105, -0.004), (0.04, 0.125, 0.002), (0.26, 0.092, 0.007)):
-        d = unit(mad(mad((0, -1, 0), across, angle), out, 0.03))
+        slope = sub(skirt_point(phi, c[1] - 0.12), skirt_point(phi, c[1]))
+        lean = (slope[0] * out[0] + slope[2] * out[2]) / 0.12
+        d = unit(mad(mad((0, -1, 0), across, angle), out, lean + 0.05))
         s = unit(cross(d, out))
         p = mad(mad(c, d, 0.017), out, fan_out)
         bow = mad(p, d, 0.012)
-        tube(patch, [mad(mad(bow, d, 0.0125 * cos(a)), s, 0.0105 * sin(a)) for a in circle(14)], 0.0021, weights, 5, True)
+        tube(patch, oval(bow, d, 0.0125, s, 0.0105, 11), 0.0021, weights, 5, True)
         end = mad(p, d, size)
-        tube(patch, [mad(p, d, 0.0245), mad(p, d, 0.028), mad(p, d, 0.030), end], lambda t: 0.0036 if 0.2 < t < 0.5 else 0.0024, weights, 8)
+        shank = [mad(p, d, 0.0245), mad(p, d, 0.028), mad(p, d, 0.030), end]
+        tube(patch, shank, lambda t: 0.0036 if 0.2 < t < 0.5 else 0.0024, weights, 6)
         for q, wide in ((0.86, 0.014), (0.95, 0.017)):  # the bit
             base = mad(p, d, size * q)
             tube(patch, [base, mad(base, s, wide)], 0.0027, weights, 6)

@@ -46,8 +46,10 @@ def check(path):
             expect(all(0 <= i < count for i in index), "index out of range in " + d.get("name"))
             expect(d.get("name") not in displacers, "displacer twice: " + d.get("name"))
             displacers[d.get("name")] = max(sum(x * x for x in m) ** 0.5 for m in moves) if moves else 0.0
-    expect(all(abs(s - 1) < 0.002 for s in sums), "weights that do not sum to one: %d" % sum(abs(s - 1) >= 0.002 for s in sums))
-    expect(all(m > 3e-4 for m in displacers.values()), "displacers that hardly move: %s" % [n for n, m in displacers.items() if m <= 3e-4])
+    uneven = sum(abs(s - 1) >= 0.002 for s in sums)
+    expect(uneven == 0, "vertices whose weights do not sum to one: %d" % uneven)
+    idle = [name for name, farthest in displacers.items() if farthest < 3e-4]
+    expect(not idle, "displacers that hardly move: %s" % idle)
     used, triangles, flat = set(), 0, 0
     for shape in humanoid.findall("Shape"):
         index = [int(i) for i in shape.find("IndexedTriangleSet").get("index").split()]
@@ -57,8 +59,8 @@ def check(path):
         for k in range(0, len(index), 3):
             a, b, c = (points[i] for i in index[k:k + 3])
             u, v = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
-            area = (u[1] * v[2] - u[2] * v[1]) ** 2 + (u[2] * v[0] - u[0] * v[2]) ** 2 + (u[0] * v[1] - u[1] * v[0]) ** 2
-            flat += area < 1e-18
+            n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+            flat += sum(x * x for x in n) < 1e-18
     expect(len(used) == count, "vertices no triangle uses: %d" % (count - len(used)))
     expect(flat < 0.002 * triangles, "triangles without area: %d" % flat)
     for texture in humanoid.iter("ImageTexture"):

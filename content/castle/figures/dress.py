@@ -3,10 +3,10 @@
 keys and shoes. Figure space."""
 from math import atan2, cos, pi, sin
 
-from form import (add, bell, capsule, cast, circle, clamp, cross, curve, ellipsoid, gradient, join, lerp, mad, mix, noise,
-                  smoothstep, sphere, sub, unit)
+from form import (bell, capsule, cast, circle, cross, curve, ellipsoid, join, lerp, mad, mix, noise,
+                  smoothstep, sub, unit)
 from patch import Patch
-from rig import ELBOW, SHOULDER, WRIST, arm_weights, skirt_weights, torso_weights
+from rig import ELBOW, WRIST, arm_weights, blend, scaled, skirt_weights, spine, torso_weights
 
 WAIST_Y = 1.062
 
@@ -57,15 +57,11 @@ def skirt_point(phi, y):
     return (x + n[0] * r, y, z + n[2] * r)
 
 
-HEM = [(0.012, "gown"), (0.050, "trim"), (0.085, "gown"), (0.108, "trim"), (0.125, "gown")]
-
-
 def make_skirt(gown, trim):
-    columns = 152
-    ys = [0.012, 0.030, 0.050, 0.0675, 0.085, 0.108, 0.125, 0.17, 0.23, 0.30, 0.37, 0.44, 0.51, 0.58, 0.65,
-          0.72, 0.79, 0.845, 0.89, 0.93, 0.965, 0.995, 1.02, 1.04, 1.062]
+    columns = 132
+    ys = [0.012, 0.050, 0.085, 0.108, 0.125, 0.19, 0.27, 0.35, 0.43, 0.51, 0.59, 0.67, 0.75, 0.82, 0.88,
+          0.93, 0.97, 1.00, 1.025, 1.045, 1.062]
     cloth, band = Patch("skirt", gown), Patch("skirt_trim", trim)
-    inner = [skirt_point(phi, 0.012) for phi in circle(columns)]
 
     def row(patch, y, v, tile, inset=0.0):
         ids = []
@@ -99,7 +95,7 @@ def make_skirt(gown, trim):
 
 def make_bodice(gown, trim):
     """From the waist up to under the cape, laced flat; two embroidered bands run down the front."""
-    columns = 72
+    columns = 56
     ys = [1.058, 1.085, 1.11, 1.14, 1.17, 1.195, 1.22, 1.245, 1.27, 1.295, 1.32, 1.345]
     cloth, band = Patch("bodice", gown), Patch("bodice_trim", trim)
 
@@ -129,8 +125,8 @@ def make_bodice(gown, trim):
 
 
 # ---- sleeves ------------------------------------------------------------------------------------------
-SLEEVE = [(0.0, 0.040), (0.06, 0.050), (0.16, 0.056), (0.28, 0.061), (0.40, 0.057), (0.48, 0.051), (0.56, 0.053), (0.68, 0.059),
-          (0.80, 0.060), (0.89, 0.053), (0.945, 0.037), (0.965, 0.0335), (1.0, 0.0335)]
+SLEEVE = [(0.0, 0.040), (0.06, 0.050), (0.16, 0.056), (0.28, 0.061), (0.40, 0.057), (0.48, 0.051), (0.56, 0.053),
+          (0.68, 0.059), (0.80, 0.060), (0.89, 0.053), (0.945, 0.037), (0.965, 0.0335), (1.0, 0.0335)]
 ARM_TOP = (0.128, 1.372, -0.024)
 CUFF_END = mad(WRIST, unit(sub(WRIST, ELBOW)), -0.006)
 
@@ -165,7 +161,7 @@ def sleeve_point(t, a, side):
 
 def make_sleeves(gown, trim, linen):
     cloth, cuff, frill = Patch("sleeves", gown), Patch("cuffs", trim), Patch("frills", linen)
-    n = 36
+    n = 30
     ts = [0, .03, .06, .10, .14, .19, .24, .29, .34, .39, .43, .46, .49, .52, .55, .59, .64, .69, .74, .79, .83, .87, .90, .925,
           .945, .962]
     for side, name in ((1, "l"), (-1, "r")):
@@ -179,10 +175,7 @@ def make_sleeves(gown, trim, linen):
                 extra = grow + wave * (sin(a * 9) + 0.4 * sin(a * 5 + 1))
                 p = mad(p, unit(sub(p, c)), extra)
                 p = (p[0], p[1] + y_shift + 0.3 * wave * cos(a * 9), p[2])
-                w = arm_weights(p, name)
-                if t < 0.12:
-                    w = torso_weights((p[0] * 1.04, min(p[1], 1.36), p[2])) if t < 0.05 else w
-                ids.append(patch.vertex(p, (i / n * tile, v), w, ("sleeve",)))
+                ids.append(patch.vertex(p, (i / n * tile, v), arm_weights(p, name), ("sleeve",)))
             return ids
         flip = side > 0
         cloth.grid([ring(cloth, t, t * 3.2, 2) for t in ts], flip=not flip)
@@ -211,12 +204,12 @@ def cape_point(phi, s, lift=0.0):
 
 
 def cape_weights(p):
-    return torso_weights(p, 0.72)
+    return torso_weights(p, 0.97)
 
 
 def make_cape(velvet, trim, fur):
     cloth, band, edge = Patch("cape", velvet), Patch("cape_trim", trim), Patch("cape_fur", fur)
-    n = 96
+    n = 80
 
     def row(patch, s, v, tile, lift=0.0):
         ids = []
@@ -226,14 +219,14 @@ def make_cape(velvet, trim, fur):
             ids.append(patch.vertex(p, (i / n * tile, v), cape_weights(p), ("chest",)))
         return ids
 
-    steps = [1.0, 0.93, 0.86, 0.78, 0.70, 0.62, 0.54, 0.46, 0.38, 0.30, 0.22, 0.14, 0.07, 0.0]
+    steps = [1.0, 0.92, 0.83, 0.73, 0.63, 0.53, 0.43, 0.33, 0.23, 0.14, 0.07, 0.0]
     cloth.grid([row(cloth, s, s * 1.5, 6) for s in steps])
     band.grid([row(band, s, v, 26, lift) for s, v, lift in
                ((0.945, 0.0, 0.0004), (0.925, 0.1, 0.0020), (0.845, 0.9, 0.0020), (0.825, 1.0, 0.0004))])
     # a soft roll of fur closes the lower edge
     rolls = []
-    for k in range(7):
-        b = 2 * pi * k / 6
+    for k in range(6):
+        b = 2 * pi * k / 5
         rolls.append([])
         for i in range(n + 1):
             phi = 2 * pi * (i % n) / n + pi
@@ -241,7 +234,7 @@ def make_cape(velvet, trim, fur):
             d = unit((sin(phi), 0.0, cos(phi)))
             r = 0.0095 * (1 + 0.16 * noise((p[0] * 90, p[1] * 90 + b, p[2] * 90), 1.0, 4))
             q = (p[0] + d[0] * r * cos(b), p[1] + r * sin(b), p[2] + d[2] * r * cos(b))
-            rolls[-1].append(edge.vertex(q, (i / n * 24, k / 6), cape_weights(p), ("chest",)))
+            rolls[-1].append(edge.vertex(q, (i / n * 24, k / 5), cape_weights(p), ("chest",)))
     edge.grid(rolls)
     return cloth, band, edge
 
@@ -260,8 +253,8 @@ def make_collar(linen, velvet, gold):
     shirt, collar, clasp = Patch("chemise", linen), Patch("collar", velvet), Patch("clasp", gold)
     n = 120
     rows = []
-    for t, grow, wave, v in ((-0.35, 0.004, 0, 0), (0.2, -0.001, 0.0004, 0.3), (0.55, -0.002, 0.0005, 0.5), (0.86, -0.003, 0.0006, 0.7),
-                             (0.97, 0.0005, 0.0022, 0.8), (1.08, 0.004, 0.0030, 0.9), (1.13, 0.0075, 0.0034, 1.0)):
+    for t, grow, wave, v in ((-0.35, 0.004, 0, 0), (0.2, -0.001, 0.0004, 0.3), (0.55, -0.001, 0.0005, 0.5), (0.86, 0.000, 0.0006, 0.7),
+                             (0.98, 0.0035, 0.0022, 0.8), (1.08, 0.0085, 0.0030, 0.9), (1.10, 0.0135, 0.0034, 1.0)):
         row = []
         for i in range(n + 1):
             phi = 2 * pi * (i % n) / n + pi
@@ -272,8 +265,8 @@ def make_collar(linen, velvet, gold):
     shirt.grid(rows)
     m = 64
     rows = []
-    for t, grow in ((-0.45, 0.026), (-0.10, 0.0105), (0.25, 0.0065), (0.60, 0.0085), (0.80, 0.0120), (0.83, 0.0105), (0.80, 0.0080),
-                    (0.40, 0.0030)):
+    for t, grow in ((-0.45, 0.016), (-0.10, 0.0105), (0.25, 0.0065), (0.50, 0.0080), (0.66, 0.0100), (0.70, 0.0085), (0.66, 0.0062),
+                    (0.30, 0.0030)):
         row = []
         for i in range(m + 1):
             phi = lerp(0.16 + 0.30 * max(t, 0), 2 * pi - 0.16 - 0.30 * max(t, 0), i / m)
@@ -287,16 +280,17 @@ def make_collar(linen, velvet, gold):
 
 
 def neck_weights(p):
-    from rig import blend, scaled, spine
     t = smoothstep(1.37, 1.43, p[1])
     return blend(scaled(torso_weights(p), 1 - t) + scaled(spine(min(p[1] - 0.015, 1.45)), t))
 
 
-def disc(patch, c, n, r, h, weights, segments=14):
+def disc(patch, c, n, r, h, weights, segments=12):
     u = unit(cross((0, 1, 0), n))
     v = cross(n, u)
     rows = []
-    for k, lift in ((1.0, -0.2), (1.0, 0.35), (0.85, 0.7), (0.72, 0.45), (0.50, 0.55), (0.3, 1.0)):
+    rings = ((1.0, -0.2), (1.0, 0.35), (0.85, 0.7), (0.72, 0.45), (0.50, 0.55), (0.3, 1.0)) if r > 0.01 else \
+        ((1.0, -0.2), (0.9, 0.6), (0.5, 1.0))
+    for k, lift in rings:
         rows.append([patch.vertex(mad(mad(mad(c, u, r * k * cos(a)), v, r * k * sin(a)), n, h * lift), (0.5, 0.5), weights)
                      for a in circle(segments)])
     patch.grid(rows, closed=True)

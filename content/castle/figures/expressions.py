@@ -4,11 +4,11 @@
 Fields work in head space and are symmetric unless they name a side. Visemes combine simple movements with an
 opening of the jaw, so that one displacer is one mouth shape.
 """
-from math import atan2, pi, sin
+from math import atan2
 
 from eyes import center
 from face import LID_POINTS
-from face_form import EYE, EYE_RADIUS, LID_RADIUS, MOUTH_HALF, lower_lip_y, part_y, upper_lip_y
+from face_form import LID_RADIUS, MOUTH_HALF, lower_lip_y, part_y, upper_lip_y
 from form import add, bell, clamp, lerp, mul, rotate, smoothstep, sub
 from rig import TMJ
 
@@ -125,8 +125,8 @@ def smile(v, side):
     k = corner(v, side) * smoothstep(-0.004, 0.012, x)
     cheek = soft(v) * bell(x - 0.036, 0.016) * bell(y + 0.036, 0.016) if v.part == "face" else 0.0
     under = soft(v) * bell(x - 0.034, 0.018) * bell(y + 0.013, 0.007) if v.part == "face" else 0.0
-    return (side * (0.0062 * k + 0.0012 * cheek), 0.0062 * k + 0.0042 * cheek + 0.0012 * under,
-            -0.0042 * k + 0.0026 * cheek + 0.0004 * under)
+    return (side * (0.0050 * k + 0.0014 * cheek), 0.0050 * k + 0.0046 * cheek + 0.0014 * under,
+            -0.0040 * k + 0.0026 * cheek + 0.0004 * under)
 
 
 def frown(v):
@@ -165,7 +165,8 @@ def lip_up(v):
     if not upper_side(v):
         return ZERO
     k = near_lips(v, up=0.020)
-    return (0, 0.0052 * k * (1 - 0.55 * (abs(v.p[0]) / MOUTH_HALF) ** 2 if abs(v.p[0]) < MOUTH_HALF else 0.45 * 0), 0.0010 * k)
+    u = abs(v.p[0]) / MOUTH_HALF
+    return (0, 0.0052 * k * max(0.0, 1 - 0.8 * u * u), 0.0010 * k * max(0.0, 1 - u * u))
 
 
 def lip_down(v):

@@ -5,7 +5,7 @@ from math import atan2, cos, pi, sin
 
 from face import LID_POINTS
 from face_form import EYE, EYE_RADIUS
-from form import circle, cross, lerp, mad, mix, mul, rotate, smoothstep, sub, add, unit
+from form import circle, cross, lerp, mad, mix, rotate, smoothstep, sub, unit
 from patch import Patch
 
 IRIS_ANGLE = 0.475  # radians from the eye's axis to the rim of the iris

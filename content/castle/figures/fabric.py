@@ -2,7 +2,7 @@
 """The tiles of cloth, embroidery, hair and fur. Every colour function repeats with period 1 in u and v."""
 from math import cos, hypot, pi, sin
 
-from form import bell, clamp, lerp, noise, smoothstep
+from form import bell, clamp, noise, smoothstep
 from paint import mixed, rgb, times
 
 
@@ -97,11 +97,11 @@ def leather_color(u, v):
 
 def hair_color(u, v):
     """Strands run along v; u 0 lies at the hairline, where some have turned grey."""
-    across = u * 150
+    across = u * 460
     strand = noise((across, v * 2.0, 0.0), 1.0, 1) + 0.8 * noise((across * 2.7, v * 3.0, 0.0), 1.0, 2)
-    lock = noise((u * 26, v * 1.6, 0.0), 1.0, 3)
+    lock = noise((u * 80, v * 1.6, 0.0), 1.0, 3)
     c = mixed(rgb("4a3223"), rgb("7c573b"), clamp(0.38 + 0.42 * strand + 0.30 * lock))
-    grey = smoothstep(0.22, 0.62, noise((across * 1.3, v * 1.2, 0.0), 1.0, 6) + 0.15)
-    near = bell((u % 0.5) / 0.5, 0.42)
+    grey = smoothstep(0.10, 0.55, noise((across * 1.1, v * 1.2, 0.0), 1.0, 6) + 0.15)
+    near = bell((u % 0.5) / 0.5, 0.30)
     c = mixed(c, rgb("a99c90"), 0.62 * grey * near)
     return times(c, 1.0 - 0.30 * smoothstep(0.05, 0.0, v))

@@ -12,7 +12,7 @@ from mathutils import Vector
 from mathutils.geometry import delaunay_2d_cdt
 
 import face_form as form
-from form import bell, lerp, mix, smoothstep, sub
+from form import bell, lerp, smoothstep
 from patch import Patch
 
 LID_POINTS = 26  # along one lid, corner to corner
@@ -230,6 +230,8 @@ def triangulate(points, eye, upper, lower, look):
     for a, b, c in faces:
         center = ((coords[a][0] + coords[b][0] + coords[c][0]) / 3, (coords[a][1] + coords[b][1] + coords[c][1]) / 3)
         if any(inside(center, hole) for hole in holes):
+            continue
+        if abs(center[0]) > 1.95 * UNROLL and center[1] > -0.02:  # under hair and veil
             continue
         u, w = coords[b] - coords[a], coords[c] - coords[a]
         patch.triangles.append((a, b, c) if u[0] * w[1] - u[1] * w[0] > 0 else (a, c, b))

@@ -4,7 +4,7 @@
 Head space: metres, y = 0 on the line between the pupils, z = 0 through the ears, x to the figure's left.
 Proportions are a woman's in her fifties: eyes halfway up the head, 22 cm from chin to crown.
 """
-from math import sqrt
+from math import atan2, cos, sin, sqrt
 
 from form import bell, capsule, carve, clamp, curve, ellipsoid, join, mad, gradient, cast, smoothstep, sphere
 
@@ -43,34 +43,36 @@ def bone(p):
     x, y, z = abs(p[0]), p[1], p[2]
     p = (x, y, z)
     d = ellipsoid(p, (0, 0.026, -0.006), (0.0695, 0.083, 0.0985))  # cranium
-    d = join(d, ellipsoid(p, (0, -0.030, 0.030), (0.0520, 0.078, 0.0600)), 0.030)  # face
-    d = join(d, capsule(p, (0.0375, -0.069, 0.008), (0.0075, -0.0962, 0.071), 0.0110, 0.0100), 0.024)  # jaw
+    d = join(d, ellipsoid(p, (0, -0.030, 0.030), (0.0505, 0.078, 0.0600)), 0.030)  # face
+    d = join(d, capsule(p, (0.0345, -0.067, 0.008), (0.0070, -0.0962, 0.071), 0.0108, 0.0100), 0.024)  # jaw
     d = join(d, ellipsoid(p, (0, -0.0955, 0.0755), (0.0165, 0.0140, 0.0180)), 0.020)  # chin
     d = join(d, ellipsoid(p, (0, -0.066, 0.072), (0.031, 0.024, 0.0265)), 0.018)  # muzzle
     d = join(d, ellipsoid(p, (0.0450, -0.0215, 0.0560), (0.0180, 0.0125, 0.0190)), 0.022)  # cheekbone
     d = join(d, capsule(p, (0.050, -0.016, 0.045), (0.0625, -0.008, 0.006), 0.009, 0.006), 0.016)
-    d = join(d, ellipsoid(p, (0.0350, -0.0440, 0.0650), (0.0175, 0.0180, 0.0190)), 0.020)  # cheek
+    d = join(d, ellipsoid(p, (0.0345, -0.0430, 0.0650), (0.0170, 0.0180, 0.0190)), 0.020)  # cheek
+    d = join(d, ellipsoid(p, (0.0390, -0.0480, 0.0310), (0.0135, 0.0340, 0.0300)), 0.026)  # chewing muscle
     d = join(d, capsule(p, (0.007, 0.0165, 0.0815), (0.041, 0.0165, 0.0640), 0.0085, 0.0085), 0.014)
     d = carve(d, ellipsoid(p, (0.0310, 0.0005, 0.0890), (0.0190, 0.0120, 0.0150)), 0.014)  # eye socket
     # neck: leans forward going up; the muscle from behind the ear to the breastbone shows a little
     neck = capsule(p, (0, -0.045, -0.020), (0, -0.250, -0.045), 0.0430, 0.0480)
-    neck = join(neck, capsule(p, (0.048, -0.045, -0.016), (0.013, -0.200, 0.004), 0.009, 0.0075), 0.020)
+    neck = join(neck, capsule(p, (0.0445, -0.042, -0.016), (0.013, -0.200, 0.004), 0.009, 0.0075), 0.020)
     return join(d, neck, 0.022)
 
 
 def nose(p, d):
     """Adds the nose to the distance `d`; `p` has x >= 0."""
     d = join(d, capsule(p, (0, 0.008, 0.0795), (0, -0.0300, 0.1015), 0.0065, 0.0068), 0.0085)  # bridge
-    d = join(d, ellipsoid(p, (0, -0.0350, 0.1035), (0.0080, 0.0076, 0.0086)), 0.006)  # tip
+    d = join(d, ellipsoid(p, (0, -0.0350, 0.1035), (0.0074, 0.0073, 0.0084)), 0.006)  # tip
     d = join(d, capsule(p, (0, -0.0395, 0.1040), (0, -0.0440, 0.0930), 0.0036, 0.0042), 0.005)
-    d = join(d, ellipsoid(p, (0.0112, -0.0385, 0.0950), (0.0062, 0.0064, 0.0090)), 0.0045)  # wing
+    d = join(d, ellipsoid(p, (0.0105, -0.0385, 0.0950), (0.0058, 0.0062, 0.0088)), 0.0045)  # wing
     return carve(d, ellipsoid(p, (0.0062, -0.0450, 0.0985), (0.0030, 0.0036, 0.0052)), 0.0022)  # nostril
 
 
 def face(p):
     """Everything but the relief."""
     q = (abs(p[0]), p[1], p[2])
-    d = bone(q)
+    slim = 1 + 0.075 * smoothstep(-0.028, -0.075, p[1]) * smoothstep(-0.130, -0.102, p[1])  # towards the chin
+    d = bone((q[0] * slim, q[1], q[2]))
     if q[0] < 0.03 and -0.06 < q[1] < 0.03 and q[2] > 0.05:
         d = nose(q, d)
     if q[2] > 0.05 and abs(q[1]) < 0.03:
@@ -107,6 +109,17 @@ def lips(x, y):
     return height + crease + corner
 
 
+def asymmetry(p):
+    """What keeps a face from looking machined: half a millimetre here and there."""
+    x, y, z = p
+    front = smoothstep(0.04, 0.07, z)
+    left = smoothstep(-0.01, 0.02, x)
+    dx = 0.0006 * bell(x, 0.016) * bell(y + 0.038, 0.014) + 0.0008 * bell(x, 0.030) * bell(y + 0.100, 0.018)
+    dy = 0.0009 * left * smoothstep(0.013, 0.020, y) * smoothstep(0.050, 0.028, y)
+    dy += (0.0008 * left - 0.0003) * bell(abs(x) - MOUTH_HALF, 0.012) * bell(y - MOUTH_Y, 0.012)
+    return (x + dx * front, y + dy * front, z)
+
+
 def fold(x, y, line, depth, width, raise_outside=0.0):
     """A crease along a polyline [(x, y)]; the side away from the middle may stand higher."""
     best, side = 1e9, 0.0
@@ -118,7 +131,6 @@ def fold(x, y, line, depth, width, raise_outside=0.0):
         if d < best:
             best = d
             side = 1.0 if ex * -dy + ey * dx > 0 else -1.0
-            along = h
     d = sqrt(best)
     return -depth * bell(d, width) + raise_outside * (d / width) * bell(d, 2.5 * width) * side
 
@@ -178,7 +190,6 @@ LOW, HIGH = -0.26, 0.14  # of v
 
 
 def ray(theta, v):
-    from math import cos, sin
     a = curve(SLOPE, v)
     return (0.0, curve(ORIGIN, v), 0.0), (sin(theta) * cos(a), sin(a), cos(theta) * cos(a))
 
@@ -190,7 +201,6 @@ def sweep(theta, v):
 
 def unroll(p):
     """(theta, v) of a point: the inverse of `sweep`."""
-    from math import atan2, cos, sin
     theta = atan2(p[0], p[2])
     rho = sqrt(p[0] * p[0] + p[2] * p[2])
     low, high = LOW, HIGH

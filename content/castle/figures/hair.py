@@ -4,10 +4,10 @@ from math import cos, pi, sin
 
 from dress import body
 from face_form import HEAD, face
-from form import (add, bell, capsule, cast, circle, clamp, cross, curve, dot, ellipsoid, gradient, join, lerp, mad, mix,
-                  noise, smoothstep, sphere, sub, unit)
+from form import (add, cast, circle, cross, dot, ellipsoid, join, lerp, mad, mix, noise, smoothstep, sub,
+                  unit)
 from patch import Patch
-from rig import blend, scaled, spine
+from rig import blend, scaled, torso_weights
 
 CENTER = (0.0, 0.005, -0.010)
 
@@ -56,7 +56,7 @@ def strand_point(side, c, s):
 
 def make_hair(look):
     patch = Patch("hair", look)
-    nc, ns = 27, 34
+    nc, ns = 24, 29
     for side in (1, -1):
         rows = []
         for i in range(nc + 1):
@@ -65,7 +65,7 @@ def make_hair(look):
             for j in range(ns + 1):
                 s = j / ns
                 p = strand_point(side, c, s ** 1.15)
-                row.append(patch.vertex(p, (c * 1.6 + (0.31 if side < 0 else 0), s * 1.0), {"skullbase": 1.0}, ("hair",)))
+                row.append(patch.vertex(p, (0.5 * c + (0.5 if side < 0 else 0.0), s), {"skullbase": 1.0}, ("hair",)))
             rows.append(row)
         patch.grid(rows, flip=side < 0)
     return patch
@@ -137,19 +137,15 @@ def ball(patch, c, r, weights, segments=7, rings=4):
 
 # ---- veil ---------------------------------------------------------------------------------------------
 def veil_weights(p):
-    """Head at the top, the back at the lower edge; figure space."""
-    y = p[1]
-    head = smoothstep(1.36, 1.50, y)
-    side = "l_" if p[0] >= 0 else "r_"
-    shoulder = 0.25 * smoothstep(0.06, 0.17, abs(p[0]))
-    back = scaled(spine(min(max(y, 1.30), 1.47)), (1 - head) * (1 - shoulder))
-    return blend([("skullbase", head), (side + "acromioclavicular", (1 - head) * shoulder)] + back)
+    """Head at the top; where it lies on the shoulders, as the cape below. Figure space."""
+    head = smoothstep(1.36, 1.50, p[1])
+    return blend([("skullbase", head)] + scaled(torso_weights(p, 0.97), 1 - head))
 
 
 def make_veil(look):
     """Linen pinned over the roll, falling behind the shoulders. Figure space."""
     patch = Patch("veil", look)
-    columns, upper, lower = 52, 12, 17
+    columns, upper, lower = 46, 11, 15
     rows = [[] for _ in range(upper + lower + 1)]
     o = (0.0, 0.020, -0.020)
     for i in range(columns + 1):
@@ -177,10 +173,9 @@ def make_veil(look):
         for k in range(1, lower + 1):
             t = k / lower
             q = mad((middle[0], lerp(middle[1], end_y, t), middle[2]), out, 0.030 * t ** 1.2)
-            gap = body(q) - 0.024
+            gap = body(q) - 0.034
             if gap < 0.012:  # lie softly on the shoulders
-                q = mad(q, out, 0.0)
-                far = cast(lambda p: body(p) - 0.024, (0.0, q[1], -0.03), out, 0.35)
+                far = cast(lambda p: body(p) - 0.034, (0.0, q[1], -0.03), out, 0.35)
                 reach = (far[0] - q[0]) * out[0] + (far[2] - q[2]) * out[2]
                 q = mad(q, out, max(reach, 0.0))
             amount = 0.0030 + 0.0095 * smoothstep(0, 0.8, t)

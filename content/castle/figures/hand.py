@@ -4,7 +4,9 @@
 Hand space: a along the straight fingers (down, in the rest pose), b to the thumb's side (forward),
 c to the back of the hand (outward). The left hand; the right one is its mirror image.
 """
-from form import add, bell, capsule, carve, ellipsoid, gradient, join, mad, mix, sub, unit
+from math import cos, sin
+
+from form import capsule, carve, ellipsoid, gradient, join, mad, sub, unit
 from patch import Patch
 from rig import WRIST, ELBOW, blend
 
@@ -22,7 +24,6 @@ THUMB_RADII = (0.0140, 0.0108, 0.0094, 0.0072)
 
 def finger_line(k):
     """Knuckle, joints and tip of finger k in hand space; slightly bent towards the palm."""
-    from math import cos, sin
     p, lengths, _, bend = FINGERS[k]
     points = [p]
     angle = bend * 0.6
@@ -198,7 +199,7 @@ def hand_weights(p, side):
 
 def make_hands(look):
     vertices, quads = surface_net(hand, (-0.045, -0.062, -0.052), (0.192, 0.078, 0.030), 0.0024)
-    points, triangles = thin(vertices, quads, 0.135)
+    points, triangles = thin(vertices, quads, 0.12)
     exact = []
     for p in points:  # back onto the sculpture
         for _ in range(2):
@@ -207,14 +208,22 @@ def make_hands(look):
     patches = []
     for side, s in (("l", 1), ("r", -1)):
         patch = Patch("hand_" + side, look)
-        for p in exact:
-            q = to_figure(p)
-            n = gradient(hand, p)
-            back = n[2] > -0.15
-            u = (p[1] + 0.062) / 0.145 * 0.48 + (0.0 if back else 0.5)
-            patch.vertex((s * q[0], q[1], q[2]), (u + 0.01, (p[0] + 0.05) / 0.25), hand_weights(p, side), ("hand", p, n))
-        for a, b, c in triangles:
-            patch.triangles.append((a, b, c))
+        normals = [gradient(hand, p) for p in exact]
+        made = {}
+
+        def corner(i, back):
+            """Vertex i in the chart of the back or of the palm."""
+            if (i, back) not in made:
+                p = exact[i]
+                q = to_figure(p)
+                u = (p[1] + 0.062) / 0.145 * 0.48 + (0.01 if back else 0.51)
+                made[(i, back)] = patch.vertex((s * q[0], q[1], q[2]), (u, (p[0] + 0.05) / 0.25), hand_weights(p, side),
+                                               ("hand", p))
+            return made[(i, back)]
+
+        for t in triangles:
+            back = sum(normals[i][2] for i in t) > -0.3
+            patch.triangles.append(tuple(corner(i, back) for i in t))
         orient(patch)
         patches.append(patch)
     return patches

@@ -3,7 +3,7 @@
 from math import cos, pi, sin
 
 from face_form import MOUTH_Y, part_y
-from form import bell, circle, clamp, lerp, smoothstep
+from form import bell, clamp, lerp, smoothstep
 from patch import Patch
 from rig import jaw_weight
 
@@ -32,11 +32,10 @@ def make_lining(face, look):
             s = 1 if upper else -1
             lid = (4 * t * (1 - t)) ** 0.6 if 0 < t < 1 else 0.0
             x = p[0] * keep
-            back = depth if depth < 0.02 else depth
             y = lerp(p[1], MOUTH_Y + 0.0004, smoothstep(0.004, 0.02, depth)) + s * half * lid
-            w = jaw_weight((p[0], part_y(abs(p[0])) + s * 2e-4, p[2]))
+            w = jaw_weight((p[0], part_y(abs(p[0])), p[2]), not upper)
             w = lerp(w, 0.5 if lid == 0 else (0.0 if upper else 1.0), smoothstep(0.006, 0.030, depth))
-            row.append(patch.vertex((x, y, p[2] - back), (0.5, clamp(depth / 0.03)), share(w),
+            row.append(patch.vertex((x, y, p[2] - depth), (0.5, clamp(depth / 0.03)), share(w),
                                     ("lining", t, upper, depth)))
         rows.append(row)
     patch.grid(rows, closed=True, flip=True)
@@ -86,7 +85,7 @@ def make_teeth(upper, tooth_look, gum_look):
                 for q in range(8):
                     a = 2 * pi * (q + 0.5) / 8
                     ca, sa = cos(a), sin(a)
-                    along = s + w / 2 + 0.48 * w * (0.80 + 0.20 * smoothstep(0, 0.7, v) - 0.10 * max(0, v - 0.85) / 0.15) \
+                    along = s + w / 2 + 0.495 * w * (0.80 + 0.20 * smoothstep(0, 0.7, v) - 0.10 * max(0, v - 0.85) / 0.15) \
                         * (abs(ca) ** 0.6 * (1 if ca > 0 else -1))
                     x, z, nx, nz = arch(max(along, 0.0002), upper)
                     depth = thick * (abs(sa) ** 0.7 * (1 if sa > 0 else -1)) * (1 - 0.62 * v ** 3)
@@ -117,7 +116,7 @@ def make_teeth(upper, tooth_look, gum_look):
             k = max(j for j in range(len(widths)) if bounds[j] <= s + 1e-9 or j == 0)
             t = (s - bounds[k]) / widths[k]
             scallop = 0.0013 * (1 - (4 * clamp(t * (1 - t), 0, 0.25))) * (1 if up < 1 else 0)
-            y = edge_y - grow * (heights[k] * 0 + 0.0092 * up if upper else 0.0082 * up) + grow * scallop
+            y = edge_y - grow * (0.0092 if upper else 0.0082) * up + grow * scallop
             side = 1 if i >= 0 else -1
             row.append(gums.vertex((side * (x + nx * out), y, z + nz * out), (0.5, 0.5), weights, tag))
         rows.append(row)
@@ -132,7 +131,7 @@ def make_tongue(look):
     for k in range(11):
         v = k / 10
         row = []
-        a = pi * (0.03 + 0.97 * v) / 1.0
+        a = pi * (0.03 + 0.97 * v)
         z = 0.0868 - 0.040 * v
         w = 0.0190 * (sin(min(a * 0.9 + 0.12, pi / 2))) ** 0.7
         h = 0.0058 * (sin(min(a * 0.9 + 0.15, pi / 2))) ** 0.6

@@ -86,25 +86,33 @@ def spine(y):
     return [(names[-1], 1.0)]
 
 
-def jaw_weight(p):
-    """How much a point of the face (head space) follows the jaw."""
+def jaw_weight(p, lower=None):
+    """How much a point of the face (head space) follows the jaw; `lower`: on the lower lip, when that is known."""
+    if lower is None:
+        lower = p[1] < part_y(abs(p[0]))
     x, y, z = abs(p[0]), p[1], p[2]
     below = (-0.050 * (z - TMJ[2]) / 0.077 + TMJ[1] - y) * 0.84  # under the line from hinge to mouth corner
     cheek = smoothstep(-0.008, 0.030, below)
     u = x / MOUTH_HALF
     lips = (1 - min(u, 1.0) ** 2.2) ** 0.7  # the opening mouth is an oval
-    w = lerp(cheek, 1.0 if y < part_y(x) else 0.0, lips)
+    w = lerp(cheek, 1.0 if lower else 0.0, lips)
     w *= smoothstep(-0.158, -0.108, y) * smoothstep(0.0, 0.035, z)
     return w
 
 
-def head_weights(p):
-    """Skin of head and neck, head space."""
-    jaw = jaw_weight(p)
+def head_weights(p, tag):
+    """Skin of head and neck, head space; the tag tells the lips apart."""
+    jaw = jaw_weight(p, tag[0] == "lower" if tag and tag[0] in ("upper", "lower") else None)
     h = p[1] + 0.6 * (p[2] + 0.010)
     skull = smoothstep(-0.135, -0.072, h)
     neck = scaled(spine(min(p[1] + HEAD[1], 1.50)), (1 - skull) * (1 - jaw))
     return blend([("temporomandibular", jaw), ("skullbase", skull * (1 - jaw))] + neck)
+
+
+def shoulder_share(p):
+    """How much cloth at the shoulder follows the upper arm: sleeve and cape must agree, or one pokes out."""
+    x, y = abs(p[0]), p[1]
+    return smoothstep(0.098, 0.180, x + 0.35 * clamp(SHOULDER[1] - y, 0.0, 0.12)) * smoothstep(1.10, 1.20, y)
 
 
 def torso_weights(p, arm_share=1.0):
@@ -113,7 +121,7 @@ def torso_weights(p, arm_share=1.0):
     x = abs(p[0])
     high = smoothstep(1.22, 1.36, p[1])
     clavicle = 0.75 * smoothstep(0.03, 0.13, x) * high
-    arm = 0.85 * smoothstep(0.108, 0.195, x) * smoothstep(1.18, 1.28, p[1]) * arm_share
+    arm = shoulder_share(p) * arm_share
     rest = (1 - arm) * (1 - clavicle)
     return blend(scaled(spine(p[1]), rest) + [(side + "sternoclavicular", 0.5 * (1 - arm) * clavicle),
                                               (side + "acromioclavicular", 0.5 * (1 - arm) * clavicle),
@@ -121,14 +129,14 @@ def torso_weights(p, arm_share=1.0):
 
 
 def arm_weights(p, side):
-    """Sleeves and wrists: along the arm."""
+    """Sleeves and wrists: along the arm; at the shoulder as the cape above."""
     y = p[1]
     s = side + "_"
     elbow = smoothstep(ELBOW[1] + 0.045, ELBOW[1] - 0.045, y)
     wrist = smoothstep(WRIST[1] + 0.022, WRIST[1] - 0.016, y)
-    up = smoothstep(SHOULDER[1] - 0.055, SHOULDER[1] + 0.035, y) * 0.8
-    return blend([(s + "acromioclavicular", up), (s + "shoulder", (1 - up) * (1 - elbow)),
-                  (s + "elbow", elbow * (1 - wrist)), (s + "radiocarpal", wrist)])
+    arm = smoothstep(1.25, 1.17, y)
+    return blend(scaled(torso_weights(p), 1 - arm) + [(s + "shoulder", arm * (1 - elbow)), (s + "elbow", elbow * (1 - wrist)),
+                                                       (s + "radiocarpal", wrist)])
 
 
 def skirt_weights(p):

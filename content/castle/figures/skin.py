@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The colours of skin, lips, brows, eyes and hands, painted by place on the body."""
-from math import atan2, cos, exp, hypot, pi, sin, sqrt
+from math import atan2, cos, exp, hypot, sin, sqrt
 
-from face import LID_POINTS, eye_ring, lid_opening
+from face import lid_opening
 from face_form import EYE, MOUTH_HALF, SMILE_LINE, UPPER_LID_LINE, lower_lip_y, part_y, upper_lip_y
-from form import bell, clamp, cross, curve, dot, fractal, length, lerp, mad, noise, smoothstep, sub, unit
+from form import add, bell, clamp, cross, curve, dot, fractal, length, lerp, mad, noise, smoothstep, sub, unit
 from hair import HAIRLINE
 from paint import mixed, rgb, times
 
@@ -42,10 +42,9 @@ def brow_mask(x, y, side):
     body = exp(-(abs(d) / 1.05) ** 3) * smoothstep(0.0080, 0.0185, x) * smoothstep(0.0525, 0.044, x)
     if body < 0.01:
         return 0.0
-    # hairs lean outwards, upright at the inner end
-    lean = lerp(1.25, 0.25, smoothstep(0.012, 0.034, x))
-    a, b = x * cos(lean) + y * sin(lean), -x * sin(lean) + y * cos(lean)
-    hairs = noise((a * 260, b * 1900, side), 1.0, 21) + 0.6 * noise((a * 420, b * 3300, side), 1.0, 22)
+    # single hairs: upright at the inner end, lying outwards at the outer
+    root = x - (y - middle) * lerp(0.25, 2.2, smoothstep(0.011, 0.036, x))
+    hairs = noise((root * 2600, (y - middle) * 210, side), 1.0, 21) + 0.6 * noise((root * 4700, (y - middle) * 380, side), 1.0, 22)
     return clamp(body * (0.80 + 0.75 * hairs))
 
 
@@ -90,7 +89,7 @@ def skin_color(p):
     c = mixed(c, RED, 0.34 * bell(x, 0.012) * bell(y + 0.036, 0.010) * smoothstep(0.085, 0.100, z))
     c = mixed(c, RED, 0.30 * bell(x - 0.0145, 0.006) * bell(y + 0.039, 0.008) * front)
     c = mixed(c, RED, 0.30 * bell(x, 0.016) * bell(y + 0.098, 0.012) * front)
-    c = mixed(c, RED, 0.18 * smoothstep(-0.13, -0.19, y))
+    c = mixed(c, RED, 0.08 * smoothstep(-0.13, -0.19, y))
     # round the eyes
     around = bell(x - 0.031, 0.019) * bell(y - 0.001, 0.013) * front
     c = mixed(c, BLUISH, 0.34 * around)
@@ -119,10 +118,11 @@ def skin_color(p):
     # pores, freckles
     grain = fractal(p, 420, 5, 3)
     c = times(c, 1 + 0.045 * grain + 0.030 * fractal(p, 35, 6, 3))
-    freckle = noise(p, 480, 9) * (0.5 + 0.5 * noise(p, 70, 10))
-    c = mixed(c, rgb("b27f62"), 0.35 * smoothstep(0.30, 0.48, freckle) * bell(x - 0.028, 0.030) * bell(y + 0.022, 0.028) * front)
+    q = add(p, (0.004 * noise(p, 90, 14), 0.004 * noise(p, 90, 15), 0.0))
+    freckle = noise(q, 520, 9) * (0.5 + 0.5 * noise(p, 70, 10))
+    c = mixed(c, rgb("b27f62"), 0.22 * smoothstep(0.25, 0.48, freckle) * bell(x - 0.028, 0.030) * bell(y + 0.022, 0.028) * front)
     # lips
-    red, dark = lips(x, y)
+    red, dark = lips(x, y) if z > 0.05 else (0.0, 0.0)
     if red > 0 or dark > 0:
         lines = noise((p[0] * 900, p[1] * 130, 0.0), 1.0, 12)
         lip = mixed(LIP, rgb("c98c7f"), 0.5 * bell(y + 0.0725, 0.0030) * bell(x, 0.012))
@@ -131,7 +131,7 @@ def skin_color(p):
         c = mixed(c, LIP_DARK, 0.72 * dark)
     c = mixed(c, SHADE, 0.45 * bell(x - MOUTH_HALF * 1.03, 0.0026) * bell(y - part_y(x), 0.0026) * front)
     # brows, hairline
-    hairs = brow_mask(x, y, side)
+    hairs = brow_mask(x, y, side) if z > 0.03 else 0.0
     c = mixed(c, BROW, 0.80 * hairs)
     return hairline(c, p, side)
 
@@ -204,7 +204,7 @@ def hand_color(p):
             if d < 0.02 and n[2] > 0.1:
                 c = mixed(c, RED, 0.40 * bell(d, 0.010))
                 wrinkle = noise((p[0] * 1400, p[1] * 160, 0.0), 1.0, 4)
-                c = times(c, 1 - 0.10 * bell(d, 0.0075) * clamp(wrinkle + 0.3) * (i > 0))
+                c = times(c, 1 - 0.07 * bell(d, 0.0060) * clamp(wrinkle + 0.3) * (i == 1))
         tip, base = line[-1], line[-2]
         axis = [a - b for a, b in zip(tip, base)]
         size = sqrt(sum(a * a for a in axis))
@@ -218,12 +218,12 @@ def hand_color(p):
             up = (0.30, 0.45, 0.84) if thumb else (0.0, 0.0, 1.0)  # the thumb's nail looks forward
             height = sum(a * b for a, b in zip(off, up))
             across = sqrt(max(0.0, sum(a * a for a in off) - height * height))
-            shape = ((along - 0.72) / 0.27) ** 4 + (across / (0.80 * radius)) ** 4
+            shape = ((along - 0.68) / 0.30) ** 4 + (across / (0.80 * radius)) ** 4
             if height > 0 and shape < 1.35:
-                nail = mixed(rgb("dfa595"), rgb("f0d9cb"), smoothstep(0.90, 0.96, along))
-                nail = mixed(nail, rgb("ecc9bd"), 0.6 * smoothstep(0.55, 0.48, along))
-                c = mixed(c, rgb("a8685a"), 0.5 * smoothstep(1.35, 1.05, shape))
-                c = mixed(c, nail, smoothstep(1.08, 0.90, shape))
+                nail = mixed(rgb("e6b3a4"), rgb("f6e6da"), smoothstep(0.90, 0.96, along))
+                nail = mixed(nail, rgb("ecc9bd"), 0.6 * smoothstep(0.48, 0.41, along))
+                c = mixed(c, rgb("a25f50"), 0.6 * smoothstep(1.35, 1.05, shape))
+                c = mixed(c, nail, 0.92 * smoothstep(1.08, 0.90, shape))
     c = times(c, 1 + 0.04 * fractal(p, 420, 5, 3) + 0.05 * fractal(p, 60, 6, 3))
     vein = abs(noise((p[0] * 14, p[1] * 45, 0.0), 1.0, 7))
     return mixed(c, rgb("b99a90"), 0.20 * smoothstep(0.12, 0.0, vein) * smoothstep(0.4, 0.9, n[2]) * (0.0 < p[0] < 0.08))

@@ -8,7 +8,7 @@ import hair
 import hand
 import mouth
 import rig
-from face_form import HEAD
+from face_form import HEAD, asymmetry
 from form import add
 from patch import Figure, Look
 from skin import texture_place
@@ -45,8 +45,9 @@ def place_head(patch, weights=None):
     patch.drop_unused()
     patch.rest = list(patch.positions)  # displacers work in head space
     if weights:
-        patch.weights = [weights(p) for p in patch.positions]
-    patch.positions = [add(p, HEAD) for p in patch.positions]
+        patch.weights = [weights(p, tag) for p, tag in zip(patch.positions, patch.tags)]
+    bends = patch.name in ("face", "mouth")
+    patch.positions = [add(asymmetry(p) if bends else p, HEAD) for p in patch.positions]
     return patch
 
 

@@ -16,7 +16,7 @@ TILES = {  # look: (colour, width, height)
     "roll": (fabric.roll_color, 128, 128),
     "fur": (fabric.fur_color, 256, 256),
     "leather": (fabric.leather_color, 256, 64),
-    "hair": (fabric.hair_color, 512, 512),
+    "hair": (fabric.hair_color, 1024, 256),
 }
 
 
