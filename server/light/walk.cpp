@@ -10,12 +10,13 @@
 namespace wellspring {
 namespace {
 
-constexpr int roulette_depth = 2;  // edges that are never cut short
+constexpr int roulette_depth = 2;   // edges that are never cut short
+constexpr int mirrored_depth = 12;  // nor are chains of perfect mirrors and glass up to this length
 
 // Russian roulette: survivors carry the share of those that stop. False: this one stops.
 bool survives(Walk& walk, Sampler& sampler) {
   if (!(max_component(walk.throughput) > 0)) return false;
-  if (walk.depth <= roulette_depth) return true;
+  if (walk.depth <= (walk.pdf > 0 ? roulette_depth : mirrored_depth)) return true;
   float chance = std::min(0.95f, max_component(walk.throughput) * walk.density);
   if (sampler.next() >= chance) return false;
   walk.throughput /= chance;
