@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring render: a still picture of a scene. Exit status: 0 done, 1 the input is wrong, 2 the command
-// line is wrong.
+// wellspring render: a still picture of a scene. Exit status: 0 done, 1 the input is wrong, 2 the
+// command line is wrong.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -32,8 +32,8 @@ struct UsageError : std::runtime_error {
 };
 
 struct Options {
-  std::string scene, technique = "path", camera, eye, target, up = "0,1,0", size = "1280x720", out, environment,
-      replay;
+  std::string scene, technique = "path", camera, eye, target, up = "0,1,0", size = "1280x720", out,
+                     environment, replay;
   double fov = 0, time = 0, exposure = 1;
   int spp = 16, max_depth = 8, threads = 0;
   uint64_t seed = 1;
@@ -69,8 +69,8 @@ ivec2 parse_size(const std::string& text) {
   auto [cross, error] = std::from_chars(text.data(), end, size.x);
   if (error == std::errc() && cross != end && *cross == 'x') {
     auto [last, error2] = std::from_chars(cross + 1, end, size.y);
-    if (error2 == std::errc() && last == end && size.x >= 1 && size.y >= 1 && size.x <= largest_side &&
-        size.y <= largest_side)
+    if (error2 == std::errc() && last == end && size.x >= 1 && size.y >= 1 &&
+        size.x <= largest_side && size.y <= largest_side)
       return size;
   }
   throw UsageError("--size " + text + ": WIDTHxHEIGHT expected, each 1 to 16384");
@@ -78,21 +78,29 @@ ivec2 parse_size(const std::string& text) {
 
 std::string technique_names() {
   std::string names;
-  for (const Technique& t : techniques()) names += (names.empty() ? "" : ", ") + std::string(t.name);
+  for (const Technique& t : techniques())
+    names += (names.empty() ? "" : ", ") + std::string(t.name);
   return names;
 }
 
 void check_options(const Options& o) {
   if (!find_technique(o.technique))
-    throw UsageError("--technique " + o.technique + ": no such technique; there are " + technique_names());
+    throw UsageError("--technique " + o.technique + ": no such technique; there are " +
+                     technique_names());
   if (o.scene.empty()) throw UsageError("no scene given: a .gltf or .glb file");
   if (o.spp < 1) throw UsageError("--spp " + std::to_string(o.spp) + ": at least 1 sample a pixel");
-  if (o.max_depth < 1) throw UsageError("--max-depth " + std::to_string(o.max_depth) + ": at least 1");
-  if (o.threads < 0) throw UsageError("--threads " + std::to_string(o.threads) + ": 0 (all cores) or more");
-  if (!std::isfinite(o.exposure) || o.exposure < 0) throw UsageError("--exposure: a number, 0 or more, expected");
-  if (!std::isfinite(o.time) || o.time < 0) throw UsageError("--time: seconds, 0 or more, expected");
-  if (o.fov != 0 && !(o.fov > 0 && o.fov < 180)) throw UsageError("--fov: degrees between 0 and 180 expected");
-  if (!o.camera.empty() && !o.eye.empty()) throw UsageError("--camera and --eye exclude each other");
+  if (o.max_depth < 1)
+    throw UsageError("--max-depth " + std::to_string(o.max_depth) + ": at least 1");
+  if (o.threads < 0)
+    throw UsageError("--threads " + std::to_string(o.threads) + ": 0 (all cores) or more");
+  if (!std::isfinite(o.exposure) || o.exposure < 0)
+    throw UsageError("--exposure: a number, 0 or more, expected");
+  if (!std::isfinite(o.time) || o.time < 0)
+    throw UsageError("--time: seconds, 0 or more, expected");
+  if (o.fov != 0 && !(o.fov > 0 && o.fov < 180))
+    throw UsageError("--fov: degrees between 0 and 180 expected");
+  if (!o.camera.empty() && !o.eye.empty())
+    throw UsageError("--camera and --eye exclude each other");
   if (o.eye.empty() != o.target.empty()) throw UsageError("--eye and --target belong together");
   if (o.out.empty() && o.replay.empty()) throw UsageError("--out FILE is missing");
   if (!o.out.empty() && !is_picture_name(o.out))
@@ -105,7 +113,8 @@ void check_resources(const Options& o, ivec2 size) {
   std::filesystem::path folder = std::filesystem::path(o.out).parent_path();
   if (folder.empty()) folder = ".";
   if (std::filesystem::is_directory(o.out)) throw LoadError(o.out, "", "is a folder");
-  if (!std::filesystem::is_directory(folder)) throw LoadError(o.out, "", "cannot be written: no such folder");
+  if (!std::filesystem::is_directory(folder))
+    throw LoadError(o.out, "", "cannot be written: no such folder");
   if (access(folder.c_str(), W_OK) != 0)
     throw LoadError(o.out, "", "cannot be written: the folder is not writable");
   // Colour, depth and object planes, and the encoded picture beside them.
@@ -114,8 +123,9 @@ void check_resources(const Options& o, ivec2 size) {
   std::string key;
   for (double kilobytes; meminfo >> key >> kilobytes; meminfo.ignore(256, '\n'))
     if (key == "MemAvailable:" && needed > kilobytes * 1024)
-      throw LoadError(o.out, "", "a picture of " + o.size + " needs " + std::to_string(int(needed / 1e6)) +
-                                     " MB, which this machine does not have free");
+      throw LoadError(o.out, "",
+                      "a picture of " + o.size + " needs " + std::to_string(int(needed / 1e6)) +
+                          " MB, which this machine does not have free");
 }
 
 // SCENE by its kind, the first that knows it. More kinds of scene: one more line.
@@ -125,8 +135,7 @@ struct SceneKind {
   Scene (*load)(const std::string& path, double time);
 };
 const SceneKind scene_kinds[] = {
-    {"glTF file",
-     [](const std::string& path) { return !std::filesystem::is_directory(path); },
+    {"glTF file", [](const std::string& path) { return !std::filesystem::is_directory(path); },
      [](const std::string& path, double time) {
        SceneLoadOptions options;
        options.time = time;
@@ -140,7 +149,8 @@ Scene load_any_scene(const std::string& path, double time) {
   for (const SceneKind& kind : scene_kinds)
     if (kind.knows(path)) return kind.load(path, time);
   std::string kinds;
-  for (const SceneKind& kind : scene_kinds) kinds += (kinds.empty() ? "" : ", ") + std::string(kind.what);
+  for (const SceneKind& kind : scene_kinds)
+    kinds += (kinds.empty() ? "" : ", ") + std::string(kind.what);
   throw LoadError(path, "", "not a scene this program knows (" + kinds + ")");
 }
 
@@ -160,7 +170,8 @@ void apply_environment(const std::string& text, Scene& scene) {
                  "(--environment none to see it dark)\n";
     scene.environment = {vec3(1), -1};
   } else if (scene.lights.empty() && max_component(scene.environment.radiance) <= 0) {
-    std::cerr << "the scene is lit by its emitting surfaces alone (--environment 1,1,1 adds light from everywhere)\n";
+    std::cerr << "the scene is lit by its emitting surfaces alone (--environment 1,1,1 adds light "
+                 "from everywhere)\n";
   }
 }
 
@@ -171,7 +182,8 @@ View frame_scene(const Scene& scene, float fov, ivec2 size) {
   vec3 center = 0.5f * (bounds.low + bounds.high), half = 0.5f * (bounds.high - bounds.low);
   vec3 back = normalize(vec3(0.45f, 0.35f, 1));
   vec3 right = normalize(cross(vec3(0, 1, 0), back)), up = cross(back, right);
-  float tan_y = std::tan(0.5f * fov), tan_x = tan_y * float(size.x) / float(size.y), distance = 1e-3f;
+  float tan_y = std::tan(0.5f * fov), tan_x = tan_y * float(size.x) / float(size.y),
+        distance = 1e-3f;
   for (int corner = 0; corner < 8; corner++) {
     vec3 p = half * vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
     float towards = dot(p, back);
@@ -179,8 +191,8 @@ View frame_scene(const Scene& scene, float fov, ivec2 size) {
     distance = std::max(distance, std::abs(dot(p, up)) / tan_y + towards);
   }
   dvec3 target = scene.origin + dvec3(center);
-  return make_view_towards(scene, target + dvec3(back * (distance * 1.06f)), target, {0, 1, 0}, fov, size.x,
-                           size.y);
+  return make_view_towards(scene, target + dvec3(back * (distance * 1.06f)), target, {0, 1, 0}, fov,
+                           size.x, size.y);
 }
 
 View choose_view(const Options& o, const Scene& scene, ivec2 size) {
@@ -192,7 +204,8 @@ View choose_view(const Options& o, const Scene& scene, ivec2 size) {
     if (up == vec3(0)) throw UsageError("--up 0,0,0 is no direction");
     return make_view_towards(scene, eye, target, up, fov, size.x, size.y);
   }
-  const Viewpoint* chosen = o.camera.empty() && !scene.viewpoints.empty() ? &scene.viewpoints[0] : nullptr;
+  const Viewpoint* chosen =
+      o.camera.empty() && !scene.viewpoints.empty() ? &scene.viewpoints[0] : nullptr;
   for (const Viewpoint& v : scene.viewpoints)
     if (!o.camera.empty() && v.name == o.camera) {
       chosen = &v;
@@ -201,12 +214,13 @@ View choose_view(const Options& o, const Scene& scene, ivec2 size) {
   if (!chosen && !o.camera.empty()) {
     std::string names;
     for (const Viewpoint& v : scene.viewpoints) names += (names.empty() ? "" : ", ") + v.name;
-    throw UsageError("--camera " + o.camera + ": no such camera; " +
-                     (names.empty() ? "the scene has none (use --eye and --target)" : "there are " + names));
+    throw UsageError(
+        "--camera " + o.camera + ": no such camera; " +
+        (names.empty() ? "the scene has none (use --eye and --target)" : "there are " + names));
   }
   if (!chosen) return frame_scene(scene, fov, size);
-  return make_view(scene, chosen->position, chosen->yaw, chosen->pitch, o.fov > 0 ? fov : chosen->fov, size.x,
-                   size.y);
+  return make_view(scene, chosen->position, chosen->yaw, chosen->pitch,
+                   o.fov > 0 ? fov : chosen->fov, size.x, size.y);
 }
 
 void print_replay(const Options& o, const World& world, const Lights& lights, const View& view,
@@ -214,25 +228,29 @@ void print_replay(const Options& o, const World& world, const Lights& lights, co
   std::vector<double> at = parse_numbers(o.replay, 3, "--replay");
   for (int i = 0; i < 3; i++)
     if (at[size_t(i)] != std::floor(at[size_t(i)]) || at[size_t(i)] < 0 ||
-        at[size_t(i)] >= (i == 0 ? view.width : i == 1 ? view.height : settings.spp))
-      throw UsageError("--replay " + o.replay + ": pixel x, y and sample i inside --size and --spp expected");
+        at[size_t(i)] >= (i == 0   ? view.width
+                          : i == 1 ? view.height
+                                   : settings.spp))
+      throw UsageError("--replay " + o.replay +
+                       ": pixel x, y and sample i inside --size and --spp expected");
   Request request = pixel_request(view, settings.seed, int(at[0]), int(at[1]), int(at[2]));
   Sample sample = find_technique(o.technique)->trace(world, lights, settings.transport, request);
   vec3 c = sample.radiance();
   std::printf("radiance %.9g %.9g %.9g\n", double(c.x), double(c.y), double(c.z));
   if (sample.flags & sample_hit)
     std::printf("hit %s at %.9g %.9g %.9g, distance %.9g\n",
-                world.scene().objects[sample.object].c_str(), double(sample.position.x), double(sample.position.y),
-                double(sample.position.z), double(sample.distance));
-  else
-    std::printf("hit nothing\n");
+                world.scene().objects[sample.object].c_str(), double(sample.position.x),
+                double(sample.position.y), double(sample.position.z), double(sample.distance));
+  else std::printf("hit nothing\n");
 }
 
 void add_options(CLI::App& app, Options& o) {
   app.add_option("scene", o.scene, "glTF 2.0 file (.gltf, .glb)");
-  app.add_option("--technique", o.technique, "how light is sampled (--list-techniques)")->capture_default_str();
+  app.add_option("--technique", o.technique, "how light is sampled (--list-techniques)")
+      ->capture_default_str();
   app.add_flag("--list-techniques", o.list_techniques, "print the names of the techniques and end");
-  app.add_option("--camera", o.camera, "a camera of the file; without --camera and --eye its first");
+  app.add_option("--camera", o.camera,
+                 "a camera of the file; without --camera and --eye its first");
   app.add_option("--eye", o.eye, "x,y,z of the eye, metres");
   app.add_option("--target", o.target, "x,y,z looked at");
   app.add_option("--up", o.up, "x,y,z upwards")->capture_default_str();
@@ -243,10 +261,12 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--time", o.time, "seconds into the file's animation")->capture_default_str();
   app.add_option("--out", o.out, "picture: .png .jpg tone-mapped, .pfm .exr linear radiance");
   app.add_option("--exposure", o.exposure, "factor before tone mapping")->capture_default_str();
-  app.add_option("--max-depth", o.max_depth, "path edges counted from the eye")->capture_default_str();
+  app.add_option("--max-depth", o.max_depth, "path edges counted from the eye")
+      ->capture_default_str();
   app.add_option("--environment", o.environment, "none, or radiance r,g,b, or a picture FILE.hdr");
   app.add_option("--threads", o.threads, "0: all cores")->capture_default_str();
-  app.add_option("--replay", o.replay, "x,y,i: print the radiance of sample i of pixel x,y instead");
+  app.add_option("--replay", o.replay,
+                 "x,y,i: print the radiance of sample i of pixel x,y instead");
 }
 
 void render(const Options& o) {
@@ -259,7 +279,8 @@ void render(const Options& o) {
   View view = choose_view(o, scene, size);
   World world(scene);
   Lights lights = make_lights(world);
-  if (auto* prepare = find_technique(o.technique)->prepare) prepare(world, std::span(&view.position, 1), lights);
+  if (auto* prepare = find_technique(o.technique)->prepare)
+    prepare(world, std::span(&view.position, 1), lights);
   StillSettings settings;
   settings.spp = o.spp;
   settings.seed = o.seed;
@@ -270,8 +291,9 @@ void render(const Options& o) {
   double seconds = seconds_now() - start;
   save_picture(o.out, frame, {float(o.exposure)});
   double samples = double(size.x) * double(size.y) * double(o.spp);
-  std::fprintf(stderr, "%s: %dx%d, %d samples a pixel by %s, %.2f s, %.2f million samples a second\n",
-               o.out.c_str(), size.x, size.y, o.spp, o.technique.c_str(), seconds, samples / seconds * 1e-6);
+  std::fprintf(
+      stderr, "%s: %dx%d, %d samples a pixel by %s, %.2f s, %.2f million samples a second\n",
+      o.out.c_str(), size.x, size.y, o.spp, o.technique.c_str(), seconds, samples / seconds * 1e-6);
   if (uint64_t bad = lights.bad_samples->load())
     std::fprintf(stderr, "%s: %llu samples were not finite and count as black\n", o.out.c_str(),
                  static_cast<unsigned long long>(bad));
@@ -296,7 +318,8 @@ int main(int argc, char** argv) {
   try {
     std::optional<oneapi::tbb::global_control> threads;
     if (options.threads > 0)
-      threads.emplace(oneapi::tbb::global_control::max_allowed_parallelism, size_t(options.threads));
+      threads.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
+                      size_t(options.threads));
     render(options);
     return 0;
   } catch (const UsageError& error) {

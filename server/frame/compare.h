@@ -7,7 +7,8 @@ namespace wellspring {
 
 // Root of the mean squared difference over pixels and channels, linear radiance.
 double rmse(const Frame& test, const Frame& reference);
-// Mean of squared difference over (reference luminance squared + 0.01): comparable across brightness.
+// Mean of squared difference over (reference luminance squared + 0.01): comparable across
+// brightness.
 double relative_mse(const Frame& test, const Frame& reference);
 
 }  // namespace wellspring

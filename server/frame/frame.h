@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture in linear light, as a technique or the render cache leaves it and the tone map takes it.
+// A picture in linear light, as a technique or the render cache leaves it and the tone map takes
+// it.
 #pragma once
 #include <cstdint>
 #include <vector>

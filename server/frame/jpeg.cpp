@@ -29,7 +29,8 @@ struct Compressor {
 }  // namespace
 
 void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector<uint8_t>& out) {
-  if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side ||
+  if (image.width < 1 || image.height < 1 || image.width > largest_side ||
+      image.height > largest_side ||
       image.rgb.size() != size_t(image.width) * size_t(image.height) * 3)
     throw std::invalid_argument("encode_jpeg: no picture of a size JPEG can hold");
   thread_local Compressor compressor;
@@ -39,9 +40,10 @@ void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector
   unsigned char* bytes = compressor.room.data();
   unsigned long size = bound;
   if (!compressor.handle ||
-      tjCompress2(compressor.handle.get(), image.rgb.data(), image.width, 0, image.height, TJPF_RGB, &bytes,
-                  &size, chroma, std::clamp(quality, 1, 100), TJFLAG_NOREALLOC) != 0)
-    throw std::runtime_error(std::string("encode_jpeg: ") + tjGetErrorStr2(compressor.handle.get()));
+      tjCompress2(compressor.handle.get(), image.rgb.data(), image.width, 0, image.height, TJPF_RGB,
+                  &bytes, &size, chroma, std::clamp(quality, 1, 100), TJFLAG_NOREALLOC) != 0)
+    throw std::runtime_error(std::string("encode_jpeg: ") +
+                             tjGetErrorStr2(compressor.handle.get()));
   out.assign(bytes, bytes + size);
 }
 
@@ -50,16 +52,17 @@ Image8 decode_jpeg(std::span<const uint8_t> bytes, const char* file) {
   if (!handle) throw LoadError(file, "", tjGetErrorStr2(nullptr));
   Image8 image;
   int chroma = 0, colorspace = 0;
-  if (tjDecompressHeader3(handle.get(), bytes.data(), bytes.size(), &image.width, &image.height, &chroma,
-                          &colorspace) != 0)
+  if (tjDecompressHeader3(handle.get(), bytes.data(), bytes.size(), &image.width, &image.height,
+                          &chroma, &colorspace) != 0)
     throw LoadError(file, "JPEG header", tjGetErrorStr2(handle.get()));
-  if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side)
+  if (image.width < 1 || image.height < 1 || image.width > largest_side ||
+      image.height > largest_side)
     throw LoadError(file, "JPEG header",
-                    "picture of " + std::to_string(image.width) + "x" + std::to_string(image.height) +
-                        " is larger than 16384 a side");
+                    "picture of " + std::to_string(image.width) + "x" +
+                        std::to_string(image.height) + " is larger than 16384 a side");
   image.rgb.resize(size_t(image.width) * size_t(image.height) * 3);
-  if (tjDecompress2(handle.get(), bytes.data(), bytes.size(), image.rgb.data(), image.width, 0, image.height,
-                    TJPF_RGB, TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) != 0)
+  if (tjDecompress2(handle.get(), bytes.data(), bytes.size(), image.rgb.data(), image.width, 0,
+                    image.height, TJPF_RGB, TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) != 0)
     throw LoadError(file, "JPEG data", tjGetErrorStr2(handle.get()));
   return image;
 }

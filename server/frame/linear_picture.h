@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two linear formats, to and from memory: PFM (netpbm, http://www.pauldebevec.com/Research/HDR/PFM/)
-// and OpenEXR (32-bit float, ZIP). Readers take the colour only and throw LoadError{path,...}.
+// The two linear formats, to and from memory: PFM (netpbm,
+// http://www.pauldebevec.com/Research/HDR/PFM/) and OpenEXR (32-bit float, ZIP). Readers take the
+// colour only and throw LoadError{path,...}.
 #pragma once
 #include <istream>
 #include <string>
@@ -17,7 +18,8 @@ std::vector<char> encode_pfm(const Frame& frame);
 std::vector<char> encode_exr(const Frame& frame, const std::string& path);
 
 Frame decode_pfm(std::istream& in, const std::string& path);
-// Scan lines or tiles, half or float; channels R, G, B, or Y alone, or the first layer that has them.
+// Scan lines or tiles, half or float; channels R, G, B, or Y alone, or the first layer that has
+// them.
 Frame decode_exr(std::istream& in, const std::string& path);
 
 }  // namespace wellspring

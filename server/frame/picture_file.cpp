@@ -28,12 +28,15 @@ namespace {
 std::string ending_of(const std::string& path) {
   size_t dot = path.find_last_of("./");
   std::string ending = dot == std::string::npos || path[dot] == '/' ? "" : path.substr(dot + 1);
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return ending;
 }
 
 bool is_linear(const std::string& ending) { return ending == "pfm" || ending == "exr"; }
-bool is_8bit(const std::string& ending) { return ending == "png" || ending == "jpg" || ending == "jpeg"; }
+bool is_8bit(const std::string& ending) {
+  return ending == "png" || ending == "jpg" || ending == "jpeg";
+}
 
 // The whole file or none of it: written beside its place, then renamed over it.
 void write_file(const std::string& path, std::span<const char> bytes) {
@@ -72,7 +75,8 @@ bool is_picture_name(const std::string& path) {
 
 void save_picture(const std::string& path, const Frame& frame, const Tonemap& settings) {
   std::string ending = ending_of(path);
-  if (!is_picture_name(path)) throw LoadError(path, "", "name must end in .png, .jpg, .pfm or .exr");
+  if (!is_picture_name(path))
+    throw LoadError(path, "", "name must end in .png, .jpg, .pfm or .exr");
   if (frame.width < 1 || frame.height < 1 ||
       frame.color.size() != size_t(frame.width) * size_t(frame.height))
     throw LoadError(path, "", "there is no picture to write");

@@ -10,10 +10,10 @@
 namespace wellspring {
 namespace {
 
-// The shoulder of the Khronos PBR Neutral tone mapper (KhronosGroup/ToneMapping, PBR_Neutral): colours up
-// to 0.8 are shown as they are, brighter ones keep their hue while their peak approaches 1 and then fade
-// to white. Its toe, which takes away a studio's 4 % reflection, is left out: it would crush the shadows
-// of a room that is lit by its windows.
+// The shoulder of the Khronos PBR Neutral tone mapper (KhronosGroup/ToneMapping, PBR_Neutral):
+// colours up to 0.8 are shown as they are, brighter ones keep their hue while their peak approaches
+// 1 and then fade to white. Its toe, which takes away a studio's 4 % reflection, is left out: it
+// would crush the shadows of a room that is lit by its windows.
 constexpr float shoulder_start = 0.8f;
 constexpr float shoulder_height = 1 - shoulder_start;
 constexpr float desaturation = 0.15f;
@@ -38,14 +38,15 @@ inline Shoulder shoulder(float above) {
   return {squeezed / above * keep, squeezed * (1 - keep)};
 }
 
-// The sRGB transfer function without pow: 1.055 x^(1/2.4) - 0.055 as a polynomial in sqrt(x), fitted by
-// Remez exchange on [0.0031308, 1]; it stays within 0.04 of a 255th of the exact curve.
+// The sRGB transfer function without pow: 1.055 x^(1/2.4) - 0.055 as a polynomial in sqrt(x),
+// fitted by Remez exchange on [0.0031308, 1]; it stays within 0.04 of a 255th of the exact curve.
 inline float encode_fast(float x) {
   float s = std::sqrt(x);
-  float curve = -0.0422319496f +
-                s * (1.57527086f +
-                     s * (-1.89947641f +
-                          s * (3.89844127f + s * (-5.00316832f + s * (3.4186871f - s * 0.947671543f)))));
+  float curve =
+      -0.0422319496f +
+      s * (1.57527086f +
+           s * (-1.89947641f +
+                s * (3.89844127f + s * (-5.00316832f + s * (3.4186871f - s * 0.947671543f)))));
   float line = 12.92f * x;
   float low = x < 0.0031308f ? 1.0f : 0.0f;  // a choice by arithmetic: no branch, so vector code
   return curve + low * (line - curve);
@@ -55,8 +56,8 @@ inline float encode_exact(float x) {
   return x < 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
 }
 
-// Pixels at once: their planes stay in the first-level cache. Each step is a loop of its own over one or
-// three planes, which is what compilers turn into vector code.
+// Pixels at once: their planes stay in the first-level cache. Each step is a loop of its own over
+// one or three planes, which is what compilers turn into vector code.
 constexpr int block = 64;
 
 void tonemap_block(const vec3* color, int count, float exposure, uint8_t* rgb) {
@@ -80,7 +81,8 @@ void tonemap_block(const vec3* color, int count, float exposure, uint8_t* rgb) {
     offset[i] = s.offset;
   }
   for (float* plane : {red, green, blue})
-    for (int i = 0; i < block; i++) plane[i] = encode_fast(plane[i] * scale[i] + offset[i]) * 255 + 0.5f;
+    for (int i = 0; i < block; i++)
+      plane[i] = encode_fast(plane[i] * scale[i] + offset[i]) * 255 + 0.5f;
   for (int i = 0; i < count; i++) {
     rgb[3 * i] = uint8_t(red[i]);
     rgb[3 * i + 1] = uint8_t(green[i]);
@@ -92,7 +94,8 @@ void tonemap_block(const vec3* color, int count, float exposure, uint8_t* rgb) {
 
 void tonemap(const Frame& frame, const Tonemap& settings, Image8& out) {
   size_t pixels = size_t(frame.width) * size_t(frame.height);
-  if (frame.color.size() != pixels) throw std::invalid_argument("tonemap: frame has no colour plane");
+  if (frame.color.size() != pixels)
+    throw std::invalid_argument("tonemap: frame has no colour plane");
   out.width = frame.width;
   out.height = frame.height;
   out.rgb.resize(pixels * 3);

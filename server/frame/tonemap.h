@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear radiance to 8-bit sRGB for the eye. Called once a frame per visitor; never blocks, never fails:
-// NaN and negative values become black, infinity white.
+// Linear radiance to 8-bit sRGB for the eye. Called once a frame per visitor; never blocks, never
+// fails: NaN and negative values become black, infinity white.
 #pragma once
 #include "frame/frame.h"
 

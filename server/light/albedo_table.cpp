@@ -14,8 +14,8 @@ constexpr int index_steps = 128;  // over (n - 1) / (n + 1) in [0, 1]; the last 
 
 enum class Kind { mirror, coat, glass };
 
-// Mean over the visible normals, on a Fibonacci lattice of numbers, of what is reflected (and for glass refracted)
-// times its shadowing.
+// Mean over the visible normals, on a Fibonacci lattice of numbers, of what is reflected (and for
+// glass refracted) times its shadowing.
 float integrate(float cosine, float alpha, float eta, Kind kind) {
   if (alpha <= 0) return kind == Kind::coat ? fresnel_dielectric(cosine, eta) : 1;
   constexpr int points = 610, generator = 377;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Picks an index with probability proportional to its weight in constant time (Walker 1977, built as
-// Vose 1991). Weights that are negative or not finite count as 0.
+// Picks an index with probability proportional to its weight in constant time (Walker 1977, built
+// as Vose 1991). Weights that are negative or not finite count as 0.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -10,8 +10,8 @@ namespace wellspring {
 
 struct AliasTable {
   struct Cell {
-    float keep = 1;      // chance that this cell stands for itself
-    uint32_t other = 0;  // otherwise
+    float keep = 1;         // chance that this cell stands for itself
+    uint32_t other = 0;     // otherwise
     float probability = 0;  // of this index, over the whole table
   };
   std::vector<Cell> cells;  // empty: all weights are 0

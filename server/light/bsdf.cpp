@@ -23,8 +23,8 @@ float index_of(const Material& material) {
 
 vec3 unit_range(vec3 c) { return glm::clamp(c, vec3(0), vec3(1)); }
 
-// A mapped or interpolated normal may face away from the viewer or mirror him into the surface; then it
-// is turned just far enough that its reflection leaves the surface.
+// A mapped or interpolated normal may face away from the viewer or mirror him into the surface;
+// then it is turned just far enough that its reflection leaves the surface.
 vec3 usable_normal(vec3 n, vec3 geometric, vec3 v) {
   float least = std::min(0.01f, 0.9f * dot(v, geometric));
   vec3 mirrored = 2 * dot(v, n) * n - v;
@@ -36,8 +36,12 @@ vec3 usable_normal(vec3 n, vec3 geometric, vec3 v) {
   return length2 > 1e-12f ? between / std::sqrt(length2) : geometric;
 }
 
-vec3 to_local(const Bsdf& b, vec3 w) { return {dot(w, b.tangent), dot(w, b.bitangent), dot(w, b.normal)}; }
-vec3 to_world(const Bsdf& b, vec3 w) { return b.tangent * w.x + b.bitangent * w.y + b.normal * w.z; }
+vec3 to_local(const Bsdf& b, vec3 w) {
+  return {dot(w, b.tangent), dot(w, b.bitangent), dot(w, b.normal)};
+}
+vec3 to_world(const Bsdf& b, vec3 w) {
+  return b.tangent * w.x + b.bitangent * w.y + b.normal * w.z;
+}
 
 // Reflected and transmitted colour at a facet seen under this cosine.
 struct FacetColor {
@@ -70,7 +74,8 @@ void eval_thin_transmission(const Bsdf& b, vec3 l, BsdfValue& value) {
   FacetColor color = facet_color(b, dot(b.view, h));
   float d = ggx_distribution(h, b.alpha);
   value.specular = color.transmit * (d * ggx_shadowing(b.view, mirrored, b.alpha) / (4 * b.view.z));
-  value.specular_pdf = (1 - color.reflect_share) * ggx_masking(b.view, b.alpha) * d / (4 * b.view.z);
+  value.specular_pdf =
+      (1 - color.reflect_share) * ggx_masking(b.view, b.alpha) * d / (4 * b.view.z);
 }
 
 // Walter et al. 2007, equation 21, for radiance: beyond the boundary it is eta^2 times denser.
@@ -90,7 +95,8 @@ void eval_refraction(const Bsdf& b, vec3 l, BsdfValue& value) {
   vec3 below(l.x, l.y, -l.z);
   float common = d * cv * -cl / (b.view.z * denominator);
   value.specular = color.transmit * (common * ggx_shadowing(b.view, below, b.alpha));
-  value.specular_pdf = (1 - color.reflect_share) * ggx_masking(b.view, b.alpha) * common * b.eta * b.eta;
+  value.specular_pdf =
+      (1 - color.reflect_share) * ggx_masking(b.view, b.alpha) * common * b.eta * b.eta;
 }
 
 BsdfSample sample_smooth(const Bsdf& b, float u) {
@@ -123,8 +129,10 @@ vec3 sample_rough(const Bsdf& b, Sampler& sampler) {
   float cosine = dot(b.view, h);
   if (cosine <= 0) return vec3(0);
   vec3 reflected = 2 * cosine * h - b.view;
-  if (u < facet_color(b, cosine).reflect_share) return reflected.z > 0 ? to_world(b, reflected) : vec3(0);
-  if (b.thin) return reflected.z > 0 ? to_world(b, {reflected.x, reflected.y, -reflected.z}) : vec3(0);
+  if (u < facet_color(b, cosine).reflect_share)
+    return reflected.z > 0 ? to_world(b, reflected) : vec3(0);
+  if (b.thin)
+    return reflected.z > 0 ? to_world(b, {reflected.x, reflected.y, -reflected.z}) : vec3(0);
   vec3 l;
   if (!refract_at(b.view, h, b.eta, l) || l.z >= 0) return vec3(0);
   return to_world(b, normalize(l));
@@ -195,8 +203,8 @@ BsdfValue eval_bsdf(const Bsdf& b, vec3 direction) {
   if (l.z > 1e-6f && side > 0) {
     value.diffuse_pdf = l.z / pi;
     if (has_diffuse(b))
-      value.diffuse =
-          b.diffuse * (value.diffuse_pdf * b.coat_passes * (1 - eval_albedo(b.coat, l.z)) * b.coat_scale);
+      value.diffuse = b.diffuse * (value.diffuse_pdf * b.coat_passes *
+                                   (1 - eval_albedo(b.coat, l.z)) * b.coat_scale);
     if (b.alpha > 0 && has_specular(b)) eval_reflection(b, l, value);
   } else if (l.z < -1e-6f && side < 0 && b.alpha > 0 && max_component(b.transmit) > 0) {
     b.thin ? eval_thin_transmission(b, l, value) : eval_refraction(b, l, value);
@@ -232,7 +240,8 @@ BsdfSample sample_bsdf(const Bsdf& b, Lobes lobes, Sampler& sampler) {
              (lobes != Lobes::diffuse ? value.specular : vec3(0));
   if (!(s.pdf > 0)) return {};
   s.weight = sum / s.pdf;
-  if (dot(s.direction, b.geometric_normal) < 0) s.bounce = b.thin ? Bounce::reflect : Bounce::refract;
+  if (dot(s.direction, b.geometric_normal) < 0)
+    s.bounce = b.thin ? Bounce::reflect : Bounce::refract;
   return s;
 }
 
@@ -252,7 +261,8 @@ vec3 pane_transmittance(const Surface& surface, const Material& material, vec3 d
   vec3 v = -direction;
   vec3 normal = usable_normal(surface.normal, surface.geometric_normal, v);
   float f = fresnel_dielectric(std::min(std::max(dot(v, normal), 1e-4f), 1.0f), index_of(material));
-  float share = (1 - glm::clamp(surface.metallic, 0.0f, 1.0f)) * glm::clamp(surface.transmission, 0.0f, 1.0f);
+  float share =
+      (1 - glm::clamp(surface.metallic, 0.0f, 1.0f)) * glm::clamp(surface.transmission, 0.0f, 1.0f);
   return unit_range(surface.base_color) * ((1 - f) * share);
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a surface scatters light: glTF 2.0 appendix B (a diffuse layer or a transmitting one under a rough
-// dielectric, mixed with a rough metal) with KHR_materials_transmission, ior and volume.
-//   diffuse     Lambert under the dielectric, coupled so that nothing is lost (Kulla and Conty 2017)
-//   reflection  GGX, exact Fresnel for the dielectric, Schlick for the metal
-//   transmission  thickness > 0: refraction by GGX (Walter et al. 2007); 0: a thin pane, the reflection
+// How a surface scatters light: glTF 2.0 appendix B (a diffuse layer or a transmitting one under a
+// rough dielectric, mixed with a rough metal) with KHR_materials_transmission, ior and volume.
+//   diffuse     Lambert under the dielectric, coupled so that nothing is lost (Kulla and Conty
+//   2017) reflection  GGX, exact Fresnel for the dielectric, Schlick for the metal transmission
+//   thickness > 0: refraction by GGX (Walter et al. 2007); 0: a thin pane, the reflection
 //               lobe mirrored to the other side, straight through where it is smooth
-// Lobes smoother than any pixel could tell (alpha below smooth_alpha) are perfect ("delta"): they have no
-// density and are found by sampling only. Directions point away from the surface, world space.
+// Lobes smoother than any pixel could tell (alpha below smooth_alpha) are perfect ("delta"): they
+// have no density and are found by sampling only. Directions point away from the surface, world
+// space.
 #pragma once
 #include "light/albedo_table.h"
 #include "light/sampler.h"
@@ -17,7 +18,8 @@ namespace wellspring {
 inline constexpr float smooth_alpha = 1e-3f;
 
 struct Bsdf {
-  vec3 tangent{1, 0, 0}, bitangent{0, 0, 1}, normal{0, 1, 0};  // shading frame, on the viewer's side
+  vec3 tangent{1, 0, 0}, bitangent{0, 0, 1},
+      normal{0, 1, 0};  // shading frame, on the viewer's side
   vec3 geometric_normal{0, 1, 0};
   vec3 view{0, 0, 1};    // local, z > 0
   vec3 diffuse{0};       // diffuse reflectance
@@ -25,18 +27,19 @@ struct Bsdf {
   vec3 metal_gain{1};    // what single scattering loses, given back
   float gloss_gain = 1;  // likewise for the reflection of rough glass; `transmit` has its own in it
   float metallic = 0;
-  vec3 transmit{0};      // tint of what goes through
-  float alpha = 1;       // 0: perfectly smooth
-  float eta = 1.5f;      // index of refraction beyond over here
+  vec3 transmit{0};  // tint of what goes through
+  float alpha = 1;   // 0: perfectly smooth
+  float eta = 1.5f;  // index of refraction beyond over here
   bool thin = true;
-  AlbedoRow coat;        // the dielectric's reflection in all, at this roughness
-  float coat_passes = 1;   // 1 - reflected, from the viewer's angle
-  float coat_scale = 1;    // 1 / (1 - average)
+  AlbedoRow coat;           // the dielectric's reflection in all, at this roughness
+  float coat_passes = 1;    // 1 - reflected, from the viewer's angle
+  float coat_scale = 1;     // 1 / (1 - average)
   float diffuse_share = 1;  // probability that sampling takes the diffuse lobe
 };
 
 // `direction`: of the ray that found the surface. `albedo`: dielectric_albedo(material.ior).
-Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction, const DielectricAlbedo& albedo);
+Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
+               const DielectricAlbedo& albedo);
 
 bool has_diffuse(const Bsdf& bsdf);
 bool has_specular(const Bsdf& bsdf);
@@ -54,7 +57,11 @@ enum class Lobes : uint8_t { diffuse, specular, all };
 // Density of sample_bsdf(bsdf, lobes, ...) for a value of eval_bsdf.
 float sample_bsdf_pdf(const Bsdf& bsdf, const BsdfValue& value, Lobes lobes);
 
-enum class Bounce : uint8_t { reflect, refract, pass };  // pass: straight through a thin smooth pane
+enum class Bounce : uint8_t {
+  reflect,
+  refract,
+  pass
+};  // pass: straight through a thin smooth pane
 struct BsdfSample {
   vec3 direction{0};
   vec3 weight{0};  // value * |cosine| / density; zero: the path ends

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Technique `direct`: emission and the light that reaches a surface straight, seen also in chains of
-// perfect mirrors and glass. No light between rough surfaces.
+// Technique `direct`: emission and the light that reaches a surface straight, seen also in chains
+// of perfect mirrors and glass. No light between rough surfaces.
 #include "light/technique_list.h"
 #include "light/walk.h"
 

@@ -22,7 +22,9 @@ vec3 look_up(const EnvironmentLight& light, vec2 uv) {
 }
 
 // cos of the polar angle at a row's upper edge.
-float edge(const EnvironmentLight& light, int row) { return std::cos(pi * float(row) / float(light.rows)); }
+float edge(const EnvironmentLight& light, int row) {
+  return std::cos(pi * float(row) / float(light.rows));
+}
 
 }  // namespace
 
@@ -37,7 +39,8 @@ EnvironmentLight make_environment_light(const Scene& scene) {
   light.image = &scene.images[size_t(index)];
   light.columns = std::min(light.image->width, most_columns);
   light.rows = std::min(light.image->height, most_rows);
-  // Several look-ups a cell, so that a picture finer than the grid and the filter's reach both count.
+  // Several look-ups a cell, so that a picture finer than the grid and the filter's reach both
+  // count.
   int across = std::clamp(2 * light.image->width / light.columns, 2, 16);
   int down = std::clamp(2 * light.image->height / light.rows, 2, 16);
   std::vector<float> weights;
@@ -48,13 +51,15 @@ EnvironmentLight make_environment_light(const Scene& scene) {
       float sum = 0;
       for (int j = 0; j < down; j++)
         for (int i = 0; i < across; i++)
-          sum += luminance(look_up(light, {(float(x) + (float(i) + 0.5f) / float(across)) / float(light.columns),
-                                           (float(y) + (float(j) + 0.5f) / float(down)) / float(light.rows)}));
+          sum += luminance(
+              look_up(light, {(float(x) + (float(i) + 0.5f) / float(across)) / float(light.columns),
+                              (float(y) + (float(j) + 0.5f) / float(down)) / float(light.rows)}));
       weights.push_back(sum / float(across * down) * solid);
     }
   }
   light.cells = make_alias_table(weights);
-  light.mean_luminance = float(light.cells.total / (2.0 * light.columns)) * luminance(light.radiance);
+  light.mean_luminance =
+      float(light.cells.total / (2.0 * light.columns)) * luminance(light.radiance);
   if (!(luminance(light.radiance) > 0)) light.cells = {};
   return light;
 }
@@ -82,7 +87,8 @@ float sample_environment_pdf(const EnvironmentLight& light, vec3 direction) {
   int column = std::clamp(int(uv.x * float(light.columns)), 0, light.columns - 1);
   int row = std::clamp(int(uv.y * float(light.rows)), 0, light.rows - 1);
   float solid = (edge(light, row) - edge(light, row + 1)) * 2 * pi / float(light.columns);
-  return light.cells.cells[size_t(row) * size_t(light.columns) + size_t(column)].probability / solid;
+  return light.cells.cells[size_t(row) * size_t(light.columns) + size_t(column)].probability /
+         solid;
 }
 
 }  // namespace wellspring

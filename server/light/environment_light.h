@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light from infinity: its radiance by direction, and for pictures a choice of direction by brightness
-// (a grid over the latitude-longitude picture, uniform in solid angle within a cell).
+// Light from infinity: its radiance by direction, and for pictures a choice of direction by
+// brightness (a grid over the latitude-longitude picture, uniform in solid angle within a cell).
 #pragma once
 #include "light/alias_table.h"
 #include "light/sampler.h"
@@ -26,7 +26,8 @@ struct EnvironmentSample {
   vec3 direction{0};
   float pdf = 0;  // over solid angle
 };
-// Only where there are cells; constant light is found by scattering, which no choice of ours can better.
+// Only where there are cells; constant light is found by scattering, which no choice of ours can
+// better.
 EnvironmentSample sample_environment(const EnvironmentLight& light, Sampler& sampler);
 float sample_environment_pdf(const EnvironmentLight& light, vec3 direction);
 

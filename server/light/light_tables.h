@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What make_lights() gathers from a world: every emitting triangle in world space with its chance of being
-// picked, punctual lights, the environment, and what the shading loop wants to know of each material.
+// What make_lights() gathers from a world: every emitting triangle in world space with its chance
+// of being picked, punctual lights, the environment, and what the shading loop wants to know of
+// each material.
 #pragma once
 #include <vector>
 
@@ -33,14 +34,14 @@ struct MaterialTraits {
 };
 
 struct LightTables {
-  std::vector<EmitterTriangle> emitters;     // whole instances, in order of their triangles
-  AliasTable emitter_choice;                 // by power
-  std::vector<uint32_t> first_emitter;       // of each instance, or no_emitter
+  std::vector<EmitterTriangle> emitters;  // whole instances, in order of their triangles
+  AliasTable emitter_choice;              // by power
+  std::vector<uint32_t> first_emitter;    // of each instance, or no_emitter
   EnvironmentLight environment;
-  std::vector<PunctualLight> punctual;       // those of any power
-  std::vector<SpotCone> cones;               // of each of them
-  float emitter_share = 0;      // of samples spent on emitters; the rest of area light is environment
-  float area_share = 1;         // where one light is sampled: emitters and environment against punctual
+  std::vector<PunctualLight> punctual;  // those of any power
+  std::vector<SpotCone> cones;          // of each of them
+  float emitter_share = 0;  // of samples spent on emitters; the rest of area light is environment
+  float area_share = 1;     // where one light is sampled: emitters and environment against punctual
   std::vector<MaterialTraits> materials;
   bool any_pane = false;
 };

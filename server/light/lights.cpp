@@ -22,7 +22,8 @@ vec3 mean_emission(const World& world, const EmitterTriangle& e, int look_ups) {
   ray.direction = -e.normal;
   for (int i = 0; i < look_ups; i++) {
     // Points of a rank-1 lattice (Korobov; the plastic number), folded into the triangle.
-    float a = std::fmod(0.5f + float(i) * 0.7548776662f, 1.0f), b = std::fmod(0.5f + float(i) * 0.5698402910f, 1.0f);
+    float a = std::fmod(0.5f + float(i) * 0.7548776662f, 1.0f),
+          b = std::fmod(0.5f + float(i) * 0.5698402910f, 1.0f);
     if (a + b > 1) a = 1 - a, b = 1 - b;
     Hit hit;
     hit.t = 1;
@@ -36,28 +37,32 @@ vec3 mean_emission(const World& world, const EmitterTriangle& e, int look_ups) {
 }
 
 // Texels of the emission's picture that a triangle covers.
-float texels_covered(const Scene& scene, const Mesh& mesh, const TextureRef& reference, uvec3 corner) {
+float texels_covered(const Scene& scene, const Mesh& mesh, const TextureRef& reference,
+                     uvec3 corner) {
   if (reference.texture < 0 || mesh.uv[reference.uv_set].empty()) return 1;
   int index = scene.textures[size_t(reference.texture)].image;
   if (index < 0) return 1;
   const Image& image = scene.images[size_t(index)];
   const auto& uv = mesh.uv[reference.uv_set];
   auto texel = [&](uint32_t v) {
-    return vec2(reference.uv_transform * vec3(uv[v], 1)) * vec2(float(image.width), float(image.height));
+    return vec2(reference.uv_transform * vec3(uv[v], 1)) *
+           vec2(float(image.width), float(image.height));
   };
   vec2 a = texel(corner.y) - texel(corner.x), b = texel(corner.z) - texel(corner.x);
   return 0.5f * std::abs(a.x * b.y - a.y * b.x);
 }
 
 // The emission at one place of a uniform emitter, or an estimate of its mean.
-void gather_instance(const World& world, uint32_t instance, LightTables& tables, std::vector<float>& power) {
+void gather_instance(const World& world, uint32_t instance, LightTables& tables,
+                     std::vector<float>& power) {
   const Mesh& mesh = world.mesh_of(instance);
   const Material& material = world.material_of(instance);
   tables.first_emitter[instance] = uint32_t(tables.emitters.size());
   bool uniform = material.alpha_mode == AlphaMode::opaque &&
                  (material.unlit ? material.base_color_texture.texture < 0 && mesh.colors.empty()
                                  : material.emission_texture.texture < 0);
-  const TextureRef& picture = material.unlit ? material.base_color_texture : material.emission_texture;
+  const TextureRef& picture =
+      material.unlit ? material.base_color_texture : material.emission_texture;
   // Big pictures on big meshes: a bounded amount of work in all.
   float budget = 4e6f / float(std::max<size_t>(mesh.triangles.size(), 1));
   for (uint32_t t = 0; t < mesh.triangles.size(); t++) {
@@ -68,13 +73,16 @@ void gather_instance(const World& world, uint32_t instance, LightTables& tables,
     e.edge1 = eval_position(world, instance, t, {1, 0}) - e.corner;
     e.edge2 = eval_position(world, instance, t, {0, 1}) - e.corner;
     e.normal = eval_face(world, instance, t, &e.area);
-    e.extent = max_component(glm::max(glm::abs(e.corner), glm::max(glm::abs(e.corner + e.edge1),
-                                                                   glm::abs(e.corner + e.edge2))));
+    e.extent = max_component(glm::max(
+        glm::abs(e.corner), glm::max(glm::abs(e.corner + e.edge1), glm::abs(e.corner + e.edge2))));
     e.uniform = uniform;
     e.double_sided = material.double_sided || material.unlit;
     vec3 mean{0};
     if (std::isfinite(e.area) && e.area > 0) {
-      float look_ups = uniform ? 1 : std::min(texels_covered(world.scene(), mesh, picture, mesh.triangles[t]), budget);
+      float look_ups =
+          uniform
+              ? 1
+              : std::min(texels_covered(world.scene(), mesh, picture, mesh.triangles[t]), budget);
       mean = mean_emission(world, e, int(std::clamp(look_ups, uniform ? 1.0f : 4.0f, 256.0f)));
       e.emission = uniform ? mean : vec3(0);
     }
@@ -93,7 +101,8 @@ float power_of(const PunctualLight& light, float scene_radius) {
   return 0;
 }
 
-// The share of the first of two kinds of light; neither is starved, since power says little of one place.
+// The share of the first of two kinds of light; neither is starved, since power says little of one
+// place.
 float share_of(double first, double second) {
   if (!(first > 0)) return 0;
   if (!(second > 0)) return 1;
@@ -112,7 +121,8 @@ Lights make_lights(const World& world) {
   tables->first_emitter.assign(size_t(world.instance_count()), no_emitter);
   std::vector<float> power;
   for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
-    if (!world.is_moving(i) && is_emitter(world.material_of(i))) gather_instance(world, i, *tables, power);
+    if (!world.is_moving(i) && is_emitter(world.material_of(i)))
+      gather_instance(world, i, *tables, power);
   tables->emitter_choice = make_alias_table(power);
 
   Bounds bounds = scene_bounds(scene);
@@ -120,14 +130,16 @@ Lights make_lights(const World& world) {
   if (!std::isfinite(radius)) radius = 1;
   tables->environment = make_environment_light(scene);
   const EnvironmentLight& environment = tables->environment;
-  double environment_power =
-      environment.cells.cells.empty() ? 0 : double(environment.mean_luminance) * pi * pi * 4 * radius * radius;
+  double environment_power = environment.cells.cells.empty() ? 0
+                                                             : double(environment.mean_luminance) *
+                                                                   pi * pi * 4 * radius * radius;
   tables->emitter_share = share_of(tables->emitter_choice.total, environment_power);
 
   double punctual_power = 0;
   for (const PunctualLight& light : scene.lights) {
     float p = power_of(light, radius);
-    bool finite = is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
+    bool finite =
+        is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
     if (!(p > 0) || !std::isfinite(p) || !finite) continue;
     tables->punctual.push_back(light);
     float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
@@ -138,7 +150,8 @@ Lights make_lights(const World& world) {
 
   for (const Material& material : scene.materials) {
     bool pane = material.transmission > 0 && !(material.thickness > 0);
-    tables->materials.push_back({&dielectric_albedo(material.ior == 0 ? 1e6f : material.ior), pane});
+    tables->materials.push_back(
+        {&dielectric_albedo(material.ior == 0 ? 1e6f : material.ior), pane});
     tables->any_pane = tables->any_pane || pane;
   }
   return {tables, std::make_shared<std::atomic<uint64_t>>(0), nullptr};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All light sources of a world, ready to be sampled: emissive triangles, punctual lights, environment.
-// Built once per scene (moving meshes do not emit).
+// All light sources of a world, ready to be sampled: emissive triangles, punctual lights,
+// environment. Built once per scene (moving meshes do not emit).
 #pragma once
 #include <atomic>
 #include <memory>

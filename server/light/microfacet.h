@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// GGX microfacets, isotropic, in a frame with z along the normal: distribution, shadowing, sampling of
-// visible normals; and Fresnel's equations. alpha = perceptual roughness squared, > 0.
+// GGX microfacets, isotropic, in a frame with z along the normal: distribution, shadowing, sampling
+// of visible normals; and Fresnel's equations. alpha = perceptual roughness squared, > 0.
 #pragma once
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a technique is asked (Request) and what it answers (Sample). The answer keeps apart what the
-// render cache treats differently: reflectance, light that is smooth and does not depend on the view,
-// and the rest. Radiance towards the eye = albedo * smooth + rest.
+// render cache treats differently: reflectance, light that is smooth and does not depend on the
+// view, and the rest. Radiance towards the eye = albedo * smooth + rest.
 #pragma once
 #include <cstdint>
 
@@ -15,28 +15,29 @@ struct Request {
   Ray ray;
   uint32_t pixel = 0;               // y * width + x of the view that asked
   uint32_t resample = no_cache_id;  // cached point this ray passes exactly through, if any
-  uint64_t seed = 0;                // sample_seed(...): the whole sample is a function of ray and seed
+  uint64_t seed = 0;  // sample_seed(...): the whole sample is a function of ray and seed
 };
 
 enum SampleFlags : uint8_t {
-  sample_hit = 1,       // something was hit; else position is the ray's unit direction (at infinity)
+  sample_hit = 1,  // something was hit; else position is the ray's unit direction (at infinity)
   sample_specular = 2,  // a mirror, glass or polished metal: the picture there moves with the view
-  sample_moving = 4,    // on a moving mesh: (instance, triangle, barycentric) place it in later ticks
+  sample_moving = 4,  // on a moving mesh: (instance, triangle, barycentric) place it in later ticks
 };
 
-// Clear thin panes (a vitrine's glass) are looked through: the sample describes what is behind them, `albedo`
-// tinted by the panes, and `rest` carries their mirror image. Mirrors and solid glass are described where they
-// are, with everything in `rest`.
+// Clear thin panes (a vitrine's glass) are looked through: the sample describes what is behind
+// them, `albedo` tinted by the panes, and `rest` carries their mirror image. Mirrors and solid
+// glass are described where they are, with everything in `rest`.
 struct Sample {
   vec3 position{0};
-  vec3 normal{0};  // shading normal, unit
+  vec3 normal{0};      // shading normal, unit
   float distance = 0;  // along the ray; infinity: nothing was hit
   uint32_t object = 0;
   uint32_t instance = 0, triangle = 0;
   vec2 barycentric{0};
   vec3 albedo{0};  // diffuse reflectance, textured
   vec3 smooth{0};  // diffusely reflected light over albedo: indirect, area lights, environment
-  vec3 rest{0};    // emission, specular, and diffusely reflected light of punctual lights (sharp shadows)
+  vec3 rest{
+      0};  // emission, specular, and diffusely reflected light of punctual lights (sharp shadows)
   uint8_t flags = 0;
   vec3 radiance() const { return albedo * smooth + rest; }
 };

@@ -51,13 +51,14 @@ LightSample sample_emitter(const Transport& transport, const Surface& from, Samp
     light.radiance = surface_emission(shown, material) * cover;
   }
   light.target = offset_origin(place, -light.direction);
-  light.pdf = tables.emitter_share * tables.emitter_choice.cells[pick.index].probability * distance2 /
-              (cosine * e.area);
+  light.pdf = tables.emitter_share * tables.emitter_choice.cells[pick.index].probability *
+              distance2 / (cosine * e.area);
   return light;
 }
 
 // glTF KHR_lights_punctual: inverse square, range window, cone.
-LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot, const Surface& from) {
+LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
+                          const Surface& from) {
   LightSample light;
   if (punctual.type == PunctualType::directional) {
     light.direction = -punctual.direction;
@@ -90,9 +91,11 @@ LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot, c
 
 LightSample sample_area_light(const Transport& transport, const Surface& from, Sampler& sampler) {
   const LightTables& tables = transport.tables;
-  bool emitters = !tables.emitter_choice.cells.empty(), sky = !tables.environment.cells.cells.empty();
+  bool emitters = !tables.emitter_choice.cells.empty(),
+       sky = !tables.environment.cells.cells.empty();
   if (!emitters && !sky) return {};
-  if (emitters && (!sky || sampler.next() < tables.emitter_share)) return sample_emitter(transport, from, sampler);
+  if (emitters && (!sky || sampler.next() < tables.emitter_share))
+    return sample_emitter(transport, from, sampler);
   EnvironmentSample s = sample_environment(tables.environment, sampler);
   LightSample light;
   light.direction = s.direction;
@@ -108,24 +111,24 @@ float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 direction, c
   float cosine = std::abs(dot(direction, e.normal));
   if (!(e.area > 0) || cosine < 1e-7f) return 0;
   vec3 line = met.position - from;
-  return tables.emitter_share * tables.emitter_choice.cells[first + met.triangle].probability * dot(line, line) /
-         (cosine * e.area);
+  return tables.emitter_share * tables.emitter_choice.cells[first + met.triangle].probability *
+         dot(line, line) / (cosine * e.area);
 }
 
 float sample_sky_pdf(const LightTables& tables, vec3 direction) {
   return (1 - tables.emitter_share) * sample_environment_pdf(tables.environment, direction);
 }
 
-LightSample sample_punctual_light(const Transport& transport, const Surface& from, vec3 normal, bool through,
-                                  Sampler& sampler) {
+LightSample sample_punctual_light(const Transport& transport, const Surface& from, vec3 normal,
+                                  bool through, Sampler& sampler) {
   const std::vector<PunctualLight>& lights = transport.tables.punctual;
   constexpr size_t most = 16;
   // More lights than candidates: every n-th from a random start, each with the same chance.
   size_t count = lights.size(), taken = std::min(count, most);
   float step = float(count) / float(taken);
   float start = count > most ? sampler.next() : 0;
-  // Two draws, near lights and distant ones, and then one of the two: the sun outshines every lamp wherever
-  // it would shine, and indoors it rarely does, so it may not crowd the lamps out.
+  // Two draws, near lights and distant ones, and then one of the two: the sun outshines every lamp
+  // wherever it would shine, and indoors it rarely does, so it may not crowd the lamps out.
   LightSample drawn[2];
   float drawn_effect[2] = {0, 0}, sum[2] = {0, 0};
   for (size_t i = 0; i < taken; i++) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One light seen from one place, and whether anything stands between. Two kinds, because only the first
-// can also be met by a scattered ray: area light (emitting triangles, environment pictures) and punctual.
+// One light seen from one place, and whether anything stands between. Two kinds, because only the
+// first can also be met by a scattered ray: area light (emitting triangles, environment pictures)
+// and punctual.
 #pragma once
 #include "light/bsdf.h"
 #include "light/light_tables.h"
@@ -19,7 +20,7 @@ struct LightSample {
   vec3 radiance{0};  // punctual: intensity over squared distance, as if pdf were 1
   vec3 target{0};    // end of the shadow ray, already clear of the emitter
   float distance = std::numeric_limits<float>::infinity();
-  float pdf = 0;     // over solid angle; 0: nothing
+  float pdf = 0;  // over solid angle; 0: nothing
 };
 
 // Picks a triangle by power, or a direction of the environment by brightness.
@@ -28,10 +29,10 @@ LightSample sample_area_light(const Transport& transport, const Surface& from, S
 float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 direction, const Surface& met);
 float sample_sky_pdf(const LightTables& tables, vec3 direction);
 
-// Picks one of up to sixteen candidates by its unshadowed effect on a surface that scatters to its own
-// side, or (`through`) to both sides. `radiance` is already divided by the chance of the pick.
-LightSample sample_punctual_light(const Transport& transport, const Surface& from, vec3 normal, bool through,
-                                  Sampler& sampler);
+// Picks one of up to sixteen candidates by its unshadowed effect on a surface that scatters to its
+// own side, or (`through`) to both sides. `radiance` is already divided by the chance of the pick.
+LightSample sample_punctual_light(const Transport& transport, const Surface& from, vec3 normal,
+                                  bool through, Sampler& sampler);
 
 // What part of the light arrives: 0 or 1, or the tint of the thin panes in between.
 vec3 eval_visibility(const Transport& transport, const Surface& from, const LightSample& light);

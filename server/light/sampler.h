@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a sample's random numbers come from: one stream per Request::seed, drawn in order, so that a
-// sample is a function of its ray and seed alone. Techniques draw through here only.
+// Where a sample's random numbers come from: one stream per Request::seed, drawn in order, so that
+// a sample is a function of its ray and seed alone. Techniques draw through here only.
 #pragma once
 #include "base/rng.h"
 #include "base/vec.h"

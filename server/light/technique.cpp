@@ -15,7 +15,9 @@ namespace {
 constexpr Technique list[] = {
     {"path", "unbiased path tracing: all light, the reference", trace_path},
     {"direct", "emission, direct light and chains of perfect mirrors and glass", trace_direct},
-    {"gather", "path to the first rough surface beyond the eye's, kept light from there: quick, a little biased",
+    {"gather",
+     "path to the first rough surface beyond the eye's, kept light from there: quick, a little "
+     "biased",
      trace_gather, prepare_gather},
 };
 
@@ -48,7 +50,8 @@ Sample finish_sample(const Lights& lights, const TransportSettings& settings, Sa
 }
 
 void trace(const Technique& technique, const World& world, const Lights& lights,
-           const TransportSettings& settings, std::span<const Request> requests, std::span<Sample> samples) {
+           const TransportSettings& settings, std::span<const Request> requests,
+           std::span<Sample> samples) {
   if (requests.size() != samples.size()) throw std::invalid_argument("trace: one sample a request");
   parallel_ranges(int(requests.size()), 64, [&](int begin, int end) {
     for (int i = begin; i < end; i++)
@@ -66,8 +69,8 @@ Request pixel_request(const View& view, uint64_t seed, int x, int y, int index) 
   return request;
 }
 
-Frame render_still(const Technique& technique, const World& world, const Lights& lights, const View& view,
-                   const StillSettings& settings) {
+Frame render_still(const Technique& technique, const World& world, const Lights& lights,
+                   const View& view, const StillSettings& settings) {
   if (view.width < 1 || view.height < 1 || settings.spp < 1)
     throw std::invalid_argument("render_still: a picture has pixels, and pixels have samples");
   Frame frame;

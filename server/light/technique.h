@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The techniques, one explicit list. A technique turns requests into samples; it has no state of its own
-// beyond Lights, so samples can be computed on any thread, in any order, and replayed one by one.
+// The techniques, one explicit list. A technique turns requests into samples; it has no state of
+// its own beyond Lights, so samples can be computed on any thread, in any order, and replayed one
+// by one.
 #pragma once
 #include <span>
 #include <string_view>
@@ -13,18 +14,19 @@
 namespace wellspring {
 
 struct TransportSettings {
-  int max_depth = 8;    // path edges counted from the eye; 1: emission only, 2: direct light
-  float clamp = 0;      // >0: bound of one sample's radiance (biased, for display); 0: none
+  int max_depth = 8;  // path edges counted from the eye; 1: emission only, 2: direct light
+  float clamp = 0;    // >0: bound of one sample's radiance (biased, for display); 0: none
 };
 
 struct Technique {
   const char* name;
   const char* summary;
-  // Never throws; results are finite and not negative (dropped samples count in Lights::bad_samples).
+  // Never throws; results are finite and not negative (dropped samples count in
+  // Lights::bad_samples).
   Sample (*trace)(const World& world, const Lights& lights, const TransportSettings& settings,
                   const Request& request);
-  // What must be known before the first sample, for eyes near `places` (scene coordinates); may take
-  // seconds. nullptr: nothing.
+  // What must be known before the first sample, for eyes near `places` (scene coordinates); may
+  // take seconds. nullptr: nothing.
   void (*prepare)(const World& world, std::span<const vec3> places, Lights& lights) = nullptr;
 };
 
@@ -33,10 +35,11 @@ const Technique* find_technique(std::string_view name);  // nullptr: no such nam
 
 // samples[i] answers requests[i]; all cores.
 void trace(const Technique& technique, const World& world, const Lights& lights,
-           const TransportSettings& settings, std::span<const Request> requests, std::span<Sample> samples);
+           const TransportSettings& settings, std::span<const Request> requests,
+           std::span<Sample> samples);
 
-// A whole picture, `spp` samples a pixel, box filter over the pixel, all cores; the same bits whatever
-// the thread count.
+// A whole picture, `spp` samples a pixel, box filter over the pixel, all cores; the same bits
+// whatever the thread count.
 struct StillSettings {
   int spp = 16;
   uint64_t seed = 1;
@@ -44,7 +47,7 @@ struct StillSettings {
 };
 // Sample `index` of pixel (x, y) as render_still asks for it: tracing it alone gives the same bits.
 Request pixel_request(const View& view, uint64_t seed, int x, int y, int index);
-Frame render_still(const Technique& technique, const World& world, const Lights& lights, const View& view,
-                   const StillSettings& settings);
+Frame render_still(const Technique& technique, const World& world, const Lights& lights,
+                   const View& view, const StillSettings& settings);
 
 }  // namespace wellspring

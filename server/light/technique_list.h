@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The trace functions that technique.cpp lists, one file each, and the gate that every sample passes.
+// The trace functions that technique.cpp lists, one file each, and the gate that every sample
+// passes.
 #pragma once
 #include "light/technique.h"
 

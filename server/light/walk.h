@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The random walk that `path` and `direct` share: next-event estimation and scattering combined by multiple
-// importance sampling (Veach 1997, chapter 9), with thin smooth panes passed straight by light and eye
-// alike. The first surface is treated with more care, because its parts are told apart in the Sample.
+// The random walk that `path` and `direct` share: next-event estimation and scattering combined by
+// multiple importance sampling (Veach 1997, chapter 9), with thin smooth panes passed straight by
+// light and eye alike. The first surface is treated with more care, because its parts are told
+// apart in the Sample.
 #pragma once
 #include "light/sample_light.h"
 #include "light/technique.h"
@@ -9,7 +10,7 @@
 namespace wellspring {
 
 struct WalkRules {
-  int max_depth = 8;     // edges, panes passed straight not counted
+  int max_depth = 8;          // edges, panes passed straight not counted
   int scatterings = 1 << 30;  // surfaces that may scatter other than perfectly; then one edge more
 };
 
@@ -17,21 +18,21 @@ struct WalkRules {
 struct Walk {
   Ray ray;
   vec3 throughput{1};
-  int depth = 1;        // this ray's number, counted from the eye
-  float pdf = 0;        // density of its direction where it last scattered; 0: perfect, or the eye
-  vec3 from{0};         // there
-  float area_share = 0;   // chance that area light was sampled there; 0: it was not
-  int medium = -1;      // material of the solid it runs in
-  float density = 1;    // radiance is denser by this factor in there (squared index), for the roulette
+  int depth = 1;         // this ray's number, counted from the eye
+  float pdf = 0;         // density of its direction where it last scattered; 0: perfect, or the eye
+  vec3 from{0};          // there
+  float area_share = 0;  // chance that area light was sampled there; 0: it was not
+  int medium = -1;       // material of the solid it runs in
+  float density = 1;     // in there radiance is denser by this (squared index), says the roulette
   int scattered = 0;
-  int panes = 0;        // passed in a row
+  int panes = 0;  // passed in a row
 };
 
 // Radiance that comes back along the walk, times its throughput.
 vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler);
 
-// Emission met by the walk's ray, weighted against the chance that light sampling had found it where the
-// ray left.
+// Emission met by the walk's ray, weighted against the chance that light sampling had found it
+// where the ray left.
 vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
                        const Material& material);
 vec3 walk_met_sky(const Transport& transport, const Walk& walk);
@@ -39,15 +40,17 @@ vec3 walk_met_sky(const Transport& transport, const Walk& walk);
 // The walk's next ray after `surface` scattered it; false: it ends here.
 bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered);
 
-// Light arriving at a surface from one area light and one punctual light, scattered towards the viewer.
+// Light arriving at a surface from one area light and one punctual light, scattered towards the
+// viewer.
 struct DirectLight {
   vec3 area_diffuse{0}, punctual_diffuse{0}, specular{0};
   vec3 sum() const { return area_diffuse + punctual_diffuse + specular; }
 };
-// `apart`: the caller samples the diffuse and specular lobes one by one (else as a mixture), and both kinds
-// of light are sampled (else one of them, by area_share).
-DirectLight sample_direct_light(const Transport& transport, const Walk& walk, const Surface& surface,
-                                const Bsdf& bsdf, bool apart, Sampler& sampler);
+// `apart`: the caller samples the diffuse and specular lobes one by one (else as a mixture), and
+// both kinds of light are sampled (else one of them, by area_share).
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
+                                const Surface& surface, const Bsdf& bsdf, bool apart,
+                                Sampler& sampler);
 
 // Share of light left after a length of the solid it runs in (Beer's law).
 vec3 eval_absorption(const Transport& transport, int medium, float length);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uniform numbers in [0, 1) bent into directions and points, with densities; and the frames they live in.
+// Uniform numbers in [0, 1) bent into directions and points, with densities; and the frames they
+// live in.
 #pragma once
 #include <cmath>
 
@@ -33,8 +34,9 @@ inline vec2 sample_triangle(vec2 u) {
   return {root * (1 - u.y), root * u.y};
 }
 
-// Weight of a sample drawn with density `own` where another strategy could have drawn it with density
-// `other`: the power heuristic with exponent 2 (Veach 1997, section 9.2.4). An infinite density wins.
+// Weight of a sample drawn with density `own` where another strategy could have drawn it with
+// density `other`: the power heuristic with exponent 2 (Veach 1997, section 9.2.4). An infinite
+// density wins.
 inline float mis_weight(float own, float other) {
   if (other <= 0) return 1;
   float ratio = other / own;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small words to write a scene in code: materials, quads, boxes, spheres. Shared by unit tests and benches.
+// Small words to write a scene in code: materials, quads, boxes, spheres. Shared by unit tests and
+// benches.
 #pragma once
 #include <cmath>
 
@@ -59,11 +60,13 @@ inline int add_material(Scene& scene, Material material) {
 inline int add_mesh(Scene& scene, Mesh mesh, const char* object, mat4 to_world = mat4(1)) {
   scene.meshes.push_back(std::move(mesh));
   scene.objects.push_back(object);
-  scene.instances.push_back({int(scene.meshes.size()) - 1, to_world, uint32_t(scene.objects.size()) - 1});
+  scene.instances.push_back(
+      {int(scene.meshes.size()) - 1, to_world, uint32_t(scene.objects.size()) - 1});
   return int(scene.instances.size()) - 1;
 }
 
-// Two triangles over a, a+u, a+u+v, a+v; the front is where cross(u, v) points. uv runs along u and v.
+// Two triangles over a, a+u, a+u+v, a+v; the front is where cross(u, v) points. uv runs along u and
+// v.
 inline void append_quad(Mesh& mesh, vec3 a, vec3 u, vec3 v) {
   uint32_t first = uint32_t(mesh.positions.size());
   vec3 normal = normalize(cross(u, v));
@@ -75,7 +78,8 @@ inline void append_quad(Mesh& mesh, vec3 a, vec3 u, vec3 v) {
   mesh.triangles.push_back({first, first + 1, first + 2});
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
-inline int add_quad(Scene& scene, int material, vec3 a, vec3 u, vec3 v, const char* object = "quad") {
+inline int add_quad(Scene& scene, int material, vec3 a, vec3 u, vec3 v,
+                    const char* object = "quad") {
   Mesh mesh;
   mesh.material = material;
   append_quad(mesh, a, u, v);

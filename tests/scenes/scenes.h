@@ -5,7 +5,8 @@
 
 namespace wellspring::scenes {
 
-// A closed box, 2 m a side about the origin, emission 1, albedo a: radiance is 1 / (1 - a) everywhere.
+// A closed box, 2 m a side about the origin, emission 1, albedo a: radiance is 1 / (1 - a)
+// everywhere.
 inline Scene make_furnace(float albedo) {
   Scene scene = empty_scene();
   Material m = diffuse(vec3(albedo));
@@ -26,7 +27,8 @@ inline Scene make_white_furnace(Material material, bool sphere = true) {
 
 // A Lambertian floor in the plane y = 0, 40 m a side, facing up.
 inline void add_floor(Scene& scene, float albedo) {
-  add_quad(scene, add_material(scene, diffuse(vec3(albedo))), {-20, 0, 20}, {40, 0, 0}, {0, 0, -40}, "floor");
+  add_quad(scene, add_material(scene, diffuse(vec3(albedo))), {-20, 0, 20}, {40, 0, 0}, {0, 0, -40},
+           "floor");
 }
 
 // A rectangle of the given radiance at height 1 over a floor of albedo 0.5, facing down:
@@ -34,12 +36,12 @@ inline void add_floor(Scene& scene, float albedo) {
 inline Scene make_plane_with_rect_light(float radiance) {
   Scene scene = empty_scene();
   add_floor(scene, 0.5f);
-  add_quad(scene, add_material(scene, emitter(vec3(radiance))), {-0.5f, 1, -0.5f}, {1.5f, 0, 0}, {0, 0, 1},
-           "light");
+  add_quad(scene, add_material(scene, emitter(vec3(radiance))), {-0.5f, 1, -0.5f}, {1.5f, 0, 0},
+           {0, 0, 1}, "light");
   return scene;
 }
-// Irradiance there at point p of the floor by Lambert's formula: E = L/2 sum of edge angles times the
-// cosine between the edge plane's normal and the floor's.
+// Irradiance there at point p of the floor by Lambert's formula: E = L/2 sum of edge angles times
+// the cosine between the edge plane's normal and the floor's.
 inline double rect_light_irradiance(dvec3 p, double radiance) {
   dvec3 corner[4] = {{-0.5, 1, -0.5}, {1, 1, -0.5}, {1, 1, 0.5}, {-0.5, 1, 0.5}};
   double sum = 0;
@@ -57,8 +59,8 @@ inline Scene make_plane_with_punctual(PunctualLight light, float albedo = 0.5f) 
   return scene;
 }
 
-// The Cornell box in metres (Cornell University's measured layout, colours as linear Rec. 709), its open
-// side towards +Z: x in [-0.28, 0.28], y in [0, 0.55], z in [-0.56, 0].
+// The Cornell box in metres (Cornell University's measured layout, colours as linear Rec. 709), its
+// open side towards +Z: x in [-0.28, 0.28], y in [0, 0.55], z in [-0.56, 0].
 inline Scene make_cornell_box() {
   Scene scene = empty_scene();
   int white = add_material(scene, diffuse({0.73f, 0.73f, 0.73f}));

@@ -25,7 +25,8 @@ Image8 gradient(int width, int height) {
 
 int largest_difference(const Image8& a, const Image8& b) {
   int largest = 0;
-  for (size_t i = 0; i < a.rgb.size(); i++) largest = std::max(largest, std::abs(a.rgb[i] - b.rgb[i]));
+  for (size_t i = 0; i < a.rgb.size(); i++)
+    largest = std::max(largest, std::abs(a.rgb[i] - b.rgb[i]));
   return largest;
 }
 

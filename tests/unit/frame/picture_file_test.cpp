@@ -72,7 +72,8 @@ TEST_F(PictureFile, PfmIsBottomRowFirst) {
 }
 
 TEST_F(PictureFile, BigEndianAndGreyPfmAreRead) {
-  write_bytes(path("grey.pfm"), std::string("Pf\n2 1\n1.0\n") + std::string("\x3f\x80\0\0\x40\0\0\0", 8));
+  write_bytes(path("grey.pfm"),
+              std::string("Pf\n2 1\n1.0\n") + std::string("\x3f\x80\0\0\x40\0\0\0", 8));
   Frame frame = load_linear_picture(path("grey.pfm"));
   EXPECT_EQ(frame.color, (std::vector<vec3>{vec3(1), vec3(2)}));
 }
@@ -90,8 +91,10 @@ TEST_F(PictureFile, EightBitFormatsAreToneMapped) {
 }
 
 TEST_F(PictureFile, OnlyKnownNamesAreTaken) {
-  for (const char* name : {"a.png", "b.JPG", "x/y.jpeg", "c.pfm", "d.exr"}) EXPECT_TRUE(is_picture_name(name));
-  for (const char* name : {"", "png", "a.png/b", "a.gif", "a.", ".d/x"}) EXPECT_FALSE(is_picture_name(name));
+  for (const char* name : {"a.png", "b.JPG", "x/y.jpeg", "c.pfm", "d.exr"})
+    EXPECT_TRUE(is_picture_name(name));
+  for (const char* name : {"", "png", "a.png/b", "a.gif", "a.", ".d/x"})
+    EXPECT_FALSE(is_picture_name(name));
   EXPECT_THROW(save_picture(path("a.gif"), make_frame(), {}), LoadError);
   EXPECT_THROW(save_picture(path("a.png"), Frame{}, {}), LoadError);
 }
@@ -111,17 +114,16 @@ TEST_F(PictureFile, DamagedLinearPicturesAreRefused) {
   std::string exr = bytes_of(path("good.exr"));
   std::string damaged = exr;
   for (size_t i = 0; i < damaged.size(); i += 7) damaged[i] = char(damaged[i] ^ 0x5a);
-  std::pair<const char*, std::string> cases[] = {
-      {"empty.pfm", ""},
-      {"magic.pfm", "P6\n1 1\n255\nabc"},
-      {"short.pfm", "PF\n4 4\n-1.0\nabc"},
-      {"huge.pfm", "PF\n2000000000 2000000000\n-1.0\n"},
-      {"negative.pfm", "PF\n-4 4\n-1.0\n"},
-      {"scale.pfm", "PF\n1 1\nnan\n000000000000"},
-      {"empty.exr", ""},
-      {"noise.exr", std::string(500, 'x')},
-      {"cut.exr", exr.substr(0, exr.size() / 2)},
-      {"damaged.exr", damaged}};
+  std::pair<const char*, std::string> cases[] = {{"empty.pfm", ""},
+                                                 {"magic.pfm", "P6\n1 1\n255\nabc"},
+                                                 {"short.pfm", "PF\n4 4\n-1.0\nabc"},
+                                                 {"huge.pfm", "PF\n2000000000 2000000000\n-1.0\n"},
+                                                 {"negative.pfm", "PF\n-4 4\n-1.0\n"},
+                                                 {"scale.pfm", "PF\n1 1\nnan\n000000000000"},
+                                                 {"empty.exr", ""},
+                                                 {"noise.exr", std::string(500, 'x')},
+                                                 {"cut.exr", exr.substr(0, exr.size() / 2)},
+                                                 {"damaged.exr", damaged}};
   for (const auto& [name, bytes] : cases) {
     write_bytes(path(name), bytes);
     try {

@@ -82,7 +82,8 @@ TEST(Tonemap, ExposureMultipliesRadiance) {
 }
 
 TEST(Tonemap, WhatIsNoRadianceIsBlackAndInfinityIsWhite) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
+                  inf = std::numeric_limits<float>::infinity();
   EXPECT_EQ(shown(vec3(nan)), vec3(0));
   EXPECT_EQ(shown(vec3(-1, -inf, nan)), vec3(0));
   EXPECT_EQ(shown(vec3(inf)), vec3(255));
@@ -99,7 +100,8 @@ TEST(Tonemap, EveryPixelOfAnOddSizeIsWritten) {
   Frame frame;
   frame.width = 131;
   frame.height = 37;
-  for (int i = 0; i < frame.width * frame.height; i++) frame.color.push_back(vec3(float(i % 97) / 97));
+  for (int i = 0; i < frame.width * frame.height; i++)
+    frame.color.push_back(vec3(float(i % 97) / 97));
   Image8 image;
   image.rgb.assign(7, 9);  // reused memory of another size
   tonemap(frame, {}, image);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes whose radiance is known by formula; every technique that claims the scene, judged by a z-test.
+// Scenes whose radiance is known by formula; every technique that claims the scene, judged by a
+// z-test.
 #include "light/light_tables.h"
 #include "light/sample_light.h"
 #include "scenes/scenes.h"
@@ -14,8 +15,8 @@ namespace {
 constexpr const char* both[] = {"path", "direct"};
 
 // Radiance of one ray into a scene, for both techniques.
-void expect_radiance(const Scene& scene, Ray ray, double expected, const char* what, int count = 20000,
-                     double longest_bar = 0.02) {
+void expect_radiance(const Scene& scene, Ray ray, double expected, const char* what,
+                     int count = 20000, double longest_bar = 0.02) {
   World world(scene);
   Lights lights = make_lights(world);
   for (const char* technique : both) {
@@ -41,11 +42,13 @@ TEST(Analytic, Furnace) {
     Lights lights = make_lights(world);
     TransportSettings settings;
     settings.max_depth = 1000;
-    Mean mean = trace_mean("path", world, lights, ray_towards({0.1f, 0.2f, -0.3f}, {1, 0.3f, 0.2f}), 40000, settings);
+    Mean mean = trace_mean("path", world, lights, ray_towards({0.1f, 0.2f, -0.3f}, {1, 0.3f, 0.2f}),
+                           40000, settings);
     expect_mean(mean, 1 / (1 - double(albedo)), "furnace");
     // n edges see the first n terms of the series.
     settings.max_depth = 3;
-    mean = trace_mean("path", world, lights, ray_towards({0.1f, 0.2f, -0.3f}, {1, 0.3f, 0.2f}), 20000, settings);
+    mean = trace_mean("path", world, lights, ray_towards({0.1f, 0.2f, -0.3f}, {1, 0.3f, 0.2f}),
+                      20000, settings);
     expect_mean(mean, 1 + albedo + albedo * albedo, "three terms of the furnace");
   }
 }
@@ -59,10 +62,12 @@ TEST(Analytic, RectangularLightByLambert) {
 }
 
 TEST(Analytic, SphereLight) {
-  // A sphere of radius r at distance d straight above: E = pi L (r/d)^2. 64 rings: 0.2 % less area at most.
+  // A sphere of radius r at distance d straight above: E = pi L (r/d)^2. 64 rings: 0.2 % less area
+  // at most.
   Scene scene = empty_scene();
   add_floor(scene, 0.5f);
-  add_mesh(scene, sphere_mesh(add_material(scene, emitter(vec3(4))), 0.5f, 64), "sphere", at({0, 2, 0}));
+  add_mesh(scene, sphere_mesh(add_material(scene, emitter(vec3(4))), 0.5f, 64), "sphere",
+           at({0, 2, 0}));
   World world(scene);
   Lights lights = make_lights(world);
   for (const char* technique : both) {
@@ -77,7 +82,8 @@ TEST(Analytic, PointLightInverseSquare) {
   for (float height : {0.5f, 1.0f, 4.0f}) {
     Scene scene = make_plane_with_punctual(point_light({1, height, 0}, 3));
     double d2 = 1 + double(height) * height, cosine = height / std::sqrt(d2);
-    expect_radiance(scene, ray_towards({0, 1, 1}, {0, 0, 0}), 0.5 / double(pi) * 3 * cosine / d2, "point");
+    expect_radiance(scene, ray_towards({0, 1, 1}, {0, 0, 0}), 0.5 / double(pi) * 3 * cosine / d2,
+                    "point");
   }
 }
 
@@ -87,7 +93,8 @@ TEST(Analytic, PointLightRange) {
   expect_radiance(make_plane_with_punctual(light), ray_towards({1, 1, 1}, {0, 0, 0}),
                   0.5 / double(pi) * 3 * (1 - 1.0 / 16), "range");
   light.range = 0.9f;
-  expect_radiance(make_plane_with_punctual(light), ray_towards({1, 1, 1}, {0, 0, 0}), 0, "out of range");
+  expect_radiance(make_plane_with_punctual(light), ray_towards({1, 1, 1}, {0, 0, 0}), 0,
+                  "out of range");
 }
 
 TEST(Analytic, DirectionalLight) {
@@ -109,8 +116,8 @@ TEST(Analytic, SpotCone) {
     double x = 2 * std::tan(angle), d2 = 4 + x * x, c = std::cos(angle);
     double t = glm::clamp((c - std::cos(0.6)) / (std::cos(0.3) - std::cos(0.6)), 0.0, 1.0);
     double expected = 0.5 / double(pi) * 8 * t * t * c / d2;
-    expect_radiance(make_plane_with_punctual(light), ray_towards({float(x), 1, 1}, {float(x), 0, 0}), expected,
-                    "spot");
+    expect_radiance(make_plane_with_punctual(light),
+                    ray_towards({float(x), 1, 1}, {float(x), 0, 0}), expected, "spot");
   }
 }
 
@@ -118,8 +125,10 @@ TEST(Analytic, ConstantEnvironmentOverAPlane) {
   Scene scene = empty_scene();
   add_floor(scene, 0.5f);
   scene.environment.radiance = {1, 2, 4};
-  expect_radiance(scene, ray_towards({1, 1, 1}, {0, 0, 0}), 0.5 * double(luminance({1, 2, 4})), "sky");
-  expect_radiance(scene, ray_towards({0, 1, 0}, {1, 2, 0}), double(luminance({1, 2, 4})), "sky itself");
+  expect_radiance(scene, ray_towards({1, 1, 1}, {0, 0, 0}), 0.5 * double(luminance({1, 2, 4})),
+                  "sky");
+  expect_radiance(scene, ray_towards({0, 1, 0}, {1, 2, 0}), double(luminance({1, 2, 4})),
+                  "sky itself");
 }
 
 TEST(Analytic, EnvironmentPictureOverAPlane) {
@@ -129,7 +138,8 @@ TEST(Analytic, EnvironmentPictureOverAPlane) {
   Image image;
   image.width = 32;
   image.height = 16;
-  for (int i = 0; i < 32 * 16; i++) image.texels.push_back(vec4(i % 32 < 8 ? vec3(20) : vec3(0.1f), 1));
+  for (int i = 0; i < 32 * 16; i++)
+    image.texels.push_back(vec4(i % 32 < 8 ? vec3(20) : vec3(0.1f), 1));
   scene.images.push_back(image);
   scene.environment = {vec3(1.5f), 0};
   EnvironmentLight sky = make_environment_light(scene);
@@ -138,19 +148,23 @@ TEST(Analytic, EnvironmentPictureOverAPlane) {
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {  // uniform in projected solid angle
       float r = std::sqrt((float(i) + 0.5f) / n), phi = 2 * pi * (float(j) + 0.5f) / n;
-      irradiance += double(eval_environment(sky, {r * std::cos(phi), std::sqrt(1 - r * r), r * std::sin(phi)}).x);
+      irradiance += double(
+          eval_environment(sky, {r * std::cos(phi), std::sqrt(1 - r * r), r * std::sin(phi)}).x);
     }
   irradiance *= double(pi) / (n * n);
-  expect_radiance(scene, ray_towards({1, 1, 1}, {0, 0, 0}), irradiance * 0.5 / double(pi), "sky picture", 40000);
+  expect_radiance(scene, ray_towards({1, 1, 1}, {0, 0, 0}), irradiance * 0.5 / double(pi),
+                  "sky picture", 40000);
 }
 
 TEST(Analytic, MirrorChainShowsTheLampUnchanged) {
-  // Two mirrors of reflectance 0.9 at normal incidence would be 0.81; Schlick raises it at 45 degrees.
+  // Two mirrors of reflectance 0.9 at normal incidence would be 0.81; Schlick raises it at 45
+  // degrees.
   Scene scene = empty_scene();
-  int mirror = add_material(scene, metal(vec3(0.9f), 0)), lamp = add_material(scene, emitter(vec3(7)));
-  add_quad(scene, mirror, {1, -1, 1}, {2, 2, 0}, {0, 0, -2});      // turns +X into +Y
-  add_quad(scene, mirror, {1, 5, 1}, {2, -2, 0}, {0, 0, -2});      // turns +Y into -X
-  add_quad(scene, lamp, {-3, 3, 1}, {0, 2, 0}, {0, 0, -2});        // faces +X
+  int mirror = add_material(scene, metal(vec3(0.9f), 0)),
+      lamp = add_material(scene, emitter(vec3(7)));
+  add_quad(scene, mirror, {1, -1, 1}, {2, 2, 0}, {0, 0, -2});  // turns +X into +Y
+  add_quad(scene, mirror, {1, 5, 1}, {2, -2, 0}, {0, 0, -2});  // turns +Y into -X
+  add_quad(scene, lamp, {-3, 3, 1}, {0, 2, 0}, {0, 0, -2});    // faces +X
   for (auto& m : scene.materials) m.double_sided = true;
   double f = 0.9 + 0.1 * std::pow(1 - std::sqrt(0.5), 5);
   expect_radiance(scene, ray_towards({-2, 0, 0}, {1, 0, 0}), 7 * f * f, "two mirrors", 100);
@@ -164,14 +178,15 @@ TEST(Analytic, LightBehindAPane) {
     return 0.5 * (a * a + b * b);
   };
   for (int panes : {1, 3}) {
-    // The pane lies flat between floor and light; looked at from below it, its mirror image adds nothing
-    // as `direct` light, so max_depth 2 is compared.
+    // The pane lies flat between floor and light; looked at from below it, its mirror image adds
+    // nothing as `direct` light, so max_depth 2 is compared.
     PunctualLight point = point_light({0.5f, 2, 0}, 6);
     Scene scene = make_plane_with_punctual(point);
     Material clear = glass(1.5f, 0, 0);
     clear.base_color = vec4(0.8f, 0.8f, 0.8f, 1);
     int pane = add_material(scene, clear);
-    for (int i = 0; i < panes; i++) add_quad(scene, pane, {-5, 1 + 0.1f * float(i), 5}, {10, 0, 0}, {0, 0, -10});
+    for (int i = 0; i < panes; i++)
+      add_quad(scene, pane, {-5, 1 + 0.1f * float(i), 5}, {10, 0, 0}, {0, 0, -10});
     double c = 2 / std::sqrt(4.25);
     double expected = 0.5 / double(pi) * 6 * c / 4.25 * std::pow(0.8 * (1 - fresnel(c)), panes);
     World world(scene);
@@ -179,8 +194,9 @@ TEST(Analytic, LightBehindAPane) {
     TransportSettings settings;
     settings.max_depth = 2;
     for (const char* technique : both)
-      expect_mean(trace_mean(technique, world, lights, ray_towards({0, 0.5f, 1}, {0, 0, 0}), 2000, settings), expected,
-                  "point light behind panes");
+      expect_mean(trace_mean(technique, world, lights, ray_towards({0, 0.5f, 1}, {0, 0, 0}), 2000,
+                             settings),
+                  expected, "point light behind panes");
   }
   Scene scene = make_plane_with_rect_light(10);
   Material clear = glass(1.5f, 0, 0);
@@ -204,8 +220,8 @@ TEST(Analytic, LightBehindAPane) {
   settings.max_depth = 2;
   Ray ray = ray_towards({0, 0.5f, 1}, {0, 0, 0});
   for (const char* technique : both) {
-    expect_mean(trace_mean(technique, world, lights, ray, 40000, settings), irradiance * 0.5 / double(pi),
-                "lamp behind a pane, both ways combined");
+    expect_mean(trace_mean(technique, world, lights, ray, 40000, settings),
+                irradiance * 0.5 / double(pi), "lamp behind a pane, both ways combined");
     expect_mean(trace_mean(technique, world, {blind, lights.bad_samples}, ray, 60000, settings),
                 irradiance * 0.5 / double(pi), "lamp behind a pane, by scattering alone");
   }
@@ -244,7 +260,8 @@ TEST(Analytic, GlassSlabInUniformLightIsInvisible) {
     Lights lights = make_lights(world);
     TransportSettings settings;
     settings.max_depth = 500;
-    Mean mean = trace_mean("path", world, lights, ray_towards({0.5f, 0.4f, 3}, {0, 0, 0}), 60000, settings);
+    Mean mean =
+        trace_mean("path", world, lights, ray_towards({0.5f, 0.4f, 3}, {0, 0, 0}), 60000, settings);
     EXPECT_NEAR(mean.mean(), 1, 0.01 + 4 * mean.error()) << roughness;
     EXPECT_LT(mean.error(), 0.02) << roughness;
   }
@@ -256,12 +273,14 @@ TEST(Analytic, UnlitShowsItsBaseColor) {
   m.unlit = true;
   add_quad(scene, add_material(scene, m), {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
   scene.lights.push_back(point_light({0, 0, 1}, 100));
-  expect_radiance(scene, ray_towards({0, 0, 2}, {0, 0, 0}), double(luminance({0.2f, 0.4f, 0.6f})), "unlit", 10);
+  expect_radiance(scene, ray_towards({0, 0, 2}, {0, 0, 0}), double(luminance({0.2f, 0.4f, 0.6f})),
+                  "unlit", 10);
 }
 
 // Three ways to the same light: choosing a light, scattering, and both weighted together.
 TEST(Analytic, StrategiesAgree) {
-  for (const Material& m : {diffuse(vec3(0.5f)), metal(vec3(0.7f), 0.3f), plastic(vec3(0.5f), 0.5f)}) {
+  for (const Material& m :
+       {diffuse(vec3(0.5f)), metal(vec3(0.7f), 0.3f), plastic(vec3(0.5f), 0.5f)}) {
     Scene scene = make_plane_with_rect_light(10);
     scene.meshes[0].material = add_material(scene, m);
     World world(scene);
@@ -273,7 +292,8 @@ TEST(Analytic, StrategiesAgree) {
     auto blind = std::make_shared<LightTables>(*lights.tables);
     blind->emitter_choice = {};
     blind->area_share = 0;
-    Mean scattering = trace_mean("path", world, {blind, lights.bad_samples}, ray, 200000, settings, 3);
+    Mean scattering =
+        trace_mean("path", world, {blind, lights.bad_samples}, ray, 200000, settings, 3);
     Surface surface = eval_surface(world, ray, world.intersect(ray));
     Bsdf bsdf = make_bsdf(surface, m, ray.direction, dielectric_albedo(m.ior));
     Mean choosing;
@@ -282,14 +302,17 @@ TEST(Analytic, StrategiesAgree) {
     for (int i = 0; i < 200000; i++) {
       LightSample light = sample_area_light(transport, surface, sampler);
       BsdfValue value = eval_bsdf(bsdf, light.direction);
-      vec3 arrives = light.pdf > 0 ? light.radiance * eval_visibility(transport, surface, light) / light.pdf : vec3(0);
+      vec3 arrives = light.pdf > 0
+                         ? light.radiance * eval_visibility(transport, surface, light) / light.pdf
+                         : vec3(0);
       choosing.add(double(luminance((value.diffuse + value.specular) * arrives)));
     }
     expect_same_mean(combined, scattering, "combined and scattering");
     expect_same_mean(combined, choosing, "combined and choosing");
     EXPECT_LE(combined.error() * std::sqrt(combined.count),
               1.2 * std::min(scattering.error() * std::sqrt(scattering.count),
-                             choosing.error() * std::sqrt(choosing.count)) + 1e-3)
+                             choosing.error() * std::sqrt(choosing.count)) +
+                  1e-3)
         << "combining is no worse than the better of both";
   }
 }

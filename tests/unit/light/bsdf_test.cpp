@@ -106,11 +106,13 @@ TEST(Bsdf, SamplersFollowTheirDensity) {
           }
           float phi = std::atan2(s.direction.z, s.direction.x);
           if (phi < 0) phi += 2 * pi;
-          int row = std::min(int(std::acos(glm::clamp(s.direction.y, -1.0f, 1.0f)) / pi * rows), rows - 1);
+          int row = std::min(int(std::acos(glm::clamp(s.direction.y, -1.0f, 1.0f)) / pi * rows),
+                             rows - 1);
           int column = std::min(int(phi / (2 * pi) * columns), columns - 1);
           counts[size_t(row * columns + column)]++;
         }
-        std::string what = c.name + " at " + std::to_string(angle) + (lobes == Lobes::all ? " all" : " specular");
+        std::string what =
+            c.name + " at " + std::to_string(angle) + (lobes == Lobes::all ? " all" : " specular");
         expect_chi_squared(counts, expected, what.c_str());
       }
 }
@@ -136,16 +138,18 @@ TEST(Bsdf, WeightIsValueOverDensity) {
 TEST(Bsdf, WhiteFurnace) {
   for (float roughness : {0.0f, 0.02f, 0.05f, 0.1f, 0.2f, 0.4f, 0.7f, 1.0f})
     for (float angle : view_angles) {
-      std::pair<const char*, Material> materials[] = {{"metal", metal(vec3(1), roughness)},
-                                                      {"plastic", plastic(vec3(1), roughness)},
-                                                      {"thin glass", glass(1.5f, roughness, 0)},
-                                                      {"glass", glass(1.5f, roughness, 1)},
-                                                      {"dense plastic", plastic(vec3(1), roughness, 2.4f)}};
+      std::pair<const char*, Material> materials[] = {
+          {"metal", metal(vec3(1), roughness)},
+          {"plastic", plastic(vec3(1), roughness)},
+          {"thin glass", glass(1.5f, roughness, 0)},
+          {"glass", glass(1.5f, roughness, 1)},
+          {"dense plastic", plastic(vec3(1), roughness, 2.4f)}};
       for (const auto& [name, material] : materials)
         for (bool front : {true, false}) {
           Mean albedo = albedo_of(bsdf_of(material, angle, front), Lobes::all, 20000);
           EXPECT_NEAR(albedo.mean(), 1, 0.015 + 4 * albedo.error())
-              << name << " roughness " << roughness << " at " << angle << (front ? "" : " from behind");
+              << name << " roughness " << roughness << " at " << angle
+              << (front ? "" : " from behind");
         }
     }
 }
@@ -201,7 +205,8 @@ TEST(Bsdf, SmoothMirrorAndGlassObeySnellAndFresnel) {
   while (s.bounce != Bounce::refract);
   EXPECT_NEAR(-s.direction.x, std::sin(glm::radians(60.0f)) / 1.5f, 1e-5f);
   bsdf = bsdf_of(glass(1.5f, 0, 1), 60, false);  // from inside, beyond the critical angle
-  for (int i = 0; i < 100; i++) EXPECT_EQ(sample_bsdf(bsdf, Lobes::all, sampler).bounce, Bounce::reflect);
+  for (int i = 0; i < 100; i++)
+    EXPECT_EQ(sample_bsdf(bsdf, Lobes::all, sampler).bounce, Bounce::reflect);
 }
 
 TEST(Bsdf, PaneAgreesWithItsTransmittance) {

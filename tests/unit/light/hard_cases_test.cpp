@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes that break path tracers: every sample must be finite, and the answer right where it is known.
+// Scenes that break path tracers: every sample must be finite, and the answer right where it is
+// known.
 #include <limits>
 
 #include "scenes/scenes.h"
@@ -11,7 +12,8 @@ using namespace wellspring::test;
 
 namespace {
 
-constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
 
 // Renders with every technique; nothing may be dropped.
 void expect_clean(const Scene& scene, const View& view, const char* what) {
@@ -21,7 +23,8 @@ void expect_clean(const Scene& scene, const View& view, const char* what) {
   settings.spp = 4;
   for (const Technique& technique : techniques()) {
     Frame frame = render_still(technique, world, lights, view, settings);
-    for (vec3 c : frame.color) ASSERT_TRUE(is_finite(c) && c.x >= 0) << what << ", " << technique.name;
+    for (vec3 c : frame.color)
+      ASSERT_TRUE(is_finite(c) && c.x >= 0) << what << ", " << technique.name;
   }
   EXPECT_EQ(lights.bad_samples->load(), 0u) << what;
 }
@@ -47,7 +50,8 @@ TEST(HardCases, PointLightOnTheSurfaceItself) {
   PunctualLight light;
   light.position = {0, 0, 0};
   Scene scene = make_plane_with_punctual(light);
-  expect_clean(scene, make_view_towards(scene, {0, 1, 0.01}, {0, 0, 0}, {0, 0, -1}, 0.01f, 9, 9), "touching light");
+  expect_clean(scene, make_view_towards(scene, {0, 1, 0.01}, {0, 0, 0}, {0, 0, -1}, 0.01f, 9, 9),
+               "touching light");
   World world(scene);
   Lights lights = make_lights(world);
   Request request;
@@ -63,17 +67,22 @@ TEST(HardCases, EveryRoughnessAndIndex) {
           Scene scene = make_cornell_box();
           Material m = glass(ior, roughness, thickness);
           m.metallic = metallic;
-          add_mesh(scene, sphere_mesh(add_material(scene, m), 0.1f, 12), "ball", at({0, 0.3f, -0.1f}));
+          add_mesh(scene, sphere_mesh(add_material(scene, m), 0.1f, 12), "ball",
+                   at({0, 0.3f, -0.1f}));
           expect_clean(scene, cornell_view(scene, 12, 12), "roughness and index");
         }
 }
 
 TEST(HardCases, CameraOnAWallAndInsideGlass) {
   Scene scene = make_cornell_box();
-  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.2f), "ball", at({0, 0.3f, 0.8f}));
+  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.2f), "ball",
+           at({0, 0.3f, 0.8f}));
   expect_clean(scene, small_view(scene), "eye inside glass");
-  expect_clean(scene, make_view_towards(scene, {0, 0.2, -0.56}, {0, 0.2, 0}, {0, 1, 0}, 1, 16, 16), "eye on a wall");
-  expect_clean(scene, make_view_towards(scene, {-0.28, 0, -0.56}, {0, 0.2, 0}, {0, 1, 0}, 1, 16, 16), "eye in a corner");
+  expect_clean(scene, make_view_towards(scene, {0, 0.2, -0.56}, {0, 0.2, 0}, {0, 1, 0}, 1, 16, 16),
+               "eye on a wall");
+  expect_clean(scene,
+               make_view_towards(scene, {-0.28, 0, -0.56}, {0, 0.2, 0}, {0, 1, 0}, 1, 16, 16),
+               "eye in a corner");
 }
 
 TEST(HardCases, TexelsThatAreNoNumbers) {
@@ -108,16 +117,19 @@ TEST(HardCases, LampInsideALens) {
   add_floor(scene, 0.5f);
   add_mesh(scene, sphere_mesh(add_material(scene, emitter(vec3(5))), 0.1f), "lamp", at({0, 1, 0}));
   add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.2f), "lens", at({0, 1, 0}));
-  expect_clean(scene, make_view_towards(scene, {0, 1, 2}, {0, 0.7, 0}, {0, 1, 0}, 1, 20, 20), "lamp in a lens");
+  expect_clean(scene, make_view_towards(scene, {0, 1, 2}, {0, 0.7, 0}, {0, 1, 0}, 1, 20, 20),
+               "lamp in a lens");
   World world(scene);
   Lights lights = make_lights(world);
-  EXPECT_GT(trace_mean("path", world, lights, ray_towards({0, 1, 2}, {0.1f, 0, 0.1f}), 4000).mean(), 0);
+  EXPECT_GT(trace_mean("path", world, lights, ray_towards({0, 1, 2}, {0.1f, 0, 0.1f}), 4000).mean(),
+            0);
 }
 
 TEST(HardCases, NestedAndCoincidentGlass) {
   Scene scene = make_cornell_box();
   int m = add_material(scene, glass(1.5f, 0, 1));
-  for (float radius : {0.15f, 0.1f, 0.1f}) add_mesh(scene, sphere_mesh(m, radius), "ball", at({0, 0.3f, 0}));
+  for (float radius : {0.15f, 0.1f, 0.1f})
+    add_mesh(scene, sphere_mesh(m, radius), "ball", at({0, 0.3f, 0}));
   add_mesh(scene, box_mesh(m, {0.2f, 0.2f, 0.2f}), "box", at({0.1f, 0.1f, 0.05f}));
   expect_clean(scene, small_view(scene), "nested glass");
 }
@@ -129,18 +141,22 @@ TEST(HardCases, ManyPanesInARow) {
   scene.environment.radiance = vec3(1);
   World world(scene);
   Lights lights = make_lights(world);
-  EXPECT_NEAR(trace_mean("path", world, lights, ray_towards({0, 0, 30}, {0, 0, 0}), 100).mean(), 1, 1e-5);
+  EXPECT_NEAR(trace_mean("path", world, lights, ray_towards({0, 0, 30}, {0, 0, 0}), 100).mean(), 1,
+              1e-5);
 }
 
-// The same picture at any scale (within noise), far from the origin too: positions are relative to it.
+// The same picture at any scale (within noise), far from the origin too: positions are relative to
+// it.
 TEST(HardCases, ScaleDoesNotMatter) {
   Mean reference;
   for (float scale : {1.0f, 1e-3f, 1e3f}) {
     Scene scene = make_cornell_box();
-    for (Instance& instance : scene.instances) instance.to_world = glm::scale(mat4(1), vec3(scale)) * instance.to_world;
+    for (Instance& instance : scene.instances)
+      instance.to_world = glm::scale(mat4(1), vec3(scale)) * instance.to_world;
     World world(scene);
     Lights lights = make_lights(world);
-    Mean mean = trace_mean("path", world, lights, ray_towards(vec3(0, 0.275f, 0.8f) * scale, vec3(0, 0, -0.1f) * scale),
+    Mean mean = trace_mean("path", world, lights,
+                           ray_towards(vec3(0, 0.275f, 0.8f) * scale, vec3(0, 0, -0.1f) * scale),
                            20000, {}, uint64_t(scale * 1e4f));
     if (scale == 1) reference = mean;
     else expect_same_mean(mean, reference, "scaled");
@@ -152,14 +168,16 @@ TEST(HardCases, FarFromTheOrigin) {
   far.origin = {1e6, -1e6, 1e6};
   World near_world(near), far_world(far);
   View a = make_view_towards(near, {0, 0.275, 0.8}, {0, 0.275, 0}, {0, 1, 0}, 0.7f, 8, 8);
-  View b = make_view_towards(far, far.origin + dvec3(0, 0.275, 0.8), far.origin + dvec3(0, 0.275, 0), {0, 1, 0}, 0.7f, 8, 8);
+  View b = make_view_towards(far, far.origin + dvec3(0, 0.275, 0.8),
+                             far.origin + dvec3(0, 0.275, 0), {0, 1, 0}, 0.7f, 8, 8);
   StillSettings settings;
   settings.spp = 400;
   Frame x = render_still(*find_technique("path"), near_world, make_lights(near_world), a, settings);
   settings.seed = 2;
   Frame y = render_still(*find_technique("path"), far_world, make_lights(far_world), b, settings);
   Mean difference;
-  for (size_t i = 0; i < x.color.size(); i++) difference.add(double(luminance(x.color[i] - y.color[i])));
+  for (size_t i = 0; i < x.color.size(); i++)
+    difference.add(double(luminance(x.color[i] - y.color[i])));
   EXPECT_LE(std::abs(difference.mean()), significance_z * difference.error() + 1e-6);
 }
 

@@ -26,7 +26,8 @@ void add_sky(Scene& scene, int width, int height) {
   for (int y = 0; y < height; y++)
     for (int x = 0; x < width; x++) {
       bool sun = x > width / 2 && x < width * 3 / 4 && y > height / 8 && y < height / 3;
-      image.texels.push_back(sun ? vec4(40, 30, 20, 1) : vec4(0.5f, 0.6f, float(y) / float(height), 1));
+      image.texels.push_back(sun ? vec4(40, 30, 20, 1)
+                                 : vec4(0.5f, 0.6f, float(y) / float(height), 1));
     }
   scene.images.push_back(std::move(image));
   scene.environment = {vec3(1), int(scene.images.size()) - 1};
@@ -99,8 +100,11 @@ TEST(Lights, SingleSidedEmittersShineToTheirFrontOnly) {
     World world(scene);
     Lights lights = make_lights(world);
     Sampler sampler(3);
-    EXPECT_GT(sample_area_light({world, *lights.tables}, place_at({0.5f, 0, 0.5f}), sampler).pdf, 0);
-    EXPECT_EQ(sample_area_light({world, *lights.tables}, place_at({0.5f, 2, 0.5f}), sampler).pdf > 0, double_sided);
+    EXPECT_GT(sample_area_light({world, *lights.tables}, place_at({0.5f, 0, 0.5f}), sampler).pdf,
+              0);
+    EXPECT_EQ(
+        sample_area_light({world, *lights.tables}, place_at({0.5f, 2, 0.5f}), sampler).pdf > 0,
+        double_sided);
   }
 }
 
@@ -134,12 +138,14 @@ TEST(Lights, SkyIsSampledByItsBrightness) {
         float r = std::sqrt(1 - y * y);
         vec3 d(r * std::cos(phi), y, r * std::sin(phi));
         double solid = 4 * double(pi) / (rows * columns * fine * fine);
-        expected[size_t(row * columns + column)] += double(sample_environment_pdf(sky, d)) * solid * count;
+        expected[size_t(row * columns + column)] +=
+            double(sample_environment_pdf(sky, d)) * solid * count;
         exact += double(luminance(eval_environment(sky, d))) * solid;
       }
   expect_chi_squared(counts, expected, "sky");
   EXPECT_NEAR(radiance.mean(), exact, 4 * radiance.error() + 2e-3 * exact);
-  EXPECT_LT(radiance.error() * std::sqrt(double(count)) / radiance.mean(), 0.5) << "importance is followed";
+  EXPECT_LT(radiance.error() * std::sqrt(double(count)) / radiance.mean(), 0.5)
+      << "importance is followed";
 }
 
 TEST(Lights, SkyPictureIsTheRightWayRound) {
@@ -179,7 +185,8 @@ TEST(Lights, ManyPunctualLightsAreSampledWithoutBias) {
     Sampler sampler(2);
     Mean irradiance;
     for (int i = 0; i < 40000; i++) {
-      LightSample light = sample_punctual_light({world, *lights.tables}, from, from.normal, false, sampler);
+      LightSample light =
+          sample_punctual_light({world, *lights.tables}, from, from.normal, false, sampler);
       irradiance.add(light.pdf > 0 ? double(light.radiance.x * light.direction.y) : 0);
     }
     expect_mean(irradiance, exact, (std::to_string(count) + " lights").c_str());
@@ -200,12 +207,14 @@ TEST(Lights, WhatCannotShineIsLeftOut) {
   EXPECT_EQ(sample_area_light({world, *lights.tables}, place_at({0, 0, 0}), sampler).pdf, 0);
 }
 
-// Emission by a picture: whatever the estimate of each triangle's power, the light that arrives is right.
+// Emission by a picture: whatever the estimate of each triangle's power, the light that arrives is
+// right.
 TEST(Lights, TexturedEmittersAreUnbiased) {
   Scene scene = make_plane_with_rect_light(1);
   Image image;
   image.width = image.height = 16;
-  for (int i = 0; i < 256; i++) image.texels.push_back(i % 16 < 4 ? vec4(8, 8, 8, 1) : vec4(0, 0, 0, 1));
+  for (int i = 0; i < 256; i++)
+    image.texels.push_back(i % 16 < 4 ? vec4(8, 8, 8, 1) : vec4(0, 0, 0, 1));
   scene.images.push_back(image);
   Texture texture;
   texture.image = 0;
@@ -221,7 +230,8 @@ TEST(Lights, TexturedEmittersAreUnbiased) {
   auto blind = std::make_shared<LightTables>(*lights.tables);
   blind->emitter_choice = {};
   blind->area_share = 0;
-  Mean by_scattering = trace_mean("path", world, {blind, lights.bad_samples}, ray, 400000, direct, 99);
+  Mean by_scattering =
+      trace_mean("path", world, {blind, lights.bad_samples}, ray, 400000, direct, 99);
   expect_same_mean(with_choice, by_scattering, "textured emitter");
   EXPECT_GT(with_choice.mean(), 0.05);
 }

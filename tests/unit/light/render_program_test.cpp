@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program wellspring_render from outside: exit status, what it says, and that a replayed sample is the
-// picture's. Skipped where the program is not built beside this one.
+// The program wellspring_render from outside: exit status, what it says, and that a replayed sample
+// is the picture's. Skipped where the program is not built beside this one.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -30,7 +30,8 @@ struct RenderProgram : testing::Test {
     if (!fs::exists(program)) GTEST_SKIP() << program << " is not built";
     fs::create_directories(folder);
     // One triangle, two cameras, no light; the buffer is in the file.
-    std::ofstream(folder / "scene.gltf") << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2]}],
+    std::ofstream(folder / "scene.gltf")
+        << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2]}],
       "nodes":[{"mesh":0},{"name":"front","camera":0,"translation":[0.3,0.3,2]},
                {"name":"side","camera":0,"translation":[0.3,0.3,1]}],
       "cameras":[{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}}],
@@ -47,7 +48,8 @@ struct RenderProgram : testing::Test {
     Answer answer{-1, ""};
     FILE* pipe = popen((program.string() + " " + arguments + " 2>&1").c_str(), "r");
     std::array<char, 512> part;
-    while (size_t n = std::fread(part.data(), 1, part.size(), pipe)) answer.text.append(part.data(), n);
+    while (size_t n = std::fread(part.data(), 1, part.size(), pipe))
+      answer.text.append(part.data(), n);
     answer.status = WEXITSTATUS(pclose(pipe));
     return answer;
   }
@@ -64,7 +66,8 @@ TEST_F(RenderProgram, ListsTechniques) {
 
 TEST_F(RenderProgram, WritesEveryKindOfPicture) {
   for (const char* name : {"a.png", "a.jpg", "a.pfm", "a.exr"}) {
-    Answer answer = run(scene() + " --technique direct --camera front --size 20x10 --spp 2 --out " + out(name));
+    Answer answer =
+        run(scene() + " --technique direct --camera front --size 20x10 --spp 2 --out " + out(name));
     EXPECT_EQ(answer.status, 0) << answer.text;
     EXPECT_TRUE(fs::exists(folder / name)) << name;
     EXPECT_NE(answer.text.find("no light"), std::string::npos) << "the added light is told";
@@ -108,12 +111,32 @@ TEST_F(RenderProgram, CamerasAndLightComeFromTheCommandLineToo) {
 
 TEST_F(RenderProgram, WrongCommandLinesAreStatus2) {
   std::string good = scene() + " --out " + out("x.png");
-  for (const char* wrong :
-       {"--technique magic", "--size 10", "--size 0x5", "--size 16385x4", "--size 10x10x10", "--size axb", "--spp 0",
-        "--spp -3", "--spp many", "--fov 180", "--fov -1", "--fov nan", "--eye 0,0,1", "--eye 0,0 --target 0,0,0",
-        "--eye 0,0,inf --target 0,0,0", "--eye 1,1,1 --target 1,1,1", "--camera nobody", "--seed x", "--time -1",
-        "--exposure nan", "--max-depth 0", "--threads -1", "--environment 1,2", "--environment -1,0,0",
-        "--camera front --eye 0,0,1 --target 0,0,0", "--unheard-of"}) {
+  for (const char* wrong : {"--technique magic",
+                            "--size 10",
+                            "--size 0x5",
+                            "--size 16385x4",
+                            "--size 10x10x10",
+                            "--size axb",
+                            "--spp 0",
+                            "--spp -3",
+                            "--spp many",
+                            "--fov 180",
+                            "--fov -1",
+                            "--fov nan",
+                            "--eye 0,0,1",
+                            "--eye 0,0 --target 0,0,0",
+                            "--eye 0,0,inf --target 0,0,0",
+                            "--eye 1,1,1 --target 1,1,1",
+                            "--camera nobody",
+                            "--seed x",
+                            "--time -1",
+                            "--exposure nan",
+                            "--max-depth 0",
+                            "--threads -1",
+                            "--environment 1,2",
+                            "--environment -1,0,0",
+                            "--camera front --eye 0,0,1 --target 0,0,0",
+                            "--unheard-of"}) {
     Answer answer = run(good + " " + wrong);
     EXPECT_EQ(answer.status, 2) << wrong << ": " << answer.text;
     EXPECT_FALSE(answer.text.empty()) << wrong;
@@ -123,7 +146,8 @@ TEST_F(RenderProgram, WrongCommandLinesAreStatus2) {
   EXPECT_EQ(run(scene()).status, 2);
   EXPECT_EQ(run(scene() + " --out " + out("x.gif")).status, 2);
   Answer answer = run(good + " --technique magic");
-  EXPECT_NE(answer.text.find("path"), std::string::npos) << "unknown techniques: the known ones are listed";
+  EXPECT_NE(answer.text.find("path"), std::string::npos)
+      << "unknown techniques: the known ones are listed";
   answer = run(good + " --camera nobody");
   EXPECT_NE(answer.text.find("front, side"), std::string::npos) << answer.text;
 }
@@ -136,6 +160,7 @@ TEST_F(RenderProgram, WrongInputIsStatus1AndNamed) {
         scene() + " --environment " + out("absent.hdr") + " --out " + out("x.png")}) {
     Answer answer = run("--size 4x4 --spp 1 " + arguments);
     EXPECT_EQ(answer.status, 1) << arguments << ": " << answer.text;
-    EXPECT_NE(answer.text.find(folder.string()), std::string::npos) << "the file is named: " << answer.text;
+    EXPECT_NE(answer.text.find(folder.string()), std::string::npos)
+        << "the file is named: " << answer.text;
   }
 }

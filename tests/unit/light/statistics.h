@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statistical judgement for tests: means with error bars, z-tests at a stated significance, chi-squared.
-// Seeds are fixed, so a test that passes once passes always; the significance says how surprising a right
-// program's result may be.
+// Statistical judgement for tests: means with error bars, z-tests at a stated significance,
+// chi-squared. Seeds are fixed, so a test that passes once passes always; the significance says how
+// surprising a right program's result may be.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -30,8 +30,10 @@ struct Mean {
   }
 };
 
-// The mean is the expected value within its own error bars, and the bars are short enough to mean something.
-inline void expect_mean(const Mean& m, double expected, const char* what, double longest_bar = 0.02) {
+// The mean is the expected value within its own error bars, and the bars are short enough to mean
+// something.
+inline void expect_mean(const Mean& m, double expected, const char* what,
+                        double longest_bar = 0.02) {
   double slack = 5e-5 * std::abs(expected) + 1e-9;  // float rounding of noise-free estimates
   EXPECT_LE(std::abs(m.mean() - expected), significance_z * m.error() + slack)
       << what << ": mean " << m.mean() << " +- " << m.error() << ", expected " << expected;
@@ -41,12 +43,13 @@ inline void expect_mean(const Mean& m, double expected, const char* what, double
 inline void expect_same_mean(const Mean& a, const Mean& b, const char* what) {
   double error = std::sqrt(a.error() * a.error() + b.error() * b.error());
   EXPECT_LE(std::abs(a.mean() - b.mean()), significance_z * error + 1e-6 * std::abs(a.mean()))
-      << what << ": " << a.mean() << " +- " << a.error() << " against " << b.mean() << " +- " << b.error();
+      << what << ": " << a.mean() << " +- " << a.error() << " against " << b.mean() << " +- "
+      << b.error();
 }
 
 // Luminance of `count` samples of one ray.
-inline Mean trace_mean(const char* technique, const World& world, const Lights& lights, Ray ray, int count,
-                       TransportSettings settings = {}, uint64_t seed = 7) {
+inline Mean trace_mean(const char* technique, const World& world, const Lights& lights, Ray ray,
+                       int count, TransportSettings settings = {}, uint64_t seed = 7) {
   std::vector<Request> requests(static_cast<size_t>(count));
   for (size_t i = 0; i < requests.size(); i++) {
     requests[i].ray = ray;
@@ -73,8 +76,8 @@ inline double chi_squared_limit(double degrees) {
 }
 
 // Counts against expectations; bins that expect fewer than five are judged together.
-inline void expect_chi_squared(const std::vector<double>& counts, const std::vector<double>& expected,
-                               const char* what) {
+inline void expect_chi_squared(const std::vector<double>& counts,
+                               const std::vector<double>& expected, const char* what) {
   double statistic = 0, rare_count = 0, rare_expected = 0;
   int bins = 0;
   auto judge = [&](double count, double expect) {
@@ -90,7 +93,9 @@ inline void expect_chi_squared(const std::vector<double>& counts, const std::vec
     }
   }
   if (rare_expected >= 5) judge(rare_count, rare_expected);
-  else EXPECT_LE(rare_count, rare_expected + 5 * std::sqrt(rare_expected) + 5) << what << ": in rare bins";
+  else
+    EXPECT_LE(rare_count, rare_expected + 5 * std::sqrt(rare_expected) + 5)
+        << what << ": in rare bins";
   ASSERT_GT(bins, 1) << what;
   EXPECT_LE(statistic, chi_squared_limit(bins - 1)) << what << ": " << bins << " bins";
 }

@@ -18,11 +18,12 @@ namespace {
 Scene make_mixed_scene() {
   Scene scene = make_cornell_box();
   scene.meshes[0].material = add_material(scene, plastic({0.6f, 0.5f, 0.4f}, 0.1f));
-  add_mesh(scene, sphere_mesh(add_material(scene, metal({0.9f, 0.8f, 0.6f}, 0)), 0.06f), "mirror ball",
-           at({0.09f, 0.23f, -0.17f}));
+  add_mesh(scene, sphere_mesh(add_material(scene, metal({0.9f, 0.8f, 0.6f}, 0)), 0.06f),
+           "mirror ball", at({0.09f, 0.23f, -0.17f}));
   add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.06f), "glass ball",
            at({0.15f, 0.06f, -0.02f}));
-  add_quad(scene, add_material(scene, glass(1.5f, 0, 0)), {-0.28f, 0, -0.1f}, {0.2f, 0, 0}, {0, 0.4f, 0}, "pane");
+  add_quad(scene, add_material(scene, glass(1.5f, 0, 0)), {-0.28f, 0, -0.1f}, {0.2f, 0, 0},
+           {0, 0.4f, 0}, "pane");
   PunctualLight spot;
   spot.type = PunctualType::spot;
   spot.position = {0.2f, 0.5f, -0.1f};
@@ -32,8 +33,8 @@ Scene make_mixed_scene() {
   return scene;
 }
 
-Sample trace_one(const char* technique, const World& world, const Lights& lights, Ray ray, uint64_t seed = 1,
-                 TransportSettings settings = {}) {
+Sample trace_one(const char* technique, const World& world, const Lights& lights, Ray ray,
+                 uint64_t seed = 1, TransportSettings settings = {}) {
   Request request;
   request.ray = ray;
   request.seed = seed;
@@ -70,7 +71,8 @@ TEST(Technique, SameBitsWhateverTheThreadCount) {
     EXPECT_TRUE(same_bits(one.color, four.color)) << technique.name;
     EXPECT_EQ(one.object, four.object);
     settings.seed++;
-    EXPECT_FALSE(same_bits(one.color, render_still(technique, world, lights, view, settings).color));
+    EXPECT_FALSE(
+        same_bits(one.color, render_still(technique, world, lights, view, settings).color));
   }
 }
 
@@ -88,8 +90,10 @@ TEST(Technique, AnySampleCanBeReplayedBitForBit) {
       for (int x = 0; x < 16; x++) {
         dvec3 sum(0);
         for (int i = 0; i < 5; i++)
-          sum += dvec3(technique.trace(world, lights, {}, pixel_request(view, 77, x, y, i)).radiance());
-        ASSERT_EQ(vec3(sum / 5.0), frame.color[size_t(y * 16 + x)]) << technique.name << " " << x << "," << y;
+          sum += dvec3(
+              technique.trace(world, lights, {}, pixel_request(view, 77, x, y, i)).radiance());
+        ASSERT_EQ(vec3(sum / 5.0), frame.color[size_t(y * 16 + x)])
+            << technique.name << " " << x << "," << y;
       }
   }
 }
@@ -110,7 +114,8 @@ TEST(Technique, ManyRequestsAtOnceAreTheSameAsOneByOne) {
     ASSERT_EQ(alone.position, samples[i].position);
     ASSERT_EQ(alone.flags, samples[i].flags);
   }
-  EXPECT_THROW(trace(path, world, lights, {}, requests, std::span(samples).first(3)), std::invalid_argument);
+  EXPECT_THROW(trace(path, world, lights, {}, requests, std::span(samples).first(3)),
+               std::invalid_argument);
 }
 
 TEST(Technique, DiffuseSurfacesAreSplitIntoAlbedoAndSmoothLight) {
@@ -129,7 +134,8 @@ TEST(Technique, DiffuseSurfacesAreSplitIntoAlbedoAndSmoothLight) {
     ASSERT_EQ(s.rest, vec3(0));
     smooth.add(double(s.smooth.x));
   }
-  expect_mean(smooth, rect_light_irradiance({0, 0, 0}, 10) / double(pi), "smooth light of the lamp");
+  expect_mean(smooth, rect_light_irradiance({0, 0, 0}, 10) / double(pi),
+              "smooth light of the lamp");
   Scene with_point = make_plane_with_punctual(point);
   with_point.materials[1].base_color = {0.8f, 0.4f, 0.2f, 1};
   World world(with_point);
@@ -144,13 +150,15 @@ TEST(Technique, FirstSurfaceIsDescribed) {
   Scene scene = make_mixed_scene();
   World world(scene);
   Lights lights = make_lights(world);
-  Sample s = trace_one("path", world, lights, ray_towards({0, 0.275f, 0.8f}, {0.05f, 0.5f, -0.56f}));
+  Sample s =
+      trace_one("path", world, lights, ray_towards({0, 0.275f, 0.8f}, {0.05f, 0.5f, -0.56f}));
   EXPECT_EQ(s.flags, sample_hit);
   EXPECT_EQ(scene.objects[s.object], "back wall");
   EXPECT_NEAR(s.position.z, -0.56f, 1e-5f);
   EXPECT_NEAR(s.normal.z, 1, 1e-5f);
   EXPECT_NEAR(s.distance, length(s.position - vec3(0, 0.275f, 0.8f)), 1e-4f);
-  EXPECT_LT(length(eval_position(world, s.instance, s.triangle, s.barycentric) - s.position), 1e-4f);
+  EXPECT_LT(length(eval_position(world, s.instance, s.triangle, s.barycentric) - s.position),
+            1e-4f);
   // Mirror and solid glass: the first surface, everything in `rest`.
   for (auto [target, name] : {std::pair(vec3(0.09f, 0.23f, -0.17f), "mirror ball"),
                               std::pair(vec3(0.15f, 0.06f, -0.02f), "glass ball")}) {
@@ -173,18 +181,22 @@ TEST(Technique, FirstSurfaceIsDescribed) {
   EXPECT_EQ(s.radiance(), vec3(0));
 }
 
-// A pane's look-through and its mirror image together are what a path tracer without that care would find.
+// A pane's look-through and its mirror image together are what a path tracer without that care
+// would find.
 TEST(Technique, APaneShowsWhatIsBehindAndItsMirrorImage) {
   Scene scene = empty_scene();
   add_quad(scene, add_material(scene, glass(1.5f, 0, 0)), {-5, -5, 0}, {10, 0, 0}, {0, 10, 0});
-  add_quad(scene, add_material(scene, emitter(vec3(3))), {-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, "behind");
-  add_quad(scene, add_material(scene, emitter(vec3(50))), {-9, 9, 4}, {18, 0, 0}, {0, -18, 0}, "in front");
+  add_quad(scene, add_material(scene, emitter(vec3(3))), {-9, -9, -4}, {18, 0, 0}, {0, 18, 0},
+           "behind");
+  add_quad(scene, add_material(scene, emitter(vec3(50))), {-9, 9, 4}, {18, 0, 0}, {0, -18, 0},
+           "in front");
   World world(scene);
   Lights lights = make_lights(world);
   Ray ray = ray_towards({0, 0, 2}, {0, 0, 0});
   for (const char* technique : {"path", "direct"})
     for (uint64_t seed = 0; seed < 20; seed++)
-      EXPECT_NEAR(trace_one(technique, world, lights, ray, seed).radiance().x, 0.96f * 3 + 0.04f * 50, 1e-3f);
+      EXPECT_NEAR(trace_one(technique, world, lights, ray, seed).radiance().x,
+                  0.96f * 3 + 0.04f * 50, 1e-3f);
 }
 
 TEST(Technique, MovingMeshesCarryTheirPlace) {
@@ -198,14 +210,16 @@ TEST(Technique, MovingMeshesCarryTheirPlace) {
   EXPECT_EQ(s.flags, sample_hit | sample_moving);
   EXPECT_EQ(scene.objects[s.object], "storyteller");
   EXPECT_EQ(s.instance, uint32_t(scene.instances.size()));
-  EXPECT_LT(length(eval_position(world, s.instance, s.triangle, s.barycentric) - s.position), 1e-4f);
+  EXPECT_LT(length(eval_position(world, s.instance, s.triangle, s.barycentric) - s.position),
+            1e-4f);
 }
 
 TEST(Technique, DirectKnowsNoLightBetweenRoughSurfaces) {
   Scene scene = make_cornell_box();
   World world(scene);
   Lights lights = make_lights(world);
-  Ray ceiling = ray_towards({0, 0.275f, 0.8f}, {0.2f, 0.55f, -0.3f});  // the lamp faces away from it
+  Ray ceiling =
+      ray_towards({0, 0.275f, 0.8f}, {0.2f, 0.55f, -0.3f});  // the lamp faces away from it
   EXPECT_EQ(trace_mean("direct", world, lights, ceiling, 500).mean(), 0);
   EXPECT_GT(trace_mean("path", world, lights, ceiling, 500).mean(), 0.05);
 }
@@ -215,15 +229,18 @@ TEST(Technique, MaxDepthCountsEdges) {
   World world(scene);
   Lights lights = make_lights(world);
   TransportSettings settings;
-  Ray floor = ray_towards({0, 0.275f, 0.8f}, {0, 0, -0.1f}), lamp = ray_towards({0, 0.275f, 0.8f}, {0, 0.549f, -0.27f});
+  Ray floor = ray_towards({0, 0.275f, 0.8f}, {0, 0, -0.1f}),
+      lamp = ray_towards({0, 0.275f, 0.8f}, {0, 0.549f, -0.27f});
   settings.max_depth = 0;
   EXPECT_EQ(trace_mean("path", world, lights, lamp, 10, settings).mean(), 0);
   settings.max_depth = 1;
   EXPECT_EQ(trace_mean("path", world, lights, floor, 100, settings).mean(), 0);
-  EXPECT_NEAR(trace_mean("path", world, lights, lamp, 10, settings).mean(), double(luminance({17, 12, 4})), 1e-3);
+  EXPECT_NEAR(trace_mean("path", world, lights, lamp, 10, settings).mean(),
+              double(luminance({17, 12, 4})), 1e-3);
   settings.max_depth = 2;
   Mean two = trace_mean("path", world, lights, floor, 20000, settings);
-  expect_same_mean(two, trace_mean("direct", world, lights, floor, 20000, {}, 5), "two edges are direct light");
+  expect_same_mean(two, trace_mean("direct", world, lights, floor, 20000, {}, 5),
+                   "two edges are direct light");
   settings.max_depth = 3;
   EXPECT_GT(trace_mean("path", world, lights, floor, 5000, settings).mean(), two.mean() * 1.05);
 }
@@ -234,7 +251,8 @@ TEST(Technique, ClampBoundsASampleAndKeepsItsHue) {
   Lights lights = make_lights(world);
   TransportSettings settings;
   settings.clamp = 2;
-  Sample s = trace_one("path", world, lights, ray_towards({0, 0.275f, 0.8f}, {0, 0.549f, -0.27f}), 1, settings);
+  Sample s = trace_one("path", world, lights, ray_towards({0, 0.275f, 0.8f}, {0, 0.549f, -0.27f}),
+                       1, settings);
   EXPECT_NEAR(s.radiance().x, 2, 1e-5f);
   EXPECT_NEAR(s.radiance().y / s.radiance().x, 12.0f / 17, 1e-4f);
 }
@@ -246,8 +264,9 @@ TEST(Technique, BadSamplesAreBlackAndCounted) {
   scene.environment.radiance = {1, -1, 1};
   World world(scene);
   Lights lights = make_lights(world);
-  Frame frame = render_still(*find_technique("path"), world, lights,
-                             make_view_towards(scene, {0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 1.5f, 20, 20), {});
+  Frame frame =
+      render_still(*find_technique("path"), world, lights,
+                   make_view_towards(scene, {0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 1.5f, 20, 20), {});
   for (vec3 c : frame.color) ASSERT_EQ(c, vec3(0));
   EXPECT_EQ(lights.bad_samples->load(), 20u * 20 * 16);
 }
@@ -258,15 +277,18 @@ TEST(Technique, PicturePlanesAndSizes) {
   Lights lights = make_lights(world);
   StillSettings settings;
   settings.spp = 1;
-  Frame frame = render_still(*find_technique("direct"), world, lights, cornell_view(scene, 1, 1), settings);
+  Frame frame =
+      render_still(*find_technique("direct"), world, lights, cornell_view(scene, 1, 1), settings);
   EXPECT_EQ(frame.color.size(), 1u);
-  frame = render_still(*find_technique("direct"), world, lights, cornell_view(scene, 64, 64), settings);
+  frame =
+      render_still(*find_technique("direct"), world, lights, cornell_view(scene, 64, 64), settings);
   size_t centre = 32 * 64 + 60;
   EXPECT_EQ(scene.objects[frame.object[0]], "");
   EXPECT_TRUE(std::isinf(frame.depth[0]));
   EXPECT_GT(frame.object[centre], 0u);
   EXPECT_NEAR(frame.depth[32 * 64 + 32], 0.8f + 0.38f, 0.2f);
   settings.spp = 0;
-  EXPECT_THROW(render_still(*find_technique("direct"), world, lights, cornell_view(scene, 4, 4), settings),
-               std::invalid_argument);
+  EXPECT_THROW(
+      render_still(*find_technique("direct"), world, lights, cornell_view(scene, 4, 4), settings),
+      std::invalid_argument);
 }
