@@ -12,9 +12,9 @@ namespace wellspring {
 namespace {
 
 constexpr int batch_paths = 1 << 16;
-constexpr int most_vertices = 8;     // of a walk that are remembered
+constexpr int most_vertices = 12;    // of a walk that are remembered
 constexpr float enough_samples = 12;  // a cell with fewer is not asked
-constexpr float clear_alpha = 0.09f;  // surfaces smoother than this (roughness 0.3) mirror too clearly
+constexpr float clear_roughness = 0.3f;  // surfaces smoother than this mirror too clearly
 
 struct Entry {
   uint64_t key = 0;  // 0: none
@@ -36,21 +36,14 @@ uint32_t find_cell(const RadianceGrid& grid, uint64_t key) {
   return slot;
 }
 
-// What is kept is divided by this, so that textures stay sharp: diffuse and glossy reflectance together.
-vec3 reflectance(const Bsdf& bsdf) {
-  float gloss = (1 - bsdf.metallic) * (1 - bsdf.coat_passes);
-  return bsdf.diffuse + bsdf.metallic * bsdf.metal + vec3(gloss);
-}
-
-bool may_keep(const Surface& surface, const Bsdf& bsdf, bool moving) {
-  return !moving && bsdf.alpha >= clear_alpha && !(max_component(bsdf.transmit) > 0) &&
-         max_component(reflectance(bsdf)) > 0.02f && is_finite(surface.position);
+bool keeps_light(const Material& m) {
+  return m.alpha_mode == AlphaMode::opaque && !m.unlit && m.transmission == 0 && m.emission == vec3(0) &&
+         m.roughness >= clear_roughness;
 }
 
 // A walk's surfaces, first to last, until their light is known.
 struct Vertex {
-  uint64_t key = 0;
-  vec3 reflects{1};
+  uint64_t key = 0;  // 0: too late in the walk
   vec3 direct{0};   // light sampled here
   vec3 weight{0};   // of what the next ray brings
   vec3 arrives{0};  // emission the next ray met
@@ -80,14 +73,13 @@ void walk_once(const Transport& transport, vec3 origin, const RadianceGridSettin
     if (material.unlit) break;
     Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
                           *transport.tables.materials[size_t(surface.material)].albedo);
-    bool keep = may_keep(surface, bsdf, world.is_moving(hit.instance));
+    bool keep = keeps_light(material) && !world.is_moving(hit.instance) && walk.medium < 0;
     if (keep) {
       // From here on light is counted for this surface; what the way back dims is its weight.
       if (before) before->weight = walk.throughput;
       Vertex& vertex = vertices[count++];
       vertex = Vertex{};
-      vertex.key = cell_key(surface.position, surface.geometric_normal, cell);
-      vertex.reflects = reflectance(bsdf);
+      if (walk.depth <= settings.kept_depth) vertex.key = cell_key(surface.position, surface.geometric_normal, cell);
       walk.throughput = vec3(1);
       vertex.direct = sample_direct_light(transport, walk, surface, bsdf, false, sampler).sum();
     } else if (before && !is_smooth(bsdf)) {
@@ -101,8 +93,7 @@ void walk_once(const Transport& transport, vec3 origin, const RadianceGridSettin
   for (int i = count - 1; i >= 0; i--) {
     const Vertex& vertex = vertices[i];
     light = vertex.direct + vertex.arrives + vertex.weight * light;
-    vec3 kept = light / glm::max(vertex.reflects, vec3(0.02f));
-    if (is_finite(kept)) entries[i] = {vertex.key, glm::max(kept, vec3(0))};
+    if (is_finite(light)) entries[i] = {vertex.key, glm::max(light, vec3(0))};
   }
 }
 
@@ -149,6 +140,7 @@ std::shared_ptr<const RadianceGrid> make_radiance_grid(const Transport& transpor
   grid->keys.assign(size, 0);
   grid->light.assign(size, vec3(0));
   grid->count.assign(size, 0);
+  for (const Material& material : transport.world.scene().materials) grid->keeps.push_back(keeps_light(material));
   if (places.empty()) return grid;
   std::vector<Entry> entries;
   size_t used = 0;
@@ -168,12 +160,15 @@ std::shared_ptr<const RadianceGrid> make_radiance_grid(const Transport& transpor
   return grid;
 }
 
-bool eval_grid(const RadianceGrid& grid, const Surface& surface, const Bsdf& bsdf, bool moving, float footprint,
+bool eval_grid(const RadianceGrid& grid, const World& world, const Ray& ray, const Hit& hit, float footprint,
                vec3& radiance) {
-  if (grid.keys.empty() || footprint < 2 * grid.cell || !may_keep(surface, bsdf, moving)) return false;
-  uint32_t slot = find_cell(grid, cell_key(surface.position, surface.geometric_normal, grid.cell));
+  const PlacedMesh& placed = world.placed(hit.instance);
+  if (footprint < 2 * grid.cell || placed.moving || !grid.keeps[size_t(placed.mesh->material)]) return false;
+  vec3 normal = eval_face(world, hit.instance, hit.triangle);
+  if (dot(normal, ray.direction) > 0) normal = -normal;
+  uint32_t slot = find_cell(grid, cell_key(ray.origin + hit.t * ray.direction, normal, grid.cell));
   if (grid.count[slot] < enough_samples) return false;
-  radiance = grid.light[slot] * reflectance(bsdf);
+  radiance = grid.light[slot];
   return true;
 }
 

@@ -20,13 +20,15 @@ struct RadianceGrid {
   float cell = 0.25f;          // metres
   uint32_t mask = 0;           // table size - 1; open addressing, linear probing
   std::vector<uint64_t> keys;  // 0: free
-  std::vector<vec3> light;     // scattered radiance over reflectance
+  std::vector<vec3> light;     // radiance scattered back, textures and all
   std::vector<float> count;    // samples behind it
+  std::vector<uint8_t> keeps;  // of each material: opaque, dark of itself and too rough to mirror
 };
 
 struct RadianceGridSettings {
   int paths = 400000;  // random walks that fill it
-  int max_depth = 6;
+  int max_depth = 9;
+  int kept_depth = 5;    // surfaces met later have too little of their walk left to know their light
   uint64_t seed = 1;
   float cell = 0;      // metres; 0: a twenty-fourth of the median free view from the places
 };
@@ -36,10 +38,10 @@ struct RadianceGridSettings {
 std::shared_ptr<const RadianceGrid> make_radiance_grid(const Transport& transport, std::span<const vec3> places,
                                                        const RadianceGridSettings& settings = {});
 
-// Scattered radiance towards the viewer of `bsdf`. `footprint`: how far apart rays like the one that ended
-// here end, its length over the square root of its density. False: the cell knows too little, is wider than
-// the footprint allows (its edge would show), or the surface moves or mirrors too clearly.
-bool eval_grid(const RadianceGrid& grid, const Surface& surface, const Bsdf& bsdf, bool moving, float footprint,
+// Radiance a hit surface scatters back along `ray`. `footprint`: how far apart rays like this one end, its
+// length over the square root of its density. False: the cell knows too little or is wider than the
+// footprint allows (its edge would show), or the surface moves or does not keep its light.
+bool eval_grid(const RadianceGrid& grid, const World& world, const Ray& ray, const Hit& hit, float footprint,
                vec3& radiance);
 
 }  // namespace wellspring

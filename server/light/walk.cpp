@@ -29,7 +29,8 @@ vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surfa
                        const Material& material) {
   vec3 emission = surface_emission(surface, material);
   if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(emission) > 0)) return emission;
-  float other = walk.area_share * sample_emitter_pdf(transport.tables, walk.from, walk.ray.direction, surface);
+  float other = walk.area_share *
+                sample_emitter_pdf(transport.tables, walk.from, walk.ray.direction, surface);
   return emission * mis_weight(walk.pdf, other);
 }
 
@@ -70,8 +71,9 @@ bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered) {
   return true;
 }
 
-DirectLight sample_direct_light(const Transport& transport, const Walk& walk, const Surface& surface,
-                                const Bsdf& bsdf, bool apart, Sampler& sampler) {
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
+                                const Surface& surface, const Bsdf& bsdf, bool apart,
+                                Sampler& sampler) {
   const LightTables& tables = transport.tables;
   DirectLight direct;
   bool area = tables.area_share > 0, punctual = !tables.punctual.empty();
@@ -90,8 +92,10 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk, co
         vec3 arrives = light.radiance * eval_visibility(transport, surface, light) *
                        eval_absorption(transport, walk.medium, light.distance) / light_pdf;
         float both = sample_bsdf_pdf(bsdf, value, Lobes::all);
-        direct.area_diffuse = value.diffuse * arrives * mis_weight(light_pdf, apart ? value.diffuse_pdf : both);
-        direct.specular = value.specular * arrives * mis_weight(light_pdf, apart ? value.specular_pdf : both);
+        direct.area_diffuse =
+            value.diffuse * arrives * mis_weight(light_pdf, apart ? value.diffuse_pdf : both);
+        direct.specular =
+            value.specular * arrives * mis_weight(light_pdf, apart ? value.specular_pdf : both);
       }
     }
   }
@@ -117,6 +121,10 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
   while (true) {
     Hit hit = world.intersect(walk.ray);
     if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
+    vec3 kept;
+    if (transport.grid && walk.pdf > 0 && walk.medium < 0 &&
+        eval_grid(*transport.grid, world, walk.ray, hit, hit.t / std::sqrt(walk.pdf), kept))
+      return radiance + walk.throughput * kept;
     Surface surface = eval_surface(world, walk.ray, hit);
     const Material& material = world.material_of(hit.instance);
     walk.medium = medium_before(walk, surface, material);
@@ -136,16 +144,14 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
     }
     Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
                           *transport.tables.materials[size_t(surface.material)].albedo);
-    vec3 kept;
-    if (transport.grid && walk.pdf > 0 &&
-        eval_grid(*transport.grid, surface, bsdf, world.is_moving(hit.instance), hit.t / std::sqrt(walk.pdf), kept))
-      return radiance + walk.throughput * kept;
     bool smooth = is_smooth(bsdf);
     if (!smooth)
-      radiance += walk.throughput * sample_direct_light(transport, walk, surface, bsdf, false, sampler).sum();
+      radiance += walk.throughput *
+                  sample_direct_light(transport, walk, surface, bsdf, false, sampler).sum();
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::all, sampler);
     if (!advance(walk, surface, scattered)) return radiance;
-    if (scattered.bounce != Bounce::pass) walk.area_share = scattered.pdf > 0 ? transport.tables.area_share : 0;
+    if (scattered.bounce != Bounce::pass)
+      walk.area_share = scattered.pdf > 0 ? transport.tables.area_share : 0;
     if (scattered.bounce == Bounce::refract) walk.density *= bsdf.eta * bsdf.eta;
     if (!survives(walk, sampler)) return radiance;
   }
