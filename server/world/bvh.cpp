@@ -27,10 +27,13 @@ RTCRayHit to_embree(const Ray& ray) {
   return r;
 }
 
-// False for NaN and infinity in origin or direction, and for an empty interval.
+// False for NaN in origin or direction, for places Embree does not accept (it ends at 1.84e18), and for an
+// empty interval.
 bool is_traceable(const Ray& ray) {
-  vec3 sum = (ray.origin + ray.direction) * 0.0f;
-  return sum.x + sum.y + sum.z == 0 && ray.t_min <= ray.t_max;
+  constexpr float farthest = 1e17f;
+  vec3 place = glm::abs(ray.origin), way = glm::abs(ray.direction);
+  return place.x <= farthest && place.y <= farthest && place.z <= farthest && way.x <= farthest &&
+         way.y <= farthest && way.z <= farthest && ray.t_min <= ray.t_max;
 }
 
 float half_area(const Bounds& box) {
