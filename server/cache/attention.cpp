@@ -59,26 +59,30 @@ void prioritise(const PointCache& points, const CacheSettings& settings, PointIm
         uint8_t(std::clamp(float(i) * 0.35f * settings.budget_share_old, 1.0f, 127.0f));
     by_count[size_t(i)] = uint8_t(30 / std::sqrt(float(std::max(i, 1))));
   }
+  if (points.capacity() == 0) return;
+  const uint8_t* ages = points.age.data();
+  const uint8_t* counts = points.count.data();
   parallel_ranges(height, 8, [&](int begin, int end) {
-    thread_local std::vector<float> blank;
-    blank.assign(size_t(width), 0.0f);
     thread_local std::vector<uint8_t> column;
     column.assign(size_t(width) + 2, 0);
+    thread_local std::vector<uint32_t> blank;
+    blank.assign(size_t(width), no_point);
     for (int y = begin; y < end; y++) {
-      size_t start = size_t(y) * size_t(width);
-      const float* row = image.depth.data() + start;
-      const float* above = y > 0 ? row - width : blank.data();
-      const float* below = y + 1 < height ? row + width : blank.data();
+      const uint32_t* row = image.point.data() + size_t(y) * size_t(width);
+      const uint32_t* above = y > 0 ? row - width : blank.data();
+      const uint32_t* below = y + 1 < height ? row + width : blank.data();
       uint8_t* around = column.data() + 1;  // points in this column of the three rows
       for (int x = 0; x < width; x++)
-        around[x] = uint8_t(int(above[x] > 0.0f) + int(row[x] > 0.0f) + int(below[x] > 0.0f));
-      uint8_t* priority = image.priority.data() + start;
+        around[x] = uint8_t((above[x] != no_point) + (row[x] != no_point) + (below[x] != no_point));
+      uint8_t* priority = image.priority.data() + size_t(y) * size_t(width);
       for (int x = 0; x < width; x++)
         priority[x] = uint8_t(255 - 14 * (around[x - 1] + around[x] + around[x + 1]));
-      const uint32_t* point = image.point.data() + start;
-      for (int x = 0; x < width; x++)
-        if (point[x] != no_point)
-          priority[x] = uint8_t(by_age[points.age[point[x]]] + by_count[points.count[point[x]]]);
+      // No branch: where there is no point, the first one is asked and its answer thrown away.
+      for (int x = 0; x < width; x++) {
+        uint32_t there = uint32_t(row[x] != no_point), point = row[x] & (0u - there);
+        uint32_t known = uint32_t(by_age[ages[point]]) + by_count[counts[point]];
+        priority[x] = uint8_t(priority[x] ^ ((priority[x] ^ known) & (0u - there)));
+      }
     }
   });
 }

@@ -39,40 +39,50 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
   return request;
 }
 
+// Priorities and what they add up to, in fixed point: a step of the dither then waits for an addition
+// and a shift only.
+constexpr int fraction_bits = 8;
+
 // Dithers the rows [begin, end) with `share` requests to give away; returns how many it chose. A
 // band whose first row started from nothing would starve there, so its first rows are dithered once
 // for practice.
-int dither_band(PointImage& image, int begin, int end, int share, float threshold, uint64_t seed,
+int dither_band(PointImage& image, int begin, int end, int share, int64_t threshold, uint64_t seed,
                 uint32_t* chosen) {
   int width = image.width, rows = end - begin, count = 0;
-  thread_local std::vector<float> below;
+  thread_local std::vector<int64_t> below;
   below.resize(size_t(width));
   uint64_t hash = mix64(seed ^ uint64_t(begin) * 0x9e3779b97f4a7c15ull);
+  auto random_start = [threshold](uint64_t h) {
+    return int64_t(float(h >> 40) * 0x1p-25f * float(threshold));
+  };
   for (int x = 0; x < width; x++) {
     hash = hash * 6364136223846793005ull + 1442695040888963407ull;
-    below[size_t(x)] = float(hash >> 40) * 0x1p-24f * threshold * 0.5f;
+    below[size_t(x)] = random_start(hash);
   }
   bool upwards =
       (seed >> 1) & 1;  // what a band runs short of at its end is not always the same rows
-  float carry = float(mix64(hash) >> 40) * 0x1p-24f * threshold * 0.5f;
+  int64_t carry = random_start(mix64(hash));
   for (int i = -std::min(warm_rows, rows); i < rows; i++) {
     bool practice = i < 0;
     int line = practice ? -1 - i : i;
     size_t start = size_t(upwards ? end - 1 - line : begin + line) * size_t(width);
     uint8_t* priority = image.priority.data() + start;
+    int64_t* rest = below.data();
     int step = ((i ^ int(seed)) & 1) ? -1 : 1, x = step > 0 ? 0 : width - 1;
     for (int n = 0; n < width; n++, x += step) {
-      float value = float(priority[x]) + carry + below[size_t(x)];
-      if (value >= threshold && priority[x] != 0) {
-        if (!practice && count < share) {
-          chosen[count++] = uint32_t(start + size_t(x));
-          priority[x] = 0;
+      int64_t value = (int64_t(priority[x]) << fraction_bits) + rest[x] + carry;
+      if (value >= threshold) {
+        if (priority[x] != 0) {
+          if (!practice && count < share) {
+            chosen[count++] = uint32_t(start + size_t(x));
+            priority[x] = 0;
+          }
+          value -= threshold;
         }
-        value -= threshold;
+        value = std::min(value, 2 * threshold);
       }
-      value = std::min(value, 2 * threshold);
-      carry = value * 0.5f;
-      below[size_t(x)] = carry;
+      carry = value >> 1;
+      rest[x] = value - carry;
     }
   }
   return count;
@@ -122,7 +132,7 @@ void plan_requests(const PointCache& points, const View& view, const PlanSetting
   std::partial_sum(sums.begin(), sums.end(), sums.begin());
   uint64_t total = sums.back();
   if (total == 0) return;
-  float threshold = float(double(total) / double(budget));
+  int64_t threshold = int64_t(double(total << fraction_bits) / double(budget));
   auto share_before = [&](int band) {
     return size_t(double(budget) * (double(sums[size_t(band)]) / double(total)));
   };
