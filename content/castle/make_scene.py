@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the castle museum: blender -b --factory-startup --python content/castle/make_scene.py -- OUT.glb
+"""Makes the castle museum:
 
-Everything is computed here: geometry, pictures, light. The same script gives the same castle. Needs
-Blender 3.4 or newer with numpy in its Python (Debian: blender, python3-numpy). About a minute or two.
+    blender -b --factory-startup --python content/castle/make_scene.py -- OUT.glb
+
+Everything is computed here: geometry, pictures, light. The same script gives the same castle.
+Needs Blender 3.4 or newer with numpy in its Python (Debian: blender, python3-numpy); takes a few
+minutes, most of them for painting the pictures.
 """
 import os
 import sys
@@ -13,7 +16,8 @@ import bpy
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-from scripts import courtyard, export, furniture, hall, lights, materials, pictures, statues, treasury  # noqa: E402
+from scripts import cameras, courtyard, export, furniture, hall, lights  # noqa: E402
+from scripts import materials, pictures, statues, treasury  # noqa: E402
 
 
 def build(folder):
@@ -30,7 +34,8 @@ def build(folder):
     statues.make_horse()
     statues.make_bust(0.1, -3.8, 155)
     statues.make_armour(-7.35, 2.1, 90, 'Armour')
-    lights.make_sun()
+    lights.make_daylight()
+    cameras.make_cameras(os.path.join(os.path.dirname(os.path.abspath(__file__)), 'exhibit.json'))
 
 
 def main():

@@ -11,8 +11,9 @@ from .materials import BY_NAME
 def export(path):
     bpy.ops.export_scene.gltf(
         filepath=path, export_format='GLB', export_apply=True, export_yup=True, export_lights=True,
-        export_cameras=False, export_animations=False, export_skins=False, export_morph=False,
-        export_colors=False, export_image_format='AUTO', convert_lighting_mode='COMPAT', export_extras=False)
+        export_cameras=True, export_animations=False, export_skins=False, export_morph=False,
+        export_colors=False, export_image_format='AUTO', convert_lighting_mode='COMPAT',
+            export_extras=False)
     settle(path)
 
 
@@ -49,13 +50,15 @@ def settle(path):
     text += b' ' * (-len(text) % 4)
     total = 12 + 8 + len(text) + len(rest)
     with open(path, 'wb') as file:
-        file.write(struct.pack('<4sII', b'glTF', 2, total) + struct.pack('<I4s', len(text), b'JSON') + text + rest)
+        file.write(struct.pack('<4sII', b'glTF', 2, total) + struct.pack('<I4s', len(text),
+            b'JSON') + text + rest)
     describe(path, document, total)
 
 
 def describe(path, document, size):
     accessors = document['accessors']
-    emitters = {i for i, m in enumerate(document['materials']) if max(m.get('emissiveFactor', [0])) > 0}
+    emitters = {i for i, m in enumerate(document['materials']) if max(m.get('emissiveFactor',
+        [0])) > 0}
     triangles = shining = 0
     for mesh in document['meshes']:
         for primitive in mesh['primitives']:

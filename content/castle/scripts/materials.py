@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The materials of the castle: one table, made into Blender materials the glTF exporter understands.
+"""The materials of the castle: one table, made into Blender materials the glTF exporter
+understands.
 
-`strength` and glass are written into the finished file by export.py from the same table.
+Radiance and panes are written into the finished file by export.py from the same table.
 """
 import os
 from dataclasses import dataclass
@@ -69,8 +70,10 @@ TABLE = [
     M('paper', colour=srgb('dcd0b2'), roughness=0.9),
     M('rug', picture='rug', roughness=0.97),
     M('fringe', colour=srgb('cdbd96'), roughness=0.95),
-    M('tapestry stag', picture='tapestry_stag', normal='weave_normal', normal_scale=0.5, roughness=0.97),
-    M('tapestry eagle', picture='tapestry_eagle', normal='weave_normal', normal_scale=0.5, roughness=0.97),
+    M('tapestry stag', picture='tapestry_stag', normal='weave_normal', normal_scale=0.5,
+      roughness=0.97),
+    M('tapestry eagle', picture='tapestry_eagle', normal='weave_normal', normal_scale=0.5,
+      roughness=0.97),
     # Museum
     M('glass', colour=(1.0, 1.0, 1.0), roughness=0.0, pane=1.5, double_sided=True),
     M('plinth', colour=srgb('2b2a2c'), roughness=0.38),
@@ -85,12 +88,14 @@ TABLE = [
     M('pearl', colour=(0.85, 0.80, 0.74), roughness=0.2),
     # Light
     # A pane that glows and lets the sun through (refractive index 1: it mirrors nothing).
-    M('sky', colour=(1.0, 1.0, 1.0), roughness=0.0, emission=(14.0, 14.0, 14.0), glow='sky', pane=1.0),
+    M('sky', colour=(1.0, 1.0, 1.0), roughness=0.0, emission=(14.0, 14.0, 14.0), glow='sky',
+      pane=1.0),
     M('far sky', picture='sky', roughness=1.0),
     M('bulb', colour=(0.0, 0.0, 0.0), roughness=1.0, emission=(10.0, 6.4, 3.2)),
-    M('ember', colour=(0.02, 0.01, 0.01), roughness=1.0, emission=(4.5, 1.35, 0.28)),
+    M('ember', colour=(0.02, 0.01, 0.01), roughness=1.0, emission=(2.4, 0.72, 0.15)),
 ]
-PICTURES = ['castle', 'river', 'lady', 'nobleman', 'still_life', 'arms', 'moonlight', 'forest', 'captain', 'winter']
+PICTURES = ['castle', 'river', 'lady', 'nobleman', 'still_life', 'arms', 'moonlight', 'forest',
+            'captain', 'winter']
 TABLE += [M('picture ' + name, picture='picture_' + name, roughness=0.42) for name in PICTURES]
 BY_NAME = {material.name: material for material in TABLE}
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Geometry builder: collects faces with materials and texture coordinates, then becomes a Blender object.
+"""Geometry builder: collects faces with materials and texture coordinates, then becomes a Blender
+object.
 
 Blender's axes: x along the hall, y towards the windows, z up; metres.
 """
@@ -36,8 +37,8 @@ class Mesh:
 
     # -- raw input -----------------------------------------------------------------------------
     def add(self, points, faces, material, uvs=None, smooth=False, scale=1.0, grain=None):
-        """Adds faces over `points`. `uvs`: one list of (u, v) a face; None projects along the face's
-        main axis, `scale` metres a texture, u along `grain` ('x', 'y' or 'z') where it can."""
+        """Adds faces over `points`. `uvs`: one list of (u, v) a face; None projects along the
+        face's main axis, `scale` metres a texture, u along `grain` ('x', 'y' or 'z') if it can."""
         base = len(self.vertices)
         points = [Vector(p) for p in points]
         offset = self.random.random(2) if grain else (0.0, 0.0)
@@ -58,7 +59,8 @@ class Mesh:
         self.vertices.extend(self.transform @ p for p in points)
 
     def quad(self, a, b, c, d, material, uv=None, scale=1.0, grain=None):
-        self.add([a, b, c, d], [(0, 1, 2, 3)], material, None if uv is None else [uv], False, scale, grain)
+        self.add([a, b, c, d], [(0, 1, 2, 3)], material, None if uv is None else [uv], False,
+                 scale, grain)
 
     # -- solids --------------------------------------------------------------------------------
     def box(self, low, high, material, scale=1.0, grain=None):
@@ -81,13 +83,15 @@ class Mesh:
         """Extrudes a convex counter-clockwise (x, y) outline from z = low to z = high."""
         n = len(outline)
         points = [(x, y, low) for x, y in outline] + [(x, y, high) for x, y in outline]
-        self.add(points, [tuple(range(n))[::-1], tuple(range(n, 2 * n))], material, scale=scale, grain=grain)
+        self.add(points, [tuple(range(n))[::-1], tuple(range(n, 2 * n))], material, scale=scale,
+                 grain=grain)
         sides = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
         self.add(points, sides, material, smooth=smooth, scale=scale, grain=grain)
 
-    def grid(self, points, material, wrap_u=False, wrap_v=False, repeat=(1.0, 1.0), smooth=True, offset=(0, 0)):
-        """Quads over points[rows][columns]; u runs along columns, v along rows. The surface faces the
-        side from which columns run right and rows run up."""
+    def grid(self, points, material, wrap_u=False, wrap_v=False, repeat=(1.0, 1.0), smooth=True,
+             offset=(0, 0)):
+        """Quads over points[rows][columns]; u runs along columns, v along rows. The surface faces
+        the side from which columns run right and rows run up."""
         points = np.asarray(points, float)
         rows, columns = points.shape[:2]
         last_row, last_column = rows - (not wrap_v), columns - (not wrap_u)
@@ -95,21 +99,25 @@ class Mesh:
         for r in range(last_row):
             for c in range(last_column):
                 r1, c1 = (r + 1) % rows, (c + 1) % columns
-                faces.append((r * columns + c, r * columns + c1, r1 * columns + c1, r1 * columns + c))
+                faces.append((r * columns + c, r * columns + c1, r1 * columns + c1,
+                              r1 * columns + c))
                 u0, u1 = (offset[0] + repeat[0] * i / last_column for i in (c, c + 1))
                 v0, v1 = (offset[1] + repeat[1] * i / last_row for i in (r, r + 1))
                 uvs.append([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])
         self.add(points.reshape(-1, 3), faces, material, uvs, smooth)
 
-    def lathe(self, profile, segments, material, smooth=True, repeat=(1.0, 1.0), squash=1.0, phase=0.0):
+    def lathe(self, profile, segments, material, smooth=True, repeat=(1.0, 1.0), squash=1.0,
+              phase=0.0):
         """Turns a profile [(radius, z), ...], listed upwards for an outward surface, about z."""
         angles = [2 * math.pi * (i + phase) / segments for i in range(segments)]
-        rows = [[(max(r, 1e-5) * math.cos(a), max(r, 1e-5) * squash * math.sin(a), z) for a in angles]
+        rows = [[(max(r, 1e-5) * math.cos(a), max(r, 1e-5) * squash * math.sin(a),
+                  z) for a in angles]
                 for r, z in profile]
         self.grid(rows, material, wrap_u=True, repeat=repeat, smooth=smooth)
 
     def loft(self, rings, material, caps=True, smooth=True, repeat=(1.0, 1.0)):
-        """Skin over rings of equally many points (counter-clockwise seen from the last ring's side)."""
+        """Skin over rings of equally many points (counter-clockwise seen from the last ring's
+        side)."""
         self.grid(rings, material, wrap_u=True, repeat=repeat, smooth=smooth)
         if caps:
             n = len(rings[0])
@@ -117,33 +125,38 @@ class Mesh:
             self.add(rings[-1], [tuple(range(n))], material)
 
     def ellipsoid(self, centre, radii, material, segments=16, rings=8):
-        profile = [(math.sin(math.pi * i / rings), -math.cos(math.pi * i / rings)) for i in range(rings + 1)]
+        profile = [(math.sin(math.pi * i / rings), -math.cos(math.pi * i / rings))
+                   for i in range(rings + 1)]
         keep = self.transform
         self.transform = keep @ translation(*centre) @ Matrix.Diagonal((*radii, 1.0))
         self.lathe(profile, segments, material)
         self.transform = keep
 
-    def tube(self, path, radius, material, segments=8, closed=False, caps=True, smooth=True, repeat=(1.0, 1.0)):
+    def tube(self, path, radius, material, segments=8, closed=False, caps=True, smooth=True,
+             repeat=(1.0, 1.0)):
         """A round rod along a path; `radius` is a number or one a point."""
         radii = list(radius) if hasattr(radius, '__len__') else [radius] * len(path)
         rings = []
         for (point, side, up), r in zip(frames(path, closed), radii):
             rings.append([point + side * (r * math.cos(2 * math.pi * i / segments))
-                          + up * (r * math.sin(2 * math.pi * i / segments)) for i in range(segments)])
+                          + up * (r * math.sin(2 * math.pi * i / segments))
+                              for i in range(segments)])
         self.grid(rings, material, wrap_u=True, wrap_v=closed, smooth=smooth, repeat=repeat)
         if caps and not closed:
             n = segments
             self.add(rings[0], [tuple(range(n))[::-1]], material)
             self.add(rings[-1], [tuple(range(n))], material)
 
-    def sweep(self, outline, path, material, ups, closed=False, closed_outline=True, scale=1.0, smooth=False):
+    def sweep(self, outline, path, material, ups, closed=False, closed_outline=True, scale=1.0,
+              smooth=False):
         """Sweeps a (side, up) outline along a path with given up vectors; corners are mitred."""
         count = len(path)
         path = [Vector(p) for p in path]
         rings, length, lengths = [], 0.0, []
         for i, point in enumerate(path):
             before = (point - path[i - 1]).normalized() if (i > 0 or closed) else None
-            after = (path[(i + 1) % count] - point).normalized() if (i < count - 1 or closed) else None
+            after = (path[(i + 1) % count] - point).normalized() if (i < count - 1
+                                                                     or closed) else None
             if before is None or after is None:
                 tangent, stretch = (before or after), 1.0
             else:
@@ -174,7 +187,8 @@ class Mesh:
 
     def surface(self, vertices, faces, material, smooth=True, scale=1.0):
         """A ready triangle or quad mesh, projected texture coordinates."""
-        self.add([tuple(v) for v in vertices], [tuple(f) for f in faces], material, smooth=smooth, scale=scale)
+        self.add([tuple(v) for v in vertices], [tuple(f) for f in faces], material, smooth=smooth,
+                 scale=scale)
 
     # -- output --------------------------------------------------------------------------------
     def finish(self, bevel=0.0, auto_smooth=38.0, decimate=None, location=None):
@@ -188,7 +202,8 @@ class Mesh:
             data.materials.append(bpy.data.materials[name])
         slots = {name: i for i, name in enumerate(names)}
         data.polygons.foreach_set('material_index', [slots[m] for m in self.face_materials])
-        data.polygons.foreach_set('use_smooth', self.face_smooth if not bevel else [True] * len(self.faces))
+        data.polygons.foreach_set('use_smooth', self.face_smooth if not bevel else [True]
+                                  * len(self.faces))
         layer = data.uv_layers.new(name='UVMap')
         layer.data.foreach_set('uv', [value for face in self.uvs for uv in face for value in uv])
         data.use_auto_smooth = True
@@ -219,7 +234,8 @@ def project_uv(points, scale, grain, offset):
     normal = Vector((0, 0, 0))
     for i in range(len(points)):
         a, b = points[i], points[(i + 1) % len(points)]
-        normal += Vector(((a.y - b.y) * (a.z + b.z), (a.z - b.z) * (a.x + b.x), (a.x - b.x) * (a.y + b.y)))
+        normal += Vector(((a.y - b.y) * (a.z + b.z), (a.z - b.z) * (a.x + b.x),
+                          (a.x - b.x) * (a.y + b.y)))
     axis = max(range(3), key=lambda i: abs(normal[i]))
     u_axis, v_axis = [(1, 2), (0, 2), (0, 1)][axis]
     if grain and 'xyz'.index(grain) == v_axis:
@@ -248,7 +264,8 @@ def frames(path, closed=False):
 
 def circle(radius, count, centre=(0, 0), phase=0.0):
     return [(centre[0] + radius * math.cos(2 * math.pi * (i + phase) / count),
-             centre[1] + radius * math.sin(2 * math.pi * (i + phase) / count)) for i in range(count)]
+             centre[1] + radius * math.sin(2 * math.pi * (i + phase) / count))
+                 for i in range(count)]
 
 
 def pointed_arch(half_width, rise, count):

@@ -63,7 +63,8 @@ def blur(field, radius):
 
 
 def normal_map(height_field, strength):
-    """Tangent-space normals (green up) of a tileable height field; `strength` in texels of height."""
+    """Tangent-space normals (green up) of a tileable height field; `strength` in texels of
+    height."""
     dx = (np.roll(height_field, -1, 1) - np.roll(height_field, 1, 1)) * 0.5 * strength
     dy = (np.roll(height_field, -1, 0) - np.roll(height_field, 1, 0)) * 0.5 * strength
     normal = np.stack([-dx, dy, np.ones_like(dx)], axis=-1)

@@ -33,7 +33,8 @@ class Canvas:
         for (x0, y0), (x1, y1) in zip(points, points[1:] + points[:1]):
             if y0 == y1:
                 continue
-            crosses = ((y0 > self.y) != (y1 > self.y)) & (self.x < x0 + (self.y - y0) * (x1 - x0) / (y1 - y0))
+            crosses = ((y0 > self.y) != (y1 > self.y)) & (self.x < x0 + (self.y - y0) * (x1 - x0)
+                                                          / (y1 - y0))
             inside ^= crosses
         mask = inside.astype(float)
         return blur_edge(mask, (soft or self.soft) * self.height * 0.6)
@@ -47,7 +48,8 @@ class Canvas:
             w0 = width0 + (width1 - width0) * i / count
             w1 = width0 + (width1 - width0) * (i + 1) / count
             dx, dy = x1 - x0, y1 - y0
-            t = np.clip(((self.x - x0) * dx + (self.y - y0) * dy) / (dx * dx + dy * dy + 1e-12), 0, 1)
+            t = np.clip(((self.x - x0) * dx + (self.y - y0) * dy) / (dx * dx + dy * dy + 1e-12), 0,
+                        1)
             d = np.hypot(self.x - x0 - t * dx, self.y - y0 - t * dy) - (w0 + (w1 - w0) * t) / 2
             mask = np.maximum(mask, 1 - smoothstep(-self.soft, self.soft, d))
         return mask
@@ -59,10 +61,13 @@ class Canvas:
     def gradient(self, stops, mask=None, strength=1.0):
         """Vertical blend through (y, colour) stops."""
         ys = [s[0] for s in stops]
-        colour = np.stack([np.interp(self.y, ys, [s[1][c] for s in stops]) for c in range(3)], axis=-1)
-        self.pixels = mix(self.pixels, colour, np.ones(self.x.shape) * strength if mask is None else mask * strength)
+        colour = np.stack([np.interp(self.y, ys, [s[1][c] for s in stops]) for c in range(3)],
+                          axis=-1)
+        self.pixels = mix(self.pixels, colour, np.ones(self.x.shape) * strength if mask is None
+                          else mask * strength)
 
-    def ball(self, cx, cy, rx, ry, colour, light=(-0.55, -0.6, 0.58), angle=0.0, shine=0.25, ambient=0.28, mask=None):
+    def ball(self, cx, cy, rx, ry, colour, light=(-0.55, -0.6, 0.58), angle=0.0, shine=0.25,
+             ambient=0.28, mask=None):
         """A shaded ellipsoid lit from `light` (x right, y down, z towards the eye)."""
         inside, u, v = self.ellipse(cx, cy, rx, ry, angle)
         if mask is not None:
@@ -73,7 +78,8 @@ class Canvas:
         lx, ly = light[0] * c - light[1] * s, light[0] * s + light[1] * c
         diffuse = np.clip(u * lx + v * ly + z * light[2], 0, 1)
         glint = np.clip(diffuse, 0, 1) ** 24 * shine
-        shaded = np.asarray(colour) * (ambient + (1.08 - ambient) * diffuse)[..., None] + glint[..., None]
+        shaded = np.asarray(colour) * (ambient + (1.08 - ambient) * diffuse)[...,
+            None] + glint[..., None]
         self.pixels = mix(self.pixels, np.clip(shaded, 0, 1), inside)
 
     def ridge(self, base, height, roughness, colour, seed_high=24, fade=None):
@@ -105,15 +111,17 @@ def brush_tips(rng, length, width, angles=16):
         for k in range(angles):
             a = np.pi * k / angles
             along, across = x * np.cos(a) + y * np.sin(a), -x * np.sin(a) + y * np.cos(a)
-            body = (1 - smoothstep(0.55, 1.0, np.abs(along) / (length / 2))) * (1 - smoothstep(0.7, 1.0, np.abs(across) / (width / 2)))
+            body = (1 - smoothstep(0.55, 1.0, np.abs(along) / (length / 2))) * (1 - smoothstep(0.7,
+                1.0, np.abs(across) / (width / 2)))
             bristle = np.interp(across, np.linspace(-width / 2, width / 2, 64), hairs)
             tips.append((body * (0.62 + 0.38 * bristle), (bristle - 0.5) * body))
     return tips
 
 
-def oil(pixels, rng, layers=((46, 15, 1.6), (24, 8, 2.2), (12, 4.5, 2.6)), detail=None, relief=0.05):
-    """Repaints a picture in layers of strokes: (length, width, coverage). Strokes follow the contours and
-    take their colour from the picture, so the forms stay and the surface becomes paint."""
+def oil(pixels, rng, layers=((46, 15, 1.6), (24, 8, 2.2), (12, 4.5, 2.6)), detail=None,
+        relief=0.05):
+    """Repaints a picture in layers of strokes: (length, width, coverage). Strokes follow the
+    contours and take their colour from the picture, so the forms stay and become paint."""
     height, width = pixels.shape[:2]
     canvas = blur(pixels, 6)
     relief_map = np.zeros((height, width))
@@ -133,9 +141,11 @@ def oil(pixels, rng, layers=((46, 15, 1.6), (24, 8, 2.2), (12, 4.5, 2.6)), detai
             y, x = ys[i], xs[i]
             if index and error[y, x] < 0.018 and rng.random() < 0.6:
                 continue
-            k = int(round((along[y, x] + rng.normal(0, 0.18)) / np.pi * 16)) % 16 + 16 * rng.integers(0, 3)
+            k = int(round((along[y, x] + rng.normal(0, 0.18)) / np.pi
+                          * 16)) % 16 + 16 * rng.integers(0, 3)
             tip, hair = tips[k]
-            y0, y1, x0, x1 = max(0, y - reach), min(height, y + reach + 1), max(0, x - reach), min(width, x + reach + 1)
+            y0, y1, x0, x1 = max(0, y - reach), min(height, y + reach + 1), max(0,
+                x - reach), min(width, x + reach + 1)
             part = (slice(y0 - y + reach, y1 - y + reach), slice(x0 - x + reach, x1 - x + reach))
             weight = tip[part] * 0.9
             colour = source[y, x] * (1 + rng.normal(0, 0.035)) + rng.normal(0, 0.008, 3)
@@ -148,7 +158,8 @@ def oil(pixels, rng, layers=((46, 15, 1.6), (24, 8, 2.2), (12, 4.5, 2.6)), detai
     canvas *= 1 + 0.012 * (np.sin(weave_x * np.pi / 1.5) * np.sin(weave_y * np.pi / 1.5))[..., None]
     varnish = mix(canvas, canvas * np.array([1.0, 0.965, 0.88]), 0.6)
     edge_y, edge_x = (np.mgrid[0:height, 0:width] + 0.5)
-    edge = np.minimum(np.minimum(edge_y, height - edge_y), np.minimum(edge_x, width - edge_x)) / height
+    edge = np.minimum(np.minimum(edge_y, height - edge_y), np.minimum(edge_x,
+                                                                      width - edge_x)) / height
     return np.clip(varnish * (0.80 + 0.2 * smoothstep(0, 0.09, edge))[..., None], 0, 1)
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every picture that materials name: which function makes it, whether it is data, its JPEG quality."""
+"""Every picture that materials name: which function makes it, whether it is data, its JPEG
+quality."""
 from . import landscapes, portraits, surfaces, textiles
 
 # (function, (name, is data, quality) for each picture it returns)
@@ -39,10 +40,12 @@ RECIPES = [
 
 
 def all_pictures(only=None):
-    """(name, pixels, is data, quality) of every picture, or of the recipes that make one of `only`."""
+    """(name, pixels, is data, quality) of every picture, or of the recipes that make one of
+    `only`."""
     for function, *results in RECIPES:
         if only is not None and not any(name in only for name, _, _ in results):
             continue
         made = function()
-        for pixels, (name, data, quality) in zip(made if isinstance(made, tuple) else (made,), results):
+        for pixels, (name, data, quality) in zip(made if isinstance(made, tuple) else (made,),
+                                                 results):
             yield name, pixels, data, quality

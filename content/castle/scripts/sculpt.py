@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sculpting with signed distances: rounded forms that melt into each other, then a smooth mesh.
 
-Forms are (distance function, softness) pairs; the surface is found with naive surface nets (S. Gibson,
-Constrained Elastic Surface Nets, 1998).
+Forms are (distance function, softness) pairs; the surface is found with naive surface nets (S.
+Gibson, Constrained Elastic Surface Nets, 1998).
 """
 import numpy as np
 
@@ -19,12 +19,14 @@ class Clay:
 
     # -- forms ---------------------------------------------------------------------------------
     def cone(self, a, b, ra, rb, soft=0.04, flat=1.0):
-        """A rod with round ends from a to b whose radius runs from ra to rb; `flat` < 1 squeezes y."""
+        """A rod with round ends from a to b whose radius runs from ra to rb; `flat` < 1 squeezes
+        y."""
         a, b = np.asarray(a, float), np.asarray(b, float)
         d = b - a
         px, py, pz = self.x - a[0], self.y - a[1], self.z - a[2]
         t = np.clip((px * d[0] + py * d[1] + pz * d[2]) / (d @ d + 1e-12), 0, 1)
-        distance = np.sqrt((px - t * d[0]) ** 2 + ((py - t * d[1]) / flat) ** 2 + (pz - t * d[2]) ** 2) - (ra + (rb - ra) * t)
+        distance = np.sqrt((px - t * d[0]) ** 2 + ((py - t * d[1]) / flat) ** 2
+                           + (pz - t * d[2]) ** 2) - (ra + (rb - ra) * t)
         self.join(distance, soft)
 
     def limb(self, points, radii, soft=0.03, flat=1.0):
@@ -37,7 +39,8 @@ class Clay:
         dx, dy, dz = self.x - centre[0], self.y - centre[1], self.z - centre[2]
         u, w = dx * c - dz * s, dx * s + dz * c
         k0 = np.sqrt((u / radii[0]) ** 2 + (dy / radii[1]) ** 2 + (w / radii[2]) ** 2)
-        k1 = np.sqrt((u / radii[0] ** 2) ** 2 + (dy / radii[1] ** 2) ** 2 + (w / radii[2] ** 2) ** 2)
+        k1 = np.sqrt((u / radii[0] ** 2) ** 2 + (dy / radii[1] ** 2) ** 2
+                     + (w / radii[2] ** 2) ** 2)
         self.join(k0 * (k0 - 1) / np.maximum(k1, 1e-9), soft)
 
     def join(self, other, soft):

@@ -20,7 +20,8 @@ def plaster():
 
 
 def masonry(shape, rng, courses, per_course, joint, shift=0.5, vary=0.25):
-    """Course-laid blocks: block id, distance to the joint in pixels, (row, column) of each texel."""
+    """Course-laid blocks: block id, distance to the joint in pixels, (row, column) of each
+    texel."""
     height, width = shape
     y, x = np.mgrid[0:height, 0:width].astype(float)
     row = np.floor(y / height * courses).astype(int)
@@ -49,7 +50,8 @@ def ashlar():
     block, distance = masonry(shape, rng, 6, 4, 3.2)
     distance = distance + wobble * 0.25
     stones = block.max() + 1
-    tint = np.array([[0.80, 0.73, 0.62], [0.76, 0.70, 0.61], [0.72, 0.665, 0.585], [0.82, 0.765, 0.675]])
+    tint = np.array([[0.80, 0.73, 0.62], [0.76, 0.70, 0.61], [0.72, 0.665, 0.585],
+                     [0.82, 0.765, 0.675]])
     colour = (tint[rng.integers(0, 4, stones)] * (0.94 + 0.12 * rng.random((stones, 1))))[block]
     grain = spectral(shape, rng, 1.2, 8, 400)
     bed = spectral(shape, rng, 2.2, 3, 120, stretch=(1.0, 4.0))
@@ -57,7 +59,8 @@ def ashlar():
     soot = smoothstep(0.55, 0.85, spectral(shape, rng, 3.0, 1, 20))
     colour = mix(colour, colour * np.array([0.84, 0.82, 0.80]), soot * 0.6)
     joint = 1 - smoothstep(-1.0, 3.5, distance)
-    colour = mix(colour, np.array([0.80, 0.775, 0.72]) * (0.9 + 0.2 * grain[..., None]), joint * 0.85)
+    colour = mix(colour, np.array([0.80, 0.775, 0.72]) * (0.9 + 0.2 * grain[..., None]),
+                 joint * 0.85)
     chisel = spectral(shape, rng, 0.6, 30, 160, stretch=(1.0, 0.35))
     height = smoothstep(-1.0, 9.0, distance) * 1.6 + 0.7 * grain + 0.55 * chisel + 0.5 * bed
     return np.clip(colour, 0, 1), normal_map(blur(height, 0.8), 5.0)
@@ -66,7 +69,8 @@ def ashlar():
 def smooth_stone():
     """Dressed limestone without joints, for mouldings, columns and sculpture plinths. 1.5 m."""
     rng, shape = generator('smooth stone'), (512, 512)
-    tone = 0.9 + 0.12 * (spectral(shape, rng, 2.4, 1, 40) - 0.5) + 0.08 * (spectral(shape, rng, 1.0, 30, 250) - 0.5)
+    tone = 0.9 + 0.12 * (spectral(shape, rng, 2.4, 1, 40) - 0.5) + 0.08 * (spectral(shape, rng,
+        1.0, 30, 250) - 0.5)
     colour = solid(shape, (0.83, 0.775, 0.685)) * tone[..., None]
     pores = smoothstep(0.68, 0.76, spectral(shape, rng, 0.8, 40, 220))
     return mix(colour, colour * 0.8, pores * 0.6)
@@ -110,17 +114,20 @@ def marble_floor():
     pale = mix(solid(shape, (0.90, 0.855, 0.765)), (0.80, 0.725, 0.61), cloud * 0.8)
     pale = mix(pale, (0.60, 0.49, 0.37), pale_vein * 0.5)
     deep_vein = veins(shape, rng, 3, 0.014, 190)
-    deep = mix(solid(shape, (0.29, 0.33, 0.315)), (0.39, 0.425, 0.395), spectral(shape, rng, 2.2, 2, 90))
+    deep = mix(solid(shape, (0.29, 0.33, 0.315)), (0.39, 0.425, 0.395), spectral(shape, rng, 2.2,
+        2, 90))
     deep = mix(deep, (0.72, 0.74, 0.69), deep_vein * 0.55)
     pale, deep = warp(pale, oy, ox), warp(deep, oy, ox)
-    colour = np.where(dark[..., None], deep, pale) * (0.93 + 0.12 * rng.random(count))[tile][..., None]
+    colour = np.where(dark[..., None], deep, pale) * (0.93 + 0.12 * rng.random(count))[tile][...,
+        None]
 
     # Small red stones where four corners meet.
     na, nb = np.rint(a), np.rint(b)
     du, dv = (a - na) * tile_metres, (b - nb) * tile_metres
     diamond = np.maximum(np.abs(du + dv), np.abs(du - dv)) / np.sqrt(2)
     inset = diamond < 0.052
-    red = mix(solid(shape, (0.46, 0.20, 0.15)), (0.60, 0.33, 0.24), spectral(shape, rng, 2.0, 6, 200))
+    red = mix(solid(shape, (0.46, 0.20, 0.15)), (0.60, 0.33, 0.24), spectral(shape, rng, 2.0, 6,
+        200))
     red = mix(red, (0.80, 0.68, 0.58), veins(shape, rng, 2, 0.012, 100) * 0.5)
     colour = np.where(inset[..., None], red, colour)
     gap = np.where(inset, np.abs(diamond - 0.052), np.minimum(edge, np.abs(diamond - 0.052)))
@@ -149,7 +156,8 @@ def oak(base=(0.53, 0.355, 0.21), name='oak', gloss=0.42):
     pores = smoothstep(0.62, 0.74, spectral(shape, rng, 0.4, 60, 500, stretch=(1.0, 22.0)))
     colour = mix(colour, colour * 0.55, pores * 0.6)
     height = 0.6 * rings + 0.4 * fibre - 0.5 * pores
-    rough = np.clip(gloss + 0.16 * (0.5 - rings) + 0.2 * pores + 0.1 * (spectral(shape, rng, 2, 1, 20) - 0.5), 0.15, 0.9)
+    rough = np.clip(gloss + 0.16 * (0.5 - rings) + 0.2 * pores + 0.1 * (spectral(shape, rng, 2, 1,
+        20) - 0.5), 0.15, 0.9)
     packed = np.stack([np.ones_like(rough), rough, np.zeros_like(rough)], axis=-1)[::2, ::2]
     return np.clip(colour, 0, 1), normal_map(blur(height, 0.7), 3.0)[::2, ::2], packed
 
@@ -161,8 +169,10 @@ def dark_oak():
 def cobbles():
     """Rounded paving stones by nearest points. 2 m."""
     rng, size, count = generator('cobbles'), 768, 18
-    grid = np.stack(np.meshgrid(np.arange(count), np.arange(count), indexing='ij'), -1).reshape(-1, 2)
-    points = (grid + 0.5 + (rng.random(grid.shape) - 0.5) * 0.55 + (grid[:, :1] % 2) * [0, 0.5]) * size / count % size
+    grid = np.stack(np.meshgrid(np.arange(count), np.arange(count), indexing='ij'), -1).reshape(-1,
+        2)
+    points = (grid + 0.5 + (rng.random(grid.shape) - 0.5) * 0.55 + (grid[:, :1] % 2) * [0,
+        0.5]) * size / count % size
     y, x = np.mgrid[0:size, 0:size]
     first = np.full((size, size), 1e9)
     second, owner = first.copy(), np.zeros((size, size), int)
@@ -179,7 +189,8 @@ def cobbles():
     colour = colour * (0.8 + 0.4 * spectral((size, size), rng, 1.4, 6, 250))[..., None]
     joint = 1 - smoothstep(1.0, 7.0, gap)
     moss = smoothstep(0.5, 0.75, spectral((size, size), rng, 2.4, 1, 30))
-    colour = mix(colour, mix(solid((size, size), (0.28, 0.25, 0.20)), (0.27, 0.32, 0.15), moss), joint * 0.85)
+    colour = mix(colour, mix(solid((size, size), (0.28, 0.25, 0.20)), (0.27, 0.32, 0.15), moss),
+                 joint * 0.85)
     height = smoothstep(0.0, 22.0, gap) * 3 + 0.4 * spectral((size, size), rng, 1.5, 10, 200)
     return np.clip(colour, 0, 1), normal_map(blur(height, 1.0), 5.0)
 
@@ -188,7 +199,8 @@ def shingles():
     """Weathered wooden roof shingles, eight courses in 1.2 m."""
     rng, shape = generator('shingles'), (512, 512)
     block, distance = masonry(shape, rng, 8, 10, 1.0, vary=0.5)
-    colour = (np.array([0.40, 0.30, 0.225]) * (0.65 + 0.6 * rng.random((block.max() + 1, 1))))[block]
+    colour = (np.array([0.40, 0.30, 0.225]) * (0.65 + 0.6 * rng.random((block.max() + 1,
+        1))))[block]
     grain = spectral(shape, rng, 1.0, 10, 250, stretch=(12.0, 1.0))
     y = np.mgrid[0:shape[0], 0:shape[1]][0] / shape[0] * 8 % 1
     colour = colour * (0.7 + 0.5 * grain)[..., None] * (0.75 + 0.3 * y)[..., None]
@@ -203,7 +215,8 @@ def roof_tiles():
     block, distance = masonry(shape, rng, 8, 8, 0.8, vary=0.0)
     colour = (np.array([0.60, 0.30, 0.20]) * (0.7 + 0.5 * rng.random((block.max() + 1, 1))))[block]
     y = np.mgrid[0:shape[0], 0:shape[1]][0] / shape[0] * 8 % 1
-    colour = colour * (0.62 + 0.45 * y)[..., None] * (0.85 + 0.3 * spectral(shape, rng, 1.5, 5, 200))[..., None]
+    colour = colour * (0.62 + 0.45 * y)[..., None] * (0.85 + 0.3 * spectral(shape, rng, 1.5, 5,
+        200))[..., None]
     return np.clip(mix(colour, (0.16, 0.08, 0.06), (1 - smoothstep(-1, 2, distance)) * 0.8), 0, 1)
 
 

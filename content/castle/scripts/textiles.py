@@ -20,20 +20,24 @@ def woven(pixels, stitch, rng, contrast=0.10):
     """Reduces a design to stitches of slightly uneven dye, and shows the thread."""
     height, width = pixels.shape[:2]
     rows, columns = height // stitch, width // stitch
-    cells = pixels[:rows * stitch, :columns * stitch].reshape(rows, stitch, columns, stitch, 3).mean(axis=(1, 3))
+    cells = pixels[:rows * stitch, :columns * stitch].reshape(rows, stitch, columns, stitch,
+                                                              3).mean(axis=(1, 3))
     cells = cells * (1 + rng.normal(0, 0.045, (rows, columns, 1)))
     dye = spectral((rows, columns), rng, 2.0, 1, 60, stretch=(0.35, 2.0)) - 0.5
     cells = cells * (1 + 0.22 * dye[..., None])
     big = np.repeat(np.repeat(cells, stitch, 0), stitch, 1)
     y, x = np.mgrid[0:big.shape[0], 0:big.shape[1]]
-    thread = np.sin(np.pi * ((x % stitch) + 0.5) / stitch) * (0.75 + 0.25 * np.sin(np.pi * ((y % stitch) + 0.5) / stitch))
+    thread = np.sin(np.pi * ((x % stitch) + 0.5) / stitch) * (0.75 + 0.25
+                                                              * np.sin(np.pi * ((y % stitch) + 0.5)
+                                                                  / stitch))
     return np.clip(big * (1 - contrast + 1.2 * contrast * thread)[..., None], 0, 1)
 
 
 def flower(c, x, y, s, petals, heart, count=5, phase=0.0):
     for k in range(count):
         a = phase + 2 * np.pi * k / count
-        c.lay(petals, c.ellipse(x + s * 0.62 * np.cos(a), y + s * 0.62 * np.sin(a), s * 0.5, s * 0.34, a)[0])
+        c.lay(petals, c.ellipse(x + s * 0.62 * np.cos(a), y + s * 0.62 * np.sin(a), s * 0.5,
+                                s * 0.34, a)[0])
     c.lay(heart, c.ellipse(x, y, s * 0.3, s * 0.3)[0])
 
 
@@ -44,9 +48,12 @@ def sprig(c, x, y, s, rng, tone=1.0):
     stem = [(x, y), (x + lean * s * 0.5, y - s * 0.5), (x + lean * s, y - s)]
     c.lay(green, c.stroke(stem, 0.10 * s))
     for side in (-1, 1):
-        c.lay(green * 1.15, c.stroke([(x + lean * 0.2 * s, y - 0.2 * s), (x + side * 0.42 * s, y - 0.42 * s)], 0.20 * s, 0.04 * s))
-    dyes = [(0.80, 0.34, 0.30), (0.88, 0.78, 0.62), (0.86, 0.64, 0.28), (0.62, 0.66, 0.80), (0.88, 0.60, 0.56)]
-    flower(c, x + lean * s, y - s, 0.36 * s, np.array(dyes[rng.integers(0, 5)]) * tone, (0.86, 0.70, 0.30), 5, rng.random() * 6)
+        c.lay(green * 1.15, c.stroke([(x + lean * 0.2 * s, y - 0.2 * s), (x + side * 0.42 * s,
+            y - 0.42 * s)], 0.20 * s, 0.04 * s))
+    dyes = [(0.80, 0.34, 0.30), (0.88, 0.78, 0.62), (0.86, 0.64, 0.28), (0.62, 0.66, 0.80),
+            (0.88, 0.60, 0.56)]
+    flower(c, x + lean * s, y - s, 0.36 * s, np.array(dyes[rng.integers(0, 5)]) * tone,
+           (0.86, 0.70, 0.30), 5, rng.random() * 6)
 
 
 def border(c, width, ground, line):
@@ -71,15 +78,21 @@ def border(c, width, ground, line):
                 else:
                     for q in range(4):
                         a = np.pi / 4 + q * np.pi / 2
-                        c.lay((0.52, 0.58, 0.34), c.stroke([(x, y), (x + width * 0.28 * np.cos(a), y + width * 0.28 * np.sin(a))], width * 0.13, width * 0.03))
+                        c.lay((0.52, 0.58, 0.34), c.stroke([(x, y), (x + width * 0.28 * np.cos(a),
+                                                                     y + width * 0.28
+                                                                         * np.sin(a))],
+                                                                             width * 0.13,
+                                                                                 width * 0.03))
                     c.lay((0.90, 0.76, 0.36), c.ellipse(x, y, width * 0.08, width * 0.08)[0])
 
 
 def millefleurs(c, rng, inset, keep_clear, count=420, size=0.045):
     placed = []
     for _ in range(count * 6):
-        x, y = inset + rng.random() * (c.aspect - 2 * inset), inset + 0.03 + rng.random() * (1 - 2 * inset - 0.03)
-        if keep_clear(x, y) or any((x - a) ** 2 + (y - b) ** 2 < (size * 1.02) ** 2 for a, b in placed):
+        x, y = inset + rng.random() * (c.aspect - 2 * inset), inset + 0.03 + rng.random() * (1 - 2
+            * inset - 0.03)
+        if keep_clear(x, y) or any((x - a) ** 2 + (y - b) ** 2 < (size * 1.02) ** 2 for a,
+                                   b in placed):
             continue
         placed.append((x, y))
         sprig_local(c, x, y, size * (0.8 + 0.35 * rng.random()), rng)
@@ -108,7 +121,8 @@ def tapestry_stag():
     c.gradient([(0.0, (0.13, 0.21, 0.25)), (0.55, (0.10, 0.17, 0.18)), (1.0, (0.12, 0.19, 0.13))])
     mound = smoothstep(-0.004, 0.004, c.y - 0.73 - 0.10 * ((c.x - x) / 0.4) ** 2)
     c.lay((0.20, 0.28, 0.16), mound)
-    clear = lambda a, b: ((a - x) / 0.25) ** 2 + ((b - 0.60) / 0.20) ** 2 < 1 or ((a - x - 0.02) / 0.27) ** 2 + ((b - 0.27) / 0.17) ** 2 < 1
+    clear = lambda a, b: ((a - x) / 0.25) ** 2 + ((b - 0.60) / 0.20) ** 2 < 1 or ((a - x - 0.02)
+        / 0.27) ** 2 + ((b - 0.27) / 0.17) ** 2 < 1
     millefleurs(c, rng, 0.10, clear, 330, 0.042)
     trunk = [(x + 0.02, 0.74), (x + 0.05, 0.55), (x + 0.01, 0.40), (x + 0.02, 0.28)]
     c.lay((0.40, 0.29, 0.18), c.stroke(trunk, 0.060, 0.030))
@@ -118,7 +132,8 @@ def tapestry_stag():
         tone = np.array((0.36, 0.44, 0.22)) * (0.75 + 0.6 * rng.random())
         for q in range(3):
             b = rng.random() * np.pi
-            c.lay(tone, c.ellipse(px + 0.014 * np.cos(q * 2.1), py + 0.014 * np.sin(q * 2.1), 0.026, 0.012, b)[0])
+            c.lay(tone, c.ellipse(px + 0.014 * np.cos(q * 2.1), py + 0.014 * np.sin(q * 2.1),
+                                  0.026, 0.012, b)[0])
         if k % 5 == 0:
             c.lay((0.80, 0.60, 0.24), c.ellipse(px, py, 0.010, 0.012)[0])
     stag(c, x + 0.01, 0.755, 0.205, (0.66, 0.62, 0.54), 1.1)
@@ -145,34 +160,44 @@ def tapestry_eagle():
             t = k / 6
             root = p(0.10 + 0.06 * t, 0.37 + 0.02 * t)
             tip = p(0.265 - 0.115 * t ** 1.6, 0.40 + 0.245 * t ** 0.75)
-            c.lay(dark * (1.0 + 0.25 * (k % 2)), c.stroke([root, ((root[0] * 0.4 + tip[0] * 0.6) + side * 0.012, root[1] * 0.5 + tip[1] * 0.5), tip], 0.046, 0.020))
+            c.lay(dark * (1.0 + 0.25 * (k % 2)),
+                  c.stroke([root, ((root[0] * 0.4 + tip[0] * 0.6) + side * 0.012,
+                                   root[1] * 0.5 + tip[1] * 0.5), tip], 0.046, 0.020))
             c.lay(gold * 0.8, c.stroke([root, tip], 0.0045))
-        c.lay(dark, c.stroke([p(0.02, 0.42), p(0.10, 0.345), p(0.20, 0.335), p(0.265, 0.37)], 0.07, 0.03))
+        c.lay(dark, c.stroke([p(0.02, 0.42), p(0.10, 0.345), p(0.20, 0.335), p(0.265, 0.37)], 0.07,
+                             0.03))
         c.lay(gold * 0.9, c.stroke([p(0.05, 0.385), p(0.12, 0.335), p(0.21, 0.328)], 0.010))
-        c.lay(gold, c.stroke([p(0.04, 0.60), p(0.09, 0.665), p(0.085, 0.70)], 0.030, 0.016))        # legs
+        c.lay(gold, c.stroke([p(0.04, 0.60), p(0.09, 0.665), p(0.085, 0.70)], 0.030,
+                             0.016))        # legs
         for q in (-1, 0, 1):
             c.lay(gold, c.stroke([p(0.085, 0.70), p(0.085 + q * 0.035, 0.735)], 0.014, 0.006))
     for k in range(-2, 3):                                                         # tail
-        c.lay(dark * (1.0 + 0.25 * (k % 2)), c.stroke([(x, 0.60), (x + k * 0.022, 0.70), (x + k * 0.045, 0.785)], 0.05, 0.022))
+        c.lay(dark * (1.0 + 0.25 * (k % 2)), c.stroke([(x, 0.60), (x + k * 0.022, 0.70),
+                                                       (x + k * 0.045, 0.785)], 0.05, 0.022))
         c.lay(gold * 0.8, c.stroke([(x, 0.62), (x + k * 0.040, 0.77)], 0.0045))
     c.lay(dark, c.ellipse(x, 0.50, 0.085, 0.145)[0])
     for row in range(6):
         for k in range(-2, 3):
-            c.lay(gold * 0.55, c.ellipse(x + k * 0.030 + (row % 2) * 0.015, 0.42 + row * 0.033, 0.011, 0.009)[0] * c.ellipse(x, 0.50, 0.08, 0.14)[0])
+            c.lay(gold * 0.55, c.ellipse(x + k * 0.030 + (row % 2) * 0.015, 0.42 + row * 0.033,
+                                         0.011, 0.009)[0] * c.ellipse(x, 0.50, 0.08, 0.14)[0])
     c.lay(dark, c.stroke([(x, 0.42), (x - 0.005, 0.33), (x - 0.02, 0.285)], 0.085, 0.06))
     c.lay(dark, c.ellipse(x - 0.022, 0.272, 0.042, 0.036)[0])
-    c.lay(gold, c.polygon([(x - 0.05, 0.258), (x - 0.105, 0.283), (x - 0.092, 0.298), (x - 0.05, 0.290)]))
+    c.lay(gold, c.polygon([(x - 0.05, 0.258), (x - 0.105, 0.283), (x - 0.092, 0.298),
+                           (x - 0.05, 0.290)]))
     c.lay(gold, c.ellipse(x - 0.034, 0.265, 0.008, 0.008)[0])
     for k in range(5):
         px = x - 0.062 + 0.022 * k
-        c.lay(gold, c.polygon([(px - 0.013, 0.236), (px, 0.192 + 0.010 * (k % 2)), (px + 0.013, 0.236)]))
+        c.lay(gold, c.polygon([(px - 0.013, 0.236), (px, 0.192 + 0.010 * (k % 2)),
+                               (px + 0.013, 0.236)]))
     c.lay(gold, c.stroke([(x - 0.075, 0.238), (x + 0.038, 0.238)], 0.014))
     shield = [(x - 0.058, 0.44), (x + 0.058, 0.44), (x + 0.055, 0.53), (x, 0.60), (x - 0.055, 0.53)]
     c.lay(gold, c.polygon([(x + (a - x) * 1.14, 0.51 + (b - 0.51) * 1.12) for a, b in shield]))
     mask = c.polygon(shield)
     c.lay((0.16, 0.25, 0.46), mask)
     for k in range(3):
-        c.lay((0.90, 0.88, 0.82), c.stroke([(x - 0.06 + 0.012 * i, 0.475 + 0.035 * k + 0.006 * np.sin(i * 1.5)) for i in range(11)], 0.011) * mask)
+        c.lay((0.90, 0.88, 0.82),
+              c.stroke([(x - 0.06 + 0.012 * i, 0.475 + 0.035 * k + 0.006 * np.sin(i * 1.5))
+                        for i in range(11)], 0.011) * mask)
     border(c, 0.085, (0.14, 0.20, 0.30), (0.84, 0.66, 0.30))
     return woven(c.pixels, 4, rng)
 
@@ -183,11 +208,13 @@ def rug():
     c = Canvas(1152, 768, (0.44, 0.10, 0.09), rng)
     x = c.aspect / 2
     ax, ay = np.abs(c.x - x), np.abs(c.y - 0.5)
-    navy, ivory, ochre, red = (0.12, 0.15, 0.26), (0.84, 0.77, 0.62), (0.74, 0.52, 0.22), (0.52, 0.12, 0.10)
+    navy, ivory, ochre, red = (0.12, 0.15, 0.26), (0.84, 0.77, 0.62), (0.74, 0.52, 0.22), (0.52,
+        0.12, 0.10)
     vine = np.sin(ax * 52 + 6 * np.sin(ay * 26)) * np.sin(ay * 52 + 6 * np.sin(ax * 26))
     c.lay((0.62, 0.26, 0.16), (vine > 0.62).astype(float), 0.8)
     c.lay(ochre, (vine < -0.80).astype(float), 0.8)
-    for scale, colour in ((1.0, navy), (0.90, ochre), (0.86, navy), (0.58, red), (0.52, ivory), (0.47, red)):
+    for scale, colour in ((1.0, navy), (0.90, ochre), (0.86, navy), (0.58, red), (0.52, ivory),
+                          (0.47, red)):
         a = np.arctan2(ay, ax)
         r = np.hypot(ax / 0.44, ay / 0.30) / (1 + 0.08 * np.cos(a * 12))
         c.lay(colour, (r < scale).astype(float))
@@ -204,7 +231,8 @@ def rug():
     motif = np.sin(along * 60) * np.sin((edge - 0.02) * np.pi / 0.08)
     c.lay(red, ((motif > 0.35) & (edge < 0.11)).astype(float))
     c.lay(ivory, ((motif < -0.55) & (edge < 0.11)).astype(float))
-    for a, b, colour in ((0.112, 0.122, ivory), (0.100, 0.106, ochre), (0.0, 0.016, red), (0.016, 0.022, ivory)):
+    for a, b, colour in ((0.112, 0.122, ivory), (0.100, 0.106, ochre), (0.0, 0.016, red),
+                         (0.016, 0.022, ivory)):
         c.lay(colour, ((edge >= a) & (edge < b)).astype(float))
     return woven(c.pixels, 3, rng, 0.14)
 
@@ -229,10 +257,12 @@ def book_page():
                 for k in range(strokes):
                     px = x + k * 0.008
                     x0, x1 = int((px - 0.004) * c.height), int((px + 0.008) * c.height)
-                    y0, y1 = int((y - 0.014 - 0.010 * (rng.random() < 0.25)) * c.height), int((y + 0.004) * c.height)
+                    y0, y1 = int((y - 0.014 - 0.010 * (rng.random() < 0.25)) * c.height), int((y
+                        + 0.004) * c.height)
                     c.pixels[y0:y1, (x0 + x1) // 2 - 1:(x0 + x1) // 2 + 1] = np.asarray(ink)
                     if rng.random() < 0.6:
-                        c.pixels[y1 - 2:y1, x0:x1] = c.pixels[y1 - 2:y1, x0:x1] * 0.5 + np.asarray(ink) * 0.5
+                        c.pixels[y1 - 2:y1, x0:x1] = c.pixels[y1 - 2:y1,
+                                                              x0:x1] * 0.5 + np.asarray(ink) * 0.5
                 x += word + 0.018
     c.lay((0.16, 0.24, 0.50), c.polygon([(0.10, 0.12), (0.255, 0.12), (0.255, 0.32), (0.10, 0.32)]))
     c.lay((0.86, 0.66, 0.22), c.stroke([(0.135, 0.29), (0.178, 0.15), (0.222, 0.29)], 0.026))
@@ -240,8 +270,11 @@ def book_page():
     for k in range(13):
         y = 0.16 + 0.055 * k
         for x in (0.055, c.aspect - 0.055):
-            c.lay((0.24, 0.40, 0.20), c.stroke([(x, y - 0.03), (x + 0.016 * (-1) ** k, y), (x, y + 0.03)], 0.006))
-            flower(c, x + 0.016 * (-1) ** k, y, 0.016, ((0.70, 0.16, 0.14), (0.20, 0.30, 0.58))[k % 2], (0.88, 0.70, 0.26))
+            c.lay((0.24, 0.40, 0.20), c.stroke([(x, y - 0.03), (x + 0.016 * (-1) ** k, y),
+                                                (x, y + 0.03)], 0.006))
+            flower(c, x + 0.016 * (-1) ** k, y, 0.016, ((0.70, 0.16, 0.14),
+                                                        (0.20, 0.30, 0.58))[k % 2],
+                                                            (0.88, 0.70, 0.26))
     gutter = np.exp(-((c.x - c.aspect / 2) / 0.035) ** 2)
     c.pixels *= (1 - 0.5 * gutter)[..., None]
     return np.clip(c.pixels, 0, 1)
@@ -257,21 +290,24 @@ def label():
         x = 0.12
         while x < end:
             w = 0.05 + 0.10 * rng.random()
-            c.lay((0.30, 0.28, 0.27), c.stroke([(x, 0.42 + 0.13 * k), (min(end, x + w), 0.42 + 0.13 * k)], 0.034))
+            c.lay((0.30, 0.28, 0.27), c.stroke([(x, 0.42 + 0.13 * k), (min(end, x + w),
+                0.42 + 0.13 * k)], 0.034))
             x += w + 0.06
     return c.pixels
 
 
 def white_marble():
     rng, shape = generator('white marble'), (512, 512)
-    colour = solid(shape, (0.90, 0.885, 0.855)) * (0.95 + 0.08 * spectral(shape, rng, 2.4, 1, 30))[..., None]
+    colour = solid(shape, (0.90, 0.885, 0.855)) * (0.95 + 0.08 * spectral(shape, rng, 2.4, 1,
+        30))[..., None]
     return mix(colour, (0.66, 0.65, 0.64), veins(shape, rng, 2, 0.012, 60) * 0.35)
 
 
 def gilt():
     """Water gilding: gold leaf over red clay, rubbed through here and there."""
     rng, shape = generator('gilt'), (256, 256)
-    colour = solid(shape, (0.97, 0.79, 0.42)) * (0.86 + 0.22 * spectral(shape, rng, 2.0, 2, 60))[..., None]
+    colour = solid(shape, (0.97, 0.79, 0.42)) * (0.86 + 0.22 * spectral(shape, rng, 2.0, 2,
+        60))[..., None]
     rubbed = smoothstep(0.60, 0.86, spectral(shape, rng, 1.8, 3, 60))
     return mix(colour, (0.56, 0.28, 0.17), rubbed * 0.55)
 
@@ -281,20 +317,23 @@ def jug():
     rng = generator('jug')
     c = Canvas(768, 512, (0.93, 0.925, 0.90), rng)
     blue, ochre, green = (0.13, 0.22, 0.52), (0.84, 0.58, 0.16), (0.22, 0.44, 0.26)
-    for y, w in ((0.06, 0.02), (0.10, 0.006), (0.285, 0.016), (0.72, 0.016), (0.755, 0.006), (0.93, 0.03)):
+    for y, w in ((0.06, 0.02), (0.10, 0.006), (0.285, 0.016), (0.72, 0.016), (0.755, 0.006),
+                 (0.93, 0.03)):
         c.lay(blue, (np.abs(c.y - y) < w / 2).astype(float))
     count = 5
     for k in range(-1, count + 1):
         x = c.aspect * (k + 0.5) / count
         flower(c, x, 0.50, 0.085, blue, ochre, 8, 0.2)
         for side in (-1, 1):
-            stem = [(x, 0.60), (x + side * 0.08, 0.66), (x + side * 0.15, 0.58), (x + side * 0.14, 0.48)]
+            stem = [(x, 0.60), (x + side * 0.08, 0.66), (x + side * 0.15, 0.58), (x + side * 0.14,
+                0.48)]
             c.lay(green, c.stroke(stem, 0.012))
             flower(c, x + side * 0.14, 0.44, 0.034, ochre, blue, 5)
             c.lay(green, c.ellipse(x + side * 0.10, 0.62, 0.032, 0.013, side * 0.6)[0])
         c.lay(blue, c.stroke([(x - 0.09, 0.20), (x, 0.15), (x + 0.09, 0.20)], 0.012))
         c.lay(blue, c.ellipse(x, 0.20, 0.016, 0.016)[0])
-        c.lay(blue, c.stroke([(x - 0.13, 0.84), (x - 0.065, 0.80), (x, 0.84), (x + 0.065, 0.88), (x + 0.13, 0.84)], 0.014))
+        c.lay(blue, c.stroke([(x - 0.13, 0.84), (x - 0.065, 0.80), (x, 0.84), (x + 0.065, 0.88),
+                              (x + 0.13, 0.84)], 0.014))
     glaze = spectral((512, 768), rng, 2.0, 1, 60)
     return np.clip(blur(c.pixels, 0.8) * (0.95 + 0.08 * glaze)[..., None], 0, 1)
 
