@@ -166,7 +166,7 @@ def frame_on_hood(mesh, base):
     slope = math.degrees(math.atan2(0.72 - 0.30, 5.6 - 1.97))
     z = 2.72
     y = -(0.72 - (0.72 - 0.30) * (z - 1.97) / (5.6 - 1.97))
-    mesh.transform = base @ translation(0, y - 0.01, z) @ turn(slope, 'X') @ translation(0, 0, -z)
+    mesh.transform = base @ translation(0, y - 0.01, z) @ turn(-slope, 'X') @ translation(0, 0, -z)
     frame(mesh, 0.0, z, 0.86, 'arms', 0.8, 1.0)
     mesh.transform = base
 
