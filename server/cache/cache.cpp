@@ -2,9 +2,9 @@
 #include "cache/cache.h"
 
 #include <algorithm>
-#include <cstring>
+#include <atomic>
 
-#include "base/rng.h"
+#include "base/parallel.h"
 #include "cache/attention.h"
 #include "cache/cells.h"
 #include "cache/plan.h"
@@ -145,17 +145,13 @@ void RenderCache::reconstruct(const View& view, Frame& frame) {
   frame.object.resize(pixels);
   frame.confidence.resize(pixels);
   if (!c.projected || !same_view(view, c.view)) project(view);
-  c.scratch.start(surface_bytes(pixels) + cells_bytes(width, height));
-  SurfaceImage surface{c.scratch.take<uint32_t>(pixels), c.scratch.take<uint32_t>(pixels),
-                       c.scratch.take<uint16_t>(pixels)};
+  c.scratch.start(cells_bytes(width, height));
   take_cells(c.cells, width, height, c.scratch);
-  SurfaceCounts counts = gather_surface(c.points, c.image, surface, frame);
-  build_cells(view, c.points, c.image, surface, frame, c.cells);
+  SurfaceCounts counts = read_surface(view, c.points, c.image, c.cells, frame);
   filter_cells(view, c.cells);
   bool known = fill_cells(view, c.cells);
   c.count(counts, known);
-  fill_holes(view, c.image, c.cells, known, surface, frame);
-  compose(view, c.points, c.image, surface, c.cells, frame);
+  compose(view, c.cells, known, frame);
   if (c.is_still()) accumulate_still(c.points, c.image, c.frames, c.still, frame);
 }
 
@@ -170,13 +166,26 @@ void RenderCache::clear() {
 
 void RenderCache::Impl::count(const SurfaceCounts& counts, bool known) {
   float pixels = float(image.point.size()), shown = float(counts.points);
-  stats.points = int(std::count_if(points.age.begin(), points.age.end(),
-                                   [](uint8_t a) { return a != evicted_age; }));
+  std::atomic<int> alive{0}, seen{0};
+  std::atomic<int64_t> ages{0};
+  parallel_ranges(points.capacity(), 1 << 15, [&](int begin, int end) {
+    int alive_here = 0, seen_here = 0, ages_here = 0;
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      int visible = points.flags[i] / point_visible & 1, age = points.age[i];
+      alive_here += age != evicted_age;
+      seen_here += visible;
+      ages_here += visible * age;
+    }
+    alive += alive_here;
+    seen += seen_here;
+    ages += ages_here;
+  });
+  stats.points = alive;
   stats.fresh = std::min(float(fresh), shown) / pixels;
   stats.reprojected = shown / pixels - stats.fresh;
   stats.filled = known ? 1 - shown / pixels : 0.0f;
   stats.empty = known ? 0.0f : 1 - shown / pixels;
-  stats.mean_age = shown > 0 ? float(counts.ages) / shown : 0.0f;
+  stats.mean_age = seen > 0 ? float(ages) / float(seen) : 0.0f;
   stats.converged = float(counts.converged) / pixels;
 }
 

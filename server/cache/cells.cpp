@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
-#include "cache/packing.h"
+#include "cache/lanes.h"
 
 namespace wellspring {
 namespace {
@@ -17,79 +16,119 @@ size_t padded(int width, int height) {
   return size_t(columns + 2 * cell_pad) * size_t(rows + 2 * cell_pad) + cell_run;
 }
 
-// Plane through a place, seen at ray (x, y, 1) in depth z: coefficients of inverse depth over the
-// picture.
-vec3 inverse_depth_plane(vec3 normal, float x, float y, float z) {
-  vec3 ray(x, y, 1);
-  float facing = dot(normal, ray);
+f8 square_root(const f8& v) {
+  f8 root;
+  for (int i = 0; i < lanes; i++) root[i] = std::sqrt(v[i]);
+  return root;
+}
+
+struct Vec {
+  f8 x{}, y{}, z{};
+};
+f8 dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec operator*(const Vec& a, const f8& s) { return {a.x * s, a.y * s, a.z * s}; }
+void add(Vec& sum, const i8& mask, const Vec& v) {
+  sum.x += keep(mask, v.x), sum.y += keep(mask, v.y), sum.z += keep(mask, v.z);
+}
+
+// Planes through places, seen at rays (x, y, 1) in depth 1 / inverse_depth: coefficients of inverse
+// depth over the picture.
+Vec inverse_depth_plane(Vec normal, const Vec& ray, const f8& inverse_depth) {
+  f8 facing = dot(normal, ray), length2 = dot(ray, ray);
   // A plane seen edge-on would reach from the eye to infinity within a pixel; bend it towards the
   // viewer.
-  float least = -0.05f * length(ray);
-  if (!(facing < least)) {
-    normal = normalize(normal - ray * ((facing - least) / dot(ray, ray)));
-    facing = dot(normal, ray);
-  }
-  return normal / (facing * z);
+  f8 least = -0.05f * square_root(length2);
+  f8 bend = keep(~(facing < least), (facing - least) / length2);
+  normal = {normal.x - ray.x * bend, normal.y - ray.y * bend, normal.z - ray.z * bend};
+  normal = normal * (1.0f / square_root(dot(normal, normal)));
+  return normal * (inverse_depth / dot(normal, ray));
+}
+
+// The sixteen pixels of eight cells side by side.
+struct Pixels {
+  u8 plane[surface_planes][cell_size * cell_size];
+};
+void read_pixels(const SurfaceRows& rows, int cx, int cy, Pixels& pixels) {
+  for (int p = 0; p < surface_planes; p++)
+    for (int r = 0; r < cell_size; r++) {
+      u8* to = pixels.plane[p] + r * cell_size;
+      transpose(rows.row(SurfacePlane(p), cy * cell_size + r) + cx * cell_size, to[0], to[1], to[2],
+                to[3]);
+    }
 }
 
 struct Gathered {
-  uint32_t object = no_object;
-  vec3 albedo{0}, rest{0}, smooth{0}, normal{0};
-  float x = 0, y = 0, inverse_depth = 0, samples = 0, points = 0, sum = 0, sum2 = 0;
-  float rest_sum2 = 0, rest_noise = 0, rest_known = 0;
+  u8 object = u8{} + no_object;
+  Vec albedo, rest, smooth, normal;
+  f8 x{}, y{}, inverse_depth{}, samples{}, points{}, sum{}, sum2{};
+  f8 rest_sum2{}, rest_noise{}, rest_known{};
 };
 
-// The object most pixels of a cell see (majority vote of Boyer and Moore), then the mean over it.
-Gathered gather_cell(const PointCache& points, const PointImage& image, const SurfaceImage& surface,
-                     const Frame& frame, int cx, int cy) {
-  int x0 = cx * cell_size, y0 = cy * cell_size;
-  int x1 = std::min(x0 + cell_size, image.width), y1 = std::min(y0 + cell_size, image.height);
+// The object most pixels of a cell see (majority vote of Boyer and Moore).
+u8 elect_object(const Pixels& pixels) {
+  u8 elected = u8{} + no_object;
+  i8 votes{};
+  for (const u8& object : pixels.plane[plane_object]) {
+    i8 there = object != no_object;
+    elected = (there & (votes == 0)) ? object : elected;
+    i8 same = object == elected;
+    votes += there & (-2 * same - 1);
+  }
+  return elected;
+}
+
+// The means over the pixels of that object; `x` and `y` are counted from the cell's corner.
+Gathered gather_cells(const Pixels& pixels) {
   Gathered g;
-  int votes = 0;
-  size_t pixels[cell_size * cell_size];
-  int count = 0;
-  for (int y = y0; y < y1; y++)
-    for (int x = x0; x < x1; x++) {
-      size_t i = size_t(y) * size_t(image.width) + size_t(x);
-      if (image.point[i] == no_point) continue;
-      pixels[count++] = i;
-      uint32_t object = frame.object[i];
-      if (votes == 0) g.object = object;
-      votes += object == g.object ? 1 : -1;
-    }
-  vec3 reference(0);
-  for (int k = 0; k < count; k++) {
-    size_t i = pixels[k];
-    if (frame.object[i] != g.object) continue;
-    vec3 normal = unpack_normal(surface.normal[i]);
-    if (g.points == 0)
-      reference = normal;
-    else if (dot(normal, reference) < 0.7f)
-      continue;  // beyond a crease
-    float samples = frame.confidence[i];
-    vec3 smooth = frame.color[i];
-    g.albedo += unpack_albedo(surface.albedo[i]);
-    vec3 rest = unpack_rgb9e5(surface.rest[i]);
-    g.rest += rest * samples;
-    float rest_light = luminance(rest);
+  g.object = elect_object(pixels);
+  Vec reference;
+  f8 reference2{};
+  for (int k = 0; k < cell_size * cell_size; k++) {
+    u8 object = pixels.plane[plane_object][k], more = pixels.plane[plane_more][k];
+    i8 use = (object == g.object) & (object != no_object);
+    Vec normal;
+    unpack_octahedron(more & 0xffffu, normal.x, normal.y, normal.z);
+    i8 first = use & (g.points == 0.0f);
+    f8 length2 = dot(normal, normal);
+    reference = {first ? normal.x : reference.x, first ? normal.y : reference.y,
+                 first ? normal.z : reference.z};
+    reference2 = first ? length2 : reference2;
+    f8 facing = dot(normal, reference);
+    // Beyond a crease (0.7 is the cosine) lies another surface.
+    use &= (facing > 0.0f) & (facing * facing >= 0.49f * length2 * reference2);
+
+    f8 samples = keep(use, to_float((more >> 16) & 255u));
+    Vec albedo, rest, smooth;
+    unpack_albedo(pixels.plane[plane_albedo][k], albedo.x, albedo.y, albedo.z);
+    unpack_rgb9e5(pixels.plane[plane_rest][k], rest.x, rest.y, rest.z);
+    unpack_rgb9e5(pixels.plane[plane_smooth][k], smooth.x, smooth.y, smooth.z);
+    f8 deviation = unpack_deviation(more >> 24);
+    i8 known = use & (samples > 1.0f);
+    f8 rest_light = luminance(rest.x, rest.y, rest.z),
+       light = luminance(smooth.x, smooth.y, smooth.z);
+    f8 one = keep(use, splat(1));
+    add(g.albedo, use, albedo);
+    add(g.rest, use, rest * samples);
+    add(g.smooth, use, smooth * samples);
+    add(g.normal, use, normal);
     g.rest_sum2 += samples * rest_light * rest_light;
-    if (samples > 1) {
-      float deviation = unpack_deviation(points.noise[image.point[i]]);
-      g.rest_noise += deviation * deviation;
-      g.rest_known += 1;
-    }
-    g.smooth += smooth * samples;
-    g.normal += normal;
-    g.x += float(i % size_t(image.width)) + 0.5f;
-    g.y += float(i / size_t(image.width)) + 0.5f;
-    g.inverse_depth += 1 / frame.depth[i];
+    g.rest_noise += keep(known, deviation * deviation);
+    g.rest_known += keep(known, splat(1));
+    g.x += one * (float(k % cell_size) + 0.5f);
+    g.y += one * (float(k / cell_size) + 0.5f);
+    g.inverse_depth += keep(use, 1.0f / as<f8>(pixels.plane[plane_depth][k]));
     g.samples += samples;
-    g.points += 1;
-    float light = luminance(smooth);
+    g.points += one;
     g.sum += samples * light;
     g.sum2 += samples * light * light;
   }
   return g;
+}
+
+void store_vec(std::array<std::span<float>, 3>& planes, size_t i, const i8& mask, const Vec& v) {
+  store(&planes[0][i], keep(mask, v.x));
+  store(&planes[1][i], keep(mask, v.y));
+  store(&planes[2][i], keep(mask, v.z));
 }
 
 }  // namespace
@@ -103,59 +142,65 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch) {
   cells.width = (width + cell_size - 1) / cell_size;
   cells.height = (height + cell_size - 1) / cell_size;
   cells.stride = cells.width + 2 * cell_pad;
-  size_t count = padded(width, height);
-  auto take = [&] {
-    std::span<float> plane = scratch.take<float>(count);
-    std::fill(plane.begin(), plane.end(), 0.0f);
-    return plane;
+  size_t count = padded(width, height), stride = size_t(cells.stride);
+  auto take = [&]<class T>(std::span<T>& plane, T empty) {
+    plane = scratch.take<T>(count);
+    std::fill_n(plane.begin(), cell_pad * stride, empty);
+    for (int y = 0; y < cells.height; y++) {
+      std::fill_n(&plane[size_t(cells.index(-cell_pad, y))], cell_pad, empty);
+      std::fill_n(&plane[size_t(cells.index(cells.width, y))], cell_pad, empty);
+    }
+    std::fill(plane.begin() + cells.index(-cell_pad, cells.height), plane.end(), empty);
   };
   for (auto* triple :
        {&cells.albedo, &cells.rest, &cells.smooth, &cells.spare, &cells.normal, &cells.plane})
-    for (auto& plane : *triple) plane = take();
+    for (auto& plane : *triple) take(plane, 0.0f);
   for (auto* plane : {&cells.depth, &cells.samples, &cells.points, &cells.sum, &cells.sum2,
                       &cells.patience, &cells.rest_sum2, &cells.rest_noise, &cells.rest_known})
-    *plane = take();
-  cells.object = scratch.take<uint32_t>(count);
-  std::fill(cells.object.begin(), cells.object.end(), no_object);
+    take(*plane, 0.0f);
+  take(cells.object, no_object);
 }
 
-void build_cells(const View& view, const PointCache& points, const PointImage& image,
-                 const SurfaceImage& surface, const Frame& frame, Cells& cells) {
+void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells) {
+  static_assert(cell_pad >= lanes - 1, "the last eight cells of a row may lie in the padding");
   PixelRays rays(view);
-  mat3 to_view = transpose(mat3(view.right, view.up, view.forward));
-  parallel_ranges(cells.height, 4, [&](int begin, int end) {
-    for (int cy = begin; cy < end; cy++)
-      for (int cx = 0; cx < cells.width; cx++) {
-        Gathered g = gather_cell(points, image, surface, frame, cx, cy);
-        size_t i = size_t(cells.index(cx, cy));
-        if (g.points == 0) continue;
-        float share = 1 / g.points, per_sample = 1 / std::max(g.samples, 1.0f);
-        vec3 albedo = g.albedo * share, rest = g.rest * per_sample, smooth = g.smooth * per_sample;
-        vec3 normal = to_view * g.normal;
-        normal /= std::max(length(normal), 1e-6f);
-        float x = rays.x(g.x * share), y = rays.y(g.y * share);
-        vec3 plane = inverse_depth_plane(normal, x, y, g.points / g.inverse_depth);
-        float middle_x = rays.x((float(cx) + 0.5f) * cell_size),
-              middle_y = rays.y((float(cy) + 0.5f) * cell_size);
-        float at_middle = dot(plane, vec3(middle_x, middle_y, 1)), mean = g.inverse_depth * share;
-        cells.depth[i] = 1 / std::clamp(at_middle, 0.5f * mean, 2 * mean);
-        for (int c = 0; c < 3; c++) {
-          cells.albedo[size_t(c)][i] = albedo[c];
-          cells.rest[size_t(c)][i] = rest[c];
-          cells.smooth[size_t(c)][i] = smooth[c];
-          cells.normal[size_t(c)][i] = normal[c];
-          cells.plane[size_t(c)][i] = plane[c];
-        }
-        cells.samples[i] = g.samples;
-        cells.points[i] = g.points;
-        cells.sum[i] = g.sum;
-        cells.sum2[i] = g.sum2;
-        cells.rest_sum2[i] = g.rest_sum2;
-        cells.rest_noise[i] = g.rest_noise;
-        cells.rest_known[i] = g.rest_known;
-        cells.object[i] = g.object;
-      }
-  });
+  vec3 axes[3] = {view.right, view.up, view.forward};
+  f8 steps{0, 1, 2, 3, 4, 5, 6, 7};
+  for (int cx = 0; cx < cells.width; cx += lanes) {
+    Pixels pixels;
+    read_pixels(rows, cx, cy, pixels);
+    Gathered g = gather_cells(pixels);
+    i8 any_point = g.points > 0.0f;
+    f8 share = 1.0f / larger(g.points, splat(1)), per_sample = 1.0f / larger(g.samples, splat(1));
+    Vec normal = g.normal * (1.0f / larger(square_root(dot(g.normal, g.normal)), splat(1e-6f)));
+    auto along = [&](vec3 axis) { return normal.x * axis.x + normal.y * axis.y + normal.z * axis.z; };
+    f8 left = (steps + float(cx)) * float(cell_size), top = splat(float(cy * cell_size));
+    auto ray_to = [&](const f8& x, const f8& y) {
+      return Vec{(left + x - rays.half_width) * rays.inverse_focal,
+                 (rays.half_height - top - y) * rays.inverse_focal, splat(1)};
+    };
+    f8 mean = g.inverse_depth * share;
+    Vec plane = inverse_depth_plane({along(axes[0]), along(axes[1]), along(axes[2])},
+                                    ray_to(g.x * share, g.y * share), mean);
+    f8 middle = splat(0.5f * cell_size),
+       at_middle = larger(smaller(dot(plane, ray_to(middle, middle)), 2.0f * mean), 0.5f * mean);
+    size_t i = size_t(cells.index(cx, cy));
+    store_vec(cells.albedo, i, any_point, g.albedo * share);
+    store_vec(cells.rest, i, any_point, g.rest * per_sample);
+    store_vec(cells.smooth, i, any_point, g.smooth * per_sample);
+    store_vec(cells.normal, i, any_point, normal);
+    store_vec(cells.plane, i, any_point, plane);
+    store(&cells.depth[i], keep(any_point, 1.0f / at_middle));
+    store(&cells.samples[i], g.samples);
+    store(&cells.points[i], g.points);
+    store(&cells.sum[i], g.sum);
+    store(&cells.sum2[i], g.sum2);
+    store(&cells.rest_sum2[i], g.rest_sum2);
+    store(&cells.rest_noise[i], g.rest_noise);
+    store(&cells.rest_known[i], g.rest_known);
+    store(&cells.patience[i], f8{});
+    store(&cells.object[i], any_point ? g.object : u8{} + no_object);
+  }
 }
 
 }  // namespace wellspring

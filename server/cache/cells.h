@@ -15,14 +15,13 @@ namespace wellspring {
 inline constexpr int cell_size = 4;  // pixels a side
 inline constexpr int cell_pad = 8;   // empty cells around, so that filters need no bounds
 inline constexpr int cell_run = 32;  // cells the filter reads at once, maybe beyond the last row
-inline constexpr uint32_t no_object = 0xffffffffu;
 
 // Planes of stride * (height + 2 * pad); cell (x, y) lies at index(x, y).
 struct Cells {
   int width = 0, height = 0, stride = 0;
   std::array<std::span<float>, 3> albedo, rest, smooth,
       spare;                               // spare: the other side of the a-trous steps
-  std::array<std::span<float>, 3> normal;  // view coordinates, unit
+  std::array<std::span<float>, 3> normal;  // world coordinates, unit
   // Inverse depth along the cell's plane is dot(plane, (ray x, ray y, 1)).
   std::array<std::span<float>, 3> plane;
   std::span<float> depth;    // of the plane at the cell's centre
@@ -41,11 +40,11 @@ struct Cells {
 };
 
 size_t cells_bytes(int width, int height);
-// Carves the planes out of `scratch` for a picture of this size and empties them.
+// Carves the planes out of `scratch` for a picture of this size and empties what lies around it.
 void take_cells(Cells& cells, int width, int height, Scratch& scratch);
-// Averages the pixels of each cell that see its object.
-void build_cells(const View& view, const PointCache& points, const PointImage& image,
-                 const SurfaceImage& surface, const Frame& frame, Cells& cells);
+// Overwrites row cy of the cells: the means over the pixels that see each cell's object. `rows` hold
+// the picture's rows below it.
+void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells);
 // Filters smooth light and the noisy part of the rest as widely as their noise asks for, never
 // across objects, creases or steps.
 void filter_cells(const View& view, Cells& cells);

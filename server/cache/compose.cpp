@@ -1,246 +1,280 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "base/parallel.h"
-#include "base/rng.h"
+#include "cache/lanes.h"
 #include "cache/packing.h"
 #include "cache/reconstruct.h"
 
 namespace wellspring {
 namespace {
 
-constexpr int block = cell_size, block_pixels = block * block;
+constexpr int block = cell_size;  // pixels a side between four cell centres
 constexpr float plane_tolerance = 0.02f;
 
-// Bilinear weights of a block's pixels towards the four cell centres around it.
+// A pixel from the cells around it: bilinear among those of the object with most weight.
+void fill_from_cells(const PixelRays& rays, const Cells& cells, int x, int y, SurfaceRows& rows) {
+  int cx = (x + cell_size / 2) / cell_size - 1, cy = (y + cell_size / 2) / cell_size - 1;
+  float fx = (float(x) + 0.5f) / cell_size - 0.5f - float(cx),
+        fy = (float(y) + 0.5f) / cell_size - 0.5f - float(cy);
+  size_t cell[4];
+  float weight[4];
+  for (int k = 0; k < 4; k++) {
+    int ax = std::clamp(cx + (k & 1), 0, cells.width - 1),
+        ay = std::clamp(cy + (k >> 1), 0, cells.height - 1);
+    cell[k] = size_t(cells.index(ax, ay));
+    weight[k] = ((k & 1) ? fx : 1 - fx) * ((k >> 1) ? fy : 1 - fy) + 1e-4f;
+  }
+  float best = 0;
+  uint32_t object = no_object;
+  for (int k = 0; k < 4; k++) {
+    float support = 0;
+    for (int j = 0; j < 4; j++)
+      if (cells.object[cell[j]] == cells.object[cell[k]]) support += weight[j];
+    if (support > best) best = support, object = cells.object[cell[k]];
+  }
+  vec3 albedo(0), rest(0), smooth(0), normal(0);
+  float inverse_depth = 0, sum = 0;
+  vec3 ray(rays.x(float(x) + 0.5f), rays.y(float(y) + 0.5f), 1);
+  for (int k = 0; k < 4; k++) {
+    if (cells.object[cell[k]] != object) continue;
+    for (size_t c = 0; c < 3; c++) {
+      albedo[int(c)] += weight[k] * cells.albedo[c][cell[k]];
+      rest[int(c)] += weight[k] * cells.rest[c][cell[k]];
+      smooth[int(c)] += weight[k] * cells.smooth[c][cell[k]];
+      normal[int(c)] += weight[k] * cells.normal[c][cell[k]];
+    }
+    vec3 plane(cells.plane[0][cell[k]], cells.plane[1][cell[k]], cells.plane[2][cell[k]]);
+    float middle = 1 / cells.depth[cell[k]];
+    inverse_depth += weight[k] * std::clamp(dot(plane, ray), 0.5f * middle, 2 * middle);
+    sum += weight[k];
+  }
+  float share = 1 / sum;
+  rows.row(plane_albedo, y)[x] = pack_albedo(albedo * share);
+  rows.row(plane_rest, y)[x] = pack_rgb9e5(rest * share);
+  rows.row(plane_smooth, y)[x] = pack_rgb9e5(smooth * share);
+  rows.row(plane_more, y)[x] = pack_normal(normal);
+  rows.row(plane_depth, y)[x] = std::bit_cast<uint32_t>(sum / inverse_depth);
+  rows.row(plane_object, y)[x] = object;
+}
+
+// Bilinear weights of a block's pixels, two rows of four at a time, towards the cell centres at its
+// corners.
 struct Bilinear {
-  alignas(32) float weight[4][block_pixels];
+  alignas(32) float weight[4][2][lanes];
 };
 constexpr Bilinear make_bilinear() {
   Bilinear b{};
   for (int k = 0; k < 4; k++)
-    for (int i = 0; i < block_pixels; i++) {
+    for (int i = 0; i < block * block; i++) {
       float fx = (float(i % block) + 0.5f) / block, fy = (float(i / block) + 0.5f) / block;
-      b.weight[k][i] = ((k & 1) ? fx : 1 - fx) * ((k >> 1) ? fy : 1 - fy);
+      b.weight[k][i / lanes][i % lanes] = ((k & 1) ? fx : 1 - fx) * ((k >> 1) ? fy : 1 - fy);
     }
   return b;
 }
 constexpr Bilinear bilinear = make_bilinear();
 
-// The pixels between four cell centres, as arrays.
-struct Block {
-  alignas(32) float x[block_pixels], y[block_pixels], depth[block_pixels];
-  alignas(32) float nx[block_pixels], ny[block_pixels], nz[block_pixels];
-  alignas(32) float r[block_pixels], g[block_pixels], b[block_pixels], samples[block_pixels];
-  alignas(32) float rest_r[block_pixels], rest_g[block_pixels], rest_b[block_pixels];
-  alignas(32) float deviation[block_pixels];  // of one sample's rest; negative: not known
-  alignas(32) uint32_t object[block_pixels];
+struct Color {
+  f8 r{}, g{}, b{};
+};
+f8 luminance(const Color& c) { return wellspring::luminance(c.r, c.g, c.b); }
+void add(Color& sum, const f8& weight, float r, float g, float b) {
+  sum.r += weight * r, sum.g += weight * g, sum.b += weight * b;
+}
+// own * a + (1 - own) * b, where `kept` is what own * a comes to.
+Color mix(const Color& a, const f8& kept, const Color& b, const f8& other) {
+  return {kept * a.r + other * b.r, kept * a.g + other * b.g, kept * a.b + other * b.b};
+}
+
+// Two rows of four pixels.
+struct Pixels {
+  u8 object;
+  f8 x, y, depth, samples;
+  f8 nx, ny, nz, normal2;  // not normalised; its length squared
+  Color smooth, rest;
+  f8 deviation;  // of one sample's rest
 };
 
 // What the four cells say at each pixel, as far as they lie on the same surface.
 struct Surroundings {
-  alignas(32) float r[block_pixels], g[block_pixels], b[block_pixels];
-  alignas(32) float rest_r[block_pixels], rest_g[block_pixels], rest_b[block_pixels];
-  alignas(32) float patience[block_pixels], detail[block_pixels], noise[block_pixels],
-      weight[block_pixels];
+  Color smooth, rest;
+  f8 patience{}, detail{}, noise{}, weight{};
 };
 
-void look_around(const Cells& cells, int bx, int by, const Block& __restrict p,
-                 Surroundings& __restrict s) {
-  std::memset(&s, 0, sizeof s);
+Surroundings look_around(const Cells& cells, const size_t* corners, int half, const Pixels& p) {
+  Surroundings s;
+  f8 inverse_normal2 = 1.0f / p.normal2;
   for (int k = 0; k < 4; k++) {
-    int cx = std::clamp(bx - 1 + (k & 1), 0, cells.width - 1),
-        cy = std::clamp(by - 1 + (k >> 1), 0, cells.height - 1);
-    size_t c = size_t(cells.index(cx, cy));
-    uint32_t object = cells.object[c];
-    float cr = cells.smooth[0][c], cg = cells.smooth[1][c], cb = cells.smooth[2][c],
-          wait = cells.patience[c];
-    float er = cells.rest[0][c], eg = cells.rest[1][c], eb = cells.rest[2][c];
-    float detail = cells.rest_sum2[c], noise = cells.rest_noise[c];
-    float nx = cells.normal[0][c], ny = cells.normal[1][c], nz = cells.normal[2][c];
-    float px = cells.plane[0][c], py = cells.plane[1][c], pz = cells.plane[2][c];
-    for (int i = 0; i < block_pixels; i++) {
-      float facing = nx * p.nx[i] + ny * p.ny[i] + nz * p.nz[i];
-      facing =
-          0.5f * (facing + std::abs(facing));  // not below 0, and no branch in the compiler's eyes
-      facing *= facing, facing *= facing, facing *= facing;
-      float off = (p.depth[i] * (px * p.x[i] + py * p.y[i] + pz) - 1) * (1 / plane_tolerance);
-      float same = keep_if(object == p.object[i], bilinear.weight[k][i]);
-      float weight = same * facing / (1 + off * off);
-      s.r[i] += weight * cr, s.g[i] += weight * cg, s.b[i] += weight * cb;
-      s.rest_r[i] += weight * er, s.rest_g[i] += weight * eg, s.rest_b[i] += weight * eb;
-      s.patience[i] += weight * wait, s.detail[i] += weight * detail, s.noise[i] += weight * noise;
-      s.weight[i] += weight;
+    size_t c = corners[k];
+    f8 facing = positive(cells.normal[0][c] * p.nx + cells.normal[1][c] * p.ny +
+                         cells.normal[2][c] * p.nz);
+    facing *= facing * inverse_normal2;  // the cosine's second, then its eighth power
+    facing *= facing, facing *= facing;
+    f8 off = p.depth * (cells.plane[0][c] * p.x + cells.plane[1][c] * p.y + cells.plane[2][c]);
+    off = (off - 1.0f) * (1 / plane_tolerance);
+    f8 same = keep(p.object == cells.object[c], load<f8>(bilinear.weight[k][half]));
+    f8 weight = same * facing / (1.0f + off * off);
+    add(s.smooth, weight, cells.smooth[0][c], cells.smooth[1][c], cells.smooth[2][c]);
+    add(s.rest, weight, cells.rest[0][c], cells.rest[1][c], cells.rest[2][c]);
+    s.patience += weight * cells.patience[c];
+    s.detail += weight * cells.rest_sum2[c];
+    s.noise += weight * cells.rest_noise[c];
+    s.weight += weight;
+  }
+  return s;
+}
+
+// What is left of `own` light where more than `most` would be too much.
+f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, most) + 1e-12f); }
+
+// Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
+// more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
+void blend_light(Surroundings s, Pixels& p) {
+  i8 lonely = s.weight <= 1e-4f;  // no cell lies on this surface
+  f8 alone = keep(lonely, splat(1)), share = keep(~lonely, 1.0f / s.weight);
+  auto scale = [&](Color& c) { c.r *= share, c.g *= share, c.b *= share; };
+  scale(s.smooth);
+  scale(s.rest);
+  // A lone bright sample may exceed its surroundings only as far as more samples confirm it.
+  f8 own_light = luminance(p.smooth);
+  f8 most = luminance(s.smooth) * (2.0f + 0.25f * p.samples) + alone * own_light;
+  f8 own = p.samples / (p.samples + s.patience * share + 1e-6f);
+  own = lonely ? splat(1) : own;
+  p.smooth = mix(p.smooth, own * cut_to(own_light, most), s.smooth, 1.0f - own);
+
+  // The same for the rest, unless it is known to repeat itself: then it is a highlight, not a lucky
+  // path.
+  i8 known = p.samples > 1.0f;
+  f8 own_rest = luminance(p.rest);
+  f8 quiet = keep(known & (p.deviation <= 0.1f * own_rest), splat(1));
+  f8 most_rest = luminance(s.rest) * (3.0f + p.samples) + 1e-4f + (quiet + alone) * own_rest;
+  f8 variance = known ? p.deviation * p.deviation : s.noise * share;
+  variance /= larger(p.samples, splat(1));
+  f8 detail = s.detail * share + 1e-9f, own_detail = detail / (detail + variance);
+  own_detail = lonely ? splat(1) : own_detail;
+  p.rest = mix(p.rest, own_detail * cut_to(own_rest, most_rest), s.rest, 1.0f - own_detail);
+}
+
+u8 load_pair(const SurfaceRows& rows, SurfacePlane plane, int x, int y) {
+  return __builtin_shufflevector(load<u4>(rows.row(plane, y) + x),
+                                 load<u4>(rows.row(plane, y + 1) + x), 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+Pixels read_pixels(const PixelRays& rays, const SurfaceRows& rows, int x, int y) {
+  Pixels p;
+  p.object = load_pair(rows, plane_object, x, y);
+  p.depth = as<f8>(load_pair(rows, plane_depth, x, y));
+  u8 more = load_pair(rows, plane_more, x, y);
+  unpack_octahedron(more & 0xffffu, p.nx, p.ny, p.nz);
+  p.normal2 = p.nx * p.nx + p.ny * p.ny + p.nz * p.nz;
+  p.samples = to_float((more >> 16) & 255u);
+  p.deviation = unpack_deviation(more >> 24);
+  unpack_rgb9e5(load_pair(rows, plane_smooth, x, y), p.smooth.r, p.smooth.g, p.smooth.b);
+  unpack_rgb9e5(load_pair(rows, plane_rest, x, y), p.rest.r, p.rest.g, p.rest.b);
+  float step = rays.inverse_focal, left = rays.x(float(x) + 0.5f), top = rays.y(float(y) + 0.5f);
+  p.x = left + step * f8{0, 1, 2, 3, 0, 1, 2, 3};
+  p.y = top - step * f8{0, 0, 0, 0, 1, 1, 1, 1};
+  return p;
+}
+
+// Four pixels' channels one after the other.
+void interleave(const f4& r, const f4& g, const f4& b, float* to) {
+  f4 low = __builtin_shufflevector(r, g, 0, 4, 1, 5), high = __builtin_shufflevector(r, g, 2, 6, 3, 7),
+     middle = __builtin_shufflevector(low, b, 3, 5, 3, 5);
+  store(to, __builtin_shufflevector(low, b, 0, 1, 4, 2));
+  store(to + 4, __builtin_shufflevector(middle, high, 0, 1, 4, 5));
+  store(to + 8, __builtin_shufflevector(high, b, 6, 2, 3, 7));
+}
+template <int First>
+f4 part(const f8& v) {
+  return __builtin_shufflevector(v, v, First, First + 1, First + 2, First + 3);
+}
+
+// Writes `count` of four pixels, from the `skip`th on.
+struct Result {
+  float color[12];
+  float confidence[4], depth[4];
+};
+void write(const Result& result, int skip, int count, size_t at, Frame& frame) {
+  size_t first = at + size_t(skip), number = size_t(count);
+  std::memcpy(&frame.color[first].x, result.color + 3 * skip, number * 3 * sizeof(float));
+  std::memcpy(&frame.confidence[first], result.confidence + skip, number * sizeof(float));
+  std::memcpy(&frame.depth[first], result.depth + skip, number * sizeof(float));
+}
+
+// Reflectance times light plus the rest.
+void light_pixels(const SurfaceRows& rows, const Pixels& p, int x, int y, Result* result) {
+  Color albedo;
+  unpack_albedo(load_pair(rows, plane_albedo, x, y), albedo.r, albedo.g, albedo.b);
+  // Shares that add up to one by a rounding too much can leave a hair of negative light.
+  f8 r = positive(albedo.r * p.smooth.r + p.rest.r), g = positive(albedo.g * p.smooth.g + p.rest.g),
+     b = positive(albedo.b * p.smooth.b + p.rest.b);
+  interleave(part<0>(r), part<0>(g), part<0>(b), result[0].color);
+  interleave(part<4>(r), part<4>(g), part<4>(b), result[1].color);
+  f8 confidence = p.samples / (p.samples + 8.0f);
+  store(result[0].confidence, part<0>(confidence));
+  store(result[1].confidence, part<4>(confidence));
+  i8 near = (p.depth < 0.5f * infinite_depth) & (p.depth > 0.0f);
+  f8 depth = near ? p.depth : splat(std::numeric_limits<float>::infinity());
+  store(result[0].depth, part<0>(depth));
+  store(result[1].depth, part<4>(depth));
+}
+
+// Fills what row y does not know and tells the frame its objects.
+void finish_surface(const PixelRays& rays, const Cells& cells, bool known, int y, SurfaceRows& rows,
+                    Frame& frame) {
+  uint32_t* object = rows.row(plane_object, y);
+  uint32_t* out = frame.object.data() + size_t(y) * size_t(frame.width);
+  for (int x = 0; x < frame.width; x += lanes) {
+    if (!any(load<u8>(object + x) == no_object)) continue;
+    for (int i = x; i < std::min(x + lanes, frame.width); i++) {
+      if (object[i] != no_object) continue;
+      if (known) fill_from_cells(rays, cells, i, y, rows);
+      out[i] = known ? object[i] : 0;
     }
   }
 }
 
-// Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
-// more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
-void blend_light(const Surroundings& __restrict s, Block& __restrict p) {
-  for (int i = 0; i < block_pixels; i++) {
-    // Arithmetic instead of conditions, so that it vectorises. `alone`: no cell lies on this
-    // surface.
-    float alone = keep_if(s.weight[i] <= 1e-4f, 1.0f), share = (1 - alone) / (s.weight[i] + alone);
-    float samples = p.samples[i];
-    float r = s.r[i] * share, g = s.g[i] * share, b = s.b[i] * share;
-    // A lone bright sample may exceed its surroundings only as far as more samples confirm it.
-    float light = 0.2126f * r + 0.7152f * g + 0.0722f * b;
-    float own_light = 0.2126f * p.r[i] + 0.7152f * p.g[i] + 0.0722f * p.b[i];
-    float most = light * (2 + 0.25f * samples) + alone * own_light, over = own_light - most;
-    float cut = most / (most + 0.5f * (over + std::abs(over)) + 1e-12f);
-    float own = samples / (samples + s.patience[i] * share + 1e-6f);
-    own = own + (1 - own) * alone;
-    p.r[i] = own * cut * p.r[i] + (1 - own) * r;
-    p.g[i] = own * cut * p.g[i] + (1 - own) * g;
-    p.b[i] = own * cut * p.b[i] + (1 - own) * b;
-
-    float known = keep_if(p.deviation[i] >= 0, 1.0f);
-    // The same for the rest, unless it is known to repeat itself: then it is a highlight, not a
-    // lucky path.
-    float rest_r = s.rest_r[i] * share, rest_g = s.rest_g[i] * share, rest_b = s.rest_b[i] * share;
-    float own_rest = 0.2126f * p.rest_r[i] + 0.7152f * p.rest_g[i] + 0.0722f * p.rest_b[i];
-    float quiet = known * keep_if(p.deviation[i] <= 0.1f * own_rest, 1.0f);
-    float most_rest =
-        (0.2126f * rest_r + 0.7152f * rest_g + 0.0722f * rest_b) * (3 + samples) + 1e-4f;
-    most_rest += (quiet + alone) * own_rest;
-    float over_rest = own_rest - most_rest,
-          rest_cut = most_rest / (most_rest + 0.5f * (over_rest + std::abs(over_rest)));
-    float variance = (1 - known) * s.noise[i] * share + known * p.deviation[i] * p.deviation[i];
-    variance /= samples + keep_if(samples < 1, 1.0f);
-    float detail = s.detail[i] * share;
-    float keep = (detail + 1e-9f) / (detail + variance + 1e-9f);
-    keep = keep + (1 - keep) * alone;
-    p.rest_r[i] = keep * rest_cut * p.rest_r[i] + (1 - keep) * rest_r;
-    p.rest_g[i] = keep * rest_cut * p.rest_g[i] + (1 - keep) * rest_g;
-    p.rest_b[i] = keep * rest_cut * p.rest_b[i] + (1 - keep) * rest_b;
-  }
-}
-
-// Packed values of a block, read before and unpacked together.
-struct Packed {
-  alignas(32) uint32_t albedo[block_pixels], rest[block_pixels];
-  alignas(32) int32_t normal[block_pixels];
-};
-
-void unpack_block(const mat3& to_view, const Packed& __restrict packed, Block& __restrict p) {
-  for (int i = 0; i < block_pixels; i++) {
-    float x = float(packed.normal[i] & 255) * (1.0f / 127) - 1,
-          y = float(packed.normal[i] >> 8) * (1.0f / 127) - 1;
-    float z = 1 - std::abs(x) - std::abs(y), fold = z < 0 ? -z : 0.0f;
-    x += x >= 0 ? -fold : fold;
-    y += y >= 0 ? -fold : fold;
-    float scale = 1 / std::sqrt(x * x + y * y + z * z);
-    p.nx[i] = (to_view[0].x * x + to_view[1].x * y + to_view[2].x * z) * scale;
-    p.ny[i] = (to_view[0].y * x + to_view[1].y * y + to_view[2].y * z) * scale;
-    p.nz[i] = (to_view[0].z * x + to_view[1].z * y + to_view[2].z * z) * scale;
-    uint32_t rest = packed.rest[i];
-    float unit = std::bit_cast<float>(((rest >> 27) + 127 - 24) << 23);
-    p.rest_r[i] = float(int32_t(rest & 511)) * unit;
-    p.rest_g[i] = float(int32_t((rest >> 9) & 511)) * unit;
-    p.rest_b[i] = float(int32_t((rest >> 18) & 511)) * unit;
-  }
-}
-
-// Reflectance times light plus the rest, into p.r, p.g, p.b.
-void light_block(const Packed& __restrict packed, Block& __restrict p) {
-  for (int i = 0; i < block_pixels; i++) {
-    uint32_t albedo = packed.albedo[i];
-    float r = float(int32_t(albedo & 2047)) * (1.0f / 2047),
-          g = float(int32_t((albedo >> 11) & 2047)) * (1.0f / 2047),
-          b = float(int32_t(albedo >> 22)) * (1.0f / 1023);
-    r = r * r * p.r[i] + p.rest_r[i], g = g * g * p.g[i] + p.rest_g[i],
-    b = b * b * p.b[i] + p.rest_b[i];
-    // Shares that add up to one by a rounding too much can leave a hair of negative light.
-    p.r[i] = 0.5f * (r + std::abs(r)), p.g[i] = 0.5f * (g + std::abs(g)),
-    p.b[i] = 0.5f * (b + std::abs(b));
-  }
-}
-
-// Where the pixels of a block lie; outside the picture its nearest pixel stands in.
-struct Places {
-  size_t at[block_pixels];
-  bool inside[block_pixels];
-};
-
 }  // namespace
 
-void compose(const View& view, const PointCache& points, const PointImage& image,
-             const SurfaceImage& surface, const Cells& cells, Frame& frame) {
+void compose(const View& view, const Cells& cells, bool known, Frame& frame) {
   PixelRays rays(view);
-  mat3 to_view = transpose(mat3(view.right, view.up, view.forward));
-  int width = image.width, height = image.height;
-  parallel_ranges(cells.height + 1, 2, [&](int begin, int end) {
-    Block p;
-    Packed packed;
-    Surroundings s;
-    Places places;
-    for (int by = begin; by < end; by++)
+  int width = frame.width, height = frame.height;
+  parallel_ranges(cells.height + 1, 4, [&](int begin, int end) {
+    thread_local SurfaceRows rows;
+    rows.start(width, block);
+    for (int by = begin; by < end; by++) {
+      int top = by * block - block / 2;
+      for (int y = top; y < top + block; y++) {
+        if (y < 0 || y >= height) {
+          rows.clear(y);
+          continue;
+        }
+        unpack_row(frame, y, rows);
+        finish_surface(rays, cells, known, y, rows, frame);
+      }
       for (int bx = 0; bx <= cells.width; bx++) {
-        int x0 = bx * block - block / 2, y0 = by * block - block / 2;
-        for (int i = 0; i < block_pixels; i++) {
-          int wanted_x = x0 + i % block, wanted_y = y0 + i / block;
-          int x = std::clamp(wanted_x, 0, width - 1), y = std::clamp(wanted_y, 0, height - 1);
-          places.inside[i] = x == wanted_x && y == wanted_y;
-          size_t at = places.at[i] = size_t(y) * size_t(width) + size_t(x);
-          packed.normal[i] = surface.normal[at];
-          packed.albedo[i] = surface.albedo[at];
-          packed.rest[i] = surface.rest[at];
-          p.x[i] = rays.x(float(x) + 0.5f), p.y[i] = rays.y(float(y) + 0.5f);
-          p.depth[i] = frame.depth[at];
-          p.r[i] = frame.color[at].x, p.g[i] = frame.color[at].y, p.b[i] = frame.color[at].z;
-          p.samples[i] = frame.confidence[at];
-          p.object[i] = frame.object[at];
-          p.deviation[i] =
-              p.samples[i] > 1 ? unpack_deviation(points.noise[image.point[at]]) : -1.0f;
-        }
-        unpack_block(to_view, packed, p);
-        look_around(cells, bx, by, p, s);
-        blend_light(s, p);
-        light_block(packed, p);
-        for (int i = 0; i < block_pixels; i++) {
-          if (!places.inside[i]) continue;
-          size_t at = places.at[i];
-          frame.color[at] = vec3(p.r[i], p.g[i], p.b[i]);
-          frame.confidence[at] = p.samples[i] / (p.samples[i] + 8);
-          bool far = !(p.depth[i] < 0.5f * infinite_depth) || p.depth[i] <= 0;
-          frame.depth[at] = far ? std::numeric_limits<float>::infinity() : p.depth[i];
+        size_t corners[4];
+        for (int k = 0; k < 4; k++)
+          corners[k] = size_t(cells.index(std::clamp(bx - 1 + (k & 1), 0, cells.width - 1),
+                                          std::clamp(by - 1 + (k >> 1), 0, cells.height - 1)));
+        int x = bx * block - block / 2, skip = std::max(-x, 0),
+            count = std::min(block, width - x) - skip;
+        if (count <= 0) continue;
+        for (int half = 0; half < 2; half++) {
+          int y = top + half * 2;
+          Pixels p = read_pixels(rays, rows, x, y);
+          blend_light(look_around(cells, corners, half, p), p);
+          Result result[2];
+          light_pixels(rows, p, x, y, result);
+          for (int r = 0; r < 2; r++)
+            if (y + r >= 0 && y + r < height)
+              write(result[r], skip, count, size_t(y + r) * size_t(width) + size_t(x), frame);
         }
       }
-  });
-}
-
-void accumulate_still(const PointCache& points, const PointImage& image, uint32_t seed,
-                      StillImage& still, Frame& frame) {
-  parallel_ranges(image.height, 8, [&](int begin, int end) {
-    size_t first = size_t(begin) * size_t(image.width), last = size_t(end) * size_t(image.width);
-    for (size_t i = first; i < last; i++) {
-      uint32_t point = image.point[i];
-      if (point == no_point || (points.flags[point] & point_moving)) {
-        still.count[i] = 0;
-        continue;
-      }
-      int n = still.count[i] & ~still_fresh;
-      vec3 mean(unpack_half(still.mean[0][i]), unpack_half(still.mean[1][i]),
-                unpack_half(still.mean[2][i]));
-      if (still.count[i] & still_fresh) {
-        n = std::min(n + 1, still_longest);
-        // Later samples count more: the light they were shown in was known better.
-        mean += (frame.color[i] - (n == 1 ? vec3(0) : mean)) *
-                    (n == 1 ? 1.0f : 1.5f / (float(n) + 0.5f)) -
-                (n == 1 ? mean : vec3(0));
-        uint64_t random = mix64(uint64_t(seed) << 32 | i);
-        for (size_t c = 0; c < 3; c++)
-          still.mean[c][i] = pack_half(mean[int(c)], uint32_t(random >> (16 * c)));
-        still.count[i] = uint8_t(n);
-      }
-      if (n == 0) continue;
-      float share = float(n) / (float(n) + 2);
-      frame.color[i] += (mean - frame.color[i]) * share;
-      frame.confidence[i] = std::max(frame.confidence[i], float(n) / (float(n) + 8));
     }
   });
 }

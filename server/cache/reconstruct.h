@@ -6,25 +6,24 @@
 #include "cache/cells.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
-#include "cache/still_image.h"
 #include "cache/surface_image.h"
 #include "frame/frame.h"
 
 namespace wellspring {
 
-// Gives every pixel without a point a surface: from its 3x3 neighbours (weights 2 and 1 for
-// reflectance, the nearest for the rest; those of the object with most weight), else from the cells
-// around. `known`: what fill_cells() said.
-void fill_holes(const View& view, const PointImage& image, const Cells& cells, bool known,
-                SurfaceImage& surface, Frame& frame);
+// What read_surface() saw on its way.
+struct SurfaceCounts {
+  int64_t points = 0;     // pixels with a point
+  int64_t converged = 0;  // pixels whose point holds `converged_samples` or more
+};
 
-// Puts light together: overwrites frame.color, .confidence and, for points at infinity, .depth.
-void compose(const View& view, const PointCache& points, const PointImage& image,
-             const SurfaceImage& surface, const Cells& cells, Frame& frame);
+// Reads every visible point once: builds the cells, fills holes from their neighbours and leaves the
+// surface packed in the frame's planes. Pixels far from any point stay unknown.
+SurfaceCounts read_surface(const View& view, const PointCache& points, const PointImage& image,
+                           Cells& cells, Frame& frame);
 
-// Averages what fresh pixels show into `still` and shows the average. Pixels of moving points start
-// over.
-void accumulate_still(const PointCache& points, const PointImage& image, uint32_t seed,
-                      StillImage& still, Frame& frame);
+// Fills what is still unknown from the cells around and puts light together: overwrites all planes
+// of the frame. `known`: what fill_cells() said.
+void compose(const View& view, const Cells& cells, bool known, Frame& frame);
 
 }  // namespace wellspring

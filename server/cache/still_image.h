@@ -6,6 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "cache/point_cache.h"
+#include "cache/point_image.h"
+#include "frame/frame.h"
+
 namespace wellspring {
 
 inline constexpr uint8_t still_fresh =
@@ -16,5 +20,10 @@ struct StillImage {
   std::array<std::vector<uint16_t>, 3> mean;  // pack_half
   std::vector<uint8_t> count;                 // low 7 bits: samples in the mean
 };
+
+// Averages what fresh pixels show into `still` and shows the average. Pixels of moving points start
+// over.
+void accumulate_still(const PointCache& points, const PointImage& image, uint32_t seed,
+                      StillImage& still, Frame& frame);
 
 }  // namespace wellspring

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the points say about every pixel, before light is put together: the planes that
-// reconstruction works on. Borrowed from a Scratch for the length of one frame.
+// What the points say about every pixel, before light is put together. A few rows of it lie in
+// SurfaceRows while cells are built and holes filled; the whole picture lies packed in the frame's
+// own planes until compose() overwrites them with what they are meant for.
 #pragma once
 #include <cstdint>
-#include <span>
+#include <cstring>
+#include <vector>
 
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
@@ -13,15 +15,7 @@
 
 namespace wellspring {
 
-struct SurfaceImage {
-  std::span<uint32_t> albedo;  // pack_albedo
-  std::span<uint32_t> rest;    // pack_rgb9e5
-  std::span<uint16_t> normal;  // pack_normal
-};
-
-inline size_t surface_bytes(size_t pixels) {
-  return 2 * Scratch::rounded<uint32_t>(pixels) + Scratch::rounded<uint16_t>(pixels);
-}
+inline constexpr uint32_t no_object = 0xffffffffu;  // nothing known here
 
 // Rays through pixel centres in view coordinates (right, up, forward = 1).
 struct PixelRays {
@@ -34,17 +28,71 @@ struct PixelRays {
   float y(float row) const { return (half_height - row) * inverse_focal; }
 };
 
-// What gather_surface() saw on its way.
-struct SurfaceCounts {
-  int64_t points = 0;     // pixels with a point
-  int64_t ages = 0;       // their sum
-  int64_t converged = 0;  // pixels whose point holds `converged_samples` or more
-};
-inline constexpr int converged_samples = 32;
+// One word a pixel each: the point's albedo, rest and smooth as in PointColor, its object, the bits
+// of its depth, and its normal (16 bits), count and noise (8 bits each) together.
+enum SurfacePlane { plane_albedo, plane_rest, plane_smooth, plane_object, plane_more, plane_depth };
+inline constexpr int surface_planes = 6;
 
-// Reads every visible point: fills the planes and, of `frame`, color (the point's own smooth
-// light), confidence (its samples), depth and object; pixels without a point get 0 everywhere.
-SurfaceCounts gather_surface(const PointCache& points, const PointImage& image,
-                             SurfaceImage& surface, Frame& frame);
+// Rows of these planes, each padded by empty pixels on both sides; of row y and row y + count only
+// one can be held. Whoever writes beyond a row's end may leave only empty pixels there.
+class SurfaceRows {
+ public:
+  static constexpr int before = 8, after = 40;
+  void start(int width, int count) {
+    if (count == count_ && stride_ == size_t(width) + before + after) return;
+    count_ = count;
+    stride_ = size_t(width) + before + after;
+    words_.resize(stride_ * size_t(count) * surface_planes);
+    for (int y = 0; y < count; y++) clear(y);
+  }
+  uint32_t* row(SurfacePlane plane, int y) { return words_.data() + at(plane, y); }
+  const uint32_t* row(SurfacePlane plane, int y) const { return words_.data() + at(plane, y); }
+  // Makes a row empty, with its padding.
+  void clear(int y) {
+    for (int plane = 0; plane < surface_planes; plane++)
+      std::memset(row(SurfacePlane(plane), y) - before, plane == plane_object ? 0xff : 0,
+                  stride_ * sizeof(uint32_t));
+  }
+
+ private:
+  size_t at(SurfacePlane plane, int y) const {
+    return (size_t(y + count_) % size_t(count_) * surface_planes + plane) * stride_ + before;
+  }
+  int count_ = 0;
+  size_t stride_ = 0;
+  std::vector<uint32_t> words_;
+};
+
+// Reads the points of row y of the picture; a row outside becomes empty. Returns how many hold
+// `converged_samples` or more.
+inline constexpr uint32_t converged_samples = 32;
+int read_points(const PointCache& points, const PointImage& image, int y, SurfaceRows& rows);
+
+// Row y with its holes filled from their 3x3 neighbours (weights 2 and 1 for reflectance, the
+// nearest for the rest; those of the object with most weight). Rows y - 1 to y + 1 must have been
+// read. Pixels without neighbours stay no_object. Returns the number of points in the row.
+int fill_from_neighbours(const SurfaceRows& rows, int width, int y, SurfaceRows& filled);
+
+// A row to and from the frame, where it lies packed.
+inline void pack_row(const SurfaceRows& rows, int y, Frame& frame) {
+  size_t width = size_t(frame.width), start = size_t(y) * width, bytes = width * sizeof(uint32_t);
+  auto* color = reinterpret_cast<std::byte*>(frame.color.data() + start);
+  std::memcpy(color, rows.row(plane_albedo, y), bytes);
+  std::memcpy(color + bytes, rows.row(plane_rest, y), bytes);
+  std::memcpy(color + 2 * bytes, rows.row(plane_smooth, y), bytes);
+  std::memcpy(&frame.object[start], rows.row(plane_object, y), bytes);
+  std::memcpy(&frame.confidence[start], rows.row(plane_more, y), bytes);
+  std::memcpy(&frame.depth[start], rows.row(plane_depth, y), bytes);
+}
+inline void unpack_row(const Frame& frame, int y, SurfaceRows& rows) {
+  size_t width = size_t(frame.width), start = size_t(y) * width, bytes = width * sizeof(uint32_t);
+  auto* color = reinterpret_cast<const std::byte*>(frame.color.data() + start);
+  std::memcpy(rows.row(plane_albedo, y), color, bytes);
+  std::memcpy(rows.row(plane_rest, y), color + bytes, bytes);
+  std::memcpy(rows.row(plane_smooth, y), color + 2 * bytes, bytes);
+  std::memcpy(rows.row(plane_object, y), &frame.object[start], bytes);
+  std::memcpy(rows.row(plane_more, y), &frame.confidence[start], bytes);
+  std::memcpy(rows.row(plane_depth, y), &frame.depth[start], bytes);
+}
 
 }  // namespace wellspring
