@@ -12,9 +12,8 @@ SurfaceCounts read_surface(const View& view, const PointCache& points, const Poi
                            Cells& cells, Frame& frame) {
   std::atomic<int64_t> shown{0}, converged{0};
   parallel_ranges(cells.height, 4, [&](int begin, int end) {
-    thread_local SurfaceRows rows, filled;
+    thread_local SurfaceRows rows;
     rows.start(image.width, 2 * cell_size);
-    filled.start(image.width, 1);
     SurfaceCounts here;
     int next = begin * cell_size - 1, last = end * cell_size;
     for (int cy = begin; cy < end; cy++) {
@@ -24,10 +23,8 @@ SurfaceCounts read_surface(const View& view, const PointCache& points, const Poi
         if (next >= begin * cell_size && next < last) here.converged += enough;
       }
       build_cells(view, rows, cy, cells);
-      for (int y = top; y < std::min(bottom, image.height); y++) {
-        here.points += fill_from_neighbours(rows, image.width, y, filled);
-        pack_row(filled, y, frame);
-      }
+      for (int y = top; y < std::min(bottom, image.height); y++)
+        here.points += fill_from_neighbours(rows, y, frame);
     }
     shown += here.points;
     converged += here.converged;

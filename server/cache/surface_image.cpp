@@ -62,16 +62,16 @@ struct Neighbour {
   const uint32_t *albedo, *rest, *smooth, *object, *more, *depth;
 };
 
-// Sums over the neighbours of one kind (beside or diagonal) that show the elected object.
-struct Sums {
-  u8 red_blue{}, green{}, count{};
-  f8 depth{};
-};
-
-// Eight pixels at x: a weighted majority vote elects the object (exact where one object has more
-// than half), then its neighbours are averaged.
-void fill(const Neighbour* around, int x, u8& albedo, u8& rest, u8& smooth, u8& object, u8& more,
-          f8& depth) {
+// The object of most weight among the neighbours of eight pixels at x (exact where one object has
+// more than half). Mostly all show the same, and no vote is needed.
+u8 elect_object(const Neighbour* around, int x, const i8& asked) {
+  u8 least = u8{} + no_object, most{};  // no_object itself wraps around to 0 in `most`
+  for (int k = 0; k < 8; k++) {
+    u8 other = load<u8>(around[k].object + x), next = other + 1u;
+    least = least < other ? least : other;
+    most = most > next ? most : next;
+  }
+  if (!any(asked & (least + 1u != most))) return least;
   u8 elected = u8{} + no_object;
   i8 votes{};
   for (int k = 0; k < 8; k++) {
@@ -83,80 +83,92 @@ void fill(const Neighbour* around, int x, u8& albedo, u8& rest, u8& smooth, u8& 
     elected = lost ? other : elected;
     votes = (votes ^ lost) - lost;
   }
+  return elected;
+}
+
+// Sums over the neighbours of one kind (beside or diagonal) that show the elected object.
+struct Sums {
+  u8 red_blue{}, green{}, count{};
+  f8 depth{};
+};
+i8 add(const Neighbour& from, int x, const u8& elected, Sums& sums) {
+  u8 color = load<u8>(from.albedo + x);
+  i8 mask = load<u8>(from.object + x) == elected;
+  u8 same = as<u8>(mask);
+  sums.red_blue += ((color & 2047u) | ((color >> 6) & (1023u << 16))) & same;
+  sums.green += (color >> 11) & 2047u & same;
+  sums.count -= same;
+  sums.depth += keep(mask, as<f8>(load<u8>(from.depth + x)));
+  return mask;
+}
+struct Nearest {
+  u8 rest{}, smooth{}, more{};
+};
+void take(const Neighbour& from, int x, const i8& mask, Nearest& nearest) {
+  nearest.rest = mask ? load<u8>(from.rest + x) : nearest.rest;
+  nearest.smooth = mask ? load<u8>(from.smooth + x) : nearest.smooth;
+  nearest.more = mask ? load<u8>(from.more + x) : nearest.more;
+}
+
+// Eight pixels at x, of which those `asked` for matter: averages the neighbours of the elected
+// object.
+void fill(const Neighbour* around, int x, const i8& asked, u8* words) {
+  u8 elected = elect_object(around, x, asked);
   Sums beside, diagonal;
-  u8 near_rest{}, near_smooth{}, near_more{};
+  Nearest nearest;
+  i8 masks[8];
+  for (int k = 0; k < 4; k++) masks[k] = add(around[k], x, elected, beside);
+  for (int k = 4; k < 8; k++) masks[k] = add(around[k], x, elected, diagonal);
   // The nearest last, so that it stays.
-  for (int k = 7; k >= 0; k--) {
-    Sums& sums = k < 4 ? beside : diagonal;
-    u8 other = load<u8>(around[k].object + x), color = load<u8>(around[k].albedo + x);
-    i8 mask = (other == elected) & (other != no_object);
-    u8 same = as<u8>(mask);
-    sums.red_blue += ((color & 2047u) | ((color >> 6) & (1023u << 16))) & same;
-    sums.green += (color >> 11) & 2047u & same;
-    sums.count -= same;
-    sums.depth += keep(mask, as<f8>(load<u8>(around[k].depth + x)));
-    near_rest = mask ? load<u8>(around[k].rest + x) : near_rest;
-    near_smooth = mask ? load<u8>(around[k].smooth + x) : near_smooth;
-    near_more = mask ? load<u8>(around[k].more + x) : near_more;
-  }
+  if (any(asked & (beside.count == 0u)))
+    for (int k = 7; k >= 4; k--) take(around[k], x, masks[k], nearest);
+  for (int k = 3; k >= 0; k--) take(around[k], x, masks[k], nearest);
   u8 weight = 2 * beside.count + diagonal.count, red_blue = 2 * beside.red_blue + diagonal.red_blue,
      green = 2 * beside.green + diagonal.green;
-  i8 filled = weight != 0u;
+  i8 filled = elected != no_object;
   f8 share = 1.0f / larger(to_float(weight), splat(1));
   auto mean = [&](const u8& sum) {
     return as<u8>(__builtin_convertvector(to_float(sum) * share + 0.5f, i8));
   };
-  u8 keep_bits = as<u8>(filled);
-  albedo = mean(red_blue & 0xffffu) | mean(green) << 11 | mean(red_blue >> 16) << 22;
-  albedo &= keep_bits;
-  rest = near_rest;
-  smooth = near_smooth;
-  more = near_more & 0xffffu;  // of the samples, none are its own
-  depth = (2.0f * beside.depth + diagonal.depth) * share;
-  object = (elected & keep_bits) | ~keep_bits;
+  u8 known = as<u8>(filled);
+  words[plane_albedo] =
+      (mean(red_blue & 0xffffu) | mean(green) << 11 | mean(red_blue >> 16) << 22) & known;
+  words[plane_rest] = nearest.rest & known;
+  words[plane_smooth] = nearest.smooth & known;
+  words[plane_object] = elected;
+  words[plane_more] = nearest.more & known & 0xffffu;  // of the samples, none are its own
+  words[plane_depth] = as<u8>((2.0f * beside.depth + diagonal.depth) * share) & known;
 }
 
 }  // namespace
 
-int fill_from_neighbours(const SurfaceRows& rows, int width, int y, SurfaceRows& filled) {
+int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame) {
   Neighbour around[8];
   for (int k = 0; k < 8; k++) {
     auto row = [&](SurfacePlane plane) { return rows.row(plane, y + around_y[k]) + around_x[k]; };
     around[k] = {row(plane_albedo), row(plane_rest), row(plane_smooth),
                  row(plane_object), row(plane_more), row(plane_depth)};
   }
-  const uint32_t* own[surface_planes];
-  uint32_t* out[surface_planes];
-  for (int p = 0; p < surface_planes; p++) {
-    own[p] = rows.row(SurfacePlane(p), y);
-    out[p] = filled.row(SurfacePlane(p), y);
-  }
+  PackedRow packed(frame, y);
   u8 points{};
-  for (int x = 0; x < width; x += lanes) {
-    u8 object = load<u8>(own[plane_object] + x), albedo = load<u8>(own[plane_albedo] + x),
-       rest = load<u8>(own[plane_rest] + x), smooth = load<u8>(own[plane_smooth] + x),
-       more = load<u8>(own[plane_more] + x), depth = load<u8>(own[plane_depth] + x);
-    i8 hole = object == no_object;
+  for (int x = 0; x < frame.width; x += lanes) {
+    u8 words[surface_planes];
+    for (int p = 0; p < surface_planes; p++) words[p] = load<u8>(rows.row(SurfacePlane(p), y) + x);
+    i8 hole = words[plane_object] == no_object;  // beyond the end all are
     points += as<u8>(hole) + 1u;
     if (any(hole)) {
-      u8 a, r, s, o, m;
-      f8 d;
-      fill(around, x, a, r, s, o, m, d);
-      albedo = hole ? a : albedo;
-      rest = hole ? r : rest;
-      smooth = hole ? s : smooth;
-      object = hole ? o : object;
-      more = hole ? m : more;
-      depth = hole ? as<u8>(d) : depth;
+      u8 filled[surface_planes];
+      fill(around, x, hole, filled);
+      for (int p = 0; p < surface_planes; p++) words[p] = hole ? filled[p] : words[p];
     }
-    store(out[plane_albedo] + x, albedo);
-    store(out[plane_rest] + x, rest);
-    store(out[plane_smooth] + x, smooth);
-    store(out[plane_object] + x, object);
-    store(out[plane_more] + x, more);
-    store(out[plane_depth] + x, depth);
+    size_t bytes = sizeof(uint32_t) * size_t(std::min(lanes, frame.width - x));
+    for (int p = 0; p < surface_planes; p++)
+      if (bytes == sizeof(u8))
+        std::memcpy(packed.plane[p] + 4 * size_t(x), &words[p], sizeof(u8));
+      else
+        std::memcpy(packed.plane[p] + 4 * size_t(x), &words[p], bytes);
   }
-  int sum = 0;  // lanes beyond the end are padding and count as holes
+  int sum = 0;
   for (int i = 0; i < lanes; i++) sum += int(points[i]);
   return sum;
 }

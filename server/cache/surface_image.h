@@ -68,31 +68,30 @@ class SurfaceRows {
 inline constexpr uint32_t converged_samples = 32;
 int read_points(const PointCache& points, const PointImage& image, int y, SurfaceRows& rows);
 
-// Row y with its holes filled from their 3x3 neighbours (weights 2 and 1 for reflectance, the
-// nearest for the rest; those of the object with most weight). Rows y - 1 to y + 1 must have been
-// read. Pixels without neighbours stay no_object. Returns the number of points in the row.
-int fill_from_neighbours(const SurfaceRows& rows, int width, int y, SurfaceRows& filled);
+// Row y packed into the frame, its holes filled from their 3x3 neighbours (weights 2 and 1 for
+// reflectance, the nearest for the rest; those of the object with most weight). Rows y - 1 to y + 1
+// must have been read. Pixels without neighbours stay no_object. Returns the number of points in the
+// row.
+int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame);
 
-// A row to and from the frame, where it lies packed.
-inline void pack_row(const SurfaceRows& rows, int y, Frame& frame) {
-  size_t width = size_t(frame.width), start = size_t(y) * width, bytes = width * sizeof(uint32_t);
-  auto* color = reinterpret_cast<std::byte*>(frame.color.data() + start);
-  std::memcpy(color, rows.row(plane_albedo, y), bytes);
-  std::memcpy(color + bytes, rows.row(plane_rest, y), bytes);
-  std::memcpy(color + 2 * bytes, rows.row(plane_smooth, y), bytes);
-  std::memcpy(&frame.object[start], rows.row(plane_object, y), bytes);
-  std::memcpy(&frame.confidence[start], rows.row(plane_more, y), bytes);
-  std::memcpy(&frame.depth[start], rows.row(plane_depth, y), bytes);
-}
-inline void unpack_row(const Frame& frame, int y, SurfaceRows& rows) {
-  size_t width = size_t(frame.width), start = size_t(y) * width, bytes = width * sizeof(uint32_t);
-  auto* color = reinterpret_cast<const std::byte*>(frame.color.data() + start);
-  std::memcpy(rows.row(plane_albedo, y), color, bytes);
-  std::memcpy(rows.row(plane_rest, y), color + bytes, bytes);
-  std::memcpy(rows.row(plane_smooth, y), color + 2 * bytes, bytes);
-  std::memcpy(rows.row(plane_object, y), &frame.object[start], bytes);
-  std::memcpy(rows.row(plane_more, y), &frame.confidence[start], bytes);
-  std::memcpy(rows.row(plane_depth, y), &frame.depth[start], bytes);
+// Where the planes of row y lie in the frame: three behind each other in the row of colours.
+struct PackedRow {
+  std::byte* plane[surface_planes];
+  PackedRow(Frame& frame, int y) {
+    size_t width = size_t(frame.width), start = size_t(y) * width;
+    auto bytes = [](auto* first) { return reinterpret_cast<std::byte*>(first); };
+    for (size_t p : {plane_albedo, plane_rest, plane_smooth})
+      plane[p] = bytes(frame.color.data() + start) + p * width * sizeof(uint32_t);
+    plane[plane_object] = bytes(frame.object.data() + start);
+    plane[plane_more] = bytes(frame.confidence.data() + start);
+    plane[plane_depth] = bytes(frame.depth.data() + start);
+  }
+};
+inline void unpack_row(Frame& frame, int y, SurfaceRows& rows) {
+  PackedRow packed(frame, y);
+  for (int p = 0; p < surface_planes; p++)
+    std::memcpy(rows.row(SurfacePlane(p), y), packed.plane[p],
+                size_t(frame.width) * sizeof(uint32_t));
 }
 
 }  // namespace wellspring
