@@ -191,10 +191,9 @@ std::vector<NamedValue> report_cache_display(int width, int height, bool quick) 
   }
   values.push_back({"cache.display.ms_one_core", "ms", one.total});
   values.push_back({"cache.display.yardstick_ms_one_core", "ms", yardstick});
-  values.push_back({"cache.display.yardstick_ratio", "", one.total / yardstick});
+  values.push_back({"cache.display.yardstick_ratio", "ratio", one.total / yardstick});
   for (size_t k = 0; k < stage_names.size(); k++)
-    values.push_back(
-        {std::string("cache.display.") + stage_names[k] + ".ms_one_core", "ms", one.stages[k]});
+    values.push_back({"cache.display.stage_ms", "ms", one.stages[k], stage_names[k]});
   values.push_back({"cache.display.memory", "MB", double(stroll.cache.memory_bytes()) / 1e6});
   return values;
 }

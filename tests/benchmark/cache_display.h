@@ -10,11 +10,13 @@ namespace wellspring {
 struct NamedValue {
   std::string name, unit;
   double value = 0;
+  std::string stage = {};  // of cache.display.stage_ms
 };
 
 // cache.display.ms (all cores), .ms_one_core, .yardstick_ms_one_core (the bare loop "transform,
-// divide, z-test, store" over the same points), .yardstick_ratio (one core over the yardstick), and
-// cache.display.STAGE.ms_one_core. Medians over the frames of a stroll once the cache is full.
+// divide, z-test, store" over as many points), .yardstick_ratio (one core over the yardstick),
+// .stage_ms (each stage on one core) and .memory. Medians over the frames of a stroll once the cache
+// is full.
 std::vector<NamedValue> report_cache_display(int width, int height, bool quick);
 
 }  // namespace wellspring
