@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "light/albedo_table.h"
+#include "light/emitter_groups.h"
 #include "light/environment_light.h"
 #include "world/bvh.h"
 
@@ -35,7 +36,7 @@ struct MaterialTraits {
 
 struct LightTables {
   std::vector<EmitterTriangle> emitters;  // whole instances, in order of their triangles
-  AliasTable emitter_choice;              // by power
+  EmitterGroups emitter_choice;            // by power and place
   std::vector<uint32_t> first_emitter;    // of each instance, or no_emitter
   EnvironmentLight environment;
   std::vector<PunctualLight> punctual;  // those of any power

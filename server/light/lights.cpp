@@ -123,7 +123,7 @@ Lights make_lights(const World& world) {
   for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
     if (!world.is_moving(i) && is_emitter(world.material_of(i)))
       gather_instance(world, i, *tables, power);
-  tables->emitter_choice = make_alias_table(power);
+  tables->emitter_choice = make_emitter_groups(tables->emitters, power);
 
   Bounds bounds = scene_bounds(scene);
   float radius = 0.5f * length(bounds.high - bounds.low);

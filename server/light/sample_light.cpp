@@ -14,7 +14,8 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 LightSample sample_emitter(const Transport& transport, const Surface& from, Sampler& sampler) {
   const LightTables& tables = transport.tables;
   vec2 u = sampler.next2();
-  AliasPick pick = sample_alias(tables.emitter_choice, u.x);
+  EmitterPick pick = sample_group(tables.emitter_choice, from.position, from.geometric_normal, u.x);
+  if (!(pick.probability > 0)) return {};
   const EmitterTriangle& e = tables.emitters[pick.index];
   vec2 b = sample_triangle({pick.u, u.y});
   Surface place;
@@ -51,8 +52,7 @@ LightSample sample_emitter(const Transport& transport, const Surface& from, Samp
     light.radiance = surface_emission(shown, material) * cover;
   }
   light.target = offset_origin(place, -light.direction);
-  light.pdf = tables.emitter_share * tables.emitter_choice.cells[pick.index].probability *
-              distance2 / (cosine * e.area);
+  light.pdf = tables.emitter_share * pick.probability * distance2 / (cosine * e.area);
   return light;
 }
 
@@ -91,7 +91,7 @@ LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
 
 LightSample sample_area_light(const Transport& transport, const Surface& from, Sampler& sampler) {
   const LightTables& tables = transport.tables;
-  bool emitters = !tables.emitter_choice.cells.empty(),
+  bool emitters = !tables.emitter_choice.empty(),
        sky = !tables.environment.cells.cells.empty();
   if (!emitters && !sky) return {};
   if (emitters && (!sky || sampler.next() < tables.emitter_share))
@@ -104,14 +104,16 @@ LightSample sample_area_light(const Transport& transport, const Surface& from, S
   return light;
 }
 
-float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 direction, const Surface& met) {
+float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 normal, vec3 direction,
+                         const Surface& met) {
   uint32_t first = tables.first_emitter[met.instance];
-  if (first == no_emitter || tables.emitter_choice.cells.empty()) return 0;
+  if (first == no_emitter || tables.emitter_choice.empty()) return 0;
   const EmitterTriangle& e = tables.emitters[first + met.triangle];
   float cosine = std::abs(dot(direction, e.normal));
   if (!(e.area > 0) || cosine < 1e-7f) return 0;
   vec3 line = met.position - from;
-  return tables.emitter_share * tables.emitter_choice.cells[first + met.triangle].probability *
+  return tables.emitter_share *
+         sample_group_probability(tables.emitter_choice, from, normal, first + met.triangle) *
          dot(line, line) / (cosine * e.area);
 }
 

@@ -23,10 +23,12 @@ struct LightSample {
   float pdf = 0;  // over solid angle; 0: nothing
 };
 
-// Picks a triangle by power, or a direction of the environment by brightness.
+// Picks a triangle by power and place, or a direction of the environment by brightness.
 LightSample sample_area_light(const Transport& transport, const Surface& from, Sampler& sampler);
 // Densities with which sample_area_light(from that place) would have found what a ray has met.
-float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 direction, const Surface& met);
+// `normal`: the geometric one of the surface there.
+float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 normal, vec3 direction,
+                         const Surface& met);
 float sample_sky_pdf(const LightTables& tables, vec3 direction);
 
 // Picks one of up to sixteen candidates by its unshadowed effect on a surface that scatters to its

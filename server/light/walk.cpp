@@ -30,7 +30,8 @@ vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surfa
   vec3 emission = surface_emission(surface, material);
   if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(emission) > 0)) return emission;
   float other = walk.area_share *
-                sample_emitter_pdf(transport.tables, walk.from, walk.ray.direction, surface);
+                sample_emitter_pdf(transport.tables, walk.from, walk.from_normal,
+                                   walk.ray.direction, surface);
   return emission * mis_weight(walk.pdf, other);
 }
 
@@ -66,6 +67,7 @@ bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered) {
   walk.depth++;
   walk.pdf = scattered.pdf;
   walk.from = surface.position;
+  walk.from_normal = surface.geometric_normal;
   walk.scattered += scattered.pdf > 0;
   if (scattered.bounce == Bounce::refract) walk.medium = surface.front ? surface.material : -1;
   return true;

@@ -20,6 +20,7 @@ struct Walk {
   vec3 throughput{1};
   int depth = 1;         // this ray's number, counted from the eye
   float pdf = 0;         // density of its direction where it last scattered; 0: perfect, or the eye
+  vec3 from_normal{0, 1, 0};  // geometric, there
   vec3 from{0};          // there
   float area_share = 0;  // chance that area light was sampled there; 0: it was not
   int medium = -1;       // material of the solid it runs in

@@ -23,6 +23,7 @@ struct StageTimes {
 
 // The JPEG made on another core while the next tick begins.
 struct Encoder {
+  ~Encoder() { task.wait(); }  // a picture may be half made
   oneapi::tbb::task_group task;
   Image8 image;
   std::vector<uint8_t> jpeg;

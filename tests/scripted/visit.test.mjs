@@ -100,7 +100,7 @@ test('wrong messages are answered and forgiven', async () => {
     ['{"type":"input","seq":1,"move":[0,0],"look":[0,0]}', 'bad_field'], ['{"type":"input","seq":1,"move":[1e999,0,0],"look":[0,0]}', null],
     ['{"type":"viewpoint","seq":1,"name":"moon"}', 'unknown_viewpoint'], ['{"type":"tour","action":"fly"}', 'bad_field'],
     [`{"type":"hello","exhibit":"${'x'.repeat(300)}"}`, 'bad_field'], ['{"type":"hello","exhibit":"atlantis","width":100,"height":100,"lang":"en","role":"visitor"}', 'unknown_exhibit'],
-    ['['.repeat(50000) + ']'.repeat(50000), null], ['{"type":"storyteller","story":"none"}', 'unknown_story'],
+    ['['.repeat(30000) + ']'.repeat(30000), 'too_deep'], ['{"type":"storyteller","story":"none"}', 'unknown_story'],
   ];
   for (const [text, code] of wrong) {
     const error = visitor.message('error');
