@@ -28,6 +28,33 @@ void age_tile(PointCache& points, const PointImage& image, StillImage& still, in
     }
 }
 
+using Levels = std::array<uint8_t, 256>;
+
+// Not inlined: only as parameters of a real call do the pointers keep their promise not to overlap,
+// and bytes might overlap anything. `around`: scratch of width + 2, its ends 0.
+[[gnu::noinline]] void prioritise_empty(const uint32_t* __restrict above,
+                                        const uint32_t* __restrict row,
+                                        const uint32_t* __restrict below, int width,
+                                        uint8_t* __restrict around, uint8_t* __restrict priority) {
+  // Points in this column of the three rows.
+  for (int x = 0; x < width; x++)
+    around[x + 1] = uint8_t((above[x] != no_point) + (row[x] != no_point) + (below[x] != no_point));
+  for (int x = 0; x < width; x++)
+    priority[x] = uint8_t(255 - 14 * (around[x] + around[x + 1] + around[x + 2]));
+}
+// No branch: where there is no point, the first one is asked and its answer thrown away.
+[[gnu::noinline]] void prioritise_points(const uint32_t* __restrict row,
+                                         const uint8_t* __restrict ages,
+                                         const uint8_t* __restrict counts, const Levels& by_age,
+                                         const Levels& by_count, int width,
+                                         uint8_t* __restrict priority) {
+  for (int x = 0; x < width; x++) {
+    uint32_t there = 0u - uint32_t(row[x] != no_point), point = row[x] & there;
+    uint32_t known = uint32_t(by_age[ages[point]]) + by_count[counts[point]];
+    priority[x] = uint8_t((priority[x] & ~there) | (known & there));
+  }
+}
+
 }  // namespace
 
 void age_changed(PointCache& points, PointImage& image, StillImage& still) {
@@ -53,36 +80,25 @@ void prioritise(const PointCache& points, const CacheSettings& settings, PointIm
     std::fill(image.priority.begin(), image.priority.end(), uint8_t(255));
     return;
   }
-  std::array<uint8_t, 256> by_age{}, by_count{};
+  Levels by_age{}, by_count{};
   for (int i = 0; i < 256; i++) {
     by_age[size_t(i)] =
         uint8_t(std::clamp(float(i) * 0.35f * settings.budget_share_old, 1.0f, 127.0f));
     by_count[size_t(i)] = uint8_t(30 / std::sqrt(float(std::max(i, 1))));
   }
   if (points.capacity() == 0) return;
-  const uint8_t* ages = points.age.data();
-  const uint8_t* counts = points.count.data();
   parallel_ranges(height, 8, [&](int begin, int end) {
-    thread_local std::vector<uint8_t> column;
-    column.assign(size_t(width) + 2, 0);
+    thread_local std::vector<uint8_t> around;
+    around.assign(size_t(width) + 2, 0);
     thread_local std::vector<uint32_t> blank;
     blank.assign(size_t(width), no_point);
     for (int y = begin; y < end; y++) {
       const uint32_t* row = image.point.data() + size_t(y) * size_t(width);
-      const uint32_t* above = y > 0 ? row - width : blank.data();
-      const uint32_t* below = y + 1 < height ? row + width : blank.data();
-      uint8_t* around = column.data() + 1;  // points in this column of the three rows
-      for (int x = 0; x < width; x++)
-        around[x] = uint8_t((above[x] != no_point) + (row[x] != no_point) + (below[x] != no_point));
       uint8_t* priority = image.priority.data() + size_t(y) * size_t(width);
-      for (int x = 0; x < width; x++)
-        priority[x] = uint8_t(255 - 14 * (around[x - 1] + around[x] + around[x + 1]));
-      // No branch: where there is no point, the first one is asked and its answer thrown away.
-      for (int x = 0; x < width; x++) {
-        uint32_t there = uint32_t(row[x] != no_point), point = row[x] & (0u - there);
-        uint32_t known = uint32_t(by_age[ages[point]]) + by_count[counts[point]];
-        priority[x] = uint8_t(priority[x] ^ ((priority[x] ^ known) & (0u - there)));
-      }
+      prioritise_empty(y > 0 ? row - width : blank.data(), row,
+                       y + 1 < height ? row + width : blank.data(), width, around.data(), priority);
+      prioritise_points(row, points.age.data(), points.count.data(), by_age, by_count, width,
+                        priority);
     }
   });
 }

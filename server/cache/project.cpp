@@ -88,6 +88,46 @@ void transform_chunk(const Transform& t, const PointCache& points, int begin, in
   }
 }
 
+void count_tiles(const int32_t* __restrict tile, int count, uint32_t* __restrict next) {
+  for (int i = 0; i < count; i++) next[size_t(tile[i]) + 1]++;
+}
+
+// Sorts a chunk's points that fall somewhere by their tile; `next`: where each tile's begin.
+void sort_by_tile(const ChunkPlaces& places, int begin, int count, uint32_t* __restrict next,
+                  uint64_t* __restrict entries) {
+  for (int i = 0; i < count; i++) {
+    uint32_t place = next[size_t(places.tile[i])]++;
+    entries[place] = uint64_t(places.depth[i]) << depth_shift | uint64_t(begin + i) << point_shift |
+                     uint64_t(places.local[i]);
+  }
+}
+
+void keep_nearest(const uint64_t* __restrict entries, uint32_t count, uint64_t* __restrict nearest) {
+  for (uint32_t i = 0; i < count; i++) {
+    uint64_t entry = entries[i], key = entry >> point_shift;
+    uint64_t& slot = nearest[entry & (tile_pixels - 1)];
+    slot = key < slot ? key : slot;
+  }
+}
+
+// A row of a tile into the image; slots without a point are all bits.
+void write_row(const uint64_t* __restrict nearest, int columns, uint32_t* __restrict point,
+               float* __restrict depth) {
+  for (int x = 0; x < columns; x++) {
+    uint32_t empty = 0u - uint32_t(nearest[x] == ~uint64_t(0));
+    uint32_t bits = uint32_t(nearest[x] >> (depth_shift - point_shift)) << depth_cut;
+    point[x] = uint32_t(nearest[x] & point_mask) | empty;
+    depth[x] = std::bit_cast<float>(bits & ~empty);
+  }
+}
+void show_row(const uint32_t* __restrict point, int columns, uint8_t* __restrict flags) {
+  uint8_t nobody = 0;  // a choice of address costs less than a branch nobody can predict
+  for (int x = 0; x < columns; x++) {
+    uint8_t* flag = point[x] != no_point ? flags + point[x] : &nobody;
+    *flag |= point_visible;
+  }
+}
+
 }  // namespace
 
 size_t project_scratch_bytes(int capacity, int width, int height) {
@@ -126,7 +166,7 @@ void project_points(PointCache& points, const View& view, bool same_view, Scratc
     uint8_t* flags = points.flags.data() + begin;
     for (int i = 0; i < count; i++) flags[i] &= keep;
     next.assign(size_t(tile_count) + 2, 0);
-    for (int i = 0; i < count; i++) next[size_t(places.tile[i]) + 1]++;
+    count_tiles(places.tile, count, next.data());
     uint16_t* offset = offsets.data() + size_t(chunk) * size_t(tile_count + 1);
     uint32_t sum = 0;
     for (int t = 0; t <= tile_count; t++) {
@@ -134,12 +174,7 @@ void project_points(PointCache& points, const View& view, bool same_view, Scratc
       next[size_t(t)] = sum;
       offset[t] = uint16_t(sum);
     }
-    uint64_t* part = entries.data() + begin;
-    for (int i = 0; i < count; i++) {
-      uint32_t place = next[size_t(places.tile[i])]++;
-      part[place] = uint64_t(places.depth[i]) << depth_shift | uint64_t(begin + i) << point_shift |
-                    uint64_t(places.local[i]);
-    }
+    sort_by_tile(places, begin, count, next.data(), entries.data() + begin);
   });
 
   // Pass 2: z-buffer tile by tile.
@@ -148,27 +183,16 @@ void project_points(PointCache& points, const View& view, bool same_view, Scratc
     std::memset(nearest, 0xff, sizeof nearest);
     for (int chunk = 0; chunk < chunks; chunk++) {
       const uint16_t* offset = offsets.data() + size_t(chunk) * size_t(tile_count + 1) + tile;
-      const uint64_t* part = entries.data() + size_t(chunk) * chunk_points;
-      for (uint32_t i = offset[0]; i < offset[1]; i++) {
-        uint64_t entry = part[i], &slot = nearest[entry & (tile_pixels - 1)];
-        uint64_t key = entry >> point_shift;
-        slot = key < slot ? key : slot;
-      }
+      keep_nearest(entries.data() + size_t(chunk) * chunk_points + offset[0],
+                   uint32_t(offset[1] - offset[0]), nearest);
     }
     int x0 = (tile % tiles.x) << tile_bits, y0 = (tile / tiles.x) << tile_bits;
     int columns = std::min(tile_size, view.width - x0),
         rows = std::min(tile_size, view.height - y0);
     for (int y = 0; y < rows; y++) {
-      const uint64_t* row = nearest + (y << tile_bits);
       size_t at = size_t(y0 + y) * size_t(view.width) + size_t(x0);
-      for (int x = 0; x < columns; x++) {
-        bool any = row[x] != ~uint64_t(0);
-        uint32_t point = uint32_t(row[x] & point_mask);
-        uint32_t bits = uint32_t(row[x] >> (depth_shift - point_shift)) << depth_cut;
-        image.point[at + size_t(x)] = any ? point : no_point;
-        image.depth[at + size_t(x)] = any ? std::bit_cast<float>(bits) : 0.0f;
-        if (any) points.flags[point] |= point_visible;
-      }
+      write_row(nearest + (y << tile_bits), columns, &image.point[at], &image.depth[at]);
+      show_row(&image.point[at], columns, points.flags.data());
     }
   });
 }
