@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "base/parallel.h"
 #include "cache/lanes.h"
@@ -98,32 +99,98 @@ struct Pixels {
   f8 deviation;  // of one sample's rest
 };
 
+// What a pixel wants to know of a cell, in one place.
+struct CellLight {
+  float smooth[3], rest[3], patience, detail, noise;
+  float normal[3], plane[3], depth;
+  uint32_t object;
+};
+// A row of cells; the first and the last stand in for those beyond the picture, one on each side.
+void read_cells(const Cells& cells, int cy, std::vector<CellLight>& row) {
+  row.resize(size_t(cells.width) + 2);
+  cy = std::clamp(cy, 0, cells.height - 1);
+  for (int x = 0; x < cells.width; x++) {
+    size_t i = size_t(cells.index(x, cy));
+    CellLight& c = row[size_t(x) + 1];
+    for (size_t k = 0; k < 3; k++) {
+      c.smooth[k] = cells.smooth[k][i];
+      c.rest[k] = cells.rest[k][i];
+      c.normal[k] = cells.normal[k][i];
+      c.plane[k] = cells.plane[k][i];
+    }
+    c.patience = cells.patience[i];
+    c.detail = cells.rest_sum2[i];
+    c.noise = cells.rest_noise[i];
+    c.depth = cells.depth[i];
+    c.object = cells.object[i];
+  }
+  row.front() = row[1];
+  row.back() = row[size_t(cells.width)];
+}
+
 // What the four cells say at each pixel, as far as they lie on the same surface.
 struct Surroundings {
   Color smooth, rest;
-  f8 patience{}, detail{}, noise{}, weight{};
+  f8 patience{}, detail{}, noise{};
+  i8 lonely;  // no cell lies on this surface
 };
+void add(Surroundings& sum, const f8& weight, const CellLight& c) {
+  add(sum.smooth, weight, c.smooth[0], c.smooth[1], c.smooth[2]);
+  add(sum.rest, weight, c.rest[0], c.rest[1], c.rest[2]);
+  sum.patience += weight * c.patience;
+  sum.detail += weight * c.detail;
+  sum.noise += weight * c.noise;
+}
 
-Surroundings look_around(const Cells& cells, const size_t* corners, int half, const Pixels& p) {
+// How much a cell's surface is that of the pixels.
+f8 alike(const CellLight& c, const Pixels& p, const f8& inverse_normal2) {
+  f8 facing = positive(c.normal[0] * p.nx + c.normal[1] * p.ny + c.normal[2] * p.nz);
+  facing *= facing * inverse_normal2;  // the cosine's second, then its eighth power
+  facing *= facing, facing *= facing;
+  f8 off = p.depth * (c.plane[0] * p.x + c.plane[1] * p.y + c.plane[2]);
+  off = (off - 1.0f) * (1 / plane_tolerance);
+  return keep(p.object == c.object, facing / (1.0f + off * off));
+}
+
+using Corners = const CellLight* [4];
+
+// The four cells lie in one plane: what a pixel has in common with one, it has with all.
+bool is_flat(const Corners& corners, const PixelRays& rays, int bx, int by) {
+  constexpr float same_direction = 0.998f, same_depth = 0.1f * plane_tolerance;
+  const CellLight& a = *corners[0];
+  if (a.object == no_object) return false;
+  for (int k = 1; k < 4; k++) {
+    const CellLight& c = *corners[k];
+    float x = rays.x((float(bx + (k & 1)) - 0.5f) * cell_size),
+          y = rays.y((float(by + (k >> 1)) - 0.5f) * cell_size);
+    float cosine =
+        a.normal[0] * c.normal[0] + a.normal[1] * c.normal[1] + a.normal[2] * c.normal[2];
+    float off = c.depth * (a.plane[0] * x + a.plane[1] * y + a.plane[2]) - 1;
+    if (a.object != c.object || cosine < same_direction || !(std::abs(off) < same_depth))
+      return false;
+  }
+  return true;
+}
+
+Surroundings look_around(const Corners& corners, bool flat, int half, const Pixels& p) {
+  constexpr float least = 1e-4f;
   Surroundings s;
   f8 inverse_normal2 = 1.0f / p.normal2;
-  for (int k = 0; k < 4; k++) {
-    size_t c = corners[k];
-    f8 facing = positive(cells.normal[0][c] * p.nx + cells.normal[1][c] * p.ny +
-                         cells.normal[2][c] * p.nz);
-    facing *= facing * inverse_normal2;  // the cosine's second, then its eighth power
-    facing *= facing, facing *= facing;
-    f8 off = p.depth * (cells.plane[0][c] * p.x + cells.plane[1][c] * p.y + cells.plane[2][c]);
-    off = (off - 1.0f) * (1 / plane_tolerance);
-    f8 same = keep(p.object == cells.object[c], load<f8>(bilinear.weight[k][half]));
-    f8 weight = same * facing / (1.0f + off * off);
-    add(s.smooth, weight, cells.smooth[0][c], cells.smooth[1][c], cells.smooth[2][c]);
-    add(s.rest, weight, cells.rest[0][c], cells.rest[1][c], cells.rest[2][c]);
-    s.patience += weight * cells.patience[c];
-    s.detail += weight * cells.rest_sum2[c];
-    s.noise += weight * cells.rest_noise[c];
-    s.weight += weight;
+  if (flat) {
+    for (int k = 0; k < 4; k++) add(s, load<f8>(bilinear.weight[k][half]), *corners[k]);
+    s.lonely = alike(*corners[0], p, inverse_normal2) <= least;
+    return s;
   }
+  f8 sum{};
+  for (int k = 0; k < 4; k++) {
+    f8 weight = load<f8>(bilinear.weight[k][half]) * alike(*corners[k], p, inverse_normal2);
+    add(s, weight, *corners[k]);
+    sum += weight;
+  }
+  s.lonely = sum <= least;
+  f8 share = 1.0f / larger(sum, splat(least));
+  for (Color* c : {&s.smooth, &s.rest}) c->r *= share, c->g *= share, c->b *= share;
+  s.patience *= share, s.detail *= share, s.noise *= share;
   return s;
 }
 
@@ -132,16 +199,13 @@ f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, most) + 1e
 
 // Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
 // more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
-void blend_light(Surroundings s, Pixels& p) {
-  i8 lonely = s.weight <= 1e-4f;  // no cell lies on this surface
-  f8 alone = keep(lonely, splat(1)), share = keep(~lonely, 1.0f / s.weight);
-  auto scale = [&](Color& c) { c.r *= share, c.g *= share, c.b *= share; };
-  scale(s.smooth);
-  scale(s.rest);
+void blend_light(const Surroundings& s, Pixels& p) {
+  const i8& lonely = s.lonely;
+  f8 alone = keep(lonely, splat(1));
   // A lone bright sample may exceed its surroundings only as far as more samples confirm it.
   f8 own_light = luminance(p.smooth);
   f8 most = luminance(s.smooth) * (2.0f + 0.25f * p.samples) + alone * own_light;
-  f8 own = p.samples / (p.samples + s.patience * share + 1e-6f);
+  f8 own = p.samples / (p.samples + s.patience + 1e-6f);
   own = lonely ? splat(1) : own;
   p.smooth = mix(p.smooth, own * cut_to(own_light, most), s.smooth, 1.0f - own);
 
@@ -151,9 +215,9 @@ void blend_light(Surroundings s, Pixels& p) {
   f8 own_rest = luminance(p.rest);
   f8 quiet = keep(known & (p.deviation <= 0.1f * own_rest), splat(1));
   f8 most_rest = luminance(s.rest) * (3.0f + p.samples) + 1e-4f + (quiet + alone) * own_rest;
-  f8 variance = known ? p.deviation * p.deviation : s.noise * share;
+  f8 variance = known ? p.deviation * p.deviation : s.noise;
   variance /= larger(p.samples, splat(1));
-  f8 detail = s.detail * share + 1e-9f, own_detail = detail / (detail + variance);
+  f8 detail = s.detail + 1e-9f, own_detail = detail / (detail + variance);
   own_detail = lonely ? splat(1) : own_detail;
   p.rest = mix(p.rest, own_detail * cut_to(own_rest, most_rest), s.rest, 1.0f - own_detail);
 }
@@ -199,10 +263,18 @@ struct Result {
   float confidence[4], depth[4];
 };
 void write(const Result& result, int skip, int count, size_t at, Frame& frame) {
-  size_t first = at + size_t(skip), number = size_t(count);
-  std::memcpy(&frame.color[first].x, result.color + 3 * skip, number * 3 * sizeof(float));
-  std::memcpy(&frame.confidence[first], result.confidence + skip, number * sizeof(float));
-  std::memcpy(&frame.depth[first], result.depth + skip, number * sizeof(float));
+  if (count == block) {  // mostly; and sizes known at compile time need no calls
+    std::memcpy(&frame.color[at].x, result.color, sizeof result.color);
+    std::memcpy(&frame.confidence[at], result.confidence, sizeof result.confidence);
+    std::memcpy(&frame.depth[at], result.depth, sizeof result.depth);
+    return;
+  }
+  for (int i = skip; i < skip + count; i++) {
+    const float* c = result.color + 3 * i;
+    frame.color[at + size_t(i)] = vec3(c[0], c[1], c[2]);
+    frame.confidence[at + size_t(i)] = result.confidence[i];
+    frame.depth[at + size_t(i)] = result.depth[i];
+  }
 }
 
 // Reflectance times light plus the rest.
@@ -246,8 +318,12 @@ void compose(const View& view, const Cells& cells, bool known, Frame& frame) {
   parallel_ranges(cells.height + 1, 4, [&](int begin, int end) {
     thread_local SurfaceRows rows;
     rows.start(width, block);
+    thread_local std::vector<CellLight> above, below;
+    read_cells(cells, begin - 1, below);
     for (int by = begin; by < end; by++) {
       int top = by * block - block / 2;
+      std::swap(above, below);
+      read_cells(cells, by, below);
       for (int y = top; y < top + block; y++) {
         if (y < 0 || y >= height) {
           rows.clear(y);
@@ -257,17 +333,16 @@ void compose(const View& view, const Cells& cells, bool known, Frame& frame) {
         finish_surface(rays, cells, known, y, rows, frame);
       }
       for (int bx = 0; bx <= cells.width; bx++) {
-        size_t corners[4];
-        for (int k = 0; k < 4; k++)
-          corners[k] = size_t(cells.index(std::clamp(bx - 1 + (k & 1), 0, cells.width - 1),
-                                          std::clamp(by - 1 + (k >> 1), 0, cells.height - 1)));
+        size_t left = size_t(bx);
+        Corners corners = {&above[left], &above[left + 1], &below[left], &below[left + 1]};
+        bool flat = is_flat(corners, rays, bx, by);
         int x = bx * block - block / 2, skip = std::max(-x, 0),
             count = std::min(block, width - x) - skip;
         if (count <= 0) continue;
         for (int half = 0; half < 2; half++) {
           int y = top + half * 2;
           Pixels p = read_pixels(rays, rows, x, y);
-          blend_light(look_around(cells, corners, half, p), p);
+          blend_light(look_around(corners, flat, half, p), p);
           Result result[2];
           light_pixels(rows, p, x, y, result);
           for (int r = 0; r < 2; r++)

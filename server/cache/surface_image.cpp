@@ -161,12 +161,12 @@ int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame) {
       fill(around, x, hole, filled);
       for (int p = 0; p < surface_planes; p++) words[p] = hole ? filled[p] : words[p];
     }
-    size_t bytes = sizeof(uint32_t) * size_t(std::min(lanes, frame.width - x));
-    for (int p = 0; p < surface_planes; p++)
-      if (bytes == sizeof(u8))
-        std::memcpy(packed.plane[p] + 4 * size_t(x), &words[p], sizeof(u8));
-      else
-        std::memcpy(packed.plane[p] + 4 * size_t(x), &words[p], bytes);
+    size_t at = sizeof(uint32_t) * size_t(x);
+    if (x + lanes <= frame.width)
+      for (int p = 0; p < surface_planes; p++) store(packed.plane[p] + at, words[p]);
+    else
+      for (int p = 0; p < surface_planes; p++)
+        std::memcpy(packed.plane[p] + at, &words[p], sizeof(uint32_t) * size_t(frame.width - x));
   }
   int sum = 0;
   for (int i = 0; i < lanes; i++) sum += int(points[i]);
