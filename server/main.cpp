@@ -105,7 +105,7 @@ int serve(const Options& options) {
       reported = began;
       board.publish(make_report(*show));
     }
-    double wait = seconds_to_next_tick(*show, began, seconds_now());
+    double wait = seconds_to_next_tick(*show, seconds_now());
     if (wait > 0) std::this_thread::sleep_for(std::chrono::duration<double>(wait));
   }
   log::info("stopping");

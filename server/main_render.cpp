@@ -18,6 +18,8 @@
 #include "base/log.h"
 #include "frame/picture_file.h"
 #include "light/technique.h"
+#include "show/exhibit_load.h"
+#include "show/exhibit_scene.h"
 #include "world/scene_load.h"
 
 using namespace wellspring;
@@ -135,6 +137,8 @@ struct SceneKind {
   Scene (*load)(const std::string& path, double time);
 };
 const SceneKind scene_kinds[] = {
+    {"exhibit package", [](const std::string& path) { return std::filesystem::exists(path + "/exhibit.json"); },
+     [](const std::string& path, double time) { return make_exhibit_scene(load_exhibit(path), time); }},
     {"glTF file", [](const std::string& path) { return !std::filesystem::is_directory(path); },
      [](const std::string& path, double time) {
        SceneLoadOptions options;

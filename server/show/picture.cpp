@@ -16,8 +16,12 @@ namespace {
 constexpr double still_after = 0.25;   // seconds without motion until a picture counts as a still
 constexpr int least_budget = 2000;     // samples a picture, however slow the machine
 constexpr double slack = 0.0015;       // seconds kept free of every period
-constexpr double resting_rate = 4;     // pictures a second when nothing in them changes any more
+constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
+constexpr double still_rate = 20;      // pictures a second while only the storyteller moves
+constexpr double settling_rate = 12;   // while nothing moves: more time for samples
+constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr float nearly_all = 0.999f;   // converged
+constexpr int animated_gain = 5;       // JPEG quality above the moving one while the storyteller moves
 
 float milliseconds_since(double began) { return float(1000 * (seconds_now() - began)); }
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
@@ -39,10 +43,21 @@ bool sees_figure(const Show& show, const View& view) {
   return glm::length(d - view.forward * depth) < slope * std::max(depth, 0.0f) + radius * std::sqrt(1 + slope * slope);
 }
 
+bool stands(const Show& show, const Visitor& visitor) {
+  return visitor.frame_number > 0 && show.time - visitor.moved_at > still_after &&
+         visitor.velocity == vec3(0) && visitor.move == vec3(0);
+}
+
+bool rests(const Show& show, const Visitor& visitor) {
+  return stands(show, visitor) && !sees_figure(show, visitor.last_view) &&
+         visitor.cache.stats().converged >= nearly_all;
+}
+
 int sample_budget(const Show& show, const Visitor& visitor, int busy) {
   double period = 1 / picture_rate(show, visitor);
-  double share = (period - slack) / std::max(busy, 1) - 0.001 * (visitor.times.display + visitor.times.tonemap);
-  double budget = share * show.samples_per_second;
+  double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
+  double share = std::max((period - slack) / std::max(busy, 1) - display, least_share * period);
+  double budget = share * double(show.samples_per_second);
   return int(std::clamp(budget, double(least_budget), 0.5 * visitor.width * visitor.height));
 }
 
@@ -52,12 +67,12 @@ uint64_t microseconds_now() {
 }
 
 // On another core: the tick goes on meanwhile, and waits before it touches the image again.
-void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool still) {
+void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool full_chroma) {
   Encoder* encoder = visitor.encoder.get();
   std::shared_ptr<Link> link = visitor.link;
-  encoder->task.run([encoder, link, header, still] {
+  encoder->task.run([encoder, link, header, full_chroma] {
     double began = seconds_now();
-    encode_jpeg(encoder->image, header.quality, still, encoder->jpeg);
+    encode_jpeg(encoder->image, header.quality, full_chroma, encoder->jpeg);
     auto packet = std::make_shared<Packet>(packet_header_bytes + encoder->jpeg.size());
     write_packet_header(header, *packet);
     std::copy(encoder->jpeg.begin(), encoder->jpeg.end(), packet->begin() + packet_header_bytes);
@@ -70,15 +85,16 @@ void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool still
 }  // namespace
 
 double picture_rate(const Show& show, const Visitor& visitor) {
-  double rate = visitor.fps > 0 ? visitor.fps : show.settings.fps;
-  bool resting = visitor.frame_number > 0 && visitor.cache.stats().converged >= nearly_all &&
-                 show.time - visitor.moved_at > still_after && visitor.velocity == vec3(0) &&
-                 !sees_figure(show, visitor.last_view);
-  return std::clamp(resting ? std::min(rate, resting_rate) : rate, 1.0, 120.0);
+  double rate = visitor.fps > 0 ? double(visitor.fps) : double(show.settings.fps);
+  if (stands(show, visitor))
+    rate = std::min(rate, sees_figure(show, visitor.last_view) ? still_rate
+                          : rests(show, visitor)               ? resting_rate
+                                                               : settling_rate);
+  return std::clamp(rate, 1.0, 120.0);
 }
 
 bool wants_picture(const Show& show, const Visitor& visitor) {
-  if (show.time - visitor.pictured_at < 1 / picture_rate(show, visitor) - 0.004) return false;
+  if (show.time - visitor.pictured_at < 1 / picture_rate(show, visitor) - 0.0005) return false;
   return !visitor.link->picture_pending() && may_send(visitor.flow, show.time);
 }
 
@@ -103,7 +119,9 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   double planned = seconds_now();
   visitor.samples.resize(visitor.requests.size());
   const Technique& technique = still ? *show.still_technique : *show.technique;
-  trace(technique, *show.world, show.lights, show.settings.transport, visitor.requests, visitor.samples);
+  TransportSettings transport = show.settings.transport;
+  if (!still) transport.clamp = show.settings.moving_clamp;
+  trace(technique, *show.world, show.lights, transport, visitor.requests, visitor.samples);
   double traced = seconds_now();
   cache.remember(view, visitor.requests, visitor.samples);
   cache.reconstruct(view, visitor.frame);
@@ -125,10 +143,13 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   header.time_us = microseconds_now();
   header.width = uint16_t(view.width);
   header.height = uint16_t(view.height);
-  header.quality = uint8_t(still ? visitor.still_quality : suggest_quality(visitor.flow, visitor.best_quality));
+  int quality = suggest_quality(visitor.flow, visitor.best_quality);
+  bool fine = still && !sees_figure(show, view);  // pictures that are looked at for long, few a second
+  if (still) quality = fine ? visitor.still_quality : std::min(visitor.still_quality, quality + animated_gain);
+  header.quality = uint8_t(quality);
   header.flags = uint8_t(packet_complete | (still ? packet_still : 0));
   note_sent(visitor.flow, header.frame, show.time);
-  encode_and_publish(visitor, header, still);
+  encode_and_publish(visitor, header, fine);
 
   if (!visitor.requests.empty() && traced > planned) {
     float rate = float(double(visitor.requests.size()) / (traced - planned));

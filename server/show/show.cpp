@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "base/log.h"
+#include "show/exhibit_scene.h"
 
 namespace wellspring {
 
@@ -18,12 +19,6 @@ std::vector<std::shared_ptr<Link>> Arrivals::take() {
 }
 
 namespace {
-
-mat4 place_storyteller(const StorytellerPlace& place, const Scene& scene) {
-  // A humanoid faces +Z, a yaw of 0 faces -Z: half a turn between them.
-  return glm::rotate(glm::translate(mat4(1), vec3(place.position - scene.origin)), place.yaw + pi,
-                     vec3(0, 1, 0));
-}
 
 // Where visitors' eyes are likely to be: the viewpoints, and places on the way between them.
 std::vector<vec3> places_of(const Exhibit& exhibit) {

@@ -21,11 +21,12 @@
 namespace wellspring {
 
 struct ShowSettings {
-  float fps = 40;             // pictures a second a visitor gets, machine permitting
+  float fps = 36;             // pictures a second a walking visitor gets, machine permitting
   int max_visitors = 16;      // more are told to come back
   std::string technique = "gather";      // while anything moves
   std::string still_technique = "path";  // while the visitor stands still: the picture becomes the reference
   TransportSettings transport{.max_depth = 6, .clamp = 12};
+  float moving_clamp = 4;     // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
 };
 
@@ -59,6 +60,7 @@ struct Show {
   size_t greetings = 0, farewells = 0;
   std::string kiosk_news;   // the last kiosk message, to send only changes
   double agent_sent_at = -1e9;
+  double behaved_at = -1;  // when the storyteller was last moved
   Mood agent_mood = Mood::idle;
 
   std::list<Visitor> visitors;
@@ -78,7 +80,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
 // are taken as one second). Never throws, never waits for a peer.
 void tick(Show& show, Arrivals& arrivals, double now);
 
-// How long the caller may sleep after a tick that began at `began` (both on the clock of `now`).
-double seconds_to_next_tick(const Show& show, double began, double now);
+// How long the caller may sleep after a tick, at time `now` on the same clock.
+double seconds_to_next_tick(const Show& show, double now);
 
 }  // namespace wellspring

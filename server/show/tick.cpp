@@ -18,6 +18,8 @@ namespace {
 
 constexpr double agent_interval = 0.1;  // seconds between agent messages while somebody listens
 constexpr double state_interval = 0.5;
+constexpr double behave_interval = 0.04;
+constexpr double listening_interval = 0.01;  // between looks at what visitors want, pictures or not
 
 void welcome_links(Show& show, Arrivals& arrivals) {
   for (std::shared_ptr<Link>& link : arrivals.take()) {
@@ -178,11 +180,14 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   welcome_links(show, arrivals);
   hear_visitors(show);
   hear_eyes(show);
-  behave_and_animate(show, dt);
-  show.totals.animate_ms = float(1000 * (seconds_now() - began));
-
   int busy = 0;
   for (const Visitor& visitor : show.visitors) busy += visitor.welcomed && wants_picture(show, visitor);
+  // The storyteller moves for a picture; otherwise often enough to notice people.
+  if (busy > 0 || show.time - show.behaved_at >= behave_interval) {
+    behave_and_animate(show, show.behaved_at < 0 ? 0 : float(std::clamp(show.time - show.behaved_at, 0.0, 1.0)));
+    show.behaved_at = show.time;
+    show.totals.animate_ms = float(1000 * (seconds_now() - began));
+  }
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
     TourStep step;
@@ -194,11 +199,12 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   show.totals.tick_ms = float(1000 * (seconds_now() - began));
 }
 
-double seconds_to_next_tick(const Show& show, double began, double now) {
-  double period = 1 / 20.0;  // nobody looks: only clocks and doors
+double seconds_to_next_tick(const Show& show, double now) {
+  double wait = 1 / 20.0;  // nobody looks: only clocks and doors
   for (const Visitor& visitor : show.visitors)
-    if (visitor.welcomed) period = std::min(period, 1.0 / picture_rate(show, visitor));
-  return std::clamp(began + period - now, 0.0, period);
+    if (visitor.welcomed)
+      wait = std::min({wait, listening_interval, visitor.pictured_at + 1 / picture_rate(show, visitor) - now});
+  return std::max(wait, 0.0);
 }
 
 }  // namespace wellspring
