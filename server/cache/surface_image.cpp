@@ -30,10 +30,15 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
     int count = std::min(lanes, width - x0);
     alignas(32) uint32_t records[4 * lanes] = {}, others[lanes] = {}, there[lanes] = {};
     // No branch: where there is no point, the first one is read and thrown away.
+    if (x0 + ahead + lanes <= width)
+      for (int i = 0; i < lanes; i++) {
+        uint32_t next = row[x0 + ahead + i], early = next & (0u - uint32_t(next != no_point));
+        __builtin_prefetch(&colors[early]);
+        __builtin_prefetch(&normals[early]);
+        __builtin_prefetch(&counts[early]);
+        __builtin_prefetch(&noises[early]);
+      }
     for (int i = 0; i < count; i++) {
-      int next = std::min(x0 + i + ahead, width - 1);
-      uint32_t early = row[next] & (0u - uint32_t(row[next] != no_point));
-      __builtin_prefetch(&colors[early]);
       there[i] = 0u - uint32_t(row[x0 + i] != no_point);
       uint32_t point = row[x0 + i] & there[i];
       std::memcpy(records + 4 * i, &colors[point], 16);
