@@ -85,22 +85,38 @@ float light_at(const std::array<std::span<float>, 3>& light, size_t i) {
   return luminance(vec3(light[0][i], light[1][i], light[2][i]));
 }
 
+// Of all that varies in the rest of the whole picture, how much is noise? Every third row tells;
+// each adds up for itself, so that the sum does not depend on the threads.
+float share_of_noise(const Cells& cells) {
+  struct Sums {
+    double noise = 0, spread = 0, known = 0;
+  };
+  std::vector<Sums> rows(size_t(cells.height + 2) / 3);
+  parallel_ranges(int(rows.size()), 8, [&](int begin, int end) {
+    for (int row = begin; row < end; row++) {
+      Sums sums;
+      for (int x = 0; x < cells.width; x++) {
+        size_t i = size_t(cells.index(x, row * 3));
+        if (cells.rest_known[i] == 0) continue;
+        float mean = light_at(cells.rest, i),
+              spread = cells.rest_sum2[i] - cells.samples[i] * mean * mean;
+        sums.noise += double(std::min(cells.rest_noise[i], 1.0f));
+        sums.spread += double(std::clamp(spread, 0.0f, 1.0f));
+        sums.known += 1;
+      }
+      rows[size_t(row)] = sums;
+    }
+  });
+  Sums all;
+  for (const Sums& row : rows)
+    all.noise += row.noise, all.spread += row.spread, all.known += row.known;
+  if (all.known == 0) return 0.5f;
+  return float(std::clamp(all.noise / (all.noise + all.spread + 1e-9), 0.5, 1.0));
+}
+
 // Replaces the moments by what follows from them.
 void estimate_variance(Cells& cells) {
-  // Of all that varies in the rest of the whole picture, how much is noise? Every third row tells.
-  double noise = 0, known = 0, spread = 0;
-  for (int y = 0; y < cells.height; y += 3)
-    for (int x = 0; x < cells.width; x++) {
-      size_t i = size_t(cells.index(x, y));
-      if (cells.rest_known[i] == 0) continue;
-      float mean = luminance(vec3(cells.rest[0][i], cells.rest[1][i], cells.rest[2][i]));
-      noise += double(std::min(cells.rest_noise[i], 1.0f));
-      known += 1;
-      spread += double(
-          std::max(0.0f, std::min(cells.rest_sum2[i] - cells.samples[i] * mean * mean, 1.0f)));
-    }
-  float rest_share =
-      known > 0 ? float(std::clamp(noise / (noise + spread + 1e-9), 0.5, 1.0)) : 0.5f;
+  float rest_share = share_of_noise(cells);
   std::vector<Estimate> estimates(size_t(cells.width) * size_t(cells.height));
   parallel_ranges(cells.height, 4, [&](int begin, int end) {
     for (int y = begin; y < end; y++)

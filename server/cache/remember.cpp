@@ -194,21 +194,30 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   if (groups == 0) return result;
 
   // Sort out which samples have a point to join. Late answers find theirs only by its place.
-  std::vector<uint32_t> additions;
-  for (size_t i = 0; i < count; i++) {
-    const Request& request = requests[i];
-    if (!is_usable(samples[i]) || request.pixel >= pixels) {
-      result.rejected++;
-      continue;
+  constexpr uint32_t reject = no_point - 1;  // beyond every capacity
+  parallel_ranges(int(count), 512, [&](int begin, int end) {
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      const Request& request = requests[i];
+      if (!is_usable(samples[i]) || request.pixel >= pixels) {
+        targets[i] = reject;
+        continue;
+      }
+      uint32_t point = request.resample;
+      if (point >= capacity || !is_alive(points, point)) point = no_point;
+      if (settings.current && point == no_point) point = image.point[request.pixel];
+      if (!settings.current && point != no_point &&
+          !is_same_surface(points, point, view, samples[i], true))
+        point = no_point;
+      targets[i] = point;
     }
-    uint32_t point = request.resample;
-    if (point >= capacity || !is_alive(points, point)) point = no_point;
-    if (settings.current && point == no_point) point = image.point[request.pixel];
-    if (!settings.current && point != no_point &&
-        !is_same_surface(points, point, view, samples[i], true))
-      point = no_point;
-    targets[i] = point;
-    if (point == no_point) additions.push_back(uint32_t(i));
+  });
+  std::vector<uint32_t> additions;
+  additions.reserve(count);
+  for (size_t i = 0; i < count; i++) {
+    if (targets[i] == no_point) additions.push_back(uint32_t(i));
+    if (targets[i] != reject) continue;
+    targets[i] = no_point;
+    result.rejected++;
   }
 
   auto random_of = [&](size_t i) { return uint32_t(mix64(requests[i].seed ^ 0x72656d65)); };
