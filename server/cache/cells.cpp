@@ -173,7 +173,9 @@ void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells
     i8 any_point = g.points > 0.0f;
     f8 share = 1.0f / larger(g.points, splat(1)), per_sample = 1.0f / larger(g.samples, splat(1));
     Vec normal = g.normal * (1.0f / larger(square_root(dot(g.normal, g.normal)), splat(1e-6f)));
-    auto along = [&](vec3 axis) { return normal.x * axis.x + normal.y * axis.y + normal.z * axis.z; };
+    auto along = [&](vec3 axis) {
+      return normal.x * axis.x + normal.y * axis.y + normal.z * axis.z;
+    };
     f8 left = (steps + float(cx)) * float(cell_size), top = splat(float(cy * cell_size));
     auto ray_to = [&](const f8& x, const f8& y) {
       return Vec{(left + x - rays.half_width) * rays.inverse_focal,

@@ -42,8 +42,8 @@ struct Cells {
 size_t cells_bytes(int width, int height);
 // Carves the planes out of `scratch` for a picture of this size and empties what lies around it.
 void take_cells(Cells& cells, int width, int height, Scratch& scratch);
-// Overwrites row cy of the cells: the means over the pixels that see each cell's object. `rows` hold
-// the picture's rows below it.
+// Overwrites row cy of the cells: the means over the pixels that see each cell's object. `rows`
+// hold the rows of the picture that it covers.
 void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells);
 // Filters smooth light and the noisy part of the rest as widely as their noise asks for, never
 // across objects, creases or steps.

@@ -85,8 +85,7 @@ f8 luminance(const Color& c) { return wellspring::luminance(c.r, c.g, c.b); }
 void add(Color& sum, const f8& weight, float r, float g, float b) {
   sum.r += weight * r, sum.g += weight * g, sum.b += weight * b;
 }
-// own * a + (1 - own) * b, where `kept` is what own * a comes to.
-Color mix(const Color& a, const f8& kept, const Color& b, const f8& other) {
+Color weighted_sum(const Color& a, const f8& kept, const Color& b, const f8& other) {
   return {kept * a.r + other * b.r, kept * a.g + other * b.g, kept * a.b + other * b.b};
 }
 
@@ -207,7 +206,7 @@ void blend_light(const Surroundings& s, Pixels& p) {
   f8 most = luminance(s.smooth) * (2.0f + 0.25f * p.samples) + alone * own_light;
   f8 own = p.samples / (p.samples + s.patience + 1e-6f);
   own = lonely ? splat(1) : own;
-  p.smooth = mix(p.smooth, own * cut_to(own_light, most), s.smooth, 1.0f - own);
+  p.smooth = weighted_sum(p.smooth, own * cut_to(own_light, most), s.smooth, 1.0f - own);
 
   // The same for the rest, unless it is known to repeat itself: then it is a highlight, not a lucky
   // path.
@@ -219,7 +218,7 @@ void blend_light(const Surroundings& s, Pixels& p) {
   variance /= larger(p.samples, splat(1));
   f8 detail = s.detail + 1e-9f, own_detail = detail / (detail + variance);
   own_detail = lonely ? splat(1) : own_detail;
-  p.rest = mix(p.rest, own_detail * cut_to(own_rest, most_rest), s.rest, 1.0f - own_detail);
+  p.rest = weighted_sum(p.rest, own_detail * cut_to(own_rest, most_rest), s.rest, 1.0f - own_detail);
 }
 
 u8 load_pair(const SurfaceRows& rows, SurfacePlane plane, int x, int y) {
@@ -246,7 +245,8 @@ Pixels read_pixels(const PixelRays& rays, const SurfaceRows& rows, int x, int y)
 
 // Four pixels' channels one after the other.
 void interleave(const f4& r, const f4& g, const f4& b, float* to) {
-  f4 low = __builtin_shufflevector(r, g, 0, 4, 1, 5), high = __builtin_shufflevector(r, g, 2, 6, 3, 7),
+  f4 low = __builtin_shufflevector(r, g, 0, 4, 1, 5),
+     high = __builtin_shufflevector(r, g, 2, 6, 3, 7),
      middle = __builtin_shufflevector(low, b, 3, 5, 3, 5);
   store(to, __builtin_shufflevector(low, b, 0, 1, 4, 2));
   store(to + 4, __builtin_shufflevector(middle, high, 0, 1, 4, 5));

@@ -39,8 +39,8 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
   return request;
 }
 
-// Priorities and what they add up to, in fixed point: a step of the dither then waits for an addition
-// and a shift only.
+// Priorities and what they add up to, in fixed point: a step of the dither then waits for an
+// addition and a shift only.
 constexpr int fraction_bits = 8;
 
 // Dithers the rows [begin, end) with `share` requests to give away; returns how many it chose. A

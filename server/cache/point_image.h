@@ -2,6 +2,7 @@
 // What projects where (Walter 1999, figure 4: the point image), the priorities of the pixels, and
 // where the light was seen to change.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -102,7 +102,8 @@ void sort_by_tile(const ChunkPlaces& places, int begin, int count, uint32_t* __r
   }
 }
 
-void keep_nearest(const uint64_t* __restrict entries, uint32_t count, uint64_t* __restrict nearest) {
+void keep_nearest(const uint64_t* __restrict entries, uint32_t count,
+                  uint64_t* __restrict nearest) {
   for (uint32_t i = 0; i < count; i++) {
     uint64_t entry = entries[i], key = entry >> point_shift;
     uint64_t& slot = nearest[entry & (tile_pixels - 1)];

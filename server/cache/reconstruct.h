@@ -17,8 +17,8 @@ struct SurfaceCounts {
   int64_t converged = 0;  // pixels whose point holds `converged_samples` or more
 };
 
-// Reads every visible point once: builds the cells, fills holes from their neighbours and leaves the
-// surface packed in the frame's planes. Pixels far from any point stay unknown.
+// Reads every visible point once: builds the cells, fills holes from their neighbours and leaves
+// the surface packed in the frame's planes. Pixels far from any point stay unknown.
 SurfaceCounts read_surface(const View& view, const PointCache& points, const PointImage& image,
                            Cells& cells, Frame& frame);
 

@@ -70,8 +70,8 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
 
 // Row y packed into the frame, its holes filled from their 3x3 neighbours (weights 2 and 1 for
 // reflectance, the nearest for the rest; those of the object with most weight). Rows y - 1 to y + 1
-// must have been read. Pixels without neighbours stay no_object. Returns the number of points in the
-// row.
+// must have been read. Pixels without neighbours stay no_object. Returns the number of points in
+// the row.
 int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame);
 
 // Where the planes of row y lie in the frame: three behind each other in the row of colours.
