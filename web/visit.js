@@ -38,7 +38,8 @@ const connection = make_connection({
     seq = 0;
     asked.clear();
     // After a broken line: back to where the visitor stood.
-    if (state) connection.send({ type: 'camera', seq: next(), position: state.position, yaw: state.yaw, pitch: state.pitch });
+    if (state?.viewpoint) connection.send({ type: 'viewpoint', seq: next(), name: state.viewpoint });
+    else if (state) connection.send({ type: 'camera', seq: next(), position: state.position, yaw: state.yaw, pitch: state.pitch });
   },
   lost() { if (!full) notice(word(lang, 'lost')); },
   message(message) {
