@@ -218,7 +218,8 @@ void blend_light(const Surroundings& s, Pixels& p) {
   variance /= larger(p.samples, splat(1));
   f8 detail = s.detail + 1e-9f, own_detail = detail / (detail + variance);
   own_detail = lonely ? splat(1) : own_detail;
-  p.rest = weighted_sum(p.rest, own_detail * cut_to(own_rest, most_rest), s.rest, 1.0f - own_detail);
+  f8 kept = own_detail * cut_to(own_rest, most_rest);
+  p.rest = weighted_sum(p.rest, kept, s.rest, 1.0f - own_detail);
 }
 
 u8 load_pair(const SurfaceRows& rows, SurfacePlane plane, int x, int y) {
