@@ -54,14 +54,7 @@ find_library(PUGIXML pugixml REQUIRED)
 add_library(pugixml_any INTERFACE)
 target_link_libraries(pugixml_any INTERFACE ${PUGIXML})
 
-find_path(TINYGLTF_INCLUDE tiny_gltf.h REQUIRED)
 find_path(STB_INCLUDE stb_image.h PATH_SUFFIXES stb REQUIRED)
-find_library(TINYGLTF tinygltf)
-add_library(tinygltf_any INTERFACE)
-target_include_directories(tinygltf_any SYSTEM INTERFACE ${TINYGLTF_INCLUDE} ${STB_INCLUDE})
-if(TINYGLTF)
-  target_link_libraries(tinygltf_any INTERFACE ${TINYGLTF})
-endif()
 
 find_path(CLI11_INCLUDE CLI/CLI.hpp REQUIRED)
 add_library(cli11_any INTERFACE)
@@ -83,7 +76,7 @@ foreach(module core imgproc videoio objdetect video)
   target_link_libraries(opencv_any INTERFACE ${OPENCV_${module}})
 endforeach()
 
-# Frame writes PNG through stb; it is a header of its own, not part of a layer's interface.
+# World reads pictures and frame writes PNG through stb: headers, not part of a layer's interface.
 include_directories(SYSTEM ${STB_INCLUDE})
 include_directories(${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/server)
 

@@ -91,6 +91,7 @@ int serve(const Options& options) {
   sources.stream_metrics = [&] { return server ? stream_metrics(*server) : std::string(); };
   Doors doors;
   doors.answer = [&](const HttpQuestion& question) { return answer(sources, question); };
+  doors.slow = [](const HttpQuestion& question) { return question.path.ends_with("/still.jpg"); };
   doors.joined = [&](std::shared_ptr<Link> link) { arrivals.put(std::move(link)); };
   board.publish(make_report(*show));
   server = std::make_unique<Server>(options.stream, doors);

@@ -14,6 +14,7 @@ namespace wellspring {
 namespace {
 
 constexpr double still_after = 0.25;   // seconds without motion until a picture counts as a still
+constexpr double settled_after = 2;    // seconds without motion until the reference takes over
 constexpr int least_budget = 2000;     // samples a picture, however slow the machine
 constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
@@ -118,9 +119,10 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   cache.plan(view, visitor.budget, seed, visitor.requests);
   double planned = seconds_now();
   visitor.samples.resize(visitor.requests.size());
-  const Technique& technique = still ? *show.still_technique : *show.technique;
+  bool settled = show.time - visitor.moved_at > settled_after;
+  const Technique& technique = settled ? *show.still_technique : *show.technique;
   TransportSettings transport = show.settings.transport;
-  if (!still) transport.clamp = show.settings.moving_clamp;
+  if (!settled) transport.clamp = show.settings.moving_clamp;
   trace(technique, *show.world, show.lights, transport, visitor.requests, visitor.samples);
   double traced = seconds_now();
   cache.remember(view, visitor.requests, visitor.samples);
