@@ -46,8 +46,11 @@ class ServerProcess {
     if (failed) throw std::runtime_error(program + ": cannot be started; build all programs first");
     std::string text;
     char part[256];
-    for (ssize_t n; (n = read(out[0], part, sizeof part)) > 0 && text.find('\n') == std::string::npos;)
+    while (text.find('\n') == std::string::npos) {
+      ssize_t n = read(out[0], part, sizeof part);
+      if (n <= 0) break;
       text.append(part, size_t(n));
+    }
     close(out[0]);
     size_t colon = text.rfind(':');
     if (colon == std::string::npos) throw std::runtime_error(program + ": did not print its address");
