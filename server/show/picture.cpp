@@ -159,7 +159,6 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   }
   smooth(visitor.times.display, float(1000 * ((planned - began) + (reconstructed - traced))));
   smooth(visitor.times.trace, float(1000 * (traced - planned)));
-  smooth(visitor.times.whole, milliseconds_since(began));
   if (visitor.pictured_at > 0 && show.time > visitor.pictured_at)
     smooth(visitor.measured_fps, float(1 / (show.time - visitor.pictured_at)));
   visitor.pictured_at = show.time;

@@ -13,10 +13,6 @@ namespace wellspring {
 namespace {
 constexpr size_t most_kept = 12;
 constexpr int still_jpeg_quality = 90;
-
-bool same(const StillOrder& a, const StillOrder& b) {
-  return a.viewpoint == b.viewpoint && a.width == b.width && a.height == b.height && a.spp == b.spp;
-}
 }  // namespace
 
 StillRoom::StillRoom(const Show& show)
@@ -36,7 +32,7 @@ StillRoom::StillRoom(const Show& show)
 
 std::string StillRoom::make(const StillOrder& order) {
   std::lock_guard lock(mutex_);
-  auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return same(kept.order, order); });
+  auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.order == order; });
   if (found != kept_.end()) {
     kept_.splice(kept_.begin(), kept_, found);
     return kept_.front().jpeg;

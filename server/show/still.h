@@ -13,6 +13,7 @@ namespace wellspring {
 
 struct StillOrder {
   int viewpoint = 0, width = 640, height = 360, spp = 16;
+  bool operator==(const StillOrder&) const = default;
 };
 
 class StillRoom {

@@ -4,13 +4,11 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "frame/jpeg.h"
 #include "show/news.h"
 #include "show/orders.h"
 #include "show/picture.h"
 #include "show/show.h"
 #include "wire/json.h"
-#include "wire/packet.h"
 
 namespace wellspring {
 
