@@ -15,7 +15,8 @@ struct Request {
   Ray ray;
   uint32_t pixel = 0;               // y * width + x of the view that asked
   uint32_t resample = no_cache_id;  // cached point this ray passes exactly through, if any
-  uint64_t seed = 0;  // sample_seed(...): the whole sample is a function of ray and seed
+  uint64_t seed = 0;   // names a sequence of samples that share a pixel, well spread among them
+  uint32_t index = 0;  // in that sequence: the whole sample is a function of ray, seed and index
 };
 
 enum SampleFlags : uint8_t {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
-#include "base/rng.h"
+#include "light/sampler.h"
 #include "light/technique_list.h"
 
 namespace wellspring {
@@ -62,46 +62,93 @@ void trace(const Technique& technique, const World& world, const Lights& lights,
 Request pixel_request(const View& view, uint64_t seed, int x, int y, int index) {
   Request request;
   request.pixel = uint32_t(y) * uint32_t(view.width) + uint32_t(x);
-  request.seed = sample_seed(seed, uint32_t(x), uint32_t(y), uint32_t(index));
-  Rng jitter(mix64(request.seed ^ 0x6a09e667f3bcc909ull));  // a stream apart from the sample's own
-  float u = jitter.uniform(), v = jitter.uniform();
-  request.ray = view_ray(view, float(x) + u, float(y) + v);
+  request.seed = sample_seed(seed, uint32_t(x), uint32_t(y), 0);
+  request.index = uint32_t(index);
+  // A sequence apart from the sample's own.
+  Sampler jitter(mix64(request.seed ^ 0x6a09e667f3bcc909ull), request.index);
+  vec2 u = jitter.next2();
+  request.ray = view_ray(view, float(x) + u.x, float(y) + u.y);
   return request;
 }
 
-Frame render_still(const Technique& technique, const World& world, const Lights& lights,
-                   const View& view, const StillSettings& settings) {
-  if (view.width < 1 || view.height < 1 || settings.spp < 1)
-    throw std::invalid_argument("render_still: a picture has pixels, and pixels have samples");
+uint64_t pass_seed(uint64_t seed, int index) {
+  return mix64(mix64(seed ^ 0x70617373ull) + uint64_t(index));
+}
+
+namespace {
+
+// Sums of a picture's samples, and what its first ones hit.
+struct Sums {
+  std::vector<dvec3> color;
   Frame frame;
-  frame.width = view.width;
-  frame.height = view.height;
-  size_t pixels = size_t(view.width) * size_t(view.height);
-  frame.color.resize(pixels);
-  frame.depth.resize(pixels);
-  frame.object.resize(pixels);
+};
+
+void add_sample(const View& view, const Request& request, const Sample& sample, Sums& sums) {
+  sums.color[request.pixel] += dvec3(sample.radiance());
+  if (request.index > 0) return;
+  bool hit = sample.flags & sample_hit;
+  sums.frame.object[request.pixel] = hit ? sample.object : 0;
+  sums.frame.depth[request.pixel] = hit ? sample.distance * dot(request.ray.direction, view.forward)
+                                        : std::numeric_limits<float>::infinity();
+}
+
+// Calls `shade(x, y)` for every pixel, tile by tile, all cores.
+template <class Shade>
+void for_each_pixel(const View& view, const Shade& shade) {
   constexpr int tile = 16;
   int across = (view.width + tile - 1) / tile, down = (view.height + tile - 1) / tile;
   parallel_for(across * down, [&](int t) {
     int left = t % across * tile, top = t / across * tile;
     for (int y = top; y < std::min(top + tile, view.height); y++)
-      for (int x = left; x < std::min(left + tile, view.width); x++) {
-        size_t pixel = size_t(y) * size_t(view.width) + size_t(x);
-        dvec3 sum(0);
-        for (int i = 0; i < settings.spp; i++) {
-          Request request = pixel_request(view, settings.seed, x, y, i);
-          Sample sample = technique.trace(world, lights, settings.transport, request);
-          sum += dvec3(sample.radiance());
-          if (i > 0) continue;
-          bool hit = sample.flags & sample_hit;
-          frame.object[pixel] = hit ? sample.object : 0;
-          frame.depth[pixel] = hit ? sample.distance * dot(request.ray.direction, view.forward)
-                                   : std::numeric_limits<float>::infinity();
-        }
-        frame.color[pixel] = vec3(sum / double(settings.spp));
-      }
+      for (int x = left; x < std::min(left + tile, view.width); x++) shade(x, y);
   });
-  return frame;
+}
+
+void render_passes(const Technique& technique, const World& world, Lights lights, const View& view,
+                   const StillSettings& settings, Sums& sums) {
+  std::vector<Sample> samples(sums.color.size());
+  std::vector<Request> requests(sums.color.size());
+  for (int i = 0; i < settings.spp; i++) {
+    if (technique.begin_pass)
+      technique.begin_pass(world, settings.transport, view, pass_seed(settings.seed, i), lights);
+    for_each_pixel(view, [&](int x, int y) {
+      Request request = pixel_request(view, settings.seed, x, y, i);
+      requests[request.pixel] = request;
+      samples[request.pixel] = technique.trace(world, lights, settings.transport, request);
+    });
+    if (technique.finish_pass) technique.finish_pass(world, lights, view, samples);
+    for (size_t pixel = 0; pixel < samples.size(); pixel++)
+      add_sample(view, requests[pixel], samples[pixel], sums);
+  }
+}
+
+}  // namespace
+
+Frame render_still(const Technique& technique, const World& world, const Lights& lights,
+                   const View& view, const StillSettings& settings) {
+  if (view.width < 1 || view.height < 1 || settings.spp < 1)
+    throw std::invalid_argument("render_still: a picture has pixels, and pixels have samples");
+  size_t pixels = size_t(view.width) * size_t(view.height);
+  Sums sums;
+  sums.color.resize(pixels, dvec3(0));
+  sums.frame.width = view.width;
+  sums.frame.height = view.height;
+  sums.frame.color.resize(pixels);
+  sums.frame.depth.resize(pixels);
+  sums.frame.object.resize(pixels);
+  if (technique.begin_pass || technique.finish_pass) {
+    render_passes(technique, world, lights, view, settings, sums);
+  } else {
+    for_each_pixel(view, [&](int x, int y) {
+      for (int i = 0; i < settings.spp; i++) {
+        Request request = pixel_request(view, settings.seed, x, y, i);
+        add_sample(view, request, technique.trace(world, lights, settings.transport, request), sums);
+      }
+    });
+  }
+  for (size_t pixel = 0; pixel < pixels; pixel++)
+    sums.frame.color[pixel] = vec3(sums.color[pixel] / double(settings.spp));
+  return std::move(sums.frame);
 }
 
 }  // namespace wellspring

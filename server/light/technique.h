@@ -28,6 +28,13 @@ struct Technique {
   // What must be known before the first sample, for eyes near `places` (scene coordinates); may
   // take seconds. nullptr: nothing.
   void (*prepare)(const World& world, std::span<const vec3> places, Lights& lights) = nullptr;
+  // What is drawn anew for each pass over a picture (point lights, photons), from the pass's seed
+  // alone; the samples traced until the next call use it. nullptr: nothing.
+  void (*begin_pass)(const World& world, const TransportSettings& settings, const View& view,
+                     uint64_t seed, Lights& lights) = nullptr;
+  // Filters a whole pass, samples[y * width + x], in place. nullptr: nothing.
+  void (*finish_pass)(const World& world, const Lights& lights, const View& view,
+                      std::span<Sample> samples) = nullptr;
 };
 
 std::span<const Technique> techniques();
@@ -39,7 +46,8 @@ void trace(const Technique& technique, const World& world, const Lights& lights,
            std::span<Sample> samples);
 
 // A whole picture, `spp` samples a pixel, box filter over the pixel, all cores; the same bits
-// whatever the thread count.
+// whatever the thread count. A technique of passes draws `spp` of them, one sample a pixel each;
+// `lights` is changed by nothing else.
 struct StillSettings {
   int spp = 16;
   uint64_t seed = 1;
@@ -47,6 +55,7 @@ struct StillSettings {
 };
 // Sample `index` of pixel (x, y) as render_still asks for it: tracing it alone gives the same bits.
 Request pixel_request(const View& view, uint64_t seed, int x, int y, int index);
+uint64_t pass_seed(uint64_t seed, int index);  // of the pass that traces sample `index`
 Frame render_still(const Technique& technique, const World& world, const Lights& lights,
                    const View& view, const StillSettings& settings);
 

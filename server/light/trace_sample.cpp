@@ -94,7 +94,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
 
 Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request) {
   const World& world = transport.world;
-  Sampler sampler(request.seed);
+  Sampler sampler(request.seed, request.index);
   Sample sample;
   if (rules.max_depth < 1) return sample;
   Walk walk;

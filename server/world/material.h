@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a surface is made of: glTF 2.0 metallic-roughness (appendix B) with KHR_materials_transmission,
-// ior, volume, emissive_strength and unlit. Factors are linear. Ambient occlusion maps are not used:
-// a path tracer finds occlusion itself.
+// ior, volume, emissive_strength, specular, clearcoat, sheen, anisotropy, dispersion and unlit.
+// Factors are linear. Ambient occlusion maps are not used: a path tracer finds occlusion itself.
 #pragma once
 #include <limits>
 #include <string>
@@ -33,6 +33,21 @@ struct Material {
   TextureRef thickness_texture;     // G
   vec3 attenuation_color{1};
   float attenuation_distance = std::numeric_limits<float>::infinity();
+  float dispersion = 0;  // 20 over the Abbe number
+  float specular = 1;    // strength of the dielectric reflection; 0: a perfectly matt surface
+  TextureRef specular_texture;  // A
+  vec3 specular_color{1};       // tints it at normal incidence
+  TextureRef specular_color_texture;
+  float clearcoat = 0, clearcoat_roughness = 0;
+  TextureRef clearcoat_texture;            // R
+  TextureRef clearcoat_roughness_texture;  // G
+  TextureRef clearcoat_normal_texture;
+  vec3 sheen_color{0};
+  float sheen_roughness = 0;
+  TextureRef sheen_color_texture;
+  TextureRef sheen_roughness_texture;  // A
+  float anisotropy = 0, anisotropy_rotation = 0;  // 0..1; radians from the tangent
+  TextureRef anisotropy_texture;  // RG: direction, B: strength
 };
 
 }  // namespace wellspring
