@@ -2,45 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "light/walk.h"
+#include "light/first_surface.h"
 
 namespace wellspring {
 namespace {
-
-// What stands between the eye and the first surface that is no clear pane, and one of the panes'
-// mirror images, chosen by how bright it may be.
-struct Foreground {
-  vec3 tint{1};
-  Walk reflection;        // its throughput is already divided by the chance of the choice
-  float reflections = 0;  // sum of what the panes reflect
-  bool any() const { return reflections > 0; }
-};
-
-void add_reflection(Foreground& foreground, const Surface& surface, const BsdfSample& mirrored,
-                    const Walk& walk, Sampler& sampler) {
-  vec3 weight = foreground.tint * mirrored.weight;
-  float strength = max_component(weight);
-  if (!(strength > 0)) return;
-  foreground.reflections += strength;
-  if (sampler.next() * foreground.reflections >= strength) return;
-  foreground.reflection = walk;
-  foreground.reflection.throughput = vec3(1);
-  BsdfSample unit = mirrored;
-  unit.weight = weight / strength;
-  advance(foreground.reflection, surface, unit);
-}
-
-void describe(const World& world, const Ray& ray, const Surface& surface, float distance,
-              Sample& sample) {
-  sample.position = surface.position;
-  sample.normal = surface.normal;
-  sample.distance = distance;
-  sample.object = surface.object;
-  sample.instance = surface.instance;
-  sample.triangle = surface.triangle;
-  sample.barycentric = surface.barycentric;
-  sample.flags = uint8_t(sample_hit | (world.is_moving(surface.instance) ? sample_moving : 0));
-}
 
 // Mirrors, glass and polished metal: what is seen there moves with the view.
 bool looks_specular(const Bsdf& bsdf) { return bsdf.alpha < 0.1f && bsdf.diffuse_share < 0.5f; }
@@ -93,56 +58,13 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
 }  // namespace
 
 Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request) {
-  const World& world = transport.world;
   Sampler sampler(request.seed, request.index);
   Sample sample;
   if (rules.max_depth < 1) return sample;
-  Walk walk;
-  walk.ray = request.ray;
-  Foreground foreground;
-  float distance = 0;
-  while (true) {
-    Hit hit = world.intersect(walk.ray);
-    if (!hit.valid()) {
-      sample.position = request.ray.direction;
-      sample.distance = std::numeric_limits<float>::infinity();
-      sample.rest =
-          foreground.tint * eval_environment(transport.tables.environment, request.ray.direction);
-      break;
-    }
-    Surface surface = eval_surface(world, walk.ray, hit);
-    const Material& material = world.material_of(hit.instance);
-    distance += hit.t;
-    walk.medium = medium_before(walk, surface, material);
-    vec3 absorption = eval_absorption(transport, walk.medium, hit.t);
-    foreground.tint *= absorption;
-    Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
-                          *transport.tables.materials[size_t(surface.material)].albedo);
-    bool clear =
-        is_pane(surface, material) && !has_diffuse(bsdf) && bsdf.metallic == 0 && !material.unlit;
-    if (clear && walk.panes < most_panes) {
-      sample.rest += foreground.tint * surface.emission;
-      if (rules.max_depth > 1)
-        add_reflection(foreground, surface, eval_mirror(bsdf), walk, sampler);
-      BsdfSample straight;
-      straight.direction = walk.ray.direction;
-      straight.weight = vec3(1);
-      straight.bounce = Bounce::pass;
-      foreground.tint *= pane_transmittance(surface, material, walk.ray.direction);
-      advance(walk, surface, straight);
-      continue;
-    }
-    describe(world, walk.ray, surface, distance, sample);
-    sample.rest += foreground.tint * surface_emission(surface, material);
-    if (!material.unlit && rules.max_depth > 1)
-      shade_first(transport, rules, walk, surface, bsdf, foreground.tint, sampler, sample);
-    break;
-  }
-  if (foreground.any()) {
-    Walk reflection = foreground.reflection;
-    reflection.throughput *= foreground.reflections;
-    sample.rest += follow(transport, rules, reflection, sampler);
-  }
+  FirstSurface first = find_first_surface(transport, rules.max_depth, request, sampler, sample);
+  if (first.scatters)
+    shade_first(transport, rules, first.walk, first.surface, first.bsdf, first.tint, sampler, sample);
+  if (first.mirrored) sample.rest += follow(transport, rules, first.reflection, sampler);
   return sample;
 }
 

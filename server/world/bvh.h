@@ -76,6 +76,9 @@ class World {
   bool occluded(const Ray& ray) const;
   // `count` coherent rays at once; results are those of intersect().
   void intersect_many(const Ray* rays, Hit* hits, int count) const;
+  // Up to `packet_rays` rays at once; bit i: occluded(rays[i]). Pays where they share an origin.
+  static constexpr int packet_rays = 16;
+  uint32_t occluded_packet(const Ray* rays, int count) const;
 
  private:
   struct Impl;

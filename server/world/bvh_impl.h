@@ -66,6 +66,9 @@ struct World::Impl {
     return hit;
   }
   void intersect8(const Ray* rays, Hit* hits, int count) const;
+  // Bit i: rays[i] is blocked; Packet is an RTCRay of 8 or 16 lanes.
+  template <class Packet, int lanes>
+  uint32_t occluded_lanes(const Ray* rays, int count) const;
 };
 
 }  // namespace wellspring

@@ -36,6 +36,21 @@ inline void occluded1(RTCScene scene, Context& context, RTCRay& ray) {
   arguments.context = &context;
   rtcOccluded1(scene, &ray, &arguments);
 }
+inline RTCOccludedArguments occluded_arguments(Context& context) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &context;
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  return arguments;
+}
+inline void occluded(RTCScene scene, Context& context, const int* valid, RTCRay8& rays) {
+  RTCOccludedArguments arguments = occluded_arguments(context);
+  rtcOccluded8(valid, scene, &rays, &arguments);
+}
+inline void occluded(RTCScene scene, Context& context, const int* valid, RTCRay16& rays) {
+  RTCOccludedArguments arguments = occluded_arguments(context);
+  rtcOccluded16(valid, scene, &rays, &arguments);
+}
 
 #else
 
@@ -53,6 +68,14 @@ inline void intersect8(RTCScene scene, Context& context, const int* valid, RTCRa
 inline void occluded1(RTCScene scene, Context& context, RTCRay& ray) {
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcOccluded1(scene, &context, &ray);
+}
+inline void occluded(RTCScene scene, Context& context, const int* valid, RTCRay8& rays) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded8(valid, scene, &context, &rays);
+}
+inline void occluded(RTCScene scene, Context& context, const int* valid, RTCRay16& rays) {
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(valid, scene, &context, &rays);
 }
 
 #endif
