@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// Judging a technique against a known answer: its error bars come from independent replicates
+// (pictures of different seeds; samples of one seed are spread on purpose and say nothing of their
+// own error), the verdict from Student's t-test at a stated significance that holds for a whole
+// family of comparisons (Sidak 1967), and a test too noisy to notice a bias of a stated size fails
+// as well: passing means something.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "light/technique.h"
+
+namespace wellspring::test {
+
+// A right technique is refuted by one family of comparisons in a thousand.
+inline constexpr double family_significance = 1e-3;
+// A technique that is wrong by this share is refuted with this probability.
+inline constexpr double bias_to_find = 0.01, power_to_find_it = 0.99;
+// Float arithmetic: bars are never taken as shorter than this share of the value.
+inline constexpr double rounding = 1e-5;
+
+struct Estimate {
+  double mean = 0, error = 0;  // standard error of the mean
+  int replicates = 0;
+};
+
+inline Estimate make_estimate(const std::vector<double>& replicates) {
+  Estimate e;
+  e.replicates = int(replicates.size());
+  for (double x : replicates) e.mean += x / e.replicates;
+  double squares = 0;
+  for (double x : replicates) squares += (x - e.mean) * (x - e.mean);
+  e.error = std::sqrt(squares / (double(e.replicates) * (e.replicates - 1)));
+  return e;
+}
+
+struct Effort {
+  int replicates = 64;
+  int spp = 128;  // samples a pixel in each
+  uint64_t seed = 1;
+};
+
+// Mean luminance of the picture in the view.
+inline Estimate estimate_radiance(const Technique& technique, const World& world, Lights lights,
+                                  const View& view, const TransportSettings& transport,
+                                  const Effort& effort) {
+  if (technique.prepare) technique.prepare(world, std::span(&view.position, 1), lights);
+  std::vector<double> replicates(size_t(effort.replicates));
+  parallel_for(effort.replicates, [&](int i) {
+    StillSettings settings;
+    settings.spp = effort.spp;
+    settings.seed = mix64(effort.seed * 1000003 + uint64_t(i));
+    settings.transport = transport;
+    Frame frame = render_still(technique, world, lights, view, settings);
+    double sum = 0;
+    for (vec3 c : frame.color) sum += double(luminance(c));
+    replicates[size_t(i)] = sum / double(frame.color.size());
+  });
+  return make_estimate(replicates);
+}
+
+// A picture so narrow that all of it is one ray; techniques that work in passes over a picture
+// get a few pixels to spread over.
+inline View view_along(Ray ray, const Technique& technique) {
+  View view;
+  view.position = ray.origin;
+  view.forward = ray.direction;
+  vec3 other = std::abs(ray.direction.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
+  view.right = normalize(cross(view.forward, other));
+  view.up = cross(view.right, view.forward);
+  view.tan_half_fov = 1e-6f;
+  view.width = view.height = technique.begin_pass || technique.finish_pass ? 6 : 1;
+  return view;
+}
+
+struct Comparison {
+  std::string what;
+  Estimate estimate;
+  double expected = 0, error = 0;  // standard error of the difference
+  double degrees = 0;              // of freedom
+};
+
+struct Verdict {
+  double t = 0;
+  double limit = 0;       // of |t|, at the family's significance
+  double detectable = 0;  // share of the expected value that would be found
+  bool refuted = false, weak = false;
+};
+
+// Comparisons that are judged together.
+struct Family {
+  std::vector<Comparison> comparisons;
+
+  void add(const std::string& what, const Estimate& e, double expected) {
+    comparisons.push_back({what, e, expected, e.error, double(e.replicates - 1)});
+  }
+  // Two estimates of the same thing (Welch's test).
+  void add_same(const std::string& what, const Estimate& a, const Estimate& b) {
+    double va = a.error * a.error, vb = b.error * b.error, sum = va + vb;
+    double degrees = sum > 0 ? sum * sum / (va * va / (a.replicates - 1) + vb * vb / (b.replicates - 1))
+                             : double(a.replicates + b.replicates - 2);
+    comparisons.push_back({what, a, b.mean, std::sqrt(sum), degrees});
+  }
+};
+
+inline Verdict judge(const Comparison& c, size_t family_size) {
+  Verdict v;
+  if (c.expected == 0 && c.error == 0) {  // darkness is exact
+    v.refuted = c.estimate.mean != 0;
+    return v;
+  }
+  double alone = 1 - std::pow(1 - family_significance, 1.0 / double(family_size));
+  boost::math::students_t_distribution<double> student(c.degrees);
+  double error = std::hypot(c.error, rounding * std::abs(c.expected));
+  v.limit = quantile(complement(student, alone / 2));
+  v.t = (c.estimate.mean - c.expected) / error;
+  v.refuted = !(std::abs(v.t) <= v.limit);  // NaN is refuted
+  v.detectable = (v.limit + quantile(student, power_to_find_it)) * error / std::abs(c.expected);
+  v.weak = !(v.detectable <= bias_to_find);
+  return v;
+}
+
+// `find`: share of the expected value that must be found; larger where only a rough check is meant.
+inline void expect_family(const Family& family, double find = bias_to_find) {
+  ASSERT_FALSE(family.comparisons.empty());
+  for (const Comparison& c : family.comparisons) {
+    Verdict v = judge(c, family.comparisons.size());
+    EXPECT_FALSE(v.refuted) << c.what << ": " << c.estimate.mean << " +- " << c.error
+                            << ", expected " << c.expected << ", t = " << v.t << " beyond "
+                            << v.limit;
+    EXPECT_LE(v.detectable, find) << c.what << ": too noisy to find that bias";
+  }
+}
+
+}  // namespace wellspring::test
