@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Irradiance by formula: from polygons (Lambert 1760; Baum, Rushmeier and Winget 1989, section 3), from
-// convex bodies, and between parallel plates (Howell's catalogue of configuration factors, C-11).
+// Irradiance by formula: from polygons (Lambert 1760; Baum, Rushmeier and Winget 1989, section 3),
+// from convex bodies, and between parallel plates (Howell's catalogue of configuration factors, C-11).
 #pragma once
 #include <cmath>
 #include <vector>

@@ -123,9 +123,8 @@ void add_points(std::vector<AnalyticCase>& cases) {
   spot.outer_cone = 0.6f;
   for (double angle : {0.0, 0.29, 0.45, 0.55, 0.61}) {
     double x = 2 * std::tan(angle), d2 = 4 + x * x, c = std::cos(angle);
-    double t = glm::clamp((c - std::cos(double(spot.outer_cone))) /
-                              (std::cos(double(spot.inner_cone)) - std::cos(double(spot.outer_cone))),
-                          0.0, 1.0);
+    double inner = std::cos(double(spot.inner_cone)), outer = std::cos(double(spot.outer_cone));
+    double t = glm::clamp((c - outer) / (inner - outer), 0.0, 1.0);
     cases.push_back({"spot, " + std::to_string(angle) + " off its axis",
                      make_plane_with_punctual(spot), at_floor({float(x), 0, 0}),
                      albedo * over_pi * 8 * t * t * c / d2, punctual_light});
@@ -148,7 +147,8 @@ void add_skies(std::vector<AnalyticCase>& cases) {
   add_floor(scene, float(albedo));
   scene.environment.radiance = {1, 2, 4};
   double sky = double(luminance({1, 2, 4}));
-  cases.push_back({"uniform sky over a plane", scene, at_floor({0, 0, 0}), albedo * sky, sky_light});
+  cases.push_back(
+      {"uniform sky over a plane", scene, at_floor({0, 0, 0}), albedo * sky, sky_light});
   cases.push_back({"uniform sky", scene, ray_towards({0, 1, 0}, {1, 2, 0}), sky, seen_lights});
   // Bright in one quarter; the expected value by quadrature of the same picture.
   Image image;
@@ -180,7 +180,9 @@ const Claim* find_claim(const std::string& technique) {
 }
 
 void mark_variants(std::vector<AnalyticCase>& cases) {
-  auto kind = [](const std::string& name) { return name.substr(0, name.find_first_of(",0123456789")); };
+  auto kind = [](const std::string& name) {
+    return name.substr(0, name.find_first_of(",0123456789"));
+  };
   for (size_t i = 1; i < cases.size(); i++)
     cases[i].variant = kind(cases[i].name) == kind(cases[i - 1].name);
 }

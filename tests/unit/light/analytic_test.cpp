@@ -29,8 +29,8 @@ void judge_cases(const std::vector<AnalyticCase>& cases) {
       Effort effort;
       effort.spp = c.spp;
       if (view.width == 6) effort.spp = std::max(1, c.spp / 36);
-      family.add(std::string(technique.name) + ", " + c.name,
-                 estimate_radiance(technique, world, lights, view, c.transport, effort), c.expected);
+      Estimate e = estimate_radiance(technique, world, lights, view, c.transport, effort);
+      family.add(std::string(technique.name) + ", " + c.name, e, c.expected);
     }
     EXPECT_EQ(lights.bad_samples->load(), 0u) << c.name;
   }

@@ -103,8 +103,9 @@ struct Family {
   // Two estimates of the same thing (Welch's test).
   void add_same(const std::string& what, const Estimate& a, const Estimate& b) {
     double va = a.error * a.error, vb = b.error * b.error, sum = va + vb;
-    double degrees = sum > 0 ? sum * sum / (va * va / (a.replicates - 1) + vb * vb / (b.replicates - 1))
-                             : double(a.replicates + b.replicates - 2);
+    double degrees = double(a.replicates + b.replicates - 2);
+    if (sum > 0)
+      degrees = sum * sum / (va * va / (a.replicates - 1) + vb * vb / (b.replicates - 1));
     comparisons.push_back({what, a, b.mean, std::sqrt(sum), degrees});
   }
 };
