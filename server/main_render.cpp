@@ -18,6 +18,7 @@
 #include "base/log.h"
 #include "frame/picture_file.h"
 #include "light/technique.h"
+#include "light/transport_plan.h"
 #include "show/exhibit_load.h"
 #include "show/exhibit_scene.h"
 #include "world/scene_load.h"
@@ -39,7 +40,7 @@ struct Options {
   double fov = 0, time = 0, exposure = 1;
   int spp = 16, max_depth = 8, threads = 0;
   uint64_t seed = 1;
-  bool list_techniques = false;
+  bool list_techniques = false, explain = false;
 };
 
 // Exactly `count` finite numbers with commas between.
@@ -104,7 +105,7 @@ void check_options(const Options& o) {
   if (!o.camera.empty() && !o.eye.empty())
     throw UsageError("--camera and --eye exclude each other");
   if (o.eye.empty() != o.target.empty()) throw UsageError("--eye and --target belong together");
-  if (o.out.empty() && o.replay.empty()) throw UsageError("--out FILE is missing");
+  if (o.out.empty() && o.replay.empty() && !o.explain) throw UsageError("--out FILE is missing");
   if (!o.out.empty() && !is_picture_name(o.out))
     throw UsageError("--out " + o.out + ": name must end in .png, .jpg, .pfm or .exr");
 }
@@ -227,6 +228,15 @@ View choose_view(const Options& o, const Scene& scene, ivec2 size) {
                    o.fov > 0 ? fov : chosen->fov, size.x, size.y);
 }
 
+// What is in the scene, and which parts of light transport it needs.
+void print_plan(const Options& o, const Scene& scene) {
+  TransportPlan plan = make_transport_plan(scene);
+  size_t in_use = 0;
+  for (const MaterialUse& use : plan.materials) in_use += use.visible;
+  std::printf("%s: %zu triangles, %zu of %zu materials in use\n%s", o.scene.c_str(),
+              triangle_count(scene), in_use, plan.materials.size(), explain(plan).c_str());
+}
+
 void print_replay(const Options& o, const World& world, const Lights& lights, const View& view,
                   const StillSettings& settings) {
   std::vector<double> at = parse_numbers(o.replay, 3, "--replay");
@@ -253,6 +263,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--technique", o.technique, "how light is sampled (--list-techniques)")
       ->capture_default_str();
   app.add_flag("--list-techniques", o.list_techniques, "print the names of the techniques and end");
+  app.add_flag("--explain", o.explain,
+               "print which parts of light transport the scene needs, which not and why, and end");
   app.add_option("--camera", o.camera,
                  "a camera of the file; without --camera and --eye its first");
   app.add_option("--eye", o.eye, "x,y,z of the eye, metres");
@@ -280,6 +292,7 @@ void render(const Options& o) {
   Scene scene = load_any_scene(o.scene, o.time);
   for (const std::string& warning : scene.warnings) std::cerr << o.scene << ": " << warning << "\n";
   apply_environment(o.environment, scene);
+  if (o.explain) return print_plan(o, scene);
   View view = choose_view(o, scene, size);
   World world(scene);
   Lights lights = make_lights(world);

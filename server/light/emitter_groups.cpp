@@ -54,7 +54,8 @@ float weigh(const EmitterGroups& groups, vec3 place, vec3 normal, float* weight)
 
 }  // namespace
 
-EmitterGroups make_emitter_groups(std::span<const EmitterTriangle> emitters, std::span<const float> power) {
+EmitterGroups make_emitter_groups(std::span<const EmitterTriangle> emitters, std::span<const float> power,
+                                  int most) {
   std::vector<uint32_t> able;
   for (uint32_t i = 0; i < emitters.size(); i++)
     if (std::isfinite(power[i]) && power[i] > 0) able.push_back(i);
@@ -63,7 +64,7 @@ EmitterGroups make_emitter_groups(std::span<const EmitterTriangle> emitters, std
   groups.share.assign(emitters.size(), 0);
   if (able.empty()) return groups;
   std::vector<Cluster> clusters{make_cluster(emitters, power, able)};
-  while (clusters.size() < size_t(most_emitter_groups)) {
+  while (clusters.size() < size_t(std::min(most, most_emitter_groups))) {
     auto widest = std::max_element(clusters.begin(), clusters.end(),
                                    [](const Cluster& a, const Cluster& b) { return worth(a) < worth(b); });
     if (!(worth(*widest) > 0)) break;

@@ -27,8 +27,9 @@ struct EmitterGroups {
   bool empty() const { return power.empty(); }
 };
 
-// `power[i]` of emitters[i]; those without power are in no group that is ever picked.
-EmitterGroups make_emitter_groups(std::span<const EmitterTriangle> emitters, std::span<const float> power);
+// At most `most` groups (one: by power alone). `power[i]` of emitters[i]; those without power are in no group that is ever picked.
+EmitterGroups make_emitter_groups(std::span<const EmitterTriangle> emitters, std::span<const float> power,
+                                  int most = most_emitter_groups);
 
 struct EmitterPick {
   uint32_t index = 0;

@@ -28,7 +28,7 @@ float edge(const EnvironmentLight& light, int row) {
 
 }  // namespace
 
-EnvironmentLight make_environment_light(const Scene& scene) {
+EnvironmentLight make_environment_light(const Scene& scene, bool importance) {
   EnvironmentLight light;
   light.radiance = scene.environment.radiance;
   int index = scene.environment.image;
@@ -37,6 +37,7 @@ EnvironmentLight make_environment_light(const Scene& scene) {
     return light;
   }
   light.image = &scene.images[size_t(index)];
+  if (!importance) return light;
   light.columns = std::min(light.image->width, most_columns);
   light.rows = std::min(light.image->height, most_rows);
   // Several look-ups a cell, so that a picture finer than the grid and the filter's reach both

@@ -17,7 +17,8 @@ struct EnvironmentLight {
   float mean_luminance = 0;  // over the sphere
 };
 
-EnvironmentLight make_environment_light(const Scene& scene);
+// `importance`: with a choice of direction; else it is found by scattering alone.
+EnvironmentLight make_environment_light(const Scene& scene, bool importance = true);
 
 // `direction` unit.
 vec3 eval_environment(const EnvironmentLight& light, vec3 direction);

@@ -53,8 +53,10 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
     const Surface& surface = first.surface;
     const Material& material = world.material_of(hit.instance);
     distance += hit.t;
-    walk.medium = medium_before(walk, surface, material);
-    first.tint *= eval_absorption(transport, walk.medium, hit.t);
+    if (transport.tables.any_solid) {
+      walk.medium = medium_before(walk, surface, material);
+      first.tint *= eval_absorption(transport, walk.medium, hit.t);
+    }
     first.bsdf = make_bsdf(surface, material, walk.ray.direction,
                            *transport.tables.materials[size_t(surface.material)].albedo);
     const Bsdf& bsdf = first.bsdf;

@@ -16,6 +16,7 @@ Sample trace_gather(const World& world, const Lights& lights, const TransportSet
 }
 
 void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights) {
+  if (!lights.tables->plan.uses(TransportPart::kept_light)) return;
   lights.grid = make_radiance_grid({world, *lights.tables}, places);
 }
 

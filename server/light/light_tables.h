@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What make_lights() gathers from a world: every emitting triangle in world space with its chance
-// of being picked, punctual lights, the environment, and what the shading loop wants to know of
-// each material.
+// What make_lights() gathers from a world: the plan of what matters there, and only what that plan
+// uses: every emitting triangle in world space with its chance of being picked, punctual lights, the
+// environment, and what the shading loop wants to know of each material.
 #pragma once
 #include <vector>
 
 #include "light/albedo_table.h"
 #include "light/emitter_groups.h"
 #include "light/environment_light.h"
+#include "light/transport_plan.h"
 #include "world/bvh.h"
 
 namespace wellspring {
@@ -30,11 +31,12 @@ struct SpotCone {
 };
 
 struct MaterialTraits {
-  const DielectricAlbedo* albedo = nullptr;
+  const DielectricAlbedo* albedo = nullptr;  // null: nothing in use is made of it
   bool maybe_pane = false;  // some place of it may be a thin smooth pane
 };
 
 struct LightTables {
+  TransportPlan plan;
   std::vector<EmitterTriangle> emitters;  // whole instances, in order of their triangles
   EmitterGroups emitter_choice;            // by power and place
   std::vector<uint32_t> first_emitter;    // of each instance, or no_emitter
@@ -44,8 +46,12 @@ struct LightTables {
   float emitter_share = 0;  // of samples spent on emitters; the rest of area light is environment
   float area_share = 1;     // where one light is sampled: emitters and environment against punctual
   std::vector<MaterialTraits> materials;
-  bool any_pane = false;
+  bool any_pane = false;   // else shadow rays only ask whether anything is in between
+  bool any_solid = false;  // else walks do not ask what they run in
 };
+
+// Memory of what was built for sampling lights: what a scene's lights cost beside the scene itself.
+size_t light_table_bytes(const LightTables& tables);
 
 // Radiance a hit surface shows towards the ray: its emission, or its base colour where it is unlit.
 vec3 surface_emission(const struct Surface& surface, const Material& material);

@@ -10,10 +10,6 @@
 namespace wellspring {
 namespace {
 
-bool is_emitter(const Material& m) {
-  return m.unlit ? max_component(vec3(m.base_color)) > 0 : max_component(m.emission) > 0;
-}
-
 // Mean emission over a triangle by a fixed pattern of look-ups, more where its texture is finer.
 vec3 mean_emission(const World& world, const EmitterTriangle& e, int look_ups) {
   vec3 sum{0};
@@ -58,9 +54,8 @@ void gather_instance(const World& world, uint32_t instance, LightTables& tables,
   const Mesh& mesh = world.mesh_of(instance);
   const Material& material = world.material_of(instance);
   tables.first_emitter[instance] = uint32_t(tables.emitters.size());
-  bool uniform = material.alpha_mode == AlphaMode::opaque &&
-                 (material.unlit ? material.base_color_texture.texture < 0 && mesh.colors.empty()
-                                 : material.emission_texture.texture < 0);
+  bool uniform = !tables.plan.uses(TransportPart::emission_texture) ||
+                 !tables.plan.materials[size_t(mesh.material)].emission_varies;
   const TextureRef& picture =
       material.unlit ? material.base_color_texture : material.emission_texture;
   // Big pictures on big meshes: a bounded amount of work in all.
@@ -109,34 +104,64 @@ float share_of(double first, double second) {
   return float(std::clamp(first / (first + second), 0.25, 0.75));
 }
 
+template <class T>
+size_t bytes_of(const std::vector<T>& v) {
+  return v.size() * sizeof(T);
+}
+
 }  // namespace
+
+size_t light_table_bytes(const LightTables& t) {
+  size_t bytes = bytes_of(t.emitters) + bytes_of(t.environment.cells.cells) +
+                 bytes_of(t.punctual) + bytes_of(t.cones);
+  const EmitterGroups& g = t.emitter_choice;
+  bytes += bytes_of(g.centre) + bytes_of(g.radius2) + bytes_of(g.power) + bytes_of(g.members) +
+           bytes_of(g.first) + bytes_of(g.group_of) + bytes_of(g.share);
+  for (const AliasTable& table : g.choice) bytes += bytes_of(table.cells);
+  return bytes;
+}
 
 vec3 surface_emission(const Surface& surface, const Material& material) {
   return material.unlit ? surface.base_color : surface.emission;
 }
 
-Lights make_lights(const World& world) {
+TransportPlan make_plan(const World& world) {
+  std::vector<const Mesh*> moving;
+  for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
+    if (world.is_moving(i)) moving.push_back(&world.mesh_of(i));
+  return make_transport_plan(world.scene(), moving);
+}
+
+Lights make_lights(const World& world) { return make_lights(world, make_plan(world)); }
+
+Lights make_lights(const World& world, const TransportPlan& plan) {
+  using enum TransportPart;
   const Scene& scene = world.scene();
   auto tables = std::make_shared<LightTables>();
+  tables->plan = plan;
   tables->first_emitter.assign(size_t(world.instance_count()), no_emitter);
   std::vector<float> power;
-  for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
-    if (!world.is_moving(i) && is_emitter(world.material_of(i)))
-      gather_instance(world, i, *tables, power);
-  tables->emitter_choice = make_emitter_groups(tables->emitters, power);
+  if (plan.uses(area_lights))
+    for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
+      if (!world.is_moving(i) && plan.materials[size_t(world.mesh_of(i).material)].emits)
+        gather_instance(world, i, *tables, power);
+  tables->emitter_choice = make_emitter_groups(tables->emitters, power,
+                                               plan.uses(light_tree) ? most_emitter_groups : 1);
 
   Bounds bounds = scene_bounds(scene);
   float radius = 0.5f * length(bounds.high - bounds.low);
   if (!std::isfinite(radius)) radius = 1;
-  tables->environment = make_environment_light(scene);
-  const EnvironmentLight& environment = tables->environment;
-  double environment_power = environment.cells.cells.empty() ? 0
-                                                             : double(environment.mean_luminance) *
+  if (plan.uses(TransportPart::environment))
+    tables->environment = make_environment_light(scene, plan.uses(environment_importance));
+  const EnvironmentLight& sky = tables->environment;
+  double environment_power = sky.cells.cells.empty() ? 0
+                                                             : double(sky.mean_luminance) *
                                                                    pi * pi * 4 * radius * radius;
   tables->emitter_share = share_of(tables->emitter_choice.total, environment_power);
 
   double punctual_power = 0;
   for (const PunctualLight& light : scene.lights) {
+    if (!plan.uses(punctual_lights)) break;
     float p = power_of(light, radius);
     bool finite =
         is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
@@ -148,12 +173,14 @@ Lights make_lights(const World& world) {
   }
   tables->area_share = share_of(tables->emitter_choice.total + environment_power, punctual_power);
 
-  for (const Material& material : scene.materials) {
-    bool pane = material.transmission > 0 && !(material.thickness > 0);
-    tables->materials.push_back(
-        {&dielectric_albedo(material.ior == 0 ? 1e6f : material.ior), pane});
-    tables->any_pane = tables->any_pane || pane;
+  for (size_t i = 0; i < scene.materials.size(); i++) {
+    float ior = scene.materials[i].ior;
+    const DielectricAlbedo* albedo =
+        plan.materials[i].visible ? &dielectric_albedo(ior == 0 ? 1e6f : ior) : nullptr;
+    tables->materials.push_back({albedo, plan.materials[i].pane});
   }
+  tables->any_pane = plan.uses(panes);
+  tables->any_solid = plan.uses(refraction);
   return {tables, std::make_shared<std::atomic<uint64_t>>(0), nullptr};
 }
 

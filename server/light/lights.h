@@ -9,7 +9,8 @@
 
 namespace wellspring {
 
-struct RadianceGrid;  // light/radiance_grid.h
+struct RadianceGrid;   // light/radiance_grid.h
+struct TransportPlan;  // light/transport_plan.h
 struct LightTables;  // alias tables, triangle lists, environment distribution: light/light_tables.h
 
 struct Lights {
@@ -21,5 +22,9 @@ struct Lights {
 };
 
 Lights make_lights(const World& world);
+// By another plan than the scene's own: tests force parts on to prove that leaving them out changes
+// nothing. Leaving out what matters is what one would expect it to be.
+Lights make_lights(const World& world, const TransportPlan& plan);
+TransportPlan make_plan(const World& world);  // of its scene and what moves in it
 
 }  // namespace wellspring

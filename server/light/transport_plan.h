@@ -1,30 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a scene needs: which parts of light transport can matter, from what is in the Scene and what
 // moves in it. A pure function; every decision says why. make_lights() builds, and techniques
-// compute, only what the plan uses.
+// compute, only what the plan uses: `tables->plan` of Lights.
+//
+// A part is left out only where it provably cannot change a picture: a material counts by what its
+// textures, vertex colours and alpha leave of it (light/material_use.h), a light by its power, and
+// what no instance shows does not count. Milliseconds, more where big textures must be looked at.
 #pragma once
 #include <span>
 #include <string>
 #include <vector>
 
+#include "light/material_use.h"
 #include "world/scene.h"
 
 namespace wellspring {
 
 enum class TransportPart : uint8_t {
   area_lights,       // emitting triangles are sampled
-  light_tree,        // chosen among by power and place
-  emission_texture,  // and within a picture by its brightness
+  light_tree,        // chosen among by power and place; else by power alone
+  emission_texture,  // and within a picture by its brightness; else one radiance all over
   punctual_lights,
   environment,             // light from infinity
-  environment_importance,  // sampled by brightness
-  panes,                   // light passes straight through thin smooth glass
-  refraction,              // solids with an inside
+  environment_importance,  // sampled by brightness; else found by scattering
+  panes,                   // light passes straight through thin smooth glass; else plain occlusion
+  refraction,              // solids with an inside; else no walk asks what it runs in
   absorption,              // that tint what runs in them
-  dispersion,              // and bend wavelengths apart
+  dispersion,              // and bend wavelengths apart; else no walk has a wavelength
   coats,                   // clearcoat or sheen over the base
-  caustics,                // light from a specular thing onto a rough one
-  kept_light,              // results may persist: nothing that lights or is lit moves
+  caustics,                // light from a specular thing onto a rough one: photons
+  kept_light,              // results may persist: what stands still, lit by what stands still
   count
 };
 inline constexpr size_t transport_parts = size_t(TransportPart::count);
@@ -32,17 +37,22 @@ const char* transport_part_name(TransportPart part);
 
 struct TransportDecision {
   bool used = true;
-  std::string why;
+  std::string why;  // a phrase: "nothing of glass splits colours"
 };
 
 struct TransportPlan {
   TransportDecision decisions[transport_parts];
+  std::vector<MaterialUse> materials;  // of each of the scene's; not visible: nothing shows it
   bool uses(TransportPart part) const { return decisions[size_t(part)].used; }
 };
 
-// `moving[i]`: instance i moves or deforms; empty: none does.
-TransportPlan make_transport_plan(const Scene& scene, const std::vector<bool>& moving = {});
-// Everything on: for tests that prove that what a plan left out does not matter.
-TransportPlan make_full_plan();
+// `moving`: the meshes that move in the scene (World's); their materials are the scene's.
+TransportPlan make_transport_plan(const Scene& scene, std::span<const Mesh* const> moving = {});
+// Everything on, as far as the scene's materials can be asked for it: for tests that prove that what
+// a plan left out does not matter.
+TransportPlan make_full_plan(const Scene& scene);
+
+// The plan as two aligned lists for people, parts used and parts left out, each with its reason.
+std::string explain(const TransportPlan& plan);
 
 }  // namespace wellspring

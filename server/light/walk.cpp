@@ -129,8 +129,10 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
       return radiance + walk.throughput * kept;
     Surface surface = eval_surface(world, walk.ray, hit);
     const Material& material = world.material_of(hit.instance);
-    walk.medium = medium_before(walk, surface, material);
-    walk.throughput *= eval_absorption(transport, walk.medium, hit.t);
+    if (transport.tables.any_solid) {
+      walk.medium = medium_before(walk, surface, material);
+      walk.throughput *= eval_absorption(transport, walk.medium, hit.t);
+    }
     radiance += walk.throughput * walk_met_emission(transport, walk, surface, material);
     if (material.unlit) return radiance;
 
