@@ -33,6 +33,8 @@ class Materials {
     m.double_sided = boolean(object, "doubleSided", false);
     m.unlit = extension(object, "KHR_materials_unlit") != nullptr;
     transmission(object, where, m);
+    gloss(object, where + "/extensions/", m);
+    layers(object, where + "/extensions/", m);
     return m;
   }
 
@@ -135,6 +137,47 @@ class Materials {
         m.attenuation_distance = factor(*volume, "attenuationDistance", inner, 1, 0, 1e30f);
         if (m.attenuation_distance == 0) m.attenuation_distance = 1e-6f;
       }
+    }
+  }
+
+  // How the base reflects.
+  void gloss(const json& object, const std::string& place, Material& m) {
+    if (const json* specular = extension(object, "KHR_materials_specular")) {
+      const std::string inner = place + "KHR_materials_specular";
+      m.specular = factor(*specular, "specularFactor", inner, 1, 0, 1);
+      m.specular_texture = reference(*specular, "specularTexture", inner, false);
+      m.specular_color =
+          vec3(numbers<3>(*specular, "specularColorFactor", inner, vec4(1), 0, 1e9f));
+      m.specular_color_texture = reference(*specular, "specularColorTexture", inner, true);
+    }
+    if (const json* brushed = extension(object, "KHR_materials_anisotropy")) {
+      const std::string inner = place + "KHR_materials_anisotropy";
+      m.anisotropy = factor(*brushed, "anisotropyStrength", inner, 0, 0, 1);
+      m.anisotropy_rotation = to_float(number(*brushed, "anisotropyRotation", 0));
+      m.anisotropy_texture = reference(*brushed, "anisotropyTexture", inner, false);
+    }
+    if (const json* bends = extension(object, "KHR_materials_dispersion"))
+      m.dispersion = factor(*bends, "dispersion", place + "KHR_materials_dispersion", 0, 0, 1e3f);
+  }
+
+  // What lies on the base.
+  void layers(const json& object, const std::string& place, Material& m) {
+    if (const json* coat = extension(object, "KHR_materials_clearcoat")) {
+      const std::string inner = place + "KHR_materials_clearcoat";
+      m.clearcoat = factor(*coat, "clearcoatFactor", inner, 0, 0, 1);
+      m.clearcoat_texture = reference(*coat, "clearcoatTexture", inner, false);
+      m.clearcoat_roughness = factor(*coat, "clearcoatRoughnessFactor", inner, 0, 0, 1);
+      m.clearcoat_roughness_texture = reference(*coat, "clearcoatRoughnessTexture", inner, false);
+      m.clearcoat_normal_texture = reference(*coat, "clearcoatNormalTexture", inner, false);
+      if (const json* normal = find(*coat, "clearcoatNormalTexture"))
+        m.clearcoat_normal_scale = to_float(number(*normal, "scale", 1));
+    }
+    if (const json* sheen = extension(object, "KHR_materials_sheen")) {
+      const std::string inner = place + "KHR_materials_sheen";
+      m.sheen_color = vec3(numbers<3>(*sheen, "sheenColorFactor", inner, vec4(0), 0, 1));
+      m.sheen_color_texture = reference(*sheen, "sheenColorTexture", inner, true);
+      m.sheen_roughness = factor(*sheen, "sheenRoughnessFactor", inner, 0, 0, 1);
+      m.sheen_roughness_texture = reference(*sheen, "sheenRoughnessTexture", inner, false);
     }
   }
 

@@ -187,8 +187,8 @@ dvec3 choose_centre(const Draft& draft) {
   return distance > 64 * size ? dvec3(vec3(middle)) : dvec3(0);
 }
 
-void finish_tangents(File& file, const std::string& where, Mesh& mesh, int normal_map_uv) {
-  bool usable = normal_map_uv >= 0 && !mesh.tangents.empty();
+void finish_tangents(File& file, const std::string& where, Mesh& mesh, int tangent_uv) {
+  bool usable = tangent_uv >= 0 && !mesh.tangents.empty();
   for (vec4& tangent : mesh.tangents) {
     vec3 t(tangent);
     usable = usable && is_finite(t) && dot(t, t) > 1e-20f;
@@ -196,18 +196,19 @@ void finish_tangents(File& file, const std::string& where, Mesh& mesh, int norma
   }
   if (usable) return;
   mesh.tangents.clear();
-  if (normal_map_uv < 0) return;
-  if (mesh.uv[normal_map_uv].empty()) {
-    warn(file, where, "a normal map without tangents or texture coordinates has no effect");
+  if (tangent_uv < 0) return;
+  if (mesh.uv[tangent_uv].empty()) {
+    warn(file, where,
+         "a normal map or anisotropy without tangents or texture coordinates has no effect");
     return;
   }
-  make_tangents(mesh, normal_map_uv);
+  make_tangents(mesh, tangent_uv);
 }
 
 }  // namespace
 
 BuiltMesh build_primitive(File& file, size_t mesh_index, size_t primitive_index,
-                          const Deformation& deformation, int normal_map_uv) {
+                          const Deformation& deformation, int tangent_uv) {
   const json& mesh_object = items(file.root, "meshes")[mesh_index];
   const std::string where = at(at("/meshes", mesh_index) + "/primitives", primitive_index);
   const json& primitive = mesh_object["primitives"][primitive_index];
@@ -241,7 +242,7 @@ BuiltMesh build_primitive(File& file, size_t mesh_index, size_t primitive_index,
     make_flat_normals(mesh);
   else if (int count = repair_normals(mesh); count > 0)
     warn(file, where, std::to_string(count) + " normals without a direction are replaced");
-  finish_tangents(file, where, mesh, normal_map_uv);
+  finish_tangents(file, where, mesh, tangent_uv);
   built.mesh = std::move(mesh);
   return built;
 }

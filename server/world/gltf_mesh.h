@@ -22,10 +22,10 @@ struct BuiltMesh {
 
 // Builds primitive `primitive` of mesh `mesh`. No triangles: points, lines or nothing at all; a
 // warning says so. Positions are in the mesh's space, or in world space if skinned.
-// `normal_map_uv`: the set of texture coordinates its material's normal map uses, so that tangents
-// are made; -1: no normal map.
+// `tangent_uv`: the set of texture coordinates its normal map or anisotropy uses, so that tangents
+// are made; -1: nothing does.
 BuiltMesh build_primitive(File& file, size_t mesh, size_t primitive, const Deformation& deformation,
-                          int normal_map_uv);
+                          int tangent_uv);
 
 // The joints and bind matrices of a skin, `global` being every node's transform.
 std::vector<dmat4> joint_matrices(File& file, size_t skin, const std::vector<dmat4>& global);

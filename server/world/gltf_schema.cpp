@@ -143,6 +143,24 @@ const Rule rules[] = {
     {"material.KHR_materials_volume", "thicknessTexture", Kind::object, "texture info"},
     {"material.KHR_materials_volume", "attenuationDistance", Kind::number},
     {"material.KHR_materials_volume", "attenuationColor", Kind::numbers, "", false, -1e300, 3, 3},
+    {"material.KHR_materials_specular", "specularFactor", Kind::number},
+    {"material.KHR_materials_specular", "specularTexture", Kind::object, "texture info"},
+    {"material.KHR_materials_specular", "specularColorFactor", Kind::numbers, "", false, -1e300, 3,
+     3},
+    {"material.KHR_materials_specular", "specularColorTexture", Kind::object, "texture info"},
+    {"material.KHR_materials_clearcoat", "clearcoatFactor", Kind::number},
+    {"material.KHR_materials_clearcoat", "clearcoatTexture", Kind::object, "texture info"},
+    {"material.KHR_materials_clearcoat", "clearcoatRoughnessFactor", Kind::number},
+    {"material.KHR_materials_clearcoat", "clearcoatRoughnessTexture", Kind::object, "texture info"},
+    {"material.KHR_materials_clearcoat", "clearcoatNormalTexture", Kind::object, "texture info"},
+    {"material.KHR_materials_sheen", "sheenColorFactor", Kind::numbers, "", false, -1e300, 3, 3},
+    {"material.KHR_materials_sheen", "sheenColorTexture", Kind::object, "texture info"},
+    {"material.KHR_materials_sheen", "sheenRoughnessFactor", Kind::number},
+    {"material.KHR_materials_sheen", "sheenRoughnessTexture", Kind::object, "texture info"},
+    {"material.KHR_materials_anisotropy", "anisotropyStrength", Kind::number},
+    {"material.KHR_materials_anisotropy", "anisotropyRotation", Kind::number},
+    {"material.KHR_materials_anisotropy", "anisotropyTexture", Kind::object, "texture info"},
+    {"material.KHR_materials_dispersion", "dispersion", Kind::number},
     {"material.KHR_materials_pbrSpecularGlossiness", "diffuseFactor", Kind::numbers, "", false,
      -1e300, 4, 4},
     {"material.KHR_materials_pbrSpecularGlossiness", "diffuseTexture", Kind::object,
@@ -363,7 +381,9 @@ void check_extensions(File& file) {
       "KHR_materials_transmission", "KHR_materials_ior",
       "KHR_materials_volume",       "KHR_materials_unlit",
       "KHR_lights_punctual",        "KHR_materials_pbrSpecularGlossiness",
-      "KHR_mesh_quantization"};
+      "KHR_mesh_quantization",      "KHR_materials_specular",
+      "KHR_materials_clearcoat",    "KHR_materials_sheen",
+      "KHR_materials_anisotropy",   "KHR_materials_dispersion"};
   const json& required = items(file.root, "extensionsRequired");
   for (size_t i = 0; i < required.size(); i++)
     if (!known.count(required[i].get<std::string>()))

@@ -41,7 +41,8 @@ struct Material {
   float clearcoat = 0, clearcoat_roughness = 0;
   TextureRef clearcoat_texture;            // R
   TextureRef clearcoat_roughness_texture;  // G
-  TextureRef clearcoat_normal_texture;
+  TextureRef clearcoat_normal_texture;  // none: the coat is smooth, whatever lies beneath
+  float clearcoat_normal_scale = 1;
   vec3 sheen_color{0};
   float sheen_roughness = 0;
   TextureRef sheen_color_texture;

@@ -119,7 +119,7 @@ class Builder {
   // Index of the new scene mesh, -1 if it has no triangles.
   int add_mesh(size_t mesh, size_t primitive, const Deformation& deformation) {
     BuiltMesh built =
-        build_primitive(file_, mesh, primitive, deformation, normal_map_uv(mesh, primitive));
+        build_primitive(file_, mesh, primitive, deformation, tangent_uv(mesh, primitive));
     if (built.mesh.triangles.empty()) return -1;
     check_texture_coordinates(built.mesh, mesh, primitive);
     scene_.meshes.push_back(std::move(built.mesh));
@@ -132,16 +132,22 @@ class Builder {
     return scene_.materials[size_t(integer(object, "material", -1) + 1)];
   }
 
-  int normal_map_uv(size_t mesh, size_t primitive) const {
-    const TextureRef& map = material_of(mesh, primitive).normal_texture;
-    return map.texture < 0 ? -1 : map.uv_set;
+  // The set of texture coordinates that what needs tangents uses; -1: nothing does.
+  int tangent_uv(size_t mesh, size_t primitive) const {
+    const Material& m = material_of(mesh, primitive);
+    for (const TextureRef* map : {&m.normal_texture, &m.clearcoat_normal_texture})
+      if (map->texture >= 0) return map->uv_set;
+    return m.anisotropy > 0 ? m.anisotropy_texture.uv_set : -1;
   }
 
   void check_texture_coordinates(const Mesh& mesh, size_t index, size_t primitive) {
     const Material& m = scene_.materials[size_t(mesh.material)];
     for (const TextureRef* reference :
          {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
-          &m.emission_texture, &m.transmission_texture, &m.thickness_texture})
+          &m.emission_texture, &m.transmission_texture, &m.thickness_texture, &m.specular_texture,
+          &m.specular_color_texture, &m.clearcoat_texture, &m.clearcoat_roughness_texture,
+          &m.clearcoat_normal_texture, &m.sheen_color_texture, &m.sheen_roughness_texture,
+          &m.anisotropy_texture})
       if (reference->texture >= 0 && mesh.uv[reference->uv_set].empty())
         warn(file_, at(at("/meshes", index) + "/primitives", primitive),
              "a texture without texture coordinates shows one texel everywhere");

@@ -57,19 +57,54 @@ vec4 lookup(const Scene& scene, const Mesh& mesh, const Corners& at, const Textu
                       vec2(reference.uv_transform * vec3(uv, 1)));
 }
 
-// glTF 2.0 section 3.9.3: the map's normal in the frame of tangent, bitangent and normal.
-vec3 mapped_normal(const Scene& scene, const PlacedMesh& placed, const Corners& at, vec3 normal) {
+// Along u and v of the picture, on the winding's side; the mesh must have tangents.
+struct TangentFrame {
+  vec3 tangent, bitangent;  // zero where the mesh gives no direction
+};
+
+TangentFrame tangent_frame(const PlacedMesh& placed, const Corners& at, vec3 normal) {
   const Mesh& mesh = *placed.mesh;
-  const Material& material = *placed.material;
-  if (material.normal_texture.texture < 0 || mesh.tangents.empty()) return normal;
-  vec3 map = vec3(lookup(scene, mesh, at, material.normal_texture)) * 2.0f - 1.0f;
-  map *= vec3(material.normal_scale, material.normal_scale, 1);
   vec4 local = at(mesh.tangents);
   vec3 tangent = placed.moving ? vec3(local) : mat3(placed.to_world) * vec3(local);
   tangent = unit_or(tangent - normal * dot(normal, tangent), vec3(0));
   vec3 bitangent = cross(normal, tangent) * (mesh.tangents[at.index.x].w < 0 ? -1.0f : 1.0f);
-  if (placed.mirrored) bitangent = -bitangent;
-  return unit_or(tangent * map.x + bitangent * map.y + normal * map.z, normal);
+  return {tangent, placed.mirrored ? -bitangent : bitangent};
+}
+
+// glTF 2.0 section 3.9.3: the map's normal in the frame of tangent, bitangent and normal.
+vec3 mapped_normal(const Scene& scene, const PlacedMesh& placed, const Corners& at, vec3 normal,
+                   const TextureRef& texture, float scale) {
+  const Mesh& mesh = *placed.mesh;
+  if (texture.texture < 0 || mesh.tangents.empty()) return normal;
+  vec3 map = (vec3(lookup(scene, mesh, at, texture)) * 2.0f - 1.0f) * vec3(scale, scale, 1);
+  TangentFrame frame = tangent_frame(placed, at, normal);
+  return unit_or(frame.tangent * map.x + frame.bitangent * map.y + normal * map.z, normal);
+}
+
+// The side the ray came from; interpolated or mapped beyond the horizon: brought back, just above.
+vec3 turned_to_viewer(vec3 normal, vec3 geometric, bool front) {
+  if (!front) normal = -normal;
+  float height = dot(normal, geometric);
+  return height < 1e-3f ? unit_or(normal + geometric * (1e-3f - height), geometric) : normal;
+}
+
+// KHR_materials_anisotropy: the picture's direction, turned by the factor's angle.
+void resolve_anisotropy(const Scene& scene, const PlacedMesh& placed, const Corners& at,
+                        vec3 normal, Surface& surface) {
+  const Mesh& mesh = *placed.mesh;
+  const Material& m = *placed.material;
+  if (mesh.tangents.empty()) return;
+  vec2 along(std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation));
+  float strength = m.anisotropy;
+  if (m.anisotropy_texture.texture >= 0) {
+    vec4 t = lookup(scene, mesh, at, m.anisotropy_texture);
+    vec2 map = vec2(t) * 2.0f - 1.0f;
+    along = {along.x * map.x - along.y * map.y, along.y * map.x + along.x * map.y};
+    strength *= t.z;
+  }
+  TangentFrame frame = tangent_frame(placed, at, normal);
+  surface.tangent = unit_or(frame.tangent * along.x + frame.bitangent * along.y, vec3(0));
+  if (surface.tangent != vec3(0)) surface.anisotropy = strength;
 }
 
 void resolve_material(const Scene& scene, const PlacedMesh& placed, const Corners& at,
@@ -96,6 +131,38 @@ void resolve_material(const Scene& scene, const PlacedMesh& placed, const Corner
   surface.thickness = m.thickness;
   if (m.thickness > 0 && m.thickness_texture.texture >= 0)
     surface.thickness *= lookup(scene, mesh, at, m.thickness_texture).y;
+  surface.specular = m.specular;
+  if (m.specular_texture.texture >= 0)
+    surface.specular *= lookup(scene, mesh, at, m.specular_texture).w;
+  surface.specular_color = m.specular_color;
+  if (m.specular_color_texture.texture >= 0)
+    surface.specular_color *= vec3(lookup(scene, mesh, at, m.specular_color_texture));
+}
+
+// KHR_materials_clearcoat and KHR_materials_sheen. `normal`: as interpolated, before any map.
+void resolve_layers(const Scene& scene, const PlacedMesh& placed, const Corners& at, vec3 normal,
+                    Surface& surface) {
+  const Mesh& mesh = *placed.mesh;
+  const Material& m = *placed.material;
+  if (m.clearcoat > 0) {
+    surface.clearcoat = m.clearcoat;
+    if (m.clearcoat_texture.texture >= 0)
+      surface.clearcoat *= lookup(scene, mesh, at, m.clearcoat_texture).x;
+    surface.clearcoat_roughness = m.clearcoat_roughness;
+    if (m.clearcoat_roughness_texture.texture >= 0)
+      surface.clearcoat_roughness *= lookup(scene, mesh, at, m.clearcoat_roughness_texture).y;
+    vec3 mapped = mapped_normal(scene, placed, at, normal, m.clearcoat_normal_texture,
+                                m.clearcoat_normal_scale);
+    surface.clearcoat_normal = turned_to_viewer(mapped, surface.geometric_normal, surface.front);
+  }
+  if (max_component(m.sheen_color) > 0) {
+    surface.sheen_color = m.sheen_color;
+    if (m.sheen_color_texture.texture >= 0)
+      surface.sheen_color *= vec3(lookup(scene, mesh, at, m.sheen_color_texture));
+    surface.sheen_roughness = m.sheen_roughness;
+    if (m.sheen_roughness_texture.texture >= 0)
+      surface.sheen_roughness *= lookup(scene, mesh, at, m.sheen_roughness_texture).w;
+  }
 }
 
 }  // namespace
@@ -124,18 +191,16 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
   vec3 shading = at(mesh.normals);
   if (!placed.moving) shading = placed.normal_to_world * shading;
   shading = unit_or(shading, geometric);
-  shading = mapped_normal(scene, placed, at, shading);
-  if (!surface.front) {
-    geometric = -geometric;
-    shading = -shading;
-  }
-  // Interpolated or mapped beyond the horizon: brought back onto it, just above.
-  float height = dot(shading, geometric);
-  if (height < 1e-3f) shading = unit_or(shading + geometric * (1e-3f - height), geometric);
+  const Material& material = *placed.material;
+  vec3 mapped = mapped_normal(scene, placed, at, shading, material.normal_texture,
+                              material.normal_scale);
+  if (!surface.front) geometric = -geometric;
   surface.geometric_normal = geometric;
-  surface.normal = shading;
+  surface.normal = turned_to_viewer(mapped, geometric, surface.front);
   if (!mesh.uv[0].empty()) surface.uv = at(mesh.uv[0]);
   resolve_material(scene, placed, at, surface);
+  if (material.anisotropy > 0) resolve_anisotropy(scene, placed, at, shading, surface);
+  resolve_layers(scene, placed, at, shading, surface);
   return surface;
 }
 

@@ -20,6 +20,14 @@ struct Surface {
   float metallic = 0, roughness = 1;
   vec3 emission{0};  // 0 when seen from the back of a single-sided material
   float transmission = 0, thickness = 0;
+  float specular = 1;
+  vec3 specular_color{1};
+  float anisotropy = 0;
+  vec3 tangent{0};  // unit, along which it is rougher; only where anisotropy > 0
+  float clearcoat = 0, clearcoat_roughness = 0;
+  vec3 clearcoat_normal{0, 1, 0};  // only where clearcoat > 0
+  vec3 sheen_color{0};
+  float sheen_roughness = 0;
   float extent = 0;  // largest coordinate of the triangle's corners: bounds the error of `position`
 };
 

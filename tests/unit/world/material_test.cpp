@@ -102,6 +102,103 @@ TEST(Material, DefaultsAndFactors) {
   EXPECT_TRUE(has_light(scene));
 }
 
+// A material with these extensions, of which the file says that it cannot be shown without them.
+Asset extended(const json& extensions, const std::string& uri = "unused") {
+  Asset asset = textured(uri, {{"extensions", extensions}});
+  for (auto it = extensions.begin(); it != extensions.end(); ++it) {
+    asset.root["extensionsUsed"].push_back(it.key());
+    asset.root["extensionsRequired"].push_back(it.key());
+  }
+  return asset;
+}
+
+TEST(Material, LayersAndGlossAreRead) {
+  Scene scene = load(
+      extended({{"KHR_materials_specular",
+                 {{"specularFactor", 0.25}, {"specularColorFactor", {0.5, 2, 1}}}},
+                {"KHR_materials_clearcoat",
+                 {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.125}}},
+                {"KHR_materials_sheen",
+                 {{"sheenColorFactor", {0.5, 0.25, 1}}, {"sheenRoughnessFactor", 0.5}}},
+                {"KHR_materials_dispersion", {{"dispersion", 0.36}}}}));
+  EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+  const Material& m = scene.materials[1];
+  EXPECT_EQ(m.specular, 0.25f);
+  EXPECT_EQ(m.specular_color, vec3(0.5f, 2, 1));
+  EXPECT_EQ(m.clearcoat, 0.75f);
+  EXPECT_EQ(m.clearcoat_roughness, 0.125f);
+  EXPECT_EQ(m.sheen_color, vec3(0.5f, 0.25f, 1));
+  EXPECT_EQ(m.sheen_roughness, 0.5f);
+  EXPECT_EQ(m.dispersion, 0.36f);
+  // What the extensions say where they say nothing.
+  scene = load(extended({{"KHR_materials_specular", json::object()},
+                         {"KHR_materials_clearcoat", json::object()},
+                         {"KHR_materials_sheen", json::object()},
+                         {"KHR_materials_anisotropy", json::object()},
+                         {"KHR_materials_dispersion", json::object()}}));
+  EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+  const Material& plain = scene.materials[1];
+  EXPECT_EQ(plain.specular, 1);
+  EXPECT_EQ(plain.specular_color, vec3(1));
+  EXPECT_EQ(plain.clearcoat, 0);
+  EXPECT_EQ(plain.sheen_color, vec3(0));
+  EXPECT_EQ(plain.anisotropy, 0);
+  EXPECT_EQ(plain.dispersion, 0);
+}
+
+TEST(Material, LayersOutOfRangeAreClampedAloudAndWrongTypesRefused) {
+  Scene scene = load(extended({{"KHR_materials_clearcoat", {{"clearcoatFactor", -3}}},
+                               {"KHR_materials_sheen", {{"sheenColorFactor", {2, 0, 0}}}},
+                               {"KHR_materials_dispersion", {{"dispersion", -1}}}}));
+  EXPECT_TRUE(warns_of(scene, "clearcoatFactor"));
+  EXPECT_TRUE(warns_of(scene, "sheenColorFactor"));
+  EXPECT_TRUE(warns_of(scene, "dispersion"));
+  EXPECT_EQ(scene.materials[1].clearcoat, 0);
+  EXPECT_EQ(scene.materials[1].sheen_color, vec3(1, 0, 0));
+  EXPECT_EQ(scene.materials[1].dispersion, 0);
+  auto refused_at = [](const json& extensions) { return refused(extended(extensions)).where; };
+  const std::string place = "/materials/0/extensions/";
+  EXPECT_EQ(refused_at({{"KHR_materials_sheen", {{"sheenColorFactor", {1, 1}}}}}),
+            place + "KHR_materials_sheen/sheenColorFactor");
+  EXPECT_EQ(refused_at({{"KHR_materials_anisotropy", {{"anisotropyStrength", "much"}}}}),
+            place + "KHR_materials_anisotropy/anisotropyStrength");
+  EXPECT_EQ(refused_at({{"KHR_materials_specular", {{"specularTexture", {{"index", 7}}}}}}),
+            place + "KHR_materials_specular/specularTexture/index");
+}
+
+TEST(Material, PicturesOfLayersAreColoursOrNumbersAsTheirExtensionsSay) {
+  const json map = {{"index", 0}};
+  Asset asset = extended(
+      {{"KHR_materials_specular", {{"specularTexture", map}, {"specularColorTexture", map}}},
+       {"KHR_materials_clearcoat",
+        {{"clearcoatFactor", 1},
+         {"clearcoatTexture", map},
+         {"clearcoatRoughnessTexture", map},
+         {"clearcoatNormalTexture", {{"index", 0}, {"scale", 0.5}}}}},
+       {"KHR_materials_sheen", {{"sheenColorTexture", map}, {"sheenRoughnessTexture", map}}},
+       {"KHR_materials_anisotropy",
+        {{"anisotropyStrength", 0.5}, {"anisotropyRotation", 1.5}, {"anisotropyTexture", map}}}},
+      "data:image/png;base64," + base64(small_png()));
+  Scene scene = load(asset);
+  EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+  const Material& m = scene.materials[1];
+  auto is_color = [&](const TextureRef& r) {
+    EXPECT_GE(r.texture, 0);
+    return scene.images[size_t(scene.textures[size_t(r.texture)].image)].srgb;
+  };
+  EXPECT_TRUE(is_color(m.specular_color_texture) && is_color(m.sheen_color_texture));
+  for (const TextureRef* r :
+       {&m.specular_texture, &m.clearcoat_texture, &m.clearcoat_roughness_texture,
+        &m.clearcoat_normal_texture, &m.sheen_roughness_texture, &m.anisotropy_texture})
+    EXPECT_FALSE(is_color(*r));
+  EXPECT_EQ(m.clearcoat_normal_scale, 0.5f);
+  EXPECT_EQ(m.anisotropy, 0.5f);
+  EXPECT_EQ(m.anisotropy_rotation, 1.5f);
+  EXPECT_EQ(scene.meshes[0].tangents.size(), scene.meshes[0].positions.size());
+  asset.root["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
+  EXPECT_TRUE(warns_of(load(asset), "anisotropy"));
+}
+
 TEST(Material, FactorsOutOfRangeAreClampedAloud) {
   Scene scene = load(textured("unused", {{"pbrMetallicRoughness", {{"roughnessFactor", 7}}}}));
   EXPECT_EQ(scene.materials[1].roughness, 1);

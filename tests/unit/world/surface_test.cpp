@@ -237,5 +237,76 @@ TEST(Surface, OffsetOriginLeavesTheSurface) {
     }
 }
 
+TEST(Surface, LayersAreFactorTimesTexture) {
+  Scene scene = square_scene();
+  Material& m = scene.materials[0];
+  int picture = add_texture(scene, {51, 102, 153, 204});
+  m.specular = 0.5f;
+  m.specular_texture.texture = picture;
+  m.specular_color = vec3(2, 1, 0.5f);
+  m.specular_color_texture.texture = picture;
+  m.clearcoat = 0.5f;
+  m.clearcoat_texture.texture = picture;
+  m.clearcoat_roughness = 0.5f;
+  m.clearcoat_roughness_texture.texture = picture;
+  m.sheen_color = vec3(1, 0.5f, 1);
+  m.sheen_color_texture.texture = picture;
+  m.sheen_roughness = 0.5f;
+  m.sheen_roughness_texture.texture = picture;
+  World world(scene);
+  Surface s = look(world, vec3(0.4f, 0.3f, 2), vec3(0, 0, -1));
+  EXPECT_NEAR(s.specular, 0.4f, 1e-6f);
+  EXPECT_NEAR(length(s.specular_color - vec3(0.4f, 0.4f, 0.3f)), 0, 1e-6f);
+  EXPECT_NEAR(s.clearcoat, 0.1f, 1e-6f);
+  EXPECT_NEAR(s.clearcoat_roughness, 0.2f, 1e-6f);
+  EXPECT_NEAR(length(s.sheen_color - vec3(0.2f, 0.2f, 0.6f)), 0, 1e-6f);
+  EXPECT_NEAR(s.sheen_roughness, 0.4f, 1e-6f);
+  EXPECT_EQ(s.anisotropy, 0);
+}
+
+// A normal map bends what lies beneath the coat, the coat's own map the coat.
+TEST(Surface, TheCoatHasANormalOfItsOwn) {
+  Scene scene = square_scene();
+  Material& m = scene.materials[0];
+  m.clearcoat = 1;
+  m.normal_texture.texture = add_texture(scene, {204, 128, 204, 255});
+  scene.meshes[0].tangents.assign(4, vec4(1, 0, 0, 1));
+  World world(scene);
+  Surface s = look(world, vec3(0.4f, 0.3f, 2), vec3(0, 0, -1));
+  EXPECT_GT(s.normal.x, 0.5f);
+  EXPECT_EQ(s.clearcoat_normal, vec3(0, 0, 1));
+  m.clearcoat_normal_texture.texture = add_texture(scene, {128, 204, 204, 255});
+  s = look(world, vec3(0.4f, 0.3f, 2), vec3(0, 0, -1));
+  EXPECT_GT(s.clearcoat_normal.y, 0.5f);
+  m.clearcoat_normal_scale = 0;
+  s = look(world, vec3(0.4f, 0.3f, -2), vec3(0, 0, 1));  // from behind
+  EXPECT_EQ(s.clearcoat_normal, vec3(0, 0, -1));
+}
+
+TEST(Surface, AnisotropyFollowsTheTangentTheAngleAndThePicture) {
+  Scene scene = square_scene();
+  Material& m = scene.materials[0];
+  m.anisotropy = 0.5f;
+  World untangled(scene);
+  EXPECT_EQ(look(untangled, vec3(0.4f, 0.3f, 2), vec3(0, 0, -1)).anisotropy, 0);  // no direction
+  scene.meshes[0].tangents.assign(4, vec4(1, 0, 0, 1));
+  World world(scene);
+  auto tangent = [&](float side = 2) {
+    Surface s = look(world, vec3(0.4f, 0.3f, side), vec3(0, 0, -side));
+    EXPECT_GT(s.anisotropy, 0);
+    EXPECT_NEAR(length(s.tangent), 1, 1e-6f);
+    return s.tangent;
+  };
+  EXPECT_NEAR(length(tangent() - vec3(1, 0, 0)), 0, 1e-6f);
+  m.anisotropy_rotation = pi / 2;  // counter-clockwise
+  EXPECT_NEAR(length(tangent() - vec3(0, 1, 0)), 0, 1e-6f);
+  EXPECT_NEAR(length(tangent(-2) - vec3(0, 1, 0)), 0, 1e-6f);
+  m.anisotropy_texture.texture = add_texture(scene, {128, 255, 102, 255});  // along +v, turned on
+  EXPECT_NEAR(length(tangent() - vec3(-1, 0, 0)), 0, 0.01f);
+  EXPECT_NEAR(look(world, vec3(0.4f, 0.3f, 2), vec3(0, 0, -1)).anisotropy, 0.2f, 1e-6f);
+  scene.meshes[0].tangents.assign(4, vec4(0, 0, 1, 1));  // degenerate: along the normal
+  EXPECT_EQ(look(world, vec3(0.4f, 0.3f, 2), vec3(0, 0, -1)).anisotropy, 0);
+}
+
 }  // namespace
 }  // namespace wellspring
