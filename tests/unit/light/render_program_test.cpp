@@ -64,6 +64,17 @@ TEST_F(RenderProgram, ListsTechniques) {
     EXPECT_NE(answer.text.find(std::string(t.name) + "\n"), std::string::npos) << t.name;
 }
 
+TEST_F(RenderProgram, ExplainsWhatASceneNeedsWithoutRendering) {
+  Answer answer = run(scene() + " --explain --environment 1,1,1");
+  EXPECT_EQ(answer.status, 0);
+  size_t used = answer.text.find("\nused\n"), left_out = answer.text.find("\nleft out\n");
+  ASSERT_NE(used, std::string::npos) << answer.text;
+  ASSERT_NE(left_out, std::string::npos) << answer.text;
+  EXPECT_LT(answer.text.find("\n  environment "), left_out);
+  EXPECT_GT(answer.text.find("\n  dispersion "), left_out);
+  EXPECT_EQ(run(folder.string() + "/none.gltf --explain").status, 1);
+}
+
 TEST_F(RenderProgram, WritesEveryKindOfPicture) {
   for (const char* name : {"a.png", "a.jpg", "a.pfm", "a.exr"}) {
     Answer answer =
