@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Irradiance by formula: from polygons (Lambert 1760; Baum, Rushmeier and Winget 1989, section 3),
-// from convex bodies, and between parallel plates (Howell's catalogue of configuration factors, C-11).
+// from convex bodies, and between parallel plates (Howell's catalogue of configuration factors,
+// C-11).
 #pragma once
 #include <cmath>
 #include <vector>
@@ -41,8 +42,7 @@ inline double convex_irradiance(dvec3 p, dvec3 n, const Mesh& mesh, const mat4& 
   double sum = 0;
   for (const uvec3& t : mesh.triangles) {
     dvec3 corner[3];
-    for (int i = 0; i < 3; i++)
-      corner[i] = dvec3(vec3(to_world * vec4(mesh.positions[t[i]], 1)));
+    for (int i = 0; i < 3; i++) corner[i] = dvec3(vec3(to_world * vec4(mesh.positions[t[i]], 1)));
     if (dot(cross(corner[1] - corner[0], corner[2] - corner[0]), p - corner[0]) > 0)
       sum += polygon_irradiance(p, n, {corner[0], corner[1], corner[2]});
   }

@@ -68,8 +68,12 @@ void add_lamps(std::vector<AnalyticCase>& cases) {
   for (vec3 p : {vec3(0, 0, 0), vec3(0.9f, 0, 0.9f), vec3(3, 0, -1)}) {
     double e = polygon_irradiance(p, {0, 1, 0}, odd_polygon());
     cases.push_back({"polygon that dips below the horizon, place " + std::to_string(i++),
-                     make_plane_with_polygon(odd_polygon(), 3), at_floor(p),
-                     3 * e * albedo * over_pi, area_light, {}, 512});
+                     make_plane_with_polygon(odd_polygon(), 3),
+                     at_floor(p),
+                     3 * e * albedo * over_pi,
+                     area_light,
+                     {},
+                     512});
   }
   for (int rings : {4, 24})
     for (vec3 p : {vec3(0, 0, 0), vec3(2, 0, 1)}) {
@@ -78,8 +82,13 @@ void add_lamps(std::vector<AnalyticCase>& cases) {
       Mesh sphere = sphere_mesh(add_material(scene, emitter(vec3(4))), 0.5f, rings);
       double e = convex_irradiance(p, {0, 1, 0}, sphere, at({0, 1, 0}));
       add_mesh(scene, sphere, "sphere", at({0, 1, 0}));
-      cases.push_back({"sphere of " + std::to_string(rings) + " rings", scene, at_floor(p),
-                       4 * e * albedo * over_pi, area_light, {}, rings > 4 ? 2048 : 512});
+      cases.push_back({"sphere of " + std::to_string(rings) + " rings",
+                       scene,
+                       at_floor(p),
+                       4 * e * albedo * over_pi,
+                       area_light,
+                       {},
+                       rings > 4 ? 2048 : 512});
     }
   // The eye hovers between the plates and sees the lower one exactly filling its picture; a picture
   // parallel to a plane weighs its places equally, so the mean is the form factor's.
@@ -90,9 +99,14 @@ void add_lamps(std::vector<AnalyticCase>& cases) {
     add_quad(scene, white, {-0.5f, 0, 0.5f}, {1, 0, 0}, {0, 0, -1}, "receiver");
     add_quad(scene, lamp, {-0.5f, apart, -0.5f}, {1, 0, 0}, {0, 0, 1}, "plate");
     double factor = opposed_plates_factor(1 / double(apart), 1 / double(apart));
-    cases.push_back({"parallel plates " + std::to_string(apart) + " apart", scene,
-                     ray_towards({0, 0.25f, 0}, {0, 0, 0}), 2 * albedo * factor, area_light, {},
-                     8, 2});
+    cases.push_back({"parallel plates " + std::to_string(apart) + " apart",
+                     scene,
+                     ray_towards({0, 0.25f, 0}, {0, 0, 0}),
+                     2 * albedo * factor,
+                     area_light,
+                     {},
+                     8,
+                     2});
   }
 }
 
@@ -105,11 +119,11 @@ void add_points(std::vector<AnalyticCase>& cases) {
   }
   PunctualLight light = point_light({0, 1, 0}, 3);
   light.range = 2;
-  cases.push_back({"point light with a range", make_plane_with_punctual(light),
-                   at_floor({0, 0, 0}), albedo * over_pi * 3 * (1 - 1.0 / 16), punctual_light});
+  cases.push_back({"point light with a range", make_plane_with_punctual(light), at_floor({0, 0, 0}),
+                   albedo * over_pi * 3 * (1 - 1.0 / 16), punctual_light});
   light.range = 0.9f;
-  cases.push_back({"point light out of range", make_plane_with_punctual(light),
-                   at_floor({0, 0, 0}), 0, punctual_light});
+  cases.push_back({"point light out of range", make_plane_with_punctual(light), at_floor({0, 0, 0}),
+                   0, punctual_light});
   PunctualLight sun;
   sun.type = PunctualType::directional;
   sun.direction = normalize(vec3(1, -2, 0.5f));
@@ -138,8 +152,13 @@ void add_points(std::vector<AnalyticCase>& cases) {
     double d2 = double(dot(place, place));
     sum += i * double(place.y) / (d2 * std::sqrt(d2));
   }
-  cases.push_back({"twenty point lights", many, at_floor({0, 0, 0}), albedo * over_pi * sum,
-                   punctual_light, {}, 512});
+  cases.push_back({"twenty point lights",
+                   many,
+                   at_floor({0, 0, 0}),
+                   albedo * over_pi * sum,
+                   punctual_light,
+                   {},
+                   512});
 }
 
 void add_skies(std::vector<AnalyticCase>& cases) {
@@ -167,8 +186,13 @@ void add_skies(std::vector<AnalyticCase>& cases) {
       vec3 direction(r * std::cos(phi), std::sqrt(1 - r * r), r * std::sin(phi));
       mean += double(eval_environment(picture, direction).x) / (n * n);
     }
-  cases.push_back({"picture of a sky over a plane", scene, at_floor({0, 0, 0}), albedo * mean,
-                   sky_light, {}, 512});
+  cases.push_back({"picture of a sky over a plane",
+                   scene,
+                   at_floor({0, 0, 0}),
+                   albedo * mean,
+                   sky_light,
+                   {},
+                   512});
 }
 
 }  // namespace

@@ -11,14 +11,14 @@
 namespace wellspring::test {
 
 enum LightKinds : unsigned {
-  seen_lights = 1,          // emission and sky as the eye sees them
-  area_light = 2,           // emitting surfaces light a rough one
+  seen_lights = 1,  // emission and sky as the eye sees them
+  area_light = 2,   // emitting surfaces light a rough one
   punctual_light = 4,
   sky_light = 8,
-  panes = 16,               // straight through thin smooth glass
-  chains = 32,              // perfect mirrors and solid glass, followed from the eye
-  interreflection = 64,     // light between rough surfaces
-  caustics = 128,           // light that reaches a rough surface by a mirror or through solid glass
+  panes = 16,            // straight through thin smooth glass
+  chains = 32,           // perfect mirrors and solid glass, followed from the eye
+  interreflection = 64,  // light between rough surfaces
+  caustics = 128,        // light that reaches a rough surface by a mirror or through solid glass
   every_kind = 255,
 };
 
@@ -46,7 +46,7 @@ struct AnalyticCase {
 // Cases whose names agree up to the first comma or number are variants of the first of them.
 void mark_variants(std::vector<AnalyticCase>& cases);
 
-std::vector<AnalyticCase> direct_light_cases();    // lamps, sky, points, spots over planes
+std::vector<AnalyticCase> direct_light_cases();  // lamps, sky, points, spots over planes
 std::vector<AnalyticCase> glass_and_mirror_cases();
 std::vector<AnalyticCase> interreflection_cases();
 

@@ -44,8 +44,8 @@ void add_panes(std::vector<AnalyticCase>& cases) {
       double d2 = dot(q, q), c = 1 / std::sqrt(d2);
       irradiance += 10 * c * c / d2 * (1 - fresnel(c, 1.5)) * 1.5 / (n * n);
     }
-  cases.push_back({"lamp behind a pane", scene, at_floor({0, 0, 0}),
-                   irradiance * albedo * over_pi, area_light | panes, two, 512});
+  cases.push_back({"lamp behind a pane", scene, at_floor({0, 0, 0}), irradiance * albedo * over_pi,
+                   area_light | panes, two, 512});
   // Seen straight through two panes with what lies in front mirrored in them.
   Scene vitrine = empty_scene();
   add_quad(vitrine, add_material(vitrine, glass(1.5f, 0, 0)), {-5, -5, 0}, {10, 0, 0}, {0, 10, 0});
@@ -89,16 +89,16 @@ void add_mirrors(std::vector<AnalyticCase>& cases) {
   add_quad(scene, lamp, {-3, 3, 1}, {0, 2, 0}, {0, 0, -2});    // faces +X
   for (auto& m : scene.materials) m.double_sided = true;
   double f = 0.9 + 0.1 * std::pow(1 - std::sqrt(0.5), 5);  // Schlick at 45 degrees
-  cases.push_back({"two mirrors", scene, ray_towards({-2, 0, 0}, {1, 0, 0}), 7 * f * f,
-                   chains | seen_lights});
+  cases.push_back(
+      {"two mirrors", scene, ray_towards({-2, 0, 0}, {1, 0, 0}), 7 * f * f, chains | seen_lights});
   // A lamp that faces a perfect mirror overhead: its image lights the floor.
   Scene image = empty_scene();
   add_floor(image, float(albedo));
   int perfect = add_material(image, metal(vec3(1), 0)), up = add_material(image, emitter(vec3(9)));
   add_quad(image, perfect, {-30, 2, -30}, {60, 0, 0}, {0, 0, 60}, "mirror");
   add_quad(image, up, {1, 1, 2}, {2, 0, 0}, {0, 0, -4}, "lamp");
-  double e = polygon_irradiance({0, 0, 0}, {0, 1, 0},
-                                {{1, 3, 2}, {3, 3, 2}, {3, 3, -2}, {1, 3, -2}});
+  double e =
+      polygon_irradiance({0, 0, 0}, {0, 1, 0}, {{1, 3, 2}, {3, 3, 2}, {3, 3, -2}, {1, 3, -2}});
   // Its own back would hide what is nearer or further than this.
   TransportSettings three;
   three.max_depth = 3;
@@ -130,18 +130,20 @@ std::vector<AnalyticCase> interreflection_cases() {
         make_flat_normals(mesh);  // rounded ones would lose what they send through the facets
         scene.meshes[0] = mesh;
       }
-      std::string name = (sphere ? "closed sphere of albedo " : "closed box of albedo ") +
-                         std::to_string(a);
+      std::string name =
+          (sphere ? "closed sphere of albedo " : "closed box of albedo ") + std::to_string(a);
       TransportSettings settings;
       settings.max_depth = 1000;
       cases.push_back({name, scene, ray, 1 / (1 - double(a)), interreflection | area_light,
-                       settings, a > 0.7f ? 3072 : a > 0.5f ? 1024 : 256});
+                       settings,
+                       a > 0.7f   ? 3072
+                       : a > 0.5f ? 1024
+                                  : 256});
       settings.max_depth = 3;
       cases.push_back({name + ", three terms", scene, ray, 1 + double(a) + double(a) * double(a),
                        interreflection | area_light, settings, 256});
       settings.max_depth = 2;
-      cases.push_back({name + ", two terms", scene, ray, 1 + double(a), area_light, settings,
-                       256});
+      cases.push_back({name + ", two terms", scene, ray, 1 + double(a), area_light, settings, 256});
     }
   mark_variants(cases);
   return cases;
