@@ -14,10 +14,16 @@ int main(int argc, char** argv) {
   BenchOptions options;
   std::string only, file;
   const std::pair<const char*, void (*)(BenchReport&, const BenchOptions&)> parts[] = {
-      {"stream", bench_stream}, {"cache", bench_cache}, {"light", bench_light}, {"avatar", bench_avatar}};
+      {"stream", bench_stream},           {"cache", bench_cache},
+      {"light.frame", bench_light_frame}, {"light.scaling", bench_light_scaling},
+      {"light.error", bench_light_error}, {"avatar", bench_avatar}};
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
-  app.add_option("--only", only, "one part: stream, cache, light or avatar");
+  app.add_option("--only", only, "one part: stream, cache, light (or one of its own: light.error ...), avatar");
   app.add_option("--json", file, "where to write the report")->required();
+  app.add_option("--plots", options.plots,
+                 "what names of plots begin with; without it the report's name and _");
+  app.add_option("--scenes", options.scenes, "folder of the benchmark's own scenes")
+      ->capture_default_str();
   app.add_option("--content", options.content, "folder of exhibit packages")->capture_default_str();
   app.add_option("--web", options.web, "folder of the pages")->capture_default_str();
   try {
@@ -26,11 +32,13 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
+  if (options.plots.empty())
+    options.plots = std::filesystem::path(file).replace_extension("").string() + "_";
   BenchReport report;
   bool found = only.empty();
   try {
     for (const auto& [name, run] : parts)
-      if (only.empty() || only == name) {
+      if (only.empty() || name == only || std::string_view(name).starts_with(only + ".")) {
         found = true;
         run(report, options);
       }

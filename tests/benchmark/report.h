@@ -10,6 +10,8 @@ namespace wellspring {
 struct BenchOptions {
   bool quick = false;
   std::string content = "content", web = "web";
+  std::string scenes = "tests/benchmark/scenes";
+  std::string plots;     // what the names of pictures of curves begin with
   std::string programs;  // folder of the other programs
 };
 
@@ -32,7 +34,9 @@ double quantile(std::vector<double> values, double p);
 // One function a part; each adds its results.
 void bench_stream(BenchReport& report, const BenchOptions& options);
 void bench_cache(BenchReport& report, const BenchOptions& options);
-void bench_light(BenchReport& report, const BenchOptions& options);
+void bench_light_error(BenchReport& report, const BenchOptions& options);
+void bench_light_frame(BenchReport& report, const BenchOptions& options);
+void bench_light_scaling(BenchReport& report, const BenchOptions& options);
 void bench_avatar(BenchReport& report, const BenchOptions& options);
 
 }  // namespace wellspring
