@@ -30,6 +30,7 @@ wellspring_unit_test(avatar avatar)
 wellspring_unit_test(show   show)
 wellspring_unit_test(stream stream boost_any)
 wellspring_unit_test(kiosk  kiosk)
+wellspring_unit_test(benchmark benchmark)
 
 # Every header compiles alone. Built, not only checked, when the test runs.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} server/*.h avatar/*.h kiosk/*.h)

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Error over time of every technique on every scene: pictures of 1, 2, 4, ... samples a pixel
 // against a converged `path`, until a picture would take longer than its share of the run.
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "base/clock.h"
-#include "frame/compare.h"
-#include "frame/flip.h"
+#include "light_curve.h"
 #include "light_reference.h"
 #include "light_scenes.h"
 #include "plot.h"
@@ -22,68 +19,13 @@ struct Budget {
   double reference, longest_picture;
 };
 Budget budget_of(const BenchOptions& options) {
-  return options.quick ? Budget{192, 108, 9, 1.2} : Budget{320, 180, 100, 16};
-}
-
-struct Point {
-  int spp = 0;
-  double seconds = 0, flip = 0, rmse = 0, relative_mse = 0;
-};
-
-// Quick pictures are timed thrice and the median counts; the picture is the same each time.
-Point measure(const Technique& technique, const World& world, const Lights& lights,
-              const View& view, const StillSettings& settings, const Frame& reference) {
-  std::vector<double> seconds;
-  Frame frame;
-  do {
-    double began = seconds_now();
-    frame = render_still(technique, world, lights, view, settings);
-    seconds.push_back(seconds_now() - began);
-  } while (seconds.size() < 3 && seconds[0] < 0.1);
-  return {settings.spp, quantile(seconds, 0.5), flip(frame, reference), rmse(frame, reference),
-          relative_mse(frame, reference)};
-}
-
-std::vector<Point> measure_curve(const Technique& technique, const World& world,
-                                 const Lights& lights, const View& view,
-                                 const TransportSettings& transport, const Frame& reference,
-                                 double longest) {
-  std::vector<Point> curve;
-  StillSettings settings;
-  settings.transport = transport;
-  constexpr int most = 1 << 14;
-  for (settings.spp = 1; settings.spp <= most; settings.spp *= 2) {
-    settings.seed = 1000 + uint64_t(settings.spp);
-    curve.push_back(measure(technique, world, lights, view, settings, reference));
-    if (2 * curve.back().seconds > longest) break;
-  }
-  return curve;
-}
-
-// When the curve falls to this FLIP: between two points along the line through their logarithms;
-// a little beyond the last one along the line through the last three. 0: it does not fall so far.
-struct Reached {
-  double seconds = 0;
-  bool measured = true;  // else extrapolated
-};
-Reached time_to_flip(const std::vector<Point>& curve, double level) {
-  if (curve.empty()) return {};
-  if (curve[0].flip <= level) return {curve[0].seconds, true};
-  auto along = [&](const Point& a, const Point& b) {
-    double slope = std::log(b.flip / a.flip) / std::log(b.seconds / a.seconds);
-    return slope < -0.01 ? a.seconds * std::pow(level / a.flip, 1 / slope) : 0;
-  };
-  for (size_t i = 1; i < curve.size(); i++)
-    if (curve[i].flip <= level) return {along(curve[i - 1], curve[i]), true};
-  constexpr double farthest = 8;  // times the last point's
-  double seconds = curve.size() > 2 ? along(curve[curve.size() - 3], curve.back()) : 0;
-  return {seconds < farthest * curve.back().seconds ? seconds : 0, false};
+  return options.quick ? Budget{192, 108, 9, 1.2} : Budget{320, 180, 80, 10};
 }
 
 void add_curve(BenchReport& report, const std::string& scene, const Technique& technique,
-               double preparation, const std::vector<Point>& curve) {
+               double preparation, const std::vector<CurvePoint>& curve) {
   std::string prefix = std::string("light.") + technique.name;
-  for (const Point& p : curve) {
+  for (const CurvePoint& p : curve) {
     nlohmann::json fields = {{"scene", scene},
                              {"technique", technique.name},
                              {"spp", p.spp},
@@ -98,7 +40,7 @@ void add_curve(BenchReport& report, const std::string& scene, const Technique& t
 constexpr double flip_level = 0.1;
 
 void compare_times(BenchReport& report, const std::string& scene, const std::string& technique,
-                   const std::vector<Point>& curve, const std::vector<Point>& path) {
+                   const std::vector<CurvePoint>& curve, const std::vector<CurvePoint>& path) {
   Reached ours = time_to_flip(curve, flip_level), reference = time_to_flip(path, flip_level);
   if (!(ours.seconds > 0) || !(reference.seconds > 0)) return;
   report.add("light." + technique + ".time_to_flip_ratio", ours.seconds / reference.seconds, "1",
@@ -137,13 +79,13 @@ void bench_scene(BenchReport& report, const BenchOptions& options, const BenchSc
   report.add("light.reference.relative_mse", reference.relative_mse, "1", about);
   report.add("light.reference.flip", reference.flip, "1", about);
   Plot plot = make_plot(bench, view, reference);
-  std::vector<Point> path;
+  std::vector<CurvePoint> path;
   for (const Technique& technique : techniques()) {
     Lights own = lights;
     double began = seconds_now();
     if (technique.prepare) technique.prepare(world, std::span(&view.position, 1), own);
     double preparation = seconds_now() - began;
-    std::vector<Point> curve = measure_curve(technique, world, own, view, transport,
+    std::vector<CurvePoint> curve = measure_curve(technique, world, own, view, transport,
                                              reference.frame, budget.longest_picture);
     add_curve(report, bench.name, technique, preparation, curve);
     Curve drawn{technique.name, {}};
@@ -152,7 +94,7 @@ void bench_scene(BenchReport& report, const BenchOptions& options, const BenchSc
       std::snprintf(once, sizeof once, " (+ %.1f s once)", preparation);
       drawn.name += once;
     }
-    for (const Point& p : curve) drawn.points.push_back({p.seconds, p.flip});
+    for (const CurvePoint& p : curve) drawn.points.push_back({p.seconds, p.flip});
     plot.curves.push_back(drawn);
     if (plot.curves.size() == 1) path = curve;  // the list begins with `path`
     else compare_times(report, bench.name, technique.name, curve, path);

@@ -10,47 +10,11 @@
 #include "light/warp.h"
 #include "light_scenes.h"
 #include "plot.h"
+#include "tessellate.h"
 #include "world/surface.h"
 
 namespace wellspring {
 namespace {
-
-// Each triangle in n * n alike.
-Mesh tessellate(const Mesh& mesh, int n) {
-  Mesh fine;
-  fine.name = mesh.name;
-  fine.material = mesh.material;
-  for (const uvec3& t : mesh.triangles) {
-    uint32_t first = uint32_t(fine.positions.size());
-    for (int row = 0; row <= n; row++)
-      for (int i = 0; i <= row; i++) {
-        vec3 w(float(n - row) / float(n), float(row - i) / float(n), float(i) / float(n));
-        fine.positions.push_back(w.x * mesh.positions[t.x] + w.y * mesh.positions[t.y] +
-                                 w.z * mesh.positions[t.z]);
-        fine.normals.push_back(normalize(w.x * mesh.normals[t.x] + w.y * mesh.normals[t.y] +
-                                         w.z * mesh.normals[t.z]));
-      }
-    auto corner = [&](int row, int i) { return first + uint32_t(row * (row + 1) / 2 + i); };
-    for (int row = 0; row < n; row++)
-      for (int i = 0; i <= row; i++) {
-        fine.triangles.push_back({corner(row, i), corner(row + 1, i), corner(row + 1, i + 1)});
-        if (i < row)
-          fine.triangles.push_back({corner(row, i), corner(row + 1, i + 1), corner(row, i + 1)});
-      }
-  }
-  return fine;
-}
-
-// Everything but the lamp: its triangles are a matter of choosing lights, not of tracing rays.
-Scene tessellated(const Scene& scene, size_t triangles) {
-  Scene fine = scene;
-  size_t before = triangle_count(scene);
-  int n = std::max(1, int(std::lround(std::sqrt(double(triangles) / double(before)))));
-  for (Mesh& mesh : fine.meshes)
-    if (max_component(scene.materials[size_t(mesh.material)].emission) == 0)
-      mesh = tessellate(mesh, n);
-  return fine;
-}
 
 // Rays from what the eye sees in directions scattered by the cosine: as incoherent as paths are.
 std::vector<Ray> scattered_rays(const World& world, const View& view, int count) {
@@ -81,7 +45,7 @@ struct Cost {
   double triangles, ray_ns, sample_ns;
 };
 Cost measure(const BenchScene& bench, size_t triangles, bool quick) {
-  Scene scene = tessellated(bench.scene, triangles);
+  Scene scene = tessellate(bench.scene, triangles);
   World world(scene);
   const Viewpoint& c = bench.camera;
   View view = make_view(scene, c.position, c.yaw, c.pitch, c.fov, 256, 256);
