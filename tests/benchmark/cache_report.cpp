@@ -4,7 +4,7 @@
 
 namespace wellspring {
 
-void bench_cache(BenchReport& report, const BenchOptions& options) {
+void bench_cache_display(BenchReport& report, const BenchOptions& options) {
   constexpr int width = 1280, height = 720;
   for (const NamedValue& value : report_cache_display(width, height, options.quick)) {
     nlohmann::json fields = {{"size", "1280x720"}};

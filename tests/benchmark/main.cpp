@@ -5,31 +5,44 @@
 #include <iostream>
 
 #include "base/log.h"
+#include "cache_visit_trace.h"
 #include "report.h"
+#include "show/exhibit_load.h"
 
 int main(int argc, char** argv) {
   using namespace wellspring;
   log::start("bench");
   CLI::App app{"Speed against error, measured on this machine."};
   BenchOptions options;
-  std::string only, file;
+  std::string only, file, traces;
   const std::pair<const char*, void (*)(BenchReport&, const BenchOptions&)> parts[] = {
-      {"stream", bench_stream},           {"cache", bench_cache},
+      {"stream", bench_stream},           {"avatar", bench_avatar},
+      {"cache.display", bench_cache_display}, {"cache.visit", bench_cache_visit},
       {"light.frame", bench_light_frame}, {"light.scaling", bench_light_scaling},
-      {"light.error", bench_light_error}, {"avatar", bench_avatar}};
+      {"light.error", bench_light_error}};
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only, "one part: stream, cache, light (or one of its own: light.error ...), avatar");
-  app.add_option("--json", file, "where to write the report")->required();
+  CLI::Option* json = app.add_option("--json", file, "where to write the report");
+  app.add_option("--make-traces", traces, "instead: write the visits' camera traces into this folder")
+      ->excludes(json);
   app.add_option("--plots", options.plots,
                  "what names of plots begin with; without it the report's name and _");
   app.add_option("--scenes", options.scenes, "folder of the benchmark's own scenes")
       ->capture_default_str();
   app.add_option("--content", options.content, "folder of exhibit packages")->capture_default_str();
   app.add_option("--web", options.web, "folder of the pages")->capture_default_str();
+  app.add_option("--visit-trace", options.visit_trace, "cache: simulate this visit only");
+  app.add_option("--visit-technique", options.visit_technique, "cache: what answers samples in motion")
+      ->capture_default_str();
+  app.add_option("--visit-pictures", options.visit_pictures, "cache: folder for the pictures judged");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (file.empty() && traces.empty()) {
+    std::cerr << "--json is required\n";
+    return 2;
   }
   options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
   if (options.plots.empty())
@@ -37,6 +50,11 @@ int main(int argc, char** argv) {
   BenchReport report;
   bool found = only.empty();
   try {
+    if (!traces.empty()) {
+      Exhibit castle = load_exhibit((std::filesystem::path(options.content) / "castle").string());
+      make_visit_traces(castle, World(castle.scene), traces);
+      return 0;
+    }
     for (const auto& [name, run] : parts)
       if (only.empty() || name == only || std::string_view(name).starts_with(only + ".")) {
         found = true;

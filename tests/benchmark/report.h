@@ -13,6 +13,8 @@ struct BenchOptions {
   std::string scenes = "tests/benchmark/scenes";
   std::string plots;     // what the names of pictures of curves begin with
   std::string programs;  // folder of the other programs
+  // Of the simulated visits: one trace only, what answers samples, where to leave judged pictures.
+  std::string visit_trace, visit_technique = "gather", visit_pictures;
 };
 
 class BenchReport {
@@ -33,7 +35,8 @@ double quantile(std::vector<double> values, double p);
 
 // One function a part; each adds its results.
 void bench_stream(BenchReport& report, const BenchOptions& options);
-void bench_cache(BenchReport& report, const BenchOptions& options);
+void bench_cache_display(BenchReport& report, const BenchOptions& options);
+void bench_cache_visit(BenchReport& report, const BenchOptions& options);
 void bench_light_error(BenchReport& report, const BenchOptions& options);
 void bench_light_frame(BenchReport& report, const BenchOptions& options);
 void bench_light_scaling(BenchReport& report, const BenchOptions& options);

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ways to keep a picture up with a moving visitor when the renderer answers only a few samples a
+// frame: the render cache, and what other streaming renderers do. Each gets the same samples of the
+// same technique; how it uses them is its own. Deterministic.
+#pragma once
+#include <memory>
+#include <span>
+
+#include "cache/cache.h"
+#include "light/technique.h"
+
+namespace wellspring {
+
+// One displayed frame's circumstances.
+struct VisitMoment {
+  const World* world = nullptr;
+  const Lights* lights = nullptr;
+  const Technique* technique = nullptr;
+  TransportSettings transport;
+  View view;             // wanted now
+  bool changed = true;   // anything in the view moved, or its light changed, since the frame before
+  int frame = 0;         // counted from 0
+  uint64_t seed = 1;     // of this frame
+};
+
+// What the screen shows. `object` is 0 where `empty` is not.
+struct VisitPicture {
+  Frame frame;              // color and object are always there
+  double empty = 0;         // share of pixels that show nothing at all
+  CacheStats stats;         // of the cache only
+};
+
+class VisitMethod {
+ public:
+  virtual ~VisitMethod() = default;
+  // Spends at most `budget` samples on the moment and overwrites `shown` with what is displayed.
+  virtual void show(const VisitMoment& moment, int budget, VisitPicture& shown) = 0;
+};
+
+struct VisitMethodEntry {
+  const char* name;
+  const char* summary;
+  bool baseline;  // ours is measured against the best of these
+  std::unique_ptr<VisitMethod> (*make)();
+};
+
+// The one explicit list, in the report's order. A further display path is one more line here.
+std::span<const VisitMethodEntry> visit_methods();
+
+// server/cache as show/picture.cpp drives it; with `late` answers come one frame after they were
+// asked for.
+std::unique_ptr<VisitMethod> make_cache_method(bool late);
+// The whole picture at the resolution the budget allows, bilinear; while nothing changes, samples
+// add up in pixels of their own.
+std::unique_ptr<VisitMethod> make_resolution_drop();
+// A picture of full resolution from one camera, shown when it is complete; then the next, from the
+// newest camera. While nothing changes, whole pictures add up.
+std::unique_ptr<VisitMethod> make_hold();
+// Pixels of the present view in random order, each replacing what is displayed there (Bishop, Fuchs,
+// McMillan and Scher Zagier, "Frameless Rendering", SIGGRAPH 1994); nothing is reprojected. While
+// nothing changes, a pixel's samples add up.
+std::unique_ptr<VisitMethod> make_frameless();
+
+// How many columns and rows of a width x height picture `budget` samples can pay for, one each, at
+// about its aspect; at least 1x1.
+ivec2 affordable_size(int width, int height, int budget);
+// Bilinear colour, nearest object; overwrites the planes of `large` (whose size is set).
+void upsample(const Frame& small, Frame& large);
+
+}  // namespace wellspring

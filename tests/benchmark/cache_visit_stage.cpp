@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache_visit_stage.h"
+
+#include "base/parallel.h"
+#include "light/technique.h"
+#include "show/exhibit_load.h"
+#include "show/news.h"
+
+namespace wellspring {
+namespace {
+
+std::unique_ptr<Show> open_show(const std::string& folder, const std::string& technique, bool lamps) {
+  Exhibit exhibit = load_exhibit(folder);
+  if (!lamps)
+    std::erase_if(exhibit.scene.lights, [](const PunctualLight& light) {
+      return light.type != PunctualType::directional;
+    });
+  ShowSettings settings;
+  settings.technique = technique;
+  return make_show(std::move(exhibit), settings);
+}
+
+}  // namespace
+
+VisitStage::VisitStage(const std::string& folder, const std::string& technique)
+    : folder_(folder), technique_(technique), lit_(open_show(folder, technique, true)) {
+  now_ = lit_.get();
+  mind_ = lit_->mind;
+  pose_ = lit_->pose;
+}
+
+Show& VisitStage::dark() {
+  if (!dark_) dark_ = open_show(folder_, technique_, false);
+  return *dark_;
+}
+
+void VisitStage::begin(const VisitTrace& trace) {
+  now_ = lamps_on(trace, 0) ? lit_.get() : &dark();
+  now_->mind = mind_;
+  now_->pose = pose_;
+  now_->voice = Voice{};
+  if (trace.telling && !exhibit().stories.empty()) tell(now_->voice, exhibit().stories.front());
+}
+
+void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
+  Show* before = now_;
+  now_ = lamps_on(trace, time) ? lit_.get() : &dark();
+  switched_ = now_ != before;
+  if (switched_) {
+    now_->mind = before->mind;
+    now_->pose = before->pose;
+    now_->voice = before->voice;
+  }
+  int first = int(exhibit().scene.instances.size()), count = before->world->instance_count();
+  before_.resize(size_t(count - first));
+  for (int i = first; i < count; i++)
+    before_[size_t(i - first)] = before->world->mesh_of(uint32_t(i)).positions;
+  Show& show = *now_;
+  if (!show.figure) return;
+  // As show/tick.cpp behaves and animates for one visitor.
+  StorytellerInput input;
+  input.time = time;
+  input.dt = dt;
+  input.speaking = speaking(show.voice);
+  input.telling = !show.voice.story.empty();
+  Guest guest;
+  guest.id = 1;
+  guest.head = vec3(eval_trace(trace, time).position - exhibit().scene.origin);
+  input.guests.push_back(guest);
+  StorytellerEvents events;
+  tick_storyteller(show.mind, show.storyteller, input, show.pose, events);
+  advance_voice(show.voice, dt);
+  pose_figure(*show.world, *show.figure, *show.exhibit.character, show.pose,
+              show.storyteller.placement, show.scratch);
+  show.world->commit();
+}
+
+View VisitStage::view(const VisitTrace& trace, double time, int width, int height) const {
+  Viewpoint at = eval_trace(trace, time);
+  return make_view(exhibit().scene, at.position, at.yaw, at.pitch, at.fov, width, height);
+}
+
+void VisitStage::see(const View& view, TrueView& seen) const {
+  const Technique& emission = *find_technique("direct");  // at one edge: what is seen, no light
+  TransportSettings transport;
+  transport.max_depth = 1;
+  size_t pixels = size_t(view.width) * size_t(view.height);
+  seen.view = view;
+  seen.object.resize(pixels);
+  seen.position.resize(pixels);
+  seen.hit.resize(pixels);
+  seen.where.assign(pixels, Hit{});
+  seen.corner.resize(size_t(view.width + 1) * size_t(view.height + 1));
+  auto look = [&](float x, float y) {
+    Request request;
+    request.ray = view_ray(view, x, y);
+    return emission.trace(world(), lights(), transport, request);
+  };
+  parallel_ranges(view.height + 1, 4, [&](int begin, int end) {
+    for (int y = begin; y < end; y++)
+      for (int x = 0; x <= view.width; x++) {
+        Sample corner = look(float(x), float(y));
+        seen.corner[size_t(y) * size_t(view.width + 1) + size_t(x)] =
+            (corner.flags & sample_hit) ? corner.object : 0;
+        if (x == view.width || y == view.height) continue;
+        size_t pixel = size_t(y) * size_t(view.width) + size_t(x);
+        Sample sample = look(float(x) + 0.5f, float(y) + 0.5f);
+        seen.hit[pixel] = (sample.flags & sample_hit) != 0;
+        seen.object[pixel] = seen.hit[pixel] ? sample.object : 0;
+        seen.position[pixel] = sample.position;
+        if (sample.flags & sample_moving)
+          seen.where[pixel] = {sample.distance, sample.instance, sample.triangle, sample.barycentric};
+      }
+  });
+}
+
+vec3 VisitStage::moved_back(const Hit& hit) const {
+  const std::vector<vec3>& vertices = before_[hit.instance - exhibit().scene.instances.size()];
+  uvec3 corner = world().mesh_of(hit.instance).triangles[hit.triangle];
+  vec2 b = hit.barycentric;
+  return (1 - b.x - b.y) * vertices[corner.x] + b.x * vertices[corner.y] + b.y * vertices[corner.z];
+}
+
+}  // namespace wellspring
