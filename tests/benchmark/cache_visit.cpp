@@ -21,7 +21,8 @@
 namespace wellspring {
 namespace {
 
-constexpr double settled_after = 2;  // seconds at rest until the reference takes over, as show/picture
+constexpr double settled_after =
+    2;  // seconds at rest until the reference takes over, as show/picture
 
 // One method at one budget, on its way through a trace.
 struct Running {
@@ -49,12 +50,14 @@ std::vector<Running> start_runs(const VisitSettings& settings, const VisitTrace&
 std::vector<int> judged_frames(const VisitSettings& settings, const VisitTrace& trace) {
   std::vector<int> frames;
   for (int i = 0; i < settings.instants; i++)
-    frames.push_back(int(std::lround(trace_seconds(trace) * (i + 0.5) / settings.instants * visit_rate)));
+    frames.push_back(
+        int(std::lround(trace_seconds(trace) * (i + 0.5) / settings.instants * visit_rate)));
   return frames;
 }
 
 bool sees_motion(const TrueView& seen) {
-  return std::any_of(seen.where.begin(), seen.where.end(), [](const Hit& hit) { return hit.valid(); });
+  return std::any_of(seen.where.begin(), seen.where.end(),
+                     [](const Hit& hit) { return hit.valid(); });
 }
 
 bool same_view(const View& a, const View& b) {
@@ -116,9 +119,10 @@ void step(const VisitMoment& moment, const Seen& seen, float exposure, Running& 
   frame.empty = float(running.picture.empty);
   frame.stats = running.picture.stats;
   frame.wrong_surface = float(wrong_surface_share(seen.now, running.picture.frame.object));
-  frame.temporal = moment.frame == 0 ? NAN
-                                     : float(motion_compensated_error(running.image,
-                                                                      running.image_before, seen.motion));
+  frame.temporal =
+      moment.frame == 0
+          ? NAN
+          : float(motion_compensated_error(running.image, running.image_before, seen.motion));
   running.run.frames.push_back(frame);
 }
 
@@ -157,8 +161,7 @@ void simulate(const VisitSettings& settings, VisitStage& stage, const VisitTrace
     moment.seed = mix64(uint64_t(i + 1) * 0x9e3779b9u + 1);
     parallel_for(int(runs.size()), [&](int r) {
       // A thread that waits for its samples does not begin another run meanwhile.
-      oneapi::tbb::this_task_arena::isolate(
-          [&] { step(moment, seen, exposure, runs[size_t(r)]); });
+      oneapi::tbb::this_task_arena::isolate([&] { step(moment, seen, exposure, runs[size_t(r)]); });
     });
     if (std::find(judged.begin(), judged.end(), i) == judged.end()) continue;
     Truth truth = find_truth(stage.world(), stage.lights(), view, truths);
@@ -166,8 +169,8 @@ void simulate(const VisitSettings& settings, VisitStage& stage, const VisitTrace
     judge(settings, trace, time, exposure, truth, runs);
     add_noise(truth, exposure, noise, settings.instants);
   }
-  log::info("visit '{}': {} frames, {} of {} converged pictures were kept", trace.name, frames, found,
-            settings.instants);
+  log::info("visit '{}': {} frames, {} of {} converged pictures were kept", trace.name, frames,
+            found, settings.instants);
   for (Running& running : runs) result.runs.push_back(std::move(running.run));
   result.noise.push_back(noise);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Error as the visitor has it. Recorded visits are simulated at 60 displayed frames a second; every
 // way of keeping the picture up (cache_visit_method.h) gets the same number of samples a frame, and
-// what it displays is compared with the converged picture of the view wanted at that instant, so that
-// lag counts. The clock is simulated: results do not depend on the machine's speed.
+// what it displays is compared with the converged picture of the view wanted at that instant, so
+// that lag counts. The clock is simulated: results do not depend on the machine's speed.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,9 +15,9 @@ namespace wellspring {
 struct VisitSettings {
   int width = 192, height = 108;
   std::vector<int> mismatches{4, 8, 16, 32, 64, 128};  // pixels over samples a frame
-  int instants = 6;   // judged against a converged picture, evenly spread over each trace
-  int truth_spp = 128;  // samples a pixel of each of a converged picture's two halves
-  int jpeg_quality = 82;           // as a visitor's pictures while it moves, 4:2:0
+  int instants = 6;       // judged against a converged picture, evenly spread over each trace
+  int truth_spp = 128;    // samples a pixel of each of a converged picture's two halves
+  int jpeg_quality = 82;  // as a visitor's pictures while it moves, 4:2:0
   std::string technique = "gather";
   std::string exhibit, traces, truths;  // folders: package, traces, kept converged pictures
   std::string only;                     // one trace's name; empty: all
@@ -46,8 +46,8 @@ struct VisitRun {
   std::vector<VisitInstant> instants;
 };
 
-// How far the converged pictures themselves can be trusted: their halves against each other (the mean
-// of both has half of that rmse).
+// How far the converged pictures themselves can be trusted: their halves against each other (the
+// mean of both has half of that rmse).
 struct TruthNoise {
   std::string trace;
   double flip = 0, rmse = 0;

@@ -24,8 +24,8 @@ float bilinear_luminance(const Image8& image, vec2 at) {
   float x = at.x - 0.5f, y = at.y - 0.5f;
   int left = int(std::floor(x)), top = int(std::floor(y));
   float fx = x - float(left), fy = y - float(top);
-  float upper = display_luminance(image, left, top) * (1 - fx) +
-                display_luminance(image, left + 1, top) * fx;
+  float upper =
+      display_luminance(image, left, top) * (1 - fx) + display_luminance(image, left + 1, top) * fx;
   float lower = display_luminance(image, left, top + 1) * (1 - fx) +
                 display_luminance(image, left + 1, top + 1) * fx;
   return upper * (1 - fy) + lower * fy;
@@ -67,8 +67,8 @@ vec2 find_again(const TrueView& before, vec3 place, bool infinite, uint32_t obje
   const View& view = before.view;
   vec3 point = infinite ? view.position + place : place;
   Projected at = project_point(view, point);
-  if (!(at.depth > 0) || !(at.x >= 0 && at.y >= 0 && at.x < float(view.width) &&
-                           at.y < float(view.height)))
+  if (!(at.depth > 0) ||
+      !(at.x >= 0 && at.y >= 0 && at.x < float(view.width) && at.y < float(view.height)))
     return vec2(nan);
   size_t pixel = size_t(at.y) * size_t(view.width) + size_t(at.x);
   if (before.object[pixel] != object || bool(before.hit[pixel]) == infinite) return vec2(nan);

@@ -87,8 +87,8 @@ VisitTrace make_approach(const Exhibit& castle, const World& world) {
   Viewpoint from = viewpoint(castle, "hall");
   from.position = {3.4, from.position.y, -0.3};
   look_at(from, crown);
-  return walk_through("approach", "walks up to the crown in its case and leans closer", castle, world,
-                      5.5, from, [&](double time, Visitor& visitor) {
+  return walk_through("approach", "walks up to the crown in its case and leans closer", castle,
+                      world, 5.5, from, [&](double time, Visitor& visitor) {
                         double away = glm::length(crown - visitor.view.position);
                         float speed = float(std::clamp(1.6 * (away - 0.95), 0.0, 1.2));
                         visitor.move = {0, 0, speed};
@@ -101,8 +101,8 @@ VisitTrace make_door(Exhibit castle, const World& world) {
   Viewpoint from = viewpoint(castle, "well");
   from.position.x = -3.6;
   if (castle.walk) castle.walk->bounds.reset();  // beyond the rope the courtyard goes on
-  return walk_through("door", "walks from the hall through the gate into the sunlit courtyard", castle,
-                      world, 6, from, [&](double time, Visitor& visitor) {
+  return walk_through("door", "walks from the hall through the gate into the sunlit courtyard",
+                      castle, world, 6, from, [&](double time, Visitor& visitor) {
                         visitor.move = {0, 0, 1.4f};
                         visitor.view.yaw = from.yaw + 0.5f * float(ease((time - 4) / 1.5));
                       });
@@ -114,8 +114,8 @@ VisitTrace make_orbit(const Exhibit& castle) {
   return record("orbit", "circles the bronze horse at 2.3 m, eyes on it", 6,
                 viewpoint(castle, "figure"), [&](double time, Viewpoint& view) {
                   double angle = 1.75 - 2.9 * ease(time / 6);  // from +Z towards +X
-                  view.position = horse + dvec3(radius * std::sin(angle), 0.05,
-                                                -radius * std::cos(angle));
+                  view.position =
+                      horse + dvec3(radius * std::sin(angle), 0.05, -radius * std::cos(angle));
                   look_at(view, horse);
                 });
 }

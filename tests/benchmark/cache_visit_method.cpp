@@ -11,9 +11,7 @@
 namespace wellspring {
 namespace {
 
-uint32_t object_of(const Sample& sample) {
-  return (sample.flags & sample_hit) ? sample.object : 0;
-}
+uint32_t object_of(const Sample& sample) { return (sample.flags & sample_hit) ? sample.object : 0; }
 
 void size_frame(Frame& frame, int width, int height) {
   frame.width = width;
@@ -55,7 +53,8 @@ class CacheMethod : public VisitMethod {
     const View& view = moment.view;
     cache_.resize(view.width, view.height);
     cache_.move_points(*moment.world);
-    if (late_ && !batch_.samples.empty()) cache_.remember(asked_from_, batch_.requests, batch_.samples);
+    if (late_ && !batch_.samples.empty())
+      cache_.remember(asked_from_, batch_.requests, batch_.samples);
     cache_.project(view);
     cache_.attend();
     cache_.plan(view, budget, moment.seed, batch_.requests);
@@ -113,8 +112,8 @@ class ResolutionDrop : public VisitMethod {
  private:
   Batch batch_;
   Frame low_;
-  int pictures_ = 0;         // since the last change
-  std::vector<vec3> own_;    // sums of the samples of each full pixel since then
+  int pictures_ = 0;       // since the last change
+  std::vector<vec3> own_;  // sums of the samples of each full pixel since then
   std::vector<int> counts_;
 };
 
@@ -136,7 +135,8 @@ class Hold : public VisitMethod {
       started_ = false;
     }
     if (!started_) {
-      // Traced at once, so that everything in the picture belongs to one moment; paid for by and by.
+      // Traced at once, so that everything in the picture belongs to one moment; paid for by and
+      // by.
       started_ = true;
       begun_changed_ = changed_;
       changed_ = false;
@@ -179,8 +179,8 @@ class Frameless : public VisitMethod {
     batch_.requests.clear();
     for (int i = 0; i < std::min(budget, pixels); i++) {
       uint32_t pixel = order_[next_++ % order_.size()];
-      batch_.requests.push_back(cell_request(moment, moment.seed, int(pixel) % width,
-                                             int(pixel) / width, width, height));
+      batch_.requests.push_back(
+          cell_request(moment, moment.seed, int(pixel) % width, int(pixel) / width, width, height));
     }
     batch_.trace(moment);
     for (size_t i = 0; i < batch_.samples.size(); i++) {
@@ -208,8 +208,10 @@ class Frameless : public VisitMethod {
 // Display path `primary` (exact visibility by primary rays, kept irradiance) has its line here once
 // there is one.
 constexpr VisitMethodEntry list[] = {
-    {"cache", "render cache, answers in the same frame", false, [] { return make_cache_method(false); }},
-    {"cache_late", "render cache, answers a frame late", false, [] { return make_cache_method(true); }},
+    {"cache", "render cache, answers in the same frame", false,
+     [] { return make_cache_method(false); }},
+    {"cache_late", "render cache, answers a frame late", false,
+     [] { return make_cache_method(true); }},
     {"resolution_drop", "whole pictures, as coarse as the budget", true, make_resolution_drop},
     {"hold", "the last complete picture", true, make_hold},
     {"frameless", "random pixels replaced", true, make_frameless},
@@ -218,7 +220,9 @@ constexpr VisitMethodEntry list[] = {
 }  // namespace
 
 std::span<const VisitMethodEntry> visit_methods() { return list; }
-std::unique_ptr<VisitMethod> make_cache_method(bool late) { return std::make_unique<CacheMethod>(late); }
+std::unique_ptr<VisitMethod> make_cache_method(bool late) {
+  return std::make_unique<CacheMethod>(late);
+}
 std::unique_ptr<VisitMethod> make_resolution_drop() { return std::make_unique<ResolutionDrop>(); }
 std::unique_ptr<VisitMethod> make_hold() { return std::make_unique<Hold>(); }
 std::unique_ptr<VisitMethod> make_frameless() { return std::make_unique<Frameless>(); }
@@ -232,7 +236,8 @@ ivec2 affordable_size(int width, int height, int budget) {
 }
 
 void upsample(const Frame& small, Frame& large) {
-  float sx = float(small.width) / float(large.width), sy = float(small.height) / float(large.height);
+  float sx = float(small.width) / float(large.width),
+        sy = float(small.height) / float(large.height);
   auto at = [&](int x, int y) {
     x = std::clamp(x, 0, small.width - 1);
     y = std::clamp(y, 0, small.height - 1);
@@ -247,7 +252,8 @@ void upsample(const Frame& small, Frame& large) {
         int left = int(std::floor(x - 0.5f)), top = int(std::floor(y - 0.5f));
         float fx = x - 0.5f - float(left), fy = y - 0.5f - float(top);
         vec3 upper = glm::mix(small.color[at(left, top)], small.color[at(left + 1, top)], fx);
-        vec3 lower = glm::mix(small.color[at(left, top + 1)], small.color[at(left + 1, top + 1)], fx);
+        vec3 lower =
+            glm::mix(small.color[at(left, top + 1)], small.color[at(left + 1, top + 1)], fx);
         large.color[pixel] = glm::mix(upper, lower, fy);
       }
   });

@@ -17,17 +17,17 @@ struct VisitMoment {
   const Lights* lights = nullptr;
   const Technique* technique = nullptr;
   TransportSettings transport;
-  View view;             // wanted now
-  bool changed = true;   // anything in the view moved, or its light changed, since the frame before
-  int frame = 0;         // counted from 0
-  uint64_t seed = 1;     // of this frame
+  View view;            // wanted now
+  bool changed = true;  // anything in the view moved, or its light changed, since the frame before
+  int frame = 0;        // counted from 0
+  uint64_t seed = 1;    // of this frame
 };
 
 // What the screen shows. `object` is 0 where `empty` is not.
 struct VisitPicture {
-  Frame frame;              // color and object are always there
-  double empty = 0;         // share of pixels that show nothing at all
-  CacheStats stats;         // of the cache only
+  Frame frame;       // color and object are always there
+  double empty = 0;  // share of pixels that show nothing at all
+  CacheStats stats;  // of the cache only
 };
 
 class VisitMethod {
@@ -56,9 +56,9 @@ std::unique_ptr<VisitMethod> make_resolution_drop();
 // A picture of full resolution from one camera, shown when it is complete; then the next, from the
 // newest camera. While nothing changes, whole pictures add up.
 std::unique_ptr<VisitMethod> make_hold();
-// Pixels of the present view in random order, each replacing what is displayed there (Bishop, Fuchs,
-// McMillan and Scher Zagier, "Frameless Rendering", SIGGRAPH 1994); nothing is reprojected. While
-// nothing changes, a pixel's samples add up.
+// Pixels of the present view in random order, each replacing what is displayed there (Bishop,
+// Fuchs, McMillan and Scher Zagier, "Frameless Rendering", SIGGRAPH 1994); nothing is reprojected.
+// While nothing changes, a pixel's samples add up.
 std::unique_ptr<VisitMethod> make_frameless();
 
 // How many columns and rows of a width x height picture `budget` samples can pay for, one each, at

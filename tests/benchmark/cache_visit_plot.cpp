@@ -14,7 +14,8 @@ namespace wellspring {
 namespace {
 
 // Told apart by colour-blind readers too (Okabe and Ito's palette), and by the marks.
-constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
+constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73",
+                                   "#cc79a7", "#e69f00", "#56b4e9"};
 
 struct Curve {
   std::string name;
@@ -36,15 +37,17 @@ std::string format(const char* pattern, auto... values) {
 }
 
 std::string write(double x, double y, const char* anchor, int size, const std::string& text) {
-  return format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" font-size=\"%d\">", x, y, anchor, size) +
+  return format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" font-size=\"%d\">", x, y, anchor,
+                size) +
          text + "</text>\n";
 }
 
 std::string open_svg(int width, int height) {
-  return format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d "
-                "%d\" font-family=\"sans-serif\" fill=\"#222\">\n<rect width=\"100%%\" "
-                "height=\"100%%\" fill=\"white\"/>\n",
-                width, height, width, height);
+  return format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d "
+      "%d\" font-family=\"sans-serif\" fill=\"#222\">\n<rect width=\"100%%\" "
+      "height=\"100%%\" fill=\"white\"/>\n",
+      width, height, width, height);
 }
 
 // A step of 1, 2 or 5 times a power of ten that divides the span into about `parts`.
@@ -59,25 +62,27 @@ std::string draw_frame(const Panel& p, double x_step, double y_step, bool x_labe
                        const std::function<std::string(double)>& x_label) {
   std::string svg;
   for (double v = p.low.y; v <= p.high.y + 1e-9; v += y_step) {
-    svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#ddd\"/>\n", p.left,
-                  p.left + p.width, p.y(v), p.y(v));
+    svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#ddd\"/>\n",
+                  p.left, p.left + p.width, p.y(v), p.y(v));
     svg += write(p.left - 6, p.y(v) + 4, "end", 12, format("%g", std::round(v * 1e6) / 1e6));
   }
   for (double v = p.low.x; v <= p.high.x + 1e-9; v += x_step) {
-    svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#888\"/>\n", p.x(v),
-                  p.x(v), p.top + p.height, p.top + p.height + 4);
+    svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#888\"/>\n",
+                  p.x(v), p.x(v), p.top + p.height, p.top + p.height + 4);
     if (x_labels) svg += write(p.x(v), p.top + p.height + 18, "middle", 12, x_label(v));
   }
-  return svg + format("<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" "
-                      "stroke=\"#888\"/>\n",
-                      p.left, p.top, p.width, p.height);
+  return svg + format(
+                   "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" "
+                   "stroke=\"#888\"/>\n",
+                   p.left, p.top, p.width, p.height);
 }
 
 std::string draw_mark(double x, double y, size_t kind) {
   const char* colour = colours[kind % std::size(colours)];
-  if (kind % 2 == 0) return format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3.5\" fill=\"%s\"/>\n", x, y, colour);
-  return format("<rect x=\"%.1f\" y=\"%.1f\" width=\"6\" height=\"6\" fill=\"%s\"/>\n", x - 3, y - 3,
-                colour);
+  if (kind % 2 == 0)
+    return format("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3.5\" fill=\"%s\"/>\n", x, y, colour);
+  return format("<rect x=\"%.1f\" y=\"%.1f\" width=\"6\" height=\"6\" fill=\"%s\"/>\n", x - 3,
+                y - 3, colour);
 }
 
 std::string draw_curve(const Panel& p, const Curve& curve) {
@@ -93,9 +98,10 @@ std::string draw_curve(const Panel& p, const Curve& curve) {
 std::string draw_legend(const std::vector<Curve>& curves, double x, double y, double advance) {
   std::string svg;
   for (const Curve& curve : curves) {
-    svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke-width=\"2\" "
-                  "stroke=\"%s\"/>\n",
-                  x, x + 24, y - 4, y - 4, colours[curve.colour % std::size(colours)]);
+    svg += format(
+        "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke-width=\"2\" "
+        "stroke=\"%s\"/>\n",
+        x, x + 24, y - 4, y - 4, colours[curve.colour % std::size(colours)]);
     svg += draw_mark(x + 12, y - 4, curve.colour) + write(x + 30, y, "start", 13, curve.name);
     x += advance;
   }
@@ -117,7 +123,8 @@ double largest_y(const std::vector<Curve>& curves) {
 
 std::vector<Curve> empty_curves() {
   std::vector<Curve> curves;
-  for (const VisitMethodEntry& entry : visit_methods()) curves.push_back({entry.name, curves.size(), {}});
+  for (const VisitMethodEntry& entry : visit_methods())
+    curves.push_back({entry.name, curves.size(), {}});
   return curves;
 }
 
@@ -128,7 +135,8 @@ void save_budget_plot(const std::string& file, const VisitResult& result,
   std::vector<Curve> curves = empty_curves();
   for (Curve& curve : curves)
     for (int mismatch : mismatches)
-      curve.points.push_back({-std::log2(double(mismatch)), mean_flip(result, curve.name, mismatch)});
+      curve.points.push_back(
+          {-std::log2(double(mismatch)), mean_flip(result, curve.name, mismatch)});
   auto [few, many] = std::minmax_element(mismatches.begin(), mismatches.end());
   Panel panel{70, 60, 600, 320};
   panel.low = {-std::log2(double(*many)), 0};
@@ -136,9 +144,8 @@ void save_budget_plot(const std::string& file, const VisitResult& result,
   panel.high = {-std::log2(double(*few)), step * std::ceil(largest_y(curves) / step)};
   std::string svg = open_svg(700, 450);
   svg += write(70, 24, "start", 16, "Error as the visitor has it, mean over all traces");
-  svg += draw_frame(panel, 1, step, true, [](double v) {
-    return "1/" + format("%.0f", std::exp2(-v));
-  });
+  svg += draw_frame(panel, 1, step, true,
+                    [](double v) { return "1/" + format("%.0f", std::exp2(-v)); });
   for (const Curve& curve : curves) svg += draw_curve(panel, curve);
   svg += draw_legend(curves, 80, 48, 150);
   svg += write(370, 430, "middle", 13, "samples a frame over pixels (60 frames a second)");

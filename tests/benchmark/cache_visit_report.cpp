@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// cache.visit.*: see cache_visit.h for what is measured. Every run's means, the means over all traces, ours against the best
-// baseline, and the plots.
+// cache.visit.*: see cache_visit.h for what is measured. Every run's means, the means over all
+// traces, ours against the best baseline, and the plots.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -15,7 +15,10 @@ namespace {
 constexpr double first_second = 1;
 
 void add_run(BenchReport& report, const VisitRun& run, const std::string& technique) {
-  nlohmann::json fields = {{"scene", "castle"}, {"trace", run.trace}, {"technique", technique}, {"method", run.method},
+  nlohmann::json fields = {{"scene", "castle"},
+                           {"trace", run.trace},
+                           {"technique", technique},
+                           {"method", run.method},
                            {"mismatch", run.mismatch}};
   VisitInstant mean = mean_instant(run);
   VisitFrame frame = mean_frame(run, first_second);
@@ -73,11 +76,13 @@ void bench_cache_visit(BenchReport& report, const BenchOptions& options) {
     }
     fields["method"] = "cache";
     report.add("cache.visit.flip_ratio",
-               mean_flip(result, "cache", mismatch) / best_baseline(result, mismatch), "ratio", fields);
+               mean_flip(result, "cache", mismatch) / best_baseline(result, mismatch), "ratio",
+               fields);
   }
   // A quarter of the samples: still better?
-  report.add("cache.visit.flip_ratio_64_to_16", mean_flip(result, "cache", 64) / best_baseline(result, 16),
-             "ratio", {{"scene", "castle"}});
+  report.add("cache.visit.flip_ratio_64_to_16",
+             mean_flip(result, "cache", 64) / best_baseline(result, 16), "ratio",
+             {{"scene", "castle"}});
   save_budget_plot(options.plots + "visit_budget.svg", result, settings.mismatches);
   save_time_plot(options.plots + "visit_time.svg", result, 16);
 }

@@ -9,7 +9,8 @@
 namespace wellspring {
 namespace {
 
-std::unique_ptr<Show> open_show(const std::string& folder, const std::string& technique, bool lamps) {
+std::unique_ptr<Show> open_show(const std::string& folder, const std::string& technique,
+                                bool lamps) {
   Exhibit exhibit = load_exhibit(folder);
   if (!lamps)
     std::erase_if(exhibit.scene.lights, [](const PunctualLight& light) {
@@ -109,7 +110,8 @@ void VisitStage::see(const View& view, TrueView& seen) const {
         seen.object[pixel] = seen.hit[pixel] ? sample.object : 0;
         seen.position[pixel] = sample.position;
         if (sample.flags & sample_moving)
-          seen.where[pixel] = {sample.distance, sample.instance, sample.triangle, sample.barycentric};
+          seen.where[pixel] = {sample.distance, sample.instance, sample.triangle,
+                               sample.barycentric};
       }
   });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exhibit during a simulated visit: its storyteller moves by a clock of its own, its lamps can be
-// switched, and rays tell exactly what a view shows.
+// The exhibit during a simulated visit: its storyteller moves by a clock of its own, its lamps can
+// be switched, and rays tell exactly what a view shows.
 #pragma once
 #include <memory>
 #include <string>

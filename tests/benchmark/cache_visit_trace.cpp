@@ -25,7 +25,8 @@ TraceSample read_sample(const json& row) {
     value[i] = row[i].get<double>();
     if (!std::isfinite(value[i])) throw std::invalid_argument("a number that is not finite");
   }
-  return {value[0], {value[1], value[2], value[3]}, float(value[4]), float(value[5]), float(value[6])};
+  return {
+      value[0], {value[1], value[2], value[3]}, float(value[4]), float(value[5]), float(value[6])};
 }
 
 // Ten thousandths: a tenth of a millimetre, and far below a pixel's angle.

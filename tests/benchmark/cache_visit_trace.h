@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded visit: where a visitor's camera is at every moment, and what happens meanwhile. Kept as
-// small JSON files in tests/benchmark/traces, written by make_visit_traces() with the show's own
+// A recorded visit: where a visitor's camera is at every moment, and what happens meanwhile. Kept
+// as small JSON files in tests/benchmark/traces, written by make_visit_traces() with the show's own
 // walking and tour rules, so that every machine measures the same visit.
 #pragma once
 #include <string>
@@ -25,7 +25,7 @@ struct LampSwitch {
 
 struct VisitTrace {
   std::string name, exhibit, about;
-  bool telling = false;  // the storyteller tells its first story; else it idles
+  bool telling = false;              // the storyteller tells its first story; else it idles
   std::vector<TraceSample> samples;  // never empty
   std::vector<LampSwitch> lamps;     // by time
 };

@@ -56,7 +56,8 @@ Truth find_truth(const World& world, const Lights& lights, const View& view,
                  const TruthSettings& settings) {
   Truth truth;
   char name[32];
-  std::snprintf(name, sizeof name, "%016llx", (unsigned long long)key_of(world, lights, view, settings));
+  std::snprintf(name, sizeof name, "%016llx",
+                (unsigned long long)key_of(world, lights, view, settings));
   std::filesystem::create_directories(settings.folder);
   truth.kept = true;
   for (int half = 0; half < 2; half++) {
@@ -65,8 +66,8 @@ Truth find_truth(const World& world, const Lights& lights, const View& view,
       truth.half[half] = load_linear_picture(file);
     } else {
       truth.kept = false;
-      truth.half[half] = render_still(*find_technique("path"), world, lights, view,
-                                      half_settings(settings, half));
+      truth.half[half] =
+          render_still(*find_technique("path"), world, lights, view, half_settings(settings, half));
       save_picture(file, truth.half[half], {});
     }
   }

@@ -10,16 +10,16 @@
 namespace wellspring {
 
 struct TruthSettings {
-  int spp = 64;             // of each half
-  int max_depth = 6;        // as the show's
-  uint64_t content = 0;     // hash of the exhibit's files
-  std::string folder;       // made when missing
+  int spp = 64;          // of each half
+  int max_depth = 6;     // as the show's
+  uint64_t content = 0;  // hash of the exhibit's files
+  std::string folder;    // made when missing
 };
 
 struct Truth {
-  Frame picture;            // mean of two halves with samples of their own
+  Frame picture;  // mean of two halves with samples of their own
   Frame half[2];
-  bool kept = false;        // it was found on disk
+  bool kept = false;  // it was found on disk
 };
 
 // All cores, seconds. Technique `path`, not clamped. Throws LoadError when the folder cannot be
