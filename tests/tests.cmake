@@ -32,12 +32,6 @@ wellspring_unit_test(stream stream boost_any)
 wellspring_unit_test(kiosk  kiosk)
 wellspring_unit_test(benchmark benchmark)
 
-# The benchmark's pure parts, of which no layer is made.
-wellspring_unit_test(benchmark show)
-foreach(part trace judge method)
-  target_sources(unit_benchmark PRIVATE ${PROJECT_SOURCE_DIR}/tests/benchmark/cache_visit_${part}.cpp)
-endforeach()
-
 # Every header compiles alone. Built, not only checked, when the test runs.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} server/*.h avatar/*.h kiosk/*.h)
 set(header_sources)
