@@ -11,6 +11,7 @@ namespace wellspring {
 struct CurvePoint {
   int spp = 0;
   double seconds = 0, flip = 0, rmse = 0, relative_mse = 0;
+  double cpu_seconds = 0;  // of all threads: hardly changed by what else the machine does
 };
 
 // Ends before a picture would take longer than `longest` seconds; one point at least.

@@ -29,7 +29,8 @@ void add_curve(BenchReport& report, const std::string& scene, const Technique& t
     nlohmann::json fields = {{"scene", scene},
                              {"technique", technique.name},
                              {"spp", p.spp},
-                             {"seconds", p.seconds}};
+                             {"seconds", p.seconds},
+                             {"cpu_seconds", p.cpu_seconds}};
     if (technique.prepare) fields["preparation_seconds"] = preparation;
     report.add(prefix + ".flip", p.flip, "1", fields);
     report.add(prefix + ".rmse", p.rmse, "radiance", fields);

@@ -35,7 +35,7 @@ std::vector<std::pair<double, double>> polyline(const std::string& svg, int n) {
 std::vector<CurvePoint> falling(double first, int count) {
   std::vector<CurvePoint> curve;
   for (int i = 0; i < count; i++)
-    curve.push_back({1 << i, double(1 << i), first * std::pow(0.5, 0.5 * i), 0, 0});
+    curve.push_back({1 << i, double(1 << i), first * std::pow(0.5, 0.5 * i), 0, 0, 0});
   return curve;
 }
 
