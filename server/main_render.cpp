@@ -247,8 +247,8 @@ void print_replay(const Options& o, const World& world, const Lights& lights, co
                                    : settings.spp))
       throw UsageError("--replay " + o.replay +
                        ": pixel x, y and sample i inside --size and --spp expected");
-  Request request = pixel_request(view, settings.seed, int(at[0]), int(at[1]), int(at[2]));
-  Sample sample = find_technique(o.technique)->trace(world, lights, settings.transport, request);
+  Sample sample = replay_sample(*find_technique(o.technique), world, lights, view, settings,
+                                int(at[0]), int(at[1]), int(at[2]));
   vec3 c = sample.radiance();
   std::printf("radiance %.9g %.9g %.9g\n", double(c.x), double(c.y), double(c.z));
   if (sample.flags & sample_hit)

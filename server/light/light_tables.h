@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "light/albedo_table.h"
+#include "light/emission.h"
 #include "light/emitter_groups.h"
 #include "light/environment_light.h"
 #include "light/transport_plan.h"
@@ -45,6 +46,7 @@ struct LightTables {
   std::vector<SpotCone> cones;          // of each of them
   float emitter_share = 0;  // of samples spent on emitters; the rest of area light is environment
   float area_share = 1;     // where one light is sampled: emitters and environment against punctual
+  EmissionChoice emission;  // of techniques that follow light from its sources
   std::vector<MaterialTraits> materials;
   bool any_pane = false;   // else shadow rays only ask whether anything is in between
   bool any_solid = false;  // else walks do not ask what they run in

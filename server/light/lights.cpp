@@ -160,6 +160,7 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   tables->emitter_share = share_of(tables->emitter_choice.total, environment_power);
 
   double punctual_power = 0;
+  std::vector<float> punctual_powers;
   for (const PunctualLight& light : scene.lights) {
     if (!plan.uses(punctual_lights)) break;
     float p = power_of(light, radius);
@@ -169,8 +170,13 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
     tables->punctual.push_back(light);
     float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
     tables->cones.push_back({outer, 1 / std::max(0.001f, inner - outer)});
+    punctual_powers.push_back(p);
     punctual_power += double(p);
   }
+  float sky_power = luminance(sky.radiance) > 0
+                        ? sky.mean_luminance * 4 * pi * pi * radius * radius
+                        : 0.0f;
+  tables->emission = make_emission_choice(*tables, power, punctual_powers, sky_power, scene);
   tables->area_share = share_of(tables->emitter_choice.total + environment_power, punctual_power);
 
   for (size_t i = 0; i < scene.materials.size(); i++) {

@@ -9,6 +9,7 @@
 
 namespace wellspring {
 
+struct InstantPass;    // light/instant_radiosity.h
 struct RadianceGrid;   // light/radiance_grid.h
 struct TransportPlan;  // light/transport_plan.h
 struct LightTables;  // alias tables, triangle lists, environment distribution: light/light_tables.h
@@ -19,6 +20,8 @@ struct Lights {
   std::shared_ptr<std::atomic<uint64_t>> bad_samples;
   // Of techniques that keep light; null until they prepare it.
   std::shared_ptr<const RadianceGrid> grid = nullptr;
+  // Of techniques that draw light anew for each pass; null until one begins.
+  std::shared_ptr<const InstantPass> pass = nullptr;
 };
 
 Lights make_lights(const World& world);

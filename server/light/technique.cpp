@@ -19,7 +19,13 @@ constexpr Technique list[] = {
      "path to the first rough surface beyond the eye's, kept light from there: quick, a little "
      "biased",
      trace_gather, prepare_gather},
+    {"instant_radiosity",
+     "point lights along paths of light, neighbours filtered together: quick, right after many passes",
+     trace_instant, nullptr, begin_instant, finish_instant, trace_many_instant},
 };
+
+// Pixels a side of what trace_many gets at once: neighbours, in the same cache.
+constexpr int pass_tile = 24;
 
 bool is_light(vec3 c) { return is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0; }
 
@@ -53,7 +59,11 @@ void trace(const Technique& technique, const World& world, const Lights& lights,
            const TransportSettings& settings, std::span<const Request> requests,
            std::span<Sample> samples) {
   if (requests.size() != samples.size()) throw std::invalid_argument("trace: one sample a request");
-  parallel_ranges(int(requests.size()), 64, [&](int begin, int end) {
+  parallel_ranges(int(requests.size()), technique.trace_many ? 512 : 64, [&](int begin, int end) {
+    if (technique.trace_many)
+      return technique.trace_many(world, lights, settings,
+                                  requests.subspan(size_t(begin), size_t(end - begin)),
+                                  samples.subspan(size_t(begin), size_t(end - begin)));
     for (int i = begin; i < end; i++)
       samples[size_t(i)] = technique.trace(world, lights, settings, requests[size_t(i)]);
   });
@@ -71,9 +81,7 @@ Request pixel_request(const View& view, uint64_t seed, int x, int y, int index) 
   return request;
 }
 
-uint64_t pass_seed(uint64_t seed, int index) {
-  return mix64(mix64(seed ^ 0x70617373ull) + uint64_t(index));
-}
+uint64_t pass_seed(uint64_t seed) { return mix64(seed ^ 0x70617373ull); }
 
 namespace {
 
@@ -92,16 +100,22 @@ void add_sample(const View& view, const Request& request, const Sample& sample, 
                                         : std::numeric_limits<float>::infinity();
 }
 
-// Calls `shade(x, y)` for every pixel, tile by tile, all cores.
+// Calls `shade(left, top, right, bottom)` for every tile, all cores.
 template <class Shade>
-void for_each_pixel(const View& view, const Shade& shade) {
-  constexpr int tile = 16;
+void for_each_tile(const View& view, int tile, const Shade& shade) {
   int across = (view.width + tile - 1) / tile, down = (view.height + tile - 1) / tile;
   parallel_for(across * down, [&](int t) {
     int left = t % across * tile, top = t / across * tile;
-    for (int y = top; y < std::min(top + tile, view.height); y++)
-      for (int x = left; x < std::min(left + tile, view.width); x++) shade(x, y);
+    shade(left, top, std::min(left + tile, view.width), std::min(top + tile, view.height));
   });
+}
+
+void trace_tile(const Technique& technique, const World& world, const Lights& lights,
+                const TransportSettings& settings, std::span<const Request> requests,
+                std::span<Sample> samples) {
+  if (technique.trace_many) return technique.trace_many(world, lights, settings, requests, samples);
+  for (size_t i = 0; i < requests.size(); i++)
+    samples[i] = technique.trace(world, lights, settings, requests[i]);
 }
 
 void render_passes(const Technique& technique, const World& world, Lights lights, const View& view,
@@ -110,19 +124,38 @@ void render_passes(const Technique& technique, const World& world, Lights lights
   std::vector<Request> requests(sums.color.size());
   for (int i = 0; i < settings.spp; i++) {
     if (technique.begin_pass)
-      technique.begin_pass(world, settings.transport, view, pass_seed(settings.seed, i), lights);
-    for_each_pixel(view, [&](int x, int y) {
-      Request request = pixel_request(view, settings.seed, x, y, i);
-      requests[request.pixel] = request;
-      samples[request.pixel] = technique.trace(world, lights, settings.transport, request);
+      technique.begin_pass(world, settings.transport, view, pass_seed(settings.seed), uint32_t(i),
+                           lights);
+    for_each_tile(view, pass_tile, [&](int left, int top, int right, int bottom) {
+      std::vector<Request> asked;
+      for (int y = top; y < bottom; y++)
+        for (int x = left; x < right; x++)
+          asked.push_back(pixel_request(view, settings.seed, x, y, i));
+      std::vector<Sample> answers(asked.size());
+      trace_tile(technique, world, lights, settings.transport, asked, answers);
+      for (size_t k = 0; k < asked.size(); k++) {
+        requests[asked[k].pixel] = asked[k];
+        samples[asked[k].pixel] = answers[k];
+      }
     });
     if (technique.finish_pass) technique.finish_pass(world, lights, view, samples);
-    for (size_t pixel = 0; pixel < samples.size(); pixel++)
-      add_sample(view, requests[pixel], samples[pixel], sums);
+    parallel_ranges(int(samples.size()), 4096, [&](int begin, int end) {
+      for (size_t pixel = size_t(begin); pixel < size_t(end); pixel++)
+        add_sample(view, requests[pixel], samples[pixel], sums);
+    });
   }
 }
 
 }  // namespace
+
+Sample replay_sample(const Technique& technique, const World& world, Lights lights,
+                     const View& view, const StillSettings& settings, int x, int y, int index) {
+  if (technique.begin_pass)
+    technique.begin_pass(world, settings.transport, view, pass_seed(settings.seed),
+                         uint32_t(index), lights);
+  return technique.trace(world, lights, settings.transport,
+                         pixel_request(view, settings.seed, x, y, index));
+}
 
 Frame render_still(const Technique& technique, const World& world, const Lights& lights,
                    const View& view, const StillSettings& settings) {
@@ -139,11 +172,14 @@ Frame render_still(const Technique& technique, const World& world, const Lights&
   if (technique.begin_pass || technique.finish_pass) {
     render_passes(technique, world, lights, view, settings, sums);
   } else {
-    for_each_pixel(view, [&](int x, int y) {
-      for (int i = 0; i < settings.spp; i++) {
-        Request request = pixel_request(view, settings.seed, x, y, i);
-        add_sample(view, request, technique.trace(world, lights, settings.transport, request), sums);
-      }
+    for_each_tile(view, 16, [&](int left, int top, int right, int bottom) {
+      for (int y = top; y < bottom; y++)
+        for (int x = left; x < right; x++)
+          for (int i = 0; i < settings.spp; i++) {
+            Request request = pixel_request(view, settings.seed, x, y, i);
+            add_sample(view, request, technique.trace(world, lights, settings.transport, request),
+                       sums);
+          }
     });
   }
   for (size_t pixel = 0; pixel < pixels; pixel++)

@@ -13,6 +13,15 @@ Sample trace_direct(const World& world, const Lights& lights, const TransportSet
 Sample trace_gather(const World& world, const Lights& lights, const TransportSettings& settings,
                     const Request& request);
 void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights);
+Sample trace_instant(const World& world, const Lights& lights, const TransportSettings& settings,
+                     const Request& request);
+void trace_many_instant(const World& world, const Lights& lights,
+                        const TransportSettings& settings, std::span<const Request> requests,
+                        std::span<Sample> samples);
+void begin_instant(const World& world, const TransportSettings& settings, const View& view,
+                   uint64_t seed, uint32_t index, Lights& lights);
+void finish_instant(const World& world, const Lights& lights, const View& view,
+                    std::span<Sample> samples);
 
 // A sample fit for a Frame: light that is NaN, infinite or negative is dropped (black) and counted;
 // settings.clamp is applied.

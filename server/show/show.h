@@ -25,7 +25,7 @@ struct ShowSettings {
   int max_visitors = 16;      // more are told to come back
   std::string technique = "gather";      // while anything moves
   std::string still_technique = "path";  // while the visitor stands still: the picture becomes the reference
-  TransportSettings transport{.max_depth = 6, .clamp = 12};
+  TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}};
   float moving_clamp = 4;     // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
 };

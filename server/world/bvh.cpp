@@ -11,14 +11,10 @@
 namespace wellspring {
 namespace {
 
-// Widest packets that the machine traces natively; 1: none.
-int packet_lanes() {
-  static int lanes = [] {
-    RTCDevice device = shared_device();
-    if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return 16;
-    return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 1;
-  }();
-  return lanes;
+bool has_packets() {
+  static bool native =
+      rtcGetDeviceProperty(shared_device(), RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
+  return native;
 }
 
 RTCRayHit to_embree(const Ray& ray) {
@@ -194,52 +190,9 @@ void World::Impl::intersect8(const Ray* rays, Hit* hits, int count) const {
 
 void World::intersect_many(const Ray* rays, Hit* hits, int count) const {
   int i = 0;
-  if (packet_lanes() >= 8)
+  if (has_packets())
     for (; i < count; i += 8) impl_->intersect8(rays + i, hits + i, std::min(8, count - i));
   for (; i < count; i++) hits[i] = intersect(rays[i]);
-}
-
-template <class Packet, int lanes>
-uint32_t World::Impl::occluded_lanes(const Ray* rays, int count) const {
-  alignas(64) int valid[lanes];
-  Packet r;
-  Query query;
-  embree::init(query);
-  query.rays = rays;
-  for (int i = 0; i < lanes; i++) {
-    const Ray& ray = rays[i < count ? i : 0];
-    valid[i] = i < count && is_traceable(ray) ? -1 : 0;
-    r.org_x[i] = ray.origin.x, r.org_y[i] = ray.origin.y, r.org_z[i] = ray.origin.z;
-    r.dir_x[i] = ray.direction.x, r.dir_y[i] = ray.direction.y, r.dir_z[i] = ray.direction.z;
-    r.tnear[i] = ray.t_min, r.tfar[i] = ray.t_max;
-    r.time[i] = 0, r.mask[i] = ~0u, r.id[i] = unsigned(i), r.flags[i] = 0;
-  }
-  embree::occluded(still_scene, query, valid, r);
-  uint32_t blocked = 0;
-  bool any = false;
-  for (int i = 0; i < count; i++) {
-    if (valid[i] && r.tfar[i] < rays[i].t_min) blocked |= 1u << i, valid[i] = 0;
-    else if (valid[i] && !meets(moving_bounds, rays[i], rays[i].t_max)) valid[i] = 0;
-    any |= valid[i] != 0;
-  }
-  if (!any) return blocked;
-  embree::occluded(moving_scene, query, valid, r);
-  for (int i = 0; i < count; i++)
-    if (valid[i] && r.tfar[i] < rays[i].t_min) blocked |= 1u << i;
-  return blocked;
-}
-
-uint32_t World::occluded_packet(const Ray* rays, int count) const {
-  if (count > 8 && packet_lanes() >= 16)
-    return impl_->occluded_lanes<RTCRay16, 16>(rays, count);
-  uint32_t blocked = 0;
-  if (packet_lanes() >= 8) {
-    for (int i = 0; i < count; i += 8)
-      blocked |= impl_->occluded_lanes<RTCRay8, 8>(rays + i, std::min(8, count - i)) << i;
-    return blocked;
-  }
-  for (int i = 0; i < count; i++) blocked |= uint32_t(occluded(rays[i])) << i;
-  return blocked;
 }
 
 }  // namespace wellspring

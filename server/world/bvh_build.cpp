@@ -87,7 +87,7 @@ void World::Impl::filter(const RTCFilterFunctionNArguments* arguments) {
     vec2 barycentric{RTCHitN_u(arguments->hit, arguments->N, i),
                      RTCHitN_v(arguments->hit, arguments->N, i)};
     uint32_t triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
-    const Ray& ray = query.rays[RTCRayN_id(arguments->ray, arguments->N, i)];
+    Ray ray = query.ray(RTCRayN_id(arguments->ray, arguments->N, i));
     if (passes(*impl.scene, impl.placed[instance], instance, triangle, barycentric, ray))
       arguments->valid[i] = 0;
   }

@@ -22,7 +22,15 @@ struct World::Impl {
     bool instanced;
   };
   struct Query : embree::Context {
-    const Ray* rays;
+    const Ray* rays = nullptr;  // one of these two
+    const RayPacket* packet = nullptr;
+    Ray ray(unsigned i) const {
+      if (rays) return rays[i];
+      return {{packet->origin_x[i], packet->origin_y[i], packet->origin_z[i]},
+              0,
+              {packet->direction_x[i], packet->direction_y[i], packet->direction_z[i]},
+              packet->t_max[i]};
+    }
   };
 
   const Scene* scene = nullptr;
@@ -66,9 +74,9 @@ struct World::Impl {
     return hit;
   }
   void intersect8(const Ray* rays, Hit* hits, int count) const;
-  // Bit i: rays[i] is blocked; Packet is an RTCRay of 8 or 16 lanes.
-  template <class Packet, int lanes>
-  uint32_t occluded_lanes(const Ray* rays, int count) const;
+  // Answers for lanes [first, first + width); Lanes is an RTCRay8 or RTCRay16.
+  template <class Lanes, int width>
+  uint32_t occluded_lanes(const RayPacket& rays, uint32_t active, int first) const;
 };
 
 }  // namespace wellspring

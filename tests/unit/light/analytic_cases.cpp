@@ -18,6 +18,8 @@ constexpr Claim claims[] = {
      "light between surfaces is left out by definition"},
     {"gather", every_kind & ~unsigned(interreflection),
      "light between surfaces is read from cells: a little biased by their size"},
+    {"instant_radiosity", every_kind & ~unsigned(caustics),
+     "caustics are blurred by the photons' radius"},
 };
 
 PunctualLight point_light(vec3 position, float intensity) {

@@ -85,13 +85,13 @@ TEST(Technique, AnySampleCanBeReplayedBitForBit) {
   settings.spp = 5;
   settings.seed = 77;
   for (const Technique& technique : techniques()) {
+    if (technique.finish_pass) continue;  // pixels are not their own samples' mean
     Frame frame = render_still(technique, world, lights, view, settings);
     for (int y = 0; y < 12; y++)
       for (int x = 0; x < 16; x++) {
         dvec3 sum(0);
         for (int i = 0; i < 5; i++)
-          sum += dvec3(
-              technique.trace(world, lights, {}, pixel_request(view, 77, x, y, i)).radiance());
+          sum += dvec3(replay_sample(technique, world, lights, view, settings, x, y, i).radiance());
         ASSERT_EQ(vec3(sum / 5.0), frame.color[size_t(y * 16 + x)])
             << technique.name << " " << x << "," << y;
       }

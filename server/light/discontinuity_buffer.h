@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The discontinuity buffer (Wald et al. 2002, section 4.3): irradiance is averaged over neighbouring
+// pixels where the surface goes on, so that a pixel profits from its neighbours' sets of point lights;
+// reflectance is not touched, so textures stay sharp. Beyond the paper, neighbours belong to one object,
+// and distance is that from the tangent plane, which a floor seen at a grazing angle never fails.
+#pragma once
+#include <span>
+
+#include "light/sample.h"
+#include "world/view.h"
+
+namespace wellspring {
+
+struct DiscontinuitySettings {
+  int columns = 3, rows = 3;  // of the window; odd
+  float normal = 0.9f;        // least cosine between normals
+  float distance = 1;         // most distance from each other's tangent plane, in pixels there
+};
+
+// Does the surface go on between two pixels? `pixel`: angle of a pixel. Symmetric.
+bool is_continuous(const Sample& a, const Sample& b, const DiscontinuitySettings& settings,
+                   float pixel);
+
+// samples[y * width + x].smooth becomes a weighted mean over the window's continuous neighbours. Where n
+// pixels are continuous with one and m with the other, each counts 1 / max(n, m) for the other and the
+// rest for itself: in the middle of a surface the plain mean, and nowhere is light won or lost, so that
+// a picture's mean stays what it was. Windows up to 7 x 7. All cores.
+void filter_smooth(const View& view, const DiscontinuitySettings& settings,
+                   std::span<Sample> samples);
+
+}  // namespace wellspring

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/eye_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wellspring {
+namespace {
+
+// What is seen in mirrors is not filtered, so more than one set lights it.
+constexpr int mirror_sets = 4;
+constexpr int mirror_depth = 6;  // chains are not cut short at random before
+
+// Radiance scattered towards where `walk` came from by the rough lobes of what it met.
+vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, const Bsdf& bsdf,
+                float sharp, int sets, Sampler& sampler) {
+  if (walk.depth >= eye.max_depth || !has_rough(bsdf, sharp)) return vec3(0);
+  LitPlace place{&surface, &bsdf, walk.medium, walk.depth, sharp};
+  PlaceLight light;
+  int all = eye.pass.sets(), asked = std::min(sets, all);
+  for (int i = 0; i < asked; i++)
+    shade_by_point_lights(eye.transport, eye.pass, (eye.set + i) % all, eye.max_depth, &place, 1,
+                          &light);
+  vec3 radiance = light.sum() / float(asked);
+  PlaceLight rest;
+  gather_rest(eye, place, sampler, rest);
+  return radiance + rest.sum();
+}
+
+// Lets a walk live with a chance of its throughput.
+bool survives(Walk& walk, float importance, Sampler& sampler) {
+  float chance = std::min(1.0f, max_component(walk.throughput) * importance);
+  if (!(sampler.next() < chance)) return false;
+  walk.throughput /= chance;
+  return true;
+}
+
+// The walk's ray ends at `hit`.
+struct Met {
+  Surface surface;
+  const Material* material;
+  Bsdf bsdf;
+};
+void meet(const Transport& transport, const Hit& hit, Walk& walk, Met& met) {
+  met.surface = eval_surface(transport.world, walk.ray, hit);
+  met.material = &transport.world.material_of(hit.instance);
+  if (transport.tables.any_solid) {
+    walk.medium = medium_before(walk, met.surface, *met.material);
+    walk.throughput *= eval_absorption(transport, walk.medium, hit.t);
+  }
+  met.bsdf = make_bsdf(met.surface, *met.material, walk.ray.direction,
+                       *transport.tables.materials[size_t(met.surface.material)].albedo);
+}
+
+// Light along a ray that left a rough lobe: from nearer than the clip distance the share that clipping
+// took, and through sharp things what is rough behind them.
+vec3 gathered(const EyeLight& eye, Walk walk, Sampler& sampler) {
+  const Transport& transport = eye.transport;
+  const LightTables& tables = transport.tables;
+  float clip = eye.pass.compensate ? eye.pass.clip : 0;
+  float run = 0;
+  bool chained = false;  // a sharp lobe was on the way
+  vec3 radiance(0);
+  for (int i = 0; i < most_panes; i++) {
+    if (!eye.pass.sharp) walk.ray.t_max = clip - run;
+    Hit hit = transport.world.intersect(walk.ray);
+    if (!hit.valid()) {
+      if (chained && tables.environment.cells.cells.empty())
+        radiance += walk.throughput * eval_environment(tables.environment, walk.ray.direction);
+      return radiance;
+    }
+    run += hit.t;
+    Met met;
+    meet(transport, hit, walk, met);
+    float taken = chained ? 1.0f : run < clip ? 1 - run * run / (clip * clip) : 0.0f;
+    if (taken > 0) {
+      if (!chained && tables.first_emitter[hit.instance] != no_emitter)
+        radiance += walk.throughput * taken * surface_emission(met.surface, *met.material);
+      Walk asked = walk;
+      asked.throughput *= taken;
+      if (!met.material->unlit && survives(asked, 2, sampler))
+        radiance += asked.throughput * eval_rough(eye, walk, met.surface, met.bsdf, sharp_alpha, 1,
+                                                  sampler);
+    }
+    if (met.material->unlit || !eye.pass.sharp || !has_sharp(met.bsdf, sharp_alpha) ||
+        walk.depth >= eye.max_depth)
+      return radiance;
+    BsdfSample scattered = sample_bsdf(met.bsdf, Lobes::specular, sampler);
+    if (!advance(walk, met.surface, scattered)) return radiance;
+    chained |= scattered.bounce != Bounce::pass;
+    if (!survives(walk, 1, sampler)) return radiance;
+  }
+  return radiance;
+}
+
+}  // namespace
+
+void gather_rest(const EyeLight& eye, const LitPlace& place, Sampler& sampler, PlaceLight& light) {
+  bool clipped = eye.pass.compensate && eye.pass.clip > 0;
+  if ((!clipped && !eye.pass.sharp) || place.depth >= eye.max_depth) return;
+  const Bsdf& bsdf = *place.bsdf;
+  bool sharp = has_sharp(bsdf, place.sharp);
+  if (sharp && !has_diffuse(bsdf)) return;
+  BsdfSample scattered =
+      sample_bsdf(bsdf, sharp ? Lobes::diffuse : Lobes::all, sampler);
+  if (!(scattered.pdf > 0)) return;
+  BsdfValue value = eval_bsdf(bsdf, scattered.direction);
+  Walk walk;
+  walk.depth = place.depth;
+  walk.medium = place.medium;
+  scattered.weight = vec3(1);
+  if (!advance(walk, *place.surface, scattered)) return;
+  vec3 radiance = gathered(eye, walk, sampler) / scattered.pdf;
+  light.diffuse += value.diffuse * radiance;
+  if (!sharp) light.specular += value.specular * radiance;
+}
+
+vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
+  const Transport& transport = eye.transport;
+  vec3 radiance(0);
+  for (int i = 0; i < most_panes; i++) {
+    Hit hit = transport.world.intersect(walk.ray);
+    if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
+    Met met;
+    meet(transport, hit, walk, met);
+    radiance +=
+        walk.throughput * walk_met_emission(transport, walk, met.surface, *met.material);
+    if (met.material->unlit) return radiance;
+    bool last = walk.depth >= eye.max_depth;
+    if (!last)
+      radiance += walk.throughput * eval_rough(eye, walk, met.surface, met.bsdf, mirror_alpha,
+                                               mirror_sets, sampler);
+    BsdfSample scattered;
+    if (last) {  // only straight on, where a shadow ray would have gone too
+      if (!is_pane(met.surface, *met.material)) return radiance;
+      scattered.direction = walk.ray.direction;
+      scattered.weight = pane_transmittance(met.surface, *met.material, walk.ray.direction);
+      scattered.bounce = Bounce::pass;
+    } else {
+      if (!has_sharp(met.bsdf, mirror_alpha)) return radiance;
+      if (smoothest_alpha(met.bsdf) > 0)
+        radiance += walk.throughput * sample_direct_light(transport, walk, met.surface, met.bsdf,
+                                                          true, sampler)
+                                          .specular;
+      scattered = sample_bsdf(met.bsdf, Lobes::specular, sampler);
+    }
+    if (!advance(walk, met.surface, scattered)) return radiance;
+    if (scattered.bounce != Bounce::pass)
+      walk.area_share = scattered.pdf > 0 && transport.tables.area_share > 0 ? 1.0f : 0.0f;
+    if (walk.depth > mirror_depth && !survives(walk, 1, sampler)) return radiance;
+  }
+  return radiance;
+}
+
+}  // namespace wellspring

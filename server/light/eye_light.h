@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays of the technique `instant_radiosity` that start at the eye: its mirror images, and what is left
+// for a ray at a place lit by point lights (the list of paths in instant_radiosity.h).
+#pragma once
+#include "light/point_light_shading.h"
+#include "light/walk.h"
+
+namespace wellspring {
+
+struct EyeLight {
+  const Transport& transport;
+  const InstantPass& pass;
+  int max_depth = 8;
+  int set = 0;  // of this pixel
+};
+
+// Radiance that comes along a walk which left a sharp lobe (or a pane), times its throughput.
+vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler);
+
+// Adds what point lights leave out: what clipping took, and rough light seen in sharp things.
+void gather_rest(const EyeLight& eye, const LitPlace& place, Sampler& sampler, PlaceLight& light);
+
+}  // namespace wellspring

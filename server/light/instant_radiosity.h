@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Technique `instant_radiosity`: Wald, Kollig, Benthin, Keller, Slusallek, "Interactive Global
+// Illumination using Fast Ray Tracing" (2002), section 4, after Keller, "Instant Radiosity" (1997).
+//
+// Light is made into point lights by quasi-random walks; a pixel asks those of its set, one of
+// columns x rows (section 4.2), and finish_pass averages neighbours of all sets (section 4.3). Every
+// path of light has one way of being found, told by its scatterings counted from the eye, sharp or
+// rough (light_walk.h):
+//   eye, sharp ...                  followed by rays
+//   rough, then a light or rough    point lights; where they are nearer than `clip`, clipped, and what
+//                                   clipping took is gathered by a ray or missing
+//   rough, then sharp ..., a light  caustic photons (section 4.1; caustic_photons.h)
+//   rough, then sharp ..., rough    gathered by a ray
+// Differs from the paper: Owen scrambling, of which XOR by a random bit vector is the simplest kind;
+// rays instead of nothing for the last line; sets complement each other over passes as well.
+// Not claimed: light of moving emitters, colours split by glass.
+#pragma once
+#include <vector>
+
+#include "light/light_walk.h"
+#include "light/technique.h"
+
+namespace wellspring {
+
+enum class PointLightKind : uint8_t {
+  matt,        // as seen by Lambert: area light, or light scattered by a matt surface
+  scattering,  // whatever the surface does: `arrival`
+  distant,     // from infinity
+  punctual,    // of the scene
+};
+
+struct PointLight {
+  PointLightKind kind = PointLightKind::matt;
+  bool double_sided = false;
+  bool exact = false;  // in every set alike: what it lights needs no filter
+  uint16_t depth = 0;  // edges from the source
+  uint32_t index = 0;  // of what its kind needs: arrival or punctual light
+  vec3 position{0};    // distant: unit direction to it
+  vec3 normal{0, 1, 0};  // geometric
+  vec3 target{0};        // a shadow ray ends here, clear of the surface
+  vec3 radiance{0};      // matt: intensity at cosine 1; scattering: flux; else a factor
+};
+
+// What one pass has drawn.
+struct InstantPass {
+  int columns = 1, rows = 1, width = 1;  // sets, and pixels in a row of the picture
+  float clip = 0;
+  bool compensate = false, sharp = false;  // sharp: caustics can exist
+  std::vector<PointLight> lights;          // set by set, depths ascending in a set
+  std::vector<uint32_t> first;             // of each set, and the end
+  std::vector<Arrival> arrivals;
+  int sets() const { return columns * rows; }
+};
+
+// The set of a pixel's place in the pattern.
+inline int set_of_pixel(const InstantPass& pass, uint32_t pixel) {
+  int x = int(pixel % uint32_t(pass.width)), y = int(pixel / uint32_t(pass.width));
+  return y % pass.rows * pass.columns + x % pass.columns;
+}
+
+InstantPass draw_instant_pass(const Transport& transport, const TransportSettings& settings,
+                              int picture_width, uint64_t seed, uint32_t index);
+
+}  // namespace wellspring

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the point lights of one set do to places (first sum of the paper's section 4). Up to 16 places at
+// once, for each light in turn: neighbours' shadow rays to one light are nearly the same ray.
+#pragma once
+#include "light/instant_radiosity.h"
+
+namespace wellspring {
+
+// A place to be lit, towards the viewer its bsdf was made for.
+struct LitPlace {
+  const Surface* surface = nullptr;
+  const Bsdf* bsdf = nullptr;
+  int medium = -1;
+  int depth = 1;  // number of the eye's ray that ends here
+  float sharp = mirror_alpha;  // its lobes smoother than this are somebody else's
+};
+
+// Radiance towards the viewer by lobe; `exact`: of lights that every set has alike.
+struct PlaceLight {
+  vec3 diffuse{0}, specular{0}, exact_diffuse{0}, exact_specular{0};
+  vec3 sum() const { return diffuse + specular + exact_diffuse + exact_specular; }
+};
+
+// Adds to light[i] that of places[i], i below `count`, at most 16. What one place gets does not
+// depend on the others.
+void shade_by_point_lights(const Transport& transport, const InstantPass& pass, int set,
+                           int max_depth, const LitPlace* places, int count, PlaceLight* light);
+
+}  // namespace wellspring

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shadow rays side by side. Each lane's answer is its own: what the other lanes hold does not matter.
+#include <cmath>
+#include <cstring>
+
+#include "world/bvh_impl.h"
+
+namespace wellspring {
+namespace {
+
+// Widest packets that the machine traces natively.
+int packet_width() {
+  static int width = [] {
+    RTCDevice device = shared_device();
+    if (rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return 16;
+    return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 1;
+  }();
+  return width;
+}
+
+constexpr float farthest = 1e17f;  // Embree's places end at 1.84e18
+
+// The bits of `active` whose rays are finite and have a length.
+uint32_t traceable(const RayPacket& p, uint32_t active) {
+  uint32_t good = 0;
+  for (int i = 0; i < RayPacket::lanes; i++) {
+    float place = std::abs(p.origin_x[i]) + std::abs(p.origin_y[i]) + std::abs(p.origin_z[i]);
+    float way = std::abs(p.direction_x[i]) + std::abs(p.direction_y[i]) + std::abs(p.direction_z[i]);
+    good |= uint32_t(place <= farthest && way <= farthest && p.t_max[i] >= 0) << i;
+  }
+  return active & good;
+}
+
+// The bits of `active` whose rays meet the box.
+uint32_t meeting(const Bounds& box, const RayPacket& p, uint32_t active) {
+  if (!(box.low.x <= box.high.x)) return 0;
+  float near[RayPacket::lanes], far[RayPacket::lanes];
+  for (int i = 0; i < RayPacket::lanes; i++) near[i] = 0, far[i] = p.t_max[i];
+  auto cut = [&](const float* origin, const float* direction, float low, float high) {
+    for (int i = 0; i < RayPacket::lanes; i++) {
+      float inverse = 1 / direction[i];
+      float a = (low - origin[i]) * inverse, b = (high - origin[i]) * inverse;
+      // fmin and fmax skip the NaN of a ray lying in a slab's plane.
+      near[i] = std::fmax(near[i], std::fmin(a, b));
+      far[i] = std::fmin(far[i], std::fmax(a, b));
+    }
+  };
+  cut(p.origin_x, p.direction_x, box.low.x, box.high.x);
+  cut(p.origin_y, p.direction_y, box.low.y, box.high.y);
+  cut(p.origin_z, p.direction_z, box.low.z, box.high.z);
+  uint32_t met = 0;
+  for (int i = 0; i < RayPacket::lanes; i++)
+    met |= uint32_t(near[i] <= far[i] * 1.00001f) << i;
+  return active & met;
+}
+
+}  // namespace
+
+template <class Lanes, int width>
+uint32_t World::Impl::occluded_lanes(const RayPacket& p, uint32_t active, int first) const {
+  constexpr size_t bytes = size_t(width) * sizeof(float);
+  alignas(64) int valid[width];
+  Lanes r;
+  std::memcpy(r.org_x, p.origin_x + first, bytes);
+  std::memcpy(r.org_y, p.origin_y + first, bytes);
+  std::memcpy(r.org_z, p.origin_z + first, bytes);
+  std::memcpy(r.dir_x, p.direction_x + first, bytes);
+  std::memcpy(r.dir_y, p.direction_y + first, bytes);
+  std::memcpy(r.dir_z, p.direction_z + first, bytes);
+  std::memcpy(r.tfar, p.t_max + first, bytes);
+  for (int i = 0; i < width; i++) {
+    valid[i] = active >> (first + i) & 1 ? -1 : 0;
+    r.tnear[i] = 0, r.time[i] = 0, r.mask[i] = ~0u, r.id[i] = unsigned(first + i), r.flags[i] = 0;
+  }
+  Query query;
+  embree::init(query);
+  query.packet = &p;
+  auto blocked = [&] {
+    uint32_t bits = 0;
+    for (int i = 0; i < width; i++) bits |= uint32_t(r.tfar[i] < 0) << (first + i);
+    return bits & active;
+  };
+  embree::occluded(still_scene, query, valid, r);
+  uint32_t still = blocked();
+  uint32_t left = meeting(moving_bounds, p, active & ~still);
+  if (left == 0) return still;
+  for (int i = 0; i < width; i++) valid[i] = left >> (first + i) & 1 ? -1 : 0;
+  embree::occluded(moving_scene, query, valid, r);
+  return blocked();
+}
+
+uint32_t World::occluded_packet(const RayPacket& rays, uint32_t active) const {
+  active = traceable(rays, active);
+  if (active == 0) return 0;
+  const Impl& w = *impl_;
+  if (packet_width() == 16) return w.occluded_lanes<RTCRay16, 16>(rays, active, 0);
+  uint32_t blocked = 0;
+  if (packet_width() == 8) {
+    if (active & 0xff) blocked |= w.occluded_lanes<RTCRay8, 8>(rays, active & 0xff, 0);
+    if (active >> 8) blocked |= w.occluded_lanes<RTCRay8, 8>(rays, active & 0xff00, 8);
+    return blocked;
+  }
+  Impl::Query query;
+  query.packet = &rays;
+  for (unsigned i = 0; i < RayPacket::lanes; i++)
+    if (active >> i & 1) blocked |= uint32_t(occluded(query.ray(i))) << i;
+  return blocked;
+}
+
+}  // namespace wellspring
