@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // How different two pictures look when one flips from one to the other on a screen: LDR-FLIP
 // (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild, "FLIP: A Difference
-// Evaluator for Alternating Images", HPG 2020). 0: no difference to be seen, 1: black against white.
-// Pure, deterministic, all cores; tens of milliseconds for a million pixels. Sizes must agree and
-// not be 0 (std::invalid_argument otherwise).
+// Evaluator for Alternating Images", HPG 2020). 0: no difference to be seen, 1: black against
+// white. Pure, deterministic, all cores; tens of milliseconds for a million pixels. Sizes must
+// agree and not be 0 (std::invalid_argument otherwise).
 #pragma once
 #include "frame/frame.h"
 #include "frame/tonemap.h"

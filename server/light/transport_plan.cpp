@@ -58,7 +58,8 @@ Census take_census(const Scene& scene, std::span<const Mesh* const> moving) {
   for (size_t i = 0; i < instances.size(); i++)
     count_mesh(scene, scene.meshes[i], instances[i], false, ranges, census);
   for (const Mesh* mesh : moving) count_mesh(scene, *mesh, 1, true, ranges, census);
-  for (const PunctualLight& light : scene.lights) (shines(light) ? census.lamps : census.dark_lamps)++;
+  for (const PunctualLight& light : scene.lights)
+    (shines(light) ? census.lamps : census.dark_lamps)++;
   const Environment& sky = scene.environment;
   census.sky = max_component(sky.radiance) > 0;
   bool picture = sky.image >= 0 && size_t(sky.image) < scene.images.size() &&
@@ -230,8 +231,8 @@ TransportPlan make_full_plan(const Scene& scene) {
   for (TransportDecision& decision : plan.decisions) decision = {true, "asked for"};
   for (const Material& m : scene.materials) {
     bool through = m.transmission > 0, solid = m.thickness > 0;
-    plan.materials.push_back(
-        {true, true, true, true, true, through && !solid, through && solid, true, true, true, true});
+    plan.materials.push_back({true, true, true, true, true, through && !solid, through && solid,
+                              true, true, true, true});
   }
   return plan;
 }
@@ -247,7 +248,8 @@ std::string explain(const TransportPlan& plan) {
       if (plan.decisions[i].used != used) continue;
       any = true;
       std::string name = names[i];
-      text += "  " + name + std::string(widest + 2 - name.size(), ' ') + plan.decisions[i].why + "\n";
+      text +=
+          "  " + name + std::string(widest + 2 - name.size(), ' ') + plan.decisions[i].why + "\n";
     }
     if (!any) text += "  nothing\n";
   }

@@ -2,8 +2,10 @@
 // Error over time of every technique on every scene: pictures of 1, 2, 4, ... samples a pixel
 // against a converged `path`, until a picture would take longer than its share of the run.
 #include <cstdio>
+#include <ctime>
 
 #include "base/clock.h"
+#include "frame/picture_file.h"
 #include "light_curve.h"
 #include "light_reference.h"
 #include "light_scenes.h"
@@ -40,16 +42,24 @@ void add_curve(BenchReport& report, const std::string& scene, const Technique& t
 
 constexpr double flip_level = 0.1;
 
+std::vector<CurvePoint> by_cpu(std::vector<CurvePoint> curve) {
+  for (CurvePoint& p : curve) p.seconds = p.cpu_seconds;
+  return curve;
+}
+
 void compare_times(BenchReport& report, const std::string& scene, const std::string& technique,
                    const std::vector<CurvePoint>& curve, const std::vector<CurvePoint>& path) {
   Reached ours = time_to_flip(curve, flip_level), reference = time_to_flip(path, flip_level);
   if (!(ours.seconds > 0) || !(reference.seconds > 0)) return;
+  double cpu = time_to_flip(by_cpu(curve), flip_level).seconds,
+         path_cpu = time_to_flip(by_cpu(path), flip_level).seconds;
   report.add("light." + technique + ".time_to_flip_ratio", ours.seconds / reference.seconds, "1",
              {{"scene", scene},
               {"technique", technique},
               {"flip", flip_level},
               {"seconds", ours.seconds},
               {"path_seconds", reference.seconds},
+              {"cpu_ratio", path_cpu > 0 ? cpu / path_cpu : 0},
               {"measured", ours.measured && reference.measured}});
 }
 
@@ -79,6 +89,7 @@ void bench_scene(BenchReport& report, const BenchOptions& options, const BenchSc
   report.add("light.reference.rmse", reference.rmse, "radiance", about);
   report.add("light.reference.relative_mse", reference.relative_mse, "1", about);
   report.add("light.reference.flip", reference.flip, "1", about);
+  save_picture(options.plots + "light_" + bench.name + ".jpg", reference.frame, {});
   Plot plot = make_plot(bench, view, reference);
   std::vector<CurvePoint> path;
   for (const Technique& technique : techniques()) {
@@ -119,16 +130,22 @@ void bench_light_frame(BenchReport& report, const BenchOptions& options) {
     if (technique.prepare) technique.prepare(world, std::span(&view.position, 1), lights);
     StillSettings settings;
     settings.spp = 1;
-    std::vector<double> seconds;
+    std::vector<double> seconds, cpu;
     for (int i = 0; i < (options.quick ? 5 : 15); i++) {
       settings.seed = uint64_t(i);
       double began = seconds_now();
+      std::clock_t cpu_began = std::clock();
       render_still(technique, world, lights, view, settings);
       seconds.push_back(seconds_now() - began);
+      cpu.push_back(double(std::clock() - cpu_began) / CLOCKS_PER_SEC);
     }
     report.add(std::string("light.") + technique.name + ".frame_ms", 1000 * quantile(seconds, 0.5),
                "ms",
-               {{"scene", bench.name}, {"technique", technique.name}, {"width", 640}, {"height", 480}});
+               {{"scene", bench.name},
+                {"technique", technique.name},
+                {"width", 640},
+                {"height", 480},
+                {"cpu_ms", 1000 * quantile(cpu, 0.5)}});
   }
 }
 

@@ -10,8 +10,8 @@
 namespace wellspring {
 namespace {
 
-constexpr double width = 860, height = 540;
-constexpr double left = 84, right = 190, top = 72, bottom = 64;
+constexpr double width = 920, height = 540;
+constexpr double left = 84, right = 250, top = 72, bottom = 64;
 
 // Okabe and Ito 2008: told apart by every kind of colour vision, on white.
 constexpr const char* colors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",

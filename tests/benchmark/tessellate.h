@@ -6,7 +6,8 @@
 namespace wellspring {
 
 // Every triangle of what does not shine is cut into n * n alike, n such that about `triangles` come
-// out. Lamps stay as they are: their triangles are a matter of choosing lights, not of tracing rays.
+// out. Lamps stay as they are: their triangles are a matter of choosing lights, not of tracing
+// rays.
 Scene tessellate(const Scene& scene, size_t triangles);
 
 }  // namespace wellspring

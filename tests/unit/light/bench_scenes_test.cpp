@@ -14,7 +14,8 @@ using enum wellspring::TransportPart;
 namespace {
 
 Scene load(const std::string& name) {
-  Scene scene = load_scene(std::string(WELLSPRING_SOURCE) + "/tests/benchmark/scenes/" + name + ".glb");
+  Scene scene =
+      load_scene(std::string(WELLSPRING_SOURCE) + "/tests/benchmark/scenes/" + name + ".glb");
   EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
   EXPECT_EQ(scene.viewpoints.size(), 1u);
   return scene;

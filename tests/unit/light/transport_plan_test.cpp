@@ -33,7 +33,9 @@ Scene scene_with(const Material& material) {
   add_mesh(scene, sphere_mesh(add_material(scene, material), 0.2f, 8), "ball", at({0, 0.3f, 0}));
   return scene;
 }
-TransportPlan plan_with(const Material& material) { return make_transport_plan(scene_with(material)); }
+TransportPlan plan_with(const Material& material) {
+  return make_transport_plan(scene_with(material));
+}
 bool asks(TransportPart part, const Material& material) { return plan_with(material).uses(part); }
 
 Material with(Material material, const std::function<void(Material&)>& change) {
@@ -44,8 +46,8 @@ Material with(Material material, const std::function<void(Material&)>& change) {
 }  // namespace
 
 TEST(TransportPlan, EveryPartHasANameAndEveryDecisionAReason) {
-  for (const TransportPlan& plan :
-       {make_transport_plan(empty_scene()), plan_with(glass(1.5f, 0, 1)), make_full_plan(empty_scene())})
+  for (const TransportPlan& plan : {make_transport_plan(empty_scene()),
+                                    plan_with(glass(1.5f, 0, 1)), make_full_plan(empty_scene())})
     for (size_t i = 0; i < transport_parts; i++) {
       EXPECT_GT(std::string(transport_part_name(TransportPart(i))).size(), 3u);
       EXPECT_GT(plan.decisions[i].why.size(), 3u) << transport_part_name(TransportPart(i));
@@ -64,7 +66,8 @@ TEST(TransportPlan, ADiffuseSceneWithOneLampNeedsLittle) {
   TransportPlan plan = plan_with(diffuse(vec3(0.5f)));
   for (size_t i = 0; i < transport_parts; i++) {
     TransportPart part = TransportPart(i);
-    EXPECT_EQ(plan.uses(part), part == area_lights || part == kept_light) << transport_part_name(part);
+    EXPECT_EQ(plan.uses(part), part == area_lights || part == kept_light)
+        << transport_part_name(part);
   }
 }
 
@@ -221,7 +224,8 @@ TEST(TransportPlan, LightsCountByTheirPowerAndByWhomTheyLight) {
   scene.lights[0].position.y = NAN;
   EXPECT_FALSE(make_transport_plan(scene).uses(punctual_lights));
   scene.lights[0].position.y = 1;
-  for (Material& m : scene.materials) m.unlit = true;  // a scan that carries its light in its picture
+  for (Material& m : scene.materials)
+    m.unlit = true;  // a scan that carries its light in its picture
   TransportPlan plan = make_transport_plan(scene);
   EXPECT_FALSE(plan.uses(punctual_lights));
   EXPECT_FALSE(plan.uses(area_lights));
