@@ -7,8 +7,9 @@
 
 #include "light/albedo_table.h"
 #include "light/emission.h"
-#include "light/emitter_groups.h"
+#include "light/emission_picture.h"
 #include "light/environment_light.h"
+#include "light/light_tree.h"
 #include "light/transport_plan.h"
 #include "world/bvh.h"
 
@@ -24,6 +25,7 @@ struct EmitterTriangle {
   vec3 emission{0};     // where uniform
   bool uniform = true;  // neither texture nor alpha: emission is the same all over
   bool double_sided = false;
+  int picture = -1;  // index into LightTables::pictures where its brightness varies much
 };
 
 // A spot light's fall-off: clamp((cosine - outer) * scale), squared.
@@ -39,11 +41,15 @@ struct MaterialTraits {
 struct LightTables {
   TransportPlan plan;
   std::vector<EmitterTriangle> emitters;  // whole instances, in order of their triangles
-  EmitterGroups emitter_choice;            // by power and place
+  std::vector<EmissionPicture> pictures;
+  size_t picture_cells = 0;               // of all of them
+  LightTree emitter_choice;               // by power and place
   std::vector<uint32_t> first_emitter;    // of each instance, or no_emitter
   EnvironmentLight environment;
   std::vector<PunctualLight> punctual;  // those of any power
   std::vector<SpotCone> cones;          // of each of them
+  // Where there are many: the near ones (point, spot) by power and place, the distant ones by power.
+  LightTree near_choice, distant_choice;
   float emitter_share = 0;  // of samples spent on emitters; the rest of area light is environment
   float area_share = 1;     // where one light is sampled: emitters and environment against punctual
   EmissionChoice emission;  // of techniques that follow light from its sources

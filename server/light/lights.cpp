@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/light_bounds.h"
 #include "light/light_tables.h"
 #include "world/surface.h"
 
@@ -80,6 +81,7 @@ void gather_instance(const World& world, uint32_t instance, LightTables& tables,
               : std::min(texels_covered(world.scene(), mesh, picture, mesh.triangles[t]), budget);
       mean = mean_emission(world, e, int(std::clamp(look_ups, uniform ? 1.0f : 4.0f, 256.0f)));
       e.emission = uniform ? mean : vec3(0);
+      if (!uniform) add_emission_picture(world, look_ups, e, tables);
     }
     power.push_back(luminance(mean) * e.area * pi * (e.double_sided ? 2 : 1));
     tables.emitters.push_back(e);
@@ -114,10 +116,9 @@ size_t bytes_of(const std::vector<T>& v) {
 size_t light_table_bytes(const LightTables& t) {
   size_t bytes = bytes_of(t.emitters) + bytes_of(t.environment.cells.cells) +
                  bytes_of(t.punctual) + bytes_of(t.cones);
-  const EmitterGroups& g = t.emitter_choice;
-  bytes += bytes_of(g.centre) + bytes_of(g.radius2) + bytes_of(g.power) + bytes_of(g.members) +
-           bytes_of(g.first) + bytes_of(g.group_of) + bytes_of(g.share);
-  for (const AliasTable& table : g.choice) bytes += bytes_of(table.cells);
+  for (const LightTree* tree : {&t.emitter_choice, &t.near_choice, &t.distant_choice})
+    bytes += bytes_of(tree->nodes) + bytes_of(tree->leaf_of) + bytes_of(tree->strengths.cells);
+  for (const EmissionPicture& picture : t.pictures) bytes += bytes_of(picture.cells.cells);
   return bytes;
 }
 
@@ -145,8 +146,8 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
     for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
       if (!world.is_moving(i) && plan.materials[size_t(world.mesh_of(i).material)].emits)
         gather_instance(world, i, *tables, power);
-  tables->emitter_choice = make_emitter_groups(tables->emitters, power,
-                                               plan.uses(light_tree) ? most_emitter_groups : 1);
+  tables->emitter_choice = make_emitter_tree(
+      tables->emitters, power, plan.uses(light_tree) ? LightChoice::by_place : LightChoice::by_strength);
 
   Bounds bounds = scene_bounds(scene);
   float radius = 0.5f * length(bounds.high - bounds.low);
@@ -157,7 +158,10 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   double environment_power = sky.cells.cells.empty() ? 0
                                                              : double(sky.mean_luminance) *
                                                                    pi * pi * 4 * radius * radius;
-  tables->emitter_share = share_of(tables->emitter_choice.total, environment_power);
+  environment_power += double(luminance(sky.sun_radiance)) * double(sky.sun_chord2) * pi * pi *
+                       double(radius) * double(radius);
+  double emitter_power = tables->emitter_choice.total * double(pi);
+  tables->emitter_share = share_of(emitter_power, environment_power);
 
   double punctual_power = 0;
   std::vector<float> punctual_powers;
@@ -177,7 +181,8 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
                         ? sky.mean_luminance * 4 * pi * pi * radius * radius
                         : 0.0f;
   tables->emission = make_emission_choice(*tables, power, punctual_powers, sky_power, scene);
-  tables->area_share = share_of(tables->emitter_choice.total + environment_power, punctual_power);
+  tables->area_share = share_of(emitter_power + environment_power, punctual_power);
+  add_punctual_choice(*tables);
 
   for (size_t i = 0; i < scene.materials.size(); i++) {
     float ior = scene.materials[i].ior;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/light_bounds.h"
 #include "light/warp.h"
 
 namespace wellspring {
@@ -11,15 +12,37 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-LightSample sample_emitter(const Transport& transport, const Surface& from, Sampler& sampler) {
+constexpr float below_one = 0x1.fffffep-1f;
+
+// Radiance of an emitter that is not the same all over, at one place of it.
+vec3 emission_at(const World& world, const EmitterTriangle& e, const Ray& ray, float distance,
+                 vec2 barycentric) {
+  Hit hit;
+  hit.t = distance;
+  hit.instance = e.instance;
+  hit.triangle = e.triangle;
+  hit.barycentric = barycentric;
+  Surface shown = eval_surface(world, ray, hit);
+  const Material& material = world.material_of(e.instance);
+  float cover = 1;
+  if (material.alpha_mode == AlphaMode::mask) cover = shown.alpha < material.alpha_cutoff ? 0 : 1;
+  if (material.alpha_mode == AlphaMode::blend) cover = shown.alpha;
+  return surface_emission(shown, material) * cover;
+}
+
+LightSample sample_emitter(const Transport& transport, const Surface& from, vec3 normal, vec2 u,
+                           Sampler& sampler) {
   const LightTables& tables = transport.tables;
-  vec2 u = sampler.next2();
-  EmitterPick pick = sample_group(tables.emitter_choice, from.position, from.geometric_normal, u.x);
+  LightPick pick = pick_light(tables.emitter_choice, from.position, normal, u.x);
   if (!(pick.probability > 0)) return {};
+  // A choice among many uses the number up.
+  if (pick.probability < 0x1p-10f) pick.u = sampler.next();
   const EmitterTriangle& e = tables.emitters[pick.index];
-  vec2 b = sample_triangle({pick.u, u.y});
+  PicturePlace at{sample_triangle({pick.u, u.y}), 1};
+  if (e.picture >= 0)
+    at = sample_emission_picture(tables.pictures[size_t(e.picture)], {pick.u, u.y});
   Surface place;
-  place.position = e.corner + b.x * e.edge1 + b.y * e.edge2;
+  place.position = e.corner + at.barycentric.x * e.edge1 + at.barycentric.y * e.edge2;
   place.geometric_normal = e.normal;
   place.extent = e.extent;
   vec3 line = place.position - from.position;
@@ -39,20 +62,10 @@ LightSample sample_emitter(const Transport& transport, const Surface& from, Samp
     Ray ray;
     ray.origin = from.position;
     ray.direction = light.direction;
-    Hit hit;
-    hit.t = light.distance;
-    hit.instance = e.instance;
-    hit.triangle = e.triangle;
-    hit.barycentric = b;
-    Surface shown = eval_surface(transport.world, ray, hit);
-    const Material& material = transport.world.material_of(e.instance);
-    float cover = 1;
-    if (material.alpha_mode == AlphaMode::mask) cover = shown.alpha < material.alpha_cutoff ? 0 : 1;
-    if (material.alpha_mode == AlphaMode::blend) cover = shown.alpha;
-    light.radiance = surface_emission(shown, material) * cover;
+    light.radiance = emission_at(transport.world, e, ray, light.distance, at.barycentric);
   }
   light.target = offset_origin(place, -light.direction);
-  light.pdf = tables.emitter_share * pick.probability * distance2 / (cosine * e.area);
+  light.pdf = tables.emitter_share * pick.probability * at.density * distance2 / (cosine * e.area);
   return light;
 }
 
@@ -87,16 +100,84 @@ LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
   return light;
 }
 
+// What a light does to a surface, but for shadows. The floor keeps a chance for glossy lobes at
+// grazing angles.
+float effect_of(const LightSample& light, vec3 normal, bool through) {
+  if (!(light.pdf > 0)) return 0;
+  float cosine = dot(light.direction, normal);
+  if (cosine <= 0 && !through) return 0;
+  float effect = luminance(light.radiance) * (std::abs(cosine) + 0.05f);
+  return std::isfinite(effect) ? effect : 0;
+}
+
+// One near and one distant light, and what all of their kind do, or an estimate of it.
+struct PunctualDraw {
+  LightSample light;
+  float share = 1;  // radiance times this stands for all of the kind
+  float sum = 0;    // of effects
+};
+
+// Asks all lights, and picks one of a kind by its effect.
+void draw_of_few(const LightTables& tables, const Surface& from, vec3 normal, bool through, float u,
+                 PunctualDraw* draws) {
+  size_t count = tables.punctual.size();
+  LightSample lights[few_punctual_lights];
+  float effect[few_punctual_lights];
+  for (size_t i = 0; i < count; i++) {
+    lights[i] = eval_punctual(tables.punctual[i], tables.cones[i], from);
+    effect[i] = effect_of(lights[i], normal, through);
+    draws[tables.punctual[i].type == PunctualType::directional].sum += effect[i];
+  }
+  for (int kind : {0, 1}) {
+    float left = u * draws[kind].sum;
+    for (size_t i = 0; i < count; i++) {
+      if ((tables.punctual[i].type == PunctualType::directional) != kind || !(effect[i] > 0))
+        continue;
+      draws[kind].light = lights[i];
+      draws[kind].share = draws[kind].sum / effect[i];
+      if (left < effect[i]) break;
+      left -= effect[i];
+    }
+  }
+}
+
+void draw_of_many(const LightTables& tables, const Surface& from, vec3 normal, bool through, float u,
+                  PunctualDraw* draws) {
+  const LightTree* trees[] = {&tables.near_choice, &tables.distant_choice};
+  for (int kind : {0, 1}) {
+    if (trees[kind]->empty()) continue;
+    // Behind the geometric surface nothing arrives; the tree knows no other side.
+    vec3 side = through ? vec3(0) : from.geometric_normal;
+    LightPick pick = pick_light(*trees[kind], from.position, side, u);
+    if (!(pick.probability > 0)) continue;
+    PunctualDraw& draw = draws[kind];
+    draw.light = eval_punctual(tables.punctual[pick.index], tables.cones[pick.index], from);
+    draw.share = 1 / pick.probability;
+    draw.sum = effect_of(draw.light, normal, through) * draw.share;
+  }
+}
+
 }  // namespace
 
-LightSample sample_area_light(const Transport& transport, const Surface& from, Sampler& sampler) {
+vec3 lit_side(const Surface& surface, const Bsdf& bsdf) {
+  return max_component(bsdf.transmit) > 0 ? vec3(0) : surface.geometric_normal;
+}
+
+LightSample sample_area_light(const Transport& transport, const Surface& from, vec3 normal,
+                              Sampler& sampler) {
   const LightTables& tables = transport.tables;
-  bool emitters = !tables.emitter_choice.empty(),
-       sky = !tables.environment.cells.cells.empty();
+  bool emitters = !tables.emitter_choice.empty(), sky = tables.environment.is_sampled();
   if (!emitters && !sky) return {};
-  if (emitters && (!sky || sampler.next() < tables.emitter_share))
-    return sample_emitter(transport, from, sampler);
-  EnvironmentSample s = sample_environment(tables.environment, sampler);
+  vec2 u = sampler.next2();
+  if (emitters) {
+    if (!sky) return sample_emitter(transport, from, normal, u, sampler);
+    if (u.x < tables.emitter_share) {
+      u.x = std::min(u.x / tables.emitter_share, below_one);
+      return sample_emitter(transport, from, normal, u, sampler);
+    }
+    u.x = std::min((u.x - tables.emitter_share) / (1 - tables.emitter_share), below_one);
+  }
+  EnvironmentSample s = sample_environment(tables.environment, u);
   LightSample light;
   light.direction = s.direction;
   light.radiance = eval_environment(tables.environment, s.direction);
@@ -112,8 +193,11 @@ float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 normal, vec3
   float cosine = std::abs(dot(direction, e.normal));
   if (!(e.area > 0) || cosine < 1e-7f) return 0;
   vec3 line = met.position - from;
-  return tables.emitter_share *
-         sample_group_probability(tables.emitter_choice, from, normal, first + met.triangle) *
+  float density = 1;
+  if (e.picture >= 0)
+    density = sample_emission_picture_pdf(tables.pictures[size_t(e.picture)], met.barycentric);
+  return tables.emitter_share * density *
+         pick_light_probability(tables.emitter_choice, from, normal, first + met.triangle) *
          dot(line, line) / (cosine * e.area);
 }
 
@@ -123,39 +207,23 @@ float sample_sky_pdf(const LightTables& tables, vec3 direction) {
 
 LightSample sample_punctual_light(const Transport& transport, const Surface& from, vec3 normal,
                                   bool through, Sampler& sampler) {
-  const std::vector<PunctualLight>& lights = transport.tables.punctual;
-  constexpr size_t most = 16;
-  // More lights than candidates: every n-th from a random start, each with the same chance.
-  size_t count = lights.size(), taken = std::min(count, most);
-  float step = float(count) / float(taken);
-  float start = count > most ? sampler.next() : 0;
+  const LightTables& tables = transport.tables;
+  if (tables.punctual.size() == 1)
+    return eval_punctual(tables.punctual[0], tables.cones[0], from);
   // Two draws, near lights and distant ones, and then one of the two: the sun outshines every lamp
   // wherever it would shine, and indoors it rarely does, so it may not crowd the lamps out.
-  LightSample drawn[2];
-  float drawn_effect[2] = {0, 0}, sum[2] = {0, 0};
-  for (size_t i = 0; i < taken; i++) {
-    size_t index = count > most ? std::min(size_t((float(i) + start) * step), count - 1) : i;
-    LightSample light = eval_punctual(lights[index], transport.tables.cones[index], from);
-    if (light.pdf <= 0) continue;
-    float cosine = dot(light.direction, normal);
-    if (cosine <= 0 && !through) continue;
-    // The floor keeps a chance for glossy lobes at grazing angles.
-    float effect = luminance(light.radiance) * (std::abs(cosine) + 0.05f);
-    if (!(effect > 0) || !std::isfinite(effect)) continue;
-    int group = lights[index].type == PunctualType::directional;
-    sum[group] += effect;
-    if (sampler.next() * sum[group] < effect) {
-      drawn[group] = light;
-      drawn_effect[group] = effect;
-    }
-  }
-  if (!(sum[0] + sum[1] > 0)) return {};
-  float chance = 0.15f + 0.7f * sum[1] / (sum[0] + sum[1]);  // of the distant one
-  if (sum[0] == 0) chance = 1;
-  if (sum[1] == 0) chance = 0;
-  int group = sampler.next() < chance;
-  LightSample chosen = drawn[group];
-  chosen.radiance *= step * sum[group] / (drawn_effect[group] * (group ? chance : 1 - chance));
+  vec2 u = sampler.next2();
+  PunctualDraw draws[2];
+  (tables.punctual.size() <= few_punctual_lights ? draw_of_few : draw_of_many)(
+      tables, from, normal, through, u.x, draws);
+  float sum = draws[0].sum + draws[1].sum;
+  if (!(sum > 0)) return {};
+  float chance = 0.15f + 0.7f * draws[1].sum / sum;  // of the distant one
+  if (draws[0].sum == 0) chance = 1;
+  if (draws[1].sum == 0) chance = 0;
+  int kind = u.y < chance;
+  LightSample chosen = draws[kind].light;
+  chosen.radiance *= draws[kind].share / (kind ? chance : 1 - chance);
   return chosen;
 }
 

@@ -23,16 +23,25 @@ struct LightSample {
   float pdf = 0;  // over solid angle; 0: nothing
 };
 
-// Picks a triangle by power and place, or a direction of the environment by brightness.
-LightSample sample_area_light(const Transport& transport, const Surface& from, Sampler& sampler);
+// The side from which light reaches a surface of that material: its geometric normal, or 0 for both.
+vec3 lit_side(const Surface& surface, const Bsdf& bsdf);
+
+// Picks a triangle by power and place, or a direction of the environment by brightness. `normal`:
+// lit_side() of the surface.
+LightSample sample_area_light(const Transport& transport, const Surface& from, vec3 normal,
+                              Sampler& sampler);
+inline LightSample sample_area_light(const Transport& transport, const Surface& from,
+                                     Sampler& sampler) {
+  return sample_area_light(transport, from, from.geometric_normal, sampler);
+}
 // Densities with which sample_area_light(from that place) would have found what a ray has met.
-// `normal`: the geometric one of the surface there.
 float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 normal, vec3 direction,
                          const Surface& met);
 float sample_sky_pdf(const LightTables& tables, vec3 direction);
 
-// Picks one of up to sixteen candidates by its unshadowed effect on a surface that scatters to its
-// own side, or (`through`) to both sides. `radiance` is already divided by the chance of the pick.
+// Picks one by its unshadowed effect on a surface that scatters to its own side, or (`through`) to
+// both sides; of many by power and place first. `radiance` is already divided by the chance of the
+// pick.
 LightSample sample_punctual_light(const Transport& transport, const Surface& from, vec3 normal,
                                   bool through, Sampler& sampler);
 

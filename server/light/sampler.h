@@ -51,6 +51,9 @@ struct Sampler {
   uint64_t seed = 0;
   uint32_t index = 0, drawn = 0;
   explicit Sampler(uint64_t seed, uint32_t index = 0) : seed(seed), index(index) {}
+  // The next draw is this dimension's: whoever draws a varying count begins at fixed places, so that
+  // samples of one seed stay well spread together in all later dimensions.
+  void seek(uint32_t dimension) { drawn = dimension; }
   // One number, and two that are well spread together.
   float next() {
     uint64_t hash = mix64(seed + 0xd1b54a32d192ed03ull * ++drawn);

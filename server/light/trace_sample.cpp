@@ -30,6 +30,8 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
   bsdf.diffuse = diffuse ? vec3(1) : vec3(0);
   sample.albedo = albedo * tint;
   if (looks_specular(bsdf)) sample.flags |= sample_specular;
+  const uint32_t base = Dimensions::first_surface;
+  sampler.seek(base);
   if (!is_smooth(bsdf)) {
     DirectLight direct = sample_direct_light(transport, walk, surface, bsdf, true, sampler);
     sample.smooth += walk.throughput * direct.area_diffuse;
@@ -39,19 +41,29 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
   if (diffuse) {
     Walk next = walk;
     next.area_share = transport.tables.area_share > 0 ? 1.0f : 0.0f;
-    if (advance(next, surface, sample_bsdf(bsdf, Lobes::diffuse, sampler)))
+    sampler.seek(base + Dimensions::scatter);
+    BsdfSample scattered = sample_bsdf(bsdf, Lobes::diffuse, sampler);
+    if (advance(next, surface, scattered)) {
+      next.from_normal = lit_side(surface, bsdf);
+      sampler.seek(Dimensions::walk);
       sample.smooth += follow(transport, rules, next, sampler);
+    }
   }
   // A faint gloss over a diffuse layer is followed now and then, a strong one each time.
   float chance = diffuse ? glm::clamp(4 * (1 - bsdf.diffuse_share), 0.25f, 1.0f) : 1.0f;
+  sampler.seek(base + Dimensions::survival);
   if (has_specular(bsdf) && (chance == 1 || sampler.next() < chance)) {
     Walk next = walk;
+    sampler.seek(base + Dimensions::specular);
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::specular, sampler);
     scattered.weight /= chance;
     next.area_share = scattered.pdf > 0 && transport.tables.area_share > 0 ? 1.0f : 0.0f;
     if (scattered.bounce == Bounce::refract) next.density *= bsdf.eta * bsdf.eta;
-    if (advance(next, surface, scattered))
+    if (advance(next, surface, scattered)) {
+      if (scattered.bounce != Bounce::pass) next.from_normal = lit_side(surface, bsdf);
+      sampler.seek(2 * Dimensions::walk);
       sample.rest += tint * follow(transport, rules, next, sampler);
+    }
   }
 }
 
@@ -64,7 +76,10 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
   FirstSurface first = find_first_surface(transport, rules.max_depth, request, sampler, sample);
   if (first.scatters)
     shade_first(transport, rules, first.walk, first.surface, first.bsdf, first.tint, sampler, sample);
-  if (first.mirrored) sample.rest += follow(transport, rules, first.reflection, sampler);
+  if (first.mirrored) {
+    sampler.seek(3 * Dimensions::walk);
+    sample.rest += follow(transport, rules, first.reflection, sampler);
+  }
   return sample;
 }
 

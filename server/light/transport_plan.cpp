@@ -22,8 +22,8 @@ struct Census {
   size_t still_rough = 0;        // that stand still and scatter
   size_t moving = 0;
   size_t lamps = 0, dark_lamps = 0;  // punctual
-  bool sky = false, sky_varies = false;
-  bool any_light() const { return emitting > 0 || lamps > 0 || sky; }
+  bool sky = false, sky_varies = false, sun = false;
+  bool any_light() const { return emitting > 0 || lamps > 0 || sky || sun; }
 };
 
 bool shines(const PunctualLight& light) {
@@ -69,6 +69,7 @@ Census take_census(const Scene& scene, std::span<const Mesh* const> moving) {
     census.sky = max_component(sky.radiance * vec3(range.high)) > 0;
     census.sky_varies = census.sky && vec3(range.low) != vec3(range.high);
   }
+  census.sun = max_component(sky.sun.radiance) > 0 && sky.sun.angular_radius > 0;
   return census;
 }
 
@@ -162,10 +163,13 @@ void decide_lights(const Scene& scene, const Census& c, Deciding& d) {
            count_of(c.lamps, "point, spot or distant light", "point, spot and distant lights") +
                dark,
            c.lamps > 0 ? unlit : "the scene has none that shines" + dark);
-  d.decide(environment, c.sky, "light comes from infinity", "nothing shines from infinity");
-  d.decide(environment_importance, c.sky_varies && c.lit > 0,
-           "the sky's picture is brighter here than there",
-           !c.sky          ? "nothing shines from infinity"
+  d.decide(environment, c.sky || c.sun,
+           c.sun ? "light comes from infinity, with a sun" : "light comes from infinity",
+           "nothing shines from infinity");
+  d.decide(environment_importance, (c.sky_varies || c.sun) && c.lit > 0,
+           c.sun ? "the sun's disc is brighter than the rest"
+                 : "the sky's picture is brighter here than there",
+           !c.sky && !c.sun ? "nothing shines from infinity"
            : !c.sky_varies ? "the sky is equally bright everywhere: scattering finds it best"
                            : unlit);
 }

@@ -77,6 +77,7 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const Surface& surface, const Bsdf& bsdf, bool apart,
                                 Sampler& sampler) {
   const LightTables& tables = transport.tables;
+  const uint32_t base = sampler.drawn;
   DirectLight direct;
   bool area = tables.area_share > 0, punctual = !tables.punctual.empty();
   float area_chance = 1, punctual_chance = 1;
@@ -85,8 +86,10 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
     punctual_chance = 1 - area_chance;
     (sampler.next() < area_chance ? punctual : area) = false;
   }
+  vec3 side = lit_side(surface, bsdf);
   if (area) {
-    LightSample light = sample_area_light(transport, surface, sampler);
+    sampler.seek(base + 1);
+    LightSample light = sample_area_light(transport, surface, side, sampler);
     float light_pdf = light.pdf * area_chance;
     if (light.pdf > 0 && max_component(light.radiance) > 0) {
       BsdfValue value = eval_bsdf(bsdf, light.direction);
@@ -102,7 +105,8 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
     }
   }
   if (punctual) {
-    bool through = max_component(bsdf.transmit) > 0;
+    bool through = side == vec3(0);
+    sampler.seek(base + Dimensions::punctual);
     LightSample light = sample_punctual_light(transport, surface, bsdf.normal, through, sampler);
     if (light.pdf > 0) {
       BsdfValue value = eval_bsdf(bsdf, light.direction);
@@ -120,7 +124,8 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
 vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler) {
   const World& world = transport.world;
   vec3 radiance(0);
-  while (true) {
+  const uint32_t block = sampler.drawn;
+  for (uint32_t base = block;; base += Dimensions::surface) {
     Hit hit = world.intersect(walk.ray);
     if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
     vec3 kept;
@@ -149,14 +154,19 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
     Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
                           *transport.tables.materials[size_t(surface.material)].albedo);
     bool smooth = is_smooth(bsdf);
+    sampler.seek(base);
     if (!smooth)
       radiance += walk.throughput *
                   sample_direct_light(transport, walk, surface, bsdf, false, sampler).sum();
+    sampler.seek(base + Dimensions::scatter);
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::all, sampler);
     if (!advance(walk, surface, scattered)) return radiance;
-    if (scattered.bounce != Bounce::pass)
+    if (scattered.bounce != Bounce::pass) {
       walk.area_share = scattered.pdf > 0 ? transport.tables.area_share : 0;
+      walk.from_normal = lit_side(surface, bsdf);
+    }
     if (scattered.bounce == Bounce::refract) walk.density *= bsdf.eta * bsdf.eta;
+    sampler.seek(base + Dimensions::survival);
     if (!survives(walk, sampler)) return radiance;
   }
 }

@@ -20,7 +20,7 @@ struct Walk {
   vec3 throughput{1};
   int depth = 1;         // this ray's number, counted from the eye
   float pdf = 0;         // density of its direction where it last scattered; 0: perfect, or the eye
-  vec3 from_normal{0, 1, 0};  // geometric, there
+  vec3 from_normal{0, 1, 0};  // the side from which light was sampled there
   vec3 from{0};          // there
   float area_share = 0;  // chance that area light was sampled there; 0: it was not
   int medium = -1;       // material of the solid it runs in
@@ -37,6 +37,16 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
 vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
                        const Material& material);
 vec3 walk_met_sky(const Transport& transport, const Walk& walk);
+
+// A sample's dimensions: the eye's way to the first surface, then each walk a block of its own, and
+// each of its surfaces a place in it, so that a number means the same in all samples of a pixel.
+struct Dimensions {
+  static constexpr uint32_t first_surface = 96;  // panes come before
+  static constexpr uint32_t walk = 1u << 16;     // the k-th walk begins at k times this
+  static constexpr uint32_t surface = 32;        // from one surface of a walk to the next
+  // Within a surface.
+  static constexpr uint32_t punctual = 4, scatter = 8, specular = 16, survival = 24;
+};
 
 // The walk's next ray after `surface` scattered it; false: it ends here.
 bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered);

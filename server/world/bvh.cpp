@@ -11,6 +11,8 @@
 namespace wellspring {
 namespace {
 
+thread_local uint64_t traced = 0;
+
 bool has_packets() {
   static bool native =
       rtcGetDeviceProperty(shared_device(), RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
@@ -55,6 +57,8 @@ bool meets(const Bounds& box, const Ray& ray, float t_max) {
 }
 
 }  // namespace
+
+uint64_t rays_traced() { return traced; }
 
 void World::Impl::update_moving_bounds() {
   moving_bounds = Bounds();
@@ -124,6 +128,7 @@ Hit World::intersect(const Ray& ray) const {
   const Impl& w = *impl_;
   Hit hit;
   if (!is_traceable(ray)) return hit;
+  traced++;
   Impl::Query query;
   embree::init(query);
   query.rays = &ray;
@@ -143,6 +148,7 @@ Hit World::intersect(const Ray& ray) const {
 bool World::occluded(const Ray& ray) const {
   const Impl& w = *impl_;
   if (!is_traceable(ray)) return false;
+  traced++;
   Impl::Query query;
   embree::init(query);
   query.rays = &ray;
@@ -163,6 +169,7 @@ void World::Impl::intersect8(const Ray* rays, Hit* hits, int count) const {
   for (int i = 0; i < 8; i++) {
     const Ray& ray = rays[i < count ? i : 0];
     valid[i] = i < count && is_traceable(ray) ? -1 : 0;
+    traced += valid[i] != 0;
     r.ray.org_x[i] = ray.origin.x, r.ray.org_y[i] = ray.origin.y, r.ray.org_z[i] = ray.origin.z;
     r.ray.dir_x[i] = ray.direction.x, r.ray.dir_y[i] = ray.direction.y;
     r.ray.dir_z[i] = ray.direction.z;

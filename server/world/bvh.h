@@ -34,6 +34,9 @@ struct Hit {
   bool valid() const { return instance != 0xffffffffu; }
 };
 
+// Rays this thread has traced so far, nearest hits and occluders alike: for measurements.
+uint64_t rays_traced();
+
 // All there is to know about an instance of a World, in one place for the shading loop.
 struct PlacedMesh {
   const Mesh* mesh = nullptr;

@@ -22,11 +22,19 @@ struct PunctualLight {
   float inner_cone = 0, outer_cone = pi / 4;  // radians from the axis
 };
 
+// A disc at infinity, equally bright all over: the sun. No radiance: none.
+struct SunDisc {
+  vec3 direction{0, 1, 0};  // towards it, unit
+  vec3 radiance{0};
+  float angular_radius = 0;  // radians, at most pi / 2
+};
+
 // Light from infinity. No image: `radiance` from everywhere. With an image: latitude-longitude, +Y up,
 // its middle column towards -Z, times `radiance`.
 struct Environment {
   vec3 radiance{0};
   int image = -1;
+  SunDisc sun{};  // on top of the rest
 };
 
 }  // namespace wellspring

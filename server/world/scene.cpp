@@ -27,6 +27,8 @@ size_t triangle_count(const Scene& scene) {
 
 bool has_light(const Scene& scene) {
   if (max_component(scene.environment.radiance) > 0) return true;
+  const SunDisc& sun = scene.environment.sun;
+  if (max_component(sun.radiance) > 0 && sun.angular_radius > 0) return true;
   for (const PunctualLight& light : scene.lights)
     if (max_component(light.intensity) > 0) return true;
   for (const Instance& instance : scene.instances) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/surface.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -224,11 +225,12 @@ vec3 offset_origin(const Surface& surface, vec3 direction) {
   vec3 normal = surface.geometric_normal;
   if (dot(normal, direction) < 0) normal = -normal;
   vec3 p = surface.position, moved;
+  float near_step = float_scale * std::min(surface.extent, 1.0f);  // tiny scenes, tiny steps
   for (int i = 0; i < 3; i++) {
     int32_t steps = int32_t(int_scale * normal[i]);
     int32_t bits = std::bit_cast<int32_t>(p[i]);
     float stepped = std::bit_cast<float>(bits + (p[i] < 0 ? -steps : steps));
-    moved[i] = std::abs(p[i]) < near_zero ? p[i] + float_scale * normal[i] : stepped;
+    moved[i] = std::abs(p[i]) < near_zero ? p[i] + near_step * normal[i] : stepped;
   }
   float least = surface.extent * relative_error;
   float have = dot(moved - p, normal);

