@@ -36,6 +36,8 @@ pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
 find_package(GTest REQUIRED)
 find_package(Boost REQUIRED)
 find_package(pugixml QUIET)
+pkg_check_modules(SNDFILE REQUIRED IMPORTED_TARGET sndfile)
+pkg_check_modules(ESPEAK_NG REQUIRED IMPORTED_TARGET espeak-ng)  # wellspring_voice alone: GPL-3+
 
 # Embree 4 where there is one, else 3; server/world/embree.h hides the difference.
 find_package(embree 4 QUIET)

@@ -32,6 +32,8 @@ wellspring_unit_test(stream stream boost_any)
 wellspring_unit_test(kiosk  kiosk)
 wellspring_unit_test(benchmark benchmark)
 
+add_dependencies(unit_avatar wellspring_voice)
+
 # Every header compiles alone. Built, not only checked, when the test runs.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} server/*.h avatar/*.h kiosk/*.h)
 set(header_sources)
@@ -64,6 +66,7 @@ endfunction()
 if(NODE AND NOT WELLSPRING_SANITIZE)
   wellspring_script_test(structure/includes.test.mjs 60)
   wellspring_script_test(structure/commands.test.mjs 120)
+  wellspring_script_test(scripted/speak.test.mjs 120)
   wellspring_script_test(scripted/http.test.mjs 120)
   wellspring_script_test(scripted/visit.test.mjs 180 serial)
   wellspring_script_test(scripted/kiosk.test.mjs 240 serial)

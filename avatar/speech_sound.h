@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sound files: recordings in (WAV, FLAC, OGG, MP3 and what else libsndfile reads), 16-bit WAV out.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace wellspring {
+
+struct Sound {
+  int rate = 22050;             // samples a second
+  std::vector<float> samples;   // mono, -1 to 1; channels are averaged
+};
+
+inline constexpr double longest_recording = 1200;  // seconds; what is longer is refused
+
+// Throws LoadError naming the file: missing, no regular file, no sound that can be read, cut off
+// within, empty, longer than longest_recording, rates outside of 4 to 192 kHz. Samples that are not
+// numbers are silence.
+Sound load_sound(const std::string& file);
+
+// The whole file in memory, mono.
+std::vector<uint8_t> encode_wav(const std::vector<int16_t>& pcm, int rate);
+// Throws LoadError naming the file.
+void save_file(const std::string& file, const void* bytes, size_t size);
+
+// To another rate by a windowed sinc (Hann, 16 zero crossings each side), low-pass where it goes down.
+std::vector<float> resample(const std::vector<float>& samples, int from, int to);
+std::vector<int16_t> to_pcm(const std::vector<float>& samples);
+std::vector<float> from_pcm(const std::vector<int16_t>& pcm);
+
+}  // namespace wellspring

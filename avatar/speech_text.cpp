@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "avatar/speech_text.h"
+
+#include <algorithm>
+
+namespace wellspring {
+
+namespace {
+
+bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+bool is_ascii_mark(char c) {
+  return (c >= '!' && c <= '/' && c != '%' && c != '$' && c != '&') || (c >= ':' && c <= '@') ||
+         (c >= '[' && c <= '`') || (c >= '{' && c <= '~');
+}
+
+// Bytes of the mark that `text` begins or ends with: ASCII punctuation, U+2010 to U+206F, guillemets
+// and the opening marks of Spanish. 0: none.
+size_t mark_at(std::string_view text, bool front) {
+  if (text.empty()) return 0;
+  if (is_ascii_mark(front ? text.front() : text.back())) return 1;
+  auto is = [&](size_t size, auto test) {
+    return text.size() >= size && test(front ? text.substr(0, size) : text.substr(text.size() - size));
+  };
+  if (is(2, [](std::string_view s) { return s == "«" || s == "»" || s == "¿" || s == "¡"; })) return 2;
+  if (is(3, [](std::string_view s) { return s[0] == '\xe2' && (s[1] == '\x80' || s[1] == '\x81'); }))
+    return 3;
+  return 0;
+}
+
+bool is_letter_or_digit(char c) {
+  return (c & 0x80) || (c >= '0' && c <= '9') || ((c | 32) >= 'a' && (c | 32) <= 'z');
+}
+
+}  // namespace
+
+size_t count_characters(std::string_view text, size_t bytes) {
+  text = text.substr(0, std::min(bytes, text.size()));
+  return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+size_t find_broken_utf8(std::string_view text) {
+  for (size_t i = 0; i < text.size();) {
+    auto byte = [&](size_t k) { return static_cast<unsigned char>(text[k]); };
+    unsigned char first = byte(i);
+    size_t more = first < 0x80 ? 0 : first < 0xc2 ? 4 : first < 0xe0 ? 1 : first < 0xf0 ? 2
+                  : first < 0xf5 ? 3 : 4;
+    if (more == 4 || first == 0 || i + more >= text.size()) return i;
+    for (size_t k = 1; k <= more; k++)
+      if ((byte(i + k) & 0xc0) != 0x80) return i;
+    if (more >= 2) {
+      unsigned char second = byte(i + 1);
+      bool overlong = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
+      bool surrogate = first == 0xed && second >= 0xa0;
+      bool too_high = first == 0xf4 && second >= 0x90;
+      if (overlong || surrogate || too_high) return i;
+    }
+    i += more + 1;
+  }
+  return std::string_view::npos;
+}
+
+std::vector<uint32_t> character_starts(std::string_view text) {
+  std::vector<uint32_t> starts;
+  for (uint32_t i = 0; i < text.size(); i++)
+    if ((text[i] & 0xc0) != 0x80) starts.push_back(i);
+  starts.push_back(uint32_t(text.size()));
+  return starts;
+}
+
+uint32_t skip_spaces(std::string_view text, uint32_t at) {
+  while (at < text.size() && is_space(text[at])) at++;
+  return at;
+}
+
+std::vector<SpeechWord> words_between(std::string_view text, uint32_t begin, uint32_t end) {
+  std::vector<SpeechWord> words;
+  for (uint32_t at = skip_spaces(text, begin); at < end; at = skip_spaces(text, at)) {
+    uint32_t from = at;
+    while (at < end && !is_space(text[at])) at++;
+    std::string_view whole = text.substr(from, at - from), inner = whole;
+    while (size_t size = mark_at(inner, true)) inner.remove_prefix(size);
+    while (size_t size = mark_at(inner, false)) inner.remove_suffix(size);
+    if (inner.empty() && words.empty() && from == begin) inner = whole;
+    else if (std::none_of(inner.begin(), inner.end(), is_letter_or_digit)) continue;
+    uint32_t first = uint32_t(inner.data() - text.data());
+    words.push_back({0, 0, first, first + uint32_t(inner.size())});
+  }
+  return words;
+}
+
+}  // namespace wellspring
