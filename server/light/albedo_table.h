@@ -1,16 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much a GGX reflection lobe reflects in all, by angle and roughness: what is left goes to the
-// layer beneath (Kulla and Conty 2017), and what single scattering loses is given back to metals
-// and rough glass (Turquin 2019).
+// How much of the light that a rough boundary scatters leaves it after one meeting with a facet, by
+// angle and roughness. What stays behind meets more facets, and is given back by a lobe of its own
+// (Kulla and Conty 2017, "Revisiting physically based shading at Imageworks"); what a dielectric
+// does not reflect goes to the layer beneath.
+//
+// Near the horizon the loss of a GGX surface depends on cosine / alpha alone: a ridge 11 % high
+// where the two are equal, however smooth the surface. A table over the cosine cannot follow it, so
+// losses are kept over t / (t + r), with t and r the roots of cosine and alpha; the mean Fresnel
+// reflectance, which has no such ridge, is kept over t. Both are linear in between.
 #pragma once
+#include <memory>
+
 #include "base/vec.h"
 
 namespace wellspring {
 
+// Lobes smoother than any pixel could tell count as perfect.
+inline constexpr float smooth_alpha = 1e-3f;
+
 struct AlbedoTable {
-  static constexpr int angles = 32, roughnesses = 16;
-  float reflected[roughnesses][angles];  // by sqrt(alpha) and sqrt(cosine), both over [0, 1]
-  float average[roughnesses];            // cosine-weighted over the hemisphere
+  static constexpr int angles = 32, roughnesses = 40, averages = 8 * (roughnesses - 1) + 1;
+  float value[roughnesses][angles];
+  // Over the hemisphere, weighted by the cosine, of the values as they are looked up: it is by this
+  // that light given back adds up. More closely spaced, as it spans six orders of magnitude.
+  float average[averages];
 };
 
 // A row of the table at one roughness, ready for look-ups by angle.
@@ -19,18 +32,44 @@ struct AlbedoRow {
   const float* high = nullptr;
   float weight = 0, average = 0;
 };
-AlbedoRow albedo_row(const AlbedoTable& table, float alpha);
-float eval_albedo(const AlbedoRow& row, float cosine);
+AlbedoRow albedo_row(const AlbedoTable& table, float alpha);  // smooth_alpha and above
 
-// A dielectric of one index: its reflection from outside, and reflection and refraction together
-// from either side, which is what single scattering keeps of light that nothing absorbs.
+inline float eval_row(const AlbedoRow& row, float position) {
+  position *= AlbedoTable::angles - 1;
+  int at = glm::min(int(position), AlbedoTable::angles - 2);
+  float weight = position - float(at);
+  return glm::mix(glm::mix(row.low[at], row.low[at + 1], weight),
+                  glm::mix(row.high[at], row.high[at + 1], weight), row.weight);
+}
+
+inline float eval_loss(const AlbedoRow& row, float root_alpha, float root_cosine) {
+  return eval_row(row, root_cosine / (root_cosine + root_alpha));
+}
+
+// Share of light lost by a reflector that absorbs nothing.
+const AlbedoTable& mirror_loss();
+
+// A dielectric of one index.
 struct DielectricAlbedo {
-  AlbedoTable coat, into, out_of;
+  float fresnel_average = 0;  // of the smooth boundary, from outside
+  AlbedoTable fresnel;        // mean reflectance of the facets whose light leaves; its `average` is
+                              // that of all that is reflected
+  // Share lost of reflection and refraction together, seen from outside and from inside.
+  struct Glass {
+    AlbedoTable into, out_of;
+  };
+  std::unique_ptr<const Glass> glass;  // null unless asked for
 };
-// Indices are rounded to a fixed set, so that there is a bounded number of tables. Made on first
-// use (some ten milliseconds), kept for the life of the process.
-const DielectricAlbedo& dielectric_albedo(float ior);
-// For a reflector that absorbs nothing.
-const AlbedoTable& mirror_albedo();
+// 0: an infinite index. Indices are rounded to a fixed set, so that there is a bounded number of tables. Made on first
+// use (some ten milliseconds, twice that with `glass`), kept for the life of the process.
+const DielectricAlbedo& dielectric_albedo(float ior, bool glass = true);
+
+// The same for one direction by summing over facets, for surfaces that no table knows.
+struct FacetAlbedo {
+  float kept = 1;      // by a mirror
+  float reflected = 1; // by a dielectric
+  float passed = 1;    // reflected or refracted by it: what glass keeps
+};
+FacetAlbedo sum_albedo(vec3 view, vec2 alpha, float eta, bool glass, int points);
 
 }  // namespace wellspring

@@ -185,9 +185,11 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   add_punctual_choice(*tables);
 
   for (size_t i = 0; i < scene.materials.size(); i++) {
-    float ior = scene.materials[i].ior;
+    const Material& m = scene.materials[i];
     const DielectricAlbedo* albedo =
-        plan.materials[i].visible ? &dielectric_albedo(ior == 0 ? 1e6f : ior) : nullptr;
+        plan.materials[i].visible
+            ? &dielectric_albedo(m.ior, m.transmission > 0 && m.thickness > 0)
+            : nullptr;
     tables->materials.push_back({albedo, plan.materials[i].pane});
   }
   tables->any_pane = plan.uses(panes);

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "scenes/build.h"
+#include "bsdf_cases.h"
 #include "statistics.h"
 
 using namespace wellspring;
@@ -12,26 +12,6 @@ using namespace wellspring::scenes;
 using namespace wellspring::test;
 
 namespace {
-
-// A place of that material with normal +Y, seen from `degrees` off the normal.
-Bsdf bsdf_of(const Material& m, float degrees, bool front = true, vec3 shading = {0, 1, 0}) {
-  Surface s;
-  s.normal = normalize(shading);
-  s.front = front;
-  s.base_color = vec3(m.base_color);
-  s.metallic = m.metallic;
-  s.roughness = m.roughness;
-  s.transmission = m.transmission;
-  s.thickness = m.thickness;
-  float a = glm::radians(degrees);
-  return make_bsdf(s, m, -vec3(std::sin(a), std::cos(a), 0), dielectric_albedo(m.ior));
-}
-
-struct Case {
-  std::string name;
-  Material material;
-  bool front = true;
-};
 
 // Everything that has a density, over the range of roughness.
 std::vector<Case> rough_cases() {
@@ -131,26 +111,6 @@ TEST(Bsdf, WeightIsValueOverDensity) {
         ASSERT_NEAR(s.weight.x, expected.x, 1e-3f * (1 + expected.x)) << c.name;
         ASSERT_TRUE(is_finite(s.weight)) << c.name;
       }
-    }
-}
-
-// White materials lose next to nothing and never gain, at every roughness and angle.
-TEST(Bsdf, WhiteFurnace) {
-  for (float roughness : {0.0f, 0.02f, 0.05f, 0.1f, 0.2f, 0.4f, 0.7f, 1.0f})
-    for (float angle : view_angles) {
-      std::pair<const char*, Material> materials[] = {
-          {"metal", metal(vec3(1), roughness)},
-          {"plastic", plastic(vec3(1), roughness)},
-          {"thin glass", glass(1.5f, roughness, 0)},
-          {"glass", glass(1.5f, roughness, 1)},
-          {"dense plastic", plastic(vec3(1), roughness, 2.4f)}};
-      for (const auto& [name, material] : materials)
-        for (bool front : {true, false}) {
-          Mean albedo = albedo_of(bsdf_of(material, angle, front), Lobes::all, 20000);
-          EXPECT_NEAR(albedo.mean(), 1, 0.015 + 4 * albedo.error())
-              << name << " roughness " << roughness << " at " << angle
-              << (front ? "" : " from behind");
-        }
     }
 }
 
