@@ -17,13 +17,13 @@ constexpr float angles[] = {0, 30, 60, 80, 88};
 constexpr double allowed = 0.005;
 
 // Directional albedo; its error bar comes from independent replicates of well spread samples.
-Mean albedo_of(const Bsdf& bsdf) {
+Mean albedo_of(const Bsdf& bsdf, uint64_t seed) {
   constexpr int replicates = 12, count = 1024;
   Mean mean;
   for (int r = 0; r < replicates; r++) {
     double sum = 0;
     for (uint32_t i = 0; i < count; i++) {
-      Sampler sampler(uint64_t(r) + 91, i);
+      Sampler sampler(mix64(seed * replicates + uint64_t(r)), i);
       sum += energy_of(bsdf, sample_bsdf(bsdf, Lobes::all, sampler));
     }
     mean.add(sum / count);
@@ -42,7 +42,8 @@ void measure(std::vector<Place>& places) {
   for (const Place& p : places) dielectric_albedo(p.material.material.ior);
   parallel_for(int(places.size()), [&](int i) {
     Place& p = places[size_t(i)];
-    p.albedo = albedo_of(bsdf_of(p.material.material, p.angle, p.material.front));
+    Bsdf bsdf = bsdf_of(p.material.material, p.angle, p.material.front);
+    p.albedo = albedo_of(bsdf, uint64_t(i));
   });
 }
 
