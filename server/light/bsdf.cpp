@@ -7,6 +7,7 @@
 #include "light/bsdf_frame.h"
 #include "light/bsdf_gloss.h"
 #include "light/bsdf_layers.h"
+#include "light/dispersion.h"
 #include "light/microfacet.h"
 
 namespace wellspring {
@@ -86,7 +87,10 @@ bool is_smooth(const Bsdf& b) {
          (b.beneath == 1 || (!has_sheen(b) && b.clearcoat.alpha == 0));
 }
 
-BsdfValue eval_bsdf(const Bsdf& b, vec3 direction) {
+namespace {
+
+// As if no colours were parted here.
+BsdfValue eval_lobes(const Bsdf& b, vec3 direction) {
   BsdfValue value;
   vec3 l = to_local(b, direction);
   float side = dot(direction, b.geometric_normal);
@@ -107,6 +111,14 @@ BsdfValue eval_bsdf(const Bsdf& b, vec3 direction) {
     value.specular_pdf *= gloss_share(b);
     if (side > 0) eval_layers(b, direction, value.specular, value.specular_pdf);
   }
+  return value;
+}
+
+}  // namespace
+
+BsdfValue eval_bsdf(const Bsdf& b, vec3 direction) {
+  BsdfValue value = eval_lobes(b, direction);
+  if (b.spread) blend_wavelengths(*b.spread, direction, value);
   return value;
 }
 
@@ -148,7 +160,7 @@ BsdfSample sample_bsdf(const Bsdf& b, Lobes lobes, Sampler& sampler) {
     }
     if (s.direction == vec3(0)) return {};
   }
-  BsdfValue value = eval_bsdf(b, s.direction);
+  BsdfValue value = eval_lobes(b, s.direction);
   s.pdf = sample_bsdf_pdf(b, value, lobes);
   vec3 sum = (lobes != Lobes::specular ? value.diffuse : vec3(0)) +
              (lobes != Lobes::diffuse ? value.specular : vec3(0));

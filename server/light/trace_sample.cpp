@@ -16,6 +16,9 @@ constexpr float soft_alpha = 0.12f;  // roughness 0.35
 // apart.
 void shade_first(const Transport& transport, const WalkRules& rules, const Walk& walk,
                  const Surface& surface, Bsdf& bsdf, vec3 tint, Sampler& sampler, Sample& sample) {
+  const uint32_t base = Dimensions::first_surface;
+  std::optional<WavelengthSpread> spread;
+  part_colors(transport, walk, surface, base, sampler, bsdf, spread);
   bool diffuse = max_component(bsdf.diffuse) > 1e-4f;
   vec3 albedo = diffuse ? bsdf.diffuse : bsdf.metallic * bsdf.metal;
   // Rough gloss looks nearly the same from everywhere: as a share of the reflectance it may be filtered with
@@ -30,7 +33,6 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
   bsdf.diffuse = diffuse ? vec3(1) : vec3(0);
   sample.albedo = albedo * tint;
   if (looks_specular(bsdf)) sample.flags |= sample_specular;
-  const uint32_t base = Dimensions::first_surface;
   sampler.seek(base);
   if (!is_smooth(bsdf)) {
     DirectLight direct = sample_direct_light(transport, walk, surface, bsdf, true, sampler);
@@ -56,6 +58,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
     Walk next = walk;
     sampler.seek(base + Dimensions::specular);
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::specular, sampler);
+    if (spread) carry_wavelengths(*spread, bsdf, Lobes::specular, scattered, next.wavelengths);
     scattered.weight /= chance;
     next.area_share = scattered.pdf > 0 && transport.tables.area_share > 0 ? 1.0f : 0.0f;
     if (scattered.bounce == Bounce::refract) next.density *= bsdf.eta * bsdf.eta;

@@ -57,6 +57,19 @@ int medium_before(const Walk& walk, const Surface& surface, const Material& mate
   return left_solid ? surface.material : -1;
 }
 
+void part_colors(const Transport& transport, const Walk& walk, const Surface& surface,
+                 uint32_t dimensions, Sampler& sampler, Bsdf& bsdf,
+                 std::optional<WavelengthSpread>& spread) {
+  if (!transport.tables.plan.uses(TransportPart::dispersion)) return;
+  const Material& material = transport.world.scene().materials[size_t(surface.material)];
+  if (!is_dispersive(surface, material)) return;
+  sampler.seek(dimensions + Dimensions::wavelength);
+  float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
+  spread_wavelengths(surface, material, walk.ray.direction,
+                     *transport.tables.materials[size_t(surface.material)].albedo,
+                     walk.wavelengths, u, bsdf, spread);
+}
+
 bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered) {
   if (!(max_component(scattered.weight) > 0)) return false;
   walk.throughput *= scattered.weight;
@@ -153,6 +166,8 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
     }
     Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
                           *transport.tables.materials[size_t(surface.material)].albedo);
+    std::optional<WavelengthSpread> spread;
+    part_colors(transport, walk, surface, base, sampler, bsdf, spread);
     bool smooth = is_smooth(bsdf);
     sampler.seek(base);
     if (!smooth)
@@ -160,6 +175,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
                   sample_direct_light(transport, walk, surface, bsdf, false, sampler).sum();
     sampler.seek(base + Dimensions::scatter);
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::all, sampler);
+    if (spread) carry_wavelengths(*spread, bsdf, Lobes::all, scattered, walk.wavelengths);
     if (!advance(walk, surface, scattered)) return radiance;
     if (scattered.bounce != Bounce::pass) {
       walk.area_share = scattered.pdf > 0 ? transport.tables.area_share : 0;

@@ -4,6 +4,7 @@
 // light and eye alike. The first surface is treated with more care, because its parts are told
 // apart in the Sample.
 #pragma once
+#include "light/dispersion.h"
 #include "light/sample_light.h"
 #include "light/technique.h"
 
@@ -27,6 +28,7 @@ struct Walk {
   float density = 1;     // in there radiance is denser by this (squared index), says the roulette
   int scattered = 0;
   int panes = 0;  // passed in a row
+  Wavelengths wavelengths;  // once it has met something dispersive
 };
 
 // Radiance that comes back along the walk, times its throughput.
@@ -45,8 +47,15 @@ struct Dimensions {
   static constexpr uint32_t walk = 1u << 16;     // the k-th walk begins at k times this
   static constexpr uint32_t surface = 32;        // from one surface of a walk to the next
   // Within a surface.
-  static constexpr uint32_t punctual = 4, scatter = 8, specular = 16, survival = 24;
+  static constexpr uint32_t punctual = 4, scatter = 8, specular = 16, survival = 24,
+                            wavelength = 28;
 };
+
+// Parts the colours where `surface` does so: `bsdf` becomes the hero wavelength's. After sampling,
+// `spread` if set goes to carry_wavelengths.
+void part_colors(const Transport& transport, const Walk& walk, const Surface& surface,
+                 uint32_t dimensions, Sampler& sampler, Bsdf& bsdf,
+                 std::optional<WavelengthSpread>& spread);
 
 // The walk's next ray after `surface` scattered it; false: it ends here.
 bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered);
