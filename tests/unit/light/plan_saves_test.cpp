@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "judge.h"
+#include "light/instant_radiosity.h"
 #include "light/light_tables.h"
 #include "light/radiance_grid.h"
 #include "scenes/scenes.h"
@@ -185,6 +186,21 @@ TEST(PlanSaves, AGridOfLightThatNothingKeeps) {
   EXPECT_NE(both.forced.grid, nullptr);
   Frame a = both.render(both.planned, "gather"), b = both.render(both.forced, "gather");
   EXPECT_EQ(std::memcmp(a.color.data(), b.color.data(), a.color.size() * sizeof(vec3)), 0);
+}
+
+// Without anything sharp nobody looks for it: gathering rays end where point lights take over.
+TEST(PlanSaves, LookingForCaustics) {
+  BothWays both(scene_with(plastic({0.6f, 0.5f, 0.4f}, 0.6f)), caustics);
+  Transport planned{both.world, *both.planned.tables}, forced{both.world, *both.forced.tables};
+  EXPECT_FALSE(draw_instant_pass(planned, {}, 12, 1, 0).sharp);
+  EXPECT_TRUE(draw_instant_pass(forced, {}, 12, 1, 0).sharp);
+  const Technique& technique = *find_technique("instant_radiosity");
+  Family family;
+  family.add_same(
+      technique.name,
+      estimate_radiance(technique, both.world, both.planned, both.view(12, 9), {}, {24, 9, 3}),
+      estimate_radiance(technique, both.world, both.forced, both.view(12, 9), {}, {24, 9, 4}));
+  expect_family(family, 0.05);
 }
 
 // Materials that nothing shows cost no tables: thirty indices of refraction are thirty tables each.
