@@ -9,7 +9,7 @@
 namespace wellspring {
 namespace {
 
-constexpr int float_planes = 3 * 6 + 9;  // all but object
+constexpr int float_planes = 3 * 7 + 10;  // all but object
 
 size_t padded(int width, int height) {
   int columns = (width + cell_size - 1) / cell_size, rows = (height + cell_size - 1) / cell_size;
@@ -52,8 +52,8 @@ void read_pixels(const SurfaceRows& rows, int cx, int cy, Pixels& pixels) {
   for (int p = 0; p < surface_planes; p++)
     for (int r = 0; r < cell_size; r++) {
       u8* to = pixels.plane[p] + r * cell_size;
-      transpose(rows.row(SurfacePlane(p), cy * cell_size + r) + cx * cell_size, to[0], to[1], to[2],
-                to[3]);
+      const uint32_t* from = rows.row(SurfacePlane(p), cy * cell_size + r) + cx * cell_size;
+      transpose([=](int i) { return from + i * cell_size; }, to[0], to[1], to[2], to[3]);
     }
 }
 
@@ -61,7 +61,7 @@ struct Gathered {
   u8 object = u8{} + no_object;
   Vec albedo, rest, smooth, normal;
   f8 x{}, y{}, inverse_depth{}, samples{}, points{}, sum{}, sum2{};
-  f8 rest_sum2{}, rest_noise{}, rest_known{};
+  f8 rest_sum{}, rest_sum2{}, rest_noise{}, rest_known{};
 };
 
 // The object most pixels of a cell see (majority vote of Boyer and Moore).
@@ -111,6 +111,7 @@ Gathered gather_cells(const Pixels& pixels) {
     add(g.rest, use, rest * samples);
     add(g.smooth, use, smooth * samples);
     add(g.normal, use, normal);
+    g.rest_sum += samples * rest_light;
     g.rest_sum2 += samples * rest_light * rest_light;
     g.rest_noise += keep(known, deviation * deviation);
     g.rest_known += keep(known, splat(1));
@@ -153,10 +154,12 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch) {
     std::fill(plane.begin() + cells.index(-cell_pad, cells.height), plane.end(), empty);
   };
   for (auto* triple :
-       {&cells.albedo, &cells.rest, &cells.smooth, &cells.spare, &cells.normal, &cells.plane})
+       {&cells.albedo, &cells.rest, &cells.smooth, &cells.spare, &cells.rest_spare, &cells.normal,
+        &cells.plane})
     for (auto& plane : *triple) take(plane, 0.0f);
   for (auto* plane : {&cells.depth, &cells.samples, &cells.points, &cells.sum, &cells.sum2,
-                      &cells.patience, &cells.rest_sum2, &cells.rest_noise, &cells.rest_known})
+                      &cells.patience, &cells.rest_sum, &cells.rest_sum2, &cells.rest_noise,
+                      &cells.rest_known})
     take(*plane, 0.0f);
   take(cells.object, no_object);
 }
@@ -197,6 +200,7 @@ void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells
     store(&cells.points[i], g.points);
     store(&cells.sum[i], g.sum);
     store(&cells.sum2[i], g.sum2);
+    store(&cells.rest_sum[i], g.rest_sum);
     store(&cells.rest_sum2[i], g.rest_sum2);
     store(&cells.rest_noise[i], g.rest_noise);
     store(&cells.rest_known[i], g.rest_known);

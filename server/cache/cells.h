@@ -14,25 +14,25 @@ namespace wellspring {
 
 inline constexpr int cell_size = 4;  // pixels a side
 inline constexpr int cell_pad = 8;   // empty cells around, so that filters need no bounds
-inline constexpr int cell_run = 32;  // cells the filter reads at once, maybe beyond the last row
+inline constexpr int cell_run = 8;   // cells read at once, maybe beyond the last row
 
 // Planes of stride * (height + 2 * pad); cell (x, y) lies at index(x, y).
 struct Cells {
   int width = 0, height = 0, stride = 0;
-  std::array<std::span<float>, 3> albedo, rest, smooth,
-      spare;                               // spare: the other side of the a-trous steps
+  std::array<std::span<float>, 3> albedo, rest, smooth;
+  std::array<std::span<float>, 3> spare, rest_spare;  // the other side of the a-trous steps
   std::array<std::span<float>, 3> normal;  // world coordinates, unit
   // Inverse depth along the cell's plane is dot(plane, (ray x, ray y, 1)).
   std::array<std::span<float>, 3> plane;
   std::span<float> depth;    // of the plane at the cell's centre
   std::span<float> samples;  // behind `smooth`; 0: no point fell here
-  std::span<float> points;   // pixels averaged
-  std::span<float> sum,
-      sum2;                   // luminance moments of smooth over samples; then variance of its mean
+  std::span<float> points;   // pixels averaged; then the other side of rest_known
+  // Luminance moments of smooth over samples; then variance of its mean, and the other side of it.
+  std::span<float> sum, sum2;
   std::span<float> patience;  // samples a pixel needs before its own light counts for half
   // `rest` is sharp where it repeats itself and noise where it does not (glossy reflections).
-  std::span<float>
-      rest_sum2;  // second moment of its luminance over points; then variance of its detail
+  std::span<float> rest_sum;   // of its luminance over samples
+  std::span<float> rest_sum2;  // second moment likewise; then variance of its detail
   std::span<float> rest_noise;  // sum of known variances of one sample; then variance of one sample
   std::span<float> rest_known;  // points with a known variance; then variance of the cell's mean
   std::span<uint32_t> object;   // no_object: nothing known here

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Eight cells at a time. What lies on either side of a row is empty, so nothing asks where it ends.
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
 #include "cache/cells.h"
-#include "cache/packing.h"
+#include "cache/lanes.h"
 
 namespace wellspring {
 namespace {
@@ -13,76 +14,70 @@ constexpr int steps = 4;  // taps 1, 2, 4 and 8 cells apart
 constexpr float plane_tolerance =
     0.03f;  // relative depth off the other cell's plane that halves a weight
 constexpr float light_tolerance = 9;  // squared, in variances of the mean
-constexpr int lanes = cell_run;       // cells handled together
+
+f8 load_at(std::span<const float> plane, size_t i) { return load<f8>(plane.data() + i); }
+f8 clamped(const f8& v, float low, float high) { return smaller(larger(v, splat(low)), splat(high)); }
 
 // Sums over a cell and its eight neighbours of the same object.
 struct Pool {
-  float samples = 0, points = 0, sum = 0, sum2 = 0;
-  float rest = 0, rest2 = 0, rest_noise = 0, rest_known = 0;
+  f8 samples{}, points{}, sum{}, sum2{};
+  f8 rest{}, rest2{}, rest_noise{}, rest_known{};
 };
-Pool pool_around(const Cells& cells, int x, int y) {
+Pool pool_around(const Cells& cells, size_t i, const u8& object) {
   Pool pool;
-  uint32_t object = cells.object[size_t(cells.index(x, y))];
   for (int dy = -1; dy <= 1; dy++)
     for (int dx = -1; dx <= 1; dx++) {
-      size_t j = size_t(cells.index(x + dx, y + dy));
-      if (cells.object[j] != object) continue;
-      pool.samples += cells.samples[j];
-      pool.points += cells.points[j];
-      pool.sum += cells.sum[j];
-      pool.sum2 += cells.sum2[j];
-      pool.rest +=
-          cells.samples[j] * luminance(vec3(cells.rest[0][j], cells.rest[1][j], cells.rest[2][j]));
-      pool.rest2 += cells.rest_sum2[j];
-      pool.rest_noise += cells.rest_noise[j];
-      pool.rest_known += cells.rest_known[j];
+      size_t j = size_t(ptrdiff_t(i) + dy * cells.stride + dx);
+      i8 same = load<u8>(&cells.object[j]) == object;
+      pool.samples += keep(same, load_at(cells.samples, j));
+      pool.points += keep(same, load_at(cells.points, j));
+      pool.sum += keep(same, load_at(cells.sum, j));
+      pool.sum2 += keep(same, load_at(cells.sum2, j));
+      pool.rest += keep(same, load_at(cells.rest_sum, j));
+      pool.rest2 += keep(same, load_at(cells.rest_sum2, j));
+      pool.rest_noise += keep(same, load_at(cells.rest_noise, j));
+      pool.rest_known += keep(same, load_at(cells.rest_known, j));
     }
   return pool;
 }
 
 struct Estimate {
-  float scale = 1, rest_scale = 1;  // below 1: an outlier, brought down to its surroundings
-  float mean_variance = 0, patience = 0, rest_detail = 0, rest_noise = 0, rest_mean_variance = 0;
+  f8 scale, rest_scale;  // below 1: an outlier, brought down to its surroundings
+  f8 mean_variance, patience, rest_detail, rest_noise, rest_mean_variance;
 };
 
 // Where few points tell, smooth light is assumed to deviate by as much as its mean, and what varies
-// in the rest to be noise by `rest_share`.
-Estimate estimate_cell(const Pool& pool, float samples, float light, float rest_light,
-                       float rest_share) {
+// in the rest to be noise by `rest_share`. `samples` > 0; `light` and `rest_light` are the cells'
+// sums over their samples.
+Estimate estimate_cells(const Pool& pool, const f8& samples, const f8& light_sum,
+                        const f8& rest_sum, float rest_share) {
   constexpr float guess_points = 3;
   Estimate e;
-  float mean = pool.sum / pool.samples,
-        spread = std::max(0.0f, pool.sum2 - pool.samples * mean * mean);
-  float guess = mean * mean + 1e-6f;
-  float variance = (spread + guess * guess_points) / (pool.points + guess_points);
-  e.patience = std::clamp(48 * variance / guess, 0.5f, 192.0f);
-  e.mean_variance = variance / samples;
+  f8 per_sample = 1.0f / samples, per_pooled = 1.0f / pool.samples;
+  f8 mean = pool.sum * per_pooled, spread = positive(pool.sum2 - pool.sum * mean);
+  f8 guess = mean * mean + 1e-6f;
+  f8 variance = (spread + guess * guess_points) / (pool.points + guess_points);
+  e.patience = clamped(48 * variance / guess, 0.5f, 192.0f);
+  e.mean_variance = variance * per_sample;
   // What varies from place to place beyond what varies from sample to sample is detail.
-  float rest_mean = pool.rest / pool.samples;
-  float per_sample = std::max(0.0f, pool.rest2 - pool.samples * rest_mean * rest_mean) /
-                     std::max(pool.points - 1, 1.0f);
-  float guessed = per_sample * rest_share;
-  e.rest_noise = (pool.rest_noise + guessed) / (pool.rest_known + 1);
-  float each = pool.samples / pool.points;  // samples a point
-  e.rest_detail = std::max(0.0f, per_sample - e.rest_noise) / each;
-  e.rest_mean_variance = e.rest_noise / samples;
+  f8 rest_spread = positive(pool.rest2 - pool.rest * pool.rest * per_pooled) /
+                   larger(pool.points - 1.0f, splat(1));
+  e.rest_noise = (pool.rest_noise + rest_spread * rest_share) / (pool.rest_known + 1.0f);
+  e.rest_detail = positive(rest_spread - e.rest_noise) * pool.points * per_pooled;
+  e.rest_mean_variance = e.rest_noise * per_sample;
   // A cell far brighter than those around it owes that to a lucky path, unless many samples say so
   // or, of the rest, it stays so from sample to sample.
-  float others = pool.samples - samples;
-  if (others >= 3) {
-    float confirmed = 2.5f + 0.05f * samples;
-    float around = (pool.sum - light * samples) / others,
-          rest_around = (pool.rest - rest_light * samples) / others;
-    if (light > confirmed * around) e.scale = (confirmed * around + 1e-6f) / (light + 1e-6f);
-    bool noisy = e.rest_noise > 0.25f * rest_light * rest_light;
-    if (noisy && rest_light > confirmed * rest_around)
-      e.rest_scale = (confirmed * rest_around + 1e-6f) / (rest_light + 1e-6f);
-  }
+  f8 light = light_sum * per_sample, rest_light = rest_sum * per_sample;
+  f8 others = pool.samples - samples, per_other = 1.0f / larger(others, splat(1));
+  f8 confirmed = 2.5f + 0.05f * samples;
+  f8 most = confirmed * (pool.sum - light_sum) * per_other,
+     rest_most = confirmed * (pool.rest - rest_sum) * per_other;
+  i8 told = others >= 3.0f, noisy = e.rest_noise > 0.25f * rest_light * rest_light;
+  f8 one = splat(1);
+  e.scale = told & (light > most) ? (most + 1e-6f) / (light + 1e-6f) : one;
+  e.rest_scale =
+      told & noisy & (rest_light > rest_most) ? (rest_most + 1e-6f) / (rest_light + 1e-6f) : one;
   return e;
-}
-
-float light_at(const std::array<std::span<float>, 3>& light, size_t i) {
-  return luminance(vec3(light[0][i], light[1][i], light[2][i]));
 }
 
 // Of all that varies in the rest of the whole picture, how much is noise? Every third row tells;
@@ -98,8 +93,8 @@ float share_of_noise(const Cells& cells) {
       for (int x = 0; x < cells.width; x++) {
         size_t i = size_t(cells.index(x, row * 3));
         if (cells.rest_known[i] == 0) continue;
-        float mean = light_at(cells.rest, i),
-              spread = cells.rest_sum2[i] - cells.samples[i] * mean * mean;
+        float spread =
+            cells.rest_sum2[i] - cells.rest_sum[i] * cells.rest_sum[i] / cells.samples[i];
         sums.noise += double(std::min(cells.rest_noise[i], 1.0f));
         sums.spread += double(std::clamp(spread, 0.0f, 1.0f));
         sums.known += 1;
@@ -114,116 +109,91 @@ float share_of_noise(const Cells& cells) {
   return float(std::clamp(all.noise / (all.noise + all.spread + 1e-9), 0.5, 1.0));
 }
 
-// Replaces the moments by what follows from them.
+// Replaces the moments by what follows from them; the other side of the a-trous steps serves
+// meanwhile.
 void estimate_variance(Cells& cells) {
   float rest_share = share_of_noise(cells);
-  std::vector<Estimate> estimates(size_t(cells.width) * size_t(cells.height));
+  auto& [mean_variance, rest_detail, rest_noise] = cells.spare;
+  auto& rest_mean_variance = cells.rest_spare[0];
   parallel_ranges(cells.height, 4, [&](int begin, int end) {
     for (int y = begin; y < end; y++)
-      for (int x = 0; x < cells.width; x++) {
+      for (int x = 0; x < cells.width; x += lanes) {
         size_t i = size_t(cells.index(x, y));
-        if (cells.object[i] == no_object) continue;
-        estimates[size_t(y) * size_t(cells.width) + size_t(x)] =
-            estimate_cell(pool_around(cells, x, y), cells.samples[i], light_at(cells.smooth, i),
-                          light_at(cells.rest, i), rest_share);
-      }
-  });
-  parallel_ranges(cells.height, 8, [&](int begin, int end) {
-    for (int y = begin; y < end; y++)
-      for (int x = 0; x < cells.width; x++) {
-        size_t i = size_t(cells.index(x, y));
-        if (cells.object[i] == no_object) continue;
-        const Estimate& e = estimates[size_t(y) * size_t(cells.width) + size_t(x)];
+        u8 object = load<u8>(&cells.object[i]);
+        i8 known = object != no_object;
+        if (!any(known)) {
+          for (auto* plane : {&mean_variance, &rest_detail, &rest_noise, &rest_mean_variance})
+            store(&(*plane)[i], f8{});
+          continue;
+        }
+        Pool pool = pool_around(cells, i, object);
+        f8 one = splat(1);
+        pool.samples = known ? pool.samples : one;
+        f8 samples = known ? load_at(cells.samples, i) : one;
+        Estimate e = estimate_cells(pool, samples, load_at(cells.sum, i),
+                                    load_at(cells.rest_sum, i), rest_share);
         for (size_t c = 0; c < 3; c++) {
-          cells.smooth[c][i] *= e.scale;
-          cells.rest[c][i] *= e.rest_scale;
+          store(&cells.smooth[c][i], load_at(cells.smooth[c], i) * e.scale);
+          store(&cells.rest[c][i], load_at(cells.rest[c], i) * e.rest_scale);
         }
-        cells.sum[i] = e.mean_variance;
-        cells.patience[i] = e.patience;
-        cells.rest_sum2[i] = e.rest_detail;
-        cells.rest_noise[i] = e.rest_noise;
-        cells.rest_known[i] = e.rest_mean_variance;
+        store(&cells.patience[i], keep(known, e.patience));
+        store(&mean_variance[i], keep(known, e.mean_variance));
+        store(&rest_detail[i], keep(known, e.rest_detail));
+        store(&rest_noise[i], keep(known, e.rest_noise));
+        store(&rest_mean_variance[i], keep(known, e.rest_mean_variance));
       }
   });
+  std::swap(cells.sum, mean_variance);
+  std::swap(cells.rest_sum2, rest_detail);
+  std::swap(cells.rest_noise, rest_noise);
+  std::swap(cells.rest_known, rest_mean_variance);
 }
 
-struct Row {
-  const float *r, *g, *b, *variance;
-  const float *nx, *ny, *nz, *px, *py, *pz;
-  const uint32_t* object;
+// Light of eight cells and the variance of its mean, weighed.
+struct LightSums {
+  f8 r, g, b, variance, weight, light, tolerance;
 };
-
-// One a-trous step over a run of `lanes` cells, of which `count` are written; taps `step` cells
-// apart.
-void filter_run(const Row& source, const float* depth, const float* ray_x, float ray_y, int stride,
-                int step, int count, float* r, float* g, float* b, float* variance) {
-  alignas(64) float sr[lanes], sg[lanes], sb[lanes], sv[lanes], sw[lanes], light[lanes],
-      tolerance[lanes];
-  for (int i = 0; i < lanes; i++) {
-    sr[i] = 4 * source.r[i], sg[i] = 4 * source.g[i], sb[i] = 4 * source.b[i];
-    sv[i] = 16 * source.variance[i], sw[i] = 4;
-    light[i] = 0.2126f * source.r[i] + 0.7152f * source.g[i] + 0.0722f * source.b[i];
-    tolerance[i] = 1 / (light_tolerance * source.variance[i] + 1e-12f);
-  }
-  for (int dy = -1; dy <= 1; dy++)
-    for (int dx = -1; dx <= 1; dx++) {
-      if (dx == 0 && dy == 0) continue;
-      int at = dy * step * stride + dx * step;
-      float kernel = dx != 0 && dy != 0 ? 1.0f : 2.0f;
-      for (int i = 0; i < lanes; i++) {
-        float qr = source.r[i + at], qg = source.g[i + at], qb = source.b[i + at];
-        float facing = source.nx[i] * source.nx[i + at] + source.ny[i] * source.ny[i + at] +
-                       source.nz[i] * source.nz[i + at];
-        facing = 0.5f *
-                 (facing + std::abs(facing));  // not below 0, and no branch in the compiler's eyes
-        facing *= facing, facing *= facing, facing *= facing;
-        float off = depth[i] * (source.px[i + at] * ray_x[i] + source.py[i + at] * ray_y +
-                                source.pz[i + at]) -
-                    1;
-        off *= 1 / plane_tolerance;
-        float differs = 0.2126f * qr + 0.7152f * qg + 0.0722f * qb - light[i];
-        float lit = differs * differs * tolerance[i];
-        float same = keep_if(source.object[i] == source.object[i + at], kernel);
-        float weight = same * facing / ((1 + off * off) * (1 + lit * lit));
-        sr[i] += weight * qr, sg[i] += weight * qg, sb[i] += weight * qb;
-        sv[i] += weight * weight * source.variance[i + at];
-        sw[i] += weight;
-      }
-    }
-  for (int i = 0; i < count; i++) {
-    float share = 1 / sw[i];
-    r[i] = sr[i] * share, g[i] = sg[i] * share, b[i] = sb[i] * share;
-    variance[i] = sv[i] * share * share;
-  }
+struct LightPlanes {
+  const float *r, *g, *b, *variance;
+};
+LightSums begin_sums(const LightPlanes& from, size_t i) {
+  f8 r = load<f8>(from.r + i), g = load<f8>(from.g + i), b = load<f8>(from.b + i),
+     v = load<f8>(from.variance + i);
+  return {4 * r,    4 * g, 4 * b, 16 * v, splat(4), luminance(r, g, b),
+          1.0f / (light_tolerance * v + 1e-12f)};
+}
+// `common`: what the two cells' surfaces have in common, and one plus their squared distance.
+void add(LightSums& sums, const LightPlanes& from, size_t j, const f8& common, const f8& apart) {
+  f8 r = load<f8>(from.r + j), g = load<f8>(from.g + j), b = load<f8>(from.b + j);
+  f8 differs = luminance(r, g, b) - sums.light;
+  differs *= differs * sums.tolerance;
+  f8 weight = common / (apart * (1.0f + differs * differs));
+  sums.r += weight * r, sums.g += weight * g, sums.b += weight * b;
+  sums.variance += weight * weight * load<f8>(from.variance + j);
+  sums.weight += weight;
+}
+void store_sums(const LightSums& sums, float* r, float* g, float* b, float* variance) {
+  f8 share = 1.0f / sums.weight;
+  store(r, sums.r * share), store(g, sums.g * share), store(b, sums.b * share);
+  store(variance, sums.variance * share * share);
 }
 
-}  // namespace
-
-namespace {
-
-// All steps over one colour and the variance of its mean; `spare` and `spare_variance` are
-// overwritten.
-void filter_light(const PixelRays& rays, const std::vector<float>& ray_x, Cells& cells,
-                  std::array<std::span<float>, 3>& light, std::span<float>& variance,
-                  std::span<float>& spare_variance) {
-  auto& spare = cells.spare;
-  for (int k = 0; k < steps; k++) {
-    parallel_ranges(cells.height, 4, [&](int begin, int end) {
-      for (int y = begin; y < end; y++)
-        for (int x = 0; x < cells.width; x += lanes) {
-          size_t i = size_t(cells.index(x, y));
-          Row row{&light[0][i],        &light[1][i],        &light[2][i],        &variance[i],
-                  &cells.normal[0][i], &cells.normal[1][i], &cells.normal[2][i], &cells.plane[0][i],
-                  &cells.plane[1][i],  &cells.plane[2][i],  &cells.object[i]};
-          filter_run(row, &cells.depth[i], &ray_x[size_t(x + cell_pad)],
-                     rays.y((float(y) + 0.5f) * cell_size), cells.stride, 1 << k,
-                     std::min(lanes, cells.width - x), &spare[0][i], &spare[1][i], &spare[2][i],
-                     &spare_variance[i]);
-        }
-    });
-    std::swap(light, spare);
-    std::swap(variance, spare_variance);
-  }
+// What the surfaces of eight cells at i and those at j have in common: object and orientation; and
+// how far those at i lie off the planes at j.
+f8 compare_surfaces(const Cells& cells, size_t i, size_t j, const f8& ray_x, float ray_y,
+                    f8& apart) {
+  f8 facing = load_at(cells.normal[0], i) * load_at(cells.normal[0], j) +
+              load_at(cells.normal[1], i) * load_at(cells.normal[1], j) +
+              load_at(cells.normal[2], i) * load_at(cells.normal[2], j);
+  facing = positive(facing);
+  facing *= facing, facing *= facing, facing *= facing;
+  f8 off = load_at(cells.depth, i) * (load_at(cells.plane[0], j) * ray_x +
+                                      load_at(cells.plane[1], j) * ray_y +
+                                      load_at(cells.plane[2], j)) -
+           1.0f;
+  off *= 1 / plane_tolerance;
+  apart = 1.0f + off * off;
+  return keep(load<u8>(&cells.object[i]) == load<u8>(&cells.object[j]), facing);
 }
 
 }  // namespace
@@ -231,11 +201,43 @@ void filter_light(const PixelRays& rays, const std::vector<float>& ray_x, Cells&
 void filter_cells(const View& view, Cells& cells) {
   estimate_variance(cells);
   PixelRays rays(view);
-  std::vector<float> ray_x(size_t(cells.stride) + lanes);
+  std::vector<float> ray_x(size_t(cells.width) + lanes);
   for (int x = 0; x < int(ray_x.size()); x++)
-    ray_x[size_t(x)] = rays.x((float(x - cell_pad) + 0.5f) * cell_size);
-  filter_light(rays, ray_x, cells, cells.smooth, cells.sum, cells.sum2);
-  filter_light(rays, ray_x, cells, cells.rest, cells.rest_known, cells.sum2);
+    ray_x[size_t(x)] = rays.x((float(x) + 0.5f) * cell_size);
+  for (int k = 0; k < steps; k++) {
+    int step = 1 << k;
+    LightPlanes smooth{cells.smooth[0].data(), cells.smooth[1].data(), cells.smooth[2].data(),
+                       cells.sum.data()},
+        rest{cells.rest[0].data(), cells.rest[1].data(), cells.rest[2].data(),
+             cells.rest_known.data()};
+    parallel_ranges(cells.height, 4, [&](int begin, int end) {
+      for (int y = begin; y < end; y++) {
+        float ray_y = rays.y((float(y) + 0.5f) * cell_size);
+        for (int x = 0; x < cells.width; x += lanes) {
+          size_t i = size_t(cells.index(x, y));
+          LightSums s = begin_sums(smooth, i), r = begin_sums(rest, i);
+          f8 across = load<f8>(&ray_x[size_t(x)]);
+          for (int dy = -1; dy <= 1; dy++)
+            for (int dx = -1; dx <= 1; dx++) {
+              if (dx == 0 && dy == 0) continue;
+              size_t j = size_t(ptrdiff_t(i) + step * (dy * cells.stride + dx));
+              f8 apart, common = compare_surfaces(cells, i, j, across, ray_y, apart);
+              if (dx == 0 || dy == 0) common += common;
+              add(s, smooth, j, common, apart);
+              add(r, rest, j, common, apart);
+            }
+          store_sums(s, &cells.spare[0][i], &cells.spare[1][i], &cells.spare[2][i],
+                     &cells.sum2[i]);
+          store_sums(r, &cells.rest_spare[0][i], &cells.rest_spare[1][i], &cells.rest_spare[2][i],
+                     &cells.points[i]);
+        }
+      }
+    });
+    std::swap(cells.smooth, cells.spare);
+    std::swap(cells.rest, cells.rest_spare);
+    std::swap(cells.sum, cells.sum2);
+    std::swap(cells.rest_known, cells.points);
+  }
 }
 
 }  // namespace wellspring

@@ -16,8 +16,15 @@ namespace {
 constexpr int block = cell_size;  // pixels a side between four cell centres
 constexpr float plane_tolerance = 0.02f;
 
-// A pixel from the cells around it: bilinear among those of the object with most weight.
-void fill_from_cells(const PixelRays& rays, const Cells& cells, int x, int y, SurfaceRows& rows) {
+// Eight pixels as they lie packed, two rows of four; pixels beyond the picture are empty.
+struct Block {
+  u8 plane[surface_planes];
+};
+
+// Pixel `lane` of a block, at (x, y) of the picture, from the cells around it: bilinear among those
+// of the object with most weight.
+void fill_from_cells(const PixelRays& rays, const Cells& cells, int x, int y, int lane,
+                     Block& to) {
   int cx = (x + cell_size / 2) / cell_size - 1, cy = (y + cell_size / 2) / cell_size - 1;
   float fx = (float(x) + 0.5f) / cell_size - 0.5f - float(cx),
         fy = (float(y) + 0.5f) / cell_size - 0.5f - float(cy);
@@ -54,12 +61,12 @@ void fill_from_cells(const PixelRays& rays, const Cells& cells, int x, int y, Su
     sum += weight[k];
   }
   float share = 1 / sum;
-  rows.row(plane_albedo, y)[x] = pack_albedo(albedo * share);
-  rows.row(plane_rest, y)[x] = pack_rgb9e5(rest * share);
-  rows.row(plane_smooth, y)[x] = pack_rgb9e5(smooth * share);
-  rows.row(plane_more, y)[x] = pack_normal(normal);
-  rows.row(plane_depth, y)[x] = std::bit_cast<uint32_t>(sum / inverse_depth);
-  rows.row(plane_object, y)[x] = object;
+  to.plane[plane_albedo][lane] = pack_albedo(albedo * share);
+  to.plane[plane_rest][lane] = pack_rgb9e5(rest * share);
+  to.plane[plane_smooth][lane] = pack_rgb9e5(smooth * share);
+  to.plane[plane_more][lane] = pack_normal(normal);
+  to.plane[plane_depth][lane] = std::bit_cast<uint32_t>(sum / inverse_depth);
+  to.plane[plane_object][lane] = object;
 }
 
 // Bilinear weights of a block's pixels, two rows of four at a time, towards the cell centres at its
@@ -153,22 +160,31 @@ f8 alike(const CellLight& c, const Pixels& p, const f8& inverse_normal2) {
 
 using Corners = const CellLight* [4];
 
-// The four cells lie in one plane: what a pixel has in common with one, it has with all.
-bool is_flat(const Corners& corners, const PixelRays& rays, int bx, int by) {
+// Which of the blocks from bx on lie between four cells in one plane: what a pixel has in common
+// with one of those, it has with all.
+i8 find_flat(const PixelRays& rays, const Cells& cells, int bx, int by) {
   constexpr float same_direction = 0.998f, same_depth = 0.1f * plane_tolerance;
-  const CellLight& a = *corners[0];
-  if (a.object == no_object) return false;
+  auto at = [&](const auto& plane, size_t i) {
+    return load<f8>(plane.data() + i);
+  };
+  size_t a = size_t(cells.index(bx - 1, by - 1));
+  u8 object = load<u8>(&cells.object[a]);
+  f8 nx = at(cells.normal[0], a), ny = at(cells.normal[1], a), nz = at(cells.normal[2], a),
+     px = at(cells.plane[0], a), py = at(cells.plane[1], a), pz = at(cells.plane[2], a);
+  f8 left = rays.x((float(bx) - 0.5f) * cell_size) +
+            float(cell_size) * rays.inverse_focal * f8{0, 1, 2, 3, 4, 5, 6, 7};
+  i8 flat = object != no_object;
   for (int k = 1; k < 4; k++) {
-    const CellLight& c = *corners[k];
-    float x = rays.x((float(bx + (k & 1)) - 0.5f) * cell_size),
-          y = rays.y((float(by + (k >> 1)) - 0.5f) * cell_size);
-    float cosine =
-        a.normal[0] * c.normal[0] + a.normal[1] * c.normal[1] + a.normal[2] * c.normal[2];
-    float off = c.depth * (a.plane[0] * x + a.plane[1] * y + a.plane[2]) - 1;
-    if (a.object != c.object || cosine < same_direction || !(std::abs(off) < same_depth))
-      return false;
+    size_t c = a + size_t(k & 1) + size_t(k >> 1) * size_t(cells.stride);
+    f8 x = left + float(k & 1) * float(cell_size) * rays.inverse_focal;
+    float y = rays.y((float(by + (k >> 1)) - 0.5f) * cell_size);
+    f8 cosine = nx * at(cells.normal[0], c) + ny * at(cells.normal[1], c) +
+                nz * at(cells.normal[2], c);
+    f8 off = at(cells.depth, c) * (px * x + py * y + pz) - 1.0f;
+    flat &= (object == load<u8>(&cells.object[c])) & (cosine >= same_direction) &
+            (magnitude(off) < same_depth);
   }
-  return true;
+  return flat;
 }
 
 Surroundings look_around(const Corners& corners, bool flat, int half, const Pixels& p) {
@@ -222,22 +238,78 @@ void blend_light(const Surroundings& s, Pixels& p) {
   p.rest = weighted_sum(p.rest, kept, s.rest, 1.0f - own_detail);
 }
 
-u8 load_pair(const SurfaceRows& rows, SurfacePlane plane, int x, int y) {
-  return __builtin_shufflevector(load<u4>(rows.row(plane, y) + x),
-                                 load<u4>(rows.row(plane, y + 1) + x), 0, 1, 2, 3, 4, 5, 6, 7);
+// The pixels of a block at (x, y) that lie in the picture.
+struct Extent {
+  int first, columns;  // the first pixel of a row, and how many
+  bool row[2], whole;
+  Extent(int x, int y, const Frame& frame) {
+    PackedFour four(x, frame.width);
+    first = four.first;
+    columns = four.count;
+    for (int r = 0; r < 2; r++) row[r] = y + r >= 0 && y + r < frame.height;
+    whole = columns == block && row[0] && row[1];
+  }
+};
+
+void read_block(Frame& frame, const Extent& extent, int x, int y, Block& to) {
+  size_t width = size_t(frame.width);
+  if (extent.whole) {
+    size_t at = size_t(y) * width + size_t(x);
+    auto pair = [width](const auto* from) {
+      return join(load<u4>(from), load<u4>(from + width));
+    };
+    to.plane[plane_object] = pair(&frame.object[at]);
+    to.plane[plane_more] = pair(&frame.confidence[at]);
+    to.plane[plane_depth] = pair(&frame.depth[at]);
+    const uint32_t *above = packed_words(frame, x, y), *below = packed_words(frame, x, y + 1);
+    for (int p : {plane_albedo, plane_rest, plane_smooth})
+      to.plane[p] =
+          join(load<u4>(above + packed_four * p), load<u4>(below + packed_four * p));
+    return;
+  }
+  uint32_t words[surface_planes][lanes] = {};
+  for (uint32_t& object : words[plane_object]) object = no_object;
+  for (int r = 0; r < 2; r++) {
+    if (!extent.row[r]) continue;
+    size_t at = size_t(y + r) * width + size_t(extent.first),
+           bytes = size_t(extent.columns) * sizeof(uint32_t);
+    int lane = r * block + extent.first - x;
+    std::memcpy(&words[plane_object][lane], &frame.object[at], bytes);
+    std::memcpy(&words[plane_more][lane], &frame.confidence[at], bytes);
+    std::memcpy(&words[plane_depth][lane], &frame.depth[at], bytes);
+    const uint32_t* from = packed_words(frame, extent.first, y + r);
+    for (int p : {plane_albedo, plane_rest, plane_smooth})
+      std::memcpy(&words[p][lane], from + extent.columns * p, bytes);
+  }
+  for (int p = 0; p < surface_planes; p++) to.plane[p] = load<u8>(words[p]);
 }
 
-Pixels read_pixels(const PixelRays& rays, const SurfaceRows& rows, int x, int y) {
+// Fills what a block does not know and tells the frame its objects.
+void finish_block(const PixelRays& rays, const Cells& cells, bool known, const Extent& extent,
+                  int x, int y, Block& to, Frame& frame) {
+  for (int r = 0; r < 2; r++) {
+    if (!extent.row[r]) continue;
+    for (int i = extent.first; i < extent.first + extent.columns; i++) {
+      int lane = r * block + i - x;
+      if (to.plane[plane_object][lane] != no_object) continue;
+      if (known) fill_from_cells(rays, cells, i, y + r, lane, to);
+      frame.object[size_t(y + r) * size_t(frame.width) + size_t(i)] =
+          known ? to.plane[plane_object][lane] : 0;
+    }
+  }
+}
+
+Pixels unpack_pixels(const PixelRays& rays, const Block& from, int x, int y) {
   Pixels p;
-  p.object = load_pair(rows, plane_object, x, y);
-  p.depth = as<f8>(load_pair(rows, plane_depth, x, y));
-  u8 more = load_pair(rows, plane_more, x, y);
+  p.object = from.plane[plane_object];
+  p.depth = as<f8>(from.plane[plane_depth]);
+  u8 more = from.plane[plane_more];
   unpack_octahedron(more & 0xffffu, p.nx, p.ny, p.nz);
   p.normal2 = p.nx * p.nx + p.ny * p.ny + p.nz * p.nz;
   p.samples = to_float((more >> 16) & 255u);
   p.deviation = unpack_deviation(more >> 24);
-  unpack_rgb9e5(load_pair(rows, plane_smooth, x, y), p.smooth.r, p.smooth.g, p.smooth.b);
-  unpack_rgb9e5(load_pair(rows, plane_rest, x, y), p.rest.r, p.rest.g, p.rest.b);
+  unpack_rgb9e5(from.plane[plane_smooth], p.smooth.r, p.smooth.g, p.smooth.b);
+  unpack_rgb9e5(from.plane[plane_rest], p.rest.r, p.rest.g, p.rest.b);
   float step = rays.inverse_focal, left = rays.x(float(x) + 0.5f), top = rays.y(float(y) + 0.5f);
   p.x = left + step * f8{0, 1, 2, 3, 0, 1, 2, 3};
   p.y = top - step * f8{0, 0, 0, 0, 1, 1, 1, 1};
@@ -279,9 +351,9 @@ void write(const Result& result, int skip, int count, size_t at, Frame& frame) {
 }
 
 // Reflectance times light plus the rest.
-void light_pixels(const SurfaceRows& rows, const Pixels& p, int x, int y, Result* result) {
+void light_pixels(const u8& packed_albedo, const Pixels& p, Result* result) {
   Color albedo;
-  unpack_albedo(load_pair(rows, plane_albedo, x, y), albedo.r, albedo.g, albedo.b);
+  unpack_albedo(packed_albedo, albedo.r, albedo.g, albedo.b);
   // Shares that add up to one by a rounding too much can leave a hair of negative light.
   f8 r = positive(albedo.r * p.smooth.r + p.rest.r), g = positive(albedo.g * p.smooth.g + p.rest.g),
      b = positive(albedo.b * p.smooth.b + p.rest.b);
@@ -296,59 +368,39 @@ void light_pixels(const SurfaceRows& rows, const Pixels& p, int x, int y, Result
   store(result[1].depth, part<4>(depth));
 }
 
-// Fills what row y does not know and tells the frame its objects.
-void finish_surface(const PixelRays& rays, const Cells& cells, bool known, int y, SurfaceRows& rows,
-                    Frame& frame) {
-  uint32_t* object = rows.row(plane_object, y);
-  uint32_t* out = frame.object.data() + size_t(y) * size_t(frame.width);
-  for (int x = 0; x < frame.width; x += lanes) {
-    if (!any(load<u8>(object + x) == no_object)) continue;
-    for (int i = x; i < std::min(x + lanes, frame.width); i++) {
-      if (object[i] != no_object) continue;
-      if (known) fill_from_cells(rays, cells, i, y, rows);
-      out[i] = known ? object[i] : 0;
-    }
-  }
-}
-
 }  // namespace
 
 void compose(const View& view, const Cells& cells, bool known, Frame& frame) {
   PixelRays rays(view);
-  int width = frame.width, height = frame.height;
   parallel_ranges(cells.height + 1, 4, [&](int begin, int end) {
-    thread_local SurfaceRows rows;
-    rows.start(width, block);
     thread_local std::vector<CellLight> above, below;
     read_cells(cells, begin - 1, below);
     for (int by = begin; by < end; by++) {
       int top = by * block - block / 2;
       std::swap(above, below);
       read_cells(cells, by, below);
-      for (int y = top; y < top + block; y++) {
-        if (y < 0 || y >= height) {
-          rows.clear(y);
-          continue;
-        }
-        unpack_row(frame, y, rows);
-        finish_surface(rays, cells, known, y, rows, frame);
-      }
+      i8 flat{};
       for (int bx = 0; bx <= cells.width; bx++) {
+        if (bx % lanes == 0) flat = find_flat(rays, cells, bx, by);
         size_t left = size_t(bx);
         Corners corners = {&above[left], &above[left + 1], &below[left], &below[left + 1]};
-        bool flat = is_flat(corners, rays, bx, by);
-        int x = bx * block - block / 2, skip = std::max(-x, 0),
-            count = std::min(block, width - x) - skip;
-        if (count <= 0) continue;
+        int x = bx * block - block / 2;
         for (int half = 0; half < 2; half++) {
           int y = top + half * 2;
-          Pixels p = read_pixels(rays, rows, x, y);
-          blend_light(look_around(corners, flat, half, p), p);
+          Extent extent(x, y, frame);
+          if (extent.columns <= 0) continue;
+          Block pixels;
+          read_block(frame, extent, x, y, pixels);
+          if (any(pixels.plane[plane_object] == no_object))
+            finish_block(rays, cells, known, extent, x, y, pixels, frame);
+          Pixels p = unpack_pixels(rays, pixels, x, y);
+          blend_light(look_around(corners, flat[bx % lanes], half, p), p);
           Result result[2];
-          light_pixels(rows, p, x, y, result);
+          light_pixels(pixels.plane[plane_albedo], p, result);
           for (int r = 0; r < 2; r++)
-            if (y + r >= 0 && y + r < height)
-              write(result[r], skip, count, size_t(y + r) * size_t(width) + size_t(x), frame);
+            if (extent.row[r])
+              write(result[r], extent.first - x, extent.columns,
+                    size_t(y + r) * size_t(frame.width) + size_t(x), frame);
         }
       }
     }

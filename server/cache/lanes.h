@@ -45,16 +45,18 @@ inline bool any(const V& v) {
   return sum != 0;
 }
 
-// Eight records of four words each become four times eight lanes.
-inline void transpose(const uint32_t* records, u8& a, u8& b, u8& c, u8& d) {
-  u8 r04 = __builtin_shufflevector(load<u4>(records), load<u4>(records + 16), 0, 1, 2, 3, 4, 5, 6,
-                                   7),
-     r15 = __builtin_shufflevector(load<u4>(records + 4), load<u4>(records + 20), 0, 1, 2, 3, 4, 5,
-                                   6, 7),
-     r26 = __builtin_shufflevector(load<u4>(records + 8), load<u4>(records + 24), 0, 1, 2, 3, 4, 5,
-                                   6, 7),
-     r37 = __builtin_shufflevector(load<u4>(records + 12), load<u4>(records + 28), 0, 1, 2, 3, 4, 5,
-                                   6, 7);
+// Two halves side by side.
+inline u8 join(const u4& low, const u4& high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+inline u4 low_half(const u8& v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
+inline u4 high_half(const u8& v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
+
+// Eight records of four words each, `record(0)` to `record(7)`, become four times eight lanes.
+template <class Record>
+inline void transpose(const Record& record, u8& a, u8& b, u8& c, u8& d) {
+  auto pair = [&](int i) { return join(load<u4>(record(i)), load<u4>(record(i + 4))); };
+  u8 r04 = pair(0), r15 = pair(1), r26 = pair(2), r37 = pair(3);
   u8 ab01 = __builtin_shufflevector(r04, r15, 0, 8, 1, 9, 4, 12, 5, 13),
      cd01 = __builtin_shufflevector(r04, r15, 2, 10, 3, 11, 6, 14, 7, 15),
      ab23 = __builtin_shufflevector(r26, r37, 0, 8, 1, 9, 4, 12, 5, 13),

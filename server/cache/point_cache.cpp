@@ -6,9 +6,29 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "cache/lanes.h"
 #include "cache/packing.h"
 
 namespace wellspring {
+namespace {
+
+using ManyBytes = uint8_t __attribute__((vector_size(32)));
+using GroupBytes = uint8_t __attribute__((vector_size(8)));
+static_assert(group_size == sizeof(GroupBytes), "capacities are whole groups");
+
+template <class Bytes>
+void age_some(uint8_t* age, const uint8_t* flags, uint8_t step) {
+  Bytes base = Bytes{} + step, flag = load<Bytes>(flags), old = load<Bytes>(age);
+  Bytes seen = as<Bytes>((flag & uint8_t(point_visible)) != 0),
+        fast = as<Bytes>((flag & uint8_t(point_specular | point_moving)) != 0);
+  Bytes sum = old + (base + (uint8_t(2) * base & fast) + (base & ~seen));
+  sum |= as<Bytes>(sum < old);  // beyond 255 it wrapped around
+  // A seen point stops one before eviction; one that was evicted meanwhile stays evicted.
+  sum += seen & as<Bytes>(sum == evicted_age);
+  store(age, sum | as<Bytes>(old == evicted_age));
+}
+
+}  // namespace
 
 void resize_points(PointCache& points, int capacity) {
   capacity = std::clamp(capacity, int(group_size), max_capacity);
@@ -26,7 +46,6 @@ void resize_points(PointCache& points, int capacity) {
   fit(points.flags, uint8_t(0));
   fit(points.age, evicted_age);
   fit(points.count, uint8_t(0));
-  fit(points.noise, uint8_t(0));
   fit(points.color, PointColor{});
   fit(points.seen, uint64_t(0));
   points.seen.resize((size + 63) / 64);
@@ -54,22 +73,16 @@ void age_points(PointCache& points, float new_points) {
   points.age_carry += step;
   int whole = int(points.age_carry);
   points.age_carry -= float(whole);
-  whole = std::min(whole, 85);
+  whole = std::min(whole, 63);  // four times as much must fit a byte
   if (whole == 0) return;
   uint8_t* age = points.age.data();
   const uint8_t* flags = points.flags.data();
-  parallel_ranges(capacity, 1 << 15, [=](int begin, int end) {
-    uint16_t base = uint16_t(whole);
-    for (int i = begin; i < end; i++) {
-      uint16_t f = flags[i];
-      uint16_t fast = (f & (point_specular | point_moving)) ? uint16_t(base * 2) : uint16_t(0);
-      uint16_t unseen = (f & point_visible) ? uint16_t(0) : base;
-      uint16_t limit = (f & point_visible) ? uint16_t(254) : uint16_t(255);
-      uint16_t older = uint16_t(age[i] + base + fast + unseen);
-      // A seen point that was evicted meanwhile stays evicted.
-      uint16_t result = older < limit ? older : limit;
-      age[i] = age[i] == evicted_age ? evicted_age : uint8_t(result);
-    }
+  parallel_ranges(capacity / int(group_size), 1 << 12, [=](int begin, int end) {
+    size_t i = size_t(begin) * group_size, last = size_t(end) * group_size;
+    for (; i + sizeof(ManyBytes) <= last; i += sizeof(ManyBytes))
+      age_some<ManyBytes>(age + i, flags + i, uint8_t(whole));
+    for (; i < last; i += sizeof(GroupBytes))
+      age_some<GroupBytes>(age + i, flags + i, uint8_t(whole));
   });
 }
 
@@ -109,7 +122,7 @@ void move_anchored_points(PointCache& points, const World& world) {
       points.x[a.point] = p.x;
       points.y[a.point] = p.y;
       points.z[a.point] = p.z;
-      points.normal[a.point] = pack_normal(n);
+      points.normal[a.point] = points.color[a.point].normal = pack_normal(n);
     }
   });
 }
@@ -117,7 +130,7 @@ void move_anchored_points(PointCache& points, const World& world) {
 size_t points_bytes(const PointCache& points) {
   auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return bytes(points.x) + bytes(points.y) + bytes(points.z) + bytes(points.normal) +
-         bytes(points.flags) + bytes(points.age) + bytes(points.count) + bytes(points.noise) +
+         bytes(points.flags) + bytes(points.age) + bytes(points.count) +
          bytes(points.color) + bytes(points.anchors) + bytes(points.seen);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The points of a render cache (Walter 1999, section 3 and figure 4): what was seen, where, how
 // long ago. Fixed capacity. What is walked every frame lies in arrays of its own; what is looked up
-// only for points that show (PointColor) lies together, one cache line fetch a point. 34 bytes a
+// only for points that show (PointColor) lies together, one cache line fetch a point. 36 bytes a
 // point.
 #pragma once
 #include <cstdint>
@@ -26,7 +26,11 @@ struct PointColor {
   uint32_t smooth = 0;  // pack_rgb9e5, mean over `count` samples
   uint32_t rest = 0;    // pack_rgb9e5, mean likewise
   uint32_t object = 0;
+  uint16_t normal = 0;  // as PointCache::normal
+  uint8_t unused = 0;
+  uint8_t noise = 0;  // pack_deviation: of one sample's `rest` luminance, known from count 2 on
 };
+static_assert(sizeof(PointColor) == 20);
 
 // A point on a moving mesh, found again in later ticks.
 struct Anchor {
@@ -44,8 +48,6 @@ struct PointCache {
   std::vector<uint8_t> flags;
   std::vector<uint8_t> age;    // 0 new; see age_points()
   std::vector<uint8_t> count;  // samples in the means, at most 255
-  std::vector<uint8_t>
-      noise;  // pack_deviation: of one sample's `rest` luminance, known from count 2 on
   std::vector<PointColor> color;
   std::vector<Anchor> anchors;
   std::vector<uint64_t> seen;  // scratch of move_points(): one bit a point

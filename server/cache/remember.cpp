@@ -37,7 +37,7 @@ bool is_same_surface(const PointCache& points, uint32_t i, const View& view, con
   bool infinite = points.flags[i] & point_infinite;
   if (infinite != is_infinite(sample) || points.color[i].object != sample.object) return false;
   if (infinite) return true;
-  vec3 normal = unpack_normal(points.normal[i]), offset = sample.position - position_of(points, i);
+  vec3 normal = unpack_normal(points.color[i].normal), offset = sample.position - position_of(points, i);
   if (dot(normal, sample.normal) < same_normal) return false;
   float distance = length(sample.position - view.position);
   float away = exact ? length(offset) : std::abs(dot(offset, normal));
@@ -62,7 +62,7 @@ void place_point(PointCache& points, uint32_t i, const View& view, const Sample&
   points.x[i] = p.x;
   points.y[i] = p.y;
   points.z[i] = p.z;
-  points.normal[i] = pack_normal(n);
+  points.normal[i] = points.color[i].normal = pack_normal(n);
   points.age[i] = 0;
   points.color[i].albedo = pack_albedo(sample.albedo);
 }
@@ -72,7 +72,7 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Sample&
   place_point(points, i, view, sample);
   points.flags[i] = flags_of(sample);
   points.count[i] = 1;
-  points.noise[i] = 0;
+  points.color[i].noise = 0;
   points.color[i].smooth = pack_rgb9e5(sample.smooth, random);
   points.color[i].rest = pack_rgb9e5(sample.rest, random >> 4);
   points.color[i].object = sample.object;
@@ -83,7 +83,7 @@ bool improve_point(PointCache& points, uint32_t i, const View& view, const Sampl
                    bool exact, const RememberSettings& settings, uint32_t random) {
   vec3 smooth = unpack_rgb9e5(points.color[i].smooth), rest = unpack_rgb9e5(points.color[i].rest);
   int n = points.count[i];
-  float deviation = unpack_deviation(points.noise[i]);
+  float deviation = unpack_deviation(points.color[i].noise);
   float before = luminance(rest), now = luminance(max(sample.rest, vec3(0))),
         step = std::abs(now - before);
   float level = std::max(before, now),
@@ -102,7 +102,7 @@ bool improve_point(PointCache& points, uint32_t i, const View& view, const Sampl
       n == 1
           ? 0.5f * step * step
           : (deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) / memory;
-  points.noise[i] = pack_deviation(std::sqrt(variance));
+  points.color[i].noise = pack_deviation(std::sqrt(variance));
   float share = 1 / float(std::min(n, int(settings.longest_mean) - 1) + 1);
   smooth += (max(sample.smooth, vec3(0)) - smooth) * share;
   rest += (max(sample.rest, vec3(0)) - rest) * share;

@@ -17,40 +17,44 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
   const uint32_t* row = image.point.data() + size_t(y) * size_t(width);
   const float* depth = image.depth.data() + size_t(y) * size_t(width);
   const PointColor* colors = points.color.data();
-  const uint16_t* normals = points.normal.data();
   const uint8_t* counts = points.count.data();
-  const uint8_t* noises = points.noise.data();
   uint32_t* albedo = rows.row(plane_albedo, y);
   uint32_t* rest = rows.row(plane_rest, y);
   uint32_t* smooth = rows.row(plane_smooth, y);
   uint32_t* object = rows.row(plane_object, y);
-  uint32_t* more = rows.row(plane_more, y);
+  uint32_t* more_row = rows.row(plane_more, y);
   u8 converged{};
-  for (int x0 = 0; x0 < width; x0 += lanes) {
-    int count = std::min(lanes, width - x0);
-    alignas(32) uint32_t records[4 * lanes] = {}, others[lanes] = {}, there[lanes] = {};
+  for (int x = 0; x < width; x += lanes) {
     // No branch: where there is no point, the first one is read and thrown away.
-    if (x0 + ahead + lanes <= width)
+    if (x + ahead + lanes <= width)
       for (int i = 0; i < lanes; i++) {
-        uint32_t next = row[x0 + ahead + i], early = next & (0u - uint32_t(next != no_point));
-        __builtin_prefetch(&colors[early]);
-        __builtin_prefetch(&normals[early]);
-        __builtin_prefetch(&counts[early]);
-        __builtin_prefetch(&noises[early]);
+        uint32_t next = row[x + ahead + i], early = next != no_point ? next : 0;
+        auto record = reinterpret_cast<const char*>(&colors[early]);
+        __builtin_prefetch(record);
+        __builtin_prefetch(record + sizeof(PointColor) - 1);  // they do not stop at cache lines
       }
-    for (int i = 0; i < count; i++) {
-      there[i] = 0u - uint32_t(row[x0 + i] != no_point);
-      uint32_t point = row[x0 + i] & there[i];
-      std::memcpy(records + 4 * i, &colors[point], 16);
-      others[i] = normals[point] | uint32_t(counts[point]) << 16 | uint32_t(noises[point]) << 24;
-    }
-    u8 a, s, r, o, known = load<u8>(there), m = load<u8>(others) & known;
-    transpose(records, a, s, r, o);  // in the order of PointColor
-    store(albedo + x0, a & known);
-    store(smooth + x0, s & known);
-    store(rest + x0, r & known);
-    store(object + x0, (o & known) | ~known);
-    store(more + x0, m);
+    u8 index = u8{} + no_point;
+    if (x + lanes <= width)
+      index = load<u8>(row + x);
+    else
+      std::memcpy(&index, row + x, size_t(width - x) * sizeof(uint32_t));
+    u8 known = as<u8>(index != no_point);
+    alignas(32) uint32_t point[lanes];
+    store(point, index & known);
+    u8 a, s, r, o;
+    transpose([&](int i) { return &colors[point[i]]; }, a, s, r, o);  // in the order of PointColor
+    auto more = [&](int i) {
+      uint32_t word;
+      std::memcpy(&word, &colors[point[i]].normal, sizeof word);
+      return word | uint32_t(counts[point[i]]) << 16;
+    };
+    u8 m{more(0), more(1), more(2), more(3), more(4), more(5), more(6), more(7)};
+    m &= known;
+    store(albedo + x, a & known);
+    store(smooth + x, s & known);
+    store(rest + x, r & known);
+    store(object + x, o | ~known);
+    store(more_row + x, m);
     converged -= as<u8>(((m >> 16) & 255u) >= converged_samples);
   }
   std::memcpy(rows.row(plane_depth, y), depth, size_t(width) * sizeof(float));
@@ -145,6 +149,38 @@ void fill(const Neighbour* around, int x, const i8& asked, u8* words) {
   words[plane_depth] = as<u8>((2.0f * beside.depth + diagonal.depth) * share) & known;
 }
 
+// Writes eight pixels at x to the frame.
+void pack(const u8* words, int x, int y, Frame& frame) {
+  size_t row = size_t(y) * size_t(frame.width);
+  if (x >= 0 && x + lanes <= frame.width) {
+    size_t at = row + size_t(x);
+    store(&frame.object[at], words[plane_object]);
+    store(&frame.confidence[at], words[plane_more]);
+    store(&frame.depth[at], words[plane_depth]);
+    uint32_t* to = packed_words(frame, x, y);
+    for (int p : {plane_albedo, plane_rest, plane_smooth}) {
+      store(to + packed_four * p, low_half(words[p]));
+      store(to + packed_four * (p + 3), high_half(words[p]));
+    }
+    return;
+  }
+  for (int half = 0; half < lanes; half += packed_four) {
+    PackedFour four(x + half, frame.width);
+    if (four.count <= 0) continue;
+    auto put = [&](int plane, auto* to) {
+      uint32_t word[lanes];
+      store(word, words[plane]);
+      std::memcpy(to, word + (four.first - x), sizeof(uint32_t) * size_t(four.count));
+    };
+    size_t at = row + size_t(four.first);
+    put(plane_object, &frame.object[at]);
+    put(plane_more, &frame.confidence[at]);
+    put(plane_depth, &frame.depth[at]);
+    uint32_t* to = packed_words(frame, four.first, y);
+    for (int p : {plane_albedo, plane_rest, plane_smooth}) put(p, to + four.count * p);
+  }
+}
+
 }  // namespace
 
 int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame) {
@@ -154,24 +190,20 @@ int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame) {
     around[k] = {row(plane_albedo), row(plane_rest), row(plane_smooth),
                  row(plane_object), row(plane_more), row(plane_depth)};
   }
-  PackedRow packed(frame, y);
+  const uint32_t* own[surface_planes];
+  for (int p = 0; p < surface_planes; p++) own[p] = rows.row(SurfacePlane(p), y);
   u8 points{};
-  for (int x = 0; x < frame.width; x += lanes) {
+  for (int x = packed_start; x < frame.width; x += lanes) {
     u8 words[surface_planes];
-    for (int p = 0; p < surface_planes; p++) words[p] = load<u8>(rows.row(SurfacePlane(p), y) + x);
-    i8 hole = words[plane_object] == no_object;  // beyond the end all are
+    for (int p = 0; p < surface_planes; p++) words[p] = load<u8>(own[p] + x);
+    i8 hole = words[plane_object] == no_object;  // beyond the ends all are
     points += as<u8>(hole) + 1u;
     if (any(hole)) {
       u8 filled[surface_planes];
       fill(around, x, hole, filled);
       for (int p = 0; p < surface_planes; p++) words[p] = hole ? filled[p] : words[p];
     }
-    size_t at = sizeof(uint32_t) * size_t(x);
-    if (x + lanes <= frame.width)
-      for (int p = 0; p < surface_planes; p++) store(packed.plane[p] + at, words[p]);
-    else
-      for (int p = 0; p < surface_planes; p++)
-        std::memcpy(packed.plane[p] + at, &words[p], sizeof(uint32_t) * size_t(frame.width - x));
+    pack(words, x, y, frame);
   }
   int sum = 0;
   for (int i = 0; i < lanes; i++) sum += int(points[i]);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the points say about every pixel, before light is put together. A few rows of it lie in
 // SurfaceRows while cells are built and holes filled; the whole picture lies packed in the frame's
-// own planes until compose() overwrites them with what they are meant for.
+// own planes until compose() overwrites them, pixel by pixel, with what they are meant for.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -74,24 +75,20 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
 // the row.
 int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame);
 
-// Where the planes of row y lie in the frame: three behind each other in the row of colours.
-struct PackedRow {
-  std::byte* plane[surface_planes];
-  PackedRow(Frame& frame, int y) {
-    size_t width = size_t(frame.width), start = size_t(y) * width;
-    auto bytes = [](auto* first) { return reinterpret_cast<std::byte*>(first); };
-    for (size_t p : {plane_albedo, plane_rest, plane_smooth})
-      plane[p] = bytes(frame.color.data() + start) + p * width * sizeof(uint32_t);
-    plane[plane_object] = bytes(frame.object.data() + start);
-    plane[plane_more] = bytes(frame.confidence.data() + start);
-    plane[plane_depth] = bytes(frame.depth.data() + start);
-  }
+// Where a picture's surface lies in its frame. Depth, object and `more` of a pixel lie in its own
+// place of the planes depth, object and confidence. Albedo, rest and smooth share the place of the
+// colours four pixels at a time: of the pixels x to x + 3 first four words of albedo, then four of
+// rest, then four of smooth. Such fours start two pixels left of the picture, where the blocks of
+// compose() do, which can so be composed in place; at the edges a four has fewer pixels.
+inline constexpr int packed_four = 4, packed_start = -2;
+struct PackedFour {
+  int first, count;  // pixels of the four that lie in the picture
+  PackedFour(int x, int width)
+      : first(std::max(x, 0)), count(std::min(x + packed_four, width) - first) {}
 };
-inline void unpack_row(Frame& frame, int y, SurfaceRows& rows) {
-  PackedRow packed(frame, y);
-  for (int p = 0; p < surface_planes; p++)
-    std::memcpy(rows.row(SurfacePlane(p), y), packed.plane[p],
-                size_t(frame.width) * sizeof(uint32_t));
+inline uint32_t* packed_words(Frame& frame, int x, int y) {
+  return reinterpret_cast<uint32_t*>(frame.color.data() + size_t(y) * size_t(frame.width) +
+                                     size_t(x));
 }
 
 }  // namespace wellspring

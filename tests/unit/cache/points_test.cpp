@@ -26,7 +26,8 @@ struct Stage {
   // A point that faces the viewer.
   void put(uint32_t i, vec3 p, uint32_t object = 1, bool infinite = false) {
     points.x[i] = p.x, points.y[i] = p.y, points.z[i] = p.z;
-    points.normal[i] = pack_normal(infinite ? -p : view.position - p);
+    points.normal[i] = points.color[i].normal =
+        pack_normal(infinite ? -p : view.position - p);
     points.flags[i] = uint8_t(point_used | (infinite ? point_infinite : 0));
     points.age[i] = 0;
     points.count[i] = 1;
