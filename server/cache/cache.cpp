@@ -25,6 +25,7 @@ bool same_view(const View& a, const View& b) {
 }
 
 constexpr int largest_side = 16384;
+constexpr int still_project_period = 8;  // frames
 constexpr uint8_t moving_mean = 48, still_mean = 255;  // samples a point's mean looks back on
 
 }  // namespace
@@ -38,6 +39,7 @@ struct RenderCache::Impl {
   Scratch scratch;
   View view;  // of the last projection
   bool projected = false;
+  bool image_stale = true;  // points have changed since, and the image was not told
   int still_frames = 0;  // projections of the same view before the last
   float new_points = 0;  // a frame, smoothed
   int fresh = 0;         // samples of this frame that show
@@ -79,6 +81,7 @@ void RenderCache::resize(int width, int height) {
 
 void RenderCache::move_points(const World& world) {
   Impl& c = *impl_;
+  c.image_stale |= !c.points.anchors.empty();
   move_anchored_points(c.points, world);
   age_points(c.points, c.new_points);
 }
@@ -95,8 +98,12 @@ void RenderCache::project(const View& view) {
   c.projected = true;
   c.frames++;
   c.fresh = 0;
+  // At rest remember() keeps the image up to date. Only a point that was hidden by one since
+  // overwritten has to wait until all are projected again.
+  if (same && !c.image_stale && c.still_frames % still_project_period != 0) return;
   project_points(c.points, view, same, c.scratch, c.image);
   depth_cull(c.points, c.settings.depth_threshold, c.image);
+  c.image_stale = false;
 }
 
 void RenderCache::attend() {
@@ -122,6 +129,7 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   settings.color_change = c.settings.color_change;
   settings.current = c.projected && same_view(view, c.view);
   settings.still = settings.current && c.is_still();
+  c.image_stale |= !settings.current;
   settings.longest_mean = settings.still ? still_mean : moving_mean;
   Remembered result =
       remember_samples(c.points, view, requests, samples, settings, c.image, c.targets);
@@ -158,6 +166,7 @@ void RenderCache::reconstruct(const View& view, Frame& frame) {
 void RenderCache::clear() {
   Impl& c = *impl_;
   clear_points(c.points);
+  c.image_stale = true;
   std::fill(c.image.point.begin(), c.image.point.end(), no_point);
   std::fill(c.image.depth.begin(), c.image.depth.end(), 0.0f);
   std::fill(c.image.changed.begin(), c.image.changed.end(), uint8_t(0));

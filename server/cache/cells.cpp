@@ -81,21 +81,21 @@ u8 elect_object(const Pixels& pixels) {
 Gathered gather_cells(const Pixels& pixels) {
   Gathered g;
   g.object = elect_object(pixels);
+  // The first pixel of the object says where a crease begins.
+  u8 first{};
+  for (int k = cell_size * cell_size - 1; k >= 0; k--)
+    first = pixels.plane[plane_object][k] == g.object ? pixels.plane[plane_more][k] : first;
   Vec reference;
-  f8 reference2{};
+  unpack_octahedron(first & 0xffffu, reference.x, reference.y, reference.z);
+  f8 least2 = 0.49f * dot(reference, reference);  // 0.7 is the cosine
   for (int k = 0; k < cell_size * cell_size; k++) {
     u8 object = pixels.plane[plane_object][k], more = pixels.plane[plane_more][k];
     i8 use = (object == g.object) & (object != no_object);
     Vec normal;
     unpack_octahedron(more & 0xffffu, normal.x, normal.y, normal.z);
-    i8 first = use & (g.points == 0.0f);
-    f8 length2 = dot(normal, normal);
-    reference = {first ? normal.x : reference.x, first ? normal.y : reference.y,
-                 first ? normal.z : reference.z};
-    reference2 = first ? length2 : reference2;
     f8 facing = dot(normal, reference);
-    // Beyond a crease (0.7 is the cosine) lies another surface.
-    use &= (facing > 0.0f) & (facing * facing >= 0.49f * length2 * reference2);
+    // Beyond a crease lies another surface.
+    use &= (facing > 0.0f) & (facing * facing >= least2 * dot(normal, normal));
 
     f8 samples = keep(use, to_float((more >> 16) & 255u));
     Vec albedo, rest, smooth;

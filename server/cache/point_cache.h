@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cache/big_pages.h"
 #include "light/sample.h"
 #include "world/bvh.h"
 
@@ -43,12 +44,12 @@ inline constexpr uint8_t evicted_age = 255;  // such a point is never shown agai
 inline constexpr int max_capacity = (1 << 24) - 8;
 
 struct PointCache {
-  std::vector<float> x, y, z;
+  BigVector<float> x, y, z;
   std::vector<uint16_t> normal;  // pack_normal
   std::vector<uint8_t> flags;
   std::vector<uint8_t> age;    // 0 new; see age_points()
   std::vector<uint8_t> count;  // samples in the means, at most 255
-  std::vector<PointColor> color;
+  BigVector<PointColor> color;
   std::vector<Anchor> anchors;
   std::vector<uint64_t> seen;  // scratch of move_points(): one bit a point
   uint32_t next_group = 0;     // round robin of replacement

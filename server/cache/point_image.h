@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "cache/big_pages.h"
+
 namespace wellspring {
 
 inline constexpr uint32_t no_point = 0xffffffffu;
@@ -14,8 +16,8 @@ inline constexpr int change_tile = 8;           // pixels a side of one cell of 
 
 struct PointImage {
   int width = 0, height = 0;
-  std::vector<uint32_t> point;    // index into the cache, or no_point
-  std::vector<float> depth;       // along the viewing axis; 0 where there is no point
+  BigVector<uint32_t> point;      // index into the cache, or no_point
+  BigVector<float> depth;         // along the viewing axis; 0 where there is no point
   std::vector<uint8_t> priority;  // 0: nothing to learn or already asked; 255: most urgent
   std::vector<uint8_t>
       changed;  // resampled points of each tile that had changed; used up by attend()

@@ -11,7 +11,7 @@ namespace wellspring {
 namespace {
 
 constexpr int tile_bits = 6, tile_size = 1 << tile_bits, tile_pixels = tile_size * tile_size;
-constexpr int chunk_points = 8192;    // transformed and sorted together; offsets fit 16 bits
+constexpr int chunk_points = 16384;   // transformed and sorted together; offsets fit 16 bits
 constexpr float near_depth = 1e-4f;   // metres
 constexpr float facing_away = 0.15f;  // cosine by which a (shading) normal may point away
 
@@ -121,12 +121,16 @@ void write_row(const uint64_t* __restrict nearest, int columns, uint32_t* __rest
     depth[x] = std::bit_cast<float>(bits & ~empty);
   }
 }
+// Every second pixel may be empty: the points of those that are not are listed first, since a
+// branch that nobody can predict costs more than all the rest.
 void show_row(const uint32_t* __restrict point, int columns, uint8_t* __restrict flags) {
-  uint8_t nobody = 0;  // a choice of address costs less than a branch nobody can predict
+  uint32_t shown[tile_size + 1];
+  size_t count = 0;
   for (int x = 0; x < columns; x++) {
-    uint8_t* flag = point[x] != no_point ? flags + point[x] : &nobody;
-    *flag |= point_visible;
+    shown[count] = point[x];
+    count += point[x] != no_point;
   }
+  for (size_t i = 0; i < count; i++) flags[shown[i]] |= point_visible;
 }
 
 }  // namespace
@@ -182,10 +186,20 @@ void project_points(PointCache& points, const View& view, bool same_view, Scratc
   parallel_for(tile_count, [&](int tile) {
     alignas(64) uint64_t nearest[tile_pixels];
     std::memset(nearest, 0xff, sizeof nearest);
-    for (int chunk = 0; chunk < chunks; chunk++) {
+    auto run_of = [&](int chunk) {
       const uint16_t* offset = offsets.data() + size_t(chunk) * size_t(tile_count + 1) + tile;
-      keep_nearest(entries.data() + size_t(chunk) * chunk_points + offset[0],
-                   uint32_t(offset[1] - offset[0]), nearest);
+      return entries.subspan(size_t(chunk) * chunk_points + offset[0],
+                             size_t(offset[1] - offset[0]));
+    };
+    // The runs lie far apart: while one is looked at, the next ones are on their way.
+    constexpr int ahead = 2, line = 64 / sizeof(uint64_t);
+    for (int chunk = 0; chunk < chunks; chunk++) {
+      if (chunk + ahead < chunks) {
+        std::span<const uint64_t> next = run_of(chunk + ahead);
+        for (size_t i = 0; i < next.size(); i += line) __builtin_prefetch(&next[i]);
+      }
+      std::span<const uint64_t> run = run_of(chunk);
+      keep_nearest(run.data(), uint32_t(run.size()), nearest);
     }
     int x0 = (tile % tiles.x) << tile_bits, y0 = (tile / tiles.x) << tile_bits;
     int columns = std::min(tile_size, view.width - x0),

@@ -118,6 +118,19 @@ bool improve_point(PointCache& points, uint32_t i, const View& view, const Sampl
   return false;
 }
 
+constexpr size_t ahead = 8;  // samples by which their points are fetched early
+
+void fetch_point(const PointCache& points, uint32_t i) {
+  __builtin_prefetch(&points.color[i], 1);
+  __builtin_prefetch(&points.x[i], 1);
+  __builtin_prefetch(&points.y[i], 1);
+  __builtin_prefetch(&points.z[i], 1);
+  __builtin_prefetch(&points.normal[i], 1);
+  __builtin_prefetch(&points.flags[i], 1);
+  __builtin_prefetch(&points.age[i], 1);
+  __builtin_prefetch(&points.count[i], 1);
+}
+
 // The point of the group that is missed least.
 uint32_t choose_victim(const PointCache& points, uint32_t group) {
   uint32_t first = group * group_size, best = first;
@@ -225,6 +238,8 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   parallel_ranges(int(count), 512, [&](int begin, int end) {
     int merged_here = 0, changed_here = 0;
     for (size_t i = size_t(begin); i < size_t(end); i++) {
+      size_t later = i + ahead;
+      if (later < size_t(end) && targets[later] != no_point) fetch_point(points, targets[later]);
       uint32_t point = targets[i];
       if (point == no_point) continue;
       bool exact = requests[i].resample == point, altered = false;
@@ -250,6 +265,8 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
       for (size_t k = size_t(begin); k < size_t(end); k++) {
         size_t i = additions[start + k];
         uint32_t group = uint32_t((points.next_group + k) % groups);
+        if (k + ahead < size_t(end))
+          fetch_point(points, uint32_t((points.next_group + k + ahead) % groups) * group_size);
         uint32_t point = choose_victim(points, group);
         if (points.flags[point] & point_visible) hide_point(points, view, point, image);
         begin_point(points, point, view, samples[i], random_of(i));

@@ -7,7 +7,8 @@
 #include <cstring>
 #include <span>
 #include <type_traits>
-#include <vector>
+
+#include "cache/big_pages.h"
 
 namespace wellspring {
 
@@ -44,7 +45,7 @@ class Scratch {
   struct alignas(64) Line {
     std::byte bytes[64];
   };
-  std::vector<Line> memory_;
+  BigVector<Line> memory_;
   size_t used_ = 0;
 };
 

@@ -26,20 +26,22 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
   u8 converged{};
   for (int x = 0; x < width; x += lanes) {
     // No branch: where there is no point, the first one is read and thrown away.
-    if (x + ahead + lanes <= width)
-      for (int i = 0; i < lanes; i++) {
-        uint32_t next = row[x + ahead + i], early = next != no_point ? next : 0;
-        auto record = reinterpret_cast<const char*>(&colors[early]);
+    alignas(32) uint32_t point[lanes];
+    if (x + ahead + lanes <= width) {
+      u8 early = load<u8>(row + x + ahead);
+      store(point, early & as<u8>(early != no_point));
+      for (uint32_t next : point) {
+        auto record = reinterpret_cast<const char*>(&colors[next]);
         __builtin_prefetch(record);
         __builtin_prefetch(record + sizeof(PointColor) - 1);  // they do not stop at cache lines
       }
+    }
     u8 index = u8{} + no_point;
     if (x + lanes <= width)
       index = load<u8>(row + x);
     else
       std::memcpy(&index, row + x, size_t(width - x) * sizeof(uint32_t));
     u8 known = as<u8>(index != no_point);
-    alignas(32) uint32_t point[lanes];
     store(point, index & known);
     u8 a, s, r, o;
     transpose([&](int i) { return &colors[point[i]]; }, a, s, r, o);  // in the order of PointColor
@@ -101,13 +103,12 @@ struct Sums {
   f8 depth{};
 };
 i8 add(const Neighbour& from, int x, const u8& elected, Sums& sums) {
-  u8 color = load<u8>(from.albedo + x);
   i8 mask = load<u8>(from.object + x) == elected;
-  u8 same = as<u8>(mask);
-  sums.red_blue += ((color & 2047u) | ((color >> 6) & (1023u << 16))) & same;
-  sums.green += (color >> 11) & 2047u & same;
+  u8 same = as<u8>(mask), color = load<u8>(from.albedo + x) & same;
+  sums.red_blue += (color & 2047u) | ((color >> 6) & (1023u << 16));
+  sums.green += (color >> 11) & 2047u;
   sums.count -= same;
-  sums.depth += keep(mask, as<f8>(load<u8>(from.depth + x)));
+  sums.depth += as<f8>(load<u8>(from.depth + x) & same);
   return mask;
 }
 struct Nearest {
