@@ -56,6 +56,7 @@ struct LightTables {
   std::vector<MaterialTraits> materials;
   bool any_pane = false;   // else shadow rays only ask whether anything is in between
   bool any_solid = false;  // else walks do not ask what they run in
+  bool any_tint = false;   // else what they run in takes no light
 };
 
 // Memory of what was built for sampling lights: what a scene's lights cost beside the scene itself.

@@ -43,7 +43,7 @@ vec3 walk_met_sky(const Transport& transport, const Walk& walk) {
 }
 
 vec3 eval_absorption(const Transport& transport, int medium, float length) {
-  if (medium < 0 || !std::isfinite(length)) return vec3(1);
+  if (medium < 0 || !transport.tables.any_tint || !std::isfinite(length)) return vec3(1);
   const Material& m = transport.world.scene().materials[size_t(medium)];
   if (!std::isfinite(m.attenuation_distance) || !(m.attenuation_distance > 0)) return vec3(1);
   float lengths = length / m.attenuation_distance;

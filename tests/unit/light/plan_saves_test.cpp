@@ -108,6 +108,36 @@ TEST(PlanSaves, WalksThatKeepNoMedium) {
   both.expect_same_bits();
 }
 
+// Clear glass that bends all colours alike.
+TEST(PlanSaves, TintsAndWavelengthsInClearGlass) {
+  Scene scene = scene_with(glass(1.5f, 0, 1));
+  BothWays tint(scene, absorption), colors(scene, dispersion);
+  EXPECT_TRUE(tint.planned.tables->any_solid);
+  EXPECT_FALSE(tint.planned.tables->any_tint);
+  EXPECT_TRUE(tint.forced.tables->any_tint);
+  tint.expect_same_bits();
+  colors.expect_same_bits();
+}
+
+// Leaving out what does matter is seen: the tests above could fail.
+TEST(PlanSaves, WhatMattersIsMissed) {
+  Material tinted = glass(1.5f, 0, 1);
+  tinted.attenuation_distance = 0.05f;
+  tinted.attenuation_color = vec3(0.2f, 0.8f, 0.5f);
+  Scene scene = scene_with(tinted);
+  World world(scene);
+  TransportPlan plan = make_plan(world);
+  ASSERT_TRUE(plan.uses(absorption));
+  Lights right = make_lights(world, plan);
+  plan.decisions[size_t(absorption)].used = false;
+  Lights wrong = make_lights(world, plan);
+  View view = make_view_towards(scene, {0.1, 0.5, 0.9}, {0.2, 0.25, 0}, {0, 1, 0}, 0.3f, 12, 8);
+  StillSettings settings;
+  Frame a = render_still(*find_technique("path"), world, right, view, settings),
+        b = render_still(*find_technique("path"), world, wrong, view, settings);
+  EXPECT_NE(std::memcmp(a.color.data(), b.color.data(), a.color.size() * sizeof(vec3)), 0);
+}
+
 TEST(PlanSaves, ATreeOverOneLamp) {
   BothWays both(scene_with(diffuse({0.6f, 0.5f, 0.4f})), light_tree);
   EXPECT_LT(light_table_bytes(*both.planned.tables), light_table_bytes(*both.forced.tables));
