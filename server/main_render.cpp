@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -22,6 +23,7 @@
 #include "show/exhibit_load.h"
 #include "show/exhibit_scene.h"
 #include "world/scene_load.h"
+#include "world/sky.h"
 
 using namespace wellspring;
 
@@ -36,7 +38,7 @@ struct UsageError : std::runtime_error {
 
 struct Options {
   std::string scene, technique = "path", camera, eye, target, up = "0,1,0", size = "1280x720", out,
-                     environment, replay;
+                     environment, sky, replay;
   double fov = 0, time = 0, exposure = 1;
   int spp = 16, max_depth = 8, threads = 0;
   uint64_t seed = 1;
@@ -157,6 +159,16 @@ Scene load_any_scene(const std::string& path, double time) {
   for (const SceneKind& kind : scene_kinds)
     kinds += (kinds.empty() ? "" : ", ") + std::string(kind.what);
   throw LoadError(path, "", "not a scene this program knows (" + kinds + ")");
+}
+
+void apply_sky(const std::string& text, Scene& scene) {
+  bool three = std::count(text.begin(), text.end(), ',') == 2;
+  std::vector<double> v = parse_numbers(text, three ? 3 : 2, "--sky");
+  SkySettings sky;
+  sky.elevation = v[0], sky.azimuth = v[1];
+  if (three) sky.turbidity = v[2];
+  if (const char* problem = sky_problem(sky)) throw UsageError("--sky " + text + ": " + problem);
+  add_sky(sky, scene);
 }
 
 void apply_environment(const std::string& text, Scene& scene) {
@@ -280,6 +292,10 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--max-depth", o.max_depth, "path edges counted from the eye")
       ->capture_default_str();
   app.add_option("--environment", o.environment, "none, or radiance r,g,b, or a picture FILE.hdr");
+  app.add_option("--sky", o.sky,
+                 "ELEVATION,AZIMUTH[,TURBIDITY] of a sun and its sky instead: degrees over the "
+                 "horizon, degrees clockwise from -Z, 1 (pure air) to 10 (haze)")
+      ->excludes("--environment");
   app.add_option("--threads", o.threads, "0: all cores")->capture_default_str();
   app.add_option("--replay", o.replay,
                  "x,y,i: print the radiance of sample i of pixel x,y instead");
@@ -291,7 +307,8 @@ void render(const Options& o) {
   check_resources(o, size);
   Scene scene = load_any_scene(o.scene, o.time);
   for (const std::string& warning : scene.warnings) std::cerr << o.scene << ": " << warning << "\n";
-  apply_environment(o.environment, scene);
+  if (!o.sky.empty()) apply_sky(o.sky, scene);
+  else apply_environment(o.environment, scene);
   if (o.explain) return print_plan(o, scene);
   View view = choose_view(o, scene, size);
   World world(scene);

@@ -12,6 +12,7 @@
 #include "show/json_fields.h"
 #include "wire/json.h"
 #include "world/scene_load.h"
+#include "world/sky.h"
 
 namespace wellspring {
 
@@ -182,6 +183,16 @@ void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) 
         problems.push_back({error.file, error.where, error.what_});
       }
     }
+    fields.object("sky", false, [&](Fields sky) {
+      SkySettings settings;
+      settings.elevation = sky.number("elevation_deg", true, settings.elevation, -18, 90);
+      settings.azimuth = sky.number("azimuth_deg", true, settings.azimuth, -360, 360);
+      settings.turbidity = sky.number("turbidity", false, settings.turbidity, 1, 10);
+      settings.strength = sky.number("strength", false, settings.strength, 0, 1e6);
+      sky.finish();
+      if (!picture.empty()) fields.problem("sky", "is there beside an \"image\": one of them only");
+      else if (!sky_problem(settings)) add_sky(settings, exhibit.scene);
+    });
     fields.finish();
   });
   if (!path.empty() && !has_light(exhibit.scene))
