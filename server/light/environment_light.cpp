@@ -103,10 +103,10 @@ EnvironmentSample sample_environment(const EnvironmentLight& light, Sampler& sam
 EnvironmentSample sample_environment(const EnvironmentLight& light, vec2 u) {
   if (u.x < light.sun_share) {
     float below = 0.5f * light.sun_chord2 * (u.x / light.sun_share);  // 1 - cosine
-    float radius = std::sqrt(below * (2 - below)), phi = 2 * pi * u.y;
+    vec2 rim = std::sqrt(below * (2 - below)) * unit_circle(u.y);
     vec3 tangent, bitangent;
     make_frame_axes(light.sun_direction, tangent, bitangent);
-    vec3 direction = tangent * (radius * std::cos(phi)) + bitangent * (radius * std::sin(phi)) +
+    vec3 direction = tangent * rim.x + bitangent * rim.y +
                      light.sun_direction * (1 - below);
     return {direction, sample_environment_pdf(light, direction)};
   }

@@ -43,6 +43,7 @@ struct PlacedMesh {
   const Material* material = nullptr;
   uint32_t object = 0;
   bool moving = false;
+  bool in_place = false;  // its vertices are in world space as they are
   bool mirrored = false;  // to_world turns the winding round (glTF 2.0 section 3.7.4)
   mat4 to_world{1};
   // Inverse transpose of the upper 3x3 up to a positive factor: normalise after using it.

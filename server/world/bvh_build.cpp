@@ -218,13 +218,13 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
       throw std::invalid_argument("World: an instance has no such mesh");
     const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
     w.placed.push_back({&mesh, &scene.materials[size_t(mesh.material)], instance.object, false,
-                        is_mirrored(instance.to_world), instance.to_world,
+                        instance.to_world == mat4(1), is_mirrored(instance.to_world), instance.to_world,
                         normal_matrix(instance.to_world)});
   }
   for (size_t i = 0; i < w.moving.size(); i++)
     w.placed.push_back({&w.moving[i], &scene.materials[size_t(w.moving[i].material)],
-                        i < moving_object.size() ? moving_object[i] : 0, true, false, mat4(1),
-                        mat3(1)});
+                        i < moving_object.size() ? moving_object[i] : 0, true, true, false,
+                        mat4(1), mat3(1)});
   w.tags.reserve(scene.instances.size() + scene.meshes.size() + w.moving.size());
   w.build_still();
   w.build_moving();

@@ -32,7 +32,7 @@ Face face_of(const PlacedMesh& placed, uvec3 index) {
   Face face;
   for (int i = 0; i < 3; i++) {
     vec3 p = placed.mesh->positions[index[i]];
-    face.corner[i] = placed.moving ? p : vec3(placed.to_world * vec4(p, 1));
+    face.corner[i] = placed.in_place ? p : vec3(placed.to_world * vec4(p, 1));
   }
   face.cross_product = cross(face.corner[1] - face.corner[0], face.corner[2] - face.corner[0]);
   if (placed.mirrored) face.cross_product = -face.cross_product;
@@ -42,6 +42,8 @@ Face face_of(const PlacedMesh& placed, uvec3 index) {
 // Unit vector, or `otherwise` where there is no direction. Scaled first: slivers must not
 // underflow.
 vec3 unit_or(vec3 v, vec3 otherwise) {
+  float length2 = dot(v, v);
+  if (length2 > 1e-25f && length2 < 1e25f) return v / std::sqrt(length2);
   float largest = max_component(glm::abs(v));
   if (!(largest > 1e-30f) || !std::isfinite(largest)) return otherwise;
   v /= largest;
@@ -186,11 +188,12 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
   surface.extent = max_component(glm::max(
       glm::max(glm::abs(face.corner[0]), glm::abs(face.corner[1])), glm::abs(face.corner[2])));
 
-  vec3 geometric = unit_or(face.cross_product, unit_or(-ray.direction, vec3(0, 1, 0)));
+  vec3 geometric = unit_or(face.cross_product, vec3(0));
+  if (geometric == vec3(0)) geometric = unit_or(-ray.direction, vec3(0, 1, 0));
   surface.front = dot(geometric, ray.direction) <= 0;
   // The shading normal is made on the winding's side, where its map was painted, then turned.
   vec3 shading = at(mesh.normals);
-  if (!placed.moving) shading = placed.normal_to_world * shading;
+  if (!placed.in_place) shading = placed.normal_to_world * shading;
   shading = unit_or(shading, geometric);
   const Material& material = *placed.material;
   vec3 mapped = mapped_normal(scene, placed, at, shading, material.normal_texture,
