@@ -2,6 +2,7 @@
 #include "light_reference.h"
 
 #include "base/clock.h"
+#include "base/rng.h"
 #include "frame/compare.h"
 #include "frame/flip.h"
 
@@ -21,7 +22,8 @@ Reference make_reference(const World& world, const Lights& lights, const View& v
   for (int piece = 0; piece < 2 || seconds_now() - began < seconds; piece += 2) {
     double start = seconds_now();
     for (int h = 0; h < 2; h++) {
-      settings.seed = 0x7265666572656e63ull + uint64_t(piece + h);
+      // Hashed: seeds that differ in a few bits give neighbouring rows each other's samples.
+      settings.seed = mix64(0x7265666572656e63ull + uint64_t(piece + h));
       half[h] = render_still(path, world, lights, view, settings);
       sum[h].resize(half[h].color.size(), dvec3(0));
       for (size_t i = 0; i < sum[h].size(); i++)

@@ -68,7 +68,7 @@ Plot make_plot(const BenchScene& bench, const View& view, const Reference& refer
   std::snprintf(subtitle, sizeof subtitle,
                 "%s. %dx%d; reference: path, %d samples a pixel, its own FLIP below %.3f",
                 bench.about.c_str(), view.width, view.height, reference.spp, reference.flip);
-  return {bench.name + ": error over time", subtitle, "time for the picture [s]",
+  return {bench.name + ": error over time", subtitle, "processor time for the picture, all threads [s]",
           "mean FLIP against the reference", {}, flip_level, "FLIP 0.10"};
 }
 
@@ -106,7 +106,7 @@ void bench_scene(BenchReport& report, const BenchOptions& options, const BenchSc
       std::snprintf(once, sizeof once, " (+ %.1f s once)", preparation);
       drawn.name += once;
     }
-    for (const CurvePoint& p : curve) drawn.points.push_back({p.seconds, p.flip});
+    for (const CurvePoint& p : curve) drawn.points.push_back({p.cpu_seconds, p.flip});
     plot.curves.push_back(drawn);
     if (plot.curves.size() == 1) path = curve;  // the list begins with `path`
     else compare_times(report, bench.name, technique.name, curve, path);
