@@ -43,7 +43,7 @@ inline float eval_row(const AlbedoRow& row, float position) {
 }
 
 inline float eval_loss(const AlbedoRow& row, float root_alpha, float root_cosine) {
-  return eval_row(row, root_cosine / (root_cosine + root_alpha));
+  return glm::max(eval_row(row, root_cosine / (root_cosine + root_alpha)), 1e-7f);
 }
 
 // Share of light lost by a reflector that absorbs nothing.

@@ -19,14 +19,11 @@ float index_of(const Material& material) {
   return material.ior > 1 ? std::min(material.ior, 1e6f) : 1.0f;
 }
 
-vec3 unit_range(vec3 c) { return glm::clamp(c, vec3(0), vec3(1)); }
-float unit_range(float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; }  // NaN is 0
-
 // KHR_materials_anisotropy: rougher along the tangent by the square of its strength.
 void set_roughness(Bsdf& b, const Surface& surface) {
   b.alpha = alpha_of(surface.roughness);
   b.alphas = vec2(b.alpha);
-  float strength = unit_range(surface.anisotropy);
+  float strength = clean(surface.anisotropy);
   if (strength > 0) {
     float along = glm::mix(b.alpha, 1.0f, strength * strength);
     if (along >= 1.02f * std::max(b.alpha, smooth_alpha) &&
@@ -50,9 +47,9 @@ Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
   set_roughness(b, surface);
   b.view = to_local(b, v);
   b.view.z = glm::clamp(b.view.z, 1e-4f, 1.0f);
-  b.metallic = unit_range(surface.metallic);
-  vec3 base = unit_range(surface.base_color);
-  float transmission = unit_range(surface.transmission);
+  b.metallic = clean(surface.metallic);
+  vec3 base = clean(surface.base_color);
+  float transmission = clean(surface.transmission);
   if (!(index > 0)) index = index_of(material);
   b.thin = !(material.thickness > 0);
   b.eta = !b.thin && !surface.front && transmission > 0 ? 1 / index : index;
@@ -64,8 +61,8 @@ Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
     else b.eta = b.eta < 1 ? 0.998f : 1.002f;
   }
   if (b.metallic > 0) b.metal = base;
-  set_gloss(b, albedo, transmission, unit_range(surface.specular),
-            glm::max(surface.specular_color, vec3(0)));
+  set_gloss(b, albedo, transmission, clean(surface.specular),
+            clean(surface.specular_color, 1e9f));
   if (surface.clearcoat > 0 || max_component(surface.sheen_color) > 0) set_layers(b, surface, v);
 
   float diffuse = luminance(b.diffuse) * b.coat_passes * b.beneath;
@@ -189,11 +186,11 @@ vec3 pane_transmittance(const Surface& surface, const Material& material, vec3 d
   Bsdf b;
   vec3 v = -direction;
   vec3 normal = usable_normal(surface.normal, surface.geometric_normal, v);
-  b.metallic = unit_range(surface.metallic);
+  b.metallic = clean(surface.metallic);
   b.transmit =
-      unit_range(surface.base_color) * ((1 - b.metallic) * unit_range(surface.transmission));
+      clean(surface.base_color) * ((1 - b.metallic) * clean(surface.transmission));
   b.eta = index_of(material);
-  set_facets(b, unit_range(surface.specular), glm::max(surface.specular_color, vec3(0)));
+  set_facets(b, clean(surface.specular), clean(surface.specular_color, 1e9f));
   return facet_color(b, glm::clamp(dot(v, normal), 1e-4f, 1.0f)).transmit;
 }
 

@@ -15,6 +15,12 @@ inline vec3 to_world(const Bsdf& b, vec3 w) {
   return b.tangent * w.x + b.bitangent * w.y + b.normal * w.z;
 }
 
+// `high` at most, and no less than nothing; NaN is 0.
+inline float clean(float x, float high = 1) { return x > 0 ? std::min(x, high) : 0.0f; }
+inline vec3 clean(vec3 c, float high = 1) {
+  return {clean(c.x, high), clean(c.y, high), clean(c.z, high)};
+}
+
 // GGX alpha of a perceptual roughness; 0: perfectly smooth, as NaN is.
 inline float alpha_of(float roughness) {
   float r = roughness > 0 ? std::min(roughness, 1.0f) : 0.0f;

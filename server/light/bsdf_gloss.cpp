@@ -79,7 +79,7 @@ int largest_channel(vec3 c) { return c.x >= c.y && c.x >= c.z ? 0 : c.y >= c.z ?
 // Glass: what facets keep back leaves to either side in such shares that both directions agree,
 // eta^2 apart (Kulla and Conty 2017). From outside the average Fresnel share is reflected; from
 // inside what follows from reciprocity.
-void set_glass_again(Bsdf& b, const DielectricAlbedo& albedo, float kept, float transmission) {
+void set_glass_again(Bsdf& b, const DielectricAlbedo& albedo, float loss, float transmission) {
   bool inside = !b.thin && b.eta < 1;
   const AlbedoTable& here = b.thin ? mirror_loss() : inside ? albedo.glass->out_of
                                                             : albedo.glass->into;
@@ -91,7 +91,6 @@ void set_glass_again(Bsdf& b, const DielectricAlbedo& albedo, float kept, float 
   float average_beyond = std::max(b.glass_beyond.average, least_loss);
   float through = 1 - albedo.fresnel_average;
   if (inside) through *= b.eta * b.eta * average_beyond / average_here;
-  float loss = 1 - kept;
   float share = (1 - b.metallic) * transmission * (1 - through);
   b.glass_again = vec3(share * loss / (pi * average_here));
   b.glass_again_beyond = b.transmit * (through * loss / (pi * average_beyond));
@@ -117,7 +116,7 @@ void set_facets(Bsdf& b, float specular, vec3 color) {
 FacetColor facet_color(const Bsdf& b, float cosine) {
   float f = fresnel_dielectric(std::min(cosine, 1.0f), b.eta);
   FacetColor c;
-  vec3 dielectric = f < 1 ? b.facet_base + b.facet_slope * f : vec3(1);
+  vec3 dielectric = f < 1 ? glm::max(b.facet_base + b.facet_slope * f, vec3(0)) : vec3(1);
   c.reflect = b.dielectric_share * dielectric;
   if (b.metallic > 0) c.reflect += b.metallic * fresnel_schlick(b.metal, cosine);
   c.transmit = (1 - max_component(dielectric)) * b.transmit;
@@ -131,8 +130,8 @@ float eval_coat(const Bsdf& b, float cosine) {
     return b.coat_mirror + b.coat_fresnel * fresnel_dielectric(std::min(cosine, 1.0f), b.eta);
   float t = std::sqrt(cosine);
   float loss = eval_loss(b.loss, b.root_alpha, t);
-  return b.coat_loss * loss +
-         (1 - loss) * (b.coat_mirror + b.coat_fresnel * eval_row(b.fresnel, std::min(t, 1.0f)));
+  float once = b.coat_mirror + b.coat_fresnel * eval_row(b.fresnel, std::min(t, 1.0f));
+  return std::min(b.coat_loss * loss + (1 - loss) * once, 1.0f);
 }
 
 void set_gloss(Bsdf& b, const DielectricAlbedo& albedo, float transmission, float specular,
@@ -165,38 +164,38 @@ void set_gloss(Bsdf& b, const DielectricAlbedo& albedo, float transmission, floa
   b.coat_scale = 1 / std::max(1 - coat_average, 1e-3f);
 
   bool clear = transmission > 0 && b.metallic < 1;
-  float kept = 1, passed = 1, coat;
+  float lost = 0, glass_lost = 0, coat;  // to the viewer
   if (brushed) {
     FacetAlbedo sum = sum_albedo(b.view, b.alphas, b.eta, clear && !b.thin, brushed_points);
-    kept = sum.kept;
-    passed = b.thin ? sum.kept : sum.passed;
-    coat = b.coat_loss * (1 - kept) + b.coat_mirror * kept + b.coat_fresnel * sum.reflected;
+    lost = 1 - sum.kept;
+    glass_lost = b.thin ? lost : 1 - sum.passed;
+    coat = b.coat_loss * lost + b.coat_mirror * sum.kept + b.coat_fresnel * sum.reflected;
   } else {
     coat = eval_coat(b, b.view.z);
-    if (b.metallic > 0 || strong) kept = 1 - row_loss(b.loss, b.root_alpha, b.view.z);
+    if (b.metallic > 0 || strong) lost = row_loss(b.loss, b.root_alpha, b.view.z);
   }
   b.coat_passes = 1 - coat;
   vec3 again(0);
   if (b.metallic > 0) again = b.metallic * again_color(fresnel_schlick_average(b.metal), loss);
   if (strong) again += (1 - b.metallic) * (1 - transmission) * dielectric_again;
-  b.again = again * ((1 - kept) / (pi * std::max(loss, least_loss)));
+  b.again = again * (lost / (pi * std::max(loss, least_loss)));
   if (clear) {
     if (!brushed) {
       const AlbedoTable& here = b.thin ? mirror_loss()
                                 : b.eta < 1 ? albedo.glass->out_of
                                             : albedo.glass->into;
-      passed = 1 - row_loss(albedo_row(here, b.alpha), b.root_alpha, b.view.z);
+      glass_lost = row_loss(albedo_row(here, b.alpha), b.root_alpha, b.view.z);
     }
-    set_glass_again(b, albedo, passed, transmission);
+    set_glass_again(b, albedo, glass_lost, transmission);
   }
   // Chances by what each brings; any would do.
-  float here = max_component(again) * (1 - kept) +
+  float here = max_component(again) * lost +
                max_component(b.glass_again) * pi * b.glass_here.average;
   float beyond = max_component(b.glass_again_beyond) * pi * b.glass_beyond.average *
                  (b.thin ? 1 : b.eta * b.eta);
-  float once = b.metallic * max_component(b.metal) * kept +
-               (1 - b.metallic) * glm::mix(coat, passed, transmission);
-  b.again_share = here + beyond > 1e-5f ? (here + beyond) / (here + beyond + once) : 0;
+  float once = b.metallic * max_component(b.metal) * (1 - lost) +
+               (1 - b.metallic) * glm::mix(coat, 1 - glass_lost, transmission);
+  b.again_share = here + beyond > 1e-9f ? (here + beyond) / (here + beyond + once) : 0;
   b.again_here = here + beyond > 0 ? here / (here + beyond) : 1;
   if (b.again_share > 0) b.again_scale = 1 / (pi * std::log(1 + 1 / (b.alpha * b.alpha)));
 }

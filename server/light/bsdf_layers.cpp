@@ -112,10 +112,11 @@ float sheen_albedo(float cosine, float alpha) {
 }
 
 void set_layers(Bsdf& b, const Surface& surface, vec3 view) {
-  float brightest = glm::clamp(max_component(surface.sheen_color), 0.0f, 1.0f);
+  vec3 color = clean(surface.sheen_color);
+  float brightest = max_component(color);
   float sheen = 0;
   if (brightest > 0) {
-    b.sheen.color = glm::clamp(surface.sheen_color, vec3(0), vec3(1));
+    b.sheen.color = color;
     float root = surface.sheen_roughness > least_sheen_roughness ? surface.sheen_roughness
                                                                  : least_sheen_roughness;
     b.sheen.alpha = std::min(root * root, 1.0f);

@@ -107,7 +107,7 @@ inline std::vector<Case> white_cases(float r) {
       {"coated glass", coated(glass(1.5f, 0.4f, 1), 1, r)},
       {"velvet", with_sheen(diffuse(white), white, r)},
       {"dusty metal", with_sheen(metal(white, 0.4f), vec3(0.5f), r)},
-      {"coated velvet", coated(with_sheen(plastic(white, r), white, r), 1, 0.1f)},
+      {"coated velvet", coated(with_sheen(plastic(white, r), white, r), 1, 0.4f)},
       {"brushed metal", brushed(metal(white, r), 0.6f)},
       {"brushed across", brushed(metal(white, r), 1, 90)},
       {"brushed plastic", brushed(plastic(white, r), 0.8f, 30)},

@@ -61,7 +61,8 @@ TEST(BsdfFurnace, WhiteMaterialsKeepAllLight) {
     EXPECT_LE(off, allowed + significance_z * p.albedo.error())
         << p.material.name << " at " << p.angle << ": " << p.albedo.mean() << " +- "
         << p.albedo.error();
-    EXPECT_LE(p.albedo.error(), 2 * allowed) << p.material.name << " at " << p.angle << ": too noisy";
+    EXPECT_LE(p.albedo.error(), 2 * allowed)
+        << p.material.name << " at " << p.angle << ": too noisy";
     sum += p.albedo.mean() - 1;
   }
   EXPECT_LE(std::abs(sum / double(places.size())), 1e-3);  // nor do they lose or gain on the whole
