@@ -44,13 +44,14 @@ void set_averages(AlbedoTable& table, const Value& value) {
   }
 }
 
-// Over t / (t + r). Columns of cosines beyond 1 go on as the row ends, for rows and columns between.
+// Over t / (t + r). Columns of cosines beyond 1 go on as the row ends, for what is in between.
 template <class Value>
 AlbedoTable loss_table(const Value& kept) {
   constexpr float step = 1.0f / (angles - 1);
   AlbedoTable table{};
   for (int r = 0; r < roughnesses; r++) {
-    float root = root_of_row(float(r)), end = 1 / (1 + root), at_end = 1 - kept(tilted(1), root * root);
+    float root = root_of_row(float(r)), end = 1 / (1 + root);
+    float at_end = 1 - kept(tilted(1), root * root);
     float* row = table.value[r];
     int last = std::min(int(end / step - 0.3f), angles - 1);
     for (int a = 0; a <= last; a++) {

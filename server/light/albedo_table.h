@@ -60,8 +60,9 @@ struct DielectricAlbedo {
   };
   std::unique_ptr<const Glass> glass;  // null unless asked for
 };
-// 0: an infinite index. Indices are rounded to a fixed set, so that there is a bounded number of tables. Made on first
-// use (some ten milliseconds, twice that with `glass`), kept for the life of the process.
+// 0: an infinite index. Indices are rounded to a fixed set, so that there is a bounded number of
+// tables. Made on first use (some tens of milliseconds, more with `glass`), kept for the life of
+// the process.
 const DielectricAlbedo& dielectric_albedo(float ior, bool glass = true);
 
 // The same for one direction by summing over facets, for surfaces that no table knows.
