@@ -223,7 +223,10 @@ vec3 eval_face(const World& world, uint32_t instance, uint32_t triangle, float* 
 }
 
 vec3 offset_origin(const Surface& surface, vec3 direction) {
-  constexpr float near_zero = 1.0f / 32, float_scale = 1.0f / 65536, int_scale = 256;
+  // Their constants are for scenes of metres; in a scene of millimetres they would be a gap.
+  float unit = surface.extent > 0 ? std::min(surface.extent, 1.0f) : 1.0f;
+  float near_zero = unit / 32, float_scale = unit / 65536;
+  constexpr float int_scale = 256;
   constexpr float relative_error = 0x1p-20f;  // eight units in the last place of the corners
   vec3 normal = surface.geometric_normal;
   if (dot(normal, direction) < 0) normal = -normal;

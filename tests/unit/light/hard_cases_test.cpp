@@ -145,42 +145,6 @@ TEST(HardCases, ManyPanesInARow) {
               1e-5);
 }
 
-// The same picture at any scale (within noise), far from the origin too: positions are relative to
-// it.
-TEST(HardCases, ScaleDoesNotMatter) {
-  Mean reference;
-  for (float scale : {1.0f, 1e-3f, 1e3f}) {
-    Scene scene = make_cornell_box();
-    for (Instance& instance : scene.instances)
-      instance.to_world = glm::scale(mat4(1), vec3(scale)) * instance.to_world;
-    World world(scene);
-    Lights lights = make_lights(world);
-    Mean mean = trace_mean("path", world, lights,
-                           ray_towards(vec3(0, 0.275f, 0.8f) * scale, vec3(0, 0, -0.1f) * scale),
-                           20000, {}, uint64_t(scale * 1e4f));
-    if (scale == 1) reference = mean;
-    else expect_same_mean(mean, reference, "scaled");
-  }
-}
-
-TEST(HardCases, FarFromTheOrigin) {
-  Scene near = make_cornell_box(), far = make_cornell_box();
-  far.origin = {1e6, -1e6, 1e6};
-  World near_world(near), far_world(far);
-  View a = make_view_towards(near, {0, 0.275, 0.8}, {0, 0.275, 0}, {0, 1, 0}, 0.7f, 8, 8);
-  View b = make_view_towards(far, far.origin + dvec3(0, 0.275, 0.8),
-                             far.origin + dvec3(0, 0.275, 0), {0, 1, 0}, 0.7f, 8, 8);
-  StillSettings settings;
-  settings.spp = 400;
-  Frame x = render_still(*find_technique("path"), near_world, make_lights(near_world), a, settings);
-  settings.seed = 2;
-  Frame y = render_still(*find_technique("path"), far_world, make_lights(far_world), b, settings);
-  Mean difference;
-  for (size_t i = 0; i < x.color.size(); i++)
-    difference.add(double(luminance(x.color[i] - y.color[i])));
-  EXPECT_LE(std::abs(difference.mean()), significance_z * difference.error() + 1e-6);
-}
-
 TEST(HardCases, RaysThatAreNoRays) {
   Scene scene = make_cornell_box();
   World world(scene);

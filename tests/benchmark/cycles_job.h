@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renders by Blender's Cycles, as a child process that is ended when it takes too long.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "frame/frame.h"
+#include "world/view.h"
+
+namespace wellspring {
+
+struct CyclesRender {
+  int samples = 1;
+  uint32_t seed = 1;
+  Frame frame;         // out
+  double seconds = 0;  // out: sampling alone; scene, BVH and textures were ready before
+};
+
+// True where a `blender` can be found on the PATH.
+bool has_blender();
+// `script`: tests/benchmark/cycles/render.py; `scene`: a glTF file; `folder`: for what passes
+// between the processes. Throws std::runtime_error with the end of Blender's output when it fails
+// or exceeds the time.
+void render_by_cycles(const std::filesystem::path& script, const std::filesystem::path& scene,
+                      const View& view, int max_depth, int threads,
+                      const std::filesystem::path& folder, double timeout_seconds,
+                      std::vector<CyclesRender>& renders);
+
+// A copy of a .glb whose materials are Lambertian, thin clear glass or emitters and nothing else:
+// what both renderers can express to the last digit, so that light transport is compared and not
+// two models of gloss. Throws LoadError.
+void write_matte_copy(const std::filesystem::path& glb, const std::filesystem::path& out);
+
+}  // namespace wellspring
