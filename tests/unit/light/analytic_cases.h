@@ -39,7 +39,7 @@ struct AnalyticCase {
   int spp = 128;
   float tan_half_fov = 0;  // 0: the ray alone; else the mean over a square picture
   // The same scene at another place or strength: not for techniques that prepare themselves for a
-  // scene, which costs them more than all their samples.
+  // scene or draw lights for each pass, which costs them more than all their samples.
   bool variant = false;
 };
 

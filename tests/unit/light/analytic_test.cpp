@@ -20,7 +20,8 @@ void judge_cases(const std::vector<AnalyticCase>& cases) {
     World world(c.scene);
     Lights lights = make_lights(world);
     for (const Technique& technique : techniques()) {
-      if (!claims(technique, c) || (technique.prepare && c.variant)) continue;
+      bool slow_start = technique.prepare || technique.begin_pass;
+      if (!claims(technique, c) || (c.variant && slow_start)) continue;
       View view = view_along(c.ray, technique);
       if (c.tan_half_fov > 0) {
         view.tan_half_fov = c.tan_half_fov;
