@@ -9,9 +9,8 @@ namespace wellspring {
 LightTree make_emitter_tree(std::span<const EmitterTriangle> emitters, std::span<const float> power,
                             LightChoice choice);
 
-// So many punctual lights are asked one by one for what they send to a place, which beats a tree
-// (measured: equal noise at ten lights, less below); more are chosen from near_choice and
-// distant_choice.
+// So many punctual lights are asked one by one for what they send to a place, which knows each
+// better than a tree does; more are chosen from near_choice and distant_choice.
 inline constexpr size_t few_punctual_lights = 16;
 void add_punctual_choice(LightTables& tables);
 

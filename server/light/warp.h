@@ -17,7 +17,7 @@ inline void make_frame_axes(vec3 n, vec3& tangent, vec3& bitangent) {
   bitangent = {b, sign + n.y * n.y * a, -n.y};
 }
 
-// Cosine and sine of a share of a full turn, u in [0, 1]: within 1e-7, at a third of the library's time.
+// Cosine and sine of a share of a full turn, u in [0, 1]: within 1e-7.
 inline vec2 unit_circle(float u) {
   float quarter = u * 4;
   int turn = int(quarter + 0.5f);

@@ -104,7 +104,8 @@ struct Atmosphere {
   static constexpr int levels = 24;
   dvec3 further[levels];  // what has scattered more than once, the same from all sides, by height
 
-  Atmosphere(double turbidity_, dvec3 sun_) : turbidity(turbidity_), sun(sun_), sunlight(turbidity_) {
+  Atmosphere(double turbidity_, dvec3 sun_)
+      : turbidity(turbidity_), sun(sun_), sunlight(turbidity_) {
     std::fill(further, further + levels, dvec3(0));
     dvec3 series[levels];
     parallel_for(levels, [&](int i) { series[i] = sum_series(radius_of(i)); });
@@ -214,7 +215,8 @@ void add_sky(const SkySettings& settings, Scene& scene) {
     double theta = pi_ * (y + 0.5) / height;
     for (int x = 0; x < width; x++) {
       double phi = 2 * pi_ * ((x + 0.5) / width - 0.5);
-      dvec3 direction(std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi));
+      dvec3 direction(std::sin(theta) * std::sin(phi), std::cos(theta),
+                      -std::sin(theta) * std::cos(phi));
       dvec3 radiance = scale * air.gather(earth + eye_height, direction, 48, false, nullptr);
       image.texels[size_t(y) * width + size_t(x)] = vec4(vec3(radiance), 1);
       sky_irradiance[size_t(y)] += radiance * (std::cos(theta) * std::sin(theta) * pi_ / height *
