@@ -2,12 +2,15 @@
 // wellspring speak "TEXT": the sound of a text, and when each word, phoneme and mouth shape of it
 // comes; or, with a recording of the text, when they come in the recording.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <iostream>
+#include <sstream>
 
+#include "avatar/speech_align.h"
 #include "avatar/speech_json.h"
 #include "avatar/speech_process.h"
-#include "avatar/speech_shapes.h"
 #include "avatar/speech_sound.h"
 #include "base/load_error.h"
 #include "base/log.h"
@@ -17,7 +20,7 @@ namespace {
 
 struct Options {
   SpeechRequest request;
-  std::string wav, json;
+  std::string audio, marks, wav, json;
 };
 
 // The words with their phonemes, one line each.
@@ -34,23 +37,72 @@ void print(const Speech& speech) {
   }
 }
 
-int run(const Options& options) {
-  SpeechProcess process;
+Speech speak_text(SpeechProcess& process, const SpeechRequest& request) {
   std::string error;
-  auto speech = process.speak(options.request, error);
-  if (!speech) {
-    std::cerr << "speak: " << error << "\n";
-    return 1;
+  auto speech = process.speak(request, error);
+  if (!speech) throw std::runtime_error(error);
+  return *speech;
+}
+
+// The template at the narrator's own pace is nearer to the recording.
+Speech mark_recording(SpeechProcess& process, const Options& options, const Sound& recording) {
+  Speech spoken = speak_text(process, options.request);
+  SpeechRequest paced = options.request;
+  double pace = measure_pace(spoken, recording);
+  paced.words_per_minute = int(std::clamp(paced.words_per_minute / pace, 80.0, 450.0));
+  try {
+    return align_speech(speak_text(process, paced), recording);
+  } catch (const LoadError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw LoadError(options.audio, "", error.what());
   }
+}
+
+Speech read_marks(const Options& options, const Sound* recording) {
+  std::ifstream in(options.marks, std::ios::binary);
+  if (!in) throw LoadError(options.marks, "", "cannot be read");
+  constexpr size_t most_bytes = 64 << 20;
+  std::string text(most_bytes + 1, '\0');
+  in.read(text.data(), std::streamsize(text.size()));
+  text.resize(size_t(in.gcount()));
+  if (text.size() > most_bytes) throw LoadError(options.marks, "", "is larger than 64 MiB");
+  Speech speech = load_speech_marks(text, options.marks);
+  if (speech.text != options.request.text)
+    throw LoadError(options.marks, "/text", "is another text than the one given");
+  if (recording) {
+    double seconds = double(recording->samples.size()) / recording->rate;
+    if (std::abs(seconds - speech.duration) > 0.01)
+      throw LoadError(options.marks, "/duration", "is not that of " + options.audio);
+    speech.pcm = to_pcm(recording->samples);
+    speech.rate = recording->rate;
+  }
+  return speech;
+}
+
+Speech make_speech(const Options& options) {
+  std::string error = check_speech_request(options.request);
+  if (!error.empty()) throw std::runtime_error(error);
+  Sound recording;
+  if (!options.audio.empty()) recording = load_sound(options.audio);
+  if (!options.marks.empty()) return read_marks(options, options.audio.empty() ? nullptr : &recording);
+  SpeechProcess process;
+  if (options.audio.empty()) return speak_text(process, options.request);
+  return mark_recording(process, options, recording);
+}
+
+int run(const Options& options) {
+  Speech speech = make_speech(options);
   if (!options.wav.empty()) {
-    auto wav = encode_wav(speech->pcm, speech->rate);
+    if (speech.pcm.empty()) throw LoadError(options.wav, "", "marks without --audio have no sound");
+    auto wav = encode_wav(speech.pcm, speech.rate);
     save_file(options.wav, wav.data(), wav.size());
   }
   if (!options.json.empty()) {
-    std::string json = write_speech_json(*speech);
+    std::string json = write_speech_json(speech);
     save_file(options.json, json.data(), json.size());
   }
-  if (options.wav.empty() && options.json.empty()) print(*speech);
+  if (options.wav.empty() && options.json.empty()) print(speech);
   return 0;
 }
 
@@ -68,6 +120,10 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(80, 450));
   app.add_option("--pitch", options.request.pitch, "of the voice, 0 to 100")
       ->check(CLI::Range(0, 100));
+  app.add_option("--audio", options.audio,
+                 "a recording of the text (WAV, FLAC, OGG, MP3): its times instead of a synthesis");
+  app.add_option("--marks", options.marks,
+                 "a file of --json, words perhaps moved by hand: its times instead of computed ones");
   app.add_option("--wav", options.wav, "sound to write, 16 bits mono");
   app.add_option("--json", options.json, "times of words, phonemes and visemes to write");
   try {

@@ -40,32 +40,65 @@ void time_words(Speech& speech) {
   speech.words = std::move(words);
 }
 
-bool in_number(const std::string& text, uint32_t byte) {
-  return byte > 0 && text[byte - 1] >= '0' && text[byte - 1] <= '9' && text[byte] >= '0' &&
-         text[byte] <= '9';
+// Whether scripts are written without spaces from here on (Chinese, Japanese and their like).
+bool is_spaceless(const std::string& text, uint32_t byte) {
+  return static_cast<unsigned char>(text[byte]) >= 0xe3;
 }
 
-// Which byte and how far each word of the answer is; the engine counts characters its own way after
-// marks and long numbers. Words that name the same place as the one before (1786 is five spoken
-// words), no place, or one that lies before, belong to it. Gives each word of the answer its group.
+struct Event {
+  uint32_t byte = 0;
+  size_t token = 0;
+};
+
+// Which word of the text each word of the answer is. The engine may say a word in several parts
+// (1786), two words as one ("of the") and counts characters its own way after numbers and phrases
+// ("so much": both in "so"): a part inside a word is one of the words that follow where
+// these are not named otherwise, else it belongs to the word it lies in.
+void match_events(std::vector<Event>& events, const std::vector<SpeechWord>& tokens) {
+  size_t last = 0;
+  for (Event& event : events) {
+    while (event.token + 1 < tokens.size() && tokens[event.token + 1].text_begin <= event.byte)
+      event.token++;
+    event.token = last = std::max(event.token, last);
+  }
+  for (size_t i = 1; i < events.size(); i++) {
+    size_t before = events[i - 1].token;
+    if (events[i].token > before) continue;
+    size_t next = i + 1;
+    while (next < events.size() && events[next].token <= before) next++;
+    size_t limit = next < events.size() ? events[next].token : tokens.size();
+    bool inside = events[i].byte > tokens[before].text_begin;
+    events[i].token = inside && before + 1 < limit ? before + 1 : before;
+  }
+}
+
+// The words of the text as they are heard. Gives each word of the answer its group.
 std::vector<int> read_words(const json& list, Speech& speech, std::vector<SaidAsOne>& groups) {
   std::vector<uint32_t> starts = character_starts(speech.text);
-  std::vector<uint32_t> begins;
-  std::vector<int> group_of;
+  std::vector<Event> events;
+  std::vector<uint32_t> cuts;
   for (const json& entry : list) {
     long character = std::clamp<long>(entry.at(1).get<long>(), 0, long(starts.size()) - 1);
-    long count = entry.at(2).get<long>();
     uint32_t byte = skip_spaces(speech.text, starts[size_t(character)]);
-    bool fresh = begins.empty() || (byte > begins.back() && !in_number(speech.text, byte));
-    if (count > 0 && byte < speech.text.size() && fresh)
-      begins.push_back(byte);
-    group_of.push_back(int(begins.size()) - 1);
+    bool named = entry.at(2).get<long>() > 0 && byte < speech.text.size();
+    if (!named) byte = events.empty() ? 0 : events.back().byte;
+    events.push_back({byte, 0});
+    if (named) cuts.push_back(byte);
   }
-  for (size_t i = 0; i < begins.size(); i++) {
-    uint32_t next = i + 1 < begins.size() ? begins[i + 1] : uint32_t(speech.text.size());
-    std::vector<SpeechWord> words = words_between(speech.text, begins[i], next);
-    groups.push_back({int(speech.words.size()), int(words.size())});
-    speech.words.insert(speech.words.end(), words.begin(), words.end());
+  speech.words = words_of(speech.text, [&](uint32_t byte, bool begins) {
+    return (begins || is_spaceless(speech.text, byte)) &&
+           std::find(cuts.begin(), cuts.end(), byte) != cuts.end();
+  });
+  std::vector<int> group_of;
+  if (speech.words.empty()) return std::vector<int>(events.size(), -1);
+  match_events(events, speech.words);
+  for (size_t i = 0; i < events.size(); i++) {
+    int first = int(events[i].token);
+    if (groups.empty() || groups.back().first < first) {
+      if (!groups.empty()) groups.back().count = first - groups.back().first;
+      groups.push_back({first, int(speech.words.size()) - first});
+    }
+    group_of.push_back(int(groups.size()) - 1);
   }
   return group_of;
 }

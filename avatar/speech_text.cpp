@@ -73,16 +73,22 @@ uint32_t skip_spaces(std::string_view text, uint32_t at) {
   return at;
 }
 
-std::vector<SpeechWord> words_between(std::string_view text, uint32_t begin, uint32_t end) {
+std::vector<SpeechWord> words_of(std::string_view text,
+                                 const std::function<bool(uint32_t byte, bool begins)>& is_said) {
   std::vector<SpeechWord> words;
-  for (uint32_t at = skip_spaces(text, begin); at < end; at = skip_spaces(text, at)) {
+  for (uint32_t at = skip_spaces(text, 0); at < text.size(); at = skip_spaces(text, at)) {
     uint32_t from = at;
-    while (at < end && !is_space(text[at])) at++;
+    bool begins = from == 0 || is_space(text[from - 1]);
+    do at++;
+    while (at < text.size() && !is_space(text[at]) &&
+           ((text[at] & 0xc0) == 0x80 || !is_said(at, false)));
     std::string_view whole = text.substr(from, at - from), inner = whole;
     while (size_t size = mark_at(inner, true)) inner.remove_prefix(size);
     while (size_t size = mark_at(inner, false)) inner.remove_suffix(size);
-    if (inner.empty() && words.empty() && from == begin) inner = whole;
-    else if (std::none_of(inner.begin(), inner.end(), is_letter_or_digit)) continue;
+    if (std::none_of(inner.begin(), inner.end(), is_letter_or_digit)) {
+      if (!is_said(from, begins)) continue;
+      inner = whole;
+    }
     uint32_t first = uint32_t(inner.data() - text.data());
     words.push_back({0, 0, first, first + uint32_t(inner.size())});
   }

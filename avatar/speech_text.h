@@ -2,6 +2,7 @@
 // Texts as bytes, characters and words.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +21,10 @@ size_t find_broken_utf8(std::string_view text);
 std::vector<uint32_t> character_starts(std::string_view text);
 // The first byte from `at` that is no space.
 uint32_t skip_spaces(std::string_view text, uint32_t at);
-// The words between two bytes: what stands between spaces, without the marks around it. What
-// has neither letter nor digit is no word, but for the first, which somebody said.
-std::vector<SpeechWord> words_between(std::string_view text, uint32_t begin, uint32_t end);
+// The words of a text: what stands between spaces, without the marks around it. `is_said` is asked
+// whether a word is known to begin at a byte, with true where something follows a space: what has
+// neither letter nor digit is a word if it is said; with false elsewhere: a word is cut there.
+std::vector<SpeechWord> words_of(std::string_view text,
+                                 const std::function<bool(uint32_t byte, bool begins)>& is_said);
 
 }  // namespace wellspring
