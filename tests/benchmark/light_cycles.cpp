@@ -58,11 +58,11 @@ void bench_scene(BenchReport& report, const BenchOptions& options, const std::st
   BenchScene bench = load_bench_scene(options, name);
   int max_depth = bench.max_depth, height = options.quick ? 136 : 272;
   View view = bench_view(bench, name == "cornell_box" ? height : height * 16 / 9 / 8 * 8, height);
-  int samples = options.quick ? 16 : 128;
+  int samples = options.quick ? 16 : 64;
   std::vector<CyclesRender> renders = {{samples, 1, {}, 0}, {samples, 2, {}, 0}};
   fs::path script = fs::path(options.scenes) / "../cycles/render.py";
   render_by_cycles(script, matte, view, max_depth, threads, workspace.folder,
-                   options.quick ? 120 : 600, renders);
+                   options.quick ? 120 : 900, renders);
   PicturePair theirs{renders[0].frame, renders[1].frame,
                      (renders[0].seconds + renders[1].seconds) / 2};
   double target = noise(theirs);
