@@ -16,7 +16,7 @@ struct NamedValue {
 // cache.display.ms (all cores), .ms_one_core, .yardstick_ms_one_core (the bare loop "transform,
 // divide, z-test, store" over as many points), .yardstick_ratio (one core over the yardstick),
 // .stage_ms (each stage on one core) and .memory. Medians over the frames of a stroll once the
-// cache is full.
+// cache is full; on one core of processor time, on all cores of the clock's.
 std::vector<NamedValue> report_cache_display(int width, int height, bool quick);
 
 }  // namespace wellspring
