@@ -67,9 +67,7 @@ void leave_punctual(const Transport& transport, size_t index, vec2 u, float chan
 void leave_environment(const Transport& transport, float chance, Sampler& sampler,
                        EmittedRay& emitted) {
   const EnvironmentLight& environment = transport.tables.environment;
-  EnvironmentSample sky;
-  if (environment.cells.cells.empty()) sky = {sample_sphere(sampler.next2()), 1 / (4 * pi)};
-  else sky = sample_environment(environment, sampler);
+  EnvironmentSample sky = sample_whole_sky(environment, sampler.next2());
   if (!(sky.pdf > 0)) return;
   emitted.ray = ray_from_outside(transport.tables.emission, -sky.direction, sampler.next2());
   emitted.flux = eval_environment(environment, sky.direction) *
@@ -93,6 +91,9 @@ EmissionChoice make_emission_choice(const LightTables& tables, std::span<const f
   weights.insert(weights.end(), punctual_power.begin(), punctual_power.end());
   weights.push_back(environment_power);
   choice.rays = make_alias_table(weights);
+  if (!tables.environment.is_sampled()) weights.back() = 0;
+  choice.caustics = make_alias_table(weights);
+  weights.back() = environment_power;
   if (choice.exact_punctual)
     std::fill_n(weights.begin() + long(emitter_power.size()), punctual_power.size(), 0.0f);
   choice.places = make_alias_table(weights);
@@ -142,6 +143,17 @@ EmittedRay sample_emitted_ray(const Transport& transport, Sampler& sampler) {
   else
     leave_environment(transport, chance, sampler, emitted);
   return emitted;
+}
+
+EnvironmentSample sample_whole_sky(const EnvironmentLight& environment, vec2 u) {
+  if (!environment.cells.cells.empty()) return sample_environment(environment, u);
+  constexpr float all = 1 / (4 * pi);
+  if (!environment.is_sampled()) return {sample_sphere(u), all};
+  // A sun in a plain sky: either, half of the time.
+  bool sun = u.x < 0.5f;
+  u.x = sun ? 2 * u.x : 2 * u.x - 1;
+  vec3 direction = sun ? sample_environment(environment, u).direction : sample_sphere(u);
+  return {direction, 0.5f * all + 0.5f * sample_environment_pdf(environment, direction)};
 }
 
 float range_window(float distance, float range) {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "light/alias_table.h"
+#include "light/environment_light.h"
 #include "light/sampler.h"
 #include "world/surface.h"
 
@@ -17,6 +18,7 @@ struct Transport;
 struct EmissionChoice {
   AliasTable rays;    // all of them, by power
   AliasTable places;  // those that light only a share of a picture's pixels each: see exact_punctual
+  AliasTable caustics;  // sources of photons: without a sky that is the same all over
   bool exact_punctual = true;  // few punctual lights: every pixel asks each of them
   vec3 centre{0};              // of a sphere around the scene
   float radius = 1;
@@ -43,6 +45,9 @@ struct EmittedRay {
   float range = std::numeric_limits<float>::infinity();  // KHR_lights_punctual: light ends here
 };
 EmittedRay sample_emitted_ray(const Transport& transport, Sampler& sampler);
+
+// A direction of the sky by brightness, all around where it is the same all over.
+EnvironmentSample sample_whole_sky(const EnvironmentLight& environment, vec2 u);
 
 // Share of a punctual light's intensity left at a distance by its range (KHR_lights_punctual).
 float range_window(float distance, float range);

@@ -4,23 +4,32 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/caustic_photons.h"
+
 namespace wellspring {
 namespace {
 
 // What is seen in mirrors is not filtered, so more than one set lights it.
 constexpr int mirror_sets = 4;
+// Light gathered from nearby is a small part of all: a few of the lights will do there.
+constexpr uint32_t near_step = 4;
 constexpr int mirror_depth = 6;  // chains are not cut short at random before
 
 // Radiance scattered towards where `walk` came from by the rough lobes of what it met.
 vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, const Bsdf& bsdf,
-                float sharp, int sets, Sampler& sampler) {
+                float sharp, int sets, uint32_t step, Sampler& sampler) {
   if (walk.depth >= eye.max_depth || !has_rough(bsdf, sharp)) return vec3(0);
   LitPlace place{&surface, &bsdf, walk.medium, walk.depth, sharp};
   PlaceLight light;
   int all = eye.pass.sets(), asked = std::min(sets, all);
-  for (int i = 0; i < asked; i++)
-    shade_by_point_lights(eye.transport, eye.pass, (eye.set + i) % all, eye.max_depth, &place, 1,
-                          &light);
+  for (int i = 0; i < asked; i++) {
+    uint32_t start = step > 1 ? uint32_t(sampler.next() * float(step)) : 0;
+    shade_by_point_lights(eye.transport, eye.pass, {(eye.set + i) % all, start, step},
+                          eye.max_depth, &place, 1, &light);
+  }
+  if (!eye.pass.photons.empty())
+    for (int i = 0; i < asked; i++)
+      shade_by_photons(eye.pass.photons[size_t((eye.set + i) % all)], eye.max_depth, place, light);
   vec3 radiance = light.sum() / float(asked);
   PlaceLight rest;
   gather_rest(eye, place, sampler, rest);
@@ -52,6 +61,12 @@ void meet(const Transport& transport, const Hit& hit, Walk& walk, Met& met) {
                        *transport.tables.materials[size_t(met.surface.material)].albedo);
 }
 
+// Of a sky without a picture's brightness to go by: what photons do not bring.
+vec3 plain_sky(const EnvironmentLight& environment, vec3 direction) {
+  vec3 sky = eval_environment(environment, direction);
+  return sample_environment_pdf(environment, direction) > 0 ? sky - environment.sun_radiance : sky;
+}
+
 // Light along a ray that left a rough lobe: from nearer than the clip distance the share that clipping
 // took, and through sharp things what is rough behind them.
 vec3 gathered(const EyeLight& eye, Walk walk, Sampler& sampler) {
@@ -66,7 +81,7 @@ vec3 gathered(const EyeLight& eye, Walk walk, Sampler& sampler) {
     Hit hit = transport.world.intersect(walk.ray);
     if (!hit.valid()) {
       if (chained && tables.environment.cells.cells.empty())
-        radiance += walk.throughput * eval_environment(tables.environment, walk.ray.direction);
+        radiance += walk.throughput * plain_sky(tables.environment, walk.ray.direction);
       return radiance;
     }
     run += hit.t;
@@ -80,7 +95,7 @@ vec3 gathered(const EyeLight& eye, Walk walk, Sampler& sampler) {
       asked.throughput *= taken;
       if (!met.material->unlit && survives(asked, 2, sampler))
         radiance += asked.throughput * eval_rough(eye, walk, met.surface, met.bsdf, sharp_alpha, 1,
-                                                  sampler);
+                                                  chained ? 1 : near_step, sampler);
     }
     if (met.material->unlit || !eye.pass.sharp || !has_sharp(met.bsdf, sharp_alpha) ||
         walk.depth >= eye.max_depth)
@@ -129,7 +144,7 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
     bool last = walk.depth >= eye.max_depth;
     if (!last)
       radiance += walk.throughput * eval_rough(eye, walk, met.surface, met.bsdf, mirror_alpha,
-                                               mirror_sets, sampler);
+                                               mirror_sets, 1, sampler);
     BsdfSample scattered;
     if (last) {  // only straight on, where a shadow ray would have gone too
       if (!is_pane(met.surface, *met.material)) return radiance;
@@ -138,7 +153,7 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
       scattered.bounce = Bounce::pass;
     } else {
       if (!has_sharp(met.bsdf, mirror_alpha)) return radiance;
-      if (smoothest_alpha(met.bsdf) > 0)
+      if (has_blurred(met.bsdf))
         radiance += walk.throughput * sample_direct_light(transport, walk, met.surface, met.bsdf,
                                                           true, sampler)
                                           .specular;

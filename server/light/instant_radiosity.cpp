@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "light/caustic_photons.h"
 #include "light/discontinuity_buffer.h"
 #include "light/eye_light.h"
 #include "light/first_surface.h"
@@ -44,7 +45,7 @@ void follow_first(const EyeLight& light, Eye& eye) {
   const Bsdf& bsdf = first.bsdf;
   if (!has_sharp(bsdf, mirror_alpha)) return;
   vec3 rest(0);
-  if (smoothest_alpha(bsdf) > 0)
+  if (has_blurred(bsdf))
     rest += sample_direct_light(transport, first.walk, first.surface, bsdf, true, eye.sampler)
                 .specular;
   // A faint gloss over a diffuse layer is followed now and then, a strong one each time.
@@ -65,6 +66,8 @@ void finish(const EyeLight& light, Eye& eye) {
   if (eye.first.scatters) {
     LitPlace place{&eye.first.surface, &eye.first.bsdf, eye.first.walk.medium,
                    eye.first.walk.depth, mirror_alpha};
+    if (!light.pass.photons.empty())
+      shade_by_photons(light.pass.photons[size_t(light.set)], light.max_depth, place, eye.light);
     gather_rest(light, place, eye.sampler, eye.light);
     Sample& sample = eye.sample;
     const PlaceLight& got = eye.light;
@@ -119,7 +122,7 @@ void trace_many_instant(const World& world, const Lights& lights,
       places[count] = {&eye.first.surface, &eye.first.bsdf, eye.first.walk.medium,
                        eye.first.walk.depth, mirror_alpha};
     }
-    shade_by_point_lights(transport, pass, set, settings.max_depth, places, count, light);
+    shade_by_point_lights(transport, pass, {set}, settings.max_depth, places, count, light);
     for (int i = 0; i < count; i++) eyes[order[begin + size_t(i)]].light = light[i];
     begin += size_t(count);
   }
@@ -140,8 +143,10 @@ Sample trace_instant(const World& world, const Lights& lights, const TransportSe
 
 void begin_instant(const World& world, const TransportSettings& settings, const View& view,
                    uint64_t seed, uint32_t index, Lights& lights) {
+  TransportSettings here = settings;  // a small picture has no use for more photons than pixels
+  here.instant.photons = std::min(settings.instant.photons, std::max(64, view.width * view.height));
   lights.pass = std::make_shared<InstantPass>(
-      draw_instant_pass({world, *lights.tables}, settings, view.width, seed, index));
+      draw_instant_pass({world, *lights.tables}, here, view.width, seed, index));
 }
 
 void finish_instant(const World&, const Lights& lights, const View& view,

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "light/light_walk.h"
+#include "light/photon_grid.h"
 #include "light/technique.h"
 
 namespace wellspring {
@@ -49,6 +50,7 @@ struct InstantPass {
   std::vector<PointLight> lights;          // set by set, depths ascending in a set
   std::vector<uint32_t> first;             // of each set, and the end
   std::vector<Arrival> arrivals;
+  std::vector<PhotonGrid> photons;  // of each set; none without caustics
   int sets() const { return columns * rows; }
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "light/caustic_photons.h"
 #include "light/emission.h"
 #include "light/instant_radiosity.h"
 #include "light/warp.h"
@@ -13,7 +14,8 @@
 namespace wellspring {
 namespace {
 
-constexpr uint64_t place_stream = 0x706c616365ull, walk_stream = 0x77616c6bull;
+constexpr uint64_t place_stream = 0x706c616365ull, walk_stream = 0x77616c6bull,
+                   photon_stream = 0x70686f746full;
 
 struct DrawnSet {
   std::vector<PointLight> lights;
@@ -55,10 +57,7 @@ void add_place(const Transport& transport, float share, Sampler& sampler, DrawnS
     light.index = uint32_t(pick.index - triangles);
     light.radiance = vec3(share / chance);
   } else {
-    EnvironmentSample sky;
-    if (tables.environment.cells.cells.empty())
-      sky = {sample_sphere({pick.u, u.y}), 1 / (4 * pi)};
-    else sky = sample_environment(tables.environment, sampler);
+    EnvironmentSample sky = sample_whole_sky(tables.environment, {pick.u, u.y});
     if (!(sky.pdf > 0)) return;
     light.kind = PointLightKind::distant;
     light.position = sky.direction;
@@ -130,6 +129,34 @@ float free_path(const Transport& transport) {
   return lengths[lengths.size() / 2];
 }
 
+void draw_photons(const Transport& transport, const TransportSettings& settings, float radius,
+                  uint64_t seed, uint32_t index, InstantPass& pass) {
+  std::vector<CasterSphere> casters = find_casters(transport.world, transport.tables.plan, true);
+  casters.insert(casters.end(), transport.tables.casters.begin(), transport.tables.casters.end());
+  int photons = std::clamp(settings.instant.photons, 0, 1 << 22);
+  if (casters.empty() || !(radius > 0) || photons == 0) return;
+  constexpr int pieces = 4;  // of a set's photons, so that all cores have work
+  std::vector<std::vector<Photon>> shot(size_t(pass.sets() * pieces));
+  parallel_for(pass.sets() * pieces, [&](int i) {
+    int set = i / pieces, piece = i % pieces;
+    int begin = int(int64_t(photons) * piece / pieces),
+        end = int(int64_t(photons) * (piece + 1) / pieces);
+    uint32_t before = (index * uint32_t(pass.sets()) + uint32_t(set)) * uint32_t(photons);
+    shot[size_t(i)] = shoot_caustic_photons(transport, casters, settings.max_depth,
+                                            mix64(seed ^ photon_stream), before + uint32_t(begin),
+                                            end - begin, 1 / float(photons));
+  });
+  pass.photons.resize(size_t(pass.sets()));
+  parallel_for(pass.sets(), [&](int set) {
+    std::vector<Photon> all;
+    for (int piece = 0; piece < pieces; piece++) {
+      const std::vector<Photon>& part = shot[size_t(set * pieces + piece)];
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    pass.photons[size_t(set)] = make_photon_grid(all, radius);
+  });
+}
+
 }  // namespace
 
 InstantPass draw_instant_pass(const Transport& transport, const TransportSettings& settings,
@@ -146,8 +173,9 @@ InstantPass draw_instant_pass(const Transport& transport, const TransportSetting
   int walks = tables.emission.rays.cells.empty() ? 0 : std::clamp(s.walks, 0, 1 << 16);
   // A point light stands for the surface around it. Nearer than that surface is wide, about
   // sqrt(area / lights), the estimate is one of nothing but that light.
-  if (s.clip >= 0) pass.clip = s.clip;
-  else pass.clip = 2 * free_path(transport) / std::sqrt(float(pass.sets() * std::max(walks, 1)));
+  bool needs_size = s.clip < 0 || (pass.sharp && !(s.photon_radius > 0));
+  float size = needs_size ? free_path(transport) : 0;
+  pass.clip = s.clip >= 0 ? s.clip : 2 * size / std::sqrt(float(pass.sets() * std::max(walks, 1)));
 
   std::vector<DrawnSet> sets(size_t(pass.sets()));
   parallel_for(pass.sets(), [&](int k) {
@@ -165,6 +193,8 @@ InstantPass draw_instant_pass(const Transport& transport, const TransportSetting
     std::stable_sort(set.lights.begin(), set.lights.end(),
                      [](const PointLight& a, const PointLight& b) { return a.depth < b.depth; });
   });
+  float radius = s.photon_radius > 0 ? s.photon_radius : shrunk_radius(0.02f * size, index);
+  if (pass.sharp) draw_photons(transport, settings, radius, seed, index, pass);
   for (DrawnSet& set : sets) {
     pass.first.push_back(uint32_t(pass.lights.size()));
     for (PointLight& light : set.lights) {

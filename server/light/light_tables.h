@@ -38,6 +38,12 @@ struct MaterialTraits {
   bool maybe_pane = false;  // some place of it may be a thin smooth pane
 };
 
+// Around a part of what scatters sharply; `weight`: about the share of light that it does so with.
+struct CasterSphere {
+  vec3 center{0};
+  float radius = 0, weight = 0;
+};
+
 struct LightTables {
   TransportPlan plan;
   std::vector<EmitterTriangle> emitters;  // whole instances, in order of their triangles
@@ -53,6 +59,7 @@ struct LightTables {
   float emitter_share = 0;  // of samples spent on emitters; the rest of area light is environment
   float area_share = 1;     // where one light is sampled: emitters and environment against punctual
   EmissionChoice emission;  // of techniques that follow light from its sources
+  std::vector<CasterSphere> casters;  // of caustics, that stand still
   std::vector<MaterialTraits> materials;
   bool any_pane = false;   // else shadow rays only ask whether anything is in between
   bool any_solid = false;  // else walks do not ask what they run in

@@ -25,7 +25,15 @@ vec3 came_from(const Bsdf& b) {
 
 }  // namespace
 
-float smoothest_alpha(const Bsdf& bsdf) { return bsdf.alpha; }
+float smoothest_alpha(const Bsdf& bsdf) {
+  float base = std::min({bsdf.alpha, bsdf.alphas.x, bsdf.alphas.y});
+  return bsdf.clearcoat.strength > 0 ? std::min(base, bsdf.clearcoat.alpha) : base;
+}
+
+bool has_blurred(const Bsdf& bsdf) {
+  return bsdf.alpha > 0 || max_component(bsdf.sheen.color) > 0 ||
+         (bsdf.clearcoat.strength > 0 && bsdf.clearcoat.alpha > 0);
+}
 
 bool has_sharp(const Bsdf& bsdf, float alpha) {
   return has_specular(bsdf) && smoothest_alpha(bsdf) < alpha;

@@ -15,6 +15,7 @@ inline constexpr float sharp_alpha = caustic_roughness * caustic_roughness;
 inline constexpr float mirror_alpha = 0.25f;
 
 float smoothest_alpha(const Bsdf& bsdf);
+bool has_blurred(const Bsdf& bsdf);  // some specular lobe has a density
 // The specular lobes belong to the sharp ones: some of them is smoother than `alpha`.
 bool has_sharp(const Bsdf& bsdf, float alpha);
 // Something besides the sharp lobes scatters.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/caustic_photons.h"
 #include "light/light_bounds.h"
 #include "light/light_tables.h"
 #include "world/surface.h"
@@ -192,6 +193,7 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
             : nullptr;
     tables->materials.push_back({albedo, plan.materials[i].pane});
   }
+  tables->casters = find_casters(world, plan, false);
   tables->any_pane = plan.uses(panes);
   tables->any_solid = plan.uses(refraction);
   tables->any_tint = plan.uses(absorption);

@@ -210,17 +210,19 @@ void add_lane(const Transport& transport, const Group& group, const PointLight& 
 
 }  // namespace
 
-void shade_by_point_lights(const Transport& transport, const InstantPass& pass, int set,
-                           int max_depth, const LitPlace* places, int count, PlaceLight* light) {
+void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
+                           const SetShare& choice, int max_depth, const LitPlace* places,
+                           int count, PlaceLight* light) {
   Group group = make_group(places, count);
   int deepest = 0;
   for (int i = 0; i < count; i++) deepest = std::max(deepest, max_depth - 1 - places[i].depth);
   float clip2 = pass.clip * pass.clip;
   Seen seen;
-  for (uint32_t k = pass.first[size_t(set)]; k < pass.first[size_t(set) + 1]; k++) {
+  uint32_t end = pass.first[size_t(choice.set) + 1];
+  for (uint32_t k = pass.first[size_t(choice.set)] + choice.start; k < end; k += choice.step) {
     const PointLight& source = pass.lights[k];
     if (source.depth > deepest) break;  // they ascend
-    vec3 radiance = source.radiance;
+    vec3 radiance = source.radiance * float(choice.step);
     switch (source.kind) {
       case PointLightKind::punctual:
         see_punctual(transport.tables, group, source.index, seen);

@@ -21,9 +21,16 @@ struct PlaceLight {
   vec3 sum() const { return diffuse + specular + exact_diffuse + exact_specular; }
 };
 
+// Of a set's lights, every `step`-th from a start drawn at random counts `step` times.
+struct SetShare {
+  int set = 0;
+  uint32_t start = 0, step = 1;
+};
+
 // Adds to light[i] that of places[i], i below `count`, at most 16. What one place gets does not
 // depend on the others.
-void shade_by_point_lights(const Transport& transport, const InstantPass& pass, int set,
-                           int max_depth, const LitPlace* places, int count, PlaceLight* light);
+void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
+                           const SetShare& choice, int max_depth, const LitPlace* places,
+                           int count, PlaceLight* light);
 
 }  // namespace wellspring

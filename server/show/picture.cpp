@@ -123,6 +123,9 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   const Technique& technique = settled ? *show.still_technique : *show.technique;
   TransportSettings transport = show.settings.transport;
   if (!settled) transport.clamp = show.settings.moving_clamp;
+  if (technique.begin_pass)
+    technique.begin_pass(*show.world, transport, view, visitor.link->id, uint32_t(show.ticks),
+                         show.lights);
   trace(technique, *show.world, show.lights, transport, visitor.requests, visitor.samples);
   double traced = seconds_now();
   cache.remember(view, visitor.requests, visitor.samples);

@@ -33,6 +33,7 @@ void judge_cases(const std::vector<AnalyticCase>& cases) {
       if (view.width == 6) effort.spp = std::max(1, c.spp / (c.needs & chains ? 6 : 36));
       TransportSettings transport = c.transport;
       transport.instant.places = 64;  // few pixels, many lights
+      transport.instant.photons = 0;  // caustics are not claimed
       Estimate e = estimate_radiance(technique, world, lights, view, transport, effort);
       family.add(std::string(technique.name) + ", " + c.name, e, c.expected);
     }
