@@ -7,30 +7,27 @@
 #include "base/parallel.h"
 #include "light/caustic_photons.h"
 #include "light/first_surface.h"
-#include "scenes/scenes.h"
+#include "light_scenes.h"
 
 namespace wellspring {
 namespace {
 
 constexpr int sets = 9, wanted = 100'000, width = 640, height = 480;
 
-// The Cornell box with a glass ball.
-Scene make_caustic_scene() {
-  Scene scene = scenes::make_cornell_box();
-  int glass = scenes::add_material(scene, scenes::glass(1.5f, 0, 1));
-  scenes::add_mesh(scene, scenes::sphere_mesh(glass, 0.08f, 48), "glass ball",
-                   scenes::at({0.14f, 0.085f, -0.1f}));
-  return scene;
-}
-
 }  // namespace
 
 void bench_light_photons(BenchReport& report, const BenchOptions& options) {
-  Scene scene = make_caustic_scene();
-  World world(scene);
+  BenchScene bench = load_bench_scene(options, "caustics");
+  World world(bench.scene);
   Lights lights = make_lights(world);
   Transport transport{world, *lights.tables};
-  View view = scenes::cornell_view(scene, width, height);
+  View view = bench_view(bench, width, height);
+
+  // The radius that the technique chooses for the scene.
+  TransportSettings few;
+  few.instant.photons = 1000;
+  InstantPass pass = draw_instant_pass(transport, few, width, 1, 0);
+  float radius = pass.photons.empty() ? 0.01f : pass.photons[0].radius;
 
   double began = seconds_now();
   std::vector<std::vector<Photon>> photons(sets);
@@ -69,7 +66,7 @@ void bench_light_photons(BenchReport& report, const BenchOptions& options) {
   for (int run = 0; run < (options.quick ? 5 : 15); run++) {
     double at = seconds_now();
     parallel_for(sets, [&](int set) {
-      grids[size_t(set)] = make_photon_grid(photons[size_t(set)], 0.006f);
+      grids[size_t(set)] = make_photon_grid(photons[size_t(set)], radius);
     });
     double stored = seconds_now();
     parallel_ranges(height, 4, [&](int top, int bottom) {
@@ -89,11 +86,12 @@ void bench_light_photons(BenchReport& report, const BenchOptions& options) {
   for (vec3 l : light) lit += max_component(l) > 0;
   double store_ms = quantile(store, 0.5), query_ms = quantile(query, 0.5);
   report.add("light.caustics.photons_ms", store_ms + query_ms, "ms",
-             {{"scene", "cornell_box with a glass ball"},
+             {{"scene", bench.name},
               {"photons", kept},
               {"width", width},
               {"height", height},
               {"pixels_lit", lit},
+              {"radius", radius},
               {"store_ms", store_ms},
               {"query_ms", query_ms},
               {"shoot_ms", 1000 * shot}});
