@@ -128,18 +128,23 @@ void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& pla
   const Bsdf& bsdf = *place.bsdf;
   vec3 normal = bsdf.geometric_normal;
   bool sharp = has_sharp(bsdf, place.sharp);
-  vec3 diffuse(0), specular(0);
+  bool matt = !has_specular(bsdf) && bsdf.normal == normal;  // one reflectance for all directions
+  vec3 diffuse(0), specular(0), flux(0);
   for_each_photon(grid, place.surface->position, [&](const Photon& photon) {
     if (int(photon.depth) + place.depth > max_depth) return;
     if (std::abs(dot(photon.normal, normal)) < same_surface) return;
-    float cosine = std::abs(dot(photon.direction, normal));
+    float side = dot(photon.direction, normal), cosine = std::abs(side);
     if (!(cosine > 1e-3f)) return;
+    if (matt) {
+      if (side > 0) flux += photon.flux;
+      return;
+    }
     BsdfValue value = eval_bsdf(bsdf, photon.direction);
     diffuse += value.diffuse * photon.flux / cosine;
     if (!sharp) specular += value.specular * photon.flux / cosine;
   });
   float area = pi * grid.radius * grid.radius;
-  light.diffuse += diffuse / area;
+  light.diffuse += (diffuse + flux * bsdf.diffuse / pi) / area;
   light.specular += specular / area;
 }
 

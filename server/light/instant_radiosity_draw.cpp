@@ -193,7 +193,7 @@ InstantPass draw_instant_pass(const Transport& transport, const TransportSetting
     std::stable_sort(set.lights.begin(), set.lights.end(),
                      [](const PointLight& a, const PointLight& b) { return a.depth < b.depth; });
   });
-  float radius = s.photon_radius > 0 ? s.photon_radius : shrunk_radius(0.02f * size, index);
+  float radius = s.photon_radius > 0 ? s.photon_radius : shrunk_radius(0.008f * size, index);
   if (pass.sharp) draw_photons(transport, settings, radius, seed, index, pass);
   for (DrawnSet& set : sets) {
     pass.first.push_back(uint32_t(pass.lights.size()));
