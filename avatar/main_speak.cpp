@@ -85,7 +85,8 @@ Speech make_speech(const Options& options) {
   if (!error.empty()) throw std::runtime_error(error);
   Sound recording;
   if (!options.audio.empty()) recording = load_sound(options.audio);
-  if (!options.marks.empty()) return read_marks(options, options.audio.empty() ? nullptr : &recording);
+  if (!options.marks.empty())
+    return read_marks(options, options.audio.empty() ? nullptr : &recording);
   SpeechProcess process;
   if (options.audio.empty()) return speak_text(process, options.request);
   return mark_recording(process, options, recording);
@@ -123,7 +124,7 @@ int main(int argc, char** argv) {
   app.add_option("--audio", options.audio,
                  "a recording of the text (WAV, FLAC, OGG, MP3): its times instead of a synthesis");
   app.add_option("--marks", options.marks,
-                 "a file of --json, words perhaps moved by hand: its times instead of computed ones");
+                 "a file of --json, words perhaps moved by hand: its times, none computed");
   app.add_option("--wav", options.wav, "sound to write, 16 bits mono");
   app.add_option("--json", options.json, "times of words, phonemes and visemes to write");
   try {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Speech for a running exhibit: asked for and fetched later, never waited for. One thread of its own
-// talks to the voice program; what was said once is kept, in memory and, if wanted, in a folder.
+// Speech for a running exhibit: asked for and fetched later, never waited for. One thread of its
+// own talks to the voice program; what was said once is kept, in memory and, if wanted, in a
+// folder.
 //
 //   Speaker speaker;
 //   speaker.prepare(lines_of_the_exhibit);         // when it loads

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A spoken sentence as one value: the sound, and when each word, phoneme and mouth shape of it comes.
-// It is the same whether a synthesiser made the sound or a narrator was recorded. Immutable once
-// made; shared between threads as shared_ptr<const Speech>.
-// Times are seconds from the first sample of `pcm`, never decreasing; begin <= end <= duration.
+// A spoken sentence as one value: the sound, and when each word, phoneme and mouth shape of it
+// comes. It is the same whether a synthesiser made the sound or a narrator was recorded. Immutable
+// once made; shared between threads as shared_ptr<const Speech>. Times are seconds from the first
+// sample of `pcm`, never decreasing; begin <= end <= duration.
 #pragma once
 #include <cstdint>
 #include <string>

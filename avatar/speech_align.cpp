@@ -66,7 +66,8 @@ float distance(const float* a, const float* b) {
 }
 
 void set_warp_costs(WarpTask& task, const std::vector<float>& chance) {
-  for (float c : chance) task.gap_cost.push_back(gap_of_silence + c * (gap_of_sound - gap_of_silence));
+  for (float c : chance)
+    task.gap_cost.push_back(gap_of_silence + c * (gap_of_sound - gap_of_silence));
   task.stay = stay_cost;
   task.skip = skip_cost;
 }
@@ -83,8 +84,8 @@ Features make_empty(size_t count) {
   return features;
 }
 
-// About which state each recorded frame is, from means of `step` frames against means of up to `step`
-// states of a word. Empty: there is no way.
+// About which state each recorded frame is, from means of `step` frames against means of up to
+// `step` states of a word. Empty: there is no way.
 std::vector<int32_t> warp_coarsely(const Pair& pair, const std::vector<SoundState>& fine,
                                    size_t step) {
   std::vector<size_t> begins;  // of the coarse states, in fine ones
@@ -168,7 +169,8 @@ std::vector<int32_t> warp_finely(const Pair& pair, const std::vector<SoundState>
 }
 
 // A way over frames of the template as a way over pieces of its phonemes.
-std::vector<int32_t> to_pieces(const std::vector<int32_t>& way, const std::vector<SoundState>& states,
+std::vector<int32_t> to_pieces(const std::vector<int32_t>& way,
+                               const std::vector<SoundState>& states,
                                const std::vector<SoundState>& pieces) {
   std::vector<int32_t> piece_of;
   size_t k = 0;
@@ -273,7 +275,8 @@ Speech align_speech(const Speech& spoken, const Sound& recording) {
   if (states.empty()) throw std::runtime_error("there is nothing in the text that can be spoken");
 
   double cells = double(states.size()) * double(pair.recorded.size());
-  size_t step = std::max(least_coarse_step, size_t(std::ceil(std::sqrt(cells / most_coarse_cells))));
+  size_t step = size_t(std::ceil(std::sqrt(cells / most_coarse_cells)));
+  step = std::max(least_coarse_step, step);
   std::vector<int32_t> way = warp_coarsely(pair, states, step);
   if (!way.empty()) way = warp_finely(pair, states, way);
   if (way.empty()) throw std::runtime_error("the recording is too short for the text");

@@ -2,12 +2,12 @@
 // Marks for a narrator's recording: when each word and phoneme of a text comes in it.
 //
 // The text as a synthesiser says it is the template. Both sounds become mel cepstra; dynamic time
-// warping (Sakoe & Chiba 1978), coarse first and then within a band around the coarse way, finds which
-// moment of the template each moment of the recording is. It may leave out pauses and sounds that are
-// not in the text (a cough, an introduction) between words. From that first way the narrator's own
-// phonemes are learnt: Gaussians over the recording's frames, held to the template's frames where
-// there are few (maximum a posteriori, Gauvain & Lee 1994), three states a phoneme; the recording is
-// divided anew by them, a few times (Viterbi training).
+// warping (Sakoe & Chiba 1978), coarse first and then within a band around the coarse way, finds
+// which moment of the template each moment of the recording is. It may leave out pauses and sounds
+// that are not in the text (a cough, an introduction) between words. From that first way the
+// narrator's own phonemes are learnt: Gaussians over the recording's frames, held to the
+// template's frames where there are few (maximum a posteriori, Gauvain & Lee 1994), three states a
+// phoneme; the recording is divided anew by them, a few times (Viterbi training).
 #pragma once
 #include <string>
 
@@ -16,9 +16,9 @@
 
 namespace wellspring {
 
-// Text, language, words and phonemes of `spoken`, sound and times of `recording`. Blocks for about a
-// hundredth of the recording's length. Throws std::runtime_error with one sentence when there is no
-// way: a recording without speech, or one far too short for the text.
+// Text, language, words and phonemes of `spoken`, sound and times of `recording`. Blocks for about
+// a hundredth of the recording's length. Throws std::runtime_error with one sentence when there is
+// no way: a recording without speech, or one far too short for the text.
 Speech align_speech(const Speech& spoken, const Sound& recording);
 
 // How much slower (> 1) the recording is than the template, pauses left out; 0.3 to 3. Templates at

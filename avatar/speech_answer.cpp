@@ -137,6 +137,12 @@ void name_words(Speech& speech, const std::vector<SaidAsOne>& groups) {
   }
 }
 
+// Sounds between others that the engine does not write: the glide from vowel to vowel ("the oldest")
+// and the murmur in a cluster of consonants.
+std::string name_nameless(const std::string& mnemonic) {
+  return mnemonic == ";" ? "j" : mnemonic == "@-" ? "ə" : "";
+}
+
 // Every phoneme lasts until the next; pauses that follow each other are one.
 void add_phoneme(Speech& speech, SpeechPhoneme phoneme) {
   if (!speech.phonemes.empty()) {
@@ -178,6 +184,7 @@ std::shared_ptr<const Speech> read_speech_answer(const SpeechRequest& request,
       phoneme.ipa = entry.at(3).get<std::string>();
       // The engine has phonemes without a name that only make a pause.
       if (phoneme.mnemonic.empty()) phoneme.mnemonic = "_";
+      if (phoneme.ipa.empty()) phoneme.ipa = name_nameless(phoneme.mnemonic);
       // A change of language inside a word is told as "(en)"; it sounds like nothing.
       if (phoneme.ipa.starts_with('(')) continue;
       add_phoneme(*speech, std::move(phoneme));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From an answer of the voice program to a Speech. The other side may be broken: nothing it sends is
-// believed before it was checked.
+// From an answer of the voice program to a Speech. The other side may be broken: nothing it sends
+// is believed before it was checked.
 #pragma once
 #include <memory>
 #include <string>

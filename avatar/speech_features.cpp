@@ -13,7 +13,7 @@ namespace {
 
 constexpr int bands = 26;
 constexpr double window_seconds = 0.025;
-constexpr double lowest = 100, highest = 7000;  // Hz; the upper is lowered to what the rate can hold
+constexpr double lowest = 100, highest = 7000;  // Hz; the upper less where the rate is low
 
 constexpr float quietest = 1e-6f;  // power of a band that still counts
 
@@ -89,7 +89,8 @@ Features make_features(const std::vector<float>& samples, int rate) {
     turns[k] = std::polar(1.0f, float(-2 * std::numbers::pi * double(k) / double(size)));
   std::vector<float> window(width);
   for (size_t i = 0; i < width; i++)
-    window[i] = float(0.5 - 0.5 * std::cos(2 * std::numbers::pi * (double(i) + 0.5) / double(width)));
+    window[i] =
+        float(0.5 - 0.5 * std::cos(2 * std::numbers::pi * (double(i) + 0.5) / double(width)));
   Filters filters = make_filters(size / 2 + 1, rate);
   std::array<std::array<float, bands>, cepstra> cosines;
   for (int c = 0; c < cepstra; c++)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speech kept on disk from one start of an exhibit to the next, one file a request. A file that is
-// damaged, or of another request with the same name, counts as missing. Nothing here throws; a folder
-// that cannot be written is said once.
+// damaged, or of another request with the same name, counts as missing. Nothing here throws; a
+// folder that cannot be written is said once.
 #pragma once
 #include <memory>
 #include <string>

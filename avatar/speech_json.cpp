@@ -18,7 +18,9 @@ using nlohmann::ordered_json;
 constexpr size_t most_entries = 1'000'000;
 constexpr double longest = 24 * 3600;
 
-double rounded(double value, double per_unit = 1e4) { return std::round(value * per_unit) / per_unit; }
+double rounded(double value, double per_unit = 1e4) {
+  return std::round(value * per_unit) / per_unit;
+}
 
 // A key of a shape is worth saying where the shape, or its key before or after, is there.
 ordered_json write_visemes(const VisemeTrack& track) {
@@ -118,7 +120,8 @@ void read_phonemes(const Reader& reader, const json& root, Speech& speech) {
     word = phoneme.word;
     double begin = reader.number(list[i], where, "start");
     double end = reader.number(list[i], where, "end");
-    if (begin < after - 2e-4 || end < begin) reader.fail(where + "/start", "times are out of order");
+    if (begin < after - 2e-4 || end < begin)
+      reader.fail(where + "/start", "times are out of order");
     if (begin < 0 || end > longest) reader.fail(where + "/end", "is no time of the sound");
     phoneme.begin = begin;
     phoneme.end = after = end;
@@ -131,12 +134,13 @@ void read_phonemes(const Reader& reader, const json& root, Speech& speech) {
 std::string write_speech_json(const Speech& speech) {
   ordered_json words = ordered_json::array(), phonemes = ordered_json::array();
   std::string_view text = speech.text;
+  auto character = [&](uint32_t byte) { return count_characters(text, byte); };
   for (const SpeechWord& word : speech.words)
     words.push_back({{"text", text.substr(word.text_begin, word.text_end - word.text_begin)},
                      {"start", rounded(word.begin)},
                      {"end", rounded(word.end)},
                      {"characters",
-                      {count_characters(text, word.text_begin), count_characters(text, word.text_end)}}});
+                      {character(word.text_begin), character(word.text_end)}}});
   for (const SpeechPhoneme& phoneme : speech.phonemes)
     phonemes.push_back({{"phoneme", phoneme.mnemonic},
                         {"ipa", phoneme.ipa},

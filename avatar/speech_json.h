@@ -7,12 +7,13 @@
 //    "phonemes": [{"phoneme": "t", "ipa": "t", "start": 0.10, "end": 0.17, "word": 0}, ...],
 //    "visemes":  [{"time": 0.12, "viseme": "DD", "weight": 0.5}, ...]}
 //
-// A pause is a phoneme whose "word" is -1. Visemes are keys: each mouth shape goes from one of its keys
-// to its next by a smooth step (3x^2 - 2x^3); before its first and after its last it is as there.
+// A pause is a phoneme whose "word" is -1. Visemes are keys: each mouth shape goes from one of its
+// keys to its next by a smooth step (3x^2 - 2x^3); before its first and after its last it is as
+// there.
 //
 // Marks edited by hand. Words rule: move "start" and "end" of words; when the file is read, the
-// phonemes of every word are stretched into it, pauses fill the rest, and the visemes are made anew.
-// "phonemes" may be edited within a word; "visemes" and what is not named here is ignored.
+// phonemes of every word are stretched into it, pauses fill the rest, and the visemes are made
+// anew. "phonemes" may be edited within a word; "visemes" and what is not named here is ignored.
 #pragma once
 #include <string>
 #include <string_view>

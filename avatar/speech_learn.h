@@ -17,8 +17,8 @@ struct SoundModel {
   float constant = 0, silence_constant = 0;  // half the mean log variance
 };
 
-// What a first guess knows. `way` gives the state of each recorded frame, negative for none; `chance`
-// how likely each is speech.
+// What a first guess knows. `way` gives the state of each recorded frame, negative for none;
+// `chance` how likely each is speech.
 struct Hearing {
   const std::vector<SoundState>& states;
   const std::vector<int32_t>& way;
@@ -34,8 +34,8 @@ SoundModel learn_sounds(const Features& spoken, const Features& recorded, const 
 // and of variance 1. The model is of no use afterwards: learn anew.
 void whiten(Features& spoken, Features& recorded, const Hearing& hearing, const SoundModel& model);
 
-// Minus the log likelihood of a frame, over the number of features and without the constant that all
-// models share; about expected_cost where the model is right.
+// Minus the log likelihood of a frame, over the number of features and without the constant that
+// all models share; about expected_cost where the model is right.
 float sound_cost(const SoundModel& model, uint32_t kind, const float* frame);
 float silence_cost(const SoundModel& model, const float* frame);
 float expected_cost(const SoundModel& model);

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <climits>
 #include <cstring>
@@ -93,6 +94,13 @@ Transfer receive_frame(int socket, double deadline, std::string& json, std::vect
 
 }  // namespace
 
+namespace {
+bool is_tag_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+         c == '_';
+}
+}  // namespace
+
 std::string check_speech_request(const SpeechRequest& request) {
   if (request.text.size() > protocol::max_text_bytes)
     return "the text has " + std::to_string(request.text.size()) + " bytes; at most " +
@@ -102,8 +110,7 @@ std::string check_speech_request(const SpeechRequest& request) {
     return "the text is no UTF-8 at byte " + std::to_string(broken);
   if (request.text.find_first_not_of(" \t\r\n") == std::string::npos) return "the text is empty";
   if (request.lang.empty() || request.lang.size() > 40 ||
-      request.lang.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") !=
-          std::string::npos)
+      !std::all_of(request.lang.begin(), request.lang.end(), is_tag_character))
     return "'" + request.lang.substr(0, 40) + "' is no language tag";
   if (request.words_per_minute < protocol::min_words_per_minute ||
       request.words_per_minute > protocol::max_words_per_minute)
@@ -160,7 +167,8 @@ struct SpeechProcess::Impl {
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
                                               POSIX_SPAWN_SETPGROUP);
     char* arguments[] = {program.path.data(), nullptr};
-    int failed = posix_spawn(&child, program.path.c_str(), &actions, &attributes, arguments, environ);
+    int failed =
+        posix_spawn(&child, program.path.c_str(), &actions, &attributes, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
     close(ends[1]);
@@ -237,7 +245,8 @@ std::shared_ptr<const Speech> SpeechProcess::speak(const SpeechRequest& request,
       return read_speech_answer(request, answer, std::move(pcm), error);
     }
     bool late = state == Transfer::late;
-    error = impl_->give_up(late ? "the voice program hung and was ended" : "the voice program died");
+    error = impl_->give_up(late ? "the voice program hung and was ended"
+                                : "the voice program died");
     if (late) return nullptr;
   }
   return nullptr;

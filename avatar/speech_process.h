@@ -36,8 +36,8 @@ class SpeechProcess {
   SpeechProcess& operator=(const SpeechProcess&) = delete;
 
   // Blocks until the answer or a deadline. A request during which the program dies is asked once
-  // more; one that hangs is not. Returns null with one sentence in `error`; logs what happens to the
-  // program once each time it changes.
+  // more; one that hangs is not. Returns null with one sentence in `error`; logs what happens to
+  // the program once each time it changes.
   std::shared_ptr<const Speech> speak(const SpeechRequest& request, std::string& error);
 
   int process_id() const;  // 0: not running

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the name of a sound to the shapes of a mouth. The International Phonetic Alphabet is the key,
-// because it means the same in every language, where eSpeak NG's own mnemonics do not ("y" is a
-// rounded vowel in French and an unrounded one in Portuguese).
+// From the name of a sound to the shapes of a mouth. The International Phonetic Alphabet is the
+// key, because it means the same in every language, where eSpeak NG's own mnemonics do not ("y" is
+// a rounded vowel in French and an unrounded one in Portuguese).
 #pragma once
 #include <string>
 #include <string_view>

@@ -30,37 +30,39 @@ struct CloseSound {
 
 Sound load_sound(const std::string& file) {
   std::error_code code;
+  auto fail = [&](const std::string& what) { throw LoadError(file, "", what); };
   auto kind = std::filesystem::status(file, code).type();
-  if (kind == std::filesystem::file_type::not_found) throw LoadError(file, "", "there is no such file");
-  if (kind != std::filesystem::file_type::regular) throw LoadError(file, "", "is no regular file");
+  if (kind == std::filesystem::file_type::not_found) fail("there is no such file");
+  if (kind != std::filesystem::file_type::regular) fail("is no regular file");
   SF_INFO info{};
   std::unique_ptr<SNDFILE, CloseSound> input(sf_open(file.c_str(), SFM_READ, &info));
-  if (!input) throw LoadError(file, "", std::string("no sound can be read: ") + sf_strerror(nullptr));
+  if (!input) fail(std::string("no sound can be read: ") + sf_strerror(nullptr));
   if (info.samplerate < 4000 || info.samplerate > 192000)
-    throw LoadError(file, "", "its rate of " + std::to_string(info.samplerate) + " Hz is not within 4 to 192 kHz");
+    fail("its rate of " + std::to_string(info.samplerate) + " Hz is not within 4 to 192 kHz");
   if (info.channels < 1 || info.channels > most_channels)
-    throw LoadError(file, "", "it has " + std::to_string(info.channels) + " channels");
+    fail("it has " + std::to_string(info.channels) + " channels");
 
   // The header's length is not believed: what is there is counted while it is read.
   Sound sound;
   sound.rate = info.samplerate;
   size_t most = size_t(longest_recording * info.samplerate);
-  std::vector<float> block(size_t(block_frames) * size_t(info.channels));
+  size_t channels = size_t(info.channels);
+  std::vector<float> block(size_t(block_frames) * channels);
   for (;;) {
     sf_count_t got = sf_readf_float(input.get(), block.data(), block_frames);
     if (got <= 0) break;
     for (size_t i = 0; i < size_t(got); i++) {
       float sum = 0;
-      for (size_t c = 0; c < size_t(info.channels); c++) sum += block[i * size_t(info.channels) + c];
-      float value = sum / float(info.channels);
+      for (size_t c = 0; c < channels; c++) sum += block[i * channels + c];
+      float value = sum / float(channels);
       sound.samples.push_back(std::isfinite(value) ? std::clamp(value, -4.0f, 4.0f) : 0);
     }
     if (sound.samples.size() > most)
-      throw LoadError(file, "", "it is longer than " + std::to_string(int(longest_recording)) + " seconds");
+      fail("it is longer than " + std::to_string(int(longest_recording)) + " seconds");
   }
   if (int error = sf_error(input.get()); error != SF_ERR_NO_ERROR)
     throw LoadError(file, "sample " + std::to_string(sound.samples.size()), sf_error_number(error));
-  if (sound.samples.empty()) throw LoadError(file, "", "there is no sound in it");
+  if (sound.samples.empty()) fail("there is no sound in it");
   return sound;
 }
 
@@ -81,15 +83,18 @@ std::vector<uint8_t> encode_wav(const std::vector<int16_t>& pcm, int rate) {
 }
 
 void save_file(const std::string& file, const void* bytes, size_t size) {
+  auto fail = [&](int error) {
+    throw LoadError(file, "", std::string("cannot be written: ") + std::strerror(error));
+  };
   std::FILE* out = std::fopen(file.c_str(), "wb");
-  if (!out) throw LoadError(file, "", std::string("cannot be written: ") + std::strerror(errno));
+  if (!out) fail(errno);
   bool written = std::fwrite(bytes, 1, size, out) == size;
   int error = errno;
   if (std::fclose(out) != 0 && written) {
     written = false;
     error = errno;
   }
-  if (!written) throw LoadError(file, "", std::string("cannot be written: ") + std::strerror(error));
+  if (!written) fail(error);
 }
 
 std::vector<float> resample(const std::vector<float>& samples, int from, int to) {

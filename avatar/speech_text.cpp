@@ -14,18 +14,20 @@ bool is_ascii_mark(char c) {
          (c >= '[' && c <= '`') || (c >= '{' && c <= '~');
 }
 
-// Bytes of the mark that `text` begins or ends with: ASCII punctuation, U+2010 to U+206F, guillemets
-// and the opening marks of Spanish. 0: none.
+// Bytes of the mark that `text` begins or ends with: ASCII punctuation, U+2010 to U+206F,
+// guillemets and the opening marks of Spanish. 0: none.
 size_t mark_at(std::string_view text, bool front) {
   if (text.empty()) return 0;
   if (is_ascii_mark(front ? text.front() : text.back())) return 1;
   auto is = [&](size_t size, auto test) {
-    return text.size() >= size && test(front ? text.substr(0, size) : text.substr(text.size() - size));
+    size_t at = front ? 0 : text.size() - size;
+    return text.size() >= size && test(text.substr(at, size));
   };
-  if (is(2, [](std::string_view s) { return s == "«" || s == "»" || s == "¿" || s == "¡"; })) return 2;
-  if (is(3, [](std::string_view s) { return s[0] == '\xe2' && (s[1] == '\x80' || s[1] == '\x81'); }))
-    return 3;
-  return 0;
+  auto is_two = [](std::string_view s) { return s == "«" || s == "»" || s == "¿" || s == "¡"; };
+  auto is_three = [](std::string_view s) {
+    return s[0] == '\xe2' && (s[1] == '\x80' || s[1] == '\x81');
+  };
+  return is(2, is_two) ? 2 : is(3, is_three) ? 3 : 0;
 }
 
 bool is_letter_or_digit(char c) {

@@ -16,7 +16,7 @@ namespace {
 constexpr double shortest_sound = 0.015;  // shorter ones are passed over
 constexpr double shortest_pause = 0.08;   // shorter ones do not close the mouth
 constexpr double shortest_glide = 0.04;   // between two held shapes
-constexpr double relax = 0.16;            // from the last sound, or the first moment of a pause, to rest
+constexpr double relax = 0.16;            // from the end of the last sound to rest
 constexpr double full_vowel = 0.09;       // shorter vowels do not reach their shape
 constexpr float ahead = 0.65f;            // of what a consonant leaves goes to the coming vowel
 
@@ -154,7 +154,8 @@ VisemeTrack make_visemes(const std::vector<MouthSound>& sounds) {
     add_key(track, hold.begin, hold.weights);
     if (hold.end > hold.begin + 1e-3) add_key(track, hold.end, hold.weights);
   }
-  if (!parts.back().pause) add_key(track, std::max(parts.back().end, holds.back().end) + relax, rest);
+  if (!parts.back().pause)
+    add_key(track, std::max(parts.back().end, holds.back().end) + relax, rest);
   return track;
 }
 

@@ -10,7 +10,8 @@ namespace {
 
 constexpr float never = std::numeric_limits<float>::infinity();
 
-// How a state was reached, two states to a cell: the template itself (low bits) and the gap before it.
+// How a state was reached, two states to a cell: the template itself (low bits) and the gap before
+// it.
 enum From : uint8_t { stay = 0, advance = 1, skip = 2, from_gap = 3 };
 constexpr uint8_t gap_entered = 4;  // the gap came from template - 1, else it went on
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dynamic time warping of a recording onto a sequence of templates (Sakoe & Chiba 1978), with pauses
-// and foreign sounds between words: the cheapest way through, found by dynamic programming.
+// Dynamic time warping of a recording onto a sequence of templates (Sakoe & Chiba 1978), with
+// pauses and foreign sounds between words: the cheapest way through, found by dynamic programming.
 //
-// Every frame of the recording is given a template, or is left out before a template that allows it.
-// From frame to frame the template stays, advances by one, or, where `may_skip`, by two. The way
-// begins at the first template and ends at the last. Time and memory: frames times the band's width.
+// Every frame of the recording is given a template, or is left out before a template that allows
+// it. From frame to frame the template stays, advances by one, or, where `may_skip`, by two. The
+// way begins at the first template and ends at the last. Time and memory: frames times the band's
+// width.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -22,18 +23,19 @@ struct WarpTask {
   float enter_gap = 0;               // once for every stretch left out
   float stay = 0, skip = 0;          // added for staying at a template, and for skipping one
   // Frames each template is expected to last; empty: 1. Staying costs the more the longer it lasts
-  // already: `stay` times the frames spent there over the frames expected. The frames spent are those
-  // of the cheapest way so far, so this one rule is followed greedily.
+  // already: `stay` times the frames spent there over the frames expected. The frames spent are
+  // those of the cheapest way so far, so this one rule is followed greedily.
   std::vector<float> expected;
   bool may_skip = true;
-  // Templates [first, last) that each frame may have; empty: all. Both never decrease with the frame.
+  // Templates [first, last) that each frame may have; empty: all. Both never decrease with the
+  // frame.
   std::vector<uint32_t> first, last;
 };
 
 struct WarpResult {
-  bool found = false;              // false: more templates than the frames can pass in the band
-  std::vector<int32_t> way;        // of each frame: its template, or -1 - (the template it is before)
-  double cost = 0;                 // sum
+  bool found = false;        // false: more templates than the frames can pass in the band
+  std::vector<int32_t> way;  // of each frame: its template, or -1 - the one it is left out before
+  double cost = 0;           // sum
 };
 
 WarpResult warp(const WarpTask& task);

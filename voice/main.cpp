@@ -2,15 +2,15 @@
 // wellspring_voice: speaks texts for other programs through eSpeak NG, over the protocol of
 // avatar/speech_protocol.h.
 //
-// Licence. eSpeak NG is GPL-3.0-or-later. This file is the only one that includes its header and this
-// program the only one that links it; the source of this file is offered under Apache-2.0, which
-// GPL-3.0 accepts, and the linked program may be passed on under the terms of GPL-3.0-or-later. The
-// other programs of Wellspring only exchange texts and sounds with it through a pipe, are whole
-// without it, and stay under Apache-2.0.
+// Licence. eSpeak NG is GPL-3.0-or-later. This file is the only one that includes its header and
+// this program the only one that links it; the source of this file is offered under Apache-2.0,
+// which GPL-3.0 accepts, and the linked program may be passed on under the terms of
+// GPL-3.0-or-later. The other programs of Wellspring only exchange texts and sounds with it
+// through a pipe, are whole without it, and stay under Apache-2.0.
 //
-// Every request is spoken by a child of its own: it starts from the same warmed-up state whatever was
-// asked before, so the same request gives the same samples, and a crash inside the library costs one
-// answer. espeak_Terminate() can hang and is not called.
+// Every request is spoken by a child of its own: it starts from the same warmed-up state whatever
+// was asked before, so the same request gives the same samples, and a crash inside the library
+// costs one answer. espeak_Terminate() can hang and is not called.
 #include <espeak-ng/speak_lib.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -122,8 +122,8 @@ std::string small(std::string text) {
   return text;
 }
 
-// The voice of a language tag, else of the tag without its last part (de-AT: de), else null. "en" is
-// the tag of English; regions that have a voice of their own are found as written.
+// The voice of a language tag, else of the tag without its last part (de-AT: de), else null. "en"
+// is the tag of English; regions that have a voice of their own are found as written.
 const Language* find_language(const std::vector<Language>& languages, std::string tag) {
   for (tag = small(tag); !tag.empty();) {
     const Language* best = nullptr;

@@ -51,7 +51,8 @@ TEST(Speaker, WhatWasSaidIsKept) {
 
 TEST(Speaker, PreparedLinesAreThereWhenTheyAreNeeded) {
   Speaker speaker;
-  speaker.prepare({{.text = "One."}, {.text = "Zwei.", .lang = "de"}, {.text = ""}, {.text = "One."}});
+  speaker.prepare(
+      {{.text = "One."}, {.text = "Zwei.", .lang = "de"}, {.text = ""}, {.text = "One."}});
   wait_until_idle(speaker);
   EXPECT_TRUE(speaker.find({.text = "One."}));
   EXPECT_TRUE(speaker.find({.text = "Zwei.", .lang = "de"}));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marks against what is known of the sound: the synthesiser's own events against energy, recordings
-// whose words are known by construction, and recordings of people with word times by another aligner.
+// Marks against what is known of the sound: the synthesiser's own events against energy,
+// recordings whose words are known by construction, and recordings of people with word times by
+// another aligner.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,10 +73,12 @@ std::vector<double> energy_onsets(const Speech& speech) {
   return onsets;
 }
 
-// Voiceless stops begin with silence, so their onset is their burst: texts without them at the start.
+// Voiceless stops begin with silence, so their onset is their burst: texts without them at the
+// start.
 TEST(SpeechMarks, SynthesisBeginsWhereItSaysSo) {
   const std::vector<SpeechText> texts = {
-      {"en", "Many. Will. Some. Eight. Over. Low. Are. Never. Red. You. Moon. Sea. Vast. All. Lamp."},
+      {"en",
+       "Many. Will. Some. Eight. Over. Low. Are. Never. Red. You. Moon. Sea. Vast. All. Lamp."},
       {"de", "Mehr. Wasser. Sonne. Acht. Ober. Licht. Nie. Rot. Ja. Mond. See. Alle. Lampe. Uhr."},
       {"sk", "More. Voda. Soľ. Osem. Oblak. Les. Ruka. Jeseň. Mesiac. Zima. Lampa. Ulica. Nos."},
       {"fr", "Mer. Vent. Soleil. Huit. Or. Lune. Rue. Jour. Nuit. Ami. Lampe. Île. Zone."},
@@ -133,12 +136,14 @@ Narrated narrate(const std::vector<std::string>& sentences, const SpeechRequest&
 }
 
 TEST(SpeechMarks, ARecordingByAnotherVoiceIsAligned) {
-  const std::vector<std::string> sentences = {
-      "The castle stands above the river.", "Its oldest tower was built by the bishop in winter.",
-      "Nobody knows who paid for the great bell.", "On quiet evenings you can hear it from the bridge."};
+  const std::vector<std::string> sentences = {"The castle stands above the river.",
+                                              "Its oldest tower was built by the bishop in winter.",
+                                              "Nobody knows who paid for the great bell.",
+                                              "On quiet evenings you can hear it from the bridge."};
   std::string text;
   for (const std::string& sentence : sentences) text += sentence + " ";
-  Narrated narrated = narrate(sentences, {.text = "", .lang = "en-us", .words_per_minute = 125, .pitch = 85});
+  Narrated narrated =
+      narrate(sentences, {.text = "", .lang = "en-us", .words_per_minute = 125, .pitch = 85});
   Speech spoken = speak({.text = text});
   double pace = measure_pace(spoken, narrated.recording);
   EXPECT_GT(pace, 1.05);
@@ -160,7 +165,8 @@ TEST(SpeechMarks, ARecordingByAnotherVoiceIsAligned) {
 }
 
 TEST(SpeechMarks, NothingToAlignIsSaid) {
-  Speech spoken = speak({.text = "A rather long sentence for a very short recording of it, is it not?"});
+  Speech spoken =
+      speak({.text = "A rather long sentence for a very short recording of it, is it not?"});
   Sound silence{16000, std::vector<float>(32000)}, blip{16000, {}};
   for (int i = 0; i < 3000; i++) blip.samples.push_back(0.3f * std::sin(float(i) * 0.3f));
   EXPECT_THROW(align_speech(spoken, silence), std::runtime_error);
@@ -194,7 +200,8 @@ std::vector<Reference> read_reference(const std::string& file) {
   for (const auto& token : json.contains("tokens") ? json["tokens"] : json["words"]) {
     bool good = token.at("case") == "success";
     if (good)
-      for (const auto& phone : token.at("phones")) good &= phone.at("duration").get<double>() <= 0.45;
+      for (const auto& phone : token.at("phones"))
+        good &= phone.at("duration").get<double>() <= 0.45;
     if (!good) {
       close();
       continue;
@@ -223,8 +230,9 @@ class SpeechCorpus : public ::testing::Test {
   }
 };
 
-// A hundred seconds of an old tape: hiss, hum, room, and a speaker who stutters, so that the text does
-// not say all that is heard. Not within the 30 ms and 95 % wished for; this is what is reached.
+// A hundred seconds of an old tape: hiss, hum, room, and a speaker who stutters, so that the text
+// does not say all that is heard. Not within the 30 ms and 95 % wished for; this is what is
+// reached.
 TEST_F(SpeechCorpus, AStutteringNarratorOnTape) {
   auto reference = read_reference(folder + "lucier_golden.json");
   auto json = nlohmann::json::parse(std::ifstream(folder + "lucier_golden.json"));
@@ -244,9 +252,11 @@ TEST_F(SpeechCorpus, AStutteringNarratorOnTape) {
   EXPECT_GE(share_within(errors, 0.25), 0.88);
 }
 
-// Telephone quality, four seconds. The reference heard other words than were said from the seventh on.
+// Telephone quality, four seconds. The reference heard other words than were said from the seventh
+// on.
 TEST_F(SpeechCorpus, ASentenceByTelephone) {
-  auto json = nlohmann::json::parse(std::ifstream(folder + "full-harvard-sentences-list30-s01.json"));
+  auto json =
+      nlohmann::json::parse(std::ifstream(folder + "full-harvard-sentences-list30-s01.json"));
   Speech speech = align_file("The mute muffled the high tones of the horn.",
                              folder + "harvard-sentences-list30-s01.mp3");
   ASSERT_EQ(speech.words.size(), 9u);

@@ -29,7 +29,8 @@ std::shared_ptr<const Speech> speak(SpeechProcess& process, const std::string& t
 struct FakeVoice {
   std::filesystem::path path;
   explicit FakeVoice(const std::string& script) {
-    std::string name = (std::filesystem::temp_directory_path() / "wellspring-voice-XXXXXX").string();
+    std::string name =
+        (std::filesystem::temp_directory_path() / "wellspring-voice-XXXXXX").string();
     int file = mkstemp(name.data());
     if (file >= 0) close(file);
     path = name;
@@ -49,6 +50,7 @@ TEST(SpeechProcess, EverySoundOfEveryLanguageHasAShape) {
     for (const SpeechPhoneme& phoneme : speech->phonemes) {
       std::string unknown;
       mouth_shapes(phoneme.ipa, &unknown);
+      EXPECT_EQ(phoneme.ipa.empty(), phoneme.word < 0) << lang << " " << phoneme.mnemonic;
       EXPECT_EQ(unknown, "") << lang << " [" << phoneme.ipa << "] " << phoneme.mnemonic;
       EXPECT_EQ(is_pause(phoneme.mnemonic), phoneme.word < 0) << lang << " " << phoneme.mnemonic;
     }
@@ -135,9 +137,11 @@ TEST(SpeechProcess, ProgramsThatHangOrDieOrLieAreEnded) {
       {"exec yes", "ends without a word"},
       {std::string(hello) + "; exec sleep 60", "hung"},
       {std::string(hello) + "; head -c 20 >/dev/null", "died"},
-      {std::string(hello) + R"(; head -c 20 >/dev/null; printf '\2\0\0\0\0\0\0\0[]'; exec sleep 60)",
+      {std::string(hello) +
+           R"(; head -c 20 >/dev/null; printf '\2\0\0\0\0\0\0\0[]'; exec sleep 60)",
        "no sense"},
-      {std::string(hello) + R"(; head -c 20 >/dev/null; printf '\2\0\0\0\0\0\0\377[]'; exec sleep 60)",
+      {std::string(hello) +
+           R"(; head -c 20 >/dev/null; printf '\2\0\0\0\0\0\0\377[]'; exec sleep 60)",
        "died"},
       {R"(printf '\2\0\0\0\0\0\0\0[]'; exec sleep 60)", "another protocol"},
   };

@@ -26,8 +26,9 @@ std::vector<MouthSound> sounds_of(const std::vector<std::pair<std::string, doubl
 }
 
 std::vector<MouthSound> random_sounds(Rng& rng, int count) {
-  const std::vector<std::string> names = {"p", "b", "m", "f", "v", "θ", "t", "k", "tʃ", "s", "n", "ɹ", "a",
-                                          "e", "ə", "i", "ɔ", "u", "aɪ", "aʊə", "ts", "pf", "h", "_"};
+  const std::vector<std::string> names = {"p",  "b", "m",  "f",   "v",  "θ",  "t", "k",
+                                          "tʃ", "s", "n",  "ɹ",   "a",  "e",  "ə", "i",
+                                          "ɔ",  "u", "aɪ", "aʊə", "ts", "pf", "h", "_"};
   std::vector<std::pair<std::string, double>> list;
   for (int i = 0; i < count; i++) {
     size_t pick = std::min(size_t(rng.uniform() * float(names.size())), names.size() - 1);
@@ -39,14 +40,29 @@ std::vector<MouthSound> random_sounds(Rng& rng, int count) {
 
 TEST(SpeechVisemes, EachSoundHasItsShape) {
   const std::vector<std::pair<std::string, std::vector<Viseme>>> cases = {
-      {"m", {Viseme::PP}},  {"v", {Viseme::FF}},   {"ð", {Viseme::TH}},
-      {"ɾ", {Viseme::DD}},  {"ʁ", {Viseme::kk}},   {"tʃ", {Viseme::CH}},
-      {"dʒ", {Viseme::CH}}, {"z", {Viseme::SS}},   {"ŋ", {Viseme::nn}},
-      {"ɹ", {Viseme::RR}},  {"ɑː", {Viseme::aa}},  {"ɛ", {Viseme::E}},
-      {"iː", {Viseme::ih}}, {"œ", {Viseme::oh}},   {"yː", {Viseme::ou}},
-      {"l̩", {Viseme::nn}},  {"ɔ̃", {Viseme::oh}},   {"t͡s", {Viseme::DD, Viseme::SS}},
-      {"h", {}},            {"ʔ", {}},             {"pf", {Viseme::PP, Viseme::FF}},
-      {"aɪ", {Viseme::aa, Viseme::ih}},            {"əʊ", {Viseme::E, Viseme::ou}},
+      {"m", {Viseme::PP}},
+      {"v", {Viseme::FF}},
+      {"ð", {Viseme::TH}},
+      {"ɾ", {Viseme::DD}},
+      {"ʁ", {Viseme::kk}},
+      {"tʃ", {Viseme::CH}},
+      {"dʒ", {Viseme::CH}},
+      {"z", {Viseme::SS}},
+      {"ŋ", {Viseme::nn}},
+      {"ɹ", {Viseme::RR}},
+      {"ɑː", {Viseme::aa}},
+      {"ɛ", {Viseme::E}},
+      {"iː", {Viseme::ih}},
+      {"œ", {Viseme::oh}},
+      {"yː", {Viseme::ou}},
+      {"l̩", {Viseme::nn}},
+      {"ɔ̃", {Viseme::oh}},
+      {"t͡s", {Viseme::DD, Viseme::SS}},
+      {"h", {}},
+      {"ʔ", {}},
+      {"pf", {Viseme::PP, Viseme::FF}},
+      {"aɪ", {Viseme::aa, Viseme::ih}},
+      {"əʊ", {Viseme::E, Viseme::ou}},
       {"aɪə", {Viseme::aa, Viseme::ih, Viseme::E}}};
   for (const auto& [ipa, visemes] : cases) {
     std::string unknown;
@@ -103,8 +119,8 @@ TEST(SpeechVisemes, LipsCloseForEveryBilabialWhateverIsAround) {
 }
 
 TEST(SpeechVisemes, ClosureIsThereWhenTheSoundBeginsAndLabiodentalsDominate) {
-  VisemeTrack track = make_visemes(sounds_of({{"_", 0.3}, {"a", 0.12}, {"b", 0.08}, {"u", 0.12},
-                                              {"f", 0.1}, {"a", 0.15}, {"_", 0.3}}));
+  VisemeTrack track = make_visemes(sounds_of(
+      {{"_", 0.3}, {"a", 0.12}, {"b", 0.08}, {"u", 0.12}, {"f", 0.1}, {"a", 0.15}, {"_", 0.3}}));
   EXPECT_GE(at(eval_visemes(track, 0.42), Viseme::PP), 0.99f);
   EXPECT_GE(at(eval_visemes(track, 0.47), Viseme::PP), 0.99f);
   EXPECT_GE(at(eval_visemes(track, 0.67), Viseme::FF), 0.9f);
@@ -135,20 +151,29 @@ TEST(SpeechVisemes, DiphthongsGlideAndShortPausesDoNotCloseTheMouth) {
   EXPECT_EQ(rest, 0.0f);
 }
 
-// The value is a function of time alone, and its speed is bounded and continuous: smoothstep over at
-// least `shortest` seconds has |dw/dt| <= 1.5 / shortest and |d2w/dt2| <= 6 / shortest^2.
+// The value is a function of time alone, and its speed is bounded and continuous: smoothstep over
+// at least `shortest` seconds has |dw/dt| <= 1.5 / shortest and |d2w/dt2| <= 6 / shortest^2.
 TEST(SpeechVisemes, NoJumpsAndNoCorners) {
   Rng rng{3};
   constexpr double step = 1e-4;
-  auto track = make_visemes(sounds_of({{"_", .2}, {"m", .07}, {"a", .1}, {"t", .05}, {"u", .12}, {"s", .1},
-                                       {"aɪ", .2}, {"n", .06}, {"ɛ", .08}, {"_", .3}}));
+  auto track = make_visemes(sounds_of({{"_", .2},
+                                       {"m", .07},
+                                       {"a", .1},
+                                       {"t", .05},
+                                       {"u", .12},
+                                       {"s", .1},
+                                       {"aɪ", .2},
+                                       {"n", .06},
+                                       {"ɛ", .08},
+                                       {"_", .3}}));
   double shortest = 1;
   for (size_t i = 1; i < track.keys.size(); i++)
     if (track.keys[i].weights != track.keys[i - 1].weights)
       shortest = std::min(shortest, track.keys[i].time - track.keys[i - 1].time);
   EXPECT_GE(shortest, 0.02);
   for (double t = 0; t < 1.5; t += step) {
-    auto a = eval_visemes(track, t - step), b = eval_visemes(track, t), c = eval_visemes(track, t + step);
+    auto a = eval_visemes(track, t - step), b = eval_visemes(track, t),
+         c = eval_visemes(track, t + step);
     for (size_t v = 0; v < viseme_count; v++) {
       EXPECT_LE(std::abs(double(c[v] - b[v])), 1.5 / shortest * step + 1e-5);
       EXPECT_LE(std::abs(double(c[v]) - 2 * double(b[v]) + double(a[v])),
