@@ -56,11 +56,15 @@ void bench_cache_visit(BenchReport& report, const BenchOptions& options) {
   settings.technique = options.visit_technique;
   settings.pictures = options.visit_pictures;
   if (options.quick) {
-    settings.width = 128;
-    settings.height = 72;
+    settings.width = 96;
     settings.mismatches = {16, 64};
     settings.instants = 3;
+    settings.truth_spp = 64;
   }
+  if (options.visit_width > 0) settings.width = options.visit_width;
+  if (options.visit_instants > 0) settings.instants = options.visit_instants;
+  if (options.visit_spp > 0) settings.truth_spp = options.visit_spp;
+  settings.height = (settings.width * 9 + 8) / 16;
   VisitResult result = simulate_visits(settings);
   for (const VisitRun& run : result.runs) add_run(report, run, settings.technique);
   for (const TruthNoise& noise : result.noise) {

@@ -38,6 +38,12 @@ int main(int argc, char** argv) {
   app.add_option("--visit-trace", options.visit_trace, "cache: simulate this visit only");
   app.add_option("--visit-technique", options.visit_technique, "cache: what answers samples in motion")
       ->capture_default_str();
+  app.add_option("--visit-width", options.visit_width, "cache: pixels of a row; pictures are 16:9")
+      ->check(CLI::Range(16, 1920));
+  app.add_option("--visit-instants", options.visit_instants, "cache: pictures judged of each visit")
+      ->check(CLI::Range(1, 100));
+  app.add_option("--visit-spp", options.visit_spp, "cache: samples of half a converged picture")
+      ->check(CLI::Range(1, 65536));
   app.add_option("--visit-pictures", options.visit_pictures, "cache: folder for the pictures judged");
   try {
     app.parse(argc, argv);

@@ -15,6 +15,7 @@ struct BenchOptions {
   std::string programs;  // folder of the other programs
   // Of the simulated visits: one trace only, what answers samples, where to leave judged pictures.
   std::string visit_trace, visit_technique = "gather", visit_pictures;
+  int visit_width = 0, visit_instants = 0, visit_spp = 0;  // 0: the run's own
 };
 
 class BenchReport {
