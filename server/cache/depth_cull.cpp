@@ -73,8 +73,10 @@ Lanes judge(const int16_t* const* rows, const int16_t* limits) {
   for (int dy = 0; dy < window; dy++)
     for (int dx = 0; dx < window; dx++)
       others -= load<Lanes>(rows[dy] + dx - reach) != nothing;
-  // Nearer neighbours on all sides have a short mean offset; those of a silhouette a long one.
-  Lanes around = (nearer >= 4) & (sx * sx + sy * sy <= nearer * nearer);
+  // Nearer neighbours on all sides have a short mean offset; those of a silhouette a long one. They
+  // hide only as the majority: through a lattice the background shows rightly.
+  Lanes around =
+      (nearer >= 4) & (2 * nearer >= others) & (sx * sx + sy * sy <= nearer * nearer);
   Lanes alone = several & (4 * nearer >= 3 * others);
   return around | alone;
 }
