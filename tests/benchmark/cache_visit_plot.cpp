@@ -142,12 +142,12 @@ void save_budget_plot(const std::string& file, const VisitResult& result,
   panel.low = {-std::log2(double(*many)), 0};
   double step = nice_step(largest_y(curves), 6);
   panel.high = {-std::log2(double(*few)), step * std::ceil(largest_y(curves) / step)};
-  std::string svg = open_svg(700, 450);
+  std::string svg = open_svg(760, 450);
   svg += write(70, 24, "start", 16, "Error as the visitor has it, mean over all traces");
   svg += draw_frame(panel, 1, step, true,
                     [](double v) { return "1/" + format("%.0f", std::exp2(-v)); });
   for (const Curve& curve : curves) svg += draw_curve(panel, curve);
-  svg += draw_legend(curves, 80, 48, 150);
+  svg += draw_legend(curves, 80, 48, 140);
   svg += write(370, 430, "middle", 13, "samples a frame over pixels (60 frames a second)");
   svg += "<g transform=\"translate(18 220) rotate(-90)\">" +
          write(0, 0, "middle", 13, "mean FLIP against the converged wanted view") + "</g>\n";
