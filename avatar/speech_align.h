@@ -16,9 +16,9 @@
 
 namespace wellspring {
 
-// Text, language, words and phonemes of `spoken`, sound and times of `recording`. Blocks for about
-// a hundredth of the recording's length. Throws std::runtime_error with one sentence when there is
-// no way: a recording without speech, or one far too short for the text.
+// Text, language, words and phonemes of `spoken`, sound and times of `recording`. Blocks for one to
+// three seconds a minute of recording and takes some 25 MB a minute. Throws std::runtime_error with
+// one sentence when there is no way: a recording without sound, or one far too short for the text.
 Speech align_speech(const Speech& spoken, const Sound& recording);
 
 // How much slower (> 1) the recording is than the template, pauses left out; 0.3 to 3. Templates at

@@ -59,7 +59,6 @@ void learn_silence(const Features& recorded, const std::vector<int32_t>& way,
 
 }  // namespace
 
-
 SoundModel learn_sounds(const Features& spoken, const Features& recorded, const Hearing& hearing) {
   constexpr size_t n = feature_count;
   const auto& [states, way, chance, kinds] = hearing;

@@ -14,26 +14,27 @@ struct Symbols {
   MouthKind kind;
 };
 
-// Place of articulation and rounding decide the shape; openness and rounding that of vowels.
+// Place of articulation and rounding decide the shape; openness and rounding that of vowels. Capitals
+// are the ASCII names (Kirshenbaum 1993) that some voices use where the alphabet's sign is not known.
 constexpr Symbols table[] = {
     {U"pbmɓʙʘᵬ", Viseme::PP, 1, MouthKind::closure},
-    {U"βɸ", Viseme::PP, 0.5f, MouthKind::consonant},
+    {U"βɸB", Viseme::PP, 0.5f, MouthKind::consonant},
     {U"fvɱʋⱱ", Viseme::FF, 1, MouthKind::tight},
-    {U"θð", Viseme::TH, 0.8f, MouthKind::consonant},
+    {U"θðTD", Viseme::TH, 0.8f, MouthKind::consonant},
     {U"tdʈɖɾɽɗǀǃ", Viseme::DD, 0.5f, MouthKind::consonant},
-    {U"kgɡcɟqɢxχɣʁçʝɰʀʄɠʛǂɧ", Viseme::kk, 0.4f, MouthKind::consonant},
-    {U"ʃʒɕʑʂʐ", Viseme::CH, 0.85f, MouthKind::consonant},
-    {U"sz", Viseme::SS, 0.75f, MouthKind::consonant},
-    {U"nlɲŋɳʎɭɫɬɮɴʟǁ", Viseme::nn, 0.45f, MouthKind::consonant},
-    {U"rɹɻɺ", Viseme::RR, 0.65f, MouthKind::consonant},
-    {U"aɑæɶ", Viseme::aa, 1, MouthKind::vowel},
-    {U"ʌɐ", Viseme::aa, 0.8f, MouthKind::vowel},
-    {U"eɛɜɝɘ", Viseme::E, 1, MouthKind::vowel},
+    {U"kgɡcɟqɢxχɣʁçʝɰʀʄɠʛǂɧCJQX", Viseme::kk, 0.4f, MouthKind::consonant},
+    {U"ʃʒɕʑʂʐʧʤʨʥSZ", Viseme::CH, 0.85f, MouthKind::consonant},
+    {U"szʦʣ", Viseme::SS, 0.75f, MouthKind::consonant},
+    {U"nlɲŋɳʎɭɫɬɮɴʟǁNL", Viseme::nn, 0.45f, MouthKind::consonant},
+    {U"rɹɻɺR", Viseme::RR, 0.65f, MouthKind::consonant},
+    {U"aɑæɶäãáàâåA", Viseme::aa, 1, MouthKind::vowel},
+    {U"ʌɐV", Viseme::aa, 0.8f, MouthKind::vowel},
+    {U"eɛɜɝɘëẽéèêεE", Viseme::E, 1, MouthKind::vowel},
     {U"əɚᵊɤ", Viseme::E, 0.7f, MouthKind::vowel},
-    {U"iɪɨɯᵻ", Viseme::ih, 1, MouthKind::vowel},
+    {U"iɪɨɯᵻïĩíìîI", Viseme::ih, 1, MouthKind::vowel},
     {U"jʲ", Viseme::ih, 0.7f, MouthKind::consonant},
-    {U"oɔɒøœɵɞ", Viseme::oh, 1, MouthKind::vowel},
-    {U"uʊʉyʏ", Viseme::ou, 1, MouthKind::vowel},
+    {U"oɔɒøœɵɞöõóòôO", Viseme::oh, 1, MouthKind::vowel},
+    {U"uʊʉyʏüũúùûUY", Viseme::ou, 1, MouthKind::vowel},
     {U"wɥʍ", Viseme::ou, 0.9f, MouthKind::consonant},
 };
 
@@ -51,7 +52,7 @@ bool is_silent_symbol(char32_t c) {
   if (c >= U'0' && c <= U'9') return true;                  // tone numbers
   if (c >= 0x1d2c && c <= 0x1d6a && c != U'ᵊ') return true;  // small raised letters
   if (c == 0x200d) return true;                             // joins a tie
-  return contains(U"hɦʔʕħʜʢʡⁿ-.'`|‖‿ꜛꜜ↑↓→^_:;,!?*~#()", c);
+  return contains(U"hɦʔʕħʜʢʡⁿ-[].'`|‖‿ꜛꜜ↑↓→^_:;,!?*~#()", c);
 }
 
 char32_t next_character(std::string_view text, size_t& at) {

@@ -180,7 +180,11 @@ json make_answer(const json& request, const std::vector<Language>& languages, in
 
 void limit_child() {
   rlimit memory{memory_bytes, memory_bytes}, none{0, 0};
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they reserve terabytes
   setrlimit(RLIMIT_AS, &memory);
+#else
+  (void)memory;
+#endif
   setrlimit(RLIMIT_CORE, &none);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   alarm(seconds_for_one);

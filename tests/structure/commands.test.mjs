@@ -66,6 +66,7 @@ test('a wrong command line is 2', async () => {
   assert.equal((await run('wellspring_kiosk', [])).status, 2);
   assert.equal((await run('wellspring_check', [])).status, 2);
   assert.equal((await run('wellspring_avatar', [])).status, 2);
+  assert.equal((await run('wellspring_speak', [])).status, 2);
 });
 
 test('wrong input is 1 and named', async () => {
@@ -78,6 +79,7 @@ test('wrong input is 1 and named', async () => {
   assert.equal((await run('wellspring_render', [join(folder, 'none.glb'), '--out', join(folder, 'x.png')])).status, 1);
   assert.equal((await run('wellspring_avatar', [join(folder, 'none.x3d'), '--info'])).status, 1);
   assert.equal((await run('wellspring_kiosk', ['--camera', join(folder, 'none.mp4'), '--print'])).status, 1);
+  assert.equal((await run('wellspring_speak', ['Hello', '--audio', join(folder, 'none.wav')])).status, 1);
 });
 
 test('check accepts the castle and lists every problem of a bad package', async () => {

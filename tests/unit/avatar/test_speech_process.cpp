@@ -57,6 +57,23 @@ TEST(SpeechProcess, EverySoundOfEveryLanguageHasAShape) {
   }
 }
 
+// Numbers are said in every language's own words.
+TEST(SpeechProcess, EveryLanguageThereIsHasItsShapes) {
+  SpeechProcess process;
+  ASSERT_TRUE(speak(process, "One."));
+  std::vector<std::string> languages = process.languages();
+  EXPECT_GT(languages.size(), 80u);
+  for (const std::string& lang : languages) {
+    auto speech = speak(process, "1 2 3 4 5 6 7 8 9 10 20 100", lang);
+    ASSERT_TRUE(speech) << lang;
+    for (const SpeechPhoneme& phoneme : speech->phonemes) {
+      std::string unknown;
+      mouth_shapes(phoneme.ipa, &unknown);
+      EXPECT_EQ(unknown, "") << lang << " [" << phoneme.ipa << "] " << phoneme.mnemonic;
+    }
+  }
+}
+
 TEST(SpeechProcess, TimesFitTheSoundAndWordsTheText) {
   SpeechProcess process;
   auto speech = speak(process, "Of the horn, isn't it? In 1786 — “well-known”.");
