@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "avatar/speech_process.h"
 #include "avatar/speech_shapes.h"
@@ -132,6 +133,24 @@ TEST(SpeechProcess, KilledItIsStartedAgain) {
   ASSERT_GT(before, 0);
   ASSERT_EQ(kill(before, SIGKILL), 0);
   EXPECT_TRUE(speak(process, "Two."));
+  EXPECT_NE(process.process_id(), before);
+}
+
+// Asked once more, the request that was under way is answered too.
+TEST(SpeechProcess, KilledWhileItSpeaksItIsStartedAgain) {
+  SpeechProcess process;
+  ASSERT_TRUE(speak(process, "One."));
+  int before = process.process_id();
+  std::string text;
+  while (text.size() < 9000) text += "The castle stands above the river, and nobody knows for whom. ";
+  std::thread killer([&] {
+    usleep(20000);
+    kill(before, SIGKILL);
+  });
+  auto speech = speak(process, text);
+  killer.join();
+  ASSERT_TRUE(speech);
+  EXPECT_GT(speech->duration, 300);
   EXPECT_NE(process.process_id(), before);
 }
 
