@@ -113,15 +113,13 @@ FacetAlbedo sum_albedo(vec3 v, vec2 alpha, float eta, bool glass, int points) {
   return {float(kept / points), float(reflected / points), float((reflected + passed) / points)};
 }
 
-AlbedoRow albedo_row(const AlbedoTable& table, float alpha) {
-  float least = std::sqrt(smooth_alpha), root = std::sqrt(glm::clamp(alpha, smooth_alpha, 1.0f));
-  float position = (root - least) / (1 - least) * (roughnesses - 1);
+AlbedoPlace albedo_place(float root_alpha) {
+  const float least = std::sqrt(smooth_alpha), root = glm::clamp(root_alpha, least, 1.0f);
+  float position = (root - least) * ((roughnesses - 1) / (1 - least));
   int low = std::min(int(position), roughnesses - 2);
-  float weight = position - float(low);
   float fine = position * ((AlbedoTable::averages - 1) / (roughnesses - 1));
   int at = std::min(int(fine), AlbedoTable::averages - 2);
-  float average = glm::mix(table.average[at], table.average[at + 1], fine - float(at));
-  return {table.value[low], table.value[low + 1], weight, average};
+  return {low, at, position - float(low), fine - float(at)};
 }
 
 const AlbedoTable& mirror_loss() {

@@ -9,6 +9,7 @@
 // losses are kept over t / (t + r), with t and r the roots of cosine and alpha; the mean Fresnel
 // reflectance, which has no such ridge, is kept over t. Both are linear in between.
 #pragma once
+#include <cmath>
 #include <memory>
 
 #include "base/vec.h"
@@ -32,7 +33,19 @@ struct AlbedoRow {
   const float* high = nullptr;
   float weight = 0, average = 0;
 };
-AlbedoRow albedo_row(const AlbedoTable& table, float alpha);  // smooth_alpha and above
+// Where rows of one roughness are, the same in all tables.
+struct AlbedoPlace {
+  int low, average;
+  float weight, average_weight;
+};
+AlbedoPlace albedo_place(float root_alpha);  // of smooth_alpha and above
+inline AlbedoRow albedo_row(const AlbedoTable& table, const AlbedoPlace& at) {
+  return {table.value[at.low], table.value[at.low + 1], at.weight,
+          glm::mix(table.average[at.average], table.average[at.average + 1], at.average_weight)};
+}
+inline AlbedoRow albedo_row(const AlbedoTable& table, float alpha) {
+  return albedo_row(table, albedo_place(std::sqrt(alpha)));
+}
 
 inline float eval_row(const AlbedoRow& row, float position) {
   position *= AlbedoTable::angles - 1;

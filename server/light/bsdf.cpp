@@ -95,9 +95,10 @@ BsdfValue eval_lobes(const Bsdf& b, vec3 direction) {
     if (l.z > 1e-6f) {
       l.z = std::min(l.z, 1.0f);
       value.diffuse_pdf = l.z / pi;
-      if (has_diffuse(b))
-        value.diffuse = b.diffuse * (value.diffuse_pdf * b.beneath * b.coat_passes *
-                                     (1 - eval_coat(b, l.z)) * b.coat_scale);
+      if (has_diffuse(b)) {
+        float passes = b.has_coat ? b.coat_passes * (1 - eval_coat(b, l.z)) * b.coat_scale : 1;
+        value.diffuse = b.diffuse * (value.diffuse_pdf * b.beneath * passes);
+      }
       if (b.alpha > 0 && has_gloss(b)) eval_gloss(b, l, value.specular, value.specular_pdf);
     }
   } else if (l.z < -1e-6f && side < 0 && b.alpha > 0 && max_component(b.transmit) > 0) {

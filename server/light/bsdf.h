@@ -58,9 +58,10 @@ struct Bsdf {
   vec3 again{0}, glass_again{0}, glass_again_beyond{0};
   float again_share = 0, again_here = 1;  // that sampling takes it, and then to this side
   float again_scale = 0;                  // of its density
-  // What the dielectric keeps from the diffuse layer: coat_loss * loss + coat_mirror * (1 - loss) +
-  // coat_fresnel * (1 - loss) * fresnel.
-  float coat_loss = 0, coat_mirror = 0, coat_fresnel = 1;
+  bool has_coat = false;  // the dielectric keeps something from the diffuse layer
+  // That is coat_loss * loss + coat_mirror * (1 - loss) + coat_fresnel * (1 - loss) *
+  // fresnel.
+  float coat_loss = 0, coat_mirror = 0, coat_fresnel = 0;
   float coat_passes = 1;    // 1 - reflected, from the viewer's angle
   float coat_scale = 1;     // 1 / (1 - average)
   float diffuse_share = 1;  // probability that sampling takes the diffuse lobe

@@ -137,22 +137,28 @@ float eval_coat(const Bsdf& b, float cosine) {
 void set_gloss(Bsdf& b, const DielectricAlbedo& albedo, float transmission, float specular,
                vec3 specular_color) {
   set_facets(b, specular, specular_color);
+  if (!has_gloss(b)) return;
   bool inside = !b.thin && b.eta < 1;
   // Seen from within a solid, what is opaque of it lies in its substance: nothing reflects first.
   b.dielectric_share = (1 - b.metallic) * (inside ? transmission : 1);
-  int channel = largest_channel(b.facet_base + b.facet_slope * albedo.fresnel_average);
-  b.coat_mirror = inside ? 0 : b.facet_base[channel];
-  b.coat_fresnel = inside ? 0 : b.facet_slope[channel];
+  b.has_coat = !inside && b.metallic < 1;
+  int channel = 0;
+  if (b.has_coat) {
+    channel = largest_channel(b.facet_base + b.facet_slope * albedo.fresnel_average);
+    b.coat_mirror = b.facet_base[channel];
+    b.coat_fresnel = b.facet_slope[channel];
+  }
   bool brushed = b.alphas.x != b.alphas.y;
   float average = b.coat_mirror + b.coat_fresnel * albedo.fresnel_average;
   if (b.alpha == 0) {
-    b.coat_passes = 1 - eval_coat(b, b.view.z);
+    if (b.has_coat) b.coat_passes = 1 - eval_coat(b, b.view.z);
     b.coat_scale = 1 / std::max(1 - average, 1e-3f);
     return;
   }
   b.root_alpha = std::sqrt(b.alpha);
-  b.loss = albedo_row(mirror_loss(), b.alpha);
-  b.fresnel = albedo_row(albedo.fresnel, b.alpha);
+  const AlbedoPlace place = albedo_place(b.root_alpha);
+  b.loss = albedo_row(mirror_loss(), place);
+  b.fresnel = albedo_row(albedo.fresnel, place);
   float loss = b.loss.average;
   vec3 dielectric_again =
       again_color(glm::max(b.facet_base + b.facet_slope * albedo.fresnel_average, vec3(0)), loss);
@@ -164,14 +170,14 @@ void set_gloss(Bsdf& b, const DielectricAlbedo& albedo, float transmission, floa
   b.coat_scale = 1 / std::max(1 - coat_average, 1e-3f);
 
   bool clear = transmission > 0 && b.metallic < 1;
-  float lost = 0, glass_lost = 0, coat;  // to the viewer
+  float lost = 0, glass_lost = 0, coat = 0;  // to the viewer
   if (brushed) {
     FacetAlbedo sum = sum_albedo(b.view, b.alphas, b.eta, clear && !b.thin, brushed_points);
     lost = 1 - sum.kept;
     glass_lost = b.thin ? lost : 1 - sum.passed;
     coat = b.coat_loss * lost + b.coat_mirror * sum.kept + b.coat_fresnel * sum.reflected;
   } else {
-    coat = eval_coat(b, b.view.z);
+    if (b.has_coat) coat = eval_coat(b, b.view.z);
     if (b.metallic > 0 || strong) lost = row_loss(b.loss, b.root_alpha, b.view.z);
   }
   b.coat_passes = 1 - coat;

@@ -45,7 +45,10 @@ LightTree make_emitter_tree(std::span<const EmitterTriangle> emitters, std::span
 }
 
 void add_punctual_choice(LightTables& tables) {
-  if (tables.punctual.size() <= few_punctual_lights) return;
+  if (tables.punctual.size() <= size_t(FewLights::most)) {
+    tables.few_punctual = make_few_lights(tables.punctual, tables.cones);
+    return;
+  }
   std::vector<LightBounds> near, distant;
   for (const PunctualLight& light : tables.punctual) {
     LightBounds b = bounds_of(light), dark;

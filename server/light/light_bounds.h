@@ -9,9 +9,8 @@ namespace wellspring {
 LightTree make_emitter_tree(std::span<const EmitterTriangle> emitters, std::span<const float> power,
                             LightChoice choice);
 
-// So many punctual lights are asked one by one for what they send to a place, which knows each
-// better than a tree does; more are chosen from near_choice and distant_choice.
-inline constexpr size_t few_punctual_lights = 16;
+// Few punctual lights are asked one by one for what they send to a place, which knows each better
+// than a tree does; more are chosen from near_choice and distant_choice.
 void add_punctual_choice(LightTables& tables);
 
 // Makes `emitter.picture` where its emission varies much; `texels`: of the picture on the triangle.

@@ -9,6 +9,7 @@
 #include "light/emission.h"
 #include "light/emission_picture.h"
 #include "light/environment_light.h"
+#include "light/few_lights.h"
 #include "light/light_tree.h"
 #include "light/transport_plan.h"
 #include "world/bvh.h"
@@ -26,11 +27,6 @@ struct EmitterTriangle {
   bool uniform = true;  // neither texture nor alpha: emission is the same all over
   bool double_sided = false;
   int picture = -1;  // index into LightTables::pictures where its brightness varies much
-};
-
-// A spot light's fall-off: clamp((cosine - outer) * scale), squared.
-struct SpotCone {
-  float outer = 0, scale = 1;
 };
 
 struct MaterialTraits {
@@ -54,6 +50,7 @@ struct LightTables {
   EnvironmentLight environment;
   std::vector<PunctualLight> punctual;  // those of any power
   std::vector<SpotCone> cones;          // of each of them
+  FewLights few_punctual;               // all of them, where they are few
   // Where there are many: the near ones (point, spot) by power and place, the distant ones by power.
   LightTree near_choice, distant_choice;
   float emitter_share = 0;  // of samples spent on emitters; the rest of area light is environment

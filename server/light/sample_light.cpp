@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "light/light_bounds.h"
 #include "light/warp.h"
 
 namespace wellspring {
@@ -69,94 +68,6 @@ LightSample sample_emitter(const Transport& transport, const Surface& from, vec3
   return light;
 }
 
-// glTF KHR_lights_punctual: inverse square, range window, cone.
-LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
-                          const Surface& from) {
-  LightSample light;
-  if (punctual.type == PunctualType::directional) {
-    light.direction = -punctual.direction;
-    light.radiance = punctual.intensity;
-    light.pdf = 1;
-    return light;
-  }
-  vec3 line = punctual.position - from.position;
-  float distance2 = dot(line, line);
-  if (!(distance2 > 1e-20f) || !std::isfinite(distance2)) return light;
-  light.distance = std::sqrt(distance2);
-  light.direction = line / light.distance;
-  light.target = punctual.position;
-  float strength = 1 / distance2;
-  if (std::isfinite(punctual.range) && punctual.range > 0) {
-    float ratio = light.distance / punctual.range, r2 = ratio * ratio;
-    strength *= glm::clamp(1 - r2 * r2, 0.0f, 1.0f);
-  }
-  if (punctual.type == PunctualType::spot) {
-    float cosine = -dot(light.direction, punctual.direction);
-    float t = glm::clamp((cosine - spot.outer) * spot.scale, 0.0f, 1.0f);
-    strength *= t * t;
-  }
-  light.radiance = punctual.intensity * strength;
-  light.pdf = strength > 0 ? 1.0f : 0.0f;
-  return light;
-}
-
-// What a light does to a surface, but for shadows. The floor keeps a chance for glossy lobes at
-// grazing angles.
-float effect_of(const LightSample& light, vec3 normal, bool through) {
-  if (!(light.pdf > 0)) return 0;
-  float cosine = dot(light.direction, normal);
-  if (cosine <= 0 && !through) return 0;
-  float effect = luminance(light.radiance) * (std::abs(cosine) + 0.05f);
-  return std::isfinite(effect) ? effect : 0;
-}
-
-// One near and one distant light, and what all of their kind do, or an estimate of it.
-struct PunctualDraw {
-  LightSample light;
-  float share = 1;  // radiance times this stands for all of the kind
-  float sum = 0;    // of effects
-};
-
-// Asks all lights, and picks one of a kind by its effect.
-void draw_of_few(const LightTables& tables, const Surface& from, vec3 normal, bool through, float u,
-                 PunctualDraw* draws) {
-  size_t count = tables.punctual.size();
-  LightSample lights[few_punctual_lights];
-  float effect[few_punctual_lights];
-  for (size_t i = 0; i < count; i++) {
-    lights[i] = eval_punctual(tables.punctual[i], tables.cones[i], from);
-    effect[i] = effect_of(lights[i], normal, through);
-    draws[tables.punctual[i].type == PunctualType::directional].sum += effect[i];
-  }
-  for (int kind : {0, 1}) {
-    float left = u * draws[kind].sum;
-    for (size_t i = 0; i < count; i++) {
-      if ((tables.punctual[i].type == PunctualType::directional) != kind || !(effect[i] > 0))
-        continue;
-      draws[kind].light = lights[i];
-      draws[kind].share = draws[kind].sum / effect[i];
-      if (left < effect[i]) break;
-      left -= effect[i];
-    }
-  }
-}
-
-void draw_of_many(const LightTables& tables, const Surface& from, vec3 normal, bool through, float u,
-                  PunctualDraw* draws) {
-  const LightTree* trees[] = {&tables.near_choice, &tables.distant_choice};
-  for (int kind : {0, 1}) {
-    if (trees[kind]->empty()) continue;
-    // Behind the geometric surface nothing arrives; the tree knows no other side.
-    vec3 side = through ? vec3(0) : from.geometric_normal;
-    LightPick pick = pick_light(*trees[kind], from.position, side, u);
-    if (!(pick.probability > 0)) continue;
-    PunctualDraw& draw = draws[kind];
-    draw.light = eval_punctual(tables.punctual[pick.index], tables.cones[pick.index], from);
-    draw.share = 1 / pick.probability;
-    draw.sum = effect_of(draw.light, normal, through) * draw.share;
-  }
-}
-
 }  // namespace
 
 vec3 lit_side(const Surface& surface, const Bsdf& bsdf) {
@@ -203,28 +114,6 @@ float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 normal, vec3
 
 float sample_sky_pdf(const LightTables& tables, vec3 direction) {
   return (1 - tables.emitter_share) * sample_environment_pdf(tables.environment, direction);
-}
-
-LightSample sample_punctual_light(const Transport& transport, const Surface& from, vec3 normal,
-                                  bool through, Sampler& sampler) {
-  const LightTables& tables = transport.tables;
-  if (tables.punctual.size() == 1)
-    return eval_punctual(tables.punctual[0], tables.cones[0], from);
-  // Two draws, near lights and distant ones, and then one of the two: the sun outshines every lamp
-  // wherever it would shine, and indoors it rarely does, so it may not crowd the lamps out.
-  vec2 u = sampler.next2();
-  PunctualDraw draws[2];
-  (tables.punctual.size() <= few_punctual_lights ? draw_of_few : draw_of_many)(
-      tables, from, normal, through, u.x, draws);
-  float sum = draws[0].sum + draws[1].sum;
-  if (!(sum > 0)) return {};
-  float chance = 0.15f + 0.7f * draws[1].sum / sum;  // of the distant one
-  if (draws[0].sum == 0) chance = 1;
-  if (draws[1].sum == 0) chance = 0;
-  int kind = u.y < chance;
-  LightSample chosen = draws[kind].light;
-  chosen.radiance *= draws[kind].share / (kind ? chance : 1 - chance);
-  return chosen;
 }
 
 vec3 eval_visibility(const Transport& transport, const Surface& from, const LightSample& light) {

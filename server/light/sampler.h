@@ -28,43 +28,52 @@ inline uint32_t permute_upwards(uint32_t x, uint32_t seed) {
   return x;
 }
 
-// Owen's nested scrambling: flips each bit by a hash of the bits above it.
-inline uint32_t owen_scramble(uint32_t x, uint32_t seed) {
-  return reverse_bits(permute_upwards(reverse_bits(x), seed));
+// Two numbers reversed at once.
+inline void reverse_bits(uint32_t& x, uint32_t& y) {
+  uint64_t both = __builtin_bswap64(uint64_t(x) << 32 | y);
+  both = ((both >> 4) & 0x0f0f0f0f0f0f0f0full) | ((both & 0x0f0f0f0f0f0f0f0full) << 4);
+  both = ((both >> 2) & 0x3333333333333333ull) | ((both & 0x3333333333333333ull) << 2);
+  both = ((both >> 1) & 0x5555555555555555ull) | ((both & 0x5555555555555555ull) << 1);
+  x = uint32_t(both);
+  y = uint32_t(both >> 32);
 }
 
-// Second dimension of Sobol's sequence (generator x + 1), whose matrix is Pascal's triangle modulo 2:
-// a Kronecker power, so that five steps apply it.
-inline uint32_t sobol_second(uint32_t index) {
-  uint32_t x = reverse_bits(index);
-  x ^= (x & 0x0000ffffu) << 16;
-  x ^= (x & 0x00ff00ffu) << 8;
-  x ^= (x & 0x0f0f0f0fu) << 4;
-  x ^= (x & 0x33333333u) << 2;
-  x ^= (x & 0x55555555u) << 1;
-  return x;
+// Second dimension of Sobol's sequence (generator x + 1), its bits reversed: the matrix is Pascal's
+// triangle modulo 2, a Kronecker power, so that five steps apply it.
+inline uint32_t sobol_second_reversed(uint32_t x) {
+  x ^= x >> 16;
+  x ^= (x >> 8) & 0x00ff00ffu;
+  x ^= (x >> 4) & 0x0f0f0f0fu;
+  x ^= (x >> 2) & 0x33333333u;
+  return x ^ ((x >> 1) & 0x55555555u);
 }
 
 inline float unit_float(uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }  // [0, 1)
 
+// Owen's nested scrambling flips each bit by a hash of the bits above it: it is permute_upwards of
+// the reversed bits, reversed. Below, what is to be reversed twice is left as it is: an index is
+// kept reversed, its scrambling is too, which is its place in Sobol's first dimension.
 struct Sampler {
   uint64_t seed = 0;
-  uint32_t index = 0, drawn = 0;
-  explicit Sampler(uint64_t seed, uint32_t index = 0) : seed(seed), index(index) {}
+  uint32_t reversed_index = 0, drawn = 0;
+  explicit Sampler(uint64_t seed, uint32_t index = 0)
+      : seed(seed), reversed_index(reverse_bits(index)) {}
   // The next draw is this dimension's: whoever draws a varying count begins at fixed places, so that
   // samples of one seed stay well spread together in all later dimensions.
   void seek(uint32_t dimension) { drawn = dimension; }
   // One number, and two that are well spread together.
   float next() {
     uint64_t hash = mix64(seed + 0xd1b54a32d192ed03ull * ++drawn);
-    uint32_t shuffled = permute_upwards(reverse_bits(index), uint32_t(hash));  // reversed
-    return unit_float(owen_scramble(shuffled, uint32_t(hash >> 32)));
+    uint32_t shuffled = reverse_bits(permute_upwards(reversed_index, uint32_t(hash)));
+    return unit_float(reverse_bits(permute_upwards(shuffled, uint32_t(hash >> 32))));
   }
   vec2 next2() {
-    uint64_t hash = mix64(seed + 0xd1b54a32d192ed03ull * ++drawn), more = mix64(hash);
-    uint32_t shuffled = owen_scramble(index, uint32_t(hash));
-    return {unit_float(owen_scramble(reverse_bits(shuffled), uint32_t(hash >> 32))),
-            unit_float(owen_scramble(sobol_second(shuffled), uint32_t(more)))};
+    uint64_t hash = mix64(seed + 0xd1b54a32d192ed03ull * ++drawn);
+    uint32_t shuffled = reverse_bits(permute_upwards(reversed_index, uint32_t(hash)));
+    uint32_t x = permute_upwards(shuffled, uint32_t(hash >> 32));
+    uint32_t y = permute_upwards(sobol_second_reversed(shuffled), uint32_t(mix64(hash)));
+    reverse_bits(x, y);
+    return {unit_float(x), unit_float(y)};
   }
 };
 

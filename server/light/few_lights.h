@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Few punctual lights, side by side as vector units want them: what each does to a place is asked of
+// all at once. glTF KHR_lights_punctual.
+#pragma once
+#include <span>
+
+#include "world/emitter.h"
+
+namespace wellspring {
+
+// A spot light's fall-off: clamp((cosine - outer) * scale), squared.
+struct SpotCone {
+  float outer = 0, scale = 1;
+};
+
+struct FewLights {
+  static constexpr int lanes = 8, most = 16;
+  // Of a near light its place; of a distant one the direction towards it, and `near` is 0.
+  alignas(32) float x[most], y[most], z[most], near[most];
+  alignas(32) float axis_x[most], axis_y[most], axis_z[most];
+  alignas(32) float outer[most], scale[most];  // of a light that is no spot: all directions are in it
+  alignas(32) float range2_inverse[most];      // 0: it reaches everywhere
+  alignas(32) float strength[most];            // luminance; 0 beyond the last light
+  int count = 0;                               // 0: there are none, or more than `most`
+};
+FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const SpotCone> cones);
+
+// What they do to a surface there, but for shadows; sums over near and distant ones. The floor keeps
+// a chance for glossy lobes at grazing angles.
+struct LightEffects {
+  alignas(32) float effect[FewLights::most];
+  float near_sum = 0, distant_sum = 0;
+};
+// `through`: light from behind the surface counts too.
+void eval_effects(const FewLights& lights, vec3 place, vec3 normal, bool through,
+                  LightEffects& effects);
+
+}  // namespace wellspring
