@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/few_lights.h"
 
-#include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace wellspring {
 
@@ -13,51 +13,45 @@ FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const
   for (size_t i = 0; i < lights.size(); i++) {
     const PunctualLight& light = lights[i];
     bool near = light.type != PunctualType::directional;
-    vec3 place = near ? light.position : -light.direction;
-    few.x[i] = place.x, few.y[i] = place.y, few.z[i] = place.z;
-    few.near[i] = near;
-    few.axis_x[i] = light.direction.x, few.axis_y[i] = light.direction.y;
-    few.axis_z[i] = light.direction.z;
     bool spot = light.type == PunctualType::spot;
-    few.outer[i] = spot ? cones[i].outer : -3;
-    few.scale[i] = spot ? cones[i].scale : 1;
     bool ends = near && std::isfinite(light.range) && light.range > 0;
-    few.range2_inverse[i] = ends ? 1 / (light.range * light.range) : 0;
-    few.strength[i] = luminance(light.intensity);
+    vec3 place = near ? light.position : -light.direction;
+    size_t g = i / lane_count, lane = i % lane_count;
+    few.x[g][lane] = place.x, few.y[g][lane] = place.y, few.z[g][lane] = place.z;
+    few.near[g][lane] = near;
+    few.axis_x[g][lane] = light.direction.x, few.axis_y[g][lane] = light.direction.y;
+    few.axis_z[g][lane] = light.direction.z;
+    few.outer[g][lane] = spot ? cones[i].outer : -3;
+    few.scale[g][lane] = spot ? cones[i].scale : 1;
+    few.range2_inverse[g][lane] = ends ? 1 / (light.range * light.range) : 0;
+    few.strength[g][lane] = luminance(light.intensity);
   }
   return few;
 }
 
 void eval_effects(const FewLights& f, vec3 place, vec3 normal, bool through,
                   LightEffects& effects) {
-  constexpr int lanes = FewLights::lanes;
-  const float least_cosine = through ? -2.0f : 0.0f;
-  alignas(32) float near_sum[lanes]{}, distant_sum[lanes]{};
-  for (int first = 0; first < f.count; first += lanes) {
-    for (int lane = 0; lane < lanes; lane++) {
-      int i = first + lane;
-      float x = f.x[i] - f.near[i] * place.x, y = f.y[i] - f.near[i] * place.y,
-            z = f.z[i] - f.near[i] * place.z;
-      float distance2 = x * x + y * y + z * z, inverse = 1 / std::sqrt(distance2);
-      float ratio = distance2 * f.range2_inverse[i];
-      float window = std::max(1 - ratio * ratio, 0.0f);
-      float along = -(x * f.axis_x[i] + y * f.axis_y[i] + z * f.axis_z[i]) * inverse;
-      float inside = std::min(std::max((along - f.outer[i]) * f.scale[i], 0.0f), 1.0f);
-      float cosine = (x * normal.x + y * normal.y + z * normal.z) * inverse;
-      float effect = f.strength[i] * window * inside * inside * (std::abs(cosine) + 0.05f) *
-                     (inverse * inverse);
-      effect = cosine > least_cosine ? effect : 0.0f;
-      effect = effect <= std::numeric_limits<float>::max() ? effect : 0.0f;  // a place on a light
-      effects.effect[i] = effect;
-      near_sum[lane] += effect * f.near[i];
-      distant_sum[lane] += effect * (1 - f.near[i]);
-    }
+  const Lanes zero{}, one = all_lanes(1), least_cosine = all_lanes(through ? -2.0f : 0.0f);
+  Lanes near_sum{}, distant_sum{};
+  for (int g = 0; g * lane_count < f.count; g++) {
+    Lanes x = f.x[g] - f.near[g] * place.x, y = f.y[g] - f.near[g] * place.y,
+          z = f.z[g] - f.near[g] * place.z;
+    Lanes distance2 = x * x + y * y + z * z, inverse = 1 / lanes_sqrt(distance2);
+    Lanes ratio = distance2 * f.range2_inverse[g];
+    Lanes window = lanes_max(1 - ratio * ratio, zero);
+    Lanes along = -(x * f.axis_x[g] + y * f.axis_y[g] + z * f.axis_z[g]) * inverse;
+    Lanes inside = lanes_min(lanes_max((along - f.outer[g]) * f.scale[g], zero), one);
+    Lanes cosine = (x * normal.x + y * normal.y + z * normal.z) * inverse;
+    Lanes effect = f.strength[g] * window * (inside * inside) * (lanes_abs(cosine) + 0.05f) *
+                   (inverse * inverse);
+    effect = cosine > least_cosine ? effect : zero;
+    effect = effect < 3e38f ? effect : zero;  // a place on a light
+    std::memcpy(effects.effect + g * lane_count, &effect, sizeof(effect));
+    near_sum += effect * f.near[g];
+    distant_sum += effect * (1 - f.near[g]);
   }
-  effects.near_sum = effects.distant_sum = 0;
-  for (int lane = 0; lane < lanes; lane++) {
-    effects.near_sum += near_sum[lane];
-    effects.distant_sum += distant_sum[lane];
-  }
+  effects.near_sum = lanes_sum(near_sum);
+  effects.distant_sum = lanes_sum(distant_sum);
 }
 
 }  // namespace wellspring

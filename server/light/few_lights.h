@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Few punctual lights, side by side as vector units want them: what each does to a place is asked of
-// all at once. glTF KHR_lights_punctual.
+// Few punctual lights, side by side as vector units want them: what each does to a place is asked
+// of all at once. glTF KHR_lights_punctual.
 #pragma once
 #include <span>
 
+#include "base/lanes.h"
 #include "world/emitter.h"
 
 namespace wellspring {
@@ -14,21 +15,21 @@ struct SpotCone {
 };
 
 struct FewLights {
-  static constexpr int lanes = 8, most = 16;
+  static constexpr int most = 16, groups = most / lane_count;
   // Of a near light its place; of a distant one the direction towards it, and `near` is 0.
-  alignas(32) float x[most], y[most], z[most], near[most];
-  alignas(32) float axis_x[most], axis_y[most], axis_z[most];
-  alignas(32) float outer[most], scale[most];  // of a light that is no spot: all directions are in it
-  alignas(32) float range2_inverse[most];      // 0: it reaches everywhere
-  alignas(32) float strength[most];            // luminance; 0 beyond the last light
-  int count = 0;                               // 0: there are none, or more than `most`
+  Lanes x[groups], y[groups], z[groups], near[groups];
+  Lanes axis_x[groups], axis_y[groups], axis_z[groups];
+  Lanes outer[groups], scale[groups];  // all directions are in the cone of what is no spot
+  Lanes range2_inverse[groups];        // 0: it reaches everywhere
+  Lanes strength[groups];              // luminance; 0 beyond the last light
+  int count = 0;                       // 0: there are none, or more than `most`
 };
 FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const SpotCone> cones);
 
-// What they do to a surface there, but for shadows; sums over near and distant ones. The floor keeps
-// a chance for glossy lobes at grazing angles.
+// What they do to a surface there, but for shadows; sums over near and distant ones. The floor
+// keeps a chance for glossy lobes at grazing angles.
 struct LightEffects {
-  alignas(32) float effect[FewLights::most];
+  alignas(Lanes) float effect[FewLights::most];
   float near_sum = 0, distant_sum = 0;
 };
 // `through`: light from behind the surface counts too.

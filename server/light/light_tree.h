@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// A choice among many lights by how much each may send to a place: a binary tree over their places,
+// A choice among many lights by how much each may send to a place: a tree over their places,
 // directions and strengths, walked from the root by the children's importance (Conty Estevez and
 // Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting", sections 4 and 5,
-// without the splitting). Probabilities are exact. A light that may send anything is picked with a
-// chance above 0; one that provably sends nothing (behind the surface, beyond its cone or reach)
-// is not picked.
+// without the splitting). Eight children a node: their importances are computed side by side, and
+// few lights, one node, are all asked one by one. Probabilities are exact. A light that may send
+// anything is picked with a chance above 0; one that provably sends nothing (behind the surface,
+// beyond its cone or reach) is not picked.
 //
-// Few lights are asked one by one, which knows each better than a tree does. Without a tree the
-// choice is by strength alone.
+// Without a tree the choice is by strength alone.
 #pragma once
 #include <span>
 #include <vector>
 
+#include "base/lanes.h"
 #include "light/alias_table.h"
 #include "world/scene.h"
 
@@ -31,24 +32,25 @@ struct LightBounds {
 enum class LightChoice : uint8_t { by_strength, by_place };
 
 struct LightTree {
-  struct Node {
-    vec3 centre{0};
-    float radius2 = 0;  // squared, of a sphere around all
-    vec3 axis{0, 1, 0};
-    float strength = 0;
-    float cos_spread = 1, sin_spread = 0, cos_reach = 0;
-    float range = 0;
-    uint32_t light = 0;  // of a leaf
-    uint32_t child = 0;  // index of the first of two; 0: a leaf
-    uint32_t parent = 0;
-    bool two_sided = false;
-  };
-  static constexpr size_t few = 8;  // so many lights are asked one by one
-  std::vector<Node> nodes;          // the root first; of few lights only leaves
-  std::vector<uint32_t> leaf_of;    // each light's node; no_leaf: dark
-  AliasTable strengths;             // where the choice is by strength alone
-  double total = 0;                 // strength of all
   static constexpr uint32_t no_leaf = 0xffffffffu;
+  // Its children: spheres around lights, and cones of their directions. Strength 0 where there is
+  // none.
+  struct Node {
+    Lanes x{}, y{}, z{}, radius{};
+    Lanes axis_x{}, axis_y{}, axis_z{};
+    Lanes cos_spread{}, sin_spread{}, cos_reach{}, two_sided{};
+    Lanes range{}, strength{};
+    Lanes inside{};  // importance for places within the sphere
+    uint32_t child[lane_count] = {};
+    bool is_leaf[lane_count] = {};  // then `child` is a light, else a node
+    uint32_t parent = no_leaf, lane_in_parent = 0;
+  };
+  std::vector<Node> nodes;        // the root first
+  std::vector<uint32_t> leaf_of;  // each light's node * lane_count + lane; no_leaf: dark
+  // Where the choice is by strength alone: lights that are not dark, each `leaf_of` its place here.
+  AliasTable strengths;
+  std::vector<uint32_t> shining;
+  double total = 0;               // strength of all
   bool empty() const { return !(total > 0); }
 };
 

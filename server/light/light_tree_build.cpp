@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Building a LightTree from the top: each set of lights is split where the halves together cover
-// the least area and angle, weighted by strength (Conty Estevez and Kulla 2018, section 4).
+// the least area and angle, weighted by strength (Conty Estevez and Kulla 2018, section 4), and the
+// costliest part again until a node has all its children.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -123,41 +124,68 @@ struct Builder {
     return uint32_t(half - order.begin());
   }
 
-  LightTree::Node fill(const LightBounds& b) const {
-    LightTree::Node node;
-    node.centre = middle(b);
-    vec3 half = 0.5f * b.high - 0.5f * b.low;
-    node.radius2 = dot(half, half) * 1.00001f;
-    node.axis = b.axis;
-    node.strength = b.strength;
-    node.cos_spread = b.cos_spread;
-    node.sin_spread = std::sqrt(std::max(0.0f, 1 - b.cos_spread * b.cos_spread));
-    node.cos_reach = b.cos_reach;
-    node.range = b.range * 1.00001f;
-    node.two_sided = b.two_sided;
-    return node;
+  // Lights order[begin, end) as a child of some node.
+  struct Part {
+    uint32_t begin, end;
+    int depth;  // splits from the root
+    LightBounds bounds;
+    float cost = 0;  // of leaving it whole
+  };
+
+  Part part_of(uint32_t begin, uint32_t end, int depth) const {
+    Part part{begin, end, depth, {}};
+    for (uint32_t i = begin; i < end; i++) part.bounds = join(part.bounds, lights[order[i]]);
+    float cost = end - begin > 1 ? cost_of(part.bounds) : 0;
+    part.cost = end - begin > 1 && !(cost > 0) ? 1e-30f : cost;
+    return part;
   }
 
-  // Fills node `at` with order[begin, end); their bounds.
-  LightBounds build(uint32_t at, uint32_t begin, uint32_t end, int depth) {
-    LightBounds all;
-    uint32_t child = 0;
-    if (end - begin == 1) {
-      all = lights[order[begin]];
-      tree.leaf_of[order[begin]] = at;
-    } else {
-      uint32_t middle = split(begin, end, depth);
-      child = uint32_t(tree.nodes.size());
-      tree.nodes.resize(child + 2);
-      all = join(build(child, begin, middle, depth + 1), build(child + 1, middle, end, depth + 1));
+  void fill(LightTree::Node& node, uint32_t lane, const LightBounds& b) const {
+    vec3 centre = middle(b), half = 0.5f * b.high - 0.5f * b.low;
+    float radius = std::sqrt(dot(half, half)) * 1.00001f;
+    node.x[lane] = centre.x, node.y[lane] = centre.y, node.z[lane] = centre.z;
+    node.radius[lane] = radius;
+    node.axis_x[lane] = b.axis.x, node.axis_y[lane] = b.axis.y, node.axis_z[lane] = b.axis.z;
+    bool all_around = b.cos_spread <= -1;  // no cosine, however rounded, is beyond it
+    node.cos_spread[lane] = all_around ? -2 : b.cos_spread;
+    node.sin_spread[lane] =
+        all_around ? 0 : std::sqrt(std::max(0.0f, 1 - b.cos_spread * b.cos_spread));
+    node.cos_reach[lane] = b.cos_reach;
+    node.two_sided[lane] = b.two_sided;
+    node.range[lane] = b.range * 1.00001f;
+    node.strength[lane] = b.strength;
+    node.inside[lane] = std::min(b.strength / std::max(radius * radius, 1e-20f), 1e30f);
+  }
+
+  // Fills node `at` with the children of `whole`.
+  void build(uint32_t at, const Part& whole) {
+    std::vector<Part> parts = {whole};
+    while (parts.size() < lane_count) {
+      auto costliest = std::max_element(
+          parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.cost < b.cost; });
+      if (!(costliest->cost > 0)) break;
+      Part part = *costliest;
+      uint32_t middle = split(part.begin, part.end, part.depth);
+      // Neighbours stay so: a number that is well spread is so over places too.
+      *costliest = part_of(part.begin, middle, part.depth + 1);
+      parts.insert(costliest + 1, part_of(middle, part.end, part.depth + 1));
     }
-    uint32_t parent = tree.nodes[at].parent;
-    tree.nodes[at] = fill(all);
-    tree.nodes[at].parent = parent;
-    tree.nodes[at].child = child;
-    tree.nodes[at].light = order[begin];
-    if (child) tree.nodes[child].parent = tree.nodes[child + 1].parent = at;
-    return all;
+    for (uint32_t lane = 0; lane < parts.size(); lane++) {
+      const Part& part = parts[lane];
+      fill(tree.nodes[at], lane, part.bounds);
+      bool is_leaf = part.end - part.begin == 1;
+      uint32_t child = is_leaf ? order[part.begin] : uint32_t(tree.nodes.size());
+      tree.nodes[at].child[lane] = child;
+      tree.nodes[at].is_leaf[lane] = is_leaf;
+      if (is_leaf) {
+        tree.leaf_of[child] = at * lane_count + lane;
+        continue;
+      }
+      tree.nodes.emplace_back();
+      tree.nodes[child].parent = at;
+      tree.nodes[child].lane_in_parent = lane;
+      build(child, part);
+    }
   }
 };
 
@@ -178,23 +206,18 @@ LightTree make_light_tree(std::span<const LightBounds> lights, LightChoice choic
   }
   if (builder.order.empty()) return tree;
   tree.leaf_of.assign(lights.size(), LightTree::no_leaf);
-  uint32_t count = uint32_t(builder.order.size());
   if (choice == LightChoice::by_strength) {
-    tree.nodes.resize(count);
     std::vector<float> shining;
-    for (uint32_t i = 0; i < count; i++) {
-      builder.build(i, i, i + 1, 0);
-      shining.push_back(strength[builder.order[i]]);
+    for (uint32_t light : builder.order) {
+      tree.leaf_of[light] = uint32_t(shining.size());
+      shining.push_back(strength[light]);
     }
+    tree.shining = builder.order;
     tree.strengths = make_alias_table(shining);
-  } else if (count <= LightTree::few) {
-    tree.nodes.resize(count);
-    for (uint32_t i = 0; i < count; i++) builder.build(i, i, i + 1, 0);
-  } else {
-    tree.nodes.reserve(2 * count);
-    tree.nodes.resize(1);
-    builder.build(0, 0, count, 0);
+    return tree;
   }
+  tree.nodes.emplace_back();
+  builder.build(0, builder.part_of(0, uint32_t(builder.order.size()), 0));
   return tree;
 }
 

@@ -118,7 +118,8 @@ size_t light_table_bytes(const LightTables& t) {
   size_t bytes = bytes_of(t.emitters) + bytes_of(t.environment.cells.cells) +
                  bytes_of(t.punctual) + bytes_of(t.cones);
   for (const LightTree* tree : {&t.emitter_choice, &t.near_choice, &t.distant_choice})
-    bytes += bytes_of(tree->nodes) + bytes_of(tree->leaf_of) + bytes_of(tree->strengths.cells);
+    bytes += bytes_of(tree->nodes) + bytes_of(tree->leaf_of) + bytes_of(tree->strengths.cells) +
+             bytes_of(tree->shining);
   for (const EmissionPicture& picture : t.pictures) bytes += bytes_of(picture.cells.cells);
   return bytes;
 }

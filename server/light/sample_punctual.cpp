@@ -59,7 +59,8 @@ LightSample draw_of_few(const LightTables& tables, const Surface& from, vec3 nor
   float sum = distant ? effects.distant_sum : effects.near_sum, left = u.x * sum;
   int chosen = -1;
   for (int i = 0; i < few.count; i++) {
-    if ((few.near[i] == 0) != distant || !(effects.effect[i] > 0)) continue;
+    bool near = tables.punctual[size_t(i)].type != PunctualType::directional;
+    if (near == distant || !(effects.effect[i] > 0)) continue;
     chosen = i;
     if (left < effects.effect[i]) break;
     left -= effects.effect[i];

@@ -58,8 +58,8 @@ struct Sampler {
   uint32_t reversed_index = 0, drawn = 0;
   explicit Sampler(uint64_t seed, uint32_t index = 0)
       : seed(seed), reversed_index(reverse_bits(index)) {}
-  // The next draw is this dimension's: whoever draws a varying count begins at fixed places, so that
-  // samples of one seed stay well spread together in all later dimensions.
+  // The next draw is this dimension's: whoever draws a varying count begins at fixed places, so
+  // that samples of one seed stay well spread together in all later dimensions.
   void seek(uint32_t dimension) { drawn = dimension; }
   // One number, and two that are well spread together.
   float next() {
