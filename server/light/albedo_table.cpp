@@ -2,6 +2,7 @@
 #include "light/albedo_table.h"
 
 #include <array>
+#include <atomic>
 #include <mutex>
 #include <utility>
 
@@ -132,10 +133,13 @@ const AlbedoTable& mirror_loss() {
 const DielectricAlbedo& dielectric_albedo(float ior, bool glass) {
   static std::mutex mutex;
   static std::array<std::unique_ptr<DielectricAlbedo>, index_steps + 1> tables;
+  static std::array<std::atomic<const DielectricAlbedo*>, index_steps + 1> made[2];  // with glass
   float root = ior > 1 ? (ior - 1) / (ior + 1) : ior == 0 ? 1 : 0;
   int step = std::min(int(root * index_steps + 0.5f), index_steps);
   float rounded = float(step) / index_steps;
   float eta = step == index_steps ? 1e6f : (1 + rounded) / (1 - rounded);
+  if (const DielectricAlbedo* known = made[glass][size_t(step)].load(std::memory_order_acquire))
+    return *known;
   std::lock_guard lock(mutex);
   auto& entry = tables[size_t(step)];
   if (!entry) entry = make_dielectric(eta);
@@ -147,6 +151,7 @@ const DielectricAlbedo& dielectric_albedo(float ior, bool glass) {
     };
     entry->glass.reset(new DielectricAlbedo::Glass{losses(eta), losses(1 / eta)});
   }
+  made[glass][size_t(step)].store(entry.get(), std::memory_order_release);
   return *entry;
 }
 

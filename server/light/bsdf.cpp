@@ -13,12 +13,6 @@
 namespace wellspring {
 namespace {
 
-// glTF: 0 means an infinite index, a surface that reflects everything (KHR_materials_ior).
-float index_of(const Material& material) {
-  if (material.ior == 0) return 1e6f;
-  return material.ior > 1 ? std::min(material.ior, 1e6f) : 1.0f;
-}
-
 // KHR_materials_anisotropy: rougher along the tangent by the square of its strength.
 void set_roughness(Bsdf& b, const Surface& surface) {
   b.alpha = alpha_of(surface.roughness);
@@ -38,8 +32,13 @@ void set_roughness(Bsdf& b, const Surface& surface) {
 
 }  // namespace
 
+float refractive_index(const Material& material) {
+  if (material.ior == 0) return 1e6f;
+  return material.ior > 1 ? std::min(material.ior, 1e6f) : 1.0f;
+}
+
 Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
-               const DielectricAlbedo& albedo, float index) {
+               const DielectricAlbedo& albedo, float index, float outside) {
   Bsdf b;
   vec3 v = -direction;
   b.geometric_normal = surface.geometric_normal;
@@ -50,9 +49,11 @@ Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
   b.metallic = clean(surface.metallic);
   vec3 base = clean(surface.base_color);
   float transmission = clean(surface.transmission);
-  if (!(index > 0)) index = index_of(material);
+  if (!(index > 0)) index = refractive_index(material);
+  index /= outside;
   b.thin = !(material.thickness > 0);
-  b.eta = !b.thin && !surface.front && transmission > 0 ? 1 / index : index;
+  b.within = !b.thin && !surface.front && transmission > 0;
+  b.eta = b.within ? 1 / index : index;
   b.diffuse = base * ((1 - b.metallic) * (1 - transmission));
   b.transmit = base * ((1 - b.metallic) * transmission);
   if (!b.thin && std::abs(b.eta - 1) < 2e-3f && max_component(b.transmit) > 0) {
@@ -190,7 +191,7 @@ vec3 pane_transmittance(const Surface& surface, const Material& material, vec3 d
   b.metallic = clean(surface.metallic);
   b.transmit =
       clean(surface.base_color) * ((1 - b.metallic) * clean(surface.transmission));
-  b.eta = index_of(material);
+  b.eta = refractive_index(material);
   set_facets(b, clean(surface.specular), clean(surface.specular_color, 1e9f));
   return facet_color(b, glm::clamp(dot(v, normal), 1e-4f, 1.0f)).transmit;
 }

@@ -46,6 +46,7 @@ struct Bsdf {
   vec2 alphas{1};    // along tangent and bitangent
   float eta = 1.5f;  // index of refraction beyond over here
   bool thin = true;
+  bool within = false;  // the viewer is on the inner side of a solid's surface
   // The dielectric reflects facet_base + facet_slope * Fresnel (KHR_materials_specular).
   vec3 facet_base{0}, facet_slope{1};
   float dielectric_share = 1;  // of the reflection: the rest is metal
@@ -74,8 +75,12 @@ struct Bsdf {
 
 // `direction`: of the ray that found the surface. `albedo`: dielectric_albedo(material.ior), with
 // glass where the material transmits. `index`: of refraction, instead of the material's; 0: none.
+// `outside`: of what lies in front of the surface; `albedo` is then that of the ratio or its inverse,
+// whichever is at least 1.
 Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
-               const DielectricAlbedo& albedo, float index = 0);
+               const DielectricAlbedo& albedo, float index = 0, float outside = 1);
+// Index of refraction: 0 in glTF means an infinite one, a surface that reflects everything.
+float refractive_index(const Material& material);
 
 bool has_diffuse(const Bsdf& bsdf);
 bool has_specular(const Bsdf& bsdf);

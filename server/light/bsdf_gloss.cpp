@@ -80,7 +80,7 @@ int largest_channel(vec3 c) { return c.x >= c.y && c.x >= c.z ? 0 : c.y >= c.z ?
 // eta^2 apart (Kulla and Conty 2017). From outside the average Fresnel share is reflected; from
 // inside what follows from reciprocity.
 void set_glass_again(Bsdf& b, const DielectricAlbedo& albedo, float loss, float transmission) {
-  bool inside = !b.thin && b.eta < 1;
+  bool inside = !b.thin && b.eta < 1;  // or in what is denser than the solid
   const AlbedoTable& here = b.thin ? mirror_loss() : inside ? albedo.glass->out_of
                                                             : albedo.glass->into;
   const AlbedoTable& beyond = b.thin ? mirror_loss() : inside ? albedo.glass->into
@@ -138,7 +138,7 @@ void set_gloss(Bsdf& b, const DielectricAlbedo& albedo, float transmission, floa
                vec3 specular_color) {
   set_facets(b, specular, specular_color);
   if (!has_gloss(b)) return;
-  bool inside = !b.thin && b.eta < 1;
+  bool inside = b.within;
   // Seen from within a solid, what is opaque of it lies in its substance: nothing reflects first.
   b.dielectric_share = (1 - b.metallic) * (inside ? transmission : 1);
   b.has_coat = !inside && b.metallic < 1;

@@ -136,7 +136,7 @@ bool is_dispersive(const Surface& surface, const Material& material) {
 
 void spread_wavelengths(const Surface& surface, const Material& material, vec3 direction,
                         const DielectricAlbedo& albedo, const Wavelengths& carried, float u,
-                        Bsdf& bsdf, std::optional<WavelengthSpread>& spread) {
+                        Bsdf& bsdf, std::optional<WavelengthSpread>& spread, float outside) {
   spread.emplace();
   spread->before = carried;
   Wavelengths& w = spread->before;
@@ -149,7 +149,7 @@ void spread_wavelengths(const Surface& surface, const Material& material, vec3 d
   }
   auto made = [&](int i) {
     float index = index_at(material, wavelength_at(place_of(w, i)));
-    return make_bsdf(surface, material, direction, albedo, index);
+    return make_bsdf(surface, material, direction, albedo, index, outside);
   };
   bsdf = made(0);
   for (int i = 1; i < w.carried; i++) spread->others[i - 1] = made(i);

@@ -42,10 +42,11 @@ struct WavelengthSpread {
   Bsdf others[wavelength_count - 1];
 };
 // Parts the colours at a dispersive surface: `bsdf` becomes the hero's, and its eval_bsdf the mean
-// over the cluster. `u` in [0, 1) places the hero if the walk was in colour.
+// over the cluster. `u` in [0, 1) places the hero if the walk was in colour. `outside`:
+// make_bsdf's, the same for all wavelengths.
 void spread_wavelengths(const Surface& surface, const Material& material, vec3 direction,
                         const DielectricAlbedo& albedo, const Wavelengths& carried, float u,
-                        Bsdf& bsdf, std::optional<WavelengthSpread>& spread);
+                        Bsdf& bsdf, std::optional<WavelengthSpread>& spread, float outside = 1);
 // After sample_bsdf(bsdf, lobes, ...): weight and density of the cluster, and what it is now.
 void carry_wavelengths(const WavelengthSpread& spread, const Bsdf& bsdf, Lobes lobes,
                        BsdfSample& sample, Wavelengths& carried);

@@ -19,7 +19,7 @@ constexpr int mirror_depth = 6;  // chains are not cut short at random before
 vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, const Bsdf& bsdf,
                 float sharp, int sets, uint32_t step, Sampler& sampler) {
   if (walk.depth >= eye.max_depth || !has_rough(bsdf, sharp)) return vec3(0);
-  LitPlace place{&surface, &bsdf, walk.medium, walk.depth, sharp};
+  LitPlace place{&surface, &bsdf, &walk.media, walk.depth, sharp};
   PlaceLight light;
   int all = eye.pass.sets(), asked = std::min(sets, all);
   for (int i = 0; i < asked; i++) {
@@ -50,15 +50,11 @@ struct Met {
   const Material* material;
   Bsdf bsdf;
 };
-void meet(const Transport& transport, const Hit& hit, Walk& walk, Met& met) {
-  met.surface = eval_surface(transport.world, walk.ray, hit);
+void meet(const Transport& transport, Hit& hit, Walk& walk, Met& met) {
+  met.surface = meet_surface(transport, walk.ray, hit, walk.media);
   met.material = &transport.world.material_of(hit.instance);
-  if (transport.tables.any_solid) {
-    walk.medium = medium_before(walk, met.surface, *met.material);
-    walk.throughput *= eval_absorption(transport, walk.medium, hit.t);
-  }
-  met.bsdf = make_bsdf(met.surface, *met.material, walk.ray.direction,
-                       *transport.tables.materials[size_t(met.surface.material)].albedo);
+  walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
+  met.bsdf = make_bsdf_in(transport, walk.media, met.surface, *met.material, walk.ray.direction);
 }
 
 // Of a sky without a picture's brightness to go by: what photons do not bring.
@@ -122,7 +118,7 @@ void gather_rest(const EyeLight& eye, const LitPlace& place, Sampler& sampler, P
   BsdfValue value = eval_bsdf(bsdf, scattered.direction);
   Walk walk;
   walk.depth = place.depth;
-  walk.medium = place.medium;
+  walk.media = *place.media;
   scattered.weight = vec3(1);
   if (!advance(walk, *place.surface, scattered)) return;
   vec3 radiance = gathered(eye, walk, sampler) / scattered.pdf;

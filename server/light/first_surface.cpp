@@ -39,6 +39,7 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
   FirstSurface first;
   Walk& walk = first.walk;
   walk.ray = request.ray;
+  if (transport.tables.any_solid) walk.media.here = find_media(transport, walk.ray.origin);
   float distance = 0, reflections = 0;
   while (true) {
     Hit hit = world.intersect(walk.ray);
@@ -49,16 +50,12 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
           first.tint * eval_environment(transport.tables.environment, request.ray.direction);
       break;
     }
-    first.surface = eval_surface(world, walk.ray, hit);
+    first.surface = meet_surface(transport, walk.ray, hit, walk.media);
     const Surface& surface = first.surface;
     const Material& material = world.material_of(hit.instance);
     distance += hit.t;
-    if (transport.tables.any_solid) {
-      walk.medium = medium_before(walk, surface, material);
-      first.tint *= eval_absorption(transport, walk.medium, hit.t);
-    }
-    first.bsdf = make_bsdf(surface, material, walk.ray.direction,
-                           *transport.tables.materials[size_t(surface.material)].albedo);
+    first.tint *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
+    first.bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
     const Bsdf& bsdf = first.bsdf;
     bool clear =
         is_pane(surface, material) && !has_diffuse(bsdf) && bsdf.metallic == 0 && !material.unlit;

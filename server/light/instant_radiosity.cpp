@@ -64,7 +64,7 @@ void follow_first(const EyeLight& light, Eye& eye) {
 
 void finish(const EyeLight& light, Eye& eye) {
   if (eye.first.scatters) {
-    LitPlace place{&eye.first.surface, &eye.first.bsdf, eye.first.walk.medium,
+    LitPlace place{&eye.first.surface, &eye.first.bsdf, &eye.first.walk.media,
                    eye.first.walk.depth, mirror_alpha};
     if (!light.pass.photons.empty())
       shade_by_photons(light.pass.photons[size_t(light.set)], light.max_depth, place, eye.light);
@@ -119,7 +119,7 @@ void trace_many_instant(const World& world, const Lights& lights,
     for (; count < RayPacket::lanes && begin + size_t(count) < order.size(); count++) {
       const Eye& eye = eyes[order[begin + size_t(count)]];
       if (eye.set != set) break;
-      places[count] = {&eye.first.surface, &eye.first.bsdf, eye.first.walk.medium,
+      places[count] = {&eye.first.surface, &eye.first.bsdf, &eye.first.walk.media,
                        eye.first.walk.depth, mirror_alpha};
     }
     shade_by_point_lights(transport, pass, {set}, settings.max_depth, places, count, light);

@@ -11,6 +11,7 @@
 #include "light/environment_light.h"
 #include "light/few_lights.h"
 #include "light/light_tree.h"
+#include "light/medium.h"
 #include "light/transport_plan.h"
 #include "world/bvh.h"
 
@@ -61,6 +62,7 @@ struct LightTables {
   bool any_pane = false;   // else shadow rays only ask whether anything is in between
   bool any_solid = false;  // else walks do not ask what they run in
   bool any_tint = false;   // else what they run in takes no light
+  SolidBounds solids;
 };
 
 // Memory of what was built for sampling lights: what a scene's lights cost beside the scene itself.

@@ -48,20 +48,18 @@ bool arrive(const Transport& transport, LightWalk& walk, Arrival& arrival) {
   const World& world = transport.world;
   Hit hit = world.intersect(walk.ray);
   if (!hit.valid()) return false;
-  arrival.surface = eval_surface(world, walk.ray, hit);
+  if (transport.tables.any_solid && walk.depth == 1 && walk.panes == 0)
+    walk.media.here = find_media(transport, walk.ray.origin);
+  arrival.surface = meet_surface(transport, walk.ray, hit, walk.media);
   const Surface& surface = arrival.surface;
   const Material& material = world.material_of(hit.instance);
-  if (transport.tables.any_solid) {
-    if (walk.medium < 0 && !surface.front && material.thickness > 0 && surface.transmission > 0)
-      walk.medium = surface.material;
-    walk.flux *= eval_absorption(transport, walk.medium, hit.t);
-  }
+  walk.flux *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
   walk.run += hit.t;
   arrival.flux = walk.flux * range_window(walk.run, walk.range);
   arrival.lit = !material.unlit;
   if (arrival.lit)
-    arrival.bsdf = make_bsdf(surface, material, walk.ray.direction,
-                             *transport.tables.materials[size_t(surface.material)].albedo);
+    arrival.bsdf =
+        make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
   return true;
 }
 
@@ -83,7 +81,7 @@ bool scatter(LightWalk& walk, const Arrival& arrival, const BsdfSample& scattere
   walk.ray.direction = scattered.direction;
   if (passes) return ++walk.panes <= most_panes;
   if (scattered.bounce == Bounce::refract)
-    walk.medium = arrival.surface.front ? arrival.surface.material : -1;
+    walk.media.here = walk.media.beyond;
   walk.panes = 0;
   walk.run = 0;
   walk.range = std::numeric_limits<float>::infinity();

@@ -25,7 +25,7 @@ struct LightWalk {
   Ray ray;
   vec3 flux{0};
   int depth = 1;  // this ray's number, counted from the source
-  int medium = -1;
+  Media media;  // that it runs in, found where it starts, and beyond the surface it met last
   int panes = 0;
   float run = 0;  // since the source or the last scattering, panes looked through
   float range = std::numeric_limits<float>::infinity();  // of the source, for the first ray

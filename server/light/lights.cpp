@@ -198,6 +198,7 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   tables->any_pane = plan.uses(panes);
   tables->any_solid = plan.uses(refraction);
   tables->any_tint = plan.uses(absorption);
+  if (tables->any_solid) tables->solids = find_solid_bounds(world, plan);
   return {tables, std::make_shared<std::atomic<uint64_t>>(0), nullptr};
 }
 

@@ -47,7 +47,7 @@ Group make_group(const LitPlace* places, int count) {
     group.face.set(i, bsdf.geometric_normal);
     if (i >= count) continue;
     group.used |= 1u << i;
-    if (!has_specular(bsdf) && place.medium < 0) group.matt |= 1u << i;
+    if (!has_specular(bsdf) && place.media->here.count == 0) group.matt |= 1u << i;
     if (max_component(bsdf.transmit) > 0 && smoothest_alpha(bsdf) >= place.sharp)
       group.through |= 1u << i;
   }
@@ -199,8 +199,8 @@ void add_lane(const Transport& transport, const Group& group, const PointLight& 
     radiance *= eval_scattered(pass.arrivals[light.index], -direction) /
                 std::max(seen.distance2[i], pass.clip * pass.clip);
   else radiance *= seen.strength[i];
-  if (place.medium >= 0)
-    radiance *= eval_absorption(transport, place.medium,
+  if (transport.tables.any_tint)
+    radiance *= eval_absorption(transport, medium_towards(*place.media, *place.surface, direction),
                                 std::isfinite(seen.rays.t_max[i])
                                     ? distance
                                     : std::numeric_limits<float>::infinity());

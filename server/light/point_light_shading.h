@@ -10,7 +10,7 @@ namespace wellspring {
 struct LitPlace {
   const Surface* surface = nullptr;
   const Bsdf* bsdf = nullptr;
-  int medium = -1;
+  const Media* media = nullptr;  // never null
   int depth = 1;  // number of the eye's ray that ends here
   float sharp = mirror_alpha;  // its lobes smoother than this are somebody else's
 };

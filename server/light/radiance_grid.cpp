@@ -58,6 +58,7 @@ void walk_once(const Transport& transport, vec3 origin, const RadianceGridSettin
   Walk walk;
   walk.ray.origin = origin;
   walk.ray.direction = sample_sphere(sampler.next2());
+  if (transport.tables.any_solid) walk.media.here = find_media(transport, origin);
   for (int steps = 0; count < most_vertices && walk.depth <= settings.max_depth && steps < 64; steps++) {
     Hit hit = world.intersect(walk.ray);
     Vertex* before = count > 0 ? &vertices[count - 1] : nullptr;
@@ -65,15 +66,13 @@ void walk_once(const Transport& transport, vec3 origin, const RadianceGridSettin
       if (before) before->arrives += walk.throughput * walk_met_sky(transport, walk);
       break;
     }
-    Surface surface = eval_surface(world, walk.ray, hit);
+    Surface surface = meet_surface(transport, walk.ray, hit, walk.media);
     const Material& material = world.material_of(hit.instance);
-    walk.medium = medium_before(walk, surface, material);
-    walk.throughput *= eval_absorption(transport, walk.medium, hit.t);
+    walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
     if (before) before->arrives += walk.throughput * walk_met_emission(transport, walk, surface, material);
     if (material.unlit) break;
-    Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
-                          *transport.tables.materials[size_t(surface.material)].albedo);
-    bool keep = keeps_light(material) && !world.is_moving(hit.instance) && walk.medium < 0;
+    Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
+    bool keep = keeps_light(material) && !world.is_moving(hit.instance) && walk.media.here.count == 0;
     if (keep) {
       // From here on light is counted for this surface; what the way back dims is its weight.
       if (before) before->weight = walk.throughput;

@@ -51,23 +51,20 @@ vec3 eval_absorption(const Transport& transport, int medium, float length) {
   return {std::pow(c.x, lengths), std::pow(c.y, lengths), std::pow(c.z, lengths)};
 }
 
-int medium_before(const Walk& walk, const Surface& surface, const Material& material) {
-  if (walk.medium >= 0) return walk.medium;
-  bool left_solid = !surface.front && material.thickness > 0 && surface.transmission > 0;
-  return left_solid ? surface.material : -1;
-}
-
 void part_colors(const Transport& transport, const Walk& walk, const Surface& surface,
                  uint32_t dimensions, Sampler& sampler, Bsdf& bsdf,
                  std::optional<WavelengthSpread>& spread) {
   if (!transport.tables.plan.uses(TransportPart::dispersion)) return;
   const Material& material = transport.world.scene().materials[size_t(surface.material)];
-  if (!is_dispersive(surface, material)) return;
+  if (!is_dispersive(surface, material) || !owns_boundary(walk.media, surface)) return;
   sampler.seek(dimensions + Dimensions::wavelength);
   float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
-  spread_wavelengths(surface, material, walk.ray.direction,
-                     *transport.tables.materials[size_t(surface.material)].albedo,
-                     walk.wavelengths, u, bsdf, spread);
+  float outside = index_outside(transport, walk.media, surface);
+  const DielectricAlbedo& albedo =
+      outside == 1 ? *transport.tables.materials[size_t(surface.material)].albedo
+                   : dielectric_albedo(std::max(material.ior / outside, outside / material.ior));
+  spread_wavelengths(surface, material, walk.ray.direction, albedo, walk.wavelengths, u, bsdf,
+                     spread, outside);
 }
 
 bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered) {
@@ -82,7 +79,7 @@ bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered) {
   walk.from = surface.position;
   walk.from_normal = surface.geometric_normal;
   walk.scattered += scattered.pdf > 0;
-  if (scattered.bounce == Bounce::refract) walk.medium = surface.front ? surface.material : -1;
+  if (scattered.bounce == Bounce::refract) walk.media.here = walk.media.beyond;
   return true;
 }
 
@@ -108,7 +105,8 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
       BsdfValue value = eval_bsdf(bsdf, light.direction);
       if (max_component(value.diffuse + value.specular) > 0) {
         vec3 arrives = light.radiance * eval_visibility(transport, surface, light) *
-                       eval_absorption(transport, walk.medium, light.distance) / light_pdf;
+                       eval_absorption(transport, medium_towards(walk.media, surface, light.direction),
+                                       light.distance) / light_pdf;
         float both = sample_bsdf_pdf(bsdf, value, Lobes::all);
         direct.area_diffuse =
             value.diffuse * arrives * mis_weight(light_pdf, apart ? value.diffuse_pdf : both);
@@ -125,7 +123,8 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
       BsdfValue value = eval_bsdf(bsdf, light.direction);
       if (max_component(value.diffuse + value.specular) > 0) {
         vec3 arrives = light.radiance * eval_visibility(transport, surface, light) *
-                       eval_absorption(transport, walk.medium, light.distance) / punctual_chance;
+                       eval_absorption(transport, medium_towards(walk.media, surface, light.direction),
+                                       light.distance) / punctual_chance;
         direct.punctual_diffuse = value.diffuse * arrives;
         direct.specular += value.specular * arrives;
       }
@@ -142,15 +141,12 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
     Hit hit = world.intersect(walk.ray);
     if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
     vec3 kept;
-    if (transport.grid && walk.pdf > 0 && walk.medium < 0 &&
+    if (transport.grid && walk.pdf > 0 && walk.media.here.count == 0 &&
         eval_grid(*transport.grid, world, walk.ray, hit, hit.t / std::sqrt(walk.pdf), kept))
       return radiance + walk.throughput * kept;
-    Surface surface = eval_surface(world, walk.ray, hit);
+    Surface surface = meet_surface(transport, walk.ray, hit, walk.media);
     const Material& material = world.material_of(hit.instance);
-    if (transport.tables.any_solid) {
-      walk.medium = medium_before(walk, surface, material);
-      walk.throughput *= eval_absorption(transport, walk.medium, hit.t);
-    }
+    walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
     radiance += walk.throughput * walk_met_emission(transport, walk, surface, material);
     if (material.unlit) return radiance;
 
@@ -164,8 +160,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
       if (!advance(walk, surface, straight)) return radiance;
       continue;
     }
-    Bsdf bsdf = make_bsdf(surface, material, walk.ray.direction,
-                          *transport.tables.materials[size_t(surface.material)].albedo);
+    Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
     std::optional<WavelengthSpread> spread;
     part_colors(transport, walk, surface, base, sampler, bsdf, spread);
     bool smooth = is_smooth(bsdf);

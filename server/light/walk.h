@@ -24,7 +24,7 @@ struct Walk {
   vec3 from_normal{0, 1, 0};  // the side from which light was sampled there
   vec3 from{0};          // there
   float area_share = 0;  // chance that area light was sampled there; 0: it was not
-  int medium = -1;       // material of the solid it runs in
+  Media media;           // that it runs in, and beyond the surface it met last
   float density = 1;     // in there radiance is denser by this (squared index), says the roulette
   int scattered = 0;
   int panes = 0;  // passed in a row
@@ -72,10 +72,8 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const Surface& surface, const Bsdf& bsdf, bool apart,
                                 Sampler& sampler);
 
-// Share of light left after a length of the solid it runs in (Beer's law).
+// Share of light left after a length of the solid it runs in (Beer's law); -1: in none.
 vec3 eval_absorption(const Transport& transport, int medium, float length);
-// The solid a ray ran in before it met `surface`.
-int medium_before(const Walk& walk, const Surface& surface, const Material& material);
 
 // The whole of a sample: what trace functions of techniques call.
 Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request);

@@ -90,6 +90,10 @@ class World {
   // Bit i of the answer: occluded(ray i), for the rays whose bit is set in `active`. Pays where rays
   // from neighbouring places go to one light: measured 2.8 times as fast as one by one.
   uint32_t occluded_packet(const RayPacket& rays, uint32_t active) const;
+  // Triangles that the unit direction `way` crosses between `before` metres before `place` and
+  // `after` behind it (Hit::t from there); as wide as that they may pass beside it. At most `most`
+  // of them, in no order; those nearly parallel to `way` do not count, nor does alpha.
+  int find_near(vec3 place, vec3 way, float before, float after, Hit* hits, int most) const;
 
  private:
   struct Impl;

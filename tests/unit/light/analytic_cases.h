@@ -48,6 +48,7 @@ void mark_variants(std::vector<AnalyticCase>& cases);
 
 std::vector<AnalyticCase> direct_light_cases();  // lamps, sky, points, spots over planes
 std::vector<AnalyticCase> glass_and_mirror_cases();
+std::vector<AnalyticCase> nested_glass_cases();  // solids in, on and across each other
 std::vector<AnalyticCase> interreflection_cases();
 
 }  // namespace wellspring::test

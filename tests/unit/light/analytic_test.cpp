@@ -52,6 +52,7 @@ TEST(Analytic, EveryTechniqueSaysWhatItClaims) {
 
 TEST(Analytic, DirectLight) { judge_cases(direct_light_cases()); }
 TEST(Analytic, GlassAndMirrors) { judge_cases(glass_and_mirror_cases()); }
+TEST(Analytic, NestedGlass) { judge_cases(nested_glass_cases()); }
 TEST(Analytic, Interreflection) { judge_cases(interreflection_cases()); }
 
 // What a technique does not claim it indeed leaves out: the table is no excuse.
