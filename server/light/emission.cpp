@@ -149,6 +149,7 @@ EnvironmentSample sample_whole_sky(const EnvironmentLight& environment, vec2 u) 
   if (!environment.cells.cells.empty()) return sample_environment(environment, u);
   constexpr float all = 1 / (4 * pi);
   if (!environment.is_sampled()) return {sample_sphere(u), all};
+  if (!(luminance(environment.radiance) > 0)) return sample_environment(environment, u);
   // A sun in a plain sky: either, half of the time.
   bool sun = u.x < 0.5f;
   u.x = sun ? 2 * u.x : 2 * u.x - 1;

@@ -160,8 +160,9 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   double environment_power = sky.cells.cells.empty() ? 0
                                                              : double(sky.mean_luminance) *
                                                                    pi * pi * 4 * radius * radius;
-  environment_power += double(luminance(sky.sun_radiance)) * double(sky.sun_chord2) * pi * pi *
-                       double(radius) * double(radius);
+  double sun_power = double(luminance(sky.sun_radiance)) * double(sky.sun_chord2) * pi * pi *
+                     double(radius) * double(radius);
+  environment_power += sun_power;
   double emitter_power = tables->emitter_choice.total * double(pi);
   tables->emitter_share = share_of(emitter_power, environment_power);
 
@@ -182,7 +183,8 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   float sky_power = luminance(sky.radiance) > 0
                         ? sky.mean_luminance * 4 * pi * pi * radius * radius
                         : 0.0f;
-  tables->emission = make_emission_choice(*tables, power, punctual_powers, sky_power, scene);
+  tables->emission = make_emission_choice(*tables, power, punctual_powers,
+                                          sky_power + float(sun_power), scene);
   tables->area_share = share_of(emitter_power + environment_power, punctual_power);
   add_punctual_choice(*tables);
 

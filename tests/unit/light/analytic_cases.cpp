@@ -197,6 +197,30 @@ void add_skies(std::vector<AnalyticCase>& cases) {
                    512});
 }
 
+// A sun of half a degree, and a wide one, alone and in a plain sky: a disc that is wholly above the
+// horizon lights by pi sin^2(radius) cos(tilt).
+void add_suns(std::vector<AnalyticCase>& cases) {
+  for (float radius : {0.0046f, 0.3f})
+    for (float sky : {0.0f, 0.7f}) {
+      Scene scene = empty_scene();
+      add_floor(scene, float(albedo));
+      SunDisc sun;
+      sun.direction = normalize(vec3(1, 1.2f, 0.4f));
+      double size = double(pi) * std::pow(std::sin(double(radius)), 2);
+      sun.radiance = vec3(float(2 / size));
+      sun.angular_radius = radius;
+      scene.environment.radiance = vec3(sky);
+      scene.environment.sun = sun;
+      double e = double(sun.radiance.x) * size * double(sun.direction.y) +
+                 double(sky) * double(pi);
+      cases.push_back({sky > 0 ? "sun in a plain sky" : "sun alone", scene, at_floor({0, 0, 0}),
+                       e * albedo * over_pi, sky_light});
+      cases.push_back({"the sun's disc", scene,
+                       ray_towards({0, 1, 0}, vec3(0, 1, 0) + sun.direction),
+                       double(sun.radiance.x) + double(sky), seen_lights});
+    }
+}
+
 }  // namespace
 
 const Claim* find_claim(const std::string& technique) {
@@ -218,6 +242,7 @@ std::vector<AnalyticCase> direct_light_cases() {
   add_lamps(cases);
   add_points(cases);
   add_skies(cases);
+  add_suns(cases);
   mark_variants(cases);
   return cases;
 }

@@ -30,7 +30,7 @@ void judge_cases(const std::vector<AnalyticCase>& cases) {
       Effort effort;
       effort.spp = c.spp;
       // Pixels of a pass do not know of each other: what the eye chooses among is drawn at random.
-      if (view.width == 6) effort.spp = std::max(1, c.spp / (c.needs & chains ? 6 : 36));
+      if (view.width == 6) effort.spp = std::max(1, c.spp / (c.needs & chains ? 12 : 36));
       TransportSettings transport = c.transport;
       transport.instant.places = 64;  // few pixels, many lights
       transport.instant.photons = 0;  // caustics are not claimed

@@ -250,3 +250,29 @@ TEST(InstantRadiosity, SurvivesOddScenes) {
            at({0, 0.275f, 0.8f}));
   expect_dark_and_finite(inside, cornell_view(inside, 9, 7), "the eye in glass", false);
 }
+
+// Sunlight that a wall throws on the floor in its own shade, of a sun alone and in a plain sky.
+TEST(InstantRadiosity, SunlightBetweenSurfacesIsPaths) {
+  Family family;
+  for (float sky : {0.0f, 0.05f}) {
+    Scene scene = empty_scene();
+    add_floor(scene, 0.5f);
+    Material white = diffuse(vec3(0.8f));
+    white.double_sided = true;
+    int wall = add_material(scene, white);
+    add_quad(scene, wall, {-2, 0, -1}, {4, 0, 0}, {0, 2, 0}, "sunlit wall");
+    add_quad(scene, wall, {-2, 0, 1}, {4, 0, 0}, {0, 1, 0}, "wall that throws a shadow");
+    scene.environment.radiance = vec3(sky);
+    scene.environment.sun = {normalize(vec3(0.1f, 1, 1)), vec3(4e4f), 0.0046f};
+    World world(scene);
+    Lights lights = make_lights(world);
+    View view = make_view_towards(scene, {0, 1.5, 0.6}, {0, 0, 0.6}, {0, 0, -1}, 0.1f, 6, 6);
+    TransportSettings settings;
+    settings.max_depth = 4;
+    family.add_same("sky " + std::to_string(sky),
+                    estimate_radiance(instant(), world, lights, view, settings, {24, 64, 1}),
+                    estimate_radiance(*find_technique("path"), world, lights, view, settings,
+                                      {24, 64, 2}));
+  }
+  expect_family(family, 0.05);
+}
