@@ -23,7 +23,7 @@ struct EmissionChoice {
   vec3 centre{0};              // of a sphere around the scene
   float radius = 1;
 };
-inline constexpr size_t most_exact_punctual = 16;
+inline constexpr size_t most_exact_punctual = 4;
 
 // `power` of each triangle and of each punctual light of `tables`.
 EmissionChoice make_emission_choice(const LightTables& tables, std::span<const float> emitter_power,

@@ -9,8 +9,13 @@
 namespace wellspring {
 namespace {
 
-// What is seen in mirrors is not filtered, so more than one set lights it.
-constexpr int mirror_sets = 4;
+// What is seen in mirrors is not filtered, so more than one set lights it; a faint image makes do with
+// a few of the lights.
+constexpr int mirror_sets = 2;
+uint32_t mirror_step(const Walk& walk) {
+  float bright = max_component(walk.throughput);
+  return bright > 0.5f ? 1 : bright > 0.25f ? 2 : 4;
+}
 // Light gathered from nearby is a small part of all: a few of the lights will do there.
 constexpr uint32_t near_step = 4;
 constexpr int mirror_depth = 6;  // chains are not cut short at random before
@@ -138,9 +143,11 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
         walk.throughput * walk_met_emission(transport, walk, met.surface, *met.material);
     if (met.material->unlit) return radiance;
     bool last = walk.depth >= eye.max_depth;
-    if (!last)
+    if (!last) {
+      uint32_t step = mirror_step(walk);
       radiance += walk.throughput * eval_rough(eye, walk, met.surface, met.bsdf, mirror_alpha,
-                                               mirror_sets, 1, sampler);
+                                               step == 1 ? mirror_sets : 1, step, sampler);
+    }
     BsdfSample scattered;
     if (last) {  // only straight on, where a shadow ray would have gone too
       if (!is_pane(met.surface, *met.material)) return radiance;

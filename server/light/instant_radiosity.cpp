@@ -12,6 +12,8 @@
 namespace wellspring {
 namespace {
 
+constexpr int pixels_a_candidate = 2048;
+
 // One request on its way.
 struct Eye {
   Sampler sampler;
@@ -143,10 +145,14 @@ Sample trace_instant(const World& world, const Lights& lights, const TransportSe
 
 void begin_instant(const World& world, const TransportSettings& settings, const View& view,
                    uint64_t seed, uint32_t index, Lights& lights) {
-  TransportSettings here = settings;  // a small picture has no use for more photons than pixels
-  here.instant.photons = std::min(settings.instant.photons, std::max(64, view.width * view.height));
+  // A small picture has no use for more photons than pixels, and choosing must cost less than it saves.
+  TransportSettings here = settings;
+  int pixels = std::max(64, view.width * view.height);
+  here.instant.photons = std::min(settings.instant.photons, pixels);
+  here.instant.candidates =
+      std::clamp(pixels / pixels_a_candidate, 1, std::max(1, settings.instant.candidates));
   lights.pass = std::make_shared<InstantPass>(
-      draw_instant_pass({world, *lights.tables}, here, view.width, seed, index));
+      draw_instant_pass({world, *lights.tables}, here, view, seed, index));
 }
 
 void finish_instant(const World&, const Lights& lights, const View& view,

@@ -11,7 +11,9 @@
 //                                   clipping took is gathered by a ray or missing
 //   rough, then sharp ..., a light  caustic photons (section 4.1; caustic_photons.h)
 //   rough, then sharp ..., rough    gathered by a ray
-// Differs from the paper: Owen scrambling, of which XOR by a random bit vector is the simplest kind;
+// Differs from the paper: lights are chosen by their effect on the view (view_probes.h); Owen scrambling,
+// which adds to the paper's XOR by a random bit vector only that the vector depends on the bits before,
+// and decorrelates the dimensions of the shared Sampler better;
 // rays instead of nothing for the last line; sets complement each other over passes as well.
 // Not claimed: light of moving emitters, colours split by glass.
 #pragma once
@@ -60,7 +62,11 @@ inline int set_of_pixel(const InstantPass& pass, uint32_t pixel) {
   return y % pass.rows * pass.columns + x % pass.columns;
 }
 
+// For any view: every walk's lights are kept.
 InstantPass draw_instant_pass(const Transport& transport, const TransportSettings& settings,
                               int picture_width, uint64_t seed, uint32_t index);
+// For this view: of more walks, the lights that do something to it (view_probes.h).
+InstantPass draw_instant_pass(const Transport& transport, const TransportSettings& settings,
+                              const View& view, uint64_t seed, uint32_t index);
 
 }  // namespace wellspring

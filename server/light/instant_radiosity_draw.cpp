@@ -9,13 +9,15 @@
 #include "light/caustic_photons.h"
 #include "light/emission.h"
 #include "light/instant_radiosity.h"
+#include "light/view_probes.h"
 #include "light/warp.h"
 
 namespace wellspring {
 namespace {
 
 constexpr uint64_t place_stream = 0x706c616365ull, walk_stream = 0x77616c6bull,
-                   photon_stream = 0x70686f746full;
+                   photon_stream = 0x70686f746full, probe_stream = 0x70726f6265ull,
+                   choice_stream = 0x63686f696365ull;
 
 struct DrawnSet {
   std::vector<PointLight> lights;
@@ -157,26 +159,88 @@ void draw_photons(const Transport& transport, const TransportSettings& settings,
   });
 }
 
+void sort_by_depth(DrawnSet& set) {
+  std::stable_sort(set.lights.begin(), set.lights.end(),
+                   [](const PointLight& a, const PointLight& b) { return a.depth < b.depth; });
+}
+
+// Moves `from` behind what `lights` and `arrivals` have.
+void append(const DrawnSet& from, std::vector<PointLight>& lights, std::vector<Arrival>& arrivals) {
+  for (PointLight light : from.lights) {
+    if (light.kind == PointLightKind::scattering) light.index += uint32_t(arrivals.size());
+    lights.push_back(light);
+  }
+  arrivals.insert(arrivals.end(), from.arrivals.begin(), from.arrivals.end());
+}
+
+// Numbers to draw; zero where there is no source.
+int places_of(const LightTables& tables, const InstantRadiositySettings& s) {
+  return tables.emission.places.cells.empty() ? 0 : std::clamp(s.places, 0, 1 << 16);
+}
+int walks_of(const LightTables& tables, const InstantRadiositySettings& s) {
+  return tables.emission.rays.cells.empty() ? 0 : std::clamp(s.walks, 0, 1 << 16);
+}
+
+InstantPass start_pass(const Transport& transport, const InstantRadiositySettings& s, int width) {
+  InstantPass pass;
+  pass.columns = std::clamp(s.columns, 1, 7);
+  pass.rows = std::clamp(s.rows, 1, 7);
+  pass.width = std::max(width, 1);
+  pass.compensate = s.compensate;
+  pass.sharp = transport.tables.plan.uses(TransportPart::caustics);
+  return pass;
+}
+
+// A point light stands for the surface around it. Nearer than that surface is wide, about
+// sqrt(area / lights), the estimate is one of nothing but that light.
+float clip_distance(const InstantRadiositySettings& s, float size, int lights) {
+  return s.clip >= 0 ? s.clip : 2 * size / std::sqrt(float(std::max(lights, 1)));
+}
+
+float photon_radius(const InstantRadiositySettings& s, float size, uint32_t index) {
+  return s.photon_radius > 0 ? s.photon_radius : shrunk_radius(0.008f * size, index);
+}
+
+void join_sets(std::vector<DrawnSet>& sets, InstantPass& pass) {
+  for (DrawnSet& set : sets) {
+    sort_by_depth(set);
+    pass.first.push_back(uint32_t(pass.lights.size()));
+    append(set, pass.lights, pass.arrivals);
+  }
+  pass.first.push_back(uint32_t(pass.lights.size()));
+}
+
+// `places` or `walks` from the number `before` of their sequences on, side by side.
+void draw_candidates(const Transport& transport, int deepest, int places, int walks,
+                     uint64_t seed, uint32_t index, InstantPass& pool) {
+  constexpr int at_once = 32;
+  int place_parts = (places + at_once - 1) / at_once, walk_parts = (walks + at_once - 1) / at_once;
+  std::vector<DrawnSet> parts(size_t(place_parts + walk_parts));
+  parallel_for(int(parts.size()), [&](int k) {
+    bool place = k < place_parts;
+    int begin = (place ? k : k - place_parts) * at_once,
+        end = std::min(begin + at_once, place ? places : walks);
+    for (int i = begin; i < end; i++) {
+      uint32_t number = index * uint32_t(place ? places : walks) + uint32_t(i);
+      Sampler sampler(mix64(seed ^ (place ? place_stream : walk_stream)), number);
+      if (place) add_place(transport, 1 / float(places), sampler, parts[size_t(k)]);
+      else add_walk(transport, deepest, 1 / float(walks), sampler, parts[size_t(k)]);
+    }
+  });
+  for (const DrawnSet& part : parts) append(part, pool.lights, pool.arrivals);
+}
+
 }  // namespace
 
 InstantPass draw_instant_pass(const Transport& transport, const TransportSettings& settings,
                               int picture_width, uint64_t seed, uint32_t index) {
   const InstantRadiositySettings& s = settings.instant;
   const LightTables& tables = transport.tables;
-  InstantPass pass;
-  pass.columns = std::clamp(s.columns, 1, 7);
-  pass.rows = std::clamp(s.rows, 1, 7);
-  pass.width = std::max(picture_width, 1);
-  pass.compensate = s.compensate;
-  pass.sharp = tables.plan.uses(TransportPart::caustics);
-  int places = tables.emission.places.cells.empty() ? 0 : std::clamp(s.places, 0, 1 << 16);
-  int walks = tables.emission.rays.cells.empty() ? 0 : std::clamp(s.walks, 0, 1 << 16);
-  // A point light stands for the surface around it. Nearer than that surface is wide, about
-  // sqrt(area / lights), the estimate is one of nothing but that light.
+  InstantPass pass = start_pass(transport, s, picture_width);
+  int places = places_of(tables, s), walks = walks_of(tables, s);
   bool needs_size = s.clip < 0 || (pass.sharp && !(s.photon_radius > 0));
   float size = needs_size ? free_path(transport) : 0;
-  pass.clip = s.clip >= 0 ? s.clip : 2 * size / std::sqrt(float(pass.sets() * std::max(walks, 1)));
-
+  pass.clip = clip_distance(s, size, pass.sets() * std::max(walks, 1));
   std::vector<DrawnSet> sets(size_t(pass.sets()));
   parallel_for(pass.sets(), [&](int k) {
     DrawnSet& set = sets[size_t(k)];
@@ -190,20 +254,59 @@ InstantPass draw_instant_pass(const Transport& transport, const TransportSetting
       Sampler sampler(mix64(seed ^ walk_stream), before * uint32_t(walks) + uint32_t(i));
       add_walk(transport, settings.max_depth - 2, 1 / float(walks), sampler, set);
     }
-    std::stable_sort(set.lights.begin(), set.lights.end(),
-                     [](const PointLight& a, const PointLight& b) { return a.depth < b.depth; });
   });
-  float radius = s.photon_radius > 0 ? s.photon_radius : shrunk_radius(0.008f * size, index);
-  if (pass.sharp) draw_photons(transport, settings, radius, seed, index, pass);
-  for (DrawnSet& set : sets) {
-    pass.first.push_back(uint32_t(pass.lights.size()));
-    for (PointLight& light : set.lights) {
-      if (light.kind == PointLightKind::scattering) light.index += uint32_t(pass.arrivals.size());
-      pass.lights.push_back(light);
+  if (pass.sharp)
+    draw_photons(transport, settings, photon_radius(s, size, index), seed, index, pass);
+  join_sets(sets, pass);
+  return pass;
+}
+
+InstantPass draw_instant_pass(const Transport& transport, const TransportSettings& settings,
+                              const View& view, uint64_t seed, uint32_t index) {
+  constexpr int probe_count = 64, size_probes = 64;
+  const InstantRadiositySettings& s = settings.instant;
+  const LightTables& tables = transport.tables;
+  if (s.candidates <= 1) return draw_instant_pass(transport, settings, view.width, seed, index);
+  InstantPass pass = start_pass(transport, s, view.width), pool = pass;
+  // The same for every pass: the clipped picture that they converge to is one picture.
+  float size = 0;
+  if (s.clip < 0 || (pass.sharp && !(s.photon_radius > 0)))
+    size = probe_free_path(transport, probe_view(transport, view, settings.max_depth, size_probes,
+                                                 mix64(probe_stream), 0));
+  pass.clip = pool.clip = clip_distance(s, size, pass.sets() * std::max(s.bounced, 1));
+
+  int times = pass.sets() * std::min(s.candidates, 1 << 10);
+  int places = std::min(places_of(tables, s) * int64_t(times), int64_t(1) << 16);
+  int walks = std::min(walks_of(tables, s) * int64_t(times), int64_t(1) << 16);
+  draw_candidates(transport, settings.max_depth - 2, places, walks, seed, index, pool);
+  uint32_t number = uint32_t(pool.lights.size()), bounced = 0;
+  while (bounced < number && pool.lights[bounced].depth == 0) bounced++;
+
+  ViewProbes probes = probe_view(transport, view, settings.max_depth, probe_count,
+                                 mix64(seed ^ probe_stream), index);
+  Sampler sampler(mix64(seed ^ choice_stream), index);
+  std::vector<DrawnSet> sets(size_t(pass.sets()));
+  for (DrawnSet& set : sets) add_exact(tables, set);
+  auto keep = [&](uint32_t begin, uint32_t end, int wanted) {
+    float choose_u = sampler.next(), deal_u = sampler.next();
+    for (const ChosenLight& c :
+         choose_lights(transport, probes, pool, begin, end, settings.max_depth,
+                       wanted * pass.sets(), pass.sets(), choose_u, deal_u)) {
+      PointLight light = pool.lights[c.light];
+      DrawnSet& set = sets[c.set];
+      light.radiance *= c.factor;
+      if (light.kind == PointLightKind::scattering) {
+        set.arrivals.push_back(pool.arrivals[light.index]);
+        light.index = uint32_t(set.arrivals.size() - 1);
+      }
+      set.lights.push_back(light);
     }
-    pass.arrivals.insert(pass.arrivals.end(), set.arrivals.begin(), set.arrivals.end());
-  }
-  pass.first.push_back(uint32_t(pass.lights.size()));
+  };
+  keep(0, bounced, std::clamp(s.places, 0, 1 << 16));
+  keep(bounced, number, std::clamp(s.bounced, 0, 1 << 16));
+  if (pass.sharp)
+    draw_photons(transport, settings, photon_radius(s, size, index), seed, index, pass);
+  join_sets(sets, pass);
   return pass;
 }
 

@@ -218,8 +218,10 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
   for (int i = 0; i < count; i++) deepest = std::max(deepest, max_depth - 1 - places[i].depth);
   float clip2 = pass.clip * pass.clip;
   Seen seen;
-  uint32_t end = pass.first[size_t(choice.set) + 1];
-  for (uint32_t k = pass.first[size_t(choice.set)] + choice.start; k < end; k += choice.step) {
+  bool all = choice.end == 0;
+  uint32_t end = all ? pass.first[size_t(choice.set) + 1] : choice.end,
+           begin = all ? pass.first[size_t(choice.set)] + choice.start : choice.start;
+  for (uint32_t k = begin; k < end; k += choice.step) {
     const PointLight& source = pass.lights[k];
     if (source.depth > deepest) break;  // they ascend
     vec3 radiance = source.radiance * float(choice.step);

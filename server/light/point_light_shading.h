@@ -21,10 +21,11 @@ struct PlaceLight {
   vec3 sum() const { return diffuse + specular + exact_diffuse + exact_specular; }
 };
 
-// Of a set's lights, every `step`-th from a start drawn at random counts `step` times.
+// Of a set's lights, every `step`-th from a start drawn at random counts `step` times. `end`: those
+// numbered [start, end) of all sets instead.
 struct SetShare {
   int set = 0;
-  uint32_t start = 0, step = 1;
+  uint32_t start = 0, step = 1, end = 0;
 };
 
 // Adds to light[i] that of places[i], i below `count`, at most 16. What one place gets does not

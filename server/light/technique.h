@@ -18,6 +18,8 @@ struct InstantRadiositySettings {
   int columns = 3, rows = 3;  // pixels that do not share a set; odd, up to 7
   int places = 8;             // on emitters and in the sky
   int walks = 8;              // from them, each leaving point lights where it scatters
+  int bounced = 16;           // of those lights are kept, chosen by what they do to the view
+  int candidates = 8;         // times as many places and walks are drawn as numbered here; 1: all kept
   float clip = -1;            // metres: shortest distance that counts; 0: none; <0: by the scene's size
   bool compensate = true;     // what clipping took is gathered by a ray, else it is missing
   int photons = 12000;        // emitted towards specular things

@@ -104,6 +104,45 @@ TEST(InstantRadiosity, QuasiRandomLightsVaryLessThanRandomOnes) {
   EXPECT_LT(ratio, 0.47);
 }
 
+// Lights chosen by their effect are worth what all candidates are, in every set, whether or not a probe
+// sees them; and they are the fewer that they were wanted to be.
+TEST(InstantRadiosity, ChosenLightsAreWorthAllCandidates) {
+  Scene scene = make_cornell_box();
+  World world(scene);
+  Lights lights = make_lights(world);
+  // A corner of the floor: of most places there is nothing to be seen from it.
+  View view = make_view_towards(scene, {0.2f, 0.1f, 0.2f}, {0.27f, 0, 0.2f}, {0, 1, 0}, 0.2f, 16, 16);
+  TransportSettings settings, all;
+  settings.instant.columns = settings.instant.rows = 3;
+  settings.instant.places = 2, settings.instant.walks = 2, settings.instant.bounced = 3;
+  settings.instant.candidates = 4;
+  all = settings;
+  all.instant.candidates = 1;
+  all.instant.walks = 8;
+  auto irradiance_of = [&](const InstantPass& pass, int set, vec3 place) {
+    InstantPass one;
+    one.columns = one.rows = 1;
+    one.lights.assign(pass.lights.begin() + pass.first[size_t(set)],
+                      pass.lights.begin() + pass.first[size_t(set) + 1]);
+    return irradiance(one, place);
+  };
+  const vec3 seen(0.25f, 0.001f, 0.2f), elsewhere(-0.1f, 0.3f, -0.1f);
+  Mean chosen_seen, chosen_elsewhere, all_seen, all_elsewhere;
+  for (uint64_t seed = 0; seed < 300; seed++) {
+    InstantPass chosen = draw_instant_pass({world, *lights.tables}, settings, view, seed, 0),
+                every = draw_instant_pass({world, *lights.tables}, all, view, seed + 1000, 0);
+    size_t wanted = 9 * (2 + 3);  // of each kind, one more or less
+    EXPECT_LE(chosen.lights.size(), wanted + 2);
+    EXPECT_GE(chosen.lights.size(), wanted - 2);
+    chosen_seen.add(irradiance_of(chosen, 4, seen));
+    chosen_elsewhere.add(irradiance_of(chosen, 4, elsewhere));
+    all_seen.add(irradiance_of(every, 4, seen));
+    all_elsewhere.add(irradiance_of(every, 4, elsewhere));
+  }
+  expect_same_mean(chosen_seen, all_seen, "where the view looks");
+  expect_same_mean(chosen_elsewhere, all_elsewhere, "where it does not");
+}
+
 // Sets and passes are subsequences of one sequence: sixteen sets of one walk stratify the lamp as one
 // set of sixteen does.
 TEST(InstantRadiosity, SetsAndPassesContinueOneSequence) {
