@@ -2,7 +2,6 @@
 #include "show/picture.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "base/clock.h"
 #include "base/rng.h"
@@ -60,11 +59,6 @@ int sample_budget(const Show& show, const Visitor& visitor, int busy) {
   double share = std::max((period - slack) / std::max(busy, 1) - display, least_share * period);
   double budget = share * double(show.samples_per_second);
   return int(std::clamp(budget, double(least_budget), 0.5 * visitor.width * visitor.height));
-}
-
-uint64_t microseconds_now() {
-  using namespace std::chrono;
-  return uint64_t(duration_cast<microseconds>(system_clock::now().time_since_epoch()).count());
 }
 
 // On another core: the tick goes on meanwhile, and waits before it touches the image again.

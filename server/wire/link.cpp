@@ -18,22 +18,45 @@ void Link::send_text(std::string text) {
   send(std::move(out));
 }
 
-void Link::send_sound(std::shared_ptr<const Packet> packet) {
-  if (!packet) return;
-  Out out;
-  out.binary = true;
-  out.packet = std::move(packet);
-  send(std::move(out));
+bool Link::send_sound(std::shared_ptr<const Packet> packet) {
+  if (!packet) return true;
+  {
+    std::lock_guard lock(mutex_);
+    if (closed_ || close_requested_) return true;
+    if (sound_out_ + packet->size() > max_sound_out) {
+      sounds_dropped_++;
+      drop_unsent_sound();
+      return false;
+    }
+    sound_out_ += packet->size();
+    Out out;
+    out.binary = true;
+    out.packet = std::move(packet);
+    out_.push_back(std::move(out));
+  }
+  wake();
+  return true;
+}
+
+void Link::drop_sound() {
+  std::lock_guard lock(mutex_);
+  drop_unsent_sound();
+}
+
+void Link::drop_unsent_sound() {
+  sounds_dropped_ += std::erase_if(out_, [](const Out& out) { return out.binary; });
+  sound_out_ = 0;
 }
 
 void Link::send(Out out) {
   {
     std::lock_guard lock(mutex_);
     if (closed_ || close_requested_) return;
-    if (out_.size() >= max_texts_out) {
+    if (texts_out_ >= max_texts_out) {
       close_requested_ = true;
       close_reason_ = "too slow";
     } else {
+      texts_out_++;
       out_.push_back(std::move(out));
     }
   }
@@ -65,6 +88,8 @@ bool Link::take_out(Out& out) {
   if (!out_.empty()) {
     out = std::move(out_.front());
     out_.pop_front();
+    if (out.binary) sound_out_ -= out.packet->size();
+    else texts_out_--;
     return true;
   }
   if (auto picture = picture_.take()) {
@@ -97,6 +122,7 @@ void Link::mark_closed() {
   closed_ = true;
   wake_ = nullptr;
   out_.clear();
+  texts_out_ = sound_out_ = 0;
   picture_.take();
 }
 

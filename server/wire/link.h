@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One connected peer as both sides see it: `stream` owns the socket, the show owns the visit, and this
-// is all they share. Pictures: one slot, newest wins. Text: short bounded queues. No call blocks.
+// is all they share. Pictures: one slot, newest wins. Text and sound: short bounded queues; sound that
+// a slow peer does not take is thrown away as a whole, since half a sentence is worse than none. No call blocks.
 // Every call may come from any thread. After close() or mark_closed() sending does nothing; texts that had
 // arrived by then can still be taken.
 #pragma once
@@ -26,6 +27,8 @@ class Link {
   static constexpr size_t max_bytes_in = 1 << 20;  // likewise
   static constexpr size_t max_texts_out = 64;  // more unsent: the link is closed (a reader this slow is gone)
 
+  static constexpr size_t max_sound_out = 192 * 1024;  // bytes unsent, four seconds of speech: all of it is dropped
+
   Link(uint64_t id, LinkKind kind, std::string peer) : id(id), kind(kind), peer(std::move(peer)) {}
   const uint64_t id;
   const LinkKind kind;
@@ -35,7 +38,9 @@ class Link {
   std::vector<std::string> take_texts();             // all that arrived since the last call, in order
   void send_text(std::string text);                  // small JSON
   void send_picture(std::shared_ptr<const Packet>);  // replaces an unsent one
-  void send_sound(std::shared_ptr<const Packet>);    // kept in order with texts, bounded with them
+  // Kept in order with texts. False: the peer is too slow, all unsent sound is gone with this one.
+  bool send_sound(std::shared_ptr<const Packet>);
+  void drop_sound();  // whatever has not been sent yet
   bool picture_pending() const { return picture_.full(); }  // the last picture has not been taken yet
   void close(std::string reason);                    // asks the socket to close
   bool closed() const { return closed_; }
@@ -53,22 +58,25 @@ class Link {
   void mark_closed();               // the socket is gone; the show will notice
   bool close_requested(std::string& reason) const;
   uint64_t pictures_dropped() const { return picture_.dropped(); }
+  uint64_t sounds_dropped() const { return sounds_dropped_; }  // packets, by slowness or drop_sound
   uint64_t texts_dropped() const { return texts_dropped_; }  // arrived, never read by the show
   std::atomic<uint64_t> bytes_sent{0}, pictures_sent{0};
 
  private:
   void send(Out out);
+  void drop_unsent_sound();  // with the lock held
   void wake();
   mutable std::mutex mutex_;
   std::deque<std::string> in_;
   size_t bytes_in_ = 0;
   std::deque<Out> out_;
+  size_t texts_out_ = 0, sound_out_ = 0;  // of out_: texts, and bytes of sound
   Latest<std::shared_ptr<const Packet>> picture_;
   std::function<void()> wake_;
   std::string close_reason_;
   bool close_requested_ = false;
   std::atomic<bool> closed_{false};
-  std::atomic<uint64_t> texts_dropped_{0};
+  std::atomic<uint64_t> texts_dropped_{0}, sounds_dropped_{0};
 };
 
 }  // namespace wellspring

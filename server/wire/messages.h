@@ -81,7 +81,7 @@ struct StorytellerOrder {
 };
 struct Settings {
   std::optional<float> fps;
-  std::optional<bool> attention;
+  std::optional<bool> attention, sound;
   std::optional<int> quality, max_quality, width, height;
   std::string lang;
   bool operator==(const Settings&) const = default;

@@ -4,23 +4,11 @@
 #include <cassert>
 #include <cstring>
 
+#include "wire/little_endian.h"
+
 namespace wellspring {
 
 static constexpr uint8_t picture_magic[4] = {'W', 'S', 'F', '1'};
-
-// Byte by byte, so that the layout is little-endian on every machine and no pointer need be
-// aligned.
-template <class T>
-static void put(std::span<uint8_t> bytes, size_t at, T value) {
-  for (size_t i = 0; i < sizeof(T); i++) bytes[at + i] = uint8_t(uint64_t(value) >> (8 * i));
-}
-
-template <class T>
-static T get(std::span<const uint8_t> bytes, size_t at) {
-  uint64_t value = 0;
-  for (size_t i = 0; i < sizeof(T); i++) value |= uint64_t(bytes[at + i]) << (8 * i);
-  return T(value);
-}
 
 void write_packet_header(const PacketHeader& header, std::span<uint8_t> packet) {
   assert(packet.size() >= packet_header_bytes);

@@ -72,6 +72,7 @@ static Settings read_settings(Fields& fields) {
   };
   fields.maybe(settings.fps, [&](float& v) { return fields.number("fps", min_fps, max_fps, v); });
   fields.maybe(settings.attention, [&](bool& v) { return fields.boolean("attention", v); });
+  fields.maybe(settings.sound, [&](bool& v) { return fields.boolean("sound", v); });
   fields.maybe(settings.quality, integer("quality", min_jpeg_quality, max_jpeg_quality));
   fields.maybe(settings.max_quality, integer("max_quality", min_jpeg_quality, max_jpeg_quality));
   fields.maybe(settings.width, integer("width", min_side, max_side));

@@ -97,6 +97,7 @@ static json to_json(const Settings& settings) {
   json out = {{"type", "settings"}};
   if (settings.fps) out["fps"] = *settings.fps;
   if (settings.attention) out["attention"] = *settings.attention;
+  if (settings.sound) out["sound"] = *settings.sound;
   if (settings.quality) out["quality"] = *settings.quality;
   if (settings.max_quality) out["max_quality"] = *settings.max_quality;
   if (settings.width) out["width"] = *settings.width;

@@ -149,3 +149,28 @@ TEST(Link, two_threads_lose_no_text_and_see_pictures_only_get_newer) {
   EXPECT_EQ(last, count);
   EXPECT_EQ(uint64_t(seen) + link.pictures_dropped(), uint64_t(count));
 }
+
+TEST(Link, sound_that_is_not_taken_is_dropped_as_a_whole_and_texts_stay) {
+  Link link(1, LinkKind::visit, "");
+  const auto piece = std::make_shared<const Packet>(Packet(Link::max_sound_out / 4));
+  link.send_text("before");
+  for (int i = 0; i < 4; i++) EXPECT_TRUE(link.send_sound(piece));
+  link.send_text("after");
+  EXPECT_FALSE(link.send_sound(piece));
+  EXPECT_EQ(link.sounds_dropped(), 5u);
+  Link::Out out;
+  for (const char* text : {"before", "after"}) {
+    ASSERT_TRUE(link.take_out(out));
+    EXPECT_EQ(out.text, text);
+  }
+  EXPECT_FALSE(link.take_out(out));
+  for (int i = 0; i < 20; i++) {  // one that is taken makes room again
+    EXPECT_TRUE(link.send_sound(piece));
+    EXPECT_TRUE(link.take_out(out));
+  }
+  EXPECT_TRUE(link.send_sound(piece));
+  link.drop_sound();
+  EXPECT_FALSE(link.take_out(out));
+  std::string reason;
+  EXPECT_FALSE(link.close_requested(reason));
+}
