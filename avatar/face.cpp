@@ -16,8 +16,8 @@ float blend(float low, float high, float x) { return smooth_step(low, high, x); 
 
 }  // namespace
 
-void tick_face(FaceState& state, float speaking, float smile, float brow, bool humanlike,
-               double now, float dt, FacePose& face) {
+void tick_face(FaceState& state, float speaking, const std::array<float, 15>* visemes, float smile,
+               float brow, bool humanlike, double now, float dt, FacePose& face) {
   speaking = speaking > 0 ? std::min(speaking, 1.0f) : 0;  // NaN is silence
   state.talking = approach(state.talking, speaking, 0.07f, dt);
   if (state.talking < 1e-4f) state.talking = 0;
@@ -25,8 +25,16 @@ void tick_face(FaceState& state, float speaking, float smile, float brow, bool h
   settle(state.brow, brow, 6, dt);
 
   if (state.talking > 0) {
+    // The head's emphasis keeps time with the syllables, made up or not.
     double pace = syllables_a_second * (1 + 0.2 * double(smooth_noise(40, state.syllables * 0.7)));
     state.syllables = std::fmod(state.syllables + pace * double(dt), 1e6);
+  }
+  if (visemes) {
+    for (size_t i = 0; i < 15; i++) {
+      face.viseme[i] = (*visemes)[i];
+      face.open += face.viseme[i] * jaw_of[i];
+    }
+  } else if (state.talking > 0) {
     // Each syllable: a consonant, then a vowel; the vowel carries over into the next consonant.
     auto of = [](double index, uint64_t salt) {
       return mix64(uint64_t(int64_t(index)) * 2 + salt);

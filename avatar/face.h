@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The face as numbers 0..1, and the mouth of somebody who speaks. Timed visemes of real speech will
-// take the place of the syllables made up here; the way from viseme weights to a figure stays.
+// The face as numbers 0..1, and the mouth of somebody who speaks: by the timed visemes of its speech, or
+// by made-up syllables where nothing is heard.
 #pragma once
 #include <array>
 
@@ -24,9 +24,10 @@ struct FacePose {
   std::array<float, 15> viseme{};  // as Rig::viseme
 };
 
-// Mouth, smile and brows. `smile` is the wanted level 0..1.
-void tick_face(FaceState& state, float speaking, float smile, float brow, bool humanlike,
-               double now, float dt, FacePose& face);
+// Mouth, smile and brows. `smile` is the wanted level 0..1. `visemes` (null: made-up syllables) are taken
+// as they are, so that lips meet when the sound says so.
+void tick_face(FaceState& state, float speaking, const std::array<float, 15>* visemes, float smile,
+               float brow, bool humanlike, double now, float dt, FacePose& face);
 // Writes the face into displacers, and into lid and jaw joints where the figure has vertices on
 // them.
 void eval_face(const Rig& rig, const FacePose& face, Pose& pose);

@@ -117,6 +117,8 @@ struct Speaker::Impl {
         if (answer.speech) folder.save(request, *answer.speech);
       }
       lock.lock();
+      counts.starts += process.process_id() != 0 && process.process_id() != counts.process_id;
+      counts.process_id = process.process_id();
       counts.spoken += answer.speech && !from_folder;
       counts.from_folder += from_folder;
       counts.failed += !answer.speech;

@@ -49,6 +49,8 @@ class Speaker {
   std::shared_ptr<const Speech> find(const SpeechRequest& request) const;
 
   struct Counts {
+    int process_id = 0;      // of the voice program after the last request; 0: not running
+    uint64_t starts = 0;     // of the voice program
     size_t waiting = 0, kept = 0, kept_bytes = 0;  // requests; speeches and bytes in memory
     uint64_t spoken = 0, from_folder = 0, from_memory = 0, failed = 0;  // since the start
   };

@@ -162,9 +162,24 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   FacePose face;
   float brow = state.mood == Mood::greeting ? 0.45f : state.mood == Mood::noticing ? 0.3f : 0.05f;
   face.breath = idle.breath;
-  tick_face(state.face, input.speaking, wanted_smile(state), brow, input.humanlike, now, dt, face);
+  tick_face(state.face, input.speaking, input.visemes ? &*input.visemes : nullptr, wanted_smile(state), brow,
+            input.humanlike, now, dt, face);
   lids_follow(rig, pose, tick_blink(state.blink, state.rng, now, input.humanlike), face);
   eval_face(rig, face, pose);
+}
+
+vec3 eval_mouth(const StorytellerState& state, const Storyteller& storyteller, const Pose& pose) {
+  vec3 mouth(0, 1.5f, 0.1f);
+  const Rig* rig = state.rig.get();
+  if (rig && rig->character == storyteller.character && pose.rotations.size() == rig->joints &&
+      rig->skull >= 0) {
+    // Below the eyes by a share of the body's height, in the skull's frame.
+    const Character& character = *rig->character;
+    vec3 at_rest = rig->eyes_center - vec3(0, 0.043f * rig->eyes_center.y, 0);
+    JointFrame skull = eval_joint_frame(character, pose, rig->skull);
+    mouth = skull.center + skull.rotation * (at_rest - character.joints[size_t(rig->skull)].center);
+  }
+  return vec3(storyteller.placement * vec4(mouth, 1));
 }
 
 StorytellerGaze eval_gaze(const StorytellerState& state, const Storyteller& storyteller,

@@ -44,6 +44,9 @@ struct StorytellerState {
 void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
                       const StorytellerInput& input, Pose& pose, StorytellerEvents& events);
 
+// Where its voice comes from as posed now, world coordinates.
+vec3 eval_mouth(const StorytellerState& state, const Storyteller& storyteller, const Pose& pose);
+
 // Where the storyteller looks, for messages and measurements.
 struct StorytellerGaze {
   vec3 target{0};            // world: what it wants to look at

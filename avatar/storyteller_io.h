@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What goes into a tick of the storyteller and what comes out of it.
 #pragma once
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/vec.h"
@@ -29,6 +31,9 @@ struct StorytellerInput {
   std::vector<Guest> guests;
   bool humanlike = true;  // noise for human-like behaviour; off: bit-identical replays
   float speaking = 0;     // mouth activity 0..1: it says something right now
+  // Mouth shapes of the speech that is heard (order of Rig::viseme); without them the mouth moves as
+  // if it spoke.
+  std::optional<std::array<float, 15>> visemes;
   bool telling =
       false;  // a story is being told (Mood::telling while no greeting or farewell is due)
 };

@@ -78,6 +78,8 @@ int serve(const Options& options) {
   std::string folder = options.content + "/" + options.exhibit;
   auto pages = load_pages(options.web);
   auto show = make_show(load_exhibit(folder), options.show);
+  show->speech = make_speech_source(std::make_shared<Speaker>());
+  show->speech.prepare(lines_of(show->exhibit));
   StillRoom stills(*show);
   ReportBoard board;
   Arrivals arrivals;

@@ -62,19 +62,35 @@ export function read_picture(bytes) {
   };
 }
 
+// A piece of an utterance, or null.
+export function read_sound(bytes) {
+  if (bytes.length < 56 || bytes.toString('latin1', 0, 4) !== 'WSA1') return null;
+  const pcm = bytes.subarray(bytes.readUInt16LE(26));
+  return {
+    utterance: bytes.readUInt32LE(4), start: bytes.readUInt32LE(8), time_us: Number(bytes.readBigUInt64LE(12)),
+    total: bytes.readUInt32LE(20), channels: bytes[24], rate: bytes.readUInt32LE(28),
+    mouth: [32, 40, 48].map((at) => bytes.readDoubleLE(at)),
+    samples: Array.from({ length: pcm.length / 2 }, (_, i) => pcm.readInt16LE(2 * i)),
+  };
+}
+
 // A scripted visitor: collects messages and pictures, acknowledges every picture.
 export class Visitor {
   constructor(server, { path = '/api/v1/visit', protocol = 'wellspring.v1', acknowledge = true } = {}) {
     this.messages = [];
     this.pictures = 0;
+    this.sounds = [];
     this.waiting = [];
     this.socket = new WebSocket(server.ws + path, protocol);
     this.closed = new Promise((resolve) => this.socket.on('close', (code, reason) => resolve({ code, reason: String(reason) })));
     this.socket.on('error', () => {});
     this.opened = new Promise((resolve, reject) => { this.socket.on('open', resolve); this.socket.on('error', reject); });
     this.socket.on('message', (bytes, binary) => {
-      const item = binary ? { picture: read_picture(bytes), at: performance.now() } : { message: JSON.parse(String(bytes)) };
-      if (binary) {
+      const sound = binary && read_sound(bytes);
+      const item = sound ? { sound, at: performance.now() } : binary ? { picture: read_picture(bytes), at: performance.now() } : { message: JSON.parse(String(bytes)) };
+      if (sound) {
+        this.sounds.push(sound);
+      } else if (binary) {
         this.pictures++;
         this.last = item.picture;
         if (acknowledge) this.send({ type: 'ack', frame: item.picture.frame, decoded_ms: 1, shown: true });

@@ -61,6 +61,7 @@ async function refresh() {
       ['Greetings', number(one('greetings_total'))],
       ['Farewells', number(one('farewells_total'))],
       ['Stories', number(one('stories_total'))],
+      ['Voice', `${one('voice_running') ? 'running' : 'not running'}, restarts ${number(one('voice_restarts_total'))}, lines kept ${number(one('voice_lines'))}, waiting ${number(one('voice_lines_waiting'))}, failed ${number(one('voice_failed_total'))}`],
     ]);
   } catch {
     badge.textContent = 'no answer';

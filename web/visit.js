@@ -4,12 +4,14 @@ import { make_connection } from './connection.js';
 import { make_controls } from './controls.js';
 import { make_menu } from './menu.js';
 import { make_picture, wanted_size } from './picture.js';
+import { make_sound } from './sound.js';
 import { make_subtitles } from './subtitles.js';
 import { first_language, translate_page, word } from './words.js';
 
 const by_id = (id) => document.getElementById(id);
 const canvas = by_id('picture');
 let lang = first_language(), seq = 0, state = null, walk_speed = 1.4, round_trip = 0, full = false;
+let connection = null;
 const asked = new Map();  // seq -> time it was sent, until a picture shows it
 translate_page(lang);
 by_id('veil-text').textContent = word(lang, 'opening');
@@ -17,6 +19,7 @@ by_id('veil-text').textContent = word(lang, 'opening');
 const subtitles = make_subtitles(by_id('subtitle'));
 const picture = make_picture(canvas, (shown) => {
   connection.send({ type: 'ack', frame: shown.frame, decoded_ms: Math.round(shown.decoded_ms * 10) / 10, shown: true });
+  sound.shown(shown);
   by_id('veil').classList.add('lifted');
   const sent = asked.get(shown.seq);
   if (sent) round_trip += (performance.now() - sent - round_trip) * 0.2;
@@ -25,18 +28,24 @@ const picture = make_picture(canvas, (shown) => {
   canvas.dataset.seq = shown.seq;
 });
 
+const sound = make_sound(by_id('sound-button'), {
+  on_wanted: (on) => connection?.send({ type: 'settings', sound: on }),
+  label: (name) => word(lang, name),
+});
+
 function notice(text) {
   by_id('notice').textContent = text;
   by_id('notice').hidden = !text;
 }
 
-const connection = make_connection({
+connection = make_connection({
   hello: () => ({ type: 'hello', exhibit: '', lang, role: 'visitor', ...wanted_size() }),
   open() {
     notice('');
     full = false;
     seq = 0;
     asked.clear();
+    sound.joined();
     // After a broken line: back to where the visitor stood.
     if (state?.viewpoint) connection.send({ type: 'viewpoint', seq: next(), name: state.viewpoint });
     else if (state) connection.send({ type: 'camera', seq: next(), position: state.position, yaw: state.yaw, pitch: state.pitch });
@@ -44,12 +53,14 @@ const connection = make_connection({
   lost() { if (!full) notice(word(lang, 'lost')); },
   message(message) {
     switch (message.type) {
-      case 'welcome': walk_speed = message.walk_speed; lang = message.lang; menu.welcome(message); by_id('veil-title').textContent = message.title; break;
+      case 'welcome': walk_speed = message.walk_speed; lang = message.lang; menu.welcome(message); sound.relabel(); by_id('veil-title').textContent = message.title; break;
       case 'state':
         state = message;
         menu.state(message);
+        sound.moved(message);
         menu.figures(`${picture.rate()} fps · ${Math.round(round_trip)} ms · ${canvas.width}×${canvas.height} · ${Math.round(message.converged * 100)} %`);
         break;
+      case 'speech': sound.speech(message); break;
       case 'subtitle': subtitles.show(message); break;
       case 'agent': menu.agent(message); document.body.dataset.mood = message.mood; break;
       case 'kiosk': document.body.dataset.kiosk = message.state; break;
@@ -59,7 +70,7 @@ const connection = make_connection({
         break;
     }
   },
-  binary: (buffer) => picture.receive(buffer),
+  binary: (buffer) => { if (!sound.receive(buffer)) picture.receive(buffer); },
 });
 
 function next() {
@@ -71,7 +82,10 @@ const menu = make_menu({
   viewpoint: (name) => connection.send({ type: 'viewpoint', seq: next(), name }),
   tour: (action, name) => connection.send({ type: 'tour', action, ...(name && { name }) }),
   story: (story) => connection.send({ type: 'storyteller', story }),
-  story_action: (action) => connection.send({ type: 'storyteller', action }),
+  story_action(action) {
+    if (action !== 'play') sound.stop();
+    connection.send({ type: 'storyteller', action });
+  },
   storyteller: (fields) => connection.send({ type: 'storyteller', ...fields }),
   lang(tag) { lang = tag; localStorage.setItem('wellspring.lang', tag); connection.send({ type: 'settings', lang: tag }); },
   subtitles: (on) => subtitles.enable(on),

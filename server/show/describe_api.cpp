@@ -36,6 +36,7 @@ std::string describe_api() {
     "storyteller": {"visible": "boolean", "humanlike": "boolean", "story": "a story's id",
                     "action": "play, pause, stop, restart or skip"},
     "settings": {"fps": "pictures a second, 0 for the server's choice", "attention": "boolean",
+                 "sound": "boolean: whether speech is to be sent; at first it is",
                  "quality": "JPEG quality in motion", "max_quality": "JPEG quality at rest",
                  "width": "16..4096", "height": "16..4096", "lang": "BCP 47"},
     "ack": {"frame": "u32 frame number", "decoded_ms": "milliseconds", "shown": "boolean"},
@@ -52,7 +53,11 @@ std::string describe_api() {
     "agent": {"mood": "idle, noticing, greeting, attending, telling or farewell", "visible": "boolean",
               "humanlike": "boolean", "story": "id or null", "paused": "boolean",
               "looking_at": "[x, y, z] the storyteller's gaze target",
-              "gaze": "[yaw, pitch] of its line of sight from straight ahead, radians", "guest": "id or 0"},
+              "gaze": "[yaw, pitch] of its line of sight from straight ahead, radians", "guest": "id or 0",
+              "mouth": "{utterance, seconds of it, viseme} as the next picture shows it, or null"},
+    "speech": {"utterance": "number, grows", "action": "start or stop", "text": "what is said",
+               "lang": "tag, the language spoken", "seconds": "number", "position": "[x, y, z] of the mouth",
+               "words": "[{text, begin, end}] seconds from the first sample"},
     "kiosk": {"state": "absent, motion or person", "people": "number", "cameras": "number"},
     "error": {"code": "word", "message": "sentence"}},
   "binary": {
@@ -61,7 +66,15 @@ std::string describe_api() {
       {"offset": 12, "type": "u64", "name": "server time, microseconds"}, {"offset": 20, "type": "u16", "name": "width"},
       {"offset": 22, "type": "u16", "name": "height"}, {"offset": 24, "type": "u8", "name": "quality"},
       {"offset": 25, "type": "u8", "name": "flags: 1 still, 2 complete picture"},
-      {"offset": 26, "type": "u16", "name": "header length, 28 or more"}], "payload": "JPEG"}},
+      {"offset": 26, "type": "u16", "name": "header length, 28 or more"}], "payload": "JPEG"},
+    "sound": {"magic": "WSA1", "fields": [
+      {"offset": 4, "type": "u32", "name": "utterance"},
+      {"offset": 8, "type": "u32", "name": "first sample of this piece within the utterance"},
+      {"offset": 12, "type": "u64", "name": "server time in microseconds at which that sample is to sound: with the picture of that time"},
+      {"offset": 20, "type": "u32", "name": "samples of the whole utterance"}, {"offset": 24, "type": "u8", "name": "channels: 1"},
+      {"offset": 25, "type": "u8", "name": "flags: 0"}, {"offset": 26, "type": "u16", "name": "header length, 56 or more"},
+      {"offset": 28, "type": "u32", "name": "samples a second"}, {"offset": 32, "type": "3 x f64", "name": "world position of the mouth, m"}],
+      "payload": "16-bit samples, in order; pieces come about a second before they are due"}},
   "eye_to_server": {
     "observation": {"time": "seconds", "presence": "boolean", "state": "absent, motion or person",
       "people": "[{id, position [x, y, z] m from the screen's centre, rotation [yaw, pitch, roll], confidence, expression?, gesture?}]"}}

@@ -19,6 +19,8 @@ using LocalLines = std::map<std::string, std::vector<std::string>>;  // language
 // that has one, else any; "" when there is none at all.
 const std::string& text_in(const LocalText& text, const std::string& lang,
                            const std::vector<std::string>& languages);
+// The language tag of the text that text_in gives; "" when there is none.
+std::string tag_in(const LocalText& text, const std::string& lang, const std::vector<std::string>& languages);
 const std::vector<std::string>& lines_in(const LocalLines& lines, const std::string& lang,
                                          const std::vector<std::string>& languages);
 

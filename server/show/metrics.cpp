@@ -59,6 +59,17 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "greetings_total", "counter", "Greetings said", double(totals.greetings));
   metric(out, "farewells_total", "counter", "Farewells said", double(totals.farewells));
   metric(out, "stories_total", "counter", "Stories begun", double(totals.stories));
+  metric(out, "voice_running", "gauge", "The voice program was running when it was last asked",
+         report.voice_running);
+  metric(out, "voice_restarts_total", "counter", "Starts of the voice program after the first",
+         double(report.voice_restarts));
+  metric(out, "voice_lines", "gauge", "Spoken lines kept in memory", double(report.voice_lines));
+  metric(out, "voice_lines_waiting", "gauge", "Lines still to be spoken", double(report.voice_waiting));
+  metric(out, "voice_failed_total", "counter", "Lines that could not be spoken", double(report.voice_failed));
+  metric(out, "utterances_total", "counter", "Lines said with a voice", double(totals.utterances));
+  metric(out, "sounds_total", "counter", "Sound packets sent", double(totals.sounds));
+  metric(out, "sounds_given_up_total", "counter", "Utterances dropped for readers that were too slow",
+         double(totals.sounds_given_up));
   metric(out, "resident_bytes", "gauge", "Memory of the server process", resident_bytes());
   per_visitor(out, report, "pictures_per_second", "Pictures a second", [](auto& v) { return v.fps; });
   per_visitor(out, report, "round_trip_milliseconds", "Picture sent to acknowledged",

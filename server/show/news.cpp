@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/news.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace wellspring {
@@ -86,6 +87,38 @@ std::string subtitle_news(const std::string& text, const std::string& lang, cons
   return news.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+std::string speech_news(uint32_t utterance, const Speech& speech, dvec3 mouth) {
+  auto round = [](double x) { return std::round(x * 1e3) / 1e3; };
+  json words = json::array();
+  for (const SpeechWord& word : speech.words) {
+    size_t end = std::min(size_t(word.text_end), speech.text.size()), begin = std::min(size_t(word.text_begin), end);
+    words.push_back({{"text", speech.text.substr(begin, end - begin)},
+                     {"begin", round(word.begin)},
+                     {"end", round(word.end)}});
+  }
+  json news = {{"type", "speech"},         {"utterance", utterance},
+               {"action", "start"},        {"text", speech.text},
+               {"lang", speech.lang},      {"seconds", round(speech.duration)},
+               {"position", triple(mouth)}, {"words", std::move(words)}};
+  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string speech_stop_news(uint32_t utterance) {
+  return json{{"type", "speech"}, {"utterance", utterance}, {"action", "stop"}}.dump();
+}
+
+// The mouth as the next picture shows it, in the utterance's own time.
+json mouth_news(const Show& show) {
+  const Speech* speech = show.sounding.going ? heard(show.voice) : nullptr;
+  if (!speech) return nullptr;
+  double at = double(show.voice.elapsed + show.picture_lead);
+  VisemeWeights weights = eval_visemes(speech->visemes, at);
+  size_t strongest = size_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
+  return {{"utterance", show.sounding.number},
+          {"seconds", std::round(at * 1e3) / 1e3},
+          {"viseme", viseme_names[strongest]}};
+}
+
 std::string agent_news(const Show& show) {
   json news = {{"type", "agent"},
                {"mood", to_string(show.mind.mood)},
@@ -97,6 +130,7 @@ std::string agent_news(const Show& show) {
   news["looking_at"] = triple(dvec3(gaze.target) + show.exhibit.scene.origin);
   news["gaze"] = {std::round(gaze.yaw * 1e4) / 1e4, std::round(gaze.pitch * 1e4) / 1e4};
   news["guest"] = gaze.guest;
+  news["mouth"] = mouth_news(show);
   return news.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -14,6 +14,9 @@ std::string state_news(const Visitor& visitor, const Exhibit& exhibit);
 // Empty text: the subtitle disappears.
 std::string subtitle_news(const std::string& text, const std::string& lang, const std::string& speaker,
                           float seconds);
+// An utterance that is heard: what, when each word of it comes (seconds from its first sample), and where.
+std::string speech_news(uint32_t utterance, const Speech& speech, dvec3 mouth);
+std::string speech_stop_news(uint32_t utterance);
 std::string agent_news(const Show& show);
 std::string kiosk_news(const Audience& audience, size_t cameras);
 

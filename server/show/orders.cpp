@@ -111,7 +111,7 @@ Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
   return {};
 }
 
-Answer obey_one(Show& show, Visitor&, const StorytellerOrder& order) {
+Answer obey_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
   if (!show.exhibit.storyteller) return WireError{"no_storyteller", "this exhibit has no storyteller"};
   if (order.visible) show.storyteller_visible = *order.visible;
   if (order.humanlike) show.humanlike = *order.humanlike;
@@ -119,20 +119,24 @@ Answer obey_one(Show& show, Visitor&, const StorytellerOrder& order) {
     const StoryText* story = find_story(show.exhibit, order.story);
     if (!story) return WireError{"unknown_story", "there is no story '" + order.story + "'"};
     tell(show.voice, *story);
+    show.voice.asked_by = visitor.link->id;
     show.totals.stories++;
   }
   const StoryText* telling = find_story(show.exhibit, show.voice.story);
+  uint64_t asked_by = show.voice.asked_by;
   if (order.action == "pause") show.voice.paused = true;
   else if (order.action == "play") show.voice.paused = false;
   else if (order.action == "stop") hush(show.voice);
   else if (order.action == "restart" && telling) tell(show.voice, *telling);
   else if (order.action == "skip" && telling) tell(show.voice, *telling, show.voice.sentence + 1);
+  if (!show.voice.queue.empty()) show.voice.asked_by = asked_by;
   show.agent_sent_at = -1e9;  // everybody hears of the change with the next tick
   return {};
 }
 
 Answer obey_one(Show& show, Visitor& visitor, const Settings& settings) {
   if (settings.fps) visitor.fps = std::clamp(*settings.fps, 0.0f, 120.0f);
+  if (settings.sound) visitor.sound = *settings.sound;
   if (settings.quality) visitor.best_quality = *settings.quality;
   if (settings.max_quality) visitor.still_quality = *settings.max_quality;
   visitor.best_quality = std::min(visitor.best_quality, visitor.still_quality);

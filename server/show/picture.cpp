@@ -93,6 +93,12 @@ bool wants_picture(const Show& show, const Visitor& visitor) {
   return !visitor.link->picture_pending() && may_send(visitor.flow, show.time);
 }
 
+// How much later than the tick's beginning its pictures are dated: the mouth is posed for that moment.
+static void note_lead(Show& show, uint64_t picture_us) {
+  if (picture_us >= show.time_us)
+    show.picture_lead += (std::min(1e-6f * float(picture_us - show.time_us), 0.25f) - show.picture_lead) * 0.1f;
+}
+
 void make_picture(Show& show, Visitor& visitor, int busy) {
   RenderCache& cache = visitor.cache;
   const Viewpoint& at = visitor.view;
@@ -140,6 +146,7 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   header.frame = ++visitor.frame_number;
   header.seq = seq;
   header.time_us = microseconds_now();
+  note_lead(show, header.time_us);
   header.width = uint16_t(view.width);
   header.height = uint16_t(view.height);
   int quality = suggest_quality(visitor.flow, visitor.best_quality);

@@ -16,6 +16,14 @@ ShowReport make_report(const Show& show) {
   report.audience = to_string(show.audience.state);
   report.mood = to_string(show.mind.mood);
   report.totals = show.totals;
+  if (show.speech.counts) {
+    Speaker::Counts counts = show.speech.counts();
+    report.voice_running = counts.process_id != 0;
+    report.voice_restarts = counts.starts > 0 ? counts.starts - 1 : 0;
+    report.voice_lines = counts.kept;
+    report.voice_waiting = counts.waiting;
+    report.voice_failed = counts.failed;
+  }
   for (const Visitor& visitor : show.visitors) {
     const CacheStats& stats = visitor.cache.stats();
     VisitorReport one;

@@ -12,6 +12,7 @@ namespace wellspring {
 struct ShowTotals {
   uint64_t pictures = 0, picture_bytes = 0, samples = 0, messages = 0, refused_messages = 0;
   float tick_ms = 0, animate_ms = 0;  // of the last tick
+  uint64_t utterances = 0, sounds = 0, sounds_given_up = 0;  // spoken; packets sent; too slow a reader
   uint64_t visits = 0, turned_away = 0, observations = 0, greetings = 0, farewells = 0, stories = 0;
 };
 
@@ -32,6 +33,8 @@ struct ShowReport {
   int kiosks = 0;
   std::string audience = "absent", mood = "idle";
   ShowTotals totals;
+  bool voice_running = false;
+  uint64_t voice_restarts = 0, voice_lines = 0, voice_waiting = 0, voice_failed = 0;
   std::vector<VisitorReport> visitors;
 };
 

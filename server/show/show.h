@@ -15,6 +15,7 @@
 #include "show/exhibit.h"
 #include "show/figure.h"
 #include "show/report.h"
+#include "show/sound.h"
 #include "show/visitor.h"
 #include "show/voice.h"
 
@@ -56,6 +57,8 @@ struct Show {
   Pose pose;
   SkinScratch scratch;
   Voice voice;
+  SpeechSource speech;  // empty: the storyteller speaks by subtitles
+  Sounding sounding;
   bool storyteller_visible = true, humanlike = true;
   size_t greetings = 0, farewells = 0;
   std::string kiosk_news;   // the last kiosk message, to send only changes
@@ -69,6 +72,8 @@ struct Show {
 
   uint64_t ticks = 0;
   double time = 0;             // of the present tick, seconds
+  uint64_t time_us = 0;        // of the present tick on the clock of pictures and sound
+  float picture_lead = 0.02f;  // seconds from a tick to the times of its pictures, smoothed
   float samples_per_second = 200000;  // measured, all cores
   ShowTotals totals;
 };

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double agent_interval = 0.1;  // seconds between agent messages while somebody listens
 constexpr double state_interval = 0.5;
+constexpr double heard_state_interval = 0.1;  // while there is sound to be heard from somewhere
 constexpr double behave_interval = 0.04;
 constexpr double listening_interval = 0.01;  // between looks at what visitors want, pictures or not
 
@@ -110,13 +111,21 @@ void behave_and_animate(Show& show, float dt) {
   if (news != show.kiosk_news) broadcast(show, show.kiosk_news = news);
   if (show.visitors.empty() && show.eyes.empty()) return;
 
+  if (dt >= 1) show.sounding.going = false;  // the show stood still while the sound went on
+  VoiceEvents said = advance_speech(show, dt);
+  if (said.begun) show_subtitle(show, said.begun);
+  else if (said.fell_silent) show_subtitle(show, nullptr);
+
   StorytellerInput input;
   input.time = show.time;
   input.dt = dt;
   input.kiosk_motion = show.audience.state == Presence::motion;
   input.guests = show.audience.guests;
   input.humanlike = show.humanlike;
-  input.speaking = speaking(show.voice);
+  // The pose is made for the moment that its picture will carry.
+  input.speaking = speaking(show.voice, show.picture_lead);
+  if (const Speech* speech = heard(show.voice))
+    input.visemes = eval_visemes(speech->visemes, double(show.voice.elapsed + show.picture_lead));
   input.telling = !show.voice.story.empty();
   for (const Visitor& visitor : show.visitors) {
     if (!visitor.welcomed || visitor.kiosk) continue;  // a kiosk page's eyes are its camera
@@ -136,9 +145,7 @@ void behave_and_animate(Show& show, float dt) {
     show.totals.farewells++;
     say(show.voice, nth_line(place.farewells, show.farewells++), true);
   }
-  VoiceEvents said = advance_voice(show.voice, dt);
-  if (said.begun) show_subtitle(show, said.begun);
-  else if (said.fell_silent) show_subtitle(show, nullptr);
+  send_sounds(show);
 
   bool news_due = show.time - show.agent_sent_at >= agent_interval || show.mind.mood != show.agent_mood;
   if (news_due) {
@@ -154,7 +161,8 @@ void behave_and_animate(Show& show, float dt) {
 }
 
 void send_state(Show& show, Visitor& visitor) {
-  if (show.time - visitor.state_sent_at < state_interval) return;
+  double interval = visitor.utterance != 0 ? heard_state_interval : state_interval;
+  if (show.time - visitor.state_sent_at < interval) return;
   visitor.state_sent_at = show.time;
   visitor.link->send_text(state_news(visitor, show.exhibit));
 }
@@ -172,6 +180,7 @@ void announce_stop(Show& show, Visitor& visitor, const TourStep& step) {
 void tick(Show& show, Arrivals& arrivals, double now) {
   float dt = show.ticks == 0 ? 0 : float(std::clamp(now - show.time, 0.0, 1.0));
   show.time = std::max(show.time, now);
+  show.time_us = microseconds_now();
   show.ticks++;
   double began = seconds_now();
 

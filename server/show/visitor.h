@@ -36,6 +36,11 @@ struct Visitor {
   bool welcomed = false, left = false;
   bool kiosk = false;
   std::string lang = "en", name;
+  // Sound of the utterance that is being sent.
+  bool sound = true;           // wants to hear
+  uint32_t utterance = 0;      // 0: none
+  uint32_t given_up = 0;       // the utterance that was too much for its connection
+  size_t samples_sent = 0;
   // Place.
   Viewpoint view;
   vec3 move{0};      // as last asked for: right, up, forward

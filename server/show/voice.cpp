@@ -27,13 +27,17 @@ LocalText nth_line(const LocalLines& lines, size_t index) {
   return text;
 }
 
-void hush(Voice& voice) { voice = Voice{}; }
+void hush(Voice& voice) {
+  uint32_t cuts = voice.cuts + 1;
+  voice = Voice{};
+  voice.cuts = cuts;
+}
 
 void say(Voice& voice, LocalText text, bool override_all) {
   if (text.empty()) return;
   if (override_all) hush(voice);
   float seconds = speaking_seconds(text);
-  voice.queue.push_back({std::move(text), seconds});
+  voice.queue.push_back({std::move(text), seconds, nullptr});
 }
 
 void tell(Voice& voice, const StoryText& story, int from_sentence) {
@@ -50,32 +54,49 @@ void tell(Voice& voice, const StoryText& story, int from_sentence) {
   voice.sentence = from_sentence;
 }
 
-VoiceEvents advance_voice(Voice& voice, float dt) {
+VoiceEvents advance_voice(Voice& voice, float dt, const AskSpeech& ask) {
   VoiceEvents events;
   if (voice.queue.empty() || voice.paused) return events;
-  if (!voice.started) {
-    voice.started = true;
-    voice.elapsed = 0;
-    events.begun = &voice.queue.front();
-    return events;
+  dt = std::max(dt, 0.0f);
+  if (voice.started) {
+    voice.elapsed += dt;
+    if (voice.elapsed < voice.queue.front().seconds) return events;
+    voice.queue.pop_front();
+    voice.elapsed = voice.waited = 0;
+    voice.sentence++;
+    voice.started = false;
+    events.ended = true;
+    if (voice.queue.empty()) {
+      voice.story.clear();
+      events.fell_silent = true;
+      return events;
+    }
+    dt = 0;  // the next one has not waited yet
   }
-  voice.elapsed += std::max(dt, 0.0f);
-  if (voice.elapsed < voice.queue.front().seconds) return events;
-  voice.queue.pop_front();
+  Utterance& front = voice.queue.front();
+  SpeechState answer = ask ? ask(front) : SpeechState{};
+  voice.waited += dt;
+  if (answer.pending && voice.waited < longest_wait) return events;
+  voice.started = true;
   voice.elapsed = 0;
-  voice.sentence++;
-  voice.started = !voice.queue.empty();
-  if (voice.queue.empty()) {
-    voice.story.clear();
-    events.fell_silent = true;
-  } else {
-    events.begun = &voice.queue.front();
+  front.speech = std::move(answer.speech);
+  if (front.speech) {
+    front.seconds = float(front.speech->duration) + breath;
+    voice.elapsed = -speech_lead;
   }
+  events.begun = &front;
   return events;
 }
 
-float speaking(const Voice& voice) {
+const Speech* heard(const Voice& voice) {
+  if (voice.queue.empty() || voice.paused || !voice.started) return nullptr;
+  return voice.queue.front().speech.get();
+}
+
+float speaking(const Voice& voice, float ahead) {
   if (voice.queue.empty() || voice.paused || !voice.started) return 0;
+  if (const Speech* speech = heard(voice))
+    return 1 - eval_visemes(speech->visemes, double(voice.elapsed + ahead))[size_t(Viseme::sil)];
   float left = voice.queue.front().seconds - voice.elapsed - breath;
   return std::clamp(std::min(voice.elapsed / 0.15f, left / 0.15f), 0.0f, 1.0f);
 }

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the storyteller is saying: a queue of sentences with times, shown as subtitles and moving its
-// mouth. A value advanced by time.
+// What the storyteller is saying: a queue of sentences with times, shown as subtitles, heard, and moving
+// its mouth. A value advanced by time. A sentence takes as long as its speech; where there is none (it is
+// not ready in time, or nobody speaks its language) as long as its text takes to read.
 #pragma once
 #include <deque>
+#include <functional>
+#include <memory>
 #include <string>
 
+#include "avatar/speech.h"
 #include "show/exhibit.h"
 
 namespace wellspring {
@@ -12,21 +16,36 @@ namespace wellspring {
 struct Utterance {
   LocalText text;
   float seconds = 0;
+  std::shared_ptr<const Speech> speech;  // set when it begins; null: subtitles only
 };
 
 struct Voice {
   std::deque<Utterance> queue;  // front: being said
-  float elapsed = 0;            // of the front
+  float elapsed = 0;            // of the front; below 0: the breath before it
+  float waited = 0;             // seconds the front has waited for its speech
   bool started = false;         // the front's subtitle has been shown
   bool paused = false;
   std::string story;            // id of the story being told; "" for greetings and the like
   int sentence = 0;             // of the story
+  uint32_t cuts = 0;            // how often what was being said has been broken off
+  uint64_t asked_by = 0;        // link id of the visitor who asked for it; 0: nobody
 };
 
 struct VoiceEvents {
   const Utterance* begun = nullptr;  // points into the queue; valid until the next change
+  bool ended = false;                // the one before has been said to its end
   bool fell_silent = false;
 };
+
+// The speech of a sentence that is due: there, on its way, or none.
+struct SpeechState {
+  std::shared_ptr<const Speech> speech;
+  bool pending = false;
+};
+using AskSpeech = std::function<SpeechState(const Utterance&)>;
+
+inline constexpr float longest_wait = 1.5f;  // seconds for a speech that is not ready
+inline constexpr float speech_lead = 0.2f;   // silence before a speech: its sound travels ahead
 
 // How long a text takes to say and read: 0.9 s and 60 ms a character of its longest language.
 float speaking_seconds(const LocalText& text);
@@ -37,8 +56,12 @@ LocalText nth_line(const LocalLines& lines, size_t index);
 void say(Voice& voice, LocalText text, bool override_all);
 void tell(Voice& voice, const StoryText& story, int from_sentence = 0);
 void hush(Voice& voice);
-VoiceEvents advance_voice(Voice& voice, float dt);
-// Mouth activity now, 0 to 1: rises and falls with the syllables' pace.
-float speaking(const Voice& voice);
+// Without `ask` everything is told by subtitles.
+VoiceEvents advance_voice(Voice& voice, float dt, const AskSpeech& ask = {});
+// What is being heard now, or null: between sentences, in a pause, without a speech.
+const Speech* heard(const Voice& voice);
+// Mouth activity `ahead` seconds from now, 0 to 1: what is not silence of the speech, else a rise at the
+// beginning of the sentence and a fall at its end.
+float speaking(const Voice& voice, float ahead = 0);
 
 }  // namespace wellspring

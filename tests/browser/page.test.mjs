@@ -100,6 +100,53 @@ test('places, menu, language and story', { skip }, async () => {
   await page.close();
 });
 
+test('the storyteller is heard after the first touch, from where she stands, and can be silenced', { skip: skip || !existsSync(join(process.env.WELLSPRING_BIN, 'wellspring_voice')) && 'wellspring_voice has not been built' }, async () => {
+  const { page, problems } = await open();
+  const button = page.locator('#sound-button');
+  assert.equal(await button.getAttribute('aria-label'), 'Turn sound on');
+  await page.locator('#menu-button').click();
+  await page.waitForFunction(() => document.getElementById('sound-button').dataset.sound === 'on');
+  assert.equal(await button.getAttribute('aria-pressed'), 'true');
+  await page.locator('#stories button').first().click();
+  await page.waitForFunction(() => Number(document.getElementById('sound-button').dataset.pieces) >= 6, null, { timeout: 30000 });
+  assert.ok(Math.abs(Number(await button.getAttribute('data-slip'))) < 60, `pieces ${await button.getAttribute('data-slip')} ms off`);
+  await shot(page, 'sound');
+  await button.click();
+  await page.waitForFunction(() => document.getElementById('sound-button').dataset.sound === 'off');
+  assert.equal(await button.getAttribute('aria-label'), 'Turn sound on');
+  const pieces = await button.getAttribute('data-pieces');
+  await sleep(900);
+  assert.equal(await button.getAttribute('data-pieces'), pieces, 'nothing is played any more');
+  const told = await page.evaluate(async () => {
+    const { read_sound } = await import('./packet.js');
+    const { in_front_of, loudness } = await import('./sound.js');
+    const bytes = new ArrayBuffer(60), view = new DataView(bytes);
+    view.setUint32(0, 0x31415357, true);
+    view.setUint8(24, 1);
+    view.setUint16(26, 56, true);
+    view.setUint32(28, 22050, true);
+    view.setFloat64(40, 1.5, true);
+    view.setInt16(56, -16384, true);
+    const read = read_sound(bytes);
+    view.setUint16(26, 58, true);
+    const longer = read_sound(bytes);
+    view.setUint16(26, 61, true);
+    return { samples: [...read.samples], mouth: read.mouth, longer: longer.samples.length, bad: read_sound(bytes), short: read_sound(new ArrayBuffer(55)),
+      right: in_front_of({ position: [1, 1, 1], yaw: 0 }, [3, 1, 1]), ahead: in_front_of({ position: [0, 0, 0], yaw: Math.PI / 2 }, [-2, 0, 0]),
+      levels: [0, 1, 3, 1000].map(loudness) };
+  });
+  assert.deepEqual(told.samples, [-0.5, 0]);
+  assert.deepEqual(told.mouth, [0, 1.5, 0]);
+  assert.equal(told.longer, 1);
+  assert.deepEqual([told.bad, told.short], [null, null]);
+  assert.deepEqual(told.right, [2, 0, 0]);
+  assert.ok(Math.hypot(told.ahead[0], told.ahead[1], told.ahead[2] + 2) < 1e-9, `${told.ahead}`);
+  assert.deepEqual(told.levels, [1, 1, 0.5, 0.1]);
+  assert.deepEqual(problems, []);
+  await page.evaluate(() => localStorage.clear());
+  await page.close();
+});
+
 test('phone and kiosk sizes hold everything inside the window', { skip }, async () => {
   for (const [path, width, height] of [['/', 390, 844], ['/', 844, 390], ['/', 1920, 1080], ['/kiosk', 1080, 1920]]) {
     const { page, problems } = await open(path, { width, height });

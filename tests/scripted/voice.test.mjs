@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// The storyteller heard over the WebSocket: sound in time with the mouth, as documented.
+import assert from 'node:assert/strict';
+import { existsSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Visitor, sleep, start_server } from '../server.mjs';
+
+const skip = !existsSync(join(process.env.WELLSPRING_BIN, 'wellspring_voice')) && 'wellspring_voice has not been built';
+let server;
+before(async () => { if (!skip) server = await start_server(); });
+after(async () => { if (server) assert.equal(await server.stop(), 0); });
+
+const metric = async (name) => Number(new RegExp(`^wellspring_${name} (\\S+)$`, 'm').exec(await (await fetch(`${server.url}/metrics`)).text())[1]);
+async function lines_are_spoken() {
+  for (let i = 0; i < 300; i++) {
+    if (await metric('voice_lines') > 0 && await metric('voice_lines_waiting') === 0) return;
+    await sleep(100);
+  }
+  assert.fail('the lines are not spoken within 30 s');
+}
+const loudness = (samples) => Math.sqrt(samples.reduce((sum, v) => sum + v * v, 0) / Math.max(1, samples.length));
+
+test('a story is heard, and the mouth moves in time with it', { skip }, async () => {
+  await lines_are_spoken();
+  assert.equal(await metric('voice_running'), 1);
+  assert.equal(await metric('voice_failed_total'), 0);
+  const visitor = new Visitor(server);
+  const { stories, storyteller } = await visitor.hello({ lang: 'en' });
+  const mouths = [];
+  visitor.next((item) => { if (item.message?.type === 'agent' && item.message.mouth) mouths.push(item.message.mouth); return false; }, '', 60000).catch(() => {});
+  const started = visitor.message('speech', (message) => message.action === 'start');
+  visitor.send({ type: 'storyteller', story: stories[0].id });
+  const speech = await started;
+  assert.equal(speech.lang, 'en');
+  assert.equal(speech.words.length, speech.text.split(/\s+/).length);
+  const next = await visitor.message('speech', (message) => message.action === 'start');
+  assert.ok(next.utterance > speech.utterance);
+  const pieces = visitor.sounds.filter((sound) => sound.utterance === speech.utterance);
+  const { rate, total, time_us, mouth } = pieces[0];
+  assert.ok(Math.abs(total / rate - speech.seconds) < 1e-3);
+  const heard = pieces.flatMap((sound) => sound.samples);
+  assert.equal(heard.length, total, 'every sample, once');
+  let at = 0;
+  for (const piece of pieces) {
+    assert.equal(piece.start, at);
+    assert.ok(Math.abs(piece.time_us - time_us - 1e6 * at / rate) < 2);
+    at += piece.samples.length;
+  }
+  assert.ok(loudness(heard) > 300, `loudness ${loudness(heard)}`);
+  // Where the mouth is: on the storyteller's head.
+  assert.ok(Math.hypot(mouth[0] - storyteller.position[0], mouth[2] - storyteller.position[2]) < 0.5);
+  assert.ok(mouth[1] - storyteller.position[1] > 1.2 && mouth[1] - storyteller.position[1] < 1.9, `mouth at ${mouth}`);
+  // Lips as the pictures show them, against the sound of the same moment.
+  const around = (seconds) => loudness(heard.slice(Math.max(0, Math.round((seconds - 0.02) * rate)), Math.max(0, Math.round((seconds + 0.02) * rate))));
+  const seen = mouths.filter((one) => one.utterance === speech.utterance && one.seconds >= 0 && one.seconds < speech.seconds);
+  assert.ok(seen.length > 10, `${seen.length} mouths seen`);
+  const levels = (test) => seen.filter(test).map((one) => around(one.seconds)).sort((a, b) => a - b);
+  const vowels = levels((one) => ['aa', 'E', 'ih', 'oh', 'ou'].includes(one.viseme));
+  assert.ok(vowels.length > 2 && vowels[vowels.length >> 1] > 0.7 * loudness(heard), `vowels ${vowels}`);
+  const closed = levels((one) => one.viseme === 'sil');
+  if (closed.length) assert.ok(closed[closed.length >> 1] < 0.3 * loudness(heard), `silence ${closed}`);
+  await visitor.close();
+});
+
+test('stop is heard at once, and nothing is sent to those who do not listen', { skip }, async () => {
+  await lines_are_spoken();
+  const visitor = new Visitor(server), deaf = new Visitor(server);
+  const { stories } = await visitor.hello({ lang: 'sk' });
+  await deaf.hello();
+  deaf.send({ type: 'settings', sound: false });
+  await sleep(200);
+  const started = visitor.message('speech', (message) => message.action === 'start' && message.lang === 'sk');
+  visitor.send({ type: 'storyteller', story: stories[0].id });
+  const { utterance } = await started;
+  await sleep(500);
+  const stopped = visitor.message('speech', (message) => message.action === 'stop');
+  visitor.send({ type: 'storyteller', action: 'stop' });
+  assert.equal((await stopped).utterance, utterance);
+  const sent = visitor.sounds.length;
+  assert.ok(sent > 0);
+  await sleep(700);
+  assert.equal(visitor.sounds.length, sent);
+  assert.equal(deaf.sounds.length, 0);
+  await visitor.close();
+  await deaf.close();
+});
+
+test('the description names sound and speech', { skip }, async () => {
+  const api = await (await fetch(`${server.url}/api/v1/`)).json();
+  assert.equal(api.binary.sound.magic, 'WSA1');
+  assert.ok(api.server_to_browser.speech.utterance && api.browser_to_server.settings.sound);
+});
