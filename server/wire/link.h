@@ -25,7 +25,7 @@ class Link {
  public:
   static constexpr size_t max_texts_in = 256;  // more unread: the oldest are dropped and counted
   static constexpr size_t max_bytes_in = 1 << 20;  // likewise
-  static constexpr size_t max_texts_out = 64;  // more unsent: the link is closed (a reader this slow is gone)
+  static constexpr size_t max_texts_out = 128;  // more unsent: the link is closed (a reader this slow is gone)
 
   static constexpr size_t max_sound_out = 192 * 1024;  // bytes unsent, four seconds of speech: all of it is dropped
 

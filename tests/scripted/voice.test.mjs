@@ -60,6 +60,8 @@ test('a story is heard, and the mouth moves in time with it', { skip }, async ()
   assert.ok(vowels.length > 2 && vowels[vowels.length >> 1] > 0.7 * loudness(heard), `vowels ${vowels}`);
   const closed = levels((one) => one.viseme === 'sil');
   if (closed.length) assert.ok(closed[closed.length >> 1] < 0.3 * loudness(heard), `silence ${closed}`);
+  visitor.send({ type: 'storyteller', action: 'stop' });
+  await visitor.message('agent', (message) => message.story === null);
   await visitor.close();
 });
 

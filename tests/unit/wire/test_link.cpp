@@ -67,7 +67,7 @@ TEST(Link, texts_and_sounds_in_order_then_the_newest_picture) {
   EXPECT_FALSE(link.take_out(out));
 }
 
-TEST(Link, a_reader_64_texts_behind_is_closed) {
+TEST(Link, a_reader_128_texts_behind_is_closed) {
   Link link(1, LinkKind::visit, "");
   std::string reason;
   for (size_t i = 0; i < Link::max_texts_out; i++) link.send_text("t");
