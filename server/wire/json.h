@@ -29,7 +29,7 @@ inline constexpr double max_kiosk_distance = 100;  // metres, each coordinate of
 inline constexpr double max_time = 1e12;         // seconds, observation.time, both signs
 inline constexpr double max_decoded_ms = 600e3;  // ack.decoded_ms, from 0
 inline constexpr int min_side = 16, max_side = 4096;  // width and height in pixels
-inline constexpr double min_fps = 1, max_fps = 240;   // settings.fps
+inline constexpr double min_fps = 0, max_fps = 240;   // settings.fps; 0: as the server likes
 inline constexpr int min_jpeg_quality = 1, max_jpeg_quality = 100;  // settings.quality and .max_quality
 inline constexpr size_t max_people = 32;         // in one observation
 
