@@ -6,7 +6,8 @@
 // embree-tools): its quads, its diffuse colours, its one point light, its camera, and paths as
 // long as its own, eight vertices. A ray is any query for a nearest hit or for an occluder. Both
 // sides leave out shadow rays that they do not trace. The other program's count is taken as it
-// prints it (BENCHMARK_RENDER_MRAYPS_AVG; its rays a sample agree with its paths). Ours are counted by tracing the same samples again on one thread, untimed.
+// prints it (BENCHMARK_RENDER_MRAYPS_AVG). Ours are counted by tracing the same samples again on one
+// thread, untimed.
 #pragma once
 #include "report.h"
 
