@@ -3,24 +3,22 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "wire/little_endian.h"
 
 namespace wellspring {
 
-static constexpr uint8_t sound_magic[4] = {'W', 'S', 'A', '1'};
+static constexpr Magic sound_magic{'W', 'S', 'A', '1'};
 
 Packet make_sound_packet(const SoundHeader& header, std::span<const int16_t> samples) {
   Packet packet(sound_header_bytes + 2 * samples.size());
-  std::memcpy(packet.data(), sound_magic, sizeof(sound_magic));
+  put_envelope(packet, sound_magic, sound_header_bytes);
   put(packet, 4, header.utterance);
   put(packet, 8, header.start);
   put(packet, 12, header.time_us);
   put(packet, 20, header.total);
   put(packet, 24, header.channels);
   put(packet, 25, header.flags);
-  put(packet, 26, uint16_t(sound_header_bytes));
   put(packet, 28, header.rate);
   for (int i = 0; i < 3; i++)
     put(packet, size_t(32 + 8 * i), std::bit_cast<uint64_t>(header.mouth[i]));
@@ -30,10 +28,8 @@ Packet make_sound_packet(const SoundHeader& header, std::span<const int16_t> sam
 }
 
 std::optional<SoundView> read_sound_packet(std::span<const uint8_t> bytes) {
-  if (bytes.size() < sound_header_bytes) return std::nullopt;
-  if (std::memcmp(bytes.data(), sound_magic, sizeof(sound_magic)) != 0) return std::nullopt;
-  const size_t header_bytes = get<uint16_t>(bytes, 26);
-  if (header_bytes < sound_header_bytes || header_bytes > bytes.size()) return std::nullopt;
+  const auto payload = get_payload(bytes, sound_magic, sound_header_bytes);
+  if (!payload) return std::nullopt;
   SoundView view;
   SoundHeader& header = view.header;
   header.utterance = get<uint32_t>(bytes, 4);
@@ -45,16 +41,15 @@ std::optional<SoundView> read_sound_packet(std::span<const uint8_t> bytes) {
   header.rate = get<uint32_t>(bytes, 28);
   for (int i = 0; i < 3; i++)
     header.mouth[i] = std::bit_cast<double>(get<uint64_t>(bytes, size_t(32 + 8 * i)));
-  const auto payload = bytes.subspan(header_bytes);
   if (header.channels == 0 || header.rate == 0) return std::nullopt;
-  if (payload.size() % (2u * header.channels) != 0) return std::nullopt;
-  if (uint64_t(header.start) + payload.size() / 2 / header.channels > header.total)
+  if (payload->size() % (2u * header.channels) != 0) return std::nullopt;
+  if (uint64_t(header.start) + payload->size() / 2 / header.channels > header.total)
     return std::nullopt;
   for (int i = 0; i < 3; i++)
     if (!std::isfinite(header.mouth[i])) return std::nullopt;
-  view.samples.resize(payload.size() / 2);
+  view.samples.resize(payload->size() / 2);
   for (size_t i = 0; i < view.samples.size(); i++)
-    view.samples[i] = int16_t(get<uint16_t>(payload, 2 * i));
+    view.samples[i] = int16_t(get<uint16_t>(*payload, 2 * i));
   return view;
 }
 

@@ -8,20 +8,14 @@
 #include <fstream>
 
 #include "avatar/speaker.h"
+#include "unit/avatar/folder.h"
 
 namespace wellspring {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "wellspring-speech-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
-};
+using test::Folder;
 
 SpeechAnswer get(const std::shared_future<SpeechAnswer>& answer) {
   if (answer.wait_for(std::chrono::seconds(30)) != std::future_status::ready)

@@ -15,25 +15,14 @@
 #include "avatar/speech_sound.h"
 #include "base/load_error.h"
 #include "base/rng.h"
+#include "unit/avatar/folder.h"
 
 namespace wellspring {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "wellspring-sound-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
-  std::string file(const std::string& name) const { return (path / name).string(); }
-  std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path / name, std::ios::binary) << bytes;
-    return file(name);
-  }
-};
+using test::Folder;
 
 std::string error_of(const std::string& file) {
   try {

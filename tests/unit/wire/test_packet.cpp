@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
-
+#include "unit/wire/golden.h"
 #include "wire/packet.h"
 
 using namespace wellspring;
 
-static Packet golden_picture() {
-  std::ifstream file(std::string(WELLSPRING_SOURCE) + "/tests/protocol/picture.hex");
-  EXPECT_TRUE(file);
-  Packet bytes;
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with('#')) continue;
-    std::istringstream words(line);
-    for (std::string word; words >> word;) bytes.push_back(uint8_t(std::stoi(word, nullptr, 16)));
-  }
-  return bytes;
-}
+static Packet golden_picture() { return test::read_golden("picture.hex"); }
 
 static constexpr PacketHeader golden_header{.frame = 0x04030201,
                                             .seq = 0x14131211,

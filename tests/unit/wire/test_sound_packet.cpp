@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
-
+#include "unit/wire/golden.h"
 #include "wire/sound_packet.h"
 
 using namespace wellspring;
 
-static Packet golden_sound() {
-  std::ifstream file(std::string(WELLSPRING_SOURCE) + "/tests/protocol/sound.hex");
-  EXPECT_TRUE(file);
-  Packet bytes;
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with('#')) continue;
-    std::istringstream words(line);
-    for (std::string word; words >> word;) bytes.push_back(uint8_t(std::stoi(word, nullptr, 16)));
-  }
-  return bytes;
-}
+static Packet golden_sound() { return test::read_golden("sound.hex"); }
 
 static const SoundHeader golden_header{.utterance = 0x04030201,
                                        .start = 2,
