@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "avatar/story_cue.h"
 #include "base/vec.h"
 
 namespace wellspring {
@@ -36,6 +37,7 @@ struct StorytellerInput {
   std::optional<std::array<float, 15>> visemes;
   bool telling =
       false;  // a story is being told (Mood::telling while no greeting or farewell is due)
+  StoryCue story;  // what its text asks of face, eyes and hands
 };
 
 // What happened in this tick, for subtitles and messages.
