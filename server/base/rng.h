@@ -14,9 +14,10 @@ inline uint64_t mix64(uint64_t z) {
   return z ^ (z >> 31);
 }
 
-// The address of one pixel sample as a seed.
+// The address of one pixel sample as a seed. Neighbouring seeds are hashed apart first, so that
+// none draws what another drew a row further.
 inline uint64_t sample_seed(uint64_t seed, uint32_t x, uint32_t y, uint32_t index) {
-  return mix64(mix64(seed ^ (uint64_t(x) << 32 | y)) ^ index);
+  return mix64(mix64(mix64(seed) ^ (uint64_t(x) << 32 | y)) ^ index);
 }
 
 struct Rng {

@@ -129,8 +129,10 @@ float sample_bsdf_pdf(const Bsdf& b, const BsdfValue& value, Lobes lobes) {
 
 BsdfSample sample_bsdf(const Bsdf& b, Lobes lobes, Sampler& sampler) {
   float share = lobes == Lobes::all ? b.diffuse_share : lobes == Lobes::diffuse ? 1.0f : 0.0f;
-  float u = sampler.next();
   BsdfSample s;
+  // Where there is nothing to choose, the number's place in the sequence is left out.
+  bool choice = share < 1 && (share > 0 || b.beneath < 1);
+  float u = choice ? sampler.next() : (sampler.seek(sampler.drawn + 1), 0.0f);
   if (u < share) {
     s.direction = to_world(b, sample_cosine_hemisphere(sampler.next2()));
   } else if (!has_specular(b)) {

@@ -18,7 +18,7 @@ FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const
     vec3 place = near ? light.position : -light.direction;
     size_t g = i / lane_count, lane = i % lane_count;
     few.x[g][lane] = place.x, few.y[g][lane] = place.y, few.z[g][lane] = place.z;
-    few.near[g][lane] = near;
+    few.near[g][lane] = few.is_near[i] = near;
     few.axis_x[g][lane] = light.direction.x, few.axis_y[g][lane] = light.direction.y;
     few.axis_z[g][lane] = light.direction.z;
     few.outer[g][lane] = spot ? cones[i].outer : -3;

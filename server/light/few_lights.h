@@ -22,6 +22,7 @@ struct FewLights {
   Lanes outer[groups], scale[groups];  // all directions are in the cone of what is no spot
   Lanes range2_inverse[groups];        // 0: it reaches everywhere
   Lanes strength[groups];              // luminance; 0 beyond the last light
+  bool is_near[most];
   int count = 0;                       // 0: there are none, or more than `most`
 };
 FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const SpotCone> cones);

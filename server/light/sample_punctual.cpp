@@ -59,8 +59,7 @@ LightSample draw_of_few(const LightTables& tables, const Surface& from, vec3 nor
   float sum = distant ? effects.distant_sum : effects.near_sum, left = u.x * sum;
   int chosen = -1;
   for (int i = 0; i < few.count; i++) {
-    bool near = tables.punctual[size_t(i)].type != PunctualType::directional;
-    if (near == distant || !(effects.effect[i] > 0)) continue;
+    if (few.is_near[i] == distant || !(effects.effect[i] > 0)) continue;
     chosen = i;
     if (left < effects.effect[i]) break;
     left -= effects.effect[i];

@@ -41,23 +41,30 @@ Face face_of(const PlacedMesh& placed, uvec3 index) {
 
 // Unit vector, or `otherwise` where there is no direction. Scaled first: slivers must not
 // underflow.
-vec3 unit_or(vec3 v, vec3 otherwise) {
-  float length2 = dot(v, v);
-  if (length2 > 1e-25f && length2 < 1e25f) return v / std::sqrt(length2);
+vec3 rare_unit_or(vec3 v, vec3 otherwise) {
   float largest = max_component(glm::abs(v));
   if (!(largest > 1e-30f) || !std::isfinite(largest)) return otherwise;
   v /= largest;
   return v / std::sqrt(dot(v, v));
 }
+inline vec3 unit_or(vec3 v, vec3 otherwise) {
+  float length2 = dot(v, v);
+  bool usual = length2 > 1e-25f && length2 < 1e25f;
+  return usual ? v / std::sqrt(length2) : rare_unit_or(v, otherwise);
+}
 
-vec4 lookup(const Scene& scene, const Mesh& mesh, const Corners& at, const TextureRef& reference) {
-  if (reference.texture < 0) return vec4(1);
+vec4 read_picture(const Scene& scene, const Mesh& mesh, const Corners& at,
+                  const TextureRef& reference) {
   const Texture& texture = scene.textures[size_t(reference.texture)];
   if (texture.image < 0) return vec4(1);
   const std::vector<vec2>& set = mesh.uv[reference.uv_set];
   vec2 uv = set.empty() ? vec2(0) : at(set);
   return eval_texture(scene.images[size_t(texture.image)], texture,
                       vec2(reference.uv_transform * vec3(uv, 1)));
+}
+inline vec4 lookup(const Scene& scene, const Mesh& mesh, const Corners& at,
+                   const TextureRef& reference) {
+  return reference.texture < 0 ? vec4(1) : read_picture(scene, mesh, at, reference);
 }
 
 // Along u and v of the picture, on the winding's side; the mesh must have tangents.
@@ -126,7 +133,7 @@ void resolve_material(const Scene& scene, const PlacedMesh& placed, const Corner
     surface.metallic *= t.z;
   }
   surface.emission = vec3(0);
-  if (surface.front || m.double_sided)
+  if ((surface.front || m.double_sided) && m.emission != vec3(0))
     surface.emission = m.emission * vec3(lookup(scene, mesh, at, m.emission_texture));
   surface.transmission = m.transmission;
   if (m.transmission > 0 && m.transmission_texture.texture >= 0)
@@ -196,12 +203,13 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
   if (!placed.in_place) shading = placed.normal_to_world * shading;
   shading = unit_or(shading, geometric);
   const Material& material = *placed.material;
-  vec3 mapped = mapped_normal(scene, placed, at, shading, material.normal_texture,
-                              material.normal_scale);
+  vec3 mapped = shading;
+  if (material.normal_texture.texture >= 0)
+    mapped = mapped_normal(scene, placed, at, shading, material.normal_texture,
+                           material.normal_scale);
   if (!surface.front) geometric = -geometric;
   surface.geometric_normal = geometric;
   surface.normal = turned_to_viewer(mapped, geometric, surface.front);
-  if (!mesh.uv[0].empty()) surface.uv = at(mesh.uv[0]);
   resolve_material(scene, placed, at, surface);
   if (material.anisotropy > 0) resolve_anisotropy(scene, placed, at, shading, surface);
   resolve_layers(scene, placed, at, shading, surface);

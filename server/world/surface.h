@@ -10,7 +10,6 @@ struct Surface {
   vec3 geometric_normal{0, 1, 0};  // unit, on the side the ray came from
   vec3 normal{0, 1, 0};  // shading normal after normal map, same hemisphere as geometric_normal
   bool front = true;     // the ray came from the side the triangle's winding faces
-  vec2 uv{0};
   uint32_t instance = 0, triangle = 0, object = 0;
   vec2 barycentric{0};
   int material = 0;

@@ -53,6 +53,15 @@ TEST(Rng, NeighbouringSamplesHaveUnrelatedSeeds) {
   EXPECT_NEAR(sum / 10000, 0.5, 4 * 0.2887 / 100);  // four standard errors
 }
 
+// A picture of the next seed is not this one, moved by a row.
+TEST(Rng, NeighbouringSeedsShareNoSamples) {
+  std::set<uint64_t> seeds;
+  for (uint64_t seed = 0; seed < 4; seed++)
+    for (uint32_t y = 0; y < 20; y++)
+      for (uint32_t x = 0; x < 20; x++) seeds.insert(sample_seed(seed, x, y, 0));
+  EXPECT_EQ(seeds.size(), 1600u);
+}
+
 TEST(Latest, NewestWinsAndDropsAreCounted) {
   Latest<int> box;
   EXPECT_FALSE(box.take());

@@ -71,7 +71,7 @@ void add_slabs(std::vector<AnalyticCase>& cases) {
     double back = r + (1 - r) * (1 - r) * r * a * a / (1 - r * r * a * a);
     cases.push_back({"slab that absorbs, index " + std::to_string(index), scene,
                      ray_towards({0.1f, 0.1f, 3}, {0.1f, 0.1f, 0}), through + back, chains, deep,
-                     512});
+                     768});  // few samples come back, and bring most of the light
     // From within, half way through: out at this face, or back across the whole slab first. Inside,
     // radiance is denser by the squared index.
     double inside = double(index) * double(index) * (1 - r) * std::sqrt(a) / (1 - r * a);

@@ -201,7 +201,7 @@ TEST(InstantRadiosity, ClippedIsDarkerCompensatedIsPath) {
   clipped.instant.compensate = false;
   Estimate path = estimate_radiance(*find_technique("path"), world, lights, view, settings,
                                     {24, 24, 1});
-  Estimate full = estimate_radiance(instant(), world, lights, view, settings, {24, 6, 2});
+  Estimate full = estimate_radiance(instant(), world, lights, view, settings, {36, 6, 2});
   Estimate less = estimate_radiance(instant(), world, lights, view, clipped, {24, 3, 3});
   Family same;
   same.add_same("compensated", full, path);
