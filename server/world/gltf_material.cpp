@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "world/gltf_data.h"
+#include "gltf/data.h"
 #include "world/gltf_image.h"
 
 namespace wellspring::gltf {

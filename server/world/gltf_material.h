@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials, textures and samplers of a glTF file. Only pictures that a material uses are opened.
 #pragma once
-#include "world/gltf.h"
+#include "gltf/file.h"
 #include "world/scene.h"
 
 namespace wellspring::gltf {

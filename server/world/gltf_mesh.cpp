@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "world/gltf_attributes.h"
-#include "world/gltf_data.h"
+#include "gltf/attributes.h"
+#include "gltf/data.h"
 #include "world/mesh_finish.h"
 
 namespace wellspring::gltf {

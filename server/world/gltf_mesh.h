@@ -3,7 +3,7 @@
 // section 3.7).
 #pragma once
 #include "base/vec.h"
-#include "world/gltf.h"
+#include "gltf/file.h"
 #include "world/scene.h"
 
 namespace wellspring::gltf {

@@ -7,12 +7,12 @@
 #include <map>
 
 #include "base/load_error.h"
-#include "world/gltf_attributes.h"
-#include "world/gltf_data.h"
+#include "gltf/attributes.h"
+#include "gltf/data.h"
 #include "world/gltf_image.h"
 #include "world/gltf_material.h"
 #include "world/gltf_mesh.h"
-#include "world/gltf_pose.h"
+#include "gltf/pose.h"
 
 namespace wellspring {
 namespace {

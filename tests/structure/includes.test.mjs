@@ -12,11 +12,12 @@ const may_include = {
   base: [],
   wire: ['base'],
   frame: ['base'],
-  world: ['base'],
+  gltf: ['base'],
+  world: ['gltf', 'base'],
   light: ['world', 'frame', 'base'],
   cache: ['light', 'world', 'frame', 'base'],
-  avatar: ['base'],
-  show: ['cache', 'light', 'world', 'frame', 'avatar', 'wire', 'base'],
+  avatar: ['gltf', 'base'],
+  show: ['cache', 'light', 'world', 'gltf', 'frame', 'avatar', 'wire', 'base'],
   stream: ['wire', 'base'],
   kiosk: ['wire', 'base'],
 };
@@ -25,7 +26,6 @@ const heavy = [
   [/^(boost\/(beast|asio)|boost\/)/, ['stream', 'kiosk']],
   [/^opencv2?\//, ['kiosk']],
   [/^embree[34]?\//, ['world']],
-  [/^tiny_gltf/, ['world']],
   [/^(pugixml|sndfile)/, ['avatar']],
   [/^espeak-ng\//, []],  // GPL: the voice program's one file
   [/^(turbojpeg|OpenEXR|Imf)/, ['frame']],

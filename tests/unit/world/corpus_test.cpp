@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Real files: all valid ones load, and each bad one is refused or loads as the policy in
-// world/gltf.h says.
+// gltf/file.h says.
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -70,7 +70,7 @@ TEST(Corpus, ValidFilesLoad) {
   EXPECT_GT(loaded, 70);
 }
 
-// What the validator calls an error and yet has one meaning that can be shown (world/gltf.h).
+// What the validator calls an error and yet has one meaning that can be shown (gltf/file.h).
 const std::map<std::string, const char*> only_odd = {
     {"EMPTY_ENTITY", "an empty list"},
     {"DUPLICATE_ELEMENTS", "an extension listed twice"},

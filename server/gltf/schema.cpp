@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "world/gltf.h"
+#include "gltf/file.h"
 
 namespace wellspring::gltf {
 namespace {

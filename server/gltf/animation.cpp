@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "world/gltf_animation.h"
+#include "gltf/animation.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "world/gltf_data.h"
+#include "gltf/data.h"
 
 namespace wellspring::gltf {
 namespace {

@@ -5,7 +5,7 @@
 #pragma once
 #include <span>
 
-#include "world/gltf.h"
+#include "gltf/file.h"
 
 namespace wellspring::gltf {
 

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "base/load_error.h"
-#include "world/gltf.h"
+#include "gltf/file.h"
 
 namespace wellspring::gltf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "world/gltf_data.h"
+#include "gltf/data.h"
 
 #include <algorithm>
 #include <cstring>

@@ -3,7 +3,7 @@
 // appendix C) and morph weights, in double precision.
 #pragma once
 #include "base/vec.h"
-#include "world/gltf.h"
+#include "gltf/file.h"
 
 namespace wellspring::gltf {
 

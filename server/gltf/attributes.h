@@ -3,7 +3,7 @@
 // KHR_mesh_quantization), and their values.
 #pragma once
 #include "base/vec.h"
-#include "world/gltf.h"
+#include "gltf/file.h"
 
 namespace wellspring::gltf {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "world/gltf_pose.h"
+#include "gltf/pose.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "world/gltf_animation.h"
+#include "gltf/animation.h"
 
 namespace wellspring::gltf {
 namespace {

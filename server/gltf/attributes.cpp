@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "world/gltf_attributes.h"
+#include "gltf/attributes.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "world/gltf_data.h"
+#include "gltf/data.h"
 
 namespace wellspring::gltf {
 namespace {

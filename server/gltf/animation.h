@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Key frames of a glTF file: STEP, LINEAR (spherical for rotations) and CUBICSPLINE, appendix C.
 #pragma once
-#include "world/gltf_pose.h"
+#include "gltf/pose.h"
 
 namespace wellspring::gltf {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A glTF 2.0 file taken apart: its JSON, checked, and its bytes, bounded. Everything after
-// load_gltf() may rely on types, required properties, index ranges and layouts (gltf_schema.cpp,
-// gltf_data.cpp).
+// load_gltf() may rely on types, required properties, index ranges and layouts (schema.cpp,
+// data.cpp).
 //
 // Refused (LoadError): what makes geometry or material mean something else than the file says -
 // wrong types, missing properties, indices out of range, bytes beyond a buffer, nodes with two
 // parents or cycles, formats an attribute cannot have, missing buffers, files outside the package,
 // broken pictures, required extensions this program does not know.
 //
-// Warned of (Scene::warnings): what is merely odd and still has one meaning - unknown properties,
+// Warned of (File::warnings): what is merely odd and still has one meaning - unknown properties,
 // empty lists, misaligned or oddly strided but readable data, wrong min and max, vectors that are
 // not unit length, weights that do not add to one, values that are not finite (the triangle is
 // dropped), a picture that is not there (the material's factors stand alone).
@@ -43,8 +43,8 @@ struct File {
   // large.
   std::map<size_t, std::shared_ptr<const std::vector<float>>> decoded;
   int64_t decoded_numbers = 0;    // held in `decoded`
-  std::vector<uint32_t> renamed;  // scratch of gltf_mesh.cpp: all unseen between primitives
-  // Bounds of what a file may cost (gltf_data.h).
+  std::vector<uint32_t> renamed;  // scratch of world/gltf_mesh.cpp: all unseen between primitives
+  // Bounds of what a file may cost (gltf/data.h).
   int64_t numbers_read = 0, vertices_made = 0, triangles_made = 0;
   std::vector<std::string> warnings;
   std::set<std::string> said;
