@@ -73,8 +73,9 @@ void match_events(std::vector<Event>& events, const std::vector<SpeechWord>& tok
 }
 
 // The words of the text as they are heard. Gives each word of the answer its group.
-std::vector<int> read_words(const json& list, Speech& speech, std::vector<SaidAsOne>& groups) {
-  std::vector<uint32_t> starts = character_starts(speech.text);
+// `starts`: the byte of the text that each character of what was asked stands for.
+std::vector<int> read_words(const json& list, const std::vector<uint32_t>& starts, Speech& speech,
+                            std::vector<SaidAsOne>& groups) {
   std::vector<Event> events;
   std::vector<uint32_t> cuts;
   for (const json& entry : list) {
@@ -172,7 +173,10 @@ std::shared_ptr<const Speech> read_speech_answer(const SpeechRequest& request,
     speech->duration = double(pcm.size()) / speech->rate;
     speech->pcm = std::move(pcm);
     std::vector<SaidAsOne> groups;
-    std::vector<int> group_of = read_words(answer.at("words"), *speech, groups);
+    std::vector<uint32_t> starts = request.styles.empty()
+                                       ? character_starts(request.text)
+                                       : make_ssml(request.text, request.styles).source;
+    std::vector<int> group_of = read_words(answer.at("words"), starts, *speech, groups);
     double last = 0;
     for (const json& entry : answer.at("phonemes")) {
       SpeechPhoneme phoneme;

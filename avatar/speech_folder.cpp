@@ -69,7 +69,8 @@ void remove_oldest(const std::string& folder, size_t most_bytes) {
 
 std::string speech_key(const SpeechRequest& request) {
   return request.lang + "\n" + std::to_string(request.words_per_minute) + "\n" +
-         std::to_string(request.pitch) + "\n" + request.text;
+         std::to_string(request.pitch) + "\n" + request.variant + "\n" + request.text +
+         (request.styles.empty() ? "" : "\n\n" + describe_styles(request.styles));
 }
 
 SpeechFolder::SpeechFolder(std::string path, size_t most_bytes)

@@ -116,6 +116,9 @@ std::string check_speech_request(const SpeechRequest& request) {
       request.words_per_minute > protocol::max_words_per_minute)
     return "the speed is 80 to 450 words a minute";
   if (request.pitch < 0 || request.pitch > 100) return "the pitch is 0 to 100";
+  if (request.variant.size() > 40 ||
+      !std::all_of(request.variant.begin(), request.variant.end(), is_tag_character))
+    return "'" + request.variant.substr(0, 40) + "' is no variant of a voice";
   return {};
 }
 
@@ -206,12 +209,17 @@ struct SpeechProcess::Impl {
   }
 
   Transfer ask(const SpeechRequest& request, std::string& answer, std::vector<int16_t>& pcm) {
-    std::string text = nlohmann::json{{"id", next_id++},
-                                      {"text", request.text},
-                                      {"lang", request.lang},
-                                      {"words_per_minute", request.words_per_minute},
-                                      {"pitch", request.pitch}}
-                           .dump();
+    nlohmann::json asked{{"id", next_id++},
+                         {"text", request.text},
+                         {"lang", request.lang},
+                         {"words_per_minute", request.words_per_minute},
+                         {"pitch", request.pitch}};
+    if (!request.variant.empty()) asked["variant"] = request.variant;
+    if (!request.styles.empty()) {
+      asked["text"] = make_ssml(request.text, request.styles).text;
+      asked["ssml"] = true;
+    }
+    std::string text = asked.dump();
     double deadline = seconds_now() + program.answer_seconds;
     std::string frame = protocol::write_header(uint32_t(text.size()), 0) + text;
     Transfer state = transmit(socket, frame, deadline);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "avatar/speech.h"
+#include "avatar/speech_style.h"
 
 namespace wellspring {
 
@@ -16,6 +17,9 @@ struct SpeechRequest {
   std::string lang = "en";  // BCP 47
   int words_per_minute = 155;  // 80 to 450
   int pitch = 45;              // 0 to 100
+  std::string variant{};       // of the voice: eSpeak NG's "f3", "m2", ...; empty: its own
+  std::vector<SpeechStyle> styles{};
+  bool operator==(const SpeechRequest&) const = default;
 };
 
 // What is wrong with a request, in words that name it; empty when nothing is.

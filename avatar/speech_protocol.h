@@ -6,7 +6,8 @@
 //
 // On starting the program says {"engine":"...","languages":["en-gb",...]}; then, for every request,
 // in order, exactly one answer:
-//   request  {"id":n, "text":"...", "lang":"de", "words_per_minute":165, "pitch":50}
+//   request  {"id":n, "text":"...", "lang":"de", "words_per_minute":165, "pitch":50}, and perhaps
+//            "variant":"f3" of the voice and "ssml":true, when the text is SSML 1.1
 //   answer   {"id":n, "rate":22050, "voice":"German",
 //             "words":[[sample, character, characters], ...],
 //             "phonemes":[[sample, word, "mnemonic", "ipa"], ...]} and the sound; `word` counts the

@@ -222,7 +222,8 @@ const std::string* find_attribute(const MarkupPiece& piece, std::string_view nam
   return nullptr;
 }
 
-std::vector<MarkupPiece> read_markup(std::string_view text, const std::string& file) {
+namespace {
+Reader open_text(std::string_view text, const std::string& file) {
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
   Reader reader{text, file, 0, {}, {}, {}};
   if (text.size() > most_markup_bytes) reader.fail({}, "the text is longer than a mebibyte");
@@ -230,6 +231,18 @@ std::vector<MarkupPiece> read_markup(std::string_view text, const std::string& f
     reader.step(broken);
     reader.fail(reader.place, "the text is not UTF-8");
   }
+  return reader;
+}
+}  // namespace
+
+std::vector<MarkupPiece> read_plain_markup(std::string_view text, const std::string& file) {
+  Reader reader = open_text(text, file);
+  reader.add_text(reader.text, {});
+  return std::move(reader.pieces);
+}
+
+std::vector<MarkupPiece> read_markup(std::string_view text, const std::string& file) {
+  Reader reader = open_text(text, file);
   while (!reader.ended()) {
     if (reader.is_tag()) reader.read_tag();
     else reader.read_text();

@@ -33,5 +33,7 @@ inline constexpr size_t most_markup_bytes = 1 << 20, most_markup_depth = 64;
 // does not end, an attribute without a quoted value, tags that do not match, deeper nesting or more
 // text than the limits.
 std::vector<MarkupPiece> read_markup(std::string_view text, const std::string& file);
+// One piece of text, in which nothing is a tag or an entity.
+std::vector<MarkupPiece> read_plain_markup(std::string_view text, const std::string& file);
 
 }  // namespace wellspring

@@ -138,14 +138,27 @@ const Language* find_language(const std::vector<Language>& languages, std::strin
   return nullptr;
 }
 
+// Manners of speaking that go with every voice: "f3" of "!v/f3".
+bool has_variant(const std::string& name) {
+  espeak_VOICE wanted{};
+  wanted.languages = "variant";
+  const espeak_VOICE** voices = espeak_ListVoices(&wanted);
+  for (; voices && *voices; voices++)
+    if ((*voices)->identifier && std::string((*voices)->identifier) == "!v/" + name) return true;
+  return false;
+}
+
 bool speak(const json& request, const Language& language, Spoken& result) {
-  if (espeak_SetVoiceByName(language.voice.c_str()) != EE_OK) return false;
+  std::string variant = request.value("variant", "");
+  std::string voice = language.voice + (variant.empty() ? "" : "+" + variant);
+  if (espeak_SetVoiceByName(voice.c_str()) != EE_OK) return false;
   espeak_SetParameter(espeakRATE, request.at("words_per_minute").get<int>(), 0);
   espeak_SetParameter(espeakPITCH, request.at("pitch").get<int>(), 0);
   const std::string& text = request.at("text").get_ref<const std::string&>();
   spoken = &result;
+  const unsigned kind = request.value("ssml", false) ? espeakSSML : 0;
   return espeak_Synth(text.c_str(), text.size() + 1, 0, POS_CHARACTER, 0,
-                      espeakCHARS_UTF8 | espeakENDPAUSE, nullptr, nullptr) == EE_OK &&
+                      espeakCHARS_UTF8 | espeakENDPAUSE | kind, nullptr, nullptr) == EE_OK &&
          espeak_Synchronize() == EE_OK;
 }
 
@@ -156,6 +169,9 @@ json make_answer(const json& request, const std::vector<Language>& languages, in
   std::string tag = request.at("lang").get<std::string>();
   const Language* language = find_language(languages, tag);
   if (!language) return error("eSpeak NG has no voice for the language '" + tag + "'");
+  std::string variant = request.value("variant", "");
+  if (!variant.empty() && !has_variant(variant))
+    return error("eSpeak NG has no variant '" + variant + "' of its voices");
   // The library names phonemes in one way at a time, so the text is spoken twice.
   Spoken first, second;
   if (!speak(request, *language, first)) return error("eSpeak NG cannot speak the text");
