@@ -49,7 +49,7 @@ void pose_arm(const Rig& rig, int side, const ArmPose& arm, float shoulders_up, 
   for (const FingerJoint& finger : bones.fingers) {
     // Relaxed fingers bend more towards the little one and less at the tips.
     constexpr float share[3] = {0.8f, 1.35f, 0.85f};
-    float wanted = arm.curl * share[finger.knuckle] * (0.75f + 0.13f * float(finger.finger));
+    float wanted = (arm.curl + arm.finger[size_t(finger.finger)]) * share[finger.knuckle] * (0.75f + 0.13f * float(finger.finger));
     float turn = std::max(wanted - finger.bent, -0.15f);
     pose.rotations[size_t(finger.joint)] = glm::angleAxis(turn, bones.curl_axis);
   }

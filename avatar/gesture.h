@@ -1,43 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arms by a few meaningful angles, and short clips made of them. The same angles fit every figure:
-// the rig knows how its arms hang.
+// Arms, head and chest by a few meaningful angles. The same angles fit every figure: the rig knows how
+// its arms hang. A gesture is a clip of them; clips pass over into each other without a jump of place or
+// speed (inertial blending: what the broken-off motion leaves is a spring that comes to rest).
 #pragma once
 #include <array>
 #include <cstdint>
 
+#include "avatar/gesture_library.h"
 #include "avatar/spring.h"
 
 namespace wellspring {
 
-// One arm; radians. All zero: it hangs straight down, palm to the thigh.
-struct ArmPose {
-  float forward = 0, side = 0;  // upper arm raised to the front, away from the body
-  float turn = 0;               // upper arm about itself: the bent forearm swings inwards
-  float elbow = 0;              // bent
-  float pronate = 0;         // palm from inwards to backwards (or down, when the forearm is level)
-  float flex = 0, tilt = 0;  // wrist towards the palm, towards the thumb
-  float curl = 0;            // fingers, mean of their joints
+// What is asked of the arms in one tick.
+struct GestureOrder {
+  int clip = -1;       // begins now; -1: nothing new
+  float size = 1;      // 0..1: how large the clip is played
+  float lead = 0;      // seconds until its stroke is due; < 0: as the clip has it
+  float seconds = 0;   // how long it shall last; longer than the clip: its held moment is drawn out
+  bool mirrored = false;  // left for right
 };
-ArmPose mix(const ArmPose& a, const ArmPose& b, float t);
-
-enum class Gesture : uint8_t { none, welcome, wave, nod };
 
 struct GestureState {
-  Gesture gesture = Gesture::none;
-  float time = 0;
-  double next_nod = 0;
+  int clip = -1;
+  float time = 0;  // since the clip began; negative: it waits for its word
+  float size = 1, hold = 0;  // hold: seconds added to the held moment
+  bool mirrored = false;
+  // What earlier motions left, one spring a channel of GestureMotion; at rest when `blending` is false.
+  std::array<Spring, gesture_channels> left_over;
+  bool blending = false;
 };
 
-struct GestureMotion {
-  std::array<ArmPose, 2> arm;         // left, right
-  std::array<float, 2> weight{0, 0};  // of them over the resting arms
-  float nod = 0;                      // head, down positive, radians
-  float bow = 0;                      // chest and hips forward, radians
-};
+// Advances the running clip by dt after taking `order`. `rest` are the arms without any gesture. The arms
+// of the answer are final, `weight` says how much of them is gesture, 0..1.
+GestureMotion tick_gesture(GestureState& state, const GestureLibrary& library,
+                           const GestureOrder& order, const std::array<ArmPose, 2>& rest, float dt);
 
-void start_gesture(GestureState& state, Gesture gesture);
-// Advances the running clip; afterwards there is none.
-GestureMotion tick_gesture(GestureState& state, float dt);
+ArmPose mix(const ArmPose& a, const ArmPose& b, float t);
+// Within what human arms can do (American Academy of Orthopaedic Surgeons' normal ranges).
+ArmPose limit_arm(const ArmPose& arm);
 
 // Arms at rest: hanging, and hands folded in front of the body. `spread` is the figure's own.
 ArmPose hanging_arm(float spread);

@@ -53,20 +53,6 @@ void tick_stance_and_gaze(StorytellerState& state, const Rig& rig, const Storyte
               now, dt);
 }
 
-void tick_gestures(StorytellerState& state, const StorytellerInput& input,
-                   const StorytellerEvents& events) {
-  double now = state.clock;
-  GestureState& gesture = state.gesture;
-  if (events.farewelled) start_gesture(gesture, Gesture::wave);
-  else if (events.greeted && !input.telling) start_gesture(gesture, Gesture::welcome);
-  if (state.mood != Mood::attending || !input.humanlike) {
-    gesture.next_nod = now + 4;
-  } else if (now >= gesture.next_nod && gesture.gesture == Gesture::none) {
-    start_gesture(gesture, Gesture::nod);
-    gesture.next_nod = now + 5 + 6 * double(state.rng.uniform());
-  }
-}
-
 float wanted_smile(const StorytellerState& state) {
   switch (state.mood) {
     case Mood::greeting: return 0.85f;
@@ -118,11 +104,14 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
 
   // Look, turn, gesture.
   tick_stance_and_gaze(state, rig, input, guests, dt);
-  tick_gestures(state, input, events);
-  GestureMotion gesture = tick_gesture(state.gesture, dt);
-  bool hands_busy = gesture.weight[0] > 0 || gesture.weight[1] > 0 ||
-                    state.gesture.gesture == Gesture::welcome ||
-                    state.gesture.gesture == Gesture::wave;
+  const GestureLibrary& library =
+      storyteller.gestures ? *storyteller.gestures : default_gestures();
+  mat4 to_here = glm::inverse(storyteller.placement);
+  GestureOrder order = choose_gesture(state.body_language, state.gesture, library, here, events,
+                                      state.mood, to_here, state.rng, now);
+  int clip = order.clip >= 0 ? order.clip : state.gesture.clip;
+  bool hands_busy = clip >= 0 && (library.clips[size_t(clip)].uses_arm[0] ||
+                                  library.clips[size_t(clip)].uses_arm[1]);
   IdleMotion idle =
       tick_idle(state.idle, state.rng, state.face.talking, hands_busy, input.humanlike, now, dt);
   const Guest* mirrored = nullptr;
@@ -131,30 +120,33 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   tick_mirror(state.mirror, mirrored != nullptr, mirrored ? mirrored->rotation : vec3(0), now, dt);
 
   // Body.
+  std::array<ArmPose, 2> rest;
+  for (size_t i = 0; i < 2; i++) {
+    rest[i] = mix(hanging_arm(rig.arm[i].spread), folded_arm(int(i)), state.idle.fold.value);
+    rest[i].forward += idle.arm[i].x;
+    rest[i].side += idle.arm[i].y;
+    rest[i].elbow += idle.arm[i].z;
+    rest[i].curl += idle.curl[i];
+  }
+  GestureMotion gesture = tick_gesture(state.gesture, library, order, rest, dt);
   BodyPlan plan;
   plan.heading = state.stance.heading.value;
   plan.pelvis = idle.pelvis + vec3(state.stance.lean.value, -0.006f, 0);
   plan.pelvis_turn = idle.pelvis_turn;
-  plan.pelvis_turn.y += 0.4f * gesture.bow;
-  plan.torso = idle.torso_turn + vec3(state.gaze.torso_yaw.value, gesture.bow, 0);
+  plan.pelvis_turn.y += 0.4f * gesture.chest.y;
+  plan.torso = idle.torso_turn + vec3(state.gaze.torso_yaw.value, 0, 0) + gesture.chest;
   plan.head = {state.gaze.head_yaw.value + state.mirror.angle.x,
                state.gaze.head_pitch.value + state.mirror.angle.y, 0};
   plan.head += vec3(idle.head_turn.x, -idle.head_turn.y, idle.head_turn.z);
-  plan.head.y -= gesture.nod + 0.5f * gesture.bow;
+  plan.head += vec3(gesture.head.x, -gesture.head.y - 0.5f * gesture.chest.y, gesture.head.z);
   if (input.humanlike)  // emphasis while speaking
     plan.head.y -= 2.2_deg * state.face.talking *
                    std::sin(float(std::fmod(state.face.syllables * 1.9, 2 * double(pi))));
   plan.gaze_point = gaze_point(state.gaze, rig, plan.heading);
-  plan.shoulders_up = 1.0_deg * idle.breath;
-  for (int side = 0; side < 2; side++) {
-    size_t s = size_t(side);
-    ArmPose rest = mix(hanging_arm(rig.arm[s].spread), folded_arm(side), state.idle.fold.value);
-    rest.forward += idle.arm[s].x;
-    rest.side += idle.arm[s].y;
-    rest.elbow += idle.arm[s].z;
-    rest.curl += idle.curl[s];
-    plan.arm[s] = mix(rest, gesture.arm[s], gesture.weight[s]);
-    plan.foot[s] = {state.stance.foot[s].facing(), state.stance.foot[s].lift()};
+  plan.shoulders_up = 1.0_deg * idle.breath + gesture.shoulders;
+  for (size_t i = 0; i < 2; i++) {
+    plan.arm[i] = gesture.arm[i];
+    plan.foot[i] = {state.stance.foot[i].facing(), state.stance.foot[i].lift()};
   }
   eval_body(rig, plan, pose);
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "avatar/blink.h"
+#include "avatar/body_language.h"
 #include "avatar/face.h"
 #include "avatar/gaze.h"
 #include "avatar/gesture.h"
@@ -22,6 +23,7 @@ namespace wellspring {
 struct Storyteller {
   const Character* character = nullptr;  // borrowed
   mat4 placement{1};                     // humanoid space to world
+  const GestureLibrary* gestures = nullptr;  // borrowed; null: the one that comes with the program
 };
 
 // Everything remembered from tick to tick, a plain value: copy it and the copy goes on alike.
@@ -35,6 +37,7 @@ struct StorytellerState {
   BlinkState blink;
   IdleState idle;
   GestureState gesture;
+  BodyLanguageState body_language;
   StanceState stance;
   FaceState face;
   std::shared_ptr<const Rig> rig;  // of the character last seen; immutable

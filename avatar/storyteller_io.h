@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "avatar/emotion.h"
 #include "avatar/story_cue.h"
 #include "base/vec.h"
 
@@ -19,6 +21,8 @@ struct Guest {
                      // yaw positive to the guest's right, pitch positive up
   bool kiosk = false;  // a person in front of a kiosk (is greeted); else a remote visitor's camera
                        // (is looked at)
+  std::optional<Emotions> expression{};  // as far as the kiosk sees it
+  std::string gesture{};                 // the guest's own; "wave" and "nod" are answered
 };
 
 // What the storyteller is doing, for the page and for tests.

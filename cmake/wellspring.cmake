@@ -105,3 +105,17 @@ function(wellspring_program name files)
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
   endif()
 endfunction()
+
+# wellspring_embed(LAYER TEMPLATE TEXT_FILES...): compiles text files into a layer. The template has
+# @TEXT_0@, @TEXT_1@, ... where their contents belong.
+function(wellspring_embed layer template)
+  set(index 0)
+  foreach(file ${ARGN})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${file})
+    file(READ ${PROJECT_SOURCE_DIR}/${file} TEXT_${index})
+    math(EXPR index "${index} + 1")
+  endforeach()
+  get_filename_component(name ${template} NAME_WLE)
+  configure_file(${PROJECT_SOURCE_DIR}/${template} ${CMAKE_BINARY_DIR}/embedded/${name} @ONLY)
+  target_sources(${layer} PRIVATE ${CMAKE_BINARY_DIR}/embedded/${name})
+endfunction()

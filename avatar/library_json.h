@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checked reading of the JSON of expressions and gestures: the first thing wrong is thrown as a LoadError
+// with its JSON pointer. For the readers of this folder, in .cpp files only.
+#pragma once
+#include <cmath>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/load_error.h"
+
+namespace wellspring {
+
+struct LibraryReader {
+  const std::string& file;
+
+  [[noreturn]] void fail(const std::string& where, const std::string& what) const {
+    throw LoadError(file, where, what);
+  }
+
+  // The whole text: an object that calls itself `format`, version 1. Nesting, size and syntax are checked.
+  nlohmann::json parse(std::string_view text, const char* format) const;
+  // Fields nobody reads are misspelt ones.
+  void only(const nlohmann::json& object, const std::string& where,
+            std::initializer_list<std::string_view> known) const;
+  const nlohmann::json* find(const nlohmann::json& object, const char* name) const {
+    auto found = object.find(name);
+    return found == object.end() ? nullptr : &*found;
+  }
+  const nlohmann::json& object(const nlohmann::json& value, const std::string& where) const {
+    if (!value.is_object()) fail(where, "an object is expected");
+    return value;
+  }
+  // A list of at most `most` entries; absent: empty.
+  const nlohmann::json& list(const nlohmann::json& object, const std::string& where,
+                             const char* name, size_t most) const;
+  float number(const nlohmann::json& value, const std::string& where, double low,
+               double high) const;
+  float number(const nlohmann::json& object, const std::string& where, const char* name,
+               double otherwise, double low, double high) const;
+  // Letters, digits, '_', '-' and '.'; 1 to 64 of them.
+  std::string name(const nlohmann::json& object, const std::string& where,
+                   const char* field = "name") const;
+};
+
+std::string read_text_file(const std::string& file);  // throws LoadError; at most 16 MiB
+
+}  // namespace wellspring
