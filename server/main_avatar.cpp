@@ -19,6 +19,7 @@ namespace {
 struct Options {
   std::string file, out, size = "720x1080";
   std::vector<std::string> displacers;
+  std::string gesture;
   std::vector<float> guest;
   bool info = false, json = false, close = false, rest = false, calm = false;
   double time = 0;
@@ -44,8 +45,13 @@ Pose pose_at(const Character& character, const Options& options) {
   input.speaking = options.speaking;
   if (options.guest.size() == 3)
     input.guests = {{1, {options.guest[0], options.guest[1], options.guest[2]}, vec3(0), true}};
+  input.story.gesture = options.gesture;
+  input.story.gesture_lead = 60;  // from its beginning
+  if (int clip = find_gesture(options.gesture); clip >= 0)
+    input.story.gesture_lead = default_gestures().clips[size_t(clip)].stroke;
   constexpr double step = 1.0 / 30;
   tick_storyteller(state, storyteller, input, pose, events);
+  input.story.gesture.clear();
   for (double t = 0; t < options.time; t += step) {
     input.dt = float(std::min(step, options.time - t));
     input.time = t + double(input.dt);
@@ -67,6 +73,11 @@ int run(const Options& options) {
   if (!(options.time >= 0 && options.time <= 86400))
     return fail("--time wants 0 to 86400 seconds", 2);
   if (!options.guest.empty() && options.guest.size() != 3) return fail("--guest wants x,y,z", 2);
+  if (!options.gesture.empty() && find_gesture(options.gesture) < 0) {
+    std::string names;
+    for (const GestureClip& clip : default_gestures().clips) names += " " + clip.name;
+    return fail("--gesture: '" + options.gesture + "' is none of" + names, 2);
+  }
   shot.close = options.close;
   shot.turn = options.turn * pi / 180;
   shot.spp = options.spp;
@@ -117,6 +128,8 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   app.add_option("--speaking", options.speaking, "mouth activity, 0 to 1")
       ->check(CLI::Range(0.0f, 1.0f));
+  app.add_option("--gesture", options.gesture,
+                 "motion of the gesture library, seen --time seconds after it began");
   app.add_option("--displacer", options.displacers,
                  "NAME or NAME=WEIGHT over the pose, may repeat");
   try {
