@@ -3,6 +3,8 @@
 // compiler's (GCC and Clang vector extensions), `mask ? a : b` chooses lane by lane.
 #pragma once
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #ifdef __AVX__
 #include <immintrin.h>
 #endif
@@ -24,6 +26,39 @@ inline Lanes lanes_sqrt(Lanes a) {
   for (int i = 0; i < lane_count; i++) a[i] = std::sqrt(a[i]);
   return a;
 #endif
+}
+// Eight neighbours in memory, aligned or not.
+inline Lanes load_lanes(const float* from) {
+  Lanes a;
+  std::memcpy(&a, from, sizeof a);
+  return a;
+}
+inline void store_lanes(float* to, Lanes a) { std::memcpy(to, &a, sizeof a); }
+inline void store_lanes(int32_t* to, LaneMask a) { std::memcpy(to, &a, sizeof a); }
+// To the nearest whole number, as std::lrint does.
+inline LaneMask round_lanes(Lanes a) {
+#ifdef __AVX__
+  return LaneMask(_mm256_cvtps_epi32(__m256(a)));
+#else
+  LaneMask whole;
+  for (int i = 0; i < lane_count; i++) whole[i] = int(std::lrint(a[i]));
+  return whole;
+#endif
+}
+// Bit i: lane i is negative, so set in a comparison's answer.
+inline unsigned negative_lanes(LaneMask a) {
+#ifdef __AVX__
+  return unsigned(_mm256_movemask_ps(__m256(a)));
+#else
+  unsigned bits = 0;
+  for (int i = 0; i < lane_count; i++) bits |= unsigned(a[i] < 0) << i;
+  return bits;
+#endif
+}
+// The comparison's answer that has these bits.
+inline LaneMask lanes_of_bits(unsigned bits) {
+  constexpr LaneMask bit{1, 2, 4, 8, 16, 32, 64, 128};
+  return ((LaneMask{} + int(bits)) & bit) != 0;
 }
 inline float lanes_sum(Lanes a) {
   return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));

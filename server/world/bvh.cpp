@@ -84,6 +84,9 @@ const mat3& World::normal_to_world(uint32_t instance) const {
   return placed(instance).normal_to_world;
 }
 bool World::is_moving(uint32_t instance) const { return placed(instance).moving; }
+bool World::is_visible(uint32_t instance) const {
+  return !is_moving(instance) || impl_->visible[instance - impl_->scene->instances.size()];
+}
 
 void World::move(int moving, std::span<const vec3> positions, std::span<const vec3> normals) {
   Impl& w = *impl_;

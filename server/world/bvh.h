@@ -71,6 +71,7 @@ class World {
   const mat4& to_world(uint32_t instance) const;         // identity for moving ones
   const mat3& normal_to_world(uint32_t instance) const;  // as in PlacedMesh
   bool is_moving(uint32_t instance) const;
+  bool is_visible(uint32_t instance) const;  // false: moving, and hidden by show()
   const PlacedMesh& placed(uint32_t instance) const;  // all of the above at once
 
   // Replaces a moving mesh's vertices (same counts) and shows or hides it. Call commit()

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh in handfuls of neighbouring triangles, each with its own copy of the corners: what a
+// rasteriser culls, transforms and hands to a core at once.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "world/scene.h"
+
+namespace wellspring {
+
+struct Cluster {
+  static constexpr int most_triangles = 128, most_corners = 248;  // so that they pad to 256
+  uint32_t first_corner = 0, corners = 0;  // the first is a multiple of eight
+  uint32_t first_triangle = 0, triangles = 0;
+  vec3 centre{0};  // of a sphere around it, mesh space
+  float radius = 0;
+};
+
+// Triangles with a corner that is not finite are left out.
+struct MeshClusters {
+  std::vector<Cluster> clusters;
+  // Per corner, padded to eight by copies of the last: place and the vertex of the mesh it is.
+  std::vector<float> x, y, z;
+  std::vector<uint32_t> vertex;
+  // Per triangle: its corners counted from the cluster's first, and its number in the mesh.
+  std::vector<std::array<uint8_t, 3>> corner;
+  std::vector<uint32_t> triangle;
+};
+MeshClusters make_clusters(const Mesh& mesh);
+
+}  // namespace wellspring
