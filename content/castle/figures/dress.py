@@ -6,6 +6,7 @@ from math import atan2, cos, pi, sin
 from form import (bell, capsule, cast, circle, cross, curve, ellipsoid, join, lerp, mad, mix, noise,
                   smoothstep, sub, unit)
 from patch import Patch
+from person import WHO
 from rig import ELBOW, WRIST, arm_weights, blend, scaled, skirt_weights, spine, torso_weights
 
 WAIST_Y = 1.062
@@ -16,9 +17,15 @@ def trunk(p):
     x, y, z = abs(p[0]), p[1], p[2]
     q = (x, y, z)
     d = ellipsoid(q, (0, 1.235, -0.028), (0.132, 0.190, 0.098))
-    d = join(d, ellipsoid(q, (0.066, 1.232, 0.040), (0.060, 0.062, 0.056)), 0.045)
+    bust = (0.066, 1.232, 0.040), (0.060, 0.062, 0.056)
+    if WHO.bust < 0.5:  # a man's chest
+        bust = (0.062, 1.250, 0.018), (0.066, 0.060, 0.060)
+    d = join(d, ellipsoid(q, *bust), 0.045)
     d = join(d, capsule(q, (0.0, 1.360, -0.034), (0.126, 1.346, -0.028), 0.050, 0.042), 0.045)
-    d = join(d, ellipsoid(q, (0, 1.062, -0.018), (0.116, 0.110, 0.088)), 0.05)
+    w = WHO.waist
+    d = join(d, ellipsoid(q, (0, 1.062, -0.018), (0.116 + w, 0.110, 0.088 + w)), 0.05)
+    if WHO.belly:
+        d = join(d, ellipsoid(q, (0, 1.075, 0.030), (0.100, 0.115, 0.035 + 0.055 * WHO.belly)), 0.05)
     d = join(d, ellipsoid(q, (0, 0.915, -0.018), (0.158, 0.120, 0.120)), 0.05)
     return d
 
@@ -43,6 +50,10 @@ def skirt_point(phi, y):
     """phi: 0 in front, growing to the figure's left."""
     a, f, b = curve(HALF_WIDTH, y), curve(FRONT, y), curve(BACK, y)
     s, c = sin(phi), cos(phi)
+    wider = smoothstep(0.55, 0.98, y)
+    a += WHO.waist * wider
+    f += (WHO.waist + 0.022 * WHO.belly) * wider
+    b += WHO.waist * wider
     depth = f if c > 0 else b
     below = (WAIST_Y - y) / WAIST_Y
     x, z = a * s, depth * c - 0.018
@@ -58,7 +69,7 @@ def skirt_point(phi, y):
 
 
 def make_skirt(gown, trim):
-    columns = 132
+    columns = 112
     ys = [0.012, 0.050, 0.085, 0.108, 0.125, 0.19, 0.27, 0.35, 0.43, 0.51, 0.59, 0.67, 0.75, 0.82, 0.88,
           0.93, 0.97, 1.00, 1.025, 1.045, 1.062]
     cloth, band = Patch("skirt", gown), Patch("skirt_trim", trim)
@@ -147,7 +158,7 @@ def sleeve_point(t, a, side):
     out = cross(front, d)
     if out[0] < 0:
         out = tuple(-v for v in out)
-    r = curve(SLEEVE, t)
+    r = curve(SLEEVE, t) * lerp(1.0, WHO.sleeve, smoothstep(0.10, 0.35, t) * smoothstep(0.97, 0.85, t))
     inner = 1 - 0.22 * max(0.0, -sin(a)) * smoothstep(0.25, 0.55, t)
     u, v = cos(a) * 2, sin(a) * 2
     loose = smoothstep(0.02, 0.15, t) * smoothstep(0.97, 0.88, t)
@@ -198,8 +209,10 @@ def cape_point(phi, s, lift=0.0):
     high = 1.22 + 0.06 * sin(phi) ** 2
     e = lerp(high, low, s ** 0.85)
     d = (sin(phi) * cos(e), sin(e), c * cos(e))
-    p = mad(cast(body, CAPE_CENTER, d, 0.35), d, lerp(0.006, 0.0135, smoothstep(0, 0.35, s)) + lift)
-    wave = 0.0040 * s * s * (sin(phi * 7 + 0.6) + 0.5 * sin(phi * 12 + 2)) * (1 - 0.75 * bell(phi, 0.5))
+    p = mad(cast(body, CAPE_CENTER, d, 0.35), d, lerp(0.006, 0.0155, smoothstep(0, 0.35, s)) + lift)
+    turn = phi * 8 + 0.9 * sin(2 * phi + 0.4) + 0.5 * noise((cos(phi) * 2, sin(phi) * 2, s), 1.0, 7)
+    fold = (abs(sin(turn)) ** 0.7 - 0.55) * (0.55 + 0.45 * sin(3 * phi + 1.0))  # rounded ridges, sharp valleys
+    wave = 0.0105 * s ** 1.6 * fold * (1 - 0.55 * bell(phi, 0.45)) + 0.0022 * s * noise((p[0] * 16, p[1] * 9, p[2] * 16), 1.0, 3)
     return mad(p, unit((d[0], 0.2, d[2])), wave)
 
 
@@ -209,7 +222,7 @@ def cape_weights(p):
 
 def make_cape(velvet, trim, fur):
     cloth, band, edge = Patch("cape", velvet), Patch("cape_trim", trim), Patch("cape_fur", fur)
-    n = 80
+    n = 72
 
     def row(patch, s, v, tile, lift=0.0):
         ids = []
@@ -251,15 +264,15 @@ def neck_ring(phi, t, grow=0.0):
 def make_collar(linen, velvet, gold):
     """Velvet stand-up collar open in front, pleated linen inside with a small ruffle, a gold clasp."""
     shirt, collar, clasp = Patch("chemise", linen), Patch("collar", velvet), Patch("clasp", gold)
-    n = 120
+    n = 96
     rows = []
     for t, grow, wave, v in ((-0.35, 0.004, 0, 0), (0.2, -0.001, 0.0004, 0.3), (0.55, -0.001, 0.0005, 0.5), (0.86, 0.000, 0.0006, 0.7),
                              (0.98, 0.0035, 0.0022, 0.8), (1.08, 0.0085, 0.0030, 0.9), (1.10, 0.0135, 0.0034, 1.0)):
         row = []
         for i in range(n + 1):
             phi = 2 * pi * (i % n) / n + pi
-            p = neck_ring(phi, t, grow + wave * sin(phi * 22))
-            p = (p[0], p[1] + 0.9 * wave * cos(phi * 22) * (1 if t > 0.9 else 0), p[2])
+            p = neck_ring(phi, t, grow + wave * sin(phi * 19))
+            p = (p[0], p[1] + 0.9 * wave * cos(phi * 19) * (1 if t > 0.9 else 0), p[2])
             row.append(shirt.vertex(p, (i / n * 8, v), neck_weights(p), ("linen",)))
         rows.append(row)
     shirt.grid(rows)

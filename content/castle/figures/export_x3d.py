@@ -2,6 +2,7 @@
 """Writes a figure as X3D 4.0 XML with one HAnimHumanoid: skeleton, weights, displacers, one shared skin."""
 from xml.sax.saxutils import quoteattr
 
+from form import mul
 from patch import vertex_normals
 
 # joint -> segment; the right side mirrors the left
@@ -78,7 +79,11 @@ def collect(figure):
             joints.setdefault(joint, []).append((index, w))
     for patch in figure.patches:
         triangles += [tuple(v + patch.first for v in t) for t in patch.triangles]
-    return positions, uv, vertex_normals(positions, triangles), joints
+    normals = vertex_normals(positions, triangles)
+    for patch in figure.patches:
+        for i, n in getattr(patch, "normals", {}).items():  # where the maker knows better
+            normals[patch.first + i] = n
+    return positions, uv, normals, joints
 
 
 def write_joint(out, name, skeleton, children, weights, displacers, sites):
@@ -131,8 +136,20 @@ def write_shape(out, patch, look, first, seen):
     out.end("Shape")
 
 
-def write_figure(figure, skeleton, sites, path, title, description):
+def enlarge(figure, skeleton, sites, s):
+    """Everything was made for a stature of 1.68 m; tall people are larger all over."""
+    if s == 1:
+        return skeleton, sites
+    for patch in figure.patches:
+        patch.positions = [mul(p, s) for p in patch.positions]
+    figure.displacers = [(owner, name, {v: mul(d, s) for v, d in moved.items()}) for owner, name, moved in figure.displacers]
+    return ({name: (parent, mul(c, s)) for name, (parent, c) in skeleton.items()},
+            {joint: [(name, mul(p, s)) for name, p in places] for joint, places in sites.items()})
+
+
+def write_figure(figure, skeleton, sites, path, title, who):
     """`skeleton`: {joint: (parent, centre)}; `sites`: {joint: [(name, place)]}."""
+    skeleton, sites = enlarge(figure, skeleton, sites, who.stature)
     positions, uv, normals, weights = collect(figure)
     children = {}
     for name, (parent, _) in skeleton.items():
@@ -143,14 +160,14 @@ def write_figure(figure, skeleton, sites, path, title, description):
         out = Writer(stream)
         out.line("X3D", {"profile": "Full", "version": "4.0"}, close=False)
         out.line("head", {}, close=False)
-        for name, content in (("title", title), ("description", description), ("creator", "Wellspring"),
-                              ("license", "Apache-2.0"), ("generator", "make_storyteller.py")):
+        for name, content in (("title", title), ("description", who.title), ("creator", "Wellspring"),
+                              ("license", "Apache-2.0"), ("generator", "make_figure.py")):
             out.line("meta", {"name": name, "content": content})
         out.end("head")
         out.line("Scene", {}, close=False)
-        out.line("HAnimHumanoid", {"DEF": "hanim_storyteller", "name": "storyteller", "version": "2.0", "loa": "3",
+        out.line("HAnimHumanoid", {"DEF": "hanim_" + who.name, "name": who.name, "version": "2.0", "loa": "3",
                                    "skeletalConfiguration": "BASIC",
-                                   "info": '"authorName=Wellspring" "copyright=Apache-2.0" "height=1.68"'}, close=False)
+                                   "info": '"authorName=Wellspring" "copyright=Apache-2.0" "height=%.2f"' % (1.68 * who.stature)}, close=False)
         out.line("Coordinate", {"DEF": "skin_points", "containerField": "skinCoord", "point": numbers(positions, 5)})
         out.line("Normal", {"DEF": "skin_normals", "containerField": "skinNormal", "vector": numbers(normals, 3)})
         write_joint(out, "humanoid_root", skeleton, children, weights, figure.displacers, sites)

@@ -17,10 +17,13 @@ ZERO = (0.0, 0.0, 0.0)
 
 class Vertex:
     """One vertex of the head in rest."""
-    __slots__ = ("p", "tag", "part", "jaw")
+    __slots__ = ("p", "tag", "part", "jaw", "skin")
 
     def __init__(self, part, p, tag, jaw):
         self.part, self.p, self.tag, self.jaw = part, p, tag, jaw
+        self.skin = self  # the place of the skin whose movements it follows
+        if tag and tag[0] == "grown":  # hair moves as the skin at its root
+            self.skin = Vertex("face", tag[1], ("lower" if tag[2] else "upper",), jaw)
 
 
 # ---- eyelids ------------------------------------------------------------------------------------------
@@ -274,7 +277,7 @@ VISEMES = {  # jaw (radians), then movements
 def shape(v, angle, movements, tongue_move):
     total = jaw(v, angle) if angle else ZERO
     for movement, amount in movements.items():
-        total = add(total, mul(movement(v), amount))
+        total = add(total, mul(movement(v.skin), amount))
     return add(total, tongue(v, *tongue_move)) if tongue_move else total
 
 
@@ -297,7 +300,6 @@ def controls(lids):
         "smile_l": lambda v: smile(v, 1),
         "smile_r": lambda v: smile(v, -1),
         "frown": frown,
-        "mouth_open": lambda v: shape(v, 0.24, {lip_down: 0.10, lip_up: 0.10}, None),
         "lips_pucker": pucker,
         "lips_wide": wide,
         "lips_press": press,
@@ -306,9 +308,11 @@ def controls(lids):
         "cheek_puff": puff,
         "nose_wrinkle": wrinkle,
     }
+    table = {name: (lambda v, move=move: move(v.skin)) for name, move in table.items()}
+    shapes = {"mouth_open": lambda v: shape(v, 0.24, {lip_down: 0.10, lip_up: 0.10}, None)}
     for name, (angle, movements, tongue_move) in VISEMES.items():
-        table["viseme_" + name] = lambda v, a=angle, m=movements, t=tongue_move: shape(v, a, m, t)
-    return table
+        shapes["viseme_" + name] = lambda v, a=angle, m=movements, t=tongue_move: shape(v, a, m, t)
+    return {**table, **shapes}
 
 
 def breathe(p):

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tiles of cloth, embroidery, hair and fur. Every colour function repeats with period 1 in u and v."""
-from math import cos, hypot, pi, sin
+from math import atan2, cos, hypot, pi, sin
 
 from form import bell, clamp, noise, smoothstep
 from paint import mixed, rgb, times
+from person import WHO
 
 
 def wrap_noise(u, v, fu, fv, seed):
@@ -21,21 +22,25 @@ def weave(u, v, n):
 
 
 def pomegranate(u, v):
-    """The figure of renaissance damask: a fruit in a pointed oval, staggered; 0 ground .. 1 figure."""
+    """The figure of renaissance damask: a lobed fruit between leaves in a pointed oval, staggered; 0 ground .. 1 figure."""
     best = 0.0
     for du, dv in ((0, 0), (0.5, 0.5), (-0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)):
         x, y = u - 0.5 + du, v - 0.5 + dv
         x = (x + 0.5) % 1 - 0.5 if du == 0 else x
         ax = abs(x)
-        frame = ax / 0.235 + (abs(y) / 0.47) ** 1.7
-        ring = bell(frame - 0.93, 0.055)
-        fruit = smoothstep(1.05, 0.95, hypot(ax / 0.075, (y + 0.02) / 0.115))
-        seeds = 0.55 * smoothstep(0.35, 0.0, hypot(((x * 30) % 1) - 0.5, ((y * 30) % 1) - 0.5)) if fruit > 0.5 else 0
-        crown = smoothstep(0.030, 0.018, abs(ax - 0.30 * max(0.0, y - 0.085))) * (0.085 < y < 0.20)
-        leaf_x, leaf_y = ax - 0.105, y + 0.10
-        leaf = smoothstep(1.1, 0.9, hypot((leaf_x * 0.8 + leaf_y * 0.6) / 0.030, (leaf_y * 0.8 - leaf_x * 0.6) / 0.105))
-        stem = smoothstep(0.016, 0.009, ax) * (-0.36 < y < -0.12)
-        best = max(best, ring, fruit - seeds, crown, leaf, stem)
+        oval = ax / 0.225 + (abs(y) / 0.46) ** 1.6
+        ring = max(bell(oval - 0.95, 0.045), 0.7 * bell(oval - 0.80, 0.022))
+        r, a = hypot(x, y - 0.01), atan2(y - 0.01, x)
+        petal = 0.112 * (0.78 + 0.22 * abs(cos(4 * a)) ** 0.7)
+        flower = smoothstep(petal + 0.006, petal - 0.006, r) * (1 - 0.8 * bell(r - 0.060, 0.008))
+        flower *= 1 - 0.7 * smoothstep(0.030, 0.022, r) * smoothstep(0.012, 0.018, r)
+        stem = smoothstep(0.012, 0.006, ax) * (-0.34 < y < -0.10)
+        leaf = 0.0
+        for ly, size in ((-0.19, 1.0), (0.185, 0.75)):
+            p, q = ax - 0.045 * size, y - ly - 0.55 * (ax - 0.045 * size)
+            leaf = max(leaf, smoothstep(1.08, 0.92, hypot(p / (0.050 * size), q / (0.020 * size))))
+        bud = smoothstep(0.034, 0.028, hypot(ax, (y - 0.20) * 0.7))
+        best = max(best, ring, flower, leaf, stem, bud)
     return clamp(best)
 
 
@@ -95,13 +100,37 @@ def leather_color(u, v):
     return times(rgb("4b2d1c"), 1 + 0.16 * wrap_noise(u, v, 9, 9, 2) - 0.35 * max(bell(v - 0.12, 0.04), bell(v - 0.88, 0.04)))
 
 
+def wool_color(u, v):
+    """Dark blue broadcloth, a little felted."""
+    c = rgb("2b3240")
+    return times(c, 1 + 0.10 * weave(u, v, 110) + 0.12 * wrap_noise(u, v, 3, 3, 15) + 0.10 * wrap_noise(u, v, 30, 30, 16))
+
+
+def sable_color(u, v):
+    hairs = wrap_noise(u, v, 26, 5, 13) + 0.7 * wrap_noise(u, v, 50, 8, 14)
+    return mixed(rgb("2f1d12"), rgb("7d5a3c"), clamp(0.38 + 0.55 * hairs))
+
+
+def doublet_color(u, v):
+    """Silk in a small diamond pattern."""
+    a, b = (u * 12 + v * 12) % 1, (u * 12 - v * 12) % 1
+    line = max(bell(a - 0.5, 0.10), bell(b - 0.5, 0.10))
+    dot = smoothstep(0.16, 0.10, hypot(a if a < 0.5 else a - 1, b if b < 0.5 else b - 1))
+    return mixed(times(rgb("6e1d22"), 1 + 0.10 * weave(u, v, 96)), rgb("a8563f"), clamp(0.55 * line + 0.7 * dot))
+
+
+def black_color(u, v):
+    return times(rgb("26242a"), 1 + 0.25 * wrap_noise(u, v, 4, 4, 25) + 0.18 * wrap_noise(u, v, 24, 24, 26))
+
+
 def hair_color(u, v):
     """Strands run along v; u 0 lies at the hairline, where some have turned grey."""
     across = u * 460
     strand = noise((across, v * 2.0, 0.0), 1.0, 1) + 0.8 * noise((across * 2.7, v * 3.0, 0.0), 1.0, 2)
     lock = noise((u * 80, v * 1.6, 0.0), 1.0, 3)
-    c = mixed(rgb("4a3223"), rgb("7c573b"), clamp(0.38 + 0.42 * strand + 0.30 * lock))
+    dark, light, grey_hair = (rgb(t) for t in WHO.hair)
+    c = mixed(dark, light, clamp(0.38 + 0.42 * strand + 0.30 * lock))
     grey = smoothstep(0.10, 0.55, noise((across * 1.1, v * 1.2, 0.0), 1.0, 6) + 0.15)
     near = bell((u % 0.5) / 0.5, 0.30)
-    c = mixed(c, rgb("a99c90"), 0.62 * grey * near)
+    c = mixed(c, grey_hair, WHO.grey * grey * near)
     return times(c, 1.0 - 0.30 * smoothstep(0.05, 0.0, v))

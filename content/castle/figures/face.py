@@ -14,6 +14,7 @@ from mathutils.geometry import delaunay_2d_cdt
 import face_form as form
 from form import bell, lerp, smoothstep
 from patch import Patch
+from person import WHO
 
 LID_POINTS = 26  # along one lid, corner to corner
 LIP_POINTS = 34  # along one lip
@@ -27,12 +28,12 @@ LIP_RINGS = [0.0, 0.07, 0.17, 0.30, 0.45, 0.62, 0.80, 0.93, 1.05, 1.20, 1.42, 1.
 
 def lid_opening(t, upper):
     """The lid margin in the eye's front view (x outwards from the eye centre); t: 0 inner .. 1 outer corner."""
-    x = lerp(-0.0146, 0.0142, t)
-    base = lerp(-0.0016, 0.0010, t)
+    x = lerp(-0.0153, 0.0148, t)
+    base = lerp(-0.0019, 0.0011, t)
     arch = 4 * t * (1 - t)
     if upper:
-        return x, base + 0.0062 * arch ** 0.74 * (1 + 0.22 * (0.5 - t))
-    return x, base - 0.0043 * arch ** 0.95 * (1 - 0.30 * (0.5 - t))
+        return x, base + 0.0068 * WHO.lid_open * arch ** 0.70 * (1 + 0.24 * (0.5 - t))
+    return x, base - 0.0046 * arch ** 0.92 * (1 - 0.30 * (0.5 - t))
 
 
 def eye_ring(s):

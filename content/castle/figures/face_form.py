@@ -2,11 +2,12 @@
 """The sculpture of the head: bone and flesh as blended volumes, finer things as relief on top.
 
 Head space: metres, y = 0 on the line between the pupils, z = 0 through the ears, x to the figure's left.
-Proportions are a woman's in her fifties: eyes halfway up the head, 22 cm from chin to crown.
+The proportions are an adult's: eyes halfway up the head, 22 cm from chin to crown; person.py says what differs.
 """
 from math import atan2, cos, sin, sqrt
 
-from form import bell, capsule, carve, clamp, curve, ellipsoid, join, mad, gradient, cast, smoothstep, sphere
+from form import bell, capsule, carve, clamp, curve, ellipsoid, join, lerp, mad, gradient, cast, smoothstep, sphere
+from person import WHO
 
 HEAD = (0.0, 1.562, 0.022)  # head space in the figure's space
 
@@ -15,26 +16,26 @@ EYE_RADIUS = 0.0136
 LID_RADIUS = EYE_RADIUS + 0.0013
 
 MOUTH_Y = -0.0665  # where the lips part, at the middle
-MOUTH_HALF = 0.0262  # middle to corner
+MOUTH_HALF = WHO.mouth_half
 
 
 # ---- mouth lines, functions of x >= 0 ----------------------------------------------------------------
 def part_y(x):
-    """Parting line: a soft bow whose corners turn up in a closed-mouth smile."""
+    """Parting line: a soft bow; the corners of a kind mouth stand a little higher."""
     u = clamp(x / MOUTH_HALF, 0, 1.3)
-    return MOUTH_Y - 0.0006 * bell(u, 0.28) - 0.0009 * bell(u - 0.5, 0.3) + 0.0034 * u ** 2.6
+    return MOUTH_Y - 0.0007 * bell(u, 0.26) - 0.0009 * bell(u - 0.52, 0.3) + WHO.corner_rise * u ** 2.2
 
 
 def upper_lip_y(x):
     """Upper edge of the red: two peaks (the philtrum's), sinking to the corner."""
     u = clamp(x / MOUTH_HALF, 0, 1)
-    height = 0.0056 - 0.0012 * bell(u, 0.12) + 0.0006 * bell(u - 0.22, 0.13)
-    return part_y(x) + height * (1 - u ** 1.7) ** 0.95 + 0.0004
+    height = WHO.lip_upper - 0.0013 * bell(u, 0.11) + 0.0007 * bell(u - 0.23, 0.14)
+    return part_y(x) + height * (1 - u ** 1.5) ** 1.05 + 0.0004
 
 
 def lower_lip_y(x):
     u = clamp(x / MOUTH_HALF, 0, 1)
-    return part_y(x) - 0.0080 * (1 - u ** 2.2) ** 0.95 - 0.0004
+    return part_y(x) - WHO.lip_lower * (1 - u ** 2.0) ** 1.0 - 0.0004
 
 
 # ---- the volumes --------------------------------------------------------------------------------------
@@ -42,38 +43,56 @@ def bone(p):
     """Head and neck without eyelids; symmetric."""
     x, y, z = abs(p[0]), p[1], p[2]
     p = (x, y, z)
+    w, chin = WHO.jaw_width, WHO.chin_width
     d = ellipsoid(p, (0, 0.026, -0.006), (0.0695, 0.083, 0.0985))  # cranium
-    d = join(d, ellipsoid(p, (0, -0.030, 0.030), (0.0505, 0.078, 0.0600)), 0.030)  # face
-    d = join(d, capsule(p, (0.0345, -0.067, 0.008), (0.0070, -0.0962, 0.071), 0.0108, 0.0100), 0.024)  # jaw
-    d = join(d, ellipsoid(p, (0, -0.0955, 0.0755), (0.0165, 0.0140, 0.0180)), 0.020)  # chin
-    d = join(d, ellipsoid(p, (0, -0.066, 0.072), (0.031, 0.024, 0.0265)), 0.018)  # muzzle
-    d = join(d, ellipsoid(p, (0.0450, -0.0215, 0.0560), (0.0180, 0.0125, 0.0190)), 0.022)  # cheekbone
-    d = join(d, capsule(p, (0.050, -0.016, 0.045), (0.0625, -0.008, 0.006), 0.009, 0.006), 0.016)
-    d = join(d, ellipsoid(p, (0.0345, -0.0430, 0.0650), (0.0170, 0.0180, 0.0190)), 0.020)  # cheek
-    d = join(d, ellipsoid(p, (0.0390, -0.0480, 0.0310), (0.0135, 0.0340, 0.0300)), 0.026)  # chewing muscle
-    d = join(d, capsule(p, (0.007, 0.0165, 0.0815), (0.041, 0.0165, 0.0640), 0.0085, 0.0085), 0.014)
+    d = join(d, ellipsoid(p, (0.018, 0.046, 0.052), (0.034, 0.030, 0.036)), 0.030)  # bosses of the forehead
+    d = join(d, ellipsoid(p, (0, -0.030, 0.030), (0.0500, 0.078, 0.0600)), 0.030)  # face
+    d = join(d, capsule(p, (0.0375 * w, -0.0660, 0.010), (0.0085, -0.0962, 0.071), 0.0112, 0.0098), 0.022)  # jaw
+    d = join(d, ellipsoid(p, (0, -0.0955 - WHO.chin_down, 0.0758 + WHO.chin_out), (0.0160 * chin, 0.0140, 0.0180)), 0.020)  # chin
+    d = join(d, ellipsoid(p, (0, -0.066, 0.072), (0.0305, 0.025, 0.0265)), 0.018)  # muzzle
+    c = WHO.cheekbone
+    d = join(d, ellipsoid(p, (0.0445 + c, -0.0205, 0.0560 + c), (0.0180, 0.0120, 0.0190)), 0.022)  # cheekbone
+    d = join(d, capsule(p, (0.050 + c, -0.016, 0.045), (0.0630 + 0.5 * c, -0.008, 0.006), 0.009, 0.006), 0.016)
+    f = WHO.cheek_full
+    d = join(d, ellipsoid(p, (0.0340, -0.0430, 0.0648), (0.0170 * f, 0.0180 * f, 0.0190 * f)), 0.022)  # cheek
+    d = join(d, ellipsoid(p, (0.0395 * w, -0.0480, 0.0300), (0.0135 * f, 0.0330, 0.0300)), 0.026)  # chewing muscle
+    if WHO.jowl:
+        d = join(d, ellipsoid(p, (0.0350, -0.0850, 0.0480), (0.0130, 0.0125, 0.0180)), 0.016 / max(WHO.jowl, 0.1))
+    d = join(d, capsule(p, (0.007, 0.0165, 0.0815 + WHO.brow_bone), (0.041, 0.0165, 0.0640 + 0.8 * WHO.brow_bone),
+                        0.0085, 0.0085), 0.014)
+    if WHO.temple_hollow:
+        d = carve(d, ellipsoid(p, (0.0850, 0.0280, 0.0420), (0.0180 + WHO.temple_hollow, 0.0260, 0.0260)), 0.014)
     d = carve(d, ellipsoid(p, (0.0310, 0.0005, 0.0890), (0.0190, 0.0120, 0.0150)), 0.014)  # eye socket
     # neck: leans forward going up; the muscle from behind the ear to the breastbone shows a little
-    neck = capsule(p, (0, -0.045, -0.020), (0, -0.250, -0.045), 0.0430, 0.0480)
-    neck = join(neck, capsule(p, (0.0445, -0.042, -0.016), (0.013, -0.200, 0.004), 0.009, 0.0075), 0.020)
+    n = WHO.neck_width
+    neck = capsule(p, (0, -0.045, -0.020), (0, -0.250, -0.045), 0.0425 * n, 0.0475 * n)
+    neck = join(neck, capsule(p, (0.0445 * n, -0.042, -0.016), (0.013, -0.200, 0.004), 0.009, 0.0075), 0.018)
+    if n > 1.03:
+        neck = join(neck, ellipsoid(p, (0, -0.135, 0.024), (0.009, 0.014, 0.012)), 0.014)  # larynx
     return join(d, neck, 0.022)
 
 
 def nose(p, d):
     """Adds the nose to the distance `d`; `p` has x >= 0."""
-    d = join(d, capsule(p, (0, 0.008, 0.0795), (0, -0.0300, 0.1015), 0.0065, 0.0068), 0.0085)  # bridge
-    d = join(d, ellipsoid(p, (0, -0.0350, 0.1035), (0.0074, 0.0073, 0.0084)), 0.006)  # tip
-    d = join(d, capsule(p, (0, -0.0395, 0.1040), (0, -0.0440, 0.0930), 0.0036, 0.0042), 0.005)
-    d = join(d, ellipsoid(p, (0.0105, -0.0385, 0.0950), (0.0058, 0.0062, 0.0088)), 0.0045)  # wing
-    return carve(d, ellipsoid(p, (0.0062, -0.0450, 0.0985), (0.0030, 0.0036, 0.0052)), 0.0022)  # nostril
+    w, out, drop = WHO.nose_width, WHO.nose_out, WHO.nose_drop
+    tip_y, tip_z = -0.0350 - drop, 0.1035 + out
+    d = join(d, capsule(p, (0, 0.008, 0.0797 + 0.35 * WHO.brow_bone), (0, -0.0290 - 0.8 * drop, 0.1012 + 0.9 * out),
+                        0.0056 * WHO.nose_bridge, 0.0062 * w), 0.0095)  # bridge
+    if WHO.nose_hump:
+        d = join(d, ellipsoid(p, (0, -0.0110, 0.0935 + WHO.nose_hump), (0.0050 * w, 0.0100, 0.0040)), 0.006)
+    d = join(d, ellipsoid(p, (0.0022 * w, tip_y, tip_z), (0.0060 * w, 0.0068, 0.0080)), 0.006)  # tip
+    d = join(d, capsule(p, (0, tip_y - 0.0045, tip_z + 0.0005), (0, -0.0442 - 0.6 * drop, 0.0930), 0.0034, 0.0040), 0.005)
+    d = join(d, ellipsoid(p, (0.0106 * w, -0.0386 - 0.5 * drop, 0.0945 + 0.3 * out), (0.0050 * w, 0.0062, 0.0086)), 0.0050)  # wing
+    return carve(d, ellipsoid(p, (0.0064 * w, -0.0456 - 0.6 * drop, 0.0980 + 0.4 * out), (0.0025 * w, 0.0034, 0.0052)), 0.0022)
 
 
 def face(p):
     """Everything but the relief."""
     q = (abs(p[0]), p[1], p[2])
-    slim = 1 + 0.075 * smoothstep(-0.028, -0.075, p[1]) * smoothstep(-0.130, -0.102, p[1])  # towards the chin
+    slim = 1 + 0.060 * smoothstep(-0.028, -0.075, p[1]) * smoothstep(-0.130, -0.102, p[1])  # towards the chin
+    slim /= lerp(1.0, WHO.face_width, smoothstep(0.055, 0.000, p[1]) * smoothstep(-0.150, -0.115, p[1]))
     d = bone((q[0] * slim, q[1], q[2]))
-    if q[0] < 0.03 and -0.06 < q[1] < 0.03 and q[2] > 0.05:
+    if q[0] < 0.034 and -0.066 < q[1] < 0.03 and q[2] > 0.05:
         d = nose(q, d)
     if q[2] > 0.05 and abs(q[1]) < 0.03:
         d = join(d, sphere(q, EYE, LID_RADIUS), 0.0035)
@@ -84,28 +103,28 @@ def face(p):
 def lips(x, y):
     """Height of the lips over the muzzle; x >= 0."""
     u = x / MOUTH_HALF
-    if u > 1.25 or y < -0.085 or y > -0.052:
+    if u > 1.25 or y < -0.088 or y > -0.050:
         return 0.0
-    fade = clamp(1 - u ** 3) ** 0.8 if u < 1 else 0.0
+    fade = clamp(1 - u ** 2.6) ** 0.8 if u < 1 else 0.0
     middle = part_y(x)
     if y >= middle:
         q = (y - middle) / max(upper_lip_y(x) - middle, 8e-4)
-        top = 0.0030 * fade
-        height = top * (sqrt(min(q, 1.0) / 0.35) if q < 0.35 else 1.0)
-        if q > 0.35:
-            height *= 1 - 0.45 * smoothstep(0.35, 1.0, q)
+        top = 0.0034 * fade * WHO.lip_full * (1 - 0.12 * bell(u - 0.30, 0.16))  # the tubercle in the middle
+        height = top * (sqrt(min(q, 1.0) / 0.38) if q < 0.38 else 1.0)
+        if q > 0.38:
+            height *= 1 - 0.42 * smoothstep(0.38, 1.0, q)
         if q > 1.0:
-            height = top * 0.55 * bell(q - 1.0, 0.9)
+            height = top * 0.58 * bell(q - 1.0, 0.9)
     else:
         q = (middle - y) / max(middle - lower_lip_y(x), 8e-4)
-        top = 0.0040 * fade
-        height = top * (sqrt(q / 0.40) if q < 0.40 else 1.0)
-        if q > 0.40:
-            height *= 1 - 0.72 * smoothstep(0.40, 1.05, q)
+        top = 0.0045 * fade * WHO.lip_full * (1 - 0.10 * bell(u, 0.16))  # two pads
+        height = top * (sqrt(q / 0.45) if q < 0.45 else 1.0)
+        if q > 0.45:
+            height *= 1 - 0.70 * smoothstep(0.45, 1.08, q)
         if q > 1.0:
-            height = top * 0.28 * bell(q - 1.05, 0.5)
-    crease = -0.0018 * bell(y - middle, 0.0007) * (1 if u < 1 else bell(u - 1, 0.08))
-    corner = -0.0022 * bell(x - MOUTH_HALF * 1.04, 0.0042) * bell(y - part_y(x), 0.0040)
+            height = top * 0.30 * bell(q - 1.05, 0.5)
+    crease = -0.0016 * bell(y - middle, 0.0007) * (1 if u < 1 else bell(u - 1, 0.06))
+    corner = -0.0014 * bell(x - MOUTH_HALF * 1.03, 0.0038) * bell(y - part_y(x), 0.0038)
     return height + crease + corner
 
 
@@ -142,15 +161,45 @@ def lid_fold(x, y):
     line = curve(UPPER_LID_LINE, x)
     ends = smoothstep(0.0150, 0.0200, x) * smoothstep(0.0545, 0.0470, x)
     above = y - line
-    hood = 0.0011 + 0.0005 * smoothstep(0.030, 0.044, x)
+    hood = (0.0010 + 0.0006 * smoothstep(0.030, 0.046, x)) * WHO.lid_hood
     rest = hood * bell(above - 0.0030, 0.0026) if above > 0 else -0.0002 * bell(above, 0.003)
-    return ends * (rest - 0.0009 * bell(above, 0.0009))
+    return ends * (rest - 0.0010 * bell(above, 0.0009))
 
 
-SMILE_LINE = [(0.0165, -0.0345), (0.0205, -0.0420), (0.0262, -0.0530), (0.0315, -0.0640)]
-TEAR_LINE = [(0.0165, -0.0070), (0.0230, -0.0150), (0.0330, -0.0190)]
-UPPER_LID_LINE = [(0.0150, 0.0020), (0.0185, 0.0064), (0.0235, 0.0092), (0.0300, 0.0104), (0.0365, 0.0098), (0.0430, 0.0074),
-                  (0.0490, 0.0030), (0.0550, -0.0010)]
+SMILE_LINE = [(0.0160, -0.0345), (0.0205, -0.0425), (0.0260, -0.0525), (0.0310, -0.0630), (0.0322, -0.0720)]
+TEAR_LINE = [(0.0165, -0.0070), (0.0215, -0.0140), (0.0290, -0.0178), (0.0375, -0.0178)]
+CORNER_LINE = [(0.0285, -0.0720), (0.0300, -0.0800), (0.0290, -0.0880)]  # from the mouth's corner down, with age
+UPPER_LID_LINE = [(0.0145, 0.0026), (0.0185, 0.0072), (0.0235, 0.0100), (0.0300, 0.0112), (0.0365, 0.0106), (0.0430, 0.0082),
+                  (0.0490, 0.0036), (0.0550, -0.0006)]
+FOREHEAD_LINES = [(0.0370, 0.9), (0.0445, 1.0), (0.0520, 0.7)]
+
+
+# the brow's middle line: x, y, half thickness
+BROW_LINE = [(0.0100, 0.0160, 0.0025), (0.0160, 0.0180, 0.0030), (0.0240, 0.0206, 0.0029), (0.0320, 0.0222, 0.0024),
+             (0.0400, 0.0212, 0.0018), (0.0470, 0.0180, 0.0011), (0.0510, 0.0154, 0.0005)]
+
+
+def forehead_line(x, k):
+    height = FOREHEAD_LINES[k][0]
+    return height + 0.0016 * cos(x * 75 + 0.6 * k) - 0.0012 * bell(x, 0.012)
+
+
+def wrinkles(x, y):
+    """The furrows of an old face: forehead, between the brows, beside the eyes, down from the mouth."""
+    h = 0.0
+    if y > 0.030:
+        for k, (_, depth) in enumerate(FOREHEAD_LINES):
+            off = y - forehead_line(x, k)
+            h += depth * (0.00035 * bell(off - 0.0030, 0.0026) - 0.00060 * bell(off, 0.0012)) * smoothstep(0.044, 0.026, x)
+    elif y > 0.006 and x < 0.012:
+        h -= 0.0006 * bell(x - 0.0052, 0.0012) * bell(y - 0.019, 0.006)
+    if x > 0.044 and -0.02 < y < 0.02:
+        for a, size in ((0.42, 0.013), (0.05, 0.015), (-0.33, 0.013)):
+            dx, dy = x - 0.0475, y + 0.0005
+            along, off = dx * cos(a) + dy * sin(a), -dx * sin(a) + dy * cos(a)
+            h -= 0.00055 * bell(off, 0.0009) * smoothstep(0.001, 0.004, along) * smoothstep(size, 0.006, along)
+    h += fold(x, y, CORNER_LINE, 0.0009, 0.0024, -0.0005)
+    return h
 
 
 def relief(p):
@@ -158,14 +207,18 @@ def relief(p):
     if z < 0.02:
         return 0.0
     front = smoothstep(0.02, 0.05, z)
+    age = WHO.age
     h = lips(x, y)
-    h -= 0.0020 * bell(y + 0.0815, 0.0042) * bell(x, 0.015)  # under the lower lip
-    h -= 0.0009 * bell(x, 0.0028) * smoothstep(-0.0455, -0.0490, y) * smoothstep(-0.0605, -0.0570, y)
-    h += 0.0004 * bell(x - 0.0042, 0.0022) * smoothstep(-0.0465, -0.0500, y) * smoothstep(-0.062, -0.058, y)
-    h += fold(x, y, SMILE_LINE, 0.0008, 0.0030, -0.0006)
-    h += fold(x, y, TEAR_LINE, 0.0006, 0.0028)
+    h -= 0.0018 * bell(y + 0.0830, 0.0042) * bell(x, 0.015)  # under the lower lip
+    h -= 0.0010 * bell(x, 0.0026) * smoothstep(-0.0455, -0.0490, y) * smoothstep(-0.0600, -0.0565, y)  # philtrum
+    h += 0.0005 * bell(x - 0.0043, 0.0020) * smoothstep(-0.0465, -0.0500, y) * smoothstep(-0.062, -0.058, y)
+    h += fold(x, y, SMILE_LINE, 0.0003 + 0.0014 * age, 0.0030, -0.0004 - 0.0009 * age)
+    h += fold(x, y, TEAR_LINE, 0.0003 + 0.0008 * age, 0.0028)
+    h += 0.0022 * WHO.eye_bags * bell(x - 0.030, 0.0095) * bell(y + 0.0118, 0.0036)
     h += lid_fold(x, y)
-    h -= 0.0011 * bell(x - 0.0125, 0.0035) * bell(y + 0.0330, 0.0050) * bell(z - 0.092, 0.012)  # wing crease
+    if age > 0.3:
+        h += (age - 0.3) / 0.7 * wrinkles(x, y)
+    h -= 0.0010 * bell(x - 0.0128 * WHO.nose_width, 0.0030) * bell(y + 0.0325, 0.0050) * bell(z - 0.092, 0.012)  # wing crease
     return h * front
 
 

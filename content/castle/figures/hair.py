@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hair parted in the middle and combed over the ears, the padded roll, the linen veil. Head space."""
+import random
 from math import cos, pi, sin
 
 from dress import body
@@ -12,7 +13,7 @@ from rig import blend, scaled, torso_weights
 CENTER = (0.0, 0.005, -0.010)
 
 # edges of the left half of the hair, from the parting to the nape: along the forehead, and over the crown
-HAIRLINE = [(0.0, 0.0680, 0.080), (0.014, 0.0675, 0.079), (0.029, 0.0615, 0.073), (0.042, 0.0490, 0.064),
+HAIRLINE = [(0.0, 0.0630, 0.083), (0.014, 0.0625, 0.082), (0.029, 0.0570, 0.076), (0.042, 0.0460, 0.066),
             (0.0515, 0.0315, 0.055), (0.0575, 0.0110, 0.047), (0.0625, -0.0090, 0.038), (0.0660, -0.0270, 0.023),
             (0.0650, -0.0410, 0.000), (0.058, -0.0460, -0.032), (0.042, -0.0470, -0.070)]
 CROWN = [(0.0, 0.1120, -0.040), (0.018, 0.1100, -0.044), (0.036, 0.1000, -0.050), (0.052, 0.0840, -0.056),
@@ -55,8 +56,9 @@ def strand_point(side, c, s):
 
 
 def make_hair(look):
+    """The closed ground that strands lie on."""
     patch = Patch("hair", look)
-    nc, ns = 24, 29
+    nc, ns = 18, 22
     for side in (1, -1):
         rows = []
         for i in range(nc + 1):
@@ -68,6 +70,53 @@ def make_hair(look):
                 row.append(patch.vertex(p, (0.5 * c + (0.5 if side < 0 else 0.0), s), {"skullbase": 1.0}, ("hair",)))
             rows.append(row)
         patch.grid(rows, flip=side < 0)
+    return patch
+
+
+def ribbon(patch, points, outs, width, height, u, weights, tag, span=0.026):
+    """A lock: a strip with a raised middle that tapers towards its ends; `u`, `span`: its place across the texture."""
+    rows = []
+    n = len(points) - 1
+    for k, (p, out) in enumerate(zip(points, outs)):
+        t = k / n
+        along = unit(sub(points[min(k + 1, n)], points[max(k - 1, 0)]))
+        across = unit(cross(along, out))
+        w = width * (0.25 + 0.75 * min(1.0, 5 * t, 3.2 * (1 - t) + 0.05))
+        row = []
+        for e, lift in (((-1, 0.0), (0, 1.0), (1, 0.0)) if height else ((-1, 0.0), (1, 0.0))):
+            q = mad(mad(p, across, 0.5 * w * e), out, height * lift * (w / width))
+            row.append(patch.vertex(q, (u + span * e, t), weights(p) if callable(weights) else weights, tag))
+        rows.append(row)
+    patch.grid(rows)
+
+
+def make_strands(look):
+    """Locks that break up the combed surface, and the fine hairs that never stay in place."""
+    patch = Patch("strands", look)
+    rng = random.Random(3)
+    for side in (1, -1):
+        for kind, count in (("lock", 27), ("hair", 36)):
+            for k in range(count):
+                lock = kind == "lock"
+                c = ((k + rng.random()) / count) ** 1.3 * 0.92
+                s0 = rng.uniform(0.0, 0.12) if lock else rng.uniform(0.05, 0.55)
+                s1 = min(1.0, s0 + (rng.uniform(0.70, 1.0) if lock else rng.uniform(0.22, 0.5)))
+                if not lock and k % 3 == 0:
+                    c = rng.uniform(-0.012, 0.03)  # at the hairline they are finest and loosest
+                drift, astray = rng.uniform(-0.05, 0.05), rng.uniform(0.0008, 0.0042)
+                points, outs = [], []
+                n = 9 if lock else 7
+                for i in range(n + 1):
+                    t = i / n
+                    p = strand_point(1, max(c + drift * t, -0.015), (s0 + (s1 - s0) * t) ** 1.15)
+                    out = unit(sub(p, CENTER))
+                    lift = 0.0002 + 0.0010 * sin(pi * t) if lock else 0.0004 + astray * t * t
+                    p = mad(p, out, lift)
+                    points.append((side * p[0], p[1], p[2]))
+                    outs.append((side * out[0], out[1], out[2]))
+                u = 0.5 * max(c, 0.0) + (0.5 if side < 0 else 0.0) + rng.uniform(-0.02, 0.02)
+                ribbon(patch, points, outs, rng.uniform(0.0045, 0.0085) if lock else rng.uniform(0.00028, 0.0005),
+                       rng.uniform(0.0006, 0.0013) if lock else 0.0, u, {"skullbase": 1.0}, ("hair",))
     return patch
 
 
@@ -87,7 +136,7 @@ def mul_half(p):
 
 def make_roll(look):
     patch = Patch("roll", look)
-    n, m = 78, 10
+    n, m = 66, 9
     ring = [roll_path(a) for a in circle(n)]
     rows = []
     for i in range(n + 1):
@@ -123,7 +172,7 @@ def make_pearls(look):
     return patch
 
 
-def ball(patch, c, r, weights, segments=7, rings=4):
+def ball(patch, c, r, weights, segments=6, rings=4):
     top = patch.vertex((c[0], c[1] + r, c[2]), (0.5, 1), weights)
     rows = []
     for i in range(1, rings):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Painting tools: images as rows of sRGB floats, patches spread over a texture, small colour sums."""
 from array import array
+from functools import lru_cache
 
 from form import clamp
 
@@ -13,8 +14,13 @@ def times(a, s):
     return (a[0] * s, a[1] * s, a[2] * s)
 
 
+@lru_cache(maxsize=None)
 def rgb(text):
     return tuple(int(text[i:i + 2], 16) / 255 for i in (0, 2, 4))
+
+
+def linear(text):
+    return tuple(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in rgb(text))
 
 
 class Image:

@@ -2,27 +2,21 @@
 """The colours of skin, lips, brows, eyes and hands, painted by place on the body."""
 from math import atan2, cos, exp, hypot, sin, sqrt
 
+from beard import mask
 from face import lid_opening
-from face_form import EYE, MOUTH_HALF, SMILE_LINE, UPPER_LID_LINE, lower_lip_y, part_y, upper_lip_y
+from face_form import (BROW_LINE, CORNER_LINE, EYE, MOUTH_HALF, SMILE_LINE, TEAR_LINE, UPPER_LID_LINE, forehead_line,
+                       lower_lip_y, part_y, upper_lip_y)
 from form import add, bell, clamp, cross, curve, dot, fractal, length, lerp, mad, noise, smoothstep, sub, unit
 from hair import HAIRLINE
 from paint import mixed, rgb, times
+from person import WHO
 
-BASE = rgb("e3b698")
-RED = rgb("cf7f6c")
-PALE = rgb("ecc9ad")
-SHADE = rgb("a9705c")
+BASE, RED, PALE, SHADE = rgb(WHO.skin), rgb(WHO.red), rgb(WHO.pale), rgb(WHO.shade)
 BLUISH = rgb("b98d88")
-LIP = rgb("bb7468")
-LIP_DARK = rgb("7d3833")
-BROW = rgb("5a3f2f")
-HAIR = rgb("4a3222")
+LIP, LIP_DARK = rgb(WHO.lip), rgb(WHO.lip_dark)
+BROW = rgb(WHO.brow)
+HAIR = rgb(WHO.hair[0])
 LASH = rgb("2c1d17")
-
-# the brow's middle line: x, y, half thickness
-BROW_LINE = [(0.0105, 0.0166, 0.0023), (0.0160, 0.0192, 0.0027), (0.0240, 0.0226, 0.0026), (0.0320, 0.0245, 0.0021),
-             (0.0400, 0.0232, 0.0015), (0.0470, 0.0196, 0.0009), (0.0505, 0.0170, 0.0004)]
-
 
 def texture_place(plane):
     """Where a point of the unrolled head lies in the texture: the face gets most of it."""
@@ -55,12 +49,12 @@ def lips(x, y):
     middle, top, low = part_y(x), upper_lip_y(x), lower_lip_y(x)
     d = (y - top) if y > middle else (low - y)
     amount = smoothstep(0.0007, -0.0009, d) * smoothstep(1.06, 0.93, x / MOUTH_HALF)
-    return amount, bell(y - middle, 0.0011) * smoothstep(1.10, 1.0, x / MOUTH_HALF)
+    return amount, bell(y - middle, 0.0010) * smoothstep(1.04, 0.94, x / MOUTH_HALF)
 
 
 def lid_edges(x, y):
     """Distance to the lid margin in the front view: (upper, lower), metres; None beyond the corners."""
-    t = (x - EYE[0] + 0.0146) / 0.0288
+    t = (x - EYE[0] + 0.0153) / 0.0301
     if not -0.02 < t < 1.02:
         return None
     t = clamp(t, 0.0, 1.0)
@@ -81,59 +75,88 @@ def skin_color(p):
     side = 1 if p[0] >= 0 else -1
     x, y, z = abs(p[0]), p[1], p[2]
     front = smoothstep(0.0, 0.05, z)
+    age, ruddy = WHO.age, WHO.ruddy
     c = BASE
-    c = mixed(c, PALE, 0.55 * bell(x, 0.045) * smoothstep(0.022, 0.045, y) * front)
-    c = mixed(c, PALE, 0.30 * bell(x - 0.022, 0.012) * bell(y + 0.022, 0.010))
+    c = mixed(c, PALE, 0.50 * bell(x, 0.045) * smoothstep(0.022, 0.045, y) * front)
+    c = mixed(c, PALE, 0.35 * bell(x - 0.024, 0.012) * bell(y + 0.024, 0.009))
+    c = mixed(c, rgb("d9a878"), 0.16 * smoothstep(0.015, 0.045, y) * front)  # the forehead is yellower, the middle redder
     blotch = 0.5 + 0.5 * fractal(p, 60, 3)
-    c = mixed(c, RED, front * clamp((0.40 + 0.22 * blotch) * bell(x - 0.042, 0.019) * bell(y + 0.033, 0.017)))
-    c = mixed(c, RED, 0.34 * bell(x, 0.012) * bell(y + 0.036, 0.010) * smoothstep(0.085, 0.100, z))
-    c = mixed(c, RED, 0.30 * bell(x - 0.0145, 0.006) * bell(y + 0.039, 0.008) * front)
-    c = mixed(c, RED, 0.30 * bell(x, 0.016) * bell(y + 0.098, 0.012) * front)
-    c = mixed(c, RED, 0.08 * smoothstep(-0.13, -0.19, y))
+    c = mixed(c, RED, ruddy * front * clamp((0.30 + 0.30 * blotch) * bell(x - 0.041, 0.017) * bell(y + 0.034, 0.015)))
+    c = mixed(c, RED, ruddy * 0.42 * bell(x, 0.013) * bell(y + 0.036, 0.009) * smoothstep(0.085, 0.100, z))
+    c = mixed(c, RED, ruddy * 0.40 * bell(x - 0.0140, 0.005) * bell(y + 0.0395, 0.008) * front)
+    c = mixed(c, RED, ruddy * 0.30 * bell(x, 0.016) * bell(y + 0.098, 0.012) * front)
+    c = mixed(c, RED, 0.22 * bell(x, 0.040) * smoothstep(-0.135, -0.175, y) * front)
+    c = mixed(c, RED, 0.18 * smoothstep(0.050, 0.066, x) * bell(y + 0.020, 0.035))
+    c = mixed(c, SHADE, 0.22 * smoothstep(-0.104, -0.122, y) * smoothstep(-0.175, -0.135, y) * front)  # under the chin
+    # blood and its absence: broad patches, then small ones
+    c = mixed(c, RED, 0.16 * ruddy * smoothstep(0.05, 0.40, fractal(p, 28, 21, 3)) * front)
+    c = mixed(c, PALE, 0.22 * smoothstep(0.05, 0.40, fractal(p, 75, 22, 3)) * front)
+    c = mixed(c, RED, 0.20 * ruddy * smoothstep(0.10, 0.42, fractal(p, 170, 23, 3)) * bell(y + 0.032, 0.030) * front)
     # round the eyes
     around = bell(x - 0.031, 0.019) * bell(y - 0.001, 0.013) * front
-    c = mixed(c, BLUISH, 0.34 * around)
-    c = mixed(c, BLUISH, 0.42 * bell(x - 0.0215, 0.0085) * bell(y + 0.0105, 0.0055) * front)
-    c = mixed(c, SHADE, 0.42 * bell(line_distance(x, y, UPPER_LID_LINE[1:7]), 0.0009) * front)
+    c = mixed(c, BLUISH, 0.26 * around)
+    c = mixed(c, BLUISH, (0.30 + 0.25 * WHO.eye_bags) * bell(x - 0.0225, 0.0095) * bell(y + 0.0110, 0.0050) * front)
+    c = mixed(c, SHADE, 0.46 * bell(line_distance(x, y, UPPER_LID_LINE[1:7]), 0.0009) * front)
     edges = lid_edges(x, y)
     if edges and z > 0.06:
         up, low = edges
-        along = (x - EYE[0] + 0.0146) / 0.0288
-        c = mixed(c, rgb("b0736a"), 0.45 * bell(max(up, 0), 0.0030) * (up > -0.001))
-        c = mixed(c, LASH, 0.82 * smoothstep(0.0011, 0.0002, up) * (up > -0.0012) * smoothstep(0.0, 0.25, along))
-        c = mixed(c, rgb("c98579"), 0.65 * smoothstep(0.0016, 0.0, low) * (low > -0.0012))
-        c = mixed(c, LASH, 0.34 * bell(low - 0.0009, 0.0005) * smoothstep(0.25, 0.6, along))
-    # folds and hollows
-    c = mixed(c, SHADE, 0.22 * bell(line_distance(x, y, SMILE_LINE), 0.0018) * front)
-    c = mixed(c, SHADE, 0.30 * bell(y + 0.0815, 0.0040) * bell(x, 0.014) * front)
-    c = mixed(c, rgb("6b3a30"), 0.85 * bell(x - 0.0062, 0.0036) * bell(y + 0.0445, 0.0022) * (z > 0.09))
-    c = mixed(c, SHADE, 0.35 * bell(x - 0.0185, 0.0022) * bell(y + 0.040, 0.0055) * (z > 0.07))
-    for k, (a, size) in enumerate(((0.45, 0.013), (0.05, 0.014), (-0.35, 0.012))):  # laughter lines
-        dx, dy = x - 0.0485, y + 0.0005
-        along, off = dx * cos(a) + dy * sin(a), -dx * sin(a) + dy * cos(a) - 6 * max(dx, 0) ** 2 * (1 - k)
-        c = mixed(c, SHADE, 0.30 * bell(off, 0.0005) * smoothstep(0.001, 0.004, along) * smoothstep(size, 0.006, along))
-    for k, height in enumerate((0.0375, 0.0455, 0.0530)):
-        wave = height + 0.0016 * cos(x * 75) + 0.0006 * noise((p[0] * 60, k, 0.0), 1.0, 8)
-        c = mixed(c, SHADE, 0.08 * bell(y - wave, 0.0005) * smoothstep(0.038, 0.020, x) * front)
-    # pores, freckles
-    grain = fractal(p, 420, 5, 3)
-    c = times(c, 1 + 0.045 * grain + 0.030 * fractal(p, 35, 6, 3))
-    q = add(p, (0.004 * noise(p, 90, 14), 0.004 * noise(p, 90, 15), 0.0))
-    freckle = noise(q, 520, 9) * (0.5 + 0.5 * noise(p, 70, 10))
-    c = mixed(c, rgb("b27f62"), 0.22 * smoothstep(0.25, 0.48, freckle) * bell(x - 0.028, 0.030) * bell(y + 0.022, 0.028) * front)
+        along = (x - EYE[0] + 0.0153) / 0.0301
+        c = mixed(c, rgb("b57c70"), 0.40 * bell(max(up, 0), 0.0032) * (up > -0.001))
+        c = mixed(c, LASH, 0.85 * smoothstep(0.0012, 0.0002, up) * (up > -0.0012) * smoothstep(0.0, 0.25, along) * WHO.lashes)
+        c = mixed(c, rgb("cf8d80"), 0.65 * smoothstep(0.0016, 0.0, low) * (low > -0.0012))
+        c = mixed(c, LASH, 0.30 * bell(low - 0.0009, 0.0005) * smoothstep(0.25, 0.6, along) * WHO.lashes)
+    c = folds(c, p, x, y, z, front, age)
+    # pores, freckles, spots
+    grain = fractal(p, 460, 5, 3)
+    pores = noise(p, 1500, 15) * (0.4 + bell(x, 0.030) * bell(y + 0.020, 0.035))
+    c = times(c, 1 + 0.050 * grain + 0.030 * fractal(p, 35, 6, 3) - 0.055 * smoothstep(0.15, 0.6, pores))
+    if WHO.freckles:
+        freckle = noise(p, 340, 9) + 0.5 * noise(p, 800, 10)
+        where = bell(x - 0.026, 0.030) * bell(y + 0.020, 0.024) + 0.30 * smoothstep(0.02, 0.04, y)
+        c = mixed(c, rgb("b07a58"), WHO.freckles * 0.26 * smoothstep(0.30, 0.62, freckle) * min(where, 1.0) * front)
+    if WHO.spots:
+        spot = smoothstep(0.42, 0.55, noise(p, 75, 33) + 0.25 * noise(p, 300, 34))
+        c = mixed(c, rgb("9a6647"), WHO.spots * 0.42 * spot * smoothstep(0.018, 0.040, x + 0.6 * max(y, 0)) * front)
+    if WHO.beard:
+        c = mixed(c, times(HAIR, 1 + 0.35 * noise((p[0] * 900, p[1] * 120, z * 900), 1.0, 17)), WHO.beard * mask(p))
     # lips
     red, dark = lips(x, y) if z > 0.05 else (0.0, 0.0)
     if red > 0 or dark > 0:
-        lines = noise((p[0] * 900, p[1] * 130, 0.0), 1.0, 12)
-        lip = mixed(LIP, rgb("c98c7f"), 0.5 * bell(y + 0.0725, 0.0030) * bell(x, 0.012))
-        lip = mixed(lip, rgb("ab645a"), 0.45 * (y > part_y(x)))
-        c = mixed(c, times(lip, 1 + 0.055 * lines), 0.86 * red)
-        c = mixed(c, LIP_DARK, 0.72 * dark)
-    c = mixed(c, SHADE, 0.45 * bell(x - MOUTH_HALF * 1.03, 0.0026) * bell(y - part_y(x), 0.0026) * front)
+        lines = noise((p[0] * 1100, p[1] * 130, 0.0), 1.0, 12)
+        lip = mixed(LIP, mixed(LIP, PALE, 0.45), 0.6 * bell(y + 0.0730, 0.0032) * bell(x, 0.013))
+        lip = mixed(lip, times(LIP, 0.84), 0.6 * (y > part_y(x)))
+        c = mixed(c, times(lip, 1 + 0.07 * lines), 0.80 * red)
+        c = mixed(c, LIP_DARK, 0.66 * dark)
+    c = mixed(c, SHADE, 0.32 * bell(x - MOUTH_HALF * 1.02, 0.0022) * bell(y - part_y(x), 0.0024) * front)
     # brows, hairline
     hairs = brow_mask(x, y, side) if z > 0.03 else 0.0
-    c = mixed(c, BROW, 0.80 * hairs)
-    return hairline(c, p, side)
+    c = mixed(c, BROW, WHO.brow_density * 0.75 * hairs)
+    return hairline(c, p, side) if WHO.hairline else c
+
+
+def folds(c, p, x, y, z, front, age):
+    """Skin is darker where it is folded, the more the older."""
+    c = mixed(c, SHADE, (0.10 + 0.34 * age) * bell(line_distance(x, y, SMILE_LINE), 0.0017) * front)
+    c = mixed(c, SHADE, 0.26 * bell(y + 0.0830, 0.0040) * bell(x, 0.014) * front)
+    c = mixed(c, rgb("6b3a30"), 0.70 * bell(x - 0.0064 * WHO.nose_width, 0.0028)
+              * bell(y + 0.0455 + 0.6 * WHO.nose_drop, 0.0018) * (z > 0.09))
+    c = mixed(c, SHADE, 0.32 * bell(x - 0.0172 * WHO.nose_width, 0.0020) * bell(y + 0.0395, 0.0055) * (z > 0.07))
+    for k, (a, size) in enumerate(((0.42, 0.013), (0.05, 0.015), (-0.33, 0.013))):  # laughter lines
+        dx, dy = x - 0.0475, y + 0.0005
+        along, off = dx * cos(a) + dy * sin(a), -dx * sin(a) + dy * cos(a)
+        c = mixed(c, SHADE, (0.12 + 0.40 * age) * bell(off, 0.0005) * smoothstep(0.001, 0.004, along)
+                  * smoothstep(size, 0.006, along))
+    if y > 0.03:
+        for k in range(3):
+            off = y - forehead_line(x, k) - 0.0005 * noise((p[0] * 60, k, 0.0), 1.0, 8)
+            c = mixed(c, SHADE, (0.03 + 0.36 * age ** 1.5) * bell(off, 0.0006) * smoothstep(0.044, 0.024, x) * front)
+    if age > 0.5:
+        c = mixed(c, SHADE, 0.45 * age * bell(x - 0.0052, 0.0008) * bell(y - 0.019, 0.006) * front)
+        c = mixed(c, SHADE, 0.40 * age * bell(line_distance(x, y, CORNER_LINE), 0.0014) * front)
+        c = mixed(c, SHADE, 0.40 * age * bell(line_distance(x, y, TEAR_LINE), 0.0012) * front)
+        fine = noise((p[0] * 500 + p[1] * 300, p[1] * 500 - p[0] * 200, z * 300), 1.0, 41)  # crossing fine lines
+        c = times(c, 1 - 0.07 * age * smoothstep(0.1, 0.5, abs(fine)) * front)
+    return c
 
 
 def hairline(c, p, side):
@@ -151,11 +174,13 @@ def hairline(c, p, side):
             best = length(off)
             under = dot(off, cross(p_out(a), d))  # > 0 on the covered side
     covered = under > 0
+    # strands leave the forehead backwards, the temples downwards
+    strand = noise((x * 900 - y * 300, z * 130, side), 1.0, 31) if y > 0.045 else noise((z * 900 - y * 260, x * 130, side), 1.0, 32)
     if covered:
-        return mixed(c, HAIR, 0.55 + 0.35 * smoothstep(0.0, 0.004, best))
-    wisps = 0.45 + 0.9 * noise((x * 420 + z * 420, (y - x - z) * 50, side), 1.0, 31)
+        return times(mixed(c, HAIR, 0.62 + 0.38 * smoothstep(0.0, 0.004, best)), 1 + 0.45 * strand)
+    wisps = 0.40 + 1.1 * strand
     c = mixed(c, SHADE, 0.30 * bell(best, 0.007))
-    return mixed(c, HAIR, clamp(wisps) * 0.75 * bell(best, 0.0036))
+    return mixed(c, HAIR, clamp(wisps) * 0.80 * bell(best, 0.0042))
 
 
 def p_out(a):
@@ -169,17 +194,20 @@ def eye_color(u, v):
     x, y = u - 0.5, v - 0.5
     r = hypot(x, y) / (0.5 * IRIS_ANGLE / MAP_ANGLE)  # 1 at the rim of the iris
     a = atan2(y, x)
-    white = mixed(rgb("efe9e2"), rgb("d9a79a"), 0.75 * smoothstep(2.0, 3.6, r))
+    white = mixed(rgb("f1ece6"), rgb("dcab9d"), 0.70 * smoothstep(1.9, 3.5, r))
+    white = mixed(white, rgb("b9b6b8"), 0.30 * bell(r - 1.05, 0.18))  # the dark rim shines through
+    white = times(white, 1 - 0.24 * smoothstep(0.35, 1.0, sin(a)) * smoothstep(0.9, 1.3, r))  # the lid's shadow
     vein = abs(noise((cos(a) * 5, sin(a) * 5, r * 0.9), 1.0, 3) + 0.5 * noise((cos(a) * 11, sin(a) * 11, r * 2), 1.0, 4))
-    white = mixed(white, rgb("c4695e"), 0.35 * smoothstep(0.06, 0.0, vein) * smoothstep(1.3, 2.6, r))
-    fibre = noise((cos(a) * 9, sin(a) * 9, r * 1.1), 1.0, 5) + 0.7 * noise((cos(a) * 26, sin(a) * 26, r * 1.6), 1.0, 6)
-    iris = mixed(rgb("7a6a45"), rgb("5c6a58"), smoothstep(0.45, 0.80, r + 0.10 * fibre))
-    iris = times(iris, 1.12 + 0.34 * fibre)
-    iris = mixed(iris, rgb("a5742f"), 0.55 * bell(r - 0.45, 0.13))
-    iris = mixed(iris, rgb("1d2320"), 0.85 * smoothstep(0.80, 1.0, r))
-    iris = times(iris, 1.0 + 0.30 * clamp(-sin(a)) * bell(r - 0.7, 0.3) - 0.30 * clamp(sin(a)))  # light falls in from above
-    c = mixed(iris, white, smoothstep(0.96, 1.07, r))
-    return mixed(rgb("070606"), c, smoothstep(0.36, 0.42, r + 0.012 * fibre))
+    white = mixed(white, rgb("c4695e"), 0.30 * smoothstep(0.05, 0.0, vein) * smoothstep(1.4, 2.7, r))
+    fibre = noise((cos(a) * 9, sin(a) * 9, r * 1.1), 1.0, 5) + 0.8 * noise((cos(a) * 30, sin(a) * 30, r * 1.4), 1.0, 6)
+    inner, outer, ring = (rgb(t) for t in WHO.iris)
+    iris = mixed(inner, outer, smoothstep(0.50, 0.82, r + 0.12 * fibre))
+    iris = times(iris, 1.18 + 0.45 * fibre)
+    iris = mixed(iris, ring, 0.60 * bell(r - 0.47 - 0.03 * fibre, 0.10))
+    iris = mixed(iris, rgb("1d2320"), 0.85 * smoothstep(0.82, 1.0, r))
+    iris = times(iris, 1.05 + 0.40 * clamp(-sin(a)) * bell(r - 0.7, 0.3) - 0.35 * clamp(sin(a)))  # light falls in from above
+    c = mixed(iris, white, smoothstep(0.95, 1.08, r))
+    return mixed(rgb("050404"), c, smoothstep(0.36, 0.41, r + 0.012 * fibre))
 
 
 def mouth_color(u, v):

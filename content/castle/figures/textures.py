@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Paints all textures of the storyteller into the folder of the X3D file."""
+"""Paints all textures of a person into the folder of the X3D file."""
 import os
 
 import fabric
@@ -20,22 +20,23 @@ TILES = {  # look: (colour, width, height)
 }
 
 
-def make_textures(figure, folder, size=1024):
-    for name, (color, width, height) in TILES.items():
-        save(figure, folder, name, fill(width, height, color))
-    face = figure.patch("face")
-    image = Image(size, size, skin.BASE)
-    spread(image, face, face.rest, skin.skin_color)
-    image.grow(6)
-    save(figure, folder, "skin", image)
-    hand = figure.patch("hand_l")
-    image = Image(size // 2, size // 2, skin.BASE)
-    spread(image, hand, [tag[1] for tag in hand.tags], skin.hand_color)
-    image.grow(6)
-    save(figure, folder, "hands", image)
+def make_textures(figure, who, folder, wanted=None, size=1024):
+    """`wanted`: names of the textures to paint (None: all); the others are taken as they lie there."""
+    def save(name, paint):
+        texture = "%s_%s.jpg" % (who.FILE, name)
+        if wanted is None or name in wanted:
+            paint().save(os.path.join(folder, texture))
+        figure.looks[name].texture = texture
 
+    def spread_over(patch, points, color, side, ground):
+        image = Image(side, side, ground)
+        spread(image, patch, points, color)
+        image.grow(6)
+        return image
 
-def save(figure, folder, name, image):
-    texture = "storyteller_%s.jpg" % name
-    image.save(os.path.join(folder, texture))
-    figure.looks[name].texture = texture
+    for name, (color, width, height) in {**TILES, **getattr(who, "TILES", {})}.items():
+        if name in figure.looks:
+            save(name, lambda: fill(width, height, color))
+    face, hand = figure.patch("face"), figure.patch("hand_l")
+    save("skin", lambda: spread_over(face, face.rest, skin.skin_color, size, skin.BASE))
+    save("hands", lambda: spread_over(hand, [tag[1] for tag in hand.tags], skin.hand_color, size // 2, skin.BASE))
