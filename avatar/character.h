@@ -5,9 +5,10 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "base/vec.h"
+#include "avatar/motion.h"
 
 namespace wellspring {
 
@@ -33,6 +34,10 @@ struct Site {
   vec3 position{0};  // humanoid space at rest
 };
 
+// How joints bend the skin: by blended matrices, as all file formats mean it, or by blended dual
+// quaternions, which keep the volume of a twisted limb.
+enum class Skinning : uint8_t { linear, dual_quaternion };
+
 // Moves some vertices by weight * displacement: a closed lid, a smile, a mouth shape.
 struct Displacer {
   std::string name;
@@ -48,6 +53,9 @@ struct Look {
   vec3 emission{0};
   std::string texture;  // path of an image beside the file; empty: none
   bool double_sided = false;
+  // Where the figure has a material_file: its material there, which says more than the fields above.
+  int material = -1;
+  bool matt = false;  // of a shading model that is not physical: shown without gloss, lit as all else
 };
 
 // Triangles of one look.
@@ -60,6 +68,12 @@ struct Part {
 struct JointWeight {
   uint16_t joint = 0;
   float weight = 0;
+};
+
+// How much an eye turns in its socket for each radian it should: eyes drawn as flat discs must not
+// leave the head. 1: eyeballs.
+struct EyeGain {
+  float inner = 1, outer = 1, up = 1, down = 1;
 };
 
 struct Character {
@@ -76,10 +90,17 @@ struct Character {
   std::vector<vec3> positions;
   std::vector<vec3> normals;
   std::vector<vec2> uv;  // empty, or one a vertex; (0, 0) is the picture's top left, as in glTF
+  std::vector<vec2> second_uv;  // likewise, for pictures of a material_file that ask for them
+  std::vector<vec4> colors;     // empty, or one a vertex; multiply the looks' colours
+  std::string material_file;    // glTF file whose materials Look::material names; empty: none
   // Joints that move vertex v: weights[first_weight[v] .. first_weight[v + 1]), sum 1.
   std::vector<uint32_t> first_weight;
   std::vector<JointWeight> weights;
-  std::vector<std::string> motions;   // names of motions in the file
+  Skinning skinning = Skinning::linear;
+  EyeGain eye_gain;
+  std::vector<Motion> motions;
+  // What the file says of its maker and licence: "author" -> "Jane Doe".
+  std::vector<std::pair<std::string, std::string>> metadata;
   std::vector<std::string> warnings;  // unknown or unsupported things, each said once
 };
 

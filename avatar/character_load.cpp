@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "avatar/gltf_figure.h"
 #include "avatar/x3d_humanoid.h"
 #include "base/load_error.h"
 
@@ -27,11 +28,20 @@ std::string read_file(const std::string& path) {
   return text;
 }
 
+// A GLB container, or JSON with glTF's "asset" rather than X3D's "X3D" (its first object).
+bool is_gltf(const std::string& text) {
+  if (text.compare(0, 4, "glTF") == 0) return true;
+  size_t brace = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return brace != std::string::npos && text[brace] == '{' && text.find("\"asset\"") != std::string::npos &&
+         text.find("\"X3D\"") == std::string::npos;
+}
+
 }  // namespace
 
 Character load_character(const std::string& path) {
   std::string text = read_file(path);
   if (text.empty()) throw LoadError(path, "", "is empty");
+  if (is_gltf(text)) return character_from_gltf(path);
   if (text.size() > 2 && text[0] == '\x1f' && text[1] == '\x8b')
     throw LoadError(path, "", "is compressed with gzip: unpack it first");
   X3dFile file = parse_x3d(path, text);

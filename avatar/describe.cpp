@@ -79,7 +79,7 @@ std::string describe_text(const Character& character) {
                    double(joint.center.y), double(joint.center.z),
                    hanim_joint_level(joint.name) < 0 ? "  (not H-Anim)" : "");
   }
-  std::vector<std::string> segments, sites, displacers;
+  std::vector<std::string> segments, sites, displacers, motions;
   for (const Segment& segment : character.segments) segments.push_back(segment.name);
   for (const Site& site : character.sites) sites.push_back(site.name);
   for (const Displacer& displacer : character.displacers)
@@ -87,7 +87,11 @@ std::string describe_text(const Character& character) {
   text += format("segments     %zu: ", segments.size()) + join(segments) + "\n";
   text += format("sites        %zu: ", sites.size()) + join(sites) + "\n";
   text += format("displacers   %zu (vertices): ", displacers.size()) + join(displacers) + "\n";
-  text += format("motions      %zu: ", character.motions.size()) + join(character.motions) + "\n";
+  for (const Motion& motion : character.motions)
+    motions.push_back(motion.name + format(" (%.2f s)", double(motion.duration)));
+  text += format("motions      %zu: ", motions.size()) + join(motions) + "\n";
+  for (const auto& [key, value] : character.metadata)
+    text += "about        " + key + ": " + value + "\n";
   for (const std::string& warning : character.warnings) text += "note         " + warning + "\n";
   return text;
 }
@@ -129,7 +133,14 @@ std::string describe_json(const Character& character) {
   all["looks"] = json::array();
   for (const Look& look : character.looks)
     all["looks"].push_back({{"name", look.name}, {"texture", look.texture}});
-  all["motions"] = character.motions;
+  all["motions"] = json::array();
+  for (const Motion& motion : character.motions)
+    all["motions"].push_back({{"name", motion.name},
+                              {"seconds", micro(motion.duration)},
+                              {"loop", motion.loop},
+                              {"tracks", motion.tracks.size()}});
+  all["metadata"] = json::object();
+  for (const auto& [key, value] : character.metadata) all["metadata"][key] = value;
   all["unknown_joints"] = unknown_joints(character);
   all["warnings"] = character.warnings;
   // Names come from foreign files and need not be UTF-8.

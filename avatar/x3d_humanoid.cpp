@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "avatar/figure_check.h"
 #include "avatar/hanim_names.h"
 #include "base/load_error.h"
 
@@ -74,39 +75,6 @@ mat4 joint_scale(const X3dFile& file, const X3dNode& node) {
   mat4 orientation = glm::mat4_cast(rotation_of(file, node, "scaleOrientation"));
   mat4 matrix = glm::translate(mat4(1), center) * orientation * glm::scale(mat4(1), scale);
   return glm::translate(matrix * glm::transpose(orientation), -center);
-}
-
-// Face joints of some published skeletons lie far below their skull.
-void check_face_joints(Character& character) {
-  int skull = find_joint(character, "skullbase");
-  if (skull < 0) return;
-  for (const Joint& joint : character.joints) {
-    bool face = joint.name.find("_eye") != std::string::npos || joint.name == "temporomandibular";
-    if (!face) continue;
-    vec3 from_skull = joint.center - character.joints[size_t(skull)].center;
-    float length = glm::length(from_skull);
-    if (length > 0.25f || from_skull.y < -0.08f)
-      warn_once(character.warnings, "joint " + joint.name + " lies " +
-                                        std::to_string(int(length * 100 + 0.5f)) +
-                                        " cm from skullbase: misplaced");
-  }
-}
-
-// H-Anim figures stand on y = 0; some files put their origin elsewhere.
-void stand_on_floor(Character& character) {
-  if (find_joint(character, "l_talocrural") < 0 && find_joint(character, "l_knee") < 0) return;
-  float low = INFINITY;
-  for (vec3 p : character.positions) low = std::min(low, p.y);
-  if (character.positions.empty())
-    for (const Joint& joint : character.joints) low = std::min(low, joint.center.y - 0.02f);
-  if (!std::isfinite(low) || std::abs(low) < 0.03f) return;
-  char text[100];
-  std::snprintf(text, sizeof text, "feet are at y = %.3f m: the figure is moved to stand on 0",
-                double(low));
-  warn_once(character.warnings, text);
-  for (vec3& p : character.positions) p.y -= low;
-  for (Joint& joint : character.joints) joint.center.y -= low;
-  for (Site& site : character.sites) site.position.y -= low;
 }
 
 }  // namespace
@@ -278,7 +246,10 @@ Character character_from_x3d(X3dFile& file) {
   reader.read_skin(humanoid);
 
   for (const X3dNode& motion : file.nodes)
-    if (motion.type == "HAnimMotion") character.motions.push_back(node_name(motion));
+    if (motion.type == "HAnimMotion") {
+      character.motions.emplace_back();
+      character.motions.back().name = node_name(motion);
+    }
   std::vector<std::string_view> names;
   for (const Joint& joint : character.joints) names.push_back(joint.name);
   character.loa = level_of_articulation(names);
@@ -290,12 +261,7 @@ Character character_from_x3d(X3dFile& file) {
     if (find_field(node, field)) warn_once(file.warnings, std::string(field) + " is not used");
   if (character.parts.empty()) warn_once(file.warnings, "the figure has no surface");
   character.warnings = file.warnings;
-  stand_on_floor(character);
-  check_face_joints(character);
-  for (const Joint& joint : character.joints)
-    if (glm::length(joint.center) > 20)
-      warn_once(character.warnings,
-                "the figure is more than 20 m large: perhaps its unit is not the metre");
+  check_figure(character);
   return std::move(reader.character);
 }
 

@@ -9,18 +9,6 @@
 namespace wellspring::gltf {
 namespace {
 
-enum class Path { none, translation, rotation, scale, weights };
-enum class Curve { step, linear, cubic };
-
-// A channel with its data: `width` numbers a key, three times as many for cubic curves.
-struct Track {
-  Path path = Path::none;
-  Curve curve = Curve::linear;
-  size_t node = 0;
-  size_t width = 0;
-  std::vector<float> times, values;
-};
-
 Path path_of(const std::string& name) {
   if (name == "translation") return Path::translation;
   if (name == "rotation") return Path::rotation;
@@ -129,49 +117,66 @@ void apply(const Track& track, double time, Node& node) {
   }
 }
 
+// The clip's tracks that have something to move; their data too if `with_data`.
+Clip read_clip(File& file, const json& animation, const std::string& where,
+               const std::vector<Node>& nodes, bool with_data) {
+  Clip clip;
+  clip.name = text(animation, "name");
+  const json& samplers = items(animation, "samplers");
+  const json& channels = items(animation, "channels");
+  std::set<std::pair<size_t, Path>> targets;
+  for (size_t c = 0; c < channels.size(); c++) {
+    const std::string place = at(where + "/channels", c);
+    size_t index = size_t(integer(channels[c], "sampler", 0));
+    if (index >= samplers.size())
+      refuse(file, place + "/sampler", "there is no sampler " + std::to_string(index));
+    const json& target = channels[c]["target"];
+    Track track;
+    track.path = path_of(text(target, "path"));
+    if (track.path == Path::none) warn(file, place + "/target/path", "unknown and ignored");
+    if (track.path == Path::none || !find(target, "node")) continue;
+    track.node = size_t(integer(target, "node", 0));
+    const Node& node = nodes[track.node];
+    if (node.has_matrix && track.path != Path::weights) {
+      warn(file, place, "a node given by a matrix cannot be animated");
+      continue;
+    }
+    if (track.path == Path::weights && node.weights.empty()) {
+      warn(file, place, "a node without morph targets has no weights to animate");
+      continue;
+    }
+    const std::string sampler_place = at(where + "/samplers", index);
+    track.curve = curve_of(file, samplers[index], sampler_place);
+    track.width = track.path == Path::rotation  ? 4
+                  : track.path == Path::weights ? node.weights.size()
+                                                : 3;
+    check_formats(file, samplers[index], sampler_place, track);
+    if (!targets.insert({track.node, track.path}).second) {
+      warn(file, place, "a second channel for the same target is ignored");
+      continue;
+    }
+    if (with_data) read_track(file, samplers[index], sampler_place, track);
+    if (!with_data || !track.times.empty()) clip.tracks.push_back(std::move(track));
+  }
+  return clip;
+}
+
 }  // namespace
+
+std::vector<Clip> read_clips(File& file, const std::vector<Node>& nodes) {
+  std::vector<Clip> clips;
+  const json& animations = items(file.root, "animations");
+  for (size_t a = 0; a < animations.size(); a++)
+    clips.push_back(read_clip(file, animations[a], at("/animations", a), nodes, true));
+  return clips;
+}
 
 void animate(File& file, double time, std::vector<Node>& nodes) {
   const json& animations = items(file.root, "animations");
   for (size_t a = 0; a < animations.size(); a++) {
-    const std::string where = at("/animations", a);
-    const json& samplers = items(animations[a], "samplers");
-    const json& channels = items(animations[a], "channels");
-    std::set<std::pair<size_t, Path>> targets;
-    for (size_t c = 0; c < channels.size(); c++) {
-      const std::string place = at(where + "/channels", c);
-      size_t index = size_t(integer(channels[c], "sampler", 0));
-      if (index >= samplers.size())
-        refuse(file, place + "/sampler", "there is no sampler " + std::to_string(index));
-      const json& target = channels[c]["target"];
-      Track track;
-      track.path = path_of(text(target, "path"));
-      if (track.path == Path::none) warn(file, place + "/target/path", "unknown and ignored");
-      if (track.path == Path::none || !find(target, "node")) continue;
-      track.node = size_t(integer(target, "node", 0));
-      Node& node = nodes[track.node];
-      if (node.has_matrix && track.path != Path::weights) {
-        warn(file, place, "a node given by a matrix cannot be animated");
-        continue;
-      }
-      if (track.path == Path::weights && node.weights.empty()) {
-        warn(file, place, "a node without morph targets has no weights to animate");
-        continue;
-      }
-      const std::string sampler_place = at(where + "/samplers", index);
-      track.curve = curve_of(file, samplers[index], sampler_place);
-      track.width = track.path == Path::rotation  ? 4
-                    : track.path == Path::weights ? node.weights.size()
-                                                  : 3;
-      check_formats(file, samplers[index], sampler_place, track);
-      if (!targets.insert({track.node, track.path}).second) {
-        warn(file, place, "a second channel for the same target is ignored");
-        continue;
-      }
-      if (a > 0) continue;
-      read_track(file, samplers[index], sampler_place, track);
-      if (time != 0 && std::isfinite(time) && !track.times.empty()) apply(track, time, node);
-    }
+    Clip clip = read_clip(file, animations[a], at("/animations", a), nodes, a == 0);
+    if (a > 0 || time == 0 || !std::isfinite(time)) continue;
+    for (const Track& track : clip.tracks) apply(track, time, nodes[track.node]);
   }
   if (animations.size() > 1 && time != 0)
     warn(file, "/animations", "has several animations; the first one is shown");

@@ -213,7 +213,8 @@ std::optional<Bytes> read_uri(const File& file, const std::string& where, const 
   }
 }
 
-File load_gltf(const std::string& path, const std::string& package) {
+File load_gltf(const std::string& path, const std::string& package,
+               const std::set<std::string>& further) {
   File file;
   file.path = path;
   std::error_code error;
@@ -232,7 +233,7 @@ File load_gltf(const std::string& path, const std::string& package) {
   }
   bytes = Bytes();
   check_schema(file);
-  check_extensions(file);
+  check_extensions(file, further);
   check_layout(file);
   file.buffers.resize(items(file.root, "buffers").size());
   file.buffer_ready.assign(file.buffers.size(), 0);

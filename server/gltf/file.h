@@ -43,15 +43,18 @@ struct File {
   // large.
   std::map<size_t, std::shared_ptr<const std::vector<float>>> decoded;
   int64_t decoded_numbers = 0;    // held in `decoded`
-  std::vector<uint32_t> renamed;  // scratch of world/gltf_mesh.cpp: all unseen between primitives
+  std::vector<uint32_t> renamed;  // scratch of primitive.cpp: all unseen between primitives
   // Bounds of what a file may cost (gltf/data.h).
   int64_t numbers_read = 0, vertices_made = 0, triangles_made = 0;
+  bool pictures_may_fail = false;  // one that cannot be decoded is warned of, not refused
   std::vector<std::string> warnings;
   std::set<std::string> said;
 };
 
-// Reads, splits and checks a file. Throws LoadError.
-File load_gltf(const std::string& path, const std::string& package);
+// Reads, splits and checks a file. `further` names extensions that the caller understands besides
+// those of materials, lights and quantisation. Throws LoadError.
+File load_gltf(const std::string& path, const std::string& package,
+               const std::set<std::string>& further = {});
 
 [[noreturn]] void refuse(const File& file, const std::string& where, const std::string& what);
 // Adds a warning; the same `what` is said once, with its first place.
@@ -66,7 +69,8 @@ Bytes read_bytes(const std::string& path, size_t limit);
 // The steps of load_gltf.
 void check_schema(File& file);      // types, required properties, ranges, references
 void check_layout(File& file);      // buffer views within buffers, accessors within buffer views
-void check_extensions(File& file);  // required ones must be known
+// Required extensions must be known.
+void check_extensions(File& file, const std::set<std::string>& further);
 
 // Helpers over checked JSON.
 const json& items(const json& object, const char* key);  // an empty array where there is none

@@ -375,7 +375,7 @@ void check_schema(File& file) {
   check_version(file);
 }
 
-void check_extensions(File& file) {
+void check_extensions(File& file, const std::set<std::string>& further) {
   static const std::set<std::string> known = {
       "KHR_texture_transform",      "KHR_materials_emissive_strength",
       "KHR_materials_transmission", "KHR_materials_ior",
@@ -384,15 +384,18 @@ void check_extensions(File& file) {
       "KHR_mesh_quantization",      "KHR_materials_specular",
       "KHR_materials_clearcoat",    "KHR_materials_sheen",
       "KHR_materials_anisotropy",   "KHR_materials_dispersion"};
+  auto is_known = [&](const json& name) {
+    return known.count(name.get<std::string>()) || further.count(name.get<std::string>());
+  };
   const json& required = items(file.root, "extensionsRequired");
   for (size_t i = 0; i < required.size(); i++)
-    if (!known.count(required[i].get<std::string>()))
+    if (!is_known(required[i]))
       refuse(file, at("/extensionsRequired", i),
              "needs extension " + required[i].get<std::string>().substr(0, 60) +
                  ", which is not supported");
   const json& used = items(file.root, "extensionsUsed");
   for (size_t i = 0; i < used.size(); i++)
-    if (!known.count(used[i].get<std::string>()))
+    if (!is_known(used[i]))
       warn(file, at("/extensionsUsed", i),
            "extension " + used[i].get<std::string>().substr(0, 60) + " is ignored");
 }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "world/gltf_image.h"
+#include "world/gltf_material.h"
 
 namespace wellspring {
 namespace {
@@ -40,6 +41,48 @@ Material make_material(const Look& look, int texture) {
   return material;
 }
 
+// The materials of the character's glTF file, appended to the scene; index of the first, -1 where
+// there is no such file.
+int add_file_materials(Scene& scene, const std::string& path) {
+  if (path.empty()) return -1;
+  Scene own;
+  gltf::File file = gltf::load_gltf(path, "");
+  file.pictures_may_fail = true;
+  gltf::load_materials(file, own);
+  for (const std::string& warning : file.warnings)
+    if (warning.rfind("/images", 0) == 0 || warning.rfind("/textures", 0) == 0)
+      scene.warnings.push_back(path + ": " + warning);
+  int first_image = int(scene.images.size()), first_texture = int(scene.textures.size());
+  int first_material = int(scene.materials.size());
+  for (Image& image : own.images) scene.images.push_back(std::move(image));
+  for (Texture& texture : own.textures) {
+    if (texture.image >= 0) texture.image += first_image;
+    scene.textures.push_back(texture);
+  }
+  for (Material& material : own.materials) {
+    material.normal_texture = material.clearcoat_normal_texture = {};  // no tangents on what bends
+    for (TextureRef* use :
+         {&material.base_color_texture, &material.metallic_roughness_texture,
+          &material.emission_texture, &material.transmission_texture, &material.thickness_texture,
+          &material.specular_texture, &material.specular_color_texture, &material.clearcoat_texture,
+          &material.clearcoat_roughness_texture, &material.sheen_color_texture,
+          &material.sheen_roughness_texture, &material.anisotropy_texture})
+      if (use->texture >= 0) use->texture += first_texture;
+    material.anisotropy = 0;
+    scene.materials.push_back(std::move(material));
+  }
+  return first_material;
+}
+
+// Cartoon shading has no gloss; its colours are those of a matt surface.
+void make_matt(Material& material) {
+  material.unlit = false;
+  material.metallic = 0;
+  material.roughness = 1;
+  material.specular = 0.25f;
+  material.metallic_roughness_texture = {};
+}
+
 }  // namespace
 
 Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& moving,
@@ -51,8 +94,14 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
 
   std::map<std::string, int> textures;
   int64_t texels_left = image_texel_limit;
+  int first_of_file = add_file_materials(scene, character.material_file);
   int first_material = int(scene.materials.size());
   for (const Look& look : character.looks) {
+    if (look.material >= 0 && first_of_file >= 0) {
+      scene.materials.push_back(scene.materials[size_t(first_of_file + look.material)]);
+      if (look.matt) make_matt(scene.materials.back());
+      continue;
+    }
     int texture = -1;
     if (!look.texture.empty()) {
       auto [place, added] = textures.emplace(look.texture, -1);
@@ -80,6 +129,8 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
           mesh.positions.push_back(character.positions[t[c]]);
           mesh.normals.push_back(character.normals[t[c]]);
           if (!character.uv.empty()) mesh.uv[0].push_back(character.uv[t[c]]);
+          if (!character.second_uv.empty()) mesh.uv[1].push_back(character.second_uv[t[c]]);
+          if (!character.colors.empty()) mesh.colors.push_back(character.colors[t[c]]);
         }
         local[c] = place;
       }

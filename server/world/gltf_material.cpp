@@ -274,6 +274,10 @@ class Materials {
     } else {
       problem = "has neither uri nor bufferView";
     }
+    if (!problem.empty() && file_.pictures_may_fail) {
+      warn(file_, where, problem);
+      return -1;
+    }
     if (!problem.empty()) refuse(file_, where, problem);
     scene_.images.push_back(std::move(made));
     return known->second = int(scene_.images.size()) - 1;

@@ -46,6 +46,43 @@ TEST(Corpus, EveryFileLoadsOrIsRefusedWithAReason) {
   EXPECT_GT(refused, 10);
 }
 
+// VRM models of exporters and of hand-made corner cases, skins of glTF's sample models.
+TEST(Corpus, VrmAndSkinsLoadOrAreRefusedWithAReason) {
+  int figures = 0, persons = 0;
+  std::vector<std::string> refused;
+  for (const char* set : {"3_vrm", "1_gltf/khronos", "1_gltf/ozz", "1_gltf/assimp/simple_skin"}) {
+    fs::path folder = fs::path(WELLSPRING_DATA) / set;
+    if (!fs::exists(folder)) GTEST_SKIP() << "no models at " << folder;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      std::string ending = entry.path().extension().string();
+      if (ending != ".vrm" && ending != ".vrma" && ending != ".glb" && ending != ".gltf") continue;
+      SCOPED_TRACE(entry.path());
+      try {
+        Character c = load_character(entry.path().string());
+        figures++;
+        ASSERT_FALSE(c.joints.empty());
+        EXPECT_EQ(c.first_weight.size(), c.positions.size() + 1);
+        for (vec3 n : c.normals) ASSERT_NEAR(glm::length(n), 1, 1e-3f);
+        bool person = find_joint(c, "l_hip") >= 0 && find_joint(c, "l_shoulder") >= 0;
+        persons += person;
+        if (person && find_joint(c, "l_knee") >= 0) {
+          auto at = [&](const char* name) { return c.joints[size_t(find_joint(c, name))].center; };
+          EXPECT_GT(at("l_shoulder").x, at("r_shoulder").x) << "faces the visitor";
+          EXPECT_GT(at("l_shoulder").y, at("l_knee").y) << "stands";
+        }
+        if (ending == ".vrm") EXPECT_TRUE(person);
+      } catch (const LoadError& error) {
+        EXPECT_FALSE(error.what_.empty());
+        refused.push_back(entry.path().filename().string());
+        EXPECT_NE(ending, ".vrm") << error.what();
+      }
+    }
+  }
+  EXPECT_GE(persons, 55);
+  EXPECT_GE(figures, 60);
+  EXPECT_GE(refused.size(), 3u) << "cubes are no figures";
+}
+
 TEST(Corpus, StandardSkeletonsHaveTheirLevelOfArticulation) {
   NEEDS_CORPUS();
   EXPECT_EQ(load("web3d_pythonSAI/Humanoid1.x3d").loa, 1);

@@ -346,7 +346,8 @@ TEST(Load, MotionsAndUnknownThingsAreNamed) {
   Character c =
       load_text(humanoid(joint("humanoid_root", "<Text/><Inline url='x'/><Inline url='y'/>", root) +
                          "<HAnimMotion name='walk' containerField='motions'/>"));
-  EXPECT_EQ(c.motions, std::vector<std::string>{"walk"});
+  ASSERT_EQ(c.motions.size(), 1u);
+  EXPECT_EQ(c.motions[0].name, "walk");
   EXPECT_EQ(
       std::count_if(c.warnings.begin(), c.warnings.end(),
                     [](const std::string& w) { return w.find("Inline") != std::string::npos; }),
