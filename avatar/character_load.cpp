@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "avatar/bvh_load.h"
 #include "avatar/gltf_figure.h"
 #include "avatar/x3d_humanoid.h"
 #include "base/load_error.h"
@@ -41,6 +42,7 @@ bool is_gltf(const std::string& text) {
 Character load_character(const std::string& path) {
   std::string text = read_file(path);
   if (text.empty()) throw LoadError(path, "", "is empty");
+  if (is_bvh(text)) return character_from_bvh(path, text);
   if (is_gltf(text)) return character_from_gltf(path);
   if (text.size() > 2 && text[0] == '\x1f' && text[1] == '\x8b')
     throw LoadError(path, "", "is compressed with gzip: unpack it first");

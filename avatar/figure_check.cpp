@@ -71,6 +71,7 @@ void check_face_joints(Character& character, float height) {
 // H-Anim figures stand on y = 0; some files put their origin elsewhere.
 void stand_on_floor(Character& character) {
   if (find_joint(character, "l_talocrural") < 0 && find_joint(character, "l_knee") < 0) return;
+  if (character.parts.empty() && !character.motions.empty()) return;  // where a recording has it
   float low = INFINITY;
   for (vec3 p : character.positions) low = std::min(low, p.y);
   // Surfaces may be missing, or stand on legs that have none.

@@ -18,7 +18,10 @@ void eval_joints(const Character& character, const Pose& pose, std::vector<mat4>
     float length = glm::length(turn);
     turn = length > 1e-6f && length < 1e6f ? turn * (1 / length) : quat(1, 0, 0, 0);
     mat4 local = glm::mat4_cast(turn);
-    local[3] = vec4(joint.center - mat3(local) * joint.center, 1);  // turns about the centre
+    if (j < pose.stretches.size()) local = local * mat4(pose.stretches[j]);
+    vec3 place = joint.center;
+    if (j < pose.translations.size() && is_finite(pose.translations[j])) place += pose.translations[j];
+    local[3] = vec4(place - mat3(local) * joint.center, 1);  // turns about the centre
     if (joint.parent >= 0) to_humanoid[j] = to_humanoid[size_t(joint.parent)] * local;
     else
       to_humanoid[j] =

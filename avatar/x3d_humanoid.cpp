@@ -8,6 +8,7 @@
 
 #include "avatar/figure_check.h"
 #include "avatar/hanim_names.h"
+#include "avatar/x3d_motion.h"
 #include "base/load_error.h"
 
 namespace wellspring {
@@ -245,11 +246,7 @@ Character character_from_x3d(X3dFile& file) {
     throw LoadError(file.path, where(node), "the humanoid has no joints");
   reader.read_skin(humanoid);
 
-  for (const X3dNode& motion : file.nodes)
-    if (motion.type == "HAnimMotion") {
-      character.motions.emplace_back();
-      character.motions.back().name = node_name(motion);
-    }
+  read_x3d_motions(reader, humanoid);
   std::vector<std::string_view> names;
   for (const Joint& joint : character.joints) names.push_back(joint.name);
   character.loa = level_of_articulation(names);

@@ -44,6 +44,16 @@ struct Builder {
     return all;
   }
 
+  void add_routes(const json& value) {
+    for (const json& route : value.is_array() ? value : json::array({value})) {
+      auto text = [&](const char* key) {
+        auto found = route.is_object() ? route.find(key) : route.end();
+        return found != route.end() && found->is_string() ? found->get<std::string>() : std::string();
+      };
+      add_route(file, {text("@fromNode"), text("@fromField"), text("@toNode"), text("@toField")});
+    }
+  }
+
   // {"Group": {...}} or a list of such.
   void add_nodes(const json& value, int parent, const std::string& field, const std::string& place,
                  int depth) {
@@ -59,7 +69,7 @@ struct Builder {
       if (type.empty() || type[0] == '#' || type[0] == '@' || type[0] == '-') continue;
       std::string here = place + "/" + type;
       if (type == "ROUTE") {
-        warn_once(file.warnings, "animation by ROUTE is not played");
+        add_routes(content);
       } else if (type == "ProtoDeclare" || type == "ExternProtoDeclare") {
         std::string name = content.is_object() ? content.value("@name", json()).dump() : "";
         warn_once(file.warnings, "prototype " + name.substr(0, 60) + " is not expanded");

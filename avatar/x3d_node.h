@@ -31,9 +31,14 @@ struct X3dNode {
   std::vector<X3dChild> children;
 };
 
+struct X3dRoute {
+  std::string from_node, from_field, to_node, to_field;
+};
+
 struct X3dFile {
   std::string path;
   std::vector<X3dNode> nodes;  // nodes[0] is the scene; no cycles
+  std::vector<X3dRoute> routes;
   float length_unit = 1;       // metres
   std::vector<std::string> warnings;
 };
@@ -42,6 +47,7 @@ struct X3dFile {
 inline constexpr size_t x3d_max_bytes = size_t(128) << 20;
 inline constexpr int x3d_max_nodes = 500'000;
 inline constexpr int x3d_max_depth = 400;
+inline constexpr size_t x3d_max_routes = 200'000;
 
 // Parses `text` (the content of `path`), whichever encoding it is in. Throws LoadError with the
 // line.
@@ -63,6 +69,9 @@ struct X3dPendingUse {
   int line = 0;
 };
 void resolve_uses(X3dFile& file, const std::vector<X3dPendingUse>& pending);
+
+// For the parsers: one more ROUTE; beyond the limit they are dropped with a warning.
+void add_route(X3dFile& file, X3dRoute route);
 
 // Adds a warning unless it was said before; after 100 the rest is only counted once as "and more".
 void warn_once(std::vector<std::string>& warnings, const std::string& text);

@@ -59,6 +59,11 @@ std::string where(const X3dNode& node) {
   return text + node.type + (name.empty() ? "" : " " + name.substr(0, 60)) + ")";
 }
 
+void add_route(X3dFile& file, X3dRoute route) {
+  if (file.routes.size() < x3d_max_routes) file.routes.push_back(std::move(route));
+  else warn_once(file.warnings, "too many ROUTEs: the rest is left out");
+}
+
 void warn_once(std::vector<std::string>& warnings, const std::string& text) {
   constexpr size_t most = 100;
   if (warnings.size() > most) return;

@@ -78,7 +78,8 @@ struct Builder {
           warn_once(file.warnings, "line " + std::to_string(line(xml)) + ": prototype '" +
                                        name.substr(0, 60) + "' is not expanded");
       } else if (is(xml, "ROUTE")) {
-        warn_once(file.warnings, "animation by ROUTE is not played");
+        add_route(file, {xml.attribute("fromNode").value(), xml.attribute("fromField").value(),
+                         xml.attribute("toNode").value(), xml.attribute("toField").value()});
       } else if (is(xml, "IS") || is(xml, "field") || is(xml, "IMPORT") || is(xml, "EXPORT")) {
         continue;
       } else {

@@ -7,6 +7,7 @@
 
 #include "avatar/character_load.h"
 #include "avatar/describe.h"
+#include "avatar/retarget.h"
 #include "avatar/storyteller.h"
 #include "base/load_error.h"
 #include "base/log.h"
@@ -19,7 +20,7 @@ namespace {
 struct Options {
   std::string file, out, size = "720x1080";
   std::vector<std::string> displacers;
-  std::string gesture;
+  std::string gesture, motion;
   std::vector<float> guest;
   bool info = false, json = false, close = false, rest = false, calm = false;
   double time = 0;
@@ -60,6 +61,21 @@ Pose pose_at(const Character& character, const Options& options) {
   return pose;
 }
 
+// The motion of that name in the figure's file, else the first one of the file `wanted` names.
+Motion find_motion(const Character& character, const std::string& wanted) {
+  for (const Motion& motion : character.motions)
+    if (motion.name == wanted) return motion;
+  std::string file = wanted, name;
+  if (size_t hash = wanted.rfind('#'); hash != std::string::npos) {
+    file = wanted.substr(0, hash);
+    name = wanted.substr(hash + 1);
+  }
+  Character other = load_character(file);
+  for (Motion& motion : other.motions)
+    if (name.empty() || motion.name == name) return std::move(motion);
+  throw LoadError(file, "", name.empty() ? "has no motion" : "has no motion '" + name + "'");
+}
+
 int fail(const std::string& text, int status) {
   std::cerr << text << "\n";
   return status;
@@ -87,7 +103,14 @@ int run(const Options& options) {
   else if (options.info || options.out.empty()) std::cout << describe_text(character);
   if (options.out.empty()) return 0;
 
-  Pose pose = pose_at(character, options);
+  Pose pose = options.motion.empty() ? pose_at(character, options) : make_rest_pose(character);
+  if (!options.motion.empty()) {
+    Motion motion = find_motion(character, options.motion);
+    Retarget retarget = make_retarget(motion, character);
+    if (!retarget.fits)
+      throw LoadError(options.motion, "", "moves no joint that this figure has");
+    apply_motion(motion, retarget, character, options.time, motion.loop, 1, pose);
+  }
   for (const std::string& setting : options.displacers) {
     size_t equals = setting.find('=');
     int index = find_displacer(character, setting.substr(0, equals));
@@ -111,10 +134,13 @@ int main(int argc, char** argv) {
   log::start("avatar");
   CLI::App app{"Inspects an H-Anim figure and takes pictures of it."};
   Options options;
-  app.add_option("file", options.file, "X3D file of the figure")->required();
+  app.add_option("file", options.file, "file of the figure: X3D, VRML97, glTF, VRM; or BVH, a motion")->required();
   app.add_flag("--info", options.info,
                "tell what the figure consists of (the default without --out)");
   app.add_flag("--json", options.json, "the same for programs");
+  app.add_option("--motion", options.motion,
+                 "shows a motion at --time instead: one of the figure's own by name, or a file\n"
+                 "(.bvh, .vrma, .glb, .x3d; FILE#NAME for one of several)");
   app.add_option("--out", options.out, "picture to write: .png .jpg .pfm .exr");
   app.add_option("--time", options.time, "seconds it has stood there");
   app.add_option("--size", options.size, "WIDTHxHEIGHT of the picture");

@@ -94,6 +94,8 @@ Frame render_studio(const Character& character, const Pose& pose, const StudioSh
   float aspect = float(shot.width) / float(shot.height);
   float across = 0.55f * (high.x - low.x) / aspect;
   if (!shot.close) reach = std::max(reach, across);
+  // The studio stands where the figure is.
+  vec3 middle(0.5f * (low.x + high.x), 0, 0.5f * (low.z + high.z));
   auto round = [&](vec3 v) { return glm::angleAxis(shot.turn, vec3(0, 1, 0)) * v; };
   vec3 eye = centre + round(vec3(0, 0.02f * height, reach / std::tan(0.5f * fov)));
 
@@ -101,13 +103,13 @@ Frame render_studio(const Character& character, const Pose& pose, const StudioSh
   scene.objects = {""};
   scene.materials.push_back(paint("sweep", vec3(0.42f, 0.41f, 0.40f), 0.75f));
   Mesh sweep = make_sweep(height);
-  for (vec3& p : sweep.positions) p = round(p + vec3(0, low.y, 0));
+  for (vec3& p : sweep.positions) p = round(p + vec3(0, low.y, 0)) + middle;
   for (vec3& n : sweep.normals) n = round(n);
   add_instance(scene, std::move(sweep));
   float h = height;
-  vec3 chest(0, low.y + 0.75f * h, 0);
+  vec3 chest = middle + vec3(0, low.y + 0.75f * h, 0);
   auto panel = [&](vec3 at, float side, vec3 radiance) {
-    add_panel(scene, round(at * h) + vec3(0, low.y, 0), chest, side * h, radiance);
+    add_panel(scene, round(at * h) + middle + vec3(0, low.y, 0), chest, side * h, radiance);
   };
   panel({-1.15f, 1.55f, 1.25f}, 0.8f, vec3(7.5f, 7.1f, 6.6f));  // key
   panel({1.5f, 1.1f, 1.0f}, 1.0f, vec3(1.4f, 1.5f, 1.7f));      // fill

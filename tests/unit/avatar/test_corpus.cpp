@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <set>
 
+#include "avatar/body.h"
 #include "avatar/hanim_names.h"
+#include "avatar/retarget.h"
 #include "avatar/skin.h"
 #include "base/load_error.h"
 #include "figures.h"
@@ -81,6 +83,36 @@ TEST(Corpus, VrmAndSkinsLoadOrAreRefusedWithAReason) {
   EXPECT_GE(persons, 55);
   EXPECT_GE(figures, 60);
   EXPECT_GE(refused.size(), 3u) << "cubes are no figures";
+}
+
+TEST(Corpus, RecordingsMoveAnyFigure) {
+  NEEDS_CORPUS();
+  fs::path data(WELLSPRING_DATA);
+  Character jin = load("web3d_pythonSAI/KoreanCharacter01Jin.x3d");
+  for (const char* file : {"4_bvh/assimp/01_01.bvh", "4_bvh/bvh_python/test_mocapbank.bvh",
+                           "3_vrm/three_vrm/packages/vrm-viewer/idle_loop.vrma",
+                           "1_gltf/khronos/CesiumMan/glTF-Binary/CesiumMan.glb",
+                           "2_x3d_hanim/web3d_pythonSAI/KoreanCharacterMotionAnnexD01Jin.x3d",
+                           "2_x3d_hanim/web3d_pythonSAI/JoeKick.x3d"}) {
+    if (!fs::exists(data / file)) continue;
+    SCOPED_TRACE(file);
+    Character recorded = load_character((data / file).string());
+    ASSERT_FALSE(recorded.motions.empty());
+    const Motion& motion = recorded.motions[0];
+    Retarget retarget = make_retarget(motion, jin);
+    EXPECT_TRUE(retarget.fits);
+    for (int i = 0; i <= 8; i++) {
+      Pose pose = make_rest_pose(jin);
+      apply_motion(motion, retarget, jin, double(motion.duration) * i / 8, false, 1, pose);
+      for (quat q : pose.rotations) EXPECT_NEAR(glm::length(q), 1, 1e-3f);
+      // Whatever the recording does, the hips keep their distance to a floor under them.
+      EXPECT_GT(eval_joint_frame(jin, pose, 0).center.y, 0.2f);
+      EXPECT_LT(eval_joint_frame(jin, pose, 0).center.y, 1.6f);
+    }
+  }
+  Character walk = load_character((data / "4_bvh/assimp/01_01.bvh").string());
+  EXPECT_NEAR(walk.motions[0].duration, 22.9f, 0.1f);
+  EXPECT_GE(find_joint(walk, "l_carpometacarpal_1"), 0) << "LThumb";
 }
 
 TEST(Corpus, StandardSkeletonsHaveTheirLevelOfArticulation) {
