@@ -129,7 +129,8 @@ std::string describe_json(const Character& character) {
   all["skin"] = {{"vertices", character.positions.size()},
                  {"triangles", triangle_count(character)},
                  {"parts", character.parts.size()},
-                 {"most_joints_a_vertex", most_weights(character)}};
+                 {"most_joints_a_vertex", most_weights(character)},
+                 {"skinning", character.skinning == Skinning::linear ? "linear" : "dual_quaternion"}};
   all["looks"] = json::array();
   for (const Look& look : character.looks)
     all["looks"].push_back({{"name", look.name}, {"texture", look.texture}});

@@ -227,6 +227,10 @@ void read_gltf_joints(GltfFigure& figure) {
   for (size_t s = 0; s < skins.size(); s++) {
     SkinBind skin{{}, read_binds(figure, s)};
     for (const json& joint : skins[s]["joints"]) skin.nodes.push_back(joint.get<size_t>());
+    const json* extras = gltf::find(skins[s], "extras");
+    if (extras && extras->is_object())
+      if (const json* wish = gltf::find(*extras, "skinning"); wish && *wish == "dual_quaternion")
+        character.skinning = Skinning::dual_quaternion;
     if (gltf::find(skins[s], "inverseBindMatrices") && skin.nodes.size() > main.nodes.size())
       main = std::move(skin);
   }

@@ -75,6 +75,30 @@ void make_folds(const Character& character, SkinFolds& folds) {
     folds.rest_normal[g] = eval_fold_normal(folds, g, character.positions);
 }
 
+bool is_rigid(const mat4& m) {
+  mat3 off = glm::transpose(mat3(m)) * mat3(m) - mat3(1);
+  float most = 0;
+  for (int c = 0; c < 3; c++)
+    for (int r = 0; r < 3; r++) most = std::max(most, std::abs(off[c][r]));
+  return most < 1e-5f && glm::determinant(mat3(m)) > 0;
+}
+
+// Joints as dual quaternions. A rigid placement goes into them; the rest of it, `after`, is left to
+// be done to the blended vertex.
+void split_joints(const mat4& placement, SkinScratch& scratch, mat4& after) {
+  bool rigid = is_rigid(placement);
+  after = rigid ? mat4(1) : placement;
+  scratch.rigid.resize(scratch.joints.size());
+  scratch.stretches.clear();
+  for (size_t j = 0; j < scratch.joints.size(); j++) {
+    RigidPart part = split_matrix(rigid ? placement * scratch.joints[j] : scratch.joints[j]);
+    scratch.rigid[j] = part.rigid;
+    if (part.stretch == mat3(1)) continue;
+    if (scratch.stretches.empty()) scratch.stretches.assign(scratch.joints.size(), mat3(1));
+    scratch.stretches[j] = part.stretch;
+  }
+}
+
 }  // namespace
 
 vec3 eval_fold_normal(const SkinFolds& folds, uint32_t group, const std::vector<vec3>& positions) {
@@ -134,15 +158,33 @@ void skin(const Character& character, const Pose& pose, const mat4& placement, S
   for (size_t j = 0; j < scratch.joints.size(); j++)
     scratch.rows[j] = glm::mat3x4(glm::transpose(placement * scratch.joints[j]));
   const glm::mat3x4* joint_rows = scratch.rows.data();
+  bool dual = character.skinning == Skinning::dual_quaternion;
+  mat4 after(1);
+  if (dual) split_joints(placement, scratch, after);
+  bool finish = dual && after != mat4(1);
+  glm::mat4 after_rows = glm::transpose(after);
   bool mirrored = glm::determinant(mat3(placement)) < 0;
   positions.resize(count);
   normals.resize(count);
   parallel_ranges(int(count), 2048, [&](int begin, int end) {
     for (int i = begin; i < end; i++) {
       size_t v = size_t(i);
+      const JointWeight* begin_weight = character.weights.data() + character.first_weight[v];
+      const JointWeight* end_weight = character.weights.data() + character.first_weight[v + 1];
       glm::mat3x4 m(0);
-      for (uint32_t k = character.first_weight[v]; k < character.first_weight[v + 1]; k++)
-        m += joint_rows[character.weights[k].joint] * character.weights[k].weight;
+      if (!dual || end_weight - begin_weight == 1) {
+        for (const JointWeight* w = begin_weight; w != end_weight; w++)
+          m += joint_rows[w->joint] * w->weight;
+      } else {
+        m = blend_dual_quaternions(begin_weight, end_weight, scratch.rigid, scratch.stretches);
+        if (finish) {
+          glm::mat3x4 bent = m;
+          for (int r = 0; r < 3; r++) {
+            vec4 row = after_rows[r];
+            m[r] = row.x * bent[0] + row.y * bent[1] + row.z * bent[2] + vec4(0, 0, 0, row.w);
+          }
+        }
+      }
       vec4 p((*rest)[v], 1);
       positions[v] = {dot(m[0], p), dot(m[1], p), dot(m[2], p)};
       // Normals follow by the cofactors of the blended matrix: right for any blend and any scale.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moves the vertices: displacers, then linear blend skinning; normals follow. All cores, no
-// allocation after the first call. Called once a tick.
+// Moves the vertices: displacers, then joints, blended as Character::skinning says; normals follow. All
+// cores, no allocation after the first call. Called once a tick.
 #pragma once
 #include <vector>
 
 #include "avatar/pose.h"
+#include "avatar/skin_dual.h"
 
 namespace wellspring {
 
@@ -25,6 +26,8 @@ struct SkinFolds {
 struct SkinScratch {
   std::vector<mat4> joints;       // after skin(): eval_joints() of the pose
   std::vector<glm::mat3x4> rows;  // the same in the world, first three rows of each
+  std::vector<DualQuaternion> rigid;  // for dual quaternions: each joint's turn and way ...
+  std::vector<mat3> stretches;        // ... and what it stretches; empty: nothing
   std::vector<vec3> displaced, displaced_normals;
   SkinFolds folds;
 };

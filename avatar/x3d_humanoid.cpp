@@ -247,6 +247,10 @@ Character character_from_x3d(X3dFile& file) {
   reader.read_skin(humanoid);
 
   read_x3d_motions(reader, humanoid);
+  for (const X3dNode& data : file.nodes)
+    if (data.type == "MetadataString" && string_of(data, "name") == "skinning" &&
+        string_of(data, "value") == "dual_quaternion")
+      character.skinning = Skinning::dual_quaternion;
   std::vector<std::string_view> names;
   for (const Joint& joint : character.joints) names.push_back(joint.name);
   character.loa = level_of_articulation(names);

@@ -20,7 +20,7 @@ namespace {
 struct Options {
   std::string file, out, size = "720x1080";
   std::vector<std::string> displacers;
-  std::string gesture, motion;
+  std::string gesture, motion, skinning;
   std::vector<float> guest;
   bool info = false, json = false, close = false, rest = false, calm = false;
   double time = 0;
@@ -99,6 +99,9 @@ int run(const Options& options) {
   shot.spp = options.spp;
 
   Character character = load_character(options.file);
+  if (!options.skinning.empty())
+    character.skinning =
+        options.skinning == "linear" ? Skinning::linear : Skinning::dual_quaternion;
   if (options.json) std::cout << describe_json(character);
   else if (options.info || options.out.empty()) std::cout << describe_text(character);
   if (options.out.empty()) return 0;
@@ -141,6 +144,8 @@ int main(int argc, char** argv) {
   app.add_option("--motion", options.motion,
                  "shows a motion at --time instead: one of the figure's own by name, or a file\n"
                  "(.bvh, .vrma, .glb, .x3d; FILE#NAME for one of several)");
+  app.add_option("--skinning", options.skinning, "how joints bend the skin; without it as the file says")
+      ->check(CLI::IsMember({"linear", "dual_quaternion"}));
   app.add_option("--out", options.out, "picture to write: .png .jpg .pfm .exr");
   app.add_option("--time", options.time, "seconds it has stood there");
   app.add_option("--size", options.size, "WIDTHxHEIGHT of the picture");

@@ -118,10 +118,16 @@ void read_storyteller(Exhibit& exhibit, Fields fields, std::vector<Problem>& pro
     if (!place.farewells.contains(lang))
       fields.problem("farewells", "has nothing in '" + lang + "'", false);
   }
+  std::string skinning = fields.text("skinning", false);
+  if (!skinning.empty() && skinning != "linear" && skinning != "dual_quaternion")
+    fields.problem("skinning", "is 'linear' or 'dual_quaternion'; without it the figure's file says");
   std::string path = package_file(fields, "figure", exhibit.folder, place.figure);
   if (!path.empty()) {
     try {
       exhibit.character = load_character(path);
+      if (skinning == "linear") exhibit.character->skinning = Skinning::linear;
+      if (skinning == "dual_quaternion")
+        exhibit.character->skinning = Skinning::dual_quaternion;
       for (const std::string& warning : exhibit.character->warnings)
         problems.push_back({path, "", warning, false});
     } catch (const LoadError& error) {
