@@ -29,6 +29,7 @@ struct StoryLine {
   std::vector<SpeechStyle> styles;  // in its bytes
   std::vector<StoryMark> marks;     // in order of `at`
   float pause = 0;                  // seconds of silence after it, besides the breath
+  std::string file;                 // and the place in it, for messages
   MarkupPlace place;
 };
 

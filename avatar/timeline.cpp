@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "avatar/gesture_library.h"
 #include "avatar/speech_text.h"
 
 namespace wellspring {
@@ -22,15 +23,26 @@ double word_time(const StoryLine& line, const Speech* speech, double seconds, ui
 
 ActionEvent event_of(const StoryMark& mark) { return {mark.kind, mark.name, mark.weight, 0}; }
 
+// How long before its word a mark begins, so that what it starts is there with the word.
+double lead_of(const StoryMark& mark) {
+  switch (mark.kind) {
+    case StoryMarkKind::gesture: {
+      int clip = find_gesture(mark.name);
+      return clip >= 0 ? double(default_gestures().clips[size_t(clip)].stroke) : 0;
+    }
+    case StoryMarkKind::point: return point_lead;
+    case StoryMarkKind::look: return look_lead;
+    default: return 0;
+  }
+}
+
 }  // namespace
 
 Timeline make_timeline(const StoryLine& line, const Speech* speech, double seconds) {
   Timeline timeline;
   for (const StoryMark& mark : line.marks) {
     TimelineAction action{word_time(line, speech, seconds, mark.at), event_of(mark)};
-    bool early = mark.kind == StoryMarkKind::gesture || mark.kind == StoryMarkKind::point;
-    double lead = early ? gesture_lead : mark.kind == StoryMarkKind::look ? look_lead : 0;
-    double begin = std::max(action.time - lead, earliest_action);
+    double begin = std::max(action.time - lead_of(mark), earliest_action);
     action.event.lead = float(action.time - begin);
     action.time = begin;
     timeline.actions.push_back(std::move(action));

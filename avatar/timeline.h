@@ -29,8 +29,8 @@ struct Timeline {
   std::vector<TimelineAction> actions;  // in order of time
 };
 
-// Hands need a moment to come up: their stroke is to meet the word.
-inline constexpr double gesture_lead = 0.35, look_lead = 0.25, earliest_action = -0.2;
+// Hands and eyes need a moment: the stroke of a gesture is to meet the word (its clip says when that is).
+inline constexpr double point_lead = 0.5, look_lead = 0.25, earliest_action = -0.2;
 
 // `speech` gives the times of words; without one, `seconds` are shared out by characters.
 Timeline make_timeline(const StoryLine& line, const Speech* speech, double seconds);

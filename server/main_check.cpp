@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // wellspring check content/ID: lists every problem of an exhibit package with file and place.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 
 #include "base/log.h"
 #include "show/exhibit_load.h"
+#include "show/tour.h"
 
 int main(int argc, char** argv) {
   wellspring::log::start("check");
@@ -19,7 +21,12 @@ int main(int argc, char** argv) {
   std::vector<wellspring::Problem> problems;
   int fatal = 0;
   try {
-    wellspring::read_exhibit(folder, problems);
+    wellspring::Exhibit exhibit = wellspring::read_exhibit(folder, problems);
+    bool usable = std::none_of(problems.begin(), problems.end(), [](const auto& p) { return p.fatal; });
+    if (usable && !exhibit.tours.empty()) {
+      wellspring::World world(exhibit.scene);
+      wellspring::make_tour_roads(exhibit, world, problems);
+    }
   } catch (const std::exception& error) {
     problems.push_back({folder, "", error.what(), true});
   }

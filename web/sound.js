@@ -34,7 +34,7 @@ export function make_delay(most = 31) {
 // (kiosks whose browser allows it). label(name): the words of this page.
 export function make_sound(button, { on_wanted, label, eager = false }) {
   let muted = localStorage.getItem('wellspring.sound') === 'off', wanted = null;
-  let context = null, loud = null, panner = null, mouth = null, state = null;
+  let context = null, loud = null, panner = null, mouth = null, everywhere = false, state = null;
   let current = null, ended = 0;  // utterance: {number, at, sources}
   const delay = make_delay();
 
@@ -70,6 +70,11 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
   }
 
   function place() {
+    if (context && everywhere) {  // a narrator: no direction, no distance
+      loud.gain.setTargetAtTime(1, context.currentTime, 0.06);
+      [panner.positionX, panner.positionY, panner.positionZ].forEach((axis, i) => axis.setTargetAtTime(i === 2 ? -1 : 0, context.currentTime, 0.06));
+      return;
+    }
     if (!context || !mouth || !state) return;
     const at = in_front_of(state, mouth), distance = Math.hypot(...at), now = context.currentTime;
     loud.gain.setTargetAtTime(loudness(distance), now, 0.06);
@@ -91,6 +96,7 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
       current = { number: sound.utterance, at: null, sources: new Set() };
     }
     mouth = sound.mouth;
+    everywhere = sound.everywhere;
     place();
     const due = context_time(sound.time_us / 1000 + (delay.value() ?? performance.now() - sound.time_us / 1000));
     const joined = current.at !== null && Math.abs(due - current.at) < slip;

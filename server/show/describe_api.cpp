@@ -72,7 +72,7 @@ std::string describe_api() {
       {"offset": 8, "type": "u32", "name": "first sample of this piece within the utterance"},
       {"offset": 12, "type": "u64", "name": "server time in microseconds at which that sample is to sound: with the picture of that time"},
       {"offset": 20, "type": "u32", "name": "samples of the whole utterance"}, {"offset": 24, "type": "u8", "name": "channels: 1"},
-      {"offset": 25, "type": "u8", "name": "flags: 0"}, {"offset": 26, "type": "u16", "name": "header length, 56 or more"},
+      {"offset": 25, "type": "u8", "name": "flags: 1 heard the same everywhere"}, {"offset": 26, "type": "u16", "name": "header length, 56 or more"},
       {"offset": 28, "type": "u32", "name": "samples a second"}, {"offset": 32, "type": "3 x f64", "name": "world position of the mouth, m"}],
       "payload": "16-bit samples, in order; pieces come about a second before they are due"}},
   "eye_to_server": {

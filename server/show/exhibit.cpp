@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/exhibit.h"
 
+#include <algorithm>
+
 namespace wellspring {
 
 namespace {
@@ -28,17 +30,40 @@ std::string tag_in(const LocalText& text, const std::string& lang, const std::ve
   return found ? found->first : "";
 }
 
-const std::vector<std::string>& lines_in(const LocalLines& lines, const std::string& lang,
-                                         const std::vector<std::string>& languages) {
-  static const std::vector<std::string> none;
-  const auto* found = entry_in(lines, lang, languages);
-  return found ? found->second : none;
+const LocalLine::value_type* line_in(const LocalLine& line, const std::string& lang,
+                                     const std::vector<std::string>& languages) {
+  return entry_in(line, lang, languages);
+}
+
+LocalLine plain_line(const LocalText& text) {
+  LocalLine line;
+  for (const auto& [lang, words] : text) line[lang].text = words;
+  return line;
+}
+
+LocalLine line_at(const LocalScript& script, size_t index) {
+  LocalLine line;
+  for (const auto& [lang, lines] : script)
+    if (index < lines.size()) line[lang] = lines[index];
+  return line;
+}
+
+size_t line_count(const LocalScript& script) {
+  size_t count = 0;
+  for (const auto& [lang, lines] : script) count = std::max(count, lines.size());
+  return count;
 }
 
 int find_viewpoint(const Exhibit& exhibit, std::string_view name) {
   for (size_t i = 0; i < exhibit.viewpoints.size(); i++)
     if (exhibit.viewpoints[i].view.name == name) return int(i);
   return -1;
+}
+
+const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id) {
+  for (const PointOfInterest& point : exhibit.points)
+    if (point.id == id) return &point;
+  return nullptr;
 }
 
 }  // namespace wellspring

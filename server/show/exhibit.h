@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "avatar/character.h"
+#include "avatar/story_script.h"
 #include "world/scene.h"
 
 namespace wellspring {
 
 using LocalText = std::map<std::string, std::string>;                // language tag -> text
-using LocalLines = std::map<std::string, std::vector<std::string>>;  // language tag -> sentences
+using LocalLine = std::map<std::string, StoryLine>;                 // language tag -> a sentence
+using LocalScript = std::map<std::string, std::vector<StoryLine>>;  // language tag -> sentences
 
 // The text in `lang`, else in its base language ("de" for "de-AT"), else in the first of `languages`
 // that has one, else any; "" when there is none at all.
@@ -21,8 +23,13 @@ const std::string& text_in(const LocalText& text, const std::string& lang,
                            const std::vector<std::string>& languages);
 // The language tag of the text that text_in gives; "" when there is none.
 std::string tag_in(const LocalText& text, const std::string& lang, const std::vector<std::string>& languages);
-const std::vector<std::string>& lines_in(const LocalLines& lines, const std::string& lang,
-                                         const std::vector<std::string>& languages);
+// The same of a line; null when there is none.
+const LocalLine::value_type* line_in(const LocalLine& line, const std::string& lang,
+                                     const std::vector<std::string>& languages);
+LocalLine plain_line(const LocalText& text);
+// Sentence `index` of every language that has one.
+LocalLine line_at(const LocalScript& script, size_t index);
+size_t line_count(const LocalScript& script);  // of the longest language
 
 struct ExhibitViewpoint {
   Viewpoint view;
@@ -30,9 +37,10 @@ struct ExhibitViewpoint {
 };
 
 struct TourStop {
-  int viewpoint = 0;  // index into Exhibit::viewpoints
-  float travel_seconds = 5, stay_seconds = 6;
-  LocalText text;
+  int viewpoint = 0;         // index into Exhibit::viewpoints
+  float travel_seconds = 0;  // the way there takes at least this long
+  float stay_seconds = 1.5;  // and the stay, and as long as its text takes
+  LocalScript way_text, text;  // told on the way, and there
 };
 struct TourPlan {
   std::string id;
@@ -43,7 +51,14 @@ struct TourPlan {
 struct StoryText {
   std::string id;
   LocalText title;
-  LocalLines text;
+  LocalScript text;
+};
+
+// A voice of the synthesiser.
+struct VoiceManner {
+  int words_per_minute = 155;  // 80 to 450
+  int pitch = 45;              // 0 to 100
+  std::string variant;         // "f3", "m2", ...; empty: the language's own
 };
 
 // How visitors may move. Without one they fly freely.
@@ -59,13 +74,15 @@ struct StorytellerPlace {
   LocalText name;
   dvec3 position{0};  // of the feet
   float yaw = 0;      // as Viewpoint: 0 faces -Z
-  LocalLines greetings, farewells;
+  LocalScript greetings, farewells;  // a line each
+  VoiceManner voice;
   int kiosk_viewpoint = 0;
 };
 
 struct PointOfInterest {
   std::string id, node;
   uint32_t object = 0;  // index into Scene::objects
+  dvec3 place{0};       // its middle, where one looks or points; absolute
   LocalText title;
 };
 
@@ -86,5 +103,6 @@ struct Exhibit {
 };
 
 int find_viewpoint(const Exhibit& exhibit, std::string_view name);  // -1: none
+const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id);
 
 }  // namespace wellspring

@@ -9,7 +9,9 @@
 #include "avatar/character_load.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "show/exhibit_story.h"
 #include "show/json_fields.h"
+#include "show/package_file.h"
 #include "wire/json.h"
 #include "world/scene_load.h"
 #include "world/sky.h"
@@ -35,32 +37,6 @@ bool is_identifier(const std::string& id) {
   return !id.empty() && id.size() <= 100 && std::all_of(id.begin(), id.end(), [](unsigned char c) {
     return std::isalnum(c) || c == '-' || c == '_' || c == '.';
   });
-}
-
-// A file of the package: inside its folder and there. Empty when not, with the problem noted.
-std::string package_file(Fields& fields, const char* field, const std::string& folder,
-                         const std::string& name) {
-  if (name.empty()) return "";
-  fs::path relative(name);
-  bool escapes = relative.is_absolute() ||
-                 std::any_of(relative.begin(), relative.end(), [](const fs::path& p) { return p == ".."; });
-  if (escapes) {
-    fields.problem(field, "'" + name + "' leaves the package's folder");
-    return "";
-  }
-  std::error_code ec;
-  fs::path path = fs::path(folder) / relative;
-  fs::path real = fs::weakly_canonical(path, ec), root = fs::weakly_canonical(folder, ec);
-  auto mismatch = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
-  if (ec || mismatch.first != root.end()) {
-    fields.problem(field, "'" + name + "' leaves the package's folder");
-    return "";
-  }
-  if (!fs::is_regular_file(path, ec)) {
-    fields.problem(field, "there is no file '" + name + "' in the package");
-    return "";
-  }
-  return path.string();
 }
 
 void read_walk(Exhibit& exhibit, Fields fields) {
@@ -109,8 +85,9 @@ void read_storyteller(Exhibit& exhibit, Fields fields, std::vector<Problem>& pro
   place.name = fields.local_text("name", false);
   place.position = fields.triple("position", true);
   place.yaw = float(fields.number("yaw_deg", false, 0, -720, 720) * degree);
-  place.greetings = fields.local_lines("greetings", false);
-  place.farewells = fields.local_lines("farewells", false);
+  place.greetings = read_script(exhibit, fields, "greetings", false, false, problems);
+  place.farewells = read_script(exhibit, fields, "farewells", false, false, problems);
+  place.voice = read_manner(fields, "voice", {});
   place.kiosk_viewpoint = read_viewpoint_name(exhibit, fields, "kiosk_viewpoint", false);
   for (const std::string& lang : exhibit.languages) {
     if (!place.greetings.contains(lang))
@@ -138,7 +115,7 @@ void read_storyteller(Exhibit& exhibit, Fields fields, std::vector<Problem>& pro
   exhibit.storyteller = std::move(place);
 }
 
-void read_tours_and_stories(Exhibit& exhibit, Fields& root) {
+void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
   root.objects("tours", false, [&](Fields fields) {
     TourPlan tour;
     tour.id = fields.text("id", true);
@@ -146,9 +123,10 @@ void read_tours_and_stories(Exhibit& exhibit, Fields& root) {
     fields.objects("stops", true, [&](Fields stop_fields) {
       TourStop stop;
       stop.viewpoint = read_viewpoint_name(exhibit, stop_fields, "viewpoint", true);
-      stop.travel_seconds = float(stop_fields.number("travel_seconds", false, 5, 0, 600));
-      stop.stay_seconds = float(stop_fields.number("stay_seconds", false, 6, 0, 3600));
-      stop.text = stop_fields.local_text("text", false);
+      stop.text = read_script(exhibit, stop_fields, "text", false, true, problems);
+      stop.way_text = read_script(exhibit, stop_fields, "way_text", false, true, problems);
+      stop.travel_seconds = float(stop_fields.number("travel_seconds", false, 0, 0, 600));
+      stop.stay_seconds = float(stop_fields.number("stay_seconds", false, stop.text.empty() ? 6 : 1.5, 0, 3600));
       stop_fields.finish();
       tour.stops.push_back(std::move(stop));
     });
@@ -160,7 +138,7 @@ void read_tours_and_stories(Exhibit& exhibit, Fields& root) {
     StoryText story;
     story.id = fields.text("id", true);
     story.title = fields.local_text("title", false);
-    story.text = fields.local_lines("text", true);
+    story.text = read_script(exhibit, fields, "text", true, false, problems);
     fields.finish();
     exhibit.stories.push_back(std::move(story));
   });
@@ -205,6 +183,21 @@ void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) 
     root.problem("environment", "the scene has no light of any kind; it will be black", false);
 }
 
+// The middle of all that belongs to an object, relative to the scene's origin.
+vec3 object_middle(const Scene& scene, uint32_t object) {
+  Bounds bounds;
+  for (const Instance& instance : scene.instances) {
+    if (instance.object != object) continue;
+    for (vec3 position : scene.meshes[size_t(instance.mesh)].positions) {
+      vec3 p = vec3(instance.to_world * vec4(position, 1));
+      bounds.low = min(bounds.low, p);
+      bounds.high = max(bounds.high, p);
+    }
+  }
+  vec3 middle = 0.5f * (bounds.low + bounds.high);
+  return is_finite(middle) ? middle : vec3(0);
+}
+
 void read_points(Exhibit& exhibit, Fields& root) {
   root.members("objects", [&](const std::string& id, Fields fields) {
     PointOfInterest point;
@@ -217,6 +210,7 @@ void read_points(Exhibit& exhibit, Fields& root) {
       fields.problem("node", "the scene has no node '" + point.node + "'");
     else
       point.object = uint32_t(found - names.begin());
+    point.place = fields.triple("at", false, exhibit.scene.origin + dvec3(object_middle(exhibit.scene, point.object)));
     fields.finish();
     exhibit.points.push_back(std::move(point));
   });
@@ -273,8 +267,9 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
   exhibit.start = read_viewpoint_name(exhibit, root, "start", false);
   root.object("storyteller", false,
               [&](Fields fields) { read_storyteller(exhibit, std::move(fields), problems); });
-  read_tours_and_stories(exhibit, root);
+  read_tours_and_stories(exhibit, root, problems);
   read_points(exhibit, root);
+  check_marks(exhibit, problems);
   root.finish();
   return exhibit;
 }

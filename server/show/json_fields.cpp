@@ -11,6 +11,7 @@ using nlohmann::json;
 
 namespace {
 const json empty_object = json::object();
+}  // namespace
 
 bool is_language_tag(const std::string& tag) {
   if (tag.size() < 2 || tag.size() > 35) return false;
@@ -18,7 +19,6 @@ bool is_language_tag(const std::string& tag) {
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') return false;
   return true;
 }
-}  // namespace
 
 Fields::Fields(const json& object, std::string file, std::string where, std::vector<Problem>& problems)
     : object_(object.is_object() ? object : empty_object), file_(std::move(file)),
@@ -100,21 +100,10 @@ LocalText Fields::local_text(const char* name, bool required) {
   return result;
 }
 
-LocalLines Fields::local_lines(const char* name, bool required) {
-  LocalLines result;
-  const json* value = get(name, required, json::value_t::object, "lists of sentences by language");
-  if (!value) return result;
-  for (const auto& [tag, lines] : value->items()) {
-    std::string place = std::string(name) + "/" + tag;
-    if (!is_language_tag(tag)) problem(place, "is no language tag such as en");
-    else if (!lines.is_array() || lines.empty()) problem(place, "must be a list of sentences");
-    else
-      for (size_t i = 0; i < lines.size(); i++) {
-        if (lines[i].is_string()) result[tag].push_back(lines[i].get<std::string>());
-        else problem(place + "/" + std::to_string(i), "must be a text");
-      }
-  }
-  return result;
+const json* Fields::value(const char* name) {
+  read_.insert(name);
+  auto found = object_.find(name);
+  return found == object_.end() ? nullptr : &*found;
 }
 
 std::vector<std::string> Fields::texts(const char* name) {

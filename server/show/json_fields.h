@@ -10,6 +10,8 @@
 
 namespace wellspring {
 
+bool is_language_tag(const std::string& tag);
+
 // A JSON object and its place. Reading a missing optional field gives the default; a wrong one gives the
 // default and a fatal problem. finish() notes fields nobody read (a misspelt name) as not fatal.
 class Fields {
@@ -22,7 +24,6 @@ class Fields {
   dvec3 triple(const char* name, bool required, dvec3 otherwise = dvec3(0));
   // A text, or an object of texts by language tag.
   LocalText local_text(const char* name, bool required);
-  LocalLines local_lines(const char* name, bool required);
   std::vector<std::string> texts(const char* name);
   // Calls each(Fields) for every object in the array (or, for `members`, of the object: name, Fields).
   template <class Each>
@@ -42,6 +43,9 @@ class Fields {
     if (const nlohmann::json* found = get(name, required, nlohmann::json::value_t::object, "an object"))
       each(Fields(*found, file_, where_ + "/" + name, problems_));
   }
+  // The value of a field as it is, noted as read; null: it is not there.
+  const nlohmann::json* value(const char* name);
+  const std::string& where() const { return where_; }
   void problem(const std::string& name, const std::string& what, bool fatal = true);
   void finish();
 

@@ -73,7 +73,7 @@ std::string state_news(const Visitor& visitor, const Exhibit& exhibit) {
                {"viewpoint", nullptr},
                {"tour", nullptr}};
   if (visitor.viewpoint >= 0) news["viewpoint"] = exhibit.viewpoints[size_t(visitor.viewpoint)].view.name;
-  if (visitor.tour.state != TourRide::State::none)
+  if (visitor.tour.state != TourRide::State::none && visitor.tour.tour >= 0)
     news["tour"] = {{"id", exhibit.tours[size_t(visitor.tour.tour)].id},
                     {"state", tour_word(visitor.tour.state)},
                     {"stop", visitor.tour.stop}};
@@ -112,7 +112,7 @@ json mouth_news(const Show& show) {
   const Speech* speech = show.sounding.going ? heard(show.voice) : nullptr;
   if (!speech) return nullptr;
   double at = double(show.voice.elapsed + show.picture_lead);
-  VisemeWeights weights = eval_visemes(speech->visemes, at);
+  VisemeWeights weights = mouth_shape(show.voice, show.picture_lead);
   size_t strongest = size_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
   return {{"utterance", show.sounding.number},
           {"seconds", std::round(at * 1e3) / 1e3},

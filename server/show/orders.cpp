@@ -63,11 +63,13 @@ Answer obey_one(Show& show, Visitor& visitor, const Hello& hello) {
 Answer obey_one(Show&, Visitor& visitor, const Input& input) {
   visitor.seq = input.seq;
   visitor.move = input.move;
-  if (input.look != vec2(0)) {
+  if (input.look != vec2(0) && visitor.tour.state == TourRide::State::playing) {
+    look_round(visitor.tour, input.look);
+  } else if (input.look != vec2(0)) {
     visitor.view.yaw = std::remainder(visitor.view.yaw + input.look.x, 2 * pi);
     visitor.view.pitch = std::clamp(visitor.view.pitch + input.look.y, -steepest, steepest);
     visitor.viewpoint = -1;
-    if (visitor.tour.state == TourRide::State::playing) visitor.tour.state = TourRide::State::paused;
+    visitor.tour.pace = 0;  // a paused ride does not come to rest by itself any more
   }
   return {};
 }
@@ -81,7 +83,7 @@ Answer obey_one(Show& show, Visitor& visitor, const CameraTo& camera) {
   visitor.view.pitch = std::clamp(camera.pitch, -steepest, steepest);
   visitor.move = visitor.velocity = vec3(0);
   visitor.viewpoint = -1;
-  visitor.tour = TourRide{};
+  stop_tour(visitor.tour, visitor.narration.voice);
   return {};
 }
 
@@ -96,18 +98,18 @@ Answer obey_one(Show& show, Visitor& visitor, const ViewpointTo& to) {
 Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
   switch (order.action) {
     case TourAction::play: {
-      bool resume = order.name.empty() && visitor.tour.state == TourRide::State::paused;
+      bool resume = order.name.empty() && visitor.tour.state == TourRide::State::paused && visitor.tour.tour >= 0;
       int tour = resume ? visitor.tour.tour : find_tour(show.exhibit, order.name);
       if (tour < 0) return WireError{"unknown_tour", "there is no tour '" + order.name + "'"};
       visitor.move = visitor.velocity = vec3(0);
-      start_tour(visitor.tour, tour, visitor.view);
+      if (show.voice.asked_by == visitor.link->id) hush(show.voice);  // one voice at a time
+      start_tour(visitor.tour, visitor.narration.voice, tour, show.exhibit, show.roads, visitor.view);
       break;
     }
-    case TourAction::pause:
-      if (visitor.tour.state == TourRide::State::playing) visitor.tour.state = TourRide::State::paused;
-      break;
-    case TourAction::stop: visitor.tour = TourRide{}; break;
+    case TourAction::pause: pause_tour(visitor.tour, visitor.narration.voice); break;
+    case TourAction::stop: stop_tour(visitor.tour, visitor.narration.voice); break;
   }
+  visitor.state_sent_at = -1e9;
   return {};
 }
 
@@ -119,13 +121,14 @@ Answer obey_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
     const StoryText* story = find_story(show.exhibit, order.story);
     if (!story) return WireError{"unknown_story", "there is no story '" + order.story + "'"};
     tell(show.voice, *story);
+    pause_tour(visitor.tour, visitor.narration.voice);
     show.voice.asked_by = visitor.link->id;
     show.totals.stories++;
   }
   const StoryText* telling = find_story(show.exhibit, show.voice.story);
   uint64_t asked_by = show.voice.asked_by;
-  if (order.action == "pause") show.voice.paused = true;
-  else if (order.action == "play") show.voice.paused = false;
+  if (order.action == "pause") pause_voice(show.voice);
+  else if (order.action == "play") resume_voice(show.voice);
   else if (order.action == "stop") hush(show.voice);
   else if (order.action == "restart" && telling) tell(show.voice, *telling);
   else if (order.action == "skip" && telling) tell(show.voice, *telling, show.voice.sentence + 1);

@@ -58,6 +58,9 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
                 show->storyteller.placement, show->scratch);
     show->world->commit();
   }
+  std::vector<Problem> problems;
+  show->roads = make_tour_roads(show->exhibit, *show->world, problems);
+  if (!problems.empty()) throw ExhibitError(std::move(problems));
   show->lights = make_lights(*show->world);
   std::vector<vec3> places = places_of(show->exhibit);
   for (const Technique* technique : {show->technique, show->still_technique})

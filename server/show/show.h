@@ -59,6 +59,7 @@ struct Show {
   Voice voice;
   SpeechSource speech;  // empty: the storyteller speaks by subtitles
   Sounding sounding;
+  uint32_t utterances = 0;  // numbers of what is heard, the storyteller's and narrators' alike
   bool storyteller_visible = true, humanlike = true;
   size_t greetings = 0, farewells = 0;
   std::string kiosk_news;   // the last kiosk message, to send only changes
@@ -66,6 +67,7 @@ struct Show {
   double behaved_at = -1;  // when the storyteller was last moved
   Mood agent_mood = Mood::idle;
 
+  TourRoads roads;
   std::list<Visitor> visitors;
   std::vector<Eye> eyes;
   Audience audience;
@@ -78,7 +80,8 @@ struct Show {
   ShowTotals totals;
 };
 
-// Takes the exhibit over. Throws std::invalid_argument for an unknown technique.
+// Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a tour
+// that cannot be walked.
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
 
 // One step at time `now` (seconds, any clock that does not run backwards; steps longer than a second

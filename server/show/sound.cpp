@@ -20,46 +20,115 @@ SpeechSource make_speech_source(std::shared_ptr<Speaker> speaker) {
   return source;
 }
 
+namespace {
+
+SpeechRequest request_of(const StoryLine& line, const std::string& lang, const VoiceManner& manner) {
+  SpeechRequest request;
+  request.text = line.text;
+  request.lang = lang;
+  request.words_per_minute = manner.words_per_minute;
+  request.pitch = manner.pitch;
+  request.variant = manner.variant;
+  request.styles = line.styles;
+  return request;
+}
+
+VoiceManner manner_of(const Exhibit& exhibit) {
+  return exhibit.storyteller ? exhibit.storyteller->voice : VoiceManner{};
+}
+
+}  // namespace
+
 std::vector<SpeechRequest> lines_of(const Exhibit& exhibit) {
   std::vector<SpeechRequest> lines;
-  auto add = [&](const LocalLines& local) {
+  auto add = [&](const LocalScript& script, const VoiceManner& manner) {
     for (const std::string& lang : exhibit.languages)
-      if (auto found = local.find(lang); found != local.end())
-        for (const std::string& text : found->second) lines.push_back({.text = text, .lang = lang});
+      if (auto found = script.find(lang); found != script.end())
+        for (const StoryLine& line : found->second) lines.push_back(request_of(line, lang, manner));
   };
-  if (!exhibit.storyteller) return lines;
-  add(exhibit.storyteller->greetings);
-  for (const StoryText& story : exhibit.stories) add(story.text);
-  add(exhibit.storyteller->farewells);
+  if (exhibit.storyteller) {
+    add(exhibit.storyteller->greetings, exhibit.storyteller->voice);
+    for (const StoryText& story : exhibit.stories) add(story.text, exhibit.storyteller->voice);
+    add(exhibit.storyteller->farewells, exhibit.storyteller->voice);
+  }
+  for (const TourPlan& tour : exhibit.tours)
+    for (const TourStop& stop : tour.stops) {
+      add(stop.way_text, manner_of(exhibit));
+      add(stop.text, manner_of(exhibit));
+    }
   return lines;
 }
 
 namespace {
 
+constexpr uint8_t heard_everywhere = 1;  // flag of a sound packet
+
 bool listens(const Visitor& visitor) { return visitor.welcomed && visitor.sound; }
 
-SpeechRequest request_of(const Show& show, const LocalText& text) {
-  const std::vector<std::string>& languages = show.exhibit.languages;
-  std::string lang = spoken_language(show);
-  return {.text = text_in(text, lang, languages), .lang = tag_in(text, lang, languages)};
+// A voice, what is heard of it, and the language it speaks.
+struct Channel {
+  Voice& voice;
+  Sounding& sounding;
+  std::string lang;
+  bool anybody = false;  // listens
+};
+
+SpeechRequest request_of(const Show& show, const Channel& channel, const Utterance& utterance) {
+  const auto* line = line_in(utterance.line, channel.lang, show.exhibit.languages);
+  return request_of(line->second, line->first, manner_of(show.exhibit));
 }
 
-SpeechState ask_speech(Show& show, const Utterance& utterance) {
-  Sounding& sounding = show.sounding;
-  SpeechRequest request = request_of(show, utterance.text);
-  if (auto speech = show.speech.find(request)) return {speech, false};
-  if (std::none_of(show.visitors.begin(), show.visitors.end(), listens)) return {};
-  bool same = sounding.asked.text == request.text && sounding.asked.lang == request.lang;
-  if (!same || !sounding.answer.valid()) {
+SpeechState ask_speech(Show& show, Channel& channel, const Utterance& utterance) {
+  Sounding& sounding = channel.sounding;
+  SpeechRequest request = request_of(show, channel, utterance);
+  std::string lang = request.lang;
+  if (auto speech = show.speech.find(request)) return {speech, false, lang};
+  if (!channel.anybody) return {nullptr, false, lang};
+  if (sounding.asked != request || !sounding.answer.valid()) {
     sounding.answer = show.speech.speak(request);
     sounding.asked = std::move(request);
   }
-  if (!is_ready(sounding.answer)) return {nullptr, true};
+  if (!is_ready(sounding.answer)) return {nullptr, true, lang};
   SpeechAnswer answer = sounding.answer.get();
   sounding.answer = {};
   if (!answer.speech && answer.error != sounding.last_error)
     log::warn("no voice, subtitles only: {}", sounding.last_error = answer.error);
-  return {answer.speech, false};
+  return {answer.speech, false, lang};
+}
+
+VoiceEvents advance_channel(Show& show, Channel channel, float dt) {
+  AskSpeech ask;
+  if (show.speech.find && show.speech.speak)
+    ask = [&](const Utterance& utterance) { return ask_speech(show, channel, utterance); };
+  else ask = [&](const Utterance&) { return SpeechState{nullptr, false, channel.lang}; };
+  VoiceEvents events = advance_voice(channel.voice, dt, ask);
+  if (events.ended) {  // heard to its end: nothing to stop
+    for (Visitor& visitor : show.visitors)
+      if (visitor.utterance == channel.sounding.number) visitor.utterance = 0;
+    channel.sounding.going = false;
+  }
+  if (events.begun) {
+    show.totals.utterances += events.begun->speech != nullptr;
+    // The next line, should it have been forgotten meanwhile.
+    if (show.speech.prepare && events.begun->speech && channel.voice.queue.size() > 1)
+      show.speech.prepare({request_of(show, channel, channel.voice.queue[1])});
+  }
+  return events;
+}
+
+// Whether something of the voice is heard now, under which number and since when.
+const Speech* update_sounding(Show& show, const Voice& voice, Sounding& sounding) {
+  const Speech* now = heard(voice);
+  if (!now || now != sounding.speech.get() || voice.cuts != sounding.cuts) sounding.going = false;
+  if (now && !sounding.going) {
+    sounding.number = ++show.utterances;
+    sounding.going = true;
+    sounding.cuts = voice.cuts;
+    sounding.speech = voice.queue.front().speech;
+    sounding.zero_us = show.time_us - uint64_t(std::llround(1e6 * double(voice.elapsed)));
+  }
+  if (!now) sounding.speech = nullptr;
+  return now;
 }
 
 void stop_sound(Visitor& visitor) {
@@ -69,11 +138,19 @@ void stop_sound(Visitor& visitor) {
   visitor.utterance = 0;
 }
 
-void send_pieces(Show& show, Visitor& visitor, dvec3 mouth) {
-  const Sounding& sounding = show.sounding;
+// What a visitor is to hear.
+struct Source {
+  const Voice* voice = nullptr;
+  const Sounding* sounding = nullptr;
+  dvec3 mouth{0};
+  bool everywhere = false;
+};
+
+void send_pieces(Show& show, Visitor& visitor, const Source& source) {
+  const Sounding& sounding = *source.sounding;
   const Speech& speech = *sounding.speech;
   const size_t piece = std::max(size_t(sound_piece * speech.rate), size_t(1));
-  const double due = (double(show.voice.elapsed) + sound_ahead) * speech.rate;
+  const double due = (double(source.voice->elapsed) + sound_ahead) * speech.rate;
   while (visitor.samples_sent < speech.pcm.size() && double(visitor.samples_sent) < due) {
     const size_t count = std::min(piece, speech.pcm.size() - visitor.samples_sent);
     SoundHeader header;
@@ -82,7 +159,8 @@ void send_pieces(Show& show, Visitor& visitor, dvec3 mouth) {
     header.time_us = sounding.zero_us + uint64_t(1e6 * double(header.start) / speech.rate);
     header.total = uint32_t(speech.pcm.size());
     header.rate = uint32_t(speech.rate);
-    header.mouth = mouth;
+    header.flags = source.everywhere ? heard_everywhere : 0;
+    header.mouth = source.mouth;
     auto packet = std::make_shared<Packet>(
         make_sound_packet(header, std::span(speech.pcm).subspan(header.start, count)));
     if (!visitor.link->send_sound(std::move(packet))) {
@@ -97,12 +175,13 @@ void send_pieces(Show& show, Visitor& visitor, dvec3 mouth) {
 }
 
 // A visitor begins to hear what is being said, from the present moment on.
-void start_sound(const Show& show, Visitor& visitor, dvec3 mouth) {
-  const Sounding& sounding = show.sounding;
-  double at = std::max(double(show.voice.elapsed), 0.0) * sounding.speech->rate;
+void start_sound(Visitor& visitor, const Source& source) {
+  const Sounding& sounding = *source.sounding;
+  double from = std::max({double(source.voice->elapsed), double(source.voice->silent_until), 0.0});
+  double at = std::round(from * sounding.speech->rate);
   visitor.utterance = sounding.number;
   visitor.samples_sent = std::min(size_t(at), sounding.speech->pcm.size());
-  visitor.link->send_text(speech_news(sounding.number, *sounding.speech, mouth));
+  visitor.link->send_text(speech_news(sounding.number, *sounding.speech, source.mouth));
 }
 
 }  // namespace
@@ -120,47 +199,33 @@ std::string spoken_language(const Show& show) {
 }
 
 VoiceEvents advance_speech(Show& show, float dt) {
-  AskSpeech ask;
-  if (show.speech.find && show.speech.speak)
-    ask = [&show](const Utterance& utterance) { return ask_speech(show, utterance); };
-  VoiceEvents events = advance_voice(show.voice, dt, ask);
-  Sounding& sounding = show.sounding;
-  if (events.ended) {  // heard to its end: nothing to stop
-    for (Visitor& visitor : show.visitors)
-      if (visitor.utterance == sounding.number) visitor.utterance = 0;
-    sounding.going = false;
-  }
-  if (events.begun) {
-    show.totals.utterances += events.begun->speech != nullptr;
-    // The next line, should it have been forgotten meanwhile.
-    if (show.speech.prepare && events.begun->speech && show.voice.queue.size() > 1)
-      show.speech.prepare({request_of(show, show.voice.queue[1].text)});
-  }
-  return events;
+  bool anybody = std::any_of(show.visitors.begin(), show.visitors.end(), listens);
+  return advance_channel(show, {show.voice, show.sounding, spoken_language(show), anybody}, dt);
+}
+
+VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt) {
+  Narration& narration = visitor.narration;
+  return advance_channel(show, {narration.voice, narration.sounding, visitor.lang, listens(visitor)}, dt);
 }
 
 void send_sounds(Show& show) {
-  Sounding& sounding = show.sounding;
-  const Speech* now = heard(show.voice);
-  if (!now || now != sounding.speech.get() || show.voice.cuts != sounding.cuts) sounding.going = false;
-  if (now && !sounding.going) {
-    sounding.number++;
-    sounding.going = true;
-    sounding.cuts = show.voice.cuts;
-    sounding.speech = show.voice.queue.front().speech;
-    sounding.zero_us = show.time_us - uint64_t(std::llround(1e6 * double(show.voice.elapsed)));
-  }
-  if (!now) sounding.speech = nullptr;
-  const bool anybody = now && std::any_of(show.visitors.begin(), show.visitors.end(), listens);
-  const dvec3 mouth = anybody ? dvec3(eval_mouth(show.mind, show.storyteller, show.pose)) +
-                                    show.exhibit.scene.origin
-                              : dvec3(0);
+  const Speech* told = update_sounding(show, show.voice, show.sounding);
+  const bool anybody = told && std::any_of(show.visitors.begin(), show.visitors.end(), listens);
+  Source teller{&show.voice, told ? &show.sounding : nullptr, dvec3(0), false};
+  if (anybody)
+    teller.mouth = dvec3(eval_mouth(show.mind, show.storyteller, show.pose)) + show.exhibit.scene.origin;
   for (Visitor& visitor : show.visitors) {
-    const bool hears = now && listens(visitor) && visitor.given_up != sounding.number;
-    if (!hears || visitor.utterance != sounding.number) stop_sound(visitor);
+    Source source = teller;
+    Narration& narration = visitor.narration;
+    const Speech* narrated = update_sounding(show, narration.voice, narration.sounding);
+    if (!narration.voice.queue.empty())
+      source = {&narration.voice, narrated ? &narration.sounding : nullptr, visitor.view.position, true};
+    const bool hears =
+        source.sounding && listens(visitor) && visitor.given_up != source.sounding->number;
+    if (!hears || visitor.utterance != source.sounding->number) stop_sound(visitor);
     if (!hears) continue;
-    if (visitor.utterance == 0) start_sound(show, visitor, mouth);
-    send_pieces(show, visitor, mouth);
+    if (visitor.utterance == 0) start_sound(visitor, source);
+    send_pieces(show, visitor, source);
   }
 }
 

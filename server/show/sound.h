@@ -3,7 +3,7 @@
 // is seen by all: that of whoever asked for the story, else the kiosk's, else the first listener's;
 // subtitles stay everybody's own. Sound is sent in short pieces a little ahead of its time, so that a
 // stop is heard at once and a visitor who comes later hears the rest. Nothing is made for those who do
-// not listen.
+// not listen. A visitor on a tour hears its narrator instead, and nobody else does.
 #pragma once
 #include <functional>
 #include <future>
@@ -43,7 +43,13 @@ struct Sounding {
 inline constexpr double sound_piece = 0.25;  // seconds of one packet
 inline constexpr double sound_ahead = 1.2;   // seconds sent before they are due
 
-// Everything the storyteller may say, greetings first.
+// Who says what to one visitor alone: the narrator of a tour.
+struct Narration {
+  Voice voice;
+  Sounding sounding;
+};
+
+// Everything the storyteller and the narrator may say, greetings first.
 std::vector<SpeechRequest> lines_of(const Exhibit& exhibit);
 
 // The language the storyteller speaks now.
@@ -51,6 +57,8 @@ std::string spoken_language(const Show& show);
 
 // advance_voice with the speech of the show, and what follows from it.
 VoiceEvents advance_speech(Show& show, float dt);
+struct Visitor;
+VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt);
 
 // Sends what is due to every visitor who listens, and stops what has been stopped. After orders and
 // advance_speech, once a tick.

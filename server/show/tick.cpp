@@ -8,6 +8,7 @@
 #include "show/orders.h"
 #include "show/picture.h"
 #include "show/show.h"
+#include "show/story_stage.h"
 #include "wire/json.h"
 
 namespace wellspring {
@@ -87,14 +88,48 @@ void broadcast(Show& show, const std::string& news) {
     if (visitor.welcomed) visitor.link->send_text(news);
 }
 
-void show_subtitle(Show& show, const Utterance* utterance) {
-  const Exhibit& exhibit = show.exhibit;
+void show_subtitle(const Exhibit& exhibit, Visitor& visitor, const Utterance* utterance, bool storyteller) {
+  std::string text, speaker;
+  if (const auto* line = utterance ? line_in(utterance->line, visitor.lang, exhibit.languages) : nullptr)
+    text = line->second.text;
+  if (exhibit.storyteller && storyteller)
+    speaker = text_in(exhibit.storyteller->name, visitor.lang, exhibit.languages);
+  visitor.link->send_text(subtitle_news(text, visitor.lang, speaker, utterance ? utterance->seconds : 0));
+}
+
+bool is_narrated(const Visitor& visitor) {
+  return !visitor.narration.voice.queue.empty() && !visitor.narration.voice.paused;
+}
+
+void show_subtitles(Show& show, const Utterance* utterance) {
+  for (Visitor& visitor : show.visitors)
+    if (visitor.welcomed && !is_narrated(visitor)) show_subtitle(show.exhibit, visitor, utterance, true);
+}
+
+// The camera of whoever asked for the story goes where its marks want it.
+void follow_story(Show& show, const VoiceEvents& events) {
+  for (const ActionEvent& act : events.acts) {
+    int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
+    if (viewpoint < 0) continue;
+    for (Visitor& visitor : show.visitors)
+      if (visitor.link->id == show.voice.asked_by && visitor.tour.tour < 0 && visitor.move == vec3(0))
+        glide_to(visitor.tour, viewpoint, visitor.view);
+  }
+}
+
+// Tours: their narrators speak, each to one visitor.
+void narrate(Show& show, float dt) {
   for (Visitor& visitor : show.visitors) {
-    if (!visitor.welcomed) continue;
-    std::string text, speaker;
-    if (utterance) text = text_in(utterance->text, visitor.lang, exhibit.languages);
-    if (exhibit.storyteller) speaker = text_in(exhibit.storyteller->name, visitor.lang, exhibit.languages);
-    visitor.link->send_text(subtitle_news(text, visitor.lang, speaker, utterance ? utterance->seconds : 0));
+    Narration& narration = visitor.narration;
+    if (!visitor.welcomed || narration.voice.queue.empty()) continue;
+    if (dt >= 1) narration.sounding.going = false;  // the show stood still while the sound went on
+    VoiceEvents said = advance_narration(show, visitor, dt);
+    if (said.begun) show_subtitle(show.exhibit, visitor, said.begun, false);
+    else if (said.fell_silent) show_subtitle(show.exhibit, visitor, nullptr, false);
+    for (const ActionEvent& act : said.acts) {
+      int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
+      if (viewpoint >= 0) glide_to(visitor.tour, viewpoint, visitor.view);
+    }
   }
 }
 
@@ -113,8 +148,9 @@ void behave_and_animate(Show& show, float dt) {
 
   if (dt >= 1) show.sounding.going = false;  // the show stood still while the sound went on
   VoiceEvents said = advance_speech(show, dt);
-  if (said.begun) show_subtitle(show, said.begun);
-  else if (said.fell_silent) show_subtitle(show, nullptr);
+  if (said.begun) show_subtitles(show, said.begun);
+  else if (said.fell_silent) show_subtitles(show, nullptr);
+  follow_story(show, said);
 
   StorytellerInput input;
   input.time = show.time;
@@ -124,9 +160,9 @@ void behave_and_animate(Show& show, float dt) {
   input.humanlike = show.humanlike;
   // The pose is made for the moment that its picture will carry.
   input.speaking = speaking(show.voice, show.picture_lead);
-  if (const Speech* speech = heard(show.voice))
-    input.visemes = eval_visemes(speech->visemes, double(show.voice.elapsed + show.picture_lead));
+  if (heard(show.voice)) input.visemes = mouth_shape(show.voice, show.picture_lead);
   input.telling = !show.voice.story.empty();
+  input.story = make_cue(show.exhibit, show.voice, said);
   for (const Visitor& visitor : show.visitors) {
     if (!visitor.welcomed || visitor.kiosk) continue;  // a kiosk page's eyes are its camera
     Guest guest;
@@ -145,7 +181,6 @@ void behave_and_animate(Show& show, float dt) {
     show.totals.farewells++;
     say(show.voice, nth_line(place.farewells, show.farewells++), true);
   }
-  send_sounds(show);
 
   bool news_due = show.time - show.agent_sent_at >= agent_interval || show.mind.mood != show.agent_mood;
   if (news_due) {
@@ -165,14 +200,6 @@ void send_state(Show& show, Visitor& visitor) {
   if (show.time - visitor.state_sent_at < interval) return;
   visitor.state_sent_at = show.time;
   visitor.link->send_text(state_news(visitor, show.exhibit));
-}
-
-void announce_stop(Show& show, Visitor& visitor, const TourStep& step) {
-  if (step.arrived < 0) return;
-  const TourStop& stop = show.exhibit.tours[size_t(visitor.tour.tour)].stops[size_t(step.arrived)];
-  const std::string& text = text_in(stop.text, visitor.lang, show.exhibit.languages);
-  visitor.state_sent_at = -1e9;
-  if (!text.empty()) visitor.link->send_text(subtitle_news(text, visitor.lang, "", stop.stay_seconds));
 }
 
 }  // namespace
@@ -195,11 +222,13 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     show.behaved_at = show.time;
     show.totals.animate_ms = float(1000 * (seconds_now() - began));
   }
+  narrate(show, dt);
+  send_sounds(show);
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
     TourStep step;
-    move_visitor(visitor, *show.world, show.exhibit, dt, step);
-    announce_stop(show, visitor, step);
+    move_visitor(visitor, *show.world, show.exhibit, show.roads, dt, step);
+    if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
     if (wants_picture(show, visitor)) make_picture(show, visitor, busy);
     send_state(show, visitor);
   }

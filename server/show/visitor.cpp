@@ -15,21 +15,25 @@ void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint) {
   visitor.view = exhibit.viewpoints[size_t(viewpoint)].view;
   visitor.viewpoint = viewpoint;
   visitor.move = visitor.velocity = vec3(0);
-  visitor.tour = TourRide{};
+  stop_tour(visitor.tour, visitor.narration.voice);
 }
 
-void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, float dt,
-                  TourStep& tour_step) {
+void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, const TourRoads& roads,
+                  float dt, TourStep& tour_step) {
   tour_step = TourStep{};
-  if (visitor.tour.state != TourRide::State::none) {
-    if (glm::length(visitor.move) > 0) {
-      visitor.tour.state = TourRide::State::paused;  // the visitor walks off: the tour waits
-    } else if (visitor.tour.state == TourRide::State::playing) {
-      tour_step = advance_tour(visitor.tour, exhibit, dt);
-      visitor.view = tour_step.view;
-      visitor.viewpoint = -1;
-      return;
-    }
+  TourRide& ride = visitor.tour;
+  if (glm::length(visitor.move) > 0) {  // the visitor walks off: the tour waits
+    pause_tour(ride, visitor.narration.voice);
+    ride.pace = 0;
+  }
+  bool rides = ride.state == TourRide::State::playing ||
+               (ride.state == TourRide::State::paused && ride.pace > 0);
+  if (rides) {
+    tour_step = advance_tour(ride, visitor.narration.voice, exhibit, roads, dt);
+    visitor.view = tour_step.view;
+    visitor.viewpoint = -1;
+    if (tour_step.finished) stop_tour(ride, visitor.narration.voice);
+    return;
   }
   visitor.velocity += (visitor.move - visitor.velocity) * (1 - std::exp(-dt / ease_seconds));
   if (visitor.move == vec3(0) && glm::length(visitor.velocity) < 0.01f) visitor.velocity = vec3(0);

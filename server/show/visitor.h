@@ -9,6 +9,7 @@
 #include "cache/cache.h"
 #include "frame/tonemap.h"
 #include "show/flow.h"
+#include "show/sound.h"
 #include "show/tour.h"
 #include "wire/link.h"
 #include "wire/messages.h"
@@ -41,6 +42,7 @@ struct Visitor {
   uint32_t utterance = 0;      // 0: none
   uint32_t given_up = 0;       // the utterance that was too much for its connection
   size_t samples_sent = 0;
+  Narration narration;         // of the tour
   // Place.
   Viewpoint view;
   vec3 move{0};      // as last asked for: right, up, forward
@@ -70,7 +72,8 @@ struct Visitor {
 
 
 // Moves a visitor by `dt`: tour, or walking by its own input.
-void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, float dt, TourStep& tour_step);
+void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, const TourRoads& roads,
+                  float dt, TourStep& tour_step);
 void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint);
 
 }  // namespace wellspring

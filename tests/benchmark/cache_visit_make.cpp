@@ -58,7 +58,7 @@ VisitTrace walk_through(const char* name, const char* about, const Exhibit& exhi
   return record(name, about, seconds, from, [&](double time, Viewpoint& view) {
     TourStep tour;
     intend(time, visitor);
-    move_visitor(visitor, world, exhibit, time == 0 ? 0 : 1.0f / rate, tour);
+    move_visitor(visitor, world, exhibit, TourRoads{}, time == 0 ? 0 : 1.0f / rate, tour);
     view = visitor.view;
   });
 }
@@ -120,14 +120,17 @@ VisitTrace make_orbit(const Exhibit& castle) {
                 });
 }
 
-VisitTrace make_tour(const Exhibit& castle) {
+VisitTrace make_tour(const Exhibit& castle, const World& world) {
+  std::vector<Problem> problems;
+  TourRoads roads = make_tour_roads(castle, world, problems);
   TourRide ride;
-  start_tour(ride, 0, viewpoint(castle, "paintings"));
-  ride.stop = 2;
+  Voice narration;
+  Viewpoint from = viewpoint(castle, "paintings");
+  glide_to(ride, find_viewpoint(castle, "crown"), from);
   return record("tour", "the guided tour from the paintings to the crown, and a rest there", 7.5,
-                ride.from, [&](double time, Viewpoint& view) {
+                from, [&](double time, Viewpoint& view) {
                   float before = view.yaw;
-                  view = advance_tour(ride, castle, time == 0 ? 0 : 1.0f / rate).view;
+                  view = advance_tour(ride, narration, castle, roads, time == 0 ? 0 : 1.0f / rate).view;
                   view.yaw = before + std::remainder(view.yaw - before, 2 * pi);
                 });
 }
@@ -151,7 +154,7 @@ VisitTrace make_lamps(const Exhibit& castle) {
 void make_visit_traces(const Exhibit& castle, const World& world, const std::string& folder) {
   for (const VisitTrace& trace :
        {make_stroll(castle, world), make_turn(castle), make_approach(castle, world),
-        make_door(castle, world), make_orbit(castle), make_tour(castle), make_storyteller(castle),
+        make_door(castle, world), make_orbit(castle), make_tour(castle, world), make_storyteller(castle),
         make_lamps(castle)})
     save_visit_trace(trace, folder);
 }

@@ -2,6 +2,7 @@
 // Marks at the times of their words, and subtitles in and out.
 #include <gtest/gtest.h>
 
+#include "avatar/gesture_library.h"
 #include "avatar/speech_process.h"
 #include "avatar/subtitle.h"
 #include "avatar/timeline.h"
@@ -26,7 +27,7 @@ double begin_of(const Speech& speech, const std::string& word) {
 }
 
 TEST(Timeline, MarksComeWithTheirWords) {
-  StoryLine line = read_story_line("<emotion name='joy'/>The old well keeps <gesture name='open_hand'/>every "
+  StoryLine line = read_story_line("<emotion name='joy'/>The old well keeps <gesture name='invite'/>every "
                                    "<emphasis>single</emphasis> voice.<look at='visitor'/>", "a").lines[0];
   Speech speech = speak({.text = line.text, .styles = line.styles});
   Timeline timeline = make_timeline(line, &speech, 0);
@@ -35,9 +36,10 @@ TEST(Timeline, MarksComeWithTheirWords) {
                                                         timeline.actions[2], timeline.actions[3]);
   EXPECT_EQ(emotion.event.kind, StoryMarkKind::emotion);
   EXPECT_NEAR(emotion.time, begin_of(speech, "The"), 1e-9);
-  EXPECT_EQ(gesture.event.name, "open_hand");
+  EXPECT_EQ(gesture.event.name, "invite");
   EXPECT_NEAR(gesture.time + double(gesture.event.lead), begin_of(speech, "every"), 1e-6);
-  EXPECT_NEAR(double(gesture.event.lead), gesture_lead, 1e-6);
+  float stroke = default_gestures().clips.at(size_t(find_gesture("invite"))).stroke;
+  EXPECT_NEAR(gesture.event.lead, std::min(double(stroke), begin_of(speech, "every") - earliest_action), 1e-6);
   EXPECT_EQ(beat.event.kind, StoryMarkKind::beat);
   EXPECT_NEAR(beat.time, begin_of(speech, "single"), 1e-9);
   EXPECT_NEAR(look.time + double(look.event.lead), speech.words.back().end, 1e-6);

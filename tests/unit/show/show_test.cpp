@@ -131,8 +131,9 @@ TEST_F(ShowTest, OrdersAreObeyedOrAnswered) {
   run(0.1);
   EXPECT_EQ(last("error")["code"], "unknown_viewpoint");
   EXPECT_EQ(show->visitors.front().seq, 3u);
+  say(R"({"type":"viewpoint","seq":5,"name":"door"})");
   say(R"({"type":"tour","action":"play","name":"round"})");
-  run(2.6);
+  run(0.6);
   EXPECT_EQ(last("subtitle")["text"], "Here");
   EXPECT_EQ(last("state")["tour"]["state"], "playing");
   say(R"({"type":"storyteller","story":"tale"})");

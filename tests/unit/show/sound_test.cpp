@@ -35,9 +35,9 @@ std::shared_ptr<const Speech> make_speech(const std::string& text, const std::st
 
 TEST(VoiceWithSpeech, LastsAsLongAsItsSpeechAndABreath) {
   Voice voice;
-  say(voice, {{"en", "Short."}}, false);
+  say(voice, plain_line({{"en", "Short."}}), false);
   auto speech = make_speech("Short.", "en", 3);
-  AskSpeech ask = [&](const Utterance&) { return SpeechState{speech, false}; };
+  AskSpeech ask = [&](const Utterance&) { return SpeechState{speech, false, "en"}; };
   ASSERT_TRUE(advance_voice(voice, 0.01f, ask).begun);
   EXPECT_EQ(heard(voice), speech.get());
   EXPECT_EQ(speaking(voice), 0) << "the breath before it";
@@ -57,12 +57,12 @@ TEST(VoiceWithSpeech, WaitsABoundedTimeThenTellsBySubtitles) {
   tell(voice, make_tiny_exhibit().stories[0]);
   bool there = false;
   auto speech = make_speech("Two.", "en", 1);
-  AskSpeech ask = [&](const Utterance&) { return there ? SpeechState{speech, false} : SpeechState{nullptr, true}; };
+  AskSpeech ask = [&](const Utterance&) { return there ? SpeechState{speech, false, "en"} : SpeechState{nullptr, true, "en"}; };
   float waited = 0;
   while (!advance_voice(voice, 0.05f, ask).begun && waited < 10) waited += 0.05f;
   EXPECT_NEAR(waited, longest_wait, 0.11f);
   EXPECT_EQ(heard(voice), nullptr);
-  EXPECT_FLOAT_EQ(voice.queue.front().seconds, speaking_seconds(voice.queue.front().text));
+  EXPECT_FLOAT_EQ(voice.queue.front().seconds, speaking_seconds(voice.queue.front().line));
   // The next line waits anew, and no longer than it must.
   while (voice.sentence == 0) advance_voice(voice, 0.05f, ask);
   EXPECT_FALSE(voice.started);
@@ -241,6 +241,127 @@ TEST_F(SoundTest, AListenerWhoDoesNotReadLosesTheWholeUtterance) {
   EXPECT_GE(peers[b].sounds.size(), 20u);
   Link::Out out;
   while (peers[a].link->take_out(out)) EXPECT_FALSE(out.binary && read_sound_packet(*out.packet));
+}
+
+// ---- what a story's marks do ----
+
+std::shared_ptr<const Speech> make_worded(const std::string& text, double seconds) {
+  auto speech = std::make_shared<Speech>(*make_speech(text, "en", seconds));
+  double begin = 0, each = seconds / 3;
+  for (uint32_t at = 0; at < text.size(); begin += each) {
+    uint32_t end = uint32_t(std::min(text.find(' ', at), text.size()));
+    speech->words.push_back({begin, begin + each, at, end});
+    at = end + 1;
+  }
+  return speech;
+}
+
+TEST(VoiceWithSpeech, ResumesWithTheWordThatWasBroken) {
+  Voice voice;
+  say(voice, plain_line({{"en", "one two three"}}), false);
+  auto speech = make_worded("one two three", 3);
+  AskSpeech ask = [&](const Utterance&) { return SpeechState{speech, false, "en"}; };
+  advance_voice(voice, 0.01f, ask);
+  while (voice.elapsed < 1.5f) advance_voice(voice, 0.01f, ask);
+  pause_voice(voice);
+  EXPECT_EQ(mouth_shape(voice)[size_t(Viseme::sil)], 1);
+  advance_voice(voice, 100, ask);
+  resume_voice(voice);
+  EXPECT_NEAR(voice.elapsed, 1 - speech_lead, 1e-5);
+  EXPECT_EQ(voice.silent_until, 1);
+  EXPECT_EQ(mouth_shape(voice)[size_t(Viseme::sil)], 1) << "nothing is heard yet";
+  EXPECT_LT(mouth_shape(voice, speech_lead + 0.05f)[size_t(Viseme::sil)], 0.5f);
+  resume_voice(voice);
+  EXPECT_NEAR(voice.elapsed, 1 - speech_lead, 1e-5) << "twice is once";
+}
+
+TEST(VoiceWithSpeech, MarksBecomeEventsAtTheirWordsOnce) {
+  Voice voice;
+  StoryText story;
+  story.id = "s";
+  story.text["en"] = read_story("<emotion name='joy' weight='0.5'/>one <emphasis>two</emphasis> three.", "a").lines;
+  tell(voice, story);
+  auto speech = make_worded("one two three.", 3);
+  AskSpeech ask = [&](const Utterance&) { return SpeechState{speech, false, "en"}; };
+  std::vector<std::pair<StoryMarkKind, float>> seen;
+  for (int i = 0; i < 400; i++) {
+    float at = voice.elapsed;
+    bool again = i == 250;
+    if (again) {
+      pause_voice(voice);
+      resume_voice(voice);
+    }
+    for (const ActionEvent& act : advance_voice(voice, 0.01f, ask).acts) seen.emplace_back(act.kind, at);
+    if (voice.started && voice.elapsed > 0.1f) { EXPECT_EQ(voice.held.emotion, "joy"); }
+  }
+  ASSERT_EQ(seen.size(), 2u);
+  EXPECT_EQ(seen[0].first, StoryMarkKind::emotion);
+  EXPECT_EQ(seen[1].first, StoryMarkKind::beat);
+  EXPECT_NEAR(seen[1].second, 1, 0.02);
+  while (!voice.queue.empty()) advance_voice(voice, 0.1f, ask);
+  EXPECT_EQ(voice.held.emotion, "") << "the face is her own again";
+}
+
+TEST(VoiceWithSpeech, SkippingLeavesTheFaceAsIfAllHadBeenTold) {
+  StoryText story;
+  story.id = "s";
+  story.text["en"] = read_story("<emotion name='sadness'/><look at='well'/>First. Second. Third.", "a").lines;
+  Voice voice;
+  tell(voice, story, 2);
+  EXPECT_EQ(voice.held.emotion, "sadness");
+  EXPECT_EQ(voice.held.look, "well");
+  EXPECT_EQ(voice.queue.size(), 1u);
+  tell(voice, story, 7);
+  EXPECT_TRUE(voice.queue.empty() && voice.story.empty());
+}
+
+// ---- the narrator of a tour ----
+
+TEST_F(SoundTest, ATourIsHeardByItsVisitorAloneAndEverywhere) {
+  size_t a = join("en"), b = join("en");
+  run(0.2);
+  order(a, R"({"type":"tour","action":"play"})");
+  run(1.5);
+  ASSERT_FALSE(peers[a].speech.empty());
+  EXPECT_EQ(peers[a].speech[0]["text"], "Here");
+  ASSERT_FALSE(peers[a].sounds.empty());
+  EXPECT_EQ(peers[a].sounds[0].header.flags & 1, 1);
+  EXPECT_EQ(peers[a].subtitles.at(0)["text"], "Here");
+  EXPECT_EQ(peers[a].subtitles.at(0)["speaker"], "");
+  EXPECT_TRUE(peers[b].speech.empty() && peers[b].sounds.empty() && peers[b].subtitles.empty());
+  // The storyteller tells somebody else something meanwhile: not to who is on the tour.
+  order(b, R"({"type":"storyteller","story":"tale"})");
+  run(0.5);
+  EXPECT_EQ(peers[b].speech.at(0)["text"], "One.");
+  EXPECT_EQ(peers[a].speech.size(), 1u);
+  // Pause is heard at once; the same line goes on later under another number.
+  order(a, R"({"type":"tour","action":"pause"})");
+  run(0.1);
+  EXPECT_EQ(peers[a].speech.at(1)["action"], "stop");
+  order(a, R"({"type":"tour","action":"play"})");
+  run(0.3);
+  EXPECT_EQ(peers[a].speech.back()["action"], "start");
+  EXPECT_EQ(peers[a].speech.back()["text"], "Here");
+  order(a, R"({"type":"tour","action":"stop"})");
+  run(0.1);
+  // What the storyteller says to the other is heard again.
+  ASSERT_GE(peers[a].speech.size(), 5u);
+  EXPECT_EQ(peers[a].speech[3]["action"], "stop");
+  EXPECT_NE(peers[a].speech[4]["text"], "Here");
+}
+
+TEST_F(SoundTest, AFarewellCutsTheStoryShort) {
+  size_t a = join("en");
+  run(0.2);
+  order(a, R"({"type":"storyteller","story":"tale"})");
+  run(0.4);
+  EXPECT_EQ(show->voice.story, "tale");
+  say(show->voice, plain_line({{"en", "Goodbye."}}), true);
+  run(0.4);
+  EXPECT_EQ(show->voice.story, "");
+  ASSERT_GE(peers[a].speech.size(), 3u);
+  EXPECT_EQ(peers[a].speech[1]["action"], "stop");
+  EXPECT_EQ(peers[a].speech[2]["text"], "Goodbye.");
 }
 
 }  // namespace

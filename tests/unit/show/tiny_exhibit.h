@@ -57,11 +57,15 @@ inline Exhibit make_tiny_exhibit(dvec3 origin = dvec3(0)) {
   viewpoint("corner", {3, 1.6, -3}, 2);
   TourPlan tour;
   tour.id = "round";
-  tour.stops = {{0, 2, 1, {{"en", "Here"}}}, {1, 2, 1, {}}};
+  tour.stops.resize(2);
+  tour.stops[0] = {0, 2, 1, {}, {}};
+  tour.stops[0].text["en"].emplace_back().text = "Here";
+  tour.stops[1] = {1, 2, 1, {}, {}};
   exhibit.tours = {tour};
   StoryText story;
   story.id = "tale";
-  story.text = {{"en", {"One.", "Two."}}, {"de", {"Eins.", "Zwei."}}};
+  for (const char* line : {"One.", "Two."}) story.text["en"].emplace_back().text = line;
+  for (const char* line : {"Eins.", "Zwei."}) story.text["de"].emplace_back().text = line;
   exhibit.stories = {story};
   exhibit.walk = WalkRules{};
   exhibit.walk->eye_height = 1.6f;

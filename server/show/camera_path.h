@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The camera's trajectory along a way: position, yaw, pitch and field of view as one cubic B-spline
+// (twice continuously differentiable; de Boor 1978), without roll, and a law of time that keeps speed,
+// turning and their changes comfortable everywhere, starting and ending at rest. Immutable.
+#pragma once
+#include <vector>
+
+#include "world/scene.h"
+
+namespace wellspring {
+
+struct CameraLimits {
+  float speed = 1.2f;         // metres a second
+  float turn = 0.698f;        // radians a second: 40 degrees, of yaw and of pitch
+  float acceleration = 0.8f;  // metres a second squared, along the way
+  float turn_acceleration = 1.2f;  // radians a second squared
+};
+
+struct CameraPath {
+  struct Key {
+    dvec3 position{0};  // absolute
+    double yaw = 0, pitch = 0, fov = 1;
+  };
+  std::vector<Key> keys;      // control points
+  std::vector<double> along;  // place on the spline at times i * step
+  double step = 1.0 / 60, seconds = 0;
+};
+
+// `eyes`: where the eyes pass, the ends included, absolute and dense enough to be kept to; two equal
+// points: a turn on the spot. Looks where it goes in between, if that is far enough. Takes at least
+// `least_seconds`, if there is any way to go.
+CameraPath make_camera_path(const std::vector<dvec3>& eyes, const Viewpoint& from, const Viewpoint& to,
+                            const CameraLimits& limits, double least_seconds = 0);
+
+// At `time` seconds from the beginning; before and after it as at its ends. Yaw is within 2 pi of `to`'s.
+Viewpoint eval_camera_path(const CameraPath& path, double time);
+
+}  // namespace wellspring
