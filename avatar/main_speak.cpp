@@ -12,6 +12,8 @@
 #include "avatar/speech_json.h"
 #include "avatar/speech_process.h"
 #include "avatar/speech_sound.h"
+#include "avatar/story_sentence.h"
+#include "avatar/story_speech.h"
 #include "base/load_error.h"
 #include "base/log.h"
 
@@ -20,7 +22,7 @@ namespace {
 
 struct Options {
   SpeechRequest request;
-  std::string audio, marks, wav, json;
+  std::string audio, marks, wav, json, vtt, story;
 };
 
 // The words with their phonemes, one line each.
@@ -59,14 +61,54 @@ Speech mark_recording(SpeechProcess& process, const Options& options, const Soun
   }
 }
 
-Speech read_marks(const Options& options, const Sound* recording) {
-  std::ifstream in(options.marks, std::ios::binary);
-  if (!in) throw LoadError(options.marks, "", "cannot be read");
-  constexpr size_t most_bytes = 64 << 20;
+std::string read_text(const std::string& file, size_t most_bytes) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw LoadError(file, "", "cannot be read");
   std::string text(most_bytes + 1, '\0');
   in.read(text.data(), std::streamsize(text.size()));
   text.resize(size_t(in.gcount()));
-  if (text.size() > most_bytes) throw LoadError(options.marks, "", "is larger than 64 MiB");
+  if (text.size() > most_bytes)
+    throw LoadError(file, "", "is larger than " + std::to_string(most_bytes >> 20) + " MiB");
+  return text;
+}
+
+// All sentences of a story, one after the other.
+StorySpeech tell_story(const Options& options) {
+  std::string text = read_text(options.story, most_markup_bytes);
+  bool plain = options.story.ends_with(".txt");
+  StoryScript script = plain ? read_plain_story(text, options.story) : read_story(text, options.story);
+  for (const StoryNote& note : script.notes)
+    std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what << "\n";
+  SpeechProcess process;
+  std::vector<std::shared_ptr<const Speech>> spoken;
+  for (const StoryLine& line : script.lines) {
+    SpeechRequest request = options.request;
+    request.text = line.text;
+    request.styles = line.styles;
+    std::string error;
+    spoken.push_back(process.speak(request, error));
+    if (!spoken.back()) throw LoadError(options.story, to_string(line.place), error);
+  }
+  return join_lines(script.lines, spoken);
+}
+
+// A sentence for each subtitle of a text without a story's sentences.
+std::vector<SubtitleCue> cues_of(const Speech& speech) {
+  std::vector<SubtitleCue> cues;
+  for (TextSpan span : find_sentences(speech.text)) {
+    SubtitleCue cue{-1, 0, speech.text.substr(span.begin, span.end - span.begin), ""};
+    for (const SpeechWord& word : speech.words) {
+      if (word.text_end <= span.begin || word.text_begin >= span.end) continue;
+      if (cue.begin < 0) cue.begin = word.begin;
+      cue.end = word.end;
+    }
+    if (cue.begin >= 0) cues.push_back(std::move(cue));
+  }
+  return cues;
+}
+
+Speech read_marks(const Options& options, const Sound* recording) {
+  std::string text = read_text(options.marks, 64 << 20);
   Speech speech = load_speech_marks(text, options.marks);
   if (speech.text != options.request.text)
     throw LoadError(options.marks, "/text", "is another text than the one given");
@@ -93,7 +135,16 @@ Speech make_speech(const Options& options) {
 }
 
 int run(const Options& options) {
-  Speech speech = make_speech(options);
+  Speech speech;
+  std::vector<SubtitleCue> cues;
+  if (options.story.empty()) {
+    speech = make_speech(options);
+    cues = cues_of(speech);
+  } else {
+    StorySpeech story = tell_story(options);
+    speech = std::move(story.speech);
+    cues = std::move(story.cues);
+  }
   if (!options.wav.empty()) {
     if (speech.pcm.empty()) throw LoadError(options.wav, "", "marks without --audio have no sound");
     auto wav = encode_wav(speech.pcm, speech.rate);
@@ -103,7 +154,11 @@ int run(const Options& options) {
     std::string json = write_speech_json(speech);
     save_file(options.json, json.data(), json.size());
   }
-  if (options.wav.empty() && options.json.empty()) print(speech);
+  if (!options.vtt.empty()) {
+    std::string vtt = write_subtitles(cues);
+    save_file(options.vtt, vtt.data(), vtt.size());
+  }
+  if (options.wav.empty() && options.json.empty() && options.vtt.empty()) print(speech);
   return 0;
 }
 
@@ -115,7 +170,11 @@ int main(int argc, char** argv) {
   log::start("speak");
   CLI::App app{"Speaks a text, and tells when each word, phoneme and mouth shape of it comes."};
   Options options;
-  app.add_option("text", options.request.text, "what is to be said, UTF-8")->required();
+  auto* text = app.add_option("text", options.request.text, "what is to be said, UTF-8");
+  auto* story = app.add_option("--story", options.story, "a .story, .ssml or .txt file to be told instead");
+  story->excludes(text);
+  app.add_option("--variant", options.request.variant, "of the voice: f3, m2, ...");
+  app.add_option("--vtt", options.vtt, "subtitles to write, WebVTT");
   app.add_option("--lang", options.request.lang, "language tag: en, de, sk, fr, es, ...");
   app.add_option("--words-per-minute", options.request.words_per_minute, "speed")
       ->check(CLI::Range(80, 450));
@@ -131,6 +190,12 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
+  }
+  bool recorded = !options.audio.empty() || !options.marks.empty();
+  if ((!*text && !*story) || (*story && recorded)) {
+    std::cerr << "speak: " << (*story ? "--story is told without --audio and --marks" : "a text or --story is needed")
+              << "\n";
+    return 2;
   }
   try {
     return run(options);

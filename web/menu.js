@@ -12,7 +12,7 @@ function button(text, on_click) {
   return element;
 }
 
-// orders: {viewpoint(name), tour(action, id?), story(id), story_action(action), storyteller(fields), lang(tag), subtitles(on)}
+// orders: {viewpoint(name), tour(action, id), story(id), storyteller(fields), lang(tag), subtitles(on)}
 export function make_menu(orders) {
   const menu = by_id('menu'), opener = by_id('menu-button');
   let lang = 'en', viewpoints = [];
@@ -25,20 +25,9 @@ export function make_menu(orders) {
   by_id('menu-close').addEventListener('click', () => open(false));
   addEventListener('keydown', (event) => { if (event.key === 'Escape' && !menu.hidden) open(false); });
 
-  by_id('tour-stop').addEventListener('click', () => orders.tour('stop'));
-  by_id('tour-pause').addEventListener('click', (event) => orders.tour(event.target.dataset.next ?? 'pause'));
-  by_id('story-stop').addEventListener('click', () => orders.story_action('stop'));
-  by_id('story-restart').addEventListener('click', () => orders.story_action('restart'));
-  by_id('story-pause').addEventListener('click', (event) => orders.story_action(event.target.dataset.next ?? 'pause'));
   by_id('storyteller-visible').addEventListener('change', (event) => orders.storyteller({ visible: event.target.checked }));
   by_id('storyteller-humanlike').addEventListener('change', (event) => orders.storyteller({ humanlike: event.target.checked }));
   by_id('subtitles-on').addEventListener('change', (event) => orders.subtitles(event.target.checked));
-
-  // A button that pauses or goes on.
-  function set_pause(element, paused) {
-    element.dataset.next = paused ? 'play' : 'pause';
-    element.textContent = word(lang, paused ? 'resume' : 'pause');
-  }
 
   return {
     welcome(message) {
@@ -71,14 +60,10 @@ export function make_menu(orders) {
     state(message) {
       for (const element of by_id('places').children)
         element.setAttribute('aria-current', String(element.dataset.viewpoint === message.viewpoint));
-      by_id('tour-controls').hidden = !message.tour;
-      if (message.tour) set_pause(by_id('tour-pause'), message.tour.state === 'paused');
     },
     agent(message) {
       by_id('storyteller-visible').checked = message.visible;
       by_id('storyteller-humanlike').checked = message.humanlike;
-      by_id('story-controls').hidden = !message.story;
-      set_pause(by_id('story-pause'), message.paused);
       for (const element of by_id('stories').children)
         element.setAttribute('aria-pressed', String(element.dataset.story === message.story));
     },

@@ -45,6 +45,9 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
     const text = label(on ? 'sound_off' : 'sound_on');
     button.setAttribute('aria-label', text);
     button.title = text;
+    // Said to those who do not see the button, once it has changed.
+    const state_text = document.getElementById('sound-state');
+    if (state_text && wanted !== null && wanted !== on) state_text.textContent = label(on ? 'sound_is_on' : 'sound_is_off');
     if (wanted !== on) on_wanted(wanted = on);
   }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // One line of speech at a time, gone when its time is over.
 export function make_subtitles(element) {
-  let timer = 0, on = true;
+  let timer = 0, on = true, left = 0, since = 0, held = false;
   const hide = () => { element.hidden = true; };
+  const start = () => { since = performance.now(); timer = setTimeout(hide, left); };
   return {
     show({ text, speaker, seconds, lang }) {
       clearTimeout(timer);
@@ -17,7 +18,16 @@ export function make_subtitles(element) {
       element.append(text);
       element.lang = lang ?? '';
       element.hidden = false;
-      timer = setTimeout(hide, (seconds + 1) * 1000);
+      left = (seconds + 1) * 1000;
+      if (!held) start();
+    },
+    // What is told rests, or goes on: its line stays as long.
+    hold(value) {
+      if (held === value) return;
+      held = value;
+      clearTimeout(timer);
+      if (held) left = Math.max(left - (performance.now() - since), 1000);
+      else if (!element.hidden) start();
     },
     enable(value) { on = value; if (!on) hide(); },
   };

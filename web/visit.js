@@ -4,6 +4,7 @@ import { make_connection } from './connection.js';
 import { make_controls } from './controls.js';
 import { make_menu } from './menu.js';
 import { make_picture, wanted_size } from './picture.js';
+import { make_player } from './player.js';
 import { make_sound } from './sound.js';
 import { make_subtitles } from './subtitles.js';
 import { first_language, translate_page, word } from './words.js';
@@ -53,16 +54,17 @@ connection = make_connection({
   lost() { if (!full) notice(word(lang, 'lost')); },
   message(message) {
     switch (message.type) {
-      case 'welcome': walk_speed = message.walk_speed; lang = message.lang; menu.welcome(message); sound.relabel(); by_id('veil-title').textContent = message.title; break;
+      case 'welcome': walk_speed = message.walk_speed; lang = message.lang; menu.welcome(message); player.welcome(message); sound.relabel(); by_id('veil-title').textContent = message.title; break;
       case 'state':
         state = message;
         menu.state(message);
+        player.state(message);
         sound.moved(message);
         menu.figures(`${picture.rate()} fps · ${Math.round(round_trip)} ms · ${canvas.width}×${canvas.height} · ${Math.round(message.converged * 100)} %`);
         break;
       case 'speech': sound.speech(message); break;
       case 'subtitle': subtitles.show(message); break;
-      case 'agent': menu.agent(message); document.body.dataset.mood = message.mood; break;
+      case 'agent': menu.agent(message); player.agent(message); document.body.dataset.mood = message.mood; break;
       case 'kiosk': document.body.dataset.kiosk = message.state; break;
       case 'error':
         if (message.code === 'full') { full = true; notice(word(lang, 'full')); }
@@ -78,14 +80,22 @@ function next() {
   return seq;
 }
 
+// What is broken off falls silent at once, not only when the server says so.
+function tour_action(action, name) {
+  if (action !== 'play') sound.stop();
+  connection.send({ type: 'tour', action, ...(name && { name }) });
+}
+
+function story_action(action) {
+  if (action !== 'play') sound.stop();
+  connection.send({ type: 'storyteller', action });
+}
+
+const player = make_player({ tour: tour_action, story_action }, (rests) => subtitles.hold(rests));
 const menu = make_menu({
   viewpoint: (name) => connection.send({ type: 'viewpoint', seq: next(), name }),
-  tour: (action, name) => connection.send({ type: 'tour', action, ...(name && { name }) }),
+  tour: tour_action,
   story: (story) => connection.send({ type: 'storyteller', story }),
-  story_action(action) {
-    if (action !== 'play') sound.stop();
-    connection.send({ type: 'storyteller', action });
-  },
   storyteller: (fields) => connection.send({ type: 'storyteller', ...fields }),
   lang(tag) { lang = tag; localStorage.setItem('wellspring.lang', tag); connection.send({ type: 'settings', lang: tag }); },
   subtitles: (on) => subtitles.enable(on),

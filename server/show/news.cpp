@@ -76,7 +76,8 @@ std::string state_news(const Visitor& visitor, const Exhibit& exhibit) {
   if (visitor.tour.state != TourRide::State::none && visitor.tour.tour >= 0)
     news["tour"] = {{"id", exhibit.tours[size_t(visitor.tour.tour)].id},
                     {"state", tour_word(visitor.tour.state)},
-                    {"stop", visitor.tour.stop}};
+                    {"stop", visitor.tour.stop},
+                    {"stops", exhibit.tours[size_t(visitor.tour.tour)].stops.size()}};
   return news.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -125,6 +126,8 @@ std::string agent_news(const Show& show) {
                {"visible", show.storyteller_visible},
                {"humanlike", show.humanlike},
                {"story", show.voice.story.empty() ? json(nullptr) : json(show.voice.story)},
+               {"sentence", show.voice.story.empty() ? 0 : show.voice.sentence},
+               {"sentences", show.voice.story.empty() ? 0 : show.voice.sentence + int(show.voice.queue.size())},
                {"paused", show.voice.paused}};
   StorytellerGaze gaze = eval_gaze(show.mind, show.storyteller, show.pose);
   news["looking_at"] = triple(dvec3(gaze.target) + show.exhibit.scene.origin);
