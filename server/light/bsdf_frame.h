@@ -30,6 +30,7 @@ inline float alpha_of(float roughness) {
 // A mapped or interpolated normal may face away from the viewer or mirror him into the surface;
 // then it is turned just far enough that its reflection leaves the surface.
 inline vec3 usable_normal(vec3 n, vec3 geometric, vec3 v) {
+  if (n == geometric && dot(v, n) > 0) return n;
   float least = std::min(0.01f, 0.9f * dot(v, geometric));
   vec3 mirrored = 2 * dot(v, n) * n - v;
   float height = dot(mirrored, geometric);

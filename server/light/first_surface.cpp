@@ -19,35 +19,50 @@ void add_reflection(FirstSurface& first, float& reflections, const Surface& surf
   advance(first.reflection, surface, unit);
 }
 
-void describe(const World& world, const Ray& ray, const Surface& surface, float distance,
-              Sample& sample) {
-  sample.position = surface.position;
-  sample.normal = surface.normal;
+}  // namespace
+
+void describe_place(const World& world, const Hit& hit, const SurfacePlace& place, vec3 normal,
+                    float distance, Sample& sample) {
+  sample.position = place.position;
+  sample.normal = normal;
   sample.distance = distance;
-  sample.object = surface.object;
-  sample.instance = surface.instance;
-  sample.triangle = surface.triangle;
-  sample.barycentric = surface.barycentric;
-  sample.flags = uint8_t(sample_hit | (world.is_moving(surface.instance) ? sample_moving : 0));
+  sample.object = world.object_of(hit.instance);
+  sample.instance = hit.instance;
+  sample.triangle = hit.triangle;
+  sample.barycentric = hit.barycentric;
+  sample.flags = uint8_t(sample_hit | (world.is_moving(hit.instance) ? sample_moving : 0));
 }
 
-}  // namespace
+void describe_sky(const Transport& transport, vec3 direction, vec3 tint, Sample& sample) {
+  sample.position = direction;
+  sample.distance = std::numeric_limits<float>::infinity();
+  sample.rest += tint * eval_environment(transport.tables.environment, direction);
+}
+
+Walk begin_walk(const Transport& transport, const Request& request) {
+  Walk walk;
+  walk.ray = request.ray;
+  if (transport.tables.any_solid) walk.media.here = find_media(transport, walk.ray.origin);
+  return walk;
+}
 
 FirstSurface find_first_surface(const Transport& transport, int max_depth, const Request& request,
                                 Sampler& sampler, Sample& sample) {
+  Walk walk = begin_walk(transport, request);
+  return find_first_surface(transport, max_depth, walk, transport.world.intersect(walk.ray),
+                            sampler, sample);
+}
+
+FirstSurface find_first_surface(const Transport& transport, int max_depth, const Walk& begun,
+                                Hit hit, Sampler& sampler, Sample& sample) {
   const World& world = transport.world;
   FirstSurface first;
+  first.walk = begun;
   Walk& walk = first.walk;
-  walk.ray = request.ray;
-  if (transport.tables.any_solid) walk.media.here = find_media(transport, walk.ray.origin);
   float distance = 0, reflections = 0;
-  while (true) {
-    Hit hit = world.intersect(walk.ray);
+  for (;; hit = world.intersect(walk.ray)) {
     if (!hit.valid()) {
-      sample.position = request.ray.direction;
-      sample.distance = std::numeric_limits<float>::infinity();
-      sample.rest =
-          first.tint * eval_environment(transport.tables.environment, request.ray.direction);
+      describe_sky(transport, walk.ray.direction, first.tint, sample);
       break;
     }
     first.surface = meet_surface(transport, walk.ray, hit, walk.media);
@@ -71,7 +86,7 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
       advance(walk, surface, straight);
       continue;
     }
-    describe(world, walk.ray, surface, distance, sample);
+    describe_place(world, hit, surface, surface.normal, distance, sample);
     sample.rest += first.tint * surface_emission(surface, material);
     first.scatters = !material.unlit && max_depth > 1;
     break;

@@ -19,5 +19,14 @@ struct FirstSurface {
 // Fills `sample` with place, normal, object and what is emitted towards the eye. At least one edge.
 FirstSurface find_first_surface(const Transport& transport, int max_depth, const Request& request,
                                 Sampler& sampler, Sample& sample);
+// The same, of a walk along the request's ray whose first hit is known.
+FirstSurface find_first_surface(const Transport& transport, int max_depth, const Walk& walk,
+                                Hit hit, Sampler& sampler, Sample& sample);
+// The walk that begins there.
+Walk begin_walk(const Transport& transport, const Request& request);
+// What a sample says of the place where it ended, and of having met nothing.
+void describe_place(const World& world, const Hit& hit, const SurfacePlace& place, vec3 normal,
+                    float distance, Sample& sample);
+void describe_sky(const Transport& transport, vec3 direction, vec3 tint, Sample& sample);
 
 }  // namespace wellspring

@@ -32,9 +32,9 @@ void leave_solid(MediumStack& stack, int material);  // nothing, where it was ne
 struct Media {
   MediumStack here, beyond;
 };
-// The innermost solid on the side of `surface` that `direction` points to, -1: none.
-inline int medium_towards(const Media& media, const Surface& surface, vec3 direction) {
-  return (dot(direction, surface.geometric_normal) < 0 ? media.beyond : media.here).innermost();
+// The innermost solid on the side of `place` that `direction` points to, -1: none.
+inline int medium_towards(const Media& media, const SurfacePlace& place, vec3 direction) {
+  return (dot(direction, place.geometric_normal) < 0 ? media.beyond : media.here).innermost();
 }
 
 // Boxes of the solids that stand still, for places that ask whether they are in one.

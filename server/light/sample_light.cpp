@@ -29,8 +29,8 @@ vec3 emission_at(const World& world, const EmitterTriangle& e, const Ray& ray, f
   return surface_emission(shown, material) * cover;
 }
 
-LightSample sample_emitter(const Transport& transport, const Surface& from, vec3 normal, vec2 u,
-                           Sampler& sampler) {
+LightSample sample_emitter(const Transport& transport, const SurfacePlace& from, vec3 normal,
+                           vec2 u, Sampler& sampler) {
   const LightTables& tables = transport.tables;
   LightPick pick = pick_light(tables.emitter_choice, from.position, normal, u.x);
   if (!(pick.probability > 0)) return {};
@@ -40,7 +40,7 @@ LightSample sample_emitter(const Transport& transport, const Surface& from, vec3
   PicturePlace at{sample_triangle({pick.u, u.y}), 1};
   if (e.picture >= 0)
     at = sample_emission_picture(tables.pictures[size_t(e.picture)], {pick.u, u.y});
-  Surface place;
+  SurfacePlace place;
   place.position = e.corner + at.barycentric.x * e.edge1 + at.barycentric.y * e.edge2;
   place.geometric_normal = e.normal;
   place.extent = e.extent;
@@ -74,7 +74,7 @@ vec3 lit_side(const Surface& surface, const Bsdf& bsdf) {
   return max_component(bsdf.transmit) > 0 ? vec3(0) : surface.geometric_normal;
 }
 
-LightSample sample_area_light(const Transport& transport, const Surface& from, vec3 normal,
+LightSample sample_area_light(const Transport& transport, const SurfacePlace& from, vec3 normal,
                               Sampler& sampler) {
   const LightTables& tables = transport.tables;
   bool emitters = !tables.emitter_choice.empty(), sky = tables.environment.is_sampled();
@@ -116,36 +116,71 @@ float sample_sky_pdf(const LightTables& tables, vec3 direction) {
   return (1 - tables.emitter_share) * sample_environment_pdf(tables.environment, direction);
 }
 
-vec3 eval_visibility(const Transport& transport, const Surface& from, const LightSample& light) {
+namespace {
+
+// What panes that a ray passed let through together.
+vec3 pass_panes(const Transport& transport, const Ray& ray, PanesPassed& panes) {
+  const World& world = transport.world;
+  // Told in the order of the tree: results may not hang on it.
+  std::sort(panes.hits, panes.hits + panes.count, [](const Hit& a, const Hit& b) {
+    return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
+  });
+  vec3 arrives(1);
+  for (int i = 0; i < panes.count; i++) {
+    int index = world.mesh_of(panes.hits[i].instance).material;
+    if (!transport.tables.materials[size_t(index)].maybe_pane) return vec3(0);
+    Surface surface = eval_surface(world, ray, panes.hits[i]);
+    const Material& material = world.material_of(panes.hits[i].instance);
+    if (!is_pane(surface, material)) return vec3(0);
+    arrives *= pane_transmittance(surface, material, ray.direction);
+  }
+  return arrives;
+}
+
+// The same for any number of panes, one after the other.
+vec3 step_through_panes(const World& world, Ray ray, const LightSample& light) {
+  vec3 arrives(1);
+  for (int pane = 0; pane < most_panes; pane++) {
+    Hit hit = world.intersect(ray);
+    if (!hit.valid()) return arrives;
+    Surface surface = eval_surface(world, ray, hit);
+    const Material& material = world.material_of(hit.instance);
+    if (!is_pane(surface, material)) return vec3(0);
+    arrives *= pane_transmittance(surface, material, ray.direction);
+    if (!(max_component(arrives) > 0)) return vec3(0);
+    ray.origin = offset_origin(surface, ray.direction);
+    if (!std::isfinite(light.distance)) continue;
+    vec3 line = light.target - ray.origin;
+    ray.t_max = length(line);
+    if (!(ray.t_max > 0) || dot(line, light.direction) <= 0) return arrives;
+    ray.direction = line / ray.t_max;
+  }
+  return vec3(0);
+}
+
+}  // namespace
+
+vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,
+                     const LightSample& light) {
+  const World& world = transport.world;
   Ray ray;
   ray.origin = offset_origin(from, light.direction);
   ray.direction = light.direction;
-  bool finite = std::isfinite(light.distance);
-  auto aim = [&] {
-    if (!finite) return true;
-    vec3 line = light.target - ray.origin;
-    ray.t_max = length(line);
-    if (!(ray.t_max > 0) || dot(line, light.direction) <= 0) return false;
-    ray.direction = line / ray.t_max;
-    return true;
-  };
-  if (!aim()) return vec3(1);
-  if (!transport.tables.any_pane) return transport.world.occluded(ray) ? vec3(0) : vec3(1);
-  vec3 arrives(1);
-  for (int pane = 0; pane < most_panes; pane++) {
-    Hit hit = transport.world.intersect(ray);
-    if (!hit.valid()) return arrives;
-    uint32_t material = uint32_t(transport.world.mesh_of(hit.instance).material);
-    if (!transport.tables.materials[material].maybe_pane) return vec3(0);
-    Surface surface = eval_surface(transport.world, ray, hit);
-    const Material& m = transport.world.material_of(hit.instance);
-    if (!is_pane(surface, m)) return vec3(0);
-    arrives *= pane_transmittance(surface, m, ray.direction);
-    if (!(max_component(arrives) > 0)) return vec3(0);
-    ray.origin = offset_origin(surface, ray.direction);
-    if (!aim()) return arrives;
+  if (std::isfinite(light.distance)) {
+    // As long as it is: no ray needs a unit direction to ask what is in between.
+    ray.direction = light.target - ray.origin;
+    ray.t_max = 1;
+    if (!(dot(ray.direction, light.direction) > 0)) return vec3(1);
   }
-  return vec3(0);
+  if (!transport.tables.any_pane) return world.occluded(ray) ? vec3(0) : vec3(1);
+  PanesPassed panes;
+  bool blocked = world.occluded(ray, panes);
+  if (blocked && !panes.more) return vec3(0);
+  if (panes.count == 0) return vec3(1);
+  float length = std::sqrt(dot(ray.direction, ray.direction));
+  ray.direction /= length;
+  ray.t_max *= length;
+  return panes.more ? step_through_panes(world, ray, light) : pass_panes(transport, ray, panes);
 }
 
 }  // namespace wellspring

@@ -28,9 +28,9 @@ vec3 lit_side(const Surface& surface, const Bsdf& bsdf);
 
 // Picks a triangle by power and place, or a direction of the environment by brightness. `normal`:
 // lit_side() of the surface.
-LightSample sample_area_light(const Transport& transport, const Surface& from, vec3 normal,
+LightSample sample_area_light(const Transport& transport, const SurfacePlace& from, vec3 normal,
                               Sampler& sampler);
-inline LightSample sample_area_light(const Transport& transport, const Surface& from,
+inline LightSample sample_area_light(const Transport& transport, const SurfacePlace& from,
                                      Sampler& sampler) {
   return sample_area_light(transport, from, from.geometric_normal, sampler);
 }
@@ -42,11 +42,12 @@ float sample_sky_pdf(const LightTables& tables, vec3 direction);
 // Picks one by its unshadowed effect on a surface that scatters to its own side, or (`through`) to
 // both sides; of many by power and place first. `radiance` is already divided by the chance of the
 // pick.
-LightSample sample_punctual_light(const Transport& transport, const Surface& from, vec3 normal,
+LightSample sample_punctual_light(const Transport& transport, const SurfacePlace& from, vec3 normal,
                                   bool through, Sampler& sampler);
 
 // What part of the light arrives: 0 or 1, or the tint of the thin panes in between.
-vec3 eval_visibility(const Transport& transport, const Surface& from, const LightSample& light);
+vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,
+                     const LightSample& light);
 
 inline constexpr int most_panes = 64;  // straight through so many in a row, then the light is lost
 

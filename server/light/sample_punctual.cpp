@@ -10,7 +10,7 @@ namespace {
 
 // glTF KHR_lights_punctual: inverse square, range window, cone.
 LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
-                          const Surface& from) {
+                          const SurfacePlace& from) {
   LightSample light;
   if (punctual.type == PunctualType::directional) {
     light.direction = -punctual.direction;
@@ -48,8 +48,8 @@ float distant_chance(float near_sum, float distant_sum) {
   return 0.15f + 0.7f * distant_sum / (near_sum + distant_sum);
 }
 
-LightSample draw_of_few(const LightTables& tables, const Surface& from, vec3 normal, bool through,
-                        vec2 u) {
+LightSample draw_of_few(const LightTables& tables, const SurfacePlace& from, vec3 normal,
+                        bool through, vec2 u) {
   const FewLights& few = tables.few_punctual;
   LightEffects effects;
   eval_effects(few, from.position, normal, through, effects);
@@ -80,8 +80,8 @@ float effect_of(const LightSample& light, vec3 normal, bool through) {
   return std::isfinite(effect) ? effect : 0;
 }
 
-LightSample draw_of_many(const LightTables& tables, const Surface& from, vec3 normal, bool through,
-                         vec2 u) {
+LightSample draw_of_many(const LightTables& tables, const SurfacePlace& from, vec3 normal,
+                         bool through, vec2 u) {
   const LightTree* trees[] = {&tables.near_choice, &tables.distant_choice};
   LightSample lights[2];
   float share[2] = {1, 1}, sum[2] = {0, 0};
@@ -104,7 +104,7 @@ LightSample draw_of_many(const LightTables& tables, const Surface& from, vec3 no
 
 }  // namespace
 
-LightSample sample_punctual_light(const Transport& transport, const Surface& from, vec3 normal,
+LightSample sample_punctual_light(const Transport& transport, const SurfacePlace& from, vec3 normal,
                                   bool through, Sampler& sampler) {
   const LightTables& tables = transport.tables;
   if (tables.punctual.size() == 1)

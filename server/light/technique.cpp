@@ -27,7 +27,10 @@ constexpr Technique list[] = {
 // Pixels a side of what trace_many gets at once: neighbours, in the same cache.
 constexpr int pass_tile = 24;
 
-bool is_light(vec3 c) { return is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0; }
+bool is_light(vec3 c) {  // NaN is not
+  constexpr float most = std::numeric_limits<float>::max();
+  return c.x >= 0 && c.y >= 0 && c.z >= 0 && c.x <= most && c.y <= most && c.z <= most;
+}
 
 }  // namespace
 

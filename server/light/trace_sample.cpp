@@ -10,6 +10,7 @@ namespace {
 // Mirrors, glass and polished metal: what is seen there moves with the view.
 bool looks_specular(const Bsdf& bsdf) { return bsdf.alpha < 0.1f && bsdf.diffuse_share < 0.5f; }
 
+constexpr float least_albedo = 1e-4f;  // below it nothing is diffuse
 constexpr float soft_alpha = 0.12f;  // roughness 0.35
 
 // The first surface's light, its diffuse lobe (of reflectance 1) and its specular lobes sampled
@@ -19,7 +20,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
   const uint32_t base = Dimensions::first_surface;
   std::optional<WavelengthSpread> spread;
   part_colors(transport, walk, surface, base, sampler, bsdf, spread);
-  bool diffuse = max_component(bsdf.diffuse) > 1e-4f;
+  bool diffuse = max_component(bsdf.diffuse) > least_albedo;
   vec3 albedo = diffuse ? bsdf.diffuse : bsdf.metallic * bsdf.metal;
   // Rough gloss looks nearly the same from everywhere: as a share of the reflectance it may be filtered with
   // the diffuse light.
@@ -70,13 +71,48 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
   }
 }
 
+// The same where that surface is matt: one lobe and no gloss.
+void shade_first_matt(const Transport& transport, const WalkRules& rules, Walk& walk,
+                      const Hit& hit, Sampler& sampler, Sample& sample) {
+  MattSurface surface = eval_matt_surface(transport.world, walk.ray, hit);
+  describe_place(transport.world, hit, surface, surface.normal, hit.t, sample);
+  if (rules.max_depth < 2) return;
+  MattLobe lobe = make_matt(surface, walk.ray.direction);
+  if (!(max_component(lobe.reflectance) > least_albedo)) return;
+  sample.albedo =
+      lobe.reflectance * eval_absorption(transport, walk.media.here.innermost(), hit.t);
+  const uint32_t base = Dimensions::first_surface;
+  sampler.seek(base);
+  DirectLight direct = sample_direct_light(transport, walk, surface, lobe, true, sampler);
+  sample.smooth += direct.area_diffuse;
+  sample.rest += sample.albedo * direct.punctual_diffuse;
+  sampler.seek(base + Dimensions::scatter + 1);
+  BsdfSample scattered = sample_matt(lobe, sampler.next2());
+  if (scattered.pdf > 0) scattered.weight = vec3(1);
+  if (!advance(walk, surface, scattered)) return;
+  walk.area_share = transport.tables.area_share > 0 ? 1.0f : 0.0f;
+  sampler.seek(Dimensions::walk);
+  sample.smooth += follow(transport, rules, walk, sampler);
+}
+
 }  // namespace
 
 Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request) {
   Sampler sampler(request.seed, request.index);
   Sample sample;
   if (rules.max_depth < 1) return sample;
-  FirstSurface first = find_first_surface(transport, rules.max_depth, request, sampler, sample);
+  Walk walk = begin_walk(transport, request);
+  Hit hit = transport.world.intersect(walk.ray);
+  if (!hit.valid()) {
+    describe_sky(transport, walk.ray.direction, vec3(1), sample);
+    return sample;
+  }
+  if (met_matt(transport, hit)) {
+    shade_first_matt(transport, rules, walk, hit, sampler, sample);
+    return sample;
+  }
+  FirstSurface first =
+      find_first_surface(transport, rules.max_depth, walk, hit, sampler, sample);
   if (first.scatters)
     shade_first(transport, rules, first.walk, first.surface, first.bsdf, first.tint, sampler, sample);
   if (first.mirrored) {

@@ -42,8 +42,8 @@ vec3 walk_met_sky(const Transport& transport, const Walk& walk) {
   return radiance * mis_weight(walk.pdf, other);
 }
 
-vec3 eval_absorption(const Transport& transport, int medium, float length) {
-  if (medium < 0 || !transport.tables.any_tint || !std::isfinite(length)) return vec3(1);
+vec3 eval_tint(const Transport& transport, int medium, float length) {
+  if (!std::isfinite(length)) return vec3(1);
   const Material& m = transport.world.scene().materials[size_t(medium)];
   if (!std::isfinite(m.attenuation_distance) || !(m.attenuation_distance > 0)) return vec3(1);
   float lengths = length / m.attenuation_distance;
@@ -67,25 +67,45 @@ void part_colors(const Transport& transport, const Walk& walk, const Surface& su
                      spread, outside);
 }
 
-bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered) {
+bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered) {
   if (!(max_component(scattered.weight) > 0)) return false;
   walk.throughput *= scattered.weight;
   walk.ray.direction = scattered.direction;
-  walk.ray.origin = offset_origin(surface, scattered.direction);
+  walk.ray.origin = offset_origin(place, scattered.direction);
   if (scattered.bounce == Bounce::pass) return ++walk.panes <= most_panes;
   walk.panes = 0;
   walk.depth++;
   walk.pdf = scattered.pdf;
-  walk.from = surface.position;
-  walk.from_normal = surface.geometric_normal;
+  walk.from = place.position;
+  walk.from_normal = place.geometric_normal;
   walk.scattered += scattered.pdf > 0;
   if (scattered.bounce == Bounce::refract) walk.media.here = walk.media.beyond;
   return true;
 }
 
-DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
-                                const Surface& surface, const Bsdf& bsdf, bool apart,
-                                Sampler& sampler) {
+namespace {
+
+// How a surface scatters, as light sampling asks: the value towards a direction, and the density
+// with which sampling all of its lobes draws that.
+struct ByBsdf {
+  const Bsdf& bsdf;
+  BsdfValue eval(vec3 direction) const { return eval_bsdf(bsdf, direction); }
+  float pdf(const BsdfValue& value) const { return sample_bsdf_pdf(bsdf, value, Lobes::all); }
+};
+struct ByMatt {
+  const MattLobe& lobe;
+  BsdfValue eval(vec3 direction) const {
+    float pdf = eval_matt_pdf(lobe, direction);
+    return {vec3(pdf), vec3(0), pdf, 0};
+  }
+  float pdf(const BsdfValue& value) const { return value.diffuse_pdf; }
+};
+
+// `side`: lit_side.
+template <class Scattering>
+DirectLight direct_light(const Transport& transport, const Walk& walk, const SurfacePlace& place,
+                         vec3 side, vec3 normal, const Scattering& scattering, bool apart,
+                         Sampler& sampler) {
   const LightTables& tables = transport.tables;
   const uint32_t base = sampler.drawn;
   DirectLight direct;
@@ -96,18 +116,20 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
     punctual_chance = 1 - area_chance;
     (sampler.next() < area_chance ? punctual : area) = false;
   }
-  vec3 side = lit_side(surface, bsdf);
+  auto arriving = [&](const LightSample& light, float chance) {
+    return light.radiance * eval_visibility(transport, place, light) *
+           eval_absorption(transport, medium_towards(walk.media, place, light.direction),
+                           light.distance) / chance;
+  };
   if (area) {
     sampler.seek(base + 1);
-    LightSample light = sample_area_light(transport, surface, side, sampler);
+    LightSample light = sample_area_light(transport, place, side, sampler);
     float light_pdf = light.pdf * area_chance;
     if (light.pdf > 0 && max_component(light.radiance) > 0) {
-      BsdfValue value = eval_bsdf(bsdf, light.direction);
+      BsdfValue value = scattering.eval(light.direction);
       if (max_component(value.diffuse + value.specular) > 0) {
-        vec3 arrives = light.radiance * eval_visibility(transport, surface, light) *
-                       eval_absorption(transport, medium_towards(walk.media, surface, light.direction),
-                                       light.distance) / light_pdf;
-        float both = sample_bsdf_pdf(bsdf, value, Lobes::all);
+        vec3 arrives = arriving(light, light_pdf);
+        float both = scattering.pdf(value);
         direct.area_diffuse =
             value.diffuse * arrives * mis_weight(light_pdf, apart ? value.diffuse_pdf : both);
         direct.specular =
@@ -118,13 +140,11 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
   if (punctual) {
     bool through = side == vec3(0);
     sampler.seek(base + Dimensions::punctual);
-    LightSample light = sample_punctual_light(transport, surface, bsdf.normal, through, sampler);
+    LightSample light = sample_punctual_light(transport, place, normal, through, sampler);
     if (light.pdf > 0) {
-      BsdfValue value = eval_bsdf(bsdf, light.direction);
+      BsdfValue value = scattering.eval(light.direction);
       if (max_component(value.diffuse + value.specular) > 0) {
-        vec3 arrives = light.radiance * eval_visibility(transport, surface, light) *
-                       eval_absorption(transport, medium_towards(walk.media, surface, light.direction),
-                                       light.distance) / punctual_chance;
+        vec3 arrives = arriving(light, punctual_chance);
         direct.punctual_diffuse = value.diffuse * arrives;
         direct.specular += value.specular * arrives;
       }
@@ -132,6 +152,45 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
   }
   return direct;
 }
+
+}  // namespace
+
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
+                                const Surface& surface, const Bsdf& bsdf, bool apart,
+                                Sampler& sampler) {
+  return direct_light(transport, walk, surface, lit_side(surface, bsdf), bsdf.normal, ByBsdf{bsdf},
+                      apart, sampler);
+}
+
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
+                                const SurfacePlace& place, const MattLobe& lobe, bool apart,
+                                Sampler& sampler) {
+  return direct_light(transport, walk, place, place.geometric_normal, lobe.normal, ByMatt{lobe},
+                      apart, sampler);
+}
+
+namespace {
+
+// One step of the walk at a matt surface. False: it ends here.
+bool scatter_matt(const Transport& transport, const WalkRules& rules, Walk& walk, const Hit& hit,
+                  uint32_t base, Sampler& sampler, vec3& radiance) {
+  bool last = walk.scattered >= rules.scatterings || walk.depth >= rules.max_depth;
+  if (last) return false;
+  MattSurface surface = eval_matt_surface(transport.world, walk.ray, hit);
+  MattLobe lobe = make_matt(surface, walk.ray.direction);
+  if (!(max_component(lobe.reflectance) > 0)) return false;
+  walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
+  sampler.seek(base);
+  radiance += walk.throughput * lobe.reflectance *
+              sample_direct_light(transport, walk, surface, lobe, false, sampler).sum();
+  sampler.seek(base + Dimensions::scatter + 1);  // as sample_bsdf has it without a choice
+  if (!advance(walk, surface, sample_matt(lobe, sampler.next2()))) return false;
+  walk.area_share = transport.tables.area_share;
+  sampler.seek(base + Dimensions::survival);
+  return survives(walk, sampler);
+}
+
+}  // namespace
 
 vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler) {
   const World& world = transport.world;
@@ -144,6 +203,10 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampl
     if (transport.grid && walk.pdf > 0 && walk.media.here.count == 0 &&
         eval_grid(*transport.grid, world, walk.ray, hit, hit.t / std::sqrt(walk.pdf), kept))
       return radiance + walk.throughput * kept;
+    if (met_matt(transport, hit)) {
+      if (!scatter_matt(transport, rules, walk, hit, base, sampler, radiance)) return radiance;
+      continue;
+    }
     Surface surface = meet_surface(transport, walk.ray, hit, walk.media);
     const Material& material = world.material_of(hit.instance);
     walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);

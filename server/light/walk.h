@@ -5,6 +5,7 @@
 // apart in the Sample.
 #pragma once
 #include "light/dispersion.h"
+#include "light/matt.h"
 #include "light/sample_light.h"
 #include "light/technique.h"
 
@@ -57,8 +58,8 @@ void part_colors(const Transport& transport, const Walk& walk, const Surface& su
                  uint32_t dimensions, Sampler& sampler, Bsdf& bsdf,
                  std::optional<WavelengthSpread>& spread);
 
-// The walk's next ray after `surface` scattered it; false: it ends here.
-bool advance(Walk& walk, const Surface& surface, const BsdfSample& scattered);
+// The walk's next ray after `place` scattered it; false: it ends here.
+bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered);
 
 // Light arriving at a surface from one area light and one punctual light, scattered towards the
 // viewer.
@@ -71,9 +72,21 @@ struct DirectLight {
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const Surface& surface, const Bsdf& bsdf, bool apart,
                                 Sampler& sampler);
+// The same where the surface is matt, its lobe's reflectance left out.
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
+                                const SurfacePlace& place, const MattLobe& lobe, bool apart,
+                                Sampler& sampler);
 
 // Share of light left after a length of the solid it runs in (Beer's law); -1: in none.
-vec3 eval_absorption(const Transport& transport, int medium, float length);
+vec3 eval_tint(const Transport& transport, int medium, float length);
+inline vec3 eval_absorption(const Transport& transport, int medium, float length) {
+  return medium < 0 || !transport.tables.any_tint ? vec3(1) : eval_tint(transport, medium, length);
+}
+
+// Whether the shortest way through the shading will do.
+inline bool met_matt(const Transport& transport, const Hit& hit) {
+  return transport.tables.materials[size_t(transport.world.mesh_of(hit.instance).material)].matt;
+}
 
 // The whole of a sample: what trace functions of techniques call.
 Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request);

@@ -33,9 +33,8 @@ RTCRayHit to_embree(const Ray& ray) {
 // empty interval.
 bool is_traceable(const Ray& ray) {
   constexpr float farthest = 1e17f;
-  vec3 place = glm::abs(ray.origin), way = glm::abs(ray.direction);
-  return place.x <= farthest && place.y <= farthest && place.z <= farthest && way.x <= farthest &&
-         way.y <= farthest && way.z <= farthest && ray.t_min <= ray.t_max;
+  vec3 sum = glm::abs(ray.origin) + glm::abs(ray.direction);
+  return sum.x + sum.y + sum.z <= farthest && ray.t_min <= ray.t_max;
 }
 
 float half_area(const Bounds& box) {
@@ -67,6 +66,7 @@ void World::Impl::update_moving_bounds() {
     moving_bounds.low = glm::min(moving_bounds.low, moving_boxes[i].low);
     moving_bounds.high = glm::max(moving_bounds.high, moving_boxes[i].high);
   }
+  any_moving = moving_bounds.low.x <= moving_bounds.high.x;
 }
 
 World::~World() = default;
@@ -138,7 +138,7 @@ Hit World::intersect(const Ray& ray) const {
   RTCRayHit r = to_embree(ray);
   embree::intersect1(w.still_scene, query, r);
   hit = w.to_hit(r.hit.geomID, r.hit.instID[0], r.hit.primID, r.hit.u, r.hit.v, r.ray.tfar, false);
-  if (meets(w.moving_bounds, ray, r.ray.tfar)) {
+  if (w.any_moving && meets(w.moving_bounds, ray, r.ray.tfar)) {
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     embree::intersect1(w.moving_scene, query, r);
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID)
@@ -148,19 +148,27 @@ Hit World::intersect(const Ray& ray) const {
   return hit;
 }
 
-bool World::occluded(const Ray& ray) const {
-  const Impl& w = *impl_;
+bool World::Impl::is_occluded(const Ray& ray, PanesPassed* panes) const {
   if (!is_traceable(ray)) return false;
   traced++;
-  Impl::Query query;
+  Query query;
   embree::init(query);
   query.rays = &ray;
+  query.panes = panes;
   RTCRay r = to_embree(ray).ray;
-  embree::occluded1(w.still_scene, query, r);
+  embree::occluded1(still_scene, query, r);
   if (r.tfar < ray.t_min) return true;  // Embree says so with -infinity
-  if (!meets(w.moving_bounds, ray, ray.t_max)) return false;
-  embree::occluded1(w.moving_scene, query, r);
+  if (!any_moving || !meets(moving_bounds, ray, ray.t_max)) return false;
+  embree::occluded1(moving_scene, query, r);
   return r.tfar < ray.t_min;
+}
+
+bool World::occluded(const Ray& ray) const { return impl_->is_occluded(ray, nullptr); }
+
+bool World::occluded(const Ray& ray, PanesPassed& panes) const {
+  panes.count = 0;
+  panes.more = false;
+  return impl_->is_occluded(ray, &panes);
 }
 
 void World::Impl::intersect8(const Ray* rays, Hit* hits, int count) const {

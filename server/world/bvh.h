@@ -34,8 +34,28 @@ struct Hit {
   bool valid() const { return instance != 0xffffffffu; }
 };
 
+// Triangles of thin transmitting materials that a ray passed, each once, in no order.
+struct PanesPassed {
+  static constexpr int most = 16;
+  Hit hits[most];
+  int count = 0;
+  bool more = false;  // than fit: the ray was taken for blocked
+};
+
 // Rays this thread has traced so far, nearest hits and occluders alike: for measurements.
 uint64_t rays_traced();
+
+// What shading wants of a triangle that stands still, in one cache line, world space. Places are
+// corner + edge1 * barycentric.x + edge2 * barycentric.y.
+struct alignas(64) Face {
+  vec3 corner;
+  float extent;  // largest coordinate of the corners
+  vec3 edge1;
+  float flat;  // 1: the mesh's normals there are `normal`
+  vec3 edge2;
+  float unused = 0;
+  vec3 normal;  // unit, towards the side the winding faces; 0: a triangle without area
+};
 
 // All there is to know about an instance of a World, in one place for the shading loop.
 struct PlacedMesh {
@@ -48,6 +68,7 @@ struct PlacedMesh {
   mat4 to_world{1};
   // Inverse transpose of the upper 3x3 up to a positive factor: normalise after using it.
   mat3 normal_to_world{1};
+  const Face* faces = nullptr;  // of its triangles; null: it moves, or is one of very many copies
 };
 
 // A scene with what moves in it. Instances [0, scene.instances.size()) are the scene's; the rest
@@ -86,6 +107,9 @@ class World {
   Hit intersect(const Ray& ray) const;
   // Anything between t_min and t_max? Alpha as above. Glass counts as opaque.
   bool occluded(const Ray& ray) const;
+  // The same, but thin transmitting materials are passed and told: what they let through is the
+  // caller's to say.
+  bool occluded(const Ray& ray, PanesPassed& panes) const;
   // `count` coherent rays at once; results are those of intersect().
   void intersect_many(const Ray* rays, Hit* hits, int count) const;
   // Bit i of the answer: occluded(ray i), for the rays whose bit is set in `active`. Pays where rays

@@ -30,6 +30,10 @@ bool may_pass(const Mesh& mesh, const Material& material) {
   return false;
 }
 
+bool may_be_pane(const Material& material) {
+  return material.transmission > 0 && !(material.thickness > 0) && material.metallic < 1;
+}
+
 bool passes(const Scene& scene, const PlacedMesh& placed, uint32_t instance, uint32_t triangle,
             vec2 barycentric, const Ray& ray) {
   const Mesh& mesh = *placed.mesh;

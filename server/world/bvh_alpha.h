@@ -7,6 +7,8 @@ namespace wellspring {
 
 // Can any place of this mesh be passed through? Only such meshes get a filter function.
 bool may_pass(const Mesh& mesh, const Material& material);
+// May some place of it be a thin pane, which tints light and does not stop it?
+bool may_be_pane(const Material& material);
 // Is this hit passed through? Mask: alpha below the cut-off. Blend: with probability 1 - alpha,
 // decided by a hash of the ray's origin and direction and of which triangle it is, so the answer
 // repeats.

@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "world/bvh_alpha.h"
 #include "world/bvh_impl.h"
+#include "world/surface.h"
 
 namespace wellspring {
 namespace {
@@ -75,21 +76,49 @@ Bounds box_of(const std::vector<vec3>& positions) {
   return box;
 }
 
-void World::Impl::filter(const RTCFilterFunctionNArguments* arguments) {
+Hit World::Impl::hit_of(const RTCFilterFunctionNArguments* arguments, unsigned i) {
   const Tag& tag = *static_cast<const Tag*>(arguments->geometryUserPtr);
+  Hit hit;
+  hit.instance = tag.instance;
+  if (tag.instanced)
+    hit.instance = tag.impl->still_instance[RTCHitN_instID(arguments->hit, arguments->N, i, 0)];
+  hit.triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
+  hit.barycentric = {RTCHitN_u(arguments->hit, arguments->N, i),
+                     RTCHitN_v(arguments->hit, arguments->N, i)};
+  hit.t = RTCRayN_tfar(arguments->ray, arguments->N, i);
+  return hit;
+}
+
+void World::Impl::filter(const RTCFilterFunctionNArguments* arguments) {
+  const Impl& impl = *static_cast<const Tag*>(arguments->geometryUserPtr)->impl;
   const Query& query = *static_cast<const Query*>(arguments->context);
-  const Impl& impl = *tag.impl;
   for (unsigned i = 0; i < arguments->N; i++) {
     if (arguments->valid[i] != -1) continue;
-    uint32_t instance = tag.instance;
-    if (tag.instanced)
-      instance = impl.still_instance[RTCHitN_instID(arguments->hit, arguments->N, i, 0)];
-    vec2 barycentric{RTCHitN_u(arguments->hit, arguments->N, i),
-                     RTCHitN_v(arguments->hit, arguments->N, i)};
-    uint32_t triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
+    Hit hit = hit_of(arguments, i);
     Ray ray = query.ray(RTCRayN_id(arguments->ray, arguments->N, i));
-    if (passes(*impl.scene, impl.placed[instance], instance, triangle, barycentric, ray))
+    if (passes(*impl.scene, impl.placed[hit.instance], hit.instance, hit.triangle, hit.barycentric,
+               ray))
       arguments->valid[i] = 0;
+  }
+}
+
+void World::Impl::filter_shadow(const RTCFilterFunctionNArguments* arguments) {
+  const Tag& tag = *static_cast<const Tag*>(arguments->geometryUserPtr);
+  const Query& query = *static_cast<const Query*>(arguments->context);
+  if (tag.alpha) filter(arguments);
+  if (!tag.pane || !query.panes) return;
+  PanesPassed& panes = *query.panes;
+  for (unsigned i = 0; i < arguments->N; i++) {
+    if (arguments->valid[i] != -1) continue;
+    Hit hit = hit_of(arguments, i);
+    // A triangle that the tree has split is met in each of its parts.
+    bool known = std::any_of(panes.hits, panes.hits + panes.count, [&](const Hit& other) {
+      return other.instance == hit.instance && other.triangle == hit.triangle;
+    });
+    panes.more |= !known && panes.count == PanesPassed::most;
+    if (panes.more) continue;
+    if (!known) panes.hits[panes.count++] = hit;
+    arguments->valid[i] = 0;
   }
 }
 
@@ -115,16 +144,26 @@ RTCGeometry World::Impl::make_geometry(const Mesh& mesh, const mat4* to_world, c
   std::copy(mesh.triangles.begin(), mesh.triangles.end(), triangles);
   rtcSetGeometryBuildQuality(geometry, quality);
   tags.push_back(tag);
-  rtcSetGeometryUserData(geometry, &tags.back());
-  if (may_pass(mesh, scene->materials[size_t(mesh.material)])) {
-    rtcSetGeometryIntersectFilterFunction(geometry, filter);
-    rtcSetGeometryOccludedFilterFunction(geometry, filter);
-  }
+  Tag& own = tags.back();
+  rtcSetGeometryUserData(geometry, &own);
+  own.alpha = may_pass(mesh, scene->materials[size_t(mesh.material)]);
+  own.pane = may_be_pane(scene->materials[size_t(mesh.material)]);
+  if (own.alpha) rtcSetGeometryIntersectFilterFunction(geometry, filter);
+  if (own.alpha || own.pane) rtcSetGeometryOccludedFilterFunction(geometry, filter_shadow);
   rtcCommitGeometry(geometry);
   return geometry;
 }
 
+void World::Impl::build_faces(PlacedMesh& instance, std::vector<Face>& list) {
+  const Mesh& mesh = *instance.mesh;
+  list.reserve(mesh.triangles.size());
+  for (uint32_t i = 0; i < uint32_t(mesh.triangles.size()); i++)
+    list.push_back(make_face(instance, i));
+  instance.faces = list.data();
+}
+
 void World::Impl::build_still() {
+  faces.resize(scene->instances.size());
   // Which meshes are repeated so often that copying them would take too much? Those with
   // the fewest triangles in all are copied first.
   std::vector<size_t> uses(scene->meshes.size(), 0);
@@ -159,6 +198,7 @@ void World::Impl::build_still() {
     // Embree inverts an instance's transform; a flattened one has no inverse, so it is copied too.
     if (flat[size_t(instance.mesh)] || is_singular(instance.to_world)) {
       geometry = make_geometry(mesh, &instance.to_world, {this, i, false}, quality);
+      build_faces(placed[i], faces[i]);
     } else {
       RTCScene& of_mesh = scene_of_mesh[size_t(instance.mesh)];
       if (!of_mesh) {

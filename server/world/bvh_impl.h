@@ -20,10 +20,13 @@ struct World::Impl {
     const Impl* impl;
     uint32_t instance;  // unused inside an Embree instance, whose own id says which it is
     bool instanced;
+    bool alpha = false;  // it has places that rays pass
+    bool pane = false;   // it may be a thin pane somewhere
   };
   struct Query : embree::Context {
     const Ray* rays = nullptr;  // one of these two
     const RayPacket* packet = nullptr;
+    PanesPassed* panes = nullptr;  // where panes are passed and told
     Ray ray(unsigned i) const {
       if (rays) return rays[i];
       return {{packet->origin_x[i], packet->origin_y[i], packet->origin_z[i]},
@@ -36,6 +39,7 @@ struct World::Impl {
   const Scene* scene = nullptr;
   std::vector<Mesh> moving;
   std::vector<PlacedMesh> placed;
+  std::vector<std::vector<Face>> faces;  // of each instance of the scene, where placed points to them
   std::vector<Tag> tags;  // reserved up front: geometries point into it
   RTCScene still_scene = nullptr, moving_scene = nullptr;
   std::vector<RTCScene> mesh_scenes;     // of the instanced meshes
@@ -45,6 +49,7 @@ struct World::Impl {
   std::vector<Bounds> moving_boxes;
   std::vector<float> built_area;  // of a moving mesh's box when its tree was last built anew
   Bounds moving_bounds;           // of all that is visible
+  bool any_moving = false;        // that is visible
   bool moved = false;             // since the last commit
 
   ~Impl() {
@@ -55,9 +60,13 @@ struct World::Impl {
   }
 
   static void filter(const RTCFilterFunctionNArguments* arguments);
+  static void filter_shadow(const RTCFilterFunctionNArguments* arguments);
+  static Hit hit_of(const RTCFilterFunctionNArguments* arguments, unsigned i);
+  bool is_occluded(const Ray& ray, PanesPassed* panes) const;
   RTCGeometry make_geometry(const Mesh& mesh, const mat4* to_world, const Tag& tag,
                             RTCBuildQuality);
   void build_still();
+  void build_faces(PlacedMesh& placed, std::vector<Face>& faces);
   void build_moving();
   void update_moving_bounds();
   Hit to_hit(unsigned geometry, unsigned instance, unsigned primitive, float u, float v, float t,

@@ -23,22 +23,6 @@ Corners corners_of(const Mesh& mesh, uint32_t triangle, vec2 barycentric) {
           {1 - barycentric.x - barycentric.y, barycentric.x, barycentric.y}};
 }
 
-struct Face {
-  vec3 corner[3];
-  vec3 cross_product;  // towards the winding's front, twice the area long
-};
-
-Face face_of(const PlacedMesh& placed, uvec3 index) {
-  Face face;
-  for (int i = 0; i < 3; i++) {
-    vec3 p = placed.mesh->positions[index[i]];
-    face.corner[i] = placed.in_place ? p : vec3(placed.to_world * vec4(p, 1));
-  }
-  face.cross_product = cross(face.corner[1] - face.corner[0], face.corner[2] - face.corner[0]);
-  if (placed.mirrored) face.cross_product = -face.cross_product;
-  return face;
-}
-
 // Unit vector, or `otherwise` where there is no direction. Scaled first: slivers must not
 // underflow.
 vec3 rare_unit_or(vec3 v, vec3 otherwise) {
@@ -51,6 +35,13 @@ inline vec3 unit_or(vec3 v, vec3 otherwise) {
   float length2 = dot(v, v);
   bool usual = length2 > 1e-25f && length2 < 1e25f;
   return usual ? v / std::sqrt(length2) : rare_unit_or(v, otherwise);
+}
+
+// The interpolated normal, made on the winding's side, where its map was painted.
+inline vec3 shading_normal(const PlacedMesh& placed, const Corners& at, vec3 winding) {
+  vec3 shading = at(placed.mesh->normals);
+  if (!placed.in_place) shading = placed.normal_to_world * shading;
+  return unit_or(shading, winding);
 }
 
 vec4 read_picture(const Scene& scene, const Mesh& mesh, const Corners& at,
@@ -175,14 +166,101 @@ void resolve_layers(const Scene& scene, const PlacedMesh& placed, const Corners&
   }
 }
 
+// Fills `place`; `winding` is unit, towards the winding's front.
+struct Side {
+  vec3 winding;
+  bool front;
+};
+inline Side locate(const Face& face, vec2 barycentric, const Ray& ray, SurfacePlace& place) {
+  place.position = face.corner + face.edge1 * barycentric.x + face.edge2 * barycentric.y;
+  place.extent = face.extent;
+  vec3 winding = face.normal;
+  if (winding == vec3(0)) winding = unit_or(-ray.direction, vec3(0, 1, 0));
+  bool front = dot(winding, ray.direction) <= 0;
+  place.geometric_normal = front ? winding : -winding;
+  return {winding, front};
+}
+
+Face bare_face(const PlacedMesh& placed, uint32_t triangle) {
+  const Mesh& mesh = *placed.mesh;
+  uvec3 index = mesh.triangles[triangle];
+  vec3 corner[3];
+  for (int i = 0; i < 3; i++) {
+    corner[i] = mesh.positions[index[i]];
+    if (!placed.in_place) corner[i] = vec3(placed.to_world * vec4(corner[i], 1));
+  }
+  Face face;
+  face.corner = corner[0];
+  face.edge1 = corner[1] - corner[0];
+  face.edge2 = corner[2] - corner[0];
+  face.normal = unit_or(cross(face.edge1, face.edge2), vec3(0));
+  if (placed.mirrored) face.normal = -face.normal;
+  face.extent = max_component(
+      glm::max(glm::max(glm::abs(corner[0]), glm::abs(corner[1])), glm::abs(corner[2])));
+  face.flat = 0;  // as far as is known
+  return face;
+}
+
+// The face of a hit, made in `own` where none is kept.
+inline const Face& face_of(const PlacedMesh& placed, uint32_t triangle, Face& own) {
+  if (placed.faces) return placed.faces[triangle];
+  own = bare_face(placed, triangle);
+  return own;
+}
+
 }  // namespace
+
+Face make_face(const PlacedMesh& placed, uint32_t triangle) {
+  Face face = bare_face(placed, triangle);
+  face.flat = 1;
+  for (int i = 0; i < 3; i++) {
+    constexpr float same = 1e-6f;  // rounding of unit vectors
+    vec3 weight(0);
+    weight[i] = 1;
+    Corners corner{placed.mesh->triangles[triangle], weight};
+    vec3 off = shading_normal(placed, corner, face.normal) - face.normal;
+    if (!(max_component(glm::abs(off)) <= same)) face.flat = 0;
+  }
+  return face;
+}
+
+bool is_matt(const Material& m) {
+  bool gloss = m.ior != 1 && m.specular > 0;
+  bool layered = m.clearcoat > 0 || max_component(m.sheen_color) > 0;
+  return !m.unlit && !gloss && !layered && m.metallic == 0 && m.transmission == 0 &&
+         m.emission == vec3(0) && m.normal_texture.texture < 0;
+}
+
+MattSurface eval_matt_surface(const World& world, const Ray& ray, const Hit& hit) {
+  const PlacedMesh& placed = world.placed(hit.instance);
+  const Material& m = *placed.material;
+  const Mesh& mesh = *placed.mesh;
+  Face own;
+  const Face& face = face_of(placed, hit.triangle, own);
+  MattSurface surface;
+  Side side = locate(face, hit.barycentric, ray, surface);
+  surface.normal = surface.geometric_normal;
+  vec4 base = m.base_color;
+  bool textured = m.base_color_texture.texture >= 0, colored = !mesh.colors.empty();
+  if (face.flat == 0 || textured || colored) {
+    Corners at = corners_of(mesh, hit.triangle, hit.barycentric);
+    if (face.flat == 0)
+      surface.normal = turned_to_viewer(shading_normal(placed, at, side.winding),
+                                        surface.geometric_normal, side.front);
+    if (textured) base *= read_picture(world.scene(), mesh, at, m.base_color_texture);
+    if (colored) base *= at(mesh.colors);
+  }
+  surface.base_color = glm::max(vec3(base), vec3(0));
+  return surface;
+}
 
 Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
   const Scene& scene = world.scene();
   const PlacedMesh& placed = world.placed(hit.instance);
   const Mesh& mesh = *placed.mesh;
   Corners at = corners_of(mesh, hit.triangle, hit.barycentric);
-  Face face = face_of(placed, at.index);
+  Face own;
+  const Face& face = face_of(placed, hit.triangle, own);
 
   Surface surface;
   surface.instance = hit.instance;
@@ -190,26 +268,15 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
   surface.object = placed.object;
   surface.barycentric = hit.barycentric;
   surface.material = mesh.material;
-  surface.position =
-      face.corner[0] * at.weight.x + face.corner[1] * at.weight.y + face.corner[2] * at.weight.z;
-  surface.extent = max_component(glm::max(
-      glm::max(glm::abs(face.corner[0]), glm::abs(face.corner[1])), glm::abs(face.corner[2])));
-
-  vec3 geometric = unit_or(face.cross_product, vec3(0));
-  if (geometric == vec3(0)) geometric = unit_or(-ray.direction, vec3(0, 1, 0));
-  surface.front = dot(geometric, ray.direction) <= 0;
-  // The shading normal is made on the winding's side, where its map was painted, then turned.
-  vec3 shading = at(mesh.normals);
-  if (!placed.in_place) shading = placed.normal_to_world * shading;
-  shading = unit_or(shading, geometric);
+  Side side = locate(face, hit.barycentric, ray, surface);
+  surface.front = side.front;
+  vec3 shading = face.flat == 1 ? side.winding : shading_normal(placed, at, side.winding);
   const Material& material = *placed.material;
   vec3 mapped = shading;
   if (material.normal_texture.texture >= 0)
     mapped = mapped_normal(scene, placed, at, shading, material.normal_texture,
                            material.normal_scale);
-  if (!surface.front) geometric = -geometric;
-  surface.geometric_normal = geometric;
-  surface.normal = turned_to_viewer(mapped, geometric, surface.front);
+  surface.normal = turned_to_viewer(mapped, surface.geometric_normal, surface.front);
   resolve_material(scene, placed, at, surface);
   if (material.anisotropy > 0) resolve_anisotropy(scene, placed, at, shading, surface);
   resolve_layers(scene, placed, at, shading, surface);
@@ -217,36 +284,35 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
 }
 
 vec3 eval_position(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric) {
-  const PlacedMesh& placed = world.placed(instance);
-  Corners at = corners_of(*placed.mesh, triangle, barycentric);
-  Face face = face_of(placed, at.index);
-  return face.corner[0] * at.weight.x + face.corner[1] * at.weight.y + face.corner[2] * at.weight.z;
+  Face own;
+  const Face& face = face_of(world.placed(instance), triangle, own);
+  return face.corner + face.edge1 * barycentric.x + face.edge2 * barycentric.y;
 }
 
 vec3 eval_face(const World& world, uint32_t instance, uint32_t triangle, float* area) {
-  const PlacedMesh& placed = world.placed(instance);
-  Face face = face_of(placed, placed.mesh->triangles[triangle]);
-  if (area) *area = 0.5f * length(face.cross_product);
-  return unit_or(face.cross_product, vec3(0, 1, 0));
+  Face own;
+  const Face& face = face_of(world.placed(instance), triangle, own);
+  if (area) *area = 0.5f * length(cross(face.edge1, face.edge2));
+  return face.normal == vec3(0) ? vec3(0, 1, 0) : face.normal;
 }
 
-vec3 offset_origin(const Surface& surface, vec3 direction) {
+vec3 offset_origin(const SurfacePlace& place, vec3 direction) {
   // Their constants are for scenes of metres; in a scene of millimetres they would be a gap.
-  float unit = surface.extent > 0 ? std::min(surface.extent, 1.0f) : 1.0f;
+  float unit = place.extent > 0 ? std::min(place.extent, 1.0f) : 1.0f;
   float near_zero = unit / 32, float_scale = unit / 65536;
   constexpr float int_scale = 256;
   constexpr float relative_error = 0x1p-20f;  // eight units in the last place of the corners
-  vec3 normal = surface.geometric_normal;
+  vec3 normal = place.geometric_normal;
   if (dot(normal, direction) < 0) normal = -normal;
-  vec3 p = surface.position, moved;
-  float near_step = float_scale * std::min(surface.extent, 1.0f);  // tiny scenes, tiny steps
+  vec3 p = place.position, moved;
+  float near_step = float_scale * std::min(place.extent, 1.0f);  // tiny scenes, tiny steps
   for (int i = 0; i < 3; i++) {
     int32_t steps = int32_t(int_scale * normal[i]);
     int32_t bits = std::bit_cast<int32_t>(p[i]);
     float stepped = std::bit_cast<float>(bits + (p[i] < 0 ? -steps : steps));
     moved[i] = std::abs(p[i]) < near_zero ? p[i] + near_step * normal[i] : stepped;
   }
-  float least = surface.extent * relative_error;
+  float least = place.extent * relative_error;
   float have = dot(moved - p, normal);
   return have < least ? moved + normal * (least - have) : moved;
 }

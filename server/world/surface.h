@@ -5,9 +5,14 @@
 
 namespace wellspring {
 
-struct Surface {
+// Where a ray ended, as far as the next ray that leaves there must know it.
+struct SurfacePlace {
   vec3 position{0};
   vec3 geometric_normal{0, 1, 0};  // unit, on the side the ray came from
+  float extent = 0;  // largest coordinate of the triangle's corners: bounds the error of `position`
+};
+
+struct Surface : SurfacePlace {
   vec3 normal{0, 1, 0};  // shading normal after normal map, same hemisphere as geometric_normal
   bool front = true;     // the ray came from the side the triangle's winding faces
   uint32_t instance = 0, triangle = 0, object = 0;
@@ -27,19 +32,31 @@ struct Surface {
   vec3 clearcoat_normal{0, 1, 0};  // only where clearcoat > 0
   vec3 sheen_color{0};
   float sheen_roughness = 0;
-  float extent = 0;  // largest coordinate of the triangle's corners: bounds the error of `position`
 };
+
+// All there is to a surface of which only `base_color` shows: see is_matt.
+struct MattSurface : SurfacePlace {
+  vec3 normal{0, 1, 0};  // as in Surface
+  vec3 base_color{1};
+};
+// Lambert's law is all that can happen there: opaque but for its alpha, no gloss, no light of its
+// own, no map of normals.
+bool is_matt(const Material& material);
 
 // `hit` must be valid().
 Surface eval_surface(const World& world, const Ray& ray, const Hit& hit);
+// The same values in less time, where the material is_matt.
+MattSurface eval_matt_surface(const World& world, const Ray& ray, const Hit& hit);
 // Position on a triangle at barycentric weights of its second and third corner, world space.
 vec3 eval_position(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric);
 // Unit geometric normal towards the side the winding faces (0, 1, 0 for a triangle without area),
 // and the triangle's area through `area` if given, both in world space.
 vec3 eval_face(const World& world, uint32_t instance, uint32_t triangle, float* area = nullptr);
-// An origin for a ray leaving `surface` along `direction` that does not hit the same surface again
+// All of that at once, from the mesh's own lists.
+Face make_face(const PlacedMesh& placed, uint32_t triangle);
+// An origin for a ray leaving `place` along `direction` that does not hit the same surface again
 // (Waechter and Binder, Ray Tracing Gems chapter 6), widened where a large triangle's corners make
 // its places less exact than their own coordinates.
-vec3 offset_origin(const Surface& surface, vec3 direction);
+vec3 offset_origin(const SurfacePlace& place, vec3 direction);
 
 }  // namespace wellspring
