@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "avatar/point_at.h"
+
 namespace wellspring {
 namespace {
 
@@ -28,7 +30,8 @@ quat parent_rotation(const Rig& rig, const Pose& pose, int joint) {
   return parent < 0 ? quat(1, 0, 0, 0) : eval_joint_frame(*rig.character, pose, parent).rotation;
 }
 
-void pose_arm(const Rig& rig, int side, const ArmPose& arm, float shoulders_up, Pose& pose) {
+void pose_arm(const Rig& rig, int side, const ArmPose& arm, float shoulders_up, bool fingers,
+              Pose& pose) {
   const ArmRig& bones = rig.arm[size_t(side)];
   float s = side == 0 ? 1.0f : -1.0f;
   if (bones.collar >= 0) {
@@ -46,6 +49,7 @@ void pose_arm(const Rig& rig, int side, const ArmPose& arm, float shoulders_up, 
   if (bones.wrist >= 0)
     pose.rotations[size_t(bones.wrist)] =
         glm::conjugate(bones.fore_hangs) * wrist * bones.hand_hangs;
+  if (!fingers) return;
   for (const FingerJoint& finger : bones.fingers) {
     // Relaxed fingers bend more towards the little one and less at the tips.
     constexpr float share[3] = {0.8f, 1.35f, 0.85f};
@@ -144,10 +148,18 @@ void eval_body(const Rig& rig, const BodyPlan& plan, Pose& pose) {
     bend_chain(rig.neck, parent_rotation(rig, pose, rig.neck[0].joint), head, pose);
   }
   for (int side = 0; side < 2; side++) {
-    pose_arm(rig, side, plan.arm[size_t(side)], plan.shoulders_up, pose);
+    size_t s = size_t(side);
+    pose_arm(rig, side, plan.arm[s], plan.shoulders_up, plan.fingers, pose);
+    if (plan.finger_aim[s] > 0)
+      point_arm(rig, side, Aim::finger, plan.point, plan.finger_aim[s], pose);
+    if (plan.palm_aim[s] > 0) point_arm(rig, side, Aim::palm, plan.point, plan.palm_aim[s], pose);
     if (legs) pose_leg(rig, side, plan.foot[size_t(side)], pose);
-    if (rig.eyes_move) pose_eye(rig, side, plan.gaze_point, pose);
   }
+}
+
+void aim_eyes(const Rig& rig, vec3 gaze_point, Pose& pose) {
+  if (!rig.eyes_move) return;
+  for (int side = 0; side < 2; side++) pose_eye(rig, side, gaze_point, pose);
 }
 
 }  // namespace wellspring

@@ -24,12 +24,17 @@ struct BodyPlan {
   vec3 head{0};         // of the head, humanoid space (not over the heading); pitch positive up
   vec3 gaze_point{0, 1.6f, 4};
   std::array<ArmPose, 2> arm;
+  vec3 point{0, 1.2f, 4};  // what arms point at, humanoid space
+  std::array<float, 2> finger_aim{0, 0}, palm_aim{0, 0};  // how far they do, 0..1
+  bool fingers = true;     // false: they stay as they are drawn
   float shoulders_up = 0;  // collar bones, radians
   std::array<FootPlan, 2> foot;
 };
 
-// Overwrites pose.translation and the rotations of the joints it moves.
+// Overwrites pose.translation and the rotations of the joints it moves: all but eyes and face.
 void eval_body(const Rig& rig, const BodyPlan& plan, Pose& pose);
+// Turns both eyes to the gaze point from wherever the head is by now.
+void aim_eyes(const Rig& rig, vec3 gaze_point, Pose& pose);
 
 // A joint's frame as posed: rotation and place of its centre, humanoid space.
 struct JointFrame {

@@ -1,35 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// The face as numbers 0..1, and the mouth of somebody who speaks: by the timed visemes of its speech, or
-// by made-up syllables where nothing is heard.
+// The face in one tick: story, situation and visitor become one sum of expressions, and the mouth of
+// somebody who speaks (by the timed visemes of its speech, or by made-up syllables where nothing is heard)
+// is kept safe in it. docs/expressions.md tells the whole of it.
 #pragma once
 #include <array>
 
-#include "avatar/pose.h"
-#include "avatar/rig.h"
+#include "avatar/empathy.h"
+#include "avatar/expression_sum.h"
+#include "avatar/lod.h"
+#include "avatar/perlin_face.h"
 #include "avatar/spring.h"
 
 namespace wellspring {
 
 struct FaceState {
-  Spring smile, brow;
-  float talking = 0;     // 0..1, follows StorytellerInput::speaking
+  PerlinFace perlin;                          // the situation's layer
+  std::array<Spring, emotion_count> emotion;  // as shown
+  EmpathyState empathy;                       // the visitor's layer
+  Spring beat;                                // emphasis: brows and head
+  float beat_wanted = 0;
+  float talking = 0;     // 0..1, follows FaceInput::speaking
   double syllables = 0;  // spoken so far
 };
 
-struct FacePose {
-  std::array<float, 2> closed{0, 0};  // lids, left and right
-  std::array<float, 2> smile{0, 0}, brow_up{0, 0};
-  float brow_inner_up = 0, squint = 0, wide = 0, breath = 0;
-  float open = 0;                  // jaw
-  std::array<float, 15> viseme{};  // as Rig::viseme
+struct FaceInput {
+  Detail detail = Detail::full;
+  float speaking = 0;                              // 0..1
+  const std::array<float, 15>* visemes = nullptr;  // null: made-up syllables
+  float smile = 0, brows = 0;     // what the situation asks for, 0..1
+  Emotions story;                 // what the story asks for
+  bool parting = false;           // a farewell overrides the story's face
+  float beat = 0;                 // an emphasised word begins
+  const Emotions* visitor = nullptr;  // the guest's face, if known
+  bool humanlike = true;
 };
 
-// Mouth, smile and brows. `smile` is the wanted level 0..1. `visemes` (null: made-up syllables) are taken
-// as they are, so that lips meet when the sound says so.
-void tick_face(FaceState& state, float speaking, const std::array<float, 15>* visemes, float smile,
-               float brow, bool humanlike, double now, float dt, FacePose& face);
-// Writes the face into displacers, and into lid and jaw joints where the figure has vertices on
-// them.
-void eval_face(const Rig& rig, const FacePose& face, Pose& pose);
+// The emotions that all layers together ask for: story + weight * visitor, bounded.
+Emotions layered(const Emotions& story, const Emotions& visitor, float weight, float override_amount);
+
+// Overwrites `sum` and `words` (all but words.closing). Counts what it does.
+void tick_face(FaceState& state, const ExpressionRig& rig, const FaceInput& input, double now, float dt,
+               ExpressionSum& sum, Protected& words, StorytellerWork& work);
 
 }  // namespace wellspring

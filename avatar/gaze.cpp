@@ -6,7 +6,9 @@
 namespace wellspring {
 namespace {
 
-constexpr float eye_rate = 28, head_rate = 6, calm_head_rate = 3.5f, torso_rate = 2.5f;
+constexpr float nine_tenths = 3.89f;  // of a critically damped step are made after this many 1 / rate
+constexpr float eye_rate = nine_tenths / eye_seconds, head_rate = nine_tenths / head_seconds,
+                calm_head_rate = 3.5f, torso_rate = nine_tenths / torso_seconds;
 constexpr float eye_reach_yaw = 22_deg,
                 eye_reach_pitch = 15_deg;  // beyond it the head must come along
 constexpr float head_reach = 55_deg, torso_reach = 18_deg;
@@ -17,7 +19,7 @@ float nearest_turn(float angle, float to) {
 
 // The guest to look at: kiosk guests before remote ones, the nearest first, the present one kept
 // unless another is clearly nearer. nullptr: nobody.
-const Guest* choose_guest(const GazeState& state, const std::vector<Guest>& guests, vec3 from) {
+const Guest* choose_guest(const GazeState& state, std::span<const Guest> guests, vec3 from) {
   const Guest* best = nullptr;
   float least = 1e30f;
   for (const Guest& guest : guests) {
@@ -30,13 +32,20 @@ const Guest* choose_guest(const GazeState& state, const std::vector<Guest>& gues
   return best;
 }
 
-void choose_target(GazeState& state, const BehaviourState& behaviour,
-                   const std::vector<Guest>& guests, vec3 from, float heading, bool motion,
-                   bool humanlike, Rng& rng, double now) {
-  const Guest* guest = choose_guest(state, guests, from);
+void choose_target(GazeState& state, const BehaviourState& behaviour, const GazeInput& input,
+                   vec3 from, Rng& rng, double now) {
+  float heading = input.heading;
+  bool motion = input.kiosk_motion, humanlike = input.humanlike;
+  const Guest* guest = choose_guest(state, input.guests, from);
   if (guest && guest->kiosk) {
     state.kiosk_known = true;
     state.kiosk_place = guest->head;
+  }
+  if (input.look && is_finite(*input.look) && behaviour.mood != Mood::farewell) {
+    state.at_guest = false;
+    state.guest = 0;
+    state.target = *input.look;
+    return;
   }
   bool waits = behaviour.mood == Mood::farewell || behaviour.company || motion ||
                behaviour.mood == Mood::greeting;
@@ -92,18 +101,18 @@ vec3 gaze_point(const GazeState& state, const Rig& rig, float heading) {
 }
 
 bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour,
-               const std::vector<Guest>& guests, float heading, bool kiosk_motion, bool humanlike,
-               Rng& rng, double now, float dt) {
+               const GazeInput& input, Rng& rng, double now, float dt) {
+  float heading = input.heading;
   vec3 from = eyes_origin(rig, heading);
   vec3 before = state.target;
-  choose_target(state, behaviour, guests, from, heading, kiosk_motion, humanlike, rng, now);
+  choose_target(state, behaviour, input, from, rng, now);
   vec3 way = state.target - from;
   float distance = std::max(glm::length(way), 0.25f);
   float flat = glm::length(vec2(way.x, way.z));
   float yaw = flat > 1e-3f ? nearest_turn(std::atan2(way.x, way.z), heading) : heading;
   float pitch = std::atan2(way.y, std::max(flat, 1e-3f));
 
-  if (!humanlike) {
+  if (!input.humanlike || !input.saccades) {
     state.saccade = vec2(0);
   } else if (now >= state.next_saccade) {
     float reach = state.at_guest ? 0.5_deg : 1.2_deg;

@@ -3,6 +3,9 @@
 // then the head, then the chest. Angles are in humanoid space, about +Y from +Z (positive to its
 // own left) and up.
 #pragma once
+#include <optional>
+#include <span>
+
 #include "avatar/behaviour.h"
 #include "avatar/rig.h"
 #include "avatar/spring.h"
@@ -29,11 +32,20 @@ struct GazeState {
   Spring head_yaw, head_pitch, torso_yaw;  // torso_yaw: relative to the heading
 };
 
-// One tick. `guests` are input.guests with their heads in humanoid space; `heading` is where the
-// body faces. Returns true when the gaze has made a large jump (the eyes like to blink then).
+struct GazeInput {
+  std::span<const Guest> guests;  // with their heads in humanoid space
+  std::optional<vec3> look;       // what the story wants looked at instead, humanoid space
+  float heading = 0;              // where the body faces
+  bool kiosk_motion = false, humanlike = true;
+  bool saccades = true;           // false: nobody is near enough to see them
+};
+
+// Times after which eyes, head and chest have made nine tenths of a turn (3.9 / rate of their springs).
+inline constexpr float eye_seconds = 0.14f, head_seconds = 0.65f, torso_seconds = 1.56f;
+
+// One tick. Returns true when the gaze has made a large jump (the eyes like to blink then).
 bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour,
-               const std::vector<Guest>& guests, float heading, bool kiosk_motion, bool humanlike,
-               Rng& rng, double now, float dt);
+               const GazeInput& input, Rng& rng, double now, float dt);
 
 // The middle between the eyes while the body faces `heading`, standing still.
 vec3 eyes_origin(const Rig& rig, float heading);

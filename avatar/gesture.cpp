@@ -15,6 +15,8 @@ GestureMotion motion_of(const GestureRow& row) { return std::bit_cast<GestureMot
 void swap_sides(GestureMotion& motion) {
   std::swap(motion.arm[0], motion.arm[1]);
   std::swap(motion.weight[0], motion.weight[1]);
+  std::swap(motion.finger_aim[0], motion.finger_aim[1]);
+  std::swap(motion.palm_aim[0], motion.palm_aim[1]);
   motion.head.x = -motion.head.x, motion.head.z = -motion.head.z;
   motion.chest.x = -motion.chest.x, motion.chest.z = -motion.chest.z;
 }
@@ -32,6 +34,8 @@ GestureMotion eval_clip(const GestureState& state, const GestureLibrary& library
   if (state.clip >= 0 && size_t(state.clip) < library.clips.size()) {
     const GestureClip& clip = library.clips[size_t(state.clip)];
     motion = eval_gesture(clip, clip_time(clip, time, state.hold));
+    if (clip.aim == Aim::finger) motion.finger_aim = motion.weight;
+    if (clip.aim == Aim::palm) motion.palm_aim = motion.weight;
     if (state.mirrored) swap_sides(motion);
     motion.head *= state.size;
     motion.chest *= state.size;
@@ -118,7 +122,8 @@ GestureMotion tick_gesture(GestureState& state, const GestureLibrary& library,
   motion = motion_of(row);
   for (size_t s = 0; s < 2; s++) {
     motion.arm[s] = limit_arm(motion.arm[s]);
-    motion.weight[s] = std::clamp(motion.weight[s], 0.0f, 1.0f);
+    for (float* part : {&motion.weight[s], &motion.finger_aim[s], &motion.palm_aim[s]})
+      *part = std::clamp(*part, 0.0f, 1.0f);
   }
   return motion;
 }

@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 13> arm_fields = {
     "curl",    "thumb", "index", "middle", "ring", "little"};
 constexpr std::array<std::string_view, 6> trunk_fields = {"head.turn",  "head.nod",  "head.tilt",
                                                           "chest.turn", "chest.bow", "chest.lean"};
-static_assert(gesture_channels == 2 * arm_fields.size() + 2 + trunk_fields.size() + 1);
+static_assert(told_channels == 2 * arm_fields.size() + 2 + trunk_fields.size() + 1);
 
 // Rises over `rise` seconds at both ends, so that a swing neither begins nor ends with a jerk.
 float envelope(const Swing& swing, float t) {
@@ -30,7 +30,7 @@ float envelope(const Swing& swing, float t) {
 }  // namespace
 
 int find_gesture_channel(std::string_view name) {
-  if (name == "shoulders") return int(gesture_channels) - 1;
+  if (name == "shoulders") return int(told_channels) - 1;
   for (size_t i = 0; i < trunk_fields.size(); i++)
     if (trunk_fields[i] == name) return int(2 * arm_fields.size() + 2 + i);
   for (size_t side = 0; side < 2; side++) {

@@ -29,8 +29,12 @@ struct GestureMotion {
   vec3 head{0};   // over the gaze: turn to its own left, nod (down positive), tilt to its own right; radians
   vec3 chest{0};  // turn to its own left, bow, lean to its own right; radians
   float shoulders = 0;  // collar bones raised, radians
+  // How far finger or hand are turned to the place spoken of, 0..1 (left, right); not in the data, made of
+  // the clip's `aim` and weight.
+  std::array<float, 2> finger_aim{0, 0}, palm_aim{0, 0};
 };
 inline constexpr size_t gesture_channels = sizeof(GestureMotion) / sizeof(float);
+inline constexpr size_t told_channels = gesture_channels - 4;  // those that the data tell
 using GestureRow = std::array<float, gesture_channels>;
 // "right.forward", "left.index", "head.nod", "chest.bow", "shoulders", ...; -1: no such channel.
 int find_gesture_channel(std::string_view name);

@@ -122,7 +122,7 @@ struct Reader : LibraryReader {
       clip.rows.push_back(row);
     }
     clip.seconds = clip.times.back();
-    for (size_t c = channel_of("left.weight"); c < gesture_channels; c++)
+    for (size_t c = channel_of("left.weight"); c < told_channels; c++)
       if (clip.rows.front()[c] != 0 || clip.rows.back()[c] != 0)
         fail(where + "/keys", "a gesture begins and ends at rest: weights, head, chest and shoulders 0");
   }

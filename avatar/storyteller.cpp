@@ -28,29 +28,65 @@ std::vector<Guest> guests_here(const std::vector<Guest>& guests, const mat4& pla
   return here;
 }
 
-void tick_stance_and_gaze(StorytellerState& state, const Rig& rig, const StorytellerInput& input,
-                          const std::vector<Guest>& guests, float dt) {
+std::shared_ptr<const ExpressionRig> expressions_of(const StorytellerState& state,
+                                                    const ExpressionSet& set, bool same_rig) {
+  bool fits = same_rig && state.expressions && state.expressions->set == &set;
+  return fits ? state.expressions
+              : std::make_shared<const ExpressionRig>(
+                    make_expression_rig(set, *state.rig->character));
+}
+
+// What the story wants looked at: what it says, else what it points at.
+std::optional<vec3> place_to_look(const StoryCue& story, const mat4& to_here) {
+  const std::optional<vec3>& place = story.look ? story.look : story.point;
+  if (!place || !is_finite(*place)) return std::nullopt;
+  return vec3(to_here * vec4(*place, 1));
+}
+
+void tick_stance_and_gaze(StorytellerState& state, const Rig& rig, const GazeInput& look,
+                          float dt) {
   double now = state.clock;
-  bool motion = now - state.behaviour.last_motion < 2.5;
-  if (tick_gaze(state.gaze, rig, state.behaviour, guests, state.stance.heading.value, motion,
-                input.humanlike, state.rng, now, dt) &&
-      input.humanlike)
+  if (tick_gaze(state.gaze, rig, state.behaviour, look, state.rng, now, dt) && look.humanlike)
     ask_blink(state.blink, now);
+  if (state.detail != Detail::none) state.work.eyes++;
   bool kiosk =
       state.behaviour.company || state.mood == Mood::greeting || state.mood == Mood::farewell;
-  float reach = kiosk ? 30_deg : state.gaze.at_guest ? 60_deg : -1.0f;
+  bool shows = look.look && !state.gaze.at_guest;
+  float reach = shows                   ? 50_deg
+                : kiosk                 ? 30_deg
+                : state.gaze.at_guest   ? 60_deg
+                                        : -1.0f;
   float patience = state.mood == Mood::greeting ? 0.15f
-                   : kiosk                      ? 0.5f
+                   : kiosk || shows             ? 0.5f
                    : state.gaze.at_guest        ? 1.2f
                                                 : 4.0f;
   vec3 way = state.gaze.target - eyes_origin(rig, state.stance.heading.value);
-  float aim = state.stance.heading.value;
+  float heading = state.stance.heading.value, aim = heading;
   if (glm::length(vec2(way.x, way.z)) > 0.05f) {
     aim = std::atan2(way.x, way.z);
-    aim += 2 * pi * std::round((state.stance.heading.value - aim) / (2 * pi));
+    aim += 2 * pi * std::round((heading - aim) / (2 * pi));
+    // Who shows something stands between it and the listeners.
+    if (shows && std::abs(aim - heading) > reach) aim -= std::copysign(30_deg, aim - heading);
   }
   tick_stance(state.stance, rig.leg[0].complete() && rig.leg[1].complete(), aim, reach, patience,
               now, dt);
+}
+
+// The hand glides from one place to the next; a hand that does not point yet begins at the right one.
+vec3 tick_point(StorytellerState& state, const StorytellerInput& input, const mat4& to_here,
+                bool points_now, float dt) {
+  vec3 goal(0, 1.2f, 4);
+  if (input.story.point && is_finite(*input.story.point))
+    goal = vec3(to_here * vec4(*input.story.point, 1));
+  else if (points_now) goal = {state.point[0].value, state.point[1].value, state.point[2].value};
+  vec3 place(0);
+  for (int i = 0; i < 3; i++) {
+    Spring& spring = state.point[size_t(i)];
+    if (points_now) settle(spring, goal[i], 7, dt);
+    else spring = {goal[i], 0};
+    place[i] = spring.value;
+  }
+  return place;
 }
 
 float wanted_smile(const StorytellerState& state) {
@@ -66,7 +102,8 @@ float wanted_smile(const StorytellerState& state) {
 }
 
 // Lids follow the eyes: half closed when they look down, wide when up.
-void lids_follow(const Rig& rig, const Pose& pose, float closing, FacePose& face) {
+void lids_follow(const Rig& rig, const ExpressionRig& expressions, const Pose& pose, float closing,
+                 ExpressionSum& face, Protected& words) {
   for (size_t side = 0; side < 2; side++) {
     float pitch = 0;
     if (rig.eyes_move) {
@@ -74,9 +111,30 @@ void lids_follow(const Rig& rig, const Pose& pose, float closing, FacePose& face
       pitch = std::asin(std::clamp(ahead.y, -1.0f, 1.0f));
     }
     float droop = pitch < 0 ? std::min(-pitch * 0.9f, 0.5f) : 0;
-    face.closed[side] = droop + (1 - droop) * closing;
-    face.wide = std::max(face.wide, pitch > 0 ? std::min(pitch * 1.2f, 0.6f) : 0);
+    words.closing[side] = droop + (1 - droop) * closing;
+    int wide = expressions.flex[size_t(Flex::blink)][side][0];
+    if (pitch > 0) add(face, expressions, wide, std::min(pitch * 1.2f, 0.6f));
   }
+}
+
+Emotions emotions_of(const StoryCue& story) {
+  Emotions emotions;
+  if (int emotion = find_emotion(story.emotion); emotion >= 0 && story.emotion_weight > 0)
+    emotions.weight[size_t(emotion)] = std::min(story.emotion_weight, 1.0f);
+  return emotions;
+}
+
+// The arms without any gesture.
+std::array<ArmPose, 2> arms_at_rest(const Rig& rig, const IdleMotion& idle, float folded) {
+  std::array<ArmPose, 2> rest;
+  for (size_t i = 0; i < 2; i++) {
+    rest[i] = mix(hanging_arm(rig.arm[i].spread), folded_arm(int(i)), folded);
+    rest[i].forward += idle.arm[i].x;
+    rest[i].side += idle.arm[i].y;
+    rest[i].elbow += idle.arm[i].z;
+    rest[i].curl += idle.curl[i];
+  }
+  return rest;
 }
 
 }  // namespace
@@ -86,16 +144,25 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   events = {};
   if (!storyteller.character || storyteller.character->joints.empty()) return;
   const Character& character = *storyteller.character;
-  state.rig = rig_of(state, character);
+  std::shared_ptr<const Rig> known = rig_of(state, character);
+  bool same_rig = known == state.rig;
+  state.rig = known;
   const Rig& rig = *state.rig;
+  state.expressions = expressions_of(
+      state, storyteller.expressions ? *storyteller.expressions : default_expressions(), same_rig);
+  const ExpressionRig& expressions = *state.expressions;
   float dt = input.dt > 0 && std::isfinite(input.dt) ? std::min(input.dt, 1e6f) : 0;
   state.clock += double(dt);
   double now = state.clock;
   pose.translation = vec3(0);
   pose.rotations.assign(character.joints.size(), quat(1, 0, 0, 0));
   pose.displacers.assign(character.displacers.size(), 0);
+  state.work.ticks++;
+  state.detail = next_detail(state.detail, input.viewer_distance);
+  bool full = state.detail == Detail::full, seen = state.detail != Detail::none;
 
   // Notice and decide.
+  mat4 to_here = glm::inverse(storyteller.placement);
   std::vector<Guest> guests = guests_here(input.guests, storyteller.placement);
   StorytellerInput here = input;
   here.guests = guests;
@@ -103,32 +170,54 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   state.mood = state.behaviour.mood;
 
   // Look, turn, gesture.
-  tick_stance_and_gaze(state, rig, input, guests, dt);
+  GazeInput look{guests, place_to_look(input.story, to_here), state.stance.heading.value,
+                 now - state.behaviour.last_motion < 2.5, input.humanlike, full};
+  tick_stance_and_gaze(state, rig, look, dt);
+  if (full && input.humanlike) state.work.saccades++;
   const GestureLibrary& library =
       storyteller.gestures ? *storyteller.gestures : default_gestures();
-  mat4 to_here = glm::inverse(storyteller.placement);
   GestureOrder order = choose_gesture(state.body_language, state.gesture, library, here, events,
                                       state.mood, to_here, state.rng, now);
   int clip = order.clip >= 0 ? order.clip : state.gesture.clip;
-  bool hands_busy = clip >= 0 && (library.clips[size_t(clip)].uses_arm[0] ||
-                                  library.clips[size_t(clip)].uses_arm[1]);
+  bool hands_busy = clip >= 0 && size_t(clip) < library.clips.size() &&
+                    (library.clips[size_t(clip)].uses_arm[0] ||
+                     library.clips[size_t(clip)].uses_arm[1]);
+  bool noise = input.humanlike && seen;
+  if (noise) state.work.body_noise++;
   IdleMotion idle =
-      tick_idle(state.idle, state.rng, state.face.talking, hands_busy, input.humanlike, now, dt);
-  const Guest* mirrored = nullptr;
-  for (const Guest& guest : guests)
-    if (guest.kiosk && state.gaze.at_guest && guest.id == state.gaze.guest) mirrored = &guest;
-  tick_mirror(state.mirror, mirrored != nullptr, mirrored ? mirrored->rotation : vec3(0), now, dt);
+      tick_idle(state.idle, state.rng, state.face.talking, hands_busy, noise, now, dt);
+  const Guest* guest = nullptr;  // who is looked at, before a kiosk
+  for (const Guest& other : guests)
+    if (other.kiosk && state.gaze.at_guest && other.id == state.gaze.guest) guest = &other;
+  if (full) {
+    tick_mirror(state.mirror, guest != nullptr, guest ? guest->rotation : vec3(0), now, dt);
+    state.work.mirror++;
+  } else {
+    state.mirror = {};
+  }
+  GestureMotion gesture = tick_gesture(state.gesture, library, order,
+                                       arms_at_rest(rig, idle, state.idle.fold.value), dt);
+  bool points = gesture.finger_aim[0] + gesture.finger_aim[1] + gesture.palm_aim[0] +
+                    gesture.palm_aim[1] > 0;
+  vec3 point = tick_point(state, input, to_here, points, dt);
+
+  // What the face is to say; it nods and tilts the head, too.
+  ExpressionSum face;
+  Protected words;
+  FaceInput asked;
+  asked.detail = state.detail;
+  asked.speaking = input.speaking;
+  asked.visemes = input.visemes ? &*input.visemes : nullptr;
+  asked.smile = wanted_smile(state);
+  asked.brows = state.mood == Mood::greeting ? 0.45f : state.mood == Mood::noticing ? 0.3f : 0.05f;
+  asked.story = emotions_of(input.story);
+  asked.parting = state.mood == Mood::farewell;
+  asked.beat = input.story.beat;
+  asked.visitor = guest && guest->expression ? &*guest->expression : nullptr;
+  asked.humanlike = input.humanlike;
+  tick_face(state.face, expressions, asked, now, dt, face, words, state.work);
 
   // Body.
-  std::array<ArmPose, 2> rest;
-  for (size_t i = 0; i < 2; i++) {
-    rest[i] = mix(hanging_arm(rig.arm[i].spread), folded_arm(int(i)), state.idle.fold.value);
-    rest[i].forward += idle.arm[i].x;
-    rest[i].side += idle.arm[i].y;
-    rest[i].elbow += idle.arm[i].z;
-    rest[i].curl += idle.curl[i];
-  }
-  GestureMotion gesture = tick_gesture(state.gesture, library, order, rest, dt);
   BodyPlan plan;
   plan.heading = state.stance.heading.value;
   plan.pelvis = idle.pelvis + vec3(state.stance.lean.value, -0.006f, 0);
@@ -139,25 +228,33 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
                state.gaze.head_pitch.value + state.mirror.angle.y, 0};
   plan.head += vec3(idle.head_turn.x, -idle.head_turn.y, idle.head_turn.z);
   plan.head += vec3(gesture.head.x, -gesture.head.y - 0.5f * gesture.chest.y, gesture.head.z);
-  if (input.humanlike)  // emphasis while speaking
+  plan.head.y -= 3_deg * state.face.beat.value;
+  if (noise)  // emphasis while speaking
     plan.head.y -= 2.2_deg * state.face.talking *
                    std::sin(float(std::fmod(state.face.syllables * 1.9, 2 * double(pi))));
   plan.gaze_point = gaze_point(state.gaze, rig, plan.heading);
   plan.shoulders_up = 1.0_deg * idle.breath + gesture.shoulders;
+  plan.point = point;
+  plan.finger_aim = gesture.finger_aim;
+  plan.palm_aim = gesture.palm_aim;
+  plan.fingers = seen;
+  if (seen) state.work.fingers++;
   for (size_t i = 0; i < 2; i++) {
     plan.arm[i] = gesture.arm[i];
     plan.foot[i] = {state.stance.foot[i].facing(), state.stance.foot[i].lift()};
   }
   eval_body(rig, plan, pose);
+  if (!seen) return;
 
   // Face.
-  FacePose face;
-  float brow = state.mood == Mood::greeting ? 0.45f : state.mood == Mood::noticing ? 0.3f : 0.05f;
-  face.breath = idle.breath;
-  tick_face(state.face, input.speaking, input.visemes ? &*input.visemes : nullptr, wanted_smile(state), brow,
-            input.humanlike, now, dt, face);
-  lids_follow(rig, pose, tick_blink(state.blink, state.rng, now, input.humanlike), face);
-  eval_face(rig, face, pose);
+  apply_rotators(face, expressions, pose);
+  aim_eyes(rig, plan.gaze_point, pose);
+  add(face, expressions, expressions.breathe, idle.breath);
+  float lids = tick_blink(state.blink, state.rng, now, input.humanlike);
+  state.work.blinks++;
+  lids_follow(rig, expressions, pose, lids, face, words);
+  protect(face, expressions, words);
+  apply_controls(face, expressions, pose);
 }
 
 vec3 eval_mouth(const StorytellerState& state, const Storyteller& storyteller, const Pose& pose) {

@@ -23,7 +23,9 @@ namespace wellspring {
 struct Storyteller {
   const Character* character = nullptr;  // borrowed
   mat4 placement{1};                     // humanoid space to world
-  const GestureLibrary* gestures = nullptr;  // borrowed; null: the one that comes with the program
+  // Borrowed; null: what comes with the program.
+  const GestureLibrary* gestures = nullptr;
+  const ExpressionSet* expressions = nullptr;
 };
 
 // Everything remembered from tick to tick, a plain value: copy it and the copy goes on alike.
@@ -40,7 +42,11 @@ struct StorytellerState {
   BodyLanguageState body_language;
   StanceState stance;
   FaceState face;
+  Detail detail = Detail::full;
+  StorytellerWork work;
+  std::array<Spring, 3> point;     // what hands point at, humanoid space, gliding from place to place
   std::shared_ptr<const Rig> rig;  // of the character last seen; immutable
+  std::shared_ptr<const ExpressionRig> expressions;  // of that rig and set; immutable
 };
 
 // One tick: notices, decides, moves. Overwrites `pose` and `events`. Never fails.

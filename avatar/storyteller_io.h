@@ -41,6 +41,7 @@ struct StorytellerInput {
   std::optional<std::array<float, 15>> visemes;
   bool telling =
       false;  // a story is being told (Mood::telling while no greeting or farewell is due)
+  float viewer_distance = 0;  // metres to the nearest who sees it: how much of it needs to run (lod.h)
   StoryCue story;  // what its text asks of face, eyes and hands
 };
 

@@ -7,6 +7,7 @@
 
 #include "avatar/character_load.h"
 #include "avatar/describe.h"
+#include "avatar/expression_sum.h"
 #include "avatar/retarget.h"
 #include "avatar/storyteller.h"
 #include "base/load_error.h"
@@ -21,6 +22,8 @@ struct Options {
   std::string file, out, size = "720x1080";
   std::vector<std::string> displacers;
   std::string gesture, motion, skinning;
+  std::vector<std::string> expressions;
+  std::vector<float> point, look;
   std::vector<float> guest;
   bool info = false, json = false, close = false, rest = false, calm = false;
   double time = 0;
@@ -46,6 +49,11 @@ Pose pose_at(const Character& character, const Options& options) {
   input.speaking = options.speaking;
   if (options.guest.size() == 3)
     input.guests = {{1, {options.guest[0], options.guest[1], options.guest[2]}, vec3(0), true}};
+  auto place = [](const std::vector<float>& at) {
+    return at.size() == 3 ? std::optional(vec3(at[0], at[1], at[2])) : std::nullopt;
+  };
+  input.story.point = place(options.point);
+  input.story.look = place(options.look);
   input.story.gesture = options.gesture;
   input.story.gesture_lead = 60;  // from its beginning
   if (int clip = find_gesture(options.gesture); clip >= 0)
@@ -74,6 +82,30 @@ Motion find_motion(const Character& character, const std::string& wanted) {
   for (Motion& motion : other.motions)
     if (name.empty() || motion.name == name) return std::move(motion);
   throw LoadError(file, "", name.empty() ? "has no motion" : "has no motion '" + name + "'");
+}
+
+// Named expressions instead of the face that the pose has. Throws std::invalid_argument for unknown names.
+void show_expressions(const Character& character, const std::vector<std::string>& settings,
+                      Pose& pose) {
+  const ExpressionSet& set = default_expressions();
+  ExpressionRig rig = make_expression_rig(set, character);
+  ExpressionSum sum;
+  clear(sum, rig);
+  for (const std::string& setting : settings) {
+    size_t equals = setting.find('=');
+    int expression = find_expression(set, setting.substr(0, equals));
+    if (expression < 0) {
+      std::string names;
+      for (const NamedExpression& known : set.expressions)
+        if (known.name[0] != '_') names += " " + known.name;
+      throw std::invalid_argument("--expression: '" + setting.substr(0, equals) + "' is none of" +
+                                  names);
+    }
+    add(sum, rig, expression,
+        equals == std::string::npos ? 1 : float(std::atof(setting.c_str() + equals + 1)));
+  }
+  apply_rotators(sum, rig, pose);
+  apply_controls(sum, rig, pose);
 }
 
 int fail(const std::string& text, int status) {
@@ -113,6 +145,13 @@ int run(const Options& options) {
     if (!retarget.fits)
       throw LoadError(options.motion, "", "moves no joint that this figure has");
     apply_motion(motion, retarget, character, options.time, motion.loop, 1, pose);
+  }
+  if (!options.expressions.empty()) {
+    try {
+      show_expressions(character, options.expressions, pose);
+    } catch (const std::invalid_argument& error) {
+      return fail(error.what(), 2);
+    }
   }
   for (const std::string& setting : options.displacers) {
     size_t equals = setting.find('=');
@@ -159,6 +198,11 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   app.add_option("--speaking", options.speaking, "mouth activity, 0 to 1")
       ->check(CLI::Range(0.0f, 1.0f));
+  app.add_option("--expression", options.expressions,
+                 "NAME or NAME=WEIGHT instead of the pose's face, may repeat and is summed");
+  app.add_option("--point", options.point, "points at x,y,z, as a story would have it")
+      ->delimiter(',')->expected(3);
+  app.add_option("--look", options.look, "looks at x,y,z")->delimiter(',')->expected(3);
   app.add_option("--gesture", options.gesture,
                  "motion of the gesture library, seen --time seconds after it began");
   app.add_option("--displacer", options.displacers,

@@ -11,6 +11,10 @@ Guest place_person(const Person& person, const View& kiosk_view, uint32_t eye_in
   guest.id = (eye_index + 1) << 24 | (person.id & 0xffffffu);
   guest.kiosk = true;
   guest.rotation = person.rotation;
+  guest.gesture = person.gesture;
+  if (const auto& seen = person.expression)
+    guest.expression = Emotions{
+        {seen->joy, seen->sadness, seen->anger, seen->fear, seen->disgust, seen->surprise}};
   float behind = std::clamp(person.position.z - viewing_distance, -0.4f, 20.0f);
   guest.head = kiosk_view.position + kiosk_view.right * person.position.x +
                kiosk_view.up * person.position.y - kiosk_view.forward * behind;

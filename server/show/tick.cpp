@@ -138,6 +138,16 @@ View kiosk_view(const Exhibit& exhibit) {
   return make_view(exhibit.scene, at.position, at.yaw, at.pitch, at.fov, 16, 9);
 }
 
+// Metres from the storyteller's head to the nearest who sees it.
+float viewer_distance(const Show& show) {
+  vec3 head = vec3(show.storyteller.placement * vec4(0, 1.5f, 0, 1));
+  float nearest = 1e6f;
+  for (const Visitor& visitor : show.visitors)
+    if (visitor.welcomed)
+      nearest = std::min(nearest, glm::length(vec3(visitor.view.position - show.exhibit.scene.origin) - head));
+  return nearest;
+}
+
 // Storyteller: notices, decides, speaks, moves its skin. Left out while nobody could see or hear it.
 void behave_and_animate(Show& show, float dt) {
   if (!show.figure) return;
@@ -170,6 +180,7 @@ void behave_and_animate(Show& show, float dt) {
     guest.head = vec3(visitor.view.position - show.exhibit.scene.origin);
     input.guests.push_back(guest);
   }
+  input.viewer_distance = viewer_distance(show);
   StorytellerEvents events;
   tick_storyteller(show.mind, show.storyteller, input, show.pose, events);
   const StorytellerPlace& place = *show.exhibit.storyteller;
