@@ -145,7 +145,8 @@ bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour
   settle(state.yaw, yaw, eye_rate, dt);
   settle(state.pitch, pitch, eye_rate, dt);
   settle(state.nearness, 1 / distance, eye_rate, dt);
-  float rate = state.at_guest || behaviour.mood != Mood::idle ? head_rate : calm_head_rate;
+  bool meant = state.at_guest || input.look || behaviour.mood != Mood::idle;
+  float rate = meant ? head_rate : calm_head_rate;
   settle(state.head_yaw, heading + head, rate, dt);
   settle(state.head_pitch, nod, rate, dt);
   settle(state.torso_yaw, torso, torso_rate, dt);
