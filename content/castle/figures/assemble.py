@@ -25,7 +25,7 @@ def make_looks(figure, who):
     look("lash", (0.018, 0.012, 0.010) if WHO.lashes > 0.7 else (0.09, 0.065, 0.05), 0.6, double_sided=True)
     look("brow", linear(WHO.brow), 0.6, double_sided=True)
     look("mouth", (0.32, 0.07, 0.065), 0.35, double_sided=True)
-    look("tooth", (0.78, 0.72, 0.60), 0.2)
+    look("tooth", (0.86, 0.80, 0.69), 0.2)
     look("gum", (0.55, 0.20, 0.19), 0.3, double_sided=True)
     look("tongue", (0.55, 0.19, 0.18), 0.35)
     look("hair", linear(WHO.hair[0]), 0.42, double_sided=True)

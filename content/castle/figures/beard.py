@@ -43,7 +43,7 @@ def flow(p):
     x, y, z = p
     if is_moustache(p):
         t = clamp(x / 0.030)
-        return (0.35 + 0.75 * t, -0.75 + 0.10 * t, 0.15), lerp(0.012, 0.034, smoothstep(0.10, 0.75, t))
+        return (0.30 + 0.80 * t, -0.85 + 0.10 * t, 0.10), lerp(0.0135, 0.032, smoothstep(0.10, 0.75, t))
     cheek = smoothstep(0.030, 0.055, x)
     front = smoothstep(0.030, 0.085, z)
     size = lerp(0.020, 0.062, front * smoothstep(-0.055, -0.095, y))
@@ -60,7 +60,7 @@ def surface_points(skin, count, rng):
             continue
         tags = [skin.tags[i][0] for i in t if skin.tags[i]]
         lower = "lower" in tags if ("lower" in tags) != ("upper" in tags) else m[1] < part_y(m[0])
-        places.append((length(cross(sub(b, a), sub(c, a))) * (2.2 if is_moustache(m) else 1.0), a, b, c, lower))
+        places.append((length(cross(sub(b, a), sub(c, a))) * (3.6 if is_moustache(m) else 1.0), a, b, c, lower))
     total = sum(p[0] for p in places)
     reach, k, found = 0.0, 0, []
     for i in range(count):  # evenly over the area, in the order of the triangles
@@ -83,7 +83,7 @@ def lock_line(root, rng, n, lift):
     normal = gradient(face, root)
     d, size = flow(root)
     d = unit(mad(d, normal, -dot(unit(d), normal) + 0.30))
-    d = unit(add(d, tuple(rng.uniform(-0.16, 0.16) for _ in range(3))))
+    d = unit(add(d, tuple(rng.uniform(-0.20, 0.20) for _ in range(3))))
     size *= rng.uniform(0.72, 1.08)
     down = unit((-1.9 * root[0] if not is_moustache(root) else 0.5, -1.0, 0.16 if root[2] > 0.05 else 0.02))
     points = [mad(root, normal, -0.0008)]
@@ -101,20 +101,20 @@ def lock_line(root, rng, n, lift):
 def make_beard(skin, look):
     patch = Patch("beard", look)
     rng = random.Random(17)
-    for kind, count, width in (("under", 150, 0.0085), ("lock", 170, 0.0058), ("hair", 110, 0.00036)):
+    for kind, count, width in (("under", 210, 0.0085), ("lock", 480, 0.0019), ("hair", 50, 0.00034)):
         for root, lower in surface_points(skin, count, rng):
             moustache = is_moustache(root)
-            lift = {"under": 0.0022, "lock": 0.0040, "hair": 0.0055}[kind] * rng.uniform(0.7, 1.5) * (0.6 if moustache else 1.0)
-            n = 5 if kind != "hair" else 6
+            lift = {"under": 0.0020, "lock": 0.0046, "hair": 0.0060}[kind] * rng.uniform(0.7, 1.5) * (0.6 if moustache else 1.0)
+            n = {"under": 3, "lock": 4, "hair": 5}[kind]
             points = lock_line(root, rng, n, lift)
             axis = (0.0, root[1], 0.015)
             outs = [unit(mix(sub(p, (axis[0], p[1], axis[2])), gradient(face, root), 0.4)) for p in points]
-            w = width * rng.uniform(0.75, 1.25) * (0.55 if moustache and kind != "hair" else 1.0)
+            w = width * rng.uniform(0.75, 1.25) * (0.38 if moustache and kind == "under" else 1.0)
             u, jaw = rng.random(), jaw_weight(root, lower)
             weights = {j: v for j, v in (("skullbase", 1 - jaw), ("temporomandibular", jaw)) if v > 0.004}
             weights = {j: v / sum(weights.values()) for j, v in weights.items()}
             for side in (1, -1):
                 tag = ("grown", (side * root[0], root[1], root[2]), lower)
                 ribbon(patch, [(side * p[0], p[1], p[2]) for p in points], [(side * o[0], o[1], o[2]) for o in outs], w,
-                       0.22 * w if kind != "hair" else 0.0, u, weights, tag, 0.05)
+                       0.0, u, weights, tag, 2.2 * w)
     return patch

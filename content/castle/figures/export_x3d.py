@@ -81,7 +81,7 @@ def collect(figure):
         triangles += [tuple(v + patch.first for v in t) for t in patch.triangles]
     normals = vertex_normals(positions, triangles)
     for patch in figure.patches:
-        for i, n in getattr(patch, "normals", {}).items():  # where the maker knows better
+        for i, n in patch.normals.items():
             normals[patch.first + i] = n
     return positions, uv, normals, joints
 

@@ -10,6 +10,7 @@ from eyes import center
 from face import LID_POINTS
 from face_form import LID_RADIUS, MOUTH_HALF, lower_lip_y, part_y, upper_lip_y
 from form import add, bell, clamp, lerp, mul, rotate, smoothstep, sub
+from person import WHO
 from rig import TMJ
 
 ZERO = (0.0, 0.0, 0.0)
@@ -136,7 +137,7 @@ def frown(v):
     total = ZERO
     for side in (1, -1):
         k = corner(v, side, 0.016)
-        total = add(total, (side * 0.0008 * k, -0.0050 * k, -0.0010 * k))
+        total = add(total, (side * 0.0008 * k, -0.0056 * k, -0.0010 * k))
     chin = soft(v) * bell(v.p[0], 0.016) * bell(v.p[1] + 0.088, 0.009) if v.part == "face" else 0.0
     return add(total, (0, 0.0022 * chin, 0.0008 * chin))
 
@@ -332,7 +333,7 @@ def add_displacers(figure):
     face = figure.patch("face")
     vertices = []
     for patch in heads:
-        if patch.look in ("hair", "roll", "pearl", "eye"):
+        if patch.look in ("hair", "roll", "pearl", "eye", "cap") and patch.name != "beard":
             continue
         for i, p in enumerate(patch.rest):
             jaw_share = patch.weights[i].get("temporomandibular", 0.0)
@@ -341,6 +342,8 @@ def add_displacers(figure):
         moved = {}
         for index, v in vertices:
             d = move(v)
+            if v.skin is not v:  # a thousand hairs: a tenth of a millimetre is fine enough
+                d = tuple(round(x * WHO.stature, 4) / WHO.stature for x in d)
             if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > LEAST * LEAST:
                 moved[index] = d
         figure.displacers.append(("skullbase", name, moved))

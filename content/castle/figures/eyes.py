@@ -21,7 +21,6 @@ def center(side):
 def make_eyeball(side, look):
     """A ball with a slightly raised cornea; the texture is spread round the axis of sight."""
     patch = Patch("eyeball_" + ("l" if side > 0 else "r"), look)
-    patch.normals = {}
     joint = ("l" if side > 0 else "r") + "_eyeball_joint"
     angles = [0.08, 0.16, 0.24, 0.32, 0.40, 0.475, 0.55, 0.68, 0.85, 1.1, 1.4, 1.8, 2.4]
     c = center(side)

@@ -92,8 +92,15 @@ def roll_color(u, v):
 
 
 def fur_color(u, v):
-    hairs = wrap_noise(u, v, 26, 5, 3) + 0.7 * wrap_noise(u, v, 50, 8, 4)
-    return mixed(rgb("3b2417"), rgb("8a6446"), clamp(0.42 + 0.55 * hairs))
+    return fur_hairs(u, v, rgb("2e1b10"), rgb("9a7250"), 3)
+
+
+def fur_hairs(u, v, dark, light, seed):
+    """Hair lies along v in tufts whose tips are light and whose gaps are dark."""
+    tuft = wrap_noise(u, v, 2.6, 1.3, seed)
+    lean = u + 0.05 * tuft
+    hairs = wrap_noise(lean, v, 7, 1.1, seed + 1) + 0.7 * wrap_noise(lean, v, 16, 1.7, seed + 2)
+    return mixed(dark, light, clamp(0.40 + 0.70 * hairs + 0.45 * tuft))
 
 
 def leather_color(u, v):
@@ -107,8 +114,7 @@ def wool_color(u, v):
 
 
 def sable_color(u, v):
-    hairs = wrap_noise(u, v, 26, 5, 13) + 0.7 * wrap_noise(u, v, 50, 8, 14)
-    return mixed(rgb("2f1d12"), rgb("7d5a3c"), clamp(0.38 + 0.55 * hairs))
+    return fur_hairs(u, v, rgb("22140c"), rgb("8a6442"), 13)
 
 
 def doublet_color(u, v):

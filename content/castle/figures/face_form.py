@@ -56,8 +56,7 @@ def bone(p):
     f = WHO.cheek_full
     d = join(d, ellipsoid(p, (0.0340, -0.0430, 0.0648), (0.0170 * f, 0.0180 * f, 0.0190 * f)), 0.022)  # cheek
     d = join(d, ellipsoid(p, (0.0395 * w, -0.0480, 0.0300), (0.0135 * f, 0.0330, 0.0300)), 0.026)  # chewing muscle
-    if WHO.jowl:
-        d = join(d, ellipsoid(p, (0.0350, -0.0850, 0.0480), (0.0130, 0.0125, 0.0180)), 0.016 / max(WHO.jowl, 0.1))
+    d = join(d, ellipsoid(p, (0.0275 * w, -0.0835, 0.0480), (0.0140, 0.0110, 0.0200)), 0.022)  # soft edge of the jaw
     d = join(d, capsule(p, (0.007, 0.0165, 0.0815 + WHO.brow_bone), (0.041, 0.0165, 0.0640 + 0.8 * WHO.brow_bone),
                         0.0085, 0.0085), 0.014)
     if WHO.temple_hollow:

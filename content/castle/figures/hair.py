@@ -5,7 +5,7 @@ from math import cos, pi, sin
 
 from dress import body
 from face_form import HEAD, face
-from form import (add, cast, circle, cross, dot, ellipsoid, join, lerp, mad, mix, noise, smoothstep, sub,
+from form import (add, cast, circle, cross, dot, ellipsoid, gradient, join, lerp, mad, mix, noise, smoothstep, sub,
                   unit)
 from patch import Patch
 from rig import blend, scaled, torso_weights
@@ -81,7 +81,7 @@ def ribbon(patch, points, outs, width, height, u, weights, tag, span=0.026):
         t = k / n
         along = unit(sub(points[min(k + 1, n)], points[max(k - 1, 0)]))
         across = unit(cross(along, out))
-        w = width * (0.25 + 0.75 * min(1.0, 5 * t, 3.2 * (1 - t) + 0.05))
+        w = width * min(1.0, 0.25 + 4 * t, 2.2 * (1 - t) + 0.06)
         row = []
         for e, lift in (((-1, 0.0), (0, 1.0), (1, 0.0)) if height else ((-1, 0.0), (1, 0.0))):
             q = mad(mad(p, across, 0.5 * w * e), out, height * lift * (w / width))
@@ -117,6 +117,36 @@ def make_strands(look):
                 u = 0.5 * max(c, 0.0) + (0.5 if side < 0 else 0.0) + rng.uniform(-0.02, 0.02)
                 ribbon(patch, points, outs, rng.uniform(0.0045, 0.0085) if lock else rng.uniform(0.00028, 0.0005),
                        rng.uniform(0.0006, 0.0013) if lock else 0.0, u, {"skullbase": 1.0}, ("hair",))
+    return patch
+
+
+def make_fall(look):
+    """Loose hair from behind the ears down to the collar."""
+    patch = Patch("fall", look)
+    rng = random.Random(29)
+    for kind, count in (("under", 26), ("lock", 66)):
+        for k in range(count):
+            c = 0.02 + 0.98 * (k + rng.random()) / count
+            p = strand_point(1, c, rng.uniform(0.62, 0.80) if c > 0.25 else rng.uniform(0.70, 0.86))
+            out = unit(sub(p, (0.0, p[1], -0.010)))
+            goal = -0.092 + 0.014 * rng.random() - 0.012 * c
+            n = 5
+            points, outs = [], []
+            step = (p[1] - goal) / n
+            curl, phase = rng.uniform(0.001, 0.005), rng.uniform(0, 6)
+            for i in range(n + 1):
+                t = i / n
+                q = (p[0], p[1] - step * i, p[2])
+                q = mad(q, out, 0.004 * sin(pi * min(1.0, 1.3 * t)) - 0.010 * t + curl * t * sin(2.5 * pi * t + phase))
+                near, least = face(q), 0.004 + (0.006 if kind == "lock" else 0.003) * min(1.0, 3 * t) * (1 - 0.3 * t)
+                if near < least:
+                    q = mad(q, gradient(face, q), least - near)
+                points.append(q)
+                outs.append(out)
+            for side in (1, -1):
+                ribbon(patch, [(side * q[0], q[1], q[2]) for q in points], [(side * o[0], o[1], o[2]) for o in outs],
+                       rng.uniform(0.010, 0.014) if kind == "under" else rng.uniform(0.0022, 0.0045),
+                       0.0012 if kind == "under" else 0.0, 0.5 * c, {"skullbase": 1.0}, ("hair",), 0.03 if kind == "under" else 0.008)
     return patch
 
 

@@ -68,7 +68,7 @@ def make_teeth(upper, tooth_look, gum_look):
     weights = SKULL if upper else JAW
     tag = (name + "_teeth",)
     grow = -1 if upper else 1  # direction from gum to edge
-    edge_y = MOUTH_Y - 0.0028 if upper else MOUTH_Y - 0.0036
+    edge_y = MOUTH_Y - 0.0034 if upper else MOUTH_Y - 0.0036
     widths = WIDTHS if upper else LOWER_WIDTHS
     heights = [0.0098, 0.0086, 0.0096, 0.0080, 0.0074, 0.0070, 0.0065] if upper else \
         [0.0078, 0.0080, 0.0088, 0.0078, 0.0072, 0.0068, 0.0065]
@@ -85,7 +85,7 @@ def make_teeth(upper, tooth_look, gum_look):
                 for q in range(8):
                     a = 2 * pi * (q + 0.5) / 8
                     ca, sa = cos(a), sin(a)
-                    along = s + w / 2 + 0.495 * w * (0.80 + 0.20 * smoothstep(0, 0.7, v) - 0.10 * max(0, v - 0.85) / 0.15) \
+                    along = s + w / 2 + 0.512 * w * (0.80 + 0.20 * smoothstep(0, 0.7, v) - 0.10 * max(0, v - 0.85) / 0.15) \
                         * (abs(ca) ** 0.6 * (1 if ca > 0 else -1))
                     x, z, nx, nz = arch(max(along, 0.0002), upper)
                     depth = thick * (abs(sa) ** 0.7 * (1 if sa > 0 else -1)) * (1 - 0.62 * v ** 3)

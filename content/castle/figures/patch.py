@@ -15,6 +15,7 @@ class Patch:
         self.uv = []
         self.weights = []  # one {joint: weight} a vertex
         self.triangles = []
+        self.normals = {}  # of single vertices, where the maker knows better than the faces around them
         self.tags = []  # what the maker wants to remember about a vertex (displacers ask)
 
     def vertex(self, position, uv=(0.0, 0.0), weights=None, tag=None):
@@ -70,6 +71,7 @@ class Patch:
         self.uv = [self.uv[i] for i in used]
         self.weights = [self.weights[i] for i in used]
         self.tags = [self.tags[i] for i in used]
+        self.normals = {new[i]: n for i, n in self.normals.items() if i in new}
         self.triangles = [(new[a], new[b], new[c]) for a, b, c in self.triangles]
         return new
 

@@ -4,8 +4,11 @@ modules read their numbers from `WHO`. A person is a module of the folder people
 
   FILE       name of the figure's file and the beginning of its textures' names
   NUMBERS    what differs from the numbers below
-  make_looks(look)   materials besides those of the body
-  make_wear(figure)  hair, beard, headdress and clothes
+  make_looks(look)         materials besides those of the body
+  tiles()                  textures of its own: {look: (colour function, width, height)}
+  make_wear(figure, face)  hair, beard, headdress and clothes
+
+It imports what it uses inside these functions, because all other modules want to know the numbers first.
 
 Lengths in metres, colours as sRGB.
 """
@@ -31,7 +34,6 @@ class Person:
         self.lid_open = 1.0
         self.lid_hood = 1.0
         self.eye_bags = 0.3
-        self.jowl = 0.0
         self.age = 0.35  # depth of the folds: 0 a child .. 1 an old face
         # ---- colours
         self.skin, self.red, self.pale, self.shade = "e8bda4", "d2806f", "f2d3bd", "ad7562"
@@ -49,7 +51,6 @@ class Person:
         # ---- body
         self.bust, self.belly, self.waist = 1.0, 0.0, 0.0
         self.sleeve = 1.0  # width
-        self.hand_bone = 0.0  # how far knuckles and veins show
 
 
 WHO = Person()

@@ -5,10 +5,10 @@ from math import cos, pi, sin
 
 from accessories import oval, tube
 from dress import WAIST_Y, cape_point, cape_weights, disc, neck_ring, neck_weights, skirt_point, trunk
-from form import bell, cast, circle, clamp, cross, lerp, mad, noise, rotate, smoothstep, sub, unit
+from form import bell, cast, circle, cross, lerp, mad, noise, rotate, smoothstep, sub, unit
 from hair import hair
 from patch import Patch
-from rig import blend, scaled, skirt_weights, torso_weights
+from rig import skirt_weights, torso_weights
 
 # ---- cap ----------------------------------------------------------------------------------------------
 CAP_CENTER = (0.0, 0.020, -0.014)
@@ -16,17 +16,16 @@ CAP_CENTER = (0.0, 0.020, -0.014)
 
 def cap_band(a, rise, lift):
     """On the hair round the head; a: 0 in front, to the figure's left; the band sits lower at the back."""
-    y = lerp(0.030, 0.058, 0.5 + 0.5 * cos(a)) + rise - 0.005 * sin(a)
+    y = lerp(0.026, 0.053, 0.5 + 0.5 * cos(a)) + rise - 0.005 * sin(a)
     d = unit((sin(a), 0.0, cos(a)))
     o = (0.0, min(y, 0.098), -0.012)
     reach = cast(hair, o, d, 0.17)
-    p = mad((reach[0], y, reach[2]), d, lift)
-    return p
+    return mad((reach[0], y, reach[2]), d, 0.0060 + lift)  # hair lies under it
 
 
 def make_cap(cloth_look, brim_look):
     cloth, brim = Patch("cap", cloth_look), Patch("cap_brim", brim_look)
-    n = 56
+    n = 60
     weights = {"skullbase": 1.0}
 
     def ring(patch, row, v, tile):
@@ -36,7 +35,7 @@ def make_cap(cloth_look, brim_look):
         """k: 0 where the cloth leaves the band .. 1 the middle of the top; puffed, gathered, sunk to one side."""
         def row(a):
             base = cap_band(a, 0.026, 0.006)
-            out = 0.030 * sin(min(k / 0.34, 1.0) * pi / 2) * (1 - 0.1 * cos(a))
+            out = 0.026 * sin(min(k / 0.34, 1.0) * pi / 2) * (1 - 0.1 * cos(a))
             shrink = smoothstep(0.30, 1.0, k)
             height = 0.012 * min(k / 0.2, 1.0) + 0.046 * smoothstep(0.12, 0.55, k) + 0.006 * smoothstep(0.5, 1.0, k)
             r = (lerp(base[0] + out * sin(a), -0.012, shrink), lerp(base[2] + out * cos(a), -0.022, shrink))
@@ -47,7 +46,7 @@ def make_cap(cloth_look, brim_look):
             return rotate(p, CAP_CENTER, (0.0, 0.0, 1.0), -0.055 * smoothstep(0.0, 0.3, k))
         return row
 
-    steps = (0.0, 0.05, 0.11, 0.18, 0.26, 0.34, 0.44, 0.56, 0.70, 0.85)
+    steps = (0.0, 0.05, 0.11, 0.17, 0.23, 0.29, 0.34, 0.39, 0.46, 0.56, 0.70, 0.85)
     rows = [ring(cloth, crown(k), 2.2 * k, 4) for k in steps]
     cloth.grid(rows)
     top = crown(1.0)(0.0)
@@ -57,9 +56,9 @@ def make_cap(cloth_look, brim_look):
         """The turned-up brim, slit over the temples; t: 0 its fold below .. 1 its upper edge."""
         def row(a):
             slit = bell(abs(a if a < pi else a - 2 * pi) - 1.05, 0.10)
-            rise = lerp(-0.006, 0.034 - 0.013 * slit, t)
-            p = cap_band(a, rise, 0.0040 + 0.0105 * t ** 0.8 + gap)
-            wave = 0.0020 * t * sin(5 * a + 0.7)
+            rise = lerp(-0.006, 0.031 - 0.016 * slit, t)
+            p = cap_band(a, rise, 0.0040 + 0.0200 * t ** 0.7 + gap)
+            wave = 0.0030 * t * sin(5 * a + 0.7)
             return mad(p, (sin(a), 0.0, cos(a)), wave)
         return row
 
@@ -90,7 +89,7 @@ def gown_weights(p):
 
 def make_gown(cloth_look):
     cloth = Patch("gown", cloth_look)
-    columns = 112
+    columns = 96
     ys = [0.012, 0.04, 0.09, 0.15, 0.22, 0.30, 0.38, 0.46, 0.54, 0.62, 0.70, 0.78, 0.85, 0.91, 0.96, 1.00, 1.035, 1.062, 1.09,
           1.12, 1.15, 1.18, 1.21, 1.24, 1.27, 1.30, 1.33]
     rows = []
@@ -200,8 +199,8 @@ def make_chain(metal_look):
     """A chain over the fur with a small bell: he has cast many."""
     patch = Patch("chain", metal_look)
     links = []
-    for i in range(-19, 20):
-        t = i / 19
+    for i in range(-16, 17):
+        t = i / 16
         phi = 1.02 * t
         s = 0.30 + 0.46 * (1 - t * t) ** 0.75
         c = cape_point(phi, min(s, 0.80), 0.0255)
@@ -214,7 +213,7 @@ def make_chain(metal_look):
         out = unit((sin(1.0 * c[0] * 8), 0.35, cos(c[0] * 8)))
         across = unit(cross(along, out))
         u = across if k % 2 else unit(cross(along, across))
-        tube(patch, oval(c, along, 0.0088, u, 0.0048, 8), 0.0014, cape_weights(c), 4, True)
+        tube(patch, oval(c, along, 0.0104, u, 0.0056, 8), 0.0014, cape_weights(c), 4, True)
     c = links[len(links) // 2]
     weights = cape_weights(c)
     rows = []

@@ -15,7 +15,7 @@ BASE, RED, PALE, SHADE = rgb(WHO.skin), rgb(WHO.red), rgb(WHO.pale), rgb(WHO.sha
 BLUISH = rgb("b98d88")
 LIP, LIP_DARK = rgb(WHO.lip), rgb(WHO.lip_dark)
 BROW = rgb(WHO.brow)
-HAIR = rgb(WHO.hair[0])
+HAIR = mixed(rgb(WHO.hair[0]), rgb(WHO.hair[1]), 0.5 * WHO.beard)
 LASH = rgb("2c1d17")
 
 def texture_place(plane):
@@ -115,8 +115,8 @@ def skin_color(p):
         where = bell(x - 0.026, 0.030) * bell(y + 0.020, 0.024) + 0.30 * smoothstep(0.02, 0.04, y)
         c = mixed(c, rgb("b07a58"), WHO.freckles * 0.26 * smoothstep(0.30, 0.62, freckle) * min(where, 1.0) * front)
     if WHO.spots:
-        spot = smoothstep(0.42, 0.55, noise(p, 75, 33) + 0.25 * noise(p, 300, 34))
-        c = mixed(c, rgb("9a6647"), WHO.spots * 0.42 * spot * smoothstep(0.018, 0.040, x + 0.6 * max(y, 0)) * front)
+        spot = smoothstep(0.34, 0.66, noise(p, 75, 33) + 0.30 * noise(p, 300, 34))
+        c = mixed(c, rgb("9a6647"), WHO.spots * 0.30 * spot * smoothstep(0.018, 0.040, x + 0.6 * max(y, 0)) * front)
     if WHO.beard:
         c = mixed(c, times(HAIR, 1 + 0.35 * noise((p[0] * 900, p[1] * 120, z * 900), 1.0, 17)), WHO.beard * mask(p))
     # lips
@@ -149,13 +149,14 @@ def folds(c, p, x, y, z, front, age):
     if y > 0.03:
         for k in range(3):
             off = y - forehead_line(x, k) - 0.0005 * noise((p[0] * 60, k, 0.0), 1.0, 8)
-            c = mixed(c, SHADE, (0.03 + 0.36 * age ** 1.5) * bell(off, 0.0006) * smoothstep(0.044, 0.024, x) * front)
+            broken = 0.65 + 0.7 * noise((p[0] * 90, k * 7.0, 0.0), 1.0, 18)
+            c = mixed(c, SHADE, (0.03 + 0.22 * age ** 1.5) * broken * bell(off, 0.0008) * smoothstep(0.044, 0.024, x) * front)
     if age > 0.5:
         c = mixed(c, SHADE, 0.45 * age * bell(x - 0.0052, 0.0008) * bell(y - 0.019, 0.006) * front)
         c = mixed(c, SHADE, 0.40 * age * bell(line_distance(x, y, CORNER_LINE), 0.0014) * front)
         c = mixed(c, SHADE, 0.40 * age * bell(line_distance(x, y, TEAR_LINE), 0.0012) * front)
         fine = noise((p[0] * 500 + p[1] * 300, p[1] * 500 - p[0] * 200, z * 300), 1.0, 41)  # crossing fine lines
-        c = times(c, 1 - 0.07 * age * smoothstep(0.1, 0.5, abs(fine)) * front)
+        c = times(c, 1 - 0.045 * age * smoothstep(0.1, 0.5, abs(fine)) * front)
     return c
 
 

@@ -34,7 +34,7 @@ def make_textures(figure, who, folder, wanted=None, size=1024):
         image.grow(6)
         return image
 
-    for name, (color, width, height) in {**TILES, **getattr(who, "TILES", {})}.items():
+    for name, (color, width, height) in {**TILES, **who.tiles()}.items():
         if name in figure.looks:
             save(name, lambda: fill(width, height, color))
     face, hand = figure.patch("face"), figure.patch("hand_l")

@@ -1,10 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ludmila, keeper of the keys: a chatelaine of about 1530 in her fifties."""
-import accessories
-import dress
-import hair
-from assemble import place_head
-
 FILE = "storyteller"
 NUMBERS = {
     "name": "storyteller",
@@ -25,7 +20,15 @@ def make_looks(look):
     look("leather", (0.085, 0.042, 0.022), 0.5)
 
 
+def tiles():
+    return {}
+
+
 def make_wear(figure, face):
+    import accessories
+    import dress
+    import hair
+    from assemble import place_head
     for part in (hair.make_hair("hair"), hair.make_strands("hair"), hair.make_roll("roll"), hair.make_pearls("pearl")):
         figure.add(place_head(part))
     figure.add(hair.make_veil("linen"))

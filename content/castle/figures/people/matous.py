@@ -1,13 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Matouš, bell founder and chronicler of the castle: a man of about seventy, about 1530."""
-import accessories
-import beard
-import dress
-import fabric
-import hair
-import robe
-from assemble import place_head
-
 FILE = "chronicler"
 NUMBERS = {
     "name": "chronicler",
@@ -16,14 +8,18 @@ NUMBERS = {
     "mouth_half": 0.0258, "corner_rise": 0.0020, "lip_upper": 0.0046, "lip_lower": 0.0068, "lip_full": 0.80,
     "face_width": 1.02, "jaw_width": 1.07, "chin_width": 1.15, "cheek_full": 0.88, "cheekbone": 0.0010, "temple_hollow": 0.004,
     "brow_bone": 0.0032, "nose_width": 1.17, "nose_out": 0.0045, "nose_drop": 0.0032, "nose_hump": 0.0012, "nose_bridge": 1.18,
-    "neck_width": 1.08, "lid_open": 0.94, "lid_hood": 1.6, "eye_bags": 0.85, "age": 0.95,
+    "neck_width": 1.08, "lid_open": 0.88, "lid_hood": 1.6, "eye_bags": 0.85, "age": 0.95,
     "skin": "dfae90", "red": "c56c5a", "pale": "ebc7ab", "shade": "98644f", "ruddy": 1.2, "freckles": 0.0, "spots": 1.0,
     "lip": "b0695d", "brow": "aaa194", "brow_density": 0.45, "brow_thick": 1.5, "iris": ("8798a4", "56707f", "9a8a66"),
-    "hair": ("8f8980", "d3cfc7", "f0ede7"), "grey": 0.9, "lashes": 0.6, "beard": 0.75,
-    "bust": 0.0, "belly": 0.7, "waist": 0.024, "sleeve": 1.16, "hand_bone": 1.0,
+    "hair": ("aca69c", "e4e0d8", "faf8f4"), "grey": 0.9, "lashes": 0.6, "beard": 0.95,
+    "bust": 0.0, "belly": 0.7, "waist": 0.024, "sleeve": 1.16,
 }
-TILES = {"robe": (fabric.wool_color, 256, 256), "sable": (fabric.sable_color, 256, 256), "doublet": (fabric.doublet_color, 256, 256),
-         "cap": (fabric.black_color, 256, 256)}
+
+
+def tiles():
+    import fabric
+    return {"robe": (fabric.wool_color, 256, 256), "sable": (fabric.sable_color, 256, 256),
+            "doublet": (fabric.doublet_color, 256, 256), "cap": (fabric.black_color, 256, 256)}
 
 
 def make_looks(look):
@@ -37,7 +33,14 @@ def make_looks(look):
 
 
 def make_wear(figure, face):
-    for part in (hair.make_hair("hair"), hair.make_strands("hair"), beard.make_beard(face, "hair"), *robe.make_cap("cap", "cap")):
+    import accessories
+    import beard
+    import dress
+    import hair
+    import robe
+    from assemble import place_head
+    for part in (hair.make_hair("hair"), hair.make_strands("hair"), hair.make_fall("hair"), beard.make_beard(face, "hair"),
+                 *robe.make_cap("cap", "cap")):
         figure.add(place_head(part))
     for group in (robe.make_gown("robe"), robe.make_facings("sable", "doublet", "gold"), dress.make_sleeves("robe", "sable", "linen")):
         for patch in group:
