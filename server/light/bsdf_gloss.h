@@ -28,6 +28,12 @@ void set_facets(Bsdf& bsdf, float specular, vec3 color);
 void set_gloss(Bsdf& bsdf, const DielectricAlbedo& albedo, float transmission, float specular,
                vec3 specular_color);
 
+// Luminance that the base reflects towards the viewer without going beneath.
+inline float eval_gloss_strength(const Bsdf& b) {
+  float dielectric = (1 - b.metallic) * (1 - b.coat_passes);
+  return b.metallic > 0 ? dielectric + b.metallic * luminance(b.metal) : dielectric;
+}
+
 // What the dielectric reflects from this angle, or keeps from the layer beneath.
 float eval_coat(const Bsdf& bsdf, float cosine);
 

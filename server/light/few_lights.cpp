@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/few_lights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -30,7 +31,12 @@ FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const
 }
 
 void eval_effects(const FewLights& f, vec3 place, vec3 normal, bool through,
-                  LightEffects& effects) {
+                  const LobeHint& lobe, LightEffects& effects) {
+  // A share whatever the lobe says keeps a chance for what it does not know of.
+  constexpr float unknown = 0.05f;
+  const float diffuse = lobe.diffuse + unknown * (lobe.diffuse + lobe.specular);
+  const float alpha2 = lobe.alpha * lobe.alpha, upright = dot(normal, lobe.view);
+  const float specular = lobe.specular * alpha2 / (4 * std::max(upright, 0.1f));
   const Lanes zero{}, one = all_lanes(1), least_cosine = all_lanes(through ? -2.0f : 0.0f);
   Lanes near_sum{}, distant_sum{};
   for (int g = 0; g * lane_count < f.count; g++) {
@@ -42,8 +48,16 @@ void eval_effects(const FewLights& f, vec3 place, vec3 normal, bool through,
     Lanes along = -(x * f.axis_x[g] + y * f.axis_y[g] + z * f.axis_z[g]) * inverse;
     Lanes inside = lanes_min(lanes_max((along - f.outer[g]) * f.scale[g], zero), one);
     Lanes cosine = (x * normal.x + y * normal.y + z * normal.z) * inverse;
-    Lanes effect = f.strength[g] * window * (inside * inside) * (lanes_abs(cosine) + 0.05f) *
-                   (inverse * inverse);
+    Lanes scattered = diffuse * (lanes_abs(cosine) + 0.05f);
+    if (lobe.specular > 0) {  // the squared cosine of the half vector, from |view + light|^2
+      Lanes together =
+          (x * lobe.view.x + y * lobe.view.y + z * lobe.view.z) * inverse * 2.0f + 2.0f;
+      Lanes facing = upright + cosine;
+      Lanes half2 = lanes_min(facing * facing / lanes_max(together, all_lanes(1e-6f)), one);
+      Lanes spread = half2 * (alpha2 - 1) + 1.0f;
+      scattered += specular / (spread * spread);
+    }
+    Lanes effect = f.strength[g] * window * (inside * inside) * scattered * (inverse * inverse);
     effect = cosine > least_cosine ? effect : zero;
     effect = effect < 3e38f ? effect : zero;  // a place on a light
     std::memcpy(effects.effect + g * lane_count, &effect, sizeof(effect));

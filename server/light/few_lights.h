@@ -33,8 +33,15 @@ struct LightEffects {
   alignas(Lanes) float effect[FewLights::most];
   float near_sum = 0, distant_sum = 0;
 };
+// What a surface does with light, as far as the choice among lights asks: a matt part and a GGX
+// lobe of reflection. A highlight whose lamp is rarely chosen is a firefly.
+struct LobeHint {
+  float diffuse = 1, specular = 0;  // reflectances; specular 0: the rest is not set
+  vec3 view{0};                     // towards the viewer, unit
+  float alpha = 1;                  // squared perceptual roughness, > 0
+};
 // `through`: light from behind the surface counts too.
 void eval_effects(const FewLights& lights, vec3 place, vec3 normal, bool through,
-                  LightEffects& effects);
+                  const LobeHint& lobe, LightEffects& effects);
 
 }  // namespace wellspring

@@ -41,9 +41,9 @@ float sample_sky_pdf(const LightTables& tables, vec3 direction);
 
 // Picks one by its unshadowed effect on a surface that scatters to its own side, or (`through`) to
 // both sides; of many by power and place first. `radiance` is already divided by the chance of the
-// pick.
+// pick. `lobe`: what the surface does with it, where that is known.
 LightSample sample_punctual_light(const Transport& transport, const SurfacePlace& from, vec3 normal,
-                                  bool through, Sampler& sampler);
+                                  bool through, Sampler& sampler, const LobeHint& lobe = {});
 
 // What part of the light arrives: 0 or 1, or the tint of the thin panes in between.
 vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,

@@ -49,10 +49,10 @@ float distant_chance(float near_sum, float distant_sum) {
 }
 
 LightSample draw_of_few(const LightTables& tables, const SurfacePlace& from, vec3 normal,
-                        bool through, vec2 u) {
+                        bool through, const LobeHint& lobe, vec2 u) {
   const FewLights& few = tables.few_punctual;
   LightEffects effects;
-  eval_effects(few, from.position, normal, through, effects);
+  eval_effects(few, from.position, normal, through, lobe, effects);
   if (!(effects.near_sum + effects.distant_sum > 0)) return {};
   float chance = distant_chance(effects.near_sum, effects.distant_sum);
   bool distant = u.y < chance;
@@ -105,12 +105,13 @@ LightSample draw_of_many(const LightTables& tables, const SurfacePlace& from, ve
 }  // namespace
 
 LightSample sample_punctual_light(const Transport& transport, const SurfacePlace& from, vec3 normal,
-                                  bool through, Sampler& sampler) {
+                                  bool through, Sampler& sampler, const LobeHint& lobe) {
   const LightTables& tables = transport.tables;
   if (tables.punctual.size() == 1)
     return eval_punctual(tables.punctual[0], tables.cones[0], from);
-  return (tables.few_punctual.count > 0 ? draw_of_few : draw_of_many)(tables, from, normal, through,
-                                                                      sampler.next2());
+  if (tables.few_punctual.count > 0)
+    return draw_of_few(tables, from, normal, through, lobe, sampler.next2());
+  return draw_of_many(tables, from, normal, through, sampler.next2());
 }
 
 }  // namespace wellspring

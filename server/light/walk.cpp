@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/bsdf_gloss.h"
 #include "light/radiance_grid.h"
 #include "light/warp.h"
 
@@ -87,10 +88,24 @@ namespace {
 
 // How a surface scatters, as light sampling asks: the value towards a direction, and the density
 // with which sampling all of its lobes draws that.
+constexpr float blunt_alpha = 0.6f;  // rougher gloss is spread as matt light is
 struct ByBsdf {
   const Bsdf& bsdf;
   BsdfValue eval(vec3 direction) const { return eval_bsdf(bsdf, direction); }
   float pdf(const BsdfValue& value) const { return sample_bsdf_pdf(bsdf, value, Lobes::all); }
+  LobeHint hint() const {
+    LobeHint lobe;
+    if (max_component(bsdf.transmit) > 0) return lobe;  // has a sharp lobe on either side
+    lobe.diffuse = luminance(bsdf.diffuse);
+    if (bsdf.alpha > 0 && bsdf.alpha < blunt_alpha) {
+      lobe.specular = eval_gloss_strength(bsdf);
+      lobe.alpha = bsdf.alpha;
+      lobe.view = to_world(bsdf, bsdf.view);
+    }
+    // With nothing to go by all lights are weighed as by a matt surface.
+    if (!(lobe.diffuse + lobe.specular > 0)) lobe.diffuse = 1;
+    return lobe;
+  }
 };
 struct ByMatt {
   const MattLobe& lobe;
@@ -99,6 +114,7 @@ struct ByMatt {
     return {vec3(pdf), vec3(0), pdf, 0};
   }
   float pdf(const BsdfValue& value) const { return value.diffuse_pdf; }
+  LobeHint hint() const { return {}; }
 };
 
 // `side`: lit_side.
@@ -140,7 +156,8 @@ DirectLight direct_light(const Transport& transport, const Walk& walk, const Sur
   if (punctual) {
     bool through = side == vec3(0);
     sampler.seek(base + Dimensions::punctual);
-    LightSample light = sample_punctual_light(transport, place, normal, through, sampler);
+    LightSample light =
+        sample_punctual_light(transport, place, normal, through, sampler, scattering.hint());
     if (light.pdf > 0) {
       BsdfValue value = scattering.eval(light.direction);
       if (max_component(value.diffuse + value.specular) > 0) {
