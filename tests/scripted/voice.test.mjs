@@ -88,6 +88,96 @@ test('stop is heard at once, and nothing is sent to those who do not listen', { 
   await deaf.close();
 });
 
+// Where sound begins after 100 ms of silence: the first 5 ms that are louder than 40 dB under the loudest.
+function onsets(samples, rate) {
+  const window = Math.round(rate / 200), energy = [];
+  for (let i = 0; i + window <= samples.length; i += window) energy.push(loudness(samples.slice(i, i + window)));
+  const threshold = Math.max(...energy) * 0.01, found = [];
+  let quiet = 1000;
+  energy.forEach((value, i) => {
+    if (value > threshold) { if (quiet >= 20) found.push(i * window / rate); quiet = 0; } else quiet++;
+  });
+  return found;
+}
+
+test('words and lips come with the sound as it is sent', { skip }, async () => {
+  await lines_are_spoken();
+  const visitor = new Visitor(server), errors = [];
+  const { stories } = await visitor.hello({ lang: 'en' });
+  const lines = [];
+  const fourth = visitor.next(({ message }) => {
+    if (message?.type === 'speech' && message.action === 'start') lines.push(message);
+    return lines.length === 4;
+  }, 'the fourth sentence', 60000);
+  visitor.send({ type: 'storyteller', story: stories[0].id });
+  await fourth;
+  for (const line of lines.slice(0, 3)) {
+    const pieces = visitor.sounds.filter((sound) => sound.utterance === line.utterance);
+    const heard = onsets(pieces.flatMap((sound) => sound.samples), pieces[0].rate);
+    assert.ok(heard.length >= 1);
+    for (const at of heard) errors.push(Math.min(...line.words.map(({ begin }) => Math.abs(begin - at))));
+  }
+  errors.sort((a, b) => a - b);
+  assert.ok(errors[errors.length >> 1] <= 0.03 && errors.at(-1) <= 0.08, `seconds off: ${errors}`);
+  visitor.send({ type: 'storyteller', action: 'stop' });
+  await visitor.message('agent', (message) => message.story === null);
+  await visitor.close();
+});
+
+test('a pause rests with the word and goes on with it, in time', { skip }, async () => {
+  await lines_are_spoken();
+  const visitor = new Visitor(server);
+  const { stories } = await visitor.hello({ lang: 'de' });
+  const started = visitor.message('speech', (message) => message.action === 'start');
+  visitor.send({ type: 'storyteller', story: stories[1].id });
+  const first = await started;
+  await sleep(1500);
+  const stopped = visitor.message('speech', (message) => message.action === 'stop');
+  visitor.send({ type: 'storyteller', action: 'pause' });
+  assert.equal((await stopped).utterance, first.utterance);
+  await sleep(300);
+  const sent = visitor.sounds.length;
+  await sleep(1000);
+  assert.equal(visitor.sounds.length, sent, 'nothing is sent while it rests');
+  const resumed = visitor.message('speech', (message) => message.action === 'start');
+  visitor.send({ type: 'storyteller', action: 'play' });
+  const again = await resumed;
+  assert.ok(again.utterance > first.utterance);
+  assert.equal(again.text, first.text);
+  await sleep(600);
+  const piece = visitor.sounds.find((sound) => sound.utterance === again.utterance);
+  const at = piece.start / piece.rate, off = Math.min(...again.words.map(({ begin }) => Math.abs(begin - at)));
+  assert.ok(at > 0.3 && off < 0.002, `goes on at ${at} s, ${off} s from a word`);
+  visitor.send({ type: 'storyteller', action: 'stop' });
+  await visitor.message('agent', (message) => message.story === null);
+  await visitor.close();
+});
+
+test('a tour is told to its visitor alone, and pauses', { skip }, async () => {
+  await lines_are_spoken();
+  const visitor = new Visitor(server), other = new Visitor(server);
+  const { tours } = await visitor.hello({ lang: 'en' });
+  await other.hello({ lang: 'en' });
+  const started = visitor.message('speech', (message) => message.action === 'start');
+  visitor.send({ type: 'tour', action: 'play', name: tours[0].id });
+  const speech = await started;
+  assert.match(speech.text, /great hall/);
+  const state = await visitor.message('state', (message) => message.tour?.state === 'playing');
+  assert.ok(state.tour.stops >= 5);
+  await sleep(500);
+  assert.equal(other.sounds.length, 0);
+  const stopped = visitor.message('speech', (message) => message.action === 'stop');
+  visitor.send({ type: 'tour', action: 'pause' });
+  await stopped;
+  const again = visitor.message('speech', (message) => message.action === 'start');
+  visitor.send({ type: 'tour', action: 'play' });
+  assert.equal((await again).text, speech.text);
+  visitor.send({ type: 'tour', action: 'stop' });
+  await visitor.message('state', (message) => message.tour === null);
+  await visitor.close();
+  await other.close();
+});
+
 test('the description names sound and speech', { skip }, async () => {
   const api = await (await fetch(`${server.url}/api/v1/`)).json();
   assert.equal(api.binary.sound.magic, 'WSA1');
