@@ -23,8 +23,7 @@ EmittedRay aim_at_casters(const Transport& transport, std::span<const CasterSphe
   size_t triangles = tables.emitters.size(), punctual = tables.punctual.size();
   vec2 aim = sampler.next2();
   if (pick.index < triangles) {
-    EmitterPlace place =
-        eval_emitter_place(transport, pick.index, sample_triangle({pick.u, u.y}));
+    EmitterPlace place = sample_emitter_place(transport, pick.index, {pick.u, u.y});
     vec3 direction = sample_caster(casters, place.surface.position, aim);
     float pdf = sample_caster_pdf(casters, place.surface.position, direction);
     float cosine = dot(direction, place.surface.geometric_normal);
@@ -91,6 +90,26 @@ EmittedRay aim_at_casters(const Transport& transport, std::span<const CasterSphe
   return emitted;
 }
 
+constexpr float same_surface = 0.7f;  // least cosine between normals
+constexpr float grazing = 1e-3f;      // photons flatter than this do not count
+
+// Flux that arrives around a place from before it.
+vec3 sum_matt(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest) {
+  Lanes red = all_lanes(0), green = red, blue = red, none = red;
+  for_each_photons(grid, place, [&](size_t at, LaneMask within) {
+    Lanes alike = lanes_abs(grid.normal.x.at(at) * normal.x + grid.normal.y.at(at) * normal.y +
+                            grid.normal.z.at(at) * normal.z);
+    Lanes side = grid.direction.x.at(at) * normal.x + grid.direction.y.at(at) * normal.y +
+                 grid.direction.z.at(at) * normal.z;
+    LaneMask counts = within & (alike >= same_surface) & (side > grazing) &
+                      (grid.depth.at(at) <= float(deepest));
+    red += counts ? grid.flux.x.at(at) : none;
+    green += counts ? grid.flux.y.at(at) : none;
+    blue += counts ? grid.flux.z.at(at) : none;
+  });
+  return {lanes_sum(red), lanes_sum(green), lanes_sum(blue)};
+}
+
 }  // namespace
 
 std::vector<Photon> shoot_caustic_photons(const Transport& transport,
@@ -124,27 +143,27 @@ std::vector<Photon> shoot_caustic_photons(const Transport& transport,
 
 void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& place,
                       PlaceLight& light) {
-  constexpr float same_surface = 0.7f;  // least cosine between normals
   const Bsdf& bsdf = *place.bsdf;
   vec3 normal = bsdf.geometric_normal;
   bool sharp = has_sharp(bsdf, place.sharp);
   bool matt = !has_specular(bsdf) && bsdf.normal == normal;  // one reflectance for all directions
-  vec3 diffuse(0), specular(0), flux(0);
+  float area = pi * grid.radius * grid.radius;
+  if (matt) {
+    vec3 flux = sum_matt(grid, place.surface->position, normal, max_depth - place.depth);
+    light.diffuse += flux * bsdf.diffuse / (pi * area);
+    return;
+  }
+  vec3 diffuse(0), specular(0);
   for_each_photon(grid, place.surface->position, [&](const Photon& photon) {
     if (int(photon.depth) + place.depth > max_depth) return;
     if (std::abs(dot(photon.normal, normal)) < same_surface) return;
-    float side = dot(photon.direction, normal), cosine = std::abs(side);
-    if (!(cosine > 1e-3f)) return;
-    if (matt) {
-      if (side > 0) flux += photon.flux;
-      return;
-    }
+    float cosine = std::abs(dot(photon.direction, normal));
+    if (!(cosine > grazing)) return;
     BsdfValue value = eval_bsdf(bsdf, photon.direction);
     diffuse += value.diffuse * photon.flux / cosine;
     if (!sharp) specular += value.specular * photon.flux / cosine;
   });
-  float area = pi * grid.radius * grid.radius;
-  light.diffuse += (diffuse + flux * bsdf.diffuse / pi) / area;
+  light.diffuse += diffuse / area;
   light.specular += specular / area;
 }
 

@@ -31,7 +31,7 @@ float disc_area(const EmissionChoice& choice) { return pi * choice.radius * choi
 void leave_emitter(const Transport& transport, uint32_t triangle, vec2 u, float chance,
                    Sampler& sampler, EmittedRay& emitted) {
   const EmitterTriangle& e = transport.tables.emitters[triangle];
-  EmitterPlace place = eval_emitter_place(transport, triangle, sample_triangle(u));
+  EmitterPlace place = sample_emitter_place(transport, triangle, u);
   vec2 way = sampler.next2();
   float sides = 1;
   vec3 normal = e.normal;
@@ -123,6 +123,16 @@ EmitterPlace eval_emitter_place(const Transport& transport, uint32_t triangle, v
   if (material.alpha_mode == AlphaMode::mask) cover = shown.alpha < material.alpha_cutoff ? 0 : 1;
   if (material.alpha_mode == AlphaMode::blend) cover = shown.alpha;
   place.radiance = surface_emission(shown, material) * cover;
+  return place;
+}
+
+EmitterPlace sample_emitter_place(const Transport& transport, uint32_t triangle, vec2 u) {
+  int picture = transport.tables.emitters[triangle].picture;
+  if (picture < 0) return eval_emitter_place(transport, triangle, sample_triangle(u));
+  PicturePlace chosen =
+      sample_emission_picture(transport.tables.pictures[size_t(picture)], u);
+  EmitterPlace place = eval_emitter_place(transport, triangle, chosen.barycentric);
+  place.radiance = chosen.density > 0 ? place.radiance / chosen.density : vec3(0);
   return place;
 }
 

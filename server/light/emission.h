@@ -37,6 +37,9 @@ struct EmitterPlace {
   bool double_sided = false;
 };
 EmitterPlace eval_emitter_place(const Transport& transport, uint32_t triangle, vec2 barycentric);
+// One of them, where its picture is bright if it has one; its radiance is divided by the density of the
+// choice, the triangle's area taken as 1.
+EmitterPlace sample_emitter_place(const Transport& transport, uint32_t triangle, vec2 u);
 
 // A ray of light. Sums over many, each divided by their number, are the light of the scene.
 struct EmittedRay {

@@ -5,32 +5,36 @@
 #include <cmath>
 
 #include "light/caustic_photons.h"
+#include "light/light_lanes.h"
 
 namespace wellspring {
 namespace {
 
 // What is seen in mirrors is not filtered, so more than one set lights it; a faint image makes do with
-// a few of the lights.
-constexpr int mirror_sets = 2;
-uint32_t mirror_step(const Walk& walk) {
+// fewer of the lights, asked of each set, and so does what is gathered from nearby, a small part of all.
+constexpr int mirror_sets = 2, near_lights = 3, chained_lights = 6, most_lights = 16;
+int mirror_lights(const Walk& walk) {
   float bright = max_component(walk.throughput);
-  return bright > 0.5f ? 1 : bright > 0.25f ? 2 : 4;
+  return bright > 0.5f ? 8 : bright > 0.25f ? 5 : 3;
 }
-// Light gathered from nearby is a small part of all: a few of the lights will do there.
-constexpr uint32_t near_step = 4;
 constexpr int mirror_depth = 6;  // chains are not cut short at random before
 
 // Radiance scattered towards where `walk` came from by the rough lobes of what it met.
 vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, const Bsdf& bsdf,
-                float sharp, int sets, uint32_t step, Sampler& sampler) {
+                float sharp, int sets, int lights, Sampler& sampler) {
   if (walk.depth >= eye.max_depth || !has_rough(bsdf, sharp)) return vec3(0);
   LitPlace place{&surface, &bsdf, &walk.media, walk.depth, sharp};
   PlaceLight light;
   int all = eye.pass.sets(), asked = std::min(sets, all);
   for (int i = 0; i < asked; i++) {
-    uint32_t start = step > 1 ? uint32_t(sampler.next() * float(step)) : 0;
-    shade_by_point_lights(eye.transport, eye.pass, {(eye.set + i) % all, start, step},
-                          eye.max_depth, &place, 1, &light);
+    RegionLight chosen[most_lights];
+    int set = (eye.set + i) % all;
+    int count = choose_place_lights(eye.pass, set, surface.position, bsdf, lights, sampler.next(),
+                                    chosen);
+    if (count > 0)
+      shade_by_point_lights(eye.transport, eye.pass,
+                            {set, 0, 1, 0, -1, std::span(chosen, size_t(count))}, eye.max_depth,
+                            &place, 1, &light);
   }
   if (!eye.pass.photons.empty())
     for (int i = 0; i < asked; i++)
@@ -96,7 +100,7 @@ vec3 gathered(const EyeLight& eye, Walk walk, Sampler& sampler) {
       asked.throughput *= taken;
       if (!met.material->unlit && survives(asked, 2, sampler))
         radiance += asked.throughput * eval_rough(eye, walk, met.surface, met.bsdf, sharp_alpha, 1,
-                                                  chained ? 1 : near_step, sampler);
+                                                  chained ? chained_lights : near_lights, sampler);
     }
     if (met.material->unlit || !eye.pass.sharp || !has_sharp(met.bsdf, sharp_alpha) ||
         walk.depth >= eye.max_depth)
@@ -144,9 +148,9 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
     if (met.material->unlit) return radiance;
     bool last = walk.depth >= eye.max_depth;
     if (!last) {
-      uint32_t step = mirror_step(walk);
+      int asked = mirror_lights(walk);
       radiance += walk.throughput * eval_rough(eye, walk, met.surface, met.bsdf, mirror_alpha,
-                                               step == 1 ? mirror_sets : 1, step, sampler);
+                                               asked > 5 ? mirror_sets : 1, asked, sampler);
     }
     BsdfSample scattered;
     if (last) {  // only straight on, where a shadow ray would have gone too

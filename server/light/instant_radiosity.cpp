@@ -5,8 +5,10 @@
 
 #include "light/caustic_photons.h"
 #include "light/discontinuity_buffer.h"
+#include "light/edge_samples.h"
 #include "light/eye_light.h"
 #include "light/first_surface.h"
+#include "light/split_reflectance.h"
 #include "light/technique_list.h"
 
 namespace wellspring {
@@ -19,24 +21,20 @@ struct Eye {
   Sampler sampler;
   Sample sample;
   FirstSurface first;
-  int set = 0;
+  int set = 0, region = -1;
   bool soft = false;    // rough gloss is filtered with the diffuse light
   vec3 reflectance{0};  // sample.albedo without the tint
   PlaceLight light;
 };
 
-// Of reflectance 1, so that light is kept apart from what reflects it; without a diffuse layer the
-// colour of a rough metal takes its place.
-void split_reflectance(Eye& eye) {
+// Of reflectance 1, so that light is kept apart from what reflects it.
+void split_first(Eye& eye) {
   Bsdf& bsdf = eye.first.bsdf;
-  bool diffuse = max_component(bsdf.diffuse) > 1e-4f;
-  vec3 albedo = diffuse ? bsdf.diffuse : bsdf.metallic * bsdf.metal;
-  eye.soft = !has_sharp(bsdf, mirror_alpha) && !(max_component(bsdf.transmit) > 0) &&
-             std::min({albedo.x, albedo.y, albedo.z}) > 0.02f;
-  if (!diffuse && !eye.soft) albedo = vec3(0);
-  bsdf.diffuse = diffuse ? vec3(1) : vec3(0);
-  eye.reflectance = albedo;
-  eye.sample.albedo = albedo * eye.first.tint;
+  SplitReflectance split = split_reflectance(bsdf);
+  eye.soft = split.soft;
+  eye.reflectance = split.albedo;
+  eye.sample.albedo = split.albedo * eye.first.tint;
+  bsdf.diffuse = max_component(bsdf.diffuse) > 1e-4f ? vec3(1) : vec3(0);
   if (bsdf.alpha < 0.1f && bsdf.diffuse_share < 0.5f) eye.sample.flags |= sample_specular;
 }
 
@@ -102,29 +100,33 @@ void trace_many_instant(const World& world, const Lights& lights,
   std::vector<uint32_t> order;
   for (size_t i = 0; i < requests.size(); i++) {
     const Request& request = requests[i];
-    Eye& eye = eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, 0, false, {}, {}});
+    Eye& eye = eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, 0, -1, false, {}, {}});
     eye.set = set_of_pixel(pass, request.pixel);
+    eye.region = region_of_pixel(pass, request.pixel);
     if (settings.max_depth < 1) continue;
     eye.first =
         find_first_surface(transport, settings.max_depth, request, eye.sampler, eye.sample);
     if (!eye.first.scatters) continue;
-    split_reflectance(eye);
+    split_first(eye);
     order.push_back(uint32_t(i));
   }
-  // Pixels of one set side by side, as near to each other as they were asked for.
+  // Pixels of one region and set side by side, as near to each other as they were asked for.
+  auto key = [&](uint32_t i) { return std::pair(eyes[i].region, eyes[i].set); };
   std::stable_sort(order.begin(), order.end(),
-                   [&](uint32_t a, uint32_t b) { return eyes[a].set < eyes[b].set; });
+                   [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
   for (size_t begin = 0; begin < order.size();) {
     LitPlace places[RayPacket::lanes];
     PlaceLight light[RayPacket::lanes];
-    int set = eyes[order[begin]].set, count = 0;
+    auto [region, set] = key(order[begin]);
+    int count = 0;
     for (; count < RayPacket::lanes && begin + size_t(count) < order.size(); count++) {
       const Eye& eye = eyes[order[begin + size_t(count)]];
-      if (eye.set != set) break;
+      if (eye.set != set || eye.region != region) break;
       places[count] = {&eye.first.surface, &eye.first.bsdf, &eye.first.walk.media,
                        eye.first.walk.depth, mirror_alpha};
     }
-    shade_by_point_lights(transport, pass, {set}, settings.max_depth, places, count, light);
+    shade_by_point_lights(transport, pass, {set, 0, 1, 0, region}, settings.max_depth, places, count,
+                          light);
     for (int i = 0; i < count; i++) eyes[order[begin + size_t(i)]].light = light[i];
     begin += size_t(count);
   }
@@ -151,17 +153,25 @@ void begin_instant(const World& world, const TransportSettings& settings, const 
   here.instant.photons = std::min(settings.instant.photons, pixels);
   here.instant.candidates =
       std::clamp(pixels / pixels_a_candidate, 1, std::max(1, settings.instant.candidates));
-  lights.pass = std::make_shared<InstantPass>(
+  if (here.instant.candidates == 1) here.instant.walks = std::max(1, settings.instant.walks / 4);
+  auto pass = std::make_shared<InstantPass>(
       draw_instant_pass({world, *lights.tables}, here, view, seed, index));
+  pass->settings = settings;
+  pass->seed = seed;
+  pass->index = index;
+  lights.pass = std::move(pass);
 }
 
-void finish_instant(const World&, const Lights& lights, const View& view,
+void finish_instant(const World& world, const Lights& lights, const View& view,
                     std::span<Sample> samples) {
   if (!lights.pass) return;
+  const InstantPass& pass = *lights.pass;
   DiscontinuitySettings settings;
-  settings.columns = lights.pass->columns;
-  settings.rows = lights.pass->rows;
+  settings.columns = pass.columns;
+  settings.rows = pass.rows;
   filter_smooth(view, settings, samples);
+  refine_edges(world, lights, pass.settings, view, settings, pass.settings.instant.edge_rays,
+               mix64(pass.seed ^ 0x6564676573ull), pass.index, samples);
 }
 
 }  // namespace wellspring

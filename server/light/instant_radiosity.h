@@ -11,12 +11,15 @@
 //                                   clipping took is gathered by a ray or missing
 //   rough, then sharp ..., a light  caustic photons (section 4.1; caustic_photons.h)
 //   rough, then sharp ..., rough    gathered by a ray
-// Differs from the paper: lights are chosen by their effect on the view (view_probes.h); Owen scrambling,
+// Differs from the paper: lights are chosen by their effect on the view (view_probes.h) and of those a
+// few for each region of the picture (region_lights.h), so that there are many more lights than shadow
+// rays of a pixel; edges get more rays from the eye (edge_samples.h); Owen scrambling,
 // which adds to the paper's XOR by a random bit vector only that the vector depends on the bits before,
 // and decorrelates the dimensions of the shared Sampler better;
 // rays instead of nothing for the last line; sets complement each other over passes as well.
 // Not claimed: light of moving emitters, colours split by glass.
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "light/light_walk.h"
@@ -44,6 +47,21 @@ struct PointLight {
   vec3 radiance{0};      // matt: intensity at cosine 1; scattering: flux; else a factor
 };
 
+// Point lights that each region of the picture asks (region_lights.h).
+struct RegionLight {
+  uint32_t light = 0;  // of the pass
+  float factor = 1;    // on its radiance
+};
+struct RegionLights {
+  static constexpr int across = 4;  // pixels of one set in a row of a region: 16 are a packet
+  int width = 0, height = 0;        // pixels of a region
+  int columns = 0;                  // 0: no regions, every pixel asks its whole set
+  std::vector<uint32_t> first;      // of region * sets + set, and the end
+  std::vector<RegionLight> lights;
+};
+
+struct LightLanes;  // light_lanes.h
+
 // What one pass has drawn.
 struct InstantPass {
   int columns = 1, rows = 1, width = 1;  // sets, and pixels in a row of the picture
@@ -52,7 +70,13 @@ struct InstantPass {
   std::vector<PointLight> lights;          // set by set, depths ascending in a set
   std::vector<uint32_t> first;             // of each set, and the end
   std::vector<Arrival> arrivals;
+  std::shared_ptr<const LightLanes> lanes;  // of all lights
+  RegionLights regions;
   std::vector<PhotonGrid> photons;  // of each set; none without caustics
+  // What it was drawn with.
+  TransportSettings settings;
+  uint64_t seed = 0;
+  uint32_t index = 0;
   int sets() const { return columns * rows; }
 };
 
@@ -60,6 +84,15 @@ struct InstantPass {
 inline int set_of_pixel(const InstantPass& pass, uint32_t pixel) {
   int x = int(pixel % uint32_t(pass.width)), y = int(pixel / uint32_t(pass.width));
   return y % pass.rows * pass.columns + x % pass.columns;
+}
+
+// The region that a pixel is in; -1: there are none.
+inline int region_of_pixel(const InstantPass& pass, uint32_t pixel) {
+  const RegionLights& regions = pass.regions;
+  if (regions.columns == 0) return -1;
+  int x = int(pixel % uint32_t(pass.width)), y = int(pixel / uint32_t(pass.width));
+  size_t region = size_t(y / regions.height * regions.columns + x / regions.width);
+  return (region + 1) * size_t(pass.sets()) < regions.first.size() ? int(region) : -1;
 }
 
 // For any view: every walk's lights are kept.

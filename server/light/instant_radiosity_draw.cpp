@@ -9,6 +9,8 @@
 #include "light/caustic_photons.h"
 #include "light/emission.h"
 #include "light/instant_radiosity.h"
+#include "light/light_lanes.h"
+#include "light/region_lights.h"
 #include "light/view_probes.h"
 #include "light/warp.h"
 
@@ -17,7 +19,8 @@ namespace {
 
 constexpr uint64_t place_stream = 0x706c616365ull, walk_stream = 0x77616c6bull,
                    photon_stream = 0x70686f746full, probe_stream = 0x70726f6265ull,
-                   choice_stream = 0x63686f696365ull;
+                   choice_stream = 0x63686f696365ull,
+                   region_stream = 0x726567696f6eull;
 
 struct DrawnSet {
   std::vector<PointLight> lights;
@@ -47,8 +50,7 @@ void add_place(const Transport& transport, float share, Sampler& sampler, DrawnS
   size_t triangles = tables.emitters.size(), punctual = tables.punctual.size();
   PointLight light;
   if (pick.index < triangles) {
-    EmitterPlace place =
-        eval_emitter_place(transport, pick.index, sample_triangle({pick.u, u.y}));
+    EmitterPlace place = sample_emitter_place(transport, pick.index, {pick.u, u.y});
     light.position = place.surface.position;
     light.normal = place.surface.geometric_normal;
     light.target = offset_origin(place.surface, light.normal);
@@ -201,13 +203,14 @@ float photon_radius(const InstantRadiositySettings& s, float size, uint32_t inde
   return s.photon_radius > 0 ? s.photon_radius : shrunk_radius(0.008f * size, index);
 }
 
-void join_sets(std::vector<DrawnSet>& sets, InstantPass& pass) {
+void join_sets(const LightTables& tables, std::vector<DrawnSet>& sets, InstantPass& pass) {
   for (DrawnSet& set : sets) {
     sort_by_depth(set);
     pass.first.push_back(uint32_t(pass.lights.size()));
     append(set, pass.lights, pass.arrivals);
   }
   pass.first.push_back(uint32_t(pass.lights.size()));
+  pass.lanes = std::make_shared<LightLanes>(make_light_lanes(tables, pass));
 }
 
 // `places` or `walks` from the number `before` of their sequences on, side by side.
@@ -257,7 +260,7 @@ InstantPass draw_instant_pass(const Transport& transport, const TransportSetting
   });
   if (pass.sharp)
     draw_photons(transport, settings, photon_radius(s, size, index), seed, index, pass);
-  join_sets(sets, pass);
+  join_sets(tables, sets, pass);
   return pass;
 }
 
@@ -306,7 +309,9 @@ InstantPass draw_instant_pass(const Transport& transport, const TransportSetting
   keep(bounced, number, std::clamp(s.bounced, 0, 1 << 16));
   if (pass.sharp)
     draw_photons(transport, settings, photon_radius(s, size, index), seed, index, pass);
-  join_sets(sets, pass);
+  join_sets(tables, sets, pass);
+  choose_region_lights(transport, view, settings.max_depth, std::min(s.asked, 1 << 10),
+                       mix64(seed ^ region_stream), index, pass);
   return pass;
 }
 

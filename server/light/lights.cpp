@@ -7,6 +7,7 @@
 #include "light/caustic_photons.h"
 #include "light/light_bounds.h"
 #include "light/light_tables.h"
+#include "light/pane_boxes.h"
 #include "world/surface.h"
 
 namespace wellspring {
@@ -198,6 +199,7 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   }
   tables->casters = find_casters(world, plan, false);
   tables->any_pane = plan.uses(panes);
+  if (tables->any_pane) tables->pane_boxes = make_pane_boxes(world, tables->materials);
   tables->any_solid = plan.uses(refraction);
   tables->any_tint = plan.uses(absorption);
   if (tables->any_solid) tables->solids = find_solid_bounds(world, plan);

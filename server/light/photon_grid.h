@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Photons found by place: a grid of cells twice the query's radius wide, hashed, so that a query looks
 // at 8 cells and nothing is stored for empty ones (Wald et al. 2002, section 4.1). The radius is fixed
-// when the grid is made.
+// when the grid is made. Photons lie side by side, cell by cell, and are looked at eight at a time.
 #pragma once
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "base/lanes.h"
 #include "base/vec.h"
 
 namespace wellspring {
@@ -19,11 +20,27 @@ struct Photon {
   vec3 normal{0, 1, 0};  // geometric, of the surface it hit
 };
 
+// One number of every photon, and eight more that may be read.
+struct PhotonColumn {
+  std::vector<float> values;
+  Lanes at(size_t i) const { return load_lanes(&values[i]); }
+};
+struct PhotonColumns3 {
+  PhotonColumn x, y, z;
+  vec3 at(size_t i) const { return {x.values[i], y.values[i], z.values[i]}; }
+};
+
 struct PhotonGrid {
   float radius = 0;
   uint32_t mask = 0;            // buckets - 1
   std::vector<uint32_t> first;  // of each bucket, and the end
-  std::vector<Photon> photons;  // bucket by bucket
+  // Bucket by bucket.
+  PhotonColumns3 position, flux, direction, normal;
+  PhotonColumn depth;
+  size_t size() const { return first.empty() ? 0 : first.back(); }
+  Photon photon(size_t i) const {
+    return {position.at(i), uint32_t(depth.values[i]), flux.at(i), direction.at(i), normal.at(i)};
+  }
 };
 
 // Photons that are nowhere (not finite) are left out. `radius` > 0.
@@ -35,25 +52,40 @@ inline uint32_t photon_bucket(const PhotonGrid& grid, int64_t x, int64_t y, int6
   return uint32_t((hash ^ hash >> 32) * 0xd6e8feb86659fd93ull >> 32) & grid.mask;
 }
 
-// visit(photon) for each within the radius of `place`, each once.
+// visit(at, within) for eights of photons from number `at` on, among them each within the radius of
+// `place` once: those whose lane of `within` is not 0.
 template <class Visit>
-void for_each_photon(const PhotonGrid& grid, vec3 place, const Visit& visit) {
-  if (grid.photons.empty() || !is_finite(place)) return;
+void for_each_photons(const PhotonGrid& grid, vec3 place, const Visit& visit) {
+  if (grid.size() == 0 || !is_finite(place)) return;
   dvec3 corner = glm::floor(dvec3(place) / (2.0 * double(grid.radius)) - 0.5);
   int64_t x = int64_t(corner.x), y = int64_t(corner.y), z = int64_t(corner.z);
   uint32_t seen[8];
   float radius2 = grid.radius * grid.radius;
+  const LaneMask lane = {0, 1, 2, 3, 4, 5, 6, 7};
   for (int i = 0; i < 8; i++) {
     uint32_t bucket = photon_bucket(grid, x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
     seen[i] = bucket;
+    uint32_t begin = grid.first[bucket], end = grid.first[bucket + 1];
+    if (begin == end) continue;
     bool again = false;  // cells may share a bucket
     for (int k = 0; k < i; k++) again |= seen[k] == bucket;
     if (again) continue;
-    for (uint32_t p = grid.first[bucket]; p < grid.first[bucket + 1]; p++) {
-      vec3 d = grid.photons[p].position - place;
-      if (dot(d, d) <= radius2) visit(grid.photons[p]);
+    for (uint32_t p = begin; p < end; p += lane_count) {
+      Lanes dx = grid.position.x.at(p) - place.x, dy = grid.position.y.at(p) - place.y,
+            dz = grid.position.z.at(p) - place.z;
+      LaneMask within = (dx * dx + dy * dy + dz * dz <= radius2) & (lane < int(end - p));
+      if (negative_lanes(within)) visit(size_t(p), within);
     }
   }
+}
+
+// visit(photon) for each within the radius of `place`, each once.
+template <class Visit>
+void for_each_photon(const PhotonGrid& grid, vec3 place, const Visit& visit) {
+  for_each_photons(grid, place, [&](size_t at, LaneMask within) {
+    for (int i = 0; i < lane_count; i++)
+      if (within[i]) visit(grid.photon(at + size_t(i)));
+  });
 }
 
 }  // namespace wellspring

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "light/emission.h"
+#include "light/pane_boxes.h"
 #include "light/walk.h"
 
 namespace wellspring {
@@ -54,15 +55,16 @@ Group make_group(const LitPlace* places, int count) {
   return group;
 }
 
-// Aims every lane's ray from where it leaves its surface to `target`; unit of t: the way there.
+// Aims every lane's ray from `target` to where it would leave its surface; unit of t: the way there. Rays
+// with one origin make a narrower packet than rays with one end.
 void aim(const Group& group, vec3 target, RayPacket& rays) {
   for (int i = 0; i < lanes; i++) {
-    rays.origin_x[i] = group.origin.x[i];
-    rays.origin_y[i] = group.origin.y[i];
-    rays.origin_z[i] = group.origin.z[i];
-    rays.direction_x[i] = target.x - group.origin.x[i];
-    rays.direction_y[i] = target.y - group.origin.y[i];
-    rays.direction_z[i] = target.z - group.origin.z[i];
+    rays.origin_x[i] = target.x;
+    rays.origin_y[i] = target.y;
+    rays.origin_z[i] = target.z;
+    rays.direction_x[i] = group.origin.x[i] - target.x;
+    rays.direction_y[i] = group.origin.y[i] - target.y;
+    rays.direction_z[i] = group.origin.z[i] - target.z;
     rays.t_max[i] = 1;
   }
 }
@@ -118,7 +120,7 @@ void see_area(const Group& group, const PointLight& light, float clip2, Seen& se
     if (!(odd >> i & 1)) continue;
     vec3 origin = offset_origin(*group.places[i].surface, seen.direction.at(i));
     vec3 target = back[i] ? 2.0f * light.position - light.target : light.target;
-    aim_lane(seen.rays, i, origin, target - origin, 1);
+    aim_lane(seen.rays, i, target, origin - target, 1);
   }
 }
 
@@ -168,21 +170,26 @@ void see_punctual(const LightTables& tables, const Group& group, size_t index, S
   for (int i = 0; odd >> i != 0; i++) {
     if (!(odd >> i & 1)) continue;
     vec3 origin = offset_origin(*group.places[i].surface, seen.direction.at(i));
-    aim_lane(seen.rays, i, origin, punctual.position - origin, 1);
+    aim_lane(seen.rays, i, punctual.position, origin - punctual.position, 1);
   }
 }
 
 // What of the light arrives through thin panes where something is in between.
 vec3 through_panes(const Transport& transport, const Group& group, const PointLight& light,
                    const Seen& seen, int i) {
-  if (!transport.tables.any_pane) return vec3(0);
   vec3 origin{seen.rays.origin_x[i], seen.rays.origin_y[i], seen.rays.origin_z[i]};
   vec3 way{seen.rays.direction_x[i], seen.rays.direction_y[i], seen.rays.direction_z[i]};
+  Ray ray;
+  ray.origin = origin;
+  ray.direction = way;
+  ray.t_max = seen.rays.t_max[i];
+  if (!may_cross_pane(transport.tables, ray)) return vec3(0);
   LightSample sample;
   sample.direction = normalize(way);
   if (std::isfinite(seen.rays.t_max[i])) {
+    sample.direction = -sample.direction;
     sample.distance = std::sqrt(seen.distance2[i]);
-    sample.target = origin + way;
+    sample.target = origin;
   }
   return eval_visibility(transport, *group.places[i].surface, sample);
 }
@@ -208,6 +215,41 @@ void add_lane(const Transport& transport, const Group& group, const PointLight& 
   (light.exact ? sum.exact_specular : sum.specular) += value.specular * radiance;
 }
 
+uint32_t occluded_each(const World& world, const RayPacket& rays, uint32_t active) {
+  uint32_t blocked = 0;
+  for (int i = 0; active >> i != 0; i++) {
+    if (!(active >> i & 1)) continue;
+    Ray ray;
+    ray.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
+    ray.direction = {rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]};
+    ray.t_min = 0;
+    ray.t_max = rays.t_max[i];
+    blocked |= uint32_t(world.occluded(ray)) << i;
+  }
+  return blocked;
+}
+
+// Calls visit(light, factor) for every light that is asked.
+template <class Visit>
+void for_each_asked(const InstantPass& pass, const SetShare& choice, const Visit& visit) {
+  for (const RegionLight& one : choice.few) visit(pass.lights[one.light], one.factor);
+  if (!choice.few.empty()) return;
+  bool numbered = choice.end != 0;
+  uint32_t end = numbered ? choice.end : pass.first[size_t(choice.set) + 1],
+           begin = numbered ? choice.start : pass.first[size_t(choice.set)];
+  if (choice.region < 0) {
+    if (!numbered) begin += choice.start;
+    for (uint32_t k = begin; k < end; k += choice.step) visit(pass.lights[k], float(choice.step));
+    return;
+  }
+  for (uint32_t k = begin; k < end && pass.lights[k].depth == 0; k++)
+    if (pass.lights[k].exact) visit(pass.lights[k], 1.0f);
+  size_t cell = size_t(choice.region) * size_t(pass.sets()) + size_t(choice.set);
+  const RegionLights& regions = pass.regions;
+  for (uint32_t k = regions.first[cell]; k < regions.first[cell + 1]; k++)
+    visit(pass.lights[regions.lights[k].light], regions.lights[k].factor);
+}
+
 }  // namespace
 
 void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
@@ -218,13 +260,9 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
   for (int i = 0; i < count; i++) deepest = std::max(deepest, max_depth - 1 - places[i].depth);
   float clip2 = pass.clip * pass.clip;
   Seen seen;
-  bool all = choice.end == 0;
-  uint32_t end = all ? pass.first[size_t(choice.set) + 1] : choice.end,
-           begin = all ? pass.first[size_t(choice.set)] + choice.start : choice.start;
-  for (uint32_t k = begin; k < end; k += choice.step) {
-    const PointLight& source = pass.lights[k];
-    if (source.depth > deepest) break;  // they ascend
-    vec3 radiance = source.radiance * float(choice.step);
+  for_each_asked(pass, choice, [&](const PointLight& source, float factor) {
+    if (source.depth > deepest) return;
+    vec3 radiance = source.radiance * factor;
     switch (source.kind) {
       case PointLightKind::punctual:
         see_punctual(transport.tables, group, source.index, seen);
@@ -235,8 +273,10 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
     }
     for (int i = 0; i < count; i++)
       if (places[i].depth + 1 + int(source.depth) > max_depth) seen.active &= ~(1u << i);
-    if (seen.active == 0) continue;
-    uint32_t blocked = transport.world.occluded_packet(seen.rays, seen.active);
+    if (seen.active == 0) return;
+    uint32_t blocked = choice.few.empty()
+                           ? transport.world.occluded_packet(seen.rays, seen.active)
+                           : occluded_each(transport.world, seen.rays, seen.active);
     uint32_t clear = seen.active & ~blocked;
     bool quick = source.kind != PointLightKind::scattering && !source.exact;
     for (int i = 0; i < lanes; i++) {
@@ -250,14 +290,14 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
     for (int i = 0; slow >> i != 0; i++)
       if (slow >> i & 1)
         add_lane(transport, group, source, pass, seen, radiance, i, light[i]);
-    if (!transport.tables.any_pane) continue;
+    if (!transport.tables.any_pane) return;
     for (int i = 0; blocked >> i != 0; i++) {
       if (!(blocked >> i & 1)) continue;
       vec3 tint = through_panes(transport, group, source, seen, i);
       if (max_component(tint) > 0)
         add_lane(transport, group, source, pass, seen, radiance * tint, i, light[i]);
     }
-  }
+  });
   for (int i = 0; i < count; i++)
     if (group.matt >> i & 1) light[i].diffuse += group.sum.at(i) * places[i].bsdf->diffuse / pi;
 }

@@ -2,6 +2,8 @@
 // What the point lights of one set do to places (first sum of the paper's section 4). Up to 16 places at
 // once, for each light in turn: neighbours' shadow rays to one light are nearly the same ray.
 #pragma once
+#include <span>
+
 #include "light/instant_radiosity.h"
 
 namespace wellspring {
@@ -22,10 +24,13 @@ struct PlaceLight {
 };
 
 // Of a set's lights, every `step`-th from a start drawn at random counts `step` times. `end`: those
-// numbered [start, end) of all sets instead.
+// numbered [start, end) of all sets instead. `region`: the set's exact lights and those chosen for the
+// region instead. `few`: these instead, by rays of their own.
 struct SetShare {
   int set = 0;
   uint32_t start = 0, step = 1, end = 0;
+  int region = -1;
+  std::span<const RegionLight> few = {};
 };
 
 // Adds to light[i] that of places[i], i below `count`, at most 16. What one place gets does not

@@ -93,7 +93,9 @@ std::vector<ChosenLight> choose_lights(const Transport& transport, const ViewPro
     for (int k = first; k < last; k++) {
       PlaceLight light[RayPacket::lanes];
       uint32_t at = begin + uint32_t(k);
-      for (size_t p = 0; p < probes.places.size(); p += RayPacket::lanes) {
+      constexpr size_t turns = 2;  // candidates in turn ask one half of the probes and the other
+      for (size_t p = size_t(k) % turns * RayPacket::lanes; p < probes.places.size();
+           p += turns * RayPacket::lanes) {
         int count = int(std::min<size_t>(RayPacket::lanes, probes.places.size() - p));
         std::fill_n(light, count, PlaceLight{});
         shade_by_point_lights(transport, candidates, {0, at, 1, at + 1}, max_depth,

@@ -82,7 +82,7 @@ void bench_light_photons(BenchReport& report, const BenchOptions& options) {
     query.push_back(1000 * (seconds_now() - stored));
   }
   size_t kept = 0, lit = 0;
-  for (const PhotonGrid& grid : grids) kept += grid.photons.size();
+  for (const PhotonGrid& grid : grids) kept += grid.size();
   for (vec3 l : light) lit += max_component(l) > 0;
   double store_ms = quantile(store, 0.5), query_ms = quantile(query, 0.5);
   report.add("light.caustics.photons_ms", store_ms + query_ms, "ms",

@@ -47,7 +47,7 @@ TEST(PhotonGrid, FindsWhatAnExactSearchFinds) {
     }
     photons[7].position.x = std::numeric_limits<float>::quiet_NaN();
     PhotonGrid grid = make_photon_grid(photons, radius);
-    EXPECT_EQ(grid.photons.size(), photons.size() - 1);
+    EXPECT_EQ(grid.size(), photons.size() - 1);
     for (int q = 0; q < 300; q++) {
       vec3 place = q % 2 ? photons[size_t(q + 8)].position
                          : vec3(rng.uniform(), -rng.uniform(), rng.uniform());
