@@ -122,7 +122,7 @@ def make_bodice(gown, trim):
     cloth.grid(rows)
     for side in (1, -1):
         lines = []
-        for y in ys:
+        for y in ys[:-3]:  # they end under the cape
             x0 = lerp(0.014, 0.058, smoothstep(1.05, 1.30, y))
             line = []
             for e in range(4):

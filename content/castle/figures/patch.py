@@ -62,6 +62,7 @@ class Patch:
         self.weights += other.weights
         self.tags += other.tags
         self.triangles += [(a + base, b + base, c + base) for a, b, c in other.triangles]
+        self.normals.update({i + base: n for i, n in other.normals.items()})
 
     def drop_unused(self):
         """Forgets vertices no triangle uses; {old index: new index}."""
