@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "avatar/bone_surface.h"
 #include "avatar/character_load.h"
 #include "avatar/describe.h"
 #include "avatar/expression_sum.h"
@@ -113,7 +114,7 @@ int fail(const std::string& text, int status) {
   return status;
 }
 
-int run(const Options& options) {
+int run(Options options) {
   StudioShot shot;
   if (!read_size(options.size, shot)) return fail("--size wants WIDTHxHEIGHT, 16 to 8192 each", 2);
   if (!options.out.empty() && !is_picture_name(options.out))
@@ -137,7 +138,11 @@ int run(const Options& options) {
   if (options.json) std::cout << describe_json(character);
   else if (options.info || options.out.empty()) std::cout << describe_text(character);
   if (options.out.empty()) return 0;
+  bool is_motion = character.parts.empty();  // then what it shows is its motion
+  add_bone_surface(character);
 
+  if (options.motion.empty() && is_motion && !character.motions.empty())
+    options.motion = character.motions[0].name;
   Pose pose = options.motion.empty() ? pose_at(character, options) : make_rest_pose(character);
   if (!options.motion.empty()) {
     Motion motion = find_motion(character, options.motion);

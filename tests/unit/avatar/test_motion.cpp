@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "avatar/body.h"
+#include "avatar/bone_surface.h"
 #include "avatar/retarget.h"
 #include "avatar/skin.h"
 #include "base/load_error.h"
@@ -138,6 +139,23 @@ TEST(Bvh, ChannelsComposeInTheirOrder) {
   quat turn = glm::angleAxis(pi / 6, vec3(0, 0, 1)) * glm::angleAxis(pi * 40 / 180, vec3(1, 0, 0)) *
               glm::angleAxis(pi * 50 / 180, vec3(0, 1, 0));
   EXPECT_LT(glm::length(bone_of(c, pose, "l_shoulder", "l_elbow") - turn * vec3(1, 0, 0)), 1e-4f);
+}
+
+TEST(Bvh, ASkeletonAloneHasBonesToLookAt) {
+  Character c = load_bvh(bvh(true, one_frame({})));
+  ASSERT_TRUE(c.parts.empty());
+  add_bone_surface(c);
+  ASSERT_EQ(c.parts.size(), 1u);
+  EXPECT_EQ(c.parts[0].triangles.size(), 8 * (14 + 5u)) << "a bone between joints, and five ends";
+  EXPECT_EQ(c.first_weight.size(), c.positions.size() + 1);
+  for (uvec3 t : c.parts[0].triangles) {  // outside is outside
+    vec3 a = c.positions[t.x], n = c.normals[t.x];
+    EXPECT_NEAR(dot(n, normalize(cross(c.positions[t.y] - a, c.positions[t.z] - a))), 1, 1e-4f);
+  }
+  Character person = test::load_text(make_person().gltf(), ".gltf");
+  size_t vertices = person.positions.size();
+  add_bone_surface(person);
+  EXPECT_EQ(person.positions.size(), vertices);
 }
 
 TEST(Bvh, BrokenFilesNameTheLine) {
