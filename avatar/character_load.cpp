@@ -29,12 +29,14 @@ std::string read_file(const std::string& path) {
   return text;
 }
 
-// A GLB container, or JSON with glTF's "asset" rather than X3D's "X3D" (its first object).
+// A GLB container, or JSON whose first word is not X3D's and that has glTF's "asset".
 bool is_gltf(const std::string& text) {
   if (text.compare(0, 4, "glTF") == 0) return true;
   size_t brace = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
-  return brace != std::string::npos && text[brace] == '{' && text.find("\"asset\"") != std::string::npos &&
-         text.find("\"X3D\"") == std::string::npos;
+  if (brace == std::string::npos || text[brace] != '{') return false;
+  size_t word = text.find_first_not_of(" \t\r\n", brace + 1);
+  return word != std::string::npos && text.compare(word, 5, "\"X3D\"") != 0 &&
+         text.find("\"asset\"") != std::string::npos;
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ std::vector<size_t> choose_nodes(GltfFigure& figure) {
     for (const json& channel : items(animation, "channels"))
       if (const json* node = gltf::find(channel["target"], "node"))
         if (gltf::text(channel["target"], "path") != "weights") moving[node->get<size_t>()] = 1;
-  if (!any) {  // parts that hang on named nodes, without a skin
+  if (!any && figure.nodes.size() <= 5 * joint_limit) {  // parts that hang on named nodes
     std::vector<size_t> all = gltf_parents_first(figure.nodes);
     std::vector<Bone> bones;
     std::vector<int> place_of(figure.nodes.size(), -1);
@@ -73,21 +73,23 @@ std::vector<size_t> choose_nodes(GltfFigure& figure) {
     size_t known = 0;
     for (size_t k = 0; k < all.size(); k++)
       if (!named.joints[k].empty()) wanted[all[k]] = 1, known++;
-    if (known < 6 || named.by_shape)
-      gltf::refuse(figure.file, "", "no skin, no VRM humanoid and no bones by name: not a figure");
+    any = known >= 6 && !named.by_shape;
   }
-  for (size_t i = 0; i < wanted.size(); i++) {
-    if (wanted[i] != 1) continue;
-    int last = -1;
-    for (int up = figure.nodes[i].parent, steps = 0; up >= 0; up = figure.nodes[size_t(up)].parent, steps++)
-      if (wanted[size_t(up)] || moving[size_t(up)]) last = up;
-    for (int up = last < 0 ? -1 : figure.nodes[i].parent; up >= 0; up = figure.nodes[size_t(up)].parent) {
-      if (!wanted[size_t(up)]) wanted[size_t(up)] = 2;
-      if (up == last) break;
-    }
+  if (!any) gltf::refuse(figure.file, "", "no skin, no VRM humanoid and no bones by name: not a figure");
+  // Between two of them, and between a moving node and one of them, all are joints.
+  std::vector<size_t> order = gltf_parents_first(figure.nodes);
+  std::vector<char> carries(wanted), hangs(wanted.size(), 0);  // one of them below, one above
+  for (size_t k = order.size(); k-- > 0;)
+    if (int parent = figure.nodes[order[k]].parent; parent >= 0 && carries[order[k]])
+      carries[size_t(parent)] = 1;
+  for (size_t i : order) {
+    int parent = figure.nodes[i].parent;
+    hangs[i] = parent >= 0 && (hangs[size_t(parent)] || wanted[size_t(parent)] ||
+                               (moving[size_t(parent)] && carries[size_t(parent)]));
+    if (carries[i] && (hangs[i] || moving[i])) wanted[i] = 1;
   }
   std::vector<size_t> chosen;
-  for (size_t i : gltf_parents_first(figure.nodes))
+  for (size_t i : order)
     if (wanted[i]) chosen.push_back(i);
   if (chosen.size() > joint_limit)
     gltf::refuse(figure.file, "/skins", "more than " + std::to_string(joint_limit) + " joints");
@@ -221,6 +223,10 @@ void read_gltf_joints(GltfFigure& figure) {
   figure.joint_of.assign(figure.nodes.size(), -1);
   for (size_t j = 0; j < figure.node_of.size(); j++) figure.joint_of[figure.node_of[j]] = int(j);
   for (const gltf::Node& node : figure.nodes) figure.rest.push_back(node.global);
+  figure.nearest_joint = figure.joint_of;
+  for (size_t i : gltf_parents_first(figure.nodes))
+    if (int parent = figure.nodes[i].parent; figure.nearest_joint[i] < 0 && parent >= 0)
+      figure.nearest_joint[i] = figure.nearest_joint[size_t(parent)];
 
   const json& skins = items(figure.file.root, "skins");
   SkinBind main;
@@ -243,8 +249,7 @@ void read_gltf_joints(GltfFigure& figure) {
   std::vector<Bone> bones;
   for (size_t node : figure.node_of) {
     int above = figure.nodes[node].parent;
-    while (above >= 0 && figure.joint_of[size_t(above)] < 0) above = figure.nodes[size_t(above)].parent;
-    int parent = above < 0 ? -1 : figure.joint_of[size_t(above)];
+    int parent = above < 0 ? -1 : figure.nearest_joint[size_t(above)];
     bones.push_back({gltf::text(items(figure.file.root, "nodes")[node], "name"), parent,
                      vec3(figure.rest[node][3])});
     character.joints.push_back({});

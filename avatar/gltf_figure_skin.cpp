@@ -16,7 +16,7 @@ using gltf::items;
 using gltf::json;
 using gltf::Used;
 
-constexpr size_t vertex_limit = 3'000'000, displacement_limit = 40'000'000;
+constexpr size_t vertex_limit = 3'000'000, displacement_limit = 20'000'000;
 constexpr float farthest = 1e15f;
 
 struct Reader {
@@ -74,10 +74,9 @@ std::vector<dmat4> Reader::read_weights(size_t node, const json& primitive, cons
   std::vector<dmat4> to_rest(used.size(), dmat4(0));
   if (!skin || !gltf::find(attributes, "JOINTS_0")) {
     if (skin) gltf::warn(file, at("/nodes", node), "a skin on a mesh without joints is ignored");
-    int up = int(node);
-    while (up >= 0 && figure.joint_of[size_t(up)] < 0) up = figure.nodes[size_t(up)].parent;
-    if (up < 0) gltf::warn(file, at("/nodes", node), "what hangs on no joint follows the root");
-    int joint = up < 0 ? 0 : figure.joint_of[size_t(up)];
+    int joint = figure.nearest_joint[node];
+    if (joint < 0) gltf::warn(file, at("/nodes", node), "what hangs on no joint follows the root");
+    joint = std::max(joint, 0);
     for (dmat4& m : to_rest) {
       m = figure.to_humanoid * figure.rest[node];
       character.weights.push_back({uint16_t(joint), 1});
@@ -298,6 +297,7 @@ void read_gltf_surfaces(GltfFigure& figure) {
 
 void read_gltf_expressions(GltfFigure& figure) {
   Character& character = figure.character;
+  size_t moved = 0;
   for (const VrmExpression& expression : figure.vrm.expressions) {
     std::map<uint32_t, vec3> sum;
     for (const VrmBind& bind : expression.binds) {
@@ -312,6 +312,8 @@ void read_gltf_expressions(GltfFigure& figure) {
         gltf::warn(figure.file, "", "expression '" + expression.name.substr(0, 60) + "' names no morph target");
         continue;
       }
+      if ((moved += move->second.vertices.size() + 1) > displacement_limit)
+        gltf::refuse(figure.file, "", "expressions move too many vertices");
       for (size_t i = 0; i < move->second.vertices.size(); i++)
         sum[move->second.vertices[i]] += move->second.displacements[i] * bind.weight;
     }

@@ -112,6 +112,10 @@ struct Converter {
 void read_gltf_motions(GltfFigure& figure) {
   std::vector<gltf::Clip> clips = gltf::read_clips(figure.file, figure.nodes);
   for (size_t c = 0; c < clips.size(); c++) {
+    if (figure.character.motions.size() >= most_motions) {
+      gltf::warn(figure.file, "/animations", "only the first " + std::to_string(most_motions) + " are kept");
+      break;
+    }
     Motion motion;
     motion.name = clips[c].name.empty() ? "animation " + std::to_string(c) : clips[c].name;
     motion.loop = true;

@@ -33,6 +33,8 @@ struct MotionTrack {
   quat frame{1, 0, 0, 0};
 };
 
+inline constexpr size_t most_motions = 512;  // that a figure keeps
+
 struct Motion {
   std::string name;
   float duration = 0;  // seconds

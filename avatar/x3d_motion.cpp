@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
+#include <tuple>
 #include <unordered_map>
 
 #include "avatar/hanim_names.h"
@@ -30,12 +32,10 @@ struct Turner {
   vec3 operator()(vec3 v) const { return linear * v; }
 };
 
-Motion empty_motion(const Character& character, const std::string& name) {
-  Motion motion;
-  motion.name = name;
-  for (const Joint& joint : character.joints)
-    motion.joints.push_back({joint.name, joint.parent, joint.center});
-  return motion;
+std::vector<MotionJoint> skeleton_of(const Character& character) {
+  std::vector<MotionJoint> joints;
+  for (const Joint& joint : character.joints) joints.push_back({joint.name, joint.parent, joint.center});
+  return joints;
 }
 
 void append(std::vector<float>& values, quat q) { values.insert(values.end(), {q.x, q.y, q.z, q.w}); }
@@ -92,7 +92,9 @@ void read_hanim_motion(HumanoidReader& reader, const X3dNode& node, const Turner
   X3dFile& file = reader.file;
   Character& character = reader.character;
   std::string name = string_of(node, "name");
-  Motion motion = empty_motion(character, name.empty() ? node.def : name);
+  Motion motion;
+  motion.name = name.empty() ? node.def : name;
+  motion.joints = skeleton_of(character);
   motion.loop = bool_of(node, "loop", false);
   auto done = [&] { character.motions.push_back(std::move(motion)); };
 
@@ -211,7 +213,8 @@ struct Router {
   std::unordered_map<std::string, int> by_def;
   std::unordered_map<int, int> joint_of;  // node -> joint
   std::unordered_map<int, std::vector<const X3dRoute*>> from;
-  size_t followed = 0;
+  size_t followed = 0, looked_at = 0, numbers = 0;
+  static constexpr size_t most_links = 200'000, most_numbers = 16'000'000;
 
   Router(HumanoidReader& of, const Turner& turns, int node) : reader(of), turner(turns), humanoid(node) {
     for (size_t i = 0; i < of.file.nodes.size(); i++)
@@ -227,7 +230,10 @@ struct Router {
   void follow(int sensor) {
     X3dFile& file = reader.file;
     const X3dNode& timer = file.nodes[size_t(sensor)];
-    Motion motion = empty_motion(reader.character, timer.def);
+    Motion motion;
+    motion.name = timer.def;
+    std::set<int> curves;  // a ROUTE may be written twice
+    std::set<std::tuple<int, int, std::string>> led;
     float cycle = float_of(file, timer, "cycleInterval", 1);
     if (!(cycle > 1e-3f && cycle < 1e6f)) cycle = 1;
     motion.duration = cycle;
@@ -236,13 +242,18 @@ struct Router {
       auto curve = by_def.find(to_curve->to_node);
       if (curve == by_def.end() || !is_field(to_curve->from_field, "fraction") || !is_field(to_curve->to_field, "fraction"))
         continue;
+      if (!curves.insert(curve->second).second) continue;
       for (const X3dRoute* to_joint : from[curve->second]) {
         auto target = by_def.find(to_joint->to_node);
-        if (target != by_def.end() && is_field(to_joint->from_field, "value"))
+        if (target == by_def.end() || !is_field(to_joint->from_field, "value")) continue;
+        if (++looked_at > most_links) throw LoadError(file.path, where(timer), "ROUTEs lead to too many joints");
+        if (led.insert({curve->second, target->second, to_joint->to_field}).second)
           add_track(motion, curve->second, target->second, to_joint->to_field, cycle);
       }
     }
-    if (!motion.tracks.empty()) reader.character.motions.push_back(std::move(motion));
+    if (motion.tracks.empty() || reader.character.motions.size() >= most_motions) return;
+    motion.joints = skeleton_of(reader.character);
+    reader.character.motions.push_back(std::move(motion));
   }
 
   void add_track(Motion& motion, int curve_node, int target, const std::string& field, float cycle) {
@@ -258,6 +269,8 @@ struct Router {
     MotionTrack track{rotation ? TrackKind::rotation : translation ? TrackKind::translation : TrackKind::displacer,
                       TrackCurve::linear, joint, {}, {}, {}};
     std::vector<float> keys = floats_of(file, curve, "key"), values = floats_of(file, curve, "keyValue");
+    numbers += keys.size() + values.size() + 100;
+    if (numbers > most_numbers) throw LoadError(file.path, where(curve), "interpolators have too many keys in all");
     size_t count = std::min(keys.size(), values.size() / width);
     if (keys.size() * width != values.size())
       warn_once(file.warnings, where(curve) + ": " + std::to_string(keys.size()) + " keys but " +
@@ -298,7 +311,8 @@ struct Router {
 void read_x3d_motions(HumanoidReader& reader, int humanoid) {
   Turner turner(reader.root);
   for (size_t i = 0; i < reader.file.nodes.size(); i++)
-    if (reader.file.nodes[i].type == "HAnimMotion") read_hanim_motion(reader, reader.file.nodes[i], turner);
+    if (reader.file.nodes[i].type == "HAnimMotion" && reader.character.motions.size() < most_motions)
+      read_hanim_motion(reader, reader.file.nodes[i], turner);
   Router router(reader, turner, humanoid);
   for (size_t i = 0; i < reader.file.nodes.size(); i++)
     if (reader.file.nodes[i].type == "TimeSensor" && !reader.file.nodes[i].def.empty()) router.follow(int(i));

@@ -35,6 +35,7 @@ constexpr int64_t dataless_limit = int64_t(1) << 22;  // of one accessor without
 constexpr int64_t numbers_limit = int64_t(1) << 29;   // decoded in all
 constexpr int64_t vertices_limit = 48'000'000;        // kept in all
 constexpr int64_t triangles_limit = 32'000'000;       // kept in all
+constexpr int64_t key_numbers_limit = int64_t(1) << 26;  // of animations, in all
 
 // Whether an accessor's bytes exist at all: glTF lets a buffer be declared without content.
 bool has_data(const File& file, size_t accessor);

@@ -45,7 +45,7 @@ struct File {
   int64_t decoded_numbers = 0;    // held in `decoded`
   std::vector<uint32_t> renamed;  // scratch of primitive.cpp: all unseen between primitives
   // Bounds of what a file may cost (gltf/data.h).
-  int64_t numbers_read = 0, vertices_made = 0, triangles_made = 0;
+  int64_t numbers_read = 0, vertices_made = 0, triangles_made = 0, keys_made = 0;
   bool pictures_may_fail = false;  // one that cannot be decoded is warned of, not refused
   std::vector<std::string> warnings;
   std::set<std::string> said;

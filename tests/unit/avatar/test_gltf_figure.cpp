@@ -166,6 +166,13 @@ TEST(GltfFigure, BadSkinsAreRefusedWithTheirPlace) {
     if (i == 0) EXPECT_NE(refusal(many).find("17 matrices for 18 joints"), std::string::npos);
   }
   EXPECT_NE(refusal(many).find("more than 4096 joints"), std::string::npos);
+  Asset chain = make_person();  // as deep as it is long
+  for (int i = 0; i < 200'000; i++) chain.root["nodes"].push_back({{"children", {19 + i}}});
+  chain.root["nodes"].push_back(json::object());
+  chain.root["scenes"][0]["nodes"].push_back(18);
+  EXPECT_EQ(refusal(chain), "") << "nodes that are no bones cost nothing";
+  chain.root["skins"][0]["joints"] = json::array({200'018, 18});
+  EXPECT_NE(refusal(chain), "");
   Asset stone = make_person();
   stone.root.erase("skins");
   stone.root["nodes"][17].erase("skin");

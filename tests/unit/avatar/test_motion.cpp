@@ -353,7 +353,13 @@ ROUTE P.value_changed TO root.translation
 ROUTE Clock.fraction TO S.fraction
 ROUTE S.value_changed TO D.weight
 )";
-  for (const Character& c : {test::load_text(xml), test::load_text(classic, ".x3dv")}) {
+  std::string many = xml;
+  std::string once = "<ROUTE fromNode='Clock' fromField='fraction_changed' toNode='O' toField='set_fraction'/>"
+                     "<ROUTE fromNode='O' fromField='value_changed' toNode='V' toField='rotation'/>";
+  std::string thousands;
+  for (int i = 0; i < 30'000; i++) thousands += once;
+  many.insert(many.find("<ROUTE"), thousands);
+  for (const Character& c : {test::load_text(xml), test::load_text(many), test::load_text(classic, ".x3dv")}) {
     ASSERT_EQ(c.motions.size(), 1u);
     EXPECT_EQ(c.motions[0].name, "Clock");
     EXPECT_EQ(c.motions[0].tracks.size(), 3u);
