@@ -111,7 +111,24 @@ void pose_eye(const Rig& rig, int side, vec3 point, Pose& pose) {
   float yaw = std::clamp(std::atan2(way.x, way.z), -eye_limit_yaw, eye_limit_yaw);
   float pitch = std::atan2(way.y, glm::length(vec2(way.x, way.z)));
   pitch = std::clamp(pitch, -eye_limit_down, eye_limit_up);
+  const EyeGain& gain = rig.character->eye_gain;
+  yaw *= (side == 0) == (yaw < 0) ? gain.inner : gain.outer;
+  pitch *= pitch > 0 ? gain.up : gain.down;
   pose.rotations[size_t(joint)] = about_y(yaw) * about_x(-pitch);
+}
+
+// Eyes drawn on the face look by shapes.
+void pose_drawn_eyes(const Rig& rig, vec3 point, Pose& pose) {
+  int joint = rig.skull >= 0 ? rig.skull : rig.root;
+  JointFrame head = eval_joint_frame(*rig.character, pose, joint);
+  vec3 eyes = head.center +
+              head.rotation * (rig.eyes_center - rig.character->joints[size_t(joint)].center);
+  vec3 way = glm::conjugate(head.rotation) * (point - eyes);
+  if (dot(way, way) < 1e-6f) return;
+  float yaw = std::atan2(way.x, way.z), pitch = std::atan2(way.y, glm::length(vec2(way.x, way.z)));
+  float wanted[4] = {pitch / eye_limit_up, -pitch / eye_limit_down, yaw / eye_limit_yaw, -yaw / eye_limit_yaw};
+  for (size_t i = 0; i < 4; i++)
+    if (rig.look[i] >= 0) pose.displacers[size_t(rig.look[i])] = std::clamp(wanted[i], 0.0f, 1.0f);
 }
 
 }  // namespace
@@ -158,7 +175,7 @@ void eval_body(const Rig& rig, const BodyPlan& plan, Pose& pose) {
 }
 
 void aim_eyes(const Rig& rig, vec3 gaze_point, Pose& pose) {
-  if (!rig.eyes_move) return;
+  if (!rig.eyes_move) return pose_drawn_eyes(rig, gaze_point, pose);
   for (int side = 0; side < 2; side++) pose_eye(rig, side, gaze_point, pose);
 }
 

@@ -10,11 +10,12 @@
 #include "avatar/describe.h"
 #include "avatar/expression_sum.h"
 #include "avatar/retarget.h"
+#include "avatar/speech_visemes.h"
 #include "avatar/storyteller.h"
 #include "base/load_error.h"
 #include "base/log.h"
 #include "frame/picture_file.h"
-#include "show/studio.h"
+#include "show/sheet.h"
 
 namespace wellspring {
 namespace {
@@ -22,7 +23,7 @@ namespace {
 struct Options {
   std::string file, out, size = "720x1080";
   std::vector<std::string> displacers;
-  std::string gesture, motion, skinning;
+  std::string gesture, motion, skinning, sheet;
   std::vector<std::string> expressions;
   std::vector<float> point, look;
   std::vector<float> guest;
@@ -109,6 +110,30 @@ void show_expressions(const Character& character, const std::vector<std::string>
   apply_controls(sum, rig, pose);
 }
 
+// Every expression, or every mouth shape, over the same pose.
+std::vector<SheetCell> sheet_cells(const Character& character, const std::string& sheet,
+                                   const Pose& pose) {
+  const ExpressionSet& set = default_expressions();
+  ExpressionRig rig = make_expression_rig(set, character);
+  std::vector<SheetCell> cells;
+  auto add_cell = [&](std::string label, int expression) {
+    if (expression >= 0 && !shows(rig, expression)) label += " (nothing)";
+    ExpressionSum sum;
+    clear(sum, rig);
+    add(sum, rig, expression, 1);
+    cells.push_back({label, pose});
+    apply_rotators(sum, rig, cells.back().pose);
+    apply_controls(sum, rig, cells.back().pose);
+  };
+  if (sheet == "visemes") {
+    for (size_t i = 0; i < viseme_count; i++) add_cell(viseme_names[i], rig.viseme[i]);
+    return cells;
+  }
+  add_cell("neutral", -1);
+  for (size_t i = 0; i < emotion_count; i++) add_cell(std::string(emotion_names[i]), rig.emotion[i]);
+  return cells;
+}
+
 int fail(const std::string& text, int status) {
   std::cerr << text << "\n";
   return status;
@@ -127,7 +152,7 @@ int run(Options options) {
     for (const GestureClip& clip : default_gestures().clips) names += " " + clip.name;
     return fail("--gesture: '" + options.gesture + "' is none of" + names, 2);
   }
-  shot.close = options.close;
+  shot.close = options.close || !options.sheet.empty();
   shot.turn = options.turn * pi / 180;
   shot.spp = options.spp;
 
@@ -167,7 +192,10 @@ int run(Options options) {
         equals == std::string::npos ? 1 : float(std::atof(setting.c_str() + equals + 1));
   }
   std::vector<std::string> warnings;
-  Frame frame = render_studio(character, pose, shot, warnings);
+  Frame frame = options.sheet.empty()
+                    ? render_studio(character, pose, shot, warnings)
+                    : render_sheet(character, sheet_cells(character, options.sheet, pose), shot, 0,
+                                   warnings);
   for (const std::string& warning : warnings) std::cerr << "note: " << warning << "\n";
   save_picture(options.out, frame, Tonemap{});
   return 0;
@@ -191,6 +219,8 @@ int main(int argc, char** argv) {
   app.add_option("--skinning", options.skinning, "how joints bend the skin; without it as the file says")
       ->check(CLI::IsMember({"linear", "dual_quaternion"}));
   app.add_option("--out", options.out, "picture to write: .png .jpg .pfm .exr");
+  app.add_option("--sheet", options.sheet, "a labelled picture of each, --size is that of one")
+      ->check(CLI::IsMember({"expressions", "visemes"}));
   app.add_option("--time", options.time, "seconds it has stood there");
   app.add_option("--size", options.size, "WIDTHxHEIGHT of the picture");
   app.add_option("--spp", options.spp, "samples a pixel")->check(CLI::Range(1, 65536));

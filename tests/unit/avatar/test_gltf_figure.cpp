@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "avatar/body.h"
 #include "avatar/rig.h"
 #include "avatar/skin.h"
 #include "base/load_error.h"
@@ -131,6 +132,39 @@ TEST(GltfFigure, NamesOfOtherRigsAndNoNamesAtAll) {
   EXPECT_NEAR(centre(nameless, "l_knee").y, 0.5f, 1e-5f);
 }
 
+// Eyes without joints look by shapes; eyes with joints only as far as the author lets them.
+TEST(GltfFigure, EyesLookAsTheirAuthorDrewThem) {
+  Asset asset = make_person();
+  add_vrm_1(asset);
+  auto& presets = asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"];
+  for (const char* look : {"lookUp", "lookDown", "lookLeft", "lookRight"}) presets[look] = presets["aa"];
+  Character c = load_asset(asset);
+  Rig rig = make_rig(c);
+  ASSERT_FALSE(rig.eyes_move);
+  for (int look : rig.look) ASSERT_GE(look, 0);
+  Pose pose = make_rest_pose(c);
+  aim_eyes(rig, rig.eyes_center + vec3(1, 0, 4), pose);  // to its own left
+  EXPECT_NEAR(pose.displacers[size_t(rig.look[2])], std::atan(0.25f) / eye_limit_yaw, 1e-3f);
+  EXPECT_EQ(pose.displacers[size_t(rig.look[3])], 0);
+  aim_eyes(rig, rig.eyes_center + vec3(-100, -1000, 0.1f), pose);
+  EXPECT_EQ(pose.displacers[size_t(rig.look[2])], 0);
+  EXPECT_EQ(pose.displacers[size_t(rig.look[1])], 1);
+
+  Character eyed = test::load_text(test::whole_figure());
+  Rig eyed_rig = make_rig(eyed);
+  ASSERT_TRUE(eyed_rig.eyes_move);
+  auto turn_of = [&](int side) {
+    Pose look = make_rest_pose(eyed);
+    aim_eyes(eyed_rig, eyed_rig.eyes_center + vec3(100, 0, 300), look);
+    return glm::angle(look.rotations[size_t(eyed_rig.eye[size_t(side)])]);
+  };
+  float left = turn_of(0), right = turn_of(1);
+  EXPECT_GT(left, 0.2f);
+  eyed.eye_gain = {0.25f, 0.5f, 1, 1};
+  EXPECT_NEAR(turn_of(0), 0.5f * left, 1e-3f) << "outwards";
+  EXPECT_NEAR(turn_of(1), 0.25f * right, 1e-3f) << "inwards";
+}
+
 std::string refusal(const Asset& asset) {
   try {
     load_asset(asset);
@@ -163,7 +197,9 @@ TEST(GltfFigure, BadSkinsAreRefusedWithTheirPlace) {
   for (int i = 0; i < 5000; i++) {
     many.root["nodes"].push_back(json::object());
     many.root["skins"][0]["joints"].push_back(18 + i);
-    if (i == 0) EXPECT_NE(refusal(many).find("17 matrices for 18 joints"), std::string::npos);
+    if (i == 0) {
+      EXPECT_NE(refusal(many).find("17 matrices for 18 joints"), std::string::npos);
+    }
   }
   EXPECT_NE(refusal(many).find("more than 4096 joints"), std::string::npos);
   Asset chain = make_person();  // as deep as it is long
