@@ -89,7 +89,8 @@ std::vector<Key> make_keys(const std::vector<dvec3>& eyes, const Viewpoint& from
     double t = double(i) / double(count - 1), s = t * length;
     // Where it goes: from a bit behind to a bit ahead.
     dvec3 way = points[std::min(i + 2, count - 1)] - points[i >= 2 ? i - 2 : 0];
-    if (glm::length(glm::dvec2(way.x, way.z)) > 1e-6) heading = nearest_turn(std::atan2(-way.x, -way.z), last_heading);
+    if (glm::length(glm::dvec2(way.x, way.z)) > 1e-6)
+      heading = nearest_turn(std::atan2(-way.x, -way.z), last_heading);
     last_heading = heading;
     keys[i].position = points[i];
     keys[i].yaw = heading;
@@ -100,7 +101,8 @@ std::vector<Key> make_keys(const std::vector<dvec3>& eyes, const Viewpoint& from
       keys[i].pitch += (level_gaze - keys[i].pitch) * away;
     }
   }
-  double first = double(from.yaw), last = walks ? nearest_turn(to.yaw, keys.back().yaw) : nearest_turn(to.yaw, first);
+  double first = double(from.yaw);
+  double last = nearest_turn(to.yaw, walks ? keys.back().yaw : first);
   for (size_t i = 0; i < count; i++) {
     double t = double(i) / double(count - 1), s = t * length;
     if (!walks) {
@@ -132,7 +134,8 @@ Law make_law(const std::vector<Key>& keys, const CameraLimits& limits) {
     double turn = std::max({std::abs(slope.yaw), std::abs(slope.pitch), std::abs(slope.fov), 1e-9});
     // In a bend the acceleration is the square of the speed times the second derivative.
     double swerve = std::sqrt(double(limits.acceleration) / std::max(glm::length(bend.position), 1e-9));
-    double twist = std::sqrt(double(limits.turn_acceleration) / std::max({std::abs(bend.yaw), std::abs(bend.pitch), 1e-9}));
+    double twist = std::max({std::abs(bend.yaw), std::abs(bend.pitch), 1e-9});
+    twist = std::sqrt(double(limits.turn_acceleration) / twist);
     most[i] = std::min({double(limits.speed) / move, double(limits.turn) / turn, swerve, twist, 20.0});
     push[i] = std::min({double(limits.acceleration) / move, double(limits.turn_acceleration) / turn, 40.0});
   }
@@ -144,9 +147,11 @@ Law make_law(const std::vector<Key>& keys, const CameraLimits& limits) {
                                      most.begin() + long(std::min(i + reach + 1, count)));
   law.speed.front() = law.speed.back() = 0;
   for (size_t i = 1; i < count; i++)
-    law.speed[i] = std::min(law.speed[i], std::sqrt(law.speed[i - 1] * law.speed[i - 1] + 2 * push[i] * law.du));
+    law.speed[i] =
+        std::min(law.speed[i], std::sqrt(law.speed[i - 1] * law.speed[i - 1] + 2 * push[i] * law.du));
   for (size_t i = count - 1; i-- > 0;)
-    law.speed[i] = std::min(law.speed[i], std::sqrt(law.speed[i + 1] * law.speed[i + 1] + 2 * push[i] * law.du));
+    law.speed[i] =
+        std::min(law.speed[i], std::sqrt(law.speed[i + 1] * law.speed[i + 1] + 2 * push[i] * law.du));
   return law;
 }
 
@@ -182,7 +187,9 @@ std::vector<double> make_times(const std::vector<Key>& keys, const CameraLimits&
 double place_at(const CameraPath& path, double time) {
   double x = std::clamp(time / path.step, 0.0, double(path.along.size() - 1));
   size_t i = std::min(size_t(x), path.along.size() - 2);
-  auto value = [&](long k) { return path.along[size_t(std::clamp<long>(k, 0, long(path.along.size()) - 1))]; };
+  auto value = [&](long k) {
+    return path.along[size_t(std::clamp<long>(k, 0, long(path.along.size()) - 1))];
+  };
   double t = x - double(i), a = value(long(i)), b = value(long(i) + 1);
   double slope_a = 0.5 * (b - value(long(i) - 1)), slope_b = 0.5 * (value(long(i) + 2) - a);
   double t2 = t * t, t3 = t2 * t;

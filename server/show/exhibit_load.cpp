@@ -126,7 +126,8 @@ void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>
       stop.text = read_script(exhibit, stop_fields, "text", false, true, problems);
       stop.way_text = read_script(exhibit, stop_fields, "way_text", false, true, problems);
       stop.travel_seconds = float(stop_fields.number("travel_seconds", false, 0, 0, 600));
-      stop.stay_seconds = float(stop_fields.number("stay_seconds", false, stop.text.empty() ? 6 : 1.5, 0, 3600));
+      double stay = stop.text.empty() ? 6 : 1.5;
+      stop.stay_seconds = float(stop_fields.number("stay_seconds", false, stay, 0, 3600));
       stop_fields.finish();
       tour.stops.push_back(std::move(stop));
     });
@@ -210,7 +211,8 @@ void read_points(Exhibit& exhibit, Fields& root) {
       fields.problem("node", "the scene has no node '" + point.node + "'");
     else
       point.object = uint32_t(found - names.begin());
-    point.place = fields.triple("at", false, exhibit.scene.origin + dvec3(object_middle(exhibit.scene, point.object)));
+    dvec3 middle = exhibit.scene.origin + dvec3(object_middle(exhibit.scene, point.object));
+    point.place = fields.triple("at", false, middle);
     fields.finish();
     exhibit.points.push_back(std::move(point));
   });

@@ -98,7 +98,8 @@ Answer obey_one(Show& show, Visitor& visitor, const ViewpointTo& to) {
 Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
   switch (order.action) {
     case TourAction::play: {
-      bool resume = order.name.empty() && visitor.tour.state == TourRide::State::paused && visitor.tour.tour >= 0;
+      bool resume = order.name.empty() && visitor.tour.state == TourRide::State::paused &&
+                    visitor.tour.tour >= 0;
       int tour = resume ? visitor.tour.tour : find_tour(show.exhibit, order.name);
       if (tour < 0) return WireError{"unknown_tour", "there is no tour '" + order.name + "'"};
       visitor.move = visitor.velocity = vec3(0);

@@ -40,8 +40,9 @@ void go_to_stop(TourRide& ride, Voice& narration, const Exhibit& exhibit, const 
   ride.stayed = 0;
   ride.wanted.clear();
   auto planned = legs[size_t(ride.stop)];
-  bool begins_here = planned && is_at(ride.view, eval_camera_path(*planned, 0)) &&
-                     std::abs(std::remainder(ride.view.yaw - eval_camera_path(*planned, 0).yaw, 2 * pi)) < 1e-3f;
+  Viewpoint first = planned ? eval_camera_path(*planned, 0) : Viewpoint{};
+  bool begins_here = planned && is_at(ride.view, first) &&
+                     std::abs(std::remainder(ride.view.yaw - first.yaw, 2 * pi)) < 1e-3f;
   if (begins_here) {
     ride.path = planned;
     ride.time = 0;
@@ -120,7 +121,8 @@ TourRoads make_tour_roads(const Exhibit& exhibit, const World& world, std::vecto
       legs[i] = make_leg(exhibit, roads, view_of(exhibit, tour.stops[i - 1].viewpoint),
                          view_of(exhibit, tour.stops[i].viewpoint), tour.stops[i].travel_seconds, problem);
       if (!legs[i])
-        problems.push_back({exhibit.folder + "/exhibit.json", fmt::format("/tours/{}/stops/{}", t, i), problem});
+        problems.push_back({exhibit.folder + "/exhibit.json", fmt::format("/tours/{}/stops/{}", t, i),
+                            problem});
     }
   }
   return roads;

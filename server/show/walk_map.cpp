@@ -29,7 +29,7 @@ float ground_below(const World& world, vec3 from, float reach) {
 }
 
 struct Cells {
-  WalkMap& map;
+  const WalkMap& map;
   int cell_of(int x, int z) const { return z * map.width + x; }
   bool inside(int x, int z) const { return x >= 0 && z >= 0 && x < map.width && z < map.depth; }
   int x_of(float x) const { return int(std::floor((x - map.corner.x) / map.cell + 0.5f)); }
@@ -41,17 +41,20 @@ struct Cells {
       if (std::abs(map.places[size_t(p)].ground.y - height) <= reach) return p;
     return -1;
   }
-  int add(int x, int z, float height) {
-    int p = int(map.places.size());
-    WalkPlace place;
-    place.ground = {map.corner.x + float(x) * map.cell, height, map.corner.z + float(z) * map.cell};
-    place.clear = map.farthest;
-    map.places.push_back(place);
-    map.place_after.push_back(map.column[size_t(cell_of(x, z))]);
-    map.column[size_t(cell_of(x, z))] = p;
-    return p;
-  }
 };
+
+// A new place in the column at (x, z).
+int add_place(WalkMap& map, int x, int z, float height) {
+  int p = int(map.places.size());
+  WalkPlace place;
+  place.ground = {map.corner.x + float(x) * map.cell, height, map.corner.z + float(z) * map.cell};
+  place.clear = map.farthest;
+  size_t cell = size_t(z) * size_t(map.width) + size_t(x);
+  map.places.push_back(place);
+  map.place_after.push_back(map.column[cell]);
+  map.column[cell] = p;
+  return p;
+}
 
 // Ground that can be walked to from the seeds, whatever stands on it.
 void flood(const World& world, const std::vector<vec3>& seeds, WalkMap& map) {
@@ -61,7 +64,7 @@ void flood(const World& world, const std::vector<vec3>& seeds, WalkMap& map) {
     int x = cells.x_of(eye.x), z = cells.z_of(eye.z);
     float height = ground_below(world, eye, map.eye_height + 1);
     if (!cells.inside(x, z) || std::isnan(height) || cells.find(x, z, height, walk_step) >= 0) continue;
-    open.push_back({cells.add(x, z, height), x, z});
+    open.push_back({add_place(map, x, z, height), x, z});
   }
   while (!open.empty()) {
     auto [place, x, z] = open.front();
@@ -77,7 +80,7 @@ void flood(const World& world, const std::vector<vec3>& seeds, WalkMap& map) {
       int next = cells.find(nx, nz, height, 0.5f * map.eye_height);
       if (next < 0) {
         if (int(map.places.size()) >= most_walk_places) continue;
-        next = cells.add(nx, nz, height);
+        next = add_place(map, nx, nz, height);
         open.push_back({next, nx, nz});
       }
       map.places[size_t(place)].next[way] = next;
@@ -201,7 +204,7 @@ WalkMap make_walk_map(const World& world, const WalkRules& rules, const std::vec
 }
 
 int find_place(const WalkMap& map, vec3 ground, float reach, float clear) {
-  Cells cells{const_cast<WalkMap&>(map)};
+  Cells cells{map};
   if (!is_finite(ground)) return -1;
   float limit = float(std::max(map.width, map.depth)) * map.cell;
   if (std::abs(ground.x - map.corner.x) > 2 * limit || std::abs(ground.z - map.corner.z) > 2 * limit) return -1;
@@ -227,7 +230,7 @@ float clear_at(const WalkMap& map, vec3 ground) {
 }
 
 float ground_at(const WalkMap& map, float x, float z, float near) {
-  Cells cells{const_cast<WalkMap&>(map)};
+  Cells cells{map};
   float sum = 0, weights = 0;
   float fx = (x - map.corner.x) / map.cell, fz = (z - map.corner.z) / map.cell;
   for (int dz = 0; dz < 2; dz++)

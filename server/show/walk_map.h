@@ -2,6 +2,7 @@
 // Where a visitor can stand: the ground that can be walked to from the viewpoints, as a grid of places
 // with the distance to what stands in the way. Made once for an exhibit that has tours.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 

@@ -95,6 +95,18 @@ test('places, menu, language and story', { skip }, async () => {
   assert.equal(await page.getAttribute('#subtitle', 'lang'), 'de');
   assert.ok(await page.locator('#menu').isHidden());
   await shot(page, 'story');
+  // The bar of what is told: its buttons, and the space bar.
+  const next = (action) => page.waitForFunction((wanted) => document.getElementById('player-pause').dataset.next === wanted, action);
+  assert.equal(await page.locator('#player-title').textContent(), await page.locator('#stories button').first().textContent());
+  await page.locator('#player-pause').click();
+  await next('play');
+  assert.equal(await page.getAttribute('#player-pause', 'aria-label'), 'Weiter');
+  await page.locator('#picture').focus();
+  await page.keyboard.press('Space');
+  await next('pause');
+  await page.locator('#player-skip').click();
+  await page.locator('#player-stop').click();
+  await page.waitForFunction(() => document.getElementById('player').hidden);
   assert.deepEqual(problems, []);
   await page.evaluate(() => localStorage.clear());
   await page.close();
