@@ -67,7 +67,7 @@ def bone(p):
     neck = capsule(p, (0, -0.045, -0.020), (0, -0.250, -0.045), 0.0425 * n, 0.0475 * n)
     neck = join(neck, capsule(p, (0.0445 * n, -0.042, -0.016), (0.013, -0.200, 0.004), 0.009, 0.0075), 0.018)
     if n > 1.03:
-        neck = join(neck, ellipsoid(p, (0, -0.135, 0.024), (0.009, 0.014, 0.012)), 0.014)  # larynx
+        neck = join(neck, ellipsoid(p, (0, -0.135, 0.017), (0.009, 0.014, 0.012)), 0.014)  # larynx
     return join(d, neck, 0.022)
 
 

@@ -186,7 +186,8 @@ def make_shirt(linen_look):
         row = []
         for i in range(n + 1):
             phi = 2 * pi * (i % n) / n + pi
-            p = neck_ring(phi, t, grow + wave * sin(phi * 17))
+            wide = 0.0050 + 0.0065 * max(0.0, cos(phi))  # a man's neck, its larynx in front
+            p = neck_ring(phi, t, grow + wide + wave * sin(phi * 17))
             row.append(shirt.vertex((p[0], p[1] + (0.9 * wave * cos(phi * 17) if t > 0.9 else 0.0), p[2]), (i / n * 8, v),
                                     neck_weights(p), ("linen",)))
         rows.append(row)
