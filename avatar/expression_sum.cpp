@@ -66,7 +66,7 @@ void flatten(ExpressionRig& rig) {
     }
     // What is only there to be fallen back on or grouped ("_name") is not missed.
     if (nothing && expression.name[0] != '_')
-      rig.missing.push_back("expression '" + expression.name + "' has nothing to show it with");
+      rig.missing.push_back(expression.name);
   }
 }
 

@@ -32,7 +32,7 @@ struct ExpressionRig {
   std::array<int, 15> viseme{};                        // in the order of Viseme
   int breathe = -1;
   std::array<std::array<std::array<int, 2>, 2>, flex_count> flex;  // of [left, right][minus, plus]
-  std::vector<std::string> missing;                    // what the figure cannot show, each said once
+  std::vector<std::string> missing;  // expressions that the figure has nothing to show with
 };
 ExpressionRig make_expression_rig(const ExpressionSet& set, const Character& character);
 // Whether the figure shows anything of an expression.

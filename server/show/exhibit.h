@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "avatar/character.h"
+#include "avatar/expression.h"
+#include "avatar/gesture_library.h"
 #include "avatar/story_script.h"
 #include "world/scene.h"
 
@@ -100,6 +102,8 @@ struct Exhibit {
   std::vector<PointOfInterest> points;
   Scene scene;
   std::optional<Character> character;
+  std::optional<ExpressionSet> expressions;  // the package's own, in place of the program's
+  std::optional<GestureLibrary> gestures;
 };
 
 int find_viewpoint(const Exhibit& exhibit, std::string_view name);  // -1: none

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "avatar/character_load.h"
+#include "avatar/expression_sum.h"
 #include "base/load_error.h"
 #include "base/log.h"
 #include "show/exhibit_story.h"
@@ -79,6 +80,22 @@ int read_viewpoint_name(const Exhibit& exhibit, Fields& fields, const char* name
   return std::max(index, 0);
 }
 
+// A file of expressions or gestures in place of those that come with the program.
+template <class Language, class Load>
+void read_language(const Exhibit& exhibit, Fields& fields, const char* name,
+                   std::optional<Language>& language, const Load& load,
+                   std::vector<Problem>& problems) {
+  std::string file = fields.text(name, false);
+  if (file.empty()) return;
+  std::string path = package_file(fields, name, exhibit.folder, file);
+  if (path.empty()) return;
+  try {
+    language = load(path);
+  } catch (const LoadError& error) {
+    problems.push_back({error.file, error.where, error.what_});
+  }
+}
+
 void read_storyteller(Exhibit& exhibit, Fields fields, std::vector<Problem>& problems) {
   StorytellerPlace place;
   place.figure = fields.text("figure", true);
@@ -110,6 +127,16 @@ void read_storyteller(Exhibit& exhibit, Fields fields, std::vector<Problem>& pro
     } catch (const LoadError& error) {
       problems.push_back({error.file, error.where, error.what_});
     }
+  }
+  read_language(exhibit, fields, "expressions", exhibit.expressions, load_expressions, problems);
+  read_language(exhibit, fields, "gestures", exhibit.gestures, load_gestures, problems);
+  if (exhibit.character) {
+    const ExpressionSet& set = exhibit.expressions ? *exhibit.expressions : default_expressions();
+    std::string missing;
+    for (const std::string& name : make_expression_rig(set, *exhibit.character).missing)
+      missing += (missing.empty() ? "" : ", ") + name;
+    if (!missing.empty())
+      problems.push_back({path, "", "the figure goes without these expressions: " + missing, false});
   }
   fields.finish();
   exhibit.storyteller = std::move(place);

@@ -95,7 +95,8 @@ struct Checker {
       note(line, mark.place, "the exhibit has no viewpoint '" + mark.name + "'");
     if (mark.kind == StoryMarkKind::emotion && find_emotion(mark.name) < 0)
       note(line, mark.place, "there is no emotion '" + mark.name + "'");
-    if (mark.kind == StoryMarkKind::gesture && find_gesture(mark.name) < 0)
+    const GestureLibrary& gestures = exhibit.gestures ? *exhibit.gestures : default_gestures();
+    if (mark.kind == StoryMarkKind::gesture && find_gesture(gestures, mark.name) < 0)
       note(line, mark.place, "there is no gesture '" + mark.name + "'");
   }
 

@@ -47,6 +47,8 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   if (show->exhibit.character) {
     show->figure = make_figure(*show->exhibit.character, scene, moving, moving_object);
     show->storyteller.character = &*show->exhibit.character;
+    if (show->exhibit.expressions) show->storyteller.expressions = &*show->exhibit.expressions;
+    if (show->exhibit.gestures) show->storyteller.gestures = &*show->exhibit.gestures;
     show->storyteller.placement = place_storyteller(*show->exhibit.storyteller, scene);
     show->pose = make_rest_pose(*show->exhibit.character);
   }
