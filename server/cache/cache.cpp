@@ -5,8 +5,10 @@
 #include <atomic>
 
 #include "base/parallel.h"
+#include "base/rng.h"
 #include "cache/attention.h"
 #include "cache/cells.h"
+#include "cache/looks.h"
 #include "cache/plan.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
@@ -18,11 +20,6 @@
 
 namespace wellspring {
 namespace {
-
-bool same_view(const View& a, const View& b) {
-  return a.position == b.position && a.right == b.right && a.up == b.up && a.forward == b.forward &&
-         a.tan_half_fov == b.tan_half_fov && a.width == b.width && a.height == b.height;
-}
 
 constexpr int largest_side = 16384;
 constexpr int still_project_period = 8;  // frames
@@ -45,6 +42,9 @@ struct RenderCache::Impl {
   int fresh = 0;         // samples of this frame that show
   uint32_t frames = 0;
   std::vector<uint32_t> targets;
+  std::vector<uint32_t> looked;  // pixels whose looks were asked for
+  std::vector<LookedPixel> looked_pixels;
+  bool known = false;  // anything, in the last survey
   CacheStats stats;
 
   bool is_still() const { return still_frames >= 2; }
@@ -89,7 +89,7 @@ void RenderCache::move_points(const World& world) {
 void RenderCache::project(const View& view) {
   Impl& c = *impl_;
   resize(view.width, view.height);
-  bool same = c.projected && same_view(view, c.view);
+  bool same = c.projected && view == c.view;
   if (same)
     c.still_frames = std::min(c.still_frames + 1, 1 << 20);
   else if (c.still_frames > 0)
@@ -127,7 +127,7 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   Impl& c = *impl_;
   RememberSettings settings;
   settings.color_change = c.settings.color_change;
-  settings.current = c.projected && same_view(view, c.view);
+  settings.current = c.projected && view == c.view;
   settings.still = settings.current && c.is_still();
   c.image_stale |= !settings.current;
   settings.longest_mean = settings.still ? still_mean : moving_mean;
@@ -142,6 +142,12 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
 }
 
 void RenderCache::reconstruct(const View& view, Frame& frame) {
+  std::vector<Ray> looks;
+  survey(view, 0, frame, looks);
+  reconstruct(view, {}, frame);
+}
+
+void RenderCache::survey(const View& view, int most, Frame& frame, std::vector<Ray>& looks) {
   Impl& c = *impl_;
   int width = std::clamp(view.width, 1, largest_side),
       height = std::clamp(view.height, 1, largest_side);
@@ -152,15 +158,29 @@ void RenderCache::reconstruct(const View& view, Frame& frame) {
   frame.depth.resize(pixels);
   frame.object.resize(pixels);
   frame.confidence.resize(pixels);
-  if (!c.projected || !same_view(view, c.view)) project(view);
+  if (!c.projected || view != c.view) project(view);
   c.scratch.start(cells_bytes(width, height));
   take_cells(c.cells, width, height, c.scratch);
   SurfaceCounts counts = read_surface(view, c.points, c.image, c.cells, frame);
   filter_cells(view, c.cells);
-  bool known = fill_cells(view, c.cells);
-  c.count(counts, known);
-  compose(view, c.cells, known, frame);
+  c.known = fill_cells(view, c.cells);
+  c.count(counts, c.known);
+  c.looked.clear();
+  if (most >= looks_a_pixel) {
+    find_edges(view, c.cells, c.still, frame, c.image);
+    choose_looks(c.image, size_t(most) / looks_a_pixel, mix64(c.frames), c.looked);
+  }
+  make_looks(view, c.looked, looks);
+}
+
+void RenderCache::reconstruct(const View& view, std::span<const Seen> seen, Frame& frame) {
+  Impl& c = *impl_;
+  size_t looked = std::min(c.looked.size(), seen.size() / looks_a_pixel);
+  std::span<const uint32_t> pixels = std::span(c.looked).first(looked);
+  light_looks(view, c.cells, frame, pixels, seen, c.looked_pixels);
+  compose(view, c.cells, c.known, frame);
   if (c.is_still()) accumulate_still(c.points, c.image, c.frames, c.still, frame);
+  show_looks(pixels, c.looked_pixels, c.still, frame);
 }
 
 void RenderCache::clear() {

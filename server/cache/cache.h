@@ -11,6 +11,7 @@
 
 #include "frame/frame.h"
 #include "light/sample.h"
+#include "light/see.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -58,6 +59,10 @@ class RenderCache {
                 std::span<const Sample> samples);
   // The picture: overwrites `frame` (color, confidence; depth and object for those who ask later).
   void reconstruct(const View& view, Frame& frame);
+  // The same in two steps, for sharper edges: survey() asks what rays (at most `most`) see, and
+  // answers to all of them are shown. The frame must not be touched in between.
+  void survey(const View& view, int most, Frame& frame, std::vector<Ray>& looks);
+  void reconstruct(const View& view, std::span<const Seen> seen, Frame& frame);
   void set_attention(bool on);  // CacheSettings::attention
   // Forgets everything (lights toggled, exhibit changed).
   void clear();

@@ -8,13 +8,13 @@
 #include "base/parallel.h"
 #include "cache/lanes.h"
 #include "cache/packing.h"
+#include "cache/pixel_light.h"
 #include "cache/reconstruct.h"
 
 namespace wellspring {
 namespace {
 
 constexpr int block = cell_size;  // pixels a side between four cell centres
-constexpr float plane_tolerance = 0.02f;
 
 // Eight pixels as they lie packed, two rows of four; pixels beyond the picture are empty.
 struct Block {
@@ -85,80 +85,11 @@ constexpr Bilinear make_bilinear() {
 }
 constexpr Bilinear bilinear = make_bilinear();
 
-struct Color {
-  f8 r{}, g{}, b{};
-};
-f8 luminance(const Color& c) { return wellspring::luminance(c.r, c.g, c.b); }
-void add(Color& sum, const f8& weight, float r, float g, float b) {
-  sum.r += weight * r, sum.g += weight * g, sum.b += weight * b;
-}
-Color weighted_sum(const Color& a, const f8& kept, const Color& b, const f8& other) {
-  return {kept * a.r + other * b.r, kept * a.g + other * b.g, kept * a.b + other * b.b};
-}
-
-// Two rows of four pixels.
-struct Pixels {
-  u8 object;
-  f8 x, y, depth, samples;
-  f8 nx, ny, nz, normal2;  // not normalised; its length squared
-  Color smooth, rest;
-  f8 deviation;  // of one sample's rest
-};
-
-// What a pixel wants to know of a cell, in one place.
-struct CellLight {
-  float smooth[3], rest[3], patience, detail, noise;
-  float normal[3], plane[3], depth;
-  uint32_t object;
-};
 // A row of cells; the first and the last stand in for those beyond the picture, one on each side.
 void read_cells(const Cells& cells, int cy, std::vector<CellLight>& row) {
   row.resize(size_t(cells.width) + 2);
-  cy = std::clamp(cy, 0, cells.height - 1);
-  for (int x = 0; x < cells.width; x++) {
-    size_t i = size_t(cells.index(x, cy));
-    CellLight& c = row[size_t(x) + 1];
-    for (size_t k = 0; k < 3; k++) {
-      c.smooth[k] = cells.smooth[k][i];
-      c.rest[k] = cells.rest[k][i];
-      c.normal[k] = cells.normal[k][i];
-      c.plane[k] = cells.plane[k][i];
-    }
-    c.patience = cells.patience[i];
-    c.detail = cells.rest_sum2[i];
-    c.noise = cells.rest_noise[i];
-    c.depth = cells.depth[i];
-    c.object = cells.object[i];
-  }
-  row.front() = row[1];
-  row.back() = row[size_t(cells.width)];
+  for (int x = -1; x <= cells.width; x++) read_cell(cells, x, cy, row[size_t(x + 1)]);
 }
-
-// What the four cells say at each pixel, as far as they lie on the same surface.
-struct Surroundings {
-  Color smooth, rest;
-  f8 patience{}, detail{}, noise{};
-  i8 lonely;  // no cell lies on this surface
-};
-void add(Surroundings& sum, const f8& weight, const CellLight& c) {
-  add(sum.smooth, weight, c.smooth[0], c.smooth[1], c.smooth[2]);
-  add(sum.rest, weight, c.rest[0], c.rest[1], c.rest[2]);
-  sum.patience += weight * c.patience;
-  sum.detail += weight * c.detail;
-  sum.noise += weight * c.noise;
-}
-
-// How much a cell's surface is that of the pixels.
-f8 alike(const CellLight& c, const Pixels& p, const f8& inverse_normal2) {
-  f8 facing = positive(c.normal[0] * p.nx + c.normal[1] * p.ny + c.normal[2] * p.nz);
-  facing *= facing * inverse_normal2;  // the cosine's second, then its eighth power
-  facing *= facing, facing *= facing;
-  f8 off = p.depth * (c.plane[0] * p.x + c.plane[1] * p.y + c.plane[2]);
-  off = (off - 1.0f) * (1 / plane_tolerance);
-  return keep(p.object == c.object, facing / (1.0f + off * off));
-}
-
-using Corners = const CellLight* [4];
 
 // Which of the blocks from bx on lie between four cells in one plane: what a pixel has in common
 // with one of those, it has with all.
@@ -185,57 +116,6 @@ i8 find_flat(const PixelRays& rays, const Cells& cells, int bx, int by) {
             (magnitude(off) < same_depth);
   }
   return flat;
-}
-
-Surroundings look_around(const Corners& corners, bool flat, int half, const Pixels& p) {
-  constexpr float least = 1e-4f;
-  Surroundings s;
-  f8 inverse_normal2 = 1.0f / p.normal2;
-  if (flat) {
-    for (int k = 0; k < 4; k++) add(s, load<f8>(bilinear.weight[k][half]), *corners[k]);
-    s.lonely = alike(*corners[0], p, inverse_normal2) <= least;
-    return s;
-  }
-  f8 sum{};
-  for (int k = 0; k < 4; k++) {
-    f8 weight = load<f8>(bilinear.weight[k][half]) * alike(*corners[k], p, inverse_normal2);
-    add(s, weight, *corners[k]);
-    sum += weight;
-  }
-  s.lonely = sum <= least;
-  f8 share = 1.0f / larger(sum, splat(least));
-  for (Color* c : {&s.smooth, &s.rest}) c->r *= share, c->g *= share, c->b *= share;
-  s.patience *= share, s.detail *= share, s.noise *= share;
-  return s;
-}
-
-// What is left of `own` light where more than `most` would be too much.
-f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, most) + 1e-12f); }
-
-// Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
-// more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
-void blend_light(const Surroundings& s, Pixels& p) {
-  const i8& lonely = s.lonely;
-  f8 alone = keep(lonely, splat(1));
-  // A lone bright sample may exceed its surroundings only as far as more samples confirm it.
-  f8 own_light = luminance(p.smooth);
-  f8 most = luminance(s.smooth) * (2.0f + 0.25f * p.samples) + alone * own_light;
-  f8 own = p.samples / (p.samples + s.patience + 1e-6f);
-  own = lonely ? splat(1) : own;
-  p.smooth = weighted_sum(p.smooth, own * cut_to(own_light, most), s.smooth, 1.0f - own);
-
-  // The same for the rest, unless it is known to repeat itself: then it is a highlight, not a lucky
-  // path.
-  i8 known = p.samples > 1.0f;
-  f8 own_rest = luminance(p.rest);
-  f8 quiet = keep(known & (p.deviation <= 0.1f * own_rest), splat(1));
-  f8 most_rest = luminance(s.rest) * (3.0f + p.samples) + 1e-4f + (quiet + alone) * own_rest;
-  f8 variance = known ? p.deviation * p.deviation : s.noise;
-  variance /= larger(p.samples, splat(1));
-  f8 detail = s.detail + 1e-9f, own_detail = detail / (detail + variance);
-  own_detail = lonely ? splat(1) : own_detail;
-  f8 kept = own_detail * cut_to(own_rest, most_rest);
-  p.rest = weighted_sum(p.rest, kept, s.rest, 1.0f - own_detail);
 }
 
 // The pixels of a block at (x, y) that lie in the picture.
@@ -383,7 +263,7 @@ void compose(const View& view, const Cells& cells, bool known, Frame& frame) {
       for (int bx = 0; bx <= cells.width; bx++) {
         if (bx % lanes == 0) flat = find_flat(rays, cells, bx, by);
         size_t left = size_t(bx);
-        Corners corners = {&above[left], &above[left + 1], &below[left], &below[left + 1]};
+        const CellLight* corners[4] = {&above[left], &above[left + 1], &below[left], &below[left + 1]};
         int x = bx * block - block / 2;
         for (int half = 0; half < 2; half++) {
           int y = top + half * 2;
@@ -394,7 +274,9 @@ void compose(const View& view, const Cells& cells, bool known, Frame& frame) {
           if (any(pixels.plane[plane_object] == no_object))
             finish_block(rays, cells, known, extent, x, y, pixels, frame);
           Pixels p = unpack_pixels(rays, pixels, x, y);
-          blend_light(look_around(corners, flat[bx % lanes], half, p), p);
+          f8 weights[4];
+          for (int k = 0; k < 4; k++) weights[k] = load<f8>(bilinear.weight[k][half]);
+          blend_light(look_around(corners, flat[bx % lanes], weights, p), p);
           Result result[2];
           light_pixels(pixels.plane[plane_albedo], p, result);
           for (int r = 0; r < 2; r++)

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/first_surface.h"
 
+#include <algorithm>
+
+#include "light/bsdf_frame.h"
+
 namespace wellspring {
 namespace {
+
+constexpr float soft_alpha = 0.12f;  // roughness 0.35
 
 // One mirror image of those of all panes: `reflections` is the sum of what they reflect.
 void add_reflection(FirstSurface& first, float& reflections, const Surface& surface,
@@ -19,7 +25,29 @@ void add_reflection(FirstSurface& first, float& reflections, const Surface& surf
   advance(first.reflection, surface, unit);
 }
 
+// Rough gloss looks nearly the same from everywhere: as a share of the reflectance it may be filtered
+// with the diffuse light.
+KeptReflectance keep(vec3 diffuse, vec3 metal, float alpha, bool transmits) {
+  KeptReflectance kept;
+  kept.diffuse = max_component(diffuse) > least_albedo;
+  kept.albedo = kept.diffuse ? diffuse : metal;
+  vec3 a = kept.albedo;
+  kept.soft = alpha >= soft_alpha && !transmits && std::min({a.x, a.y, a.z}) > 0.02f;
+  if (!kept.diffuse && !kept.soft) kept.albedo = vec3(0);
+  return kept;
+}
+
 }  // namespace
+
+KeptReflectance kept_reflectance(const Bsdf& b) {
+  return keep(b.diffuse, b.metallic * b.metal, b.alpha, max_component(b.transmit) > 0);
+}
+
+KeptReflectance kept_reflectance(const Surface& surface) {
+  float metallic = clean(surface.metallic);
+  vec3 base = clean(surface.base_color);
+  return keep(base * (1 - metallic), base * metallic, alpha_of(surface.roughness), false);
+}
 
 void describe_place(const World& world, const Hit& hit, const SurfacePlace& place, vec3 normal,
                     float distance, Sample& sample) {

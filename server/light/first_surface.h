@@ -29,4 +29,17 @@ void describe_place(const World& world, const Hit& hit, const SurfacePlace& plac
                     float distance, Sample& sample);
 void describe_sky(const Transport& transport, vec3 direction, vec3 tint, Sample& sample);
 
+inline constexpr float least_albedo = 1e-4f;  // below it nothing is diffuse
+
+// What of a first surface's reflectance is kept apart as Sample::albedo: the diffuse layer's, else a
+// soft metal's.
+struct KeptReflectance {
+  vec3 albedo{0};
+  bool diffuse = false;  // has a diffuse layer
+  bool soft = false;     // its gloss is rough enough to be filtered with the diffuse light
+};
+KeptReflectance kept_reflectance(const Bsdf& bsdf);
+// The same of an opaque surface whose gloss is alike all around, without asking for its Bsdf.
+KeptReflectance kept_reflectance(const Surface& surface);
+
 }  // namespace wellspring

@@ -10,9 +10,6 @@ namespace {
 // Mirrors, glass and polished metal: what is seen there moves with the view.
 bool looks_specular(const Bsdf& bsdf) { return bsdf.alpha < 0.1f && bsdf.diffuse_share < 0.5f; }
 
-constexpr float least_albedo = 1e-4f;  // below it nothing is diffuse
-constexpr float soft_alpha = 0.12f;  // roughness 0.35
-
 // The first surface's light, its diffuse lobe (of reflectance 1) and its specular lobes sampled
 // apart.
 void shade_first(const Transport& transport, const WalkRules& rules, const Walk& walk,
@@ -20,13 +17,9 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
   const uint32_t base = Dimensions::first_surface;
   std::optional<WavelengthSpread> spread;
   part_colors(transport, walk, surface, base, sampler, bsdf, spread);
-  bool diffuse = max_component(bsdf.diffuse) > least_albedo;
-  vec3 albedo = diffuse ? bsdf.diffuse : bsdf.metallic * bsdf.metal;
-  // Rough gloss looks nearly the same from everywhere: as a share of the reflectance it may be filtered with
-  // the diffuse light.
-  bool soft = bsdf.alpha >= soft_alpha && !(max_component(bsdf.transmit) > 0) &&
-              std::min({albedo.x, albedo.y, albedo.z}) > 0.02f;
-  if (!diffuse && !soft) albedo = vec3(0);
+  KeptReflectance kept = kept_reflectance(bsdf);
+  bool diffuse = kept.diffuse, soft = kept.soft;
+  vec3 albedo = kept.albedo;
   auto add_gloss = [&](vec3 light) {
     if (soft) sample.smooth += light / albedo;
     else sample.rest += tint * light;

@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "base/rng.h"
 #include "frame/jpeg.h"
+#include "show/display_path.h"
 #include "wire/packet.h"
 
 namespace wellspring {
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double still_after = 0.25;   // seconds without motion until a picture counts as a still
 constexpr double settled_after = 2;    // seconds without motion until the reference takes over
-constexpr int least_budget = 2000;     // samples a picture, however slow the machine
+constexpr size_t least_measured = 1000;  // looks that tell how long one takes
 constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
 constexpr double still_rate = 20;      // pictures a second while only the storyteller moves
@@ -25,11 +26,6 @@ constexpr int animated_gain = 5;       // JPEG quality above the moving one whil
 
 float milliseconds_since(double began) { return float(1000 * (seconds_now() - began)); }
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
-
-bool same_view(const View& a, const View& b) {
-  return a.position == b.position && a.forward == b.forward && a.up == b.up &&
-         a.tan_half_fov == b.tan_half_fov && a.width == b.width && a.height == b.height;
-}
 
 // The figure's bounding sphere touches the view's cone: the picture never rests.
 bool sees_figure(const Show& show, const View& view) {
@@ -53,12 +49,11 @@ bool rests(const Show& show, const Visitor& visitor) {
          visitor.cache.stats().converged >= nearly_all;
 }
 
-int sample_budget(const Show& show, const Visitor& visitor, int busy) {
+// Seconds of a picture's period that are left for samples and looks.
+double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
   double period = 1 / picture_rate(show, visitor);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
-  double share = std::max((period - slack) / std::max(busy, 1) - display, least_share * period);
-  double budget = share * double(show.samples_per_second);
-  return int(std::clamp(budget, double(least_budget), 0.5 * visitor.width * visitor.height));
+  return std::max((period - slack) / std::max(busy, 1) - display, least_share * period);
 }
 
 // On another core: the tick goes on meanwhile, and waits before it touches the image again.
@@ -104,7 +99,7 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   const Viewpoint& at = visitor.view;
   View view = make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, visitor.width,
                         visitor.height);
-  if (!same_view(view, visitor.last_view)) visitor.moved_at = show.time;
+  if (view != visitor.last_view) visitor.moved_at = show.time;
   bool still = show.time - visitor.moved_at > still_after;
   visitor.last_view = view;
   uint32_t seq = visitor.seq;
@@ -115,7 +110,10 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   cache.project(view);
   cache.attend();
   uint64_t seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
-  visitor.budget = sample_budget(show, visitor, busy);
+  DisplayPlan display = plan_display(seconds_to_trace(show, visitor, busy), size_t(view.width) * size_t(view.height),
+                                     {show.samples_per_second, show.looks_per_second}, visitor.primary);
+  visitor.budget = display.samples;
+  visitor.primary = display.primary;
   cache.plan(view, visitor.budget, seed, visitor.requests);
   double planned = seconds_now();
   visitor.samples.resize(visitor.requests.size());
@@ -129,7 +127,12 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   trace(technique, *show.world, show.lights, transport, visitor.requests, visitor.samples);
   double traced = seconds_now();
   cache.remember(view, visitor.requests, visitor.samples);
-  cache.reconstruct(view, visitor.frame);
+  cache.survey(view, display.looks, visitor.frame, visitor.looks);
+  visitor.seen.resize(visitor.looks.size());
+  double surveyed = seconds_now();
+  see(*show.world, show.lights, visitor.looks, visitor.seen);
+  double looked = seconds_now();
+  cache.reconstruct(view, visitor.seen, visitor.frame);
   double reconstructed = seconds_now();
 
   Encoder& encoder = *visitor.encoder;
@@ -161,7 +164,13 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
     float rate = float(double(visitor.requests.size()) / (traced - planned));
     show.samples_per_second += (rate - show.samples_per_second) * 0.1f;
   }
-  smooth(visitor.times.display, float(1000 * ((planned - began) + (reconstructed - traced))));
+  if (visitor.looks.size() >= least_measured && looked > surveyed) {
+    float rate = float(double(visitor.looks.size()) / (looked - surveyed));
+    show.looks_per_second += (rate - show.looks_per_second) * 0.1f;
+  }
+  smooth(visitor.times.display,
+         float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))));
+  smooth(visitor.times.look, float(1000 * (looked - surveyed)));
   smooth(visitor.times.trace, float(1000 * (traced - planned)));
   if (visitor.pictured_at > 0 && show.time > visitor.pictured_at)
     smooth(visitor.measured_fps, float(1 / (show.time - visitor.pictured_at)));

@@ -12,6 +12,7 @@ ShowReport make_report(const Show& show) {
   report.ticks = show.ticks;
   report.bad_samples = show.lights.bad_samples ? show.lights.bad_samples->load() : 0;
   report.samples_per_second = show.samples_per_second;
+  report.looks_per_second = show.looks_per_second;
   report.kiosks = int(show.eyes.size());
   report.audience = to_string(show.audience.state);
   report.mood = to_string(show.mind.mood);
@@ -31,6 +32,9 @@ ShowReport make_report(const Show& show) {
     one.width = visitor.width;
     one.height = visitor.height;
     one.budget = visitor.budget;
+    one.looks = int(visitor.looks.size());
+    one.primary = visitor.primary;
+    one.look_ms = visitor.times.look;
     one.quality = suggest_quality(visitor.flow, visitor.best_quality);
     one.fps = visitor.measured_fps;
     one.round_trip_ms = 1000 * visitor.flow.round_trip;

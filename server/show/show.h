@@ -77,6 +77,7 @@ struct Show {
   uint64_t time_us = 0;        // of the present tick on the clock of pictures and sound
   float picture_lead = 0.02f;  // seconds from a tick to the times of its pictures, smoothed
   float samples_per_second = 200000;  // measured, all cores
+  float looks_per_second = 4e6f;      // likewise
   ShowTotals totals;
 };
 

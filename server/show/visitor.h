@@ -19,7 +19,7 @@ namespace wellspring {
 
 // Milliseconds of the last picture's stages, smoothed: for the status page and the budget.
 struct StageTimes {
-  float display = 0, trace = 0, tonemap = 0, encode = 0;
+  float display = 0, trace = 0, look = 0, tonemap = 0, encode = 0;
 };
 
 // The JPEG made on another core while the next tick begins.
@@ -59,13 +59,16 @@ struct Visitor {
   Frame frame;
   std::vector<Request> requests;
   std::vector<Sample> samples;
+  std::vector<Ray> looks;
+  std::vector<Seen> seen;
   uint32_t frame_number = 0;
   View last_view;
   double moved_at = 0;       // show time of the last change of view
   double pictured_at = -1e9;  // show time of the last picture
   Flow flow;
   StageTimes times;
-  int budget = 0;  // samples of the last tick
+  int budget = 0;        // samples of the last tick
+  bool primary = false;  // every pixel is looked at (show/display_path.h)
   double state_sent_at = -1e9;
   float measured_fps = 0;
 };

@@ -11,6 +11,7 @@ struct View {
   vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
   float tan_half_fov = 0.5f;  // vertical
   int width = 1, height = 1;
+  bool operator==(const View&) const = default;
 };
 
 // From yaw and pitch as in Viewpoint. `fov` vertical, radians, in (0, pi).

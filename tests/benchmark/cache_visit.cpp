@@ -35,7 +35,9 @@ struct Running {
 
 std::vector<Running> start_runs(const VisitSettings& settings, const VisitTrace& trace) {
   std::vector<Running> runs;
-  for (const VisitMethodEntry& entry : visit_methods())
+  for (const VisitMethodEntry& entry : visit_methods()) {
+    const auto& asked = settings.methods;
+    if (!asked.empty() && std::find(asked.begin(), asked.end(), entry.name) == asked.end()) continue;
     for (int mismatch : settings.mismatches) {
       Running& running = runs.emplace_back();
       running.method = entry.make();
@@ -44,6 +46,7 @@ std::vector<Running> start_runs(const VisitSettings& settings, const VisitTrace&
       running.run.method = entry.name;
       running.run.mismatch = mismatch;
     }
+  }
   return runs;
 }
 
@@ -58,11 +61,6 @@ std::vector<int> judged_frames(const VisitSettings& settings, const VisitTrace& 
 bool sees_motion(const TrueView& seen) {
   return std::any_of(seen.where.begin(), seen.where.end(),
                      [](const Hit& hit) { return hit.valid(); });
-}
-
-bool same_view(const View& a, const View& b) {
-  return a.position == b.position && a.forward == b.forward && a.up == b.up &&
-         a.tan_half_fov == b.tan_half_fov;
 }
 
 Image8 through_jpeg(const Image8& image, int quality) {
@@ -143,7 +141,7 @@ void simulate(const VisitSettings& settings, VisitStage& stage, const VisitTrace
     std::swap(seen.now, seen.before);
     View view = stage.view(trace, time, settings.width, settings.height);
     stage.see(view, seen.now);
-    bool moved = i == 0 || !same_view(view, seen.before.view);
+    bool moved = i == 0 || view != seen.before.view;
     if (moved) moved_at = time;
     if (i > 0)
       seen.motion = motion_vectors(seen.now, seen.before,

@@ -20,6 +20,7 @@ struct VisitSettings {
   int jpeg_quality = 82;  // as a visitor's pictures while it moves, 4:2:0
   std::string technique = "gather";
   std::string exhibit, traces, truths;  // folders: package, traces, kept converged pictures
+  std::vector<std::string> methods;     // of these names; empty: all
   std::string only;                     // one trace's name; empty: all
   std::string pictures;                 // folder for what was judged, as PNG; empty: none
 };

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "cache/looks.h"
 
 namespace wellspring {
 namespace {
@@ -46,9 +47,14 @@ struct Batch {
   }
 };
 
+// As show/display_path.cpp divides the time; a look costs about a twentieth of a sample of `gather`
+// (cache.primary.sample_looks).
+constexpr double look_share = 0.12;
+constexpr int looks_a_sample = 20;
+
 class CacheMethod : public VisitMethod {
  public:
-  explicit CacheMethod(bool late) : late_(late) {}
+  CacheMethod(bool late, bool primary) : late_(late), primary_(primary) {}
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
     const View& view = moment.view;
     cache_.resize(view.width, view.height);
@@ -57,17 +63,28 @@ class CacheMethod : public VisitMethod {
       cache_.remember(asked_from_, batch_.requests, batch_.samples);
     cache_.project(view);
     cache_.attend();
+    int looks = looks_a_pixel * view.width * view.height;
+    if (!primary_) {
+      int price = int(look_share * budget);
+      looks = std::min(looks, price * looks_a_sample);
+      budget -= price;
+    }
     cache_.plan(view, budget, moment.seed, batch_.requests);
     batch_.trace(moment);
     asked_from_ = view;
     if (!late_) cache_.remember(view, batch_.requests, batch_.samples);
-    cache_.reconstruct(view, shown.frame);
+    cache_.survey(view, looks, shown.frame, rays_);
+    seen_.resize(rays_.size());
+    see(*moment.world, *moment.lights, rays_, seen_);
+    cache_.reconstruct(view, seen_, shown.frame);
     shown.stats = cache_.stats();
     shown.empty = shown.stats.empty;
   }
 
  private:
-  bool late_;
+  bool late_, primary_;
+  std::vector<Ray> rays_;
+  std::vector<Seen> seen_;
   RenderCache cache_;
   Batch batch_;
   View asked_from_;
@@ -205,11 +222,10 @@ class Frameless : public VisitMethod {
   int change_ = 0, filled_ = 0;
 };
 
-// Display path `primary` (exact visibility by primary rays, kept irradiance) has its line here once
-// there is one.
 constexpr VisitMethodEntry list[] = {
     {"cache", "render cache, answers in the same frame", false,
      [] { return make_cache_method(false); }},
+    {"primary", "the same with every pixel looked at", false, make_primary_method},
     {"cache_late", "render cache, answers a frame late", false,
      [] { return make_cache_method(true); }},
     {"resolution_drop", "whole pictures, as coarse as the budget", true, make_resolution_drop},
@@ -221,7 +237,10 @@ constexpr VisitMethodEntry list[] = {
 
 std::span<const VisitMethodEntry> visit_methods() { return list; }
 std::unique_ptr<VisitMethod> make_cache_method(bool late) {
-  return std::make_unique<CacheMethod>(late);
+  return std::make_unique<CacheMethod>(late, false);
+}
+std::unique_ptr<VisitMethod> make_primary_method() {
+  return std::make_unique<CacheMethod>(false, true);
 }
 std::unique_ptr<VisitMethod> make_resolution_drop() { return std::make_unique<ResolutionDrop>(); }
 std::unique_ptr<VisitMethod> make_hold() { return std::make_unique<Hold>(); }

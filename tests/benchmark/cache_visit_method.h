@@ -48,8 +48,10 @@ struct VisitMethodEntry {
 std::span<const VisitMethodEntry> visit_methods();
 
 // server/cache as show/picture.cpp drives it; with `late` answers come one frame after they were
-// asked for.
+// asked for. A tenth of the budget goes to looks at edges.
 std::unique_ptr<VisitMethod> make_cache_method(bool late);
+// Display path `primary`: the looks at all pixels are part of its display and not charged.
+std::unique_ptr<VisitMethod> make_primary_method();
 // The whole picture at the resolution the budget allows, bilinear; while nothing changes, samples
 // add up in pixels of their own.
 std::unique_ptr<VisitMethod> make_resolution_drop();

@@ -64,6 +64,8 @@ void bench_cache_visit(BenchReport& report, const BenchOptions& options) {
   if (options.visit_width > 0) settings.width = options.visit_width;
   if (options.visit_instants > 0) settings.instants = options.visit_instants;
   if (options.visit_spp > 0) settings.truth_spp = options.visit_spp;
+  if (!options.visit_mismatches.empty()) settings.mismatches = options.visit_mismatches;
+  settings.methods = options.visit_methods;
   settings.height = (settings.width * 9 + 8) / 16;
   VisitResult result = simulate_visits(settings);
   for (const VisitRun& run : result.runs) add_run(report, run, settings.technique);

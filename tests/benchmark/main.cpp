@@ -36,6 +36,9 @@ int main(int argc, char** argv) {
   app.add_option("--content", options.content, "folder of exhibit packages")->capture_default_str();
   app.add_option("--web", options.web, "folder of the pages")->capture_default_str();
   app.add_option("--visit-trace", options.visit_trace, "cache: simulate this visit only");
+  app.add_option("--visit-method", options.visit_methods, "cache: only these ways to keep the picture up");
+  app.add_option("--visit-mismatch", options.visit_mismatches, "cache: only these mismatches")
+      ->check(CLI::Range(1, 4096));
   app.add_option("--visit-technique", options.visit_technique, "cache: what answers samples in motion")
       ->capture_default_str();
   app.add_option("--visit-width", options.visit_width, "cache: pixels of a row; pictures are 16:9")

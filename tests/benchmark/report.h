@@ -14,6 +14,8 @@ struct BenchOptions {
   std::string plots;     // what the names of pictures of curves begin with
   std::string programs;  // folder of the other programs
   // Of the simulated visits: one trace only, what answers samples, where to leave judged pictures.
+  std::vector<std::string> visit_methods;  // cache: only these; empty: all
+  std::vector<int> visit_mismatches;
   std::string visit_trace, visit_technique = "gather", visit_pictures;
   int visit_width = 0, visit_instants = 0, visit_spp = 0;  // 0: the run's own
 };

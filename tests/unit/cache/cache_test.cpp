@@ -11,31 +11,12 @@
 #include "cache/packing.h"
 #include "cache/point_cache.h"
 #include "frame/compare.h"
-#include "unit/cache/room.h"
+#include "unit/cache/visit.h"
 
 namespace wellspring {
 namespace {
 
-struct Visitor {
-  Scene scene;
-  World world{scene};
-  Room room;
-  RenderCache cache;
-  std::vector<Request> requests;
-  std::vector<Sample> samples;
-  Frame frame;
-  uint64_t tick = 1;
-
-  void step(const View& view, int budget) {
-    cache.resize(view.width, view.height);
-    cache.move_points(world);
-    cache.project(view);
-    cache.attend();
-    cache.plan(view, budget, tick++, requests);
-    trace_room(room, requests, samples);
-    cache.remember(view, requests, samples);
-    cache.reconstruct(view, frame);
-  }
+struct Visitor : Visit {
   testing::AssertionResult finite() const {
     for (size_t i = 0; i < frame.color.size(); i++) {
       vec3 c = frame.color[i];

@@ -7,39 +7,17 @@
 
 #include "cache/cache.h"
 #include "cache/project.h"
-#include "unit/cache/room.h"
+#include "unit/cache/visit.h"
 
 namespace wellspring {
 namespace {
-
-struct Rest {
-  Scene scene;
-  World world{scene};
-  Room room;
-  RenderCache cache;
-  std::vector<Request> requests;
-  std::vector<Sample> samples;
-  Frame frame;
-  uint64_t tick = 1;
-
-  void step(const View& view, int budget) {
-    cache.resize(view.width, view.height);
-    cache.move_points(world);
-    cache.project(view);
-    cache.attend();
-    cache.plan(view, budget, tick++, requests);
-    trace_room(room, requests, samples);
-    cache.remember(view, requests, samples);
-    cache.reconstruct(view, frame);
-  }
-};
 
 View hall() { return look_at(vec3(-1, 1.6f, 4), vec3(-0.2f, 0.9f, -2), 60, 160, 90); }
 
 TEST(Rest, TheKeptImageIsTheOneProjectedAnew) {
   // Two visits alike; then one is made to project every frame by answers for another view (none).
   auto visit = [](bool always) {
-    Rest r;
+    Visit r;
     for (int i = 0; i < 40; i++) r.step(hall(), 700);
     View other = hall();
     other.position.x += 1;
@@ -56,7 +34,7 @@ TEST(Rest, TheKeptImageIsTheOneProjectedAnew) {
 }
 
 TEST(Rest, LateAnswersShowInTheNextPicture) {
-  Rest r;
+  Visit r;
   View before = hall();
   before.position.x += 0.05f;
   r.step(before, 3000);

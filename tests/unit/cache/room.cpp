@@ -231,4 +231,17 @@ View look_at(vec3 eye, vec3 target, float fov_degrees, int width, int height) {
   return view;
 }
 
+void see_room(const Room& room, std::span<const Ray> rays, std::vector<Seen>& seen) {
+  Room dark = room;
+  dark.spot = dark.noisy = false;
+  seen.resize(rays.size());
+  for (size_t i = 0; i < rays.size(); i++) {
+    Request request;
+    request.ray = rays[i];
+    Sample sample = trace_room(dark, request);
+    bool shines = sample.albedo == vec3(0) && !(sample.flags & sample_specular);
+    seen[i] = {sample.normal, sample.distance, sample.albedo, sample.rest, sample.object, !shines};
+  }
+}
+
 }  // namespace wellspring

@@ -9,6 +9,7 @@
 #include "base/rng.h"
 #include "frame/frame.h"
 #include "light/sample.h"
+#include "light/see.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -22,6 +23,7 @@ struct Room {
 
 Sample trace_room(const Room& room, const Request& request);
 void trace_room(const Room& room, std::span<const Request> requests, std::vector<Sample>& samples);
+void see_room(const Room& room, std::span<const Ray> rays, std::vector<Seen>& seen);
 // `spp` jittered samples a pixel.
 Frame render_room(const Room& room, const View& view, int spp, uint64_t seed = 99);
 // Looking from `eye` at `target`, up +Y.

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/display_path.h"
+
+#include <algorithm>
+
+#include "cache/looks.h"
+
+namespace wellspring {
+namespace {
+
+constexpr double edge_share = 0.12;                   // of the time, on path `cache`
+constexpr double enter_primary = 0.4, leave_primary = 0.55;  // of the time, for all pixels' looks
+constexpr int least_samples = 2000;                   // a picture, however slow the machine
+
+int whole(double count, double most) { return int(std::clamp(count, 0.0, most)); }
+
+}  // namespace
+
+DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& costs, bool primary) {
+  DisplayPlan plan;
+  double all_looks = double(pixels) * looks_a_pixel;
+  double all_seconds = all_looks / std::max(costs.looks_per_second, 1.0);
+  plan.primary = all_seconds <= (primary ? leave_primary : enter_primary) * seconds;
+  double look_seconds = plan.primary ? all_seconds : edge_share * seconds;
+  plan.looks = plan.primary ? int(all_looks) : whole(look_seconds * costs.looks_per_second, all_looks);
+  plan.samples = std::max(
+      whole((seconds - look_seconds) * costs.samples_per_second, 0.5 * double(pixels)),
+      std::min(least_samples, int(pixels)));
+  return plan;
+}
+
+}  // namespace wellspring
