@@ -51,10 +51,10 @@ async function refresh() {
     const ids = [...new Set(metrics.filter((m) => m.labels.visitor).map((m) => m.labels.visitor))];
     const of = (id, name, digits) => number(metrics.find((m) => m.labels.visitor === id && m.name === `visitor_${name}`)?.value, digits);
     rows(by_id('visitors'), [
-      ['Visitor', 'Pictures/s', 'Round trip ms', 'Display ms', 'Trace ms', 'Tone ms', 'Encode ms', 'Samples', 'Quality', 'Converged %'],
+      ['Visitor', 'Pictures/s', 'Round trip ms', 'Display ms', 'Trace ms', 'Tone ms', 'Encode ms', 'Samples', 'Looks', 'Path', 'Quality', 'Converged %'],
       ...ids.map((id) => [id, of(id, 'pictures_per_second', 1), of(id, 'round_trip_milliseconds'), of(id, 'display_milliseconds', 1),
         of(id, 'trace_milliseconds', 1), of(id, 'tonemap_milliseconds', 1), of(id, 'encode_milliseconds', 1), of(id, 'samples_per_picture'),
-        of(id, 'jpeg_quality'), number(100 * (metrics.find((m) => m.labels.visitor === id && m.name === 'visitor_converged_ratio')?.value ?? 0), 1)])]);
+        of(id, 'looks_per_picture'), of(id, 'primary_path') === number(1) ? 'primary' : 'cache', of(id, 'jpeg_quality'), number(100 * (metrics.find((m) => m.labels.visitor === id && m.name === 'visitor_converged_ratio')?.value ?? 0), 1)])]);
     rows(by_id('kiosks'), [
       ['Cameras', number(one('kiosk_cameras'))],
       ['Observations', number(one('kiosk_observations_total'))],
