@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <iostream>
+#include <map>
 #include <spdlog/fmt/fmt.h>
 #include <thread>
 
@@ -44,6 +45,12 @@ int read_options(Options& options, int argc, char** argv) {
   app.add_option("--technique", options.show.technique, "how light is sampled in motion")->capture_default_str();
   app.add_option("--still-technique", options.show.still_technique, "how light is sampled at rest")
       ->capture_default_str();
+  const std::map<std::string, DrawShapes> wishes{{"automatic", DrawShapes::automatic},
+                                                 {"never", DrawShapes::never},
+                                                 {"always", DrawShapes::always}};
+  app.add_option("--draw", options.show.draw,
+                 "shapes drawn exactly in every picture, sharper and slower: automatic, never, always")
+      ->transform(CLI::CheckedTransformer(wishes))->option_text("WISH=automatic");
   app.add_option("--max-depth", options.show.transport.max_depth)->check(CLI::Range(1, 64))->capture_default_str();
   try {
     app.parse(argc, argv);

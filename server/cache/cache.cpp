@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <atomic>
 
+#include "base/clock.h"
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "cache/attention.h"
 #include "cache/cells.h"
 #include "cache/looks.h"
+#include "cache/overlay.h"
 #include "cache/plan.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
@@ -141,13 +143,14 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
       c.still.count[requests[i].pixel] |= still_fresh;
 }
 
-void RenderCache::reconstruct(const View& view, Frame& frame) {
+void RenderCache::reconstruct(const View& view, Frame& frame, const PictureSight* sight) {
   std::vector<Ray> looks;
-  survey(view, 0, frame, looks);
+  survey(view, sight, 0, frame, looks);
   reconstruct(view, {}, frame);
 }
 
-void RenderCache::survey(const View& view, int most, Frame& frame, std::vector<Ray>& looks) {
+void RenderCache::survey(const View& view, const PictureSight* sight, int most, Frame& frame,
+                         std::vector<Ray>& looks) {
   Impl& c = *impl_;
   int width = std::clamp(view.width, 1, largest_side),
       height = std::clamp(view.height, 1, largest_side);
@@ -162,6 +165,11 @@ void RenderCache::survey(const View& view, int most, Frame& frame, std::vector<R
   c.scratch.start(cells_bytes(width, height));
   take_cells(c.cells, width, height, c.scratch);
   SurfaceCounts counts = read_surface(view, c.points, c.image, c.cells, frame);
+  if (sight && sight->can_see(view)) {
+    double began = seconds_now();
+    overlay_sight(view, *sight, frame);
+    c.stats.drawing_ms = float(1000 * (seconds_now() - began));
+  }
   filter_cells(view, c.cells);
   c.known = fill_cells(view, c.cells);
   c.count(counts, c.known);

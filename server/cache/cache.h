@@ -11,7 +11,7 @@
 
 #include "frame/frame.h"
 #include "light/sample.h"
-#include "light/see.h"
+#include "light/see_picture.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -31,6 +31,7 @@ struct PointImage;  // cache/point_image.h: what projects where, priorities
 struct CacheStats {
   int points = 0;                                           // in use
   float fresh = 0, reprojected = 0, filled = 0, empty = 0;  // shares of the picture's pixels
+  float drawing_ms = 0;  // of the last picture that was drawn: PictureSight and the overlay
   float mean_age = 0;   // of the visible points, 0 (new) to 254; see age_points()
   float converged = 0;  // share of pixels whose point has reached its sample goal
 };
@@ -58,10 +59,12 @@ class RenderCache {
   void remember(const View& view, std::span<const Request> requests,
                 std::span<const Sample> samples);
   // The picture: overwrites `frame` (color, confidence; depth and object for those who ask later).
-  void reconstruct(const View& view, Frame& frame);
+  // With `sight`, shape and reflectance of what has no point are drawn (cache/overlay.h).
+  void reconstruct(const View& view, Frame& frame, const PictureSight* sight = nullptr);
   // The same in two steps, for sharper edges: survey() asks what rays (at most `most`) see, and
   // answers to all of them are shown. The frame must not be touched in between.
-  void survey(const View& view, int most, Frame& frame, std::vector<Ray>& looks);
+  void survey(const View& view, const PictureSight* sight, int most, Frame& frame,
+              std::vector<Ray>& looks);
   void reconstruct(const View& view, std::span<const Seen> seen, Frame& frame);
   void set_attention(bool on);  // CacheSettings::attention
   // Forgets everything (lights toggled, exhibit changed).

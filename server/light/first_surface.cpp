@@ -8,7 +8,7 @@
 namespace wellspring {
 namespace {
 
-constexpr float soft_alpha = 0.12f;  // roughness 0.35
+constexpr float soft_alpha = least_soft_roughness * least_soft_roughness;
 
 // One mirror image of those of all panes: `reflections` is the sum of what they reflect.
 void add_reflection(FirstSurface& first, float& reflections, const Surface& surface,
@@ -32,7 +32,7 @@ KeptReflectance keep(vec3 diffuse, vec3 metal, float alpha, bool transmits) {
   kept.diffuse = max_component(diffuse) > least_albedo;
   kept.albedo = kept.diffuse ? diffuse : metal;
   vec3 a = kept.albedo;
-  kept.soft = alpha >= soft_alpha && !transmits && std::min({a.x, a.y, a.z}) > 0.02f;
+  kept.soft = alpha >= soft_alpha && !transmits && std::min({a.x, a.y, a.z}) > least_kept_metal;
   if (!kept.diffuse && !kept.soft) kept.albedo = vec3(0);
   return kept;
 }
@@ -43,10 +43,14 @@ KeptReflectance kept_reflectance(const Bsdf& b) {
   return keep(b.diffuse, b.metallic * b.metal, b.alpha, max_component(b.transmit) > 0);
 }
 
+KeptReflectance kept_reflectance(vec3 base_color, float metallic, float roughness) {
+  metallic = clean(metallic);
+  vec3 base = clean(base_color);
+  return keep(base * (1 - metallic), base * metallic, alpha_of(roughness), false);
+}
+
 KeptReflectance kept_reflectance(const Surface& surface) {
-  float metallic = clean(surface.metallic);
-  vec3 base = clean(surface.base_color);
-  return keep(base * (1 - metallic), base * metallic, alpha_of(surface.roughness), false);
+  return kept_reflectance(surface.base_color, surface.metallic, surface.roughness);
 }
 
 void describe_place(const World& world, const Hit& hit, const SurfacePlace& place, vec3 normal,

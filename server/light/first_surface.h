@@ -33,6 +33,8 @@ inline constexpr float least_albedo = 1e-4f;  // below it nothing is diffuse
 
 // What of a first surface's reflectance is kept apart as Sample::albedo: the diffuse layer's, else a
 // soft metal's.
+inline constexpr float least_kept_metal = 0.02f;      // of every channel
+inline constexpr float least_soft_roughness = 0.346f;
 struct KeptReflectance {
   vec3 albedo{0};
   bool diffuse = false;  // has a diffuse layer
@@ -41,5 +43,6 @@ struct KeptReflectance {
 KeptReflectance kept_reflectance(const Bsdf& bsdf);
 // The same of an opaque surface whose gloss is alike all around, without asking for its Bsdf.
 KeptReflectance kept_reflectance(const Surface& surface);
+KeptReflectance kept_reflectance(vec3 base_color, float metallic, float roughness);
 
 }  // namespace wellspring

@@ -1,23 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a picture's time is spent on, decided by what was measured. Path `cache`: nearly all goes to
-// samples, a little to looks at edges (cache/looks.h). Path `primary`: every pixel is looked at, where
-// that leaves enough for light: a quick machine, a small picture, few visitors.
+// samples, a little to looks at edges (cache/looks.h). Path `primary`: shape and reflectance of every
+// pixel are exact, drawn (cache/overlay.h) while that leaves time for light, or with every pixel looked
+// at where even that does: a quick machine, a small picture, few visitors. Drawing may slow pictures down,
+// but not below 24 a second: most of a walking visitor's pixels are guesses without it.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 
 namespace wellspring {
 
 struct DisplayCosts {
   double samples_per_second = 0, looks_per_second = 0;  // all cores
+  double drawing_seconds = 0;  // of a picture, all cores; 0: never measured
+  double display_seconds = 0;  // what a picture takes besides: reprojection, composing, tone mapping
 };
 
+enum class DrawShapes : uint8_t { automatic, never, always };  // server option --draw
+
 struct DisplayPlan {
-  bool primary = false;
+  bool drawn = false;
+  bool primary = false;  // every pixel is looked at
   int samples = 0, looks = 0;
 };
 
-// `seconds`: what there is for both. `primary`: the path of the picture before, which is kept until
-// the other is clearly better, so that paths do not alternate.
-DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& costs, bool primary);
+// `seconds`: what there is for all. `before`: of the picture before, which is kept until another way is
+// clearly better, so that paths do not alternate.
+DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& costs,
+                         const DisplayPlan& before, DrawShapes wish = DrawShapes::automatic);
 
 }  // namespace wellspring

@@ -87,6 +87,10 @@ std::string write_metrics(const ShowReport& report) {
               [](auto& v) { return v.budget; });
   per_visitor(out, report, "looks_per_picture", "Rays that only see, of a picture",
               [](auto& v) { return v.looks; });
+  per_visitor(out, report, "drawing_milliseconds", "Drawing shape and reflectance of a picture",
+              [](auto& v) { return v.drawing_ms; });
+  per_visitor(out, report, "drawn_path", "1: shape and reflectance of every pixel are drawn; 0: points alone",
+              [](auto& v) { return int(v.drawn); });
   per_visitor(out, report, "primary_path", "1: every pixel is looked at; 0: reprojected points, edges looked at",
               [](auto& v) { return int(v.primary); });
   per_visitor(out, report, "converged_ratio", "Share of converged pixels",

@@ -22,6 +22,7 @@ constexpr double still_rate = 20;      // pictures a second while only the story
 constexpr double settling_rate = 12;   // while nothing moves: more time for samples
 constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr float nearly_all = 0.999f;   // converged
+constexpr float few_guessed = 0.01f;   // of the pixels, and the points alone show a picture at rest
 constexpr int animated_gain = 5;       // JPEG quality above the moving one while the storyteller moves
 
 float milliseconds_since(double began) { return float(1000 * (seconds_now() - began)); }
@@ -111,9 +112,11 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   cache.attend();
   uint64_t seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
   DisplayPlan display = plan_display(seconds_to_trace(show, visitor, busy), size_t(view.width) * size_t(view.height),
-                                     {show.samples_per_second, show.looks_per_second}, visitor.primary);
+                                     {show.samples_per_second, show.looks_per_second, 0.001 * double(visitor.times.drawing),
+                                      0.001 * double(visitor.times.display + visitor.times.tonemap)},
+                                     visitor.display, show.settings.draw);
   visitor.budget = display.samples;
-  visitor.primary = display.primary;
+  visitor.display = display;
   cache.plan(view, visitor.budget, seed, visitor.requests);
   double planned = seconds_now();
   visitor.samples.resize(visitor.requests.size());
@@ -127,7 +130,9 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   trace(technique, *show.world, show.lights, transport, visitor.requests, visitor.samples);
   double traced = seconds_now();
   cache.remember(view, visitor.requests, visitor.samples);
-  cache.survey(view, display.looks, visitor.frame, visitor.looks);
+  bool guessed = cache.stats().filled > few_guessed || !still || sees_figure(show, view);
+  bool drawn = display.drawn && guessed;
+  cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, visitor.frame, visitor.looks);
   visitor.seen.resize(visitor.looks.size());
   double surveyed = seconds_now();
   see(*show.world, show.lights, visitor.looks, visitor.seen);
@@ -169,7 +174,9 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
     show.looks_per_second += (rate - show.looks_per_second) * 0.1f;
   }
   smooth(visitor.times.display,
-         float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))));
+         float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))) -
+             (drawn ? cache.stats().drawing_ms : 0.0f));
+  if (drawn) smooth(visitor.times.drawing, cache.stats().drawing_ms);
   smooth(visitor.times.look, float(1000 * (looked - surveyed)));
   smooth(visitor.times.trace, float(1000 * (traced - planned)));
   if (visitor.pictured_at > 0 && show.time > visitor.pictured_at)

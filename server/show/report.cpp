@@ -33,7 +33,9 @@ ShowReport make_report(const Show& show) {
     one.height = visitor.height;
     one.budget = visitor.budget;
     one.looks = int(visitor.looks.size());
-    one.primary = visitor.primary;
+    one.primary = visitor.display.primary;
+    one.drawn = visitor.display.drawn;
+    one.drawing_ms = visitor.times.drawing;
     one.look_ms = visitor.times.look;
     one.quality = suggest_quality(visitor.flow, visitor.best_quality);
     one.fps = visitor.measured_fps;

@@ -19,8 +19,8 @@ struct ShowTotals {
 struct VisitorReport {
   uint64_t id = 0;
   int width = 0, height = 0, budget = 0, looks = 0, quality = 0;
-  bool primary = false;  // display path
-  float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, look_ms = 0, tonemap_ms = 0, encode_ms = 0;
+  bool primary = false, drawn = false;  // display path
+  float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, look_ms = 0, drawing_ms = 0, tonemap_ms = 0, encode_ms = 0;
   float fresh = 0, empty = 0, converged = 0, mean_age = 0;
   uint64_t cache_bytes = 0, dropped = 0;
   bool kiosk = false;

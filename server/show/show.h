@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "avatar/storyteller.h"
+#include "light/see_picture.h"
 #include "light/technique.h"
 #include "show/audience.h"
 #include "show/exhibit.h"
@@ -27,6 +28,7 @@ struct ShowSettings {
   std::string technique = "gather";      // while anything moves
   std::string still_technique = "path";  // while the visitor stands still: the picture becomes the reference
   TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}};
+  DrawShapes draw = DrawShapes::automatic;
   float moving_clamp = 4;     // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
 };
@@ -47,6 +49,7 @@ struct Show {
   Exhibit exhibit;  // the scene inside has the figure's materials and object added
   std::unique_ptr<World> world;
   Lights lights;
+  std::unique_ptr<PictureSight> sight;  // one picture at a time
   const Technique* technique = nullptr;
   const Technique* still_technique = nullptr;
 

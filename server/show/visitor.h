@@ -8,6 +8,7 @@
 
 #include "cache/cache.h"
 #include "frame/tonemap.h"
+#include "show/display_path.h"
 #include "show/flow.h"
 #include "show/sound.h"
 #include "show/tour.h"
@@ -19,7 +20,7 @@ namespace wellspring {
 
 // Milliseconds of the last picture's stages, smoothed: for the status page and the budget.
 struct StageTimes {
-  float display = 0, trace = 0, look = 0, tonemap = 0, encode = 0;
+  float display = 0, trace = 0, look = 0, drawing = 0, tonemap = 0, encode = 0;
 };
 
 // The JPEG made on another core while the next tick begins.
@@ -68,7 +69,7 @@ struct Visitor {
   Flow flow;
   StageTimes times;
   int budget = 0;        // samples of the last tick
-  bool primary = false;  // every pixel is looked at (show/display_path.h)
+  DisplayPlan display;   // of the last picture
   double state_sent_at = -1e9;
   float measured_fps = 0;
 };

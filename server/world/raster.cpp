@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "base/lanes.h"
 #include "base/parallel.h"
@@ -79,7 +80,8 @@ struct Raster::Impl {
   void fill_block(int number, const View& view, const RasterSettings& settings,
                   const RasterView& raster);
   void draw_tile(int tile_x, int tile_y, int tile, const View& view, const RasterView& raster,
-                 vec2 offset, const std::function<void(const RasterRun&)>& take) const;
+                 const RasterSettings& settings,
+                 const std::function<void(const RasterRun&)>& take) const;
 };
 
 Raster::Raster(const World& world) : impl_(std::make_unique<Impl>(world)) {
@@ -173,7 +175,7 @@ void Raster::Impl::fill_block(int number, const View& view, const RasterSettings
     unfinished.instance = pieces[p].instance;
     unfinished.has_alpha = has_alpha[pieces[p].instance];
     size_t material = size_t(placed.mesh->material);
-    unfinished.veils = material < settings.see_through.size() && settings.see_through[material];
+    unfinished.veils = material < settings.see_through.size() ? settings.see_through[material] : 0;
     for (uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangles; t++) {
       unfinished.triangle = mesh.triangle[t];
       std::array<uint8_t, 3> c = mesh.corner[t];
@@ -199,16 +201,16 @@ void Raster::Impl::fill_block(int number, const View& view, const RasterSettings
 }
 
 void Raster::Impl::draw_tile(int tile_x, int tile_y, int tile, const View& view,
-                             const RasterView& raster, vec2 offset,
+                             const RasterView& raster, const RasterSettings& settings,
                              const std::function<void(const RasterRun&)>& take) const {
   TilePixels pixels;
   std::fill(std::begin(pixels.depth), std::end(pixels.depth), 0.0f);
   std::fill(std::begin(pixels.number), std::end(pixels.number), no_triangle);
-  std::fill(std::begin(pixels.veiled), std::end(pixels.veiled), uint8_t(0));
   auto triangle_of = [&](uint32_t number) -> const RasterTriangle& {
     return blocks[number >> block_bits].triangles[number & ((1u << block_bits) - 1)];
   };
   std::fill(std::begin(pixels.least), std::end(pixels.least), 0.0f);
+  vec2 offset = settings.offset;
   bool any_veil = false;
   auto for_each = [&](const auto& body) {
     for (uint32_t b = 0; b < blocks.size(); b++)
@@ -240,37 +242,86 @@ void Raster::Impl::draw_tile(int tile_x, int tile_y, int tile, const View& view,
       std::memcpy(pixels.number + place, &numbers, sizeof numbers);
     });
   });
-  if (any_veil)
+  std::vector<Veil> veils;
+  if (any_veil && settings.veil) {
     for_each([&](uint32_t number) {
       const RasterTriangle& t = triangle_of(number);
       if (!t.veils) return;
-      cover(t, raster, tile_x, tile_y, pixels, [&](int place, Lanes, unsigned covered) {
-        for (; covered != 0; covered &= covered - 1)
-          pixels.veiled[place + __builtin_ctz(covered)] = 1;
+      bool known = false;
+      Veil veil;
+      cover(t, raster, tile_x, tile_y, pixels, [&](int place, Lanes depth, unsigned covered) {
+        if (veils.empty()) veils.resize(tile_width * tile_height);
+        for (; covered != 0; covered &= covered - 1) {
+          int i = __builtin_ctz(covered);
+          if (!known || t.veils == 2) {
+            int x = tile_x + (place + i) % tile_width, y = tile_y + (place + i) / tile_width;
+            Ray ray = view_ray(view, float(x) + offset.x, float(y) + offset.y);
+            Hit hit;
+            hit.t = 1 / (depth[i] * dot(ray.direction, view.forward));
+            hit.instance = t.instance;
+            hit.triangle = t.triangle;
+            hit.barycentric = barycentric_at(t, raster, x, y, depth[i]);
+            veil = settings.veil(hit, ray.direction);
+            known = true;
+          }
+          Veil& v = veils[size_t(place + i)];
+          v.glow += v.tint * veil.glow;
+          v.tint *= veil.tint;
+        }
       });
     });
+  }
 
   int columns = std::min(tile_width, view.width - tile_x),
       rows = std::min(tile_height, view.height - tile_y);
-  float slope = 2 * view.tan_half_fov / float(view.height);
-  Hit hits[tile_width];
+  float depth[tile_width + lane_count], u[tile_width + lane_count], v[tile_width + lane_count];
+  uint32_t instance[tile_width + lane_count], triangle[tile_width + lane_count];
   for (int y = 0; y < rows; y++) {
-    float ray_y = (float(tile_y + y) - raster.centre_y) * slope;
-    for (int x = 0; x < columns; x++) {
-      int place = y * tile_width + x;
-      Hit& hit = hits[x];
-      hit = {};
-      if (pixels.number[place] == no_triangle) continue;
-      const RasterTriangle& t = triangle_of(pixels.number[place]);
-      float ray_x = (float(tile_x + x) - raster.centre_x) * slope;
-      float depth = pixels.depth[place];
-      hit.t = std::sqrt(1 + ray_x * ray_x + ray_y * ray_y) / depth;
-      hit.instance = t.instance;
-      hit.triangle = t.triangle;
-      hit.barycentric = barycentric_at(t, raster, tile_x + x, tile_y + y, depth);
+    const uint32_t* number = pixels.number + y * tile_width;
+    const float* inverse = pixels.depth + y * tile_width;
+    for (int x = 0, end; x < columns; x = end) {
+      for (end = x + 1; end < columns && number[end] == number[x];) end++;
+      bool hit = number[x] != no_triangle;
+      const RasterTriangle* t = hit ? &triangle_of(number[x]) : nullptr;
+      for (int i = x; i < end; i++) {
+        instance[i] = hit ? t->instance : RasterRun::nothing;
+        triangle[i] = hit ? t->triangle : 0;
+      }
+      if (!hit) {
+        std::fill(depth + x, depth + end, std::numeric_limits<float>::infinity());
+        std::fill(u + x, u + end, 0.0f), std::fill(v + x, v + end, 0.0f);
+        continue;
+      }
+      constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+      float u0 = eval_at(t->u, *t, raster, tile_x + x, tile_y + y);
+      float v0 = eval_at(t->v, *t, raster, tile_x + x, tile_y + y);
+      for (int i = x; i < end; i += lane_count) {
+        Lanes w = 1 / load_lanes(inverse + std::min(i, tile_width - lane_count));
+        if (i > tile_width - lane_count)
+          for (int k = 0; k < lane_count; k++) w[k] = 1 / inverse[std::min(i + k, tile_width - 1)];
+        Lanes along = lane + float(i - x);
+        Lanes a = lanes_max(lanes_min((u0 + t->u.y * along) * w, all_lanes(1)), all_lanes(0));
+        Lanes b = lanes_max(lanes_min((v0 + t->v.y * along) * w, all_lanes(1)), all_lanes(0));
+        Lanes share = 1 / lanes_max(a + b, all_lanes(1));
+        store_lanes(depth + i, w);
+        store_lanes(u + i, a * share);
+        store_lanes(v + i, b * share);
+      }
     }
-    take({tile_x, tile_y + y, columns, hits, pixels.veiled + y * tile_width});
+    take({tile_x, tile_y + y, columns, depth, instance, triangle, u, v,
+          veils.empty() ? nullptr : &veils[size_t(y) * tile_width]});
   }
+}
+
+Hit hit_of(const RasterRun& run, int i, const View& view, vec2 offset) {
+  Hit hit;
+  if (run.instance[i] == RasterRun::nothing) return hit;
+  Ray ray = view_ray(view, float(run.x + i) + offset.x, float(run.y) + offset.y);
+  hit.t = run.depth[i] / dot(ray.direction, view.forward);
+  hit.instance = run.instance[i];
+  hit.triangle = run.triangle[i];
+  hit.barycentric = {run.u[i], run.v[i]};
+  return hit;
 }
 
 void Raster::draw(const View& view, const RasterSettings& settings,
@@ -283,14 +334,14 @@ void Raster::draw(const View& view, const RasterSettings& settings,
   raster.centre_steps_y = view.height * (raster_steps / 2) - steps(settings.offset.y);
   raster.centre_x = float(raster.centre_steps_x) / raster_steps;
   raster.centre_y = float(raster.centre_steps_y) / raster_steps;
-  vec2 offset = vec2(steps(settings.offset.x), steps(settings.offset.y)) / float(raster_steps);
   r.find_pieces(view);
   r.blocks.resize((r.pieces.size() + block_clusters - 1) / block_clusters);
   parallel_for(int(r.blocks.size()), [&](int i) { r.fill_block(i, view, settings, raster); });
   int columns = (view.width + tile_width - 1) / tile_width;
   int rows = (view.height + tile_height - 1) / tile_height;
   parallel_for(columns * rows, [&](int i) {
-    r.draw_tile(i % columns * tile_width, i / columns * tile_height, i, view, raster, offset, take);
+    r.draw_tile(i % columns * tile_width, i / columns * tile_height, i, view, raster, settings,
+                take);
   });
 }
 

@@ -15,19 +15,36 @@
 
 namespace wellspring {
 
-// Up to 64 pixels of a row, from (x, y) to the right. Hits are those of the nearest surface that is
-// not see-through; Hit::valid() false: there is none.
-struct RasterRun {
-  int x = 0, y = 0, count = 0;
-  const Hit* hits = nullptr;        // barycentrics right to 1e-3, t to 1e-5 of itself
-  const uint8_t* veiled = nullptr;  // 1: something see-through lies before that surface
+// What see-through surfaces do to the light from behind: light * tint + glow.
+struct Veil {
+  vec3 tint{1}, glow{0};
 };
 
+// Up to `most` pixels of a row, from (x, y) to the right: of each the nearest surface that is not
+// see-through, at its sampling place. Arrays may be read, not trusted, up to `most` + 8.
+struct RasterRun {
+  static constexpr int most = 64;
+  static constexpr uint32_t nothing = 0xffffffffu;
+  int x = 0, y = 0, count = 0;
+  const float* depth = nullptr;  // along the viewing axis, right to 1e-5; infinity: nothing there
+  const uint32_t* instance = nullptr;  // or nothing
+  const uint32_t* triangle = nullptr;
+  const float *u = nullptr,
+              *v = nullptr;    // barycentrics of its second and third corner, right to 1e-3
+  const Veil* veil = nullptr;  // of the see-through surfaces before it; null: there are none
+};
+// Pixel i of the run as a ray through its sampling place would have met it.
+Hit hit_of(const RasterRun& run, int i, const View& view, vec2 offset);
+
 struct RasterSettings {
-  // Of each material of the scene (empty: none): its triangles hide nothing but veil what is
-  // behind.
-  std::span<const uint8_t> see_through;
   vec2 offset{0.5f};  // of the sampling place in its pixel, 0 to 1
+  // Of each material of the scene (empty: none). Not 0: its triangles hide nothing but veil what is
+  // behind; 1: alike all over, 2: differently at every pixel.
+  std::span<const uint8_t> see_through;
+  // How: asked once a tile for each such triangle in sight, or once a pixel, by many threads;
+  // direction: of a ray from the eye that meets it there. Needed where there is one. Several before
+  // one place are put together in no order.
+  std::function<Veil(const Hit& hit, vec3 direction)> veil;
 };
 
 // Keeps its arrays from picture to picture. Surfaces with alpha are passed through where a ray

@@ -47,7 +47,8 @@ struct RasterTriangle {
   float least_depth, most_depth;
   int16_t left, top, right, bottom;  // pixels it may cover, inclusive, from the picture's top left
   uint32_t instance, triangle;
-  bool has_alpha, veils;
+  bool has_alpha;
+  uint8_t veils;  // RasterSettings::see_through of its material
 };
 
 struct RasterView {

@@ -63,17 +63,14 @@ class CacheMethod : public VisitMethod {
       cache_.remember(asked_from_, batch_.requests, batch_.samples);
     cache_.project(view);
     cache_.attend();
-    int looks = looks_a_pixel * view.width * view.height;
-    if (!primary_) {
-      int price = int(look_share * budget);
-      looks = std::min(looks, price * looks_a_sample);
-      budget -= price;
-    }
+    int price = int(look_share * budget);
+    int looks = std::min(looks_a_pixel * view.width * view.height, price * looks_a_sample);
+    budget -= price;
     cache_.plan(view, budget, moment.seed, batch_.requests);
     batch_.trace(moment);
     asked_from_ = view;
     if (!late_) cache_.remember(view, batch_.requests, batch_.samples);
-    cache_.survey(view, looks, shown.frame, rays_);
+    cache_.survey(view, primary_ ? &sight(moment) : nullptr, looks, shown.frame, rays_);
     seen_.resize(rays_.size());
     see(*moment.world, *moment.lights, rays_, seen_);
     cache_.reconstruct(view, seen_, shown.frame);
@@ -82,7 +79,15 @@ class CacheMethod : public VisitMethod {
   }
 
  private:
+  const PictureSight& sight(const VisitMoment& moment) {
+    if (!sight_ || sees_ != moment.lights->tables)
+      sight_ = std::make_unique<PictureSight>(*moment.world, *moment.lights);
+    sees_ = moment.lights->tables;
+    return *sight_;
+  }
   bool late_, primary_;
+  std::unique_ptr<PictureSight> sight_;
+  std::shared_ptr<const LightTables> sees_;
   std::vector<Ray> rays_;
   std::vector<Seen> seen_;
   RenderCache cache_;

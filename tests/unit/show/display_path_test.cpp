@@ -3,28 +3,34 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "cache/looks.h"
 
 namespace wellspring {
 namespace {
 
-constexpr DisplayCosts quick{1e6, 100e6}, slow{1e5, 1e6};
+constexpr DisplayCosts quick{1e6, 100e6, 0.003, 0.01}, slow{1e5, 1e6, 0.06, 0.02};
+constexpr DisplayPlan points, drawn{true, false}, looked{false, true};
 constexpr size_t pixels = 1280 * 720;
 
 TEST(DisplayPath, FollowsWhatWasMeasured) {
-  EXPECT_TRUE(plan_display(0.1, pixels, quick, false).primary);
-  EXPECT_FALSE(plan_display(0.01, pixels, slow, false).primary);
+  EXPECT_TRUE(plan_display(0.1, pixels, quick, points).primary);
+  EXPECT_FALSE(plan_display(0.01, pixels, slow, points).primary);
   // A smaller picture or more time per visitor is enough on the slow machine.
-  EXPECT_TRUE(plan_display(0.1, 128 * 72, slow, false).primary);
+  EXPECT_TRUE(plan_display(0.1, 128 * 72, slow, points).primary);
 }
 
 TEST(DisplayPath, SpendsTheTimeThereIs) {
   for (const DisplayCosts& costs : {quick, slow})
     for (double seconds : {0.002, 0.01, 0.05, 0.2})
-      for (bool primary : {false, true}) {
-        DisplayPlan plan = plan_display(seconds, pixels, costs, primary);
-        double spent = plan.samples / costs.samples_per_second + plan.looks / costs.looks_per_second;
-        EXPECT_LE(spent, seconds + 2000 / costs.samples_per_second + 1e-9);
+      for (const DisplayPlan& before : {points, drawn, looked}) {
+        DisplayPlan plan = plan_display(seconds, pixels, costs, before);
+        double spent = plan.samples / costs.samples_per_second + plan.looks / costs.looks_per_second +
+                       (plan.drawn ? costs.drawing_seconds : 0);
+        // Light keeps a quarter of the time even where drawing slows pictures down.
+        double slowed = plan.drawn ? std::max(0.0, costs.drawing_seconds - 0.75 * seconds) : 0;
+        EXPECT_LE(spent, seconds + slowed + 2000 / costs.samples_per_second + 1e-9);
         EXPECT_GE(plan.samples, 2000);
         EXPECT_EQ(plan.looks == int(pixels) * looks_a_pixel, plan.primary);
       }
@@ -33,18 +39,44 @@ TEST(DisplayPath, SpendsTheTimeThereIs) {
 TEST(DisplayPath, DoesNotAlternateWhereBothAreAboutAsGood) {
   // Times that vary by a tenth around the limit change the path once at most.
   double at_limit = double(pixels) * looks_a_pixel / quick.looks_per_second / 0.45;
-  bool primary = false;
+  DisplayPlan plan;
   int changes = 0;
   for (int i = 0; i < 100; i++) {
-    DisplayPlan plan = plan_display(at_limit * (i % 2 ? 1.1 : 0.9), pixels, quick, primary);
-    changes += plan.primary != primary;
-    primary = plan.primary;
+    DisplayPlan next = plan_display(at_limit * (i % 2 ? 1.1 : 0.9), pixels, quick, plan);
+    changes += plan.primary != next.primary;
+    plan = next;
+  }
+  EXPECT_LE(changes, 1);
+  plan = {}, changes = 0;
+  for (int i = 0; i < 100; i++) {
+    DisplayPlan next = plan_display(slow.drawing_seconds / 0.7 * (i % 2 ? 1.05 : 0.95), pixels, slow, plan);
+    changes += plan.drawn != next.drawn;
+    plan = next;
   }
   EXPECT_LE(changes, 1);
 }
 
+TEST(DisplayPath, DrawsWhereTimeOrTheRateAllows) {
+  EXPECT_FALSE(plan_display(0.03, pixels, slow, points).drawn);
+  EXPECT_FALSE(plan_display(0.03, pixels, slow, drawn).drawn);
+  EXPECT_TRUE(plan_display(0.11, pixels, slow, points).drawn);
+  EXPECT_TRUE(plan_display(0.007, pixels, quick, points).drawn);
+  // No time is left within the wanted period, but 24 pictures a second stay possible.
+  DisplayCosts costs = slow;
+  costs.drawing_seconds = 0.015;
+  EXPECT_TRUE(plan_display(0.005, pixels, costs, points).drawn);
+  EXPECT_GE(plan_display(0.005, pixels, costs, points).samples, 2000);
+  costs.drawing_seconds = 0.03;
+  EXPECT_FALSE(plan_display(0.005, pixels, costs, drawn).drawn);
+}
+
+TEST(DisplayPath, DrawsAsToldByTheOperator) {
+  EXPECT_FALSE(plan_display(1, 128 * 72, quick, drawn, DrawShapes::never).drawn);
+  EXPECT_TRUE(plan_display(0.001, pixels, slow, points, DrawShapes::always).drawn);
+}
+
 TEST(DisplayPath, NothingMeasuredYetIsNoDivisionByZero) {
-  DisplayPlan plan = plan_display(0.01, pixels, {}, false);
+  DisplayPlan plan = plan_display(0.01, pixels, {}, points);
   EXPECT_FALSE(plan.primary);
   EXPECT_EQ(plan.looks, 0);
   EXPECT_EQ(plan.samples, 2000);

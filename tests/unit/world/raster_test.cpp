@@ -20,7 +20,7 @@ namespace {
 
 struct Picture {
   std::vector<Hit> hits;
-  std::vector<uint8_t> veiled;
+  std::vector<vec3> tint;
   int taken = 0;
 };
 
@@ -28,12 +28,14 @@ Picture draw(Raster& raster, const View& view, const RasterSettings& settings = 
   Picture picture;
   size_t pixels = size_t(view.width) * size_t(view.height);
   picture.hits.resize(pixels);
-  picture.veiled.resize(pixels);
+  picture.tint.resize(pixels, vec3(1));
   std::atomic<int> taken = 0;
   raster.draw(view, settings, [&](const RasterRun& run) {
     size_t first = size_t(run.y) * size_t(view.width) + size_t(run.x);
-    std::copy(run.hits, run.hits + run.count, &picture.hits[first]);
-    std::copy(run.veiled, run.veiled + run.count, &picture.veiled[first]);
+    for (int i = 0; i < run.count; i++)
+      picture.hits[first + size_t(i)] = hit_of(run, i, view, settings.offset);
+    for (int i = 0; run.veil && i < run.count; i++)
+      picture.tint[first + size_t(i)] = run.veil[i].tint + 8.0f * run.veil[i].glow;
     taken += run.count;
   });
   picture.taken = taken;
@@ -128,7 +130,7 @@ TEST(Raster, SamplesWhereItIsTold) {
   Raster raster(world);
   View view = view_of(scene, 1, 91, 67);  // odd: tiles and rows end anywhere
   for (vec2 offset : {vec2(0, 0), vec2(0.25f, 0.875f)}) {
-    Picture picture = draw(raster, view, {{}, offset});
+    Picture picture = draw(raster, view, {offset, {}, {}});
     EXPECT_EQ(wrong_pixels(world, view, picture, offset), 0);
   }
 }
@@ -246,7 +248,16 @@ TEST(Raster, SeeThroughSurfacesVeilWhatIsBehind) {
   View view = make_view(scene, {0, 0, 0}, 0, 0, 0.8f, 100, 80);
   std::vector<uint8_t> see_through(scene.materials.size(), 0);
   see_through[size_t(pane)] = 1;
-  Picture picture = draw(raster, view, {see_through, vec2(0.5f)});
+  RasterSettings settings;
+  settings.see_through = see_through;
+  settings.veil = [&](const Hit& hit, vec3 direction) {
+    EXPECT_EQ(hit.instance, 0u);
+    EXPECT_NEAR(
+        glm::length(hit.t * direction - eval_position(world, 0, hit.triangle, hit.barycentric)), 0,
+        1e-4f);
+    return Veil{vec3(0.5f, 0.25f, 1), vec3(0, 0, 1)};
+  };
+  Picture picture = draw(raster, view, settings);
   int veiled = 0;
   for (int y = 0; y < 80; y++)
     for (int x = 0; x < 100; x++) {
@@ -254,8 +265,8 @@ TEST(Raster, SeeThroughSurfacesVeilWhatIsBehind) {
       EXPECT_EQ(picture.hits[i].instance, 2u);
       bool expected =
           world.intersect(view_ray(view, float(x) + 0.5f, float(y) + 0.5f)).instance == 0;
-      EXPECT_EQ(bool(picture.veiled[i]), expected);
-      veiled += picture.veiled[i];
+      EXPECT_EQ(picture.tint[i], expected ? vec3(0.5f, 0.25f, 9) : vec3(1));
+      veiled += expected;
     }
   EXPECT_GT(veiled, 500);
 }

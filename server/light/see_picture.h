@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every pixel of a view sees, without the light that falls there, drawn instead of traced
+// (world/raster.h): shape and reflectance of a whole picture for the price of a few thousand
+// samples.
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "light/see.h"
+#include "world/raster.h"
+
+namespace wellspring {
+
+class PictureSight;
+
+// Reflectances of a run's pixels, linear.
+struct RunReflectance {
+  static constexpr int most = RasterRun::most + 8;  // vectors are stored whole
+  float red[most], green[most], blue[most];
+};
+
+// Up to 64 pixels of a row, from (x, y) to the right. As light/see.h answers for rays through the
+// pixels' sampling places, but that normals are those of the mesh, without normal maps, pictures
+// are averaged over the pixel, and clear panes tint a part of the picture alike.
+class SightRun {
+ public:
+  int x = 0, y = 0, count = 0;
+  const float* depth = nullptr;      // along the viewing axis; infinity: nothing there
+  const uint32_t* object = nullptr;  // 0: nothing there
+  // Reflectance of the pixels whose bit is set, and maybe of others.
+  void reflect(uint64_t wanted, RunReflectance& to) const;
+  // Everything of pixel i, its albedo only where asked for; costs as much as a dozen reflectances.
+  Seen see(int i, bool reflectance = true) const;
+
+ private:
+  friend class PictureSight;
+  struct Impl;
+  const Impl* impl_ = nullptr;
+};
+
+class PictureSight {
+ public:
+  // Borrows `world`; keeps what it needs of `lights`. A second or so for a scene of many pictures.
+  PictureSight(const World& world, const Lights& lights);
+  ~PictureSight();
+
+  // Calls `take` from many threads; together the calls cover every pixel once. `offset`: of the
+  // sampling place in its pixel, 0 to 1. Call after World::commit(), while nothing moves.
+  void see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take) const;
+  // Does the view's eye stand where runs are right? Not within a solid of glass, whose own light
+  // and colour only rays meet.
+  bool can_see(const View& view) const;
+
+ private:
+  friend class SightRun;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace wellspring

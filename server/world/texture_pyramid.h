@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures made smaller beforehand (Williams, "Pyramidal Parametrics", 1983), for those who look
+// once a pixel: what is far away neither sparkles nor costs a cache miss a texel.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "base/lanes.h"
+#include "world/texture.h"
+
+namespace wellspring {
+
+// Half the size, a quarter, and so on down to one texel; the picture itself is not repeated. Texels
+// are the roots of linear RGB in [0, 1], 8 bits each.
+struct TexturePyramid {
+  struct Level {
+    int width = 0, height = 0;
+    std::vector<uint32_t> texels;
+  };
+  std::vector<Level> levels;
+};
+
+// Averages of linear light; a third of the picture's memory. Without levels for pictures of floats,
+// which may exceed 1, and for those read by the nearest texel, where edges are meant.
+TexturePyramid make_pyramid(const Image& image);
+
+// Linear RGB at (u, v) as seen by a pixel that is `texels` texels of the picture wide. As
+// eval_texture() where that is less than about one and a half.
+vec3 eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Texture& texture,
+                  vec2 uv, float texels);
+
+// The same for eight places at once, bilinear in the roots of light where it is made smaller.
+// False: not done, because the picture is of floats, or read by the nearest texel.
+bool eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Texture& texture,
+                  Lanes u, Lanes v, float texels, Lanes (&rgb)[3]);
+
+}  // namespace wellspring

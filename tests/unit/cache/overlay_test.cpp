@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// With few points the light is a guess, but shapes and reflectances are exact.
+#include "cache/overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cache/cache.h"
+#include "frame/compare.h"
+#include "light/technique.h"
+#include "scenes/scenes.h"
+
+using namespace wellspring;
+using namespace wellspring::scenes;
+
+namespace {
+
+struct Visit {
+  RenderCache cache;
+  std::vector<Request> requests;
+  std::vector<Sample> samples;
+  Frame frame;
+  uint64_t tick = 1;
+
+  void step(const World& world, const Lights& lights, const View& view, int budget,
+            const PictureSight* sight) {
+    cache.resize(view.width, view.height);
+    cache.move_points(world);
+    cache.project(view);
+    cache.attend();
+    cache.plan(view, budget, tick++, requests);
+    samples.resize(requests.size());
+    trace(*find_technique("path"), world, lights, {}, requests, samples);
+    cache.remember(view, requests, samples);
+    cache.reconstruct(view, frame, sight);
+  }
+};
+
+// A box with a picture on its back wall, thin bars before it, and a moving ball.
+struct Room {
+  Scene scene;
+  Mesh ball;
+  Room() {
+    scene = make_cornell_box();
+    Image image;
+    image.width = image.height = 32;
+    for (int i = 0; i < 32 * 32; i++)
+      for (uint8_t c : {(i / 2 + i / 64) % 2 ? 220 : 30, 120, 60, 255}) image.texels8.push_back(c);
+    scene.images.push_back(image);
+    Texture texture;
+    texture.image = int(scene.images.size()) - 1;
+    scene.textures.push_back(texture);
+    Material picture = diffuse(vec3(1));
+    picture.base_color_texture.texture = int(scene.textures.size()) - 1;
+    add_quad(scene, add_material(scene, picture), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0},
+             "picture");
+    int dark = add_material(scene, diffuse(vec3(0.1f)));
+    for (int i = 0; i < 6; i++)
+      add_quad(scene, dark, {-0.25f + 0.1f * float(i), 0, -0.1f}, {0.004f, 0, 0}, {0, 0.5f, 0},
+               "bar");
+    ball = sphere_mesh(add_material(scene, diffuse(vec3(0.7f, 0.6f, 0.1f))), 0.08f, 16);
+    for (vec3& p : ball.positions) p += vec3(0, 0.1f, 0);
+    scene.objects.push_back("ball");
+  }
+};
+
+}  // namespace
+
+TEST(Overlay, ShowsExactShapesWithFewPoints) {
+  Room room;
+  World world(room.scene, {room.ball}, {uint32_t(room.scene.objects.size() - 1)});
+  world.commit();
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  Visit drawn, guessed;
+  constexpr int width = 160, height = 120, pixels = width * height;
+  View view;
+  for (int i = 0; i < 24; i++) {
+    if (i == 12) {  // teleported: nothing is known of most of it
+      for (vec3& p : room.ball.positions) p.x += 0.1f;
+      world.move(0, room.ball.positions, room.ball.normals);
+      world.commit();
+    }
+    double x = 0.002 * i + (i >= 12 ? 0.1 : 0);
+    view = make_view(room.scene, {x, 0.25, 0.6}, 0, 0, 0.7f, width, height);
+    drawn.step(world, lights, view, pixels / 40, &sight);
+    guessed.step(world, lights, view, pixels / 40, nullptr);
+  }
+  int wrong = 0, wrong_guess = 0;
+  for (int y = 0; y < height; y++)
+    for (int px = 0; px < width; px++) {
+      Hit hit = world.intersect(view_ray(view, float(px) + 0.5f, float(y) + 0.5f));
+      uint32_t object = hit.valid() ? world.object_of(hit.instance) : 0;
+      size_t at = size_t(y * width + px);
+      wrong += drawn.frame.object[at] != object;
+      wrong_guess += guessed.frame.object[at] != object;
+    }
+  EXPECT_LT(wrong, pixels / 2000);
+  EXPECT_GT(wrong_guess, pixels / 100);  // so the case is hard
+  StillSettings settings;
+  settings.spp = 32;
+  Frame truth = render_still(*find_technique("path"), world, lights, view, settings);
+  EXPECT_LT(rmse(drawn.frame, truth), 0.8 * rmse(guessed.frame, truth));
+  for (vec3 c : drawn.frame.color) ASSERT_TRUE(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);
+}
+
+TEST(Overlay, ShinesWithoutASample) {
+  Scene scene = empty_scene();
+  scene.environment.radiance = vec3(0.5f, 1, 2);
+  add_quad(scene, add_material(scene, emitter(vec3(3, 2, 1))), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0},
+           "lamp");
+  World world(scene);
+  world.commit();
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  Visit visit;
+  View view = make_view(scene, {0, 0, 0}, 0, 0, 1, 96, 64);
+  for (int i = 0; i < 3; i++) visit.step(world, lights, view, 12, &sight);
+  auto color = [&](int x, int y) { return visit.frame.color[size_t(y * 96 + x)]; };
+  EXPECT_LT(glm::length(color(48, 32) - vec3(3, 2, 1)), 0.05f);
+  EXPECT_LT(glm::length(color(4, 4) - vec3(0.5f, 1, 2)), 0.05f);
+}
+
+// Nothing known at all: the frame has the shapes and no light, and nothing breaks.
+TEST(Overlay, AnEmptyCacheIsDark) {
+  Room room;
+  World world(room.scene);
+  world.commit();
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  Visit visit;
+  View view = make_view(room.scene, {0, 0.25, 0.6}, 0, 0, 0.7f, 64, 48);
+  visit.step(world, lights, view, 0, &sight);
+  EXPECT_EQ(visit.requests.size(), 0u);
+  for (vec3 c : visit.frame.color) ASSERT_TRUE(is_finite(c));
+}
