@@ -167,7 +167,7 @@ void RenderCache::survey(const View& view, const PictureSight* sight, int most, 
   SurfaceCounts counts = read_surface(view, c.points, c.image, c.cells, frame);
   if (sight && sight->can_see(view)) {
     double began = seconds_now();
-    overlay_sight(view, *sight, frame);
+    overlay_sight(view, *sight, c.is_still(), frame);
     c.stats.drawing_ms = float(1000 * (seconds_now() - began));
   }
   filter_cells(view, c.cells);

@@ -30,7 +30,7 @@ bool is_same(const SightRun& run, int i, uint32_t object, float depth) {
 
 }  // namespace
 
-int64_t overlay_sight(const View& view, const PictureSight& sight, Frame& frame) {
+int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, Frame& frame) {
   std::atomic<int64_t> others = 0;
   sight.see(view, vec2(0.5f), [&](const SightRun& run) {
     uint64_t same = 0, guessed = 0;
@@ -42,7 +42,7 @@ int64_t overlay_sight(const View& view, const PictureSight& sight, Frame& frame)
       guessed |= uint64_t((more >> 16 & 255) == 0) << i;
     }
     uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
-    uint64_t wanted = all & (~same | guessed);
+    uint64_t wanted = all & (still ? guessed : ~same | guessed);
     if (!wanted) return;
     RunReflectance reflectance;
     run.reflect(wanted, reflectance);
