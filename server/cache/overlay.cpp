@@ -42,7 +42,13 @@ int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, F
       guessed |= uint64_t((more >> 16 & 255) == 0) << i;
     }
     uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
-    uint64_t wanted = all & (still ? guessed : ~same | guessed);
+    uint64_t wrong = ~same & all;
+    for (uint64_t rest = still ? wrong : 0; rest != 0; rest &= rest - 1) {
+      int i = std::countr_zero(rest);
+      if (!sight.moves(run.object[i]) && !sight.moves(frame.object[row + size_t(i)]))
+        wrong &= ~(uint64_t(1) << i);
+    }
+    uint64_t wanted = wrong | (guessed & all);
     if (!wanted) return;
     RunReflectance reflectance;
     run.reflect(wanted, reflectance);

@@ -190,6 +190,7 @@ struct PictureSight::Impl {
   std::vector<Reflectance> reflectance;  // of each material
   std::vector<float> factor;             // of those scaled
   std::vector<uint8_t> panes;            // of each material: is one everywhere
+  std::vector<uint8_t> moving_object;  // by object
   Impl(const World& w, const Lights& l)
       : world(w), lights(l), raster(w), pictures(make_pictures(w.scene())) {}
 };
@@ -197,6 +198,12 @@ struct PictureSight::Impl {
 PictureSight::PictureSight(const World& world, const Lights& lights)
     : impl_(std::make_unique<Impl>(world, lights)) {
   const Scene& scene = world.scene();
+  impl_->moving_object.resize(scene.objects.size(), 0);
+  for (int i = 0; i < world.instance_count(); i++) {
+    uint32_t object = world.object_of(uint32_t(i));
+    if (world.is_moving(uint32_t(i)) && object < scene.objects.size())
+      impl_->moving_object[object] = 1;
+  }
   for (size_t i = 0; i < scene.materials.size(); i++) {
     const Material& m = scene.materials[i];
     float factor = 0;
@@ -206,6 +213,10 @@ PictureSight::PictureSight(const World& world, const Lights& lights)
   }
 }
 PictureSight::~PictureSight() = default;
+
+bool PictureSight::moves(uint32_t object) const {
+  return object < impl_->moving_object.size() && impl_->moving_object[object];
+}
 
 bool PictureSight::can_see(const View& view) const {
   Transport transport{impl_->world, *impl_->lights.tables};

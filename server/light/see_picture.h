@@ -48,6 +48,8 @@ class PictureSight {
   // Calls `take` from many threads; together the calls cover every pixel once. `offset`: of the
   // sampling place in its pixel, 0 to 1. Call after World::commit(), while nothing moves.
   void see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take) const;
+  // Is it of a mesh that moves?
+  bool moves(uint32_t object) const;
   // Does the view's eye stand where runs are right? Not within a solid of glass, whose own light
   // and colour only rays meet.
   bool can_see(const View& view) const;

@@ -11,8 +11,9 @@ namespace {
 constexpr double edge_share = 0.12;                   // of the time, on path `cache`
 constexpr double enter_primary = 0.4, leave_primary = 0.55;  // of the time, for all pixels' looks
 constexpr double enter_drawn = 0.6, leave_drawn = 0.8;  // of the time, for drawing
-constexpr double enter_period = 1.0 / 26, leave_period = 1.0 / 23;  // seconds a picture may take with it
+constexpr double enter_period = 0.08, leave_period = 0.1;  // seconds a picture may take with it
 constexpr double least_light = 0.25;  // of the time goes to light, whatever is drawn
+constexpr int drawn_samples = 1000;  // the same where shapes are drawn: only light has to be guessed
 constexpr int least_samples = 2000;                   // a picture, however slow the machine
 
 int whole(double count, double most) { return int(std::clamp(count, 0.0, most)); }
@@ -26,7 +27,8 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
   double all_seconds = all_looks / std::max(costs.looks_per_second, 1.0);
   plan.primary = all_seconds <= (before.primary ? leave_primary : enter_primary) * seconds;
   double drawing = costs.drawing_seconds;
-  double period = costs.display_seconds + drawing + least_light * seconds;
+  double light = std::max(least_light * seconds, drawn_samples / std::max(costs.samples_per_second, 1.0));
+  double period = costs.display_seconds + drawing + light;
   plan.drawn = drawing <= (before.drawn ? leave_drawn : enter_drawn) * seconds ||
                period <= (before.drawn ? leave_period : enter_period);
   if (wish != DrawShapes::automatic) plan.drawn = wish == DrawShapes::always;
@@ -36,7 +38,7 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
   plan.looks = plan.primary ? int(all_looks) : whole(look_seconds * costs.looks_per_second, all_looks);
   plan.samples = std::max(
       whole((seconds - look_seconds) * costs.samples_per_second, 0.5 * double(pixels)),
-      std::min(least_samples, int(pixels)));
+      std::min(plan.drawn ? drawn_samples : least_samples, int(pixels)));
   return plan;
 }
 

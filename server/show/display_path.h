@@ -3,7 +3,7 @@
 // samples, a little to looks at edges (cache/looks.h). Path `primary`: shape and reflectance of every
 // pixel are exact, drawn (cache/overlay.h) while that leaves time for light, or with every pixel looked
 // at where even that does: a quick machine, a small picture, few visitors. Drawing may slow pictures down,
-// but not below 24 a second: most of a walking visitor's pixels are guesses without it.
+// but not below ten a second: most of a walking visitor's pixels are guesses without it.
 #pragma once
 #include <cstddef>
 #include <cstdint>

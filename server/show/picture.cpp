@@ -22,6 +22,7 @@ constexpr double still_rate = 20;      // pictures a second while only the story
 constexpr double settling_rate = 12;   // while nothing moves: more time for samples
 constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr float nearly_all = 0.999f;   // converged
+constexpr float forgotten = 0.998f;    // of what drawing took, a picture without it
 constexpr float few_guessed = 0.01f;   // of the pixels, and the points alone show a picture at rest
 constexpr int animated_gain = 5;       // JPEG quality above the moving one while the storyteller moves
 
@@ -177,6 +178,7 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
          float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))) -
              (drawn ? cache.stats().drawing_ms : 0.0f));
   if (drawn) smooth(visitor.times.drawing, cache.stats().drawing_ms);
+  else visitor.times.drawing *= forgotten;  // a moment's load is no verdict
   smooth(visitor.times.look, float(1000 * (looked - surveyed)));
   smooth(visitor.times.trace, float(1000 * (traced - planned)));
   if (visitor.pictured_at > 0 && show.time > visitor.pictured_at)
