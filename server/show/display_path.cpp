@@ -11,7 +11,8 @@ namespace {
 constexpr double edge_share = 0.12;                   // of the time, on path `cache`
 constexpr double enter_primary = 0.4, leave_primary = 0.55;  // of the time, for all pixels' looks
 constexpr double enter_drawn = 0.6, leave_drawn = 0.8;  // of the time, for drawing
-constexpr double enter_period = 0.08, leave_period = 0.1;  // seconds a picture may take with it
+// Seconds a picture may take with it: while the visitor walks, and while only the storyteller moves.
+constexpr double enter_period[] = {1.0 / 26, 0.08}, leave_period[] = {1.0 / 23, 0.1};
 constexpr double least_light = 0.25;  // of the time goes to light, whatever is drawn
 constexpr int drawn_samples = 1000;  // the same where shapes are drawn: only light has to be guessed
 constexpr int least_samples = 2000;                   // a picture, however slow the machine
@@ -21,7 +22,7 @@ int whole(double count, double most) { return int(std::clamp(count, 0.0, most));
 }  // namespace
 
 DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& costs,
-                         const DisplayPlan& before, DrawShapes wish) {
+                         const DisplayPlan& before, bool stands, DrawShapes wish) {
   DisplayPlan plan;
   double all_looks = double(pixels) * looks_a_pixel;
   double all_seconds = all_looks / std::max(costs.looks_per_second, 1.0);
@@ -30,7 +31,7 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
   double light = std::max(least_light * seconds, drawn_samples / std::max(costs.samples_per_second, 1.0));
   double period = costs.display_seconds + drawing + light;
   plan.drawn = drawing <= (before.drawn ? leave_drawn : enter_drawn) * seconds ||
-               period <= (before.drawn ? leave_period : enter_period);
+               period <= (before.drawn ? leave_period : enter_period)[stands];
   if (wish != DrawShapes::automatic) plan.drawn = wish == DrawShapes::always;
   plan.drawn &= !plan.primary;
   if (plan.drawn) seconds = std::max(seconds - drawing, least_light * seconds);

@@ -2,8 +2,8 @@
 // What a picture's time is spent on, decided by what was measured. Path `cache`: nearly all goes to
 // samples, a little to looks at edges (cache/looks.h). Path `primary`: shape and reflectance of every
 // pixel are exact, drawn (cache/overlay.h) while that leaves time for light, or with every pixel looked
-// at where even that does: a quick machine, a small picture, few visitors. Drawing may slow pictures down,
-// but not below ten a second: most of a walking visitor's pixels are guesses without it.
+// at where even that does: a quick machine, a small picture, few visitors. Drawing may slow pictures down, but not
+// below some 24 a second of a walking visitor and ten of one who stands before the storyteller.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -25,8 +25,9 @@ struct DisplayPlan {
 };
 
 // `seconds`: what there is for all. `before`: of the picture before, which is kept until another way is
-// clearly better, so that paths do not alternate.
+// clearly better, so that paths do not alternate. `stands`: the visitor does, and waits for nothing.
 DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& costs,
-                         const DisplayPlan& before, DrawShapes wish = DrawShapes::automatic);
+                         const DisplayPlan& before, bool stands = false,
+                         DrawShapes wish = DrawShapes::automatic);
 
 }  // namespace wellspring

@@ -115,7 +115,7 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   DisplayPlan display = plan_display(seconds_to_trace(show, visitor, busy), size_t(view.width) * size_t(view.height),
                                      {show.samples_per_second, show.looks_per_second, 0.001 * double(visitor.times.drawing),
                                       0.001 * double(visitor.times.display + visitor.times.tonemap)},
-                                     visitor.display, show.settings.draw);
+                                     visitor.display, still, show.settings.draw);
   visitor.budget = display.samples;
   visitor.display = display;
   cache.plan(view, visitor.budget, seed, visitor.requests);

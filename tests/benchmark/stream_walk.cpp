@@ -26,7 +26,7 @@ namespace {
 // A server of its own on a free port, ended with this value.
 class ServerProcess {
  public:
-  ServerProcess(const BenchOptions& options, const std::string& exhibit) {
+  ServerProcess(const BenchOptions& options, const std::string& exhibit, const std::string& draw) {
     int out[2];
     if (pipe(out) != 0) throw std::runtime_error("pipe failed");
     posix_spawn_file_actions_t actions;
@@ -36,7 +36,7 @@ class ServerProcess {
     posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
     std::string program = options.programs + "/wellspring_server";
     std::vector<std::string> words = {program, "--port", "0", "--exhibit", exhibit, "--content", options.content,
-                                      "--web", options.web};
+                                      "--web", options.web,       "--draw",  draw};
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
@@ -76,11 +76,10 @@ class ServerProcess {
   pid_t pid_ = 0;
 };
 
-}  // namespace
-
-void bench_stream(BenchReport& report, const BenchOptions& options) {
+// Results are called `name`.fps and so on; `draw` goes to the server.
+void walk(BenchReport& report, const BenchOptions& options, const std::string& name, const std::string& draw) {
   const double warm_up = 2, seconds = options.quick ? 6 : 20;
-  ServerProcess server(options, "castle");
+  ServerProcess server(options, "castle", draw);
   WsClient client;
   WsTarget target;
   target.port = server.port;
@@ -127,14 +126,21 @@ void bench_stream(BenchReport& report, const BenchOptions& options) {
   if (arrivals.size() < 2) throw std::runtime_error("hardly any picture arrived");
   std::vector<double> gaps;
   for (size_t i = 1; i < arrivals.size(); i++) gaps.push_back(1000 * (arrivals[i] - arrivals[i - 1]));
-  nlohmann::json where = {{"scene", "castle"}, {"size", "1280x720"}};
-  report.add("stream.walk.fps", double(arrivals.size() - 1) / (arrivals.back() - arrivals.front()), "1/s", where);
-  report.add("stream.walk.latency_p50_ms", quantile(latencies, 0.5), "ms", where);
-  report.add("stream.walk.latency_p95_ms", quantile(latencies, 0.95), "ms", where);
-  report.add("stream.walk.gap_p95_ms", quantile(gaps, 0.95), "ms", where);
-  report.add("stream.walk.picture_bytes_p50", quantile(bytes, 0.5), "B", where);
-  report.add("stream.walk.server_memory", server.resident() / (1 << 20), "MiB", where);
+  nlohmann::json where = {{"scene", "castle"}, {"size", "1280x720"}, {"draw", draw}};
+  report.add(name + ".fps", double(arrivals.size() - 1) / (arrivals.back() - arrivals.front()), "1/s", where);
+  report.add(name + ".latency_p50_ms", quantile(latencies, 0.5), "ms", where);
+  report.add(name + ".latency_p95_ms", quantile(latencies, 0.95), "ms", where);
+  report.add(name + ".gap_p95_ms", quantile(gaps, 0.95), "ms", where);
+  report.add(name + ".picture_bytes_p50", quantile(bytes, 0.5), "B", where);
+  report.add(name + ".server_memory", server.resident() / (1 << 20), "MiB", where);
   client.close();
+}
+
+}  // namespace
+
+void bench_stream(BenchReport& report, const BenchOptions& options) {
+  walk(report, options, "stream.walk", "automatic");
+  walk(report, options, "stream.walk_points", "never");
 }
 
 }  // namespace wellspring

@@ -61,18 +61,21 @@ TEST(DisplayPath, DrawsWhereTimeOrTheRateAllows) {
   EXPECT_FALSE(plan_display(0.03, pixels, slow, drawn).drawn);
   EXPECT_TRUE(plan_display(0.16, pixels, slow, points).drawn);
   EXPECT_TRUE(plan_display(0.007, pixels, quick, points).drawn);
-  // No time is left within the wanted period, but a dozen pictures a second stay possible.
+  // No time is left within the wanted period, but 24 pictures a second stay possible.
   DisplayCosts costs = slow;
-  costs.drawing_seconds = 0.015;
+  costs.drawing_seconds = 0.008;
   EXPECT_TRUE(plan_display(0.005, pixels, costs, points).drawn);
   EXPECT_GE(plan_display(0.005, pixels, costs, points).samples, 1000);
-  costs.drawing_seconds = 0.08;
+  costs.drawing_seconds = 0.03;
   EXPECT_FALSE(plan_display(0.005, pixels, costs, drawn).drawn);
+  // Who stands does not mind a dozen.
+  EXPECT_TRUE(plan_display(0.005, pixels, costs, points, true).drawn);
+  EXPECT_FALSE(plan_display(0.005, pixels, slow, drawn, true).drawn);
 }
 
 TEST(DisplayPath, DrawsAsToldByTheOperator) {
-  EXPECT_FALSE(plan_display(1, 128 * 72, quick, drawn, DrawShapes::never).drawn);
-  EXPECT_TRUE(plan_display(0.001, pixels, slow, points, DrawShapes::always).drawn);
+  EXPECT_FALSE(plan_display(1, 128 * 72, quick, drawn, false, DrawShapes::never).drawn);
+  EXPECT_TRUE(plan_display(0.001, pixels, slow, points, false, DrawShapes::always).drawn);
 }
 
 TEST(DisplayPath, NothingMeasuredYetIsNoDivisionByZero) {
