@@ -80,16 +80,7 @@ StorySpeech tell_story(const Options& options) {
   for (const StoryNote& note : script.notes)
     std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what << "\n";
   SpeechProcess process;
-  std::vector<std::shared_ptr<const Speech>> spoken;
-  for (const StoryLine& line : script.lines) {
-    SpeechRequest request = options.request;
-    request.text = line.text;
-    request.styles = line.styles;
-    std::string error;
-    spoken.push_back(process.speak(request, error));
-    if (!spoken.back()) throw LoadError(options.story, to_string(line.place), error);
-  }
-  return join_lines(script.lines, spoken);
+  return join_lines(script.lines, speak_lines(process, script.lines, options.request, options.story));
 }
 
 // A sentence for each subtitle of a text without a story's sentences.

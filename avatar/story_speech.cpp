@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/load_error.h"
+
 namespace wellspring {
 
 namespace {
@@ -36,6 +38,21 @@ void append(Speech& all, const Speech& line, double at) {
 }
 
 }  // namespace
+
+std::vector<std::shared_ptr<const Speech>> speak_lines(SpeechProcess& process,
+                                                       const std::vector<StoryLine>& lines,
+                                                       SpeechRequest request,
+                                                       const std::string& file) {
+  std::vector<std::shared_ptr<const Speech>> spoken;
+  for (const StoryLine& line : lines) {
+    request.text = line.text;
+    request.styles = line.styles;
+    std::string error;
+    spoken.push_back(process.speak(request, error));
+    if (!spoken.back()) throw LoadError(file, to_string(line.place), error);
+  }
+  return spoken;
+}
 
 StorySpeech join_lines(const std::vector<StoryLine>& lines,
                        const std::vector<std::shared_ptr<const Speech>>& spoken) {

@@ -3,9 +3,11 @@
 // them.
 #pragma once
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "avatar/speech.h"
+#include "avatar/speech_process.h"
 #include "avatar/story_script.h"
 #include "avatar/subtitle.h"
 
@@ -18,6 +20,13 @@ struct StorySpeech {
   std::vector<double> begins;      // of every sentence's first sample
   std::vector<SubtitleCue> cues;
 };
+
+// Every line in the voice of `request`, whose text and styles are the lines'. Throws LoadError with the
+// place in `file` of a line that cannot be spoken.
+std::vector<std::shared_ptr<const Speech>> speak_lines(SpeechProcess& process,
+                                                       const std::vector<StoryLine>& lines,
+                                                       SpeechRequest request,
+                                                       const std::string& file);
 
 // `spoken` are the lines' speeches, all of one rate; null ones are left out, with their time to read.
 StorySpeech join_lines(const std::vector<StoryLine>& lines,

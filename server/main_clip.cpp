@@ -86,15 +86,7 @@ int run(Options& options) {
   options.voice.lang = options.clip.lang;
   options.clip.humanlike = !options.calm;
   SpeechProcess process;
-  std::vector<std::shared_ptr<const Speech>> spoken;
-  for (const StoryLine& line : script.lines) {
-    SpeechRequest request = options.voice;
-    request.text = line.text;
-    request.styles = line.styles;
-    std::string error;
-    spoken.push_back(process.speak(request, error));
-    if (!spoken.back()) throw LoadError(options.story, to_string(line.place), error);
-  }
+  auto spoken = speak_lines(process, script.lines, options.voice, options.story);
   story.text[options.clip.lang] = script.lines;
   std::filesystem::create_directories(options.out);
 

@@ -11,16 +11,6 @@
 namespace wellspring {
 namespace {
 
-struct PixelWords {
-  uint32_t* words;  // of albedo; rest and smooth follow
-  int step;         // from plane to plane
-};
-PixelWords words_of(Frame& frame, int x, int y) {
-  int start = (x - packed_start) / packed_four * packed_four + packed_start;
-  PackedFour four(start, frame.width);
-  return {packed_words(frame, four.first, y) + (x - four.first), four.count};
-}
-
 bool is_same(const SightRun& run, int i, uint32_t object, float depth) {
   if (object != run.object[i]) return false;
   bool far = !(run.depth[i] < infinite_depth), was_far = !(depth < 0.5f * infinite_depth);
@@ -56,8 +46,8 @@ int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, F
     for (; wanted != 0; wanted &= wanted - 1) {
       int i = std::countr_zero(wanted);
       size_t at = row + size_t(i);
-      PixelWords pixel = words_of(frame, run.x + i, run.y);
-      pixel.words[plane_albedo * pixel.step] =
+      int x = run.x + i;
+      packed_word(frame, x, run.y, plane_albedo) =
           pack_albedo({reflectance.red[i], reflectance.green[i], reflectance.blue[i]});
       frame.depth[at] = std::min(run.depth[i], infinite_depth);
       if (same >> i & 1) continue;  // the light of its neighbours will do
@@ -65,8 +55,8 @@ int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, F
       Seen seen = run.see(i, false);
       frame.object[at] = run.object[i];
       bool shines = !seen.scatters || seen.glow != vec3(0);
-      pixel.words[plane_rest * pixel.step] = pack_rgb9e5(seen.glow);
-      pixel.words[plane_smooth * pixel.step] = 0;
+      packed_word(frame, x, run.y, plane_rest) = pack_rgb9e5(seen.glow);
+      packed_word(frame, x, run.y, plane_smooth) = 0;
       // What shines is known as well as it can be.
       uint32_t more =
           pack_normal(seen.normal) | (shines ? 255u << 16 : uint32_t(blind_deviation) << 24);

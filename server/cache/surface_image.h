@@ -94,12 +94,16 @@ inline uint32_t* packed_words(Frame& frame, int x, int y) {
 inline const uint32_t* packed_words(const Frame& frame, int x, int y) {
   return packed_words(const_cast<Frame&>(frame), x, y);
 }
+// The word of one pixel in the planes albedo, rest and smooth.
+inline uint32_t& packed_word(Frame& frame, int x, int y, SurfacePlane plane) {
+  PackedFour four((x - packed_start) / packed_four * packed_four + packed_start, frame.width);
+  return packed_words(frame, four.first, y)[x - four.first + four.count * plane];
+}
 // The words of one pixel of the packed surface; `words`: surface_planes of them.
 inline void read_packed(const Frame& frame, int x, int y, uint32_t* words) {
   size_t at = size_t(y) * size_t(frame.width) + size_t(x);
-  PackedFour four((x - packed_start) / packed_four * packed_four + packed_start, frame.width);
-  const uint32_t* from = packed_words(frame, four.first, y) + (x - four.first);
-  for (int plane : {plane_albedo, plane_rest, plane_smooth}) words[plane] = from[four.count * plane];
+  for (SurfacePlane plane : {plane_albedo, plane_rest, plane_smooth})
+    words[plane] = packed_word(const_cast<Frame&>(frame), x, y, plane);
   words[plane_object] = frame.object[at];
   std::memcpy(&words[plane_more], &frame.confidence[at], sizeof(uint32_t));
   std::memcpy(&words[plane_depth], &frame.depth[at], sizeof(uint32_t));

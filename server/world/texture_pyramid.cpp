@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "world/texture_taps.h"
+
 namespace wellspring {
 namespace {
 
@@ -52,33 +54,11 @@ TexturePyramid::Level half_of(int width, int height, const Fetch& fetch) {
   return level;
 }
 
-// Texel coordinates on an axis of `size`: the lower of two neighbours, the upper, weight of the
-// upper.
-struct Taps {
-  int low, high;
-  float weight;
-};
-inline Taps taps(float coordinate, int size, Wrap wrap) {
-  if (wrap == Wrap::repeat) {
-    coordinate -= std::floor(coordinate);
-  } else if (wrap == Wrap::mirror) {
-    coordinate -= 2 * std::floor(0.5f * coordinate);
-    if (coordinate > 1) coordinate = 2 - coordinate;
-  }
-  float x = glm::clamp(coordinate, 0.0f, 1.0f) * float(size) - 0.5f, low = std::floor(x);
-  int first = int(low), second = first + 1;
-  if (wrap == Wrap::repeat)
-    return {first < 0 ? size - 1 : first, second >= size ? 0 : second, x - low};
-  return {std::max(first, 0), std::min(second, size - 1), x - low};
-}
-
 }  // namespace
 
 TexturePyramid make_pyramid(const Image& image) {
   TexturePyramid pyramid;
   if (image.texels8.empty() || image.width <= 0 || image.height <= 0) return pyramid;
-  Texture nearest;
-  nearest.nearest = true;
   int width = image.width, height = image.height;
   auto texel = [&](int x, int y) {
     const uint8_t* p = &image.texels8[(size_t(y) * size_t(width) + size_t(x)) * 4];
@@ -205,12 +185,13 @@ vec3 eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Textu
   if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = vec2(0);
   const TexturePyramid::Level& l =
       pyramid.levels[std::min(size_t(level), pyramid.levels.size()) - 1];
-  Taps x = taps(uv.x, l.width, texture.wrap_u), y = taps(uv.y, l.height, texture.wrap_v);
-  const uint32_t *top = &l.texels[size_t(y.low) * size_t(l.width)],
-                 *bottom = &l.texels[size_t(y.high) * size_t(l.width)];
-  vec3 above = unpack_roots(top[x.low]) * (1 - x.weight) + unpack_roots(top[x.high]) * x.weight;
+  Taps x = linear_taps(uv.x, l.width, texture.wrap_u);
+  Taps y = linear_taps(uv.y, l.height, texture.wrap_v);
+  const uint32_t *top = &l.texels[size_t(y.first) * size_t(l.width)],
+                 *bottom = &l.texels[size_t(y.second) * size_t(l.width)];
+  vec3 above = unpack_roots(top[x.first]) * (1 - x.weight) + unpack_roots(top[x.second]) * x.weight;
   vec3 below =
-      unpack_roots(bottom[x.low]) * (1 - x.weight) + unpack_roots(bottom[x.high]) * x.weight;
+      unpack_roots(bottom[x.first]) * (1 - x.weight) + unpack_roots(bottom[x.second]) * x.weight;
   return above * (1 - y.weight) + below * y.weight;
 }
 
