@@ -8,6 +8,7 @@ import { first_language, word } from './words.js';
 
 const by_id = (id) => document.getElementById(id);
 const lang = first_language();
+const asked = new URLSearchParams(location.search);  // kiosk: its name; teller: who shall be there
 const subtitles = make_subtitles(by_id('subtitle'));
 by_id('invite').textContent = word(lang, 'invite');
 
@@ -24,8 +25,12 @@ const picture = make_picture(by_id('picture'), (shown) => {
 });
 
 connection = make_connection({
-  hello: () => ({ type: 'hello', exhibit: '', lang, role: 'kiosk', kiosk: new URLSearchParams(location.search).get('kiosk') ?? '', ...wanted_size() }),
-  open() { by_id('notice').hidden = true; sound.joined(); },
+  hello: () => ({ type: 'hello', exhibit: '', lang, role: 'kiosk', kiosk: asked.get('kiosk') ?? '', ...wanted_size() }),
+  open() {
+    by_id('notice').hidden = true;
+    sound.joined();
+    if (asked.get('teller')) connection.send({ type: 'storyteller', teller: asked.get('teller') });
+  },
   lost() {
     by_id('notice').textContent = word(lang, 'lost');
     by_id('notice').hidden = false;
@@ -40,7 +45,8 @@ connection = make_connection({
       // Without a camera the screen is simply bright.
       document.body.classList.add(message.cameras === 0 ? 'person' : message.state);
     }
-    if (message.type === 'agent') document.body.dataset.mood = message.mood;
+    if (message.type === 'agent') { document.body.dataset.mood = message.mood; document.body.dataset.teller = message.teller; }
+    if (message.type === 'error') console.warn(`${message.code}: ${message.message}`);
   },
   binary: (buffer) => { if (!sound.receive(buffer)) picture.receive(buffer); },
 });

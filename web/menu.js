@@ -51,6 +51,12 @@ export function make_menu(orders) {
       }));
       by_id('stories-section').hidden = message.stories.length === 0 || !message.storyteller;
       by_id('storyteller-section').hidden = !message.storyteller;
+      by_id('tellers').replaceChildren(...message.storytellers.map(({ id, name, viewpoint }) => {
+        const element = button(name || id, () => { orders.storyteller({ teller: id }); orders.viewpoint(viewpoint); open(false); });
+        element.dataset.teller = id;
+        return element;
+      }));
+      by_id('tellers').hidden = message.storytellers.length < 2;
       by_id('languages').replaceChildren(...message.languages.map((tag) => {
         const element = button(language_names[tag] ?? tag, () => orders.lang(tag));
         element.setAttribute('aria-pressed', String(tag === lang || tag === lang.split('-')[0]));
@@ -64,6 +70,8 @@ export function make_menu(orders) {
     agent(message) {
       by_id('storyteller-visible').checked = message.visible;
       by_id('storyteller-humanlike').checked = message.humanlike;
+      for (const element of by_id('tellers').children)
+        element.setAttribute('aria-pressed', String(element.dataset.teller === message.teller));
       for (const element of by_id('stories').children)
         element.setAttribute('aria-pressed', String(element.dataset.story === message.story));
     },

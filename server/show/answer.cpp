@@ -39,13 +39,19 @@ json describe(const Exhibit& exhibit) {
          {"yaw", viewpoint.view.yaw},
          {"pitch", viewpoint.view.pitch},
          {"fov", viewpoint.view.fov}});
-  for (const StoryText& story : exhibit.stories)
-    about["stories"].push_back({{"id", story.id}, {"title", story.title}});
+  for (const StoryText& story : exhibit.stories) {
+    json& entry = about["stories"].emplace_back(json{{"id", story.id}, {"title", story.title}});
+    if (story.teller >= 0) entry["teller"] = exhibit.storytellers[size_t(story.teller)].id;
+  }
   for (const TourPlan& tour : exhibit.tours)
     about["tours"].push_back({{"id", tour.id}, {"title", tour.title}, {"stops", tour.stops.size()}});
   for (const PointOfInterest& point : exhibit.points)
     about["objects"].push_back({{"id", point.id}, {"title", point.title}});
-  about["storyteller"] = exhibit.storyteller ? json(exhibit.storyteller->name) : json(nullptr);
+  about["storyteller"] =
+      exhibit.storytellers.empty() ? json(nullptr) : json(exhibit.storytellers.front().name);
+  about["storytellers"] = json::array();
+  for (const StorytellerPlace& teller : exhibit.storytellers)
+    about["storytellers"].push_back({{"id", teller.id}, {"name", teller.name}});
   about["start"] = exhibit.viewpoints[size_t(exhibit.start)].view.name;
   return about;
 }

@@ -60,6 +60,12 @@ int find_viewpoint(const Exhibit& exhibit, std::string_view name) {
   return -1;
 }
 
+int find_storyteller(const Exhibit& exhibit, std::string_view id) {
+  for (size_t i = 0; i < exhibit.storytellers.size(); i++)
+    if (exhibit.storytellers[i].id == id) return int(i);
+  return -1;
+}
+
 const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id) {
   for (const PointOfInterest& point : exhibit.points)
     if (point.id == id) return &point;

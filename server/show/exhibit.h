@@ -54,6 +54,7 @@ struct StoryText {
   std::string id;
   LocalText title;
   LocalScript text;
+  int teller = -1;  // index into Exhibit::storytellers; -1: whoever is there
 };
 
 // A voice of the synthesiser.
@@ -71,7 +72,9 @@ struct WalkRules {
   std::optional<Bounds> bounds;
 };
 
+// A storyteller: figure, place, and its own greetings and manner.
 struct StorytellerPlace {
+  std::string id;
   std::string figure;  // file beside exhibit.json
   LocalText name;
   dvec3 position{0};  // of the feet
@@ -79,6 +82,9 @@ struct StorytellerPlace {
   LocalScript greetings, farewells;  // a line each
   VoiceManner voice;
   int kiosk_viewpoint = 0;
+  Character character;
+  std::optional<ExpressionSet> expressions;  // the package's own, in place of the program's
+  std::optional<GestureLibrary> gestures;
 };
 
 struct PointOfInterest {
@@ -96,17 +102,15 @@ struct Exhibit {
   std::optional<WalkRules> walk;
   std::vector<ExhibitViewpoint> viewpoints;  // never empty
   int start = 0;
-  std::optional<StorytellerPlace> storyteller;
+  std::vector<StorytellerPlace> storytellers;  // one is there at a time, the first to begin with
   std::vector<TourPlan> tours;
   std::vector<StoryText> stories;
   std::vector<PointOfInterest> points;
   Scene scene;
-  std::optional<Character> character;
-  std::optional<ExpressionSet> expressions;  // the package's own, in place of the program's
-  std::optional<GestureLibrary> gestures;
 };
 
 int find_viewpoint(const Exhibit& exhibit, std::string_view name);  // -1: none
+int find_storyteller(const Exhibit& exhibit, std::string_view id);  // likewise
 const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id);
 
 }  // namespace wellspring

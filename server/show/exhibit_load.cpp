@@ -96,8 +96,38 @@ void read_language(const Exhibit& exhibit, Fields& fields, const char* name,
   }
 }
 
-void read_storyteller(Exhibit& exhibit, Fields fields, std::vector<Problem>& problems) {
+// The figure, as the package wants it skinned, and what it goes without.
+void read_figure(const Exhibit& exhibit, Fields& fields, StorytellerPlace& place,
+                 std::vector<Problem>& problems) {
+  std::string skinning = fields.text("skinning", false);
+  if (!skinning.empty() && skinning != "linear" && skinning != "dual_quaternion")
+    fields.problem("skinning", "is 'linear' or 'dual_quaternion'; without it the figure's file says");
+  std::string path = package_file(fields, "figure", exhibit.folder, place.figure);
+  if (path.empty()) return;
+  try {
+    place.character = load_character(path);
+  } catch (const LoadError& error) {
+    problems.push_back({error.file, error.where, error.what_});
+    return;
+  }
+  if (skinning == "linear") place.character.skinning = Skinning::linear;
+  if (skinning == "dual_quaternion") place.character.skinning = Skinning::dual_quaternion;
+  for (const std::string& warning : place.character.warnings)
+    problems.push_back({path, "", warning, false});
+  const ExpressionSet& set = place.expressions ? *place.expressions : default_expressions();
+  std::string missing;
+  for (const std::string& name : make_expression_rig(set, place.character).missing)
+    missing += (missing.empty() ? "" : ", ") + name;
+  if (!missing.empty())
+    problems.push_back({path, "", "the figure goes without these expressions: " + missing, false});
+}
+
+void read_storyteller(Exhibit& exhibit, Fields fields, bool one_of_many,
+                      std::vector<Problem>& problems) {
   StorytellerPlace place;
+  place.id = fields.text("id", one_of_many, one_of_many ? "" : "storyteller");
+  if (find_storyteller(exhibit, place.id) >= 0)
+    fields.problem("id", "'" + place.id + "' is taken by another storyteller");
   place.figure = fields.text("figure", true);
   place.name = fields.local_text("name", false);
   place.position = fields.triple("position", true);
@@ -112,34 +142,20 @@ void read_storyteller(Exhibit& exhibit, Fields fields, std::vector<Problem>& pro
     if (!place.farewells.contains(lang))
       fields.problem("farewells", "has nothing in '" + lang + "'", false);
   }
-  std::string skinning = fields.text("skinning", false);
-  if (!skinning.empty() && skinning != "linear" && skinning != "dual_quaternion")
-    fields.problem("skinning", "is 'linear' or 'dual_quaternion'; without it the figure's file says");
-  std::string path = package_file(fields, "figure", exhibit.folder, place.figure);
-  if (!path.empty()) {
-    try {
-      exhibit.character = load_character(path);
-      if (skinning == "linear") exhibit.character->skinning = Skinning::linear;
-      if (skinning == "dual_quaternion")
-        exhibit.character->skinning = Skinning::dual_quaternion;
-      for (const std::string& warning : exhibit.character->warnings)
-        problems.push_back({path, "", warning, false});
-    } catch (const LoadError& error) {
-      problems.push_back({error.file, error.where, error.what_});
-    }
-  }
-  read_language(exhibit, fields, "expressions", exhibit.expressions, load_expressions, problems);
-  read_language(exhibit, fields, "gestures", exhibit.gestures, load_gestures, problems);
-  if (exhibit.character) {
-    const ExpressionSet& set = exhibit.expressions ? *exhibit.expressions : default_expressions();
-    std::string missing;
-    for (const std::string& name : make_expression_rig(set, *exhibit.character).missing)
-      missing += (missing.empty() ? "" : ", ") + name;
-    if (!missing.empty())
-      problems.push_back({path, "", "the figure goes without these expressions: " + missing, false});
-  }
+  read_language(exhibit, fields, "expressions", place.expressions, load_expressions, problems);
+  read_language(exhibit, fields, "gestures", place.gestures, load_gestures, problems);
+  read_figure(exhibit, fields, place, problems);
   fields.finish();
-  exhibit.storyteller = std::move(place);
+  exhibit.storytellers.push_back(std::move(place));
+}
+
+void read_storytellers(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
+  root.object("storyteller", false,
+              [&](Fields fields) { read_storyteller(exhibit, std::move(fields), false, problems); });
+  if (root.has("storyteller") && root.has("storytellers"))
+    root.problem("storytellers", "is there beside a \"storyteller\": one of them only");
+  root.objects("storytellers", false,
+               [&](Fields fields) { read_storyteller(exhibit, std::move(fields), true, problems); });
 }
 
 void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
@@ -167,6 +183,10 @@ void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>
     story.id = fields.text("id", true);
     story.title = fields.local_text("title", false);
     story.text = read_script(exhibit, fields, "text", true, false, problems);
+    if (std::string teller = fields.text("teller", false); !teller.empty()) {
+      story.teller = find_storyteller(exhibit, teller);
+      if (story.teller < 0) fields.problem("teller", "there is no storyteller '" + teller + "'");
+    }
     fields.finish();
     exhibit.stories.push_back(std::move(story));
   });
@@ -294,8 +314,7 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
   if (exhibit.viewpoints.empty())
     root.problem("viewpoints", "there is no viewpoint here and no camera in the scene");
   exhibit.start = read_viewpoint_name(exhibit, root, "start", false);
-  root.object("storyteller", false,
-              [&](Fields fields) { read_storyteller(exhibit, std::move(fields), problems); });
+  read_storytellers(exhibit, root, problems);
   read_tours_and_stories(exhibit, root, problems);
   read_points(exhibit, root);
   check_marks(exhibit, problems);

@@ -18,14 +18,15 @@ Scene make_exhibit_scene(Exhibit exhibit, double time) {
   Scene& scene = exhibit.scene;
   scene.viewpoints.clear();
   for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints) scene.viewpoints.push_back(viewpoint.view);
-  if (!exhibit.character) return std::move(scene);
-  const Character& character = *exhibit.character;
+  if (exhibit.storytellers.empty()) return std::move(scene);
+  const StorytellerPlace& place = exhibit.storytellers.front();
+  const Character& character = place.character;
   std::vector<Mesh> meshes;
   std::vector<uint32_t> objects;
   Figure figure = make_figure(character, scene, meshes, objects);
   Storyteller storyteller;
   storyteller.character = &character;
-  storyteller.placement = place_storyteller(*exhibit.storyteller, scene);
+  storyteller.placement = place_storyteller(place, scene);
   StorytellerState state;
   StorytellerEvents events;
   Pose pose = make_rest_pose(character);

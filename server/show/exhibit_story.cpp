@@ -86,6 +86,14 @@ struct Checker {
     problems.push_back({line.file, to_string(place), what, false});
   }
 
+  // Whether every storyteller has it.
+  bool knows_gesture(const std::string& name) const {
+    if (exhibit.storytellers.empty()) return find_gesture(default_gestures(), name) >= 0;
+    return std::all_of(exhibit.storytellers.begin(), exhibit.storytellers.end(), [&](const auto& teller) {
+      return find_gesture(teller.gestures ? *teller.gestures : default_gestures(), name) >= 0;
+    });
+  }
+
   void check_mark(const StoryLine& line, const StoryMark& mark) {
     if (mark.name.empty()) return;
     bool object = mark.kind == StoryMarkKind::look || mark.kind == StoryMarkKind::point;
@@ -95,8 +103,7 @@ struct Checker {
       note(line, mark.place, "the exhibit has no viewpoint '" + mark.name + "'");
     if (mark.kind == StoryMarkKind::emotion && find_emotion(mark.name) < 0)
       note(line, mark.place, "there is no emotion '" + mark.name + "'");
-    const GestureLibrary& gestures = exhibit.gestures ? *exhibit.gestures : default_gestures();
-    if (mark.kind == StoryMarkKind::gesture && find_gesture(gestures, mark.name) < 0)
+    if (mark.kind == StoryMarkKind::gesture && !knows_gesture(mark.name))
       note(line, mark.place, "there is no gesture '" + mark.name + "'");
   }
 
@@ -160,9 +167,9 @@ VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& oth
 
 void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems) {
   Checker checker{exhibit, problems};
-  if (exhibit.storyteller) {
-    checker.check("/storyteller/greetings", exhibit.storyteller->greetings);
-    checker.check("/storyteller/farewells", exhibit.storyteller->farewells);
+  for (const StorytellerPlace& teller : exhibit.storytellers) {
+    checker.check("greetings of '" + teller.id + "'", teller.greetings);
+    checker.check("farewells of '" + teller.id + "'", teller.farewells);
   }
   for (const StoryText& story : exhibit.stories) checker.check("story '" + story.id + "'", story.text);
   for (const TourPlan& tour : exhibit.tours)

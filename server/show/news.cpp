@@ -49,14 +49,23 @@ std::string welcome_news(const Show& show, const Visitor& visitor) {
   }
   for (const TourPlan& tour : exhibit.tours)
     news["tours"].push_back({{"id", tour.id}, {"title", text(tour.title)}, {"stops", tour.stops.size()}});
-  for (const StoryText& story : exhibit.stories)
-    news["stories"].push_back({{"id", story.id}, {"title", text(story.title)}});
-  if (exhibit.storyteller)
-    news["storyteller"] = {{"name", text(exhibit.storyteller->name)},
-                           {"visible", show.storyteller_visible},
-                           {"position", triple(exhibit.storyteller->position)}};
-  else
-    news["storyteller"] = nullptr;
+  for (const StoryText& story : exhibit.stories) {
+    json& entry = news["stories"].emplace_back(json{{"id", story.id}, {"title", text(story.title)}});
+    entry["teller"] = story.teller < 0 ? json(nullptr) : json(exhibit.storytellers[size_t(story.teller)].id);
+  }
+  auto about = [&](const StorytellerPlace& teller) {
+    std::string name = text(teller.name);
+    return json{{"id", teller.id}, {"name", name}, {"position", triple(teller.position)},
+                {"viewpoint", exhibit.viewpoints[size_t(teller.kiosk_viewpoint)].view.name}};
+  };
+  news["storyteller"] = nullptr;
+  if (const StorytellerPlace* teller = teller_of(show)) {
+    news["storyteller"] = about(*teller);
+    news["storyteller"]["visible"] = show.storyteller_visible;
+  }
+  news["storytellers"] = json::array();
+  for (const StorytellerPlace& teller : exhibit.storytellers)
+    news["storytellers"].push_back(about(teller));
   return news.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -123,6 +132,7 @@ json mouth_news(const Show& show) {
 std::string agent_news(const Show& show) {
   json news = {{"type", "agent"},
                {"mood", to_string(show.mind.mood)},
+               {"teller", teller_of(show) ? json(teller_of(show)->id) : json(nullptr)},
                {"visible", show.storyteller_visible},
                {"humanlike", show.humanlike},
                {"story", show.voice.story.empty() ? json(nullptr) : json(show.voice.story)},

@@ -49,9 +49,9 @@ Answer obey_one(Show& show, Visitor& visitor, const Hello& hello) {
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = hello.kiosk;
   set_size(visitor, show.settings, hello.width, hello.height);
-  bool at_kiosk = visitor.kiosk && show.exhibit.storyteller;
+  const StorytellerPlace* teller = teller_of(show);
   go_to_viewpoint(visitor, show.exhibit,
-                  at_kiosk ? show.exhibit.storyteller->kiosk_viewpoint : show.exhibit.start);
+                  visitor.kiosk && teller ? teller->kiosk_viewpoint : show.exhibit.start);
   visitor.welcomed = true;
   show.totals.visits++;
   visitor.link->send_text(welcome_news(show, visitor));
@@ -114,13 +114,29 @@ Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
   return {};
 }
 
+// Kiosks stand before whoever is there.
+void call_teller(Show& show, size_t teller) {
+  if (teller == show.teller) return;
+  change_teller(show, teller);
+  for (Visitor& visitor : show.visitors)
+    if (visitor.welcomed && visitor.kiosk && visitor.tour.state == TourRide::State::none)
+      go_to_viewpoint(visitor, show.exhibit, teller_of(show)->kiosk_viewpoint);
+}
+
 Answer obey_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
-  if (!show.exhibit.storyteller) return WireError{"no_storyteller", "this exhibit has no storyteller"};
+  if (!teller_of(show)) return WireError{"no_storyteller", "this exhibit has no storyteller"};
+  if (!order.teller.empty()) {
+    int teller = find_storyteller(show.exhibit, order.teller);
+    if (teller < 0)
+      return WireError{"unknown_storyteller", "there is no storyteller '" + order.teller + "'"};
+    call_teller(show, size_t(teller));
+  }
   if (order.visible) show.storyteller_visible = *order.visible;
   if (order.humanlike) show.humanlike = *order.humanlike;
   if (!order.story.empty()) {
     const StoryText* story = find_story(show.exhibit, order.story);
     if (!story) return WireError{"unknown_story", "there is no story '" + order.story + "'"};
+    if (story->teller >= 0) call_teller(show, size_t(story->teller));
     tell(show.voice, *story);
     pause_tour(visitor.tour, visitor.narration.voice);
     show.voice.asked_by = visitor.link->id;

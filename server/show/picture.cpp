@@ -7,6 +7,7 @@
 #include "base/rng.h"
 #include "frame/jpeg.h"
 #include "show/display_path.h"
+#include "show/in_view.h"
 #include "wire/packet.h"
 
 namespace wellspring {
@@ -28,18 +29,6 @@ constexpr int animated_gain = 5;       // JPEG quality above the moving one whil
 
 float milliseconds_since(double began) { return float(1000 * (seconds_now() - began)); }
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
-
-// The figure's bounding sphere touches the view's cone: the picture never rests.
-bool sees_figure(const Show& show, const View& view) {
-  if (!show.figure || !show.storyteller_visible) return false;
-  vec3 centre = vec3(show.storyteller.placement * vec4(0, 0.9f, 0, 1));
-  vec3 d = centre - view.position;
-  float depth = dot(d, view.forward), radius = 1.3f;
-  if (depth < -radius) return false;
-  float aspect = float(view.width) / float(view.height);
-  float slope = view.tan_half_fov * std::sqrt(1 + aspect * aspect);
-  return glm::length(d - view.forward * depth) < slope * std::max(depth, 0.0f) + radius * std::sqrt(1 + slope * slope);
-}
 
 bool stands(const Show& show, const Visitor& visitor) {
   return visitor.frame_number > 0 && show.time - visitor.moved_at > still_after &&

@@ -30,7 +30,38 @@ std::vector<vec3> places_of(const Exhibit& exhibit) {
   return places;
 }
 
+// The storyteller as it stands when it has just come.
+void enter(Show& show) {
+  const StorytellerPlace& place = show.exhibit.storytellers[show.teller];
+  show.storyteller = {};
+  show.storyteller.character = &place.character;
+  if (place.expressions) show.storyteller.expressions = &*place.expressions;
+  if (place.gestures) show.storyteller.gestures = &*place.gestures;
+  show.storyteller.placement = place_storyteller(place, show.exhibit.scene);
+  show.mind = {};
+  show.pose = make_rest_pose(place.character);
+  for (size_t i = 0; i < show.figures.size(); i++)
+    show_figure(*show.world, show.figures[i], i == show.teller && show.storyteller_visible);
+  StorytellerEvents events;
+  tick_storyteller(show.mind, show.storyteller, StorytellerInput{}, show.pose, events);
+  pose_figure(*show.world, show.figures[show.teller], place.character, show.pose,
+              show.storyteller.placement, show.scratch);
+  show.world->commit();
+}
+
 }  // namespace
+
+const StorytellerPlace* teller_of(const Show& show) {
+  return show.figures.empty() ? nullptr : &show.exhibit.storytellers[show.teller];
+}
+
+void change_teller(Show& show, size_t teller) {
+  if (teller == show.teller || teller >= show.figures.size()) return;
+  hush(show.voice);
+  show.teller = teller;
+  enter(show);
+  show.agent_sent_at = -1e9;
+}
 
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   auto show = std::make_unique<Show>();
@@ -44,22 +75,10 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   Scene& scene = show->exhibit.scene;
   std::vector<Mesh> moving;
   std::vector<uint32_t> moving_object;
-  if (show->exhibit.character) {
-    show->figure = make_figure(*show->exhibit.character, scene, moving, moving_object);
-    show->storyteller.character = &*show->exhibit.character;
-    if (show->exhibit.expressions) show->storyteller.expressions = &*show->exhibit.expressions;
-    if (show->exhibit.gestures) show->storyteller.gestures = &*show->exhibit.gestures;
-    show->storyteller.placement = place_storyteller(*show->exhibit.storyteller, scene);
-    show->pose = make_rest_pose(*show->exhibit.character);
-  }
+  for (const StorytellerPlace& place : show->exhibit.storytellers)
+    show->figures.push_back(make_figure(place.character, scene, moving, moving_object));
   show->world = std::make_unique<World>(scene, std::move(moving), std::move(moving_object));
-  if (show->figure) {
-    StorytellerEvents events;
-    tick_storyteller(show->mind, show->storyteller, StorytellerInput{}, show->pose, events);
-    pose_figure(*show->world, *show->figure, *show->exhibit.character, show->pose,
-                show->storyteller.placement, show->scratch);
-    show->world->commit();
-  }
+  if (!show->figures.empty()) enter(*show);
   std::vector<Problem> problems;
   show->roads = make_tour_roads(show->exhibit, *show->world, problems);
   if (!problems.empty()) throw ExhibitError(std::move(problems));

@@ -53,8 +53,9 @@ struct Show {
   const Technique* technique = nullptr;
   const Technique* still_technique = nullptr;
 
-  // The storyteller.
-  std::optional<Figure> figure;
+  // The storyteller: who of the exhibit's is there, and how it is.
+  std::vector<Figure> figures;  // of all of them; the others are hidden
+  size_t teller = 0;
   Storyteller storyteller;
   StorytellerState mind;
   Pose pose;
@@ -63,8 +64,8 @@ struct Show {
   SpeechSource speech;  // empty: the storyteller speaks by subtitles
   Sounding sounding;
   uint32_t utterances = 0;  // numbers of what is heard, the storyteller's and narrators' alike
-  bool storyteller_visible = true, humanlike = true;
   size_t greetings = 0, farewells = 0;
+  bool storyteller_visible = true, humanlike = true;
   std::string kiosk_news;   // the last kiosk message, to send only changes
   double agent_sent_at = -1e9;
   double behaved_at = -1;  // when the storyteller was last moved
@@ -87,6 +88,12 @@ struct Show {
 // Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a tour
 // that cannot be walked.
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
+
+// Who is there now; null: the exhibit has no storyteller.
+const StorytellerPlace* teller_of(const Show& show);
+// Another storyteller comes in place of the one that is there, who falls silent; knows nobody yet and
+// greets anew. Nothing happens when it is there already.
+void change_teller(Show& show, size_t teller);
 
 // One step at time `now` (seconds, any clock that does not run backwards; steps longer than a second
 // are taken as one second). Never throws, never waits for a peer.

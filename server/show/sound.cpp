@@ -33,8 +33,9 @@ SpeechRequest request_of(const StoryLine& line, const std::string& lang, const V
   return request;
 }
 
-VoiceManner manner_of(const Exhibit& exhibit) {
-  return exhibit.storyteller ? exhibit.storyteller->voice : VoiceManner{};
+VoiceManner manner_of(const Show& show) {
+  const StorytellerPlace* teller = teller_of(show);
+  return teller ? teller->voice : VoiceManner{};
 }
 
 }  // namespace
@@ -46,15 +47,18 @@ std::vector<SpeechRequest> lines_of(const Exhibit& exhibit) {
       if (auto found = script.find(lang); found != script.end())
         for (const StoryLine& line : found->second) lines.push_back(request_of(line, lang, manner));
   };
-  if (exhibit.storyteller) {
-    add(exhibit.storyteller->greetings, exhibit.storyteller->voice);
-    for (const StoryText& story : exhibit.stories) add(story.text, exhibit.storyteller->voice);
-    add(exhibit.storyteller->farewells, exhibit.storyteller->voice);
+  for (size_t i = 0; i < exhibit.storytellers.size(); i++) {
+    const StorytellerPlace& teller = exhibit.storytellers[i];
+    add(teller.greetings, teller.voice);
+    for (const StoryText& story : exhibit.stories)
+      if (story.teller < 0 ? i == 0 : story.teller == int(i)) add(story.text, teller.voice);
+    add(teller.farewells, teller.voice);
   }
+  const VoiceManner narrator = exhibit.storytellers.empty() ? VoiceManner{} : exhibit.storytellers.front().voice;
   for (const TourPlan& tour : exhibit.tours)
     for (const TourStop& stop : tour.stops) {
-      add(stop.way_text, manner_of(exhibit));
-      add(stop.text, manner_of(exhibit));
+      add(stop.way_text, narrator);
+      add(stop.text, narrator);
     }
   return lines;
 }
@@ -75,7 +79,7 @@ struct Channel {
 
 SpeechRequest request_of(const Show& show, const Channel& channel, const Utterance& utterance) {
   const auto* line = line_in(utterance.line, channel.lang, show.exhibit.languages);
-  return request_of(line->second, line->first, manner_of(show.exhibit));
+  return request_of(line->second, line->first, manner_of(show));
 }
 
 SpeechState ask_speech(Show& show, Channel& channel, const Utterance& utterance) {

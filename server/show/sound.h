@@ -49,7 +49,8 @@ struct Narration {
   Sounding sounding;
 };
 
-// Everything the storyteller and the narrator may say, greetings first.
+// What the storytellers and the narrator of tours may say, greetings first: stories that anybody may tell
+// and tours in the voice of the first. The rest is made when it is asked for.
 std::vector<SpeechRequest> lines_of(const Exhibit& exhibit);
 
 // The language the storyteller speaks now.

@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "show/in_view.h"
 #include "show/news.h"
 #include "show/orders.h"
 #include "show/picture.h"
@@ -88,12 +89,14 @@ void broadcast(Show& show, const std::string& news) {
     if (visitor.welcomed) visitor.link->send_text(news);
 }
 
-void show_subtitle(const Exhibit& exhibit, Visitor& visitor, const Utterance* utterance, bool storyteller) {
+void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utterance, bool storyteller) {
+  const Exhibit& exhibit = show.exhibit;
+  const StorytellerPlace* teller = teller_of(show);
   std::string text, speaker;
   if (const auto* line = utterance ? line_in(utterance->line, visitor.lang, exhibit.languages) : nullptr)
     text = line->second.text;
-  if (exhibit.storyteller && storyteller)
-    speaker = text_in(exhibit.storyteller->name, visitor.lang, exhibit.languages);
+  if (teller && storyteller)
+    speaker = text_in(teller->name, visitor.lang, exhibit.languages);
   visitor.link->send_text(subtitle_news(text, visitor.lang, speaker, utterance ? utterance->seconds : 0));
 }
 
@@ -103,7 +106,7 @@ bool is_narrated(const Visitor& visitor) {
 
 void show_subtitles(Show& show, const Utterance* utterance) {
   for (Visitor& visitor : show.visitors)
-    if (visitor.welcomed && !is_narrated(visitor)) show_subtitle(show.exhibit, visitor, utterance, true);
+    if (visitor.welcomed && !is_narrated(visitor)) show_subtitle(show, visitor, utterance, true);
 }
 
 // The camera of whoever asked for the story goes where its marks want it.
@@ -124,8 +127,8 @@ void narrate(Show& show, float dt) {
     if (!visitor.welcomed || narration.voice.queue.empty()) continue;
     if (dt >= 1) narration.sounding.going = false;  // the show stood still while the sound went on
     VoiceEvents said = advance_narration(show, visitor, dt);
-    if (said.begun) show_subtitle(show.exhibit, visitor, said.begun, false);
-    else if (said.fell_silent) show_subtitle(show.exhibit, visitor, nullptr, false);
+    if (said.begun) show_subtitle(show, visitor, said.begun, false);
+    else if (said.fell_silent) show_subtitle(show, visitor, nullptr, false);
     for (const ActionEvent& act : said.acts) {
       int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
       if (viewpoint >= 0) glide_to(visitor.tour, viewpoint, visitor.view);
@@ -133,25 +136,15 @@ void narrate(Show& show, float dt) {
   }
 }
 
-View kiosk_view(const Exhibit& exhibit) {
-  const Viewpoint& at = exhibit.viewpoints[size_t(exhibit.storyteller->kiosk_viewpoint)].view;
-  return make_view(exhibit.scene, at.position, at.yaw, at.pitch, at.fov, 16, 9);
-}
-
-// Metres from the storyteller's head to the nearest who sees it.
-float viewer_distance(const Show& show) {
-  vec3 head = vec3(show.storyteller.placement * vec4(0, 1.5f, 0, 1));
-  float nearest = 1e6f;
-  for (const Visitor& visitor : show.visitors)
-    if (visitor.welcomed)
-      nearest = std::min(nearest, glm::length(vec3(visitor.view.position - show.exhibit.scene.origin) - head));
-  return nearest;
+View kiosk_view(const Show& show) {
+  const Viewpoint& at = show.exhibit.viewpoints[size_t(teller_of(show)->kiosk_viewpoint)].view;
+  return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, 16, 9);
 }
 
 // Storyteller: notices, decides, speaks, moves its skin. Left out while nobody could see or hear it.
 void behave_and_animate(Show& show, float dt) {
-  if (!show.figure) return;
-  show.audience = gather_audience(show.eyes, kiosk_view(show.exhibit), show.time);
+  if (show.figures.empty()) return;
+  show.audience = gather_audience(show.eyes, kiosk_view(show), show.time);
   std::string news = kiosk_news(show.audience, show.eyes.size());
   if (news != show.kiosk_news) broadcast(show, show.kiosk_news = news);
   if (show.visitors.empty() && show.eyes.empty()) return;
@@ -169,8 +162,12 @@ void behave_and_animate(Show& show, float dt) {
   input.guests = show.audience.guests;
   input.humanlike = show.humanlike;
   // The pose is made for the moment that its picture will carry.
-  input.speaking = speaking(show.voice, show.picture_lead);
-  if (heard(show.voice)) input.visemes = mouth_shape(show.voice, show.picture_lead);
+  // Its own words come before those of a tour, which are heard by one visitor alone.
+  const Voice* told = &show.voice;
+  if (const Visitor* on_tour = show.voice.queue.empty() ? heard_on_tour(show) : nullptr)
+    told = &on_tour->narration.voice;
+  input.speaking = speaking(*told, show.picture_lead);
+  if (heard(*told)) input.visemes = mouth_shape(*told, show.picture_lead);
   input.telling = !show.voice.story.empty();
   input.story = make_cue(show.exhibit, show.voice, said);
   for (const Visitor& visitor : show.visitors) {
@@ -183,7 +180,7 @@ void behave_and_animate(Show& show, float dt) {
   input.viewer_distance = viewer_distance(show);
   StorytellerEvents events;
   tick_storyteller(show.mind, show.storyteller, input, show.pose, events);
-  const StorytellerPlace& place = *show.exhibit.storyteller;
+  const StorytellerPlace& place = *teller_of(show);
   if (events.greeted) {
     show.totals.greetings++;
     if (show.voice.story.empty()) say(show.voice, nth_line(place.greetings, show.greetings++), true);
@@ -199,10 +196,11 @@ void behave_and_animate(Show& show, float dt) {
     show.agent_mood = show.mind.mood;
     broadcast(show, agent_news(show));
   }
-  show_figure(*show.world, *show.figure, show.storyteller_visible);
+  Figure& figure = show.figures[show.teller];
+  show_figure(*show.world, figure, show.storyteller_visible);
   if (show.storyteller_visible && !show.visitors.empty())
-    pose_figure(*show.world, *show.figure, *show.exhibit.character, show.pose,
-                show.storyteller.placement, show.scratch);
+    pose_figure(*show.world, figure, place.character, show.pose, show.storyteller.placement,
+                show.scratch);
   show.world->commit();
 }
 
@@ -227,13 +225,13 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   hear_eyes(show);
   int busy = 0;
   for (const Visitor& visitor : show.visitors) busy += visitor.welcomed && wants_picture(show, visitor);
+  narrate(show, dt);
   // The storyteller moves for a picture; otherwise often enough to notice people.
   if (busy > 0 || show.time - show.behaved_at >= behave_interval) {
     behave_and_animate(show, show.behaved_at < 0 ? 0 : float(std::clamp(show.time - show.behaved_at, 0.0, 1.0)));
     show.behaved_at = show.time;
     show.totals.animate_ms = float(1000 * (seconds_now() - began));
   }
-  narrate(show, dt);
   send_sounds(show);
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;

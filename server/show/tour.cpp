@@ -109,8 +109,8 @@ TourRoads make_tour_roads(const Exhibit& exhibit, const World& world, std::vecto
     for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints)
       seeds.push_back(vec3(viewpoint.view.position - origin));
     std::vector<WalkObstacle> obstacles;
-    if (exhibit.storyteller)
-      obstacles.push_back({vec3(exhibit.storyteller->position - origin), storyteller_room});
+    for (const StorytellerPlace& place : exhibit.storytellers)  // any of them may be there
+      obstacles.push_back({vec3(place.position - origin), storyteller_room});
     roads.map = make_walk_map(world, *exhibit.walk, seeds, obstacles);
   }
   for (size_t t = 0; t < exhibit.tours.size(); t++) {

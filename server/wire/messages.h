@@ -75,6 +75,7 @@ struct Tour {
 };
 struct StorytellerOrder {
   std::optional<bool> visible, humanlike;
+  std::string teller{};  // id of the storyteller that shall be there; empty: no change
   std::string story;   // id of a story to tell; empty: no change
   std::string action;  // "play", "pause", "stop", "restart", "skip" or empty
   bool operator==(const StorytellerOrder&) const = default;

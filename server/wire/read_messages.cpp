@@ -60,6 +60,7 @@ static StorytellerOrder read_storyteller(Fields& fields) {
   StorytellerOrder order;
   fields.maybe(order.visible, [&](bool& value) { return fields.boolean("visible", value); });
   fields.maybe(order.humanlike, [&](bool& value) { return fields.boolean("humanlike", value); });
+  fields.text("teller", order.teller);
   fields.text("story", order.story);
   fields.word("action", {"play", "pause", "stop", "restart", "skip"}, order.action);
   return order;

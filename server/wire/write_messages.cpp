@@ -88,6 +88,7 @@ static json to_json(const StorytellerOrder& order) {
   json out = {{"type", "storyteller"}};
   if (order.visible) out["visible"] = *order.visible;
   if (order.humanlike) out["humanlike"] = *order.humanlike;
+  if (!order.teller.empty()) out["teller"] = order.teller;
   if (!order.story.empty()) out["story"] = order.story;
   if (!order.action.empty()) out["action"] = order.action;
   return out;

@@ -57,7 +57,7 @@ void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
   for (int i = first; i < count; i++)
     before_[size_t(i - first)] = before->world->mesh_of(uint32_t(i)).positions;
   Show& show = *now_;
-  if (!show.figure) return;
+  if (show.figures.empty()) return;
   // As show/tick.cpp behaves and animates for one visitor.
   StorytellerInput input;
   input.time = time;
@@ -71,7 +71,7 @@ void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
   StorytellerEvents events;
   tick_storyteller(show.mind, show.storyteller, input, show.pose, events);
   advance_voice(show.voice, dt);
-  pose_figure(*show.world, *show.figure, *show.exhibit.character, show.pose,
+  pose_figure(*show.world, show.figures[show.teller], teller_of(show)->character, show.pose,
               show.storyteller.placement, show.scratch);
   show.world->commit();
 }

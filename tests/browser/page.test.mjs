@@ -112,6 +112,35 @@ test('places, menu, language and story', { skip }, async () => {
   await page.close();
 });
 
+test('a visitor and a kiosk choose who tells', { skip }, async () => {
+  const { page, problems } = await open();
+  await page.locator('#menu-button').click();
+  const tellers = page.locator('#tellers button');
+  assert.equal(await tellers.count(), 2);
+  await page.waitForFunction(() => document.querySelector('#tellers [aria-pressed=true]')?.dataset.teller === 'ludmila');
+  await shot(page, 'tellers');
+  await tellers.nth(1).click();
+  await page.waitForFunction(() => document.querySelector('#tellers [aria-pressed=true]')?.dataset.teller === 'matous');
+  await page.waitForFunction(() => document.querySelector('#places [aria-current=true]')?.dataset.viewpoint === 'chronicler');
+  await sleep(2500);
+  await shot(page, 'chronicler');
+  // A story of the other one brings her back.
+  await page.locator('#menu-button').click();
+  await page.locator('#stories [data-story=well]').click();
+  await page.waitForFunction(() => document.querySelector('#tellers [aria-pressed=true]')?.dataset.teller === 'ludmila');
+  await page.locator('#player-stop').click();
+  assert.deepEqual(problems, []);
+  await page.evaluate(() => localStorage.clear());
+  await page.close();
+  const kiosk = await open('/kiosk?teller=matous');
+  await kiosk.page.waitForFunction(() => document.body.dataset.teller === 'matous');
+  await kiosk.page.close();
+  const again = await open('/kiosk?teller=ludmila');
+  await again.page.waitForFunction(() => document.body.dataset.teller === 'ludmila');
+  assert.deepEqual([...kiosk.problems, ...again.problems], []);
+  await again.page.close();
+});
+
 test('the storyteller is heard after the first touch, from where she stands, and can be silenced', { skip: skip || !existsSync(join(process.env.WELLSPRING_BIN, 'wellspring_voice')) && 'wellspring_voice has not been built' }, async () => {
   const { page, problems } = await open();
   const button = page.locator('#sound-button');

@@ -80,6 +80,7 @@ struct SoundTest : testing::Test {
   std::unique_ptr<Show> show;
   Arrivals arrivals;
   std::map<std::string, std::shared_ptr<const Speech>> kept;
+  std::vector<SpeechRequest> asked;
   int spoken = 0;
   double now = 0;
   struct Peer {
@@ -101,13 +102,19 @@ struct SoundTest : testing::Test {
     character.parts = {{.name = "all", .look = 0, .triangles = {{0, 1, 2}}}};
     character.first_weight = {0, 1, 2, 3};
     character.weights.assign(3, {0, 1});
-    exhibit.character = character;
-    exhibit.storyteller = StorytellerPlace{};
-    exhibit.storyteller->position = {1, 0, 2};
-    show = make_show(std::move(exhibit), {});
+    exhibit.storytellers.resize(2);
+    for (size_t i = 0; i < 2; i++) {
+      StorytellerPlace& teller = exhibit.storytellers[i];
+      teller.id = i == 0 ? "anna" : "otto";
+      teller.character = character;
+      teller.position = {1, 0, 2 - 0.5 * double(i)};
+    }
+    exhibit.storytellers[1].voice.variant = "m2";
+    show = make_show(std::move(exhibit), {.technique = "direct", .still_technique = "direct"});
     show->speech.find = [this](const SpeechRequest& r) { return kept.contains(r.text) ? kept[r.text] : nullptr; };
     show->speech.speak = [this](const SpeechRequest& r) {
       spoken++;
+      asked.push_back(r);
       kept[r.text] = make_speech(r.text, r.lang, 2);
       std::promise<SpeechAnswer> promise;
       promise.set_value({kept[r.text], {}});
