@@ -13,8 +13,8 @@ namespace wellspring {
 
 void bench_avatar(BenchReport& report, const BenchOptions& options) {
   Exhibit castle = load_exhibit((std::filesystem::path(options.content) / "castle").string());
-  if (!castle.character) return;
-  const Character& character = *castle.character;
+  if (castle.storytellers.empty()) return;
+  const Character& character = castle.storytellers.front().character;
   oneapi::tbb::global_control one_core(oneapi::tbb::global_control::max_allowed_parallelism, 1);
   std::vector<Mesh> moving;
   std::vector<uint32_t> objects;
