@@ -133,9 +133,11 @@ std::vector<Photon> shoot_caustic_photons(const Transport& transport,
                            arrival.flux * share, -walk.ray.direction,
                            arrival.surface.geometric_normal});
       if (!has_sharp(arrival.bsdf, sharp_alpha)) break;
-      BsdfSample scattered = sample_bsdf(arrival.bsdf, Lobes::specular, sampler);
-      if (!scatter(walk, arrival, scattered, sampler)) break;
-      sharp |= scattered.bounce != Bounce::pass;
+      int before = walk.depth;
+      std::optional<WavelengthSpread> spread;
+      part_arrival(transport, walk, sampler, arrival, spread);
+      if (!scatter(walk, arrival, spread, Lobes::specular, sampler)) break;
+      sharp |= walk.depth > before;  // not straight through a pane
     }
   }
   return photons;

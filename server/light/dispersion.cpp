@@ -167,10 +167,7 @@ void carry_wavelengths(const WavelengthSpread& spread, const Bsdf& bsdf, Lobes l
   if (sample.pdf == 0) {  // a perfect lobe
     bool mirrored = sample.bounce == Bounce::reflect && !has_clearcoat(hero);
     if (!mirrored || carried.carried == 1) {
-      carried.carried = 1;
-      carried.value[0] = vec3(1);
-      carried.density[0] = 1;
-      sample.weight *= divide(tint_of(carried), before);
+      carry_hero(spread, sample, carried);
       return;
     }
     FacetColor first = facet_color(hero, hero.view.z);
@@ -199,6 +196,19 @@ void carry_wavelengths(const WavelengthSpread& spread, const Bsdf& bsdf, Lobes l
   }
   sample.weight = add_event(carried, before, value, density);
   sample.pdf = mean / sum;
+}
+
+vec3 hero_tint(const WavelengthSpread& spread) {
+  Wavelengths hero = spread.before;
+  hero.carried = 1;
+  return divide(tint_of(hero), tint_before(spread));
+}
+
+void carry_hero(const WavelengthSpread& spread, BsdfSample& sample, Wavelengths& carried) {
+  if (sample.weight == vec3(0)) return;
+  sample.weight *= hero_tint(spread);
+  carried = spread.before;
+  carried.carried = 1;
 }
 
 void blend_wavelengths(const WavelengthSpread& spread, vec3 l, BsdfValue& value) {

@@ -51,6 +51,11 @@ void spread_wavelengths(const Surface& surface, const Material& material, vec3 d
 void carry_wavelengths(const WavelengthSpread& spread, const Bsdf& bsdf, Lobes lobes,
                        BsdfSample& sample, Wavelengths& carried);
 
+// The same where the hero alone goes on, `sample` being its own (drawn without the spread).
+void carry_hero(const WavelengthSpread& spread, BsdfSample& sample, Wavelengths& carried);
+// Colour of what comes if the hero alone had brought it, over its colour now.
+vec3 hero_tint(const WavelengthSpread& spread);
+
 // The hero's value made the cluster's; called by eval_bsdf.
 void blend_wavelengths(const WavelengthSpread& spread, vec3 l, BsdfValue& value);
 

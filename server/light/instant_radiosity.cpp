@@ -107,6 +107,13 @@ void trace_many_instant(const World& world, const Lights& lights,
     eye.first =
         find_first_surface(transport, settings.max_depth, request, eye.sampler, eye.sample);
     if (!eye.first.scatters) continue;
+    if (parts_colors(transport, eye.first.walk.media, eye.first.surface)) {
+      WalkRules rules;
+      rules.max_depth = settings.max_depth;
+      eye.sample = trace_sample(transport, rules, request);
+      eye.first.scatters = eye.first.mirrored = false;
+      continue;
+    }
     split_first(eye);
     order.push_back(uint32_t(i));
   }

@@ -17,7 +17,10 @@
 // which adds to the paper's XOR by a random bit vector only that the vector depends on the bits before,
 // and decorrelates the dimensions of the shared Sampler better;
 // rays instead of nothing for the last line; sets complement each other over passes as well.
-// Not claimed: light of moving emitters, colours split by glass.
+// Walks of light that meet dispersive glass carry wavelengths from there (dispersion.h), which leave
+// point lights and photons their colours. The eye's do as well, and are followed as `path` does from
+// there on: a wavelength of the eye's and one of light's would meet by chance alone.
+// Not claimed: light of moving emitters.
 #pragma once
 #include <memory>
 #include <vector>

@@ -71,7 +71,7 @@ void add_place(const Transport& transport, float share, Sampler& sampler, DrawnS
   if (max_component(light.radiance) > 0 && is_finite(light.radiance)) set.lights.push_back(light);
 }
 
-void add_arrival(const LightWalk& walk, const Arrival& arrival, float share, DrawnSet& set) {
+void add_arrival(const LightWalk& walk, const Arrival& arrival, vec3 share, DrawnSet& set) {
   const Bsdf& bsdf = arrival.bsdf;
   if (!arrival.lit || !has_rough(bsdf, sharp_alpha)) return;
   PointLight light;
@@ -100,10 +100,10 @@ void add_walk(const Transport& transport, int deepest, float share, Sampler& sam
   walk.range = emitted.range;
   Arrival arrival;
   while (walk.depth <= deepest && arrive(transport, walk, arrival)) {
-    add_arrival(walk, arrival, share, set);
-    if (!arrival.lit) return;
-    BsdfSample scattered = sample_bsdf(arrival.bsdf, Lobes::all, sampler);
-    if (!scatter(walk, arrival, scattered, sampler)) return;
+    std::optional<WavelengthSpread> spread;
+    part_arrival(transport, walk, sampler, arrival, spread);
+    add_arrival(walk, arrival, spread ? share * hero_tint(*spread) : vec3(share), set);
+    if (!arrival.lit || !scatter(walk, arrival, spread, Lobes::all, sampler)) return;
   }
 }
 

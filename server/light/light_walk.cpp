@@ -89,6 +89,26 @@ bool scatter(LightWalk& walk, const Arrival& arrival, const BsdfSample& scattere
   return true;
 }
 
+void part_arrival(const Transport& transport, const LightWalk& walk, Sampler& sampler,
+                  Arrival& arrival, std::optional<WavelengthSpread>& spread) {
+  if (!arrival.lit || !parts_colors(transport, walk.media, arrival.surface)) return;
+  float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
+  part_colors(transport, walk.media, walk.ray.direction, arrival.surface, walk.wavelengths, u,
+              arrival.bsdf, spread);
+  arrival.bsdf.spread = nullptr;  // which does not live as long
+}
+
+bool scatter(LightWalk& walk, const Arrival& arrival,
+             const std::optional<WavelengthSpread>& spread, Lobes lobes, Sampler& sampler) {
+  BsdfSample scattered = sample_bsdf(arrival.bsdf, lobes, sampler);
+  // What is refracted is squeezed by each wavelength's own index: the hero goes on alone.
+  if (spread && scattered.bounce == Bounce::refract)
+    carry_hero(*spread, scattered, walk.wavelengths);
+  else if (spread)
+    carry_wavelengths(*spread, arrival.bsdf, lobes, scattered, walk.wavelengths);
+  return scatter(walk, arrival, scattered, sampler);
+}
+
 vec3 eval_scattered(const Arrival& arrival, vec3 direction) {
   const Bsdf& b = arrival.bsdf;
   BsdfValue value = eval_bsdf(b, direction);

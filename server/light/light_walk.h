@@ -6,6 +6,7 @@
 // A scattering is `sharp` where a lobe smoother than caustic_roughness did it. Sharp and rough
 // scatterings are told apart so that each path of light is found by one technique only.
 #pragma once
+#include "light/part_colors.h"
 #include "light/sample_light.h"
 
 namespace wellspring {
@@ -29,6 +30,7 @@ struct LightWalk {
   int panes = 0;
   float run = 0;  // since the source or the last scattering, panes looked through
   float range = std::numeric_limits<float>::infinity();  // of the source, for the first ray
+  Wavelengths wavelengths;  // once it has met something dispersive; `flux` has their colour
 };
 
 struct Arrival {
@@ -45,6 +47,13 @@ bool arrive(const Transport& transport, LightWalk& walk, Arrival& arrival);
 // so that what goes on is as bright as what came.
 bool scatter(LightWalk& walk, const Arrival& arrival, const BsdfSample& scattered,
              Sampler& sampler);
+
+// Where the surface parts colours: `arrival.bsdf` becomes that of the wavelength that leads from here.
+void part_arrival(const Transport& transport, const LightWalk& walk, Sampler& sampler,
+                  Arrival& arrival, std::optional<WavelengthSpread>& spread);
+// Sends the walk on by a sample of some lobes; `spread`: part_arrival's.
+bool scatter(LightWalk& walk, const Arrival& arrival,
+             const std::optional<WavelengthSpread>& spread, Lobes lobes, Sampler& sampler);
 
 // Intensity that flux of 1 leaves towards a direction, by the rough lobes.
 vec3 eval_scattered(const Arrival& arrival, vec3 direction);

@@ -241,6 +241,27 @@ TransportPlan make_full_plan(const Scene& scene) {
   return plan;
 }
 
+namespace {
+
+// Where techniques differ in what they make of a part.
+std::span<const char* const> technique_notes(TransportPart part) {
+  static constexpr const char* dispersion[] = {
+      "path, direct, gather: the eye's walk carries wavelengths from the first such surface on",
+      "gather: light that is kept has a colour, not a wavelength",
+      "instant_radiosity: photons and walks of light carry wavelengths; the eye's ways on from such "
+      "surfaces are followed as in path"};
+  static constexpr const char* caustics[] = {
+      "path: by rays that come upon the light; gather: in its kept light as well; direct: none",
+      "instant_radiosity: photons, spread over a radius that shrinks from pass to pass"};
+  static constexpr const char* kept[] = {"gather alone asks for it"};
+  if (part == TransportPart::dispersion) return dispersion;
+  if (part == TransportPart::caustics) return caustics;
+  if (part == TransportPart::kept_light) return kept;
+  return {};
+}
+
+}  // namespace
+
 std::string explain(const TransportPlan& plan) {
   size_t widest = 0;
   for (const char* name : names) widest = std::max(widest, std::string(name).size());
@@ -254,6 +275,9 @@ std::string explain(const TransportPlan& plan) {
       std::string name = names[i];
       text +=
           "  " + name + std::string(widest + 2 - name.size(), ' ') + plan.decisions[i].why + "\n";
+      if (!used) continue;
+      for (const char* note : technique_notes(TransportPart(i)))
+        text += std::string(widest + 6, ' ') + note + "\n";
     }
     if (!any) text += "  nothing\n";
   }

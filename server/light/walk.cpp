@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "light/bsdf_gloss.h"
+#include "light/part_colors.h"
 #include "light/radiance_grid.h"
 #include "light/warp.h"
 
@@ -55,17 +56,10 @@ vec3 eval_tint(const Transport& transport, int medium, float length) {
 void part_colors(const Transport& transport, const Walk& walk, const Surface& surface,
                  uint32_t dimensions, Sampler& sampler, Bsdf& bsdf,
                  std::optional<WavelengthSpread>& spread) {
-  if (!transport.tables.plan.uses(TransportPart::dispersion)) return;
-  const Material& material = transport.world.scene().materials[size_t(surface.material)];
-  if (!is_dispersive(surface, material) || !owns_boundary(walk.media, surface)) return;
+  if (!parts_colors(transport, walk.media, surface)) return;
   sampler.seek(dimensions + Dimensions::wavelength);
   float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
-  float outside = index_outside(transport, walk.media, surface);
-  const DielectricAlbedo& albedo =
-      outside == 1 ? *transport.tables.materials[size_t(surface.material)].albedo
-                   : dielectric_albedo(std::max(material.ior / outside, outside / material.ior));
-  spread_wavelengths(surface, material, walk.ray.direction, albedo, walk.wavelengths, u, bsdf,
-                     spread, outside);
+  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, u, bsdf, spread);
 }
 
 bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered) {

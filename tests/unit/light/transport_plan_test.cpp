@@ -272,4 +272,11 @@ TEST(TransportPlan, ExplanationListsEveryPartOnce) {
   EXPECT_LT(text.find("  refraction"), text.find("left out"));
   EXPECT_GT(text.find("  dispersion"), text.find("left out"));
   EXPECT_NE(text.find("'green?glass'"), std::string::npos);
+  // What each technique makes of colours parted is told where they are parted.
+  EXPECT_EQ(text.find("wavelengths from"), std::string::npos);
+  scene.materials.back().dispersion = 0.3f;
+  text = explain(make_transport_plan(scene));
+  size_t parted = text.find("  dispersion");
+  EXPECT_LT(parted, text.find("left out"));
+  EXPECT_LT(parted, text.find("instant_radiosity: photons and walks of light carry wavelengths"));
 }
