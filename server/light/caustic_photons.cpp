@@ -131,7 +131,7 @@ std::vector<Photon> shoot_caustic_photons(const Transport& transport,
       if (sharp && has_rough(arrival.bsdf, sharp_alpha))
         photons.push_back({arrival.surface.position, uint32_t(walk.depth),
                            arrival.flux * share, -walk.ray.direction,
-                           arrival.surface.geometric_normal});
+                           arrival.surface.geometric_normal, hue_of(walk.wavelengths)});
       if (!has_sharp(arrival.bsdf, sharp_alpha)) break;
       int before = walk.depth;
       std::optional<WavelengthSpread> spread;
@@ -148,7 +148,10 @@ void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& pla
   const Bsdf& bsdf = *place.bsdf;
   vec3 normal = bsdf.geometric_normal;
   bool sharp = has_sharp(bsdf, place.sharp);
-  bool matt = !has_specular(bsdf) && bsdf.normal == normal;  // one reflectance for all directions
+  float hue = place.hue();
+  bool hued = hue >= 0 && !grid.hue.values.empty();
+  // One reflectance for all directions.
+  bool matt = !has_specular(bsdf) && bsdf.normal == normal && !hued;
   float area = pi * grid.radius * grid.radius;
   if (matt) {
     vec3 flux = sum_matt(grid, place.surface->position, normal, max_depth - place.depth);
@@ -162,6 +165,10 @@ void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& pla
     float cosine = std::abs(dot(photon.direction, normal));
     if (!(cosine > grazing)) return;
     BsdfValue value = eval_bsdf(bsdf, photon.direction);
+    if (hued) {
+      vec3 alike = meet_hues(hue, photon.hue);
+      value.diffuse *= alike, value.specular *= alike;
+    }
     diffuse += value.diffuse * photon.flux / cosine;
     if (!sharp) specular += value.specular * photon.flux / cosine;
   });

@@ -211,6 +211,14 @@ void carry_hero(const WavelengthSpread& spread, BsdfSample& sample, Wavelengths&
   carried.carried = 1;
 }
 
+vec3 meet_hues(float eye, float light) {
+  if (eye < 0 || light < 0) return vec3(1);
+  if (std::abs(eye - light) > hue_bandwidth / 2) return vec3(0);
+  // Less is within reach at the ends of the spectrum.
+  float reach = std::min(eye + hue_bandwidth / 2, 1.0f) - std::max(eye - hue_bandwidth / 2, 0.0f);
+  return divide(vec3(1 / reach), response_at(light));  // both have coloured it
+}
+
 void blend_wavelengths(const WavelengthSpread& spread, vec3 l, BsdfValue& value) {
   const Wavelengths& w = spread.before;
   vec3 colored(0);

@@ -9,6 +9,14 @@
 #include "light/part_colors.h"
 
 namespace wellspring {
+
+void part_seen_colors(const Transport& transport, const Walk& walk, const Surface& surface,
+                      Sampler& sampler, Bsdf& bsdf, std::optional<WavelengthSpread>& spread) {
+  if (!parts_colors(transport, walk.media, surface)) return;
+  float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
+  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, u, bsdf, spread);
+}
+
 namespace {
 
 // What is seen in mirrors is not filtered, so more than one set lights it; a faint image makes do with
@@ -20,37 +28,11 @@ int mirror_lights(const Walk& walk) {
 }
 constexpr int mirror_depth = 6;  // chains are not cut short at random before
 
-// The same as eval_rough by rays alone: to a walk that carries wavelengths, point lights and photons,
-// which have wavelengths of their own, would mean nothing.
-vec3 follow_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, const Bsdf& bsdf,
-                  float sharp, Sampler& sampler) {
-  const LightTables& tables = eye.transport.tables;
-  bool split = has_sharp(bsdf, sharp);  // then the diffuse lobe is all that is rough
-  Lobes lobes = split ? Lobes::diffuse : Lobes::all;
-  DirectLight direct =
-      sample_direct_light(eye.transport, walk, surface, bsdf, split, sampler);
-  vec3 radiance = split ? direct.area_diffuse + direct.punctual_diffuse : direct.sum();
-  Walk next = walk;
-  next.throughput = vec3(1);
-  BsdfSample scattered = sample_bsdf(bsdf, lobes, sampler);
-  if (bsdf.spread) carry_wavelengths(*bsdf.spread, bsdf, lobes, scattered, next.wavelengths);
-  if (!advance(next, surface, scattered)) return radiance;
-  if (scattered.pdf > 0)
-    next.area_share = split && tables.area_share > 0 ? 1 : tables.area_share;
-  else next.area_share = 0;
-  next.from_normal = lit_side(surface, bsdf);
-  WalkRules rules;
-  rules.max_depth = eye.max_depth;
-  return radiance + follow(eye.transport, rules, next, sampler);
-}
-
 // Radiance scattered towards where `walk` came from by the rough lobes of what it met.
 vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, const Bsdf& bsdf,
                 float sharp, int sets, int lights, Sampler& sampler) {
   if (walk.depth >= eye.max_depth || !has_rough(bsdf, sharp)) return vec3(0);
-  if (walk.wavelengths.carried > 0 || bsdf.spread)
-    return follow_rough(eye, walk, surface, bsdf, sharp, sampler);
-  LitPlace place{&surface, &bsdf, &walk.media, walk.depth, sharp};
+  LitPlace place{&surface, &bsdf, &walk.media, walk.depth, sharp, &walk.wavelengths};
   PlaceLight light;
   int all = eye.pass.sets(), asked = std::min(sets, all);
   for (int i = 0; i < asked; i++) {
@@ -85,12 +67,14 @@ struct Met {
   Surface surface;
   const Material* material;
   Bsdf bsdf;
+  std::optional<WavelengthSpread> spread;  // where it parts colours; bsdf refers to it
 };
-void meet(const Transport& transport, Hit& hit, Walk& walk, Met& met) {
+void meet(const Transport& transport, Hit& hit, Sampler& sampler, Walk& walk, Met& met) {
   met.surface = meet_surface(transport, walk.ray, hit, walk.media);
   met.material = &transport.world.material_of(hit.instance);
   walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
   met.bsdf = make_bsdf_in(transport, walk.media, met.surface, *met.material, walk.ray.direction);
+  part_seen_colors(transport, walk, met.surface, sampler, met.bsdf, met.spread);
 }
 
 // Of a sky without a picture's brightness to go by: what photons do not bring.
@@ -118,11 +102,7 @@ vec3 gathered(const EyeLight& eye, Walk walk, Sampler& sampler) {
     }
     run += hit.t;
     Met met;
-    meet(transport, hit, walk, met);
-    std::optional<WavelengthSpread> spread;
-    if (!met.material->unlit && parts_colors(transport, walk.media, met.surface))
-      part_colors(transport, walk.media, walk.ray.direction, met.surface, walk.wavelengths,
-                  walk.wavelengths.carried == 0 ? sampler.next() : 0, met.bsdf, spread);
+    meet(transport, hit, sampler, walk, met);
     float taken = chained ? 1.0f : run < clip ? 1 - run * run / (clip * clip) : 0.0f;
     if (taken > 0) {
       if (!chained && tables.first_emitter[hit.instance] != no_emitter)
@@ -137,8 +117,8 @@ vec3 gathered(const EyeLight& eye, Walk walk, Sampler& sampler) {
         walk.depth >= eye.max_depth)
       return radiance;
     BsdfSample scattered = sample_bsdf(met.bsdf, Lobes::specular, sampler);
-    if (spread)
-      carry_wavelengths(*spread, met.bsdf, Lobes::specular, scattered, walk.wavelengths);
+    if (met.spread)
+      carry_wavelengths(*met.spread, met.bsdf, Lobes::specular, scattered, walk.wavelengths);
     if (!advance(walk, met.surface, scattered)) return radiance;
     chained |= scattered.bounce != Bounce::pass;
     if (!survives(walk, 1, sampler)) return radiance;
@@ -161,6 +141,7 @@ void gather_rest(const EyeLight& eye, const LitPlace& place, Sampler& sampler, P
   Walk walk;
   walk.depth = place.depth;
   walk.media = *place.media;
+  if (place.wavelengths) walk.wavelengths = *place.wavelengths;
   scattered.weight = vec3(1);
   if (!advance(walk, *place.surface, scattered)) return;
   vec3 radiance = gathered(eye, walk, sampler) / scattered.pdf;
@@ -174,14 +155,8 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
   for (int i = 0; i < most_panes; i++) {
     Hit hit = transport.world.intersect(walk.ray);
     if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
-    const Walk before = walk;
     Met met;
-    meet(transport, hit, walk, met);
-    if (!met.material->unlit && parts_colors(transport, walk.media, met.surface)) {
-      WalkRules rules;
-      rules.max_depth = eye.max_depth;
-      return radiance + follow(transport, rules, before, sampler);
-    }
+    meet(transport, hit, sampler, walk, met);
     radiance +=
         walk.throughput * walk_met_emission(transport, walk, met.surface, *met.material);
     if (met.material->unlit) return radiance;
@@ -204,6 +179,8 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
                                                           true, sampler)
                                           .specular;
       scattered = sample_bsdf(met.bsdf, Lobes::specular, sampler);
+      if (met.spread)
+        carry_wavelengths(*met.spread, met.bsdf, Lobes::specular, scattered, walk.wavelengths);
     }
     if (!advance(walk, met.surface, scattered)) return radiance;
     if (scattered.bounce != Bounce::pass)

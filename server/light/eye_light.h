@@ -14,6 +14,11 @@ struct EyeLight {
   int set = 0;  // of this pixel
 };
 
+// Where the surface that `walk` met parts colours, `bsdf` becomes the hero wavelength's, and refers to
+// `spread`.
+void part_seen_colors(const Transport& transport, const Walk& walk, const Surface& surface,
+                      Sampler& sampler, Bsdf& bsdf, std::optional<WavelengthSpread>& spread);
+
 // Radiance that comes along a walk which left a sharp lobe (or a pane), times its throughput.
 vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler);
 

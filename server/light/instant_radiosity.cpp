@@ -21,6 +21,7 @@ struct Eye {
   Sampler sampler;
   Sample sample;
   FirstSurface first;
+  std::optional<WavelengthSpread> spread;  // of its colours
   int set = 0, region = -1;
   bool soft = false;    // rough gloss is filtered with the diffuse light
   vec3 reflectance{0};  // sample.albedo without the tint
@@ -54,6 +55,8 @@ void follow_first(const EyeLight& light, Eye& eye) {
   if (chance == 1 || eye.sampler.next() < chance) {
     Walk next = first.walk;
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::specular, eye.sampler);
+    if (eye.spread)
+      carry_wavelengths(*eye.spread, bsdf, Lobes::specular, scattered, next.wavelengths);
     scattered.weight /= chance;
     next.area_share = scattered.pdf > 0 && transport.tables.area_share > 0 ? 1.0f : 0.0f;
     if (advance(next, first.surface, scattered))
@@ -100,20 +103,15 @@ void trace_many_instant(const World& world, const Lights& lights,
   std::vector<uint32_t> order;
   for (size_t i = 0; i < requests.size(); i++) {
     const Request& request = requests[i];
-    Eye& eye = eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, 0, -1, false, {}, {}});
+    Eye& eye = eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, {}, 0, -1, false, {}, {}});
     eye.set = set_of_pixel(pass, request.pixel);
     eye.region = region_of_pixel(pass, request.pixel);
     if (settings.max_depth < 1) continue;
     eye.first =
         find_first_surface(transport, settings.max_depth, request, eye.sampler, eye.sample);
     if (!eye.first.scatters) continue;
-    if (parts_colors(transport, eye.first.walk.media, eye.first.surface)) {
-      WalkRules rules;
-      rules.max_depth = settings.max_depth;
-      eye.sample = trace_sample(transport, rules, request);
-      eye.first.scatters = eye.first.mirrored = false;
-      continue;
-    }
+    part_seen_colors(transport, eye.first.walk, eye.first.surface, eye.sampler, eye.first.bsdf,
+                     eye.spread);
     split_first(eye);
     order.push_back(uint32_t(i));
   }

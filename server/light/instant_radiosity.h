@@ -17,9 +17,9 @@
 // which adds to the paper's XOR by a random bit vector only that the vector depends on the bits before,
 // and decorrelates the dimensions of the shared Sampler better;
 // rays instead of nothing for the last line; sets complement each other over passes as well.
-// Walks of light that meet dispersive glass carry wavelengths from there (dispersion.h), which leave
-// point lights and photons their colours. The eye's do as well, and are followed as `path` does from
-// there on: a wavelength of the eye's and one of light's would meet by chance alone.
+// Walks of light and of the eye that meet dispersive glass carry wavelengths from there (dispersion.h).
+// Where both do, they are joined if their hues are near each other (meet_hues): a blur along the
+// spectrum, as that of photons is one along the surface.
 // Not claimed: light of moving emitters.
 #pragma once
 #include <memory>
@@ -48,6 +48,7 @@ struct PointLight {
   vec3 normal{0, 1, 0};  // geometric
   vec3 target{0};        // a shadow ray ends here, clear of the surface
   vec3 radiance{0};      // matt: intensity at cosine 1; scattering: flux; else a factor
+  float hue = -1;        // hue_of its walk; `radiance` has that colour
 };
 
 // Point lights that each region of the picture asks (region_lights.h).

@@ -71,11 +71,14 @@ void add_place(const Transport& transport, float share, Sampler& sampler, DrawnS
   if (max_component(light.radiance) > 0 && is_finite(light.radiance)) set.lights.push_back(light);
 }
 
-void add_arrival(const LightWalk& walk, const Arrival& arrival, vec3 share, DrawnSet& set) {
+// `parted`: what the surface itself makes of the walk's colours.
+void add_arrival(const LightWalk& walk, const Arrival& arrival, const WavelengthSpread* parted,
+                 float share, DrawnSet& set) {
   const Bsdf& bsdf = arrival.bsdf;
   if (!arrival.lit || !has_rough(bsdf, sharp_alpha)) return;
   PointLight light;
   light.depth = uint16_t(walk.depth);
+  light.hue = hue_of(walk.wavelengths);
   light.position = arrival.surface.position;
   light.normal = arrival.surface.geometric_normal;
   light.target = offset_origin(arrival.surface, light.normal);
@@ -85,6 +88,10 @@ void add_arrival(const LightWalk& walk, const Arrival& arrival, vec3 share, Draw
     light.kind = PointLightKind::scattering;
     light.index = uint32_t(set.arrivals.size());
     light.radiance = arrival.flux * share;
+    if (parted) {  // one wavelength for all that it shines on
+      light.radiance *= hero_tint(*parted);
+      light.hue = parted->before.place;
+    }
     light.double_sided = max_component(bsdf.transmit) > 0;
     set.arrivals.push_back(arrival);
   }
@@ -102,7 +109,7 @@ void add_walk(const Transport& transport, int deepest, float share, Sampler& sam
   while (walk.depth <= deepest && arrive(transport, walk, arrival)) {
     std::optional<WavelengthSpread> spread;
     part_arrival(transport, walk, sampler, arrival, spread);
-    add_arrival(walk, arrival, spread ? share * hero_tint(*spread) : vec3(share), set);
+    add_arrival(walk, arrival, spread ? &*spread : nullptr, share, set);
     if (!arrival.lit || !scatter(walk, arrival, spread, Lobes::all, sampler)) return;
   }
 }

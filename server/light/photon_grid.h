@@ -18,6 +18,7 @@ struct Photon {
   vec3 flux{0};
   vec3 direction{0};     // to where it came from
   vec3 normal{0, 1, 0};  // geometric, of the surface it hit
+  float hue = -1;        // hue_of its walk; `flux` has that colour
 };
 
 // One number of every photon, and eight more that may be read.
@@ -37,9 +38,11 @@ struct PhotonGrid {
   // Bucket by bucket.
   PhotonColumns3 position, flux, direction, normal;
   PhotonColumn depth;
+  PhotonColumn hue;  // empty: none has any
   size_t size() const { return first.empty() ? 0 : first.back(); }
   Photon photon(size_t i) const {
-    return {position.at(i), uint32_t(depth.values[i]), flux.at(i), direction.at(i), normal.at(i)};
+    return {position.at(i), uint32_t(depth.values[i]), flux.at(i), direction.at(i), normal.at(i),
+            hue.values.empty() ? -1.0f : hue.values[i]};
   }
 };
 

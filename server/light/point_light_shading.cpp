@@ -48,7 +48,8 @@ Group make_group(const LitPlace* places, int count) {
     group.face.set(i, bsdf.geometric_normal);
     if (i >= count) continue;
     group.used |= 1u << i;
-    if (!has_specular(bsdf) && place.media->here.count == 0) group.matt |= 1u << i;
+    bool plain = place.media->here.count == 0 && place.hue() < 0;
+    if (!has_specular(bsdf) && plain) group.matt |= 1u << i;
     if (max_component(bsdf.transmit) > 0 && smoothest_alpha(bsdf) >= place.sharp)
       group.through |= 1u << i;
   }
@@ -197,6 +198,7 @@ vec3 through_panes(const Transport& transport, const Group& group, const PointLi
 void add_lane(const Transport& transport, const Group& group, const PointLight& light,
               const InstantPass& pass, const Seen& seen, vec3 radiance, int i, PlaceLight& sum) {
   const LitPlace& place = group.places[i];
+  if (light.hue >= 0) radiance *= meet_hues(place.hue(), light.hue);
   float distance = std::sqrt(seen.distance2[i]);
   vec3 direction = seen.direction.at(i) / distance;
   BsdfValue value = eval_bsdf(*place.bsdf, direction);

@@ -15,6 +15,8 @@ struct LitPlace {
   const Media* media = nullptr;  // never null
   int depth = 1;  // number of the eye's ray that ends here
   float sharp = mirror_alpha;  // its lobes smoother than this are somebody else's
+  const Wavelengths* wavelengths = nullptr;  // of the eye's walk; nullptr: none
+  float hue() const { return wavelengths ? hue_of(*wavelengths) : -1; }
 };
 
 // Radiance towards the viewer by lobe; `exact`: of lights that every set has alike.
