@@ -51,6 +51,9 @@ int read_options(Options& options, int argc, char** argv) {
   app.add_option("--draw", options.show.draw,
                  "shapes drawn exactly in every picture, sharper and slower: automatic, never, always")
       ->transform(CLI::CheckedTransformer(wishes))->option_text("WISH=automatic");
+  app.add_flag("--late-samples,!--no-late-samples", options.show.late_samples,
+               "samples of a walking visitor are traced when its picture is on its way, and show in the next")
+      ->capture_default_str();
   app.add_option("--max-depth", options.show.transport.max_depth)->check(CLI::Range(1, 64))->capture_default_str();
   try {
     app.parse(argc, argv);

@@ -28,6 +28,24 @@ void age_tile(PointCache& points, const PointImage& image, StillImage& still, in
     }
 }
 
+// Counts the witnesses of each tile where they lie now: answers may be frames late, and the view has
+// moved on.
+void place_witnesses(const PointCache& points, const View& view, PointImage& image) {
+  std::fill(image.changed.begin(), image.changed.end(), uint8_t(0));
+  for (uint32_t i : image.witnesses) {
+    if (i >= uint32_t(points.capacity()) || !is_alive(points, i)) continue;
+    vec3 place(points.x[i], points.y[i], points.z[i]);
+    if (points.flags[i] & point_infinite) place += view.position;
+    Projected at = project_point(view, place);
+    if (!(at.depth > 0 && at.x >= 0 && at.y >= 0 && at.x < float(image.width) && at.y < float(image.height)))
+      continue;
+    uint8_t& tile = image.changed[size_t(at.y) / change_tile * size_t(image.changed_width) +
+                                  size_t(at.x) / change_tile];
+    tile = uint8_t(std::min(tile + 1, 255));
+  }
+  image.witnesses.clear();
+}
+
 using Levels = std::array<uint8_t, 256>;
 
 // Not inlined: only as parameters of a real call do the pointers keep their promise not to overlap,
@@ -57,10 +75,11 @@ using Levels = std::array<uint8_t, 256>;
 
 }  // namespace
 
-void age_changed(PointCache& points, PointImage& image, StillImage& still) {
+void age_changed(PointCache& points, const View& view, PointImage& image, StillImage& still) {
+  if (image.witnesses.empty()) return;
+  place_witnesses(points, view, image);
   int width = image.changed_width, height = image.changed_height;
   const std::vector<uint8_t>& changed = image.changed;
-  if (std::none_of(changed.begin(), changed.end(), [](uint8_t c) { return c != 0; })) return;
   parallel_ranges(height, 4, [&](int begin, int end) {
     for (int ty = begin; ty < end; ty++)
       for (int tx = 0; tx < width; tx++) {
@@ -71,7 +90,6 @@ void age_changed(PointCache& points, PointImage& image, StillImage& still) {
         if (near >= change_witnesses) age_tile(points, image, still, tx, ty);
       }
   });
-  std::fill(image.changed.begin(), image.changed.end(), uint8_t(0));
 }
 
 void prioritise(const PointCache& points, const CacheSettings& settings, PointImage& image) {

@@ -5,13 +5,14 @@
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
 #include "cache/still_image.h"
+#include "world/view.h"
 
 namespace wellspring {
 
 // Where several resampled points close by had changed (one may err), points nearby get older by a
 // quarter of the scale and forget most of their samples, and the picture's mean there starts over.
-// Uses up image.changed.
-void age_changed(PointCache& points, PointImage& image, StillImage& still);
+// The image is projected for `view`. Uses up image.witnesses.
+void age_changed(PointCache& points, const View& view, PointImage& image, StillImage& still);
 
 // Overwrites image.priority: empty pixels 255 (alone) to 143 (surrounded by points); pixels with a
 // point by its age (up to 127) and by how few samples it holds. 255 everywhere counts when

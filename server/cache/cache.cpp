@@ -108,9 +108,17 @@ void RenderCache::project(const View& view) {
   c.image_stale = false;
 }
 
+float RenderCache::covered() const {
+  const PointImage& image = impl_->image;
+  size_t width = size_t(image.width), shown = 0, asked = 0;
+  for (size_t y = 0; y < size_t(image.height); y += 8, asked += width)
+    for (size_t x = 0; x < width; x++) shown += image.point[y * width + x] != no_point;
+  return asked > 0 ? float(shown) / float(asked) : 0.0f;
+}
+
 void RenderCache::attend() {
   Impl& c = *impl_;
-  age_changed(c.points, c.image, c.still);
+  age_changed(c.points, c.view, c.image, c.still);
   prioritise(c.points, c.settings, c.image);
 }
 
@@ -135,11 +143,14 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   settings.longest_mean = settings.still ? still_mean : moving_mean;
   Remembered result =
       remember_samples(c.points, view, requests, samples, settings, c.image, c.targets);
+  // What moves may have been seen elsewhere than it is now.
+  c.image_stale |= !c.points.anchors.empty();
   c.new_points += (float(result.kept) - c.new_points) * 0.1f;
   if (settings.current) c.fresh += result.kept;
   if (!settings.still) return;
   for (size_t i = 0; i < c.targets.size(); i++)
-    if (c.targets[i] != no_point && requests[i].resample != c.targets[i])
+    if (c.targets[i] != no_point && requests[i].resample != c.targets[i] &&
+        requests[i].pixel < c.still.count.size())
       c.still.count[requests[i].pixel] |= still_fresh;
 }
 
@@ -197,7 +208,7 @@ void RenderCache::clear() {
   c.image_stale = true;
   std::fill(c.image.point.begin(), c.image.point.end(), no_point);
   std::fill(c.image.depth.begin(), c.image.depth.end(), 0.0f);
-  std::fill(c.image.changed.begin(), c.image.changed.end(), uint8_t(0));
+  c.image.witnesses.clear();
   c.forget_still();
 }
 

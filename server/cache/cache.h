@@ -50,6 +50,8 @@ class RenderCache {
   void move_points(const World& world);
   // Where every point falls in `view`; depth cull.
   void project(const View& view);
+  // About the share of pixels that a point shows in, from every eighth row.
+  float covered() const;
   // Priority of every pixel (paper, section 4).
   void attend();
   // Exactly `budget` (or fewer when there is nothing left to learn) requests by error diffusion;

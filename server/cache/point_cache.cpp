@@ -86,6 +86,24 @@ void age_points(PointCache& points, float new_points) {
   });
 }
 
+void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric,
+                  vec3& place, vec3& normal) {
+  if (instance >= uint32_t(world.instance_count())) return;
+  const Mesh& mesh = world.mesh_of(instance);
+  if (triangle >= mesh.triangles.size()) return;
+  uvec3 corner = mesh.triangles[triangle];
+  float u = barycentric.x, v = barycentric.y, w = 1 - u - v;
+  vec3 p = w * mesh.positions[corner.x] + u * mesh.positions[corner.y] + v * mesh.positions[corner.z];
+  vec3 n = w * mesh.normals[corner.x] + u * mesh.normals[corner.y] + v * mesh.normals[corner.z];
+  if (!world.is_moving(instance)) {  // a scene instance that a technique marked as moving
+    p = vec3(world.to_world(instance) * vec4(p, 1));
+    n = world.normal_to_world(instance) * n;
+  }
+  place = p;
+  // Normals of samples face whoever saw them.
+  normal = dot(normal, n) < 0 ? -n : n;
+}
+
 void move_anchored_points(PointCache& points, const World& world) {
   auto& anchors = points.anchors;
   if (anchors.empty()) return;
@@ -106,19 +124,9 @@ void move_anchored_points(PointCache& points, const World& world) {
   parallel_ranges(int(anchors.size()), 2048, [&](int begin, int end) {
     for (int i = begin; i < end; i++) {
       const Anchor& a = anchors[size_t(i)];
-      const Mesh& mesh = world.mesh_of(a.instance);
-      uvec3 corner = mesh.triangles[a.triangle];
-      float u = float(a.u) * (1.0f / 65535), v = float(a.v) * (1.0f / 65535), w = 1 - u - v;
-      vec3 p = w * mesh.positions[corner.x] + u * mesh.positions[corner.y] +
-               v * mesh.positions[corner.z];
-      vec3 n = w * mesh.normals[corner.x] + u * mesh.normals[corner.y] + v * mesh.normals[corner.z];
-      if (!world.is_moving(a.instance)) {  // a scene instance that a technique marked as moving
-        p = vec3(world.to_world(a.instance) * vec4(p, 1));
-        n = world.normal_to_world(a.instance) * n;
-      }
-      // Keep the side the point was seen from (normals of samples face the viewer).
-      vec3 old = unpack_normal(points.normal[a.point]);
-      if (dot(old, n) < 0) n = -n;
+      vec3 p(points.x[a.point], points.y[a.point], points.z[a.point]);
+      vec3 n = unpack_normal(points.normal[a.point]);
+      find_on_mesh(world, a.instance, a.triangle, vec2(a.u, a.v) * (1.0f / 65535), p, n);
       points.x[a.point] = p.x;
       points.y[a.point] = p.y;
       points.z[a.point] = p.z;

@@ -64,6 +64,10 @@ void clear_points(PointCache& points);
 // have replaced all (Walter 2002); specular and moving points age three times as fast, unseen ones
 // twice. Unseen points that reach 255 are evicted; seen ones stop at 254.
 void age_points(PointCache& points, float new_points);
+// Where a place on a mesh is now, with the side of the normal that `normal` faced; both stay as they
+// are where the world has no such triangle.
+void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric,
+                  vec3& place, vec3& normal);
 // Points with anchors follow their triangles; anchors of overwritten points are dropped.
 void move_anchored_points(PointCache& points, const World& world);
 // Most anchors a cache of this capacity may hold; moving points beyond are forgotten after one

@@ -19,8 +19,8 @@ struct PointImage {
   BigVector<uint32_t> point;      // index into the cache, or no_point
   BigVector<float> depth;         // along the viewing axis; 0 where there is no point
   std::vector<uint8_t> priority;  // 0: nothing to learn or already asked; 255: most urgent
-  std::vector<uint8_t>
-      changed;  // resampled points of each tile that had changed; used up by attend()
+  std::vector<uint32_t> witnesses;  // resampled points that had changed; used up by attend()
+  std::vector<uint8_t> changed;     // how many of them each tile holds: scratch of attend()
   int changed_width = 0, changed_height = 0;
 };
 

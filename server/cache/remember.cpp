@@ -18,6 +18,7 @@ constexpr float same_albedo = 0.03f;
 constexpr float quiet_noise = 0.1f;  // of the mean: points this quiet may testify to a change
 constexpr float unseen_bonus = 96;   // in age: unseen points are overwritten before seen ones
 constexpr int noise_memory = 8;      // samples the noise estimate looks back on
+constexpr size_t most_witnesses = 1 << 16;  // of changes, until attend() uses them up
 
 bool is_usable(const Sample& sample) {
   return is_finite(sample.position) && is_finite(sample.normal) && is_finite(sample.albedo) &&
@@ -171,14 +172,6 @@ void show_point(PointCache& points, const View& view, uint32_t i, size_t pixel, 
   points.flags[i] |= point_visible | point_verified;
 }
 
-void mark_changed(PointImage& image, size_t pixel) {
-  size_t x = pixel % size_t(image.width) / change_tile,
-         y = pixel / size_t(image.width) / change_tile;
-  std::atomic_ref<uint8_t> tile(image.changed[y * size_t(image.changed_width) + x]);
-  // At most one sample a pixel, 64 a tile: no overflow within a frame.
-  tile.fetch_add(1, std::memory_order_relaxed);
-}
-
 void add_anchors(PointCache& points, std::span<const Sample> samples,
                  const std::vector<uint32_t>& targets) {
   size_t most = size_t(max_anchors(points.capacity()));
@@ -211,15 +204,15 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   parallel_ranges(int(count), 512, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++) {
       const Request& request = requests[i];
-      if (!is_usable(samples[i]) || request.pixel >= pixels) {
+      bool here = settings.current && request.pixel < pixels;
+      if (!is_usable(samples[i]) || (settings.current && !here && request.pixel != no_pixel)) {
         targets[i] = reject;
         continue;
       }
       uint32_t point = request.resample;
       if (point >= capacity || !is_alive(points, point)) point = no_point;
-      if (settings.current && point == no_point) point = image.point[request.pixel];
-      if (!settings.current && point != no_point &&
-          !is_same_surface(points, point, view, samples[i], true))
+      if (here && point == no_point) point = image.point[request.pixel];
+      if (!here && point != no_point && !is_same_surface(points, point, view, samples[i], true))
         point = no_point;
       targets[i] = point;
     }
@@ -234,6 +227,8 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   }
 
   auto random_of = [&](size_t i) { return uint32_t(mix64(requests[i].seed ^ 0x72656d65)); };
+  auto shows = [&](size_t i) { return settings.current && requests[i].pixel < pixels; };
+  std::vector<uint8_t> altered(count, 0);
   std::atomic<int> merged{0}, changed{0};
   parallel_ranges(int(count), 512, [&](int begin, int end) {
     int merged_here = 0, changed_here = 0;
@@ -242,17 +237,16 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
       if (later < size_t(end) && targets[later] != no_point) fetch_point(points, targets[later]);
       uint32_t point = targets[i];
       if (point == no_point) continue;
-      bool exact = requests[i].resample == point, altered = false;
+      bool exact = requests[i].resample == point;
       if (is_same_surface(points, point, view, samples[i], exact)) {
-        altered = improve_point(points, point, view, samples[i], exact, settings, random_of(i));
+        altered[i] = improve_point(points, point, view, samples[i], exact, settings, random_of(i));
         merged_here++;
       } else {
         begin_point(points, point, view, samples[i], random_of(i));
-        altered = exact && !(samples[i].flags & sample_specular);
+        altered[i] = exact && !(samples[i].flags & sample_specular);
       }
-      if (altered) mark_changed(image, requests[i].pixel);
-      changed_here += altered;
-      if (settings.current) show_point(points, view, point, requests[i].pixel, image);
+      changed_here += altered[i];
+      if (shows(i)) show_point(points, view, point, requests[i].pixel, image);
     }
     merged += merged_here;
     changed += changed_here;
@@ -270,12 +264,17 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
         uint32_t point = choose_victim(points, group);
         if (points.flags[point] & point_visible) hide_point(points, view, point, image);
         begin_point(points, point, view, samples[i], random_of(i));
-        if (settings.current) show_point(points, view, point, requests[i].pixel, image);
+        if (shows(i)) show_point(points, view, point, requests[i].pixel, image);
         targets[i] = point;
       }
     });
     points.next_group = uint32_t((points.next_group + round) % groups);
   }
+  if (changed > 0)
+    for (size_t i = 0; i < count; i++)
+      if (altered[i]) image.witnesses.push_back(targets[i]);
+  if (image.witnesses.size() > most_witnesses)
+    image.witnesses.erase(image.witnesses.begin(), image.witnesses.end() - most_witnesses);
   add_anchors(points, samples.first(count), targets);
   result.kept = int(count) - result.rejected;
   result.merged = merged;

@@ -15,7 +15,9 @@ namespace wellspring {
 
 struct RememberSettings {
   float color_change = 0.25f;
-  bool current = true;  // `view` is the one the image was projected for: answers show at once
+  // `view` is the one the image was projected for: answers show at once, in the pixel that asked.
+  // Others (asked frames ago, or for what is not in view yet) find their place by where they are.
+  bool current = true;
   bool still = false;   // answers are spread over their pixel and join the point that shows there
   uint8_t longest_mean = 64;  // samples a mean looks back on
 };
@@ -24,7 +26,8 @@ struct Remembered {
   int kept = 0, merged = 0, added = 0, changed = 0, rejected = 0;
 };
 
-// Samples that are not finite are rejected; negative light counts as none. `targets` is overwritten
+// Samples that are not finite are rejected; negative light counts as none; pixels outside the image
+// are wrong in answers for the current view, unless no_pixel. `targets` is overwritten
 // with the point each sample went to, or no_point. The result does not depend on the number of
 // threads.
 Remembered remember_samples(PointCache& points, const View& view, std::span<const Request> requests,

@@ -10,10 +10,11 @@
 namespace wellspring {
 
 inline constexpr uint32_t no_cache_id = 0xffffffffu;
+inline constexpr uint32_t no_pixel = 0xffffffffu;  // of a request for what is not in view yet
 
 struct Request {
   Ray ray;
-  uint32_t pixel = 0;               // y * width + x of the view that asked
+  uint32_t pixel = 0;               // y * width + x of the view that asked, or no_pixel
   uint32_t resample = no_cache_id;  // cached point this ray passes exactly through, if any
   uint64_t seed = 0;   // names a sequence of samples that share a pixel, well spread among them
   uint32_t index = 0;  // in that sequence: the whole sample is a function of ray, seed and index

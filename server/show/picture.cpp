@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/rng.h"
+#include "cache/trace_waiting.h"
 #include "frame/jpeg.h"
 #include "show/display_path.h"
 #include "show/in_view.h"
@@ -25,6 +26,8 @@ constexpr double resting_rate = 4;     // when nothing in the picture changes an
 constexpr float nearly_all = 0.999f;   // converged
 constexpr float forgotten = 0.998f;    // of what drawing took, a picture without it
 constexpr float few_guessed = 0.01f;   // of the pixels, and the points alone show a picture at rest
+constexpr float barely_covered = 0.1f;  // of the pixels by points
+constexpr float more_asked = 1.2f;      // than there is time for, by what was measured: none is idle
 constexpr int animated_gain = 5;       // JPEG quality above the moving one while the storyteller moves
 
 float milliseconds_since(double began) { return float(1000 * (seconds_now() - began)); }
@@ -45,6 +48,13 @@ double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
   double period = 1 / picture_rate(show, visitor);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
   return std::max((period - slack) / std::max(busy, 1) - display, least_share * period);
+}
+
+// Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a still
+// camera's picture, waits for its own.
+bool may_be_late(const Show& show, const Visitor& visitor, const Technique& technique, int samples) {
+  return show.settings.late_samples && !technique.begin_pass &&
+         samples <= BrokerSettings{}.most_waiting && visitor.cache.covered() > barely_covered;
 }
 
 // On another core: the tick goes on meanwhile, and waits before it touches the image again.
@@ -98,28 +108,39 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
 
   cache.resize(view.width, view.height);
   cache.move_points(*show.world);
+  land(visitor.broker.collect(), *show.world, show.pose_number, cache);
   cache.project(view);
   cache.attend();
   uint64_t seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
-  DisplayPlan display = plan_display(seconds_to_trace(show, visitor, busy), size_t(view.width) * size_t(view.height),
+  double seconds = seconds_to_trace(show, visitor, busy);
+  DisplayPlan display = plan_display(seconds, size_t(view.width) * size_t(view.height),
                                      {show.samples_per_second, show.looks_per_second, 0.001 * double(visitor.times.drawing),
                                       0.001 * double(visitor.times.display + visitor.times.tonemap)},
                                      visitor.display, still, show.settings.draw);
   visitor.budget = display.samples;
   visitor.display = display;
-  cache.plan(view, visitor.budget, seed, visitor.requests);
-  double planned = seconds_now();
-  visitor.samples.resize(visitor.requests.size());
   bool settled = show.time - visitor.moved_at > settled_after;
   const Technique& technique = settled ? *show.still_technique : *show.technique;
+  int most_asked = int(more_asked * float(display.samples));
+  bool late = !still && may_be_late(show, visitor, technique, most_asked);
+  cache.plan(view, late ? most_asked : display.samples, seed, visitor.requests);
+  double planned = seconds_now();
   TransportSettings transport = show.settings.transport;
   if (!settled) transport.clamp = show.settings.moving_clamp;
-  if (technique.begin_pass)
-    technique.begin_pass(*show.world, transport, view, visitor.link->id, uint32_t(show.ticks),
-                         show.lights);
-  trace(technique, *show.world, show.lights, transport, visitor.requests, visitor.samples);
+  if (late) {
+    visitor.broker.ask(view, {&technique, transport}, visitor.requests);
+    visitor.broker_seconds = seconds - double(display.looks) / std::max(double(show.looks_per_second), 1.0) -
+                             (display.drawn ? 0.001 * double(visitor.times.drawing) : 0.0);
+    visitor.samples.clear();
+  } else {
+    visitor.samples.resize(visitor.requests.size());
+    if (technique.begin_pass)
+      technique.begin_pass(*show.world, transport, view, visitor.link->id, uint32_t(show.ticks),
+                           show.lights);
+    trace(technique, *show.world, show.lights, transport, visitor.requests, visitor.samples);
+  }
   double traced = seconds_now();
-  cache.remember(view, visitor.requests, visitor.samples);
+  if (!late) cache.remember(view, visitor.requests, visitor.samples);
   bool guessed = cache.stats().filled > few_guessed || !still || sees_figure(show, view);
   bool drawn = display.drawn && guessed;
   cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, visitor.frame, visitor.looks);
@@ -155,8 +176,8 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   note_sent(visitor.flow, header.frame, show.time);
   encode_and_publish(visitor, header, fine);
 
-  if (!visitor.requests.empty() && traced > planned) {
-    float rate = float(double(visitor.requests.size()) / (traced - planned));
+  if (!visitor.samples.empty() && traced > planned) {
+    float rate = float(double(visitor.samples.size()) / (traced - planned));
     show.samples_per_second += (rate - show.samples_per_second) * 0.1f;
   }
   if (visitor.looks.size() >= least_measured && looked > surveyed) {
@@ -169,12 +190,33 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   if (drawn) smooth(visitor.times.drawing, cache.stats().drawing_ms);
   else visitor.times.drawing *= forgotten;  // a moment's load is no verdict
   smooth(visitor.times.look, float(1000 * (looked - surveyed)));
-  smooth(visitor.times.trace, float(1000 * (traced - planned)));
+  if (!late) smooth(visitor.times.trace, float(1000 * (traced - planned)));
   if (visitor.pictured_at > 0 && show.time > visitor.pictured_at)
     smooth(visitor.measured_fps, float(1 / (show.time - visitor.pictured_at)));
   visitor.pictured_at = show.time;
   show.totals.pictures++;
-  show.totals.samples += visitor.requests.size();
+  show.totals.samples += visitor.samples.size();
+}
+
+void trace_for_next(Show& show) {
+  std::vector<Broker*> brokers;
+  double seconds = 0;
+  for (Visitor& visitor : show.visitors) {
+    if (visitor.broker_seconds <= 0) continue;
+    brokers.push_back(&visitor.broker);
+    seconds += std::exchange(visitor.broker_seconds, 0.0);
+  }
+  if (brokers.empty()) return;
+  std::mutex guard;
+  double began = seconds_now();
+  size_t traced = trace_waiting(brokers, *show.world, show.lights, show.pose_number, began + seconds, guard);
+  double took = seconds_now() - began;
+  show.totals.samples += traced;
+  if (traced == 0) return;
+  show.samples_per_second += (float(double(traced) / took) - show.samples_per_second) * 0.1f;
+  for (Visitor& visitor : show.visitors)
+    if (std::find(brokers.begin(), brokers.end(), &visitor.broker) != brokers.end())
+      smooth(visitor.times.trace, float(1000 * took / double(brokers.size())));
 }
 
 }  // namespace wellspring

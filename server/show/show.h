@@ -29,6 +29,7 @@ struct ShowSettings {
   std::string still_technique = "path";  // while the visitor stands still: the picture becomes the reference
   TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}};
   DrawShapes draw = DrawShapes::automatic;
+  bool late_samples = true;   // of who walks are traced behind the picture, for the next
   float moving_clamp = 4;     // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
 };
@@ -77,6 +78,7 @@ struct Show {
   Audience audience;
 
   uint64_t ticks = 0;
+  uint64_t pose_number = 1;    // of the world: counts commits
   double time = 0;             // of the present tick, seconds
   uint64_t time_us = 0;        // of the present tick on the clock of pictures and sound
   float picture_lead = 0.02f;  // seconds from a tick to the times of its pictures, smoothed

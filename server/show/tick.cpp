@@ -202,6 +202,7 @@ void behave_and_animate(Show& show, float dt) {
     pose_figure(*show.world, figure, place.character, show.pose, show.storyteller.placement,
                 show.scratch);
   show.world->commit();
+  show.pose_number++;
 }
 
 void send_state(Show& show, Visitor& visitor) {
@@ -241,6 +242,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     if (wants_picture(show, visitor)) make_picture(show, visitor, busy);
     send_state(show, visitor);
   }
+  trace_for_next(show);
   show.totals.tick_ms = float(1000 * (seconds_now() - began));
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cache/broker.h"
 #include "cache/cache.h"
 #include "frame/tonemap.h"
 #include "show/display_path.h"
@@ -58,6 +59,8 @@ struct Visitor {
   RenderCache cache;
   std::unique_ptr<Encoder> encoder = std::make_unique<Encoder>();
   Frame frame;
+  Broker broker;             // what is traced after its picture, for the next
+  double broker_seconds = 0;  // of all cores, for what it was last asked
   std::vector<Request> requests;
   std::vector<Sample> samples;
   std::vector<Ray> looks;

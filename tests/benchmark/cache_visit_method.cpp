@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "cache/broker.h"
 #include "cache/looks.h"
 
 namespace wellspring {
@@ -54,28 +55,41 @@ constexpr int looks_a_sample = 20;
 
 class CacheMethod : public VisitMethod {
  public:
-  CacheMethod(bool late, bool primary) : late_(late), primary_(primary) {}
+  CacheMethod(Answers answers, bool primary) : answers_(answers), primary_(primary) {}
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
     const View& view = moment.view;
     cache_.resize(view.width, view.height);
     cache_.move_points(*moment.world);
-    if (late_ && !batch_.samples.empty())
-      cache_.remember(asked_from_, batch_.requests, batch_.samples);
+    uint64_t pose = uint64_t(moment.frame);
+    land(broker_.collect(), *moment.world, pose, cache_);
     cache_.project(view);
     cache_.attend();
     int price = int(look_share * budget);
     int looks = std::min(looks_a_pixel * view.width * view.height, price * looks_a_sample);
     budget -= price;
     cache_.plan(view, budget, moment.seed, batch_.requests);
-    batch_.trace(moment);
-    asked_from_ = view;
-    if (!late_) cache_.remember(view, batch_.requests, batch_.samples);
+    if (answers_ == Answers::next_frame) {
+      broker_.ask(view, {moment.technique, moment.transport}, batch_.requests);
+      while (auto piece = broker_.take()) {
+        Answer answer{std::move(*piece), pose, {}};
+        answer.samples.resize(answer.piece.requests.size());
+        trace(*moment.technique, *moment.world, *moment.lights, moment.transport,
+              answer.piece.requests, answer.samples);
+        broker_.answer(std::move(answer));
+      }
+    } else {
+      batch_.trace(moment);
+      cache_.remember(view, batch_.requests, batch_.samples);
+    }
     cache_.survey(view, primary_ ? &sight(moment) : nullptr, looks, shown.frame, rays_);
     seen_.resize(rays_.size());
     see(*moment.world, *moment.lights, rays_, seen_);
     cache_.reconstruct(view, seen_, shown.frame);
     shown.stats = cache_.stats();
     shown.empty = shown.stats.empty;
+    if (answers_ != Answers::waited_for) return;
+    if (moment.frame > 0) std::swap(shown, before_);
+    else before_ = shown;
   }
 
  private:
@@ -85,14 +99,16 @@ class CacheMethod : public VisitMethod {
     sees_ = moment.lights->tables;
     return *sight_;
   }
-  bool late_, primary_;
+  Answers answers_;
+  bool primary_;
   std::unique_ptr<PictureSight> sight_;
   std::shared_ptr<const LightTables> sees_;
   std::vector<Ray> rays_;
   std::vector<Seen> seen_;
   RenderCache cache_;
   Batch batch_;
-  View asked_from_;
+  Broker broker_{{.piece = 512, .most_waiting = 1 << 20, .most_traced = 1 << 20, .most_answered = 1 << 20}};
+  VisitPicture before_;
 };
 
 class ResolutionDrop : public VisitMethod {
@@ -229,10 +245,12 @@ class Frameless : public VisitMethod {
 
 constexpr VisitMethodEntry list[] = {
     {"cache", "render cache, answers in the same frame", false,
-     [] { return make_cache_method(false); }},
+     [] { return make_cache_method(Answers::at_once); }},
     {"primary", "the same with every pixel looked at", false, make_primary_method},
     {"cache_late", "render cache, answers a frame late", false,
-     [] { return make_cache_method(true); }},
+     [] { return make_cache_method(Answers::next_frame); }},
+    {"cache_behind", "render cache, pictures a frame late", false,
+     [] { return make_cache_method(Answers::waited_for); }},
     {"resolution_drop", "whole pictures, as coarse as the budget", true, make_resolution_drop},
     {"hold", "the last complete picture", true, make_hold},
     {"frameless", "random pixels replaced", true, make_frameless},
@@ -241,11 +259,11 @@ constexpr VisitMethodEntry list[] = {
 }  // namespace
 
 std::span<const VisitMethodEntry> visit_methods() { return list; }
-std::unique_ptr<VisitMethod> make_cache_method(bool late) {
-  return std::make_unique<CacheMethod>(late, false);
+std::unique_ptr<VisitMethod> make_cache_method(Answers answers) {
+  return std::make_unique<CacheMethod>(answers, false);
 }
 std::unique_ptr<VisitMethod> make_primary_method() {
-  return std::make_unique<CacheMethod>(false, true);
+  return std::make_unique<CacheMethod>(Answers::at_once, true);
 }
 std::unique_ptr<VisitMethod> make_resolution_drop() { return std::make_unique<ResolutionDrop>(); }
 std::unique_ptr<VisitMethod> make_hold() { return std::make_unique<Hold>(); }

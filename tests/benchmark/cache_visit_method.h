@@ -47,9 +47,11 @@ struct VisitMethodEntry {
 // The one explicit list, in the report's order. A further display path is one more line here.
 std::span<const VisitMethodEntry> visit_methods();
 
-// server/cache as show/picture.cpp drives it; with `late` answers come one frame after they were
-// asked for. A tenth of the budget goes to looks at edges.
-std::unique_ptr<VisitMethod> make_cache_method(bool late);
+// server/cache as show/picture.cpp drives it. Answers are there for the picture that asked; or they
+// come through a broker for the next; or the picture waits for them and is shown a frame late. A
+// tenth of the budget goes to looks at edges.
+enum class Answers { at_once, next_frame, waited_for };
+std::unique_ptr<VisitMethod> make_cache_method(Answers answers);
 // Display path `primary`: the looks at all pixels are part of its display and not charged.
 std::unique_ptr<VisitMethod> make_primary_method();
 // The whole picture at the resolution the budget allows, bilinear; while nothing changes, samples

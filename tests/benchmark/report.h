@@ -17,6 +17,7 @@ struct BenchOptions {
   std::vector<std::string> visit_methods;  // cache: only these; empty: all
   std::vector<int> visit_mismatches;
   std::string visit_trace, visit_technique = "gather", visit_pictures;
+  std::vector<std::string> server_words;  // stream: more of the server's command line
   int visit_width = 0, visit_instants = 0, visit_spp = 0;  // 0: the run's own
 };
 

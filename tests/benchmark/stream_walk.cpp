@@ -37,6 +37,7 @@ class ServerProcess {
     std::string program = options.programs + "/wellspring_server";
     std::vector<std::string> words = {program, "--port", "0", "--exhibit", exhibit, "--content", options.content,
                                       "--web", options.web,       "--draw",  draw};
+    words.insert(words.end(), options.server_words.begin(), options.server_words.end());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);

@@ -154,21 +154,32 @@ TEST(Attention, EmptyBeforeOldBeforeFresh) {
 
 TEST(Attention, AChangeAgesTheNeighbourhoodOnce) {
   Planner p;
-  for (uint32_t i = 0; i < 14400; i++)
+  for (uint32_t i = 0; i < 14400; i++) {
+    vec3 place = view_ray(p.view, float(i % 160) + 0.5f, float(i / 160) + 0.5f).direction * 3.0f;
     p.image.point[i] = i, p.points.age[i] = 10, p.points.count[i] = 30;
+    p.points.flags[i] = point_used;
+    p.points.x[i] = place.x, p.points.y[i] = place.y, p.points.z[i] = place.z;
+  }
   StillImage still;
-  uint8_t& witnesses = p.image.changed[size_t(5 * p.image.changed_width + 5)];
-  witnesses = 1;
-  age_changed(p.points, p.image, still);
+  uint32_t witness = 44 * 160 + 44;
+  p.image.witnesses = {witness};
+  age_changed(p.points, p.view, p.image, still);
   EXPECT_EQ(p.points.age[44 * 160 + 44], 10);  // one may err
-  witnesses = 3;
-  age_changed(p.points, p.image, still);
+  p.image.witnesses = {witness, witness + 1, witness + 160};
+  age_changed(p.points, p.view, p.image, still);
   EXPECT_EQ(p.points.age[44 * 160 + 44], 74);
   EXPECT_LE(p.points.count[44 * 160 + 44], 2);
   EXPECT_EQ(p.points.age[34 * 160 + 34], 74);
   EXPECT_EQ(p.points.age[44 * 160 + 90], 10);
-  age_changed(p.points, p.image, still);
+  age_changed(p.points, p.view, p.image, still);
   EXPECT_EQ(p.points.age[44 * 160 + 44], 74);
+  // Of points that a moving view has carried elsewhere since, those around where they are now.
+  View turned = look_at(vec3(0), view_ray(p.view, 120, 45).direction, 60, 160, 90);
+  p.image.witnesses = {witness, witness + 1, witness + 160, 50 * 160 + 119, 50 * 160 + 120, 51 * 160 + 121};
+  age_changed(p.points, turned, p.image, still);
+  EXPECT_EQ(p.points.age[50 * 160 + 80], 74);   // what was at column 120 is in the middle now
+  EXPECT_EQ(p.points.age[50 * 160 + 120], 10);
+  EXPECT_EQ(p.points.age[44 * 160 + 44], 74);   // nobody of those is there any more
 }
 
 }  // namespace
