@@ -8,10 +8,12 @@
 #include <iostream>
 #include <sstream>
 
+#include "avatar/recorded_story.h"
 #include "avatar/speech_align.h"
 #include "avatar/speech_json.h"
 #include "avatar/speech_process.h"
 #include "avatar/speech_sound.h"
+#include "avatar/story_load.h"
 #include "avatar/story_sentence.h"
 #include "avatar/story_speech.h"
 #include "base/load_error.h"
@@ -47,7 +49,7 @@ Speech speak_text(SpeechProcess& process, const SpeechRequest& request) {
 }
 
 // The template at the narrator's own pace is nearer to the recording.
-Speech mark_recording(SpeechProcess& process, const Options& options, const Sound& recording) {
+Speech mark_sentence(SpeechProcess& process, const Options& options, const Sound& recording) {
   Speech spoken = speak_text(process, options.request);
   SpeechRequest paced = options.request;
   double pace = measure_pace(spoken, recording);
@@ -72,15 +74,38 @@ std::string read_text(const std::string& file, size_t most_bytes) {
   return text;
 }
 
+// A narrator's recording of a whole story.
+Speech mark_story(SpeechProcess& process, const std::vector<StoryLine>& lines, const Options& options) {
+  Sound recording = load_sound(options.audio);
+  if (!options.marks.empty())
+    return apply_marks(read_text(options.marks, 64 << 20), options.marks, lines, recording);
+  try {
+    return mark_recording(process, lines, options.request, recording);
+  } catch (const LoadError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw LoadError(options.audio, "", error.what());
+  }
+}
+
 // All sentences of a story, one after the other.
 StorySpeech tell_story(const Options& options) {
-  std::string text = read_text(options.story, most_markup_bytes);
-  bool plain = options.story.ends_with(".txt");
-  StoryScript script = plain ? read_plain_story(text, options.story) : read_story(text, options.story);
+  StoryScript script = load_story(options.story);
   for (const StoryNote& note : script.notes)
     std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what << "\n";
   SpeechProcess process;
-  return join_lines(script.lines, speak_lines(process, script.lines, options.request, options.story));
+  if (options.audio.empty())
+    return join_lines(script.lines, speak_lines(process, script.lines, options.request, options.story));
+  StorySpeech story;
+  story.speech = mark_story(process, script.lines, options);
+  for (const StoryNote& note : doubtful_places(story.speech, script.lines))
+    std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what << "\n";
+  double begin = 0;
+  for (const auto& part : divide_recording(story.speech, script.lines, 0)) {
+    story.cues.push_back({begin, begin + part->duration, part->text, ""});
+    begin += part->duration;
+  }
+  return story;
 }
 
 // A sentence for each subtitle of a text without a story's sentences.
@@ -122,7 +147,7 @@ Speech make_speech(const Options& options) {
     return read_marks(options, options.audio.empty() ? nullptr : &recording);
   SpeechProcess process;
   if (options.audio.empty()) return speak_text(process, options.request);
-  return mark_recording(process, options, recording);
+  return mark_sentence(process, options, recording);
 }
 
 int run(const Options& options) {
@@ -183,9 +208,8 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   bool recorded = !options.audio.empty() || !options.marks.empty();
-  if ((!*text && !*story) || (*story && recorded)) {
-    std::cerr << "speak: " << (*story ? "--story is told without --audio and --marks" : "a text or --story is needed")
-              << "\n";
+  if ((!*text && !*story) || (*story && recorded && options.audio.empty())) {
+    std::cerr << "speak: " << (*story ? "--marks of a --story want its --audio" : "a text or --story is needed") << "\n";
     return 2;
   }
   try {

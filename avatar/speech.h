@@ -32,6 +32,7 @@ struct Speech {
   std::vector<SpeechPhoneme> phonemes;  // pauses included
   VisemeTrack visemes;
   double duration = 0;  // of pcm
+  bool recorded = false;  // by a narrator, with his own silence around it
 };
 
 // Stretches the phonemes of every word into its begin and end, keeping their proportions, and puts

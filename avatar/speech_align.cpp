@@ -2,11 +2,10 @@
 #include "avatar/speech_align.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
-#include "avatar/speech_features.h"
+#include "avatar/speech_coarse.h"
 #include "avatar/speech_learn.h"
 #include "avatar/speech_template.h"
 #include "avatar/speech_warp.h"
@@ -15,119 +14,11 @@ namespace wellspring {
 
 namespace {
 
-constexpr int best_rate = 16000;           // Hz; of both sounds, less where one has less
-constexpr double most_coarse_cells = 2e7;  // bytes of the coarse way's table
-constexpr size_t least_coarse_step = 4;    // frames
 constexpr size_t band_frames = 150;        // either side of the way before
 constexpr int rounds = 10, whitening_round = 4;  // of learning and dividing anew
 
-// Costs of warping, in units of a mean squared normalised feature: 2 between frames that have
-// nothing to do with each other, about 1 between the same sound of two voices.
-constexpr float gap_of_silence = 0.3f, gap_of_sound = 1.3f, enter_gap = 10;
-constexpr float stay_cost = 0.05f, skip_cost = 0.2f;
 // Costs of dividing by the learnt models, where a right frame costs 1/2 more than the constant.
 constexpr float model_gap_of_sound = 2, model_enter_gap = 1, model_stay_cost = 0.02f;
-
-struct Pair {
-  Features spoken, recorded;
-  std::vector<float> chance;  // of the recorded frames to be speech
-};
-
-Pair make_pair_of(const Speech& spoken, const Sound& recording) {
-  int rate = std::min({best_rate, recording.rate, spoken.rate});
-  Pair pair;
-  pair.spoken = make_features(resample(from_pcm(spoken.pcm), spoken.rate, rate), rate);
-  pair.recorded = make_features(resample(recording.samples, recording.rate, rate), rate);
-  pair.chance = speech_chance(pair.recorded);
-  normalise(pair.spoken, find_speech(pair.spoken));
-  normalise(pair.recorded, find_speech(pair.recorded));
-  return pair;
-}
-
-// Fine structure and slopes differ more between voices than the broad shape of a spectrum does, so
-// they count for less.
-std::array<float, feature_count> make_weights() {
-  std::array<float, feature_count> weights;
-  float sum = 0;
-  for (int c = 0; c < feature_count; c++) {
-    float order = float(c % cepstra) / 4;
-    weights[size_t(c)] = (c < cepstra ? 1 : 0.7f) / (1 + order * order);
-    sum += weights[size_t(c)];
-  }
-  for (float& weight : weights) weight /= sum;
-  return weights;
-}
-
-float distance(const float* a, const float* b) {
-  static const std::array<float, feature_count> weights = make_weights();
-  float sum = 0;
-  for (size_t c = 0; c < feature_count; c++) sum += weights[c] * (a[c] - b[c]) * (a[c] - b[c]);
-  return sum;
-}
-
-void set_warp_costs(WarpTask& task, const std::vector<float>& chance) {
-  for (float c : chance)
-    task.gap_cost.push_back(gap_of_silence + c * (gap_of_sound - gap_of_silence));
-  task.stay = stay_cost;
-  task.skip = skip_cost;
-}
-
-// Adds frame `from` of one to frame `to` of the other, `share` of it.
-void add_frame(Features& sum, size_t to, const Features& features, size_t from, float share) {
-  for (size_t c = 0; c < feature_count; c++) sum.frame(to)[c] += features.frame(from)[c] * share;
-}
-
-Features make_empty(size_t count) {
-  Features features;
-  features.values.resize(count * feature_count);
-  features.loudness.resize(count);
-  return features;
-}
-
-// About which state each recorded frame is, from means of `step` frames against means of up to
-// `step` states of a word. Empty: there is no way.
-std::vector<int32_t> warp_coarsely(const Pair& pair, const std::vector<SoundState>& fine,
-                                   size_t step) {
-  std::vector<size_t> begins;  // of the coarse states, in fine ones
-  std::vector<SoundState> states;
-  for (size_t i = 0; i < fine.size(); i++)
-    if (fine[i].word_begins || i - begins.back() == step) {
-      begins.push_back(i);
-      states.push_back(fine[i]);
-    }
-  begins.push_back(fine.size());
-  Features templates = make_empty(states.size());
-  for (size_t k = 0; k < states.size(); k++)
-    for (size_t i = begins[k]; i < begins[k + 1]; i++)
-      add_frame(templates, k, pair.spoken, fine[i].frame, 1 / float(begins[k + 1] - begins[k]));
-
-  size_t frames = pair.recorded.size(), count = (frames + step - 1) / step;
-  Features recorded = make_empty(count);
-  std::vector<float> chance(count);
-  for (size_t t = 0; t < frames; t++) {
-    float share = 1 / float(std::min(step, frames - t / step * step));
-    add_frame(recorded, t / step, pair.recorded, t, share);
-    chance[t / step] += pair.chance[t] * share;
-  }
-
-  WarpTask task;
-  task.frames = count;
-  task.templates = states.size();
-  task.gap_before = gaps_before(states);
-  task.enter_gap = enter_gap / float(step);
-  set_warp_costs(task, chance);
-  task.costs = [&](size_t t, size_t first, size_t last, float* out) {
-    for (size_t j = first; j < last; j++) *out++ = distance(recorded.frame(t), templates.frame(j));
-  };
-  WarpResult coarse = warp(task);
-  std::vector<int32_t> way;
-  if (!coarse.found) return way;
-  for (size_t t = 0; t < frames; t++) {
-    int32_t at = coarse.way[t / step];
-    way.push_back(int32_t(begins[size_t(at < 0 ? -1 - at : at)]));
-  }
-  return way;
-}
 
 // The states that a way of other states comes by, of both the same phonemes in the same order; for
 // a band, where only the neighbourhood counts. Gaps stand at the state that follows.
@@ -152,17 +43,16 @@ void set_band(WarpTask& task, const std::vector<int32_t>& position) {
   }
 }
 
-std::vector<int32_t> warp_finely(const Pair& pair, const std::vector<SoundState>& states,
+std::vector<int32_t> warp_finely(const SoundPair& pair, const std::vector<SoundState>& states,
                                  const std::vector<int32_t>& coarse) {
   WarpTask task;
   task.frames = pair.recorded.size();
   task.templates = states.size();
   task.gap_before = gaps_before(states);
-  task.enter_gap = enter_gap;
-  set_warp_costs(task, pair.chance);
+  set_template_costs(task, pair.chance, 1);
   task.costs = [&](size_t t, size_t first, size_t last, float* out) {
     for (size_t j = first; j < last; j++)
-      *out++ = distance(pair.recorded.frame(t), pair.spoken.frame(states[j].frame));
+      *out++ = feature_distance(pair.recorded.frame(t), pair.spoken.frame(states[j].frame));
   };
   set_band(task, coarse);
   return warp(task).way;
@@ -188,7 +78,7 @@ std::vector<int32_t> to_pieces(const std::vector<int32_t>& way,
   return list;
 }
 
-WarpResult divide(const Pair& pair, const std::vector<SoundState>& pieces,
+WarpResult divide(const SoundPair& pair, const std::vector<SoundState>& pieces,
                   const std::vector<int32_t>& way, const SoundModel& model) {
   WarpTask task;
   task.frames = pair.recorded.size();
@@ -211,7 +101,7 @@ WarpResult divide(const Pair& pair, const std::vector<SoundState>& pieces,
 
 // Learns the narrator's sounds and divides the recording by them, in turns. Ends early when nothing
 // changes any more.
-void refine(Pair& pair, const std::vector<SoundState>& pieces, uint32_t kinds,
+void refine(SoundPair& pair, const std::vector<SoundState>& pieces, uint32_t kinds,
             std::vector<int32_t>& way) {
   for (int round = 0; round < rounds; round++) {
     Hearing hearing{pieces, way, pair.chance, kinds};
@@ -268,16 +158,13 @@ double measure_pace(const Speech& spoken, const Sound& recording) {
 }
 
 Speech align_speech(const Speech& spoken, const Sound& recording) {
-  Pair pair = make_pair_of(spoken, recording);
+  SoundPair pair = make_sound_pair(spoken, recording);
   float loudest = *std::max_element(pair.recorded.loudness.begin(), pair.recorded.loudness.end());
   if (loudest < quietest_speech) throw std::runtime_error("there is no sound in the recording");
   auto states = make_states(spoken, pair.spoken.size(), 0);
   if (states.empty()) throw std::runtime_error("there is nothing in the text that can be spoken");
 
-  double cells = double(states.size()) * double(pair.recorded.size());
-  size_t step = size_t(std::ceil(std::sqrt(cells / most_coarse_cells)));
-  step = std::max(least_coarse_step, step);
-  std::vector<int32_t> way = warp_coarsely(pair, states, step);
+  std::vector<int32_t> way = warp_coarsely(pair, states).way;
   if (!way.empty()) way = warp_finely(pair, states, way);
   if (way.empty()) throw std::runtime_error("the recording is too short for the text");
 

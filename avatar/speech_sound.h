@@ -27,6 +27,7 @@ void save_file(const std::string& file, const void* bytes, size_t size);
 // To another rate by a windowed sinc (Hann, 16 zero crossings each side), low-pass where it goes
 // down.
 std::vector<float> resample(const std::vector<float>& samples, int from, int to);
+// Exact inverses but for what is louder than 1.
 std::vector<int16_t> to_pcm(const std::vector<float>& samples);
 std::vector<float> from_pcm(const std::vector<int16_t>& pcm);
 

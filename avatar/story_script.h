@@ -4,6 +4,7 @@
 // and SSML 1.1 are read by the same reader.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "avatar/story_markup.h"
 
 namespace wellspring {
+
+struct Speech;
 
 enum class StoryMarkKind : uint8_t { emotion, gesture, look, point, view, beat, mark };
 
@@ -29,6 +32,7 @@ struct StoryLine {
   std::vector<SpeechStyle> styles;  // in its bytes
   std::vector<StoryMark> marks;     // in order of `at`
   float pause = 0;                  // seconds of silence after it, besides the breath
+  std::shared_ptr<const Speech> recording{};  // a narrator's, instead of a synthesis; null: none
   std::string file;                 // and the place in it, for messages
   MarkupPlace place;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // wellspring run: flags -> load -> threads. The only place that knows both `show` and `stream`.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 #include <map>
@@ -11,7 +12,7 @@
 #include "base/load_error.h"
 #include "base/log.h"
 #include "show/answer.h"
-#include "show/exhibit_load.h"
+#include "show/exhibit_sound.h"
 #include "show/pages.h"
 #include "show/show.h"
 #include "show/still.h"
@@ -27,6 +28,7 @@ struct Options {
   std::string content = "content", web = "web", exhibit = "castle";
   StreamSettings stream;
   ShowSettings show;
+  RecordingOptions recordings;
 };
 
 int read_options(Options& options, int argc, char** argv) {
@@ -39,6 +41,8 @@ int read_options(Options& options, int argc, char** argv) {
                  "a further Origin whose pages may open a visit; * for any");
   app.add_option("--content", options.content, "folder of exhibit packages")->capture_default_str();
   app.add_option("--web", options.web, "folder of the pages")->capture_default_str();
+  app.add_option("--cache", options.recordings.cache,
+                 "folder that keeps what is found out about recordings; empty: nothing is kept");
   app.add_option("--fps", options.show.fps, "pictures a second for each visitor")
       ->check(CLI::Range(1.0, 120.0))->capture_default_str();
   app.add_option("--max-visitors", options.show.max_visitors)->check(CLI::Range(1, 1000))->capture_default_str();
@@ -84,10 +88,20 @@ std::string stream_metrics(const Server& server) {
          line("slow_readers_closed_total", "counter", counters.slow_closed);
 }
 
+void read_recordings_or_fail(Exhibit& exhibit, const RecordingOptions& options) {
+  std::vector<Problem> problems;
+  read_recordings(exhibit, options, problems);
+  if (std::any_of(problems.begin(), problems.end(), [](const Problem& problem) { return problem.fatal; }))
+    throw ExhibitError(std::move(problems));
+  for (const Problem& problem : problems) log::warn("{}", to_string(problem));
+}
+
 int serve(const Options& options) {
   std::string folder = options.content + "/" + options.exhibit;
   auto pages = load_pages(options.web);
-  auto show = make_show(load_exhibit(folder), options.show);
+  Exhibit exhibit = load_exhibit(folder);
+  read_recordings_or_fail(exhibit, options.recordings);
+  auto show = make_show(std::move(exhibit), options.show);
   show->speech = make_speech_source(std::make_shared<Speaker>());
   show->speech.prepare(lines_of(show->exhibit));
   StillRoom stills(*show);

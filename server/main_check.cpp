@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "base/log.h"
-#include "show/exhibit_load.h"
+#include "show/exhibit_sound.h"
 #include "show/tour.h"
 
 int main(int argc, char** argv) {
@@ -13,6 +13,8 @@ int main(int argc, char** argv) {
   CLI::App app{"Validates an exhibit package and lists every problem with file and place."};
   std::string folder;
   app.add_option("package", folder, "folder of the exhibit, e.g. content/castle")->required();
+  wellspring::RecordingOptions recordings;
+  app.add_option("--cache", recordings.cache, "folder that keeps what is found out about recordings");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -22,6 +24,7 @@ int main(int argc, char** argv) {
   int fatal = 0;
   try {
     wellspring::Exhibit exhibit = wellspring::read_exhibit(folder, problems);
+    wellspring::read_recordings(exhibit, recordings, problems);
     bool usable = std::none_of(problems.begin(), problems.end(), [](const auto& p) { return p.fatal; });
     if (usable && !exhibit.tours.empty()) {
       wellspring::World world(exhibit.scene);

@@ -3,7 +3,6 @@
 // folder, with a sheet of some moments to look at; and a film, where ffmpeg is installed.
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <spawn.h>
 #include <spdlog/fmt/fmt.h>
@@ -12,6 +11,7 @@
 #include "avatar/character_load.h"
 #include "avatar/speech_process.h"
 #include "avatar/speech_sound.h"
+#include "avatar/story_load.h"
 #include "avatar/story_speech.h"
 #include "base/load_error.h"
 #include "base/log.h"
@@ -32,15 +32,6 @@ struct Options {
   double from = 0;
   bool close = false, calm = false;
 };
-
-std::string read_text(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw LoadError(file, "", "cannot be read");
-  std::string text(most_markup_bytes + 1, '\0');
-  in.read(text.data(), std::streamsize(text.size()));
-  text.resize(size_t(in.gcount()));
-  return text;
-}
 
 // Copies a picture into a sheet, left out where it does not fit.
 void paste(const Image8& picture, Image8& sheet, int left, int top) {
@@ -81,8 +72,9 @@ int run(Options& options) {
   Character character = load_character(options.figure);
   StoryText story;
   story.id = std::filesystem::path(options.story).stem().string();
-  StoryScript script = options.story.ends_with(".txt") ? read_plain_story(read_text(options.story), options.story)
-                                                       : read_story(read_text(options.story), options.story);
+  StoryScript script = load_story(options.story);
+  for (const StoryNote& note : script.notes)
+    std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what << "\n";
   options.voice.lang = options.clip.lang;
   options.clip.humanlike = !options.calm;
   SpeechProcess process;

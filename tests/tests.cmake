@@ -33,6 +33,7 @@ wellspring_unit_test(kiosk  kiosk)
 wellspring_unit_test(benchmark benchmark)
 
 add_dependencies(unit_avatar wellspring_voice)
+add_dependencies(unit_show wellspring_voice)
 
 # Every header compiles alone. Built, not only checked, when the test runs.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} server/*.h avatar/*.h kiosk/*.h)

@@ -43,6 +43,7 @@ struct TourStop {
   float travel_seconds = 0;  // the way there takes at least this long
   float stay_seconds = 1.5;  // and the stay, and as long as its text takes
   LocalScript way_text, text;  // told on the way, and there
+  LocalText way_sound, sound;  // language tag -> file of a recording of it
 };
 struct TourPlan {
   std::string id;
@@ -54,6 +55,7 @@ struct StoryText {
   std::string id;
   LocalText title;
   LocalScript text;
+  LocalText sound;  // language tag -> file of a recording of the text
   int teller = -1;  // index into Exhibit::storytellers; -1: whoever is there
 };
 

@@ -168,6 +168,8 @@ void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>
       stop.viewpoint = read_viewpoint_name(exhibit, stop_fields, "viewpoint", true);
       stop.text = read_script(exhibit, stop_fields, "text", false, true, problems);
       stop.way_text = read_script(exhibit, stop_fields, "way_text", false, true, problems);
+      stop.sound = read_sounds(exhibit, stop_fields, "sound", stop.text);
+      stop.way_sound = read_sounds(exhibit, stop_fields, "way_sound", stop.way_text);
       stop.travel_seconds = float(stop_fields.number("travel_seconds", false, 0, 0, 600));
       double stay = stop.text.empty() ? 6 : 1.5;
       stop.stay_seconds = float(stop_fields.number("stay_seconds", false, stay, 0, 3600));
@@ -183,6 +185,7 @@ void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>
     story.id = fields.text("id", true);
     story.title = fields.local_text("title", false);
     story.text = read_script(exhibit, fields, "text", true, false, problems);
+    story.sound = read_sounds(exhibit, fields, "sound", story.text);
     if (std::string teller = fields.text("teller", false); !teller.empty()) {
       story.teller = find_storyteller(exhibit, teller);
       if (story.teller < 0) fields.problem("teller", "there is no storyteller '" + teller + "'");

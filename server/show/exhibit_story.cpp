@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "avatar/emotion.h"
 #include "avatar/gesture_library.h"
+#include "avatar/story_load.h"
 #include "base/load_error.h"
 #include "show/package_file.h"
 
@@ -16,14 +15,6 @@ namespace wellspring {
 using nlohmann::json;
 
 namespace {
-
-std::string read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text(most_markup_bytes + 1, '\0');
-  in.read(text.data(), std::streamsize(text.size()));
-  text.resize(size_t(std::max<std::streamsize>(in.gcount(), 0)));
-  return text;
-}
 
 bool is_story_name(const std::string& text) {
   std::string extension = std::filesystem::path(text).extension().string();
@@ -65,11 +56,7 @@ struct Reader {
       std::string name = value.get<std::string>();
       std::string path = package_file(fields, place.c_str(), exhibit.folder, name);
       if (path.empty()) return;
-      bool plain = name.ends_with(".txt");
-      add(lines, path, [&] {
-        std::string text = read_file(path);
-        return plain ? read_plain_story(text, path) : read_story(text, path);
-      });
+      add(lines, path, [&] { return load_story(path); });
     } else if (value.is_string() && may_be_text) {
       add(lines, where, [&] { return read_story(value.get<std::string>(), where); });
     } else {
@@ -147,6 +134,20 @@ LocalScript read_script(const Exhibit& exhibit, Fields& fields, const char* name
   }
   std::erase_if(script, [](const auto& entry) { return entry.second.empty(); });
   return script;
+}
+
+LocalText read_sounds(const Exhibit& exhibit, Fields& fields, const char* name, const LocalScript& script) {
+  LocalText sounds;
+  fields.object(name, false, [&](Fields files) {
+    for (const std::string& lang : files.names()) {
+      std::string file = files.text(lang.c_str(), true);
+      std::string path = package_file(files, lang.c_str(), exhibit.folder, file);
+      if (!script.contains(lang)) files.problem(lang, "is a recording without a text");
+      else if (!path.empty()) sounds[lang] = path;
+    }
+    files.finish();
+  });
+  return sounds;
 }
 
 VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& otherwise) {

@@ -12,6 +12,9 @@ namespace wellspring {
 LocalScript read_script(const Exhibit& exhibit, Fields& fields, const char* name, bool required,
                         bool may_be_text, std::vector<Problem>& problems);
 
+// Recordings of such texts: for each language a sound file of the package; their paths.
+LocalText read_sounds(const Exhibit& exhibit, Fields& fields, const char* name, const LocalScript& script);
+
 VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& otherwise);
 
 // After everything is read: whether emotions, gestures, objects and viewpoints of all marks are there,

@@ -30,6 +30,13 @@ void Fields::problem(const std::string& name, const std::string& what, bool fata
   problems_.push_back({file_, name.empty() ? where_ : where_ + "/" + name, what, fatal});
 }
 
+std::vector<std::string> Fields::names() const {
+  std::vector<std::string> names;
+  if (object_.is_object())
+    for (const auto& [name, value] : object_.items()) names.push_back(name);
+  return names;
+}
+
 bool Fields::has(const char* name) const { return object_.contains(name); }
 
 const json* Fields::get(const char* name, bool required, json::value_t type, const char* type_name) {

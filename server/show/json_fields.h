@@ -43,6 +43,7 @@ class Fields {
     if (const nlohmann::json* found = get(name, required, nlohmann::json::value_t::object, "an object"))
       each(Fields(*found, file_, where_ + "/" + name, problems_));
   }
+  std::vector<std::string> names() const;  // of all that is there
   // The value of a field as it is, noted as read; null: it is not there.
   const nlohmann::json* value(const char* name);
   const std::string& where() const { return where_; }

@@ -45,7 +45,8 @@ std::vector<SpeechRequest> lines_of(const Exhibit& exhibit) {
   auto add = [&](const LocalScript& script, const VoiceManner& manner) {
     for (const std::string& lang : exhibit.languages)
       if (auto found = script.find(lang); found != script.end())
-        for (const StoryLine& line : found->second) lines.push_back(request_of(line, lang, manner));
+        for (const StoryLine& line : found->second)
+          if (!line.recording) lines.push_back(request_of(line, lang, manner));
   };
   for (size_t i = 0; i < exhibit.storytellers.size(); i++) {
     const StorytellerPlace& teller = exhibit.storytellers[i];
@@ -77,15 +78,13 @@ struct Channel {
   bool anybody = false;  // listens
 };
 
-SpeechRequest request_of(const Show& show, const Channel& channel, const Utterance& utterance) {
-  const auto* line = line_in(utterance.line, channel.lang, show.exhibit.languages);
-  return request_of(line->second, line->first, manner_of(show));
-}
-
 SpeechState ask_speech(Show& show, Channel& channel, const Utterance& utterance) {
   Sounding& sounding = channel.sounding;
-  SpeechRequest request = request_of(show, channel, utterance);
+  const auto* line = line_in(utterance.line, channel.lang, show.exhibit.languages);
+  if (line->second.recording) return {line->second.recording, false, line->first};
+  SpeechRequest request = request_of(line->second, line->first, manner_of(show));
   std::string lang = request.lang;
+  if (!show.speech.find || !show.speech.speak) return {nullptr, false, channel.lang};
   if (auto speech = show.speech.find(request)) return {speech, false, lang};
   if (!channel.anybody) return {nullptr, false, lang};
   if (sounding.asked != request || !sounding.answer.valid()) {
@@ -101,10 +100,7 @@ SpeechState ask_speech(Show& show, Channel& channel, const Utterance& utterance)
 }
 
 VoiceEvents advance_channel(Show& show, Channel channel, float dt) {
-  AskSpeech ask;
-  if (show.speech.find && show.speech.speak)
-    ask = [&](const Utterance& utterance) { return ask_speech(show, channel, utterance); };
-  else ask = [&](const Utterance&) { return SpeechState{nullptr, false, channel.lang}; };
+  auto ask = [&](const Utterance& utterance) { return ask_speech(show, channel, utterance); };
   VoiceEvents events = advance_voice(channel.voice, dt, ask);
   if (events.ended) {  // heard to its end: nothing to stop
     for (Visitor& visitor : show.visitors)
@@ -114,8 +110,11 @@ VoiceEvents advance_channel(Show& show, Channel channel, float dt) {
   if (events.begun) {
     show.totals.utterances += events.begun->speech != nullptr;
     // The next line, should it have been forgotten meanwhile.
-    if (show.speech.prepare && events.begun->speech && channel.voice.queue.size() > 1)
-      show.speech.prepare({request_of(show, channel, channel.voice.queue[1])});
+    if (show.speech.prepare && events.begun->speech && channel.voice.queue.size() > 1) {
+      const auto* next = line_in(channel.voice.queue[1].line, channel.lang, show.exhibit.languages);
+      if (!next->second.recording)
+        show.speech.prepare({request_of(next->second, next->first, manner_of(show))});
+    }
   }
   return events;
 }

@@ -87,6 +87,8 @@ void start_front(Voice& voice, SpeechState answer) {
     voice.elapsed = -speech_lead;
   }
   front.seconds += line->second.pause;
+  // A narrator's pauses are his own.
+  if (front.speech && front.speech->recorded) front.seconds = float(front.speech->duration);
   front.timeline = make_timeline(line->second, front.speech.get(), words);
 }
 

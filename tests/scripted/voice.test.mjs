@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The storyteller heard over the WebSocket: sound in time with the mouth, as documented.
 import assert from 'node:assert/strict';
-import { existsSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, sleep, start_server } from '../server.mjs';
+import { Visitor, run, sleep, source, start_server } from '../server.mjs';
 
 const skip = !existsSync(join(process.env.WELLSPRING_BIN, 'wellspring_voice')) && 'wellspring_voice has not been built';
 let server;
@@ -182,4 +183,70 @@ test('the description names sound and speech', { skip }, async () => {
   const api = await (await fetch(`${server.url}/api/v1/`)).json();
   assert.equal(api.binary.sound.magic, 'WSA1');
   assert.ok(api.server_to_browser.speech.utterance && api.browser_to_server.settings.sound);
+});
+
+// A package of a camera, a lamp, the castle's storyteller, and a story with its narrator's recording: the
+// synthesiser in another voice.
+async function recorded_package(folder) {
+  const room = join(folder, 'room'), text = 'The castle stands above the river, and nobody remembers who built its tower. On quiet evenings you can hear the great bell from the bridge.';
+  mkdirSync(room);
+  cpSync(join(source, 'content', 'castle', 'figures'), join(room, 'figures'), { recursive: true, filter: (from) => !/\.py$|people/.test(from) });
+  writeFileSync(join(room, 'tale.en.txt'), text);
+  writeFileSync(join(room, 'scene.gltf'), JSON.stringify({
+    asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0, 1] }], nodes: [{ camera: 0, name: 'door', translation: [0, 1.6, 2] }, { translation: [1, 3, 2], extensions: { KHR_lights_punctual: { light: 0 } } }],
+    cameras: [{ type: 'perspective', perspective: { yfov: 0.8, znear: 0.1 } }],
+    extensionsUsed: ['KHR_lights_punctual'], extensions: { KHR_lights_punctual: { lights: [{ type: 'point', intensity: 20 }] } },
+  }));
+  writeFileSync(join(room, 'exhibit.json'), JSON.stringify({
+    id: 'room', title: { en: 'Room' }, scene: 'scene.gltf',
+    storyteller: { figure: 'figures/storyteller.x3d', position: [0, 0, 0], yaw_deg: 180 },
+    stories: [{ id: 'tale', title: { en: 'Tale' }, text: { en: 'tale.en.txt' }, sound: { en: 'tale.wav' } }],
+  }));
+  const { status, stderr } = await run('wellspring_speak', ['--story', join(room, 'tale.en.txt'), '--lang', 'en-us', '--variant', 'f4', '--words-per-minute', '140', '--wav', join(room, 'tale.wav')]);
+  assert.equal(status, 0, stderr);
+  const wav = readFileSync(join(room, 'tale.wav'));
+  return { room, samples: new Int16Array(wav.buffer, wav.byteOffset + 44, (wav.length - 44) / 2), rate: wav.readUInt32LE(24) };
+}
+
+test('a narrator\'s recording is heard as it is, with words, subtitles and lips in time', { skip }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'wellspring-recorded-'));
+  let room_server = null;
+  try {
+    const { room, samples, rate } = await recorded_package(folder);
+    const checked = await run('wellspring_check', [room]);
+    assert.equal(checked.status, 0, checked.stdout + checked.stderr);
+    room_server = await start_server(['--exhibit', 'room', '--cache', join(folder, 'cache')], { content: folder });
+    const visitor = new Visitor(room_server);
+    await visitor.hello({ lang: 'en' });
+    const mouths = [], starts = [];
+    const two = visitor.next(({ message }) => {
+      if (message?.type === 'agent' && message.mouth) mouths.push(message.mouth);
+      if (message?.type === 'speech' && message.action === 'start') starts.push(message);
+      return starts.length === 2;
+    }, 'the second sentence', 40000);
+    visitor.send({ type: 'storyteller', story: 'tale' });
+    await two;
+    const [first] = starts;
+    assert.ok(visitor.messages.some((message) => message.type === 'subtitle' && message.text === first.text));
+    const pieces = visitor.sounds.filter((sound) => sound.utterance === first.utterance), heard = pieces.flatMap((sound) => sound.samples);
+    assert.equal(pieces[0].rate, rate);
+    assert.equal(heard.length, pieces[0].total);
+    assert.ok(heard.every((sample, i) => sample === samples[i]), 'the recording itself, from its beginning');
+    // Words where the sound is, lips that move with it.
+    const found = onsets(heard, rate);
+    for (const at of found) assert.ok(Math.min(...first.words.map(({ begin }) => Math.abs(begin - at))) <= 0.08, `no word at ${at}`);
+    const around = (seconds) => loudness(heard.slice(Math.max(0, Math.round((seconds - 0.02) * rate)), Math.max(0, Math.round((seconds + 0.02) * rate))));
+    const levels = mouths.filter((one) => one.utterance === first.utterance && one.seconds >= 0 && ['aa', 'E', 'ih', 'oh', 'ou'].includes(one.viseme))
+      .map((one) => around(one.seconds)).sort((a, b) => a - b);
+    assert.ok(levels.length > 2 && levels[levels.length >> 1] > 0.7 * loudness(heard), `vowels ${levels}`);
+    await visitor.close();
+    // The text of another story: refused, with the recording's name.
+    writeFileSync(join(room, 'tale.en.txt'), 'Two brothers once quarrelled about the best horse of the whole wide valley. They shouted so loudly that all ravens left the tower.');
+    const refused = await run('wellspring_check', [room]);
+    assert.equal(refused.status, 1);
+    assert.match(refused.stdout, /error: .*tale\.wav: the recording does not say this text/);
+  } finally {
+    if (room_server) assert.equal(await room_server.stop(), 0);
+    rmSync(folder, { recursive: true, force: true });
+  }
 });
