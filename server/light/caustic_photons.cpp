@@ -2,8 +2,10 @@
 #include "light/caustic_photons.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
+#include "light/bsdf_lanes.h"
 #include "light/emission.h"
 #include "light/warp.h"
 
@@ -93,21 +95,75 @@ EmittedRay aim_at_casters(const Transport& transport, std::span<const CasterSphe
 constexpr float same_surface = 0.7f;  // least cosine between normals
 constexpr float grazing = 1e-3f;      // photons flatter than this do not count
 
-// Flux that arrives around a place from before it.
-vec3 sum_matt(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest) {
-  Lanes red = all_lanes(0), green = red, blue = red, none = red;
-  for_each_photons(grid, place, [&](size_t at, LaneMask within) {
+// visit(at, counts) as for_each_photons has it, of those that count for a surface lit from before it.
+template <class Visit>
+void for_each_counting(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest,
+                       PhotonCells& cells, const Visit& visit) {
+  for_each_photons(grid, place, cells, [&](size_t at, LaneMask within) {
     Lanes alike = lanes_abs(grid.normal.x.at(at) * normal.x + grid.normal.y.at(at) * normal.y +
                             grid.normal.z.at(at) * normal.z);
     Lanes side = grid.direction.x.at(at) * normal.x + grid.direction.y.at(at) * normal.y +
                  grid.direction.z.at(at) * normal.z;
     LaneMask counts = within & (alike >= same_surface) & (side > grazing) &
                       (grid.depth.at(at) <= float(deepest));
+    if (negative_lanes(counts)) visit(at, counts);
+  });
+}
+
+// Flux that arrives around a place from before it.
+vec3 sum_matt(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest, PhotonCells& cells) {
+  Lanes red = all_lanes(0), green = red, blue = red, none = red;
+  for_each_counting(grid, place, normal, deepest, cells, [&](size_t at, LaneMask counts) {
     red += counts ? grid.flux.x.at(at) : none;
     green += counts ? grid.flux.y.at(at) : none;
     blue += counts ? grid.flux.z.at(at) : none;
   });
   return {lanes_sum(red), lanes_sum(green), lanes_sum(blue)};
+}
+
+// What such photons do by a bsdf that fits lanes, gathered until there are eight of them. Diffuse: to
+// be multiplied by the reflectance.
+struct Scattered {
+  vec3 diffuse, specular;
+};
+Scattered sum_scattered(const PhotonGrid& grid, vec3 place, const Bsdf& bsdf, int deepest,
+                        PhotonCells& cells) {
+  const Lanes none = all_lanes(0);
+  const vec3 normal = bsdf.geometric_normal;
+  std::optional<BsdfLanes> lanes;  // once there is something to scatter
+  uint32_t found[lane_count];
+  int count = 0;
+  Lanes3 diffuse{none, none, none}, specular = diffuse;
+  auto add = [&] {
+    auto gather = [&](const PhotonColumns3& columns, vec3 fallback) {
+      Lanes3 a;
+      for (int i = 0; i < lane_count; i++) {
+        vec3 v = i < count ? columns.at(found[i]) : fallback;
+        a.x[i] = v.x, a.y[i] = v.y, a.z[i] = v.z;
+      }
+      return a;
+    };
+    Lanes3 direction = gather(grid.direction, normal), flux = gather(grid.flux, vec3(0));
+    Lanes spread =
+        1 / (direction.x * normal.x + direction.y * normal.y + direction.z * normal.z);
+    if (!lanes) lanes = make_bsdf_lanes(bsdf);
+    BsdfLanesValue value = eval_bsdf_lanes(*lanes, direction);
+    Lanes matt = value.diffuse * spread;
+    diffuse.x += matt * flux.x, diffuse.y += matt * flux.y, diffuse.z += matt * flux.z;
+    specular.x += value.specular.x * spread * flux.x;
+    specular.y += value.specular.y * spread * flux.y;
+    specular.z += value.specular.z * spread * flux.z;
+    count = 0;
+  };
+  for_each_counting(grid, place, normal, deepest, cells, [&](size_t at, LaneMask counts) {
+    for (unsigned bits = negative_lanes(counts); bits; bits &= bits - 1) {
+      found[count++] = uint32_t(at) + uint32_t(std::countr_zero(bits));
+      if (count == lane_count) add();
+    }
+  });
+  if (count > 0) add();
+  auto sum = [](const Lanes3& a) { return vec3(lanes_sum(a.x), lanes_sum(a.y), lanes_sum(a.z)); };
+  return {sum(diffuse), sum(specular)};
 }
 
 }  // namespace
@@ -144,7 +200,7 @@ std::vector<Photon> shoot_caustic_photons(const Transport& transport,
 }
 
 void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& place,
-                      PlaceLight& light) {
+                      PhotonCells& cells, PlaceLight& light) {
   const Bsdf& bsdf = *place.bsdf;
   vec3 normal = bsdf.geometric_normal;
   bool sharp = has_sharp(bsdf, place.sharp);
@@ -154,12 +210,19 @@ void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& pla
   bool matt = !has_specular(bsdf) && bsdf.normal == normal && !hued;
   float area = pi * grid.radius * grid.radius;
   if (matt) {
-    vec3 flux = sum_matt(grid, place.surface->position, normal, max_depth - place.depth);
+    vec3 flux = sum_matt(grid, place.surface->position, normal, max_depth - place.depth, cells);
     light.diffuse += flux * bsdf.diffuse / (pi * area);
     return;
   }
+  if (!hued && fits_lanes(bsdf)) {
+    Scattered sum =
+        sum_scattered(grid, place.surface->position, bsdf, max_depth - place.depth, cells);
+    light.diffuse += bsdf.diffuse * sum.diffuse / area;
+    if (!sharp) light.specular += sum.specular / area;
+    return;
+  }
   vec3 diffuse(0), specular(0);
-  for_each_photon(grid, place.surface->position, [&](const Photon& photon) {
+  for_each_photon(grid, place.surface->position, cells, [&](const Photon& photon) {
     if (int(photon.depth) + place.depth > max_depth) return;
     if (std::abs(dot(photon.normal, normal)) < same_surface) return;
     float cosine = std::abs(dot(photon.direction, normal));

@@ -24,9 +24,10 @@ std::vector<Photon> shoot_caustic_photons(const Transport& transport,
                                           uint64_t seed, uint32_t first, int count,
                                           float share);
 
-// Adds the light of the photons around a place, scattered to the viewer.
+// Adds the light of the photons around a place, scattered to the viewer. `cells`: of this grid, to be kept
+// from one place to the next.
 void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& place,
-                      PlaceLight& light);
+                      PhotonCells& cells, PlaceLight& light);
 
 // Radius of pass `index`: shrinks so that the mean of all passes converges to the truth (Knaus and
 // Zwicker 2011, equation 15 with alpha 2/3).

@@ -46,8 +46,11 @@ vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, c
                             &place, 1, &light);
   }
   if (!eye.pass.photons.empty())
-    for (int i = 0; i < asked; i++)
-      shade_by_photons(eye.pass.photons[size_t((eye.set + i) % all)], eye.max_depth, place, light);
+    for (int i = 0; i < asked; i++) {
+      PhotonCells cells;
+      shade_by_photons(eye.pass.photons[size_t((eye.set + i) % all)], eye.max_depth, place, cells,
+                       light);
+    }
   vec3 radiance = light.sum() / float(asked);
   PlaceLight rest;
   gather_rest(eye, place, sampler, rest);

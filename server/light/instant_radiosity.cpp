@@ -69,8 +69,6 @@ void finish(const EyeLight& light, Eye& eye) {
   if (eye.first.scatters) {
     LitPlace place{&eye.first.surface, &eye.first.bsdf, &eye.first.walk.media,
                    eye.first.walk.depth, mirror_alpha};
-    if (!light.pass.photons.empty())
-      shade_by_photons(light.pass.photons[size_t(light.set)], light.max_depth, place, eye.light);
     gather_rest(light, place, eye.sampler, eye.light);
     Sample& sample = eye.sample;
     const PlaceLight& got = eye.light;
@@ -132,6 +130,11 @@ void trace_many_instant(const World& world, const Lights& lights,
     }
     shade_by_point_lights(transport, pass, {set, 0, 1, 0, region}, settings.max_depth, places, count,
                           light);
+    if (!pass.photons.empty()) {
+      PhotonCells cells;
+      for (int i = 0; i < count; i++)
+        shade_by_photons(pass.photons[size_t(set)], settings.max_depth, places[i], cells, light[i]);
+    }
     for (int i = 0; i < count; i++) eyes[order[begin + size_t(i)]].light = light[i];
     begin += size_t(count);
   }

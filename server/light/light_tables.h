@@ -12,6 +12,7 @@
 #include "light/few_lights.h"
 #include "light/light_tree.h"
 #include "light/medium.h"
+#include "light/pane_boxes.h"
 #include "light/transport_plan.h"
 #include "world/bvh.h"
 
@@ -61,7 +62,7 @@ struct LightTables {
   std::vector<CasterSphere> casters;  // of caustics, that stand still
   std::vector<MaterialTraits> materials;
   bool any_pane = false;   // else shadow rays only ask whether anything is in between
-  std::vector<Bounds> pane_boxes;  // and elsewhere than in these, too (pane_boxes.h)
+  PaneBoxes pane_boxes;  // and elsewhere than in these, too
   bool any_solid = false;  // else walks do not ask what they run in
   bool any_tint = false;   // else what they run in takes no light
   SolidBounds solids;

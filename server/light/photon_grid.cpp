@@ -18,13 +18,14 @@ void set(PhotonColumns3& columns, size_t i, vec3 v) {
 PhotonGrid make_photon_grid(const std::vector<Photon>& photons, float radius) {
   PhotonGrid grid;
   grid.radius = radius;
+  grid.per_metre = 1 / (2.0 * double(radius));
   // Few photons share a bucket by chance, and the table stays in the cache.
   grid.mask = std::bit_ceil(uint32_t(std::max<size_t>(photons.size(), 16))) - 1;
   grid.first.assign(size_t(grid.mask) + 2, 0);
   std::vector<uint32_t> bucket(photons.size(), nowhere);
   for (size_t i = 0; i < photons.size(); i++) {
     if (!is_finite(photons[i].position) || !is_finite(photons[i].flux)) continue;
-    dvec3 cell = glm::floor(dvec3(photons[i].position) / (2.0 * double(radius)));
+    dvec3 cell = glm::floor(in_photon_cells(grid, photons[i].position));
     bucket[i] = photon_bucket(grid, int64_t(cell.x), int64_t(cell.y), int64_t(cell.z));
     grid.first[bucket[i] + 1]++;
   }
@@ -48,6 +49,23 @@ PhotonGrid make_photon_grid(const std::vector<Photon>& photons, float radius) {
     if (hued) grid.hue.values[at] = photons[i].hue;
   }
   return grid;
+}
+
+void find_photon_cells(const PhotonGrid& grid, vec3 place, PhotonCells& cells) {
+  dvec3 corner = glm::floor(in_photon_cells(grid, place) - 0.5);
+  if (cells.count >= 0 && corner.x == cells.x && corner.y == cells.y && corner.z == cells.z) return;
+  cells.x = corner.x, cells.y = corner.y, cells.z = corner.z;
+  cells.count = 0;
+  int64_t x = int64_t(corner.x), y = int64_t(corner.y), z = int64_t(corner.z);
+  for (int i = 0; i < 8; i++) {
+    uint32_t bucket = photon_bucket(grid, x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
+    uint32_t begin = grid.first[bucket], end = grid.first[bucket + 1];
+    bool again = begin == end;  // or cells that share a bucket
+    for (int k = 0; k < cells.count; k++) again |= cells.begin[k] == begin;
+    if (again) continue;
+    cells.begin[cells.count] = begin;
+    cells.end[cells.count++] = end;
+  }
 }
 
 }  // namespace wellspring

@@ -33,6 +33,7 @@ struct PhotonColumns3 {
 
 struct PhotonGrid {
   float radius = 0;
+  double per_metre = 0;         // cells
   uint32_t mask = 0;            // buckets - 1
   std::vector<uint32_t> first;  // of each bucket, and the end
   // Bucket by bucket.
@@ -49,43 +50,47 @@ struct PhotonGrid {
 // Photons that are nowhere (not finite) are left out. `radius` > 0.
 PhotonGrid make_photon_grid(const std::vector<Photon>& photons, float radius);
 
+// Where a place is, counted in cells.
+inline dvec3 in_photon_cells(const PhotonGrid& grid, vec3 place) {
+  return dvec3(place) * grid.per_metre;
+}
 inline uint32_t photon_bucket(const PhotonGrid& grid, int64_t x, int64_t y, int64_t z) {
   uint64_t hash = uint64_t(x) * 0x9e3779b97f4a7c15ull ^ uint64_t(y) * 0xc2b2ae3d27d4eb4full ^
                   uint64_t(z) * 0x165667b19e3779f9ull;
   return uint32_t((hash ^ hash >> 32) * 0xd6e8feb86659fd93ull >> 32) & grid.mask;
 }
 
+// The photons around places between the same eight cells' middles. Neighbouring places mostly have the
+// same, so whoever asks for many in a row keeps this.
+struct PhotonCells {
+  double x, y, z;  // number of the first cell
+  int count = -1;  // runs of photons; -1: none asked for yet
+  uint32_t begin[8], end[8];
+};
+// Makes `cells` those around a finite place.
+void find_photon_cells(const PhotonGrid& grid, vec3 place, PhotonCells& cells);
+
 // visit(at, within) for eights of photons from number `at` on, among them each within the radius of
 // `place` once: those whose lane of `within` is not 0.
 template <class Visit>
-void for_each_photons(const PhotonGrid& grid, vec3 place, const Visit& visit) {
+void for_each_photons(const PhotonGrid& grid, vec3 place, PhotonCells& cells, const Visit& visit) {
   if (grid.size() == 0 || !is_finite(place)) return;
-  dvec3 corner = glm::floor(dvec3(place) / (2.0 * double(grid.radius)) - 0.5);
-  int64_t x = int64_t(corner.x), y = int64_t(corner.y), z = int64_t(corner.z);
-  uint32_t seen[8];
+  find_photon_cells(grid, place, cells);
   float radius2 = grid.radius * grid.radius;
   const LaneMask lane = {0, 1, 2, 3, 4, 5, 6, 7};
-  for (int i = 0; i < 8; i++) {
-    uint32_t bucket = photon_bucket(grid, x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
-    seen[i] = bucket;
-    uint32_t begin = grid.first[bucket], end = grid.first[bucket + 1];
-    if (begin == end) continue;
-    bool again = false;  // cells may share a bucket
-    for (int k = 0; k < i; k++) again |= seen[k] == bucket;
-    if (again) continue;
-    for (uint32_t p = begin; p < end; p += lane_count) {
+  for (int i = 0; i < cells.count; i++)
+    for (uint32_t p = cells.begin[i], end = cells.end[i]; p < end; p += lane_count) {
       Lanes dx = grid.position.x.at(p) - place.x, dy = grid.position.y.at(p) - place.y,
             dz = grid.position.z.at(p) - place.z;
       LaneMask within = (dx * dx + dy * dy + dz * dz <= radius2) & (lane < int(end - p));
       if (negative_lanes(within)) visit(size_t(p), within);
     }
-  }
 }
 
 // visit(photon) for each within the radius of `place`, each once.
 template <class Visit>
-void for_each_photon(const PhotonGrid& grid, vec3 place, const Visit& visit) {
-  for_each_photons(grid, place, [&](size_t at, LaneMask within) {
+void for_each_photon(const PhotonGrid& grid, vec3 place, PhotonCells& cells, const Visit& visit) {
+  for_each_photons(grid, place, cells, [&](size_t at, LaneMask within) {
     for (int i = 0; i < lane_count; i++)
       if (within[i]) visit(grid.photon(at + size_t(i)));
   });

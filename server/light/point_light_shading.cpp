@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "light/emission.h"
-#include "light/pane_boxes.h"
 #include "light/walk.h"
 
 namespace wellspring {
@@ -184,7 +183,7 @@ vec3 through_panes(const Transport& transport, const Group& group, const PointLi
   ray.origin = origin;
   ray.direction = way;
   ray.t_max = seen.rays.t_max[i];
-  if (!may_cross_pane(transport.tables, ray)) return vec3(0);
+  if (!may_cross_pane(transport.tables.pane_boxes, ray)) return vec3(0);
   LightSample sample;
   sample.direction = normalize(way);
   if (std::isfinite(seen.rays.t_max[i])) {

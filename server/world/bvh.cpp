@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "world/bvh_impl.h"
+#include "world/slab.h"
 
 namespace wellspring {
 namespace {
@@ -45,13 +46,9 @@ float half_area(const Bounds& box) {
 bool meets(const Bounds& box, const Ray& ray, float t_max) {
   if (!(box.low.x <= box.high.x)) return false;  // nothing moves, or all is hidden
   vec3 inverse = 1.0f / ray.direction;
-  vec3 a = (box.low - ray.origin) * inverse, b = (box.high - ray.origin) * inverse;
   float near = ray.t_min, far = t_max;
-  for (int i = 0; i < 3; i++) {
-    // fmin and fmax skip the NaN of a ray lying in a slab's plane.
-    near = std::fmax(near, std::fmin(a[i], b[i]));
-    far = std::fmin(far, std::fmax(a[i], b[i]));
-  }
+  for (int i = 0; i < 3; i++)
+    cut_by_slab(box.low[i], box.high[i], ray.origin[i], inverse[i], near, far);
   return near <= far * 1.00001f;
 }
 

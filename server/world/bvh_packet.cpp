@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "world/bvh_impl.h"
+#include "world/slab.h"
 
 namespace wellspring {
 namespace {
@@ -37,13 +38,8 @@ uint32_t meeting(const Bounds& box, const RayPacket& p, uint32_t active) {
   float near[RayPacket::lanes], far[RayPacket::lanes];
   for (int i = 0; i < RayPacket::lanes; i++) near[i] = 0, far[i] = p.t_max[i];
   auto cut = [&](const float* origin, const float* direction, float low, float high) {
-    for (int i = 0; i < RayPacket::lanes; i++) {
-      float inverse = 1 / direction[i];
-      float a = (low - origin[i]) * inverse, b = (high - origin[i]) * inverse;
-      // fmin and fmax skip the NaN of a ray lying in a slab's plane.
-      near[i] = std::fmax(near[i], std::fmin(a, b));
-      far[i] = std::fmin(far[i], std::fmax(a, b));
-    }
+    for (int i = 0; i < RayPacket::lanes; i++)
+      cut_by_slab(low, high, origin[i], 1 / direction[i], near[i], far[i]);
   };
   cut(p.origin_x, p.direction_x, box.low.x, box.high.x);
   cut(p.origin_y, p.direction_y, box.low.y, box.high.y);

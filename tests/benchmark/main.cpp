@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
       {"cache.display", bench_cache_display}, {"cache.visit", bench_cache_visit},
       {"light.frame", bench_light_frame}, {"light.scaling", bench_light_scaling},
       {"light.error", bench_light_error}, {"light.rays", bench_light_rays},
-      {"light.cycles", bench_light_cycles}, {"light.caustics", bench_light_photons}};
+      {"light.cycles", bench_light_cycles}, {"light.photons", bench_light_photons}};
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only, "one part: stream, cache, light (or one of its own: light.error ...), avatar");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
