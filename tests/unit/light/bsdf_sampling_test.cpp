@@ -137,9 +137,10 @@ TEST(BsdfSampling, IsReciprocalButForLayersAndBrushing) {
           double off = std::abs(f - g) / std::max(f, g);
           compared++;
           if (m.anisotropy > 0) brushed = std::max(brushed, std::abs(f - g));
-          if (!layered && m.anisotropy == 0)
+          if (!layered && m.anisotropy == 0) {
             EXPECT_LE(off, 2e-3) << c.name << " from " << from << " to " << to << ": " << f << " "
                                  << g;
+          }
         }
       // Brushed: of what a white Lambertian surface scatters into each direction.
       EXPECT_LE(brushed * double(pi), 1) << c.name;

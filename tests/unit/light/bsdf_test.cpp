@@ -111,7 +111,9 @@ TEST(Bsdf, PaneAgreesWithItsTransmittance) {
   for (int i = 0; i < 40000; i++) {
     BsdfSample sample = sample_bsdf(bsdf, Lobes::all, sampler);
     bool pass = sample.bounce == Bounce::pass;
-    if (pass) EXPECT_NEAR(dot(sample.direction, direction), 1, 1e-5f);
+    if (pass) {
+      EXPECT_NEAR(dot(sample.direction, direction), 1, 1e-5f);
+    }
     passed.add(pass ? double(sample.weight.y) : 0);
   }
   expect_mean(passed, double(pane_transmittance(s, m, direction).y), "pane");

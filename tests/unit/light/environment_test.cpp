@@ -61,7 +61,9 @@ void expect_sampled(const EnvironmentLight& sky, const char* what, int fine = 96
       double pdf = double(sample_environment_pdf(sky, d));
       expected[size_t(row / fine * columns + column / fine)] += pdf * solid * count;
       double radiance = double(luminance(eval_environment(sky, d)));
-      if (radiance > 0) ASSERT_GT(pdf, 0) << what << ": light that is never found";
+      if (radiance > 0) {
+        ASSERT_GT(pdf, 0) << what << ": light that is never found";
+      }
       exact += radiance * solid;
     }
   // The density is the same all over a cell of the grid: its integral is a sum over cells.

@@ -44,7 +44,9 @@ void expect_dark_and_finite(const Scene& scene, const View& view, const char* wh
   Frame frame = render_still(instant(), world, lights, view, settings);
   for (vec3 c : frame.color) {
     ASSERT_TRUE(is_finite(c)) << what;
-    if (dark) ASSERT_EQ(c, vec3(0)) << what;
+    if (dark) {
+      ASSERT_EQ(c, vec3(0)) << what;
+    }
   }
   EXPECT_EQ(lights.bad_samples->load(), 0u) << what;
 }

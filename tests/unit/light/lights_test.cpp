@@ -54,7 +54,9 @@ TEST(AliasTable, PicksInProportion) {
     double w = weights[i] > 0 ? double(weights[i]) : 0;
     expected.push_back(w / 19.25 * count);
     EXPECT_NEAR(table.cells[i].probability, w / 19.25, 1e-6);
-    if (w == 0) EXPECT_EQ(counts[i], 0) << i;
+    if (w == 0) {
+      EXPECT_EQ(counts[i], 0) << i;
+    }
   }
   expect_chi_squared(counts, expected, "alias table");
   expect_mean(left, 0.5, "what is left of the number");
