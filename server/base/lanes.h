@@ -14,6 +14,7 @@ namespace wellspring {
 inline constexpr int lane_count = 8;
 using Lanes = float __attribute__((vector_size(4 * lane_count)));
 using LaneMask = int __attribute__((vector_size(4 * lane_count)));
+using LaneBits = uint32_t __attribute__((vector_size(4 * lane_count)));
 
 inline Lanes all_lanes(float x) { return Lanes{x, x, x, x, x, x, x, x}; }
 inline Lanes lanes_max(Lanes a, Lanes b) { return a > b ? a : b; }
@@ -35,6 +36,24 @@ inline Lanes load_lanes(const float* from) {
 }
 inline void store_lanes(float* to, Lanes a) { std::memcpy(to, &a, sizeof a); }
 inline void store_lanes(int32_t* to, LaneMask a) { std::memcpy(to, &a, sizeof a); }
+// Eight rows become eight columns.
+inline void transpose_lanes(Lanes (&row)[lane_count]) {
+  Lanes pair[lane_count], four[lane_count];
+  for (int i = 0; i < lane_count; i += 2) {
+    pair[i] = __builtin_shufflevector(row[i], row[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    pair[i + 1] = __builtin_shufflevector(row[i], row[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  for (int i = 0; i < lane_count; i += 4)
+    for (int k = 0; k < 2; k++) {
+      Lanes a = pair[i + k], b = pair[i + k + 2];
+      four[i + 2 * k] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+      four[i + 2 * k + 1] = __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int i = 0; i < 4; i++) {
+    row[i] = __builtin_shufflevector(four[i], four[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    row[i + 4] = __builtin_shufflevector(four[i], four[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
 // To the nearest whole number, as std::lrint does.
 inline LaneMask round_lanes(Lanes a) {
 #ifdef __AVX__

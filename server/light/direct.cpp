@@ -6,12 +6,20 @@
 
 namespace wellspring {
 
-Sample trace_direct(const World& world, const Lights& lights, const TransportSettings& settings,
-                    const Request& request) {
+void trace_many_direct(const World& world, const Lights& lights, const TransportSettings& settings,
+                       std::span<const Request> requests, std::span<Sample> samples) {
   WalkRules rules;
   rules.max_depth = settings.max_depth;
   rules.scatterings = 1;
-  return finish_sample(lights, settings, trace_sample({world, *lights.tables}, rules, request));
+  trace_samples({world, *lights.tables}, rules, requests, samples);
+  for (Sample& sample : samples) sample = finish_sample(lights, settings, sample);
+}
+
+Sample trace_direct(const World& world, const Lights& lights, const TransportSettings& settings,
+                    const Request& request) {
+  Sample sample;
+  trace_many_direct(world, lights, settings, std::span(&request, 1), std::span(&sample, 1));
+  return sample;
 }
 
 }  // namespace wellspring

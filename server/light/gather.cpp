@@ -8,11 +8,19 @@
 
 namespace wellspring {
 
-Sample trace_gather(const World& world, const Lights& lights, const TransportSettings& settings,
-                    const Request& request) {
+void trace_many_gather(const World& world, const Lights& lights, const TransportSettings& settings,
+                       std::span<const Request> requests, std::span<Sample> samples) {
   WalkRules rules;
   rules.max_depth = settings.max_depth;
-  return finish_sample(lights, settings, trace_sample({world, *lights.tables, lights.grid.get()}, rules, request));
+  trace_samples({world, *lights.tables, lights.grid.get()}, rules, requests, samples);
+  for (Sample& sample : samples) sample = finish_sample(lights, settings, sample);
+}
+
+Sample trace_gather(const World& world, const Lights& lights, const TransportSettings& settings,
+                    const Request& request) {
+  Sample sample;
+  trace_many_gather(world, lights, settings, std::span(&request, 1), std::span(&sample, 1));
+  return sample;
 }
 
 void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights) {

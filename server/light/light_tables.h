@@ -61,6 +61,7 @@ struct LightTables {
   EmissionChoice emission;  // of techniques that follow light from its sources
   std::vector<CasterSphere> casters;  // of caustics, that stand still
   std::vector<MaterialTraits> materials;
+  bool any_matt = false;   // else no sample asks whether it may take the shortest way
   bool any_pane = false;   // else shadow rays only ask whether anything is in between
   PaneBoxes pane_boxes;  // and elsewhere than in these, too
   bool any_solid = false;  // else walks do not ask what they run in

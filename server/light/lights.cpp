@@ -196,6 +196,7 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
             ? &dielectric_albedo(m.ior, m.transmission > 0 && m.thickness > 0)
             : nullptr;
     tables->materials.push_back({albedo, plan.materials[i].pane, is_matt(m)});
+    tables->any_matt |= plan.materials[i].visible && is_matt(m);
   }
   tables->casters = find_casters(world, plan, false);
   tables->any_pane = plan.uses(panes);

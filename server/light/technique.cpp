@@ -13,12 +13,14 @@ namespace wellspring {
 namespace {
 
 constexpr Technique list[] = {
-    {"path", "unbiased path tracing: all light, the reference", trace_path},
-    {"direct", "emission, direct light and chains of perfect mirrors and glass", trace_direct},
+    {"path", "unbiased path tracing: all light, the reference", trace_path, nullptr, nullptr,
+     nullptr, trace_many_path},
+    {"direct", "emission, direct light and chains of perfect mirrors and glass", trace_direct, nullptr,
+     nullptr, nullptr, trace_many_direct},
     {"gather",
      "path to the first rough surface beyond the eye's, kept light from there: quick, a little "
      "biased",
-     trace_gather, prepare_gather},
+     trace_gather, prepare_gather, nullptr, nullptr, trace_many_gather},
     {"instant_radiosity",
      "point lights along paths of light, neighbours filtered together: quick, right after many passes",
      trace_instant, nullptr, begin_instant, finish_instant, trace_many_instant},
@@ -26,6 +28,8 @@ constexpr Technique list[] = {
 
 // Pixels a side of what trace_many gets at once: neighbours, in the same cache.
 constexpr int pass_tile = 24;
+// Samples of a tile that it gets at once elsewhere: few enough to stay in a core's cache.
+constexpr size_t most_at_once = 256;
 
 bool is_light(vec3 c) {  // NaN is not
   constexpr float most = std::numeric_limits<float>::max();
@@ -62,7 +66,7 @@ void trace(const Technique& technique, const World& world, const Lights& lights,
            const TransportSettings& settings, std::span<const Request> requests,
            std::span<Sample> samples) {
   if (requests.size() != samples.size()) throw std::invalid_argument("trace: one sample a request");
-  parallel_ranges(int(requests.size()), technique.trace_many ? 512 : 64, [&](int begin, int end) {
+  parallel_ranges(int(requests.size()), technique.begin_pass ? 512 : 64, [&](int begin, int end) {
     if (technique.trace_many)
       return technique.trace_many(world, lights, settings,
                                   requests.subspan(size_t(begin), size_t(end - begin)),
@@ -176,13 +180,22 @@ Frame render_still(const Technique& technique, const World& world, const Lights&
     render_passes(technique, world, lights, view, settings, sums);
   } else {
     for_each_tile(view, 16, [&](int left, int top, int right, int bottom) {
+      std::vector<Request> requests;
+      std::vector<Sample> samples;
+      auto answer = [&] {
+        samples.resize(requests.size());
+        trace_tile(technique, world, lights, settings.transport, requests, samples);
+        for (size_t k = 0; k < requests.size(); k++)
+          add_sample(view, requests[k], samples[k], sums);
+        requests.clear();
+      };
       for (int y = top; y < bottom; y++)
         for (int x = left; x < right; x++)
           for (int i = 0; i < settings.spp; i++) {
-            Request request = pixel_request(view, settings.seed, x, y, i);
-            add_sample(view, request, technique.trace(world, lights, settings.transport, request),
-                       sums);
+            requests.push_back(pixel_request(view, settings.seed, x, y, i));
+            if (requests.size() == most_at_once) answer();
           }
+      answer();
     });
   }
   for (size_t pixel = 0; pixel < pixels; pixel++)

@@ -8,10 +8,16 @@ namespace wellspring {
 
 Sample trace_path(const World& world, const Lights& lights, const TransportSettings& settings,
                   const Request& request);
+void trace_many_path(const World& world, const Lights& lights, const TransportSettings& settings,
+                     std::span<const Request> requests, std::span<Sample> samples);
 Sample trace_direct(const World& world, const Lights& lights, const TransportSettings& settings,
                     const Request& request);
+void trace_many_direct(const World& world, const Lights& lights, const TransportSettings& settings,
+                       std::span<const Request> requests, std::span<Sample> samples);
 Sample trace_gather(const World& world, const Lights& lights, const TransportSettings& settings,
                     const Request& request);
+void trace_many_gather(const World& world, const Lights& lights, const TransportSettings& settings,
+                       std::span<const Request> requests, std::span<Sample> samples);
 void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights);
 Sample trace_instant(const World& world, const Lights& lights, const TransportSettings& settings,
                      const Request& request);

@@ -91,11 +91,15 @@ void shade_first_matt(const Transport& transport, const WalkRules& rules, Walk& 
 }  // namespace
 
 Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request) {
+  if (rules.max_depth < 1) return {};
+  return trace_sample(transport, rules, request, transport.world.intersect(request.ray));
+}
+
+Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request,
+                    const Hit& hit) {
   Sampler sampler(request.seed, request.index);
   Sample sample;
-  if (rules.max_depth < 1) return sample;
   Walk walk = begin_walk(transport, request);
-  Hit hit = transport.world.intersect(walk.ray);
   if (!hit.valid()) {
     describe_sky(transport, walk.ray.direction, vec3(1), sample);
     return sample;

@@ -12,8 +12,7 @@
 namespace wellspring {
 namespace {
 
-constexpr int roulette_depth = 2;   // edges that are never cut short
-constexpr int mirrored_depth = 12;  // nor are chains of perfect mirrors and glass up to this length
+constexpr int mirrored_depth = 12;  // chains of perfect mirrors and glass that are never cut short
 
 // Russian roulette: survivors carry the share of those that stop. False: this one stops.
 bool survives(Walk& walk, Sampler& sampler) {
@@ -204,11 +203,15 @@ bool scatter_matt(const Transport& transport, const WalkRules& rules, Walk& walk
 }  // namespace
 
 vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler) {
+  return follow(transport, rules, walk, transport.world.intersect(walk.ray), sampler);
+}
+
+vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit hit,
+            Sampler& sampler) {
   const World& world = transport.world;
   vec3 radiance(0);
   const uint32_t block = sampler.drawn;
-  for (uint32_t base = block;; base += Dimensions::surface) {
-    Hit hit = world.intersect(walk.ray);
+  for (uint32_t base = block;; base += Dimensions::surface, hit = world.intersect(walk.ray)) {
     if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
     vec3 kept;
     if (transport.grid && walk.pdf > 0 && walk.media.here.count == 0 &&

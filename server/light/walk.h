@@ -32,8 +32,13 @@ struct Walk {
   Wavelengths wavelengths;  // once it has met something dispersive
 };
 
+inline constexpr int roulette_depth = 2;  // edges that Russian roulette never cuts short
+
 // Radiance that comes back along the walk, times its throughput.
 vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler);
+// The same where what the walk's ray meets first is known.
+vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit hit,
+            Sampler& sampler);
 
 // Emission met by the walk's ray, weighted against the chance that light sampling had found it
 // where the ray left.
@@ -88,7 +93,13 @@ inline bool met_matt(const Transport& transport, const Hit& hit) {
   return transport.tables.materials[size_t(transport.world.mesh_of(hit.instance).material)].matt;
 }
 
-// The whole of a sample: what trace functions of techniques call.
+// The whole of each sample: what trace functions of techniques call. A sample is the same alone and
+// among others.
+void trace_samples(const Transport& transport, const WalkRules& rules,
+                   std::span<const Request> requests, std::span<Sample> samples);
+// One sample by the way that knows all materials, where trace_samples has none quicker.
 Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request);
+Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request,
+                    const Hit& first_hit);
 
 }  // namespace wellspring

@@ -55,6 +55,7 @@ bool meets(const Bounds& box, const Ray& ray, float t_max) {
 }  // namespace
 
 uint64_t rays_traced() { return traced; }
+void count_rays(uint64_t more) { traced += more; }
 
 void World::Impl::update_moving_bounds() {
   moving_bounds = Bounds();

@@ -115,6 +115,10 @@ class World {
   // Bit i of the answer: occluded(ray i), for the rays whose bit is set in `active`. Pays where rays
   // from neighbouring places go to one light: measured 2.8 times as fast as one by one.
   uint32_t occluded_packet(const RayPacket& rays, uint32_t active) const;
+  // One by one: intersect() and occluded() of the rays whose bit is set in `active`, with less to do
+  // around each. Pays where rays have nothing in common. hits[i] is ray i's.
+  void intersect_each(const RayPacket& rays, uint32_t active, Hit* hits) const;
+  uint32_t occluded_each(const RayPacket& rays, uint32_t active) const;
   // Triangles that the unit direction `way` crosses between `before` metres before `place` and
   // `after` behind it (Hit::t from there); as wide as that they may pass beside it. At most `most`
   // of them, in no order; those nearly parallel to `way` do not count, nor does alpha.

@@ -12,6 +12,7 @@ namespace wellspring {
 
 // One device for the whole process, never released: its threads outlive every World.
 RTCDevice shared_device();
+void count_rays(uint64_t more);  // for rays_traced()
 Bounds box_of(const std::vector<vec3>& positions);
 
 struct World::Impl {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadow rays side by side. Each lane's answer is its own: what the other lanes hold does not matter.
+// Rays side by side. Each lane's answer is its own: what the other lanes hold does not matter.
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -100,6 +101,71 @@ uint32_t World::occluded_packet(const RayPacket& rays, uint32_t active) const {
   query.packet = &rays;
   for (unsigned i = 0; i < RayPacket::lanes; i++)
     if (active >> i & 1) blocked |= uint32_t(occluded(query.ray(i))) << i;
+  return blocked;
+}
+
+namespace {
+
+RTCRay lone_ray() {
+  RTCRay r;
+  r.tnear = 0, r.time = 0, r.mask = ~0u, r.flags = 0;
+  return r;
+}
+
+inline void set_ray(const RayPacket& p, int i, RTCRay& r) {
+  r.org_x = p.origin_x[i], r.org_y = p.origin_y[i], r.org_z = p.origin_z[i];
+  r.dir_x = p.direction_x[i], r.dir_y = p.direction_y[i], r.dir_z = p.direction_z[i];
+  r.tfar = p.t_max[i], r.id = unsigned(i);
+}
+
+}  // namespace
+
+void World::intersect_each(const RayPacket& p, uint32_t active, Hit* hits) const {
+  const Impl& w = *impl_;
+  for (uint32_t bits = active; bits; bits &= bits - 1) hits[std::countr_zero(bits)] = Hit();
+  active = traceable(p, active);
+  uint32_t moving = w.any_moving ? meeting(w.moving_bounds, p, active) : 0;
+  Impl::Query query;
+  embree::init(query);
+  query.packet = &p;
+  RTCRayHit r;
+  r.ray = lone_ray();
+  auto ask = [&](RTCScene scene) {
+    r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    embree::intersect1(scene, query, r);
+  };
+  auto hit = [&](bool is_moving) {
+    return w.to_hit(r.hit.geomID, r.hit.instID[0], r.hit.primID, r.hit.u, r.hit.v, r.ray.tfar,
+                    is_moving);
+  };
+  for (uint32_t bits = active; bits; bits &= bits - 1) {
+    int i = std::countr_zero(bits);
+    set_ray(p, i, r.ray);
+    ask(w.still_scene);
+    hits[i] = hit(false);
+    if (!(moving >> i & 1)) continue;
+    ask(w.moving_scene);
+    if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) hits[i] = hit(true);
+  }
+  count_rays(uint64_t(std::popcount(active)));
+}
+
+uint32_t World::occluded_each(const RayPacket& p, uint32_t active) const {
+  const Impl& w = *impl_;
+  active = traceable(p, active);
+  uint32_t moving = w.any_moving ? meeting(w.moving_bounds, p, active) : 0, blocked = 0;
+  Impl::Query query;
+  embree::init(query);
+  query.packet = &p;
+  RTCRay r = lone_ray();
+  for (uint32_t bits = active; bits; bits &= bits - 1) {
+    int i = std::countr_zero(bits);
+    set_ray(p, i, r);
+    embree::occluded1(w.still_scene, query, r);
+    if (!(r.tfar < 0) && (moving >> i & 1)) embree::occluded1(w.moving_scene, query, r);
+    blocked |= uint32_t(r.tfar < 0) << i;
+  }
+  count_rays(uint64_t(std::popcount(active)));
   return blocked;
 }
 

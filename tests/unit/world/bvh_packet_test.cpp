@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadow rays side by side say what each of them says alone.
+// Rays side by side say what each of them says alone.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ TEST(RayPacket, AnswersAreThoseOfSingleRays) {
   World world(scene, {ball}, {uint32_t(scene.objects.size() - 1)});
   world.commit();
   Rng rng(11);
-  int blocked_rays = 0, clear_rays = 0;
+  int blocked_rays = 0, clear_rays = 0, moving_hits = 0;
   for (int round = 0; round < 4000; round++) {
     RayPacket packet{};
     Ray rays[RayPacket::lanes];
@@ -43,6 +43,25 @@ TEST(RayPacket, AnswersAreThoseOfSingleRays) {
       packet.t_max[i] = rays[i].t_max;
     }
     uint32_t blocked = world.occluded_packet(packet, active);
+    EXPECT_EQ(world.occluded_each(packet, active), blocked) << round;
+    Hit hits[RayPacket::lanes];
+    hits[5].triangle = 77;
+    uint64_t before = rays_traced();
+    world.intersect_each(packet, active, hits);
+    uint64_t counted = rays_traced() - before;
+    for (int i = 0; i < RayPacket::lanes; i++) {
+      if (!(active >> i & 1)) continue;
+      Hit alone = world.intersect(rays[i]);
+      ASSERT_EQ(hits[i].instance, alone.instance) << round << ", lane " << i;
+      ASSERT_EQ(hits[i].triangle, alone.triangle);
+      ASSERT_EQ(hits[i].t, alone.t);
+      ASSERT_EQ(hits[i].barycentric, alone.barycentric);
+      moving_hits += alone.valid() && world.is_moving(alone.instance);
+    }
+    EXPECT_EQ(rays_traced() - before, 2 * counted);
+    if (!(active >> 5 & 1)) {
+      EXPECT_EQ(hits[5].triangle, 77u);
+    }
     for (int i = 0; i < RayPacket::lanes; i++) {
       bool expected = (active >> i & 1) && world.occluded(rays[i]);
       ASSERT_EQ(bool(blocked >> i & 1), expected) << round << ", lane " << i;
@@ -51,4 +70,5 @@ TEST(RayPacket, AnswersAreThoseOfSingleRays) {
   }
   EXPECT_GT(blocked_rays, 5000);
   EXPECT_GT(clear_rays, 5000);
+  EXPECT_GT(moving_hits, 1000);
 }
