@@ -16,12 +16,6 @@ size_t padded(int width, int height) {
   return size_t(columns + 2 * cell_pad) * size_t(rows + 2 * cell_pad) + cell_run;
 }
 
-f8 square_root(const f8& v) {
-  f8 root;
-  for (int i = 0; i < lanes; i++) root[i] = std::sqrt(v[i]);
-  return root;
-}
-
 struct Vec {
   f8 x{}, y{}, z{};
 };

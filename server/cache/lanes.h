@@ -2,8 +2,12 @@
 // Eight pixels (or cells) at a time, written once for every processor: vector types of GCC and
 // Clang. Comparisons give lanes of all bits or none; `mask ? a : b` chooses lane by lane.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 namespace wellspring {
 
@@ -90,6 +94,34 @@ inline void unpack_octahedron(const u8& p, f8& x, f8& y, f8& z) {
 }
 inline f8 unpack_deviation(const u8& p) {
   return keep(p != 0u, as<f8>((p + ((127 - 11) << 4)) << 19));
+}
+// Packing likewise, of what is finite.
+inline f8 square_root(const f8& v) {
+#ifdef __AVX__
+  return as<f8>(_mm256_sqrt_ps(__m256(v)));
+#else
+  f8 root;
+  for (int i = 0; i < lanes; i++) root[i] = std::sqrt(v[i]);
+  return root;
+#endif
+}
+inline u8 to_whole(const f8& v) { return as<u8>(__builtin_convertvector(v, i8)); }
+inline u8 pack_albedo(const f8& r, const f8& g, const f8& b) {
+  auto level = [](const f8& v, float steps) {
+    return to_whole(square_root(smaller(positive(v), splat(1))) * steps + 0.5f);
+  };
+  return level(r, 2047) | level(g, 2047) << 11 | level(b, 1023) << 22;
+}
+inline u8 pack_normal(const f8& nx, const f8& ny, const f8& nz) {
+  f8 share = 1.0f / larger(magnitude(nx) + magnitude(ny) + magnitude(nz), splat(1e-30f));
+  f8 x = nx * share, y = ny * share;
+  f8 fx = 1.0f - magnitude(y), fy = 1.0f - magnitude(x);
+  i8 below = nz < 0.0f;
+  f8 ox = below ? (x >= 0.0f ? fx : -fx) : x, oy = below ? (y >= 0.0f ? fy : -fy) : y;
+  auto level = [](const f8& v) {
+    return to_whole(smaller(larger(v * 127.0f + 127.5f, f8{}), splat(254)));
+  };
+  return level(ox) | level(oy) << 8;
 }
 inline f8 luminance(const f8& r, const f8& g, const f8& b) {
   return 0.2126f * r + 0.7152f * g + 0.0722f * b;

@@ -5,54 +5,110 @@
 #include <bit>
 #include <cmath>
 
+#include "cache/lanes.h"
 #include "cache/packing.h"
 #include "cache/pixel_light.h"
 
 namespace wellspring {
 namespace {
 
-bool is_same(const SightRun& run, int i, uint32_t object, float depth) {
-  if (object != run.object[i]) return false;
-  bool far = !(run.depth[i] < infinite_depth), was_far = !(depth < 0.5f * infinite_depth);
-  if (far || was_far) return far && was_far;
-  return std::abs(depth - run.depth[i]) <= plane_tolerance * run.depth[i];
+// Up to eight neighbours in memory; the rest is 0.
+template <class V, class T>
+V load_some(const T* from, int count) {
+  if (count >= lanes) return load<V>(from);
+  V v{};
+  std::memcpy(&v, from, size_t(count) * sizeof(uint32_t));
+  return v;
 }
+unsigned bits_of(const i8& mask) {
+  unsigned bits = 0;
+  for (int i = 0; i < lanes; i++) bits |= unsigned(mask[i] & 1) << i;
+  return bits;
+}
+i8 mask_of(unsigned bits) { return (i8{1, 2, 4, 8, 16, 32, 64, 128} & int32_t(bits)) != 0; }
+
+// Words of a plane, kept where the mask says so; `x` is where pixels of a run begin.
+void put(Frame& frame, int x, int y, SurfacePlane plane, const u8& words, unsigned bits) {
+  for (; bits != 0; bits &= bits - 1) {
+    int i = std::countr_zero(bits);
+    packed_word(frame, x + i, y, plane) = words[i];
+  }
+}
+
+// Eight pixels that the points and the drawing tell of.
+struct Verdict {
+  i8 same;     // both show the same surface
+  i8 guessed;  // the points only know it from neighbours
+};
+Verdict judge(const Frame& frame, size_t at, const SightRun& run, int i) {
+  int count = std::min(run.count - i, lanes);
+  u8 object = load_some<u8>(&frame.object[at], count),
+     more = load_some<u8>(&frame.confidence[at], count);
+  f8 depth = load_some<f8>(&frame.depth[at], count), drawn = load_some<f8>(run.depth + i, count);
+  i8 there = drawn < std::numeric_limits<float>::infinity(), was = depth < 0.5f * infinite_depth;
+  i8 near = magnitude(depth - drawn) <= plane_tolerance * drawn;
+  return {(object == load_some<u8>(run.object + i, count)) &
+              ((there & was & near) | (~there & ~was)),
+          ((more >> 16) & 255u) == 0u};
+}
+
+uint32_t all_of(int count) { return count >= lanes ? 255u : (1u << count) - 1; }
 
 }  // namespace
 
 int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, Frame& frame) {
   std::atomic<int64_t> others = 0;
   sight.see(view, vec2(0.5f), [&](const SightRun& run) {
-    uint64_t same = 0, guessed = 0;
+    uint64_t wrong = 0, guessed = 0;
     size_t row = size_t(run.y) * size_t(frame.width) + size_t(run.x);
-    for (int i = 0; i < run.count; i++) {
-      uint32_t more = std::bit_cast<uint32_t>(frame.confidence[row + size_t(i)]);
-      same |= uint64_t(is_same(run, i, frame.object[row + size_t(i)], frame.depth[row + size_t(i)]))
-              << i;
-      guessed |= uint64_t((more >> 16 & 255) == 0) << i;
+    for (int i = 0; i < run.count; i += lanes) {
+      Verdict verdict = judge(frame, row + size_t(i), run, i);
+      unsigned all = all_of(run.count - i);
+      wrong |= uint64_t(bits_of(~verdict.same) & all) << i;
+      guessed |= uint64_t(bits_of(verdict.guessed) & all) << i;
     }
-    uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
-    uint64_t wrong = ~same & all;
     for (uint64_t rest = still ? wrong : 0; rest != 0; rest &= rest - 1) {
       int i = std::countr_zero(rest);
       if (!sight.moves(run.object[i]) && !sight.moves(frame.object[row + size_t(i)]))
         wrong &= ~(uint64_t(1) << i);
     }
-    uint64_t wanted = wrong | (guessed & all);
+    uint64_t wanted = wrong | guessed;
     if (!wanted) return;
-    RunReflectance reflectance;
-    run.reflect(wanted, reflectance);
-    int64_t others_here = 0;
-    for (; wanted != 0; wanted &= wanted - 1) {
-      int i = std::countr_zero(wanted);
+    others += std::popcount(wrong);
+    RunSurface surface;
+    uint64_t alone = run.describe(wanted, surface);
+    for (int i = 0; i < run.count; i += lanes) {
+      unsigned told = unsigned((wanted & ~alone) >> i & 255),
+               lost = unsigned((wrong & ~alone) >> i & 255);
+      if (!told) continue;
+      int x = run.x + i, count = std::min(run.count - i, lanes);
       size_t at = row + size_t(i);
-      int x = run.x + i;
-      packed_word(frame, x, run.y, plane_albedo) =
-          pack_albedo({reflectance.red[i], reflectance.green[i], reflectance.blue[i]});
+      u8 albedo = pack_albedo(load<f8>(surface.red + i), load<f8>(surface.green + i),
+                              load<f8>(surface.blue + i));
+      put(frame, x, run.y, plane_albedo, albedo, told);
+      f8 depth = mask_of(told) ? load_some<f8>(run.depth + i, count)
+                               : load_some<f8>(&frame.depth[at], count);
+      std::memcpy(&frame.depth[at], &depth, size_t(count) * sizeof(float));
+      if (!lost) continue;  // the light of its neighbours will do
+      i8 mask = mask_of(lost);
+      u8 object = mask ? load_some<u8>(run.object + i, count)
+                       : load_some<u8>(&frame.object[at], count);
+      std::memcpy(&frame.object[at], &object, size_t(count) * sizeof(uint32_t));
+      u8 normal = pack_normal(load<f8>(surface.nx + i), load<f8>(surface.ny + i),
+                              load<f8>(surface.nz + i));
+      u8 more = mask ? normal | uint32_t(blind_deviation) << 24
+                     : load_some<u8>(&frame.confidence[at], count);
+      std::memcpy(&frame.confidence[at], &more, size_t(count) * sizeof(uint32_t));
+      put(frame, x, run.y, plane_rest, u8{}, lost);
+      put(frame, x, run.y, plane_smooth, u8{}, lost);
+    }
+    for (; alone != 0; alone &= alone - 1) {
+      int i = std::countr_zero(alone), x = run.x + i;
+      size_t at = row + size_t(i);
+      Seen seen = run.see(i);
+      packed_word(frame, x, run.y, plane_albedo) = pack_albedo(seen.albedo);
       frame.depth[at] = std::min(run.depth[i], infinite_depth);
-      if (same >> i & 1) continue;  // the light of its neighbours will do
-      others_here++;
-      Seen seen = run.see(i, false);
+      if (!(wrong >> i & 1)) continue;
       frame.object[at] = run.object[i];
       bool shines = !seen.scatters || seen.glow != vec3(0);
       packed_word(frame, x, run.y, plane_rest) = pack_rgb9e5(seen.glow);
@@ -62,7 +118,6 @@ int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, F
           pack_normal(seen.normal) | (shines ? 255u << 16 : uint32_t(blind_deviation) << 24);
       frame.confidence[at] = std::bit_cast<float>(more);
     }
-    others += others_here;
   });
   return others;
 }

@@ -2,11 +2,13 @@
 #include "light/see_picture.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "base/parallel.h"
+#include "light/facet.h"
 #include "light/first_surface.h"
 #include "world/texture_pyramid.h"
 
@@ -46,43 +48,6 @@ uint8_t pane_kind(const Material& m) {
   return alike ? 1 : 2;
 }
 
-// The last triangle of a run: neighbours mostly share it.
-struct Facet {
-  uint32_t instance = 0xffffffffu, triangle = 0;
-  const PlacedMesh* placed = nullptr;
-  const Material* material = nullptr;
-  uvec3 corner{0};
-  vec3 normal[3];  // world, not unit
-  vec3 face{0};    // geometric, on the winding's side
-  bool one_normal = false;
-  float root_area = 0;         // of the face, metres
-  float uv_width[2] = {0, 0};  // of each set: root of the face's area in it
-};
-
-void load_facet(const World& world, const Hit& hit, Facet& f) {
-  if (f.instance == hit.instance && f.triangle == hit.triangle) return;
-  f.instance = hit.instance;
-  f.triangle = hit.triangle;
-  f.placed = &world.placed(hit.instance);
-  f.material = f.placed->material;
-  const Mesh& mesh = *f.placed->mesh;
-  f.corner = mesh.triangles[hit.triangle];
-  float area = 0;
-  f.face = eval_face(world, hit.instance, hit.triangle, &area);
-  f.root_area = std::sqrt(area);
-  for (int set = 0; set < 2; set++) {
-    const std::vector<vec2>& uv = mesh.uv[set];
-    if (uv.empty()) continue;
-    vec2 a = uv[f.corner.y] - uv[f.corner.x], b = uv[f.corner.z] - uv[f.corner.x];
-    f.uv_width[set] = std::sqrt(0.5f * std::abs(a.x * b.y - a.y * b.x));
-  }
-  for (int k = 0; k < 3; k++) {
-    vec3 n = mesh.normals[f.corner[k]];
-    f.normal[k] = f.placed->in_place ? n : f.placed->normal_to_world * n;
-  }
-  f.one_normal = f.normal[0] == f.normal[1] && f.normal[0] == f.normal[2];
-}
-
 template <class T>
 T mix3(const T& a, const T& b, const T& c, vec3 w) {
   return a * w.x + b * w.y + c * w.z;
@@ -108,73 +73,64 @@ Pictures make_pictures(const Scene& scene) {
   return pictures;
 }
 
-// A pixel's width in metres on the surface it sees: the root of its area there.
-float pixel_width(const Facet& f, float distance, vec3 direction, float pixel_angle) {
-  return distance * pixel_angle / std::sqrt(std::max(std::abs(dot(f.face, direction)), 0.02f));
+// A pixel's width in metres on the surface it sees: the root of its area there. `direction` leads to
+// it at depth 1.
+float pixel_width(const Facet& f, float depth, vec3 direction, float pixel_angle) {
+  float length = std::sqrt(dot(direction, direction));
+  float cosine = std::abs(dot(f.face, direction)) / length;
+  return depth * length * pixel_angle / std::sqrt(std::max(cosine, 0.02f));
 }
 
-// The same in texels of a picture.
-float footprint_texels(const Pictures& pictures, const Facet& f, const TextureRef& reference,
-                       float width) {
-  const Scene& scene = *pictures.scene;
-  const Image& image = scene.images[size_t(scene.textures[size_t(reference.texture)].image)];
-  const mat3& t = reference.uv_transform;
-  float texels =
-      std::abs(t[0].x * t[1].y - t[0].y * t[1].x) * float(image.width) * float(image.height);
-  return width * f.uv_width[reference.uv_set] * std::sqrt(texels) / std::max(f.root_area, 1e-20f);
-}
-
-vec3 read_picture(const Pictures& pictures, const Mesh& mesh, const Facet& f, vec3 weight,
-                  float pixel, const TextureRef& reference) {
-  const Scene& scene = *pictures.scene;
-  const Texture& texture = scene.textures[size_t(reference.texture)];
+vec3 read_picture(const Pictures& pictures, const FacetPicture& place, const TextureRef& reference,
+                  vec2 barycentric, float pixel) {
+  const Texture& texture = pictures.scene->textures[size_t(reference.texture)];
   if (texture.image < 0) return vec3(1);
-  const std::vector<vec2>& set = mesh.uv[reference.uv_set];
-  vec2 uv = set.empty() ? vec2(0) : mix3(set[f.corner.x], set[f.corner.y], set[f.corner.z], weight);
-  uv = vec2(reference.uv_transform * vec3(uv, 1));
-  const Image& image = scene.images[size_t(texture.image)];
-  float texels = footprint_texels(pictures, f, reference, pixel);
-  return eval_pyramid(image, pictures.pyramids[size_t(texture.image)], texture, uv, texels);
+  vec2 uv = place.corner + place.edge1 * barycentric.x + place.edge2 * barycentric.y;
+  if (!place.known) uv = vec2(reference.uv_transform * vec3(0, 0, 1));
+  size_t image = size_t(texture.image);
+  return eval_pyramid(pictures.scene->images[image], pictures.pyramids[image], texture, uv,
+                      pixel * place.texels);
 }
 
-Seen see_facet(const Pictures& pictures, const Facet& f, const Hit& hit, vec3 direction,
-               float pixel_angle, bool reflectance) {
+bool shines(const Facet& f) {
+  return (f.front || f.material->double_sided) && f.material->emission != vec3(0);
+}
+
+// `pixel`: its width on the surface, metres.
+Seen see_facet(const Pictures& pictures, const World& world, const Facet& f, const Hit& hit,
+               float pixel) {
   const Mesh& mesh = *f.placed->mesh;
   const Material& m = *f.material;
-  vec3 weight(1 - hit.barycentric.x - hit.barycentric.y, hit.barycentric.x, hit.barycentric.y);
+  vec2 at = hit.barycentric;
+  vec3 weight(1 - at.x - at.y, at.x, at.y);
   Seen seen;
   seen.distance = hit.t;
   seen.object = f.placed->object;
-  bool front = dot(f.face, direction) <= 0;
-  float pixel = pixel_width(f, hit.t, direction, pixel_angle);
   vec3 normal = f.one_normal ? f.normal[0] : mix3(f.normal[0], f.normal[1], f.normal[2], weight);
   float length2 = dot(normal, normal);
   normal = length2 > 1e-25f ? normal / std::sqrt(length2) : f.face;
-  seen.normal = front ? normal : -normal;
+  seen.normal = f.front ? normal : -normal;
   seen.scatters = !m.unlit;
-  bool shines = (front || m.double_sided) && m.emission != vec3(0);
-  if (!reflectance && !shines && !m.unlit) return seen;
   vec3 base = vec3(m.base_color);
   if (m.base_color_texture.texture >= 0)
-    base *= read_picture(pictures, mesh, f, weight, pixel, m.base_color_texture);
+    base *= read_picture(pictures, f.base, m.base_color_texture, at, pixel);
   if (!mesh.colors.empty())
     base *= vec3(
         mix3(mesh.colors[f.corner.x], mesh.colors[f.corner.y], mesh.colors[f.corner.z], weight));
   float metallic = m.metallic, roughness = m.roughness;
   if (m.metallic_roughness_texture.texture >= 0 && m.metallic > 0) {
-    vec3 t = read_picture(pictures, mesh, f, weight, pixel, m.metallic_roughness_texture);
+    vec3 t = read_picture(pictures, f.shine, m.metallic_roughness_texture, at, pixel);
     roughness *= t.y, metallic *= t.z;
   }
   if (seen.scatters) seen.albedo = kept_reflectance(base, metallic, roughness).albedo;
-  if (m.unlit || shines) {
+  if (m.unlit || shines(f)) {
     Surface surface;  // what surface_emission() reads
-    surface.front = front;
+    surface.front = f.front;
     surface.base_color = glm::max(base, vec3(0));
-    surface.emission = m.emission;
-    if (!(front || m.double_sided))
-      surface.emission = vec3(0);
-    else if (m.emission_texture.texture >= 0)
-      surface.emission *= read_picture(pictures, mesh, f, weight, pixel, m.emission_texture);
+    surface.emission = shines(f) ? m.emission : vec3(0);
+    if (shines(f) && m.emission_texture.texture >= 0)
+      surface.emission *= read_picture(pictures, place_picture(world, f, m.emission_texture),
+                                       m.emission_texture, at, pixel);
     seen.glow = surface_emission(surface, m);
   }
   return seen;
@@ -228,11 +184,22 @@ struct SightRun::Impl {
   const View& view;
   vec2 offset;
   float pixel_angle;
+  FacetCache& facets;
   const RasterRun* run = nullptr;
-  mutable Facet facet{};
-  Seen see(int i, bool reflectance = true) const;
-  bool read_lanes(const TextureRef& reference, int i, int middle, Lanes (&rgb)[3]) const;
-  void reflect(int begin, int end, RunReflectance& to) const;
+  // Towards pixel i, at depth 1.
+  vec3 direction(int i) const {
+    float x = float(run->x + i) + offset.x - 0.5f * float(view.width),
+          y = 0.5f * float(view.height) - float(run->y) - offset.y;
+    return view.forward + view.right * (x * pixel_angle) + view.up * (y * pixel_angle);
+  }
+  const Facet& facet(int i) const {
+    return facets.find(sight.world, run->instance[i], run->triangle[i], view.position);
+  }
+  Seen see(int i) const;
+  void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
+  bool read_lanes(const FacetPicture& place, const TextureRef& reference, int i, float width,
+                  Lanes (&rgb)[3]) const;
+  bool describe(int begin, int end, RunSurface& to) const;
 };
 
 // As kept_reflectance(), eight base colours at a time.
@@ -245,53 +212,69 @@ static void keep_lanes(Lanes metallic, Lanes roughness, Lanes (&rgb)[3]) {
   for (int k = 0; k < 3; k++) rgb[k] = diffuse ? matt[k] : soft ? metal[k] : all_lanes(0);
 }
 
-// Eight pixels of the facet from `i` on; false: they have to be looked up one by one.
-bool SightRun::Impl::read_lanes(const TextureRef& reference, int i, int middle,
-                                Lanes (&rgb)[3]) const {
-  const Scene& scene = *sight.pictures.scene;
-  const Texture& texture = scene.textures[size_t(reference.texture)];
+// Eight pixels of a facet from `i` on; false: they have to be looked up one by one.
+bool SightRun::Impl::read_lanes(const FacetPicture& place, const TextureRef& reference, int i,
+                                float width, Lanes (&rgb)[3]) const {
+  const Texture& texture = sight.pictures.scene->textures[size_t(reference.texture)];
   if (texture.image < 0) return true;
-  const std::vector<vec2>& set = facet.placed->mesh->uv[reference.uv_set];
-  if (set.empty()) return false;
-  const mat3& t = reference.uv_transform;
-  auto at = [&](uint32_t corner) { return vec2(t * vec3(set[corner], 1)); };
-  vec2 a = at(facet.corner.x), b = at(facet.corner.y) - a, c = at(facet.corner.z) - a;
+  if (!place.known) return false;
   Lanes u = load_lanes(run->u + i), v = load_lanes(run->v + i);
-  vec3 direction =
-      view_ray(view, float(run->x + middle) + offset.x, float(run->y) + offset.y).direction;
-  float width = pixel_width(facet, run->depth[middle], direction, pixel_angle);
   size_t image = size_t(texture.image);
-  return eval_pyramid(scene.images[image], sight.pictures.pyramids[image], texture,
-                      a.x + b.x * u + c.x * v, a.y + b.y * u + c.y * v,
-                      footprint_texels(sight.pictures, facet, reference, width), rgb);
+  return eval_pyramid(sight.pictures.scene->images[image], sight.pictures.pyramids[image], texture,
+                      place.corner.x + place.edge1.x * u + place.edge2.x * v,
+                      place.corner.y + place.edge1.y * u + place.edge2.y * v,
+                      width * place.texels, rgb);
 }
 
-// Pixels [begin, end) of a run, all of one triangle.
-void SightRun::Impl::reflect(int begin, int end, RunReflectance& to) const {
+void SightRun::Impl::describe_normals(const Facet& f, int begin, int end, RunSurface& to) const {
+  float side = f.front ? 1.0f : -1.0f;
+  vec3 a = f.normal[0] * side;
+  if (f.one_normal && dot(a, a) > 1e-25f) {
+    for (int i = begin; i < end; i += lane_count) {
+      store_lanes(to.nx + i, all_lanes(a.x));
+      store_lanes(to.ny + i, all_lanes(a.y));
+      store_lanes(to.nz + i, all_lanes(a.z));
+    }
+    return;
+  }
+  vec3 b = f.normal[1] * side - a, c = f.normal[2] * side - a, face = f.face * side;
+  for (int i = begin; i < end; i += lane_count) {
+    Lanes u = load_lanes(run->u + i), v = load_lanes(run->v + i);
+    Lanes x = a.x + b.x * u + c.x * v, y = a.y + b.y * u + c.y * v, z = a.z + b.z * u + c.z * v;
+    LaneMask some = x * x + y * y + z * z > 1e-25f;
+    store_lanes(to.nx + i, some ? x : all_lanes(face.x));
+    store_lanes(to.ny + i, some ? y : all_lanes(face.y));
+    store_lanes(to.nz + i, some ? z : all_lanes(face.z));
+  }
+}
+
+// Pixels [begin, end) of a run, all of one triangle. False: each has to be seen by itself.
+bool SightRun::Impl::describe(int begin, int end, RunSurface& to) const {
   const RasterRun& r = *run;
-  Hit hit;
-  hit.instance = r.instance[begin];
-  hit.triangle = r.triangle[begin];
-  load_facet(sight.world, hit, facet);
-  const Mesh& mesh = *facet.placed->mesh;
-  const Material& m = *facet.material;
+  const Facet& f = facet(begin);
+  const Mesh& mesh = *f.placed->mesh;
+  const Material& m = *f.material;
   size_t material = size_t(mesh.material);
-  bool base_picture = m.base_color_texture.texture >= 0;
-  bool metal = sight.reflectance[material] == Reflectance::metal;
-  bool blended = sight.reflectance[material] == Reflectance::base && !m.unlit;
-  bool quick = (metal || blended || sight.reflectance[material] == Reflectance::scaled) &&
-               mesh.colors.empty();
+  Reflectance way = sight.reflectance[material];
+  if (m.unlit || way == Reflectance::traced || shines(f)) return false;
+  describe_normals(f, begin, end, to);
+  bool metal = way == Reflectance::metal, blended = way == Reflectance::base;
   vec3 scale = glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * sight.factor[material];
+  bool plain = m.base_color_texture.texture < 0 || scale == vec3(0);
+  bool plain_shine = !blended || m.metallic_roughness_texture.texture < 0;
   for (int i = begin; i < end; i += lane_count) {
     Lanes rgb[3] = {all_lanes(1), all_lanes(1), all_lanes(1)}, shine[3] = {rgb[0], rgb[0], rgb[0]};
-    int middle = std::min(i + lane_count / 2, end - 1);
-    bool done = quick;
-    if (done && base_picture && scale != vec3(0))
-      done = read_lanes(m.base_color_texture, i, middle, rgb);
-    if (done && blended && m.metallic_roughness_texture.texture >= 0)
-      done = read_lanes(m.metallic_roughness_texture, i, middle, shine);
+    bool done = mesh.colors.empty();
+    if (done && !(plain && plain_shine)) {
+      int middle = std::min(i + lane_count / 2, end - 1);
+      float width = pixel_width(f, r.depth[middle], direction(middle), pixel_angle);
+      if (!plain) done = read_lanes(f.base, m.base_color_texture, i, width, rgb);
+      if (done && !plain_shine)
+        done = read_lanes(f.shine, m.metallic_roughness_texture, i, width, shine);
+    }
+    int last = std::min(i + lane_count, end);
     if (!done) {
-      for (int k = i; k < std::min(i + lane_count, end); k++) {
+      for (int k = i; k < last; k++) {
         vec3 albedo = see(k).albedo;
         to.red[k] = albedo.x, to.green[k] = albedo.y, to.blue[k] = albedo.z;
       }
@@ -306,33 +289,31 @@ void SightRun::Impl::reflect(int begin, int end, RunReflectance& to) const {
     store_lanes(to.red + i, rgb[0]);
     store_lanes(to.green + i, rgb[1]);
     store_lanes(to.blue + i, rgb[2]);
-    for (int k = i; r.veil && k < std::min(i + lane_count, end); k++) {
+    for (int k = i; r.veil && k < last; k++) {
       vec3 tint = r.veil[k].tint;
       to.red[k] *= tint.x, to.green[k] *= tint.y, to.blue[k] *= tint.z;
     }
   }
+  return true;
 }
 
-void SightRun::reflect(uint64_t wanted, RunReflectance& to) const {
+uint64_t SightRun::describe(uint64_t wanted, RunSurface& to) const {
   const RasterRun& r = *impl_->run;
-  for (int i = 0, end; i < count; i = end) {
-    for (end = i + 1;
-         end < count && r.triangle[end] == r.triangle[i] && r.instance[end] == r.instance[i];)
-      end++;
-    uint64_t these = (end - i < 64 ? (uint64_t(1) << (end - i)) - 1 : ~uint64_t(0)) << i;
+  uint64_t alone = 0;
+  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
+    int end = r.end[p];
+    uint64_t these = (end - begin < 64 ? (uint64_t(1) << (end - begin)) - 1 : ~uint64_t(0)) << begin;
     if (!(wanted & these)) continue;
-    if (r.instance[i] != RasterRun::nothing) {
-      impl_->reflect(i, end, to);
-    } else {
-      std::fill(to.red + i, to.red + end, 0.0f);
-      std::fill(to.green + i, to.green + end, 0.0f), std::fill(to.blue + i, to.blue + end, 0.0f);
-    }
+    if (r.instance[begin] == RasterRun::nothing || !impl_->describe(begin, end, to)) alone |= these;
   }
+  for (int i = 0; r.veil && i < count; i++)
+    if (r.veil[i].glow != vec3(0)) alone |= uint64_t(1) << i;
+  return alone & wanted;
 }
 
-Seen SightRun::see(int i, bool reflectance) const { return impl_->see(i, reflectance); }
+Seen SightRun::see(int i) const { return impl_->see(i); }
 
-Seen SightRun::Impl::see(int i, bool reflectance) const {
+Seen SightRun::Impl::see(int i) const {
   Hit hit = hit_of(*run, i, view, offset);
   Ray ray = view_ray(view, float(run->x + i) + offset.x, float(run->y) + offset.y);
   Seen seen;
@@ -341,12 +322,13 @@ Seen SightRun::Impl::see(int i, bool reflectance) const {
     seen.distance = std::numeric_limits<float>::infinity();
     seen.glow = eval_environment(sight.lights.tables->environment, ray.direction);
   } else {
-    load_facet(sight.world, hit, facet);
-    if (sight.reflectance[size_t(facet.placed->mesh->material)] == Reflectance::traced) {
+    const Facet& f = facet(i);
+    if (sight.reflectance[size_t(f.placed->mesh->material)] == Reflectance::traced) {
       wellspring::see(sight.world, sight.lights, std::span(&ray, 1), std::span(&seen, 1));
       return seen;
     }
-    seen = see_facet(sight.pictures, facet, hit, ray.direction, pixel_angle, reflectance);
+    float pixel = pixel_width(f, run->depth[i], direction(i), pixel_angle);
+    seen = see_facet(sight.pictures, sight.world, f, hit, pixel);
   }
   if (run->veil) {
     const Veil& veil = run->veil[i];
@@ -358,6 +340,8 @@ Seen SightRun::Impl::see(int i, bool reflectance) const {
 
 void PictureSight::see(const View& view, vec2 offset,
                        const std::function<void(const SightRun&)>& take) const {
+  static std::atomic<uint64_t> pictures = 0;
+  const uint64_t picture = ++pictures;
   const Impl& s = *impl_;
   RasterSettings settings;
   settings.offset = offset;
@@ -372,17 +356,15 @@ void PictureSight::see(const View& view, vec2 offset,
   };
   float slope = 2 * view.tan_half_fov / float(view.height);
   impl_->raster.draw(view, settings, [&](const RasterRun& raster_run) {
-    uint32_t object[RasterRun::most], last = RasterRun::nothing;
-    for (int i = 0; i < raster_run.count; i++) {
-      uint32_t instance = raster_run.instance[i];
-      if (instance == RasterRun::nothing)
-        object[i] = 0;
-      else
-        object[i] = i > 0 && instance == last ? object[i - 1] : s.world.object_of(instance);
-      last = instance;
+    thread_local FacetCache facets;
+    facets.start(picture);
+    uint32_t object[RasterRun::most];
+    for (int p = 0, begin = 0; p < raster_run.pieces; begin = raster_run.end[p++]) {
+      uint32_t instance = raster_run.instance[begin];
+      uint32_t shown = instance == RasterRun::nothing ? 0 : s.world.object_of(instance);
+      std::fill(object + begin, object + raster_run.end[p], shown);
     }
-    SightRun::Impl run_impl{s, view, offset, slope};
-    run_impl.run = &raster_run;
+    SightRun::Impl run_impl{s, view, offset, slope, facets, &raster_run};
     SightRun run;
     run.x = raster_run.x, run.y = raster_run.y, run.count = raster_run.count;
     run.depth = raster_run.depth, run.object = object;

@@ -14,10 +14,11 @@ namespace wellspring {
 
 class PictureSight;
 
-// Reflectances of a run's pixels, linear.
-struct RunReflectance {
+// What light falls on at a run's pixels.
+struct RunSurface {
   static constexpr int most = RasterRun::most + 8;  // vectors are stored whole
-  float red[most], green[most], blue[most];
+  float red[most], green[most], blue[most];         // reflectance, linear
+  float nx[most], ny[most], nz[most];               // normal, towards the eye; not unit
 };
 
 // Up to 64 pixels of a row, from (x, y) to the right. As light/see.h answers for rays through the
@@ -28,10 +29,11 @@ class SightRun {
   int x = 0, y = 0, count = 0;
   const float* depth = nullptr;      // along the viewing axis; infinity: nothing there
   const uint32_t* object = nullptr;  // 0: nothing there
-  // Reflectance of the pixels whose bit is set, and maybe of others.
-  void reflect(uint64_t wanted, RunReflectance& to) const;
-  // Everything of pixel i, its albedo only where asked for; costs as much as a dozen reflectances.
-  Seen see(int i, bool reflectance = true) const;
+  // Of the pixels whose bit is set, and maybe of others. Returns those of the set bits that shine, or
+  // of which see() knows more or only see() knows.
+  uint64_t describe(uint64_t wanted, RunSurface& to) const;
+  // Everything of pixel i; costs as much as a dozen descriptions.
+  Seen see(int i) const;
 
  private:
   friend class PictureSight;

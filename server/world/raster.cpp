@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "world/bvh_alpha.h"
 #include "world/raster_clusters.h"
+#include "world/raster_cull.h"
 #include "world/raster_setup.h"
 #include "world/raster_tile.h"
 
@@ -19,12 +20,6 @@ namespace {
 
 constexpr int block_clusters = 8;
 constexpr int block_bits = 13;  // 8 x 128 triangles, each cut into 6 parts at most
-
-// One cluster of one instance that may be in sight.
-struct Piece {
-  float depth;  // of its nearest place
-  uint32_t instance, cluster;
-};
 
 // What one core makes of a few pieces: triangles, and which of them each tile has to draw.
 struct Block {
@@ -72,16 +67,35 @@ struct Raster::Impl {
   std::vector<uint32_t> mesh_of;     // of every instance
   std::vector<uint8_t> has_alpha;    // of every instance
   float near = 0;
-  std::vector<Piece> pieces;
+  std::vector<RasterPiece> pieces;
+  std::vector<Bounds> moving;  // of every instance that moves
+  size_t hidden = 0;
   std::vector<Block> blocks;
+  std::vector<TilePixels> tiles;
 
   explicit Impl(const World& w) : world(w) {}
   void find_pieces(const View& view);
-  void fill_block(int number, const View& view, const RasterSettings& settings,
-                  const RasterView& raster);
-  void draw_tile(int tile_x, int tile_y, int tile, const View& view, const RasterView& raster,
-                 const RasterSettings& settings,
-                 const std::function<void(const RasterRun&)>& take) const;
+  void drop_hidden(const View& view, const RasterView& raster, size_t first);
+  void fill_block(Block& block, std::span<const RasterPiece> of, const View& view,
+                  const RasterSettings& settings, const RasterView& raster) const;
+  const RasterTriangle& triangle_of(uint32_t number) const {
+    return blocks[number >> block_bits].triangles[number & ((1u << block_bits) - 1)];
+  }
+  // body(number) for all triangles of a tile, of blocks from `first` on.
+  template <class Body>
+  void for_each(int tile, size_t first, const Body& body) const {
+    for (size_t b = first; b < blocks.size(); b++)
+      for (uint32_t i = blocks[b].first[size_t(tile)]; i < blocks[b].first[size_t(tile) + 1]; i++)
+        body(uint32_t(b) << block_bits | blocks[b].drawn[i]);
+  }
+  bool draw_opaque(ivec2 corner, int tile, size_t first, const View& view, const RasterView& raster,
+                   vec2 offset, TilePixels& pixels) const;
+  void draw_veils(ivec2 corner, int tile, const View& view, const RasterView& raster,
+                  const RasterSettings& settings, TilePixels& pixels,
+                  std::vector<Veil>& veils) const;
+  void hand_out(ivec2 corner, const View& view, const RasterView& raster, const TilePixels& pixels,
+                const std::vector<Veil>& veils,
+                const std::function<void(const RasterRun&)>& take) const;
 };
 
 Raster::Raster(const World& world) : impl_(std::make_unique<Impl>(world)) {
@@ -107,58 +121,46 @@ Raster::Raster(const World& world) : impl_(std::make_unique<Impl>(world)) {
   if (!(r.near > 0)) r.near = 1e-6f;
 }
 Raster::~Raster() = default;
+size_t Raster::drawn_clusters() const { return impl_->pieces.size(); }
+size_t Raster::hidden_clusters() const { return impl_->hidden; }
 
-// All pieces that the visible cone touches, the nearest first.
 void Raster::Impl::find_pieces(const View& view) {
   pieces.clear();
-  float up = view.tan_half_fov, side = up * float(view.width) / float(view.height);
-  float up_norm = 1 / std::sqrt(1 + up * up), side_norm = 1 / std::sqrt(1 + side * side);
+  moving.assign(mesh_of.size(), {});
   for (uint32_t i = 0; i < mesh_of.size(); i++) {
-    const PlacedMesh& placed = world.placed(i);
-    const MeshClusters& mesh = meshes[mesh_of[i]];
     if (!world.is_visible(i)) continue;
-    if (placed.moving) {  // its clusters are not where they were: drawn wherever they are
-      for (uint32_t k = 0; k < mesh.clusters.size(); k++) pieces.push_back({0, i, k});
-      continue;
-    }
-    float scale = 1;
-    if (!placed.in_place) {
-      float row = 0;  // no length grows by more than the root of the sum of squares
-      for (int k = 0; k < 3; k++) row += dot(vec3(placed.to_world[k]), vec3(placed.to_world[k]));
-      scale = std::sqrt(row);
-    }
-    for (uint32_t k = 0; k < mesh.clusters.size(); k++) {
-      const Cluster& cluster = mesh.clusters[k];
-      vec3 centre =
-          placed.in_place ? cluster.centre : vec3(placed.to_world * vec4(cluster.centre, 1));
-      vec3 d = centre - view.position;
-      float radius = cluster.radius * scale * 1.001f + near, w = dot(d, view.forward);
-      if (w < -radius) continue;
-      if ((std::abs(dot(d, view.right)) - side * w) * side_norm > radius) continue;
-      if ((std::abs(dot(d, view.up)) - up * w) * up_norm > radius) continue;
-      pieces.push_back({w - radius, i, k});
-    }
+    const PlacedMesh& placed = world.placed(i);
+    moving[i] = moving_box(placed);
+    wellspring::find_pieces(view, placed, meshes[mesh_of[i]], i, moving[i], near, pieces);
   }
-  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
-    return a.depth != b.depth         ? a.depth < b.depth
-           : a.instance != b.instance ? a.instance < b.instance
-                                      : a.cluster < b.cluster;
-  });
 }
 
-void Raster::Impl::fill_block(int number, const View& view, const RasterSettings& settings,
-                              const RasterView& raster) {
-  Block& block = blocks[size_t(number)];
+// Takes the pieces from `first` on away that are behind what has been drawn.
+void Raster::Impl::drop_hidden(const View& view, const RasterView& raster, size_t first) {
+  parallel_ranges(int(pieces.size() - first), 64, [&](int begin, int end) {
+    for (size_t i = first + size_t(begin); i < first + size_t(end); i++) {
+      RasterPiece& piece = pieces[i];
+      const PlacedMesh& placed = world.placed(piece.instance);
+      const Bounds& box = placed.moving ? moving[piece.instance]
+                                        : meshes[mesh_of[piece.instance]].clusters[piece.cluster].box;
+      bool as_it_is = placed.moving || placed.in_place;
+      if (is_hidden(view, raster, box, as_it_is ? nullptr : &placed.to_world, tiles))
+        piece.depth = INFINITY;
+    }
+  });
+  std::erase_if(pieces, [](const RasterPiece& piece) { return piece.depth == INFINITY; });
+}
+
+void Raster::Impl::fill_block(Block& block, std::span<const RasterPiece> of, const View& view,
+                              const RasterSettings& settings, const RasterView& raster) const {
   block.triangles.clear();
   block.crossing.clear();
   Camera camera(view);
   RasterCorners corners;
-  size_t first = size_t(number) * block_clusters,
-         end = std::min(first + block_clusters, pieces.size());
-  for (size_t p = first; p < end; p++) {
-    const PlacedMesh& placed = world.placed(pieces[p].instance);
-    const MeshClusters& mesh = meshes[mesh_of[pieces[p].instance]];
-    const Cluster& cluster = mesh.clusters[pieces[p].cluster];
+  for (const RasterPiece& piece : of) {
+    const PlacedMesh& placed = world.placed(piece.instance);
+    const MeshClusters& mesh = meshes[mesh_of[piece.instance]];
+    const Cluster& cluster = mesh.clusters[piece.cluster];
     uint32_t c0 = cluster.first_corner, padded = (cluster.corners + 7) / 8 * 8;
     if (placed.moving) {
       float x[256], y[256], z[256];
@@ -172,8 +174,8 @@ void Raster::Impl::fill_block(int number, const View& view, const RasterSettings
     }
     project_corners(raster, int(padded), corners);
     RasterTriangle unfinished{};
-    unfinished.instance = pieces[p].instance;
-    unfinished.has_alpha = has_alpha[pieces[p].instance];
+    unfinished.instance = piece.instance;
+    unfinished.has_alpha = has_alpha[piece.instance];
     size_t material = size_t(placed.mesh->material);
     unfinished.veils = material < settings.see_through.size() ? settings.see_through[material] : 0;
     for (uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangles; t++) {
@@ -200,33 +202,20 @@ void Raster::Impl::fill_block(int number, const View& view, const RasterSettings
   for (auto [tile, triangle] : block.crossing) block.drawn[next[tile]++] = uint16_t(triangle);
 }
 
-void Raster::Impl::draw_tile(int tile_x, int tile_y, int tile, const View& view,
-                             const RasterView& raster, const RasterSettings& settings,
-                             const std::function<void(const RasterRun&)>& take) const {
-  TilePixels pixels;
-  std::fill(std::begin(pixels.depth), std::end(pixels.depth), 0.0f);
-  std::fill(std::begin(pixels.number), std::end(pixels.number), no_triangle);
-  auto triangle_of = [&](uint32_t number) -> const RasterTriangle& {
-    return blocks[number >> block_bits].triangles[number & ((1u << block_bits) - 1)];
-  };
-  std::fill(std::begin(pixels.least), std::end(pixels.least), 0.0f);
-  vec2 offset = settings.offset;
+// True: there are see-through triangles.
+bool Raster::Impl::draw_opaque(ivec2 corner, int tile, size_t first, const View& view,
+                               const RasterView& raster, vec2 offset, TilePixels& pixels) const {
   bool any_veil = false;
-  auto for_each = [&](const auto& body) {
-    for (uint32_t b = 0; b < blocks.size(); b++)
-      for (uint32_t i = blocks[b].first[size_t(tile)]; i < blocks[b].first[size_t(tile) + 1]; i++)
-        body(b << block_bits | blocks[b].drawn[i]);
-  };
-  for_each([&](uint32_t number) {
+  for_each(tile, first, [&](uint32_t number) {
     const RasterTriangle& t = triangle_of(number);
     if (t.veils) {
       any_veil = true;
       return;
     }
-    cover(t, raster, tile_x, tile_y, pixels, [&](int place, Lanes depth, unsigned covered) {
+    cover(t, raster, corner.x, corner.y, pixels, [&](int place, Lanes depth, unsigned covered) {
       for (unsigned left = t.has_alpha ? covered : 0; left != 0; left &= left - 1) {
         int i = __builtin_ctz(left);
-        int x = tile_x + (place + i) % tile_width, y = tile_y + (place + i) / tile_width;
+        int x = corner.x + (place + i) % tile_width, y = corner.y + (place + i) / tile_width;
         if (passes(world.scene(), world.placed(t.instance), t.instance, t.triangle,
                    barycentric_at(t, raster, x, y, depth[i]),
                    view_ray(view, float(x) + offset.x, float(y) + offset.y)))
@@ -242,45 +231,55 @@ void Raster::Impl::draw_tile(int tile_x, int tile_y, int tile, const View& view,
       std::memcpy(pixels.number + place, &numbers, sizeof numbers);
     });
   });
-  std::vector<Veil> veils;
-  if (any_veil && settings.veil) {
-    for_each([&](uint32_t number) {
-      const RasterTriangle& t = triangle_of(number);
-      if (!t.veils) return;
-      bool known = false;
-      Veil veil;
-      cover(t, raster, tile_x, tile_y, pixels, [&](int place, Lanes depth, unsigned covered) {
-        if (veils.empty()) veils.resize(tile_width * tile_height);
-        for (; covered != 0; covered &= covered - 1) {
-          int i = __builtin_ctz(covered);
-          if (!known || t.veils == 2) {
-            int x = tile_x + (place + i) % tile_width, y = tile_y + (place + i) / tile_width;
-            Ray ray = view_ray(view, float(x) + offset.x, float(y) + offset.y);
-            Hit hit;
-            hit.t = 1 / (depth[i] * dot(ray.direction, view.forward));
-            hit.instance = t.instance;
-            hit.triangle = t.triangle;
-            hit.barycentric = barycentric_at(t, raster, x, y, depth[i]);
-            veil = settings.veil(hit, ray.direction);
-            known = true;
-          }
-          Veil& v = veils[size_t(place + i)];
-          v.glow += v.tint * veil.glow;
-          v.tint *= veil.tint;
-        }
-      });
-    });
-  }
+  return any_veil;
+}
 
-  int columns = std::min(tile_width, view.width - tile_x),
-      rows = std::min(tile_height, view.height - tile_y);
+void Raster::Impl::draw_veils(ivec2 corner, int tile, const View& view, const RasterView& raster,
+                              const RasterSettings& settings, TilePixels& pixels,
+                              std::vector<Veil>& veils) const {
+  for_each(tile, 0, [&](uint32_t number) {
+    const RasterTriangle& t = triangle_of(number);
+    if (!t.veils) return;
+    bool known = false;
+    Veil veil;
+    cover(t, raster, corner.x, corner.y, pixels, [&](int place, Lanes depth, unsigned covered) {
+      if (veils.empty()) veils.resize(tile_width * tile_height);
+      for (; covered != 0; covered &= covered - 1) {
+        int i = __builtin_ctz(covered);
+        if (!known || t.veils == 2) {
+          int x = corner.x + (place + i) % tile_width, y = corner.y + (place + i) / tile_width;
+          Ray ray = view_ray(view, float(x) + settings.offset.x, float(y) + settings.offset.y);
+          Hit hit;
+          hit.t = 1 / (depth[i] * dot(ray.direction, view.forward));
+          hit.instance = t.instance;
+          hit.triangle = t.triangle;
+          hit.barycentric = barycentric_at(t, raster, x, y, depth[i]);
+          veil = settings.veil(hit, ray.direction);
+          known = true;
+        }
+        Veil& v = veils[size_t(place + i)];
+        v.glow += v.tint * veil.glow;
+        v.tint *= veil.tint;
+      }
+    });
+  });
+}
+
+void Raster::Impl::hand_out(ivec2 corner, const View& view, const RasterView& raster,
+                            const TilePixels& pixels, const std::vector<Veil>& veils,
+                            const std::function<void(const RasterRun&)>& take) const {
+  int columns = std::min(tile_width, view.width - corner.x),
+      rows = std::min(tile_height, view.height - corner.y);
   float depth[tile_width + lane_count], u[tile_width + lane_count], v[tile_width + lane_count];
   uint32_t instance[tile_width + lane_count], triangle[tile_width + lane_count];
+  uint8_t ends[tile_width];
   for (int y = 0; y < rows; y++) {
     const uint32_t* number = pixels.number + y * tile_width;
     const float* inverse = pixels.depth + y * tile_width;
+    int pieces = 0;
     for (int x = 0, end; x < columns; x = end) {
       for (end = x + 1; end < columns && number[end] == number[x];) end++;
+      ends[pieces++] = uint8_t(end);
       bool hit = number[x] != no_triangle;
       const RasterTriangle* t = hit ? &triangle_of(number[x]) : nullptr;
       for (int i = x; i < end; i++) {
@@ -293,8 +292,8 @@ void Raster::Impl::draw_tile(int tile_x, int tile_y, int tile, const View& view,
         continue;
       }
       constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
-      float u0 = eval_at(t->u, *t, raster, tile_x + x, tile_y + y);
-      float v0 = eval_at(t->v, *t, raster, tile_x + x, tile_y + y);
+      float u0 = eval_at(t->u, *t, raster, corner.x + x, corner.y + y);
+      float v0 = eval_at(t->v, *t, raster, corner.x + x, corner.y + y);
       for (int i = x; i < end; i += lane_count) {
         Lanes w = 1 / load_lanes(inverse + std::min(i, tile_width - lane_count));
         if (i > tile_width - lane_count)
@@ -308,8 +307,8 @@ void Raster::Impl::draw_tile(int tile_x, int tile_y, int tile, const View& view,
         store_lanes(v + i, b * share);
       }
     }
-    take({tile_x, tile_y + y, columns, depth, instance, triangle, u, v,
-          veils.empty() ? nullptr : &veils[size_t(y) * tile_width]});
+    take({corner.x, corner.y + y, columns, depth, instance, triangle, u, v,
+          veils.empty() ? nullptr : &veils[size_t(y) * tile_width], ends, pieces});
   }
 }
 
@@ -326,8 +325,10 @@ Hit hit_of(const RasterRun& run, int i, const View& view, vec2 offset) {
 
 void Raster::draw(const View& view, const RasterSettings& settings,
                   const std::function<void(const RasterRun&)>& take) {
-  if (view.width > most_pixels || view.height > most_pixels) return;
   Impl& r = *impl_;
+  r.pieces.clear();
+  r.hidden = 0;
+  if (view.width > most_pixels || view.height > most_pixels) return;
   auto steps = [](float x) { return int32_t(std::lrint(x * raster_steps)); };
   RasterView raster{r.near, view.width, view.height};
   raster.centre_steps_x = view.width * (raster_steps / 2) - steps(settings.offset.x);
@@ -335,13 +336,49 @@ void Raster::draw(const View& view, const RasterSettings& settings,
   raster.centre_x = float(raster.centre_steps_x) / raster_steps;
   raster.centre_y = float(raster.centre_steps_y) / raster_steps;
   r.find_pieces(view);
-  r.blocks.resize((r.pieces.size() + block_clusters - 1) / block_clusters);
-  parallel_for(int(r.blocks.size()), [&](int i) { r.fill_block(i, view, settings, raster); });
   int columns = (view.width + tile_width - 1) / tile_width;
   int rows = (view.height + tile_height - 1) / tile_height;
+  r.tiles.resize(size_t(columns * rows));
+  r.blocks.clear();
+  std::vector<uint8_t> any_veil(r.tiles.size(), 0);
+  auto corner_of = [&](int tile) {
+    return ivec2(tile % columns * tile_width, tile / columns * tile_height);
+  };
+  size_t drawn = 0;  // pieces
+  auto fill = [&](size_t pieces) {
+    size_t first = r.blocks.size(), more = (pieces - drawn + block_clusters - 1) / block_clusters;
+    r.blocks.resize(first + more);
+    parallel_for(int(more), [&](int i) {
+      size_t begin = drawn + size_t(i) * block_clusters,
+             end = std::min(begin + block_clusters, pieces);
+      r.fill_block(r.blocks[first + size_t(i)], std::span(r.pieces).subspan(begin, end - begin),
+                   view, settings, raster);
+    });
+    drawn = pieces;
+    return first;
+  };
+  auto draw_tile = [&](int i, size_t first) {
+    any_veil[size_t(i)] |= r.draw_opaque(corner_of(i), i, first, view, raster, settings.offset,
+                                         r.tiles[size_t(i)]);
+  };
+  fill(put_hiding_first(r.pieces));
   parallel_for(columns * rows, [&](int i) {
-    r.draw_tile(i % columns * tile_width, i / columns * tile_height, i, view, raster, settings,
-                take);
+    ivec2 corner = corner_of(i);
+    r.tiles[size_t(i)].start(std::min(tile_width, view.width - corner.x),
+                             std::min(tile_height, view.height - corner.y));
+    draw_tile(i, 0);
+    r.tiles[size_t(i)].find_all_least();
+  });
+  r.hidden = r.pieces.size();
+  r.drop_hidden(view, raster, drawn);
+  r.hidden -= r.pieces.size();
+  size_t second = fill(r.pieces.size());
+  parallel_for(columns * rows, [&](int i) {
+    draw_tile(i, second);
+    std::vector<Veil> veils;
+    if (any_veil[size_t(i)] && settings.veil)
+      r.draw_veils(corner_of(i), i, view, raster, settings, r.tiles[size_t(i)], veils);
+    r.hand_out(corner_of(i), view, raster, r.tiles[size_t(i)], veils, take);
   });
 }
 

@@ -32,6 +32,10 @@ struct RasterRun {
   const float *u = nullptr,
               *v = nullptr;    // barycentrics of its second and third corner, right to 1e-3
   const Veil* veil = nullptr;  // of the see-through surfaces before it; null: there are none
+  // The run is made of pieces that each show one triangle or nothing: piece k ends before
+  // end[k], where the next begins.
+  const uint8_t* end = nullptr;
+  int pieces = 0;
 };
 // Pixel i of the run as a ray through its sampling place would have met it.
 Hit hit_of(const RasterRun& run, int i, const View& view, vec2 offset);
@@ -61,6 +65,9 @@ class Raster {
   // runs.
   void draw(const View& view, const RasterSettings& settings,
             const std::function<void(const RasterRun&)>& take);
+  // Of the last picture: clusters that were drawn, and those left out because nearer ones hide them.
+  size_t drawn_clusters() const;
+  size_t hidden_clusters() const;
 
  private:
   struct Impl;

@@ -2,6 +2,7 @@
 #include "world/raster_clusters.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 namespace wellspring {
@@ -15,7 +16,19 @@ uint64_t spread(uint32_t x) {  // ten bits to every third place
   return (r | r << 2) & 0x9249249u;
 }
 
-// Numbers of the finite triangles along a space-filling curve through their centres (Morton 1966).
+float area_of(const Mesh& mesh, const uvec3& t) {
+  vec3 a = mesh.positions[t.x];
+  return 0.5f * length(cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a));
+}
+
+// The power of 16 that the area is about; what has none counts as tiny.
+uint32_t size_class(float area) {
+  int power = area > 0 && std::isfinite(area) ? std::ilogb(area) : -140;
+  return uint32_t(std::clamp(140 + power, 0, 255)) / 4;
+}
+
+// Numbers of the finite triangles, the larger ones last, those of like size along a space-filling
+// curve through their centres (Morton 1966).
 std::vector<uint32_t> sort_in_space(const Mesh& mesh) {
   Bounds box;
   auto centre = [&](const uvec3& t) {
@@ -32,7 +45,8 @@ std::vector<uint32_t> sort_in_space(const Mesh& mesh) {
   vec3 scale = 1023.0f / max(box.high - box.low, vec3(1e-30f));
   for (auto& [key, i] : order) {
     vec3 c = clamp((centre(mesh.triangles[i]) - box.low) * scale, 0.0f, 1023.0f);
-    key = spread(uint32_t(c.x)) | spread(uint32_t(c.y)) << 1 | spread(uint32_t(c.z)) << 2;
+    key = spread(uint32_t(c.x)) | spread(uint32_t(c.y)) << 1 | spread(uint32_t(c.z)) << 2 |
+          uint64_t(size_class(area_of(mesh, mesh.triangles[i]))) << 32;
   }
   std::sort(order.begin(), order.end());
   std::vector<uint32_t> sorted(order.size());
@@ -56,6 +70,7 @@ void finish(MeshClusters& out, Cluster& cluster) {
   auto place = [&](uint32_t i) { return vec3(out.x[i], out.y[i], out.z[i]); };
   for (uint32_t i = cluster.first_corner; i < out.x.size(); i++)
     low = min(low, place(i)), high = max(high, place(i));
+  cluster.box = {low, high};
   cluster.centre = 0.5f * low + 0.5f * high;
   for (uint32_t i = cluster.first_corner; i < out.x.size(); i++)
     cluster.radius = std::max(cluster.radius, glm::length(place(i) - cluster.centre));
@@ -89,6 +104,7 @@ MeshClusters make_clusters(const Mesh& mesh) {
       }
       corner[size_t(k)] = entry->second;
     }
+    cluster.area += area_of(mesh, mesh.triangles[number]);
     out.corner.push_back(corner);
     out.triangle.push_back(number);
   }

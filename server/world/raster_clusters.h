@@ -14,11 +14,14 @@ struct Cluster {
   static constexpr int most_triangles = 128, most_corners = 248;  // so that they pad to 256
   uint32_t first_corner = 0, corners = 0;  // the first is a multiple of eight
   uint32_t first_triangle = 0, triangles = 0;
-  vec3 centre{0};  // of a sphere around it, mesh space
+  Bounds box;      // mesh space
+  vec3 centre{0};  // of a sphere around it
   float radius = 0;
+  float area = 0;  // of all its triangles
 };
 
-// Triangles with a corner that is not finite are left out.
+// Triangles with a corner that is not finite are left out. Those of a cluster are of like size, so that
+// its bounds are close and walls, which hide much, lie together.
 struct MeshClusters {
   std::vector<Cluster> clusters;
   // Per corner, padded to eight by copies of the last: place and the vertex of the mesh it is.

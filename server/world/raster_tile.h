@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/lanes.h"
 #include "world/raster_setup.h"
@@ -21,6 +22,21 @@ struct TilePixels {
   float least[tile_width * tile_height / (square * square)];
   uint32_t stale = 0;
 
+  // Empty, with `columns` and `rows` of it in the picture.
+  void start(int columns, int rows) {
+    std::fill(std::begin(number), std::end(number), no_triangle);
+    for (int y = 0; y < tile_height; y++) {
+      float* row = depth + y * tile_width;
+      std::fill(row, row + tile_width, y < rows ? 0.0f : INFINITY);  // beyond nothing is missing
+      if (y < rows) std::fill(row + columns, row + tile_width, INFINITY);
+    }
+    stale = (1u << std::size(least)) - 1;
+  }
+  void find_all_least() {
+    for (int y = 0; y < tile_height / square; y++)
+      for (int x = 0; x < across; x++)
+        if (stale >> (y * across + x) & 1) find_least(x, y);
+  }
   // Does a part of the pixels inclusive of these corners lie behind `depth`?
   bool any_behind(int x0, int y0, int x1, int y1, float depth) {
     for (int y = y0 / square; y <= y1 / square; y++)
@@ -78,12 +94,35 @@ void cover(const RasterTriangle& t, const RasterView& view, int tile_x, int tile
     along[i] = LaneMask{} + t.a[i] * lane_count;
     down[i] = LaneMask{} + t.b[i];
   }
+  // Wide triangles are mostly not where their bounds are: each row begins where its edges say, a
+  // pixel early for rounding.
+  bool wide = x1 - x0 >= 2 * lane_count;
+  float inverse[3] = {};
+  for (int i = 0; wide && i < 3; i++) inverse[i] = t.a[i] != 0 ? -1.0f / float(t.a[i]) : 0;
   float start = eval_at(t.depth, t, view, tile_x + x0, tile_y + y0);
   Lanes row_depth = start + t.depth.y * Lanes{0, 1, 2, 3, 4, 5, 6, 7};
   for (int y = y0; y <= y1; y++) {
     LaneMask e0 = edge[0], e1 = edge[1], e2 = edge[2];
     Lanes depth = row_depth;
-    for (int x = x0; x <= x1; x += lane_count) {
+    int x = x0, end = x1;
+    if (wide) {
+      float low = 0, high = float(x1 - x0);
+      for (int i = 0; i < 3; i++) {
+        float at = float(edge[i][0]) * inverse[i];
+        if (t.a[i] > 0) low = std::max(low, at);
+        if (t.a[i] < 0) high = std::min(high, at);
+        if (t.a[i] == 0 && edge[i][0] < 0) high = -2;
+      }
+      int groups = std::max(int(std::min(low, float(tile_width))) - 1, 0) / lane_count;
+      end = x0 + int(std::max(high, -2.0f) + 1);
+      end = std::min(end, x1);
+      if (groups > 0) {
+        e0 += along[0] * groups, e1 += along[1] * groups, e2 += along[2] * groups;
+        depth += t.depth.y * float(groups * lane_count);
+        x += groups * lane_count;
+      }
+    }
+    for (; x <= end; x += lane_count) {
       unsigned covered = ~negative_lanes(e0 | e1 | e2) & 0xff;
       if (covered) {
         int place = y * tile_width + x;

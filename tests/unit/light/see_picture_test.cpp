@@ -36,22 +36,28 @@ int add_texture(Scene& scene, Image image) {
 
 struct Drawn {
   std::vector<Seen> seen;
-  std::vector<vec3> reflectance;
+  std::vector<vec3> reflectance, normal;
+  std::vector<uint8_t> told;
   std::vector<uint32_t> object;
   std::vector<float> depth;
 };
 
 Drawn draw(const PictureSight& sight, const View& view) {
   size_t pixels = size_t(view.width) * size_t(view.height);
-  Drawn d{std::vector<Seen>(pixels), std::vector<vec3>(pixels), std::vector<uint32_t>(pixels),
+  Drawn d{std::vector<Seen>(pixels), std::vector<vec3>(pixels), std::vector<vec3>(pixels),
+          std::vector<uint8_t>(pixels), std::vector<uint32_t>(pixels),
           std::vector<float>(pixels)};
   sight.see(view, vec2(0.5f), [&](const SightRun& run) {
     size_t first = size_t(run.y) * size_t(view.width) + size_t(run.x);
-    RunReflectance r;
-    run.reflect(~uint64_t(0), r);
+    RunSurface r;
+    uint64_t alone = run.describe(~uint64_t(0), r);
     for (int i = 0; i < run.count; i++) {
       d.seen[first + size_t(i)] = run.see(i);
-      d.reflectance[first + size_t(i)] = {r.red[i], r.green[i], r.blue[i]};
+      bool told = !(alone >> i & 1);
+      d.told[first + size_t(i)] = told;
+      d.reflectance[first + size_t(i)] =
+          told ? vec3(r.red[i], r.green[i], r.blue[i]) : run.see(i).albedo;
+      d.normal[first + size_t(i)] = told ? vec3(r.nx[i], r.ny[i], r.nz[i]) : run.see(i).normal;
       d.object[first + size_t(i)] = run.object[i];
       d.depth[first + size_t(i)] = run.depth[i];
     }
@@ -120,7 +126,7 @@ TEST(SeePicture, SeesWhatRaysSee) {
   ASSERT_TRUE(sight.can_see(view));
   Drawn drawn = draw(sight, view);
   std::vector<Seen> traced = trace_picture(world, lights, view);
-  int edges = 0, shining = 0, tinted = 0, dark = 0, sky = 0;
+  int told = 0, edges = 0, shining = 0, tinted = 0, dark = 0, sky = 0;
   for (size_t i = 0; i < traced.size(); i++) {
     const Seen &a = drawn.seen[i], &b = traced[i];
     if (a.object != b.object) {  // an edge runs within a hair of the pixel's centre
@@ -139,10 +145,14 @@ TEST(SeePicture, SeesWhatRaysSee) {
     EXPECT_LT(glm::length(a.albedo - b.albedo), 0.03f) << i << " object " << a.object;
     EXPECT_LT(glm::length(a.glow - b.glow), 0.03f * (1 + glm::length(b.glow))) << i;
     EXPECT_LT(glm::length(drawn.reflectance[i] - a.albedo), 0.02f) << i << " object " << a.object;
+    EXPECT_GT(dot(glm::normalize(drawn.normal[i]), a.normal), 0.9999f) << i;
+    EXPECT_TRUE(!drawn.told[i] || (a.scatters && a.glow == vec3(0))) << i;
+    told += drawn.told[i];
     shining += a.glow.x > 1, dark += a.albedo == vec3(0) && a.object != 0;
     tinted += a.object == 1 && a.albedo.x < 0.97f * 0.6f;
   }
   EXPECT_LT(edges, 40);
+  EXPECT_GT(told, 5000);
   EXPECT_GT(shining, 100);
   EXPECT_GT(dark, 100);  // the sharp metal
   EXPECT_GT(tinted, 100);

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <atomic>
 #include <cmath>
 
@@ -120,6 +122,40 @@ TEST(Raster, SeesWhatRaysSee) {
     EXPECT_EQ(picture.taken, 160 * 90);
     EXPECT_EQ(wrong_pixels(world, view, picture), 0) << "view " << i;
   }
+}
+
+// Rooms behind a wall with a slit: what the wall hides costs nothing, what the slit shows is there.
+TEST(Raster, LeavesOutWhatIsHidden) {
+  Scene scene = empty_scene();
+  int grey = add_material(scene, diffuse(vec3(0.5f)));
+  add_quad(scene, grey, {-30, -30, -5}, {29.9f, 0, 0}, {0, 60, 0}, "left of the slit");
+  add_quad(scene, grey, {0.1f, -30, -5}, {29.9f, 0, 0}, {0, 60, 0}, "right of the slit");
+  for (int i = 0; i < 40; i++)
+    add_mesh(scene, soup(uint64_t(20 + i), 300), "clutter",
+             glm::scale(at({-16.0f + 0.8f * float(i), 0, -14.0f - 0.2f * float(i)}), vec3(0.15f)));
+  Mesh mover = soup(90, 200);
+  for (vec3& p : mover.positions) p = 0.15f * p + vec3(4, 0, -12);
+  scene.objects.push_back("mover");
+  World world(scene, {mover}, {uint32_t(scene.objects.size() - 1)});
+  world.commit();
+  Raster raster(world);
+  View view = make_view(scene, {0, 0, 0}, 0, 0, 1.2f, 320, 180);
+  Picture picture = draw(raster, view);
+  EXPECT_EQ(picture.taken, 320 * 180);
+  EXPECT_EQ(wrong_pixels(world, view, picture), 0);
+  EXPECT_GT(raster.hidden_clusters(), raster.drawn_clusters());
+  int through = 0;
+  for (const Hit& hit : picture.hits) through += hit.valid() && hit.instance >= 2;
+  EXPECT_GT(through, 50);
+
+  for (vec3& p : mover.positions) p += vec3(-3, 0, 9.5f);  // before the wall
+  world.move(0, mover.positions, mover.normals);
+  world.commit();
+  picture = draw(raster, view);
+  EXPECT_EQ(wrong_pixels(world, view, picture), 0);
+  int moved = 0;
+  for (const Hit& hit : picture.hits) moved += hit.valid() && world.is_moving(hit.instance);
+  EXPECT_GT(moved, 500);
 }
 
 TEST(Raster, SamplesWhereItIsTold) {

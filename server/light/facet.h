@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// A triangle as a picture of it needs it: what every pixel of it has in common, looked up once.
+#pragma once
+#include "world/surface.h"
+
+namespace wellspring {
+
+// Where one of the material's pictures lies on a triangle.
+struct FacetPicture {
+  vec2 corner{0}, edge1{0}, edge2{0};  // texture coordinates: corner + edge1 * u + edge2 * v
+  float texels = 0;                    // across a metre of the surface
+  bool known = false;                  // the mesh has these coordinates
+};
+
+struct Facet {
+  uint32_t instance = 0xffffffffu, triangle = 0;
+  const PlacedMesh* placed = nullptr;
+  const Material* material = nullptr;
+  uvec3 corner{0};
+  vec3 normal[3];      // of the mesh at the corners, world, not unit, on the winding's side
+  vec3 face{0};        // geometric, unit, on the winding's side
+  float root_area = 0;  // of the face, metres
+  bool one_normal = false;
+  bool front = false;  // the eye is on the winding's side
+  FacetPicture base, shine;  // base colour; metallic and roughness
+};
+Facet make_facet(const World& world, uint32_t instance, uint32_t triangle, vec3 eye);
+FacetPicture place_picture(const World& world, const Facet& facet, const TextureRef& reference);
+
+// Facets of late: rows of a picture meet the same triangles one after the other.
+class FacetCache {
+ public:
+  // Forgets everything when `picture` is another number than before.
+  void start(uint64_t picture) {
+    if (picture == picture_) return;
+    picture_ = picture;
+    for (Facet& f : facets_) f.instance = 0xffffffffu;
+  }
+  const Facet& find(const World& world, uint32_t instance, uint32_t triangle, vec3 eye) {
+    Facet& f = facets_[(triangle * 0x9e3779b1u ^ instance * 0x85ebca6bu) >> (32 - bits)];
+    if (f.triangle != triangle || f.instance != instance)
+      f = make_facet(world, instance, triangle, eye);
+    return f;
+  }
+
+ private:
+  static constexpr int bits = 7;
+  uint64_t picture_ = ~uint64_t(0);
+  Facet facets_[1 << bits];
+};
+
+}  // namespace wellspring
