@@ -9,6 +9,7 @@
 #include "base/rng.h"
 #include "cache/attention.h"
 #include "cache/cells.h"
+#include "cache/compose_drawn.h"
 #include "cache/looks.h"
 #include "cache/overlay.h"
 #include "cache/plan.h"
@@ -29,6 +30,16 @@ constexpr uint8_t moving_mean = 48, still_mean = 255;  // samples a point's mean
 
 }  // namespace
 
+static void fit_frame(int width, int height, Frame& frame) {
+  size_t pixels = size_t(width) * size_t(height);
+  frame.width = width;
+  frame.height = height;
+  frame.color.resize(pixels);
+  frame.depth.resize(pixels);
+  frame.object.resize(pixels);
+  frame.confidence.resize(pixels);
+}
+
 struct RenderCache::Impl {
   CacheSettings settings;
   PointCache points;
@@ -36,6 +47,7 @@ struct RenderCache::Impl {
   StillImage still;
   Cells cells;
   Scratch scratch;
+  Frame light;  // packed, of a picture that is drawn
   View view;  // of the last projection
   bool projected = false;
   bool image_stale = true;  // points have changed since, and the image was not told
@@ -165,13 +177,7 @@ void RenderCache::survey(const View& view, const PictureSight* sight, int most, 
   Impl& c = *impl_;
   int width = std::clamp(view.width, 1, largest_side),
       height = std::clamp(view.height, 1, largest_side);
-  size_t pixels = size_t(width) * size_t(height);
-  frame.width = width;
-  frame.height = height;
-  frame.color.resize(pixels);
-  frame.depth.resize(pixels);
-  frame.object.resize(pixels);
-  frame.confidence.resize(pixels);
+  fit_frame(width, height, frame);
   if (!c.projected || view != c.view) project(view);
   c.scratch.start(cells_bytes(width, height));
   take_cells(c.cells, width, height, c.scratch);
@@ -200,6 +206,24 @@ void RenderCache::reconstruct(const View& view, std::span<const Seen> seen, Fram
   compose(view, c.cells, c.known, frame);
   if (c.is_still()) accumulate_still(c.points, c.image, c.frames, c.still, frame);
   show_looks(pixels, c.looked_pixels, c.still, frame);
+}
+
+void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame) {
+  Impl& c = *impl_;
+  View light = light_view(view);
+  fit_frame(light.width, light.height, c.light);
+  fit_frame(view.width, view.height, frame);
+  if (!c.projected || light != c.view) project(light);
+  c.scratch.start(cells_bytes(light.width, light.height));
+  take_cells(c.cells, light.width, light.height, c.scratch);
+  SurfaceCounts counts = read_surface(light, c.points, c.image, c.cells, c.light);
+  filter_cells(light, c.cells);
+  c.known = fill_cells(light, c.cells);
+  c.count(counts, c.known);
+  c.looked.clear();
+  double began = seconds_now();
+  compose_drawn(view, sight, c.cells, c.known, c.light, frame);
+  c.stats.drawing_ms = float(1000 * (seconds_now() - began));
 }
 
 void RenderCache::clear() {
@@ -244,7 +268,8 @@ size_t RenderCache::memory_bytes() const {
   auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   size_t sum = points_bytes(c.points) + bytes(c.image.point) + bytes(c.image.depth) +
                bytes(c.image.priority) + bytes(c.image.changed) + bytes(c.still.count) +
-               bytes(c.targets) + c.scratch.bytes();
+               bytes(c.targets) + c.scratch.bytes() + bytes(c.light.color) + bytes(c.light.depth) +
+               bytes(c.light.object) + bytes(c.light.confidence);
   for (const auto& plane : c.still.mean) sum += bytes(plane);
   return sum;
 }

@@ -68,6 +68,9 @@ class RenderCache {
   void survey(const View& view, const PictureSight* sight, int most, Frame& frame,
               std::vector<Ray>& looks);
   void reconstruct(const View& view, std::span<const Seen> seen, Frame& frame);
+  // A picture of `view` drawn in the light of light_view(view) (cache/compose_drawn.h), for which all
+  // of the frame before has been done; needs sight.can_see(view).
+  void draw(const View& view, const PictureSight& sight, Frame& frame);
   void set_attention(bool on);  // CacheSettings::attention
   // Forgets everything (lights toggled, exhibit changed).
   void clear();

@@ -22,6 +22,7 @@ f8 clamped(const f8& v, float low, float high) { return smaller(larger(v, splat(
 struct Pool {
   f8 samples{}, points{}, sum{}, sum2{};
   f8 rest{}, rest2{}, rest_noise{}, rest_known{};
+  f8 brightest{}, rest_brightest{};  // of the neighbours' means
 };
 Pool pool_around(const Cells& cells, size_t i, const u8& object) {
   Pool pool;
@@ -37,6 +38,10 @@ Pool pool_around(const Cells& cells, size_t i, const u8& object) {
       pool.rest2 += keep(same, load_at(cells.rest_sum2, j));
       pool.rest_noise += keep(same, load_at(cells.rest_noise, j));
       pool.rest_known += keep(same, load_at(cells.rest_known, j));
+      if (dx == 0 && dy == 0) continue;
+      f8 per_sample = keep(same, 1.0f / larger(load_at(cells.samples, j), splat(1)));
+      pool.brightest = larger(pool.brightest, load_at(cells.sum, j) * per_sample);
+      pool.rest_brightest = larger(pool.rest_brightest, load_at(cells.rest_sum, j) * per_sample);
     }
   return pool;
 }
@@ -48,9 +53,9 @@ struct Estimate {
 
 // Where few points tell, smooth light is assumed to deviate by as much as its mean, and what varies
 // in the rest to be noise by `rest_share`. `samples` > 0; `light` and `rest_light` are the cells'
-// sums over their samples.
+// sums over their samples; `unsure`: some point of a cell may owe its rest to chance, and these differ.
 Estimate estimate_cells(const Pool& pool, const f8& samples, const f8& light_sum,
-                        const f8& rest_sum, float rest_share) {
+                        const f8& rest_sum, const i8& unsure, float rest_share) {
   constexpr float guess_points = 3;
   Estimate e;
   f8 per_sample = 1.0f / samples, per_pooled = 1.0f / pool.samples;
@@ -65,14 +70,16 @@ Estimate estimate_cells(const Pool& pool, const f8& samples, const f8& light_sum
   e.rest_noise = (pool.rest_noise + rest_spread * rest_share) / (pool.rest_known + 1.0f);
   e.rest_detail = positive(rest_spread - e.rest_noise) * pool.points * per_pooled;
   e.rest_mean_variance = e.rest_noise * per_sample;
-  // A cell far brighter than those around it owes that to a lucky path, unless many samples say so
-  // or, of the rest, it stays so from sample to sample.
+  // A cell brighter than all around it, or far brighter than their mean, owes that to a lucky path,
+  // unless many samples say so or, of the rest, it stays so from sample to sample.
   f8 light = light_sum * per_sample, rest_light = rest_sum * per_sample;
   f8 others = pool.samples - samples, per_other = 1.0f / larger(others, splat(1));
   f8 confirmed = 2.5f + 0.05f * samples;
-  f8 most = confirmed * (pool.sum - light_sum) * per_other,
-     rest_most = confirmed * (pool.rest - rest_sum) * per_other;
-  i8 told = others >= 3.0f, noisy = e.rest_noise > 0.25f * rest_light * rest_light;
+  f8 peak = 1.25f + 0.05f * samples;
+  f8 most = smaller(confirmed * (pool.sum - light_sum) * per_other, peak * pool.brightest),
+     rest_most =
+         smaller(confirmed * (pool.rest - rest_sum) * per_other, peak * pool.rest_brightest);
+  i8 told = others >= 3.0f, noisy = unsure | (e.rest_noise > 0.25f * rest_light * rest_light);
   f8 one = splat(1);
   e.scale = told & (light > most) ? (most + 1e-6f) / (light + 1e-6f) : one;
   e.rest_scale =
@@ -130,8 +137,12 @@ void estimate_variance(Cells& cells) {
         f8 one = splat(1);
         pool.samples = known ? pool.samples : one;
         f8 samples = known ? load_at(cells.samples, i) : one;
-        Estimate e = estimate_cells(pool, samples, load_at(cells.sum, i),
-                                    load_at(cells.rest_sum, i), rest_share);
+        f8 rest_sum = load_at(cells.rest_sum, i), rest_sum2 = load_at(cells.rest_sum2, i);
+        f8 spread = samples * rest_sum2 - rest_sum * rest_sum;
+        i8 unsure = (load_at(cells.rest_known, i) < load_at(cells.points, i)) &
+                    (spread > 0.25f * rest_sum * rest_sum);
+        Estimate e =
+            estimate_cells(pool, samples, load_at(cells.sum, i), rest_sum, unsure, rest_share);
         for (size_t c = 0; c < 3; c++) {
           store(&cells.smooth[c][i], load_at(cells.smooth[c], i) * e.scale);
           store(&cells.rest[c][i], load_at(cells.rest[c], i) * e.rest_scale);

@@ -10,6 +10,7 @@
 #include "cache/packing.h"
 #include "cache/pixel_light.h"
 #include "cache/reconstruct.h"
+#include "cache/write_pixels.h"
 
 namespace wellspring {
 namespace {
@@ -91,33 +92,6 @@ void read_cells(const Cells& cells, int cy, std::vector<CellLight>& row) {
   for (int x = -1; x <= cells.width; x++) read_cell(cells, x, cy, row[size_t(x + 1)]);
 }
 
-// Which of the blocks from bx on lie between four cells in one plane: what a pixel has in common
-// with one of those, it has with all.
-i8 find_flat(const PixelRays& rays, const Cells& cells, int bx, int by) {
-  constexpr float same_direction = 0.998f, same_depth = 0.1f * plane_tolerance;
-  auto at = [&](const auto& plane, size_t i) {
-    return load<f8>(plane.data() + i);
-  };
-  size_t a = size_t(cells.index(bx - 1, by - 1));
-  u8 object = load<u8>(&cells.object[a]);
-  f8 nx = at(cells.normal[0], a), ny = at(cells.normal[1], a), nz = at(cells.normal[2], a),
-     px = at(cells.plane[0], a), py = at(cells.plane[1], a), pz = at(cells.plane[2], a);
-  f8 left = rays.x((float(bx) - 0.5f) * cell_size) +
-            float(cell_size) * rays.inverse_focal * f8{0, 1, 2, 3, 4, 5, 6, 7};
-  i8 flat = object != no_object;
-  for (int k = 1; k < 4; k++) {
-    size_t c = a + size_t(k & 1) + size_t(k >> 1) * size_t(cells.stride);
-    f8 x = left + float(k & 1) * float(cell_size) * rays.inverse_focal;
-    float y = rays.y((float(by + (k >> 1)) - 0.5f) * cell_size);
-    f8 cosine = nx * at(cells.normal[0], c) + ny * at(cells.normal[1], c) +
-                nz * at(cells.normal[2], c);
-    f8 off = at(cells.depth, c) * (px * x + py * y + pz) - 1.0f;
-    flat &= (object == load<u8>(&cells.object[c])) & (cosine >= same_direction) &
-            (magnitude(off) < same_depth);
-  }
-  return flat;
-}
-
 // The pixels of a block at (x, y) that lie in the picture.
 struct Extent {
   int first, columns;  // the first pixel of a row, and how many
@@ -196,20 +170,6 @@ Pixels unpack_pixels(const PixelRays& rays, const Block& from, int x, int y) {
   return p;
 }
 
-// Four pixels' channels one after the other.
-void interleave(const f4& r, const f4& g, const f4& b, float* to) {
-  f4 low = __builtin_shufflevector(r, g, 0, 4, 1, 5),
-     high = __builtin_shufflevector(r, g, 2, 6, 3, 7),
-     middle = __builtin_shufflevector(low, b, 3, 5, 3, 5);
-  store(to, __builtin_shufflevector(low, b, 0, 1, 4, 2));
-  store(to + 4, __builtin_shufflevector(middle, high, 0, 1, 4, 5));
-  store(to + 8, __builtin_shufflevector(high, b, 6, 2, 3, 7));
-}
-template <int First>
-f4 part(const f8& v) {
-  return __builtin_shufflevector(v, v, First, First + 1, First + 2, First + 3);
-}
-
 // Writes `count` of four pixels, from the `skip`th on.
 struct Result {
   float color[12];
@@ -249,6 +209,31 @@ void light_pixels(const u8& packed_albedo, const Pixels& p, Result* result) {
 }
 
 }  // namespace
+
+i8 find_flat(const PixelRays& rays, const Cells& cells, int bx, int by) {
+  constexpr float same_direction = 0.998f, same_depth = 0.1f * plane_tolerance;
+  auto at = [&](const auto& plane, size_t i) {
+    return load<f8>(plane.data() + i);
+  };
+  size_t a = size_t(cells.index(bx - 1, by - 1));
+  u8 object = load<u8>(&cells.object[a]);
+  f8 nx = at(cells.normal[0], a), ny = at(cells.normal[1], a), nz = at(cells.normal[2], a),
+     px = at(cells.plane[0], a), py = at(cells.plane[1], a), pz = at(cells.plane[2], a);
+  f8 left = rays.x((float(bx) - 0.5f) * cell_size) +
+            float(cell_size) * rays.inverse_focal * f8{0, 1, 2, 3, 4, 5, 6, 7};
+  i8 flat = object != no_object;
+  for (int k = 1; k < 4; k++) {
+    size_t c = a + size_t(k & 1) + size_t(k >> 1) * size_t(cells.stride);
+    f8 x = left + float(k & 1) * float(cell_size) * rays.inverse_focal;
+    float y = rays.y((float(by + (k >> 1)) - 0.5f) * cell_size);
+    f8 cosine = nx * at(cells.normal[0], c) + ny * at(cells.normal[1], c) +
+                nz * at(cells.normal[2], c);
+    f8 off = at(cells.depth, c) * (px * x + py * y + pz) - 1.0f;
+    flat &= (object == load<u8>(&cells.object[c])) & (cosine >= same_direction) &
+            (magnitude(off) < same_depth);
+  }
+  return flat;
+}
 
 void compose(const View& view, const Cells& cells, bool known, Frame& frame) {
   PixelRays rays(view);

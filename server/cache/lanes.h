@@ -49,6 +49,18 @@ inline bool any(const V& v) {
   return sum != 0;
 }
 
+// Bit i: the answer of a comparison in lane i.
+inline uint32_t bits_of(const i8& mask) {
+#ifdef __AVX__
+  return uint32_t(_mm256_movemask_ps(__m256(mask)));
+#else
+  uint32_t bits = 0;
+  for (int i = 0; i < lanes; i++) bits |= uint32_t(mask[i] < 0) << i;
+  return bits;
+#endif
+}
+inline i8 mask_of(uint32_t bits) { return (i8{1, 2, 4, 8, 16, 32, 64, 128} & int32_t(bits)) != 0; }
+
 // Two halves side by side.
 inline u8 join(const u4& low, const u4& high) {
   return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);

@@ -20,12 +20,6 @@ V load_some(const T* from, int count) {
   std::memcpy(&v, from, size_t(count) * sizeof(uint32_t));
   return v;
 }
-unsigned bits_of(const i8& mask) {
-  unsigned bits = 0;
-  for (int i = 0; i < lanes; i++) bits |= unsigned(mask[i] & 1) << i;
-  return bits;
-}
-i8 mask_of(unsigned bits) { return (i8{1, 2, 4, 8, 16, 32, 64, 128} & int32_t(bits)) != 0; }
 
 // Words of a plane, kept where the mask says so; `x` is where pixels of a run begin.
 void put(Frame& frame, int x, int y, SurfacePlane plane, const u8& words, unsigned bits) {

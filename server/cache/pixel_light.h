@@ -64,6 +64,10 @@ inline void read_cell(const Cells& cells, int x, int y, CellLight& c) {
   c.object = cells.object[i];
 }
 
+// Which of the eight blocks from bx on lie between four cells in one plane: what a pixel has in common
+// with one of those, it has with all.
+i8 find_flat(const PixelRays& rays, const Cells& cells, int bx, int by);
+
 // What the four cells say at each pixel, as far as they lie on the same surface.
 struct Surroundings {
   Color smooth, rest;
@@ -71,7 +75,7 @@ struct Surroundings {
   i8 lonely;  // no cell lies on this surface
 };
 template <class Cell>
-void add(Surroundings& sum, const f8& weight, const Cell& c) {
+[[gnu::always_inline]] inline void add(Surroundings& sum, const f8& weight, const Cell& c) {
   add(sum.smooth, weight, c.smooth[0], c.smooth[1], c.smooth[2]);
   add(sum.rest, weight, c.rest[0], c.rest[1], c.rest[2]);
   sum.patience += weight * c.patience;
@@ -123,11 +127,12 @@ inline f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, mos
 inline i8 is_blind(const Pixels& p) {
   return (p.samples == 0.0f) & (p.deviation >= unpack_deviation(blind_deviation));
 }
-// Where nobody around knows anything of a blind pixel's surface, it is lit as its surroundings are.
+// Where nobody around knows anything of a blind pixel's surface, or of one with less than `few` samples,
+// it is lit as its surroundings are.
 template <class Cell>
 void light_as_neighbours(const Cell* const* corners, const f8* weights, const Pixels& p,
-                         Surroundings& s) {
-  i8 lost = s.lonely & is_blind(p);
+                         Surroundings& s, float few = 0) {
+  i8 lost = s.lonely & (is_blind(p) | (p.samples < few));
   if (!any(lost)) return;
   Surroundings a;
   for (int k = 0; k < 4; k++) add(a, weights[k], *corners[k]);
@@ -140,7 +145,8 @@ void light_as_neighbours(const Cell* const* corners, const f8* weights, const Pi
 
 // Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
 // more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
-inline void blend_light(const Surroundings& s, Pixels& p) {
+// `doubt`: samples that make the own rest count for half of what it would.
+inline void blend_light(const Surroundings& s, Pixels& p, float doubt = 0) {
   const i8& lonely = s.lonely;
   f8 alone = keep(lonely, splat(1));
   // A lone bright sample may exceed its surroundings only as far as more samples confirm it.
@@ -159,6 +165,7 @@ inline void blend_light(const Surroundings& s, Pixels& p) {
   f8 variance = known ? p.deviation * p.deviation : s.noise;
   variance /= larger(p.samples, splat(1));
   f8 detail = s.detail + 1e-9f, own_detail = detail / (detail + variance);
+  own_detail *= p.samples / (p.samples + doubt + 1e-6f);
   own_detail = lonely ? splat(1) : own_detail;
   own_detail = is_blind(p) ? splat(0) : own_detail;
   f8 kept = own_detail * cut_to(own_rest, most_rest);

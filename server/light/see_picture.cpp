@@ -358,7 +358,7 @@ void PictureSight::see(const View& view, vec2 offset,
   impl_->raster.draw(view, settings, [&](const RasterRun& raster_run) {
     thread_local FacetCache facets;
     facets.start(picture);
-    uint32_t object[RasterRun::most];
+    uint32_t object[RasterRun::most + 8];
     for (int p = 0, begin = 0; p < raster_run.pieces; begin = raster_run.end[p++]) {
       uint32_t instance = raster_run.instance[begin];
       uint32_t shown = instance == RasterRun::nothing ? 0 : s.world.object_of(instance);

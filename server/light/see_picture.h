@@ -27,6 +27,7 @@ struct RunSurface {
 class SightRun {
  public:
   int x = 0, y = 0, count = 0;
+  // Arrays may be read, not trusted, up to RasterRun::most + 8.
   const float* depth = nullptr;      // along the viewing axis; infinity: nothing there
   const uint32_t* object = nullptr;  // 0: nothing there
   // Of the pixels whose bit is set, and maybe of others. Returns those of the set bits that shine, or

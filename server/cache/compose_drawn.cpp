@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/compose_drawn.h"
+
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "cache/packing.h"
+#include "cache/pixel_light.h"
+#include "cache/write_pixels.h"
+
+namespace wellspring {
+namespace {
+
+// Pixels are lit in groups that lie between two columns of cell centres: four light pixels, which are
+// packed together, and four cells around. Groups begin half a group before a tile.
+constexpr int group = cell_size * light_scale, half_group = group / 2;
+static_assert(group == lanes && half_group == packed_four / 2 * light_scale);
+
+struct RunPixels {
+  RunSurface surface;
+  float glow_red[RasterRun::most], glow_green[RasterRun::most], glow_blue[RasterRun::most];
+};
+
+// Everything that is drawn of a run. Returns its pixels' bits that shine by themselves.
+uint64_t describe_run(const SightRun& run, RunPixels& p) {
+  uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
+  uint64_t alone = run.describe(all, p.surface), shining = 0;
+  for (; alone != 0; alone &= alone - 1) {
+    int i = std::countr_zero(alone);
+    Seen seen = run.see(i);
+    p.surface.red[i] = seen.albedo.x, p.surface.green[i] = seen.albedo.y;
+    p.surface.blue[i] = seen.albedo.z;
+    p.surface.nx[i] = seen.normal.x, p.surface.ny[i] = seen.normal.y;
+    p.surface.nz[i] = seen.normal.z;
+    if (seen.scatters && seen.glow == vec3(0)) continue;
+    shining |= uint64_t(1) << i;
+    p.glow_red[i] = seen.glow.x, p.glow_green[i] = seen.glow.y, p.glow_blue[i] = seen.glow.z;
+  }
+  return shining;
+}
+
+// Eight lanes of a run's array from lane `i` on, which may begin before it and end behind it.
+f8 lanes_at(const float* from, int i) {
+  if (i >= 0) return load<f8>(from + i);  // arrays may be read up to eight beyond their end
+  f8 v{};
+  std::memcpy(reinterpret_cast<float*>(&v) - i, from, size_t(lanes + i) * sizeof(float));
+  return v;
+}
+
+u8 twice(const u4& v) { return __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3); }
+
+// What the light's points say of the four light pixels of a group, each for two pixels of a row.
+struct OwnLight {
+  u8 plane[surface_planes];
+};
+OwnLight read_own(const Frame& light, int lx, int ly) {
+  OwnLight own;
+  PackedFour four(lx, light.width);
+  if (four.count == packed_four) {
+    size_t at = size_t(ly) * size_t(light.width) + size_t(lx);
+    own.plane[plane_object] = twice(load<u4>(&light.object[at]));
+    own.plane[plane_more] = twice(load<u4>(&light.confidence[at]));
+    own.plane[plane_depth] = twice(load<u4>(&light.depth[at]));
+    const uint32_t* words = packed_words(light, lx, ly);
+    for (int p : {plane_albedo, plane_rest, plane_smooth})
+      own.plane[p] = twice(load<u4>(words + packed_four * p));
+    return own;
+  }
+  uint32_t words[surface_planes][packed_four] = {};
+  for (uint32_t& object : words[plane_object]) object = no_object;
+  for (int x = four.first; x < four.first + four.count; x++) {
+    uint32_t word[surface_planes];
+    read_packed(light, x, ly, word);
+    for (int p = 0; p < surface_planes; p++) words[p][x - lx] = word[p];
+  }
+  for (int p = 0; p < surface_planes; p++) own.plane[p] = twice(load<u4>(words[p]));
+  return own;
+}
+
+// Rest holds light of lamps with the reflectance in it: what of it is left under another one.
+constexpr float dark = 0.05f, brightest = 4;
+// Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
+// or chance nobody knows.
+constexpr float doubt = 3;
+constexpr float few_samples = 4;  // are worth less than what others of another surface say
+f8 under(const f8& light, const f8& albedo, const f8& theirs) {
+  return light * smaller((albedo + dark) / (theirs + dark), splat(brightest));
+}
+
+struct Drawn {
+  Pixels pixels;
+  Color albedo;
+};
+
+// Own light of the pixels, as far as their light pixel's point lies on the same surface.
+void take_own(const View& view, const PixelRays& rays, const OwnLight& own, float light_x,
+              float light_y, Drawn& d) {
+  Pixels& p = d.pixels;
+  u8 more = own.plane[plane_more];
+  f8 samples = to_float((more >> 16) & 255u);
+  auto along = [&](vec3 axis) { return p.nx * axis.x + p.ny * axis.y + p.nz * axis.z; };
+  f8 depth = as<f8>(own.plane[plane_depth]);
+  f8 lx = light_x + light_scale * rays.inverse_focal * f8{0, 0, 1, 1, 2, 2, 3, 3};
+  f8 off = along(view.right) * (p.depth * p.x - depth * lx) +
+           along(view.up) * (p.depth * p.y - depth * light_y) +
+           along(view.forward) * (p.depth - depth);
+  f8 nx, ny, nz;
+  unpack_octahedron(more & 0xffffu, nx, ny, nz);
+  f8 facing = p.nx * nx + p.ny * ny + p.nz * nz;
+  i8 near = off * off <= plane_tolerance * plane_tolerance * p.depth * p.depth * p.normal2;
+  i8 alike = (facing > 0.0f) &
+             (facing * facing > 0.5f * p.normal2 * (nx * nx + ny * ny + nz * nz));
+  i8 same = (p.object == own.plane[plane_object]) & (samples > 0.0f) & near & alike;
+  // At infinity there are no planes.
+  i8 far = p.depth >= 0.5f * infinite_depth;
+  same |= far & (samples > 0.0f) & (depth >= 0.5f * infinite_depth);
+  p.samples = keep(same, samples);
+  p.deviation =
+      same ? unpack_deviation(more >> 24) : splat(unpack_deviation(blind_deviation));
+  Color light, theirs;
+  unpack_rgb9e5(own.plane[plane_smooth], light.r, light.g, light.b);
+  p.smooth = {keep(same, light.r), keep(same, light.g), keep(same, light.b)};
+  unpack_rgb9e5(own.plane[plane_rest], light.r, light.g, light.b);
+  unpack_albedo(own.plane[plane_albedo], theirs.r, theirs.g, theirs.b);
+  p.rest = {keep(same, under(light.r, d.albedo.r, theirs.r)),
+            keep(same, under(light.g, d.albedo.g, theirs.g)),
+            keep(same, under(light.b, d.albedo.b, theirs.b))};
+}
+
+// Two rows of cells around a tile's blocks. Their rest is that of a white surface: the light of a lamp
+// does not end where a picture on the wall does.
+struct CellRows {
+  static constexpr int most = RasterRun::most / group + 2;
+  uint64_t picture = 0;
+  int first = 0, row = 0, count = 0;
+  CellLight cell[2][most];
+  i8 flat[2];
+};
+
+void read_rows(const PixelRays& rays, const Cells& cells, int first, int row, int count,
+               CellRows& rows) {
+  rows.first = first, rows.row = row, rows.count = count;
+  for (int r = 0; r < 2; r++)
+    for (int k = 0; k < count; k++) {
+      CellLight& c = rows.cell[r][k];
+      read_cell(cells, first + k, row + r, c);
+      size_t i = nearest_cell(cells, first + k, row + r);
+      for (size_t n = 0; n < 3; n++) c.rest[n] /= cells.albedo[n][i] + dark;
+    }
+  for (int part = 0; part < 2; part++)
+    rows.flat[part] = find_flat(rays, cells, first + 1 + part * lanes, row + 1);
+}
+
+void light_group(const CellLight* const* corners, bool flat, const f8* weights, Drawn& d) {
+  Pixels& p = d.pixels;
+  Surroundings around = look_around(corners, flat, weights, p);
+  light_as_neighbours(corners, weights, p, around, few_samples);
+  around.rest.r *= d.albedo.r + dark, around.rest.g *= d.albedo.g + dark;
+  around.rest.b *= d.albedo.b + dark;
+  blend_light(around, p, doubt);
+}
+
+}  // namespace
+
+View light_view(const View& view) {
+  View light = view;
+  light.width = (view.width + light_scale - 1) / light_scale;
+  light.height = (view.height + light_scale - 1) / light_scale;
+  light.tan_half_fov =
+      view.tan_half_fov * float(light.height * light_scale) / float(view.height);
+  return light;
+}
+
+int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
+                      const Frame& light, Frame& frame) {
+  static std::atomic<uint64_t> pictures = 0;
+  const uint64_t picture = ++pictures;
+  PixelRays rays(view), light_rays(light_view(view));
+  std::atomic<int64_t> blind = 0;
+  sight.see(view, vec2(0.5f), [&](const SightRun& run) {
+    RunPixels p;
+    uint64_t shining = describe_run(run, p);
+    thread_local CellRows rows;
+    int by = (run.y + half_group) / group, bx = run.x / group;  // the block's lower right cell
+    int groups = (run.count + half_group + group - 1) / group;
+    if (rows.picture != picture || rows.first != bx - 1 || rows.row != by - 1 ||
+        rows.count < groups + 1) {
+      read_rows(light_rays, cells, bx - 1, by - 1, groups + 1, rows);
+      rows.picture = picture;
+    }
+    float fy = (float(run.y - by * group + half_group) + 0.5f) / group;
+    size_t row = size_t(run.y) * size_t(view.width) + size_t(run.x);
+    int64_t blind_here = 0;
+    for (int g = 0; g < groups; g++) {
+      int i = g * group - half_group, x = run.x + i;  // the first lane's pixel
+      int begin = std::max(-i, 0), end = std::min(run.count - i, lanes);
+      Drawn d;
+      Pixels& q = d.pixels;
+      q.depth = smaller(lanes_at(run.depth, i), splat(infinite_depth));
+      q.object = as<u8>(lanes_at(reinterpret_cast<const float*>(run.object), i));
+      q.nx = lanes_at(p.surface.nx, i), q.ny = lanes_at(p.surface.ny, i);
+      q.nz = lanes_at(p.surface.nz, i);
+      d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
+                  lanes_at(p.surface.blue, i)};
+      q.normal2 = larger(q.nx * q.nx + q.ny * q.ny + q.nz * q.nz, splat(1e-30f));
+      q.x = rays.x(float(x) + 0.5f) + rays.inverse_focal * f8{0, 1, 2, 3, 4, 5, 6, 7};
+      q.y = splat(rays.y(float(run.y) + 0.5f));
+      int lx = (x + half_group) / light_scale + packed_start, ly = run.y / light_scale;
+      take_own(view, rays, read_own(light, lx, ly), light_rays.x(float(lx) + 0.5f),
+               light_rays.y(float(ly) + 0.5f), d);
+      constexpr f8 fx = (f8{0, 1, 2, 3, 4, 5, 6, 7} + 0.5f) * (1.0f / group);
+      f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
+      const CellLight* corners[4] = {&rows.cell[0][g], &rows.cell[0][g + 1], &rows.cell[1][g],
+                                     &rows.cell[1][g + 1]};
+      bool flat = rows.flat[g / lanes][g % lanes];
+      uint32_t there = ((1u << end) - 1) & ~((1u << begin) - 1);
+      blind_here += std::popcount(bits_of(q.samples == 0.0f) & there);
+      if (known) light_group(corners, flat, weights, d);
+      f8 r = positive(d.albedo.r * q.smooth.r + q.rest.r),
+         gr = positive(d.albedo.g * q.smooth.g + q.rest.g),
+         b = positive(d.albedo.b * q.smooth.b + q.rest.b);
+      uint64_t shines = i < 0 ? shining << -i : shining >> i;
+      for (uint32_t rest = uint32_t(shines) & there; rest != 0; rest &= rest - 1) {
+        int lane = std::countr_zero(rest);
+        r[lane] = p.glow_red[i + lane], gr[lane] = p.glow_green[i + lane];
+        b[lane] = p.glow_blue[i + lane];
+        q.samples[lane] = 255;
+      }
+      float color[3 * lanes];
+      interleave(part<0>(r), part<0>(gr), part<0>(b), color);
+      interleave(part<4>(r), part<4>(gr), part<4>(b), color + 12);
+      f8 confidence = q.samples / (q.samples + 8.0f);
+      f8 depth = q.depth < 0.5f * infinite_depth ? q.depth
+                                                 : splat(std::numeric_limits<float>::infinity());
+      if (end - begin == lanes) {
+        size_t at = row + size_t(i);
+        std::memcpy(&frame.color[at].x, color, sizeof color);
+        store(&frame.confidence[at], confidence);
+        store(&frame.depth[at], depth);
+        store(&frame.object[at], q.object);
+        continue;
+      }
+      size_t at = row + size_t(i + begin), many = size_t(end - begin);
+      auto copy = [&](auto* to, const auto& from, size_t words) {
+        std::memcpy(to, reinterpret_cast<const float*>(&from) + size_t(begin) * words,
+                    many * words * sizeof(float));
+      };
+      copy(&frame.color[at].x, color, 3);
+      copy(&frame.confidence[at], confidence, 1);
+      copy(&frame.depth[at], depth, 1);
+      copy(&frame.object[at], q.object, 1);
+    }
+    blind += blind_here;
+  });
+  return blind;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture drawn anew every frame (light/see_picture.h) in light that points remember at half its
+// resolution: while the visitor moves, shapes and reflectances are what has to be sharp, light is smoother
+// than both, and a quarter of the points tells it sooner.
+#pragma once
+#include "cache/cells.h"
+#include "frame/frame.h"
+#include "light/see_picture.h"
+
+namespace wellspring {
+
+inline constexpr int light_scale = 2;  // pixels of the picture a side of one pixel of its light
+
+// The view of the light: its pixels are light_scale pixels of the picture wide.
+View light_view(const View& view);
+
+// Overwrites all planes of `frame`. `light`: of light_view(view), its planes packed as read_surface()
+// leaves them, with `cells` filled from it; `known`: what fill_cells() said. Returns the number of
+// pixels lit by no point of their own.
+int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
+                      const Frame& light, Frame& frame);
+
+}  // namespace wellspring

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pixels of a frame from lanes.
+#pragma once
+#include <cstring>
+
+#include "cache/lanes.h"
+#include "frame/frame.h"
+
+namespace wellspring {
+
+// Four pixels' channels one after the other.
+inline void interleave(const f4& r, const f4& g, const f4& b, float* to) {
+  f4 low = __builtin_shufflevector(r, g, 0, 4, 1, 5),
+     high = __builtin_shufflevector(r, g, 2, 6, 3, 7),
+     middle = __builtin_shufflevector(low, b, 3, 5, 3, 5);
+  store(to, __builtin_shufflevector(low, b, 0, 1, 4, 2));
+  store(to + 4, __builtin_shufflevector(middle, high, 0, 1, 4, 5));
+  store(to + 8, __builtin_shufflevector(high, b, 6, 2, 3, 7));
+}
+template <int First>
+f4 part(const f8& v) {
+  return __builtin_shufflevector(v, v, First, First + 1, First + 2, First + 3);
+}
+
+}  // namespace wellspring
