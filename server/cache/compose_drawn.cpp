@@ -84,7 +84,6 @@ constexpr float dark = 0.05f, brightest = 4;
 // Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
 // or chance nobody knows.
 constexpr float doubt = 3;
-constexpr float few_samples = 4;  // are worth less than what others of another surface say
 f8 under(const f8& light, const f8& albedo, const f8& theirs) {
   return light * smaller((albedo + dark) / (theirs + dark), splat(brightest));
 }
@@ -129,13 +128,12 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
             keep(same, under(light.b, d.albedo.b, theirs.b))};
 }
 
-// Two rows of cells around a tile's blocks. Their rest is that of a white surface: the light of a lamp
-// does not end where a picture on the wall does.
+// Two rows of cells around a tile's blocks.
 struct CellRows {
   static constexpr int most = RasterRun::most / group + 2;
   uint64_t picture = 0;
   int first = 0, row = 0, count = 0;
-  CellLight cell[2][most];
+  PaintedCell cell[2][most];
   i8 flat[2];
 };
 
@@ -144,21 +142,23 @@ void read_rows(const PixelRays& rays, const Cells& cells, int first, int row, in
   rows.first = first, rows.row = row, rows.count = count;
   for (int r = 0; r < 2; r++)
     for (int k = 0; k < count; k++) {
-      CellLight& c = rows.cell[r][k];
+      PaintedCell& c = rows.cell[r][k];
       read_cell(cells, first + k, row + r, c);
       size_t i = nearest_cell(cells, first + k, row + r);
-      for (size_t n = 0; n < 3; n++) c.rest[n] /= cells.albedo[n][i] + dark;
+      for (size_t n = 0; n < 3; n++) c.albedo[n] = cells.albedo[n][i];
     }
   for (int part = 0; part < 2; part++)
     rows.flat[part] = find_flat(rays, cells, first + 1 + part * lanes, row + 1);
 }
 
-void light_group(const CellLight* const* corners, bool flat, const f8* weights, Drawn& d) {
+// The light of a lamp does not end where a picture on the wall does.
+void light_group(const PaintedCell* const* corners, bool flat, const f8* weights, Drawn& d) {
   Pixels& p = d.pixels;
   Surroundings around = look_around(corners, flat, weights, p);
-  light_as_neighbours(corners, weights, p, around, few_samples);
-  around.rest.r *= d.albedo.r + dark, around.rest.g *= d.albedo.g + dark;
-  around.rest.b *= d.albedo.b + dark;
+  light_as_neighbours(corners, weights, p, around);
+  around.rest = {under(around.rest.r, d.albedo.r, around.albedo.r),
+                 under(around.rest.g, d.albedo.g, around.albedo.g),
+                 under(around.rest.b, d.albedo.b, around.albedo.b)};
   blend_light(around, p, doubt);
 }
 
@@ -212,8 +212,8 @@ int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& 
                light_rays.y(float(ly) + 0.5f), d);
       constexpr f8 fx = (f8{0, 1, 2, 3, 4, 5, 6, 7} + 0.5f) * (1.0f / group);
       f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
-      const CellLight* corners[4] = {&rows.cell[0][g], &rows.cell[0][g + 1], &rows.cell[1][g],
-                                     &rows.cell[1][g + 1]};
+      const PaintedCell* corners[4] = {&rows.cell[0][g], &rows.cell[0][g + 1], &rows.cell[1][g],
+                                       &rows.cell[1][g + 1]};
       bool flat = rows.flat[g / lanes][g % lanes];
       uint32_t there = ((1u << end) - 1) & ~((1u << begin) - 1);
       blind_here += std::popcount(bits_of(q.samples == 0.0f) & there);

@@ -72,7 +72,12 @@ i8 find_flat(const PixelRays& rays, const Cells& cells, int bx, int by);
 struct Surroundings {
   Color smooth, rest;
   f8 patience{}, detail{}, noise{};
-  i8 lonely;  // no cell lies on this surface
+  Color albedo;  // of cells that tell it
+  i8 lonely;     // no cell lies on this surface
+};
+// With the reflectance that its rest was seen under.
+struct PaintedCell : CellLight {
+  float albedo[3];
 };
 template <class Cell>
 [[gnu::always_inline]] inline void add(Surroundings& sum, const f8& weight, const Cell& c) {
@@ -81,6 +86,8 @@ template <class Cell>
   sum.patience += weight * c.patience;
   sum.detail += weight * c.detail;
   sum.noise += weight * c.noise;
+  if constexpr (requires { c.albedo; })
+    add(sum.albedo, weight, c.albedo[0], c.albedo[1], c.albedo[2]);
 }
 
 // How much a cell's surface is that of the pixels.
@@ -115,7 +122,7 @@ Surroundings look_around(const Cell* const* corners, bool flat, const f8* weight
   }
   s.lonely = sum <= least;
   f8 share = 1.0f / larger(sum, splat(least));
-  for (Color* c : {&s.smooth, &s.rest}) c->r *= share, c->g *= share, c->b *= share;
+  for (Color* c : {&s.smooth, &s.rest, &s.albedo}) c->r *= share, c->g *= share, c->b *= share;
   s.patience *= share, s.detail *= share, s.noise *= share;
   return s;
 }
@@ -127,18 +134,23 @@ inline f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, mos
 inline i8 is_blind(const Pixels& p) {
   return (p.samples == 0.0f) & (p.deviation >= unpack_deviation(blind_deviation));
 }
-// Where nobody around knows anything of a blind pixel's surface, or of one with less than `few` samples,
-// it is lit as its surroundings are.
+// Where nobody around knows anything of a blind pixel's surface, it is lit as its surroundings are.
 template <class Cell>
 void light_as_neighbours(const Cell* const* corners, const f8* weights, const Pixels& p,
-                         Surroundings& s, float few = 0) {
-  i8 lost = s.lonely & (is_blind(p) | (p.samples < few));
+                         Surroundings& s) {
+  i8 lost = s.lonely & is_blind(p);
   if (!any(lost)) return;
   Surroundings a;
-  for (int k = 0; k < 4; k++) add(a, weights[k], *corners[k]);
+  for (int k = 0; k < 4; k++) {
+    // What lamps, mirrors and the sky show is no light that falls there.
+    if constexpr (requires { corners[k]->albedo; })
+      if (corners[k]->albedo[0] + corners[k]->albedo[1] + corners[k]->albedo[2] < 0.01f) continue;
+    add(a, weights[k], *corners[k]);
+  }
   auto take = [&](f8& to, const f8& from) { to = lost ? from : to; };
   take(s.smooth.r, a.smooth.r), take(s.smooth.g, a.smooth.g), take(s.smooth.b, a.smooth.b);
   take(s.rest.r, a.rest.r), take(s.rest.g, a.rest.g), take(s.rest.b, a.rest.b);
+  take(s.albedo.r, a.albedo.r), take(s.albedo.g, a.albedo.g), take(s.albedo.b, a.albedo.b);
   take(s.patience, a.patience), take(s.detail, a.detail), take(s.noise, a.noise);
   s.lonely = lost ? i8{} : s.lonely;
 }

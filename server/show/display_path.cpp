@@ -12,7 +12,8 @@ constexpr double edge_share = 0.12;                   // of the time, on path `c
 constexpr double enter_primary = 0.4, leave_primary = 0.55;  // of the time, for all pixels' looks
 constexpr double enter_drawn = 0.6, leave_drawn = 0.8;  // of the time, for drawing
 // Seconds a picture may take with it: while the visitor walks, and while only the storyteller moves.
-constexpr double enter_period[] = {1.0 / 26, 0.08}, leave_period[] = {1.0 / 23, 0.1};
+constexpr double enter_period[] = {1.0 / 22, 0.08}, leave_period[] = {1.0 / 18, 0.1};
+constexpr double unmeasured_light = 0.4;  // of the display's time, where light is coarser
 constexpr double least_light = 0.25;  // of the time goes to light, whatever is drawn
 constexpr int drawn_samples = 1000;  // the same where shapes are drawn: only light has to be guessed
 constexpr int least_samples = 2000;                   // a picture, however slow the machine
@@ -29,16 +30,20 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
   plan.primary = all_seconds <= (before.primary ? leave_primary : enter_primary) * seconds;
   double drawing = costs.drawing_seconds;
   double light = std::max(least_light * seconds, drawn_samples / std::max(costs.samples_per_second, 1.0));
-  double period = costs.display_seconds + drawing + light;
+  double display = costs.display_seconds;
+  if (!stands) display = costs.light_seconds > 0 ? costs.light_seconds : unmeasured_light * display;
+  double period = display + drawing + light;
   plan.drawn = drawing <= (before.drawn ? leave_drawn : enter_drawn) * seconds ||
                period <= (before.drawn ? leave_period : enter_period)[stands];
   if (wish != DrawShapes::automatic) plan.drawn = wish == DrawShapes::always;
   plan.drawn &= !plan.primary;
-  if (plan.drawn) seconds = std::max(seconds - drawing, least_light * seconds);
-  double look_seconds = plan.primary ? all_seconds : edge_share * seconds;
+  bool coarse = plan.drawn && !stands;  // edges are drawn, light has a quarter of the pixels
+  if (plan.drawn) seconds = std::max(seconds + costs.display_seconds - display - drawing, least_light * seconds);
+  double look_seconds = plan.primary ? all_seconds : coarse ? 0 : edge_share * seconds;
   plan.looks = plan.primary ? int(all_looks) : whole(look_seconds * costs.looks_per_second, all_looks);
   plan.samples = std::max(
-      whole((seconds - look_seconds) * costs.samples_per_second, 0.5 * double(pixels)),
+      whole((seconds - look_seconds) * costs.samples_per_second,
+            (coarse ? 0.125 : 0.5) * double(pixels)),
       std::min(plan.drawn ? drawn_samples : least_samples, int(pixels)));
   return plan;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a picture's time is spent on, decided by what was measured. Path `cache`: nearly all goes to
 // samples, a little to looks at edges (cache/looks.h). Path `primary`: shape and reflectance of every
-// pixel are exact, drawn (cache/overlay.h) while that leaves time for light, or with every pixel looked
+// pixel are exact, drawn (cache/overlay.h, cache/compose_drawn.h) while that leaves time for light, or with every pixel looked
 // at where even that does: a quick machine, a small picture, few visitors. Drawing may slow pictures down, but not
-// below some 24 a second of a walking visitor and ten of one who stands before the storyteller.
+// below some 20 a second of a walking visitor and ten of one who stands before the storyteller.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,12 +14,13 @@ struct DisplayCosts {
   double samples_per_second = 0, looks_per_second = 0;  // all cores
   double drawing_seconds = 0;  // of a picture, all cores; 0: never measured
   double display_seconds = 0;  // what a picture takes besides: reprojection, composing, tone mapping
+  double light_seconds = 0;    // the same of one drawn in coarser light; 0: never measured
 };
 
 enum class DrawShapes : uint8_t { automatic, never, always };  // server option --draw
 
 struct DisplayPlan {
-  bool drawn = false;
+  bool drawn = false;    // while the visitor moves in light of half the resolution (cache/compose_drawn.h)
   bool primary = false;  // every pixel is looked at
   int samples = 0, looks = 0;
 };

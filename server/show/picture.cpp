@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "base/rng.h"
 #include "cache/trace_waiting.h"
+#include "cache/compose_drawn.h"
 #include "frame/jpeg.h"
 #include "show/display_path.h"
 #include "show/in_view.h"
@@ -57,6 +58,14 @@ bool may_be_late(const Show& show, const Visitor& visitor, const Technique& tech
          samples <= BrokerSettings{}.most_waiting && visitor.cache.covered() > barely_covered;
 }
 
+DisplayCosts display_costs(const Show& show, const Visitor& visitor) {
+  const StageTimes& times = visitor.times;
+  auto seconds = [](float milliseconds) { return 0.001 * double(milliseconds); };
+  return {show.samples_per_second, show.looks_per_second, seconds(times.drawing),
+          seconds(times.display + times.tonemap),
+          times.light > 0 ? seconds(times.light + times.tonemap) : 0};
+}
+
 // On another core: the tick goes on meanwhile, and waits before it touches the image again.
 void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool full_chroma) {
   Encoder* encoder = visitor.encoder.get();
@@ -106,49 +115,54 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   uint32_t seq = visitor.seq;
   double began = seconds_now();
 
-  cache.resize(view.width, view.height);
-  cache.move_points(*show.world);
-  land(visitor.broker.collect(), *show.world, show.pose_number, cache);
-  cache.project(view);
-  cache.attend();
   uint64_t seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
   double seconds = seconds_to_trace(show, visitor, busy);
   DisplayPlan display = plan_display(seconds, size_t(view.width) * size_t(view.height),
-                                     {show.samples_per_second, show.looks_per_second, 0.001 * double(visitor.times.drawing),
-                                      0.001 * double(visitor.times.display + visitor.times.tonemap)},
+                                     display_costs(show, visitor),
                                      visitor.display, still, show.settings.draw);
   visitor.budget = display.samples;
   visitor.display = display;
+  // Who moves is shown shapes and reflectances as they are, in light of half their resolution.
+  bool coarse = display.drawn && !still && show.sight && show.sight->can_see(view);
+  View lit = coarse ? light_view(view) : view;
+  cache.resize(lit.width, lit.height);
+  cache.move_points(*show.world);
+  land(visitor.broker.collect(), *show.world, show.pose_number, cache);
+  cache.project(lit);
+  cache.attend();
   bool settled = show.time - visitor.moved_at > settled_after;
   const Technique& technique = settled ? *show.still_technique : *show.technique;
   int most_asked = int(more_asked * float(display.samples));
   bool late = !still && may_be_late(show, visitor, technique, most_asked);
-  cache.plan(view, late ? most_asked : display.samples, seed, visitor.requests);
+  cache.plan(lit, late ? most_asked : display.samples, seed, visitor.requests);
   double planned = seconds_now();
   TransportSettings transport = show.settings.transport;
   if (!settled) transport.clamp = show.settings.moving_clamp;
   if (late) {
-    visitor.broker.ask(view, {&technique, transport}, visitor.requests);
-    visitor.broker_seconds = seconds - double(display.looks) / std::max(double(show.looks_per_second), 1.0) -
-                             (display.drawn ? 0.001 * double(visitor.times.drawing) : 0.0);
+    visitor.broker.ask(lit, {&technique, transport}, visitor.requests);
+    visitor.broker_seconds = double(display.samples) / std::max(double(show.samples_per_second), 1.0);
     visitor.samples.clear();
   } else {
     visitor.samples.resize(visitor.requests.size());
     if (technique.begin_pass)
-      technique.begin_pass(*show.world, transport, view, visitor.link->id, uint32_t(show.ticks),
+      technique.begin_pass(*show.world, transport, lit, visitor.link->id, uint32_t(show.ticks),
                            show.lights);
     trace(technique, *show.world, show.lights, transport, visitor.requests, visitor.samples);
   }
   double traced = seconds_now();
-  if (!late) cache.remember(view, visitor.requests, visitor.samples);
+  if (!late) cache.remember(lit, visitor.requests, visitor.samples);
   bool guessed = cache.stats().filled > few_guessed || !still || sees_figure(show, view);
-  bool drawn = display.drawn && guessed;
-  cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, visitor.frame, visitor.looks);
+  bool drawn = coarse || (display.drawn && guessed);
+  visitor.looks.clear();
+  if (coarse)
+    cache.draw(view, *show.sight, visitor.frame);
+  else
+    cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, visitor.frame, visitor.looks);
   visitor.seen.resize(visitor.looks.size());
   double surveyed = seconds_now();
   see(*show.world, show.lights, visitor.looks, visitor.seen);
   double looked = seconds_now();
-  cache.reconstruct(view, visitor.seen, visitor.frame);
+  if (!coarse) cache.reconstruct(view, visitor.seen, visitor.frame);
   double reconstructed = seconds_now();
 
   Encoder& encoder = *visitor.encoder;
@@ -184,7 +198,7 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
     float rate = float(double(visitor.looks.size()) / (looked - surveyed));
     show.looks_per_second += (rate - show.looks_per_second) * 0.1f;
   }
-  smooth(visitor.times.display,
+  smooth(coarse ? visitor.times.light : visitor.times.display,
          float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))) -
              (drawn ? cache.stats().drawing_ms : 0.0f));
   if (drawn) smooth(visitor.times.drawing, cache.stats().drawing_ms);

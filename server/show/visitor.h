@@ -21,7 +21,7 @@ namespace wellspring {
 
 // Milliseconds of the last picture's stages, smoothed: for the status page and the budget.
 struct StageTimes {
-  float display = 0, trace = 0, look = 0, drawing = 0, tonemap = 0, encode = 0;
+  float display = 0, light = 0, trace = 0, look = 0, drawing = 0, tonemap = 0, encode = 0;
 };
 
 // The JPEG made on another core while the next tick begins.

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "cache/broker.h"
+#include "cache/compose_drawn.h"
 #include "cache/looks.h"
 
 namespace wellspring {
@@ -57,14 +58,18 @@ class CacheMethod : public VisitMethod {
  public:
   CacheMethod(Answers answers, bool primary) : answers_(answers), primary_(primary) {}
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
-    const View& view = moment.view;
+    if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
+    last_view_ = moment.view;
+    // As show/picture.cpp draws what moves.
+    bool coarse = primary_ && moment.frame - moved_ < still_after && sight(moment).can_see(moment.view);
+    const View view = coarse ? light_view(moment.view) : moment.view;
     cache_.resize(view.width, view.height);
     cache_.move_points(*moment.world);
     uint64_t pose = uint64_t(moment.frame);
     land(broker_.collect(), *moment.world, pose, cache_);
     cache_.project(view);
     cache_.attend();
-    int price = int(look_share * budget);
+    int price = coarse ? 0 : int(look_share * budget);
     int looks = std::min(looks_a_pixel * view.width * view.height, price * looks_a_sample);
     budget -= price;
     cache_.plan(view, budget, moment.seed, batch_.requests);
@@ -81,10 +86,10 @@ class CacheMethod : public VisitMethod {
       batch_.trace(moment);
       cache_.remember(view, batch_.requests, batch_.samples);
     }
-    cache_.survey(view, primary_ ? &sight(moment) : nullptr, looks, shown.frame, rays_);
-    seen_.resize(rays_.size());
-    see(*moment.world, *moment.lights, rays_, seen_);
-    cache_.reconstruct(view, seen_, shown.frame);
+    if (coarse)
+      cache_.draw(moment.view, sight(moment), shown.frame);
+    else
+      finish(moment, looks, shown.frame);
     shown.stats = cache_.stats();
     shown.empty = shown.stats.empty;
     if (answers_ != Answers::waited_for) return;
@@ -93,6 +98,13 @@ class CacheMethod : public VisitMethod {
   }
 
  private:
+  static constexpr int still_after = 15;  // frames
+  void finish(const VisitMoment& moment, int looks, Frame& frame) {
+    cache_.survey(moment.view, primary_ ? &sight(moment) : nullptr, looks, frame, rays_);
+    seen_.resize(rays_.size());
+    see(*moment.world, *moment.lights, rays_, seen_);
+    cache_.reconstruct(moment.view, seen_, frame);
+  }
   const PictureSight& sight(const VisitMoment& moment) {
     if (!sight_ || sees_ != moment.lights->tables)
       sight_ = std::make_unique<PictureSight>(*moment.world, *moment.lights);
@@ -106,6 +118,8 @@ class CacheMethod : public VisitMethod {
   std::vector<Ray> rays_;
   std::vector<Seen> seen_;
   RenderCache cache_;
+  View last_view_;
+  int moved_ = 0;
   Batch batch_;
   Broker broker_{{.piece = 512, .most_waiting = 1 << 20, .most_traced = 1 << 20, .most_answered = 1 << 20}};
   VisitPicture before_;
@@ -246,7 +260,7 @@ class Frameless : public VisitMethod {
 constexpr VisitMethodEntry list[] = {
     {"cache", "render cache, answers in the same frame", false,
      [] { return make_cache_method(Answers::at_once); }},
-    {"primary", "the same with every pixel looked at", false, make_primary_method},
+    {"primary", "the same with shapes and reflectances drawn", false, make_primary_method},
     {"cache_late", "render cache, answers a frame late", false,
      [] { return make_cache_method(Answers::next_frame); }},
     {"cache_behind", "render cache, pictures a frame late", false,

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cache/cache.h"
+#include "cache/compose_drawn.h"
 #include "frame/compare.h"
 #include "light/technique.h"
 #include "scenes/scenes.h"
@@ -34,6 +35,20 @@ struct Visit {
     trace(*find_technique("path"), world, lights, {}, requests, samples);
     cache.remember(view, requests, samples);
     cache.reconstruct(view, frame, sight);
+  }
+  // As step(), drawn in light of half the resolution.
+  void draw(const World& world, const Lights& lights, const View& view, int budget,
+            const PictureSight& sight) {
+    View light = light_view(view);
+    cache.resize(light.width, light.height);
+    cache.move_points(world);
+    cache.project(light);
+    cache.attend();
+    cache.plan(light, budget, tick++, requests);
+    samples.resize(requests.size());
+    trace(*find_technique("path"), world, lights, {}, requests, samples);
+    cache.remember(light, requests, samples);
+    cache.draw(view, sight, frame);
   }
 };
 
@@ -134,4 +149,68 @@ TEST(Overlay, AnEmptyCacheIsDark) {
   visit.step(world, lights, view, 0, &sight);
   EXPECT_EQ(visit.requests.size(), 0u);
   for (vec3 c : visit.frame.color) ASSERT_TRUE(is_finite(c));
+}
+
+// Odd sizes and both kinds of size in turn: tiles, blocks and light pixels end anywhere.
+TEST(Overlay, LightOfHalfTheResolutionIsEnough) {
+  Room room;
+  World world(room.scene, {room.ball}, {uint32_t(room.scene.objects.size() - 1)});
+  world.commit();
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  for (ivec2 size : {ivec2(160, 120), ivec2(151, 97)}) {
+    Visit drawn, overlaid, guessed;
+    int pixels = size.x * size.y;
+    View view;
+    for (int i = 0; i < 24; i++) {
+      for (vec3& p : room.ball.positions) p.x += 0.004f;
+      world.move(0, room.ball.positions, room.ball.normals);
+      world.commit();
+      double x = 0.002 * i + (i >= 12 ? 0.1 : 0);
+      view = make_view(room.scene, {x, 0.25, 0.6}, 0, 0, 0.7f, size.x, size.y);
+      drawn.draw(world, lights, view, pixels / 60, sight);
+      overlaid.step(world, lights, view, pixels / 60, &sight);
+      guessed.step(world, lights, view, pixels / 60, nullptr);
+    }
+    ASSERT_EQ(drawn.frame.color.size(), size_t(pixels));
+    int wrong = 0;
+    for (int y = 0; y < size.y; y++)
+      for (int px = 0; px < size.x; px++) {
+        Hit hit = world.intersect(view_ray(view, float(px) + 0.5f, float(y) + 0.5f));
+        size_t at = size_t(y * size.x + px);
+        wrong += drawn.frame.object[at] != (hit.valid() ? world.object_of(hit.instance) : 0);
+        float depth = hit.valid() ? hit.t : std::numeric_limits<float>::infinity();
+        if (std::isinf(depth)) EXPECT_TRUE(std::isinf(drawn.frame.depth[at]));
+      }
+    EXPECT_LT(wrong, pixels / 1000);
+    StillSettings settings;
+    settings.spp = 32;
+    Frame truth = render_still(*find_technique("path"), world, lights, view, settings);
+    double error = rmse(drawn.frame, truth);
+    EXPECT_LT(error, 1.1 * rmse(overlaid.frame, truth)) << size.x;
+    EXPECT_LT(error, 0.9 * rmse(guessed.frame, truth)) << size.x;
+    for (vec3 c : drawn.frame.color)
+      ASSERT_TRUE(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);
+    EXPECT_LT(drawn.cache.memory_bytes(), overlaid.cache.memory_bytes());
+  }
+}
+
+TEST(Overlay, DrawnPicturesShineAndMayBeDark) {
+  Scene scene = empty_scene();
+  scene.environment.radiance = vec3(0.5f, 1, 2);
+  add_quad(scene, add_material(scene, emitter(vec3(3, 2, 1))), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0},
+           "lamp");
+  World world(scene);
+  world.commit();
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  for (int budget : {0, 12}) {
+    Visit visit;
+    View view = make_view(scene, {0, 0, 0}, 0, 0, 1, 101, 67);
+    for (int i = 0; i < 3; i++) visit.draw(world, lights, view, budget, sight);
+    auto color = [&](int x, int y) { return visit.frame.color[size_t(y * 101 + x)]; };
+    EXPECT_LT(glm::length(color(50, 33) - vec3(3, 2, 1)), 1e-5f);
+    EXPECT_LT(glm::length(color(4, 4) - vec3(0.5f, 1, 2)), 1e-5f);
+    EXPECT_LT(glm::length(color(100, 66) - vec3(0.5f, 1, 2)), 1e-5f);
+  }
 }
