@@ -7,11 +7,18 @@
 #include "light/walk.h"
 
 namespace wellspring {
+namespace {
+
+// So that what a matt surface's rays meet has an alpha of 1/4, a roughness of 1/2.
+constexpr float blunt = 0.14f;
+
+}  // namespace
 
 void trace_many_gather(const World& world, const Lights& lights, const TransportSettings& settings,
                        std::span<const Request> requests, std::span<Sample> samples) {
   WalkRules rules;
   rules.max_depth = settings.max_depth;
+  if (lights.grid) rules.blunt = blunt;
   trace_samples({world, *lights.tables, lights.grid.get()}, rules, requests, samples);
   for (Sample& sample : samples) sample = finish_sample(lights, settings, sample);
 }

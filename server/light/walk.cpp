@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/bsdf_frame.h"
 #include "light/bsdf_gloss.h"
 #include "light/part_colors.h"
 #include "light/radiance_grid.h"
@@ -181,6 +182,15 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
 
 namespace {
 
+void make_blunt(const WalkRules& rules, const Walk& walk, Surface& surface) {
+  constexpr float bluntest = 0.25f;
+  bool perfect = alpha_of(surface.roughness) == 0;  // no lamp without a size has a highlight there
+  if (!(walk.pdf > 0) || perfect || surface.transmission > 0) return;
+  float alpha = std::min(bluntest, rules.blunt / std::sqrt(walk.pdf));
+  surface.roughness = std::max(surface.roughness, std::sqrt(alpha));
+  surface.clearcoat_roughness = std::max(surface.clearcoat_roughness, std::sqrt(alpha));
+}
+
 // One step of the walk at a matt surface. False: it ends here.
 bool scatter_matt(const Transport& transport, const WalkRules& rules, Walk& walk, const Hit& hit,
                   uint32_t base, Sampler& sampler, vec3& radiance) {
@@ -237,6 +247,7 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
       if (!advance(walk, surface, straight)) return radiance;
       continue;
     }
+    if (rules.blunt > 0) make_blunt(rules, walk, surface);
     Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
     std::optional<WavelengthSpread> spread;
     part_colors(transport, walk, surface, base, sampler, bsdf, spread);

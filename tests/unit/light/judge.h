@@ -46,11 +46,10 @@ struct Effort {
   uint64_t seed = 1;
 };
 
-// Mean luminance of the picture in the view.
-inline Estimate estimate_radiance(const Technique& technique, const World& world, Lights lights,
-                                  const View& view, const TransportSettings& transport,
-                                  const Effort& effort) {
-  if (technique.prepare) technique.prepare(world, std::span(&view.position, 1), lights);
+// Mean luminance of the picture in the view, by lights that the technique has prepared.
+inline Estimate estimate_prepared(const Technique& technique, const World& world,
+                                  const Lights& lights, const View& view,
+                                  const TransportSettings& transport, const Effort& effort) {
   std::vector<double> replicates(size_t(effort.replicates));
   parallel_for(effort.replicates, [&](int i) {
     StillSettings settings;
@@ -63,6 +62,12 @@ inline Estimate estimate_radiance(const Technique& technique, const World& world
     replicates[size_t(i)] = sum / double(frame.color.size());
   });
   return make_estimate(replicates);
+}
+inline Estimate estimate_radiance(const Technique& technique, const World& world, Lights lights,
+                                  const View& view, const TransportSettings& transport,
+                                  const Effort& effort) {
+  if (technique.prepare) technique.prepare(world, std::span(&view.position, 1), lights);
+  return estimate_prepared(technique, world, lights, view, transport, effort);
 }
 
 // A picture so narrow that all of it is one ray; techniques that work in passes over a picture
