@@ -21,7 +21,7 @@ struct Eye {
   Sampler sampler;
   Sample sample;
   FirstSurface first;
-  std::optional<WavelengthSpread> spread;  // of its colours
+  std::unique_ptr<std::optional<WavelengthSpread>> spread;  // of its colours, if it parts them
   int set = 0, region = -1;
   bool soft = false;    // rough gloss is filtered with the diffuse light
   vec3 reflectance{0};  // sample.albedo without the tint
@@ -56,7 +56,7 @@ void follow_first(const EyeLight& light, Eye& eye) {
     Walk next = first.walk;
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::specular, eye.sampler);
     if (eye.spread)
-      carry_wavelengths(*eye.spread, bsdf, Lobes::specular, scattered, next.wavelengths);
+      carry_wavelengths(**eye.spread, bsdf, Lobes::specular, scattered, next.wavelengths);
     scattered.weight /= chance;
     next.area_share = scattered.pdf > 0 && transport.tables.area_share > 0 ? 1.0f : 0.0f;
     if (advance(next, first.surface, scattered))
@@ -108,8 +108,11 @@ void trace_many_instant(const World& world, const Lights& lights,
     eye.first =
         find_first_surface(transport, settings.max_depth, request, eye.sampler, eye.sample);
     if (!eye.first.scatters) continue;
-    part_seen_colors(transport, eye.first.walk, eye.first.surface, eye.sampler, eye.first.bsdf,
-                     eye.spread);
+    if (parts_colors(transport, eye.first.walk.media, eye.first.surface)) {
+      eye.spread = std::make_unique<std::optional<WavelengthSpread>>();
+      part_seen_colors(transport, eye.first.walk, eye.first.surface, eye.sampler, eye.first.bsdf,
+                       *eye.spread);
+    }
     split_first(eye);
     order.push_back(uint32_t(i));
   }
