@@ -138,6 +138,33 @@ TEST(Dispersion, ClustersAgreeWithSingleWavelengths) {
             significance_z * single[0].error());  // colours part
 }
 
+// An eye and a light of one hue each are, in the mean over the light's hues, one walk of the eye's: each
+// has coloured what it brings, and the colour counts once. Where either is in colour, nothing changes.
+TEST(Dispersion, HuesThatMeetCountOnce) {
+  constexpr int steps = 8192;
+  for (float eye : {0.0f, 0.01f, 0.3f, 0.5f, 0.97f}) {
+    glm::dvec3 mean(0);
+    int colored[3] = {0, 0, 0}, within = 0;
+    for (int i = 0; i < steps; i++) {
+      float light = (float(i) + 0.5f) / steps;
+      vec3 response = response_at(light), both = meet_hues(eye, light) * response;
+      mean += glm::dvec3(both) / double(steps);
+      if (std::abs(eye - light) > hue_bandwidth / 2) {
+        EXPECT_EQ(both, vec3(0));
+        continue;
+      }
+      within++;
+      for (int c = 0; c < 3; c++) colored[c] += response[c] > 0;
+    }
+    ASSERT_GT(within, steps / 20);
+    // A channel without response at some of the hues cannot bring those.
+    for (int c = 0; c < 3; c++)
+      EXPECT_NEAR(mean[c], double(colored[c]) / within, 2.0 / within) << eye << ", channel " << c;
+  }
+  EXPECT_EQ(meet_hues(-1, 0.4f), vec3(1));
+  EXPECT_EQ(meet_hues(0.4f, -1), vec3(1));
+}
+
 // White light from one side through a prism: the shorter the wavelength, the farther it is bent.
 TEST(Dispersion, APrismSpreadsItsHuesInOrder) {
   Material m = flint(0);

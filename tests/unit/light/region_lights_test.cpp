@@ -139,6 +139,31 @@ TEST(EdgeSamples, EdgesAreMeansOverTheirPixels) {
   EXPECT_LT(std::pow(refined.error() / plain.error(), 2), 0.7 / 16 * 1.5);
 }
 
+TEST(PaneBoxes, EveryOneOfManyPanesIsAsked) {
+  for (int panes : {1, 7, 8, 9, 21}) {
+    Scene scene = empty_scene();
+    int pane = add_material(scene, glass(1.5f, 0, 0));
+    auto place = [](int i) { return vec3(2.0f * float(i), 0, -2); };
+    for (int i = 0; i < panes; i++)
+      add_mesh(scene, box_mesh(pane, {1, 1, 0.01f}), "pane", at(place(i)));
+    add_mesh(scene, box_mesh(add_material(scene, emitter(vec3(1))), vec3(1)), "lamp",
+             at({0, 9, 0}));
+    World world(scene);
+    Lights lights = make_lights(world);
+    auto crosses = [&](vec3 target) {
+      Ray ray;
+      ray.direction = target;
+      ray.t_max = 1.5f;
+      return may_cross_pane(lights.tables->pane_boxes, ray);
+    };
+    for (int i = 0; i < panes; i++) {
+      EXPECT_TRUE(crosses(place(i))) << panes << ", " << i;
+      EXPECT_FALSE(crosses(place(i) + vec3(0, 3, 0))) << panes << ", " << i;
+    }
+    EXPECT_FALSE(crosses(place(panes + 1)));
+  }
+}
+
 TEST(PaneBoxes, RaysElsewhereAskNoPane) {
   Scene scene = empty_scene();
   int pane = add_material(scene, glass(1.5f, 0, 0)), wall = add_material(scene, diffuse(vec3(0.5f)));
