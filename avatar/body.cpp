@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "avatar/joint_limits.h"
 #include "avatar/point_at.h"
 
 namespace wellspring {
@@ -15,14 +16,42 @@ quat about_z(float a) { return glm::angleAxis(a, vec3(0, 0, 1)); }
 
 // Turns a chain from the frame below it so that its last joint has the rotation `wanted` (humanoid
 // space); each link takes its share of the same turn.
-void bend_chain(const std::vector<WeightedJoint>& chain, quat below, quat wanted, Pose& pose) {
+void bend_chain(const Rig& rig, const std::vector<WeightedJoint>& chain, quat below, quat wanted, Pose& pose) {
   if (chain.empty()) return;
+  const std::vector<Joint>& joints = rig.character->joints;
   quat turn = glm::conjugate(below) * wanted;
   if (turn.w < 0) turn = -turn;
   float half = std::atan2(glm::length(vec3(turn.x, turn.y, turn.z)), turn.w);
   vec3 axis = half > 1e-6f ? glm::normalize(vec3(turn.x, turn.y, turn.z)) : vec3(0, 1, 0);
-  for (const WeightedJoint& link : chain)
+  bool limited = false;
+  for (const WeightedJoint& link : chain) {
     pose.rotations[size_t(link.joint)] = glm::angleAxis(2 * half * link.share, axis);
+    limited |= has_limits(joints[size_t(link.joint)]);
+  }
+  // What one joint may not do the others do as far as they may.
+  for (int round = 0; limited && round < 6; round++) {
+    quat reached = below;
+    float free = 0;
+    for (const WeightedJoint& link : chain) {
+      quat& own = pose.rotations[size_t(link.joint)];
+      quat kept = limit_turn(joints[size_t(link.joint)], own);
+      if (kept == own) free += link.share;
+      own = kept;
+      reached = reached * own;
+    }
+    quat rest = glm::conjugate(reached) * wanted;
+    if (rest.w < 0) rest = -rest;
+    if (rest.w > 0.999999f || free < 1e-3f || round == 5) break;
+    for (const WeightedJoint& link : chain) {
+      quat& own = pose.rotations[size_t(link.joint)];
+      own = own * glm::slerp(quat(1, 0, 0, 0), rest, std::min(link.share / free, 1.0f));
+    }
+  }
+  for (const WeightedJoint& link : chain)
+    if (limited) {
+      quat& own = pose.rotations[size_t(link.joint)];
+      own = limit_turn(joints[size_t(link.joint)], own);
+    }
 }
 
 quat parent_rotation(const Rig& rig, const Pose& pose, int joint) {
@@ -53,10 +82,28 @@ void pose_arm(const Rig& rig, int side, const ArmPose& arm, float shoulders_up, 
   for (const FingerJoint& finger : bones.fingers) {
     // Relaxed fingers bend more towards the little one and less at the tips.
     constexpr float share[3] = {0.8f, 1.35f, 0.85f};
+    if (finger.finger == 0) {
+      constexpr float thumb_share[3] = {0.25f, 0.45f, 0.55f};
+      float turn = (arm.curl + arm.finger[0]) * thumb_share[finger.knuckle];
+      pose.rotations[size_t(finger.joint)] = glm::angleAxis(std::max(turn, -0.25f), finger.axis);
+      continue;
+    }
     float wanted = (arm.curl + arm.finger[size_t(finger.finger)]) * share[finger.knuckle] * (0.75f + 0.13f * float(finger.finger));
     float turn = std::max(wanted - finger.bent, -0.15f);
-    pose.rotations[size_t(finger.joint)] = glm::angleAxis(turn, bones.curl_axis);
+    pose.rotations[size_t(finger.joint)] = glm::angleAxis(turn, finger.axis);
   }
+}
+
+void keep_limits(const Rig& rig, int joint, Pose& pose) {
+  if (joint < 0) return;
+  quat& turn = pose.rotations[size_t(joint)];
+  turn = limit_turn(rig.character->joints[size_t(joint)], turn);
+}
+
+void keep_arm_limits(const Rig& rig, int side, Pose& pose) {
+  const ArmRig& bones = rig.arm[size_t(side)];
+  for (int joint : {bones.collar, bones.shoulder, bones.elbow, bones.wrist}) keep_limits(rig, joint, pose);
+  for (const FingerJoint& finger : bones.fingers) keep_limits(rig, finger.joint, pose);
 }
 
 mat3 limb_frame(vec3 along, vec3 pole) {
@@ -115,6 +162,7 @@ void pose_eye(const Rig& rig, int side, vec3 point, Pose& pose) {
   yaw *= (side == 0) == (yaw < 0) ? gain.inner : gain.outer;
   pitch *= pitch > 0 ? gain.up : gain.down;
   pose.rotations[size_t(joint)] = about_y(yaw) * about_x(-pitch);
+  keep_limits(rig, joint, pose);
 }
 
 // Eyes drawn on the face look by shapes.
@@ -159,14 +207,15 @@ void eval_body(const Rig& rig, const BodyPlan& plan, Pose& pose) {
 
   quat chest = heading * about_y(plan.torso.x) * about_x(plan.torso.y) * about_z(plan.torso.z);
   if (!rig.spine.empty())
-    bend_chain(rig.spine, parent_rotation(rig, pose, rig.spine[0].joint), chest, pose);
+    bend_chain(rig, rig.spine, parent_rotation(rig, pose, rig.spine[0].joint), chest, pose);
   if (!rig.neck.empty()) {
     quat head = about_y(plan.head.x) * about_x(-plan.head.y) * about_z(plan.head.z);
-    bend_chain(rig.neck, parent_rotation(rig, pose, rig.neck[0].joint), head, pose);
+    bend_chain(rig, rig.neck, parent_rotation(rig, pose, rig.neck[0].joint), head, pose);
   }
   for (int side = 0; side < 2; side++) {
     size_t s = size_t(side);
     pose_arm(rig, side, plan.arm[s], plan.shoulders_up, plan.fingers, pose);
+    keep_arm_limits(rig, side, pose);
     if (plan.finger_aim[s] > 0)
       point_arm(rig, side, Aim::finger, plan.point, plan.finger_aim[s], pose);
     if (plan.palm_aim[s] > 0) point_arm(rig, side, Aim::palm, plan.point, plan.palm_aim[s], pose);

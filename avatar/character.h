@@ -20,7 +20,9 @@ struct Joint {
   // H-Anim default pose (no joint turned); a Pose of these rotations shows the figure as the file
   // does.
   quat rest_rotation{1, 0, 0, 0};
-  std::vector<vec2> limits;  // empty, or lower/upper radians for x, y, z
+  std::vector<vec2> limits;  // empty, or lower/upper radians for x, y, z (joint_limits.h)
+  quat limit_orientation{1, 0, 0, 0};  // of their axes
+  vec3 stiffness{0};                   // 0..1: how unwillingly it turns about x, y, z
 };
 
 struct Segment {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "avatar/body.h"
+#include "avatar/joint_limits.h"
 
 namespace wellspring {
 namespace {
@@ -32,6 +33,33 @@ vec3 limited(vec3 v) {
   out = std::clamp(out, -arm_across - open, arm_outward + open);
   up = std::clamp(up, -arm_down, arm_up);
   return {std::sin(out) * std::cos(up), std::sin(up), std::cos(out) * std::cos(up)};
+}
+
+// After a swing that did not know of the file's limits: each joint is brought into its own, and what is
+// missing to the target is done by those that still may, from the shoulder outwards (cyclic coordinate
+// descent). Returns the angle that is left.
+float point_within_limits(const Rig& rig, int side, Aim with, vec3 target, float weight, Pose& pose) {
+  const ArmRig& bones = rig.arm[size_t(side)];
+  const Character& character = *rig.character;
+  float left = pi;
+  for (int round = 0; round < 12; round++) {
+    for (int joint : {bones.shoulder, bones.elbow, bones.wrist}) {
+      if (joint < 0) continue;
+      quat& turn = pose.rotations[size_t(joint)];
+      turn = limit_turn(character.joints[size_t(joint)], turn);
+      PointingLine line = eval_pointing_line(rig, pose, side, with);
+      vec3 way = target - line.from;
+      if (weight < 1 || dot(way, way) < 1e-6f) continue;  // on its way there: only kept within limits
+      quat frame = eval_joint_frame(character, pose, joint).rotation;
+      quat more = between(line.direction, glm::normalize(way));
+      turn = limit_turn(character.joints[size_t(joint)],
+                        glm::normalize(turn * (glm::conjugate(frame) * more * frame)));
+    }
+    PointingLine line = eval_pointing_line(rig, pose, side, with);
+    left = angle_of(line.direction, target - line.from);
+    if (weight < 1 || left < 1e-3f) break;
+  }
+  return left;
 }
 
 }  // namespace
@@ -124,7 +152,11 @@ float point_arm(const Rig& rig, int side, Aim with, vec3 target, float weight, P
   if (swing.w < 0) swing = -swing;
   quat part = glm::slerp(quat(1, 0, 0, 0), swing, std::clamp(weight, 0.0f, 1.0f));
   shoulder = glm::normalize(glm::conjugate(hangs_from) * part * hangs_from * shoulder);
-  return angle_of(along, goal - from);
+  const int joints[3] = {bones.shoulder, bones.elbow, bones.wrist};
+  bool limits = std::any_of(joints, joints + 3, [&](int joint) {
+    return joint >= 0 && has_limits(character.joints[size_t(joint)]);
+  });
+  return limits ? point_within_limits(rig, side, with, target, weight, pose) : angle_of(along, goal - from);
 }
 
 }  // namespace wellspring

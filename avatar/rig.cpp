@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "avatar/rig.h"
 
+#include "avatar/joint_limits.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -77,9 +79,21 @@ ArmRig make_arm(const Character& character, int side) {
       vec3 bone = unit(at(joint) - before, down);
       vec3 ahead = next >= 0 ? unit(at(next) - at(joint), bone) : bone;
       float bent = std::asin(std::clamp(dot(cross(bone, ahead), arm.curl_axis), -1.0f, 1.0f));
-      arm.fingers.push_back({joint, f - 1, k, bent});
+      arm.fingers.push_back({joint, f - 1, k, bent, arm.curl_axis});
       before = at(joint);
     }
+  }
+  // The thumb closes across the palm, towards the root of the ring finger, before the other fingers.
+  const char* thumb[3] = {"carpometacarpal_1", "metacarpophalangeal_1", "carpal_interphalangeal_1"};
+  vec3 root = base[3] >= 0 ? at(base[3]) : at(middle);
+  vec3 goal = root + palm * (0.3f * glm::length(at(middle) - at(arm.wrist)));
+  for (int k = 0; k < 3; k++) {
+    int joint = find(thumb[k]), next = k < 2 ? find(thumb[k + 1]) : -1;
+    if (joint < 0) continue;
+    int before = character.joints[size_t(joint)].parent;
+    vec3 bone = next >= 0 ? at(next) - at(joint) : at(joint) - at(std::max(before, 0));
+    vec3 axis = unit(cross(bone, goal - at(joint)), vec3(0));
+    if (axis != vec3(0)) arm.fingers.push_back({joint, 0, k, 0, axis});
   }
   return arm;
 }
@@ -135,8 +149,13 @@ Rig make_rig(const Character& character) {
   }
   for (auto* chain : {&rig.neck, &rig.spine}) {
     std::reverse(chain->begin(), chain->end());
-    float sum = 0;
-    for (const WeightedJoint& link : *chain) sum += link.share;
+    float sum = 0, ready = 0;
+    for (const WeightedJoint& link : *chain)
+      ready += link.share * readiness(character.joints[size_t(link.joint)]);
+    for (WeightedJoint& link : *chain) {
+      if (ready > 1e-3f) link.share *= readiness(character.joints[size_t(link.joint)]);
+      sum += link.share;
+    }
     for (WeightedJoint& link : *chain) link.share /= sum;
   }
   for (int side = 0; side < 2; side++) {

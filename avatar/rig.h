@@ -19,6 +19,7 @@ struct FingerJoint {
   int finger = 0;   // 0 thumb .. 4 little
   int knuckle = 0;  // 0 at the palm, 1, 2
   float bent = 0;   // flexion at rest, radians
+  vec3 axis{0};     // humanoid space at rest: turning about it bends the joint
 };
 
 struct ArmRig {
@@ -28,7 +29,7 @@ struct ArmRig {
   quat upper_hangs{1, 0, 0, 0}, fore_hangs{1, 0, 0, 0}, hand_hangs{1, 0, 0, 0};
   float spread = 0;  // how far the upper arm stands off at rest, radians
   std::vector<FingerJoint> fingers;
-  vec3 curl_axis{0};  // humanoid space at rest: turning about it closes the hand
+  vec3 curl_axis{0};  // humanoid space at rest: turning about it closes the fingers but the thumb
 };
 
 struct LegRig {

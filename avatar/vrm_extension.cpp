@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "avatar/bone_names.h"
 
@@ -83,6 +84,31 @@ float range_gain(const json& range, const char* input, const char* output) {
   return most > 0.1f ? std::clamp(scale / most, 0.0f, 1.0f) : 1.0f;
 }
 
+// Morph targets of an expression: `of` names what holds them, a mesh of the file or a node; weights are in
+// parts of `full`.
+void add_binds(const File& file, const json& binds, const char* of, const char* into, float full,
+               const std::string& where, VrmExpression& expression) {
+  for (size_t b = 0; b < binds.size(); b++) {
+    int index = index_in(file, binds[b], of, into, at(where, b));
+    if (index < 0) continue;
+    VrmBind bind;
+    (into == std::string_view("meshes") ? bind.mesh : bind.node) = index;
+    bind.target = size_t(std::max(number_in(binds[b], "index", 0), 0.0f));
+    bind.weight = number_in(binds[b], "weight", full) / full;
+    expression.binds.push_back(bind);
+  }
+}
+
+// Bones by name, as version 1 and animations list them.
+void add_named_bones(File& file, const json& object, const std::string& root, Vrm& vrm) {
+  const json& humanoid = object_in(file, object, "humanoid", root);
+  const json& bones = object_in(file, humanoid, "humanBones", root + "/humanoid");
+  for (auto it = bones.begin(); it != bones.end(); ++it) {
+    std::string where = at(root + "/humanoid/humanBones", it.key());
+    add_bone(file, vrm, it.key(), index_in(file, *it, "node", "nodes", where), where);
+  }
+}
+
 std::string preset_of_version_0(const std::string& preset) {
   static const std::map<std::string, std::string> names = {
       {"a", "aa"}, {"i", "ih"}, {"u", "ou"}, {"e", "ee"}, {"o", "oh"}, {"joy", "happy"},
@@ -116,14 +142,9 @@ void read_version_0(File& file, const json& object, Vrm& vrm) {
     // Version 0 has no preset for it, authors name it so.
     if (!expression.preset) expression.name = text_in(groups[g], "name");
     if (expression.name == "Surprised") expression = {"surprised", true, {}};
-    const json& binds = groups[g].is_object() ? list_in(file, groups[g], "binds", where) : json();
-    for (size_t b = 0; b < binds.size(); b++) {
-      VrmBind bind;
-      bind.mesh = index_in(file, binds[b], "mesh", "meshes", at(where + "/binds", b));
-      bind.target = size_t(std::max(number_in(binds[b], "index", 0), 0.0f));
-      bind.weight = number_in(binds[b], "weight", 100) / 100;
-      if (bind.mesh >= 0) expression.binds.push_back(bind);
-    }
+    if (groups[g].is_object())
+      add_binds(file, list_in(file, groups[g], "binds", where), "mesh", "meshes", 100, where + "/binds",
+                expression);
     if (groups[g].is_object() && !list_in(file, groups[g], "materialValues", where).empty())
       gltf::warn(file, where, "expressions do not change materials here");
     vrm.expressions.push_back(std::move(expression));
@@ -151,12 +172,7 @@ void read_version_1(File& file, const json& object, Vrm& vrm) {
   const std::string root = "/extensions/VRMC_vrm";
   vrm.version = 1;
   add_metadata(file, object_in(file, object, "meta", root), root, vrm);
-  const json& humanoid = object_in(file, object, "humanoid", root);
-  const json& bones = object_in(file, humanoid, "humanBones", root + "/humanoid");
-  for (auto it = bones.begin(); it != bones.end(); ++it) {
-    std::string where = at(root + "/humanoid/humanBones", it.key());
-    add_bone(file, vrm, it.key(), index_in(file, *it, "node", "nodes", where), where);
-  }
+  add_named_bones(file, object, root, vrm);
   const json& expressions = object_in(file, object, "expressions", root);
   for (const char* kind : {"preset", "custom"}) {
     std::string group = root + "/expressions/" + kind;
@@ -165,14 +181,8 @@ void read_version_1(File& file, const json& object, Vrm& vrm) {
       VrmExpression expression{it.key(), kind[0] == 'p', {}};
       std::string where = at(group, it.key());
       if (!it->is_object()) gltf::refuse(file, where, "must be an object");
-      const json& binds = list_in(file, *it, "morphTargetBinds", where);
-      for (size_t b = 0; b < binds.size(); b++) {
-        VrmBind bind;
-        bind.node = index_in(file, binds[b], "node", "nodes", at(where + "/morphTargetBinds", b));
-        bind.target = size_t(std::max(number_in(binds[b], "index", 0), 0.0f));
-        bind.weight = number_in(binds[b], "weight", 1);
-        if (bind.node >= 0) expression.binds.push_back(bind);
-      }
+      add_binds(file, list_in(file, *it, "morphTargetBinds", where), "node", "nodes", 1,
+                where + "/morphTargetBinds", expression);
       if (!list_in(file, *it, "materialColorBinds", where).empty() ||
           !list_in(file, *it, "textureTransformBinds", where).empty())
         gltf::warn(file, where, "expressions do not change materials here");
@@ -195,12 +205,7 @@ void read_animation(File& file, const json& object, Vrm& vrm) {
   const std::string root = "/extensions/VRMC_vrm_animation";
   vrm.version = 1;
   vrm.animation = true;
-  const json& humanoid = object_in(file, object, "humanoid", root);
-  const json& bones = object_in(file, humanoid, "humanBones", root + "/humanoid");
-  for (auto it = bones.begin(); it != bones.end(); ++it) {
-    std::string where = at(root + "/humanoid/humanBones", it.key());
-    add_bone(file, vrm, it.key(), index_in(file, *it, "node", "nodes", where), where);
-  }
+  add_named_bones(file, object, root, vrm);
   const json& expressions = object_in(file, object, "expressions", root);
   for (const char* kind : {"preset", "custom"}) {
     const json& list = object_in(file, expressions, kind, root + "/expressions");

@@ -160,6 +160,9 @@ void HumanoidReader::read_joint(int index, Context context) {
   std::vector<float> low = floats_of(file, node, "llimit"), high = floats_of(file, node, "ulimit");
   if (low.size() >= 3 && high.size() >= 3)
     for (size_t i = 0; i < 3; i++) joint.limits.push_back({low[i], high[i]});
+  joint.limit_orientation = rotation_of(file, node, "limitOrientation");
+  if (auto stiffness = floats_of(file, node, "stiffness"); stiffness.size() >= 3)
+    joint.stiffness = {stiffness[0], stiffness[1], stiffness[2]};
   context.joint = int(character.joints.size());
   character.joints.push_back(std::move(joint));
   rest.push_back(context.matrix);

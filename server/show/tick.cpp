@@ -234,10 +234,13 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     show.totals.animate_ms = float(1000 * (seconds_now() - began));
   }
   send_sounds(show);
+  std::optional<dvec3> person;
+  if (const StorytellerPlace* teller = show.storyteller_visible ? teller_of(show) : nullptr)
+    person = teller->position;
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
     TourStep step;
-    move_visitor(visitor, *show.world, show.exhibit, show.roads, dt, step);
+    move_visitor(visitor, *show.world, show.exhibit, show.roads, person, dt, step);
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
     if (wants_picture(show, visitor)) make_picture(show, visitor, busy);
     send_state(show, visitor);

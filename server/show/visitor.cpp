@@ -19,7 +19,7 @@ void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint) {
 }
 
 void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, const TourRoads& roads,
-                  float dt, TourStep& tour_step) {
+                  const std::optional<dvec3>& person, float dt, TourStep& tour_step) {
   tour_step = TourStep{};
   TourRide& ride = visitor.tour;
   if (glm::length(visitor.move) > 0) {  // the visitor walks off: the tour waits
@@ -39,8 +39,9 @@ void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, 
   if (visitor.move == vec3(0) && glm::length(visitor.velocity) < 0.01f) visitor.velocity = vec3(0);
   if (visitor.velocity == vec3(0)) return;
   visitor.viewpoint = -1;
-  visitor.view.position = walk(world, exhibit.walk, visitor.view.position,
-                               move_direction(visitor.velocity, visitor.view.yaw), dt);
+  dvec3 next = walk(world, exhibit.walk, visitor.view.position,
+                    move_direction(visitor.velocity, visitor.view.yaw), dt);
+  visitor.view.position = person ? keep_distance(visitor.view.position, next, *person) : next;
 }
 
 }  // namespace wellspring

@@ -78,9 +78,9 @@ struct Visitor {
 };
 
 
-// Moves a visitor by `dt`: tour, or walking by its own input.
+// Moves a visitor by `dt`: tour, or walking by its own input, not too near to the `person` who stands there.
 void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, const TourRoads& roads,
-                  float dt, TourStep& tour_step);
+                  const std::optional<dvec3>& person, float dt, TourStep& tour_step);
 void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint);
 
 }  // namespace wellspring

@@ -42,6 +42,21 @@ vec3 move_direction(vec3 move, float yaw) {
   return right * move.x + vec3(0, move.y, 0) + forward * move.z;
 }
 
+dvec3 keep_distance(dvec3 from, dvec3 to, dvec3 centre, double distance) {
+  glm::dvec2 before(from.x - centre.x, from.z - centre.z), after(to.x - centre.x, to.z - centre.z);
+  double was = glm::length(before), least = std::min(distance, was);  // never thrown out, never farther in
+  glm::dvec2 step = after - before;
+  double length = glm::length(step);
+  if (!(length > 0)) return to;
+  double nearest = std::clamp(-glm::dot(before, step) / (length * length), 0.0, 1.0);
+  if (!(glm::length(before + step * nearest) < least - 1e-9)) return to;
+  after = before + step * nearest;
+  double is = glm::length(after);
+  if (is < 1e-9) after = was > 1e-9 ? before : glm::dvec2(1, 0), is = glm::length(after);
+  after *= least / is;
+  return {centre.x + after.x, to.y, centre.z + after.y};
+}
+
 dvec3 walk(const World& world, const std::optional<WalkRules>& rules, dvec3 position, vec3 velocity,
            float dt) {
   dt = std::clamp(dt, 0.0f, 0.25f);

@@ -11,6 +11,12 @@ namespace wellspring {
 // seconds (0 to 0.25; longer steps are cut). With no rules: free flight.
 dvec3 walk(const World& world, const std::optional<WalkRules>& rules, dvec3 position, vec3 velocity, float dt);
 
+// Round somebody whom nobody comes nearer than `distance` on the ground (the innermost glass wall of the
+// storyteller and kiosk paper): a step from `from` to `to` ends on the circle instead of within it, slid along;
+// who stands within already may only go outwards.
+inline constexpr double nearest_to_storyteller = 0.9;  // metres
+dvec3 keep_distance(dvec3 from, dvec3 to, dvec3 centre, double distance = nearest_to_storyteller);
+
 // Velocity in world axes of `move` = [right, up, forward] for a visitor looking along `yaw`.
 vec3 move_direction(vec3 move, float yaw);
 

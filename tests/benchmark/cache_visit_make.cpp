@@ -58,7 +58,7 @@ VisitTrace walk_through(const char* name, const char* about, const Exhibit& exhi
   return record(name, about, seconds, from, [&](double time, Viewpoint& view) {
     TourStep tour;
     intend(time, visitor);
-    move_visitor(visitor, world, exhibit, TourRoads{}, time == 0 ? 0 : 1.0f / rate, tour);
+    move_visitor(visitor, world, exhibit, TourRoads{}, std::nullopt, time == 0 ? 0 : 1.0f / rate, tour);
     view = visitor.view;
   });
 }

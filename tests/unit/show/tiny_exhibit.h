@@ -58,9 +58,9 @@ inline Exhibit make_tiny_exhibit(dvec3 origin = dvec3(0)) {
   TourPlan tour;
   tour.id = "round";
   tour.stops.resize(2);
-  tour.stops[0] = {0, 2, 1, {}, {}};
+  tour.stops[0] = {0, 2, 1, {}, {}, {}, {}};
   tour.stops[0].text["en"].emplace_back().text = "Here";
-  tour.stops[1] = {1, 2, 1, {}, {}};
+  tour.stops[1] = {1, 2, 1, {}, {}, {}, {}};
   exhibit.tours = {tour};
   StoryText story;
   story.id = "tale";

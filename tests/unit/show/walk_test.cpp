@@ -18,6 +18,40 @@ struct Walk : testing::TestWithParam<double> {
   }
 };
 
+TEST(KeepDistance, NobodyComesNearerThanTheInnermostWall) {
+  const dvec3 centre(100, 0, -50);
+  // From everywhere, in steps of any length, straight at it and past it.
+  for (double length : {0.01, 0.1, 0.5, 5.0})
+    for (int i = 0; i < 64; i++) {
+      double angle = i * 0.0981747704;
+      dvec3 at = centre + dvec3(2 * std::cos(angle), 1.6, 2 * std::sin(angle));
+      dvec3 aim = centre + dvec3(0.3 * std::sin(3 * angle), 1.6, 0.2);
+      for (int step = 0; step < 400; step++) {
+        dvec3 way = aim - at;
+        way.y = 0;
+        dvec3 next = keep_distance(at, at + way * std::min(1.0, length / std::max(glm::length(way), 1e-6)), centre);
+        at = next;
+        ASSERT_GE(std::hypot(at.x - centre.x, at.z - centre.z), nearest_to_storyteller - 1e-6);
+      }
+    }
+}
+
+TEST(KeepDistance, OneSlidesRoundAndGoesAway) {
+  dvec3 at(0, 1.6, 2);
+  double least = 9;
+  for (int i = 0; i < 400; i++) {
+    at = keep_distance(at, at + dvec3(0.004, 0, -0.02), dvec3(0));
+    least = std::min(least, std::hypot(at.x, at.z));
+  }
+  EXPECT_LT(at.z, -2) << "past it, not stuck before it";
+  EXPECT_NEAR(least, nearest_to_storyteller, 0.02);
+  // Who stands within (a viewpoint there, a storyteller that has just come) may leave, not go farther in.
+  dvec3 within(0.4, 1.6, 0);
+  EXPECT_NEAR(keep_distance(within, {0.2, 1.6, 0}, dvec3(0)).x, 0.4, 1e-9);
+  EXPECT_EQ(keep_distance(within, {0.6, 1.7, 0}, dvec3(0)), dvec3(0.6, 1.7, 0));
+  EXPECT_EQ(keep_distance({0, 1.6, 5}, {0, 1.6, 4}, dvec3(0)), dvec3(0, 1.6, 4));
+}
+
 TEST_P(Walk, StraightOverFreeFloor) {
   dvec3 end = go({-2, 1.6, 3}, {0, 0, -1}, 1.5f);
   EXPECT_NEAR(end.z, 1.5, 0.05);
