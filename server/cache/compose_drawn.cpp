@@ -83,7 +83,7 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
 constexpr float dark = 0.05f, brightest = 4;
 // Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
 // or chance nobody knows.
-constexpr float doubt = 3;
+constexpr float doubt = 3, few_samples = 4;
 f8 under(const f8& light, const f8& albedo, const f8& theirs) {
   return light * smaller((albedo + dark) / (theirs + dark), splat(brightest));
 }
@@ -155,10 +155,16 @@ void read_rows(const PixelRays& rays, const Cells& cells, int first, int row, in
 void light_group(const PaintedCell* const* corners, bool flat, const f8* weights, Drawn& d) {
   Pixels& p = d.pixels;
   Surroundings around = look_around(corners, flat, weights, p);
-  light_as_neighbours(corners, weights, p, around);
-  around.rest = {under(around.rest.r, d.albedo.r, around.albedo.r),
-                 under(around.rest.g, d.albedo.g, around.albedo.g),
-                 under(around.rest.b, d.albedo.b, around.albedo.b)};
+  // Polished metal of which nobody knows more than a sample or two shows about what is around it.
+  i8 mirrors = around.lonely & (p.samples < few_samples) &
+               (d.albedo.r + d.albedo.g + d.albedo.b < 0.01f);
+  light_as_neighbours(corners, weights, p, around, mirrors);
+  auto rest = [&](const f8& rest, const f8& smooth, const f8& albedo, const f8& theirs) {
+    return mirrors ? theirs * smooth + rest : under(rest, albedo, theirs);
+  };
+  around.rest = {rest(around.rest.r, around.smooth.r, d.albedo.r, around.albedo.r),
+                 rest(around.rest.g, around.smooth.g, d.albedo.g, around.albedo.g),
+                 rest(around.rest.b, around.smooth.b, d.albedo.b, around.albedo.b)};
   blend_light(around, p, doubt);
 }
 

@@ -134,19 +134,24 @@ inline f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, mos
 inline i8 is_blind(const Pixels& p) {
   return (p.samples == 0.0f) & (p.deviation >= unpack_deviation(blind_deviation));
 }
-// Where nobody around knows anything of a blind pixel's surface, it is lit as its surroundings are.
+// Where nobody around knows anything of a blind pixel's surface, it is lit as its surroundings are;
+// `doubtful` pixels likewise.
 template <class Cell>
 void light_as_neighbours(const Cell* const* corners, const f8* weights, const Pixels& p,
-                         Surroundings& s) {
-  i8 lost = s.lonely & is_blind(p);
+                         Surroundings& s, i8 doubtful = i8{}) {
+  i8 lost = s.lonely & (is_blind(p) | doubtful);
   if (!any(lost)) return;
   Surroundings a;
+  f8 used{};
   for (int k = 0; k < 4; k++) {
     // What lamps, mirrors and the sky show is no light that falls there.
     if constexpr (requires { corners[k]->albedo; })
       if (corners[k]->albedo[0] + corners[k]->albedo[1] + corners[k]->albedo[2] < 0.01f) continue;
     add(a, weights[k], *corners[k]);
+    used += weights[k];
   }
+  f8 share = 1.0f / larger(used, splat(1e-3f));
+  for (Color* c : {&a.smooth, &a.rest, &a.albedo}) c->r *= share, c->g *= share, c->b *= share;
   auto take = [&](f8& to, const f8& from) { to = lost ? from : to; };
   take(s.smooth.r, a.smooth.r), take(s.smooth.g, a.smooth.g), take(s.smooth.b, a.smooth.b);
   take(s.rest.r, a.rest.r), take(s.rest.g, a.rest.g), take(s.rest.b, a.rest.b);
