@@ -12,7 +12,7 @@ void trace_many_direct(const World& world, const Lights& lights, const Transport
   rules.max_depth = settings.max_depth;
   rules.scatterings = 1;
   trace_samples({world, *lights.tables}, rules, requests, samples);
-  for (Sample& sample : samples) sample = finish_sample(lights, settings, sample);
+  finish_samples(lights, settings, samples);
 }
 
 Sample trace_direct(const World& world, const Lights& lights, const TransportSettings& settings,

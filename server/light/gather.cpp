@@ -20,7 +20,7 @@ void trace_many_gather(const World& world, const Lights& lights, const Transport
   rules.max_depth = settings.max_depth;
   if (lights.grid) rules.blunt = blunt;
   trace_samples({world, *lights.tables, lights.grid.get()}, rules, requests, samples);
-  for (Sample& sample : samples) sample = finish_sample(lights, settings, sample);
+  finish_samples(lights, settings, samples);
 }
 
 Sample trace_gather(const World& world, const Lights& lights, const TransportSettings& settings,

@@ -31,8 +31,9 @@ inline Lanes3 sample_cosine_directions(const Lanes3& n, Lanes u, Lanes v) {
   Lanes quarter = v * 4;
   LaneMask turn = __builtin_convertvector(quarter + 0.5f, LaneMask);
   Lanes x = (quarter - __builtin_convertvector(turn, Lanes)) * (pi / 2), x2 = x * x;
-  Lanes s = x * (1 + x2 * (-1 / 6.0f + x2 * (1 / 120.0f + x2 * (-1 / 5040.0f + x2 / 362880.0f))));
-  Lanes c = 1 + x2 * (-0.5f + x2 * (1 / 24.0f + x2 * (-1 / 720.0f + x2 / 40320.0f)));
+  Lanes s = x2 * (1 / 362880.0f) - 1 / 5040.0f, c = x2 * (1 / 40320.0f) - 1 / 720.0f;
+  s = x * (1 + x2 * (-1 / 6.0f + x2 * (1 / 120.0f + x2 * s)));
+  c = 1 + x2 * (-0.5f + x2 * (1 / 24.0f + x2 * c));
   LaneMask odd = (turn & 1) != 0, back = (turn & 2) != 0;
   Lanes cosine = odd ? -s : c, sine = odd ? c : s, radius = lanes_sqrt(u);
   radius = back ? -radius : radius;

@@ -10,7 +10,7 @@ void trace_many_path(const World& world, const Lights& lights, const TransportSe
   WalkRules rules;
   rules.max_depth = settings.max_depth;
   trace_samples({world, *lights.tables}, rules, requests, samples);
-  for (Sample& sample : samples) sample = finish_sample(lights, settings, sample);
+  finish_samples(lights, settings, samples);
 }
 
 Sample trace_path(const World& world, const Lights& lights, const TransportSettings& settings,

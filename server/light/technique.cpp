@@ -33,7 +33,8 @@ constexpr size_t most_at_once = 256;
 
 bool is_light(vec3 c) {  // NaN is not
   constexpr float most = std::numeric_limits<float>::max();
-  return c.x >= 0 && c.y >= 0 && c.z >= 0 && c.x <= most && c.y <= most && c.z <= most;
+  // Bit by bit: one branch for all.
+  return (c.x >= 0) & (c.y >= 0) & (c.z >= 0) & (c.x <= most) & (c.y <= most) & (c.z <= most);
 }
 
 }  // namespace
@@ -46,20 +47,21 @@ const Technique* find_technique(std::string_view name) {
   return nullptr;
 }
 
-Sample finish_sample(const Lights& lights, const TransportSettings& settings, Sample sample) {
-  if (!is_light(sample.albedo) || !is_light(sample.smooth) || !is_light(sample.rest) ||
-      !is_light(sample.radiance())) {
-    lights.bad_samples->fetch_add(1, std::memory_order_relaxed);
-    sample.albedo = sample.smooth = sample.rest = vec3(0);
-  }
-  if (settings.clamp > 0) {
-    float largest = max_component(sample.radiance());
-    if (largest > settings.clamp) {
-      sample.smooth *= settings.clamp / largest;
-      sample.rest *= settings.clamp / largest;
+void finish_samples(const Lights& lights, const TransportSettings& settings,
+                    std::span<Sample> samples) {
+  for (Sample& sample : samples) {
+    bool light = is_light(sample.albedo) & is_light(sample.smooth) & is_light(sample.rest) &
+                 is_light(sample.radiance());
+    if (!light) {
+      lights.bad_samples->fetch_add(1, std::memory_order_relaxed);
+      sample.albedo = sample.smooth = sample.rest = vec3(0);
     }
+    if (!(settings.clamp > 0)) continue;
+    float largest = max_component(sample.radiance());
+    if (!(largest > settings.clamp)) continue;
+    sample.smooth *= settings.clamp / largest;
+    sample.rest *= settings.clamp / largest;
   }
-  return sample;
 }
 
 void trace(const Technique& technique, const World& world, const Lights& lights,
@@ -92,19 +94,12 @@ uint64_t pass_seed(uint64_t seed) { return mix64(seed ^ 0x70617373ull); }
 
 namespace {
 
-// Sums of a picture's samples, and what its first ones hit.
-struct Sums {
-  std::vector<dvec3> color;
-  Frame frame;
-};
-
-void add_sample(const View& view, const Request& request, const Sample& sample, Sums& sums) {
-  sums.color[request.pixel] += dvec3(sample.radiance());
-  if (request.index > 0) return;
+// What a picture says of a pixel beside its colour: what its first sample hit.
+void describe_pixel(const View& view, const Request& request, const Sample& sample, Frame& frame) {
   bool hit = sample.flags & sample_hit;
-  sums.frame.object[request.pixel] = hit ? sample.object : 0;
-  sums.frame.depth[request.pixel] = hit ? sample.distance * dot(request.ray.direction, view.forward)
-                                        : std::numeric_limits<float>::infinity();
+  frame.object[request.pixel] = hit ? sample.object : 0;
+  frame.depth[request.pixel] = hit ? sample.distance * dot(request.ray.direction, view.forward)
+                                   : std::numeric_limits<float>::infinity();
 }
 
 // Calls `shade(left, top, right, bottom)` for every tile, all cores.
@@ -125,10 +120,42 @@ void trace_tile(const Technique& technique, const World& world, const Lights& li
     samples[i] = technique.trace(world, lights, settings, requests[i]);
 }
 
+// The samples of a tile follow each other pixel by pixel, so that a pixel's sum never leaves the
+// core.
+void render_tile(const Technique& technique, const World& world, const Lights& lights,
+                 const View& view, const StillSettings& settings, ivec2 begin, ivec2 end,
+                 Frame& frame) {
+  std::vector<Request> requests;
+  std::vector<Sample> samples;
+  requests.reserve(most_at_once);
+  dvec3 sum(0);
+  auto answer = [&] {
+    samples.resize(requests.size());
+    trace_tile(technique, world, lights, settings.transport, requests, samples);
+    for (size_t k = 0; k < requests.size(); k++) {
+      const Request& request = requests[k];
+      sum += dvec3(samples[k].radiance());
+      if (request.index == 0) describe_pixel(view, request, samples[k], frame);
+      if (request.index + 1 < uint32_t(settings.spp)) continue;
+      frame.color[request.pixel] = vec3(sum / double(settings.spp));
+      sum = dvec3(0);
+    }
+    requests.clear();
+  };
+  for (int y = begin.y; y < end.y; y++)
+    for (int x = begin.x; x < end.x; x++)
+      for (int i = 0; i < settings.spp; i++) {
+        requests.push_back(pixel_request(view, settings.seed, x, y, i));
+        if (requests.size() == most_at_once) answer();
+      }
+  answer();
+}
+
 void render_passes(const Technique& technique, const World& world, Lights lights, const View& view,
-                   const StillSettings& settings, Sums& sums) {
-  std::vector<Sample> samples(sums.color.size());
-  std::vector<Request> requests(sums.color.size());
+                   const StillSettings& settings, Frame& frame) {
+  std::vector<dvec3> sums(frame.color.size(), dvec3(0));
+  std::vector<Sample> samples(sums.size());
+  std::vector<Request> requests(sums.size());
   for (int i = 0; i < settings.spp; i++) {
     if (technique.begin_pass)
       technique.begin_pass(world, settings.transport, view, pass_seed(settings.seed), uint32_t(i),
@@ -147,10 +174,14 @@ void render_passes(const Technique& technique, const World& world, Lights lights
     });
     if (technique.finish_pass) technique.finish_pass(world, lights, view, samples);
     parallel_ranges(int(samples.size()), 4096, [&](int begin, int end) {
-      for (size_t pixel = size_t(begin); pixel < size_t(end); pixel++)
-        add_sample(view, requests[pixel], samples[pixel], sums);
+      for (size_t pixel = size_t(begin); pixel < size_t(end); pixel++) {
+        sums[pixel] += dvec3(samples[pixel].radiance());
+        if (i == 0) describe_pixel(view, requests[pixel], samples[pixel], frame);
+      }
     });
   }
+  for (size_t pixel = 0; pixel < sums.size(); pixel++)
+    frame.color[pixel] = vec3(sums[pixel] / double(settings.spp));
 }
 
 }  // namespace
@@ -169,38 +200,19 @@ Frame render_still(const Technique& technique, const World& world, const Lights&
   if (view.width < 1 || view.height < 1 || settings.spp < 1)
     throw std::invalid_argument("render_still: a picture has pixels, and pixels have samples");
   size_t pixels = size_t(view.width) * size_t(view.height);
-  Sums sums;
-  sums.color.resize(pixels, dvec3(0));
-  sums.frame.width = view.width;
-  sums.frame.height = view.height;
-  sums.frame.color.resize(pixels);
-  sums.frame.depth.resize(pixels);
-  sums.frame.object.resize(pixels);
-  if (technique.begin_pass || technique.finish_pass) {
-    render_passes(technique, world, lights, view, settings, sums);
-  } else {
+  Frame frame;
+  frame.width = view.width;
+  frame.height = view.height;
+  frame.color.resize(pixels);
+  frame.depth.resize(pixels);
+  frame.object.resize(pixels);
+  if (technique.begin_pass || technique.finish_pass)
+    render_passes(technique, world, lights, view, settings, frame);
+  else
     for_each_tile(view, 16, [&](int left, int top, int right, int bottom) {
-      std::vector<Request> requests;
-      std::vector<Sample> samples;
-      auto answer = [&] {
-        samples.resize(requests.size());
-        trace_tile(technique, world, lights, settings.transport, requests, samples);
-        for (size_t k = 0; k < requests.size(); k++)
-          add_sample(view, requests[k], samples[k], sums);
-        requests.clear();
-      };
-      for (int y = top; y < bottom; y++)
-        for (int x = left; x < right; x++)
-          for (int i = 0; i < settings.spp; i++) {
-            requests.push_back(pixel_request(view, settings.seed, x, y, i));
-            if (requests.size() == most_at_once) answer();
-          }
-      answer();
+      render_tile(technique, world, lights, view, settings, {left, top}, {right, bottom}, frame);
     });
-  }
-  for (size_t pixel = 0; pixel < pixels; pixel++)
-    sums.frame.color[pixel] = vec3(sums.color[pixel] / double(settings.spp));
-  return std::move(sums.frame);
+  return frame;
 }
 
 }  // namespace wellspring

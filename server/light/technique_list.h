@@ -29,8 +29,14 @@ void begin_instant(const World& world, const TransportSettings& settings, const 
 void finish_instant(const World& world, const Lights& lights, const View& view,
                     std::span<Sample> samples);
 
-// A sample fit for a Frame: light that is NaN, infinite or negative is dropped (black) and counted;
-// settings.clamp is applied.
-Sample finish_sample(const Lights& lights, const TransportSettings& settings, Sample sample);
+// Makes samples fit for a Frame: light that is NaN, infinite or negative is dropped (black) and
+// counted; settings.clamp is applied.
+void finish_samples(const Lights& lights, const TransportSettings& settings,
+                    std::span<Sample> samples);
+inline Sample finish_sample(const Lights& lights, const TransportSettings& settings,
+                            Sample sample) {
+  finish_samples(lights, settings, std::span(&sample, 1));
+  return sample;
+}
 
 }  // namespace wellspring

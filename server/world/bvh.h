@@ -53,7 +53,7 @@ struct alignas(64) Face {
   vec3 edge1;
   float flat;  // 1: the mesh's normals there are `normal`
   vec3 edge2;
-  float unused = 0;
+  float plain = 0;  // 1: flat, with an area, and the material's base colour is the same all over
   vec3 normal;  // unit, towards the side the winding faces; 0: a triangle without area
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/lanes.h"
 #include "world/bvh_impl.h"
 #include "world/slab.h"
 
@@ -25,10 +26,16 @@ constexpr float farthest = 1e17f;  // Embree's places end at 1.84e18
 // The bits of `active` whose rays are finite and have a length.
 uint32_t traceable(const RayPacket& p, uint32_t active) {
   uint32_t good = 0;
-  for (int i = 0; i < RayPacket::lanes; i++) {
-    float place = std::abs(p.origin_x[i]) + std::abs(p.origin_y[i]) + std::abs(p.origin_z[i]);
-    float way = std::abs(p.direction_x[i]) + std::abs(p.direction_y[i]) + std::abs(p.direction_z[i]);
-    good |= uint32_t(place <= farthest && way <= farthest && p.t_max[i] >= 0) << i;
+  for (int i = 0; i < RayPacket::lanes; i += lane_count) {
+    if (!(active >> i & 0xff)) continue;
+    auto size = [&](const float* x, const float* y, const float* z) {
+      return lanes_abs(load_lanes(x + i)) + lanes_abs(load_lanes(y + i)) +
+             lanes_abs(load_lanes(z + i));
+    };
+    LaneMask fine = (size(p.origin_x, p.origin_y, p.origin_z) <= farthest) &
+                    (size(p.direction_x, p.direction_y, p.direction_z) <= farthest) &
+                    (load_lanes(p.t_max + i) >= 0);
+    good |= negative_lanes(fine) << i;
   }
   return active & good;
 }

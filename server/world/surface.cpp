@@ -221,6 +221,9 @@ Face make_face(const PlacedMesh& placed, uint32_t triangle) {
     vec3 off = shading_normal(placed, corner, face.normal) - face.normal;
     if (!(max_component(glm::abs(off)) <= same)) face.flat = 0;
   }
+  bool one_color =
+      placed.material->base_color_texture.texture < 0 && placed.mesh->colors.empty();
+  face.plain = face.flat == 1 && one_color && face.normal != vec3(0);
   return face;
 }
 

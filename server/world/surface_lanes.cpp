@@ -15,37 +15,44 @@ inline int next_lane(unsigned& bits) {
   return lane;
 }
 
-// Alike all over: nothing but the face and the material's colour is needed.
-inline bool is_plain(const PlacedMesh& placed, const Face& face) {
-  return face.flat == 1 && placed.material->base_color_texture.texture < 0 &&
-         placed.mesh->colors.empty() && face.normal != vec3(0);
-}
-
 }  // namespace
 
 MattSurfaceLanes eval_matt_surfaces(const World& world, const Lanes3& direction, const Hit* hits,
                                     unsigned active) {
+  static const Face nowhere{};
   MattSurfaceLanes s;
-  Lanes first[lane_count] = {}, second[lane_count] = {}, u{}, v{};
-  alignas(Lanes) float color[3][lane_count] = {};
-  MattSurface detailed[lane_count];
-  unsigned plain = 0;
+  const Face* faces[lane_count];
+  Face own[lane_count];  // of what is not plain, as flat as it is there
+  float color[3][lane_count] = {};
+  for (int i = 0; i < lane_count; i++) faces[i] = &nowhere;
+  Lanes u{}, v{};
   for (unsigned bits = active; bits;) {
     int i = next_lane(bits);
     const Hit& hit = hits[i];
     const PlacedMesh& placed = world.placed(hit.instance);
-    const Face* face = placed.faces ? placed.faces + hit.triangle : nullptr;
-    if (face && is_plain(placed, *face)) {
-      plain |= 1u << i;
-      first[i] = load_lanes(&face->corner.x);
-      second[i] = load_lanes(&face->edge2.x);
-      for (int c = 0; c < 3; c++) color[c][i] = placed.material->base_color[c];
+    faces[i] = placed.faces ? placed.faces + hit.triangle : &nowhere;
+    vec3 base = vec3(placed.material->base_color);
+    if (faces[i]->plain == 1) {
       u[i] = hit.barycentric.x, v[i] = hit.barycentric.y;
     } else {
       Ray ray;
       ray.direction = direction.at(i);
-      detailed[i] = eval_matt_surface(world, ray, hit);
+      MattSurface surface = eval_matt_surface(world, ray, hit);
+      own[i] = nowhere;
+      own[i].corner = surface.position;
+      own[i].extent = surface.extent;
+      own[i].normal = surface.geometric_normal;
+      faces[i] = &own[i];
+      base = surface.base_color;
+      s.normal.set(i, surface.normal);
+      s.bent |= 1u << i;
     }
+    for (int c = 0; c < 3; c++) color[c][i] = base[c];
+  }
+  Lanes first[lane_count], second[lane_count];
+  for (int i = 0; i < lane_count; i++) {
+    first[i] = load_lanes(&faces[i]->corner.x);
+    second[i] = load_lanes(&faces[i]->edge2.x);
   }
   transpose_lanes(first);
   transpose_lanes(second);
@@ -54,19 +61,10 @@ MattSurfaceLanes eval_matt_surfaces(const World& world, const Lanes3& direction,
   s.extent = first[3];
   s.position = corner + edge1 * u + edge2 * v;
   s.geometric_normal = choose(dot(winding, direction) <= 0, winding, -winding);
-  s.normal = s.geometric_normal;
-  for (int c = 0; c < 3; c++)
-    (c == 0 ? s.base_color.x : c == 1 ? s.base_color.y : s.base_color.z) =
-        lanes_max(load_lanes(color[c]), Lanes{});
-  s.bent = active & ~plain;
-  for (unsigned bits = s.bent; bits;) {
-    int i = next_lane(bits);
-    s.position.set(i, detailed[i].position);
-    s.geometric_normal.set(i, detailed[i].geometric_normal);
-    s.normal.set(i, detailed[i].normal);
-    s.base_color.set(i, detailed[i].base_color);
-    s.extent[i] = detailed[i].extent;
-  }
+  s.normal = choose(lanes_of_bits(s.bent), s.normal, s.geometric_normal);
+  const Lanes zero{};
+  s.base_color = {lanes_max(load_lanes(color[0]), zero), lanes_max(load_lanes(color[1]), zero),
+                  lanes_max(load_lanes(color[2]), zero)};
   return s;
 }
 
