@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "cache/packing.h"
 
 namespace wellspring {
 namespace {
@@ -90,6 +92,32 @@ void age_changed(PointCache& points, const View& view, PointImage& image, StillI
         if (near >= change_witnesses) age_tile(points, image, still, tx, ty);
       }
   });
+}
+
+bool blind_relit(PointCache& points, const PointImage& image) {
+  std::atomic<bool> waits = false;
+  parallel_ranges((image.height + relit_block - 1) / relit_block, 4, [&](int begin, int end) {
+    for (int y = begin * relit_block; y < end * relit_block; y += relit_block)
+      for (int x = 0; x < image.width; x += relit_block) {
+        uint32_t relit[relit_block * relit_block], newer[relit_block * relit_block];
+        int relits = 0, newers = 0;
+        for (int v = y; v < std::min(y + relit_block, image.height); v++)
+          for (int u = x; u < std::min(x + relit_block, image.width); u++) {
+            uint32_t point = image.point[size_t(v) * size_t(image.width) + size_t(u)];
+            if (point == no_point) continue;
+            if (points.flags[point] & point_relit) relit[relits++] = point;
+            else newer[newers++] = points.color[point].object;
+          }
+        if (relits == 0) continue;
+        waits = true;
+        for (int i = 0; i < relits; i++) {
+          if (std::find(newer, newer + newers, points.color[relit[i]].object) == newer + newers) continue;
+          points.count[relit[i]] = 0;
+          points.color[relit[i]].noise = blind_deviation;
+        }
+      }
+  });
+  return waits;
 }
 
 void prioritise(const PointCache& points, const CacheSettings& settings, PointImage& image) {

@@ -15,6 +15,7 @@
 #include "cache/plan.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
+#include "cache/predict.h"
 #include "cache/project.h"
 #include "cache/reconstruct.h"
 #include "cache/remember.h"
@@ -50,12 +51,14 @@ struct RenderCache::Impl {
   Frame light;  // packed, of a picture that is drawn
   View view;  // of the last projection
   bool projected = false;
+  bool relit = false;  // points may wait for a sample of their new light
   bool image_stale = true;  // points have changed since, and the image was not told
   int still_frames = 0;  // projections of the same view before the last
   float new_points = 0;  // a frame, smoothed
   int fresh = 0;         // samples of this frame that show
   uint32_t frames = 0;
   std::vector<uint32_t> targets;
+  std::vector<uint8_t> occupied;  // cells of the view ahead
   std::vector<uint32_t> looked;  // pixels whose looks were asked for
   std::vector<LookedPixel> looked_pixels;
   bool known = false;  // anything, in the last survey
@@ -144,6 +147,11 @@ void RenderCache::plan(const View& view, int budget, uint64_t seed,
   plan_requests(c.points, view, {budget, seed, c.is_still()}, c.image, requests);
 }
 
+void RenderCache::predict(const View& ahead, int most, uint64_t seed,
+                          std::vector<Request>& requests) {
+  predict_requests(impl_->points, ahead, most, seed, impl_->occupied, requests);
+}
+
 void RenderCache::remember(const View& view, std::span<const Request> requests,
                            std::span<const Sample> samples) {
   Impl& c = *impl_;
@@ -155,10 +163,10 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   settings.longest_mean = settings.still ? still_mean : moving_mean;
   Remembered result =
       remember_samples(c.points, view, requests, samples, settings, c.image, c.targets);
-  // What moves may have been seen elsewhere than it is now.
-  c.image_stale |= !c.points.anchors.empty();
+  // What moves may have been seen elsewhere than it is now, and what had no pixel may have one.
+  c.image_stale |= !c.points.anchors.empty() || result.unplaced > 0;
   c.new_points += (float(result.kept) - c.new_points) * 0.1f;
-  if (settings.current) c.fresh += result.kept;
+  if (settings.current) c.fresh += result.kept - result.unplaced;
   if (!settings.still) return;
   for (size_t i = 0; i < c.targets.size(); i++)
     if (c.targets[i] != no_point && requests[i].resample != c.targets[i] &&
@@ -179,6 +187,7 @@ void RenderCache::survey(const View& view, const PictureSight* sight, int most, 
       height = std::clamp(view.height, 1, largest_side);
   fit_frame(width, height, frame);
   if (!c.projected || view != c.view) project(view);
+  if (c.relit) c.relit = blind_relit(c.points, c.image);
   c.scratch.start(cells_bytes(width, height));
   take_cells(c.cells, width, height, c.scratch);
   SurfaceCounts counts = read_surface(view, c.points, c.image, c.cells, frame);
@@ -214,6 +223,7 @@ void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame
   fit_frame(light.width, light.height, c.light);
   fit_frame(view.width, view.height, frame);
   if (!c.projected || light != c.view) project(light);
+  if (c.relit) c.relit = blind_relit(c.points, c.image);
   c.scratch.start(cells_bytes(light.width, light.height));
   take_cells(c.cells, light.width, light.height, c.scratch);
   SurfaceCounts counts = read_surface(light, c.points, c.image, c.cells, c.light);
@@ -224,6 +234,14 @@ void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame
   double began = seconds_now();
   compose_drawn(view, sight, c.cells, c.known, c.light, frame);
   c.stats.drawing_ms = float(1000 * (seconds_now() - began));
+}
+
+void RenderCache::relight(vec3 place, float reach) {
+  Impl& c = *impl_;
+  auto forgotten = [&](uint32_t point) { return is_lit_from(c.points, point, place, reach); };
+  relight_still(c.points, c.image, forgotten, c.still);
+  forget_light(c.points, place, reach);
+  c.relit = true;
 }
 
 void RenderCache::clear() {
@@ -268,7 +286,7 @@ size_t RenderCache::memory_bytes() const {
   auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   size_t sum = points_bytes(c.points) + bytes(c.image.point) + bytes(c.image.depth) +
                bytes(c.image.priority) + bytes(c.image.changed) + bytes(c.still.count) +
-               bytes(c.targets) + c.scratch.bytes() + bytes(c.light.color) + bytes(c.light.depth) +
+               bytes(c.occupied) + bytes(c.targets) + c.scratch.bytes() + bytes(c.light.color) + bytes(c.light.depth) +
                bytes(c.light.object) + bytes(c.light.confidence);
   for (const auto& plane : c.still.mean) sum += bytes(plane);
   return sum;

@@ -57,6 +57,9 @@ class RenderCache {
   // Exactly `budget` (or fewer when there is nothing left to learn) requests by error diffusion;
   // resampled points are passed exactly. `seed` makes the choice and the samples repeatable.
   void plan(const View& view, int budget, uint64_t seed, std::vector<Request>& requests);
+  // Appends requests for what the view `ahead` will show and no point is near (cache/predict.h), at
+  // most `most`; their answers are to be remembered with the others.
+  void predict(const View& ahead, int most, uint64_t seed, std::vector<Request>& requests);
   // Puts answers into the cache and into the current projection.
   void remember(const View& view, std::span<const Request> requests,
                 std::span<const Sample> samples);
@@ -72,7 +75,10 @@ class RenderCache {
   // of the frame before has been done; needs sight.can_see(view).
   void draw(const View& view, const PictureSight& sight, Frame& frame);
   void set_attention(bool on);  // CacheSettings::attention
-  // Forgets everything (lights toggled, exhibit changed).
+  // A lamp at `place` was switched, dimmed or moved, and lights what is within `reach` metres (infinite:
+  // everything): what was remembered of the light there counts no more, and is asked for first.
+  void relight(vec3 place, float reach);
+  // Forgets everything (another exhibit).
   void clear();
 
   const CacheStats& stats() const;

@@ -86,6 +86,23 @@ void age_points(PointCache& points, float new_points) {
   });
 }
 
+bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach) {
+  vec3 away = vec3(points.x[i], points.y[i], points.z[i]) - place;
+  bool near = !(points.flags[i] & point_infinite) && dot(away, away) <= reach * reach;
+  return near || std::isinf(reach);
+}
+
+void forget_light(PointCache& points, vec3 place, float reach) {
+  parallel_ranges(points.capacity(), 1 << 14, [&](int begin, int end) {
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      if (!is_alive(points, uint32_t(i)) || !is_lit_from(points, uint32_t(i), place, reach)) continue;
+      points.age[i] = 254;
+      points.count[i] = std::min<uint8_t>(points.count[i], 1);
+      points.flags[i] |= point_relit;
+    }
+  });
+}
+
 void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric,
                   vec3& place, vec3& normal) {
   if (instance >= uint32_t(world.instance_count())) return;

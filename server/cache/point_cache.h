@@ -20,6 +20,7 @@ enum PointFlags : uint8_t {
   point_moving = 8,     // has an anchor
   point_visible = 16,   // shows in the current projection
   point_verified = 32,  // was sampled from exactly the current view: surely not hidden
+  point_relit = 64,     // the light has changed since it was sampled: see forget_light()
 };
 
 struct PointColor {
@@ -64,6 +65,10 @@ void clear_points(PointCache& points);
 // have replaced all (Walter 2002); specular and moving points age three times as fast, unseen ones
 // twice. Unseen points that reach 255 are evicted; seen ones stop at 254.
 void age_points(PointCache& points, float new_points);
+// The light has changed within `reach` metres of `place`: points there are as old as can be, and their
+// next sample is as good as their first. At infinity only an infinite reach counts.
+void forget_light(PointCache& points, vec3 place, float reach);
+bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach);
 // Where a place on a mesh is now, with the side of the normal that `normal` faced; both stay as they
 // are where the world has no such triangle.
 void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric,

@@ -84,6 +84,12 @@ bool improve_point(PointCache& points, uint32_t i, const View& view, const Sampl
                    bool exact, const RememberSettings& settings, uint32_t random) {
   vec3 smooth = unpack_rgb9e5(points.color[i].smooth), rest = unpack_rgb9e5(points.color[i].rest);
   int n = points.count[i];
+  if (points.flags[i] & point_relit) {
+    uint8_t shown = points.flags[i] & point_visible;
+    begin_point(points, i, view, sample, random);
+    points.flags[i] |= shown;
+    return false;
+  }
   float deviation = unpack_deviation(points.color[i].noise);
   float before = luminance(rest), now = luminance(max(sample.rest, vec3(0))),
         step = std::abs(now - before);
@@ -221,6 +227,7 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   additions.reserve(count);
   for (size_t i = 0; i < count; i++) {
     if (targets[i] == no_point) additions.push_back(uint32_t(i));
+    result.unplaced += targets[i] != reject && settings.current && requests[i].pixel == no_pixel;
     if (targets[i] != reject) continue;
     targets[i] = no_point;
     result.rejected++;

@@ -9,6 +9,34 @@
 
 namespace wellspring {
 
+namespace {
+
+constexpr int relit_samples = 6;     // that a mean from before the light changed is worth
+constexpr float darkest = 0.004f;    // reflectance through which light can be told
+constexpr float contrast = 4;        // of a surface within a pixel, at most
+
+// What the light of a colour is, told by the reflectance it was seen with.
+vec3 light_of(vec3 color, vec3 albedo) { return color / max(albedo, vec3(darkest)); }
+
+}  // namespace
+
+void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel, StillImage& still) {
+  uint8_t& count = still.count[pixel];
+  int n = count & ~still_fresh;
+  if (n == still_relit) return;  // switched again before anything was seen
+  const PointColor& color = points.color[point];
+  vec3 albedo = unpack_albedo(color.albedo);
+  vec3 light = light_of(albedo * unpack_rgb9e5(color.smooth) + unpack_rgb9e5(color.rest), albedo);
+  vec3 mean(unpack_half(still.mean[0][pixel]), unpack_half(still.mean[1][pixel]),
+            unpack_half(still.mean[2][pixel]));
+  bool known = n > relit_samples && albedo != vec3(0) && !(points.flags[point] & point_specular) &&
+               luminance(light) > 1e-4f;
+  count = known ? still_relit : 0;
+  if (!known) return;
+  vec3 surface = clamp(mean / max(light, vec3(1e-5f)), albedo / contrast, albedo * contrast);
+  for (size_t c = 0; c < 3; c++) still.mean[c][pixel] = pack_half(surface[int(c)]);
+}
+
 void accumulate_still(const PointCache& points, const PointImage& image, uint32_t seed,
                       StillImage& still, Frame& frame) {
   parallel_ranges(image.height, 8, [&](int begin, int end) {
@@ -22,7 +50,12 @@ void accumulate_still(const PointCache& points, const PointImage& image, uint32_
       int n = still.count[i] & ~still_fresh;
       vec3 mean(unpack_half(still.mean[0][i]), unpack_half(still.mean[1][i]),
                 unpack_half(still.mean[2][i]));
-      if (still.count[i] & still_fresh) {
+      bool fresh = still.count[i] & still_fresh;
+      if (n == still_relit) {
+        mean *= light_of(frame.color[i], unpack_albedo(points.color[point].albedo));
+        n = relit_samples;
+      }
+      if (fresh) {
         n = std::min(n + 1, still_longest);
         // Later samples count more: the light they were shown in was known better.
         mean += (frame.color[i] - (n == 1 ? vec3(0) : mean)) *

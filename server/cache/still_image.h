@@ -16,14 +16,37 @@ inline constexpr uint8_t still_fresh =
     128;  // bit of `count`: a sample arrived since the last picture
 inline constexpr int still_longest = 100;  // the mean looks back on about this many samples
 
+inline constexpr uint8_t still_relit = 127;  // instead of a number: the mean is over light
+
 struct StillImage {
   std::array<std::vector<uint16_t>, 3> mean;  // pack_half
-  std::vector<uint8_t> count;                 // low 7 bits: samples in the mean
+  std::vector<uint8_t> count;                 // low 7 bits: samples in the mean, or still_relit
 };
+
+// The light changes of points where `forgotten` (called before they are told): their pixels' means
+// keep what they know of the surface, which is the mean over the light of the point that shows.
+template <class Forgotten>
+void relight_still(const PointCache& points, const PointImage& image, const Forgotten& forgotten,
+                   StillImage& still);
 
 // Averages what fresh pixels show into `still` and shows the average. Pixels of moving points start
 // over.
 void accumulate_still(const PointCache& points, const PointImage& image, uint32_t seed,
                       StillImage& still, Frame& frame);
+
+// Implementation of the template: of one pixel, whose point's light is forgotten.
+void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel, StillImage& still);
+
+template <class Forgotten>
+void relight_still(const PointCache& points, const PointImage& image, const Forgotten& forgotten,
+                   StillImage& still) {
+  for (size_t i = 0; i < still.count.size(); i++) {
+    uint32_t point = image.point[i];
+    if (point == no_point)
+      still.count[i] = 0;
+    else if (forgotten(point))
+      relight_still_pixel(points, point, i, still);
+  }
+}
 
 }  // namespace wellspring

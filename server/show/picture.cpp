@@ -5,8 +5,9 @@
 
 #include "base/clock.h"
 #include "base/rng.h"
-#include "cache/trace_waiting.h"
 #include "cache/compose_drawn.h"
+#include "cache/predict.h"
+#include "cache/trace_waiting.h"
 #include "frame/jpeg.h"
 #include "show/display_path.h"
 #include "show/in_view.h"
@@ -27,6 +28,10 @@ constexpr double resting_rate = 4;     // when nothing in the picture changes an
 constexpr float nearly_all = 0.999f;   // converged
 constexpr float forgotten = 0.998f;    // of what drawing took, a picture without it
 constexpr float few_guessed = 0.01f;   // of the pixels, and the points alone show a picture at rest
+constexpr double motion_seconds = 0.1;     // in which a visitor's motion is measured
+constexpr float fastest = 25;              // metres a second; more is a jump
+constexpr double predicted_pictures = 2;
+constexpr float predicted_share = 0.3f;    // of the samples, at most
 constexpr float barely_covered = 0.1f;  // of the pixels by points
 constexpr float more_asked = 1.2f;      // than there is time for, by what was measured: none is idle
 constexpr int animated_gain = 5;       // JPEG quality above the moving one while the storyteller moves
@@ -64,6 +69,24 @@ DisplayCosts display_costs(const Show& show, const Visitor& visitor) {
   return {show.samples_per_second, show.looks_per_second, seconds(times.drawing),
           seconds(times.display + times.tonemap),
           times.light > 0 ? seconds(times.light + times.tonemap) : 0};
+}
+
+// Where the motion of the last moments leads by the time that answers asked for now are shown, and the
+// picture after that. Inputs come in steps of their own, so that two pictures alone would not tell.
+View view_ahead(const Show& show, Visitor& visitor, const View& view) {
+  auto& past = visitor.past;
+  auto too_old = [&](const auto& one) {
+    return show.time - one.time > motion_seconds || one.view.width != view.width || one.view.height != view.height;
+  };
+  past.erase(past.begin(), std::find_if_not(past.begin(), past.end(), too_old));
+  View ahead = view;
+  if (!past.empty() && show.time > past.front().time) {
+    double passed = show.time - past.front().time;
+    if (length(view.position - past.front().view.position) > fastest * float(passed)) past.clear();  // a jump
+    else ahead = extrapolate(past.front().view, view, float(predicted_pictures / (passed * picture_rate(show, visitor))));
+  }
+  past.push_back({show.time, view});
+  return ahead;
 }
 
 // On another core: the tick goes on meanwhile, and waits before it touches the image again.
@@ -134,7 +157,13 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   const Technique& technique = settled ? *show.still_technique : *show.technique;
   int most_asked = int(more_asked * float(display.samples));
   bool late = !still && may_be_late(show, visitor, technique, most_asked);
-  cache.plan(lit, late ? most_asked : display.samples, seed, visitor.requests);
+  int asked = late ? most_asked : display.samples;
+  View ahead = view_ahead(show, visitor, lit);
+  visitor.ahead.clear();
+  if (ahead != lit && !technique.begin_pass)
+    cache.predict(ahead, int(predicted_share * float(asked)), seed, visitor.ahead);
+  cache.plan(lit, asked - int(visitor.ahead.size()), seed, visitor.requests);
+  visitor.requests.insert(visitor.requests.end(), visitor.ahead.begin(), visitor.ahead.end());
   double planned = seconds_now();
   TransportSettings transport = show.settings.transport;
   if (!settled) transport.clamp = show.settings.moving_clamp;

@@ -61,12 +61,17 @@ struct Visitor {
   Frame frame;
   Broker broker;             // what is traced after its picture, for the next
   double broker_seconds = 0;  // of all cores, for what it was last asked
-  std::vector<Request> requests;
+  std::vector<Request> requests, ahead;
   std::vector<Sample> samples;
   std::vector<Ray> looks;
   std::vector<Seen> seen;
   uint32_t frame_number = 0;
   View last_view;
+  struct PastView {
+    double time = 0;
+    View view;
+  };
+  std::vector<PastView> past;  // of the last pictures: where the visitor is heading
   double moved_at = 0;       // show time of the last change of view
   double pictured_at = -1e9;  // show time of the last picture
   Flow flow;

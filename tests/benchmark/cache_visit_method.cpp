@@ -10,6 +10,7 @@
 #include "cache/broker.h"
 #include "cache/compose_drawn.h"
 #include "cache/looks.h"
+#include "cache/predict.h"
 
 namespace wellspring {
 namespace {
@@ -53,6 +54,8 @@ struct Batch {
 // (cache.primary.sample_looks).
 constexpr double look_share = 0.12;
 constexpr int looks_a_sample = 20;
+constexpr float predicted_frames = 2;    // as show/picture.cpp
+constexpr double predicted_share = 0.3;  // of the budget, at most
 
 class CacheMethod : public VisitMethod {
  public:
@@ -65,6 +68,10 @@ class CacheMethod : public VisitMethod {
     const View view = coarse ? light_view(moment.view) : moment.view;
     cache_.resize(view.width, view.height);
     cache_.move_points(*moment.world);
+    if (moment.relit) {
+      cache_.relight(vec3(0), INFINITY);
+      broker_.forget();
+    }
     uint64_t pose = uint64_t(moment.frame);
     land(broker_.collect(), *moment.world, pose, cache_);
     cache_.project(view);
@@ -72,7 +79,13 @@ class CacheMethod : public VisitMethod {
     int price = coarse ? 0 : int(look_share * budget);
     int looks = std::min(looks_a_pixel * view.width * view.height, price * looks_a_sample);
     budget -= price;
-    cache_.plan(view, budget, moment.seed, batch_.requests);
+    ahead_.clear();
+    if (moment.frame > 0 && view != view_before_)
+      cache_.predict(extrapolate(view_before_, view, predicted_frames),
+                     int(predicted_share * budget), moment.seed, ahead_);
+    view_before_ = view;
+    cache_.plan(view, budget - int(ahead_.size()), moment.seed, batch_.requests);
+    batch_.requests.insert(batch_.requests.end(), ahead_.begin(), ahead_.end());
     if (answers_ == Answers::next_frame) {
       broker_.ask(view, {moment.technique, moment.transport}, batch_.requests);
       while (auto piece = broker_.take()) {
@@ -113,6 +126,8 @@ class CacheMethod : public VisitMethod {
   }
   Answers answers_;
   bool primary_;
+  View view_before_;
+  std::vector<Request> ahead_;
   std::unique_ptr<PictureSight> sight_;
   std::shared_ptr<const LightTables> sees_;
   std::vector<Ray> rays_;

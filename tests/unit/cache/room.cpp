@@ -172,7 +172,7 @@ Sample trace_room(const Room& room, const Request& request) {
   vec3 p = o + d * hit.t, n = dot(hit.normal, d) > 0 ? -hit.normal : hit.normal,
        from = p + n * 1e-3f;
   vec3 smooth = room.noisy ? indirect(room, from, n, rng) : plain_light(p, n);
-  vec3 rest = hit.emission + (room.noisy ? hit.albedo * spot_light(room, from, n) : vec3(0));
+  vec3 rest = hit.emission + hit.albedo * spot_light(room, from, n);
   if (hit.emission != vec3(0)) smooth = vec3(0), hit.albedo = vec3(0);
   if (mirrored) {
     sample.rest = reflectance * (hit.albedo * smooth + rest);
