@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <span>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -12,6 +13,8 @@
 namespace wellspring {
 namespace {
 
+constexpr float darkest_lit = 0.01f;  // reflectance that can tell of light, or show it
+constexpr float same_facing = 0.9f;   // cosine
 constexpr int change_ageing = 64;
 constexpr int change_witnesses = 3;   // changed points in 3x3 tiles that make it a change
 constexpr uint8_t changed_count = 2;  // samples a point near a change still vouches for
@@ -46,6 +49,35 @@ void place_witnesses(const PointCache& points, const View& view, PointImage& ima
     tile = uint8_t(std::min(tile + 1, 255));
   }
   image.witnesses.clear();
+}
+
+struct PixelPoint {
+  uint32_t point = 0;
+  int x = 0, y = 0;
+};
+
+// The light of the nearest of `newer` on the same surface. What depends on the view is taken to be as
+// bright for its reflectance as there.
+void borrow_light(PointCache& points, const PixelPoint& to, std::span<const PixelPoint> newer) {
+  PointColor& mine = points.color[to.point];
+  vec3 albedo = unpack_albedo(mine.albedo), normal = unpack_normal(mine.normal);
+  if (max_component(albedo) < darkest_lit || (points.flags[to.point] & point_specular)) return;
+  int nearest = 1 << 30;
+  const PointColor* from = nullptr;
+  for (const PixelPoint& one : newer) {
+    int dx = one.x - to.x, dy = one.y - to.y, away = dx * dx + dy * dy;
+    const PointColor& color = points.color[one.point];
+    bool alike = color.object == mine.object && dot(unpack_normal(color.normal), normal) > same_facing &&
+                 max_component(unpack_albedo(color.albedo)) >= darkest_lit;
+    if (!alike || away >= nearest) continue;
+    nearest = away;
+    from = &color;
+  }
+  if (!from) return;
+  float brighter = luminance(albedo) / std::max(luminance(unpack_albedo(from->albedo)), darkest_lit);
+  mine.smooth = from->smooth;
+  mine.rest = pack_rgb9e5(unpack_rgb9e5(from->rest) * brighter);
+  mine.noise = 0;
 }
 
 using Levels = std::array<uint8_t, 256>;
@@ -94,27 +126,22 @@ void age_changed(PointCache& points, const View& view, PointImage& image, StillI
   });
 }
 
-bool blind_relit(PointCache& points, const PointImage& image) {
+bool lend_light(PointCache& points, const PointImage& image) {
   std::atomic<bool> waits = false;
-  parallel_ranges((image.height + relit_block - 1) / relit_block, 4, [&](int begin, int end) {
-    for (int y = begin * relit_block; y < end * relit_block; y += relit_block)
-      for (int x = 0; x < image.width; x += relit_block) {
-        uint32_t relit[relit_block * relit_block], newer[relit_block * relit_block];
+  parallel_ranges((image.height + lent_block - 1) / lent_block, 4, [&](int begin, int end) {
+    PixelPoint relit[lent_block * lent_block], newer[lent_block * lent_block];
+    for (int y = begin * lent_block; y < end * lent_block; y += lent_block)
+      for (int x = 0; x < image.width; x += lent_block) {
         int relits = 0, newers = 0;
-        for (int v = y; v < std::min(y + relit_block, image.height); v++)
-          for (int u = x; u < std::min(x + relit_block, image.width); u++) {
+        for (int v = y; v < std::min(y + lent_block, image.height); v++)
+          for (int u = x; u < std::min(x + lent_block, image.width); u++) {
             uint32_t point = image.point[size_t(v) * size_t(image.width) + size_t(u)];
             if (point == no_point) continue;
-            if (points.flags[point] & point_relit) relit[relits++] = point;
-            else newer[newers++] = points.color[point].object;
+            if (points.flags[point] & point_relit) relit[relits++] = {point, u, v};
+            else if (!(points.flags[point] & point_specular)) newer[newers++] = {point, u, v};
           }
-        if (relits == 0) continue;
-        waits = true;
-        for (int i = 0; i < relits; i++) {
-          if (std::find(newer, newer + newers, points.color[relit[i]].object) == newer + newers) continue;
-          points.count[relit[i]] = 0;
-          points.color[relit[i]].noise = blind_deviation;
-        }
+        if (relits > 0) waits = true;
+        for (int i = 0; i < relits; i++) borrow_light(points, relit[i], std::span(newer, size_t(newers)));
       }
   });
   return waits;

@@ -14,10 +14,10 @@ namespace wellspring {
 // The image is projected for `view`. Uses up image.witnesses.
 void age_changed(PointCache& points, const View& view, PointImage& image, StillImage& still);
 
-// Points that were relit show their reflectance in the light of newer points of their object, as soon
-// as there are any in the same block of `relit_block` pixels a side. Returns whether any waits.
-inline constexpr int relit_block = 4;  // a cell's (cache/cells.h)
-bool blind_relit(PointCache& points, const PointImage& image);
+// Points whose light was forgotten are lent that of the nearest newer point of the same surface in their
+// block of `lent_block` pixels a side, if there is one. Returns whether any still waits for a sample.
+inline constexpr int lent_block = 8;
+bool lend_light(PointCache& points, const PointImage& image);
 
 // Overwrites image.priority: empty pixels 255 (alone) to 143 (surrounded by points); pixels with a
 // point by its age (up to 127) and by how few samples it holds. 255 everywhere counts when

@@ -103,6 +103,10 @@ void RenderCache::move_points(const World& world) {
   age_points(c.points, c.new_points);
 }
 
+void RenderCache::move_object(uint32_t object, const mat4& moved) {
+  impl_->image_stale |= move_points_of(impl_->points, object, moved) > 0;
+}
+
 void RenderCache::project(const View& view) {
   Impl& c = *impl_;
   resize(view.width, view.height);
@@ -187,7 +191,7 @@ void RenderCache::survey(const View& view, const PictureSight* sight, int most, 
       height = std::clamp(view.height, 1, largest_side);
   fit_frame(width, height, frame);
   if (!c.projected || view != c.view) project(view);
-  if (c.relit) c.relit = blind_relit(c.points, c.image);
+  if (c.relit) c.relit = lend_light(c.points, c.image);
   c.scratch.start(cells_bytes(width, height));
   take_cells(c.cells, width, height, c.scratch);
   SurfaceCounts counts = read_surface(view, c.points, c.image, c.cells, frame);

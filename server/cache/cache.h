@@ -48,6 +48,8 @@ class RenderCache {
   // Points on moving meshes follow their triangles; ages advance. Call once a frame after
   // World::commit().
   void move_points(const World& world);
+  // The object was carried off as a whole, by `moved` (rigid) from where it was: its points go along.
+  void move_object(uint32_t object, const mat4& moved);
   // Where every point falls in `view`; depth cull.
   void project(const View& view);
   // About the share of pixels that a point shows in, from every eighth row.

@@ -12,9 +12,6 @@
 
 namespace wellspring {
 
-// Stands in place of a deviation for pixels of which only the light is unknown.
-inline constexpr uint8_t blind_deviation = 255;
-
 // The largest value the shared exponent format holds.
 inline constexpr float rgb9e5_max = 65408.0f;
 

@@ -11,6 +11,9 @@
 
 namespace wellspring {
 
+// Stands in place of a deviation for pixels of which only the light is unknown.
+inline constexpr uint8_t blind_deviation = 255;
+
 inline constexpr float plane_tolerance = 0.02f;  // of the depth: farther off is another surface
 
 struct Color {

@@ -2,6 +2,7 @@
 #include "cache/point_cache.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -84,6 +85,27 @@ void age_points(PointCache& points, float new_points) {
     for (; i < last; i += sizeof(GroupBytes))
       age_some<GroupBytes>(age + i, flags + i, uint8_t(whole));
   });
+}
+
+int move_points_of(PointCache& points, uint32_t object, const mat4& moved) {
+  mat3 turn(moved);
+  if (!is_finite(vec3(moved[3])) || !is_finite(turn[0] + turn[1] + turn[2])) return 0;
+  std::atomic<int> count{0};
+  parallel_ranges(points.capacity(), 1 << 14, [&](int begin, int end) {
+    int here = 0;
+    for (size_t i = size_t(begin); i < size_t(end); i++) {
+      if (!is_alive(points, uint32_t(i)) || points.color[i].object != object ||
+          (points.flags[i] & point_infinite))
+        continue;
+      vec3 p = vec3(moved * vec4(points.x[i], points.y[i], points.z[i], 1));
+      points.x[i] = p.x, points.y[i] = p.y, points.z[i] = p.z;
+      points.normal[i] = points.color[i].normal = pack_normal(turn * unpack_normal(points.normal[i]));
+      points.flags[i] &= uint8_t(~point_verified);
+      here++;
+    }
+    count += here;
+  });
+  return count;
 }
 
 bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach) {

@@ -65,6 +65,9 @@ void clear_points(PointCache& points);
 // have replaced all (Walter 2002); specular and moving points age three times as fast, unseen ones
 // twice. Unseen points that reach 255 are evicted; seen ones stop at 254.
 void age_points(PointCache& points, float new_points);
+// Points of an object that was carried by `moved` (rigid), as many as are returned. Moves that are not
+// finite move nothing.
+int move_points_of(PointCache& points, uint32_t object, const mat4& moved);
 // The light has changed within `reach` metres of `place`: points there are as old as can be, and their
 // next sample is as good as their first. At infinity only an infinite reach counts.
 void forget_light(PointCache& points, vec3 place, float reach);
