@@ -227,7 +227,7 @@ void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame
   fit_frame(light.width, light.height, c.light);
   fit_frame(view.width, view.height, frame);
   if (!c.projected || light != c.view) project(light);
-  if (c.relit) c.relit = blind_relit(c.points, c.image);
+  if (c.relit) c.relit = lend_light(c.points, c.image);
   c.scratch.start(cells_bytes(light.width, light.height));
   take_cells(c.cells, light.width, light.height, c.scratch);
   SurfaceCounts counts = read_surface(light, c.points, c.image, c.cells, c.light);

@@ -77,8 +77,9 @@ class RenderCache {
   // of the frame before has been done; needs sight.can_see(view).
   void draw(const View& view, const PictureSight& sight, Frame& frame);
   void set_attention(bool on);  // CacheSettings::attention
-  // A lamp at `place` was switched, dimmed or moved, and lights what is within `reach` metres (infinite:
-  // everything): what was remembered of the light there counts no more, and is asked for first.
+  // A lamp at `place` was switched, dimmed or moved, and is much of the light within `reach` metres
+  // (infinite: everywhere): what was remembered of the light there counts no more, and is asked for
+  // first. Not for lamps that are little of it: there a change that resampling finds costs less.
   void relight(vec3 place, float reach);
   // Forgets everything (another exhibit).
   void clear();

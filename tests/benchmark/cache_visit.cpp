@@ -155,7 +155,6 @@ void simulate(const VisitSettings& settings, VisitStage& stage, const VisitTrace
     if (!settled) moment.transport.clamp = show.moving_clamp;
     moment.view = view;
     moment.changed = moved || stage.switched() || sees_motion(seen.now) || sees_motion(seen.before);
-    moment.relit = i > 0 && stage.switched();
     moment.frame = i;
     moment.seed = mix64(uint64_t(i + 1) * 0x9e3779b9u + 1);
     parallel_for(int(runs.size()), [&](int r) {

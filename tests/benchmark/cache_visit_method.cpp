@@ -68,10 +68,6 @@ class CacheMethod : public VisitMethod {
     const View view = coarse ? light_view(moment.view) : moment.view;
     cache_.resize(view.width, view.height);
     cache_.move_points(*moment.world);
-    if (moment.relit) {
-      cache_.relight(vec3(0), INFINITY);
-      broker_.forget();
-    }
     uint64_t pose = uint64_t(moment.frame);
     land(broker_.collect(), *moment.world, pose, cache_);
     cache_.project(view);

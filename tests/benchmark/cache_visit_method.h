@@ -19,7 +19,6 @@ struct VisitMoment {
   TransportSettings transport;
   View view;            // wanted now
   bool changed = true;  // anything in the view moved, or its light changed, since the frame before
-  bool relit = false;   // lamps were switched since then
   int frame = 0;        // counted from 0
   uint64_t seed = 1;    // of this frame
 };
