@@ -221,7 +221,7 @@ void RenderCache::reconstruct(const View& view, std::span<const Seen> seen, Fram
   show_looks(pixels, c.looked_pixels, c.still, frame);
 }
 
-void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame) {
+void RenderCache::draw(const View& view, const PictureSight& sight, DrawnPlanes planes, Frame& frame) {
   Impl& c = *impl_;
   View light = light_view(view);
   fit_frame(light.width, light.height, c.light);
@@ -236,7 +236,7 @@ void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame
   c.count(counts, c.known);
   c.looked.clear();
   double began = seconds_now();
-  compose_drawn(view, sight, c.cells, c.known, c.light, frame);
+  compose_drawn(view, sight, c.cells, c.known, c.light, planes, frame);
   c.stats.drawing_ms = float(1000 * (seconds_now() - began));
 }
 

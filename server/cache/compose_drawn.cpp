@@ -180,7 +180,7 @@ View light_view(const View& view) {
 }
 
 int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
-                      const Frame& light, Frame& frame) {
+                      const Frame& light, DrawnPlanes planes, Frame& frame) {
   static std::atomic<uint64_t> pictures = 0;
   const uint64_t picture = ++pictures;
   PixelRays rays(view), light_rays(light_view(view));
@@ -243,6 +243,7 @@ int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& 
       if (end - begin == lanes) {
         size_t at = row + size_t(i);
         std::memcpy(&frame.color[at].x, color, sizeof color);
+        if (planes == DrawnPlanes::color) continue;
         store(&frame.confidence[at], confidence);
         store(&frame.depth[at], depth);
         store(&frame.object[at], q.object);
@@ -254,6 +255,7 @@ int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& 
                     many * words * sizeof(float));
       };
       copy(&frame.color[at].x, color, 3);
+      if (planes == DrawnPlanes::color) continue;
       copy(&frame.confidence[at], confidence, 1);
       copy(&frame.depth[at], depth, 1);
       copy(&frame.object[at], q.object, 1);

@@ -14,10 +14,13 @@ inline constexpr int light_scale = 2;  // pixels of the picture a side of one pi
 // The view of the light: its pixels are light_scale pixels of the picture wide.
 View light_view(const View& view);
 
-// Overwrites all planes of `frame`. `light`: of light_view(view), its planes packed as read_surface()
+enum class DrawnPlanes { all, color };
+
+// Overwrites all planes of `frame`, or its colours alone: half the memory to write, which is what
+// takes long. `light`: of light_view(view), its planes packed as read_surface()
 // leaves them, with `cells` filled from it; `known`: what fill_cells() said. Returns the number of
 // pixels lit by no point of their own.
 int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
-                      const Frame& light, Frame& frame);
+                      const Frame& light, DrawnPlanes planes, Frame& frame);
 
 }  // namespace wellspring

@@ -43,10 +43,15 @@ inline f8 positive(const f8& v) { return larger(v, f8{}); }
 inline f8 magnitude(const f8& v) { return as<f8>(as<u8>(v) & 0x7fffffffu); }
 template <class V>
 inline bool any(const V& v) {
+  static_assert(sizeof v == 32);
+#ifdef __AVX__
+  return !_mm256_testz_si256(__m256i(v), __m256i(v));
+#else
   uint64_t words[sizeof v / 8], sum = 0;
   std::memcpy(words, &v, sizeof v);
   for (uint64_t w : words) sum |= w;
   return sum != 0;
+#endif
 }
 
 // Bit i: the answer of a comparison in lane i.

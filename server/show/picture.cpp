@@ -184,7 +184,7 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   bool drawn = coarse || (display.drawn && guessed);
   visitor.looks.clear();
   if (coarse)
-    cache.draw(view, *show.sight, visitor.frame);
+    cache.draw(view, *show.sight, DrawnPlanes::color, visitor.frame);
   else
     cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, visitor.frame, visitor.looks);
   visitor.seen.resize(visitor.looks.size());

@@ -48,7 +48,7 @@ struct Visit {
     samples.resize(requests.size());
     trace(*find_technique("path"), world, lights, {}, requests, samples);
     cache.remember(light, requests, samples);
-    cache.draw(view, sight, frame);
+    cache.draw(view, sight, DrawnPlanes::all, frame);
   }
 };
 
@@ -173,6 +173,10 @@ TEST(Overlay, LightOfHalfTheResolutionIsEnough) {
       guessed.step(world, lights, view, pixels / 60, nullptr);
     }
     ASSERT_EQ(drawn.frame.color.size(), size_t(pixels));
+    Frame colors;  // alone
+    drawn.cache.draw(view, sight, DrawnPlanes::color, colors);
+    EXPECT_EQ(colors.color, drawn.frame.color);
+    EXPECT_NE(colors.object, drawn.frame.object);
     int wrong = 0;
     for (int y = 0; y < size.y; y++)
       for (int px = 0; px < size.x; px++) {

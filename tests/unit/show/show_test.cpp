@@ -217,7 +217,9 @@ TEST(DescribeApi, NamesOnlyMessagesThatAreUnderstood) {
   ASSERT_GE(api["browser_to_server"].size(), 9u);
   for (const auto& [type, fields] : api["browser_to_server"].items()) {
     auto read = read_browser_message("{\"type\":\"" + type + "\"}");
-    if (const WireError* error = std::get_if<WireError>(&read)) EXPECT_NE(error->code, "unknown_type") << type;
+    if (const WireError* error = std::get_if<WireError>(&read)) {
+      EXPECT_NE(error->code, "unknown_type") << type;
+    }
   }
 }
 
