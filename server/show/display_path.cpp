@@ -13,6 +13,8 @@ constexpr double enter_primary = 0.4, leave_primary = 0.55;  // of the time, for
 constexpr double enter_drawn = 0.6, leave_drawn = 0.8;  // of the time, for drawing
 // Seconds a picture may take with it: while the visitor walks, and while only the storyteller moves.
 constexpr double enter_period[] = {1.0 / 22, 0.08}, leave_period[] = {1.0 / 18, 0.1};
+// Pixels a sample from which on drawing in coarser light shows who moves less error than points do.
+constexpr double enter_coarse = 70, leave_coarse = 55;
 constexpr double unmeasured_light = 0.4;  // of the display's time, where light is coarser
 constexpr double least_light = 0.25;  // of the time goes to light, whatever is drawn
 constexpr int drawn_samples = 1000;  // the same where shapes are drawn: only light has to be guessed
@@ -35,6 +37,8 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
   double period = display + drawing + light;
   plan.drawn = drawing <= (before.drawn ? leave_drawn : enter_drawn) * seconds ||
                period <= (before.drawn ? leave_period : enter_period)[stands];
+  double plenty = double(pixels) / (before.drawn ? leave_coarse : enter_coarse);
+  if (!stands && (1 - edge_share) * seconds * costs.samples_per_second > plenty) plan.drawn = false;
   if (wish != DrawShapes::automatic) plan.drawn = wish == DrawShapes::always;
   plan.drawn &= !plan.primary;
   bool coarse = plan.drawn && !stands;  // edges are drawn, light has a quarter of the pixels

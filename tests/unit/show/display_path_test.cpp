@@ -60,7 +60,13 @@ TEST(DisplayPath, DoesNotAlternateWhereBothAreAboutAsGood) {
 TEST(DisplayPath, DrawsWhereTimeOrTheRateAllows) {
   EXPECT_FALSE(plan_display(0.03, pixels, slow, points).drawn);
   EXPECT_FALSE(plan_display(0.03, pixels, slow, drawn).drawn);
-  EXPECT_TRUE(plan_display(0.16, pixels, slow, points).drawn);
+  DisplayCosts dear = slow;  // light
+  dear.samples_per_second = 5e4;
+  EXPECT_TRUE(plan_display(0.16, pixels, dear, points).drawn);
+  // Where one pixel in fifty gets a sample, points alone are as good for who moves; not for who stands.
+  EXPECT_FALSE(plan_display(0.22, pixels, slow, points).drawn);
+  EXPECT_FALSE(plan_display(0.22, pixels, slow, drawn).drawn);
+  EXPECT_TRUE(plan_display(0.22, pixels, slow, points, true).drawn);
   EXPECT_TRUE(plan_display(0.007, pixels, quick, points).drawn);
   // No time is left within the wanted period, but 20 pictures a second stay possible.
   DisplayCosts costs = slow;
