@@ -61,7 +61,7 @@ int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, F
       wrong |= uint64_t(bits_of(~verdict.same) & all) << i;
       guessed |= uint64_t(bits_of(verdict.guessed) & all) << i;
     }
-    for (uint64_t rest = still ? wrong : 0; rest != 0; rest &= rest - 1) {
+    for (uint64_t rest = still ? wrong & ~guessed : 0; rest != 0; rest &= rest - 1) {
       int i = std::countr_zero(rest);
       if (!sight.moves(run.object[i]) && !sight.moves(frame.object[row + size_t(i)]))
         wrong &= ~(uint64_t(1) << i);

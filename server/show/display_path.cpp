@@ -11,8 +11,9 @@ namespace {
 constexpr double edge_share = 0.12;                   // of the time, on path `cache`
 constexpr double enter_primary = 0.4, leave_primary = 0.55;  // of the time, for all pixels' looks
 constexpr double enter_drawn = 0.6, leave_drawn = 0.8;  // of the time, for drawing
-// Seconds a picture may take with it: while the visitor walks, and while only the storyteller moves.
-constexpr double enter_period[] = {1.0 / 22, 0.08}, leave_period[] = {1.0 / 18, 0.1};
+// Seconds a picture may take with it: while the visitor walks, and while at most the storyteller moves.
+// On a busy machine points are few, and what they show is worse than fewer pictures.
+constexpr double enter_period[] = {0.12, 0.25}, leave_period[] = {0.15, 0.3};
 // Pixels a sample from which on drawing in coarser light shows who moves less error than points do.
 constexpr double enter_coarse = 70, leave_coarse = 55;
 constexpr double unmeasured_light = 0.4;  // of the display's time, where light is coarser

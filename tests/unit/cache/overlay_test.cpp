@@ -151,6 +151,32 @@ TEST(Overlay, AnEmptyCacheIsDark) {
   for (vec3 c : visit.frame.color) ASSERT_TRUE(is_finite(c));
 }
 
+// Who has just arrived sees shapes at once, also at rest.
+TEST(Overlay, RestsWithExactShapesAndFewPoints) {
+  Room room;
+  World world(room.scene);
+  world.commit();
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  Visit drawn, guessed;
+  constexpr int width = 160, height = 120, pixels = width * height;
+  View view = make_view(room.scene, {0, 0.25, 0.6}, 0, 0, 0.7f, width, height);
+  for (int i = 0; i < 8; i++) {
+    drawn.step(world, lights, view, pixels / 200, &sight);
+    guessed.step(world, lights, view, pixels / 200, nullptr);
+  }
+  int wrong = 0, wrong_guess = 0;
+  for (int y = 0; y < height; y++)
+    for (int px = 0; px < width; px++) {
+      Hit hit = world.intersect(view_ray(view, float(px) + 0.5f, float(y) + 0.5f));
+      uint32_t object = hit.valid() ? world.object_of(hit.instance) : 0;
+      wrong += drawn.frame.object[size_t(y * width + px)] != object;
+      wrong_guess += guessed.frame.object[size_t(y * width + px)] != object;
+    }
+  EXPECT_LT(wrong, pixels / 500);
+  EXPECT_GT(wrong_guess, pixels / 50);
+}
+
 // Odd sizes and both kinds of size in turn: tiles, blocks and light pixels end anywhere.
 TEST(Overlay, LightOfHalfTheResolutionIsEnough) {
   Room room;

@@ -58,8 +58,10 @@ TEST(DisplayPath, DoesNotAlternateWhereBothAreAboutAsGood) {
 }
 
 TEST(DisplayPath, DrawsWhereTimeOrTheRateAllows) {
-  EXPECT_FALSE(plan_display(0.03, pixels, slow, points).drawn);
-  EXPECT_FALSE(plan_display(0.03, pixels, slow, drawn).drawn);
+  DisplayCosts slower = slow;
+  slower.drawing_seconds = 0.3;
+  EXPECT_FALSE(plan_display(0.03, pixels, slower, points).drawn);
+  EXPECT_FALSE(plan_display(0.03, pixels, slower, drawn).drawn);
   DisplayCosts dear = slow;  // light
   dear.samples_per_second = 5e4;
   EXPECT_TRUE(plan_display(0.16, pixels, dear, points).drawn);
@@ -68,24 +70,24 @@ TEST(DisplayPath, DrawsWhereTimeOrTheRateAllows) {
   EXPECT_FALSE(plan_display(0.22, pixels, slow, drawn).drawn);
   EXPECT_TRUE(plan_display(0.22, pixels, slow, points, true).drawn);
   EXPECT_TRUE(plan_display(0.007, pixels, quick, points).drawn);
-  // No time is left within the wanted period, but 20 pictures a second stay possible.
+  // No time is left within the wanted period, but seven pictures a second stay possible.
   DisplayCosts costs = slow;
   costs.drawing_seconds = 0.008;
   EXPECT_TRUE(plan_display(0.005, pixels, costs, points).drawn);
   EXPECT_GE(plan_display(0.005, pixels, costs, points).samples, 1000);
-  costs.drawing_seconds = 0.05;
+  costs.drawing_seconds = 0.15;
   EXPECT_FALSE(plan_display(0.005, pixels, costs, drawn).drawn);
   // What a picture takes in coarser light is what counts once it is known.
   costs.display_seconds = 0.1, costs.drawing_seconds = 0.02, costs.light_seconds = 0.005;
   EXPECT_TRUE(plan_display(0.005, pixels, costs, points).drawn);
   EXPECT_EQ(plan_display(0.005, pixels, costs, points).looks, 0);
-  costs.light_seconds = 0.05;
+  costs.light_seconds = 0.14;
   EXPECT_FALSE(plan_display(0.005, pixels, costs, drawn).drawn);
   costs = slow;
-  costs.drawing_seconds = 0.03;
-  // Who stands does not mind a dozen.
+  costs.drawing_seconds = 0.15;
+  // Who stands does not mind four.
   EXPECT_TRUE(plan_display(0.005, pixels, costs, points, true).drawn);
-  EXPECT_FALSE(plan_display(0.005, pixels, slow, drawn, true).drawn);
+  EXPECT_FALSE(plan_display(0.005, pixels, slower, drawn, true).drawn);
 }
 
 TEST(DisplayPath, DrawsAsToldByTheOperator) {
