@@ -65,6 +65,9 @@ struct RenderCache::Impl {
   CacheStats stats;
 
   bool is_still() const { return still_frames >= 2; }
+  // The surface that points of the current projection show, packed into `frame`, with what `sight` sees
+  // laid over it, and the cells of both.
+  void read_light(const View& of, const PictureSight* sight, Frame& frame);
   void forget_still() {
     still_frames = 0;
     std::fill(still.count.begin(), still.count.end(), uint8_t(0));
@@ -184,6 +187,22 @@ void RenderCache::reconstruct(const View& view, Frame& frame, const PictureSight
   reconstruct(view, {}, frame);
 }
 
+void RenderCache::Impl::read_light(const View& of, const PictureSight* sight, Frame& frame) {
+  if (relit) relit = lend_light(points, image);
+  scratch.start(cells_bytes(frame.width, frame.height));
+  take_cells(cells, frame.width, frame.height, scratch);
+  SurfaceCounts counts = read_surface(of, points, image, cells, frame);
+  if (sight && sight->can_see(of)) {
+    double began = seconds_now();
+    overlay_sight(of, *sight, is_still(), frame);
+    stats.drawing_ms = float(1000 * (seconds_now() - began));
+  }
+  filter_cells(of, cells);
+  known = fill_cells(of, cells);
+  count(counts, known);
+  looked.clear();
+}
+
 void RenderCache::survey(const View& view, const PictureSight* sight, int most, Frame& frame,
                          std::vector<Ray>& looks) {
   Impl& c = *impl_;
@@ -191,19 +210,7 @@ void RenderCache::survey(const View& view, const PictureSight* sight, int most, 
       height = std::clamp(view.height, 1, largest_side);
   fit_frame(width, height, frame);
   if (!c.projected || view != c.view) project(view);
-  if (c.relit) c.relit = lend_light(c.points, c.image);
-  c.scratch.start(cells_bytes(width, height));
-  take_cells(c.cells, width, height, c.scratch);
-  SurfaceCounts counts = read_surface(view, c.points, c.image, c.cells, frame);
-  if (sight && sight->can_see(view)) {
-    double began = seconds_now();
-    overlay_sight(view, *sight, c.is_still(), frame);
-    c.stats.drawing_ms = float(1000 * (seconds_now() - began));
-  }
-  filter_cells(view, c.cells);
-  c.known = fill_cells(view, c.cells);
-  c.count(counts, c.known);
-  c.looked.clear();
+  c.read_light(view, sight, frame);
   if (most >= looks_a_pixel) {
     find_edges(view, c.cells, c.still, frame, c.image);
     choose_looks(c.image, size_t(most) / looks_a_pixel, mix64(c.frames), c.looked);
@@ -227,14 +234,7 @@ void RenderCache::draw(const View& view, const PictureSight& sight, DrawnPlanes 
   fit_frame(light.width, light.height, c.light);
   fit_frame(view.width, view.height, frame);
   if (!c.projected || light != c.view) project(light);
-  if (c.relit) c.relit = lend_light(c.points, c.image);
-  c.scratch.start(cells_bytes(light.width, light.height));
-  take_cells(c.cells, light.width, light.height, c.scratch);
-  SurfaceCounts counts = read_surface(light, c.points, c.image, c.cells, c.light);
-  filter_cells(light, c.cells);
-  c.known = fill_cells(light, c.cells);
-  c.count(counts, c.known);
-  c.looked.clear();
+  c.read_light(light, nullptr, c.light);
   double began = seconds_now();
   compose_drawn(view, sight, c.cells, c.known, c.light, planes, frame);
   c.stats.drawing_ms = float(1000 * (seconds_now() - began));

@@ -31,10 +31,10 @@ Vec inverse_depth_plane(Vec normal, const Vec& ray, const f8& inverse_depth) {
   f8 facing = dot(normal, ray), length2 = dot(ray, ray);
   // A plane seen edge-on would reach from the eye to infinity within a pixel; bend it towards the
   // viewer.
-  f8 least = -0.05f * square_root(length2);
+  f8 least = -0.05f * lanes_sqrt(length2);
   f8 bend = keep(~(facing < least), (facing - least) / length2);
   normal = {normal.x - ray.x * bend, normal.y - ray.y * bend, normal.z - ray.z * bend};
-  normal = normal * (1.0f / square_root(dot(normal, normal)));
+  normal = normal * (1.0f / lanes_sqrt(dot(normal, normal)));
   return normal * (inverse_depth / dot(normal, ray));
 }
 
@@ -169,7 +169,7 @@ void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells
     Gathered g = gather_cells(pixels);
     i8 any_point = g.points > 0.0f;
     f8 share = 1.0f / larger(g.points, splat(1)), per_sample = 1.0f / larger(g.samples, splat(1));
-    Vec normal = g.normal * (1.0f / larger(square_root(dot(g.normal, g.normal)), splat(1e-6f)));
+    Vec normal = g.normal * (1.0f / larger(lanes_sqrt(dot(g.normal, g.normal)), splat(1e-6f)));
     auto along = [&](vec3 axis) {
       return normal.x * axis.x + normal.y * axis.y + normal.z * axis.z;
     };

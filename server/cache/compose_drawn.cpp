@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cache/compose_drawn.h"
 
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -179,26 +178,22 @@ View light_view(const View& view) {
   return light;
 }
 
-int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
-                      const Frame& light, DrawnPlanes planes, Frame& frame) {
-  static std::atomic<uint64_t> pictures = 0;
-  const uint64_t picture = ++pictures;
+void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
+                   const Frame& light, DrawnPlanes planes, Frame& frame) {
   PixelRays rays(view), light_rays(light_view(view));
-  std::atomic<int64_t> blind = 0;
   sight.see(view, vec2(0.5f), [&](const SightRun& run) {
     RunPixels p;
     uint64_t shining = describe_run(run, p);
     thread_local CellRows rows;
     int by = (run.y + half_group) / group, bx = run.x / group;  // the block's lower right cell
     int groups = (run.count + half_group + group - 1) / group;
-    if (rows.picture != picture || rows.first != bx - 1 || rows.row != by - 1 ||
+    if (rows.picture != run.picture || rows.first != bx - 1 || rows.row != by - 1 ||
         rows.count < groups + 1) {
       read_rows(light_rays, cells, bx - 1, by - 1, groups + 1, rows);
-      rows.picture = picture;
+      rows.picture = run.picture;
     }
     float fy = (float(run.y - by * group + half_group) + 0.5f) / group;
     size_t row = size_t(run.y) * size_t(view.width) + size_t(run.x);
-    int64_t blind_here = 0;
     for (int g = 0; g < groups; g++) {
       int i = g * group - half_group, x = run.x + i;  // the first lane's pixel
       int begin = std::max(-i, 0), end = std::min(run.count - i, lanes);
@@ -222,7 +217,6 @@ int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& 
                                        &rows.cell[1][g + 1]};
       bool flat = rows.flat[g / lanes][g % lanes];
       uint32_t there = ((1u << end) - 1) & ~((1u << begin) - 1);
-      blind_here += std::popcount(bits_of(q.samples == 0.0f) & there);
       if (known) light_group(corners, flat, weights, d);
       f8 r = positive(d.albedo.r * q.smooth.r + q.rest.r),
          gr = positive(d.albedo.g * q.smooth.g + q.rest.g),
@@ -260,9 +254,7 @@ int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& 
       copy(&frame.depth[at], depth, 1);
       copy(&frame.object[at], q.object, 1);
     }
-    blind += blind_here;
   });
-  return blind;
 }
 
 }  // namespace wellspring

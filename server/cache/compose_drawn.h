@@ -18,9 +18,8 @@ enum class DrawnPlanes { all, color };
 
 // Overwrites all planes of `frame`, or its colours alone: half the memory to write, which is what
 // takes long. `light`: of light_view(view), its planes packed as read_surface()
-// leaves them, with `cells` filled from it; `known`: what fill_cells() said. Returns the number of
-// pixels lit by no point of their own.
-int64_t compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
-                      const Frame& light, DrawnPlanes planes, Frame& frame);
+// leaves them, with `cells` filled from it; `known`: what fill_cells() said.
+void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
+                   const Frame& light, DrawnPlanes planes, Frame& frame);
 
 }  // namespace wellspring

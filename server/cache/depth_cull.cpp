@@ -15,7 +15,7 @@ namespace {
 constexpr int reach = 2;  // rows and columns looked at on every side
 constexpr int window = 2 * reach + 1;
 constexpr int run = 16;  // pixels judged together
-using Lanes = int16_t __attribute__((vector_size(2 * run)));
+using ShortLanes = int16_t __attribute__((vector_size(2 * run)));
 
 // 1024 steps an octave from 2^-14 m to 2^50 m: fine enough for a threshold of some percent.
 constexpr int32_t least_depth = (127 - 14) << 23;
@@ -55,29 +55,29 @@ struct Codes {
 };
 
 // All bits where a pixel's point lies behind what surrounds it. `rows` point at the first pixel.
-Lanes judge(const int16_t* const* rows, const int16_t* limits) {
-  Lanes limit = load<Lanes>(limits), columns[window] = {}, lines[window] = {};
+ShortLanes judge(const int16_t* const* rows, const int16_t* limits) {
+  ShortLanes limit = load<ShortLanes>(limits), columns[window] = {}, lines[window] = {};
 #pragma GCC unroll 5
   for (int dy = 0; dy < window; dy++)
 #pragma GCC unroll 5
     for (int dx = 0; dx < window; dx++) {
-      Lanes nearer = load<Lanes>(rows[dy] + dx - reach) < limit;
+      ShortLanes nearer = load<ShortLanes>(rows[dy] + dx - reach) < limit;
       columns[dx] += nearer;
       lines[dy] += nearer;
     }
-  Lanes nearer = -(columns[0] + columns[1] + columns[2] + columns[3] + columns[4]);
-  Lanes several = nearer >= 3;
+  ShortLanes nearer = -(columns[0] + columns[1] + columns[2] + columns[3] + columns[4]);
+  ShortLanes several = nearer >= 3;
   if (!any(several)) return several;
-  Lanes sx = 2 * (columns[4] - columns[0]) + columns[3] - columns[1],
-        sy = 2 * (lines[4] - lines[0]) + lines[3] - lines[1], others = Lanes{} - 1;
+  ShortLanes sx = 2 * (columns[4] - columns[0]) + columns[3] - columns[1],
+        sy = 2 * (lines[4] - lines[0]) + lines[3] - lines[1], others = ShortLanes{} - 1;
   for (int dy = 0; dy < window; dy++)
     for (int dx = 0; dx < window; dx++)
-      others -= load<Lanes>(rows[dy] + dx - reach) != nothing;
+      others -= load<ShortLanes>(rows[dy] + dx - reach) != nothing;
   // Nearer neighbours on all sides have a short mean offset; those of a silhouette a long one. They
   // hide only as the majority: through a lattice the background shows rightly.
-  Lanes around =
+  ShortLanes around =
       (nearer >= 4) & (2 * nearer >= others) & (sx * sx + sy * sy <= nearer * nearer);
-  Lanes alone = several & (4 * nearer >= 3 * others);
+  ShortLanes alone = several & (4 * nearer >= 3 * others);
   return around | alone;
 }
 
@@ -99,7 +99,7 @@ void depth_cull(PointCache& points, float threshold, PointImage& image) {
       for (int x = 0; x < width; x += run) {
         const int16_t* rows[window];
         for (int dy = 0; dy < window; dy++) rows[dy] = codes.row(y + dy - reach) + x;
-        Lanes hidden = judge(rows, codes.limit.data() + x);
+        ShortLanes hidden = judge(rows, codes.limit.data() + x);
         for (int i = 0; i < std::min(run, width - x); i++) verdict[x + i] = uint8_t(hidden[i]);
       }
     }

@@ -2,12 +2,10 @@
 // Eight pixels (or cells) at a time, written once for every processor: vector types of GCC and
 // Clang. Comparisons give lanes of all bits or none; `mask ? a : b` chooses lane by lane.
 #pragma once
-#include <cmath>
 #include <cstdint>
 #include <cstring>
-#ifdef __AVX__
-#include <immintrin.h>
-#endif
+
+#include "base/lanes.h"
 
 namespace wellspring {
 
@@ -53,18 +51,6 @@ inline bool any(const V& v) {
   return sum != 0;
 #endif
 }
-
-// Bit i: the answer of a comparison in lane i.
-inline uint32_t bits_of(const i8& mask) {
-#ifdef __AVX__
-  return uint32_t(_mm256_movemask_ps(__m256(mask)));
-#else
-  uint32_t bits = 0;
-  for (int i = 0; i < lanes; i++) bits |= uint32_t(mask[i] < 0) << i;
-  return bits;
-#endif
-}
-inline i8 mask_of(uint32_t bits) { return (i8{1, 2, 4, 8, 16, 32, 64, 128} & int32_t(bits)) != 0; }
 
 // Two halves side by side.
 inline u8 join(const u4& low, const u4& high) {
@@ -113,19 +99,10 @@ inline f8 unpack_deviation(const u8& p) {
   return keep(p != 0u, as<f8>((p + ((127 - 11) << 4)) << 19));
 }
 // Packing likewise, of what is finite.
-inline f8 square_root(const f8& v) {
-#ifdef __AVX__
-  return as<f8>(_mm256_sqrt_ps(__m256(v)));
-#else
-  f8 root;
-  for (int i = 0; i < lanes; i++) root[i] = std::sqrt(v[i]);
-  return root;
-#endif
-}
 inline u8 to_whole(const f8& v) { return as<u8>(__builtin_convertvector(v, i8)); }
 inline u8 pack_albedo(const f8& r, const f8& g, const f8& b) {
   auto level = [](const f8& v, float steps) {
-    return to_whole(square_root(smaller(positive(v), splat(1))) * steps + 0.5f);
+    return to_whole(lanes_sqrt(smaller(positive(v), splat(1))) * steps + 0.5f);
   };
   return level(r, 2047) | level(g, 2047) << 11 | level(b, 1023) << 22;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cache/overlay.h"
 
-#include <atomic>
 #include <bit>
 #include <cmath>
 
@@ -50,16 +49,15 @@ uint32_t all_of(int count) { return count >= lanes ? 255u : (1u << count) - 1; }
 
 }  // namespace
 
-int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, Frame& frame) {
-  std::atomic<int64_t> others = 0;
+void overlay_sight(const View& view, const PictureSight& sight, bool still, Frame& frame) {
   sight.see(view, vec2(0.5f), [&](const SightRun& run) {
     uint64_t wrong = 0, guessed = 0;
     size_t row = size_t(run.y) * size_t(frame.width) + size_t(run.x);
     for (int i = 0; i < run.count; i += lanes) {
       Verdict verdict = judge(frame, row + size_t(i), run, i);
       unsigned all = all_of(run.count - i);
-      wrong |= uint64_t(bits_of(~verdict.same) & all) << i;
-      guessed |= uint64_t(bits_of(verdict.guessed) & all) << i;
+      wrong |= uint64_t(negative_lanes(~verdict.same) & all) << i;
+      guessed |= uint64_t(negative_lanes(verdict.guessed) & all) << i;
     }
     for (uint64_t rest = still ? wrong & ~guessed : 0; rest != 0; rest &= rest - 1) {
       int i = std::countr_zero(rest);
@@ -68,7 +66,6 @@ int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, F
     }
     uint64_t wanted = wrong | guessed;
     if (!wanted) return;
-    others += std::popcount(wrong);
     RunSurface surface;
     uint64_t alone = run.describe(wanted, surface);
     for (int i = 0; i < run.count; i += lanes) {
@@ -80,11 +77,11 @@ int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, F
       u8 albedo = pack_albedo(load<f8>(surface.red + i), load<f8>(surface.green + i),
                               load<f8>(surface.blue + i));
       put(frame, x, run.y, plane_albedo, albedo, told);
-      f8 depth = mask_of(told) ? load_some<f8>(run.depth + i, count)
+      f8 depth = lanes_of_bits(told) ? load_some<f8>(run.depth + i, count)
                                : load_some<f8>(&frame.depth[at], count);
       std::memcpy(&frame.depth[at], &depth, size_t(count) * sizeof(float));
       if (!lost) continue;  // the light of its neighbours will do
-      i8 mask = mask_of(lost);
+      i8 mask = lanes_of_bits(lost);
       u8 object = mask ? load_some<u8>(run.object + i, count)
                        : load_some<u8>(&frame.object[at], count);
       std::memcpy(&frame.object[at], &object, size_t(count) * sizeof(uint32_t));
@@ -113,7 +110,6 @@ int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, F
       frame.confidence[at] = std::bit_cast<float>(more);
     }
   });
-  return others;
 }
 
 }  // namespace wellspring

@@ -10,10 +10,9 @@
 namespace wellspring {
 
 // The frame's planes hold a packed surface. Pixels that show another surface than the points say,
-// or whose reflectance was guessed from neighbours, are overwritten. Returns how many showed
-// another one.
+// or whose reflectance was guessed from neighbours, are overwritten.
 // `still`: at rest points of what does not move are left alone where they are, since they lie anywhere in
 // their pixels and so antialias them.
-int64_t overlay_sight(const View& view, const PictureSight& sight, bool still, Frame& frame);
+void overlay_sight(const View& view, const PictureSight& sight, bool still, Frame& frame);
 
 }  // namespace wellspring

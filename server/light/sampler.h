@@ -19,7 +19,8 @@ inline uint32_t reverse_bits(uint32_t x) {
 
 // A random permutation that flips each bit by a hash of the bits below it (Laine and Karras 2011,
 // with the constants of Burley's section 3.1 as improved by Vegdahl 2021).
-inline uint32_t permute_upwards(uint32_t x, uint32_t seed) {
+template <class Bits>  // one number or lanes of them
+inline Bits permute_upwards(Bits x, Bits seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1;

@@ -16,15 +16,6 @@ inline LaneBits reverse_bits(LaneBits x) {
   return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
-inline LaneBits permute_upwards(LaneBits x, LaneBits seed) {
-  x ^= x * 0x3d20adeau;
-  x += seed;
-  x *= (seed >> 16) | 1;
-  x ^= x * 0x05526c56u;
-  x ^= x * 0x53a22864u;
-  return x;
-}
-
 inline LaneBits sobol_second_reversed(LaneBits x) {
   x ^= x >> 16;
   x ^= (x >> 8) & 0x00ff00ffu;

@@ -366,6 +366,7 @@ void PictureSight::see(const View& view, vec2 offset,
     }
     SightRun::Impl run_impl{s, view, offset, slope, facets, &raster_run};
     SightRun run;
+    run.picture = picture;
     run.x = raster_run.x, run.y = raster_run.y, run.count = raster_run.count;
     run.depth = raster_run.depth, run.object = object;
     run.impl_ = &run_impl;

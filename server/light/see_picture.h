@@ -27,6 +27,7 @@ struct RunSurface {
 class SightRun {
  public:
   int x = 0, y = 0, count = 0;
+  uint64_t picture = 0;  // a number that no other call of see() has
   // Arrays may be read, not trusted, up to RasterRun::most + 8.
   const float* depth = nullptr;      // along the viewing axis; infinity: nothing there
   const uint32_t* object = nullptr;  // 0: nothing there
