@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/keyframe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/parallel.h"
+
+namespace wellspring {
+namespace {
+
+constexpr float nearest_depth = 1e-4f;  // metres, as in project_points()
+
+float disparity_of(float depth) {
+  return depth > 0 ? 1 / std::max(depth, nearest_depth) : 0.0f;  // 1 / infinity is 0; NaN is not > 0
+}
+
+// Of a row: how far apart disparities are there and in the row below.
+void write_steps(const Keyframe& k, int y, uint32_t* color) {
+  int width = k.view.width;
+  const float* row = &k.disparity[size_t(y) * size_t(width)];
+  const float* below = y + 1 < k.view.height ? row + width : row;
+  auto write = [&](int x, int right) {
+    float low = std::min(std::min(row[x], row[right]), std::min(below[x], below[right]));
+    float high = std::max(std::max(row[x], row[right]), std::max(below[x], below[right]));
+    float step = std::min((high - low) * Keyframe::step_scale + 0.999f, 255.0f);
+    color[x] |= uint32_t(int(step)) << 24;
+  };
+  for (int x = 0; x + 1 < width; x++) write(x, x + 1);
+  write(width - 1, width - 1);
+}
+
+void bound_block(const Keyframe& k, int column, int row, float& farthest, float& nearest) {
+  int x0 = std::max(column * Keyframe::block - 1, 0), y0 = std::max(row * Keyframe::block - 1, 0);
+  int x1 = std::min((column + 1) * Keyframe::block + 1, k.view.width),
+      y1 = std::min((row + 1) * Keyframe::block + 1, k.view.height);
+  float low = k.disparity[size_t(y0) * size_t(k.view.width) + size_t(x0)], high = low;
+  for (int y = y0; y < y1; y++) {
+    const float* line = &k.disparity[size_t(y) * size_t(k.view.width)];
+    for (int x = x0; x < x1; x++) low = std::min(low, line[x]), high = std::max(high, line[x]);
+  }
+  farthest = low, nearest = high;
+}
+
+}  // namespace
+
+void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth,
+                   Keyframe& keyframe) {
+  size_t width = size_t(std::max(view.width, 0)), height = size_t(std::max(view.height, 0));
+  if (width * height == 0 || picture.rgb.size() != 3 * width * height || depth.size() != width * height)
+    throw std::invalid_argument("make_keyframe: picture and depth are not of the view's size");
+  Keyframe& k = keyframe;
+  k.view = view;
+  k.color.resize(width * height);
+  k.disparity.resize(width * height);
+  k.columns = (view.width + Keyframe::block - 1) / Keyframe::block;
+  k.rows = (view.height + Keyframe::block - 1) / Keyframe::block;
+  k.farthest.resize(size_t(k.columns) * size_t(k.rows));
+  k.nearest.resize(k.farthest.size());
+  parallel_ranges(view.height, 16, [&](int begin, int end) {
+    for (size_t i = size_t(begin) * width; i < size_t(end) * width; i++) {
+      const uint8_t* rgb = &picture.rgb[3 * i];
+      k.color[i] = uint32_t(rgb[0] | rgb[1] << 8 | rgb[2] << 16);
+      k.disparity[i] = disparity_of(depth[i]);
+    }
+  });
+  parallel_ranges(k.rows, 2, [&](int begin, int end) {
+    for (int row = begin; row < end; row++)
+      for (int column = 0; column < k.columns; column++) {
+        size_t i = size_t(row) * size_t(k.columns) + size_t(column);
+        bound_block(k, column, row, k.farthest[i], k.nearest[i]);
+      }
+    for (int y = begin * Keyframe::block; y < std::min(end * Keyframe::block, view.height); y++)
+      write_steps(k, y, &k.color[size_t(y) * width]);
+  });
+}
+
+}  // namespace wellspring

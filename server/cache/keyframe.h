@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture as it was drawn, with the depth of every pixel: what warp_picture() makes pictures of other
+// views from. In place of the depth its inverse is kept, the disparity: of a plane it is linear in the
+// picture, and what moves against what when the eye moves is proportional to it.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "frame/frame.h"
+#include "world/view.h"
+
+namespace wellspring {
+
+struct Keyframe {
+  static constexpr int block = 8;             // pixels a side
+  static constexpr float step_scale = 4096;   // steps a unit of disparity
+  View view;  // whose size is the picture's
+  // Red in the lowest byte, then green, blue and the step: how far apart the disparities of this
+  // pixel and those to its right, below, and both are, times step_scale, rounded up, at most 255.
+  std::vector<uint32_t> color;
+  std::vector<float> disparity;  // 1 / depth; 0 at infinity and where the depth is none
+  // Of blocks, row after row: the pixels and those around them.
+  int columns = 0, rows = 0;
+  std::vector<float> farthest, nearest;
+
+  bool empty() const { return color.empty(); }
+};
+
+// Reuses the memory of `keyframe`. `depth`: along the viewing axis, one a pixel, as Frame::depth; anything
+// that is not a positive number counts as infinitely far. Throws std::invalid_argument when sizes differ.
+void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth, Keyframe& keyframe);
+
+}  // namespace wellspring

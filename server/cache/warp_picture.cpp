@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache/warp_picture.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "cache/lanes.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int block = Keyframe::block;
+static_assert(block == lanes);
+constexpr float least_depth = 1e-6f;   // over that of the other view: nothing is nearer to a camera
+constexpr int most_steps = 96;         // along an epipolar line
+constexpr int most_blocks = 24;        // written per block, on average, when bounds are carried forward
+constexpr int farthest_fill = 48;      // pixels from a hole to what lies behind
+constexpr float found = 0.5f;          // pixels between a place and itself, carried there and back
+constexpr float half_step = 0.5f;      // pixels that disparities within a bilinear sample may open
+constexpr int fractions = 16;          // places of a bilinear sample between two pixels, as a power of 2
+constexpr int fraction_bits = 4;
+
+// From a pixel (x, y) and its disparity w in one view to another: one + x * across + y * down + w * baseline
+// is the place there times its depth over the depth here, and that ratio.
+struct Mapping {
+  vec3 one, across, down, baseline;
+};
+Mapping make_mapping(const View& from, const View& to) {
+  float scale = 2 * from.tan_half_fov / float(from.height);
+  float focal = float(to.height) * 0.5f / to.tan_half_fov;
+  auto seen = [&](vec3 d) {
+    double x = dot(dvec3(d), dvec3(to.right)), y = dot(dvec3(d), dvec3(to.up)),
+           z = dot(dvec3(d), dvec3(to.forward));
+    return vec3(float(focal * x + 0.5 * to.width * z), float(0.5 * to.height * z - focal * y), float(z));
+  };
+  vec3 right = from.right * scale, down = from.up * -scale;
+  vec3 corner = from.forward - right * (0.5f * float(from.width)) - down * (0.5f * float(from.height));
+  return {seen(corner), seen(right), seen(down), seen(from.position - to.position)};
+}
+
+struct Place {
+  f8 x, y, ratio;  // ratio: of depths, there over here
+};
+Place carry(const Mapping& m, const Place& base, const f8& w) {
+  f8 z = larger(base.ratio + w * m.baseline.z, splat(least_depth));
+  f8 inverse = 1.0f / z;
+  return {(base.x + w * m.baseline.x) * inverse, (base.y + w * m.baseline.y) * inverse, z};
+}
+
+template <class T>
+u8 gather(const T* from, const i8& index) {
+  static_assert(sizeof(T) == 4);
+#ifdef __AVX2__
+  return u8(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), __m256i(index), 4));
+#else
+  u8 v;
+  for (int i = 0; i < lanes; i++) std::memcpy(reinterpret_cast<uint32_t*>(&v) + i, from + index[i], 4);
+  return v;
+#endif
+}
+i8 to_int(const f8& v) { return __builtin_convertvector(v, i8); }
+f8 clamped(const f8& v, float high) { return smaller(larger(v, f8{}), splat(high)); }  // NaN becomes 0
+
+// What every pixel asks of the keyframe.
+struct Source {
+  const Keyframe& k;
+  Mapping to, back;  // from the new view to the keyframe's, and back
+  float last_x, last_y;
+
+  Source(const Keyframe& k, const View& view)
+      : k(k), to(make_mapping(view, k.view)), back(make_mapping(k.view, view)),
+        last_x(float(k.view.width - 1)), last_y(float(k.view.height - 1)) {}
+  // Of the pixel that holds the place.
+  f8 disparity(const f8& x, const f8& y) const {
+    i8 index = to_int(clamped(y, last_y)) * k.view.width + to_int(clamped(x, last_x));
+    return as<f8>(gather(k.disparity.data(), index));
+  }
+  // What the keyframe shows there, as a disparity in the new view.
+  f8 surface(const f8& x, const f8& y) const {
+    f8 s = disparity(x, y);
+    f8 z = back.one.z + x * back.across.z + y * back.down.z + s * back.baseline.z;
+    return z > least_depth ? s / z : f8{};
+  }
+};
+
+// Bounds of disparities of every block of the new view, from the keyframe's blocks carried forward.
+// False: they would move too far for that.
+bool carry_bounds(const Source& source, const View& view, WarpScratch& scratch) {
+  const Keyframe& k = source.k;
+  const Mapping& m = source.back;
+  int columns = (view.width + block - 1) / block, rows = (view.height + block - 1) / block;
+  scratch.farthest.assign(size_t(columns) * size_t(rows), std::numeric_limits<float>::infinity());
+  scratch.nearest.assign(scratch.farthest.size(), -1);
+  int64_t left = int64_t(most_blocks) * columns * rows;
+  constexpr f8 corner_x{0, 1, 0, 1, 0, 1, 0, 1}, corner_y{0, 0, 1, 1, 0, 0, 1, 1};
+  for (int by = 0; by < k.rows; by++)
+    for (int bx = 0; bx < k.columns; bx++) {
+      size_t b = size_t(by) * size_t(k.columns) + size_t(bx);
+      float near = k.nearest[b], far = k.farthest[b];
+      f8 s{far, far, far, far, near, near, near, near};
+      f8 qx = (corner_x + float(bx)) * float(block), qy = (corner_y + float(by)) * float(block);
+      f8 z = m.one.z + qx * m.across.z + qy * m.down.z + s * m.baseline.z;
+      i8 seen = z > least_depth;
+      f8 inverse = 1.0f / larger(z, splat(least_depth));
+      f8 x = (m.one.x + qx * m.across.x + qy * m.down.x + s * m.baseline.x) * inverse * (1.0f / block),
+         y = (m.one.y + qx * m.across.y + qy * m.down.y + s * m.baseline.y) * inverse * (1.0f / block),
+         w = s * inverse;
+      float left_x = float(columns), right_x = -1, top = float(rows), bottom = -1;
+      float low = std::numeric_limits<float>::infinity(), high = -1;
+      for (int i = 0; i < lanes; i++) {
+        if (!seen[i]) continue;
+        left_x = std::min(left_x, x[i]), right_x = std::max(right_x, x[i]);
+        top = std::min(top, y[i]), bottom = std::max(bottom, y[i]);
+        low = std::min(low, w[i]), high = std::max(high, w[i]);
+      }
+      if (!(right_x >= 0 && bottom >= 0 && left_x < float(columns) && top < float(rows))) continue;
+      int x0 = std::max(int(left_x), 0), x1 = std::min(int(std::min(right_x, float(columns))), columns - 1);
+      int y0 = std::max(int(top), 0), y1 = std::min(int(std::min(bottom, float(rows))), rows - 1);
+      left -= int64_t(x1 - x0 + 1) * (y1 - y0 + 1);
+      if (left < 0) return false;
+      for (int cy = y0; cy <= y1; cy++)
+        for (int cx = x0; cx <= x1; cx++) {
+          size_t c = size_t(cy) * size_t(columns) + size_t(cx);
+          scratch.farthest[c] = std::min(scratch.farthest[c], low);
+          scratch.nearest[c] = std::max(scratch.nearest[c], high);
+        }
+    }
+  return true;
+}
+
+// Bounds of a block that nothing was carried to: those around; at infinity where there are none.
+void borrow_bounds(const WarpScratch& scratch, int columns, int rows, int bx, int by, float& far, float& near) {
+  far = std::numeric_limits<float>::infinity(), near = -1;
+  for (int reach : {1, 4}) {
+    for (int y = std::max(by - reach, 0); y <= std::min(by + reach, rows - 1); y++)
+      for (int x = std::max(bx - reach, 0); x <= std::min(bx + reach, columns - 1); x++) {
+        size_t c = size_t(y) * size_t(columns) + size_t(x);
+        far = std::min(far, scratch.farthest[c]), near = std::max(near, scratch.nearest[c]);
+      }
+    if (near >= 0) return;
+  }
+  far = near = 0;
+}
+
+// Where eight neighbours' epipolar lines run, in steps of a pixel or less from the nearest to the farthest.
+struct Search {
+  float nearest = 0, step = 0;
+  int steps = 0;
+  float pixels = 0;  // a unit of disparity, at most
+};
+Search plan_search(const Source& source, float x, float y, float near, float far) {
+  const Mapping& m = source.to;
+  vec3 base = m.one + x * m.across + y * m.down;
+  auto at = [&](float w) {
+    vec3 h = base + w * m.baseline;
+    float z = std::max(h.z, least_depth);
+    return vec3(h.x / z, h.y / z, z);
+  };
+  vec3 a = at(near), b = at(far);
+  auto speed = [&](vec3 p) {
+    return std::hypot(m.baseline.x - p.x * m.baseline.z, m.baseline.y - p.y * m.baseline.z) / p.z;
+  };
+  float length = std::hypot(a.x - b.x, a.y - b.y);
+  Search search;
+  search.pixels = std::max(speed(a), speed(b));
+  search.nearest = near;
+  if (!(length > found)) {  // one look in the middle
+    search.nearest = 0.5f * (near + far);
+    return search;
+  }
+  search.steps = int(std::min(std::ceil(length), float(most_steps)));
+  search.step = (near - far) / float(search.steps);
+  return search;
+}
+
+// What nothing in the keyframe answers was hidden there by something nearer. On the epipolar line, to
+// either side of what hid it, lies what is behind; moved places are returned. (x, y): the pixel.
+struct Spot {
+  float x, y;
+};
+Spot find_behind(const Source& source, float px, float py, float far, float pixels) {
+  const Mapping& m = source.to;
+  const Keyframe& k = source.k;
+  vec3 base = m.one + px * m.across + py * m.down;
+  auto surface = [&](float x, float y) {
+    int ix = int(std::clamp(x, 0.0f, source.last_x)), iy = int(std::clamp(y, 0.0f, source.last_y));
+    float s = k.disparity[size_t(iy) * size_t(k.view.width) + size_t(ix)];
+    float z = source.back.one.z + x * source.back.across.z + y * source.back.down.z + s * source.back.baseline.z;
+    return z > least_depth ? s / z : 0.0f;
+  };
+  Spot spot{0, 0};
+  float w = far;
+  for (int round = 0; round < 2; round++) {
+    vec3 h = base + w * m.baseline;
+    float z = std::max(h.z, least_depth), x = h.x / z, y = h.y / z;
+    float dx = m.baseline.x - x * m.baseline.z, dy = m.baseline.y - y * m.baseline.z;
+    float length = std::hypot(dx, dy);
+    if (!(std::isfinite(x) && std::isfinite(y) && length > 0 && std::isfinite(length))) return spot;
+    dx /= length, dy /= length;
+    spot = {x, y};
+    float hider = surface(x, y);
+    bool behind = false;
+    for (int i = 1; i <= farthest_fill && !behind; i++)
+      for (float side : {1.0f, -1.0f}) {
+        float sx = x + side * float(i) * dx, sy = y + side * float(i) * dy, there = surface(sx, sy);
+        // As much as it takes to have opened a hole of that width.
+        if ((hider - there) * pixels < half_step + 0.5f * float(i)) continue;
+        spot = {sx, sy};
+        behind = true;
+        w = there;
+        break;
+      }
+    if (!behind) return spot;
+  }
+  return spot;
+}
+
+// Bilinear, of the pixels around that lie on the surface of the nearest of them.
+u8 sample_color(const Source& source, const f8& x, const f8& y, float pixels) {
+  const Keyframe& k = source.k;
+  int width = k.view.width;
+  auto place = [](const f8& v, float last) {
+    return to_int(clamped(v * fractions - (0.5f * fractions - 0.5f), last * fractions));
+  };
+  i8 px = place(x, source.last_x), py = place(y, source.last_y);
+  i8 x0 = px >> fraction_bits, y0 = py >> fraction_bits;
+  u8 fx = as<u8>(px & (fractions - 1)), fy = as<u8>(py & (fractions - 1));
+  i8 first = y0 * width + x0;
+  // Where there is no further pixel the fraction is 0.
+  i8 right = first - (fx > 0u), below = (fy > 0u) & width, corner = right + below;
+  below += first;
+  const uint32_t* color = k.color.data();
+  u8 c00 = gather(color, first), c10 = gather(color, right), c01 = gather(color, below),
+     c11 = gather(color, corner);
+  u8 w11 = fx * fy, w10 = fx * fractions - w11, w01 = fy * fractions - w11,
+     w00 = uint32_t(fractions * fractions) - w10 - w01 - w11;
+  float allowed = half_step * Keyframe::step_scale / std::max(pixels, 1e-3f);
+  uint32_t limit = uint32_t(std::min(allowed, 255.0f));
+  if (any((c00 >> 24) > limit)) {
+    float apart = allowed / Keyframe::step_scale;
+    f8 own = source.disparity(x, y);
+    u8 lost{};
+    auto thin = [&](const i8& index, u8& weight) {
+      i8 other = magnitude(as<f8>(gather(k.disparity.data(), index)) - own) > apart;
+      lost += weight & as<u8>(other);
+      weight &= as<u8>(~other);
+    };
+    thin(first, w00), thin(right, w10), thin(below, w01), thin(corner, w11);
+    // The nearest pixel is always of its own surface.
+    i8 is_right = as<i8>(fx) >= fractions / 2, is_below = as<i8>(fy) >= fractions / 2;
+    w11 += lost & as<u8>(is_right & is_below), w10 += lost & as<u8>(is_right & ~is_below);
+    w01 += lost & as<u8>(~is_right & is_below), w00 += lost & as<u8>(~is_right & ~is_below);
+  }
+  constexpr uint32_t two = 0x00ff00ffu;
+  u8 red_blue = (c00 & two) * w00 + (c10 & two) * w10 + (c01 & two) * w01 + (c11 & two) * w11 + 0x00800080u;
+  auto green = [](const u8& c) { return (c >> 8) & 255u; };
+  u8 g = green(c00) * w00 + green(c10) * w10 + green(c01) * w01 + green(c11) * w11 + 128u;
+  return ((red_blue >> 8) & two) | (g & 0xff00u);
+}
+
+// Eight pixels from their words' lowest three bytes.
+void write_rgb(const u8& words, uint8_t* to, int count) {
+  using b16 = uint8_t __attribute__((vector_size(16)));
+  uint8_t bytes[2 * 12 + 4];
+  uint8_t* at = count == lanes ? to : bytes;
+  for (const u4& four : {low_half(words), high_half(words)}) {
+    b16 v = reinterpret_cast<const b16&>(four);
+    v = __builtin_shufflevector(v, v, 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, 3, 7, 11, 15);
+    std::memcpy(at, &v, 12);
+    at += 12;
+  }
+  if (count < lanes) std::memcpy(to, bytes, size_t(count) * 3);
+}
+
+// A row of a block. Returns its pixels' bits that the keyframe does not hold.
+unsigned warp_row(const Source& source, float x, float y, int count, const Search& search, float far,
+                  uint8_t* to) {
+  const Mapping& m = source.to;
+  f8 px = x + f8{0, 1, 2, 3, 4, 5, 6, 7};
+  Place base{m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
+             m.one.z + px * m.across.z + y * m.down.z};
+  i8 waiting = i8{0, 1, 2, 3, 4, 5, 6, 7} < count;
+  f8 at_x{}, at_y{};
+  float candidate = search.steps == 0 ? std::numeric_limits<float>::infinity()
+                                      : search.step + found / std::max(search.pixels, 1e-30f);
+  for (int i = 0; i <= search.steps; i++) {
+    f8 w = splat(search.nearest - float(i) * search.step);
+    Place one = carry(m, base, w);
+    f8 first = source.surface(one.x, one.y);
+    i8 near = waiting & (magnitude(first - w) <= candidate);
+    if (!any(near)) continue;
+    Place two = carry(m, base, first);
+    f8 second = source.surface(two.x, two.y);
+    Place three = carry(m, base, second);
+    i8 hit = near & (magnitude(second - first) * search.pixels <= found);
+    at_x = hit ? three.x : at_x, at_y = hit ? three.y : at_y;
+    waiting &= ~hit;
+    if (!any(waiting)) break;
+  }
+  for (unsigned holes = negative_lanes(waiting); holes != 0; holes &= holes - 1) {
+    int i = std::countr_zero(holes);
+    Spot spot = find_behind(source, px[i], y, far, search.pixels);
+    at_x[i] = spot.x, at_y[i] = spot.y;
+  }
+  write_rgb(sample_color(source, at_x, at_y, search.pixels), to, count);
+  i8 inside = (at_x >= -found) & (at_y >= -found) & (at_x <= source.last_x + (1 + found)) &
+              (at_y <= source.last_y + (1 + found)) & (base.ratio > least_depth);
+  return negative_lanes(~inside) & ((1u << count) - 1);
+}
+
+}  // namespace
+
+float warp_picture(const Keyframe& keyframe, const View& view, float most_unknown, WarpScratch& scratch,
+                   Image8& out) {
+  if (keyframe.empty() || view.width < 1 || view.height < 1) return 1;
+  Source source(keyframe, view);
+  if (!carry_bounds(source, view, scratch)) return 1;
+  int columns = (view.width + block - 1) / block, rows = (view.height + block - 1) / block;
+  size_t bare = size_t(std::count(scratch.nearest.begin(), scratch.nearest.end(), -1.0f));
+  float share = float(bare) / float(scratch.nearest.size());
+  if (share > most_unknown) return share;
+  out.width = view.width;
+  out.height = view.height;
+  out.rgb.resize(size_t(view.width) * size_t(view.height) * 3);
+  std::atomic<int> unknown{0};
+  parallel_ranges(rows, 2, [&](int begin, int end) {
+    int unknown_here = 0;
+    for (int by = begin; by < end; by++)
+      for (int bx = 0; bx < columns; bx++) {
+        size_t c = size_t(by) * size_t(columns) + size_t(bx);
+        float far = scratch.farthest[c], near = scratch.nearest[c];
+        if (near < 0) borrow_bounds(scratch, columns, rows, bx, by, far, near);
+        int x = bx * block, count = std::min(view.width - x, block);
+        Search search = plan_search(source, float(x) + 0.5f * block, (float(by) + 0.5f) * block, near, far);
+        for (int y = by * block; y < std::min((by + 1) * block, view.height); y++)
+          unknown_here += std::popcount(
+              warp_row(source, float(x) + 0.5f, float(y) + 0.5f, count, search, far,
+                       &out.rgb[3 * (size_t(y) * size_t(view.width) + size_t(x))]));
+      }
+    unknown += unknown_here;
+  });
+  return float(unknown) / (float(view.width) * float(view.height));
+}
+
+}  // namespace wellspring

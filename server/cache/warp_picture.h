@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture of the view as it is now, made of one that was drawn for a view of a moment ago, in a few
+// milliseconds: between drawn pictures, visitors see what their input does (late reprojection;
+// Mark, McMillan, Bishop 1997, "Post-Rendering 3D Warping"). Backwards: every pixel looks along its
+// epipolar line in the keyframe, from the nearest disparity there may be to the farthest (bounds of
+// blocks, carried forward), for the first surface that it would see; where that is a short piece, as
+// nearly everywhere, a step of fixed-point iteration finds it (Bowles, Mitchell, Sumner, Moore, Gross
+// 2012, "Iterative Image Warping"). What was hidden in the keyframe takes the colour of what lies
+// behind, never that of what hid it. Colours are bilinear within a surface.
+#pragma once
+#include "cache/keyframe.h"
+
+namespace wellspring {
+
+// Kept from picture to picture to save the memory's making: bounds of disparities of the new picture's blocks.
+struct WarpScratch {
+  std::vector<float> farthest, nearest;
+};
+
+// Overwrites `out`, of the size of `view`, and returns the share of its pixels that the keyframe does not
+// show, as they lie outside of it: those repeat its border. When that is more than `most_unknown` (0 to 1)
+// `out` may be left as it was or half done. Points behind either camera count as unknown; reads nothing
+// but the keyframe whatever the views are. The same bits whatever the number of threads.
+float warp_picture(const Keyframe& keyframe, const View& view, float most_unknown, WarpScratch& scratch,
+                   Image8& out);
+
+}  // namespace wellspring
