@@ -49,6 +49,7 @@ struct RenderCache::Impl {
   Cells cells;
   Scratch scratch;
   Frame light;  // packed, of a picture that is drawn
+  int width = 0, height = 0;  // of the largest picture there is room for
   View view;  // of the last projection
   bool projected = false;
   bool relit = false;  // points may wait for a sample of their new light
@@ -87,14 +88,17 @@ void RenderCache::resize(int width, int height) {
   Impl& c = *impl_;
   width = std::clamp(width, 1, largest_side);
   height = std::clamp(height, 1, largest_side);
-  if (width == c.image.width && height == c.image.height) return;
+  if (width == c.width && height == c.height) return;
+  c.width = width, c.height = height;
   size_t pixels = size_t(width) * size_t(height);
   double capacity = double(std::max(c.settings.points_per_pixel, 0.1f)) * double(pixels);
   resize_points(c.points, int(std::min(capacity, double(max_capacity))));
-  resize_image(c.image, width, height);
+  c.image = PointImage{};
+  reserve_image(c.image, width, height);
   for (auto& plane : c.still.mean) plane = std::vector<uint16_t>(pixels);
   c.still.count = std::vector<uint8_t>(pixels);
   c.scratch.release();
+  c.scratch.start(std::max(project_scratch_bytes(c.points.capacity(), width, height), cells_bytes(width, height)));
   c.projected = false;
   c.forget_still();
 }
@@ -112,7 +116,10 @@ void RenderCache::move_object(uint32_t object, const mat4& moved) {
 
 void RenderCache::project(const View& view) {
   Impl& c = *impl_;
-  resize(view.width, view.height);
+  int width = std::clamp(view.width, 1, largest_side), height = std::clamp(view.height, 1, largest_side);
+  if (width > c.width || height > c.height)
+    resize(std::max(width, c.width), std::max(height, c.height));
+  resize_image(c.image, width, height);
   bool same = c.projected && view == c.view;
   if (same)
     c.still_frames = std::min(c.still_frames + 1, 1 << 20);

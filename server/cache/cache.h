@@ -2,7 +2,7 @@
 // The render cache of one visitor (Walter, Drettakis, Parker 1999, "Interactive Rendering using the
 // Render Cache"): samples as points in space, reprojected every frame, and where to look next. One
 // frame: project -> attend -> plan -> (trace) -> remember -> reconstruct. All functions use all
-// cores, never fail and never block; memory is bounded by the sizes given to resize().
+// cores, never fail and never block; memory is bounded by the room asked for with resize().
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -44,14 +44,16 @@ class RenderCache {
   RenderCache(RenderCache&&) noexcept;
   RenderCache& operator=(RenderCache&&) noexcept;
 
-  // Sets the picture's size; keeps the points that still fit. Cheap when nothing changes.
+  // Makes room for pictures of this size and smaller ones; keeps the points that still fit. Nothing
+  // happens when there is such room already.
   void resize(int width, int height);
   // Points on moving meshes follow their triangles; ages advance. Call once a frame after
   // World::commit().
   void move_points(const World& world);
   // The object was carried off as a whole, by `moved` (rigid) from where it was: its points go along.
   void move_object(uint32_t object, const mat4& moved);
-  // Where every point falls in `view`; depth cull.
+  // Where every point falls in `view`; depth cull. Views of less than the room there is, such as
+  // light_view()'s, cost no memory and no point. Makes room for larger ones.
   void project(const View& view);
   // About the share of pixels that a point shows in, from every eighth row.
   float covered() const;

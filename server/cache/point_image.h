@@ -24,20 +24,28 @@ struct PointImage {
   int changed_width = 0, changed_height = 0;
 };
 
+// Memory for pictures of this size.
+inline void reserve_image(PointImage& image, int width, int height) {
+  size_t pixels = size_t(width) * size_t(height);
+  auto tiles = [](int side) { return size_t((side + change_tile - 1) / change_tile); };
+  image.point.reserve(pixels);
+  image.depth.reserve(pixels);
+  image.priority.reserve(pixels);
+  image.changed.reserve(tiles(width) * tiles(height));
+}
+
+// Empties the image when its size changes.
 inline void resize_image(PointImage& image, int width, int height) {
+  if (width == image.width && height == image.height) return;
   size_t pixels = size_t(width) * size_t(height);
   image.width = width;
   image.height = height;
   image.changed_width = (width + change_tile - 1) / change_tile;
   image.changed_height = (height + change_tile - 1) / change_tile;
-  auto fit = [](auto& values, size_t size, auto fill) {
-    values.assign(size, fill);
-    values.shrink_to_fit();
-  };
-  fit(image.point, pixels, no_point);
-  fit(image.depth, pixels, 0.0f);
-  fit(image.priority, pixels, uint8_t(0));
-  fit(image.changed, size_t(image.changed_width) * size_t(image.changed_height), uint8_t(0));
+  image.point.assign(pixels, no_point);
+  image.depth.assign(pixels, 0.0f);
+  image.priority.assign(pixels, uint8_t(0));
+  image.changed.assign(size_t(image.changed_width) * size_t(image.changed_height), uint8_t(0));
 }
 
 }  // namespace wellspring

@@ -2,6 +2,7 @@
 // While the view stands still, rays are spread over their pixels; the mean of what a pixel showed
 // after each of its samples is the antialiased picture. 7 bytes a pixel.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -40,7 +41,7 @@ void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel,
 template <class Forgotten>
 void relight_still(const PointCache& points, const PointImage& image, const Forgotten& forgotten,
                    StillImage& still) {
-  for (size_t i = 0; i < still.count.size(); i++) {
+  for (size_t i = 0; i < std::min(still.count.size(), image.point.size()); i++) {
     uint32_t point = image.point[i];
     if (point == no_point)
       still.count[i] = 0;

@@ -148,7 +148,7 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   // Who moves is shown shapes and reflectances as they are, in light of half their resolution.
   bool coarse = display.drawn && !still && show.sight && show.sight->can_see(view);
   View lit = coarse ? light_view(view) : view;
-  cache.resize(lit.width, lit.height);
+  cache.resize(view.width, view.height);
   cache.move_points(*show.world);
   land(visitor.broker.collect(), *show.world, show.pose_number, cache);
   cache.project(lit);

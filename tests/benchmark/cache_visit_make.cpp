@@ -73,6 +73,17 @@ VisitTrace make_stroll(const Exhibit& castle, const World& world) {
                       });
 }
 
+VisitTrace make_pauses(const Exhibit& castle, const World& world) {
+  Viewpoint from = viewpoint(castle, "hall");
+  return walk_through("pauses", "walks down the hall, stops twice for a second and a half to look at something", castle,
+                      world, 5.5, from, [&](double time, Visitor& visitor) {
+                        bool walks = std::fmod(time, 2.75) < 1.25;
+                        visitor.move = {0, 0, walks ? 1.4f : 0.0f};
+                        visitor.view.yaw = from.yaw + 0.3f * float(std::sin(std::min(time, 1.4)) +
+                                                                   std::sin(std::clamp(time - 2.75, 0.0, 1.4)));
+                      });
+}
+
 VisitTrace make_turn(const Exhibit& castle) {
   Viewpoint from = viewpoint(castle, "hall");
   from.position = {0.5, from.position.y, 0.4};
@@ -153,7 +164,7 @@ VisitTrace make_lamps(const Exhibit& castle) {
 
 void make_visit_traces(const Exhibit& castle, const World& world, const std::string& folder) {
   for (const VisitTrace& trace :
-       {make_stroll(castle, world), make_turn(castle), make_approach(castle, world),
+       {make_stroll(castle, world), make_pauses(castle, world), make_turn(castle), make_approach(castle, world),
         make_door(castle, world), make_orbit(castle), make_tour(castle, world), make_storyteller(castle),
         make_lamps(castle)})
     save_visit_trace(trace, folder);
