@@ -74,6 +74,8 @@ struct RenderCache::Impl {
     std::fill(still.count.begin(), still.count.end(), uint8_t(0));
   }
   void count(const SurfaceCounts& counts, bool known);
+  template <class Compose>
+  void draw(const View& view, const Compose& compose);
 };
 
 RenderCache::RenderCache(const CacheSettings& settings) : impl_(std::make_unique<Impl>()) {
@@ -235,16 +237,30 @@ void RenderCache::reconstruct(const View& view, std::span<const Seen> seen, Fram
   show_looks(pixels, c.looked_pixels, c.still, frame);
 }
 
-void RenderCache::draw(const View& view, const PictureSight& sight, DrawnPlanes planes, Frame& frame) {
-  Impl& c = *impl_;
-  View light = light_view(view);
-  fit_frame(light.width, light.height, c.light);
-  fit_frame(view.width, view.height, frame);
-  if (!c.projected || light != c.view) project(light);
-  c.read_light(light, nullptr, c.light);
+// Finds the light of `view`, then calls compose() and takes the time.
+template <class Compose>
+void RenderCache::Impl::draw(const View& view, const Compose& compose) {
+  View coarse = light_view(view);
+  fit_frame(coarse.width, coarse.height, light);
+  read_light(coarse, nullptr, light);
   double began = seconds_now();
-  compose_drawn(view, sight, c.cells, c.known, c.light, planes, frame);
-  c.stats.drawing_ms = float(1000 * (seconds_now() - began));
+  compose();
+  stats.drawing_ms = float(1000 * (seconds_now() - began));
+}
+
+void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame) {
+  Impl& c = *impl_;
+  if (!c.projected || light_view(view) != c.view) project(light_view(view));
+  fit_frame(view.width, view.height, frame);
+  c.draw(view, [&] { compose_drawn(view, sight, c.cells, c.known, c.light, frame); });
+}
+
+void RenderCache::draw(const View& view, const PictureSight& sight, const Tonemap& tonemap,
+                       Image8& image, std::vector<float>* depth) {
+  Impl& c = *impl_;
+  if (!c.projected || light_view(view) != c.view) project(light_view(view));
+  c.draw(view,
+         [&] { compose_drawn(view, sight, c.cells, c.known, c.light, tonemap, image, depth); });
 }
 
 void RenderCache::relight(vec3 place, float reach) {

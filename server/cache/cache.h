@@ -24,7 +24,7 @@ struct CacheSettings {
   bool attention = true;       // false: samples spread evenly
 };
 
-enum class DrawnPlanes;  // cache/compose_drawn.h
+struct Tonemap;
 struct PointCache;  // cache/point_cache.h: the points
 struct PointImage;  // cache/point_image.h: what projects where, priorities
 
@@ -77,9 +77,11 @@ class RenderCache {
               std::vector<Ray>& looks);
   void reconstruct(const View& view, std::span<const Seen> seen, Frame& frame);
   // A picture of `view` drawn in the light of light_view(view) (cache/compose_drawn.h), for which all
-  // of the frame before has been done; needs sight.can_see(view). What `planes` does not name is left
-  // as it was.
-  void draw(const View& view, const PictureSight& sight, DrawnPlanes planes, Frame& frame);
+  // of the frame before has been done; needs sight.can_see(view). The second for the eye at once,
+  // and of a `depth` that is not null metres along the viewing axis, infinity: nothing there.
+  void draw(const View& view, const PictureSight& sight, Frame& frame);
+  void draw(const View& view, const PictureSight& sight, const Tonemap& tonemap, Image8& image,
+            std::vector<float>* depth = nullptr);
   void set_attention(bool on);  // CacheSettings::attention
   // A lamp at `place` was switched, dimmed or moved, and is much of the light within `reach` metres
   // (infinite: everywhere): what was remembered of the light there counts no more, and is asked for

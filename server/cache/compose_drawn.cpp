@@ -3,11 +3,8 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
 
-#include "cache/packing.h"
-#include "cache/pixel_light.h"
-#include "cache/write_pixels.h"
+#include "cache/drawn_planes.h"
 
 namespace wellspring {
 namespace {
@@ -167,6 +164,92 @@ void light_group(const PaintedCell* const* corners, bool flat, const f8* weights
   blend_light(around, p, doubt);
 }
 
+// All that pixels are lit by.
+struct Composer {
+  const View& view;
+  const Cells& cells;
+  bool known;
+  const Frame& light;
+  PixelRays rays, light_rays;
+
+  const CellRows& rows_around(const SightRun& run) const;
+  Shown light_eight(const SightRun& run, const RunPixels& p, uint64_t shining, const CellRows& rows,
+                    int g) const;
+};
+
+int groups_of(const SightRun& run) { return (run.count + half_group + group - 1) / group; }
+
+const CellRows& Composer::rows_around(const SightRun& run) const {
+  thread_local CellRows rows;
+  int by = (run.y + half_group) / group, bx = run.x / group;  // the block's lower right cell
+  int count = groups_of(run) + 1;
+  if (rows.picture != run.picture || rows.first != bx - 1 || rows.row != by - 1 ||
+      rows.count < count) {
+    read_rows(light_rays, cells, bx - 1, by - 1, count, rows);
+    rows.picture = run.picture;
+  }
+  return rows;
+}
+
+// Group `g` of the run's pixels.
+Shown Composer::light_eight(const SightRun& run, const RunPixels& p, uint64_t shining,
+                            const CellRows& rows, int g) const {
+  constexpr f8 lane{0, 1, 2, 3, 4, 5, 6, 7};
+  int i = g * group - half_group, x = run.x + i;  // the first lane's pixel
+  Drawn d;
+  Pixels& q = d.pixels;
+  q.depth = smaller(lanes_at(run.depth, i), splat(infinite_depth));
+  q.object = as<u8>(lanes_at(reinterpret_cast<const float*>(run.object), i));
+  q.nx = lanes_at(p.surface.nx, i), q.ny = lanes_at(p.surface.ny, i);
+  q.nz = lanes_at(p.surface.nz, i);
+  d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
+              lanes_at(p.surface.blue, i)};
+  q.normal2 = larger(q.nx * q.nx + q.ny * q.ny + q.nz * q.nz, splat(1e-30f));
+  q.x = rays.x(float(x) + 0.5f) + rays.inverse_focal * lane;
+  q.y = splat(rays.y(float(run.y) + 0.5f));
+  int lx = (x + half_group) / light_scale + packed_start, ly = run.y / light_scale;
+  take_own(view, rays, read_own(light, lx, ly), light_rays.x(float(lx) + 0.5f),
+           light_rays.y(float(ly) + 0.5f), d);
+  if (known) {
+    constexpr f8 fx = (lane + 0.5f) * (1.0f / group);
+    float fy = (float(run.y - (rows.row + 1) * group + half_group) + 0.5f) / group;
+    f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
+    const PaintedCell* corners[4] = {&rows.cell[0][g], &rows.cell[0][g + 1], &rows.cell[1][g],
+                                     &rows.cell[1][g + 1]};
+    light_group(corners, rows.flat[g / lanes][g % lanes], weights, d);
+  }
+  Shown shown{{positive(d.albedo.r * q.smooth.r + q.rest.r),
+               positive(d.albedo.g * q.smooth.g + q.rest.g),
+               positive(d.albedo.b * q.smooth.b + q.rest.b)},
+              q.samples,
+              q.depth < 0.5f * infinite_depth ? q.depth : splat(INFINITY),
+              q.object};
+  uint64_t shines = i < 0 ? shining << -i : shining >> i;
+  for (uint32_t rest = uint32_t(shines) & ((1u << lanes) - 1); rest != 0; rest &= rest - 1) {
+    int k = std::countr_zero(rest);
+    shown.color.r[k] = p.glow_red[i + k], shown.color.g[k] = p.glow_green[i + k];
+    shown.color.b[k] = p.glow_blue[i + k];
+    shown.samples[k] = 255;
+  }
+  return shown;
+}
+
+template <class Planes>
+void compose(const Composer& composer, const PictureSight& sight, const Planes& planes) {
+  sight.see(composer.view, vec2(0.5f), [&](const SightRun& run) {
+    RunPixels p;
+    uint64_t shining = describe_run(run, p);
+    const CellRows& rows = composer.rows_around(run);
+    size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
+    for (int g = 0, groups = groups_of(run); g < groups; g++) {
+      int i = g * group - half_group;
+      LanePart part{std::max(-i, 0), std::min(run.count - i, lanes)};
+      planes.put(row + size_t(i + part.begin), part,
+                 composer.light_eight(run, p, shining, rows, g));
+    }
+  });
+}
+
 }  // namespace
 
 View light_view(const View& view) {
@@ -179,82 +262,20 @@ View light_view(const View& view) {
 }
 
 void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
-                   const Frame& light, DrawnPlanes planes, Frame& frame) {
-  PixelRays rays(view), light_rays(light_view(view));
-  sight.see(view, vec2(0.5f), [&](const SightRun& run) {
-    RunPixels p;
-    uint64_t shining = describe_run(run, p);
-    thread_local CellRows rows;
-    int by = (run.y + half_group) / group, bx = run.x / group;  // the block's lower right cell
-    int groups = (run.count + half_group + group - 1) / group;
-    if (rows.picture != run.picture || rows.first != bx - 1 || rows.row != by - 1 ||
-        rows.count < groups + 1) {
-      read_rows(light_rays, cells, bx - 1, by - 1, groups + 1, rows);
-      rows.picture = run.picture;
-    }
-    float fy = (float(run.y - by * group + half_group) + 0.5f) / group;
-    size_t row = size_t(run.y) * size_t(view.width) + size_t(run.x);
-    for (int g = 0; g < groups; g++) {
-      int i = g * group - half_group, x = run.x + i;  // the first lane's pixel
-      int begin = std::max(-i, 0), end = std::min(run.count - i, lanes);
-      Drawn d;
-      Pixels& q = d.pixels;
-      q.depth = smaller(lanes_at(run.depth, i), splat(infinite_depth));
-      q.object = as<u8>(lanes_at(reinterpret_cast<const float*>(run.object), i));
-      q.nx = lanes_at(p.surface.nx, i), q.ny = lanes_at(p.surface.ny, i);
-      q.nz = lanes_at(p.surface.nz, i);
-      d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
-                  lanes_at(p.surface.blue, i)};
-      q.normal2 = larger(q.nx * q.nx + q.ny * q.ny + q.nz * q.nz, splat(1e-30f));
-      q.x = rays.x(float(x) + 0.5f) + rays.inverse_focal * f8{0, 1, 2, 3, 4, 5, 6, 7};
-      q.y = splat(rays.y(float(run.y) + 0.5f));
-      int lx = (x + half_group) / light_scale + packed_start, ly = run.y / light_scale;
-      take_own(view, rays, read_own(light, lx, ly), light_rays.x(float(lx) + 0.5f),
-               light_rays.y(float(ly) + 0.5f), d);
-      constexpr f8 fx = (f8{0, 1, 2, 3, 4, 5, 6, 7} + 0.5f) * (1.0f / group);
-      f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
-      const PaintedCell* corners[4] = {&rows.cell[0][g], &rows.cell[0][g + 1], &rows.cell[1][g],
-                                       &rows.cell[1][g + 1]};
-      bool flat = rows.flat[g / lanes][g % lanes];
-      uint32_t there = ((1u << end) - 1) & ~((1u << begin) - 1);
-      if (known) light_group(corners, flat, weights, d);
-      f8 r = positive(d.albedo.r * q.smooth.r + q.rest.r),
-         gr = positive(d.albedo.g * q.smooth.g + q.rest.g),
-         b = positive(d.albedo.b * q.smooth.b + q.rest.b);
-      uint64_t shines = i < 0 ? shining << -i : shining >> i;
-      for (uint32_t rest = uint32_t(shines) & there; rest != 0; rest &= rest - 1) {
-        int lane = std::countr_zero(rest);
-        r[lane] = p.glow_red[i + lane], gr[lane] = p.glow_green[i + lane];
-        b[lane] = p.glow_blue[i + lane];
-        q.samples[lane] = 255;
-      }
-      float color[3 * lanes];
-      interleave(part<0>(r), part<0>(gr), part<0>(b), color);
-      interleave(part<4>(r), part<4>(gr), part<4>(b), color + 12);
-      f8 confidence = q.samples / (q.samples + 8.0f);
-      f8 depth = q.depth < 0.5f * infinite_depth ? q.depth
-                                                 : splat(std::numeric_limits<float>::infinity());
-      if (end - begin == lanes) {
-        size_t at = row + size_t(i);
-        std::memcpy(&frame.color[at].x, color, sizeof color);
-        if (planes == DrawnPlanes::color) continue;
-        store(&frame.confidence[at], confidence);
-        store(&frame.depth[at], depth);
-        store(&frame.object[at], q.object);
-        continue;
-      }
-      size_t at = row + size_t(i + begin), many = size_t(end - begin);
-      auto copy = [&](auto* to, const auto& from, size_t words) {
-        std::memcpy(to, reinterpret_cast<const float*>(&from) + size_t(begin) * words,
-                    many * words * sizeof(float));
-      };
-      copy(&frame.color[at].x, color, 3);
-      if (planes == DrawnPlanes::color) continue;
-      copy(&frame.confidence[at], confidence, 1);
-      copy(&frame.depth[at], depth, 1);
-      copy(&frame.object[at], q.object, 1);
-    }
-  });
+                   const Frame& light, Frame& frame) {
+  compose({view, cells, known, light, PixelRays(view), PixelRays(light_view(view))}, sight,
+          FramePlanes{frame});
+}
+
+void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
+                   const Frame& light, const Tonemap& tonemap, Image8& image,
+                   std::vector<float>* depth) {
+  size_t pixels = size_t(view.width) * size_t(view.height);
+  image.width = view.width, image.height = view.height;
+  image.rgb.resize(3 * pixels);
+  if (depth) depth->resize(pixels);
+  compose({view, cells, known, light, PixelRays(view), PixelRays(light_view(view))}, sight,
+          EyePlanes{tonemap.exposure, image.rgb.data(), depth ? depth->data() : nullptr});
 }
 
 }  // namespace wellspring

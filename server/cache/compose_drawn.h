@@ -4,7 +4,7 @@
 // than both, and a quarter of the points tells it sooner.
 #pragma once
 #include "cache/cells.h"
-#include "frame/frame.h"
+#include "frame/tonemap.h"
 #include "light/see_picture.h"
 
 namespace wellspring {
@@ -14,12 +14,15 @@ inline constexpr int light_scale = 2;  // pixels of the picture a side of one pi
 // The view of the light: its pixels are light_scale pixels of the picture wide.
 View light_view(const View& view);
 
-enum class DrawnPlanes { all, color };
-
-// Overwrites all planes of `frame`, or its colours alone: half the memory to write, which is what
-// takes long. `light`: of light_view(view), its planes packed as read_surface()
+// Overwrites all planes of `frame`. `light`: of light_view(view), its planes packed as read_surface()
 // leaves them, with `cells` filled from it; `known`: what fill_cells() said.
 void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
-                   const Frame& light, DrawnPlanes planes, Frame& frame);
+                   const Frame& light, Frame& frame);
+// The same for the eye at once, as frame/tonemap.h would show it: writing colours to memory and
+// reading them again takes longer than the curve. Resizes `image` and `depth` (null: not wanted;
+// metres along the viewing axis, infinity: nothing there).
+void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
+                   const Frame& light, const Tonemap& tonemap, Image8& image,
+                   std::vector<float>* depth);
 
 }  // namespace wellspring

@@ -68,7 +68,7 @@ DisplayCosts display_costs(const Show& show, const Visitor& visitor) {
   auto seconds = [](float milliseconds) { return 0.001 * double(milliseconds); };
   return {show.samples_per_second, show.looks_per_second, seconds(times.drawing),
           seconds(times.display + times.tonemap),
-          times.light > 0 ? seconds(times.light + times.tonemap) : 0};
+          seconds(times.light)};
 }
 
 // Where the motion of the last moments leads by the time that answers asked for now are shown, and the
@@ -184,7 +184,7 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
   bool drawn = coarse || (display.drawn && guessed);
   visitor.looks.clear();
   if (coarse)
-    cache.draw(view, *show.sight, DrawnPlanes::color, visitor.frame);
+    cache.draw(view, *show.sight, Tonemap{show.exhibit.exposure}, visitor.shown);
   else
     cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, visitor.frame, visitor.looks);
   visitor.seen.resize(visitor.looks.size());
@@ -200,9 +200,13 @@ void make_picture(Show& show, Visitor& visitor, int busy) {
     show.totals.picture_bytes += encoder.bytes;
     smooth(visitor.times.encode, encoder.milliseconds);
   }
-  double waited = seconds_now();
-  tonemap(visitor.frame, Tonemap{show.exhibit.exposure}, encoder.image);
-  smooth(visitor.times.tonemap, milliseconds_since(waited));
+  if (coarse) {
+    std::swap(visitor.shown, encoder.image);
+  } else {
+    double waited = seconds_now();
+    tonemap(visitor.frame, Tonemap{show.exhibit.exposure}, encoder.image);
+    smooth(visitor.times.tonemap, milliseconds_since(waited));
+  }
 
   PacketHeader header;
   header.frame = ++visitor.frame_number;

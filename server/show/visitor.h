@@ -59,6 +59,7 @@ struct Visitor {
   RenderCache cache;
   std::unique_ptr<Encoder> encoder = std::make_unique<Encoder>();
   Frame frame;
+  Image8 shown;  // drawn for the eye at once, while the picture before is encoded
   Broker broker;             // what is traced after its picture, for the next
   double broker_seconds = 0;  // of all cores, for what it was last asked
   std::vector<Request> requests, ahead;

@@ -96,7 +96,7 @@ class CacheMethod : public VisitMethod {
       cache_.remember(view, batch_.requests, batch_.samples);
     }
     if (coarse)
-      cache_.draw(moment.view, sight(moment), DrawnPlanes::all, shown.frame);
+      cache_.draw(moment.view, sight(moment), shown.frame);
     else
       finish(moment, looks, shown.frame);
     shown.stats = cache_.stats();

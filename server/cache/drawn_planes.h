@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where pixels of a drawn picture go, eight at a time.
+#pragma once
+#include "cache/pixel_light.h"
+#include "cache/write_pixels.h"
+#include "frame/tone_curve.h"
+
+namespace wellspring {
+
+// What has been found out about eight pixels of a row.
+struct Shown {
+  Color color;
+  f8 samples, depth;  // infinity: nothing there
+  u8 object;
+};
+
+// Takes the pixels [begin, end) of eight to place `at` of a plane, where lane `begin` belongs.
+struct LanePart {
+  int begin, end;
+  bool all() const { return end - begin == lanes; }
+  template <class T, class V>
+  void put(T* to, const V& from) const {
+    if (all()) return store(to, from);
+    std::memcpy(to, reinterpret_cast<const T*>(&from) + begin, size_t(end - begin) * sizeof(T));
+  }
+};
+
+// All planes of a frame.
+struct FramePlanes {
+  Frame& frame;
+  void put(size_t at, LanePart part, const Shown& s) const {
+    float color[3 * lanes];
+    const Color& c = s.color;
+    interleave(wellspring::part<0>(c.r), wellspring::part<0>(c.g), wellspring::part<0>(c.b), color);
+    interleave(wellspring::part<4>(c.r), wellspring::part<4>(c.g), wellspring::part<4>(c.b),
+               color + 12);
+    std::memcpy(&frame.color[at].x, color + 3 * part.begin,
+                size_t(part.end - part.begin) * sizeof(vec3));
+    part.put(&frame.confidence[at], s.samples / (s.samples + 8.0f));
+    part.put(&frame.depth[at], s.depth);
+    part.put(&frame.object[at], s.object);
+  }
+};
+
+// What the eye sees.
+struct EyePlanes {
+  float exposure;
+  uint8_t* rgb;
+  float* depth;  // null: not wanted
+  void put(size_t at, LanePart part, const Shown& s) const {
+    const Color& c = s.color;
+    LaneMask codes = eval_tone_curve(Lanes3{c.r, c.g, c.b} * all_lanes(exposure));
+    if (part.all()) {
+      store_pixels(rgb + 3 * at, codes);
+    } else {
+      uint8_t bytes[3 * lanes];
+      store_pixels(bytes, codes);
+      std::memcpy(rgb + 3 * at, bytes + 3 * part.begin, 3 * size_t(part.end - part.begin));
+    }
+    if (depth) part.put(depth + at, s.depth);
+  }
+};
+
+}  // namespace wellspring
