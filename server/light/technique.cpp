@@ -6,7 +6,8 @@
 #include <stdexcept>
 
 #include "base/parallel.h"
-#include "light/sampler.h"
+#include "base/rng.h"
+#include "light/pixel_requests.h"
 #include "light/technique_list.h"
 
 namespace wellspring {
@@ -79,14 +80,9 @@ void trace(const Technique& technique, const World& world, const Lights& lights,
 }
 
 Request pixel_request(const View& view, uint64_t seed, int x, int y, int index) {
+  PixelSample which{x, y, index};
   Request request;
-  request.pixel = uint32_t(y) * uint32_t(view.width) + uint32_t(x);
-  request.seed = sample_seed(seed, uint32_t(x), uint32_t(y), 0);
-  request.index = uint32_t(index);
-  // A sequence apart from the sample's own.
-  Sampler jitter(mix64(request.seed ^ 0x6a09e667f3bcc909ull), request.index);
-  vec2 u = jitter.next2();
-  request.ray = view_ray(view, float(x) + u.x, float(y) + u.y);
+  make_pixel_requests(view, seed, std::span(&which, 1), std::span(&request, 1));
   return request;
 }
 
@@ -125,12 +121,15 @@ void trace_tile(const Technique& technique, const World& world, const Lights& li
 void render_tile(const Technique& technique, const World& world, const Lights& lights,
                  const View& view, const StillSettings& settings, ivec2 begin, ivec2 end,
                  Frame& frame) {
+  std::vector<PixelSample> asked;
   std::vector<Request> requests;
   std::vector<Sample> samples;
-  requests.reserve(most_at_once);
+  asked.reserve(most_at_once);
   dvec3 sum(0);
   auto answer = [&] {
-    samples.resize(requests.size());
+    requests.resize(asked.size());
+    samples.resize(asked.size());
+    make_pixel_requests(view, settings.seed, asked, requests);
     trace_tile(technique, world, lights, settings.transport, requests, samples);
     for (size_t k = 0; k < requests.size(); k++) {
       const Request& request = requests[k];
@@ -140,13 +139,13 @@ void render_tile(const Technique& technique, const World& world, const Lights& l
       frame.color[request.pixel] = vec3(sum / double(settings.spp));
       sum = dvec3(0);
     }
-    requests.clear();
+    asked.clear();
   };
   for (int y = begin.y; y < end.y; y++)
     for (int x = begin.x; x < end.x; x++)
       for (int i = 0; i < settings.spp; i++) {
-        requests.push_back(pixel_request(view, settings.seed, x, y, i));
-        if (requests.size() == most_at_once) answer();
+        asked.push_back({x, y, i});
+        if (asked.size() == most_at_once) answer();
       }
   answer();
 }
@@ -161,10 +160,11 @@ void render_passes(const Technique& technique, const World& world, Lights lights
       technique.begin_pass(world, settings.transport, view, pass_seed(settings.seed), uint32_t(i),
                            lights);
     for_each_tile(view, pass_tile, [&](int left, int top, int right, int bottom) {
-      std::vector<Request> asked;
+      std::vector<PixelSample> which;
       for (int y = top; y < bottom; y++)
-        for (int x = left; x < right; x++)
-          asked.push_back(pixel_request(view, settings.seed, x, y, i));
+        for (int x = left; x < right; x++) which.push_back({x, y, i});
+      std::vector<Request> asked(which.size());
+      make_pixel_requests(view, settings.seed, which, asked);
       std::vector<Sample> answers(asked.size());
       trace_tile(technique, world, lights, settings.transport, asked, answers);
       for (size_t k = 0; k < asked.size(); k++) {

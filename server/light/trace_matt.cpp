@@ -41,30 +41,59 @@ LaneBits dimensions_of(LaneMask depth) {
   return depth == 1 ? all_lanes(uint32_t(Dimensions::first_surface)) : later;
 }
 
-// The next sample that the eye sees on something matt; what lies before it is answered on the way.
-void fill_lane(Batch& batch, int lane, MattWalks& walks) {
+template <class Body>
+void for_each_lane(uint32_t lanes, const Body& body) {
+  for (; lanes; lanes &= lanes - 1) body(std::countr_zero(lanes));
+}
+
+void set_eye_ray(const Ray& ray, int lane, RayPacket& rays) {
+  rays.origin_x[lane] = ray.origin.x, rays.origin_y[lane] = ray.origin.y;
+  rays.origin_z[lane] = ray.origin.z;
+  rays.direction_x[lane] = ray.direction.x, rays.direction_y[lane] = ray.direction.y;
+  rays.direction_z[lane] = ray.direction.z;
+  rays.t_max[lane] = ray.t_max;
+}
+
+// Whether the sample that the eye's ray belongs to begins on something matt; else it is answered.
+bool begins_matt(Batch& batch, int lane, MattWalks& walks) {
   const Transport& transport = batch.transport;
-  while (batch.next < batch.requests.size()) {
-    const Request& request = batch.requests[batch.next];
-    Sample& sample = batch.samples[batch.next++];
-    Hit hit = transport.world.intersect(request.ray);
-    bool in_solid = transport.tables.any_solid &&
-                    find_media(transport, request.ray.origin).count > 0;
-    if (!hit.valid() || in_solid || !met_matt(transport, hit)) {
-      sample = trace_sample(transport, batch.rules, request, hit);
-      continue;
-    }
-    sample = Sample();
-    walks.held |= 1u << lane;
-    walks.hits[lane] = hit;
-    walks.sample[lane] = batch.next - 1;
-    walks.samplers.set(lane, Sampler(request.seed, request.index));
-    walks.depth[lane] = 1;
-    walks.direction.set(lane, request.ray.direction);
-    walks.throughput.set(lane, vec3(1));
-    walks.smooth.set(lane, vec3(0));
-    walks.rest.set(lane, vec3(0));
-    return;
+  const Request& request = batch.requests[walks.sample[lane]];
+  Sample& sample = batch.samples[walks.sample[lane]];
+  Hit& hit = walks.hits[lane];
+  if (request.ray.t_min != 0) hit = transport.world.intersect(request.ray);  // packets know no other
+  bool in_solid =
+      transport.tables.any_solid && find_media(transport, request.ray.origin).count > 0;
+  if (!hit.valid() || in_solid || !met_matt(transport, hit)) {
+    sample = trace_sample(transport, batch.rules, request, hit);
+    return false;
+  }
+  sample = Sample();
+  walks.samplers.set(lane, Sampler(request.seed, request.index));
+  walks.depth[lane] = 1;
+  walks.direction.set(lane, request.ray.direction);
+  walks.throughput.set(lane, vec3(1));
+  walks.smooth.set(lane, vec3(0));
+  walks.rest.set(lane, vec3(0));
+  return true;
+}
+
+// Gives each of those lanes the next sample that the eye sees on something matt; what lies before
+// it is answered on the way.
+void fill_lanes(Batch& batch, uint32_t lanes, RayPacket& rays, MattWalks& walks) {
+  while (lanes && batch.next < batch.requests.size()) {
+    uint32_t asking = 0;
+    for_each_lane(lanes, [&](int i) {
+      if (batch.next == batch.requests.size()) return;
+      walks.sample[i] = batch.next++;
+      set_eye_ray(batch.requests[walks.sample[i]].ray, i, rays);
+      asking |= 1u << i;
+    });
+    batch.transport.world.intersect_each(rays, asking, walks.hits);
+    for_each_lane(asking, [&](int i) {
+      if (!begins_matt(batch, i, walks)) return;
+      walks.held |= 1u << i;
+      lanes &= ~(1u << i);
+    });
   }
 }
 
@@ -73,11 +102,6 @@ void end_walk(Batch& batch, int lane, MattWalks& walks) {
   sample.smooth = walks.smooth.at(lane);
   sample.rest = walks.rest.at(lane);
   walks.held &= ~(1u << lane);
-}
-
-template <class Body>
-void for_each_lane(uint32_t lanes, const Body& body) {
-  for (; lanes; lanes &= lanes - 1) body(std::countr_zero(lanes));
 }
 
 void set_rays(const Lanes3& origin, const Lanes3& direction, Lanes t_max, RayPacket& rays) {
@@ -274,26 +298,25 @@ bool goes_on(Batch& batch, const RayPacket& rays, int i, bool sky, MattWalks& wa
 
 void trace_samples(const Transport& transport, const WalkRules& rules,
                    std::span<const Request> requests, std::span<Sample> samples) {
-  Batch batch{transport, rules, requests, samples};
   if (!transport.tables.any_matt || rules.max_depth < 1) {
     for (size_t i = 0; i < requests.size(); i++)
       samples[i] = trace_sample(transport, rules, requests[i]);
     return;
   }
+  Batch batch{transport, rules, requests, samples};
   const bool sky = transport.tables.plan.uses(TransportPart::environment);
   RayPacket rays{};
   MattWalks walks;
-  for (int lane = 0; lane < lane_count; lane++) fill_lane(batch, lane, walks);
+  fill_lanes(batch, (1u << lane_count) - 1, rays, walks);
   while (walks.held) {
     uint32_t going = scatter_lanes(batch, walks, rays), arrived = 0;
     transport.world.intersect_each(rays, going, walks.hits);
     for_each_lane(going, [&](int i) {
       arrived |= uint32_t(goes_on(batch, rays, i, sky, walks)) << i;
     });
-    for_each_lane(walks.held & ~arrived, [&](int i) {
-      end_walk(batch, i, walks);
-      fill_lane(batch, i, walks);
-    });
+    const uint32_t ended = walks.held & ~arrived;
+    for_each_lane(ended, [&](int i) { end_walk(batch, i, walks); });
+    fill_lanes(batch, ended, rays, walks);
   }
 }
 

@@ -99,12 +99,25 @@ void render_by_cycles(const fs::path& script, const fs::path& scene, const View&
   if (status != 0) throw std::runtime_error("Cycles failed: " + tail_of(log));
   json times = json::parse(std::ifstream(file.string() + ".times"));
   for (size_t i = 0; i < renders.size(); i++) {
-    renders[i].seconds = times.at(i).get<double>();
+    renders[i].seconds = times.at(i).at(0).get<double>();
+    renders[i].processor_seconds = times.at(i).at(1).get<double>();
     renders[i].frame = load_linear_picture(job["renders"][i]["out"].get<std::string>());
   }
 }
 
-void write_matte_copy(const fs::path& glb, const fs::path& out) {
+namespace {
+
+bool is_shared_metal(const json& material) {
+  json surface = material.value("pbrMetallicRoughness", json::object());
+  json extensions = material.value("extensions", json::object());
+  return surface.value("metallicFactor", 1.0) == 1 && !surface.contains("metallicRoughnessTexture") &&
+         surface.value("roughnessFactor", 1.0) <= roughest_shared_metal &&
+         !material.contains("normalTexture") && !extensions.contains("KHR_materials_transmission");
+}
+
+}  // namespace
+
+void write_shared_copy(const fs::path& glb, bool metals, const fs::path& out) {
   std::ifstream in(glb, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), {});
   uint32_t head[5] = {};
@@ -113,11 +126,11 @@ void write_matte_copy(const fs::path& glb, const fs::path& out) {
     throw LoadError(glb.string(), "", "is no binary glTF");
   json gltf = json::parse(bytes.substr(20, head[3]));
   for (json& material : gltf["materials"]) {
-    json matte = {{"name", material.value("name", "")},
+    json shared = {{"name", material.value("name", "")},
                   {"doubleSided", material.value("doubleSided", false)}};
     for (const char* key : {"emissiveFactor", "emissiveTexture", "alphaMode", "alphaCutoff"})
-      if (material.contains(key)) matte[key] = material[key];
-    json& surface = matte["pbrMetallicRoughness"] = {{"metallicFactor", 0}};
+      if (material.contains(key)) shared[key] = material[key];
+    json& surface = shared["pbrMetallicRoughness"] = {{"metallicFactor", 0}};
     json old = material.value("pbrMetallicRoughness", json::object());
     for (const char* key : {"baseColorFactor", "baseColorTexture"})
       if (old.contains(key)) surface[key] = old[key];
@@ -128,12 +141,15 @@ void write_matte_copy(const fs::path& glb, const fs::path& out) {
       kept["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
       kept["KHR_materials_ior"] = extensions.value("KHR_materials_ior", json{{"ior", 1.5}});
       surface["roughnessFactor"] = 0;
+    } else if (metals && is_shared_metal(material)) {
+      surface["metallicFactor"] = 1;
+      surface["roughnessFactor"] = old.value("roughnessFactor", 1.0);
     } else {
       kept["KHR_materials_ior"] = {{"ior", 1}};  // no gloss
       surface["roughnessFactor"] = 1;
     }
-    matte["extensions"] = kept;
-    material = matte;
+    shared["extensions"] = kept;
+    material = shared;
   }
   gltf["extensionsUsed"] = {"KHR_materials_emissive_strength", "KHR_materials_transmission",
                             "KHR_materials_ior", "KHR_lights_punctual"};

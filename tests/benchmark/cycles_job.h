@@ -14,7 +14,9 @@ struct CyclesRender {
   int samples = 1;
   uint32_t seed = 1;
   Frame frame;         // out
-  double seconds = 0;  // out: sampling alone; scene, BVH and textures were ready before
+  // Out: sampling alone, by the clock and of all its threads together; scene, BVH and textures were
+  // ready before.
+  double seconds = 0, processor_seconds = 0;
 };
 
 // True where a `blender` can be found on the PATH.
@@ -27,9 +29,12 @@ void render_by_cycles(const std::filesystem::path& script, const std::filesystem
                       const std::filesystem::path& folder, double timeout_seconds,
                       std::vector<CyclesRender>& renders);
 
-// A copy of a .glb whose materials are Lambertian, thin clear glass or emitters and nothing else:
-// what both renderers can express to the last digit, so that light transport is compared and not
-// two models of gloss. Throws LoadError.
-void write_matte_copy(const std::filesystem::path& glb, const std::filesystem::path& out);
+// A copy of a .glb whose materials are what both renderers can express, so that light transport is
+// compared and not two models of gloss: Lambertian, thin clear glass, emitters and, if `metals`, bare
+// metal as far as it is not rougher than `roughest_shared_metal`; beyond, light between facets counts,
+// which the two treat differently. Throws LoadError.
+inline constexpr double roughest_shared_metal = 0.35;
+void write_shared_copy(const std::filesystem::path& glb, bool metals,
+                       const std::filesystem::path& out);
 
 }  // namespace wellspring

@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   app.add_option("--web", options.web, "folder of the pages")->capture_default_str();
   app.add_option("--server-option", options.server_words,
                  "stream: a further word of the server's command line, as --server-option=--workers=4");
+  app.add_option("--cycles-case", options.cycles_case, "light.cycles: compare with Cycles in this case only");
   app.add_option("--visit-trace", options.visit_trace, "cache: simulate this visit only");
   app.add_option("--visit-method", options.visit_methods, "cache: only these ways to keep the picture up");
   app.add_option("--visit-mismatch", options.visit_mismatches, "cache: only these mismatches")

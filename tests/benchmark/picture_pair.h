@@ -9,7 +9,7 @@ namespace wellspring {
 // Two renders of different seeds and the same cost.
 struct PicturePair {
   Frame a, b;
-  double seconds = 0;  // of one
+  double seconds = 0, processor_seconds = 0;  // of one
 };
 
 // Root mean squared error of one of the pair, over pixels and channels.

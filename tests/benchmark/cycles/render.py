@@ -9,10 +9,11 @@ set by hand after the import, because the importer leaves it to taste:
   lights      no radius; intensity one to one (1 cd is 1 W/sr, 1 lux is 1 W/m2); spots fall off as
               KHR_lights_punctual says, by nodes, instead of Blender's smooth step
   materials   Lambert's law by a Diffuse BSDF, emission from fronts alone where they are single-sided;
-              thin glass as Fresnel's share of a mirror image over a transparent rest
+              thin glass as Fresnel's share of a mirror image over a transparent rest; bare metal by a
+              Glossy BSDF (GGX) of Schlick's colour, at the surface's cosine instead of each facet's
   pixels      box filter one pixel wide, no denoiser, no clamping, no adaptive sampling
-Times are wall seconds of a render with what was built before it (BVH, textures) kept, without the
-file's writing; the file JOB.json + ".times" receives them in order.
+Times are wall seconds and processor seconds of a render with what was built before it (BVH, textures)
+kept, without the file's writing; the file JOB.json + ".times" receives a pair for each, in order.
 """
 import json
 import math
@@ -69,7 +70,19 @@ def source_of(tree, socket):
     return socket.links[0].from_socket if socket.is_linked else socket.default_value
 
 
-def make_matte(material, source):
+def metal_color(nodes, color):
+    """Schlick's approximation: white towards grazing."""
+    place = nodes.add("ShaderNodeNewGeometry").outputs
+    product = nodes.add("ShaderNodeVectorMath", operation="DOT_PRODUCT")
+    nodes.tree.links.new(place["Normal"], product.inputs[0])
+    nodes.tree.links.new(place["Incoming"], product.inputs[1])
+    cosine = nodes.math("MINIMUM", nodes.math("ABSOLUTE", product.outputs["Value"]), 1.0)
+    share = nodes.math("POWER", nodes.math("SUBTRACT", 1.0, cosine), 5.0)
+    return nodes.add("ShaderNodeMixRGB",
+                     {"Fac": share, "Color1": color, "Color2": (1, 1, 1, 1)}).outputs[0]
+
+
+def make_shared(material, source):
     """Replaces the importer's Principled BSDF."""
     nodes = Nodes(material)
     tree = nodes.tree
@@ -83,6 +96,8 @@ def make_matte(material, source):
     extensions = source.get("extensions", {})
     transmission = extensions.get("KHR_materials_transmission", {}).get("transmissionFactor", 0)
     index = extensions.get("KHR_materials_ior", {}).get("ior", 1.5)
+    metallic = source.get("pbrMetallicRoughness", {}).get("metallicFactor", 1)
+    roughness = source.get("pbrMetallicRoughness", {}).get("roughnessFactor", 1)
     back = nodes.add("ShaderNodeNewGeometry").outputs["Backfacing"]
     if transmission > 0:
         through = nodes.add("ShaderNodeBsdfTransparent", {"Color": color}).outputs[0]
@@ -94,6 +109,10 @@ def make_matte(material, source):
                             {0: share, 1: through, 2: mirror.outputs[0]}).outputs[0]
         if index == 1:
             surface = through
+    elif metallic == 1:
+        surface = nodes.add("ShaderNodeBsdfGlossy", {"Color": metal_color(nodes, color),
+                                                     "Roughness": roughness}, distribution="GGX")
+        surface = surface.outputs[0]
     else:
         surface = nodes.add("ShaderNodeBsdfDiffuse", {"Color": color}).outputs[0]
     if any(source.get("emissiveFactor", [0])):
@@ -140,11 +159,14 @@ def load(job):
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     bpy.ops.import_scene.gltf(filepath=job["file"], import_shading="NORMALS")
+    for thing in bpy.data.objects:  # normals between vertices as they are
+        thing.cycles.shadow_terminator_offset = 0
+        thing.cycles.shadow_terminator_geometry_offset = 0
     gltf = gltf_of(job["file"])
     by_name = {m.get("name"): m for m in gltf.get("materials", [])}
     for material in bpy.data.materials:
         if material.use_nodes:
-            make_matte(material, by_name.get(material.name, {}))
+            make_shared(material, by_name.get(material.name, {}))
     lights = gltf.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", [])
     by_name = {light.get("name"): light for light in lights}
     for light in list(bpy.data.lights):
@@ -213,9 +235,9 @@ def main():
         scene.cycles.samples, scene.cycles.seed = render["samples"], render["seed"]
         scene.update_tag()
         bpy.context.view_layer.update()
-        began = time.time()
+        began, began_processor = time.time(), time.process_time()
         bpy.ops.render.render()
-        times.append(time.time() - began)
+        times.append([time.time() - began, time.process_time() - began_processor])
         bpy.data.images["Render Result"].save_render(render["out"], scene=scene)
     with open(path + ".times", "w") as out:
         json.dump(times, out)

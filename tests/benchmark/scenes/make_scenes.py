@@ -2,6 +2,7 @@
 """Writes the benchmark's scenes, one .glb each, beside this script:
     python3 tests/benchmark/scenes/make_scenes.py
 cornell_box   Cornell University's measured box in metres, purely diffuse
+metal_box     the same walls and lamp around a steel block, a golden ball and a copper step
 diffuse_hall  a colonnade lit by tall windows on one side: mostly light between walls
 caustics      glass, water, a prism and polished metal on a table under a small lamp
 conference    a conference room with 104 lights in its ceiling
@@ -18,8 +19,8 @@ def save(scene, name):
     scene.save(os.path.join(FOLDER, name + ".glb"))
 
 
-def cornell_box():
-    scene = Scene()
+def box_walls(scene):
+    """Cornell's walls and lamp; returns the material of the white ones."""
     white = scene.matt("white", [0.73, 0.73, 0.73])
     red = scene.matt("red", [0.65, 0.05, 0.05])
     green = scene.matt("green", [0.12, 0.45, 0.15])
@@ -33,12 +34,38 @@ def cornell_box():
     scene.mesh("right wall", green, Mesh().quad([w, 0, -d], [0, 0, d], [0, h, 0]))
     scene.mesh("lamp", lamp,
                Mesh().quad([-0.065, h - 0.001, -0.33], [0.13, 0, 0], [0, 0, 0.105]))
+    return white
+
+
+def tall_block():
+    return Mesh().box([-0.1725, 0, -0.4335], [-0.0075, 0.33, -0.2685], 0.29)
+
+
+def look_into_box(scene):
+    scene.camera("front", [0, 0.275, 0.8], [0, 0.275, 0], math.degrees(0.686))
+
+
+def cornell_box():
+    scene = Scene()
+    white = box_walls(scene)
     scene.mesh("short block", white, Mesh().box([0.0105, 0, -0.2515], [0.1755, 0.165, -0.0865],
                                                 -0.29))
-    scene.mesh("tall block", white, Mesh().box([-0.1725, 0, -0.4335], [-0.0075, 0.33, -0.2685],
-                                               0.29))
-    scene.camera("front", [0, 0.275, 0.8], [0, 0.275, 0], math.degrees(0.686))
+    scene.mesh("tall block", white, tall_block())
+    look_into_box(scene)
     save(scene, "cornell_box")
+
+
+def metal_box():
+    scene = Scene()
+    box_walls(scene)
+    steel = scene.material("steel", [0.7, 0.7, 0.72], roughness=0.3, metallic=1)
+    gold = scene.material("gold", [1, 0.77, 0.34], roughness=0.2, metallic=1)
+    copper = scene.material("copper", [0.95, 0.64, 0.54], roughness=0.35, metallic=1)
+    scene.mesh("tall block", steel, tall_block())
+    scene.mesh("ball", gold, Mesh().sphere([0.1, 0.09, -0.18], 0.09, 32))
+    scene.mesh("step", copper, Mesh().box([-0.22, 0, -0.16], [-0.02, 0.04, -0.06]))
+    look_into_box(scene)
+    save(scene, "metal_box")
 
 
 def diffuse_hall():
@@ -384,6 +411,7 @@ def conference():
 
 if __name__ == "__main__":
     cornell_box()
+    metal_box()
     diffuse_hall()
     caustics()
     conference()
