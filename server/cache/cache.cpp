@@ -206,8 +206,8 @@ void RenderCache::Impl::read_light(const View& of, const PictureSight* sight, Fr
     overlay_sight(of, *sight, is_still(), frame);
     stats.drawing_ms = float(1000 * (seconds_now() - began));
   }
-  filter_cells(of, cells);
   known = fill_cells(of, cells);
+  filter_cells(of, cells);
   count(counts, known);
   looked.clear();
 }

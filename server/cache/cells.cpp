@@ -9,7 +9,7 @@
 namespace wellspring {
 namespace {
 
-constexpr int float_planes = 3 * 7 + 10;  // all but object
+constexpr int float_planes = 3 * 7 + 10 + 8;  // all but object
 
 size_t padded(int width, int height) {
   int columns = (width + cell_size - 1) / cell_size, rows = (height + cell_size - 1) / cell_size;
@@ -155,6 +155,7 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch) {
                       &cells.patience, &cells.rest_sum, &cells.rest_sum2, &cells.rest_noise,
                       &cells.rest_known})
     take(*plane, 0.0f);
+  for (auto& plane : cells.pooled) take(plane, 0.0f);
   take(cells.object, no_object);
 }
 

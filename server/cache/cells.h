@@ -36,6 +36,9 @@ struct Cells {
   std::span<float> rest_noise;  // sum of known variances of one sample; then variance of one sample
   std::span<float> rest_known;  // points with a known variance; then variance of the cell's mean
   std::span<uint32_t> object;   // no_object: nothing known here
+  // Sums over nine cells, while variances are estimated: samples, points, sum, sum2, rest_sum,
+  // rest_sum2, rest_noise and rest_known.
+  std::array<std::span<float>, 8> pooled;
   int index(int x, int y) const { return (y + cell_pad) * stride + x + cell_pad; }
 };
 
@@ -45,11 +48,12 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch);
 // Overwrites row cy of the cells: the means over the pixels that see each cell's object. `rows`
 // hold the rows of the picture that it covers.
 void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells);
-// Filters smooth light and the noisy part of the rest as widely as their noise asks for, never
-// across objects, creases or steps.
-void filter_cells(const View& view, Cells& cells);
-// Cells that know nothing take what their surroundings know, the nearer the better. False: nothing
-// known anywhere.
+// Cells that know nothing take what their surroundings know, the nearer the better; their samples stay
+// 0. False: nothing known anywhere.
 bool fill_cells(const View& view, Cells& cells);
+// Filters smooth light and the noisy part of the rest as widely as their noise asks for, never
+// across objects, creases or steps; cells weigh what their samples are, so that filled ones take and
+// do not give (normalised convolution: Knutsson and Westin 1993).
+void filter_cells(const View& view, Cells& cells);
 
 }  // namespace wellspring

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eight cells at a time. What lies on either side of a row is empty, so nothing asks where it ends.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "base/parallel.h"
 #include "cache/cells.h"
@@ -13,37 +15,60 @@ namespace {
 constexpr int steps = 4;  // taps 1, 2, 4 and 8 cells apart
 constexpr float plane_tolerance =
     0.03f;  // relative depth off the other cell's plane that halves a weight
-constexpr float light_tolerance = 9;  // squared, in variances of the mean
+// Squared, in variances of the mean; of a few samples these are no better known than the light.
+constexpr float light_tolerance = 25;
+constexpr float most_samples = 64;    // that a cell counts for: its neighbours show other places
+constexpr float plenty_of_points = 48;  // in nine cells, to tell how light deviates there
 
 f8 load_at(std::span<const float> plane, size_t i) { return load<f8>(plane.data() + i); }
 f8 clamped(const f8& v, float low, float high) { return smaller(larger(v, splat(low)), splat(high)); }
 
-// Sums over a cell and its eight neighbours of the same object.
+// Sums over cells of one object.
 struct Pool {
   f8 samples{}, points{}, sum{}, sum2{};
   f8 rest{}, rest2{}, rest_noise{}, rest_known{};
-  f8 brightest{}, rest_brightest{};  // of the neighbours' means
 };
-Pool pool_around(const Cells& cells, size_t i, const u8& object) {
+using PoolPlanes = decltype(Cells::pooled);
+
+template <class Read>
+void add(Pool& pool, const i8& same, const Read& read) {
+  pool.samples += keep(same, read(0)), pool.points += keep(same, read(1));
+  pool.sum += keep(same, read(2)), pool.sum2 += keep(same, read(3));
+  pool.rest += keep(same, read(4)), pool.rest2 += keep(same, read(5));
+  pool.rest_noise += keep(same, read(6)), pool.rest_known += keep(same, read(7));
+}
+
+PoolPlanes own_planes(const Cells& c) {
+  return {c.samples, c.points, c.sum, c.sum2, c.rest_sum, c.rest_sum2, c.rest_noise, c.rest_known};
+}
+
+// Over the cells `step` apart around eight, and these.
+Pool pool_around(const Cells& cells, const PoolPlanes& planes, size_t i, const u8& object, int step) {
   Pool pool;
   for (int dy = -1; dy <= 1; dy++)
     for (int dx = -1; dx <= 1; dx++) {
-      size_t j = size_t(ptrdiff_t(i) + dy * cells.stride + dx);
-      i8 same = load<u8>(&cells.object[j]) == object;
-      pool.samples += keep(same, load_at(cells.samples, j));
-      pool.points += keep(same, load_at(cells.points, j));
-      pool.sum += keep(same, load_at(cells.sum, j));
-      pool.sum2 += keep(same, load_at(cells.sum2, j));
-      pool.rest += keep(same, load_at(cells.rest_sum, j));
-      pool.rest2 += keep(same, load_at(cells.rest_sum2, j));
-      pool.rest_noise += keep(same, load_at(cells.rest_noise, j));
-      pool.rest_known += keep(same, load_at(cells.rest_known, j));
-      if (dx == 0 && dy == 0) continue;
-      f8 per_sample = keep(same, 1.0f / larger(load_at(cells.samples, j), splat(1)));
-      pool.brightest = larger(pool.brightest, load_at(cells.sum, j) * per_sample);
-      pool.rest_brightest = larger(pool.rest_brightest, load_at(cells.rest_sum, j) * per_sample);
+      size_t j = size_t(ptrdiff_t(i) + step * (dy * cells.stride + dx));
+      add(pool, load<u8>(&cells.object[j]) == object, [&](size_t k) { return load_at(planes[k], j); });
     }
   return pool;
+}
+
+// The brightest means around.
+struct Brightest {
+  f8 light{}, rest{};
+};
+Brightest brightest_around(const Cells& cells, size_t i, const u8& object) {
+  Brightest b;
+  for (int dy = -1; dy <= 1; dy++)
+    for (int dx = -1; dx <= 1; dx++) {
+      if (dx == 0 && dy == 0) continue;
+      size_t j = size_t(ptrdiff_t(i) + dy * cells.stride + dx);
+      i8 same = load<u8>(&cells.object[j]) == object;
+      f8 per_sample = keep(same, 1.0f / larger(load_at(cells.samples, j), splat(1)));
+      b.light = larger(b.light, load_at(cells.sum, j) * per_sample);
+      b.rest = larger(b.rest, load_at(cells.rest_sum, j) * per_sample);
+    }
+  return b;
 }
 
 struct Estimate {
@@ -51,35 +76,62 @@ struct Estimate {
   f8 mean_variance, patience, rest_detail, rest_noise, rest_mean_variance;
 };
 
-// Where few points tell, smooth light is assumed to deviate by as much as its mean, and what varies
+// What cells somewhat farther around say, for those with few points near.
+struct Prior {
+  f8 mean, variance, rest_mean;
+  i8 told;
+};
+Prior make_prior(const Pool& wide) {
+  constexpr float guess_points = 3;
+  f8 per_sample = 1.0f / larger(wide.samples, splat(1));
+  Prior prior;
+  prior.mean = wide.sum * per_sample;
+  f8 spread = positive(wide.sum2 - wide.sum * prior.mean);
+  prior.variance = (spread + prior.mean * prior.mean * guess_points) / (wide.points + guess_points) + 1e-6f;
+  prior.rest_mean = wide.rest * per_sample;
+  prior.told = wide.points >= 4.0f;
+  return prior;
+}
+
+// Where few points tell, smooth light is assumed to deviate as it does farther around, and what varies
 // in the rest to be noise by `rest_share`. `samples` > 0; `light` and `rest_light` are the cells'
 // sums over their samples; `unsure`: some point of a cell may owe its rest to chance, and these differ.
-Estimate estimate_cells(const Pool& pool, const f8& samples, const f8& light_sum,
-                        const f8& rest_sum, const i8& unsure, float rest_share) {
+Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& brightest, const f8& samples,
+                        const f8& light_sum, const f8& rest_sum, const i8& unsure, float rest_share) {
   constexpr float guess_points = 3;
   Estimate e;
   f8 per_sample = 1.0f / samples, per_pooled = 1.0f / pool.samples;
+  Prior prior = make_prior(wide);
   f8 mean = pool.sum * per_pooled, spread = positive(pool.sum2 - pool.sum * mean);
-  f8 guess = mean * mean + 1e-6f;
-  f8 variance = (spread + guess * guess_points) / (pool.points + guess_points);
-  e.patience = clamped(48 * variance / guess, 0.5f, 192.0f);
+  f8 expected = (pool.sum + prior.mean * guess_points) / (pool.samples + guess_points);
+  f8 variance = (spread + prior.variance * guess_points) / (pool.points + guess_points);
+  e.patience = clamped(48 * variance / (expected * expected + 1e-6f), 0.5f, 192.0f);
   e.mean_variance = variance * per_sample;
   // What varies from place to place beyond what varies from sample to sample is detail.
   f8 rest_spread = positive(pool.rest2 - pool.rest * pool.rest * per_pooled) /
                    larger(pool.points - 1.0f, splat(1));
+  f8 wide_spread = positive(wide.rest2 - wide.rest * wide.rest / larger(wide.samples, splat(1))) /
+                   larger(wide.points - 1.0f, splat(1));
+  f8 near_share = pool.points / (pool.points + guess_points);
+  rest_spread = rest_spread * near_share + wide_spread * (1.0f - near_share);
   e.rest_noise = (pool.rest_noise + rest_spread * rest_share) / (pool.rest_known + 1.0f);
   e.rest_detail = positive(rest_spread - e.rest_noise) * pool.points * per_pooled;
   e.rest_mean_variance = e.rest_noise * per_sample;
   // A cell brighter than all around it, or far brighter than their mean, owes that to a lucky path,
   // unless many samples say so or, of the rest, it stays so from sample to sample.
   f8 light = light_sum * per_sample, rest_light = rest_sum * per_sample;
-  f8 others = pool.samples - samples, per_other = 1.0f / larger(others, splat(1));
+  f8 others = pool.samples - samples;
+  i8 near = others >= 3.0f;
+  f8 all_others = wide.samples - samples;
+  f8 per_other = 1.0f / larger(near ? others : all_others, splat(1));
+  f8 other_light = ((near ? pool.sum : wide.sum) - light_sum) * per_other,
+     other_rest = ((near ? pool.rest : wide.rest) - rest_sum) * per_other;
   f8 confirmed = 2.5f + 0.05f * samples;
   f8 peak = 1.25f + 0.05f * samples;
-  f8 most = smaller(confirmed * (pool.sum - light_sum) * per_other, peak * pool.brightest),
-     rest_most =
-         smaller(confirmed * (pool.rest - rest_sum) * per_other, peak * pool.rest_brightest);
-  i8 told = others >= 3.0f, noisy = unsure | (e.rest_noise > 0.25f * rest_light * rest_light);
+  f8 most = confirmed * other_light, rest_most = confirmed * other_rest;
+  most = near ? smaller(most, peak * brightest.light) : most;
+  rest_most = near ? smaller(rest_most, peak * brightest.rest) : rest_most;
+  i8 told = near | (all_others >= 6.0f), noisy = unsure | (e.rest_noise > 0.25f * rest_light * rest_light);
   f8 one = splat(1);
   e.scale = told & (light > most) ? (most + 1e-6f) / (light + 1e-6f) : one;
   e.rest_scale =
@@ -116,12 +168,27 @@ float share_of_noise(const Cells& cells) {
   return float(std::clamp(all.noise / (all.noise + all.spread + 1e-9), 0.5, 1.0));
 }
 
+void pool_cells(Cells& cells) {
+  PoolPlanes own = own_planes(cells);
+  parallel_ranges(cells.height, 4, [&](int begin, int end) {
+    for (int y = begin; y < end; y++)
+      for (int x = 0; x < cells.width; x += lanes) {
+        size_t i = size_t(cells.index(x, y));
+        Pool pool = pool_around(cells, own, i, load<u8>(&cells.object[i]), 1);
+        const f8 sums[] = {pool.samples, pool.points, pool.sum,        pool.sum2,
+                           pool.rest,    pool.rest2,  pool.rest_noise, pool.rest_known};
+        for (size_t k = 0; k < cells.pooled.size(); k++) store(&cells.pooled[k][i], sums[k]);
+      }
+  });
+}
+
 // Replaces the moments by what follows from them; the other side of the a-trous steps serves
 // meanwhile.
 void estimate_variance(Cells& cells) {
   float rest_share = share_of_noise(cells);
   auto& [mean_variance, rest_detail, rest_noise] = cells.spare;
   auto& rest_mean_variance = cells.rest_spare[0];
+  pool_cells(cells);
   parallel_ranges(cells.height, 4, [&](int begin, int end) {
     for (int y = begin; y < end; y++)
       for (int x = 0; x < cells.width; x += lanes) {
@@ -133,16 +200,21 @@ void estimate_variance(Cells& cells) {
             store(&(*plane)[i], f8{});
           continue;
         }
-        Pool pool = pool_around(cells, i, object);
+        Pool pool;
+        add(pool, known, [&](size_t k) { return load_at(cells.pooled[k], i); });
+        Pool wide = pool;
+        if (any(known & (pool.points < plenty_of_points)))
+          wide = pool_around(cells, cells.pooled, i, object, 3);
         f8 one = splat(1);
-        pool.samples = known ? pool.samples : one;
-        f8 samples = known ? load_at(cells.samples, i) : one;
+        pool.samples = larger(pool.samples, one);
+        f8 samples = larger(load_at(cells.samples, i), one);
         f8 rest_sum = load_at(cells.rest_sum, i), rest_sum2 = load_at(cells.rest_sum2, i);
         f8 spread = samples * rest_sum2 - rest_sum * rest_sum;
         i8 unsure = (load_at(cells.rest_known, i) < load_at(cells.points, i)) &
                     (spread > 0.25f * rest_sum * rest_sum);
         Estimate e =
-            estimate_cells(pool, samples, load_at(cells.sum, i), rest_sum, unsure, rest_share);
+            estimate_cells(pool, wide, brightest_around(cells, i, object), samples,
+                           load_at(cells.sum, i), rest_sum, unsure, rest_share);
         for (size_t c = 0; c < 3; c++) {
           store(&cells.smooth[c][i], load_at(cells.smooth[c], i) * e.scale);
           store(&cells.rest[c][i], load_at(cells.rest[c], i) * e.rest_scale);
@@ -160,33 +232,41 @@ void estimate_variance(Cells& cells) {
   std::swap(cells.rest_known, rest_mean_variance);
 }
 
-// Light of eight cells and the variance of its mean, weighed.
+// Light of eight cells and the variance of its mean, weighed by samples.
 struct LightSums {
   f8 r, g, b, variance, weight, light, tolerance;
 };
 struct LightPlanes {
   const float *r, *g, *b, *variance;
 };
-LightSums begin_sums(const LightPlanes& from, size_t i) {
+constexpr float own_weight = 4;  // of a step's nine cells
+LightSums begin_sums(const LightPlanes& from, size_t i, const f8& samples) {
   f8 r = load<f8>(from.r + i), g = load<f8>(from.g + i), b = load<f8>(from.b + i),
-     v = load<f8>(from.variance + i);
-  return {4 * r,    4 * g, 4 * b, 16 * v, splat(4), luminance(r, g, b),
-          1.0f / (light_tolerance * v + 1e-12f)};
+     v = load<f8>(from.variance + i), w = own_weight * samples;
+  return {w * r, w * g, w * b, w * w * v, w, luminance(r, g, b), 1.0f / (light_tolerance * v + 1e-12f)};
 }
-// `common`: what the two cells' surfaces have in common, and one plus their squared distance.
-void add(LightSums& sums, const LightPlanes& from, size_t j, const f8& common, const f8& apart) {
+// `common`: what the two cells' surfaces have in common; `apart`: one plus their squared distance.
+// Returns how much of the cells' samples counted.
+f8 add(LightSums& sums, const LightPlanes& from, size_t j, const f8& common, const f8& apart,
+       const f8& samples) {
   f8 r = load<f8>(from.r + j), g = load<f8>(from.g + j), b = load<f8>(from.b + j);
   f8 differs = luminance(r, g, b) - sums.light;
   differs *= differs * sums.tolerance;
-  f8 weight = common / (apart * (1.0f + differs * differs));
+  f8 share = common / (apart * (1.0f + differs * differs)), weight = share * samples;
   sums.r += weight * r, sums.g += weight * g, sums.b += weight * b;
   sums.variance += weight * weight * load<f8>(from.variance + j);
   sums.weight += weight;
+  return share;
 }
-void store_sums(const LightSums& sums, float* r, float* g, float* b, float* variance) {
-  f8 share = 1.0f / sums.weight;
-  store(r, sums.r * share), store(g, sums.g * share), store(b, sums.b * share);
-  store(variance, sums.variance * share * share);
+// Where no sample lies within reach, what was there before stays.
+void store_sums(const LightSums& sums, const LightPlanes& from, size_t i, float* r, float* g, float* b,
+                float* variance) {
+  i8 told = sums.weight > 1e-6f;
+  f8 share = 1.0f / (told ? sums.weight : splat(1));
+  store(r, told ? sums.r * share : load<f8>(from.r + i));
+  store(g, told ? sums.g * share : load<f8>(from.g + i));
+  store(b, told ? sums.b * share : load<f8>(from.b + i));
+  store(variance, told ? sums.variance * share * share : load<f8>(from.variance + i));
 }
 
 // What the surfaces of eight cells at i and those at j have in common: object and orientation; and
@@ -215,6 +295,7 @@ void filter_cells(const View& view, Cells& cells) {
   std::vector<float> ray_x(size_t(cells.width) + lanes);
   for (int x = 0; x < int(ray_x.size()); x++)
     ray_x[size_t(x)] = rays.x((float(x) + 0.5f) * cell_size);
+  std::span<float>& next_samples = cells.pooled[0];
   for (int k = 0; k < steps; k++) {
     int step = 1 << k;
     LightPlanes smooth{cells.smooth[0].data(), cells.smooth[1].data(), cells.smooth[2].data(),
@@ -226,7 +307,10 @@ void filter_cells(const View& view, Cells& cells) {
         float ray_y = rays.y((float(y) + 0.5f) * cell_size);
         for (int x = 0; x < cells.width; x += lanes) {
           size_t i = size_t(cells.index(x, y));
-          LightSums s = begin_sums(smooth, i), r = begin_sums(rest, i);
+          f8 own = smaller(load_at(cells.samples, i), splat(most_samples));
+          LightSums s = begin_sums(smooth, i, own), r = begin_sums(rest, i, own);
+          // A mean's samples are as many as equally weighed ones of its variance would be.
+          f8 weights = own_weight * own, weights2 = own_weight * own_weight * own;
           f8 across = load<f8>(&ray_x[size_t(x)]);
           for (int dy = -1; dy <= 1; dy++)
             for (int dx = -1; dx <= 1; dx++) {
@@ -234,13 +318,16 @@ void filter_cells(const View& view, Cells& cells) {
               size_t j = size_t(ptrdiff_t(i) + step * (dy * cells.stride + dx));
               f8 apart, common = compare_surfaces(cells, i, j, across, ray_y, apart);
               if (dx == 0 || dy == 0) common += common;
-              add(s, smooth, j, common, apart);
-              add(r, rest, j, common, apart);
+              f8 samples = smaller(load_at(cells.samples, j), splat(most_samples));
+              f8 share = add(s, smooth, j, common, apart, samples);
+              add(r, rest, j, common, apart, samples);
+              weights += share * samples, weights2 += share * share * samples;
             }
-          store_sums(s, &cells.spare[0][i], &cells.spare[1][i], &cells.spare[2][i],
+          store_sums(s, smooth, i, &cells.spare[0][i], &cells.spare[1][i], &cells.spare[2][i],
                      &cells.sum2[i]);
-          store_sums(r, &cells.rest_spare[0][i], &cells.rest_spare[1][i], &cells.rest_spare[2][i],
-                     &cells.points[i]);
+          store_sums(r, rest, i, &cells.rest_spare[0][i], &cells.rest_spare[1][i],
+                     &cells.rest_spare[2][i], &cells.points[i]);
+          store(&next_samples[i], weights * weights / larger(weights2, splat(1e-12f)));
         }
       }
     });
@@ -248,6 +335,7 @@ void filter_cells(const View& view, Cells& cells) {
     std::swap(cells.rest, cells.rest_spare);
     std::swap(cells.sum, cells.sum2);
     std::swap(cells.rest_known, cells.points);
+    std::swap(cells.samples, next_samples);
   }
 }
 
