@@ -6,7 +6,6 @@
 #include <iostream>
 #include <map>
 #include <spdlog/fmt/fmt.h>
-#include <thread>
 
 #include "base/clock.h"
 #include "base/load_error.h"
@@ -55,6 +54,9 @@ int read_options(Options& options, int argc, char** argv) {
   app.add_option("--draw", options.show.draw,
                  "shapes drawn exactly in every picture, sharper and slower: automatic, never, always")
       ->transform(CLI::CheckedTransformer(wishes))->option_text("WISH=automatic");
+  app.add_flag("--background,!--no-background", options.show.background,
+               "pictures are drawn while visitors are shown earlier ones as they look from where they are now")
+      ->capture_default_str();
   app.add_flag("--late-samples,!--no-late-samples", options.show.late_samples,
                "samples of a walking visitor are traced when its picture is on its way, and show in the next")
       ->capture_default_str();
@@ -132,8 +134,7 @@ int serve(const Options& options) {
       reported = began;
       board.publish(make_report(*show));
     }
-    double wait = seconds_to_next_tick(*show, seconds_now());
-    if (wait > 0) std::this_thread::sleep_for(std::chrono::duration<double>(wait));
+    wait_for_tick(*show, seconds_now());
   }
   log::info("stopping");
   server->stop();

@@ -48,7 +48,12 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "samples_total", "counter", "Samples traced", double(totals.samples));
   metric(out, "bad_samples_total", "counter", "Samples dropped for not being finite or positive",
          double(report.bad_samples));
-  metric(out, "pictures_total", "counter", "Pictures made", double(totals.pictures));
+  metric(out, "pictures_total", "counter", "Pictures sent", double(totals.pictures));
+  metric(out, "pictures_drawn_total", "counter", "Pictures drawn from samples", double(totals.drawn));
+  metric(out, "pictures_warped_total", "counter", "Pictures sent that are warped from earlier ones to where the visitor is",
+         double(totals.warped));
+  metric(out, "warps_given_up_total", "counter", "Pictures not made since earlier ones show too little of the view",
+         double(totals.unwarpable));
   metric(out, "picture_bytes_total", "counter", "Bytes of pictures made", double(totals.picture_bytes));
   metric(out, "messages_total", "counter", "Messages from browsers", double(totals.messages));
   metric(out, "refused_messages_total", "counter", "Messages refused", double(totals.refused_messages));
@@ -74,6 +79,11 @@ std::string write_metrics(const ShowReport& report) {
          double(totals.sounds_given_up));
   metric(out, "resident_bytes", "gauge", "Memory of the server process", resident_bytes());
   per_visitor(out, report, "pictures_per_second", "Pictures a second", [](auto& v) { return v.fps; });
+  per_visitor(out, report, "drawn_pictures_per_second", "Pictures drawn a second; the others are warped",
+              [](auto& v) { return v.drawn_fps; });
+  per_visitor(out, report, "warp_milliseconds", "Warping a picture", [](auto& v) { return v.warp_ms; });
+  per_visitor(out, report, "drawn_after_milliseconds", "From deciding what to draw until it can be shown",
+              [](auto& v) { return v.whole_ms; });
   per_visitor(out, report, "round_trip_milliseconds", "Picture sent to acknowledged",
               [](auto& v) { return v.round_trip_ms; });
   per_visitor(out, report, "display_milliseconds", "Reprojection and reconstruction",

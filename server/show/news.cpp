@@ -70,7 +70,6 @@ std::string welcome_news(const Show& show, const Visitor& visitor) {
 }
 
 std::string state_news(const Visitor& visitor, const Exhibit& exhibit) {
-  const CacheStats& stats = visitor.cache.stats();
   json news = {{"type", "state"},
                {"seq", visitor.seq},
                {"position", triple(visitor.view.position)},
@@ -78,7 +77,7 @@ std::string state_news(const Visitor& visitor, const Exhibit& exhibit) {
                {"pitch", visitor.view.pitch},
                {"fov", visitor.view.fov},
                {"fps", std::round(visitor.measured_fps * 10) / 10},
-               {"converged", std::round(stats.converged * 1000) / 1000},
+               {"converged", std::round(visitor.stats.converged * 1000) / 1000},
                {"viewpoint", nullptr},
                {"tour", nullptr}};
   if (visitor.viewpoint >= 0) news["viewpoint"] = exhibit.viewpoints[size_t(visitor.viewpoint)].view.name;

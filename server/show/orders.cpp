@@ -160,7 +160,7 @@ Answer obey_one(Show& show, Visitor& visitor, const Settings& settings) {
   if (settings.quality) visitor.best_quality = *settings.quality;
   if (settings.max_quality) visitor.still_quality = *settings.max_quality;
   visitor.best_quality = std::min(visitor.best_quality, visitor.still_quality);
-  if (settings.attention) visitor.cache.set_attention(*settings.attention);
+  if (settings.attention) visitor.attention = *settings.attention;
   if (settings.width || settings.height)
     set_size(visitor, show.settings, settings.width.value_or(visitor.width),
              settings.height.value_or(visitor.height));

@@ -8,10 +8,8 @@
 #include "cache/compose_drawn.h"
 #include "cache/predict.h"
 #include "cache/trace_waiting.h"
-#include "frame/jpeg.h"
-#include "show/display_path.h"
 #include "show/in_view.h"
-#include "wire/packet.h"
+#include "show/present.h"
 
 namespace wellspring {
 
@@ -22,36 +20,26 @@ constexpr double settled_after = 2;    // seconds without motion until the refer
 constexpr size_t least_measured = 1000;  // looks that tell how long one takes
 constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
-constexpr double still_rate = 20;      // pictures a second while only the storyteller moves
-constexpr double settling_rate = 12;   // while nothing moves: more time for samples
-constexpr double resting_rate = 4;     // when nothing in the picture changes any more
+constexpr double keyframe_rate = 30;   // pictures drawn a second while the visitor moves, at most
 constexpr float nearly_all = 0.999f;   // converged
 constexpr float forgotten = 0.998f;    // of what drawing took, a picture without it
 constexpr float few_guessed = 0.01f;   // of the pixels, and the points alone show a picture at rest
 constexpr double motion_seconds = 0.1;     // in which a visitor's motion is measured
+constexpr size_t most_past = 32;           // views of that time
 constexpr float fastest = 25;              // metres a second; more is a jump
+constexpr float smallest_leap = 0.5f;      // metres
 constexpr double predicted_pictures = 2;
 constexpr float predicted_share = 0.3f;    // of the samples, at most
 constexpr float barely_covered = 0.1f;  // of the pixels by points
 constexpr float more_asked = 1.2f;      // than there is time for, by what was measured: none is idle
-constexpr int animated_gain = 5;       // JPEG quality above the moving one while the storyteller moves
+// Of a keyframe, on each side, of its width and height: turning goes sideways.
+constexpr int margin_across = 40, margin_down = 45;
 
-float milliseconds_since(double began) { return float(1000 * (seconds_now() - began)); }
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
-
-bool stands(const Show& show, const Visitor& visitor) {
-  return visitor.frame_number > 0 && show.time - visitor.moved_at > still_after &&
-         visitor.velocity == vec3(0) && visitor.move == vec3(0);
-}
-
-bool rests(const Show& show, const Visitor& visitor) {
-  return stands(show, visitor) && !sees_figure(show, visitor.last_view) &&
-         visitor.cache.stats().converged >= nearly_all;
-}
 
 // Seconds of a picture's period that are left for samples and looks.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
-  double period = 1 / picture_rate(show, visitor);
+  double period = 1 / drawing_rate(show, visitor);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
   return std::max((period - slack) / std::max(busy, 1) - display, least_share * period);
 }
@@ -71,199 +59,240 @@ DisplayCosts display_costs(const Show& show, const Visitor& visitor) {
           seconds(times.light)};
 }
 
-// Where the motion of the last moments leads by the time that answers asked for now are shown, and the
-// picture after that. Inputs come in steps of their own, so that two pictures alone would not tell.
-View view_ahead(const Show& show, Visitor& visitor, const View& view) {
-  auto& past = visitor.past;
-  auto too_old = [&](const auto& one) {
-    return show.time - one.time > motion_seconds || one.view.width != view.width || one.view.height != view.height;
-  };
-  past.erase(past.begin(), std::find_if_not(past.begin(), past.end(), too_old));
-  View ahead = view;
-  if (!past.empty() && show.time > past.front().time) {
-    double passed = show.time - past.front().time;
-    if (length(view.position - past.front().view.position) > fastest * float(passed)) past.clear();  // a jump
-    else ahead = extrapolate(past.front().view, view, float(predicted_pictures / (passed * picture_rate(show, visitor))));
+// Where the motion of the last moments leads in `seconds`. Inputs come in steps of their own, so that two
+// ticks alone would not tell; of a quick turn less than all of them is enough.
+View view_ahead(const Show& show, const Visitor& visitor, const View& view, double seconds) {
+  for (const Visitor::PastView& past : visitor.past) {
+    if (past.time >= show.time) break;
+    View ahead = extrapolate(past.view, view, float(seconds / (show.time - past.time)));
+    if (ahead != view) return ahead;
   }
-  past.push_back({show.time, view});
-  return ahead;
+  return view;
 }
 
-// On another core: the tick goes on meanwhile, and waits before it touches the image again.
-void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool full_chroma) {
-  Encoder* encoder = visitor.encoder.get();
-  std::shared_ptr<Link> link = visitor.link;
-  encoder->task.run([encoder, link, header, full_chroma] {
-    double began = seconds_now();
-    encode_jpeg(encoder->image, header.quality, full_chroma, encoder->jpeg);
-    auto packet = std::make_shared<Packet>(packet_header_bytes + encoder->jpeg.size());
-    write_packet_header(header, *packet);
-    std::copy(encoder->jpeg.begin(), encoder->jpeg.end(), packet->begin() + packet_header_bytes);
-    encoder->bytes = packet->size();
-    encoder->milliseconds = milliseconds_since(began);
-    link->send_picture(std::move(packet));
-  });
+// What lies around is drawn along, for warps of the picture.
+View widened(View view) {
+  int height = view.height;
+  auto margin = [](int pixels, int share) { return (pixels / share + 7) / 8 * 8; };
+  view.width += 2 * margin(view.width, margin_across);
+  view.height += 2 * margin(view.height, margin_down);
+  view.tan_half_fov *= float(view.height) / float(height);
+  return view;
 }
 
 }  // namespace
 
-double picture_rate(const Show& show, const Visitor& visitor) {
-  double rate = visitor.fps > 0 ? double(visitor.fps) : double(show.settings.fps);
-  if (stands(show, visitor))
-    rate = std::min(rate, sees_figure(show, visitor.last_view) ? still_rate
-                          : rests(show, visitor)               ? resting_rate
-                                                               : settling_rate);
-  return std::clamp(rate, 1.0, 120.0);
-}
-
-bool wants_picture(const Show& show, const Visitor& visitor) {
-  if (show.time - visitor.pictured_at < 1 / picture_rate(show, visitor) - 0.0005) return false;
-  return !visitor.link->picture_pending() && may_send(visitor.flow, show.time);
-}
-
-// How much later than the tick's beginning its pictures are dated: the mouth is posed for that moment.
-static void note_lead(Show& show, uint64_t picture_us) {
-  if (picture_us >= show.time_us)
-    show.picture_lead += (std::min(1e-6f * float(picture_us - show.time_us), 0.25f) - show.picture_lead) * 0.1f;
-}
-
-void make_picture(Show& show, Visitor& visitor, int busy) {
-  RenderCache& cache = visitor.cache;
-  const Viewpoint& at = visitor.view;
-  View view = make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, visitor.width,
-                        visitor.height);
+void watch(const Show& show, Visitor& visitor) {
+  View view = view_of(show, visitor);
+  std::vector<Visitor::PastView>& past = visitor.past;
+  auto of_no_use = [&](const Visitor::PastView& one) {
+    return show.time - one.time > motion_seconds || one.view.width != view.width || one.view.height != view.height;
+  };
+  past.erase(past.begin(), std::find_if_not(past.begin(), past.end(), of_no_use));
   if (view != visitor.last_view) visitor.moved_at = show.time;
-  bool still = show.time - visitor.moved_at > still_after;
+  if (!past.empty()) {
+    float passed = float(show.time - past.back().time);
+    if (length(view.position - past.back().view.position) > fastest * passed + smallest_leap) {
+      visitor.leaps++;
+      past.clear();
+    }
+  }
   visitor.last_view = view;
-  uint32_t seq = visitor.seq;
-  double began = seconds_now();
+  if (past.size() >= most_past) past.erase(past.begin());
+  past.push_back({show.time, view});
+}
 
-  uint64_t seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
-  double seconds = seconds_to_trace(show, visitor, busy);
-  DisplayPlan display = plan_display(seconds, size_t(view.width) * size_t(view.height),
-                                     display_costs(show, visitor),
-                                     visitor.display, still, show.settings.draw);
-  visitor.budget = display.samples;
-  visitor.display = display;
+bool stands(const Show& show, const Visitor& visitor) {
+  return visitor.frame_number > 0 && show.time - visitor.moved_at > still_after &&
+         visitor.velocity == vec3(0) && visitor.move == vec3(0);
+}
+
+bool rests(const Show& show, const Visitor& visitor) {
+  return stands(show, visitor) && !sees_figure(show, visitor.last_view) && visitor.stats.converged >= nearly_all;
+}
+
+double drawing_rate(const Show& show, const Visitor& visitor) {
+  double rate = picture_rate(show, visitor);
+  return show.settings.background && !stands(show, visitor) ? std::min(rate, keyframe_rate) : rate;
+}
+
+bool wants_drawing(const Show& show, const Visitor& visitor) {
+  if (!visitor.welcomed || visitor.at_work || !may_take(show, visitor)) return false;
+  if (visitor.leaps != visitor.order.leaps) return true;
+  bool moves = show.settings.background && !stands(show, visitor);
+  if (visitor.unshown && !moves) return false;
+  double rate = moves ? picture_rate(show, visitor) : drawing_rate(show, visitor);
+  return show.time - visitor.drawn_at >= 1 / rate - 0.0005;
+}
+
+PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
+  PictureOrder order;
+  order.time = show.time;
+  order.time_us = show.time_us;
+  order.tick = show.ticks;
+  const View& now = visitor.last_view;
+  order.expected = order.view = order.ahead = now;
+  order.seq = visitor.seq;
+  order.leaps = visitor.leaps;
+  order.still = show.time - visitor.moved_at > still_after;
+  order.settled = show.time - visitor.moved_at > settled_after;
+  order.guessed = !order.still || sees_figure(show, now);
+  order.attention = visitor.attention;
+  order.keep = show.settings.background;
+  order.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
+  order.display = plan_display(seconds_to_trace(show, visitor, busy),
+                               size_t(visitor.width) * size_t(visitor.height), display_costs(show, visitor),
+                               visitor.order.display, order.still, show.settings.draw);
   // Who moves is shown shapes and reflectances as they are, in light of half their resolution.
-  bool coarse = display.drawn && !still && show.sight && show.sight->can_see(view);
-  View lit = coarse ? light_view(view) : view;
-  cache.resize(view.width, view.height);
+  order.coarse = order.display.drawn && !order.still && show.sight && show.sight->can_see(now);
+  double interval = 1 / drawing_rate(show, visitor);
+  if (order.keep && !order.still && visitor.frame_number > 0) {
+    // It is seen from when it is finished until the next one is.
+    interval = std::max(interval, 0.001 * double(visitor.times.interval));
+    double seen_in = 0.001 * double(visitor.times.whole) + 0.5 * interval;
+    order.expected = view_ahead(show, visitor, now, seen_in);
+    order.ahead = view_ahead(show, visitor, now, seen_in + interval);
+    order.view = order.coarse ? widened(order.expected) : order.expected;
+    if (order.coarse) order.ahead = widened(order.ahead);
+  } else {
+    order.ahead = view_ahead(show, visitor, now, predicted_pictures * interval);
+  }
+  return order;
+}
+
+void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
+  RenderCache& cache = visitor.cache;
+  const DisplayPlan& display = order.display;
+  const View& view = order.view;
+  PictureCosts& costs = visitor.costs = {};
+  double began = seconds_now();
+  View lit = order.coarse ? light_view(view) : view, ahead = order.coarse ? light_view(order.ahead) : order.ahead;
+  cache.set_attention(order.attention);
+  cache.resize(order.expected.width, order.expected.height);  // what is around has light of half its size
   cache.move_points(*show.world);
   land(visitor.broker.collect(), *show.world, show.pose_number, cache);
   cache.project(lit);
   cache.attend();
-  bool settled = show.time - visitor.moved_at > settled_after;
-  const Technique& technique = settled ? *show.still_technique : *show.technique;
+  const Technique& technique = order.settled ? *show.still_technique : *show.technique;
   int most_asked = int(more_asked * float(display.samples));
-  bool late = !still && may_be_late(show, visitor, technique, most_asked);
-  int asked = late ? most_asked : display.samples;
-  View ahead = view_ahead(show, visitor, lit);
+  costs.late = !order.still && may_be_late(show, visitor, technique, most_asked);
+  int asked = costs.late ? most_asked : display.samples;
   visitor.ahead.clear();
   if (ahead != lit && !technique.begin_pass)
-    cache.predict(ahead, int(predicted_share * float(asked)), seed, visitor.ahead);
-  cache.plan(lit, asked - int(visitor.ahead.size()), seed, visitor.requests);
+    cache.predict(ahead, int(predicted_share * float(asked)), order.seed, visitor.ahead);
+  cache.plan(lit, asked - int(visitor.ahead.size()), order.seed, visitor.requests);
   visitor.requests.insert(visitor.requests.end(), visitor.ahead.begin(), visitor.ahead.end());
   double planned = seconds_now();
   TransportSettings transport = show.settings.transport;
-  if (!settled) transport.clamp = show.settings.moving_clamp;
-  if (late) {
+  if (!order.settled) transport.clamp = show.settings.moving_clamp;
+  if (costs.late) {
     visitor.broker.ask(lit, {&technique, transport}, visitor.requests);
-    visitor.broker_seconds = double(display.samples) / std::max(double(show.samples_per_second), 1.0);
     visitor.samples.clear();
   } else {
     visitor.samples.resize(visitor.requests.size());
     if (technique.begin_pass)
-      technique.begin_pass(*show.world, transport, lit, visitor.link->id, uint32_t(show.ticks),
-                           show.lights);
+      technique.begin_pass(*show.world, transport, lit, visitor.link->id, uint32_t(order.tick), show.lights);
     trace(technique, *show.world, show.lights, transport, visitor.requests, visitor.samples);
   }
   double traced = seconds_now();
-  if (!late) cache.remember(lit, visitor.requests, visitor.samples);
-  bool guessed = cache.stats().filled > few_guessed || !still || sees_figure(show, view);
-  bool drawn = coarse || (display.drawn && guessed);
+  if (!costs.late) cache.remember(lit, visitor.requests, visitor.samples);
+  bool drawn = order.coarse || (display.drawn && (order.guessed || cache.stats().filled > few_guessed));
   visitor.looks.clear();
-  if (coarse)
-    cache.draw(view, *show.sight, Tonemap{show.exhibit.exposure}, visitor.shown);
+  const Tonemap curve{show.exhibit.exposure};
+  if (order.coarse)
+    cache.draw(view, *show.sight, curve, visitor.drawn_picture, order.keep ? &visitor.drawn_depth : nullptr);
   else
     cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, visitor.frame, visitor.looks);
   visitor.seen.resize(visitor.looks.size());
   double surveyed = seconds_now();
   see(*show.world, show.lights, visitor.looks, visitor.seen);
   double looked = seconds_now();
-  if (!coarse) cache.reconstruct(view, visitor.seen, visitor.frame);
+  if (!order.coarse) cache.reconstruct(view, visitor.seen, visitor.frame);
   double reconstructed = seconds_now();
+  if (!order.coarse) tonemap(visitor.frame, curve, visitor.drawn_picture);
+  if (order.keep)
+    make_keyframe(view, visitor.drawn_picture, order.coarse ? visitor.drawn_depth : visitor.frame.depth, visitor.drawn);
+  double finished = seconds_now();
 
-  Encoder& encoder = *visitor.encoder;
-  encoder.task.wait();
-  if (visitor.frame_number > 0) {
-    show.totals.picture_bytes += encoder.bytes;
-    smooth(visitor.times.encode, encoder.milliseconds);
-  }
-  if (coarse) {
-    std::swap(visitor.shown, encoder.image);
-  } else {
-    double waited = seconds_now();
-    tonemap(visitor.frame, Tonemap{show.exhibit.exposure}, encoder.image);
-    smooth(visitor.times.tonemap, milliseconds_since(waited));
-  }
-
-  PacketHeader header;
-  header.frame = ++visitor.frame_number;
-  header.seq = seq;
-  header.time_us = microseconds_now();
-  note_lead(show, header.time_us);
-  header.width = uint16_t(view.width);
-  header.height = uint16_t(view.height);
-  int quality = suggest_quality(visitor.flow, visitor.best_quality);
-  bool fine = still && !sees_figure(show, view);  // pictures that are looked at for long, few a second
-  if (still) quality = fine ? visitor.still_quality : std::min(visitor.still_quality, quality + animated_gain);
-  header.quality = uint8_t(quality);
-  header.flags = uint8_t(packet_complete | (still ? packet_still : 0));
-  note_sent(visitor.flow, header.frame, show.time);
-  encode_and_publish(visitor, header, fine);
-
-  if (!visitor.samples.empty() && traced > planned) {
-    float rate = float(double(visitor.samples.size()) / (traced - planned));
-    show.samples_per_second += (rate - show.samples_per_second) * 0.1f;
-  }
-  if (visitor.looks.size() >= least_measured && looked > surveyed) {
-    float rate = float(double(visitor.looks.size()) / (looked - surveyed));
-    show.looks_per_second += (rate - show.looks_per_second) * 0.1f;
-  }
-  smooth(coarse ? visitor.times.light : visitor.times.display,
-         float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))) -
-             (drawn ? cache.stats().drawing_ms : 0.0f));
-  if (drawn) smooth(visitor.times.drawing, cache.stats().drawing_ms);
-  else visitor.times.drawing *= forgotten;  // a moment's load is no verdict
-  smooth(visitor.times.look, float(1000 * (looked - surveyed)));
-  if (!late) smooth(visitor.times.trace, float(1000 * (traced - planned)));
-  if (visitor.pictured_at > 0 && show.time > visitor.pictured_at)
-    smooth(visitor.measured_fps, float(1 / (show.time - visitor.pictured_at)));
-  visitor.pictured_at = show.time;
-  show.totals.pictures++;
-  show.totals.samples += visitor.samples.size();
+  costs.samples = visitor.samples.size();
+  costs.looks = visitor.looks.size();
+  costs.trace = float(1000 * (traced - planned));
+  costs.look = float(1000 * (looked - surveyed));
+  costs.drawing = drawn ? cache.stats().drawing_ms : 0.0f;
+  (order.coarse ? costs.light : costs.display) =
+      float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))) - costs.drawing;
+  costs.tonemap = float(1000 * (finished - reconstructed));
+  costs.seconds = finished - began;
 }
 
-void trace_for_next(Show& show) {
-  std::vector<Broker*> brokers;
-  double seconds = 0;
+void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
+  const PictureCosts& costs = visitor.costs;
+  StageTimes& times = visitor.times;
+  if (costs.samples > 0 && costs.trace > 0) {
+    float rate = float(costs.samples) / (0.001f * costs.trace);
+    show.samples_per_second += (rate - show.samples_per_second) * 0.1f;
+  }
+  if (costs.looks >= least_measured && costs.look > 0) {
+    float rate = float(costs.looks) / (0.001f * costs.look);
+    show.looks_per_second += (rate - show.looks_per_second) * 0.1f;
+  }
+  if (order.coarse) smooth(times.light, costs.light);
+  else smooth(times.display, costs.display);
+  if (costs.drawing > 0) smooth(times.drawing, costs.drawing);
+  else times.drawing *= forgotten;  // a moment's load is no verdict
+  smooth(times.look, costs.look);
+  smooth(times.tonemap, costs.tonemap);
+  if (!costs.late) smooth(times.trace, costs.trace);
+  if (!order.still) smooth(times.whole, float(1000 * costs.seconds));
+  double interval = order.time - visitor.drawn_at;
+  if (interval > 0 && interval < 1) {
+    smooth(visitor.drawn_fps, float(1 / interval));
+    if (!order.still) smooth(times.interval, float(1000 * interval));
+  }
+  visitor.drawn_at = order.time;
+  visitor.broker_seconds =
+      costs.late ? double(order.display.samples) / std::max(double(show.samples_per_second), 1.0) : 0;
+  visitor.stats = visitor.cache.stats();
+  visitor.cache_bytes = visitor.cache.memory_bytes();
+  std::swap(visitor.drawn_picture, visitor.picture);
+  std::swap(visitor.drawn, visitor.keyframe);
+  visitor.order = order;
+  visitor.unshown = true;
+  show.totals.drawn++;
+  show.totals.samples += costs.samples;
+}
+
+bool order_samples(Show& show) {
+  Easel& easel = show.easel;
+  easel.brokers.clear();
+  easel.seconds = 0;
   for (Visitor& visitor : show.visitors) {
     if (visitor.broker_seconds <= 0) continue;
-    brokers.push_back(&visitor.broker);
-    seconds += std::exchange(visitor.broker_seconds, 0.0);
+    easel.brokers.push_back(&visitor.broker);
+    easel.seconds += std::exchange(visitor.broker_seconds, 0.0);
+    visitor.at_work = true;
   }
-  if (brokers.empty()) return;
+  return !easel.brokers.empty();
+}
+
+void trace_samples(const Show& show, Easel& easel) {
   std::mutex guard;
   double began = seconds_now();
-  size_t traced = trace_waiting(brokers, *show.world, show.lights, show.pose_number, began + seconds, guard);
-  double took = seconds_now() - began;
-  show.totals.samples += traced;
-  if (traced == 0) return;
-  show.samples_per_second += (float(double(traced) / took) - show.samples_per_second) * 0.1f;
-  for (Visitor& visitor : show.visitors)
-    if (std::find(brokers.begin(), brokers.end(), &visitor.broker) != brokers.end())
-      smooth(visitor.times.trace, float(1000 * took / double(brokers.size())));
+  easel.traced = trace_waiting(easel.brokers, *show.world, show.lights, show.pose_number, began + easel.seconds, guard);
+  easel.traced_seconds = seconds_now() - began;
+}
+
+void finish_samples(Show& show) {
+  Easel& easel = show.easel;
+  show.totals.samples += easel.traced;
+  if (easel.traced > 0 && easel.traced_seconds > 0)
+    smooth(show.samples_per_second, float(double(easel.traced) / easel.traced_seconds));
+  for (Visitor& visitor : show.visitors) {
+    if (std::find(easel.brokers.begin(), easel.brokers.end(), &visitor.broker) == easel.brokers.end()) continue;
+    smooth(visitor.times.trace, float(1000 * easel.traced_seconds / double(easel.brokers.size())));
+    visitor.at_work = false;
+  }
+  easel.brokers.clear();
 }
 
 }  // namespace wellspring

@@ -1,20 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture for one visitor: view -> project -> attend -> plan -> trace -> remember -> reconstruct ->
-// tonemap -> encode -> publish. The time left of the visitor's share of the tick is spent on samples; those
-// of a walking visitor are traced when its picture is on its way, and land in the next.
+// Drawing one picture for one visitor, in three steps: order_picture() decides what and how, draw_picture()
+// does it without looking at anything that the tick may change (view -> project -> attend -> plan -> trace
+// -> remember -> reconstruct -> tonemap), finish_picture() takes it over. In the background the middle one
+// runs on the easel (show/easel.h), for a view predicted for when it will be seen; show/present.h shows it.
+// The time that is left of the visitor's share goes to samples; those of a walking visitor are traced when
+// its picture is done, and land in the next.
 #pragma once
 #include "show/show.h"
 
 namespace wellspring {
 
-// Pictures a second this visitor should get.
-double picture_rate(const Show& show, const Visitor& visitor);
-// It is due, and the visitor's browser and socket can take it.
-bool wants_picture(const Show& show, const Visitor& visitor);
-// `busy` visitors share this tick's time.
-void make_picture(Show& show, Visitor& visitor, int busy);
-// What pictures of walking visitors have asked for, in turn, in the time that was left for it: their
-// pictures are on their way already, and the answers are in the next ones.
-void trace_for_next(Show& show);
+// Once a tick for every visitor, after it was moved: notices motion and leaps.
+void watch(const Show& show, Visitor& visitor);
+// Nothing moves for a moment, so that pictures become better instead of following.
+bool stands(const Show& show, const Visitor& visitor);
+// Nothing in the picture changes any more.
+bool rests(const Show& show, const Visitor& visitor);
+
+// Pictures a second that should be drawn for this visitor.
+double drawing_rate(const Show& show, const Visitor& visitor);
+// One is due, and the visitor's browser and socket could take it.
+bool wants_drawing(const Show& show, const Visitor& visitor);
+
+// `busy` visitors share the time.
+PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy);
+// Changes nothing but what of the visitor is the easel's, and what techniques keep in show.lights.
+void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor);
+void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor);
+
+// What pictures of walking visitors have asked for, in turn, in the time that was left for it: the answers
+// are in the next ones. Likewise in three steps; the first says whether there is anything.
+bool order_samples(Show& show);
+void trace_samples(const Show& show, Easel& easel);
+void finish_samples(Show& show);
 
 }  // namespace wellspring

@@ -26,15 +26,15 @@ ShowReport make_report(const Show& show) {
     report.voice_failed = counts.failed;
   }
   for (const Visitor& visitor : show.visitors) {
-    const CacheStats& stats = visitor.cache.stats();
+    const CacheStats& stats = visitor.stats;
     VisitorReport one;
     one.id = visitor.link->id;
     one.width = visitor.width;
     one.height = visitor.height;
-    one.budget = visitor.budget;
-    one.looks = int(visitor.looks.size());
-    one.primary = visitor.display.primary;
-    one.drawn = visitor.display.drawn;
+    one.budget = visitor.order.display.samples;
+    one.looks = visitor.order.display.looks;
+    one.primary = visitor.order.display.primary;
+    one.drawn = visitor.order.display.drawn;
     one.drawing_ms = visitor.times.drawing;
     one.look_ms = visitor.times.look;
     one.quality = suggest_quality(visitor.flow, visitor.best_quality);
@@ -44,11 +44,14 @@ ShowReport make_report(const Show& show) {
     one.trace_ms = visitor.times.trace;
     one.tonemap_ms = visitor.times.tonemap;
     one.encode_ms = visitor.times.encode;
+    one.drawn_fps = visitor.drawn_fps;
+    one.warp_ms = visitor.times.warp;
+    one.whole_ms = visitor.times.whole;
     one.fresh = stats.fresh;
     one.empty = stats.empty;
     one.converged = stats.converged;
     one.mean_age = stats.mean_age;
-    one.cache_bytes = visitor.cache.memory_bytes();
+    one.cache_bytes = visitor.cache_bytes;
     one.dropped = visitor.link->pictures_dropped();
     one.kiosk = visitor.kiosk;
     report.visitors.push_back(one);

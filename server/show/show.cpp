@@ -57,6 +57,7 @@ const StorytellerPlace* teller_of(const Show& show) {
 
 void change_teller(Show& show, size_t teller) {
   if (teller == show.teller || teller >= show.figures.size()) return;
+  show.easel.worker.wait();  // the world changes
   hush(show.voice);
   show.teller = teller;
   enter(show);

@@ -23,12 +23,13 @@
 namespace wellspring {
 
 struct ShowSettings {
-  float fps = 36;             // pictures a second a walking visitor gets, machine permitting
+  float fps = 60;             // pictures a second a walking visitor gets, machine permitting
   int max_visitors = 16;      // more are told to come back
   std::string technique = "gather";      // while anything moves
   std::string still_technique = "path";  // while the visitor stands still: the picture becomes the reference
   TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}};
   DrawShapes draw = DrawShapes::automatic;
+  bool background = true;     // pictures are drawn while the show goes on, and warped meanwhile
   bool late_samples = true;   // of who walks are traced behind the picture, for the next
   float moving_clamp = 4;     // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
@@ -85,6 +86,7 @@ struct Show {
   float samples_per_second = 200000;  // measured, all cores
   float looks_per_second = 4e6f;      // likewise
   ShowTotals totals;
+  Easel easel;  // reads much of the above: ends before it
 };
 
 // Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a tour
@@ -103,5 +105,7 @@ void tick(Show& show, Arrivals& arrivals, double now);
 
 // How long the caller may sleep after a tick, at time `now` on the same clock.
 double seconds_to_next_tick(const Show& show, double now);
+// Sleeps until the next tick is due, or what is drawn meanwhile is finished.
+void wait_for_tick(const Show& show, double now);
 
 }  // namespace wellspring

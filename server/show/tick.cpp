@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tick: one straight function. See show.h.
 #include <algorithm>
+#include <thread>
 
 #include "base/clock.h"
 #include "base/log.h"
@@ -8,6 +9,7 @@
 #include "show/news.h"
 #include "show/orders.h"
 #include "show/picture.h"
+#include "show/present.h"
 #include "show/show.h"
 #include "show/story_stage.h"
 #include "wire/json.h"
@@ -20,6 +22,7 @@ constexpr double agent_interval = 0.1;  // seconds between agent messages while 
 constexpr double state_interval = 0.5;
 constexpr double heard_state_interval = 0.1;  // while there is sound to be heard from somewhere
 constexpr double behave_interval = 0.04;
+constexpr double least_wait = 0.001;  // between ticks, whatever is due
 constexpr double listening_interval = 0.01;  // between looks at what visitors want, pictures or not
 
 void welcome_links(Show& show, Arrivals& arrivals) {
@@ -55,8 +58,10 @@ void hear_visitors(Show& show) {
   std::erase_if(show.visitors, [](Visitor& visitor) {
     bool gone = visitor.left || visitor.link->closed();
     if (gone) {
-      visitor.encoder->task.wait();
+      visitor.left = true;
+      visitor.welcomed = false;
       visitor.link->close("bye");
+      if (visitor.at_work) return false;  // soon
       log::info("visitor {} left", visitor.link->id);
     }
     return gone;
@@ -141,8 +146,8 @@ View kiosk_view(const Show& show) {
   return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, 16, 9);
 }
 
-// Storyteller: notices, decides, speaks, moves its skin. Left out while nobody could see or hear it.
-void behave_and_animate(Show& show, float dt) {
+// Storyteller: notices, decides, speaks, poses. Left out while nobody could see or hear it.
+void behave(Show& show, float dt) {
   if (show.figures.empty()) return;
   show.audience = gather_audience(show.eyes, kiosk_view(show), show.time);
   std::string news = kiosk_news(show.audience, show.eyes.size());
@@ -196,10 +201,15 @@ void behave_and_animate(Show& show, float dt) {
     show.agent_mood = show.mind.mood;
     broadcast(show, agent_news(show));
   }
+}
+
+// The world as it is now. Nothing may be drawn meanwhile.
+void pose_world(Show& show) {
+  if (show.figures.empty()) return;
   Figure& figure = show.figures[show.teller];
   show_figure(*show.world, figure, show.storyteller_visible);
   if (show.storyteller_visible && !show.visitors.empty())
-    pose_figure(*show.world, figure, place.character, show.pose, show.storyteller.placement,
+    pose_figure(*show.world, figure, teller_of(show)->character, show.pose, show.storyteller.placement,
                 show.scratch);
   show.world->commit();
   show.pose_number++;
@@ -212,6 +222,58 @@ void send_state(Show& show, Visitor& visitor) {
   visitor.link->send_text(state_news(visitor, show.exhibit));
 }
 
+// What the easel has finished.
+void take_finished(Show& show) {
+  Easel& easel = show.easel;
+  if (!easel.idle()) return;
+  if (!easel.brokers.empty()) finish_samples(show);
+  if (!easel.drawn) return;
+  finish_picture(show, easel.order, *easel.drawn);
+  easel.drawn->at_work = false;
+  easel.drawn = nullptr;
+}
+
+int waiting_for_drawings(const Show& show) {
+  return int(std::count_if(show.visitors.begin(), show.visitors.end(),
+                           [&](const Visitor& visitor) { return wants_drawing(show, visitor); }));
+}
+
+// Samples that were asked for, else the picture that has been waited for longest.
+void use_easel(Show& show, int waiting) {
+  Easel& easel = show.easel;
+  if (order_samples(show)) {
+    easel.worker.run([&show] { show.easel.cores.execute([&] { trace_samples(show, show.easel); }); });
+    return;
+  }
+  Visitor* next = nullptr;
+  for (Visitor& visitor : show.visitors)
+    if (wants_drawing(show, visitor) && (!next || visitor.drawn_at < next->drawn_at)) next = &visitor;
+  if (!next) return;
+  pose_world(show);
+  easel.drawn = next;
+  easel.order = order_picture(show, *next, waiting);
+  next->at_work = true;
+  easel.worker.run([&show] {
+    Easel& easel = show.easel;
+    easel.cores.execute([&] { draw_picture(show, easel.order, *easel.drawn); });
+  });
+}
+
+// All that are due, one after the other, while the tick waits.
+void draw_now(Show& show, int waiting) {
+  if (waiting > 0) pose_world(show);
+  for (Visitor& visitor : show.visitors) {
+    if (!wants_drawing(show, visitor)) continue;
+    PictureOrder order = order_picture(show, visitor, waiting);
+    draw_picture(show, order, visitor);
+    finish_picture(show, order, visitor);
+    present(show, visitor);
+  }
+  if (!order_samples(show)) return;
+  trace_samples(show, show.easel);
+  finish_samples(show);
+}
+
 }  // namespace
 
 void tick(Show& show, Arrivals& arrivals, double now) {
@@ -221,15 +283,16 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   show.ticks++;
   double began = seconds_now();
 
+  take_finished(show);
   welcome_links(show, arrivals);
   hear_visitors(show);
   hear_eyes(show);
-  int busy = 0;
-  for (const Visitor& visitor : show.visitors) busy += visitor.welcomed && wants_picture(show, visitor);
   narrate(show, dt);
+  bool free = show.easel.idle();
+  int waiting = free ? waiting_for_drawings(show) : 0;
   // The storyteller moves for a picture; otherwise often enough to notice people.
-  if (busy > 0 || show.time - show.behaved_at >= behave_interval) {
-    behave_and_animate(show, show.behaved_at < 0 ? 0 : float(std::clamp(show.time - show.behaved_at, 0.0, 1.0)));
+  if (waiting > 0 || show.time - show.behaved_at >= behave_interval) {
+    behave(show, show.behaved_at < 0 ? 0 : float(std::clamp(show.time - show.behaved_at, 0.0, 1.0)));
     show.behaved_at = show.time;
     show.totals.animate_ms = float(1000 * (seconds_now() - began));
   }
@@ -242,10 +305,15 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     TourStep step;
     move_visitor(visitor, *show.world, show.exhibit, show.roads, person, dt, step);
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
-    if (wants_picture(show, visitor)) make_picture(show, visitor, busy);
+    watch(show, visitor);
+  }
+  if (show.settings.background && free) use_easel(show, waiting);
+  if (!show.settings.background) draw_now(show, waiting);
+  for (Visitor& visitor : show.visitors) {
+    if (!visitor.welcomed) continue;
+    if (show.settings.background) present(show, visitor);
     send_state(show, visitor);
   }
-  trace_for_next(show);
   show.totals.tick_ms = float(1000 * (seconds_now() - began));
 }
 
@@ -254,7 +322,13 @@ double seconds_to_next_tick(const Show& show, double now) {
   for (const Visitor& visitor : show.visitors)
     if (visitor.welcomed)
       wait = std::min({wait, listening_interval, visitor.pictured_at + 1 / picture_rate(show, visitor) - now});
-  return std::max(wait, 0.0);
+  return std::max(wait, least_wait);
+}
+
+void wait_for_tick(const Show& show, double now) {
+  double seconds = seconds_to_next_tick(show, now);
+  if (show.easel.idle()) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  else show.easel.worker.wait_for(seconds);
 }
 
 }  // namespace wellspring

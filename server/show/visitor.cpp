@@ -14,6 +14,7 @@ constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
 void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint) {
   visitor.view = exhibit.viewpoints[size_t(viewpoint)].view;
   visitor.viewpoint = viewpoint;
+  visitor.leaps++;
   visitor.move = visitor.velocity = vec3(0);
   stop_tour(visitor.tour, visitor.narration.voice);
 }

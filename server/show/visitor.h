@@ -2,14 +2,15 @@
 // One browser's visit: where it stands, what it has asked for, and the picture being made for it.
 #pragma once
 #include <memory>
-#include <oneapi/tbb/task_group.h>
 #include <string>
 #include <vector>
 
+#include "base/worker.h"
 #include "cache/broker.h"
 #include "cache/cache.h"
+#include "cache/warp_picture.h"
 #include "frame/tonemap.h"
-#include "show/display_path.h"
+#include "show/easel.h"
 #include "show/flow.h"
 #include "show/sound.h"
 #include "show/tour.h"
@@ -21,17 +22,18 @@ namespace wellspring {
 
 // Milliseconds of the last picture's stages, smoothed: for the status page and the budget.
 struct StageTimes {
-  float display = 0, light = 0, trace = 0, look = 0, drawing = 0, tonemap = 0, encode = 0;
+  float display = 0, light = 0, trace = 0, look = 0, drawing = 0, tonemap = 0, warp = 0, encode = 0;
+  float whole = 0;     // from a picture's order until it can be shown
+  float interval = 0;  // from one picture drawn to the next, while the visitor moves
 };
 
-// The JPEG made on another core while the next tick begins.
+// The JPEG made while the next tick begins.
 struct Encoder {
-  ~Encoder() { task.wait(); }  // a picture may be half made
-  oneapi::tbb::task_group task;
   Image8 image;
   std::vector<uint8_t> jpeg;
   float milliseconds = 0;
   size_t bytes = 0;
+  Worker task;  // the last member: a picture may be half made
 };
 
 struct Visitor {
@@ -56,37 +58,54 @@ struct Visitor {
   int width = 1280, height = 720;
   float fps = 0;  // wanted; 0: the show's
   int best_quality = 82, still_quality = 92;
+  bool attention = true;  // CacheSettings::attention
+  // The easel's (show/easel.h) while a picture of this visitor is drawn or its samples are traced.
+  bool at_work = false;
   RenderCache cache;
-  std::unique_ptr<Encoder> encoder = std::make_unique<Encoder>();
   Frame frame;
-  Image8 shown;  // drawn for the eye at once, while the picture before is encoded
-  Broker broker;             // what is traced after its picture, for the next
-  double broker_seconds = 0;  // of all cores, for what it was last asked
+  Broker broker;              // what is traced after its picture, for the next
   std::vector<Request> requests, ahead;
   std::vector<Sample> samples;
   std::vector<Ray> looks;
   std::vector<Seen> seen;
-  uint32_t frame_number = 0;
-  View last_view;
+  Image8 drawn_picture;
+  std::vector<float> drawn_depth;  // of what is drawn in coarser light
+  Keyframe drawn;
+  PictureCosts costs;
+  // What was drawn last, and for what.
+  CacheStats stats;
+  size_t cache_bytes = 0;
+  double broker_seconds = 0;  // of all cores, for what was last asked
+  Image8 picture;             // until it is shown
+  Keyframe keyframe;          // what pictures are warped from until the next
+  PictureOrder order;
+  bool unshown = false;       // nothing of it has been sent yet
+  double drawn_at = -1e9;     // show time of the order of the last
+  WarpScratch warp;
+  // What is shown.
+  std::unique_ptr<Encoder> encoder = std::make_unique<Encoder>();
+  uint32_t frame_number = 0, shown_seq = 0;
+  View last_view;   // of the last tick
+  View shown_view;  // of the last picture
+  uint32_t leaps = 0;  // to other places, so that nothing seen before helps
   struct PastView {
     double time = 0;
     View view;
   };
-  std::vector<PastView> past;  // of the last pictures: where the visitor is heading
+  std::vector<PastView> past;  // of the last ticks: where the visitor is heading
   double moved_at = 0;       // show time of the last change of view
-  double pictured_at = -1e9;  // show time of the last picture
+  double sent_at = -1e9;      // show time of the last picture
+  double pictured_at = -1e9;  // when it was due
   Flow flow;
   StageTimes times;
-  int budget = 0;        // samples of the last tick
-  DisplayPlan display;   // of the last picture
   double state_sent_at = -1e9;
-  float measured_fps = 0;
+  float measured_fps = 0, drawn_fps = 0;
 };
-
 
 // Moves a visitor by `dt`: tour, or walking by its own input, not too near to the `person` who stands there.
 void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, const TourRoads& roads,
                   const std::optional<dvec3>& person, float dt, TourStep& tour_step);
+// There is then nothing left to be seen of where the visitor was.
 void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint);
 
 }  // namespace wellspring

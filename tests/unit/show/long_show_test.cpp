@@ -22,6 +22,7 @@ struct House {
   explicit House(int visitors) : pictures(size_t(visitors), 0) {
     ShowSettings settings;
     settings.fps = 50;
+    settings.background = false;
     settings.technique = settings.still_technique = "direct";
     show = make_show(make_tiny_exhibit(), settings);
     for (int i = 0; i < visitors; i++) {

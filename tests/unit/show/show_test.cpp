@@ -23,6 +23,7 @@ struct ShowTest : testing::Test {
 
   void begin(dvec3 origin = dvec3(0), ShowSettings settings = {}) {
     settings.fps = 50;
+    settings.background = false;
     show = make_show(make_tiny_exhibit(origin), settings);
     arrivals.put(link);
     say(R"({"type":"hello","exhibit":"","width":96,"height":64,"lang":"en","role":"visitor"})");

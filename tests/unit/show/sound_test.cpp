@@ -110,7 +110,7 @@ struct SoundTest : testing::Test {
       teller.position = {1, 0, 2 - 0.5 * double(i)};
     }
     exhibit.storytellers[1].voice.variant = "m2";
-    show = make_show(std::move(exhibit), {.technique = "direct", .still_technique = "direct"});
+    show = make_show(std::move(exhibit), {.technique = "direct", .still_technique = "direct", .background = false});
     show->speech.find = [this](const SpeechRequest& r) { return kept.contains(r.text) ? kept[r.text] : nullptr; };
     show->speech.speak = [this](const SpeechRequest& r) {
       spoken++;

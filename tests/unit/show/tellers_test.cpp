@@ -35,7 +35,7 @@ struct TellersTest : testing::Test {
     exhibit.stories.push_back(exhibit.stories[0]);
     exhibit.stories[1].id = "bell";
     exhibit.stories[1].teller = 1;
-    show = make_show(std::move(exhibit), {.technique = "direct", .still_technique = "direct"});
+    show = make_show(std::move(exhibit), {.technique = "direct", .still_technique = "direct", .background = false});
     show->speech.find = [](const SpeechRequest&) { return nullptr; };
     show->speech.speak = [this](const SpeechRequest& request) {
       asked.push_back(request);

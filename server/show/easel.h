@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where pictures are drawn while the show goes on: one thing at a time, as all of them read the world and
+// use all cores. Whatever it is at work on belongs to it; the tick looks in (show/picture.h), takes what is
+// finished, moves the world, which nobody reads then, and gives it the next:
+//
+//   idle --draw_next--> drawing --finish_drawing--> idle, or, if samples are asked for, --> tracing --> idle
+#pragma once
+#include <cstdint>
+#include <oneapi/tbb/task_arena.h>
+#include <vector>
+
+#include "base/worker.h"
+#include "cache/broker.h"
+#include "show/display_path.h"
+#include "world/view.h"
+
+namespace wellspring {
+
+// All that a picture's drawing depends on besides the world and what the visitor's cache remembers.
+struct PictureOrder {
+  double time = 0;       // of the tick that ordered it
+  uint64_t time_us = 0, tick = 0;
+  View expected;         // what the visitor will see when it is shown
+  View view;             // drawn: that, and some around
+  View ahead;            // in the picture after that, when answers to its requests are shown
+  uint32_t seq = 0;      // of the visitor's last input
+  uint32_t leaps = 0;    // of the visitor, by then
+  bool still = false;    // without motion for a moment
+  bool settled = false;  // for long: the reference takes over
+  bool coarse = false;   // drawn in coarser light (cache/compose_drawn.h)
+  bool guessed = false;  // shows much that no point tells, whatever the cache says
+  bool attention = true;
+  bool keep = false;     // as a keyframe, for others to be made of
+  uint64_t seed = 0;
+  DisplayPlan display;
+};
+
+// What it took: milliseconds, and counts.
+struct PictureCosts {
+  float display = 0, light = 0, trace = 0, look = 0, drawing = 0, tonemap = 0;
+  size_t samples = 0, looks = 0;
+  bool late = false;     // its samples are still to be traced
+  double seconds = 0;    // from its order on
+};
+
+struct Visitor;
+
+struct Easel {
+  Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
+  PictureOrder order;        // for it
+  std::vector<Broker*> brokers;  // that what is being traced was asked by; empty: it is not tracing
+  double seconds = 0;            // for that
+  size_t traced = 0;             // samples
+  double traced_seconds = 0;     // that it took
+  // Cores leave this work for the tick's as soon as they have finished a piece.
+  oneapi::tbb::task_arena cores{oneapi::tbb::task_arena::automatic, 1, oneapi::tbb::task_arena::priority::low};
+  Worker worker;  // the last member: it is waited for before the others end
+
+  bool idle() const { return !worker.busy(); }
+};
+
+}  // namespace wellspring
