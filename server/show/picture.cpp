@@ -221,7 +221,7 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   costs.drawing = drawn ? cache.stats().drawing_ms : 0.0f;
   (order.coarse ? costs.light : costs.display) =
       float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))) - costs.drawing;
-  costs.tonemap = float(1000 * (finished - reconstructed));
+  (order.coarse ? costs.light : costs.tonemap) += float(1000 * (finished - reconstructed));
   costs.seconds = finished - began;
 }
 
@@ -236,12 +236,15 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
     float rate = float(costs.looks) / (0.001f * costs.look);
     show.looks_per_second += (rate - show.looks_per_second) * 0.1f;
   }
-  if (order.coarse) smooth(times.light, costs.light);
-  else smooth(times.display, costs.display);
+  if (order.coarse) {
+    smooth(times.light, costs.light);
+  } else {
+    smooth(times.display, costs.display);
+    smooth(times.tonemap, costs.tonemap);
+  }
   if (costs.drawing > 0) smooth(times.drawing, costs.drawing);
   else times.drawing *= forgotten;  // a moment's load is no verdict
   smooth(times.look, costs.look);
-  smooth(times.tonemap, costs.tonemap);
   if (!costs.late) smooth(times.trace, costs.trace);
   if (!order.still) smooth(times.whole, float(1000 * costs.seconds));
   double interval = order.time - visitor.drawn_at;
