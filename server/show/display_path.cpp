@@ -11,22 +11,25 @@ namespace {
 constexpr double edge_share = 0.12;                   // of the time, on path `cache`
 constexpr double enter_primary = 0.4, leave_primary = 0.55;  // of the time, for all pixels' looks
 constexpr double enter_drawn = 0.6, leave_drawn = 0.8;  // of the time, for drawing
-// Seconds a picture may take with it: while the visitor walks, and while at most the storyteller moves.
-// On a busy machine points are few, and what they show is worse than fewer pictures.
-constexpr double enter_period[] = {0.12, 0.25}, leave_period[] = {0.15, 0.3};
+// Seconds a picture may take with it. On a busy machine points are few, and what they show is worse than
+// fewer pictures.
+constexpr double enter_period = 0.5, leave_period = 0.6;
 // Pixels a sample from which on drawing in coarser light shows who moves less error than points do.
 constexpr double enter_coarse = 70, leave_coarse = 55;
 constexpr double unmeasured_light = 0.4;  // of the display's time, where light is coarser
 constexpr double least_light = 0.25;  // of the time goes to light, whatever is drawn
 constexpr int drawn_samples = 1000;  // the same where shapes are drawn: only light has to be guessed
 constexpr int least_samples = 2000;                   // a picture, however slow the machine
+constexpr float few_guessed = 0.25f;   // of the pixels of coarser light: some 1.4 samples each
+constexpr float nearly_none = 0.1f;    // of the picture's pixels
+constexpr double settled_after = 2;    // seconds
 
 int whole(double count, double most) { return int(std::clamp(count, 0.0, most)); }
 
 }  // namespace
 
 DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& costs,
-                         const DisplayPlan& before, bool stands, DrawShapes wish) {
+                         const DisplayPlan& before, bool fine, DrawShapes wish) {
   DisplayPlan plan;
   double all_looks = double(pixels) * looks_a_pixel;
   double all_seconds = all_looks / std::max(costs.looks_per_second, 1.0);
@@ -34,15 +37,15 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
   double drawing = costs.drawing_seconds;
   double light = std::max(least_light * seconds, drawn_samples / std::max(costs.samples_per_second, 1.0));
   double display = costs.display_seconds;
-  if (!stands) display = costs.light_seconds > 0 ? costs.light_seconds : unmeasured_light * display;
+  if (!fine) display = costs.light_seconds > 0 ? costs.light_seconds : unmeasured_light * display;
   double period = display + drawing + light;
   plan.drawn = drawing <= (before.drawn ? leave_drawn : enter_drawn) * seconds ||
-               period <= (before.drawn ? leave_period : enter_period)[stands];
+               period <= (before.drawn ? leave_period : enter_period);
   double plenty = double(pixels) / (before.drawn ? leave_coarse : enter_coarse);
-  if (!stands && (1 - edge_share) * seconds * costs.samples_per_second > plenty) plan.drawn = false;
+  if (!fine && (1 - edge_share) * seconds * costs.samples_per_second > plenty) plan.drawn = false;
   if (wish != DrawShapes::automatic) plan.drawn = wish == DrawShapes::always;
   plan.drawn &= !plan.primary;
-  bool coarse = plan.drawn && !stands;  // edges are drawn, light has a quarter of the pixels
+  bool coarse = plan.drawn && !fine;  // edges are drawn, light has a quarter of the pixels
   if (plan.drawn) seconds = std::max(seconds + costs.display_seconds - display - drawing, least_light * seconds);
   double look_seconds = plan.primary ? all_seconds : coarse ? 0 : edge_share * seconds;
   plan.looks = plan.primary ? int(all_looks) : whole(look_seconds * costs.looks_per_second, all_looks);
@@ -51,6 +54,15 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
             (coarse ? 0.125 : 0.5) * double(pixels)),
       std::min(plan.drawn ? drawn_samples : least_samples, int(pixels)));
   return plan;
+}
+
+bool wants_fine_light(bool stands, bool coarse, float guessed) {
+  return stands && !(coarse && guessed > few_guessed);
+}
+
+bool wants_reference(double seconds_at_rest, bool before, bool coarse, float guessed) {
+  if (seconds_at_rest <= settled_after || coarse) return false;
+  return before || guessed <= nearly_none;
 }
 
 }  // namespace wellspring

@@ -16,7 +16,6 @@ namespace wellspring {
 namespace {
 
 constexpr double still_after = 0.25;   // seconds without motion until a picture counts as a still
-constexpr double settled_after = 2;    // seconds without motion until the reference takes over
 constexpr size_t least_measured = 1000;  // looks that tell how long one takes
 constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
@@ -135,16 +134,22 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   order.seq = visitor.seq;
   order.leaps = visitor.leaps;
   order.still = show.time - visitor.moved_at > still_after;
-  order.settled = show.time - visitor.moved_at > settled_after;
+  const PictureOrder& before = visitor.order;
+  // Of a place that was never seen, nothing is known.
+  bool seen = visitor.drawn_at >= 0 && visitor.leaps == before.leaps;
+  float guessed = seen ? visitor.stats.filled + visitor.stats.empty : 1;
+  order.settled = wants_reference(show.time - visitor.moved_at, seen && before.settled, !seen || before.coarse, guessed);
+  bool fine = wants_fine_light(order.still, !seen || before.coarse, guessed);
   order.guessed = !order.still || sees_figure(show, now);
   order.attention = visitor.attention;
   order.keep = show.settings.background;
   order.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
   order.display = plan_display(seconds_to_trace(show, visitor, busy),
                                size_t(visitor.width) * size_t(visitor.height), display_costs(show, visitor),
-                               visitor.order.display, order.still, show.settings.draw);
-  // Who moves is shown shapes and reflectances as they are, in light of half their resolution.
-  order.coarse = order.display.drawn && !order.still && show.sight && show.sight->can_see(now);
+                               visitor.order.display, fine, show.settings.draw);
+  // Who moves is shown shapes and reflectances as they are, in light of half their resolution; who stops,
+  // until more is known.
+  order.coarse = order.display.drawn && !fine && show.sight && show.sight->can_see(now);
   double interval = 1 / drawing_rate(show, visitor);
   if (order.keep && !order.still && visitor.frame_number > 0) {
     // It is seen from when it is finished until the next one is.

@@ -59,7 +59,7 @@ TEST(DisplayPath, DoesNotAlternateWhereBothAreAboutAsGood) {
 
 TEST(DisplayPath, DrawsWhereTimeOrTheRateAllows) {
   DisplayCosts slower = slow;
-  slower.drawing_seconds = 0.3;
+  slower.drawing_seconds = 0.7;
   EXPECT_FALSE(plan_display(0.03, pixels, slower, points).drawn);
   EXPECT_FALSE(plan_display(0.03, pixels, slower, drawn).drawn);
   DisplayCosts dear = slow;  // light
@@ -70,24 +70,39 @@ TEST(DisplayPath, DrawsWhereTimeOrTheRateAllows) {
   EXPECT_FALSE(plan_display(0.22, pixels, slow, drawn).drawn);
   EXPECT_TRUE(plan_display(0.22, pixels, slow, points, true).drawn);
   EXPECT_TRUE(plan_display(0.007, pixels, quick, points).drawn);
-  // No time is left within the wanted period, but seven pictures a second stay possible.
+  // No time is left within the wanted period, but two pictures a second stay possible.
   DisplayCosts costs = slow;
   costs.drawing_seconds = 0.008;
   EXPECT_TRUE(plan_display(0.005, pixels, costs, points).drawn);
   EXPECT_GE(plan_display(0.005, pixels, costs, points).samples, 1000);
   costs.drawing_seconds = 0.15;
+  EXPECT_TRUE(plan_display(0.005, pixels, costs, points).drawn);
+  costs.drawing_seconds = 0.6;
   EXPECT_FALSE(plan_display(0.005, pixels, costs, drawn).drawn);
   // What a picture takes in coarser light is what counts once it is known.
   costs.display_seconds = 0.1, costs.drawing_seconds = 0.02, costs.light_seconds = 0.005;
   EXPECT_TRUE(plan_display(0.005, pixels, costs, points).drawn);
   EXPECT_EQ(plan_display(0.005, pixels, costs, points).looks, 0);
-  costs.light_seconds = 0.14;
+  costs.light_seconds = 0.6;
   EXPECT_FALSE(plan_display(0.005, pixels, costs, drawn).drawn);
-  costs = slow;
-  costs.drawing_seconds = 0.15;
-  // Who stands does not mind four.
-  EXPECT_TRUE(plan_display(0.005, pixels, costs, points, true).drawn);
   EXPECT_FALSE(plan_display(0.005, pixels, slower, drawn, true).drawn);
+}
+
+TEST(DisplayPath, LightBecomesFineWhenItIsKnown) {
+  EXPECT_FALSE(wants_fine_light(false, true, 0));
+  EXPECT_FALSE(wants_fine_light(false, false, 0));  // moves again
+  EXPECT_FALSE(wants_fine_light(true, true, 0.9f));
+  EXPECT_TRUE(wants_fine_light(true, true, 0.1f));
+  EXPECT_TRUE(wants_fine_light(true, false, 0.9f));  // and stays so
+}
+
+TEST(DisplayPath, TheReferenceComesLast) {
+  EXPECT_FALSE(wants_reference(1, false, false, 0));
+  EXPECT_FALSE(wants_reference(30, false, true, 0));  // light is coarse yet
+  EXPECT_FALSE(wants_reference(30, false, false, 0.4f));
+  EXPECT_TRUE(wants_reference(30, false, false, 0.05f));
+  EXPECT_TRUE(wants_reference(30, true, false, 0.15f));  // the storyteller moves: what she hid is new
+  EXPECT_FALSE(wants_reference(0.5, true, false, 0));    // walks again
 }
 
 TEST(DisplayPath, DrawsAsToldByTheOperator) {
