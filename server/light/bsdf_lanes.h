@@ -2,14 +2,10 @@
 // eval_bsdf eight at a time, for surfaces that most of a scene consists of: opaque, a diffuse layer and
 // GGX facets over it, without coats (bsdf.h). Eight surfaces, or one against eight directions.
 #pragma once
-#include "base/lanes.h"
+#include "base/lanes3.h"
 #include "light/bsdf.h"
 
 namespace wellspring {
-
-struct Lanes3 {
-  Lanes x, y, z;
-};
 
 struct BsdfLanes {
   Lanes3 tangent, bitangent, normal, face, view;

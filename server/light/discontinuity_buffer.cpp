@@ -2,18 +2,174 @@
 #include "light/discontinuity_buffer.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
-#include <vector>
 
+#include "base/lanes3.h"
 #include "base/parallel.h"
 
 namespace wellspring {
 namespace {
 
-// Irradiance is known where something reflects it.
-bool has_smooth(const Sample& s) { return s.flags & sample_hit && max_component(s.albedo) > 0; }
+constexpr float color_step = 0.1f;  // of albedo, between pixels
+
+// Of a pixel of the picture, else 0.
+constexpr int32_t inside = 1, hit = 2, smooth = 4;  // smooth: irradiance is known there
+
+// Neighbours of a row are shifted copies of it: eight pixels are compared at once. Rows have room
+// before and behind them.
+constexpr int margin = 16;
+
+struct Plane {
+  std::vector<float> values;
+  Lanes at(size_t i) const { return load_lanes(values.data() + i); }
+};
+struct Plane3 {
+  Plane x, y, z;
+  Lanes3 at(size_t i) const { return {x.at(i), y.at(i), z.at(i)}; }
+  void set(size_t i, vec3 v) { x.values[i] = v.x, y.values[i] = v.y, z.values[i] = v.z; }
+};
+LaneMask load_mask(const int32_t* from) {
+  LaneMask mask;
+  std::memcpy(&mask, from, sizeof mask);
+  return mask;
+}
+
+struct Offset {
+  int across = 0, down = 0;
+  bool in_window = false, neighbour = false;
+};
+
+// Half of a window's and half of the eight neighbours: comparisons are mutual.
+std::vector<Offset> make_offsets(int across, int down, int step, bool edges) {
+  std::vector<Offset> offsets;
+  int widest = std::max(across, 1), highest = std::max(down, 1);
+  for (int v = 0; v <= highest; v++)
+    for (int u = -widest; u <= widest; u++) {
+      if (v == 0 && u <= 0) continue;
+      bool in_window = std::abs(u) <= across && v <= down,
+           neighbour = edges && std::abs(u) <= 1 && v <= 1;
+      if (in_window && step > 1) offsets.push_back({u * step, v * step, true, false});
+      in_window &= step == 1;
+      if (in_window || neighbour) offsets.push_back({u, v, in_window, neighbour});
+    }
+  return offsets;
+}
+
+// Some rows of a picture by their parts.
+struct Band {
+  int first_row, rows, width;
+  size_t stride;
+  Plane3 position, normal, albedo, smooth;
+  Plane distance;
+  std::vector<int32_t> object, known;
+  std::vector<std::vector<int32_t>> joined;  // of each offset: -1 where light is shared
+  std::vector<float> number;                 // of pixels that a pixel shares with
+  std::vector<int32_t> edge;                 // not 0: there is one
+
+  size_t at(int x, int y) const { return size_t(y - first_row) * stride + size_t(x + margin); }
+};
+
+Band make_band(const View& view, std::span<const Sample> samples, int first_row, int rows,
+               size_t offsets) {
+  Band band;
+  band.first_row = first_row, band.rows = rows, band.width = view.width;
+  band.stride = size_t(view.width + 3 * margin);
+  size_t size = band.stride * size_t(rows);
+  for (Plane3* p : {&band.position, &band.normal, &band.albedo, &band.smooth})
+    for (Plane* q : {&p->x, &p->y, &p->z}) q->values.assign(size, 0.0f);
+  band.distance.values.assign(size, 0.0f);
+  band.object.assign(size, 0);
+  band.known.assign(size, 0);
+  band.joined.assign(offsets, std::vector<int32_t>(size, 0));
+  band.number.assign(size, 0);
+  band.edge.assign(size, 0);
+  for (int y = std::max(first_row, 0); y < std::min(first_row + rows, view.height); y++)
+    for (int x = 0; x < view.width; x++) {
+      const Sample& s = samples[size_t(y) * size_t(view.width) + size_t(x)];
+      size_t i = band.at(x, y);
+      band.known[i] = inside;
+      band.smooth.set(i, s.smooth);
+      if (!(s.flags & sample_hit)) continue;
+      band.known[i] |= max_component(s.albedo) > 0 ? hit | smooth : hit;
+      band.position.set(i, s.position);
+      band.normal.set(i, s.normal);
+      band.albedo.set(i, s.albedo);
+      band.distance.values[i] = s.distance;
+      band.object[i] = int32_t(s.object);
+    }
+  return band;
+}
+
+// is_continuous of eight pixels from i on and those from j on.
+LaneMask are_continuous(const Band& band, size_t i, size_t j, const DiscontinuitySettings& settings,
+                        float pixel) {
+  Lanes3 n = band.normal.at(i), m = band.normal.at(j);
+  Lanes3 step = band.position.at(j) - band.position.at(i);
+  Lanes apart = lanes_max(lanes_abs(dot(step, n)), lanes_abs(dot(step, m)));
+  Lanes most = lanes_min(band.distance.at(i), band.distance.at(j)) * (settings.distance * pixel);
+  return (load_mask(&band.object[i]) == load_mask(&band.object[j])) &
+         (dot(n, m) >= all_lanes(settings.normal)) & (apart <= most);
+}
+
+void add_mask(std::vector<float>& number, size_t i, LaneMask mask) {
+  store_lanes(&number[i], load_lanes(&number[i]) - __builtin_convertvector(mask, Lanes));
+}
+void add_bits(std::vector<int32_t>& bits, size_t i, LaneMask mask) {
+  store_lanes(&bits[i], load_mask(&bits[i]) | mask);
+}
+
+// Compares the pixels of a row with those at an offset.
+void compare_row(Band& band, int y, const Offset& offset, std::vector<int32_t>& joined,
+                 const DiscontinuitySettings& settings, float pixel) {
+  for (int x = 0; x < band.width; x += lane_count) {
+    size_t i = band.at(x, y), j = band.at(x + offset.across, y + offset.down);
+    LaneMask a = load_mask(&band.known[i]), b = load_mask(&band.known[j]);
+    LaneMask both = (a & b & inside) != 0;
+    if (!negative_lanes(both)) continue;
+    LaneMask goes_on = are_continuous(band, i, j, settings, pixel), seen = (a & b & hit) != 0;
+    if (offset.in_window) {
+      LaneMask join = goes_on & ((a & b & smooth) != 0);
+      store_lanes(&joined[i], join);
+      add_mask(band.number, i, join);
+      add_mask(band.number, j, join);
+    }
+    if (offset.neighbour) {
+      Lanes3 change = band.albedo.at(i) - band.albedo.at(j);
+      Lanes most = lanes_max(lanes_abs(change.x), lanes_max(lanes_abs(change.y), lanes_abs(change.z)));
+      LaneMask edge = both & ((((a ^ b) & hit) != 0) | (seen & ((most > color_step) | ~goes_on)));
+      add_bits(band.edge, i, edge);
+      add_bits(band.edge, j, edge);
+    }
+  }
+}
+
+// Weighted means of a row's pixels.
+void filter_row(const Band& band, int y, std::span<const Offset> offsets, vec3* filtered) {
+  for (int x = 0; x < band.width; x += lane_count) {
+    size_t i = band.at(x, y);
+    Lanes3 own = band.smooth.at(i), sum;
+    Lanes rest = all_lanes(1), mine = load_lanes(&band.number[i]);
+    auto add = [&](size_t j, LaneMask join) {
+      if (!negative_lanes(join)) return;
+      Lanes weight = 1 / (1 + lanes_max(mine, load_lanes(&band.number[j])));
+      weight = join ? weight : Lanes{};
+      sum = sum + band.smooth.at(j) * weight;
+      rest -= weight;
+    };
+    for (size_t k = 0; k < offsets.size(); k++) {
+      const Offset& o = offsets[k];
+      if (!o.in_window) continue;
+      size_t before = band.at(x - o.across, y - o.down);
+      add(band.at(x + o.across, y + o.down), load_mask(&band.joined[k][i]));
+      add(before, load_mask(&band.joined[k][before]));
+    }
+    sum = sum + own * rest;
+    for (int lane = 0; lane < std::min(lane_count, band.width - x); lane++)
+      filtered[x + lane] = sum.at(lane);
+  }
+}
 
 }  // namespace
 
@@ -26,51 +182,41 @@ bool is_continuous(const Sample& a, const Sample& b, const DiscontinuitySettings
   return apart <= settings.distance * pixel * std::min(a.distance, b.distance);
 }
 
+bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& settings,
+             float pixel) {
+  if ((a.flags & sample_hit) != (b.flags & sample_hit)) return true;
+  if (!(a.flags & sample_hit)) return false;
+  if (max_component(glm::abs(a.albedo - b.albedo)) > color_step) return true;
+  return !is_continuous(a, b, settings, pixel);
+}
+
 void filter_smooth(const View& view, const DiscontinuitySettings& settings,
-                   std::span<Sample> samples) {
+                   std::span<Sample> samples, std::vector<uint8_t>* edges) {
   if (samples.size() != size_t(view.width) * size_t(view.height))
     throw std::invalid_argument("filter_smooth: one sample a pixel");
-  int across = std::clamp(settings.columns / 2, 0, 3), down = std::clamp(settings.rows / 2, 0, 3);
-  if (across == 0 && down == 0) return;
+  constexpr int band_rows = 16;
+  int across = std::clamp(settings.columns / 2, 0, 3), down = std::clamp(settings.rows / 2, 0, 3),
+      step = std::clamp(settings.step, 1, 3);
+  const std::vector<Offset> offsets = make_offsets(across, down, step, edges != nullptr);
+  if (edges) edges->assign(samples.size(), 0);
+  if (offsets.empty()) return;
   float pixel = 2 * view.tan_half_fov / float(view.height);
-  // Calls visit(bit, index) for the other pixels of the window around (x, y).
-  auto for_each_neighbour = [&](int x, int y, const auto& visit) {
-    int bit = 0;
-    for (int v = y - down; v <= y + down; v++)
-      for (int u = x - across; u <= x + across; u++, bit++)
-        if (u >= 0 && v >= 0 && u < view.width && v < view.height && (u != x || v != y))
-          visit(bit, size_t(v) * size_t(view.width) + size_t(u));
-  };
-  // Bits of the neighbours that go on.
-  std::vector<uint64_t> goes_on(samples.size(), 0);
-  parallel_ranges(view.height, 8, [&](int top, int bottom) {
-    for (int y = top; y < bottom; y++)
-      for (int x = 0; x < view.width; x++) {
-        size_t at = size_t(y) * size_t(view.width) + size_t(x);
-        const Sample& center = samples[at];
-        if (!has_smooth(center)) continue;
-        for_each_neighbour(x, y, [&](int bit, size_t i) {
-          if (has_smooth(samples[i]) && is_continuous(center, samples[i], settings, pixel))
-            goes_on[at] |= uint64_t(1) << bit;
-        });
-      }
-  });
   std::vector<vec3> filtered(samples.size());
-  parallel_ranges(view.height, 8, [&](int top, int bottom) {
-    for (int y = top; y < bottom; y++)
-      for (int x = 0; x < view.width; x++) {
-        size_t at = size_t(y) * size_t(view.width) + size_t(x);
-        vec3 sum(0);
-        float rest = 1;
-        int mine = std::popcount(goes_on[at]);
-        for_each_neighbour(x, y, [&](int bit, size_t i) {
-          if (!(goes_on[at] >> bit & 1)) return;
-          float weight = 1 / float(1 + std::max(mine, std::popcount(goes_on[i])));
-          sum += weight * samples[i].smooth;
-          rest -= weight;
-        });
-        filtered[at] = sum + rest * samples[at].smooth;
-      }
+  // How far a pixel's number of continuous pixels reaches, and theirs.
+  int reach = std::max(down * step, 1), parts = (view.height + band_rows - 1) / band_rows;
+  parallel_for(parts, [&](int part) {
+    int top = part * band_rows, bottom = std::min(top + band_rows, view.height);
+    Band band = make_band(view, samples, top - 2 * reach, bottom - top + 4 * reach, offsets.size());
+    for (size_t k = 0; k < offsets.size(); k++)
+      for (int y = top - 2 * reach; y < bottom + reach; y++)
+        compare_row(band, y, offsets[k], band.joined[k], settings, pixel);
+    for (int y = top; y < bottom; y++) {
+      size_t row = size_t(y) * size_t(view.width);
+      filter_row(band, y, offsets, &filtered[row]);
+      if (!edges) continue;
+      for (int x = 0; x < view.width; x++)
+        (*edges)[row + size_t(x)] = band.edge[band.at(x, y)] != 0;
+    }
   });
   parallel_ranges(int(samples.size()), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; i++) samples[size_t(i)].smooth = filtered[size_t(i)];

@@ -5,6 +5,7 @@
 // and distance is that from the tangent plane, which a floor seen at a grazing angle never fails.
 #pragma once
 #include <span>
+#include <vector>
 
 #include "light/sample.h"
 #include "world/view.h"
@@ -13,6 +14,7 @@ namespace wellspring {
 
 struct DiscontinuitySettings {
   int columns = 3, rows = 3;  // of the window; odd
+  int step = 1;               // pixels from one that it looks at to the next; at most 3
   float normal = 0.9f;        // least cosine between normals
   float distance = 1;         // most distance from each other's tangent plane, in pixels there
 };
@@ -21,11 +23,16 @@ struct DiscontinuitySettings {
 bool is_continuous(const Sample& a, const Sample& b, const DiscontinuitySettings& settings,
                    float pixel);
 
+// Is something to be seen between two neighbouring pixels that one ray each cannot show: the end of a
+// surface, or of its colour? Symmetric.
+bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& settings, float pixel);
+
 // samples[y * width + x].smooth becomes a weighted mean over the window's continuous neighbours. Where n
 // pixels are continuous with one and m with the other, each counts 1 / max(n, m) for the other and the
 // rest for itself: in the middle of a surface the plain mean, and nowhere is light won or lost, so that
-// a picture's mean stays what it was. Windows up to 7 x 7. All cores.
+// a picture's mean stays what it was. Windows up to 7 x 7. `edges`, if wanted: of each pixel, not 0 where
+// is_edge between it and one of the eight around it. All cores.
 void filter_smooth(const View& view, const DiscontinuitySettings& settings,
-                   std::span<Sample> samples);
+                   std::span<Sample> samples, std::vector<uint8_t>* edges = nullptr);
 
 }  // namespace wellspring

@@ -7,13 +7,12 @@
 
 #include "base/parallel.h"
 #include "light/first_surface.h"
+#include "light/matt_eyes.h"
 #include "light/split_reflectance.h"
 #include "light/technique_list.h"
 
 namespace wellspring {
 namespace {
-
-constexpr float color_step = 0.1f;  // of albedo, between pixels
 
 // The mean over a pixel's samples, in parts as Sample has them.
 struct Refined {
@@ -31,19 +30,10 @@ struct Refining {
   int rays;
   uint64_t seed;
   uint32_t index;
+  std::span<const uint8_t> edges;
   std::span<const Sample> samples;
   float pixel_angle;
 };
-
-bool has_edge(const Refining& r, int x, int y) {
-  const Sample& center = r.samples[size_t(y) * size_t(r.view.width) + size_t(x)];
-  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, r.view.height - 1); v++)
-    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, r.view.width - 1); u++) {
-      const Sample& other = r.samples[size_t(v) * size_t(r.view.width) + size_t(u)];
-      if (&other != &center && is_edge(center, other, r.continuity, r.pixel_angle)) return true;
-    }
-  return false;
-}
 
 // The pixel nearest to (x, y) in the picture that shows the surface of `sample`.
 const Sample* find_same(const Refining& r, const Sample& sample, float x, float y) {
@@ -62,8 +52,15 @@ const Sample* find_same(const Refining& r, const Sample& sample, float x, float 
   return best;
 }
 
+// Its light, if a neighbour shows the same surface.
+bool take_light(const Refining& r, const Sample& sample, vec2 place, vec3& radiance) {
+  const Sample* same = find_same(r, sample, place.x, place.y);
+  if (same) radiance = sample.albedo * same->smooth + same->rest;
+  return same;
+}
+
 // The ray's radiance, if it can be told from its neighbours.
-bool eval_alike(const Refining& r, const Request& request, float x, float y, vec3& radiance) {
+bool eval_alike(const Refining& r, const Request& request, vec2 place, vec3& radiance) {
   Transport transport{r.world, *r.lights.tables};
   Sampler sampler(request.seed, request.index);
   Sample sample;
@@ -75,19 +72,23 @@ bool eval_alike(const Refining& r, const Request& request, float x, float y, vec
   }
   if (!first.scatters || max_component(sample.rest) > 0) return false;
   sample.albedo = split_reflectance(first.bsdf).albedo * first.tint;
-  const Sample* same = find_same(r, sample, x, y);
-  if (!same) return false;
-  radiance = sample.albedo * same->smooth + same->rest;
-  return true;
+  return take_light(r, sample, place, radiance);
 }
 
-void refine_row(const Refining& r, int y, std::vector<Refined>& refined) {
-  std::vector<Request> asked;
-  std::vector<size_t> asked_by;
+// The rays that a row's edges ask for, and where in the picture.
+struct Looks {
+  std::vector<Request> requests;
+  std::vector<vec2> places;
+  std::vector<size_t> pixels;  // in the row's list, of each
+};
+
+Looks look_at_edges(const Refining& r, int y, std::vector<Refined>& refined) {
+  Looks looks;
   for (int x = 0; x < r.view.width; x++) {
-    if (!has_edge(r, x, y)) continue;
     Refined pixel;
     pixel.pixel = size_t(y) * size_t(r.view.width) + size_t(x);
+    if (!r.edges[pixel.pixel]) continue;
+    pixel.lit = r.rays;
     uint64_t seed = mix64(r.seed + pixel.pixel);
     for (int i = 0; i < r.rays; i++) {
       Request request;
@@ -95,41 +96,49 @@ void refine_row(const Refining& r, int y, std::vector<Refined>& refined) {
       request.seed = seed;
       request.index = r.index * uint32_t(r.rays) + uint32_t(i);
       Sampler jitter(mix64(seed ^ 0x6a09e667f3bcc909ull), request.index);
-      vec2 u = jitter.next2();
-      request.ray = view_ray(r.view, float(x) + u.x, float(y) + u.y);
-      vec3 radiance;
-      if (eval_alike(r, request, float(x) + u.x, float(y) + u.y, radiance)) {
-        pixel.radiance += radiance;
-      } else {
-        asked.push_back(request);
-        asked_by.push_back(refined.size());
-      }
-      pixel.lit++;
+      vec2 place = vec2(float(x), float(y)) + jitter.next2();
+      request.ray = view_ray(r.view, place.x, place.y);
+      looks.requests.push_back(request);
+      looks.places.push_back(place);
+      looks.pixels.push_back(refined.size());
     }
     refined.push_back(pixel);
   }
-  std::vector<Sample> answers(asked.size());
-  trace_many_instant(r.world, r.lights, r.settings, asked, answers);
+  return looks;
+}
+
+void refine_row(const Refining& r, int y, std::vector<Refined>& refined) {
+  Looks looks = look_at_edges(r, y, refined);
+  std::vector<MattEye> matt;
+  std::vector<uint32_t> others, unknown;
+  std::vector<Sample> samples(looks.requests.size());
+  see_matt({r.world, *r.lights.tables}, looks.requests, samples, matt, others);
+  vec3 radiance;
+  auto answer = [&](uint32_t i, bool known) {
+    if (known) refined[looks.pixels[i]].radiance += radiance;
+    else unknown.push_back(i);
+  };
+  for (const MattEye& eye : matt)
+    answer(eye.request, take_light(r, samples[eye.request], looks.places[eye.request], radiance));
+  for (uint32_t i : others)
+    answer(i, eval_alike(r, looks.requests[i], looks.places[i], radiance));
+  std::vector<Request> asked;
+  for (uint32_t i : unknown) asked.push_back(looks.requests[i]);
+  samples.resize(asked.size());
+  trace_many_instant(r.world, r.lights, r.settings, asked, samples);
   for (size_t i = 0; i < asked.size(); i++)
-    refined[asked_by[i]].radiance += answers[i].radiance();
+    refined[looks.pixels[unknown[i]]].radiance += samples[i].radiance();
 }
 
 }  // namespace
 
-bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& settings,
-             float pixel) {
-  if ((a.flags & sample_hit) != (b.flags & sample_hit)) return true;
-  if (!(a.flags & sample_hit)) return false;
-  if (max_component(glm::abs(a.albedo - b.albedo)) > color_step) return true;
-  return !is_continuous(a, b, settings, pixel);
-}
-
 void refine_edges(const World& world, const Lights& lights, const TransportSettings& settings,
                   const View& view, const DiscontinuitySettings& continuity, int rays,
-                  uint64_t seed, uint32_t index, std::span<Sample> samples) {
+                  uint64_t seed, uint32_t index, std::span<const uint8_t> edges,
+                  std::span<Sample> samples) {
   if (rays < 1 || settings.max_depth < 1) return;
-  Refining refining{world,      lights, settings, view,    continuity,
-                    rays,       seed,   index,    samples, 2 * view.tan_half_fov / float(view.height)};
+  Refining refining{world, lights, settings, view,    continuity, rays,
+                    seed,  index,  edges,    samples, 2 * view.tan_half_fov / float(view.height)};
   std::vector<std::vector<Refined>> rows(size_t(view.height));
   parallel_for(view.height, [&](int y) { refine_row(refining, y, rows[size_t(y)]); });
   parallel_for(view.height, [&](int y) {

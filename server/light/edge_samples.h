@@ -12,13 +12,11 @@
 
 namespace wellspring {
 
-// Is something to be seen between two neighbouring pixels that one ray each cannot show?
-bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& settings, float pixel);
-
-// samples[y * width + x], filtered, become means over `rays` more samples a pixel at edges. `lights.pass`
-// is the pass they were traced in.
+// samples[y * width + x], filtered, become means over `rays` more samples a pixel at `edges`, filter_smooth's.
+// `lights.pass` is the pass they were traced in.
 void refine_edges(const World& world, const Lights& lights, const TransportSettings& settings,
                   const View& view, const DiscontinuitySettings& continuity, int rays,
-                  uint64_t seed, uint32_t index, std::span<Sample> samples);
+                  uint64_t seed, uint32_t index, std::span<const uint8_t> edges,
+                  std::span<Sample> samples);
 
 }  // namespace wellspring

@@ -42,7 +42,7 @@ vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, c
                                     chosen);
     if (count > 0)
       shade_by_point_lights(eye.transport, eye.pass,
-                            {set, 0, 1, 0, -1, std::span(chosen, size_t(count))}, eye.max_depth,
+                            {set, 0, 1, 0, -1, 0, std::span(chosen, size_t(count))}, eye.max_depth,
                             &place, 1, &light);
   }
   if (!eye.pass.photons.empty())
@@ -86,9 +86,9 @@ vec3 plain_sky(const EnvironmentLight& environment, vec3 direction) {
   return sample_environment_pdf(environment, direction) > 0 ? sky - environment.sun_radiance : sky;
 }
 
-// Light along a ray that left a rough lobe: from nearer than the clip distance the share that clipping
-// took, and through sharp things what is rough behind them.
-vec3 gathered(const EyeLight& eye, Walk walk, Sampler& sampler) {
+}  // namespace
+
+vec3 gather_along(const EyeLight& eye, Walk walk, Sampler& sampler) {
   const Transport& transport = eye.transport;
   const LightTables& tables = transport.tables;
   float clip = eye.pass.compensate ? eye.pass.clip : 0;
@@ -129,8 +129,6 @@ vec3 gathered(const EyeLight& eye, Walk walk, Sampler& sampler) {
   return radiance;
 }
 
-}  // namespace
-
 void gather_rest(const EyeLight& eye, const LitPlace& place, Sampler& sampler, PlaceLight& light) {
   bool clipped = eye.pass.compensate && eye.pass.clip > 0;
   if ((!clipped && !eye.pass.sharp) || place.depth >= eye.max_depth) return;
@@ -147,7 +145,7 @@ void gather_rest(const EyeLight& eye, const LitPlace& place, Sampler& sampler, P
   if (place.wavelengths) walk.wavelengths = *place.wavelengths;
   scattered.weight = vec3(1);
   if (!advance(walk, *place.surface, scattered)) return;
-  vec3 radiance = gathered(eye, walk, sampler) / scattered.pdf;
+  vec3 radiance = gather_along(eye, walk, sampler) / scattered.pdf;
   light.diffuse += value.diffuse * radiance;
   if (!sharp) light.specular += value.specular * radiance;
 }

@@ -22,6 +22,10 @@ void part_seen_colors(const Transport& transport, const Walk& walk, const Surfac
 // Radiance that comes along a walk which left a sharp lobe (or a pane), times its throughput.
 vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler);
 
+// Radiance along a walk that left a rough lobe, of what point lights leave out: from nearer than the clip
+// distance the share that clipping took, and through sharp things what is rough behind them.
+vec3 gather_along(const EyeLight& eye, Walk walk, Sampler& sampler);
+
 // Adds what point lights leave out: what clipping took, and rough light seen in sharp things.
 void gather_rest(const EyeLight& eye, const LitPlace& place, Sampler& sampler, PlaceLight& light);
 

@@ -8,6 +8,7 @@
 #include "light/edge_samples.h"
 #include "light/eye_light.h"
 #include "light/first_surface.h"
+#include "light/instant_matt.h"
 #include "light/split_reflectance.h"
 #include "light/technique_list.h"
 
@@ -15,6 +16,9 @@ namespace wellspring {
 namespace {
 
 constexpr int pixels_a_candidate = 2048;
+// First passes of a picture whose irradiance is averaged over more than the paper's window; the mean of
+// many passes has ever less of that blur.
+constexpr uint32_t wide_passes = 4;
 
 // One request on its way.
 struct Eye {
@@ -22,7 +26,7 @@ struct Eye {
   Sample sample;
   FirstSurface first;
   std::unique_ptr<std::optional<WavelengthSpread>> spread;  // of its colours, if it parts them
-  int set = 0, region = -1;
+  PixelGroup group;
   bool soft = false;    // rough gloss is filtered with the diffuse light
   vec3 reflectance{0};  // sample.albedo without the tint
   PlaceLight light;
@@ -84,6 +88,57 @@ void finish(const EyeLight& light, Eye& eye) {
     eye.sample.rest += follow_mirrors(light, eye.first.reflection, eye.sampler);
 }
 
+// Of whatever material.
+void trace_others(const Transport& transport, const InstantPass& pass, int max_depth,
+                  std::span<const Request> requests, std::span<const uint32_t> numbers,
+                  std::span<Sample> samples) {
+  std::vector<Eye> eyes;
+  eyes.reserve(numbers.size());
+  GroupOrder order;
+  for (size_t i = 0; i < numbers.size(); i++) {
+    const Request& request = requests[numbers[i]];
+    Eye& eye = eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, {}, {}, false, {}, {}});
+    eye.group = group_of_pixel(pass, request.pixel);
+    if (max_depth < 1) continue;
+    eye.first = find_first_surface(transport, max_depth, request, eye.sampler, eye.sample);
+    if (!eye.first.scatters) continue;
+    if (parts_colors(transport, eye.first.walk.media, eye.first.surface)) {
+      eye.spread = std::make_unique<std::optional<WavelengthSpread>>();
+      part_seen_colors(transport, eye.first.walk, eye.first.surface, eye.sampler, eye.first.bsdf,
+                       *eye.spread);
+    }
+    split_first(eye);
+    order.add(eye.group, uint32_t(i));
+  }
+  order.sort();
+  for (size_t begin = 0; begin < order.size();) {
+    LitPlace places[RayPacket::lanes];
+    PlaceLight light[RayPacket::lanes];
+    uint32_t items[RayPacket::lanes];
+    PixelGroup group;
+    int count = int(order.take(begin, RayPacket::lanes, items, group));
+    begin += size_t(count);
+    for (int i = 0; i < count; i++) {
+      const Eye& eye = eyes[items[i]];
+      places[i] = {&eye.first.surface, &eye.first.bsdf, &eye.first.walk.media,
+                   eye.first.walk.depth, mirror_alpha};
+    }
+    int set = set_of_list(pass, group.list);
+    shade_by_point_lights(transport, pass, {set, 0, 1, 0, group.region, group.list}, max_depth, places,
+                          count, light);
+    if (!pass.photons.empty()) {
+      PhotonCells cells;
+      for (int i = 0; i < count; i++)
+        shade_by_photons(pass.photons[size_t(set)], max_depth, places[i], cells, light[i]);
+    }
+    for (int i = 0; i < count; i++) eyes[items[i]].light = light[i];
+  }
+  for (size_t i = 0; i < eyes.size(); i++) {
+    if (max_depth >= 1) finish({transport, pass, max_depth, set_of_list(pass, eyes[i].group.list)}, eyes[i]);
+    samples[numbers[i]] = eyes[i].sample;
+  }
+}
+
 }  // namespace
 
 void trace_many_instant(const World& world, const Lights& lights,
@@ -96,57 +151,14 @@ void trace_many_instant(const World& world, const Lights& lights,
   }();
   const InstantPass& pass = lights.pass ? *lights.pass : nothing;
   Transport transport{world, *lights.tables};
-  std::vector<Eye> eyes;
-  eyes.reserve(requests.size());
-  std::vector<uint32_t> order;
-  for (size_t i = 0; i < requests.size(); i++) {
-    const Request& request = requests[i];
-    Eye& eye = eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, {}, 0, -1, false, {}, {}});
-    eye.set = set_of_pixel(pass, request.pixel);
-    eye.region = region_of_pixel(pass, request.pixel);
-    if (settings.max_depth < 1) continue;
-    eye.first =
-        find_first_surface(transport, settings.max_depth, request, eye.sampler, eye.sample);
-    if (!eye.first.scatters) continue;
-    if (parts_colors(transport, eye.first.walk.media, eye.first.surface)) {
-      eye.spread = std::make_unique<std::optional<WavelengthSpread>>();
-      part_seen_colors(transport, eye.first.walk, eye.first.surface, eye.sampler, eye.first.bsdf,
-                       *eye.spread);
-    }
-    split_first(eye);
-    order.push_back(uint32_t(i));
+  std::vector<uint32_t> others;
+  if (pass.sharp || settings.max_depth < 2) {
+    for (size_t i = 0; i < requests.size(); i++) others.push_back(uint32_t(i));
+  } else {
+    trace_matt_eyes(transport, pass, settings.max_depth, requests, samples, others);
   }
-  // Pixels of one region and set side by side, as near to each other as they were asked for.
-  auto key = [&](uint32_t i) { return std::pair(eyes[i].region, eyes[i].set); };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-  for (size_t begin = 0; begin < order.size();) {
-    LitPlace places[RayPacket::lanes];
-    PlaceLight light[RayPacket::lanes];
-    auto [region, set] = key(order[begin]);
-    int count = 0;
-    for (; count < RayPacket::lanes && begin + size_t(count) < order.size(); count++) {
-      const Eye& eye = eyes[order[begin + size_t(count)]];
-      if (eye.set != set || eye.region != region) break;
-      places[count] = {&eye.first.surface, &eye.first.bsdf, &eye.first.walk.media,
-                       eye.first.walk.depth, mirror_alpha};
-    }
-    shade_by_point_lights(transport, pass, {set, 0, 1, 0, region}, settings.max_depth, places, count,
-                          light);
-    if (!pass.photons.empty()) {
-      PhotonCells cells;
-      for (int i = 0; i < count; i++)
-        shade_by_photons(pass.photons[size_t(set)], settings.max_depth, places[i], cells, light[i]);
-    }
-    for (int i = 0; i < count; i++) eyes[order[begin + size_t(i)]].light = light[i];
-    begin += size_t(count);
-  }
-  for (size_t i = 0; i < eyes.size(); i++) {
-    Eye& eye = eyes[i];
-    if (settings.max_depth >= 1)
-      finish({transport, pass, settings.max_depth, eye.set}, eye);
-    samples[i] = finish_sample(lights, settings, eye.sample);
-  }
+  trace_others(transport, pass, settings.max_depth, requests, others, samples);
+  finish_samples(lights, settings, samples);
 }
 
 Sample trace_instant(const World& world, const Lights& lights, const TransportSettings& settings,
@@ -180,9 +192,16 @@ void finish_instant(const World& world, const Lights& lights, const View& view,
   DiscontinuitySettings settings;
   settings.columns = pass.columns;
   settings.rows = pass.rows;
-  filter_smooth(view, settings, samples);
+  std::vector<uint8_t> edges;
+  filter_smooth(view, settings, samples, &edges);
+  // Lists of lights interleave more coarsely than sets: what is left of their pattern.
+  if (pass.index < wide_passes && pass.sets() > 1) {
+    DiscontinuitySettings wide = settings;
+    wide.columns = wide.rows = wide.step = 3;
+    filter_smooth(view, wide, samples);
+  }
   refine_edges(world, lights, pass.settings, view, settings, pass.settings.instant.edge_rays,
-               mix64(pass.seed ^ 0x6564676573ull), pass.index, samples);
+               mix64(pass.seed ^ 0x6564676573ull), pass.index, edges, samples);
 }
 
 }  // namespace wellspring

@@ -13,7 +13,9 @@
 //   rough, then sharp ..., rough    gathered by a ray
 // Differs from the paper: lights are chosen by their effect on the view (view_probes.h) and of those a
 // few for each region of the picture (region_lights.h), so that there are many more lights than shadow
-// rays of a pixel; edges get more rays from the eye (edge_samples.h); Owen scrambling,
+// rays of a pixel, in lists that interleave in a pattern of their own, twice as wide as that of sets; the
+// first passes' irradiance is averaged over that pattern, too, which later passes make good; edges get
+// more rays from the eye (edge_samples.h); Owen scrambling,
 // which adds to the paper's XOR by a random bit vector only that the vector depends on the bits before,
 // and decorrelates the dimensions of the shared Sampler better;
 // rays instead of nothing for the last line; sets complement each other over passes as well.
@@ -57,10 +59,11 @@ struct RegionLight {
   float factor = 1;    // on its radiance
 };
 struct RegionLights {
-  static constexpr int across = 4;  // pixels of one set in a row of a region: 16 are a packet
+  static constexpr int across = 4;  // pixels of one list in a row of a region: 16 are a packet
+  static constexpr int finer = 2;   // lists interleave as sets do, in a pattern so many times as wide
   int width = 0, height = 0;        // pixels of a region
   int columns = 0;                  // 0: no regions, every pixel asks its whole set
-  std::vector<uint32_t> first;      // of region * sets + set, and the end
+  std::vector<uint32_t> first;      // of region * lists + list, and the end
   std::vector<RegionLight> lights;
 };
 
@@ -82,6 +85,7 @@ struct InstantPass {
   uint64_t seed = 0;
   uint32_t index = 0;
   int sets() const { return columns * rows; }
+  int lists() const { return sets() * RegionLights::finer * RegionLights::finer; }
 };
 
 // The set of a pixel's place in the pattern.
@@ -90,13 +94,24 @@ inline int set_of_pixel(const InstantPass& pass, uint32_t pixel) {
   return y % pass.rows * pass.columns + x % pass.columns;
 }
 
+// Its list among those of its region.
+inline int list_of_pixel(const InstantPass& pass, uint32_t pixel) {
+  int x = int(pixel % uint32_t(pass.width)), y = int(pixel / uint32_t(pass.width));
+  int columns = pass.columns * RegionLights::finer, rows = pass.rows * RegionLights::finer;
+  return y % rows * columns + x % columns;
+}
+inline int set_of_list(const InstantPass& pass, int list) {
+  int columns = pass.columns * RegionLights::finer;
+  return list / columns % pass.rows * pass.columns + list % columns % pass.columns;
+}
+
 // The region that a pixel is in; -1: there are none.
 inline int region_of_pixel(const InstantPass& pass, uint32_t pixel) {
   const RegionLights& regions = pass.regions;
   if (regions.columns == 0) return -1;
   int x = int(pixel % uint32_t(pass.width)), y = int(pixel / uint32_t(pass.width));
   size_t region = size_t(y / regions.height * regions.columns + x / regions.width);
-  return (region + 1) * size_t(pass.sets()) < regions.first.size() ? int(region) : -1;
+  return (region + 1) * size_t(pass.lists()) < regions.first.size() ? int(region) : -1;
 }
 
 // For any view: every walk's lights are kept.

@@ -200,10 +200,11 @@ InstantPass start_pass(const Transport& transport, const InstantRadiositySetting
   return pass;
 }
 
-// A point light stands for the surface around it. Nearer than that surface is wide, about
-// sqrt(area / lights), the estimate is one of nothing but that light.
+// A point light stands for the surface around it. Nearer than a few times that surface's width, about
+// sqrt(area / lights), the estimate is one of few lights, which is noise that neighbours share: what a ray
+// gathers instead is noise of each pixel, which the filter takes away.
 float clip_distance(const InstantRadiositySettings& s, float size, int lights) {
-  return s.clip >= 0 ? s.clip : 2 * size / std::sqrt(float(std::max(lights, 1)));
+  return s.clip >= 0 ? s.clip : size * std::min(0.25f, 5 / std::sqrt(float(std::max(lights, 1))));
 }
 
 float photon_radius(const InstantRadiositySettings& s, float size, uint32_t index) {

@@ -54,54 +54,50 @@ LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass) 
   return all;
 }
 
-float eval_unshadowed(const LightLanes& all, size_t begin, size_t end, vec3 place, const Bsdf& bsdf,
-                      float clip2, Lanes* effect) {
-  vec3 normal = bsdf.normal;
-  bool both_sides = max_component(bsdf.transmit) > 0;
-  float even = has_specular(bsdf) ? glossy_even : 0;
-  Lanes total = all_lanes(0), zero = all_lanes(0), one = all_lanes(1);
-  Lanes least = all_lanes(std::max(clip2, 1e-12f));
-  for (size_t g = begin; g < end; g++) {
-    Lanes dx = all.x[g] - place.x * all.near[g], dy = all.y[g] - place.y * all.near[g],
-          dz = all.z[g] - place.z * all.near[g];
-    Lanes d2 = lanes_max(dx * dx + dy * dy + dz * dz, all_lanes(1e-20f));
-    Lanes inverse = one / lanes_sqrt(d2);
-    Lanes here = (dx * normal.x + dy * normal.y + dz * normal.z) * inverse;
-    Lanes there = -(dx * all.nx[g] + dy * all.ny[g] + dz * all.nz[g]) * inverse;
-    here = both_sides ? lanes_abs(here) : lanes_max(here, zero);
-    there = all.back[g] > 0 ? lanes_abs(there) : lanes_max(there, zero);
-    here += even * (one - here);
-    there += all.even[g] * (one - there);
-    Lanes falls = all.near[g] > 0 ? one / lanes_max(d2, least) : one;
-    Lanes here_and_there = all.power[g] * here * there * falls;
-    effect[g - begin] = here_and_there;
-    total += here_and_there;
-  }
-  return lanes_sum(total);
+LitPoint make_lit_point(vec3 position, const Bsdf& bsdf) {
+  return {position, bsdf.normal, max_component(bsdf.transmit) > 0,
+          has_specular(bsdf) ? glossy_even : 0};
 }
 
 int choose_place_lights(const InstantPass& pass, int set, vec3 place, const Bsdf& bsdf, int asked,
                         float u, std::span<RegionLight> chosen) {
-  uint32_t number = pass.first[size_t(set) + 1] - pass.first[size_t(set)];
-  if (number == 0 || asked < 1 || !pass.lanes) return 0;
+  // Of a large set, groups far from each other: an estimate of all costs more than the rays it saves.
+  constexpr size_t most_groups = 12;
+  if (asked < 1 || !pass.lanes) return 0;
   const LightLanes& all = *pass.lanes;
-  size_t begin = all.first[size_t(set)], end = all.first[size_t(set) + 1];
-  std::vector<Lanes> effect(end - begin);
-  float total = eval_unshadowed(all, begin, end, place, bsdf, pass.clip * pass.clip, effect.data());
-  bool known = total > 0 && std::isfinite(total);
-  float uniform = float(asked) * (known ? blind : 1) / float(number),
-        scale = known ? float(asked) * (1 - blind) / total : 0;
-  float sum = -u;
+  const size_t begin = all.first[size_t(set)], end = all.first[size_t(set) + 1];
+  const size_t step = std::max<size_t>(1, (end - begin + most_groups - 1) / most_groups);
+  const size_t start = std::min(size_t(u * float(step)), step - 1);
+  u = u * float(step) - float(start);
+  const LitPoint point = make_lit_point(place, bsdf);
+  const float most = most_of_clip(pass.clip);
+  Lanes effect[most_groups + 1], total{};
   int count = 0;
-  for (uint32_t k = 0; k < number; k++) {
-    float often = uniform + (known ? scale * effect[k / lane_count][k % lane_count] : 0);
-    sum += often;
-    if (sum <= 0) continue;
-    float times = std::ceil(sum);
-    sum -= times;
-    if (count < int(chosen.size()))
-      chosen[size_t(count++)] = {all.number[begin * lane_count + k], times / often};
+  float number = 0;
+  for (size_t g = begin + start; g < end; g += step) {
+    Lanes& e = effect[(g - begin) / step];
+    e = eval_unshadowed(all, g, point, most);
+    total += e;
+    for (int lane = 0; lane < lane_count; lane++)
+      number += all.number[g * lane_count + size_t(lane)] != LightLanes::none;
   }
+  float sum_of_all = lanes_sum(total);
+  bool known = sum_of_all > 0 && std::isfinite(sum_of_all);
+  float uniform = float(asked) * (known ? blind : 1) / std::max(number, 1.0f),
+        scale = known ? float(asked) * (1 - blind) / sum_of_all : 0;
+  float sum = -u;
+  for (size_t g = begin + start; g < end; g += step)
+    for (int lane = 0; lane < lane_count; lane++) {
+      uint32_t light = all.number[g * lane_count + size_t(lane)];
+      if (light == LightLanes::none) continue;
+      float often = uniform + (known ? scale * effect[(g - begin) / step][lane] : 0);
+      sum += often;
+      if (sum <= 0) continue;
+      float times = std::ceil(sum);
+      sum -= times;
+      if (count < int(chosen.size()))
+        chosen[size_t(count++)] = {light, float(step) * times / often};
+    }
   return count;
 }
 

@@ -2,6 +2,7 @@
 // A pass's point lights side by side, to choose a few of many by what they would do to a place, were
 // nothing in between.
 #pragma once
+#include <algorithm>
 #include <span>
 
 #include "base/lanes.h"
@@ -24,11 +25,32 @@ struct LightLanes {
 
 LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass);
 
-// Irradiance at a place by each light of groups [begin, end), nothing in between; returns the sum.
-// Nearer than sqrt(clip2) counts as that. What is glossy, place or light, may shine where Lambert would
-// not: it is taken for partly even.
-float eval_unshadowed(const LightLanes& lights, size_t begin, size_t end, vec3 place, const Bsdf& bsdf,
-                      float clip2, Lanes* effect);
+// A place as the estimate knows it. What is glossy, place or light, may shine where Lambert would not: it
+// is taken for partly even.
+struct LitPoint {
+  vec3 position{0}, normal{0, 1, 0};
+  bool both_sides = false;
+  float even = 0;
+};
+LitPoint make_lit_point(vec3 position, const Bsdf& bsdf);
+
+// Irradiance there by the lights of a group, nothing in between; `most`: what 1 over squared distance is
+// at most.
+inline Lanes eval_unshadowed(const LightLanes& all, size_t g, const LitPoint& point, float most) {
+  const Lanes zero{}, one = all_lanes(1.0f);
+  Lanes dx = all.x[g] - point.position.x * all.near[g], dy = all.y[g] - point.position.y * all.near[g],
+        dz = all.z[g] - point.position.z * all.near[g];
+  Lanes inverse = one / lanes_sqrt(lanes_max(dx * dx + dy * dy + dz * dz, all_lanes(1e-20f)));
+  Lanes here = (dx * point.normal.x + dy * point.normal.y + dz * point.normal.z) * inverse;
+  Lanes there = -(dx * all.nx[g] + dy * all.ny[g] + dz * all.nz[g]) * inverse;
+  here = point.both_sides ? lanes_abs(here) : lanes_max(here, zero);
+  there = all.back[g] > 0 ? lanes_abs(there) : lanes_max(there, zero);
+  here += point.even * (one - here);
+  there += all.even[g] * (one - there);
+  Lanes falls = all.near[g] > 0 ? lanes_min(inverse * inverse, all_lanes(most)) : one;
+  return all.power[g] * here * there * falls;
+}
+inline float most_of_clip(float clip) { return 1 / std::max(clip * clip, 1e-12f); }
 
 // About `asked` of a set's lights, exact ones among them, chosen at random by what they would do to a
 // place, weighed so that their mean is the whole set's; at most chosen.size(). Returns how many. u:

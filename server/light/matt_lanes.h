@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lambert's law (matt.h) at eight places side by side.
 #pragma once
-#include "base/lanes3.h"
+#include <bit>
+
 #include "light/matt.h"
+#include "world/surface_lanes.h"
 
 namespace wellspring {
 
@@ -17,6 +19,17 @@ inline Lanes3 clean(Lanes3 c) {
   const Lanes zero{}, one = all_lanes(1.0f);
   auto within = [&](Lanes x) { return x > zero ? lanes_min(x, one) : zero; };
   return {within(c.x), within(c.y), within(c.z)};
+}
+
+inline MattLobeLanes make_matt(const MattSurfaceLanes& surface, const Lanes3& direction) {
+  MattLobeLanes lobes{surface.normal, surface.geometric_normal, clean(surface.base_color)};
+  unsigned grazing = negative_lanes(dot(surface.normal, direction) >= 0);
+  for (unsigned bits = grazing | surface.bent; bits; bits &= bits - 1) {
+    int i = std::countr_zero(bits);
+    lobes.normal.set(i, usable_normal(surface.normal.at(i), surface.geometric_normal.at(i),
+                                      -direction.at(i)));
+  }
+  return lobes;
 }
 
 // eval_matt_pdf.

@@ -4,7 +4,7 @@
 #pragma once
 #include <span>
 
-#include "light/instant_radiosity.h"
+#include "light/lit_group.h"
 
 namespace wellspring {
 
@@ -26,12 +26,12 @@ struct PlaceLight {
 };
 
 // Of a set's lights, every `step`-th from a start drawn at random counts `step` times. `end`: those
-// numbered [start, end) of all sets instead. `region`: the set's exact lights and those chosen for the
-// region instead. `few`: these instead, by rays of their own.
+// numbered [start, end) of all sets instead. `region`: the set's exact lights and those of a
+// list of the region instead. `few`: these instead, by rays of their own.
 struct SetShare {
   int set = 0;
   uint32_t start = 0, step = 1, end = 0;
-  int region = -1;
+  int region = -1, list = 0;
   std::span<const RegionLight> few = {};
 };
 
@@ -40,5 +40,14 @@ struct SetShare {
 void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
                            const SetShare& choice, int max_depth, const LitPlace* places,
                            int count, PlaceLight* light);
+
+// Irradiance by lights of the set alone, and by those that every set has alike.
+struct MattLight {
+  GroupLane3 smooth, exact;
+};
+// The same of matt places in air that the eye's first ray found: adds their irradiance.
+void shade_matt_by_point_lights(const Transport& transport, const InstantPass& pass,
+                                const SetShare& choice, int max_depth, const LitGroup& group,
+                                MattLight& sum);
 
 }  // namespace wellspring

@@ -12,7 +12,7 @@
 namespace wellspring {
 namespace {
 
-constexpr uint32_t region_probes = 8;
+constexpr uint32_t region_probes = 16;
 // Share of the choice that asks for no effect: surfaces that no probe met, and gloss.
 constexpr double blind = 0.15f;
 
@@ -37,48 +37,81 @@ Choice lights_to_choose(const InstantPass& pass) {
   return choice;
 }
 
-// Shares of the lights in what a few places of the region get, in the mean; false: nothing is lit.
-bool probe_region(const Transport& transport, const View& view, int max_depth, const Choice& choice,
-                  const InstantPass& pass, int region, uint64_t seed, uint32_t first_sample,
-                  std::vector<Lanes>& effect, std::vector<Lanes>& share) {
-  const RegionLights& regions = pass.regions;
-  std::fill(share.begin(), share.end(), all_lanes(0));
-  int met = 0;
+// Places that a region shows.
+int probe_region(const Transport& transport, const View& view, int max_depth,
+                 const RegionLights& regions, int region, uint64_t seed, uint32_t first_sample,
+                 LitPoint* points) {
+  int met = 0, left = region % regions.columns * regions.width,
+      top = region / regions.columns * regions.height;
+  vec2 size(float(std::min(regions.width, view.width - left)),
+            float(std::min(regions.height, view.height - top)));
   for (uint32_t p = 0; p < region_probes; p++) {
     Sampler sampler(seed, first_sample + p);
-    vec2 u = sampler.next2();
-    float x = (float(region % regions.columns) + u.x) * float(regions.width),
-          y = (float(region / regions.columns) + u.y) * float(regions.height);
-    if (x >= float(view.width) || y >= float(view.height)) continue;
+    vec2 place = vec2(float(left), float(top)) + size * sampler.next2();
     Request request;
-    request.ray = view_ray(view, x, y);
+    request.ray = view_ray(view, place.x, place.y);
     Sample sample;
     FirstSurface seen = find_first_surface(transport, max_depth, request, sampler, sample);
-    if (!seen.scatters) continue;
-    float total = eval_unshadowed(choice.lights, 0, choice.groups(), seen.surface.position,
-                                  seen.bsdf, pass.clip * pass.clip, effect.data());
-    if (!(total > 0) || !std::isfinite(total)) continue;
-    met++;
-    for (size_t g = 0; g < choice.groups(); g++) share[g] += effect[g] / total;
+    if (seen.scatters) points[met++] = make_lit_point(seen.surface.position, seen.bsdf);
   }
-  for (Lanes& s : share) s /= float(std::max(met, 1));
-  return met > 0;
+  return met;
 }
 
-// Deals about `wanted` choices to the sets in turn, parts[set]. Systematic sampling: neighbours in the
-// order of lights complement each other, and so do those chosen.
-void deal_lights(const Choice& choice, const std::vector<Lanes>& share, bool lit, double wanted,
-                 float choose_u, float deal_u, std::span<std::vector<RegionLight>> parts) {
-  uint32_t slot = 0, sets = uint32_t(parts.size()),
-           deal = std::min(uint32_t(deal_u * float(sets)), sets - 1);
-  double sum = 0, even = (lit ? blind : 1) / double(choice.number);
+// Shares of the lights in what the places get, each place counting for as much as any other; false:
+// nothing is lit.
+bool share_lights(const Choice& choice, float clip, const LitPoint* points, int count,
+                  std::vector<Lanes>& share) {
+  // Of every so many groups, what all do to a place is guessed: it is only their weight.
+  constexpr size_t guessed = 8;
+  const float most = most_of_clip(clip);
+  float weight[region_probes];
+  for (int p = 0; p < count; p++) {
+    Lanes total{};
+    for (size_t g = 0; g < choice.groups(); g += guessed)
+      total += eval_unshadowed(choice.lights, g, points[p], most);
+    float sum = lanes_sum(total);
+    weight[p] = sum > 0 && std::isfinite(1 / sum) ? 1 / sum : 0;
+  }
+  Lanes total{};
+  for (size_t g = 0; g < choice.groups(); g++) {
+    Lanes sum{};
+    for (int p = 0; p < count; p++)
+      sum += weight[p] * eval_unshadowed(choice.lights, g, points[p], most);
+    share[g] = sum;
+    total += sum;
+  }
+  float all = lanes_sum(total);
+  if (!(all > 0) || !std::isfinite(all)) return false;
+  for (Lanes& s : share) s *= 1 / all;
+  return true;
+}
+
+// The k-th chosen light's list: of any window as large as the pattern of sets, lists get lights from all
+// over the order.
+size_t list_of_turn(const InstantPass& pass, size_t turn) {
+  constexpr size_t finer = RegionLights::finer;
+  size_t columns = size_t(pass.columns), sets = size_t(pass.sets());
+  size_t set = turn % sets, copy = turn / sets % (finer * finer);
+  size_t x = copy % finer * columns + set % columns,
+         y = copy / finer * size_t(pass.rows) + set / columns;
+  return y * columns * finer + x;
+}
+
+// Deals about `asked` lights to each list, parts[list]. Systematic sampling: neighbours in the order of
+// lights complement each other, and so do those chosen.
+void deal_lights(const InstantPass& pass, const Choice& choice, const std::vector<Lanes>& share, bool lit,
+                 double asked, float choose_u, float deal_u,
+                 std::span<std::vector<RegionLight>> parts) {
+  size_t lists = parts.size(), turn = std::min(size_t(deal_u * float(lists)), lists - 1);
+  const double wanted = asked * double(lists), even = (lit ? blind : 1) / double(choice.number);
+  const double worth = double(lists) / double(pass.sets());
+  double sum = double(choose_u) - 1;  // whole numbers that it passes are choices
   for (size_t k = 0; k < choice.lights.number.size(); k++) {
     if (choice.lights.number[k] == LightLanes::none) continue;
     double part = lit ? (1 - blind) * double(share[k / lane_count][k % lane_count]) : 0;
     double often = wanted * (part + even);
-    sum += often;
-    for (; double(slot) + double(choose_u) < sum; slot++)
-      parts[(slot + deal) % sets].push_back({choice.lights.number[k], float(1 / often)});
+    for (sum += often; sum > 0; sum--, turn++)
+      parts[list_of_turn(pass, turn % lists)].push_back({choice.lights.number[k], float(worth / often)});
   }
 }
 
@@ -88,24 +121,25 @@ void choose_region_lights(const Transport& transport, const View& view, int max_
                           uint64_t seed, uint32_t index, InstantPass& pass) {
   RegionLights& regions = pass.regions;
   regions = {};
-  size_t sets = size_t(pass.sets());
+  size_t lists = size_t(pass.lists());
   Choice choice = lights_to_choose(pass);
-  if (asked < 1 || choice.number <= size_t(asked) * sets) return;
-  regions.width = pass.columns * RegionLights::across;
-  regions.height = pass.rows * RegionLights::across;
+  if (asked < 1 || choice.number <= size_t(asked) * size_t(pass.sets())) return;
+  regions.width = pass.columns * RegionLights::finer * RegionLights::across;
+  regions.height = pass.rows * RegionLights::finer * RegionLights::across;
   regions.columns = (view.width + regions.width - 1) / regions.width;
   int rows = (view.height + regions.height - 1) / regions.height, count = regions.columns * rows;
-  std::vector<std::vector<RegionLight>> chosen(size_t(count) * sets);
-  parallel_ranges(count, 4, [&](int first, int last) {
-    std::vector<Lanes> effect(choice.groups()), share(choice.groups());
+  std::vector<std::vector<RegionLight>> chosen(size_t(count) * lists);
+  parallel_ranges(count, 1, [&](int first, int last) {
+    std::vector<Lanes> share(choice.groups());
     for (int r = first; r < last; r++) {
       Sampler sampler(seed, index * uint32_t(count) + uint32_t(r));
       float choose_u = sampler.next(), deal_u = sampler.next();
-      bool lit = probe_region(transport, view, max_depth, choice, pass, r,
-                              mix64(seed ^ uint64_t(r + 1) << 32), index * region_probes, effect,
-                              share);
-      deal_lights(choice, share, lit, double(asked) * double(sets), choose_u, deal_u,
-                  std::span(chosen).subspan(size_t(r) * sets, sets));
+      LitPoint points[region_probes];
+      int met = probe_region(transport, view, max_depth, regions, r, mix64(seed ^ uint64_t(r + 1) << 32),
+                             index * region_probes, points);
+      bool lit = met > 0 && share_lights(choice, pass.clip, points, met, share);
+      deal_lights(pass, choice, share, lit, double(asked), choose_u, deal_u,
+                  std::span(chosen).subspan(size_t(r) * lists, lists));
     }
   });
   regions.first.reserve(chosen.size() + 1);

@@ -154,7 +154,6 @@ void render_passes(const Technique& technique, const World& world, Lights lights
                    const StillSettings& settings, Frame& frame) {
   std::vector<dvec3> sums(frame.color.size(), dvec3(0));
   std::vector<Sample> samples(sums.size());
-  std::vector<Request> requests(sums.size());
   for (int i = 0; i < settings.spp; i++) {
     if (technique.begin_pass)
       technique.begin_pass(world, settings.transport, view, pass_seed(settings.seed), uint32_t(i),
@@ -168,20 +167,18 @@ void render_passes(const Technique& technique, const World& world, Lights lights
       std::vector<Sample> answers(asked.size());
       trace_tile(technique, world, lights, settings.transport, asked, answers);
       for (size_t k = 0; k < asked.size(); k++) {
-        requests[asked[k].pixel] = asked[k];
         samples[asked[k].pixel] = answers[k];
+        if (i == 0) describe_pixel(view, asked[k], answers[k], frame);
       }
     });
     if (technique.finish_pass) technique.finish_pass(world, lights, view, samples);
     parallel_ranges(int(samples.size()), 4096, [&](int begin, int end) {
       for (size_t pixel = size_t(begin); pixel < size_t(end); pixel++) {
         sums[pixel] += dvec3(samples[pixel].radiance());
-        if (i == 0) describe_pixel(view, requests[pixel], samples[pixel], frame);
+        if (i + 1 == settings.spp) frame.color[pixel] = vec3(sums[pixel] / double(settings.spp));
       }
     });
   }
-  for (size_t pixel = 0; pixel < sums.size(); pixel++)
-    frame.color[pixel] = vec3(sums[pixel] / double(settings.spp));
 }
 
 }  // namespace

@@ -114,16 +114,6 @@ void set_rays(const Lanes3& origin, const Lanes3& direction, Lanes t_max, RayPac
   store_lanes(rays.t_max, t_max);
 }
 
-MattLobeLanes make_matt(const MattSurfaceLanes& surface, const Lanes3& direction) {
-  MattLobeLanes lobes{surface.normal, surface.geometric_normal, clean(surface.base_color)};
-  uint32_t grazing = negative_lanes(dot(surface.normal, direction) >= 0);
-  for_each_lane(grazing | surface.bent, [&](int i) {
-    lobes.normal.set(i, usable_normal(surface.normal.at(i), surface.geometric_normal.at(i),
-                                      -direction.at(i)));
-  });
-  return lobes;
-}
-
 struct DirectLanes {
   Lanes3 area, punctual;
 };

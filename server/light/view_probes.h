@@ -24,7 +24,8 @@ float probe_free_path(const Transport& transport, const ViewProbes& probes);
 
 // Chooses `wanted` of the lights [begin, end) of `candidates` by their mean effect on the probes, a
 // share of them regardless of it, and deals them to `sets` sets; the light of each set is in the mean
-// that of all candidates. choose_u, deal_u: uniform in [0, 1).
+// that of all candidates. Where effects are so even that choosing would lose more than it saves, all are
+// dealt. choose_u, deal_u: uniform in [0, 1).
 struct ChosenLight {
   uint32_t light = 0, set = 0;
   float factor = 1;  // on its radiance

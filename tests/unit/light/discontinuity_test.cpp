@@ -102,6 +102,50 @@ TEST(Discontinuity, NoLightIsWonOrLost) {
   }
 }
 
+// After the window of sets, one that looks three pixels far makes a pattern three times as wide vanish.
+TEST(Discontinuity, WiderWindowTakesAWiderPattern) {
+  std::vector<Sample> samples = see_plane({0, 1, 0.3f});
+  for (int y = 0; y < height; y++)
+    for (int x = 0; x < width; x++) samples[at(x, y)].smooth = vec3(float(y % 9 * 9 + x % 9));
+  const dvec3 before = sum_of(samples);
+  filter_smooth(flat_view(), {3, 3}, samples);
+  filter_smooth(flat_view(), {3, 3, 3}, samples);
+  EXPECT_NEAR(sum_of(samples).x, before.x, 1e-6 * before.x);
+  EXPECT_NEAR(samples[at(12, 9)].smooth.x, 40, 1e-3);  // both windows are whole around it
+}
+
+// Eight pixels at once find the edges that is_edge finds one by one.
+TEST(Discontinuity, EdgesAreWhereNeighboursDiffer) {
+  std::vector<Sample> samples = see_plane({0, 1, 0.3f});
+  Rng rng(11);
+  for (Sample& s : samples) {
+    if (rng.uniform() < 0.05f) s.object = 2;
+    if (rng.uniform() < 0.05f) s.albedo = vec3(0.5f, 0.62f, 0.5f);
+    if (rng.uniform() < 0.05f) s.flags = 0;
+    if (rng.uniform() < 0.05f) s.normal = normalize(vec3(1, 0, 0));
+  }
+  const View view = flat_view();
+  const DiscontinuitySettings settings;
+  const float pixel = 2 * view.tan_half_fov / float(height);
+  std::vector<uint8_t> edges;
+  std::vector<Sample> filtered = samples;
+  filter_smooth(view, settings, filtered, &edges);
+  ASSERT_EQ(edges.size(), samples.size());
+  int found = 0;
+  for (int y = 0; y < height; y++)
+    for (int x = 0; x < width; x++) {
+      bool edge = false;
+      for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); v++)
+        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); u++)
+          edge |= (u != x || v != y) &&
+                  is_edge(samples[at(x, y)], samples[at(u, v)], settings, pixel);
+      ASSERT_EQ(edges[at(x, y)] != 0, edge) << x << "," << y;
+      found += edge;
+    }
+  EXPECT_GT(found, 50);
+  EXPECT_LT(found, width * height);
+}
+
 TEST(Discontinuity, NothingMixesAcrossEdges) {
   std::vector<Sample> objects = see_plane({0, 0, 1});
   std::vector<Sample> crease = objects, step = objects;

@@ -177,6 +177,14 @@ TEST(InstantRadiosity, EveryWindowHasAPixelOfEverySet) {
     pass.columns = n;
     pass.rows = n;
     pass.width = 16;
+    std::set<int> lists;
+    for (uint32_t pixel = 0; pixel < 16 * 16; pixel++) {
+      int list = list_of_pixel(pass, pixel);
+      ASSERT_EQ(set_of_list(pass, list), set_of_pixel(pass, pixel));
+      lists.insert(list);
+    }
+    EXPECT_EQ(lists.size(), size_t(pass.lists()));
+    EXPECT_EQ(*lists.rbegin(), pass.lists() - 1);
     for (int top = 0; top + n <= 12; top++)
       for (int left = 0; left + n <= pass.width; left++) {
         std::set<int> met;

@@ -38,7 +38,7 @@ TransportSettings few_of_many() {
 
 }  // namespace
 
-// What a region asks is in the mean worth all lights, in every set, at a place that its probes see and at
+// What a region asks is in the mean worth all lights, in every list, at a place that its probes see and at
 // one that they do not; and it is as few as it was wanted to be.
 TEST(RegionLights, AreWorthAllLights) {
   Scene scene = make_cornell_box();
@@ -47,7 +47,7 @@ TEST(RegionLights, AreWorthAllLights) {
   View view = make_view_towards(scene, {0, 0.27f, 1.3f}, {0, 0.27f, 0}, {0, 1, 0}, 0.6f, 40, 30);
   TransportSettings settings = few_of_many();
   const vec3 floor(0, 0.001f, 0.1f), ceiling(0.2f, 0.54f, -0.2f);
-  for (int set : {0, 7}) {
+  for (int list : {0, 17}) {
     Mean on_floor, on_ceiling;
     double asked = 0;
     for (uint64_t seed = 0; seed < 300; seed++) {
@@ -55,7 +55,7 @@ TEST(RegionLights, AreWorthAllLights) {
       // Pixels of the bottom row in the middle see the floor.
       int region = region_of_pixel(pass, uint32_t(29 * 40 + 20));
       ASSERT_GE(region, 0);
-      size_t cell = size_t(region * pass.sets() + set);
+      size_t cell = size_t(region * pass.lists() + list);
       double low = 0, high = 0;
       for (uint32_t k = pass.regions.first[cell]; k < pass.regions.first[cell + 1]; k++) {
         const RegionLight& one = pass.regions.lights[k];
@@ -68,7 +68,7 @@ TEST(RegionLights, AreWorthAllLights) {
     }
     EXPECT_LE(std::abs(on_floor.mean()), significance_z * on_floor.error());
     EXPECT_LE(std::abs(on_ceiling.mean()), significance_z * on_ceiling.error());
-    EXPECT_NEAR(asked / 300, 5, 0.6);  // a set gets one more or less
+    EXPECT_NEAR(asked / 300, 5, 0.6);  // a list gets one more or less
     // Where probes look, the choice is the better one: F-test, a ratio of variances of 300 draws below
     // 0.64 has probability 1e-4 if they were equal.
     double relative = on_floor.error() / 1, other = on_ceiling.error() / 1;
@@ -76,32 +76,36 @@ TEST(RegionLights, AreWorthAllLights) {
   }
 }
 
+// Also of a set so large that a share of it is looked at.
 TEST(RegionLights, ChoiceForOnePlaceIsWorthItsSet) {
   Scene scene = make_cornell_box();
   World world(scene);
   Lights lights = make_lights(world);
   View view = make_view_towards(scene, {0, 0.27f, 1.3f}, {0, 0.27f, 0}, {0, 1, 0}, 0.6f, 40, 30);
-  InstantPass pass =
-      draw_instant_pass({world, *lights.tables}, few_of_many(), view, 5, 0);
-  Bsdf bsdf;
-  bsdf.normal = bsdf.geometric_normal = {0, 1, 0};
-  bsdf.diffuse = vec3(0.5f);
-  const vec3 floor(0.1f, 0.001f, 0.1f);
-  double all = 0;
-  for (uint32_t k = pass.first[3]; k < pass.first[4]; k++)
-    all += irradiance(pass.lights[k], floor, {0, 1, 0});
-  Mean mean;
-  for (int i = 0; i < 4000; i++) {
-    RegionLight chosen[16];
-    Rng rng{uint64_t(i)};
-    int count = choose_place_lights(pass, 3, floor, bsdf, 4, rng.uniform(), chosen);
-    ASSERT_LE(count, 5);
-    double sum = 0;
-    for (int k = 0; k < count; k++)
-      sum += double(chosen[k].factor) * irradiance(pass.lights[chosen[k].light], floor, {0, 1, 0});
-    mean.add(sum);
+  for (int walks : {4, 64}) {
+    TransportSettings settings = few_of_many();
+    settings.instant.walks = walks;
+    InstantPass pass = draw_instant_pass({world, *lights.tables}, settings, view, 5, 0);
+    Bsdf bsdf;
+    bsdf.normal = bsdf.geometric_normal = {0, 1, 0};
+    bsdf.diffuse = vec3(0.5f);
+    const vec3 floor(0.1f, 0.001f, 0.1f);
+    double all = 0;
+    for (uint32_t k = pass.first[3]; k < pass.first[4]; k++)
+      all += irradiance(pass.lights[k], floor, {0, 1, 0});
+    Mean mean;
+    for (int i = 0; i < 4000; i++) {
+      RegionLight chosen[16];
+      Rng rng{uint64_t(i)};
+      int count = choose_place_lights(pass, 3, floor, bsdf, 4, rng.uniform(), chosen);
+      ASSERT_LE(count, 5);
+      double sum = 0;
+      for (int k = 0; k < count; k++)
+        sum += double(chosen[k].factor) * irradiance(pass.lights[chosen[k].light], floor, {0, 1, 0});
+      mean.add(sum);
+    }
+    expect_mean(mean, all, "four of a set");
   }
-  expect_mean(mean, all, "four of a set");
 }
 
 // A pixel at the edge of something bright shows the share that the thing covers, sooner than by one ray a

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/matt_eyes.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "light/first_surface.h"
+#include "light/matt_lanes.h"
+#include "world/surface_lanes.h"
+
+namespace wellspring {
+namespace {
+
+void set_ray(const Ray& ray, int i, RayPacket& rays) {
+  rays.origin_x[i] = ray.origin.x, rays.origin_y[i] = ray.origin.y, rays.origin_z[i] = ray.origin.z;
+  rays.direction_x[i] = ray.direction.x, rays.direction_y[i] = ray.direction.y;
+  rays.direction_z[i] = ray.direction.z;
+  rays.t_max[i] = ray.t_max;
+}
+
+// Eight of them, `first` on.
+void describe_lanes(const Transport& transport, std::span<const Request> requests,
+                    const RayPacket& rays, const Hit* hits, uint32_t lanes, size_t first,
+                    std::span<Sample> samples, std::vector<MattEye>& eyes) {
+  Lanes3 direction{load_lanes(rays.direction_x), load_lanes(rays.direction_y),
+                   load_lanes(rays.direction_z)};
+  MattSurfaceLanes surface = eval_matt_surfaces(transport.world, direction, hits, lanes);
+  MattLobeLanes lobes = make_matt(surface, direction);
+  Lanes3 origin = offset_origins(surface, surface.geometric_normal);
+  for (uint32_t bits = lanes; bits; bits &= bits - 1) {
+    int i = std::countr_zero(bits);
+    Sample& sample = samples[first + size_t(i)];
+    sample = Sample();
+    describe_place(transport.world, hits[i], surface.place(i), surface.normal.at(i), hits[i].t,
+                   sample);
+    sample.albedo = lobes.reflectance.at(i);
+    eyes.push_back({uint32_t(first) + uint32_t(i), surface.position.at(i), lobes.normal.at(i),
+                    lobes.geometric_normal.at(i), origin.at(i), surface.extent[i]});
+  }
+}
+
+}  // namespace
+
+void see_matt(const Transport& transport, std::span<const Request> requests,
+              std::span<Sample> samples, std::vector<MattEye>& eyes, std::vector<uint32_t>& others) {
+  for (size_t first = 0; first < requests.size(); first += lane_count) {
+    int count = int(std::min(requests.size() - first, size_t(lane_count)));
+    RayPacket rays{};
+    Hit hits[RayPacket::lanes];
+    uint32_t asked = 0, matt = 0;
+    for (int i = 0; i < count; i++) {
+      const Request& request = requests[first + size_t(i)];
+      bool in_solid = transport.tables.any_solid &&
+                      find_media(transport, request.ray.origin).count > 0;
+      if (!transport.tables.any_matt || in_solid || request.ray.t_min != 0) continue;
+      set_ray(request.ray, i, rays);
+      asked |= 1u << i;
+    }
+    transport.world.intersect_each(rays, asked, hits);
+    for (int i = 0; i < count; i++) {
+      if (asked >> i & 1 && hits[i].valid() && met_matt(transport, hits[i])) matt |= 1u << i;
+      else others.push_back(uint32_t(first) + uint32_t(i));
+    }
+    if (matt) describe_lanes(transport, requests, rays, hits, matt, first, samples, eyes);
+  }
+}
+
+}  // namespace wellspring
