@@ -77,7 +77,7 @@ TEST(VisitTrace, SurvivesTheDiskAndRefusesNonsense) {
 
 TEST(VisitTrace, CommittedTracesLoadAndMoveAsPeopleDo) {
   std::vector<VisitTrace> traces = load_visit_traces(WELLSPRING_SOURCE "/tests/benchmark/traces");
-  EXPECT_EQ(traces.size(), 8u);
+  EXPECT_EQ(traces.size(), 9u);
   for (const VisitTrace& trace : traces) {
     EXPECT_GT(trace_seconds(trace), 3) << trace.name;
     for (size_t i = 1; i < trace.samples.size(); i++) {
