@@ -54,6 +54,8 @@ struct Look {
   float metallic = 0, roughness = 0.7f, alpha = 1;
   vec3 emission{0};
   std::string texture;  // path of an image beside the file; empty: none
+  std::string normal_texture, metallic_roughness_texture, emission_texture;  // likewise
+  float normal_scale = 1;
   bool double_sided = false;
   // Where the figure has a material_file: its material there, which says more than the fields above.
   int material = -1;
@@ -78,6 +80,25 @@ struct EyeGain {
   float inner = 1, outer = 1, up = 1, down = 1;
 };
 
+// A joint that hangs and swings (spring_bones.h); numbers as in VRMC_springBone.
+struct SpringBone {
+  int joint = 0;
+  vec3 tail{0};  // from the joint's centre to the bone's end at rest, never zero
+  float stiffness = 1, drag = 0.5f, radius = 0;
+  vec3 gravity{0};  // direction times power, humanoid space
+  int center = -1;  // joint above it in whose frame its inertia counts; -1: humanoid space
+  std::vector<int> colliders;  // into Character::spring_colliders
+};
+
+// What swinging bones keep clear of: a ball, a capsule from `place` to `tail`, or half a space.
+struct SpringCollider {
+  int joint = 0;
+  vec3 place{0}, tail{0};  // humanoid space at rest
+  vec3 normal{0};          // of the half space's border, unit; zero: ball or capsule
+  float radius = 0;
+  bool inside = false;  // keeps what it meets inside
+};
+
 struct Character {
   std::string name;
   int loa = -1;  // level of articulation as found in the joints
@@ -100,6 +121,8 @@ struct Character {
   std::vector<JointWeight> weights;
   Skinning skinning = Skinning::linear;
   EyeGain eye_gain;
+  std::vector<SpringBone> springs;  // by joint, parents first
+  std::vector<SpringCollider> spring_colliders;
   std::vector<Motion> motions;
   // What the file says of its maker and licence: "author" -> "Jane Doe".
   std::vector<std::pair<std::string, std::string>> metadata;

@@ -89,6 +89,9 @@ std::string describe_text(const Character& character) {
   text += format("displacers   %zu (vertices): ", displacers.size()) + join(displacers) + "\n";
   for (const Motion& motion : character.motions)
     motions.push_back(motion.name + format(" (%.2f s)", double(motion.duration)));
+  if (!character.springs.empty())
+    text += format("springs      %zu joints swing, %zu colliders\n", character.springs.size(),
+                   character.spring_colliders.size());
   text += format("motions      %zu: ", motions.size()) + join(motions) + "\n";
   for (const auto& [key, value] : character.metadata)
     text += "about        " + key + ": " + value + "\n";
@@ -140,6 +143,9 @@ std::string describe_json(const Character& character) {
                               {"seconds", micro(motion.duration)},
                               {"loop", motion.loop},
                               {"tracks", motion.tracks.size()}});
+  all["springs"] = {{"joints", json::array()}, {"colliders", character.spring_colliders.size()}};
+  for (const SpringBone& bone : character.springs)
+    all["springs"]["joints"].push_back(joint_name(bone.joint));
   all["metadata"] = json::object();
   for (const auto& [key, value] : character.metadata) all["metadata"][key] = value;
   all["unknown_joints"] = unknown_joints(character);

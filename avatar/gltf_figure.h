@@ -28,6 +28,7 @@ struct GltfFigure {
 void read_gltf_joints(GltfFigure& figure);
 void read_gltf_surfaces(GltfFigure& figure);
 void read_gltf_expressions(GltfFigure& figure);
+void read_gltf_springs(GltfFigure& figure);
 void read_gltf_motions(GltfFigure& figure);
 
 // A whole figure; one without surface where the file only moves. Throws LoadError; refuses files

@@ -53,6 +53,8 @@ std::vector<size_t> choose_nodes(GltfFigure& figure) {
   for (const json& skin : items(root, "skins"))
     for (const json& joint : skin["joints"]) wanted[joint.get<size_t>()] = 1;
   for (const auto& [node, joint] : figure.vrm.joints) wanted[node] = 1;
+  for (const VrmSpringJoint& spring : figure.vrm.springs)
+    if (!figure.vrm.joints.empty()) wanted[spring.node] = 1;
   bool any = std::find(wanted.begin(), wanted.end(), 1) != wanted.end();
   std::vector<char> moving(figure.nodes.size(), 0);
   for (const json& animation : items(root, "animations"))

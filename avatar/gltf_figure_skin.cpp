@@ -57,8 +57,6 @@ void Reader::read_looks() {
         look.metallic = gltf::to_float(gltf::number(*pbr, "metallicFactor", 1));
         look.roughness = gltf::to_float(gltf::number(*pbr, "roughnessFactor", 1));
       }
-      if (gltf::find(material, "normalTexture"))
-        gltf::warn(file, at("/materials", m - 1), "normal maps are not used on figures");
       if (look.matt)
         gltf::warn(file, at("/materials", m - 1),
                    "materials drawn as cartoons (MToon, unlit) are shown matt, lit as all else is");

@@ -12,6 +12,7 @@
 //   blink, speech            -                   yes                       yes
 //   face                     -                   Perlin's flexes           all expressions
 //   noise                    -                   of the body               of face and body
+//   hair and cloth (springs) -                   yes                       yes
 //   lazy mirror, empathy     -                   -                         yes
 #pragma once
 #include <cstdint>
@@ -32,7 +33,7 @@ Detail next_detail(Detail before, float distance, const DetailWalls& walls = {})
 // What has been computed since the storyteller began; a figure far away shows it in what stands still.
 struct StorytellerWork {
   uint64_t ticks = 0, fingers = 0, eyes = 0, saccades = 0, blinks = 0, visemes = 0, flexes = 0,
-           flex_noise = 0, body_noise = 0, expressions = 0, mirror = 0, empathy = 0;
+           flex_noise = 0, body_noise = 0, expressions = 0, mirror = 0, empathy = 0, springs = 0;
   bool operator==(const StorytellerWork&) const = default;
 };
 

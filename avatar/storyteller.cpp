@@ -148,6 +148,7 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   bool same_rig = known == state.rig;
   state.rig = known;
   const Rig& rig = *state.rig;
+  if (!same_rig) state.springs = {};
   state.expressions = expressions_of(
       state, storyteller.expressions ? *storyteller.expressions : default_expressions(), same_rig);
   const ExpressionRig& expressions = *state.expressions;
@@ -244,7 +245,10 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
     plan.foot[i] = {state.stance.foot[i].facing(), state.stance.foot[i].lift()};
   }
   eval_body(rig, plan, pose);
-  if (!seen) return;
+  if (!seen) {
+    state.springs = {};
+    return;
+  }
 
   // Face.
   apply_rotators(face, expressions, pose);
@@ -255,6 +259,12 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   lids_follow(rig, expressions, pose, lids, face, words);
   protect(face, expressions, words);
   apply_controls(face, expressions, pose);
+
+  // What hangs on it.
+  if (!character.springs.empty()) {
+    tick_spring_bones(state.springs, character, dt, pose);
+    state.work.springs++;
+  }
 }
 
 vec3 eval_mouth(const StorytellerState& state, const Storyteller& storyteller, const Pose& pose) {

@@ -14,6 +14,7 @@
 #include "avatar/gesture.h"
 #include "avatar/idle.h"
 #include "avatar/mirror.h"
+#include "avatar/spring_bones.h"
 #include "avatar/stance.h"
 #include "avatar/storyteller_io.h"
 
@@ -42,6 +43,7 @@ struct StorytellerState {
   BodyLanguageState body_language;
   StanceState stance;
   FaceState face;
+  SpringBonesState springs;
   Detail detail = Detail::full;
   StorytellerWork work;
   std::array<Spring, 3> point;     // what hands point at, humanoid space, gliding from place to place

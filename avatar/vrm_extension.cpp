@@ -6,54 +6,12 @@
 #include <string_view>
 
 #include "avatar/bone_names.h"
+#include "avatar/vrm_json.h"
 
 namespace wellspring {
 namespace {
 
-using gltf::at;
-using gltf::File;
-using gltf::json;
-
-// The extension's JSON is in no schema table: types are checked where it is read.
-const json& object_in(const File& file, const json& object, const char* key, const std::string& where) {
-  static const json none = json::object();
-  const json* found = gltf::find(object, key);
-  if (!found || found->is_null()) return none;
-  if (!found->is_object()) gltf::refuse(file, where + "/" + key, "must be an object");
-  return *found;
-}
-
-const json& list_in(const File& file, const json& object, const char* key, const std::string& where) {
-  static const json none = json::array();
-  const json* found = gltf::find(object, key);
-  if (!found || found->is_null()) return none;
-  if (!found->is_array()) gltf::refuse(file, where + "/" + key, "must be a list");
-  return *found;
-}
-
-std::string text_in(const json& object, const char* key) {
-  auto found = object.is_object() ? object.find(key) : object.end();
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-float number_in(const json& object, const char* key, float otherwise) {
-  auto found = object.is_object() ? object.find(key) : object.end();
-  return found != object.end() && found->is_number() ? gltf::to_float(found->get<double>()) : otherwise;
-}
-
-// An index into a list of the file; -1 where the key is absent.
-int index_in(const File& file, const json& object, const char* key, const char* into,
-             const std::string& where) {
-  auto found = object.is_object() ? object.find(key) : object.end();
-  if (found == object.end()) return -1;
-  bool whole = found->is_number_integer() && found->get<int64_t>() >= -1;
-  int64_t index = whole ? found->get<int64_t>() : 0;
-  int64_t count = int64_t(gltf::items(file.root, into).size());
-  if (!whole || index >= count)
-    gltf::refuse(file, where + "/" + key,
-                 "is none of the file's " + std::to_string(count) + " " + into);
-  return int(index);
-}
+using namespace vrm_json;
 
 void add_bone(File& file, Vrm& vrm, const std::string& bone, int node, const std::string& where) {
   if (node < 0) return;
@@ -157,9 +115,6 @@ void read_version_0(File& file, const json& object, Vrm& vrm) {
     vrm.eye_gain = {gain("lookAtHorizontalInner"), gain("lookAtHorizontalOuter"),
                     gain("lookAtVerticalUp"), gain("lookAtVerticalDown")};
   }
-  const json& springs = object_in(file, object, "secondaryAnimation", root);
-  if (!list_in(file, springs, "boneGroups", root + "/secondaryAnimation").empty())
-    gltf::warn(file, root + "/secondaryAnimation", "spring bones do not swing: they stay as modelled");
   const json& materials = list_in(file, object, "materialProperties", root);
   for (size_t m = 0; m < materials.size(); m++) {
     std::string shader = text_in(materials[m], "shader");
@@ -197,8 +152,6 @@ void read_version_1(File& file, const json& object, Vrm& vrm) {
     vrm.eye_gain = {gain("rangeMapHorizontalInner"), gain("rangeMapHorizontalOuter"),
                     gain("rangeMapVerticalUp"), gain("rangeMapVerticalDown")};
   }
-  if (gltf::extension(file.root, "VRMC_springBone"))
-    gltf::warn(file, "/extensions/VRMC_springBone", "spring bones do not swing: they stay as modelled");
 }
 
 void read_animation(File& file, const json& object, Vrm& vrm) {
@@ -234,6 +187,7 @@ Vrm read_vrm(File& file) {
   else if (const json* older = gltf::extension(file.root, "VRM")) read_version_0(file, *older, vrm);
   else if (const json* moves = gltf::extension(file.root, "VRMC_vrm_animation"))
     read_animation(file, *moves, vrm);
+  read_vrm_springs(file, vrm);
   const json& materials = gltf::items(file.root, "materials");
   for (size_t m = 0; m < materials.size(); m++)
     if (gltf::extension(materials[m], "VRMC_materials_mtoon") ||

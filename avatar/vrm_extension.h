@@ -25,6 +25,25 @@ struct VrmExpression {
   std::vector<VrmBind> binds;
 };
 
+// Hair and cloth that swing: joints in a row, as their author tuned them (SpringBone in character.h).
+struct VrmSpringJoint {
+  size_t node = 0;
+  int tail_node = -1;  // its end; -1: the end lies `tail` away
+  vec3 tail{0};        // in the node's own frame
+  float stiffness = 1, gravity_power = 0, drag = 0.5f, hit_radius = 0;
+  vec3 gravity_direction{0, -1, 0};
+  int center = -1;                // node in whose frame its inertia counts
+  std::vector<size_t> colliders;  // into Vrm::colliders
+};
+
+struct VrmCollider {
+  size_t node = 0;
+  vec3 offset{0}, tail{0};  // in the node's own frame; a sphere's two are the same
+  vec3 normal{0};           // of a plane, else zero
+  float radius = 0;
+  bool inside = false;  // keeps what it meets inside
+};
+
 struct Vrm {
   int version = -1;                   // 0, 1; -1: no VRM file
   bool animation = false;             // VRMC_vrm_animation
@@ -33,13 +52,17 @@ struct Vrm {
   std::map<std::string, size_t> expression_nodes;  // of an animation: whose x is its weight
   EyeGain eye_gain;
   std::map<size_t, bool> matt;  // materials of MToon
+  std::vector<VrmSpringJoint> springs;  // no node twice
+  std::vector<VrmCollider> colliders;
   std::vector<std::pair<std::string, std::string>> metadata;
 };
 
 // The extensions this and gltf_figure.cpp understand, for load_gltf().
 const std::set<std::string>& vrm_extensions();
 
-// Adds to file.warnings what is not done: springs, constraints. Throws LoadError.
+// Adds to file.warnings what is not done: constraints. Throws LoadError.
 Vrm read_vrm(gltf::File& file);
+// The springs of either version (vrm_spring.cpp); read_vrm calls it last.
+void read_vrm_springs(gltf::File& file, Vrm& vrm);
 
 }  // namespace wellspring

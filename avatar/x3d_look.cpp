@@ -55,6 +55,16 @@ mat3 texture_transform(X3dFile& file, const X3dNode& node) {
   return back * size * turn * to * move;
 }
 
+// Path of the picture that `field` names; empty: none.
+std::string picture_of(X3dFile& file, const X3dNode& material, const char* field) {
+  int picture = find_child(file, material, field, {});
+  if (picture < 0) return "";
+  const X3dNode& node = file.nodes[size_t(picture)];
+  if (node.type == "ImageTexture") return find_picture(file, node);
+  warn_once(file.warnings, "texture of type " + node.type + " is not used");
+  return "";
+}
+
 }  // namespace
 
 X3dLook make_x3d_look(X3dFile& file, int appearance, const vec3* color) {
@@ -80,10 +90,13 @@ X3dLook make_x3d_look(X3dFile& file, int appearance, const vec3* color) {
       look.emission = emissive;
       int base = find_child(file, m, "baseTexture", {});
       if (base >= 0) picture = base;
-      for (const char* unused :
-           {"normalTexture", "metallicRoughnessTexture", "occlusionTexture", "emissiveTexture"})
-        if (find_child(file, m, unused, {}) >= 0)
-          warn_once(file.warnings, std::string(unused) + " of a PhysicalMaterial is not used");
+      look.normal_texture = picture_of(file, m, "normalTexture");
+      look.normal_scale = glm::clamp(float_of(file, m, "normalScale", 1), 0.0f, 100.0f);
+      look.metallic_roughness_texture = picture_of(file, m, "metallicRoughnessTexture");
+      look.emission_texture = picture_of(file, m, "emissiveTexture");
+      if (find_child(file, m, "occlusionTexture", {}) >= 0)
+        warn_once(file.warnings,
+                  "occlusionTexture of a PhysicalMaterial is not used: shadows are traced");
     } else if (m.type == "UnlitMaterial") {
       look.base_color = vec3(0);
       look.emission = linear_from_srgb(vec3_of(file, m, "emissiveColor", vec3(1)));

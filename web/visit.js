@@ -68,7 +68,10 @@ connection = make_connection({
       case 'kiosk': document.body.dataset.kiosk = message.state; break;
       case 'error':
         if (message.code === 'full') { full = true; notice(word(lang, 'full')); }
-        else console.warn(`${message.code}: ${message.message}`);
+        else if (message.code === 'storyteller_busy') {
+          notice(word(lang, 'busy'));
+          setTimeout(() => { if (!full) notice(''); }, 4000);
+        } else console.warn(`${message.code}: ${message.message}`);
         break;
     }
   },

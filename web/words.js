@@ -6,6 +6,7 @@ const words = {
     key_walk: 'walk', key_arrows: 'walk and turn', key_drag_name: 'Drag', key_drag: 'look round', key_places: 'go to a place',
     pause: 'Pause', resume: 'Go on', stop: 'Stop', restart: 'From the start', skip: 'Next sentence', key_space_name: 'Space', key_space: 'pause and go on', opening: 'Opening the doors…',
     lost: 'The line to the museum is broken. Trying again…', full: 'The museum is full just now. Please come back in a moment.',
+    busy: 'The storyteller is telling somebody at the museum a story.',
     sound_on: 'Turn sound on', sound_off: 'Turn sound off', sound_is_on: 'Sound is on.', sound_is_off: 'Sound is off.',
     invite: 'Step closer, and the castle will tell you its story.' },
   de: { menu: 'Menü', close: 'Schließen', places: 'Orte', tours: 'Rundgang', stories: 'Geschichten', storyteller: 'Wer erzählt',
@@ -13,6 +14,7 @@ const words = {
     key_walk: 'gehen', key_arrows: 'gehen und drehen', key_drag_name: 'Ziehen', key_drag: 'umsehen', key_places: 'zu einem Ort',
     pause: 'Pause', resume: 'Weiter', stop: 'Beenden', restart: 'Von vorn', skip: 'Nächster Satz', key_space_name: 'Leertaste', key_space: 'Pause und weiter', opening: 'Die Türen öffnen sich…',
     lost: 'Die Verbindung zum Museum ist unterbrochen. Neuer Versuch…', full: 'Das Museum ist gerade voll. Bitte kommen Sie gleich wieder.',
+    busy: 'Im Museum wird gerade jemandem eine Geschichte erzählt.',
     sound_on: 'Ton einschalten', sound_off: 'Ton ausschalten', sound_is_on: 'Der Ton ist an.', sound_is_off: 'Der Ton ist aus.',
     invite: 'Treten Sie näher, dann erzählt die Burg ihre Geschichte.' },
   sk: { menu: 'Ponuka', close: 'Zavrieť', places: 'Miesta', tours: 'Prehliadka', stories: 'Príbehy', storyteller: 'Kto rozpráva',
@@ -20,6 +22,7 @@ const words = {
     key_walk: 'chôdza', key_arrows: 'chôdza a otáčanie', key_drag_name: 'Ťahanie', key_drag: 'rozhliadanie', key_places: 'na miesto',
     pause: 'Pauza', resume: 'Ďalej', stop: 'Ukončiť', restart: 'Od začiatku', skip: 'Ďalšia veta', key_space_name: 'Medzerník', key_space: 'pauza a ďalej', opening: 'Otvárame brány…',
     lost: 'Spojenie s múzeom sa prerušilo. Skúšame znova…', full: 'Múzeum je práve plné. Príďte, prosím, o chvíľu.',
+    busy: 'V múzeu práve niekto počúva príbeh.',
     sound_on: 'Zapnúť zvuk', sound_off: 'Vypnúť zvuk', sound_is_on: 'Zvuk je zapnutý.', sound_is_off: 'Zvuk je vypnutý.',
     invite: 'Pristúpte bližšie a hrad vám rozpovie svoj príbeh.' },
 };

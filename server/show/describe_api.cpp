@@ -63,7 +63,8 @@ std::string describe_api() {
                "lang": "tag, the language spoken", "seconds": "number", "position": "[x, y, z] of the mouth",
                "words": "[{text, begin, end}] seconds from the first sample"},
     "kiosk": {"state": "absent, motion or person", "people": "number", "cameras": "number"},
-    "error": {"code": "word", "message": "sentence"}},
+    "error": {"code": "word, storyteller_busy among them: somebody at a kiosk is being told a story",
+              "message": "sentence"}},
   "binary": {
     "picture": {"magic": "WSF1", "fields": [
       {"offset": 4, "type": "u32", "name": "frame"}, {"offset": 8, "type": "u32", "name": "seq"},

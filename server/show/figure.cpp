@@ -7,17 +7,18 @@
 
 #include "world/gltf_image.h"
 #include "world/gltf_material.h"
+#include "world/mesh_finish.h"
 
 namespace wellspring {
 namespace {
 
 // Index of the scene's texture for a picture file; -1 where it cannot be read.
-int add_picture(Scene& scene, const std::string& path, int64_t& texels_left) {
+int add_picture(Scene& scene, const std::string& path, bool srgb, int64_t& texels_left) {
   std::ifstream file(path, std::ios::binary);
   std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
   Image image;
   std::string problem =
-      file.is_open() ? decode_image(bytes, true, image, texels_left) : "cannot be read";
+      file.is_open() ? decode_image(bytes, srgb, image, texels_left) : "cannot be read";
   if (!problem.empty()) {
     scene.warnings.push_back(path + ": " + problem);
     return -1;
@@ -28,11 +29,31 @@ int add_picture(Scene& scene, const std::string& path, int64_t& texels_left) {
   return int(scene.textures.size()) - 1;
 }
 
-Material make_material(const Look& look, int texture) {
+// The pictures of a figure that has them as files, each read once for each of its meanings.
+struct Pictures {
+  Scene& scene;
+  std::map<std::pair<std::string, bool>, int> known;
+  int64_t texels_left = image_texel_limit;
+
+  TextureRef find(const std::string& path, bool srgb) {
+    TextureRef reference;
+    if (path.empty()) return reference;
+    auto [place, added] = known.emplace(std::pair(path, srgb), -1);
+    if (added) place->second = add_picture(scene, path, srgb, texels_left);
+    reference.texture = place->second;
+    return reference;
+  }
+};
+
+Material make_material(const Look& look, Pictures& pictures) {
   Material material;
   material.name = look.name;
   material.base_color = vec4(look.base_color, look.alpha);
-  material.base_color_texture.texture = texture;
+  material.base_color_texture = pictures.find(look.texture, true);
+  material.normal_texture = pictures.find(look.normal_texture, false);
+  material.normal_scale = look.normal_scale;
+  material.metallic_roughness_texture = pictures.find(look.metallic_roughness_texture, false);
+  material.emission_texture = pictures.find(look.emission_texture, true);
   material.metallic = look.metallic;
   material.roughness = look.roughness;
   material.emission = look.emission;
@@ -60,15 +81,14 @@ int add_file_materials(Scene& scene, const std::string& path) {
     scene.textures.push_back(texture);
   }
   for (Material& material : own.materials) {
-    material.normal_texture = material.clearcoat_normal_texture = {};  // no tangents on what bends
     for (TextureRef* use :
          {&material.base_color_texture, &material.metallic_roughness_texture,
           &material.emission_texture, &material.transmission_texture, &material.thickness_texture,
           &material.specular_texture, &material.specular_color_texture, &material.clearcoat_texture,
           &material.clearcoat_roughness_texture, &material.sheen_color_texture,
-          &material.sheen_roughness_texture, &material.anisotropy_texture})
+          &material.sheen_roughness_texture, &material.anisotropy_texture, &material.normal_texture,
+          &material.clearcoat_normal_texture})
       if (use->texture >= 0) use->texture += first_texture;
-    material.anisotropy = 0;
     scene.materials.push_back(std::move(material));
   }
   return first_material;
@@ -92,8 +112,7 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
   figure.object = uint32_t(scene.objects.size());
   scene.objects.push_back(character.name.empty() ? "storyteller" : character.name);
 
-  std::map<std::string, int> textures;
-  int64_t texels_left = image_texel_limit;
+  Pictures pictures{scene, {}};
   int first_of_file = add_file_materials(scene, character.material_file);
   int first_material = int(scene.materials.size());
   for (const Look& look : character.looks) {
@@ -102,13 +121,7 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
       if (look.matt) make_matt(scene.materials.back());
       continue;
     }
-    int texture = -1;
-    if (!look.texture.empty()) {
-      auto [place, added] = textures.emplace(look.texture, -1);
-      if (added) place->second = add_picture(scene, look.texture, texels_left);
-      texture = place->second;
-    }
-    scene.materials.push_back(make_material(look, texture));
+    scene.materials.push_back(make_material(look, pictures));
   }
 
   constexpr uint32_t none = 0xffffffffu;
@@ -137,6 +150,13 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
       mesh.triangles.push_back(local);
     }
     for (uint32_t v : made.vertices) place_of[v] = none;
+    // Maps of normals need tangents, and vertices split where a picture is mirrored.
+    int uv = tangent_uv(scene.materials[size_t(mesh.material)]);
+    if (uv >= 0 && !mesh.uv[uv].empty()) {
+      std::vector<uint32_t> vertices;
+      for (uint32_t from : make_tangents(mesh, uv)) vertices.push_back(made.vertices[from]);
+      made.vertices = std::move(vertices);
+    }
     moving.push_back(std::move(mesh));
     moving_object.push_back(figure.object);
     figure.parts.push_back(std::move(made));

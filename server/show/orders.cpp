@@ -123,8 +123,24 @@ void call_teller(Show& show, size_t teller) {
       go_to_viewpoint(visitor, show.exhibit, teller_of(show)->kiosk_viewpoint);
 }
 
+const Visitor* who_asked(const Show& show) {
+  for (const Visitor& visitor : show.visitors)
+    if (visitor.link->id == show.voice.asked_by) return &visitor;
+  return nullptr;
+}
+
+// Visitors share the storyteller as equals, but nobody far away takes it from a person who stands
+// before it and is being told a story.
+bool belongs_to_a_kiosk(const Show& show, const Visitor& other) {
+  if (show.voice.story.empty() || other.kiosk) return false;
+  const Visitor* asked = who_asked(show);
+  return asked && asked->kiosk;
+}
+
 Answer obey_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
   if (!teller_of(show)) return WireError{"no_storyteller", "this exhibit has no storyteller"};
+  if (belongs_to_a_kiosk(show, visitor))
+    return WireError{"storyteller_busy", "somebody at the kiosk is being told a story"};
   if (!order.teller.empty()) {
     int teller = find_storyteller(show.exhibit, order.teller);
     if (teller < 0)
@@ -182,6 +198,15 @@ Answer obey_one(Show&, Visitor& visitor, const Bye&) {
 }
 
 }  // namespace
+
+void forget_absent_listeners(Show& show) {
+  if (show.voice.queue.empty()) return;
+  bool nobody = show.visitors.empty();
+  bool abandoned = show.voice.paused && show.voice.asked_by != 0 && !who_asked(show);
+  if (!nobody && !abandoned) return;
+  hush(show.voice);
+  show.agent_sent_at = -1e9;
+}
 
 std::optional<WireError> obey(Show& show, Visitor& visitor, const BrowserMessage& message) {
   bool may_speak = visitor.welcomed || std::holds_alternative<Hello>(message) ||

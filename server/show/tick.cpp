@@ -66,6 +66,7 @@ void hear_visitors(Show& show) {
     }
     return gone;
   });
+  forget_absent_listeners(show);
 }
 
 void hear_eyes(Show& show) {

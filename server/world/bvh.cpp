@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "world/bvh_impl.h"
+#include "world/mesh_finish.h"
 #include "world/slab.h"
 
 namespace wellspring {
@@ -94,6 +95,7 @@ void World::move(int moving, std::span<const vec3> positions, std::span<const ve
   for (size_t i = 0; i < positions.size(); i++)
     if (is_finite(positions[i])) mesh.positions[i] = positions[i];
   std::copy(normals.begin(), normals.end(), mesh.normals.begin());
+  if (int uv = w.moving_tangent_uv[size_t(moving)]; uv >= 0) update_tangents(mesh, uv);
   RTCGeometry geometry = w.moving_geometry[size_t(moving)];
   if (mesh.positions.empty()) return;
   std::memcpy(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0), mesh.positions.data(),

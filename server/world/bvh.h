@@ -97,6 +97,7 @@ class World {
 
   // Replaces a moving mesh's vertices (same counts) and shows or hides it. Call commit()
   // afterwards, while no ray is being traced. A vertex that is not finite stays where it was.
+  // Tangents, where the mesh has them, are found anew.
   void move(int moving, std::span<const vec3> positions, std::span<const vec3> normals);
   void show(int moving, bool visible);
   void commit();

@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "world/bvh_alpha.h"
 #include "world/bvh_impl.h"
+#include "world/mesh_finish.h"
 #include "world/surface.h"
 
 namespace wellspring {
@@ -237,7 +238,11 @@ void World::Impl::build_moving() {
   }
   visible.assign(moving.size(), 1);
   built_area.assign(moving.size(), 0);
-  for (const Mesh& mesh : moving) moving_boxes.push_back(box_of(mesh.positions));
+  for (const Mesh& mesh : moving) {
+    moving_boxes.push_back(box_of(mesh.positions));
+    int uv = mesh.tangents.empty() ? -1 : tangent_uv(scene->materials[size_t(mesh.material)]);
+    moving_tangent_uv.push_back(uv >= 0 && !mesh.uv[uv].empty() ? uv : -1);
+  }
   update_moving_bounds();
   rtcCommitScene(moving_scene);
 }

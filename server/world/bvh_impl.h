@@ -48,6 +48,7 @@ struct World::Impl {
   std::vector<RTCGeometry> moving_geometry;
   std::vector<char> visible;
   std::vector<Bounds> moving_boxes;
+  std::vector<int> moving_tangent_uv;  // texture coordinates of its tangents; -1: it has none
   std::vector<float> built_area;  // of a moving mesh's box when its tree was last built anew
   Bounds moving_bounds;           // of all that is visible
   bool any_moving = false;        // that is visible

@@ -40,6 +40,24 @@ vec3 any_perpendicular(vec3 n) {
   return normalize(cross(n, other));
 }
 
+// Along u over a triangle, weighted by its area; `determinant` tells which way round the picture lies.
+dvec3 face_tangent(const Mesh& mesh, const std::vector<vec2>& uv, const uvec3& t,
+                   double& determinant) {
+  dvec3 e1 = dvec3(mesh.positions[t.y]) - dvec3(mesh.positions[t.x]);
+  dvec3 e2 = dvec3(mesh.positions[t.z]) - dvec3(mesh.positions[t.x]);
+  dvec2 d1 = dvec2(uv[t.y]) - dvec2(uv[t.x]), d2 = dvec2(uv[t.z]) - dvec2(uv[t.x]);
+  determinant = d1.x * d2.y - d2.x * d1.y;
+  dvec3 tangent = e1 * d2.y - e2 * d1.y;
+  double length = glm::length(tangent);
+  if (determinant == 0 || !(length > 0) || !std::isfinite(length)) return dvec3(0);
+  return tangent * ((determinant < 0 ? -1 : 1) / length * glm::length(cross(e1, e2)));
+}
+
+vec3 upright(dvec3 sum, vec3 normal) {
+  vec3 tangent = unit_or(sum - dvec3(normal) * dot(dvec3(normal), sum), vec3(0));
+  return tangent == vec3(0) ? any_perpendicular(normal) : tangent;
+}
+
 }  // namespace
 
 void make_flat_normals(Mesh& mesh) {
@@ -83,7 +101,7 @@ int repair_normals(Mesh& mesh) {
   return int(bad.size());
 }
 
-void make_tangents(Mesh& mesh, int uv_set) {
+std::vector<uint32_t> make_tangents(Mesh& mesh, int uv_set) {
   const std::vector<vec2>& uv = mesh.uv[uv_set];
   // Side 0 and 1: vertices seen from faces whose picture is not mirrored, and from those where it
   // is.
@@ -96,17 +114,9 @@ void make_tangents(Mesh& mesh, int uv_set) {
   std::vector<char> side_of(mesh.triangles.size(), 0);
   for (size_t i = 0; i < mesh.triangles.size(); i++) {
     const uvec3& t = mesh.triangles[i];
-    dvec3 e1 = dvec3(mesh.positions[t.y]) - dvec3(mesh.positions[t.x]);
-    dvec3 e2 = dvec3(mesh.positions[t.z]) - dvec3(mesh.positions[t.x]);
-    dvec2 d1 = dvec2(uv[t.y]) - dvec2(uv[t.x]), d2 = dvec2(uv[t.z]) - dvec2(uv[t.x]);
-    double determinant = d1.x * d2.y - d2.x * d1.y;
+    double determinant = 0;
+    dvec3 tangent = face_tangent(mesh, uv, t, determinant);
     int side = determinant > 0;  // v points down in glTF, so an upright picture has it negative
-    dvec3 tangent = e1 * d2.y - e2 * d1.y;
-    double length = glm::length(tangent);
-    if (determinant == 0 || !(length > 0) || !std::isfinite(length))
-      tangent = dvec3(0);
-    else
-      tangent *= (determinant < 0 ? -1 : 1) / length * glm::length(cross(e1, e2));
     side_of[i] = char(side);
     for (int corner = 0; corner < 3; corner++) {
       sides[t[corner]].sum[side] += tangent;
@@ -118,13 +128,10 @@ void make_tangents(Mesh& mesh, int uv_set) {
   for (size_t i = 0; i < sides.size(); i++)
     for (int side = 0; side < 2; side++) {
       if (!sides[i].used[side] && !(side == 0 && !sides[i].used[1])) continue;
-      vec3 normal = mesh.normals[i];
-      dvec3 sum = sides[i].sum[side];
-      vec3 tangent = unit_or(sum - dvec3(normal) * dot(dvec3(normal), sum), vec3(0));
-      if (tangent == vec3(0)) tangent = any_perpendicular(normal);
       sides[i].vertex[side] = uint32_t(from.size());
       from.push_back(uint32_t(i));
-      tangents.push_back(vec4(tangent, side ? -1.0f : 1.0f));
+      tangents.push_back(
+          vec4(upright(sides[i].sum[side], mesh.normals[i]), side ? -1.0f : 1.0f));
     }
   mesh.tangents.clear();
   gather_vertices(mesh, from);
@@ -134,6 +141,24 @@ void make_tangents(Mesh& mesh, int uv_set) {
       uint32_t& vertex = mesh.triangles[i][corner];
       vertex = sides[vertex].vertex[int(side_of[i])];
     }
+  return from;
+}
+
+void update_tangents(Mesh& mesh, int uv_set) {
+  std::vector<dvec3> sum(mesh.positions.size(), dvec3(0));
+  double determinant = 0;
+  for (const uvec3& t : mesh.triangles) {
+    dvec3 tangent = face_tangent(mesh, mesh.uv[uv_set], t, determinant);
+    for (int corner = 0; corner < 3; corner++) sum[t[corner]] += tangent;
+  }
+  for (size_t i = 0; i < sum.size(); i++)
+    mesh.tangents[i] = vec4(upright(sum[i], mesh.normals[i]), mesh.tangents[i].w);
+}
+
+int tangent_uv(const Material& m) {
+  for (const TextureRef* map : {&m.normal_texture, &m.clearcoat_normal_texture})
+    if (map->texture >= 0) return map->uv_set;
+  return m.anisotropy > 0 ? m.anisotropy_texture.uv_set : -1;
 }
 
 }  // namespace wellspring

@@ -12,7 +12,13 @@ void make_flat_normals(Mesh& mesh);
 int repair_normals(Mesh& mesh);
 // Tangents along u of texture coordinates `uv_set`, averaged over the faces around a vertex
 // (Lengyel, Foundations of Game Engine Development 2, section 7.5). Vertices where the picture is
-// mirrored are split. Needs normals and that uv set.
-void make_tangents(Mesh& mesh, int uv_set);
+// mirrored are split. Needs normals and that uv set. Vertex i of the result is vertex answer[i] of
+// the mesh before.
+std::vector<uint32_t> make_tangents(Mesh& mesh, int uv_set);
+// The same for a mesh with tangents whose vertices have moved: they stay split as they are, and
+// keep the sign of their bitangent.
+void update_tangents(Mesh& mesh, int uv_set);
+// The set of texture coordinates that what needs tangents uses; -1: nothing does.
+int tangent_uv(const Material& material);
 
 }  // namespace wellspring

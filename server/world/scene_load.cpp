@@ -12,6 +12,7 @@
 #include "world/gltf_image.h"
 #include "world/gltf_material.h"
 #include "world/gltf_mesh.h"
+#include "world/mesh_finish.h"
 #include "gltf/pose.h"
 
 namespace wellspring {
@@ -119,7 +120,8 @@ class Builder {
   // Index of the new scene mesh, -1 if it has no triangles.
   int add_mesh(size_t mesh, size_t primitive, const Deformation& deformation) {
     BuiltMesh built =
-        build_primitive(file_, mesh, primitive, deformation, tangent_uv(mesh, primitive));
+        build_primitive(file_, mesh, primitive, deformation,
+                        tangent_uv(material_of(mesh, primitive)));
     if (built.mesh.triangles.empty()) return -1;
     check_texture_coordinates(built.mesh, mesh, primitive);
     scene_.meshes.push_back(std::move(built.mesh));
@@ -130,14 +132,6 @@ class Builder {
   const Material& material_of(size_t mesh, size_t primitive) const {
     const json& object = items(file_.root, "meshes")[mesh]["primitives"][primitive];
     return scene_.materials[size_t(integer(object, "material", -1) + 1)];
-  }
-
-  // The set of texture coordinates that what needs tangents uses; -1: nothing does.
-  int tangent_uv(size_t mesh, size_t primitive) const {
-    const Material& m = material_of(mesh, primitive);
-    for (const TextureRef* map : {&m.normal_texture, &m.clearcoat_normal_texture})
-      if (map->texture >= 0) return map->uv_set;
-    return m.anisotropy > 0 ? m.anisotropy_texture.uv_set : -1;
   }
 
   void check_texture_coordinates(const Mesh& mesh, size_t index, size_t primitive) {

@@ -43,7 +43,7 @@ def flow(p):
     x, y, z = p
     if is_moustache(p):
         t = clamp(x / 0.030)
-        return (0.30 + 0.80 * t, -0.85 + 0.10 * t, 0.10), lerp(0.0135, 0.032, smoothstep(0.10, 0.75, t))
+        return (0.45 + 0.75 * t, -0.75 + 0.10 * t, 0.10), lerp(0.0085, 0.030, smoothstep(0.10, 0.75, t))
     cheek = smoothstep(0.030, 0.055, x)
     front = smoothstep(0.030, 0.085, z)
     size = lerp(0.020, 0.062, front * smoothstep(-0.055, -0.095, y))
@@ -94,8 +94,15 @@ def lock_line(root, rng, n, lift):
         near = face(p)
         if near < least:
             p = mad(p, gradient(face, p), least - near)
-        points.append(p)
+        points.append(off_the_lips(p) if is_moustache(root) else p)
     return points
+
+
+def off_the_lips(p):
+    """A moustache is combed aside: what would hang over the mouth lies along its edge, so that speech can be read."""
+    edge = upper_lip_y(min(p[0], MOUTH_HALF)) - 0.0004
+    over = (edge - p[1]) * smoothstep(1.25 * MOUTH_HALF, 0.95 * MOUTH_HALF, p[0])
+    return (p[0] + 0.8 * over, p[1] + over, p[2]) if over > 0 else p
 
 
 def make_beard(skin, look):

@@ -147,7 +147,7 @@ def pucker(v):
     x, y = v.p[0], v.p[1]
     middle = bell(x, 0.022)
     gather = (part_y(abs(x)) - y) * 0.10
-    return (-0.40 * x * k, (gather - 0.0020 * (abs(x) / MOUTH_HALF) ** 2) * k, (0.0065 * middle + 0.0020) * k)
+    return (-0.42 * x * k, (gather - 0.0048 * (abs(x) / MOUTH_HALF) ** 2) * k, (0.0056 * middle + 0.0018) * k)
 
 
 def wide(v):
@@ -155,6 +155,15 @@ def wide(v):
     for side in (1, -1):
         k = corner(v, side)
         total = add(total, (side * 0.0068 * k, 0.0002 * k, -0.0040 * k))
+    return total
+
+
+def drop(v):
+    """The corners as an opening jaw draws them: down and in, so that the mouth is an oval and no grin."""
+    total = ZERO
+    for side in (1, -1):
+        k = corner(v, side)
+        total = add(total, (-side * 0.0026 * k, -0.0052 * k, 0))
     return total
 
 
@@ -259,19 +268,19 @@ def brow_down(v):
 # ---- the list -----------------------------------------------------------------------------------------
 VISEMES = {  # jaw (radians), then movements
     "pp": (0.0, {press: 1.0}, None),
-    "ff": (0.018, {tuck: 1.0, lip_up: 0.30}, None),
-    "th": (0.060, {lip_down: 0.20, lip_up: 0.15}, (0.0030, 0.0115)),
-    "dd": (0.045, {lip_down: 0.30, lip_up: 0.15, wide: 0.15}, (0.0060, 0.0020)),
-    "kk": (0.070, {lip_down: 0.20, lip_up: 0.10, wide: 0.10}, (-0.0010, -0.0040)),
-    "ch": (0.030, {pucker: 0.50, lip_down: 0.45, lip_up: 0.45}, (0.0030, 0.0)),
-    "ss": (0.016, {wide: 0.40, lip_down: 0.45, lip_up: 0.25}, (0.0030, 0.0)),
-    "nn": (0.055, {lip_down: 0.20, lip_up: 0.10, wide: 0.10}, (0.0065, 0.0010)),
-    "rr": (0.050, {pucker: 0.38, lip_down: 0.25, lip_up: 0.10}, (0.0040, -0.0030)),
-    "aa": (0.185, {lip_down: 0.20, lip_up: 0.22}, (-0.0010, 0.0)),
-    "e": (0.100, {wide: 0.45, lip_down: 0.20, lip_up: 0.18}, (0.0, 0.0020)),
-    "ih": (0.055, {wide: 0.60, lip_down: 0.30, lip_up: 0.20}, (0.0020, 0.0020)),
-    "oh": (0.135, {pucker: 0.62, lip_up: 0.15}, (-0.0010, -0.0020)),
-    "ou": (0.050, {pucker: 0.98, lip_down: 0.22, lip_up: 0.20}, (0.0, -0.0030)),
+    "ff": (0.018, {tuck: 1.0, lip_up: 0.35}, None),
+    "th": (0.060, {drop: 0.25, lip_down: 0.25, lip_up: 0.22}, (0.0030, 0.0115)),
+    "dd": (0.045, {drop: 0.15, lip_down: 0.35, lip_up: 0.25, wide: 0.15}, (0.0060, 0.0020)),
+    "kk": (0.070, {drop: 0.30, lip_down: 0.20, lip_up: 0.15, wide: 0.10}, (-0.0010, -0.0040)),
+    "ch": (0.030, {pucker: 0.75, lip_down: 0.60, lip_up: 0.60}, (0.0030, 0.0)),
+    "ss": (0.016, {wide: 0.40, lip_down: 0.55, lip_up: 0.40}, (0.0030, 0.0)),
+    "nn": (0.055, {drop: 0.20, lip_down: 0.25, lip_up: 0.15, wide: 0.10}, (0.0065, 0.0010)),
+    "rr": (0.050, {pucker: 0.55, drop: 0.20, lip_down: 0.30, lip_up: 0.20}, (0.0040, -0.0030)),
+    "aa": (0.185, {drop: 1.00, lip_down: 0.20, lip_up: 0.32}, (-0.0010, 0.0)),
+    "e": (0.100, {drop: 0.40, wide: 0.40, lip_down: 0.25, lip_up: 0.32}, (0.0, 0.0020)),
+    "ih": (0.055, {drop: 0.15, wide: 0.55, lip_down: 0.40, lip_up: 0.45}, (0.0020, 0.0020)),
+    "oh": (0.130, {pucker: 0.95, drop: 0.90, lip_up: 0.60}, (-0.0010, -0.0020)),
+    "ou": (0.060, {pucker: 1.25, drop: 0.50, lip_down: 0.15, lip_up: 0.55}, (0.0, -0.0030)),
 }
 
 
@@ -310,7 +319,7 @@ def controls(lids):
         "nose_wrinkle": wrinkle,
     }
     table = {name: (lambda v, move=move: move(v.skin)) for name, move in table.items()}
-    shapes = {"mouth_open": lambda v: shape(v, 0.24, {lip_down: 0.10, lip_up: 0.10}, None)}
+    shapes = {"mouth_open": lambda v: shape(v, 0.24, {drop: 1.2, lip_down: 0.10, lip_up: 0.15}, None)}
     for name, (angle, movements, tongue_move) in VISEMES.items():
         shapes["viseme_" + name] = lambda v, a=angle, m=movements, t=tongue_move: shape(v, a, m, t)
     return {**table, **shapes}

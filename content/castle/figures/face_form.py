@@ -191,7 +191,7 @@ def wrinkles(x, y):
             off = y - forehead_line(x, k)
             h += depth * (0.00035 * bell(off - 0.0030, 0.0026) - 0.00060 * bell(off, 0.0012)) * smoothstep(0.044, 0.026, x)
     elif y > 0.006 and x < 0.012:
-        h -= 0.0006 * bell(x - 0.0052, 0.0012) * bell(y - 0.019, 0.006)
+        h -= 0.0003 * bell(x - 0.0052, 0.0012) * bell(y - 0.019, 0.006)
     if x > 0.044 and -0.02 < y < 0.02:
         for a, size in ((0.42, 0.013), (0.05, 0.015), (-0.33, 0.013)):
             dx, dy = x - 0.0475, y + 0.0005

@@ -50,7 +50,7 @@ LOWER_WIDTHS = [0.0056, 0.0060, 0.0068, 0.0070, 0.0072, 0.0100]
 
 def arch(s, upper):
     """Point (x, z) of the dental arch at length s from the middle, and its outward direction."""
-    front = 0.0905 if upper else 0.0882
+    front = 0.0917 if upper else 0.0890
     radius = 0.0235 if upper else 0.0218
     a = s / radius
     if a < pi / 2 * 0.86:
@@ -68,7 +68,7 @@ def make_teeth(upper, tooth_look, gum_look):
     weights = SKULL if upper else JAW
     tag = (name + "_teeth",)
     grow = -1 if upper else 1  # direction from gum to edge
-    edge_y = MOUTH_Y - 0.0034 if upper else MOUTH_Y - 0.0036
+    edge_y = MOUTH_Y - 0.0040 if upper else MOUTH_Y - 0.0036
     widths = WIDTHS if upper else LOWER_WIDTHS
     heights = [0.0098, 0.0086, 0.0096, 0.0080, 0.0074, 0.0070, 0.0065] if upper else \
         [0.0078, 0.0080, 0.0088, 0.0078, 0.0072, 0.0068, 0.0065]

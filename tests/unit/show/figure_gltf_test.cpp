@@ -2,7 +2,10 @@
 // Materials of glTF figures come from the reader that scenes use.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "avatar/character_load.h"
+#include "frame/picture_file.h"
 #include "show/figure.h"
 #include "unit/avatar/gltf_person.h"
 
@@ -14,6 +17,7 @@ struct Made {
   Scene scene;
   std::vector<Mesh> moving;
   std::vector<uint32_t> objects;
+  Figure figure;
 };
 
 Made make(const Asset& asset, const std::map<std::string, std::string>& files = {}) {
@@ -22,7 +26,7 @@ Made make(const Asset& asset, const std::map<std::string, std::string>& files = 
   Made made;
   made.character = load_character(folder.write("person.glb", asset.glb()));
   made.scene.materials.push_back({});
-  make_figure(made.character, made.scene, made.moving, made.objects);
+  made.figure = make_figure(made.character, made.scene, made.moving, made.objects);
   return made;
 }
 
@@ -65,6 +69,75 @@ TEST(FigureOfGltf, CartoonsAreShownMatt) {
   bool said = false;
   for (const std::string& warning : made.character.warnings) said = said || warning.find("cartoons") != std::string::npos;
   EXPECT_TRUE(said);
+}
+
+// A person whose skin has a map of normals, with u along x and v down.
+Asset mapped(json material) {
+  material["normalTexture"] = {{"index", 0}, {"scale", 0.5}};
+  Asset asset = painted(material);
+  asset.root["textures"] = json::array({{{"source", 0}}});
+  asset.root["images"] = json::array({{{"uri", "normals.png"}}});
+  std::vector<float> uv;
+  for (const test::PersonBone& bone : test::person_bones())
+    for (int corner = 0; corner < 8; corner++) {
+      vec3 p = (corner & 1) ? bone.to : bone.place;
+      uv.push_back(p.x + ((corner & 1) ? 0.03f : -0.03f) + 0.3f * ((corner & 4) ? 0.03f : -0.03f));
+      uv.push_back(-p.y - ((corner & 2) ? 0.03f : -0.03f));
+    }
+  asset.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = asset.add_floats("VEC2", 2, uv);
+  return asset;
+}
+
+// One flat texel, as a PNG of stored bytes.
+std::string flat_normals() {
+  Frame frame;
+  frame.width = frame.height = 2;
+  frame.color.assign(4, vec3(0.5f, 0.5f, 1));
+  TempFolder folder;
+  std::string path = folder.write("flat.png", "");
+  save_picture(path, frame, Tonemap{});
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(FigureOfGltf, TangentsOfNormalMapsFollowTheBentSkin) {
+  Made made = make(mapped({{"name", "skin"}}), {{"normals.png", flat_normals()}});
+  ASSERT_GE(worn(made).normal_texture.texture, 0);
+  EXPECT_FLOAT_EQ(worn(made).normal_scale, 0.5f);
+  ASSERT_EQ(made.moving[0].tangents.size(), made.moving[0].positions.size());
+  EXPECT_GT(made.moving[0].positions.size(), made.character.positions.size())
+      << "split where the picture is seen mirrored, on the back";
+
+  // In a World of its own: turned, and with one arm bent.
+  std::vector<vec4> rest = made.moving[0].tangents;
+  World world(made.scene, made.moving, made.objects);
+  Pose pose = make_rest_pose(made.character);
+  int elbow = find_joint(made.character, "l_elbow");
+  ASSERT_GE(elbow, 0);
+  pose.rotations[size_t(elbow)] = glm::angleAxis(1.1f, vec3(0, 0, 1));
+  quat turned = glm::angleAxis(0.8f, glm::normalize(vec3(0.2f, 1, 0.1f)));
+  SkinScratch scratch;
+  pose_figure(world, made.figure, made.character, pose, glm::mat4_cast(turned), scratch);
+  world.commit();
+  const Mesh& bent = world.mesh_of(0);
+  ASSERT_EQ(bent.tangents.size(), rest.size());
+  size_t arm = 0;
+  for (size_t i = 0; i < rest.size(); i++) {
+    uint32_t v = made.figure.parts[0].vertices[i];
+    int joint = made.character.weights[made.character.first_weight[v]].joint;
+    quat turn = turned;
+    for (int j = joint; j >= 0; j = made.character.joints[size_t(j)].parent)
+      if (j == elbow) turn = turned * pose.rotations[size_t(elbow)], arm++;
+    EXPECT_GT(dot(vec3(bent.tangents[i]), turn * vec3(rest[i])), 0.999f) << "vertex " << i;
+    EXPECT_EQ(bent.tangents[i].w, rest[i].w);
+    EXPECT_NEAR(dot(vec3(bent.tangents[i]), bent.normals[i]), 0, 1e-4f);
+  }
+  EXPECT_GT(arm, 8u);
+}
+
+TEST(FigureOfGltf, WhatNeedsNoTangentsHasNone) {
+  Made made = make(painted({{"name", "plain"}}));
+  EXPECT_TRUE(made.moving[0].tangents.empty());
 }
 
 TEST(FigureOfGltf, MissingAndBrokenPicturesAreTold) {

@@ -322,6 +322,69 @@ TEST(VoiceWithSpeech, SkippingLeavesTheFaceAsIfAllHadBeenTold) {
   EXPECT_TRUE(voice.queue.empty() && voice.story.empty());
 }
 
+// ---- one storyteller for all ----
+
+TEST_F(SoundTest, AnybodyMayStopWhatAnotherAskedForAndBothAreTold) {
+  size_t a = join("en"), b = join("en");
+  run(0.2);
+  order(a, R"({"type":"storyteller","story":"tale"})");
+  run(0.4);
+  EXPECT_EQ(peers[b].speech.at(0)["text"], "One.") << "who is there listens in";
+  order(b, R"({"type":"storyteller","action":"stop"})");
+  run(0.2);
+  EXPECT_EQ(show->voice.story, "");
+  for (size_t peer : {a, b}) {
+    EXPECT_EQ(peers[peer].speech.back()["action"], "stop");
+    EXPECT_EQ(peers[peer].subtitles.back()["text"], "");
+  }
+}
+
+TEST_F(SoundTest, AStoryGoesOnWithoutWhoAskedUnlessItWasPaused) {
+  for (bool paused : {false, true}) {
+    size_t a = join("en"), b = join("en");
+    run(0.2);
+    order(a, R"({"type":"storyteller","story":"tale"})");
+    run(0.4);
+    if (paused) order(a, R"({"type":"storyteller","action":"pause"})");
+    run(0.2);
+    order(a, R"({"type":"bye"})");
+    run(0.2);
+    EXPECT_EQ(show->voice.story, paused ? "" : "tale");
+    order(b, R"({"type":"bye"})");
+    run(0.2);
+    EXPECT_EQ(show->voice.story, "") << "nobody is left to hear it";
+    EXPECT_TRUE(show->voice.queue.empty());
+  }
+}
+
+TEST_F(SoundTest, NobodyFarAwayTakesTheStorytellerFromWhoStandsBeforeIt) {
+  size_t a = join("en"), b = join("en");
+  run(0.2);
+  show->visitors[0].kiosk = true;
+  order(a, R"({"type":"storyteller","story":"tale"})");
+  run(0.4);
+  uint64_t refused = show->totals.refused_messages;
+  for (const char* text : {R"("action":"stop")", R"("action":"pause")", R"("visible":false)", R"("teller":"otto")", R"("story":"tale")"}) {
+    order(b, R"({"type":"storyteller",)" + std::string(text) + "}");
+    run(0.08);
+  }
+  EXPECT_EQ(show->totals.refused_messages, refused + 5);
+  EXPECT_EQ(show->voice.story, "tale");
+  EXPECT_EQ(show->voice.asked_by, peers[a].link->id);
+  EXPECT_TRUE(show->storyteller_visible);
+  EXPECT_EQ(show->teller, 0u);
+  EXPECT_FALSE(show->voice.paused);
+  // The kiosk may, and afterwards everybody may again.
+  order(a, R"({"type":"storyteller","action":"stop"})");
+  run(0.1);
+  order(b, R"({"type":"storyteller","story":"tale"})");
+  run(0.1);
+  EXPECT_EQ(show->voice.asked_by, peers[b].link->id);
+  order(a, R"({"type":"storyteller","action":"stop"})");
+  run(0.1);
+  EXPECT_EQ(show->voice.story, "") << "who stands before it comes first";
+}
+
 // ---- the narrator of a tour ----
 
 TEST_F(SoundTest, ATourIsHeardByItsVisitorAloneAndEverywhere) {
