@@ -67,24 +67,48 @@ Frame frame_of(const Character& character, const Pose& pose, size_t j, const std
   return frame;
 }
 
-// How far and which way a ball of `radius` at `place` must go to leave the collider; zero: it need not.
-vec3 way_out(const SpringCollider& collider, const Character& character, const std::vector<Frame>& frames,
-             vec3 place, float radius) {
+// A bone's end at `pivot + length * way`, and how it must turn to keep clear of a collider: whatever its
+// form, `way` must keep its share along some axis on one side of a border.
+struct Reach {
+  vec3 pivot;
+  float length, radius;
+};
+
+vec3 keep_side(vec3 way, vec3 axis, float border, bool above) {
+  float share = dot(way, axis);
+  if (above ? share >= border : share <= border) return way;
+  float h = std::clamp(border, -1.0f, 1.0f);
+  vec3 across = unit_or(way - axis * share, any_across(axis));
+  return unit_or(axis * h + across * std::sqrt(1 - h * h), way);
+}
+
+vec3 keep_clear(const SpringCollider& collider, const Character& character,
+                const std::vector<Frame>& frames, const Reach& reach, vec3 way) {
   const Frame& frame = frames[size_t(collider.joint)];
   vec3 center = character.joints[size_t(collider.joint)].center;
   vec3 a = frame.center + frame.rotation * (collider.place - center);
   if (collider.normal != vec3(0)) {
     vec3 normal = frame.rotation * collider.normal;
-    return normal * std::max(radius - dot(place - a, normal), 0.0f);
+    return keep_side(way, normal, (reach.radius - dot(reach.pivot - a, normal)) / reach.length, true);
   }
   vec3 along = frame.rotation * (collider.tail - collider.place);
   float square = dot(along, along);
-  if (square > 0) a += along * std::clamp(dot(place - a, along) / square, 0.0f, 1.0f);
-  vec3 out = place - a;
-  float distance = glm::length(out);
-  vec3 way = unit_or(out, vec3(0, 0, 1));
-  if (collider.inside) return way * std::min(collider.radius - radius - distance, 0.0f);
-  return way * std::max(collider.radius + radius - distance, 0.0f);
+  float apart = collider.inside ? std::max(collider.radius - reach.radius, 0.0f)
+                                : collider.radius + reach.radius;
+  for (int round = 0; round < (square > 0 ? 4 : 1); round++) {  // the nearest ball of a capsule moves
+    vec3 ball = a, end = reach.pivot + reach.length * way;
+    if (square > 0) ball += along * std::clamp(dot(end - a, along) / square, 0.0f, 1.0f);
+    vec3 axis = ball - reach.pivot;
+    float distance = glm::length(axis);
+    if (!(distance > 1e-6f)) break;  // wherever it turns
+    // |length way - distance axis| against `apart`, by the law of cosines.
+    float border = (reach.length * reach.length + distance * distance - apart * apart) /
+                   (2 * reach.length * distance);
+    vec3 next = keep_side(way, axis / distance, border, collider.inside);
+    if (next == way) break;
+    way = next;
+  }
+  return way;
 }
 
 }  // namespace
@@ -132,13 +156,13 @@ void tick_spring_bones(SpringBonesState& state, const Character& character, floa
       way = unit_or(rotation_of(off) * wanted, wanted);
     }
     for (int c : bone.colliders) {
-      vec3 out = way_out(character.spring_colliders[size_t(c)], character, frames,
-                         frame.center + way * length, bone.radius);
-      if (out == vec3(0)) continue;
-      way = unit_or(way * length + out, way);
-      vec3 normal = unit_or(out, vec3(0)), velocity = cross(turning, way) * length;
+      vec3 clear = keep_clear(character.spring_colliders[size_t(c)], character, frames,
+                              {frame.center, length, bone.radius}, way);
+      if (clear == way) continue;
+      vec3 normal = unit_or(clear - way, vec3(0)), velocity = cross(turning, clear);
       velocity -= normal * std::min(dot(velocity, normal), 0.0f);  // what met it goes no further in
-      turning = cross(way, velocity) / length;
+      turning = cross(clear, velocity);
+      way = clear;
     }
     if (!is_finite(way) || !is_finite(turning) || !is_finite(frame.center)) way = modelled, turning = vec3(0);
     quat back = glm::conjugate(base.rotation);
