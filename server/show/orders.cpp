@@ -95,6 +95,20 @@ Answer obey_one(Show& show, Visitor& visitor, const ViewpointTo& to) {
   return {};
 }
 
+// Subtitles go with what is broken off.
+void clear_subtitle(Visitor& visitor) {
+  visitor.link->send_text(subtitle_news("", visitor.lang, "", 0));
+}
+
+void fall_silent(Show& show) {
+  bool shown = show.voice.started;
+  hush(show.voice);
+  for (Visitor& visitor : show.visitors) {
+    const Voice& own = visitor.narration.voice;
+    if (shown && visitor.welcomed && (own.queue.empty() || own.paused)) clear_subtitle(visitor);
+  }
+}
+
 Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
   switch (order.action) {
     case TourAction::play: {
@@ -103,12 +117,15 @@ Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
       int tour = resume ? visitor.tour.tour : find_tour(show.exhibit, order.name);
       if (tour < 0) return WireError{"unknown_tour", "there is no tour '" + order.name + "'"};
       visitor.move = visitor.velocity = vec3(0);
-      if (show.voice.asked_by == visitor.link->id) hush(show.voice);  // one voice at a time
+      if (show.voice.asked_by == visitor.link->id) fall_silent(show);  // one voice at a time
       start_tour(visitor.tour, visitor.narration.voice, tour, show.exhibit, show.roads, visitor.view);
       break;
     }
     case TourAction::pause: pause_tour(visitor.tour, visitor.narration.voice); break;
-    case TourAction::stop: stop_tour(visitor.tour, visitor.narration.voice); break;
+    case TourAction::stop:
+      if (visitor.narration.voice.started) clear_subtitle(visitor);
+      stop_tour(visitor.tour, visitor.narration.voice);
+      break;
   }
   visitor.state_sent_at = -1e9;
   return {};
@@ -117,6 +134,7 @@ Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
 // Kiosks stand before whoever is there.
 void call_teller(Show& show, size_t teller) {
   if (teller == show.teller) return;
+  fall_silent(show);
   change_teller(show, teller);
   for (Visitor& visitor : show.visitors)
     if (visitor.welcomed && visitor.kiosk && visitor.tour.state == TourRide::State::none)
@@ -162,7 +180,7 @@ Answer obey_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
   uint64_t asked_by = show.voice.asked_by;
   if (order.action == "pause") pause_voice(show.voice);
   else if (order.action == "play") resume_voice(show.voice);
-  else if (order.action == "stop") hush(show.voice);
+  else if (order.action == "stop") fall_silent(show);
   else if (order.action == "restart" && telling) tell(show.voice, *telling);
   else if (order.action == "skip" && telling) tell(show.voice, *telling, show.voice.sentence + 1);
   if (!show.voice.queue.empty()) show.voice.asked_by = asked_by;
@@ -204,7 +222,7 @@ void forget_absent_listeners(Show& show) {
   bool nobody = show.visitors.empty();
   bool abandoned = show.voice.paused && show.voice.asked_by != 0 && !who_asked(show);
   if (!nobody && !abandoned) return;
-  hush(show.voice);
+  fall_silent(show);
   show.agent_sent_at = -1e9;
 }
 

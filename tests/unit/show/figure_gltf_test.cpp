@@ -81,8 +81,9 @@ Asset mapped(json material) {
   for (const test::PersonBone& bone : test::person_bones())
     for (int corner = 0; corner < 8; corner++) {
       vec3 p = (corner & 1) ? bone.to : bone.place;
-      uv.push_back(p.x + ((corner & 1) ? 0.03f : -0.03f) + 0.3f * ((corner & 4) ? 0.03f : -0.03f));
-      uv.push_back(-p.y - ((corner & 2) ? 0.03f : -0.03f));
+      p += vec3((corner & 1) ? 0.03f : -0.03f, (corner & 2) ? 0.03f : -0.03f, (corner & 4) ? 0.03f : -0.03f);
+      uv.push_back(p.x + 0.2f * p.y + 0.3f * p.z);  // no face of the boxes lies along u or v
+      uv.push_back(0.15f * p.x - p.y + 0.25f * p.z);
     }
   asset.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = asset.add_floats("VEC2", 2, uv);
   return asset;
@@ -133,6 +134,34 @@ TEST(FigureOfGltf, TangentsOfNormalMapsFollowTheBentSkin) {
     EXPECT_NEAR(dot(vec3(bent.tangents[i]), bent.normals[i]), 0, 1e-4f);
   }
   EXPECT_GT(arm, 8u);
+}
+
+// The same pictures as an X3D 4 file names them.
+TEST(FigureOfX3d, WearsThePicturesOfItsMaterial) {
+  TempFolder folder;
+  folder.write("normals.png", flat_normals());
+  std::string path = folder.write("figure.x3d", R"(<X3D><Scene><HAnimHumanoid>
+    <HAnimJoint name='humanoid_root' containerField='skeleton'><HAnimSegment name='sacrum'><Shape><Appearance>
+      <PhysicalMaterial normalScale='0.7'>
+        <ImageTexture containerField='normalTexture' url='"normals.png"'/>
+        <ImageTexture containerField='metallicRoughnessTexture' url='"normals.png"'/>
+        <ImageTexture containerField='emissiveTexture' url='"gone.png"'/>
+        <ImageTexture containerField='occlusionTexture' url='"normals.png"'/>
+      </PhysicalMaterial></Appearance><Box/></Shape></HAnimSegment></HAnimJoint></HAnimHumanoid></Scene></X3D>)");
+  Made made;
+  made.character = load_character(path);
+  made.scene.materials.push_back({});
+  made.figure = make_figure(made.character, made.scene, made.moving, made.objects);
+  const Material& material = worn(made);
+  ASSERT_GE(material.normal_texture.texture, 0);
+  EXPECT_FLOAT_EQ(material.normal_scale, 0.7f);
+  EXPECT_EQ(material.metallic_roughness_texture.texture, material.normal_texture.texture) << "read once";
+  EXPECT_EQ(material.emission_texture.texture, -1);
+  EXPECT_FALSE(made.moving[0].tangents.empty());
+  size_t said = 0;
+  for (const std::string& warning : made.character.warnings)
+    said += warning.find("occlusionTexture") != std::string::npos || warning.find("gone.png") != std::string::npos;
+  EXPECT_EQ(said, 2u);
 }
 
 TEST(FigureOfGltf, WhatNeedsNoTangentsHasNone) {

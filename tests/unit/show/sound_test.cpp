@@ -360,7 +360,7 @@ TEST_F(SoundTest, AStoryGoesOnWithoutWhoAskedUnlessItWasPaused) {
 TEST_F(SoundTest, NobodyFarAwayTakesTheStorytellerFromWhoStandsBeforeIt) {
   size_t a = join("en"), b = join("en");
   run(0.2);
-  show->visitors[0].kiosk = true;
+  show->visitors.front().kiosk = true;
   order(a, R"({"type":"storyteller","story":"tale"})");
   run(0.4);
   uint64_t refused = show->totals.refused_messages;
@@ -413,7 +413,9 @@ TEST_F(SoundTest, ATourIsHeardByItsVisitorAloneAndEverywhere) {
   EXPECT_EQ(peers[a].speech.back()["action"], "start");
   EXPECT_EQ(peers[a].speech.back()["text"], "Here");
   order(a, R"({"type":"tour","action":"stop"})");
-  run(0.1);
+  run(0.03);
+  EXPECT_EQ(peers[a].subtitles.back()["text"], "") << "the line goes with the voice";
+  run(0.07);
   // What the storyteller says to the other is heard again.
   ASSERT_GE(peers[a].speech.size(), 5u);
   EXPECT_EQ(peers[a].speech[3]["action"], "stop");
