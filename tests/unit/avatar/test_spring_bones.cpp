@@ -8,6 +8,7 @@
 #include <complex>
 
 #include "avatar/character_load.h"
+#include "avatar/describe.h"
 #include "avatar/storyteller.h"
 #include "base/rng.h"
 #include "unit/avatar/figures.h"
@@ -243,6 +244,8 @@ TEST(SpringBones, OfVersion1AreRead) {
   ASSERT_EQ(character.spring_colliders.size(), 2u);
   EXPECT_LT(glm::length(character.spring_colliders[0].place - vec3(0, 1.62f, 0)), 1e-4f);
   EXPECT_LT(glm::length(character.spring_colliders[1].tail - vec3(0, 1.62f, 0)), 1e-4f);
+
+  EXPECT_NE(describe_text(character).find("1 joints swing, 2 colliders"), std::string::npos);
 
   asset.root["extensions"]["VRMC_springBone"]["colliderGroups"][0]["colliders"][0] = 7;
   EXPECT_THROW(figure_of(asset), std::runtime_error);
