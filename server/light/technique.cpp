@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
 
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "light/pixel_requests.h"
@@ -32,10 +34,16 @@ constexpr int pass_tile = 24;
 // Samples of a tile that it gets at once elsewhere: few enough to stay in a core's cache.
 constexpr size_t most_at_once = 256;
 
-bool is_light(vec3 c) {  // NaN is not
+// Light of a sample is finite and not negative. Bit by bit: one branch for all.
+bool is_light(const Sample& sample) {
   constexpr float most = std::numeric_limits<float>::max();
-  // Bit by bit: one branch for all.
-  return (c.x >= 0) & (c.y >= 0) & (c.z >= 0) & (c.x <= most) & (c.y <= most) & (c.z <= most);
+  static_assert(offsetof(Sample, rest) == offsetof(Sample, albedo) + 6 * sizeof(float));
+  const vec3 sum = sample.radiance();
+  const Lanes first = load_lanes(&sample.albedo.x);  // all but the last number of `rest`
+  const Lanes others = {sample.rest.z, sum.x, sum.y, sum.z, 0, 0, 0, 0}, zero{};
+  // NaN is neither.
+  LaneMask fine = (first >= zero) & (first <= most) & (others >= zero) & (others <= most);
+  return negative_lanes(fine) == 0xff;
 }
 
 }  // namespace
@@ -51,9 +59,7 @@ const Technique* find_technique(std::string_view name) {
 void finish_samples(const Lights& lights, const TransportSettings& settings,
                     std::span<Sample> samples) {
   for (Sample& sample : samples) {
-    bool light = is_light(sample.albedo) & is_light(sample.smooth) & is_light(sample.rest) &
-                 is_light(sample.radiance());
-    if (!light) {
+    if (!is_light(sample)) {
       lights.bad_samples->fetch_add(1, std::memory_order_relaxed);
       sample.albedo = sample.smooth = sample.rest = vec3(0);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light_rays.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <array>
@@ -87,14 +88,15 @@ Scene load_polygons(const std::filesystem::path& file) {
       }
       if (corner.size() < 3) continue;
       Mesh& mesh = scene.meshes[size_t(current)];
-      uint32_t first = uint32_t(mesh.positions.size());
-      vec3 normal = normalize(cross(corner[1] - corner[0], corner[2] - corner[0]));
-      for (vec3 p : corner) {
-        mesh.positions.push_back(p);
-        mesh.normals.push_back(normal);
+      for (size_t i = 2; i < corner.size(); i++) {  // each with its own normal: not all are plane
+        uint32_t first = uint32_t(mesh.positions.size());
+        vec3 normal = normalize(cross(corner[i - 1] - corner[0], corner[i] - corner[0]));
+        for (vec3 p : {corner[0], corner[i - 1], corner[i]}) {
+          mesh.positions.push_back(p);
+          mesh.normals.push_back(normal);
+        }
+        mesh.triangles.push_back({first, first + 1, first + 2});
       }
-      for (uint32_t i = 2; i < corner.size(); i++)
-        mesh.triangles.push_back({first, first + i - 1, first + i});
     }
   }
   return scene;
@@ -138,20 +140,37 @@ Yardstick load_yardstick(const std::filesystem::path& settings) {
   return box;
 }
 
-// Millions of rays a second by the other program's own count; 0: it did not say.
-double run_other(const std::filesystem::path& settings, int frames) {
+double processor_seconds(int of) {
+  rusage use;
+  getrusage(of, &use);
+  auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  return seconds(use.ru_utime) + seconds(use.ru_stime);
+}
+
+// What the other program says of itself, and the processor time that the system says of it.
+struct OtherRun {
+  double rays_per_second = 0;  // 0: it did not say
+  double processor_seconds_per_ray = 0;
+};
+OtherRun run_other(const std::filesystem::path& settings, int frames) {
+  constexpr int before = 2;  // frames that it draws and does not count
   std::string command = "cd '" + settings.parent_path().string() + "' && timeout 300 pathtracer -c " +
                         settings.filename().string() + " --size " + std::to_string(width) + " " +
-                        std::to_string(height) + " --benchmark 2 " + std::to_string(frames) +
-                        " 2>/dev/null </dev/null";
+                        std::to_string(height) + " --benchmark " + std::to_string(before) + " " +
+                        std::to_string(frames) + " 2>/dev/null </dev/null";
+  double began = processor_seconds(RUSAGE_CHILDREN);
   FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) return 0;
-  double rate = 0;
+  if (!pipe) return {};
+  double millions = 0, frames_per_second = 0;
   std::array<char, 512> line;
-  while (std::fgets(line.data(), int(line.size()), pipe))
-    std::sscanf(line.data(), "BENCHMARK_RENDER_MRAYPS_AVG %lf", &rate);
+  while (std::fgets(line.data(), int(line.size()), pipe)) {
+    std::sscanf(line.data(), "BENCHMARK_RENDER_MRAYPS_AVG %lf", &millions);
+    std::sscanf(line.data(), "BENCHMARK_RENDER_AVG %lf", &frames_per_second);
+  }
   pclose(pipe);
-  return rate;
+  if (!(millions > 0) || !(frames_per_second > 0)) return {};
+  double rays = millions * 1e6 / frames_per_second * (frames + before);
+  return {millions * 1e6, (processor_seconds(RUSAGE_CHILDREN) - began) / rays};
 }
 
 std::filesystem::path find_settings() {
@@ -199,30 +218,37 @@ void bench_light_rays(BenchReport& report, const BenchOptions& options) {
   settings.spp = options.quick ? 2 : 4;
   settings.transport.max_depth = their_path_length + 1;  // edges: the last shadow ray is one
   double rays = count_rays(path, world, lights, box.view, settings);
-  std::vector<double> ours, theirs, ratios;
+  std::vector<double> ours, theirs, ratios, processor_ratios;
   for (int turn = 0; turn < (options.quick ? 3 : 7); turn++) {
-    double other = run_other(settings_file, options.quick ? 8 : 16);
-    if (!(other > 0)) {
+    OtherRun other = run_other(settings_file, options.quick ? 8 : 16);
+    if (!(other.rays_per_second > 0)) {
       std::cout << "light.path.rays_ratio: skipped, pathtracer printed no rays a second\n";
       return;
     }
-    double began = seconds_now();
+    double began = seconds_now(), began_processor = processor_seconds(RUSAGE_SELF);
     render_still(path, world, lights, box.view, settings);
-    double own = rays / (seconds_now() - began) * 1e-6;
-    theirs.push_back(other);
+    double own = rays / (seconds_now() - began);
+    double own_processor = (processor_seconds(RUSAGE_SELF) - began_processor) / rays;
+    theirs.push_back(other.rays_per_second);
     ours.push_back(own);
-    ratios.push_back(own / other);
+    ratios.push_back(own / other.rays_per_second);
+    processor_ratios.push_back(other.processor_seconds_per_ray / own_processor);
   }
   double samples = double(width) * height * settings.spp;
   nlohmann::json fields = {{"scene", "embree cornell_box"}, {"technique", "path"},
                            {"rays_per_sample", rays / samples}};
-  report.add("light.path.rays_per_second", quantile(ours, 0.5) * 1e6, "1/s", fields);
-  report.add("light.embree_pathtracer.rays_per_second", quantile(theirs, 0.5) * 1e6, "1/s",
+  report.add("light.path.rays_per_second", quantile(ours, 0.5), "1/s", fields);
+  report.add("light.embree_pathtracer.rays_per_second", quantile(theirs, 0.5), "1/s",
              {{"scene", "embree cornell_box"}});
-  report.add("light.path.rays_ratio", quantile(ratios, 0.5), "1",
-             {{"scene", "embree cornell_box"},
-              {"lowest", quantile(ratios, 0.0)},
-              {"highest", quantile(ratios, 1.0)}});
+  auto add_ratio = [&](const char* name, const std::vector<double>& all) {
+    report.add(name, quantile(all, 0.5), "1",
+               {{"scene", "embree cornell_box"},
+                {"lowest", quantile(all, 0.0)},
+                {"highest", quantile(all, 1.0)}});
+  };
+  add_ratio("light.path.rays_ratio", ratios);
+  // The same in processor time, which other work on the machine changes less.
+  add_ratio("light.path.rays_processor_ratio", processor_ratios);
 }
 
 }  // namespace wellspring

@@ -13,7 +13,8 @@
 
 namespace wellspring {
 
-// Adds light.path.rays_ratio (median over turns), and each side's rays a second.
+// Adds light.path.rays_ratio and light.path.rays_processor_ratio (by the clock and in processor time;
+// medians over turns), and each side's rays a second.
 void bench_light_rays(BenchReport& report, const BenchOptions& options);
 
 }  // namespace wellspring

@@ -10,7 +10,8 @@ set by hand after the import, because the importer leaves it to taste:
               KHR_lights_punctual says, by nodes, instead of Blender's smooth step
   materials   Lambert's law by a Diffuse BSDF, emission from fronts alone where they are single-sided;
               thin glass as Fresnel's share of a mirror image over a transparent rest; bare metal by a
-              Glossy BSDF (GGX) of Schlick's colour, at the surface's cosine instead of each facet's
+              Glossy BSDF (GGX, several meetings) of Schlick's colour, at the cosine of the surface
+              instead of each facet
   pixels      box filter one pixel wide, no denoiser, no clamping, no adaptive sampling
 Times are wall seconds and processor seconds of a render with what was built before it (BVH, textures)
 kept, without the file's writing; the file JOB.json + ".times" receives a pair for each, in order.
@@ -111,7 +112,7 @@ def make_shared(material, source):
             surface = through
     elif metallic == 1:
         surface = nodes.add("ShaderNodeBsdfGlossy", {"Color": metal_color(nodes, color),
-                                                     "Roughness": roughness}, distribution="GGX")
+                                                     "Roughness": roughness}, distribution="MULTI_GGX")
         surface = surface.outputs[0]
     else:
         surface = nodes.add("ShaderNodeBsdfDiffuse", {"Color": color}).outputs[0]

@@ -2,7 +2,7 @@
 """Writes the benchmark's scenes, one .glb each, beside this script:
     python3 tests/benchmark/scenes/make_scenes.py
 cornell_box   Cornell University's measured box in metres, purely diffuse
-metal_box     the same walls and lamp around a steel block, a golden ball and a copper step
+metal_box     the same walls and lamp around a block, a ball and a step of white metal
 diffuse_hall  a colonnade lit by tall windows on one side: mostly light between walls
 caustics      glass, water, a prism and polished metal on a table under a small lamp
 conference    a conference room with 104 lights in its ceiling
@@ -58,12 +58,12 @@ def cornell_box():
 def metal_box():
     scene = Scene()
     box_walls(scene)
-    steel = scene.material("steel", [0.7, 0.7, 0.72], roughness=0.3, metallic=1)
-    gold = scene.material("gold", [1, 0.77, 0.34], roughness=0.2, metallic=1)
-    copper = scene.material("copper", [0.95, 0.64, 0.54], roughness=0.35, metallic=1)
-    scene.mesh("tall block", steel, tall_block())
-    scene.mesh("ball", gold, Mesh().sphere([0.1, 0.09, -0.18], 0.09, 32))
-    scene.mesh("step", copper, Mesh().box([-0.22, 0, -0.16], [-0.02, 0.04, -0.06]))
+    # White metal reflects all light at every angle, whatever a renderer makes of Fresnel's law.
+    brushed, polished, blunt = (scene.material(name, [1, 1, 1], roughness=r, metallic=1) for name, r in
+                                (("brushed", 0.2), ("polished", 0.1), ("blunt", 0.25)))
+    scene.mesh("tall block", brushed, tall_block())
+    scene.mesh("ball", polished, Mesh().sphere([0.1, 0.09, -0.18], 0.09, 32))
+    scene.mesh("step", blunt, Mesh().box([-0.22, 0, -0.16], [-0.02, 0.04, -0.06]))
     look_into_box(scene)
     save(scene, "metal_box")
 
