@@ -28,6 +28,7 @@ namespace {
 constexpr int largest_side = 16384;
 constexpr int still_project_period = 8;  // frames
 constexpr uint8_t moving_mean = 48, still_mean = 255;  // samples a point's mean looks back on
+constexpr uint8_t moving_specular = 4;  // of what moves with the view and lies nowhere
 
 }  // namespace
 
@@ -177,6 +178,8 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   settings.still = settings.current && c.is_still();
   c.image_stale |= !settings.current;
   settings.longest_mean = settings.still ? still_mean : moving_mean;
+  settings.longest_specular = settings.still ? still_mean : moving_specular;
+  settings.images = c.settings.images;
   Remembered result =
       remember_samples(c.points, view, requests, samples, settings, c.image, c.targets);
   // What moves may have been seen elsewhere than it is now, and what had no pixel may have one.

@@ -22,6 +22,7 @@ struct CacheSettings {
   float color_change = 0.25f;  // relative change of a resampled point that ages its neighbours
   float budget_share_old = 1;  // weight of age against emptiness in the priority
   bool attention = true;       // false: samples spread evenly
+  bool images = true;  // what mirrors and glass show is kept where its image lies, not on them
 };
 
 struct Tonemap;

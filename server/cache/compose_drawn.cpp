@@ -105,6 +105,7 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
   unpack_octahedron(more & 0xffffu, nx, ny, nz);
   f8 facing = p.nx * nx + p.ny * ny + p.nz * nz;
   i8 near = off * off <= plane_tolerance * plane_tolerance * p.depth * p.depth * p.normal2;
+  near |= d.albedo.r + d.albedo.g + d.albedo.b == 0.0f;  // what mirrors show lies where its image does
   i8 alike = (facing > 0.0f) &
              (facing * facing > 0.5f * p.normal2 * (nx * nx + ny * ny + nz * nz));
   i8 same = (p.object == own.plane[plane_object]) & (samples > 0.0f) & near & alike;

@@ -102,6 +102,7 @@ void gather_points(const View& view, const PixelRays& rays, const Frame& frame, 
          ry = (rays.half_height - (row + (float(dy) + 0.5f))) * rays.inverse_focal;
       f8 off = (vx * (p.depth * p.x - depth * rx) + vy * (p.depth * p.y - depth * ry) +
                 vz * (p.depth - depth)) * inverse_depth;
+      off = keep(l.albedo.r + l.albedo.g + l.albedo.b != 0.0f, off);  // mirrors' points are images
       f8 ax = l.place_x - (float(dx) + 0.5f), ay = l.place_y - (float(dy) + 0.5f);
       f8 weight = keep(same, facing / ((1.0f + off * off) * (0.25f + ax * ax + ay * ay)));
       f8 share = weight * known;

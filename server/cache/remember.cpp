@@ -13,6 +13,7 @@ namespace wellspring {
 namespace {
 
 constexpr float same_place = 0.01f;  // of the distance: farther off is another surface
+constexpr float same_image = 0.05f;  // likewise, in mirrors and glass
 constexpr float same_normal = 0.8f;  // cosine
 constexpr float same_albedo = 0.03f;
 constexpr float quiet_noise = 0.1f;  // of the mean: points this quiet may testify to a change
@@ -21,7 +22,7 @@ constexpr int noise_memory = 8;      // samples the noise estimate looks back on
 constexpr size_t most_witnesses = 1 << 16;  // of changes, until attend() uses them up
 
 bool is_usable(const Sample& sample) {
-  return is_finite(sample.position) && is_finite(sample.normal) && is_finite(sample.albedo) &&
+  return std::isfinite(sample.image) && is_finite(sample.position) && is_finite(sample.normal) && is_finite(sample.albedo) &&
          is_finite(sample.smooth) && is_finite(sample.rest);
 }
 
@@ -31,30 +32,48 @@ vec3 position_of(const PointCache& points, uint32_t i) {
   return {points.x[i], points.y[i], points.z[i]};
 }
 
+// An answer, and where it is kept.
+struct Found {
+  const Sample& sample;
+  bool image;  // the place is that of an image
+  vec3 place;
+};
+Found find(const Request& request, const Sample& sample, bool images) {
+  bool image = images && sample.image > 0 && (sample.flags & sample_specular) &&
+               !(sample.flags & sample_moving);  // those follow their triangles
+  return {sample, image,
+          image ? request.ray.origin + sample.image * request.ray.direction : sample.position};
+}
+
 // The sample saw the surface the point lies on, at the point (`exact`) or near it in the same
 // pixel.
-bool is_same_surface(const PointCache& points, uint32_t i, const View& view, const Sample& sample,
+bool is_same_surface(const PointCache& points, uint32_t i, const View& view, const Found& found,
                      bool exact) {
+  const Sample& sample = found.sample;
   bool infinite = points.flags[i] & point_infinite;
   if (infinite != is_infinite(sample) || points.color[i].object != sample.object) return false;
   if (infinite) return true;
-  vec3 normal = unpack_normal(points.color[i].normal), offset = sample.position - position_of(points, i);
+  vec3 normal = unpack_normal(points.color[i].normal), offset = found.place - position_of(points, i);
   if (dot(normal, sample.normal) < same_normal) return false;
-  float distance = length(sample.position - view.position);
+  float distance = length(found.place - view.position);
+  // Beside it in a mirror lies what may be elsewhere; of the same image, places are estimates.
+  if (found.image) return !exact || length(offset) <= same_image * distance;
   float away = exact ? length(offset) : std::abs(dot(offset, normal));
   return away <= same_place * distance;
 }
 
-uint8_t flags_of(const Sample& sample) {
+uint8_t flags_of(const Found& found) {
+  const Sample& sample = found.sample;
   uint8_t flags = point_used;
   if (is_infinite(sample)) flags |= point_infinite;
-  if (sample.flags & sample_specular) flags |= point_specular;
+  if ((sample.flags & sample_specular) && !found.image) flags |= point_specular;
   if (sample.flags & sample_moving) flags |= point_moving;
   return flags;
 }
 
-void place_point(PointCache& points, uint32_t i, const View& view, const Sample& sample) {
-  vec3 p = sample.position, n = sample.normal;
+void place_point(PointCache& points, uint32_t i, const View& view, const Found& found) {
+  const Sample& sample = found.sample;
+  vec3 p = found.place, n = sample.normal;
   // At infinity, and where a technique gave no normal, the point faces the viewer.
   if (is_infinite(sample))
     n = -p;
@@ -68,10 +87,11 @@ void place_point(PointCache& points, uint32_t i, const View& view, const Sample&
   points.color[i].albedo = pack_albedo(sample.albedo);
 }
 
-void begin_point(PointCache& points, uint32_t i, const View& view, const Sample& sample,
+void begin_point(PointCache& points, uint32_t i, const View& view, const Found& found,
                  uint32_t random) {
-  place_point(points, i, view, sample);
-  points.flags[i] = flags_of(sample);
+  const Sample& sample = found.sample;
+  place_point(points, i, view, found);
+  points.flags[i] = flags_of(found);
   points.count[i] = 1;
   points.color[i].noise = 0;
   points.color[i].smooth = pack_rgb9e5(sample.smooth, random);
@@ -80,13 +100,14 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Sample&
 }
 
 // Adds one sample to the means. True when the point was quiet and yet the light at it has changed.
-bool improve_point(PointCache& points, uint32_t i, const View& view, const Sample& sample,
+bool improve_point(PointCache& points, uint32_t i, const View& view, const Found& found,
                    bool exact, const RememberSettings& settings, uint32_t random) {
+  const Sample& sample = found.sample;
   vec3 smooth = unpack_rgb9e5(points.color[i].smooth), rest = unpack_rgb9e5(points.color[i].rest);
   int n = points.count[i];
   if (points.flags[i] & point_relit) {
     uint8_t shown = points.flags[i] & point_visible;
-    begin_point(points, i, view, sample, random);
+    begin_point(points, i, view, found, random);
     points.flags[i] |= shown;
     return false;
   }
@@ -96,12 +117,13 @@ bool improve_point(PointCache& points, uint32_t i, const View& view, const Sampl
   float level = std::max(before, now),
         whole = luminance(unpack_albedo(points.color[i].albedo) * smooth) + level;
   bool quiet = n >= 2 && deviation <= quiet_noise * level;
-  // Elsewhere in the pixel a texture may differ too: only an equal reflectance tells about light.
+  // Elsewhere in the pixel a texture may differ too: only an equal reflectance tells about light, and
+  // of what a mirror shows nobody knows it.
   vec3 reflectance = unpack_albedo(points.color[i].albedo);
-  bool comparable = exact || max_component(abs(reflectance - sample.albedo)) <= same_albedo;
+  bool comparable = exact || (!found.image && max_component(abs(reflectance - sample.albedo)) <= same_albedo);
   if (comparable && quiet && step > settings.color_change * whole && step > 4 * deviation &&
       !(points.flags[i] & point_specular)) {
-    begin_point(points, i, view, sample, random);
+    begin_point(points, i, view, found, random);
     return true;
   }
   float memory = float(std::min(n, noise_memory));
@@ -110,16 +132,17 @@ bool improve_point(PointCache& points, uint32_t i, const View& view, const Sampl
           ? 0.5f * step * step
           : (deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) / memory;
   points.color[i].noise = pack_deviation(std::sqrt(variance));
-  float share = 1 / float(std::min(n, int(settings.longest_mean) - 1) + 1);
+  int longest = points.flags[i] & point_specular ? settings.longest_specular : settings.longest_mean;
+  float share = 1 / float(std::min(n, longest - 1) + 1);
   smooth += (max(sample.smooth, vec3(0)) - smooth) * share;
   rest += (max(sample.rest, vec3(0)) - rest) * share;
   if (exact) {
     points.age[i] = 0;
   } else {
-    place_point(points, i, view, sample);
-    points.flags[i] = uint8_t(flags_of(sample) | (points.flags[i] & point_visible));
+    place_point(points, i, view, found);
+    points.flags[i] = uint8_t(flags_of(found) | (points.flags[i] & point_visible));
   }
-  points.count[i] = uint8_t(std::min(n + 1, int(settings.longest_mean)));
+  points.count[i] = uint8_t(std::min(n + 1, longest));
   points.color[i].smooth = pack_rgb9e5(smooth, random);
   points.color[i].rest = pack_rgb9e5(rest, random >> 4);
   return false;
@@ -205,6 +228,7 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   targets.assign(count, no_point);
   if (groups == 0) return result;
 
+  auto found = [&](size_t i) { return find(requests[i], samples[i], settings.images); };
   // Sort out which samples have a point to join. Late answers find theirs only by its place.
   constexpr uint32_t reject = no_point - 1;  // beyond every capacity
   parallel_ranges(int(count), 512, [&](int begin, int end) {
@@ -218,7 +242,7 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
       uint32_t point = request.resample;
       if (point >= capacity || !is_alive(points, point)) point = no_point;
       if (here && point == no_point) point = image.point[request.pixel];
-      if (!here && point != no_point && !is_same_surface(points, point, view, samples[i], true))
+      if (!here && point != no_point && !is_same_surface(points, point, view, found(i), true))
         point = no_point;
       targets[i] = point;
     }
@@ -245,11 +269,11 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
       uint32_t point = targets[i];
       if (point == no_point) continue;
       bool exact = requests[i].resample == point;
-      if (is_same_surface(points, point, view, samples[i], exact)) {
-        altered[i] = improve_point(points, point, view, samples[i], exact, settings, random_of(i));
+      if (is_same_surface(points, point, view, found(i), exact)) {
+        altered[i] = improve_point(points, point, view, found(i), exact, settings, random_of(i));
         merged_here++;
       } else {
-        begin_point(points, point, view, samples[i], random_of(i));
+        begin_point(points, point, view, found(i), random_of(i));
         altered[i] = exact && !(samples[i].flags & sample_specular);
       }
       changed_here += altered[i];
@@ -270,7 +294,7 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
           fetch_point(points, uint32_t((points.next_group + k + ahead) % groups) * group_size);
         uint32_t point = choose_victim(points, group);
         if (points.flags[point] & point_visible) hide_point(points, view, point, image);
-        begin_point(points, point, view, samples[i], random_of(i));
+        begin_point(points, point, view, found(i), random_of(i));
         if (shows(i)) show_point(points, view, point, requests[i].pixel, image);
         targets[i] = point;
       }

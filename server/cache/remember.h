@@ -20,6 +20,8 @@ struct RememberSettings {
   bool current = true;
   bool still = false;   // answers are spread over their pixel and join the point that shows there
   uint8_t longest_mean = 64;  // samples a mean looks back on
+  uint8_t longest_specular = 64;  // likewise, of what moves with the view and whose image lies nowhere
+  bool images = true;  // what mirrors and glass show is kept where its image lies (Sample::image)
 };
 
 struct Remembered {

@@ -3,12 +3,10 @@
 #include <cmath>
 
 #include "light/first_surface.h"
+#include "light/mirror_image.h"
 
 namespace wellspring {
 namespace {
-
-// Mirrors, glass and polished metal: what is seen there moves with the view.
-bool looks_specular(const Bsdf& bsdf) { return bsdf.alpha < 0.1f && bsdf.diffuse_share < 0.5f; }
 
 // The first surface's light, its diffuse lobe (of reflectance 1) and its specular lobes sampled
 // apart.
@@ -100,6 +98,7 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
   Sampler sampler(request.seed, request.index);
   Sample sample;
   Walk walk = begin_walk(transport, request);
+  const Walk begun = walk;
   if (!hit.valid()) {
     describe_sky(transport, walk.ray.direction, vec3(1), sample);
     return sample;
@@ -112,6 +111,7 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
       find_first_surface(transport, rules.max_depth, walk, hit, sampler, sample);
   if (first.scatters)
     shade_first(transport, rules, first.walk, first.surface, first.bsdf, first.tint, sampler, sample);
+  if (request.image && (sample.flags & sample_specular)) sample.image = find_image_distance(transport, begun, hit);
   if (first.mirrored) {
     sampler.seek(3 * Dimensions::walk);
     sample.rest += follow(transport, rules, first.reflection, sampler);

@@ -59,7 +59,8 @@ constexpr double predicted_share = 0.3;  // of the budget, at most
 
 class CacheMethod : public VisitMethod {
  public:
-  CacheMethod(Answers answers, bool primary) : answers_(answers), primary_(primary) {}
+  CacheMethod(Answers answers, bool primary, const CacheSettings& settings = {})
+      : answers_(answers), primary_(primary), cache_(settings) {}
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
     if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
     last_view_ = moment.view;
@@ -284,8 +285,8 @@ constexpr VisitMethodEntry list[] = {
 }  // namespace
 
 std::span<const VisitMethodEntry> visit_methods() { return list; }
-std::unique_ptr<VisitMethod> make_cache_method(Answers answers) {
-  return std::make_unique<CacheMethod>(answers, false);
+std::unique_ptr<VisitMethod> make_cache_method(Answers answers, const CacheSettings& settings) {
+  return std::make_unique<CacheMethod>(answers, false, settings);
 }
 std::unique_ptr<VisitMethod> make_primary_method() {
   return std::make_unique<CacheMethod>(Answers::at_once, true);

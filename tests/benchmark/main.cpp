@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   const std::pair<const char*, void (*)(BenchReport&, const BenchOptions&)> parts[] = {
       {"stream", bench_stream},           {"avatar", bench_avatar},
       {"cache.display", bench_cache_display}, {"cache.visit", bench_cache_visit},
+      {"cache.mirror", bench_cache_mirror}, {"cache.rest", bench_cache_rest},
       {"light.frame", bench_light_frame}, {"light.scaling", bench_light_scaling},
       {"light.error", bench_light_error}, {"light.rays", bench_light_rays},
       {"light.cycles", bench_light_cycles}, {"light.photons", bench_light_photons}};

@@ -42,6 +42,8 @@ double quantile(std::vector<double> values, double p);
 void bench_stream(BenchReport& report, const BenchOptions& options);
 void bench_cache_display(BenchReport& report, const BenchOptions& options);
 void bench_cache_visit(BenchReport& report, const BenchOptions& options);
+void bench_cache_mirror(BenchReport& report, const BenchOptions& options);
+void bench_cache_rest(BenchReport& report, const BenchOptions& options);
 void bench_light_error(BenchReport& report, const BenchOptions& options);
 void bench_light_frame(BenchReport& report, const BenchOptions& options);
 void bench_light_scaling(BenchReport& report, const BenchOptions& options);
