@@ -104,6 +104,15 @@ void Broker::forget() {
   waiting_ = being_traced_ = uncollected_ = 0;
 }
 
+size_t Broker::memory_bytes() const {
+  size_t sum = traced_.size() * sizeof(Traced);
+  for (const Piece& piece : pieces_) sum += sizeof piece + piece.requests.capacity() * sizeof(Request);
+  for (const Answer& answer : answers_)
+    sum += sizeof answer + answer.piece.requests.capacity() * sizeof(Request) +
+           answer.samples.capacity() * sizeof(Sample);
+  return sum;
+}
+
 int land(std::span<const Answer> answers, const World& world, uint64_t pose, RenderCache& cache) {
   std::vector<Request> requests;
   std::vector<Sample> samples;

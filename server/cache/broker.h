@@ -73,6 +73,7 @@ class Broker {
   bool answer(Answer answer);  // false: refused
 
   int waiting() const { return waiting_; }  // requests
+  size_t memory_bytes() const;
   const BrokerStats& stats() const { return stats_; }
 
  private:

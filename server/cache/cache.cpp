@@ -42,14 +42,36 @@ static void fit_frame(int width, int height, Frame& frame) {
   frame.confidence.resize(pixels);
 }
 
+struct CacheWork {
+  Scratch scratch;
+  Frame light;  // packed, of a picture that is drawn
+  std::vector<uint32_t> targets;
+  std::vector<uint8_t> occupied;  // cells of the view ahead
+  std::vector<uint32_t> looked;  // pixels whose looks were asked for
+  std::vector<LookedPixel> looked_pixels;
+};
+std::shared_ptr<CacheWork> make_cache_work() { return std::make_shared<CacheWork>(); }
+
+template <class Vector>
+static size_t bytes_of(const Vector& v) {
+  return v.capacity() * sizeof(v[0]);
+}
+
+size_t memory_bytes(const CacheWork& work) {
+  const Frame& light = work.light;
+  return work.scratch.bytes() + bytes_of(light.color) + bytes_of(light.depth) + bytes_of(light.object) +
+         bytes_of(light.confidence) + bytes_of(work.targets) + bytes_of(work.occupied) + bytes_of(work.looked) +
+         bytes_of(work.looked_pixels);
+}
+
 struct RenderCache::Impl {
   CacheSettings settings;
   PointCache points;
   PointImage image;
   StillImage still;
-  Cells cells;
-  Scratch scratch;
-  Frame light;  // packed, of a picture that is drawn
+  Cells cells;  // in the work's scratch
+  std::shared_ptr<CacheWork> work;
+  bool shares = false;
   int width = 0, height = 0;  // of the largest picture there is room for
   View view;  // of the last projection
   bool projected = false;
@@ -59,10 +81,6 @@ struct RenderCache::Impl {
   float new_points = 0;  // a frame, smoothed
   int fresh = 0;         // samples of this frame that show
   uint32_t frames = 0;
-  std::vector<uint32_t> targets;
-  std::vector<uint8_t> occupied;  // cells of the view ahead
-  std::vector<uint32_t> looked;  // pixels whose looks were asked for
-  std::vector<LookedPixel> looked_pixels;
   bool known = false;  // anything, in the last survey
   CacheStats stats;
 
@@ -79,8 +97,11 @@ struct RenderCache::Impl {
   void draw(const View& view, const Compose& compose);
 };
 
-RenderCache::RenderCache(const CacheSettings& settings) : impl_(std::make_unique<Impl>()) {
+RenderCache::RenderCache(const CacheSettings& settings, std::shared_ptr<CacheWork> shared)
+    : impl_(std::make_unique<Impl>()) {
   impl_->settings = settings;
+  impl_->shares = shared != nullptr;
+  impl_->work = shared ? std::move(shared) : make_cache_work();
 }
 RenderCache::~RenderCache() = default;
 void RenderCache::set_attention(bool on) { impl_->settings.attention = on; }
@@ -100,8 +121,8 @@ void RenderCache::resize(int width, int height) {
   reserve_image(c.image, width, height);
   for (auto& plane : c.still.mean) plane = std::vector<uint16_t>(pixels);
   c.still.count = std::vector<uint8_t>(pixels);
-  c.scratch.release();
-  c.scratch.start(std::max(project_scratch_bytes(c.points.capacity(), width, height), cells_bytes(width, height)));
+  if (!c.shares) c.work->scratch.release();
+  c.work->scratch.start(std::max(project_scratch_bytes(c.points.capacity(), width, height), cells_bytes(width, height)));
   c.projected = false;
   c.forget_still();
 }
@@ -135,7 +156,7 @@ void RenderCache::project(const View& view) {
   // At rest remember() keeps the image up to date. Only a point that was hidden by one since
   // overwritten has to wait until all are projected again.
   if (same && !c.image_stale && c.still_frames % still_project_period != 0) return;
-  project_points(c.points, view, same, c.scratch, c.image);
+  project_points(c.points, view, same, c.work->scratch, c.image);
   depth_cull(c.points, c.settings.depth_threshold, c.image);
   c.image_stale = false;
 }
@@ -166,7 +187,7 @@ void RenderCache::plan(const View& view, int budget, uint64_t seed,
 
 void RenderCache::predict(const View& ahead, int most, uint64_t seed,
                           std::vector<Request>& requests) {
-  predict_requests(impl_->points, ahead, most, seed, impl_->occupied, requests);
+  predict_requests(impl_->points, ahead, most, seed, impl_->work->occupied, requests);
 }
 
 void RenderCache::remember(const View& view, std::span<const Request> requests,
@@ -181,14 +202,14 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   settings.longest_specular = settings.still ? still_mean : moving_specular;
   settings.images = c.settings.images;
   Remembered result =
-      remember_samples(c.points, view, requests, samples, settings, c.image, c.targets);
+      remember_samples(c.points, view, requests, samples, settings, c.image, c.work->targets);
   // What moves may have been seen elsewhere than it is now, and what had no pixel may have one.
   c.image_stale |= !c.points.anchors.empty() || result.unplaced > 0;
   c.new_points += (float(result.kept) - c.new_points) * 0.1f;
   if (settings.current) c.fresh += result.kept - result.unplaced;
   if (!settings.still) return;
-  for (size_t i = 0; i < c.targets.size(); i++)
-    if (c.targets[i] != no_point && requests[i].resample != c.targets[i] &&
+  for (size_t i = 0; i < c.work->targets.size(); i++)
+    if (c.work->targets[i] != no_point && requests[i].resample != c.work->targets[i] &&
         requests[i].pixel < c.still.count.size())
       c.still.count[requests[i].pixel] |= still_fresh;
 }
@@ -201,8 +222,8 @@ void RenderCache::reconstruct(const View& view, Frame& frame, const PictureSight
 
 void RenderCache::Impl::read_light(const View& of, const PictureSight* sight, Frame& frame) {
   if (relit) relit = lend_light(points, image);
-  scratch.start(cells_bytes(frame.width, frame.height));
-  take_cells(cells, frame.width, frame.height, scratch);
+  work->scratch.start(cells_bytes(frame.width, frame.height));
+  take_cells(cells, frame.width, frame.height, work->scratch);
   SurfaceCounts counts = read_surface(of, points, image, cells, frame);
   if (sight && sight->can_see(of)) {
     double began = seconds_now();
@@ -212,7 +233,7 @@ void RenderCache::Impl::read_light(const View& of, const PictureSight* sight, Fr
   known = fill_cells(of, cells);
   filter_cells(of, cells);
   count(counts, known);
-  looked.clear();
+  work->looked.clear();
 }
 
 void RenderCache::survey(const View& view, const PictureSight* sight, int most, Frame& frame,
@@ -225,27 +246,27 @@ void RenderCache::survey(const View& view, const PictureSight* sight, int most, 
   c.read_light(view, sight, frame);
   if (most >= looks_a_pixel) {
     find_edges(view, c.cells, c.still, frame, c.image);
-    choose_looks(c.image, size_t(most) / looks_a_pixel, mix64(c.frames), c.looked);
+    choose_looks(c.image, size_t(most) / looks_a_pixel, mix64(c.frames), c.work->looked);
   }
-  make_looks(view, c.looked, looks);
+  make_looks(view, c.work->looked, looks);
 }
 
 void RenderCache::reconstruct(const View& view, std::span<const Seen> seen, Frame& frame) {
   Impl& c = *impl_;
-  size_t looked = std::min(c.looked.size(), seen.size() / looks_a_pixel);
-  std::span<const uint32_t> pixels = std::span(c.looked).first(looked);
-  light_looks(view, c.cells, frame, pixels, seen, c.looked_pixels);
+  size_t looked = std::min(c.work->looked.size(), seen.size() / looks_a_pixel);
+  std::span<const uint32_t> pixels = std::span(c.work->looked).first(looked);
+  light_looks(view, c.cells, frame, pixels, seen, c.work->looked_pixels);
   compose(view, c.cells, c.known, frame);
   if (c.is_still()) accumulate_still(c.points, c.image, c.frames, c.still, frame);
-  show_looks(pixels, c.looked_pixels, c.still, frame);
+  show_looks(pixels, c.work->looked_pixels, c.still, frame);
 }
 
 // Finds the light of `view`, then calls compose() and takes the time.
 template <class Compose>
 void RenderCache::Impl::draw(const View& view, const Compose& compose) {
   View coarse = light_view(view);
-  fit_frame(coarse.width, coarse.height, light);
-  read_light(coarse, nullptr, light);
+  fit_frame(coarse.width, coarse.height, work->light);
+  read_light(coarse, nullptr, work->light);
   double began = seconds_now();
   compose();
   stats.drawing_ms = float(1000 * (seconds_now() - began));
@@ -255,7 +276,7 @@ void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame
   Impl& c = *impl_;
   if (!c.projected || light_view(view) != c.view) project(light_view(view));
   fit_frame(view.width, view.height, frame);
-  c.draw(view, [&] { compose_drawn(view, sight, c.cells, c.known, c.light, frame); });
+  c.draw(view, [&] { compose_drawn(view, sight, c.cells, c.known, c.work->light, frame); });
 }
 
 void RenderCache::draw(const View& view, const PictureSight& sight, const Tonemap& tonemap,
@@ -263,7 +284,7 @@ void RenderCache::draw(const View& view, const PictureSight& sight, const Tonema
   Impl& c = *impl_;
   if (!c.projected || light_view(view) != c.view) project(light_view(view));
   c.draw(view,
-         [&] { compose_drawn(view, sight, c.cells, c.known, c.light, tonemap, image, depth); });
+         [&] { compose_drawn(view, sight, c.cells, c.known, c.work->light, tonemap, image, depth); });
 }
 
 void RenderCache::relight(vec3 place, float reach) {
@@ -313,13 +334,11 @@ const CacheStats& RenderCache::stats() const { return impl_->stats; }
 
 size_t RenderCache::memory_bytes() const {
   const Impl& c = *impl_;
-  auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  size_t sum = points_bytes(c.points) + bytes(c.image.point) + bytes(c.image.depth) +
-               bytes(c.image.priority) + bytes(c.image.changed) + bytes(c.still.count) +
-               bytes(c.occupied) + bytes(c.targets) + c.scratch.bytes() + bytes(c.light.color) + bytes(c.light.depth) +
-               bytes(c.light.object) + bytes(c.light.confidence);
-  for (const auto& plane : c.still.mean) sum += bytes(plane);
-  return sum;
+  size_t sum = points_bytes(c.points) + bytes_of(c.image.point) + bytes_of(c.image.depth) +
+               bytes_of(c.image.priority) + bytes_of(c.image.changed) + bytes_of(c.image.witnesses) +
+               bytes_of(c.still.count);
+  for (const auto& plane : c.still.mean) sum += bytes_of(plane);
+  return sum + (c.shares ? 0 : wellspring::memory_bytes(*c.work));
 }
 
 }  // namespace wellspring

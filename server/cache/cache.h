@@ -38,9 +38,15 @@ struct CacheStats {
   float converged = 0;  // share of pixels whose point has reached its sample goal
 };
 
+// What is needed from project() until the picture is there and means nothing afterwards. Caches whose
+// frames are never under way at the same time may share it.
+struct CacheWork;
+std::shared_ptr<CacheWork> make_cache_work();
+size_t memory_bytes(const CacheWork& work);
+
 class RenderCache {
  public:
-  explicit RenderCache(const CacheSettings& settings = {});
+  explicit RenderCache(const CacheSettings& settings = {}, std::shared_ptr<CacheWork> shared = nullptr);
   ~RenderCache();
   RenderCache(RenderCache&&) noexcept;
   RenderCache& operator=(RenderCache&&) noexcept;
@@ -92,7 +98,7 @@ class RenderCache {
   void clear();
 
   const CacheStats& stats() const;
-  size_t memory_bytes() const;
+  size_t memory_bytes() const;  // without work that is shared
 
  private:
   struct Impl;

@@ -6,11 +6,14 @@
 //   idle --draw_next--> drawing --finish_drawing--> idle, or, if samples are asked for, --> tracing --> idle
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <oneapi/tbb/task_arena.h>
 #include <vector>
 
 #include "base/worker.h"
 #include "cache/broker.h"
+#include "cache/cache.h"
+#include "cache/keyframe.h"
 #include "show/display_path.h"
 #include "world/view.h"
 
@@ -45,7 +48,23 @@ struct PictureCosts {
 
 struct Visitor;
 
+// What drawing a picture takes, whoever it is for.
+struct DrawingWork {
+  std::shared_ptr<CacheWork> cache = make_cache_work();  // of all visitors' caches
+  Frame frame;
+  std::vector<float> depth;  // of what is drawn in coarser light
+  Image8 picture;            // when it is finished the visitor's old one
+  Keyframe keyframe;         // likewise
+  std::vector<Request> requests, ahead;
+  std::vector<Sample> samples;
+  std::vector<Ray> looks;
+  std::vector<Seen> seen;
+};
+size_t memory_bytes(const DrawingWork& work);
+
 struct Easel {
+  DrawingWork work;
+  size_t work_bytes = 0;     // of it, when last finished
   Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
   PictureOrder order;        // for it
   std::vector<Broker*> brokers;  // that what is being traced was asked by; empty: it is not tracing

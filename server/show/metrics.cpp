@@ -77,6 +77,8 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "sounds_total", "counter", "Sound packets sent", double(totals.sounds));
   metric(out, "sounds_given_up_total", "counter", "Utterances dropped for readers that were too slow",
          double(totals.sounds_given_up));
+  metric(out, "drawing_bytes", "gauge", "Memory for drawing pictures, one after the other, whoever they are for",
+         double(report.drawing_bytes));
   metric(out, "resident_bytes", "gauge", "Memory of the server process", resident_bytes());
   per_visitor(out, report, "pictures_per_second", "Pictures a second", [](auto& v) { return v.fps; });
   per_visitor(out, report, "drawn_pictures_per_second", "Pictures drawn a second; the others are warped",
@@ -111,6 +113,8 @@ std::string write_metrics(const ShowReport& report) {
   per_visitor(out, report, "mean_age_pictures", "Age of the visible points", [](auto& v) { return v.mean_age; });
   per_visitor(out, report, "jpeg_quality", "Quality of moving pictures", [](auto& v) { return v.quality; });
   per_visitor(out, report, "cache_bytes", "Memory of the render cache", [](auto& v) { return v.cache_bytes; });
+  per_visitor(out, report, "memory_bytes", "Memory of all that is kept for the visitor's pictures, the cache included",
+              [](auto& v) { return v.memory_bytes; });
   per_visitor(out, report, "pictures_dropped_total", "Pictures replaced before they were sent",
               [](auto& v) { return v.dropped; });
   return out;

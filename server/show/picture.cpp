@@ -167,6 +167,7 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
 
 void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   RenderCache& cache = visitor.cache;
+  DrawingWork& work = show.easel.work;
   const DisplayPlan& display = order.display;
   const View& view = order.view;
   PictureCosts& costs = visitor.costs = {};
@@ -182,45 +183,45 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   int most_asked = int(more_asked * float(display.samples));
   costs.late = !order.still && may_be_late(show, visitor, technique, most_asked);
   int asked = costs.late ? most_asked : display.samples;
-  visitor.ahead.clear();
+  work.ahead.clear();
   if (ahead != lit && !technique.begin_pass)
-    cache.predict(ahead, int(predicted_share * float(asked)), order.seed, visitor.ahead);
-  cache.plan(lit, asked - int(visitor.ahead.size()), order.seed, visitor.requests);
-  visitor.requests.insert(visitor.requests.end(), visitor.ahead.begin(), visitor.ahead.end());
+    cache.predict(ahead, int(predicted_share * float(asked)), order.seed, work.ahead);
+  cache.plan(lit, asked - int(work.ahead.size()), order.seed, work.requests);
+  work.requests.insert(work.requests.end(), work.ahead.begin(), work.ahead.end());
   double planned = seconds_now();
   TransportSettings transport = show.settings.transport;
   if (!order.settled) transport.clamp = show.settings.moving_clamp;
   if (costs.late) {
-    visitor.broker.ask(lit, {&technique, transport}, visitor.requests);
-    visitor.samples.clear();
+    visitor.broker.ask(lit, {&technique, transport}, work.requests);
+    work.samples.clear();
   } else {
-    visitor.samples.resize(visitor.requests.size());
+    work.samples.resize(work.requests.size());
     if (technique.begin_pass)
       technique.begin_pass(*show.world, transport, lit, visitor.link->id, uint32_t(order.tick), show.lights);
-    trace(technique, *show.world, show.lights, transport, visitor.requests, visitor.samples);
+    trace(technique, *show.world, show.lights, transport, work.requests, work.samples);
   }
   double traced = seconds_now();
-  if (!costs.late) cache.remember(lit, visitor.requests, visitor.samples);
+  if (!costs.late) cache.remember(lit, work.requests, work.samples);
   bool drawn = order.coarse || (display.drawn && (order.guessed || cache.stats().filled > few_guessed));
-  visitor.looks.clear();
+  work.looks.clear();
   const Tonemap curve{show.exhibit.exposure};
   if (order.coarse)
-    cache.draw(view, *show.sight, curve, visitor.drawn_picture, order.keep ? &visitor.drawn_depth : nullptr);
+    cache.draw(view, *show.sight, curve, work.picture, order.keep ? &work.depth : nullptr);
   else
-    cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, visitor.frame, visitor.looks);
-  visitor.seen.resize(visitor.looks.size());
+    cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, work.frame, work.looks);
+  work.seen.resize(work.looks.size());
   double surveyed = seconds_now();
-  see(*show.world, show.lights, visitor.looks, visitor.seen);
+  see(*show.world, show.lights, work.looks, work.seen);
   double looked = seconds_now();
-  if (!order.coarse) cache.reconstruct(view, visitor.seen, visitor.frame);
+  if (!order.coarse) cache.reconstruct(view, work.seen, work.frame);
   double reconstructed = seconds_now();
-  if (!order.coarse) tonemap(visitor.frame, curve, visitor.drawn_picture);
+  if (!order.coarse) tonemap(work.frame, curve, work.picture);
   if (order.keep)
-    make_keyframe(view, visitor.drawn_picture, order.coarse ? visitor.drawn_depth : visitor.frame.depth, visitor.drawn);
+    make_keyframe(view, work.picture, order.coarse ? work.depth : work.frame.depth, work.keyframe);
   double finished = seconds_now();
 
-  costs.samples = visitor.samples.size();
-  costs.looks = visitor.looks.size();
+  costs.samples = work.samples.size();
+  costs.looks = work.looks.size();
   costs.trace = float(1000 * (traced - planned));
   costs.look = float(1000 * (looked - surveyed));
   costs.drawing = drawn ? cache.stats().drawing_ms : 0.0f;
@@ -228,6 +229,25 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
       float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))) - costs.drawing;
   (order.coarse ? costs.light : costs.tonemap) += float(1000 * (finished - reconstructed));
   costs.seconds = finished - began;
+}
+
+// What was drawn in the memory of somebody else's larger picture does not keep it.
+static void fit_memory(Visitor& visitor) {
+  auto fit = [](auto& v) {
+    if (v.capacity() > v.size() + v.size() / 4) v.shrink_to_fit();
+  };
+  Keyframe& keyframe = visitor.keyframe;
+  fit(visitor.picture.rgb), fit(keyframe.color), fit(keyframe.disparity), fit(keyframe.farthest), fit(keyframe.nearest);
+}
+
+size_t memory_bytes(const DrawingWork& work) {
+  auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  const Frame& frame = work.frame;
+  const Keyframe& keyframe = work.keyframe;
+  return memory_bytes(*work.cache) + bytes(frame.color) + bytes(frame.depth) + bytes(frame.object) +
+         bytes(frame.confidence) + bytes(work.depth) + bytes(work.picture.rgb) + bytes(keyframe.color) +
+         bytes(keyframe.disparity) + bytes(keyframe.farthest) + bytes(keyframe.nearest) + bytes(work.requests) +
+         bytes(work.ahead) + bytes(work.samples) + bytes(work.looks) + bytes(work.seen);
 }
 
 void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
@@ -262,8 +282,11 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
       costs.late ? double(order.display.samples) / std::max(double(show.samples_per_second), 1.0) : 0;
   visitor.stats = visitor.cache.stats();
   visitor.cache_bytes = visitor.cache.memory_bytes();
-  std::swap(visitor.drawn_picture, visitor.picture);
-  std::swap(visitor.drawn, visitor.keyframe);
+  if (!order.keep) std::swap(show.easel.work.picture, visitor.picture);  // else its keyframe has the colours
+  std::swap(show.easel.work.keyframe, visitor.keyframe);
+  fit_memory(visitor);
+  visitor.memory_bytes = picture_memory(visitor);
+  show.easel.work_bytes = memory_bytes(show.easel.work);
   visitor.order = order;
   visitor.unshown = true;
   show.totals.drawn++;

@@ -5,6 +5,7 @@
 #include <oneapi/tbb/info.h>
 
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "frame/jpeg.h"
 #include "show/in_view.h"
 #include "show/picture.h"
@@ -74,6 +75,17 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
 
 bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
 
+// The picture that the keyframe was made of.
+void copy_colors(const Keyframe& keyframe, Image8& image) {
+  image.width = keyframe.view.width;
+  image.height = keyframe.view.height;
+  image.rgb.resize(3 * keyframe.color.size());
+  parallel_ranges(int(keyframe.color.size()), 1 << 16, [&](int begin, int end) {
+    for (size_t i = size_t(begin); i < size_t(end); i++)
+      for (size_t c = 0; c < 3; c++) image.rgb[3 * i + c] = uint8_t(keyframe.color[i] >> (8 * c));
+  });
+}
+
 // The encoder's image becomes the newest keyframe seen from `view`.
 bool warp(Show& show, Visitor& visitor, const View& view) {
   double began = seconds_now();
@@ -119,12 +131,14 @@ void present(Show& show, Visitor& visitor) {
 
   Encoder& encoder = *visitor.encoder;
   encoder.task.wait();
+  encoder.memory_bytes = encoder.image.rgb.capacity() + encoder.jpeg.capacity();
   if (visitor.frame_number > 0 && encoder.bytes > 0) {
     show.totals.picture_bytes += std::exchange(encoder.bytes, 0);
     smooth(visitor.times.encode, encoder.milliseconds);
   }
   if (visitor.unshown && order.view == view) {  // drawn for this very view
-    std::swap(encoder.image, visitor.picture);
+    if (order.keep) copy_colors(visitor.keyframe, encoder.image);
+    else std::swap(encoder.image, visitor.picture);
     send(show, visitor, view, visitor.seq, order.still);
   } else if (warp(show, visitor, view)) {
     send(show, visitor, view, visitor.seq, false);

@@ -10,6 +10,7 @@ ShowReport make_report(const Show& show) {
   report.ready = true;
   report.time = show.time;
   report.ticks = show.ticks;
+  report.drawing_bytes = show.easel.work_bytes;
   report.bad_samples = show.lights.bad_samples ? show.lights.bad_samples->load() : 0;
   report.samples_per_second = show.samples_per_second;
   report.looks_per_second = show.looks_per_second;
@@ -52,6 +53,7 @@ ShowReport make_report(const Show& show) {
     one.converged = stats.converged;
     one.mean_age = stats.mean_age;
     one.cache_bytes = visitor.cache_bytes;
+    one.memory_bytes = visitor.memory_bytes;
     one.dropped = visitor.link->pictures_dropped();
     one.kiosk = visitor.kiosk;
     report.visitors.push_back(one);

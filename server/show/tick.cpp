@@ -39,6 +39,7 @@ void welcome_links(Show& show, Arrivals& arrivals) {
       log::info("visitor {} connected from {}", link->id, link->peer);
       Visitor& visitor = show.visitors.emplace_back();
       visitor.link = std::move(link);
+      visitor.cache = RenderCache({}, show.easel.work.cache);
     }
   }
 }

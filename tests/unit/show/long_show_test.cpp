@@ -63,10 +63,11 @@ TEST(LongShow, ADayOfIdlingAndWalkingNeitherGrowsNorDrifts) {
     const Visitor& visitor = house.show->visitors.front();
     vec3 place(visitor.view.position);
     ASSERT_TRUE(is_finite(place) && std::abs(place.x) < 4 && std::abs(place.z) < 4) << i;
-    for (vec3 c : visitor.frame.color) ASSERT_TRUE(is_finite(c)) << i;
-    if (i == 62) memory = visitor.cache.memory_bytes();
+    for (vec3 c : house.show->easel.work.frame.color) ASSERT_TRUE(is_finite(c)) << i;
+    if (i == 62) memory = visitor.cache_bytes;
     if (i > 62) {
-      ASSERT_LE(visitor.cache.memory_bytes(), memory + 4096) << i;
+      ASSERT_LE(visitor.cache_bytes, memory + 4096) << i;
+      ASSERT_LE(visitor.memory_bytes, memory + (1 << 19)) << i;
       ASSERT_LE(visitor.past.size(), 64u);
       ASSERT_LE(visitor.flow.in_flight.size(), 4096u);
     }

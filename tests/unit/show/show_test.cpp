@@ -99,7 +99,7 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
   Frame reference = render_still(*show->still_technique, *show->world, show->lights, visitor.last_view, settings);
   double error = 0, size = 0;
   for (size_t i = 0; i < reference.color.size(); i++) {
-    error += std::abs(luminance(visitor.frame.color[i]) - luminance(reference.color[i]));
+    error += std::abs(luminance(show->easel.work.frame.color[i]) - luminance(reference.color[i]));
     size += luminance(reference.color[i]);
   }
   EXPECT_LT(error / size, 0.08);
@@ -109,12 +109,12 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
 TEST_F(ShowTest, FarFromTheOriginThePictureIsTheSame) {
   begin();
   run(2);
-  std::vector<vec3> near = show->visitors.front().frame.color;
+  std::vector<vec3> near = show->easel.work.frame.color;
   link = std::make_shared<Link>(2, LinkKind::visit, "test");
   begin(dvec3(1e6, 0, -1e6));
   run(2);
   double error = 0, size = 0;
-  const std::vector<vec3>& far = show->visitors.front().frame.color;
+  const std::vector<vec3>& far = show->easel.work.frame.color;
   for (size_t i = 0; i < near.size(); i++) {
     error += std::abs(luminance(near[i]) - luminance(far[i]));
     size += luminance(near[i]);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a visitor's pictures take of memory is bounded, and told.
+#include <gtest/gtest.h>
+
+#include "show/answer.h"
+#include "show/show.h"
+#include "tiny_exhibit.h"
+
+namespace wellspring {
+namespace {
+
+// Large pictures are drawn in between, in memory that all share.
+TEST(Memory, PicturesOf1280x720KeepAtMost64MegabytesAVisitor) {
+  ShowSettings settings;
+  settings.technique = settings.still_technique = "direct";
+  settings.draw = DrawShapes::always;
+  auto show = make_show(make_tiny_exhibit(), settings);
+  Arrivals arrivals;
+  std::vector<std::shared_ptr<Link>> links;
+  const char* sizes[] = {R"("width":1280,"height":720)", R"("width":1920,"height":1080)"};
+  for (size_t i = 0; i < 2; i++) {
+    links.push_back(std::make_shared<Link>(i + 1, LinkKind::visit, "test"));
+    arrivals.put(links.back());
+    links.back()->push_text_in(std::string(R"({"type":"hello","exhibit":"",)") + sizes[i] +
+                               R"(,"lang":"en","role":"visitor"})");
+  }
+  double now = 0;
+  size_t most[2] = {};
+  for (int i = 0; i < 16; i++) {
+    bool walks = i < 8;
+    if (i % 4 == 0)
+      for (auto& link : links)
+        link->push_text_in(R"({"type":"input","seq":)" + std::to_string(i + 1) + R"(,"move":[0,0,)" +
+                           (walks ? "0.3" : "0") + R"(],"look":[)" + (walks ? "0.02" : "0") + ",0]}");
+    tick(*show, arrivals, now += 0.05);
+    show->easel.worker.wait_for(10);
+    size_t k = 0;
+    for (Visitor& visitor : show->visitors) {
+      visitor.encoder->task.wait();
+      most[k] = std::max(most[k], visitor.memory_bytes);
+      k++;
+    }
+    for (auto& link : links)
+      for (Link::Out out; link->take_out(out);) {
+      }
+  }
+  EXPECT_LE(most[0], size_t(64) << 20);
+  EXPECT_GE(most[0], size_t(50) << 20);  // all of it is counted
+  EXPECT_LE(most[1], (size_t(64) << 20) * 9 / 4);
+  EXPECT_GE(double(most[1]), 2.0 * double(most[0]));
+  EXPECT_GT(show->easel.work_bytes, size_t(40) << 20);
+
+  std::string told = write_metrics(make_report(*show));
+  EXPECT_NE(told.find("wellspring_visitor_memory_bytes{visitor=\"1\""), std::string::npos);
+  EXPECT_NE(told.find("wellspring_drawing_bytes "), std::string::npos);
+}
+
+}  // namespace
+}  // namespace wellspring
