@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/load_error.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/rng.h"
@@ -20,6 +21,19 @@
 
 namespace wellspring {
 namespace {
+
+// A misspelt name would measure nothing and take minutes to say so.
+void refuse_unknown_names(const VisitSettings& settings, const std::vector<VisitTrace>& traces) {
+  auto named = [&](const VisitTrace& trace) { return trace.name == settings.only; };
+  if (!settings.only.empty() && std::none_of(traces.begin(), traces.end(), named))
+    throw LoadError(settings.traces, settings.only + ".json", "there is no such visit");
+  for (const std::string& method : settings.methods) {
+    auto same = [&](const VisitMethodEntry& entry) { return entry.name == method; };
+    std::span<const VisitMethodEntry> all = visit_methods();
+    if (std::none_of(all.begin(), all.end(), same))
+      throw LoadError("--visit-method", method, "there is no such way to keep the picture up");
+  }
+}
 
 constexpr double settled_after =
     2;  // seconds at rest until the reference takes over, as show/picture
@@ -177,6 +191,7 @@ void simulate(const VisitSettings& settings, VisitStage& stage, const VisitTrace
 
 VisitResult simulate_visits(const VisitSettings& settings) {
   std::vector<VisitTrace> traces = load_visit_traces(settings.traces);
+  refuse_unknown_names(settings, traces);
   VisitStage stage(settings.exhibit, settings.technique);
   TruthSettings truths;
   truths.spp = settings.truth_spp;

@@ -8,6 +8,7 @@
 
 #include "base/load_error.h"
 #include "base/rng.h"
+#include "benchmark/cache_visit.h"
 #include "benchmark/cache_visit_judge.h"
 #include "benchmark/cache_visit_method.h"
 #include "benchmark/cache_visit_trace.h"
@@ -73,6 +74,22 @@ TEST(VisitTrace, SurvivesTheDiskAndRefusesNonsense) {
   refuses(head + "[[0,1,2,3,4,5,1e999]]}");
   EXPECT_THROW(load_visit_traces(folder + "/nowhere"), LoadError);
   std::filesystem::remove_all(folder);
+}
+
+TEST(VisitTrace, MisspeltNamesAreRefusedBeforeAnythingIsMeasured) {
+  VisitSettings settings;
+  settings.exhibit = "no exhibit is loaded";
+  settings.traces = WELLSPRING_SOURCE "/tests/benchmark/traces";
+  settings.only = "strol";
+  EXPECT_THROW(simulate_visits(settings), LoadError);
+  settings.only = "stroll";
+  settings.methods = {"cach"};
+  try {
+    simulate_visits(settings);
+    FAIL();
+  } catch (const LoadError& error) {
+    EXPECT_EQ(error.where, "cach");
+  }
 }
 
 TEST(VisitTrace, CommittedTracesLoadAndMoveAsPeopleDo) {
