@@ -60,7 +60,7 @@ bool begins_matt(Batch& batch, int lane, MattWalks& walks) {
   const Request& request = batch.requests[walks.sample[lane]];
   Sample& sample = batch.samples[walks.sample[lane]];
   Hit& hit = walks.hits[lane];
-  if (request.ray.t_min != 0) hit = transport.world.intersect(request.ray);  // packets know no other
+  if (request.ray.t_min != 0) hit = transport.world.intersect(request.ray);  // not in packets
   bool in_solid =
       transport.tables.any_solid && find_media(transport, request.ray.origin).count > 0;
   if (!hit.valid() || in_solid || !met_matt(transport, hit)) {

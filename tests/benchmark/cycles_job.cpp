@@ -110,7 +110,8 @@ namespace {
 bool is_shared_metal(const json& material) {
   json surface = material.value("pbrMetallicRoughness", json::object());
   json extensions = material.value("extensions", json::object());
-  return surface.value("metallicFactor", 1.0) == 1 && !surface.contains("metallicRoughnessTexture") &&
+  return surface.value("metallicFactor", 1.0) == 1 &&
+         !surface.contains("metallicRoughnessTexture") &&
          surface.value("roughnessFactor", 1.0) <= roughest_shared_metal &&
          !material.contains("normalTexture") && !extensions.contains("KHR_materials_transmission");
 }

@@ -30,9 +30,9 @@ void render_by_cycles(const std::filesystem::path& script, const std::filesystem
                       std::vector<CyclesRender>& renders);
 
 // A copy of a .glb whose materials are what both renderers can express, so that light transport is
-// compared and not two models of gloss: Lambertian, thin clear glass, emitters and, if `metals`, bare
-// metal as far as it is not rougher than `roughest_shared_metal`; beyond, light between facets counts,
-// which the two treat differently. Throws LoadError.
+// compared and not two models of gloss: Lambertian, thin clear glass, emitters and, if `metals`,
+// bare metal as far as it is not rougher than `roughest_shared_metal`; beyond, light between facets
+// counts, which the two treat differently. Throws LoadError.
 inline constexpr double roughest_shared_metal = 0.35;
 void write_shared_copy(const std::filesystem::path& glb, bool metals,
                        const std::filesystem::path& out);

@@ -123,6 +123,33 @@ TEST(TraceSamples, EachIsTheSameAloneAndAmongOthers) {
   }
 }
 
+// Rays that begin or end elsewhere than at the eye and at infinity see what they meet in between.
+TEST(TraceSamples, RaysHaveTheirOwnBeginningsAndEnds) {
+  Room room(lightings()[0]);
+  for (size_t i = 0; i < room.requests.size(); i++) {
+    Ray& ray = room.requests[i].ray;
+    if (i % 3 == 1) ray.t_min = 1;
+    if (i % 3 == 2) ray.t_max = 1;
+  }
+  const Technique& path = *find_technique("path");
+  std::vector<Sample> samples(room.requests.size());
+  trace(path, room.world, room.lights, {}, room.requests, samples);
+  int behind = 0, before = 0, beyond = 0;
+  for (size_t i = 0; i < samples.size(); i++) {
+    Hit hit = room.world.intersect(room.requests[i].ray);
+    ASSERT_EQ(bool(samples[i].flags & sample_hit), hit.valid());
+    behind += hit.valid() && i % 3 == 1, before += hit.valid() && i % 3 == 2;
+    beyond += !hit.valid() && i % 3 == 2;
+    if (!hit.valid() || (samples[i].flags & sample_specular)) continue;
+    ASSERT_EQ(samples[i].instance, hit.instance);
+    ASSERT_EQ(samples[i].triangle, hit.triangle);
+    ASSERT_EQ(samples[i].distance, hit.t);
+  }
+  EXPECT_GT(behind, 100);
+  EXPECT_GT(before, 100);
+  EXPECT_GT(beyond, 100);
+}
+
 // The same numbers lead the same ways, so that but for rounding each sample is the same; few take
 // another turn because of it, and those must not favour brighter or darker ways.
 TEST(TraceSamples, LanesSayWhatTheLongWaySays) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // No ray slips between two triangles that share an edge: rays from inside closed meshes, aimed at
-// edges as exactly as floats can say, whichever way they are asked. (Of a tree that is not watertight
-// one in fifteen slips.) Corners are left out: where many triangles meet, signs that agree along each
-// edge may still leave no triangle, and of rays aimed at a corner to the last digit one in some hundreds
-// does slip; a random ray comes that near to one with a chance of about 1e-13 times the triangles.
+// edges as exactly as floats can say, whichever way they are asked. (Of a tree that is not
+// watertight one in fifteen slips.) Corners are left out: where many triangles meet, signs that
+// agree along each edge may still leave no triangle, and of rays aimed at a corner to the last digit
+// one in some hundreds does slip; a random ray comes that near to one with a chance of about 1e-13
+// times the triangles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -107,7 +108,10 @@ TEST(Watertight, ClosedMeshesThatStandStill) {
   const std::pair<const char*, Mesh> shapes[] = {{"ball", closed_ball(1, 48)},
                                                  {"box", box_mesh(0, vec3(2), true)}};
   const std::pair<vec3, float> places[] = {
-      {vec3(0), 1.0f}, {vec3(3, -7, 11), 0.01f}, {vec3(1000, 300, -2000), 1.0f}, {vec3(0), 5000.0f}};
+      {vec3(0), 1.0f},
+      {vec3(3, -7, 11), 0.01f},
+      {vec3(1000, 300, -2000), 1.0f},
+      {vec3(0), 5000.0f}};
   for (const auto& [name, shape] : shapes)
     for (auto [place, scale] : places) {
       Scene scene = empty_scene();
