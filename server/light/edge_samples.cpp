@@ -109,18 +109,18 @@ Looks look_at_edges(const Refining& r, int y, std::vector<Refined>& refined) {
 
 void refine_row(const Refining& r, int y, std::vector<Refined>& refined) {
   Looks looks = look_at_edges(r, y, refined);
-  std::vector<MattEye> matt;
-  std::vector<uint32_t> others, unknown;
+  std::vector<uint32_t> unknown;
   std::vector<Sample> samples(looks.requests.size());
-  see_matt({r.world, *r.lights.tables}, looks.requests, samples, matt, others);
+  MattEyes seen = see_matt({r.world, *r.lights.tables}, looks.requests, samples);
   vec3 radiance;
   auto answer = [&](uint32_t i, bool known) {
     if (known) refined[looks.pixels[i]].radiance += radiance;
     else unknown.push_back(i);
   };
-  for (const MattEye& eye : matt)
+  for (uint32_t i : seen.nothing) refined[looks.pixels[i]].radiance += samples[i].rest;
+  for (const MattEye& eye : seen.eyes)
     answer(eye.request, take_light(r, samples[eye.request], looks.places[eye.request], radiance));
-  for (uint32_t i : others)
+  for (uint32_t i : seen.others)
     answer(i, eval_alike(r, looks.requests[i], looks.places[i], radiance));
   std::vector<Request> asked;
   for (uint32_t i : unknown) asked.push_back(looks.requests[i]);

@@ -107,12 +107,11 @@ size_t GroupOrder::take(size_t begin, size_t most, uint32_t* items, PixelGroup& 
   return count;
 }
 
-void trace_matt_eyes(const Transport& transport, const InstantPass& pass, int max_depth,
-                     std::span<const Request> requests, std::span<Sample> samples,
-                     std::vector<uint32_t>& others) {
-  std::vector<MattEye> eyes;
-  eyes.reserve(requests.size());
-  see_matt(transport, requests, samples, eyes, others);
+std::vector<uint32_t> trace_matt_eyes(const Transport& transport, const InstantPass& pass,
+                                      int max_depth, std::span<const Request> requests,
+                                      std::span<Sample> samples) {
+  MattEyes seen = see_matt(transport, requests, samples);
+  const std::vector<MattEye>& eyes = seen.eyes;
   GroupOrder order;
   for (size_t i = 0; i < eyes.size(); i++) {
     vec3& albedo = samples[eyes[i].request].albedo;
@@ -139,6 +138,7 @@ void trace_matt_eyes(const Transport& transport, const InstantPass& pass, int ma
       sample.rest += sample.albedo * light.exact.at(i) / pi;
     }
   }
+  return std::move(seen.others);
 }
 
 }  // namespace wellspring

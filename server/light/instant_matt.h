@@ -10,11 +10,11 @@
 
 namespace wellspring {
 
-// Answers the requests that see something matt; the numbers of the others go to `others`. Not for passes
-// with caustics, where more may be seen from a matt place than point lights.
-void trace_matt_eyes(const Transport& transport, const InstantPass& pass, int max_depth,
-                     std::span<const Request> requests, std::span<Sample> samples,
-                     std::vector<uint32_t>& others);
+// Answers the requests that see something matt, or nothing; returns the numbers of the others. Not for
+// passes with caustics, where more may be seen from a matt place than point lights.
+std::vector<uint32_t> trace_matt_eyes(const Transport& transport, const InstantPass& pass,
+                                      int max_depth, std::span<const Request> requests,
+                                      std::span<Sample> samples);
 
 // Pixels of a pass that ask the same lights.
 struct PixelGroup {

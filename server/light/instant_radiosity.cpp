@@ -155,7 +155,7 @@ void trace_many_instant(const World& world, const Lights& lights,
   if (pass.sharp || settings.max_depth < 2) {
     for (size_t i = 0; i < requests.size(); i++) others.push_back(uint32_t(i));
   } else {
-    trace_matt_eyes(transport, pass, settings.max_depth, requests, samples, others);
+    others = trace_matt_eyes(transport, pass, settings.max_depth, requests, samples);
   }
   trace_others(transport, pass, settings.max_depth, requests, others, samples);
   finish_samples(lights, settings, samples);

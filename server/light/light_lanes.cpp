@@ -51,6 +51,12 @@ LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass) 
   for (size_t i = 0; i < all.number.size(); i++)
     if (all.number[i] != LightLanes::none)
       set_lane(tables, pass.lights[all.number[i]], i / lane_count, i % lane_count, all);
+  all.plain.assign(groups, 1);
+  for (size_t i = 0; i < all.number.size(); i++) {
+    size_t g = i / lane_count, lane = i % lane_count;
+    bool plain = all.near[g][lane] == 1 && all.back[g][lane] == 0 && all.even[g][lane] == 0;
+    if (all.number[i] != LightLanes::none && !plain) all.plain[g] = 0;
+  }
   return all;
 }
 

@@ -20,6 +20,7 @@ struct LightLanes {
   std::vector<Lanes> power;            // of the brightest colour
   std::vector<Lanes> near, back;       // 1 or 0: falls with distance; shines to both sides
   std::vector<Lanes> even;             // 1: alike to all sides; 0: by Lambert
+  std::vector<uint8_t> plain;          // of a group: all are near, by Lambert, to one side
   std::vector<uint32_t> first;         // group of each set, and the end
 };
 
@@ -38,6 +39,15 @@ LitPoint make_lit_point(vec3 position, const Bsdf& bsdf);
 // at most.
 inline Lanes eval_unshadowed(const LightLanes& all, size_t g, const LitPoint& point, float most) {
   const Lanes zero{}, one = all_lanes(1.0f);
+  if (all.plain[g] && !point.both_sides && point.even == 0) {  // the same without roots
+    Lanes x = all.x[g] - point.position.x, y = all.y[g] - point.position.y,
+          z = all.z[g] - point.position.z;
+    Lanes inverse2 = one / lanes_max(x * x + y * y + z * z, all_lanes(1e-20f));
+    Lanes here = x * point.normal.x + y * point.normal.y + z * point.normal.z;
+    Lanes there = -(x * all.nx[g] + y * all.ny[g] + z * all.nz[g]);
+    return all.power[g] * lanes_max(here, zero) * lanes_max(there, zero) * inverse2 *
+           lanes_min(inverse2, all_lanes(most));
+  }
   Lanes dx = all.x[g] - point.position.x * all.near[g], dy = all.y[g] - point.position.y * all.near[g],
         dz = all.z[g] - point.position.z * all.near[g];
   Lanes inverse = one / lanes_sqrt(lanes_max(dx * dx + dy * dy + dz * dz, all_lanes(1e-20f)));

@@ -19,9 +19,9 @@ void set_ray(const Ray& ray, int i, RayPacket& rays) {
 }
 
 // Eight of them, `first` on.
-void describe_lanes(const Transport& transport, std::span<const Request> requests,
-                    const RayPacket& rays, const Hit* hits, uint32_t lanes, size_t first,
-                    std::span<Sample> samples, std::vector<MattEye>& eyes) {
+void describe_lanes(const Transport& transport, const RayPacket& rays, const Hit* hits,
+                    uint32_t lanes, size_t first, std::span<Sample> samples,
+                    std::vector<MattEye>& eyes) {
   Lanes3 direction{load_lanes(rays.direction_x), load_lanes(rays.direction_y),
                    load_lanes(rays.direction_z)};
   MattSurfaceLanes surface = eval_matt_surfaces(transport.world, direction, hits, lanes);
@@ -41,8 +41,10 @@ void describe_lanes(const Transport& transport, std::span<const Request> request
 
 }  // namespace
 
-void see_matt(const Transport& transport, std::span<const Request> requests,
-              std::span<Sample> samples, std::vector<MattEye>& eyes, std::vector<uint32_t>& others) {
+MattEyes see_matt(const Transport& transport, std::span<const Request> requests,
+                  std::span<Sample> samples) {
+  MattEyes seen;
+  seen.eyes.reserve(requests.size());
   for (size_t first = 0; first < requests.size(); first += lane_count) {
     int count = int(std::min(requests.size() - first, size_t(lane_count)));
     RayPacket rays{};
@@ -58,11 +60,22 @@ void see_matt(const Transport& transport, std::span<const Request> requests,
     }
     transport.world.intersect_each(rays, asked, hits);
     for (int i = 0; i < count; i++) {
-      if (asked >> i & 1 && hits[i].valid() && met_matt(transport, hits[i])) matt |= 1u << i;
-      else others.push_back(uint32_t(first) + uint32_t(i));
+      uint32_t number = uint32_t(first) + uint32_t(i);
+      if (!(asked >> i & 1)) {
+        seen.others.push_back(number);
+      } else if (!hits[i].valid()) {
+        samples[number] = Sample();
+        describe_sky(transport, requests[number].ray.direction, vec3(1), samples[number]);
+        seen.nothing.push_back(number);
+      } else if (met_matt(transport, hits[i])) {
+        matt |= 1u << i;
+      } else {
+        seen.others.push_back(number);
+      }
     }
-    if (matt) describe_lanes(transport, requests, rays, hits, matt, first, samples, eyes);
+    if (matt) describe_lanes(transport, rays, hits, matt, first, samples, seen.eyes);
   }
+  return seen;
 }
 
 }  // namespace wellspring

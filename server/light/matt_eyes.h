@@ -18,9 +18,13 @@ struct MattEye {
   float extent = 0;         // SurfacePlace
 };
 
-// Describes the samples of those that see something matt, and appends them to `eyes`; the numbers of the
-// others go to `others`.
-void see_matt(const Transport& transport, std::span<const Request> requests,
-              std::span<Sample> samples, std::vector<MattEye>& eyes, std::vector<uint32_t>& others);
+struct MattEyes {
+  std::vector<MattEye> eyes;
+  std::vector<uint32_t> nothing;  // numbers of those that meet nothing: their samples are complete
+  std::vector<uint32_t> others;   // that see something else: their samples are not touched
+};
+// Describes the samples of requests that see something matt, or nothing.
+MattEyes see_matt(const Transport& transport, std::span<const Request> requests,
+                  std::span<Sample> samples);
 
 }  // namespace wellspring

@@ -103,15 +103,24 @@ void deal_lights(const InstantPass& pass, const Choice& choice, const std::vecto
                  double asked, float choose_u, float deal_u,
                  std::span<std::vector<RegionLight>> parts) {
   size_t lists = parts.size(), turn = std::min(size_t(deal_u * float(lists)), lists - 1);
-  const double wanted = asked * double(lists), even = (lit ? blind : 1) / double(choice.number);
-  const double worth = double(lists) / double(pass.sets());
+  const double wanted = asked * double(lists), worth = double(lists) / double(pass.sets());
+  const Lanes even = all_lanes(float(wanted * (lit ? blind : 1) / double(choice.number)));
+  const float by_share = float(wanted * (1 - blind));
   double sum = double(choose_u) - 1;  // whole numbers that it passes are choices
-  for (size_t k = 0; k < choice.lights.number.size(); k++) {
-    if (choice.lights.number[k] == LightLanes::none) continue;
-    double part = lit ? (1 - blind) * double(share[k / lane_count][k % lane_count]) : 0;
-    double often = wanted * (part + even);
-    for (sum += often; sum > 0; sum--, turn++)
-      parts[list_of_turn(pass, turn % lists)].push_back({choice.lights.number[k], float(worth / often)});
+  for (size_t g = 0; g < choice.groups(); g++) {
+    const uint32_t* numbers = &choice.lights.number[g * lane_count];
+    Lanes often = lit ? share[g] * by_share + even : even;
+    for (int lane = 0; lane < lane_count; lane++)
+      if (numbers[lane] == LightLanes::none) often[lane] = 0;
+    double all = double(lanes_sum(often));
+    if (sum + all <= 0) {
+      sum += all;
+      continue;
+    }
+    for (int lane = 0; lane < lane_count; lane++)
+      for (sum += double(often[lane]); sum > 0; sum--, turn++)
+        parts[list_of_turn(pass, turn % lists)].push_back(
+            {numbers[lane], float(worth / double(often[lane]))});
   }
 }
 

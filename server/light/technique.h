@@ -19,7 +19,7 @@ struct InstantRadiositySettings {
   int places = 24;            // on emitters and in the sky
   int walks = 32;             // from them, each leaving point lights where it scatters
   int bounced = 96;           // of those lights are kept, where few of them do most to the view
-  int asked = 16;             // by a pixel, chosen by what they may do to its region; 0: all kept
+  int asked = 12;             // by a pixel, chosen by what they may do to its region; 0: all kept
   int edge_rays = 2;          // more eye rays for a pixel at an edge of a surface or colour
   int candidates = 8;         // times as many places and walks are drawn as numbered here; 1: all kept
   float clip = -1;            // metres: shortest distance that counts; 0: none; <0: by the scene's size

@@ -63,6 +63,20 @@ void compare_times(BenchReport& report, const std::string& scene, const std::str
               {"measured", ours.measured && reference.measured}});
 }
 
+// What a visitor waits for: the diffuse hall, as good as `path` leaves it, in what share of its time.
+void add_hall_ratio(BenchReport& report, const std::vector<CurvePoint>& curve,
+                    const std::vector<CurvePoint>& path) {
+  Reached ours = time_to_flip(by_cpu(curve), flip_level),
+          reference = time_to_flip(by_cpu(path), flip_level);
+  if (!(ours.seconds > 0) || !(reference.seconds > 0)) return;
+  report.add("light.hall.instant_radiosity_over_path", ours.seconds / reference.seconds, "1",
+             {{"scene", "diffuse_hall"},
+              {"flip", flip_level},
+              {"cpu_seconds", ours.seconds},
+              {"path_cpu_seconds", reference.seconds},
+              {"measured", ours.measured && reference.measured}});
+}
+
 Plot make_plot(const BenchScene& bench, const View& view, const Reference& reference) {
   char subtitle[200];
   std::snprintf(subtitle, sizeof subtitle,
@@ -110,6 +124,8 @@ void bench_scene(BenchReport& report, const BenchOptions& options, const BenchSc
     plot.curves.push_back(drawn);
     if (plot.curves.size() == 1) path = curve;  // the list begins with `path`
     else compare_times(report, bench.name, technique.name, curve, path);
+    if (bench.name == "diffuse_hall" && std::string_view(technique.name) == "instant_radiosity")
+      add_hall_ratio(report, curve, path);
   }
   save_svg(options.plots + "light_" + bench.name + ".svg", plot);
 }
@@ -118,6 +134,10 @@ void bench_scene(BenchReport& report, const BenchOptions& options, const BenchSc
 
 void bench_light_error(BenchReport& report, const BenchOptions& options) {
   for (const BenchScene& bench : load_bench_scenes(options)) bench_scene(report, options, bench);
+}
+
+void bench_light_hall(BenchReport& report, const BenchOptions& options) {
+  bench_scene(report, options, load_bench_scene(options, "diffuse_hall"));
 }
 
 // One frame of the Cornell box for somebody who waits for it.

@@ -77,6 +77,10 @@ int main(int argc, char** argv) {
         found = true;
         run(report, options);
       }
+    if (only == "light.hall") {  // a part of light.error
+      found = true;
+      bench_light_hall(report, options);
+    }
     if (!found) {
       std::cerr << "--only: there is no part '" << only << "'\n";
       return 2;
