@@ -18,8 +18,8 @@
 namespace wellspring {
 namespace {
 
-constexpr int block_clusters = 8;
-constexpr int block_bits = 13;  // 8 x 128 triangles, each cut into 6 parts at most
+constexpr int block_clusters = 32;
+constexpr int block_bits = 15;  // 32 x 128 triangles, each cut into 6 parts at most
 
 // What one core makes of a few pieces: triangles, and which of them each tile has to draw.
 struct Block {

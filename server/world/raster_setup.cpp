@@ -26,6 +26,19 @@ struct Slopes {
   }
 };
 
+// Places on an edge belong to the triangle to the right of it or below it, so to one of two.
+int32_t bias_of(int32_t a, int32_t b) { return a > 0 || (a == 0 && b > 0) ? 0 : -1; }
+
+// Does the triangle cover this place? Corners in the order that leaves the inside on the inner side.
+bool covers(const RasterPoint& p0, const RasterPoint& p1, const RasterPoint& p2, int32_t x,
+            int32_t y) {
+  auto inside = [&](const RasterPoint& from, const RasterPoint& to) {
+    int32_t a = from.step_y - to.step_y, b = to.step_x - from.step_x;
+    return int64_t(a) * (x - from.step_x) + int64_t(b) * (y - from.step_y) + bias_of(a, b) >= 0;
+  };
+  return inside(p0, p1) && inside(p1, p2) && inside(p2, p0);
+}
+
 void finish(const RasterView& view, const RasterPoint& p0, RasterPoint p1, RasterPoint p2,
             const RasterTriangle& unfinished, std::vector<RasterTriangle>& out) {
   int32_t low_x = std::min({p0.step_x, p1.step_x, p2.step_x});
@@ -42,6 +55,9 @@ void finish(const RasterView& view, const RasterPoint& p0, RasterPoint p1, Raste
                  int64_t(p2.step_x - p0.step_x) * (p1.step_y - p0.step_y);
   if (area == 0) return;
   if (area < 0) std::swap(p1, p2);
+  if (left == right && top == bottom && !covers(p0, p1, p2, left * raster_steps - view.centre_steps_x,
+                                                top * raster_steps - view.centre_steps_y))
+    return;
   RasterTriangle& t = out.emplace_back(unfinished);
   t.left = int16_t(left), t.right = int16_t(right), t.top = int16_t(top),
   t.bottom = int16_t(bottom);
@@ -52,8 +68,7 @@ void finish(const RasterView& view, const RasterPoint& p0, RasterPoint p1, Raste
     t.a[i] = from.step_y - to.step_y;
     t.b[i] = to.step_x - from.step_x;
     t.from_x[i] = from.step_x, t.from_y[i] = from.step_y;
-    // Places on an edge belong to the triangle to the right of it or below it, so to one of two.
-    t.bias[i] = t.a[i] > 0 || (t.a[i] == 0 && t.b[i] > 0) ? 0 : -1;
+    t.bias[i] = bias_of(t.a[i], t.b[i]);
   }
 
   Slopes slopes{p1.x - p0.x, p1.y - p0.y, p2.x - p0.x, p2.y - p0.y, 0};

@@ -73,68 +73,106 @@ inline vec2 barycentric_at(const RasterTriangle& t, const RasterView& view, int 
   return {u / most, v / most};
 }
 
+// A triangle's edges and depth at the pixels of a tile.
+struct TileEdges {
+  int x0, y0, x1, y1;  // of the tile, inclusive, that its bounds meet; x0 a multiple of eight
+  int32_t a[3], b[3];  // whole pixels' steps
+  int32_t edge[3];     // at (x0, y0); far from the edge only its sign is right
+  float depth;         // there
+};
+// False: it covers no pixel of the tile.
+inline bool find_edges(const RasterTriangle& t, const RasterView& view, int tile_x, int tile_y,
+                       TileEdges& e) {
+  e.x0 = std::max(int(t.left) - tile_x, 0) & ~(lane_count - 1);
+  e.x1 = std::min(int(t.right) - tile_x, tile_width - 1);
+  e.y0 = std::max(int(t.top) - tile_y, 0);
+  e.y1 = std::min(int(t.bottom) - tile_y, tile_height - 1);
+  for (int i = 0; i < 3; i++) {
+    // Steps are whole pixels, so the remainder never matters again.
+    int64_t steps_x = int64_t(tile_x + e.x0) * raster_steps - view.centre_steps_x - t.from_x[i];
+    int64_t steps_y = int64_t(tile_y + e.y0) * raster_steps - view.centre_steps_y - t.from_y[i];
+    int64_t exact = (t.a[i] * steps_x + t.b[i] * steps_y + t.bias[i]) >> raster_step_bits;
+    int64_t highest = exact + std::max(int64_t(t.a[i]) * (e.x1 - e.x0), int64_t(0)) +
+                      std::max(int64_t(t.b[i]) * (e.y1 - e.y0), int64_t(0));
+    if (highest < 0) return false;
+    e.edge[i] = int32_t(std::clamp<int64_t>(exact, -(1 << 29), 1 << 29));
+    e.a[i] = t.a[i], e.b[i] = t.b[i];
+  }
+  e.depth = eval_at(t.depth, t, view, tile_x + e.x0, tile_y + e.y0);
+  return true;
+}
+
+// Where eight rows from y0 + `row` on may be covered: from the first to the last pixel, counted
+// from x0, a pixel early and late for rounding. Nowhere: last < first.
+inline void find_spans(const TileEdges& e, int row, int32_t* first, int32_t* last) {
+  constexpr LaneMask lane{0, 1, 2, 3, 4, 5, 6, 7};
+  Lanes low = all_lanes(0), high = all_lanes(float(e.x1 - e.x0));
+  for (int i = 0; i < 3; i++) {
+    LaneMask edge = e.edge[i] + e.b[i] * (row + lane);
+    if (e.a[i] == 0) {
+      high = edge < 0 ? all_lanes(-2) : high;
+      continue;
+    }
+    Lanes at = __builtin_convertvector(edge, Lanes) * (-1.0f / float(e.a[i]));
+    if (e.a[i] > 0) low = lanes_max(low, at);
+    else high = lanes_min(high, at);
+  }
+  low = lanes_max(lanes_min(low, all_lanes(tile_width)) - 1, all_lanes(0));
+  high = lanes_min(lanes_max(high, all_lanes(-2)) + 1, all_lanes(float(e.x1 - e.x0)));
+  store_lanes(first, __builtin_convertvector(low, LaneMask));
+  store_lanes(last, __builtin_convertvector(high, LaneMask));
+}
+
 // Calls body(place of eight pixels in the tile, their depths, bit for each that the triangle covers
 // in front of all before).
 template <class Body>
-void cover(const RasterTriangle& t, const RasterView& view, int tile_x, int tile_y,
-           TilePixels& pixels, const Body& body) {
-  int x0 = std::max(int(t.left) - tile_x, 0) & ~(lane_count - 1);
-  int x1 = std::min(int(t.right) - tile_x, tile_width - 1);
-  int y0 = std::max(int(t.top) - tile_y, 0), y1 = std::min(int(t.bottom) - tile_y, tile_height - 1);
-  if (!pixels.any_behind(x0, y0, x1, y1, t.most_depth)) return;
+[[gnu::always_inline]] inline void cover(const RasterTriangle& t, const RasterView& view,
+                                         int tile_x, int tile_y, TilePixels& pixels,
+                                         const Body& body) {
   constexpr LaneMask lane{0, 1, 2, 3, 4, 5, 6, 7};
-  LaneMask edge[3], along[3], down[3];
-  for (int i = 0; i < 3; i++) {
-    // Steps are whole pixels, so the remainder never matters again; far from the edge only its sign
-    // does.
-    int64_t steps_x = int64_t(tile_x + x0) * raster_steps - view.centre_steps_x - t.from_x[i];
-    int64_t steps_y = int64_t(tile_y + y0) * raster_steps - view.centre_steps_y - t.from_y[i];
-    int64_t exact = (t.a[i] * steps_x + t.b[i] * steps_y + t.bias[i]) >> raster_step_bits;
-    edge[i] = int(std::clamp<int64_t>(exact, -(1 << 29), 1 << 29)) + t.a[i] * lane;
-    along[i] = LaneMask{} + t.a[i] * lane_count;
-    down[i] = LaneMask{} + t.b[i];
+  TileEdges e;
+  if (!find_edges(t, view, tile_x, tile_y, e)) return;
+  // Small ones are drawn sooner than it is found out whether they show.
+  constexpr int small = 64;
+  if ((e.x1 - e.x0 + 1) * (e.y1 - e.y0 + 1) > small &&
+      !pixels.any_behind(e.x0, e.y0, e.x1, e.y1, t.most_depth))
+    return;
+  LaneMask across[3];
+  for (int i = 0; i < 3; i++) across[i] = e.a[i] * lane;
+  Lanes depth_across = t.depth.y * Lanes{0, 1, 2, 3, 4, 5, 6, 7};
+  auto cover_eight = [&](int x, int y, LaneMask outside) {
+    unsigned covered = ~negative_lanes(outside) & 0xff;
+    if (!covered) return;
+    Lanes depth = e.depth + t.depth.y * float(x) + t.depth.z * float(y) + depth_across;
+    depth = lanes_max(lanes_min(depth, all_lanes(t.most_depth)), all_lanes(t.least_depth));
+    int place = (e.y0 + y) * tile_width + e.x0 + x;
+    covered &= negative_lanes(LaneMask(depth > load_lanes(pixels.depth + place)));
+    if (covered) body(place, depth, covered);
+  };
+  int rows = e.y1 - e.y0 + 1;
+  if (e.x1 - e.x0 < lane_count) {
+    LaneMask e0 = e.edge[0] + across[0], e1 = e.edge[1] + across[1], e2 = e.edge[2] + across[2];
+    for (int y = 0; y < rows; y++) {
+      cover_eight(0, y, e0 | e1 | e2);
+      e0 += e.b[0], e1 += e.b[1], e2 += e.b[2];
+    }
+    return;
   }
-  // Wide triangles are mostly not where their bounds are: each row begins where its edges say, a
-  // pixel early for rounding.
-  bool wide = x1 - x0 >= 2 * lane_count;
-  float inverse[3] = {};
-  for (int i = 0; wide && i < 3; i++) inverse[i] = t.a[i] != 0 ? -1.0f / float(t.a[i]) : 0;
-  float start = eval_at(t.depth, t, view, tile_x + x0, tile_y + y0);
-  Lanes row_depth = start + t.depth.y * Lanes{0, 1, 2, 3, 4, 5, 6, 7};
-  for (int y = y0; y <= y1; y++) {
-    LaneMask e0 = edge[0], e1 = edge[1], e2 = edge[2];
-    Lanes depth = row_depth;
-    int x = x0, end = x1;
-    if (wide) {
-      float low = 0, high = float(x1 - x0);
-      for (int i = 0; i < 3; i++) {
-        float at = float(edge[i][0]) * inverse[i];
-        if (t.a[i] > 0) low = std::max(low, at);
-        if (t.a[i] < 0) high = std::min(high, at);
-        if (t.a[i] == 0 && edge[i][0] < 0) high = -2;
-      }
-      int groups = std::max(int(std::min(low, float(tile_width))) - 1, 0) / lane_count;
-      end = x0 + int(std::max(high, -2.0f) + 1);
-      end = std::min(end, x1);
-      if (groups > 0) {
-        e0 += along[0] * groups, e1 += along[1] * groups, e2 += along[2] * groups;
-        depth += t.depth.y * float(groups * lane_count);
-        x += groups * lane_count;
+  // Wide triangles are mostly not where their bounds are.
+  alignas(32) int32_t first[lane_count], last[lane_count];
+  for (int row = 0; row < rows; row += lane_count) {
+    find_spans(e, row, first, last);
+    for (int k = 0, y = row; k < lane_count && y < rows; k++, y++) {
+      int x = first[k] & ~(lane_count - 1);
+      if (x > last[k]) continue;
+      LaneMask e0 = (e.edge[0] + e.b[0] * y + e.a[0] * x) + across[0],
+               e1 = (e.edge[1] + e.b[1] * y + e.a[1] * x) + across[1],
+               e2 = (e.edge[2] + e.b[2] * y + e.a[2] * x) + across[2];
+      for (; x <= last[k]; x += lane_count) {
+        cover_eight(x, y, e0 | e1 | e2);
+        e0 += e.a[0] * lane_count, e1 += e.a[1] * lane_count, e2 += e.a[2] * lane_count;
       }
     }
-    for (; x <= end; x += lane_count) {
-      unsigned covered = ~negative_lanes(e0 | e1 | e2) & 0xff;
-      if (covered) {
-        int place = y * tile_width + x;
-        Lanes d = lanes_max(lanes_min(depth, all_lanes(t.most_depth)), all_lanes(t.least_depth));
-        covered &= negative_lanes(LaneMask(d > load_lanes(pixels.depth + place)));
-        if (covered) body(place, d, covered);
-      }
-      e0 += along[0], e1 += along[1], e2 += along[2];
-      depth += t.depth.y * float(lane_count);
-    }
-    for (int i = 0; i < 3; i++) edge[i] += down[i];
-    row_depth += t.depth.z;
   }
 }
 
