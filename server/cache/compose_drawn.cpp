@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cache/drawn_planes.h"
+#include "cache/soften_edges.h"
 
 namespace wellspring {
 namespace {
@@ -236,8 +237,9 @@ Shown Composer::light_eight(const SightRun& run, const RunPixels& p, uint64_t sh
 }
 
 template <class Planes>
-void compose(const Composer& composer, const PictureSight& sight, const Planes& planes) {
-  sight.see(composer.view, vec2(0.5f), [&](const SightRun& run) {
+std::span<const std::vector<EdgeShare>> compose(const Composer& composer, const PictureSight& sight,
+                                                const Planes& planes) {
+  return sight.see_edges(composer.view, vec2(0.5f), [&](const SightRun& run) {
     RunPixels p;
     uint64_t shining = describe_run(run, p);
     const CellRows& rows = composer.rows_around(run);
@@ -264,8 +266,8 @@ View light_view(const View& view) {
 
 void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
                    const Frame& light, Frame& frame) {
-  compose({view, cells, known, light, PixelRays(view), PixelRays(light_view(view))}, sight,
-          FramePlanes{frame});
+  Composer composer{view, cells, known, light, PixelRays(view), PixelRays(light_view(view))};
+  soften_edges(compose(composer, sight, FramePlanes{frame}), frame.color);
 }
 
 void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
@@ -275,8 +277,9 @@ void compose_drawn(const View& view, const PictureSight& sight, const Cells& cel
   image.width = view.width, image.height = view.height;
   image.rgb.resize(3 * pixels);
   if (depth) depth->resize(pixels);
-  compose({view, cells, known, light, PixelRays(view), PixelRays(light_view(view))}, sight,
-          EyePlanes{tonemap.exposure, image.rgb.data(), depth ? depth->data() : nullptr});
+  Composer composer{view, cells, known, light, PixelRays(view), PixelRays(light_view(view))};
+  EyePlanes planes{tonemap.exposure, image.rgb.data(), depth ? depth->data() : nullptr};
+  soften_edges(compose(composer, sight, planes), image);
 }
 
 }  // namespace wellspring

@@ -340,11 +340,25 @@ Seen SightRun::Impl::see(int i) const {
 
 void PictureSight::see(const View& view, vec2 offset,
                        const std::function<void(const SightRun&)>& take) const {
+  RasterSettings settings;
+  settings.offset = offset;
+  draw(view, settings, take);
+}
+
+std::span<const std::vector<EdgeShare>> PictureSight::see_edges(
+    const View& view, vec2 offset, const std::function<void(const SightRun&)>& take) const {
+  RasterSettings settings;
+  settings.offset = offset;
+  settings.edges = true;
+  draw(view, settings, take);
+  return impl_->raster.edges();
+}
+
+void PictureSight::draw(const View& view, RasterSettings settings,
+                        const std::function<void(const SightRun&)>& take) const {
   static std::atomic<uint64_t> pictures = 0;
   const uint64_t picture = ++pictures;
   const Impl& s = *impl_;
-  RasterSettings settings;
-  settings.offset = offset;
   settings.see_through = s.panes;
   settings.veil = [&](const Hit& hit, vec3 direction) {
     Ray ray;
@@ -364,7 +378,7 @@ void PictureSight::see(const View& view, vec2 offset,
       uint32_t shown = instance == RasterRun::nothing ? 0 : s.world.object_of(instance);
       std::fill(object + begin, object + raster_run.end[p], shown);
     }
-    SightRun::Impl run_impl{s, view, offset, slope, facets, &raster_run};
+    SightRun::Impl run_impl{s, view, settings.offset, slope, facets, &raster_run};
     SightRun run;
     run.picture = picture;
     run.x = raster_run.x, run.y = raster_run.y, run.count = raster_run.count;

@@ -52,6 +52,9 @@ class PictureSight {
   // Calls `take` from many threads; together the calls cover every pixel once. `offset`: of the
   // sampling place in its pixel, 0 to 1. Call after World::commit(), while nothing moves.
   void see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take) const;
+  // The same, and then finds Raster::edges(), which are good until the next call.
+  std::span<const std::vector<EdgeShare>> see_edges(
+      const View& view, vec2 offset, const std::function<void(const SightRun&)>& take) const;
   // Is it of a mesh that moves?
   bool moves(uint32_t object) const;
   // Does the view's eye stand where runs are right? Not within a solid of glass, whose own light
@@ -60,6 +63,8 @@ class PictureSight {
 
  private:
   friend class SightRun;
+  void draw(const View& view, RasterSettings settings,
+            const std::function<void(const SightRun&)>& take) const;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -12,6 +12,7 @@
 #include "world/bvh_alpha.h"
 #include "world/raster_clusters.h"
 #include "world/raster_cull.h"
+#include "world/raster_edges.h"
 #include "world/raster_setup.h"
 #include "world/raster_tile.h"
 
@@ -72,6 +73,7 @@ struct Raster::Impl {
   size_t hidden = 0;
   std::vector<Block> blocks;
   std::vector<TilePixels> tiles;
+  std::vector<std::vector<EdgeShare>> edges, border_edges;  // of each tile
 
   explicit Impl(const World& w) : world(w) {}
   void find_pieces(const View& view);
@@ -93,7 +95,7 @@ struct Raster::Impl {
   void draw_veils(ivec2 corner, int tile, const View& view, const RasterView& raster,
                   const RasterSettings& settings, TilePixels& pixels,
                   std::vector<Veil>& veils) const;
-  void hand_out(ivec2 corner, const View& view, const RasterView& raster, const TilePixels& pixels,
+  void hand_out(ivec2 corner, const View& view, const RasterView& raster, TilePixels& pixels,
                 const std::vector<Veil>& veils,
                 const std::function<void(const RasterRun&)>& take) const;
 };
@@ -266,7 +268,7 @@ void Raster::Impl::draw_veils(ivec2 corner, int tile, const View& view, const Ra
 }
 
 void Raster::Impl::hand_out(ivec2 corner, const View& view, const RasterView& raster,
-                            const TilePixels& pixels, const std::vector<Veil>& veils,
+                            TilePixels& pixels, const std::vector<Veil>& veils,
                             const std::function<void(const RasterRun&)>& take) const {
   int columns = std::min(tile_width, view.width - corner.x),
       rows = std::min(tile_height, view.height - corner.y);
@@ -285,6 +287,7 @@ void Raster::Impl::hand_out(ivec2 corner, const View& view, const RasterView& ra
       for (int i = x; i < end; i++) {
         instance[i] = hit ? t->instance : RasterRun::nothing;
         triangle[i] = hit ? t->triangle : 0;
+        pixels.kind[y * tile_width + i] = uint16_t(hit ? t->instance : RasterRun::nothing);
       }
       if (!hit) {
         std::fill(depth + x, depth + end, std::numeric_limits<float>::infinity());
@@ -311,6 +314,8 @@ void Raster::Impl::hand_out(ivec2 corner, const View& view, const RasterView& ra
           veils.empty() ? nullptr : &veils[size_t(y) * tile_width], ends, pieces});
   }
 }
+
+std::span<const std::vector<EdgeShare>> Raster::edges() const { return impl_->edges; }
 
 Hit hit_of(const RasterRun& run, int i, const View& view, vec2 offset) {
   Hit hit;
@@ -339,6 +344,10 @@ void Raster::draw(const View& view, const RasterSettings& settings,
   int columns = (view.width + tile_width - 1) / tile_width;
   int rows = (view.height + tile_height - 1) / tile_height;
   r.tiles.resize(size_t(columns * rows));
+  for (auto* lists : {&r.edges, &r.border_edges}) {
+    lists->resize(settings.edges ? r.tiles.size() : 0);
+    for (std::vector<EdgeShare>& list : *lists) list.clear();
+  }
   r.blocks.clear();
   std::vector<uint8_t> any_veil(r.tiles.size(), 0);
   auto corner_of = [&](int tile) {
@@ -373,13 +382,23 @@ void Raster::draw(const View& view, const RasterSettings& settings,
   r.drop_hidden(view, raster, drawn);
   r.hidden -= r.pieces.size();
   size_t second = fill(r.pieces.size());
+  auto triangle_of = [&r](uint32_t number) { return &r.triangle_of(number); };
+  EdgeFinder finder{raster, 0.5f * float(view.height) / view.tan_half_fov, columns, r.tiles, triangle_of};
   parallel_for(columns * rows, [&](int i) {
     draw_tile(i, second);
     std::vector<Veil> veils;
     if (any_veil[size_t(i)] && settings.veil)
       r.draw_veils(corner_of(i), i, view, raster, settings, r.tiles[size_t(i)], veils);
     r.hand_out(corner_of(i), view, raster, r.tiles[size_t(i)], veils, take);
+    if (settings.edges) finder.find_within(i, r.edges[size_t(i)]);
   });
+  if (!settings.edges) return;
+  parallel_for(columns * rows, [&](int i) { finder.find_borders(i, r.border_edges[size_t(i)]); });
+  for (const std::vector<EdgeShare>& list : r.border_edges)
+    for (const EdgeShare& edge : list) {
+      int x = int(edge.pixel) % view.width, y = int(edge.pixel) / view.width;
+      r.edges[size_t(y / tile_height * columns + x / tile_width)].push_back(edge);
+    }
 }
 
 }  // namespace wellspring

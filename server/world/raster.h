@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "world/bvh.h"
 #include "world/view.h"
@@ -40,6 +41,13 @@ struct RasterRun {
 // Pixel i of the run as a ray through its sampling place would have met it.
 Hit hit_of(const RasterRun& run, int i, const View& view, vec2 offset);
 
+// Of `pixel` (row after row from the picture's top left), the share that is covered by what `other`,
+// a neighbour, shows: above 0, at most a half.
+struct EdgeShare {
+  uint32_t pixel = 0, other = 0;
+  float share = 0;
+};
+
 struct RasterSettings {
   vec2 offset{0.5f};  // of the sampling place in its pixel, 0 to 1
   // Of each material of the scene (empty: none). Not 0: its triangles hide nothing but veil what is
@@ -49,6 +57,7 @@ struct RasterSettings {
   // direction: of a ray from the eye that meets it there. Needed where there is one. Several before
   // one place are put together in no order.
   std::function<Veil(const Hit& hit, vec3 direction)> veil;
+  bool edges = false;  // find Raster::edges()
 };
 
 // Keeps its arrays from picture to picture. Surfaces with alpha are passed through where a ray
@@ -65,6 +74,9 @@ class Raster {
   // runs.
   void draw(const View& view, const RasterSettings& settings,
             const std::function<void(const RasterRun&)>& take);
+  // Of the last picture, if asked for: pixels that edges of objects and creases cut. Each pixel is
+  // named in one of the lists only, there maybe more than once.
+  std::span<const std::vector<EdgeShare>> edges() const;
   // Of the last picture: clusters that were drawn, and those left out because nearer ones hide them.
   size_t drawn_clusters() const;
   size_t hidden_clusters() const;

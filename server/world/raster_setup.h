@@ -41,12 +41,12 @@ struct RasterTriangle {
   // Twice the area on the inner side of edge i at (x, y), in steps from the picture's centre, is
   // a * (x - from.x) + b * (y - from.y) + bias; inside: none of the three is negative.
   int32_t a[3], b[3], from_x[3], from_y[3], bias[3];
+  uint32_t instance, triangle;
   // Inverse depth, and it times the barycentrics: value at `corner` and slopes a pixel.
   vec2 corner;
   vec3 depth, u, v;  // value, slope along x, slope along y
   float least_depth, most_depth;
   int16_t left, top, right, bottom;  // pixels it may cover, inclusive, from the picture's top left
-  uint32_t instance, triangle;
   bool has_alpha;
   uint8_t veils;  // RasterSettings::see_through of its material
 };

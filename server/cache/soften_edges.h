@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Antialiasing of pictures that have one sampling place a pixel: pixels that an edge cuts take
+// their share of the colour beyond it.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "frame/frame.h"
+#include "world/raster.h"
+
+namespace wellspring {
+
+// `edges`: Raster::edges() of the picture. Where several cut a pixel, each takes its share of what the
+// ones before have left.
+void soften_edges(std::span<const std::vector<EdgeShare>> edges, Image8& image);  // as eyes add light
+void soften_edges(std::span<const std::vector<EdgeShare>> edges, std::vector<vec3>& color);
+
+}  // namespace wellspring
