@@ -52,8 +52,8 @@ void make_keyframe(const View& view, const Image8& picture, std::span<const floa
     throw std::invalid_argument("make_keyframe: picture and depth are not of the view's size");
   Keyframe& k = keyframe;
   k.view = view;
-  k.color.resize(width * height);
-  k.disparity.resize(width * height);
+  k.color.resize(width * height + 1);
+  k.disparity.resize(width * height + 1);
   k.columns = (view.width + Keyframe::block - 1) / Keyframe::block;
   k.rows = (view.height + Keyframe::block - 1) / Keyframe::block;
   k.farthest.resize(size_t(k.columns) * size_t(k.rows));

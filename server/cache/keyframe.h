@@ -18,6 +18,7 @@ struct Keyframe {
   View view;  // whose size is the picture's
   // Red in the lowest byte, then green, blue and the step: how far apart the disparities of this
   // pixel and those to its right, below, and both are, times step_scale, rounded up, at most 255.
+  // One pixel more than there are, since they are read in pairs; disparities likewise.
   std::vector<uint32_t> color;
   std::vector<float> disparity;  // 1 / depth; 0 at infinity and where the depth is none
   // Of blocks, row after row: the pixels and those around them.

@@ -62,6 +62,19 @@ u8 gather(const T* from, const i8& index) {
   return v;
 #endif
 }
+// Words at the places and those after them.
+void gather_pairs(const uint32_t* from, const i8& index, u8& a, u8& b) {
+#ifdef __AVX2__
+  auto pairs = [&](const __m128i& i) {
+    return u8(_mm256_i32gather_epi64(reinterpret_cast<const long long*>(from), i, 4));
+  };
+  u8 low = pairs(__m128i(low_half(as<u8>(index)))), high = pairs(__m128i(high_half(as<u8>(index))));
+  a = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
+  b = __builtin_shufflevector(low, high, 1, 3, 5, 7, 9, 11, 13, 15);
+#else
+  a = gather(from, index), b = gather(from, index + 1);
+#endif
+}
 i8 to_int(const f8& v) { return __builtin_convertvector(v, i8); }
 f8 clamped(const f8& v, float high) { return smaller(larger(v, f8{}), splat(high)); }  // NaN becomes 0
 
@@ -229,13 +242,11 @@ u8 sample_color(const Source& source, const f8& x, const f8& y, float pixels) {
   i8 px = place(x, source.last_x), py = place(y, source.last_y);
   i8 x0 = px >> fraction_bits, y0 = py >> fraction_bits;
   u8 fx = as<u8>(px & (fractions - 1)), fy = as<u8>(py & (fractions - 1));
-  i8 first = y0 * width + x0;
-  // Where there is no further pixel the fraction is 0.
-  i8 right = first - (fx > 0u), below = (fy > 0u) & width, corner = right + below;
-  below += first;
-  const uint32_t* color = k.color.data();
-  u8 c00 = gather(color, first), c10 = gather(color, right), c01 = gather(color, below),
-     c11 = gather(color, corner);
+  // Where there is no further row its weight is 0; behind the last pixel there is one more.
+  i8 first = y0 * width + x0, below = first + (as<i8>(fy > 0u) & width);
+  u8 c00, c10, c01, c11;
+  gather_pairs(k.color.data(), first, c00, c10);
+  gather_pairs(k.color.data(), below, c01, c11);
   u8 w11 = fx * fy, w10 = fx * fractions - w11, w01 = fy * fractions - w11,
      w00 = uint32_t(fractions * fractions) - w10 - w01 - w11;
   float allowed = half_step * Keyframe::step_scale / std::max(pixels, 1e-3f);
@@ -249,7 +260,7 @@ u8 sample_color(const Source& source, const f8& x, const f8& y, float pixels) {
       lost += weight & as<u8>(other);
       weight &= as<u8>(~other);
     };
-    thin(first, w00), thin(right, w10), thin(below, w01), thin(corner, w11);
+    thin(first, w00), thin(first + 1, w10), thin(below, w01), thin(below + 1, w11);
     // The nearest pixel is always of its own surface.
     i8 is_right = as<i8>(fx) >= fractions / 2, is_below = as<i8>(fy) >= fractions / 2;
     w11 += lost & as<u8>(is_right & is_below), w10 += lost & as<u8>(is_right & ~is_below);
@@ -276,18 +287,13 @@ void write_rgb(const u8& words, uint8_t* to, int count) {
   if (count < lanes) std::memcpy(to, bytes, size_t(count) * 3);
 }
 
-// A row of a block. Returns its pixels' bits that the keyframe does not hold.
-unsigned warp_row(const Source& source, float x, float y, int count, const Search& search, float far,
-                  uint8_t* to) {
+// The first of eight neighbours' epipolar lines' places that shows what the pixel would see. Returns which of
+// the wanted have none.
+i8 follow_line(const Source& source, const Place& base, const Search& search, i8 waiting, f8& at_x, f8& at_y) {
   const Mapping& m = source.to;
-  f8 px = x + f8{0, 1, 2, 3, 4, 5, 6, 7};
-  Place base{m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
-             m.one.z + px * m.across.z + y * m.down.z};
-  i8 waiting = i8{0, 1, 2, 3, 4, 5, 6, 7} < count;
-  f8 at_x{}, at_y{};
-  float candidate = search.steps == 0 ? std::numeric_limits<float>::infinity()
-                                      : search.step + found / std::max(search.pixels, 1e-30f);
-  for (int i = 0; i <= search.steps; i++) {
+  at_x = at_y = f8{};
+  float candidate = search.step + found / std::max(search.pixels, 1e-30f);
+  for (int i = 0; i <= search.steps && any(waiting); i++) {
     f8 w = splat(search.nearest - float(i) * search.step);
     Place one = carry(m, base, w);
     f8 first = source.surface(one.x, one.y);
@@ -299,7 +305,25 @@ unsigned warp_row(const Source& source, float x, float y, int count, const Searc
     i8 hit = near & (magnitude(second - first) * search.pixels <= found);
     at_x = hit ? three.x : at_x, at_y = hit ? three.y : at_y;
     waiting &= ~hit;
-    if (!any(waiting)) break;
+  }
+  return waiting;
+}
+
+// A row of a block. Returns its pixels' bits that the keyframe does not hold.
+unsigned warp_row(const Source& source, float x, float y, int count, const Search& search, float far,
+                  uint8_t* to) {
+  const Mapping& m = source.to;
+  f8 px = x + f8{0, 1, 2, 3, 4, 5, 6, 7};
+  Place base{m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
+             m.one.z + px * m.across.z + y * m.down.z};
+  i8 waiting{};
+  f8 at_x, at_y;
+  if (search.steps == 0) {  // whatever lies in the middle is right to half a pixel, and then to much less
+    Place one = carry(m, base, splat(search.nearest));
+    Place two = carry(m, base, source.surface(one.x, one.y));
+    at_x = two.x, at_y = two.y;
+  } else {
+    waiting = follow_line(source, base, search, i8{0, 1, 2, 3, 4, 5, 6, 7} < count, at_x, at_y);
   }
   for (unsigned holes = negative_lanes(waiting); holes != 0; holes &= holes - 1) {
     int i = std::countr_zero(holes);
