@@ -10,6 +10,8 @@
 namespace wellspring {
 namespace {
 
+// On each side, of width and height: turning goes sideways.
+constexpr int margin_across = 40, margin_down = 45;
 constexpr float nearest_depth = 1e-4f;  // metres, as in project_points()
 
 float disparity_of(float depth) {
@@ -44,6 +46,15 @@ void bound_block(const Keyframe& k, int column, int row, float& farthest, float&
 }
 
 }  // namespace
+
+View keyframe_view(View view) {
+  int height = view.height;
+  auto margin = [](int pixels, int share) { return (pixels / share + 7) / 8 * 8; };
+  view.width += 2 * margin(view.width, margin_across);
+  view.height += 2 * margin(view.height, margin_down);
+  view.tan_half_fov *= float(view.height) / float(height);
+  return view;
+}
 
 void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth,
                    Keyframe& keyframe) {

@@ -28,6 +28,9 @@ struct Keyframe {
   bool empty() const { return color.empty(); }
 };
 
+// The view with some of what lies around, in pixels of the same size: what is drawn of it for warps.
+View keyframe_view(View view);
+
 // Reuses the memory of `keyframe`. `depth`: along the viewing axis, one a pixel, as Frame::depth; anything
 // that is not a positive number counts as infinitely far. Throws std::invalid_argument when sizes differ.
 void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth, Keyframe& keyframe);

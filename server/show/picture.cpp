@@ -31,8 +31,6 @@ constexpr double predicted_pictures = 2;
 constexpr float predicted_share = 0.3f;    // of the samples, at most
 constexpr float barely_covered = 0.1f;  // of the pixels by points
 constexpr float more_asked = 1.2f;      // than there is time for, by what was measured: none is idle
-// Of a keyframe, on each side, of its width and height: turning goes sideways.
-constexpr int margin_across = 40, margin_down = 45;
 
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
 
@@ -66,16 +64,6 @@ View view_ahead(const Show& show, const Visitor& visitor, const View& view, doub
     View ahead = extrapolate(past.view, view, float(seconds / (show.time - past.time)));
     if (ahead != view) return ahead;
   }
-  return view;
-}
-
-// What lies around is drawn along, for warps of the picture.
-View widened(View view) {
-  int height = view.height;
-  auto margin = [](int pixels, int share) { return (pixels / share + 7) / 8 * 8; };
-  view.width += 2 * margin(view.width, margin_across);
-  view.height += 2 * margin(view.height, margin_down);
-  view.tan_half_fov *= float(view.height) / float(height);
   return view;
 }
 
@@ -157,8 +145,8 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
     double seen_in = 0.001 * double(visitor.times.whole) + 0.5 * interval;
     order.expected = view_ahead(show, visitor, now, seen_in);
     order.ahead = view_ahead(show, visitor, now, seen_in + interval);
-    order.view = order.coarse ? widened(order.expected) : order.expected;
-    if (order.coarse) order.ahead = widened(order.ahead);
+    order.view = order.coarse ? keyframe_view(order.expected) : order.expected;
+    if (order.coarse) order.ahead = keyframe_view(order.ahead);
   } else {
     order.ahead = view_ahead(show, visitor, now, predicted_pictures * interval);
   }

@@ -20,7 +20,8 @@ int main(int argc, char** argv) {
   std::string only, file, traces;
   const std::pair<const char*, void (*)(BenchReport&, const BenchOptions&)> parts[] = {
       {"stream", bench_stream},           {"avatar", bench_avatar},
-      {"cache.display", bench_cache_display}, {"cache.visit", bench_cache_visit},
+      {"cache.display", bench_cache_display}, {"cache.warp", bench_cache_warp},
+      {"cache.visit", bench_cache_visit},
       {"cache.mirror", bench_cache_mirror}, {"cache.rest", bench_cache_rest},
       {"light.frame", bench_light_frame}, {"light.scaling", bench_light_scaling},
       {"light.error", bench_light_error}, {"light.rays", bench_light_rays},

@@ -6,8 +6,10 @@
 #include <csignal>
 #include <deque>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <spawn.h>
 #include <stdexcept>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -77,6 +79,25 @@ class ServerProcess {
   pid_t pid_ = 0;
 };
 
+// Of the server's /metrics; NaN where it has none of that name.
+double read_metric(uint16_t port, const std::string& name) {
+  int connection = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const std::string question = "GET /metrics HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+  std::string text;
+  if (connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+      write(connection, question.data(), question.size()) == ssize_t(question.size())) {
+    char part[4096];
+    for (ssize_t n; (n = read(connection, part, sizeof part)) > 0;) text.append(part, size_t(n));
+  }
+  close(connection);
+  size_t at = text.find("\nwellspring_" + name + " ");
+  return at == std::string::npos ? std::nan("") : std::atof(&text[at + name.size() + 13]);
+}
+
 // Results are called `name`.fps and so on; `draw` goes to the server.
 void walk(BenchReport& report, const BenchOptions& options, const std::string& name, const std::string& draw) {
   const double warm_up = 2, seconds = options.quick ? 6 : 20;
@@ -93,10 +114,16 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
   std::deque<std::pair<uint32_t, double>> asked;  // seq, when sent
   std::vector<double> latencies, arrivals, bytes;
   uint32_t seq = 0;
-  double began = seconds_now(), next_input = began;
+  double began = seconds_now(), next_input = began, counted_from = 0;
+  const char* counters[] = {"pictures_drawn_total", "pictures_warped_total"};
+  double counts_before[2] = {};
   WsMessage message;
   while (seconds_now() - began < warm_up + seconds) {
     double now = seconds_now(), t = now - began;
+    if (counted_from == 0 && t > warm_up) {
+      for (size_t i = 0; i < 2; i++) counts_before[i] = read_metric(server.port, counters[i]);
+      counted_from = seconds_now();
+    }
     if (now >= next_input) {
       // A stroll: forward, swaying round, turning back at intervals so that the hall's walls come and go.
       Input input;
@@ -125,10 +152,13 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
     }
   }
   if (arrivals.size() < 2) throw std::runtime_error("hardly any picture arrived");
+  double counted = seconds_now() - counted_from;
   std::vector<double> gaps;
   for (size_t i = 1; i < arrivals.size(); i++) gaps.push_back(1000 * (arrivals[i] - arrivals[i - 1]));
   nlohmann::json where = {{"scene", "castle"}, {"size", "1280x720"}, {"draw", draw}};
   report.add(name + ".fps", double(arrivals.size() - 1) / (arrivals.back() - arrivals.front()), "1/s", where);
+  report.add(name + ".drawn_fps", (read_metric(server.port, counters[0]) - counts_before[0]) / counted, "1/s", where);
+  report.add(name + ".warped_fps", (read_metric(server.port, counters[1]) - counts_before[1]) / counted, "1/s", where);
   report.add(name + ".latency_p50_ms", quantile(latencies, 0.5), "ms", where);
   report.add(name + ".latency_p95_ms", quantile(latencies, 0.95), "ms", where);
   report.add(name + ".gap_p95_ms", quantile(gaps, 0.95), "ms", where);
