@@ -79,8 +79,9 @@ bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
 void copy_colors(const Keyframe& keyframe, Image8& image) {
   image.width = keyframe.view.width;
   image.height = keyframe.view.height;
-  image.rgb.resize(3 * keyframe.color.size());
-  parallel_ranges(int(keyframe.color.size()), 1 << 16, [&](int begin, int end) {
+  size_t pixels = size_t(image.width) * size_t(image.height);
+  image.rgb.resize(3 * pixels);
+  parallel_ranges(int(pixels), 1 << 16, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++)
       for (size_t c = 0; c < 3; c++) image.rgb[3 * i + c] = uint8_t(keyframe.color[i] >> (8 * c));
   });
