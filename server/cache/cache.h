@@ -22,7 +22,9 @@ struct CacheSettings {
   float color_change = 0.25f;  // relative change of a resampled point that ages its neighbours
   float budget_share_old = 1;  // weight of age against emptiness in the priority
   bool attention = true;       // false: samples spread evenly
-  bool images = true;  // what mirrors and glass show is kept where its image lies, not on them
+  // What mirrors show is kept where its image lies, not on them. For pictures made of points alone:
+  // where shapes are drawn, light is looked for on the surfaces.
+  bool images = false;
 };
 
 struct Tonemap;

@@ -10,9 +10,13 @@
 namespace wellspring {
 namespace {
 
+constexpr float flat = 0.97f;  // of Coarse::flatness: normals some ten degrees apart
+
 struct Coarse {
   vec3 albedo{0}, rest{0}, smooth{0}, normal{0};
+  vec3 plane{0};  // as Cells::plane: the same for all cells of one plane
   float inverse_depth = 0, weight = 0;
+  float flatness = 0;  // 1: all that it was made of faces one way
   uint32_t object = no_object;
 };
 
@@ -30,7 +34,9 @@ void add(Coarse& sum, const Coarse& c, float weight) {
   sum.rest += c.rest * weight;
   sum.smooth += c.smooth * weight;
   sum.normal += c.normal * weight;
+  sum.plane += c.plane * weight;
   sum.inverse_depth += c.inverse_depth * weight;
+  sum.flatness += c.flatness * weight;
   sum.weight += weight;
 }
 
@@ -50,7 +56,10 @@ Coarse blend(const Coarse* const* candidates, const float* weights, int count) {
     if (candidates[i]->object == sum.object) add(sum, *candidates[i], weights[i]);
   float share = 1 / sum.weight;
   sum.albedo *= share, sum.rest *= share, sum.smooth *= share, sum.inverse_depth *= share;
-  sum.normal /= std::max(length(sum.normal), 1e-6f);
+  sum.plane *= share;
+  float facing = length(sum.normal);
+  sum.flatness *= share * facing * share;
+  sum.normal /= std::max(facing, 1e-6f);
   return sum;
 }
 
@@ -64,7 +73,9 @@ Coarse read_cell(const Cells& cells, int x, int y) {
     c.rest[k] = cells.rest[size_t(k)][i];
     c.smooth[k] = cells.smooth[size_t(k)][i];
     c.normal[k] = cells.normal[size_t(k)][i];
+    c.plane[k] = cells.plane[size_t(k)][i];
   }
+  c.flatness = 1;
   c.inverse_depth = 1 / cells.depth[i];
   c.weight = std::min(cells.samples[i], 16.0f);
   c.object = cells.object[i];
@@ -98,9 +109,12 @@ Coarse pull(const Level& above, int x, int y) {
 void write_cell(const PixelRays& rays, const Coarse& c, int x, int y, Cells& cells) {
   size_t i = size_t(cells.index(x, y));
   vec3 ray(rays.x((float(x) + 0.5f) * cell_size), rays.y((float(y) + 0.5f) * cell_size), 1);
-  // Without points of its own the cell faces the viewer: its depth is a guess, a slope would be a
-  // bolder one.
-  vec3 plane = vec3(0, 0, c.inverse_depth);
+  // A flat surface goes on as it does around. Of others the cell faces the viewer: its depth is a
+  // guess, a slope would be a bolder one.
+  float inverse_depth = c.inverse_depth, there = dot(c.plane, ray);
+  vec3 plane(0, 0, inverse_depth);
+  if (c.flatness > flat && there > 0.5f * inverse_depth && there < 2 * inverse_depth)
+    plane = c.plane, inverse_depth = there;
   for (int k = 0; k < 3; k++) {
     cells.albedo[size_t(k)][i] = c.albedo[k];
     cells.rest[size_t(k)][i] = c.rest[k];
@@ -108,7 +122,7 @@ void write_cell(const PixelRays& rays, const Coarse& c, int x, int y, Cells& cel
     cells.normal[size_t(k)][i] = c.normal[k];
     cells.plane[size_t(k)][i] = plane[k];
   }
-  cells.depth[i] = 1 / c.inverse_depth;
+  cells.depth[i] = 1 / inverse_depth;
   cells.object[i] = c.object;
 }
 

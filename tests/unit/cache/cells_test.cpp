@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "base/rng.h"
 
@@ -84,6 +85,36 @@ TEST(Cells, WhatIsFilledInIsAsCalmAsWhatIsKnown) {
   double filled = wall.error();
   filter_cells(wall.view, wall.cells);
   EXPECT_LT(wall.error(), filled / 3);
+}
+
+// Of a floor that runs away from the viewer, each hole is where the floor is, not where the nearest
+// known cell is.
+TEST(Cells, HolesLieInThePlaneAround) {
+  SparseWall wall(6);
+  Cells& cells = wall.cells;
+  PixelRays rays(wall.view);
+  vec3 up = normalize(vec3(0, 1, 0.02f));  // in the viewer's axes: right, up, forward
+  vec3 plane = -up / 1.6f;                 // 1.6 m below the eye
+  auto inverse_depth = [&](int x, int y) {
+    return dot(plane, vec3(rays.x((float(x) + 0.5f) * cell_size), rays.y((float(y) + 0.5f) * cell_size), 1));
+  };
+  std::vector<uint8_t> known(cells.object.size());
+  int first = height / 2 + 6;  // rows below the horizon
+  for (int y = 0; y < cells.height; y++)
+    for (int x = 0; x < cells.width; x++) {
+      size_t i = size_t(cells.index(x, y));
+      if (y < first) cells.object[i] = no_object, cells.samples[i] = 0;
+      if (cells.object[i] == no_object) continue;
+      known[i] = 1;
+      for (size_t k = 0; k < 3; k++) cells.normal[k][i] = up[int(k)], cells.plane[k][i] = plane[int(k)];
+      cells.depth[i] = 1 / inverse_depth(x, y);
+    }
+  ASSERT_TRUE(fill_cells(wall.view, cells));
+  for (int y = first + 4; y < cells.height; y++)
+    for (int x = 0; x < cells.width; x++) {
+      size_t i = size_t(cells.index(x, y));
+      ASSERT_NEAR(cells.depth[i] * inverse_depth(x, y), 1, 1e-3) << x << ", " << y << (known[i] ? " known" : "");
+    }
 }
 
 // Half of the wall lies in a shadow that each cell has seen many times: no light may reach into it.

@@ -36,7 +36,7 @@ struct Stroll {
   Frame frame;
   std::vector<Request> requests;
   std::vector<Sample> samples;
-  explicit Stroll(const CacheSettings& settings = {}) : cache(settings) {}
+  explicit Stroll(const CacheSettings& settings = {.images = true}) : cache(settings) {}
   void step(const View& view, uint64_t tick, bool tells, int budget = pixels / 32) {
     cache.project(view);
     cache.attend();
