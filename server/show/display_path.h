@@ -3,7 +3,7 @@
 // samples, a little to looks at edges (cache/looks.h). Path `primary`: shape and reflectance of every
 // pixel are exact, drawn (cache/overlay.h, cache/compose_drawn.h) while that leaves time for light, or with every pixel looked
 // at where even that does: a quick machine, a small picture, few visitors. Drawing may slow pictures down, but not
-// below some seven a second of a walking visitor and three of one who stands.
+// below two a second: a few points alone are no picture at all.
 #pragma once
 #include <cstddef>
 #include <cstdint>
