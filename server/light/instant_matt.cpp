@@ -9,6 +9,7 @@
 #include "light/matt_eyes.h"
 #include "light/matt_lanes.h"
 #include "light/sampler_lanes.h"
+#include "world/packet_lanes.h"
 
 namespace wellspring {
 namespace {
@@ -58,15 +59,8 @@ void gather_clipped(const EyeLight& light, std::span<const Request> requests, co
     samplers.pair(all_lanes(direction_dimension), u, v);
     Lanes3 direction = sample_cosine_directions(lobes.normal, u, v);
     active |= negative_lanes(eval_matt_pdfs(lobes, direction) > Lanes{}) << h * lane_count;
-    Lanes3 origin = offset_origins(surface, direction);
-    int first = h * lane_count;
-    store_lanes(rays.origin_x + first, origin.x);
-    store_lanes(rays.origin_y + first, origin.y);
-    store_lanes(rays.origin_z + first, origin.z);
-    store_lanes(rays.direction_x + first, direction.x);
-    store_lanes(rays.direction_y + first, direction.y);
-    store_lanes(rays.direction_z + first, direction.z);
-    store_lanes(rays.t_max + first, all_lanes(light.pass.clip));
+    set_rays(offset_origins(surface, direction), direction, all_lanes(light.pass.clip),
+             h * lane_count, rays);
   }
   for (uint32_t near = light.transport.world.occluded_packet(rays, active & group.used); near;
        near &= near - 1) {

@@ -6,6 +6,7 @@
 
 #include "light/emission.h"
 #include "light/light_tables.h"
+#include "world/packet_lanes.h"
 
 namespace wellspring {
 namespace {
@@ -13,22 +14,11 @@ namespace {
 constexpr int halves = GroupLane::halves;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-void aim_half(RayPacket& rays, int h, const Lanes3& origin, const Lanes3& direction, Lanes t_max) {
-  int first = h * lane_count;
-  store_lanes(rays.origin_x + first, origin.x);
-  store_lanes(rays.origin_y + first, origin.y);
-  store_lanes(rays.origin_z + first, origin.z);
-  store_lanes(rays.direction_x + first, direction.x);
-  store_lanes(rays.direction_y + first, direction.y);
-  store_lanes(rays.direction_z + first, direction.z);
-  store_lanes(rays.t_max + first, t_max);
-}
-
 // From a target to every lane's surface.
 void aim(const LitGroup& group, vec3 target, RayPacket& rays) {
   const Lanes3 from = all_lanes(target);
   for (int h = 0; h < halves; h++)
-    aim_half(rays, h, from, group.origin.half(h) - from, all_lanes(1.0f));
+    set_rays(from, group.origin.half(h) - from, all_lanes(1.0f), h * lane_count, rays);
 }
 
 // Those that light reaches on the other side of their surface, or from the other side of the light.
@@ -80,7 +70,7 @@ void see_distant(const LitGroup& group, vec3 direction, SeenLight& seen) {
     seen.cosine.set_half(h, here);
     seen.strength.set_half(h, all_lanes(1.0f));
     lit |= negative_lanes((here > zero) & (face > zero)) << h * lane_count;
-    aim_half(seen.rays, h, group.origin.half(h), way, all_lanes(infinity));
+    set_rays(group.origin.half(h), way, all_lanes(infinity), h * lane_count, seen.rays);
   }
   seen.active = (lit | group.through) & group.used;
   for (uint32_t odd = seen.active & group.through; odd; odd &= odd - 1) {

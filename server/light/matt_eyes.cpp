@@ -6,17 +6,11 @@
 
 #include "light/first_surface.h"
 #include "light/matt_lanes.h"
+#include "world/packet_lanes.h"
 #include "world/surface_lanes.h"
 
 namespace wellspring {
 namespace {
-
-void set_ray(const Ray& ray, int i, RayPacket& rays) {
-  rays.origin_x[i] = ray.origin.x, rays.origin_y[i] = ray.origin.y, rays.origin_z[i] = ray.origin.z;
-  rays.direction_x[i] = ray.direction.x, rays.direction_y[i] = ray.direction.y;
-  rays.direction_z[i] = ray.direction.z;
-  rays.t_max[i] = ray.t_max;
-}
 
 // Eight of them, `first` on.
 void describe_lanes(const Transport& transport, const RayPacket& rays, const Hit* hits,

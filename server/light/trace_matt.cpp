@@ -10,6 +10,7 @@
 #include "light/matt_lanes.h"
 #include "light/radiance_grid.h"
 #include "light/sampler_lanes.h"
+#include "world/packet_lanes.h"
 #include "world/surface_lanes.h"
 
 namespace wellspring {
@@ -46,14 +47,6 @@ void for_each_lane(uint32_t lanes, const Body& body) {
   for (; lanes; lanes &= lanes - 1) body(std::countr_zero(lanes));
 }
 
-void set_eye_ray(const Ray& ray, int lane, RayPacket& rays) {
-  rays.origin_x[lane] = ray.origin.x, rays.origin_y[lane] = ray.origin.y;
-  rays.origin_z[lane] = ray.origin.z;
-  rays.direction_x[lane] = ray.direction.x, rays.direction_y[lane] = ray.direction.y;
-  rays.direction_z[lane] = ray.direction.z;
-  rays.t_max[lane] = ray.t_max;
-}
-
 // Whether the sample that the eye's ray belongs to begins on something matt; else it is answered.
 bool begins_matt(Batch& batch, int lane, MattWalks& walks) {
   const Transport& transport = batch.transport;
@@ -85,7 +78,7 @@ void fill_lanes(Batch& batch, uint32_t lanes, RayPacket& rays, MattWalks& walks)
     for_each_lane(lanes, [&](int i) {
       if (batch.next == batch.requests.size()) return;
       walks.sample[i] = batch.next++;
-      set_eye_ray(batch.requests[walks.sample[i]].ray, i, rays);
+      set_ray(batch.requests[walks.sample[i]].ray, i, rays);
       asking |= 1u << i;
     });
     batch.transport.world.intersect_each(rays, asking, walks.hits);
@@ -102,16 +95,6 @@ void end_walk(Batch& batch, int lane, MattWalks& walks) {
   sample.smooth = walks.smooth.at(lane);
   sample.rest = walks.rest.at(lane);
   walks.held &= ~(1u << lane);
-}
-
-void set_rays(const Lanes3& origin, const Lanes3& direction, Lanes t_max, RayPacket& rays) {
-  store_lanes(rays.origin_x, origin.x);
-  store_lanes(rays.origin_y, origin.y);
-  store_lanes(rays.origin_z, origin.z);
-  store_lanes(rays.direction_x, direction.x);
-  store_lanes(rays.direction_y, direction.y);
-  store_lanes(rays.direction_z, direction.z);
-  store_lanes(rays.t_max, t_max);
 }
 
 struct DirectLanes {
@@ -151,9 +134,9 @@ DirectLanes light_by_lamp(const Transport& transport, const MattSurfaceLanes& su
   if (near) {
     Lanes3 line = all_lanes(lamp.position) - origin;
     seen = lanes & ~negative_lanes(dot(line, way) > zero);  // nothing fits in between
-    set_rays(origin, line, one, rays);
+    set_rays(origin, line, one, 0, rays);
   } else {
-    set_rays(origin, way, all_lanes(std::numeric_limits<float>::infinity()), rays);
+    set_rays(origin, way, all_lanes(std::numeric_limits<float>::infinity()), 0, rays);
   }
   DirectLanes direct;
   Lanes3 light = all_lanes(lamp.intensity) * effect;
@@ -228,7 +211,7 @@ uint32_t scatter_lanes(Batch& batch, MattWalks& walks, RayPacket& rays) {
   walks.throughput = choose(first, walks.throughput, walks.throughput * lobes.reflectance);
   walks.depth += 1;
   set_rays(offset_origins(surface, walks.direction), walks.direction,
-           all_lanes(std::numeric_limits<float>::infinity()), rays);
+           all_lanes(std::numeric_limits<float>::infinity()), 0, rays);
   // As survives() has it.
   Lanes largest = max_component(walks.throughput);
   lanes &= negative_lanes((walks.pdf > zero) & (largest > zero));

@@ -241,14 +241,10 @@ size_t memory_bytes(const DrawingWork& work) {
 void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   const PictureCosts& costs = visitor.costs;
   StageTimes& times = visitor.times;
-  if (costs.samples > 0 && costs.trace > 0) {
-    float rate = float(costs.samples) / (0.001f * costs.trace);
-    show.samples_per_second += (rate - show.samples_per_second) * 0.1f;
-  }
-  if (costs.looks >= least_measured && costs.look > 0) {
-    float rate = float(costs.looks) / (0.001f * costs.look);
-    show.looks_per_second += (rate - show.looks_per_second) * 0.1f;
-  }
+  if (costs.samples > 0 && costs.trace > 0)
+    smooth(show.samples_per_second, float(costs.samples) / (0.001f * costs.trace));
+  if (costs.looks >= least_measured && costs.look > 0)
+    smooth(show.looks_per_second, float(costs.looks) / (0.001f * costs.look));
   if (order.coarse) {
     smooth(times.light, costs.light);
   } else {

@@ -38,9 +38,10 @@ void welcome_links(Show& show, Arrivals& arrivals) {
     } else {
       log::info("visitor {} connected from {}", link->id, link->peer);
       Visitor& visitor = show.visitors.emplace_back();
-      if (show.settings.draw == DrawShapes::never) visitor.cache = RenderCache({.images = true});
       visitor.link = std::move(link);
-      visitor.cache = RenderCache({}, show.easel.work.cache);
+      CacheSettings settings;
+      settings.images = show.settings.draw == DrawShapes::never;
+      visitor.cache = RenderCache(settings, show.easel.work.cache);
     }
   }
 }
