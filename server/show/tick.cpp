@@ -226,15 +226,17 @@ void send_state(Show& show, Visitor& visitor) {
   visitor.link->send_text(state_news(visitor, show.exhibit));
 }
 
-// What the easel has finished.
-void take_finished(Show& show) {
+// What the easel has finished. Returns whether it may be given the next: asked once a tick, as what it
+// finishes later in the tick has not been taken.
+bool take_finished(Show& show) {
   Easel& easel = show.easel;
-  if (!easel.idle()) return;
+  if (!easel.idle()) return false;
   if (!easel.brokers.empty()) finish_samples(show);
-  if (!easel.drawn) return;
+  if (!easel.drawn) return true;
   finish_picture(show, easel.order, *easel.drawn);
   easel.drawn->at_work = false;
   easel.drawn = nullptr;
+  return true;
 }
 
 int waiting_for_drawings(const Show& show) {
@@ -287,12 +289,11 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   show.ticks++;
   double began = seconds_now();
 
-  take_finished(show);
+  bool free = take_finished(show);
   welcome_links(show, arrivals);
   hear_visitors(show);
   hear_eyes(show);
   narrate(show, dt);
-  bool free = show.easel.idle();
   int waiting = free ? waiting_for_drawings(show) : 0;
   // The storyteller moves for a picture; otherwise often enough to notice people.
   if (waiting > 0 || show.time - show.behaved_at >= behave_interval) {
@@ -331,8 +332,10 @@ double seconds_to_next_tick(const Show& show, double now) {
 
 void wait_for_tick(const Show& show, double now) {
   double seconds = seconds_to_next_tick(show, now);
-  if (show.easel.idle()) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-  else show.easel.worker.wait_for(seconds);
+  const Easel& easel = show.easel;
+  bool nothing_comes = !easel.drawn && easel.brokers.empty();
+  if (nothing_comes) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  else easel.worker.wait_for(seconds);
 }
 
 }  // namespace wellspring

@@ -214,6 +214,24 @@ TEST_F(LatePictures, VisitorsLeaveWhileTheirsIsDrawn) {
   EXPECT_EQ(show->easel.drawn, nullptr);
 }
 
+// Whenever a picture or its samples are finished, also in the midst of a tick, somebody gets the next.
+TEST_F(LatePictures, NoVisitorIsForgottenWhenOneIsFinishedDuringATick) {
+  begin(3);
+  for (int i = 0; i < 3; i++) say(R"({"type":"input","seq":1,"move":[0,0,0.2],"look":[0.1,0]})", i);
+  steps(10);
+  for (int i = 0; i < 300; i++) {
+    for (int k = 0; k < 100; k++) turn(0.001);  // much to hear, which takes most of the tick
+    tick(*show, arrivals, now += 0.02);
+    for (const auto& link : links) {
+      Link::Out out;
+      while (link->take_out(out)) {}
+    }
+    auto at_work = std::count_if(show->visitors.begin(), show->visitors.end(), [](auto& one) { return one.at_work; });
+    ASSERT_EQ(size_t(at_work), show->easel.brokers.size() + (show->easel.drawn ? 1 : 0)) << "tick " << i;
+  }
+  step();
+}
+
 TEST_F(LatePictures, AllVisitorsGetDrawnPictures) {
   begin(3);
   for (int i = 0; i < 3; i++) say(R"({"type":"input","seq":1,"move":[0,0,0.2],"look":[0.1,0]})", i);
