@@ -189,6 +189,7 @@ JointFrame eval_joint_frame(const Character& character, const Pose& pose, int jo
     quat turn = pose.rotations[size_t(j)];
     vec3 center = character.joints[size_t(j)].center;
     place = center + turn * (place - center);
+    if (size_t(j) < pose.translations.size()) place += pose.translations[size_t(j)];
     rotation = turn * rotation;
     if (character.joints[size_t(j)].parent < 0) place += pose.translation;
   }

@@ -90,6 +90,16 @@ struct SpringBone {
   std::vector<int> colliders;  // into Character::spring_colliders
 };
 
+// A joint that turns as another does, or towards it (joint_constraints.h, VRMC_node_constraint-1.0).
+struct JointConstraint {
+  enum class Kind : uint8_t { roll, aim, rotation };
+  int joint = 0, source = 0;
+  Kind kind = Kind::rotation;
+  float weight = 1;               // 0..1: how far it takes the turn
+  vec3 axis{0};                   // that is rolled about, or aimed: unit, humanoid space at rest
+  quat between{1, 0, 0, 0};       // of roll and rotation: axes of the source's turn to the joint's
+};
+
 // What swinging bones keep clear of: a ball, a capsule from `place` to `tail`, or half a space.
 struct SpringCollider {
   int joint = 0;
@@ -121,6 +131,7 @@ struct Character {
   std::vector<JointWeight> weights;
   Skinning skinning = Skinning::linear;
   EyeGain eye_gain;
+  std::vector<JointConstraint> constraints;  // in the order they are to be followed
   std::vector<SpringBone> springs;  // by joint, parents first
   std::vector<SpringCollider> spring_colliders;
   std::vector<Motion> motions;

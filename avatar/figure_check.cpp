@@ -89,6 +89,7 @@ void stand_on_floor(Character& character) {
   for (vec3& p : character.positions) p.y -= low;
   for (Joint& joint : character.joints) joint.center.y -= low;
   for (Site& site : character.sites) site.position.y -= low;
+  for (SpringCollider& collider : character.spring_colliders) collider.place.y -= low, collider.tail.y -= low;
   for (Motion& motion : character.motions)
     for (MotionJoint& joint : motion.joints) joint.center.y -= low;
 }

@@ -26,6 +26,7 @@ Character character_from_gltf(const std::string& path) {
   read_gltf_joints(figure);
   read_gltf_surfaces(figure);
   read_gltf_expressions(figure);
+  read_gltf_constraints(figure);
   read_gltf_springs(figure);
   read_gltf_motions(figure);
   std::vector<std::string_view> names;

@@ -28,6 +28,7 @@ struct GltfFigure {
 void read_gltf_joints(GltfFigure& figure);
 void read_gltf_surfaces(GltfFigure& figure);
 void read_gltf_expressions(GltfFigure& figure);
+void read_gltf_constraints(GltfFigure& figure);
 void read_gltf_springs(GltfFigure& figure);
 void read_gltf_motions(GltfFigure& figure);
 

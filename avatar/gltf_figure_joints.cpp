@@ -78,6 +78,8 @@ std::vector<size_t> choose_nodes(GltfFigure& figure) {
     any = known >= 6 && !named.by_shape;
   }
   if (!any) gltf::refuse(figure.file, "", "no skin, no VRM humanoid and no bones by name: not a figure");
+  for (const VrmConstraint& constraint : figure.vrm.constraints)
+    wanted[constraint.node] = wanted[constraint.source] = 1;
   // Between two of them, and between a moving node and one of them, all are joints.
   std::vector<size_t> order = gltf_parents_first(figure.nodes);
   std::vector<char> carries(wanted), hangs(wanted.size(), 0);  // one of them below, one above

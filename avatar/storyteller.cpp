@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "avatar/body.h"
+#include "avatar/joint_constraints.h"
 
 namespace wellspring {
 namespace {
@@ -260,7 +261,8 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   protect(face, expressions, words);
   apply_controls(face, expressions, pose);
 
-  // What hangs on it.
+  // What follows, and what hangs on it.
+  follow_constraints(character, pose);
   if (!character.springs.empty()) {
     tick_spring_bones(state.springs, character, dt, pose);
     state.work.springs++;

@@ -188,15 +188,12 @@ Vrm read_vrm(File& file) {
   else if (const json* moves = gltf::extension(file.root, "VRMC_vrm_animation"))
     read_animation(file, *moves, vrm);
   read_vrm_springs(file, vrm);
+  read_vrm_constraints(file, vrm);
   const json& materials = gltf::items(file.root, "materials");
   for (size_t m = 0; m < materials.size(); m++)
     if (gltf::extension(materials[m], "VRMC_materials_mtoon") ||
         gltf::extension(materials[m], "KHR_materials_unlit"))
       vrm.matt[m] = true;
-  const json& nodes = gltf::items(file.root, "nodes");
-  for (size_t n = 0; n < nodes.size(); n++)
-    if (gltf::extension(nodes[n], "VRMC_node_constraint"))
-      gltf::warn(file, at("/nodes", n), "node constraints are not followed");
   const json& asset = file.root["asset"];
   if (std::string copyright = text_in(asset, "copyright"); !copyright.empty())
     vrm.metadata.push_back({"copyright", copyright.substr(0, 1000)});

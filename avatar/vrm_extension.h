@@ -44,6 +44,14 @@ struct VrmCollider {
   bool inside = false;  // keeps what it meets inside
 };
 
+// A node that turns as another does, with axes of its own (JointConstraint in character.h).
+struct VrmConstraint {
+  size_t node = 0, source = 0;
+  JointConstraint::Kind kind = JointConstraint::Kind::rotation;
+  vec3 axis{0};
+  float weight = 1;
+};
+
 struct Vrm {
   int version = -1;                   // 0, 1; -1: no VRM file
   bool animation = false;             // VRMC_vrm_animation
@@ -52,6 +60,7 @@ struct Vrm {
   std::map<std::string, size_t> expression_nodes;  // of an animation: whose x is its weight
   EyeGain eye_gain;
   std::map<size_t, bool> matt;  // materials of MToon
+  std::vector<VrmConstraint> constraints;  // no node twice
   std::vector<VrmSpringJoint> springs;  // no node twice
   std::vector<VrmCollider> colliders;
   std::vector<std::pair<std::string, std::string>> metadata;
@@ -60,9 +69,10 @@ struct Vrm {
 // The extensions this and gltf_figure.cpp understand, for load_gltf().
 const std::set<std::string>& vrm_extensions();
 
-// Adds to file.warnings what is not done: constraints. Throws LoadError.
+// Adds to file.warnings what is not done. Throws LoadError.
 Vrm read_vrm(gltf::File& file);
-// The springs of either version (vrm_spring.cpp); read_vrm calls it last.
+// Parts of it: the springs of either version (vrm_spring.cpp), constraints (vrm_constraint.cpp).
 void read_vrm_springs(gltf::File& file, Vrm& vrm);
+void read_vrm_constraints(gltf::File& file, Vrm& vrm);
 
 }  // namespace wellspring

@@ -3,20 +3,27 @@
 
 namespace wellspring::vrm_json {
 
+namespace {
+
+// What is of the same type as `none`; `none` where it is absent.
+const json& of_type_in(const File& file, const json& object, const char* key, const std::string& where,
+                       const json& none, const char* must) {
+  const json* found = object.is_object() ? gltf::find(object, key) : nullptr;
+  if (!found || found->is_null()) return none;
+  if (found->type() != none.type()) gltf::refuse(file, where + "/" + key, must);
+  return *found;
+}
+
+}  // namespace
+
 const json& object_in(const File& file, const json& object, const char* key, const std::string& where) {
   static const json none = json::object();
-  const json* found = gltf::find(object, key);
-  if (!found || found->is_null()) return none;
-  if (!found->is_object()) gltf::refuse(file, where + "/" + key, "must be an object");
-  return *found;
+  return of_type_in(file, object, key, where, none, "must be an object");
 }
 
 const json& list_in(const File& file, const json& object, const char* key, const std::string& where) {
   static const json none = json::array();
-  const json* found = gltf::find(object, key);
-  if (!found || found->is_null()) return none;
-  if (!found->is_array()) gltf::refuse(file, where + "/" + key, "must be a list");
-  return *found;
+  return of_type_in(file, object, key, where, none, "must be a list");
 }
 
 std::string text_in(const json& object, const char* key) {
