@@ -33,6 +33,27 @@ void set_lane(const LightTables& tables, const PointLight& light, size_t g, size
   all.near[g][lane] = near, all.even[g][lane] = even, all.back[g][lane] = light.double_sided;
 }
 
+// Fills up the group that is open.
+void end_group(LightLanes& all) {
+  while (all.number.size() % lane_count) all.number.push_back(LightLanes::none);
+}
+
+// Of the numbers that it has.
+void set_lanes(const LightTables& tables, const InstantPass& pass, LightLanes& all) {
+  size_t groups = all.number.size() / lane_count;
+  for (std::vector<Lanes>* lanes : {&all.x, &all.y, &all.z, &all.nx, &all.ny, &all.nz, &all.power,
+                                    &all.near, &all.even, &all.back})
+    lanes->assign(groups, all_lanes(0));
+  all.plain.assign(groups, 1);
+  for (size_t i = 0; i < all.number.size(); i++) {
+    if (all.number[i] == LightLanes::none) continue;
+    size_t g = i / lane_count, lane = i % lane_count;
+    set_lane(tables, pass.lights[all.number[i]], g, lane, all);
+    bool plain = all.near[g][lane] == 1 && all.back[g][lane] == 0 && all.even[g][lane] == 0;
+    if (!plain) all.plain[g] = 0;
+  }
+}
+
 }  // namespace
 
 LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass) {
@@ -41,22 +62,20 @@ LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass) 
     all.first.push_back(uint32_t(all.number.size() / lane_count));
     for (uint32_t k = pass.first[size_t(set)]; k < pass.first[size_t(set) + 1]; k++)
       all.number.push_back(k);
-    while (all.number.size() % lane_count) all.number.push_back(LightLanes::none);
+    end_group(all);
   }
-  size_t groups = all.number.size() / lane_count;
-  all.first.push_back(uint32_t(groups));
-  for (std::vector<Lanes>* lanes : {&all.x, &all.y, &all.z, &all.nx, &all.ny, &all.nz, &all.power,
-                                    &all.near, &all.even, &all.back})
-    lanes->assign(groups, all_lanes(0));
-  for (size_t i = 0; i < all.number.size(); i++)
-    if (all.number[i] != LightLanes::none)
-      set_lane(tables, pass.lights[all.number[i]], i / lane_count, i % lane_count, all);
-  all.plain.assign(groups, 1);
-  for (size_t i = 0; i < all.number.size(); i++) {
-    size_t g = i / lane_count, lane = i % lane_count;
-    bool plain = all.near[g][lane] == 1 && all.back[g][lane] == 0 && all.even[g][lane] == 0;
-    if (all.number[i] != LightLanes::none && !plain) all.plain[g] = 0;
-  }
+  all.first.push_back(uint32_t(all.number.size() / lane_count));
+  set_lanes(tables, pass, all);
+  return all;
+}
+
+LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass,
+                            std::span<const uint32_t> lights) {
+  LightLanes all;
+  all.number.assign(lights.begin(), lights.end());
+  end_group(all);
+  all.first = {0, uint32_t(all.number.size() / lane_count)};
+  set_lanes(tables, pass, all);
   return all;
 }
 

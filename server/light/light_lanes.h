@@ -25,6 +25,9 @@ struct LightLanes {
 };
 
 LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass);
+// Of these lights, in this order, as one set.
+LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass,
+                            std::span<const uint32_t> lights);
 
 // A place as the estimate knows it. What is glossy, place or light, may shine where Lambert would not: it
 // is taken for partly even.

@@ -19,9 +19,9 @@ struct InstantRadiositySettings {
   int places = 24;            // on emitters and in the sky
   int walks = 32;             // from them, each leaving point lights where it scatters
   int bounced = 96;           // of those lights are kept, where few of them do most to the view
-  int asked = 12;             // by a pixel, chosen by what they may do to its region; 0: all kept
+  int asked = 10;             // by a pixel, chosen by what they may do to its region; 0: all kept
   int edge_rays = 2;          // more eye rays for a pixel at an edge of a surface or colour
-  int candidates = 8;         // times as many places and walks are drawn as numbered here; 1: all kept
+  int candidates = 16;        // times as many places and walks are drawn as numbered here; 1: all kept
   float clip = -1;            // metres: shortest distance that counts; 0: none; <0: by the scene's size
   bool compensate = true;     // what clipping took is gathered by a ray, else it is missing
   int photons = 12000;        // emitted towards specular things
