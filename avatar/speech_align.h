@@ -4,7 +4,9 @@
 // The text as a synthesiser says it is the template. Both sounds become mel cepstra; dynamic time
 // warping (Sakoe & Chiba 1978), coarse first and then within a band around the coarse way, finds
 // which moment of the template each moment of the recording is. It may leave out pauses and sounds
-// that are not in the text (a cough, an introduction) between words. From that first way the
+// that are not in the text (a cough, an introduction) between words, silence within them, and go
+// back: a word, or what was said of it, or the word before may be said again, as often as a speaker
+// who stutters does. The last time counts. From that first way the
 // narrator's own phonemes are learnt: Gaussians over the recording's frames, held to the
 // template's frames where there are few (maximum a posteriori, Gauvain & Lee 1994), three states a
 // phoneme; the recording is divided anew by them, a few times (Viterbi training).

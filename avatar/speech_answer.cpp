@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "avatar/speech_closures.h"
 #include "avatar/speech_shapes.h"
 #include "avatar/speech_text.h"
 
@@ -200,6 +201,7 @@ std::shared_ptr<const Speech> read_speech_answer(const SpeechRequest& request,
     std::erase_if(speech->phonemes, [](const SpeechPhoneme& phoneme) {
       return is_pause(phoneme.mnemonic) && phoneme.end <= phoneme.begin;
     });
+    include_closures(*speech);
     name_words(*speech, groups);
     time_words(*speech);
     fill_visemes(*speech);

@@ -17,6 +17,7 @@ constexpr size_t least_coarse_step = 4;    // frames
 // nothing to do with each other, about 1 between the same sound of two voices.
 constexpr float gap_of_silence = 0.3f, gap_of_sound = 1.3f, enter_gap = 10;
 constexpr float stay_cost = 0.05f, skip_cost = 0.2f;
+constexpr float block_of_sound = 4, enter_block = 10, return_cost = 10, return_word_cost = 5;
 // Fine structure and slopes differ more between voices than the broad shape of a spectrum does, so
 // they count for less.
 std::array<float, feature_count> make_weights() {
@@ -69,6 +70,15 @@ void set_template_costs(WarpTask& task, const std::vector<float>& chance, size_t
     task.gap_cost.push_back(gap_of_silence + c * (gap_of_sound - gap_of_silence));
   task.stay = stay_cost;
   task.skip = skip_cost;
+}
+
+void let_stutter(WarpTask& task, const std::vector<float>& chance,
+                 const std::vector<SoundState>& states) {
+  task.gap_before = gaps_before(states, true);
+  task.enter_silence = enter_block;
+  for (float c : chance)
+    task.silence_cost.push_back(gap_of_silence + c * (block_of_sound - gap_of_silence));
+  task.returns = find_returns(states, return_cost, return_word_cost);
 }
 
 CoarseWay warp_coarsely(const SoundPair& pair, const std::vector<SoundState>& fine) {

@@ -22,6 +22,10 @@ float feature_distance(const float* a, const float* b);
 // frames one of the task's is made of.
 void set_template_costs(WarpTask& task, const std::vector<float>& chance, size_t step);
 
+// Lets the speaker of single frames' states repeat words or beginnings of them, and fall silent within.
+void let_stutter(WarpTask& task, const std::vector<float>& chance,
+                 const std::vector<SoundState>& states);
+
 struct CoarseWay {
   std::vector<int32_t> way;  // about which state each recorded frame is; empty: there is no way
   double cost = 0;           // per recorded frame

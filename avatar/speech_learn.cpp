@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace wellspring {
 
@@ -152,13 +153,16 @@ float silence_cost(const SoundModel& model, const float* frame) {
                        model.silence_constant, frame);
 }
 
-float expected_cost(const SoundModel& model) {
-  return 0.5f + model.constant;
-}
-
 float sound_cost(const SoundModel& model, uint32_t kind, const float* frame) {
   return gaussian_cost(&model.mean[size_t(kind) * feature_count], model.inverse_variance,
                        model.constant, frame);
+}
+
+float nearest_cost(const SoundModel& model, const float* frame) {
+  uint32_t kinds = uint32_t(model.mean.size() / feature_count);
+  float least = std::numeric_limits<float>::infinity();
+  for (uint32_t k = 0; k < kinds; k++) least = std::min(least, sound_cost(model, k, frame));
+  return least;
 }
 
 }  // namespace wellspring

@@ -35,9 +35,9 @@ SoundModel learn_sounds(const Features& spoken, const Features& recorded, const 
 void whiten(Features& spoken, Features& recorded, const Hearing& hearing, const SoundModel& model);
 
 // Minus the log likelihood of a frame, over the number of features and without the constant that
-// all models share; about expected_cost where the model is right.
+// all models share; about 1/2 plus `constant` where the model is right.
 float sound_cost(const SoundModel& model, uint32_t kind, const float* frame);
 float silence_cost(const SoundModel& model, const float* frame);
-float expected_cost(const SoundModel& model);
+float nearest_cost(const SoundModel& model, const float* frame);  // of the likeliest kind
 
 }  // namespace wellspring

@@ -58,11 +58,31 @@ uint32_t number_kinds(const Speech& spoken, std::vector<SoundState>& states) {
   return uint32_t(numbers.size());
 }
 
-std::vector<bool> gaps_before(const std::vector<SoundState>& states) {
-  std::vector<bool> gaps;
-  for (const SoundState& state : states) gaps.push_back(state.word_begins);
-  gaps.push_back(true);
+std::vector<WarpGap> gaps_before(const std::vector<SoundState>& states, bool blocks) {
+  std::vector<WarpGap> gaps;
+  for (size_t i = 0; i < states.size(); i++) {
+    bool phoneme_begins = i == 0 || states[i].phoneme != states[i - 1].phoneme;
+    gaps.push_back(states[i].word_begins       ? WarpGap::anything
+                   : blocks && phoneme_begins ? WarpGap::silence
+                                              : WarpGap::none);
+  }
+  gaps.push_back(WarpGap::anything);
   return gaps;
+}
+
+std::vector<std::vector<WarpReturn>> find_returns(const std::vector<SoundState>& states, float cost,
+                                                  float cost_of_word) {
+  std::vector<std::vector<WarpReturn>> returns(states.size());
+  constexpr size_t none = size_t(-1);
+  size_t word = none, before = none;  // where the word and the one before it begin
+  for (size_t i = 0; i < states.size(); i++) {
+    if (states[i].word_begins) before = word, word = i;
+    bool phoneme_ends = i + 1 == states.size() || states[i + 1].phoneme != states[i].phoneme;
+    if (!phoneme_ends) continue;
+    if (word != none) returns[word].push_back({uint32_t(i), cost});
+    if (before != none) returns[before].push_back({uint32_t(i), cost + cost_of_word});
+  }
+  return returns;
 }
 
 }  // namespace wellspring

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "avatar/speech.h"
+#include "avatar/speech_warp.h"
 
 namespace wellspring {
 
@@ -24,7 +25,13 @@ std::vector<SoundState> make_states(const Speech& spoken, size_t frame_count, si
 // phoneme (first, middle, last), the same kind. Returns the number of kinds.
 uint32_t number_kinds(const Speech& spoken, std::vector<SoundState>& states);
 
-// Where something may be left out: before the states that begin a word, and at the end.
-std::vector<bool> gaps_before(const std::vector<SoundState>& states);
+// Where something may be left out: before the states that begin a word, and at the end; `blocks`:
+// silence also before every other phoneme, where a speaker's voice fails him.
+std::vector<WarpGap> gaps_before(const std::vector<SoundState>& states, bool blocks = false);
+
+// Stuttering: after each of its phonemes, the last too, a word may begin again, or the one before it
+// (Costs of either are added to every one further back.)
+std::vector<std::vector<WarpReturn>> find_returns(const std::vector<SoundState>& states, float cost,
+                                                  float cost_of_word);
 
 }  // namespace wellspring

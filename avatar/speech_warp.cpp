@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace wellspring {
 
@@ -11,13 +12,15 @@ namespace {
 constexpr float never = std::numeric_limits<float>::infinity();
 
 // How a state was reached, two states to a cell: the template itself (low bits) and the gap before
-// it.
-enum From : uint8_t { stay = 0, advance = 1, skip = 2, from_gap = 3 };
-constexpr uint8_t gap_entered = 4;  // the gap came from template - 1, else it went on
+// it; above them, how far back the way came from if it did.
+enum From : uint16_t { stay = 0, advance = 1, skip = 2, from_gap = 3, back = 4, how_mask = 7 };
+constexpr uint16_t gap_entered = 8, gap_back = 16;  // came from template - 1, or back; else it went on
+constexpr int distance_shift = 5;
+constexpr size_t most_distance = 0xffff >> distance_shift;
 
 struct Row {
   size_t first = 0;
-  std::vector<uint8_t> from;  // for templates first, first + 1, ...; the last cell is a gap only
+  std::vector<uint16_t> from;  // for templates first, first + 1, ...; the last cell is a gap only
 };
 
 // Costs of all states at one frame, addressed by template with a border of `never`.
@@ -31,6 +34,17 @@ struct Front {
     return k < 0 || k >= ptrdiff_t(list.size()) ? never : list[size_t(k)];
   }
 };
+
+// The cheapest way back to template j: its cost and how many templates it goes back.
+std::pair<float, size_t> best_return(const WarpTask& task, const Front& before, size_t j) {
+  std::pair<float, size_t> best{never, 0};
+  if (task.returns.empty() || j >= task.templates) return best;
+  for (const WarpReturn& way : task.returns[j]) {
+    float cost = before.template_cost(ptrdiff_t(way.from)) + way.cost;
+    if (cost < best.first && way.from - j <= most_distance) best = {cost, way.from - j};
+  }
+  return best;
+}
 
 }  // namespace
 
@@ -60,28 +74,36 @@ WarpResult warp(const WarpTask& task) {
     for (size_t j = first; j <= last; j++) {
       ptrdiff_t i = ptrdiff_t(j);
       size_t cell = j - first;
+      auto [return_cost, distance] = best_return(task, before, j);
+      row.from[cell] = uint16_t(distance << distance_shift);
       if (j < last) {
         float best = before.template_cost(i), spent = 0;
         if (best < never) {
           spent = before.get(before.spent, i);
           best += task.stay * spent / (task.expected.empty() ? 1 : task.expected[j]);
         }
-        uint8_t how = stay;
-        auto offer = [&](float cost, uint8_t way) {
+        uint16_t how = stay;
+        auto offer = [&](float cost, uint16_t way) {
           if (cost < best) best = cost, how = way;
         };
         offer(before.template_cost(i - 1), advance);
-        if (task.may_skip && !task.gap_before[j])
+        if (task.may_skip && task.gap_before[j] == WarpGap::none)
           offer(before.template_cost(i - 2) + task.skip, skip);
         offer(before.gap_cost(i), from_gap);
+        offer(return_cost, back);
         now.at[cell] = best + costs[cell];
         now.spent[cell] = how == stay ? spent + 1 : 1;
-        row.from[cell] = how;
+        row.from[cell] |= how;
       }
-      if (task.gap_before[j]) {
-        float on = before.gap_cost(i), in = before.template_cost(i - 1) + task.enter_gap;
-        now.gap[cell] = std::min(on, in) + task.gap_cost[t];
-        if (in < on) row.from[cell] |= gap_entered;
+      if (task.gap_before[j] != WarpGap::none) {
+        bool silent = task.gap_before[j] == WarpGap::silence;
+        float enter = silent ? task.enter_silence : task.enter_gap;
+        float best = before.gap_cost(i), in = before.template_cost(i - 1) + enter;
+        uint16_t how = 0;
+        if (in < best) best = in, how = gap_entered;
+        if (return_cost + enter < best) best = return_cost + enter, how = gap_back;
+        now.gap[cell] = best + (silent ? task.silence_cost[t] : task.gap_cost[t]);
+        row.from[cell] |= how;
       }
     }
     std::swap(before, now);
@@ -96,16 +118,19 @@ WarpResult warp(const WarpTask& task) {
   bool gap = silent < said;
   ptrdiff_t j = gap ? end : end - 1;
   for (size_t t = task.frames; t-- > 0;) {
-    uint8_t from = rows[t].from[size_t(j) - rows[t].first];
+    uint16_t from = rows[t].from[size_t(j) - rows[t].first];
+    ptrdiff_t distance = from >> distance_shift;
     result.way[t] = int32_t(gap ? -1 - j : j);
     if (gap) {
       if (from & gap_entered) gap = false, j--;
+      if (from & gap_back) gap = false, j += distance;
     } else {
-      switch (from & 3) {
+      switch (from & how_mask) {
         case stay: break;
         case advance: j--; break;
         case skip: j -= 2; break;
         case from_gap: gap = true; break;
+        case back: j += distance; break;
       }
     }
   }

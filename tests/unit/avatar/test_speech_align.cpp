@@ -15,6 +15,7 @@
 #include "avatar/speech_process.h"
 #include "avatar/speech_shapes.h"
 #include "base/rng.h"
+#include "unit/avatar/narrator.h"
 #include "unit/avatar/speech_texts.h"
 
 namespace wellspring {
@@ -104,57 +105,40 @@ TEST(SpeechMarks, SynthesisBeginsWhereItSaysSo) {
   report(errors);
 }
 
-// Somebody else with other pauses, another pace and a hissing microphone, whose times are known.
-struct Narrated {
-  Sound recording;
-  std::vector<SpeechWord> words;
-};
-
-Narrated narrate(const std::vector<std::string>& sentences, const SpeechRequest& manner) {
-  Narrated narrated;
-  narrated.recording.rate = 22050;
-  Rng rng{5};
-  auto& samples = narrated.recording.samples;
-  auto pause = [&](double seconds) { samples.resize(samples.size() + size_t(seconds * 22050)); };
-  pause(0.8);
-  for (const std::string& sentence : sentences) {
-    SpeechRequest request = manner;
-    request.text = sentence;
-    Speech speech = speak(request);
-    double offset = double(samples.size()) / 22050;
-    for (SpeechWord word : speech.words) {
-      word.begin += offset;
-      word.end += offset;
-      narrated.words.push_back(word);
-    }
-    std::vector<float> sound = from_pcm(speech.pcm);
-    samples.insert(samples.end(), sound.begin(), sound.end());
-    pause(0.2 + double(rng.uniform()));
+std::vector<double> errors_of(const Speech& speech, const Narrated& narrated) {
+  std::vector<double> errors;
+  for (size_t i = 0; i < speech.words.size(); i++) {
+    errors.push_back(speech.words[i].begin - narrated.words[i].begin);
+    errors.push_back(speech.words[i].end - narrated.words[i].end);
   }
-  for (float& sample : samples) sample = 0.4f * sample + 0.003f * (rng.uniform() - 0.5f);
-  return narrated;
+  return errors;
+}
+
+// At the narrator's own pace.
+Speech align(SpeechProcess& process, const std::string& text, const std::string& lang, const Sound& recording) {
+  std::string error;
+  SpeechRequest request{.text = text, .lang = lang};
+  auto spoken = process.speak(request, error);
+  if (!spoken) throw std::runtime_error(error);
+  double pace = measure_pace(*spoken, recording);
+  request.words_per_minute = int(std::clamp(request.words_per_minute / pace, 80.0, 450.0));
+  return align_speech(*process.speak(request, error), recording);
 }
 
 TEST(SpeechMarks, ARecordingByAnotherVoiceIsAligned) {
-  const std::vector<std::string> sentences = {"The castle stands above the river.",
-                                              "Its oldest tower was built by the bishop in winter.",
-                                              "Nobody knows who paid for the great bell.",
-                                              "On quiet evenings you can hear it from the bridge."};
-  std::string text;
-  for (const std::string& sentence : sentences) text += sentence + " ";
-  Narrated narrated =
-      narrate(sentences, {.text = "", .lang = "en-us", .words_per_minute = 125, .pitch = 85});
+  const std::string text = "The castle stands above the river. Its oldest tower was built by the bishop in "
+                           "winter. Nobody knows who paid for the great bell. On quiet evenings you can hear "
+                           "it from the bridge.";
+  SpeechProcess process;
+  Narrated narrated = narrate(
+      process, {.text = text, .lang = "en-us", .words_per_minute = 125, .pitch = 85}, {.pause = 0.15f, .hiss = 0.001f});
   Speech spoken = speak({.text = text});
   double pace = measure_pace(spoken, narrated.recording);
   EXPECT_GT(pace, 1.05);
   EXPECT_LT(pace, 1.6);
   Speech speech = align_speech(spoken, narrated.recording);
   ASSERT_EQ(speech.words.size(), narrated.words.size());
-  std::vector<double> errors;
-  for (size_t i = 0; i < speech.words.size(); i++) {
-    errors.push_back(speech.words[i].begin - narrated.words[i].begin);
-    errors.push_back(speech.words[i].end - narrated.words[i].end);
-  }
+  std::vector<double> errors = errors_of(speech, narrated);
   EXPECT_LE(quantile(errors, 0.5), 0.03);
   EXPECT_GE(share_within(errors, 0.08), 0.95);
   report(errors);
@@ -162,6 +146,83 @@ TEST(SpeechMarks, ARecordingByAnotherVoiceIsAligned) {
   EXPECT_EQ(speech.phonemes.back().end, speech.duration);
   for (size_t i = 1; i < speech.phonemes.size(); i++)
     EXPECT_NEAR(speech.phonemes[i].begin, speech.phonemes[i - 1].end, 1e-3);
+}
+
+// Speakers who repeat the beginnings of words and whole words, drag sounds out, fall silent within
+// words, say what is not in the text and breathe, on a tape that clicks, in rooms, by telephone.
+TEST(SpeechMarks, StutteringNarratorsAreAligned) {
+  const Manner stutter{.pause = 0.08f, .repeat = 0.08f, .again = 0.03f, .prolong = 0.08f, .block = 0.04f,
+                       .filler = 0.03f, .breath = 0.15f, .clicks = 0.5f, .hiss = 0.002f};
+  struct Case {
+    std::string lang, voice, variant, text;
+    double room = 0;
+    int rate = 22050;
+  };
+  const std::vector<Case> cases = {
+      {"en", "en-us", "klatt2", "The castle stands above the river, where merchants once paid their toll in "
+       "silver. Its oldest tower was built by the bishop in the winter of a hungry year. Nobody knows who paid "
+       "for the great bell, but on quiet evenings you can hear it from the bridge.", 0.35},
+      {"de", "de", "m7", "Die Burg steht hoch über dem Fluss, wo die Händler einst ihren Zoll bezahlten. Der "
+       "älteste Turm wurde vom Bischof in einem harten Winter erbaut. Niemand weiß, wer die große Glocke "
+       "gestiftet hat, aber an stillen Abenden hört man sie von der Brücke."},
+      {"sk", "sk", "croak", "Hrad stojí vysoko nad riekou, kde kupci kedysi platili mýto. Najstaršiu vežu dal "
+       "postaviť biskup počas tuhej zimy. Nikto nevie, kto zaplatil veľký zvon.", 0, 8000},
+      {"fr", "fr", "klatt2", "Le château se dresse au-dessus de la rivière, où les marchands payaient autrefois "
+       "leur péage. La plus vieille tour fut bâtie par l'évêque pendant un hiver très dur.", 0.35},
+      {"es", "es", "m7", "El castillo está sobre el río, donde los mercaderes pagaban su peaje. La torre más "
+       "antigua fue construida por el obispo en un invierno muy duro."}};
+  SpeechProcess process;
+  std::vector<double> errors;
+  for (const Case& narrator : cases)
+    for (uint64_t seed : {1, 2}) {
+      Manner manner = stutter;
+      manner.room = narrator.room;
+      manner.rate = narrator.rate;
+      manner.seed = seed;
+      Narrated narrated = narrate(
+          process, {.text = narrator.text, .lang = narrator.voice, .words_per_minute = 150, .variant = narrator.variant},
+          manner);
+      Speech speech = align(process, narrator.text, narrator.lang, narrated.recording);
+      ASSERT_EQ(speech.words.size(), narrated.words.size()) << narrator.lang;
+      auto own = errors_of(speech, narrated);
+      EXPECT_LE(quantile(own, 0.5), 0.03) << narrator.lang << " " << seed;
+      errors.insert(errors.end(), own.begin(), own.end());
+    }
+  report(errors);
+  EXPECT_GE(errors.size(), 500u);
+  EXPECT_LE(quantile(errors, 0.5), 0.015);
+  EXPECT_GE(share_within(errors, 0.08), 0.95);
+}
+
+// The lips of a p are shut while nothing is heard, before it bursts.
+TEST(SpeechMarks, ClosuresBelongToTheirStops) {
+  for (const SpeechText& text : {SpeechText{"en", "A happy copper pepper, a pocket of paper and a cap too."},
+                                 SpeechText{"sk", "Opica kope do papiera a pakuje topánky."},
+                                 SpeechText{"es", "La capa del poeta tapa la copa."}}) {
+    Speech speech = speak({.text = text.text, .lang = text.lang});
+    double peak = 0;
+    for (int16_t x : speech.pcm) peak = std::max(peak, std::abs(double(x)));
+    int stops = 0, silent = 0, before = 0;
+    auto quiet = [&](double begin, double end) {
+      double most = 0;
+      for (size_t i = size_t(begin * speech.rate); i < size_t(end * speech.rate) && i < speech.pcm.size(); i++)
+        most = std::max(most, std::abs(double(speech.pcm[i])));
+      return most < 0.02 * peak;
+    };
+    for (size_t i = 1; i < speech.phonemes.size(); i++) {
+      const SpeechPhoneme &stop = speech.phonemes[i], &last = speech.phonemes[i - 1];
+      bool voiceless = stop.ipa.starts_with("p") || stop.ipa.starts_with("t") || stop.ipa.starts_with("k");
+      EXPECT_GE(stop.begin, last.begin);
+      EXPECT_EQ(stop.begin, last.end);
+      if (!voiceless || is_pause(last.mnemonic) || stop.end - stop.begin < 0.03) continue;
+      stops++;
+      silent += quiet(stop.begin + 0.003, stop.begin + 0.018);
+      before += quiet(last.end - 0.015, last.end);
+    }
+    EXPECT_GE(stops, 6) << text.lang;
+    EXPECT_GE(silent, stops * 2 / 3) << text.lang << " of " << stops;
+    EXPECT_LE(before, stops / 4) << text.lang << " of " << stops;
+  }
 }
 
 TEST(SpeechMarks, NothingToAlignIsSaid) {
@@ -214,12 +275,8 @@ std::vector<Reference> read_reference(const std::string& file) {
 }
 
 Speech align_file(const std::string& text, const std::string& file) {
-  Sound recording = load_sound(file);
-  SpeechRequest request{.text = text};
-  Speech spoken = speak(request);
-  double pace = measure_pace(spoken, recording);
-  request.words_per_minute = int(std::clamp(request.words_per_minute / pace, 80.0, 450.0));
-  return align_speech(speak(request), recording);
+  SpeechProcess process;
+  return align(process, text, "en", load_sound(file));
 }
 
 class SpeechCorpus : public ::testing::Test {
@@ -231,8 +288,8 @@ class SpeechCorpus : public ::testing::Test {
 };
 
 // A hundred seconds of an old tape: hiss, hum, room, and a speaker who stutters, so that the text
-// does not say all that is heard. Not within the 30 ms and 95 % wished for; this is what is
-// reached.
+// does not say all that is heard. Nothing is chosen by it. 95 % within 80 ms are wished for; this
+// is what is reached, where the reference itself is not always right.
 TEST_F(SpeechCorpus, AStutteringNarratorOnTape) {
   auto reference = read_reference(folder + "lucier_golden.json");
   auto json = nlohmann::json::parse(std::ifstream(folder + "lucier_golden.json"));
@@ -247,9 +304,9 @@ TEST_F(SpeechCorpus, AStutteringNarratorOnTape) {
   }
   report(errors);
   ASSERT_GE(errors.size(), 140u);
-  EXPECT_LE(quantile(errors, 0.5), 0.04);
-  EXPECT_GE(share_within(errors, 0.08), 0.75);
-  EXPECT_GE(share_within(errors, 0.25), 0.88);
+  EXPECT_LE(quantile(errors, 0.5), 0.03);
+  EXPECT_GE(share_within(errors, 0.08), 0.8);
+  EXPECT_GE(share_within(errors, 0.25), 0.93);
 }
 
 // Telephone quality, four seconds. The reference heard other words than were said from the seventh

@@ -2,6 +2,7 @@
 // Warping against signals whose warp is known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "avatar/speech_warp.h"
@@ -53,7 +54,7 @@ Problem make_problem(uint64_t seed, size_t templates) {
   }
   p.task.frames = p.frames.size();
   p.task.templates = templates;
-  for (size_t j = 0; j <= templates; j++) p.task.gap_before.push_back(j % 20 == 0);
+  for (size_t j = 0; j <= templates; j++) p.task.gap_before.push_back(j % 20 == 0 ? WarpGap::anything : WarpGap::none);
   for (float loud : p.loud) p.task.gap_cost.push_back(loud > 0 ? 1.0f : 0.1f);
   p.task.enter_gap = 0.2f;
   p.task.stay = p.task.skip = 0.01f;
@@ -92,7 +93,7 @@ TEST(SpeechWarp, WayIsLegalFromTheFirstTemplateToTheLast) {
   for (int32_t at : result.way) {
     if (at < 0) {
       EXPECT_EQ(-1 - at, last + 1);
-      EXPECT_TRUE(p.task.gap_before[size_t(-1 - at)]);
+      EXPECT_EQ(p.task.gap_before[size_t(-1 - at)], WarpGap::anything);
     } else {
       EXPECT_GE(at, last);
       EXPECT_LE(at, last + 2);
@@ -141,6 +142,109 @@ TEST(SpeechWarp, CostIsTheSumAlongTheWay) {
     was_gap = false;
   }
   EXPECT_NEAR(result.cost, sum, 1e-3 * sum);
+}
+
+// Words of 20 templates, each made of parts that end after 8, 14 and 20 of them. Before a word, parts
+// of it are said once to three times with or without silence; within words voices fail.
+Problem make_stutter(uint64_t seed, size_t templates) {
+  Rng rng{seed};
+  Curve curve(rng, templates / 5 + 2);
+  Problem p;
+  for (size_t j = 0; j < templates; j++) p.templates.push_back(curve.at(double(j)));
+  auto add = [&](double truth, float value, float loud) {
+    p.truth.push_back(truth), p.frames.push_back(value), p.loud.push_back(loud);
+  };
+  auto say = [&](size_t first, size_t end) {
+    for (double t = double(first); t < double(end) - 0.5; t += 0.8 + 0.4 * double(rng.uniform()))
+      add(t, curve.at(t) + 0.1f * (rng.uniform() - 0.5f), 1);
+  };
+  auto be_silent = [&] {
+    for (int k = int(30 * rng.uniform()); k > 0; k--) add(-1, 20 + rng.uniform(), 0);
+  };
+  for (size_t word = 0; word < templates; word += 20) {
+    if (rng.uniform() < 0.3f)
+      for (int k = int(3 * rng.uniform()); k >= 0; k--) {
+        size_t part = rng.uniform() < 0.5f ? 8 : rng.uniform() < 0.5f ? 14 : 20;
+        say(word, word + part);
+        if (rng.uniform() < 0.5f) be_silent();
+      }
+    say(word, word + 8);
+    if (rng.uniform() < 0.2f) be_silent();
+    say(word + 8, word + 20);
+  }
+  p.task.frames = p.frames.size();
+  p.task.templates = templates;
+  p.task.returns.resize(templates);
+  for (size_t j = 0; j <= templates; j++) {
+    size_t place = j % 20;
+    p.task.gap_before.push_back(place == 0   ? WarpGap::anything
+                                : place == 8 ? WarpGap::silence
+                                             : WarpGap::none);
+    if (j < templates && (place == 7 || place == 13 || place == 19))
+      p.task.returns[j - place].push_back({uint32_t(j), 1});
+  }
+  for (float loud : p.loud) {
+    p.task.gap_cost.push_back(loud > 0 ? 1.0f : 0.1f);
+    p.task.silence_cost.push_back(loud > 0 ? 10.0f : 0.1f);
+  }
+  p.task.enter_gap = p.task.enter_silence = 0.2f;
+  p.task.stay = p.task.skip = 0.01f;
+  return p;
+}
+
+TEST(SpeechWarp, WordsAreSaidAgainWhollyOrInPart) {
+  for (uint64_t seed : {1, 2, 3, 4}) {
+    Problem p = make_stutter(seed, 400);
+    set_costs(p);
+    WarpResult result = warp(p.task);
+    ASSERT_TRUE(result.found);
+    size_t wrong_gap = 0, far = 0, repeats = 0, found = 0;
+    int32_t last = 0;
+    double last_truth = 0;
+    for (size_t t = 0; t < p.frames.size(); t++) {
+      bool gap = result.way[t] < 0;
+      wrong_gap += gap != (p.truth[t] < 0);
+      far += !gap && p.truth[t] >= 0 && std::abs(double(result.way[t]) - p.truth[t]) > 2.5;
+      if (p.truth[t] >= 0) {
+        repeats += p.truth[t] < last_truth - 1;
+        last_truth = p.truth[t];
+      }
+      if (!gap) {
+        found += result.way[t] < last;
+        if (result.way[t] < last) {
+          EXPECT_EQ(result.way[t] % 20, 0);
+        }
+        last = result.way[t];
+      }
+    }
+    EXPECT_GE(repeats, 4u);
+    EXPECT_NEAR(double(found), double(repeats), 1) << seed;
+    EXPECT_LE(wrong_gap, p.frames.size() / 50) << seed;
+    EXPECT_LE(far, p.frames.size() / 20) << seed;
+
+    p.task.returns.clear();
+    WarpResult straight = warp(p.task);
+    ASSERT_TRUE(straight.found);
+    EXPECT_LT(result.cost, straight.cost);
+  }
+}
+
+TEST(SpeechWarp, SilenceWithinAWordIsNoPlaceForOtherSounds) {
+  Problem p = make_problem(3, 60);
+  set_costs(p);
+  p.task.gap_before.assign(61, WarpGap::none);
+  p.task.gap_before[0] = p.task.gap_before[60] = WarpGap::anything;
+  p.task.gap_before[30] = WarpGap::silence;
+  p.task.silence_cost.assign(p.task.frames, 0);
+  p.task.gap_cost.assign(p.task.frames, 1000);
+  WarpResult silent = warp(p.task);
+  ASSERT_TRUE(silent.found);
+  EXPECT_GT(std::count(silent.way.begin(), silent.way.end(), -31), 0);
+  p.task.silence_cost.assign(p.task.frames, 1000);
+  p.task.gap_cost.assign(p.task.frames, 0);
+  WarpResult other = warp(p.task);
+  ASSERT_TRUE(other.found);
+  EXPECT_EQ(std::count(other.way.begin(), other.way.end(), -31), 0);
 }
 
 TEST(SpeechWarp, TooFewFramesHaveNoWay) {
