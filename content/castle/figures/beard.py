@@ -108,11 +108,11 @@ def off_the_lips(p):
 def make_beard(skin, look):
     patch = Patch("beard", look)
     rng = random.Random(17)
-    for kind, count, width in (("under", 210, 0.0085), ("lock", 480, 0.0019), ("hair", 50, 0.00034)):
+    for kind, count, width in (("under", 220, 0.0062), ("lock", 520, 0.0016), ("hair", 110, 0.00036)):
         for root, lower in surface_points(skin, count, rng):
             moustache = is_moustache(root)
             lift = {"under": 0.0020, "lock": 0.0046, "hair": 0.0060}[kind] * rng.uniform(0.7, 1.5) * (0.6 if moustache else 1.0)
-            n = {"under": 3, "lock": 4, "hair": 5}[kind]
+            n = {"under": 3, "lock": 3, "hair": 4}[kind]
             points = lock_line(root, rng, n, lift)
             axis = (0.0, root[1], 0.015)
             outs = [unit(mix(sub(p, (axis[0], p[1], axis[2])), gradient(face, root), 0.4)) for p in points]
@@ -123,5 +123,5 @@ def make_beard(skin, look):
             for side in (1, -1):
                 tag = ("grown", (side * root[0], root[1], root[2]), lower)
                 ribbon(patch, [(side * p[0], p[1], p[2]) for p in points], [(side * o[0], o[1], o[2]) for o in outs], w,
-                       0.0, u, weights, tag, 2.2 * w)
+                       0.0, u, weights, tag, 7.0 * w)
     return patch

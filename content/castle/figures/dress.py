@@ -69,7 +69,7 @@ def skirt_point(phi, y):
 
 
 def make_skirt(gown, trim):
-    columns = 112
+    columns = 104
     ys = [0.012, 0.050, 0.085, 0.108, 0.125, 0.19, 0.27, 0.35, 0.43, 0.51, 0.59, 0.67, 0.75, 0.82, 0.88,
           0.93, 0.97, 1.00, 1.025, 1.045, 1.062]
     cloth, band = Patch("skirt", gown), Patch("skirt_trim", trim)
@@ -172,7 +172,7 @@ def sleeve_point(t, a, side):
 
 def make_sleeves(gown, trim, linen):
     cloth, cuff, frill = Patch("sleeves", gown), Patch("cuffs", trim), Patch("frills", linen)
-    n = 30
+    n = 28
     ts = [0, .03, .06, .10, .14, .19, .24, .29, .34, .39, .43, .46, .49, .52, .55, .59, .64, .69, .74, .79, .83, .87, .90, .925,
           .945, .962]
     for side, name in ((1, "l"), (-1, "r")):
@@ -252,11 +252,12 @@ def make_cape(velvet, trim, fur):
     return cloth, band, edge
 
 
-def neck_ring(phi, t, grow=0.0):
+def neck_ring(phi, t, grow=0.0, rise=0.0):
     """Round the neck; t: 0 at its root .. 1 under the chin (lower in front)."""
     c = cos(phi)
     y = lerp(1.386, 1.434, t) - 0.010 * t * c - 0.012 * (1 - t) * c
     o = (0.0, y, -0.026 + 0.25 * (y - 1.40))
+    y += rise * max(t, 0.0) * sin(phi) ** 2  # the shoulders rise towards the neck
     r = 0.0505 + 0.005 * (1 - t) + 0.006 * t + grow
     return (o[0] + r * 0.98 * sin(phi), y, o[2] + r * 1.02 * c)
 
@@ -264,15 +265,15 @@ def neck_ring(phi, t, grow=0.0):
 def make_collar(linen, velvet, gold):
     """Velvet stand-up collar open in front, pleated linen inside with a small ruffle, a gold clasp."""
     shirt, collar, clasp = Patch("chemise", linen), Patch("collar", velvet), Patch("clasp", gold)
-    n = 96
+    n = 128
     rows = []
     for t, grow, wave, v in ((-0.35, 0.004, 0, 0), (0.2, -0.001, 0.0004, 0.3), (0.55, -0.001, 0.0005, 0.5), (0.86, 0.000, 0.0006, 0.7),
-                             (0.98, 0.0035, 0.0022, 0.8), (1.08, 0.0085, 0.0030, 0.9), (1.10, 0.0135, 0.0034, 1.0)):
+                             (1.00, 0.0030, 0.0016, 0.8), (1.14, 0.0065, 0.0024, 0.9), (1.24, 0.0110, 0.0028, 1.0)):
         row = []
         for i in range(n + 1):
             phi = 2 * pi * (i % n) / n + pi
-            p = neck_ring(phi, t, grow + wave * sin(phi * 19))
-            p = (p[0], p[1] + 0.9 * wave * cos(phi * 19) * (1 if t > 0.9 else 0), p[2])
+            p = neck_ring(phi, t, grow + wave * sin(phi * 16), 0.010)
+            p = (p[0], p[1] + 0.5 * wave * cos(phi * 16) * (1 if t > 0.9 else 0), p[2])
             row.append(shirt.vertex(p, (i / n * 8, v), neck_weights(p), ("linen",)))
         rows.append(row)
     shirt.grid(rows)
@@ -283,7 +284,7 @@ def make_collar(linen, velvet, gold):
         row = []
         for i in range(m + 1):
             phi = lerp(0.16 + 0.30 * max(t, 0), 2 * pi - 0.16 - 0.30 * max(t, 0), i / m)
-            p = neck_ring(phi, t, grow)
+            p = neck_ring(phi, t, grow, 0.010)
             row.append(collar.vertex(p, (i / m * 4, t), neck_weights(p), ("linen",)))
         rows.append(row)
     collar.grid(rows)

@@ -122,6 +122,8 @@ def write_shape(out, patch, look, first, seen):
                  close=not look.texture)
         if look.texture:
             out.line("ImageTexture", {"containerField": "baseTexture", "url": '"%s"' % look.texture})
+            if look.normal_map:
+                out.line("ImageTexture", {"containerField": "normalTexture", "url": '"%s"' % look.normal_map})
             out.end("PhysicalMaterial")
         out.end("Appearance")
     out.line("IndexedTriangleSet", {"solid": "false" if look.double_sided else "true",

@@ -4,11 +4,11 @@
 Fields work in head space and are symmetric unless they name a side. Visemes combine simple movements with an
 opening of the jaw, so that one displacer is one mouth shape.
 """
-from math import atan2
+from math import atan2, sin
 
 from eyes import center
 from face import LID_POINTS
-from face_form import LID_RADIUS, MOUTH_HALF, lower_lip_y, part_y, upper_lip_y
+from face_form import LID_RADIUS, MOUTH_HALF, SMILE_LINE, beside, lower_lip_y, part_y, upper_lip_y
 from form import add, bell, clamp, lerp, mul, rotate, smoothstep, sub
 from person import WHO
 from rig import TMJ
@@ -122,24 +122,67 @@ def corner(v, side, radius=0.019):
     return soft(v) * bell(x - MOUTH_HALF, radius * (0.85 if x < MOUTH_HALF else 1.0)) * bell(y - part_y(MOUTH_HALF), radius)
 
 
+def pull(v, side):
+    """How much the skin follows a corner of the mouth: growing from the middle of the lips, so that they bend in
+    an arc, most at the corner, fading over the cheek."""
+    x = v.p[0] * side
+    if x <= 0:
+        return 0.0
+    return soft(v) * smoothstep(0.0, 0.95 * MOUTH_HALF, x) * bell(x - 1.10 * MOUTH_HALF, 0.021) * bell(
+        v.p[1] - part_y(min(x, MOUTH_HALF)), 0.018)
+
+
+def nasolabial(v, side):
+    """(the fold from the wing of the nose past the mouth, the flesh beside it): what lifts a cheek deepens both."""
+    if v.part != "face":
+        return 0.0, 0.0
+    x, y = v.p[0] * side, v.p[1]
+    d = beside(x, y, SMILE_LINE)
+    ends = soft(v) * smoothstep(-0.078, -0.064, y) * smoothstep(-0.030, -0.040, y) * (x > 0.010)
+    return ends * bell(d, 0.0026), ends * bell(d - 0.0080, 0.0065)
+
+
 def smile(v, side):
     x, y = v.p[0] * side, v.p[1]
     if x < -0.004:
         return ZERO
-    k = corner(v, side) * smoothstep(-0.004, 0.012, x)
-    cheek = soft(v) * bell(x - 0.036, 0.016) * bell(y + 0.036, 0.016) if v.part == "face" else 0.0
-    under = soft(v) * bell(x - 0.034, 0.018) * bell(y + 0.013, 0.007) if v.part == "face" else 0.0
-    return (side * (0.0050 * k + 0.0014 * cheek), 0.0050 * k + 0.0046 * cheek + 0.0014 * under,
-            -0.0040 * k + 0.0026 * cheek + 0.0004 * under)
+    k = pull(v, side)
+    on_face = soft(v) if v.part == "face" else 0.0
+    cheek = on_face * bell(x - 0.038, 0.015) * bell(y + 0.037, 0.015)
+    under = on_face * bell(x - 0.034, 0.018) * bell(y + 0.014, 0.007)
+    crease, pad = nasolabial(v, side)
+    return (side * (0.0058 * k + 0.0010 * cheek + 0.0008 * pad - 0.0002 * crease),
+            0.0062 * k + 0.0040 * cheek + 0.0012 * under + 0.0006 * pad,
+            -0.0046 * k + 0.0026 * cheek + 0.0005 * under + 0.0018 * pad - 0.0016 * crease)
+
+
+def cheek_up(v, lids):
+    """The muscle round the eye: the cheek rises against the lower lid, which it pushes up and wrinkles."""
+    total = lids.move(v, 0.06, 0.62)
+    if v.part != "face":
+        return total
+    y = v.p[1]
+    for side in (1, -1):
+        x = v.p[0] * side
+        cheek = soft(v) * bell(x - 0.037, 0.015) * bell(y + 0.028, 0.013)
+        under = soft(v) * bell(x - 0.032, 0.017) * bell(y + 0.0125, 0.0055)
+        outer = soft(v) * bell(x - 0.052, 0.009) * bell(y - 0.001, 0.013)  # crow's feet: drawn to the eye
+        tail = soft(v) * bell(x - 0.045, 0.012) * bell(y - 0.019, 0.008)
+        crease, pad = nasolabial(v, side)
+        total = add(total, (-side * (0.0016 * outer + 0.0002 * cheek), 0.0038 * cheek + 0.0018 * under - 0.0012 * tail + 0.0006 * pad,
+                            0.0022 * cheek + 0.0010 * under + 0.0010 * pad - 0.0008 * crease))
+    return total
 
 
 def frown(v):
+    """The corners sink in an arc; the chin pushes the lower lip up."""
     total = ZERO
     for side in (1, -1):
-        k = corner(v, side, 0.016)
-        total = add(total, (side * 0.0008 * k, -0.0056 * k, -0.0010 * k))
-    chin = soft(v) * bell(v.p[0], 0.016) * bell(v.p[1] + 0.088, 0.009) if v.part == "face" else 0.0
-    return add(total, (0, 0.0022 * chin, 0.0008 * chin))
+        k = pull(v, side)
+        total = add(total, (-side * 0.0004 * k, -0.0062 * k, -0.0012 * k))
+    chin = soft(v) * bell(v.p[0], 0.018) * bell(v.p[1] + 0.089, 0.010) if v.part == "face" else 0.0
+    middle = near_lips(v, down=0.016) * bell(v.p[0], 0.015)
+    return add(total, (0, 0.0020 * chin + 0.0011 * middle, 0.0014 * chin + (0.0 if upper_side(v) else 0.0012 * middle)))
 
 
 def pucker(v):
@@ -168,18 +211,25 @@ def drop(v):
 
 
 def press(v):
-    k = near_lips(v, up=0.008, down=0.008)
-    s = -1 if upper_side(v) else 1
-    edge = bell(v.p[1] - part_y(abs(v.p[0])), 0.008)
-    return (0, s * 0.0013 * k * edge, -0.0021 * k * edge)
+    """The lips roll inwards upon each other: what is seen of the red grows narrow, the skin around it swells."""
+    k = near_lips(v, up=0.010, down=0.011)
+    x = abs(v.p[0])
+    off = v.p[1] - part_y(min(x, MOUTH_HALF))
+    roll = clamp(1 - x / (1.25 * MOUTH_HALF)) ** 0.5 if x < 1.25 * MOUTH_HALF else 0.0
+    s = 1 if off > 0 or (off == 0 and upper_side(v)) else -1
+    edge = bell(abs(off) - 0.0052, 0.0045)
+    swell = bell(abs(off) - 0.0125, 0.0050) * soft(v) * bell(x, 0.020) if v.part == "face" else 0.0
+    return (0, -s * 0.0026 * k * edge * roll - s * 0.0004 * k * bell(off, 0.002), -0.0026 * k * bell(off, 0.0075) + 0.0008 * swell)
 
 
 def lip_up(v):
+    """The upper lip rises in an even curve, bares the teeth and grows thinner."""
     if not upper_side(v):
         return ZERO
-    k = near_lips(v, up=0.020)
-    u = abs(v.p[0]) / MOUTH_HALF
-    return (0, 0.0052 * k * max(0.0, 1 - 0.8 * u * u), 0.0010 * k * max(0.0, 1 - u * u))
+    x = abs(v.p[0])
+    k = near_lips(v, up=0.020) * smoothstep(1.0, 0.55, x / MOUTH_HALF)
+    edge = bell(v.p[1] - upper_lip_y(min(x, MOUTH_HALF)), 0.006) if v.part == "face" else 0.0
+    return (0, (0.0056 - 0.0008 * edge) * k, (0.0006 + 0.0010 * edge) * k)
 
 
 def lip_down(v):
@@ -195,7 +245,7 @@ def tuck(v):
     if upper_side(v):
         return ZERO
     k = near_lips(v, down=0.016) * max(0.0, 1 - (abs(v.p[0]) / MOUTH_HALF) ** 2)
-    return (0, 0.0022 * k, -0.0052 * k)
+    return (0, 0.0022 * k, -0.0038 * k)
 
 
 def jaw(v, angle):
@@ -225,14 +275,24 @@ def puff(v):
 
 
 def wrinkle(v):
-    if v.part not in ("face",):
+    """The nose wrinkles: its wings and the lip beside them rise, the skin of its bridge gathers, the brows come down to it."""
+    if v.part not in ("face", "brows"):
         return ZERO
     x, y = abs(v.p[0]), v.p[1]
-    wing = bell(x - 0.012, 0.009) * bell(y + 0.036, 0.010) * soft(v)
-    side = bell(x - 0.010, 0.009) * bell(y + 0.008, 0.012) * soft(v)
-    brow = bell(x - 0.012, 0.012) * bell(y - 0.019, 0.009) * soft(v)
     s = 1 if v.p[0] > 0 else -1
-    return add((s * 0.0010 * wing, 0.0030 * wing + 0.0010 * side - 0.0024 * brow, 0.0006 * side), mul(lip_up(v), 0.35))
+    k = soft(v) if v.part == "face" else smoothstep(0.025, 0.055, v.p[2])
+    wing = k * bell(x - 0.013, 0.0085) * bell(y + 0.037, 0.011)
+    tip = k * bell(x, 0.007) * bell(y + 0.037, 0.010)
+    side = k * bell(x - 0.012, 0.008) * bell(y + 0.013, 0.013)
+    brow = k * bell(x - 0.011, 0.012) * bell(y - 0.019, 0.010)
+    gather = k * smoothstep(0.018, 0.006, x) * smoothstep(-0.026, -0.018, y) * smoothstep(0.012, 0.004, y)
+    rib = 0.00050 * gather * sin(y * 1250 + 0.12 * x * 1250)  # small cross folds over the bridge
+    cheek = k * bell(x - 0.026, 0.010) * bell(y + 0.026, 0.013)
+    crease, pad = nasolabial(v, s)
+    high = smoothstep(-0.066, -0.048, y)
+    lip = k * upper_side(v) * bell(x - 0.013, 0.011) * smoothstep(-0.072, -0.060, y) * smoothstep(-0.038, -0.050, y)
+    return (s * (0.0016 * wing - 0.0003 * brow), 0.0044 * wing + 0.0016 * tip + 0.0022 * side - 0.0032 * brow + 0.0026 * cheek + 0.0034 * lip,
+            0.0008 * side + 0.0014 * cheek + 0.0010 * brow + rib + high * (0.0012 * pad - 0.0016 * crease) + 0.0004 * lip)
 
 
 def brow_band(v):
@@ -241,28 +301,31 @@ def brow_band(v):
         return 0.0
     y = v.p[1]
     low = 0.0085 + 0.35 * max(0.0, abs(v.p[0]) - 0.030)
-    return smoothstep(low - 0.001, 0.0185, y) * smoothstep(0.066, 0.026, y) * smoothstep(0.015, 0.045, v.p[2])
+    return smoothstep(low - 0.001, 0.0185, y) * smoothstep(0.058, 0.026, y) * smoothstep(0.015, 0.045, v.p[2])
 
 
 def brow_up(v, side):
     x = v.p[0] * side
-    k = brow_band(v) * smoothstep(0.000, 0.020, x) * smoothstep(0.066, 0.048, x)
-    return (0, 0.0066 * k, -0.0010 * k)
+    k = brow_band(v) * smoothstep(-0.004, 0.018, x) * smoothstep(0.068, 0.048, x)
+    fold = soft(v) * bell(x - 0.034, 0.016) * bell(v.p[1] - 0.0135, 0.005) if v.part == "face" else 0.0  # the lid's skin is drawn up
+    return (0, 0.0084 * k + 0.0016 * fold, -0.0012 * k - 0.0006 * fold)
 
 
 def brow_inner_up(v):
     x = abs(v.p[0])
-    k = brow_band(v) * bell(x - 0.008, 0.013)
-    outer = brow_band(v) * bell(x - 0.044, 0.011)
+    k = brow_band(v) * bell(x - 0.008, 0.014)
+    outer = brow_band(v) * bell(x - 0.044, 0.012)
     s = 1 if v.p[0] > 0 else -1
-    return (-s * 0.0012 * k * smoothstep(0, 0.006, x), 0.0066 * k - 0.0014 * outer, 0.0004 * k)
+    return (-s * 0.0020 * k * smoothstep(0, 0.006, x), 0.0078 * k - 0.0022 * outer, 0.0008 * k)
 
 
 def brow_down(v):
     x = abs(v.p[0])
-    k = brow_band(v) * bell(x - 0.014, 0.017)
+    k = brow_band(v) * bell(x - 0.012, 0.018)
     s = 1 if v.p[0] > 0 else -1
-    return (-s * 0.0024 * k * smoothstep(0, 0.008, x), -0.0050 * k, 0.0011 * k)
+    knot = brow_band(v) * bell(x - 0.0085, 0.0055) * bell(v.p[1] - 0.020, 0.009)  # the muscle that draws them together bulges
+    crease = brow_band(v) * bell(x - 0.0035, 0.0022) * bell(v.p[1] - 0.021, 0.008)
+    return (-s * 0.0015 * k * smoothstep(0, 0.008, x), -0.0054 * k, 0.0014 * k + 0.0012 * knot - 0.0010 * crease)
 
 
 # ---- the list -----------------------------------------------------------------------------------------
@@ -299,7 +362,7 @@ def controls(lids):
     table = {
         "blink_l": lambda v: lids.move(v, 1.0, 1.0, 1),
         "blink_r": lambda v: lids.move(v, 1.0, 1.0, -1),
-        "lid_wide": lambda v: lids.move(v, -0.26, -0.35),
+        "lid_wide": lambda v: lids.move(v, -0.36, -0.30),
         "squint": lambda v: add(lids.move(v, 0.20, 1.35), (0, 0.0010 * k, 0.0004 * k) if
                                 (k := bell(abs(v.p[0]) - 0.034, 0.017) * bell(v.p[1] + 0.014, 0.006)
                                  * (v.part == "face")) else ZERO),
@@ -307,6 +370,7 @@ def controls(lids):
         "brow_up_r": lambda v: brow_up(v, -1),
         "brow_inner_up": brow_inner_up,
         "brow_down": brow_down,
+        "cheek_up": lambda v: cheek_up(v, lids),
         "smile_l": lambda v: smile(v, 1),
         "smile_r": lambda v: smile(v, -1),
         "frown": frown,
@@ -319,7 +383,7 @@ def controls(lids):
         "nose_wrinkle": wrinkle,
     }
     table = {name: (lambda v, move=move: move(v.skin)) for name, move in table.items()}
-    shapes = {"mouth_open": lambda v: shape(v, 0.24, {drop: 1.2, lip_down: 0.10, lip_up: 0.15}, None)}
+    shapes = {"mouth_open": lambda v: shape(v, 0.24, {drop: 1.5, lip_down: 0.10, lip_up: 0.20}, None)}
     for name, (angle, movements, tongue_move) in VISEMES.items():
         shapes["viseme_" + name] = lambda v, a=angle, m=movements, t=tongue_move: shape(v, a, m, t)
     return {**table, **shapes}

@@ -126,7 +126,7 @@ def make_brows(look):
     rng = random.Random(5)
     knots = [[(k[0], k[j]) for k in BROW_LINE] for j in (1, 2)]
     bushy = WHO.brow_thick
-    for _ in range(int(90 * bushy)):
+    for _ in range(int(135 * bushy)):
         t = rng.random() ** 1.15
         x = lerp(0.0095, 0.0495, t)
         half = curve(knots[1], x) * bushy
@@ -146,7 +146,7 @@ def make_brows(look):
         tint = rng.random()
         for side in (1, -1):
             ids = [patch.vertex((side * q[0], q[1], q[2]), (tint, 0.5), {"skullbase": 1.0}, ("brow",))
-                   for p, w in ((root, 1.0), (p1, 0.75)) for q in (mad(p, across, -w * 0.00013), mad(p, across, w * 0.00013))]
+                   for p, w in ((root, 1.0), (p1, 0.75)) for q in (mad(p, across, -w * 0.00010), mad(p, across, w * 0.00010))]
             tip = patch.vertex((side * p2[0], p2[1], p2[2]), (tint, 0.5), {"skullbase": 1.0}, ("brow",))
             patch.quad(ids[0], ids[1], ids[3], ids[2])
             patch.triangle(ids[2], ids[3], tip)

@@ -32,8 +32,8 @@ def lid_opening(t, upper):
     base = lerp(-0.0019, 0.0011, t)
     arch = 4 * t * (1 - t)
     if upper:
-        return x, base + 0.0068 * WHO.lid_open * arch ** 0.70 * (1 + 0.24 * (0.5 - t))
-    return x, base - 0.0046 * arch ** 0.92 * (1 - 0.30 * (0.5 - t))
+        return x, base + 0.0055 * WHO.lid_open * arch ** 0.70 * (1 + 0.20 * (0.5 - t))
+    return x, base - 0.0051 * arch ** 0.86 * (1 - 0.30 * (0.5 - t))
 
 
 def eye_ring(s):
@@ -80,7 +80,9 @@ def spacing(theta, v):
     if v > 0.055:
         d = lerp(d, 0.010, smoothstep(0.055, 0.09, v))
     near = bell(theta * UNROLL, 0.032) * bell(v + 0.03, 0.045)
-    return lerp(d, 0.0031, near)
+    d = lerp(d, 0.0031, near)
+    cheek = bell(abs(theta) * UNROLL - 0.036, 0.014) * bell(v + 0.045, 0.020)  # where smiles fold
+    return lerp(d, 0.0024, cheek)
 
 
 class Points:

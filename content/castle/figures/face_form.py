@@ -35,7 +35,7 @@ def upper_lip_y(x):
 
 def lower_lip_y(x):
     u = clamp(x / MOUTH_HALF, 0, 1)
-    return part_y(x) - WHO.lip_lower * (1 - u ** 2.0) ** 1.0 - 0.0004
+    return part_y(x) - WHO.lip_lower * (1 - u ** 1.8) ** 1.15 - 0.0004
 
 
 # ---- the volumes --------------------------------------------------------------------------------------
@@ -47,8 +47,8 @@ def bone(p):
     d = ellipsoid(p, (0, 0.026, -0.006), (0.0695, 0.083, 0.0985))  # cranium
     d = join(d, ellipsoid(p, (0.018, 0.046, 0.052), (0.034, 0.030, 0.036)), 0.030)  # bosses of the forehead
     d = join(d, ellipsoid(p, (0, -0.030, 0.030), (0.0500, 0.078, 0.0600)), 0.030)  # face
-    d = join(d, capsule(p, (0.0375 * w, -0.0660, 0.010), (0.0085, -0.0962, 0.071), 0.0112, 0.0098), 0.022)  # jaw
-    d = join(d, ellipsoid(p, (0, -0.0955 - WHO.chin_down, 0.0758 + WHO.chin_out), (0.0160 * chin, 0.0140, 0.0180)), 0.020)  # chin
+    d = join(d, capsule(p, (0.0375 * w, -0.0660, 0.010), (0.0110, -0.0975, 0.070), 0.0112, 0.0106), 0.026)  # jaw
+    d = join(d, ellipsoid(p, (0, -0.0955 - WHO.chin_down, 0.0758 + WHO.chin_out), (0.0180 * chin, 0.0140, 0.0175)), 0.030)  # chin
     d = join(d, ellipsoid(p, (0, -0.066, 0.072), (0.0305, 0.025, 0.0265)), 0.018)  # muzzle
     c = WHO.cheekbone
     d = join(d, ellipsoid(p, (0.0445 + c, -0.0205, 0.0560 + c), (0.0180, 0.0120, 0.0190)), 0.022)  # cheekbone
@@ -79,16 +79,16 @@ def nose(p, d):
                         0.0056 * WHO.nose_bridge, 0.0062 * w), 0.0095)  # bridge
     if WHO.nose_hump:
         d = join(d, ellipsoid(p, (0, -0.0110, 0.0935 + WHO.nose_hump), (0.0050 * w, 0.0100, 0.0040)), 0.006)
-    d = join(d, ellipsoid(p, (0.0022 * w, tip_y, tip_z), (0.0060 * w, 0.0068, 0.0080)), 0.006)  # tip
+    d = join(d, ellipsoid(p, (0.0020 * w, tip_y, tip_z), (0.0054 * w, 0.0064, 0.0080)), 0.006)  # tip
     d = join(d, capsule(p, (0, tip_y - 0.0045, tip_z + 0.0005), (0, -0.0442 - 0.6 * drop, 0.0930), 0.0034, 0.0040), 0.005)
     d = join(d, ellipsoid(p, (0.0106 * w, -0.0386 - 0.5 * drop, 0.0945 + 0.3 * out), (0.0050 * w, 0.0062, 0.0086)), 0.0050)  # wing
-    return carve(d, ellipsoid(p, (0.0064 * w, -0.0456 - 0.6 * drop, 0.0980 + 0.4 * out), (0.0025 * w, 0.0034, 0.0052)), 0.0022)
+    return carve(d, ellipsoid(p, (0.0068 * w, -0.0455 - 0.6 * drop, 0.0975 + 0.4 * out), (0.0028 * w, 0.0046, 0.0056)), 0.0016)
 
 
 def face(p):
     """Everything but the relief."""
     q = (abs(p[0]), p[1], p[2])
-    slim = 1 + 0.060 * smoothstep(-0.028, -0.075, p[1]) * smoothstep(-0.130, -0.102, p[1])  # towards the chin
+    slim = 1 + 0.060 * smoothstep(-0.028, -0.075, p[1]) * smoothstep(-0.190, -0.130, p[1])  # towards the chin
     slim /= lerp(1.0, WHO.face_width, smoothstep(0.055, 0.000, p[1]) * smoothstep(-0.150, -0.115, p[1]))
     d = bone((q[0] * slim, q[1], q[2]))
     if q[0] < 0.034 and -0.066 < q[1] < 0.03 and q[2] > 0.05:
@@ -122,8 +122,8 @@ def lips(x, y):
             height *= 1 - 0.70 * smoothstep(0.45, 1.08, q)
         if q > 1.0:
             height = top * 0.30 * bell(q - 1.05, 0.5)
-    crease = -0.0016 * bell(y - middle, 0.0007) * (1 if u < 1 else bell(u - 1, 0.06))
-    corner = -0.0014 * bell(x - MOUTH_HALF * 1.03, 0.0038) * bell(y - part_y(x), 0.0038)
+    crease = -0.0016 * bell(y - middle, 0.0007) * smoothstep(1.04, 0.55, u)  # towards the corner the lips lie closer
+    corner = -0.0009 * bell(x - MOUTH_HALF * 1.06, 0.0048) * bell(y - part_y(x), 0.0046)
     return height + crease + corner
 
 
@@ -138,8 +138,8 @@ def asymmetry(p):
     return (x + dx * front, y + dy * front, z)
 
 
-def fold(x, y, line, depth, width, raise_outside=0.0):
-    """A crease along a polyline [(x, y)]; the side away from the middle may stand higher."""
+def beside(x, y, line):
+    """Distance from a polyline [(x, y)] that runs downwards; negative on its inner side, towards the middle of the face."""
     best, side = 1e9, 0.0
     for (ax, ay), (bx, by) in zip(line, line[1:]):
         dx, dy = bx - ax, by - ay
@@ -149,8 +149,13 @@ def fold(x, y, line, depth, width, raise_outside=0.0):
         if d < best:
             best = d
             side = 1.0 if ex * -dy + ey * dx > 0 else -1.0
-    d = sqrt(best)
-    return -depth * bell(d, width) + raise_outside * (d / width) * bell(d, 2.5 * width) * side
+    return side * sqrt(best)
+
+
+def fold(x, y, line, depth, width, raise_outside=0.0):
+    """A crease along a polyline [(x, y)]; the flesh outside of it may stand higher and hang over it."""
+    d = beside(x, y, line)
+    return -depth * bell(d, width) + raise_outside * (d / width) * bell(d, 2.5 * width)
 
 
 def lid_fold(x, y):
@@ -197,7 +202,7 @@ def wrinkles(x, y):
             dx, dy = x - 0.0475, y + 0.0005
             along, off = dx * cos(a) + dy * sin(a), -dx * sin(a) + dy * cos(a)
             h -= 0.00055 * bell(off, 0.0009) * smoothstep(0.001, 0.004, along) * smoothstep(size, 0.006, along)
-    h += fold(x, y, CORNER_LINE, 0.0009, 0.0024, -0.0005)
+    h += fold(x, y, CORNER_LINE, 0.0009, 0.0024, 0.0004)
     return h
 
 
@@ -211,13 +216,13 @@ def relief(p):
     h -= 0.0018 * bell(y + 0.0830, 0.0042) * bell(x, 0.015)  # under the lower lip
     h -= 0.0010 * bell(x, 0.0026) * smoothstep(-0.0455, -0.0490, y) * smoothstep(-0.0600, -0.0565, y)  # philtrum
     h += 0.0005 * bell(x - 0.0043, 0.0020) * smoothstep(-0.0465, -0.0500, y) * smoothstep(-0.062, -0.058, y)
-    h += fold(x, y, SMILE_LINE, 0.0003 + 0.0014 * age, 0.0030, -0.0004 - 0.0009 * age)
+    h += fold(x, y, SMILE_LINE, 0.0003 + 0.0010 * age, 0.0026, 0.0002 + 0.0006 * age)
     h += fold(x, y, TEAR_LINE, 0.0003 + 0.0008 * age, 0.0028)
     h += 0.0022 * WHO.eye_bags * bell(x - 0.030, 0.0095) * bell(y + 0.0118, 0.0036)
     h += lid_fold(x, y)
     if age > 0.3:
         h += (age - 0.3) / 0.7 * wrinkles(x, y)
-    h -= 0.0010 * bell(x - 0.0128 * WHO.nose_width, 0.0030) * bell(y + 0.0325, 0.0050) * bell(z - 0.092, 0.012)  # wing crease
+    h -= 0.0015 * bell(x - 0.0128 * WHO.nose_width, 0.0028) * bell(y + 0.0320, 0.0048) * bell(z - 0.092, 0.012)  # wing crease
     return h * front
 
 

@@ -5,8 +5,8 @@ from math import cos, pi, sin
 
 from dress import body
 from face_form import HEAD, face
-from form import (add, cast, circle, cross, dot, ellipsoid, gradient, join, lerp, mad, mix, noise, smoothstep, sub,
-                  unit)
+from form import (add, cast, circle, cross, dot, ellipsoid, gradient, join, length, lerp, mad, mix, noise, rotate,
+                  smoothstep, sub, unit)
 from patch import Patch
 from rig import blend, scaled, torso_weights
 
@@ -45,7 +45,7 @@ def strand_point(side, c, s):
     lay = cast(face, CENTER, d, 0.16)
     top = cast(hair, CENTER, d, 0.16)
     wave = 0.0011 * sin(19 * s + 5 * c + side) * smoothstep(0.1, 0.35, s)
-    wave += 0.0011 * noise((c * 26 + side * 40, s * 2.2, 0.3), 1.0) + 0.0005 * noise((c * 70, s * 3.0, side), 1.0)
+    wave += 0.0007 * noise((c * 16 + side * 40, s * 1.8, 0.3), 1.0) + 0.0002 * noise((c * 70, s * 3.0, side), 1.0)
     full = max(dot(sub(top, CENTER), d), dot(sub(lay, CENTER), d) + 0.0045) + 0.002 + wave
     skin = dot(sub(lay, CENTER), d)
     rise = smoothstep(0.0, 0.13, c) ** 0.7
@@ -58,7 +58,7 @@ def strand_point(side, c, s):
 def make_hair(look):
     """The closed ground that strands lie on."""
     patch = Patch("hair", look)
-    nc, ns = 18, 22
+    nc, ns = 16, 22
     for side in (1, -1):
         rows = []
         for i in range(nc + 1):
@@ -95,9 +95,12 @@ def make_strands(look):
     patch = Patch("strands", look)
     rng = random.Random(3)
     for side in (1, -1):
-        for kind, count in (("lock", 27), ("hair", 36)):
+        for kind, count in (("lock", 32), ("hair", 36), ("wisp", 80)):
             for k in range(count):
                 lock = kind == "lock"
+                if kind == "wisp":
+                    wisp(patch, rng, side)
+                    continue
                 c = ((k + rng.random()) / count) ** 1.3 * 0.92
                 s0 = rng.uniform(0.0, 0.12) if lock else rng.uniform(0.05, 0.55)
                 s1 = min(1.0, s0 + (rng.uniform(0.70, 1.0) if lock else rng.uniform(0.22, 0.5)))
@@ -105,19 +108,36 @@ def make_strands(look):
                     c = rng.uniform(-0.012, 0.03)  # at the hairline they are finest and loosest
                 drift, astray = rng.uniform(-0.05, 0.05), rng.uniform(0.0008, 0.0042)
                 points, outs = [], []
-                n = 9 if lock else 7
+                n = 7 if lock else 5
                 for i in range(n + 1):
                     t = i / n
                     p = strand_point(1, max(c + drift * t, -0.015), (s0 + (s1 - s0) * t) ** 1.15)
                     out = unit(sub(p, CENTER))
-                    lift = 0.0002 + 0.0010 * sin(pi * t) if lock else 0.0004 + astray * t * t
+                    lift = 0.0002 + 0.0006 * sin(pi * t) if lock else 0.0004 + astray * t * t
                     p = mad(p, out, lift)
                     points.append((side * p[0], p[1], p[2]))
                     outs.append((side * out[0], out[1], out[2]))
                 u = 0.5 * max(c, 0.0) + (0.5 if side < 0 else 0.0) + rng.uniform(-0.02, 0.02)
-                ribbon(patch, points, outs, rng.uniform(0.0045, 0.0085) if lock else rng.uniform(0.00028, 0.0005),
-                       rng.uniform(0.0006, 0.0013) if lock else 0.0, u, {"skullbase": 1.0}, ("hair",))
+                ribbon(patch, points, outs, rng.uniform(0.0030, 0.0065) if lock else rng.uniform(0.00024, 0.00042),
+                       rng.uniform(0.0002, 0.0006) if lock else 0.0, u, {"skullbase": 1.0}, ("hair",))
     return patch
+
+
+def wisp(patch, rng, side):
+    """A fine hair that grows out of the skin before the hairline and lies down on the combed hair: no edge is sharp."""
+    s = rng.uniform(0.03, 0.80)
+    ahead, reach, turn = rng.uniform(0.006, 0.050), rng.uniform(0.05, 0.12), rng.uniform(0.03, 0.09)
+    points, outs = [], []
+    n = 3
+    for i in range(n + 1):
+        t = i / n
+        p = strand_point(1, reach * t - ahead * (1 - t), s + turn * t)
+        out = unit(sub(p, CENTER))
+        p = mad(p, out, 0.0016 * (1 - smoothstep(0.0, 0.6, t)) + 0.0007 * sin(pi * t) + 0.0003)
+        points.append((side * p[0], p[1], p[2]))
+        outs.append((side * out[0], out[1], out[2]))
+    ribbon(patch, points, outs, rng.uniform(0.00022, 0.00040), 0.0, rng.uniform(0.02, 0.15) + (0.5 if side < 0 else 0.0),
+           {"skullbase": 1.0}, ("hair",))
 
 
 def make_fall(look):
@@ -221,10 +241,31 @@ def veil_weights(p):
     return blend([("skullbase", head)] + scaled(torso_weights(p, 0.97), 1 - head))
 
 
+VEIL_TURN = 1.72  # radians from the nape to its edges, which fall beside the neck
+
+
+TURNED = 7  # columns of cloth turned in at each edge
+
+
+def turn_in(edge, s, t):
+    """Cloth turned in from the veil's edge: s 0 there .. 1 at the neck; t 0 on the roll .. 1 at the hem. Figure space."""
+    s *= lerp(0.03, 1.0, smoothstep(0.36, 0.46, t))  # below the roll; above it lies close anyway
+    o = (0.0, edge[1], -0.030)
+    out = sub(edge, o)
+    far = length(out)
+    out = rotate(unit(out), (0, 0, 0), (0.0, 1.0, 0.0), -0.16 * s * (1 if edge[0] > 0 else -1))
+    above = smoothstep(1.440, 1.485, edge[1])  # of the collar
+    near = cast(lambda p: min(lerp(body(p) - 0.010, face(sub(p, HEAD)) - 0.003, above), hair(sub(p, HEAD)) - 0.003), o, out, 0.35)
+    close = min(dot(sub(near, o), out), far - 0.0004)
+    p = mad(o, out, lerp(far, close, s))
+    soft = smoothstep(0.05, 0.35, t) * (far - close)
+    return (p[0], p[1], p[2] + soft * (0.12 * sin(pi * s) + 0.11 * sin(4 * pi * s + 2 * t) * (1 - 0.6 * s)))
+
+
 def make_veil(look):
     """Linen pinned over the roll, falling behind the shoulders. Figure space."""
     patch = Patch("veil", look)
-    columns, upper, lower = 46, 11, 15
+    columns, upper, lower = 44, 11, 15
     rows = [[] for _ in range(upper + lower + 1)]
     o = (0.0, 0.020, -0.020)
     for i in range(columns + 1):
@@ -233,7 +274,7 @@ def make_veil(look):
         start = roll_path(psi)
         start = mad(start, unit(sub(start, CENTER)), 0.0080)
         start = (start[0], start[1], start[2] - 0.005)
-        beta = u * 1.22
+        beta = u * VEIL_TURN
         d0, d1 = unit(sub(start, o)), unit((sin(beta), -0.10 - 0.45 * abs(u) ** 3, -cos(beta)))
         r0 = dot(sub(start, o), d0)
         middle = None
@@ -261,6 +302,12 @@ def make_veil(look):
             fold = amount * (sin(beta * 13 + 0.8 * sin(3 * t + u)) + 0.35 * sin(beta * 27 + 2 * t))
             q = mad(q, out, fold + 0.55 * amount)
             rows[upper + k].append((q, (u, 0.5 + 0.5 * t)))
+    for k, row in enumerate(rows):  # both edges turn in towards the neck: from in front one sees cloth, no hollow
+        t = k / (upper + lower)
+        turned = [[turn_in(row[end][0], j / TURNED, t) for j in range(1, TURNED + 1)] for end in (0, -1)]
+        v = row[0][1][1]
+        rows[k] = ([(p, (-1 - 0.04 * (j + 1), v)) for j, p in reversed(list(enumerate(turned[0])))] + row
+                   + [(p, (1 + 0.04 * (j + 1), v)) for j, p in enumerate(turned[1])])
     ids = [[patch.vertex(p, (uv[0] * 2.2, uv[1] * 3.2), veil_weights(p), ("veil",)) for p, uv in row] for row in rows]
     patch.grid(ids)
     return patch

@@ -44,14 +44,14 @@ def make_lining(face, look):
     return patch
 
 
-WIDTHS = [0.0086, 0.0068, 0.0077, 0.0070, 0.0068, 0.0095]  # from the middle to the back
-LOWER_WIDTHS = [0.0056, 0.0060, 0.0068, 0.0070, 0.0072, 0.0100]
+WIDTHS = [0.0089, 0.0071, 0.0081, 0.0075, 0.0073, 0.0100]  # from the middle to the back
+LOWER_WIDTHS = [0.0058, 0.0063, 0.0072, 0.0075, 0.0077, 0.0105]
 
 
 def arch(s, upper):
     """Point (x, z) of the dental arch at length s from the middle, and its outward direction."""
-    front = 0.0917 if upper else 0.0890
-    radius = 0.0235 if upper else 0.0218
+    front = 0.0934 if upper else 0.0909
+    radius = 0.0262 if upper else 0.0244
     a = s / radius
     if a < pi / 2 * 0.86:
         return radius * sin(a), front - radius * (1 - cos(a)) * 1.08, sin(a), cos(a)
@@ -85,7 +85,7 @@ def make_teeth(upper, tooth_look, gum_look):
                 for q in range(8):
                     a = 2 * pi * (q + 0.5) / 8
                     ca, sa = cos(a), sin(a)
-                    along = s + w / 2 + 0.512 * w * (0.80 + 0.20 * smoothstep(0, 0.7, v) - 0.10 * max(0, v - 0.85) / 0.15) \
+                    along = s + w / 2 + 0.512 * w * (0.88 + 0.12 * smoothstep(0, 0.6, v) - 0.07 * max(0, v - 0.85) / 0.15) \
                         * (abs(ca) ** 0.6 * (1 if ca > 0 else -1))
                     x, z, nx, nz = arch(max(along, 0.0002), upper)
                     depth = thick * (abs(sa) ** 0.7 * (1 if sa > 0 else -1)) * (1 - 0.62 * v ** 3)
@@ -110,8 +110,8 @@ def make_teeth(upper, tooth_look, gum_look):
     profile = [(-0.0035, 0.62), (-0.0003, 0.72), (0.0002, 0.88), (0.0004, 1.12), (0.0008, 1.55)]
     for out, up in profile:
         row = []
-        for i in range(-28, 29):
-            s = abs(i) / 28 * total
+        for i in range(-21, 22):
+            s = abs(i) / 21 * total
             x, z, nx, nz = arch(max(s, 1e-4), upper)
             k = max(j for j in range(len(widths)) if bounds[j] <= s + 1e-9 or j == 0)
             t = (s - bounds[k]) / widths[k]

@@ -72,9 +72,10 @@ def fill(width, height, color):
     return image
 
 
-def spread(image, patch, points, color):
-    """Paints `patch` into its texture: color(point, vertex weights) with `points` interpolated over each triangle."""
-    w, h = image.width, image.height
+def texels(patch, points, width, height, done):
+    """(x, y, point) of every texel `patch` covers in its texture, `points` interpolated over each triangle; those that
+    are `done` are left out."""
+    w, h = width, height
     for a, b, c in patch.triangles:
         (ax, ay), (bx, by), (cx, cy) = [(patch.uv[i][0] * w - 0.5, patch.uv[i][1] * h - 0.5) for i in (a, b, c)]
         area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
@@ -85,8 +86,14 @@ def spread(image, patch, points, color):
             for x in range(max(0, int(min(ax, bx, cx))), min(w - 1, int(max(ax, bx, cx)) + 1) + 1):
                 s = ((x - ax) * (cy - ay) - (cx - ax) * (y - ay)) / area
                 t = ((bx - ax) * (y - ay) - (x - ax) * (by - ay)) / area
-                if s < -0.02 or t < -0.02 or s + t > 1.02 or image.done[y * w + x]:
+                if s < -0.02 or t < -0.02 or s + t > 1.02 or done[y * w + x]:
                     continue
                 r = 1 - s - t
-                image.put(x, y, color((pa[0] * r + pb[0] * s + pc[0] * t, pa[1] * r + pb[1] * s + pc[1] * t,
-                                       pa[2] * r + pb[2] * s + pc[2] * t)))
+                yield x, y, (pa[0] * r + pb[0] * s + pc[0] * t, pa[1] * r + pb[1] * s + pc[1] * t,
+                             pa[2] * r + pb[2] * s + pc[2] * t)
+
+
+def spread(image, patch, points, color):
+    """Paints `patch` into its texture: color(point)."""
+    for x, y, p in texels(patch, points, image.width, image.height, image.done):
+        image.put(x, y, color(p))

@@ -96,6 +96,7 @@ class Look:
         self.roughness = roughness
         self.metallic = metallic
         self.texture = texture
+        self.normal_map = None  # picture of the finest relief
         self.double_sided = double_sided
 
 

@@ -38,7 +38,7 @@ class Person:
         # ---- colours
         self.skin, self.red, self.pale, self.shade = "e8bda4", "d2806f", "f2d3bd", "ad7562"
         self.ruddy = 1.0  # cheeks, nose, chin
-        self.freckles = 1.0
+        self.freckles = 0.55
         self.spots = 0.0  # of old age
         self.beard = 0.0  # how dense hair covers the skin under the beard
         self.lip, self.lip_dark = "bd7067", "7d3833"

@@ -55,7 +55,7 @@ def make_cap(cloth_look, brim_look):
     def flap(t, gap):
         """The turned-up brim, slit over the temples; t: 0 its fold below .. 1 its upper edge."""
         def row(a):
-            slit = bell(abs(a if a < pi else a - 2 * pi) - 1.05, 0.10)
+            slit = bell(abs(a if a < pi else a - 2 * pi) - 1.05, 0.20)
             rise = lerp(-0.006, 0.031 - 0.016 * slit, t)
             p = cap_band(a, rise, 0.0040 + 0.0200 * t ** 0.7 + gap)
             wave = 0.0030 * t * sin(5 * a + 0.7)
@@ -179,16 +179,16 @@ def make_fur_collar(fur_look):
 def make_shirt(linen_look):
     """Pleated linen with a narrow ruffle at the neck."""
     shirt = Patch("shirt", linen_look)
-    n = 84
+    n = 112
     rows = []
     for t, grow, wave, v in ((-0.35, 0.006, 0, 0), (0.2, 0.002, 0.0005, 0.3), (0.55, 0.0015, 0.0006, 0.5), (0.82, 0.002, 0.0007, 0.7),
-                             (0.92, 0.0050, 0.0018, 0.8), (0.98, 0.0085, 0.0024, 0.9), (0.99, 0.0105, 0.0026, 1.0)):
+                             (0.92, 0.0030, 0.0012, 0.8), (0.97, 0.0045, 0.0016, 0.9), (0.98, 0.0056, 0.0016, 1.0)):
         row = []
         for i in range(n + 1):
             phi = 2 * pi * (i % n) / n + pi
             wide = 0.0050 + 0.0065 * max(0.0, cos(phi))  # a man's neck, its larynx in front
-            p = neck_ring(phi, t, grow + wide + wave * sin(phi * 17))
-            row.append(shirt.vertex((p[0], p[1] + (0.9 * wave * cos(phi * 17) if t > 0.9 else 0.0), p[2]), (i / n * 8, v),
+            p = neck_ring(phi, t, grow + wide + wave * sin(phi * 14))
+            row.append(shirt.vertex((p[0], p[1] + (0.5 * wave * cos(phi * 14) if t > 0.9 else 0.0), p[2]), (i / n * 8, v),
                                     neck_weights(p), ("linen",)))
         rows.append(row)
     shirt.grid(rows)

@@ -48,8 +48,8 @@ def lips(x, y):
         return 0.0, 0.0
     middle, top, low = part_y(x), upper_lip_y(x), lower_lip_y(x)
     d = (y - top) if y > middle else (low - y)
-    amount = smoothstep(0.0007, -0.0009, d) * smoothstep(1.06, 0.93, x / MOUTH_HALF)
-    return amount, bell(y - middle, 0.0010) * smoothstep(1.04, 0.94, x / MOUTH_HALF)
+    amount = smoothstep(0.0010, -0.0011, d) * (0.45 + 0.55 * smoothstep(1.02, 0.72, x / MOUTH_HALF)) * smoothstep(1.05, 0.96, x / MOUTH_HALF)
+    return amount, bell(y - middle, 0.0009) * smoothstep(1.00, 0.60, x / MOUTH_HALF)
 
 
 def lid_edges(x, y):
@@ -81,7 +81,7 @@ def skin_color(p):
     c = mixed(c, PALE, 0.35 * bell(x - 0.024, 0.012) * bell(y + 0.024, 0.009))
     c = mixed(c, rgb("d9a878"), 0.16 * smoothstep(0.015, 0.045, y) * front)  # the forehead is yellower, the middle redder
     blotch = 0.5 + 0.5 * fractal(p, 60, 3)
-    c = mixed(c, RED, ruddy * front * clamp((0.30 + 0.30 * blotch) * bell(x - 0.041, 0.017) * bell(y + 0.034, 0.015)))
+    c = mixed(c, RED, ruddy * front * clamp((0.34 + 0.22 * blotch) * bell(x - 0.040, 0.020) * bell(y + 0.033, 0.018)))
     c = mixed(c, RED, ruddy * 0.42 * bell(x, 0.013) * bell(y + 0.036, 0.009) * smoothstep(0.085, 0.100, z))
     c = mixed(c, RED, ruddy * 0.40 * bell(x - 0.0140, 0.005) * bell(y + 0.0395, 0.008) * front)
     c = mixed(c, RED, ruddy * 0.30 * bell(x, 0.016) * bell(y + 0.098, 0.012) * front)
@@ -89,9 +89,10 @@ def skin_color(p):
     c = mixed(c, RED, 0.18 * smoothstep(0.050, 0.066, x) * bell(y + 0.020, 0.035))
     c = mixed(c, SHADE, 0.22 * smoothstep(-0.104, -0.122, y) * smoothstep(-0.175, -0.135, y) * front)  # under the chin
     # blood and its absence: broad patches, then small ones
-    c = mixed(c, RED, 0.16 * ruddy * smoothstep(0.05, 0.40, fractal(p, 28, 21, 3)) * front)
-    c = mixed(c, PALE, 0.22 * smoothstep(0.05, 0.40, fractal(p, 75, 22, 3)) * front)
-    c = mixed(c, RED, 0.20 * ruddy * smoothstep(0.10, 0.42, fractal(p, 170, 23, 3)) * bell(y + 0.032, 0.030) * front)
+    c = mixed(c, RED, 0.18 * ruddy * smoothstep(-0.10, 0.45, fractal(p, 28, 21, 3)) * front)
+    c = mixed(c, PALE, 0.16 * smoothstep(-0.10, 0.45, fractal(p, 75, 22, 3)) * front)
+    c = mixed(c, RED, 0.22 * ruddy * smoothstep(-0.05, 0.45, fractal(p, 240, 23, 3)) * (0.25 + bell(y + 0.032, 0.034)) * front)
+    c = mixed(c, BLUISH, 0.10 * smoothstep(0.0, 0.5, fractal(p, 110, 24, 2)) * front)
     # round the eyes
     around = bell(x - 0.031, 0.019) * bell(y - 0.001, 0.013) * front
     c = mixed(c, BLUISH, 0.26 * around)
@@ -125,9 +126,9 @@ def skin_color(p):
         lines = noise((p[0] * 1100, p[1] * 130, 0.0), 1.0, 12)
         lip = mixed(LIP, mixed(LIP, PALE, 0.45), 0.6 * bell(y + 0.0730, 0.0032) * bell(x, 0.013))
         lip = mixed(lip, times(LIP, 0.84), 0.6 * (y > part_y(x)))
-        c = mixed(c, times(lip, 1 + 0.07 * lines), 0.80 * red)
-        c = mixed(c, LIP_DARK, 0.66 * dark)
-    c = mixed(c, SHADE, 0.32 * bell(x - MOUTH_HALF * 1.02, 0.0022) * bell(y - part_y(x), 0.0024) * front)
+        c = mixed(c, times(lip, 1 + 0.10 * lines), 0.78 * red)
+        c = mixed(c, LIP_DARK, 0.50 * dark)
+    c = mixed(c, SHADE, 0.20 * bell(x - MOUTH_HALF * 1.04, 0.0034) * bell(y - part_y(x), 0.0034) * front)
     # brows, hairline
     hairs = brow_mask(x, y, side) if z > 0.03 else 0.0
     c = mixed(c, BROW, WHO.brow_density * 0.75 * hairs)
@@ -138,7 +139,7 @@ def folds(c, p, x, y, z, front, age):
     """Skin is darker where it is folded, the more the older."""
     c = mixed(c, SHADE, (0.10 + 0.34 * age) * bell(line_distance(x, y, SMILE_LINE), 0.0017) * front)
     c = mixed(c, SHADE, 0.26 * bell(y + 0.0830, 0.0040) * bell(x, 0.014) * front)
-    c = mixed(c, rgb("6b3a30"), 0.70 * bell(x - 0.0064 * WHO.nose_width, 0.0028)
+    c = mixed(c, rgb("6b3a30"), 0.50 * bell(x - 0.0066 * WHO.nose_width, 0.0024)
               * bell(y + 0.0455 + 0.6 * WHO.nose_drop, 0.0018) * (z > 0.09))
     c = mixed(c, SHADE, 0.32 * bell(x - 0.0172 * WHO.nose_width, 0.0020) * bell(y + 0.0395, 0.0055) * (z > 0.07))
     for k, (a, size) in enumerate(((0.42, 0.013), (0.05, 0.015), (-0.33, 0.013))):  # laughter lines
@@ -195,26 +196,26 @@ def eye_color(u, v):
     x, y = u - 0.5, v - 0.5
     r = hypot(x, y) / (0.5 * IRIS_ANGLE / MAP_ANGLE)  # 1 at the rim of the iris
     a = atan2(y, x)
-    white = mixed(rgb("f1ece6"), rgb("dcab9d"), 0.70 * smoothstep(1.9, 3.5, r))
+    white = mixed(rgb("e9e3dc"), rgb("d8a497"), 0.75 * smoothstep(1.7, 3.3, r))
     white = mixed(white, rgb("b9b6b8"), 0.30 * bell(r - 1.05, 0.18))  # the dark rim shines through
-    white = times(white, 1 - 0.24 * smoothstep(0.35, 1.0, sin(a)) * smoothstep(0.9, 1.3, r))  # the lid's shadow
+    white = times(white, 1 - 0.30 * smoothstep(0.05, 1.0, sin(a)) * smoothstep(0.9, 1.3, r))  # the lid's shadow
     vein = abs(noise((cos(a) * 5, sin(a) * 5, r * 0.9), 1.0, 3) + 0.5 * noise((cos(a) * 11, sin(a) * 11, r * 2), 1.0, 4))
     white = mixed(white, rgb("c4695e"), 0.30 * smoothstep(0.05, 0.0, vein) * smoothstep(1.4, 2.7, r))
     fibre = noise((cos(a) * 9, sin(a) * 9, r * 1.1), 1.0, 5) + 0.8 * noise((cos(a) * 30, sin(a) * 30, r * 1.4), 1.0, 6)
     inner, outer, ring = (rgb(t) for t in WHO.iris)
     iris = mixed(inner, outer, smoothstep(0.50, 0.82, r + 0.12 * fibre))
-    iris = times(iris, 1.18 + 0.45 * fibre)
+    iris = times(iris, 1.04 + 0.45 * fibre)
     iris = mixed(iris, ring, 0.60 * bell(r - 0.47 - 0.03 * fibre, 0.10))
-    iris = mixed(iris, rgb("1d2320"), 0.85 * smoothstep(0.82, 1.0, r))
-    iris = times(iris, 1.05 + 0.40 * clamp(-sin(a)) * bell(r - 0.7, 0.3) - 0.35 * clamp(sin(a)))  # light falls in from above
+    iris = mixed(iris, rgb("1d2320"), 0.85 * smoothstep(0.78, 1.0, r))
+    iris = times(iris, 1.05 + 0.40 * clamp(-sin(a)) * bell(r - 0.7, 0.3) - 0.50 * clamp(sin(a)))  # light falls in from above
     c = mixed(iris, white, smoothstep(0.95, 1.08, r))
-    return mixed(rgb("050404"), c, smoothstep(0.36, 0.41, r + 0.012 * fibre))
+    return mixed(rgb("050404"), c, smoothstep(0.385, 0.435, r + 0.012 * fibre))
 
 
 def mouth_color(u, v):
     """Inside of the mouth: v grows with the depth."""
-    c = mixed(rgb("a65a55"), rgb("6e2724"), smoothstep(0.0, 0.30, v))
-    return mixed(c, rgb("1c0807"), smoothstep(0.25, 0.80, v))
+    c = mixed(rgb("b2625c"), rgb("8c3d38"), smoothstep(0.0, 0.30, v))
+    return mixed(c, rgb("3a1411"), smoothstep(0.30, 0.95, v))
 
 
 # ---- hands --------------------------------------------------------------------------------------------

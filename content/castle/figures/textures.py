@@ -3,6 +3,7 @@
 import os
 
 import fabric
+import relief
 import skin
 from paint import Image, fill, spread
 
@@ -28,6 +29,12 @@ def make_textures(figure, who, folder, wanted=None, size=1024):
             paint().save(os.path.join(folder, texture))
         figure.looks[name].texture = texture
 
+    def save_map(name, make):
+        picture = "%s_%s_normal.jpg" % (who.FILE, name)
+        if wanted is None or name + "_normal" in wanted:
+            make().save(os.path.join(folder, picture), 95)
+        figure.looks[name].normal_map = picture
+
     def spread_over(patch, points, color, side, ground):
         image = Image(side, side, ground)
         spread(image, patch, points, color)
@@ -39,4 +46,6 @@ def make_textures(figure, who, folder, wanted=None, size=1024):
             save(name, lambda: fill(width, height, color))
     face, hand = figure.patch("face"), figure.patch("hand_l")
     save("skin", lambda: spread_over(face, face.rest, skin.skin_color, size, skin.BASE))
+    save_map("skin", lambda: relief.make_skin_map(face, size))
+    save_map("hair", lambda: relief.make_hair_map(1024, 256))
     save("hands", lambda: spread_over(hand, [tag[1] for tag in hand.tags], skin.hand_color, size // 2, skin.BASE))

@@ -15,7 +15,7 @@ namespace {
 
 const char* const displacer_names[] = {
     "breathe",       "blink_l",     "blink_r",      "lid_wide",     "squint",
-    "brow_up_l",     "brow_up_r",   "brow_inner_up", "brow_down",   "smile_l",
+    "brow_up_l",     "brow_up_r",   "brow_inner_up", "brow_down",   "cheek_up",  "smile_l",
     "smile_r",       "frown",       "mouth_open",   "lips_pucker",  "lips_wide",
     "lips_press",    "upper_lip_up", "lower_lip_down", "cheek_puff", "nose_wrinkle",
     "viseme_pp",     "viseme_ff",   "viseme_th",    "viseme_dd",    "viseme_kk",
