@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <stdexcept>
 
 #include "base/lanes3.h"
 #include "base/parallel.h"
+#include "base/raw_vector.h"
 
 namespace wellspring {
 namespace {
@@ -28,7 +30,9 @@ struct Plane {
 struct Plane3 {
   Plane x, y, z;
   Lanes3 at(size_t i) const { return {x.at(i), y.at(i), z.at(i)}; }
-  void set(size_t i, vec3 v) { x.values[i] = v.x, y.values[i] = v.y, z.values[i] = v.z; }
+  void set(size_t i, const Lanes3& v) {
+    store_lanes(&x.values[i], v.x), store_lanes(&y.values[i], v.y), store_lanes(&z.values[i], v.z);
+  }
 };
 LaneMask load_mask(const int32_t* from) {
   LaneMask mask;
@@ -71,6 +75,33 @@ struct Band {
   size_t at(int x, int y) const { return size_t(y - first_row) * stride + size_t(x + margin); }
 };
 
+// Of eight samples, each of whose halves is eight numbers side by side.
+void set_pixels(const Sample* const (&from)[lane_count], unsigned within, size_t i, Band& band) {
+  static_assert(offsetof(Sample, distance) == 6 * sizeof(float));
+  static_assert(offsetof(Sample, smooth) == offsetof(Sample, albedo) + 3 * sizeof(float));
+  static_assert(offsetof(Sample, flags) >= offsetof(Sample, albedo) + 8 * sizeof(float));
+  Lanes first[lane_count], second[lane_count];
+  LaneMask object, flags;
+  for (int k = 0; k < lane_count; k++) {
+    first[k] = load_lanes(&from[k]->position.x);
+    second[k] = load_lanes(&from[k]->albedo.x);
+    object[k] = int32_t(from[k]->object), flags[k] = from[k]->flags;
+  }
+  transpose_lanes(first);
+  transpose_lanes(second);
+  band.position.set(i, {first[0], first[1], first[2]});
+  band.normal.set(i, {first[3], first[4], first[5]});
+  store_lanes(&band.distance.values[i], first[6]);
+  const Lanes3 albedo{second[0], second[1], second[2]};
+  band.albedo.set(i, albedo);
+  band.smooth.set(i, {second[3], second[4], second[5]});
+  store_lanes(&band.object[i], object);
+  const LaneMask is_hit = (flags & int32_t(sample_hit)) != 0;
+  const LaneMask is_lit = is_hit & (max_component(albedo) > Lanes{});
+  const LaneMask known = (is_hit & hit) | (is_lit & smooth) | inside;
+  store_lanes(&band.known[i], lanes_of_bits(within) & known);
+}
+
 Band make_band(const View& view, std::span<const Sample> samples, int first_row, int rows,
                size_t offsets) {
   Band band;
@@ -86,18 +117,12 @@ Band make_band(const View& view, std::span<const Sample> samples, int first_row,
   band.number.assign(size, 0);
   band.edge.assign(size, 0);
   for (int y = std::max(first_row, 0); y < std::min(first_row + rows, view.height); y++)
-    for (int x = 0; x < view.width; x++) {
-      const Sample& s = samples[size_t(y) * size_t(view.width) + size_t(x)];
-      size_t i = band.at(x, y);
-      band.known[i] = inside;
-      band.smooth.set(i, s.smooth);
-      if (!(s.flags & sample_hit)) continue;
-      band.known[i] |= max_component(s.albedo) > 0 ? hit | smooth : hit;
-      band.position.set(i, s.position);
-      band.normal.set(i, s.normal);
-      band.albedo.set(i, s.albedo);
-      band.distance.values[i] = s.distance;
-      band.object[i] = int32_t(s.object);
+    for (int x = 0; x < view.width; x += lane_count) {
+      const Sample* row = &samples[size_t(y) * size_t(view.width)];
+      const Sample* from[lane_count];
+      for (int k = 0; k < lane_count; k++) from[k] = row + std::min(x + k, view.width - 1);
+      int within = std::min(view.width - x, lane_count);
+      set_pixels(from, (1u << within) - 1, band.at(x, y), band);
     }
   return band;
 }
@@ -146,7 +171,7 @@ void compare_row(Band& band, int y, const Offset& offset, std::vector<int32_t>& 
 }
 
 // Weighted means of a row's pixels.
-void filter_row(const Band& band, int y, std::span<const Offset> offsets, vec3* filtered) {
+void filter_row(const Band& band, int y, std::span<const Offset> offsets, Plane3& filtered) {
   for (int x = 0; x < band.width; x += lane_count) {
     size_t i = band.at(x, y);
     Lanes3 own = band.smooth.at(i), sum;
@@ -165,9 +190,47 @@ void filter_row(const Band& band, int y, std::span<const Offset> offsets, vec3* 
       add(band.at(x + o.across, y + o.down), load_mask(&band.joined[k][i]));
       add(before, load_mask(&band.joined[k][before]));
     }
-    sum = sum + own * rest;
-    for (int lane = 0; lane < std::min(lane_count, band.width - x); lane++)
-      filtered[x + lane] = sum.at(lane);
+    filtered.set(i, sum + own * rest);
+  }
+}
+
+struct Window {
+  DiscontinuitySettings settings;
+  std::vector<Offset> offsets;
+  int reach = 1;  // rows to a neighbour
+  int later = 0;  // rows beyond a band that later windows look at
+  // A pixel's number of continuous pixels reaches as far, and theirs.
+  int before() const { return later + 2 * reach; }
+};
+
+std::vector<Window> make_windows(std::span<const DiscontinuitySettings> all, bool edges) {
+  std::vector<Window> windows;
+  for (const DiscontinuitySettings& one : all) {
+    Window window{one, {}, 1, 0};
+    int across = std::clamp(one.columns / 2, 0, 3), down = std::clamp(one.rows / 2, 0, 3),
+        step = std::clamp(one.step, 1, 3);
+    window.offsets = make_offsets(across, down, step, edges && windows.empty());
+    window.reach = std::max(down * step, 1);
+    for (Window& earlier : windows) earlier.later += window.reach;
+    windows.push_back(window);
+  }
+  return windows;
+}
+
+// Rows [top, bottom) of a band become what all windows leave.
+void filter_band(std::span<const Window> windows, int top, int bottom, float pixel, Band& band) {
+  Plane3 filtered = band.smooth;
+  for (const Window& window : windows) {
+    if (window.offsets.empty()) continue;
+    if (&window != &windows[0]) band.number.assign(band.number.size(), 0.0f);
+    int first = top - window.later, last = bottom + window.later;
+    for (size_t k = 0; k < window.offsets.size(); k++) {
+      if (&window != &windows[0]) band.joined[k].assign(band.joined[k].size(), 0);
+      for (int y = first - 2 * window.reach; y < last + window.reach; y++)
+        compare_row(band, y, window.offsets[k], band.joined[k], window.settings, pixel);
+    }
+    for (int y = first; y < last; y++) filter_row(band, y, window.offsets, filtered);
+    std::swap(band.smooth, filtered);
   }
 }
 
@@ -190,37 +253,42 @@ bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& sett
   return !is_continuous(a, b, settings, pixel);
 }
 
-void filter_smooth(const View& view, const DiscontinuitySettings& settings,
-                   std::span<Sample> samples, std::vector<uint8_t>* edges) {
+void filter_windows(const View& view, std::span<const DiscontinuitySettings> windows,
+                    std::span<Sample> samples, std::vector<uint8_t>* edges) {
   if (samples.size() != size_t(view.width) * size_t(view.height))
-    throw std::invalid_argument("filter_smooth: one sample a pixel");
+    throw std::invalid_argument("discontinuity buffer: one sample a pixel");
   constexpr int band_rows = 16;
-  int across = std::clamp(settings.columns / 2, 0, 3), down = std::clamp(settings.rows / 2, 0, 3),
-      step = std::clamp(settings.step, 1, 3);
-  const std::vector<Offset> offsets = make_offsets(across, down, step, edges != nullptr);
+  const std::vector<Window> all = make_windows(windows, edges != nullptr);
   if (edges) edges->assign(samples.size(), 0);
-  if (offsets.empty()) return;
+  size_t offsets = 0;
+  int before = 0;
+  for (const Window& window : all) {
+    offsets = std::max(offsets, window.offsets.size());
+    before = std::max(before, window.before());
+  }
+  if (offsets == 0) return;
   float pixel = 2 * view.tan_half_fov / float(view.height);
-  std::vector<vec3> filtered(samples.size());
-  // How far a pixel's number of continuous pixels reaches, and theirs.
-  int reach = std::max(down * step, 1), parts = (view.height + band_rows - 1) / band_rows;
+  RawVector<vec3> filtered(samples.size());
+  const int parts = (view.height + band_rows - 1) / band_rows;
   parallel_for(parts, [&](int part) {
     int top = part * band_rows, bottom = std::min(top + band_rows, view.height);
-    Band band = make_band(view, samples, top - 2 * reach, bottom - top + 4 * reach, offsets.size());
-    for (size_t k = 0; k < offsets.size(); k++)
-      for (int y = top - 2 * reach; y < bottom + reach; y++)
-        compare_row(band, y, offsets[k], band.joined[k], settings, pixel);
-    for (int y = top; y < bottom; y++) {
-      size_t row = size_t(y) * size_t(view.width);
-      filter_row(band, y, offsets, &filtered[row]);
-      if (!edges) continue;
-      for (int x = 0; x < view.width; x++)
-        (*edges)[row + size_t(x)] = band.edge[band.at(x, y)] != 0;
-    }
+    Band band = make_band(view, samples, top - before, bottom - top + 2 * before, offsets);
+    filter_band(all, top, bottom, pixel, band);
+    for (int y = top; y < bottom; y++)
+      for (int x = 0; x < view.width; x++) {
+        size_t i = band.at(x, y), k = size_t(y) * size_t(view.width) + size_t(x);
+        filtered[k] = {band.smooth.x.values[i], band.smooth.y.values[i], band.smooth.z.values[i]};
+        if (edges) (*edges)[k] = band.edge[i] != 0;
+      }
   });
   parallel_ranges(int(samples.size()), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; i++) samples[size_t(i)].smooth = filtered[size_t(i)];
   });
+}
+
+void filter_smooth(const View& view, const DiscontinuitySettings& settings,
+                   std::span<Sample> samples, std::vector<uint8_t>* edges) {
+  filter_windows(view, std::span(&settings, 1), samples, edges);
 }
 
 }  // namespace wellspring

@@ -34,5 +34,8 @@ bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& sett
 // is_edge between it and one of the eight around it. All cores.
 void filter_smooth(const View& view, const DiscontinuitySettings& settings,
                    std::span<Sample> samples, std::vector<uint8_t>* edges = nullptr);
+// By one window after the other, the same as filter_smooth by each; edges are those of the first one.
+void filter_windows(const View& view, std::span<const DiscontinuitySettings> windows,
+                    std::span<Sample> samples, std::vector<uint8_t>* edges = nullptr);
 
 }  // namespace wellspring

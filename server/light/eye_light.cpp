@@ -21,7 +21,7 @@ namespace {
 
 // What is seen in mirrors is not filtered, so more than one set lights it; a faint image makes do with
 // fewer of the lights, asked of each set, and so does what is gathered from nearby, a small part of all.
-constexpr int mirror_sets = 2, near_lights = 3, chained_lights = 6, most_lights = 16;
+constexpr int mirror_sets = 2, near_lights = 2, chained_lights = 6, most_lights = 16;
 int mirror_lights(const Walk& walk) {
   float bright = max_component(walk.throughput);
   return bright > 0.5f ? 8 : bright > 0.25f ? 5 : 3;
@@ -112,7 +112,7 @@ vec3 gather_along(const EyeLight& eye, Walk walk, Sampler& sampler) {
         radiance += walk.throughput * taken * surface_emission(met.surface, *met.material);
       Walk asked = walk;
       asked.throughput *= taken;
-      if (!met.material->unlit && survives(asked, 2, sampler))
+      if (!met.material->unlit && survives(asked, 1, sampler))
         radiance += asked.throughput * eval_rough(eye, walk, met.surface, met.bsdf, sharp_alpha, 1,
                                                   chained ? chained_lights : near_lights, sampler);
     }

@@ -193,13 +193,12 @@ void finish_instant(const World& world, const Lights& lights, const View& view,
   settings.columns = pass.columns;
   settings.rows = pass.rows;
   std::vector<uint8_t> edges;
-  filter_smooth(view, settings, samples, &edges);
-  // Lists of lights interleave more coarsely than sets: what is left of their pattern.
-  if (pass.index < wide_passes && pass.sets() > 1) {
-    DiscontinuitySettings wide = settings;
-    wide.columns = wide.rows = wide.step = 3;
-    filter_smooth(view, wide, samples);
-  }
+  // Lists of lights interleave more coarsely than sets: the second window takes what is left of their
+  // pattern.
+  DiscontinuitySettings windows[2] = {settings, settings};
+  windows[1].columns = windows[1].rows = windows[1].step = 3;
+  bool both = pass.index < wide_passes && pass.sets() > 1;
+  filter_windows(view, std::span(windows, both ? 2 : 1), samples, &edges);
   refine_edges(world, lights, pass.settings, view, settings, pass.settings.instant.edge_rays,
                mix64(pass.seed ^ 0x6564676573ull), pass.index, edges, samples);
 }

@@ -41,40 +41,41 @@ void unite(LightClusters& all, size_t c) {
     radius2 = std::max(radius2, dot(away, away)), spread2 = std::max(spread2, dot(turned, turned));
   }
   if (!std::isfinite(radius2 + spread2)) return;
-  const size_t row = c / lane_count, lane = c % lane_count;
-  all.x[row][lane] = centre.x, all.y[row][lane] = centre.y, all.z[row][lane] = centre.z;
-  all.nx[row][lane] = normal.x, all.ny[row][lane] = normal.y, all.nz[row][lane] = normal.z;
-  all.radius[row][lane] = std::sqrt(radius2), all.spread[row][lane] = std::sqrt(spread2);
-  all.near[row][lane] = l.near[c][0], all.back[row][lane] = l.back[c][0];
-  all.even[row][lane] = l.even[c][0];
-  all.power[row][lane] = power;
+  ClusterRow& row = all.rows[c / lane_count];
+  const size_t lane = c % lane_count;
+  row.x[lane] = centre.x, row.y[lane] = centre.y, row.z[lane] = centre.z;
+  row.nx[lane] = normal.x, row.ny[lane] = normal.y, row.nz[lane] = normal.z;
+  row.radius[lane] = std::sqrt(radius2), row.spread[lane] = std::sqrt(spread2);
+  row.near[lane] = l.near[c][0], row.back[lane] = l.back[c][0], row.even[lane] = l.even[c][0];
+  row.power[lane] = power;
   all.inverse_power[c] = 1 / power;
 }
 
-// Irradiance by the clusters of a row as if each were one light, and the bits of those too near for
-// that. As eval_unshadowed has it; but the cosine of a cluster's centre is `middle`, those of its lights
-// are up to `reach` away from it, and none is taken for dark.
-Lanes eval_row(const LightClusters& all, size_t row, const LitPoint& point, float most,
-               unsigned& near) {
+// A cosine for all lights of a cluster, that of its centre being `middle` and each of theirs within `reach`
+// of it: not 0 where any of theirs may be above 0.
+Lanes lit_cosine(Lanes middle, Lanes reach, LaneMask both_sides) {
+  Lanes least = 0.25f * (middle + reach);
+  least = both_sides ? lanes_max(-middle, 0.25f * reach) : lanes_max(least, Lanes{});
+  return lanes_max(middle, least);
+}
+
+// Irradiance by the clusters of a row as if each were one light, as eval_unshadowed has it, and the bits
+// of those too near for that.
+Lanes eval_row(const ClusterRow& row, const LitPoint& point, float most, unsigned& near) {
   const Lanes one = all_lanes(1.0f);
-  auto lit = [](Lanes middle, Lanes reach, LaneMask both) {
-    Lanes size = lanes_sqrt(middle * middle + 0.25f * reach * reach);
-    return both ? size : 0.5f * (middle + size);
-  };
   const vec3 place = point.position;
-  Lanes x = all.x[row] - place.x * all.near[row], y = all.y[row] - place.y * all.near[row],
-        z = all.z[row] - place.z * all.near[row];
+  Lanes x = row.x - place.x * row.near, y = row.y - place.y * row.near, z = row.z - place.z * row.near;
   Lanes inverse = one / lanes_sqrt(lanes_max(x * x + y * y + z * z, all_lanes(1e-20f)));
-  Lanes reach = lanes_min(all.radius[row] * inverse, one);
+  Lanes reach = lanes_min(row.radius * inverse, one);
   near |= negative_lanes(reach > 1 / near_radii);
   Lanes here = (x * point.normal.x + y * point.normal.y + z * point.normal.z) * inverse;
-  Lanes there = -(x * all.nx[row] + y * all.ny[row] + z * all.nz[row]) * inverse;
-  here = lit(here, reach, LaneMask{} - int(point.both_sides));
-  there = lit(there, reach + all.spread[row], all.back[row] > 0);
+  Lanes there = -(x * row.nx + y * row.ny + z * row.nz) * inverse;
+  here = lit_cosine(here, reach, LaneMask{} - int(point.both_sides));
+  there = lit_cosine(there, reach + row.spread, row.back > 0);
   here += point.even * (one - here);
-  there += all.even[row] * (one - there);
-  Lanes falls = all.near[row] > 0 ? lanes_min(inverse * inverse, all_lanes(most)) : one;
-  return all.power[row] * here * there * falls;
+  there += row.even * (one - there);
+  Lanes falls = row.near > 0 ? lanes_min(inverse * inverse, all_lanes(most)) : one;
+  return row.power * here * there * falls;
 }
 
 }  // namespace
@@ -84,10 +85,8 @@ LightClusters make_light_clusters(const LightTables& tables, const InstantPass& 
   const std::vector<uint32_t> order = order_lights(pass);
   all.number = order.size();
   all.lights = make_light_lanes(tables, pass, order);
-  size_t clusters = all.size(), rows = (clusters + lane_count - 1) / lane_count;
-  for (std::vector<Lanes>* v : {&all.x, &all.y, &all.z, &all.nx, &all.ny, &all.nz, &all.power,
-                                &all.radius, &all.spread, &all.near, &all.back, &all.even})
-    v->assign(rows, all_lanes(0));
+  const size_t clusters = all.size();
+  all.rows.resize((clusters + lane_count - 1) / lane_count);
   all.inverse_power.assign(clusters, 0);
   all.held.assign(clusters, 0);
   for (size_t i = 0; i < order.size(); i++) all.held[i / lane_count]++;
@@ -101,7 +100,7 @@ bool share_lights(const LightClusters& clusters, float clip, std::span<const Lit
   // only the weight of a place.
   constexpr size_t guessed = 8;
   const float most = most_of_clip(clip);
-  const size_t count = std::min(points.size(), most_points), rows = clusters.x.size();
+  const size_t count = std::min(points.size(), most_points), rows = clusters.rows.size();
   shares.of_cluster.assign(rows * lane_count, 0);
   shares.detail_of.assign(clusters.size(), ClusterShares::none);
   shares.details.clear();
@@ -109,9 +108,10 @@ bool share_lights(const LightClusters& clusters, float clip, std::span<const Lit
   Lanes totals[most_points] = {};
   std::vector<uint32_t> each;  // asked light by light
   for (size_t row = 0; row < rows; row++) {
+    const ClusterRow here = clusters.rows[row];
     unsigned near = 0;
     for (size_t p = 0; p < count; p++) {
-      Lanes effect = eval_row(clusters, row, points[p], most, near);
+      Lanes effect = eval_row(here, points[p], most, near);
       shares.scratch[row * most_points + p] = effect;
       totals[p] += effect;
     }

@@ -11,14 +11,18 @@
 
 namespace wellspring {
 
+// Of eight clusters what takes the place of their lights, as LightLanes has it.
+struct ClusterRow {
+  Lanes x{}, y{}, z{}, nx{}, ny{}, nz{}, near{}, back{}, even{};
+  Lanes power{};   // of all its lights; 0: they are too different, ask each
+  Lanes radius{};  // around x, y, z
+  Lanes spread{};  // largest distance of a light's normal from n
+};
+
 struct LightClusters {
   LightLanes lights;  // as order_lights has them; a group of eight is a cluster
   size_t number = 0;  // of lights
-  // Of each cluster what takes the place of its lights, eight clusters a row.
-  std::vector<Lanes> x, y, z, nx, ny, nz, near, back, even;  // as LightLanes has them
-  std::vector<Lanes> power;   // of all its lights; 0: they are too different, ask each
-  std::vector<Lanes> radius;  // around x, y, z
-  std::vector<Lanes> spread;  // largest distance of a light's normal from n
+  std::vector<ClusterRow> rows;
   std::vector<float> inverse_power;  // of each cluster: 1 / power, or 0
   std::vector<uint8_t> held;         // lights in it
   size_t size() const { return lights.x.size(); }

@@ -36,15 +36,18 @@ int probe_region(const Transport& transport, const View& view, int max_depth,
   return met;
 }
 
-// The k-th chosen light's list: of any window as large as the pattern of sets, lists get lights from all
-// over the order.
-size_t list_of_turn(const InstantPass& pass, size_t turn) {
-  constexpr size_t finer = RegionLights::finer;
-  size_t columns = size_t(pass.columns), sets = size_t(pass.sets());
-  size_t set = turn % sets, copy = turn / sets % (finer * finer);
-  size_t x = copy % finer * columns + set % columns,
-         y = copy / finer * size_t(pass.rows) + set / columns;
-  return y * columns * finer + x;
+// The lists by turns of getting a light: those of any window as large as the pattern of sets get lights
+// from all over the order.
+std::vector<uint32_t> turns_of_lists(const InstantPass& pass) {
+  constexpr int finer = RegionLights::finer;
+  std::vector<uint32_t> lists;
+  for (int copy = 0; copy < finer * finer; copy++)
+    for (int set = 0; set < pass.sets(); set++) {
+      int x = copy % finer * pass.columns + set % pass.columns,
+          y = copy / finer * pass.rows + set / pass.columns;
+      lists.push_back(uint32_t(y * pass.columns * finer + x));
+    }
+  return lists;
 }
 
 // Chooses about `wanted` lights. Systematic sampling: neighbours in the order of lights are much
@@ -65,10 +68,12 @@ void choose_lights(const LightClusters& clusters, const ClusterShares& shares, b
     }
     Lanes often = all_lanes(even);
     if (lit) often += by_share * shares_in(clusters, shares, c);
+    float here = float(sum);
     for (int lane = 0; lane < held; lane++)
-      for (sum += double(often[lane]); sum > 0; sum--)
+      for (here += often[lane]; here > 0; here--)
         chosen.push_back({clusters.lights.number[c * lane_count + size_t(lane)],
-                          float(worth / double(often[lane]))});
+                          float(worth) / often[lane]});
+    sum = double(here);
   }
 }
 
@@ -77,18 +82,21 @@ struct Dealt {
   std::vector<RegionLight> lights;
   std::vector<uint32_t> number;
 };
-Dealt deal_lights(const InstantPass& pass, std::span<const RegionLight> chosen, float deal_u) {
-  const size_t lists = size_t(pass.lists());
+Dealt deal_lights(std::span<const uint32_t> turns, std::span<const RegionLight> chosen, float deal_u) {
+  const size_t lists = turns.size();
   const size_t start = std::min(size_t(deal_u * float(lists)), lists - 1);
   Dealt dealt;
   dealt.number.assign(lists, 0);
-  for (size_t k = 0; k < chosen.size(); k++)
-    dealt.number[list_of_turn(pass, (start + k) % lists)]++;
+  auto for_each_turn = [&](const auto& body) {
+    size_t turn = start;
+    for (size_t k = 0; k < chosen.size(); k++, turn = turn + 1 < lists ? turn + 1 : 0)
+      body(turns[turn], chosen[k]);
+  };
+  for_each_turn([&](uint32_t list, const RegionLight&) { dealt.number[list]++; });
   std::vector<uint32_t> next(lists, 0);
   for (size_t l = 1; l < lists; l++) next[l] = next[l - 1] + dealt.number[l - 1];
   dealt.lights.resize(chosen.size());
-  for (size_t k = 0; k < chosen.size(); k++)
-    dealt.lights[next[list_of_turn(pass, (start + k) % lists)]++] = chosen[k];
+  for_each_turn([&](uint32_t list, const RegionLight& one) { dealt.lights[next[list]++] = one; });
   return dealt;
 }
 
@@ -108,6 +116,7 @@ void choose_region_lights(const Transport& transport, const View& view, int max_
   regions.columns = (view.width + regions.width - 1) / regions.width;
   int rows = (view.height + regions.height - 1) / regions.height, count = regions.columns * rows;
   const double wanted = double(asked) * double(lists), worth = double(lists) / double(pass.sets());
+  const std::vector<uint32_t> turns = turns_of_lists(pass);
   std::vector<Dealt> dealt(static_cast<size_t>(count));
   parallel_ranges(count, 1, [&](int first, int last) {
     ClusterShares shares;
@@ -121,7 +130,7 @@ void choose_region_lights(const Transport& transport, const View& view, int max_
       bool lit =
           met > 0 && share_lights(clusters, pass.clip, std::span(points, size_t(met)), shares);
       choose_lights(clusters, shares, lit, wanted, worth, choose_u, chosen);
-      dealt[size_t(r)] = deal_lights(pass, chosen, deal_u);
+      dealt[size_t(r)] = deal_lights(turns, chosen, deal_u);
     }
   });
   regions.first.reserve(dealt.size() * lists + 1);

@@ -8,6 +8,7 @@
 
 #include "base/lanes.h"
 #include "base/parallel.h"
+#include "base/raw_vector.h"
 #include "base/rng.h"
 #include "light/pixel_requests.h"
 #include "light/technique_list.h"
@@ -158,8 +159,8 @@ void render_tile(const Technique& technique, const World& world, const Lights& l
 
 void render_passes(const Technique& technique, const World& world, Lights lights, const View& view,
                    const StillSettings& settings, Frame& frame) {
-  std::vector<dvec3> sums(frame.color.size(), dvec3(0));
-  std::vector<Sample> samples(sums.size());
+  RawVector<dvec3> sums(frame.color.size());
+  RawVector<Sample> samples(sums.size());
   for (int i = 0; i < settings.spp; i++) {
     if (technique.begin_pass)
       technique.begin_pass(world, settings.transport, view, pass_seed(settings.seed), uint32_t(i),
@@ -180,7 +181,8 @@ void render_passes(const Technique& technique, const World& world, Lights lights
     if (technique.finish_pass) technique.finish_pass(world, lights, view, samples);
     parallel_ranges(int(samples.size()), 4096, [&](int begin, int end) {
       for (size_t pixel = size_t(begin); pixel < size_t(end); pixel++) {
-        sums[pixel] += dvec3(samples[pixel].radiance());
+        dvec3 radiance(samples[pixel].radiance());
+        sums[pixel] = i == 0 ? radiance : sums[pixel] + radiance;
         if (i + 1 == settings.spp) frame.color[pixel] = vec3(sums[pixel] / double(settings.spp));
       }
     });

@@ -114,6 +114,26 @@ TEST(Discontinuity, WiderWindowTakesAWiderPattern) {
   EXPECT_NEAR(samples[at(12, 9)].smooth.x, 40, 1e-3);  // both windows are whole around it
 }
 
+// One call for two windows, in bands with room for both, is two calls.
+TEST(Discontinuity, WindowsOneAfterTheOther) {
+  std::vector<Sample> apart = see_plane({0, 1, 0.3f});
+  fill_random(apart, 3);
+  Rng rng(4);
+  for (Sample& s : apart) {
+    s.object = 1 + (rng.uniform() < 0.1f);
+    if (rng.uniform() < 0.05f) s.flags = 0;
+    if (rng.uniform() < 0.05f) s.albedo = vec3(0);
+  }
+  std::vector<Sample> together = apart;
+  std::vector<uint8_t> edges, edges_together;
+  const DiscontinuitySettings windows[] = {{3, 3}, {3, 3, 3}, {5, 3}};
+  for (const DiscontinuitySettings& window : windows)
+    filter_smooth(flat_view(), window, apart, &window == windows ? &edges : nullptr);
+  filter_windows(flat_view(), windows, together, &edges_together);
+  EXPECT_EQ(edges, edges_together);
+  for (size_t i = 0; i < apart.size(); i++) ASSERT_EQ(apart[i].smooth, together[i].smooth) << i;
+}
+
 // Eight pixels at once find the edges that is_edge finds one by one.
 TEST(Discontinuity, EdgesAreWhereNeighboursDiffer) {
   std::vector<Sample> samples = see_plane({0, 1, 0.3f});
