@@ -190,7 +190,8 @@ def pucker(v):
     x, y = v.p[0], v.p[1]
     middle = bell(x, 0.022)
     gather = (part_y(abs(x)) - y) * 0.10
-    return (-0.42 * x * k, (gather - 0.0048 * (abs(x) / MOUTH_HALF) ** 2) * k, (0.0056 * middle + 0.0018) * k)
+    u = min(abs(x) / MOUTH_HALF, 1.0)
+    return (-(0.42 + 0.12 * u ** 5) * x * k, (gather - 0.0048 * (abs(x) / MOUTH_HALF) ** 2) * k, (0.0056 * middle + 0.0018) * k)
 
 
 def wide(v):
@@ -342,8 +343,8 @@ VISEMES = {  # jaw (radians), then movements
     "aa": (0.185, {drop: 1.00, lip_down: 0.20, lip_up: 0.32}, (-0.0010, 0.0)),
     "e": (0.100, {drop: 0.40, wide: 0.40, lip_down: 0.25, lip_up: 0.32}, (0.0, 0.0020)),
     "ih": (0.055, {drop: 0.15, wide: 0.55, lip_down: 0.40, lip_up: 0.45}, (0.0020, 0.0020)),
-    "oh": (0.130, {pucker: 0.95, drop: 0.90, lip_up: 0.60}, (-0.0010, -0.0020)),
-    "ou": (0.060, {pucker: 1.25, drop: 0.50, lip_down: 0.15, lip_up: 0.55}, (0.0, -0.0030)),
+    "oh": (0.130, {pucker: 0.95, drop: 0.90, lip_up: 0.50}, (-0.0010, -0.0020)),
+    "ou": (0.050, {pucker: 1.25, drop: 0.50, lip_down: 0.15, lip_up: 0.34}, (0.0, -0.0030)),
 }
 
 

@@ -5,7 +5,7 @@ from math import cos, pi, sin
 
 from dress import body
 from face_form import HEAD, face
-from form import (add, cast, circle, cross, dot, ellipsoid, gradient, join, length, lerp, mad, mix, noise, rotate,
+from form import (add, cast, circle, cross, curve, dot, ellipsoid, gradient, join, length, lerp, mad, mix, noise, rotate,
                   smoothstep, sub, unit)
 from patch import Patch
 from rig import blend, scaled, torso_weights
@@ -241,7 +241,7 @@ def veil_weights(p):
     return blend([("skullbase", head)] + scaled(torso_weights(p, 0.97), 1 - head))
 
 
-VEIL_TURN = 1.72  # radians from the nape to its edges, which fall beside the neck
+VEIL_TURN = [(0.0, 1.30), (0.32, 1.70), (0.45, 1.62), (0.90, 1.10)]  # from the nape to its edges: by the ears, the neck, over the shoulders
 
 
 TURNED = 7  # columns of cloth turned in at each edge
@@ -249,13 +249,13 @@ TURNED = 7  # columns of cloth turned in at each edge
 
 def turn_in(edge, s, t):
     """Cloth turned in from the veil's edge: s 0 there .. 1 at the neck; t 0 on the roll .. 1 at the hem. Figure space."""
-    s *= lerp(0.03, 1.0, smoothstep(0.36, 0.46, t))  # below the roll; above it lies close anyway
+    s *= lerp(0.03, 1.0, smoothstep(0.40, 0.56, t))  # below the roll; above it lies close anyway
     o = (0.0, edge[1], -0.030)
     out = sub(edge, o)
     far = length(out)
     out = rotate(unit(out), (0, 0, 0), (0.0, 1.0, 0.0), -0.16 * s * (1 if edge[0] > 0 else -1))
-    above = smoothstep(1.440, 1.485, edge[1])  # of the collar
-    near = cast(lambda p: min(lerp(body(p) - 0.010, face(sub(p, HEAD)) - 0.003, above), hair(sub(p, HEAD)) - 0.003), o, out, 0.35)
+    above = smoothstep(1.400, 1.432, edge[1])  # of the collar
+    near = cast(lambda p: min(lerp(body(p) - 0.010, face(sub(p, HEAD)) - 0.001, above), hair(sub(p, HEAD)) - 0.003), o, out, 0.35)
     close = min(dot(sub(near, o), out), far - 0.0004)
     p = mad(o, out, lerp(far, close, s))
     soft = smoothstep(0.05, 0.35, t) * (far - close)
@@ -274,7 +274,7 @@ def make_veil(look):
         start = roll_path(psi)
         start = mad(start, unit(sub(start, CENTER)), 0.0080)
         start = (start[0], start[1], start[2] - 0.005)
-        beta = u * VEIL_TURN
+        beta = u * VEIL_TURN[0][1]
         d0, d1 = unit(sub(start, o)), unit((sin(beta), -0.10 - 0.45 * abs(u) ** 3, -cos(beta)))
         r0 = dot(sub(start, o), d0)
         middle = None
@@ -288,11 +288,13 @@ def make_veil(look):
             fold = 0.0022 * t * sin(beta * 9 + 1.5 * t)
             rows[k].append((add(HEAD, mad(middle, d, fold)), (u, 0.5 * t)))
         middle = add(HEAD, middle)
-        out = unit((sin(beta) * 1.0, 0, -cos(beta)))
         end_y = lerp(1.215, 1.270, abs(u) ** 2.0)
         for k in range(1, lower + 1):
             t = k / lower
-            q = mad((middle[0], lerp(middle[1], end_y, t), middle[2]), out, 0.030 * t ** 1.2)
+            beta = u * curve(VEIL_TURN, t)
+            out = (sin(beta), 0.0, -cos(beta))
+            x, _, z = rotate(middle, (0.0, 0.0, -0.010), (0.0, 1.0, 0.0), u * VEIL_TURN[0][1] - beta)
+            q = mad((x, lerp(middle[1], end_y, t), z), out, 0.030 * t ** 1.2)
             gap = body(q) - 0.034
             if gap < 0.012:  # lie softly on the shoulders
                 far = cast(lambda p: body(p) - 0.034, (0.0, q[1], -0.03), out, 0.35)

@@ -37,7 +37,7 @@ def make_cap(cloth_look, brim_look):
             base = cap_band(a, 0.026, 0.006)
             out = 0.026 * sin(min(k / 0.34, 1.0) * pi / 2) * (1 - 0.1 * cos(a))
             shrink = smoothstep(0.30, 1.0, k)
-            height = 0.012 * min(k / 0.2, 1.0) + 0.046 * smoothstep(0.12, 0.55, k) + 0.006 * smoothstep(0.5, 1.0, k)
+            height = 0.012 * min(k / 0.2, 1.0) + 0.046 * smoothstep(0.12, 0.55, k) - 0.002 * smoothstep(0.5, 1.0, k)
             r = (lerp(base[0] + out * sin(a), -0.012, shrink), lerp(base[2] + out * cos(a), -0.022, shrink))
             fold = 0.0042 * (1 - shrink) * sin(min(k / 0.3, 1.0) * pi * 0.55) * (abs(sin(a * 11 + 1.5 * sin(3 * a))) - 0.5)
             soft = 0.006 * noise((r[0] * 14, r[1] * 14, k * 2), 1.0, 5) * smoothstep(0.05, 0.3, k)
@@ -46,7 +46,7 @@ def make_cap(cloth_look, brim_look):
             return rotate(p, CAP_CENTER, (0.0, 0.0, 1.0), -0.055 * smoothstep(0.0, 0.3, k))
         return row
 
-    steps = (0.0, 0.05, 0.11, 0.17, 0.23, 0.29, 0.34, 0.39, 0.46, 0.56, 0.70, 0.85)
+    steps = (0.0, 0.05, 0.11, 0.17, 0.23, 0.29, 0.34, 0.39, 0.46, 0.56, 0.70, 0.84, 0.94)
     rows = [ring(cloth, crown(k), 2.2 * k, 4) for k in steps]
     cloth.grid(rows)
     top = crown(1.0)(0.0)
