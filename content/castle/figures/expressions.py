@@ -302,7 +302,7 @@ def brow_band(v):
         return 0.0
     y = v.p[1]
     low = 0.0085 + 0.35 * max(0.0, abs(v.p[0]) - 0.030)
-    return smoothstep(low - 0.001, 0.0185, y) * smoothstep(0.058, 0.026, y) * smoothstep(0.015, 0.045, v.p[2])
+    return smoothstep(low - 0.0015, 0.0145 + (low - 0.0085), y) * smoothstep(0.058, 0.026, y) * smoothstep(0.015, 0.045, v.p[2])
 
 
 def brow_up(v, side):

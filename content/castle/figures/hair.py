@@ -255,7 +255,7 @@ def turn_in(edge, s, t):
     far = length(out)
     out = rotate(unit(out), (0, 0, 0), (0.0, 1.0, 0.0), -0.16 * s * (1 if edge[0] > 0 else -1))
     above = smoothstep(1.400, 1.432, edge[1])  # of the collar
-    near = cast(lambda p: min(lerp(body(p) - 0.010, face(sub(p, HEAD)) - 0.001, above), hair(sub(p, HEAD)) - 0.003), o, out, 0.35)
+    near = cast(lambda p: min(lerp(body(p) - 0.010, face(sub(p, HEAD)) + 0.002, above), hair(sub(p, HEAD)) - 0.003), o, out, 0.35)
     close = min(dot(sub(near, o), out), far - 0.0004)
     p = mad(o, out, lerp(far, close, s))
     soft = smoothstep(0.05, 0.35, t) * (far - close)

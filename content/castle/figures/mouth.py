@@ -30,7 +30,8 @@ def make_lining(face, look):
         row = []
         for t, upper, p in loop:
             s = 1 if upper else -1
-            lid = (4 * t * (1 - t)) ** 0.6 if 0 < t < 1 else 0.0
+            narrow = lerp(1.3, 0.6, smoothstep(0.004, 0.016, depth))  # the cheek closes in behind the corners
+            lid = (4 * t * (1 - t)) ** narrow if 0 < t < 1 else 0.0
             x = p[0] * keep
             y = lerp(p[1], MOUTH_Y + 0.0004, smoothstep(0.004, 0.02, depth)) + s * half * lid
             w = jaw_weight((p[0], part_y(abs(p[0])), p[2]), not upper)

@@ -94,7 +94,7 @@ def jaw_weight(p, lower=None):
     below = (-0.050 * (z - TMJ[2]) / 0.077 + TMJ[1] - y) * 0.84  # under the line from hinge to mouth corner
     cheek = smoothstep(-0.008, 0.030, below)
     u = x / MOUTH_HALF
-    lips = (1 - min(u, 1.0) ** 2.2) ** 0.7  # the opening mouth is an oval
+    lips = (1 - min(u, 1.0) ** 2.1) ** 0.85  # the opening mouth is an oval
     w = lerp(cheek, 1.0 if lower else 0.0, lips)
     w *= smoothstep(-0.158, -0.108, y) * smoothstep(0.0, 0.035, z)
     return w

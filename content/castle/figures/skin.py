@@ -182,7 +182,7 @@ def hairline(c, p, side):
         return times(mixed(c, HAIR, 0.62 + 0.38 * smoothstep(0.0, 0.004, best)), 1 + 0.45 * strand)
     wisps = 0.40 + 1.1 * strand
     c = mixed(c, SHADE, 0.30 * bell(best, 0.007))
-    return mixed(c, HAIR, clamp(wisps) * 0.80 * bell(best, 0.0042))
+    return mixed(c, HAIR, clamp(wisps * (0.55 + 0.45 * bell(best, 0.0040))) * 0.85 * bell(best, 0.0075))
 
 
 def p_out(a):

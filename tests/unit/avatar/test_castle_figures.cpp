@@ -84,6 +84,10 @@ TEST_P(CastleFigure, IsWholeAndKnownToTheRig) {
   for (const char* name : displacer_names) EXPECT_GE(find_displacer(c, name), 0) << name;
   for (const Look& look : c.looks)
     if (!look.texture.empty()) EXPECT_TRUE(std::filesystem::exists(look.texture)) << look.texture;
+  for (const Look& look : c.looks)  // what is near the eye has relief too fine for triangles
+    if (look.texture.find("_skin.") != std::string::npos ||
+        look.texture.find("_hair.") != std::string::npos)
+      EXPECT_TRUE(std::filesystem::exists(look.normal_texture)) << look.texture;
   Rig rig = make_rig(c);
   EXPECT_TRUE(rig.eyes_move);
   EXPECT_TRUE(rig.leg[0].complete() && rig.leg[1].complete());
@@ -167,6 +171,59 @@ TEST_P(CastleFigure, LipsMeetAndOpen) {
     EXPECT_TRUE(is_inside_of_mouth(seen_at(open, x, mouth.y - 0.008f)))
         << x << ": " << seen_at(open, x, mouth.y - 0.008f);
   }
+}
+
+// Lids at rest touch the iris, whose rim is 6.2 mm from the pupil's middle: a white rim above it
+// stares. Wide open they leave it.
+TEST_P(CastleFigure, UpperLidsLieOnTheIris) {
+  vec3 between = site("skull_view");
+  float pupil = 0;
+  for (const Joint& joint : character().joints)
+    if (joint.name == "l_eyeball_joint") pupil = joint.center.x;
+  std::vector<vec3> rest = posed({}), wide = posed({{"lid_wide", 1.0f}});
+  for (float side : {-1.0f, 1.0f}) {
+    float x = side * pupil, rim = between.y + 0.0062f;
+    EXPECT_EQ(seen_at(rest, x, rim).find("eyeball"), std::string::npos) << side;
+    EXPECT_NE(seen_at(rest, x, rim - 0.0025f).find("eyeball"), std::string::npos) << side;
+    EXPECT_NE(seen_at(wide, x, rim).find("eyeball"), std::string::npos) << side;
+  }
+}
+
+// A glad smile bares the upper teeth, draws both corners of the mouth up in an arc and lifts the
+// cheeks against the lids.
+TEST_P(CastleFigure, GladnessShowsTeethAndReachesTheEyes) {
+  const Character& c = character();
+  vec3 mouth = site("mouth_pt");
+  std::vector<vec3> rest = posed({});
+  std::vector<vec3> glad = posed({{"smile_l", 1.0f}, {"smile_r", 1.0f}, {"cheek_up", 0.75f},
+                                  {"upper_lip_up", 0.5f}, {"mouth_open", 0.1f}});
+  for (float x : {-0.008f, -0.004f, 0.004f, 0.008f}) {
+    bool teeth = false;
+    for (float dy = -0.008f; dy <= 0.008f; dy += 0.0005f)
+      teeth |= seen_at(glad, x, mouth.y + dy).find("upper_teeth") != std::string::npos;
+    EXPECT_TRUE(teeth) << x;
+  }
+  auto rise = [&](float x, float y, float within) {  // mean of the skin near a place, both sides
+    double sum = 0;
+    int count = 0;
+    for (const Part& part : c.parts)
+      if (part.name == "shape_face")
+        for (uvec3 t : part.triangles)
+          for (int k = 0; k < 3; k++) {
+            vec3 p = rest[t[k]];
+            if (p.z < mouth.z - 0.04f) continue;
+            if (std::hypot(std::abs(p.x) - x, p.y - y) > within) continue;
+            sum += double(glad[t[k]].y - p.y);
+            count++;
+          }
+    EXPECT_GT(count, 0);
+    return sum / std::max(count, 1);
+  };
+  double middle = rise(0, mouth.y - 0.008f, 0.004f), half = rise(0.013f, mouth.y - 0.005f, 0.004f),
+         corner = rise(0.0255f, mouth.y + 0.001f, 0.003f);
+  EXPECT_GT(corner, half);
+  EXPECT_GT(half, middle);
+  EXPECT_GT(rise(0.037f, mouth.y + 0.036f, 0.006f), 0.002);
 }
 
 // Hair of the beard stays where it grows when the face beneath it moves.
