@@ -148,6 +148,11 @@ void pose_leg(const Rig& rig, int side, const FootPlan& foot, Pose& pose) {
   pose.rotations[size_t(leg.ankle)] = glm::conjugate(shin) * facing * about_x(4 * foot.lift);
 }
 
+// How far to turn where `angle`, from 0, is wanted and nobody said more than `limit`.
+float in_range(const EyeRange& range, float angle, float limit) {
+  return range.most > 0 ? std::min(angle / range.most, 1.0f) * range.output : std::min(angle, limit);
+}
+
 // Each eye points at the same place.
 void pose_eye(const Rig& rig, int side, vec3 point, Pose& pose) {
   int joint = rig.eye[size_t(side)];
@@ -155,12 +160,11 @@ void pose_eye(const Rig& rig, int side, vec3 point, Pose& pose) {
   JointFrame eye = eval_joint_frame(*rig.character, pose, joint);
   vec3 way = glm::conjugate(eye.rotation) * (point - eye.center);
   if (dot(way, way) < 1e-6f) return;
-  float yaw = std::clamp(std::atan2(way.x, way.z), -eye_limit_yaw, eye_limit_yaw);
-  float pitch = std::atan2(way.y, glm::length(vec2(way.x, way.z)));
-  pitch = std::clamp(pitch, -eye_limit_down, eye_limit_up);
-  const EyeGain& gain = rig.character->eye_gain;
-  yaw *= (side == 0) == (yaw < 0) ? gain.inner : gain.outer;
-  pitch *= pitch > 0 ? gain.up : gain.down;
+  float yaw = std::atan2(way.x, way.z), pitch = std::atan2(way.y, glm::length(vec2(way.x, way.z)));
+  const EyeRanges& ranges = rig.character->eye_ranges;
+  const EyeRange& aside = (side == 0) == (yaw < 0) ? ranges.inner : ranges.outer;
+  yaw = std::copysign(in_range(aside, std::abs(yaw), eye_limit_yaw), yaw);
+  pitch = pitch > 0 ? in_range(ranges.up, pitch, eye_limit_up) : -in_range(ranges.down, -pitch, eye_limit_down);
   pose.rotations[size_t(joint)] = about_y(yaw) * about_x(-pitch);
   keep_limits(rig, joint, pose);
 }
@@ -174,9 +178,17 @@ void pose_drawn_eyes(const Rig& rig, vec3 point, Pose& pose) {
   vec3 way = glm::conjugate(head.rotation) * (point - eyes);
   if (dot(way, way) < 1e-6f) return;
   float yaw = std::atan2(way.x, way.z), pitch = std::atan2(way.y, glm::length(vec2(way.x, way.z)));
-  float wanted[4] = {pitch / eye_limit_up, -pitch / eye_limit_down, yaw / eye_limit_yaw, -yaw / eye_limit_yaw};
+  const EyeRanges& ranges = rig.character->eye_ranges;
+  const EyeRange aside = ranges.by_shapes ? ranges.outer : EyeRange(), up = ranges.by_shapes ? ranges.up : EyeRange(),
+                 down = ranges.by_shapes ? ranges.down : EyeRange();
+  auto weight = [](EyeRange range, float angle, float limit) {
+    if (!(range.most > 0)) range = {limit, 1};
+    return std::clamp(in_range(range, angle, limit), 0.0f, 1.0f);
+  };
+  float wanted[4] = {weight(up, pitch, eye_limit_up), weight(down, -pitch, eye_limit_down),
+                     weight(aside, yaw, eye_limit_yaw), weight(aside, -yaw, eye_limit_yaw)};
   for (size_t i = 0; i < 4; i++)
-    if (rig.look[i] >= 0) pose.displacers[size_t(rig.look[i])] = std::clamp(wanted[i], 0.0f, 1.0f);
+    if (rig.look[i] >= 0) pose.displacers[size_t(rig.look[i])] = wanted[i];
 }
 
 }  // namespace
@@ -225,7 +237,8 @@ void eval_body(const Rig& rig, const BodyPlan& plan, Pose& pose) {
 }
 
 void aim_eyes(const Rig& rig, vec3 gaze_point, Pose& pose) {
-  if (!rig.eyes_move) return pose_drawn_eyes(rig, gaze_point, pose);
+  bool shapes = rig.character->eye_ranges.by_shapes && rig.look[2] >= 0 && rig.look[3] >= 0;
+  if (!rig.eyes_move || shapes) return pose_drawn_eyes(rig, gaze_point, pose);
   for (int side = 0; side < 2; side++) pose_eye(rig, side, gaze_point, pose);
 }
 

@@ -3,6 +3,7 @@
 // are skins with one joint each), displacers, and how the surfaces look. Plain data, immutable once
 // loaded.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -74,10 +75,36 @@ struct JointWeight {
   float weight = 0;
 };
 
-// How much an eye turns in its socket for each radian it should: eyes drawn as flat discs must not
-// leave the head. 1: eyeballs.
-struct EyeGain {
-  float inner = 1, outer = 1, up = 1, down = 1;
+// How far an eye follows what is looked at (VRMC_vrm-1.0, lookAt.md): `output` where that is `most` radians
+// or more to the side, evenly less before; radians of its socket, or the weight of a shape. Eyes drawn
+// as flat discs must not leave the head. most 0: the author has not said.
+struct EyeRange {
+  float most = 0, output = 0;
+};
+struct EyeRanges {
+  EyeRange inner, outer, up, down;
+  bool by_shapes = false;  // eyes look by displacers even where they have joints
+};
+
+// What a displacer's whole weight adds to a look: an expression that blushes, glows or shows other parts of
+// a picture (VRM's material binds).
+struct LookChange {
+  int displacer = 0, look = 0;
+  vec4 base_color{0};
+  vec3 emission{0};
+  mat3 uv{0.0f};  // to the matrix of texture coordinates
+};
+
+// Displacers that are driven by themselves, and may be forbidden while an expression shows.
+enum class ExpressionGroup : uint8_t { blink, gaze, mouth };
+inline constexpr size_t expression_groups = 3;
+enum class ExpressionOverride : uint8_t { none, block, blend };
+// Of a displacer (expression_rules.h).
+struct ExpressionRule {
+  int displacer = 0;
+  bool binary = false;  // shown wholly above one half, else not at all
+  int group = -1;       // an ExpressionGroup it belongs to
+  std::array<ExpressionOverride, expression_groups> overrides{};
 };
 
 // A joint that hangs and swings (spring_bones.h); numbers as in VRMC_springBone.
@@ -130,7 +157,9 @@ struct Character {
   std::vector<uint32_t> first_weight;
   std::vector<JointWeight> weights;
   Skinning skinning = Skinning::linear;
-  EyeGain eye_gain;
+  EyeRanges eye_ranges;
+  std::vector<LookChange> look_changes;
+  std::vector<ExpressionRule> expression_rules;  // one a displacer at most; empty: nothing is asked
   std::vector<JointConstraint> constraints;  // in the order they are to be followed
   std::vector<SpringBone> springs;  // by joint, parents first
   std::vector<SpringCollider> spring_colliders;

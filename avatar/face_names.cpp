@@ -151,18 +151,38 @@ struct Face {
     if (cut >= Cut::rest) return !eyes.count(vertex) && !mouth.count(vertex);
     return true;
   }
-  bool make(const Recipe& recipe, Displacer& made) const {
+  const ExpressionRule* rule_of(size_t displacer) const {
+    for (const ExpressionRule& rule : character.expression_rules)
+      if (size_t(rule.displacer) == displacer) return &rule;
+    return nullptr;
+  }
+  // What of a shape's effect on materials a control takes: those have no sides and no regions.
+  static float share_of(Cut cut) { return cut == Cut::all ? 1 : cut == Cut::left || cut == Cut::right ? 0.5f : 0; }
+
+  // `changes` and `binary`: what the control does to looks, and whether it is all or nothing.
+  bool make(const Recipe& recipe, Displacer& made, std::vector<LookChange>& changes, bool& binary) const {
     std::map<uint32_t, vec3> sum;
+    binary = false;
     for (const Term& term : recipe.terms) {
       if (!term.shape) break;
       auto found = place.find(key_of(term.shape));
       if (found == place.end()) return false;
       const Displacer& shape = character.displacers[found->second];
+      float weight = term.weight, share = share_of(recipe.cut);
+      if (const ExpressionRule* rule = rule_of(found->second); rule && rule->binary && share > 0) {
+        if (weight <= 0.5f) return false;  // there is no little of it
+        weight = 1, binary = true;
+      }
       for (size_t i = 0; i < shape.vertices.size(); i++)
         if (takes(recipe.cut, shape.vertices[i]))
-          sum[shape.vertices[i]] += shape.displacements[i] * term.weight;
+          sum[shape.vertices[i]] += shape.displacements[i] * weight;
+      for (LookChange change : character.look_changes) {
+        if (size_t(change.displacer) != found->second || share == 0) continue;
+        change.base_color *= weight * share, change.emission *= weight * share, change.uv *= weight * share;
+        changes.push_back(change);
+      }
     }
-    if (sum.empty()) return false;
+    if (sum.empty() && changes.empty()) return false;
     made = {recipe.control, {}, {}};
     for (const auto& [vertex, move] : sum) {
       made.vertices.push_back(vertex);
@@ -172,21 +192,52 @@ struct Face {
   }
 };
 
+// The group a control or a VRM preset belongs to; -1: none.
+int group_of(const std::string& name) {
+  static const std::unordered_set<std::string> vowels = {"aa", "ih", "ou", "ee", "oh"};
+  if (name.rfind("blink", 0) == 0) return int(ExpressionGroup::blink);
+  if (name.rfind("look", 0) == 0) return int(ExpressionGroup::gaze);
+  return name.rfind("viseme_", 0) == 0 || vowels.count(name) ? int(ExpressionGroup::mouth) : -1;
+}
+
+// Rules for all that is forbidden by some.
+void complete_rules(Character& character) {
+  auto& rules = character.expression_rules;
+  if (rules.empty()) return;
+  for (size_t d = 0; d < character.displacers.size(); d++) {
+    int group = group_of(character.displacers[d].name);
+    if (group < 0) continue;
+    auto own = std::find_if(rules.begin(), rules.end(), [&](const ExpressionRule& rule) { return size_t(rule.displacer) == d; });
+    if (own == rules.end()) rules.push_back({int(d), false, group, {}});
+    else own->group = group;
+  }
+}
+
 }  // namespace
 
 void complete_face(Character& character) {
   if (character.displacers.empty()) return;
   Face face(character);
   std::vector<Displacer> made;
+  std::vector<LookChange> all_changes;
+  std::vector<ExpressionRule> rules;
   std::unordered_set<std::string> done;
   for (const Recipe& recipe : recipes) {
     if (face.place.count(key_of(recipe.control)) || done.count(recipe.control)) continue;
     Displacer displacer;
-    if (!face.make(recipe, displacer)) continue;
+    std::vector<LookChange> changes;
+    bool binary = false;
+    if (!face.make(recipe, displacer, changes, binary)) continue;
     done.insert(recipe.control);
+    int index = int(character.displacers.size() + made.size());
+    for (LookChange& change : changes) change.displacer = index, all_changes.push_back(change);
+    if (binary) rules.push_back({index, true, -1, {}});
     made.push_back(std::move(displacer));
   }
   for (Displacer& displacer : made) character.displacers.push_back(std::move(displacer));
+  character.look_changes.insert(character.look_changes.end(), all_changes.begin(), all_changes.end());
+  character.expression_rules.insert(character.expression_rules.end(), rules.begin(), rules.end());
+  complete_rules(character);
 }
 
 }  // namespace wellspring

@@ -18,7 +18,7 @@ Character character_from_gltf(const std::string& path) {
   Character& character = figure.character;
   character.first_weight = {0};
   character.material_file = path;
-  character.eye_gain = figure.vrm.eye_gain;
+  character.eye_ranges = figure.vrm.eye_ranges;
   character.metadata = figure.vrm.metadata;
   for (const auto& [key, value] : character.metadata)
     if (key == "title" || (key == "name" && character.name.empty())) character.name = value;

@@ -11,6 +11,8 @@
 
 namespace wellspring {
 
+inline constexpr size_t most_displacements = 20'000'000;  // of a figure's vertices
+
 // Working state of one reading.
 struct GltfFigure {
   gltf::File file;
@@ -22,7 +24,7 @@ struct GltfFigure {
   std::vector<size_t> node_of;    // per joint
   dmat4 to_humanoid{1};           // the file's world to humanoid space
   std::vector<dmat4> rest;        // per node: to the file's world, in the figure's rest pose
-  std::map<std::pair<size_t, size_t>, Displacer> moves;  // what morph target (mesh, target) does
+  std::map<std::pair<size_t, size_t>, Displacer> moves;  // what morph target (node, target) does
 };
 
 void read_gltf_joints(GltfFigure& figure);

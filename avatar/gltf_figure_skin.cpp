@@ -16,7 +16,7 @@ using gltf::items;
 using gltf::json;
 using gltf::Used;
 
-constexpr size_t vertex_limit = 3'000'000, displacement_limit = 20'000'000;
+constexpr size_t vertex_limit = 3'000'000;
 constexpr float farthest = 1e15f;
 
 struct Reader {
@@ -32,7 +32,7 @@ struct Reader {
   // Matrix of each vertex from its mesh to humanoid space at rest; appends the weights.
   std::vector<dmat4> read_weights(size_t node, const json& primitive, const std::string& where,
                                   const Used& used);
-  void read_targets(const json& mesh, size_t mesh_index, const json& primitive, const Used& used,
+  void read_targets(size_t node, const json& mesh, size_t mesh_index, const json& primitive, const Used& used,
                     const std::vector<dmat4>& to_rest, uint32_t first,
                     const std::vector<double>& weights);
 };
@@ -155,18 +155,18 @@ std::string target_name(const json& mesh, const json& primitive, size_t target) 
   return gltf::text(mesh, "name", "morph").substr(0, 100) + " " + std::to_string(target);
 }
 
-void Reader::read_targets(const json& mesh, size_t mesh_index, const json& primitive, const Used& used,
+void Reader::read_targets(size_t node, const json& mesh, size_t mesh_index, const json& primitive, const Used& used,
                           const std::vector<dmat4>& to_rest, uint32_t first,
                           const std::vector<double>& weights) {
   const json& targets = items(primitive, "targets");
   for (size_t t = 0; t < targets.size(); t++) {
     std::vector<vec3> moves = gltf::read_vec3s(file, targets[t], "POSITION", used);
-    Displacer& move = figure.moves[{mesh_index, t}];
+    Displacer& move = figure.moves[{node, t}];
     move.name = target_name(mesh, primitive, t);
     for (size_t v = 0; v < moves.size(); v++) {
       vec3 turned(glm::dmat3(to_rest[v]) * dvec3(moves[v]));
       if (!is_finite(turned) || !(glm::length(turned) > 1e-7f)) continue;
-      if (++displacements > displacement_limit)
+      if (++displacements > most_displacements)
         gltf::refuse(file, at("/meshes", mesh_index), "morph targets move too many vertices");
       // A figure that is not at ease without a morph rests with it.
       double at_rest = t < weights.size() ? weights[t] : 0;
@@ -237,7 +237,7 @@ void Reader::read_primitive(size_t node, size_t mesh_index, size_t index) {
   }
   second_uv = second_uv || !second.empty();
   colors = colors || !color.empty();
-  read_targets(mesh, mesh_index, primitive, used, to_rest, first, figure.nodes[node].weights);
+  read_targets(node, mesh, mesh_index, primitive, used, to_rest, first, figure.nodes[node].weights);
 
   Part part;
   part.name = gltf::text(items(file.root, "nodes")[node], "name", gltf::text(mesh, "name"));
@@ -266,7 +266,9 @@ void Reader::read_primitive(size_t node, size_t mesh_index, size_t index) {
 void Reader::read_node(size_t node) {
   const json* mesh = gltf::find(items(file.root, "nodes")[node], "mesh");
   if (!mesh) return;
-  size_t index = mesh->get<size_t>(), count = items(file.root, "meshes")[index]["primitives"].size();
+  size_t index = mesh->get<size_t>();
+  if (figure.vrm.hidden_nodes.count(node) || figure.vrm.hidden_meshes.count(index)) return;
+  size_t count = items(file.root, "meshes")[index]["primitives"].size();
   for (size_t p = 0; p < count; p++) read_primitive(node, index, p);
 }
 
@@ -290,40 +292,6 @@ void read_gltf_surfaces(GltfFigure& figure) {
     displacer.vertices.insert(displacer.vertices.end(), move.vertices.begin(), move.vertices.end());
     displacer.displacements.insert(displacer.displacements.end(), move.displacements.begin(),
                                    move.displacements.end());
-  }
-}
-
-void read_gltf_expressions(GltfFigure& figure) {
-  Character& character = figure.character;
-  size_t moved = 0;
-  for (const VrmExpression& expression : figure.vrm.expressions) {
-    std::map<uint32_t, vec3> sum;
-    for (const VrmBind& bind : expression.binds) {
-      size_t mesh = size_t(bind.mesh);
-      if (bind.node >= 0) {
-        const json* own = gltf::find(items(figure.file.root, "nodes")[size_t(bind.node)], "mesh");
-        if (!own) continue;
-        mesh = own->get<size_t>();
-      }
-      auto move = figure.moves.find({mesh, bind.target});
-      if (move == figure.moves.end()) {
-        gltf::warn(figure.file, "", "expression '" + expression.name.substr(0, 60) + "' names no morph target");
-        continue;
-      }
-      if ((moved += move->second.vertices.size() + 1) > displacement_limit)
-        gltf::refuse(figure.file, "", "expressions move too many vertices");
-      for (size_t i = 0; i < move->second.vertices.size(); i++)
-        sum[move->second.vertices[i]] += move->second.displacements[i] * bind.weight;
-    }
-    if (sum.empty() || expression.name.empty()) continue;
-    Displacer displacer{expression.name, {}, {}};
-    for (const auto& [vertex, move] : sum) {
-      displacer.vertices.push_back(vertex);
-      displacer.displacements.push_back(move);
-    }
-    int same = find_displacer(character, expression.name);
-    if (same >= 0) character.displacers[size_t(same)] = std::move(displacer);  // the expression counts
-    else character.displacers.push_back(std::move(displacer));
   }
 }
 

@@ -75,10 +75,8 @@ struct Converter {
   }
 
   void add_weights(const gltf::Track& track) {
-    const gltf::json* mesh = gltf::find(gltf::items(figure.file.root, "nodes")[track.node], "mesh");
-    if (!mesh) return;
     for (size_t t = 0; t < track.width; t++) {
-      auto move = figure.moves.find({mesh->get<size_t>(), t});
+      auto move = figure.moves.find({track.node, t});
       if (move == figure.moves.end()) continue;
       double rest = figure.nodes[track.node].weights[t];
       MotionTrack made{TrackKind::displacer, curve_of(track.curve), 0, track.times, {}, {}};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "avatar/body.h"
+#include "avatar/expression_rules.h"
 #include "avatar/joint_constraints.h"
 
 namespace wellspring {
@@ -261,7 +262,8 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   protect(face, expressions, words);
   apply_controls(face, expressions, pose);
 
-  // What follows, and what hangs on it.
+  // What its author forbids, what follows, and what hangs on it.
+  follow_expression_rules(character, pose);
   follow_constraints(character, pose);
   if (!character.springs.empty()) {
     tick_spring_bones(state.springs, character, dt, pose);

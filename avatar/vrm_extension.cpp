@@ -2,8 +2,6 @@
 #include "avatar/vrm_extension.h"
 
 #include <algorithm>
-#include <cmath>
-#include <string_view>
 
 #include "avatar/bone_names.h"
 #include "avatar/vrm_json.h"
@@ -36,24 +34,35 @@ void add_metadata(const File& file, const json& meta, const std::string& where, 
   }
 }
 
-// Degrees of eye for degrees of gaze.
-float range_gain(const json& range, const char* input, const char* output) {
-  float most = number_in(range, input, 90), scale = number_in(range, output, 10);
-  return most > 0.1f ? std::clamp(scale / most, 0.0f, 1.0f) : 1.0f;
+// What a file says of how its eyes turn. `input` and `output`: keys of degrees of gaze, and of degrees of the eye
+// or weight of a shape.
+struct RangeKeys {
+  const char *inner, *outer, *up, *down, *input, *output;
+};
+
+EyeRanges read_ranges(File& file, const json& look, bool by_shapes, const RangeKeys& keys, const std::string& where) {
+  constexpr float least_input = 0.1f, most_turn = 60, degree = pi / 180;
+  auto range = [&](const char* key) {
+    const json& object = object_in(file, look, key, where);
+    const json& curve = list_in(file, object, "curve", where + "/" + key);
+    static const json straight = {0, 0, 0, 1, 1, 1, 1, 0};
+    if (!curve.empty() && curve != straight)
+      gltf::warn(file, where + "/" + key, "eyes turn evenly, not along a curve of their own");
+    float input = std::clamp(number_in(object, keys.input, 90), least_input, 360.0f);
+    float output = std::max(number_in(object, keys.output, by_shapes ? 1 : 10), 0.0f);
+    return EyeRange{input * degree, by_shapes ? std::min(output, 1.0f) : std::min(output, most_turn) * degree};
+  };
+  return {range(keys.inner), range(keys.outer), range(keys.up), range(keys.down), by_shapes};
 }
 
-// Morph targets of an expression: `of` names what holds them, a mesh of the file or a node; weights are in
-// parts of `full`.
-void add_binds(const File& file, const json& binds, const char* of, const char* into, float full,
-               const std::string& where, VrmExpression& expression) {
-  for (size_t b = 0; b < binds.size(); b++) {
-    int index = index_in(file, binds[b], of, into, at(where, b));
-    if (index < 0) continue;
-    VrmBind bind;
-    (into == std::string_view("meshes") ? bind.mesh : bind.node) = index;
-    bind.target = size_t(std::max(number_in(binds[b], "index", 0), 0.0f));
-    bind.weight = number_in(binds[b], "weight", full) / full;
-    expression.binds.push_back(bind);
+// Parts that hide the head from whoever looks out of it: `of` names a node or a mesh of the file.
+void read_first_person(File& file, const json& object, const char* of, const char* into, const char* type,
+                       const std::string& where, std::set<size_t>& hidden) {
+  const json& list = list_in(file, object, "meshAnnotations", where);
+  for (size_t i = 0; i < list.size(); i++) {
+    int index = index_in(file, list[i], of, into, at(where + "/meshAnnotations", i));
+    std::string kind = text_in(list[i], type);
+    if (index >= 0 && (kind == "firstPersonOnly" || kind == "FirstPersonOnly")) hidden.insert(size_t(index));
   }
 }
 
@@ -67,17 +76,6 @@ void add_named_bones(File& file, const json& object, const std::string& root, Vr
   }
 }
 
-std::string preset_of_version_0(const std::string& preset) {
-  static const std::map<std::string, std::string> names = {
-      {"a", "aa"}, {"i", "ih"}, {"u", "ou"}, {"e", "ee"}, {"o", "oh"}, {"joy", "happy"},
-      {"angry", "angry"}, {"sorrow", "sad"}, {"fun", "relaxed"}, {"blink", "blink"},
-      {"blink_l", "blinkLeft"}, {"blink_r", "blinkRight"}, {"lookup", "lookUp"},
-      {"lookdown", "lookDown"}, {"lookleft", "lookLeft"}, {"lookright", "lookRight"},
-      {"neutral", "neutral"}};
-  auto found = names.find(preset);
-  return found == names.end() ? "" : found->second;
-}
-
 void read_version_0(File& file, const json& object, Vrm& vrm) {
   const std::string root = "/extensions/VRM";
   vrm.version = 0;
@@ -88,39 +86,14 @@ void read_version_0(File& file, const json& object, Vrm& vrm) {
     std::string where = at(root + "/humanoid/humanBones", i);
     add_bone(file, vrm, text_in(bones[i], "bone"), index_in(file, bones[i], "node", "nodes", where), where);
   }
-  const json& master = object_in(file, object, "blendShapeMaster", root);
-  const json& groups = list_in(file, master, "blendShapeGroups", root + "/blendShapeMaster");
-  for (size_t g = 0; g < groups.size(); g++) {
-    std::string where = at(root + "/blendShapeMaster/blendShapeGroups", g);
-    VrmExpression expression;
-    std::string preset = text_in(groups[g], "presetName");
-    std::transform(preset.begin(), preset.end(), preset.begin(), [](unsigned char c) { return std::tolower(c); });
-    expression.name = preset_of_version_0(preset);
-    expression.preset = !expression.name.empty();
-    // Version 0 has no preset for it, authors name it so.
-    if (!expression.preset) expression.name = text_in(groups[g], "name");
-    if (expression.name == "Surprised") expression = {"surprised", true, {}};
-    if (groups[g].is_object())
-      add_binds(file, list_in(file, groups[g], "binds", where), "mesh", "meshes", 100, where + "/binds",
-                expression);
-    if (groups[g].is_object() && !list_in(file, groups[g], "materialValues", where).empty())
-      gltf::warn(file, where, "expressions do not change materials here");
-    vrm.expressions.push_back(std::move(expression));
-  }
+  read_vrm_expressions(file, object, vrm);
   const json& look = object_in(file, object, "firstPerson", root);
-  if (text_in(look, "lookAtTypeName") == "Bone") {
-    auto gain = [&](const char* key) {
-      return range_gain(object_in(file, look, key, root + "/firstPerson"), "xRange", "yRange");
-    };
-    vrm.eye_gain = {gain("lookAtHorizontalInner"), gain("lookAtHorizontalOuter"),
-                    gain("lookAtVerticalUp"), gain("lookAtVerticalDown")};
-  }
-  const json& materials = list_in(file, object, "materialProperties", root);
-  for (size_t m = 0; m < materials.size(); m++) {
-    std::string shader = text_in(materials[m], "shader");
-    if (shader.find("MToon") != std::string::npos || shader.find("Unlit") != std::string::npos)
-      vrm.matt[m] = true;
-  }
+  constexpr RangeKeys keys{"lookAtHorizontalInner", "lookAtHorizontalOuter", "lookAtVerticalUp", "lookAtVerticalDown",
+                           "xRange", "yRange"};
+  std::string type = text_in(look, "lookAtTypeName");
+  if (type == "Bone" || type == "BlendShape")
+    vrm.eye_ranges = read_ranges(file, look, type == "BlendShape", keys, root + "/firstPerson");
+  read_first_person(file, look, "mesh", "meshes", "firstPersonFlag", root + "/firstPerson", vrm.hidden_meshes);
 }
 
 void read_version_1(File& file, const json& object, Vrm& vrm) {
@@ -128,30 +101,15 @@ void read_version_1(File& file, const json& object, Vrm& vrm) {
   vrm.version = 1;
   add_metadata(file, object_in(file, object, "meta", root), root, vrm);
   add_named_bones(file, object, root, vrm);
-  const json& expressions = object_in(file, object, "expressions", root);
-  for (const char* kind : {"preset", "custom"}) {
-    std::string group = root + "/expressions/" + kind;
-    const json& list = object_in(file, expressions, kind, root + "/expressions");
-    for (auto it = list.begin(); it != list.end(); ++it) {
-      VrmExpression expression{it.key(), kind[0] == 'p', {}};
-      std::string where = at(group, it.key());
-      if (!it->is_object()) gltf::refuse(file, where, "must be an object");
-      add_binds(file, list_in(file, *it, "morphTargetBinds", where), "node", "nodes", 1,
-                where + "/morphTargetBinds", expression);
-      if (!list_in(file, *it, "materialColorBinds", where).empty() ||
-          !list_in(file, *it, "textureTransformBinds", where).empty())
-        gltf::warn(file, where, "expressions do not change materials here");
-      vrm.expressions.push_back(std::move(expression));
-    }
-  }
+  read_vrm_expressions(file, object, vrm);
   const json& look = object_in(file, object, "lookAt", root);
-  if (text_in(look, "type") == "bone") {
-    auto gain = [&](const char* key) {
-      return range_gain(object_in(file, look, key, root + "/lookAt"), "inputMaxValue", "outputScale");
-    };
-    vrm.eye_gain = {gain("rangeMapHorizontalInner"), gain("rangeMapHorizontalOuter"),
-                    gain("rangeMapVerticalUp"), gain("rangeMapVerticalDown")};
-  }
+  constexpr RangeKeys keys{"rangeMapHorizontalInner", "rangeMapHorizontalOuter", "rangeMapVerticalUp",
+                           "rangeMapVerticalDown", "inputMaxValue", "outputScale"};
+  std::string type = text_in(look, "type");
+  if (type == "bone" || type == "expression")
+    vrm.eye_ranges = read_ranges(file, look, type == "expression", keys, root + "/lookAt");
+  read_first_person(file, object_in(file, object, "firstPerson", root), "node", "nodes", "type",
+                    root + "/firstPerson", vrm.hidden_nodes);
 }
 
 void read_animation(File& file, const json& object, Vrm& vrm) {
@@ -183,17 +141,13 @@ const std::set<std::string>& vrm_extensions() {
 
 Vrm read_vrm(File& file) {
   Vrm vrm;
+  vrm.matt = rewrite_vrm_materials(file);
   if (const json* object = gltf::extension(file.root, "VRMC_vrm")) read_version_1(file, *object, vrm);
   else if (const json* older = gltf::extension(file.root, "VRM")) read_version_0(file, *older, vrm);
   else if (const json* moves = gltf::extension(file.root, "VRMC_vrm_animation"))
     read_animation(file, *moves, vrm);
   read_vrm_springs(file, vrm);
   read_vrm_constraints(file, vrm);
-  const json& materials = gltf::items(file.root, "materials");
-  for (size_t m = 0; m < materials.size(); m++)
-    if (gltf::extension(materials[m], "VRMC_materials_mtoon") ||
-        gltf::extension(materials[m], "KHR_materials_unlit"))
-      vrm.matt[m] = true;
   const json& asset = file.root["asset"];
   if (std::string copyright = text_in(asset, "copyright"); !copyright.empty())
     vrm.metadata.push_back({"copyright", copyright.substr(0, 1000)});

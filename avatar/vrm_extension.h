@@ -3,7 +3,9 @@
 // use it. Versions 0.x (extension "VRM") and 1.0 ("VRMC_vrm"), and animations ("VRMC_vrm_animation").
 // What is malformed is refused; what is not there stays empty.
 #pragma once
+#include <array>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,10 +21,25 @@ struct VrmBind {
   float weight = 1;
 };
 
+struct VrmColorBind {
+  size_t material = 0;
+  bool emission = false;  // else the base colour
+  vec4 target{1};         // linear, instead of the material's factor
+};
+
+struct VrmPictureBind {
+  size_t material = 0;
+  std::array<bool, 2> axis{true, true};  // u, v
+  vec2 scale{1}, offset{0};              // instead of the picture's, as KHR_texture_transform has them
+};
+
 struct VrmExpression {
   std::string name;  // VRM 1.0's: "aa", "happy", "blinkLeft", or the author's own
-  bool preset = false;
+  bool preset = false, binary = false;
+  std::array<ExpressionOverride, expression_groups> overrides{};
   std::vector<VrmBind> binds;
+  std::vector<VrmColorBind> colors;
+  std::vector<VrmPictureBind> pictures;
 };
 
 // Hair and cloth that swing: joints in a row, as their author tuned them (SpringBone in character.h).
@@ -58,20 +75,29 @@ struct Vrm {
   std::map<size_t, std::string> joints;  // node -> H-Anim joint
   std::vector<VrmExpression> expressions;
   std::map<std::string, size_t> expression_nodes;  // of an animation: whose x is its weight
-  EyeGain eye_gain;
-  std::map<size_t, bool> matt;  // materials of MToon
+  EyeRanges eye_ranges;
+  std::set<size_t> matt;  // materials that are drawn as cartoons
+  std::set<size_t> hidden_nodes, hidden_meshes;  // that only whoever is the figure itself sees
   std::vector<VrmConstraint> constraints;  // no node twice
   std::vector<VrmSpringJoint> springs;  // no node twice
   std::vector<VrmCollider> colliders;
   std::vector<std::pair<std::string, std::string>> metadata;
 };
 
+// Rewrites materials of MToon and of version 0's unlit shaders as what glTF knows of them: colours, pictures and
+// where these lie, alpha, sides, glow. Version 0 keeps them in lists of its own, which count. To be called
+// on a file just loaded, before anybody reads its materials. What is not shown of them is told by
+// name. Returns those that are drawn as cartoons. Throws LoadError.
+std::set<size_t> rewrite_vrm_materials(gltf::File& file);
+
 // The extensions this and gltf_figure.cpp understand, for load_gltf().
 const std::set<std::string>& vrm_extensions();
 
 // Adds to file.warnings what is not done. Throws LoadError.
 Vrm read_vrm(gltf::File& file);
-// Parts of it: the springs of either version (vrm_spring.cpp), constraints (vrm_constraint.cpp).
+// Parts of it: expressions of either version (vrm_expression.cpp; `object` is the version's extension),
+// springs (vrm_spring.cpp), constraints (vrm_constraint.cpp).
+void read_vrm_expressions(gltf::File& file, const gltf::json& object, Vrm& vrm);
 void read_vrm_springs(gltf::File& file, Vrm& vrm);
 void read_vrm_constraints(gltf::File& file, Vrm& vrm);
 

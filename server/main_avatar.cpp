@@ -8,7 +8,9 @@
 #include "avatar/bone_surface.h"
 #include "avatar/character_load.h"
 #include "avatar/describe.h"
+#include "avatar/expression_rules.h"
 #include "avatar/expression_sum.h"
+#include "avatar/joint_constraints.h"
 #include "avatar/retarget.h"
 #include "avatar/speech_visemes.h"
 #include "avatar/storyteller.h"
@@ -191,6 +193,8 @@ int run(Options options) {
     pose.displacers[size_t(index)] =
         equals == std::string::npos ? 1 : float(std::atof(setting.c_str() + equals + 1));
   }
+  follow_expression_rules(character, pose);
+  follow_constraints(character, pose);
   std::vector<std::string> warnings;
   Frame frame = options.sheet.empty()
                     ? render_studio(character, pose, shot, warnings)

@@ -83,7 +83,12 @@ struct RenderCache::Impl {
   uint32_t frames = 0;
   bool known = false;  // anything, in the last survey
   CacheStats stats;
+  uint64_t paints = 0;              // World::paints() and those of each instance, when last looked at
+  std::vector<uint32_t> paints_of;
+  std::vector<char> repainted;
 
+  // Points of what was repainted since are forgotten.
+  void notice_paint(const World& world);
   bool is_still() const { return still_frames >= 2; }
   // The surface that points of the current projection show, packed into `frame`, with what `sight` sees
   // laid over it, and the cells of both.
@@ -127,10 +132,25 @@ void RenderCache::resize(int width, int height) {
   c.forget_still();
 }
 
+void RenderCache::Impl::notice_paint(const World& world) {
+  if (world.paints() == paints) return;
+  paints = world.paints();
+  size_t count = size_t(world.instance_count());
+  paints_of.resize(count, 0);
+  repainted.assign(count, 0);
+  for (size_t i = 0; i < count; i++) {
+    uint32_t now = world.placed(uint32_t(i)).paints;
+    repainted[i] = now != paints_of[i];
+    paints_of[i] = now;
+  }
+  relit |= forget_paint(points, world, repainted);
+}
+
 void RenderCache::move_points(const World& world) {
   Impl& c = *impl_;
   c.image_stale |= !c.points.anchors.empty();
   move_anchored_points(c.points, world);
+  c.notice_paint(world);
   age_points(c.points, c.new_points);
 }
 

@@ -56,8 +56,8 @@ class RenderCache {
   // Makes room for pictures of this size and smaller ones; keeps the points that still fit. Nothing
   // happens when there is such room already.
   void resize(int width, int height);
-  // Points on moving meshes follow their triangles; ages advance. Call once a frame after
-  // World::commit().
+  // Points on moving meshes follow their triangles, and are forgotten where these were repainted; ages
+  // advance. Call once a frame after World::commit().
   void move_points(const World& world);
   // The object was carried off as a whole, by `moved` (rigid) from where it was: its points go along.
   void move_object(uint32_t object, const mat4& moved);

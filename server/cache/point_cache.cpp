@@ -9,6 +9,8 @@
 #include "base/parallel.h"
 #include "cache/lanes.h"
 #include "cache/packing.h"
+#include "light/first_surface.h"
+#include "world/surface.h"
 
 namespace wellspring {
 namespace {
@@ -114,15 +116,36 @@ bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach) 
   return near || std::isinf(reach);
 }
 
+static void forget_looks(PointCache& points, size_t i) {
+  points.age[i] = 254;
+  points.count[i] = std::min<uint8_t>(points.count[i], 1);
+  points.flags[i] |= point_relit;
+}
+
 void forget_light(PointCache& points, vec3 place, float reach) {
   parallel_ranges(points.capacity(), 1 << 14, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++) {
-      if (!is_alive(points, uint32_t(i)) || !is_lit_from(points, uint32_t(i), place, reach)) continue;
-      points.age[i] = 254;
-      points.count[i] = std::min<uint8_t>(points.count[i], 1);
-      points.flags[i] |= point_relit;
+    for (size_t i = size_t(begin); i < size_t(end); i++)
+      if (is_alive(points, uint32_t(i)) && is_lit_from(points, uint32_t(i), place, reach)) forget_looks(points, i);
+  });
+}
+
+bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted) {
+  std::atomic<bool> found = false;
+  parallel_ranges(int(points.anchors.size()), 512, [&](int begin, int end) {
+    for (int k = begin; k < end; k++) {
+      const Anchor& a = points.anchors[size_t(k)];
+      size_t i = a.point;
+      if (a.instance >= repainted.size() || !repainted[a.instance] || !is_alive(points, a.point)) continue;
+      found = true;
+      forget_looks(points, i);
+      vec3 place(points.x[i], points.y[i], points.z[i]), way = unpack_normal(points.normal[i]);
+      Hit hit{1, a.instance, a.triangle, vec2(a.u, a.v) * (1.0f / 65535)};
+      Surface surface = eval_surface(world, {.origin = place + way, .direction = -way}, hit);
+      bool known = surface.transmission == 0 && surface.anisotropy == 0 && !world.material_of(a.instance).unlit;
+      if (known) points.color[i].albedo = pack_albedo(kept_reflectance(surface).albedo);
     }
   });
+  return found;
 }
 
 void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric,

@@ -78,6 +78,10 @@ void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2
                   vec3& place, vec3& normal);
 // Points with anchors follow their triangles; anchors of overwritten points are dropped.
 void move_anchored_points(PointCache& points, const World& world);
+// What instances are made of looks different now: their points take the reflectance that it has there, are as old as
+// can be, and their next sample is as good as their first. Of those with anchors, so after
+// move_anchored_points(). `repainted`: of each of the world's instances. Returns whether any point was found.
+bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted);
 // Most anchors a cache of this capacity may hold; moving points beyond are forgotten after one
 // frame.
 int max_anchors(int capacity);

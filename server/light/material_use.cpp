@@ -86,23 +86,26 @@ MaterialUse find_material_use(const Material& m, const Mesh& mesh, TextureRanges
   MaterialUse use;
   TexelRange colors = color_range(mesh);
   bool cut_out = m.alpha_mode != AlphaMode::opaque;
-  if (cut_out) {
+  if (cut_out && !m.repaints) {
     float highest = m.base_color.w * colors.high.w * ranges.of(m.base_color_texture).high.w;
     if (m.alpha_mode == AlphaMode::mask ? highest < m.alpha_cutoff : !(highest > 0)) return use;
   }
   use.visible = true;
   auto base_high = [&] {
+    if (m.repaints) return 1.0f;
     return max_component(vec3(m.base_color) * vec3(colors.high) *
                          vec3(ranges.of(m.base_color_texture).high));
   };
   if (m.unlit) {
-    use.emits = max_component(vec3(m.base_color)) > 0 && base_high() > 0;
-    use.emission_varies = use.emits && (cut_out || !mesh.colors.empty() ||
+    use.emits = (m.repaints || max_component(vec3(m.base_color)) > 0) && base_high() > 0;
+    use.emission_varies = use.emits && (cut_out || m.repaints || !mesh.colors.empty() ||
                                         !same_color(ranges.of(m.base_color_texture)));
     return use;
   }
   use.receives = true;
-  if (max_component(m.emission) > 0) {
+  if (m.repaints) {
+    use.emits = use.emission_varies = true;
+  } else if (max_component(m.emission) > 0) {
     TexelRange picture = ranges.of(m.emission_texture);
     use.emits = max_component(m.emission * vec3(picture.high)) > 0;
     use.emission_varies = use.emits && (cut_out || !same_color(picture));

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/figure.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <map>
 
+#include "avatar/expression_rules.h"
+#include "avatar/vrm_extension.h"
 #include "world/gltf_image.h"
 #include "world/gltf_material.h"
 #include "world/mesh_finish.h"
@@ -67,7 +70,8 @@ Material make_material(const Look& look, Pictures& pictures) {
 int add_file_materials(Scene& scene, const std::string& path) {
   if (path.empty()) return -1;
   Scene own;
-  gltf::File file = gltf::load_gltf(path, "");
+  gltf::File file = gltf::load_gltf(path, "", vrm_extensions());
+  rewrite_vrm_materials(file);
   file.pictures_may_fail = true;
   gltf::load_materials(file, own);
   for (const std::string& warning : file.warnings)
@@ -81,14 +85,9 @@ int add_file_materials(Scene& scene, const std::string& path) {
     scene.textures.push_back(texture);
   }
   for (Material& material : own.materials) {
-    for (TextureRef* use :
-         {&material.base_color_texture, &material.metallic_roughness_texture,
-          &material.emission_texture, &material.transmission_texture, &material.thickness_texture,
-          &material.specular_texture, &material.specular_color_texture, &material.clearcoat_texture,
-          &material.clearcoat_roughness_texture, &material.sheen_color_texture,
-          &material.sheen_roughness_texture, &material.anisotropy_texture, &material.normal_texture,
-          &material.clearcoat_normal_texture})
-      if (use->texture >= 0) use->texture += first_texture;
+    each_texture(material, [&](TextureRef& use) {
+      if (use.texture >= 0) use.texture += first_texture;
+    });
     scene.materials.push_back(std::move(material));
   }
   return first_material;
@@ -101,6 +100,22 @@ void make_matt(Material& material) {
   material.roughness = 1;
   material.specular = 0.25f;
   material.metallic_roughness_texture = {};
+}
+
+bool changes(const Character& character, int look) {
+  return std::any_of(character.look_changes.begin(), character.look_changes.end(),
+                     [&](const LookChange& change) { return change.look == look; });
+}
+
+// Looks that expressions change, where they have changed.
+void paint_figure(World& world, Figure& figure, const Character& character, const Pose& pose) {
+  for (FigurePaint& paint : figure.paints) {
+    LookChange sum = eval_look_change(character, pose, paint.look);
+    Repaint change{sum.base_color, sum.emission, sum.uv};
+    if (change == paint.change) continue;
+    paint.change = change;
+    world.repaint(paint.material, change);
+  }
 }
 
 }  // namespace
@@ -132,6 +147,10 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
     Mesh mesh;
     mesh.name = part.name;
     mesh.material = first_material + part.look;
+    if (changes(character, part.look) && !scene.materials[size_t(mesh.material)].repaints) {
+      scene.materials[size_t(mesh.material)].repaints = true;
+      figure.paints.push_back({part.look, mesh.material, {}});
+    }
     for (uvec3 t : part.triangles) {
       uvec3 local;
       for (int c = 0; c < 3; c++) {
@@ -167,6 +186,7 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
 void pose_figure(World& world, Figure& figure, const Character& character, const Pose& pose,
                  const mat4& placement, SkinScratch& scratch) {
   skin(character, pose, placement, scratch, figure.positions, figure.normals);
+  paint_figure(world, figure, character, pose);
   for (const FigurePart& part : figure.parts) {
     figure.part_positions.resize(part.vertices.size());
     figure.part_normals.resize(part.vertices.size());

@@ -15,8 +15,15 @@ struct FigurePart {
   std::vector<uint32_t> vertices;  // of the character, in the mesh's order
 };
 
+// A look that expressions change, as it is now.
+struct FigurePaint {
+  int look = 0, material = 0;  // of the character, of the scene
+  Repaint change;
+};
+
 struct Figure {
   std::vector<FigurePart> parts;
+  std::vector<FigurePaint> paints;  // of the looks in use alone
   uint32_t object = 0;  // in Scene::objects, named as the character
   // Working memory of pose_figure.
   std::vector<vec3> positions, normals, part_positions, part_normals;
@@ -28,7 +35,7 @@ struct Figure {
 Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& moving,
                    std::vector<uint32_t>& moving_object);
 
-// Skins the character and moves its meshes; call World::commit() afterwards. Once a tick; all
+// Skins the character, moves its meshes and repaints what looks differently than before; call World::commit() afterwards. Once a tick; all
 // cores.
 void pose_figure(World& world, Figure& figure, const Character& character, const Pose& pose,
                  const mat4& placement, SkinScratch& scratch);

@@ -120,6 +120,19 @@ void World::show(int moving, bool visible) {
   w.moved = true;
 }
 
+void World::repaint(int material, const Repaint& change) {
+  Impl& w = *impl_;
+  for (auto& [number, own] : w.painted) {
+    if (number != material) continue;
+    *own = repainted(w.scene->materials[size_t(material)], change);
+    w.paints++;
+    for (PlacedMesh& placed : w.placed)
+      if (placed.material == own.get()) placed.paints++;
+  }
+}
+
+uint64_t World::paints() const { return impl_->paints; }
+
 void World::commit() {
   if (!impl_->moved) return;
   impl_->moved = false;

@@ -69,6 +69,7 @@ struct PlacedMesh {
   // Inverse transpose of the upper 3x3 up to a positive factor: normalise after using it.
   mat3 normal_to_world{1};
   const Face* faces = nullptr;  // of its triangles; null: it moves, or is one of very many copies
+  uint32_t paints = 0;          // how often its material was repainted
 };
 
 // A scene with what moves in it. Instances [0, scene.instances.size()) are the scene's; the rest
@@ -101,6 +102,10 @@ class World {
   void move(int moving, std::span<const vec3> positions, std::span<const vec3> normals);
   void show(int moving, bool visible);
   void commit();
+  // Changes how a material looks that `repaints`, on the meshes that move; the scene's own stays as it is. The
+  // change counts from the scene's, not from the last one. While no ray is being traced.
+  void repaint(int material, const Repaint& change);
+  uint64_t paints() const;  // how often anything was repainted
 
   // Nearest hit. Surfaces with alpha are passed through where their alpha says so (mask: cut-off;
   // blend: stochastically, decided by a hash of the ray and the hit, so that a replay agrees).

@@ -23,6 +23,7 @@ float uniform_of(const Ray& ray, uint32_t instance, uint32_t triangle) {
 
 bool may_pass(const Mesh& mesh, const Material& material) {
   if (material.alpha_mode == AlphaMode::opaque) return false;
+  if (material.repaints) return true;
   float threshold = material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : 1.0f;
   if (material.base_color_texture.texture >= 0 || material.base_color.w < threshold) return true;
   for (const vec4& color : mesh.colors)

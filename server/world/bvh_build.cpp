@@ -266,8 +266,16 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
                         instance.to_world == mat4(1), is_mirrored(instance.to_world), instance.to_world,
                         normal_matrix(instance.to_world)});
   }
+  // What moves wears copies of materials that may change.
+  auto worn = [&](int number) -> const Material* {
+    const Material& own = scene.materials[size_t(number)];
+    if (!own.repaints) return &own;
+    for (const auto& [known, copy] : w.painted)
+      if (known == number) return copy.get();
+    return w.painted.emplace_back(number, std::make_unique<Material>(own)).second.get();
+  };
   for (size_t i = 0; i < w.moving.size(); i++)
-    w.placed.push_back({&w.moving[i], &scene.materials[size_t(w.moving[i].material)],
+    w.placed.push_back({&w.moving[i], worn(w.moving[i].material),
                         i < moving_object.size() ? moving_object[i] : 0, true, true, false,
                         mat4(1), mat3(1)});
   w.tags.reserve(scene.instances.size() + scene.meshes.size() + w.moving.size());

@@ -49,6 +49,29 @@ struct Material {
   TextureRef sheen_roughness_texture;  // A
   float anisotropy = 0, anisotropy_rotation = 0;  // 0..1; radians from the tangent
   TextureRef anisotropy_texture;  // RG: direction, B: strength
+  // World::repaint() may change its colours and how its pictures lie: nothing may be concluded from those.
+  bool repaints = false;
 };
+
+// How a material looks for a while, told by what is added to it.
+struct Repaint {
+  vec4 base_color{0};
+  vec3 emission{0};
+  mat3 uv{0.0f};  // to the matrices of all its pictures' coordinates
+  bool operator==(const Repaint&) const = default;
+};
+
+// Calls body(TextureRef&) for every picture a material may have.
+template <class M, class Body>
+void each_texture(M& m, Body&& body) {
+  for (auto* use : {&m.base_color_texture, &m.metallic_roughness_texture, &m.emission_texture,
+                    &m.transmission_texture, &m.thickness_texture, &m.specular_texture,
+                    &m.specular_color_texture, &m.clearcoat_texture, &m.clearcoat_roughness_texture,
+                    &m.sheen_color_texture, &m.sheen_roughness_texture, &m.anisotropy_texture,
+                    &m.normal_texture, &m.clearcoat_normal_texture})
+    body(*use);
+}
+// `m` changed so: colours stay within their ranges, what is not finite changes nothing.
+Material repainted(const Material& m, const Repaint& change);
 
 }  // namespace wellspring

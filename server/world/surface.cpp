@@ -230,7 +230,7 @@ Face make_face(const PlacedMesh& placed, uint32_t triangle) {
 bool is_matt(const Material& m) {
   bool gloss = m.ior != 1 && m.specular > 0;
   bool layered = m.clearcoat > 0 || max_component(m.sheen_color) > 0;
-  return !m.unlit && !gloss && !layered && m.metallic == 0 && m.transmission == 0 &&
+  return !m.unlit && !m.repaints && !gloss && !layered && m.metallic == 0 && m.transmission == 0 &&
          m.emission == vec3(0) && m.normal_texture.texture < 0;
 }
 

@@ -54,7 +54,8 @@ TEST(GltfFigure, BonesOfVrmAreJointsOfHAnim) {
   EXPECT_NEAR(centre(c, "l_elbow").x, 0.45f, 1e-5f);
   EXPECT_NEAR(centre(c, "skullbase").y, 1.52f, 1e-5f);
   EXPECT_EQ(c.joints[size_t(find_joint(c, "r_radiocarpal"))].parent, find_joint(c, "r_elbow"));
-  EXPECT_FLOAT_EQ(c.eye_gain.inner, 0.1f);
+  EXPECT_NEAR(c.eye_ranges.inner.most, pi / 2, 1e-5f);
+  EXPECT_NEAR(c.eye_ranges.inner.output, 9 * pi / 180, 1e-5f);
   ASSERT_FALSE(c.metadata.empty());
   EXPECT_EQ(c.metadata[0], std::pair(std::string("authors"), std::string("A. Author, B. Author")));
   int aa = find_displacer(c, "aa"), raw = find_displacer(c, "MouthOpen");
@@ -161,9 +162,11 @@ TEST(GltfFigure, EyesLookAsTheirAuthorDrewThem) {
   };
   float left = turn_of(0), right = turn_of(1);
   EXPECT_GT(left, 0.2f);
-  eyed.eye_gain = {0.25f, 0.5f, 1, 1};
+  eyed.eye_ranges.outer = {1, 0.5f}, eyed.eye_ranges.inner = {1, 0.25f};
   EXPECT_NEAR(turn_of(0), 0.5f * left, 1e-3f) << "outwards";
   EXPECT_NEAR(turn_of(1), 0.25f * right, 1e-3f) << "inwards";
+  eyed.eye_ranges.outer = {0.1f, 0.05f};
+  EXPECT_NEAR(turn_of(0), 0.05f, 1e-5f) << "no further than that";
 }
 
 std::string refusal(const Asset& asset) {

@@ -6,6 +6,8 @@
 
 #include "avatar/character_load.h"
 #include "frame/picture_file.h"
+#include "light/see_picture.h"
+#include "light/technique.h"
 #include "show/figure.h"
 #include "unit/avatar/gltf_person.h"
 
@@ -134,6 +136,87 @@ TEST(FigureOfGltf, TangentsOfNormalMapsFollowTheBentSkin) {
     EXPECT_NEAR(dot(vec3(bent.tangents[i]), bent.normals[i]), 0, 1e-4f);
   }
   EXPECT_GT(arm, 8u);
+}
+
+// A VRM person that blushes and glows: the ray tracer's look, drawn pictures and paths all show it.
+TEST(FigureOfGltf, ExpressionsRepaintMaterials) {
+  Asset asset = painted({{"name", "skin"}, {"doubleSided", true},
+                         {"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.2, 0.2, 1}}}},
+                         {"extensions", {{"VRMC_materials_mtoon", json::object()}}}});
+  test::add_vrm_1(asset);
+  asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"]["happy"]["materialColorBinds"] = {
+      {{"material", 0}, {"type", "color"}, {"targetValue", {1, 0.2, 0.2, 1}}},
+      {{"material", 0}, {"type", "emissionColor"}, {"targetValue", {0, 0.5, 0, 1}}}};
+  Made made = make(asset);
+  ASSERT_EQ(made.figure.paints.size(), 1u);
+  EXPECT_TRUE(worn(made).repaints);
+  made.scene.environment.radiance = vec3(1);
+  World world(made.scene, made.moving, made.objects);
+  SkinScratch scratch;
+  Pose pose = make_rest_pose(made.character);
+  int happy = find_displacer(made.character, "happy");
+  ASSERT_GE(happy, 0) << "an expression of materials alone";
+  auto show = [&](float weight) {
+    pose.displacers[size_t(happy)] = weight;
+    pose_figure(world, made.figure, made.character, pose, mat4(1), scratch);
+    world.commit();
+  };
+  show(0);
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  EXPECT_EQ(world.paints(), 0u) << "nothing is done while nothing changes";
+  vec3 chest(0, 1.3f, 0.0f);
+  Ray ray{.origin = chest + vec3(0.004f, 0.003f, 2), .direction = {0, 0, -1}};
+  View view = make_view(made.scene, {0.004, 1.303, 2}, 0, 0, 0.05f, 33, 33);
+  struct Look {
+    Seen seen, drawn;
+    vec3 traced;
+  };
+  auto look = [&] {
+    Look result;
+    see(world, lights, std::span(&ray, 1), std::span(&result.seen, 1));
+    sight.see(view, vec2(0.5f), [&](const SightRun& run) {
+      if (run.y == 16 && run.x <= 16 && 16 < run.x + run.count) result.drawn = run.see(16 - run.x);
+    });
+    std::vector<Request> requests(64);
+    for (uint32_t i = 0; i < 64; i++) requests[i].ray = ray, requests[i].seed = 1, requests[i].index = i;
+    std::vector<Sample> samples(64);
+    trace(*find_technique("path"), world, lights, {}, requests, samples);
+    result.traced = vec3(0);
+    for (const Sample& sample : samples) result.traced += sample.radiance() / 64.0f;
+    return result;
+  };
+  Look pale = look();
+  EXPECT_NEAR(pale.seen.albedo.x, pale.seen.albedo.y, 1e-5f);
+  show(1);
+  Look red = look();
+  EXPECT_EQ(world.paints(), 1u);
+  EXPECT_NEAR(red.seen.albedo.x / pale.seen.albedo.x, 5, 0.05f);
+  EXPECT_NEAR(red.seen.albedo.z, pale.seen.albedo.z, 1e-4f);
+  EXPECT_NEAR(red.seen.glow.y, 0.5f, 1e-5f);
+  for (const Look* l : {&pale, &red})
+    for (int c = 0; c < 3; c++) {
+      EXPECT_NEAR(l->drawn.albedo[c], l->seen.albedo[c], 1e-3f);
+      EXPECT_NEAR(l->drawn.glow[c], l->seen.glow[c], 1e-5f);
+    }
+  EXPECT_GT(red.traced.x, 3 * pale.traced.x);
+  EXPECT_NEAR(red.traced.y - pale.traced.y, 0.5f, 0.05f) << "it glows";
+  show(1);
+  EXPECT_EQ(world.paints(), 1u) << "the same again is no change";
+  show(0.5f);
+  EXPECT_NEAR(world.material_of(0).base_color.x, 0.6f, 1e-6f);
+  show(0);
+  Look again = look();
+  EXPECT_EQ(again.seen.albedo, pale.seen.albedo);
+  EXPECT_EQ(again.seen.glow, vec3(0));
+}
+
+TEST(FigureOfGltf, NothingIsRepaintedWhereNoExpressionAsksForIt) {
+  Asset asset = painted({{"name", "skin"}});
+  test::add_vrm_1(asset);
+  Made made = make(asset);
+  EXPECT_TRUE(made.figure.paints.empty());
+  for (const Material& material : made.scene.materials) EXPECT_FALSE(material.repaints);
 }
 
 // The same pictures as an X3D 4 file names them.
