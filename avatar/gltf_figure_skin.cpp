@@ -206,7 +206,11 @@ void Reader::read_primitive(size_t node, size_t mesh_index, size_t index) {
   std::vector<vec3> normals = gltf::read_vec3s(file, attributes, "NORMAL", used);
   std::vector<vec2> uv = gltf::read_vec2s(file, attributes, "TEXCOORD_0", used);
   std::vector<vec2> second = gltf::read_vec2s(file, attributes, "TEXCOORD_1", used);
-  std::vector<vec4> color = gltf::read_vec4s(file, attributes, "COLOR_0", used);
+  int64_t material = gltf::integer(primitive, "material", -1);
+  bool mtoon = material >= 0 &&
+               gltf::extension(items(file.root, "materials")[size_t(material)], "VRMC_materials_mtoon");
+  std::vector<vec4> color;  // MToon ignores it
+  if (!mtoon) color = gltf::read_vec4s(file, attributes, "COLOR_0", used);
   std::vector<dmat4> to_rest = read_weights(node, primitive, where, used);
   bool mirrored = false;
   std::vector<char> bad(used.size(), 0);
@@ -241,7 +245,7 @@ void Reader::read_primitive(size_t node, size_t mesh_index, size_t index) {
 
   Part part;
   part.name = gltf::text(items(file.root, "nodes")[node], "name", gltf::text(mesh, "name"));
-  part.look = int(gltf::integer(primitive, "material", -1)) + 1;
+  part.look = int(material) + 1;
   size_t dropped = 0;
   for (uvec3 t : corners.triangles) {
     if (bad[t.x] || bad[t.y] || bad[t.z]) {

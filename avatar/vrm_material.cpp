@@ -65,6 +65,7 @@ void rewrite_version_0(File& file, const json& properties, const std::string& wh
   material["alphaMode"] = blends ? "BLEND" : cut ? "MASK" : "OPAQUE";
   if (cut) material["alphaCutoff"] = std::clamp(number_in(from.floats, "_Cutoff", 0.5f), 0.0f, 1.0f);
   if (!mtoon) return;
+  material["extensions"]["VRMC_materials_mtoon"] = json::object();  // as version 1 would mark it
   constexpr float hides_back = 2;  // of "_CullMode": what is hidden; all else shows the back
   material["doubleSided"] = number_in(from.floats, "_CullMode", hides_back) != hides_back;
   for (const char* key : {"normalTexture", "emissiveTexture", "emissiveFactor"}) material.erase(key);

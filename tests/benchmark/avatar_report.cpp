@@ -76,7 +76,7 @@ struct Ticking {
   }
 };
 
-constexpr int settle = 10;  // ticks before any counts
+constexpr int ticks_before = 10;  // ticks before any counts
 
 // The made avatar in all its variants, ticking in turns, in processor time: a speaking face bends and repaints.
 void bench_made(BenchReport& report, int ticks) {
@@ -101,8 +101,8 @@ void bench_made(BenchReport& report, int ticks) {
     figures.push_back(std::make_unique<Ticking>(variant.character, scene));
   }
   std::filesystem::remove(normals);
-  for (int i = 0; i < ticks + settle; i++) {
-    if (i == settle)
+  for (int i = 0; i < ticks + ticks_before; i++) {
+    if (i == ticks_before)
       for (auto& figure : figures) figure->forget();
     for (auto& figure : figures) figure->tick(thread_seconds, true);
   }
@@ -120,8 +120,8 @@ void bench_avatar(BenchReport& report, const BenchOptions& options) {
   Exhibit castle = load_exhibit((std::filesystem::path(options.content) / "castle").string());
   if (castle.storytellers.empty()) return;
   Ticking teller(castle.storytellers.front().character, castle.scene);
-  for (int i = 0; i < ticks + settle; i++) {
-    if (i == settle) teller.forget();
+  for (int i = 0; i < ticks + ticks_before; i++) {
+    if (i == ticks_before) teller.forget();
     teller.tick(seconds_now, false);
   }
   teller.report(report, "avatar", {{"scene", "castle"}});

@@ -378,6 +378,20 @@ TEST(VrmMaterials, OfVersion1TellWhatIsNotDrawn) {
   EXPECT_EQ(rewritten(asset).root["materials"][1]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"], 3.0);
 }
 
+TEST(VrmMaterials, MToonIgnoresColoursOfVertices) {
+  Asset asset = dressed_person();
+  std::vector<float> red;
+  for (size_t v = 0; v < test::person_bones().size() * 8; v++) red.insert(red.end(), {1, 0, 0, 1});
+  asset.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = asset.add_floats("VEC4", 4, red);
+  Asset newer = asset;
+  add_vrm_0(asset);
+  EXPECT_FALSE(load_asset(asset).colors.empty());
+  asset.root["extensions"]["VRM"]["materialProperties"] = {{{"shader", "VRM/MToon"}}};
+  EXPECT_TRUE(load_asset(asset).colors.empty());
+  newer.root["materials"][0]["extensions"]["VRMC_materials_mtoon"] = json::object();
+  EXPECT_TRUE(load_asset(newer).colors.empty());
+}
+
 TEST(VrmMaterials, UnityColoursAreLinear) {
   EXPECT_EQ(linear_of_unity(vec3(0, -1, NAN)), vec3(0));
   vec3 made = linear_of_unity(vec3(0.04f, 0.5f, 1));
@@ -385,6 +399,31 @@ TEST(VrmMaterials, UnityColoursAreLinear) {
   EXPECT_NEAR(made.y, 0.2140411f, 1e-6f);
   EXPECT_NEAR(made.z, 1, 1e-6f);
   EXPECT_NEAR(linear_of_unity(vec3(2)).x, std::pow(2.0f, 2.2f), 1e-5f);
+}
+
+// Only some bones are required, and files lack even those.
+TEST(VrmExpressions, FiguresWithoutSomeBonesStandAndBreathe) {
+  for (size_t missing = 0; missing <= test::person_bones().size(); missing++) {
+    Asset asset = dressed_person();
+    add_vrm_1(asset);
+    auto& bones = asset.root["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"];
+    if (missing < test::person_bones().size()) bones.erase(test::person_bones()[missing].vrm);
+    else bones = {{"hips", {{"node", 0}}}, {"head", {{"node", 4}}}};
+    Character c = load_asset(asset);
+    Storyteller storyteller{&c, mat4(1)};
+    StorytellerState state;
+    StorytellerInput input;
+    StorytellerEvents events;
+    Pose pose;
+    for (int i = 0; i < 30; i++) {
+      input.dt = 0.1f;
+      input.time += 0.1;
+      input.speaking = 1;
+      tick_storyteller(state, storyteller, input, pose, events);
+      for (quat q : pose.rotations) ASSERT_NEAR(glm::length(q), 1, 1e-3f) << missing;
+      for (float w : pose.displacers) ASSERT_TRUE(std::isfinite(w)) << missing;
+    }
+  }
 }
 
 // Any part of the extensions replaced by anything: refused with a place, or loaded; posed without a crash.
