@@ -270,7 +270,7 @@ void filter_windows(const View& view, std::span<const DiscontinuitySettings> win
   float pixel = 2 * view.tan_half_fov / float(view.height);
   RawVector<vec3> filtered(samples.size());
   const int parts = (view.height + band_rows - 1) / band_rows;
-  parallel_for(parts, [&](int part) {
+  parallel_each(parts, [&](int part) {
     int top = part * band_rows, bottom = std::min(top + band_rows, view.height);
     Band band = make_band(view, samples, top - before, bottom - top + 2 * before, offsets);
     filter_band(all, top, bottom, pixel, band);

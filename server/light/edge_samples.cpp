@@ -140,7 +140,7 @@ void refine_edges(const World& world, const Lights& lights, const TransportSetti
   Refining refining{world, lights, settings, view,    continuity, rays,
                     seed,  index,  edges,    samples, 2 * view.tan_half_fov / float(view.height)};
   std::vector<std::vector<Refined>> rows(size_t(view.height));
-  parallel_for(view.height, [&](int y) { refine_row(refining, y, rows[size_t(y)]); });
+  parallel_each(view.height, [&](int y) { refine_row(refining, y, rows[size_t(y)]); });
   parallel_for(view.height, [&](int y) {
     for (const Refined& pixel : rows[size_t(y)]) {
       Sample& sample = samples[pixel.pixel];

@@ -221,6 +221,51 @@ void join_sets(const LightTables& tables, std::vector<DrawnSet>& sets, InstantPa
   pass.lanes = std::make_shared<LightLanes>(make_light_lanes(tables, pass));
 }
 
+// Lights of a pool that a set has besides its exact ones.
+struct KeptLight {
+  uint32_t light = 0;
+  float factor = 1;  // on its radiance
+};
+
+// Every set: `exact`, then what it keeps of the pool, by depth.
+void join_kept(const LightTables& tables, const InstantPass& pool, const DrawnSet& exact,
+               std::vector<std::vector<KeptLight>>& kept, InstantPass& pass) {
+  std::vector<uint32_t> first_arrival(kept.size() + 1, 0);
+  parallel_for(int(kept.size()), [&](int k) {
+    std::vector<KeptLight>& lights = kept[size_t(k)];
+    auto depth = [&](const KeptLight& one) { return pool.lights[one.light].depth; };
+    std::stable_sort(lights.begin(), lights.end(), [&](const KeptLight& a, const KeptLight& b) {
+      return depth(a) < depth(b);
+    });
+    first_arrival[size_t(k) + 1] = uint32_t(
+        std::count_if(lights.begin(), lights.end(), [&](const KeptLight& one) {
+          return pool.lights[one.light].kind == PointLightKind::scattering;
+        }));
+  });
+  pass.first.assign(1, 0);
+  for (size_t k = 0; k < kept.size(); k++) {
+    pass.first.push_back(pass.first.back() + uint32_t(exact.lights.size() + kept[k].size()));
+    first_arrival[k + 1] += first_arrival[k];
+  }
+  pass.lights.resize(pass.first.back());
+  pass.arrivals.resize(first_arrival.back());
+  parallel_for(int(kept.size()), [&](int k) {
+    PointLight* to = &pass.lights[0] + pass.first[size_t(k)];
+    to = std::copy(exact.lights.begin(), exact.lights.end(), to);
+    uint32_t arrival = first_arrival[size_t(k)];
+    for (const KeptLight& one : kept[size_t(k)]) {
+      PointLight light = pool.lights[one.light];
+      light.radiance *= one.factor;
+      if (light.kind == PointLightKind::scattering) {
+        pass.arrivals[arrival] = pool.arrivals[light.index];
+        light.index = arrival++;
+      }
+      *to++ = light;
+    }
+  });
+  pass.lanes = std::make_shared<LightLanes>(make_light_lanes(tables, pass));
+}
+
 // `places` or `walks` from the number `before` of their sequences on, side by side.
 void draw_candidates(const Transport& transport, int deepest, int places, int walks,
                      uint64_t seed, uint32_t index, InstantPass& pool) {
@@ -296,28 +341,21 @@ InstantPass draw_instant_pass(const Transport& transport, const TransportSetting
   ViewProbes probes = probe_view(transport, view, settings.max_depth, probe_count,
                                  mix64(seed ^ probe_stream), index);
   Sampler sampler(mix64(seed ^ choice_stream), index);
-  std::vector<DrawnSet> sets(size_t(pass.sets()));
-  for (DrawnSet& set : sets) add_exact(tables, set);
+  DrawnSet exact;
+  add_exact(tables, exact);
+  std::vector<std::vector<KeptLight>> kept(size_t(pass.sets()));
   auto keep = [&](uint32_t begin, uint32_t end, int wanted) {
     float choose_u = sampler.next(), deal_u = sampler.next();
     for (const ChosenLight& c :
          choose_lights(transport, probes, pool, begin, end, settings.max_depth,
-                       wanted * pass.sets(), pass.sets(), choose_u, deal_u)) {
-      PointLight light = pool.lights[c.light];
-      DrawnSet& set = sets[c.set];
-      light.radiance *= c.factor;
-      if (light.kind == PointLightKind::scattering) {
-        set.arrivals.push_back(pool.arrivals[light.index]);
-        light.index = uint32_t(set.arrivals.size() - 1);
-      }
-      set.lights.push_back(light);
-    }
+                       wanted * pass.sets(), pass.sets(), choose_u, deal_u))
+      kept[c.set].push_back({c.light, c.factor});
   };
   keep(0, bounced, std::clamp(s.places, 0, 1 << 16));
   keep(bounced, number, std::clamp(s.bounced, 0, 1 << 16));
   if (pass.sharp)
     draw_photons(transport, settings, photon_radius(s, size, index), seed, index, pass);
-  join_sets(tables, sets, pass);
+  join_kept(tables, pool, exact, kept, pass);
   choose_region_lights(transport, view, settings.max_depth, std::min(s.asked, 1 << 10),
                        mix64(seed ^ region_stream), index, pass);
   return pass;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/light_clusters.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/lanes3.h"
+#include "base/parallel.h"
 #include "light/light_order.h"
 
 namespace wellspring {
@@ -90,7 +92,10 @@ LightClusters make_light_clusters(const LightTables& tables, const InstantPass& 
   all.inverse_power.assign(clusters, 0);
   all.held.assign(clusters, 0);
   for (size_t i = 0; i < order.size(); i++) all.held[i / lane_count]++;
-  for (size_t c = 0; c < clusters; c++) unite(all, c);
+  parallel_ranges(int(all.rows.size()), 8, [&](int first, int last) {
+    size_t end = std::min(size_t(last) * lane_count, clusters);
+    for (size_t c = size_t(first) * lane_count; c < end; c++) unite(all, c);
+  });
   return all;
 }
 

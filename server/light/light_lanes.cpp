@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "light/light_tables.h"
 
 namespace wellspring {
@@ -45,13 +46,15 @@ void set_lanes(const LightTables& tables, const InstantPass& pass, LightLanes& a
                                     &all.near, &all.even, &all.back})
     lanes->assign(groups, all_lanes(0));
   all.plain.assign(groups, 1);
-  for (size_t i = 0; i < all.number.size(); i++) {
-    if (all.number[i] == LightLanes::none) continue;
-    size_t g = i / lane_count, lane = i % lane_count;
-    set_lane(tables, pass.lights[all.number[i]], g, lane, all);
-    bool plain = all.near[g][lane] == 1 && all.back[g][lane] == 0 && all.even[g][lane] == 0;
-    if (!plain) all.plain[g] = 0;
-  }
+  parallel_ranges(int(groups), 64, [&](int first, int last) {
+    for (size_t i = size_t(first) * lane_count; i < size_t(last) * lane_count; i++) {
+      if (all.number[i] == LightLanes::none) continue;
+      size_t g = i / lane_count, lane = i % lane_count;
+      set_lane(tables, pass.lights[all.number[i]], g, lane, all);
+      bool plain = all.near[g][lane] == 1 && all.back[g][lane] == 0 && all.even[g][lane] == 0;
+      if (!plain) all.plain[g] = 0;
+    }
+  });
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ void describe_pixel(const View& view, const Request& request, const Sample& samp
 template <class Shade>
 void for_each_tile(const View& view, int tile, const Shade& shade) {
   int across = (view.width + tile - 1) / tile, down = (view.height + tile - 1) / tile;
-  parallel_for(across * down, [&](int t) {
+  parallel_each(across * down, [&](int t) {
     int left = t % across * tile, top = t / across * tile;
     shade(left, top, std::min(left + tile, view.width), std::min(top + tile, view.height));
   });
