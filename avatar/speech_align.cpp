@@ -19,7 +19,7 @@ constexpr int rounds = 10, whitening_round = 4;  // of learning and dividing ane
 
 // Costs of dividing by the learnt models, where a right frame costs 1/2 more than the constant.
 // Chosen with synthetic narrators who stutter; within factors of two the shares barely change.
-constexpr float model_gap_of_sound = 0.4f, model_enter_gap = 1, model_stay_cost = 0.02f;
+constexpr float model_gap_of_sound = 0.4f, model_enter_gap = 1, model_stay_cost = 0.01f;
 constexpr float model_enter_block = 2, model_return = 3, model_return_word = 3;
 
 // The states that a way of other states comes by, of both the same phonemes in the same order; for

@@ -9,10 +9,11 @@
 namespace wellspring {
 
 namespace {
-constexpr double prior_frames = 6;  // how many recorded frames the template's mean is worth
+constexpr double prior_frames = 12;  // how many recorded frames the template's mean is worth
+constexpr double prior_variance_frames = 100;  // the same for the variance of all kinds
 constexpr double round_frames = 100;  // the same for the belief that features are independent
 
-float gaussian_cost(const float* mean, const std::vector<float>& inverse, float constant,
+float gaussian_cost(const float* mean, const float* inverse, float constant,
                     const float* frame) {
   float sum = 0;
   for (size_t c = 0; c < feature_count; c++) {
@@ -22,9 +23,9 @@ float gaussian_cost(const float* mean, const std::vector<float>& inverse, float 
   return 0.5f * sum / feature_count + constant;
 }
 
-float gaussian_constant(const std::vector<float>& inverse) {
+float gaussian_constant(const float* inverse) {
   float sum = 0;
-  for (float value : inverse) sum -= std::log(value);
+  for (size_t c = 0; c < feature_count; c++) sum -= std::log(inverse[c]);
   return 0.5f * sum / feature_count;
 }
 
@@ -83,7 +84,7 @@ SoundModel learn_sounds(const Features& spoken, const Features& recorded, const 
 
   SoundModel model;
   model.mean.resize(kinds * n);
-  model.inverse_variance.resize(n);
+  model.inverse_variance.resize(kinds * n);
   for (size_t c = 0; c < n; c++) {
     // The narrator's value of a feature as a line over the template's, over the kinds heard.
     double w = 0, x = 0, y = 0, xx = 0, xy = 0;
@@ -100,17 +101,24 @@ SoundModel learn_sounds(const Features& spoken, const Features& recorded, const 
       model.mean[k * n + c] = float((prior * prior_frames + heard[k * n + c] * heard_count[k]) /
                                     (prior_frames + heard_count[k]));
     }
-    double squares = 0, count = 0;
+    double all = 0, count = 0;
+    std::vector<double> squares(kinds);
     for (size_t t = 0; t < way.size(); t++) {
       if (way[t] < 0) continue;
-      double d = double(recorded.frame(t)[c] - model.mean[states[size_t(way[t])].kind * n + c]);
-      squares += d * d, count++;
+      uint32_t kind = states[size_t(way[t])].kind;
+      double d = double(recorded.frame(t)[c] - model.mean[kind * n + c]);
+      squares[kind] += d * d, all += d * d, count++;
     }
-    model.inverse_variance[c] = float(1 / std::max(count > 0 ? squares / count : 1, 0.05));
+    double usual = std::max(count > 0 ? all / count : 1, 0.05);
+    for (uint32_t k = 0; k < kinds; k++) {
+      double variance = (squares[k] + prior_variance_frames * usual) / (heard_count[k] + prior_variance_frames);
+      model.inverse_variance[k * n + c] = float(1 / std::max(variance, 0.05));
+    }
   }
+  for (uint32_t k = 0; k < kinds; k++)
+    model.constant.push_back(gaussian_constant(&model.inverse_variance[k * n]));
   learn_silence(recorded, way, chance, model);
-  model.constant = gaussian_constant(model.inverse_variance);
-  model.silence_constant = gaussian_constant(model.silence_inverse_variance);
+  model.silence_constant = gaussian_constant(model.silence_inverse_variance.data());
   return model;
 }
 
@@ -149,13 +157,13 @@ void whiten(Features& spoken, Features& recorded, const Hearing& hearing, const 
 }
 
 float silence_cost(const SoundModel& model, const float* frame) {
-  return gaussian_cost(model.silence_mean.data(), model.silence_inverse_variance,
+  return gaussian_cost(model.silence_mean.data(), model.silence_inverse_variance.data(),
                        model.silence_constant, frame);
 }
 
 float sound_cost(const SoundModel& model, uint32_t kind, const float* frame) {
-  return gaussian_cost(&model.mean[size_t(kind) * feature_count], model.inverse_variance,
-                       model.constant, frame);
+  size_t at = size_t(kind) * feature_count;
+  return gaussian_cost(&model.mean[at], &model.inverse_variance[at], model.constant[kind], frame);
 }
 
 float nearest_cost(const SoundModel& model, const float* frame) {
