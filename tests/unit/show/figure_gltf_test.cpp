@@ -211,6 +211,52 @@ TEST(FigureOfGltf, ExpressionsRepaintMaterials) {
   EXPECT_EQ(again.seen.glow, vec3(0));
 }
 
+// Eyes and mouths that are pictures: another part of them shows, to rays and in drawn pictures.
+TEST(FigureOfGltf, ExpressionsMovePictures) {
+  Asset asset = painted({{"name", "face"}, {"doubleSided", true}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}}}});
+  test::add_vrm_1(asset);
+  asset.root["textures"] = json::array({{{"source", 0}}});
+  asset.root["images"] = json::array({{{"uri", "two.png"}}});
+  std::vector<float> uv;
+  for (size_t v = 0; v < test::person_bones().size() * 8; v++) uv.insert(uv.end(), {0.25f, 0.5f});
+  asset.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = asset.add_floats("VEC2", 2, uv);
+  asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"]["surprised"]["textureTransformBinds"] = {
+      {{"material", 0}, {"offset", {0.5, 0}}}};
+  Frame halves;
+  halves.width = 8, halves.height = 4;
+  for (int i = 0; i < 32; i++) halves.color.push_back(i % 8 < 4 ? vec3(0.8f, 0.05f, 0.05f) : vec3(0.05f, 0.8f, 0.05f));
+  TempFolder folder;
+  std::string path = folder.write("two.png", "");
+  save_picture(path, halves, Tonemap{});
+  std::ifstream file(path, std::ios::binary);
+  Made made = make(asset, {{"two.png", {std::istreambuf_iterator<char>(file), {}}}});
+  ASSERT_GE(worn(made).base_color_texture.texture, 0);
+  made.scene.environment.radiance = vec3(1);
+  World world(made.scene, made.moving, made.objects);
+  SkinScratch scratch;
+  Pose pose = make_rest_pose(made.character);
+  pose_figure(world, made.figure, made.character, pose, mat4(1), scratch);
+  world.commit();
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  Ray ray{.origin = vec3(0.004f, 1.303f, 2), .direction = {0, 0, -1}};
+  View view = make_view(made.scene, {0.004, 1.303, 2}, 0, 0, 0.05f, 33, 33);
+  for (float weight : {0.0f, 1.0f, 0.0f}) {
+    pose.displacers[size_t(find_displacer(made.character, "surprised"))] = weight;
+    pose_figure(world, made.figure, made.character, pose, mat4(1), scratch);
+    world.commit();
+    Seen seen, drawn;
+    see(world, lights, std::span(&ray, 1), std::span(&seen, 1));
+    sight.see(view, vec2(0.5f), [&](const SightRun& run) {
+      if (run.y == 16 && run.x <= 16 && 16 < run.x + run.count) drawn = run.see(16 - run.x);
+    });
+    for (const Seen& one : {seen, drawn}) {
+      EXPECT_EQ(one.albedo.x > 4 * one.albedo.y, weight == 0) << weight;
+      EXPECT_EQ(one.albedo.y > 4 * one.albedo.x, weight == 1) << weight;
+    }
+  }
+}
+
 TEST(FigureOfGltf, NothingIsRepaintedWhereNoExpressionAsksForIt) {
   Asset asset = painted({{"name", "skin"}});
   test::add_vrm_1(asset);
