@@ -11,6 +11,16 @@
 namespace wellspring {
 namespace {
 
+// Displacers that change materials, each once.
+std::vector<std::string> painting(const Character& character) {
+  std::vector<std::string> names;
+  for (const LookChange& change : character.look_changes) {
+    const std::string& name = character.displacers[size_t(change.displacer)].name;
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
 std::string parent_name(const Character& character, int joint) {
   int parent = character.joints[size_t(joint)].parent;
   return parent < 0 ? "" : character.joints[size_t(parent)].name;
@@ -92,6 +102,10 @@ std::string describe_text(const Character& character) {
   if (!character.springs.empty())
     text += format("springs      %zu joints swing, %zu colliders\n", character.springs.size(),
                    character.spring_colliders.size());
+  if (!character.constraints.empty())
+    text += format("constraints  %zu joints follow others\n", character.constraints.size());
+  if (std::vector<std::string> names = painting(character); !names.empty())
+    text += format("paint        %zu displacers change materials: ", names.size()) + join(names) + "\n";
   text += format("motions      %zu: ", motions.size()) + join(motions) + "\n";
   for (const auto& [key, value] : character.metadata)
     text += "about        " + key + ": " + value + "\n";
@@ -146,6 +160,15 @@ std::string describe_json(const Character& character) {
   all["springs"] = {{"joints", json::array()}, {"colliders", character.spring_colliders.size()}};
   for (const SpringBone& bone : character.springs)
     all["springs"]["joints"].push_back(joint_name(bone.joint));
+  all["constraints"] = json::array();
+  for (const JointConstraint& constraint : character.constraints) {
+    constexpr const char* kinds[] = {"roll", "aim", "rotation"};
+    all["constraints"].push_back({{"joint", joint_name(constraint.joint)},
+                                  {"source", joint_name(constraint.source)},
+                                  {"kind", kinds[size_t(constraint.kind)]},
+                                  {"weight", constraint.weight}});
+  }
+  all["paint"] = painting(character);
   all["metadata"] = json::object();
   for (const auto& [key, value] : character.metadata) all["metadata"][key] = value;
   all["unknown_joints"] = unknown_joints(character);

@@ -9,6 +9,7 @@
 
 #include "avatar/body.h"
 #include "avatar/character_load.h"
+#include "avatar/describe.h"
 #include "avatar/storyteller.h"
 #include "base/load_error.h"
 #include "base/rng.h"
@@ -214,6 +215,13 @@ TEST(JointConstraints, AreFollowedInTheOrderOfWhatTheyDependOn) {
   pose.rotations[size_t(find_joint(character, "l_elbow"))] = turn;
   follow_constraints(character, pose);
   EXPECT_NEAR(std::abs(glm::dot(pose.rotations[size_t(find_joint(character, "link0"))], turn)), 1, 1e-5f);
+
+  EXPECT_NE(describe_text(character).find("constraints  5 joints follow others"), std::string::npos);
+  auto told = nlohmann::json::parse(describe_json(character))["constraints"];
+  ASSERT_EQ(told.size(), 5u);
+  EXPECT_EQ(told[0]["joint"], "link4") << "in the order they are followed";
+  EXPECT_EQ(told[0]["source"], "l_elbow");
+  EXPECT_EQ(told[0]["kind"], "rotation");
 
   constrain(asset, chain[4], {"rotation", "", chain[2], 1});                               // 2, 3, 4 in a circle
   constrain(asset, add_node(asset, 0, {0, 0, 0}, quat(1, 0, 0, 0), "narcissus"), {"rotation", "", 23, 1});

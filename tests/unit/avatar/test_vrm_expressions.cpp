@@ -5,6 +5,7 @@
 
 #include "avatar/body.h"
 #include "avatar/character_load.h"
+#include "avatar/describe.h"
 #include "avatar/expression_rules.h"
 #include "avatar/expression_sum.h"
 #include "avatar/storyteller.h"
@@ -82,6 +83,7 @@ TEST(VrmExpressions, Version1ChangesColoursAndWherePicturesLie) {
       {"textureTransformBinds", {{{"material", 0}, {"scale", {3, 0.5}}, {"offset", {0.75, 0.5}}}}}};
   Character c = load_asset(asset);
   EXPECT_TRUE(says(c, "rim, matcap and outline colours"));
+  EXPECT_NE(describe_text(c).find("2 displacers change materials: happy, sad"), std::string::npos) << describe_text(c);
   LookChange none = eval_look_change(c, make_rest_pose(c), 1);
   EXPECT_EQ(none.base_color, vec4(0));
   EXPECT_EQ(none.uv, mat3(0.0f));
