@@ -23,7 +23,7 @@ def mask(p):
     x, y, z = abs(p[0]), p[1], p[2]
     if z < -0.005 or y > 0.015 or y < -0.150:
         return 0.0
-    k = smoothstep(0.002, -0.004, y - curve(CHEEK_EDGE, x))
+    k = smoothstep(0.006, -0.007, y - curve(CHEEK_EDGE, x))
     k *= smoothstep(-0.140, -0.122, y - 0.30 * (0.05 - z))
     k *= smoothstep(-0.004, 0.012, z)
     if x < MOUTH_HALF * 1.06 and z > 0.05:  # the lips, and the bare skin under them on both sides of the tuft

@@ -144,7 +144,7 @@ def make_fall(look):
     """Loose hair from behind the ears down to the collar."""
     patch = Patch("fall", look)
     rng = random.Random(29)
-    for kind, count in (("under", 26), ("lock", 66)):
+    for kind, count in (("under", 28), ("lock", 72)):
         for k in range(count):
             c = 0.02 + 0.98 * (k + rng.random()) / count
             p = strand_point(1, c, rng.uniform(0.62, 0.80) if c > 0.25 else rng.uniform(0.70, 0.86))
@@ -165,8 +165,8 @@ def make_fall(look):
                 outs.append(out)
             for side in (1, -1):
                 ribbon(patch, [(side * q[0], q[1], q[2]) for q in points], [(side * o[0], o[1], o[2]) for o in outs],
-                       rng.uniform(0.010, 0.014) if kind == "under" else rng.uniform(0.0022, 0.0045),
-                       0.0012 if kind == "under" else 0.0, 0.5 * c, {"skullbase": 1.0}, ("hair",), 0.03 if kind == "under" else 0.008)
+                       rng.uniform(0.014, 0.019) if kind == "under" else rng.uniform(0.0016, 0.0034),
+                       0.0012 if kind == "under" else 0.0, 0.5 * c, {"skullbase": 1.0}, ("hair",), 0.03 if kind == "under" else 0.012)
     return patch
 
 

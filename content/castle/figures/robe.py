@@ -62,7 +62,7 @@ def make_cap(cloth_look, brim_look):
             return mad(p, (sin(a), 0.0, cos(a)), wave)
         return row
 
-    inner = [ring(brim, cap_rise, 0.0, 8) for cap_rise in (lambda a: cap_band(a, 0.016, 0.001), lambda a: cap_band(a, -0.004, 0.0022))]
+    inner = [ring(brim, cap_rise, 0.0, 8) for cap_rise in (lambda a: cap_band(a, 0.036, 0.0045), lambda a: cap_band(a, 0.016, 0.001), lambda a: cap_band(a, -0.004, 0.0022))]
     outer = [ring(brim, flap(t, 0.0), 0.3 + t, 8) for t in (0.0, 0.25, 0.55, 0.85, 1.0)]
     back = [ring(brim, flap(t, -0.0035), 1.3 + (1 - t), 8) for t in (1.0, 0.6, 0.2)]
     brim.grid(inner + outer + back)
