@@ -179,7 +179,8 @@ def hairline(c, p, side):
     # strands leave the forehead backwards, the temples downwards
     strand = noise((x * 900 - y * 300, z * 130, side), 1.0, 31) if y > 0.045 else noise((z * 900 - y * 260, x * 130, side), 1.0, 32)
     if covered:
-        return times(mixed(c, HAIR, 0.62 + 0.38 * smoothstep(0.0, 0.004, best)), 1 + 0.45 * strand)
+        deep = smoothstep(0.0, 0.0075, best)  # no edge: hairs stand singly, then close
+        return times(mixed(c, HAIR, clamp(0.30 + 0.80 * deep + 1.2 * strand * (1 - deep))), 1 + 0.45 * strand * deep)
     wisps = 0.40 + 1.1 * strand
     c = mixed(c, SHADE, 0.30 * bell(best, 0.007))
     return mixed(c, HAIR, clamp(wisps * (0.55 + 0.45 * bell(best, 0.0040))) * 0.85 * bell(best, 0.0075))
