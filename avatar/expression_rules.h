@@ -11,8 +11,8 @@ namespace wellspring {
 // count as none.
 void follow_expression_rules(const Character& character, Pose& pose);
 
-// What the pose's displacers add to a look, by character.look_changes; weights are taken as 0 to 1.
-// All zero where nothing does.
-LookChange eval_look_change(const Character& character, const Pose& pose, int look);
+// What the pose's displacers add to each look, by character.look_changes; weights are taken as 0 to 1. All
+// zero where nothing does. Overwrites `changes`.
+void eval_look_changes(const Character& character, const Pose& pose, std::vector<LookChange>& changes);
 
 }  // namespace wellspring

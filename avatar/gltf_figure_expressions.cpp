@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole expressions of a VRM file: sums of morph targets as displacers, what they change of materials, and
 // what they forbid.
-#include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 #include "avatar/gltf_figure.h"
 
@@ -17,6 +17,7 @@ struct Reader {
   Character& character = figure.character;
   size_t moved = 0;
   std::vector<Displacer> made;  // of the expressions
+  std::unordered_set<std::string> names;
 
   void add_moves(const VrmExpression& expression, Displacer& displacer);
   void add_changes(const VrmExpression& expression, int displacer);
@@ -113,9 +114,8 @@ void Reader::add(const VrmExpression& expression) {
   add_moves(expression, displacer);
   bool shows = !displacer.vertices.empty() || !expression.colors.empty() || !expression.pictures.empty();
   if (!shows || displacer.name.empty()) return;
-  for (const Displacer& other : made)
-    if (other.name == displacer.name)
-      return gltf::warn(figure.file, "", "expression '" + displacer.name.substr(0, 60) + "' is there twice: the first counts");
+  if (!names.insert(displacer.name).second)
+    return gltf::warn(figure.file, "", "expression '" + displacer.name.substr(0, 60) + "' is there twice: the first counts");
   int index = int(made.size());
   made.push_back(std::move(displacer));
   add_changes(expression, index);
@@ -133,8 +133,7 @@ void read_gltf_expressions(GltfFigure& figure) {
   // Expressions come first: of an expression and a morph target with one name, the expression counts.
   std::vector<Displacer>& all = figure.character.displacers;
   for (Displacer& target : all)
-    if (std::none_of(reader.made.begin(), reader.made.end(), [&](const Displacer& e) { return e.name == target.name; }))
-      reader.made.push_back(std::move(target));
+    if (!reader.names.count(target.name)) reader.made.push_back(std::move(target));
   all = std::move(reader.made);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using namespace vrm_json;
 
-constexpr size_t bind_limit = 100'000;
+constexpr size_t bind_limit = 20'000;
 const char* const unseen = "expressions change base colours, emission and where pictures lie; shade, rim, matcap "
                            "and outline colours, which cartoons have, are not shown";
 

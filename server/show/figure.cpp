@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/figure.h"
 
-#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -102,15 +101,12 @@ void make_matt(Material& material) {
   material.metallic_roughness_texture = {};
 }
 
-bool changes(const Character& character, int look) {
-  return std::any_of(character.look_changes.begin(), character.look_changes.end(),
-                     [&](const LookChange& change) { return change.look == look; });
-}
-
 // Looks that expressions change, where they have changed.
 void paint_figure(World& world, Figure& figure, const Character& character, const Pose& pose) {
+  if (figure.paints.empty()) return;
+  eval_look_changes(character, pose, figure.look_changes);
   for (FigurePaint& paint : figure.paints) {
-    LookChange sum = eval_look_change(character, pose, paint.look);
+    const LookChange& sum = figure.look_changes[size_t(paint.look)];
     Repaint change{sum.base_color, sum.emission, sum.uv};
     if (change == paint.change) continue;
     paint.change = change;
@@ -139,6 +135,8 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
     scene.materials.push_back(make_material(look, pictures));
   }
 
+  std::vector<char> changes(character.looks.size(), 0);
+  for (const LookChange& change : character.look_changes) changes[size_t(change.look)] = 1;
   constexpr uint32_t none = 0xffffffffu;
   std::vector<uint32_t> place_of(character.positions.size(), none);
   for (const Part& part : character.parts) {
@@ -147,7 +145,7 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
     Mesh mesh;
     mesh.name = part.name;
     mesh.material = first_material + part.look;
-    if (changes(character, part.look) && !scene.materials[size_t(mesh.material)].repaints) {
+    if (changes[size_t(part.look)] && !scene.materials[size_t(mesh.material)].repaints) {
       scene.materials[size_t(mesh.material)].repaints = true;
       figure.paints.push_back({part.look, mesh.material, {}});
     }

@@ -27,6 +27,7 @@ struct Figure {
   uint32_t object = 0;  // in Scene::objects, named as the character
   // Working memory of pose_figure.
   std::vector<vec3> positions, normals, part_positions, part_normals;
+  std::vector<LookChange> look_changes;
 };
 
 // Appends the character's materials, pictures and its object to `scene`, and its meshes (at rest,
