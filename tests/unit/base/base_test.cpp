@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <set>
 #include <thread>
 
 #include "base/latest.h"
 #include "base/load_error.h"
 #include "base/parallel.h"
+#include "base/raw_vector.h"
 #include "base/rng.h"
 #include "base/vec.h"
 
@@ -85,6 +87,28 @@ TEST(Latest, ReaderNeverSeesAnOlderValueAfterANewer) {
       last = *value;
     }
   writer.join();
+}
+
+TEST(Parallel, EachIndexOnceAsAPiece) {
+  std::vector<std::atomic<int>> visits(1000);
+  parallel_each(int(visits.size()), [&](int i) { visits[size_t(i)]++; });
+  for (const auto& v : visits) EXPECT_EQ(v, 1);
+  parallel_each(0, [](int) { FAIL(); });
+  parallel_each(-3, [](int) { FAIL(); });
+}
+
+// What is there stays when a raw vector grows, and copies are equal; items with a value have it.
+TEST(RawVector, KeepsWhatIsWritten) {
+  RawVector<int> numbers(3);
+  for (int i = 0; i < 3; i++) numbers[size_t(i)] = i;
+  numbers.resize(5000);
+  numbers.push_back(7);
+  EXPECT_EQ(numbers.size(), 5001u);
+  EXPECT_EQ(numbers.back(), 7);
+  for (int i = 0; i < 3; i++) EXPECT_EQ(numbers[size_t(i)], i);
+  numbers.assign(4, 9);
+  RawVector<int> copy = numbers;
+  EXPECT_EQ(copy, (RawVector<int>{9, 9, 9, 9}));
 }
 
 TEST(Parallel, EveryIndexOnce) {
