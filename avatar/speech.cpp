@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "avatar/speech.h"
 
+#include <algorithm>
 #include <mutex>
 #include <set>
 
@@ -10,6 +11,8 @@
 namespace wellspring {
 
 namespace {
+
+constexpr double shortest_other = 0.01;  // seconds, of a sound between words
 
 // Says the name of an unknown symbol once in the life of the program.
 void say_unknown(const std::string& symbols, const SpeechPhoneme& phoneme) {
@@ -24,31 +27,47 @@ void say_unknown(const std::string& symbols, const SpeechPhoneme& phoneme) {
 }  // namespace
 
 void fit_phonemes(Speech& speech) {
-  std::vector<SpeechPhoneme> phonemes;
+  std::vector<SpeechPhoneme> said, others, phonemes;
+  for (SpeechPhoneme& phoneme : speech.phonemes)
+    if (phoneme.word >= 0) said.push_back(std::move(phoneme));
+    else if (!is_pause(phoneme.mnemonic)) others.push_back(std::move(phoneme));
+  std::stable_sort(others.begin(), others.end(),
+                   [](const SpeechPhoneme& a, const SpeechPhoneme& b) { return a.begin < b.begin; });
   double at = 0;
+  size_t other = 0;
   auto add_pause = [&](double until) {
     if (until - at > 1e-3) phonemes.push_back({at, until, "_:", "", -1});
   };
-  for (size_t i = 0; i < speech.phonemes.size();) {
-    int index = speech.phonemes[i].word;
-    size_t end = i;
-    while (end < speech.phonemes.size() && speech.phonemes[end].word == index) end++;
-    if (index >= 0) {
-      const SpeechWord& word = speech.words[size_t(index)];
-      double from = speech.phonemes[i].begin, length = speech.phonemes[end - 1].end - from;
-      double scale = length > 0 ? (word.end - word.begin) / length : 0;
-      add_pause(word.begin);
-      for (size_t k = i; k < end; k++) {
-        SpeechPhoneme phoneme = speech.phonemes[k];
-        phoneme.begin = word.begin + (phoneme.begin - from) * scale;
-        phoneme.end = k + 1 == end ? word.end : word.begin + (phoneme.end - from) * scale;
-        phonemes.push_back(std::move(phoneme));
-      }
-      at = word.end;
+  auto fill = [&](double until) {
+    for (; other < others.size() && others[other].begin < until; other++) {
+      SpeechPhoneme sound = others[other];
+      sound.begin = std::max(sound.begin, at);
+      sound.end = std::min(sound.end, until);
+      if (sound.end - sound.begin < shortest_other) continue;
+      add_pause(sound.begin);
+      at = sound.end;
+      phonemes.push_back(std::move(sound));
     }
+    add_pause(until);
+  };
+  for (size_t i = 0; i < said.size();) {
+    int index = said[i].word;
+    size_t end = i;
+    while (end < said.size() && said[end].word == index) end++;
+    const SpeechWord& word = speech.words[size_t(index)];
+    double from = said[i].begin, length = said[end - 1].end - from;
+    double scale = length > 0 ? (word.end - word.begin) / length : 0;
+    fill(word.begin);
+    for (size_t k = i; k < end; k++) {
+      SpeechPhoneme phoneme = said[k];
+      phoneme.begin = word.begin + (phoneme.begin - from) * scale;
+      phoneme.end = k + 1 == end ? word.end : word.begin + (phoneme.end - from) * scale;
+      phonemes.push_back(std::move(phoneme));
+    }
+    at = word.end;
     i = end;
   }
-  add_pause(speech.duration);
+  fill(speech.duration);
   speech.phonemes = std::move(phonemes);
 }
 

@@ -128,16 +128,27 @@ void refine(SoundPair& pair, const std::vector<SoundState>& pieces, uint32_t kin
   }
 }
 
+// Phonemes from `first` on that have a time become sounds of no word and are to be said again.
+void set_aside(size_t first, std::vector<double>& begin, std::vector<double>& end,
+               const std::vector<SpeechPhoneme>& phonemes, std::vector<SpeechPhoneme>& in_vain) {
+  for (size_t p = first; p < phonemes.size(); p++) {
+    if (begin[p] < 0) continue;
+    in_vain.push_back({begin[p], end[p], phonemes[p].mnemonic, phonemes[p].ipa, -1});
+    begin[p] = -1;
+  }
+}
+
 // Times of phonemes and words from the frames that were given to their states.
 void time_phonemes(const std::vector<SoundState>& states, const std::vector<int32_t>& way,
                    Speech& speech) {
   std::vector<double> begin(speech.phonemes.size(), -1), end(speech.phonemes.size(), -1);
+  std::vector<SpeechPhoneme> in_vain;
   int32_t before = -1;
   for (size_t t = 0; t < way.size(); t++) {
     if (way[t] < 0) continue;
     size_t p = states[size_t(way[t])].phoneme;
     // Of what is said more than once, the last time counts.
-    if (way[t] < before) std::fill(begin.begin() + ptrdiff_t(p), begin.end(), -1);
+    if (way[t] < before) set_aside(p, begin, end, speech.phonemes, in_vain);
     before = way[t];
     if (begin[p] < 0) begin[p] = std::max(0.0, (double(t) - 0.5) * feature_hop);
     end[p] = std::min(speech.duration, (double(t) + 0.5) * feature_hop);
@@ -152,13 +163,14 @@ void time_phonemes(const std::vector<SoundState>& states, const std::vector<int3
     last = phoneme.end;
     phonemes.push_back(phoneme);
   }
-  speech.phonemes = std::move(phonemes);
   for (SpeechWord& word : speech.words) word.begin = -1;
-  for (const SpeechPhoneme& phoneme : speech.phonemes) {
+  for (const SpeechPhoneme& phoneme : phonemes) {
     SpeechWord& word = speech.words[size_t(phoneme.word)];
     if (word.begin < 0) word.begin = phoneme.begin;
     word.end = phoneme.end;
   }
+  phonemes.insert(phonemes.end(), in_vain.begin(), in_vain.end());
+  speech.phonemes = std::move(phonemes);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "avatar/speech_shapes.h"
 #include "avatar/speech_text.h"
 #include "base/load_error.h"
 
@@ -113,7 +114,12 @@ void read_phonemes(const Reader& reader, const json& root, Speech& speech) {
     if (index != std::floor(index) || index < -1 || index >= double(speech.words.size()))
       reader.fail(where + "/word", "is no word of the list");
     phoneme.word = int(index);
-    if (phoneme.word < 0) continue;  // pauses are made anew
+    if (phoneme.word < 0 && is_pause(phoneme.mnemonic)) continue;  // pauses are made anew
+    if (phoneme.word < 0) {
+      reader.span(list[i], where, 0, longest, phoneme.begin, phoneme.end);
+      speech.phonemes.push_back(std::move(phoneme));
+      continue;
+    }
     if (phoneme.word < word) reader.fail(where + "/word", "is out of order");
     // Phonemes keep their proportions only; their word may have been moved away from them.
     if (phoneme.word > word) after = 0;

@@ -7,7 +7,7 @@
 //    "phonemes": [{"phoneme": "t", "ipa": "t", "start": 0.10, "end": 0.17, "word": 0}, ...],
 //    "visemes":  [{"time": 0.12, "viseme": "DD", "weight": 0.5}, ...]}
 //
-// A pause is a phoneme whose "word" is -1. Visemes are keys: each mouth shape goes from one of its
+// A pause, or a sound that is no part of the words (a speaker stutters), has "word" -1. Visemes are keys: each mouth shape goes from one of its
 // keys to its next by a smooth step (3x^2 - 2x^3); before its first and after its last it is as
 // there.
 //

@@ -15,7 +15,7 @@ namespace wellspring {
 // Chances are for each word, one of them at most befalls a word.
 struct Manner {
   float pause = 0;      // 0.15 to 0.8 s of silence before it
-  float repeat = 0;     // its first sounds, dragged out or not, are said once to three times before it
+  float repeat = 0;     // its first sounds are said once to three times before it, some dragged out
   float again = 0;      // the word before it is said once more
   float prolong = 0;    // one of its sounds that can last, lasts 0.2 to 0.7 s longer
   float block = 0;      // 0.1 to 0.4 s of silence after its first sound

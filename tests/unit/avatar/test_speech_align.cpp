@@ -194,6 +194,34 @@ TEST(SpeechMarks, StutteringNarratorsAreAligned) {
   EXPECT_GE(share_within(errors, 0.08), 0.95);
 }
 
+// Where a narrator who says beginnings of words again is heard, his mouth does something.
+TEST(SpeechMarks, LipsStutterWithTheirNarrator) {
+  const std::string text = "The castle stands above the river, where merchants once paid their toll in silver. "
+                           "Nobody knows who paid for the great bell, but children hear it from the bridge.";
+  SpeechProcess process;
+  Narrated narrated = narrate(process, {.text = text, .lang = "en-us", .variant = "m7"},
+                              {.repeat = 0.3f, .hiss = 0.0005f, .seed = 4});
+  Speech speech = align(process, text, "en", narrated.recording);
+  double heard = 0, still = 0, repeated = 0;
+  size_t window = size_t(speech.rate / 100), phoneme = 0;
+  for (size_t i = 0; i + window < speech.pcm.size(); i += window) {
+    double sum = 0, middle = (double(i) + 0.5 * double(window)) / speech.rate;
+    for (size_t k = i; k < i + window; k++) sum += std::pow(double(speech.pcm[k]) / 32768, 2);
+    while (phoneme + 1 < speech.phonemes.size() && speech.phonemes[phoneme].end <= middle) phoneme++;
+    const SpeechPhoneme& now = speech.phonemes[phoneme];
+    repeated += !is_pause(now.mnemonic) && now.word < 0;
+    if (sum / double(window) < 1e-4) continue;
+    heard++;
+    still += is_pause(now.mnemonic);
+  }
+  EXPECT_GT(repeated, heard / 20);
+  EXPECT_LT(still, heard / 20) << heard << " windows";
+  for (size_t i = 1; i < speech.phonemes.size(); i++) {
+    EXPECT_GE(speech.phonemes[i].begin, speech.phonemes[i - 1].end - 1e-9);
+    EXPECT_GE(speech.phonemes[i].end, speech.phonemes[i].begin);
+  }
+}
+
 // The lips of a p are shut while nothing is heard, before it bursts.
 TEST(SpeechMarks, ClosuresBelongToTheirStops) {
   for (const SpeechText& text : {SpeechText{"en", "A happy copper pepper, a pocket of paper and a cap too."},

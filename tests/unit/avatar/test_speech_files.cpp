@@ -153,6 +153,29 @@ TEST(SpeechMarksFile, MovedWordsTakeTheirPhonemesAlong) {
   EXPECT_GT(eval_visemes(speech.visemes, 1.15)[size_t(Viseme::oh)], 0.9f);
 }
 
+// "Žltý k- kôň": what is said in vain stays where it was, as far as its neighbours leave it room.
+TEST(SpeechMarksFile, SoundsOfNoWordKeepTheirTimes) {
+  Speech speech = make_marks();
+  speech.phonemes[3] = {0.55, 0.65, "k", "k", -1};
+  fit_phonemes(speech);
+  fill_visemes(speech);
+  ASSERT_EQ(speech.phonemes.size(), 9u);  // with pauses before and after it
+  std::string json = write_speech_json(speech);
+  Speech again = load_speech_marks(json, "a.json");
+  EXPECT_EQ(write_speech_json(again), json);
+  EXPECT_EQ(again.phonemes[4].mnemonic, "k");
+  EXPECT_DOUBLE_EQ(again.phonemes[4].begin, 0.55);
+  EXPECT_DOUBLE_EQ(again.phonemes[4].end, 0.65);
+
+  again.words[1].begin = 0.6;  // moved over half of it
+  fit_phonemes(again);
+  EXPECT_DOUBLE_EQ(again.phonemes[4].end, 0.6);
+  again.words[1].begin = 0.555;  // too little is left of it
+  fit_phonemes(again);
+  EXPECT_EQ(again.phonemes[4].word, 1);
+  EXPECT_EQ(again.phonemes.size(), 7u);
+}
+
 TEST(SpeechMarksFile, MistakesAreNamedByPlace) {
   const std::string good = write_speech_json(make_marks());
   auto place_of = [&](const std::string& from, const std::string& to) {
