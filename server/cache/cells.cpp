@@ -97,7 +97,7 @@ Gathered gather_cells(const Pixels& pixels) {
     unpack_rgb9e5(pixels.plane[plane_rest][k], rest.x, rest.y, rest.z);
     unpack_rgb9e5(pixels.plane[plane_smooth][k], smooth.x, smooth.y, smooth.z);
     f8 deviation = unpack_deviation(more >> 24);
-    i8 known = use & (samples > 1.0f);
+    i8 known = use & ((samples > 1.0f) | ((samples > 0.0f) & (deviation > 0.0f)));
     f8 rest_light = luminance(rest.x, rest.y, rest.z),
        light = luminance(smooth.x, smooth.y, smooth.z);
     f8 one = keep(use, splat(1));

@@ -30,8 +30,11 @@ struct PointColor {
   uint32_t object = 0;
   uint16_t normal = 0;  // as PointCache::normal
   uint8_t unused = 0;
-  uint8_t noise = 0;  // pack_deviation: of one sample's `rest` luminance, known from count 2 on
+  // pack_deviation: of one sample's `rest` luminance. Of a single sample: 0 unknown, else told by who
+  // answered (sure_noise).
+  uint8_t noise = 0;
 };
+inline constexpr uint8_t sure_noise = 1;  // the least but none
 static_assert(sizeof(PointColor) == 20);
 
 // A point on a moving mesh, found again in later ticks.

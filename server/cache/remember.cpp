@@ -93,7 +93,7 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Found& 
   place_point(points, i, view, found);
   points.flags[i] = flags_of(found);
   points.count[i] = 1;
-  points.color[i].noise = 0;
+  points.color[i].noise = sample.flags & sample_sure ? sure_noise : uint8_t(0);
   points.color[i].smooth = pack_rgb9e5(sample.smooth, random);
   points.color[i].rest = pack_rgb9e5(sample.rest, random >> 4);
   points.color[i].object = sample.object;

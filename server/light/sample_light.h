@@ -21,6 +21,7 @@ struct LightSample {
   vec3 target{0};    // end of the shadow ray, already clear of the emitter
   float distance = std::numeric_limits<float>::infinity();
   float pdf = 0;  // over solid angle; 0: nothing
+  float share = 1;  // of a punctual one: the chance with which it was drawn, of all that may matter
 };
 
 // The side from which light reaches a surface of that material: its geometric normal, or 0 for both.

@@ -48,6 +48,13 @@ float distant_chance(float near_sum, float distant_sum) {
   return 0.15f + 0.7f * distant_sum / (near_sum + distant_sum);
 }
 
+// Nothing was drawn, but others might have been.
+LightSample unlucky() {
+  LightSample light;
+  light.share = 0;
+  return light;
+}
+
 LightSample draw_of_few(const LightTables& tables, const SurfacePlace& from, vec3 normal,
                         bool through, const LobeHint& lobe, vec2 u) {
   const FewLights& few = tables.few_punctual;
@@ -64,10 +71,11 @@ LightSample draw_of_few(const LightTables& tables, const SurfacePlace& from, vec
     if (left < effects.effect[i]) break;
     left -= effects.effect[i];
   }
-  if (chosen < 0) return {};
+  if (chosen < 0) return unlucky();
   LightSample light =
       eval_punctual(tables.punctual[size_t(chosen)], tables.cones[size_t(chosen)], from);
-  light.radiance *= sum / (effects.effect[chosen] * (distant ? chance : 1 - chance));
+  light.share = effects.effect[chosen] * (distant ? chance : 1 - chance) / sum;
+  light.radiance *= 1 / light.share;
   return light;
 }
 
@@ -95,10 +103,11 @@ LightSample draw_of_many(const LightTables& tables, const SurfacePlace& from, ve
     share[kind] = 1 / pick.probability;
     sum[kind] = effect_of(lights[kind], normal, through) * share[kind];
   }
-  if (!(sum[0] + sum[1] > 0)) return {};
+  if (!(sum[0] + sum[1] > 0)) return unlucky();
   float chance = distant_chance(sum[0], sum[1]);
   int kind = u.y < chance;
-  lights[kind].radiance *= share[kind] / (kind ? chance : 1 - chance);
+  lights[kind].share = (kind ? chance : 1 - chance) / share[kind];
+  lights[kind].radiance *= 1 / lights[kind].share;
   return lights[kind];
 }
 

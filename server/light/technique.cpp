@@ -63,6 +63,7 @@ void finish_samples(const Lights& lights, const TransportSettings& settings,
     if (!is_light(sample)) {
       lights.bad_samples->fetch_add(1, std::memory_order_relaxed);
       sample.albedo = sample.smooth = sample.rest = vec3(0);
+      sample.flags &= uint8_t(~sample_sure);
     }
     if (!(settings.clamp > 0)) continue;
     float largest = max_component(sample.radiance());

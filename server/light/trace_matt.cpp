@@ -157,18 +157,19 @@ DirectLanes light_by_lamp(const Transport& transport, const MattSurfaceLanes& su
   return direct;
 }
 
-DirectLanes light_by_choice(const Transport& transport, const MattSurfaceLanes& surface,
-                            const MattLobeLanes& lobes, const MattWalks& walks,
-                            LaneBits dimensions, uint32_t lanes) {
+DirectLanes light_by_choice(const Batch& batch, const MattSurfaceLanes& surface, const MattLobeLanes& lobes,
+                            const MattWalks& walks, LaneBits dimensions, uint32_t lanes) {
   DirectLanes direct;
   const Walk in_air{};
   for_each_lane(lanes, [&](int i) {
     Sampler sampler = walks.samplers.at(i);
     sampler.seek(dimensions[i]);
-    DirectLight one = sample_direct_light(transport, in_air, surface.place(i), lobes.at(i),
-                                          walks.depth[i] == 1, sampler);
+    const bool first = walks.depth[i] == 1;
+    DirectLight one =
+        sample_direct_light(batch.transport, in_air, surface.place(i), lobes.at(i), first, sampler);
     direct.area.set(i, one.area_diffuse);
     direct.punctual.set(i, one.punctual_diffuse);
+    if (first && !one.sure_of_punctual()) batch.samples[walks.sample[i]].flags &= uint8_t(~sample_sure);
   });
   return direct;
 }
@@ -190,13 +191,14 @@ uint32_t scatter_lanes(Batch& batch, MattWalks& walks, RayPacket& rays) {
     Sample& sample = batch.samples[walks.sample[i]];
     describe_place(transport.world, walks.hits[i], surface.place(i), surface.normal.at(i),
                    walks.hits[i].t, sample);
+    sample.flags |= sample_sure;
     if (lanes >> i & 1) sample.albedo = lobes.reflectance.at(i);
   });
   const LaneBits dimensions = dimensions_of(walks.depth);
   const bool one_lamp = tables.punctual.size() == 1 && tables.area_share <= 0;
   DirectLanes direct =
       one_lamp ? light_by_lamp(transport, surface, lobes, lanes, rays)
-               : light_by_choice(transport, surface, lobes, walks, dimensions, lanes);
+               : light_by_choice(batch, surface, lobes, walks, dimensions, lanes);
   const LaneMask lit = lanes_of_bits(lanes);
   Lanes3 later = walks.throughput * lobes.reflectance * (direct.area + direct.punctual);
   walks.smooth = walks.smooth + choose(lit, choose(first, direct.area, later), Lanes3{});

@@ -25,12 +25,14 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
   bsdf.diffuse = diffuse ? vec3(1) : vec3(0);
   sample.albedo = albedo * tint;
   if (looks_specular(bsdf)) sample.flags |= sample_specular;
+  if (has_specular(bsdf)) sample.flags &= uint8_t(~sample_sure);
   sampler.seek(base);
   if (!is_smooth(bsdf)) {
     DirectLight direct = sample_direct_light(transport, walk, surface, bsdf, true, sampler);
     sample.smooth += walk.throughput * direct.area_diffuse;
     sample.rest += tint * walk.throughput * albedo * direct.punctual_diffuse;
     add_gloss(walk.throughput * direct.specular);
+    if (!direct.sure_of_punctual()) sample.flags &= uint8_t(~sample_sure);
   }
   if (diffuse) {
     Walk next = walk;
@@ -67,6 +69,7 @@ void shade_first_matt(const Transport& transport, const WalkRules& rules, Walk& 
                       const Hit& hit, Sampler& sampler, Sample& sample) {
   MattSurface surface = eval_matt_surface(transport.world, walk.ray, hit);
   describe_place(transport.world, hit, surface, surface.normal, hit.t, sample);
+  sample.flags |= sample_sure;
   if (rules.max_depth < 2) return;
   MattLobe lobe = make_matt(surface, walk.ray.direction);
   if (!(max_component(lobe.reflectance) > least_albedo)) return;
@@ -77,6 +80,7 @@ void shade_first_matt(const Transport& transport, const WalkRules& rules, Walk& 
   DirectLight direct = sample_direct_light(transport, walk, surface, lobe, true, sampler);
   sample.smooth += direct.area_diffuse;
   sample.rest += sample.albedo * direct.punctual_diffuse;
+  if (!direct.sure_of_punctual()) sample.flags &= uint8_t(~sample_sure);
   sampler.seek(base + Dimensions::scatter + 1);
   BsdfSample scattered = sample_matt(lobe, sampler.next2());
   if (scattered.pdf > 0) scattered.weight = vec3(1);
@@ -101,6 +105,7 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
   const Walk begun = walk;
   if (!hit.valid()) {
     describe_sky(transport, walk.ray.direction, vec3(1), sample);
+    sample.flags |= sample_sure;
     return sample;
   }
   if (met_matt(transport, hit)) {
@@ -109,10 +114,12 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
   }
   FirstSurface first =
       find_first_surface(transport, rules.max_depth, walk, hit, sampler, sample);
+  sample.flags |= sample_sure;  // until chance comes in
   if (first.scatters)
     shade_first(transport, rules, first.walk, first.surface, first.bsdf, first.tint, sampler, sample);
   if (request.image && (sample.flags & sample_specular)) sample.image = find_image_distance(transport, begun, hit);
   if (first.mirrored) {
+    sample.flags &= uint8_t(~sample_sure);
     sampler.seek(3 * Dimensions::walk);
     sample.rest += follow(transport, rules, first.reflection, sampler);
   }

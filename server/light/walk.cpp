@@ -152,6 +152,7 @@ DirectLight direct_light(const Transport& transport, const Walk& walk, const Sur
     sampler.seek(base + Dimensions::punctual);
     LightSample light =
         sample_punctual_light(transport, place, normal, through, sampler, scattering.hint());
+    direct.punctual_share = light.share;
     if (light.pdf > 0) {
       BsdfValue value = scattering.eval(light.direction);
       if (max_component(value.diffuse + value.specular) > 0) {

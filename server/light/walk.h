@@ -74,6 +74,8 @@ bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered)
 // viewer.
 struct DirectLight {
   vec3 area_diffuse{0}, punctual_diffuse{0}, specular{0};
+  float punctual_share = 1;  // LightSample::share
+  bool sure_of_punctual() const { return punctual_share > 0.99f; }
   vec3 sum() const { return area_diffuse + punctual_diffuse + specular; }
 };
 // `apart`: the caller samples the diffuse and specular lobes one by one (else as a mixture), and

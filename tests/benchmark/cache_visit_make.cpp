@@ -146,6 +146,22 @@ VisitTrace make_tour(const Exhibit& castle, const World& world) {
                 });
 }
 
+// Between two viewpoints there is no way: the samples before and after lie less than a picture apart.
+VisitTrace make_jump(const Exhibit& castle) {
+  constexpr double stay = 1.2, leap = 0.001;
+  VisitTrace trace;
+  trace.name = "jump";
+  trace.about = "asks for one viewpoint after the other";
+  trace.exhibit = "castle";
+  double time = 0;
+  for (const char* name : {"hall", "crown", "paintings", "well", "fireplace", "windows"}) {
+    const Viewpoint& at = viewpoint(castle, name);
+    for (double t : {time, time + stay - leap}) trace.samples.push_back({t, at.position, at.yaw, at.pitch, at.fov});
+    time += stay;
+  }
+  return trace;
+}
+
 VisitTrace make_storyteller(const Exhibit& castle) {
   VisitTrace trace = record("storyteller", "stands before the storyteller, who tells a story", 5,
                             viewpoint(castle, "storyteller"), [](double, Viewpoint&) {});
@@ -166,7 +182,7 @@ void make_visit_traces(const Exhibit& castle, const World& world, const std::str
   for (const VisitTrace& trace :
        {make_stroll(castle, world), make_pauses(castle, world), make_turn(castle), make_approach(castle, world),
         make_door(castle, world), make_orbit(castle), make_tour(castle, world), make_storyteller(castle),
-        make_lamps(castle)})
+        make_lamps(castle), make_jump(castle)})
     save_visit_trace(trace, folder);
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <oneapi/tbb/global_control.h>
 
+#include "light/pixel_requests.h"
 #include "scenes/scenes.h"
 #include "statistics.h"
 #include "world/surface.h"
@@ -152,7 +153,7 @@ TEST(Technique, FirstSurfaceIsDescribed) {
   Lights lights = make_lights(world);
   Sample s =
       trace_one("path", world, lights, ray_towards({0, 0.275f, 0.8f}, {0.05f, 0.5f, -0.56f}));
-  EXPECT_EQ(s.flags, sample_hit);
+  EXPECT_EQ(s.flags, sample_hit | sample_sure);
   EXPECT_EQ(scene.objects[s.object], "back wall");
   EXPECT_NEAR(s.position.z, -0.56f, 1e-5f);
   EXPECT_NEAR(s.normal.z, 1, 1e-5f);
@@ -176,7 +177,7 @@ TEST(Technique, FirstSurfaceIsDescribed) {
   EXPECT_GT(s.albedo.x, 0.65f);
   // Nothing there.
   s = trace_one("path", world, lights, ray_towards({0, 0.275f, 0.8f}, {0, 0.275f, 2}));
-  EXPECT_EQ(s.flags, 0);
+  EXPECT_EQ(s.flags, sample_sure);
   EXPECT_EQ(s.position, vec3(0, 0, 1));
   EXPECT_EQ(s.radiance(), vec3(0));
 }
@@ -199,6 +200,41 @@ TEST(Technique, APaneShowsWhatIsBehindAndItsMirrorImage) {
                   0.96f * 3 + 0.04f * 50, 1e-3f);
 }
 
+// Of what a sample is sure of, every other sample of the same ray is the same, shadow or not; where one
+// of two lamps is drawn, or a gloss, it is not sure.
+TEST(Technique, SureSamplesRepeatThemselves) {
+  Scene one_lamp = make_mixed_scene();
+  Scene two_lamps = one_lamp;
+  two_lamps.lights.push_back(one_lamp.lights[0]);
+  two_lamps.lights[1].position.x = -0.2f;
+  two_lamps.lights[1].direction.x *= -1;
+  std::vector<PixelSample> places;
+  for (int y = 0; y < 24; y++)
+    for (int x = 0; x < 32; x++) places.push_back({x, y, 0});
+  for (const Scene* scene : {&one_lamp, &two_lamps}) {
+    World world(*scene);
+    Lights lights = make_lights(world);
+    View view = make_view(*scene, {0, 0.275, 0.8}, 0, 0, 0.7f, 32, 24);
+    int sure = 0, varied = 0;
+    for (const PixelSample& place : places) {
+      Ray ray = view_ray(view, float(place.x) + 0.5f, float(place.y) + 0.5f);
+      Sample first = trace_one("gather", world, lights, ray);
+      bool same = true;
+      for (uint64_t seed = 2; seed < 10; seed++) {
+        Sample other = trace_one("gather", world, lights, ray, seed);
+        same &= length(other.rest - first.rest) <= 0.01f * length(first.rest);
+      }
+      bool told = first.flags & sample_sure;
+      EXPECT_TRUE(same || !told) << place.x << " " << place.y;
+      EXPECT_FALSE(told && (first.flags & sample_specular));
+      sure += told;
+      varied += !same;
+    }
+    EXPECT_GT(varied, 40);  // the balls, the floor's gloss, the pane, and shadows of one of two
+    EXPECT_GT(sure, scene == &one_lamp ? 300 : 60);
+  }
+}
+
 TEST(Technique, MovingMeshesCarryTheirPlace) {
   Scene scene = make_cornell_box();
   scene.objects.push_back("storyteller");
@@ -207,7 +243,7 @@ TEST(Technique, MovingMeshesCarryTheirPlace) {
   World world(scene, {moving}, {uint32_t(scene.objects.size() - 1)});
   Lights lights = make_lights(world);
   Sample s = trace_one("path", world, lights, ray_towards({0, 0.4f, 0.8f}, {0, 0.4f, -0.1f}));
-  EXPECT_EQ(s.flags, sample_hit | sample_moving);
+  EXPECT_EQ(s.flags, sample_hit | sample_moving | sample_sure);
   EXPECT_EQ(scene.objects[s.object], "storyteller");
   EXPECT_EQ(s.instance, uint32_t(scene.instances.size()));
   EXPECT_LT(length(eval_position(world, s.instance, s.triangle, s.barycentric) - s.position),
