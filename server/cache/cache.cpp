@@ -247,7 +247,8 @@ void RenderCache::Impl::read_light(const View& of, const PictureSight* sight, Fr
   SurfaceCounts counts = read_surface(of, points, image, cells, frame);
   if (sight && sight->can_see(of)) {
     double began = seconds_now();
-    overlay_sight(of, *sight, is_still(), frame);
+    RestingPoints resting{points, image};
+    overlay_sight(of, *sight, is_still() ? &resting : nullptr, frame);
     stats.drawing_ms = float(1000 * (seconds_now() - began));
   }
   known = fill_cells(of, cells);

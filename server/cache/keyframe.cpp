@@ -12,6 +12,7 @@ namespace {
 
 // On each side, of width and height: turning goes sideways.
 constexpr int margin_across = 40, margin_down = 45;
+constexpr int widest_across = 10;  // of quick turns
 constexpr float nearest_depth = 1e-4f;  // metres, as in project_points()
 
 float disparity_of(float depth) {
@@ -47,10 +48,14 @@ void bound_block(const Keyframe& k, int column, int row, float& farthest, float&
 
 }  // namespace
 
-View keyframe_view(View view) {
+View keyframe_view(View view, float turn) {
   int height = view.height;
   auto margin = [](int pixels, int share) { return (pixels / share + 7) / 8 * 8; };
-  view.width += 2 * margin(view.width, margin_across);
+  // At the sides a turn moves more than in the middle.
+  float middle = 0.5f * float(height) / view.tan_half_fov, side = 0.5f * float(view.width) / middle;
+  float moves = turn > 0 ? middle * (1 + side * side) * turn : 0.0f, most = float(view.width / widest_across);
+  int turning = margin(int(std::min(moves, most)), 1);
+  view.width += 2 * std::max(margin(view.width, margin_across), turning);
   view.height += 2 * margin(view.height, margin_down);
   view.tan_half_fov *= float(view.height) / float(height);
   return view;

@@ -28,8 +28,9 @@ struct Keyframe {
   bool empty() const { return color.empty(); }
 };
 
-// The view with some of what lies around, in pixels of the same size: what is drawn of it for warps.
-View keyframe_view(View view);
+// The view with some of what lies around, in pixels of the same size: what is drawn of it for warps. To the
+// sides so much that it may turn by `turn` radians, within a tenth of its width.
+View keyframe_view(View view, float turn = 0);
 
 // Reuses the memory of `keyframe`. `depth`: along the viewing axis, one a pixel, as Frame::depth; anything
 // that is not a positive number counts as infinitely far. Throws std::invalid_argument when sizes differ.

@@ -49,7 +49,7 @@ uint32_t all_of(int count) { return count >= lanes ? 255u : (1u << count) - 1; }
 
 }  // namespace
 
-void overlay_sight(const View& view, const PictureSight& sight, bool still, Frame& frame) {
+void overlay_sight(const View& view, const PictureSight& sight, const RestingPoints* resting, Frame& frame) {
   sight.see(view, vec2(0.5f), [&](const SightRun& run) {
     uint64_t wrong = 0, guessed = 0;
     size_t row = size_t(run.y) * size_t(frame.width) + size_t(run.x);
@@ -59,8 +59,10 @@ void overlay_sight(const View& view, const PictureSight& sight, bool still, Fram
       wrong |= uint64_t(negative_lanes(~verdict.same) & all) << i;
       guessed |= uint64_t(negative_lanes(verdict.guessed) & all) << i;
     }
-    for (uint64_t rest = still ? wrong & ~guessed : 0; rest != 0; rest &= rest - 1) {
+    for (uint64_t rest = resting ? wrong & ~guessed : 0; rest != 0; rest &= rest - 1) {
       int i = std::countr_zero(rest);
+      uint32_t point = resting->image.point[row + size_t(i)];
+      if (point == no_point || !(resting->points.flags[point] & point_verified)) continue;
       if (!sight.moves(run.object[i]) && !sight.moves(frame.object[row + size_t(i)]))
         wrong &= ~(uint64_t(1) << i);
     }

@@ -11,8 +11,13 @@ namespace wellspring {
 
 // The frame's planes hold a packed surface. Pixels that show another surface than the points say,
 // or whose reflectance was guessed from neighbours, are overwritten.
-// `still`: at rest points of what does not move are left alone where they are, since they lie anywhere in
-// their pixels and so antialias them.
-void overlay_sight(const View& view, const PictureSight& sight, bool still, Frame& frame);
+// `resting`, null in motion: points of what does not move that were sampled from this very view are left
+// alone, since they lie anywhere in their pixels and so antialias them. Others that show another surface
+// are seen through gaps of a nearer one.
+struct RestingPoints {
+  const PointCache& points;
+  const PointImage& image;  // of the view
+};
+void overlay_sight(const View& view, const PictureSight& sight, const RestingPoints* resting, Frame& frame);
 
 }  // namespace wellspring

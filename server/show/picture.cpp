@@ -6,7 +6,6 @@
 #include "base/clock.h"
 #include "base/rng.h"
 #include "cache/compose_drawn.h"
-#include "cache/predict.h"
 #include "cache/trace_waiting.h"
 #include "show/in_view.h"
 #include "show/present.h"
@@ -23,10 +22,6 @@ constexpr double keyframe_rate = 30;   // pictures drawn a second while the visi
 constexpr float nearly_all = 0.999f;   // converged
 constexpr float forgotten = 0.998f;    // of what drawing took, a picture without it
 constexpr float few_guessed = 0.01f;   // of the pixels, and the points alone show a picture at rest
-constexpr double motion_seconds = 0.1;     // in which a visitor's motion is measured
-constexpr size_t most_past = 32;           // views of that time
-constexpr float fastest = 25;              // metres a second; more is a jump
-constexpr float smallest_leap = 0.5f;      // metres
 constexpr double predicted_pictures = 2;
 constexpr float predicted_share = 0.3f;    // of the samples, at most
 constexpr float barely_covered = 0.1f;  // of the pixels by points
@@ -56,37 +51,13 @@ DisplayCosts display_costs(const Show& show, const Visitor& visitor) {
           seconds(times.light)};
 }
 
-// Where the motion of the last moments leads in `seconds`. Inputs come in steps of their own, so that two
-// ticks alone would not tell; of a quick turn less than all of them is enough.
-View view_ahead(const Show& show, const Visitor& visitor, const View& view, double seconds) {
-  for (const Visitor::PastView& past : visitor.past) {
-    if (past.time >= show.time) break;
-    View ahead = extrapolate(past.view, view, float(seconds / (show.time - past.time)));
-    if (ahead != view) return ahead;
-  }
-  return view;
-}
-
 }  // namespace
 
 void watch(const Show& show, Visitor& visitor) {
   View view = view_of(show, visitor);
-  std::vector<Visitor::PastView>& past = visitor.past;
-  auto of_no_use = [&](const Visitor::PastView& one) {
-    return show.time - one.time > motion_seconds || one.view.width != view.width || one.view.height != view.height;
-  };
-  past.erase(past.begin(), std::find_if_not(past.begin(), past.end(), of_no_use));
   if (view != visitor.last_view) visitor.moved_at = show.time;
-  if (!past.empty()) {
-    float passed = float(show.time - past.back().time);
-    if (length(view.position - past.back().view.position) > fastest * passed + smallest_leap) {
-      visitor.leaps++;
-      past.clear();
-    }
-  }
+  if (note_view(visitor.heading, show.time, view)) visitor.leaps++;
   visitor.last_view = view;
-  if (past.size() >= most_past) past.erase(past.begin());
-  past.push_back({show.time, view});
 }
 
 bool stands(const Show& show, const Visitor& visitor) {
@@ -143,12 +114,13 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
     // It is seen from when it is finished until the next one is.
     interval = std::max(interval, 0.001 * double(visitor.times.interval));
     double seen_in = 0.001 * double(visitor.times.whole) + 0.5 * interval;
-    order.expected = view_ahead(show, visitor, now, seen_in);
-    order.ahead = view_ahead(show, visitor, now, seen_in + interval);
-    order.view = order.coarse ? keyframe_view(order.expected) : order.expected;
+    order.expected = expected_view(visitor.heading, now, seen_in);
+    order.ahead = expected_view(visitor.heading, now, seen_in + interval);
+    float turn = expected_turn(visitor.heading, now, 0.5 * interval);
+    order.view = order.coarse ? keyframe_view(order.expected, turn) : order.expected;
     if (order.coarse) order.ahead = keyframe_view(order.ahead);
   } else {
-    order.ahead = view_ahead(show, visitor, now, predicted_pictures * interval);
+    order.ahead = expected_view(visitor.heading, now, predicted_pictures * interval);
   }
   return order;
 }

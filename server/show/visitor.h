@@ -12,6 +12,7 @@
 #include "frame/tonemap.h"
 #include "show/easel.h"
 #include "show/flow.h"
+#include "show/heading.h"
 #include "show/sound.h"
 #include "show/tour.h"
 #include "wire/link.h"
@@ -81,11 +82,7 @@ struct Visitor {
   View last_view;   // of the last tick
   View shown_view;  // of the last picture
   uint32_t leaps = 0;  // to other places, so that nothing seen before helps
-  struct PastView {
-    double time = 0;
-    View view;
-  };
-  std::vector<PastView> past;  // of the last ticks: where the visitor is heading
+  Heading heading;
   double moved_at = 0;       // show time of the last change of view
   double sent_at = -1e9;      // show time of the last picture
   double pictured_at = -1e9;  // when it was due

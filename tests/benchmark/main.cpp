@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
       {"cache.display", bench_cache_display}, {"cache.warp", bench_cache_warp},
       {"cache.visit", bench_cache_visit},
       {"cache.mirror", bench_cache_mirror}, {"cache.rest", bench_cache_rest},
-      {"cache.starve", bench_cache_starve},
+      {"cache.starve", bench_cache_starve}, {"cache.turns", bench_cache_turns},
       {"light.frame", bench_light_frame}, {"light.scaling", bench_light_scaling},
       {"light.error", bench_light_error}, {"light.rays", bench_light_rays},
       {"light.cycles", bench_light_cycles}, {"light.photons", bench_light_photons}};

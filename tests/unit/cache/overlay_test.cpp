@@ -199,6 +199,23 @@ TEST(Overlay, RestsWithExactShapesAndFewPoints) {
   EXPECT_GT(count_wrong(world, view, guessed.frame), pixels / 50);
 }
 
+// Points of before that are seen through gaps of nearer ones do not stay at rest; those of the very view do.
+TEST(Overlay, WhoStopsSeesNoPointThroughGaps) {
+  Room room;
+  World world(room.scene);
+  world.commit();
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  Visit visit;
+  constexpr int width = 160, height = 120, pixels = width * height;
+  View view;
+  for (int i = 0; i < 28; i++) {
+    view = make_view(room.scene, {0.01 * std::min(i, 20), 0.25, 0.6}, 0, 0, 0.7f, width, height);
+    visit.step(world, lights, view, i < 20 ? pixels / 40 : pixels / 400, &sight);
+  }
+  EXPECT_LT(count_wrong(world, view, visit.frame), pixels / 1000);
+}
+
 // Odd sizes and both kinds of size in turn: tiles, blocks and light pixels end anywhere.
 TEST(Overlay, LightOfHalfTheResolutionIsEnough) {
   Room room;

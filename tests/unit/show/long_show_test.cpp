@@ -68,7 +68,7 @@ TEST(LongShow, ADayOfIdlingAndWalkingNeitherGrowsNorDrifts) {
     if (i > 62) {
       ASSERT_LE(visitor.cache_bytes, memory + 4096) << i;
       ASSERT_LE(visitor.memory_bytes, memory + (1 << 19)) << i;
-      ASSERT_LE(visitor.past.size(), 64u);
+      ASSERT_LE(visitor.heading.past.size(), 64u);
       ASSERT_LE(visitor.flow.in_flight.size(), 4096u);
     }
   }
