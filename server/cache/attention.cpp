@@ -16,8 +16,12 @@ namespace {
 constexpr float darkest_lit = 0.01f;  // reflectance that can tell of light, or show it
 constexpr float same_facing = 0.9f;   // cosine
 constexpr int change_ageing = 64;
-constexpr int change_witnesses = 3;   // changed points in 3x3 tiles that make it a change
-constexpr uint8_t changed_count = 2;  // samples a point near a change still vouches for
+// Light has changed in a tile where the witnesses of 3x3 tiles agree that it did: by how many standard
+// deviations their sum is off, each taken by its own size or by the noise known of it, whichever is
+// more (a self-normalised sum: rare bright samples neither make a change nor hide one for long; Pena,
+// Lai, Shao 2009), and by how much on average.
+constexpr float change_deviations = 5, least_change = 0.15f;
+constexpr uint8_t changed_count = 1;  // samples a point near a change still vouches for
 
 void age_tile(PointCache& points, const PointImage& image, StillImage& still, int tx, int ty) {
   int x1 = std::min((tx + 1) * change_tile, image.width),
@@ -30,25 +34,47 @@ void age_tile(PointCache& points, const PointImage& image, StillImage& still, in
       if (point == no_point || points.age[point] == evicted_age) continue;
       points.age[point] = uint8_t(std::min(points.age[point] + change_ageing, 254));
       points.count[point] = std::min(points.count[point], changed_count);
+      points.flags[point] |= point_relit;
     }
 }
 
-// Counts the witnesses of each tile where they lie now: answers may be frames late, and the view has
-// moved on.
-void place_witnesses(const PointCache& points, const View& view, PointImage& image) {
-  std::fill(image.changed.begin(), image.changed.end(), uint8_t(0));
-  for (uint32_t i : image.witnesses) {
-    if (i >= uint32_t(points.capacity()) || !is_alive(points, i)) continue;
-    vec3 place(points.x[i], points.y[i], points.z[i]);
-    if (points.flags[i] & point_infinite) place += view.position;
-    Projected at = project_point(view, place);
-    if (!(at.depth > 0 && at.x >= 0 && at.y >= 0 && at.x < float(image.width) && at.y < float(image.height)))
-      continue;
-    uint8_t& tile = image.changed[size_t(at.y) / change_tile * size_t(image.changed_width) +
-                                  size_t(at.x) / change_tile];
-    tile = uint8_t(std::min(tile + 1, 255));
+// The tile where a witness lies now, or -1: answers may be frames late, and the view has moved on.
+int tile_of(const PointCache& points, const View& view, const PointImage& image, uint32_t i) {
+  if (i >= uint32_t(points.capacity()) || !is_alive(points, i)) return -1;
+  vec3 place(points.x[i], points.y[i], points.z[i]);
+  if (points.flags[i] & point_infinite) place += view.position;
+  Projected at = project_point(view, place);
+  if (!(at.depth > 0 && at.x >= 0 && at.y >= 0 && at.x < float(image.width) && at.y < float(image.height)))
+    return -1;
+  return int(at.y) / change_tile * image.changed_width + int(at.x) / change_tile;
+}
+
+void place_witnesses(const PointCache& points, const View& view, PointImage& image,
+                     std::vector<int>& tiles) {
+  std::fill(image.changed.begin(), image.changed.end(), TileChange{});
+  tiles.resize(image.witnesses.size());
+  for (size_t i = 0; i < tiles.size(); i++) {
+    const Witness& witness = image.witnesses[i];
+    tiles[i] = tile_of(points, view, image, witness.point);
+    if (tiles[i] < 0) continue;
+    TileChange& tile = image.changed[size_t(tiles[i])];
+    tile.change += witness.change;
+    tile.square += std::max(witness.change * witness.change, witness.noise * witness.noise);
+    tile.count++;
   }
-  image.witnesses.clear();
+}
+
+bool has_changed(const PointImage& image, int tx, int ty) {
+  TileChange sum;
+  for (int y = std::max(ty - 1, 0); y <= std::min(ty + 1, image.changed_height - 1); y++)
+    for (int x = std::max(tx - 1, 0); x <= std::min(tx + 1, image.changed_width - 1); x++) {
+      const TileChange& tile = image.changed[size_t(y) * size_t(image.changed_width) + size_t(x)];
+      sum.change += tile.change;
+      sum.square += tile.square;
+      sum.count += tile.count;
+    }
+  return sum.change * sum.change > change_deviations * change_deviations * sum.square &&
+         std::abs(sum.change) > least_change * float(sum.count);
 }
 
 struct PixelPoint {
@@ -109,21 +135,26 @@ using Levels = std::array<uint8_t, 256>;
 
 }  // namespace
 
-void age_changed(PointCache& points, const View& view, PointImage& image, StillImage& still) {
-  if (image.witnesses.empty()) return;
-  place_witnesses(points, view, image);
-  int width = image.changed_width, height = image.changed_height;
-  const std::vector<uint8_t>& changed = image.changed;
-  parallel_ranges(height, 4, [&](int begin, int end) {
+bool age_changed(PointCache& points, const View& view, PointImage& image, StillImage& still) {
+  if (image.witnesses.empty()) return false;
+  keep_newest_witnesses(image);
+  std::vector<int> tiles;
+  place_witnesses(points, view, image, tiles);
+  std::vector<uint8_t> verdict(image.changed.size(), 0);
+  parallel_ranges(image.changed_height, 4, [&](int begin, int end) {
     for (int ty = begin; ty < end; ty++)
-      for (int tx = 0; tx < width; tx++) {
-        int near = 0;
-        for (int y = std::max(ty - 1, 0); y <= std::min(ty + 1, height - 1); y++)
-          for (int x = std::max(tx - 1, 0); x <= std::min(tx + 1, width - 1); x++)
-            near += changed[size_t(y) * size_t(width) + size_t(x)];
-        if (near >= change_witnesses) age_tile(points, image, still, tx, ty);
+      for (int tx = 0; tx < image.changed_width; tx++) {
+        if (!has_changed(image, tx, ty)) continue;
+        verdict[size_t(ty) * size_t(image.changed_width) + size_t(tx)] = 1;
+        age_tile(points, image, still, tx, ty);
       }
   });
+  // Their change is not to be told twice, and what is not seen now may have changed back when it is.
+  size_t kept = 0;
+  for (size_t i = 0; i < tiles.size(); i++)
+    if (tiles[i] >= 0 && !verdict[size_t(tiles[i])]) image.witnesses[kept++] = image.witnesses[i];
+  image.witnesses.resize(kept);
+  return std::any_of(verdict.begin(), verdict.end(), [](uint8_t aged) { return aged != 0; });
 }
 
 bool lend_light(PointCache& points, const PointImage& image) {

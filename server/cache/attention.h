@@ -9,10 +9,12 @@
 
 namespace wellspring {
 
-// Where several resampled points close by had changed (one may err), points nearby get older by a
-// quarter of the scale and forget most of their samples, and the picture's mean there starts over.
-// The image is projected for `view`. Uses up image.witnesses.
-void age_changed(PointCache& points, const View& view, PointImage& image, StillImage& still);
+// Where the witnesses of 3x3 tiles agree that the light has changed, by more than their noise can
+// explain, points of the tile get older by a quarter of the scale and forget their light as
+// forget_light() does, and the picture's mean there starts over. The image is projected for `view`.
+// Witnesses that were heard and those who are not in view are dismissed. Returns whether there was such
+// a place.
+bool age_changed(PointCache& points, const View& view, PointImage& image, StillImage& still);
 
 // Points whose light was forgotten are lent that of the nearest newer point of the same surface in their
 // block of `lent_block` pixels a side, if there is one. Returns whether any still waits for a sample.

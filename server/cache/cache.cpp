@@ -20,6 +20,7 @@
 #include "cache/reconstruct.h"
 #include "cache/remember.h"
 #include "cache/scratch.h"
+#include "cache/soften_edges.h"
 #include "cache/still_image.h"
 
 namespace wellspring {
@@ -99,7 +100,7 @@ struct RenderCache::Impl {
   }
   void count(const SurfaceCounts& counts, bool known);
   template <class Compose>
-  void draw(const View& view, const Compose& compose);
+  void draw(const View& lit, const Compose& compose);
 };
 
 RenderCache::RenderCache(const CacheSettings& settings, std::shared_ptr<CacheWork> shared)
@@ -191,7 +192,7 @@ float RenderCache::covered() const {
 
 void RenderCache::attend() {
   Impl& c = *impl_;
-  age_changed(c.points, c.view, c.image, c.still);
+  c.relit |= age_changed(c.points, c.view, c.image, c.still);
   prioritise(c.points, c.settings, c.image);
 }
 
@@ -228,6 +229,7 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   c.new_points += (float(result.kept) - c.new_points) * 0.1f;
   if (settings.current) c.fresh += result.kept - result.unplaced;
   if (!settings.still) return;
+  for (uint32_t pixel : result.restarted) c.still.count[pixel] = 0;
   for (size_t i = 0; i < c.work->targets.size(); i++)
     if (c.work->targets[i] != no_point && requests[i].resample != c.work->targets[i] &&
         requests[i].pixel < c.still.count.size())
@@ -282,12 +284,11 @@ void RenderCache::reconstruct(const View& view, std::span<const Seen> seen, Fram
   show_looks(pixels, c.work->looked_pixels, c.still, frame);
 }
 
-// Finds the light of `view`, then calls compose() and takes the time.
+// Finds the light of `lit`, then calls compose() and takes the time.
 template <class Compose>
-void RenderCache::Impl::draw(const View& view, const Compose& compose) {
-  View coarse = light_view(view);
-  fit_frame(coarse.width, coarse.height, work->light);
-  read_light(coarse, nullptr, work->light);
+void RenderCache::Impl::draw(const View& lit, const Compose& compose) {
+  fit_frame(lit.width, lit.height, work->light);
+  read_light(lit, nullptr, work->light);
   double began = seconds_now();
   compose();
   stats.drawing_ms = float(1000 * (seconds_now() - began));
@@ -295,17 +296,32 @@ void RenderCache::Impl::draw(const View& view, const Compose& compose) {
 
 void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame) {
   Impl& c = *impl_;
-  if (!c.projected || light_view(view) != c.view) project(light_view(view));
+  View lit = light_view(view);
+  if (!c.projected || lit != c.view) project(lit);
   fit_frame(view.width, view.height, frame);
-  c.draw(view, [&] { compose_drawn(view, sight, c.cells, c.known, c.work->light, frame); });
+  c.draw(lit, [&] { compose_drawn(view, sight, c.cells, c.known, c.work->light, frame); });
 }
 
 void RenderCache::draw(const View& view, const PictureSight& sight, const Tonemap& tonemap,
                        Image8& image, std::vector<float>* depth) {
   Impl& c = *impl_;
-  if (!c.projected || light_view(view) != c.view) project(light_view(view));
-  c.draw(view,
+  View lit = light_view(view);
+  if (!c.projected || lit != c.view) project(lit);
+  c.draw(lit,
          [&] { compose_drawn(view, sight, c.cells, c.known, c.work->light, tonemap, image, depth); });
+}
+
+void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame& frame) {
+  Impl& c = *impl_;
+  if (!c.projected || view != c.view) project(view);
+  fit_frame(view.width, view.height, frame);
+  c.draw(view, [&] {
+    compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
+    std::span<const std::vector<EdgeShare>> edges;
+    if (sight.anything_moves()) edges = compose_moving(view, sight, c.cells, c.known, c.work->light, frame);
+    accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, c.frames, c.still, frame);
+    soften_edges(edges, frame.color);
+  });
 }
 
 void RenderCache::relight(vec3 place, float reach) {

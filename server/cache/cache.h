@@ -91,6 +91,9 @@ class RenderCache {
   void draw(const View& view, const PictureSight& sight, Frame& frame);
   void draw(const View& view, const PictureSight& sight, const Tonemap& tonemap, Image8& image,
             std::vector<float>* depth = nullptr);
+  // The same at rest, in light of the view's own resolution, for which all of the frame before has been
+  // done: what does not move is antialiased in time, seen at another place of the pixels each time.
+  void draw_still(const View& view, const PictureSight& sight, Frame& frame);
   void set_attention(bool on);  // CacheSettings::attention
   // A lamp at `place` was switched, dimmed or moved, and is much of the light within `reach` metres
   // (infinite: everywhere): what was remembered of the light there counts no more, and is asked for

@@ -5,15 +5,18 @@
 #include <cmath>
 
 #include "cache/drawn_planes.h"
+#include "cache/nearby_light.h"
 #include "cache/soften_edges.h"
 
 namespace wellspring {
 namespace {
 
 // Pixels are lit in groups that lie between two columns of cell centres: four light pixels, which are
-// packed together, and four cells around. Groups begin half a group before a tile.
-constexpr int group = cell_size * light_scale, half_group = group / 2;
-static_assert(group == lanes && half_group == packed_four / 2 * light_scale);
+// packed together, and four cells around. Groups begin half a group before a tile. `Scale`: pixels a side
+// of one of the light; where that is 1 half of the lanes are left unused.
+template <int Scale>
+constexpr int group = cell_size * Scale;
+static_assert(cell_size == packed_four && group<light_scale> == lanes);
 
 struct RunPixels {
   RunSurface surface;
@@ -46,23 +49,31 @@ f8 lanes_at(const float* from, int i) {
   return v;
 }
 
-u8 twice(const u4& v) { return __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3); }
+// Four light pixels, each for `Scale` pixels of a row.
+template <int Scale>
+u8 spread(const u4& v) {
+  if constexpr (Scale == 1) return __builtin_shufflevector(v, v, 0, 1, 2, 3, 0, 1, 2, 3);
+  return __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
+}
+template <int Scale>
+constexpr f8 light_columns = Scale == 1 ? f8{0, 1, 2, 3, 0, 1, 2, 3} : f8{0, 0, 1, 1, 2, 2, 3, 3};
 
-// What the light's points say of the four light pixels of a group, each for two pixels of a row.
+// What the light's points say of the four light pixels of a group.
 struct OwnLight {
   u8 plane[surface_planes];
 };
+template <int Scale>
 OwnLight read_own(const Frame& light, int lx, int ly) {
   OwnLight own;
   PackedFour four(lx, light.width);
   if (four.count == packed_four) {
     size_t at = size_t(ly) * size_t(light.width) + size_t(lx);
-    own.plane[plane_object] = twice(load<u4>(&light.object[at]));
-    own.plane[plane_more] = twice(load<u4>(&light.confidence[at]));
-    own.plane[plane_depth] = twice(load<u4>(&light.depth[at]));
+    own.plane[plane_object] = spread<Scale>(load<u4>(&light.object[at]));
+    own.plane[plane_more] = spread<Scale>(load<u4>(&light.confidence[at]));
+    own.plane[plane_depth] = spread<Scale>(load<u4>(&light.depth[at]));
     const uint32_t* words = packed_words(light, lx, ly);
     for (int p : {plane_albedo, plane_rest, plane_smooth})
-      own.plane[p] = twice(load<u4>(words + packed_four * p));
+      own.plane[p] = spread<Scale>(load<u4>(words + packed_four * p));
     return own;
   }
   uint32_t words[surface_planes][packed_four] = {};
@@ -72,7 +83,7 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
     read_packed(light, x, ly, word);
     for (int p = 0; p < surface_planes; p++) words[p][x - lx] = word[p];
   }
-  for (int p = 0; p < surface_planes; p++) own.plane[p] = twice(load<u4>(words[p]));
+  for (int p = 0; p < surface_planes; p++) own.plane[p] = spread<Scale>(load<u4>(words[p]));
   return own;
 }
 
@@ -80,7 +91,7 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
 constexpr float dark = 0.05f, brightest = 4;
 // Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
 // or chance nobody knows.
-constexpr float doubt = 3, few_samples = 4;
+constexpr float moving_doubt = 3, few_samples = 4;
 f8 under(const f8& light, const f8& albedo, const f8& theirs) {
   return light * smaller((albedo + dark) / (theirs + dark), splat(brightest));
 }
@@ -91,6 +102,7 @@ struct Drawn {
 };
 
 // Own light of the pixels, as far as their light pixel's point lies on the same surface.
+template <int Scale>
 void take_own(const View& view, const PixelRays& rays, const OwnLight& own, float light_x,
               float light_y, Drawn& d) {
   Pixels& p = d.pixels;
@@ -98,7 +110,7 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
   f8 samples = to_float((more >> 16) & 255u);
   auto along = [&](vec3 axis) { return p.nx * axis.x + p.ny * axis.y + p.nz * axis.z; };
   f8 depth = as<f8>(own.plane[plane_depth]);
-  f8 lx = light_x + light_scale * rays.inverse_focal * f8{0, 0, 1, 1, 2, 2, 3, 3};
+  f8 lx = light_x + Scale * rays.inverse_focal * light_columns<Scale>;
   f8 off = along(view.right) * (p.depth * p.x - depth * lx) +
            along(view.up) * (p.depth * p.y - depth * light_y) +
            along(view.forward) * (p.depth - depth);
@@ -128,11 +140,11 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
 
 // Two rows of cells around a tile's blocks.
 struct CellRows {
-  static constexpr int most = RasterRun::most / group + 2;
+  static constexpr int most = RasterRun::most / cell_size + 2;
   uint64_t picture = 0;
   int first = 0, row = 0, count = 0;
   PaintedCell cell[2][most];
-  i8 flat[2];
+  i8 flat[(most + lanes - 1) / lanes];
 };
 
 void read_rows(const PixelRays& rays, const Cells& cells, int first, int row, int count,
@@ -145,14 +157,17 @@ void read_rows(const PixelRays& rays, const Cells& cells, int first, int row, in
       size_t i = nearest_cell(cells, first + k, row + r);
       for (size_t n = 0; n < 3; n++) c.albedo[n] = cells.albedo[n][i];
     }
-  for (int part = 0; part < 2; part++)
+  for (int part = 0; part < (count + lanes - 1) / lanes; part++)
     rows.flat[part] = find_flat(rays, cells, first + 1 + part * lanes, row + 1);
 }
 
 // The light of a lamp does not end where a picture on the wall does.
-void light_group(const PaintedCell* const* corners, bool flat, const f8* weights, Drawn& d) {
+template <class FindNearby>
+void light_group(const PaintedCell* const* corners, bool flat, const f8* weights, float doubt,
+                 const FindNearby& find_nearby, Drawn& d) {
   Pixels& p = d.pixels;
   Surroundings around = look_around(corners, flat, weights, p);
+  if (any(around.lonely)) find_nearby(around.lonely);
   // Polished metal of which nobody knows more than a sample or two shows about what is around it.
   i8 mirrors = around.lonely & (p.samples < few_samples) &
                (d.albedo.r + d.albedo.g + d.albedo.b < 0.01f);
@@ -166,22 +181,27 @@ void light_group(const PaintedCell* const* corners, bool flat, const f8* weights
   blend_light(around, p, doubt);
 }
 
-// All that pixels are lit by.
+// All that pixels are lit by, and where in them they are seen.
+template <int Scale>
 struct Composer {
+  static constexpr int group = wellspring::group<Scale>, half_group = group / 2;
   const View& view;
   const Cells& cells;
   bool known;
   const Frame& light;
   PixelRays rays, light_rays;
+  vec2 offset{0.5f};
+  float doubt = moving_doubt;
 
+  static int groups_of(const SightRun& run) { return (run.count + half_group + group - 1) / group; }
   const CellRows& rows_around(const SightRun& run) const;
-  Shown light_eight(const SightRun& run, const RunPixels& p, uint64_t shining, const CellRows& rows,
-                    int g) const;
+  void light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const;
+  Shown light_group_of(const SightRun& run, const RunPixels& p, uint64_t shining, const CellRows& rows,
+                       int g) const;
 };
 
-int groups_of(const SightRun& run) { return (run.count + half_group + group - 1) / group; }
-
-const CellRows& Composer::rows_around(const SightRun& run) const {
+template <int Scale>
+const CellRows& Composer<Scale>::rows_around(const SightRun& run) const {
   thread_local CellRows rows;
   int by = (run.y + half_group) / group, bx = run.x / group;  // the block's lower right cell
   int count = groups_of(run) + 1;
@@ -193,9 +213,30 @@ const CellRows& Composer::rows_around(const SightRun& run) const {
   return rows;
 }
 
+// Pixels of which no cell knows the surface: light of the points around that lie on it.
+template <int Scale>
+void Composer<Scale>::light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const {
+  Pixels& p = d.pixels;
+  for (unsigned bits = negative_lanes(lonely) & ((1u << group) - 1); bits != 0; bits &= bits - 1) {
+    int k = std::countr_zero(bits);
+    if (!(p.depth[k] < 0.5f * infinite_depth)) continue;
+    vec3 albedo(d.albedo.r[k], d.albedo.g[k], d.albedo.b[k]);
+    if (albedo == vec3(0) && p.samples[k] > 0) continue;  // mirrors are sharp
+    SeenPlace place{lx + k / Scale, ly, vec2(p.x[k], p.y[k]), p.depth[k], vec3(p.nx[k], p.ny[k], p.nz[k]),
+                    albedo, p.object[k]};
+    NearbyLight found = find_light_nearby(view, light_rays, light, place);
+    if (found.samples == 0) continue;
+    p.samples[k] = found.samples;
+    p.deviation[k] = found.deviation;
+    p.smooth.r[k] = found.smooth.x, p.smooth.g[k] = found.smooth.y, p.smooth.b[k] = found.smooth.z;
+    p.rest.r[k] = found.rest.x, p.rest.g[k] = found.rest.y, p.rest.b[k] = found.rest.z;
+  }
+}
+
 // Group `g` of the run's pixels.
-Shown Composer::light_eight(const SightRun& run, const RunPixels& p, uint64_t shining,
-                            const CellRows& rows, int g) const {
+template <int Scale>
+Shown Composer<Scale>::light_group_of(const SightRun& run, const RunPixels& p, uint64_t shining,
+                                      const CellRows& rows, int g) const {
   constexpr f8 lane{0, 1, 2, 3, 4, 5, 6, 7};
   int i = g * group - half_group, x = run.x + i;  // the first lane's pixel
   Drawn d;
@@ -207,18 +248,19 @@ Shown Composer::light_eight(const SightRun& run, const RunPixels& p, uint64_t sh
   d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
               lanes_at(p.surface.blue, i)};
   q.normal2 = larger(q.nx * q.nx + q.ny * q.ny + q.nz * q.nz, splat(1e-30f));
-  q.x = rays.x(float(x) + 0.5f) + rays.inverse_focal * lane;
-  q.y = splat(rays.y(float(run.y) + 0.5f));
-  int lx = (x + half_group) / light_scale + packed_start, ly = run.y / light_scale;
-  take_own(view, rays, read_own(light, lx, ly), light_rays.x(float(lx) + 0.5f),
-           light_rays.y(float(ly) + 0.5f), d);
+  q.x = rays.x(float(x) + offset.x) + rays.inverse_focal * lane;
+  q.y = splat(rays.y(float(run.y) + offset.y));
+  int lx = (x + half_group) / Scale + packed_start, ly = run.y / Scale;
+  take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
+                  light_rays.y(float(ly) + 0.5f), d);
   if (known) {
-    constexpr f8 fx = (lane + 0.5f) * (1.0f / group);
+    const f8 fx = smaller((lane + 0.5f) * (1.0f / group), splat(1));
     float fy = (float(run.y - (rows.row + 1) * group + half_group) + 0.5f) / group;
     f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
     const PaintedCell* corners[4] = {&rows.cell[0][g], &rows.cell[0][g + 1], &rows.cell[1][g],
                                      &rows.cell[1][g + 1]};
-    light_group(corners, rows.flat[g / lanes][g % lanes], weights, d);
+    auto find_nearby = [&](const i8& lonely) { light_narrow(lonely, lx, ly, d); };
+    light_group(corners, rows.flat[g / lanes][g % lanes], weights, doubt, find_nearby, d);
   }
   Shown shown{{positive(d.albedo.r * q.smooth.r + q.rest.r),
                positive(d.albedo.g * q.smooth.g + q.rest.g),
@@ -227,7 +269,7 @@ Shown Composer::light_eight(const SightRun& run, const RunPixels& p, uint64_t sh
               q.depth < 0.5f * infinite_depth ? q.depth : splat(INFINITY),
               q.object};
   uint64_t shines = i < 0 ? shining << -i : shining >> i;
-  for (uint32_t rest = uint32_t(shines) & ((1u << lanes) - 1); rest != 0; rest &= rest - 1) {
+  for (uint32_t rest = uint32_t(shines) & ((1u << group) - 1); rest != 0; rest &= rest - 1) {
     int k = std::countr_zero(rest);
     shown.color.r[k] = p.glow_red[i + k], shown.color.g[k] = p.glow_green[i + k];
     shown.color.b[k] = p.glow_blue[i + k];
@@ -236,22 +278,27 @@ Shown Composer::light_eight(const SightRun& run, const RunPixels& p, uint64_t sh
   return shown;
 }
 
-template <class Planes>
-std::span<const std::vector<EdgeShare>> compose(const Composer& composer, const PictureSight& sight,
-                                                const Planes& planes) {
-  return sight.see_edges(composer.view, vec2(0.5f), [&](const SightRun& run) {
+// Runs of the picture, put into `planes`.
+template <int Scale, class Planes>
+auto taker(const Composer<Scale>& composer, const Planes& planes) {
+  return [&composer, &planes](const SightRun& run) {
+    constexpr int group = Composer<Scale>::group;
     RunPixels p;
     uint64_t shining = describe_run(run, p);
     const CellRows& rows = composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
-    for (int g = 0, groups = groups_of(run); g < groups; g++) {
-      int i = g * group - half_group;
-      LanePart part{std::max(-i, 0), std::min(run.count - i, lanes)};
+    for (int g = 0, groups = composer.groups_of(run); g < groups; g++) {
+      int i = g * group - group / 2;
+      LanePart part{std::max(-i, 0), std::min(run.count - i, group)};
       planes.put(row + size_t(i + part.begin), part,
-                 composer.light_eight(run, p, shining, rows, g));
+                 composer.light_group_of(run, p, shining, rows, g));
     }
-  });
+  };
 }
+
+using CoarseComposer = Composer<light_scale>;
+using FineComposer = Composer<1>;
+constexpr float still_blur = 0.5f;  // the mean over places in the pixel blurs enough
 
 }  // namespace
 
@@ -266,8 +313,9 @@ View light_view(const View& view) {
 
 void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
                    const Frame& light, Frame& frame) {
-  Composer composer{view, cells, known, light, PixelRays(view), PixelRays(light_view(view))};
-  soften_edges(compose(composer, sight, FramePlanes{frame}), frame.color);
+  CoarseComposer composer{view, cells, known, light, PixelRays(view), PixelRays(light_view(view))};
+  FramePlanes planes{frame};
+  soften_edges(sight.see_edges(view, composer.offset, taker(composer, planes)), frame.color);
 }
 
 void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
@@ -277,9 +325,29 @@ void compose_drawn(const View& view, const PictureSight& sight, const Cells& cel
   image.width = view.width, image.height = view.height;
   image.rgb.resize(3 * pixels);
   if (depth) depth->resize(pixels);
-  Composer composer{view, cells, known, light, PixelRays(view), PixelRays(light_view(view))};
+  CoarseComposer composer{view, cells, known, light, PixelRays(view), PixelRays(light_view(view))};
   EyePlanes planes{tonemap.exposure, image.rgb.data(), depth ? depth->data() : nullptr};
-  soften_edges(compose(composer, sight, planes), image);
+  soften_edges(sight.see_edges(view, composer.offset, taker(composer, planes)), image);
+}
+
+void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,
+                   bool known, const Frame& light, Frame& frame) {
+  FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), offset, 0};
+  FramePlanes planes{frame};
+  sight.see(view, offset, taker(composer, planes), RasterShows::still, still_blur);
+}
+
+std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
+                                                       const Cells& cells, bool known,
+                                                       const Frame& light, Frame& frame) {
+  FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), vec2(0.5f), 0};
+  NearerPlanes planes{frame};
+  auto take = taker(composer, planes);
+  auto take_what_is_there = [&](const SightRun& run) {
+    for (int i = 0; i < run.count; i++)
+      if (run.object[i] != 0) return take(run);
+  };
+  return sight.see_edges(view, vec2(0.5f), take_what_is_there, RasterShows::moving);
 }
 
 }  // namespace wellspring

@@ -25,4 +25,15 @@ void compose_drawn(const View& view, const PictureSight& sight, const Cells& cel
                    const Frame& light, const Tonemap& tonemap, Image8& image,
                    std::vector<float>* depth);
 
+// What does not move of a picture at rest, in light of its own resolution, `light` being of `view`
+// itself, seen at one place of every pixel, `offset` (0 to 1): the mean over several such pictures is
+// antialiased.
+void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,
+                   bool known, const Frame& light, Frame& frame);
+// What moves, laid over that, always at the middle of the pixels, so that nothing trembles. Returns its
+// edges, good until the sight's next picture: see soften_edges().
+std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
+                                                       const Cells& cells, bool known,
+                                                       const Frame& light, Frame& frame);
+
 }  // namespace wellspring

@@ -42,6 +42,20 @@ struct FramePlanes {
   }
 };
 
+// What is nearer than what the frame shows is laid over it.
+struct NearerPlanes {
+  Frame& frame;
+  void put(size_t at, LanePart part, const Shown& s) const {
+    for (int k = part.begin; k < part.end; k++, at++) {
+      if (!(s.depth[k] < frame.depth[at])) continue;
+      frame.color[at] = vec3(s.color.r[k], s.color.g[k], s.color.b[k]);
+      frame.confidence[at] = s.samples[k] / (s.samples[k] + 8.0f);
+      frame.depth[at] = s.depth[k];
+      frame.object[at] = s.object[k];
+    }
+  }
+};
+
 // What the eye sees.
 struct EyePlanes {
   float exposure;

@@ -82,11 +82,11 @@ inline vec3 unpack_normal(uint16_t p) {
 
 // A standard deviation with 4 bits of exponent and 4 of mantissa, steps of 3 to 6 %: 2^-11 to 2^5;
 // 0 is exactly 0. It is the rounded top of the number's own bits, so both ways take a few
-// instructions.
-inline uint8_t pack_deviation(float s) {
+// instructions. `random`: as of pack_rgb9e5(), 19 bits of it; without it to the nearest.
+inline uint8_t pack_deviation(float s, uint32_t random = 1u << 18) {
   constexpr int least = (127 - 11) << 4;
   if (!(s > 0x1p-12f)) return 0;
-  int bits = int((std::bit_cast<uint32_t>(std::min(s, 31.0f)) + (1u << 18)) >> 19);
+  int bits = int((std::bit_cast<uint32_t>(std::min(s, 31.0f)) + (random & ((1u << 19) - 1))) >> 19);
   return uint8_t(std::clamp(bits - least, 1, 255));
 }
 inline float unpack_deviation(uint8_t p) {

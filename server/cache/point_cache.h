@@ -29,7 +29,7 @@ struct PointColor {
   uint32_t rest = 0;    // pack_rgb9e5, mean likewise
   uint32_t object = 0;
   uint16_t normal = 0;  // as PointCache::normal
-  uint8_t unused = 0;
+  uint8_t surprises = 0;  // samples in a row that differ from what was known well
   // pack_deviation: of one sample's `rest` luminance. Of a single sample: 0 unknown, else told by who
   // answered (sure_noise).
   uint8_t noise = 0;

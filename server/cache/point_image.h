@@ -2,6 +2,7 @@
 // What projects where (Walter 1999, figure 4: the point image), the priorities of the pixels, and
 // where the light was seen to change.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,15 +13,27 @@ namespace wellspring {
 
 inline constexpr uint32_t no_point = 0xffffffffu;
 inline constexpr float infinite_depth = 1e18f;  // of points at infinity; Frame::depth says infinity
-inline constexpr int change_tile = 8;           // pixels a side of one cell of `changed`
+inline constexpr int change_tile = 16;          // pixels a side of one cell of `changed`
+
+// What one sample says of a change in the light of a point that was known before.
+struct Witness {
+  uint32_t point = 0;
+  float change = 0;  // of its luminance by that of the brighter one, -1 to 1
+  float noise = 0;   // standard deviation that such a change has where nothing has changed; 0: unknown
+};
+// The sums of a tile's witnesses.
+struct TileChange {
+  float change = 0, square = 0;  // square: of the change or of its noise, whichever is more
+  int count = 0;
+};
 
 struct PointImage {
   int width = 0, height = 0;
   BigVector<uint32_t> point;      // index into the cache, or no_point
   BigVector<float> depth;         // along the viewing axis; 0 where there is no point
   std::vector<uint8_t> priority;  // 0: nothing to learn or already asked; 255: most urgent
-  std::vector<uint32_t> witnesses;  // resampled points that had changed; used up by attend()
-  std::vector<uint8_t> changed;     // how many of them each tile holds: scratch of attend()
+  std::vector<Witness> witnesses;   // the newest, oldest first; see age_changed()
+  std::vector<TileChange> changed;  // scratch of age_changed()
   int changed_width = 0, changed_height = 0;
 };
 
@@ -34,6 +47,13 @@ inline void reserve_image(PointImage& image, int width, int height) {
   image.changed.reserve(tiles(width) * tiles(height));
 }
 
+// Enough witnesses of each tile to tell change from noise.
+inline void keep_newest_witnesses(PointImage& image) {
+  constexpr size_t each = 12, most = 1 << 15;
+  size_t count = image.witnesses.size(), kept = std::min({count, each * image.changed.size(), most});
+  image.witnesses.erase(image.witnesses.begin(), image.witnesses.begin() + ptrdiff_t(count - kept));
+}
+
 // Empties the image when its size changes.
 inline void resize_image(PointImage& image, int width, int height) {
   if (width == image.width && height == image.height) return;
@@ -45,7 +65,7 @@ inline void resize_image(PointImage& image, int width, int height) {
   image.point.assign(pixels, no_point);
   image.depth.assign(pixels, 0.0f);
   image.priority.assign(pixels, uint8_t(0));
-  image.changed.assign(size_t(image.changed_width) * size_t(image.changed_height), uint8_t(0));
+  image.changed.assign(size_t(image.changed_width) * size_t(image.changed_height), TileChange{});
 }
 
 }  // namespace wellspring

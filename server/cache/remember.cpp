@@ -16,10 +16,13 @@ constexpr float same_place = 0.01f;  // of the distance: farther off is another 
 constexpr float same_image = 0.05f;  // likewise, in mirrors and glass
 constexpr float same_normal = 0.8f;  // cosine
 constexpr float same_albedo = 0.03f;
-constexpr float quiet_noise = 0.1f;  // of the mean: points this quiet may testify to a change
+// Points whose samples repeat themselves begin anew when one does not: at once where all were alike, at
+// the second time where all were nearly so. Few samples may be alike by chance.
+constexpr float no_noise = 0.01f, little_noise = 0.1f;  // standard deviation over the mean
+constexpr int few_samples = 2, many_samples = 8;
+constexpr int enough_surprises = 2;
 constexpr float unseen_bonus = 96;   // in age: unseen points are overwritten before seen ones
-constexpr int noise_memory = 8;      // samples the noise estimate looks back on
-constexpr size_t most_witnesses = 1 << 16;  // of changes, until attend() uses them up
+constexpr int noise_memory = 64;     // samples the noise estimate looks back on
 
 bool is_usable(const Sample& sample) {
   return std::isfinite(sample.image) && is_finite(sample.position) && is_finite(sample.normal) && is_finite(sample.albedo) &&
@@ -94,44 +97,63 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Found& 
   points.flags[i] = flags_of(found);
   points.count[i] = 1;
   points.color[i].noise = sample.flags & sample_sure ? sure_noise : uint8_t(0);
+  points.color[i].surprises = 0;
   points.color[i].smooth = pack_rgb9e5(sample.smooth, random);
   points.color[i].rest = pack_rgb9e5(sample.rest, random >> 4);
   points.color[i].object = sample.object;
 }
 
-// Adds one sample to the means. True when the point was quiet and yet the light at it has changed.
-bool improve_point(PointCache& points, uint32_t i, const View& view, const Found& found,
-                   bool exact, const RememberSettings& settings, uint32_t random) {
+// What a sample did to the point that it was given to.
+struct Effect {
+  bool restarted = false;  // the point began anew, as its light is another
+  bool tells = false;      // `witness` is good
+  Witness witness;
+};
+
+// Adds one sample to the means.
+Effect improve_point(PointCache& points, uint32_t i, const View& view, const Found& found, bool exact,
+                     const RememberSettings& settings, uint32_t random) {
   const Sample& sample = found.sample;
-  vec3 smooth = unpack_rgb9e5(points.color[i].smooth), rest = unpack_rgb9e5(points.color[i].rest);
+  PointColor& color = points.color[i];
+  vec3 smooth = unpack_rgb9e5(color.smooth), rest = unpack_rgb9e5(color.rest);
   int n = points.count[i];
+  Effect effect;
   if (points.flags[i] & point_relit) {
     uint8_t shown = points.flags[i] & point_visible;
     begin_point(points, i, view, found, random);
     points.flags[i] |= shown;
-    return false;
+    return effect;
   }
-  float deviation = unpack_deviation(points.color[i].noise);
+  float deviation = unpack_deviation(color.noise);
   float before = luminance(rest), now = luminance(max(sample.rest, vec3(0))),
         step = std::abs(now - before);
-  float level = std::max(before, now),
-        whole = luminance(unpack_albedo(points.color[i].albedo) * smooth) + level;
-  bool quiet = n >= 2 && deviation <= quiet_noise * level;
+  float level = std::max(before, now);
+  vec3 reflectance = unpack_albedo(color.albedo);
+  float whole = luminance(reflectance * smooth) + level;
   // Elsewhere in the pixel a texture may differ too: only an equal reflectance tells about light, and
   // of what a mirror shows nobody knows it.
-  vec3 reflectance = unpack_albedo(points.color[i].albedo);
-  bool comparable = exact || (!found.image && max_component(abs(reflectance - sample.albedo)) <= same_albedo);
-  if (comparable && quiet && step > settings.color_change * whole && step > 4 * deviation &&
-      !(points.flags[i] & point_specular)) {
+  effect.tells = whole > 0 && !(points.flags[i] & point_specular) &&
+                 (exact || (!found.image && max_component(abs(reflectance - sample.albedo)) <= same_albedo));
+  if (effect.tells)
+    effect.witness = {i, (now - before) / whole,
+                      n > 1 ? deviation * std::sqrt(1 + 1 / float(n)) / whole : 0.0f};
+  bool alike = n >= few_samples && deviation <= no_noise * before;
+  bool surprising = effect.tells && step > settings.color_change * whole && step > 4 * deviation &&
+                    (alike || (n >= many_samples && deviation <= little_noise * before));
+  color.surprises = surprising ? uint8_t(color.surprises + 1) : uint8_t(0);
+  if (surprising && (alike || color.surprises >= enough_surprises)) {
     begin_point(points, i, view, found, random);
-    return true;
+    effect.restarted = true;
+    return effect;
   }
-  float memory = float(std::min(n, noise_memory));
-  float variance =
-      n == 1
-          ? 0.5f * step * step
-          : (deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) / memory;
-  points.color[i].noise = pack_deviation(std::sqrt(variance));
+  if (!surprising) {
+    float memory = float(std::min(n, noise_memory));
+    float variance =
+        n == 1
+            ? 0.5f * step * step
+            : (deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) / memory;
+    color.noise = pack_deviation(std::sqrt(variance), random >> 8);
+  }
   int longest = points.flags[i] & point_specular ? settings.longest_specular : settings.longest_mean;
   float share = 1 / float(std::min(n, longest - 1) + 1);
   smooth += (max(sample.smooth, vec3(0)) - smooth) * share;
@@ -143,9 +165,9 @@ bool improve_point(PointCache& points, uint32_t i, const View& view, const Found
     points.flags[i] = uint8_t(flags_of(found) | (points.flags[i] & point_visible));
   }
   points.count[i] = uint8_t(std::min(n + 1, longest));
-  points.color[i].smooth = pack_rgb9e5(smooth, random);
-  points.color[i].rest = pack_rgb9e5(rest, random >> 4);
-  return false;
+  color.smooth = pack_rgb9e5(smooth, random);
+  color.rest = pack_rgb9e5(rest, random >> 4);
+  return effect;
 }
 
 constexpr size_t ahead = 8;  // samples by which their points are fetched early
@@ -259,7 +281,7 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
 
   auto random_of = [&](size_t i) { return uint32_t(mix64(requests[i].seed ^ 0x72656d65)); };
   auto shows = [&](size_t i) { return settings.current && requests[i].pixel < pixels; };
-  std::vector<uint8_t> altered(count, 0);
+  std::vector<Effect> effects(count);
   std::atomic<int> merged{0}, changed{0};
   parallel_ranges(int(count), 512, [&](int begin, int end) {
     int merged_here = 0, changed_here = 0;
@@ -270,13 +292,17 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
       if (point == no_point) continue;
       bool exact = requests[i].resample == point;
       if (is_same_surface(points, point, view, found(i), exact)) {
-        altered[i] = improve_point(points, point, view, found(i), exact, settings, random_of(i));
+        effects[i] = improve_point(points, point, view, found(i), exact, settings, random_of(i));
         merged_here++;
       } else {
+        // Another surface than was there: something has moved. At edges of what stands still, places
+        // are not exact enough to tell.
+        bool moves = ((points.flags[point] & point_moving) || (samples[i].flags & sample_moving)) && exact &&
+                     !(samples[i].flags & sample_specular);
         begin_point(points, point, view, found(i), random_of(i));
-        altered[i] = exact && !(samples[i].flags & sample_specular);
+        if (moves) effects[i] = {true, true, {point, 1, 0}};
       }
-      changed_here += altered[i];
+      changed_here += effects[i].restarted;
       if (shows(i)) show_point(points, view, point, requests[i].pixel, image);
     }
     merged += merged_here;
@@ -301,11 +327,11 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
     });
     points.next_group = uint32_t((points.next_group + round) % groups);
   }
-  if (changed > 0)
-    for (size_t i = 0; i < count; i++)
-      if (altered[i]) image.witnesses.push_back(targets[i]);
-  if (image.witnesses.size() > most_witnesses)
-    image.witnesses.erase(image.witnesses.begin(), image.witnesses.end() - most_witnesses);
+  for (size_t i = 0; i < count; i++) {
+    if (effects[i].tells) image.witnesses.push_back(effects[i].witness);
+    if (effects[i].restarted && shows(i)) result.restarted.push_back(requests[i].pixel);
+  }
+  keep_newest_witnesses(image);
   add_anchors(points, samples.first(count), targets);
   result.kept = int(count) - result.rejected;
   result.merged = merged;

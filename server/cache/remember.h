@@ -27,6 +27,7 @@ struct RememberSettings {
 struct Remembered {
   int kept = 0, merged = 0, added = 0, changed = 0, rejected = 0;
   int unplaced = 0;  // of those kept: without a pixel of the current view
+  std::vector<uint32_t> restarted;  // pixels whose points are among the changed
 };
 
 // Samples that are not finite are rejected; negative light counts as none; pixels outside the image

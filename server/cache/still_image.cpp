@@ -11,6 +11,7 @@ namespace wellspring {
 
 namespace {
 
+constexpr int still_drawn = 4 * still_places;  // drawn pictures that the mean looks back on
 constexpr int relit_samples = 6;     // that a mean from before the light changed is worth
 constexpr float darkest = 0.004f;    // reflectance through which light can be told
 constexpr float contrast = 4;        // of a surface within a pixel, at most
@@ -35,6 +36,42 @@ void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel,
   if (!known) return;
   vec3 surface = clamp(mean / max(light, vec3(1e-5f)), albedo / contrast, albedo * contrast);
   for (size_t c = 0; c < 3; c++) still.mean[c][pixel] = pack_half(surface[int(c)]);
+}
+
+vec2 still_place(int pictures) {
+  // The additive recurrence of the plastic number's powers (Roberts 2018), which is as even in any row
+  // of its places.
+  uint32_t i = uint32_t(pictures % (still_places * 64));
+  auto part = [i](uint32_t step) { return float((0x80000000u + step * i) >> 8) * 0x1p-24f; };
+  return {part(3242174889u), part(2447445414u)};
+}
+
+void accumulate_drawn(const std::function<bool(uint32_t)>& moves, uint32_t seed, StillImage& still,
+                      Frame& frame) {
+  size_t width = size_t(frame.width);
+  parallel_ranges(frame.height, 8, [&](int begin, int end) {
+    uint32_t last = 0;  // neighbours mostly show the same
+    bool last_moves = moves(last);
+    for (size_t i = size_t(begin) * width; i < size_t(end) * width; i++) {
+      if (frame.object[i] != last) last_moves = moves(last = frame.object[i]);
+      if (last_moves) {
+        still.count[i] = 0;
+        continue;
+      }
+      int n = still.count[i] & ~still_fresh;
+      if (n == still_relit) n = 0;
+      n = std::min(n + 1, still_drawn);
+      vec3 mean(unpack_half(still.mean[0][i]), unpack_half(still.mean[1][i]),
+                unpack_half(still.mean[2][i]));
+      // Later pictures count more: their light was known better.
+      mean = n == 1 ? frame.color[i] : mean + (frame.color[i] - mean) * (1.5f / (float(n) + 0.5f));
+      uint64_t random = mix64(uint64_t(seed) << 32 | i);
+      for (size_t c = 0; c < 3; c++)
+        still.mean[c][i] = pack_half(mean[int(c)], uint32_t(random >> (16 * c)));
+      still.count[i] = uint8_t(n);
+      frame.color[i] = mean;
+    }
+  });
 }
 
 void accumulate_still(const PointCache& points, const PointImage& image, uint32_t seed,

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // While the view stands still, rays are spread over their pixels; the mean of what a pixel showed
-// after each of its samples is the antialiased picture. 7 bytes a pixel.
+// after each of its samples is the antialiased picture. Of pictures that are drawn, seen at another
+// place of their pixels each time, it is the mean over the last of them. 7 bytes a pixel.
 #pragma once
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "cache/point_cache.h"
@@ -34,6 +36,16 @@ void relight_still(const PointCache& points, const PointImage& image, const Forg
 // over.
 void accumulate_still(const PointCache& points, const PointImage& image, uint32_t seed,
                       StillImage& still, Frame& frame);
+
+// Where in their pixels the picture after `pictures` others is seen: any `still_places` of them in a
+// row are spread evenly.
+inline constexpr int still_places = 16;
+vec2 still_place(int pictures);
+
+// Averages a drawn picture into `still` and shows the average, but for pixels of objects of which
+// `moves` says so.
+void accumulate_drawn(const std::function<bool(uint32_t)>& moves, uint32_t seed, StillImage& still,
+                      Frame& frame);
 
 // Implementation of the template: of one pixel, whose point's light is forgotten.
 void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel, StillImage& still);

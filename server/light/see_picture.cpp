@@ -183,7 +183,7 @@ struct SightRun::Impl {
   const PictureSight::Impl& sight;
   const View& view;
   vec2 offset;
-  float pixel_angle;
+  float pixel_angle, blurred_angle;
   FacetCache& facets;
   const RasterRun* run = nullptr;
   // Towards pixel i, at depth 1.
@@ -267,7 +267,7 @@ bool SightRun::Impl::describe(int begin, int end, RunSurface& to) const {
     bool done = mesh.colors.empty();
     if (done && !(plain && plain_shine)) {
       int middle = std::min(i + lane_count / 2, end - 1);
-      float width = pixel_width(f, r.depth[middle], direction(middle), pixel_angle);
+      float width = pixel_width(f, r.depth[middle], direction(middle), blurred_angle);
       if (!plain) done = read_lanes(f.base, m.base_color_texture, i, width, rgb);
       if (done && !plain_shine)
         done = read_lanes(f.shine, m.metallic_roughness_texture, i, width, shine);
@@ -327,7 +327,7 @@ Seen SightRun::Impl::see(int i) const {
       wellspring::see(sight.world, sight.lights, std::span(&ray, 1), std::span(&seen, 1));
       return seen;
     }
-    float pixel = pixel_width(f, run->depth[i], direction(i), pixel_angle);
+    float pixel = pixel_width(f, run->depth[i], direction(i), blurred_angle);
     seen = see_facet(sight.pictures, sight.world, f, hit, pixel);
   }
   if (run->veil) {
@@ -338,23 +338,33 @@ Seen SightRun::Impl::see(int i) const {
   return seen;
 }
 
-void PictureSight::see(const View& view, vec2 offset,
-                       const std::function<void(const SightRun&)>& take) const {
+bool PictureSight::anything_moves() const {
+  const World& world = impl_->world;
+  for (int i = 0; i < world.instance_count(); i++)
+    if (world.is_moving(uint32_t(i)) && world.is_visible(uint32_t(i))) return true;
+  return false;
+}
+
+void PictureSight::see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
+                       RasterShows shows, float blur) const {
   RasterSettings settings;
+  settings.shows = shows;
   settings.offset = offset;
-  draw(view, settings, take);
+  draw(view, settings, blur, take);
 }
 
 std::span<const std::vector<EdgeShare>> PictureSight::see_edges(
-    const View& view, vec2 offset, const std::function<void(const SightRun&)>& take) const {
+    const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
+    RasterShows shows) const {
   RasterSettings settings;
+  settings.shows = shows;
   settings.offset = offset;
   settings.edges = true;
-  draw(view, settings, take);
+  draw(view, settings, 1, take);
   return impl_->raster.edges();
 }
 
-void PictureSight::draw(const View& view, RasterSettings settings,
+void PictureSight::draw(const View& view, RasterSettings settings, float blur,
                         const std::function<void(const SightRun&)>& take) const {
   static std::atomic<uint64_t> pictures = 0;
   const uint64_t picture = ++pictures;
@@ -378,7 +388,7 @@ void PictureSight::draw(const View& view, RasterSettings settings,
       uint32_t shown = instance == RasterRun::nothing ? 0 : s.world.object_of(instance);
       std::fill(object + begin, object + raster_run.end[p], shown);
     }
-    SightRun::Impl run_impl{s, view, settings.offset, slope, facets, &raster_run};
+    SightRun::Impl run_impl{s, view, settings.offset, slope, blur * slope, facets, &raster_run};
     SightRun run;
     run.picture = picture;
     run.x = raster_run.x, run.y = raster_run.y, run.count = raster_run.count;

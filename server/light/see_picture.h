@@ -50,20 +50,25 @@ class PictureSight {
   ~PictureSight();
 
   // Calls `take` from many threads; together the calls cover every pixel once. `offset`: of the
-  // sampling place in its pixel, 0 to 1. Call after World::commit(), while nothing moves.
-  void see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take) const;
+  // sampling place in its pixel, 0 to 1. `blur`: pixels over which pictures on surfaces are averaged.
+  // Call after World::commit(), while nothing moves.
+  void see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
+           RasterShows shows = RasterShows::all, float blur = 1) const;
   // The same, and then finds Raster::edges(), which are good until the next call.
   std::span<const std::vector<EdgeShare>> see_edges(
-      const View& view, vec2 offset, const std::function<void(const SightRun&)>& take) const;
+      const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
+      RasterShows shows = RasterShows::all) const;
   // Is it of a mesh that moves?
   bool moves(uint32_t object) const;
+  // Is there a visible one that does, wherever it is?
+  bool anything_moves() const;
   // Does the view's eye stand where runs are right? Not within a solid of glass, whose own light
   // and colour only rays meet.
   bool can_see(const View& view) const;
 
  private:
   friend class SightRun;
-  void draw(const View& view, RasterSettings settings,
+  void draw(const View& view, RasterSettings settings, float blur,
             const std::function<void(const SightRun&)>& take) const;
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -47,7 +47,7 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
   plan.drawn &= !plan.primary;
   bool coarse = plan.drawn && !fine;  // edges are drawn, light has a quarter of the pixels
   if (plan.drawn) seconds = std::max(seconds + costs.display_seconds - display - drawing, least_light * seconds);
-  double look_seconds = plan.primary ? all_seconds : coarse ? 0 : edge_share * seconds;
+  double look_seconds = plan.primary ? all_seconds : plan.drawn ? 0 : edge_share * seconds;
   plan.looks = plan.primary ? int(all_looks) : whole(look_seconds * costs.looks_per_second, all_looks);
   plan.samples = std::max(
       whole((seconds - look_seconds) * costs.samples_per_second,

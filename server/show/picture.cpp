@@ -162,18 +162,21 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   }
   double traced = seconds_now();
   if (!costs.late) cache.remember(lit, work.requests, work.samples);
-  bool drawn = order.coarse || (display.drawn && (order.guessed || cache.stats().filled > few_guessed));
+  bool still = order.still && display.drawn && !order.coarse && show.sight->can_see(view);
+  bool drawn = order.coarse || still || (display.drawn && (order.guessed || cache.stats().filled > few_guessed));
   work.looks.clear();
   const Tonemap curve{show.exhibit.exposure};
   if (order.coarse)
     cache.draw(view, *show.sight, curve, work.picture, order.keep ? &work.depth : nullptr);
+  else if (still)
+    cache.draw_still(view, *show.sight, work.frame);
   else
     cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, work.frame, work.looks);
   work.seen.resize(work.looks.size());
   double surveyed = seconds_now();
   see(*show.world, show.lights, work.looks, work.seen);
   double looked = seconds_now();
-  if (!order.coarse) cache.reconstruct(view, work.seen, work.frame);
+  if (!order.coarse && !still) cache.reconstruct(view, work.seen, work.frame);
   double reconstructed = seconds_now();
   if (!order.coarse) tonemap(work.frame, curve, work.picture);
   if (order.keep)

@@ -76,7 +76,7 @@ struct Raster::Impl {
   std::vector<std::vector<EdgeShare>> edges, border_edges;  // of each tile
 
   explicit Impl(const World& w) : world(w) {}
-  void find_pieces(const View& view);
+  void find_pieces(const View& view, const RasterSettings& settings);
   void drop_hidden(const View& view, const RasterView& raster, size_t first);
   void fill_block(Block& block, std::span<const RasterPiece> of, const View& view,
                   const RasterSettings& settings, const RasterView& raster) const;
@@ -126,12 +126,18 @@ Raster::~Raster() = default;
 size_t Raster::drawn_clusters() const { return impl_->pieces.size(); }
 size_t Raster::hidden_clusters() const { return impl_->hidden; }
 
-void Raster::Impl::find_pieces(const View& view) {
+void Raster::Impl::find_pieces(const View& view, const RasterSettings& settings) {
+  auto veils = [&](const PlacedMesh& placed) {
+    size_t material = size_t(placed.mesh->material);
+    return material < settings.see_through.size() && settings.see_through[material] != 0;
+  };
   pieces.clear();
   moving.assign(mesh_of.size(), {});
   for (uint32_t i = 0; i < mesh_of.size(); i++) {
     if (!world.is_visible(i)) continue;
     const PlacedMesh& placed = world.placed(i);
+    if (settings.shows == RasterShows::still && placed.moving) continue;
+    if (settings.shows == RasterShows::moving && !placed.moving && !veils(placed)) continue;
     moving[i] = moving_box(placed);
     wellspring::find_pieces(view, placed, meshes[mesh_of[i]], i, moving[i], near, pieces);
   }
@@ -340,7 +346,7 @@ void Raster::draw(const View& view, const RasterSettings& settings,
   raster.centre_steps_y = view.height * (raster_steps / 2) - steps(settings.offset.y);
   raster.centre_x = float(raster.centre_steps_x) / raster_steps;
   raster.centre_y = float(raster.centre_steps_y) / raster_steps;
-  r.find_pieces(view);
+  r.find_pieces(view, settings);
   int columns = (view.width + tile_width - 1) / tile_width;
   int rows = (view.height + tile_height - 1) / tile_height;
   r.tiles.resize(size_t(columns * rows));

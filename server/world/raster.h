@@ -48,6 +48,9 @@ struct EdgeShare {
   float share = 0;
 };
 
+// Of a scene's instances, those to be drawn. What is see-through and still veils what moves too.
+enum class RasterShows : uint8_t { all, still, moving };
+
 struct RasterSettings {
   vec2 offset{0.5f};  // of the sampling place in its pixel, 0 to 1
   // Of each material of the scene (empty: none). Not 0: its triangles hide nothing but veil what is
@@ -58,6 +61,7 @@ struct RasterSettings {
   // one place are put together in no order.
   std::function<Veil(const Hit& hit, vec3 direction)> veil;
   bool edges = false;  // find Raster::edges()
+  RasterShows shows = RasterShows::all;
 };
 
 // Keeps its arrays from picture to picture. Surfaces with alpha are passed through where a ray

@@ -98,6 +98,8 @@ class CacheMethod : public VisitMethod {
     }
     if (coarse)
       cache_.draw(moment.view, sight(moment), shown.frame);
+    else if (primary_ && sight(moment).can_see(moment.view))
+      cache_.draw_still(moment.view, sight(moment), shown.frame);
     else
       finish(moment, looks, shown.frame);
     shown.stats = cache_.stats();

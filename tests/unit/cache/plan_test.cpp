@@ -152,34 +152,88 @@ TEST(Attention, EmptyBeforeOldBeforeFresh) {
   EXPECT_EQ(at(10, 10), at(100, 50));
 }
 
-TEST(Attention, AChangeAgesTheNeighbourhoodOnce) {
+struct Changes : testing::Test {
   Planner p;
-  for (uint32_t i = 0; i < 14400; i++) {
-    vec3 place = view_ray(p.view, float(i % 160) + 0.5f, float(i / 160) + 0.5f).direction * 3.0f;
-    p.image.point[i] = i, p.points.age[i] = 10, p.points.count[i] = 30;
-    p.points.flags[i] = point_used;
-    p.points.x[i] = place.x, p.points.y[i] = place.y, p.points.z[i] = place.z;
-  }
   StillImage still;
-  uint32_t witness = 44 * 160 + 44;
-  p.image.witnesses = {witness};
-  age_changed(p.points, p.view, p.image, still);
-  EXPECT_EQ(p.points.age[44 * 160 + 44], 10);  // one may err
-  p.image.witnesses = {witness, witness + 1, witness + 160};
-  age_changed(p.points, p.view, p.image, still);
-  EXPECT_EQ(p.points.age[44 * 160 + 44], 74);
-  EXPECT_LE(p.points.count[44 * 160 + 44], 2);
-  EXPECT_EQ(p.points.age[34 * 160 + 34], 74);
-  EXPECT_EQ(p.points.age[44 * 160 + 90], 10);
-  age_changed(p.points, p.view, p.image, still);
-  EXPECT_EQ(p.points.age[44 * 160 + 44], 74);
-  // Of points that a moving view has carried elsewhere since, those around where they are now.
+  Rng rng{11};
+  void SetUp() override {
+    for (uint32_t i = 0; i < 14400; i++) {
+      vec3 place = view_ray(p.view, float(i % 160) + 0.5f, float(i / 160) + 0.5f).direction * 3.0f;
+      p.image.point[i] = i, p.points.age[i] = 10, p.points.count[i] = 30;
+      p.points.flags[i] = point_used;
+      p.points.x[i] = place.x, p.points.y[i] = place.y, p.points.z[i] = place.z;
+    }
+  }
+  static uint32_t at(int x, int y) { return uint32_t(y * 160 + x); }
+  // `count` witnesses around (x, y), each from `say`.
+  template <class Say>
+  void hear(int x, int y, int count, const Say& say) {
+    for (int i = 0; i < count; i++) {
+      Witness witness = say();
+      witness.point = at(x + i % 8, y + i / 8 % 8);
+      p.image.witnesses.push_back(witness);
+    }
+  }
+  void hear(int x, int y, int count, float change, float noise = 0) {
+    hear(x, y, count, [&] { return Witness{0, change, noise}; });
+  }
+  void judge() { age_changed(p.points, p.view, p.image, still); }
+};
+
+TEST_F(Changes, AgeTheNeighbourhoodOnce) {
+  hear(44, 44, 9, -0.8f);
+  judge();
+  EXPECT_EQ(p.points.age[at(44, 44)], 10);  // they may err
+  hear(44, 44, 60, -0.8f);
+  judge();
+  EXPECT_EQ(p.points.age[at(44, 44)], 74);
+  EXPECT_LE(p.points.count[at(44, 44)], 2);
+  EXPECT_EQ(p.points.age[at(28, 44)], 74);
+  EXPECT_EQ(p.points.age[at(100, 44)], 10);
+  judge();
+  EXPECT_EQ(p.points.age[at(44, 44)], 74);
+}
+
+// Each for itself might be chance; together they are not, though no frame has many.
+TEST_F(Changes, FewWitnessesAFrameAddUp) {
+  for (int frame = 1; frame <= 7; frame++) {
+    hear(44, 44, 4, 0.5f);
+    judge();
+    EXPECT_EQ(p.points.age[at(44, 44)], frame < 7 ? 10 : 74) << frame;
+  }
+}
+
+TEST_F(Changes, NoiseIsNoChange) {
+  // Half of the tiles hear samples of a skewed distribution: one in twenty is thirty times as bright as
+  // the rest, which are darker than the mean.
+  for (int frame = 0; frame < 400; frame++) {
+    hear(32, 32, 20, [&] {
+      bool bright = rng.uniform() < 0.05f;
+      return Witness{0, bright ? 0.92f : -0.6f, 2.6f};
+    });
+    // And of points that have few samples yet, and know no noise.
+    hear(96, 32, 20, [&] { return Witness{0, rng.uniform() < 0.5f ? -0.7f : 0.7f, 0}; });
+    judge();
+  }
+  EXPECT_EQ(p.points.age[at(36, 36)], 10);
+  EXPECT_EQ(p.points.age[at(100, 36)], 10);
+}
+
+TEST_F(Changes, SmallOnesAreLeftToTheMeans) {
+  hear(44, 44, 60, 0.05f);
+  judge();
+  EXPECT_EQ(p.points.age[at(44, 44)], 10);
+}
+
+// Of points that a moving view has carried elsewhere since, those around where they are now.
+TEST_F(Changes, AreSeenWhereTheViewHasCarriedThem) {
   View turned = look_at(vec3(0), view_ray(p.view, 120, 45).direction, 60, 160, 90);
-  p.image.witnesses = {witness, witness + 1, witness + 160, 50 * 160 + 119, 50 * 160 + 120, 51 * 160 + 121};
+  hear(116, 41, 40, 0.9f);  // what was at column 120 is in the middle now
+  hear(2, 2, 40, 0.9f);     // of these nobody is there any more
   age_changed(p.points, turned, p.image, still);
-  EXPECT_EQ(p.points.age[50 * 160 + 80], 74);   // what was at column 120 is in the middle now
-  EXPECT_EQ(p.points.age[50 * 160 + 120], 10);
-  EXPECT_EQ(p.points.age[44 * 160 + 44], 74);   // nobody of those is there any more
+  EXPECT_EQ(p.points.age[at(80, 45)], 74);
+  EXPECT_EQ(p.points.age[at(4, 4)], 10);
+  EXPECT_TRUE(p.image.witnesses.empty());
 }
 
 }  // namespace

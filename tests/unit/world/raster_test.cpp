@@ -158,6 +158,39 @@ TEST(Raster, LeavesOutWhatIsHidden) {
   EXPECT_GT(moved, 500);
 }
 
+// What stands still and what moves, drawn apart and the nearer taken, are the whole picture.
+TEST(Raster, StillAndMovingMakeAll) {
+  Scene scene = empty_scene();
+  add_mesh(scene, soup(3, 2000), "soup");
+  scene.objects.push_back("mover");
+  View view = view_of(scene, 1, 91, 67);
+  Mesh mover = sphere_mesh(0, 0.02f, 16);
+  for (vec3& p : mover.positions) p += view.position + 0.1f * view.forward;
+  World world(scene, {mover}, {uint32_t(scene.objects.size() - 1)});
+  world.commit();
+  Raster raster(world);
+  auto shows = [&](RasterShows which) {
+    RasterSettings settings;
+    settings.shows = which;
+    return draw(raster, view, settings);
+  };
+  Picture all = shows(RasterShows::all), still = shows(RasterShows::still), moving = shows(RasterShows::moving);
+  int from[2] = {};
+  for (size_t i = 0; i < all.hits.size(); i++) {
+    const Hit &a = all.hits[i], &s = still.hits[i], &m = moving.hits[i];
+    if (s.valid()) EXPECT_FALSE(world.is_moving(s.instance));
+    if (m.valid()) EXPECT_TRUE(world.is_moving(m.instance));
+    const Hit& nearer = m.valid() && (!s.valid() || m.t < s.t) ? m : s;
+    ASSERT_EQ(a.valid(), nearer.valid()) << i;
+    if (!a.valid()) continue;
+    EXPECT_EQ(a.instance, nearer.instance) << i;
+    EXPECT_EQ(a.triangle, nearer.triangle) << i;
+    from[world.is_moving(a.instance)]++;
+  }
+  EXPECT_GT(from[0], 100);
+  EXPECT_GT(from[1], 100);
+}
+
 TEST(Raster, SamplesWhereItIsTold) {
   Scene scene = empty_scene();
   add_mesh(scene, soup(3, 2000), "soup");

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures at rest that are drawn: antialiased in time where nothing moves, sharp where something does.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cache/cache.h"
+#include "frame/compare.h"
+#include "light/technique.h"
+#include "scenes/scenes.h"
+
+using namespace wellspring;
+using namespace wellspring::scenes;
+
+namespace {
+
+constexpr int width = 120, height = 90, pixels = width * height;
+
+// A box, bars before its back wall that are thinner than a cell of light, and a ball that can be moved.
+struct Stage {
+  Scene scene = make_cornell_box();
+  Mesh ball;
+  std::unique_ptr<World> world;
+  Lights lights;
+  std::unique_ptr<PictureSight> sight;
+  View view;
+  explicit Stage(bool with_ball) {
+    int pale = add_material(scene, diffuse(vec3(0.7f)));
+    for (int i = 0; i < 6; i++)
+      add_quad(scene, pale, {-0.25f + 0.1f * float(i), 0, -0.1f}, {0.012f, 0, 0}, {0, 0.5f, 0}, "bar");
+    ball = sphere_mesh(add_material(scene, diffuse(vec3(0.7f, 0.6f, 0.1f))), 0.08f, 16);
+    for (vec3& p : ball.positions) p += vec3(-0.1f, 0.1f, 0.1f);
+    scene.objects.push_back("ball");
+    uint32_t object = uint32_t(scene.objects.size() - 1);
+    world = with_ball ? std::make_unique<World>(scene, std::vector<Mesh>{ball}, std::vector<uint32_t>{object})
+                      : std::make_unique<World>(scene);
+    world->commit();
+    lights = make_lights(*world);
+    sight = std::make_unique<PictureSight>(*world, lights);
+    view = make_view(scene, {0, 0.25, 0.6}, 0, 0, 0.7f, width, height);
+  }
+  void push_ball(float x) {
+    for (vec3& p : ball.positions) p.x += x;
+    world->move(0, ball.positions, ball.normals);
+    world->commit();
+  }
+  Frame truth() {
+    StillSettings settings;
+    settings.spp = 256;
+    return render_still(*find_technique("path"), *world, lights, view, settings);
+  }
+};
+
+struct Visit {
+  RenderCache cache;
+  std::vector<Request> requests;
+  std::vector<Sample> samples;
+  Frame frame;
+  uint64_t tick = 1;
+  void step(Stage& stage, int budget, bool drawn) {
+    cache.resize(width, height);
+    cache.move_points(*stage.world);
+    cache.project(stage.view);
+    cache.attend();
+    cache.plan(stage.view, budget, tick++, requests);
+    samples.resize(requests.size());
+    trace(*find_technique("path"), *stage.world, stage.lights, {}, requests, samples);
+    cache.remember(stage.view, requests, samples);
+    if (drawn) cache.draw_still(stage.view, *stage.sight, frame);
+    else cache.reconstruct(stage.view, frame);
+  }
+};
+
+// Pixels that neighbours of another object touch, four of whose quarters do not all show the same.
+std::vector<bool> edge_pixels(Stage& stage) {
+  std::vector<bool> edge(pixels, false);
+  for (int i = 0; i < pixels; i++) {
+    uint32_t first = 0;
+    for (int k = 0; k < 4; k++) {
+      float x = float(i % width) + 0.25f + 0.5f * float(k % 2), y = float(i / width) + 0.25f + 0.5f * float(k / 2);
+      Hit hit = stage.world->intersect(view_ray(stage.view, x, y));
+      uint32_t object = hit.valid() ? stage.world->object_of(hit.instance) : 0;
+      if (k == 0) first = object;
+      edge[size_t(i)] = edge[size_t(i)] || object != first;
+    }
+  }
+  return edge;
+}
+
+// As the eye sees it: of a lamp's edge no more than white.
+Frame shown(Frame frame) {
+  for (vec3& c : frame.color) c = min(c, vec3(1));
+  return frame;
+}
+
+double error_at(const Frame& a, const Frame& b, const std::vector<bool>& at) {
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < at.size(); i++)
+    if (at[i]) {
+      vec3 d = a.color[i] - b.color[i];
+      sum += double(dot(d, d)), count += 3;
+    }
+  return std::sqrt(sum / count);
+}
+
+}  // namespace
+
+// Edges are smooth after few samples, long before points alone have had enough of both sides.
+TEST(StillDrawn, EdgesAreAntialiasedInTime) {
+  Stage stage(false);
+  Frame truth = stage.truth();
+  std::vector<bool> edges = edge_pixels(stage);
+  ASSERT_GT(std::count(edges.begin(), edges.end(), true), pixels / 20);
+  Visit drawn, points;
+  double first = 0;
+  for (int i = 0; i < 24; i++) {
+    drawn.step(stage, pixels / 8, true);
+    points.step(stage, pixels / 8, false);
+    if (i == 3) first = error_at(drawn.frame, truth, edges);
+  }
+  double error = error_at(drawn.frame, truth, edges);
+  EXPECT_LT(error, 0.7 * first);
+  EXPECT_LT(error, 0.7 * error_at(points.frame, truth, edges));
+  EXPECT_LT(rmse(drawn.frame, truth), 0.8 * rmse(points.frame, truth));
+  // Nothing trembles when no more is learned.
+  for (int i = 0; i < 32; i++) drawn.step(stage, 0, true);
+  std::vector<vec3> before = shown(drawn.frame).color;
+  drawn.step(stage, 0, true);
+  std::vector<vec3> now = shown(drawn.frame).color;
+  for (size_t i = 0; i < before.size(); i++) ASSERT_LT(length(now[i] - before[i]), 0.05f) << i;
+}
+
+// Of more and more samples the picture becomes the reference.
+TEST(StillDrawn, ConvergesToTheReference) {
+  Stage stage(false);
+  Frame truth = stage.truth();
+  Visit drawn;
+  double error[3];
+  for (int k = 0, i = 0; k < 3; k++) {
+    for (; i < 12 << (2 * k); i++) drawn.step(stage, pixels / 4, true);
+    error[k] = rmse(shown(drawn.frame), shown(truth));
+  }
+  EXPECT_LT(error[1], 0.8 * error[0]);
+  EXPECT_LT(error[2], 0.8 * error[1]);
+  EXPECT_LT(error[2], 0.012);  // of white; 48 samples a pixel, and noise of 256 in the reference
+}
+
+TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
+  Stage stage(true);
+  Visit visit;
+  for (int i = 0; i < 20; i++) visit.step(stage, pixels / 8, true);
+  uint32_t ball = uint32_t(stage.scene.objects.size() - 1);
+  auto expect_ball = [&] {
+    for (int i = 0; i < pixels; i++) {
+      Hit hit = stage.world->intersect(view_ray(stage.view, float(i % width) + 0.5f, float(i / width) + 0.5f));
+      bool there = hit.valid() && stage.world->object_of(hit.instance) == ball;
+      // Where it touches what stands still, that may be seen at another place of the pixel.
+      bool rim = false;
+      for (vec2 to : {vec2(0, 0), vec2(1, 0), vec2(0, 1), vec2(1, 1)}) {
+        Hit corner = stage.world->intersect(view_ray(stage.view, float(i % width) + to.x, float(i / width) + to.y));
+        rim |= corner.valid() && (stage.world->object_of(corner.instance) == ball) != there;
+      }
+      if (!rim) ASSERT_EQ(visit.frame.object[size_t(i)] == ball, there) << i % width << " " << i / width;
+    }
+  };
+  expect_ball();
+  for (int i = 0; i < 10; i++) {
+    stage.push_ball(0.02f);
+    visit.step(stage, pixels / 8, true);
+    expect_ball();
+  }
+  // Of its colour nothing stays where it was: a yellow that the walls have not.
+  Frame truth = stage.truth();
+  for (int i = 0; i < 4; i++) visit.step(stage, pixels / 8, true);
+  double yellow = 0, expected = 0;
+  for (int y = 50; y < 70; y++)
+    for (int x = 30; x < 50; x++) {
+      auto tint = [](vec3 c) { return double(c.x + c.y - 2 * c.z); };
+      size_t i = size_t(y * width + x);
+      if (truth.object[i] == ball) continue;
+      yellow += tint(visit.frame.color[i]), expected += tint(truth.color[i]);
+    }
+  EXPECT_NEAR(yellow, expected, 0.25 * std::abs(expected) + 4);
+}
+
+// Bars that no cell of light stands for are lit by their own points.
+TEST(StillDrawn, NarrowThingsHaveTheirOwnLight) {
+  Stage stage(false);
+  Frame truth = stage.truth();
+  std::vector<bool> bars(pixels, false);
+  for (int i = 0; i < pixels; i++) {
+    Hit hit = stage.world->intersect(view_ray(stage.view, float(i % width) + 0.5f, float(i / width) + 0.5f));
+    bars[size_t(i)] = hit.valid() && stage.scene.objects[stage.world->object_of(hit.instance)] == "bar";
+  }
+  ASSERT_GT(std::count(bars.begin(), bars.end(), true), 200);
+  Visit visit;
+  for (int i = 0; i < 16; i++) visit.step(stage, pixels / 8, true);
+  double mean = 0, expected = 0;
+  for (size_t i = 0; i < bars.size(); i++)
+    if (bars[i]) mean += luminance(visit.frame.color[i]), expected += luminance(truth.color[i]);
+  EXPECT_NEAR(mean, expected, 0.15 * expected);
+}
