@@ -215,12 +215,13 @@ void bench_light_rays(BenchReport& report, const BenchOptions& options) {
   Lights lights = make_lights(world);
   const Technique& path = *find_technique("path");
   StillSettings settings;
-  settings.spp = options.quick ? 2 : 4;
+  const int samples_a_pixel = options.quick ? 8 : 16;  // theirs has one in each of its frames
+  settings.spp = samples_a_pixel;
   settings.transport.max_depth = their_path_length + 1;  // edges: the last shadow ray is one
   double rays = count_rays(path, world, lights, box.view, settings);
   std::vector<double> ours, theirs, ratios, processor_ratios;
   for (int turn = 0; turn < (options.quick ? 3 : 7); turn++) {
-    OtherRun other = run_other(settings_file, options.quick ? 8 : 16);
+    OtherRun other = run_other(settings_file, samples_a_pixel);
     if (!(other.rays_per_second > 0)) {
       std::cout << "light.path.rays_ratio: skipped, pathtracer printed no rays a second\n";
       return;
