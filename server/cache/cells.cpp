@@ -9,7 +9,7 @@
 namespace wellspring {
 namespace {
 
-constexpr int float_planes = 3 * 7 + 10 + 8;  // all but object
+constexpr int float_planes = 3 * 7 + 12 + 10;  // all but object
 
 size_t padded(int width, int height) {
   int columns = (width + cell_size - 1) / cell_size, rows = (height + cell_size - 1) / cell_size;
@@ -56,6 +56,7 @@ struct Gathered {
   Vec albedo, rest, smooth, normal;
   f8 x{}, y{}, inverse_depth{}, samples{}, points{}, sum{}, sum2{};
   f8 rest_sum{}, rest_sum2{}, rest_noise{}, rest_known{};
+  f8 pairs{}, pair_sum{};
 };
 
 // The object most pixels of a cell see (majority vote of Boyer and Moore).
@@ -82,6 +83,14 @@ Gathered gather_cells(const Pixels& pixels) {
   Vec reference;
   unpack_octahedron(first & 0xffffu, reference.x, reference.y, reference.z);
   f8 least2 = 0.49f * dot(reference, reference);  // 0.7 is the cosine
+  f8 above_light[cell_size], above_samples[cell_size];  // of the pixels before, columnwise
+  // Means of neighbours differ by what one sample's light deviates, and hardly by detail.
+  auto add_pair = [&](const f8& light, const f8& samples, const f8& other, const f8& others) {
+    f8 both = samples * others, difference = light - other;
+    i8 told = both > 0.0f;
+    g.pairs += keep(told, splat(1));
+    g.pair_sum += keep(told, difference * difference * both / larger(samples + others, splat(1)));
+  };
   for (int k = 0; k < cell_size * cell_size; k++) {
     u8 object = pixels.plane[plane_object][k], more = pixels.plane[plane_more][k];
     i8 use = (object == g.object) & (object != no_object);
@@ -116,6 +125,10 @@ Gathered gather_cells(const Pixels& pixels) {
     g.points += one;
     g.sum += samples * light;
     g.sum2 += samples * light * light;
+    int column = k % cell_size;
+    if (column > 0) add_pair(light, samples, above_light[column - 1], above_samples[column - 1]);
+    if (k >= cell_size) add_pair(light, samples, above_light[column], above_samples[column]);
+    above_light[column] = light, above_samples[column] = samples;
   }
   return g;
 }
@@ -153,7 +166,7 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch) {
     for (auto& plane : *triple) take(plane, 0.0f);
   for (auto* plane : {&cells.depth, &cells.samples, &cells.points, &cells.sum, &cells.sum2,
                       &cells.patience, &cells.rest_sum, &cells.rest_sum2, &cells.rest_noise,
-                      &cells.rest_known})
+                      &cells.rest_known, &cells.pairs, &cells.pair_sum})
     take(*plane, 0.0f);
   for (auto& plane : cells.pooled) take(plane, 0.0f);
   take(cells.object, no_object);
@@ -199,6 +212,8 @@ void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells
     store(&cells.rest_sum2[i], g.rest_sum2);
     store(&cells.rest_noise[i], g.rest_noise);
     store(&cells.rest_known[i], g.rest_known);
+    store(&cells.pairs[i], g.pairs);
+    store(&cells.pair_sum[i], g.pair_sum);
     store(&cells.patience[i], f8{});
     store(&cells.object[i], any_point ? g.object : u8{} + no_object);
   }

@@ -29,6 +29,9 @@ struct Cells {
   std::span<float> points;   // pixels averaged; then the other side of rest_known
   // Luminance moments of smooth over samples; then variance of its mean, and the other side of it.
   std::span<float> sum, sum2;
+  // Of neighbouring pixels that both have a point: how many pairs, and the sum of what the difference of
+  // their smooth light says of the variance of one sample.
+  std::span<float> pairs, pair_sum;
   std::span<float> patience;  // samples a pixel needs before its own light counts for half
   // `rest` is sharp where it repeats itself and noise where it does not (glossy reflections).
   std::span<float> rest_sum;   // of its luminance over samples
@@ -37,8 +40,8 @@ struct Cells {
   std::span<float> rest_known;  // points with a known variance; then variance of the cell's mean
   std::span<uint32_t> object;   // no_object: nothing known here
   // Sums over nine cells, while variances are estimated: samples, points, sum, sum2, rest_sum,
-  // rest_sum2, rest_noise and rest_known.
-  std::array<std::span<float>, 8> pooled;
+  // rest_sum2, rest_noise, rest_known, pairs and pair_sum.
+  std::array<std::span<float>, 10> pooled;
   int index(int x, int y) const { return (y + cell_pad) * stride + x + cell_pad; }
 };
 

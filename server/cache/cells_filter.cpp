@@ -19,6 +19,9 @@ constexpr float plane_tolerance =
 constexpr float light_tolerance = 25;
 constexpr float most_samples = 64;    // that a cell counts for: its neighbours show other places
 constexpr float plenty_of_points = 48;  // in nine cells, to tell how light deviates there
+constexpr float enough_pairs = 12;      // of neighbours, likewise
+constexpr float least_detail = 1 / 48.0f;  // of smooth light among nine cells: a variance over the mean squared
+constexpr float most_patience = 192;       // samples
 
 f8 load_at(std::span<const float> plane, size_t i) { return load<f8>(plane.data() + i); }
 f8 clamped(const f8& v, float low, float high) { return smaller(larger(v, splat(low)), splat(high)); }
@@ -27,6 +30,7 @@ f8 clamped(const f8& v, float low, float high) { return smaller(larger(v, splat(
 struct Pool {
   f8 samples{}, points{}, sum{}, sum2{};
   f8 rest{}, rest2{}, rest_noise{}, rest_known{};
+  f8 pairs{}, pair_sum{};
 };
 using PoolPlanes = decltype(Cells::pooled);
 
@@ -36,10 +40,12 @@ void add(Pool& pool, const i8& same, const Read& read) {
   pool.sum += keep(same, read(2)), pool.sum2 += keep(same, read(3));
   pool.rest += keep(same, read(4)), pool.rest2 += keep(same, read(5));
   pool.rest_noise += keep(same, read(6)), pool.rest_known += keep(same, read(7));
+  pool.pairs += keep(same, read(8)), pool.pair_sum += keep(same, read(9));
 }
 
 PoolPlanes own_planes(const Cells& c) {
-  return {c.samples, c.points, c.sum, c.sum2, c.rest_sum, c.rest_sum2, c.rest_noise, c.rest_known};
+  return {c.samples,   c.points,     c.sum,        c.sum2,  c.rest_sum,
+          c.rest_sum2, c.rest_noise, c.rest_known, c.pairs, c.pair_sum};
 }
 
 // Over the cells `step` apart around eight, and these.
@@ -105,7 +111,12 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
   f8 mean = pool.sum * per_pooled, spread = positive(pool.sum2 - pool.sum * mean);
   f8 expected = (pool.sum + prior.mean * guess_points) / (pool.samples + guess_points);
   f8 variance = (spread + prior.variance * guess_points) / (pool.points + guess_points);
-  e.patience = clamped(48 * variance / (expected * expected + 1e-6f), 0.5f, 192.0f);
+  // What points spread beyond that is detail: their means of many samples differ where the light does.
+  f8 paired = pool.pairs / (pool.pairs + enough_pairs);
+  f8 deviates = pool.pair_sum / larger(pool.pairs, splat(1));
+  f8 detail = paired * positive(variance - deviates) * pool.points * per_pooled;
+  variance += paired * (deviates - variance);
+  e.patience = clamped(variance / (detail + least_detail * expected * expected + 1e-6f), 0.5f, most_patience);
   e.mean_variance = variance * per_sample;
   // What varies from place to place beyond what varies from sample to sample is detail.
   f8 rest_spread = positive(pool.rest2 - pool.rest * pool.rest * per_pooled) /
@@ -176,7 +187,8 @@ void pool_cells(Cells& cells) {
         size_t i = size_t(cells.index(x, y));
         Pool pool = pool_around(cells, own, i, load<u8>(&cells.object[i]), 1);
         const f8 sums[] = {pool.samples, pool.points, pool.sum,        pool.sum2,
-                           pool.rest,    pool.rest2,  pool.rest_noise, pool.rest_known};
+                           pool.rest,    pool.rest2,  pool.rest_noise, pool.rest_known,
+                           pool.pairs,   pool.pair_sum};
         for (size_t k = 0; k < cells.pooled.size(); k++) store(&cells.pooled[k][i], sums[k]);
       }
   });
