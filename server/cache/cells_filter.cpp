@@ -15,8 +15,9 @@ namespace {
 constexpr int steps = 4;  // taps 1, 2, 4 and 8 cells apart
 constexpr float plane_tolerance =
     0.03f;  // relative depth off the other cell's plane that halves a weight
-// Squared, in variances of the mean; of a few samples these are no better known than the light.
-constexpr float light_tolerance = 25;
+// Squared, in variances of the mean. Of a few samples these are no better known than the light, and
+// count for `unsure_variance` times as much.
+constexpr float light_tolerance = 6, unsure_variance = 4;
 constexpr float most_samples = 64;    // that a cell counts for: its neighbours show other places
 constexpr float plenty_of_points = 48;  // in nine cells, to tell how light deviates there
 constexpr float enough_pairs = 12;      // of neighbours, likewise
@@ -117,7 +118,8 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
   f8 detail = paired * positive(variance - deviates) * pool.points * per_pooled;
   variance += paired * (deviates - variance);
   e.patience = clamped(variance / (detail + least_detail * expected * expected + 1e-6f), 0.5f, most_patience);
-  e.mean_variance = variance * per_sample;
+  f8 known_badly = 1.0f + (unsure_variance - 1) * (1.0f - paired);
+  e.mean_variance = variance * per_sample * known_badly;
   // What varies from place to place beyond what varies from sample to sample is detail.
   f8 rest_spread = positive(pool.rest2 - pool.rest * pool.rest * per_pooled) /
                    larger(pool.points - 1.0f, splat(1));
@@ -127,7 +129,7 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
   rest_spread = rest_spread * near_share + wide_spread * (1.0f - near_share);
   e.rest_noise = (pool.rest_noise + rest_spread * rest_share) / (pool.rest_known + 1.0f);
   e.rest_detail = positive(rest_spread - e.rest_noise) * pool.points * per_pooled;
-  e.rest_mean_variance = e.rest_noise * per_sample;
+  e.rest_mean_variance = e.rest_noise * per_sample * known_badly;
   // A cell brighter than all around it, or far brighter than their mean, owes that to a lucky path,
   // unless many samples say so or, of the rest, it stays so from sample to sample.
   f8 light = light_sum * per_sample, rest_light = rest_sum * per_sample;
