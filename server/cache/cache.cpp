@@ -315,6 +315,7 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   Impl& c = *impl_;
   if (!c.projected || view != c.view) project(view);
   fit_frame(view.width, view.height, frame);
+  if (c.still_frames == 0) c.forget_still();  // a mean of another view, of a single picture
   c.draw(view, [&] {
     compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
     std::span<const std::vector<EdgeShare>> edges;

@@ -184,6 +184,27 @@ TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
   EXPECT_NEAR(yellow, expected, 0.25 * std::abs(expected) + 4);
 }
 
+// Also of a view that was drawn once only.
+TEST(StillDrawn, NothingOfAnotherViewRemains) {
+  Stage stage(false);
+  Visit visit;
+  for (int i = 0; i < 4; i++) visit.step(stage, pixels / 4, true);
+  View box = stage.view;
+  stage.view = make_view(stage.scene, {0, 0.25, 0.6}, float(pi), 0, 0.7f, width, height);  // nothing is there
+  visit.step(stage, pixels / 4, true);
+  for (vec3 c : visit.frame.color) ASSERT_EQ(c, vec3(0));
+  stage.view = box;
+  visit.step(stage, pixels / 4, true);
+  Frame once = visit.frame;
+  double light = 0, again = 0;
+  for (vec3 c : once.color) light += luminance(c);
+  stage.view = make_view(stage.scene, {0, 0.25, 0.6}, float(pi), 0, 0.7f, width, height);
+  visit.step(stage, pixels / 4, true);
+  for (vec3 c : visit.frame.color) again += luminance(c);
+  EXPECT_GT(light, 100);
+  EXPECT_EQ(again, 0);
+}
+
 // Bars that no cell of light stands for are lit by their own points.
 TEST(StillDrawn, NarrowThingsHaveTheirOwnLight) {
   Stage stage(false);
