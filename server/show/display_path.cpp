@@ -22,6 +22,7 @@ constexpr int drawn_samples = 1000;  // the same where shapes are drawn: only li
 constexpr int least_samples = 2000;                   // a picture, however slow the machine
 constexpr float few_guessed = 0.25f;   // of the pixels of coarser light: some 1.4 samples each
 constexpr float nearly_none = 0.1f;    // of the picture's pixels
+constexpr float most_known = 0.5f;     // likewise
 constexpr double settled_after = 2;    // seconds
 
 int whole(double count, double most) { return int(std::clamp(count, 0.0, most)); }
@@ -60,9 +61,9 @@ bool wants_fine_light(bool stands, bool coarse, float guessed) {
   return stands && !(coarse && guessed > few_guessed);
 }
 
-bool wants_reference(double seconds_at_rest, bool before, bool coarse, float guessed) {
+bool wants_reference(double seconds_at_rest, bool before, bool coarse, float guessed, float known) {
   if (seconds_at_rest <= settled_after || coarse) return false;
-  return before || guessed <= nearly_none;
+  return before || (guessed <= nearly_none && known >= most_known);
 }
 
 }  // namespace wellspring

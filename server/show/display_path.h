@@ -36,8 +36,10 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
 // `coarse`, `guessed`: of the picture before, and the share of its light that no point told.
 bool wants_fine_light(bool stands, bool coarse, float guessed);
 
-// Whether the reference (`path`) answers: who has stood for a while, when every place has had an answer of
-// the quicker technique, whose single samples tell more. `before`: it did for the picture before.
-bool wants_reference(double seconds_at_rest, bool before, bool coarse, float guessed);
+// Whether the reference (`path`) answers: who has stood for a while, when most places have so many answers
+// of the quicker technique, whose single samples tell more, that those of the reference are no noise to
+// speak of. `before`: it did for the picture before. `known`: share of the pixels with that many
+// (CacheStats::converged).
+bool wants_reference(double seconds_at_rest, bool before, bool coarse, float guessed, float known);
 
 }  // namespace wellspring

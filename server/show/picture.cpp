@@ -97,7 +97,8 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   // Of a place that was never seen, nothing is known.
   bool seen = visitor.drawn_at >= 0 && visitor.leaps == before.leaps;
   float guessed = seen ? visitor.stats.filled + visitor.stats.empty : 1;
-  order.settled = wants_reference(show.time - visitor.moved_at, seen && before.settled, !seen || before.coarse, guessed);
+  order.settled = wants_reference(show.time - visitor.moved_at, seen && before.settled, !seen || before.coarse, guessed,
+                                  visitor.stats.converged);
   bool fine = wants_fine_light(order.still, !seen || before.coarse, guessed);
   order.guessed = !order.still || sees_figure(show, now);
   order.attention = visitor.attention;

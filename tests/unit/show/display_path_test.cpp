@@ -97,12 +97,13 @@ TEST(DisplayPath, LightBecomesFineWhenItIsKnown) {
 }
 
 TEST(DisplayPath, TheReferenceComesLast) {
-  EXPECT_FALSE(wants_reference(1, false, false, 0));
-  EXPECT_FALSE(wants_reference(30, false, true, 0));  // light is coarse yet
-  EXPECT_FALSE(wants_reference(30, false, false, 0.4f));
-  EXPECT_TRUE(wants_reference(30, false, false, 0.05f));
-  EXPECT_TRUE(wants_reference(30, true, false, 0.15f));  // the storyteller moves: what she hid is new
-  EXPECT_FALSE(wants_reference(0.5, true, false, 0));    // walks again
+  EXPECT_FALSE(wants_reference(1, false, false, 0, 1));
+  EXPECT_FALSE(wants_reference(30, false, true, 0, 1));  // light is coarse yet
+  EXPECT_FALSE(wants_reference(30, false, false, 0.4f, 0.6f));
+  EXPECT_FALSE(wants_reference(30, false, false, 0.05f, 0.3f));  // of few samples its noise would show
+  EXPECT_TRUE(wants_reference(30, false, false, 0.05f, 0.6f));
+  EXPECT_TRUE(wants_reference(30, true, false, 0.15f, 0.4f));  // the storyteller moves: what she hid is new
+  EXPECT_FALSE(wants_reference(0.5, true, false, 0, 1));       // walks again
 }
 
 TEST(DisplayPath, DrawsAsToldByTheOperator) {
