@@ -87,13 +87,11 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
   return own;
 }
 
-// Rest holds light of lamps with the reflectance in it: what of it is left under another one.
-constexpr float dark = 0.05f, brightest = 4;
 // Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
 // or chance nobody knows.
 constexpr float moving_doubt = 3, few_samples = 4;
 f8 under(const f8& light, const f8& albedo, const f8& theirs) {
-  return light * smaller((albedo + dark) / (theirs + dark), splat(brightest));
+  return light * rest_ratio(albedo, theirs);
 }
 
 struct Drawn {

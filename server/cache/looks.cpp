@@ -76,7 +76,6 @@ Neighbours read_neighbours(const Frame& frame, const Looks& l, int dx, int dy) {
 // Own light of the looks: that of the points in the pixels around, as far as they lie on the same
 // surface, the nearer and the better known the more.
 void gather_points(const View& view, const PixelRays& rays, const Frame& frame, Looks& l) {
-  constexpr float dark = 0.05f, brightest = 4;
   Pixels& p = l.pixels;
   auto along = [&](vec3 axis) { return p.nx * axis.x + p.ny * axis.y + p.nz * axis.z; };
   f8 vx = along(view.right), vy = along(view.up), vz = along(view.forward);
@@ -112,14 +111,10 @@ void gather_points(const View& view, const PixelRays& rays, const Frame& frame, 
       Color light, other;
       unpack_rgb9e5(n.plane[plane_smooth], light.r, light.g, light.b);
       add(smooth, share, light.r, light.g, light.b);
-      // Rest holds light of lamps with the reflectance in it.
       unpack_rgb9e5(n.plane[plane_rest], light.r, light.g, light.b);
       unpack_albedo(n.plane[plane_albedo], other.r, other.g, other.b);
-      auto ratio = [&](const f8& own, const f8& theirs) {
-        return smaller((own + dark) / (theirs + dark), splat(brightest));
-      };
-      add(rest, share, f8(light.r * ratio(l.albedo.r, other.r)),
-          f8(light.g * ratio(l.albedo.g, other.g)), f8(light.b * ratio(l.albedo.b, other.b)));
+      add(rest, share, f8(light.r * rest_ratio(l.albedo.r, other.r)),
+          f8(light.g * rest_ratio(l.albedo.g, other.g)), f8(light.b * rest_ratio(l.albedo.b, other.b)));
     }
   f8 share = 1.0f / larger(samples, splat(1e-6f));
   p.smooth = {smooth.r * share, smooth.g * share, smooth.b * share};

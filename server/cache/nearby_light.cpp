@@ -12,7 +12,6 @@ namespace {
 constexpr int rings = 3;
 constexpr float enough_points = 2.5f;  // found by a ring: no other is needed
 constexpr float same_direction = 0.7f;  // cosine
-constexpr float dark = 0.05f, brightest = 4;  // rest holds the reflectance of its own place
 
 struct Sum {
   float weights = 0, points = 0, samples = 0, deviation = 0;
@@ -56,8 +55,7 @@ void add_pixel(const View& view, const PixelRays& rays, const Frame& light, cons
   sum.samples += share;
   sum.deviation += share * unpack_deviation(uint8_t(more >> 24));
   sum.smooth += share * unpack_rgb9e5(words[plane_smooth]);
-  sum.rest += share * unpack_rgb9e5(words[plane_rest]) *
-              min((place.albedo + dark) / (theirs + dark), vec3(brightest));
+  sum.rest += share * unpack_rgb9e5(words[plane_rest]) * rest_ratio(place.albedo, theirs);
 }
 
 }  // namespace

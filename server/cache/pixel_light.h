@@ -28,6 +28,16 @@ inline Color weighted_sum(const Color& a, const f8& kept, const Color& b, const 
   return {kept * a.r + other * b.r, kept * a.g + other * b.g, kept * a.b + other * b.b};
 }
 
+// Rest holds light of lamps with the reflectance in it: how much of what was seen under `theirs` there is
+// under `own`.
+inline constexpr float dark_reflectance = 0.05f, most_brighter = 4;
+inline f8 rest_ratio(const f8& own, const f8& theirs) {
+  return smaller((own + dark_reflectance) / (theirs + dark_reflectance), splat(most_brighter));
+}
+inline vec3 rest_ratio(vec3 own, vec3 theirs) {
+  return min((own + dark_reflectance) / (theirs + dark_reflectance), vec3(most_brighter));
+}
+
 // Eight pixels, or places in them.
 struct Pixels {
   u8 object;
