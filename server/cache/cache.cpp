@@ -11,7 +11,6 @@
 #include "cache/cells.h"
 #include "cache/compose_drawn.h"
 #include "cache/looks.h"
-#include "cache/overlay.h"
 #include "cache/plan.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
@@ -91,9 +90,8 @@ struct RenderCache::Impl {
   // Points of what was repainted since are forgotten.
   void notice_paint(const World& world);
   bool is_still() const { return still_frames >= 2; }
-  // The surface that points of the current projection show, packed into `frame`, with what `sight` sees
-  // laid over it, and the cells of both.
-  void read_light(const View& of, const PictureSight* sight, Frame& frame);
+  // The surface that points of the current projection show, packed into `frame`, and its cells.
+  void read_light(const View& of, Frame& frame);
   void forget_still() {
     still_frames = 0;
     std::fill(still.count.begin(), still.count.end(), uint8_t(0));
@@ -236,37 +234,30 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
       c.still.count[requests[i].pixel] |= still_fresh;
 }
 
-void RenderCache::reconstruct(const View& view, Frame& frame, const PictureSight* sight) {
+void RenderCache::reconstruct(const View& view, Frame& frame) {
   std::vector<Ray> looks;
-  survey(view, sight, 0, frame, looks);
+  survey(view, 0, frame, looks);
   reconstruct(view, {}, frame);
 }
 
-void RenderCache::Impl::read_light(const View& of, const PictureSight* sight, Frame& frame) {
+void RenderCache::Impl::read_light(const View& of, Frame& frame) {
   if (relit) relit = lend_light(points, image);
   work->scratch.start(cells_bytes(frame.width, frame.height));
   take_cells(cells, frame.width, frame.height, work->scratch);
   SurfaceCounts counts = read_surface(of, points, image, cells, frame);
-  if (sight && sight->can_see(of)) {
-    double began = seconds_now();
-    RestingPoints resting{points, image};
-    overlay_sight(of, *sight, is_still() ? &resting : nullptr, frame);
-    stats.drawing_ms = float(1000 * (seconds_now() - began));
-  }
   known = fill_cells(of, cells);
   filter_cells(of, cells);
   count(counts, known);
   work->looked.clear();
 }
 
-void RenderCache::survey(const View& view, const PictureSight* sight, int most, Frame& frame,
-                         std::vector<Ray>& looks) {
+void RenderCache::survey(const View& view, int most, Frame& frame, std::vector<Ray>& looks) {
   Impl& c = *impl_;
   int width = std::clamp(view.width, 1, largest_side),
       height = std::clamp(view.height, 1, largest_side);
   fit_frame(width, height, frame);
   if (!c.projected || view != c.view) project(view);
-  c.read_light(view, sight, frame);
+  c.read_light(view, frame);
   if (most >= looks_a_pixel) {
     find_edges(view, c.cells, c.still, frame, c.image);
     choose_looks(c.image, size_t(most) / looks_a_pixel, mix64(c.frames), c.work->looked);
@@ -288,7 +279,7 @@ void RenderCache::reconstruct(const View& view, std::span<const Seen> seen, Fram
 template <class Compose>
 void RenderCache::Impl::draw(const View& lit, const Compose& compose) {
   fit_frame(lit.width, lit.height, work->light);
-  read_light(lit, nullptr, work->light);
+  read_light(lit, work->light);
   double began = seconds_now();
   compose();
   stats.drawing_ms = float(1000 * (seconds_now() - began));
@@ -368,6 +359,7 @@ void RenderCache::Impl::count(const SurfaceCounts& counts, bool known) {
   stats.converged = float(counts.converged) / pixels;
 }
 
+const CacheSettings& RenderCache::settings() const { return impl_->settings; }
 const CacheStats& RenderCache::stats() const { return impl_->stats; }
 
 size_t RenderCache::memory_bytes() const {

@@ -35,7 +35,7 @@ struct PointImage;  // cache/point_image.h: what projects where, priorities
 struct CacheStats {
   int points = 0;                                           // in use
   float fresh = 0, reprojected = 0, filled = 0, empty = 0;  // shares of the picture's pixels
-  float drawing_ms = 0;  // of the last picture that was drawn: PictureSight and the overlay
+  float drawing_ms = 0;  // of the last picture that was drawn: PictureSight, and light put on what it sees
   float mean_age = 0;   // of the visible points, 0 (new) to 254; see age_points()
   float converged = 0;  // share of pixels whose point has reached its sample goal
 };
@@ -77,13 +77,12 @@ class RenderCache {
   // Puts answers into the cache and into the current projection.
   void remember(const View& view, std::span<const Request> requests,
                 std::span<const Sample> samples);
-  // The picture: overwrites `frame` (color, confidence; depth and object for those who ask later).
-  // With `sight`, shape and reflectance of what has no point are drawn (cache/overlay.h).
-  void reconstruct(const View& view, Frame& frame, const PictureSight* sight = nullptr);
+  // The picture of points alone: overwrites `frame` (color, confidence; depth and object for those who
+  // ask later).
+  void reconstruct(const View& view, Frame& frame);
   // The same in two steps, for sharper edges: survey() asks what rays (at most `most`) see, and
   // answers to all of them are shown. The frame must not be touched in between.
-  void survey(const View& view, const PictureSight* sight, int most, Frame& frame,
-              std::vector<Ray>& looks);
+  void survey(const View& view, int most, Frame& frame, std::vector<Ray>& looks);
   void reconstruct(const View& view, std::span<const Seen> seen, Frame& frame);
   // A picture of `view` drawn in the light of light_view(view) (cache/compose_drawn.h), for which all
   // of the frame before has been done; needs sight.can_see(view). The second for the eye at once,
@@ -102,6 +101,7 @@ class RenderCache {
   // Forgets everything (another exhibit).
   void clear();
 
+  const CacheSettings& settings() const;
   const CacheStats& stats() const;
   size_t memory_bytes() const;  // without work that is shared
 

@@ -262,7 +262,6 @@ void compose(const View& view, const Cells& cells, bool known, Frame& frame) {
           f8 weights[4];
           for (int k = 0; k < 4; k++) weights[k] = load<f8>(bilinear.weight[k][half]);
           Surroundings around = look_around(corners, flat[bx % lanes], weights, p);
-          light_as_neighbours(corners, weights, p, around);
           blend_light(around, p);
           Result result[2];
           light_pixels(pixels.plane[plane_albedo], p, result);

@@ -124,8 +124,7 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
   i8 far = p.depth >= 0.5f * infinite_depth;
   same |= far & (samples > 0.0f) & (depth >= 0.5f * infinite_depth);
   p.samples = keep(same, samples);
-  p.deviation =
-      same ? unpack_deviation(more >> 24) : splat(unpack_deviation(blind_deviation));
+  p.deviation = keep(same, unpack_deviation(more >> 24));
   Color light, theirs;
   unpack_rgb9e5(own.plane[plane_smooth], light.r, light.g, light.b);
   p.smooth = {keep(same, light.r), keep(same, light.g), keep(same, light.b)};
@@ -159,6 +158,26 @@ void read_rows(const PixelRays& rays, const Cells& cells, int first, int row, in
     rows.flat[part] = find_flat(rays, cells, first + 1 + part * lanes, row + 1);
 }
 
+// Lit as what is around, whatever surface that is.
+void light_as_neighbours(const PaintedCell* const* corners, const f8* weights, const i8& lit, Surroundings& s) {
+  Surroundings a;
+  f8 used{};
+  for (int k = 0; k < 4; k++) {
+    // What lamps, mirrors and the sky show is no light that falls there.
+    if (corners[k]->albedo[0] + corners[k]->albedo[1] + corners[k]->albedo[2] < 0.01f) continue;
+    add(a, weights[k], *corners[k]);
+    used += weights[k];
+  }
+  f8 share = 1.0f / larger(used, splat(1e-3f));
+  auto take = [&](f8& to, const f8& from) { to = lit ? from : to; };
+  auto take_color = [&](Color& to, const Color& from) {
+    take(to.r, from.r * share), take(to.g, from.g * share), take(to.b, from.b * share);
+  };
+  take_color(s.smooth, a.smooth), take_color(s.rest, a.rest), take_color(s.albedo, a.albedo);
+  take(s.patience, a.patience), take(s.detail, a.detail), take(s.noise, a.noise);
+  s.lonely &= ~lit;
+}
+
 // The light of a lamp does not end where a picture on the wall does.
 template <class FindNearby>
 void light_group(const PaintedCell* const* corners, bool flat, const f8* weights, float doubt,
@@ -169,7 +188,8 @@ void light_group(const PaintedCell* const* corners, bool flat, const f8* weights
   // Polished metal of which nobody knows more than a sample or two shows about what is around it.
   i8 mirrors = around.lonely & (p.samples < few_samples) &
                (d.albedo.r + d.albedo.g + d.albedo.b < 0.01f);
-  light_as_neighbours(corners, weights, p, around, mirrors);
+  i8 unknown = around.lonely & ((p.samples == 0.0f) | mirrors);
+  if (any(unknown)) light_as_neighbours(corners, weights, unknown, around);
   auto rest = [&](const f8& rest, const f8& smooth, const f8& albedo, const f8& theirs) {
     return mirrors ? theirs * smooth + rest : under(rest, albedo, theirs);
   };

@@ -11,9 +11,6 @@
 
 namespace wellspring {
 
-// Stands in place of a deviation for pixels of which only the light is unknown.
-inline constexpr uint8_t blind_deviation = 255;
-
 inline constexpr float plane_tolerance = 0.02f;  // of the depth: farther off is another surface
 
 struct Color {
@@ -141,36 +138,6 @@ Surroundings look_around(const Cell* const* corners, bool flat, const f8* weight
 // What is left of `own` light where more than `most` would be too much.
 inline f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, most) + 1e-12f); }
 
-// Of these pixels only the surface is known (cache/overlay.h).
-inline i8 is_blind(const Pixels& p) {
-  return (p.samples == 0.0f) & (p.deviation >= unpack_deviation(blind_deviation));
-}
-// Where nobody around knows anything of a blind pixel's surface, it is lit as its surroundings are;
-// `doubtful` pixels likewise.
-template <class Cell>
-void light_as_neighbours(const Cell* const* corners, const f8* weights, const Pixels& p,
-                         Surroundings& s, i8 doubtful = i8{}) {
-  i8 lost = s.lonely & (is_blind(p) | doubtful);
-  if (!any(lost)) return;
-  Surroundings a;
-  f8 used{};
-  for (int k = 0; k < 4; k++) {
-    // What lamps, mirrors and the sky show is no light that falls there.
-    if constexpr (requires { corners[k]->albedo; })
-      if (corners[k]->albedo[0] + corners[k]->albedo[1] + corners[k]->albedo[2] < 0.01f) continue;
-    add(a, weights[k], *corners[k]);
-    used += weights[k];
-  }
-  f8 share = 1.0f / larger(used, splat(1e-3f));
-  for (Color* c : {&a.smooth, &a.rest, &a.albedo}) c->r *= share, c->g *= share, c->b *= share;
-  auto take = [&](f8& to, const f8& from) { to = lost ? from : to; };
-  take(s.smooth.r, a.smooth.r), take(s.smooth.g, a.smooth.g), take(s.smooth.b, a.smooth.b);
-  take(s.rest.r, a.rest.r), take(s.rest.g, a.rest.g), take(s.rest.b, a.rest.b);
-  take(s.albedo.r, a.albedo.r), take(s.albedo.g, a.albedo.g), take(s.albedo.b, a.albedo.b);
-  take(s.patience, a.patience), take(s.detail, a.detail), take(s.noise, a.noise);
-  s.lonely = lost ? i8{} : s.lonely;
-}
-
 // Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
 // more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
 // `doubt`: samples that make the own rest count for half of what it would.
@@ -195,7 +162,6 @@ inline void blend_light(const Surroundings& s, Pixels& p, float doubt = 0) {
   f8 detail = s.detail + 1e-9f, own_detail = detail / (detail + variance);
   own_detail *= p.samples / (p.samples + doubt + 1e-6f);
   own_detail = lonely ? splat(1) : own_detail;
-  own_detail = is_blind(p) ? splat(0) : own_detail;
   f8 kept = own_detail * cut_to(own_rest, most_rest);
   p.rest = weighted_sum(p.rest, kept, s.rest, 1.0f - own_detail);
 }

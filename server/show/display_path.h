@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a picture's time is spent on, decided by what was measured. Path `cache`: nearly all goes to
 // samples, a little to looks at edges (cache/looks.h). Path `primary`: shape and reflectance of every
-// pixel are exact, drawn (cache/overlay.h, cache/compose_drawn.h) while that leaves time for light, or with every pixel looked
-// at where even that does: a quick machine, a small picture, few visitors. Drawing may slow pictures down, but not
-// below two a second: a few points alone are no picture at all.
+// pixel are exact, drawn (cache/compose_drawn.h) while that leaves time for light, or with every pixel
+// looked at where even that does: a quick machine, a small picture, few visitors. Drawing may slow
+// pictures down, but not below two a second: a few points alone are no picture at all.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +20,7 @@ struct DisplayCosts {
 enum class DrawShapes : uint8_t { automatic, never, always };  // server option --draw
 
 struct DisplayPlan {
-  bool drawn = false;    // while the visitor moves in light of half the resolution (cache/compose_drawn.h)
+  bool drawn = false;    // in light of half the resolution (cache/compose_drawn.h), unless that is fine
   bool primary = false;  // every pixel is looked at
   int samples = 0, looks = 0;
 };

@@ -31,7 +31,6 @@ struct PictureOrder {
   bool still = false;    // without motion for a moment
   bool settled = false;  // for long: the reference takes over
   bool coarse = false;   // drawn in coarser light (cache/compose_drawn.h)
-  bool guessed = false;  // shows much that no point tells, whatever the cache says
   bool attention = true;
   bool keep = false;     // as a keyframe, for others to be made of
   uint64_t seed = 0;

@@ -21,7 +21,6 @@ constexpr double least_share = 0.2;    // of a period that goes to samples, even
 constexpr double keyframe_rate = 30;   // pictures drawn a second while the visitor moves, at most
 constexpr float nearly_all = 0.999f;   // converged
 constexpr float forgotten = 0.998f;    // of what drawing took, a picture without it
-constexpr float few_guessed = 0.01f;   // of the pixels, and the points alone show a picture at rest
 constexpr double predicted_pictures = 2;
 constexpr float predicted_share = 0.3f;    // of the samples, at most
 constexpr float barely_covered = 0.1f;  // of the pixels by points
@@ -100,16 +99,16 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   order.settled = wants_reference(show.time - visitor.moved_at, seen && before.settled, !seen || before.coarse, guessed,
                                   visitor.stats.converged);
   bool fine = wants_fine_light(order.still, !seen || before.coarse, guessed);
-  order.guessed = !order.still || sees_figure(show, now);
   order.attention = visitor.attention;
   order.keep = show.settings.background;
   order.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
+  DrawShapes draw = show.sight && show.sight->can_see(now) ? show.settings.draw : DrawShapes::never;
   order.display = plan_display(seconds_to_trace(show, visitor, busy),
                                size_t(visitor.width) * size_t(visitor.height), display_costs(show, visitor),
-                               visitor.order.display, fine, show.settings.draw);
+                               before.display, fine, draw);
   // Who moves is shown shapes and reflectances as they are, in light of half their resolution; who stops,
   // until more is known.
-  order.coarse = order.display.drawn && !fine && show.sight && show.sight->can_see(now);
+  order.coarse = order.display.drawn && !fine;
   double interval = 1 / drawing_rate(show, visitor);
   if (order.keep && !order.still && visitor.frame_number > 0) {
     // It is seen from when it is finished until the next one is.
@@ -163,21 +162,19 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   }
   double traced = seconds_now();
   if (!costs.late) cache.remember(lit, work.requests, work.samples);
-  bool still = order.still && display.drawn && !order.coarse && show.sight->can_see(view);
-  bool drawn = order.coarse || still || (display.drawn && (order.guessed || cache.stats().filled > few_guessed));
   work.looks.clear();
   const Tonemap curve{show.exhibit.exposure};
   if (order.coarse)
     cache.draw(view, *show.sight, curve, work.picture, order.keep ? &work.depth : nullptr);
-  else if (still)
+  else if (display.drawn)
     cache.draw_still(view, *show.sight, work.frame);
   else
-    cache.survey(view, drawn ? show.sight.get() : nullptr, display.looks, work.frame, work.looks);
+    cache.survey(view, display.looks, work.frame, work.looks);
   work.seen.resize(work.looks.size());
   double surveyed = seconds_now();
   see(*show.world, show.lights, work.looks, work.seen);
   double looked = seconds_now();
-  if (!order.coarse && !still) cache.reconstruct(view, work.seen, work.frame);
+  if (!display.drawn) cache.reconstruct(view, work.seen, work.frame);
   double reconstructed = seconds_now();
   if (!order.coarse) tonemap(work.frame, curve, work.picture);
   if (order.keep)
@@ -188,7 +185,7 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   costs.looks = work.looks.size();
   costs.trace = float(1000 * (traced - planned));
   costs.look = float(1000 * (looked - surveyed));
-  costs.drawing = drawn ? cache.stats().drawing_ms : 0.0f;
+  costs.drawing = display.drawn ? cache.stats().drawing_ms : 0.0f;
   (order.coarse ? costs.light : costs.display) =
       float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))) - costs.drawing;
   (order.coarse ? costs.light : costs.tonemap) += float(1000 * (finished - reconstructed));

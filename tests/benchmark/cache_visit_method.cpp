@@ -112,7 +112,7 @@ class CacheMethod : public VisitMethod {
  private:
   static constexpr int still_after = 15;  // frames
   void finish(const VisitMoment& moment, int looks, Frame& frame) {
-    cache_.survey(moment.view, primary_ ? &sight(moment) : nullptr, looks, frame, rays_);
+    cache_.survey(moment.view, looks, frame, rays_);
     seen_.resize(rays_.size());
     see(*moment.world, *moment.lights, rays_, seen_);
     cache_.reconstruct(moment.view, seen_, frame);

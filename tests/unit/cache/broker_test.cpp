@@ -49,7 +49,7 @@ struct BrokeredVisit {
     cache.attend();
     cache.plan(view, budget, visit.tick++, visit.requests);
     broker.ask(view, {}, visit.requests);
-    cache.survey(view, nullptr, 0, visit.frame, visit.looks);
+    cache.survey(view, 0, visit.frame, visit.looks);
     cache.reconstruct(view, {}, visit.frame);
   }
   void take_all() {

@@ -115,11 +115,11 @@ TEST(Looks, NothingKnownIsBlackAndFinite) {
 TEST(Looks, AnswersThatAreMissingOrTooManyDoNoHarm) {
   Visit visit;
   visit.step(stroll(0), 2000);
-  visit.cache.survey(stroll(0), nullptr, 1000, visit.frame, visit.looks);
+  visit.cache.survey(stroll(0), 1000, visit.frame, visit.looks);
   see_room(visit.room, visit.looks, visit.seen);
   visit.seen.resize(visit.seen.size() / 3);
   visit.cache.reconstruct(stroll(0), visit.seen, visit.frame);
-  visit.cache.survey(stroll(0), nullptr, 1000, visit.frame, visit.looks);
+  visit.cache.survey(stroll(0), 1000, visit.frame, visit.looks);
   visit.seen.assign(visit.looks.size() + 100, Seen{});  // nothing that makes sense
   visit.cache.reconstruct(stroll(0), visit.seen, visit.frame);
   for (vec3 c : visit.frame.color) ASSERT_TRUE(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);

@@ -140,7 +140,7 @@ Edge turn(bool predicts, int mismatch) {
       trace_room(v.room, answer.piece.requests, answer.samples);
       broker.answer(std::move(answer));
     }
-    v.cache.survey(view, nullptr, 0, v.frame, v.looks);
+    v.cache.survey(view, 0, v.frame, v.looks);
     v.cache.reconstruct(view, {}, v.frame);
     before = view;
     if (i < 30) continue;

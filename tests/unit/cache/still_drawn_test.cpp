@@ -5,75 +5,35 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cache/cache.h"
 #include "frame/compare.h"
-#include "light/technique.h"
-#include "scenes/scenes.h"
+#include "unit/cache/drawn_visit.h"
 
-using namespace wellspring;
-using namespace wellspring::scenes;
-
+namespace wellspring {
 namespace {
 
 constexpr int width = 120, height = 90, pixels = width * height;
 
-// A box, bars before its back wall that are thinner than a cell of light, and a ball that can be moved.
-struct Stage {
-  Scene scene = make_cornell_box();
-  Mesh ball;
-  std::unique_ptr<World> world;
-  Lights lights;
-  std::unique_ptr<PictureSight> sight;
-  View view;
-  explicit Stage(bool with_ball) {
-    int pale = add_material(scene, diffuse(vec3(0.7f)));
-    for (int i = 0; i < 6; i++)
-      add_quad(scene, pale, {-0.25f + 0.1f * float(i), 0, -0.1f}, {0.012f, 0, 0}, {0, 0.5f, 0}, "bar");
-    ball = sphere_mesh(add_material(scene, diffuse(vec3(0.7f, 0.6f, 0.1f))), 0.08f, 16);
-    for (vec3& p : ball.positions) p += vec3(-0.1f, 0.1f, 0.1f);
-    scene.objects.push_back("ball");
-    uint32_t object = uint32_t(scene.objects.size() - 1);
-    world = with_ball ? std::make_unique<World>(scene, std::vector<Mesh>{ball}, std::vector<uint32_t>{object})
-                      : std::make_unique<World>(scene);
-    world->commit();
-    lights = make_lights(*world);
-    sight = std::make_unique<PictureSight>(*world, lights);
-    view = make_view(scene, {0, 0.25, 0.6}, 0, 0, 0.7f, width, height);
-  }
-  void push_ball(float x) {
-    for (vec3& p : ball.positions) p.x += x;
-    world->move(0, ball.positions, ball.normals);
-    world->commit();
-  }
-  Frame truth() {
-    StillSettings settings;
-    settings.spp = 256;
-    return render_still(*find_technique("path"), *world, lights, view, settings);
-  }
+// A box with bars before its back wall that are thinner than a cell of light, and a ball that can be moved.
+struct Still : Stage {
+  View view = make_view(scene, {0, 0.25, 0.6}, 0, 0, 0.7f, width, height);
+  using Stage::Stage;
+  Frame truth() const { return Stage::truth(view, 256); }
 };
+Still make_still() { return Still(make_barred_box(vec3(0.7f), 0.012f)); }
+Still make_still_with_ball() {
+  Scene scene = make_barred_box(vec3(0.7f), 0.012f);
+  Mesh ball = add_ball(scene, {-0.1f, 0.1f, 0.1f});
+  return Still(std::move(scene), std::move(ball));
+}
 
-struct Visit {
-  RenderCache cache;
-  std::vector<Request> requests;
-  std::vector<Sample> samples;
-  Frame frame;
-  uint64_t tick = 1;
-  void step(Stage& stage, int budget, bool drawn) {
-    cache.resize(width, height);
-    cache.move_points(*stage.world);
-    cache.project(stage.view);
-    cache.attend();
-    cache.plan(stage.view, budget, tick++, requests);
-    samples.resize(requests.size());
-    trace(*find_technique("path"), *stage.world, stage.lights, {}, requests, samples);
-    cache.remember(stage.view, requests, samples);
-    if (drawn) cache.draw_still(stage.view, *stage.sight, frame);
-    else cache.reconstruct(stage.view, frame);
+struct Visit : DrawnVisit {
+  void step(const Still& stage, int budget, bool drawn) {
+    DrawnVisit::step(stage, stage.view, budget, drawn ? PictureOf::still : PictureOf::points);
   }
 };
 
 // Pixels that neighbours of another object touch, four of whose quarters do not all show the same.
-std::vector<bool> edge_pixels(Stage& stage) {
+std::vector<bool> edge_pixels(const Still& stage) {
   std::vector<bool> edge(pixels, false);
   for (int i = 0; i < pixels; i++) {
     uint32_t first = 0;
@@ -104,11 +64,9 @@ double error_at(const Frame& a, const Frame& b, const std::vector<bool>& at) {
   return std::sqrt(sum / count);
 }
 
-}  // namespace
-
 // Edges are smooth after few samples, long before points alone have had enough of both sides.
 TEST(StillDrawn, EdgesAreAntialiasedInTime) {
-  Stage stage(false);
+  Still stage = make_still();
   Frame truth = stage.truth();
   std::vector<bool> edges = edge_pixels(stage);
   ASSERT_GT(std::count(edges.begin(), edges.end(), true), pixels / 20);
@@ -133,7 +91,7 @@ TEST(StillDrawn, EdgesAreAntialiasedInTime) {
 
 // Of more and more samples the picture becomes the reference.
 TEST(StillDrawn, ConvergesToTheReference) {
-  Stage stage(false);
+  Still stage = make_still();
   Frame truth = stage.truth();
   Visit drawn;
   double error[3];
@@ -147,7 +105,7 @@ TEST(StillDrawn, ConvergesToTheReference) {
 }
 
 TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
-  Stage stage(true);
+  Still stage = make_still_with_ball();
   Visit visit;
   for (int i = 0; i < 20; i++) visit.step(stage, pixels / 8, true);
   uint32_t ball = uint32_t(stage.scene.objects.size() - 1);
@@ -161,7 +119,8 @@ TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
         Hit corner = stage.world->intersect(view_ray(stage.view, float(i % width) + to.x, float(i / width) + to.y));
         rim |= corner.valid() && (stage.world->object_of(corner.instance) == ball) != there;
       }
-      if (!rim) ASSERT_EQ(visit.frame.object[size_t(i)] == ball, there) << i % width << " " << i / width;
+      if (rim) continue;
+      ASSERT_EQ(visit.frame.object[size_t(i)] == ball, there) << i % width << " " << i / width;
     }
   };
   expect_ball();
@@ -186,7 +145,7 @@ TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
 
 // Also of a view that was drawn once only.
 TEST(StillDrawn, NothingOfAnotherViewRemains) {
-  Stage stage(false);
+  Still stage = make_still();
   Visit visit;
   for (int i = 0; i < 4; i++) visit.step(stage, pixels / 4, true);
   View box = stage.view;
@@ -207,7 +166,7 @@ TEST(StillDrawn, NothingOfAnotherViewRemains) {
 
 // Bars that no cell of light stands for are lit by their own points.
 TEST(StillDrawn, NarrowThingsHaveTheirOwnLight) {
-  Stage stage(false);
+  Still stage = make_still();
   Frame truth = stage.truth();
   std::vector<bool> bars(pixels, false);
   for (int i = 0; i < pixels; i++) {
@@ -222,3 +181,6 @@ TEST(StillDrawn, NarrowThingsHaveTheirOwnLight) {
     if (bars[i]) mean += luminance(visit.frame.color[i]), expected += luminance(truth.color[i]);
   EXPECT_NEAR(mean, expected, 0.15 * expected);
 }
+
+}  // namespace
+}  // namespace wellspring

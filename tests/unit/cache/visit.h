@@ -27,7 +27,7 @@ struct Visit {
     cache.plan(view, budget, tick++, requests);
     trace_room(room, requests, samples);
     cache.remember(view, requests, samples);
-    cache.survey(view, nullptr, most_looks, frame, looks);
+    cache.survey(view, most_looks, frame, looks);
     see_room(room, looks, seen);
     cache.reconstruct(view, seen, frame);
   }

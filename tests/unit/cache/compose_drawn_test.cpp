@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures that are drawn: with few points the light is a guess, but shapes and reflectances are exact.
+#include "cache/compose_drawn.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "frame/compare.h"
+#include "frame/tonemap.h"
+#include "unit/cache/drawn_visit.h"
+
+namespace wellspring {
+namespace {
+
+using namespace scenes;
+
+constexpr int width = 160, height = 120, pixels = width * height;
+
+// A box with a picture on its back wall and thin dark bars before it.
+Scene make_room() {
+  Scene scene = make_barred_box(vec3(0.1f), 0.004f);
+  Image image;
+  image.width = image.height = 32;
+  for (int i = 0; i < 32 * 32; i++)
+    for (uint8_t c : {(i / 2 + i / 64) % 2 ? 220 : 30, 120, 60, 255}) image.texels8.push_back(c);
+  scene.images.push_back(image);
+  Texture texture;
+  texture.image = int(scene.images.size()) - 1;
+  scene.textures.push_back(texture);
+  Material picture = diffuse(vec3(1));
+  picture.base_color_texture.texture = int(scene.textures.size()) - 1;
+  add_quad(scene, add_material(scene, picture), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0}, "picture");
+  return scene;
+}
+Stage make_room_with_ball() {
+  Scene scene = make_room();
+  Mesh ball = add_ball(scene, {0, 0.1f, 0});
+  return Stage(std::move(scene), std::move(ball));
+}
+// Light that no surface is needed for: a lamp before a bright sky.
+Scene make_shining() {
+  Scene scene = empty_scene();
+  scene.environment.radiance = vec3(0.5f, 1, 2);
+  add_quad(scene, add_material(scene, emitter(vec3(3, 2, 1))), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0}, "lamp");
+  return scene;
+}
+View view_from(const Stage& stage, double x, int width, int height) {
+  return make_view(stage.scene, {x, 0.25, 0.6}, 0, 0, 0.7f, width, height);
+}
+
+// Pixels that show an object that no ray through any of their `places` meets.
+int count_wrong(const Stage& stage, const View& view, const Frame& frame, std::initializer_list<vec2> places) {
+  int wrong = 0;
+  for (int y = 0; y < view.height; y++)
+    for (int x = 0; x < view.width; x++) {
+      bool right = false;
+      for (vec2 place : places) {
+        Hit hit = stage.world->intersect(view_ray(view, float(x) + place.x, float(y) + place.y));
+        uint32_t object = hit.valid() ? stage.world->object_of(hit.instance) : 0;
+        right |= frame.object[size_t(y * view.width + x)] == object;
+      }
+      wrong += !right;
+    }
+  return wrong;
+}
+// Edges may run through the very middle of pixels, where either side is right.
+int count_wrong(const Stage& stage, const View& view, const Frame& frame) {
+  return count_wrong(stage, view, frame, {{0.498f, 0.5f}, {0.502f, 0.5f}, {0.5f, 0.498f}, {0.5f, 0.502f}});
+}
+// At rest, when the pixel may show whatever some place of it does.
+int count_wrong_at_rest(const Stage& stage, const View& view, const Frame& frame) {
+  return count_wrong(stage, view, frame, {{0.5f, 0.5f}, {0.02f, 0.02f}, {0.98f, 0.02f}, {0.02f, 0.98f},
+                                          {0.98f, 0.98f}, {0.02f, 0.5f}, {0.98f, 0.5f}, {0.25f, 0.5f},
+                                          {0.75f, 0.5f}, {0.5f, 0.02f}, {0.5f, 0.98f}});
+}
+
+void expect_light(const Frame& frame) {
+  for (vec3 c : frame.color) ASSERT_TRUE(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);
+}
+
+// What is drawn for the eye at once is the frame, tone-mapped; along edges colours are mixed before
+// the curve or behind it.
+void expect_same_for_the_eye(DrawnVisit& drawn, const View& view, const PictureSight& sight) {
+  for (float exposure : {1.0f, 3.5f}) {
+    Image8 expected, shown, alone;
+    std::vector<float> depth;
+    tonemap(drawn.frame, {exposure}, expected);
+    drawn.cache.draw(view, sight, Tonemap{exposure}, shown, &depth);
+    drawn.cache.draw(view, sight, Tonemap{exposure}, alone);
+    EXPECT_EQ(shown.width, view.width);
+    EXPECT_EQ(shown.height, view.height);
+    EXPECT_EQ(depth, drawn.frame.depth);
+    EXPECT_EQ(alone.rgb, shown.rgb);
+    ASSERT_EQ(shown.rgb.size(), expected.rgb.size());
+    std::vector<bool> mixed(depth.size(), false);
+    for (const auto& list : sight.see_edges(view, vec2(0.5f), [](const SightRun&) {}))
+      for (const EdgeShare& edge : list) mixed[edge.pixel] = true;
+    EXPECT_LT(std::count(mixed.begin(), mixed.end(), true), ptrdiff_t(mixed.size() / 8));
+    for (size_t i = 0; i < shown.rgb.size(); i++)
+      if (!mixed[i / 3]) {
+        ASSERT_NEAR(shown.rgb[i], expected.rgb[i], 1) << "byte " << i << ", exposure " << exposure;
+      }
+  }
+}
+
+// Of a place that nothing was known of a moment ago; odd sizes too: tiles, blocks and light pixels end
+// anywhere.
+TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
+  for (ivec2 size : {ivec2(160, 120), ivec2(151, 97)}) {
+    Stage stage = make_room_with_ball();
+    DrawnVisit drawn, guessed;
+    int count = size.x * size.y;
+    View view;
+    for (int i = 0; i < 24; i++) {
+      stage.push_ball(0.004f);
+      view = view_from(stage, 0.002 * i + (i >= 12 ? 0.1 : 0), size.x, size.y);
+      drawn.step(stage, view, count / 60, PictureOf::moving);
+      guessed.step(stage, view, count / 60, PictureOf::points);
+    }
+    ASSERT_EQ(drawn.frame.color.size(), size_t(count));
+    expect_same_for_the_eye(drawn, view, *stage.sight);
+    EXPECT_LT(count_wrong(stage, view, drawn.frame), count / 1000);
+    EXPECT_GT(count_wrong(stage, view, guessed.frame), count / 100);  // so the case is hard
+    for (size_t i = 0; i < drawn.frame.object.size(); i++)
+      ASSERT_EQ(drawn.frame.object[i] == 0, std::isinf(drawn.frame.depth[i])) << i;
+    Frame truth = stage.truth(view, 32);
+    EXPECT_LT(rmse(drawn.frame, truth), 0.9 * rmse(guessed.frame, truth)) << size.x;
+    expect_light(drawn.frame);
+  }
+}
+
+// Who has just arrived sees shapes at once, also at rest.
+TEST(Drawn, StillPicturesHaveExactShapesWithFewPoints) {
+  Stage stage(make_room());
+  DrawnVisit drawn, guessed;
+  View view = view_from(stage, 0, width, height);
+  for (int i = 0; i < 8; i++) {
+    drawn.step(stage, view, pixels / 200, PictureOf::still);
+    guessed.step(stage, view, pixels / 200, PictureOf::points);
+  }
+  EXPECT_LT(count_wrong_at_rest(stage, view, drawn.frame), pixels / 1000);
+  EXPECT_GT(count_wrong_at_rest(stage, view, guessed.frame), pixels / 50);
+  Frame truth = stage.truth(view, 32);
+  EXPECT_LT(rmse(drawn.frame, truth), 0.8 * rmse(guessed.frame, truth));
+  expect_light(drawn.frame);
+}
+
+// Points of before that are seen through gaps of nearer ones lend no pixel their shape or their light.
+TEST(Drawn, WhoStopsSeesNoPointThroughGaps) {
+  Stage stage(make_room());
+  DrawnVisit drawn, guessed;
+  View view;
+  for (int i = 0; i < 28; i++) {
+    view = view_from(stage, 0.01 * std::min(i, 20), width, height);
+    bool stands = i >= 21;
+    drawn.step(stage, view, stands ? pixels / 400 : pixels / 40, stands ? PictureOf::still : PictureOf::moving);
+    guessed.step(stage, view, stands ? pixels / 400 : pixels / 40, PictureOf::points);
+  }
+  EXPECT_LT(count_wrong_at_rest(stage, view, drawn.frame), pixels / 1000);
+  EXPECT_GT(count_wrong_at_rest(stage, view, guessed.frame), pixels / 200);
+  Frame truth = stage.truth(view, 32);
+  EXPECT_LT(rmse(drawn.frame, truth), 0.8 * rmse(guessed.frame, truth));
+}
+
+// Who stops is shown what was known before, and nothing is allocated anew.
+TEST(Drawn, StartingAndStoppingLosesNoPoint) {
+  Stage stage = make_room_with_ball();
+  DrawnVisit visit;
+  auto view = [&](double x) { return view_from(stage, x, width, height); };
+  for (int i = 0; i < 24; i++) visit.step(stage, view(0), pixels / 8, PictureOf::still);
+  CacheStats rested = visit.cache.stats();
+  ASSERT_GT(rested.reprojected, 0.8f);
+  visit.step(stage, view(0.01), pixels / 60, PictureOf::moving);
+  size_t memory = visit.cache.memory_bytes();
+  for (int i = 2; i < 6; i++) visit.step(stage, view(0.01 * i), pixels / 60, PictureOf::moving);
+  visit.step(stage, view(0), 0, PictureOf::still);
+  EXPECT_GT(visit.cache.stats().reprojected, 0.98f * rested.reprojected);
+  EXPECT_NEAR(double(visit.cache.memory_bytes()), double(memory), 1 << 15);  // of 1.3 MB
+}
+
+// Lamps and the sky are as they are without a single sample.
+TEST(Drawn, ShinesWithoutASample) {
+  Stage stage(make_shining());
+  View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 1, 101, 67);
+  for (PictureOf kind : {PictureOf::moving, PictureOf::still})
+    for (int budget : {0, 12}) {
+      DrawnVisit visit;
+      for (int i = 0; i < 3; i++) visit.step(stage, view, budget, kind);
+      auto color = [&](int x, int y) { return visit.frame.color[size_t(y * 101 + x)]; };
+      // The mean at rest is kept in half the precision.
+      float rounding = kind == PictureOf::still ? 2e-3f : 1e-5f;
+      EXPECT_LT(glm::length(color(50, 33) - vec3(3, 2, 1)), rounding);
+      EXPECT_LT(glm::length(color(4, 4) - vec3(0.5f, 1, 2)), rounding);
+      EXPECT_LT(glm::length(color(100, 66) - vec3(0.5f, 1, 2)), rounding);
+    }
+}
+
+// Nothing known at all: the frame has the shapes and no light but the lamp's, and nothing breaks.
+TEST(Drawn, AnEmptyCacheIsDark) {
+  Stage stage(make_room());
+  View view = view_from(stage, 0, 64, 48);
+  for (PictureOf kind : {PictureOf::moving, PictureOf::still}) {
+    DrawnVisit visit;
+    visit.step(stage, view, 0, kind);
+    EXPECT_EQ(visit.requests.size(), 0u);
+    EXPECT_LE(count_wrong_at_rest(stage, view, visit.frame), 64 * 48 / 1000);
+    int lit = 0;
+    for (vec3 c : visit.frame.color) {
+      ASSERT_TRUE(is_finite(c));
+      lit += c != vec3(0);
+    }
+    EXPECT_LT(lit, 64 * 48 / 8);
+  }
+}
+
+}  // namespace
+}  // namespace wellspring
