@@ -7,6 +7,7 @@
 #include <deque>
 #include <fcntl.h>
 #include <netinet/in.h>
+#include <numbers>
 #include <spawn.h>
 #include <stdexcept>
 #include <sys/socket.h>
@@ -98,9 +99,23 @@ double read_metric(uint16_t port, const std::string& name) {
   return at == std::string::npos ? std::nan("") : std::atof(&text[at + name.size() + 13]);
 }
 
+// A stroll up and down: ahead, swaying, and round again every few seconds with the turn of a key
+// (web/controls.js), so that walls come and go and none is walked into, where there would be nothing new to
+// show between inputs.
+Input stroll(double t, uint32_t seq, double interval) {
+  constexpr double ahead = 2.5, turn_speed = 1.5, turning = std::numbers::pi / turn_speed;
+  Input input;
+  input.seq = seq;
+  input.move = {float(0.2 * std::sin(t)), 0, 1.2f};
+  bool turns = std::fmod(t, ahead + turning) > ahead;
+  double yaw = turns ? turn_speed : 0.25 * std::sin(2 * std::numbers::pi * t / ahead);
+  input.look = {float(yaw * interval), float(0.06 * std::cos(t) * interval)};
+  return input;
+}
+
 // Results are called `name`.fps and so on; `draw` goes to the server.
 void walk(BenchReport& report, const BenchOptions& options, const std::string& name, const std::string& draw) {
-  const double warm_up = 2, seconds = options.quick ? 6 : 20;
+  const double warm_up = 2, seconds = options.quick ? 6 : 20, input_interval = 1.0 / 30;
   ServerProcess server(options, "castle", draw);
   WsClient client;
   WsTarget target;
@@ -113,6 +128,8 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
 
   std::deque<std::pair<uint32_t, double>> asked;  // seq, when sent
   std::vector<double> latencies, arrivals, bytes;
+  std::vector<uint8_t> before;  // the picture before
+  size_t repeated = 0;
   uint32_t seq = 0;
   double began = seconds_now(), next_input = began, counted_from = 0;
   const char* counters[] = {"pictures_drawn_total", "pictures_warped_total"};
@@ -125,14 +142,9 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
       counted_from = seconds_now();
     }
     if (now >= next_input) {
-      // A stroll: forward, swaying round, turning back at intervals so that the hall's walls come and go.
-      Input input;
-      input.seq = ++seq;
-      input.move = {0.2f * std::sin(float(t)), 0, 1.2f};
-      input.look = {0.012f * std::sin(float(t) * 0.7f) + 0.008f, 0.002f * std::cos(float(t))};
-      client.send_text(write_message(input));
+      client.send_text(write_message(stroll(t, ++seq, input_interval)));
       asked.emplace_back(seq, seconds_now());
-      next_input += 1.0 / 30;
+      next_input += input_interval;
     }
     auto got = client.receive(message, std::clamp(next_input - seconds_now(), 0.0, 0.03));
     if (got == WsClient::Got::closed) throw std::runtime_error("the server closed the visit");
@@ -146,10 +158,13 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
       if (counts) latencies.push_back(1000 * (arrived - asked.front().second));
       asked.pop_front();
     }
+    std::vector<uint8_t> picture(packet->payload.begin(), packet->payload.end());
     if (counts) {
+      repeated += picture == before;
       arrivals.push_back(arrived);
       bytes.push_back(double(message.bytes.size()));
     }
+    before = std::move(picture);
   }
   if (arrivals.size() < 2) throw std::runtime_error("hardly any picture arrived");
   double counted = seconds_now() - counted_from;
@@ -159,6 +174,7 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
   report.add(name + ".fps", double(arrivals.size() - 1) / (arrivals.back() - arrivals.front()), "1/s", where);
   report.add(name + ".drawn_fps", (read_metric(server.port, counters[0]) - counts_before[0]) / counted, "1/s", where);
   report.add(name + ".warped_fps", (read_metric(server.port, counters[1]) - counts_before[1]) / counted, "1/s", where);
+  report.add(name + ".repeated", 100 * double(repeated) / double(arrivals.size()), "%", where);
   report.add(name + ".latency_p50_ms", quantile(latencies, 0.5), "ms", where);
   report.add(name + ".latency_p95_ms", quantile(latencies, 0.95), "ms", where);
   report.add(name + ".gap_p95_ms", quantile(gaps, 0.95), "ms", where);
