@@ -21,7 +21,6 @@ constexpr int change_ageing = 64;
 // more (a self-normalised sum: rare bright samples neither make a change nor hide one for long; Pena,
 // Lai, Shao 2009), and by how much on average.
 constexpr float change_deviations = 5, least_change = 0.15f;
-constexpr uint8_t changed_count = 1;  // samples a point near a change still vouches for
 
 void age_tile(PointCache& points, const PointImage& image, StillImage& still, int tx, int ty) {
   int x1 = std::min((tx + 1) * change_tile, image.width),
@@ -33,8 +32,7 @@ void age_tile(PointCache& points, const PointImage& image, StillImage& still, in
       if (at < still.count.size()) still.count[at] = 0;
       if (point == no_point || points.age[point] == evicted_age) continue;
       points.age[point] = uint8_t(std::min(points.age[point] + change_ageing, 254));
-      points.count[point] = std::min(points.count[point], changed_count);
-      points.flags[point] |= point_relit;
+      forget_light_of(points, point);
     }
 }
 
@@ -103,7 +101,7 @@ void borrow_light(PointCache& points, const PixelPoint& to, std::span<const Pixe
   float brighter = luminance(albedo) / std::max(luminance(unpack_albedo(from->albedo)), darkest_lit);
   mine.smooth = from->smooth;
   mine.rest = pack_rgb9e5(unpack_rgb9e5(from->rest) * brighter);
-  mine.noise = 0;
+  points.count[to.point] = 1;
 }
 
 using Levels = std::array<uint8_t, 256>;

@@ -9,6 +9,10 @@
 namespace wellspring {
 namespace {
 
+// Samples that a point counts for whose light was forgotten: something where nothing newer is known.
+constexpr float forgotten_samples = 1 / 256.0f;
+constexpr float least_samples = forgotten_samples / 2;
+
 constexpr int float_planes = 3 * 7 + 12 + 10;  // all but object
 
 size_t padded(int width, int height) {
@@ -57,6 +61,7 @@ struct Gathered {
   f8 x{}, y{}, inverse_depth{}, samples{}, points{}, sum{}, sum2{};
   f8 rest_sum{}, rest_sum2{}, rest_noise{}, rest_known{};
   f8 pairs{}, pair_sum{};
+  f8 told{};  // points that were not forgotten
 };
 
 // The object most pixels of a cell see (majority vote of Boyer and Moore).
@@ -100,13 +105,16 @@ Gathered gather_cells(const Pixels& pixels) {
     // Beyond a crease lies another surface.
     use &= (facing > 0.0f) & (facing * facing >= least2 * dot(normal, normal));
 
-    f8 samples = keep(use, to_float((more >> 16) & 255u));
+    u8 count = (more >> 16) & 255u;
+    i8 forgotten = (count <= 1u) & ((more >> 24) == forgotten_noise);
+    f8 told = keep(use & ~forgotten, to_float(count));
+    f8 samples = forgotten ? keep(use, splat(forgotten_samples)) : told;
     Vec albedo, rest, smooth;
     unpack_albedo(pixels.plane[plane_albedo][k], albedo.x, albedo.y, albedo.z);
     unpack_rgb9e5(pixels.plane[plane_rest][k], rest.x, rest.y, rest.z);
     unpack_rgb9e5(pixels.plane[plane_smooth][k], smooth.x, smooth.y, smooth.z);
     f8 deviation = unpack_deviation(more >> 24);
-    i8 known = use & ((samples > 1.0f) | ((samples > 0.0f) & (deviation > 0.0f)));
+    i8 known = use & ~forgotten & ((samples > 1.0f) | ((samples > 0.0f) & (deviation > 0.0f)));
     f8 rest_light = luminance(rest.x, rest.y, rest.z),
        light = luminance(smooth.x, smooth.y, smooth.z);
     f8 one = keep(use, splat(1));
@@ -123,12 +131,13 @@ Gathered gather_cells(const Pixels& pixels) {
     g.inverse_depth += keep(use, 1.0f / as<f8>(pixels.plane[plane_depth][k]));
     g.samples += samples;
     g.points += one;
+    g.told += keep(~forgotten, one);
     g.sum += samples * light;
     g.sum2 += samples * light * light;
     int column = k % cell_size;
-    if (column > 0) add_pair(light, samples, above_light[column - 1], above_samples[column - 1]);
-    if (k >= cell_size) add_pair(light, samples, above_light[column], above_samples[column]);
-    above_light[column] = light, above_samples[column] = samples;
+    if (column > 0) add_pair(light, told, above_light[column - 1], above_samples[column - 1]);
+    if (k >= cell_size) add_pair(light, told, above_light[column], above_samples[column]);
+    above_light[column] = light, above_samples[column] = told;
   }
   return g;
 }
@@ -182,7 +191,7 @@ void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells
     read_pixels(rows, cx, cy, pixels);
     Gathered g = gather_cells(pixels);
     i8 any_point = g.points > 0.0f;
-    f8 share = 1.0f / larger(g.points, splat(1)), per_sample = 1.0f / larger(g.samples, splat(1));
+    f8 share = 1.0f / larger(g.points, splat(1)), per_sample = 1.0f / larger(g.samples, splat(least_samples));
     Vec normal = g.normal * (1.0f / larger(lanes_sqrt(dot(g.normal, g.normal)), splat(1e-6f)));
     auto along = [&](vec3 axis) {
       return normal.x * axis.x + normal.y * axis.y + normal.z * axis.z;
@@ -205,7 +214,7 @@ void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells
     store_vec(cells.plane, i, any_point, plane);
     store(&cells.depth[i], keep(any_point, 1.0f / at_middle));
     store(&cells.samples[i], g.samples);
-    store(&cells.points[i], g.points);
+    store(&cells.points[i], g.told);
     store(&cells.sum[i], g.sum);
     store(&cells.sum2[i], g.sum2);
     store(&cells.rest_sum[i], g.rest_sum);

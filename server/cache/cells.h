@@ -26,7 +26,7 @@ struct Cells {
   std::array<std::span<float>, 3> plane;
   std::span<float> depth;    // of the plane at the cell's centre
   std::span<float> samples;  // behind `smooth`; 0: no point fell here
-  std::span<float> points;   // pixels averaged; then the other side of rest_known
+  std::span<float> points;   // pixels averaged, but for those whose light was forgotten; then the other side of rest_known
   // Luminance moments of smooth over samples; then variance of its mean, and the other side of it.
   std::span<float> sum, sum2;
   // Of neighbouring pixels that both have a point: how many pairs, and the sum of what the difference of

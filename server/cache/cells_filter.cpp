@@ -18,6 +18,7 @@ constexpr float plane_tolerance =
 // Squared, in variances of the mean. Of a few samples these are no better known than the light, and
 // count for `unsure_variance` times as much.
 constexpr float light_tolerance = 6, unsure_variance = 4;
+constexpr float least_samples = 1 / 512.0f;  // of a cell that remembers none
 constexpr float most_samples = 64;    // that a cell counts for: its neighbours show other places
 constexpr float plenty_of_points = 48;  // in nine cells, to tell how light deviates there
 constexpr float enough_pairs = 12;      // of neighbours, likewise
@@ -71,7 +72,7 @@ Brightest brightest_around(const Cells& cells, size_t i, const u8& object) {
       if (dx == 0 && dy == 0) continue;
       size_t j = size_t(ptrdiff_t(i) + dy * cells.stride + dx);
       i8 same = load<u8>(&cells.object[j]) == object;
-      f8 per_sample = keep(same, 1.0f / larger(load_at(cells.samples, j), splat(1)));
+      f8 per_sample = keep(same, 1.0f / larger(load_at(cells.samples, j), splat(least_samples)));
       b.light = larger(b.light, load_at(cells.sum, j) * per_sample);
       b.rest = larger(b.rest, load_at(cells.rest_sum, j) * per_sample);
     }
@@ -90,7 +91,7 @@ struct Prior {
 };
 Prior make_prior(const Pool& wide) {
   constexpr float guess_points = 3;
-  f8 per_sample = 1.0f / larger(wide.samples, splat(1));
+  f8 per_sample = 1.0f / larger(wide.samples, splat(least_samples));
   Prior prior;
   prior.mean = wide.sum * per_sample;
   f8 spread = positive(wide.sum2 - wide.sum * prior.mean);
@@ -219,9 +220,9 @@ void estimate_variance(Cells& cells) {
         Pool wide = pool;
         if (any(known & (pool.points < plenty_of_points)))
           wide = pool_around(cells, cells.pooled, i, object, 3);
-        f8 one = splat(1);
-        pool.samples = larger(pool.samples, one);
-        f8 samples = larger(load_at(cells.samples, i), one);
+        const f8 few = splat(least_samples);
+        pool.samples = larger(pool.samples, few);
+        f8 samples = larger(load_at(cells.samples, i), few);
         f8 rest_sum = load_at(cells.rest_sum, i), rest_sum2 = load_at(cells.rest_sum2, i);
         f8 spread = samples * rest_sum2 - rest_sum * rest_sum;
         i8 unsure = (load_at(cells.rest_known, i) < load_at(cells.points, i)) &

@@ -116,10 +116,16 @@ bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach) 
   return near || std::isinf(reach);
 }
 
+void forget_light_of(PointCache& points, uint32_t i) {
+  points.count[i] = 0;
+  points.color[i].noise = forgotten_noise;
+  points.color[i].surprises = 0;
+  points.flags[i] |= point_relit;
+}
+
 static void forget_looks(PointCache& points, size_t i) {
   points.age[i] = 254;
-  points.count[i] = std::min<uint8_t>(points.count[i], 1);
-  points.flags[i] |= point_relit;
+  forget_light_of(points, uint32_t(i));
 }
 
 void forget_light(PointCache& points, vec3 place, float reach) {

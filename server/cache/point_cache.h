@@ -35,6 +35,9 @@ struct PointColor {
   uint8_t noise = 0;
 };
 inline constexpr uint8_t sure_noise = 1;  // the least but none
+// Of a point whose light was forgotten, in place of its noise. Its count is 0 as long as it shows its old light, 1
+// when it is lent that of a newer point; see lend_light().
+inline constexpr uint8_t forgotten_noise = 2;
 static_assert(sizeof(PointColor) == 20);
 
 // A point on a moving mesh, found again in later ticks.
@@ -71,8 +74,11 @@ void age_points(PointCache& points, float new_points);
 // Points of an object that was carried by `moved` (rigid), as many as are returned. Moves that are not
 // finite move nothing.
 int move_points_of(PointCache& points, uint32_t object, const mat4& moved);
-// The light has changed within `reach` metres of `place`: points there are as old as can be, and their
-// next sample is as good as their first. At infinity only an infinite reach counts.
+// The light of a living point has changed: of what it remembers nothing counts where anything newer is known around,
+// and its next sample is as good as its first.
+void forget_light_of(PointCache& points, uint32_t i);
+// The light has changed within `reach` metres of `place`: points there are as old as can be, and their light is
+// forgotten. At infinity only an infinite reach counts.
 void forget_light(PointCache& points, vec3 place, float reach);
 bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach);
 // Where a place on a mesh is now, with the side of the normal that `normal` faced; both stay as they

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
       {"cache.visit", bench_cache_visit},
       {"cache.mirror", bench_cache_mirror}, {"cache.rest", bench_cache_rest},
       {"cache.starve", bench_cache_starve}, {"cache.turns", bench_cache_turns},
+      {"cache.switch", bench_cache_switch},
       {"light.frame", bench_light_frame}, {"light.scaling", bench_light_scaling},
       {"light.error", bench_light_error}, {"light.rays", bench_light_rays},
       {"light.cycles", bench_light_cycles}, {"light.photons", bench_light_photons}};

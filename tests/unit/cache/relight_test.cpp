@@ -91,7 +91,7 @@ TEST(Relight, BeyondItsReachNothingIsForgotten) {
   for (uint32_t i = 0; i < 16; i++) {
     bool near = i <= 4 && i != 1 && i != 2;
     EXPECT_EQ(points.age[i], near ? 254 : i == 2 ? evicted_age : 3) << i;
-    EXPECT_EQ(points.count[i], near ? 1 : 20) << i;
+    EXPECT_EQ(points.count[i], near ? 0 : 20) << i;
     EXPECT_EQ(bool(points.flags[i] & point_relit), near) << i;
   }
   forget_light(points, vec3(0), INFINITY);

@@ -56,7 +56,7 @@ TEST(Repaint, PointsOfTheRepaintedInstancesTakeTheirReflectance) {
   for (uint32_t i = 0; i < 8; i++) {
     bool forgotten = i % 2 == 1 && i != 5;
     EXPECT_EQ(points.age[i], forgotten ? 254 : i == 5 ? evicted_age : 3) << i;
-    EXPECT_EQ(points.count[i], forgotten ? 1 : 20) << i;
+    EXPECT_EQ(points.count[i], forgotten ? 0 : 20) << i;
     EXPECT_EQ(bool(points.flags[i] & point_relit), forgotten) << i;
     EXPECT_NEAR(unpack_albedo(points.color[i].albedo).x, forgotten ? 0.8f : 0.2f, 0.01f) << i;
     EXPECT_NEAR(unpack_albedo(points.color[i].albedo).y, 0.2f, 0.01f) << i;
