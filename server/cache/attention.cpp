@@ -15,7 +15,7 @@ namespace {
 
 constexpr float darkest_lit = 0.01f;  // reflectance that can tell of light, or show it
 constexpr float same_facing = 0.9f;   // cosine
-constexpr int change_ageing = 64;
+constexpr int change_ageing = 64;  // of points near places where the light seems to have changed
 // Light has changed in a tile where the witnesses of 3x3 tiles agree that it did: by how many standard
 // deviations their sum is off, each taken by its own size or by the noise known of it, whichever is
 // more (a self-normalised sum: rare bright samples neither make a change nor hide one for long; Pena,
@@ -30,9 +30,7 @@ void age_tile(PointCache& points, const PointImage& image, StillImage& still, in
       size_t at = size_t(y) * size_t(image.width) + size_t(x);
       uint32_t point = image.point[at];
       if (at < still.count.size()) still.count[at] = 0;
-      if (point == no_point || points.age[point] == evicted_age) continue;
-      points.age[point] = uint8_t(std::min(points.age[point] + change_ageing, 254));
-      forget_light_of(points, point);
+      if (point != no_point) forget_light_of(points, point, change_ageing);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/memory.h"
 #include "cache/point_cache.h"
 
 namespace wellspring {
@@ -106,10 +107,9 @@ void Broker::forget() {
 
 size_t Broker::memory_bytes() const {
   size_t sum = traced_.size() * sizeof(Traced);
-  for (const Piece& piece : pieces_) sum += sizeof piece + piece.requests.capacity() * sizeof(Request);
+  for (const Piece& piece : pieces_) sum += sizeof piece + bytes_of(piece.requests);
   for (const Answer& answer : answers_)
-    sum += sizeof answer + answer.piece.requests.capacity() * sizeof(Request) +
-           answer.samples.capacity() * sizeof(Sample);
+    sum += sizeof answer + bytes_of(answer.piece.requests, answer.samples);
   return sum;
 }
 

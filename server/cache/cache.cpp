@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "base/clock.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "cache/attention.h"
@@ -52,16 +53,9 @@ struct CacheWork {
 };
 std::shared_ptr<CacheWork> make_cache_work() { return std::make_shared<CacheWork>(); }
 
-template <class Vector>
-static size_t bytes_of(const Vector& v) {
-  return v.capacity() * sizeof(v[0]);
-}
-
 size_t memory_bytes(const CacheWork& work) {
-  const Frame& light = work.light;
-  return work.scratch.bytes() + bytes_of(light.color) + bytes_of(light.depth) + bytes_of(light.object) +
-         bytes_of(light.confidence) + bytes_of(work.targets) + bytes_of(work.occupied) + bytes_of(work.looked) +
-         bytes_of(work.looked_pixels);
+  return work.scratch.bytes() + memory_bytes(work.light) +
+         bytes_of(work.targets, work.occupied, work.looked, work.looked_pixels);
 }
 
 struct RenderCache::Impl {
@@ -364,9 +358,8 @@ const CacheStats& RenderCache::stats() const { return impl_->stats; }
 
 size_t RenderCache::memory_bytes() const {
   const Impl& c = *impl_;
-  size_t sum = points_bytes(c.points) + bytes_of(c.image.point) + bytes_of(c.image.depth) +
-               bytes_of(c.image.priority) + bytes_of(c.image.changed) + bytes_of(c.image.witnesses) +
-               bytes_of(c.still.count);
+  size_t sum = points_bytes(c.points) + bytes_of(c.still.count) + bytes_of(c.paints_of, c.repainted) +
+               bytes_of(c.image.point, c.image.depth, c.image.priority, c.image.changed, c.image.witnesses);
   for (const auto& plane : c.still.mean) sum += bytes_of(plane);
   return sum + (c.shares ? 0 : wellspring::memory_bytes(*c.work));
 }

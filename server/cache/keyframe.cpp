@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 
 namespace wellspring {
@@ -90,6 +91,10 @@ void make_keyframe(const View& view, const Image8& picture, std::span<const floa
     for (int y = begin * Keyframe::block; y < std::min(end * Keyframe::block, view.height); y++)
       write_steps(k, y, &k.color[size_t(y) * width]);
   });
+}
+
+size_t memory_bytes(const Keyframe& keyframe) {
+  return bytes_of(keyframe.color, keyframe.disparity, keyframe.farthest, keyframe.nearest);
 }
 
 }  // namespace wellspring

@@ -27,6 +27,7 @@ struct Keyframe {
 
   bool empty() const { return color.empty(); }
 };
+size_t memory_bytes(const Keyframe& keyframe);
 
 // The view with some of what lies around, in pixels of the same size: what is drawn of it for warps. To the
 // sides so much that it may turn by `turn` radians, within a tenth of its width.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "cache/lanes.h"
 #include "cache/packing.h"
@@ -116,22 +117,20 @@ bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach) 
   return near || std::isinf(reach);
 }
 
-void forget_light_of(PointCache& points, uint32_t i) {
+void forget_light_of(PointCache& points, uint32_t i, int ageing) {
+  if (points.age[i] == evicted_age) return;
+  points.age[i] = uint8_t(std::min(points.age[i] + ageing, oldest_age));
   points.count[i] = 0;
   points.color[i].noise = forgotten_noise;
   points.color[i].surprises = 0;
   points.flags[i] |= point_relit;
 }
 
-static void forget_looks(PointCache& points, size_t i) {
-  points.age[i] = 254;
-  forget_light_of(points, uint32_t(i));
-}
-
 void forget_light(PointCache& points, vec3 place, float reach) {
   parallel_ranges(points.capacity(), 1 << 14, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++)
-      if (is_alive(points, uint32_t(i)) && is_lit_from(points, uint32_t(i), place, reach)) forget_looks(points, i);
+      if (is_alive(points, uint32_t(i)) && is_lit_from(points, uint32_t(i), place, reach))
+        forget_light_of(points, uint32_t(i), oldest_age);
   });
 }
 
@@ -143,7 +142,7 @@ bool forget_paint(PointCache& points, const World& world, const std::vector<char
       size_t i = a.point;
       if (a.instance >= repainted.size() || !repainted[a.instance] || !is_alive(points, a.point)) continue;
       found = true;
-      forget_looks(points, i);
+      forget_light_of(points, uint32_t(i), oldest_age);
       vec3 place(points.x[i], points.y[i], points.z[i]), way = unpack_normal(points.normal[i]);
       Hit hit{1, a.instance, a.triangle, vec2(a.u, a.v) * (1.0f / 65535)};
       Surface surface = eval_surface(world, {.origin = place + way, .direction = -way}, hit);
@@ -204,10 +203,8 @@ void move_anchored_points(PointCache& points, const World& world) {
 }
 
 size_t points_bytes(const PointCache& points) {
-  auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return bytes(points.x) + bytes(points.y) + bytes(points.z) + bytes(points.normal) +
-         bytes(points.flags) + bytes(points.age) + bytes(points.count) +
-         bytes(points.color) + bytes(points.anchors) + bytes(points.seen);
+  return bytes_of(points.x, points.y, points.z, points.normal, points.flags, points.age, points.count,
+                  points.color, points.anchors, points.seen);
 }
 
 }  // namespace wellspring

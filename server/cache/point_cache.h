@@ -48,6 +48,7 @@ struct Anchor {
 
 inline constexpr uint32_t group_size = 8;    // replacement looks at this many (paper, section 4.3)
 inline constexpr uint8_t evicted_age = 255;  // such a point is never shown again
+inline constexpr int oldest_age = 254;       // of points that are shown
 inline constexpr int max_capacity = (1 << 24) - 8;
 
 struct PointCache {
@@ -69,16 +70,17 @@ void resize_points(PointCache& points, int capacity);
 void clear_points(PointCache& points);
 // One frame passes. Ages advance so that a point reaches about 128 by the time `new_points` a frame
 // have replaced all (Walter 2002); specular and moving points age three times as fast, unseen ones
-// twice. Unseen points that reach 255 are evicted; seen ones stop at 254.
+// twice. Unseen points that reach 255 are evicted; seen ones stop at `oldest_age`.
 void age_points(PointCache& points, float new_points);
 // Points of an object that was carried by `moved` (rigid), as many as are returned. Moves that are not
 // finite move nothing.
 int move_points_of(PointCache& points, uint32_t object, const mat4& moved);
-// The light of a living point has changed: of what it remembers nothing counts where anything newer is known around,
-// and its next sample is as good as its first.
-void forget_light_of(PointCache& points, uint32_t i);
-// The light has changed within `reach` metres of `place`: points there are as old as can be, and their light is
-// forgotten. At infinity only an infinite reach counts.
+// The light of a point has changed, or seems to: of what it remembers nothing counts where anything
+// newer is known around, and its next sample is as good as its first. It grows older by `ageing`, so
+// that it is asked for the sooner the surer the change is; `oldest_age`: among the first.
+void forget_light_of(PointCache& points, uint32_t i, int ageing);
+// The light has changed within `reach` metres of `place`: points there forget theirs. At infinity
+// only an infinite reach counts.
 void forget_light(PointCache& points, vec3 place, float reach);
 bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach);
 // Where a place on a mesh is now, with the side of the normal that `normal` faced; both stay as they
@@ -87,9 +89,9 @@ void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2
                   vec3& place, vec3& normal);
 // Points with anchors follow their triangles; anchors of overwritten points are dropped.
 void move_anchored_points(PointCache& points, const World& world);
-// What instances are made of looks different now: their points take the reflectance that it has there, are as old as
-// can be, and their next sample is as good as their first. Of those with anchors, so after
-// move_anchored_points(). `repainted`: of each of the world's instances. Returns whether any point was found.
+// What instances are made of looks different now: their points take the reflectance that it has there and
+// forget their light. Of those with anchors, so after move_anchored_points(). `repainted`: of each of the
+// world's instances. Returns whether any point was found.
 bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted);
 // Most anchors a cache of this capacity may hold; moving points beyond are forgotten after one
 // frame.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/memory.h"
 #include "base/vec.h"
 
 namespace wellspring {
@@ -17,6 +18,9 @@ struct Frame {
   std::vector<uint32_t> object;   // 0: nothing hit
   std::vector<float> confidence;  // 0 (guessed) to 1 (converged)
 };
+inline size_t memory_bytes(const Frame& frame) {
+  return bytes_of(frame.color, frame.depth, frame.object, frame.confidence);
+}
 
 // 8-bit sRGB, 3 bytes a pixel, top row first.
 struct Image8 {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/clock.h"
+#include "base/memory.h"
 #include "base/rng.h"
 #include "cache/compose_drawn.h"
 #include "cache/trace_waiting.h"
@@ -24,7 +25,7 @@ constexpr float forgotten = 0.998f;    // of what drawing took, a picture withou
 constexpr double predicted_pictures = 2;
 constexpr float predicted_share = 0.3f;    // of the samples, at most
 constexpr float barely_covered = 0.1f;  // of the pixels by points
-constexpr float more_asked = 1.2f;      // than there is time for, by what was measured: none is idle
+constexpr float more_asked = 1.2f;  // than there is time for, by what was measured: none is idle
 
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
 
@@ -35,9 +36,10 @@ double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
   return std::max((period - slack) / std::max(busy, 1) - display, least_share * period);
 }
 
-// Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a still
-// camera's picture, waits for its own.
-bool may_be_late(const Show& show, const Visitor& visitor, const Technique& technique, int samples) {
+// Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a
+// still camera's picture, waits for its own.
+bool may_be_late(const Show& show, const Visitor& visitor, const Technique& technique,
+                 int samples) {
   return show.settings.late_samples && !technique.begin_pass &&
          samples <= BrokerSettings{}.most_waiting && visitor.cache.covered() > barely_covered;
 }
@@ -46,8 +48,7 @@ DisplayCosts display_costs(const Show& show, const Visitor& visitor) {
   const StageTimes& times = visitor.times;
   auto seconds = [](float milliseconds) { return 0.001 * double(milliseconds); };
   return {show.samples_per_second, show.looks_per_second, seconds(times.drawing),
-          seconds(times.display + times.tonemap),
-          seconds(times.light)};
+          seconds(times.display + times.tonemap), seconds(times.light)};
 }
 
 }  // namespace
@@ -65,7 +66,8 @@ bool stands(const Show& show, const Visitor& visitor) {
 }
 
 bool rests(const Show& show, const Visitor& visitor) {
-  return stands(show, visitor) && !sees_figure(show, visitor.last_view) && visitor.stats.converged >= nearly_all;
+  return stands(show, visitor) && !sees_figure(show, visitor.last_view) &&
+         visitor.stats.converged >= nearly_all;
 }
 
 double drawing_rate(const Show& show, const Visitor& visitor) {
@@ -96,18 +98,19 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   // Of a place that was never seen, nothing is known.
   bool seen = visitor.drawn_at >= 0 && visitor.leaps == before.leaps;
   float guessed = seen ? visitor.stats.filled + visitor.stats.empty : 1;
-  order.settled = wants_reference(show.time - visitor.moved_at, seen && before.settled, !seen || before.coarse, guessed,
-                                  visitor.stats.converged);
+  order.settled = wants_reference(show.time - visitor.moved_at, seen && before.settled,
+                                  !seen || before.coarse, guessed, visitor.stats.converged);
   bool fine = wants_fine_light(order.still, !seen || before.coarse, guessed);
   order.attention = visitor.attention;
   order.keep = show.settings.background;
   order.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
-  DrawShapes draw = show.sight && show.sight->can_see(now) ? show.settings.draw : DrawShapes::never;
-  order.display = plan_display(seconds_to_trace(show, visitor, busy),
-                               size_t(visitor.width) * size_t(visitor.height), display_costs(show, visitor),
-                               before.display, fine, draw);
-  // Who moves is shown shapes and reflectances as they are, in light of half their resolution; who stops,
-  // until more is known.
+  bool may_draw = show.sight && show.sight->can_see(now);
+  order.display = plan_display(
+      seconds_to_trace(show, visitor, busy), size_t(visitor.width) * size_t(visitor.height),
+      display_costs(show, visitor), before.display, fine,
+      may_draw ? show.settings.draw : DrawShapes::never);
+  // Who moves is shown shapes and reflectances as they are, in light of half their resolution; who
+  // stops, until more is known.
   order.coarse = order.display.drawn && !fine;
   double interval = 1 / drawing_rate(show, visitor);
   if (order.keep && !order.still && visitor.frame_number > 0) {
@@ -125,70 +128,98 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   return order;
 }
 
-void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
+namespace {
+
+// The light that is missing for the picture, and for the next: fills work.requests. Says by
+// costs.late whether answers may come after it.
+void plan_samples(const Show& show, const PictureOrder& order, const Technique& technique,
+                  const View& lit, DrawingWork& work, Visitor& visitor) {
   RenderCache& cache = visitor.cache;
-  DrawingWork& work = show.easel.work;
-  const DisplayPlan& display = order.display;
-  const View& view = order.view;
-  PictureCosts& costs = visitor.costs = {};
-  double began = seconds_now();
-  View lit = order.coarse ? light_view(view) : view, ahead = order.coarse ? light_view(order.ahead) : order.ahead;
+  View ahead = order.coarse ? light_view(order.ahead) : order.ahead;
   cache.set_attention(order.attention);
-  cache.resize(order.expected.width, order.expected.height);  // what is around has light of half its size
+  // What is around has light of half its size.
+  cache.resize(order.expected.width, order.expected.height);
   cache.move_points(*show.world);
   land(visitor.broker.collect(), *show.world, show.pose_number, cache);
   cache.project(lit);
   cache.attend();
-  const Technique& technique = order.settled ? *show.still_technique : *show.technique;
-  int most_asked = int(more_asked * float(display.samples));
-  costs.late = !order.still && may_be_late(show, visitor, technique, most_asked);
-  int asked = costs.late ? most_asked : display.samples;
+  int most_asked = int(more_asked * float(order.display.samples));
+  bool late = !order.still && may_be_late(show, visitor, technique, most_asked);
+  int asked = late ? most_asked : order.display.samples;
   work.ahead.clear();
   if (ahead != lit && !technique.begin_pass)
     cache.predict(ahead, int(predicted_share * float(asked)), order.seed, work.ahead);
   cache.plan(lit, asked - int(work.ahead.size()), order.seed, work.requests);
   work.requests.insert(work.requests.end(), work.ahead.begin(), work.ahead.end());
-  double planned = seconds_now();
+  visitor.costs.late = late;
+}
+
+// work.samples: none where they may be late.
+void trace_or_ask(Show& show, const PictureOrder& order, const Technique& technique,
+                  const View& lit, DrawingWork& work, Visitor& visitor) {
   TransportSettings transport = show.settings.transport;
   if (!order.settled) transport.clamp = show.settings.moving_clamp;
-  if (costs.late) {
+  work.samples.clear();
+  if (visitor.costs.late) {
     visitor.broker.ask(lit, {&technique, transport}, work.requests);
-    work.samples.clear();
-  } else {
-    work.samples.resize(work.requests.size());
-    if (technique.begin_pass)
-      technique.begin_pass(*show.world, transport, lit, visitor.link->id, uint32_t(order.tick), show.lights);
-    trace(technique, *show.world, show.lights, transport, work.requests, work.samples);
+    return;
   }
-  double traced = seconds_now();
-  if (!costs.late) cache.remember(lit, work.requests, work.samples);
-  work.looks.clear();
-  const Tonemap curve{show.exhibit.exposure};
-  if (order.coarse)
-    cache.draw(view, *show.sight, curve, work.picture, order.keep ? &work.depth : nullptr);
-  else if (display.drawn)
-    cache.draw_still(view, *show.sight, work.frame);
-  else
-    cache.survey(view, display.looks, work.frame, work.looks);
+  work.samples.resize(work.requests.size());
+  if (technique.begin_pass)
+    technique.begin_pass(*show.world, transport, lit, visitor.link->id, uint32_t(order.tick),
+                         show.lights);
+  trace(technique, *show.world, show.lights, transport, work.requests, work.samples);
+}
+
+// A picture of points alone, into work.frame. Returns the seconds that looks took.
+double show_points(const Show& show, const PictureOrder& order, DrawingWork& work,
+                   RenderCache& cache) {
+  cache.survey(order.view, order.display.looks, work.frame, work.looks);
   work.seen.resize(work.looks.size());
   double surveyed = seconds_now();
   see(*show.world, show.lights, work.looks, work.seen);
   double looked = seconds_now();
-  if (!display.drawn) cache.reconstruct(view, work.seen, work.frame);
-  double reconstructed = seconds_now();
+  cache.reconstruct(order.view, work.seen, work.frame);
+  return looked - surveyed;
+}
+
+}  // namespace
+
+void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
+  RenderCache& cache = visitor.cache;
+  DrawingWork& work = show.easel.work;
+  PictureCosts& costs = visitor.costs = {};
+  double began = seconds_now(), looking = 0;
+  const Technique& technique = order.settled ? *show.still_technique : *show.technique;
+  const View lit = order.coarse ? light_view(order.view) : order.view;
+  plan_samples(show, order, technique, lit, work, visitor);
+  double planned = seconds_now();
+  trace_or_ask(show, order, technique, lit, work, visitor);
+  double traced = seconds_now();
+  if (!costs.late) cache.remember(lit, work.requests, work.samples);
+  const Tonemap curve{show.exhibit.exposure};
+  work.looks.clear();
+  if (order.coarse)
+    cache.draw(order.view, *show.sight, curve, work.picture, order.keep ? &work.depth : nullptr);
+  else if (order.display.drawn)
+    cache.draw_still(order.view, *show.sight, work.frame);
+  else
+    looking = show_points(show, order, work, cache);
+  double painted = seconds_now();
   if (!order.coarse) tonemap(work.frame, curve, work.picture);
   if (order.keep)
-    make_keyframe(view, work.picture, order.coarse ? work.depth : work.frame.depth, work.keyframe);
+    make_keyframe(order.view, work.picture, order.coarse ? work.depth : work.frame.depth,
+                  work.keyframe);
   double finished = seconds_now();
 
   costs.samples = work.samples.size();
   costs.looks = work.looks.size();
   costs.trace = float(1000 * (traced - planned));
-  costs.look = float(1000 * (looked - surveyed));
-  costs.drawing = display.drawn ? cache.stats().drawing_ms : 0.0f;
+  costs.look = float(1000 * looking);
+  costs.drawing = order.display.drawn ? cache.stats().drawing_ms : 0.0f;
   (order.coarse ? costs.light : costs.display) =
-      float(1000 * ((planned - began) + (surveyed - traced) + (reconstructed - looked))) - costs.drawing;
-  (order.coarse ? costs.light : costs.tonemap) += float(1000 * (finished - reconstructed));
+      float(1000 * ((planned - began) + (painted - traced) - looking)) - costs.drawing;
+  (order.coarse ? costs.light : costs.tonemap) += float(1000 * (finished - painted));
   costs.seconds = finished - began;
 }
 
@@ -198,17 +229,14 @@ static void fit_memory(Visitor& visitor) {
     if (v.capacity() > v.size() + v.size() / 4) v.shrink_to_fit();
   };
   Keyframe& keyframe = visitor.keyframe;
-  fit(visitor.picture.rgb), fit(keyframe.color), fit(keyframe.disparity), fit(keyframe.farthest), fit(keyframe.nearest);
+  fit(visitor.picture.rgb), fit(keyframe.color), fit(keyframe.disparity);
+  fit(keyframe.farthest), fit(keyframe.nearest);
 }
 
 size_t memory_bytes(const DrawingWork& work) {
-  auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  const Frame& frame = work.frame;
-  const Keyframe& keyframe = work.keyframe;
-  return memory_bytes(*work.cache) + bytes(frame.color) + bytes(frame.depth) + bytes(frame.object) +
-         bytes(frame.confidence) + bytes(work.depth) + bytes(work.picture.rgb) + bytes(keyframe.color) +
-         bytes(keyframe.disparity) + bytes(keyframe.farthest) + bytes(keyframe.nearest) + bytes(work.requests) +
-         bytes(work.ahead) + bytes(work.samples) + bytes(work.looks) + bytes(work.seen);
+  return memory_bytes(*work.cache) + memory_bytes(work.frame) + memory_bytes(work.keyframe) +
+         bytes_of(work.depth, work.picture.rgb, work.requests, work.ahead, work.samples, work.looks,
+                  work.seen);
 }
 
 void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
@@ -236,10 +264,12 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   }
   visitor.drawn_at = order.time;
   visitor.broker_seconds =
-      costs.late ? double(order.display.samples) / std::max(double(show.samples_per_second), 1.0) : 0;
+      costs.late ? double(order.display.samples) / std::max(double(show.samples_per_second), 1.0)
+                 : 0;
   visitor.stats = visitor.cache.stats();
   visitor.cache_bytes = visitor.cache.memory_bytes();
-  if (!order.keep) std::swap(show.easel.work.picture, visitor.picture);  // else its keyframe has the colours
+  // Else its keyframe has the colours.
+  if (!order.keep) std::swap(show.easel.work.picture, visitor.picture);
   std::swap(show.easel.work.keyframe, visitor.keyframe);
   fit_memory(visitor);
   visitor.memory_bytes = picture_memory(visitor);
@@ -266,7 +296,8 @@ bool order_samples(Show& show) {
 void trace_samples(const Show& show, Easel& easel) {
   std::mutex guard;
   double began = seconds_now();
-  easel.traced = trace_waiting(easel.brokers, *show.world, show.lights, show.pose_number, began + easel.seconds, guard);
+  easel.traced = trace_waiting(easel.brokers, *show.world, show.lights, show.pose_number,
+                               began + easel.seconds, guard);
   easel.traced_seconds = seconds_now() - began;
 }
 
@@ -276,7 +307,8 @@ void finish_samples(Show& show) {
   if (easel.traced > 0 && easel.traced_seconds > 0)
     smooth(show.samples_per_second, float(double(easel.traced) / easel.traced_seconds));
   for (Visitor& visitor : show.visitors) {
-    if (std::find(easel.brokers.begin(), easel.brokers.end(), &visitor.broker) == easel.brokers.end()) continue;
+    auto found = std::find(easel.brokers.begin(), easel.brokers.end(), &visitor.broker);
+    if (found == easel.brokers.end()) continue;
     smooth(visitor.times.trace, float(1000 * easel.traced_seconds / double(easel.brokers.size())));
     visitor.at_work = false;
   }

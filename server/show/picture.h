@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing one picture for one visitor, in three steps: order_picture() decides what and how, draw_picture()
-// does it without looking at anything that the tick may change (view -> project -> attend -> plan -> trace
-// -> remember -> reconstruct -> tonemap), finish_picture() takes it over. In the background the middle one
-// runs on the easel (show/easel.h), for a view predicted for when it will be seen; show/present.h shows it.
-// The time that is left of the visitor's share goes to samples; those of a walking visitor are traced when
-// its picture is done, and land in the next.
+// Drawing one picture for one visitor, in three steps: order_picture() decides what and how,
+// draw_picture() does it without looking at anything that the tick may change (view -> project ->
+// attend -> plan -> trace -> remember -> draw or reconstruct -> tonemap), finish_picture() takes it
+// over. In the background the middle one runs on the easel (show/easel.h), for a view predicted for
+// when it will be seen; show/present.h shows it. The time that is left of the visitor's share goes to
+// samples; those of a walking visitor are traced when its picture is done, and land in the next.
 #pragma once
 #include "show/show.h"
 
@@ -28,8 +28,8 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy);
 void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor);
 void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor);
 
-// What pictures of walking visitors have asked for, in turn, in the time that was left for it: the answers
-// are in the next ones. Likewise in three steps; the first says whether there is anything.
+// What pictures of walking visitors have asked for, in turn, in the time that was left for it: the
+// answers are in the next ones. Likewise in three steps; the first says whether there is anything.
 bool order_samples(Show& show);
 void trace_samples(const Show& show, Easel& easel);
 void finish_samples(Show& show);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/memory.h"
 #include "show/walk.h"
 
 namespace wellspring {
@@ -12,11 +13,10 @@ constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
 }
 
 size_t picture_memory(const Visitor& visitor) {
-  auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  const Keyframe& keyframe = visitor.keyframe;
-  return visitor.cache.memory_bytes() + visitor.broker.memory_bytes() + bytes(visitor.picture.rgb) +
-         bytes(keyframe.color) + bytes(keyframe.disparity) + bytes(keyframe.farthest) + bytes(keyframe.nearest) +
-         bytes(visitor.warp.farthest) + bytes(visitor.warp.nearest) + visitor.encoder->memory_bytes;
+  return visitor.cache.memory_bytes() + visitor.broker.memory_bytes() +
+         memory_bytes(visitor.keyframe) +
+         bytes_of(visitor.picture.rgb, visitor.warp.farthest, visitor.warp.nearest) +
+         visitor.encoder->memory_bytes;
 }
 
 void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint) {

@@ -42,6 +42,13 @@ inline Character load_text(const std::string& text, const std::string& ending = 
   return load_character(file.path());
 }
 
+// Is it among the character's warnings?
+inline bool says(const Character& c, const std::string& text) {
+  for (const std::string& warning : c.warnings)
+    if (warning.find(text) != std::string::npos) return true;
+  return false;
+}
+
 // Two joints and a skin of one square (points 0..3), the upper two points half and half.
 inline std::string small_skin(const std::string& elbow_extra = "",
                               const std::string& humanoid_extra = "") {

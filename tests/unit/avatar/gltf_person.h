@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/vec.h"
+#include "unit/avatar/figures.h"
 #include "unit/world/asset.h"
 
 namespace wellspring::test {
@@ -162,6 +163,10 @@ inline void add_vrm_0(Asset& asset) {
          {{{"name", "A"}, {"presetName", "a"}, {"binds", {{{"mesh", 0}, {"index", 0}, {"weight", 50}}}}}}}}},
       {"secondaryAnimation", {{"boneGroups", {{{"bones", {0}}}}}}},
       {"materialProperties", json::array()}};
+}
+
+inline Character load_asset(const Asset& asset, bool binary = true) {
+  return load_text(binary ? asset.glb() : asset.gltf(), ".glb");
 }
 
 }  // namespace wellspring::test

@@ -13,24 +13,15 @@ namespace {
 
 using test::add_vrm_0;
 using test::add_vrm_1;
+using test::load_asset;
 using test::make_person;
 using test::PersonOptions;
-
-Character load_asset(const Asset& asset, bool binary = true) {
-  test::TemporaryFile file(binary ? asset.glb() : asset.gltf(), ".glb");
-  return load_character(file.path());
-}
+using test::says;
 
 vec3 centre(const Character& c, const char* joint) {
   int j = find_joint(c, joint);
   EXPECT_GE(j, 0) << joint;
   return j < 0 ? vec3(NAN) : c.joints[size_t(j)].center;
-}
-
-bool says(const Character& c, const std::string& text) {
-  for (const std::string& warning : c.warnings)
-    if (warning.find(text) != std::string::npos) return true;
-  return false;
 }
 
 std::vector<vec3> posed(const Character& c, const Pose& pose) {

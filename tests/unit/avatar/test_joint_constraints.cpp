@@ -21,9 +21,11 @@ namespace {
 
 using test::add_vrm_0;
 using test::add_vrm_1;
+using test::load_asset;
 using test::make_person;
 using test::person_bone;
 using test::PersonOptions;
+using test::says;
 using Kind = JointConstraint::Kind;
 
 struct Asked {
@@ -54,17 +56,6 @@ void constrain(Asset& asset, size_t node, const Asked& asked) {
   asset.root["extensionsUsed"].push_back("VRMC_node_constraint");
   asset.root["nodes"][node]["extensions"]["VRMC_node_constraint"] = {{"specVersion", "1.0"},
                                                                      {"constraint", {{asked.kind, one}}}};
-}
-
-Character load_asset(const Asset& asset) {
-  test::TemporaryFile file(asset.glb(), ".glb");
-  return load_character(file.path());
-}
-
-bool says(const Character& c, const std::string& text) {
-  for (const std::string& warning : c.warnings)
-    if (warning.find(text) != std::string::npos) return true;
-  return false;
 }
 
 // The file's nodes, as the format sees them.

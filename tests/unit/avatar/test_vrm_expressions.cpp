@@ -21,18 +21,9 @@ namespace {
 
 using test::add_vrm_0;
 using test::add_vrm_1;
+using test::load_asset;
 using test::make_person;
-
-Character load_asset(const Asset& asset) {
-  test::TemporaryFile file(asset.glb(), ".glb");
-  return load_character(file.path());
-}
-
-bool says(const Character& c, const std::string& text) {
-  for (const std::string& warning : c.warnings)
-    if (warning.find(text) != std::string::npos) return true;
-  return false;
-}
+using test::says;
 
 // A person of two materials: skin, which the body wears, and a ring.
 Asset dressed_person() {

@@ -6,55 +6,19 @@
 #include <cmath>
 #include <limits>
 
-#include "cache/cache.h"
-#include "cache/compose_drawn.h"
 #include "frame/compare.h"
-#include "light/technique.h"
-#include "scenes/scenes.h"
+#include "unit/cache/drawn_visit.h"
 
-using namespace wellspring;
-using namespace wellspring::scenes;
-
+namespace wellspring {
 namespace {
+
+using namespace scenes;
 
 constexpr int width = 96, height = 54, pixels = width * height;
 
-struct Stage {
-  Scene scene;
-  std::unique_ptr<World> world;
-  Lights lights;
-  std::unique_ptr<PictureSight> sight;
-  explicit Stage(Scene made) : scene(std::move(made)) {
-    world = std::make_unique<World>(scene);
-    world->commit();
-    lights = make_lights(*world);
-    sight = std::make_unique<PictureSight>(*world, lights);
-  }
-  uint32_t object_at(const View& view, float x, float y) const {
-    Hit hit = world->intersect(view_ray(view, x, y));
-    return hit.valid() ? world->object_of(hit.instance) : 0;
-  }
-};
-
-struct Visitor {
-  RenderCache cache;
-  std::vector<Request> requests;
-  std::vector<Sample> samples;
-  Frame frame;
-  uint64_t tick = 1;
-
+struct Visitor : DrawnVisit {
   void step(const Stage& stage, const View& view, int budget, bool rests = false) {
-    View lit = rests ? view : light_view(view);
-    cache.resize(view.width, view.height);
-    cache.move_points(*stage.world);
-    cache.project(lit);
-    cache.attend();
-    cache.plan(lit, budget, tick++, requests);
-    samples.resize(requests.size());
-    trace(*find_technique("path"), *stage.world, stage.lights, {}, requests, samples);
-    cache.remember(lit, requests, samples);
-    if (rests) cache.draw_still(view, *stage.sight, frame);
-    else cache.draw(view, *stage.sight, frame);
+    DrawnVisit::step(stage, view, budget, rests ? PictureOf::still : PictureOf::moving);
   }
 };
 
@@ -66,29 +30,8 @@ bool is_sound(const Frame& frame) {
   return true;
 }
 
-// Pixels whose object is neither at their centre nor within a hundredth of a pixel from it: rays and
-// drawing round otherwise.
-int count_wrong(const Stage& stage, const View& view, const Frame& frame) {
-  int wrong = 0;
-  for (int y = 0; y < view.height; y++)
-    for (int x = 0; x < view.width; x++) {
-      uint32_t shown = frame.object[size_t(y * view.width + x)];
-      bool right = false;
-      for (vec2 to : {vec2(0), vec2(-0.01f), vec2(0.01f), vec2(-0.01f, 0.01f), vec2(0.01f, -0.01f)})
-        right = right || stage.object_at(view, float(x) + 0.5f + to.x, float(y) + 0.5f + to.y) == shown;
-      wrong += !right;
-    }
-  return wrong;
-}
-
 View view_of(const Stage& stage, dvec3 eye, float yaw, float fov = 0.9f, int across = width, int down = height) {
   return make_view(stage.scene, eye, yaw, 0, fov, across, down);
-}
-
-Frame converged(const Stage& stage, const View& view, int spp = 64) {
-  StillSettings settings;
-  settings.spp = spp;
-  return render_still(*find_technique("path"), *stage.world, stage.lights, view, settings);
 }
 
 // As the eye sees it: no brighter than white.
@@ -110,8 +53,6 @@ Scene make_room() {
   add_quad(scene, add_material(scene, emitter(vec3(6))), {-0.5f, 2.99f, -0.5f}, {1, 0, 0}, {0, 0, 1}, "lamp");
   return scene;
 }
-
-}  // namespace
 
 // Towards the screen, through it and on through the wall behind: an eye upon a surface divides by nothing.
 TEST(DrawnHardCases, ThroughASurfaceAndOut) {
@@ -135,7 +76,7 @@ TEST(DrawnHardCases, AFullTurnInThreeTenthsOfASecond) {
   Visitor visitor;
   auto turned = [&](int i) { return view_of(stage, {0.3, 1.5, 1}, float(i) / 18 * 2 * float(pi)); };
   for (int i = 0; i < 30; i++) visitor.step(stage, turned(0), pixels / 16);
-  Frame truth = converged(stage, turned(0));
+  Frame truth = stage.truth(turned(0), 64);
   double before = shown_error(visitor.frame, truth);
   for (int i = 1; i <= 18; i++) {
     visitor.step(stage, turned(i), pixels / 16);
@@ -159,7 +100,7 @@ TEST(DrawnHardCases, FieldsOfView) {
         ASSERT_LE(count_wrong(stage, view, visitor.frame), 2) << degrees;
       }
     }
-    Frame truth = converged(stage, view);
+    Frame truth = stage.truth(view, 64);
     EXPECT_LT(shown_error(visitor.frame, truth), degrees < 90 ? 0.012 : 0.035) << degrees;
   }
 }
@@ -203,7 +144,7 @@ TEST(DrawnHardCases, AnotherSizeInTheMidstOfAWalk) {
   }
   View view = view_of(stage, {0.45, 1.5, 1}, 0);
   for (int i = 0; i < 20; i++) visitor.step(stage, view, pixels / 8, true);
-  EXPECT_LT(shown_error(visitor.frame, converged(stage, view)), 0.015);
+  EXPECT_LT(shown_error(visitor.frame, stage.truth(view, 64)), 0.015);
 }
 
 TEST(DrawnHardCases, WithoutLightThereIsNone) {
@@ -233,7 +174,7 @@ TEST(DrawnHardCases, CoplanarSurfaces) {
   }
   View view = view_of(stage, {-0.3 + 0.02 * 29, 1.5, 1.2}, 0);
   for (int i = 0; i < 30; i++) visitor.step(stage, view, pixels / 8, true);
-  EXPECT_LT(shown_error(visitor.frame, converged(stage, view)), 0.015);
+  EXPECT_LT(shown_error(visitor.frame, stage.truth(view, 64)), 0.015);
 }
 
 // Triangles without a size, as long as needles, and of coordinates that are no normal numbers; lamps that
@@ -257,7 +198,7 @@ TEST(DrawnHardCases, DegenerateThings) {
     visitor.step(stage, view_of(stage, {0.01 * std::min(i, 20), 1.5, 1}, 0), pixels / 8, i >= 24);
     ASSERT_TRUE(is_sound(visitor.frame)) << i;
   }
-  EXPECT_LT(shown_error(visitor.frame, converged(stage, view_of(stage, {0.2, 1.5, 1}, 0))), 0.015);
+  EXPECT_LT(shown_error(visitor.frame, stage.truth(view_of(stage, {0.2, 1.5, 1}, 0), 64)), 0.015);
 }
 
 // A grazing view along the floor.
@@ -273,7 +214,7 @@ TEST(DrawnHardCases, AlongTheFloor) {
       ASSERT_LE(count_wrong(stage, view, visitor.frame), width / 4) << i;
     }
   }
-  EXPECT_LT(shown_error(visitor.frame, converged(stage, view)), 0.015);
+  EXPECT_LT(shown_error(visitor.frame, stage.truth(view, 64)), 0.015);
 }
 
 // What is finer than its light's pixels is neither lost nor moved.
@@ -290,3 +231,6 @@ TEST(DrawnHardCases, ThinRailings) {
     ASSERT_LE(count_wrong(stage, view, visitor.frame), 2) << i;
   }
 }
+
+}  // namespace
+}  // namespace wellspring

@@ -2,6 +2,7 @@
 // One visitor of a scene, shown pictures of points alone or such as are drawn.
 #pragma once
 #include <memory>
+#include <span>
 
 #include "cache/cache.h"
 #include "cache/compose_drawn.h"
@@ -10,7 +11,7 @@
 
 namespace wellspring {
 
-// A scene, and all that drawing asks of it. `moving`: a mesh that is the scene's last object.
+// A scene, and all that drawing asks of it. The ball is a mesh that moves, the scene's last object.
 struct Stage {
   Scene scene;
   Mesh ball;
@@ -27,6 +28,10 @@ struct Stage {
     world->move(0, ball.positions, ball.normals);
     world->commit();
   }
+  uint32_t object_at(const View& view, float x, float y) const {
+    Hit hit = world->intersect(view_ray(view, x, y));
+    return hit.valid() ? world->object_of(hit.instance) : 0;
+  }
   Frame truth(const View& view, int samples) const {
     StillSettings settings;
     settings.spp = samples;
@@ -41,6 +46,24 @@ struct Stage {
     sight = std::make_unique<PictureSight>(*world, lights);
   }
 };
+
+// Pixels that show an object that a ray through none of their `places` meets: by default about their
+// centres, as rays and drawing round otherwise where an edge runs through them.
+inline int count_wrong(const Stage& stage, const View& view, const Frame& frame,
+                       std::span<const vec2> places = {}) {
+  static constexpr vec2 centre[] = {vec2(0.5f), vec2(0.49f), vec2(0.51f), vec2(0.49f, 0.51f), vec2(0.51f, 0.49f)};
+  if (places.empty()) places = centre;
+  int wrong = 0;
+  for (int y = 0; y < view.height; y++)
+    for (int x = 0; x < view.width; x++) {
+      uint32_t shown = frame.object[size_t(y * view.width + x)];
+      bool right = false;
+      for (vec2 place : places)
+        right = right || stage.object_at(view, float(x) + place.x, float(y) + place.y) == shown;
+      wrong += !right;
+    }
+  return wrong;
+}
 
 // Cornell's box and thin bars in it, and a ball that may be moved.
 inline Scene make_barred_box(vec3 bars, float width) {
