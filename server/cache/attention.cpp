@@ -20,7 +20,19 @@ constexpr int change_ageing = 64;  // of points near places where the light seem
 // deviations their sum is off, each taken by its own size or by the noise known of it, whichever is
 // more (a self-normalised sum: rare bright samples neither make a change nor hide one for long; Pena,
 // Lai, Shao 2009), and by how much on average.
-constexpr float change_deviations = 5, least_change = 0.15f;
+struct Proof {
+  float deviations, least_change;
+};
+constexpr Proof beyond_doubt{5, 0.15f};
+// Where one thing has changed, another may well have: for so many pictures less will do, of more witnesses.
+constexpr Proof likely{3, 0.05f};
+constexpr int alarm_pictures = 45;
+
+// A point where the light has changed. What was sampled just now has seen the new light already.
+void forget_old_light(PointCache& points, uint32_t i) {
+  if (points.age[i] == 0 && points.count[i] == 1) return;
+  forget_light_of(points, i, change_ageing);
+}
 
 void age_tile(PointCache& points, const PointImage& image, StillImage& still, int tx, int ty) {
   int x1 = std::min((tx + 1) * change_tile, image.width),
@@ -30,7 +42,7 @@ void age_tile(PointCache& points, const PointImage& image, StillImage& still, in
       size_t at = size_t(y) * size_t(image.width) + size_t(x);
       uint32_t point = image.point[at];
       if (at < still.count.size()) still.count[at] = 0;
-      if (point != no_point) forget_light_of(points, point, change_ageing);
+      if (point != no_point) forget_old_light(points, point);
     }
 }
 
@@ -43,6 +55,17 @@ int tile_of(const PointCache& points, const View& view, const PointImage& image,
   if (!(at.depth > 0 && at.x >= 0 && at.y >= 0 && at.x < float(image.width) && at.y < float(image.height)))
     return -1;
   return int(at.y) / change_tile * image.changed_width + int(at.x) / change_tile;
+}
+
+// Points that share a pixel with a nearer one, and may be the nearer one in the next picture.
+void age_hidden(PointCache& points, const View& view, const PointImage& image, const std::vector<uint8_t>& verdict) {
+  parallel_ranges(points.capacity(), 1 << 14, [&](int begin, int end) {
+    for (uint32_t i = uint32_t(begin); i < uint32_t(end); i++) {
+      if (points.flags[i] & (point_visible | point_relit)) continue;
+      int tile = tile_of(points, view, image, i);
+      if (tile >= 0 && verdict[size_t(tile)]) forget_old_light(points, i);
+    }
+  });
 }
 
 void place_witnesses(const PointCache& points, const View& view, PointImage& image,
@@ -60,17 +83,40 @@ void place_witnesses(const PointCache& points, const View& view, PointImage& ima
   }
 }
 
-bool has_changed(const PointImage& image, int tx, int ty) {
+void add(TileChange& sum, const TileChange& tile) {
+  sum.change += tile.change;
+  sum.square += tile.square;
+  sum.count += tile.count;
+}
+
+bool proves(const TileChange& sum, const Proof& proof) {
+  return sum.change * sum.change > proof.deviations * proof.deviations * sum.square &&
+         std::abs(sum.change) > proof.least_change * float(sum.count);
+}
+
+bool has_changed(const PointImage& image, int tx, int ty, const Proof& proof) {
   TileChange sum;
   for (int y = std::max(ty - 1, 0); y <= std::min(ty + 1, image.changed_height - 1); y++)
-    for (int x = std::max(tx - 1, 0); x <= std::min(tx + 1, image.changed_width - 1); x++) {
-      const TileChange& tile = image.changed[size_t(y) * size_t(image.changed_width) + size_t(x)];
-      sum.change += tile.change;
-      sum.square += tile.square;
-      sum.count += tile.count;
-    }
-  return sum.change * sum.change > change_deviations * change_deviations * sum.square &&
-         std::abs(sum.change) > least_change * float(sum.count);
+    for (int x = std::max(tx - 1, 0); x <= std::min(tx + 1, image.changed_width - 1); x++)
+      add(sum, image.changed[size_t(y) * size_t(image.changed_width) + size_t(x)]);
+  return proves(sum, proof);
+}
+
+// Is a change beyond doubt in any square of 2, 4, 8 ... tiles a side? Where samples are noisy or the change is small,
+// it takes many tiles to tell.
+bool has_changed_widely(const PointImage& image) {
+  std::vector<TileChange> tiles = image.changed, wider;
+  for (int width = image.changed_width, height = image.changed_height; width > 1 || height > 1;) {
+    int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
+    wider.assign(size_t(half_width) * size_t(half_height), TileChange{});
+    for (int y = 0; y < height; y++)
+      for (int x = 0; x < width; x++)
+        add(wider[size_t(y / 2) * size_t(half_width) + size_t(x / 2)], tiles[size_t(y) * size_t(width) + size_t(x)]);
+    if (std::any_of(wider.begin(), wider.end(), [](const TileChange& sum) { return proves(sum, beyond_doubt); })) return true;
+    std::swap(tiles, wider);
+    width = half_width, height = half_height;
+  }
+  return false;
 }
 
 struct PixelPoint {
@@ -132,15 +178,17 @@ using Levels = std::array<uint8_t, 256>;
 }  // namespace
 
 bool age_changed(PointCache& points, const View& view, PointImage& image, StillImage& still) {
+  image.alarm = std::max(image.alarm - 1, 0);
   if (image.witnesses.empty()) return false;
   keep_newest_witnesses(image);
   std::vector<int> tiles;
   place_witnesses(points, view, image, tiles);
+  const Proof& proof = image.alarm > 0 ? likely : beyond_doubt;
   std::vector<uint8_t> verdict(image.changed.size(), 0);
   parallel_ranges(image.changed_height, 4, [&](int begin, int end) {
     for (int ty = begin; ty < end; ty++)
       for (int tx = 0; tx < image.changed_width; tx++) {
-        if (!has_changed(image, tx, ty)) continue;
+        if (!has_changed(image, tx, ty, proof)) continue;
         verdict[size_t(ty) * size_t(image.changed_width) + size_t(tx)] = 1;
         age_tile(points, image, still, tx, ty);
       }
@@ -150,7 +198,10 @@ bool age_changed(PointCache& points, const View& view, PointImage& image, StillI
   for (size_t i = 0; i < tiles.size(); i++)
     if (tiles[i] >= 0 && !verdict[size_t(tiles[i])]) image.witnesses[kept++] = image.witnesses[i];
   image.witnesses.resize(kept);
-  return std::any_of(verdict.begin(), verdict.end(), [](uint8_t aged) { return aged != 0; });
+  bool changed = std::any_of(verdict.begin(), verdict.end(), [](uint8_t aged) { return aged != 0; });
+  if (changed) age_hidden(points, view, image, verdict);
+  if (image.alarm == 0 && (changed || has_changed_widely(image))) image.alarm = alarm_pictures;
+  return changed;
 }
 
 bool lend_light(PointCache& points, const PointImage& image) {

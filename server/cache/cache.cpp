@@ -69,6 +69,7 @@ struct RenderCache::Impl {
   int width = 0, height = 0;  // of the largest picture there is room for
   View view;  // of the last projection
   bool projected = false;
+  bool reference = false;  // set_reference()
   bool relit = false;  // points may wait for a sample of their new light
   bool image_stale = true;  // points have changed since, and the image was not told
   int still_frames = 0;  // projections of the same view before the last
@@ -102,6 +103,7 @@ RenderCache::RenderCache(const CacheSettings& settings, std::shared_ptr<CacheWor
   impl_->work = shared ? std::move(shared) : make_cache_work();
 }
 RenderCache::~RenderCache() = default;
+void RenderCache::set_reference(bool on) { impl_->reference = on; }
 void RenderCache::set_attention(bool on) { impl_->settings.attention = on; }
 RenderCache::RenderCache(RenderCache&&) noexcept = default;
 RenderCache& RenderCache::operator=(RenderCache&&) noexcept = default;
@@ -214,6 +216,7 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   settings.longest_mean = settings.still ? still_mean : moving_mean;
   settings.longest_specular = settings.still ? still_mean : moving_specular;
   settings.images = c.settings.images;
+  settings.reference = c.reference;
   Remembered result =
       remember_samples(c.points, view, requests, samples, settings, c.image, c.work->targets);
   // What moves may have been seen elsewhere than it is now, and what had no pixel may have one.
@@ -305,7 +308,7 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
     compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
     std::span<const std::vector<EdgeShare>> edges;
     if (sight.anything_moves()) edges = compose_moving(view, sight, c.cells, c.known, c.work->light, frame);
-    accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, c.frames, c.still, frame);
+    accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, c.image.alarm > 0, c.frames, c.still, frame);
     soften_edges(edges, frame.color);
   });
 }

@@ -93,6 +93,9 @@ class RenderCache {
   // The same at rest, in light of the view's own resolution, for which all of the frame before has been
   // done: what does not move is antialiased in time, seen at another place of the pixels each time.
   void draw_still(const View& view, const PictureSight& sight, Frame& frame);
+  // Answers come from the reference from now on, or no longer (else that they differ from earlier ones might be
+  // taken for a change of the light). Its light is not expected to be that of others.
+  void set_reference(bool on);
   void set_attention(bool on);  // CacheSettings::attention
   // A lamp at `place` was switched, dimmed or moved, and is much of the light within `reach` metres
   // (infinite: everywhere): what was remembered of the light there counts no more, and is asked for

@@ -122,7 +122,7 @@ void forget_light_of(PointCache& points, uint32_t i, int ageing) {
   points.age[i] = uint8_t(std::min(points.age[i] + ageing, oldest_age));
   points.count[i] = 0;
   points.color[i].noise = forgotten_noise;
-  points.color[i].surprises = 0;
+  points.color[i].doubts = 0;
   points.flags[i] |= point_relit;
 }
 

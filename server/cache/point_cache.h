@@ -21,6 +21,7 @@ enum PointFlags : uint8_t {
   point_visible = 16,   // shows in the current projection
   point_verified = 32,  // was sampled from exactly the current view: surely not hidden
   point_relit = 64,     // the light has changed since it was sampled: see forget_light()
+  point_reference = 128,  // began with a sample of the reference: see RenderCache::set_reference()
 };
 
 struct PointColor {
@@ -29,7 +30,9 @@ struct PointColor {
   uint32_t rest = 0;    // pack_rgb9e5, mean likewise
   uint32_t object = 0;
   uint16_t normal = 0;  // as PointCache::normal
-  uint8_t surprises = 0;  // samples in a row that differ from what was known well
+  // Low 2 bits: samples in a row that differ from what was known well; else pack_relative: the standard deviation of
+  // one sample's `smooth` luminance over its mean.
+  uint8_t doubts = 0;
   // pack_deviation: of one sample's `rest` luminance. Of a single sample: 0 unknown, else told by who
   // answered (sure_noise).
   uint8_t noise = 0;

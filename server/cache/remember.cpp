@@ -39,12 +39,13 @@ vec3 position_of(const PointCache& points, uint32_t i) {
 struct Found {
   const Sample& sample;
   bool image;  // the place is that of an image
+  bool reference;
   vec3 place;
 };
-Found find(const Request& request, const Sample& sample, bool images) {
-  bool image = images && sample.image > 0 && (sample.flags & sample_specular) &&
+Found find(const Request& request, const Sample& sample, const RememberSettings& settings) {
+  bool image = settings.images && sample.image > 0 && (sample.flags & sample_specular) &&
                !(sample.flags & sample_moving);  // those follow their triangles
-  return {sample, image,
+  return {sample, image, settings.reference,
           image ? request.ray.origin + sample.image * request.ray.direction : sample.position};
 }
 
@@ -68,6 +69,7 @@ bool is_same_surface(const PointCache& points, uint32_t i, const View& view, con
 uint8_t flags_of(const Found& found) {
   const Sample& sample = found.sample;
   uint8_t flags = point_used;
+  if (found.reference) flags |= point_reference;
   if (is_infinite(sample)) flags |= point_infinite;
   if ((sample.flags & sample_specular) && !found.image) flags |= point_specular;
   if (sample.flags & sample_moving) flags |= point_moving;
@@ -97,7 +99,7 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Found& 
   points.flags[i] = flags_of(found);
   points.count[i] = 1;
   points.color[i].noise = sample.flags & sample_sure ? sure_noise : uint8_t(0);
-  points.color[i].surprises = 0;
+  points.color[i].doubts = 0;
   points.color[i].smooth = pack_rgb9e5(sample.smooth, random);
   points.color[i].rest = pack_rgb9e5(sample.rest, random >> 4);
   points.color[i].object = sample.object;
@@ -109,6 +111,28 @@ struct Effect {
   bool tells = false;      // `witness` is good
   Witness witness;
 };
+
+// The standard deviation of one sample, after another that lies `step` off the mean of n.
+float improve_deviation(float deviation, float step, int n) {
+  if (n == 1) return std::sqrt(0.5f) * step;
+  float memory = float(std::min(n, noise_memory));
+  return std::sqrt((deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) / memory);
+}
+
+// What was known and what a sample says.
+template <class T>
+struct Heard {
+  T before, now;
+};
+// `deviations`: of one sample's smooth and rest. The change is no number where all is black.
+Witness testify(uint32_t point, int n, vec3 reflectance, const Heard<vec3>& smooth, const Heard<float>& rest,
+                const vec2& deviations) {
+  float before = luminance(reflectance * smooth.before) + rest.before,
+        now = luminance(reflectance * max(smooth.now, vec3(0))) + rest.now, share = 1 / float(n + 1),
+        mean = before + (now - before) * share;
+  float noise = length(vec2(luminance(reflectance) * deviations.x, deviations.y));
+  return {point, (now - before) / mean, n > 1 ? noise * std::sqrt(1 + 1 / float(n)) / mean : 0.0f};
+}
 
 // Adds one sample to the means.
 Effect improve_point(PointCache& points, uint32_t i, const View& view, const Found& found, bool exact,
@@ -132,28 +156,29 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
   float whole = luminance(reflectance * smooth) + level;
   // Elsewhere in the pixel a texture may differ too: only an equal reflectance tells about light, and
   // of what a mirror shows nobody knows it.
-  effect.tells = whole > 0 && !(points.flags[i] & point_specular) &&
+  effect.tells = !(points.flags[i] & point_specular) &&
                  (exact || (!found.image && max_component(abs(reflectance - sample.albedo)) <= same_albedo));
-  if (effect.tells)
-    effect.witness = {i, (now - before) / whole,
-                      n > 1 ? deviation * std::sqrt(1 + 1 / float(n)) / whole : 0.0f};
+  float light = luminance(smooth), new_light = luminance(max(sample.smooth, vec3(0)));
+  float varies = light * unpack_relative(color.doubts >> 2);
+  // Of two techniques one may be biased.
+  bool comparable = bool(points.flags[i] & point_reference) == settings.reference;
+  effect.witness = testify(i, n, reflectance, {smooth, comparable ? sample.smooth : smooth}, {before, now},
+                           {comparable ? varies : 0.0f, deviation});
+  effect.tells &= std::isfinite(effect.witness.change);  // of black that stays black there is nothing to say
+  int surprises = color.doubts & 3;
   bool alike = n >= few_samples && deviation <= no_noise * before;
   bool surprising = effect.tells && step > settings.color_change * whole && step > 4 * deviation &&
                     (alike || (n >= many_samples && deviation <= little_noise * before));
-  color.surprises = surprising ? uint8_t(color.surprises + 1) : uint8_t(0);
-  if (surprising && (alike || color.surprises >= enough_surprises)) {
+  surprises = surprising ? surprises + 1 : 0;
+  if (surprising && (alike || surprises >= enough_surprises)) {
     begin_point(points, i, view, found, random);
     effect.restarted = true;
     return effect;
   }
-  if (!surprising) {
-    float memory = float(std::min(n, noise_memory));
-    float variance =
-        n == 1
-            ? 0.5f * step * step
-            : (deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) / memory;
-    color.noise = pack_deviation(std::sqrt(variance), random >> 8);
-  }
+  if (!surprising) color.noise = pack_deviation(improve_deviation(deviation, step, n), random >> 8);
+  float share_new = 1 / float(n + 1), later = light + (new_light - light) * share_new;
+  varies = later > 0 ? improve_deviation(varies, std::abs(new_light - light), n) / later : 0.0f;
+  color.doubts = uint8_t(pack_relative(varies, random >> 12) << 2 | surprises);
   int longest = points.flags[i] & point_specular ? settings.longest_specular : settings.longest_mean;
   float share = 1 / float(std::min(n, longest - 1) + 1);
   smooth += (max(sample.smooth, vec3(0)) - smooth) * share;
@@ -162,7 +187,8 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
     points.age[i] = 0;
   } else {
     place_point(points, i, view, found);
-    points.flags[i] = uint8_t(flags_of(found) | (points.flags[i] & point_visible));
+    uint8_t kept = point_visible | point_reference;
+    points.flags[i] = uint8_t((flags_of(found) & ~point_reference) | (points.flags[i] & kept));
   }
   points.count[i] = uint8_t(std::min(n + 1, longest));
   color.smooth = pack_rgb9e5(smooth, random);
@@ -250,7 +276,7 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   targets.assign(count, no_point);
   if (groups == 0) return result;
 
-  auto found = [&](size_t i) { return find(requests[i], samples[i], settings.images); };
+  auto found = [&](size_t i) { return find(requests[i], samples[i], settings); };
   // Sort out which samples have a point to join. Late answers find theirs only by its place.
   constexpr uint32_t reject = no_point - 1;  // beyond every capacity
   parallel_ranges(int(count), 512, [&](int begin, int end) {

@@ -46,8 +46,9 @@ vec2 still_place(int pictures) {
   return {part(3242174889u), part(2447445414u)};
 }
 
-void accumulate_drawn(const std::function<bool(uint32_t)>& moves, uint32_t seed, StillImage& still,
-                      Frame& frame) {
+void accumulate_drawn(const std::function<bool(uint32_t)>& moves, bool changes, uint32_t seed,
+                      StillImage& still, Frame& frame) {
+  const int longest = changes ? still_places : still_drawn;
   size_t width = size_t(frame.width);
   parallel_ranges(frame.height, 8, [&](int begin, int end) {
     uint32_t last = 0;  // neighbours mostly show the same
@@ -60,7 +61,7 @@ void accumulate_drawn(const std::function<bool(uint32_t)>& moves, uint32_t seed,
       }
       int n = still.count[i] & ~still_fresh;
       if (n == still_relit) n = 0;
-      n = std::min(n + 1, still_drawn);
+      n = std::min(n + 1, longest);
       vec3 mean(unpack_half(still.mean[0][i]), unpack_half(still.mean[1][i]),
                 unpack_half(still.mean[2][i]));
       // Later pictures count more: their light was known better.

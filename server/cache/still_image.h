@@ -43,9 +43,9 @@ inline constexpr int still_places = 16;
 vec2 still_place(int pictures);
 
 // Averages a drawn picture into `still` and shows the average, but for pixels of objects of which
-// `moves` says so.
-void accumulate_drawn(const std::function<bool(uint32_t)>& moves, uint32_t seed, StillImage& still,
-                      Frame& frame);
+// `moves` says so. `changes`: the light does, and the mean is over few pictures.
+void accumulate_drawn(const std::function<bool(uint32_t)>& moves, bool changes, uint32_t seed,
+                      StillImage& still, Frame& frame);
 
 // Implementation of the template: of one pixel, whose point's light is forgotten.
 void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel, StillImage& still);

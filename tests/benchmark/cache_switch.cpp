@@ -128,11 +128,19 @@ void prepare(const BenchOptions& options, const BenchScene& scene, const TruthSe
   lit.truth = find_truth(*lit.world, lit.lights, lit.view, truths);
 }
 
-// What is switched: a spot light beside the box's lamp, that lamp beside a point light, or all lamps of the castle
-// but its sun.
+// What is switched: a spot light beside the box's lamp or beside a point light instead of that, the lamp beside a
+// point light, or all lamps of the castle but its sun.
 void make_lamps(const std::string& what, Scene& off, Scene& on) {
   PunctualLight lamp;
-  if (what == "box_spot") {
+  if (what == "box_points") {
+    for (Scene* scene : {&off, &on}) {
+      for (Material& material : scene->materials) material.emission = vec3(0);
+      lamp.position = {0.1f, 0.5f, -0.2f};
+      lamp.intensity = {0.12f, 0.11f, 0.1f};
+      scene->lights.push_back(lamp);
+    }
+  }
+  if (what == "box_spot" || what == "box_points") {
     lamp.type = PunctualType::spot;
     lamp.position = {-0.2f, 0.5f, 0.1f};
     lamp.direction = normalize(vec3(0.45f, -0.75f, -0.6f));
@@ -158,13 +166,14 @@ void bench_cache_switch(BenchReport& report, const BenchOptions& options) {
   int width = options.visit_width > 0 ? options.visit_width : 192;
   std::vector<int> mismatches = options.visit_mismatches;
   if (mismatches.empty()) mismatches = {4, 16, 64};
-  for (const char* what : {"box_spot", "box_lamp", "castle"}) {
+  for (const char* what : {"box_spot", "box_points", "box_lamp", "castle"}) {
     if (!options.visit_trace.empty() && options.visit_trace != what) continue;
     BenchScene bench = load_bench_scene(options, what == std::string("castle") ? "castle" : "cornell_box");
     Switch scene{what, bench.max_depth, {}, {}};
     truths.spp = options.visit_spp > 0 ? options.visit_spp : options.quick ? 96 : 512;
     truths.max_depth = bench.max_depth;
     scene.off.scene = bench.scene, scene.on.scene = bench.scene;
+    if (what == std::string("box_points")) scene.max_depth = truths.max_depth = 2;  // light that falls directly
     make_lamps(what, scene.off.scene, scene.on.scene);
     for (Lit* lit : {&scene.off, &scene.on}) prepare(options, bench, truths, width, *lit);
     for (const Lit* lit : {&scene.off, &scene.on}) {

@@ -67,6 +67,7 @@ class CacheMethod : public VisitMethod {
     // As show/picture.cpp draws what moves.
     bool coarse = primary_ && moment.frame - moved_ < still_after && sight(moment).can_see(moment.view);
     const View view = coarse ? light_view(moment.view) : moment.view;
+    cache_.set_reference(moment.technique == find_technique("path"));
     cache_.resize(moment.view.width, moment.view.height);
     cache_.move_points(*moment.world);
     uint64_t pose = uint64_t(moment.frame);

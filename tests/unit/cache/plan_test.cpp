@@ -219,6 +219,69 @@ TEST_F(Changes, NoiseIsNoChange) {
   EXPECT_EQ(p.points.age[at(100, 36)], 10);
 }
 
+// A small change here, of which there is no doubt elsewhere.
+TEST_F(Changes, WhereOneThingHasChangedLessWillDo) {
+  auto small = [&] { hear(108, 44, 60, -0.1f, 0.15f); };
+  small();
+  judge();
+  EXPECT_EQ(p.points.age[at(108, 44)], 10);
+  hear(28, 44, 60, -0.8f);
+  judge();
+  ASSERT_EQ(p.points.age[at(28, 44)], 74);
+  EXPECT_EQ(p.points.age[at(108, 44)], 10);
+  small();
+  judge();
+  EXPECT_EQ(p.points.age[at(108, 44)], 74);
+  // Not for long.
+  for (int i = 0; i < 60; i++) judge();
+  hear(76, 76, 60, -0.1f, 0.15f);
+  judge();
+  EXPECT_EQ(p.points.age[at(76, 76)], 10);
+}
+
+// Of noisy samples it takes many tiles to tell, and then each of them is listened to more closely.
+TEST_F(Changes, AreFoundTogetherWhereNoTileTellsAlone) {
+  auto everywhere = [&](float change) {
+    for (int y = 4; y < 80; y += 16)
+      for (int x = 4; x < 150; x += 16)
+        hear(x, y, 12, [&] { return Witness{0, change + (rng.uniform() < 0.5f ? -1.5f : 1.5f), 1.5f}; });
+  };
+  auto forgotten = [&] {
+    int count = 0;
+    for (uint8_t flags : p.points.flags) count += bool(flags & point_relit);
+    return count;
+  };
+  for (int i = 0; i < 12; i++) everywhere(0), judge();
+  EXPECT_EQ(forgotten(), 0);
+  for (int i = 0; i < 12; i++) everywhere(-0.4f), judge();
+  EXPECT_GT(forgotten(), 10000);
+}
+
+// Of two points in a pixel the farther one may show in the next picture.
+TEST_F(Changes, HiddenPointsForgetToo) {
+  uint32_t behind = at(150, 80), aside = at(151, 80);
+  auto put = [&](uint32_t i, int x, int y, float depth) {
+    vec3 place = view_ray(p.view, float(x) + 0.4f, float(y) + 0.4f).direction * depth;
+    p.points.x[i] = place.x, p.points.y[i] = place.y, p.points.z[i] = place.z;
+  };
+  for (uint8_t& flags : p.points.flags) flags |= point_visible;
+  for (uint32_t i : {behind, aside}) p.points.flags[i] = point_used;
+  put(behind, 44, 44, 3.2f), put(aside, 100, 20, 3.2f);
+  hear(44, 44, 60, -0.8f);
+  judge();
+  EXPECT_TRUE(p.points.flags[behind] & point_relit);
+  EXPECT_EQ(p.points.age[behind], 74);
+  EXPECT_FALSE(p.points.flags[aside] & point_relit);
+}
+
+TEST_F(Changes, WhatWasSampledJustNowStays) {
+  p.points.age[at(45, 44)] = 0, p.points.count[at(45, 44)] = 1;
+  hear(44, 44, 60, -0.8f);
+  judge();
+  EXPECT_TRUE(p.points.flags[at(44, 44)] & point_relit);
+  EXPECT_FALSE(p.points.flags[at(45, 44)] & point_relit);
+}
+
 TEST_F(Changes, SmallOnesAreLeftToTheMeans) {
   hear(44, 44, 60, 0.05f);
   judge();
