@@ -11,6 +11,7 @@
 #include "cache/attention.h"
 #include "cache/cells.h"
 #include "cache/compose_drawn.h"
+#include "cache/correct_still.h"
 #include "cache/looks.h"
 #include "cache/plan.h"
 #include "cache/point_cache.h"
@@ -22,6 +23,7 @@
 #include "cache/scratch.h"
 #include "cache/soften_edges.h"
 #include "cache/still_image.h"
+#include "cache/still_samples.h"
 
 namespace wellspring {
 namespace {
@@ -46,6 +48,7 @@ static void fit_frame(int width, int height, Frame& frame) {
 struct CacheWork {
   Scratch scratch;
   Frame light;  // packed, of a picture that is drawn
+  StillCorrection correction;
   std::vector<uint32_t> targets;
   std::vector<uint8_t> occupied;  // cells of the view ahead
   std::vector<uint32_t> looked;  // pixels whose looks were asked for
@@ -54,7 +57,7 @@ struct CacheWork {
 std::shared_ptr<CacheWork> make_cache_work() { return std::make_shared<CacheWork>(); }
 
 size_t memory_bytes(const CacheWork& work) {
-  return work.scratch.bytes() + memory_bytes(work.light) +
+  return work.scratch.bytes() + memory_bytes(work.light) + memory_bytes(work.correction) +
          bytes_of(work.targets, work.occupied, work.looked, work.looked_pixels);
 }
 
@@ -63,6 +66,8 @@ struct RenderCache::Impl {
   PointCache points;
   PointImage image;
   StillImage still;
+  StillSamples still_samples;
+  bool corrects = false;  // the last picture was drawn at rest, and its samples are kept by themselves
   Cells cells;  // in the work's scratch
   std::shared_ptr<CacheWork> work;
   bool shares = false;
@@ -90,6 +95,12 @@ struct RenderCache::Impl {
   void forget_still() {
     still_frames = 0;
     std::fill(still.count.begin(), still.count.end(), uint8_t(0));
+    forget_samples(still_samples);
+  }
+  void start_correction() {
+    if (!corrects && still_samples.count.empty()) resize_samples(still_samples, still.count.size());
+    else if (!corrects) forget_samples(still_samples);
+    corrects = true;
   }
   void count(const SurfaceCounts& counts, bool known);
   template <class Compose>
@@ -121,6 +132,8 @@ void RenderCache::resize(int width, int height) {
   reserve_image(c.image, width, height);
   for (auto& plane : c.still.mean) plane = std::vector<uint16_t>(pixels);
   c.still.count = std::vector<uint8_t>(pixels);
+  c.still_samples = {};
+  c.corrects = false;
   if (!c.shares) c.work->scratch.release();
   c.work->scratch.start(std::max(project_scratch_bytes(c.points.capacity(), width, height), cells_bytes(width, height)));
   c.projected = false;
@@ -164,6 +177,7 @@ void RenderCache::project(const View& view) {
     c.still_frames = std::min(c.still_frames + 1, 1 << 20);
   else if (c.still_frames > 0)
     c.forget_still();
+  c.corrects &= same;
   c.view = view;
   c.projected = true;
   c.frames++;
@@ -227,8 +241,11 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   for (uint32_t pixel : result.restarted) c.still.count[pixel] = 0;
   for (size_t i = 0; i < c.work->targets.size(); i++)
     if (c.work->targets[i] != no_point && requests[i].resample != c.work->targets[i] &&
-        requests[i].pixel < c.still.count.size())
+        requests[i].pixel < c.still.count.size()) {
       c.still.count[requests[i].pixel] |= still_fresh;
+      if (c.corrects)
+        add_sample(c.still_samples, requests[i].pixel, samples[i].radiance(), uint32_t(mix64(requests[i].seed)));
+    }
 }
 
 void RenderCache::reconstruct(const View& view, Frame& frame) {
@@ -254,6 +271,7 @@ void RenderCache::survey(const View& view, int most, Frame& frame, std::vector<R
       height = std::clamp(view.height, 1, largest_side);
   fit_frame(width, height, frame);
   if (!c.projected || view != c.view) project(view);
+  c.corrects = false;
   c.read_light(view, frame);
   if (most >= looks_a_pixel) {
     find_edges(view, c.cells, c.still, frame, c.image);
@@ -304,11 +322,16 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   if (!c.projected || view != c.view) project(view);
   fit_frame(view.width, view.height, frame);
   if (c.still_frames == 0) c.forget_still();  // a mean of another view, of a single picture
+  c.start_correction();
   c.draw(view, [&] {
     compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
     std::span<const std::vector<EdgeShare>> edges;
     if (sight.anything_moves()) edges = compose_moving(view, sight, c.cells, c.known, c.work->light, frame);
-    accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, c.image.alarm > 0, c.frames, c.still, frame);
+    bool changes = c.image.alarm > 0;  // what samples of the light before say is wrong
+    if (changes) forget_samples(c.still_samples);
+    else forget_samples(c.still, c.still_samples);
+    accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, changes, c.frames, c.still, frame);
+    if (!changes) correct_still(c.still_samples, c.still, c.work->correction, frame);
     soften_edges(edges, frame.color);
   });
 }
@@ -364,6 +387,7 @@ size_t RenderCache::memory_bytes() const {
   size_t sum = points_bytes(c.points) + bytes_of(c.still.count) + bytes_of(c.paints_of, c.repainted) +
                bytes_of(c.image.point, c.image.depth, c.image.priority, c.image.changed, c.image.witnesses);
   for (const auto& plane : c.still.mean) sum += bytes_of(plane);
+  sum += samples_bytes(c.still_samples);
   return sum + (c.shares ? 0 : wellspring::memory_bytes(*c.work));
 }
 

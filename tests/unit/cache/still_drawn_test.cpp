@@ -164,6 +164,38 @@ TEST(StillDrawn, NothingOfAnotherViewRemains) {
   EXPECT_EQ(again, 0);
 }
 
+// Two seconds after a jump (two dozen pictures) nothing tells a visitor who was somewhere else before from one
+// who was not: means over squares of eight pixels differ by chance alone. Student's t of eight visits each, 14
+// degrees of freedom; beyond 9.5 lies one in six million, so of 180 squares one in 33,000 runs fails by chance.
+TEST(StillDrawn, NothingOfAnotherViewRemainsInTheMean) {
+  constexpr int visits = 8, pictures = 24, across = width / 8, down = height / 8;
+  Still stage = make_still();
+  View here = stage.view;
+  View there = make_view(stage.scene, {0.05, 0.2, 0.5}, 0.25f, -0.1f, 0.9f, width, height);
+  std::vector<dvec2> sum(across * down, dvec2(0)), sum2 = sum;
+  for (int i = 0; i < visits; i++)
+    for (int jumped = 0; jumped < 2; jumped++) {
+      Visit visit;
+      visit.tick = uint64_t(1000 * (2 * i + jumped) + 1);
+      stage.view = there;
+      for (int k = 0; jumped && k < pictures; k++) visit.step(stage, pixels / 4, true);
+      stage.view = here;
+      for (int k = 0; k < pictures; k++) visit.step(stage, pixels / 4, true);
+      Frame seen = shown(visit.frame);
+      for (int b = 0; b < across * down; b++) {
+        double light = 0;
+        for (int p = 0; p < 64; p++)
+          light += double(luminance(seen.color[size_t((b / across * 8 + p / 8) * width + b % across * 8 + p % 8)])) / 64;
+        sum[size_t(b)][jumped] += light, sum2[size_t(b)][jumped] += light * light;
+      }
+    }
+  for (size_t b = 0; b < sum.size(); b++) {
+    dvec2 mean = sum[b] / double(visits), variance = (sum2[b] - sum[b] * mean) / double(visits - 1);
+    double error = std::sqrt((variance.x + variance.y) / visits) + 1e-6;  // squares of the lamp do not vary
+    EXPECT_LT(std::abs(mean.y - mean.x), 9.5 * error) << b;
+  }
+}
+
 // Bars that no cell of light stands for are lit by their own points.
 TEST(StillDrawn, NarrowThingsHaveTheirOwnLight) {
   Still stage = make_still();
