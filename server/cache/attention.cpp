@@ -15,7 +15,8 @@ namespace {
 
 constexpr float darkest_lit = 0.01f;  // reflectance that can tell of light, or show it
 constexpr float same_facing = 0.9f;   // cosine
-constexpr int change_ageing = 64;  // of points near places where the light seems to have changed
+// Little enough that places nobody has told of yet are asked, too.
+constexpr int change_ageing = 32;  // of points near places where the light seems to have changed
 // Light has changed in a tile where the witnesses of 3x3 tiles agree that it did: by how many standard
 // deviations their sum is off, each taken by its own size or by the noise known of it, whichever is
 // more (a self-normalised sum: rare bright samples neither make a change nor hide one for long; Pena,
@@ -30,7 +31,7 @@ constexpr int alarm_pictures = 45;
 
 // A point where the light has changed. What was sampled just now has seen the new light already.
 void forget_old_light(PointCache& points, uint32_t i) {
-  if (points.age[i] == 0 && points.count[i] == 1) return;
+  if ((points.flags[i] & point_relit) || (points.age[i] == 0 && points.count[i] == 1)) return;
   forget_light_of(points, i, change_ageing);
 }
 

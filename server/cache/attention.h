@@ -10,7 +10,7 @@
 namespace wellspring {
 
 // Where the witnesses of 3x3 tiles agree that the light has changed, by more than their noise can
-// explain, points of the tile get older by a quarter of the scale and forget their light as
+// explain, points of the tile get older by an eighth of the scale and forget their light as
 // forget_light() does, and the picture's mean there starts over. The image is projected for `view`.
 // Witnesses that were heard and those who are not in view are dismissed. Returns whether there was such
 // a place.

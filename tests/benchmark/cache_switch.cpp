@@ -32,6 +32,7 @@ struct Lit {
 
 struct Switch {
   std::string scene;
+  std::string technique;
   int max_depth = 8;
   Lit off, on;
 };
@@ -63,7 +64,6 @@ enum class News { told, found, cleared };
 constexpr const char* news_names[] = {"told", "found", "cleared"};
 
 struct Onlooker {
-  const BenchOptions& options;
   const Switch& scene;
   Way way;
   RenderCache cache{};
@@ -86,7 +86,7 @@ struct Onlooker {
     cache.attend();
     cache.plan(seen, view.width * view.height / mismatch, seed, requests);
     samples.resize(requests.size());
-    trace(*find_technique(options.visit_technique), *lit.world, lit.lights, transport, requests, samples);
+    trace(*find_technique(scene.technique), *lit.world, lit.lights, transport, requests, samples);
     cache.remember(seen, requests, samples);
     if (way == Way::points) cache.reconstruct(view, frame);
     else if (way == Way::moving) cache.draw(view, *lit.sight, frame);
@@ -96,7 +96,7 @@ struct Onlooker {
 
 void run(BenchReport& report, const BenchOptions& options, const Switch& scene, Way way, News news, bool on, int mismatch) {
   const Lit &was = on ? scene.off : scene.on, &is = on ? scene.on : scene.off;
-  Onlooker visitor{.options = options, .scene = scene, .way = way};
+  Onlooker visitor{.scene = scene, .way = way};
   if (news != News::cleared)
     for (int i = 0; i < before; i++) visitor.show(was, mismatch);
   if (news == News::told) visitor.cache.relight(vec3(0), INFINITY);
@@ -117,13 +117,13 @@ void run(BenchReport& report, const BenchOptions& options, const Switch& scene, 
   }
 }
 
-void prepare(const BenchOptions& options, const BenchScene& scene, const TruthSettings& truths, int width, Lit& lit) {
+void prepare(const std::string& name, const BenchScene& scene, const TruthSettings& truths, int width, Lit& lit) {
   lit.world = std::make_unique<World>(lit.scene);
   lit.world->commit();
   lit.lights = make_lights(*lit.world);
   lit.sight = std::make_unique<PictureSight>(*lit.world, lit.lights);
   lit.view = bench_view(scene, width, (width * 9 + 8) / 16);
-  const Technique& technique = *find_technique(options.visit_technique);
+  const Technique& technique = *find_technique(name);
   if (technique.prepare) technique.prepare(*lit.world, std::span(&lit.view.position, 1), lit.lights);
   lit.truth = find_truth(*lit.world, lit.lights, lit.view, truths);
 }
@@ -169,13 +169,14 @@ void bench_cache_switch(BenchReport& report, const BenchOptions& options) {
   for (const char* what : {"box_spot", "box_points", "box_lamp", "castle"}) {
     if (!options.visit_trace.empty() && options.visit_trace != what) continue;
     BenchScene bench = load_bench_scene(options, what == std::string("castle") ? "castle" : "cornell_box");
-    Switch scene{what, bench.max_depth, {}, {}};
+    Switch scene{what, options.visit_technique, bench.max_depth, {}, {}};
     truths.spp = options.visit_spp > 0 ? options.visit_spp : options.quick ? 96 : 512;
     truths.max_depth = bench.max_depth;
     scene.off.scene = bench.scene, scene.on.scene = bench.scene;
-    if (what == std::string("box_points")) scene.max_depth = truths.max_depth = 2;  // light that falls directly
+    // Light that falls directly owes little to chance: what is wrong then is the cache's fault.
+    if (what == std::string("box_points")) scene.technique = "path", scene.max_depth = truths.max_depth = 2;
     make_lamps(what, scene.off.scene, scene.on.scene);
-    for (Lit* lit : {&scene.off, &scene.on}) prepare(options, bench, truths, width, *lit);
+    for (Lit* lit : {&scene.off, &scene.on}) prepare(scene.technique, bench, truths, width, *lit);
     for (const Lit* lit : {&scene.off, &scene.on}) {
       int alike = 0;
       for (size_t i = 0; i < lit->truth.picture.color.size(); i++)

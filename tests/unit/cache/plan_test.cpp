@@ -186,12 +186,12 @@ TEST_F(Changes, AgeTheNeighbourhoodOnce) {
   EXPECT_EQ(p.points.age[at(44, 44)], 10);  // they may err
   hear(44, 44, 60, -0.8f);
   judge();
-  EXPECT_EQ(p.points.age[at(44, 44)], 74);
+  EXPECT_EQ(p.points.age[at(44, 44)], 42);
   EXPECT_LE(p.points.count[at(44, 44)], 2);
-  EXPECT_EQ(p.points.age[at(28, 44)], 74);
+  EXPECT_EQ(p.points.age[at(28, 44)], 42);
   EXPECT_EQ(p.points.age[at(100, 44)], 10);
   judge();
-  EXPECT_EQ(p.points.age[at(44, 44)], 74);
+  EXPECT_EQ(p.points.age[at(44, 44)], 42);
 }
 
 // Each for itself might be chance; together they are not, though no frame has many.
@@ -199,7 +199,7 @@ TEST_F(Changes, FewWitnessesAFrameAddUp) {
   for (int frame = 1; frame <= 7; frame++) {
     hear(44, 44, 4, 0.5f);
     judge();
-    EXPECT_EQ(p.points.age[at(44, 44)], frame < 7 ? 10 : 74) << frame;
+    EXPECT_EQ(p.points.age[at(44, 44)], frame < 7 ? 10 : 42) << frame;
   }
 }
 
@@ -227,11 +227,11 @@ TEST_F(Changes, WhereOneThingHasChangedLessWillDo) {
   EXPECT_EQ(p.points.age[at(108, 44)], 10);
   hear(28, 44, 60, -0.8f);
   judge();
-  ASSERT_EQ(p.points.age[at(28, 44)], 74);
+  ASSERT_EQ(p.points.age[at(28, 44)], 42);
   EXPECT_EQ(p.points.age[at(108, 44)], 10);
   small();
   judge();
-  EXPECT_EQ(p.points.age[at(108, 44)], 74);
+  EXPECT_EQ(p.points.age[at(108, 44)], 42);
   // Not for long.
   for (int i = 0; i < 60; i++) judge();
   hear(76, 76, 60, -0.1f, 0.15f);
@@ -270,7 +270,7 @@ TEST_F(Changes, HiddenPointsForgetToo) {
   hear(44, 44, 60, -0.8f);
   judge();
   EXPECT_TRUE(p.points.flags[behind] & point_relit);
-  EXPECT_EQ(p.points.age[behind], 74);
+  EXPECT_EQ(p.points.age[behind], 42);
   EXPECT_FALSE(p.points.flags[aside] & point_relit);
 }
 
@@ -294,7 +294,7 @@ TEST_F(Changes, AreSeenWhereTheViewHasCarriedThem) {
   hear(116, 41, 40, 0.9f);  // what was at column 120 is in the middle now
   hear(2, 2, 40, 0.9f);     // of these nobody is there any more
   age_changed(p.points, turned, p.image, still);
-  EXPECT_EQ(p.points.age[at(80, 45)], 74);
+  EXPECT_EQ(p.points.age[at(80, 45)], 42);
   EXPECT_EQ(p.points.age[at(4, 4)], 10);
   EXPECT_TRUE(p.image.witnesses.empty());
 }
