@@ -14,6 +14,8 @@ namespace {
 // On each side, of width and height: turning goes sideways.
 constexpr int margin_across = 40, margin_down = 45;
 constexpr int widest_across = 10;  // of quick turns
+constexpr float widest_tangent = 3;  // from the middle of surroundings to their border
+constexpr int asked_across = 16, asked_down = 9;  // directions that stand for a view
 constexpr float nearest_depth = 1e-4f;  // metres, as in project_points()
 
 float disparity_of(float depth) {
@@ -60,6 +62,55 @@ View keyframe_view(View view, float turn) {
   view.height += 2 * margin(view.height, margin_down);
   view.tan_half_fov *= float(view.height) / float(height);
   return view;
+}
+
+static vec3 direction_at(const View& view, float across, float down) {  // of the picture, 0 to 1
+  float high = view.tan_half_fov, wide = high * float(view.width) / float(view.height);
+  return view.forward + view.right * (wide * (2 * across - 1)) + view.up * (high * (1 - 2 * down));
+}
+
+View surrounding_view(std::span<const View> views, float share) {
+  View around;
+  around.width = around.height = 0;
+  if (views.empty() || views[0].width < 1 || views[0].height < 1) return around;
+  around = views[0];
+  vec3 middle(0);
+  for (const View& view : views) middle += view.forward;
+  if (length(middle) > 0.5f * float(views.size())) {
+    around.forward = normalize(middle);
+    around.right = normalize(cross(around.forward, views[0].up));
+    around.up = cross(around.right, around.forward);
+  }
+  float wide = 0, high = 0;
+  for (const View& view : views)
+    for (float across : {0.0f, 0.5f, 1.0f})
+      for (float down : {0.0f, 0.5f, 1.0f}) {
+        vec3 d = direction_at(view, across, down);
+        float z = dot(d, around.forward), x = std::abs(dot(d, around.right)), y = std::abs(dot(d, around.up));
+        wide = std::max(wide, x < widest_tangent * z ? x / z : widest_tangent);
+        high = std::max(high, y < widest_tangent * z ? y / z : widest_tangent);
+      }
+  wide = std::max(wide, 1e-6f), high = std::max(high, 1e-6f);
+  float pixels = share * float(views[0].width) * float(views[0].height);
+  auto side = [](float length) { return std::max(int(std::lround(length)), 1); };
+  float across = std::min(std::sqrt(pixels * wide / high), float(views[0].width)),
+        down = std::min(std::sqrt(pixels * high / wide), float(views[0].height));
+  around.width = side(std::min(across, down * wide / high));
+  around.height = side(float(around.width) * high / wide);
+  around.tan_half_fov = std::max(high, wide * float(around.height) / float(around.width));
+  return around;
+}
+
+float missing_share(const View& drawn, const View& wanted) {
+  float high = drawn.tan_half_fov, wide = high * float(drawn.width) / float(drawn.height);
+  int missing = 0;
+  for (int y = 0; y < asked_down; y++)
+    for (int x = 0; x < asked_across; x++) {
+      vec3 d = direction_at(wanted, (float(x) + 0.5f) / asked_across, (float(y) + 0.5f) / asked_down);
+      float z = dot(d, drawn.forward);
+      missing += !(std::abs(dot(d, drawn.right)) <= wide * z && std::abs(dot(d, drawn.up)) <= high * z);
+    }
+  return float(missing) / float(asked_across * asked_down);
 }
 
 void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth,

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/parallel.h"
@@ -83,10 +84,11 @@ struct Source {
   const Keyframe& k;
   Mapping to, back;  // from the new view to the keyframe's, and back
   float last_x, last_y;
+  bool coarse;  // its pixels are large: colours are bilinear across silhouettes, too, which would have steps
 
-  Source(const Keyframe& k, const View& view)
+  Source(const Keyframe& k, const View& view, bool coarse = false)
       : k(k), to(make_mapping(view, k.view)), back(make_mapping(k.view, view)),
-        last_x(float(k.view.width - 1)), last_y(float(k.view.height - 1)) {}
+        last_x(float(k.view.width - 1)), last_y(float(k.view.height - 1)), coarse(coarse) {}
   // Of the pixel that holds the place.
   f8 disparity(const f8& x, const f8& y) const {
     i8 index = to_int(clamped(y, last_y)) * k.view.width + to_int(clamped(x, last_x));
@@ -330,29 +332,17 @@ unsigned warp_row(const Source& source, float x, float y, int count, const Searc
     Spot spot = find_behind(source, px[i], y, far, search.pixels);
     at_x[i] = spot.x, at_y[i] = spot.y;
   }
-  write_rgb(sample_color(source, at_x, at_y, search.pixels), to, count);
+  write_rgb(sample_color(source, at_x, at_y, source.coarse ? 0 : search.pixels), to, count);
   i8 inside = (at_x >= -found) & (at_y >= -found) & (at_x <= source.last_x + (1 + found)) &
               (at_y <= source.last_y + (1 + found)) & (base.ratio > least_depth);
   return negative_lanes(~inside) & ((1u << count) - 1);
 }
 
-}  // namespace
-
-float warp_picture(const Keyframe& keyframe, const View& view, float most_unknown, WarpScratch& scratch,
-                   Image8& out) {
-  if (keyframe.empty() || view.width < 1 || view.height < 1) return 1;
-  Source source(keyframe, view);
-  if (!carry_bounds(source, view, scratch)) return 1;
+// Calls warp(x, y, count, search, far) for every row of every block; (x, y): its first pixel.
+template <class Warp>
+void each_row(const Source& source, const View& view, const WarpScratch& scratch, const Warp& warp) {
   int columns = (view.width + block - 1) / block, rows = (view.height + block - 1) / block;
-  size_t bare = size_t(std::count(scratch.nearest.begin(), scratch.nearest.end(), -1.0f));
-  float share = float(bare) / float(scratch.nearest.size());
-  if (share > most_unknown) return share;
-  out.width = view.width;
-  out.height = view.height;
-  out.rgb.resize(size_t(view.width) * size_t(view.height) * 3);
-  std::atomic<int> unknown{0};
   parallel_ranges(rows, 2, [&](int begin, int end) {
-    int unknown_here = 0;
     for (int by = begin; by < end; by++)
       for (int bx = 0; bx < columns; bx++) {
         size_t c = size_t(by) * size_t(columns) + size_t(bx);
@@ -360,13 +350,64 @@ float warp_picture(const Keyframe& keyframe, const View& view, float most_unknow
         if (near < 0) borrow_bounds(scratch, columns, rows, bx, by, far, near);
         int x = bx * block, count = std::min(view.width - x, block);
         Search search = plan_search(source, float(x) + 0.5f * block, (float(by) + 0.5f) * block, near, far);
-        for (int y = by * block; y < std::min((by + 1) * block, view.height); y++)
-          unknown_here += std::popcount(
-              warp_row(source, float(x) + 0.5f, float(y) + 0.5f, count, search, far,
-                       &out.rgb[3 * (size_t(y) * size_t(view.width) + size_t(x))]));
+        for (int y = by * block; y < std::min((by + 1) * block, view.height); y++) warp(x, y, count, search, far);
       }
-    unknown += unknown_here;
   });
+}
+
+uint8_t* pixel_at(Image8& image, int x, int y) {
+  return &image.rgb[3 * (size_t(y) * size_t(image.width) + size_t(x))];
+}
+
+// What scratch.outside says that the keyframe does not show. Returns how many pixels are not here either.
+int warp_outside(const Source& around, const View& view, WarpScratch& scratch, Image8& out) {
+  size_t columns = size_t((view.width + block - 1) / block);
+  std::atomic<int> unknown{0};
+  each_row(around, view, scratch, [&](int x, int y, int count, const Search& search, float far) {
+    unsigned wanted = scratch.outside[size_t(y) * columns + size_t(x / block)];
+    if (wanted == 0) return;
+    uint8_t rgb[3 * block], *to = pixel_at(out, x, y);
+    unsigned not_here = warp_row(around, float(x) + 0.5f, float(y) + 0.5f, count, search, far, rgb);
+    unknown += std::popcount(wanted & not_here);
+    for (unsigned bits = wanted & ~not_here; bits != 0; bits &= bits - 1) {
+      int i = std::countr_zero(bits);
+      std::memcpy(to + 3 * i, rgb + 3 * i, 3);
+    }
+  });
+  return unknown;
+}
+
+}  // namespace
+
+float warp_picture(const Keyframe& keyframe, const View& view, float most_unknown, WarpScratch& scratch,
+                   Image8& out) {
+  return warp_picture(keyframe, Keyframe(), view, most_unknown, scratch, out);
+}
+
+float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View& view, float most_unknown,
+                   WarpScratch& scratch, Image8& out) {
+  if (keyframe.empty() || view.width < 1 || view.height < 1) return 1;
+  Source source(keyframe, view);
+  if (!carry_bounds(source, view, scratch)) return 1;
+  size_t bare = size_t(std::count(scratch.nearest.begin(), scratch.nearest.end(), -1.0f));
+  float share = float(bare) / float(scratch.nearest.size());
+  if (share > most_unknown && around.empty()) return share;
+  out.width = view.width;
+  out.height = view.height;
+  out.rgb.resize(size_t(view.width) * size_t(view.height) * 3);
+  size_t columns = size_t((view.width + block - 1) / block);
+  if (!around.empty()) scratch.outside.resize(columns * size_t(view.height));
+  std::atomic<int> outside{0};
+  each_row(source, view, scratch, [&](int x, int y, int count, const Search& search, float far) {
+    unsigned bits = warp_row(source, float(x) + 0.5f, float(y) + 0.5f, count, search, far, pixel_at(out, x, y));
+    if (!around.empty()) scratch.outside[size_t(y) * columns + size_t(x / block)] = uint8_t(bits);
+    if (bits != 0) outside += std::popcount(bits);
+  });
+  int unknown = outside;
+  if (unknown > 0 && !around.empty()) {
+    Source wide(around, view, true);
+    if (carry_bounds(wide, view, scratch)) unknown = warp_outside(wide, view, scratch, out);
+  }
   return float(unknown) / (float(view.width) * float(view.height));
 }
 

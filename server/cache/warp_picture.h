@@ -15,6 +15,7 @@ namespace wellspring {
 // Kept from picture to picture to save the memory's making: bounds of disparities of the new picture's blocks.
 struct WarpScratch {
   std::vector<float> farthest, nearest;
+  std::vector<uint8_t> outside;  // of eight pixels side by side each
 };
 
 // Overwrites `out`, of the size of `view`, and returns the share of its pixels that the keyframe does not
@@ -23,5 +24,9 @@ struct WarpScratch {
 // but the keyframe whatever the views are. The same bits whatever the number of threads.
 float warp_picture(const Keyframe& keyframe, const View& view, float most_unknown, WarpScratch& scratch,
                    Image8& out);
+// What lies outside of the keyframe is taken from `around`, of a wider view and of fewer pixels;
+// the share returned is of what neither shows. Costs nothing where the keyframe shows all.
+float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View& view, float most_unknown,
+                   WarpScratch& scratch, Image8& out);
 
 }  // namespace wellspring

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where pictures are drawn while the show goes on: one thing at a time, as all of them read the world and
 // use all cores. Whatever it is at work on belongs to it; the tick looks in (show/picture.h), takes what is
-// finished, moves the world, which nobody reads then, and gives it the next:
+// finished, moves the world, which nobody reads then, and gives it the next
+// (of a quick turn the surroundings first):
 //
 //   idle --draw_next--> drawing --finish_drawing--> idle, or, if samples are asked for, --> tracing --> idle
 #pragma once
 #include <cstdint>
 #include <memory>
 #include <oneapi/tbb/task_arena.h>
+#include <optional>
 #include <vector>
 
 #include "base/worker.h"
@@ -34,6 +36,7 @@ struct PictureOrder {
   bool attention = true;
   bool keep = false;     // as a keyframe, for others to be made of
   uint64_t seed = 0;
+  std::optional<View> around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels
   DisplayPlan display;
 };
 
@@ -53,7 +56,7 @@ struct DrawingWork {
   Frame frame;
   std::vector<float> depth;  // of what is drawn in coarser light
   Image8 picture;            // when it is finished the visitor's old one
-  Keyframe keyframe;         // likewise
+  Keyframe keyframe, around;  // likewise
   std::vector<Request> requests, ahead;
   std::vector<Sample> samples;
   std::vector<Ray> looks;
@@ -65,6 +68,7 @@ struct Easel {
   DrawingWork work;
   size_t work_bytes = 0;     // of it, when last finished
   Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
+  bool surrounds = false;    // only `order.around` of it
   PictureOrder order;        // for it
   std::vector<Broker*> brokers;  // that what is being traced was asked by; empty: it is not tracing
   double seconds = 0;            // for that

@@ -54,6 +54,8 @@ std::string write_metrics(const ShowReport& report) {
          double(totals.warped));
   metric(out, "warps_given_up_total", "counter", "Pictures not made since earlier ones show too little of the view",
          double(totals.unwarpable));
+  metric(out, "surroundings_drawn_total", "counter", "Small wide pictures drawn of what a quick turn may show",
+         double(totals.surroundings));
   metric(out, "picture_bytes_total", "counter", "Bytes of pictures made", double(totals.picture_bytes));
   metric(out, "messages_total", "counter", "Messages from browsers", double(totals.messages));
   metric(out, "refused_messages_total", "counter", "Messages refused", double(totals.refused_messages));

@@ -21,6 +21,7 @@ constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
 constexpr double keyframe_rate = 30;   // pictures drawn a second while the visitor moves, at most
 constexpr float nearly_all = 0.999f;   // converged
+constexpr double around_kept = 2;      // seconds that what lies around is good for: turns come in bouts
 constexpr float forgotten = 0.998f;    // of what drawing took, a picture without it
 constexpr double predicted_pictures = 2;
 constexpr float predicted_share = 0.3f;    // of the samples, at most
@@ -121,7 +122,10 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
     order.ahead = expected_view(visitor.heading, now, seen_in + interval);
     float turn = expected_turn(visitor.heading, now, 0.5 * interval);
     order.view = order.coarse ? keyframe_view(order.expected, turn) : order.expected;
-    if (order.coarse) order.ahead = keyframe_view(order.ahead);
+    if (order.coarse) {
+      order.ahead = keyframe_view(order.ahead);
+      order.around = surroundings(visitor.heading, now, order.view, seen_in + 0.5 * interval);
+    }
   } else {
     order.ahead = expected_view(visitor.heading, now, predicted_pictures * interval);
   }
@@ -229,13 +233,14 @@ static void fit_memory(Visitor& visitor) {
   auto fit = [](auto& v) {
     if (v.capacity() > v.size() + v.size() / 4) v.shrink_to_fit();
   };
-  Keyframe& keyframe = visitor.keyframe;
-  fit(visitor.picture.rgb), fit(keyframe.color), fit(keyframe.disparity);
-  fit(keyframe.farthest), fit(keyframe.nearest);
+  for (Keyframe* keyframe : {&visitor.keyframe, &visitor.around})
+    fit(keyframe->color), fit(keyframe->disparity), fit(keyframe->farthest), fit(keyframe->nearest);
+  fit(visitor.picture.rgb);
 }
 
 size_t memory_bytes(const DrawingWork& work) {
   return memory_bytes(*work.cache) + memory_bytes(work.frame) + memory_bytes(work.keyframe) +
+         memory_bytes(work.around) +
          bytes_of(work.depth, work.picture.rgb, work.requests, work.ahead, work.samples, work.looks,
                   work.seen);
 }
@@ -272,6 +277,8 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   // Else its keyframe has the colours.
   if (!order.keep) std::swap(show.easel.work.picture, visitor.picture);
   std::swap(show.easel.work.keyframe, visitor.keyframe);
+  visitor.surrounded = false;
+  if (order.leaps != visitor.around_leaps || show.time - visitor.around_at > around_kept) visitor.around = {};
   fit_memory(visitor);
   visitor.memory_bytes = picture_memory(visitor);
   show.easel.work_bytes = memory_bytes(show.easel.work);
@@ -279,6 +286,23 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   visitor.unshown = true;
   show.totals.drawn++;
   show.totals.samples += costs.samples;
+}
+
+void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {
+  DrawingWork& work = show.easel.work;
+  land(visitor.broker.collect(), *show.world, show.pose_number, visitor.cache);
+  visitor.cache.draw(*order.around, *show.sight, Tonemap{show.exhibit.exposure}, work.picture, &work.depth);
+  make_keyframe(*order.around, work.picture, work.depth, work.around);
+}
+
+void finish_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {
+  std::swap(show.easel.work.around, visitor.around);
+  visitor.around_at = order.time;
+  visitor.around_leaps = order.leaps;
+  visitor.surrounded = true;
+  fit_memory(visitor);
+  visitor.memory_bytes = picture_memory(visitor);
+  show.totals.surroundings++;
 }
 
 bool order_samples(Show& show) {

@@ -27,6 +27,9 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy);
 // Changes nothing but what of the visitor is the easel's, and what techniques keep in show.lights.
 void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor);
 void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor);
+// Before that, where the order has something around: it is shown as soon as it is there.
+void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor);
+void finish_surroundings(Show& show, const PictureOrder& order, Visitor& visitor);
 
 // What pictures of walking visitors have asked for, in turn, in the time that was left for it: the
 // answers are in the next ones. Likewise in three steps; the first says whether there is anything.

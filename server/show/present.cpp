@@ -90,7 +90,8 @@ void copy_colors(const Keyframe& keyframe, Image8& image) {
 // The encoder's image becomes the newest keyframe seen from `view`.
 bool warp(Show& show, Visitor& visitor, const View& view) {
   double began = seconds_now();
-  float unknown = warp_picture(visitor.keyframe, view, most_unknown, visitor.warp, visitor.encoder->image);
+  float unknown = warp_picture(visitor.keyframe, visitor.around, view, most_unknown, visitor.warp,
+                               visitor.encoder->image);
   smooth(visitor.times.warp, float(1000 * (seconds_now() - began)));
   if (unknown > most_unknown) {
     show.totals.unwarpable++;

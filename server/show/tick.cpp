@@ -233,7 +233,8 @@ bool take_finished(Show& show) {
   if (!easel.idle()) return false;
   if (!easel.brokers.empty()) finish_samples(show);
   if (!easel.drawn) return true;
-  finish_picture(show, easel.order, *easel.drawn);
+  if (std::exchange(easel.surrounds, false)) finish_surroundings(show, easel.order, *easel.drawn);
+  else finish_picture(show, easel.order, *easel.drawn);
   easel.drawn->at_work = false;
   easel.drawn = nullptr;
   return true;
@@ -255,13 +256,15 @@ void use_easel(Show& show, int waiting) {
   for (Visitor& visitor : show.visitors)
     if (wants_drawing(show, visitor) && (!next || visitor.drawn_at < next->drawn_at)) next = &visitor;
   if (!next) return;
-  pose_world(show);
   easel.drawn = next;
   easel.order = order_picture(show, *next, waiting);
+  easel.surrounds = easel.order.around && !next->surrounded;
+  if (!easel.surrounds) pose_world(show);
   next->at_work = true;
   easel.worker.run([&show] {
     Easel& easel = show.easel;
-    easel.cores.execute([&] { draw_picture(show, easel.order, *easel.drawn); });
+    const auto& draw = easel.surrounds ? draw_surroundings : draw_picture;
+    easel.cores.execute([&] { draw(show, easel.order, *easel.drawn); });
   });
 }
 

@@ -72,6 +72,11 @@ struct Visitor {
   double broker_seconds = 0;  // of all cores, for what was last asked
   Image8 picture;             // until it is shown
   Keyframe keyframe;          // what pictures are warped from until the next
+  // Of a quick turn what lies around that, in fewer pixels; empty: nothing.
+  Keyframe around;
+  double around_at = -1e9;    // show time of its order
+  uint32_t around_leaps = 0;  // of the visitor, by then
+  bool surrounded = false;    // since the last picture was drawn
   PictureOrder order;
   bool unshown = false;       // nothing of it has been sent yet
   double drawn_at = -1e9;     // show time of the order of the last

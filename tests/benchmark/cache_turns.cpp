@@ -4,9 +4,14 @@
 // repeats its border, for machines that take so long for a drawn picture; without prediction, predicted with
 // margins of the same width for all, and as the show does, with margins as wide as turns are quick.
 #include <cmath>
+#include <spdlog/fmt/fmt.h>
 
 #include "base/rng.h"
 #include "cache/warp_picture.h"
+#include "cache_visit_stage.h"
+#include "drawn_picture.h"
+#include "frame/flip.h"
+#include "frame/picture_file.h"
 #include "report.h"
 #include "show/heading.h"
 
@@ -75,6 +80,90 @@ std::vector<double> unknown_shares(const std::vector<double>& yaws, double drawi
   return shares;
 }
 
+// ---- the same in the castle's hall, against true pictures ----
+
+constexpr int hall_width = 640, hall_height = 360;
+constexpr double surroundings_time = 0.2;  // of what drawing a keyframe takes, as in the castle
+
+struct TurnErrors {
+  double flip = 0, unknown = 0, drawn = 0;  // means; pictures of surroundings a keyframe
+  std::vector<double> flips;
+};
+
+struct DrawnKeyframes {
+  const PictureSight& sight;
+  Keyframe shown, drawn, around;
+  DrawnPicture picture;
+  void draw(const View& view, Keyframe& to) {
+    draw_picture(sight, view, picture);
+    make_keyframe(view, picture.image, picture.depth, to);
+  }
+};
+
+// One picture judged in `stride` ticks.
+TurnErrors judge_turns(const VisitStage& stage, const PictureSight& sight, const std::vector<double>& yaws,
+                       double drawing, bool surrounded, size_t stride, const std::string& pictures) {
+  const Viewpoint& at = stage.exhibit().viewpoints[0].view;
+  TurnErrors errors;
+  Heading heading;
+  DrawnKeyframes frames{sight, {}, {}, {}, {}};
+  WarpScratch scratch;
+  Image8 out;
+  DrawnPicture truth;
+  double finished = -1, surrounded_at = -1;
+  int keyframes = 0, surroundings_drawn = 0;
+  std::optional<View> wide;
+  for (size_t i = 0; i < yaws.size(); i++) {
+    double time = double(i) / rate;
+    View view = make_view(stage.exhibit().scene, at.position, at.yaw + float(yaws[i]), at.pitch, at.fov, hall_width,
+                          hall_height);
+    note_view(heading, time, view);
+    if (wide && time + 1e-9 >= surrounded_at) {
+      frames.draw(*wide, frames.around);
+      wide.reset();
+    }
+    if (time + 1e-9 >= finished) {
+      std::swap(frames.shown, frames.drawn);
+      auto keyframe = [&](double before) {
+        float turn = expected_turn(heading, view, 0.5 * drawing);
+        return keyframe_view(expected_view(heading, view, before + 1.5 * drawing), turn);
+      };
+      finished = time + drawing;
+      if (surrounded) wide = surroundings(heading, view, keyframe(0), 2 * drawing);
+      if (wide) finished += surroundings_time * drawing, surrounded_at = time + surroundings_time * drawing;
+      frames.draw(keyframe(wide ? surroundings_time * drawing : 0), frames.drawn);
+      keyframes++, surroundings_drawn += wide.has_value();
+    }
+    if (frames.shown.empty() || i % stride != 0) continue;
+    double unknown = double(warp_picture(frames.shown, frames.around, view, 1, scratch, out));
+    draw_picture(sight, view, truth);
+    errors.flips.push_back(double(eval_flip(out, truth.image).mean));
+    errors.flip += errors.flips.back(), errors.unknown += unknown;
+    if (pictures.empty()) continue;
+    std::string name = fmt::format("{}/turn_{:.0f}ms_{:04}_{}.png", pictures, 1000 * drawing, i, surrounded ? "with" : "without");
+    save_image8(name, out);
+  }
+  errors.flip /= double(errors.flips.size()), errors.unknown /= double(errors.flips.size());
+  errors.drawn = double(surroundings_drawn) / keyframes;
+  return errors;
+}
+
+void bench_hall(BenchReport& report, const BenchOptions& options) {
+  VisitStage stage(options.content + "/castle", "direct");
+  PictureSight sight(stage.world(), stage.lights());
+  std::vector<double> yaws = turn_by_keys(options.quick ? 10 : 60, 11);
+  for (double drawing : {1 / 30.0, 0.1, 0.2})
+    for (bool surrounded : {false, true}) {
+      TurnErrors errors = judge_turns(stage, sight, yaws, drawing, surrounded, options.quick ? 11 : 7, options.visit_pictures);
+      nlohmann::json fields = {{"scene", "castle"}, {"size", fmt::format("{}x{}", hall_width, hall_height)},
+                               {"surroundings", surrounded}, {"drawing_ms", std::round(1000 * drawing)}};
+      report.add("cache.turns.flip", errors.flip, "", fields);
+      report.add("cache.turns.flip_p95", quantile(errors.flips, 0.95), "", fields);
+      report.add("cache.turns.hall_unknown", 100 * errors.unknown, "%", fields);
+      report.add("cache.turns.surroundings_drawn", 100 * errors.drawn, "%", fields);
+    }
+}
+
 }  // namespace
 
 void bench_cache_turns(BenchReport& report, const BenchOptions& options) {
@@ -90,6 +179,7 @@ void bench_cache_turns(BenchReport& report, const BenchOptions& options) {
       report.add("cache.turns.unknown", 100 * sum / double(shares.size()), "%", fields);
       report.add("cache.turns.unknown_p95", 100 * quantile(shares, 0.95), "%", fields);
     }
+  bench_hall(report, options);
 }
 
 }  // namespace wellspring

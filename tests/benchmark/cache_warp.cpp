@@ -7,9 +7,8 @@
 
 #include "cache/warp_picture.h"
 #include "cache_visit_stage.h"
+#include "drawn_picture.h"
 #include "frame/flip.h"
-#include "frame/tonemap.h"
-#include "light/see_picture.h"
 #include "report.h"
 
 namespace wellspring {
@@ -17,30 +16,6 @@ namespace {
 
 constexpr int width = 1280, height = 720, levels = 16;
 constexpr double ages[] = {0.016, 0.033, 0.05};  // seconds from the keyframe's view to the picture's
-
-struct DrawnPicture {
-  Image8 image;
-  std::vector<float> depth;
-};
-
-void draw(const PictureSight& sight, const View& view, DrawnPicture& drawn) {
-  Frame frame;
-  frame.width = view.width, frame.height = view.height;
-  frame.color.resize(size_t(view.width) * size_t(view.height));
-  drawn.depth.resize(frame.color.size());
-  const vec3 towards_light = normalize(vec3(0.3f, 0.8f, 0.5f));
-  sight.see(view, vec2(0.5f), [&](const SightRun& run) {
-    for (int i = 0; i < run.count; i++) {
-      Seen seen = run.see(i);
-      size_t at = size_t(run.y) * size_t(view.width) + size_t(run.x + i);
-      float size = length(seen.normal);
-      float light = 0.35f + (size > 0 ? 0.65f * std::abs(dot(seen.normal, towards_light)) / size : 0);
-      frame.color[at] = seen.albedo * light + 0.5f * seen.glow;
-      drawn.depth[at] = run.depth[i];
-    }
-  });
-  tonemap(frame, Tonemap{}, drawn.image);
-}
 
 // Share of pixels that no pixel of the other picture within one pixel explains: a channel is outside of
 // the range of these by more than `levels` of 255.
@@ -92,9 +67,9 @@ void bench_cache_warp(BenchReport& report, const BenchOptions& options) {
       for (int i = 0; i < instants; i++) {
         double time = trace_seconds(trace) * (i + 0.5) / instants;
         View view = stage.view(trace, time, width, height), old = stage.view(trace, time - age, width, height);
-        draw(sight, view, now);
-        draw(sight, old, held);
-        draw(sight, keyframe_view(old), before);
+        draw_picture(sight, view, now);
+        draw_picture(sight, old, held);
+        draw_picture(sight, keyframe_view(old), before);
         double began = processor_seconds();
         make_keyframe(keyframe_view(old), before.image, before.depth, keyframe);
         double made = processor_seconds();

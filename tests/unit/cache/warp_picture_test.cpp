@@ -235,6 +235,78 @@ TEST(WarpPicture, SameBitsWhateverTheThreads) {
   EXPECT_EQ(warp(keyframe, now).rgb, many.rgb);
 }
 
+// A turned view's border comes from the smaller picture of all around, the rest is as without that.
+TEST(WarpPicture, WhatIsOutsideComesFromAround) {
+  for (const Place& place : {Place(sky), Place(wall)}) {
+    View before = look_at({0, 0, 0}, 0), now = look_at({0.05f, 0, -0.05f}, 0.3f);
+    const View views[] = {before, now};
+    View wide = surrounding_view(views, 1 / 4.0f);
+    Keyframe keyframe = keyframe_of(place, before), around = keyframe_of(place, wide);
+    Image8 truth = draw(place, now).picture, without, with;
+    WarpScratch scratch;
+    float unknown = warp_picture(keyframe, now, 1, scratch, without);
+    EXPECT_GT(unknown, 0.2f);
+    EXPECT_EQ(warp_picture(keyframe, around, now, 0, scratch, with), 0.0f);  // nothing is unknown, so none is too much
+    size_t same = 0;
+    int worst = 0;
+    for (size_t i = 0; i < with.rgb.size(); i += 3) {
+      same += std::equal(&with.rgb[i], &with.rgb[i] + 3, &without.rgb[i]);
+      for (size_t c = 0; c < 3; c++) worst = std::max(worst, std::abs(int(with.rgb[i + c]) - int(truth.rgb[i + c])));
+    }
+    size_t pixels = truth.rgb.size() / 3;
+    EXPECT_GE(same, pixels - size_t(std::lround(unknown * float(pixels))));
+    // Bilinear within pixels that are three times as wide: (3 h)^2 / 8 of the pattern's second derivative,
+    // 900 levels, of one that is h = 1/120 of the picture's distance wide; and places are right to half a small pixel.
+    EXPECT_LE(worst, 8);
+  }
+}
+
+TEST(WarpPicture, WhatIsNowhereStaysUnknown) {
+  View before = look_at({0, 0, 0}, 0), now = look_at({0, 0, 0}, 1.5f), beside = look_at({0, 0, 0}, 0.5f, 60, 36);
+  Keyframe keyframe = keyframe_of(sky, before), around = keyframe_of(sky, beside);
+  WarpScratch scratch;
+  Image8 out;
+  float unknown = warp_picture(keyframe, around, now, 1, scratch, out);
+  EXPECT_GT(unknown, 0.5f);
+  EXPECT_LT(unknown, 1.0f);
+  EXPECT_EQ(warp_picture(Keyframe{}, around, now, 1, scratch, out), 1.0f);
+}
+
+TEST(SurroundingView, HoldsAllViewsInFewPixels) {
+  View a = look_at({0, 0, 0}, 0.2f), b = look_at({0, 0, 0}, -0.5f), up = a;
+  up.forward = normalize(a.forward + 0.5f * a.up);
+  up.up = cross(up.right, up.forward);
+  for (float share : {1 / 4.0f, 1 / 16.0f}) {
+    const View views[] = {a, b, up};
+    View around = surrounding_view(views, share);
+    for (const View& view : views) EXPECT_EQ(missing_share(around, view), 0.0f);
+    EXPECT_NEAR(float(around.width * around.height), share * 200 * 120, 0.1f * share * 200 * 120);
+    EXPECT_NEAR(dot(around.forward, around.up), 0, 1e-6f);
+    EXPECT_NEAR(length(around.right), 1, 1e-6f);
+  }
+  // What no flat picture can hold is held in part.
+  const View apart[] = {a, look_at({0, 0, 0}, 0.2f + 3.14159f)};
+  View around = surrounding_view(apart, 1 / 4.0f);
+  EXPECT_EQ(around.forward, a.forward);
+  EXPECT_LE(around.tan_half_fov, 3.2f);
+  // A flat strip is no longer than the picture.
+  View strip = a;
+  strip.tan_half_fov = 0.01f, strip.height = 4;
+  const View strips[] = {strip, b};
+  View flat = surrounding_view(strips, 1);
+  EXPECT_LE(flat.width, 200);
+  EXPECT_LE(flat.height, 4);
+  EXPECT_EQ(surrounding_view({}, 1).width, 0);
+}
+
+TEST(SurroundingView, TellsWhatIsMissing) {
+  View view = look_at({0, 0, 0}, 0), beside = look_at({0, 0, 0}, std::atan(view.tan_half_fov * 200 / 120));
+  EXPECT_EQ(missing_share(view, view), 0.0f);
+  EXPECT_NEAR(missing_share(view, beside), 0.5f, 0.1f);  // half of its columns are; edges are not upright there
+  EXPECT_EQ(missing_share(view, look_at({0, 0, 0}, 3.14159f)), 1.0f);
+  EXPECT_EQ(missing_share(keyframe_view(view), view), 0.0f);
+}
+
 TEST(MakeKeyframe, RefusesWhatDoesNotFit) {
   View view = look_at({0, 0, 0}, 0, 16, 8);
   Drawn drawn = draw(wall, view);

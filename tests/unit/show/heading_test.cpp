@@ -39,6 +39,32 @@ TEST(Heading, GoesOnAsItWent) {
   }
 }
 
+// Where ticks come later than motion is measured over.
+TEST(Heading, GoesOnAsItWentWhereTicksAreFew) {
+  Heading heading;
+  View view;
+  for (int i = 0; i <= 4; i++) note_view(heading, i * 0.08, view = facing(0.1f * float(i)));
+  EXPECT_NEAR(expected_turn(heading, view, 0.16), 0.2f, 1e-3f);
+  note_view(heading, 0.32 + 0.6, view = facing(0.5f));  // nobody knows what was in between
+  EXPECT_EQ(expected_turn(heading, view, 0.16), 0.0f);
+}
+
+TEST(Heading, QuickTurnsNeedWhatLiesAround) {
+  for (float speed : {0.0f, 0.2f, 2.0f, -2.0f}) {
+    Heading heading;
+    View now;
+    for (int i = 0; i <= 30; i++) note_view(heading, i / 60.0, now = facing(speed * float(i) / 60));
+    View drawn = keyframe_view(expected_view(heading, now, 0.15), expected_turn(heading, now, 0.05));
+    std::optional<View> around = surroundings(heading, now, drawn, 0.2);
+    ASSERT_EQ(around.has_value(), std::abs(speed) > 1) << speed;
+    if (!around) continue;
+    EXPECT_EQ(missing_share(*around, now), 0.0f);
+    EXPECT_EQ(missing_share(*around, expected_view(heading, now, 0.1)), 0.0f);
+    EXPECT_EQ(missing_share(*around, expected_view(heading, now, 0.2)), 0.0f);
+    EXPECT_LE(around->width * around->height, 336 * 188 / 7);
+  }
+}
+
 TEST(Heading, WhoStopsIsExpectedToStaySoon) {
   Heading heading;
   View view = facing(0.6f);

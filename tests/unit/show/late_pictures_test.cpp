@@ -23,8 +23,9 @@ struct LatePictures : testing::Test {
   std::promise<void> held;
   std::unique_ptr<Show> show;
 
-  void begin(int visitors = 1) {
+  void begin(int visitors = 1, DrawShapes draw = DrawShapes::automatic) {
     ShowSettings settings;
+    settings.draw = draw;
     settings.fps = 50;
     settings.technique = settings.still_technique = "direct";
     show = make_show(make_tiny_exhibit(), settings);
@@ -142,6 +143,59 @@ TEST_F(LatePictures, QuickTurnsShowWhatIsDrawn) {
   for (int i = 0; i < 50; i++) turn(0.5), step();  // four turns a second
   EXPECT_GT(show->totals.unwarpable, 5u);
   EXPECT_GT(pictures.size(), before + 15);
+}
+
+TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
+  begin(1, DrawShapes::always);
+  show->looks_per_second = 1;  // or these would do without drawing
+  for (int i = 0; i < 30; i++) turn(0.01, 0.5), step(true, 0.08);
+  EXPECT_EQ(show->totals.surroundings, 0u);
+  EXPECT_TRUE(visitor().around.empty());
+  size_t memory = picture_memory(visitor());
+  for (int i = 0; i < 30; i++) turn(0.3), step(true, 0.08);  // a slow machine
+  ASSERT_GT(show->totals.surroundings, 0u);
+  ASSERT_FALSE(visitor().around.empty());
+  const View& around = visitor().around.view;
+  const View& keyframe = visitor().keyframe.view;
+  EXPECT_LE(around.width * around.height, keyframe.width * keyframe.height / 7);
+  EXPECT_GE(picture_memory(visitor()), memory + visitor().around.color.size() * 8);  // colours and disparities
+
+  // Farther than the keyframe shows while nothing can be drawn, so that it alone would not do.
+  hold_easel();
+  WarpScratch scratch;
+  Image8 alone, with;
+  float unknown = 0;
+  for (int i = 0; i < 20 && unknown < 0.17f; i++) {
+    turn(0.03);
+    step(false);
+    unknown = warp_picture(visitor().keyframe, visitor().last_view, 1, scratch, alone);
+  }
+  EXPECT_GE(unknown, 0.17f);
+  EXPECT_LT(warp_picture(visitor().keyframe, visitor().around, visitor().last_view, 1, scratch, with), 0.6f * unknown);
+  EXPECT_EQ(header(pictures.size() - 1).seq, seq);
+  EXPECT_LT(difference(image(pictures.size() - 1), with), difference(image(pictures.size() - 1), alone));
+  release_easel();
+
+  // Soon it is no longer true.
+  turn(0);
+  steps(160);
+  uint64_t drawn = show->totals.surroundings;
+  EXPECT_TRUE(visitor().around.empty());
+  steps(20);
+  EXPECT_EQ(show->totals.surroundings, drawn);
+}
+
+TEST_F(LatePictures, NothingAroundTheOldPlaceAfterALeap) {
+  begin(1, DrawShapes::always);
+  show->looks_per_second = 1;  // or these would do without drawing
+  for (int i = 0; i < 60; i++) turn(0.3), step(true, 0.08);  // a slow machine
+  ASSERT_FALSE(visitor().around.empty());
+  say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
+  for (int i = 0; i < 6; i++) {
+    step();
+    if (visitor().order.leaps == visitor().leaps) EXPECT_TRUE(visitor().around.empty());
+  }
+  EXPECT_EQ(visitor().order.leaps, visitor().leaps);
 }
 
 TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {

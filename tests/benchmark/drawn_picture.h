@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of reflectances in a light from one direction, without noise: what differs between two of them
+// is not the light's.
+#pragma once
+#include <vector>
+
+#include "frame/frame.h"
+#include "light/see_picture.h"
+
+namespace wellspring {
+
+struct DrawnPicture {
+  Image8 image;
+  std::vector<float> depth;
+};
+
+void draw_picture(const PictureSight& sight, const View& view, DrawnPicture& drawn);
+
+}  // namespace wellspring
