@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 #include "base/clock.h"
 #include "base/memory.h"
@@ -48,7 +49,11 @@ static void fit_frame(int width, int height, Frame& frame) {
 struct CacheWork {
   Scratch scratch;
   Frame light;  // packed, of a picture that is drawn
+<<<<<<< HEAD
   StillCorrection correction;
+=======
+  std::vector<uint8_t> priority;  // PointImage's, between frames
+>>>>>>> 9293417 (A visitor's memory stays below 64 MB, its JPEGs counted)
   std::vector<uint32_t> targets;
   std::vector<uint8_t> occupied;  // cells of the view ahead
   std::vector<uint32_t> looked;  // pixels whose looks were asked for
@@ -57,8 +62,13 @@ struct CacheWork {
 std::shared_ptr<CacheWork> make_cache_work() { return std::make_shared<CacheWork>(); }
 
 size_t memory_bytes(const CacheWork& work) {
+<<<<<<< HEAD
   return work.scratch.bytes() + memory_bytes(work.light) + memory_bytes(work.correction) +
          bytes_of(work.targets, work.occupied, work.looked, work.looked_pixels);
+=======
+  return work.scratch.bytes() + memory_bytes(work.light) +
+         bytes_of(work.priority, work.targets, work.occupied, work.looked, work.looked_pixels);
+>>>>>>> 9293417 (A visitor's memory stays below 64 MB, its JPEGs counted)
 }
 
 struct RenderCache::Impl {
@@ -90,17 +100,31 @@ struct RenderCache::Impl {
   // Points of what was repainted since are forgotten.
   void notice_paint(const World& world);
   bool is_still() const { return still_frames >= 2; }
+  void borrow_priority() {
+    if (image.priority.empty()) image.priority.swap(work->priority);
+    image.priority.resize(image.point.size());
+  }
+  void end_frame() {
+    work->priority = std::exchange(image.priority, {});
+  }
   // The surface that points of the current projection show, packed into `frame`, and its cells.
   void read_light(const View& of, Frame& frame);
+  void begin_still() {  // its means are kept only while there are any
+    for (auto& plane : still.mean) plane.resize(still.count.size());
+  }
   void forget_still() {
     still_frames = 0;
     std::fill(still.count.begin(), still.count.end(), uint8_t(0));
+<<<<<<< HEAD
     forget_samples(still_samples);
   }
   void start_correction() {
     if (!corrects && still_samples.count.empty()) resize_samples(still_samples, still.count.size());
     else if (!corrects) forget_samples(still_samples);
     corrects = true;
+=======
+    for (auto& plane : still.mean) std::vector<uint16_t>().swap(plane);
+>>>>>>> 9293417 (A visitor's memory stays below 64 MB, its JPEGs counted)
   }
   void count(const SurfaceCounts& counts, bool known);
   template <class Compose>
@@ -130,7 +154,6 @@ void RenderCache::resize(int width, int height) {
   resize_points(c.points, int(std::min(capacity, double(max_capacity))));
   c.image = PointImage{};
   reserve_image(c.image, width, height);
-  for (auto& plane : c.still.mean) plane = std::vector<uint16_t>(pixels);
   c.still.count = std::vector<uint8_t>(pixels);
   c.still_samples = {};
   c.corrects = false;
@@ -171,11 +194,12 @@ void RenderCache::project(const View& view) {
   int width = std::clamp(view.width, 1, largest_side), height = std::clamp(view.height, 1, largest_side);
   if (width > c.width || height > c.height)
     resize(std::max(width, c.width), std::max(height, c.height));
+  c.borrow_priority();
   resize_image(c.image, width, height);
   bool same = c.projected && view == c.view;
   if (same)
     c.still_frames = std::min(c.still_frames + 1, 1 << 20);
-  else if (c.still_frames > 0)
+  else if (c.still_frames > 0 || !c.still.mean[0].empty())
     c.forget_still();
   c.corrects &= same;
   c.view = view;
@@ -200,6 +224,7 @@ float RenderCache::covered() const {
 
 void RenderCache::attend() {
   Impl& c = *impl_;
+  c.borrow_priority();
   c.relit |= age_changed(c.points, c.view, c.image, c.still);
   prioritise(c.points, c.settings, c.image);
 }
@@ -211,6 +236,7 @@ void RenderCache::plan(const View& view, int budget, uint64_t seed,
     requests.clear();
     return;
   }
+  c.borrow_priority();
   plan_requests(c.points, view, {budget, seed, c.is_still()}, c.image, requests);
 }
 
@@ -274,6 +300,7 @@ void RenderCache::survey(const View& view, int most, Frame& frame, std::vector<R
   c.corrects = false;
   c.read_light(view, frame);
   if (most >= looks_a_pixel) {
+    c.borrow_priority();
     find_edges(view, c.cells, c.still, frame, c.image);
     choose_looks(c.image, size_t(most) / looks_a_pixel, mix64(c.frames), c.work->looked);
   }
@@ -286,8 +313,9 @@ void RenderCache::reconstruct(const View& view, std::span<const Seen> seen, Fram
   std::span<const uint32_t> pixels = std::span(c.work->looked).first(looked);
   light_looks(view, c.cells, frame, pixels, seen, c.work->looked_pixels);
   compose(view, c.cells, c.known, frame);
-  if (c.is_still()) accumulate_still(c.points, c.image, c.frames, c.still, frame);
+  if (c.is_still()) c.begin_still(), accumulate_still(c.points, c.image, c.frames, c.still, frame);
   show_looks(pixels, c.work->looked_pixels, c.still, frame);
+  c.end_frame();
 }
 
 // Finds the light of `lit`, then calls compose() and takes the time.
@@ -298,6 +326,7 @@ void RenderCache::Impl::draw(const View& lit, const Compose& compose) {
   double began = seconds_now();
   compose();
   stats.drawing_ms = float(1000 * (seconds_now() - began));
+  end_frame();
 }
 
 void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame) {
@@ -321,8 +350,12 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   Impl& c = *impl_;
   if (!c.projected || view != c.view) project(view);
   fit_frame(view.width, view.height, frame);
+<<<<<<< HEAD
   if (c.still_frames == 0) c.forget_still();  // a mean of another view, of a single picture
   c.start_correction();
+=======
+  c.begin_still();
+>>>>>>> 9293417 (A visitor's memory stays below 64 MB, its JPEGs counted)
   c.draw(view, [&] {
     compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
     std::span<const std::vector<EdgeShare>> edges;

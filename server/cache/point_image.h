@@ -40,13 +40,12 @@ struct PointImage {
   int alarm = 0;  // pictures for which smaller changes are looked for, too
 };
 
-// Memory for pictures of this size.
+// Memory for pictures of this size, but for priorities, which mean nothing between them.
 inline void reserve_image(PointImage& image, int width, int height) {
   size_t pixels = size_t(width) * size_t(height);
   auto tiles = [](int side) { return size_t((side + change_tile - 1) / change_tile); };
   image.point.reserve(pixels);
   image.depth.reserve(pixels);
-  image.priority.reserve(pixels);
   image.changed.reserve(tiles(width) * tiles(height));
 }
 

@@ -25,15 +25,16 @@ void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel,
   uint8_t& count = still.count[pixel];
   int n = count & ~still_fresh;
   if (n == still_relit) return;  // switched again before anything was seen
+  count = 0;
+  if (n <= relit_samples) return;
   const PointColor& color = points.color[point];
   vec3 albedo = unpack_albedo(color.albedo);
   vec3 light = light_of(albedo * unpack_rgb9e5(color.smooth) + unpack_rgb9e5(color.rest), albedo);
   vec3 mean(unpack_half(still.mean[0][pixel]), unpack_half(still.mean[1][pixel]),
             unpack_half(still.mean[2][pixel]));
-  bool known = n > relit_samples && albedo != vec3(0) && !(points.flags[point] & point_specular) &&
-               luminance(light) > 1e-4f;
-  count = known ? still_relit : 0;
+  bool known = albedo != vec3(0) && !(points.flags[point] & point_specular) && luminance(light) > 1e-4f;
   if (!known) return;
+  count = still_relit;
   vec3 surface = clamp(mean / max(light, vec3(1e-5f)), albedo / contrast, albedo * contrast);
   for (size_t c = 0; c < 3; c++) still.mean[c][pixel] = pack_half(surface[int(c)]);
 }
@@ -96,9 +97,7 @@ void accumulate_still(const PointCache& points, const PointImage& image, uint32_
       if (fresh) {
         n = std::min(n + 1, still_longest);
         // Later samples count more: the light they were shown in was known better.
-        mean += (frame.color[i] - (n == 1 ? vec3(0) : mean)) *
-                    (n == 1 ? 1.0f : 1.5f / (float(n) + 0.5f)) -
-                (n == 1 ? mean : vec3(0));
+        mean = n == 1 ? frame.color[i] : mean + (frame.color[i] - mean) * (1.5f / (float(n) + 0.5f));
         uint64_t random = mix64(uint64_t(seed) << 32 | i);
         for (size_t c = 0; c < 3; c++)
           still.mean[c][i] = pack_half(mean[int(c)], uint32_t(random >> (16 * c)));

@@ -22,7 +22,7 @@ inline constexpr int still_longest = 100;  // the mean looks back on about this 
 inline constexpr uint8_t still_relit = 127;  // instead of a number: the mean is over light
 
 struct StillImage {
-  std::array<std::vector<uint16_t>, 3> mean;  // pack_half
+  std::array<std::vector<uint16_t>, 3> mean;  // pack_half; empty while nothing is accumulated
   std::vector<uint8_t> count;                 // low 7 bits: samples in the mean, or still_relit
 };
 

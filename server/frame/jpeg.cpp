@@ -20,31 +20,26 @@ struct CloseHandle {
 };
 using Handle = std::unique_ptr<void, CloseHandle>;
 
-// What one thread keeps between pictures: the codec's state and room for its output.
-struct Compressor {
-  Handle handle{tjInitCompress()};
-  std::vector<uint8_t> room;
-};
-
 }  // namespace
 
-void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector<uint8_t>& out) {
+void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector<uint8_t>& out,
+                 size_t skip) {
   if (image.width < 1 || image.height < 1 || image.width > largest_side ||
       image.height > largest_side ||
       image.rgb.size() != size_t(image.width) * size_t(image.height) * 3)
     throw std::invalid_argument("encode_jpeg: no picture of a size JPEG can hold");
-  thread_local Compressor compressor;
+  thread_local Handle handle{tjInitCompress()};
   int chroma = full_chroma ? TJSAMP_444 : TJSAMP_420;
-  size_t bound = tjBufSize(image.width, image.height, chroma);
-  if (compressor.room.size() < bound) compressor.room.resize(bound);
-  unsigned char* bytes = compressor.room.data();
-  unsigned long size = bound;
-  if (!compressor.handle ||
-      tjCompress2(compressor.handle.get(), image.rgb.data(), image.width, 0, image.height, TJPF_RGB,
-                  &bytes, &size, chroma, std::clamp(quality, 1, 100), TJFLAG_NOREALLOC) != 0)
-    throw std::runtime_error(std::string("encode_jpeg: ") +
-                             tjGetErrorStr2(compressor.handle.get()));
-  out.assign(bytes, bytes + size);
+  unsigned long size = tjBufSize(image.width, image.height, chroma);
+  // Several times what most pictures need: of memory that is not written to, the system gives none.
+  auto room = std::make_unique_for_overwrite<unsigned char[]>(size);
+  unsigned char* bytes = room.get();
+  if (!handle || tjCompress2(handle.get(), image.rgb.data(), image.width, 0, image.height, TJPF_RGB,
+                             &bytes, &size, chroma, std::clamp(quality, 1, 100), TJFLAG_NOREALLOC) != 0)
+    throw std::runtime_error(std::string("encode_jpeg: ") + tjGetErrorStr2(handle.get()));
+  out.resize(skip);
+  out.reserve(skip + size);
+  out.insert(out.end(), bytes, bytes + size);
 }
 
 Image8 decode_jpeg(std::span<const uint8_t> bytes, const char* file) {

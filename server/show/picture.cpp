@@ -169,6 +169,7 @@ void trace_or_ask(Show& show, const PictureOrder& order, const Technique& techni
     visitor.broker.ask(lit, {&technique, transport}, work.requests);
     return;
   }
+  visitor.broker.forget();  // what was asked for on the way
   work.samples.resize(work.requests.size());
   if (technique.begin_pass)
     technique.begin_pass(*show.world, transport, lit, visitor.link->id, uint32_t(order.tick),

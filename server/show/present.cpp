@@ -5,6 +5,7 @@
 #include <oneapi/tbb/info.h>
 
 #include "base/clock.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "frame/jpeg.h"
 #include "show/in_view.h"
@@ -30,10 +31,9 @@ void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool full_
   Encoder* encoder = visitor.encoder.get();
   encoder->task.run([encoder, link = visitor.link, header, full_chroma] {
     double began = seconds_now();
-    encode_jpeg(encoder->image, header.quality, full_chroma, encoder->jpeg);
-    auto packet = std::make_shared<Packet>(packet_header_bytes + encoder->jpeg.size());
+    auto packet = std::make_shared<Packet>(packet_header_bytes);
     write_packet_header(header, *packet);
-    std::copy(encoder->jpeg.begin(), encoder->jpeg.end(), packet->begin() + packet_header_bytes);
+    encode_jpeg(encoder->image, header.quality, full_chroma, *packet, packet_header_bytes);
     encoder->bytes = packet->size();
     encoder->milliseconds = float(1000 * (seconds_now() - began));
     link->send_picture(std::move(packet));
@@ -133,7 +133,8 @@ void present(Show& show, Visitor& visitor) {
 
   Encoder& encoder = *visitor.encoder;
   encoder.task.wait();
-  encoder.memory_bytes = encoder.image.rgb.capacity() + encoder.jpeg.capacity();
+  // One packet is being sent when the next is made.
+  if (encoder.bytes > 0) encoder.memory_bytes = bytes_of(encoder.image.rgb) + 2 * encoder.bytes;
   if (visitor.frame_number > 0 && encoder.bytes > 0) {
     show.totals.picture_bytes += std::exchange(encoder.bytes, 0);
     smooth(visitor.times.encode, encoder.milliseconds);

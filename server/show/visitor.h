@@ -31,10 +31,9 @@ struct StageTimes {
 // The JPEG made while the next tick begins.
 struct Encoder {
   Image8 image;
-  std::vector<uint8_t> jpeg;
   float milliseconds = 0;
   size_t bytes = 0;
-  size_t memory_bytes = 0;  // of both, when it last ended
+  size_t memory_bytes = 0;  // of it and of what it makes, when it last ended
   Worker task;  // the last member: a picture may be half made
 };
 
@@ -97,8 +96,9 @@ struct Visitor {
   float measured_fps = 0, drawn_fps = 0;
 };
 
-// All memory that pictures of one visitor take, between them; its encoder's as noted there, the rest as it
-// is: not while the easel is at work on it. Bounded by the picture's size: at most 64 MB at 1280x720.
+// All memory that pictures of one visitor take, between them; its encoder's as noted there, the rest
+// as it is: not while the easel is at work on it. Bounded by the picture's size: at most 64 MB (of 10^6
+// bytes) at 1280x720.
 size_t picture_memory(const Visitor& visitor);
 // Moves a visitor by `dt`: tour, or walking by its own input, not too near to the `person` who stands there.
 void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, const TourRoads& roads,

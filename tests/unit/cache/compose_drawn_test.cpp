@@ -146,7 +146,7 @@ TEST(Drawn, WhoStopsSeesNoPointThroughGaps) {
   EXPECT_LT(rmse(drawn.frame, truth), 0.8 * rmse(guessed.frame, truth));
 }
 
-// Who stops is shown what was known before, and nothing is allocated anew.
+// Who stops is shown what was known before, and nothing is allocated anew but the mean of pictures at rest.
 TEST(Drawn, StartingAndStoppingLosesNoPoint) {
   Stage stage = make_room_with_ball();
   DrawnVisit visit;
@@ -154,12 +154,15 @@ TEST(Drawn, StartingAndStoppingLosesNoPoint) {
   for (int i = 0; i < 24; i++) visit.step(stage, view(0), pixels / 8, PictureOf::still);
   CacheStats rested = visit.cache.stats();
   ASSERT_GT(rested.reprojected, 0.8f);
+  size_t at_rest = visit.cache.memory_bytes();
   visit.step(stage, view(0.01), pixels / 60, PictureOf::moving);
-  size_t memory = visit.cache.memory_bytes();
+  size_t moving = visit.cache.memory_bytes();
   for (int i = 2; i < 6; i++) visit.step(stage, view(0.01 * i), pixels / 60, PictureOf::moving);
+  EXPECT_NEAR(double(visit.cache.memory_bytes()), double(moving), 1 << 15);  // of 1.3 MB
   visit.step(stage, view(0), 0, PictureOf::still);
   EXPECT_GT(visit.cache.stats().reprojected, 0.98f * rested.reprojected);
-  EXPECT_NEAR(double(visit.cache.memory_bytes()), double(memory), 1 << 15);  // of 1.3 MB
+  EXPECT_NEAR(double(visit.cache.memory_bytes()), double(at_rest), 1 << 15);
+  EXPECT_NEAR(double(at_rest - moving), 6.0 * pixels, 1 << 15);  // the mean over pictures at rest
 }
 
 // Lamps and the sky are as they are without a single sample.

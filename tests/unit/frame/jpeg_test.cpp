@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <thread>
 
@@ -89,6 +90,19 @@ TEST(Jpeg, ThreadsDoNotShareState) {
     });
   for (auto& thread : threads) thread.join();
   EXPECT_EQ(wrong, 0);
+}
+
+// A picture may follow what is in front of it, and nothing of a longer one before stays.
+TEST(Jpeg, FollowsWhatIsSkipped) {
+  std::vector<uint8_t> alone, behind{1, 2, 3};
+  encode_jpeg(gradient(64, 48), 90, true, behind, 3);
+  for (int quality : {90, 20}) {
+    encode_jpeg(gradient(64, 48), quality, true, alone);
+    encode_jpeg(gradient(64, 48), quality, true, behind, 3);
+    ASSERT_EQ(behind.size(), alone.size() + 3);
+    EXPECT_TRUE(std::equal(alone.begin(), alone.end(), behind.begin() + 3));
+    EXPECT_EQ(std::vector<uint8_t>(behind.begin(), behind.begin() + 3), (std::vector<uint8_t>{1, 2, 3}));
+  }
 }
 
 TEST(Jpeg, WhatIsNoJpegIsRefusedByName) {
