@@ -199,6 +199,7 @@ bool age_changed(PointCache& points, const View& view, PointImage& image, StillI
   for (size_t i = 0; i < tiles.size(); i++)
     if (tiles[i] >= 0 && !verdict[size_t(tiles[i])]) image.witnesses[kept++] = image.witnesses[i];
   image.witnesses.resize(kept);
+  if (image.witnesses.capacity() > 2 * kept + 4096) image.witnesses.shrink_to_fit();  // many at once
   bool changed = std::any_of(verdict.begin(), verdict.end(), [](uint8_t aged) { return aged != 0; });
   if (changed) age_hidden(points, view, image, verdict);
   if (image.alarm == 0 && (changed || has_changed_widely(image))) image.alarm = alarm_pictures;
