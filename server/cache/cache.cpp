@@ -49,11 +49,8 @@ static void fit_frame(int width, int height, Frame& frame) {
 struct CacheWork {
   Scratch scratch;
   Frame light;  // packed, of a picture that is drawn
-<<<<<<< HEAD
   StillCorrection correction;
-=======
   std::vector<uint8_t> priority;  // PointImage's, between frames
->>>>>>> 9293417 (A visitor's memory stays below 64 MB, its JPEGs counted)
   std::vector<uint32_t> targets;
   std::vector<uint8_t> occupied;  // cells of the view ahead
   std::vector<uint32_t> looked;  // pixels whose looks were asked for
@@ -62,13 +59,8 @@ struct CacheWork {
 std::shared_ptr<CacheWork> make_cache_work() { return std::make_shared<CacheWork>(); }
 
 size_t memory_bytes(const CacheWork& work) {
-<<<<<<< HEAD
   return work.scratch.bytes() + memory_bytes(work.light) + memory_bytes(work.correction) +
-         bytes_of(work.targets, work.occupied, work.looked, work.looked_pixels);
-=======
-  return work.scratch.bytes() + memory_bytes(work.light) +
          bytes_of(work.priority, work.targets, work.occupied, work.looked, work.looked_pixels);
->>>>>>> 9293417 (A visitor's memory stays below 64 MB, its JPEGs counted)
 }
 
 struct RenderCache::Impl {
@@ -115,16 +107,14 @@ struct RenderCache::Impl {
   void forget_still() {
     still_frames = 0;
     std::fill(still.count.begin(), still.count.end(), uint8_t(0));
-<<<<<<< HEAD
-    forget_samples(still_samples);
+    for (auto& plane : still.mean) std::vector<uint16_t>().swap(plane);
+    still_samples = {};
+    corrects = false;
   }
   void start_correction() {
     if (!corrects && still_samples.count.empty()) resize_samples(still_samples, still.count.size());
     else if (!corrects) forget_samples(still_samples);
     corrects = true;
-=======
-    for (auto& plane : still.mean) std::vector<uint16_t>().swap(plane);
->>>>>>> 9293417 (A visitor's memory stays below 64 MB, its JPEGs counted)
   }
   void count(const SurfaceCounts& counts, bool known);
   template <class Compose>
@@ -350,12 +340,8 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   Impl& c = *impl_;
   if (!c.projected || view != c.view) project(view);
   fit_frame(view.width, view.height, frame);
-<<<<<<< HEAD
-  if (c.still_frames == 0) c.forget_still();  // a mean of another view, of a single picture
-  c.start_correction();
-=======
   c.begin_still();
->>>>>>> 9293417 (A visitor's memory stays below 64 MB, its JPEGs counted)
+  c.start_correction();
   c.draw(view, [&] {
     compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
     std::span<const std::vector<EdgeShare>> edges;

