@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The clothes: gown, sleeves, shoulder cape (the Goller of Bohemian and German women about 1530), linen, belt,
 keys and shoes. Figure space."""
-from math import atan2, cos, pi, sin
+from math import asin, atan2, cos, pi, sin
 
-from form import (bell, capsule, cast, circle, cross, curve, ellipsoid, join, lerp, mad, mix, noise,
-                  smoothstep, sub, unit)
+from form import (bell, capsule, cast, circle, clamp, cross, curve, ellipsoid, join, length, lerp, mad, mix,
+                  noise, smoothstep, sub, unit)
 from patch import Patch
 from person import WHO
 from rig import ELBOW, WRIST, arm_weights, blend, scaled, skirt_weights, spine, torso_weights
@@ -202,11 +202,16 @@ def make_sleeves(gown, trim, linen):
 CAPE_CENTER = (0.0, 1.235, -0.030)
 
 
+def cape_edges(phi):
+    """Elevations of its lower edge and of its neck, seen from its centre."""
+    c = cos(phi)
+    return 0.145 + 0.10 * sin(phi) ** 2 + (0.02 if c < 0 else -0.02) * c * c, 1.22 + 0.06 * sin(phi) ** 2
+
+
 def cape_point(phi, s, lift=0.0):
     """s: 0 at the neck .. 1 at the lower edge; phi: 0 in front."""
     c = cos(phi)
-    low = 0.145 + 0.10 * sin(phi) ** 2 + (0.02 if c < 0 else -0.02) * c * c
-    high = 1.22 + 0.06 * sin(phi) ** 2
+    low, high = cape_edges(phi)
     e = lerp(high, low, s ** 0.85)
     d = (sin(phi) * cos(e), sin(e), c * cos(e))
     p = mad(cast(body, CAPE_CENTER, d, 0.35), d, lerp(0.006, 0.0155, smoothstep(0, 0.35, s)) + lift)
@@ -218,6 +223,18 @@ def cape_point(phi, s, lift=0.0):
 
 def cape_weights(p):
     return torso_weights(p, 0.97)
+
+
+def cape_under(p):
+    """What of the cape lies on the way to p from within the chest, and how far (m) p is above cloth and fur."""
+    out = sub(p, CAPE_CENTER)
+    d = unit(out)
+    phi = atan2(d[0], d[2])
+    low, high = cape_edges(phi)
+    s = clamp((high - asin(clamp(d[1], -1.0, 1.0))) / (high - low), 0.0, 1.0) ** (1 / 0.85)
+    under = cape_point(phi, s)
+    fur = 0.012 * smoothstep(0.80, 0.96, s)
+    return under, length(out) - length(sub(under, CAPE_CENTER)) - fur
 
 
 def make_cape(velvet, trim, fur):

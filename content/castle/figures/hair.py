@@ -3,12 +3,12 @@
 import random
 from math import cos, pi, sin
 
-from dress import body
+from dress import CAPE_CENTER, body, cape_under, cape_weights
 from face_form import HEAD, face
 from form import (add, cast, circle, cross, curve, dot, ellipsoid, gradient, join, length, lerp, mad, mix, noise, rotate,
                   smoothstep, sub, unit)
 from patch import Patch
-from rig import blend, scaled, torso_weights
+from rig import blend, scaled
 
 CENTER = (0.0, 0.005, -0.010)
 
@@ -236,12 +236,22 @@ def ball(patch, c, r, weights, segments=6, rings=4):
 
 # ---- veil ---------------------------------------------------------------------------------------------
 def veil_weights(p):
-    """Head at the top; where it lies on the shoulders, as the cape below. Figure space."""
+    """Head at the top; where it lies on the shoulders, as the cape right below it, so that neither comes through
+    the other when an arm is raised. Figure space."""
     head = smoothstep(1.36, 1.50, p[1])
-    return blend([("skullbase", head)] + scaled(torso_weights(p, 0.97), 1 - head))
+    below, gap = cape_under(p) if head < 1 else (p, 1.0)
+    head *= 1 - smoothstep(0.06, 0.11, abs(p[0])) * smoothstep(0.07, 0.02, gap)  # on a shoulder it stays there
+    return blend([("skullbase", head)] + scaled(cape_weights(below), 1 - head))
 
 
 VEIL_TURN = [(0.0, 1.30), (0.32, 1.70), (0.45, 1.62), (0.90, 1.10)]  # from the nape to its edges: by the ears, the neck, over the shoulders
+
+
+def above_cape(p):
+    """Lifted where it would lie lower than cloth on cloth: folds end there. Figure space."""
+    under, gap = cape_under(p)
+    least = 0.009 * smoothstep(1.47, 1.42, p[1])
+    return mad(p, unit(sub(p, CAPE_CENTER)), max(least - gap, 0.0))
 
 
 TURNED = 7  # columns of cloth turned in at each edge
@@ -302,7 +312,7 @@ def make_veil(look):
                 q = mad(q, out, max(reach, 0.0))
             amount = 0.0030 + 0.0095 * smoothstep(0, 0.8, t)
             fold = amount * (sin(beta * 13 + 0.8 * sin(3 * t + u)) + 0.35 * sin(beta * 27 + 2 * t))
-            q = mad(q, out, fold + 0.55 * amount)
+            q = above_cape(mad(q, out, fold + 0.55 * amount))
             rows[upper + k].append((q, (u, 0.5 + 0.5 * t)))
     for k, row in enumerate(rows):  # both edges turn in towards the neck: from in front one sees cloth, no hollow
         t = k / (upper + lower)
