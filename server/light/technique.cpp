@@ -66,10 +66,12 @@ void finish_samples(const Lights& lights, const TransportSettings& settings,
       sample.flags &= uint8_t(~sample_sure);
     }
     if (!(settings.clamp > 0)) continue;
-    float largest = max_component(sample.radiance());
+    // What owes nothing to chance, such as a lamp that is looked at, is as bright as it is.
+    bool sure = sample.flags & sample_sure;
+    float largest = max_component(sure ? sample.albedo * sample.smooth : sample.radiance());
     if (!(largest > settings.clamp)) continue;
     sample.smooth *= settings.clamp / largest;
-    sample.rest *= settings.clamp / largest;
+    if (!sure) sample.rest *= settings.clamp / largest;
   }
 }
 

@@ -30,7 +30,7 @@ struct InstantRadiositySettings {
 
 struct TransportSettings {
   int max_depth = 8;  // path edges counted from the eye; 1: emission only, 2: direct light
-  float clamp = 0;    // >0: bound of one sample's radiance (biased, for display); 0: none
+  float clamp = 0;    // >0: bound of what one sample owes to chance (radiance; biased, for display); 0: none
   InstantRadiositySettings instant;
 };
 

@@ -283,14 +283,31 @@ TEST(Technique, MaxDepthCountsEdges) {
 
 TEST(Technique, ClampBoundsASampleAndKeepsItsHue) {
   Scene scene = make_cornell_box();
-  World world(scene);
-  Lights lights = make_lights(world);
-  TransportSettings settings;
-  settings.clamp = 2;
-  Sample s = trace_one("path", world, lights, ray_towards({0, 0.275f, 0.8f}, {0, 0.549f, -0.27f}),
-                       1, settings);
-  EXPECT_NEAR(s.radiance().x, 2, 1e-5f);
-  EXPECT_NEAR(s.radiance().y / s.radiance().x, 12.0f / 17, 1e-4f);
+  for (bool polished : {false, true}) {  // light by chance in `smooth`, and in `rest`
+    scene.materials[0].metallic = polished ? 1.0f : 0.0f;
+    scene.materials[0].roughness = polished ? 0.3f : 1.0f;
+    World world(scene);
+    Lights lights = make_lights(world);
+    Ray ray = ray_towards({0, 0.275f, 0.8f}, {-0.15f, 0, -0.1f});
+    for (const char* technique : {"path", "gather"}) {
+      TransportSettings bound;
+      bound.clamp = 0.01f;
+      int bounded_samples = 0;
+      for (uint64_t seed = 1; seed <= 32; seed++) {
+        vec3 whole = trace_one(technique, world, lights, ray, seed, {}).radiance();
+        vec3 bounded = trace_one(technique, world, lights, ray, seed, bound).radiance();
+        EXPECT_NEAR(max_component(bounded), std::min(max_component(whole), 0.01f), 1e-6f);
+        EXPECT_NEAR(bounded.y * whole.x, whole.y * bounded.x, 1e-4f * whole.y * bounded.x);
+        bounded_samples += max_component(whole) > 0.01f;
+      }
+      EXPECT_GT(bounded_samples, 16);
+      // A lamp that is looked at is no matter of chance.
+      vec3 lamp = trace_one(technique, world, lights, ray_towards({0, 0.275f, 0.8f}, {0, 0.549f, -0.27f}), 1, bound)
+                      .radiance();
+      EXPECT_NEAR(lamp.x, 17, 1e-4f);
+      EXPECT_NEAR(lamp.z, 4, 1e-4f);
+    }
+  }
 }
 
 TEST(Technique, BadSamplesAreBlackAndCounted) {
