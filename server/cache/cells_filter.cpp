@@ -249,7 +249,7 @@ void estimate_variance(Cells& cells) {
 
 // Light of eight cells and the variance of its mean, weighed by samples.
 struct LightSums {
-  f8 r, g, b, variance, weight, light, tolerance;
+  f8 r, g, b, variance, weight, own_r, own_g, own_b, tolerance;
 };
 struct LightPlanes {
   const float *r, *g, *b, *variance;
@@ -258,15 +258,15 @@ constexpr float own_weight = 4;  // of a step's nine cells
 LightSums begin_sums(const LightPlanes& from, size_t i, const f8& samples) {
   f8 r = load<f8>(from.r + i), g = load<f8>(from.g + i), b = load<f8>(from.b + i),
      v = load<f8>(from.variance + i), w = own_weight * samples;
-  return {w * r, w * g, w * b, w * w * v, w, luminance(r, g, b), 1.0f / (light_tolerance * v + 1e-12f)};
+  return {w * r, w * g, w * b, w * w * v, w, r, g, b, 1.0f / (light_tolerance * v + 1e-12f)};
 }
 // `common`: what the two cells' surfaces have in common; `apart`: one plus their squared distance.
 // Returns how much of the cells' samples counted.
 f8 add(LightSums& sums, const LightPlanes& from, size_t j, const f8& common, const f8& apart,
        const f8& samples) {
   f8 r = load<f8>(from.r + j), g = load<f8>(from.g + j), b = load<f8>(from.b + j);
-  f8 differs = luminance(r, g, b) - sums.light;
-  differs *= differs * sums.tolerance;
+  f8 dr = r - sums.own_r, dg = g - sums.own_g, db = b - sums.own_b;
+  f8 differs = luminance(dr * dr, dg * dg, db * db) * sums.tolerance;
   f8 share = common / (apart * (1.0f + differs * differs)), weight = share * samples;
   sums.r += weight * r, sums.g += weight * g, sums.b += weight * b;
   sums.variance += weight * weight * load<f8>(from.variance + j);

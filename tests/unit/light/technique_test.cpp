@@ -284,8 +284,9 @@ TEST(Technique, MaxDepthCountsEdges) {
 TEST(Technique, ClampBoundsASampleAndKeepsItsHue) {
   Scene scene = make_cornell_box();
   for (bool polished : {false, true}) {  // light by chance in `smooth`, and in `rest`
-    scene.materials[0].metallic = polished ? 1.0f : 0.0f;
-    scene.materials[0].roughness = polished ? 0.3f : 1.0f;
+    Material& white = scene.materials[1];  // of the floor
+    white.metallic = polished ? 1.0f : 0.0f;
+    white.roughness = polished ? 0.3f : 1.0f;
     World world(scene);
     Lights lights = make_lights(world);
     Ray ray = ray_towards({0, 0.275f, 0.8f}, {-0.15f, 0, -0.1f});
