@@ -17,7 +17,7 @@ constexpr float plane_tolerance =
     0.03f;  // relative depth off the other cell's plane that halves a weight
 // Squared, in variances of the mean. Of a few samples these are no better known than the light, and
 // count for `unsure_variance` times as much.
-constexpr float light_tolerance = 6, unsure_variance = 4;
+constexpr float light_tolerance = 4, unsure_variance = 6;
 constexpr float least_samples = 1 / 512.0f;  // of a cell that remembers none
 constexpr float most_samples = 64;    // that a cell counts for: its neighbours show other places
 constexpr float plenty_of_points = 48;  // in nine cells, to tell how light deviates there
