@@ -27,6 +27,7 @@ constexpr int animated_gain = 5;       // JPEG quality above the moving one whil
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
 
 // On another thread: the tick goes on meanwhile, and waits before it touches the image again.
+// The image of one that stands comes anew from its keyframe, should there be another: it is not kept.
 void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool full_chroma) {
   Encoder* encoder = visitor.encoder.get();
   encoder->task.run([encoder, link = visitor.link, header, full_chroma] {
@@ -34,6 +35,7 @@ void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool full_
     auto packet = std::make_shared<Packet>(packet_header_bytes);
     write_packet_header(header, *packet);
     encode_jpeg(encoder->image, header.quality, full_chroma, *packet, packet_header_bytes);
+    if (header.flags & packet_still) encoder->image = Image8{};
     encoder->bytes = packet->size();
     encoder->milliseconds = float(1000 * (seconds_now() - began));
     link->send_picture(std::move(packet));

@@ -193,7 +193,9 @@ TEST_F(LatePictures, NothingAroundTheOldPlaceAfterALeap) {
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   for (int i = 0; i < 6; i++) {
     step();
-    if (visitor().order.leaps == visitor().leaps) EXPECT_TRUE(visitor().around.empty());
+    if (visitor().order.leaps == visitor().leaps) {
+      EXPECT_TRUE(visitor().around.empty());
+    }
   }
   EXPECT_EQ(visitor().order.leaps, visitor().leaps);
 }
