@@ -98,7 +98,7 @@ struct Visitor {
 
 // All memory that pictures of one visitor take, between them; its encoder's as noted there, the rest
 // as it is: not while the easel is at work on it. Bounded by the picture's size: at most 64 MB (of 10^6
-// bytes) at 1280x720 while the visitor walks, 70 at rest.
+// bytes) at 1280x720 while the visitor walks, 64 MiB at rest.
 size_t picture_memory(const Visitor& visitor);
 // Moves a visitor by `dt`: tour, or walking by its own input, not too near to the `person` who stands there.
 void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, const TourRoads& roads,
