@@ -14,8 +14,9 @@ constexpr double enter_drawn = 0.6, leave_drawn = 0.8;  // of the time, for draw
 // Seconds a picture may take with it. On a busy machine points are few, and what they show is worse than
 // fewer pictures.
 constexpr double enter_period = 0.5, leave_period = 0.6;
-// Pixels a sample from which on drawing in coarser light shows who moves less error than points do.
-constexpr double enter_coarse = 70, leave_coarse = 55;
+// Pixels a sample from which on drawing in coarser light shows who moves no more error than points do,
+// and hardly a wrong surface, of which points alone show more than one in a hundred.
+constexpr double enter_coarse = 14, leave_coarse = 10;
 constexpr double unmeasured_light = 0.4;  // of the display's time, where light is coarser
 constexpr double least_light = 0.25;  // of the time goes to light, whatever is drawn
 constexpr int drawn_samples = 1000;  // the same where shapes are drawn: only light has to be guessed

@@ -15,11 +15,13 @@ namespace {
 
 // Told apart by colour-blind readers too (Okabe and Ito's palette), and by the marks.
 constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73",
-                                   "#cc79a7", "#e69f00", "#56b4e9"};
+                                   "#cc79a7", "#e69f00", "#56b4e9",
+                                   "#222222"};
 
 struct Curve {
   std::string name;
   size_t colour = 0;
+  bool baseline = false;  // dashed
   std::vector<dvec2> points;
 };
 
@@ -85,10 +87,13 @@ std::string draw_mark(double x, double y, size_t kind) {
                 y - 3, colour);
 }
 
+std::string stroke_of(const Curve& curve) {
+  return format("stroke=\"%s\"%s", colours[curve.colour % std::size(colours)],
+                curve.baseline ? " stroke-width=\"1.5\" stroke-dasharray=\"5 3\"" : " stroke-width=\"2\"");
+}
+
 std::string draw_curve(const Panel& p, const Curve& curve) {
-  std::string svg = "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"";
-  svg += colours[curve.colour % std::size(colours)];
-  svg += "\" points=\"";
+  std::string svg = "<polyline fill=\"none\" " + stroke_of(curve) + " points=\"";
   for (dvec2 v : curve.points) svg += format("%.1f,%.1f ", p.x(v.x), p.y(v.y));
   svg += "\"/>\n";
   for (dvec2 v : curve.points) svg += draw_mark(p.x(v.x), p.y(v.y), curve.colour);
@@ -98,10 +103,8 @@ std::string draw_curve(const Panel& p, const Curve& curve) {
 std::string draw_legend(const std::vector<Curve>& curves, double x, double y, double advance) {
   std::string svg;
   for (const Curve& curve : curves) {
-    svg += format(
-        "<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" stroke-width=\"2\" "
-        "stroke=\"%s\"/>\n",
-        x, x + 24, y - 4, y - 4, colours[curve.colour % std::size(colours)]);
+    svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" ", x, x + 24, y - 4, y - 4) +
+           stroke_of(curve) + "/>\n";
     svg += draw_mark(x + 12, y - 4, curve.colour) + write(x + 30, y, "start", 13, curve.name);
     x += advance;
   }
@@ -121,18 +124,28 @@ double largest_y(const std::vector<Curve>& curves) {
   return largest;
 }
 
-std::vector<Curve> empty_curves() {
+// Of the methods that were run; each has its colour, whichever others were.
+std::vector<Curve> empty_curves(const VisitResult& result) {
   std::vector<Curve> curves;
-  for (const VisitMethodEntry& entry : visit_methods())
-    curves.push_back({entry.name, curves.size(), {}});
+  size_t colour = 0;
+  for (const VisitMethodEntry& entry : visit_methods()) {
+    auto same = [&](const VisitRun& run) { return run.method == entry.name; };
+    if (std::any_of(result.runs.begin(), result.runs.end(), same))
+      curves.push_back({entry.name, colour, entry.baseline, {}});
+    colour++;
+  }
   return curves;
+}
+
+double legend_advance(double width, size_t curves) {
+  return std::min(width / double(std::max<size_t>(curves, 1)), 160.0);
 }
 
 }  // namespace
 
 void save_budget_plot(const std::string& file, const VisitResult& result,
                       const std::vector<int>& mismatches) {
-  std::vector<Curve> curves = empty_curves();
+  std::vector<Curve> curves = empty_curves(result);
   for (Curve& curve : curves)
     for (int mismatch : mismatches)
       curve.points.push_back(
@@ -147,7 +160,7 @@ void save_budget_plot(const std::string& file, const VisitResult& result,
   svg += draw_frame(panel, 1, step, true,
                     [](double v) { return "1/" + format("%.0f", std::exp2(-v)); });
   for (const Curve& curve : curves) svg += draw_curve(panel, curve);
-  svg += draw_legend(curves, 80, 48, 140);
+  svg += draw_legend(curves, 80, 48, legend_advance(660, curves.size()));
   svg += write(370, 430, "middle", 13, "samples a frame over pixels (60 frames a second)");
   svg += "<g transform=\"translate(18 220) rotate(-90)\">" +
          write(0, 0, "middle", 13, "mean FLIP against the converged wanted view") + "</g>\n";
@@ -161,7 +174,7 @@ void save_time_plot(const std::string& file, const VisitResult& result, int mism
     if (run.mismatch != mismatch) continue;
     if (!diagrams.contains(run.trace)) {
       traces.push_back(run.trace);
-      diagrams[run.trace] = empty_curves();
+      diagrams[run.trace] = empty_curves(result);
     }
     for (Curve& curve : diagrams[run.trace])
       if (curve.name == run.method)
@@ -177,7 +190,8 @@ void save_time_plot(const std::string& file, const VisitResult& result, int mism
   std::string svg = open_svg(across * width + 40, down * height + 100);
   svg += write(50, 24, "start", 16,
                format("FLIP over time, %d pixels for every sample a frame", mismatch));
-  svg += draw_legend(empty_curves(), 60, 48, 150);
+  std::vector<Curve> names = empty_curves(result);
+  svg += draw_legend(names, 60, 48, legend_advance(740, names.size()));
   for (size_t i = 0; i < traces.size(); i++) {
     const std::vector<Curve>& curves = diagrams[traces[i]];
     double last = 0;

@@ -65,10 +65,17 @@ TEST(DisplayPath, DrawsWhereTimeOrTheRateAllows) {
   DisplayCosts dear = slow;  // light
   dear.samples_per_second = 5e4;
   EXPECT_TRUE(plan_display(0.16, pixels, dear, points).drawn);
-  // Where one pixel in fifty gets a sample, points alone are as good for who moves; not for who stands.
-  EXPECT_FALSE(plan_display(0.22, pixels, slow, points).drawn);
-  EXPECT_FALSE(plan_display(0.22, pixels, slow, drawn).drawn);
-  EXPECT_TRUE(plan_display(0.22, pixels, slow, points, true).drawn);
+  // Where one pixel in eight gets a sample, points alone are as good for who moves; not for who stands.
+  DisplayCosts plenty = slow;
+  plenty.samples_per_second = 6e5;
+  EXPECT_FALSE(plan_display(0.22, pixels, plenty, points).drawn);
+  EXPECT_FALSE(plan_display(0.22, pixels, plenty, drawn).drawn);
+  EXPECT_TRUE(plan_display(0.22, pixels, plenty, points, true).drawn);
+  // One in twelve: either does. One in forty: points would show wrong surfaces.
+  plenty.samples_per_second = 4e5;
+  EXPECT_FALSE(plan_display(0.22, pixels, plenty, points).drawn);
+  EXPECT_TRUE(plan_display(0.22, pixels, plenty, drawn).drawn);
+  EXPECT_TRUE(plan_display(0.22, pixels, slow, points).drawn);
   EXPECT_TRUE(plan_display(0.007, pixels, quick, points).drawn);
   // No time is left within the wanted period, but two pictures a second stay possible.
   DisplayCosts costs = slow;
