@@ -23,6 +23,9 @@ constexpr float detail_noise = 0.8164f;
 // Of pixels single means tell, of squares many: how many times the noise counts. One sample more is
 // assumed to be as unlike as all were, since of few a bright one may be missing.
 constexpr float pixel_doubt = 0.8, square_doubt = 0.35;
+// Second and later samples of a pixel, of the whole picture's mean, from which on and at which in full they
+// correct it: what first samples deviate by nobody knows.
+constexpr float first_repeats = 0.5f, enough_repeats = 1.5f;
 constexpr int band = 16;  // rows done by one thread
 
 // A row of sums at the finest scale, or of a level.
@@ -36,14 +39,18 @@ struct Row {
 
 float square_mean(vec3 v) { return dot(v, v) * third; }
 
-// Sums over each block of what its pixels know of one sample's variance; returns how that relates to the
-// square of the light in all of the picture.
-float pool_spread(const StillSamples& samples, const Frame& frame, StillCorrection& work) {
+// How one sample's variance relates to the square of the light in all of the picture, and how many second and
+// later samples a pixel has.
+struct Known {
+  float relative = 1, repeats = 0;
+};
+// Sums over each block of what its pixels know of one sample's variance.
+Known pool_spread(const StillSamples& samples, const Frame& frame, StillCorrection& work) {
   int width = frame.width, height = frame.height;
   work.columns = (width + block - 1) / block, work.rows = (height + block - 1) / block;
   size_t blocks = size_t(work.columns) * size_t(work.rows);
   for (auto* plane : {&work.block_spread, &work.block_samples, &work.spread, &work.samples}) plane->resize(blocks);
-  std::vector<double> spread(size_t(work.rows), 0), light(size_t(work.rows), 0);
+  std::vector<double> spread(size_t(work.rows), 0), light(size_t(work.rows), 0), repeats(size_t(work.rows), 0);
   parallel_ranges(work.rows, 4, [&](int begin, int end) {
     for (int by = begin; by < end; by++)
       for (int bx = 0; bx < work.columns; bx++) {
@@ -59,6 +66,7 @@ float pool_spread(const StillSamples& samples, const Frame& frame, StillCorrecti
         size_t b = size_t(by) * size_t(work.columns) + size_t(bx);
         work.block_spread[b] = sum, work.block_samples[b] = count;
         spread[size_t(by)] += double(std::min(sum, count)), light[size_t(by)] += double(bright);
+        repeats[size_t(by)] += double(count);
       }
   });
   auto over_nine = [&](const std::vector<float>& from, std::vector<float>& to) {
@@ -75,9 +83,11 @@ float pool_spread(const StillSamples& samples, const Frame& frame, StillCorrecti
   };
   over_nine(work.block_spread, work.spread);
   over_nine(work.block_samples, work.samples);
-  double all_spread = 0, all_light = 0;
-  for (size_t i = 0; i < spread.size(); i++) all_spread += spread[i], all_light += light[i];
-  return all_light > 0 ? float(all_spread / all_light) : 1.0f;
+  double all_spread = 0, all_light = 0, all_repeats = 0;
+  for (size_t i = 0; i < spread.size(); i++)
+    all_spread += spread[i], all_light += light[i], all_repeats += repeats[i];
+  return {all_light > 0 ? float(all_spread / all_light) : 1.0f,
+          float(all_repeats / (double(width) * double(height)))};
 }
 
 // Reads rows of the picture, of which the last three are kept, for those above and below.
@@ -333,7 +343,10 @@ void correct_still(const StillSamples& samples, const StillImage& still, StillCo
   int width = frame.width, height = frame.height;
   size_t pixels = size_t(width) * size_t(height);
   if (pixels == 0 || samples.count.size() < pixels || still.count.size() < pixels) return;
-  float relative = pool_spread(samples, frame, work);
+  Known known = pool_spread(samples, frame, work);
+  float relative = known.relative;
+  float share = std::min((known.repeats - first_repeats) / (enough_repeats - first_repeats), 1.0f);
+  if (share <= 0) return;
   for (size_t k = 0; k < work.levels.size(); k++)
     if (k == 0) start_level(width, height, work.levels[k]);
     else start_level(work.levels[k - 1].width, work.levels[k - 1].height, work.levels[k]);
@@ -389,7 +402,7 @@ void correct_still(const StillSamples& samples, const StillImage& still, StillCo
                 for (size_t x = 0; x < size_t(width); x++) {
                   size_t i = start + x;
                   bool moves = (still.count[i] & ~still_fresh) == 0;
-                  vec3 more = moves ? vec3(0) : vec3(to[0][x], to[1][x], to[2][x]);
+                  vec3 more = moves ? vec3(0) : share * vec3(to[0][x], to[1][x], to[2][x]);
                   work.color[i] = max(frame.color[i] + more, vec3(0));
                 }
               });

@@ -4,7 +4,7 @@
 // What the two differ by is taken apart into scales, and of each scale the share is added to the picture by
 // which it exceeds its noise (a Wiener filter for each place and scale: Lee 1980; Burt and Adelson 1983 for
 // the pyramid). So the picture becomes the mean of its samples as they become many, and stays as it is where
-// they say nothing yet.
+// they say nothing yet; first samples correct nothing, as nobody knows by how much they are off.
 #pragma once
 #include <array>
 #include <vector>

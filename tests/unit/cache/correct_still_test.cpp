@@ -100,6 +100,19 @@ TEST(CorrectStill, LeavesWhatIsRight) {
   }
 }
 
+// How far first samples are off nobody knows.
+TEST(CorrectStill, FirstSamplesCorrectNothing) {
+  Picture p;
+  draw_wrongly(p);
+  p.sample(1, 3);
+  std::vector<vec3> drawn = p.frame.color;
+  p.correct();
+  EXPECT_EQ(p.frame.color, drawn);
+  p.sample(3, 4);
+  p.correct();
+  EXPECT_NE(p.frame.color, drawn);
+}
+
 // One sample far brighter than all others may be chance, however many the others are.
 TEST(CorrectStill, OneBrightSampleIsNoDetail) {
   for (int others : {0, 3, 15, 63}) {
