@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "cache/lanes.h"
 #include "cache/packing.h"
@@ -329,12 +330,10 @@ void add_largest(ResidualLevel& level) {
 }  // namespace
 
 size_t memory_bytes(const StillCorrection& work) {
-  auto bytes = [](const std::vector<float>& v) { return v.capacity() * sizeof(float); };
-  size_t sum = bytes(work.block_spread) + bytes(work.block_samples) + bytes(work.spread) + bytes(work.samples) +
-               work.color.capacity() * sizeof(vec3);
+  size_t sum = bytes_of(work.block_spread, work.block_samples, work.spread, work.samples, work.color);
   for (const ResidualLevel& level : work.levels) {
-    for (size_t c = 0; c < 3; c++) sum += bytes(level.sum[c]) + bytes(level.added[c]);
-    sum += bytes(level.weight) + bytes(level.noise);
+    for (size_t c = 0; c < 3; c++) sum += bytes_of(level.sum[c], level.added[c]);
+    sum += bytes_of(level.weight, level.noise);
   }
   return sum;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/memory.h"
 #include "base/vec.h"
 #include "cache/still_image.h"
 
@@ -26,7 +27,7 @@ void forget_samples(const StillImage& still, StillSamples& samples);
 void add_sample(StillSamples& samples, size_t pixel, vec3 light, uint32_t random);
 
 inline size_t samples_bytes(const StillSamples& samples) {
-  return samples.mean.capacity() * sizeof(uint32_t) + samples.deviation.capacity() + samples.count.capacity();
+  return bytes_of(samples.mean, samples.deviation, samples.count);
 }
 
 }  // namespace wellspring

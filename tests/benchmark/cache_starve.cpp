@@ -28,9 +28,7 @@ struct Place {
 
 void starve(BenchReport& report, const BenchOptions& options, const VisitMoment& begun, const Truth& truth,
             const Place& place, const char* name) {
-  std::unique_ptr<VisitMethod> method;
-  for (const VisitMethodEntry& entry : visit_methods())
-    if (entry.name == std::string(name)) method = entry.make();
+  std::unique_ptr<VisitMethod> method = make_visit_method(name);
   VisitMoment moment = begun;
   VisitPicture shown;
   int pixels = moment.view.width * moment.view.height, budget = pixels / pixels_a_sample;

@@ -288,6 +288,11 @@ constexpr VisitMethodEntry list[] = {
 }  // namespace
 
 std::span<const VisitMethodEntry> visit_methods() { return list; }
+std::unique_ptr<VisitMethod> make_visit_method(const std::string& name) {
+  for (const VisitMethodEntry& entry : list)
+    if (entry.name == name) return entry.make();
+  return nullptr;
+}
 std::unique_ptr<VisitMethod> make_cache_method(Answers answers, const CacheSettings& settings) {
   return std::make_unique<CacheMethod>(answers, false, settings);
 }

@@ -5,6 +5,7 @@
 #pragma once
 #include <memory>
 #include <span>
+#include <string>
 
 #include "cache/cache.h"
 #include "light/technique.h"
@@ -46,6 +47,8 @@ struct VisitMethodEntry {
 
 // The one explicit list, in the report's order. A further display path is one more line here.
 std::span<const VisitMethodEntry> visit_methods();
+// nullptr: there is none of that name.
+std::unique_ptr<VisitMethod> make_visit_method(const std::string& name);
 
 // server/cache as show/picture.cpp drives it. Answers are there for the picture that asked; or they
 // come through a broker for the next; or the picture waits for them and is shown a frame late. A

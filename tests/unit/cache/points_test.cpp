@@ -306,20 +306,27 @@ TEST(Remember, RejectsWhatIsNotFiniteAndWhatDoesNotFit) {
   EXPECT_EQ(r.kept, 1);
 }
 
-TEST(Remember, AQuietPointThatChangesMarksItsNeighbourhood) {
-  Stage stage(64);
-  vec3 p(0, 0, -3);
-  stage.put(20, p, 3);
-  stage.project();
-  std::vector<Request> requests(1);
-  requests[0].pixel = 24 * 64 + 32, requests[0].resample = 20;
-  std::vector<Sample> samples{sample_at(p, vec3(0, 0, 1), 3, vec3(0))};
-  samples[0].rest = vec3(1);
+// A point in the middle of the view that is asked again and again.
+struct AskedAgain {
+  Stage stage{64};
+  std::vector<Request> requests{1};
+  std::vector<Sample> samples{sample_at(vec3(0, 0, -3), vec3(0, 0, 1), 3, vec3(0))};
   std::vector<uint32_t> targets;
-  auto changed = [&] {
-    return remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets)
-        .changed;
-  };
+  AskedAgain() {
+    stage.put(20, vec3(0, 0, -3), 3);
+    stage.project();
+    requests[0].pixel = 24 * 64 + 32, requests[0].resample = 20;
+  }
+  Remembered remember() {
+    return remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
+  }
+};
+
+TEST(Remember, AQuietPointThatChangesMarksItsNeighbourhood) {
+  AskedAgain asked;
+  auto& [stage, requests, samples, targets] = asked;
+  samples[0].rest = vec3(1);
+  auto changed = [&] { return asked.remember().changed; };
   stage.points.color[20].rest = pack_rgb9e5(vec3(1));
   for (int i = 0; i < 4; i++) EXPECT_EQ(changed(), 0);
   samples[0].rest = vec3(0.2f);
@@ -345,18 +352,12 @@ TEST(Remember, AQuietPointThatChangesMarksItsNeighbourhood) {
 // A rare bright sample among quiet ones is noise and counts for one; only when it comes again the light
 // has changed.
 TEST(Remember, OneSurpriseIsAveragedTwoBeginAnew) {
-  Stage stage(64);
-  vec3 p(0, 0, -3);
-  stage.put(20, p, 3);
-  stage.project();
-  std::vector<Request> requests(1);
-  requests[0].pixel = 24 * 64 + 32, requests[0].resample = 20;
-  std::vector<Sample> samples{sample_at(p, vec3(0, 0, 1), 3, vec3(0))};
-  std::vector<uint32_t> targets;
+  AskedAgain asked;
+  auto& [stage, requests, samples, targets] = asked;
   auto answer = [&](float light) {
     samples[0].rest = vec3(light);
     requests[0].seed++;
-    remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
+    asked.remember();
     return unpack_rgb9e5(stage.points.color[20].rest).x;
   };
   stage.points.color[20].rest = pack_rgb9e5(vec3(1));
