@@ -166,7 +166,7 @@ void bench_cache_rest(BenchReport& report, const BenchOptions& options) {
   if (!options.visit_pictures.empty()) std::filesystem::create_directories(options.visit_pictures);
   TruthSettings truths;
   truths.spp = options.visit_spp > 0 ? options.visit_spp : options.quick ? 64 : 256;
-  truths.folder = (std::filesystem::path(options.programs).parent_path() / "visit_truths").string();
+  truths.folder = truths_folder(options);
   for (const Place& place : places)
     if (options.visit_trace.empty() || options.visit_trace == place.name) bench_place(report, options, place, truths);
 }

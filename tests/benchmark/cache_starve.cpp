@@ -72,7 +72,7 @@ void bench_cache_starve(BenchReport& report, const BenchOptions& options) {
   if (!options.visit_pictures.empty()) std::filesystem::create_directories(options.visit_pictures);
   TruthSettings truths;
   truths.spp = options.visit_spp > 0 ? options.visit_spp : options.quick ? 48 : 192;
-  truths.folder = (std::filesystem::path(options.programs).parent_path() / "visit_truths").string();
+  truths.folder = truths_folder(options);
   int width = options.visit_width > 0 ? options.visit_width : 320, height = (width * 9 + 8) / 16;
   const std::pair<const char*, bool> scenes[] = {
       {"castle", false}, {"cornell_box", false}, {"cornell_box", true}, {"conference", false}};

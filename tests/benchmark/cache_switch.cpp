@@ -162,7 +162,7 @@ void make_lamps(const std::string& what, Scene& off, Scene& on) {
 void bench_cache_switch(BenchReport& report, const BenchOptions& options) {
   if (!options.visit_pictures.empty()) std::filesystem::create_directories(options.visit_pictures);
   TruthSettings truths;
-  truths.folder = (std::filesystem::path(options.programs).parent_path() / "visit_truths").string();
+  truths.folder = truths_folder(options);
   int width = options.visit_width > 0 ? options.visit_width : 192;
   std::vector<int> mismatches = options.visit_mismatches;
   if (mismatches.empty()) mismatches = {4, 16, 64};

@@ -48,11 +48,10 @@ double best_baseline(const VisitResult& result, int mismatch) {
 
 void bench_cache_visit(BenchReport& report, const BenchOptions& options) {
   namespace fs = std::filesystem;
-  fs::path build = fs::path(options.programs).parent_path();
   VisitSettings settings;
   settings.exhibit = (fs::path(options.content) / "castle").string();
   settings.traces = (fs::path(options.scenes).parent_path() / "traces").string();
-  settings.truths = (build / "visit_truths").string();
+  settings.truths = truths_folder(options);
   settings.only = options.visit_trace;
   settings.technique = options.visit_technique;
   settings.pictures = options.visit_pictures;

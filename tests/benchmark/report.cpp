@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <thread>
@@ -46,6 +47,10 @@ json describe_machine() {
   load >> one;
   machine["load_at_end"] = one;
   return machine;
+}
+
+std::string truths_folder(const BenchOptions& options) {
+  return (std::filesystem::path(options.programs).parent_path() / "visit_truths").string();
 }
 
 double quantile(std::vector<double> values, double p) {

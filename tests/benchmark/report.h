@@ -21,6 +21,8 @@ struct BenchOptions {
   std::vector<std::string> server_words;  // stream: more of the server's command line
   int visit_width = 0, visit_instants = 0, visit_spp = 0;  // 0: the run's own
 };
+// Where converged pictures are kept from run to run.
+std::string truths_folder(const BenchOptions& options);
 
 class BenchReport {
  public:

@@ -308,14 +308,15 @@ TEST(Remember, RejectsWhatIsNotFiniteAndWhatDoesNotFit) {
 
 // A point in the middle of the view that is asked again and again.
 struct AskedAgain {
+  static constexpr uint32_t point = 20;
   Stage stage{64};
   std::vector<Request> requests{1};
   std::vector<Sample> samples{sample_at(vec3(0, 0, -3), vec3(0, 0, 1), 3, vec3(0))};
   std::vector<uint32_t> targets;
   AskedAgain() {
-    stage.put(20, vec3(0, 0, -3), 3);
+    stage.put(point, vec3(0, 0, -3), 3);
     stage.project();
-    requests[0].pixel = 24 * 64 + 32, requests[0].resample = 20;
+    requests[0].pixel = 24 * 64 + 32, requests[0].resample = point;
   }
   Remembered remember() {
     return remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
@@ -380,22 +381,17 @@ TEST(Remember, WitnessesOfNoisyLightAreFair) {
     double sum = 0, square = 0, noise = 0;
     int count = 0;
     for (int k = 0; k < visits; k++) {
-      Stage stage(8);
-      vec3 p(0, 0, -3);
-      stage.put(0, p, 3);
-      stage.project();
-      std::vector<Request> requests(1);
-      requests[0].pixel = 24 * 64 + 32, requests[0].resample = 0;
-      std::vector<Sample> samples{sample_at(p, vec3(0, 0, 1), 3)};
-      std::vector<uint32_t> targets;
-      stage.points.color[0].albedo = pack_albedo(vec3(0.5f));
+      AskedAgain asked;
+      auto& [stage, requests, samples, targets] = asked;
+      PointColor& color = stage.points.color[AskedAgain::point];
+      color.albedo = pack_albedo(samples[0].albedo);
       for (int i = 0; i <= samples_each; i++) {
         float light = rng.uniform() < 0.125f ? 7.3f : 0.1f;
         if (i == samples_each) light *= later;
         samples[0].smooth = vec3(light);
         requests[0].seed = uint64_t(k) << 32 | uint64_t(i);
-        if (i == 0) stage.points.color[0].smooth = pack_rgb9e5(samples[0].smooth);
-        else remember_samples(stage.points, stage.view, requests, samples, {}, stage.image, targets);
+        if (i == 0) color.smooth = pack_rgb9e5(samples[0].smooth);
+        else asked.remember();
       }
       Witness last = stage.image.witnesses.back();
       sum += double(last.change), square += double(last.change * last.change);
