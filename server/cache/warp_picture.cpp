@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "cache/lanes.h"
 
@@ -19,7 +20,7 @@ static_assert(block == lanes);
 constexpr float least_depth = 1e-6f;   // over that of the other view: nothing is nearer to a camera
 constexpr int most_steps = 96;         // along an epipolar line
 constexpr int most_blocks = 24;        // written per block, on average, when bounds are carried forward
-constexpr int farthest_fill = 48;      // pixels from a hole to what lies behind
+constexpr int seam_across = 40;        // of its width, a keyframe passes into what is around
 constexpr float found = 0.5f;          // pixels between a place and itself, carried there and back
 constexpr float half_step = 0.5f;      // pixels that disparities within a bilinear sample may open
 constexpr int fractions = 16;          // places of a bilinear sample between two pixels, as a power of 2
@@ -84,6 +85,7 @@ struct Source {
   const Keyframe& k;
   Mapping to, back;  // from the new view to the keyframe's, and back
   float last_x, last_y;
+  float seam = 0;  // pixels over which it passes into something else at its border
   bool coarse;  // its pixels are large: colours are bilinear across silhouettes, too, which would have steps
 
   Source(const Keyframe& k, const View& view, bool coarse = false)
@@ -192,48 +194,6 @@ Search plan_search(const Source& source, float x, float y, float near, float far
   return search;
 }
 
-// What nothing in the keyframe answers was hidden there by something nearer. On the epipolar line, to
-// either side of what hid it, lies what is behind; moved places are returned. (x, y): the pixel.
-struct Spot {
-  float x, y;
-};
-Spot find_behind(const Source& source, float px, float py, float far, float pixels) {
-  const Mapping& m = source.to;
-  const Keyframe& k = source.k;
-  vec3 base = m.one + px * m.across + py * m.down;
-  auto surface = [&](float x, float y) {
-    int ix = int(std::clamp(x, 0.0f, source.last_x)), iy = int(std::clamp(y, 0.0f, source.last_y));
-    float s = k.disparity[size_t(iy) * size_t(k.view.width) + size_t(ix)];
-    float z = source.back.one.z + x * source.back.across.z + y * source.back.down.z + s * source.back.baseline.z;
-    return z > least_depth ? s / z : 0.0f;
-  };
-  Spot spot{0, 0};
-  float w = far;
-  for (int round = 0; round < 2; round++) {
-    vec3 h = base + w * m.baseline;
-    float z = std::max(h.z, least_depth), x = h.x / z, y = h.y / z;
-    float dx = m.baseline.x - x * m.baseline.z, dy = m.baseline.y - y * m.baseline.z;
-    float length = std::hypot(dx, dy);
-    if (!(std::isfinite(x) && std::isfinite(y) && length > 0 && std::isfinite(length))) return spot;
-    dx /= length, dy /= length;
-    spot = {x, y};
-    float hider = surface(x, y);
-    bool behind = false;
-    for (int i = 1; i <= farthest_fill && !behind; i++)
-      for (float side : {1.0f, -1.0f}) {
-        float sx = x + side * float(i) * dx, sy = y + side * float(i) * dy, there = surface(sx, sy);
-        // As much as it takes to have opened a hole of that width.
-        if ((hider - there) * pixels < half_step + 0.5f * float(i)) continue;
-        spot = {sx, sy};
-        behind = true;
-        w = there;
-        break;
-      }
-    if (!behind) return spot;
-  }
-  return spot;
-}
-
 // Bilinear, of the pixels around that lie on the surface of the nearest of them.
 u8 sample_color(const Source& source, const f8& x, const f8& y, float pixels) {
   const Keyframe& k = source.k;
@@ -291,9 +251,10 @@ void write_rgb(const u8& words, uint8_t* to, int count) {
 
 // The first of eight neighbours' epipolar lines' places that shows what the pixel would see. Returns which of
 // the wanted have none.
-i8 follow_line(const Source& source, const Place& base, const Search& search, i8 waiting, f8& at_x, f8& at_y) {
+i8 follow_line(const Source& source, const Place& base, const Search& search, i8 waiting, f8& at_x, f8& at_y,
+               f8& disparity) {
   const Mapping& m = source.to;
-  at_x = at_y = f8{};
+  at_x = at_y = disparity = f8{};
   float candidate = search.step + found / std::max(search.pixels, 1e-30f);
   for (int i = 0; i <= search.steps && any(waiting); i++) {
     f8 w = splat(search.nearest - float(i) * search.step);
@@ -305,15 +266,21 @@ i8 follow_line(const Source& source, const Place& base, const Search& search, i8
     f8 second = source.surface(two.x, two.y);
     Place three = carry(m, base, second);
     i8 hit = near & (magnitude(second - first) * search.pixels <= found);
-    at_x = hit ? three.x : at_x, at_y = hit ? three.y : at_y;
+    at_x = hit ? three.x : at_x, at_y = hit ? three.y : at_y, disparity = hit ? second : disparity;
     waiting &= ~hit;
   }
   return waiting;
 }
 
-// A row of a block. Returns its pixels' bits that the keyframe does not hold.
-unsigned warp_row(const Source& source, float x, float y, int count, const Search& search, float far,
-                  uint8_t* to) {
+// What the pixels of a block's row are, as bits.
+struct RowBits {
+  uint8_t hidden = 0, outside = 0;  // by something nearer; not within the keyframe
+  uint8_t at_seam = 0;              // near its border
+};
+// `disparity`: of the pixels, written if search.steps > 0; `share`: how much of 255 the keyframe has in them,
+// written if any is not all its own. No more than `count`.
+RowBits warp_row(const Source& source, float x, float y, int count, const Search& search, uint8_t* to,
+                 float* disparity, uint8_t* share) {
   const Mapping& m = source.to;
   f8 px = x + f8{0, 1, 2, 3, 4, 5, 6, 7};
   Place base{m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
@@ -325,20 +292,28 @@ unsigned warp_row(const Source& source, float x, float y, int count, const Searc
     Place two = carry(m, base, source.surface(one.x, one.y));
     at_x = two.x, at_y = two.y;
   } else {
-    waiting = follow_line(source, base, search, i8{0, 1, 2, 3, 4, 5, 6, 7} < count, at_x, at_y);
-  }
-  for (unsigned holes = negative_lanes(waiting); holes != 0; holes &= holes - 1) {
-    int i = std::countr_zero(holes);
-    Spot spot = find_behind(source, px[i], y, far, search.pixels);
-    at_x[i] = spot.x, at_y[i] = spot.y;
+    f8 seen;
+    waiting = follow_line(source, base, search, i8{0, 1, 2, 3, 4, 5, 6, 7} < count, at_x, at_y, seen);
+    std::memcpy(disparity, &seen, size_t(count) * sizeof(float));
   }
   write_rgb(sample_color(source, at_x, at_y, source.coarse ? 0 : search.pixels), to, count);
   i8 inside = (at_x >= -found) & (at_y >= -found) & (at_x <= source.last_x + (1 + found)) &
               (at_y <= source.last_y + (1 + found)) & (base.ratio > least_depth);
-  return negative_lanes(~inside) & ((1u << count) - 1);
+  unsigned all = (1u << count) - 1;
+  RowBits bits;
+  bits.hidden = uint8_t(negative_lanes(waiting) & all);
+  bits.outside = uint8_t(negative_lanes(~inside & ~waiting) & all);
+  if (!(source.seam > 0)) return bits;
+  f8 border = smaller(smaller(at_x, source.last_x + 1 - at_x), smaller(at_y, source.last_y + 1 - at_y));
+  i8 near = (border < source.seam) & ~waiting;
+  if (!any(near)) return bits;
+  bits.at_seam = uint8_t(negative_lanes(near) & all & ~bits.outside);
+  i8 shares = to_int(smaller(positive(border * (255 / source.seam)), splat(255)));
+  for (int i = 0; i < count; i++) share[i] = uint8_t(shares[i]);
+  return bits;
 }
 
-// Calls warp(x, y, count, search, far) for every row of every block; (x, y): its first pixel.
+// Calls warp(x, y, count, search) for every row of every block; (x, y): its first pixel.
 template <class Warp>
 void each_row(const Source& source, const View& view, const WarpScratch& scratch, const Warp& warp) {
   int columns = (view.width + block - 1) / block, rows = (view.height + block - 1) / block;
@@ -350,7 +325,7 @@ void each_row(const Source& source, const View& view, const WarpScratch& scratch
         if (near < 0) borrow_bounds(scratch, columns, rows, bx, by, far, near);
         int x = bx * block, count = std::min(view.width - x, block);
         Search search = plan_search(source, float(x) + 0.5f * block, (float(by) + 0.5f) * block, near, far);
-        for (int y = by * block; y < std::min((by + 1) * block, view.height); y++) warp(x, y, count, search, far);
+        for (int y = by * block; y < std::min((by + 1) * block, view.height); y++) warp(x, y, count, search);
       }
   });
 }
@@ -359,22 +334,53 @@ uint8_t* pixel_at(Image8& image, int x, int y) {
   return &image.rgb[3 * (size_t(y) * size_t(image.width) + size_t(x))];
 }
 
-// What scratch.outside says that the keyframe does not show. Returns how many pixels are not here either.
-int warp_outside(const Source& around, const View& view, WarpScratch& scratch, Image8& out) {
-  size_t columns = size_t((view.width + block - 1) / block);
-  std::atomic<int> unknown{0};
-  each_row(around, view, scratch, [&](int x, int y, int count, const Search& search, float far) {
-    unsigned wanted = scratch.outside[size_t(y) * columns + size_t(x / block)];
+// What the keyframe does not show, and near its border what it does, is taken from `around`.
+void warp_around(const Source& around, const View& view, WarpScratch& scratch, Image8& out) {
+  Unseen& unseen = scratch.unseen;
+  each_row(around, view, scratch, [&](int x, int y, int count, const Search& search) {
+    size_t word = size_t(y) * size_t(unseen.columns) + size_t(x / block);
+    unsigned outside = unseen.outside[word], wanted = outside | scratch.at_seam[word];
     if (wanted == 0) return;
     uint8_t rgb[3 * block], *to = pixel_at(out, x, y);
-    unsigned not_here = warp_row(around, float(x) + 0.5f, float(y) + 0.5f, count, search, far, rgb);
-    unknown += std::popcount(wanted & not_here);
-    for (unsigned bits = wanted & ~not_here; bits != 0; bits &= bits - 1) {
-      int i = std::countr_zero(bits);
-      std::memcpy(to + 3 * i, rgb + 3 * i, 3);
+    float disparity[block];
+    std::fill_n(disparity, block, search.nearest);
+    RowBits row = warp_row(around, float(x) + 0.5f, float(y) + 0.5f, count, search, rgb, disparity, nullptr);
+    size_t first = size_t(y) * size_t(view.width) + size_t(x);
+    for (unsigned bits = wanted & ~row.outside & ~row.hidden; bits != 0; bits &= bits - 1) {
+      int i = std::countr_zero(bits), share = outside >> i & 1 ? 0 : scratch.share[first + size_t(i)];
+      for (int c = 3 * i; c < 3 * i + 3; c++) to[c] = uint8_t((to[c] * share + rgb[c] * (255 - share) + 127) / 255);
+    }
+    unseen.hidden[word] |= uint8_t(outside & row.hidden);
+    unseen.outside[word] = uint8_t(outside & row.outside);
+    // The rest of the block has disparities already, and keeps them.
+    for (unsigned bits = outside & ~row.outside; bits != 0; bits &= bits - 1) {
+      size_t i = size_t(std::countr_zero(bits));
+      unseen.disparity[first + i] = disparity[i];
     }
   });
-  return unknown;
+}
+
+// Blocks that are to be taken from elsewhere in part have disparities pixel by pixel.
+void spread_disparities(const View& view, Unseen& unseen) {
+  for (int by = 0; by < unseen.rows; by++)
+    for (int bx = 0; bx < unseen.columns; bx++) {
+      float& flat = unseen.flat[size_t(by) * size_t(unseen.columns) + size_t(bx)];
+      int last = std::min((by + 1) * block, view.height);
+      unsigned outside = 0;
+      for (int y = by * block; y < last; y++)
+        outside |= unseen.outside[size_t(y) * size_t(unseen.columns) + size_t(bx)];
+      if (flat == Unseen::many || outside == 0) continue;
+      for (int y = by * block; y < last; y++)
+        std::fill_n(&unseen.disparity[size_t(y) * size_t(view.width) + size_t(bx * block)],
+                    std::min(view.width - bx * block, block), flat);
+      flat = Unseen::many;
+    }
+}
+
+int count_bits(const std::vector<uint8_t>& words) {
+  int sum = 0;
+  for (uint8_t word : words) sum += std::popcount(word);
+  return sum;
 }
 
 }  // namespace
@@ -388,6 +394,7 @@ float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View&
                    WarpScratch& scratch, Image8& out) {
   if (keyframe.empty() || view.width < 1 || view.height < 1) return 1;
   Source source(keyframe, view);
+  if (!around.empty()) source.seam = float(std::max(keyframe.view.width / seam_across, 1));
   if (!carry_bounds(source, view, scratch)) return 1;
   size_t bare = size_t(std::count(scratch.nearest.begin(), scratch.nearest.end(), -1.0f));
   float share = float(bare) / float(scratch.nearest.size());
@@ -395,20 +402,41 @@ float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View&
   out.width = view.width;
   out.height = view.height;
   out.rgb.resize(size_t(view.width) * size_t(view.height) * 3);
-  size_t columns = size_t((view.width + block - 1) / block);
-  if (!around.empty()) scratch.outside.resize(columns * size_t(view.height));
-  std::atomic<int> outside{0};
-  each_row(source, view, scratch, [&](int x, int y, int count, const Search& search, float far) {
-    unsigned bits = warp_row(source, float(x) + 0.5f, float(y) + 0.5f, count, search, far, pixel_at(out, x, y));
-    if (!around.empty()) scratch.outside[size_t(y) * columns + size_t(x / block)] = uint8_t(bits);
-    if (bits != 0) outside += std::popcount(bits);
-  });
-  int unknown = outside;
-  if (unknown > 0 && !around.empty()) {
-    Source wide(around, view, true);
-    if (carry_bounds(wide, view, scratch)) unknown = warp_outside(wide, view, scratch, out);
+  Unseen& unseen = scratch.unseen;
+  resize_unseen(view.width, view.height, unseen);
+  if (!around.empty()) {
+    scratch.at_seam.resize(unseen.outside.size());
+    scratch.share.resize(size_t(view.width) * size_t(view.height));
   }
-  return float(unknown) / (float(view.width) * float(view.height));
+  std::atomic<bool> whole{true}, in_view{true};  // nothing is unseen; nor is the keyframe's border in the picture
+  each_row(source, view, scratch, [&](int x, int y, int count, const Search& search) {
+    size_t word = size_t(y) * size_t(unseen.columns) + size_t(x / block);
+    size_t first = size_t(y) * size_t(view.width) + size_t(x);
+    RowBits row = warp_row(source, float(x) + 0.5f, float(y) + 0.5f, count, search, pixel_at(out, x, y),
+                           &unseen.disparity[first], around.empty() ? nullptr : &scratch.share[first]);
+    if (y % block == 0)
+      unseen.flat[size_t(y / block) * size_t(unseen.columns) + size_t(x / block)] =
+          search.steps == 0 ? search.nearest : Unseen::many;
+    unseen.hidden[word] = row.hidden, unseen.outside[word] = row.outside;
+    if (row.hidden | row.outside) whole = false;
+    if (around.empty()) return;
+    scratch.at_seam[word] = row.at_seam;
+    if (row.at_seam | row.outside) in_view = false;
+  });
+  if (!in_view) {
+    Source wide(around, view, true);
+    spread_disparities(view, unseen);
+    if (carry_bounds(wide, view, scratch)) warp_around(wide, view, scratch, out);
+  }
+  if (whole) return 0;
+  float unknown = float(count_bits(unseen.outside)) / (float(view.width) * float(view.height));
+  if (!(unknown > most_unknown)) fill_unseen(unseen, source.back.baseline, scratch.fill, out);
+  return unknown;
+}
+
+size_t memory_bytes(const WarpScratch& scratch) {
+  return bytes_of(scratch.farthest, scratch.nearest, scratch.at_seam, scratch.share) + memory_bytes(scratch.unseen) +
+         memory_bytes(scratch.fill);
 }
 
 }  // namespace wellspring

@@ -79,7 +79,7 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "sounds_total", "counter", "Sound packets sent", double(totals.sounds));
   metric(out, "sounds_given_up_total", "counter", "Utterances dropped for readers that were too slow",
          double(totals.sounds_given_up));
-  metric(out, "drawing_bytes", "gauge", "Memory for drawing pictures, one after the other, whoever they are for",
+  metric(out, "drawing_bytes", "gauge", "Memory for drawing and warping pictures, one after the other, whoever they are for",
          double(report.drawing_bytes));
   metric(out, "resident_bytes", "gauge", "Memory of the server process", resident_bytes());
   per_visitor(out, report, "pictures_per_second", "Pictures a second", [](auto& v) { return v.fps; });

@@ -92,7 +92,7 @@ void copy_colors(const Keyframe& keyframe, Image8& image) {
 // The encoder's image becomes the newest keyframe seen from `view`.
 bool warp(Show& show, Visitor& visitor, const View& view) {
   double began = seconds_now();
-  float unknown = warp_picture(visitor.keyframe, visitor.around, view, most_unknown, visitor.warp,
+  float unknown = warp_picture(visitor.keyframe, visitor.around, view, most_unknown, show.warp,
                                visitor.encoder->image);
   smooth(visitor.times.warp, float(1000 * (seconds_now() - began)));
   if (unknown > most_unknown) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "avatar/storyteller.h"
+#include "cache/warp_picture.h"
 #include "light/see_picture.h"
 #include "light/technique.h"
 #include "show/audience.h"
@@ -86,6 +87,7 @@ struct Show {
   float samples_per_second = 200000;  // measured, all cores
   float looks_per_second = 4e6f;      // likewise
   ShowTotals totals;
+  WarpScratch warp;  // of all visitors, whose pictures are warped one after the other
   Easel easel;  // reads much of the above: ends before it
 };
 

@@ -15,8 +15,7 @@ constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
 size_t picture_memory(const Visitor& visitor) {
   return visitor.cache.memory_bytes() + visitor.broker.memory_bytes() +
          memory_bytes(visitor.keyframe) + memory_bytes(visitor.around) +
-         bytes_of(visitor.picture.rgb, visitor.warp.farthest, visitor.warp.nearest, visitor.warp.outside) +
-         visitor.encoder->memory_bytes;
+         bytes_of(visitor.picture.rgb) + visitor.encoder->memory_bytes;
 }
 
 void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint) {

@@ -8,7 +8,7 @@
 #include "base/worker.h"
 #include "cache/broker.h"
 #include "cache/cache.h"
-#include "cache/warp_picture.h"
+#include "cache/keyframe.h"
 #include "frame/tonemap.h"
 #include "show/easel.h"
 #include "show/flow.h"
@@ -79,7 +79,6 @@ struct Visitor {
   PictureOrder order;
   bool unshown = false;       // nothing of it has been sent yet
   double drawn_at = -1e9;     // show time of the order of the last
-  WarpScratch warp;
   // What is shown.
   std::unique_ptr<Encoder> encoder = std::make_unique<Encoder>();
   uint32_t frame_number = 0, shown_seq = 0;

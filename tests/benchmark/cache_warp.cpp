@@ -4,18 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <spdlog/fmt/fmt.h>
 
 #include "cache/warp_picture.h"
 #include "cache_visit_stage.h"
 #include "drawn_picture.h"
 #include "frame/flip.h"
+#include "frame/picture_file.h"
 #include "report.h"
 
 namespace wellspring {
 namespace {
 
 constexpr int width = 1280, height = 720, levels = 16;
-constexpr double ages[] = {0.016, 0.033, 0.05};  // seconds from the keyframe's view to the picture's
+constexpr double ages[] = {0.016, 0.033, 0.05, 0.3};  // seconds from the keyframe's view to the picture's
 
 // Share of pixels that no pixel of the other picture within one pixel explains: a channel is outside of
 // the range of these by more than `levels` of 255.
@@ -79,6 +81,10 @@ void bench_cache_warp(BenchReport& report, const BenchOptions& options) {
         flip += mean_flip(warped, now.image) / instants;
         hold += mean_flip(held.image, now.image) / instants;
         displaced += displaced_share(warped, now.image) / instants;
+        if (options.visit_pictures.empty()) continue;
+        std::string stem = fmt::format("{}/warp_{}_{:.0f}ms_{}", options.visit_pictures, name, 1000 * age, i);
+        save_image8(stem + ".png", warped);
+        save_image8(stem + "_true.png", now.image);
       }
       nlohmann::json fields = {{"trace", name}, {"age_ms", std::round(1000 * age)}, {"size", "1280x720"}};
       report.add("cache.warp.flip", flip, "", fields);
