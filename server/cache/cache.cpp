@@ -328,12 +328,12 @@ void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame
 }
 
 void RenderCache::draw(const View& view, const PictureSight& sight, const Tonemap& tonemap,
-                       Image8& image, std::vector<float>* depth) {
+                       Image8& image, std::vector<float>* depth, bool calm) {
   Impl& c = *impl_;
   View lit = light_view(view);
   if (!c.projected || lit != c.view) project(lit);
   c.draw(lit,
-         [&] { compose_drawn(view, sight, c.cells, c.known, c.work->light, tonemap, image, depth); });
+         [&] { compose_drawn(view, sight, c.cells, c.known, c.work->light, tonemap, calm, image, depth); });
 }
 
 void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame& frame) {

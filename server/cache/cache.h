@@ -87,9 +87,10 @@ class RenderCache {
   // A picture of `view` drawn in the light of light_view(view) (cache/compose_drawn.h), for which all
   // of the frame before has been done; needs sight.can_see(view). The second for the eye at once,
   // and of a `depth` that is not null metres along the viewing axis, infinity: nothing there.
+  // `calm`: of pixels so large that a point's own light would show as a square.
   void draw(const View& view, const PictureSight& sight, Frame& frame);
   void draw(const View& view, const PictureSight& sight, const Tonemap& tonemap, Image8& image,
-            std::vector<float>* depth = nullptr);
+            std::vector<float>* depth = nullptr, bool calm = false);
   // The same at rest, in light of the view's own resolution, for which all of the frame before has been
   // done: what does not move is antialiased in time, seen at another place of the pixels each time.
   void draw_still(const View& view, const PictureSight& sight, Frame& frame);

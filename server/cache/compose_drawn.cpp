@@ -89,6 +89,7 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
 
 // Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
 // or chance nobody knows.
+constexpr float calm_counts = 1 / 64.0f;
 constexpr float moving_doubt = 3, few_samples = 4;
 f8 under(const f8& light, const f8& albedo, const f8& theirs) {
   return light * rest_ratio(albedo, theirs);
@@ -210,6 +211,7 @@ struct Composer {
   PixelRays rays, light_rays;
   vec2 offset{0.5f};
   float doubt = moving_doubt;
+  float own_counts = 1;  // samples of a pixel's own point, each
 
   static int groups_of(const SightRun& run) { return (run.count + half_group + group - 1) / group; }
   const CellRows& rows_around(const SightRun& run) const;
@@ -271,6 +273,7 @@ Shown Composer<Scale>::light_group_of(const SightRun& run, const RunPixels& p, u
   int lx = (x + half_group) / Scale + packed_start, ly = run.y / Scale;
   take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
                   light_rays.y(float(ly) + 0.5f), d);
+  q.samples *= own_counts;
   if (known) {
     const f8 fx = smaller((lane + 0.5f) * (1.0f / group), splat(1));
     float fy = (float(run.y - (rows.row + 1) * group + half_group) + 0.5f) / group;
@@ -337,13 +340,14 @@ void compose_drawn(const View& view, const PictureSight& sight, const Cells& cel
 }
 
 void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
-                   const Frame& light, const Tonemap& tonemap, Image8& image,
+                   const Frame& light, const Tonemap& tonemap, bool calm, Image8& image,
                    std::vector<float>* depth) {
   size_t pixels = size_t(view.width) * size_t(view.height);
   image.width = view.width, image.height = view.height;
   image.rgb.resize(3 * pixels);
   if (depth) depth->resize(pixels);
   CoarseComposer composer{view, cells, known, light, PixelRays(view), PixelRays(light_view(view))};
+  if (calm) composer.own_counts = calm_counts;
   EyePlanes planes{tonemap.exposure, image.rgb.data(), depth ? depth->data() : nullptr};
   soften_edges(sight.see_edges(view, composer.offset, taker(composer, planes)), image);
 }

@@ -20,9 +20,10 @@ void compose_drawn(const View& view, const PictureSight& sight, const Cells& cel
                    const Frame& light, Frame& frame);
 // The same for the eye at once, as frame/tonemap.h would show it: writing colours to memory and
 // reading them again takes longer than the curve. Resizes `image` and `depth` (null: not wanted;
-// metres along the viewing axis, infinity: nothing there).
+// metres along the viewing axis, infinity: nothing there). `calm`: light is that of the cells, which are
+// means; each point for itself would show as a square where pixels are as large as those of surroundings.
 void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
-                   const Frame& light, const Tonemap& tonemap, Image8& image,
+                   const Frame& light, const Tonemap& tonemap, bool calm, Image8& image,
                    std::vector<float>* depth);
 
 // What does not move of a picture at rest, in light of its own resolution, `light` being of `view`

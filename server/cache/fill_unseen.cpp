@@ -20,6 +20,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr int longest_walk = 256;   // pixels along an epipolar line to what is known
 constexpr float known_at = 0.25f;   // share of a cell's pixels that are enough to know it
 constexpr float may_be_nearer = 0.75f;  // pixels that what is around a hole may move against what lies behind
+constexpr float opens_at_least = 0.5f;  // pixels that what hides moves against what is behind, for each of a hole
 constexpr float guess_counts = 0.05f;  // beside a cell that is known
 
 struct Filling {
@@ -30,6 +31,7 @@ struct Filling {
   vec2 motion(float x, float y) const { return {parallax.x - x * parallax.z, parallax.y - y * parallax.z}; }
   // By how much disparities around (x, y) may be nearer than what lies behind.
   float slack(float x, float y) const { return may_be_nearer / std::max(length(motion(x, y)), 1e-30f); }
+  float pixels(int x, int y) const { return length(motion(float(x), float(y))); }
   float cell_slack(int x, int y, int size) const {
     return slack((float(x) + 0.5f) * float(size), (float(y) + 0.5f) * float(size));
   }
@@ -43,10 +45,12 @@ struct Filling {
   }
 };
 
-// The disparity of what lies behind the hidden pixel: the farther of those at both ends of its epipolar
-// line. Infinity: neither is in the picture.
-float find_behind(const Filling& f, int x, int y, vec2 step) {
+// The most that the disparity of what lies behind the hidden pixel may be: that of the farther of both ends of
+// its epipolar line, and so far behind what hid it that a hole of that width has opened. Without that, lead
+// between panes would be taken for what is behind it. Infinity: neither end is in the picture.
+float find_behind(const Filling& f, int x, int y, vec2 step, float pixels) {
   float behind = infinity;
+  int width = 1, ends = 0;
   for (float side : {1.0f, -1.0f})
     for (int i = 1; i <= longest_walk; i++) {
       float sx = float(x) + 0.5f + side * float(i) * step.x, sy = float(y) + 0.5f + side * float(i) * step.y;
@@ -55,9 +59,12 @@ float find_behind(const Filling& f, int x, int y, vec2 step) {
       if (f.bits(f.unseen.outside, ix, iy) >> (ix % block) & 1) break;
       if (f.bits(f.unseen.hidden, ix, iy) >> (ix % block) & 1) continue;
       behind = std::min(behind, f.disparity(ix, iy));
+      width += i - 1, ends++;
       break;
     }
-  return behind;
+  if (ends < 2) return behind;
+  float opened = opens_at_least * float(width - 1) / std::max(pixels, 1e-30f);
+  return std::min(behind, std::max(f.disparity(x, y) - opened, 0.0f));
 }
 
 // The mean of what is known of four cells, but for what is nearer than their hidden pixels may show, or, if
@@ -118,7 +125,7 @@ Cell read_pixels(const Filling& f, const Image8& out, int x0, int y0, const unsi
       const uint8_t* rgb = &out.rgb[3 * (size_t(y) * size_t(u.width) + size_t(x))];
       pixel[i] = {float(rgb[0]), float(rgb[1]), float(rgb[2]), 1, f.disparity(x, y), infinity, true};
     } else if (x < u.width && y < u.height && (f.bits(u.hidden, x, y) >> in_x & 1) && !(behind < infinity)) {
-      behind = find_behind(f, x, y, step);
+      behind = find_behind(f, x, y, step, f.pixels(x, y));
     }
   }
   pixel[0].behind = behind;

@@ -22,7 +22,7 @@ struct Unseen {
   // Bits of eight pixels side by side each, `columns` a row of the picture. No pixel is both.
   std::vector<uint8_t> hidden, outside;
   std::vector<float> flat;       // of blocks: all their pixels' disparity, or `many`
-  std::vector<float> disparity;  // of pixels of blocks of many; of unseen ones none
+  std::vector<float> disparity;  // of pixels of blocks of many; of hidden ones that of what hid them
 };
 // What it says of pixels of that many is for the caller to write. Reuses its memory.
 void resize_unseen(int width, int height, Unseen& unseen);

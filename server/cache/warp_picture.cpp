@@ -249,17 +249,19 @@ void write_rgb(const u8& words, uint8_t* to, int count) {
   if (count < lanes) std::memcpy(to, bytes, size_t(count) * 3);
 }
 
-// The first of eight neighbours' epipolar lines' places that shows what the pixel would see. Returns which of
-// the wanted have none.
+// The first of eight neighbours' epipolar lines' places that shows what the pixel would see, and its disparity;
+// or the last, and that of what hides them. Returns which of the wanted have none.
 i8 follow_line(const Source& source, const Place& base, const Search& search, i8 waiting, f8& at_x, f8& at_y,
                f8& disparity) {
   const Mapping& m = source.to;
   at_x = at_y = disparity = f8{};
   float candidate = search.step + found / std::max(search.pixels, 1e-30f);
+  Place one{};
+  f8 first{};
   for (int i = 0; i <= search.steps && any(waiting); i++) {
     f8 w = splat(search.nearest - float(i) * search.step);
-    Place one = carry(m, base, w);
-    f8 first = source.surface(one.x, one.y);
+    one = carry(m, base, w);
+    first = source.surface(one.x, one.y);
     i8 near = waiting & (magnitude(first - w) <= candidate);
     if (!any(near)) continue;
     Place two = carry(m, base, first);
@@ -268,6 +270,10 @@ i8 follow_line(const Source& source, const Place& base, const Search& search, i8
     i8 hit = near & (magnitude(second - first) * search.pixels <= found);
     at_x = hit ? three.x : at_x, at_y = hit ? three.y : at_y, disparity = hit ? second : disparity;
     waiting &= ~hit;
+  }
+  if (any(waiting)) {
+    at_x = waiting ? one.x : at_x, at_y = waiting ? one.y : at_y;
+    disparity = waiting ? first : disparity;
   }
   return waiting;
 }

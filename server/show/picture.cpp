@@ -292,7 +292,8 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
 void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {
   DrawingWork& work = show.easel.work;
   land(visitor.broker.collect(), *show.world, show.pose_number, visitor.cache);
-  visitor.cache.draw(*order.around, *show.sight, Tonemap{show.exhibit.exposure}, work.picture, &work.depth);
+  visitor.cache.draw(*order.around, *show.sight, Tonemap{show.exhibit.exposure}, work.picture, &work.depth,
+                     true);
   make_keyframe(*order.around, work.picture, work.depth, work.around);
 }
 

@@ -21,7 +21,7 @@ constexpr double settling_rate = 12;   // while nothing moves: more time for sam
 constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr double on_time = 0.0005;     // seconds that a picture may come too early
 constexpr double warping_share = 0.5;  // of the cores, at most, for all visitors' warps and JPEGs
-constexpr float most_unknown = 0.15f;  // of a warped picture
+constexpr float most_unknown = 0.8f;   // of a warped picture: beyond, the one before is as near to the truth (cache.warp)
 constexpr int animated_gain = 5;       // JPEG quality above the moving one while the storyteller moves
 
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }

@@ -15,7 +15,7 @@ namespace {
 enum class Kind { seen, hidden, outside };
 struct Pixel {
   int level = 0;  // of red; green is half of it, blue a third
-  float disparity = 0;
+  float disparity = 0;  // of hidden ones: of what hid them
   Kind kind = Kind::seen;
 };
 using Paint = std::function<Pixel(int x, int y)>;
@@ -64,7 +64,7 @@ TEST(FillUnseen, WhatWasHiddenIsNothingOfWhatHidIt) {
     for (bool mirrored : {false, true}) {
       auto paint = [&](int x, int y) -> Pixel {
         x = (mirrored ? 199 - x : x) - shift;
-        if (x >= 60 && x < 100) return {0, 0, Kind::hidden};
+        if (x >= 60 && x < 100) return {0, 0.5f + 0.001f * float(y), Kind::hidden};
         // Both move on by a tenth of a pixel from row to row, as floors do.
         float slope = 0.001f * float(y);
         return x < 60 ? Pixel{250, 0.5f + slope} : Pixel{90, 0.1f + slope};
@@ -82,8 +82,8 @@ TEST(FillUnseen, WhatWasHiddenIsNothingOfWhatHidIt) {
 // Of two sides the farther one counts, however much there is of the other.
 TEST(FillUnseen, TheFartherSideGoesOn) {
   auto paint = [](int x, int y) -> Pixel {
-    if (std::hypot(float(x) - 50, float(y) - 50) < 20) return {0, 0, Kind::hidden};
-    return x >= 62 && x < 80 ? Pixel{40, 0.05f} : Pixel{200, 0.4f};
+    if (std::hypot(float(x) - 50, float(y) - 50) < 20) return {0, 0.5f, Kind::hidden};
+    return x >= 62 && x < 80 ? Pixel{40, 0.05f} : Pixel{200, 0.5f};
   };
   Filled filled = fill(100, 100, paint);
   for (int y = 34; y < 67; y++)  // where that side is the end of the row
@@ -91,10 +91,39 @@ TEST(FillUnseen, TheFartherSideGoesOn) {
       if (paint(x, y).kind == Kind::hidden) { ASSERT_NEAR(filled.red(x, y), 40, 6) << x << ", " << y; }
 }
 
+// Thin lead before the sky, of which a wall as near has hidden half: the sky goes on, not the lead.
+TEST(FillUnseen, PanesGoOnAsWhatIsBehindTheirLead) {
+  auto paint = [](int x, int y) -> Pixel {
+    if ((x + y) % 16 < 2 || (x - y + 400) % 16 < 2) return {10, 0.3f};
+    return x < 100 ? Pixel{230, 0} : Pixel{0, 0.3f, Kind::hidden};
+  };
+  Filled filled = fill(200, 120, paint);
+  double sum = 0;
+  int count = 0;
+  for (int y = 0; y < 120; y++)
+    for (int x = 100; x < 200; x++) {
+      if (paint(x, y).kind != Kind::hidden || (x + y) % 16 < 3 || (x - y + 400) % 16 < 3) continue;
+      if ((x + y) % 16 == 15 || (x - y + 400) % 16 == 15) continue;  // not at corners, where holes are narrow
+      sum += filled.red(x, y), count++;
+    }
+  EXPECT_GT(sum / count, 200);
+}
+
+// What is uncovered where a thin bar was is what is on both sides of it, far from the bar.
+TEST(FillUnseen, WhereABarWasIsWhatLiesAround) {
+  auto paint = [](int x, int) -> Pixel {
+    if (x >= 60 && x < 70) return {0, 0.5f, Kind::hidden};
+    return x >= 90 && x < 100 ? Pixel{10, 0.5f} : Pixel{180, 0.1f};
+  };
+  Filled filled = fill(160, 80, paint);
+  for (int y = 0; y < 80; y++)
+    for (int x = 60; x < 70; x++) ASSERT_NEAR(filled.red(x, y), 180, 1) << x << ", " << y;
+}
+
 // A crack in a near surface shows that surface, although a far one is beside it.
 TEST(FillUnseen, ACrackIsOfItsSurface) {
   auto paint = [](int x, int) -> Pixel {
-    if (x == 45) return {0, 0, Kind::hidden};
+    if (x == 45) return {0, 0.5f, Kind::hidden};
     return x < 50 ? Pixel{200, 0.5f} : Pixel{20, 0};
   };
   Filled filled = fill(100, 60, paint);
@@ -106,7 +135,7 @@ TEST(FillUnseen, ACrackIsOfItsSurface) {
 TEST(FillUnseen, NoRowStandsForItself) {
   for (Kind kind : {Kind::hidden, Kind::outside}) {
     auto paint = [=](int x, int y) -> Pixel {
-      if (kind == Kind::hidden ? x >= 60 && x < 100 : x >= 140) return {0, 0, kind};
+      if (kind == Kind::hidden ? x >= 60 && x < 100 : x >= 140) return {0, 0.5f, kind};
       return {(y & 1) * 240, kind == Kind::hidden && x < 60 ? 0.5f : 0.1f};
     };
     Filled filled = fill(200, 120, paint);
