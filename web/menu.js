@@ -12,7 +12,21 @@ function button(text, on_click) {
   return element;
 }
 
-// orders: {viewpoint(name), tour(action, id), story(id), storyteller(fields), lang(tag), subtitles(on)}
+// A check box that is read as what it is: on or off.
+function lamp_switch({ name, title, on }, on_change) {
+  const label = document.createElement('label'), input = document.createElement('input'), text = document.createElement('span');
+  label.className = 'switch';
+  input.type = 'checkbox';
+  input.setAttribute('role', 'switch');
+  input.checked = on;
+  input.dataset.lamp = name;
+  input.addEventListener('change', () => on_change(name, input.checked));
+  text.textContent = title || name;
+  label.append(input, text);
+  return label;
+}
+
+// orders: {viewpoint(name), tour(action, id), story(id), storyteller(fields), lamp(name, on), lang(tag), subtitles(on)}
 export function make_menu(orders) {
   const menu = by_id('menu'), opener = by_id('menu-button');
   let lang = 'en', viewpoints = [];
@@ -57,6 +71,8 @@ export function make_menu(orders) {
         return element;
       }));
       by_id('tellers').hidden = message.storytellers.length < 2;
+      by_id('lamps').replaceChildren(...message.lamps.map((lamp) => lamp_switch(lamp, orders.lamp)));
+      by_id('lamps-section').hidden = message.lamps.length === 0;
       by_id('languages').replaceChildren(...message.languages.map((tag) => {
         const element = button(language_names[tag] ?? tag, () => orders.lang(tag));
         element.setAttribute('aria-pressed', String(tag === lang || tag === lang.split('-')[0]));
@@ -66,6 +82,7 @@ export function make_menu(orders) {
     state(message) {
       for (const element of by_id('places').children)
         element.setAttribute('aria-current', String(element.dataset.viewpoint === message.viewpoint));
+      for (const input of by_id('lamps').querySelectorAll('input')) input.checked = message.lamps?.[input.dataset.lamp] ?? input.checked;
     },
     agent(message) {
       by_id('storyteller-visible').checked = message.visible;

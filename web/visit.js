@@ -100,6 +100,7 @@ const menu = make_menu({
   tour: tour_action,
   story: (story) => connection.send({ type: 'storyteller', story }),
   storyteller: (fields) => connection.send({ type: 'storyteller', ...fields }),
+  lamp: (name, on) => connection.send({ type: 'lamp', name, on }),
   lang(tag) { lang = tag; localStorage.setItem('wellspring.lang', tag); connection.send({ type: 'settings', lang: tag }); },
   subtitles: (on) => subtitles.enable(on),
 });

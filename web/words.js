@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's own words. The exhibit's words come from the server.
 const words = {
-  en: { menu: 'Menu', close: 'Close', places: 'Places', tours: 'Guided tour', stories: 'Stories', storyteller: 'Storyteller',
+  en: { menu: 'Menu', close: 'Close', places: 'Places', tours: 'Guided tour', stories: 'Stories', storyteller: 'Storyteller', lamps: 'Lights',
     shown: 'Shown', lively: 'Lively movements', language: 'Language', subtitles: 'Subtitles', walking: 'Getting about',
     key_walk: 'walk', key_arrows: 'walk and turn', key_drag_name: 'Drag', key_drag: 'look round', key_places: 'go to a place',
     pause: 'Pause', resume: 'Go on', stop: 'Stop', restart: 'From the start', skip: 'Next sentence', key_space_name: 'Space', key_space: 'pause and go on', opening: 'Opening the doors…',
@@ -9,7 +9,7 @@ const words = {
     busy: 'The storyteller is telling somebody at the museum a story.',
     sound_on: 'Turn sound on', sound_off: 'Turn sound off', sound_is_on: 'Sound is on.', sound_is_off: 'Sound is off.',
     invite: 'Step closer, and the castle will tell you its story.' },
-  de: { menu: 'Menü', close: 'Schließen', places: 'Orte', tours: 'Rundgang', stories: 'Geschichten', storyteller: 'Wer erzählt',
+  de: { menu: 'Menü', close: 'Schließen', places: 'Orte', tours: 'Rundgang', stories: 'Geschichten', storyteller: 'Wer erzählt', lamps: 'Licht',
     shown: 'Sichtbar', lively: 'Lebendige Bewegungen', language: 'Sprache', subtitles: 'Untertitel', walking: 'Bewegen',
     key_walk: 'gehen', key_arrows: 'gehen und drehen', key_drag_name: 'Ziehen', key_drag: 'umsehen', key_places: 'zu einem Ort',
     pause: 'Pause', resume: 'Weiter', stop: 'Beenden', restart: 'Von vorn', skip: 'Nächster Satz', key_space_name: 'Leertaste', key_space: 'Pause und weiter', opening: 'Die Türen öffnen sich…',
@@ -17,7 +17,7 @@ const words = {
     busy: 'Im Museum wird gerade jemandem eine Geschichte erzählt.',
     sound_on: 'Ton einschalten', sound_off: 'Ton ausschalten', sound_is_on: 'Der Ton ist an.', sound_is_off: 'Der Ton ist aus.',
     invite: 'Treten Sie näher, dann erzählt die Burg ihre Geschichte.' },
-  sk: { menu: 'Ponuka', close: 'Zavrieť', places: 'Miesta', tours: 'Prehliadka', stories: 'Príbehy', storyteller: 'Kto rozpráva',
+  sk: { menu: 'Ponuka', close: 'Zavrieť', places: 'Miesta', tours: 'Prehliadka', stories: 'Príbehy', storyteller: 'Kto rozpráva', lamps: 'Svetlá',
     shown: 'Zobraziť postavu', lively: 'Živé pohyby', language: 'Jazyk', subtitles: 'Titulky', walking: 'Pohyb',
     key_walk: 'chôdza', key_arrows: 'chôdza a otáčanie', key_drag_name: 'Ťahanie', key_drag: 'rozhliadanie', key_places: 'na miesto',
     pause: 'Pauza', resume: 'Ďalej', stop: 'Ukončiť', restart: 'Od začiatku', skip: 'Ďalšia veta', key_space_name: 'Medzerník', key_space: 'pauza a ďalej', opening: 'Otvárame brány…',

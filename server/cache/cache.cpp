@@ -14,6 +14,7 @@
 #include "cache/compose_drawn.h"
 #include "cache/correct_still.h"
 #include "cache/looks.h"
+#include "cache/packing.h"
 #include "cache/plan.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
@@ -117,6 +118,7 @@ struct RenderCache::Impl {
     corrects = true;
   }
   void count(const SurfaceCounts& counts, bool known);
+  void relight(const Forgotten& forgotten);
   template <class Compose>
   void draw(const View& lit, const Compose& compose);
 };
@@ -355,12 +357,25 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   });
 }
 
+void RenderCache::Impl::relight(const Forgotten& forgotten) {
+  vec3 kept, added;
+  relight_still(points, image, [&](uint32_t point) { return forgotten(point, kept, added); }, still);
+  forget_light(points, forgotten);
+  relit = true;
+}
+
 void RenderCache::relight(vec3 place, float reach) {
   Impl& c = *impl_;
-  auto forgotten = [&](uint32_t point) { return is_lit_from(c.points, point, place, reach); };
-  relight_still(c.points, c.image, forgotten, c.still);
-  forget_light(c.points, place, reach);
-  c.relit = true;
+  c.relight([&](uint32_t point, vec3&, vec3&) { return is_lit_from(c.points, point, place, reach); });
+}
+
+void RenderCache::relight(const Changes& changes) {
+  Impl& c = *impl_;
+  c.relight([&](uint32_t i, vec3& kept, vec3& added) {
+    if (c.points.flags[i] & point_infinite) return false;
+    vec3 place(c.points.x[i], c.points.y[i], c.points.z[i]);
+    return changes(place, unpack_normal(c.points.normal[i]), kept, added);
+  });
 }
 
 void RenderCache::clear() {

@@ -5,6 +5,7 @@
 // cores, never fail and never block; memory is bounded by the room asked for with resize().
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -102,6 +103,10 @@ class RenderCache {
   // (infinite: everywhere): what was remembered of the light there counts no more, and is asked for
   // first. Not for lamps that are little of it: there a change that resampling finds costs less.
   void relight(vec3 place, float reach);
+  // The same of lights that are much of it where `changes` says so of a surface, on many threads. Until newer
+  // light is known there, `kept` of what is remembered, 1 unless changed, and the light `added` are shown.
+  using Changes = std::function<bool(vec3 place, vec3 normal, vec3& kept, vec3& added)>;
+  void relight(const Changes& changes);
   // Forgets everything (another exhibit).
   void clear();
 

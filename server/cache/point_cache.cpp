@@ -126,12 +126,21 @@ void forget_light_of(PointCache& points, uint32_t i, int ageing) {
   points.flags[i] |= point_relit;
 }
 
-void forget_light(PointCache& points, vec3 place, float reach) {
+void forget_light(PointCache& points, const Forgotten& forgotten) {
   parallel_ranges(points.capacity(), 1 << 14, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++)
-      if (is_alive(points, uint32_t(i)) && is_lit_from(points, uint32_t(i), place, reach))
-        forget_light_of(points, uint32_t(i), oldest_age);
+    for (uint32_t i = uint32_t(begin); i < uint32_t(end); i++) {
+      vec3 kept(1), added(0);
+      if (!is_alive(points, i) || !forgotten(i, kept, added)) continue;
+      forget_light_of(points, i, oldest_age);
+      PointColor& color = points.color[i];
+      color.smooth = pack_rgb9e5(kept * unpack_rgb9e5(color.smooth) + added);
+      color.rest = pack_rgb9e5(kept * unpack_rgb9e5(color.rest));
+    }
   });
+}
+
+void forget_light(PointCache& points, vec3 place, float reach) {
+  forget_light(points, [&](uint32_t i, vec3&, vec3&) { return is_lit_from(points, i, place, reach); });
 }
 
 bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted) {

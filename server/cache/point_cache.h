@@ -5,6 +5,7 @@
 // point.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "cache/big_pages.h"
@@ -85,6 +86,10 @@ void forget_light_of(PointCache& points, uint32_t i, int ageing);
 // The light has changed within `reach` metres of `place`: points there forget theirs. At infinity
 // only an infinite reach counts.
 void forget_light(PointCache& points, vec3 place, float reach);
+// Points of which `forgotten` says so, on many threads, do. Of what they show `kept` is left, 1 unless changed,
+// and light `added` falls on them.
+using Forgotten = std::function<bool(uint32_t point, vec3& kept, vec3& added)>;
+void forget_light(PointCache& points, const Forgotten& forgotten);
 bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach);
 // Where a place on a mesh is now, with the side of the normal that `normal` faced; both stay as they
 // are where the world has no such triangle.

@@ -78,10 +78,9 @@ void leave_environment(const Transport& transport, float chance, Sampler& sample
 
 EmissionChoice make_emission_choice(const LightTables& tables, std::span<const float> emitter_power,
                                     std::span<const float> punctual_power,
-                                    float environment_power, const Scene& scene) {
+                                    float environment_power, const Bounds& bounds) {
   EmissionChoice choice;
   choice.exact_punctual = tables.punctual.size() <= most_exact_punctual;
-  Bounds bounds = scene_bounds(scene);
   vec3 size = bounds.high - bounds.low;
   if (is_finite(size) && size.x >= 0) {
     choice.centre = bounds.low + 0.5f * size;

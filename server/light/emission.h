@@ -28,7 +28,7 @@ inline constexpr size_t most_exact_punctual = 4;
 // `power` of each triangle and of each punctual light of `tables`.
 EmissionChoice make_emission_choice(const LightTables& tables, std::span<const float> emitter_power,
                                     std::span<const float> punctual_power,
-                                    float environment_power, const Scene& scene);
+                                    float environment_power, const Bounds& bounds);
 
 // A place on an emitting triangle, and the radiance it shows on its bright side.
 struct EmitterPlace {

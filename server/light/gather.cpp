@@ -2,6 +2,7 @@
 // Technique `gather`: path tracing whose walks end where a wide ray meets light that is already known
 // (RadianceGrid). Static light and geometry make that light worth keeping; one gathering bounce hides its
 // cells. Without a grid it is `path`.
+#include "light/lamps.h"
 #include "light/radiance_grid.h"
 #include "light/technique_list.h"
 #include "light/walk.h"
@@ -32,7 +33,11 @@ Sample trace_gather(const World& world, const Lights& lights, const TransportSet
 
 void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights) {
   if (!lights.tables->plan.uses(TransportPart::kept_light)) return;
-  lights.grid = make_radiance_grid({world, *lights.tables}, places);
+  const Scene& scene = world.scene();
+  std::vector<std::shared_ptr<const LightTables>> parts;
+  for (int lamp = -1; lamp < int(scene.lamps.size()) && !scene.lamps.empty(); lamp++)
+    parts.push_back(relit(*lights.tables, scene, what_shines_of(scene, lamp)));
+  lights.grid = make_radiance_grid({world, *lights.tables}, places, {}, parts);
 }
 
 }  // namespace wellspring

@@ -45,6 +45,7 @@ LightTree make_emitter_tree(std::span<const EmitterTriangle> emitters, std::span
 }
 
 void add_punctual_choice(LightTables& tables) {
+  tables.few_punctual = {}, tables.near_choice = {}, tables.distant_choice = {};
   if (tables.punctual.size() <= size_t(FewLights::most)) {
     tables.few_punctual = make_few_lights(tables.punctual, tables.cones);
     return;

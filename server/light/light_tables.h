@@ -46,6 +46,7 @@ struct CasterSphere {
 struct LightTables {
   TransportPlan plan;
   std::vector<EmitterTriangle> emitters;  // whole instances, in order of their triangles
+  std::vector<float> emitter_power;       // of each of them
   std::vector<EmissionPicture> pictures;
   size_t picture_cells = 0;               // of all of them
   LightTree emitter_choice;               // by power and place
@@ -56,6 +57,7 @@ struct LightTables {
   FewLights few_punctual;               // all of them, where they are few
   // Where there are many: the near ones (point, spot) by power and place, the distant ones by power.
   LightTree near_choice, distant_choice;
+  Bounds bounds;            // of what stands still
   float emitter_share = 0;  // of samples spent on emitters; the rest of area light is environment
   float area_share = 1;     // where one light is sampled: emitters and environment against punctual
   EmissionChoice emission;  // of techniques that follow light from its sources

@@ -6,6 +6,7 @@
 
 #include "light/caustic_photons.h"
 #include "light/light_bounds.h"
+#include "light/lamps.h"
 #include "light/light_tables.h"
 #include "light/pane_boxes.h"
 #include "world/surface.h"
@@ -116,7 +117,7 @@ size_t bytes_of(const std::vector<T>& v) {
 }  // namespace
 
 size_t light_table_bytes(const LightTables& t) {
-  size_t bytes = bytes_of(t.emitters) + bytes_of(t.environment.cells.cells) +
+  size_t bytes = bytes_of(t.emitters) + bytes_of(t.emitter_power) + bytes_of(t.environment.cells.cells) +
                  bytes_of(t.punctual) + bytes_of(t.cones);
   for (const LightTree* tree : {&t.emitter_choice, &t.near_choice, &t.distant_choice})
     bytes += bytes_of(tree->nodes) + bytes_of(tree->leaf_of) + bytes_of(tree->strengths.cells) +
@@ -138,56 +139,67 @@ TransportPlan make_plan(const World& world) {
 
 Lights make_lights(const World& world) { return make_lights(world, make_plan(world)); }
 
-Lights make_lights(const World& world, const TransportPlan& plan) {
-  using enum TransportPart;
-  const Scene& scene = world.scene();
-  auto tables = std::make_shared<LightTables>();
-  tables->plan = plan;
-  tables->first_emitter.assign(size_t(world.instance_count()), no_emitter);
-  std::vector<float> power;
-  if (plan.uses(area_lights))
-    for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
-      if (!world.is_moving(i) && plan.materials[size_t(world.mesh_of(i).material)].emits)
-        gather_instance(world, i, *tables, power);
-  tables->emitter_choice = make_emitter_tree(
-      tables->emitters, power, plan.uses(light_tree) ? LightChoice::by_place : LightChoice::by_strength);
+namespace {
 
-  Bounds bounds = scene_bounds(scene);
-  float radius = 0.5f * length(bounds.high - bounds.low);
+// What is chosen among, and how likely each is: all that shine of the sources.
+void choose_sources(const Scene& scene, const Shining& shining, LightTables& tables) {
+  using enum TransportPart;
+  const TransportPlan& plan = tables.plan;
+  tables.emitter_choice = make_emitter_tree(
+      tables.emitters, tables.emitter_power, plan.uses(light_tree) ? LightChoice::by_place : LightChoice::by_strength);
+  float radius = 0.5f * length(tables.bounds.high - tables.bounds.low);
   if (!std::isfinite(radius)) radius = 1;
-  if (plan.uses(TransportPart::environment))
-    tables->environment = make_environment_light(scene, plan.uses(environment_importance));
-  const EnvironmentLight& sky = tables->environment;
+  const EnvironmentLight& sky = tables.environment;
   double environment_power = sky.cells.cells.empty() ? 0
                                                              : double(sky.mean_luminance) *
                                                                    pi * pi * 4 * radius * radius;
   double sun_power = double(luminance(sky.sun_radiance)) * double(sky.sun_chord2) * pi * pi *
                      double(radius) * double(radius);
   environment_power += sun_power;
-  double emitter_power = tables->emitter_choice.total * double(pi);
-  tables->emitter_share = share_of(emitter_power, environment_power);
+  double emitter_power = tables.emitter_choice.total * double(pi);
+  tables.emitter_share = share_of(emitter_power, environment_power);
 
   double punctual_power = 0;
   std::vector<float> punctual_powers;
-  for (const PunctualLight& light : scene.lights) {
+  tables.punctual.clear(), tables.cones.clear();
+  for (size_t i = 0; i < scene.lights.size(); i++) {
+    const PunctualLight& light = scene.lights[i];
     if (!plan.uses(punctual_lights)) break;
-    float p = power_of(light, radius);
+    float p = shining.lights[i] ? power_of(light, radius) : 0;
     bool finite =
         is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
     if (!(p > 0) || !std::isfinite(p) || !finite) continue;
-    tables->punctual.push_back(light);
+    tables.punctual.push_back(light);
     float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
-    tables->cones.push_back({outer, 1 / std::max(0.001f, inner - outer)});
+    tables.cones.push_back({outer, 1 / std::max(0.001f, inner - outer)});
     punctual_powers.push_back(p);
     punctual_power += double(p);
   }
   float sky_power = luminance(sky.radiance) > 0
                         ? sky.mean_luminance * 4 * pi * pi * radius * radius
                         : 0.0f;
-  tables->emission = make_emission_choice(*tables, power, punctual_powers,
-                                          sky_power + float(sun_power), scene);
-  tables->area_share = share_of(emitter_power + environment_power, punctual_power);
-  add_punctual_choice(*tables);
+  tables.emission = make_emission_choice(tables, tables.emitter_power, punctual_powers,
+                                         sky_power + float(sun_power), tables.bounds);
+  tables.area_share = share_of(emitter_power + environment_power, punctual_power);
+  add_punctual_choice(tables);
+}
+
+}  // namespace
+
+Lights make_lights(const World& world, const TransportPlan& plan) {
+  using enum TransportPart;
+  const Scene& scene = world.scene();
+  auto tables = std::make_shared<LightTables>();
+  tables->plan = plan;
+  tables->first_emitter.assign(size_t(world.instance_count()), no_emitter);
+  if (plan.uses(area_lights))
+    for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
+      if (!world.is_moving(i) && plan.materials[size_t(world.mesh_of(i).material)].emits)
+        gather_instance(world, i, *tables, tables->emitter_power);
+  tables->bounds = scene_bounds(scene);
+  if (plan.uses(TransportPart::environment))
+    tables->environment = make_environment_light(scene, plan.uses(environment_importance));
+  choose_sources(scene, what_shines(world), *tables);
 
   for (size_t i = 0; i < scene.materials.size(); i++) {
     const Material& m = scene.materials[i];
@@ -205,6 +217,20 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   tables->any_tint = plan.uses(absorption);
   if (tables->any_solid) tables->solids = find_solid_bounds(world, plan);
   return {tables, std::make_shared<std::atomic<uint64_t>>(0), nullptr};
+}
+
+std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene, const Shining& shining) {
+  auto tables = std::make_shared<LightTables>(all);
+  for (size_t i = 0; i < tables->emitters.size(); i++) {
+    EmitterTriangle& e = tables->emitters[i];
+    const Mesh& mesh = scene.meshes[size_t(scene.instances[e.instance].mesh)];
+    if (shining.materials[size_t(mesh.material)]) continue;
+    e.emission = vec3(0);
+    tables->emitter_power[i] = 0;
+  }
+  if (!shining.sky) tables->environment = {};
+  choose_sources(scene, shining, *tables);
+  return tables;
 }
 
 }  // namespace wellspring

@@ -15,15 +15,25 @@
 namespace wellspring {
 
 struct Transport;
+struct LightTables;
 
 struct RadianceGrid {
   float cell = 0.25f;          // metres
   uint32_t mask = 0;           // table size - 1; open addressing, linear probing
   std::vector<uint64_t> keys;  // 0: free
-  std::vector<vec3> light;     // radiance scattered back, textures and all
+  std::vector<vec3> light;     // radiance scattered back, textures and all; of the lamps that are on
   std::vector<float> count;    // samples behind it
   std::vector<uint8_t> keeps;  // of each material: opaque, dark of itself and too rough to mirror
+  // Where lamps can be switched: the slots in use, the mean reflectance there, and the light of each by what
+  // belongs to no lamp and by each lamp alone. Copies share them.
+  struct Parts {
+    std::vector<uint32_t> slots;
+    std::vector<vec3> albedo;
+    std::vector<std::vector<vec3>> light;
+  };
+  std::shared_ptr<const Parts> parts = nullptr;
 };
+inline constexpr float enough_grid_samples = 12;  // a cell with fewer is not asked
 
 struct RadianceGridSettings {
   int paths = 400000;  // random walks that fill it
@@ -35,8 +45,17 @@ struct RadianceGridSettings {
 
 // Walks start at `places` (scene coordinates: where eyes are likely to be) in all directions; every
 // surface they meet learns its light. All cores, a few seconds; the same grid whatever the thread count.
-std::shared_ptr<const RadianceGrid> make_radiance_grid(const Transport& transport, std::span<const vec3> places,
-                                                       const RadianceGridSettings& settings = {});
+// `parts`: tables of what belongs to no lamp, and of each lamp alone, while all are on: every walk learns the
+// light of each of them.
+std::shared_ptr<const RadianceGrid> make_radiance_grid(
+    const Transport& transport, std::span<const vec3> places, const RadianceGridSettings& settings = {},
+    std::span<const std::shared_ptr<const LightTables>> parts = {});
+// Its light where lamps[i] says whether lamp i is on. Milliseconds.
+std::shared_ptr<const RadianceGrid> relit(const RadianceGrid& all, std::span<const char> lamps);
+// The slot of a surface there: of light that was met, or a free one.
+uint32_t find_grid_slot(const RadianceGrid& grid, vec3 place, vec3 normal);
+// Where a slot's light was met: the cell's corners are `cell` times this and one more.
+glm::ivec3 grid_place(const RadianceGrid& grid, uint32_t slot);
 
 // Radiance a hit surface scatters back along `ray`. `footprint`: how far apart rays like this one end, its
 // length over the square root of its density. False: the cell knows too little or is wider than the

@@ -47,6 +47,9 @@ json describe(const Exhibit& exhibit) {
     about["tours"].push_back({{"id", tour.id}, {"title", tour.title}, {"stops", tour.stops.size()}});
   for (const PointOfInterest& point : exhibit.points)
     about["objects"].push_back({{"id", point.id}, {"title", point.title}});
+  about["lamps"] = json::array();
+  for (const ExhibitLamp& lamp : exhibit.lamps)
+    about["lamps"].push_back({{"name", lamp.id}, {"title", lamp.title}, {"on_at_first", lamp.on}});
   about["storyteller"] =
       exhibit.storytellers.empty() ? json(nullptr) : json(exhibit.storytellers.front().name);
   about["storytellers"] = json::array();

@@ -66,6 +66,12 @@ int find_storyteller(const Exhibit& exhibit, std::string_view id) {
   return -1;
 }
 
+int find_lamp(const Exhibit& exhibit, std::string_view id) {
+  for (size_t i = 0; i < exhibit.lamps.size(); i++)
+    if (exhibit.lamps[i].id == id) return int(i);
+  return -1;
+}
+
 const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id) {
   for (const PointOfInterest& point : exhibit.points)
     if (point.id == id) return &point;

@@ -96,6 +96,14 @@ struct PointOfInterest {
   LocalText title;
 };
 
+// What visitors may switch: scene.lamps[i] is what it is made of.
+struct ExhibitLamp {
+  std::string id;
+  LocalText title;
+  bool on = true;  // at first
+};
+inline constexpr size_t most_lamps = 32;
+
 struct Exhibit {
   std::string id, folder;
   LocalText title, description;
@@ -108,11 +116,13 @@ struct Exhibit {
   std::vector<TourPlan> tours;
   std::vector<StoryText> stories;
   std::vector<PointOfInterest> points;
+  std::vector<ExhibitLamp> lamps;  // of each of the scene's
   Scene scene;
 };
 
 int find_viewpoint(const Exhibit& exhibit, std::string_view name);  // -1: none
 int find_storyteller(const Exhibit& exhibit, std::string_view id);  // likewise
+int find_lamp(const Exhibit& exhibit, std::string_view id);         // likewise
 const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id);
 
 }  // namespace wellspring

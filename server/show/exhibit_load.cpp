@@ -10,6 +10,7 @@
 #include "avatar/expression_sum.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "show/exhibit_lamps.h"
 #include "show/exhibit_story.h"
 #include "show/json_fields.h"
 #include "show/package_file.h"
@@ -311,6 +312,7 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
   exhibit.exposure = float(root.number("exposure", false, 1, 1e-6, 1e6));
   root.object("walk", false, [&](Fields fields) { read_walk(exhibit, std::move(fields)); });
   read_scene(exhibit, root, problems);
+  read_lamps(exhibit, root);
   read_viewpoints(exhibit, root);
   for (const Viewpoint& view : exhibit.scene.viewpoints)
     if (find_viewpoint(exhibit, view.name) < 0) exhibit.viewpoints.push_back({view, {}});

@@ -67,6 +67,7 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "kiosk_observations_total", "counter", "Observations received", double(totals.observations));
   metric(out, "greetings_total", "counter", "Greetings said", double(totals.greetings));
   metric(out, "farewells_total", "counter", "Farewells said", double(totals.farewells));
+  metric(out, "lamps_switched_total", "counter", "Lamps switched on or off", double(totals.lamps_switched));
   metric(out, "stories_total", "counter", "Stories begun", double(totals.stories));
   metric(out, "voice_running", "gauge", "The voice program was running when it was last asked",
          report.voice_running);

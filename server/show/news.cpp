@@ -41,7 +41,8 @@ std::string welcome_news(const Show& show, const Visitor& visitor) {
                {"walk_speed", exhibit.walk ? exhibit.walk->speed : 2.0f},
                {"viewpoints", json::array()},
                {"tours", json::array()},
-               {"stories", json::array()}};
+               {"stories", json::array()},
+               {"lamps", json::array()}};
   for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints) {
     std::string title = text(viewpoint.title);
     news["viewpoints"].push_back(
@@ -53,6 +54,10 @@ std::string welcome_news(const Show& show, const Visitor& visitor) {
     json& entry = news["stories"].emplace_back(json{{"id", story.id}, {"title", text(story.title)}});
     entry["teller"] = story.teller < 0 ? json(nullptr) : json(exhibit.storytellers[size_t(story.teller)].id);
   }
+  for (size_t i = 0; i < exhibit.lamps.size(); i++)
+    news["lamps"].push_back({{"name", exhibit.lamps[i].id},
+                             {"title", text(exhibit.lamps[i].title)},
+                             {"on", bool(show.switches.wanted[i])}});
   auto about = [&](const StorytellerPlace& teller) {
     std::string name = text(teller.name);
     return json{{"id", teller.id}, {"name", name}, {"position", triple(teller.position)},
@@ -69,7 +74,8 @@ std::string welcome_news(const Show& show, const Visitor& visitor) {
   return news.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string state_news(const Visitor& visitor, const Exhibit& exhibit) {
+std::string state_news(const Show& show, const Visitor& visitor) {
+  const Exhibit& exhibit = show.exhibit;
   json news = {{"type", "state"},
                {"seq", visitor.seq},
                {"position", triple(visitor.view.position)},
@@ -80,6 +86,9 @@ std::string state_news(const Visitor& visitor, const Exhibit& exhibit) {
                {"converged", std::round(visitor.stats.converged * 1000) / 1000},
                {"viewpoint", nullptr},
                {"tour", nullptr}};
+  if (!exhibit.lamps.empty()) news["lamps"] = json::object();
+  for (size_t i = 0; i < exhibit.lamps.size(); i++)
+    news["lamps"][exhibit.lamps[i].id] = bool(show.switches.wanted[i]);
   if (visitor.viewpoint >= 0) news["viewpoint"] = exhibit.viewpoints[size_t(visitor.viewpoint)].view.name;
   if (visitor.tour.state != TourRide::State::none && visitor.tour.tour >= 0)
     news["tour"] = {{"id", exhibit.tours[size_t(visitor.tour.tour)].id},

@@ -10,7 +10,7 @@
 namespace wellspring {
 
 std::string welcome_news(const Show& show, const Visitor& visitor);
-std::string state_news(const Visitor& visitor, const Exhibit& exhibit);
+std::string state_news(const Show& show, const Visitor& visitor);
 // Empty text: the subtitle disappears.
 std::string subtitle_news(const std::string& text, const std::string& lang, const std::string& speaker,
                           float seconds);

@@ -188,6 +188,11 @@ Answer obey_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
   return {};
 }
 
+Answer obey_one(Show& show, Visitor&, const LampOrder& order) {
+  if (switch_lamp(show, order.name, order.on)) return {};
+  return WireError{"unknown_lamp", "there is no lamp '" + order.name + "'"};
+}
+
 Answer obey_one(Show& show, Visitor& visitor, const Settings& settings) {
   if (settings.fps) visitor.fps = std::clamp(*settings.fps, 0.0f, 120.0f);
   if (settings.sound) visitor.sound = *settings.sound;

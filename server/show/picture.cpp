@@ -139,6 +139,7 @@ namespace {
 void plan_samples(const Show& show, const PictureOrder& order, const Technique& technique,
                   const View& lit, DrawingWork& work, Visitor& visitor) {
   RenderCache& cache = visitor.cache;
+  follow_lamps(show, visitor);
   View ahead = order.coarse ? light_view(order.ahead) : order.ahead;
   cache.set_attention(order.attention);
   cache.set_reference(order.settled);
@@ -291,6 +292,7 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
 
 void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {
   DrawingWork& work = show.easel.work;
+  follow_lamps(show, visitor);
   land(visitor.broker.collect(), *show.world, show.pose_number, visitor.cache);
   visitor.cache.draw(*order.around, *show.sight, Tonemap{show.exhibit.exposure}, work.picture, &work.depth,
                      true);

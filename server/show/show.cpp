@@ -89,6 +89,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   std::vector<vec3> places = places_of(show->exhibit);
   for (const Technique* technique : {show->technique, show->still_technique})
     if (technique->prepare) technique->prepare(*show->world, places, show->lights);
+  begin_lamps(*show);
   log::info("exhibit '{}': {} triangles, {} viewpoints, {} materials", show->exhibit.id,
             triangle_count(scene), show->exhibit.viewpoints.size(), scene.materials.size());
   return show;

@@ -16,6 +16,7 @@
 #include "show/audience.h"
 #include "show/exhibit.h"
 #include "show/figure.h"
+#include "show/lamps.h"
 #include "show/report.h"
 #include "show/sound.h"
 #include "show/visitor.h"
@@ -52,6 +53,7 @@ struct Show {
   Exhibit exhibit;  // the scene inside has the figure's materials and object added
   std::unique_ptr<World> world;
   Lights lights;
+  Switches switches;
   std::unique_ptr<PictureSight> sight;  // one picture at a time
   const Technique* technique = nullptr;
   const Technique* still_technique = nullptr;

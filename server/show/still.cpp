@@ -7,6 +7,7 @@
 
 #include "frame/jpeg.h"
 #include "frame/tonemap.h"
+#include "show/exhibit_lamps.h"
 
 namespace wellspring {
 
@@ -26,6 +27,8 @@ StillRoom::StillRoom(const Show& show)
   }
   world_ = std::make_unique<World>(exhibit_.scene, std::move(moving), std::move(moving_object));
   world_->commit();
+  const std::vector<char> lamps = first_lamps(exhibit_);
+  for (size_t i = 0; i < lamps.size(); i++) world_->switch_lamp(int(i), lamps[i]);
   lights_ = make_lights(*world_);
   transport_.clamp = 0;
 }

@@ -223,7 +223,7 @@ void send_state(Show& show, Visitor& visitor) {
   double interval = visitor.utterance != 0 ? heard_state_interval : state_interval;
   if (show.time - visitor.state_sent_at < interval) return;
   visitor.state_sent_at = show.time;
-  visitor.link->send_text(state_news(visitor, show.exhibit));
+  visitor.link->send_text(state_news(show, visitor));
 }
 
 // What the easel has finished. Returns whether it may be given the next: asked once a tick, as what it
@@ -296,6 +296,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   welcome_links(show, arrivals);
   hear_visitors(show);
   hear_eyes(show);
+  if (free && lamps_wait(show)) light_lamps(show);
   narrate(show, dt);
   int waiting = free ? waiting_for_drawings(show) : 0;
   // The storyteller moves for a picture; otherwise often enough to notice people.

@@ -62,6 +62,7 @@ struct Visitor {
   bool attention = true;  // CacheSettings::attention
   // The easel's (show/easel.h) while a picture of this visitor is drawn or its samples are traced.
   bool at_work = false;
+  std::vector<char> lamps;    // whose light its cache knows: see show/lamps.h
   RenderCache cache;
   Broker broker;              // what is traced after its picture, for the next
   PictureCosts costs;

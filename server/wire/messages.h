@@ -80,6 +80,11 @@ struct StorytellerOrder {
   std::string action;  // "play", "pause", "stop", "restart", "skip" or empty
   bool operator==(const StorytellerOrder&) const = default;
 };
+struct LampOrder {
+  std::string name;
+  bool on = true;
+  bool operator==(const LampOrder&) const = default;
+};
 struct Settings {
   std::optional<float> fps;
   std::optional<bool> attention, sound;
@@ -97,6 +102,7 @@ struct Bye {
   bool operator==(const Bye&) const = default;
 };
 
-using BrowserMessage = std::variant<Hello, Input, CameraTo, ViewpointTo, Tour, StorytellerOrder, Settings, Ack, Bye>;
+using BrowserMessage = std::variant<Hello, Input, CameraTo, ViewpointTo, Tour, StorytellerOrder, LampOrder,
+                                    Settings, Ack, Bye>;
 
 }  // namespace wellspring

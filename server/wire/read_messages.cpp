@@ -66,6 +66,13 @@ static StorytellerOrder read_storyteller(Fields& fields) {
   return order;
 }
 
+static LampOrder read_lamp(Fields& fields) {
+  LampOrder order;
+  fields.text("name", order.name, Need::required);
+  fields.boolean("on", order.on, Need::required);
+  return order;
+}
+
 static Settings read_settings(Fields& fields) {
   Settings settings;
   const auto integer = [&](const char* name, int low, int high) {
@@ -109,6 +116,8 @@ std::variant<BrowserMessage, WireError> read_browser_message(std::string_view te
     message = read_tour(fields);
   else if (type == "storyteller")
     message = read_storyteller(fields);
+  else if (type == "lamp")
+    message = read_lamp(fields);
   else if (type == "settings")
     message = read_settings(fields);
   else if (type == "ack")

@@ -94,6 +94,10 @@ static json to_json(const StorytellerOrder& order) {
   return out;
 }
 
+static json to_json(const LampOrder& order) {
+  return {{"type", "lamp"}, {"name", order.name}, {"on", order.on}};
+}
+
 static json to_json(const Settings& settings) {
   json out = {{"type", "settings"}};
   if (settings.fps) out["fps"] = *settings.fps;

@@ -133,6 +133,20 @@ void World::repaint(int material, const Repaint& change) {
 
 uint64_t World::paints() const { return impl_->paints; }
 
+void World::switch_lamp(int lamp, bool on) {
+  Impl& w = *impl_;
+  if (bool(w.lamp_on.at(size_t(lamp))) == on) return;
+  w.lamp_on[size_t(lamp)] = on;
+  for (int material : w.scene->lamps[size_t(lamp)].materials)
+    for (auto& [number, worn] : w.of_lamps) {
+      if (number != material) continue;
+      const Material& own = w.scene->materials[size_t(material)];
+      *worn = on ? own : switched_off(own);
+    }
+}
+
+bool World::is_on(int lamp) const { return impl_->lamp_on.at(size_t(lamp)); }
+
 void World::commit() {
   if (!impl_->moved) return;
   impl_->moved = false;

@@ -107,6 +107,11 @@ class World {
   void repaint(int material, const Repaint& change);
   uint64_t paints() const;  // how often anything was repainted
 
+  // The scene's lamps, by their numbers; all are on at first. While no ray is being traced. Lights have to
+  // be told: light/lamps.h.
+  void switch_lamp(int lamp, bool on);
+  bool is_on(int lamp) const;
+
   // Nearest hit. Surfaces with alpha are passed through where their alpha says so (mask: cut-off;
   // blend: stochastically, decided by a hash of the ray and the hit, so that a replay agrees).
   // Thread-safe between commits. A ray that is not finite hits nothing.

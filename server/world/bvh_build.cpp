@@ -258,11 +258,21 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
     for (vec3& p : mesh.positions)
       if (!is_finite(p)) p = vec3(0);
   }
+  // Lamps are made of copies of materials, which may go dark.
+  w.lamp_on.assign(scene.lamps.size(), 1);
+  for (const Lamp& lamp : scene.lamps)
+    for (int material : lamp.materials)
+      w.of_lamps.emplace_back(material, std::make_unique<Material>(scene.materials.at(size_t(material))));
+  auto made_of = [&](int material) {
+    for (const auto& [number, worn] : w.of_lamps)
+      if (number == material) return const_cast<const Material*>(worn.get());
+    return &scene.materials[size_t(material)];
+  };
   for (const Instance& instance : scene.instances) {
     if (instance.mesh < 0 || size_t(instance.mesh) >= scene.meshes.size())
       throw std::invalid_argument("World: an instance has no such mesh");
     const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
-    w.placed.push_back({&mesh, &scene.materials[size_t(mesh.material)], instance.object, false,
+    w.placed.push_back({&mesh, made_of(mesh.material), instance.object, false,
                         instance.to_world == mat4(1), is_mirrored(instance.to_world), instance.to_world,
                         normal_matrix(instance.to_world)});
   }

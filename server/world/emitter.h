@@ -4,6 +4,7 @@
 #pragma once
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "base/vec.h"
 
@@ -20,6 +21,14 @@ struct PunctualLight {
   vec3 intensity{1};         // point, spot: W/sr; directional: W/m^2 on a facing surface
   float range = std::numeric_limits<float>::infinity();
   float inner_cone = 0, outer_cone = pi / 4;  // radians from the axis
+};
+
+// What is switched together: a chandelier with all its candles, the spots of a show-case. Nothing belongs to
+// two lamps. How one comes into a scene: world/lamp.h.
+struct Lamp {
+  std::string name;
+  std::vector<int> lights;     // of Scene::lights
+  std::vector<int> materials;  // of Scene::materials: what these emit; nothing else is made of them
 };
 
 // A disc at infinity, equally bright all over: the sun. No radiance: none.

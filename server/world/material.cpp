@@ -15,4 +15,11 @@ Material repainted(const Material& m, const Repaint& change) {
   return made;
 }
 
+Material switched_off(const Material& m) {
+  Material made = m;
+  made.emission = vec3(0);
+  if (m.unlit) made.base_color = vec4(vec3(0), m.base_color.w);  // its colour is its light
+  return made;
+}
+
 }  // namespace wellspring

@@ -73,5 +73,7 @@ void each_texture(M& m, Body&& body) {
 }
 // `m` changed so: colours stay within their ranges, what is not finite changes nothing.
 Material repainted(const Material& m, const Repaint& change);
+// The same without its own light.
+Material switched_off(const Material& m);
 
 }  // namespace wellspring

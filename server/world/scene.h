@@ -39,6 +39,12 @@ struct Viewpoint {
   float fov = 1.0f;   // vertical, radians
 };
 
+// Of the file's tree of nodes: what hangs together.
+struct SceneNode {
+  std::string name;
+  int parent = -1;  // index into Scene::nodes
+};
+
 struct Scene {
   std::string name;
   dvec3 origin{0};  // absolute world position of this scene's (0, 0, 0)
@@ -48,7 +54,11 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<std::string> objects;  // names; objects[0] is "" (nothing)
+  // Of objects and lights the node of the file that each comes from, as far as there is one.
+  std::vector<SceneNode> nodes;
+  std::vector<int> object_nodes, light_nodes;
   std::vector<PunctualLight> lights;
+  std::vector<Lamp> lamps;  // what of them, and of emissive materials, can be switched
   Environment environment;
   std::vector<Viewpoint> viewpoints;
   std::vector<std::string> warnings;  // what the file asks for that is not done, each said once

@@ -46,6 +46,9 @@ class Builder {
     nodes_ = make_pose(file, time);
     for (const Node& node : nodes_) global_.push_back(node.global);
     scene.objects.push_back("");
+    scene.object_nodes.push_back(-1);
+    const json& list = items(file.root, "nodes");
+    for (size_t i = 0; i < nodes_.size(); i++) scene.nodes.push_back({text(list[i], "name"), nodes_[i].parent});
   }
 
   void build() {
@@ -84,6 +87,7 @@ class Builder {
     used_[mesh_index] = 1;
     std::string name = text(object, "name", text(mesh, "name"));
     scene_.objects.push_back(name);
+    scene_.object_nodes.push_back(int(index));
     uint32_t id = uint32_t(scene_.objects.size() - 1);
     Deformation deformation;
     deformation.weights = nodes_[index].weights;
@@ -235,6 +239,7 @@ class Builder {
     double length = glm::length(dvec3(m[2]));
     if (length > 0) light.direction = vec3(-dvec3(m[2]) / length);
     scene_.lights.push_back(light);
+    scene_.light_nodes.push_back(int(index));
     light_positions_.push_back(dvec3(m[3]));
   }
 

@@ -188,6 +188,35 @@ test('the storyteller is heard after the first touch, from where she stands, and
   await page.close();
 });
 
+test('lamps are switched in the menu, for everybody', { skip }, async () => {
+  const { page, problems } = await open();
+  const { page: other } = await open();
+  await sleep(2500);
+  const level = async (of) => (await look(of)).reduce((sum, value, i) => sum + (i % 4 < 3 ? value : 0), 0) / (24 * 14 * 3);
+  const lit = [await level(page), await level(other)];
+  await page.locator('#menu-button').click();
+  const lamp = page.getByRole('switch', { name: 'Daylight' });
+  assert.equal(await lamp.isChecked(), true);
+  await lamp.focus();
+  await page.keyboard.press('Space');
+  await other.waitForFunction(() => document.querySelector('input[data-lamp=daylight]').checked === false);
+  await sleep(2500);
+  assert.equal(await lamp.isChecked(), false);
+  await shot(page, 'lamps-off');
+  for (const [i, of] of [page, other].entries()) {
+    const dark = await level(of);
+    assert.ok(dark < 0.5 * lit[i], `page ${i}: ${lit[i]} before, ${dark} after`);
+  }
+  await other.locator('#menu-button').click();
+  await other.getByRole('switch', { name: 'Daylight' }).click();
+  await page.waitForFunction(() => document.querySelector('input[data-lamp=daylight]').checked === true);
+  await sleep(2500);
+  assert.ok(await level(page) > 0.8 * lit[0]);
+  await shot(page, 'lamps-on');
+  assert.deepEqual(problems, []);
+  for (const of of [page, other]) await of.close();
+});
+
 test('phone and kiosk sizes hold everything inside the window', { skip }, async () => {
   for (const [path, width, height] of [['/', 390, 844], ['/', 844, 390], ['/', 1920, 1080], ['/kiosk', 1080, 1920]]) {
     const { page, problems } = await open(path, { width, height });

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lamps out of a scene's file: lights and what shines, named by those who furnish an exhibit.
+#pragma once
+#include "world/scene.h"
+
+namespace wellspring {
+
+struct LampNames {
+  std::string name;
+  // Lights, and things of which something shines, by their nodes or by nodes above these; all of a name.
+  std::vector<std::string> nodes;
+  std::vector<std::string> materials;  // all that is made of them, wherever it is
+};
+
+// A name that is no part of a lamp.
+struct LampFault {
+  bool is_material = false;
+  size_t index = 0;  // of LampNames::nodes or materials
+  std::string what;
+};
+
+// Adds a lamp of all that is named and is no fault to the scene. Materials and meshes that it shares with
+// what is no part of it are copied, so that they are its own: the picture stays as it was.
+std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene);
+
+}  // namespace wellspring

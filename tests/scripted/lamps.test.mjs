@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lamps over the WebSocket: one visitor switches, everybody is told and sent other pictures.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { Visitor, sleep, start_server } from '../server.mjs';
+
+let server;
+before(async () => { server = await start_server(); });
+after(async () => { if (server) assert.equal(await server.stop(), 0); });
+
+test('one switches, both are told, and the pictures of both follow', async () => {
+  const one = new Visitor(server), other = new Visitor(server);
+  const welcome = await one.hello(), greeted = await other.hello({ lang: 'de', role: 'kiosk' });
+  assert.ok(welcome.lamps.length >= 3);
+  const { name } = welcome.lamps.find((lamp) => lamp.name === 'daylight');
+  assert.ok(welcome.lamps.every((lamp) => lamp.on && lamp.title));
+  assert.notEqual(greeted.lamps[0].title, welcome.lamps[0].title);
+  // Beside the storyteller, looking at a wall: nothing moves, so that pictures are alike but for their light.
+  for (const visitor of [one, other]) visitor.send({ type: 'viewpoint', seq: 1, name: 'paintings' });
+  await sleep(3000);
+  // A dark picture says less: its JPEG is smaller at the same quality.
+  const bytes = (visitor) => ({ size: visitor.last.jpeg.length, quality: visitor.last.quality });
+  const lit = [bytes(one), bytes(other)];
+  const told = [one, other].map((visitor) => visitor.message('state', (message) => message.lamps[name] === false));
+  other.send({ type: 'lamp', name, on: false });
+  for (const message of await Promise.all(told)) assert.equal(message.lamps.chandeliers, true);
+  await sleep(3000);
+  for (const [i, visitor] of [one, other].entries()) {
+    const dark = bytes(visitor);
+    assert.ok(dark.quality >= lit[i].quality, `${dark.quality} after ${lit[i].quality}`);
+    assert.ok(dark.size < 0.8 * lit[i].size, `visitor ${i}: ${lit[i].size} bytes lit, ${dark.size} dark`);
+  }
+  // Who comes later finds it as it is.
+  const late = new Visitor(server);
+  assert.equal((await late.hello()).lamps.find((lamp) => lamp.name === name).on, false);
+  await late.close();
+  const back = other.message('state', (message) => message.lamps[name]);
+  one.send({ type: 'lamp', name, on: true });
+  await back;
+  for (const visitor of [one, other]) await visitor.close();
+});
+
+test('what is no lamp is refused', async () => {
+  const visitor = new Visitor(server);
+  await visitor.hello();
+  for (const [message, code] of [[{ type: 'lamp', name: 'moon', on: false }, 'unknown_lamp'], [{ type: 'lamp', name: 'fire' }, 'bad_field'], [{ type: 'lamp', on: true }, 'bad_field']]) {
+    const error = visitor.message('error');
+    visitor.send(message);
+    assert.equal((await error).code, code);
+  }
+  const about = await (await fetch(`${server.url}/api/v1/exhibits/castle`)).json();
+  assert.ok(about.lamps.every((lamp) => lamp.name && lamp.title.en && lamp.on_at_first === true));
+  assert.match(await (await fetch(`${server.url}/metrics`)).text(), /^wellspring_lamps_switched_total 2$/m);
+  await visitor.close();
+});
