@@ -20,7 +20,7 @@ static_assert(block == lanes);
 constexpr float least_depth = 1e-6f;   // over that of the other view: nothing is nearer to a camera
 constexpr int most_steps = 96;         // along an epipolar line
 constexpr int most_blocks = 24;        // written per block, on average, when bounds are carried forward
-constexpr int seam_across = 40;        // of its width, a keyframe passes into what is around
+constexpr int seam_across = 64;        // of its width, a keyframe passes into what is around
 constexpr float found = 0.5f;          // pixels between a place and itself, carried there and back
 constexpr float half_step = 0.5f;      // pixels that disparities within a bilinear sample may open
 constexpr int fractions = 16;          // places of a bilinear sample between two pixels, as a power of 2

@@ -113,6 +113,36 @@ TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
   }
 }
 
+// Calm light is as bright as that with each point's own, but neighbours differ less, as few samples are noisy.
+TEST(Drawn, CalmLightIsThatOfCells) {
+  Stage stage(make_room());
+  DrawnVisit drawn;
+  View view = view_from(stage, 0, width, height);
+  for (int i = 0; i < 6; i++) drawn.step(stage, view, pixels / 20, PictureOf::moving);
+  Image8 own, calm;
+  drawn.cache.draw(view, *stage.sight, Tonemap{1}, own);
+  drawn.cache.draw(view, *stage.sight, Tonemap{1}, calm, nullptr, true);
+  auto sum = [](const Image8& image) {
+    double sum = 0;
+    for (uint8_t c : image.rgb) sum += c;
+    return sum;
+  };
+  // Across light pixels of two, where the surface goes on as it does in the picture without noise.
+  Image8 truth;
+  tonemap(stage.truth(view, 256), {1}, truth);
+  auto roughness = [&](const Image8& image) {
+    double sum = 0;
+    for (int y = 0; y < height; y++)
+      for (int x = 0; x + 2 < width; x++) {
+        size_t i = 3 * size_t(y * width + x);
+        if (std::abs(truth.rgb[i] - truth.rgb[i + 6]) < 8) sum += std::abs(image.rgb[i] - image.rgb[i + 6]);
+      }
+    return sum;
+  };
+  EXPECT_NEAR(sum(calm), sum(own), 0.03 * sum(own));
+  EXPECT_LT(roughness(calm), 0.8 * roughness(own));
+}
+
 // Who has just arrived sees shapes at once, also at rest.
 TEST(Drawn, StillPicturesHaveExactShapesWithFewPoints) {
   Stage stage(make_room());
