@@ -31,6 +31,7 @@ namespace wellspring {
 namespace {
 
 constexpr int largest_side = 16384;
+constexpr size_t most_around = 2;  // times the pixels of a picture: what lies around is no more to remember
 constexpr int still_project_period = 8;  // frames
 constexpr uint8_t moving_mean = 48, still_mean = 255;  // samples a point's mean looks back on
 constexpr uint8_t moving_specular = 4;  // of what moves with the view and lies nowhere
@@ -74,7 +75,7 @@ struct RenderCache::Impl {
   Cells cells;  // in the work's scratch
   std::shared_ptr<CacheWork> work;
   bool shares = false;
-  int width = 0, height = 0;  // of the largest picture there is room for
+  int width = 0, height = 0;  // of the largest picture there is room for, but for its surroundings
   View view;  // of the last projection
   bool projected = false;
   bool reference = false;  // set_reference()
@@ -119,6 +120,12 @@ struct RenderCache::Impl {
   }
   void count(const SurfaceCounts& counts, bool known);
   void relight(const Forgotten& forgotten);
+  // The image has room for what lies around a picture, as long as that is projected.
+  void fit_image(int across, int down);
+  // Coarser, unless the view itself is projected.
+  View light_of(const View& drawn) const {
+    return projected && drawn == view ? view : light_view(drawn);
+  }
   template <class Compose>
   void draw(const View& lit, const Compose& compose);
 };
@@ -155,6 +162,20 @@ void RenderCache::resize(int width, int height) {
   c.forget_still();
 }
 
+void RenderCache::Impl::fit_image(int across, int down) {
+  size_t pixels = size_t(across) * size_t(down), room = size_t(width) * size_t(height);
+  if (pixels > still.count.size()) {
+    reserve_image(image, across, down);
+    still.count.resize(pixels, 0);
+  } else if (pixels <= room && still.count.size() > room) {
+    still.count = std::vector<uint8_t>(room);
+    image.width = image.height = 0;
+    image.point = {}, image.depth = {}, image.changed = {};
+    reserve_image(image, width, height);
+    projected = false;
+  }
+}
+
 void RenderCache::Impl::notice_paint(const World& world) {
   if (world.paints() == paints) return;
   paints = world.paints();
@@ -184,8 +205,9 @@ void RenderCache::move_object(uint32_t object, const mat4& moved) {
 void RenderCache::project(const View& view) {
   Impl& c = *impl_;
   int width = std::clamp(view.width, 1, largest_side), height = std::clamp(view.height, 1, largest_side);
-  if (width > c.width || height > c.height)
+  if (size_t(width) * size_t(height) > most_around * size_t(c.width) * size_t(c.height))
     resize(std::max(width, c.width), std::max(height, c.height));
+  c.fit_image(width, height);
   c.borrow_priority();
   resize_image(c.image, width, height);
   bool same = c.projected && view == c.view;
@@ -323,19 +345,21 @@ void RenderCache::Impl::draw(const View& lit, const Compose& compose) {
 
 void RenderCache::draw(const View& view, const PictureSight& sight, Frame& frame) {
   Impl& c = *impl_;
-  View lit = light_view(view);
+  View lit = c.light_of(view);
   if (!c.projected || lit != c.view) project(lit);
   fit_frame(view.width, view.height, frame);
-  c.draw(lit, [&] { compose_drawn(view, sight, c.cells, c.known, c.work->light, frame); });
+  c.draw(lit, [&] { compose_drawn(view, lit, sight, c.cells, c.known, c.work->light, frame); });
 }
 
 void RenderCache::draw(const View& view, const PictureSight& sight, const Tonemap& tonemap,
                        Image8& image, std::vector<float>* depth, bool calm) {
   Impl& c = *impl_;
-  View lit = light_view(view);
+  View lit = c.light_of(view);
   if (!c.projected || lit != c.view) project(lit);
-  c.draw(lit,
-         [&] { compose_drawn(view, sight, c.cells, c.known, c.work->light, tonemap, calm, image, depth); });
+  c.draw(lit, [&] {
+    compose_drawn(view, lit, sight, c.cells, c.known, c.work->light, tonemap, calm, image,
+                  depth);
+  });
 }
 
 void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame& frame) {

@@ -63,7 +63,8 @@ class RenderCache {
   // The object was carried off as a whole, by `moved` (rigid) from where it was: its points go along.
   void move_object(uint32_t object, const mat4& moved);
   // Where every point falls in `view`; depth cull. Views of less than the room there is, such as
-  // light_view()'s, cost no memory and no point. Makes room for larger ones.
+  // light_view()'s, cost no memory and no point. Those of up to twice as many pixels have a larger image, and larger
+  // ones room for more points.
   void project(const View& view);
   // About the share of pixels that a point shows in, from every eighth row.
   float covered() const;
@@ -85,8 +86,8 @@ class RenderCache {
   // answers to all of them are shown. The frame must not be touched in between.
   void survey(const View& view, int most, Frame& frame, std::vector<Ray>& looks);
   void reconstruct(const View& view, std::span<const Seen> seen, Frame& frame);
-  // A picture of `view` drawn in the light of light_view(view) (cache/compose_drawn.h), for which all
-  // of the frame before has been done; needs sight.can_see(view). The second for the eye at once,
+  // A picture of `view` drawn in the light of `view` or of light_view(view) (cache/compose_drawn.h),
+  // whichever all of the frame before has been done for (neither: the latter); needs sight.can_see(view). The second for the eye at once,
   // and of a `depth` that is not null metres along the viewing axis, infinity: nothing there.
   // `calm`: of pixels so large that a point's own light would show as a square.
   void draw(const View& view, const PictureSight& sight, Frame& frame);

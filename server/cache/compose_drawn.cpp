@@ -321,6 +321,21 @@ using CoarseComposer = Composer<light_scale>;
 using FineComposer = Composer<1>;
 constexpr float still_blur = 0.5f;  // the mean over places in the pixel blurs enough
 
+// A picture that stands for itself. Returns its edges.
+template <class Planes>
+std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const View& lit,
+                                                       const PictureSight& sight, const Cells& cells,
+                                                       bool known, const Frame& light, bool calm,
+                                                       const Planes& planes) {
+  auto draw = [&](auto composer) {
+    if (calm) composer.own_counts = calm_counts;
+    return sight.see_edges(view, composer.offset, taker(composer, planes));
+  };
+  PixelRays rays(view);
+  if (lit == view) return draw(FineComposer{view, cells, known, light, rays, rays});
+  return draw(CoarseComposer{view, cells, known, light, rays, PixelRays(lit)});
+}
+
 }  // namespace
 
 View light_view(const View& view) {
@@ -332,24 +347,21 @@ View light_view(const View& view) {
   return light;
 }
 
-void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
-                   const Frame& light, Frame& frame) {
-  CoarseComposer composer{view, cells, known, light, PixelRays(view), PixelRays(light_view(view))};
+void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
+                   bool known, const Frame& light, Frame& frame) {
   FramePlanes planes{frame};
-  soften_edges(sight.see_edges(view, composer.offset, taker(composer, planes)), frame.color);
+  soften_edges(compose_moment(view, lit, sight, cells, known, light, false, planes), frame.color);
 }
 
-void compose_drawn(const View& view, const PictureSight& sight, const Cells& cells, bool known,
-                   const Frame& light, const Tonemap& tonemap, bool calm, Image8& image,
+void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
+                   bool known, const Frame& light, const Tonemap& tonemap, bool calm, Image8& image,
                    std::vector<float>* depth) {
   size_t pixels = size_t(view.width) * size_t(view.height);
   image.width = view.width, image.height = view.height;
   image.rgb.resize(3 * pixels);
   if (depth) depth->resize(pixels);
-  CoarseComposer composer{view, cells, known, light, PixelRays(view), PixelRays(light_view(view))};
-  if (calm) composer.own_counts = calm_counts;
   EyePlanes planes{tonemap.exposure, image.rgb.data(), depth ? depth->data() : nullptr};
-  soften_edges(sight.see_edges(view, composer.offset, taker(composer, planes)), image);
+  soften_edges(compose_moment(view, lit, sight, cells, known, light, calm, planes), image);
 }
 
 void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,

@@ -14,13 +14,13 @@ constexpr double enter_drawn = 0.6, leave_drawn = 0.8;  // of the time, for draw
 // Seconds a picture may take with it. On a busy machine points are few, and what they show is worse than
 // fewer pictures.
 constexpr double enter_period = 0.5, leave_period = 0.6;
-// Pixels a sample from which on drawing in coarser light shows who moves no more error than points do,
-// and hardly a wrong surface, of which points alone show more than one in a hundred.
-constexpr double enter_coarse = 14, leave_coarse = 10;
 constexpr double unmeasured_light = 0.4;  // of the display's time, where light is coarser
 constexpr double least_light = 0.25;  // of the time goes to light, whatever is drawn
 constexpr int drawn_samples = 1000;  // the same where shapes are drawn: only light has to be guessed
 constexpr int least_samples = 2000;                   // a picture, however slow the machine
+// Samples a second for each pixel, from which on finer light shows who moves less error, though most of
+// its pixels have no point.
+constexpr double enter_fine = 0.4, leave_fine = 0.25;
 constexpr float few_guessed = 0.25f;   // of the pixels of coarser light: some 1.4 samples each
 constexpr float nearly_none = 0.1f;    // of the picture's pixels
 constexpr float most_known = 0.5f;     // likewise
@@ -43,23 +43,23 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
   double period = display + drawing + light;
   plan.drawn = drawing <= (before.drawn ? leave_drawn : enter_drawn) * seconds ||
                period <= (before.drawn ? leave_period : enter_period);
-  double plenty = double(pixels) / (before.drawn ? leave_coarse : enter_coarse);
-  if (!fine && (1 - edge_share) * seconds * costs.samples_per_second > plenty) plan.drawn = false;
   if (wish != DrawShapes::automatic) plan.drawn = wish == DrawShapes::always;
   plan.drawn &= !plan.primary;
-  bool coarse = plan.drawn && !fine;  // edges are drawn, light has a quarter of the pixels
   if (plan.drawn) seconds = std::max(seconds + costs.display_seconds - display - drawing, least_light * seconds);
   double look_seconds = plan.primary ? all_seconds : plan.drawn ? 0 : edge_share * seconds;
   plan.looks = plan.primary ? int(all_looks) : whole(look_seconds * costs.looks_per_second, all_looks);
   plan.samples = std::max(
-      whole((seconds - look_seconds) * costs.samples_per_second,
-            (coarse ? 0.125 : 0.5) * double(pixels)),
+      whole((seconds - look_seconds) * costs.samples_per_second, 0.5 * double(pixels)),
       std::min(plan.drawn ? drawn_samples : least_samples, int(pixels)));
   return plan;
 }
 
 bool wants_fine_light(bool stands, bool coarse, float guessed) {
   return stands && !(coarse && guessed > few_guessed);
+}
+
+bool affords_fine_light(double samples, bool before) {
+  return samples >= (before ? leave_fine : enter_fine);
 }
 
 bool wants_reference(double seconds_at_rest, bool before, bool coarse, float guessed, float known) {

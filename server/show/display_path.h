@@ -14,13 +14,13 @@ struct DisplayCosts {
   double samples_per_second = 0, looks_per_second = 0;  // all cores
   double drawing_seconds = 0;  // of a picture, all cores; 0: never measured
   double display_seconds = 0;  // what a picture takes besides: reprojection, composing, tone mapping
-  double light_seconds = 0;    // the same of one drawn in coarser light; 0: never measured
+  double light_seconds = 0;    // the same of one drawn for who moves; 0: never measured
 };
 
 enum class DrawShapes : uint8_t { automatic, never, always };  // server option --draw
 
 struct DisplayPlan {
-  bool drawn = false;    // in light of half the resolution (cache/compose_drawn.h), unless that is fine
+  bool drawn = false;    // shapes and reflectances are (cache/compose_drawn.h)
   bool primary = false;  // every pixel is looked at
   int samples = 0, looks = 0;
 };
@@ -35,6 +35,9 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
 // pixel light of half of it has less error (castle, the storyteller: FLIP 0.193 after 0.213 at a tenth).
 // `coarse`, `guessed`: of the picture before, and the share of its light that no point told.
 bool wants_fine_light(bool stands, bool coarse, float guessed);
+
+// The same for who moves: `samples` of light a second for each pixel. `before`: it was in the picture before.
+bool affords_fine_light(double samples, bool before);
 
 // Whether the reference (`path`) answers: who has stood for a while, when most places have so many answers
 // of the quicker technique, whose single samples tell more, that those of the reference are no noise to

@@ -32,7 +32,8 @@ struct PictureOrder {
   uint32_t leaps = 0;    // of the visitor, by then
   bool still = false;    // without motion for a moment
   bool settled = false;  // for long: the reference takes over
-  bool coarse = false;   // drawn in coarser light (cache/compose_drawn.h)
+  bool passing = false;  // drawn for a moment, and some around (cache/compose_drawn.h)
+  bool coarse = false;   // that in coarser light
   bool attention = true;
   bool keep = false;     // as a keyframe, for others to be made of
   uint64_t seed = 0;
@@ -54,7 +55,7 @@ struct Visitor;
 struct DrawingWork {
   std::shared_ptr<CacheWork> cache = make_cache_work();  // of all visitors' caches
   Frame frame;
-  std::vector<float> depth;  // of what is drawn in coarser light
+  std::vector<float> depth;  // of what is drawn for a moment
   Image8 picture;            // when it is finished the visitor's old one
   Keyframe keyframe, around;  // likewise
   std::vector<Request> requests, ahead;

@@ -110,19 +110,23 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
       seconds_to_trace(show, visitor, busy), size_t(visitor.width) * size_t(visitor.height),
       display_costs(show, visitor), before.display, fine,
       may_draw ? show.settings.draw : DrawShapes::never);
-  // Who moves is shown shapes and reflectances as they are, in light of half their resolution; who
-  // stops, until more is known.
-  order.coarse = order.display.drawn && !fine;
+  // Who moves is shown shapes and reflectances as they are, in light of half their resolution where
+  // samples are few; who stops, until more is known.
   double interval = 1 / drawing_rate(show, visitor);
+  double seen_for = std::max(interval, 0.001 * double(visitor.times.interval));
+  double pixels = double(visitor.width) * double(visitor.height);
+  order.passing = order.display.drawn && !fine;
+  order.coarse = order.passing && !affords_fine_light(order.display.samples / (seen_for * pixels),
+                                                      before.passing && !before.coarse);
   if (order.keep && !order.still && visitor.frame_number > 0) {
     // It is seen from when it is finished until the next one is.
-    interval = std::max(interval, 0.001 * double(visitor.times.interval));
+    interval = seen_for;
     double seen_in = 0.001 * double(visitor.times.whole) + 0.5 * interval;
     order.expected = expected_view(visitor.heading, now, seen_in);
     order.ahead = expected_view(visitor.heading, now, seen_in + interval);
     float turn = expected_turn(visitor.heading, now, 0.5 * interval);
-    order.view = order.coarse ? keyframe_view(order.expected, turn) : order.expected;
-    if (order.coarse) {
+    order.view = order.passing ? keyframe_view(order.expected, turn) : order.expected;
+    if (order.passing) {
       order.ahead = keyframe_view(order.ahead);
       order.around = surroundings(visitor.heading, now, order.view, seen_in + 0.5 * interval);
     }
@@ -206,16 +210,16 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   if (!costs.late) cache.remember(lit, work.requests, work.samples);
   const Tonemap curve{show.exhibit.exposure};
   work.looks.clear();
-  if (order.coarse)
+  if (order.passing)
     cache.draw(order.view, *show.sight, curve, work.picture, order.keep ? &work.depth : nullptr);
   else if (order.display.drawn)
     cache.draw_still(order.view, *show.sight, work.frame);
   else
     looking = show_points(show, order, work, cache);
   double painted = seconds_now();
-  if (!order.coarse) tonemap(work.frame, curve, work.picture);
+  if (!order.passing) tonemap(work.frame, curve, work.picture);
   if (order.keep)
-    make_keyframe(order.view, work.picture, order.coarse ? work.depth : work.frame.depth,
+    make_keyframe(order.view, work.picture, order.passing ? work.depth : work.frame.depth,
                   work.keyframe);
   double finished = seconds_now();
 
@@ -224,9 +228,9 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   costs.trace = float(1000 * (traced - planned));
   costs.look = float(1000 * looking);
   costs.drawing = order.display.drawn ? cache.stats().drawing_ms : 0.0f;
-  (order.coarse ? costs.light : costs.display) =
+  (order.passing ? costs.light : costs.display) =
       float(1000 * ((planned - began) + (painted - traced) - looking)) - costs.drawing;
-  (order.coarse ? costs.light : costs.tonemap) += float(1000 * (finished - painted));
+  (order.passing ? costs.light : costs.tonemap) += float(1000 * (finished - painted));
   costs.seconds = finished - began;
 }
 
@@ -254,7 +258,7 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
     smooth(show.samples_per_second, float(costs.samples) / (0.001f * costs.trace));
   if (costs.looks >= least_measured && costs.look > 0)
     smooth(show.looks_per_second, float(costs.looks) / (0.001f * costs.look));
-  if (order.coarse) {
+  if (order.passing) {
     smooth(times.light, costs.light);
   } else {
     smooth(times.display, costs.display);

@@ -11,6 +11,7 @@
 #include "cache/compose_drawn.h"
 #include "cache/looks.h"
 #include "cache/predict.h"
+#include "show/display_path.h"
 
 namespace wellspring {
 namespace {
@@ -54,6 +55,7 @@ struct Batch {
 // (cache.primary.sample_looks).
 constexpr double look_share = 0.12;
 constexpr int looks_a_sample = 20;
+constexpr double displayed_rate = 60;    // frames a second
 constexpr float predicted_frames = 2;    // as show/picture.cpp
 constexpr double predicted_share = 0.3;  // of the budget, at most
 
@@ -65,7 +67,9 @@ class CacheMethod : public VisitMethod {
     if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
     last_view_ = moment.view;
     // As show/picture.cpp draws what moves.
-    bool coarse = primary_ && moment.frame - moved_ < still_after && sight(moment).can_see(moment.view);
+    bool passing = primary_ && moment.frame - moved_ < still_after && sight(moment).can_see(moment.view);
+    double pixels = double(moment.view.width) * double(moment.view.height);
+    bool coarse = passing && !affords_fine_light(budget * displayed_rate / pixels, false);
     const View view = coarse ? light_view(moment.view) : moment.view;
     cache_.set_reference(moment.technique == find_technique("path"));
     cache_.resize(moment.view.width, moment.view.height);
@@ -74,7 +78,7 @@ class CacheMethod : public VisitMethod {
     land(broker_.collect(), *moment.world, pose, cache_);
     cache_.project(view);
     cache_.attend();
-    int price = coarse ? 0 : int(look_share * budget);
+    int price = passing ? 0 : int(look_share * budget);
     int looks = std::min(looks_a_pixel * view.width * view.height, price * looks_a_sample);
     budget -= price;
     ahead_.clear();
@@ -97,7 +101,7 @@ class CacheMethod : public VisitMethod {
       batch_.trace(moment);
       cache_.remember(view, batch_.requests, batch_.samples);
     }
-    if (coarse)
+    if (passing)
       cache_.draw(moment.view, sight(moment), shown.frame);
     else if (primary_ && sight(moment).can_see(moment.view))
       cache_.draw_still(moment.view, sight(moment), shown.frame);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "frame/compare.h"
+#include "frame/flip.h"
 #include "frame/tonemap.h"
 #include "unit/cache/drawn_visit.h"
 
@@ -92,13 +93,14 @@ void expect_same_for_the_eye(DrawnVisit& drawn, const View& view, const PictureS
 TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
   for (ivec2 size : {ivec2(160, 120), ivec2(151, 97)}) {
     Stage stage = make_room_with_ball();
-    DrawnVisit drawn, guessed;
+    DrawnVisit drawn, fine, guessed;
     int count = size.x * size.y;
     View view;
     for (int i = 0; i < 24; i++) {
       stage.push_ball(0.004f);
       view = view_from(stage, 0.002 * i + (i >= 12 ? 0.1 : 0), size.x, size.y);
       drawn.step(stage, view, count / 60, PictureOf::moving);
+      fine.step(stage, view, count / 60, PictureOf::moving_fine);
       guessed.step(stage, view, count / 60, PictureOf::points);
     }
     ASSERT_EQ(drawn.frame.color.size(), size_t(count));
@@ -107,9 +109,15 @@ TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
     EXPECT_GT(count_wrong(stage, view, guessed.frame), count / 100);  // so the case is hard
     for (size_t i = 0; i < drawn.frame.object.size(); i++)
       ASSERT_EQ(drawn.frame.object[i] == 0, std::isinf(drawn.frame.depth[i])) << i;
+    // The same shapes, whatever light is on them.
+    EXPECT_EQ(fine.frame.object, drawn.frame.object);
+    EXPECT_EQ(fine.frame.depth, drawn.frame.depth);
     Frame truth = stage.truth(view, 32);
-    EXPECT_LT(rmse(drawn.frame, truth), 0.9 * rmse(guessed.frame, truth)) << size.x;
-    expect_light(drawn.frame);
+    for (DrawnVisit* shown : {&drawn, &fine}) {
+      EXPECT_LT(rmse(shown->frame, truth), 0.9 * rmse(guessed.frame, truth)) << size.x;
+      expect_light(shown->frame);
+      expect_same_for_the_eye(*shown, view, *stage.sight);
+    }
   }
 }
 
@@ -141,6 +149,54 @@ TEST(Drawn, CalmLightIsThatOfCells) {
   };
   EXPECT_NEAR(sum(calm), sum(own), 0.03 * sum(own));
   EXPECT_LT(roughness(calm), 0.8 * roughness(own));
+}
+
+// Light of the picture's own resolution is nearer to what is there.
+TEST(Drawn, FineLightShowsWhoMovesMore) {
+  Stage stage(make_room());
+  for (int budget : {pixels / 32, pixels / 128}) {
+    DrawnVisit coarse, fine;
+    View view;
+    for (int i = 0; i < 48; i++) {
+      view = view_from(stage, 0.004 * i, width, height);
+      coarse.step(stage, view, budget, PictureOf::moving);
+      fine.step(stage, view, budget, PictureOf::moving_fine);
+    }
+    Frame truth = stage.truth(view, 128);
+    EXPECT_LT(flip(fine.frame, truth), 0.95 * flip(coarse.frame, truth)) << budget;
+  }
+}
+
+// What lies around a picture has a larger image for as long as it is drawn, and no more points.
+TEST(Drawn, SurroundingsInFineLightCostNoPoint) {
+  Stage stage(make_room());
+  DrawnVisit drawn;
+  View view = view_from(stage, 0, width, height), around = view;
+  around.width += 64, around.height += 32;
+  around.tan_half_fov *= float(around.height) / float(view.height);
+  auto step = [&](const View& seen, PictureOf kind, int budget) {
+    drawn.cache.resize(width, height);  // as the show says it, every picture
+    drawn.cache.move_points(*stage.world);
+    drawn.cache.project(seen);
+    drawn.cache.attend();
+    drawn.cache.plan(seen, budget, drawn.tick++, drawn.requests);
+    drawn.samples.resize(drawn.requests.size());
+    trace(*find_technique("path"), *stage.world, stage.lights, {}, drawn.requests, drawn.samples);
+    drawn.cache.remember(seen, drawn.requests, drawn.samples);
+    if (kind == PictureOf::still) drawn.cache.draw_still(seen, *stage.sight, drawn.frame);
+    else drawn.cache.draw(seen, *stage.sight, drawn.frame);
+    EXPECT_EQ(drawn.frame.width, seen.width);
+    expect_light(drawn.frame);
+  };
+  for (int i = 0; i < 8; i++) step(view, PictureOf::moving_fine, pixels / 8);
+  float points = drawn.cache.stats().points;
+  for (int i = 0; i < 8; i++) step(around, PictureOf::moving_fine, 1);
+  EXPECT_GE(drawn.cache.stats().points, 0.99f * points);  // none was lost
+  for (int i = 0; i < 64; i++) step(around, PictureOf::moving_fine, pixels / 8);
+  EXPECT_LE(drawn.cache.stats().points, 1.1f * float(pixels));
+  for (int i = 0; i < 4; i++) step(around, PictureOf::still, pixels / 8);
+  for (int i = 0; i < 4; i++) step(view, PictureOf::still, pixels / 8);
+  EXPECT_GE(drawn.cache.stats().points, 0.5f * float(pixels));
 }
 
 // Who has just arrived sees shapes at once, also at rest.

@@ -80,7 +80,8 @@ inline Mesh add_ball(Scene& scene, vec3 place) {
   return ball;
 }
 
-enum class PictureOf { points, moving, still };  // RenderCache::reconstruct(), draw(), draw_still()
+// RenderCache::reconstruct(), draw() in coarser light and in fine, draw_still()
+enum class PictureOf { points, moving, moving_fine, still };
 
 struct DrawnVisit {
   RenderCache cache;
@@ -100,7 +101,7 @@ struct DrawnVisit {
     trace(*find_technique("path"), *stage.world, stage.lights, {}, requests, samples);
     cache.remember(light, requests, samples);
     if (kind == PictureOf::points) cache.reconstruct(view, frame);
-    if (kind == PictureOf::moving) cache.draw(view, *stage.sight, frame);
+    if (kind == PictureOf::moving || kind == PictureOf::moving_fine) cache.draw(view, *stage.sight, frame);
     if (kind == PictureOf::still) cache.draw_still(view, *stage.sight, frame);
   }
 };

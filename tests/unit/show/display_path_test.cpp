@@ -65,16 +65,11 @@ TEST(DisplayPath, DrawsWhereTimeOrTheRateAllows) {
   DisplayCosts dear = slow;  // light
   dear.samples_per_second = 5e4;
   EXPECT_TRUE(plan_display(0.16, pixels, dear, points).drawn);
-  // Where one pixel in eight gets a sample, points alone are as good for who moves; not for who stands.
+  // However many samples there are: points show wrong surfaces.
   DisplayCosts plenty = slow;
   plenty.samples_per_second = 6e5;
-  EXPECT_FALSE(plan_display(0.22, pixels, plenty, points).drawn);
-  EXPECT_FALSE(plan_display(0.22, pixels, plenty, drawn).drawn);
+  EXPECT_TRUE(plan_display(0.22, pixels, plenty, points).drawn);
   EXPECT_TRUE(plan_display(0.22, pixels, plenty, points, true).drawn);
-  // One in twelve: either does. One in forty: points would show wrong surfaces.
-  plenty.samples_per_second = 4e5;
-  EXPECT_FALSE(plan_display(0.22, pixels, plenty, points).drawn);
-  EXPECT_TRUE(plan_display(0.22, pixels, plenty, drawn).drawn);
   EXPECT_TRUE(plan_display(0.22, pixels, slow, points).drawn);
   EXPECT_TRUE(plan_display(0.007, pixels, quick, points).drawn);
   // No time is left within the wanted period, but two pictures a second stay possible.
@@ -101,6 +96,15 @@ TEST(DisplayPath, LightBecomesFineWhenItIsKnown) {
   EXPECT_FALSE(wants_fine_light(true, true, 0.9f));
   EXPECT_TRUE(wants_fine_light(true, true, 0.1f));
   EXPECT_TRUE(wants_fine_light(true, false, 0.9f));  // and stays so
+}
+
+TEST(DisplayPath, WhoMovesHasFineLightWhereSamplesAreNotFew) {
+  EXPECT_FALSE(affords_fine_light(0, false));
+  EXPECT_FALSE(affords_fine_light(0.2, true));
+  EXPECT_TRUE(affords_fine_light(0.5, false));
+  // It costs samples, which is no reason to give it up again.
+  EXPECT_FALSE(affords_fine_light(0.35, false));
+  EXPECT_TRUE(affords_fine_light(0.35, true));
 }
 
 TEST(DisplayPath, TheReferenceComesLast) {
