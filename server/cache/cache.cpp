@@ -170,7 +170,8 @@ void RenderCache::Impl::fit_image(int across, int down) {
   } else if (pixels <= room && still.count.size() > room) {
     still.count = std::vector<uint8_t>(room);
     image.width = image.height = 0;
-    image.point = {}, image.depth = {}, image.changed = {};
+    auto release = [](auto& plane) { std::remove_reference_t<decltype(plane)>().swap(plane); };
+    release(image.point), release(image.depth), release(image.changed);
     reserve_image(image, width, height);
     projected = false;
   }
@@ -367,16 +368,17 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   if (!c.projected || view != c.view) project(view);
   fit_frame(view.width, view.height, frame);
   c.begin_still();
-  c.start_correction();
+  // Who has just stopped has pictures of the walk in memory yet.
+  if (c.is_still()) c.start_correction();
   c.draw(view, [&] {
     compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
     std::span<const std::vector<EdgeShare>> edges;
     if (sight.anything_moves()) edges = compose_moving(view, sight, c.cells, c.known, c.work->light, frame);
     bool changes = c.image.alarm > 0;  // what samples of the light before say is wrong
-    if (changes) forget_samples(c.still_samples);
-    else forget_samples(c.still, c.still_samples);
+    if (c.corrects && changes) forget_samples(c.still_samples);
+    else if (c.corrects) forget_samples(c.still, c.still_samples);
     accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, changes, c.frames, c.still, frame);
-    if (!changes) correct_still(c.still_samples, c.still, c.work->correction, frame);
+    if (c.corrects && !changes) correct_still(c.still_samples, c.still, c.work->correction, frame);
     soften_edges(edges, frame.color);
   });
 }
