@@ -66,7 +66,8 @@ TEST(LongShow, ADayOfIdlingAndWalkingNeitherGrowsNorDrifts) {
     for (vec3 c : house.show->easel.work.frame.color) ASSERT_TRUE(is_finite(c)) << i;
     if (i == 62) memory = visitor.cache_bytes;
     if (i > 62) {
-      ASSERT_LE(visitor.cache_bytes, memory + 4096) << i;
+      // Lists keep room for the most that they ever held, and how much that is depends on the machine.
+      ASSERT_LE(visitor.cache_bytes, memory + memory / 8) << i;
       ASSERT_LE(visitor.memory_bytes, memory + (1 << 19)) << i;
       ASSERT_LE(visitor.heading.past.size(), 64u);
       ASSERT_LE(visitor.flow.in_flight.size(), 4096u);

@@ -152,16 +152,16 @@ TEST(WebSocket, closes_that_cross_end_the_connection) {
 TEST(WebSocket, a_flood_closes_with_1008) {
   Talk talk;
   std::string many;
-  for (int i = 0; i < 2000; i++) many += frame(0x81, "x");
+  for (int i = 0; i < 20000; i++) many += frame(0x81, "x");
   EXPECT_EQ(talk.say(many), 1008);
   EXPECT_EQ(talk.house.server.counters().flood_closed, 1u);
   Talk pings;
   many.clear();
-  for (int i = 0; i < 2000; i++) many += frame(0x89, "");
+  for (int i = 0; i < 20000; i++) many += frame(0x89, "");
   EXPECT_EQ(pings.say(many), 1008);
   Talk heavy;
   many.clear();
-  for (int i = 0; i < 40; i++) many += frame(0x81, std::string(max_message_bytes, 'x'));
+  for (int i = 0; i < 160; i++) many += frame(0x81, std::string(max_message_bytes, 'x'));
   EXPECT_EQ(heavy.say(many), 1008);
 }
 
