@@ -20,7 +20,7 @@ void trace_many_gather(const World& world, const Lights& lights, const Transport
   WalkRules rules;
   rules.max_depth = settings.max_depth;
   if (lights.grid) rules.blunt = blunt;
-  trace_samples({world, *lights.tables, lights.grid.get()}, rules, requests, samples);
+  trace_samples({world, *lights.tables, lights.grid.get(), lights.grid ? lights.grid->lamps.get() : nullptr}, rules, requests, samples);
   finish_samples(lights, settings, samples);
 }
 

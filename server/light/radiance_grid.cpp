@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "light/place_key.h"
 #include "light/split_reflectance.h"
 #include "light/walk.h"
 #include "light/warp.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr int batch_paths = 1 << 16;
 constexpr int most_vertices = 12;    // of a walk that are remembered
+constexpr float lamp_cells = 2;  // times as wide as cells of light are those of lamps seen
 constexpr float clear_roughness = 0.3f;  // surfaces smoother than this mirror too clearly
 
 // What walks have learnt: of each vertex a key, 0 for none, the reflectance, and the light of each part.
@@ -22,15 +24,6 @@ struct Entries {
   std::vector<vec3> albedo;
   std::vector<vec3> light;
 };
-
-// Cell of space and main direction of the surface; never 0.
-uint64_t cell_key(vec3 position, vec3 normal, float cell) {
-  vec3 a = glm::abs(normal);
-  int axis = a.x > a.y ? (a.x > a.z ? 0 : 2) : (a.y > a.z ? 1 : 2);
-  uint64_t side = uint64_t(axis * 2 + (normal[axis] < 0));
-  auto part = [&](float x) { return uint64_t(int64_t(std::floor(x / cell)) + (1 << 19)) & 0xfffff; };
-  return ((side << 60 | part(position.x) << 40 | part(position.y) << 20 | part(position.z)) << 1) | 1;
-}
 
 uint32_t find_cell(const RadianceGrid& grid, uint64_t key) {
   uint32_t slot = uint32_t(mix64(key)) & grid.mask;
@@ -105,7 +98,7 @@ void Walker::walk(vec3 origin, Sampler& sampler, std::vector<VertexLight>& scrat
       if (before) vertices[count - 1].weight = walk.throughput;
       Vertex& vertex = vertices[count++];
       vertex = Vertex{};
-      if (walk.depth <= settings.kept_depth) vertex.key = cell_key(surface.position, surface.geometric_normal, cell);
+      if (walk.depth <= settings.kept_depth) vertex.key = place_key(surface.position, surface.geometric_normal, cell);
       vertex.albedo = split_reflectance(bsdf).albedo;
       walk.throughput = vec3(1);
       for (size_t p = 0; p < n; p++)
@@ -192,6 +185,7 @@ std::shared_ptr<const RadianceGrid> make_radiance_grid(
     std::span<const std::shared_ptr<const LightTables>> parts) {
   auto grid = std::make_shared<RadianceGrid>();
   grid->cell = settings.cell > 0 ? settings.cell : choose_cell(transport, places, settings.seed);
+  grid->lamps = learn_lamps_seen(transport, places, lamp_cells * grid->cell, {.seed = settings.seed});
   size_t size = 1 << 19;
   grid->mask = uint32_t(size - 1);
   grid->keys.assign(size, 0);
@@ -239,7 +233,7 @@ std::shared_ptr<const RadianceGrid> relit(const RadianceGrid& all, std::span<con
 }
 
 uint32_t find_grid_slot(const RadianceGrid& grid, vec3 place, vec3 normal) {
-  return find_cell(grid, cell_key(place, normal, grid.cell));
+  return find_cell(grid, place_key(place, normal, grid.cell));
 }
 
 glm::ivec3 grid_place(const RadianceGrid& grid, uint32_t slot) {
@@ -254,7 +248,7 @@ bool eval_grid(const RadianceGrid& grid, const World& world, const Ray& ray, con
   if (footprint < 2 * grid.cell || placed.moving || !grid.keeps[size_t(placed.mesh->material)]) return false;
   vec3 normal = eval_face(world, hit.instance, hit.triangle);
   if (dot(normal, ray.direction) > 0) normal = -normal;
-  uint32_t slot = find_cell(grid, cell_key(ray.origin + hit.t * ray.direction, normal, grid.cell));
+  uint32_t slot = find_cell(grid, place_key(ray.origin + hit.t * ray.direction, normal, grid.cell));
   if (grid.count[slot] < enough_grid_samples) return false;
   radiance = grid.light[slot];
   return true;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "light/bsdf.h"
+#include "light/lamps_seen.h"
 #include "world/surface.h"
 
 namespace wellspring {
@@ -23,6 +24,7 @@ struct RadianceGrid {
   std::vector<uint64_t> keys;  // 0: free
   std::vector<vec3> light;     // radiance scattered back, textures and all; of the lamps that are on
   std::vector<float> count;    // samples behind it
+  std::shared_ptr<const LampsSeen> lamps;  // may be null
   std::vector<uint8_t> keeps;  // of each material: opaque, dark of itself and too rough to mirror
   // Where lamps can be switched: the slots in use, the mean reflectance there, and the light of each by what
   // belongs to no lamp and by each lamp alone. Copies share them.

@@ -13,6 +13,7 @@ struct Transport {
   const World& world;
   const LightTables& tables;
   const struct RadianceGrid* grid = nullptr;  // light that stays, where a technique may use it
+  const struct LampsSeen* lamps = nullptr;    // what weighs the choice among few lamps, where known
 };
 
 struct LightSample {

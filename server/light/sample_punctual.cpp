@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/lamps_seen.h"
 #include "light/sample_light.h"
 
 namespace wellspring {
@@ -55,13 +56,29 @@ LightSample unlucky() {
   return light;
 }
 
-LightSample draw_of_few(const LightTables& tables, const SurfacePlace& from, vec3 normal,
+// Weighs the lamps' effects by what of them arrives there. False: nobody knows.
+bool weigh_by_seen(const FewLights& few, const LampsSeen& seen, const SurfacePlace& from, LightEffects& effects) {
+  const LampsSeen::Shares* shares = find_lamps_seen(seen, from.position, from.geometric_normal);
+  if (!shares) return false;
+  effects.near_sum = effects.distant_sum = 0;
+  for (int i = 0; i < few.count; i++) {
+    effects.effect[i] *= float((*shares)[size_t(i)]) * (1 / 255.0f);
+    (few.is_near[i] ? effects.near_sum : effects.distant_sum) += effects.effect[i];
+  }
+  return true;
+}
+
+LightSample draw_of_few(const Transport& transport, const SurfacePlace& from, vec3 normal,
                         bool through, const LobeHint& lobe, vec2 u) {
+  const LightTables& tables = transport.tables;
   const FewLights& few = tables.few_punctual;
   LightEffects effects;
   eval_effects(few, from.position, normal, through, lobe, effects);
   if (!(effects.near_sum + effects.distant_sum > 0)) return {};
   float chance = distant_chance(effects.near_sum, effects.distant_sum);
+  if (transport.lamps && !through && transport.lamps->count == few.count &&
+      weigh_by_seen(few, *transport.lamps, from, effects))
+    chance = effects.distant_sum / (effects.near_sum + effects.distant_sum);
   bool distant = u.y < chance;
   float sum = distant ? effects.distant_sum : effects.near_sum, left = u.x * sum;
   int chosen = -1;
@@ -119,7 +136,7 @@ LightSample sample_punctual_light(const Transport& transport, const SurfacePlace
   if (tables.punctual.size() == 1)
     return eval_punctual(tables.punctual[0], tables.cones[0], from);
   if (tables.few_punctual.count > 0)
-    return draw_of_few(tables, from, normal, through, lobe, sampler.next2());
+    return draw_of_few(transport, from, normal, through, lobe, sampler.next2());
   return draw_of_many(tables, from, normal, through, sampler.next2());
 }
 
