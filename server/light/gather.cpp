@@ -20,7 +20,8 @@ void trace_many_gather(const World& world, const Lights& lights, const Transport
   WalkRules rules;
   rules.max_depth = settings.max_depth;
   if (lights.grid) rules.blunt = blunt;
-  trace_samples({world, *lights.tables, lights.grid.get(), lights.grid ? lights.grid->lamps.get() : nullptr}, rules, requests, samples);
+  const LampsSeen* lamps = lights.grid ? lights.grid->lamps.get() : nullptr;
+  trace_samples({world, *lights.tables, lights.grid.get(), lamps}, rules, requests, samples);
   finish_samples(lights, settings, samples);
 }
 

@@ -100,7 +100,6 @@ std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport, st
   if (transport.tables.few_punctual.count < 2 || places.empty()) return nullptr;
   auto seen = std::make_shared<LampsSeen>();
   seen->cell = cell;
-  seen->count = transport.tables.few_punctual.count;
   seen->mask = table_size - 1;
   seen->keys.assign(table_size, 0);
   std::vector<Tally> tallies(table_size);

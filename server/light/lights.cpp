@@ -118,7 +118,7 @@ size_t bytes_of(const std::vector<T>& v) {
 
 size_t light_table_bytes(const LightTables& t) {
   size_t bytes = bytes_of(t.emitters) + bytes_of(t.emitter_power) + bytes_of(t.environment.cells.cells) +
-                 bytes_of(t.punctual) + bytes_of(t.cones);
+                 bytes_of(t.punctual) + bytes_of(t.cones) + bytes_of(t.punctual_index);
   for (const LightTree* tree : {&t.emitter_choice, &t.near_choice, &t.distant_choice})
     bytes += bytes_of(tree->nodes) + bytes_of(tree->leaf_of) + bytes_of(tree->strengths.cells) +
              bytes_of(tree->shining);
@@ -161,15 +161,19 @@ void choose_sources(const Scene& scene, const Shining& shining, LightTables& tab
 
   double punctual_power = 0;
   std::vector<float> punctual_powers;
-  tables.punctual.clear(), tables.cones.clear();
+  tables.punctual.clear(), tables.cones.clear(), tables.punctual_index.clear();
+  uint32_t index = 0;
   for (size_t i = 0; i < scene.lights.size(); i++) {
     const PunctualLight& light = scene.lights[i];
     if (!plan.uses(punctual_lights)) break;
-    float p = shining.lights[i] ? power_of(light, radius) : 0;
+    float p = power_of(light, radius);
     bool finite =
         is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
     if (!(p > 0) || !std::isfinite(p) || !finite) continue;
+    index++;
+    if (!shining.lights[i]) continue;
     tables.punctual.push_back(light);
+    tables.punctual_index.push_back(index - 1);
     float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
     tables.cones.push_back({outer, 1 / std::max(0.001f, inner - outer)});
     punctual_powers.push_back(p);

@@ -57,12 +57,14 @@ LightSample unlucky() {
 }
 
 // Weighs the lamps' effects by what of them arrives there. False: nobody knows.
-bool weigh_by_seen(const FewLights& few, const LampsSeen& seen, const SurfacePlace& from, LightEffects& effects) {
+bool weigh_by_seen(const LightTables& tables, const LampsSeen& seen, const SurfacePlace& from,
+                   LightEffects& effects) {
+  const FewLights& few = tables.few_punctual;
   const LampsSeen::Shares* shares = find_lamps_seen(seen, from.position, from.geometric_normal);
   if (!shares) return false;
   effects.near_sum = effects.distant_sum = 0;
   for (int i = 0; i < few.count; i++) {
-    effects.effect[i] *= float((*shares)[size_t(i)]) * (1 / 255.0f);
+    effects.effect[i] *= float((*shares)[tables.punctual_index[size_t(i)]]) * (1 / 255.0f);
     (few.is_near[i] ? effects.near_sum : effects.distant_sum) += effects.effect[i];
   }
   return true;
@@ -76,8 +78,7 @@ LightSample draw_of_few(const Transport& transport, const SurfacePlace& from, ve
   eval_effects(few, from.position, normal, through, lobe, effects);
   if (!(effects.near_sum + effects.distant_sum > 0)) return {};
   float chance = distant_chance(effects.near_sum, effects.distant_sum);
-  if (transport.lamps && !through && transport.lamps->count == few.count &&
-      weigh_by_seen(few, *transport.lamps, from, effects))
+  if (transport.lamps && !through && weigh_by_seen(tables, *transport.lamps, from, effects))
     chance = effects.distant_sum / (effects.near_sum + effects.distant_sum);
   bool distant = u.y < chance;
   float sum = distant ? effects.distant_sum : effects.near_sum, left = u.x * sum;

@@ -67,7 +67,7 @@ struct VoiceManner {
 };
 
 // How visitors may move. Without one they fly freely.
-struct WalkRules {
+struct WalkSettings {
   float eye_height = 1.65f;  // metres above the ground under the visitor
   float speed = 1.4f;        // metres a second, for the page's keys
   float radius = 0.25f;      // distance kept from walls
@@ -109,7 +109,7 @@ struct Exhibit {
   LocalText title, description;
   std::vector<std::string> languages{"en"};
   float exposure = 1;
-  std::optional<WalkRules> walk;
+  std::optional<WalkSettings> walk;
   std::vector<ExhibitViewpoint> viewpoints;  // never empty
   int start = 0;
   std::vector<StorytellerPlace> storytellers;  // one is there at a time, the first to begin with

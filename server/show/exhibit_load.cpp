@@ -42,7 +42,7 @@ bool is_identifier(const std::string& id) {
 }
 
 void read_walk(Exhibit& exhibit, Fields fields) {
-  WalkRules walk;
+  WalkSettings walk;
   walk.eye_height = float(fields.number("eye_height", false, 1.65, 0.2, 10));
   walk.speed = float(fields.number("speed", false, 1.4, 0.05, 20));
   walk.radius = float(fields.number("radius", false, 0.25, 0.01, 5));

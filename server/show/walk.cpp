@@ -57,7 +57,7 @@ dvec3 keep_distance(dvec3 from, dvec3 to, dvec3 centre, double distance) {
   return {centre.x + after.x, to.y, centre.z + after.y};
 }
 
-dvec3 walk(const World& world, const std::optional<WalkRules>& rules, dvec3 position, vec3 velocity,
+dvec3 walk(const World& world, const std::optional<WalkSettings>& rules, dvec3 position, vec3 velocity,
            float dt) {
   dt = std::clamp(dt, 0.0f, 0.25f);
   if (!is_finite(velocity)) return position;

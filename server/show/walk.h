@@ -9,7 +9,7 @@ namespace wellspring {
 
 // The place after moving from `position` (absolute) with `velocity` (metres a second, world axes) for `dt`
 // seconds (0 to 0.25; longer steps are cut). With no rules: free flight.
-dvec3 walk(const World& world, const std::optional<WalkRules>& rules, dvec3 position, vec3 velocity, float dt);
+dvec3 walk(const World& world, const std::optional<WalkSettings>& rules, dvec3 position, vec3 velocity, float dt);
 
 // Round somebody whom nobody comes nearer than `distance` on the ground (the innermost glass wall of the
 // storyteller and kiosk paper): a step from `from` to `to` ends on the circle instead of within it, slid along;

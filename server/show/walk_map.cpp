@@ -159,7 +159,7 @@ void mark(const Cells& cells, WalkMap& map, const std::array<vec3, 3>& t, int ro
 
 }  // namespace
 
-WalkMap make_walk_map(const World& world, const WalkRules& rules, const std::vector<vec3>& seeds,
+WalkMap make_walk_map(const World& world, const WalkSettings& rules, const std::vector<vec3>& seeds,
                       const std::vector<WalkObstacle>& obstacles) {
   WalkMap map;
   map.eye_height = rules.eye_height;

@@ -39,7 +39,7 @@ inline constexpr int most_walk_places = 400'000;  // larger grounds get wider ce
 
 // `seeds`: eyes of people who can stand where they are. Exact against triangles: nothing is too thin
 // to count. All cores, up to a second.
-WalkMap make_walk_map(const World& world, const WalkRules& rules, const std::vector<vec3>& seeds,
+WalkMap make_walk_map(const World& world, const WalkSettings& rules, const std::vector<vec3>& seeds,
                       const std::vector<WalkObstacle>& obstacles);
 
 // The place nearest to a point on the ground whose height is within walk_step, at most `reach` away

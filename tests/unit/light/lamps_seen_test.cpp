@@ -2,6 +2,7 @@
 // What places see of few lamps: learned right, and used without bias.
 #include <gtest/gtest.h>
 
+#include "light/lamps.h"
 #include "light/lamps_seen.h"
 #include "light/lights.h"
 #include "light/place_key.h"
@@ -14,7 +15,7 @@ using namespace wellspring::test;
 
 namespace {
 
-enum Lamp : size_t { sun, below, above, lamps };
+enum RoofLamp : size_t { sun, below, above, lamps };
 
 // A floor, 2 m above it a roof over its middle, a lamp below and one above that, and the sun upright.
 Scene roofed_floor() {
@@ -81,7 +82,7 @@ double exact(const Place& p, const SurfacePlace& place) {
 TEST(LampsSeen, SharesAreWhatArrives) {
   Place p;
   ASSERT_TRUE(p.seen);
-  auto share = [&](vec3 place, vec3 normal, Lamp lamp) {
+  auto share = [&](vec3 place, vec3 normal, RoofLamp lamp) {
     const LampsSeen::Shares* shares = find_lamps_seen(*p.seen, place, normal);
     return shares ? float((*shares)[lamp]) / 255 : -1;
   };
@@ -118,6 +119,30 @@ TEST(LampsSeen, WhatWasNeverSeenIsStillFound) {
   LampsSeen wrong = *p.seen;
   for (LampsSeen::Shares& shares : wrong.shares) shares[sun] = shares[above] = 1, shares[below] = 255;
   expect_mean(estimate(p, &wrong, place, 400000), exact(p, place), "learned wrong", 0.05);
+}
+
+// While a lamp is switched off the others are known as before, though their places in the list change.
+TEST(LampsSeen, SwitchedOffLampsLeaveTheOthersTheirShares) {
+  Place p;
+  Shining shining = what_shines(p.world);
+  shining.lights[below] = 0;
+  std::shared_ptr<const LightTables> fewer = relit(*p.lights.tables, p.scene, shining);
+  ASSERT_EQ(fewer->punctual.size(), 2u);
+  LampsSeen alike = *p.seen, uneven = alike;
+  for (LampsSeen::Shares& shares : alike.shares) shares.fill(255);
+  for (LampsSeen::Shares& shares : uneven.shares) shares.fill(255), shares[below] = 1;
+  int near = 0;
+  for (uint64_t seed = 1; seed <= 200; seed++) {
+    Sampler one(seed), other(seed);
+    SurfacePlace place = on_floor(3.3f, 3.3f);
+    LightSample a = sample_punctual_light({p.world, *fewer, nullptr, &alike}, place, {0, 1, 0}, false, one);
+    LightSample b = sample_punctual_light({p.world, *fewer, nullptr, &uneven}, place, {0, 1, 0}, false, other);
+    EXPECT_EQ(a.share, b.share);
+    EXPECT_EQ(a.direction, b.direction);
+    near += std::isfinite(a.distance);
+  }
+  EXPECT_GT(near, 0);
+  EXPECT_LT(near, 200);
 }
 
 TEST(LampsSeen, TheSameEachTimeAndNoneWhereThereIsNoChoice) {

@@ -67,7 +67,7 @@ inline Exhibit make_tiny_exhibit(dvec3 origin = dvec3(0)) {
   for (const char* line : {"One.", "Two."}) story.text["en"].emplace_back().text = line;
   for (const char* line : {"Eins.", "Zwei."}) story.text["de"].emplace_back().text = line;
   exhibit.stories = {story};
-  exhibit.walk = WalkRules{};
+  exhibit.walk = WalkSettings{};
   exhibit.walk->eye_height = 1.6f;
   return exhibit;
 }
