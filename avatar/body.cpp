@@ -16,7 +16,8 @@ quat about_z(float a) { return glm::angleAxis(a, vec3(0, 0, 1)); }
 
 // Turns a chain from the frame below it so that its last joint has the rotation `wanted` (humanoid
 // space); each link takes its share of the same turn.
-void bend_chain(const Rig& rig, const std::vector<WeightedJoint>& chain, quat below, quat wanted, Pose& pose) {
+void bend_chain(const Rig& rig, const std::vector<WeightedJoint>& chain, quat below, quat wanted,
+                Pose& pose) {
   if (chain.empty()) return;
   const std::vector<Joint>& joints = rig.character->joints;
   quat turn = glm::conjugate(below) * wanted;
@@ -88,7 +89,8 @@ void pose_arm(const Rig& rig, int side, const ArmPose& arm, float shoulders_up, 
       pose.rotations[size_t(finger.joint)] = glm::angleAxis(std::max(turn, -0.25f), finger.axis);
       continue;
     }
-    float wanted = (arm.curl + arm.finger[size_t(finger.finger)]) * share[finger.knuckle] * (0.75f + 0.13f * float(finger.finger));
+    float wanted = (arm.curl + arm.finger[size_t(finger.finger)]) * share[finger.knuckle] *
+                   (0.75f + 0.13f * float(finger.finger));
     float turn = std::max(wanted - finger.bent, -0.15f);
     pose.rotations[size_t(finger.joint)] = glm::angleAxis(turn, finger.axis);
   }
@@ -102,7 +104,8 @@ void keep_limits(const Rig& rig, int joint, Pose& pose) {
 
 void keep_arm_limits(const Rig& rig, int side, Pose& pose) {
   const ArmRig& bones = rig.arm[size_t(side)];
-  for (int joint : {bones.collar, bones.shoulder, bones.elbow, bones.wrist}) keep_limits(rig, joint, pose);
+  for (int joint : {bones.collar, bones.shoulder, bones.elbow, bones.wrist})
+    keep_limits(rig, joint, pose);
   for (const FingerJoint& finger : bones.fingers) keep_limits(rig, finger.joint, pose);
 }
 
@@ -150,7 +153,8 @@ void pose_leg(const Rig& rig, int side, const FootPlan& foot, Pose& pose) {
 
 // How far to turn where `angle`, from 0, is wanted and nobody said more than `limit`.
 float in_range(const EyeRange& range, float angle, float limit) {
-  return range.most > 0 ? std::min(angle / range.most, 1.0f) * range.output : std::min(angle, limit);
+  return range.most > 0 ? std::min(angle / range.most, 1.0f) * range.output
+                        : std::min(angle, limit);
 }
 
 // Each eye points at the same place.
@@ -164,7 +168,8 @@ void pose_eye(const Rig& rig, int side, vec3 point, Pose& pose) {
   const EyeRanges& ranges = rig.character->eye_ranges;
   const EyeRange& aside = (side == 0) == (yaw < 0) ? ranges.inner : ranges.outer;
   yaw = std::copysign(in_range(aside, std::abs(yaw), eye_limit_yaw), yaw);
-  pitch = pitch > 0 ? in_range(ranges.up, pitch, eye_limit_up) : -in_range(ranges.down, -pitch, eye_limit_down);
+  pitch = pitch > 0 ? in_range(ranges.up, pitch, eye_limit_up)
+                    : -in_range(ranges.down, -pitch, eye_limit_down);
   pose.rotations[size_t(joint)] = about_y(yaw) * about_x(-pitch);
   keep_limits(rig, joint, pose);
 }
@@ -179,7 +184,8 @@ void pose_drawn_eyes(const Rig& rig, vec3 point, Pose& pose) {
   if (dot(way, way) < 1e-6f) return;
   float yaw = std::atan2(way.x, way.z), pitch = std::atan2(way.y, glm::length(vec2(way.x, way.z)));
   const EyeRanges& ranges = rig.character->eye_ranges;
-  const EyeRange aside = ranges.by_shapes ? ranges.outer : EyeRange(), up = ranges.by_shapes ? ranges.up : EyeRange(),
+  const EyeRange aside = ranges.by_shapes ? ranges.outer : EyeRange(),
+                 up = ranges.by_shapes ? ranges.up : EyeRange(),
                  down = ranges.by_shapes ? ranges.down : EyeRange();
   auto weight = [](EyeRange range, float angle, float limit) {
     if (!(range.most > 0)) range = {limit, 1};

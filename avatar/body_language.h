@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which gesture is due: the story's before the situation's, and what a polite person does unasked
-// (welcome, farewell, a nod while listening, an invitation to somebody who waits). State is a value.
+// (welcome, farewell, a nod while listening, an invitation to somebody who waits). State is a
+// value.
 #pragma once
 #include <optional>
 
@@ -24,8 +25,8 @@ struct BodyLanguageState {
 inline constexpr double patience_seconds = 18, patience_again_seconds = 40;
 inline constexpr int most_invitations = 3;
 
-// May shorten what `gesture` holds (a pointing hand sinks when the story has finished with the place).
-// `to_here`: world to humanoid space.
+// May shorten what `gesture` holds (a pointing hand sinks when the story has finished with the
+// place). `to_here`: world to humanoid space.
 GestureOrder choose_gesture(BodyLanguageState& state, GestureState& gesture,
                             const GestureLibrary& library, const StorytellerInput& input,
                             const StorytellerEvents& events, Mood mood, const mat4& to_here,

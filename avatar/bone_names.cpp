@@ -41,7 +41,8 @@ struct Namer {
   }
 
   struct Limb {
-    int first = -1, second = -1, third = -1, fourth = -1;  // collar shoulder elbow wrist; or hip ...
+    int first = -1, second = -1, third = -1,
+        fourth = -1;  // collar shoulder elbow wrist; or hip ...
   };
   Limb name_arm(int side);
   Limb name_leg(int side);
@@ -55,8 +56,8 @@ std::string sided(int side, const char* joint) {
   return name.append(joint);
 }
 
-// "Shoulder" is the collar bone where the arm has a bone of its own, "Arm" the forearm where another
-// bone is the upper one.
+// "Shoulder" is the collar bone where the arm has a bone of its own, "Arm" the forearm where
+// another bone is the upper one.
 Namer::Limb Namer::name_arm(int side) {
   int collar = find(BonePart::collar, side), shoulder = find(BonePart::shoulder, side);
   int upper = find(BonePart::upper_arm, side), arm = find(BonePart::arm, side);
@@ -176,11 +177,14 @@ void Namer::name_face() {
 
 std::vector<std::string> spine_names(size_t count) {
   // The vertebrae in the order in which more of them are worth having.
-  constexpr const char* wanted[] = {"vl5", "vt10", "vt6",  "vl1",  "vl3", "vt1", "vt12", "vt8", "vt4",
-                                    "vl4", "vl2",  "vt11", "vt9",  "vt7", "vt5", "vt3",  "vt2"};
-  constexpr const char* upwards[] = {"vl5", "vl4", "vl3", "vl2", "vl1", "vt12", "vt11", "vt10", "vt9",
-                                     "vt8", "vt7", "vt6", "vt5", "vt4", "vt3",  "vt2",  "vt1"};
-  std::set<std::string> chosen(std::begin(wanted), std::begin(wanted) + std::min<size_t>(count, 17));
+  constexpr const char* wanted[] = {"vl5",  "vt10", "vt6", "vl1", "vl3", "vt1",
+                                    "vt12", "vt8",  "vt4", "vl4", "vl2", "vt11",
+                                    "vt9",  "vt7",  "vt5", "vt3", "vt2"};
+  constexpr const char* upwards[] = {"vl5",  "vl4",  "vl3", "vl2", "vl1", "vt12",
+                                     "vt11", "vt10", "vt9", "vt8", "vt7", "vt6",
+                                     "vt5",  "vt4",  "vt3", "vt2", "vt1"};
+  std::set<std::string> chosen(std::begin(wanted),
+                               std::begin(wanted) + std::min<size_t>(count, 17));
   std::vector<std::string> names;
   for (const char* name : upwards)
     if (chosen.count(name)) names.push_back(name);

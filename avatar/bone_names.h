@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bones of other worlds (VRM, Mixamo, Rigify, 3ds Max biped, Unreal, Daz, motion capture) to H-Anim
-// joints: by what their names say, and where names say nothing, by the shape of the skeleton. A bone
-// that means nothing to H-Anim gets no name and stays what it is.
+// joints: by what their names say, and where names say nothing, by the shape of the skeleton. A
+// bone that means nothing to H-Anim gets no name and stays what it is.
 #pragma once
 #include <string>
 #include <string_view>

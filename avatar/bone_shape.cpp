@@ -79,8 +79,10 @@ std::vector<std::string> name_bones_by_shape(const std::vector<Bone>& bones) {
   Shape::Pair legs;
   float deepest = 0.25f * shape.height;
   for (size_t i = 0; i < bones.size(); i++)
-    for (const Shape::Pair& pair : shape.like_pairs(int(i), [&](auto& a, auto&) { return a.size() >= 3; })) {
-      float drop = bones[i].place.y - std::max(shape.low[size_t(pair.a)], shape.low[size_t(pair.b)]);
+    for (const Shape::Pair& pair :
+         shape.like_pairs(int(i), [&](auto&a, auto&) { return a.size() >= 3; })) {
+      float drop =
+          bones[i].place.y - std::max(shape.low[size_t(pair.a)], shape.low[size_t(pair.b)]);
       if (drop > deepest) deepest = drop, legs = pair;
     }
   if (legs.parent < 0) return names;
@@ -120,7 +122,8 @@ std::vector<std::string> name_bones_by_shape(const std::vector<Bone>& bones) {
   across = shape.place(shape.chain(arms.a).back()) - shape.place(shape.chain(arms.b).back());
   bool arm_a_left = dot(across, left) > 0;
 
-  auto name_chain = [&](const std::vector<int>& chain, bool is_left, std::vector<const char*> joints) {
+  auto name_chain = [&](const std::vector<int>& chain, bool is_left,
+                        std::vector<const char*> joints) {
     for (size_t k = 0; k < std::min(chain.size(), joints.size()); k++)
       names[size_t(chain[k])] = (is_left ? "l_" : "r_") + std::string(joints[k]);
   };

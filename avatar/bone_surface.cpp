@@ -26,10 +26,12 @@ void add_bone(Character& character, Part& part, int joint, vec3 from, vec3 to, f
   float length = glm::length(along);
   if (!(length > 1e-4f)) return;
   along /= length;
-  vec3 side = glm::normalize(cross(std::abs(along.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0), along));
+  vec3 side =
+      glm::normalize(cross(std::abs(along.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0), along));
   vec3 up = cross(along, side), waist = from + 0.2f * length * along;
   float radius = std::min(thickness, 0.12f * length);
-  vec3 ring[4] = {waist + radius * side, waist + radius * up, waist - radius * side, waist - radius * up};
+  vec3 ring[4] = {waist + radius * side, waist + radius * up, waist - radius * side,
+                  waist - radius * up};
   for (int i = 0; i < 4; i++) {
     add_triangle(character, part, joint, from, ring[(i + 1) % 4], ring[i]);
     add_triangle(character, part, joint, to, ring[i], ring[(i + 1) % 4]);
@@ -57,7 +59,8 @@ void add_bone_surface(Character& character) {
     int parent = character.joints[j].parent;
     if (parent < 0) continue;
     ends[size_t(parent)] = 0;
-    add_bone(character, part, parent, character.joints[size_t(parent)].center, character.joints[j].center, 0.03f * size);
+    add_bone(character, part, parent, character.joints[size_t(parent)].center,
+             character.joints[j].center, 0.03f * size);
   }
   // The last bones go a little on, the way they came.
   for (size_t j = 0; j < character.joints.size(); j++) {
@@ -69,7 +72,8 @@ void add_bone_surface(Character& character) {
     bool skull = character.joints[j].name == "skullbase";
     if (skull) way = vec3(0, 1, 0), length = 1;
     if (length > 1e-6f)
-      add_bone(character, part, int(j), from, from + way / length * size * (skull ? 0.12f : 0.05f), 0.03f * size);
+      add_bone(character, part, int(j), from, from + way / length * size * (skull ? 0.12f : 0.05f),
+               0.03f * size);
   }
   character.parts.push_back(std::move(part));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one bone's name says: "mixamorig:LeftForeArm", "upperarm_l", "Bip01 R Finger11", "f_index.02.L".
+// What one bone's name says: "mixamorig:LeftForeArm", "upperarm_l", "Bip01 R Finger11",
+// "f_index.02.L".
 #include <algorithm>
 #include <cctype>
 #include <unordered_map>
@@ -43,58 +44,143 @@ int side_of(const std::string& word) {
 }
 
 bool is_noise(const std::string& word) {
-  for (const char* noise : {"mixamorig", "bip", "biped", "valve", "valvebiped", "def", "j", "jnt", "jt",
-                            "joint", "bone", "bones", "c", "cc", "base", "armature", "skeleton", "sk",
-                            "b", "rig", "bend", "f", "bind", "char", "character", "human", "main"})
+  for (const char* noise :
+       {"mixamorig", "bip",      "biped",    "valve",     "valvebiped", "def", "j",
+        "jnt",       "jt",       "joint",    "bone",      "bones",      "c",   "cc",
+        "base",      "armature", "skeleton", "sk",        "b",          "rig", "bend",
+        "f",         "bind",     "char",     "character", "human",      "main"})
     if (word == noise) return true;
   return false;
 }
 
 bool is_helper(const std::string& word) {
   for (const char* helper :
-       {"twist", "roll", "ik", "fk", "pole", "target", "end", "tip", "nub", "ctrl", "control", "mch",
-        "prop", "weapon", "attach", "socket", "hair", "skirt", "bust", "breast", "sec", "cloth",
-        "tail", "wing", "corrective", "helper", "share", "dummy", "effector", "goal", "camera",
-        "mesh", "sleeve", "coat", "ear", "tongue", "teeth", "volume", "muscle", "org", "ribbon",
-        "hood", "hat", "tie", "site", "phys", "physics", "collider", "accessory"})
+       {"twist",    "roll",   "ik",     "fk",         "pole",    "target",   "end",
+        "tip",      "nub",    "ctrl",   "control",    "mch",     "prop",     "weapon",
+        "attach",   "socket", "hair",   "skirt",      "bust",    "breast",   "sec",
+        "cloth",    "tail",   "wing",   "corrective", "helper",  "share",    "dummy",
+        "effector", "goal",   "camera", "mesh",       "sleeve",  "coat",     "ear",
+        "tongue",   "teeth",  "volume", "muscle",     "org",     "ribbon",   "hood",
+        "hat",      "tie",    "site",   "phys",       "physics", "collider", "accessory"})
     if (word == helper) return true;
   return false;
 }
 
 const std::unordered_map<std::string, BonePart>& parts() {
   using P = BonePart;
-  static const std::unordered_map<std::string, BonePart> table = {
-      {"root", P::root}, {"hips", P::hips}, {"pelvis", P::hips}, {"humanoidroot", P::hips},
-      {"cog", P::hips}, {"spine", P::spine}, {"torso", P::spine}, {"abdomen", P::spine},
-      {"abdomenlower", P::spine}, {"abdomenupper", P::spine}, {"lowerback", P::spine},
-      {"upperback", P::spine}, {"back", P::spine}, {"waist", P::spine}, {"belly", P::spine},
-      {"stomach", P::spine}, {"trunk", P::spine}, {"spinelower", P::spine}, {"spinemid", P::spine},
-      {"spineupper", P::spine}, {"chest", P::spine}, {"upperchest", P::spine},
-      {"chestupper", P::spine}, {"chestlower", P::spine}, {"lowerchest", P::spine},
-      {"thorax", P::spine}, {"ribcage", P::spine}, {"lumbar", P::spine}, {"neck", P::neck},
-      {"necklower", P::neck}, {"neckupper", P::neck}, {"lowerneck", P::neck}, {"upperneck", P::neck},
-      {"head", P::head}, {"skull", P::head}, {"jaw", P::jaw}, {"lowerjaw", P::jaw},
-      {"mandible", P::jaw}, {"eye", P::eye}, {"eyeball", P::eye}, {"faceeye", P::eye},
-      {"eyelid", P::lid}, {"eyelidupper", P::lid}, {"upperlid", P::lid}, {"uppereyelid", P::lid},
-      {"eyebrow", P::brow}, {"brow", P::brow}, {"clavicle", P::collar}, {"collar", P::collar},
-      {"collarbone", P::collar}, {"clavicula", P::collar}, {"shoulder", P::shoulder},
-      {"shldr", P::shoulder}, {"upperarm", P::upper_arm}, {"uparm", P::upper_arm},
-      {"armupper", P::upper_arm}, {"bicep", P::upper_arm}, {"humerus", P::upper_arm},
-      {"arm", P::arm}, {"elbow", P::forearm}, {"forearm", P::forearm}, {"lowerarm", P::forearm},
-      {"lowarm", P::forearm}, {"armlower", P::forearm}, {"ulna", P::forearm}, {"wrist", P::wrist},
-      {"hand", P::hand}, {"hip", P::hip}, {"thigh", P::thigh}, {"upperleg", P::thigh},
-      {"upleg", P::thigh}, {"legupper", P::thigh}, {"femur", P::thigh}, {"leg", P::leg},
-      {"shin", P::shin}, {"calf", P::shin}, {"lowerleg", P::shin}, {"lowleg", P::shin},
-      {"leglower", P::shin}, {"tibia", P::shin}, {"knee", P::shin}, {"ankle", P::ankle},
-      {"foot", P::foot}, {"feet", P::foot}, {"toe", P::toe}, {"toes", P::toe}, {"toebase", P::toe},
-      {"ball", P::toe}, {"thumb", P::thumb}, {"handthumb", P::thumb}, {"thumbfinger", P::thumb},
-      {"index", P::index}, {"handindex", P::index}, {"indexfinger", P::index},
-      {"fingerindex", P::index}, {"middle", P::middle}, {"handmiddle", P::middle},
-      {"mid", P::middle}, {"middlefinger", P::middle}, {"fingermiddle", P::middle}, {"ring", P::ring},
-      {"handring", P::ring}, {"ringfinger", P::ring}, {"fingerring", P::ring},
-      {"little", P::little}, {"pinky", P::little}, {"pinkie", P::little}, {"handpinky", P::little},
-      {"littlefinger", P::little}, {"pinkyfinger", P::little}, {"fingerpinky", P::little},
-      {"handlittle", P::little}, {"finger", P::finger}};
+  static const std::unordered_map<std::string, BonePart> table = {{"root", P::root},
+                                                                  {"hips", P::hips},
+                                                                  {"pelvis", P::hips},
+                                                                  {"humanoidroot", P::hips},
+                                                                  {"cog", P::hips},
+                                                                  {"spine", P::spine},
+                                                                  {"torso", P::spine},
+                                                                  {"abdomen", P::spine},
+                                                                  {"abdomenlower", P::spine},
+                                                                  {"abdomenupper", P::spine},
+                                                                  {"lowerback", P::spine},
+                                                                  {"upperback", P::spine},
+                                                                  {"back", P::spine},
+                                                                  {"waist", P::spine},
+                                                                  {"belly", P::spine},
+                                                                  {"stomach", P::spine},
+                                                                  {"trunk", P::spine},
+                                                                  {"spinelower", P::spine},
+                                                                  {"spinemid", P::spine},
+                                                                  {"spineupper", P::spine},
+                                                                  {"chest", P::spine},
+                                                                  {"upperchest", P::spine},
+                                                                  {"chestupper", P::spine},
+                                                                  {"chestlower", P::spine},
+                                                                  {"lowerchest", P::spine},
+                                                                  {"thorax", P::spine},
+                                                                  {"ribcage", P::spine},
+                                                                  {"lumbar", P::spine},
+                                                                  {"neck", P::neck},
+                                                                  {"necklower", P::neck},
+                                                                  {"neckupper", P::neck},
+                                                                  {"lowerneck", P::neck},
+                                                                  {"upperneck", P::neck},
+                                                                  {"head", P::head},
+                                                                  {"skull", P::head},
+                                                                  {"jaw", P::jaw},
+                                                                  {"lowerjaw", P::jaw},
+                                                                  {"mandible", P::jaw},
+                                                                  {"eye", P::eye},
+                                                                  {"eyeball", P::eye},
+                                                                  {"faceeye", P::eye},
+                                                                  {"eyelid", P::lid},
+                                                                  {"eyelidupper", P::lid},
+                                                                  {"upperlid", P::lid},
+                                                                  {"uppereyelid", P::lid},
+                                                                  {"eyebrow", P::brow},
+                                                                  {"brow", P::brow},
+                                                                  {"clavicle", P::collar},
+                                                                  {"collar", P::collar},
+                                                                  {"collarbone", P::collar},
+                                                                  {"clavicula", P::collar},
+                                                                  {"shoulder", P::shoulder},
+                                                                  {"shldr", P::shoulder},
+                                                                  {"upperarm", P::upper_arm},
+                                                                  {"uparm", P::upper_arm},
+                                                                  {"armupper", P::upper_arm},
+                                                                  {"bicep", P::upper_arm},
+                                                                  {"humerus", P::upper_arm},
+                                                                  {"arm", P::arm},
+                                                                  {"elbow", P::forearm},
+                                                                  {"forearm", P::forearm},
+                                                                  {"lowerarm", P::forearm},
+                                                                  {"lowarm", P::forearm},
+                                                                  {"armlower", P::forearm},
+                                                                  {"ulna", P::forearm},
+                                                                  {"wrist", P::wrist},
+                                                                  {"hand", P::hand},
+                                                                  {"hip", P::hip},
+                                                                  {"thigh", P::thigh},
+                                                                  {"upperleg", P::thigh},
+                                                                  {"upleg", P::thigh},
+                                                                  {"legupper", P::thigh},
+                                                                  {"femur", P::thigh},
+                                                                  {"leg", P::leg},
+                                                                  {"shin", P::shin},
+                                                                  {"calf", P::shin},
+                                                                  {"lowerleg", P::shin},
+                                                                  {"lowleg", P::shin},
+                                                                  {"leglower", P::shin},
+                                                                  {"tibia", P::shin},
+                                                                  {"knee", P::shin},
+                                                                  {"ankle", P::ankle},
+                                                                  {"foot", P::foot},
+                                                                  {"feet", P::foot},
+                                                                  {"toe", P::toe},
+                                                                  {"toes", P::toe},
+                                                                  {"toebase", P::toe},
+                                                                  {"ball", P::toe},
+                                                                  {"thumb", P::thumb},
+                                                                  {"handthumb", P::thumb},
+                                                                  {"thumbfinger", P::thumb},
+                                                                  {"index", P::index},
+                                                                  {"handindex", P::index},
+                                                                  {"indexfinger", P::index},
+                                                                  {"fingerindex", P::index},
+                                                                  {"middle", P::middle},
+                                                                  {"handmiddle", P::middle},
+                                                                  {"mid", P::middle},
+                                                                  {"middlefinger", P::middle},
+                                                                  {"fingermiddle", P::middle},
+                                                                  {"ring", P::ring},
+                                                                  {"handring", P::ring},
+                                                                  {"ringfinger", P::ring},
+                                                                  {"fingerring", P::ring},
+                                                                  {"little", P::little},
+                                                                  {"pinky", P::little},
+                                                                  {"pinkie", P::little},
+                                                                  {"handpinky", P::little},
+                                                                  {"littlefinger", P::little},
+                                                                  {"pinkyfinger", P::little},
+                                                                  {"fingerpinky", P::little},
+                                                                  {"handlittle", P::little},
+                                                                  {"finger", P::finger}};
   return table;
 }
 
@@ -149,7 +235,8 @@ BoneWord read_bone_name(std::string_view name) {
   if (segment >= 0) result.number = segment;
   else if (!digits.empty()) result.number = std::atoi(digits.substr(0, 6).c_str());
   if (result.part == BonePart::hip && result.side < 0) result.part = BonePart::hips;
-  bool sided = (result.part >= BonePart::eye && result.part != BonePart::jaw) || is_finger(result.part);
+  bool sided =
+      (result.part >= BonePart::eye && result.part != BonePart::jaw) || is_finger(result.part);
   if (sided && result.side < 0) return {};
   return result;
 }

@@ -17,7 +17,14 @@ namespace {
 
 constexpr size_t joint_limit = 4096, depth_limit = 512;
 
-enum class Channel : uint8_t { x_position, y_position, z_position, x_rotation, y_rotation, z_rotation };
+enum class Channel : uint8_t {
+  x_position,
+  y_position,
+  z_position,
+  x_rotation,
+  y_rotation,
+  z_rotation
+};
 
 struct BvhJoint {
   std::string name;
@@ -45,7 +52,9 @@ struct Reader {
   [[noreturn]] void fail(const std::string& what) const {
     throw LoadError(path, "line " + std::to_string(line), what);
   }
-  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
+  static bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
+  }
   void skip_blank() {
     for (; at < text.size() && is_blank(text[at]); at++) line += text[at] == '\n';
   }
@@ -65,7 +74,8 @@ struct Reader {
   }
   void expect(const char* wanted) {
     std::string_view got = word();
-    if (lower(got) != wanted) fail("expected " + std::string(wanted) + ", found '" + std::string(got.substr(0, 40)) + "'");
+    if (lower(got) != wanted)
+      fail("expected " + std::string(wanted) + ", found '" + std::string(got.substr(0, 40)) + "'");
   }
   // The rest of the line: names may have blanks in them.
   std::string name() {
@@ -85,7 +95,8 @@ struct Reader {
     if (error == std::errc::result_out_of_range) return 0;
     if (error != std::errc() || end != digits.data() + digits.size())
       fail("'" + std::string(w.substr(0, 40)) + "' is no number (" + of + ")");
-    if (!std::isfinite(value) || std::abs(value) > 1e9) fail(std::string(of) + " is beyond all reason");
+    if (!std::isfinite(value) || std::abs(value) > 1e9)
+      fail(std::string(of) + " is beyond all reason");
     return value;
   }
   vec3 offset() {
@@ -97,10 +108,12 @@ struct Reader {
 
   void read_channels(BvhJoint& joint) {
     double count = number("the number of channels");
-    if (count < 0 || count > 100 || count != std::floor(count)) fail("a joint cannot have that many channels");
+    if (count < 0 || count > 100 || count != std::floor(count))
+      fail("a joint cannot have that many channels");
     for (int i = 0; i < int(count); i++) {
       std::string channel = lower(word());
-      constexpr const char* names[] = {"xposition", "yposition", "zposition", "xrotation", "yrotation", "zrotation"};
+      constexpr const char* names[] = {"xposition", "yposition", "zposition",
+                                       "xrotation", "yrotation", "zrotation"};
       size_t which = 0;
       while (which < 6 && channel != names[which]) which++;
       if (which == 6) fail("unknown channel '" + channel.substr(0, 40) + "'");
@@ -130,7 +143,8 @@ struct Reader {
         }
         expect("}");
       } else if (key == "channels") {
-        if (!joints[size_t(open.back())].channels.empty()) fail("a joint with two lists of channels");
+        if (!joints[size_t(open.back())].channels.empty())
+          fail("a joint with two lists of channels");
         read_channels(joints[size_t(open.back())]);
       } else if (key == "}") {
         open.pop_back();
@@ -148,7 +162,8 @@ struct Reader {
 
   void add_joint(std::vector<int>& open) {
     if (joints.size() >= joint_limit) fail("more than " + std::to_string(joint_limit) + " joints");
-    if (open.size() >= depth_limit) fail("joints are nested deeper than " + std::to_string(depth_limit));
+    if (open.size() >= depth_limit)
+      fail("joints are nested deeper than " + std::to_string(depth_limit));
     BvhJoint joint;
     joint.name = name();
     if (joint.name.empty()) joint.name = "joint " + std::to_string(joints.size());
@@ -193,7 +208,8 @@ struct Reader {
     for (size_t f = 0; f < frames.count; f++)
       for (size_t c = 0; c < channels; c++) {
         if (peek().empty())
-          fail("the motion ends in frame " + std::to_string(f) + " of " + std::to_string(frames.count));
+          fail("the motion ends in frame " + std::to_string(f) + " of " +
+               std::to_string(frames.count));
         frames.values.push_back(float(number("a value of the motion")));
       }
     if (!peek().empty()) warnings.push_back("numbers behind the last frame are ignored");
@@ -222,7 +238,8 @@ float unit_of(float height, std::vector<std::string>& warnings) {
 bool is_bvh(const std::string& text) {
   size_t start = text.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
   start = text.find_first_not_of(" \t\r\n", start);
-  return start != std::string::npos && lower(std::string_view(text).substr(start, 9)) == "hierarchy";
+  return start != std::string::npos &&
+         lower(std::string_view(text).substr(start, 9)) == "hierarchy";
 }
 
 Character character_from_bvh(const std::string& path, const std::string& text) {
@@ -270,7 +287,8 @@ Character character_from_bvh(const std::string& path, const std::string& text) {
     character.joints.push_back(joint);
     motion.joints.push_back({name, joint.parent, joint.center});
   }
-  if (named.by_shape) reader.warnings.push_back("bones without telling names are joints by their place");
+  if (named.by_shape)
+    reader.warnings.push_back("bones without telling names are joints by their place");
   if (unknown) reader.warnings.push_back(std::to_string(unknown) + " joints are none of H-Anim");
 
   std::vector<float> times;
@@ -296,7 +314,8 @@ Character character_from_bvh(const std::string& path, const std::string& text) {
       if (dot(q, before) < 0) q = -q;
       before = q;
       turns.values.insert(turns.values.end(), {q.x, q.y, q.z, q.w});
-      vec3 way = j == 0 ? (turn * place) * unit - character.joints[0].center : turn * (place - joint.offset) * unit;
+      vec3 way = j == 0 ? (turn * place) * unit - character.joints[0].center
+                        : turn * (place - joint.offset) * unit;
       ways.values.insert(ways.values.end(), {way.x, way.y, way.z});
     }
     first += joint.channels.size();

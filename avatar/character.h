@@ -58,9 +58,11 @@ struct Look {
   std::string normal_texture, metallic_roughness_texture, emission_texture;  // likewise
   float normal_scale = 1;
   bool double_sided = false;
-  // Where the figure has a material_file: its material there, which says more than the fields above.
+  // Where the figure has a material_file: its material there, which says more than the fields
+  // above.
   int material = -1;
-  bool matt = false;  // of a shading model that is not physical: shown without gloss, lit as all else
+  bool matt =
+      false;  // of a shading model that is not physical: shown without gloss, lit as all else
 };
 
 // Triangles of one look.
@@ -75,9 +77,9 @@ struct JointWeight {
   float weight = 0;
 };
 
-// How far an eye follows what is looked at (VRMC_vrm-1.0, lookAt.md): `output` where that is `most` radians
-// or more to the side, evenly less before; radians of its socket, or the weight of a shape. Eyes drawn
-// as flat discs must not leave the head. most 0: the author has not said.
+// How far an eye follows what is looked at (VRMC_vrm-1.0, lookAt.md): `output` where that is `most`
+// radians or more to the side, evenly less before; radians of its socket, or the weight of a shape.
+// Eyes drawn as flat discs must not leave the head. most 0: the author has not said.
 struct EyeRange {
   float most = 0, output = 0;
 };
@@ -86,8 +88,8 @@ struct EyeRanges {
   bool by_shapes = false;  // eyes look by displacers even where they have joints
 };
 
-// What a displacer's whole weight adds to a look: an expression that blushes, glows or shows other parts of
-// a picture (VRM's material binds).
+// What a displacer's whole weight adds to a look: an expression that blushes, glows or shows other
+// parts of a picture (VRM's material binds).
 struct LookChange {
   int displacer = 0, look = 0;
   vec4 base_color{0};
@@ -117,7 +119,8 @@ struct SpringBone {
   std::vector<int> colliders;  // into Character::spring_colliders
 };
 
-// A joint that turns as another does, or towards it (joint_constraints.h, VRMC_node_constraint-1.0).
+// A joint that turns as another does, or towards it (joint_constraints.h,
+// VRMC_node_constraint-1.0).
 struct JointConstraint {
   enum class Kind : uint8_t { roll, aim, rotation };
   int joint = 0, source = 0;

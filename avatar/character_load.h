@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of figures to a Character, told apart by their content: H-Anim in X3D's encodings and VRML97,
-// glTF skins, VRM, BVH. Throws LoadError naming file and line (or node). Cost linear in the file.
+// Files of figures to a Character, told apart by their content: H-Anim in X3D's encodings and
+// VRML97, glTF skins, VRM, BVH. Throws LoadError naming file and line (or node). Cost linear in the
+// file.
 #pragma once
 #include <string>
 

@@ -105,7 +105,8 @@ std::string describe_text(const Character& character) {
   if (!character.constraints.empty())
     text += format("constraints  %zu joints follow others\n", character.constraints.size());
   if (std::vector<std::string> names = painting(character); !names.empty())
-    text += format("paint        %zu displacers change materials: ", names.size()) + join(names) + "\n";
+    text +=
+        format("paint        %zu displacers change materials: ", names.size()) + join(names) + "\n";
   text += format("motions      %zu: ", motions.size()) + join(motions) + "\n";
   for (const auto& [key, value] : character.metadata)
     text += "about        " + key + ": " + value + "\n";
@@ -143,11 +144,12 @@ std::string describe_json(const Character& character) {
   for (const Displacer& displacer : character.displacers)
     all["displacers"].push_back(
         {{"name", displacer.name}, {"vertices", displacer.vertices.size()}});
-  all["skin"] = {{"vertices", character.positions.size()},
-                 {"triangles", triangle_count(character)},
-                 {"parts", character.parts.size()},
-                 {"most_joints_a_vertex", most_weights(character)},
-                 {"skinning", character.skinning == Skinning::linear ? "linear" : "dual_quaternion"}};
+  all["skin"] = {
+      {"vertices", character.positions.size()},
+      {"triangles", triangle_count(character)},
+      {"parts", character.parts.size()},
+      {"most_joints_a_vertex", most_weights(character)},
+      {"skinning", character.skinning == Skinning::linear ? "linear" : "dual_quaternion"}};
   all["looks"] = json::array();
   for (const Look& look : character.looks)
     all["looks"].push_back({{"name", look.name}, {"texture", look.texture}});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The six archetypal expressions of MPEG-4 (ISO/IEC 14496-2, table of expression_select), by name and as
-// a vector of weights. What a story, a situation and a visitor each ask for is such a vector.
+// The six archetypal expressions of MPEG-4 (ISO/IEC 14496-2, table of expression_select), by name
+// and as a vector of weights. What a story, a situation and a visitor each ask for is such a
+// vector.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The expression language. A rotation expression turns joints through rotators (a weight picks a place
-// among orientations), a deform expression weights controls (displacers by role), a structure expression
-// is made of expressions of all three kinds. They are data: JSON as docs/expressions.md has it.
-// Source: the storyteller and kiosk paper, "VRML prototypes" (RotationExpression, DeformExpression,
-// StructureExpression, Rotator). The algebra over them is in expression_sum.h.
+// The expression language. A rotation expression turns joints through rotators (a weight picks a
+// place among orientations), a deform expression weights controls (displacers by role), a structure
+// expression is made of expressions of all three kinds. They are data: JSON as docs/expressions.md
+// has it. Source: the storyteller and kiosk paper, "VRML prototypes" (RotationExpression,
+// DeformExpression, StructureExpression, Rotator). The algebra over them is in expression_sum.h.
 #pragma once
 #include <string>
 #include <string_view>
@@ -13,8 +13,8 @@
 
 namespace wellspring {
 
-// To a joint what a displacer is to a mesh: orientations at growing weights, interpolated in between,
-// the outermost ones beyond.
+// To a joint what a displacer is to a mesh: orientations at growing weights, interpolated in
+// between, the outermost ones beyond.
 struct Rotator {
   std::string name, joint;  // H-Anim v2 name of the joint
   std::vector<float> weights;
@@ -25,7 +25,8 @@ struct Rotator {
 // What a control does to lips and lids, for the rules that protect them (expression_sum.h).
 enum class ControlKind : uint8_t { plain, mouth, parts_lips, blink, opens_lids, viseme };
 
-// A part of the face by its role, and what figures call it. Names are compared without regard to case.
+// A part of the face by its role, and what figures call it. Names are compared without regard to
+// case.
 struct Control {
   std::string name;
   ControlKind kind = ControlKind::plain;
@@ -50,7 +51,8 @@ struct NamedExpression {
 struct ExpressionSet {
   std::vector<Rotator> rotators;
   std::vector<Control> controls;
-  std::vector<NamedExpression> expressions;  // parts and `otherwise` point at earlier ones: no cycles
+  std::vector<NamedExpression>
+      expressions;  // parts and `otherwise` point at earlier ones: no cycles
 };
 
 inline constexpr size_t most_expressions = 4096;
@@ -66,8 +68,8 @@ quat eval_rotator(const Rotator& rotator, float weight);
 // The set that comes with the program.
 const ExpressionSet& default_expressions();
 
-// Throws LoadError with the place of the first thing wrong; `file` names it in messages. An expression may
-// be used only after its own entry.
+// Throws LoadError with the place of the first thing wrong; `file` names it in messages. An
+// expression may be used only after its own entry.
 ExpressionSet read_expressions(std::string_view json, const std::string& file);
 ExpressionSet load_expressions(const std::string& file);
 // What read_expressions reads to the same set again.

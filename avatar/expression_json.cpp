@@ -11,7 +11,8 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr const char* kind_names[] = {"plain", "mouth", "parts_lips", "blink", "opens_lids", "viseme"};
+constexpr const char* kind_names[] = {"plain", "mouth",      "parts_lips",
+                                      "blink", "opens_lids", "viseme"};
 // The list of parts of each kind of expression, and the field of a part that names what it weights.
 constexpr const char* list_names[] = {"rotate", "deform", "group"};
 constexpr const char* part_names[] = {"rotator", "control", "expression"};

@@ -9,7 +9,8 @@ namespace {
 
 float between_0_and_1(float v) { return v > 0 ? std::min(v, 1.0f) : 0; }  // NaN: 0
 
-// How much is left of a group: nothing where an expression blocks it or several together fade it out.
+// How much is left of a group: nothing where an expression blocks it or several together fade it
+// out.
 float left_of(const Character& character, size_t group, const Pose& pose) {
   float taken = 0;
   for (const ExpressionRule& rule : character.expression_rules) {
@@ -31,7 +32,8 @@ void follow_expression_rules(const Character& character, Pose& pose) {
     if (rule.binary) weight = weight > 0.5f ? 1.0f : 0.0f;
   }
   std::array<float, expression_groups> left;
-  for (size_t group = 0; group < expression_groups; group++) left[group] = left_of(character, group, pose);
+  for (size_t group = 0; group < expression_groups; group++)
+    left[group] = left_of(character, group, pose);
   for (const ExpressionRule& rule : rules) {
     if (rule.group < 0) continue;
     float share = left[size_t(rule.group)];
@@ -44,10 +46,12 @@ void follow_expression_rules(const Character& character, Pose& pose) {
       pose.rotations[size_t(eye)] = glm::slerp(quat(1, 0, 0, 0), pose.rotations[size_t(eye)], gaze);
 }
 
-void eval_look_changes(const Character& character, const Pose& pose, std::vector<LookChange>& changes) {
+void eval_look_changes(const Character& character, const Pose& pose,
+                       std::vector<LookChange>& changes) {
   changes.assign(character.looks.size(), {});
   for (const LookChange& change : character.look_changes) {
-    if (size_t(change.displacer) >= pose.displacers.size() || size_t(change.look) >= changes.size()) continue;
+    if (size_t(change.displacer) >= pose.displacers.size() || size_t(change.look) >= changes.size())
+      continue;
     float weight = between_0_and_1(pose.displacers[size_t(change.displacer)]);
     if (weight == 0) continue;
     LookChange& sum = changes[size_t(change.look)];

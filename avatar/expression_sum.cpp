@@ -30,14 +30,16 @@ std::vector<bool> joints_seen(const Character& character) {
 void add_parts(std::vector<ExpressionPart>& to, const std::vector<ExpressionPart>& parts,
                float weight) {
   for (const ExpressionPart& part : parts) {
-    auto known = std::find_if(to.begin(), to.end(),
-                              [&](const ExpressionPart& other) { return other.index == part.index; });
+    auto known = std::find_if(to.begin(), to.end(), [&](const ExpressionPart& other) {
+      return other.index == part.index;
+    });
     if (known == to.end()) to.push_back({part.index, weight * part.weight});
     else known->weight += weight * part.weight;
   }
 }
 
-// Everything nested is multiplied out. Expressions use only earlier ones, so one pass in order will do.
+// Everything nested is multiplied out. Expressions use only earlier ones, so one pass in order will
+// do.
 void flatten(ExpressionRig& rig) {
   const ExpressionSet& set = *rig.set;
   size_t count = set.expressions.size();
@@ -104,7 +106,8 @@ ExpressionRig make_expression_rig(const ExpressionSet& set, const Character& cha
     displacers.emplace(small(character.displacers[d].name), int(d));
   auto find = [&](const std::vector<std::string>& names) {
     for (const std::string& name : names)
-      if (auto known = displacers.find(small(name)); known != displacers.end()) return known->second;
+      if (auto known = displacers.find(small(name)); known != displacers.end())
+        return known->second;
     return -1;
   };
   std::vector<bool> seen = joints_seen(character);
@@ -125,7 +128,8 @@ ExpressionRig make_expression_rig(const ExpressionSet& set, const Character& cha
     rig.drives.push_back(drive);
   }
   flatten(rig);
-  for (size_t i = 0; i < emotion_count; i++) rig.emotion[i] = find_expression(set, emotion_names[i]);
+  for (size_t i = 0; i < emotion_count; i++)
+    rig.emotion[i] = find_expression(set, emotion_names[i]);
   for (size_t i = 0; i < viseme_count; i++)
     rig.viseme[i] = find_expression(set, "viseme_" + std::string(viseme_names[i]));
   rig.breathe = find_expression(set, "breathe");

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The algebra of expressions: sums of weighted expressions over a figure, and what is done with them.
+// The algebra of expressions: sums of weighted expressions over a figure, and what is done with
+// them.
 //
-// A sum has one number a control and one a rotator. Adding is linear, so it is commutative, has the empty
-// sum as identity, and weights that cancel leave nothing. Bounds are put on once, when a sum is applied;
-// clamping in between would make the result depend on the order. docs/expressions.md writes the laws down,
-// tests/unit/avatar/test_expression_algebra.cpp draws random sums against them.
+// A sum has one number a control and one a rotator. Adding is linear, so it is commutative, has the
+// empty sum as identity, and weights that cancel leave nothing. Bounds are put on once, when a sum
+// is applied; clamping in between would make the result depend on the order. docs/expressions.md
+// writes the laws down, tests/unit/avatar/test_expression_algebra.cpp draws random sums against
+// them.
 #pragma once
 #include <array>
 #include <string>
@@ -47,7 +49,8 @@ void clear(ExpressionSum& sum, const ExpressionRig& rig);
 void add(ExpressionSum& sum, const ExpressionRig& rig, int expression, float weight);
 // sum += weight * other.
 void add(ExpressionSum& sum, const ExpressionSum& other, float weight);
-// sum = (1 - amount) sum + amount other; amount is clamped to 0..1, and 1 leaves nothing of what was.
+// sum = (1 - amount) sum + amount other; amount is clamped to 0..1, and 1 leaves nothing of what
+// was.
 void override_with(ExpressionSum& sum, const ExpressionSum& other, float amount);
 // The weighted mean; weights that sum to nothing give the empty sum.
 ExpressionSum mean(const ExpressionRig& rig, const std::vector<ExpressionSum>& sums,
@@ -59,15 +62,16 @@ struct Protected {
   std::array<float, 15> visemes{};     // of the speech, 0..1
   float talking = 0;                   // 0..1: the mouth belongs to the words
 };
-// Adds speech and blink so that nothing else keeps lips or lids from closing: where a bilabial is at 1 no
-// control that parts the lips is left, where a blink is at 1 the lids are shut whatever the layers say.
+// Adds speech and blink so that nothing else keeps lips or lids from closing: where a bilabial is
+// at 1 no control that parts the lips is left, where a blink is at 1 the lids are shut whatever the
+// layers say.
 void protect(ExpressionSum& sum, const ExpressionRig& rig, const Protected& what);
 
-// Turns joints by the sum of their rotators' rotation vectors, over their pose. Before the eyes are aimed,
-// since heads turn.
+// Turns joints by the sum of their rotators' rotation vectors, over their pose. Before the eyes are
+// aimed, since heads turn.
 void apply_rotators(const ExpressionSum& sum, const ExpressionRig& rig, Pose& pose);
-// Clamps the controls to 0..1 and writes them into displacers (overwritten where the set controls them),
-// or into the lids and jaws of figures that have joints instead.
+// Clamps the controls to 0..1 and writes them into displacers (overwritten where the set controls
+// them), or into the lids and jaws of figures that have joints instead.
 void apply_controls(const ExpressionSum& sum, const ExpressionRig& rig, Pose& pose);
 
 // ---- emotions, before they become a face ----
@@ -75,8 +79,8 @@ void apply_controls(const ExpressionSum& sum, const ExpressionRig& rig, Pose& po
 // a + weight b, without bounds. Terms that are not finite add nothing.
 Emotions add(const Emotions& a, const Emotions& b, float weight);
 Emotions mix(const Emotions& a, const Emotions& b, float t);
-// What a face can show of a sum of layers: opposites cancel (joy and sadness, anger and fear), each is
-// within 0..1, and all together weigh at most 1, so that no mixture becomes a grimace.
+// What a face can show of a sum of layers: opposites cancel (joy and sadness, anger and fear), each
+// is within 0..1, and all together weigh at most 1, so that no mixture becomes a grimace.
 Emotions bounded(const Emotions& sum);
 
 }  // namespace wellspring

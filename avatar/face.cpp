@@ -7,7 +7,8 @@ namespace wellspring {
 namespace {
 
 constexpr double syllables_a_second = 4.6;
-constexpr float emotion_rate = 7;  // critically damped: an emotion is nine tenths there after 0.56 s
+constexpr float emotion_rate =
+    7;  // critically damped: an emotion is nine tenths there after 0.56 s
 constexpr float situation_settle = 0.8f;
 constexpr float stir = 0.3f;  // of Perlin's noise: his face is a cartoon's, this one a person's
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The face in one tick: story, situation and visitor become one sum of expressions, and the mouth of
-// somebody who speaks (by the timed visemes of its speech, or by made-up syllables where nothing is heard)
-// is kept safe in it. docs/expressions.md tells the whole of it.
+// The face in one tick: story, situation and visitor become one sum of expressions, and the mouth
+// of somebody who speaks (by the timed visemes of its speech, or by made-up syllables where nothing
+// is heard) is kept safe in it. docs/expressions.md tells the whole of it.
 #pragma once
 #include <array>
 
@@ -36,10 +36,11 @@ struct FaceInput {
 };
 
 // The emotions that all layers together ask for: story + weight * visitor, bounded.
-Emotions layered(const Emotions& story, const Emotions& visitor, float weight, float override_amount);
+Emotions layered(const Emotions& story, const Emotions& visitor, float weight,
+                 float override_amount);
 
 // Overwrites `sum` and `words` (all but words.closing). Counts what it does.
-void tick_face(FaceState& state, const ExpressionRig& rig, const FaceInput& input, double now, float dt,
-               ExpressionSum& sum, Protected& words, StorytellerWork& work);
+void tick_face(FaceState& state, const ExpressionRig& rig, const FaceInput& input, double now,
+               float dt, ExpressionSum& sum, Protected& words, StorytellerWork& work);
 
 }  // namespace wellspring

@@ -10,7 +10,18 @@ namespace wellspring {
 namespace {
 
 // Which vertices of a shape a control takes: a side, or a region told by what lids and mouth move.
-enum class Cut : uint8_t { all, left, right, eyes, mouth, mouth_left, mouth_right, rest, rest_left, rest_right };
+enum class Cut : uint8_t {
+  all,
+  left,
+  right,
+  eyes,
+  mouth,
+  mouth_left,
+  mouth_right,
+  rest,
+  rest_left,
+  rest_right
+};
 
 struct Term {
   const char* shape;
@@ -68,16 +79,24 @@ const Recipe recipes[] = {
     {"cheek_puff", Cut::all, {{"cheekPuff", 1}}},
     {"nose_wrinkle", Cut::all, {{"noseSneerLeft", 1}, {"noseSneerRight", 1}}},
     {"viseme_aa", Cut::all, {{"aa", 1}}},
-    {"viseme_aa", Cut::all, {{"jawOpen", 0.65f}, {"mouthLowerDownLeft", 0.3f}, {"mouthLowerDownRight", 0.3f}}},
+    {"viseme_aa",
+     Cut::all,
+     {{"jawOpen", 0.65f}, {"mouthLowerDownLeft", 0.3f}, {"mouthLowerDownRight", 0.3f}}},
     {"viseme_aa", Cut::all, {{"jawOpen", 0.65f}}},
     {"viseme_aa", Cut::all, {{"mouthOpen", 0.8f}}},
     {"viseme_E", Cut::all, {{"ee", 0.9f}, {"aa", 0.2f}}},
-    {"viseme_E", Cut::all, {{"jawOpen", 0.35f}, {"mouthStretchLeft", 0.2f}, {"mouthStretchRight", 0.2f}}},
+    {"viseme_E",
+     Cut::all,
+     {{"jawOpen", 0.35f}, {"mouthStretchLeft", 0.2f}, {"mouthStretchRight", 0.2f}}},
     {"viseme_E", Cut::all, {{"aa", 0.4f}}},
     {"viseme_ih", Cut::all, {{"ih", 1}}},
-    {"viseme_ih", Cut::all,
-     {{"jawOpen", 0.15f}, {"mouthSmileLeft", 0.3f}, {"mouthSmileRight", 0.3f},
-      {"mouthStretchLeft", 0.3f}, {"mouthStretchRight", 0.3f}}},
+    {"viseme_ih",
+     Cut::all,
+     {{"jawOpen", 0.15f},
+      {"mouthSmileLeft", 0.3f},
+      {"mouthSmileRight", 0.3f},
+      {"mouthStretchLeft", 0.3f},
+      {"mouthStretchRight", 0.3f}}},
     {"viseme_ih", Cut::all, {{"aa", 0.25f}}},
     {"viseme_oh", Cut::all, {{"oh", 1}}},
     {"viseme_oh", Cut::all, {{"jawOpen", 0.4f}, {"mouthFunnel", 0.55f}}},
@@ -85,19 +104,32 @@ const Recipe recipes[] = {
     {"viseme_ou", Cut::all, {{"ou", 1}}},
     {"viseme_ou", Cut::all, {{"jawOpen", 0.15f}, {"mouthPucker", 0.75f}, {"mouthFunnel", 0.2f}}},
     {"viseme_ou", Cut::all, {{"aa", 0.3f}}},
-    {"viseme_PP", Cut::all,
-     {{"mouthPressLeft", 0.5f}, {"mouthPressRight", 0.5f}, {"mouthRollLower", 0.3f}, {"mouthRollUpper", 0.3f}}},
-    {"viseme_FF", Cut::all, {{"mouthRollLower", 0.6f}, {"mouthUpperUpLeft", 0.2f}, {"mouthUpperUpRight", 0.2f}, {"jawOpen", 0.05f}}},
+    {"viseme_PP",
+     Cut::all,
+     {{"mouthPressLeft", 0.5f},
+      {"mouthPressRight", 0.5f},
+      {"mouthRollLower", 0.3f},
+      {"mouthRollUpper", 0.3f}}},
+    {"viseme_FF",
+     Cut::all,
+     {{"mouthRollLower", 0.6f},
+      {"mouthUpperUpLeft", 0.2f},
+      {"mouthUpperUpRight", 0.2f},
+      {"jawOpen", 0.05f}}},
     {"viseme_FF", Cut::all, {{"ih", 0.1f}}},
     {"viseme_TH", Cut::all, {{"jawOpen", 0.12f}, {"tongueOut", 0.35f}}},
     {"viseme_TH", Cut::all, {{"aa", 0.15f}, {"ih", 0.1f}}},
-    {"viseme_DD", Cut::all, {{"jawOpen", 0.1f}, {"mouthStretchLeft", 0.1f}, {"mouthStretchRight", 0.1f}}},
+    {"viseme_DD",
+     Cut::all,
+     {{"jawOpen", 0.1f}, {"mouthStretchLeft", 0.1f}, {"mouthStretchRight", 0.1f}}},
     {"viseme_DD", Cut::all, {{"ih", 0.2f}, {"aa", 0.1f}}},
     {"viseme_kk", Cut::all, {{"jawOpen", 0.18f}}},
     {"viseme_kk", Cut::all, {{"aa", 0.15f}, {"ee", 0.1f}}},
     {"viseme_CH", Cut::all, {{"mouthFunnel", 0.5f}, {"mouthPucker", 0.2f}, {"jawOpen", 0.08f}}},
     {"viseme_CH", Cut::all, {{"ou", 0.3f}, {"ih", 0.1f}}},
-    {"viseme_SS", Cut::all, {{"mouthStretchLeft", 0.25f}, {"mouthStretchRight", 0.25f}, {"jawOpen", 0.04f}}},
+    {"viseme_SS",
+     Cut::all,
+     {{"mouthStretchLeft", 0.25f}, {"mouthStretchRight", 0.25f}, {"jawOpen", 0.04f}}},
     {"viseme_SS", Cut::all, {{"ih", 0.3f}}},
     {"viseme_nn", Cut::all, {{"jawOpen", 0.12f}}},
     {"viseme_nn", Cut::all, {{"ih", 0.15f}, {"aa", 0.1f}}},
@@ -112,7 +144,8 @@ std::string key_of(std::string name) {
   bool sided = name.size() > 2 && name[name.size() - 2] == '_';
   std::string key;
   for (char c : name)
-    if (std::isalnum(static_cast<unsigned char>(c))) key += char(std::tolower(static_cast<unsigned char>(c)));
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      key += char(std::tolower(static_cast<unsigned char>(c)));
   if (sided && key.rfind("fcl", 0) != 0) {
     if (key.back() == 'l') key += "eft";
     else if (key.back() == 'r') key += "ight";
@@ -126,10 +159,12 @@ struct Face {
   std::unordered_set<uint32_t> eyes, mouth;
 
   explicit Face(Character& of) : character(of) {
-    for (size_t d = 0; d < of.displacers.size(); d++) place.emplace(key_of(of.displacers[d].name), d);
+    for (size_t d = 0; d < of.displacers.size(); d++)
+      place.emplace(key_of(of.displacers[d].name), d);
     for (const char* shape : {"blink", "blinkLeft", "blinkRight", "eyeBlinkLeft", "eyeBlinkRight"})
       gather(shape, eyes);
-    for (const char* shape : {"aa", "ih", "ou", "ee", "oh", "jawOpen", "mouthOpen"}) gather(shape, mouth);
+    for (const char* shape : {"aa", "ih", "ou", "ee", "oh", "jawOpen", "mouthOpen"})
+      gather(shape, mouth);
     for (uint32_t v : eyes) mouth.erase(v);
   }
   void gather(const char* shape, std::unordered_set<uint32_t>& vertices) const {
@@ -147,7 +182,8 @@ struct Face {
       if (x >= 0) return false;
     }
     if (cut == Cut::eyes) return eyes.count(vertex) > 0;
-    if (cut == Cut::mouth || cut == Cut::mouth_left || cut == Cut::mouth_right) return mouth.count(vertex) > 0;
+    if (cut == Cut::mouth || cut == Cut::mouth_left || cut == Cut::mouth_right)
+      return mouth.count(vertex) > 0;
     if (cut >= Cut::rest) return !eyes.count(vertex) && !mouth.count(vertex);
     return true;
   }
@@ -157,10 +193,13 @@ struct Face {
     return nullptr;
   }
   // What of a shape's effect on materials a control takes: those have no sides and no regions.
-  static float share_of(Cut cut) { return cut == Cut::all ? 1 : cut == Cut::left || cut == Cut::right ? 0.5f : 0; }
+  static float share_of(Cut cut) {
+    return cut == Cut::all ? 1 : cut == Cut::left || cut == Cut::right ? 0.5f : 0;
+  }
 
   // `changes` and `binary`: what the control does to looks, and whether it is all or nothing.
-  bool make(const Recipe& recipe, Displacer& made, std::vector<LookChange>& changes, bool& binary) const {
+  bool make(const Recipe& recipe, Displacer& made, std::vector<LookChange>& changes,
+            bool& binary) const {
     std::map<uint32_t, vec3> sum;
     binary = false;
     for (const Term& term : recipe.terms) {
@@ -178,7 +217,8 @@ struct Face {
           sum[shape.vertices[i]] += shape.displacements[i] * weight;
       for (LookChange change : character.look_changes) {
         if (size_t(change.displacer) != found->second || share == 0) continue;
-        change.base_color *= weight * share, change.emission *= weight * share, change.uv *= weight * share;
+        change.base_color *= weight * share, change.emission *= weight * share,
+            change.uv *= weight * share;
         changes.push_back(change);
       }
     }
@@ -207,7 +247,9 @@ void complete_rules(Character& character) {
   for (size_t d = 0; d < character.displacers.size(); d++) {
     int group = group_of(character.displacers[d].name);
     if (group < 0) continue;
-    auto own = std::find_if(rules.begin(), rules.end(), [&](const ExpressionRule& rule) { return size_t(rule.displacer) == d; });
+    auto own = std::find_if(rules.begin(), rules.end(), [&](const ExpressionRule& rule) {
+      return size_t(rule.displacer) == d;
+    });
     if (own == rules.end()) rules.push_back({int(d), false, group, {}});
     else own->group = group;
   }
@@ -235,7 +277,8 @@ void complete_face(Character& character) {
     made.push_back(std::move(displacer));
   }
   for (Displacer& displacer : made) character.displacers.push_back(std::move(displacer));
-  character.look_changes.insert(character.look_changes.end(), all_changes.begin(), all_changes.end());
+  character.look_changes.insert(character.look_changes.end(), all_changes.begin(),
+                                all_changes.end());
   character.expression_rules.insert(character.expression_rules.end(), rules.begin(), rules.end());
   complete_rules(character);
 }

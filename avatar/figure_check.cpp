@@ -17,7 +17,9 @@ struct Box {
   }
 };
 
-std::string centimetres(float metres) { return std::to_string(int(std::lround(metres * 100))) + " cm"; }
+std::string centimetres(float metres) {
+  return std::to_string(int(std::lround(metres * 100))) + " cm";
+}
 
 // Where the head is: around the vertices that follow the skull; for a skull without surface, around
 // its joint by the figure's size.
@@ -30,7 +32,8 @@ Box head_box(const Character& character, int skull, float height) {
       box.high = glm::max(box.high, character.positions[v]);
     }
   vec3 centre = character.joints[size_t(skull)].center;
-  Box usual{centre - height * vec3(0.08f, 0.06f, 0.1f), centre + height * vec3(0.08f, 0.16f, 0.14f)};
+  Box usual{centre - height * vec3(0.08f, 0.06f, 0.1f),
+            centre + height * vec3(0.08f, 0.16f, 0.14f)};
   return box.empty() || box.high.y - box.low.y < 0.05f * height ? usual : box;
 }
 
@@ -51,7 +54,8 @@ void check_face_joints(Character& character, float height) {
     vec3 from_skull = joint.center - character.joints[size_t(skull)].center;
     bool below = from_skull.y < -0.05f * height;  // the skull's joint is at its base
     if (face && (below || !head.holds(joint.center, 0.012f * height))) {
-      say(joint, "lies " + centimetres(glm::length(from_skull)) + " from skullbase, outside the head");
+      say(joint,
+          "lies " + centimetres(glm::length(from_skull)) + " from skullbase, outside the head");
     }
   }
   const Joint* jaw = place("temporomandibular");
@@ -59,12 +63,14 @@ void check_face_joints(Character& character, float height) {
     const Joint* eye = place((side + std::string("eyeball_joint")).c_str());
     const Joint* lid = place((side + std::string("eyelid_joint")).c_str());
     const Joint* brow = place((side + std::string("eyebrow_joint")).c_str());
-    if (eye && jaw && jaw->center.y > eye->center.y + 0.01f * height) say(*jaw, "lies above the eyes");
+    if (eye && jaw && jaw->center.y > eye->center.y + 0.01f * height)
+      say(*jaw, "lies above the eyes");
     if (eye && (eye->center.x < 0) == (side[0] == 'l') && std::abs(eye->center.x) > 0.003f * height)
       say(*eye, "lies on the other side of the head");
     if (eye && lid && glm::length(eye->center - lid->center) > 0.03f * height)
       say(*lid, "lies " + centimetres(glm::length(eye->center - lid->center)) + " from its eye");
-    if (eye && brow && brow->center.y < eye->center.y - 0.006f * height) say(*brow, "lies below its eye");
+    if (eye && brow && brow->center.y < eye->center.y - 0.006f * height)
+      say(*brow, "lies below its eye");
   }
 }
 
@@ -89,7 +95,8 @@ void stand_on_floor(Character& character) {
   for (vec3& p : character.positions) p.y -= low;
   for (Joint& joint : character.joints) joint.center.y -= low;
   for (Site& site : character.sites) site.position.y -= low;
-  for (SpringCollider& collider : character.spring_colliders) collider.place.y -= low, collider.tail.y -= low;
+  for (SpringCollider& collider : character.spring_colliders)
+    collider.place.y -= low, collider.tail.y -= low;
   for (Motion& motion : character.motions)
     for (MotionJoint& joint : motion.joints) joint.center.y -= low;
 }
@@ -105,7 +112,8 @@ void check_figure(Character& character) {
   }
   check_face_joints(character, std::clamp(height * 1.08f, 0.1f, 100.0f));
   if (size > 20)
-    character.warnings.push_back("the figure is more than 20 m large: perhaps its unit is not the metre");
+    character.warnings.push_back(
+        "the figure is more than 20 m large: perhaps its unit is not the metre");
 }
 
 }  // namespace wellspring

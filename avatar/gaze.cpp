@@ -6,7 +6,8 @@
 namespace wellspring {
 namespace {
 
-constexpr float nine_tenths = 3.89f;  // of a critically damped step are made after this many 1 / rate
+constexpr float nine_tenths =
+    3.89f;  // of a critically damped step are made after this many 1 / rate
 constexpr float eye_rate = nine_tenths / eye_seconds, head_rate = nine_tenths / head_seconds,
                 calm_head_rate = 3.5f, torso_rate = nine_tenths / torso_seconds;
 constexpr float eye_reach_yaw = 22_deg,

@@ -40,7 +40,8 @@ struct GazeInput {
   bool saccades = true;           // false: nobody is near enough to see them
 };
 
-// Times after which eyes, head and chest have made nine tenths of a turn (3.9 / rate of their springs).
+// Times after which eyes, head and chest have made nine tenths of a turn (3.9 / rate of their
+// springs).
 inline constexpr float eye_seconds = 0.14f, head_seconds = 0.65f, torso_seconds = 1.56f;
 
 // One tick. Returns true when the gaze has made a large jump (the eyes like to blink then).

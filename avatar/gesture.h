@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arms, head and chest by a few meaningful angles. The same angles fit every figure: the rig knows how
-// its arms hang. A gesture is a clip of them; clips pass over into each other without a jump of place or
-// speed (inertial blending: what the broken-off motion leaves is a spring that comes to rest).
+// Arms, head and chest by a few meaningful angles. The same angles fit every figure: the rig knows
+// how its arms hang. A gesture is a clip of them; clips pass over into each other without a jump of
+// place or speed (inertial blending: what the broken-off motion leaves is a spring that comes to
+// rest).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -25,13 +26,14 @@ struct GestureState {
   float time = 0;  // since the clip began; negative: it waits for its word
   float size = 1, hold = 0;  // hold: seconds added to the held moment
   bool mirrored = false;
-  // What earlier motions left, one spring a channel of GestureMotion; at rest when `blending` is false.
+  // What earlier motions left, one spring a channel of GestureMotion; at rest when `blending` is
+  // false.
   std::array<Spring, gesture_channels> left_over;
   bool blending = false;
 };
 
-// Advances the running clip by dt after taking `order`. `rest` are the arms without any gesture. The arms
-// of the answer are final, `weight` says how much of them is gesture, 0..1.
+// Advances the running clip by dt after taking `order`. `rest` are the arms without any gesture.
+// The arms of the answer are final, `weight` says how much of them is gesture, 0..1.
 GestureMotion tick_gesture(GestureState& state, const GestureLibrary& library,
                            const GestureOrder& order, const std::array<ArmPose, 2>& rest, float dt);
 

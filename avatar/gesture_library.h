@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The storyteller's body language: motions by name. They are data (docs/expressions.md describes the
-// JSON); the library that comes with the program is compiled in, an exhibit can bring its own.
+// The storyteller's body language: motions by name. They are data (docs/expressions.md describes
+// the JSON); the library that comes with the program is compiled in, an exhibit can bring its own.
 #pragma once
 #include <array>
 #include <string>
@@ -26,11 +26,12 @@ struct ArmPose {
 struct GestureMotion {
   std::array<ArmPose, 2> arm;         // left, right
   std::array<float, 2> weight{0, 0};  // of them over the resting arms, 0..1
-  vec3 head{0};   // over the gaze: turn to its own left, nod (down positive), tilt to its own right; radians
+  vec3 head{0};  // over the gaze: turn to its own left, nod (down positive), tilt to its own right;
+                 // radians
   vec3 chest{0};  // turn to its own left, bow, lean to its own right; radians
   float shoulders = 0;  // collar bones raised, radians
-  // How far finger or hand are turned to the place spoken of, 0..1 (left, right); not in the data, made of
-  // the clip's `aim` and weight.
+  // How far finger or hand are turned to the place spoken of, 0..1 (left, right); not in the data,
+  // made of the clip's `aim` and weight.
   std::array<float, 2> finger_aim{0, 0}, palm_aim{0, 0};
 };
 inline constexpr size_t gesture_channels = sizeof(GestureMotion) / sizeof(float);

@@ -14,8 +14,9 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr double radian = 3.14159265358979323846 / 180;
-constexpr const char* arm_fields[] = {"forward", "side",  "turn",  "elbow",  "pronate", "flex", "tilt",
-                                      "curl",    "thumb", "index", "middle", "ring",    "little"};
+constexpr const char* arm_fields[] = {"forward", "side", "turn",  "elbow", "pronate",
+                                      "flex",    "tilt", "curl",  "thumb", "index",
+                                      "middle",  "ring", "little"};
 constexpr const char* head_fields[] = {"turn", "nod", "tilt"};
 constexpr const char* chest_fields[] = {"turn", "bow", "lean"};
 
@@ -104,7 +105,8 @@ struct Reader : LibraryReader {
       if (const json* arm = find(key, "left")) read_arm(*arm, place + "/left", "left", row, said);
       if (const json* arm = find(key, "right"))
         read_arm(*arm, place + "/right", "right", row, said);
-      if (const json* part = find(key, "head")) read_trunk(*part, place + "/head", "head", row, said);
+      if (const json* part = find(key, "head"))
+        read_trunk(*part, place + "/head", "head", row, said);
       if (const json* part = find(key, "chest"))
         read_trunk(*part, place + "/chest", "chest", row, said);
       if (const json* value = find(key, "shoulders")) {
@@ -124,7 +126,8 @@ struct Reader : LibraryReader {
     clip.seconds = clip.times.back();
     for (size_t c = channel_of("left.weight"); c < told_channels; c++)
       if (clip.rows.front()[c] != 0 || clip.rows.back()[c] != 0)
-        fail(where + "/keys", "a gesture begins and ends at rest: weights, head, chest and shoulders 0");
+        fail(where + "/keys",
+             "a gesture begins and ends at rest: weights, head, chest and shoulders 0");
   }
 
   void read_swings(const json& entry, const std::string& where, GestureClip& clip) const {
@@ -152,8 +155,8 @@ struct Reader : LibraryReader {
   }
 };
 
-// Monotone slopes (Fritsch, Carlson 1980; weights of Brodlie): no value between two keys leaves the range
-// of the two, and a motion does not stop at a key that it passes.
+// Monotone slopes (Fritsch, Carlson 1980; weights of Brodlie): no value between two keys leaves the
+// range of the two, and a motion does not stop at a key that it passes.
 void make_slopes(GestureClip& clip) {
   clip.slopes.assign(clip.rows.size(), GestureRow{});
   for (size_t i = 1; i + 1 < clip.rows.size(); i++)
@@ -226,11 +229,14 @@ ordered_json write_key(float time, const GestureRow& row, const GestureRow& befo
 std::string channel_name(int channel) {
   for (const char* side : {"left.", "right."})
     for (const char* field : arm_fields)
-      if (find_gesture_channel(std::string(side) + field) == channel) return std::string(side) + field;
+      if (find_gesture_channel(std::string(side) + field) == channel)
+        return std::string(side) + field;
   for (const char* field : head_fields)
-    if (find_gesture_channel(std::string("head.") + field) == channel) return std::string("head.") + field;
+    if (find_gesture_channel(std::string("head.") + field) == channel)
+      return std::string("head.") + field;
   for (const char* field : chest_fields)
-    if (find_gesture_channel(std::string("chest.") + field) == channel) return std::string("chest.") + field;
+    if (find_gesture_channel(std::string("chest.") + field) == channel)
+      return std::string("chest.") + field;
   return "shoulders";
 }
 

@@ -35,7 +35,8 @@ Character character_from_gltf(const std::string& path) {
   if (character.parts.empty())
     gltf::warn(figure.file, "", figure.vrm.animation ? "a motion without a figure"
                                                      : "the figure has no surface");
-  for (std::string& warning : figure.file.warnings) character.warnings.push_back(std::move(warning));
+  for (std::string& warning : figure.file.warnings)
+    character.warnings.push_back(std::move(warning));
   complete_face(character);
   check_figure(character);
   return std::move(character);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Constraints between a file's nodes as constraints between the figure's joints: axes in humanoid space, in
-// an order in which they can be followed.
+// Constraints between a file's nodes as constraints between the figure's joints: axes in humanoid
+// space, in an order in which they can be followed.
 #include "avatar/gltf_figure.h"
 #include "avatar/gltf_frames.h"
 #include "avatar/joint_constraints.h"
@@ -26,9 +26,11 @@ void read_gltf_constraints(GltfFigure& figure) {
     // A rotation is carried from the source's own axes to the joint's own, a roll from the axes of
     // what is above the one to those above the other.
     if (asked.kind == JointConstraint::Kind::rotation)
-      constraint.between = quat(glm::normalize(turn_of(asked.node) * glm::conjugate(turn_of(asked.source))));
+      constraint.between =
+          quat(glm::normalize(turn_of(asked.node) * glm::conjugate(turn_of(asked.source))));
     else if (asked.kind == JointConstraint::Kind::roll)
-      constraint.between = quat(glm::normalize(turn_above(asked.node) * glm::conjugate(turn_above(asked.source))));
+      constraint.between =
+          quat(glm::normalize(turn_above(asked.node) * glm::conjugate(turn_above(asked.source))));
     character.constraints.push_back(constraint);
   }
   std::vector<JointConstraint> circular = sort_constraints(character.joints, character.constraints);
@@ -36,9 +38,10 @@ void read_gltf_constraints(GltfFigure& figure) {
   std::string names;
   for (size_t k = 0; k < circular.size() && k < 8; k++)
     names += (k ? ", " : "") + character.joints[size_t(circular[k].joint)].name.substr(0, 40);
-  gltf::warn(figure.file, "/nodes",
-             "constraints that depend on themselves or on one another in a circle are not followed: " + names +
-                 (circular.size() > 8 ? ", ..." : ""));
+  gltf::warn(
+      figure.file, "/nodes",
+      "constraints that depend on themselves or on one another in a circle are not followed: " +
+          names + (circular.size() > 8 ? ", ..." : ""));
 }
 
 }  // namespace wellspring

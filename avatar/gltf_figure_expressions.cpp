@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole expressions of a VRM file: sums of morph targets as displacers, what they change of materials, and
-// what they forbid.
+// Whole expressions of a VRM file: sums of morph targets as displacers, what they change of
+// materials, and what they forbid.
 #include <cmath>
 #include <unordered_set>
 
@@ -49,7 +49,8 @@ void Reader::add_moves(const VrmExpression& expression, Displacer& displacer) {
         sum[move->second.vertices[i]] += move->second.displacements[i] * bind.weight;
     }
     if (!known)
-      gltf::warn(figure.file, "", "expression '" + expression.name.substr(0, 60) + "' names no morph target");
+      gltf::warn(figure.file, "",
+                 "expression '" + expression.name.substr(0, 60) + "' names no morph target");
   }
   for (const auto& [vertex, move] : sum) {
     displacer.vertices.push_back(vertex);
@@ -112,10 +113,13 @@ void Reader::add_changes(const VrmExpression& expression, int displacer) {
 void Reader::add(const VrmExpression& expression) {
   Displacer displacer{expression.name.substr(0, 200), {}, {}};
   add_moves(expression, displacer);
-  bool shows = !displacer.vertices.empty() || !expression.colors.empty() || !expression.pictures.empty();
+  bool shows =
+      !displacer.vertices.empty() || !expression.colors.empty() || !expression.pictures.empty();
   if (!shows || displacer.name.empty()) return;
   if (!names.insert(displacer.name).second)
-    return gltf::warn(figure.file, "", "expression '" + displacer.name.substr(0, 60) + "' is there twice: the first counts");
+    return gltf::warn(
+        figure.file, "",
+        "expression '" + displacer.name.substr(0, 60) + "' is there twice: the first counts");
   int index = int(made.size());
   made.push_back(std::move(displacer));
   add_changes(expression, index);
@@ -130,7 +134,8 @@ void read_gltf_expressions(GltfFigure& figure) {
   Reader reader{figure};
   for (const VrmExpression& expression : figure.vrm.expressions) reader.add(expression);
   if (reader.made.empty()) return;
-  // Expressions come first: of an expression and a morph target with one name, the expression counts.
+  // Expressions come first: of an expression and a morph target with one name, the expression
+  // counts.
   std::vector<Displacer>& all = figure.character.displacers;
   for (Displacer& target : all)
     if (!reader.names.count(target.name)) reader.made.push_back(std::move(target));

@@ -69,7 +69,8 @@ std::vector<size_t> choose_nodes(GltfFigure& figure) {
       place_of[i] = int(bones.size());
       int parent = figure.nodes[i].parent;
       bones.push_back({gltf::text(items(root, "nodes")[i], "name"),
-                       parent < 0 ? -1 : place_of[size_t(parent)], vec3(figure.nodes[i].global[3])});
+                       parent < 0 ? -1 : place_of[size_t(parent)],
+                       vec3(figure.nodes[i].global[3])});
     }
     BoneNames named = name_bones(bones);
     size_t known = 0;
@@ -77,7 +78,8 @@ std::vector<size_t> choose_nodes(GltfFigure& figure) {
       if (!named.joints[k].empty()) wanted[all[k]] = 1, known++;
     any = known >= 6 && !named.by_shape;
   }
-  if (!any) gltf::refuse(figure.file, "", "no skin, no VRM humanoid and no bones by name: not a figure");
+  if (!any)
+    gltf::refuse(figure.file, "", "no skin, no VRM humanoid and no bones by name: not a figure");
   for (const VrmConstraint& constraint : figure.vrm.constraints)
     wanted[constraint.node] = wanted[constraint.source] = 1;
   // Between two of them, and between a moving node and one of them, all are joints.
@@ -143,9 +145,9 @@ void rest_in_bind_pose(GltfFigure& figure, const SkinBind& skin) {
   for (size_t j = 0; j < skin.nodes.size(); j++) bound_as[skin.nodes[j]] = int(j);
   for (size_t i : gltf_parents_first(figure.nodes)) {
     int parent = figure.nodes[i].parent;
-    figure.rest[i] = bound_as[i] >= 0
-                         ? to_world * glm::inverse(skin.binds[size_t(bound_as[i])])
-                         : (parent < 0 ? dmat4(1) : figure.rest[size_t(parent)]) * figure.nodes[i].matrix;
+    figure.rest[i] = bound_as[i] >= 0 ? to_world * glm::inverse(skin.binds[size_t(bound_as[i])])
+                                      : (parent < 0 ? dmat4(1) : figure.rest[size_t(parent)]) *
+                                            figure.nodes[i].matrix;
   }
 }
 
@@ -167,14 +169,16 @@ void name_joints(GltfFigure& figure, std::vector<Bone>& bones) {
   std::unordered_set<std::string> taken(names.begin(), names.end());
   for (size_t j = 0; j < bones.size(); j++) {
     if (!names[j].empty()) continue;
-    std::string own = bones[j].name.empty() ? "node " + std::to_string(figure.node_of[j]) : bones[j].name;
+    std::string own =
+        bones[j].name.empty() ? "node " + std::to_string(figure.node_of[j]) : bones[j].name;
     if (++count <= 8) unknown += (count > 1 ? ", " : "") + own.substr(0, 40);
     while (!taken.insert(own).second) own += "_" + std::to_string(j);
     names[j] = own;
   }
   if (count)
-    gltf::warn(figure.file, "/nodes", std::to_string(count) + (count == 1 ? " bone is" : " bones are") +
-                                          " no joint of H-Anim: " + unknown + (count > 8 ? ", ..." : ""));
+    gltf::warn(figure.file, "/nodes",
+               std::to_string(count) + (count == 1 ? " bone is" : " bones are") +
+                   " no joint of H-Anim: " + unknown + (count > 8 ? ", ..." : ""));
   for (size_t j = 0; j < bones.size(); j++) figure.character.joints[j].name = names[j];
 }
 
@@ -247,7 +251,8 @@ void read_gltf_joints(GltfFigure& figure) {
   bool posed = is_posed(figure, main);
   if (posed) {
     rest_in_bind_pose(figure, main);
-    gltf::warn(figure.file, "/nodes", "the file poses the figure: rest is the pose its skin was bound in");
+    gltf::warn(figure.file, "/nodes",
+               "the file poses the figure: rest is the pose its skin was bound in");
   }
 
   std::vector<Bone> bones;
@@ -272,11 +277,13 @@ void read_gltf_joints(GltfFigure& figure) {
   if (std::abs(turn.w) < 0.999f && figure.vrm.version != 0)
     gltf::warn(figure.file, "/nodes", "the figure is turned to stand upright and face +Z");
   double size = 0;
-  for (const Bone& bone : bones) size = std::max(size, double(glm::length(bone.place - bones[0].place)));
+  for (const Bone& bone : bones)
+    size = std::max(size, double(glm::length(bone.place - bones[0].place)));
   double scale = 1;
   if (size > 40 && size < 400) {
     scale = 0.01;
-    gltf::warn(figure.file, "/nodes", "the figure is as large as if its unit were the centimetre: taken so");
+    gltf::warn(figure.file, "/nodes",
+               "the figure is as large as if its unit were the centimetre: taken so");
   }
   figure.to_humanoid = glm::scale(glm::mat4_cast(glm::dquat(turn)), dvec3(scale));
   int root = std::max(find_joint(character, "humanoid_root"), 0);
@@ -288,14 +295,16 @@ void read_gltf_joints(GltfFigure& figure) {
     Joint& joint = character.joints[j];
     size_t node = figure.node_of[j];
     joint.center = vec3(figure.to_humanoid * figure.rest[node][3]);
-    if (!is_finite(joint.center)) gltf::refuse(figure.file, at("/nodes", node), "rests at no finite place");
+    if (!is_finite(joint.center))
+      gltf::refuse(figure.file, at("/nodes", node), "rests at no finite place");
     if (!posed) continue;
     auto moved = [&](size_t n) {
       glm::dquat h(turn);
-      return h * gltf_rotation(figure.nodes[n].global) * glm::conjugate(gltf_rotation(figure.rest[n])) *
-             glm::conjugate(h);
+      return h * gltf_rotation(figure.nodes[n].global) *
+             glm::conjugate(gltf_rotation(figure.rest[n])) * glm::conjugate(h);
     };
-    glm::dquat below = joint.parent < 0 ? glm::dquat(1, 0, 0, 0) : moved(figure.node_of[size_t(joint.parent)]);
+    glm::dquat below =
+        joint.parent < 0 ? glm::dquat(1, 0, 0, 0) : moved(figure.node_of[size_t(joint.parent)]);
     joint.rest_rotation = quat(glm::normalize(glm::conjugate(below) * moved(node)));
   }
 }

@@ -32,8 +32,8 @@ struct Reader {
   // Matrix of each vertex from its mesh to humanoid space at rest; appends the weights.
   std::vector<dmat4> read_weights(size_t node, const json& primitive, const std::string& where,
                                   const Used& used);
-  void read_targets(size_t node, const json& mesh, size_t mesh_index, const json& primitive, const Used& used,
-                    const std::vector<dmat4>& to_rest, uint32_t first,
+  void read_targets(size_t node, const json& mesh, size_t mesh_index, const json& primitive,
+                    const Used& used, const std::vector<dmat4>& to_rest, uint32_t first,
                     const std::vector<double>& weights);
 };
 
@@ -51,7 +51,8 @@ void Reader::read_looks() {
       look.matt = figure.vrm.matt.count(m - 1) > 0;
       if (const json* pbr = gltf::find(material, "pbrMetallicRoughness")) {
         if (const json* color = gltf::find(*pbr, "baseColorFactor")) {
-          for (int c = 0; c < 3; c++) look.base_color[c] = gltf::to_float((*color)[size_t(c)].get<double>());
+          for (int c = 0; c < 3; c++)
+            look.base_color[c] = gltf::to_float((*color)[size_t(c)].get<double>());
           look.alpha = gltf::to_float((*color)[3].get<double>());
         }
         look.metallic = gltf::to_float(gltf::number(*pbr, "metallicFactor", 1));
@@ -65,8 +66,8 @@ void Reader::read_looks() {
   }
 }
 
-std::vector<dmat4> Reader::read_weights(size_t node, const json& primitive, const std::string& where,
-                                        const Used& used) {
+std::vector<dmat4> Reader::read_weights(size_t node, const json& primitive,
+                                        const std::string& where, const Used& used) {
   const json& attributes = primitive["attributes"];
   const json* skin = gltf::find(items(file.root, "nodes")[node], "skin");
   std::vector<dmat4> to_rest(used.size(), dmat4(0));
@@ -114,17 +115,20 @@ std::vector<dmat4> Reader::read_weights(size_t node, const json& primitive, cons
         float weight = set.weight[v * 4 + c];
         uint32_t joint = set.joint[used[v] * size_t(4) + c];
         if (!std::isfinite(weight))
-          gltf::refuse(file, where, "vertex " + std::to_string(used[v]) + " has a weight that is not finite");
+          gltf::refuse(file, where,
+                       "vertex " + std::to_string(used[v]) + " has a weight that is not finite");
         if (weight < 0) gltf::warn(file, where, "negative weights are left out");
         if (!(weight > 0)) continue;
         if (joint >= matrices.size())
-          gltf::refuse(file, where, "vertex " + std::to_string(used[v]) + " hangs on joint " +
-                                        std::to_string(joint) + " of " + std::to_string(matrices.size()));
+          gltf::refuse(file, where,
+                       "vertex " + std::to_string(used[v]) + " hangs on joint " +
+                           std::to_string(joint) + " of " + std::to_string(matrices.size()));
         uint16_t own = uint16_t(figure.joint_of[joints[joint].get<size_t>()]);
         to_rest[v] += matrices[joint] * double(weight);
         sum += double(weight);
-        auto same = std::find_if(character.weights.begin() + std::ptrdiff_t(begin), character.weights.end(),
-                                 [&](const JointWeight& w) { return w.joint == own; });
+        auto same =
+            std::find_if(character.weights.begin() + std::ptrdiff_t(begin), character.weights.end(),
+                         [&](const JointWeight& w) { return w.joint == own; });
         if (same != character.weights.end()) same->weight += weight;
         else character.weights.push_back({own, weight});
       }
@@ -140,7 +144,8 @@ std::vector<dmat4> Reader::read_weights(size_t node, const json& primitive, cons
     character.first_weight.push_back(uint32_t(character.weights.size()));
   }
   if (without)
-    gltf::warn(file, where, std::to_string(without) + " vertices have no weight: they follow the first joint");
+    gltf::warn(file, where,
+               std::to_string(without) + " vertices have no weight: they follow the first joint");
   return to_rest;
 }
 
@@ -155,8 +160,8 @@ std::string target_name(const json& mesh, const json& primitive, size_t target) 
   return gltf::text(mesh, "name", "morph").substr(0, 100) + " " + std::to_string(target);
 }
 
-void Reader::read_targets(size_t node, const json& mesh, size_t mesh_index, const json& primitive, const Used& used,
-                          const std::vector<dmat4>& to_rest, uint32_t first,
+void Reader::read_targets(size_t node, const json& mesh, size_t mesh_index, const json& primitive,
+                          const Used& used, const std::vector<dmat4>& to_rest, uint32_t first,
                           const std::vector<double>& weights) {
   const json& targets = items(primitive, "targets");
   for (size_t t = 0; t < targets.size(); t++) {
@@ -207,8 +212,8 @@ void Reader::read_primitive(size_t node, size_t mesh_index, size_t index) {
   std::vector<vec2> uv = gltf::read_vec2s(file, attributes, "TEXCOORD_0", used);
   std::vector<vec2> second = gltf::read_vec2s(file, attributes, "TEXCOORD_1", used);
   int64_t material = gltf::integer(primitive, "material", -1);
-  bool mtoon = material >= 0 &&
-               gltf::extension(items(file.root, "materials")[size_t(material)], "VRMC_materials_mtoon");
+  bool mtoon = material >= 0 && gltf::extension(items(file.root, "materials")[size_t(material)],
+                                                "VRMC_materials_mtoon");
   std::vector<vec4> color;  // MToon ignores it
   if (!mtoon) color = gltf::read_vec4s(file, attributes, "COLOR_0", used);
   std::vector<dmat4> to_rest = read_weights(node, primitive, where, used);
@@ -263,7 +268,8 @@ void Reader::read_primitive(size_t node, size_t mesh_index, size_t index) {
     part.triangles.push_back(t);
   }
   if (dropped)
-    gltf::warn(file, where, std::to_string(dropped) + " triangles with a corner at no finite place are dropped");
+    gltf::warn(file, where,
+               std::to_string(dropped) + " triangles with a corner at no finite place are dropped");
   if (!part.triangles.empty()) character.parts.push_back(std::move(part));
 }
 

@@ -13,7 +13,8 @@ void read_gltf_springs(GltfFigure& figure) {
     return vec3(figure.to_humanoid * figure.rest[node] * dvec4(dvec3(offset), 1));
   };
   auto size_at = [&](size_t node) {
-    return float(std::cbrt(std::abs(glm::determinant(glm::dmat3(figure.to_humanoid * figure.rest[node])))));
+    return float(
+        std::cbrt(std::abs(glm::determinant(glm::dmat3(figure.to_humanoid * figure.rest[node])))));
   };
   std::vector<int> collider_of;  // the figure's, of each of the file's
   for (const VrmCollider& collider : figure.vrm.colliders) {
@@ -41,7 +42,9 @@ void read_gltf_springs(GltfFigure& figure) {
     bone.joint = figure.joint_of[joint.node];
     if (bone.joint < 0) continue;  // nothing hangs on it
     vec3 own = character.joints[size_t(bone.joint)].center;
-    bone.tail = (joint.tail_node >= 0 ? place(size_t(joint.tail_node), vec3(0)) : place(joint.node, joint.tail)) - own;
+    bone.tail = (joint.tail_node >= 0 ? place(size_t(joint.tail_node), vec3(0))
+                                      : place(joint.node, joint.tail)) -
+                own;
     float length = glm::length(bone.tail);
     if (!(length > 1e-5f) || !std::isfinite(length)) continue;
     bone.stiffness = joint.stiffness;

@@ -33,7 +33,8 @@ struct Converter {
     int parent = figure.nodes[track.node].parent;
     glm::dquat before = parent < 0 ? h : h * gltf_rotation(figure.rest[size_t(parent)]);
     glm::dquat behind = glm::conjugate(h * gltf_rotation(figure.rest[track.node]));
-    MotionTrack made{TrackKind::rotation, curve_of(track.curve), joint, track.times, track.values, {}};
+    MotionTrack made{TrackKind::rotation, curve_of(track.curve), joint,
+                     track.times,         track.values,          {}};
     for (size_t i = 0; i + 3 < made.values.size(); i += 4) {  // linear in q: right for tangents too
       float* v = made.values.data() + i;
       quat q(before * glm::dquat(double(v[3]), double(v[0]), double(v[1]), double(v[2])) * behind);
@@ -47,7 +48,8 @@ struct Converter {
     dmat4 above = parent < 0 ? dmat4(1) : figure.rest[size_t(parent)];
     dvec3 rest((glm::inverse(above) * figure.rest[track.node])[3]);
     glm::dmat3 to_humanoid(figure.to_humanoid * above);
-    MotionTrack made{TrackKind::translation, curve_of(track.curve), joint, track.times, track.values, {}};
+    MotionTrack made{
+        TrackKind::translation, curve_of(track.curve), joint, track.times, track.values, {}};
     bool cubic = track.curve == gltf::Curve::cubic, moves = false;
     for (size_t k = 0; k + 2 < made.values.size(); k += 3) {
       float* v = made.values.data() + k;
@@ -111,7 +113,8 @@ void read_gltf_motions(GltfFigure& figure) {
   std::vector<gltf::Clip> clips = gltf::read_clips(figure.file, figure.nodes);
   for (size_t c = 0; c < clips.size(); c++) {
     if (figure.character.motions.size() >= most_motions) {
-      gltf::warn(figure.file, "/animations", "only the first " + std::to_string(most_motions) + " are kept");
+      gltf::warn(figure.file, "/animations",
+                 "only the first " + std::to_string(most_motions) + " are kept");
       break;
     }
     Motion motion;
@@ -129,7 +132,8 @@ void read_gltf_motions(GltfFigure& figure) {
       if (converter.add_expression(track)) continue;
       int joint = figure.joint_of[track.node];
       if (joint < 0) {
-        gltf::warn(figure.file, gltf::at("/animations", c), "moves nodes that are no part of the figure");
+        gltf::warn(figure.file, gltf::at("/animations", c),
+                   "moves nodes that are no part of the figure");
         continue;
       }
       if (track.path == gltf::Path::rotation) converter.add_turn(track, joint);

@@ -30,15 +30,18 @@ bool is_turn(quat q) {
 
 // Which joints' turns a constraint reads, each once.
 template <class Body>
-void each_dependency(const std::vector<Joint>& joints, const JointConstraint& constraint, Body&& body) {
-  if (constraint.kind != Kind::aim || constraint.source == constraint.joint) return body(constraint.source);
+void each_dependency(const std::vector<Joint>& joints, const JointConstraint& constraint,
+                     Body&& body) {
+  if (constraint.kind != Kind::aim || constraint.source == constraint.joint)
+    return body(constraint.source);
   for (int of : {constraint.source, constraint.joint})  // places hang on what lies above
     for (int j = joints[size_t(of)].parent; j >= 0; j = joints[size_t(j)].parent) body(j);
 }
 
 }  // namespace
 
-quat eval_constraint(const Character& character, const JointConstraint& constraint, const Pose& pose) {
+quat eval_constraint(const Character& character, const JointConstraint& constraint,
+                     const Pose& pose) {
   quat target = no_turn;
   if (constraint.kind == Kind::aim) {
     int parent = character.joints[size_t(constraint.joint)].parent;
@@ -56,7 +59,9 @@ quat eval_constraint(const Character& character, const JointConstraint& constrai
     target = between * glm::normalize(source) * glm::conjugate(between);
     // What of the turn is left when the axis has been brought to where the turn takes it.
     if (constraint.kind == Kind::roll)
-      target = glm::conjugate(turn_between(constraint.axis, glm::normalize(target * constraint.axis))) * target;
+      target =
+          glm::conjugate(turn_between(constraint.axis, glm::normalize(target * constraint.axis))) *
+          target;
   }
   if (!is_turn(target)) return no_turn;
   target = glm::normalize(target);
@@ -72,7 +77,8 @@ void follow_constraints(const Character& character, Pose& pose) {
 
 std::vector<JointConstraint> sort_constraints(const std::vector<Joint>& joints,
                                               std::vector<JointConstraint>& constraints) {
-  // Rounds of taking what waits for nothing (Kahn 1962); each joint is turned by one constraint at most.
+  // Rounds of taking what waits for nothing (Kahn 1962); each joint is turned by one constraint at
+  // most.
   size_t count = constraints.size();
   std::vector<int> turned_by(joints.size(), -1);
   for (size_t k = 0; k < count; k++) turned_by[size_t(constraints[k].joint)] = int(k);

@@ -35,7 +35,8 @@ quat limit_turn(const Joint& joint, quat turn) {
   for (size_t axis = 0; axis < 3 && axis < joint.limits.size(); axis++) {
     vec2 range = joint.limits[axis];
     if (!(range.x <= range.y)) continue;
-    kept[int(axis)] = std::clamp(wanted[int(axis)], std::min(range.x, 0.0f), std::max(range.y, 0.0f));
+    kept[int(axis)] =
+        std::clamp(wanted[int(axis)], std::min(range.x, 0.0f), std::max(range.y, 0.0f));
   }
   if (kept == wanted) return turn;
   return frame * turn_of(kept) * glm::conjugate(frame);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checked reading of the JSON of expressions and gestures: the first thing wrong is thrown as a LoadError
-// with its JSON pointer. For the readers of this folder, in .cpp files only.
+// Checked reading of the JSON of expressions and gestures: the first thing wrong is thrown as a
+// LoadError with its JSON pointer. For the readers of this folder, in .cpp files only.
 #pragma once
 #include <cmath>
 #include <initializer_list>
@@ -18,7 +18,8 @@ struct LibraryReader {
     throw LoadError(file, where, what);
   }
 
-  // The whole text: an object that calls itself `format`, version 1. Nesting, size and syntax are checked.
+  // The whole text: an object that calls itself `format`, version 1. Nesting, size and syntax are
+  // checked.
   nlohmann::json parse(std::string_view text, const char* format) const;
   // Fields nobody reads are misspelt ones.
   void only(const nlohmann::json& object, const std::string& where,

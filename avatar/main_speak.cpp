@@ -75,7 +75,8 @@ std::string read_text(const std::string& file, size_t most_bytes) {
 }
 
 // A narrator's recording of a whole story.
-Speech mark_story(SpeechProcess& process, const std::vector<StoryLine>& lines, const Options& options) {
+Speech mark_story(SpeechProcess& process, const std::vector<StoryLine>& lines,
+                  const Options& options) {
   Sound recording = load_sound(options.audio);
   if (!options.marks.empty())
     return apply_marks(read_text(options.marks, 64 << 20), options.marks, lines, recording);
@@ -92,14 +93,17 @@ Speech mark_story(SpeechProcess& process, const std::vector<StoryLine>& lines, c
 StorySpeech tell_story(const Options& options) {
   StoryScript script = load_story(options.story);
   for (const StoryNote& note : script.notes)
-    std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what << "\n";
+    std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what
+              << "\n";
   SpeechProcess process;
   if (options.audio.empty())
-    return join_lines(script.lines, speak_lines(process, script.lines, options.request, options.story));
+    return join_lines(script.lines,
+                      speak_lines(process, script.lines, options.request, options.story));
   StorySpeech story;
   story.speech = mark_story(process, script.lines, options);
   for (const StoryNote& note : doubtful_places(story.speech, script.lines))
-    std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what << "\n";
+    std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what
+              << "\n";
   double begin = 0;
   for (const auto& part : divide_recording(story.speech, script.lines, 0)) {
     story.cues.push_back({begin, begin + part->duration, part->text, ""});
@@ -187,7 +191,8 @@ int main(int argc, char** argv) {
   CLI::App app{"Speaks a text, and tells when each word, phoneme and mouth shape of it comes."};
   Options options;
   auto* text = app.add_option("text", options.request.text, "what is to be said, UTF-8");
-  auto* story = app.add_option("--story", options.story, "a .story, .ssml or .txt file to be told instead");
+  auto* story =
+      app.add_option("--story", options.story, "a .story, .ssml or .txt file to be told instead");
   story->excludes(text);
   app.add_option("--variant", options.request.variant, "of the voice: f3, m2, ...");
   app.add_option("--vtt", options.vtt, "subtitles to write, WebVTT");
@@ -209,7 +214,9 @@ int main(int argc, char** argv) {
   }
   bool recorded = !options.audio.empty() || !options.marks.empty();
   if ((!*text && !*story) || (*story && recorded && options.audio.empty())) {
-    std::cerr << "speak: " << (*story ? "--marks of a --story want its --audio" : "a text or --story is needed") << "\n";
+    std::cerr << "speak: "
+              << (*story ? "--marks of a --story want its --audio" : "a text or --story is needed")
+              << "\n";
     return 2;
   }
   try {

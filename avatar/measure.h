@@ -10,7 +10,8 @@ struct AvatarTimes {
   double skin_ms = 0;    // skin
 };
 
-// Medians over `ticks` ticks of an idling storyteller that speaks to a guest, on the calling thread's core alone.
+// Medians over `ticks` ticks of an idling storyteller that speaks to a guest, on the calling
+// thread's core alone.
 AvatarTimes measure_avatar(const Character& character, int ticks = 300);
 
 }  // namespace wellspring

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded movement, wherever it comes from (BVH, HAnimMotion, interpolators of X3D, animations of
-// glTF and VRM): key frames of a skeleton that the motion brings along, so that it can be shown on
-// any other. Plain data, immutable once loaded.
+// A recorded movement, wherever it comes from (BVH, HAnimMotion, interpolators of X3D, animations
+// of glTF and VRM): key frames of a skeleton that the motion brings along, so that it can be shown
+// on any other. Plain data, immutable once loaded.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -29,7 +29,8 @@ struct MotionTrack {
   TrackCurve curve = TrackCurve::linear;
   int target = 0;             // of Motion::joints or Motion::displacers
   std::vector<float> times;   // seconds, not decreasing, at least one
-  std::vector<float> values;  // a key: x y z w, x y z or one weight; cubic: in-tangent, value, out-tangent
+  std::vector<float>
+      values;  // a key: x y z w, x y z or one weight; cubic: in-tangent, value, out-tangent
   quat frame{1, 0, 0, 0};
 };
 

@@ -8,8 +8,9 @@
 
 namespace wellspring {
 
-const std::array<const char*, flex_count> flex_names = {
-    "turn", "nod", "tilt", "sayAh", "blink", "brows", "lookX", "lookY", "lids", "sayOo", "smile", "sneer"};
+const std::array<const char*, flex_count> flex_names = {"turn",  "nod",   "tilt",  "sayAh",
+                                                        "blink", "brows", "lookX", "lookY",
+                                                        "lids",  "sayOo", "smile", "sneer"};
 
 namespace {
 
@@ -28,8 +29,8 @@ double noise_at(Flex flex, size_t side, float frequency, double time) {
 }
 
 // e^(-rate t) inside the integral, Simpson's rule outside.
-double integrate(const Stir& stir, size_t side, double value, double rate, double scale, double from,
-                 double to, int& drawn) {
+double integrate(const Stir& stir, size_t side, double value, double rate, double scale,
+                 double from, double to, int& drawn) {
   int steps = int(std::ceil((to - from) / longest_step));
   if (steps <= 0) return value;
   double h = (to - from) / steps, whole = std::exp(-rate * h), half = std::exp(-rate * h / 2);

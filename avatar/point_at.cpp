@@ -24,7 +24,8 @@ int knuckle_of(const ArmRig& bones, int finger, int knuckle) {
   return -1;
 }
 
-// Towards the allowed part of the sphere of directions; `v` in the chest's frame, outwards along +x.
+// Towards the allowed part of the sphere of directions; `v` in the chest's frame, outwards along
+// +x.
 vec3 limited(vec3 v) {
   float up = std::asin(std::clamp(v.y, -1.0f, 1.0f)), flat = glm::length(vec2(v.x, v.z));
   float out = flat > 1e-4f ? std::atan2(v.x, v.z) : 0;
@@ -35,10 +36,11 @@ vec3 limited(vec3 v) {
   return {std::sin(out) * std::cos(up), std::sin(up), std::cos(out) * std::cos(up)};
 }
 
-// After a swing that did not know of the file's limits: each joint is brought into its own, and what is
-// missing to the target is done by those that still may, from the shoulder outwards (cyclic coordinate
-// descent). Returns the angle that is left.
-float point_within_limits(const Rig& rig, int side, Aim with, vec3 target, float weight, Pose& pose) {
+// After a swing that did not know of the file's limits: each joint is brought into its own, and
+// what is missing to the target is done by those that still may, from the shoulder outwards (cyclic
+// coordinate descent). Returns the angle that is left.
+float point_within_limits(const Rig& rig, int side, Aim with, vec3 target, float weight,
+                          Pose& pose) {
   const ArmRig& bones = rig.arm[size_t(side)];
   const Character& character = *rig.character;
   float left = pi;
@@ -49,7 +51,8 @@ float point_within_limits(const Rig& rig, int side, Aim with, vec3 target, float
       turn = limit_turn(character.joints[size_t(joint)], turn);
       PointingLine line = eval_pointing_line(rig, pose, side, with);
       vec3 way = target - line.from;
-      if (weight < 1 || dot(way, way) < 1e-6f) continue;  // on its way there: only kept within limits
+      if (weight < 1 || dot(way, way) < 1e-6f)
+        continue;  // on its way there: only kept within limits
       quat frame = eval_joint_frame(character, pose, joint).rotation;
       quat more = between(line.direction, glm::normalize(way));
       turn = limit_turn(character.joints[size_t(joint)],
@@ -156,7 +159,8 @@ float point_arm(const Rig& rig, int side, Aim with, vec3 target, float weight, P
   bool limits = std::any_of(joints, joints + 3, [&](int joint) {
     return joint >= 0 && has_limits(character.joints[size_t(joint)]);
   });
-  return limits ? point_within_limits(rig, side, with, target, weight, pose) : angle_of(along, goal - from);
+  return limits ? point_within_limits(rig, side, with, target, weight, pose)
+                : angle_of(along, goal - from);
 }
 
 }  // namespace wellspring

@@ -20,7 +20,8 @@ void eval_joints(const Character& character, const Pose& pose, std::vector<mat4>
     mat4 local = glm::mat4_cast(turn);
     if (j < pose.stretches.size()) local = local * mat4(pose.stretches[j]);
     vec3 place = joint.center;
-    if (j < pose.translations.size() && is_finite(pose.translations[j])) place += pose.translations[j];
+    if (j < pose.translations.size() && is_finite(pose.translations[j]))
+      place += pose.translations[j];
     local[3] = vec4(place - mat3(local) * joint.center, 1);  // turns about the centre
     if (joint.parent >= 0) to_humanoid[j] = to_humanoid[size_t(joint.parent)] * local;
     else

@@ -11,8 +11,8 @@ struct Pose {
   vec3 translation{0};            // of the root, humanoid space
   std::vector<quat> rotations;    // one a joint, relative to its parent; identity is the rest pose
   std::vector<float> displacers;  // one a displacer, 0..1 nominal
-  // What motions of the figure's own file may ask for besides; empty, or one a joint. A way is about
-  // the axes of the parent's frame, a stretch is symmetric and comes before the turn.
+  // What motions of the figure's own file may ask for besides; empty, or one a joint. A way is
+  // about the axes of the parent's frame, a stretch is symmetric and comes before the turn.
   std::vector<vec3> translations;
   std::vector<mat3> stretches;
 };

@@ -41,13 +41,14 @@ std::string seconds(double value) {
   return text;
 }
 
-Speech speak_all(SpeechProcess& process, const std::vector<StoryLine>& lines, const SpeechRequest& voice) {
+Speech speak_all(SpeechProcess& process, const std::vector<StoryLine>& lines,
+                 const SpeechRequest& voice) {
   return join_lines(lines, speak_lines(process, lines, voice, "")).speech;
 }
 
 // The part of a speech from `from` to `to` seconds, with the words [first, last) and `text`.
-std::shared_ptr<const Speech> cut(const Speech& all, double from, double to, size_t first, size_t last,
-                                  uint32_t byte, const std::string& text) {
+std::shared_ptr<const Speech> cut(const Speech& all, double from, double to, size_t first,
+                                  size_t last, uint32_t byte, const std::string& text) {
   auto part = std::make_shared<Speech>();
   part->text = text;
   part->lang = all.lang;
@@ -68,7 +69,8 @@ std::shared_ptr<const Speech> cut(const Speech& all, double from, double to, siz
   }
   for (SpeechPhoneme phoneme : all.phonemes) {
     bool own = phoneme.word >= int(first) && phoneme.word < int(last);
-    bool pause = phoneme.word < 0 && phoneme.begin < to - shortest_overlap && phoneme.end > from + shortest_overlap;
+    bool pause = phoneme.word < 0 && phoneme.begin < to - shortest_overlap &&
+                 phoneme.end > from + shortest_overlap;
     if (!own && !pause) continue;
     phoneme.begin = local(phoneme.begin);
     phoneme.end = local(phoneme.end);
@@ -101,14 +103,16 @@ Speech mark_recording(SpeechProcess& process, const std::vector<StoryLine>& line
   return marked;
 }
 
-Speech apply_marks(std::string_view json, const std::string& file, const std::vector<StoryLine>& lines,
-                   const Sound& recording) {
+Speech apply_marks(std::string_view json, const std::string& file,
+                   const std::vector<StoryLine>& lines, const Sound& recording) {
   Speech marked = load_speech_marks(json, file);
   if (marked.text != text_of(lines))
-    throw LoadError(file, "/text", "is another text than the one told; move the file away to have it made anew");
+    throw LoadError(file, "/text",
+                    "is another text than the one told; move the file away to have it made anew");
   double length = double(recording.samples.size()) / recording.rate;
   if (std::abs(length - marked.duration) > 0.01)
-    throw LoadError(file, "/duration", "is " + seconds(marked.duration) + ", the recording's is " + seconds(length));
+    throw LoadError(file, "/duration",
+                    "is " + seconds(marked.duration) + ", the recording's is " + seconds(length));
   marked.pcm = to_pcm(recording.samples);
   marked.rate = recording.rate;
   marked.duration = length;
@@ -121,7 +125,8 @@ std::vector<StoryNote> doubtful_places(const Speech& marked, const std::vector<S
   std::vector<double> rate(lines.size());  // seconds a byte, pauses within left out
   for (size_t i = 0; i < lines.size(); i++) {
     double sum = 0;
-    for (size_t w = first[i]; w < first[i + 1]; w++) sum += marked.words[w].end - marked.words[w].begin;
+    for (size_t w = first[i]; w < first[i + 1]; w++)
+      sum += marked.words[w].end - marked.words[w].begin;
     rate[i] = sum / double(std::max<size_t>(lines[i].text.size(), 1));
   }
   std::vector<double> sorted = rate;
@@ -131,8 +136,9 @@ std::vector<StoryNote> doubtful_places(const Speech& marked, const std::vector<S
     if (first[i] == first[i + 1]) continue;
     bool fast = rate[i] * doubtful_rate < median, slow = rate[i] > median * doubtful_rate;
     if (fast || slow)
-      notes.push_back({lines[i].place, std::string("this sentence is said unusually ") + (fast ? "fast" : "slowly") +
-                                           " in the recording, at " + seconds(marked.words[first[i]].begin) +
+      notes.push_back({lines[i].place, std::string("this sentence is said unusually ") +
+                                           (fast ? "fast" : "slowly") + " in the recording, at " +
+                                           seconds(marked.words[first[i]].begin) +
                                            "; is it the same there?"});
   }
   // Words that are not in the text lie between those that are, or are taken for a part of one.
@@ -140,7 +146,8 @@ std::vector<StoryNote> doubtful_places(const Speech& marked, const std::vector<S
   std::vector<float> chance = speech_chance(features);
   auto speech_between = [&](double from, double to) {
     double sum = 0;
-    for (size_t t = size_t(from / feature_hop); t < size_t(to / feature_hop) && t < chance.size(); t++)
+    for (size_t t = size_t(from / feature_hop); t < size_t(to / feature_hop) && t < chance.size();
+         t++)
       sum += double(chance[t]) * feature_hop;
     return sum;
   };
@@ -150,26 +157,30 @@ std::vector<StoryNote> doubtful_places(const Speech& marked, const std::vector<S
     for (size_t w = first[i]; w < first[i + 1]; w++) {
       const SpeechWord& word = marked.words[w];
       double usual = median * double(word.text_end - word.text_begin + 1);
-      foreign += speech_between(last, word.begin) + std::max(word.end - word.begin - doubtful_word * usual, 0.0);
+      foreign += speech_between(last, word.begin) +
+                 std::max(word.end - word.begin - doubtful_word * usual, 0.0);
       last = word.end;
     }
     if (i + 1 == lines.size()) foreign += speech_between(last, marked.duration);
     if (foreign > doubtful_words)
-      notes.push_back({lines[i].place, "about " + seconds(foreign) + " are heard near this sentence that the text " +
-                                           "does not have, after " + seconds(since) + " of the recording"});
+      notes.push_back({lines[i].place, "about " + seconds(foreign) +
+                                           " are heard near this sentence that the text " +
+                                           "does not have, after " + seconds(since) +
+                                           " of the recording"});
   }
   return notes;
 }
 
 std::vector<std::shared_ptr<const Speech>> divide_recording(const Speech& marked,
-                                                            const std::vector<StoryLine>& lines, double lead) {
+                                                            const std::vector<StoryLine>& lines,
+                                                            double lead) {
   std::vector<size_t> first = first_words(marked, lines);
   std::vector<std::shared_ptr<const Speech>> parts;
   double from = 0;
   uint32_t byte = 0;
   for (size_t i = 0; i < lines.size(); i++) {
-    double said = first[i + 1] > first[i] ? marked.words[first[i + 1] - 1].end : from, to = marked.duration,
-           next = to;
+    double said = first[i + 1] > first[i] ? marked.words[first[i + 1] - 1].end : from,
+           to = marked.duration, next = to;
     if (first[i + 1] < marked.words.size() && i + 1 < lines.size()) {
       double silence = std::max(marked.words[first[i + 1]].begin - said, 0.0);
       double left_out = std::clamp(silence - 0.05, 0.0, lead);

@@ -17,8 +17,8 @@ int find(const Index& index, const std::string& name) {
   return found == index.end() ? -1 : found->second;
 }
 
-// The joint a limb's bone leads to; empty where rest poses are alike anyway (feet stand flat, spines
-// are upright).
+// The joint a limb's bone leads to; empty where rest poses are alike anyway (feet stand flat,
+// spines are upright).
 std::string next_in_limb(const std::string& joint) {
   if (joint.size() < 3 || joint[1] != '_') return "";
   std::string side = joint.substr(0, 2), part = joint.substr(2);
@@ -56,10 +56,13 @@ Trunk trunk_of(const std::string& joint) {
   if (joint.size() < 3 || joint[0] != 'v') return Trunk::none;
   bool digits = joint[2] >= '0' && joint[2] <= '9';
   if (!digits) return Trunk::none;
-  return joint[1] == 'l' || joint[1] == 't' ? Trunk::spine : joint[1] == 'c' ? Trunk::neck : Trunk::none;
+  return joint[1] == 'l' || joint[1] == 't' ? Trunk::spine
+         : joint[1] == 'c'                  ? Trunk::neck
+                                            : Trunk::none;
 }
 
-// The vertebrae of one kind from below, with what carries them in front; the neck ends in the skull.
+// The vertebrae of one kind from below, with what carries them in front; the neck ends in the
+// skull.
 template <class Joints>
 std::vector<int> trunk_chain(const Joints& joints, Trunk kind) {
   std::vector<int> chain;
@@ -78,11 +81,13 @@ std::vector<int> trunk_chain(const Joints& joints, Trunk kind) {
 
 // Each vertebra of the figure turns as the motion's trunk does at the same height of it.
 void link_trunk(const Motion& motion, const Character& character, Trunk kind, Retarget& retarget) {
-  std::vector<int> ours = trunk_chain(character.joints, kind), theirs = trunk_chain(motion.joints, kind);
+  std::vector<int> ours = trunk_chain(character.joints, kind),
+                   theirs = trunk_chain(motion.joints, kind);
   if (ours.size() < 2 || theirs.size() < 2) return;
   size_t last = ours.size() - 1;
   for (size_t k = 1; k <= last; k++) {
-    if (trunk_of(character.joints[size_t(ours[k])].name) == Trunk::none) continue;  // the skull itself
+    if (trunk_of(character.joints[size_t(ours[k])].name) == Trunk::none)
+      continue;  // the skull itself
     float place = float(k) / float(last) * float(theirs.size() - 1);
     size_t below = std::min(size_t(place), theirs.size() - 2);
     Retarget::Link& link = retarget.links[size_t(ours[k])];
@@ -111,7 +116,8 @@ Retarget make_retarget(const Motion& motion, const Character& character) {
   retarget.links.resize(character.joints.size());
   Index theirs, ours;
   for (size_t j = 0; j < motion.joints.size(); j++) theirs.emplace(motion.joints[j].name, int(j));
-  for (size_t j = 0; j < character.joints.size(); j++) ours.emplace(character.joints[j].name, int(j));
+  for (size_t j = 0; j < character.joints.size(); j++)
+    ours.emplace(character.joints[j].name, int(j));
   retarget.root = find(ours, "humanoid_root");
   retarget.motion_root = find(theirs, "humanoid_root");
   std::vector<char> tracked(motion.joints.size(), 0);
@@ -122,7 +128,8 @@ Retarget make_retarget(const Motion& motion, const Character& character) {
   for (size_t j = 0; retarget.same && j < motion.joints.size(); j++) {
     const MotionJoint& a = motion.joints[j];
     const Joint& b = character.joints[j];
-    retarget.same = a.name == b.name && a.parent == b.parent && glm::length(a.center - b.center) < 1e-4f;
+    retarget.same =
+        a.name == b.name && a.parent == b.parent && glm::length(a.center - b.center) < 1e-4f;
   }
   for (size_t j = 0; j < character.joints.size(); j++) {
     Retarget::Link& link = retarget.links[j];
@@ -149,7 +156,8 @@ Retarget make_retarget(const Motion& motion, const Character& character) {
       int our_next = find(ours, next), their_next = find(theirs, next);
       if (next.empty() || link.from < 0 || our_next < 0 || their_next < 0) continue;
       vec3 bone = character.joints[size_t(our_next)].center - joint.center;
-      vec3 other = motion.joints[size_t(their_next)].center - motion.joints[size_t(link.from)].center;
+      vec3 other =
+          motion.joints[size_t(their_next)].center - motion.joints[size_t(link.from)].center;
       link.align = turn_between(above * bone, other) * above;
     }
   }
@@ -178,7 +186,9 @@ void apply_motion(const Motion& motion, const Retarget& retarget, const Characte
   eval_motion(motion, time, loop, now);
   for (size_t d = 0; d < now.displacers.size(); d++) {
     int ours = retarget.displacers[d];
-    if (ours >= 0) pose.displacers[size_t(ours)] = glm::mix(pose.displacers[size_t(ours)], now.displacers[d], weight);
+    if (ours >= 0)
+      pose.displacers[size_t(ours)] =
+          glm::mix(pose.displacers[size_t(ours)], now.displacers[d], weight);
   }
   size_t count = character.joints.size();
   if (retarget.same) {
@@ -215,7 +225,8 @@ void apply_motion(const Motion& motion, const Retarget& retarget, const Characte
     quat turn = link.from == link.to ? from : glm::slerp(from, turned[size_t(link.to)], link.share);
     wanted[j] = turn * link.align;
     if (link.moves)
-      pose.rotations[j] = blend(pose.rotations[j], glm::normalize(glm::conjugate(above) * wanted[j]), weight);
+      pose.rotations[j] =
+          blend(pose.rotations[j], glm::normalize(glm::conjugate(above) * wanted[j]), weight);
   }
   if (retarget.root < 0 || retarget.motion_root < 0) return;
   // The hips go where the motion's hips go, as high as the figure is.
@@ -223,7 +234,8 @@ void apply_motion(const Motion& motion, const Retarget& retarget, const Characte
   for (int j = retarget.motion_root; j >= 0; j = motion.joints[size_t(j)].parent) {
     const MotionJoint& joint = motion.joints[size_t(j)];
     vec3 from = j == retarget.motion_root ? joint.center : place;
-    place = joint.center + now.translations[size_t(j)] + now.rotations[size_t(j)] * (from - joint.center);
+    place = joint.center + now.translations[size_t(j)] +
+            now.rotations[size_t(j)] * (from - joint.center);
   }
   vec3 way = (place - motion.joints[size_t(retarget.motion_root)].center) * retarget.scale;
   Pose still = pose;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A motion of one skeleton on the joints of another. What is carried over is how each limb lies in
-// space: rest poses may differ (arms spread or hanging, legs apart), so may proportions and how many
-// vertebrae there are. Made once for a motion and a figure; applied every tick without state.
+// space: rest poses may differ (arms spread or hanging, legs apart), so may proportions and how
+// many vertebrae there are. Made once for a motion and a figure; applied every tick without state.
 #pragma once
 #include "avatar/motion.h"
 #include "avatar/pose.h"
@@ -25,7 +25,8 @@ struct Retarget {
 
 Retarget make_retarget(const Motion& motion, const Character& character);
 
-// Blends the motion at `time` over the pose: 0 leaves it as it is, 1 replaces what the motion moves.
+// Blends the motion at `time` over the pose: 0 leaves it as it is, 1 replaces what the motion
+// moves.
 void apply_motion(const Motion& motion, const Retarget& retarget, const Character& character,
                   double time, bool loop, float weight, Pose& pose);
 

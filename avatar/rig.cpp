@@ -83,7 +83,8 @@ ArmRig make_arm(const Character& character, int side) {
       before = at(joint);
     }
   }
-  // The thumb closes across the palm, towards the root of the ring finger, before the other fingers.
+  // The thumb closes across the palm, towards the root of the ring finger, before the other
+  // fingers.
   const char* thumb[3] = {"carpometacarpal_1", "metacarpophalangeal_1", "carpal_interphalangeal_1"};
   vec3 root = base[3] >= 0 ? at(base[3]) : at(middle);
   vec3 goal = root + palm * (0.3f * glm::length(at(middle) - at(arm.wrist)));

@@ -55,7 +55,8 @@ struct Rig {
   int brow_inner_up = -1, mouth_open = -1, breathe = -1;
   std::array<int, 2> squint{-1, -1}, lid_wide{-1, -1};  // "squint_l" or, for both, "squint"
   std::array<int, 15> viseme{};  // in the order sil PP FF TH DD kk CH SS nn RR aa E ih oh ou
-  std::array<int, 4> look{-1, -1, -1, -1};  // displacers of eyes without joints: up, down, left, right
+  std::array<int, 4> look{-1, -1, -1,
+                          -1};  // displacers of eyes without joints: up, down, left, right
 };
 
 Rig make_rig(const Character& character);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moves the vertices: displacers, then joints, blended as Character::skinning says; normals follow. All
-// cores, no allocation after the first call. Called once a tick.
+// Moves the vertices: displacers, then joints, blended as Character::skinning says; normals follow.
+// All cores, no allocation after the first call. Called once a tick.
 #pragma once
 #include <vector>
 

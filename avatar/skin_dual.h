@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dual quaternion blending (Kavan, Collins, Zara, O'Sullivan: Geometric Skinning with Approximate Dual
-// Quaternion Blending, 2008, algorithm 1; section 4.2 for the order of scale and rigid part). A
-// joint's matrix is taken apart into a turn and a way, which blend as a dual quaternion, and a
+// Dual quaternion blending (Kavan, Collins, Zara, O'Sullivan: Geometric Skinning with Approximate
+// Dual Quaternion Blending, 2008, algorithm 1; section 4.2 for the order of scale and rigid part).
+// A joint's matrix is taken apart into a turn and a way, which blend as a dual quaternion, and a
 // stretch of the rest pose, which blends as a matrix.
 #pragma once
 #include <vector>

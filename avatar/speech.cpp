@@ -31,8 +31,9 @@ void fit_phonemes(Speech& speech) {
   for (SpeechPhoneme& phoneme : speech.phonemes)
     if (phoneme.word >= 0) said.push_back(std::move(phoneme));
     else if (!is_pause(phoneme.mnemonic)) others.push_back(std::move(phoneme));
-  std::stable_sort(others.begin(), others.end(),
-                   [](const SpeechPhoneme& a, const SpeechPhoneme& b) { return a.begin < b.begin; });
+  std::stable_sort(
+      others.begin(), others.end(),
+      [](const SpeechPhoneme& a, const SpeechPhoneme& b) { return a.begin < b.begin; });
   double at = 0;
   size_t other = 0;
   auto add_pause = [&](double until) {

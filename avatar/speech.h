@@ -21,7 +21,8 @@ struct SpeechPhoneme {
   double begin = 0, end = 0;
   std::string mnemonic;  // eSpeak NG's name of it; "_:" and the like are pauses
   std::string ipa;       // International Phonetic Alphabet; empty for a pause
-  int word = -1;  // index into Speech::words; -1 for a pause, and for what a word begins with in vain
+  int word =
+      -1;  // index into Speech::words; -1 for a pause, and for what a word begins with in vain
 };
 
 struct Speech {
@@ -36,8 +37,8 @@ struct Speech {
 };
 
 // Stretches the phonemes of every word into its begin and end, keeping their proportions, and puts
-// pauses between words that do not meet. Pauses that were there are dropped first; sounds of no word
-// (of a speaker who stutters) keep their times as far as words leave them room.
+// pauses between words that do not meet. Pauses that were there are dropped first; sounds of no
+// word (of a speaker who stutters) keep their times as far as words leave them room.
 void fit_phonemes(Speech& speech);
 
 // Mouth shapes from phonemes and their times: fills `speech.visemes`.

@@ -139,8 +139,8 @@ void name_words(Speech& speech, const std::vector<SaidAsOne>& groups) {
   }
 }
 
-// Sounds between others that the engine does not write: the glide from vowel to vowel ("the oldest")
-// and the murmur in a cluster of consonants.
+// Sounds between others that the engine does not write: the glide from vowel to vowel ("the
+// oldest") and the murmur in a cluster of consonants.
 std::string name_nameless(const std::string& mnemonic) {
   return mnemonic == ";" ? "j" : mnemonic == "@-" ? "ə" : "";
 }

@@ -83,7 +83,8 @@ void let_stutter(WarpTask& task, const std::vector<float>& chance,
 
 CoarseWay warp_coarsely(const SoundPair& pair, const std::vector<SoundState>& fine) {
   double cells = double(fine.size()) * double(pair.recorded.size());
-  size_t step = std::max(least_coarse_step, size_t(std::ceil(std::sqrt(cells / most_coarse_cells))));
+  size_t step =
+      std::max(least_coarse_step, size_t(std::ceil(std::sqrt(cells / most_coarse_cells))));
   std::vector<size_t> begins;  // of the coarse states, in fine ones
   std::vector<SoundState> states;
   for (size_t i = 0; i < fine.size(); i++)
@@ -112,7 +113,8 @@ CoarseWay warp_coarsely(const SoundPair& pair, const std::vector<SoundState>& fi
   task.gap_before = gaps_before(states);
   set_template_costs(task, chance, step);
   task.costs = [&](size_t t, size_t first, size_t last, float* out) {
-    for (size_t j = first; j < last; j++) *out++ = feature_distance(recorded.frame(t), templates.frame(j));
+    for (size_t j = first; j < last; j++)
+      *out++ = feature_distance(recorded.frame(t), templates.frame(j));
   };
   WarpResult coarse = warp(task);
   CoarseWay result;

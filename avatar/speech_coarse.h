@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording and the text as it is synthesised, as features that can be compared, and the first, coarse
-// way from one to the other.
+// A recording and the text as it is synthesised, as features that can be compared, and the first,
+// coarse way from one to the other.
 #pragma once
 #include "avatar/speech.h"
 #include "avatar/speech_features.h"
@@ -15,14 +15,16 @@ struct SoundPair {
 };
 SoundPair make_sound_pair(const Speech& spoken, const Sound& recording);
 
-// About 2 between frames that have nothing to do with each other, 1 between the same sound of two voices.
+// About 2 between frames that have nothing to do with each other, 1 between the same sound of two
+// voices.
 float feature_distance(const float* a, const float* b);
 
-// Costs of gaps, of staying and of skipping when frames are compared by feature_distance; `step`: how many
-// frames one of the task's is made of.
+// Costs of gaps, of staying and of skipping when frames are compared by feature_distance; `step`:
+// how many frames one of the task's is made of.
 void set_template_costs(WarpTask& task, const std::vector<float>& chance, size_t step);
 
-// Lets the speaker of single frames' states repeat words or beginnings of them, and fall silent within.
+// Lets the speaker of single frames' states repeat words or beginnings of them, and fall silent
+// within.
 void let_stutter(WarpTask& task, const std::vector<float>& chance,
                  const std::vector<SoundState>& states);
 

@@ -7,9 +7,9 @@
 //    "phonemes": [{"phoneme": "t", "ipa": "t", "start": 0.10, "end": 0.17, "word": 0}, ...],
 //    "visemes":  [{"time": 0.12, "viseme": "DD", "weight": 0.5}, ...]}
 //
-// A pause, or a sound that is no part of the words (a speaker stutters), has "word" -1. Visemes are keys: each mouth shape goes from one of its
-// keys to its next by a smooth step (3x^2 - 2x^3); before its first and after its last it is as
-// there.
+// A pause, or a sound that is no part of the words (a speaker stutters), has "word" -1. Visemes are
+// keys: each mouth shape goes from one of its keys to its next by a smooth step (3x^2 - 2x^3);
+// before its first and after its last it is as there.
 //
 // Marks edited by hand. Words rule: move "start" and "end" of words; when the file is read, the
 // phonemes of every word are stretched into it, pauses fill the rest, and the visemes are made

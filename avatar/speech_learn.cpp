@@ -111,7 +111,8 @@ SoundModel learn_sounds(const Features& spoken, const Features& recorded, const 
     }
     double usual = std::max(count > 0 ? all / count : 1, 0.05);
     for (uint32_t k = 0; k < kinds; k++) {
-      double variance = (squares[k] + prior_variance_frames * usual) / (heard_count[k] + prior_variance_frames);
+      double variance =
+          (squares[k] + prior_variance_frames * usual) / (heard_count[k] + prior_variance_frames);
       model.inverse_variance[k * n + c] = float(1 / std::max(variance, 0.05));
     }
   }

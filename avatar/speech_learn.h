@@ -27,9 +27,9 @@ struct Hearing {
   uint32_t kinds = 0;
 };
 
-// Where there are few frames means are held to the template's, seen through a line from its features
-// to the recording's, and variances to those of all kinds together (maximum a posteriori: Gauvain &
-// Lee 1994, section III).
+// Where there are few frames means are held to the template's, seen through a line from its
+// features to the recording's, and variances to those of all kinds together (maximum a posteriori:
+// Gauvain & Lee 1994, section III).
 SoundModel learn_sounds(const Features& spoken, const Features& recorded, const Hearing& hearing);
 
 // Turns and scales the features of both so that deviations from the model's means are independent

@@ -14,8 +14,9 @@ struct Symbols {
   MouthKind kind;
 };
 
-// Place of articulation and rounding decide the shape; openness and rounding that of vowels. Capitals
-// are the ASCII names (Kirshenbaum 1993) that some voices use where the alphabet's sign is not known.
+// Place of articulation and rounding decide the shape; openness and rounding that of vowels.
+// Capitals are the ASCII names (Kirshenbaum 1993) that some voices use where the alphabet's sign is
+// not known.
 constexpr Symbols table[] = {
     {U"pbmɓʙʘᵬ", Viseme::PP, 1, MouthKind::closure},
     {U"βɸB", Viseme::PP, 0.5f, MouthKind::consonant},

@@ -136,7 +136,8 @@ std::vector<float> resample(const std::vector<float>& samples, int from, int to)
 std::vector<int16_t> to_pcm(const std::vector<float>& samples) {
   std::vector<int16_t> pcm(samples.size());
   for (size_t i = 0; i < pcm.size(); i++)
-    pcm[i] = int16_t(std::clamp(std::lround(std::clamp(samples[i], -1.0f, 1.0f) * 32768), -32768L, 32767L));
+    pcm[i] = int16_t(
+        std::clamp(std::lround(std::clamp(samples[i], -1.0f, 1.0f) * 32768), -32768L, 32767L));
   return pcm;
 }
 

@@ -75,7 +75,9 @@ std::string opening(const Manner& manner, std::string& closing) {
     closing = "</prosody>";
   }
   if (manner.emphasis != 0) {
-    const char* level = manner.emphasis < 0 ? "reduced" : manner.emphasis == 1 ? "moderate" : "strong";
+    const char* level = manner.emphasis < 0    ? "reduced"
+                        : manner.emphasis == 1 ? "moderate"
+                                               : "strong";
     tags += std::string("<emphasis level=\"") + level + "\">";
     closing = "</emphasis>" + closing;
   }
@@ -103,7 +105,8 @@ Ssml make_ssml(std::string_view text, const std::vector<SpeechStyle>& styles) {
     for (const SpeechStyle& style : styles)
       if (std::min(style.begin, size) == from && std::isfinite(style.pause))
         pause = std::max(pause, std::min(style.pause, 10.0f));
-    if (pause > 0) writer.tag("<break time=\"" + std::to_string(std::lround(1000 * pause)) + "ms\"/>", from);
+    if (pause > 0)
+      writer.tag("<break time=\"" + std::to_string(std::lround(1000 * pause)) + "ms\"/>", from);
     if (from == to) continue;
     const SpeechStyle* alias = alias_at(styles, from);
     if (alias && alias == said) continue;

@@ -20,7 +20,8 @@ struct SpeechStyle {
 
 struct Ssml {
   std::string text;
-  std::vector<uint32_t> source;  // per character of `text`: the byte of the plain text it stands for
+  std::vector<uint32_t>
+      source;  // per character of `text`: the byte of the plain text it stands for
 };
 
 // Styles may nest and overlap: factors multiply, the strongest emphasis holds, of aliases the one

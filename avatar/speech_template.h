@@ -29,8 +29,8 @@ uint32_t number_kinds(const Speech& spoken, std::vector<SoundState>& states);
 // silence also before every other phoneme, where a speaker's voice fails him.
 std::vector<WarpGap> gaps_before(const std::vector<SoundState>& states, bool blocks = false);
 
-// Stuttering: after each of its phonemes, the last too, a word may begin again, or the one before it
-// (Costs of either are added to every one further back.)
+// Stuttering: after each of its phonemes, the last too, a word may begin again, or the one before
+// it (Costs of either are added to every one further back.)
 std::vector<std::vector<WarpReturn>> find_returns(const std::vector<SoundState>& states, float cost,
                                                   float cost_of_word);
 

@@ -14,7 +14,8 @@ constexpr float never = std::numeric_limits<float>::infinity();
 // How a state was reached, two states to a cell: the template itself (low bits) and the gap before
 // it; above them, how far back the way came from if it did.
 enum From : uint16_t { stay = 0, advance = 1, skip = 2, from_gap = 3, back = 4, how_mask = 7 };
-constexpr uint16_t gap_entered = 8, gap_back = 16;  // came from template - 1, or back; else it went on
+constexpr uint16_t gap_entered = 8,
+                   gap_back = 16;  // came from template - 1, or back; else it went on
 constexpr int distance_shift = 5;
 constexpr size_t most_distance = 0xffff >> distance_shift;
 

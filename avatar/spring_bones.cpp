@@ -53,7 +53,8 @@ void swing(vec3& x, vec3& v, float square, float drag, float dt) {
   x = next;
 }
 
-Frame frame_of(const Character& character, const Pose& pose, size_t j, const std::vector<Frame>& frames) {
+Frame frame_of(const Character& character, const Pose& pose, size_t j,
+               const std::vector<Frame>& frames) {
   const Joint& joint = character.joints[j];
   Frame frame;
   if (joint.parent < 0) {
@@ -62,13 +63,14 @@ Frame frame_of(const Character& character, const Pose& pose, size_t j, const std
     return frame;
   }
   const Frame& parent = frames[size_t(joint.parent)];
-  frame.center = parent.center + parent.rotation * (joint.center - character.joints[size_t(joint.parent)].center);
+  frame.center = parent.center +
+                 parent.rotation * (joint.center - character.joints[size_t(joint.parent)].center);
   frame.rotation = parent.rotation * pose.rotations[j];
   return frame;
 }
 
-// A bone's end at `pivot + length * way`, and how it must turn to keep clear of a collider: whatever its
-// form, `way` must keep its share along some axis on one side of a border.
+// A bone's end at `pivot + length * way`, and how it must turn to keep clear of a collider:
+// whatever its form, `way` must keep its share along some axis on one side of a border.
 struct Reach {
   vec3 pivot;
   float length, radius;
@@ -89,13 +91,15 @@ vec3 keep_clear(const SpringCollider& collider, const Character& character,
   vec3 a = frame.center + frame.rotation * (collider.place - center);
   if (collider.normal != vec3(0)) {
     vec3 normal = frame.rotation * collider.normal;
-    return keep_side(way, normal, (reach.radius - dot(reach.pivot - a, normal)) / reach.length, true);
+    return keep_side(way, normal, (reach.radius - dot(reach.pivot - a, normal)) / reach.length,
+                     true);
   }
   vec3 along = frame.rotation * (collider.tail - collider.place);
   float square = dot(along, along);
   float apart = collider.inside ? std::max(collider.radius - reach.radius, 0.0f)
                                 : collider.radius + reach.radius;
-  for (int round = 0; round < (square > 0 ? 4 : 1); round++) {  // the nearest ball of a capsule moves
+  for (int round = 0; round < (square > 0 ? 4 : 1);
+       round++) {  // the nearest ball of a capsule moves
     vec3 ball = a, end = reach.pivot + reach.length * way;
     if (square > 0) ball += along * std::clamp(dot(end - a, along) / square, 0.0f, 1.0f);
     vec3 axis = ball - reach.pivot;
@@ -164,7 +168,8 @@ void tick_spring_bones(SpringBonesState& state, const Character& character, floa
       turning = cross(clear, velocity);
       way = clear;
     }
-    if (!is_finite(way) || !is_finite(turning) || !is_finite(frame.center)) way = modelled, turning = vec3(0);
+    if (!is_finite(way) || !is_finite(turning) || !is_finite(frame.center))
+      way = modelled, turning = vec3(0);
     quat back = glm::conjugate(base.rotation);
     own.end = back * (frame.center + way * length - base.center);
     own.turning = back * turning;

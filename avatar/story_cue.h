@@ -15,7 +15,8 @@ struct StoryCue {
   std::string emotion;          // joy sadness anger fear disgust surprise; empty: none
   float emotion_weight = 0;     // 0..1
   std::optional<vec3> look;     // instead of the guest
-  std::optional<vec3> point;    // held out at by the hand that is nearer; look too, unless told otherwise
+  std::optional<vec3>
+      point;  // held out at by the hand that is nearer; look too, unless told otherwise
   // Begins in this tick.
   std::string gesture;          // name of the library; empty: none begins
   float gesture_weight = 1;     // 0..1, how large

@@ -7,8 +7,8 @@
 
 namespace wellspring {
 
-// Throws LoadError naming the file: it cannot be read, it is larger than most_markup_bytes, and what
-// read_story and read_plain_story throw.
+// Throws LoadError naming the file: it cannot be read, it is larger than most_markup_bytes, and
+// what read_story and read_plain_story throw.
 StoryScript load_story(const std::string& file);
 
 }  // namespace wellspring

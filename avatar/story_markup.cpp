@@ -190,7 +190,8 @@ struct Reader {
     if (piece.name.empty()) fail(piece.place, "a tag has no name");
     if (closing) {
       skip_space();
-      if (ended() || text[at] != '>') fail(piece.place, "the tag </" + piece.name + "> does not end");
+      if (ended() || text[at] != '>')
+        fail(piece.place, "the tag </" + piece.name + "> does not end");
       step(1);
       if (open.empty()) fail(piece.place, "</" + piece.name + "> closes what was never opened");
       if (open.back().first != piece.name)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The markup of stories as a row of pieces: a small, forgiving subset of XML, so that SSML and plain
-// text are both read. `<` that begins no tag and `&` that begins no entity stand for themselves;
-// comments, declarations and processing instructions are passed over; prefixes of names
+// The markup of stories as a row of pieces: a small, forgiving subset of XML, so that SSML and
+// plain text are both read. `<` that begins no tag and `&` that begins no entity stand for
+// themselves; comments, declarations and processing instructions are passed over; prefixes of names
 // ("ssml:break") are left away. Every piece knows its line and column.
 #pragma once
 #include <string>
@@ -29,9 +29,9 @@ const std::string* find_attribute(const MarkupPiece& piece, std::string_view nam
 
 inline constexpr size_t most_markup_bytes = 1 << 20, most_markup_depth = 64;
 
-// Tags are balanced in what is returned. Throws LoadError{file, place, what}: broken UTF-8, a tag that
-// does not end, an attribute without a quoted value, tags that do not match, deeper nesting or more
-// text than the limits.
+// Tags are balanced in what is returned. Throws LoadError{file, place, what}: broken UTF-8, a tag
+// that does not end, an attribute without a quoted value, tags that do not match, deeper nesting or
+// more text than the limits.
 std::vector<MarkupPiece> read_markup(std::string_view text, const std::string& file);
 // One piece of text, in which nothing is a tag or an entity.
 std::vector<MarkupPiece> read_plain_markup(std::string_view text, const std::string& file);

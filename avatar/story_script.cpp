@@ -271,7 +271,8 @@ struct Builder {
     } else if (name == "prosody" || name == "emphasis" || name == "sub") {
       read_style(piece, tag);
     } else if (!read_mark(piece, tag)) {
-      static const std::set<std::string> silent = {"speak", "story", "say-as", "w", "token", "metadata"};
+      static const std::set<std::string> silent = {"speak", "story", "say-as",
+                                                   "w",     "token", "metadata"};
       if (!silent.contains(name) && unknown.insert(name).second)
         note(piece.place, "<" + name + "> is not known; what stands inside is said as it is");
     }
@@ -312,7 +313,8 @@ struct Builder {
   }
 };
 
-StoryScript read_pieces(const std::vector<MarkupPiece>& pieces, const std::string& file, bool one_line) {
+StoryScript read_pieces(const std::vector<MarkupPiece>& pieces, const std::string& file,
+                        bool one_line) {
   Builder builder{file, {}, {}, {}, {}, {}, {}};
   builder.emotion.kind = StoryMarkKind::emotion;
   if (one_line) builder.open.emplace_back().sentence = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A story as its author wrote it, in one language: sentences, how they are to be said, and marks for
-// face, hands, eyes and camera between their words. docs/stories.md describes the markup; plain text
-// and SSML 1.1 are read by the same reader.
+// A story as its author wrote it, in one language: sentences, how they are to be said, and marks
+// for face, hands, eyes and camera between their words. docs/stories.md describes the markup; plain
+// text and SSML 1.1 are read by the same reader.
 #pragma once
 #include <cstdint>
 #include <memory>

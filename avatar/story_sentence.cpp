@@ -22,8 +22,8 @@ size_t mark_of(std::string_view text, const std::array<std::string_view, N>& mar
 constexpr std::array<std::string_view, 9> ends = {".", "!", "?", "…", "。", "！", "？", "؟", "।"};
 constexpr std::array<std::string_view, 9> closings = {"\"", "'", ")", "]", "”", "’", "“", "»", "«"};
 
-// Whether `text` begins with a small letter of the Latin, Greek or Cyrillic script, as far as case can
-// be told from the bytes: ASCII, Latin-1, and Latin Extended-A by its pairs.
+// Whether `text` begins with a small letter of the Latin, Greek or Cyrillic script, as far as case
+// can be told from the bytes: ASCII, Latin-1, and Latin Extended-A by its pairs.
 bool begins_small(std::string_view text) {
   if (text.empty()) return false;
   unsigned char a = static_cast<unsigned char>(text[0]);
@@ -41,7 +41,8 @@ bool begins_small(std::string_view text) {
 // Whether the full stop at `at` belongs to what stands before it.
 bool abbreviates(std::string_view text, size_t at, size_t begin) {
   if (at == begin) return true;
-  if (is_digit(text[at - 1])) return at < begin + 3 || !is_digit(text[at - 3]);  // 13. but not 1786.
+  if (is_digit(text[at - 1]))
+    return at < begin + 3 || !is_digit(text[at - 3]);  // 13. but not 1786.
   size_t word = at;
   while (word > begin && is_letter(text[word - 1])) word--;
   size_t characters = 0;
@@ -75,7 +76,8 @@ std::vector<TextSpan> find_sentences(std::string_view text) {
     bool wide = mark == 3 && text.substr(at, 3) != "…";  // no space follows 。
     size_t next = end;
     while (next < text.size() && is_space(text[next])) next++;
-    bool ends_here = next == text.size() || wide || (next > end && !begins_small(text.substr(next)));
+    bool ends_here =
+        next == text.size() || wide || (next > end && !begins_small(text.substr(next)));
     if (ends_here && (!lone_stop || next == text.size())) close(end);
     at = end;
   }

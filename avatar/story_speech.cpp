@@ -32,7 +32,8 @@ void append(Speech& all, const Speech& line, double at) {
   }
   for (VisemeKey key : line.visemes.keys) {
     key.time += at;
-    if (all.visemes.keys.empty() || key.time > all.visemes.keys.back().time) all.visemes.keys.push_back(key);
+    if (all.visemes.keys.empty() || key.time > all.visemes.keys.back().time)
+      all.visemes.keys.push_back(key);
   }
   all.pcm.insert(all.pcm.end(), line.pcm.begin(), line.pcm.end());
 }
@@ -77,7 +78,8 @@ StorySpeech join_lines(const std::vector<StoryLine>& lines,
       append(all, *speech, begin);
     } else {
       all.text += lines[i].text;
-      all.pcm.resize(all.pcm.size() + size_t(seconds_a_byte * double(lines[i].text.size()) * all.rate));
+      all.pcm.resize(all.pcm.size() +
+                     size_t(seconds_a_byte * double(lines[i].text.size()) * all.rate));
     }
     story.cues.push_back({begin, double(all.pcm.size()) / all.rate, lines[i].text, ""});
   }

@@ -21,14 +21,15 @@ struct StorySpeech {
   std::vector<SubtitleCue> cues;
 };
 
-// Every line in the voice of `request`, whose text and styles are the lines'. Throws LoadError with the
-// place in `file` of a line that cannot be spoken.
+// Every line in the voice of `request`, whose text and styles are the lines'. Throws LoadError with
+// the place in `file` of a line that cannot be spoken.
 std::vector<std::shared_ptr<const Speech>> speak_lines(SpeechProcess& process,
                                                        const std::vector<StoryLine>& lines,
                                                        SpeechRequest request,
                                                        const std::string& file);
 
-// `spoken` are the lines' speeches, all of one rate; null ones are left out, with their time to read.
+// `spoken` are the lines' speeches, all of one rate; null ones are left out, with their time to
+// read.
 StorySpeech join_lines(const std::vector<StoryLine>& lines,
                        const std::vector<std::shared_ptr<const Speech>>& spoken);
 

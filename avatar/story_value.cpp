@@ -35,7 +35,8 @@ std::optional<float> in_reach(std::optional<float> factor) {
   return std::clamp(*factor, 0.3f, 3.0f);
 }
 
-// "+10%" and "110%" are 1.1, "+2st" two semitones, "+6dB" twice the amplitude; a bare number is a factor.
+// "+10%" and "110%" are 1.1, "+2st" two semitones, "+6dB" twice the amplitude; a bare number is a
+// factor.
 std::optional<float> read_factor(const std::string& text, bool decibels) {
   std::string_view unit;
   std::optional<float> number = read_number(text, unit);
@@ -64,8 +65,12 @@ std::optional<float> read_break_strength(const std::string& text) {
 }
 
 std::optional<float> read_rate(const std::string& text) {
-  auto word = find_word(text, {{"x-slow", 0.6f}, {"slow", 0.8f}, {"medium", 1.0f}, {"default", 1.0f},
-                               {"fast", 1.25f}, {"x-fast", 1.6f}});
+  auto word = find_word(text, {{"x-slow", 0.6f},
+                               {"slow", 0.8f},
+                               {"medium", 1.0f},
+                               {"default", 1.0f},
+                               {"fast", 1.25f},
+                               {"x-fast", 1.6f}});
   return word ? word : read_factor(text, false);
 }
 
@@ -90,7 +95,8 @@ std::optional<float> read_weight(const std::string& text) {
 }
 
 std::optional<int> read_emphasis(const std::string& text) {
-  auto word = find_word(text, {{"none", 0.0f}, {"reduced", -1.0f}, {"moderate", 1.0f}, {"strong", 2.0f}});
+  auto word =
+      find_word(text, {{"none", 0.0f}, {"reduced", -1.0f}, {"moderate", 1.0f}, {"strong", 2.0f}});
   return word ? std::optional(int(*word)) : std::nullopt;
 }
 

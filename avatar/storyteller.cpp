@@ -74,7 +74,8 @@ void tick_stance_and_gaze(StorytellerState& state, const Rig& rig, const GazeInp
               now, dt);
 }
 
-// The hand glides from one place to the next; a hand that does not point yet begins at the right one.
+// The hand glides from one place to the next; a hand that does not point yet begins at the right
+// one.
 vec3 tick_point(StorytellerState& state, const StorytellerInput& input, const mat4& to_here,
                 bool points_now, float dt) {
   vec3 goal(0, 1.2f, 4);

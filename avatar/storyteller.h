@@ -46,7 +46,7 @@ struct StorytellerState {
   SpringBonesState springs;
   Detail detail = Detail::full;
   StorytellerWork work;
-  std::array<Spring, 3> point;     // what hands point at, humanoid space, gliding from place to place
+  std::array<Spring, 3> point;  // what hands point at, humanoid space, gliding from place to place
   std::shared_ptr<const Rig> rig;  // of the character last seen; immutable
   std::shared_ptr<const ExpressionRig> expressions;  // of that rig and set; immutable
 };

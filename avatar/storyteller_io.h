@@ -36,12 +36,13 @@ struct StorytellerInput {
   std::vector<Guest> guests;
   bool humanlike = true;  // noise for human-like behaviour; off: bit-identical replays
   float speaking = 0;     // mouth activity 0..1: it says something right now
-  // Mouth shapes of the speech that is heard (order of Rig::viseme); without them the mouth moves as
-  // if it spoke.
+  // Mouth shapes of the speech that is heard (order of Rig::viseme); without them the mouth moves
+  // as if it spoke.
   std::optional<std::array<float, 15>> visemes;
   bool telling =
       false;  // a story is being told (Mood::telling while no greeting or farewell is due)
-  float viewer_distance = 0;  // metres to the nearest who sees it: how much of it needs to run (lod.h)
+  float viewer_distance =
+      0;           // metres to the nearest who sees it: how much of it needs to run (lod.h)
   StoryCue story;  // what its text asks of face, eyes and hands
 };
 

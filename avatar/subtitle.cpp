@@ -87,7 +87,8 @@ std::optional<double> read_time(std::string_view& text) {
   if (!take(text, '.')) return {};
   auto ms = read_digits(text, 3, 3);
   if (!ms) return {};
-  int hours = third ? *first : 0, minutes = third ? *second : *first, seconds = third ? *third : *second;
+  int hours = third ? *first : 0, minutes = third ? *second : *first,
+      seconds = third ? *third : *second;
   if (minutes > 59 || seconds > 59) return {};
   return hours * 3600.0 + minutes * 60 + seconds + *ms / 1000.0;
 }
@@ -100,13 +101,15 @@ std::string plain_text(std::string_view text, std::string& speaker) {
     if (text[i] == '<') {
       size_t end = rest.find('>');
       std::string_view tag = rest.substr(1, end == std::string_view::npos ? end : end - 1);
-      if (speaker.empty() && !tag.empty() && tag[0] == 'v' && tag.find(' ') != std::string_view::npos)
+      if (speaker.empty() && !tag.empty() && tag[0] == 'v' &&
+          tag.find(' ') != std::string_view::npos)
         speaker = std::string(trim(tag.substr(tag.find(' '))));
       i = end == std::string_view::npos ? text.size() : i + end + 1;
       continue;
     }
     static constexpr std::pair<std::string_view, std::string_view> entities[] = {
-        {"&amp;", "&"}, {"&lt;", "<"}, {"&gt;", ">"}, {"&nbsp;", "\u00a0"}, {"&lrm;", ""}, {"&rlm;", ""}};
+        {"&amp;", "&"},       {"&lt;", "<"}, {"&gt;", ">"},
+        {"&nbsp;", "\u00a0"}, {"&lrm;", ""}, {"&rlm;", ""}};
     bool found = false;
     for (auto [entity, meaning] : entities)
       if (!found && rest.substr(0, entity.size()) == entity) {
@@ -125,8 +128,9 @@ std::string write_subtitles(const std::vector<SubtitleCue>& cues) {
   std::string text = "WEBVTT\n";
   size_t number = 1;
   for (const SubtitleCue& cue : cues) {
-    for (const std::string& part : {std::string("\n"), std::to_string(number++), std::string("\n"),
-                                    write_time(cue.begin), std::string(" --> "), write_time(cue.end)})
+    for (const std::string& part :
+         {std::string("\n"), std::to_string(number++), std::string("\n"), write_time(cue.begin),
+          std::string(" --> "), write_time(cue.end)})
       text += part;
     text += '\n';
     if (!cue.speaker.empty()) text.append("<v ").append(escape(cue.speaker)).append(">");
@@ -149,7 +153,8 @@ std::vector<SubtitleCue> load_subtitles(std::string_view text, const std::string
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
   std::vector<std::string_view> lines = lines_of(text);
   size_t broken = find_broken_utf8(text);
-  if (broken != std::string_view::npos) fail(lines_of(text.substr(0, broken + 1)).size() - 1, "is not UTF-8");
+  if (broken != std::string_view::npos)
+    fail(lines_of(text.substr(0, broken + 1)).size() - 1, "is not UTF-8");
   bool signed_ = !lines.empty() && lines[0].substr(0, 6) == "WEBVTT" &&
                  (lines[0].size() == 6 || lines[0][6] == ' ' || lines[0][6] == '\t');
   if (!signed_) fail(0, "does not begin with WEBVTT");

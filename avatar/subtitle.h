@@ -17,9 +17,9 @@ struct SubtitleCue {
 // Times as hh:mm:ss.mmm; markup characters are escaped.
 std::string write_subtitles(const std::vector<SubtitleCue>& cues);
 
-// Cues in order of their beginning. Cue settings, NOTE, STYLE and REGION blocks and tags inside cues
-// are passed over. Throws LoadError{file, "line n", what}: no WEBVTT at the beginning, not UTF-8, a
-// cue without times, one that ends before it begins, more than 100,000 cues.
+// Cues in order of their beginning. Cue settings, NOTE, STYLE and REGION blocks and tags inside
+// cues are passed over. Throws LoadError{file, "line n", what}: no WEBVTT at the beginning, not
+// UTF-8, a cue without times, one that ends before it begins, more than 100,000 cues.
 std::vector<SubtitleCue> load_subtitles(std::string_view text, const std::string& file);
 
 }  // namespace wellspring

@@ -47,12 +47,14 @@ Timeline make_timeline(const StoryLine& line, const Speech* speech, double secon
     action.time = begin;
     timeline.actions.push_back(std::move(action));
   }
-  std::stable_sort(timeline.actions.begin(), timeline.actions.end(),
-                   [](const TimelineAction& a, const TimelineAction& b) { return a.time < b.time; });
+  std::stable_sort(
+      timeline.actions.begin(), timeline.actions.end(),
+      [](const TimelineAction& a, const TimelineAction& b) { return a.time < b.time; });
   return timeline;
 }
 
-std::vector<const ActionEvent*> advance_timeline(const Timeline& timeline, size_t& cursor, double now) {
+std::vector<const ActionEvent*> advance_timeline(const Timeline& timeline, size_t& cursor,
+                                                 double now) {
   std::vector<const ActionEvent*> events;
   while (cursor < timeline.actions.size() && timeline.actions[cursor].time <= now)
     events.push_back(&timeline.actions[cursor++].event);

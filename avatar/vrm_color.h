@@ -14,7 +14,9 @@ inline vec3 linear_of_unity(vec3 color) {
   for (int c = 0; c < 3; c++) {
     float v = std::min(color[c], 1e4f);
     if (!(v > 0)) continue;
-    linear[c] = v <= 0.04045f ? v / 12.92f : v < 1 ? std::pow((v + 0.055f) / 1.055f, 2.4f) : std::pow(v, 2.2f);
+    linear[c] = v <= 0.04045f ? v / 12.92f
+                : v < 1       ? std::pow((v + 0.055f) / 1.055f, 2.4f)
+                              : std::pow(v, 2.2f);
   }
   return linear;
 }

@@ -17,8 +17,9 @@ struct Axis {
   vec3 way;
 };
 constexpr Axis roll_axes[] = {{"X", {1, 0, 0}}, {"Y", {0, 1, 0}}, {"Z", {0, 0, 1}}};
-constexpr Axis aim_axes[] = {{"PositiveX", {1, 0, 0}},  {"NegativeX", {-1, 0, 0}}, {"PositiveY", {0, 1, 0}},
-                             {"NegativeY", {0, -1, 0}}, {"PositiveZ", {0, 0, 1}},  {"NegativeZ", {0, 0, -1}}};
+constexpr Axis aim_axes[] = {{"PositiveX", {1, 0, 0}}, {"NegativeX", {-1, 0, 0}},
+                             {"PositiveY", {0, 1, 0}}, {"NegativeY", {0, -1, 0}},
+                             {"PositiveZ", {0, 0, 1}}, {"NegativeZ", {0, 0, -1}}};
 
 template <size_t count>
 vec3 axis_in(const File& file, const json& object, const char* key, const Axis (&axes)[count],
@@ -63,7 +64,9 @@ void read_vrm_constraints(File& file, Vrm& vrm) {
       constraint.axis = axis_in(file, asked, "rollAxis", roll_axes, where);
     }
     if (vrm.constraints.size() == constraint_limit)
-      gltf::warn(file, "", "constraints beyond the first " + std::to_string(constraint_limit) + " are not followed");
+      gltf::warn(
+          file, "",
+          "constraints beyond the first " + std::to_string(constraint_limit) + " are not followed");
     if (vrm.constraints.size() < constraint_limit) vrm.constraints.push_back(constraint);
   }
 }

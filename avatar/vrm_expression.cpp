@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole expressions of either version of VRM: "blendShapeMaster" of 0.x, "expressions" of 1.0. Both say the
-// same with other words; what version 0 says of materials is in Unity's terms.
+// Whole expressions of either version of VRM: "blendShapeMaster" of 0.x, "expressions" of 1.0. Both
+// say the same with other words; what version 0 says of materials is in Unity's terms.
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -15,8 +15,9 @@ namespace {
 using namespace vrm_json;
 
 constexpr size_t bind_limit = 20'000;
-const char* const unseen = "expressions change base colours, emission and where pictures lie; shade, rim, matcap "
-                           "and outline colours, which cartoons have, are not shown";
+const char* const unseen =
+    "expressions change base colours, emission and where pictures lie; shade, rim, matcap "
+    "and outline colours, which cartoons have, are not shown";
 
 std::string preset_of_version_0(std::string preset) {
   static const std::map<std::string, std::string> names = {
@@ -25,7 +26,8 @@ std::string preset_of_version_0(std::string preset) {
       {"blink_l", "blinkLeft"}, {"blink_r", "blinkRight"}, {"lookup", "lookUp"},
       {"lookdown", "lookDown"}, {"lookleft", "lookLeft"}, {"lookright", "lookRight"},
       {"neutral", "neutral"}};
-  std::transform(preset.begin(), preset.end(), preset.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(preset.begin(), preset.end(), preset.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   auto found = names.find(preset);
   return found == names.end() ? "" : found->second;
 }
@@ -50,13 +52,14 @@ vec4 target_in(const json& bind) {
   return target;
 }
 
-// How a version writes the morph targets of an expression: `of` names what holds them, a mesh of the
-// file or a node; weights are in parts of `full`.
+// How a version writes the morph targets of an expression: `of` names what holds them, a mesh of
+// the file or a node; weights are in parts of `full`.
 struct Form {
   const char *binds, *of, *into;
   float full;
 };
-constexpr Form version_0{"binds", "mesh", "meshes", 100}, version_1{"morphTargetBinds", "node", "nodes", 1};
+constexpr Form version_0{"binds", "mesh", "meshes", 100},
+    version_1{"morphTargetBinds", "node", "nodes", 1};
 
 struct Reader {
   File& file;
@@ -65,7 +68,8 @@ struct Reader {
 
   bool has_room(const std::string& where) {
     if (++binds <= bind_limit) return true;
-    gltf::warn(file, where, "expressions beyond " + std::to_string(bind_limit) + " binds are left out");
+    gltf::warn(file, where,
+               "expressions beyond " + std::to_string(bind_limit) + " binds are left out");
     return false;
   }
 
@@ -75,7 +79,8 @@ struct Reader {
     VrmExpression expression;
     const json* binary = gltf::find(object, "isBinary");
     expression.binary = binary && binary->is_boolean() && binary->get<bool>();
-    expression.overrides = {override_in(object, "overrideBlink"), override_in(object, "overrideLookAt"),
+    expression.overrides = {override_in(object, "overrideBlink"),
+                            override_in(object, "overrideLookAt"),
                             override_in(object, "overrideMouth")};
     const json& list = list_in(file, object, form.binds, where);
     for (size_t b = 0; b < list.size(); b++) {
@@ -93,11 +98,14 @@ struct Reader {
   void add_colors(const json& object, const std::string& where, VrmExpression& expression) {
     const json& list = list_in(file, object, "materialColorBinds", where);
     for (size_t b = 0; b < list.size(); b++) {
-      int material = index_in(file, list[b], "material", "materials", at(where + "/materialColorBinds", b));
+      int material =
+          index_in(file, list[b], "material", "materials", at(where + "/materialColorBinds", b));
       std::string type = text_in(list[b], "type");
       if (material < 0 || !has_room(where)) continue;
       if (type != "color" && type != "emissionColor") gltf::warn(file, where, unseen);
-      else expression.colors.push_back({size_t(material), type == "emissionColor", target_in(list[b])});
+      else
+        expression.colors.push_back(
+            {size_t(material), type == "emissionColor", target_in(list[b])});
     }
   }
 
@@ -114,20 +122,23 @@ struct Reader {
           if (numbers[c].is_number()) v[int(c)] = usable(numbers[c]);
         return v;
       };
-      expression.pictures.push_back({size_t(material), {true, true}, pair("scale", 1), pair("offset", 0)});
+      expression.pictures.push_back(
+          {size_t(material), {true, true}, pair("scale", 1), pair("offset", 0)});
     }
   }
 
-  // Version 0 names materials and their shader's properties. Colours there are encoded as sRGB; pictures lie
-  // by scale and offset from below.
+  // Version 0 names materials and their shader's properties. Colours there are encoded as sRGB;
+  // pictures lie by scale and offset from below.
   void add_values(const json& object, const std::string& where, VrmExpression& expression) {
     const json& materials = gltf::items(file.root, "materials");
     const json& list = list_in(file, object, "materialValues", where);
     for (size_t v = 0; v < list.size(); v++) {
-      std::string name = text_in(list[v], "materialName"), property = text_in(list[v], "propertyName");
+      std::string name = text_in(list[v], "materialName"),
+                  property = text_in(list[v], "propertyName");
       vec4 target = target_in(list[v]);
       bool color = property == "_Color", emission = property == "_EmissionColor";
-      bool both = property == "_MainTex_ST", u = both || property == "_MainTex_ST_S", w = both || property == "_MainTex_ST_T";
+      bool both = property == "_MainTex_ST", u = both || property == "_MainTex_ST_S",
+           w = both || property == "_MainTex_ST_T";
       if (!color && !emission && !u && !w) {
         gltf::warn(file, where, unseen);
         continue;
@@ -139,7 +150,8 @@ struct Reader {
         if (color || emission)
           expression.colors.push_back({m, emission, vec4(linear_of_unity(vec3(target)), target.w)});
         else
-          expression.pictures.push_back({m, {u, w}, vec2(target), {target.z, 1 - target.w - target.y}});
+          expression.pictures.push_back(
+              {m, {u, w}, vec2(target), {target.z, 1 - target.w - target.y}});
       }
       if (!known) gltf::warn(file, where, "an expression changes materials that the file has not");
     }

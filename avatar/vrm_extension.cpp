@@ -14,7 +14,8 @@ using namespace vrm_json;
 void add_bone(File& file, Vrm& vrm, const std::string& bone, int node, const std::string& where) {
   if (node < 0) return;
   std::string joint = vrm_bone_joint(bone, vrm.version);
-  if (joint.empty()) return gltf::warn(file, where, "unknown humanoid bone '" + bone.substr(0, 60) + "'");
+  if (joint.empty())
+    return gltf::warn(file, where, "unknown humanoid bone '" + bone.substr(0, 60) + "'");
   for (const auto& [other, name] : vrm.joints)
     if (name == joint) return gltf::warn(file, where, "bone '" + bone + "' is named twice");
   if (!vrm.joints.emplace(size_t(node), joint).second)
@@ -34,13 +35,14 @@ void add_metadata(const File& file, const json& meta, const std::string& where, 
   }
 }
 
-// What a file says of how its eyes turn. `input` and `output`: keys of degrees of gaze, and of degrees of the eye
-// or weight of a shape.
+// What a file says of how its eyes turn. `input` and `output`: keys of degrees of gaze, and of
+// degrees of the eye or weight of a shape.
 struct RangeKeys {
   const char *inner, *outer, *up, *down, *input, *output;
 };
 
-EyeRanges read_ranges(File& file, const json& look, bool by_shapes, const RangeKeys& keys, const std::string& where) {
+EyeRanges read_ranges(File& file, const json& look, bool by_shapes, const RangeKeys& keys,
+                      const std::string& where) {
   constexpr float least_input = 0.1f, most_turn = 60, degree = pi / 180;
   auto range = [&](const char* key) {
     const json& object = object_in(file, look, key, where);
@@ -50,19 +52,21 @@ EyeRanges read_ranges(File& file, const json& look, bool by_shapes, const RangeK
       gltf::warn(file, where + "/" + key, "eyes turn evenly, not along a curve of their own");
     float input = std::clamp(number_in(object, keys.input, 90), least_input, 360.0f);
     float output = std::max(number_in(object, keys.output, by_shapes ? 1 : 10), 0.0f);
-    return EyeRange{input * degree, by_shapes ? std::min(output, 1.0f) : std::min(output, most_turn) * degree};
+    return EyeRange{input * degree,
+                    by_shapes ? std::min(output, 1.0f) : std::min(output, most_turn) * degree};
   };
   return {range(keys.inner), range(keys.outer), range(keys.up), range(keys.down), by_shapes};
 }
 
 // Parts that hide the head from whoever looks out of it: `of` names a node or a mesh of the file.
-void read_first_person(File& file, const json& object, const char* of, const char* into, const char* type,
-                       const std::string& where, std::set<size_t>& hidden) {
+void read_first_person(File& file, const json& object, const char* of, const char* into,
+                       const char* type, const std::string& where, std::set<size_t>& hidden) {
   const json& list = list_in(file, object, "meshAnnotations", where);
   for (size_t i = 0; i < list.size(); i++) {
     int index = index_in(file, list[i], of, into, at(where + "/meshAnnotations", i));
     std::string kind = text_in(list[i], type);
-    if (index >= 0 && (kind == "firstPersonOnly" || kind == "FirstPersonOnly")) hidden.insert(size_t(index));
+    if (index >= 0 && (kind == "firstPersonOnly" || kind == "FirstPersonOnly"))
+      hidden.insert(size_t(index));
   }
 }
 
@@ -84,16 +88,22 @@ void read_version_0(File& file, const json& object, Vrm& vrm) {
   const json& bones = list_in(file, humanoid, "humanBones", root + "/humanoid");
   for (size_t i = 0; i < bones.size(); i++) {
     std::string where = at(root + "/humanoid/humanBones", i);
-    add_bone(file, vrm, text_in(bones[i], "bone"), index_in(file, bones[i], "node", "nodes", where), where);
+    add_bone(file, vrm, text_in(bones[i], "bone"), index_in(file, bones[i], "node", "nodes", where),
+             where);
   }
   read_vrm_expressions(file, object, vrm);
   const json& look = object_in(file, object, "firstPerson", root);
-  constexpr RangeKeys keys{"lookAtHorizontalInner", "lookAtHorizontalOuter", "lookAtVerticalUp", "lookAtVerticalDown",
-                           "xRange", "yRange"};
+  constexpr RangeKeys keys{"lookAtHorizontalInner",
+                           "lookAtHorizontalOuter",
+                           "lookAtVerticalUp",
+                           "lookAtVerticalDown",
+                           "xRange",
+                           "yRange"};
   std::string type = text_in(look, "lookAtTypeName");
   if (type == "Bone" || type == "BlendShape")
     vrm.eye_ranges = read_ranges(file, look, type == "BlendShape", keys, root + "/firstPerson");
-  read_first_person(file, look, "mesh", "meshes", "firstPersonFlag", root + "/firstPerson", vrm.hidden_meshes);
+  read_first_person(file, look, "mesh", "meshes", "firstPersonFlag", root + "/firstPerson",
+                    vrm.hidden_meshes);
 }
 
 void read_version_1(File& file, const json& object, Vrm& vrm) {
@@ -103,8 +113,9 @@ void read_version_1(File& file, const json& object, Vrm& vrm) {
   add_named_bones(file, object, root, vrm);
   read_vrm_expressions(file, object, vrm);
   const json& look = object_in(file, object, "lookAt", root);
-  constexpr RangeKeys keys{"rangeMapHorizontalInner", "rangeMapHorizontalOuter", "rangeMapVerticalUp",
-                           "rangeMapVerticalDown", "inputMaxValue", "outputScale"};
+  constexpr RangeKeys keys{"rangeMapHorizontalInner", "rangeMapHorizontalOuter",
+                           "rangeMapVerticalUp",      "rangeMapVerticalDown",
+                           "inputMaxValue",           "outputScale"};
   std::string type = text_in(look, "type");
   if (type == "bone" || type == "expression")
     vrm.eye_ranges = read_ranges(file, look, type == "expression", keys, root + "/lookAt");
@@ -126,7 +137,8 @@ void read_animation(File& file, const json& object, Vrm& vrm) {
     }
   }
   if (gltf::find(object, "lookAt"))
-    gltf::warn(file, root + "/lookAt", "the gaze of a motion is not shown: eyes look for themselves");
+    gltf::warn(file, root + "/lookAt",
+               "the gaze of a motion is not shown: eyes look for themselves");
 }
 
 }  // namespace
@@ -142,7 +154,8 @@ const std::set<std::string>& vrm_extensions() {
 Vrm read_vrm(File& file) {
   Vrm vrm;
   vrm.matt = rewrite_vrm_materials(file);
-  if (const json* object = gltf::extension(file.root, "VRMC_vrm")) read_version_1(file, *object, vrm);
+  if (const json* object = gltf::extension(file.root, "VRMC_vrm"))
+    read_version_1(file, *object, vrm);
   else if (const json* older = gltf::extension(file.root, "VRM")) read_version_0(file, *older, vrm);
   else if (const json* moves = gltf::extension(file.root, "VRMC_vrm_animation"))
     read_animation(file, *moves, vrm);

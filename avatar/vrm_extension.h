@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a VRM file adds to glTF: which node is which bone, whole expressions, how eyes turn, who may
-// use it. Versions 0.x (extension "VRM") and 1.0 ("VRMC_vrm"), and animations ("VRMC_vrm_animation").
-// What is malformed is refused; what is not there stays empty.
+// use it. Versions 0.x (extension "VRM") and 1.0 ("VRMC_vrm"), and animations
+// ("VRMC_vrm_animation"). What is malformed is refused; what is not there stays empty.
 #pragma once
 #include <array>
 #include <map>
@@ -30,7 +30,7 @@ struct VrmColorBind {
 struct VrmPictureBind {
   size_t material = 0;
   std::array<bool, 2> axis{true, true};  // u, v
-  vec2 scale{1}, offset{0};              // instead of the picture's, as KHR_texture_transform has them
+  vec2 scale{1}, offset{0};  // instead of the picture's, as KHR_texture_transform has them
 };
 
 struct VrmExpression {
@@ -42,7 +42,8 @@ struct VrmExpression {
   std::vector<VrmPictureBind> pictures;
 };
 
-// Hair and cloth that swing: joints in a row, as their author tuned them (SpringBone in character.h).
+// Hair and cloth that swing: joints in a row, as their author tuned them (SpringBone in
+// character.h).
 struct VrmSpringJoint {
   size_t node = 0;
   int tail_node = -1;  // its end; -1: the end lies `tail` away
@@ -84,10 +85,10 @@ struct Vrm {
   std::vector<std::pair<std::string, std::string>> metadata;
 };
 
-// Rewrites materials of MToon and of version 0's unlit shaders as what glTF knows of them: colours, pictures and
-// where these lie, alpha, sides, glow. Version 0 keeps them in lists of its own, which count. To be called
-// on a file just loaded, before anybody reads its materials. What is not shown of them is told by
-// name. Returns those that are drawn as cartoons. Throws LoadError.
+// Rewrites materials of MToon and of version 0's unlit shaders as what glTF knows of them: colours,
+// pictures and where these lie, alpha, sides, glow. Version 0 keeps them in lists of its own, which
+// count. To be called on a file just loaded, before anybody reads its materials. What is not shown
+// of them is told by name. Returns those that are drawn as cartoons. Throws LoadError.
 std::set<size_t> rewrite_vrm_materials(gltf::File& file);
 
 // The extensions this and gltf_figure.cpp understand, for load_gltf().
@@ -95,8 +96,8 @@ const std::set<std::string>& vrm_extensions();
 
 // Adds to file.warnings what is not done. Throws LoadError.
 Vrm read_vrm(gltf::File& file);
-// Parts of it: expressions of either version (vrm_expression.cpp; `object` is the version's extension),
-// springs (vrm_spring.cpp), constraints (vrm_constraint.cpp).
+// Parts of it: expressions of either version (vrm_expression.cpp; `object` is the version's
+// extension), springs (vrm_spring.cpp), constraints (vrm_constraint.cpp).
 void read_vrm_expressions(gltf::File& file, const gltf::json& object, Vrm& vrm);
 void read_vrm_springs(gltf::File& file, Vrm& vrm);
 void read_vrm_constraints(gltf::File& file, Vrm& vrm);

@@ -6,8 +6,8 @@ namespace wellspring::vrm_json {
 namespace {
 
 // What is of the same type as `none`; `none` where it is absent.
-const json& of_type_in(const File& file, const json& object, const char* key, const std::string& where,
-                       const json& none, const char* must) {
+const json& of_type_in(const File& file, const json& object, const char* key,
+                       const std::string& where, const json& none, const char* must) {
   const json* found = object.is_object() ? gltf::find(object, key) : nullptr;
   if (!found || found->is_null()) return none;
   if (found->type() != none.type()) gltf::refuse(file, where + "/" + key, must);
@@ -16,12 +16,14 @@ const json& of_type_in(const File& file, const json& object, const char* key, co
 
 }  // namespace
 
-const json& object_in(const File& file, const json& object, const char* key, const std::string& where) {
+const json& object_in(const File& file, const json& object, const char* key,
+                      const std::string& where) {
   static const json none = json::object();
   return of_type_in(file, object, key, where, none, "must be an object");
 }
 
-const json& list_in(const File& file, const json& object, const char* key, const std::string& where) {
+const json& list_in(const File& file, const json& object, const char* key,
+                    const std::string& where) {
   static const json none = json::array();
   return of_type_in(file, object, key, where, none, "must be a list");
 }
@@ -33,7 +35,8 @@ std::string text_in(const json& object, const char* key) {
 
 float number_in(const json& object, const char* key, float otherwise) {
   auto found = object.is_object() ? object.find(key) : object.end();
-  return found != object.end() && found->is_number() ? gltf::to_float(found->get<double>()) : otherwise;
+  return found != object.end() && found->is_number() ? gltf::to_float(found->get<double>())
+                                                     : otherwise;
 }
 
 vec3 vector_in(const json& object, const char* key, vec3 otherwise) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON of VRM's extensions, which is in no schema table: types are checked where it is read. What is
-// absent is empty; what is of another type is refused with its place.
+// JSON of VRM's extensions, which is in no schema table: types are checked where it is read. What
+// is absent is empty; what is of another type is refused with its place.
 #pragma once
 #include <string>
 
@@ -13,12 +13,15 @@ using gltf::at;
 using gltf::File;
 using gltf::json;
 
-const json& object_in(const File& file, const json& object, const char* key, const std::string& where);
-const json& list_in(const File& file, const json& object, const char* key, const std::string& where);
+const json& object_in(const File& file, const json& object, const char* key,
+                      const std::string& where);
+const json& list_in(const File& file, const json& object, const char* key,
+                    const std::string& where);
 std::string text_in(const json& object, const char* key);
 // `otherwise` too for what is no number.
 float number_in(const json& object, const char* key, float otherwise);
-// A list of three numbers, or an object with x, y and z as version 0 has it; `otherwise` for all else.
+// A list of three numbers, or an object with x, y and z as version 0 has it; `otherwise` for all
+// else.
 vec3 vector_in(const json& object, const char* key, vec3 otherwise);
 // An index into the file's list `into`; -1 where the key is absent.
 int index_in(const File& file, const json& object, const char* key, const char* into,

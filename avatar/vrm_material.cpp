@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cartoon materials as glTF's own: VRMC_materials_mtoon-1.0, whose base is glTF already, and version 0's
-// "materialProperties", in terms of Unity's shaders "VRM/MToon" and "VRM/Unlit...".
+// Cartoon materials as glTF's own: VRMC_materials_mtoon-1.0, whose base is glTF already, and
+// version 0's "materialProperties", in terms of Unity's shaders "VRM/MToon" and "VRM/Unlit...".
 #include <algorithm>
 
 #include "avatar/vrm_color.h"
@@ -46,7 +46,8 @@ struct Properties {
 };
 
 // Of a shader drawn without light, or with MToon's.
-void rewrite_version_0(File& file, const json& properties, const std::string& where, json& material) {
+void rewrite_version_0(File& file, const json& properties, const std::string& where,
+                       json& material) {
   std::string shader = text_in(properties, "shader");
   bool mtoon = shader == "VRM/MToon";
   if (!mtoon && shader.rfind("VRM/Unlit", 0) != 0) return;
@@ -60,15 +61,19 @@ void rewrite_version_0(File& file, const json& properties, const std::string& wh
               {"metallicFactor", 0}};
   if (json picture; from.refer("_MainTex", picture)) pbr["baseColorTexture"] = picture;
   material["pbrMetallicRoughness"] = pbr;
-  bool blends = mtoon ? flag_in(keywords, "_ALPHABLEND_ON") : shader.find("Transparent") != std::string::npos;
-  bool cut = mtoon ? flag_in(keywords, "_ALPHATEST_ON") : shader.find("Cutout") != std::string::npos;
+  bool blends =
+      mtoon ? flag_in(keywords, "_ALPHABLEND_ON") : shader.find("Transparent") != std::string::npos;
+  bool cut =
+      mtoon ? flag_in(keywords, "_ALPHATEST_ON") : shader.find("Cutout") != std::string::npos;
   material["alphaMode"] = blends ? "BLEND" : cut ? "MASK" : "OPAQUE";
-  if (cut) material["alphaCutoff"] = std::clamp(number_in(from.floats, "_Cutoff", 0.5f), 0.0f, 1.0f);
+  if (cut)
+    material["alphaCutoff"] = std::clamp(number_in(from.floats, "_Cutoff", 0.5f), 0.0f, 1.0f);
   if (!mtoon) return;
   material["extensions"]["VRMC_materials_mtoon"] = json::object();  // as version 1 would mark it
   constexpr float hides_back = 2;  // of "_CullMode": what is hidden; all else shows the back
   material["doubleSided"] = number_in(from.floats, "_CullMode", hides_back) != hides_back;
-  for (const char* key : {"normalTexture", "emissiveTexture", "emissiveFactor"}) material.erase(key);
+  for (const char* key : {"normalTexture", "emissiveTexture", "emissiveFactor"})
+    material.erase(key);
   if (json picture; from.refer("_BumpMap", picture)) {
     picture["scale"] = number_in(from.floats, "_BumpScale", 1);
     material["normalTexture"] = picture;
@@ -82,10 +87,12 @@ void rewrite_version_0(File& file, const json& properties, const std::string& wh
 // What MToon draws that is not shown, each said once.
 void tell_unseen(File& file, const json& mtoon, const std::string& where) {
   auto tell = [&](bool asked, const char* what) {
-    if (asked) gltf::warn(file, where, std::string(what) + " of cartoon materials (MToon) are not drawn");
+    if (asked)
+      gltf::warn(file, where, std::string(what) + " of cartoon materials (MToon) are not drawn");
   };
   std::string mode = text_in(mtoon, "outlineWidthMode");
-  tell(!mode.empty() && mode != "none" && number_in(mtoon, "outlineWidthFactor", 0) > 0, "outlines");
+  tell(!mode.empty() && mode != "none" && number_in(mtoon, "outlineWidthFactor", 0) > 0,
+       "outlines");
   tell(numbers_in(mtoon, "parametricRimColorFactor", vec4(0)) != vec4(0), "rims");
   tell(gltf::find(mtoon, "matcapTexture") != nullptr, "matcaps");
   tell(gltf::find(mtoon, "shadeMultiplyTexture") != nullptr, "colours of the shade");
@@ -130,10 +137,13 @@ std::set<size_t> rewrite_vrm_materials(File& file) {
   if (!version_0 || gltf::extension(file.root, "VRMC_vrm")) return cartoons;
   const json properties = list_in(file, *version_0, "materialProperties", "/extensions/VRM");
   for (size_t m = 0; m < std::min(count, properties.size()); m++) {
-    std::string where = at("/extensions/VRM/materialProperties", m), shader = text_in(properties[m], "shader");
+    std::string where = at("/extensions/VRM/materialProperties", m),
+                shader = text_in(properties[m], "shader");
     rewrite_version_0(file, properties[m], where, file.root["materials"][m]);
-    if (shader.find("MToon") != std::string::npos) tell_unseen_of_version_0(file, properties[m], where);
-    if (shader.find("MToon") != std::string::npos || shader.find("Unlit") != std::string::npos) cartoons.insert(m);
+    if (shader.find("MToon") != std::string::npos)
+      tell_unseen_of_version_0(file, properties[m], where);
+    if (shader.find("MToon") != std::string::npos || shader.find("Unlit") != std::string::npos)
+      cartoons.insert(m);
   }
   return cartoons;
 }

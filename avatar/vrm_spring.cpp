@@ -31,7 +31,8 @@ struct Reader {
       return false;
     }
     if (vrm.springs.size() >= spring_limit) {
-      gltf::warn(file, where, "springs beyond the first " + std::to_string(spring_limit) + " do not swing");
+      gltf::warn(file, where,
+                 "springs beyond the first " + std::to_string(spring_limit) + " do not swing");
       return false;
     }
     if (meetings + joint.colliders.size() > meeting_limit) {
@@ -50,17 +51,20 @@ struct Reader {
   void add_collider(VrmCollider collider) {
     collider.radius = std::clamp(collider.radius, 0.0f, 1000.0f);
     if (vrm.colliders.size() == collider_limit)
-      gltf::warn(file, "", "colliders beyond the first " + std::to_string(collider_limit) + " are left out");
+      gltf::warn(file, "",
+                 "colliders beyond the first " + std::to_string(collider_limit) + " are left out");
     if (vrm.colliders.size() < collider_limit) vrm.colliders.push_back(collider);
   }
 
   // Indices of a list, each below `count`.
-  std::vector<size_t> indices(const json& list, size_t count, const char* what, const std::string& where) {
+  std::vector<size_t> indices(const json& list, size_t count, const char* what,
+                              const std::string& where) {
     std::vector<size_t> found;
     for (size_t i = 0; i < list.size(); i++) {
       int64_t index = list[i].is_number_integer() ? list[i].get<int64_t>() : -1;
       if (index < 0 || size_t(index) >= count)
-        gltf::refuse(file, at(where, i), "is none of the file's " + std::to_string(count) + " " + what);
+        gltf::refuse(file, at(where, i),
+                     "is none of the file's " + std::to_string(count) + " " + what);
       found.push_back(size_t(index));
     }
     return found;
@@ -71,10 +75,12 @@ struct Reader {
   void read_shape(size_t node, const json& shape, bool extended, const std::string& where);
 };
 
-// Version 0 writes collider offsets with z the other way round than glTF (UniVRM's left-handed space).
+// Version 0 writes collider offsets with z the other way round than glTF (UniVRM's left-handed
+// space).
 void Reader::read_version_0() {
   const std::string root = "/extensions/VRM/secondaryAnimation";
-  const json& object = object_in(file, *gltf::extension(file.root, "VRM"), "secondaryAnimation", "/extensions/VRM");
+  const json& object =
+      object_in(file, *gltf::extension(file.root, "VRM"), "secondaryAnimation", "/extensions/VRM");
   const json& nodes = gltf::items(file.root, "nodes");
   const json& groups = list_in(file, object, "colliderGroups", root);
   std::vector<std::pair<size_t, size_t>> range;  // of each group's colliders
@@ -107,7 +113,8 @@ void Reader::read_version_0() {
                                 "collider groups", where + "/colliderGroups"))
       for (size_t c = range[group].first; c < range[group].second; c++) like.colliders.push_back(c);
     // All that hangs below the named nodes swings, too.
-    std::vector<size_t> open = indices(list_in(file, bones[b], "bones", where), nodes.size(), "nodes", where + "/bones");
+    std::vector<size_t> open =
+        indices(list_in(file, bones[b], "bones", where), nodes.size(), "nodes", where + "/bones");
     std::set<size_t> seen;
     while (!open.empty()) {
       size_t node = open.back();
@@ -124,7 +131,8 @@ void Reader::read_version_0() {
         for (int c = 0; translation && c < 3; c++)
           way[c] = gltf::to_float((*translation)[size_t(c)].get<double>());
         float length = glm::length(way);
-        joint.tail = (length > 1e-9f && std::isfinite(length) ? way / length : vec3(0, 1, 0)) * leaf_length;
+        joint.tail =
+            (length > 1e-9f && std::isfinite(length) ? way / length : vec3(0, 1, 0)) * leaf_length;
       }
       add(std::move(joint), where);
       for (const json& child : children) open.push_back(child.get<size_t>());
@@ -158,13 +166,15 @@ void Reader::read_version_1(const json& object) {
     int node = index_in(file, colliders[c], "node", "nodes", where);
     if (node < 0) gltf::refuse(file, where, "has no node");
     const json* better = gltf::extension(colliders[c], "VRMC_springBone_extended_collider");
-    read_shape(size_t(node), object_in(file, better ? *better : colliders[c], "shape", where), better != nullptr, where);
+    read_shape(size_t(node), object_in(file, better ? *better : colliders[c], "shape", where),
+               better != nullptr, where);
   }
   const json& groups = list_in(file, object, "colliderGroups", root);
   std::vector<std::vector<size_t>> members;
   for (size_t g = 0; g < groups.size(); g++) {
     std::string where = at(root + "/colliderGroups", g);
-    members.push_back(indices(list_in(file, groups[g], "colliders", where), colliders.size(), "colliders", where));
+    members.push_back(indices(list_in(file, groups[g], "colliders", where), colliders.size(),
+                              "colliders", where));
   }
   const json& springs = list_in(file, object, "springs", root);
   for (size_t s = 0; s < springs.size(); s++) {
@@ -183,7 +193,8 @@ void Reader::read_version_1(const json& object) {
       if (j + 1 == joints.size()) break;  // the end of the last one, no more
       VrmSpringJoint joint;
       joint.node = size_t(node);
-      joint.tail_node = index_in(file, joints[j + 1], "node", "nodes", at(where + "/joints", j + 1));
+      joint.tail_node =
+          index_in(file, joints[j + 1], "node", "nodes", at(where + "/joints", j + 1));
       joint.stiffness = number_in(joints[j], "stiffness", 1);
       joint.gravity_power = number_in(joints[j], "gravityPower", 0);
       joint.gravity_direction = vector_in(joints[j], "gravityDir", vec3(0, -1, 0));

@@ -131,8 +131,8 @@ struct Parser {
       for (std::string& word : words) word = take_word("a ROUTE a.b TO c.d");
       size_t from = words[1].find('.'), to = words[3].find('.');
       if (from != std::string::npos && to != std::string::npos)
-        add_route(file, {words[1].substr(0, from), words[1].substr(from + 1), words[3].substr(0, to),
-                         words[3].substr(to + 1)});
+        add_route(file, {words[1].substr(0, from), words[1].substr(from + 1),
+                         words[3].substr(0, to), words[3].substr(to + 1)});
       return true;
     }
     if (is_any({"PROFILE", "COMPONENT"})) {

@@ -48,7 +48,8 @@ struct Builder {
     for (const json& route : value.is_array() ? value : json::array({value})) {
       auto text = [&](const char* key) {
         auto found = route.is_object() ? route.find(key) : route.end();
-        return found != route.end() && found->is_string() ? found->get<std::string>() : std::string();
+        return found != route.end() && found->is_string() ? found->get<std::string>()
+                                                          : std::string();
       };
       add_route(file, {text("@fromNode"), text("@fromField"), text("@toNode"), text("@toField")});
     }

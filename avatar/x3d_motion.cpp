@@ -34,11 +34,14 @@ struct Turner {
 
 std::vector<MotionJoint> skeleton_of(const Character& character) {
   std::vector<MotionJoint> joints;
-  for (const Joint& joint : character.joints) joints.push_back({joint.name, joint.parent, joint.center});
+  for (const Joint& joint : character.joints)
+    joints.push_back({joint.name, joint.parent, joint.center});
   return joints;
 }
 
-void append(std::vector<float>& values, quat q) { values.insert(values.end(), {q.x, q.y, q.z, q.w}); }
+void append(std::vector<float>& values, quat q) {
+  values.insert(values.end(), {q.x, q.y, q.z, q.w});
+}
 void append(std::vector<float>& values, vec3 v) { values.insert(values.end(), {v.x, v.y, v.z}); }
 
 std::vector<std::string> words_of(std::string text) {
@@ -109,7 +112,8 @@ void read_hanim_motion(HumanoidReader& reader, const X3dNode& node, const Turner
     char* end = nullptr;
     long count = std::strtol(words[i++].c_str(), &end, 10);
     if (*end || count < 0 || size_t(count) > words.size() - i) {
-      warn_once(file.warnings, where(node) + ": channels are no counted lists of names: not played");
+      warn_once(file.warnings,
+                where(node) + ": channels are no counted lists of names: not played");
       return done();
     }
     Group group;
@@ -119,24 +123,27 @@ void read_hanim_motion(HumanoidReader& reader, const X3dNode& node, const Turner
   }
   std::vector<std::string> joints = words_of(string_of(node, "joints"));
   if (joints.size() != groups.size())
-    warn_once(file.warnings, where(node) + ": " + std::to_string(joints.size()) + " joints but channels of " +
-                                 std::to_string(groups.size()));
+    warn_once(file.warnings, where(node) + ": " + std::to_string(joints.size()) +
+                                 " joints but channels of " + std::to_string(groups.size()));
   for (size_t g = 0; g < std::min(groups.size(), joints.size()); g++) {
     if (joints[g] == "IGNORED") continue;
     groups[g].joint = find_named_joint(character, joints[g]);
     if (groups[g].joint < 0)
-      warn_once(file.warnings, where(node) + ": moves '" + joints[g].substr(0, 60) + "', which the figure lacks");
+      warn_once(file.warnings,
+                where(node) + ": moves '" + joints[g].substr(0, 60) + "', which the figure lacks");
   }
   std::vector<float> values = floats_of(file, node, "values");
   if (width == 0 || values.size() < width) {
-    if (!values.empty() || width > 0) warn_once(file.warnings, where(node) + ": no whole frame to play");
+    if (!values.empty() || width > 0)
+      warn_once(file.warnings, where(node) + ": no whole frame to play");
     return done();
   }
   size_t frames = values.size() / width;
   if (values.size() % width)
     warn_once(file.warnings, where(node) + ": the last frame is not whole and left out");
   size_t first = 0, last = frames - 1;
-  std::vector<int> start = ints_of(file, node, "startFrame"), stop = ints_of(file, node, "endFrame");
+  std::vector<int> start = ints_of(file, node, "startFrame"),
+                   stop = ints_of(file, node, "endFrame");
   if (!start.empty() && start[0] > 0) first = std::min(size_t(start[0]), frames - 1);
   if (!stop.empty() && stop[0] > int(first)) last = std::min(size_t(stop[0]), frames - 1);
   float step = float_of(file, node, "frameDuration", 0.1f);
@@ -147,7 +154,8 @@ void read_hanim_motion(HumanoidReader& reader, const X3dNode& node, const Turner
 
   std::vector<std::string> enabled = words_of(string_of(node, "channelsEnabled"));
   auto is_on = [&](size_t channel) {
-    return channel >= enabled.size() || (enabled[channel] != "false" && enabled[channel] != "FALSE");
+    return channel >= enabled.size() ||
+           (enabled[channel] != "false" && enabled[channel] != "FALSE");
   };
   size_t column = 0;
   for (const Group& group : groups) {
@@ -192,7 +200,8 @@ void read_hanim_motion(HumanoidReader& reader, const X3dNode& node, const Turner
       for (size_t i = 0; i < ways.values.size(); i++) ways.values[i] -= joint.center[int(i % 3)];
     motion.tracks.push_back(std::move(ways));
     if (!places) continue;
-    warn_once(file.warnings, where(node) + ": gives the root's place: its feet are put on the floor");
+    warn_once(file.warnings,
+              where(node) + ": gives the root's place: its feet are put on the floor");
     size_t root_track = motion.tracks.size() - 1;
     std::swap(motion.tracks[root_track], motion.tracks[0]);
   }
@@ -200,7 +209,8 @@ void read_hanim_motion(HumanoidReader& reader, const X3dNode& node, const Turner
     float low = INFINITY;
     for (const Joint& joint : character.joints) low = std::min(low, joint.center.y);
     float lift = low - lowest_joint(motion);
-    for (size_t i = 1; i < motion.tracks[0].values.size(); i += 3) motion.tracks[0].values[i] += lift;
+    for (size_t i = 1; i < motion.tracks[0].values.size(); i += 3)
+      motion.tracks[0].values[i] += lift;
   }
   done();
 }
@@ -216,15 +226,18 @@ struct Router {
   size_t followed = 0, looked_at = 0, numbers = 0;
   static constexpr size_t most_links = 200'000, most_numbers = 16'000'000;
 
-  Router(HumanoidReader& of, const Turner& turns, int node) : reader(of), turner(turns), humanoid(node) {
+  Router(HumanoidReader& of, const Turner& turns, int node)
+      : reader(of), turner(turns), humanoid(node) {
     for (size_t i = 0; i < of.file.nodes.size(); i++)
       if (!of.file.nodes[i].def.empty()) by_def[of.file.nodes[i].def] = int(i);
     for (size_t j = 0; j < of.joint_node.size(); j++) joint_of[of.joint_node[j]] = int(j);
     for (const X3dRoute& route : of.file.routes)
-      if (auto found = by_def.find(route.from_node); found != by_def.end()) from[found->second].push_back(&route);
+      if (auto found = by_def.find(route.from_node); found != by_def.end())
+        from[found->second].push_back(&route);
   }
   static bool is_field(const std::string& written, const char* field) {
-    return written == field || written == std::string("set_") + field || written == std::string(field) + "_changed";
+    return written == field || written == std::string("set_") + field ||
+           written == std::string(field) + "_changed";
   }
 
   void follow(int sensor) {
@@ -240,13 +253,15 @@ struct Router {
     motion.loop = bool_of(timer, "loop", false);
     for (const X3dRoute* to_curve : from[sensor]) {
       auto curve = by_def.find(to_curve->to_node);
-      if (curve == by_def.end() || !is_field(to_curve->from_field, "fraction") || !is_field(to_curve->to_field, "fraction"))
+      if (curve == by_def.end() || !is_field(to_curve->from_field, "fraction") ||
+          !is_field(to_curve->to_field, "fraction"))
         continue;
       if (!curves.insert(curve->second).second) continue;
       for (const X3dRoute* to_joint : from[curve->second]) {
         auto target = by_def.find(to_joint->to_node);
         if (target == by_def.end() || !is_field(to_joint->from_field, "value")) continue;
-        if (++looked_at > most_links) throw LoadError(file.path, where(timer), "ROUTEs lead to too many joints");
+        if (++looked_at > most_links)
+          throw LoadError(file.path, where(timer), "ROUTEs lead to too many joints");
         if (led.insert({curve->second, target->second, to_joint->to_field}).second)
           add_track(motion, curve->second, target->second, to_joint->to_field, cycle);
       }
@@ -256,7 +271,8 @@ struct Router {
     reader.character.motions.push_back(std::move(motion));
   }
 
-  void add_track(Motion& motion, int curve_node, int target, const std::string& field, float cycle) {
+  void add_track(Motion& motion, int curve_node, int target, const std::string& field,
+                 float cycle) {
     X3dFile& file = reader.file;
     const X3dNode& curve = file.nodes[size_t(curve_node)];
     const X3dNode& node = file.nodes[size_t(target)];
@@ -266,11 +282,19 @@ struct Router {
     bool weight = is_field(field, "weight") && node.type == "HAnimDisplacer";
     if (!weight && (joint < 0 || !(rotation || translation))) return;
     size_t width = rotation ? 4 : translation ? 3 : 1;
-    MotionTrack track{rotation ? TrackKind::rotation : translation ? TrackKind::translation : TrackKind::displacer,
-                      TrackCurve::linear, joint, {}, {}, {}};
-    std::vector<float> keys = floats_of(file, curve, "key"), values = floats_of(file, curve, "keyValue");
+    MotionTrack track{rotation      ? TrackKind::rotation
+                      : translation ? TrackKind::translation
+                                    : TrackKind::displacer,
+                      TrackCurve::linear,
+                      joint,
+                      {},
+                      {},
+                      {}};
+    std::vector<float> keys = floats_of(file, curve, "key"),
+                       values = floats_of(file, curve, "keyValue");
     numbers += keys.size() + values.size() + 100;
-    if (numbers > most_numbers) throw LoadError(file.path, where(curve), "interpolators have too many keys in all");
+    if (numbers > most_numbers)
+      throw LoadError(file.path, where(curve), "interpolators have too many keys in all");
     size_t count = std::min(keys.size(), values.size() / width);
     if (keys.size() * width != values.size())
       warn_once(file.warnings, where(curve) + ": " + std::to_string(keys.size()) + " keys but " +
@@ -289,7 +313,8 @@ struct Router {
       if (rotation) {
         vec3 axis(v[0], v[1], v[2]);
         float length = glm::length(axis);
-        append(track.values, length > 1e-9f ? turner(glm::angleAxis(v[3], axis / length)) : quat(1, 0, 0, 0));
+        append(track.values,
+               length > 1e-9f ? turner(glm::angleAxis(v[3], axis / length)) : quat(1, 0, 0, 0));
       } else if (translation) {
         append(track.values, turner(vec3(v[0], v[1], v[2])));
       } else {
@@ -311,13 +336,16 @@ struct Router {
 void read_x3d_motions(HumanoidReader& reader, int humanoid) {
   Turner turner(reader.root);
   for (size_t i = 0; i < reader.file.nodes.size(); i++)
-    if (reader.file.nodes[i].type == "HAnimMotion" && reader.character.motions.size() < most_motions)
+    if (reader.file.nodes[i].type == "HAnimMotion" &&
+        reader.character.motions.size() < most_motions)
       read_hanim_motion(reader, reader.file.nodes[i], turner);
   Router router(reader, turner, humanoid);
   for (size_t i = 0; i < reader.file.nodes.size(); i++)
-    if (reader.file.nodes[i].type == "TimeSensor" && !reader.file.nodes[i].def.empty()) router.follow(int(i));
+    if (reader.file.nodes[i].type == "TimeSensor" && !reader.file.nodes[i].def.empty())
+      router.follow(int(i));
   if (!reader.file.routes.empty() && router.followed == 0)
-    warn_once(reader.file.warnings, "no ROUTE leads from a TimeSensor to a joint: none is followed");
+    warn_once(reader.file.warnings,
+              "no ROUTE leads from a TimeSensor to a joint: none is followed");
 }
 
 }  // namespace wellspring

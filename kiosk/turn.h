@@ -5,8 +5,9 @@
 // perspective, Tukey weights. Flow knows changes well and the zero badly; cues from single frames
 // are crude but do not drift. The two are joined by a slow pull:
 //   roll    from the line between the eyes,
-//   yaw     from the midline of nose and mouth against the middle of the eyes; profile views beyond,
-//   pitch   towards that of somebody who looks at the screen, since visitors do on the whole.
+//   yaw     from the midline of nose and mouth against the middle of the eyes; profile views
+//   beyond, pitch   towards that of somebody who looks at the screen, since visitors do on the
+//   whole.
 // Measured on the synthetic figure, root mean square of yaw, pitch, roll in degrees: 7, 4, 1 with a
 // level camera, 8, 3, 4 with one 0.35 m above the screen tilted down by 20. There is no measured
 // truth for people; a head kept turned drifts back by about half within 4 to 8 seconds.

@@ -33,8 +33,11 @@ struct Options {
 int read_options(Options& options, int argc, char** argv) {
   CLI::App app{"Serves a museum exhibit to browsers and kiosks."};
   int port = 8080;
-  app.add_option("--exhibit", options.exhibit, "the exhibit's id: a folder below content")->capture_default_str();
-  app.add_option("--port", port, "0: any free one")->check(CLI::Range(0, 65535))->capture_default_str();
+  app.add_option("--exhibit", options.exhibit, "the exhibit's id: a folder below content")
+      ->capture_default_str();
+  app.add_option("--port", port, "0: any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
   app.add_option("--host", options.stream.host, "address to listen on")->capture_default_str();
   app.add_option("--allow-origin", options.stream.allowed_origin,
                  "a further Origin whose pages may open a visit; * for any");
@@ -44,23 +47,32 @@ int read_options(Options& options, int argc, char** argv) {
                  "folder that keeps what is found out about recordings; empty: nothing is kept");
   app.add_option("--fps", options.show.fps, "pictures a second for each visitor")
       ->check(CLI::Range(1.0, 120.0))->capture_default_str();
-  app.add_option("--max-visitors", options.show.max_visitors)->check(CLI::Range(1, 1000))->capture_default_str();
-  app.add_option("--technique", options.show.technique, "how light is sampled in motion")->capture_default_str();
+  app.add_option("--max-visitors", options.show.max_visitors)
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--technique", options.show.technique, "how light is sampled in motion")
+      ->capture_default_str();
   app.add_option("--still-technique", options.show.still_technique, "how light is sampled at rest")
       ->capture_default_str();
   const std::map<std::string, DrawShapes> wishes{{"automatic", DrawShapes::automatic},
                                                  {"never", DrawShapes::never},
                                                  {"always", DrawShapes::always}};
-  app.add_option("--draw", options.show.draw,
-                 "shapes drawn exactly in every picture, sharper and slower: automatic, never, always")
-      ->transform(CLI::CheckedTransformer(wishes))->option_text("WISH=automatic");
+  app.add_option(
+         "--draw", options.show.draw,
+         "shapes drawn exactly in every picture, sharper and slower: automatic, never, always")
+      ->transform(CLI::CheckedTransformer(wishes))
+      ->option_text("WISH=automatic");
   app.add_flag("--background,!--no-background", options.show.background,
-               "pictures are drawn while visitors are shown earlier ones as they look from where they are now")
+               "pictures are drawn while visitors are shown earlier ones as they look from where "
+               "they are now")
       ->capture_default_str();
   app.add_flag("--late-samples,!--no-late-samples", options.show.late_samples,
-               "samples of a walking visitor are traced when its picture is on its way, and show in the next")
+               "samples of a walking visitor are traced when its picture is on its way, and show "
+               "in the next")
       ->capture_default_str();
-  app.add_option("--max-depth", options.show.transport.max_depth)->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--max-depth", options.show.transport.max_depth)
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -93,7 +105,8 @@ std::string stream_metrics(const Server& server) {
 void read_recordings_or_fail(Exhibit& exhibit, const RecordingOptions& options) {
   std::vector<Problem> problems;
   read_recordings(exhibit, options, problems);
-  if (std::any_of(problems.begin(), problems.end(), [](const Problem& problem) { return problem.fatal; }))
+  if (std::any_of(problems.begin(), problems.end(),
+                  [](const Problem& problem) { return problem.fatal; }))
     throw ExhibitError(std::move(problems));
   for (const Problem& problem : problems) log::warn("{}", to_string(problem));
 }
@@ -123,8 +136,8 @@ int serve(const Options& options) {
   doors.joined = [&](std::shared_ptr<Link> link) { arrivals.put(std::move(link)); };
   board.publish(make_report(*show));
   server = std::make_unique<Server>(options.stream, doors);
-  std::cout << "Wellspring serves '" << options.exhibit << "' at http://" << options.stream.host << ":"
-            << server->port() << "/" << std::endl;
+  std::cout << "Wellspring serves '" << options.exhibit << "' at http://" << options.stream.host
+            << ":" << server->port() << "/" << std::endl;
 
   double reported = -1;
   while (!asked_to_stop) {

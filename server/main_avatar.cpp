@@ -88,7 +88,8 @@ Motion find_motion(const Character& character, const std::string& wanted) {
   throw LoadError(file, "", name.empty() ? "has no motion" : "has no motion '" + name + "'");
 }
 
-// Named expressions instead of the face that the pose has. Throws std::invalid_argument for unknown names.
+// Named expressions instead of the face that the pose has. Throws std::invalid_argument for unknown
+// names.
 void show_expressions(const Character& character, const std::vector<std::string>& settings,
                       Pose& pose) {
   const ExpressionSet& set = default_expressions();
@@ -132,7 +133,8 @@ std::vector<SheetCell> sheet_cells(const Character& character, const std::string
     return cells;
   }
   add_cell("neutral", -1);
-  for (size_t i = 0; i < emotion_count; i++) add_cell(std::string(emotion_names[i]), rig.emotion[i]);
+  for (size_t i = 0; i < emotion_count; i++)
+    add_cell(std::string(emotion_names[i]), rig.emotion[i]);
   return cells;
 }
 
@@ -213,14 +215,17 @@ int main(int argc, char** argv) {
   log::start("avatar");
   CLI::App app{"Inspects an H-Anim figure and takes pictures of it."};
   Options options;
-  app.add_option("file", options.file, "file of the figure: X3D, VRML97, glTF, VRM; or BVH, a motion")->required();
+  app.add_option("file", options.file,
+                 "file of the figure: X3D, VRML97, glTF, VRM; or BVH, a motion")
+      ->required();
   app.add_flag("--info", options.info,
                "tell what the figure consists of (the default without --out)");
   app.add_flag("--json", options.json, "the same for programs");
   app.add_option("--motion", options.motion,
                  "shows a motion at --time instead: one of the figure's own by name, or a file\n"
                  "(.bvh, .vrma, .glb, .x3d; FILE#NAME for one of several)");
-  app.add_option("--skinning", options.skinning, "how joints bend the skin; without it as the file says")
+  app.add_option("--skinning", options.skinning,
+                 "how joints bend the skin; without it as the file says")
       ->check(CLI::IsMember({"linear", "dual_quaternion"}));
   app.add_option("--out", options.out, "picture to write: .png .jpg .pfm .exr");
   app.add_option("--sheet", options.sheet, "a labelled picture of each, --size is that of one")

@@ -14,7 +14,8 @@ int main(int argc, char** argv) {
   std::string folder;
   app.add_option("package", folder, "folder of the exhibit, e.g. content/castle")->required();
   wellspring::RecordingOptions recordings;
-  app.add_option("--cache", recordings.cache, "folder that keeps what is found out about recordings");
+  app.add_option("--cache", recordings.cache,
+                 "folder that keeps what is found out about recordings");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -25,7 +26,8 @@ int main(int argc, char** argv) {
   try {
     wellspring::Exhibit exhibit = wellspring::read_exhibit(folder, problems);
     wellspring::read_recordings(exhibit, recordings, problems);
-    bool usable = std::none_of(problems.begin(), problems.end(), [](const auto& p) { return p.fatal; });
+    bool usable =
+        std::none_of(problems.begin(), problems.end(), [](const auto& p) { return p.fatal; });
     if (usable && !exhibit.tours.empty()) {
       wellspring::World world(exhibit.scene);
       wellspring::make_tour_roads(exhibit, world, problems);
@@ -38,6 +40,8 @@ int main(int argc, char** argv) {
     fatal += problem.fatal;
   }
   if (fatal == 0) std::cout << folder << ": good, " << problems.size() << " notes\n";
-  else std::cout << folder << ": " << fatal << " errors, " << problems.size() - size_t(fatal) << " notes\n";
+  else
+    std::cout << folder << ": " << fatal << " errors, " << problems.size() - size_t(fatal)
+              << " notes\n";
   return fatal == 0 ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring clip FIGURE STORY: a figure acts a story. Writes pictures, the sound and subtitles into a
-// folder, with a sheet of some moments to look at; and a film, where ffmpeg is installed.
+// wellspring clip FIGURE STORY: a figure acts a story. Writes pictures, the sound and subtitles
+// into a folder, with a sheet of some moments to look at; and a film, where ffmpeg is installed.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -27,7 +27,8 @@ namespace {
 struct Options {
   std::string figure, story, out = "clip", size = "240x320";
   ClipSettings clip{.lang = "en", .seconds = 8, .fps = 12};
-  SpeechRequest voice{.text = "", .lang = "en", .words_per_minute = 145, .pitch = 52, .variant = "f3"};
+  SpeechRequest voice{
+      .text = "", .lang = "en", .words_per_minute = 145, .pitch = 52, .variant = "f3"};
   int spp = 16, columns = 8, sheet_rate = 4;
   double from = 0;
   bool close = false, calm = false;
@@ -43,8 +44,8 @@ void paste(const Image8& picture, Image8& sheet, int left, int top) {
 
 // Pictures and sound into one file. False where there is no ffmpeg.
 bool make_film(const std::string& folder, double fps) {
-  std::string rate = fmt::format("{}", fps), pictures = folder + "/%04d.png", sound = folder + "/sound.wav",
-              film = folder + "/clip.mp4";
+  std::string rate = fmt::format("{}", fps), pictures = folder + "/%04d.png",
+              sound = folder + "/sound.wav", film = folder + "/clip.mp4";
   std::vector<std::string> words = {"ffmpeg", "-y",   "-loglevel", "error", "-framerate", rate,
                                     "-i",     pictures, "-i",      sound,   "-pix_fmt",   "yuv420p",
                                     "-shortest", film};
@@ -52,7 +53,8 @@ bool make_film(const std::string& folder, double fps) {
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t child = 0;
-  if (posix_spawnp(&child, "ffmpeg", nullptr, nullptr, arguments.data(), environ) != 0) return false;
+  if (posix_spawnp(&child, "ffmpeg", nullptr, nullptr, arguments.data(), environ) != 0)
+    return false;
   int status = 0;
   waitpid(child, &status, 0);
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
@@ -61,8 +63,9 @@ bool make_film(const std::string& folder, double fps) {
 int run(Options& options) {
   StudioShot shot;
   char rest = 0;
-  bool sized = std::sscanf(options.size.c_str(), "%dx%d%c", &shot.width, &shot.height, &rest) == 2 &&
-               shot.width >= 16 && shot.height >= 16 && shot.width <= 2048 && shot.height <= 2048;
+  bool sized =
+      std::sscanf(options.size.c_str(), "%dx%d%c", &shot.width, &shot.height, &rest) == 2 &&
+      shot.width >= 16 && shot.height >= 16 && shot.width <= 2048 && shot.height <= 2048;
   if (!sized) {
     std::cerr << "--size wants WIDTHxHEIGHT, 16 to 2048 each\n";
     return 2;
@@ -74,7 +77,8 @@ int run(Options& options) {
   story.id = std::filesystem::path(options.story).stem().string();
   StoryScript script = load_story(options.story);
   for (const StoryNote& note : script.notes)
-    std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what << "\n";
+    std::cerr << "note: " << options.story << ": " << to_string(note.place) << ": " << note.what
+              << "\n";
   options.voice.lang = options.clip.lang;
   options.clip.humanlike = !options.calm;
   SpeechProcess process;
@@ -85,7 +89,8 @@ int run(Options& options) {
   double seconds = options.clip.seconds;
   options.clip.seconds += options.from;
   auto moments = act_story(Exhibit{}, character, mat4(1), story, spoken, options.clip);
-  std::erase_if(moments, [&](const StoryMoment& moment) { return moment.time < options.from - 1e-9; });
+  std::erase_if(moments,
+                [&](const StoryMoment& moment) { return moment.time < options.from - 1e-9; });
   if (moments.empty()) throw LoadError(options.story, "", "ends before --from");
 
   // The sound as it goes with the pictures.
@@ -93,7 +98,8 @@ int run(Options& options) {
   std::vector<int16_t> sound(size_t(double(moments.size()) / options.clip.fps * rate));
   for (size_t i = 0; i < moments.size(); i++) {
     const auto& pcm = spoken[std::min(size_t(moments[i].sentence), spoken.size() - 1)]->pcm;
-    size_t begin = size_t(double(i) / options.clip.fps * rate), end = size_t(double(i + 1) / options.clip.fps * rate);
+    size_t begin = size_t(double(i) / options.clip.fps * rate),
+           end = size_t(double(i + 1) / options.clip.fps * rate);
     for (size_t k = begin; k < std::min(end, sound.size()); k++) {
       long at = long(moments[i].sound * rate) + long(k - begin);
       if (at >= 0 && at < long(pcm.size())) sound[k] = pcm[size_t(at)];
@@ -116,12 +122,13 @@ int run(Options& options) {
     tonemap(frame, Tonemap{}, picture);
     save_image8(options.out + fmt::format("/{:04}.png", i), picture);
     int place = int(i / every);
-    if (i % every == 0) paste(picture, sheet, place % columns * shot.width, place / columns * shot.height);
+    if (i % every == 0)
+      paste(picture, sheet, place % columns * shot.width, place / columns * shot.height);
   }
   save_image8(options.out + "/sheet.png", sheet);
   bool film = make_film(options.out, options.clip.fps);
-  std::cout << fmt::format("{} pictures of {:.1f} s, sheet.png, sound.wav, subtitles.vtt{} in {}\n", moments.size(),
-                           seconds, film ? ", clip.mp4" : "", options.out);
+  std::cout << fmt::format("{} pictures of {:.1f} s, sheet.png, sound.wav, subtitles.vtt{} in {}\n",
+                           moments.size(), seconds, film ? ", clip.mp4" : "", options.out);
   return 0;
 }
 
@@ -131,20 +138,29 @@ int run(Options& options) {
 int main(int argc, char** argv) {
   using namespace wellspring;
   log::start("clip");
-  CLI::App app{"A figure acts a story: pictures, sound, subtitles, and a film where ffmpeg is installed."};
+  CLI::App app{
+      "A figure acts a story: pictures, sound, subtitles, and a film where ffmpeg is installed."};
   Options options;
   app.add_option("figure", options.figure, "file of the figure")->required();
   app.add_option("story", options.story, ".story, .ssml or .txt")->required();
   app.add_option("--lang", options.clip.lang, "language tag")->capture_default_str();
   app.add_option("--out", options.out, "folder to write to")->capture_default_str();
-  app.add_option("--from", options.from, "second of the story to begin with")->check(CLI::Range(0.0, 3600.0));
-  app.add_option("--seconds", options.clip.seconds)->check(CLI::Range(0.1, 600.0))->capture_default_str();
-  app.add_option("--fps", options.clip.fps, "pictures a second")->check(CLI::Range(1.0, 60.0))->capture_default_str();
+  app.add_option("--from", options.from, "second of the story to begin with")
+      ->check(CLI::Range(0.0, 3600.0));
+  app.add_option("--seconds", options.clip.seconds)
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  app.add_option("--fps", options.clip.fps, "pictures a second")
+      ->check(CLI::Range(1.0, 60.0))
+      ->capture_default_str();
   app.add_option("--size", options.size, "of each picture")->capture_default_str();
-  app.add_option("--spp", options.spp, "samples a pixel")->check(CLI::Range(1, 4096))->capture_default_str();
+  app.add_option("--spp", options.spp, "samples a pixel")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
   app.add_flag("--close", options.close, "head and shoulders");
   app.add_flag("--calm", options.calm, "without human-like noise");
-  app.add_option("--sheet-rate", options.sheet_rate, "pictures of the sheet a second")->check(CLI::Range(1, 60));
+  app.add_option("--sheet-rate", options.sheet_rate, "pictures of the sheet a second")
+      ->check(CLI::Range(1, 60));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

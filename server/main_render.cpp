@@ -140,8 +140,11 @@ struct SceneKind {
   Scene (*load)(const std::string& path, double time);
 };
 const SceneKind scene_kinds[] = {
-    {"exhibit package", [](const std::string& path) { return std::filesystem::exists(path + "/exhibit.json"); },
-     [](const std::string& path, double time) { return make_exhibit_scene(load_exhibit(path), time); }},
+    {"exhibit package",
+     [](const std::string& path) { return std::filesystem::exists(path + "/exhibit.json"); },
+     [](const std::string& path, double time) {
+       return make_exhibit_scene(load_exhibit(path), time);
+     }},
     {"glTF file", [](const std::string& path) { return !std::filesystem::is_directory(path); },
      [](const std::string& path, double time) {
        SceneLoadOptions options;

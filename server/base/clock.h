@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Monotonic seconds since the program started; ticks take the time as an argument so tests can set it.
+// Monotonic seconds since the program started; ticks take the time as an argument so tests can set
+// it.
 #pragma once
 #include <chrono>
 #include <cstdint>

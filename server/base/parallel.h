@@ -11,8 +11,8 @@
 
 namespace wellspring {
 
-// oneTBB is not built with the thread sanitizer, which therefore is told that pieces come after what was
-// before the loop, and what is after it comes after the pieces.
+// oneTBB is not built with the thread sanitizer, which therefore is told that pieces come after
+// what was before the loop, and what is after it comes after the pieces.
 class LoopOrder {
  public:
 #ifdef __SANITIZE_THREAD__
@@ -24,7 +24,8 @@ class LoopOrder {
 #endif
 };
 
-// body(begin, end) over disjoint pieces of [0, count), each of at least `grain` items where possible.
+// body(begin, end) over disjoint pieces of [0, count), each of at least `grain` items where
+// possible.
 template <class Body>
 void parallel_ranges(int count, int grain, const Body& body) {
   if (count <= 0) return;
@@ -39,8 +40,8 @@ void parallel_ranges(int count, int grain, const Body& body) {
   order.passed();
 }
 
-// body(i) for every i in [0, count), each a piece of its own: for bodies of a tenth of a millisecond and
-// more. Pieces of several would leave cores without work at the end.
+// body(i) for every i in [0, count), each a piece of its own: for bodies of a tenth of a
+// millisecond and more. Pieces of several would leave cores without work at the end.
 template <class Body>
 void parallel_each(int count, const Body& body) {
   if (count <= 0) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A std::vector whose new items hold anything: for large arrays that many threads fill at once. Memory is
-// first touched by who fills it, and nobody waits while one thread writes zeros.
+// A std::vector whose new items hold anything: for large arrays that many threads fill at once.
+// Memory is first touched by who fills it, and nobody waits while one thread writes zeros.
 #pragma once
 #include <memory>
 #include <type_traits>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers that can be replayed: a sample's stream is a function of (seed, x, y, index) alone,
-// never of the thread that drew it. Generator: PCG-XSH-RR 64/32, O'Neill 2014, sections 6.3 and 7.1.
+// Random numbers that can be replayed: a sample's stream is a function of (seed, x, y, index)
+// alone, never of the thread that drew it. Generator: PCG-XSH-RR 64/32, O'Neill 2014, sections 6.3
+// and 7.1.
 #pragma once
 #include <cstdint>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vectors, matrices and quaternions for everybody: GLM's, under short names.
-// Column vectors, right-handed, +Y up, cameras look down -Z. Metres and radians unless a name says otherwise.
+// Column vectors, right-handed, +Y up, cameras look down -Z. Metres and radians unless a name says
+// otherwise.
 #pragma once
 #ifndef GLM_FORCE_XYZW_ONLY
 #define GLM_FORCE_XYZW_ONLY  // only .x .y .z .w: smaller types, clearer debugger views

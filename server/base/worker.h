@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One thread of its own that does one thing at a time, for work that goes on while its owner does others:
-// scheduled by the system, so that it neither waits for cores that are busy with parallel loops nor is
-// waited for by them. All calls come from the owner's thread.
+// One thread of its own that does one thing at a time, for work that goes on while its owner does
+// others: scheduled by the system, so that it neither waits for cores that are busy with parallel
+// loops nor is waited for by them. All calls come from the owner's thread.
 #pragma once
 #include <condition_variable>
 #include <functional>

@@ -17,15 +17,16 @@ constexpr float darkest_lit = 0.01f;  // reflectance that can tell of light, or 
 constexpr float same_facing = 0.9f;   // cosine
 // Little enough that places nobody has told of yet are asked, too.
 constexpr int change_ageing = 32;  // of points near places where the light seems to have changed
-// Light has changed in a tile where the witnesses of 3x3 tiles agree that it did: by how many standard
-// deviations their sum is off, each taken by its own size or by the noise known of it, whichever is
-// more (a self-normalised sum: rare bright samples neither make a change nor hide one for long; Pena,
-// Lai, Shao 2009), and by how much on average.
+// Light has changed in a tile where the witnesses of 3x3 tiles agree that it did: by how many
+// standard deviations their sum is off, each taken by its own size or by the noise known of it,
+// whichever is more (a self-normalised sum: rare bright samples neither make a change nor hide one
+// for long; Pena, Lai, Shao 2009), and by how much on average.
 struct Proof {
   float deviations, least_change;
 };
 constexpr Proof beyond_doubt{5, 0.15f};
-// Where one thing has changed, another may well have: for so many pictures less will do, of more witnesses.
+// Where one thing has changed, another may well have: for so many pictures less will do, of more
+// witnesses.
 constexpr Proof likely{3, 0.05f};
 constexpr int alarm_pictures = 45;
 
@@ -53,13 +54,15 @@ int tile_of(const PointCache& points, const View& view, const PointImage& image,
   vec3 place(points.x[i], points.y[i], points.z[i]);
   if (points.flags[i] & point_infinite) place += view.position;
   Projected at = project_point(view, place);
-  if (!(at.depth > 0 && at.x >= 0 && at.y >= 0 && at.x < float(image.width) && at.y < float(image.height)))
+  if (!(at.depth > 0 && at.x >= 0 && at.y >= 0 && at.x < float(image.width) &&
+        at.y < float(image.height)))
     return -1;
   return int(at.y) / change_tile * image.changed_width + int(at.x) / change_tile;
 }
 
 // Points that share a pixel with a nearer one, and may be the nearer one in the next picture.
-void age_hidden(PointCache& points, const View& view, const PointImage& image, const std::vector<uint8_t>& verdict) {
+void age_hidden(PointCache& points, const View& view, const PointImage& image,
+                const std::vector<uint8_t>& verdict) {
   parallel_ranges(points.capacity(), 1 << 14, [&](int begin, int end) {
     for (uint32_t i = uint32_t(begin); i < uint32_t(end); i++) {
       if (points.flags[i] & (point_visible | point_relit)) continue;
@@ -103,8 +106,8 @@ bool has_changed(const PointImage& image, int tx, int ty, const Proof& proof) {
   return proves(sum, proof);
 }
 
-// Is a change beyond doubt in any square of 2, 4, 8 ... tiles a side? Where samples are noisy or the change is small,
-// it takes many tiles to tell.
+// Is a change beyond doubt in any square of 2, 4, 8 ... tiles a side? Where samples are noisy or
+// the change is small, it takes many tiles to tell.
 bool has_changed_widely(const PointImage& image) {
   std::vector<TileChange> tiles = image.changed, wider;
   for (int width = image.changed_width, height = image.changed_height; width > 1 || height > 1;) {
@@ -112,8 +115,11 @@ bool has_changed_widely(const PointImage& image) {
     wider.assign(size_t(half_width) * size_t(half_height), TileChange{});
     for (int y = 0; y < height; y++)
       for (int x = 0; x < width; x++)
-        add(wider[size_t(y / 2) * size_t(half_width) + size_t(x / 2)], tiles[size_t(y) * size_t(width) + size_t(x)]);
-    if (std::any_of(wider.begin(), wider.end(), [](const TileChange& sum) { return proves(sum, beyond_doubt); })) return true;
+        add(wider[size_t(y / 2) * size_t(half_width) + size_t(x / 2)],
+            tiles[size_t(y) * size_t(width) + size_t(x)]);
+    if (std::any_of(wider.begin(), wider.end(),
+                    [](const TileChange& sum) { return proves(sum, beyond_doubt); }))
+      return true;
     std::swap(tiles, wider);
     width = half_width, height = half_height;
   }
@@ -125,8 +131,8 @@ struct PixelPoint {
   int x = 0, y = 0;
 };
 
-// The light of the nearest of `newer` on the same surface. What depends on the view is taken to be as
-// bright for its reflectance as there.
+// The light of the nearest of `newer` on the same surface. What depends on the view is taken to be
+// as bright for its reflectance as there.
 void borrow_light(PointCache& points, const PixelPoint& to, std::span<const PixelPoint> newer) {
   PointColor& mine = points.color[to.point];
   vec3 albedo = unpack_albedo(mine.albedo), normal = unpack_normal(mine.normal);
@@ -136,14 +142,16 @@ void borrow_light(PointCache& points, const PixelPoint& to, std::span<const Pixe
   for (const PixelPoint& one : newer) {
     int dx = one.x - to.x, dy = one.y - to.y, away = dx * dx + dy * dy;
     const PointColor& color = points.color[one.point];
-    bool alike = color.object == mine.object && dot(unpack_normal(color.normal), normal) > same_facing &&
+    bool alike = color.object == mine.object &&
+                 dot(unpack_normal(color.normal), normal) > same_facing &&
                  max_component(unpack_albedo(color.albedo)) >= darkest_lit;
     if (!alike || away >= nearest) continue;
     nearest = away;
     from = &color;
   }
   if (!from) return;
-  float brighter = luminance(albedo) / std::max(luminance(unpack_albedo(from->albedo)), darkest_lit);
+  float brighter =
+      luminance(albedo) / std::max(luminance(unpack_albedo(from->albedo)), darkest_lit);
   mine.smooth = from->smooth;
   mine.rest = pack_rgb9e5(unpack_rgb9e5(from->rest) * brighter);
   points.count[to.point] = 1;
@@ -194,13 +202,16 @@ bool age_changed(PointCache& points, const View& view, PointImage& image, StillI
         age_tile(points, image, still, tx, ty);
       }
   });
-  // Their change is not to be told twice, and what is not seen now may have changed back when it is.
+  // Their change is not to be told twice, and what is not seen now may have changed back when it
+  // is.
   size_t kept = 0;
   for (size_t i = 0; i < tiles.size(); i++)
     if (tiles[i] >= 0 && !verdict[size_t(tiles[i])]) image.witnesses[kept++] = image.witnesses[i];
   image.witnesses.resize(kept);
-  if (image.witnesses.capacity() > 2 * kept + 4096) image.witnesses.shrink_to_fit();  // many at once
-  bool changed = std::any_of(verdict.begin(), verdict.end(), [](uint8_t aged) { return aged != 0; });
+  if (image.witnesses.capacity() > 2 * kept + 4096)
+    image.witnesses.shrink_to_fit();  // many at once
+  bool changed =
+      std::any_of(verdict.begin(), verdict.end(), [](uint8_t aged) { return aged != 0; });
   if (changed) age_hidden(points, view, image, verdict);
   if (image.alarm == 0 && (changed || has_changed_widely(image))) image.alarm = alarm_pictures;
   return changed;
@@ -221,7 +232,8 @@ bool lend_light(PointCache& points, const PointImage& image) {
             else if (!(points.flags[point] & point_specular)) newer[newers++] = {point, u, v};
           }
         if (relits > 0) waits = true;
-        for (int i = 0; i < relits; i++) borrow_light(points, relit[i], std::span(newer, size_t(newers)));
+        for (int i = 0; i < relits; i++)
+          borrow_light(points, relit[i], std::span(newer, size_t(newers)));
       }
   });
   return waits;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Memory for arrays that are read at random every frame: on pages of 2 MiB where the system has
 // them to give (Linux, "madvise" or "always"), because with small pages the look-up of the page
-// costs as much as that of the data. Elsewhere, for small arrays and for what does not fill the last
-// page, ordinary memory.
+// costs as much as that of the data. Elsewhere, for small arrays and for what does not fill the
+// last page, ordinary memory.
 #pragma once
 #include <cstddef>
 #include <new>
@@ -27,7 +27,8 @@ struct BigPages {
     if (bytes < least) return static_cast<T*>(::operator new(bytes, std::align_val_t(64)));
     void* memory = ::operator new(bytes, std::align_val_t(page));
 #if defined(__linux__)
-    madvise(memory, bytes / page * page, MADV_HUGEPAGE);  // a wish: that it may fail does not matter
+    madvise(memory, bytes / page * page,
+            MADV_HUGEPAGE);  // a wish: that it may fail does not matter
 #endif
     return static_cast<T*>(memory);
   }

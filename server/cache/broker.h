@@ -38,8 +38,8 @@ struct Answer {
   std::vector<Sample> samples;  // one a request
 };
 
-// Bounds are of requests, so that memory is bounded: what waits, is being traced, or is answered and
-// not collected. Beyond `most_traced` the oldest pieces count as lost: their worker is gone.
+// Bounds are of requests, so that memory is bounded: what waits, is being traced, or is answered
+// and not collected. Beyond `most_traced` the oldest pieces count as lost: their worker is gone.
 struct BrokerSettings {
   int piece = 64;
   int most_waiting = 16384, most_traced = 16384, most_answered = 16384;
@@ -91,7 +91,8 @@ class Broker {
 };
 
 // Enters answers into the cache, to be called between move_points() and project(). Samples of what
-// moves are put where their triangles are in `world`, whose pose is `pose`. Returns how many samples.
+// moves are put where their triangles are in `world`, whose pose is `pose`. Returns how many
+// samples.
 int land(std::span<const Answer> answers, const World& world, uint64_t pose, RenderCache& cache);
 
 }  // namespace wellspring

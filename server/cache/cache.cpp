@@ -31,7 +31,8 @@ namespace wellspring {
 namespace {
 
 constexpr int largest_side = 16384;
-constexpr size_t most_around = 2;  // times the pixels of a picture: what lies around is no more to remember
+constexpr size_t most_around =
+    2;  // times the pixels of a picture: what lies around is no more to remember
 constexpr int still_project_period = 8;  // frames
 constexpr uint8_t moving_mean = 48, still_mean = 255;  // samples a point's mean looks back on
 constexpr uint8_t moving_specular = 4;  // of what moves with the view and lies nowhere
@@ -71,7 +72,8 @@ struct RenderCache::Impl {
   PointImage image;
   StillImage still;
   StillSamples still_samples;
-  bool corrects = false;  // the last picture was drawn at rest, and its samples are kept by themselves
+  bool corrects =
+      false;    // the last picture was drawn at rest, and its samples are kept by themselves
   Cells cells;  // in the work's scratch
   std::shared_ptr<CacheWork> work;
   bool shares = false;
@@ -87,7 +89,7 @@ struct RenderCache::Impl {
   uint32_t frames = 0;
   bool known = false;  // anything, in the last survey
   CacheStats stats;
-  uint64_t paints = 0;              // World::paints() and those of each instance, when last looked at
+  uint64_t paints = 0;  // World::paints() and those of each instance, when last looked at
   std::vector<uint32_t> paints_of;
   std::vector<char> repainted;
 
@@ -157,7 +159,8 @@ void RenderCache::resize(int width, int height) {
   c.still_samples = {};
   c.corrects = false;
   if (!c.shares) c.work->scratch.release();
-  c.work->scratch.start(std::max(project_scratch_bytes(c.points.capacity(), width, height), cells_bytes(width, height)));
+  c.work->scratch.start(std::max(project_scratch_bytes(c.points.capacity(), width, height),
+                                 cells_bytes(width, height)));
   c.projected = false;
   c.forget_still();
 }
@@ -205,7 +208,8 @@ void RenderCache::move_object(uint32_t object, const mat4& moved) {
 
 void RenderCache::project(const View& view) {
   Impl& c = *impl_;
-  int width = std::clamp(view.width, 1, largest_side), height = std::clamp(view.height, 1, largest_side);
+  int width = std::clamp(view.width, 1, largest_side),
+      height = std::clamp(view.height, 1, largest_side);
   if (size_t(width) * size_t(height) > most_around * size_t(c.width) * size_t(c.height))
     resize(std::max(width, c.width), std::max(height, c.height));
   c.fit_image(width, height);
@@ -285,7 +289,8 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
         requests[i].pixel < c.still.count.size()) {
       c.still.count[requests[i].pixel] |= still_fresh;
       if (c.corrects)
-        add_sample(c.still_samples, requests[i].pixel, samples[i].radiance(), uint32_t(mix64(requests[i].seed)));
+        add_sample(c.still_samples, requests[i].pixel, samples[i].radiance(),
+                   uint32_t(mix64(requests[i].seed)));
     }
 }
 
@@ -373,11 +378,13 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   c.draw(view, [&] {
     compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
     std::span<const std::vector<EdgeShare>> edges;
-    if (sight.anything_moves()) edges = compose_moving(view, sight, c.cells, c.known, c.work->light, frame);
+    if (sight.anything_moves())
+      edges = compose_moving(view, sight, c.cells, c.known, c.work->light, frame);
     bool changes = c.image.alarm > 0;  // what samples of the light before say is wrong
     if (c.corrects && changes) forget_samples(c.still_samples);
     else if (c.corrects) forget_samples(c.still, c.still_samples);
-    accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, changes, c.frames, c.still, frame);
+    accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, changes, c.frames,
+                     c.still, frame);
     if (c.corrects && !changes) correct_still(c.still_samples, c.still, c.work->correction, frame);
     soften_edges(edges, frame.color);
   });
@@ -385,14 +392,16 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
 
 void RenderCache::Impl::relight(const Forgotten& forgotten) {
   vec3 kept, added;
-  relight_still(points, image, [&](uint32_t point) { return forgotten(point, kept, added); }, still);
+  relight_still(
+      points, image, [&](uint32_t point) { return forgotten(point, kept, added); }, still);
   forget_light(points, forgotten);
   relit = true;
 }
 
 void RenderCache::relight(vec3 place, float reach) {
   Impl& c = *impl_;
-  c.relight([&](uint32_t point, vec3&, vec3&) { return is_lit_from(c.points, point, place, reach); });
+  c.relight(
+      [&](uint32_t point, vec3&, vec3&) { return is_lit_from(c.points, point, place, reach); });
 }
 
 void RenderCache::relight(const Changes& changes) {
@@ -444,8 +453,9 @@ const CacheStats& RenderCache::stats() const { return impl_->stats; }
 
 size_t RenderCache::memory_bytes() const {
   const Impl& c = *impl_;
-  size_t sum = points_bytes(c.points) + bytes_of(c.still.count) + bytes_of(c.paints_of, c.repainted) +
-               bytes_of(c.image.point, c.image.depth, c.image.priority, c.image.changed, c.image.witnesses);
+  size_t sum =
+      points_bytes(c.points) + bytes_of(c.still.count) + bytes_of(c.paints_of, c.repainted) +
+      bytes_of(c.image.point, c.image.depth, c.image.priority, c.image.changed, c.image.witnesses);
   for (const auto& plane : c.still.mean) sum += bytes_of(plane);
   sum += samples_bytes(c.still_samples);
   return sum + (c.shares ? 0 : wellspring::memory_bytes(*c.work));

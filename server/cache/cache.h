@@ -36,20 +36,22 @@ struct PointImage;  // cache/point_image.h: what projects where, priorities
 struct CacheStats {
   int points = 0;                                           // in use
   float fresh = 0, reprojected = 0, filled = 0, empty = 0;  // shares of the picture's pixels
-  float drawing_ms = 0;  // of the last picture that was drawn: PictureSight, and light put on what it sees
+  float drawing_ms =
+      0;  // of the last picture that was drawn: PictureSight, and light put on what it sees
   float mean_age = 0;   // of the visible points, 0 (new) to 254; see age_points()
   float converged = 0;  // share of pixels whose point has reached its sample goal
 };
 
-// What is needed from project() until the picture is there and means nothing afterwards. Caches whose
-// frames are never under way at the same time may share it.
+// What is needed from project() until the picture is there and means nothing afterwards. Caches
+// whose frames are never under way at the same time may share it.
 struct CacheWork;
 std::shared_ptr<CacheWork> make_cache_work();
 size_t memory_bytes(const CacheWork& work);
 
 class RenderCache {
  public:
-  explicit RenderCache(const CacheSettings& settings = {}, std::shared_ptr<CacheWork> shared = nullptr);
+  explicit RenderCache(const CacheSettings& settings = {},
+                       std::shared_ptr<CacheWork> shared = nullptr);
   ~RenderCache();
   RenderCache(RenderCache&&) noexcept;
   RenderCache& operator=(RenderCache&&) noexcept;
@@ -57,14 +59,15 @@ class RenderCache {
   // Makes room for pictures of this size and smaller ones; keeps the points that still fit. Nothing
   // happens when there is such room already.
   void resize(int width, int height);
-  // Points on moving meshes follow their triangles, and are forgotten where these were repainted; ages
-  // advance. Call once a frame after World::commit().
+  // Points on moving meshes follow their triangles, and are forgotten where these were repainted;
+  // ages advance. Call once a frame after World::commit().
   void move_points(const World& world);
-  // The object was carried off as a whole, by `moved` (rigid) from where it was: its points go along.
+  // The object was carried off as a whole, by `moved` (rigid) from where it was: its points go
+  // along.
   void move_object(uint32_t object, const mat4& moved);
   // Where every point falls in `view`; depth cull. Views of less than the room there is, such as
-  // light_view()'s, cost no memory and no point. Those of up to twice as many pixels have a larger image, and larger
-  // ones room for more points.
+  // light_view()'s, cost no memory and no point. Those of up to twice as many pixels have a larger
+  // image, and larger ones room for more points.
   void project(const View& view);
   // About the share of pixels that a point shows in, from every eighth row.
   float covered() const;
@@ -79,33 +82,36 @@ class RenderCache {
   // Puts answers into the cache and into the current projection.
   void remember(const View& view, std::span<const Request> requests,
                 std::span<const Sample> samples);
-  // The picture of points alone: overwrites `frame` (color, confidence; depth and object for those who
-  // ask later).
+  // The picture of points alone: overwrites `frame` (color, confidence; depth and object for those
+  // who ask later).
   void reconstruct(const View& view, Frame& frame);
   // The same in two steps, for sharper edges: survey() asks what rays (at most `most`) see, and
   // answers to all of them are shown. The frame must not be touched in between.
   void survey(const View& view, int most, Frame& frame, std::vector<Ray>& looks);
   void reconstruct(const View& view, std::span<const Seen> seen, Frame& frame);
-  // A picture of `view` drawn in the light of `view` or of light_view(view) (cache/compose_drawn.h),
-  // whichever all of the frame before has been done for (neither: the latter); needs sight.can_see(view). The second for the eye at once,
-  // and of a `depth` that is not null metres along the viewing axis, infinity: nothing there.
-  // `calm`: of pixels so large that a point's own light would show as a square.
+  // A picture of `view` drawn in the light of `view` or of light_view(view)
+  // (cache/compose_drawn.h), whichever all of the frame before has been done for (neither: the
+  // latter); needs sight.can_see(view). The second for the eye at once, and of a `depth` that is
+  // not null metres along the viewing axis, infinity: nothing there. `calm`: of pixels so large
+  // that a point's own light would show as a square.
   void draw(const View& view, const PictureSight& sight, Frame& frame);
   void draw(const View& view, const PictureSight& sight, const Tonemap& tonemap, Image8& image,
             std::vector<float>* depth = nullptr, bool calm = false);
-  // The same at rest, in light of the view's own resolution, for which all of the frame before has been
-  // done: what does not move is antialiased in time, seen at another place of the pixels each time.
+  // The same at rest, in light of the view's own resolution, for which all of the frame before has
+  // been done: what does not move is antialiased in time, seen at another place of the pixels each
+  // time.
   void draw_still(const View& view, const PictureSight& sight, Frame& frame);
-  // Answers come from the reference from now on, or no longer (else that they differ from earlier ones might be
-  // taken for a change of the light). Its light is not expected to be that of others.
+  // Answers come from the reference from now on, or no longer (else that they differ from earlier
+  // ones might be taken for a change of the light). Its light is not expected to be that of others.
   void set_reference(bool on);
   void set_attention(bool on);  // CacheSettings::attention
   // A lamp at `place` was switched, dimmed or moved, and is much of the light within `reach` metres
   // (infinite: everywhere): what was remembered of the light there counts no more, and is asked for
   // first. Not for lamps that are little of it: there a change that resampling finds costs less.
   void relight(vec3 place, float reach);
-  // The same of lights that are much of it where `changes` says so of a surface, on many threads. Until newer
-  // light is known there, `kept` of what is remembered, 1 unless changed, and the light `added` are shown.
+  // The same of lights that are much of it where `changes` says so of a surface, on many threads.
+  // Until newer light is known there, `kept` of what is remembered, 1 unless changed, and the light
+  // `added` are shown.
   using Changes = std::function<bool(vec3 place, vec3 normal, vec3& kept, vec3& added)>;
   void relight(const Changes& changes);
   // Forgets everything (another exhibit).

@@ -9,7 +9,8 @@
 namespace wellspring {
 namespace {
 
-// Samples that a point counts for whose light was forgotten: something where nothing newer is known.
+// Samples that a point counts for whose light was forgotten: something where nothing newer is
+// known.
 constexpr float forgotten_samples = 1 / 256.0f;
 constexpr float least_samples = forgotten_samples / 2;
 
@@ -191,7 +192,8 @@ void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells
     read_pixels(rows, cx, cy, pixels);
     Gathered g = gather_cells(pixels);
     i8 any_point = g.points > 0.0f;
-    f8 share = 1.0f / larger(g.points, splat(1)), per_sample = 1.0f / larger(g.samples, splat(least_samples));
+    f8 share = 1.0f / larger(g.points, splat(1)),
+       per_sample = 1.0f / larger(g.samples, splat(least_samples));
     Vec normal = g.normal * (1.0f / larger(lanes_sqrt(dot(g.normal, g.normal)), splat(1e-6f)));
     auto along = [&](vec3 axis) {
       return normal.x * axis.x + normal.y * axis.y + normal.z * axis.z;

@@ -26,11 +26,12 @@ struct Cells {
   std::array<std::span<float>, 3> plane;
   std::span<float> depth;    // of the plane at the cell's centre
   std::span<float> samples;  // behind `smooth`; 0: no point fell here
-  std::span<float> points;   // pixels averaged, but for those whose light was forgotten; then the other side of rest_known
+  std::span<float> points;   // pixels averaged, but for those whose light was forgotten; then the
+                             // other side of rest_known
   // Luminance moments of smooth over samples; then variance of its mean, and the other side of it.
   std::span<float> sum, sum2;
-  // Of neighbouring pixels that both have a point: how many pairs, and the sum of what the difference of
-  // their smooth light says of the variance of one sample.
+  // Of neighbouring pixels that both have a point: how many pairs, and the sum of what the
+  // difference of their smooth light says of the variance of one sample.
   std::span<float> pairs, pair_sum;
   std::span<float> patience;  // samples a pixel needs before its own light counts for half
   // `rest` is sharp where it repeats itself and noise where it does not (glossy reflections).
@@ -51,12 +52,12 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch);
 // Overwrites row cy of the cells: the means over the pixels that see each cell's object. `rows`
 // hold the rows of the picture that it covers.
 void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells);
-// Cells that know nothing take what their surroundings know, the nearer the better; their samples stay
-// 0. False: nothing known anywhere.
+// Cells that know nothing take what their surroundings know, the nearer the better; their samples
+// stay 0. False: nothing known anywhere.
 bool fill_cells(const View& view, Cells& cells);
 // Filters smooth light and the noisy part of the rest as widely as their noise asks for, never
-// across objects, creases or steps; cells weigh what their samples are, so that filled ones take and
-// do not give (normalised convolution: Knutsson and Westin 1993).
+// across objects, creases or steps; cells weigh what their samples are, so that filled ones take
+// and do not give (normalised convolution: Knutsson and Westin 1993).
 void filter_cells(const View& view, Cells& cells);
 
 }  // namespace wellspring

@@ -22,11 +22,14 @@ constexpr float least_samples = 1 / 512.0f;  // of a cell that remembers none
 constexpr float most_samples = 64;    // that a cell counts for: its neighbours show other places
 constexpr float plenty_of_points = 48;  // in nine cells, to tell how light deviates there
 constexpr float enough_pairs = 12;      // of neighbours, likewise
-constexpr float least_detail = 1 / 48.0f;  // of smooth light among nine cells: a variance over the mean squared
+constexpr float least_detail =
+    1 / 48.0f;  // of smooth light among nine cells: a variance over the mean squared
 constexpr float most_patience = 192;       // samples
 
 f8 load_at(std::span<const float> plane, size_t i) { return load<f8>(plane.data() + i); }
-f8 clamped(const f8& v, float low, float high) { return smaller(larger(v, splat(low)), splat(high)); }
+f8 clamped(const f8& v, float low, float high) {
+  return smaller(larger(v, splat(low)), splat(high));
+}
 
 // Sums over cells of one object.
 struct Pool {
@@ -51,12 +54,14 @@ PoolPlanes own_planes(const Cells& c) {
 }
 
 // Over the cells `step` apart around eight, and these.
-Pool pool_around(const Cells& cells, const PoolPlanes& planes, size_t i, const u8& object, int step) {
+Pool pool_around(const Cells& cells, const PoolPlanes& planes, size_t i, const u8& object,
+                 int step) {
   Pool pool;
   for (int dy = -1; dy <= 1; dy++)
     for (int dx = -1; dx <= 1; dx++) {
       size_t j = size_t(ptrdiff_t(i) + step * (dy * cells.stride + dx));
-      add(pool, load<u8>(&cells.object[j]) == object, [&](size_t k) { return load_at(planes[k], j); });
+      add(pool, load<u8>(&cells.object[j]) == object,
+          [&](size_t k) { return load_at(planes[k], j); });
     }
   return pool;
 }
@@ -95,17 +100,20 @@ Prior make_prior(const Pool& wide) {
   Prior prior;
   prior.mean = wide.sum * per_sample;
   f8 spread = positive(wide.sum2 - wide.sum * prior.mean);
-  prior.variance = (spread + prior.mean * prior.mean * guess_points) / (wide.points + guess_points) + 1e-6f;
+  prior.variance =
+      (spread + prior.mean * prior.mean * guess_points) / (wide.points + guess_points) + 1e-6f;
   prior.rest_mean = wide.rest * per_sample;
   prior.told = wide.points >= 4.0f;
   return prior;
 }
 
-// Where few points tell, smooth light is assumed to deviate as it does farther around, and what varies
-// in the rest to be noise by `rest_share`. `samples` > 0; `light` and `rest_light` are the cells'
-// sums over their samples; `unsure`: some point of a cell may owe its rest to chance, and these differ.
-Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& brightest, const f8& samples,
-                        const f8& light_sum, const f8& rest_sum, const i8& unsure, float rest_share) {
+// Where few points tell, smooth light is assumed to deviate as it does farther around, and what
+// varies in the rest to be noise by `rest_share`. `samples` > 0; `light` and `rest_light` are the
+// cells' sums over their samples; `unsure`: some point of a cell may owe its rest to chance, and
+// these differ.
+Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& brightest,
+                        const f8& samples, const f8& light_sum, const f8& rest_sum,
+                        const i8& unsure, float rest_share) {
   constexpr float guess_points = 3;
   Estimate e;
   f8 per_sample = 1.0f / samples, per_pooled = 1.0f / pool.samples;
@@ -113,12 +121,14 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
   f8 mean = pool.sum * per_pooled, spread = positive(pool.sum2 - pool.sum * mean);
   f8 expected = (pool.sum + prior.mean * guess_points) / (pool.samples + guess_points);
   f8 variance = (spread + prior.variance * guess_points) / (pool.points + guess_points);
-  // What points spread beyond that is detail: their means of many samples differ where the light does.
+  // What points spread beyond that is detail: their means of many samples differ where the light
+  // does.
   f8 paired = pool.pairs / (pool.pairs + enough_pairs);
   f8 deviates = pool.pair_sum / larger(pool.pairs, splat(1));
   f8 detail = paired * positive(variance - deviates) * pool.points * per_pooled;
   variance += paired * (deviates - variance);
-  e.patience = clamped(variance / (detail + least_detail * expected * expected + 1e-6f), 0.5f, most_patience);
+  e.patience = clamped(variance / (detail + least_detail * expected * expected + 1e-6f), 0.5f,
+                       most_patience);
   f8 known_badly = 1.0f + (unsure_variance - 1) * (1.0f - paired);
   e.mean_variance = variance * per_sample * known_badly;
   // What varies from place to place beyond what varies from sample to sample is detail.
@@ -145,7 +155,8 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
   f8 most = confirmed * other_light, rest_most = confirmed * other_rest;
   most = near ? smaller(most, peak * brightest.light) : most;
   rest_most = near ? smaller(rest_most, peak * brightest.rest) : rest_most;
-  i8 told = near | (all_others >= 6.0f), noisy = unsure | (e.rest_noise > 0.25f * rest_light * rest_light);
+  i8 told = near | (all_others >= 6.0f),
+     noisy = unsure | (e.rest_noise > 0.25f * rest_light * rest_light);
   f8 one = splat(1);
   e.scale = told & (light > most) ? (most + 1e-6f) / (light + 1e-6f) : one;
   e.rest_scale =
@@ -274,8 +285,8 @@ f8 add(LightSums& sums, const LightPlanes& from, size_t j, const f8& common, con
   return share;
 }
 // Where no sample lies within reach, what was there before stays.
-void store_sums(const LightSums& sums, const LightPlanes& from, size_t i, float* r, float* g, float* b,
-                float* variance) {
+void store_sums(const LightSums& sums, const LightPlanes& from, size_t i, float* r, float* g,
+                float* b, float* variance) {
   i8 told = sums.weight > 1e-6f;
   f8 share = 1.0f / (told ? sums.weight : splat(1));
   store(r, told ? sums.r * share : load<f8>(from.r + i));

@@ -248,7 +248,8 @@ void compose(const View& view, const Cells& cells, bool known, Frame& frame) {
       for (int bx = 0; bx <= cells.width; bx++) {
         if (bx % lanes == 0) flat = find_flat(rays, cells, bx, by);
         size_t left = size_t(bx);
-        const CellLight* corners[4] = {&above[left], &above[left + 1], &below[left], &below[left + 1]};
+        const CellLight* corners[4] = {&above[left], &above[left + 1], &below[left],
+                                       &below[left + 1]};
         int x = bx * block - block / 2;
         for (int half = 0; half < 2; half++) {
           int y = top + half * 2;

@@ -11,9 +11,9 @@
 namespace wellspring {
 namespace {
 
-// Pixels are lit in groups that lie between two columns of cell centres: four light pixels, which are
-// packed together, and four cells around. Groups begin half a group before a tile. `Scale`: pixels a side
-// of one of the light; where that is 1 half of the lanes are left unused.
+// Pixels are lit in groups that lie between two columns of cell centres: four light pixels, which
+// are packed together, and four cells around. Groups begin half a group before a tile. `Scale`:
+// pixels a side of one of the light; where that is 1 half of the lanes are left unused.
 template <int Scale>
 constexpr int group = cell_size * Scale;
 static_assert(cell_size == packed_four && group<light_scale> == lanes);
@@ -117,7 +117,8 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
   unpack_octahedron(more & 0xffffu, nx, ny, nz);
   f8 facing = p.nx * nx + p.ny * ny + p.nz * nz;
   i8 near = off * off <= plane_tolerance * plane_tolerance * p.depth * p.depth * p.normal2;
-  near |= d.albedo.r + d.albedo.g + d.albedo.b == 0.0f;  // what mirrors show lies where its image does
+  near |=
+      d.albedo.r + d.albedo.g + d.albedo.b == 0.0f;  // what mirrors show lies where its image does
   i8 alike = (facing > 0.0f) &
              (facing * facing > 0.5f * p.normal2 * (nx * nx + ny * ny + nz * nz));
   i8 same = (p.object == own.plane[plane_object]) & (samples > 0.0f) & near & alike;
@@ -160,7 +161,8 @@ void read_rows(const PixelRays& rays, const Cells& cells, int first, int row, in
 }
 
 // Lit as what is around, whatever surface that is.
-void light_as_neighbours(const PaintedCell* const* corners, const f8* weights, const i8& lit, Surroundings& s) {
+void light_as_neighbours(const PaintedCell* const* corners, const f8* weights, const i8& lit,
+                         Surroundings& s) {
   Surroundings a;
   f8 used{};
   for (int k = 0; k < 4; k++) {
@@ -216,8 +218,8 @@ struct Composer {
   static int groups_of(const SightRun& run) { return (run.count + half_group + group - 1) / group; }
   const CellRows& rows_around(const SightRun& run) const;
   void light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const;
-  Shown light_group_of(const SightRun& run, const RunPixels& p, uint64_t shining, const CellRows& rows,
-                       int g) const;
+  Shown light_group_of(const SightRun& run, const RunPixels& p, uint64_t shining,
+                       const CellRows& rows, int g) const;
 };
 
 template <int Scale>
@@ -242,8 +244,13 @@ void Composer<Scale>::light_narrow(const i8& lonely, int lx, int ly, Drawn& d) c
     if (!(p.depth[k] < 0.5f * infinite_depth)) continue;
     vec3 albedo(d.albedo.r[k], d.albedo.g[k], d.albedo.b[k]);
     if (albedo == vec3(0) && p.samples[k] > 0) continue;  // mirrors are sharp
-    SeenPlace place{lx + k / Scale, ly, vec2(p.x[k], p.y[k]), p.depth[k], vec3(p.nx[k], p.ny[k], p.nz[k]),
-                    albedo, p.object[k]};
+    SeenPlace place{lx + k / Scale,
+                    ly,
+                    vec2(p.x[k], p.y[k]),
+                    p.depth[k],
+                    vec3(p.nx[k], p.ny[k], p.nz[k]),
+                    albedo,
+                    p.object[k]};
     NearbyLight found = find_light_nearby(view, light_rays, light, place);
     if (found.samples == 0) continue;
     p.samples[k] = found.samples;
@@ -324,8 +331,9 @@ constexpr float still_blur = 0.5f;  // the mean over places in the pixel blurs e
 // A picture that stands for itself. Returns its edges.
 template <class Planes>
 std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const View& lit,
-                                                       const PictureSight& sight, const Cells& cells,
-                                                       bool known, const Frame& light, bool calm,
+                                                       const PictureSight& sight,
+                                                       const Cells& cells, bool known,
+                                                       const Frame& light, bool calm,
                                                        const Planes& planes) {
   auto draw = [&](auto composer) {
     if (calm) composer.own_counts = calm_counts;

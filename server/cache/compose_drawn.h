@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A picture drawn anew every frame (light/see_picture.h) in light that points remember: shapes and
-// reflectances are what has to be sharp, light is smoother than both. Where samples are few it has half of
-// the picture's resolution, as a quarter of the points tells it sooner and costs less.
+// reflectances are what has to be sharp, light is smoother than both. Where samples are few it has
+// half of the picture's resolution, as a quarter of the points tells it sooner and costs less.
 #pragma once
 #include "cache/cells.h"
 #include "frame/tonemap.h"
@@ -15,25 +15,26 @@ inline constexpr int light_scale = 2;  // pixels of the picture a side of one pi
 View light_view(const View& view);
 
 // Overwrites all planes of `frame`. `light`: of the view `lit`, which is light_view(view) or `view`
-// itself, its planes packed as read_surface() leaves them, with `cells` filled from it; `known`: what
-// fill_cells() said.
+// itself, its planes packed as read_surface() leaves them, with `cells` filled from it; `known`:
+// what fill_cells() said.
 void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
                    bool known, const Frame& light, Frame& frame);
 // The same for the eye at once, as frame/tonemap.h would show it: writing colours to memory and
 // reading them again takes longer than the curve. Resizes `image` and `depth` (null: not wanted;
-// metres along the viewing axis, infinity: nothing there). `calm`: light is that of the cells, which are
-// means; each point for itself would show as a square where pixels are as large as those of surroundings.
+// metres along the viewing axis, infinity: nothing there). `calm`: light is that of the cells,
+// which are means; each point for itself would show as a square where pixels are as large as those
+// of surroundings.
 void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
                    bool known, const Frame& light, const Tonemap& tonemap, bool calm, Image8& image,
                    std::vector<float>* depth);
 
 // What does not move of a picture at rest, in light of its own resolution, `light` being of `view`
-// itself, seen at one place of every pixel, `offset` (0 to 1): the mean over several such pictures is
-// antialiased.
+// itself, seen at one place of every pixel, `offset` (0 to 1): the mean over several such pictures
+// is antialiased.
 void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,
                    bool known, const Frame& light, Frame& frame);
-// What moves, laid over that, always at the middle of the pixels, so that nothing trembles. Returns its
-// edges, good until the sight's next picture: see soften_edges().
+// What moves, laid over that, always at the middle of the pixels, so that nothing trembles. Returns
+// its edges, good until the sight's next picture: see soften_edges().
 std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
                                                        const Cells& cells, bool known,
                                                        const Frame& light, Frame& frame);

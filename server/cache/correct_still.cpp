@@ -12,20 +12,23 @@
 namespace wellspring {
 namespace {
 
-constexpr int block = 4;       // pixels a side over which a sample's variance is pooled, and 3x3 of those
-constexpr float guessed = 8;   // samples that the picture's own relation of variance to light is worth
-constexpr float placed = 0.1f; // of the square of what neighbours differ by: of where in it a pixel is seen
+constexpr int block =
+    4;  // pixels a side over which a sample's variance is pooled, and 3x3 of those
+constexpr float guessed =
+    8;  // samples that the picture's own relation of variance to light is worth
+constexpr float placed =
+    0.1f;  // of the square of what neighbours differ by: of where in it a pixel is seen
 constexpr float unsure = 3;      // samples
 constexpr float least_variance = 1e-8f;
 constexpr float third = 1 / 3.0f;
-// Noise of what a square differs by from the next scale: 1 - 2 * 9/64 + (9/16)^2/4 + ..., with bilinear
-// weights between the larger squares.
+// Noise of what a square differs by from the next scale: 1 - 2 * 9/64 + (9/16)^2/4 + ..., with
+// bilinear weights between the larger squares.
 constexpr float detail_noise = 0.8164f;
 // Of pixels single means tell, of squares many: how many times the noise counts. One sample more is
 // assumed to be as unlike as all were, since of few a bright one may be missing.
 constexpr float pixel_doubt = 0.8, square_doubt = 0.35;
-// Second and later samples of a pixel, of the whole picture's mean, from which on and at which in full they
-// correct it: what first samples deviate by nobody knows.
+// Second and later samples of a pixel, of the whole picture's mean, from which on and at which in
+// full they correct it: what first samples deviate by nobody knows.
 constexpr float first_repeats = 0.5f, enough_repeats = 1.5f;
 constexpr int band = 16;  // rows done by one thread
 
@@ -40,8 +43,8 @@ struct Row {
 
 float square_mean(vec3 v) { return dot(v, v) * third; }
 
-// How one sample's variance relates to the square of the light in all of the picture, and how many second and
-// later samples a pixel has.
+// How one sample's variance relates to the square of the light in all of the picture, and how many
+// second and later samples a pixel has.
 struct Known {
   float relative = 1, repeats = 0;
 };
@@ -50,8 +53,10 @@ Known pool_spread(const StillSamples& samples, const Frame& frame, StillCorrecti
   int width = frame.width, height = frame.height;
   work.columns = (width + block - 1) / block, work.rows = (height + block - 1) / block;
   size_t blocks = size_t(work.columns) * size_t(work.rows);
-  for (auto* plane : {&work.block_spread, &work.block_samples, &work.spread, &work.samples}) plane->resize(blocks);
-  std::vector<double> spread(size_t(work.rows), 0), light(size_t(work.rows), 0), repeats(size_t(work.rows), 0);
+  for (auto* plane : {&work.block_spread, &work.block_samples, &work.spread, &work.samples})
+    plane->resize(blocks);
+  std::vector<double> spread(size_t(work.rows), 0), light(size_t(work.rows), 0),
+      repeats(size_t(work.rows), 0);
   parallel_ranges(work.rows, 4, [&](int begin, int end) {
     for (int by = begin; by < end; by++)
       for (int bx = 0; bx < work.columns; bx++) {
@@ -94,8 +99,8 @@ Known pool_spread(const StillSamples& samples, const Frame& frame, StillCorrecti
 // Reads rows of the picture, of which the last three are kept, for those above and below.
 class Residuals {
  public:
-  Residuals(const StillSamples& samples, const StillImage& still, const StillCorrection& work, float relative,
-            const Frame& frame)
+  Residuals(const StillSamples& samples, const StillImage& still, const StillCorrection& work,
+            float relative, const Frame& frame)
       : samples_(samples), still_(still), work_(work), relative_(relative), frame_(frame) {}
 
   void read(int y, Row& row) {
@@ -104,14 +109,16 @@ class Residuals {
     for (int v = y - 1; v <= y + 1; v++) measure(std::clamp(v, 0, frame_.height - 1));
     find_range(light(y - 1), light(y), light(y + 1));
     unpack(y);
-    const float *own = light(y), *range = range_.data(), *spread = spread_.data(), *samples = samples_near_.data(),
-                *count = count_.data(), *deviation = deviation_.data();
+    const float *own = light(y), *range = range_.data(), *spread = spread_.data(),
+                *samples = samples_near_.data(), *count = count_.data(),
+                *deviation = deviation_.data();
     float *weight = row.weight.data(), *noise = row.noise.data(), relative = relative_;
     for (int x = 0; x < width; x++) {
       float variance = (spread[x] + guessed * relative * own[x] * own[x]) / (samples[x] + guessed) +
                        placed * range[x] * range[x] + least_variance;
       float n = count[x], some = std::max(n, 1.0f);
-      // Around the picture, not around the mean: of few samples none is sure of what it says (self-normalised).
+      // Around the picture, not around the mean: of few samples none is sure of what it says
+      // (self-normalised).
       float told = deviation[x] * deviation[x] * (some - 1) / some + square_[size_t(x)];
       weight[x] = n / variance;
       noise[x] = weight[x] * std::max(told / variance, 1.0f) * (1 + unsure / some);
@@ -142,7 +149,8 @@ class Residuals {
       low[x] = std::min(std::min(above[x], below[x]), row[x]);
       high[x] = std::max(std::max(above[x], below[x]), row[x]);
     }
-    low[-1] = low[0], high[-1] = high[0], low[width] = low[width - 1], high[width] = high[width - 1];
+    low[-1] = low[0], high[-1] = high[0], low[width] = low[width - 1],
+    high[width] = high[width - 1];
     for (int x = 0; x < width; x++)
       range[x] = std::max(std::max(high[x - 1], high[x + 1]), high[x]) -
                  std::min(std::min(low[x - 1], low[x + 1]), low[x]);
@@ -150,8 +158,8 @@ class Residuals {
   // What is stored of a row, in arrays of their own.
   void unpack(int y) {
     int width = frame_.width, wide = (width + lanes - 1) / lanes * lanes;
-    for (auto* line : {&spread_, &samples_near_, &count_, &deviation_, &square_, &residual_[0], &residual_[1],
-                       &residual_[2]})
+    for (auto* line : {&spread_, &samples_near_, &count_, &deviation_, &square_, &residual_[0],
+                       &residual_[1], &residual_[2]})
       line->resize(size_t(wide));
     size_t start = size_t(y) * size_t(width), blocks = size_t(y / block) * size_t(work_.columns);
     for (int b = 0; b < wide / block; b++) {
@@ -221,7 +229,8 @@ void for_planes(Level& level, const auto& body) {
 // Row `y` at twice the resolution, bilinear between the squares' centres.
 void enlarge(const std::vector<float>& from, int columns, int rows, int y, int width, float* to) {
   int near = y / 2, far = std::clamp(near + (y % 2 ? 1 : -1), 0, rows - 1);
-  const float *a = from.data() + size_t(near) * size_t(columns), *b = from.data() + size_t(far) * size_t(columns);
+  const float *a = from.data() + size_t(near) * size_t(columns),
+              *b = from.data() + size_t(far) * size_t(columns);
   auto at = [&](int x) { return 0.75f * a[x] + 0.25f * b[x]; };
   float before = at(0), here = before;
   for (int x = 0; x < columns; x++) {
@@ -260,7 +269,8 @@ void find_detail(const float* const* row, const ResidualLevel& next, int y, int 
       float own = keep_if(weight[x] > 0, sum[x] / weight[x]), around = wide[x] * per_weight;
       added[x] *= per_weight;
       part[x] = keep_if(weight[x] > 0, own - around);
-      power[x] += keep_if(weight[x] > 0, part[x] * part[x] * third * weight[x] * (weight[x] / noise[x]));
+      power[x] +=
+          keep_if(weight[x] > 0, part[x] * part[x] * third * weight[x] * (weight[x] / noise[x]));
     }
   }
 }
@@ -270,7 +280,8 @@ void add_detail(const Detail& above, const Detail& row, const Detail& below, int
                 std::vector<float>& column, float* const* to) {
   column.resize(size_t(width) + 2);
   for (int x = 0; x < width; x++)
-    column[size_t(x) + 1] = 0.25f * (above.power[size_t(x)] + below.power[size_t(x)]) + 0.5f * row.power[size_t(x)];
+    column[size_t(x) + 1] =
+        0.25f * (above.power[size_t(x)] + below.power[size_t(x)]) + 0.5f * row.power[size_t(x)];
   column[0] = column[size_t(width) + 1] = 0;
   for (int x = 0; x < width; x++) {
     size_t i = size_t(x);
@@ -280,7 +291,8 @@ void add_detail(const Detail& above, const Detail& row, const Detail& below, int
   }
 }
 
-// read(y, Detail&) over the rows [begin, end) and those beside them; put(y, above, row, below) of each.
+// read(y, Detail&) over the rows [begin, end) and those beside them; put(y, above, row, below) of
+// each.
 template <class Read, class Put>
 void by_threes(int begin, int end, int height, int width, const Read& read, const Put& put) {
   Detail ring[3], none;
@@ -320,7 +332,8 @@ void add_level(const ResidualLevel& next, ResidualLevel& level) {
 void add_largest(ResidualLevel& level) {
   for (size_t i = 0; i < level.weight.size(); i++) {
     float weight = level.weight[i];
-    vec3 mean = weight > 0 ? vec3(level.sum[0][i], level.sum[1][i], level.sum[2][i]) / weight : vec3(0);
+    vec3 mean =
+        weight > 0 ? vec3(level.sum[0][i], level.sum[1][i], level.sum[2][i]) / weight : vec3(0);
     float power = weight > 0 ? square_mean(mean) * weight * (weight / level.noise[i]) : 0;
     float share = std::max(0.0f, 1 - square_doubt / (power + 1e-12f));
     for (size_t c = 0; c < 3; c++) level.added[c][i] = share * level.sum[c][i];
@@ -330,7 +343,8 @@ void add_largest(ResidualLevel& level) {
 }  // namespace
 
 size_t memory_bytes(const StillCorrection& work) {
-  size_t sum = bytes_of(work.block_spread, work.block_samples, work.spread, work.samples, work.color);
+  size_t sum =
+      bytes_of(work.block_spread, work.block_samples, work.spread, work.samples, work.color);
   for (const ResidualLevel& level : work.levels) {
     for (size_t c = 0; c < 3; c++) sum += bytes_of(level.sum[c], level.added[c]);
     sum += bytes_of(level.weight, level.noise);
@@ -338,7 +352,8 @@ size_t memory_bytes(const StillCorrection& work) {
   return sum;
 }
 
-void correct_still(const StillSamples& samples, const StillImage& still, StillCorrection& work, Frame& frame) {
+void correct_still(const StillSamples& samples, const StillImage& still, StillCorrection& work,
+                   Frame& frame) {
   int width = frame.width, height = frame.height;
   size_t pixels = size_t(width) * size_t(height);
   if (pixels == 0 || samples.count.size() < pixels || still.count.size() < pixels) return;
@@ -359,9 +374,11 @@ void correct_still(const StillSamples& samples, const StillImage& still, StillCo
       if (two) residuals.read(2 * y + 1, below);
       const float* lines[2][5];
       for_planes(above, [&](const auto& plane, int k) { lines[0][k] = plane.data(); });
-      for_planes(below, [&](const auto& plane, int k) { lines[1][k] = two ? plane.data() : nullptr; });
+      for_planes(below,
+                 [&](const auto& plane, int k) { lines[1][k] = two ? plane.data() : nullptr; });
       for_planes(finest, [&](auto& plane, int k) {
-        add_squares(lines[0][k], lines[1][k], width, plane.data() + size_t(y) * size_t(finest.width));
+        add_squares(lines[0][k], lines[1][k], width,
+                    plane.data() + size_t(y) * size_t(finest.width));
       });
     }
   });

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture at rest is drawn in filtered light, which has little noise but errs where light, gloss or edges
-// vary more finely than filters see; the means of its samples alone have no such error but all the noise.
-// What the two differ by is taken apart into scales, and of each scale the share is added to the picture by
-// which it exceeds its noise (a Wiener filter for each place and scale: Lee 1980; Burt and Adelson 1983 for
-// the pyramid). So the picture becomes the mean of its samples as they become many, and stays as it is where
-// they say nothing yet; first samples correct nothing, as nobody knows by how much they are off.
+// A picture at rest is drawn in filtered light, which has little noise but errs where light, gloss
+// or edges vary more finely than filters see; the means of its samples alone have no such error but
+// all the noise. What the two differ by is taken apart into scales, and of each scale the share is
+// added to the picture by which it exceeds its noise (a Wiener filter for each place and scale: Lee
+// 1980; Burt and Adelson 1983 for the pyramid). So the picture becomes the mean of its samples as
+// they become many, and stays as it is where they say nothing yet; first samples correct nothing,
+// as nobody knows by how much they are off.
 #pragma once
 #include <array>
 #include <vector>
@@ -19,8 +20,10 @@ namespace wellspring {
 struct ResidualLevel {
   int width = 0, height = 0;
   std::array<std::vector<float>, 3> sum, added;  // sum: of weight times residual
-  std::vector<float> weight;  // the inverse of the variance that each mean has by what its surroundings say
-  std::vector<float> noise;   // sum of weights times how much noisier a pixel's own samples say it is
+  std::vector<float>
+      weight;  // the inverse of the variance that each mean has by what its surroundings say
+  std::vector<float>
+      noise;  // sum of weights times how much noisier a pixel's own samples say it is
 };
 
 // Scratch, overwritten by every call.
@@ -33,8 +36,9 @@ struct StillCorrection {
 };
 size_t memory_bytes(const StillCorrection& work);
 
-// Corrects `frame`, a picture drawn in the mean (accumulate_drawn()), but where `still` has none: what moves.
-// The same bits whatever the number of threads.
-void correct_still(const StillSamples& samples, const StillImage& still, StillCorrection& work, Frame& frame);
+// Corrects `frame`, a picture drawn in the mean (accumulate_drawn()), but where `still` has none:
+// what moves. The same bits whatever the number of threads.
+void correct_still(const StillSamples& samples, const StillImage& still, StillCorrection& work,
+                   Frame& frame);
 
 }  // namespace wellspring

@@ -19,8 +19,10 @@ constexpr int block = Unseen::block;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr int longest_walk = 256;   // pixels along an epipolar line to what is known
 constexpr float known_at = 0.25f;   // share of a cell's pixels that are enough to know it
-constexpr float may_be_nearer = 0.75f;  // pixels that what is around a hole may move against what lies behind
-constexpr float opens_at_least = 0.5f;  // pixels that what hides moves against what is behind, for each of a hole
+constexpr float may_be_nearer =
+    0.75f;  // pixels that what is around a hole may move against what lies behind
+constexpr float opens_at_least =
+    0.5f;  // pixels that what hides moves against what is behind, for each of a hole
 constexpr float guess_counts = 0.05f;  // beside a cell that is known
 
 struct Filling {
@@ -28,9 +30,13 @@ struct Filling {
   vec3 parallax;
   FillScratch& scratch;
 
-  vec2 motion(float x, float y) const { return {parallax.x - x * parallax.z, parallax.y - y * parallax.z}; }
+  vec2 motion(float x, float y) const {
+    return {parallax.x - x * parallax.z, parallax.y - y * parallax.z};
+  }
   // By how much disparities around (x, y) may be nearer than what lies behind.
-  float slack(float x, float y) const { return may_be_nearer / std::max(length(motion(x, y)), 1e-30f); }
+  float slack(float x, float y) const {
+    return may_be_nearer / std::max(length(motion(x, y)), 1e-30f);
+  }
   float pixels(int x, int y) const { return length(motion(float(x), float(y))); }
   float cell_slack(int x, int y, int size) const {
     return slack((float(x) + 0.5f) * float(size), (float(y) + 0.5f) * float(size));
@@ -41,19 +47,22 @@ struct Filling {
   }
   float disparity(int x, int y) const {
     float flat = unseen.flat[size_t(y / block) * size_t(unseen.columns) + size_t(x / block)];
-    return flat == Unseen::many ? unseen.disparity[size_t(y) * size_t(unseen.width) + size_t(x)] : flat;
+    return flat == Unseen::many ? unseen.disparity[size_t(y) * size_t(unseen.width) + size_t(x)]
+                                : flat;
   }
 };
 
-// The most that the disparity of what lies behind the hidden pixel may be: that of the farther of both ends of
-// its epipolar line, and so far behind what hid it that a hole of that width has opened. Without that, lead
-// between panes would be taken for what is behind it. Infinity: neither end is in the picture.
+// The most that the disparity of what lies behind the hidden pixel may be: that of the farther of
+// both ends of its epipolar line, and so far behind what hid it that a hole of that width has
+// opened. Without that, lead between panes would be taken for what is behind it. Infinity: neither
+// end is in the picture.
 float find_behind(const Filling& f, int x, int y, vec2 step, float pixels) {
   float behind = infinity;
   int width = 1, ends = 0;
   for (float side : {1.0f, -1.0f})
     for (int i = 1; i <= longest_walk; i++) {
-      float sx = float(x) + 0.5f + side * float(i) * step.x, sy = float(y) + 0.5f + side * float(i) * step.y;
+      float sx = float(x) + 0.5f + side * float(i) * step.x,
+            sy = float(y) + 0.5f + side * float(i) * step.y;
       if (!(sx >= 0 && sy >= 0 && sx < float(f.unseen.width) && sy < float(f.unseen.height))) break;
       int ix = int(sx), iy = int(sy);
       if (f.bits(f.unseen.outside, ix, iy) >> (ix % block) & 1) break;
@@ -67,8 +76,9 @@ float find_behind(const Filling& f, int x, int y, vec2 step, float pixels) {
   return std::min(behind, std::max(f.disparity(x, y) - opened, 0.0f));
 }
 
-// The mean of what is known of four cells, but for what is nearer than their hidden pixels may show, or, if
-// they have none, much nearer than the farthest: `size` pixels a side, surfaces may slope.
+// The mean of what is known of four cells, but for what is nearer than their hidden pixels may
+// show, or, if they have none, much nearer than the farthest: `size` pixels a side, surfaces may
+// slope.
 Cell merge(const Cell& a, const Cell& b, const Cell& c, const Cell& d, float slack, int size) {
   Cell sum;
   sum.behind = std::min(std::min(a.behind, b.behind), std::min(c.behind, d.behind));
@@ -81,7 +91,8 @@ Cell merge(const Cell& a, const Cell& b, const Cell& c, const Cell& d, float sla
   bool all = !(sum.behind < infinity) && size > block;
   for (const Cell* one : {&a, &b, &c, &d}) {
     if (!(one->weight > 0 && (all || one->disparity <= farthest + slack))) continue;
-    sum.red += one->weight * one->red, sum.green += one->weight * one->green, sum.blue += one->weight * one->blue;
+    sum.red += one->weight * one->red, sum.green += one->weight * one->green,
+        sum.blue += one->weight * one->blue;
     sum.disparity += one->weight * one->disparity;
     sum.weight += one->weight;
   }
@@ -94,8 +105,8 @@ Cell merge(const Cell& a, const Cell& b, const Cell& c, const Cell& d, float sla
 }
 
 // Of a block without hidden ones among it and around: all its pixels count.
-Cell read_plain(const Unseen& u, const Image8& out, int x0, int y0, unsigned (&seen)[block], float disparity,
-                int cell) {
+Cell read_plain(const Unseen& u, const Image8& out, int x0, int y0, unsigned (&seen)[block],
+                float disparity, int cell) {
   int left = cell % 4 * 2, top = cell / 4 * 2, red = 0, green = 0, blue = 0, count = 0;
   for (int y = top; y < top + 2; y++)
     for (int x = left; x < left + 2; x++) {
@@ -111,9 +122,10 @@ Cell read_plain(const Unseen& u, const Image8& out, int x0, int y0, unsigned (&s
           std::min(float(count) * (0.25f / known_at), 1.0f), disparity, infinity, true};
 }
 
-// Two by two of the block's pixels, some of which are hidden or nearer than what lies behind such ones.
-Cell read_pixels(const Filling& f, const Image8& out, int x0, int y0, const unsigned (&seen)[block], vec2 step,
-                 float slack, int cell) {
+// Two by two of the block's pixels, some of which are hidden or nearer than what lies behind such
+// ones.
+Cell read_pixels(const Filling& f, const Image8& out, int x0, int y0, const unsigned (&seen)[block],
+                 vec2 step, float slack, int cell) {
   const Unseen& u = f.unseen;
   int left = cell % 4 * 2, top = cell / 4 * 2;
   Cell pixel[4];
@@ -123,8 +135,10 @@ Cell read_pixels(const Filling& f, const Image8& out, int x0, int y0, const unsi
     pixel[i].behind = infinity;
     if (seen[in_y] >> in_x & 1) {
       const uint8_t* rgb = &out.rgb[3 * (size_t(y) * size_t(u.width) + size_t(x))];
-      pixel[i] = {float(rgb[0]), float(rgb[1]), float(rgb[2]), 1, f.disparity(x, y), infinity, true};
-    } else if (x < u.width && y < u.height && (f.bits(u.hidden, x, y) >> in_x & 1) && !(behind < infinity)) {
+      pixel[i] = {float(rgb[0]),     float(rgb[1]), float(rgb[2]), 1,
+                  f.disparity(x, y), infinity,      true};
+    } else if (x < u.width && y < u.height && (f.bits(u.hidden, x, y) >> in_x & 1) &&
+               !(behind < infinity)) {
       behind = find_behind(f, x, y, step, f.pixels(x, y));
     }
   }
@@ -138,7 +152,9 @@ Cell read_block(const Filling& f, const Image8& out, int bx, int by, BlockCells&
   int x0 = bx * block, y0 = by * block;
   unsigned seen[block], all = 0xffu >> std::max(x0 + block - u.width, 0);
   for (int y = 0; y < block; y++)
-    seen[y] = y0 + y < u.height ? all & ~(f.bits(u.hidden, x0, y0 + y) | f.bits(u.outside, x0, y0 + y)) : 0;
+    seen[y] = y0 + y < u.height
+                  ? all & ~(f.bits(u.hidden, x0, y0 + y) | f.bits(u.outside, x0, y0 + y))
+                  : 0;
   size_t b = size_t(by) * size_t(u.columns) + size_t(bx);
   float slack = f.block_slack(bx, by), flat = u.flat[b];
   // Who knows how far what lies outside is.
@@ -156,8 +172,8 @@ Cell read_block(const Filling& f, const Image8& out, int bx, int by, BlockCells&
   return merge(cells.four[0], cells.four[1], cells.four[2], cells.four[3], slack, 8);
 }
 
-// What the coarser cells around say at cell (x, y), bilinear: as far as they may lie behind it, and those that
-// are known the more. `at(x, y)`: null where there is none.
+// What the coarser cells around say at cell (x, y), bilinear: as far as they may lie behind it, and
+// those that are known the more. `at(x, y)`: null where there is none.
 template <class At>
 Cell ask_coarser(const At& at, int x, int y, float behind, float slack) {
   int px = x >> 1, py = y >> 1, sx = x & 1 ? 1 : -1, sy = y & 1 ? 1 : -1;
@@ -170,7 +186,8 @@ Cell ask_coarser(const At& at, int x, int y, float behind, float slack) {
     sum.weight += weight;
   };
   add(at(px, py), 9, true);
-  add(at(px + sx, py), 3, false), add(at(px, py + sy), 3, false), add(at(px + sx, py + sy), 1, false);
+  add(at(px + sx, py), 3, false), add(at(px, py + sy), 3, false),
+      add(at(px + sx, py + sy), 1, false);
   if (!(sum.weight > 0)) return sum;
   float share = 1 / sum.weight;
   sum.red *= share, sum.green *= share, sum.blue *= share, sum.disparity *= share;
@@ -192,7 +209,8 @@ void complete(const At& coarser, int x, int y, float slack, Cell& cell) {
 bool has_hidden(const Unseen& u, int b) {
   size_t columns = size_t(u.columns), x = size_t(b) % columns, y = size_t(b) / columns * block;
   unsigned bits = 0;
-  for (size_t row = y; row < std::min(y + block, size_t(u.height)); row++) bits |= u.hidden[row * columns + x];
+  for (size_t row = y; row < std::min(y + block, size_t(u.height)); row++)
+    bits |= u.hidden[row * columns + x];
   return bits != 0;
 }
 
@@ -270,7 +288,8 @@ void gather_levels(const Filling& f) {
     FillScratch::Level& level = levels[k];
     const FillScratch::Level& below = levels[k - 1];
     for (int b : below.used) {
-      size_t i = size_t(b / below.columns / 2) * size_t(level.columns) + size_t(b % below.columns / 2);
+      size_t i =
+          size_t(b / below.columns / 2) * size_t(level.columns) + size_t(b % below.columns / 2);
       if (!level.state[i]) level.used.push_back(int(i));
       level.state[i] |= below.state[size_t(b)];
     }
@@ -282,8 +301,9 @@ void gather_levels(const Filling& f) {
     int size = block << k;
     for (int i : level.used) {
       int x = i % level.columns, y = i / level.columns;
-      level.cells[size_t(i)] = merge(cell(2 * x, 2 * y), cell(2 * x + 1, 2 * y), cell(2 * x, 2 * y + 1),
-                                     cell(2 * x + 1, 2 * y + 1), f.cell_slack(x, y, size), size);
+      level.cells[size_t(i)] =
+          merge(cell(2 * x, 2 * y), cell(2 * x + 1, 2 * y), cell(2 * x, 2 * y + 1),
+                cell(2 * x + 1, 2 * y + 1), f.cell_slack(x, y, size), size);
     }
   }
 }
@@ -306,13 +326,14 @@ void write_pixels(const Filling& f, int bx, int by, Image8& out) {
   auto coarser = cell_of<4>(f);
   float slack = f.block_slack(bx, by);
   for (int y = by * block; y < std::min((by + 1) * block, u.height); y++)
-    for (unsigned bits = f.bits(u.hidden, bx * block, y) | f.bits(u.outside, bx * block, y); bits != 0;
-         bits &= bits - 1) {
+    for (unsigned bits = f.bits(u.hidden, bx * block, y) | f.bits(u.outside, bx * block, y);
+         bits != 0; bits &= bits - 1) {
       int x = bx * block + std::countr_zero(bits);
       Cell cell = ask_coarser(coarser, x, y, coarser(x / 2, y / 2)->behind, slack);
       if (!(cell.weight > 0)) continue;
       uint8_t* rgb = &out.rgb[3 * (size_t(y) * size_t(u.width) + size_t(x))];
-      rgb[0] = uint8_t(cell.red + 0.5f), rgb[1] = uint8_t(cell.green + 0.5f), rgb[2] = uint8_t(cell.blue + 0.5f);
+      rgb[0] = uint8_t(cell.red + 0.5f), rgb[1] = uint8_t(cell.green + 0.5f),
+      rgb[2] = uint8_t(cell.blue + 0.5f);
     }
 }
 
@@ -337,7 +358,9 @@ void fill_unseen(const Unseen& unseen, vec3 parallax, FillScratch& scratch, Imag
       for (int i = begin; i < end; i++) body(blocks[size_t(i)]);
     });
   };
-  auto cells = [&](int b) -> BlockCells& { return scratch.blocks[size_t(scratch.slot[size_t(b)])]; };
+  auto cells = [&](int b) -> BlockCells& {
+    return scratch.blocks[size_t(scratch.slot[size_t(b)])];
+  };
   each(scratch.levels[0].used, [&](int b) {
     scratch.levels[0].cells[size_t(b)] = read_block(f, out, b % u.columns, b / u.columns, cells(b));
   });
@@ -364,7 +387,8 @@ size_t memory_bytes(const Unseen& unseen) {
 
 size_t memory_bytes(const FillScratch& scratch) {
   size_t sum = bytes_of(scratch.slot, scratch.unseen, scratch.hides, scratch.blocks);
-  for (const FillScratch::Level& level : scratch.levels) sum += bytes_of(level.cells, level.state, level.used);
+  for (const FillScratch::Level& level : scratch.levels)
+    sum += bytes_of(level.cells, level.state, level.used);
   return sum;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels of a warped picture that nothing drawn shows: what something nearer hid there, and what lies
-// outside. They get a smooth continuation of what is around, the calmer the farther away from it (push and
-// pull: Gortler, Grzeszczuk, Szeliski, Cohen 1996, "The Lumigraph"). What was hidden goes on with what lies
-// behind: of both ends of its epipolar line the farther one says how far that is, and nearer pixels have no
-// part in it, as depth-aware inpainting of warped pictures has it (Fehn 2004), but in all directions at once,
-// so that no row of pixels stands for itself.
+// Pixels of a warped picture that nothing drawn shows: what something nearer hid there, and what
+// lies outside. They get a smooth continuation of what is around, the calmer the farther away from
+// it (push and pull: Gortler, Grzeszczuk, Szeliski, Cohen 1996, "The Lumigraph"). What was hidden
+// goes on with what lies behind: of both ends of its epipolar line the farther one says how far
+// that is, and nearer pixels have no part in it, as depth-aware inpainting of warped pictures has
+// it (Fehn 2004), but in all directions at once, so that no row of pixels stands for itself.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -22,7 +22,8 @@ struct Unseen {
   // Bits of eight pixels side by side each, `columns` a row of the picture. No pixel is both.
   std::vector<uint8_t> hidden, outside;
   std::vector<float> flat;       // of blocks: all their pixels' disparity, or `many`
-  std::vector<float> disparity;  // of pixels of blocks of many; of hidden ones that of what hid them
+  std::vector<float>
+      disparity;  // of pixels of blocks of many; of hidden ones that of what hid them
 };
 // What it says of pixels of that many is for the caller to write. Reuses its memory.
 void resize_unseen(int width, int height, Unseen& unseen);
@@ -52,9 +53,9 @@ struct FillScratch {
   std::vector<BlockCells> blocks;
 };
 
-// `parallax`: (p.x, p.y) - place * p.z is how far a unit of disparity moves what is seen at a place, in
-// pixels. Pixels that are unseen are left as they are where no pixel is known. The same bits whatever the
-// number of threads.
+// `parallax`: (p.x, p.y) - place * p.z is how far a unit of disparity moves what is seen at a
+// place, in pixels. Pixels that are unseen are left as they are where no pixel is known. The same
+// bits whatever the number of threads.
 void fill_unseen(const Unseen& unseen, vec3 parallax, FillScratch& scratch, Image8& out);
 
 size_t memory_bytes(const Unseen& unseen);

@@ -19,7 +19,8 @@ constexpr int asked_across = 16, asked_down = 9;  // directions that stand for a
 constexpr float nearest_depth = 1e-4f;  // metres, as in project_points()
 
 float disparity_of(float depth) {
-  return depth > 0 ? 1 / std::max(depth, nearest_depth) : 0.0f;  // 1 / infinity is 0; NaN is not > 0
+  return depth > 0 ? 1 / std::max(depth, nearest_depth)
+                   : 0.0f;  // 1 / infinity is 0; NaN is not > 0
 }
 
 // Of a row: how far apart disparities are there and in the row below.
@@ -56,7 +57,8 @@ View keyframe_view(View view, float turn) {
   auto margin = [](int pixels, int share) { return (pixels / share + 7) / 8 * 8; };
   // At the sides a turn moves more than in the middle.
   float middle = 0.5f * float(height) / view.tan_half_fov, side = 0.5f * float(view.width) / middle;
-  float moves = turn > 0 ? middle * (1 + side * side) * turn : 0.0f, most = float(view.width / widest_across);
+  float moves = turn > 0 ? middle * (1 + side * side) * turn : 0.0f,
+        most = float(view.width / widest_across);
   int turning = margin(int(std::min(moves, most)), 1);
   view.width += 2 * std::max(margin(view.width, margin_across), turning);
   view.height += 2 * margin(view.height, margin_down);
@@ -86,7 +88,8 @@ View surrounding_view(std::span<const View> views, float share) {
     for (float across : {0.0f, 0.5f, 1.0f})
       for (float down : {0.0f, 0.5f, 1.0f}) {
         vec3 d = direction_at(view, across, down);
-        float z = dot(d, around.forward), x = std::abs(dot(d, around.right)), y = std::abs(dot(d, around.up));
+        float z = dot(d, around.forward), x = std::abs(dot(d, around.right)),
+              y = std::abs(dot(d, around.up));
         wide = std::max(wide, x < widest_tangent * z ? x / z : widest_tangent);
         high = std::max(high, y < widest_tangent * z ? y / z : widest_tangent);
       }
@@ -106,9 +109,11 @@ float missing_share(const View& drawn, const View& wanted) {
   int missing = 0;
   for (int y = 0; y < asked_down; y++)
     for (int x = 0; x < asked_across; x++) {
-      vec3 d = direction_at(wanted, (float(x) + 0.5f) / asked_across, (float(y) + 0.5f) / asked_down);
+      vec3 d =
+          direction_at(wanted, (float(x) + 0.5f) / asked_across, (float(y) + 0.5f) / asked_down);
       float z = dot(d, drawn.forward);
-      missing += !(std::abs(dot(d, drawn.right)) <= wide * z && std::abs(dot(d, drawn.up)) <= high * z);
+      missing +=
+          !(std::abs(dot(d, drawn.right)) <= wide * z && std::abs(dot(d, drawn.up)) <= high * z);
     }
   return float(missing) / float(asked_across * asked_down);
 }
@@ -116,7 +121,8 @@ float missing_share(const View& drawn, const View& wanted) {
 void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth,
                    Keyframe& keyframe) {
   size_t width = size_t(std::max(view.width, 0)), height = size_t(std::max(view.height, 0));
-  if (width * height == 0 || picture.rgb.size() != 3 * width * height || depth.size() != width * height)
+  if (width * height == 0 || picture.rgb.size() != 3 * width * height ||
+      depth.size() != width * height)
     throw std::invalid_argument("make_keyframe: picture and depth are not of the view's size");
   Keyframe& k = keyframe;
   k.view = view;

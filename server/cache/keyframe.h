@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture as it was drawn, with the depth of every pixel: what warp_picture() makes pictures of other
-// views from. In place of the depth its inverse is kept, the disparity: of a plane it is linear in the
-// picture, and what moves against what when the eye moves is proportional to it.
+// A picture as it was drawn, with the depth of every pixel: what warp_picture() makes pictures of
+// other views from. In place of the depth its inverse is kept, the disparity: of a plane it is
+// linear in the picture, and what moves against what when the eye moves is proportional to it.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -29,20 +29,22 @@ struct Keyframe {
 };
 size_t memory_bytes(const Keyframe& keyframe);
 
-// The view with some of what lies around, in pixels of the same size: what is drawn of it for warps. To the
-// sides so much that it may turn by `turn` radians, within a tenth of its width.
+// The view with some of what lies around, in pixels of the same size: what is drawn of it for
+// warps. To the sides so much that it may turn by `turn` radians, within a tenth of its width.
 View keyframe_view(View view, float turn = 0);
 
-// One view of all that several of nearly the same place show, in their middle direction and as wide as it
-// takes, within what a flat picture can hold; about `share` of the first one's pixels, and no larger than that to any
-// side. No views: an empty one.
+// One view of all that several of nearly the same place show, in their middle direction and as wide
+// as it takes, within what a flat picture can hold; about `share` of the first one's pixels, and no
+// larger than that to any side. No views: an empty one.
 View surrounding_view(std::span<const View> views, float share);
-// The share of `wanted`'s directions that `drawn` does not hold, as if both were of the same place: from 0 to 1,
-// in steps of less than a hundredth.
+// The share of `wanted`'s directions that `drawn` does not hold, as if both were of the same place:
+// from 0 to 1, in steps of less than a hundredth.
 float missing_share(const View& drawn, const View& wanted);
 
-// Reuses the memory of `keyframe`. `depth`: along the viewing axis, one a pixel, as Frame::depth; anything
-// that is not a positive number counts as infinitely far. Throws std::invalid_argument when sizes differ.
-void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth, Keyframe& keyframe);
+// Reuses the memory of `keyframe`. `depth`: along the viewing axis, one a pixel, as Frame::depth;
+// anything that is not a positive number counts as infinitely far. Throws std::invalid_argument
+// when sizes differ.
+void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth,
+                   Keyframe& keyframe);
 
 }  // namespace wellspring

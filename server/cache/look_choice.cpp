@@ -124,7 +124,8 @@ void find_edges(const View& view, const Cells& cells, const StillImage& still, c
         for (int i = 0; i < std::min(lanes, width - x); i++) {
           size_t pixel = start + size_t(x + i);
           bool known = (still.count[pixel] & ~still_fresh) >= enough_samples;
-          image.priority[pixel] = known || gain[i] < least_gain ? 0 : uint8_t(std::min(gain[i], 255));
+          image.priority[pixel] =
+              known || gain[i] < least_gain ? 0 : uint8_t(std::min(gain[i], 255));
         }
       }
     }

@@ -114,7 +114,8 @@ void gather_points(const View& view, const PixelRays& rays, const Frame& frame, 
       unpack_rgb9e5(n.plane[plane_rest], light.r, light.g, light.b);
       unpack_albedo(n.plane[plane_albedo], other.r, other.g, other.b);
       add(rest, share, f8(light.r * rest_ratio(l.albedo.r, other.r)),
-          f8(light.g * rest_ratio(l.albedo.g, other.g)), f8(light.b * rest_ratio(l.albedo.b, other.b)));
+          f8(light.g * rest_ratio(l.albedo.g, other.g)),
+          f8(light.b * rest_ratio(l.albedo.b, other.b)));
     }
   f8 share = 1.0f / larger(samples, splat(1e-6f));
   p.smooth = {smooth.r * share, smooth.g * share, smooth.b * share};
@@ -132,7 +133,8 @@ void read_around(const Cells& cells, const Looks& l, Around& around) {
   constexpr float step = 1.0f / cell_size;
   f8 fx, fy;
   for (int g = 0; g < group; g++) {
-    int bx = (l.x[g] + cell_size / 2) / cell_size - 1, by = (l.y[g] + cell_size / 2) / cell_size - 1;
+    int bx = (l.x[g] + cell_size / 2) / cell_size - 1,
+        by = (l.y[g] + cell_size / 2) / cell_size - 1;
     int lane = g * looks_a_pixel;
     for (int i = lane; i < lane + looks_a_pixel; i++) {
       fx[i] = (float(l.x[g]) + l.place_x[i]) * step - 0.5f - float(bx);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where surfaces meet, a pixel shows several, and a point shows one of them. There the renderer is
-// asked what two places of the pixel see (light/see.h): exact shape and reflectance, without light. The
-// light comes from the points and cells around that lie on the same surface. With a look at every
-// pixel this is the display path `primary`: visibility and reflectance exact all over, every frame.
+// asked what two places of the pixel see (light/see.h): exact shape and reflectance, without light.
+// The light comes from the points and cells around that lie on the same surface. With a look at
+// every pixel this is the display path `primary`: visibility and reflectance exact all over, every
+// frame.
 #pragma once
 #include <span>
 #include <vector>

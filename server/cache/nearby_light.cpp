@@ -23,19 +23,21 @@ float alike(const View& view, const PixelRays& rays, const SeenPlace& place, int
             const uint32_t* words) {
   vec3 normal = unpack_octahedron(uint16_t(words[plane_more] & 0xffffu));
   float facing = dot(normal, place.normal), length2 = dot(place.normal, place.normal);
-  if (!(facing > 0) || facing * facing < same_direction * same_direction * dot(normal, normal) * length2)
+  if (!(facing > 0) ||
+      facing * facing < same_direction * same_direction * dot(normal, normal) * length2)
     return 0;
   float depth = std::bit_cast<float>(words[plane_depth]);
   vec2 ray(rays.x(float(x) + 0.5f), rays.y(float(y) + 0.5f));
   vec3 offset = (place.depth * place.ray.x - depth * ray.x) * view.right +
-                (place.depth * place.ray.y - depth * ray.y) * view.up + (place.depth - depth) * view.forward;
+                (place.depth * place.ray.y - depth * ray.y) * view.up +
+                (place.depth - depth) * view.forward;
   float off = dot(offset, place.normal) / (plane_tolerance * place.depth);
   off *= off / length2;
   return off <= 1 ? 1 / (1 + off) : 0;
 }
 
-void add_pixel(const View& view, const PixelRays& rays, const Frame& light, const SeenPlace& place, int x,
-               int y, Sum& sum) {
+void add_pixel(const View& view, const PixelRays& rays, const Frame& light, const SeenPlace& place,
+               int x, int y, Sum& sum) {
   size_t at = size_t(y) * size_t(light.width) + size_t(x);
   if (light.object[at] != place.object) return;
   uint32_t words[surface_planes];
@@ -64,7 +66,8 @@ NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Fra
                               const SeenPlace& place) {
   Sum sum;
   for (int ring = 0; ring <= rings && sum.points < enough_points; ring++)
-    for (int y = std::max(place.y - ring, 0); y <= std::min(place.y + ring, light.height - 1); y++) {
+    for (int y = std::max(place.y - ring, 0); y <= std::min(place.y + ring, light.height - 1);
+         y++) {
       bool whole = y == place.y - ring || y == place.y + ring;
       for (int x = place.x - ring; x <= place.x + ring; x += whole || ring == 0 ? 1 : 2 * ring)
         if (x >= 0 && x < light.width) add_pixel(view, rays, light, place, x, y, sum);

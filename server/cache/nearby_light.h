@@ -22,8 +22,8 @@ struct NearbyLight {
   float deviation = 0;
 };
 
-// Looks at the pixels around the place's own in rings, and no farther than where some know it. `light`:
-// the packed planes of a picture with these `rays`.
+// Looks at the pixels around the place's own in rings, and no farther than where some know it.
+// `light`: the packed planes of a picture with these `rays`.
 NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Frame& light,
                               const SeenPlace& place);
 

@@ -94,11 +94,12 @@ inline float unpack_deviation(uint8_t p) {
   return p ? std::bit_cast<float>((uint32_t(p) + least) << 19) : 0.0f;
 }
 
-// A standard deviation over its mean with 6 bits: 2^-5 to 2^5 in steps of 12 %; 0 is unknown or next to nothing.
-// `random`: in [0, 65536), dithers what is cut.
+// A standard deviation over its mean with 6 bits: 2^-5 to 2^5 in steps of 12 %; 0 is unknown or
+// next to nothing. `random`: in [0, 65536), dithers what is cut.
 inline uint8_t pack_relative(float s, uint32_t random = 0x8000) {
   if (!(s > 0x1p-5f)) return 0;
-  float step = std::log2(std::min(s, 32.0f)) * 6 + 31.5f + (float(random & 0xffff) * 0x1p-16f - 0.5f);
+  float step =
+      std::log2(std::min(s, 32.0f)) * 6 + 31.5f + (float(random & 0xffff) * 0x1p-16f - 0.5f);
   return uint8_t(std::clamp(int(step + 0.5f), 1, 63));
 }
 inline float unpack_relative(uint8_t p) { return p ? std::exp2((float(p) - 31.5f) / 6) : 0.0f; }

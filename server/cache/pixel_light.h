@@ -25,8 +25,8 @@ inline Color weighted_sum(const Color& a, const f8& kept, const Color& b, const 
   return {kept * a.r + other * b.r, kept * a.g + other * b.g, kept * a.b + other * b.b};
 }
 
-// Rest holds light of lamps with the reflectance in it: how much of what was seen under `theirs` there is
-// under `own`.
+// Rest holds light of lamps with the reflectance in it: how much of what was seen under `theirs`
+// there is under `own`.
 inline constexpr float dark_reflectance = 0.05f, most_brighter = 4;
 inline f8 rest_ratio(const f8& own, const f8& theirs) {
   return smaller((own + dark_reflectance) / (theirs + dark_reflectance), splat(most_brighter));
@@ -44,8 +44,8 @@ struct Pixels {
   f8 deviation;  // of one sample's rest
 };
 
-// What pixels want to know of a cell, in one place: of the same cell for all (float, uint32_t), or of
-// one for each (f8, u8).
+// What pixels want to know of a cell, in one place: of the same cell for all (float, uint32_t), or
+// of one for each (f8, u8).
 template <class Number, class Id>
 struct CellLightOf {
   Number smooth[3], rest[3], patience, detail, noise;
@@ -72,8 +72,8 @@ inline void read_cell(const Cells& cells, int x, int y, CellLight& c) {
   c.object = cells.object[i];
 }
 
-// Which of the eight blocks from bx on lie between four cells in one plane: what a pixel has in common
-// with one of those, it has with all.
+// Which of the eight blocks from bx on lie between four cells in one plane: what a pixel has in
+// common with one of those, it has with all.
 i8 find_flat(const PixelRays& rays, const Cells& cells, int bx, int by);
 
 // What the four cells say at each pixel, as far as they lie on the same surface.
@@ -109,8 +109,8 @@ f8 alike(const Cell& c, const Pixels& p, const f8& inverse_normal2) {
   return keep(p.object == c.object, facing / (1.0f + off * off));
 }
 
-// `weights`: how much of each corner a pixel's place asks for, adding up to one. `flat`: all four lie
-// in one plane, and so what a pixel has in common with one it has with all.
+// `weights`: how much of each corner a pixel's place asks for, adding up to one. `flat`: all four
+// lie in one plane, and so what a pixel has in common with one it has with all.
 template <class Cell>
 Surroundings look_around(const Cell* const* corners, bool flat, const f8* weights,
                          const Pixels& p) {

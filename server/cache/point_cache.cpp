@@ -102,7 +102,8 @@ int move_points_of(PointCache& points, uint32_t object, const mat4& moved) {
         continue;
       vec3 p = vec3(moved * vec4(points.x[i], points.y[i], points.z[i], 1));
       points.x[i] = p.x, points.y[i] = p.y, points.z[i] = p.z;
-      points.normal[i] = points.color[i].normal = pack_normal(turn * unpack_normal(points.normal[i]));
+      points.normal[i] = points.color[i].normal =
+          pack_normal(turn * unpack_normal(points.normal[i]));
       points.flags[i] &= uint8_t(~point_verified);
       here++;
     }
@@ -140,7 +141,8 @@ void forget_light(PointCache& points, const Forgotten& forgotten) {
 }
 
 void forget_light(PointCache& points, vec3 place, float reach) {
-  forget_light(points, [&](uint32_t i, vec3&, vec3&) { return is_lit_from(points, i, place, reach); });
+  forget_light(points,
+               [&](uint32_t i, vec3&, vec3&) { return is_lit_from(points, i, place, reach); });
 }
 
 bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted) {
@@ -149,13 +151,15 @@ bool forget_paint(PointCache& points, const World& world, const std::vector<char
     for (int k = begin; k < end; k++) {
       const Anchor& a = points.anchors[size_t(k)];
       size_t i = a.point;
-      if (a.instance >= repainted.size() || !repainted[a.instance] || !is_alive(points, a.point)) continue;
+      if (a.instance >= repainted.size() || !repainted[a.instance] || !is_alive(points, a.point))
+        continue;
       found = true;
       forget_light_of(points, uint32_t(i), oldest_age);
       vec3 place(points.x[i], points.y[i], points.z[i]), way = unpack_normal(points.normal[i]);
       Hit hit{1, a.instance, a.triangle, vec2(a.u, a.v) * (1.0f / 65535)};
       Surface surface = eval_surface(world, {.origin = place + way, .direction = -way}, hit);
-      bool known = surface.transmission == 0 && surface.anisotropy == 0 && !world.material_of(a.instance).unlit;
+      bool known = surface.transmission == 0 && surface.anisotropy == 0 &&
+                   !world.material_of(a.instance).unlit;
       if (known) points.color[i].albedo = pack_albedo(kept_reflectance(surface).albedo);
     }
   });
@@ -169,7 +173,8 @@ void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2
   if (triangle >= mesh.triangles.size()) return;
   uvec3 corner = mesh.triangles[triangle];
   float u = barycentric.x, v = barycentric.y, w = 1 - u - v;
-  vec3 p = w * mesh.positions[corner.x] + u * mesh.positions[corner.y] + v * mesh.positions[corner.z];
+  vec3 p =
+      w * mesh.positions[corner.x] + u * mesh.positions[corner.y] + v * mesh.positions[corner.z];
   vec3 n = w * mesh.normals[corner.x] + u * mesh.normals[corner.y] + v * mesh.normals[corner.z];
   if (!world.is_moving(instance)) {  // a scene instance that a technique marked as moving
     p = vec3(world.to_world(instance) * vec4(p, 1));
@@ -212,8 +217,8 @@ void move_anchored_points(PointCache& points, const World& world) {
 }
 
 size_t points_bytes(const PointCache& points) {
-  return bytes_of(points.x, points.y, points.z, points.normal, points.flags, points.age, points.count,
-                  points.color, points.anchors, points.seen);
+  return bytes_of(points.x, points.y, points.z, points.normal, points.flags, points.age,
+                  points.count, points.color, points.anchors, points.seen);
 }
 
 }  // namespace wellspring

@@ -31,16 +31,16 @@ struct PointColor {
   uint32_t rest = 0;    // pack_rgb9e5, mean likewise
   uint32_t object = 0;
   uint16_t normal = 0;  // as PointCache::normal
-  // Low 2 bits: samples in a row that differ from what was known well; else pack_relative: the standard deviation of
-  // one sample's `smooth` luminance over its mean.
+  // Low 2 bits: samples in a row that differ from what was known well; else pack_relative: the
+  // standard deviation of one sample's `smooth` luminance over its mean.
   uint8_t doubts = 0;
-  // pack_deviation: of one sample's `rest` luminance. Of a single sample: 0 unknown, else told by who
-  // answered (sure_noise).
+  // pack_deviation: of one sample's `rest` luminance. Of a single sample: 0 unknown, else told by
+  // who answered (sure_noise).
   uint8_t noise = 0;
 };
 inline constexpr uint8_t sure_noise = 1;  // the least but none
-// Of a point whose light was forgotten, in place of its noise. Its count is 0 as long as it shows its old light, 1
-// when it is lent that of a newer point; see lend_light().
+// Of a point whose light was forgotten, in place of its noise. Its count is 0 as long as it shows
+// its old light, 1 when it is lent that of a newer point; see lend_light().
 inline constexpr uint8_t forgotten_noise = 2;
 static_assert(sizeof(PointColor) == 20);
 
@@ -76,30 +76,30 @@ void clear_points(PointCache& points);
 // have replaced all (Walter 2002); specular and moving points age three times as fast, unseen ones
 // twice. Unseen points that reach 255 are evicted; seen ones stop at `oldest_age`.
 void age_points(PointCache& points, float new_points);
-// Points of an object that was carried by `moved` (rigid), as many as are returned. Moves that are not
-// finite move nothing.
+// Points of an object that was carried by `moved` (rigid), as many as are returned. Moves that are
+// not finite move nothing.
 int move_points_of(PointCache& points, uint32_t object, const mat4& moved);
 // The light of a point has changed, or seems to: of what it remembers nothing counts where anything
-// newer is known around, and its next sample is as good as its first. It grows older by `ageing`, so
-// that it is asked for the sooner the surer the change is; `oldest_age`: among the first.
+// newer is known around, and its next sample is as good as its first. It grows older by `ageing`,
+// so that it is asked for the sooner the surer the change is; `oldest_age`: among the first.
 void forget_light_of(PointCache& points, uint32_t i, int ageing);
 // The light has changed within `reach` metres of `place`: points there forget theirs. At infinity
 // only an infinite reach counts.
 void forget_light(PointCache& points, vec3 place, float reach);
-// Points of which `forgotten` says so, on many threads, do. Of what they show `kept` is left, 1 unless changed,
-// and light `added` falls on them.
+// Points of which `forgotten` says so, on many threads, do. Of what they show `kept` is left, 1
+// unless changed, and light `added` falls on them.
 using Forgotten = std::function<bool(uint32_t point, vec3& kept, vec3& added)>;
 void forget_light(PointCache& points, const Forgotten& forgotten);
 bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach);
-// Where a place on a mesh is now, with the side of the normal that `normal` faced; both stay as they
-// are where the world has no such triangle.
+// Where a place on a mesh is now, with the side of the normal that `normal` faced; both stay as
+// they are where the world has no such triangle.
 void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric,
                   vec3& place, vec3& normal);
 // Points with anchors follow their triangles; anchors of overwritten points are dropped.
 void move_anchored_points(PointCache& points, const World& world);
-// What instances are made of looks different now: their points take the reflectance that it has there and
-// forget their light. Of those with anchors, so after move_anchored_points(). `repainted`: of each of the
-// world's instances. Returns whether any point was found.
+// What instances are made of looks different now: their points take the reflectance that it has
+// there and forget their light. Of those with anchors, so after move_anchored_points().
+// `repainted`: of each of the world's instances. Returns whether any point was found.
 bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted);
 // Most anchors a cache of this capacity may hold; moving points beyond are forgotten after one
 // frame.

@@ -18,10 +18,11 @@ inline constexpr int change_tile = 16;          // pixels a side of one cell of 
 // What one sample says of a change in the light of a point that was known before.
 struct Witness {
   uint32_t point = 0;
-  // Of its luminance, over the mean with the new sample in it: of no change that is 0 on average, whatever the samples'
-  // distribution, since any of them might as well have been the last.
+  // Of its luminance, over the mean with the new sample in it: of no change that is 0 on average,
+  // whatever the samples' distribution, since any of them might as well have been the last.
   float change = 0;
-  float noise = 0;   // standard deviation that such a change has where nothing has changed; 0: unknown
+  float noise =
+      0;  // standard deviation that such a change has where nothing has changed; 0: unknown
 };
 // The sums of a tile's witnesses.
 struct TileChange {
@@ -52,7 +53,8 @@ inline void reserve_image(PointImage& image, int width, int height) {
 // Enough witnesses of each tile to tell change from noise.
 inline void keep_newest_witnesses(PointImage& image) {
   const size_t each = image.alarm > 0 ? 48 : 12, most = image.alarm > 0 ? 1 << 17 : 1 << 15;
-  size_t count = image.witnesses.size(), kept = std::min({count, each * image.changed.size(), most});
+  size_t count = image.witnesses.size(),
+         kept = std::min({count, each * image.changed.size(), most});
   image.witnesses.erase(image.witnesses.begin(), image.witnesses.begin() + ptrdiff_t(count - kept));
 }
 

@@ -12,8 +12,8 @@
 namespace wellspring {
 
 // The view after `steps` more of the motion that led from `before` to `now`: straight on, and round
-// the same axis. `now` itself where there is no motion to go on with: another size or field of view,
-// a turn by more than `largest_turn` radians, or places that are not finite.
+// the same axis. `now` itself where there is no motion to go on with: another size or field of
+// view, a turn by more than `largest_turn` radians, or places that are not finite.
 inline constexpr float largest_turn = 0.5f;
 View extrapolate(const View& before, const View& now, float steps);
 
@@ -22,9 +22,9 @@ View extrapolate(const View& before, const View& now, float steps);
 inline constexpr int cell_pixels = 4;
 void find_occupied(const PointCache& points, const View& ahead, std::vector<uint8_t>& cells);
 
-// Appends rays of `ahead` through cells where no point falls, each at a random place of its cell, at
-// most `most`; of more cells an even choice. They have no pixel: their answers show when they are in
-// view. `cells`: scratch.
+// Appends rays of `ahead` through cells where no point falls, each at a random place of its cell,
+// at most `most`; of more cells an even choice. They have no pixel: their answers show when they
+// are in view. `cells`: scratch.
 void predict_requests(const PointCache& points, const View& ahead, int most, uint64_t seed,
                       std::vector<uint8_t>& cells, std::vector<Request>& requests);
 

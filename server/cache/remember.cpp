@@ -16,8 +16,8 @@ constexpr float same_place = 0.01f;  // of the distance: farther off is another 
 constexpr float same_image = 0.05f;  // likewise, in mirrors and glass
 constexpr float same_normal = 0.8f;  // cosine
 constexpr float same_albedo = 0.03f;
-// Points whose samples repeat themselves begin anew when one does not: at once where all were alike, at
-// the second time where all were nearly so. Few samples may be alike by chance.
+// Points whose samples repeat themselves begin anew when one does not: at once where all were
+// alike, at the second time where all were nearly so. Few samples may be alike by chance.
 constexpr float no_noise = 0.01f, little_noise = 0.1f;  // standard deviation over the mean
 constexpr int few_samples = 2, many_samples = 8;
 constexpr int enough_surprises = 2;
@@ -25,8 +25,8 @@ constexpr float unseen_bonus = 96;   // in age: unseen points are overwritten be
 constexpr int noise_memory = 64;     // samples the noise estimate looks back on
 
 bool is_usable(const Sample& sample) {
-  return std::isfinite(sample.image) && is_finite(sample.position) && is_finite(sample.normal) && is_finite(sample.albedo) &&
-         is_finite(sample.smooth) && is_finite(sample.rest);
+  return std::isfinite(sample.image) && is_finite(sample.position) && is_finite(sample.normal) &&
+         is_finite(sample.albedo) && is_finite(sample.smooth) && is_finite(sample.rest);
 }
 
 bool is_infinite(const Sample& sample) { return !(sample.flags & sample_hit); }
@@ -57,7 +57,8 @@ bool is_same_surface(const PointCache& points, uint32_t i, const View& view, con
   bool infinite = points.flags[i] & point_infinite;
   if (infinite != is_infinite(sample) || points.color[i].object != sample.object) return false;
   if (infinite) return true;
-  vec3 normal = unpack_normal(points.color[i].normal), offset = found.place - position_of(points, i);
+  vec3 normal = unpack_normal(points.color[i].normal),
+       offset = found.place - position_of(points, i);
   if (dot(normal, sample.normal) < same_normal) return false;
   float distance = length(found.place - view.position);
   // Beside it in a mirror lies what may be elsewhere; of the same image, places are estimates.
@@ -116,7 +117,8 @@ struct Effect {
 float improve_deviation(float deviation, float step, int n) {
   if (n == 1) return std::sqrt(0.5f) * step;
   float memory = float(std::min(n, noise_memory));
-  return std::sqrt((deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) / memory);
+  return std::sqrt((deviation * deviation * (memory - 1) + step * step * float(n) / float(n + 1)) /
+                   memory);
 }
 
 // What was known and what a sample says.
@@ -125,18 +127,18 @@ struct Heard {
   T before, now;
 };
 // `deviations`: of one sample's smooth and rest. The change is no number where all is black.
-Witness testify(uint32_t point, int n, vec3 reflectance, const Heard<vec3>& smooth, const Heard<float>& rest,
-                const vec2& deviations) {
+Witness testify(uint32_t point, int n, vec3 reflectance, const Heard<vec3>& smooth,
+                const Heard<float>& rest, const vec2& deviations) {
   float before = luminance(reflectance * smooth.before) + rest.before,
-        now = luminance(reflectance * max(smooth.now, vec3(0))) + rest.now, share = 1 / float(n + 1),
-        mean = before + (now - before) * share;
+        now = luminance(reflectance * max(smooth.now, vec3(0))) + rest.now,
+        share = 1 / float(n + 1), mean = before + (now - before) * share;
   float noise = length(vec2(luminance(reflectance) * deviations.x, deviations.y));
   return {point, (now - before) / mean, n > 1 ? noise * std::sqrt(1 + 1 / float(n)) / mean : 0.0f};
 }
 
 // Adds one sample to the means.
-Effect improve_point(PointCache& points, uint32_t i, const View& view, const Found& found, bool exact,
-                     const RememberSettings& settings, uint32_t random) {
+Effect improve_point(PointCache& points, uint32_t i, const View& view, const Found& found,
+                     bool exact, const RememberSettings& settings, uint32_t random) {
   const Sample& sample = found.sample;
   PointColor& color = points.color[i];
   vec3 smooth = unpack_rgb9e5(color.smooth), rest = unpack_rgb9e5(color.rest);
@@ -154,17 +156,19 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
   float level = std::max(before, now);
   vec3 reflectance = unpack_albedo(color.albedo);
   float whole = luminance(reflectance * smooth) + level;
-  // Elsewhere in the pixel a texture may differ too: only an equal reflectance tells about light, and
-  // of what a mirror shows nobody knows it.
-  effect.tells = !(points.flags[i] & point_specular) &&
-                 (exact || (!found.image && max_component(abs(reflectance - sample.albedo)) <= same_albedo));
+  // Elsewhere in the pixel a texture may differ too: only an equal reflectance tells about light,
+  // and of what a mirror shows nobody knows it.
+  effect.tells =
+      !(points.flags[i] & point_specular) &&
+      (exact || (!found.image && max_component(abs(reflectance - sample.albedo)) <= same_albedo));
   float light = luminance(smooth), new_light = luminance(max(sample.smooth, vec3(0)));
   float varies = light * unpack_relative(color.doubts >> 2);
   // Of two techniques one may be biased.
   bool comparable = bool(points.flags[i] & point_reference) == settings.reference;
-  effect.witness = testify(i, n, reflectance, {smooth, comparable ? sample.smooth : smooth}, {before, now},
-                           {comparable ? varies : 0.0f, deviation});
-  effect.tells &= std::isfinite(effect.witness.change);  // of black that stays black there is nothing to say
+  effect.witness = testify(i, n, reflectance, {smooth, comparable ? sample.smooth : smooth},
+                           {before, now}, {comparable ? varies : 0.0f, deviation});
+  effect.tells &=
+      std::isfinite(effect.witness.change);  // of black that stays black there is nothing to say
   int surprises = color.doubts & 3;
   bool alike = n >= few_samples && deviation <= no_noise * before;
   bool surprising = effect.tells && step > settings.color_change * whole && step > 4 * deviation &&
@@ -179,7 +183,8 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
   float share_new = 1 / float(n + 1), later = light + (new_light - light) * share_new;
   varies = later > 0 ? improve_deviation(varies, std::abs(new_light - light), n) / later : 0.0f;
   color.doubts = uint8_t(pack_relative(varies, random >> 12) << 2 | surprises);
-  int longest = points.flags[i] & point_specular ? settings.longest_specular : settings.longest_mean;
+  int longest =
+      points.flags[i] & point_specular ? settings.longest_specular : settings.longest_mean;
   float share = 1 / float(std::min(n, longest - 1) + 1);
   smooth += (max(sample.smooth, vec3(0)) - smooth) * share;
   rest += (max(sample.rest, vec3(0)) - rest) * share;
@@ -321,10 +326,10 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
         effects[i] = improve_point(points, point, view, found(i), exact, settings, random_of(i));
         merged_here++;
       } else {
-        // Another surface than was there: something has moved. At edges of what stands still, places
-        // are not exact enough to tell.
-        bool moves = ((points.flags[point] & point_moving) || (samples[i].flags & sample_moving)) && exact &&
-                     !(samples[i].flags & sample_specular);
+        // Another surface than was there: something has moved. At edges of what stands still,
+        // places are not exact enough to tell.
+        bool moves = ((points.flags[point] & point_moving) || (samples[i].flags & sample_moving)) &&
+                     exact && !(samples[i].flags & sample_specular);
         begin_point(points, point, view, found(i), random_of(i));
         if (moves) effects[i] = {true, true, {point, 1, 0}};
       }

@@ -20,8 +20,10 @@ struct RememberSettings {
   bool current = true;
   bool still = false;   // answers are spread over their pixel and join the point that shows there
   uint8_t longest_mean = 64;  // samples a mean looks back on
-  uint8_t longest_specular = 64;  // likewise, of what moves with the view and whose image lies nowhere
-  bool reference = false;  // answers are of the reference; of a point that others know, smooth light tells no change
+  uint8_t longest_specular =
+      64;                  // likewise, of what moves with the view and whose image lies nowhere
+  bool reference = false;  // answers are of the reference; of a point that others know, smooth
+                           // light tells no change
   bool images = true;  // what mirrors and glass show is kept where its image lies (Sample::image)
 };
 

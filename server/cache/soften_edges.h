@@ -10,9 +10,10 @@
 
 namespace wellspring {
 
-// `edges`: Raster::edges() of the picture. Where several cut a pixel, each takes its share of what the
-// ones before have left.
-void soften_edges(std::span<const std::vector<EdgeShare>> edges, Image8& image);  // as eyes add light
+// `edges`: Raster::edges() of the picture. Where several cut a pixel, each takes its share of what
+// the ones before have left.
+void soften_edges(std::span<const std::vector<EdgeShare>> edges,
+                  Image8& image);  // as eyes add light
 void soften_edges(std::span<const std::vector<EdgeShare>> edges, std::vector<vec3>& color);
 
 }  // namespace wellspring

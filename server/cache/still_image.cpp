@@ -21,7 +21,8 @@ vec3 light_of(vec3 color, vec3 albedo) { return color / max(albedo, vec3(darkest
 
 }  // namespace
 
-void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel, StillImage& still) {
+void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel,
+                         StillImage& still) {
   uint8_t& count = still.count[pixel];
   int n = count & ~still_fresh;
   if (n == still_relit) return;  // switched again before anything was seen
@@ -32,7 +33,8 @@ void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel,
   vec3 light = light_of(albedo * unpack_rgb9e5(color.smooth) + unpack_rgb9e5(color.rest), albedo);
   vec3 mean(unpack_half(still.mean[0][pixel]), unpack_half(still.mean[1][pixel]),
             unpack_half(still.mean[2][pixel]));
-  bool known = albedo != vec3(0) && !(points.flags[point] & point_specular) && luminance(light) > 1e-4f;
+  bool known =
+      albedo != vec3(0) && !(points.flags[point] & point_specular) && luminance(light) > 1e-4f;
   if (!known) return;
   count = still_relit;
   vec3 surface = clamp(mean / max(light, vec3(1e-5f)), albedo / contrast, albedo * contrast);
@@ -40,8 +42,8 @@ void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel,
 }
 
 vec2 still_place(int pictures) {
-  // The additive recurrence of the plastic number's powers (Roberts 2018), which is as even in any row
-  // of its places.
+  // The additive recurrence of the plastic number's powers (Roberts 2018), which is as even in any
+  // row of its places.
   uint32_t i = uint32_t(pictures % (still_places * 64));
   auto part = [i](uint32_t step) { return float((0x80000000u + step * i) >> 8) * 0x1p-24f; };
   return {part(3242174889u), part(2447445414u)};
@@ -97,7 +99,8 @@ void accumulate_still(const PointCache& points, const PointImage& image, uint32_
       if (fresh) {
         n = std::min(n + 1, still_longest);
         // Later samples count more: the light they were shown in was known better.
-        mean = n == 1 ? frame.color[i] : mean + (frame.color[i] - mean) * (1.5f / (float(n) + 0.5f));
+        mean =
+            n == 1 ? frame.color[i] : mean + (frame.color[i] - mean) * (1.5f / (float(n) + 0.5f));
         uint64_t random = mix64(uint64_t(seed) << 32 | i);
         for (size_t c = 0; c < 3; c++)
           still.mean[c][i] = pack_half(mean[int(c)], uint32_t(random >> (16 * c)));

@@ -37,8 +37,8 @@ void relight_still(const PointCache& points, const PointImage& image, const Forg
 void accumulate_still(const PointCache& points, const PointImage& image, uint32_t seed,
                       StillImage& still, Frame& frame);
 
-// Where in their pixels the picture after `pictures` others is seen: any `still_places` of them in a
-// row are spread evenly.
+// Where in their pixels the picture after `pictures` others is seen: any `still_places` of them in
+// a row are spread evenly.
 inline constexpr int still_places = 16;
 vec2 still_place(int pictures);
 

@@ -20,14 +20,15 @@ void forget_samples(StillSamples& samples) {
 }
 
 void forget_samples(const StillImage& still, StillSamples& samples) {
-  parallel_ranges(int(std::min(still.count.size(), samples.count.size())), 1 << 16, [&](int begin, int end) {
-    const uint8_t* known = still.count.data();
-    uint8_t* count = samples.count.data();
-    for (int i = begin; i < end; i++) {
-      int n = known[i] & ~still_fresh;
-      count[i] = n == 0 || n == still_relit ? uint8_t(0) : count[i];
-    }
-  });
+  parallel_ranges(int(std::min(still.count.size(), samples.count.size())), 1 << 16,
+                  [&](int begin, int end) {
+                    const uint8_t* known = still.count.data();
+                    uint8_t* count = samples.count.data();
+                    for (int i = begin; i < end; i++) {
+                      int n = known[i] & ~still_fresh;
+                      count[i] = n == 0 || n == still_relit ? uint8_t(0) : count[i];
+                    }
+                  });
 }
 
 void add_sample(StillSamples& samples, size_t pixel, vec3 light, uint32_t random) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the samples of each pixel say by themselves while the view stands still: the mean of their light over
-// the pixel, whatever surfaces it shows, which of more and more samples is the reference. 6 bytes a pixel.
+// What the samples of each pixel say by themselves while the view stands still: the mean of their
+// light over the pixel, whatever surfaces it shows, which of more and more samples is the
+// reference. 6 bytes a pixel.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +15,9 @@ namespace wellspring {
 
 struct StillSamples {
   std::vector<uint32_t> mean;      // pack_rgb9e5
-  std::vector<uint8_t> deviation;  // pack_deviation: of one sample, root mean square over the channels
-  std::vector<uint8_t> count;      // at most most_still_samples, over which the mean then looks back
+  std::vector<uint8_t>
+      deviation;               // pack_deviation: of one sample, root mean square over the channels
+  std::vector<uint8_t> count;  // at most most_still_samples, over which the mean then looks back
 };
 inline constexpr int most_still_samples = 254;
 

@@ -19,15 +19,15 @@ constexpr int block = Keyframe::block;
 static_assert(block == lanes);
 constexpr float least_depth = 1e-6f;   // over that of the other view: nothing is nearer to a camera
 constexpr int most_steps = 96;         // along an epipolar line
-constexpr int most_blocks = 24;        // written per block, on average, when bounds are carried forward
+constexpr int most_blocks = 24;  // written per block, on average, when bounds are carried forward
 constexpr int seam_across = 64;        // of its width, a keyframe passes into what is around
 constexpr float found = 0.5f;          // pixels between a place and itself, carried there and back
 constexpr float half_step = 0.5f;      // pixels that disparities within a bilinear sample may open
-constexpr int fractions = 16;          // places of a bilinear sample between two pixels, as a power of 2
+constexpr int fractions = 16;  // places of a bilinear sample between two pixels, as a power of 2
 constexpr int fraction_bits = 4;
 
-// From a pixel (x, y) and its disparity w in one view to another: one + x * across + y * down + w * baseline
-// is the place there times its depth over the depth here, and that ratio.
+// From a pixel (x, y) and its disparity w in one view to another: one + x * across + y * down + w *
+// baseline is the place there times its depth over the depth here, and that ratio.
 struct Mapping {
   vec3 one, across, down, baseline;
 };
@@ -37,10 +37,12 @@ Mapping make_mapping(const View& from, const View& to) {
   auto seen = [&](vec3 d) {
     double x = dot(dvec3(d), dvec3(to.right)), y = dot(dvec3(d), dvec3(to.up)),
            z = dot(dvec3(d), dvec3(to.forward));
-    return vec3(float(focal * x + 0.5 * to.width * z), float(0.5 * to.height * z - focal * y), float(z));
+    return vec3(float(focal * x + 0.5 * to.width * z), float(0.5 * to.height * z - focal * y),
+                float(z));
   };
   vec3 right = from.right * scale, down = from.up * -scale;
-  vec3 corner = from.forward - right * (0.5f * float(from.width)) - down * (0.5f * float(from.height));
+  vec3 corner =
+      from.forward - right * (0.5f * float(from.width)) - down * (0.5f * float(from.height));
   return {seen(corner), seen(right), seen(down), seen(from.position - to.position)};
 }
 
@@ -60,7 +62,8 @@ u8 gather(const T* from, const i8& index) {
   return u8(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), __m256i(index), 4));
 #else
   u8 v;
-  for (int i = 0; i < lanes; i++) std::memcpy(reinterpret_cast<uint32_t*>(&v) + i, from + index[i], 4);
+  for (int i = 0; i < lanes; i++)
+    std::memcpy(reinterpret_cast<uint32_t*>(&v) + i, from + index[i], 4);
   return v;
 #endif
 }
@@ -78,7 +81,10 @@ void gather_pairs(const uint32_t* from, const i8& index, u8& a, u8& b) {
 #endif
 }
 i8 to_int(const f8& v) { return __builtin_convertvector(v, i8); }
-f8 clamped(const f8& v, float high) { return smaller(larger(v, f8{}), splat(high)); }  // NaN becomes 0
+// NaN becomes 0.
+f8 clamped(const f8& v, float high) {
+  return smaller(larger(v, f8{}), splat(high));
+}
 
 // What every pixel asks of the keyframe.
 struct Source {
@@ -86,7 +92,8 @@ struct Source {
   Mapping to, back;  // from the new view to the keyframe's, and back
   float last_x, last_y;
   float seam = 0;  // pixels over which it passes into something else at its border
-  bool coarse;  // its pixels are large: colours are bilinear across silhouettes, too, which would have steps
+  bool coarse;  // its pixels are large: colours are bilinear across silhouettes, too, which would
+                // have steps
 
   Source(const Keyframe& k, const View& view, bool coarse = false)
       : k(k), to(make_mapping(view, k.view)), back(make_mapping(k.view, view)),
@@ -123,8 +130,10 @@ bool carry_bounds(const Source& source, const View& view, WarpScratch& scratch) 
       f8 z = m.one.z + qx * m.across.z + qy * m.down.z + s * m.baseline.z;
       i8 seen = z > least_depth;
       f8 inverse = 1.0f / larger(z, splat(least_depth));
-      f8 x = (m.one.x + qx * m.across.x + qy * m.down.x + s * m.baseline.x) * inverse * (1.0f / block),
-         y = (m.one.y + qx * m.across.y + qy * m.down.y + s * m.baseline.y) * inverse * (1.0f / block),
+      f8 x = (m.one.x + qx * m.across.x + qy * m.down.x + s * m.baseline.x) * inverse *
+             (1.0f / block),
+         y = (m.one.y + qx * m.across.y + qy * m.down.y + s * m.baseline.y) * inverse *
+             (1.0f / block),
          w = s * inverse;
       float left_x = float(columns), right_x = -1, top = float(rows), bottom = -1;
       float low = std::numeric_limits<float>::infinity(), high = -1;
@@ -135,7 +144,8 @@ bool carry_bounds(const Source& source, const View& view, WarpScratch& scratch) 
         low = std::min(low, w[i]), high = std::max(high, w[i]);
       }
       if (!(right_x >= 0 && bottom >= 0 && left_x < float(columns) && top < float(rows))) continue;
-      int x0 = std::max(int(left_x), 0), x1 = std::min(int(std::min(right_x, float(columns))), columns - 1);
+      int x0 = std::max(int(left_x), 0),
+          x1 = std::min(int(std::min(right_x, float(columns))), columns - 1);
       int y0 = std::max(int(top), 0), y1 = std::min(int(std::min(bottom, float(rows))), rows - 1);
       left -= int64_t(x1 - x0 + 1) * (y1 - y0 + 1);
       if (left < 0) return false;
@@ -150,7 +160,8 @@ bool carry_bounds(const Source& source, const View& view, WarpScratch& scratch) 
 }
 
 // Bounds of a block that nothing was carried to: those around; at infinity where there are none.
-void borrow_bounds(const WarpScratch& scratch, int columns, int rows, int bx, int by, float& far, float& near) {
+void borrow_bounds(const WarpScratch& scratch, int columns, int rows, int bx, int by, float& far,
+                   float& near) {
   far = std::numeric_limits<float>::infinity(), near = -1;
   for (int reach : {1, 4}) {
     for (int y = std::max(by - reach, 0); y <= std::min(by + reach, rows - 1); y++)
@@ -163,7 +174,8 @@ void borrow_bounds(const WarpScratch& scratch, int columns, int rows, int bx, in
   far = near = 0;
 }
 
-// Where eight neighbours' epipolar lines run, in steps of a pixel or less from the nearest to the farthest.
+// Where eight neighbours' epipolar lines run, in steps of a pixel or less from the nearest to the
+// farthest.
 struct Search {
   float nearest = 0, step = 0;
   int steps = 0;
@@ -229,7 +241,8 @@ u8 sample_color(const Source& source, const f8& x, const f8& y, float pixels) {
     w01 += lost & as<u8>(~is_right & is_below), w00 += lost & as<u8>(~is_right & ~is_below);
   }
   constexpr uint32_t two = 0x00ff00ffu;
-  u8 red_blue = (c00 & two) * w00 + (c10 & two) * w10 + (c01 & two) * w01 + (c11 & two) * w11 + 0x00800080u;
+  u8 red_blue =
+      (c00 & two) * w00 + (c10 & two) * w10 + (c01 & two) * w01 + (c11 & two) * w11 + 0x00800080u;
   auto green = [](const u8& c) { return (c >> 8) & 255u; };
   u8 g = green(c00) * w00 + green(c10) * w10 + green(c01) * w01 + green(c11) * w11 + 128u;
   return ((red_blue >> 8) & two) | (g & 0xff00u);
@@ -249,10 +262,10 @@ void write_rgb(const u8& words, uint8_t* to, int count) {
   if (count < lanes) std::memcpy(to, bytes, size_t(count) * 3);
 }
 
-// The first of eight neighbours' epipolar lines' places that shows what the pixel would see, and its disparity;
-// or the last, and that of what hides them. Returns which of the wanted have none.
-i8 follow_line(const Source& source, const Place& base, const Search& search, i8 waiting, f8& at_x, f8& at_y,
-               f8& disparity) {
+// The first of eight neighbours' epipolar lines' places that shows what the pixel would see, and
+// its disparity; or the last, and that of what hides them. Returns which of the wanted have none.
+i8 follow_line(const Source& source, const Place& base, const Search& search, i8 waiting, f8& at_x,
+               f8& at_y, f8& disparity) {
   const Mapping& m = source.to;
   at_x = at_y = disparity = f8{};
   float candidate = search.step + found / std::max(search.pixels, 1e-30f);
@@ -283,23 +296,25 @@ struct RowBits {
   uint8_t hidden = 0, outside = 0;  // by something nearer; not within the keyframe
   uint8_t at_seam = 0;              // near its border
 };
-// `disparity`: of the pixels, written if search.steps > 0; `share`: how much of 255 the keyframe has in them,
-// written if any is not all its own. No more than `count`.
-RowBits warp_row(const Source& source, float x, float y, int count, const Search& search, uint8_t* to,
-                 float* disparity, uint8_t* share) {
+// `disparity`: of the pixels, written if search.steps > 0; `share`: how much of 255 the keyframe
+// has in them, written if any is not all its own. No more than `count`.
+RowBits warp_row(const Source& source, float x, float y, int count, const Search& search,
+                 uint8_t* to, float* disparity, uint8_t* share) {
   const Mapping& m = source.to;
   f8 px = x + f8{0, 1, 2, 3, 4, 5, 6, 7};
   Place base{m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
              m.one.z + px * m.across.z + y * m.down.z};
   i8 waiting{};
   f8 at_x, at_y;
-  if (search.steps == 0) {  // whatever lies in the middle is right to half a pixel, and then to much less
+  if (search.steps ==
+      0) {  // whatever lies in the middle is right to half a pixel, and then to much less
     Place one = carry(m, base, splat(search.nearest));
     Place two = carry(m, base, source.surface(one.x, one.y));
     at_x = two.x, at_y = two.y;
   } else {
     f8 seen;
-    waiting = follow_line(source, base, search, i8{0, 1, 2, 3, 4, 5, 6, 7} < count, at_x, at_y, seen);
+    waiting =
+        follow_line(source, base, search, i8{0, 1, 2, 3, 4, 5, 6, 7} < count, at_x, at_y, seen);
     std::memcpy(disparity, &seen, size_t(count) * sizeof(float));
   }
   write_rgb(sample_color(source, at_x, at_y, source.coarse ? 0 : search.pixels), to, count);
@@ -310,7 +325,8 @@ RowBits warp_row(const Source& source, float x, float y, int count, const Search
   bits.hidden = uint8_t(negative_lanes(waiting) & all);
   bits.outside = uint8_t(negative_lanes(~inside & ~waiting) & all);
   if (!(source.seam > 0)) return bits;
-  f8 border = smaller(smaller(at_x, source.last_x + 1 - at_x), smaller(at_y, source.last_y + 1 - at_y));
+  f8 border =
+      smaller(smaller(at_x, source.last_x + 1 - at_x), smaller(at_y, source.last_y + 1 - at_y));
   i8 near = (border < source.seam) & ~waiting;
   if (!any(near)) return bits;
   bits.at_seam = uint8_t(negative_lanes(near) & all & ~bits.outside);
@@ -321,7 +337,8 @@ RowBits warp_row(const Source& source, float x, float y, int count, const Search
 
 // Calls warp(x, y, count, search) for every row of every block; (x, y): its first pixel.
 template <class Warp>
-void each_row(const Source& source, const View& view, const WarpScratch& scratch, const Warp& warp) {
+void each_row(const Source& source, const View& view, const WarpScratch& scratch,
+              const Warp& warp) {
   int columns = (view.width + block - 1) / block, rows = (view.height + block - 1) / block;
   parallel_ranges(rows, 2, [&](int begin, int end) {
     for (int by = begin; by < end; by++)
@@ -330,8 +347,10 @@ void each_row(const Source& source, const View& view, const WarpScratch& scratch
         float far = scratch.farthest[c], near = scratch.nearest[c];
         if (near < 0) borrow_bounds(scratch, columns, rows, bx, by, far, near);
         int x = bx * block, count = std::min(view.width - x, block);
-        Search search = plan_search(source, float(x) + 0.5f * block, (float(by) + 0.5f) * block, near, far);
-        for (int y = by * block; y < std::min((by + 1) * block, view.height); y++) warp(x, y, count, search);
+        Search search =
+            plan_search(source, float(x) + 0.5f * block, (float(by) + 0.5f) * block, near, far);
+        for (int y = by * block; y < std::min((by + 1) * block, view.height); y++)
+          warp(x, y, count, search);
       }
   });
 }
@@ -350,11 +369,14 @@ void warp_around(const Source& around, const View& view, WarpScratch& scratch, I
     uint8_t rgb[3 * block], *to = pixel_at(out, x, y);
     float disparity[block];
     std::fill_n(disparity, block, search.nearest);
-    RowBits row = warp_row(around, float(x) + 0.5f, float(y) + 0.5f, count, search, rgb, disparity, nullptr);
+    RowBits row =
+        warp_row(around, float(x) + 0.5f, float(y) + 0.5f, count, search, rgb, disparity, nullptr);
     size_t first = size_t(y) * size_t(view.width) + size_t(x);
     for (unsigned bits = wanted & ~row.outside & ~row.hidden; bits != 0; bits &= bits - 1) {
-      int i = std::countr_zero(bits), share = outside >> i & 1 ? 0 : scratch.share[first + size_t(i)];
-      for (int c = 3 * i; c < 3 * i + 3; c++) to[c] = uint8_t((to[c] * share + rgb[c] * (255 - share) + 127) / 255);
+      int i = std::countr_zero(bits),
+          share = outside >> i & 1 ? 0 : scratch.share[first + size_t(i)];
+      for (int c = 3 * i; c < 3 * i + 3; c++)
+        to[c] = uint8_t((to[c] * share + rgb[c] * (255 - share) + 127) / 255);
     }
     unseen.hidden[word] |= uint8_t(outside & row.hidden);
     unseen.outside[word] = uint8_t(outside & row.outside);
@@ -391,13 +413,13 @@ int count_bits(const std::vector<uint8_t>& words) {
 
 }  // namespace
 
-float warp_picture(const Keyframe& keyframe, const View& view, float most_unknown, WarpScratch& scratch,
-                   Image8& out) {
+float warp_picture(const Keyframe& keyframe, const View& view, float most_unknown,
+                   WarpScratch& scratch, Image8& out) {
   return warp_picture(keyframe, Keyframe(), view, most_unknown, scratch, out);
 }
 
-float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View& view, float most_unknown,
-                   WarpScratch& scratch, Image8& out) {
+float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View& view,
+                   float most_unknown, WarpScratch& scratch, Image8& out) {
   if (keyframe.empty() || view.width < 1 || view.height < 1) return 1;
   Source source(keyframe, view);
   if (!around.empty()) source.seam = float(std::max(keyframe.view.width / seam_across, 1));
@@ -414,12 +436,14 @@ float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View&
     scratch.at_seam.resize(unseen.outside.size());
     scratch.share.resize(size_t(view.width) * size_t(view.height));
   }
-  std::atomic<bool> whole{true}, in_view{true};  // nothing is unseen; nor is the keyframe's border in the picture
+  std::atomic<bool> whole{true},
+      in_view{true};  // nothing is unseen; nor is the keyframe's border in the picture
   each_row(source, view, scratch, [&](int x, int y, int count, const Search& search) {
     size_t word = size_t(y) * size_t(unseen.columns) + size_t(x / block);
     size_t first = size_t(y) * size_t(view.width) + size_t(x);
-    RowBits row = warp_row(source, float(x) + 0.5f, float(y) + 0.5f, count, search, pixel_at(out, x, y),
-                           &unseen.disparity[first], around.empty() ? nullptr : &scratch.share[first]);
+    RowBits row =
+        warp_row(source, float(x) + 0.5f, float(y) + 0.5f, count, search, pixel_at(out, x, y),
+                 &unseen.disparity[first], around.empty() ? nullptr : &scratch.share[first]);
     if (y % block == 0)
       unseen.flat[size_t(y / block) * size_t(unseen.columns) + size_t(x / block)] =
           search.steps == 0 ? search.nearest : Unseen::many;
@@ -441,8 +465,8 @@ float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View&
 }
 
 size_t memory_bytes(const WarpScratch& scratch) {
-  return bytes_of(scratch.farthest, scratch.nearest, scratch.at_seam, scratch.share) + memory_bytes(scratch.unseen) +
-         memory_bytes(scratch.fill);
+  return bytes_of(scratch.farthest, scratch.nearest, scratch.at_seam, scratch.share) +
+         memory_bytes(scratch.unseen) + memory_bytes(scratch.fill);
 }
 
 }  // namespace wellspring

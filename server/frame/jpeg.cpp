@@ -34,8 +34,9 @@ void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector
   // Several times what most pictures need: of memory that is not written to, the system gives none.
   auto room = std::make_unique_for_overwrite<unsigned char[]>(size);
   unsigned char* bytes = room.get();
-  if (!handle || tjCompress2(handle.get(), image.rgb.data(), image.width, 0, image.height, TJPF_RGB,
-                             &bytes, &size, chroma, std::clamp(quality, 1, 100), TJFLAG_NOREALLOC) != 0)
+  if (!handle ||
+      tjCompress2(handle.get(), image.rgb.data(), image.width, 0, image.height, TJPF_RGB, &bytes,
+                  &size, chroma, std::clamp(quality, 1, 100), TJFLAG_NOREALLOC) != 0)
     throw std::runtime_error(std::string("encode_jpeg: ") + tjGetErrorStr2(handle.get()));
   out.resize(skip);
   out.reserve(skip + size);

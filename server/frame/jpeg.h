@@ -9,8 +9,8 @@
 
 namespace wellspring {
 
-// quality 1..100; full_chroma: 4:4:4 instead of 4:2:0. Overwrites what follows the first `skip` bytes
-// of `out`, which is grown to hold them; nothing but `out` is kept afterwards.
+// quality 1..100; full_chroma: 4:4:4 instead of 4:2:0. Overwrites what follows the first `skip`
+// bytes of `out`, which is grown to hold them; nothing but `out` is kept afterwards.
 void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector<uint8_t>& out,
                  size_t skip = 0);
 // Throws LoadError{file,...} when the bytes are no JPEG or larger than 16384 a side.

@@ -35,7 +35,8 @@ inline float encode_exact(float x) {
 
 // Eight colours, a channel after the other in memory.
 Lanes3 load_colors(const float* from) {
-  Lanes a = load_lanes(from), b = load_lanes(from + lane_count), c = load_lanes(from + 2 * lane_count);
+  Lanes a = load_lanes(from), b = load_lanes(from + lane_count),
+        c = load_lanes(from + 2 * lane_count);
   Lanes red = __builtin_shufflevector(a, b, 0, 3, 6, 9, 12, 15, 0, 0),
         green = __builtin_shufflevector(a, b, 1, 4, 7, 10, 13, 0, 0, 0),
         blue = __builtin_shufflevector(a, b, 2, 5, 8, 11, 14, 0, 0, 0);

@@ -159,7 +159,9 @@ Clip read_clip(File& file, const json& animation, const std::string& where,
     // Channels may share their data in the file, not here.
     file.keys_made += int64_t(track.times.size() + track.values.size());
     if (file.keys_made > key_numbers_limit)
-      refuse(file, place, "the file's animations have more than " + std::to_string(key_numbers_limit) + " numbers");
+      refuse(
+          file, place,
+          "the file's animations have more than " + std::to_string(key_numbers_limit) + " numbers");
     if (!with_data || !track.times.empty()) clip.tracks.push_back(std::move(track));
   }
   return clip;

@@ -75,8 +75,8 @@ struct Bsdf {
 
 // `direction`: of the ray that found the surface. `albedo`: dielectric_albedo(material.ior), with
 // glass where the material transmits. `index`: of refraction, instead of the material's; 0: none.
-// `outside`: of what lies in front of the surface; `albedo` is then that of the ratio or its inverse,
-// whichever is at least 1.
+// `outside`: of what lies in front of the surface; `albedo` is then that of the ratio or its
+// inverse, whichever is at least 1.
 Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
                const DielectricAlbedo& albedo, float index = 0, float outside = 1);
 // Index of refraction: 0 in glTF means an infinite one, a surface that reflects everything.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// eval_bsdf eight at a time, for surfaces that most of a scene consists of: opaque, a diffuse layer and
-// GGX facets over it, without coats (bsdf.h). Eight surfaces, or one against eight directions.
+// eval_bsdf eight at a time, for surfaces that most of a scene consists of: opaque, a diffuse layer
+// and GGX facets over it, without coats (bsdf.h). Eight surfaces, or one against eight directions.
 #pragma once
 #include "base/lanes3.h"
 #include "light/bsdf.h"

@@ -12,7 +12,8 @@ namespace {
 constexpr int most_parts = 16;         // of one instance
 constexpr size_t least_triangles = 8;  // in a part
 
-// Triangles [begin, end) of an instance in a sphere, or in parts of it where those are much smaller.
+// Triangles [begin, end) of an instance in a sphere, or in parts of it where those are much
+// smaller.
 void add_spheres(std::vector<Bounds>& boxes, size_t begin, size_t end, int parts, float weight,
                  std::vector<CasterSphere>& spheres) {
   Bounds box;

@@ -76,7 +76,8 @@ EmittedRay aim_at_casters(const Transport& transport, std::span<const CasterSphe
   vec3 tangent, bitangent;
   make_frame_axes(direction, tangent, bitangent);
   float radius = casters[chosen].radius * std::sqrt(aim.x), phi = 2 * pi * aim.y;
-  vec3 place = casters[chosen].center + radius * (std::cos(phi) * tangent + std::sin(phi) * bitangent);
+  vec3 place =
+      casters[chosen].center + radius * (std::cos(phi) * tangent + std::sin(phi) * bitangent);
   float density = 0;
   for (const CasterSphere& c : casters) {
     vec3 away = place - c.center;
@@ -95,7 +96,8 @@ EmittedRay aim_at_casters(const Transport& transport, std::span<const CasterSphe
 constexpr float same_surface = 0.7f;  // least cosine between normals
 constexpr float grazing = 1e-3f;      // photons flatter than this do not count
 
-// visit(at, counts) as for_each_photons has it, of those that count for a surface lit from before it.
+// visit(at, counts) as for_each_photons has it, of those that count for a surface lit from before
+// it.
 template <class Visit>
 void for_each_counting(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest,
                        PhotonCells& cells, const Visit& visit) {
@@ -121,8 +123,8 @@ vec3 sum_matt(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest, Phot
   return {lanes_sum(red), lanes_sum(green), lanes_sum(blue)};
 }
 
-// What such photons do by a bsdf that fits lanes, gathered until there are eight of them. Diffuse: to
-// be multiplied by the reflectance.
+// What such photons do by a bsdf that fits lanes, gathered until there are eight of them. Diffuse:
+// to be multiplied by the reflectance.
 struct Scattered {
   vec3 diffuse, specular;
 };

@@ -162,7 +162,8 @@ void compare_row(Band& band, int y, const Offset& offset, std::vector<int32_t>& 
     }
     if (offset.neighbour) {
       Lanes3 change = band.albedo.at(i) - band.albedo.at(j);
-      Lanes most = lanes_max(lanes_abs(change.x), lanes_max(lanes_abs(change.y), lanes_abs(change.z)));
+      Lanes most =
+          lanes_max(lanes_abs(change.x), lanes_max(lanes_abs(change.y), lanes_abs(change.z)));
       LaneMask edge = both & ((((a ^ b) & hit) != 0) | (seen & ((most > color_step) | ~goes_on)));
       add_bits(band.edge, i, edge);
       add_bits(band.edge, j, edge);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The discontinuity buffer (Wald et al. 2002, section 4.3): irradiance is averaged over neighbouring
-// pixels where the surface goes on, so that a pixel profits from its neighbours' sets of point lights;
-// reflectance is not touched, so textures stay sharp. Beyond the paper, neighbours belong to one object,
-// and distance is that from the tangent plane, which a floor seen at a grazing angle never fails.
+// The discontinuity buffer (Wald et al. 2002, section 4.3): irradiance is averaged over
+// neighbouring pixels where the surface goes on, so that a pixel profits from its neighbours' sets
+// of point lights; reflectance is not touched, so textures stay sharp. Beyond the paper, neighbours
+// belong to one object, and distance is that from the tangent plane, which a floor seen at a
+// grazing angle never fails.
 #pragma once
 #include <span>
 #include <vector>
@@ -23,18 +24,19 @@ struct DiscontinuitySettings {
 bool is_continuous(const Sample& a, const Sample& b, const DiscontinuitySettings& settings,
                    float pixel);
 
-// Is something to be seen between two neighbouring pixels that one ray each cannot show: the end of a
-// surface, or of its colour? Symmetric.
+// Is something to be seen between two neighbouring pixels that one ray each cannot show: the end of
+// a surface, or of its colour? Symmetric.
 bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& settings, float pixel);
 
-// samples[y * width + x].smooth becomes a weighted mean over the window's continuous neighbours. Where n
-// pixels are continuous with one and m with the other, each counts 1 / max(n, m) for the other and the
-// rest for itself: in the middle of a surface the plain mean, and nowhere is light won or lost, so that
-// a picture's mean stays what it was. Windows up to 7 x 7. `edges`, if wanted: of each pixel, not 0 where
-// is_edge between it and one of the eight around it. All cores.
+// samples[y * width + x].smooth becomes a weighted mean over the window's continuous neighbours.
+// Where n pixels are continuous with one and m with the other, each counts 1 / max(n, m) for the
+// other and the rest for itself: in the middle of a surface the plain mean, and nowhere is light
+// won or lost, so that a picture's mean stays what it was. Windows up to 7 x 7. `edges`, if wanted:
+// of each pixel, not 0 where is_edge between it and one of the eight around it. All cores.
 void filter_smooth(const View& view, const DiscontinuitySettings& settings,
                    std::span<Sample> samples, std::vector<uint8_t>* edges = nullptr);
-// By one window after the other, the same as filter_smooth by each; edges are those of the first one.
+// By one window after the other, the same as filter_smooth by each; edges are those of the first
+// one.
 void filter_windows(const View& view, std::span<const DiscontinuitySettings> windows,
                     std::span<Sample> samples, std::vector<uint8_t>* edges = nullptr);
 

@@ -56,14 +56,14 @@ void carry_hero(const WavelengthSpread& spread, BsdfSample& sample, Wavelengths&
 // Colour of what comes if the hero alone had brought it, over its colour now.
 vec3 hero_tint(const WavelengthSpread& spread);
 
-// Place of the one wavelength that is left; <0: the walk is in colour, or in a cluster, which is nearly
-// that.
+// Place of the one wavelength that is left; <0: the walk is in colour, or in a cluster, which is
+// nearly that.
 inline float hue_of(const Wavelengths& carried) {
   return carried.carried == 1 ? carried.place : -1;
 }
 // Walks of the eye and of light that meet are one walk where they have the same wavelength, which
-// by chance they never have: those within a bandwidth are taken for it, as photons within a radius are
-// for the same place. Factor on the product of both walks' colours; its mean over either hue is
+// by chance they never have: those within a bandwidth are taken for it, as photons within a radius
+// are for the same place. Factor on the product of both walks' colours; its mean over either hue is
 // that of one walk.
 inline constexpr float hue_bandwidth = 1.0f / 8;
 vec3 meet_hues(float eye, float light);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light where it starts: places on what shines, and rays that leave it, chosen by power. The other way
-// round from sample_light.h, which starts where light arrives.
+// Light where it starts: places on what shines, and rays that leave it, chosen by power. The other
+// way round from sample_light.h, which starts where light arrives.
 #pragma once
 #include <span>
 
@@ -17,7 +17,8 @@ struct Transport;
 // Sources are numbered: emitting triangles, then punctual lights, then the environment.
 struct EmissionChoice {
   AliasTable rays;    // all of them, by power
-  AliasTable places;  // those that light only a share of a picture's pixels each: see exact_punctual
+  AliasTable
+      places;  // those that light only a share of a picture's pixels each: see exact_punctual
   AliasTable caustics;  // sources of photons: without a sky that is the same all over
   bool exact_punctual = true;  // few punctual lights: every pixel asks each of them
   vec3 centre{0};              // of a sphere around the scene
@@ -37,8 +38,8 @@ struct EmitterPlace {
   bool double_sided = false;
 };
 EmitterPlace eval_emitter_place(const Transport& transport, uint32_t triangle, vec2 barycentric);
-// One of them, where its picture is bright if it has one; its radiance is divided by the density of the
-// choice, the triangle's area taken as 1.
+// One of them, where its picture is bright if it has one; its radiance is divided by the density of
+// the choice, the triangle's area taken as 1.
 EmitterPlace sample_emitter_place(const Transport& transport, uint32_t triangle, vec2 u);
 
 // A ray of light. Sums over many, each divided by their number, are the light of the scene.

@@ -14,13 +14,15 @@ void part_seen_colors(const Transport& transport, const Walk& walk, const Surfac
                       Sampler& sampler, Bsdf& bsdf, std::optional<WavelengthSpread>& spread) {
   if (!parts_colors(transport, walk.media, surface)) return;
   float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
-  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, u, bsdf, spread);
+  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, u, bsdf,
+              spread);
 }
 
 namespace {
 
-// What is seen in mirrors is not filtered, so more than one set lights it; a faint image makes do with
-// fewer of the lights, asked of each set, and so does what is gathered from nearby, a small part of all.
+// What is seen in mirrors is not filtered, so more than one set lights it; a faint image makes do
+// with fewer of the lights, asked of each set, and so does what is gathered from nearby, a small
+// part of all.
 constexpr int mirror_sets = 2, near_lights = 2, chained_lights = 6, most_lights = 16;
 int mirror_lights(const Walk& walk) {
   float bright = max_component(walk.throughput);

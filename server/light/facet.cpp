@@ -18,7 +18,8 @@ FacetPicture place_picture(const World& world, const Facet& facet, const Texture
   p.corner = at(0), p.edge1 = at(1) - p.corner, p.edge2 = at(2) - p.corner;
   const Image& of = scene.images[size_t(image)];
   float area = 0.5f * std::abs(p.edge1.x * p.edge2.y - p.edge1.y * p.edge2.x);
-  p.texels = std::sqrt(area * float(of.width) * float(of.height)) / std::max(facet.root_area, 1e-20f);
+  p.texels =
+      std::sqrt(area * float(of.width) * float(of.height)) / std::max(facet.root_area, 1e-20f);
   p.known = true;
   return p;
 }

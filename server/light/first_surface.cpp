@@ -25,8 +25,8 @@ void add_reflection(FirstSurface& first, float& reflections, const Surface& surf
   advance(first.reflection, surface, unit);
 }
 
-// Rough gloss looks nearly the same from everywhere: as a share of the reflectance it may be filtered
-// with the diffuse light.
+// Rough gloss looks nearly the same from everywhere: as a share of the reflectance it may be
+// filtered with the diffuse light.
 KeptReflectance keep(vec3 diffuse, vec3 metal, float alpha, bool transmits) {
   KeptReflectance kept;
   kept.diffuse = max_component(diffuse) > least_albedo;

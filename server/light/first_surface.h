@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the eye sees first. Clear thin panes are looked through; what is behind them is described in the
-// Sample, and one of their mirror images, chosen by how bright it may be, is left to be followed.
+// What the eye sees first. Clear thin panes are looked through; what is behind them is described in
+// the Sample, and one of their mirror images, chosen by how bright it may be, is left to be
+// followed.
 #pragma once
 #include "light/walk.h"
 
@@ -13,7 +14,8 @@ struct FirstSurface {
   Bsdf bsdf;
   vec3 tint{1};  // by panes and by what the ray ran in
   bool mirrored = false;
-  Walk reflection;  // if mirrored: carries what the panes reflect, divided by the chance of the choice
+  Walk reflection;  // if mirrored: carries what the panes reflect, divided by the chance of the
+                    // choice
 };
 
 // Fills `sample` with place, normal, object and what is emitted towards the eye. At least one edge.
@@ -31,8 +33,8 @@ void describe_sky(const Transport& transport, vec3 direction, vec3 tint, Sample&
 
 inline constexpr float least_albedo = 1e-4f;  // below it nothing is diffuse
 
-// What of a first surface's reflectance is kept apart as Sample::albedo: the diffuse layer's, else a
-// soft metal's.
+// What of a first surface's reflectance is kept apart as Sample::albedo: the diffuse layer's, else
+// a soft metal's.
 inline constexpr float least_kept_metal = 0.02f;      // of every channel
 inline constexpr float least_soft_roughness = 0.346f;
 struct KeptReflectance {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Technique `gather`: path tracing whose walks end where a wide ray meets light that is already known
-// (RadianceGrid). Static light and geometry make that light worth keeping; one gathering bounce hides its
-// cells. Without a grid it is `path`.
+// Technique `gather`: path tracing whose walks end where a wide ray meets light that is already
+// known (RadianceGrid). Static light and geometry make that light worth keeping; one gathering
+// bounce hides its cells. Without a grid it is `path`.
 #include "light/lamps.h"
 #include "light/radiance_grid.h"
 #include "light/technique_list.h"

@@ -16,8 +16,8 @@ namespace wellspring {
 namespace {
 
 constexpr int pixels_a_candidate = 2048;
-// First passes of a picture whose irradiance is averaged over more than the paper's window; the mean of
-// many passes has ever less of that blur.
+// First passes of a picture whose irradiance is averaged over more than the paper's window; the
+// mean of many passes has ever less of that blur.
 constexpr uint32_t wide_passes = 4;
 
 // One request on its way.
@@ -43,7 +43,8 @@ void split_first(Eye& eye) {
   if (bsdf.alpha < 0.1f && bsdf.diffuse_share < 0.5f) eye.sample.flags |= sample_specular;
 }
 
-// The components of the first scattering, each on its own (section 4: the eye's path is split once).
+// The components of the first scattering, each on its own (section 4: the eye's path is split
+// once).
 void follow_first(const EyeLight& light, Eye& eye) {
   const Transport& transport = light.transport;
   const FirstSurface& first = eye.first;
@@ -97,7 +98,8 @@ void trace_others(const Transport& transport, const InstantPass& pass, int max_d
   GroupOrder order;
   for (size_t i = 0; i < numbers.size(); i++) {
     const Request& request = requests[numbers[i]];
-    Eye& eye = eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, {}, {}, false, {}, {}});
+    Eye& eye =
+        eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, {}, {}, false, {}, {}});
     eye.group = group_of_pixel(pass, request.pixel);
     if (max_depth < 1) continue;
     eye.first = find_first_surface(transport, max_depth, request, eye.sampler, eye.sample);
@@ -124,8 +126,8 @@ void trace_others(const Transport& transport, const InstantPass& pass, int max_d
                    eye.first.walk.depth, mirror_alpha};
     }
     int set = set_of_list(pass, group.list);
-    shade_by_point_lights(transport, pass, {set, 0, 1, 0, group.region, group.list}, max_depth, places,
-                          count, light);
+    shade_by_point_lights(transport, pass, {set, 0, 1, 0, group.region, group.list}, max_depth,
+                          places, count, light);
     if (!pass.photons.empty()) {
       PhotonCells cells;
       for (int i = 0; i < count; i++)
@@ -134,7 +136,8 @@ void trace_others(const Transport& transport, const InstantPass& pass, int max_d
     for (int i = 0; i < count; i++) eyes[items[i]].light = light[i];
   }
   for (size_t i = 0; i < eyes.size(); i++) {
-    if (max_depth >= 1) finish({transport, pass, max_depth, set_of_list(pass, eyes[i].group.list)}, eyes[i]);
+    if (max_depth >= 1)
+      finish({transport, pass, max_depth, set_of_list(pass, eyes[i].group.list)}, eyes[i]);
     samples[numbers[i]] = eyes[i].sample;
   }
 }
@@ -170,7 +173,8 @@ Sample trace_instant(const World& world, const Lights& lights, const TransportSe
 
 void begin_instant(const World& world, const TransportSettings& settings, const View& view,
                    uint64_t seed, uint32_t index, Lights& lights) {
-  // A small picture has no use for more photons than pixels, and choosing must cost less than it saves.
+  // A small picture has no use for more photons than pixels, and choosing must cost less than it
+  // saves.
   TransportSettings here = settings;
   int pixels = std::max(64, view.width * view.height);
   here.instant.photons = std::min(settings.instant.photons, pixels);
@@ -193,8 +197,8 @@ void finish_instant(const World& world, const Lights& lights, const View& view,
   settings.columns = pass.columns;
   settings.rows = pass.rows;
   std::vector<uint8_t> edges;
-  // Lists of lights interleave more coarsely than sets: the second window takes what is left of their
-  // pattern.
+  // Lists of lights interleave more coarsely than sets: the second window takes what is left of
+  // their pattern.
   DiscontinuitySettings windows[2] = {settings, settings};
   windows[1].columns = windows[1].rows = windows[1].step = 3;
   bool both = pass.index < wide_passes && pass.sets() > 1;

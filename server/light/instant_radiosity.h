@@ -3,26 +3,26 @@
 // Illumination using Fast Ray Tracing" (2002), section 4, after Keller, "Instant Radiosity" (1997).
 //
 // Light is made into point lights by quasi-random walks; a pixel asks those of its set, one of
-// columns x rows (section 4.2), and finish_pass averages neighbours of all sets (section 4.3). Every
-// path of light has one way of being found, told by its scatterings counted from the eye, sharp or
-// rough (light_walk.h):
+// columns x rows (section 4.2), and finish_pass averages neighbours of all sets (section 4.3).
+// Every path of light has one way of being found, told by its scatterings counted from the eye,
+// sharp or rough (light_walk.h):
 //   eye, sharp ...                  followed by rays
-//   rough, then a light or rough    point lights; where they are nearer than `clip`, clipped, and what
+//   rough, then a light or rough    point lights; where they are nearer than `clip`, clipped, and
+//   what
 //                                   clipping took is gathered by a ray or missing
 //   rough, then sharp ..., a light  caustic photons (section 4.1; caustic_photons.h)
 //   rough, then sharp ..., rough    gathered by a ray
-// Differs from the paper: lights are chosen by their effect on the view (view_probes.h) and of those a
-// few for each region of the picture (region_lights.h), so that there are many more lights than shadow
-// rays of a pixel, in lists that interleave in a pattern of their own, twice as wide as that of sets; the
-// first passes' irradiance is averaged over that pattern, too, which later passes make good; edges get
-// more rays from the eye (edge_samples.h); Owen scrambling,
-// which adds to the paper's XOR by a random bit vector only that the vector depends on the bits before,
-// and decorrelates the dimensions of the shared Sampler better;
-// rays instead of nothing for the last line; sets complement each other over passes as well.
-// Walks of light and of the eye that meet dispersive glass carry wavelengths from there (dispersion.h).
-// Where both do, they are joined if their hues are near each other (meet_hues): a blur along the
-// spectrum, as that of photons is one along the surface.
-// Not claimed: light of moving emitters.
+// Differs from the paper: lights are chosen by their effect on the view (view_probes.h) and of
+// those a few for each region of the picture (region_lights.h), so that there are many more lights
+// than shadow rays of a pixel, in lists that interleave in a pattern of their own, twice as wide as
+// that of sets; the first passes' irradiance is averaged over that pattern, too, which later passes
+// make good; edges get more rays from the eye (edge_samples.h); Owen scrambling, which adds to the
+// paper's XOR by a random bit vector only that the vector depends on the bits before, and
+// decorrelates the dimensions of the shared Sampler better; rays instead of nothing for the last
+// line; sets complement each other over passes as well. Walks of light and of the eye that meet
+// dispersive glass carry wavelengths from there (dispersion.h). Where both do, they are joined if
+// their hues are near each other (meet_hues): a blur along the spectrum, as that of photons is one
+// along the surface. Not claimed: light of moving emitters.
 #pragma once
 #include <memory>
 #include <vector>
@@ -60,7 +60,8 @@ struct RegionLight {
 };
 struct RegionLights {
   static constexpr int across = 4;  // pixels of one list in a row of a region: 16 are a packet
-  static constexpr int finer = 2;   // lists interleave as sets do, in a pattern so many times as wide
+  static constexpr int finer =
+      2;  // lists interleave as sets do, in a pattern so many times as wide
   int width = 0, height = 0;        // pixels of a region
   int columns = 0;                  // 0: no regions, every pixel asks its whole set
   std::vector<uint32_t> first;      // of region * lists + list, and the end

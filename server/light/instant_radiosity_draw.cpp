@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The point lights of a pass: section 4.4 of the paper. All sets and passes of one seed draw from one
-// randomised low-discrepancy sequence, each a subsequence after the other's, dimensions padded by
-// replication (Kollig and Keller 2001): that is Sampler.
+// The point lights of a pass: section 4.4 of the paper. All sets and passes of one seed draw from
+// one randomised low-discrepancy sequence, each a subsequence after the other's, dimensions padded
+// by replication (Kollig and Keller 2001): that is Sampler.
 #include <algorithm>
 #include <cmath>
 
@@ -200,9 +200,9 @@ InstantPass start_pass(const Transport& transport, const InstantRadiositySetting
   return pass;
 }
 
-// A point light stands for the surface around it. Nearer than a few times that surface's width, about
-// sqrt(area / lights), the estimate is one of few lights, which is noise that neighbours share: what a ray
-// gathers instead is noise of each pixel, which the filter takes away.
+// A point light stands for the surface around it. Nearer than a few times that surface's width,
+// about sqrt(area / lights), the estimate is one of few lights, which is noise that neighbours
+// share: what a ray gathers instead is noise of each pixel, which the filter takes away.
 float clip_distance(const InstantRadiositySettings& s, float size, int lights) {
   return s.clip >= 0 ? s.clip : size * std::min(0.25f, 5 / std::sqrt(float(std::max(lights, 1))));
 }

@@ -18,7 +18,8 @@ constexpr int never = 1 << 28;
 
 std::vector<char> states_of(const World& world) {
   std::vector<char> on;
-  for (size_t lamp = 0; lamp < world.scene().lamps.size(); lamp++) on.push_back(world.is_on(int(lamp)));
+  for (size_t lamp = 0; lamp < world.scene().lamps.size(); lamp++)
+    on.push_back(world.is_on(int(lamp)));
   return on;
 }
 
@@ -32,7 +33,8 @@ Shining shining(const Scene& scene, char others, const std::function<char(size_t
   Shining shining{std::vector<char>(scene.materials.size(), others),
                   std::vector<char>(scene.lights.size(), others), bool(others)};
   for (size_t lamp = 0; lamp < scene.lamps.size(); lamp++) {
-    for (int material : scene.lamps[lamp].materials) shining.materials[size_t(material)] = is_on(lamp);
+    for (int material : scene.lamps[lamp].materials)
+      shining.materials[size_t(material)] = is_on(lamp);
     for (int light : scene.lamps[lamp].lights) shining.lights[size_t(light)] = is_on(lamp);
   }
   return shining;
@@ -95,7 +97,8 @@ void LightChange::fill_cells(const Scene& scene, const Lights& all, std::span<co
                              std::span<const char> after) {
   std::vector<char> switched(scene.materials.size(), 0);
   for (size_t lamp = 0; lamp < before.size(); lamp++)
-    for (int material : scene.lamps[lamp].materials) switched[size_t(material)] = before[lamp] != after[lamp];
+    for (int material : scene.lamps[lamp].materials)
+      switched[size_t(material)] = before[lamp] != after[lamp];
   std::vector<vec3> shining;
   for (const EmitterTriangle& e : all.tables->emitters)
     if (switched[size_t(scene.meshes[size_t(scene.instances[e.instance].mesh)].material)])
@@ -125,7 +128,8 @@ void LightChange::fill_cells(const Scene& scene, const Lights& all, std::span<co
   }
 }
 
-// Steps from cell to cell to the nearest of which `is_from` says so, visited nearest first: `visit(cell, from)`.
+// Steps from cell to cell to the nearest of which `is_from` says so, visited nearest first:
+// `visit(cell, from)`.
 template <class IsFrom, class Visit>
 std::vector<int> LightChange::steps_from(const IsFrom& is_from, const Visit& visit) const {
   std::vector<int> steps(cells_.size(), never);
@@ -133,14 +137,16 @@ std::vector<int> LightChange::steps_from(const IsFrom& is_from, const Visit& vis
   for (int z = 0; z < size_.z; z++)
     for (int y = 0; y < size_.y; y++)
       for (int x = 0; x < size_.x; x++)
-        if (is_from(cells_[index_of({x, y, z})])) edge.push_back({x, y, z}), steps[index_of({x, y, z})] = 0;
+        if (is_from(cells_[index_of({x, y, z})]))
+          edge.push_back({x, y, z}), steps[index_of({x, y, z})] = 0;
   for (int step = 1; !edge.empty(); step++) {
     for (glm::ivec3 at : edge)
       for (int axis = 0; axis < 3; axis++)
         for (int side : {-1, 1}) {
           glm::ivec3 beside = at;
           beside[axis] += side;
-          if (beside[axis] < 0 || beside[axis] >= size_[axis] || steps[index_of(beside)] != never) continue;
+          if (beside[axis] < 0 || beside[axis] >= size_[axis] || steps[index_of(beside)] != never)
+            continue;
           steps[index_of(beside)] = step;
           visit(index_of(beside), index_of(at));
           next.push_back(beside);
@@ -151,13 +157,15 @@ std::vector<int> LightChange::steps_from(const IsFrom& is_from, const Visit& vis
   return steps;
 }
 
-// What nothing is known of is as the nearest cell is of which something is. It changes where something does
-// that is not much farther: what is asked for in vain costs less than what stays wrong.
+// What nothing is known of is as the nearest cell is of which something is. It changes where
+// something does that is not much farther: what is asked for in vain costs less than what stays
+// wrong.
 void LightChange::guess_unknown() {
-  std::vector<int> to_change = steps_from([](const Known& k) { return k.changes; }, [](size_t, size_t) {});
-  std::vector<int> to_known = steps_from([](const Known& k) { return k.weight > 0; }, [&](size_t at, size_t from) {
-    cells_[at] = cells_[from];
-  });
+  std::vector<int> to_change =
+      steps_from([](const Known& k) { return k.changes; }, [](size_t, size_t) {});
+  std::vector<int> to_known =
+      steps_from([](const Known& k) { return k.weight > 0; },
+                 [&](size_t at, size_t from) { cells_[at] = cells_[from]; });
   for (size_t i = 0; i < cells_.size(); i++)
     if (to_known[i] > 0) cells_[i].changes = to_change[i] <= 2 * to_known[i] + 1;
 }

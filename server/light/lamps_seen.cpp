@@ -66,15 +66,17 @@ void visit(const Transport& transport, const LampsSeen& seen, const std::vector<
   for (int i = 0; i < tables.few_punctual.count; i++) {
     size_t lamp = size_t(i);
     if (!(effects.effect[lamp] > 0) || (known && known->tests[lamp] >= enough_tests)) continue;
-    vec3 arrives = eval_visibility(transport, place, towards(tables.punctual[lamp], place.position));
+    vec3 arrives =
+        eval_visibility(transport, place, towards(tables.punctual[lamp], place.position));
     to.tested |= 1u << i;
     to.arrived[lamp] = glm::clamp(max_component(arrives), 0.0f, 1.0f);
   }
 }
 
-// A walk over the scene's surfaces, which scatter it as matt ones do, whatever they are; glass lets it pass.
-void walk_once(const Transport& transport, const LampsSeen& seen, const std::vector<Tally>& tallies, vec3 origin,
-               Sampler& sampler, Visit* visits) {
+// A walk over the scene's surfaces, which scatter it as matt ones do, whatever they are; glass lets
+// it pass.
+void walk_once(const Transport& transport, const LampsSeen& seen, const std::vector<Tally>& tallies,
+               vec3 origin, Sampler& sampler, Visit* visits) {
   const World& world = transport.world;
   Ray ray;
   ray.origin = origin;
@@ -86,7 +88,8 @@ void walk_once(const Transport& transport, const LampsSeen& seen, const std::vec
     if (!world.is_moving(hit.instance) && world.material_of(hit.instance).transmission == 0) {
       visit(transport, seen, tallies, place, visits[step]);
       vec3 local = sample_cosine_hemisphere(sampler.next2()), n = place.geometric_normal;
-      vec3 across = normalize(std::abs(n.x) > 0.5f ? cross(n, vec3(0, 1, 0)) : cross(n, vec3(1, 0, 0)));
+      vec3 across =
+          normalize(std::abs(n.x) > 0.5f ? cross(n, vec3(0, 1, 0)) : cross(n, vec3(1, 0, 0)));
       ray.direction = normalize(local.x * across + local.y * cross(n, across) + local.z * n);
     }
     ray.origin = offset_origin(place, ray.direction);
@@ -95,8 +98,9 @@ void walk_once(const Transport& transport, const LampsSeen& seen, const std::vec
 
 }  // namespace
 
-std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport, std::span<const vec3> places,
-                                                  float cell, const LampsSeenSettings& settings) {
+std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport,
+                                                  std::span<const vec3> places, float cell,
+                                                  const LampsSeenSettings& settings) {
   if (transport.tables.few_punctual.count < 2 || places.empty()) return nullptr;
   auto seen = std::make_shared<LampsSeen>();
   seen->cell = cell;

@@ -53,20 +53,21 @@ void unite(LightClusters& all, size_t c) {
   all.inverse_power[c] = 1 / power;
 }
 
-// A cosine for all lights of a cluster, that of its centre being `middle` and each of theirs within `reach`
-// of it: not 0 where any of theirs may be above 0.
+// A cosine for all lights of a cluster, that of its centre being `middle` and each of theirs within
+// `reach` of it: not 0 where any of theirs may be above 0.
 Lanes lit_cosine(Lanes middle, Lanes reach, LaneMask both_sides) {
   Lanes least = 0.25f * (middle + reach);
   least = both_sides ? lanes_max(-middle, 0.25f * reach) : lanes_max(least, Lanes{});
   return lanes_max(middle, least);
 }
 
-// Irradiance by the clusters of a row as if each were one light, as eval_unshadowed has it, and the bits
-// of those too near for that.
+// Irradiance by the clusters of a row as if each were one light, as eval_unshadowed has it, and the
+// bits of those too near for that.
 Lanes eval_row(const ClusterRow& row, const LitPoint& point, float most, unsigned& near) {
   const Lanes one = all_lanes(1.0f);
   const vec3 place = point.position;
-  Lanes x = row.x - place.x * row.near, y = row.y - place.y * row.near, z = row.z - place.z * row.near;
+  Lanes x = row.x - place.x * row.near, y = row.y - place.y * row.near,
+        z = row.z - place.z * row.near;
   Lanes inverse = one / lanes_sqrt(lanes_max(x * x + y * y + z * z, all_lanes(1e-20f)));
   Lanes reach = lanes_min(row.radius * inverse, one);
   near |= negative_lanes(reach > 1 / near_radii);
@@ -101,8 +102,8 @@ LightClusters make_light_clusters(const LightTables& tables, const InstantPass& 
 
 bool share_lights(const LightClusters& clusters, float clip, std::span<const LitPoint> points,
                   ClusterShares& shares) {
-  // Of every so many clusters that are asked light by light, what they do together is guessed: it is
-  // only the weight of a place.
+  // Of every so many clusters that are asked light by light, what they do together is guessed: it
+  // is only the weight of a place.
   constexpr size_t guessed = 8;
   const float most = most_of_clip(clip);
   const size_t count = std::min(points.size(), most_points), rows = clusters.rows.size();

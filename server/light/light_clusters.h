@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pass's point lights in clusters of eight neighbours, to find out quickly what each may do to a
-// few places: clusters far away are asked as one light, near ones light by light. After Walter et al.,
-// "Lightcuts: A Scalable Approach to Illumination" (2005), with one level; what comes out is a chance to
-// be chosen, never light.
+// few places: clusters far away are asked as one light, near ones light by light. After Walter et
+// al., "Lightcuts: A Scalable Approach to Illumination" (2005), with one level; what comes out is a
+// chance to be chosen, never light.
 #pragma once
 #include <span>
 #include <vector>

@@ -89,7 +89,8 @@ LitPoint make_lit_point(vec3 position, const Bsdf& bsdf) {
 
 int choose_place_lights(const InstantPass& pass, int set, vec3 place, const Bsdf& bsdf, int asked,
                         float u, std::span<RegionLight> chosen) {
-  // Of a large set, groups far from each other: an estimate of all costs more than the rays it saves.
+  // Of a large set, groups far from each other: an estimate of all costs more than the rays it
+  // saves.
   constexpr size_t most_groups = 12;
   if (asked < 1 || !pass.lanes) return 0;
   const LightLanes& all = *pass.lanes;

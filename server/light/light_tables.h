@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What make_lights() gathers from a world: the plan of what matters there, and only what that plan
-// uses: every emitting triangle in world space with its chance of being picked, punctual lights, the
-// environment, and what the shading loop wants to know of each material.
+// uses: every emitting triangle in world space with its chance of being picked, punctual lights,
+// the environment, and what the shading loop wants to know of each material.
 #pragma once
 #include <vector>
 
@@ -56,7 +56,8 @@ struct LightTables {
   std::vector<SpotCone> cones;          // of each of them
   std::vector<uint32_t> punctual_index;  // of each of them, in that list where all lamps are on
   FewLights few_punctual;               // all of them, where they are few
-  // Where there are many: the near ones (point, spot) by power and place, the distant ones by power.
+  // Where there are many: the near ones (point, spot) by power and place, the distant ones by
+  // power.
   LightTree near_choice, distant_choice;
   Bounds bounds;            // of what stands still
   float emitter_share = 0;  // of samples spent on emitters; the rest of area light is environment

@@ -10,8 +10,8 @@
 namespace wellspring {
 namespace {
 
-// Veach 1997, equation 5.19: flux is conserved per geometric area, lobes are written for the shading
-// normal.
+// Veach 1997, equation 5.19: flux is conserved per geometric area, lobes are written for the
+// shading normal.
 float adjoint_factor(const Bsdf& bsdf, vec3 came_from, vec3 direction) {
   float in = std::abs(dot(came_from, bsdf.geometric_normal));
   float out = std::abs(dot(direction, bsdf.normal));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light on its way from a source, the other way round from walk.h: flux instead of radiance. Scattering
-// is the adjoint of what the eye sees (Veach 1997, sections 5.2 and 5.3: squared indices at refraction,
-// shading normals), so that both ways agree on every path.
+// Light on its way from a source, the other way round from walk.h: flux instead of radiance.
+// Scattering is the adjoint of what the eye sees (Veach 1997, sections 5.2 and 5.3: squared indices
+// at refraction, shading normals), so that both ways agree on every path.
 //
 // A scattering is `sharp` where a lobe smoother than caustic_roughness did it. Sharp and rough
 // scatterings are told apart so that each path of light is found by one technique only.
@@ -43,12 +43,13 @@ struct Arrival {
 // Where the ray ends; false: nowhere, or without light.
 bool arrive(const Transport& transport, LightWalk& walk, Arrival& arrival);
 
-// Sends the walk on by a sample of sample_bsdf(arrival.bsdf); false: it ends, which it does at random
-// so that what goes on is as bright as what came.
+// Sends the walk on by a sample of sample_bsdf(arrival.bsdf); false: it ends, which it does at
+// random so that what goes on is as bright as what came.
 bool scatter(LightWalk& walk, const Arrival& arrival, const BsdfSample& scattered,
              Sampler& sampler);
 
-// Where the surface parts colours: `arrival.bsdf` becomes that of the wavelength that leads from here.
+// Where the surface parts colours: `arrival.bsdf` becomes that of the wavelength that leads from
+// here.
 void part_arrival(const Transport& transport, const LightWalk& walk, Sampler& sampler,
                   Arrival& arrival, std::optional<WavelengthSpread>& spread);
 // Sends the walk on by a sample of some lobes; `spread`: part_arrival's.

@@ -117,8 +117,9 @@ size_t bytes_of(const std::vector<T>& v) {
 }  // namespace
 
 size_t light_table_bytes(const LightTables& t) {
-  size_t bytes = bytes_of(t.emitters) + bytes_of(t.emitter_power) + bytes_of(t.environment.cells.cells) +
-                 bytes_of(t.punctual) + bytes_of(t.cones) + bytes_of(t.punctual_index);
+  size_t bytes = bytes_of(t.emitters) + bytes_of(t.emitter_power) +
+                 bytes_of(t.environment.cells.cells) + bytes_of(t.punctual) + bytes_of(t.cones) +
+                 bytes_of(t.punctual_index);
   for (const LightTree* tree : {&t.emitter_choice, &t.near_choice, &t.distant_choice})
     bytes += bytes_of(tree->nodes) + bytes_of(tree->leaf_of) + bytes_of(tree->strengths.cells) +
              bytes_of(tree->shining);
@@ -145,8 +146,9 @@ namespace {
 void choose_sources(const Scene& scene, const Shining& shining, LightTables& tables) {
   using enum TransportPart;
   const TransportPlan& plan = tables.plan;
-  tables.emitter_choice = make_emitter_tree(
-      tables.emitters, tables.emitter_power, plan.uses(light_tree) ? LightChoice::by_place : LightChoice::by_strength);
+  tables.emitter_choice =
+      make_emitter_tree(tables.emitters, tables.emitter_power,
+                        plan.uses(light_tree) ? LightChoice::by_place : LightChoice::by_strength);
   float radius = 0.5f * length(tables.bounds.high - tables.bounds.low);
   if (!std::isfinite(radius)) radius = 1;
   const EnvironmentLight& sky = tables.environment;
@@ -223,7 +225,8 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   return {tables, std::make_shared<std::atomic<uint64_t>>(0), nullptr};
 }
 
-std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene, const Shining& shining) {
+std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene,
+                                         const Shining& shining) {
   auto tables = std::make_shared<LightTables>(all);
   for (size_t i = 0; i < tables->emitters.size(); i++) {
     EmitterTriangle& e = tables->emitters[i];

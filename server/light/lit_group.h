@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Up to 16 places side by side, and one point light as each of them sees it. A lane's answer does not
-// depend on the others.
+// Up to 16 places side by side, and one point light as each of them sees it. A lane's answer does
+// not depend on the others.
 #pragma once
 #include "base/lanes3.h"
 #include "light/instant_radiosity.h"
@@ -46,12 +46,12 @@ struct SeenLight {
   GroupLane distance2;   // squared length of direction
   GroupLane cosine;      // at the surface, unit
   GroupLane strength;    // incident light at a facing surface is this times the light's radiance
-  RayPacket rays;        // from it to where they would leave each surface, which is at t = 1; or on to
-                         // infinity. Rays with one origin make a narrower packet than rays with one end.
+  RayPacket rays;  // from it to where they would leave each surface, which is at t = 1; or on to
+                   // infinity. Rays with one origin make a narrower packet than rays with one end.
 };
 
 // `radiance`: the light's, a punctual light's by its intensity.
-void see_light(const LightTables& tables, const LitGroup& group, const PointLight& light, float clip2,
-               SeenLight& seen, vec3& radiance);
+void see_light(const LightTables& tables, const LitGroup& group, const PointLight& light,
+               float clip2, SeenLight& seen, vec3& radiance);
 
 }  // namespace wellspring

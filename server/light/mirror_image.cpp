@@ -9,7 +9,7 @@ namespace {
 
 constexpr int most_surfaces = 6;     // of a chain
 constexpr float aside = 1e-3f;       // radians, and metres a metre of the way: between neighbours
-constexpr float nearest = 0.05f;     // of the first surface's distance: a place right before the eye
+constexpr float nearest = 0.05f;  // of the first surface's distance: a place right before the eye
 constexpr float farthest = 1000;     // likewise: as good as infinitely far
 
 // What one specular surface of the chain is and does.
@@ -25,7 +25,8 @@ struct Chain {
 };
 
 // The stronger of mirror image and refraction.
-BsdfSample turn_at(const Surface& surface, const Bsdf& bsdf, const Material& material, vec3 direction) {
+BsdfSample turn_at(const Surface& surface, const Bsdf& bsdf, const Material& material,
+                   vec3 direction) {
   vec3 n = dot(bsdf.normal, direction) > 0 ? -bsdf.normal : bsdf.normal;
   BsdfSample turned;
   turned.weight = vec3(1);
@@ -49,7 +50,8 @@ BsdfSample turn_at(const Surface& surface, const Bsdf& bsdf, const Material& mat
 
 // Follows the walk to where something scatters. Of a `known` chain it must do the same, and ends in
 // the plane where that does. False: not so, or there is nothing specular.
-bool follow_chain(const Transport& transport, Walk walk, Hit hit, const Chain* known, Chain& chain) {
+bool follow_chain(const Transport& transport, Walk walk, Hit hit, const Chain* known,
+                  Chain& chain) {
   for (;;) {
     if (known && chain.count == known->count) {
       chain.sky = known->sky;
@@ -104,18 +106,20 @@ float find_image_distance(const Transport& transport, const Walk& begun, const H
   if (chain.turns[0].bounce != Bounce::reflect) return 0;
   vec3 d = begun.ray.direction;
   vec3 u = normalize(std::abs(d.y) < 0.9f ? cross(d, vec3(0, 1, 0)) : cross(d, vec3(1, 0, 0)));
-  // The end's motion by a step of the eye, and by a turn of the ray: both together leave it where it
-  // is when the ray turns about the image.
+  // The end's motion by a step of the eye, and by a turn of the ray: both together leave it where
+  // it is when the ray turns about the image.
   float step = aside * hit.t, both = 0, turning = 0;
   for (vec3 axis : {u, cross(u, d)}) {
     Walk stepped = begun, turned = begun;
     stepped.ray.origin += step * axis;
     turned.ray.direction = normalize(d + aside * axis);
     Chain by_step, by_turn;
-    if (!follow_chain(transport, stepped, transport.world.intersect(stepped.ray), &chain, by_step) ||
+    if (!follow_chain(transport, stepped, transport.world.intersect(stepped.ray), &chain,
+                      by_step) ||
         !follow_chain(transport, turned, transport.world.intersect(turned.ray), &chain, by_turn))
       return 0;
-    vec3 moved = (by_step.place - chain.place) / step, swept = (by_turn.place - chain.place) / aside;
+    vec3 moved = (by_step.place - chain.place) / step,
+         swept = (by_turn.place - chain.place) / aside;
     both += dot(moved, swept);
     turning += dot(swept, swept);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where light may pass straight through thin glass: shadow rays elsewhere only ask whether anything is in
-// between.
+// Where light may pass straight through thin glass: shadow rays elsewhere only ask whether anything
+// is in between.
 #pragma once
 #include <vector>
 

@@ -35,7 +35,8 @@ PhotonGrid make_photon_grid(const std::vector<Photon>& photons, float radius) {
     for (PhotonColumn* column : {&columns->x, &columns->y, &columns->z})
       column->values.assign(room, 0.0f);
   grid.depth.values.assign(room, 0.0f);
-  bool hued = std::any_of(photons.begin(), photons.end(), [](const Photon& p) { return p.hue >= 0; });
+  bool hued =
+      std::any_of(photons.begin(), photons.end(), [](const Photon& p) { return p.hue >= 0; });
   if (hued) grid.hue.values.assign(room, -1.0f);
   std::vector<uint32_t> next(grid.first.begin(), grid.first.end() - 1);
   for (size_t i = 0; i < photons.size(); i++) {

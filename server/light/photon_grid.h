@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photons found by place: a grid of cells twice the query's radius wide, hashed, so that a query looks
-// at 8 cells and nothing is stored for empty ones (Wald et al. 2002, section 4.1). The radius is fixed
-// when the grid is made. Photons lie side by side, cell by cell, and are looked at eight at a time.
+// Photons found by place: a grid of cells twice the query's radius wide, hashed, so that a query
+// looks at 8 cells and nothing is stored for empty ones (Wald et al. 2002, section 4.1). The radius
+// is fixed when the grid is made. Photons lie side by side, cell by cell, and are looked at eight
+// at a time.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -60,8 +61,8 @@ inline uint32_t photon_bucket(const PhotonGrid& grid, int64_t x, int64_t y, int6
   return uint32_t((hash ^ hash >> 32) * 0xd6e8feb86659fd93ull >> 32) & grid.mask;
 }
 
-// The photons around places between the same eight cells' middles. Neighbouring places mostly have the
-// same, so whoever asks for many in a row keeps this.
+// The photons around places between the same eight cells' middles. Neighbouring places mostly have
+// the same, so whoever asks for many in a row keeps this.
 struct PhotonCells {
   double x, y, z;  // number of the first cell
   int count = -1;  // runs of photons; -1: none asked for yet

@@ -34,7 +34,8 @@ LitGroup make_group(const LitPlace* places, int count) {
 }
 
 // What of the light arrives through thin panes where something is in between.
-vec3 through_panes(const Transport& transport, const LitGroup& group, const SeenLight& seen, int i) {
+vec3 through_panes(const Transport& transport, const LitGroup& group, const SeenLight& seen,
+                   int i) {
   vec3 origin{seen.rays.origin_x[i], seen.rays.origin_y[i], seen.rays.origin_z[i]};
   vec3 way{seen.rays.direction_x[i], seen.rays.direction_y[i], seen.rays.direction_z[i]};
   Ray ray;
@@ -53,7 +54,8 @@ vec3 through_panes(const Transport& transport, const LitGroup& group, const Seen
 }
 
 void add_lane(const Transport& transport, const LitPlace& place, const PointLight& light,
-              const InstantPass& pass, const SeenLight& seen, vec3 radiance, int i, PlaceLight& sum) {
+              const InstantPass& pass, const SeenLight& seen, vec3 radiance, int i,
+              PlaceLight& sum) {
   if (light.hue >= 0) radiance *= meet_hues(place.hue(), light.hue);
   float distance = std::sqrt(seen.distance2[i]);
   vec3 direction = seen.direction.at(i) / distance;

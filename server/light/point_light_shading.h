@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the point lights of one set do to places (first sum of the paper's section 4). Up to 16 places at
-// once, for each light in turn: neighbours' shadow rays to one light are nearly the same ray.
+// What the point lights of one set do to places (first sum of the paper's section 4). Up to 16
+// places at once, for each light in turn: neighbours' shadow rays to one light are nearly the same
+// ray.
 #pragma once
 #include <span>
 

@@ -18,7 +18,8 @@ constexpr int most_vertices = 12;    // of a walk that are remembered
 constexpr float lamp_cells = 2;      // times as wide as cells of light are those of lamps seen
 constexpr float clear_roughness = 0.3f;  // surfaces smoother than this mirror too clearly
 
-// What walks have learnt: of each vertex a key, 0 for none, the reflectance, and the light of each part.
+// What walks have learnt: of each vertex a key, 0 for none, the reflectance, and the light of each
+// part.
 struct Entries {
   std::vector<uint64_t> keys;
   std::vector<vec3> albedo;
@@ -32,8 +33,8 @@ uint32_t find_cell(const RadianceGrid& grid, uint64_t key) {
 }
 
 bool keeps_light(const Material& m) {
-  return m.alpha_mode == AlphaMode::opaque && !m.unlit && m.transmission == 0 && m.emission == vec3(0) &&
-         m.roughness >= clear_roughness;
+  return m.alpha_mode == AlphaMode::opaque && !m.unlit && m.transmission == 0 &&
+         m.emission == vec3(0) && m.roughness >= clear_roughness;
 }
 
 // A walk's surfaces, first to last, until their light is known. Of each part of the light:
@@ -47,8 +48,8 @@ struct Vertex {
   vec3 albedo{0};
 };
 
-// Walks in light that is made of parts, each of which only a vertex tells from the others: what scatters
-// is the same for all.
+// Walks in light that is made of parts, each of which only a vertex tells from the others: what
+// scatters is the same for all.
 struct Walker {
   const RadianceGridSettings& settings;
   float cell = 1;
@@ -56,11 +57,12 @@ struct Walker {
   std::vector<uint8_t> part_of;  // each material's own light is of this part
 
   // Fills up to most_vertices entries from `first` on.
-  void walk(vec3 origin, Sampler& sampler, std::vector<VertexLight>& scratch, Entries& entries, size_t first) const;
+  void walk(vec3 origin, Sampler& sampler, std::vector<VertexLight>& scratch, Entries& entries,
+            size_t first) const;
 };
 
-void Walker::walk(vec3 origin, Sampler& sampler, std::vector<VertexLight>& scratch, Entries& entries,
-                  size_t first) const {
+void Walker::walk(vec3 origin, Sampler& sampler, std::vector<VertexLight>& scratch,
+                  Entries& entries, size_t first) const {
   const Transport& transport = parts.front();  // the sky is of the first part
   const World& world = transport.world;
   const size_t n = parts.size();
@@ -72,8 +74,11 @@ void Walker::walk(vec3 origin, Sampler& sampler, std::vector<VertexLight>& scrat
   walk.ray.direction = sample_sphere(sampler.next2());
   bool sampled = false;  // area light, where the ray left
   if (transport.tables.any_solid) walk.media.here = find_media(transport, origin);
-  auto weigh_for = [&](size_t part) { walk.area_share = sampled ? parts[part].tables.area_share : 0; };
-  for (int steps = 0; count < most_vertices && walk.depth <= settings.max_depth && steps < 64; steps++) {
+  auto weigh_for = [&](size_t part) {
+    walk.area_share = sampled ? parts[part].tables.area_share : 0;
+  };
+  for (int steps = 0; count < most_vertices && walk.depth <= settings.max_depth && steps < 64;
+       steps++) {
     Hit hit = world.intersect(walk.ray);
     VertexLight* before = count > 0 ? light_of(count - 1) : nullptr;
     if (!hit.valid()) {
@@ -87,25 +92,31 @@ void Walker::walk(vec3 origin, Sampler& sampler, std::vector<VertexLight>& scrat
     if (before) {
       size_t part = part_of[size_t(world.mesh_of(hit.instance).material)];
       weigh_for(part);
-      before[part].arrives += walk.throughput * walk_met_emission(parts[part], walk, surface, material);
+      before[part].arrives +=
+          walk.throughput * walk_met_emission(parts[part], walk, surface, material);
     }
     if (material.unlit) break;
     Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
-    bool keep = keeps_light(world.scene().materials[size_t(world.mesh_of(hit.instance).material)]) &&
-                !world.is_moving(hit.instance) && walk.media.here.count == 0;
+    bool keep =
+        keeps_light(world.scene().materials[size_t(world.mesh_of(hit.instance).material)]) &&
+        !world.is_moving(hit.instance) && walk.media.here.count == 0;
     if (keep) {
       // From here on light is counted for this surface; what the way back dims is its weight.
       if (before) vertices[count - 1].weight = walk.throughput;
       Vertex& vertex = vertices[count++];
       vertex = Vertex{};
-      if (walk.depth <= settings.kept_depth) vertex.key = place_key(surface.position, surface.geometric_normal, cell);
+      if (walk.depth <= settings.kept_depth)
+        vertex.key = place_key(surface.position, surface.geometric_normal, cell);
       vertex.albedo = split_reflectance(bsdf).albedo;
       walk.throughput = vec3(1);
       for (size_t p = 0; p < n; p++)
-        light_of(count - 1)[p] = {sample_direct_light(parts[p], walk, surface, bsdf, false, sampler).sum(), vec3(0)};
+        light_of(count - 1)[p] = {
+            sample_direct_light(parts[p], walk, surface, bsdf, false, sampler).sum(), vec3(0)};
     } else if (before && !is_smooth(bsdf)) {
       for (size_t p = 0; p < n; p++)
-        before[p].arrives += walk.throughput * sample_direct_light(parts[p], walk, surface, bsdf, false, sampler).sum();
+        before[p].arrives +=
+            walk.throughput *
+            sample_direct_light(parts[p], walk, surface, bsdf, false, sampler).sum();
     }
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::all, sampler);
     if (!advance(walk, surface, scattered)) break;
@@ -167,14 +178,16 @@ bool add_entries(RadianceGrid& grid, const Entries& entries, std::vector<uint32_
   return true;
 }
 
-Walker make_walker(const Transport& transport, std::span<const std::shared_ptr<const LightTables>> parts,
+Walker make_walker(const Transport& transport,
+                   std::span<const std::shared_ptr<const LightTables>> parts,
                    const RadianceGridSettings& settings, float cell) {
   const Scene& scene = transport.world.scene();
   Walker walker{settings, cell, {}, std::vector<uint8_t>(scene.materials.size(), 0)};
   for (const auto& tables : parts) walker.parts.push_back({transport.world, *tables});
   if (parts.empty()) walker.parts.push_back(transport);
   for (size_t lamp = 0; lamp + 1 < walker.parts.size(); lamp++)
-    for (int material : scene.lamps[lamp].materials) walker.part_of[size_t(material)] = uint8_t(lamp + 1);
+    for (int material : scene.lamps[lamp].materials)
+      walker.part_of[size_t(material)] = uint8_t(lamp + 1);
   return walker;
 }
 
@@ -185,13 +198,15 @@ std::shared_ptr<const RadianceGrid> make_radiance_grid(
     std::span<const std::shared_ptr<const LightTables>> parts) {
   auto grid = std::make_shared<RadianceGrid>();
   grid->cell = settings.cell > 0 ? settings.cell : choose_cell(transport, places, settings.seed);
-  grid->lamps = learn_lamps_seen(transport, places, lamp_cells * grid->cell, {.seed = settings.seed});
+  grid->lamps =
+      learn_lamps_seen(transport, places, lamp_cells * grid->cell, {.seed = settings.seed});
   size_t size = 1 << 19;
   grid->mask = uint32_t(size - 1);
   grid->keys.assign(size, 0);
   grid->light.assign(size, vec3(0));
   grid->count.assign(size, 0);
-  for (const Material& material : transport.world.scene().materials) grid->keeps.push_back(keeps_light(material));
+  for (const Material& material : transport.world.scene().materials)
+    grid->keeps.push_back(keeps_light(material));
   const Walker walker = make_walker(transport, parts, settings, grid->cell);
   auto found = std::make_shared<RadianceGrid::Parts>();
   const size_t n = walker.parts.size();
@@ -209,10 +224,12 @@ std::shared_ptr<const RadianceGrid> make_radiance_grid(
       for (int i = begin; i < end; i++) {
         int path = first + i;
         Sampler sampler(sample_seed(settings.seed, uint32_t(path), 1, 0));
-        walker.walk(places[size_t(path) % places.size()], sampler, scratch, entries, size_t(i) * most_vertices);
+        walker.walk(places[size_t(path) % places.size()], sampler, scratch, entries,
+                    size_t(i) * most_vertices);
       }
     });
-    if (!add_entries(*grid, entries, number_of, *found)) break;  // as much as the table is meant to hold
+    if (!add_entries(*grid, entries, number_of, *found))
+      break;  // as much as the table is meant to hold
   }
   if (!parts.empty()) grid->parts = found;
   for (size_t i = 0; i < found->slots.size(); i++)
@@ -242,10 +259,11 @@ glm::ivec3 grid_place(const RadianceGrid& grid, uint32_t slot) {
   return {part(40), part(20), part(0)};
 }
 
-bool eval_grid(const RadianceGrid& grid, const World& world, const Ray& ray, const Hit& hit, float footprint,
-               vec3& radiance) {
+bool eval_grid(const RadianceGrid& grid, const World& world, const Ray& ray, const Hit& hit,
+               float footprint, vec3& radiance) {
   const PlacedMesh& placed = world.placed(hit.instance);
-  if (footprint < 2 * grid.cell || placed.moving || !grid.keeps[size_t(placed.mesh->material)]) return false;
+  if (footprint < 2 * grid.cell || placed.moving || !grid.keeps[size_t(placed.mesh->material)])
+    return false;
   vec3 normal = eval_face(world, hit.instance, hit.triangle);
   if (dot(normal, ray.direction) > 0) normal = -normal;
   uint32_t slot = find_cell(grid, place_key(ray.origin + hit.t * ray.direction, normal, grid.cell));

@@ -36,8 +36,8 @@ int probe_region(const Transport& transport, const View& view, int max_depth,
   return met;
 }
 
-// The lists by turns of getting a light: those of any window as large as the pattern of sets get lights
-// from all over the order.
+// The lists by turns of getting a light: those of any window as large as the pattern of sets get
+// lights from all over the order.
 std::vector<uint32_t> turns_of_lists(const InstantPass& pass) {
   constexpr int finer = RegionLights::finer;
   std::vector<uint32_t> lists;
@@ -82,7 +82,8 @@ struct Dealt {
   std::vector<RegionLight> lights;
   std::vector<uint32_t> number;
 };
-Dealt deal_lights(std::span<const uint32_t> turns, std::span<const RegionLight> chosen, float deal_u) {
+Dealt deal_lights(std::span<const uint32_t> turns, std::span<const RegionLight> chosen,
+                  float deal_u) {
   const size_t lists = turns.size();
   const size_t start = std::min(size_t(deal_u * float(lists)), lists - 1);
   Dealt dealt;
@@ -125,8 +126,8 @@ void choose_region_lights(const Transport& transport, const View& view, int max_
       Sampler sampler(seed, index * uint32_t(count) + uint32_t(r));
       float choose_u = sampler.next(), deal_u = sampler.next();
       LitPoint points[region_probes];
-      int met = probe_region(transport, view, max_depth, regions, r, mix64(seed ^ uint64_t(r + 1) << 32),
-                             index * region_probes, points);
+      int met = probe_region(transport, view, max_depth, regions, r,
+                             mix64(seed ^ uint64_t(r + 1) << 32), index * region_probes, points);
       bool lit =
           met > 0 && share_lights(clusters, pass.clip, std::span(points, size_t(met)), shares);
       choose_lights(clusters, shares, lit, wanted, worth, choose_u, chosen);

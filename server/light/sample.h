@@ -25,7 +25,8 @@ enum SampleFlags : uint8_t {
   sample_hit = 1,  // something was hit; else position is the ray's unit direction (at infinity)
   sample_specular = 2,  // a mirror, glass or polished metal: the picture there moves with the view
   sample_moving = 4,  // on a moving mesh: (instance, triangle, barycentric) place it in later ticks
-  sample_sure = 8,  // hint: `rest` owes next to nothing to chance, one more sample there would repeat it
+  sample_sure =
+      8,  // hint: `rest` owes next to nothing to chance, one more sample there would repeat it
 };
 
 // Clear thin panes (a vitrine's glass) are looked through: the sample describes what is behind

@@ -25,7 +25,8 @@ struct LightSample {
   float share = 1;  // of a punctual one: the chance with which it was drawn, of all that may matter
 };
 
-// The side from which light reaches a surface of that material: its geometric normal, or 0 for both.
+// The side from which light reaches a surface of that material: its geometric normal, or 0 for
+// both.
 vec3 lit_side(const Surface& surface, const Bsdf& bsdf);
 
 // Picks a triangle by power and place, or a direction of the environment by brightness. `normal`:

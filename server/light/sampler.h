@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a sample's random numbers come from: Sobol' points with hashed Owen scrambling (Burley 2020,
-// "Practical Hash-based Owen Scrambling", sections 3 and 4), one or two dimensions at a time, each
-// padded by its own shuffle of the indices. Samples of one seed are well spread over their first
-// 2^k indices; samples of different seeds are independent; index 0 alone is uniformly random.
+// Where a sample's random numbers come from: Sobol' points with hashed Owen scrambling (Burley
+// 2020, "Practical Hash-based Owen Scrambling", sections 3 and 4), one or two dimensions at a time,
+// each padded by its own shuffle of the indices. Samples of one seed are well spread over their
+// first 2^k indices; samples of different seeds are independent; index 0 alone is uniformly random.
 // Techniques draw through here only.
 #pragma once
 #include "base/rng.h"

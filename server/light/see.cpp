@@ -86,7 +86,8 @@ void see(const World& world, const Lights& lights, std::span<const Ray> rays,
   int packets = int((rays.size() + packet - 1) / packet);
   parallel_ranges(packets, 4, [&](int begin, int end) {
     for (size_t start = size_t(begin) * packet; start < size_t(end) * packet; start += packet)
-      see_packet(transport, rays.subspan(start, std::min(rays.size() - start, packet)), &seen[start]);
+      see_packet(transport, rays.subspan(start, std::min(rays.size() - start, packet)),
+                 &seen[start]);
   });
 }
 

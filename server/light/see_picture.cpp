@@ -73,8 +73,8 @@ Pictures make_pictures(const Scene& scene) {
   return pictures;
 }
 
-// A pixel's width in metres on the surface it sees: the root of its area there. `direction` leads to
-// it at depth 1.
+// A pixel's width in metres on the surface it sees: the root of its area there. `direction` leads
+// to it at depth 1.
 float pixel_width(const Facet& f, float depth, vec3 direction, float pixel_angle) {
   float length = std::sqrt(dot(direction, direction));
   float cosine = std::abs(dot(f.face, direction)) / length;
@@ -302,7 +302,8 @@ uint64_t SightRun::describe(uint64_t wanted, RunSurface& to) const {
   uint64_t alone = 0;
   for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
     int end = r.end[p];
-    uint64_t these = (end - begin < 64 ? (uint64_t(1) << (end - begin)) - 1 : ~uint64_t(0)) << begin;
+    uint64_t these = (end - begin < 64 ? (uint64_t(1) << (end - begin)) - 1 : ~uint64_t(0))
+                     << begin;
     if (!(wanted & these)) continue;
     if (r.instance[begin] == RasterRun::nothing || !impl_->describe(begin, end, to)) alone |= these;
   }
@@ -345,8 +346,9 @@ bool PictureSight::anything_moves() const {
   return false;
 }
 
-void PictureSight::see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
-                       RasterShows shows, float blur) const {
+void PictureSight::see(const View& view, vec2 offset,
+                       const std::function<void(const SightRun&)>& take, RasterShows shows,
+                       float blur) const {
   RasterSettings settings;
   settings.shows = shows;
   settings.offset = offset;

@@ -31,8 +31,8 @@ class SightRun {
   // Arrays may be read, not trusted, up to RasterRun::most + 8.
   const float* depth = nullptr;      // along the viewing axis; infinity: nothing there
   const uint32_t* object = nullptr;  // 0: nothing there
-  // Of the pixels whose bit is set, and maybe of others. Returns those of the set bits that shine, or
-  // of which see() knows more or only see() knows.
+  // Of the pixels whose bit is set, and maybe of others. Returns those of the set bits that shine,
+  // or of which see() knows more or only see() knows.
   uint64_t describe(uint64_t wanted, RunSurface& to) const;
   // Everything of pixel i; costs as much as a dozen descriptions.
   Seen see(int i) const;
@@ -50,8 +50,8 @@ class PictureSight {
   ~PictureSight();
 
   // Calls `take` from many threads; together the calls cover every pixel once. `offset`: of the
-  // sampling place in its pixel, 0 to 1. `blur`: pixels over which pictures on surfaces are averaged.
-  // Call after World::commit(), while nothing moves.
+  // sampling place in its pixel, 0 to 1. `blur`: pixels over which pictures on surfaces are
+  // averaged. Call after World::commit(), while nothing moves.
   void see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
            RasterShows shows = RasterShows::all, float blur = 1) const;
   // The same, and then finds Raster::edges(), which are good until the next call.

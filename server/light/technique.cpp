@@ -19,14 +19,15 @@ namespace {
 constexpr Technique list[] = {
     {"path", "unbiased path tracing: all light, the reference", trace_path, nullptr, nullptr,
      nullptr, trace_many_path},
-    {"direct", "emission, direct light and chains of perfect mirrors and glass", trace_direct, nullptr,
-     nullptr, nullptr, trace_many_direct},
+    {"direct", "emission, direct light and chains of perfect mirrors and glass", trace_direct,
+     nullptr, nullptr, nullptr, trace_many_direct},
     {"gather",
      "path to the first rough surface beyond the eye's, kept light from there: quick, a little "
      "biased",
      trace_gather, prepare_gather, nullptr, nullptr, trace_many_gather},
     {"instant_radiosity",
-     "point lights along paths of light, neighbours filtered together: quick, right after many passes",
+     "point lights along paths of light, neighbours filtered together: quick, right after many "
+     "passes",
      trace_instant, nullptr, begin_instant, finish_instant, trace_many_instant},
 };
 

@@ -21,8 +21,8 @@ struct InstantRadiositySettings {
   int bounced = 96;           // of those lights are kept, where few of them do most to the view
   int asked = 10;             // by a pixel, chosen by what they may do to its region; 0: all kept
   int edge_rays = 2;          // more eye rays for a pixel at an edge of a surface or colour
-  int candidates = 16;        // times as many places and walks are drawn as numbered here; 1: all kept
-  float clip = -1;            // metres: shortest distance that counts; 0: none; <0: by the scene's size
+  int candidates = 16;  // times as many places and walks are drawn as numbered here; 1: all kept
+  float clip = -1;      // metres: shortest distance that counts; 0: none; <0: by the scene's size
   bool compensate = true;     // what clipping took is gathered by a ray, else it is missing
   int photons = 12000;        // emitted towards specular things
   float photon_radius = 0;    // metres; 0: by the scene's size, shrinking from pass to pass
@@ -30,7 +30,8 @@ struct InstantRadiositySettings {
 
 struct TransportSettings {
   int max_depth = 8;  // path edges counted from the eye; 1: emission only, 2: direct light
-  float clamp = 0;    // >0: bound of what one sample owes to chance (radiance; biased, for display); 0: none
+  float clamp =
+      0;  // >0: bound of what one sample owes to chance (radiance; biased, for display); 0: none
   InstantRadiositySettings instant;
 };
 
@@ -53,8 +54,8 @@ struct Technique {
   // Filters a whole pass, samples[y * width + x], in place. nullptr: nothing.
   void (*finish_pass)(const World& world, const Lights& lights, const View& view,
                       std::span<Sample> samples) = nullptr;
-  // trace() for neighbouring requests at once, the same bits, where that is quicker. nullptr: one by
-  // one.
+  // trace() for neighbouring requests at once, the same bits, where that is quicker. nullptr: one
+  // by one.
   void (*trace_many)(const World& world, const Lights& lights, const TransportSettings& settings,
                      std::span<const Request> requests, std::span<Sample> samples) = nullptr;
 };

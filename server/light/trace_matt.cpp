@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight samples side by side, each at its own depth, for as long as all that they meet is matt: what
-// shade_first_matt and scatter_matt do one by one. Rays are traced one by one all the same, because
-// they have nothing in common. A sample that meets anything else goes on alone, and the next one
-// takes its lane. Nothing in a lane depends on the others.
+// Eight samples side by side, each at its own depth, for as long as all that they meet is matt:
+// what shade_first_matt and scatter_matt do one by one. Rays are traced one by one all the same,
+// because they have nothing in common. A sample that meets anything else goes on alone, and the
+// next one takes its lane. Nothing in a lane depends on the others.
 #include <bit>
 #include <cmath>
 
@@ -157,8 +157,9 @@ DirectLanes light_by_lamp(const Transport& transport, const MattSurfaceLanes& su
   return direct;
 }
 
-DirectLanes light_by_choice(const Batch& batch, const MattSurfaceLanes& surface, const MattLobeLanes& lobes,
-                            const MattWalks& walks, LaneBits dimensions, uint32_t lanes) {
+DirectLanes light_by_choice(const Batch& batch, const MattSurfaceLanes& surface,
+                            const MattLobeLanes& lobes, const MattWalks& walks, LaneBits dimensions,
+                            uint32_t lanes) {
   DirectLanes direct;
   const Walk in_air{};
   for_each_lane(lanes, [&](int i) {
@@ -169,7 +170,8 @@ DirectLanes light_by_choice(const Batch& batch, const MattSurfaceLanes& surface,
         sample_direct_light(batch.transport, in_air, surface.place(i), lobes.at(i), first, sampler);
     direct.area.set(i, one.area_diffuse);
     direct.punctual.set(i, one.punctual_diffuse);
-    if (first && !one.sure_of_punctual()) batch.samples[walks.sample[i]].flags &= uint8_t(~sample_sure);
+    if (first && !one.sure_of_punctual())
+      batch.samples[walks.sample[i]].flags &= uint8_t(~sample_sure);
   });
   return direct;
 }

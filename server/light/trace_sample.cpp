@@ -116,8 +116,10 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
       find_first_surface(transport, rules.max_depth, walk, hit, sampler, sample);
   sample.flags |= sample_sure;  // until chance comes in
   if (first.scatters)
-    shade_first(transport, rules, first.walk, first.surface, first.bsdf, first.tint, sampler, sample);
-  if (request.image && (sample.flags & sample_specular)) sample.image = find_image_distance(transport, begun, hit);
+    shade_first(transport, rules, first.walk, first.surface, first.bsdf, first.tint, sampler,
+                sample);
+  if (request.image && (sample.flags & sample_specular))
+    sample.image = find_image_distance(transport, begun, hit);
   if (first.mirrored) {
     sample.flags &= uint8_t(~sample_sure);
     sampler.seek(3 * Dimensions::walk);

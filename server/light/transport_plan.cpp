@@ -248,7 +248,8 @@ std::span<const char* const> technique_notes(TransportPart part) {
   static constexpr const char* dispersion[] = {
       "path, direct, gather: the eye's walk carries wavelengths from the first such surface on",
       "gather: light that is kept has a colour, not a wavelength",
-      "instant_radiosity: photons and walks of light carry wavelengths, and so do the eye's; where both "
+      "instant_radiosity: photons and walks of light carry wavelengths, and so do the eye's; where "
+      "both "
       "do, hues within 1/8 of the spectrum meet"};
   static constexpr const char* caustics[] = {
       "path: by rays that come upon the light; gather: in its kept light as well; direct: none",

@@ -52,8 +52,8 @@ TransportPlan make_transport_plan(const Scene& scene, std::span<const Mesh* cons
 // what a plan left out does not matter.
 TransportPlan make_full_plan(const Scene& scene);
 
-// The plan as two aligned lists for people, parts used and parts left out, each with its reason, and
-// below a part what techniques make of it where they differ.
+// The plan as two aligned lists for people, parts used and parts left out, each with its reason,
+// and below a part what techniques make of it where they differ.
 std::string explain(const TransportPlan& plan);
 
 }  // namespace wellspring

@@ -18,8 +18,8 @@ constexpr double blind = 0.1;
 // Of so many candidates one is asked first what it does, to tell whether choosing pays.
 constexpr int pilot = 16;
 
-// Choosing by effect keeps what most candidates do together when few of them do most of it. The effective
-// number of those asked first, as a share of them (Kong 1992), tells.
+// Choosing by effect keeps what most candidates do together when few of them do most of it. The
+// effective number of those asked first, as a share of them (Kong 1992), tells.
 bool is_even(const std::vector<double>& effect) {
   constexpr double enough = 0.35;
   double sum = 0, squares = 0, number = 0;

@@ -59,7 +59,8 @@ void part_colors(const Transport& transport, const Walk& walk, const Surface& su
   if (!parts_colors(transport, walk.media, surface)) return;
   sampler.seek(dimensions + Dimensions::wavelength);
   float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
-  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, u, bsdf, spread);
+  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, u, bsdf,
+              spread);
 }
 
 bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered) {

@@ -15,8 +15,8 @@ struct WalkRules {
   int max_depth = 8;          // edges, panes passed straight not counted
   int scatterings = 1 << 30;  // surfaces that may scatter other than perfectly; then one edge more
   // >0: what a ray met by chance reflects no sharper than the ray stands for, alpha at least
-  // `blunt` over the root of its density. A highlight of a small lamp that a wide ray comes upon is a
-  // spark (Kaplanyan and Dachsbacher 2013, "Path Space Regularization"). Biased.
+  // `blunt` over the root of its density. A highlight of a small lamp that a wide ray comes upon is
+  // a spark (Kaplanyan and Dachsbacher 2013, "Path Space Regularization"). Biased.
   float blunt = 0;
 };
 

@@ -13,7 +13,8 @@ namespace {
 
 constexpr int max_still_side = 3840;
 constexpr int max_still_spp = 1024;
-constexpr double max_still_work = 1920.0 * 1080 * 256;  // pixels times samples: minutes at the worst
+constexpr double max_still_work =
+    1920.0 * 1080 * 256;  // pixels times samples: minutes at the worst
 
 HttpReply json_reply(const json& body, int status = 200) {
   HttpReply reply;
@@ -28,14 +29,20 @@ HttpReply error_reply(int status, const std::string& code, const std::string& me
 }
 
 json describe(const Exhibit& exhibit) {
-  json about = {{"id", exhibit.id}, {"title", exhibit.title}, {"description", exhibit.description},
-                {"languages", exhibit.languages}, {"viewpoints", json::array()}, {"stories", json::array()},
-                {"tours", json::array()}, {"objects", json::array()}};
+  json about = {{"id", exhibit.id},
+                {"title", exhibit.title},
+                {"description", exhibit.description},
+                {"languages", exhibit.languages},
+                {"viewpoints", json::array()},
+                {"stories", json::array()},
+                {"tours", json::array()},
+                {"objects", json::array()}};
   for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints)
     about["viewpoints"].push_back(
         {{"name", viewpoint.view.name},
          {"title", viewpoint.title},
-         {"position", {viewpoint.view.position.x, viewpoint.view.position.y, viewpoint.view.position.z}},
+         {"position",
+          {viewpoint.view.position.x, viewpoint.view.position.y, viewpoint.view.position.z}},
          {"yaw", viewpoint.view.yaw},
          {"pitch", viewpoint.view.pitch},
          {"fov", viewpoint.view.fov}});
@@ -44,7 +51,8 @@ json describe(const Exhibit& exhibit) {
     if (story.teller >= 0) entry["teller"] = exhibit.storytellers[size_t(story.teller)].id;
   }
   for (const TourPlan& tour : exhibit.tours)
-    about["tours"].push_back({{"id", tour.id}, {"title", tour.title}, {"stops", tour.stops.size()}});
+    about["tours"].push_back(
+        {{"id", tour.id}, {"title", tour.title}, {"stops", tour.stops.size()}});
   for (const PointOfInterest& point : exhibit.points)
     about["objects"].push_back({{"id", point.id}, {"title", point.title}});
   about["lamps"] = json::array();
@@ -60,17 +68,18 @@ json describe(const Exhibit& exhibit) {
 }
 
 // A whole number in [low, high]; empty with `reply` set when it is not one.
-std::optional<int> number_of(const HttpQuestion& question, const char* name, int otherwise, int low, int high,
-                             HttpReply& reply) {
+std::optional<int> number_of(const HttpQuestion& question, const char* name, int otherwise, int low,
+                             int high, HttpReply& reply) {
   auto found = question.query.find(name);
   if (found == question.query.end() || found->second.empty()) return otherwise;
   const std::string& text = found->second;
   int value = 0;
   auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (ec == std::errc() && end == text.data() + text.size() && value >= low && value <= high) return value;
+  if (ec == std::errc() && end == text.data() + text.size() && value >= low && value <= high)
+    return value;
   reply = error_reply(400, "bad_parameter",
-                      std::string(name) + ": must be a whole number from " + std::to_string(low) + " to " +
-                          std::to_string(high));
+                      std::string(name) + ": must be a whole number from " + std::to_string(low) +
+                          " to " + std::to_string(high));
   return {};
 }
 
@@ -79,7 +88,8 @@ HttpReply answer_still(const AnswerSources& sources, const HttpQuestion& questio
   HttpReply reply;
   StillOrder order;
   order.viewpoint = exhibit.start;
-  if (auto name = question.query.find("viewpoint"); name != question.query.end() && !name->second.empty()) {
+  if (auto name = question.query.find("viewpoint");
+      name != question.query.end() && !name->second.empty()) {
     order.viewpoint = find_viewpoint(exhibit, name->second);
     if (order.viewpoint < 0)
       return error_reply(404, "unknown_viewpoint", "there is no viewpoint '" + name->second + "'");
@@ -94,7 +104,8 @@ HttpReply answer_still(const AnswerSources& sources, const HttpQuestion& questio
   order.height = *height;
   order.spp = *spp;
   if (double(order.width) * order.height * order.spp > max_still_work)
-    return error_reply(400, "too_much_work", "width * height * spp may be at most 1920 * 1080 * 256");
+    return error_reply(400, "too_much_work",
+                       "width * height * spp may be at most 1920 * 1080 * 256");
   reply.content_type = "image/jpeg";
   reply.headers["Cache-Control"] = "public, max-age=60";
   if (question.method != "HEAD") reply.body = sources.make_still(order);
@@ -137,7 +148,8 @@ HttpReply answer(const AnswerSources& sources, const HttpQuestion& question) {
   if (path.starts_with(exhibits + "/")) {
     std::string rest = path.substr(exhibits.size() + 1), id = rest.substr(0, rest.find('/'));
     std::string tail = rest.substr(id.size());
-    if (id != sources.exhibit->id) return error_reply(404, "unknown_exhibit", "there is no exhibit '" + id + "' here");
+    if (id != sources.exhibit->id)
+      return error_reply(404, "unknown_exhibit", "there is no exhibit '" + id + "' here");
     if (tail.empty() || tail == "/") return json_reply(describe(*sources.exhibit));
     if (tail == "/still.jpg") return answer_still(sources, question);
     return error_reply(404, "not_found", "there is no '" + tail + "' in an exhibit");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who stands before the kiosks: the newest observation of every camera, placed into the exhibit's world.
+// Who stands before the kiosks: the newest observation of every camera, placed into the exhibit's
+// world.
 #pragma once
 #include <memory>
 #include <vector>
@@ -29,8 +30,8 @@ inline constexpr float viewing_distance = 0.6f;
 // Observations older than this count no more: the camera or its program is gone.
 inline constexpr double observation_lifetime = 2;
 
-// A person before the screen as somebody in the exhibit: the screen is a window at `kiosk_view`, and the
-// person stands as far behind it as before the real one.
+// A person before the screen as somebody in the exhibit: the screen is a window at `kiosk_view`,
+// and the person stands as far behind it as before the real one.
 Guest place_person(const Person& person, const View& kiosk_view, uint32_t eye_index);
 Audience gather_audience(const std::vector<Eye>& eyes, const View& kiosk_view, double now);
 

@@ -21,7 +21,9 @@ constexpr double level_gaze = -0.04;       // pitch of somebody who looks where 
 Key operator+(const Key& a, const Key& b) {
   return {a.position + b.position, a.yaw + b.yaw, a.pitch + b.pitch, a.fov + b.fov};
 }
-Key operator*(const Key& a, double s) { return {a.position * s, a.yaw * s, a.pitch * s, a.fov * s}; }
+Key operator*(const Key& a, double s) {
+  return {a.position * s, a.yaw * s, a.pitch * s, a.fov * s};
+}
 
 // Control point i of the spline that begins and ends at its first and last key, at rest there.
 const Key& control(const std::vector<Key>& keys, long i) {
@@ -61,7 +63,8 @@ double nearest_turn(double angle, double to) {
 // Positions at equal distances along a way.
 std::vector<dvec3> spread(const std::vector<dvec3>& eyes, size_t count) {
   std::vector<double> at{0};
-  for (size_t i = 1; i < eyes.size(); i++) at.push_back(at.back() + glm::length(eyes[i] - eyes[i - 1]));
+  for (size_t i = 1; i < eyes.size(); i++)
+    at.push_back(at.back() + glm::length(eyes[i] - eyes[i - 1]));
   std::vector<dvec3> points;
   size_t k = 0;
   for (size_t i = 0; i < count; i++) {
@@ -74,7 +77,8 @@ std::vector<dvec3> spread(const std::vector<dvec3>& eyes, size_t count) {
   return points;
 }
 
-std::vector<Key> make_keys(const std::vector<dvec3>& eyes, const Viewpoint& from, const Viewpoint& to) {
+std::vector<Key> make_keys(const std::vector<dvec3>& eyes, const Viewpoint& from,
+                           const Viewpoint& to) {
   double length = 0;
   for (size_t i = 1; i < eyes.size(); i++) length += glm::length(eyes[i] - eyes[i - 1]);
   double turn = std::abs(std::remainder(double(to.yaw) - double(from.yaw), 2 * double(pi))) +
@@ -133,11 +137,14 @@ Law make_law(const std::vector<Key>& keys, const CameraLimits& limits) {
     double move = std::max(glm::length(slope.position), 1e-9);
     double turn = std::max({std::abs(slope.yaw), std::abs(slope.pitch), std::abs(slope.fov), 1e-9});
     // In a bend the acceleration is the square of the speed times the second derivative.
-    double swerve = std::sqrt(double(limits.acceleration) / std::max(glm::length(bend.position), 1e-9));
+    double swerve =
+        std::sqrt(double(limits.acceleration) / std::max(glm::length(bend.position), 1e-9));
     double twist = std::max({std::abs(bend.yaw), std::abs(bend.pitch), 1e-9});
     twist = std::sqrt(double(limits.turn_acceleration) / twist);
-    most[i] = std::min({double(limits.speed) / move, double(limits.turn) / turn, swerve, twist, 20.0});
-    push[i] = std::min({double(limits.acceleration) / move, double(limits.turn_acceleration) / turn, 40.0});
+    most[i] =
+        std::min({double(limits.speed) / move, double(limits.turn) / turn, swerve, twist, 20.0});
+    push[i] = std::min(
+        {double(limits.acceleration) / move, double(limits.turn_acceleration) / turn, 40.0});
   }
   // The least nearby: what is averaged over time later must not lend speed to its neighbours.
   law.speed.resize(count);
@@ -147,16 +154,17 @@ Law make_law(const std::vector<Key>& keys, const CameraLimits& limits) {
                                      most.begin() + long(std::min(i + reach + 1, count)));
   law.speed.front() = law.speed.back() = 0;
   for (size_t i = 1; i < count; i++)
-    law.speed[i] =
-        std::min(law.speed[i], std::sqrt(law.speed[i - 1] * law.speed[i - 1] + 2 * push[i] * law.du));
+    law.speed[i] = std::min(law.speed[i],
+                            std::sqrt(law.speed[i - 1] * law.speed[i - 1] + 2 * push[i] * law.du));
   for (size_t i = count - 1; i-- > 0;)
-    law.speed[i] =
-        std::min(law.speed[i], std::sqrt(law.speed[i + 1] * law.speed[i + 1] + 2 * push[i] * law.du));
+    law.speed[i] = std::min(law.speed[i],
+                            std::sqrt(law.speed[i + 1] * law.speed[i + 1] + 2 * push[i] * law.du));
   return law;
 }
 
 // The parameter at times i * step, averaged over `soften` seconds: changes of speed are eased.
-std::vector<double> make_times(const std::vector<Key>& keys, const CameraLimits& limits, double step) {
+std::vector<double> make_times(const std::vector<Key>& keys, const CameraLimits& limits,
+                               double step) {
   Law law = make_law(keys, limits);
   std::vector<double> at{0};  // when each sample of the parameter is reached
   for (size_t i = 1; i < law.speed.size(); i++)
@@ -170,7 +178,8 @@ std::vector<double> make_times(const std::vector<Key>& keys, const CameraLimits&
     if (time >= at.back()) return end;
     while (k + 2 < at.size() && at[k + 1] < time) k++;
     // Constant acceleration between samples.
-    double span = at[k + 1] - at[k], t = (time - at[k]) / span, v0 = law.speed[k], v1 = law.speed[k + 1];
+    double span = at[k + 1] - at[k], t = (time - at[k]) / span, v0 = law.speed[k],
+           v1 = law.speed[k + 1];
     double moved = span * (v0 * t + 0.5 * (v1 - v0) * t * t);
     return double(k) * law.du + moved;
   };
@@ -193,7 +202,8 @@ double place_at(const CameraPath& path, double time) {
   double t = x - double(i), a = value(long(i)), b = value(long(i) + 1);
   double slope_a = 0.5 * (b - value(long(i) - 1)), slope_b = 0.5 * (value(long(i) + 2) - a);
   double t2 = t * t, t3 = t2 * t;
-  return a * (2 * t3 - 3 * t2 + 1) + slope_a * (t3 - 2 * t2 + t) + b * (3 * t2 - 2 * t3) + slope_b * (t3 - t2);
+  return a * (2 * t3 - 3 * t2 + 1) + slope_a * (t3 - 2 * t2 + t) + b * (3 * t2 - 2 * t3) +
+         slope_b * (t3 - t2);
 }
 
 // How many times faster than allowed it is anywhere.
@@ -203,7 +213,8 @@ double excess(const CameraPath& path, const CameraLimits& limits) {
   for (size_t i = 1; i < path.along.size(); i++) {
     Key now = eval_spline(path.keys, path.along[i]).value;
     double turn = std::max(std::abs(now.yaw - before.yaw), std::abs(now.pitch - before.pitch));
-    most = std::max({most, glm::length(now.position - before.position) / path.step / double(limits.speed),
+    most = std::max({most,
+                     glm::length(now.position - before.position) / path.step / double(limits.speed),
                      turn / path.step / double(limits.turn)});
     before = now;
   }
@@ -212,8 +223,8 @@ double excess(const CameraPath& path, const CameraLimits& limits) {
 
 }  // namespace
 
-CameraPath make_camera_path(const std::vector<dvec3>& eyes, const Viewpoint& from, const Viewpoint& to,
-                            const CameraLimits& limits, double least_seconds) {
+CameraPath make_camera_path(const std::vector<dvec3>& eyes, const Viewpoint& from,
+                            const Viewpoint& to, const CameraLimits& limits, double least_seconds) {
   CameraPath path;
   std::vector<dvec3> points = eyes.empty() ? std::vector<dvec3>{from.position, to.position} : eyes;
   path.keys = make_keys(points, from, to);
@@ -221,7 +232,8 @@ CameraPath make_camera_path(const std::vector<dvec3>& eyes, const Viewpoint& fro
   bool still = glm::length(first.position - last.position) < 1e-6 && points.size() <= 2 &&
                std::abs(first.yaw - last.yaw) < 1e-6 && std::abs(first.pitch - last.pitch) < 1e-6 &&
                std::abs(first.fov - last.fov) < 1e-6;
-  path.along = still ? std::vector<double>{0, length_of(path.keys)} : make_times(path.keys, limits, path.step);
+  path.along = still ? std::vector<double>{0, length_of(path.keys)}
+                     : make_times(path.keys, limits, path.step);
   path.seconds = path.step * double(path.along.size() - 1);
   double slower = still ? 1 : std::max(excess(path, limits), least_seconds / path.seconds);
   path.step *= slower;
@@ -232,7 +244,8 @@ CameraPath make_camera_path(const std::vector<dvec3>& eyes, const Viewpoint& fro
 Viewpoint eval_camera_path(const CameraPath& path, double time) {
   Viewpoint view;
   if (path.keys.empty()) return view;
-  Key at = eval_spline(path.keys, std::isfinite(time) ? place_at(path, time) : length_of(path.keys)).value;
+  Key at = eval_spline(path.keys, std::isfinite(time) ? place_at(path, time) : length_of(path.keys))
+               .value;
   view.position = at.position;
   view.yaw = float(at.yaw);
   view.pitch = float(at.pitch);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The camera's trajectory along a way: position, yaw, pitch and field of view as one cubic B-spline
-// (twice continuously differentiable; de Boor 1978), without roll, and a law of time that keeps speed,
-// turning and their changes comfortable everywhere, starting and ending at rest. Immutable.
+// (twice continuously differentiable; de Boor 1978), without roll, and a law of time that keeps
+// speed, turning and their changes comfortable everywhere, starting and ending at rest. Immutable.
 #pragma once
 #include <vector>
 
@@ -26,13 +26,15 @@ struct CameraPath {
   double step = 1.0 / 60, seconds = 0;
 };
 
-// `eyes`: where the eyes pass, the ends included, absolute and dense enough to be kept to; two equal
-// points: a turn on the spot. Looks where it goes in between, if that is far enough. Takes at least
-// `least_seconds`, if there is any way to go.
-CameraPath make_camera_path(const std::vector<dvec3>& eyes, const Viewpoint& from, const Viewpoint& to,
-                            const CameraLimits& limits, double least_seconds = 0);
+// `eyes`: where the eyes pass, the ends included, absolute and dense enough to be kept to; two
+// equal points: a turn on the spot. Looks where it goes in between, if that is far enough. Takes at
+// least `least_seconds`, if there is any way to go.
+CameraPath make_camera_path(const std::vector<dvec3>& eyes, const Viewpoint& from,
+                            const Viewpoint& to, const CameraLimits& limits,
+                            double least_seconds = 0);
 
-// At `time` seconds from the beginning; before and after it as at its ends. Yaw is within 2 pi of `to`'s.
+// At `time` seconds from the beginning; before and after it as at its ends. Yaw is within 2 pi of
+// `to`'s.
 Viewpoint eval_camera_path(const CameraPath& path, double time);
 
 }  // namespace wellspring

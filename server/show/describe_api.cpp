@@ -5,8 +5,8 @@
 
 namespace wellspring {
 
-// The machine-readable twin of the protocol's description in ARCHITECTURE.md. A test sends every message
-// named here through the reader.
+// The machine-readable twin of the protocol's description in ARCHITECTURE.md. A test sends every
+// message named here through the reader.
 std::string describe_api() {
   static const char* text = R"json({
   "name": "Wellspring", "version": "v1",

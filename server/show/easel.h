@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where pictures are drawn while the show goes on: one thing at a time, as all of them read the world and
-// use all cores. Whatever it is at work on belongs to it; the tick looks in (show/picture.h), takes what is
-// finished, moves the world, which nobody reads then, and gives it the next
-// (of a quick turn the surroundings first):
+// Where pictures are drawn while the show goes on: one thing at a time, as all of them read the
+// world and use all cores. Whatever it is at work on belongs to it; the tick looks in
+// (show/picture.h), takes what is finished, moves the world, which nobody reads then, and gives it
+// the next (of a quick turn the surroundings first):
 //
-//   idle --draw_next--> drawing --finish_drawing--> idle, or, if samples are asked for, --> tracing --> idle
+//   idle --draw_next--> drawing --finish_drawing--> idle, or, if samples are asked for, --> tracing
+//   --> idle
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -37,7 +38,8 @@ struct PictureOrder {
   bool attention = true;
   bool keep = false;     // as a keyframe, for others to be made of
   uint64_t seed = 0;
-  std::optional<View> around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels
+  std::optional<View>
+      around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels
   DisplayPlan display;
 };
 
@@ -76,7 +78,8 @@ struct Easel {
   size_t traced = 0;             // samples
   double traced_seconds = 0;     // that it took
   // Cores leave this work for the tick's as soon as they have finished a piece.
-  oneapi::tbb::task_arena cores{oneapi::tbb::task_arena::automatic, 1, oneapi::tbb::task_arena::priority::low};
+  oneapi::tbb::task_arena cores{oneapi::tbb::task_arena::automatic, 1,
+                                oneapi::tbb::task_arena::priority::low};
   Worker worker;  // the last member: it is waited for before the others end
 
   bool idle() const { return !worker.busy(); }

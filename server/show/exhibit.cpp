@@ -25,7 +25,8 @@ const std::string& text_in(const LocalText& text, const std::string& lang,
   return found ? found->second : none;
 }
 
-std::string tag_in(const LocalText& text, const std::string& lang, const std::vector<std::string>& languages) {
+std::string tag_in(const LocalText& text, const std::string& lang,
+                   const std::vector<std::string>& languages) {
   const auto* found = entry_in(text, lang, languages);
   return found ? found->first : "";
 }

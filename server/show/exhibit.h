@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An exhibit package as loaded: what content/<id>/exhibit.json says, with its scene and its storyteller's
-// figure. Immutable once loaded; borrowed by the Show for as long as it runs.
+// An exhibit package as loaded: what content/<id>/exhibit.json says, with its scene and its
+// storyteller's figure. Immutable once loaded; borrowed by the Show for as long as it runs.
 #pragma once
 #include <map>
 #include <optional>
@@ -19,12 +19,13 @@ using LocalText = std::map<std::string, std::string>;                // language
 using LocalLine = std::map<std::string, StoryLine>;                 // language tag -> a sentence
 using LocalScript = std::map<std::string, std::vector<StoryLine>>;  // language tag -> sentences
 
-// The text in `lang`, else in its base language ("de" for "de-AT"), else in the first of `languages`
-// that has one, else any; "" when there is none at all.
+// The text in `lang`, else in its base language ("de" for "de-AT"), else in the first of
+// `languages` that has one, else any; "" when there is none at all.
 const std::string& text_in(const LocalText& text, const std::string& lang,
                            const std::vector<std::string>& languages);
 // The language tag of the text that text_in gives; "" when there is none.
-std::string tag_in(const LocalText& text, const std::string& lang, const std::vector<std::string>& languages);
+std::string tag_in(const LocalText& text, const std::string& lang,
+                   const std::vector<std::string>& languages);
 // The same of a line; null when there is none.
 const LocalLine::value_type* line_in(const LocalLine& line, const std::string& lang,
                                      const std::vector<std::string>& languages);

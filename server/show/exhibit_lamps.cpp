@@ -30,11 +30,13 @@ void read_lamps(Exhibit& exhibit, Fields& root) {
       fields.problem("", "names neither \"nodes\" nor \"materials\" of the scene");
     fields.finish();
     if (exhibit.lamps.size() == most_lamps) {
-      fields.problem("", "is one more than the " + std::to_string(most_lamps) + " lamps an exhibit may have");
+      fields.problem(
+          "", "is one more than the " + std::to_string(most_lamps) + " lamps an exhibit may have");
       return;
     }
     for (const LampFault& fault : add_lamp(names, exhibit.scene))
-      fields.problem((fault.is_material ? "materials/" : "nodes/") + std::to_string(fault.index), fault.what);
+      fields.problem((fault.is_material ? "materials/" : "nodes/") + std::to_string(fault.index),
+                     fault.what);
     exhibit.lamps.push_back(std::move(lamp));
   });
 }

@@ -102,7 +102,8 @@ void read_figure(const Exhibit& exhibit, Fields& fields, StorytellerPlace& place
                  std::vector<Problem>& problems) {
   std::string skinning = fields.text("skinning", false);
   if (!skinning.empty() && skinning != "linear" && skinning != "dual_quaternion")
-    fields.problem("skinning", "is 'linear' or 'dual_quaternion'; without it the figure's file says");
+    fields.problem("skinning",
+                   "is 'linear' or 'dual_quaternion'; without it the figure's file says");
   std::string path = package_file(fields, "figure", exhibit.folder, place.figure);
   if (path.empty()) return;
   try {
@@ -151,12 +152,14 @@ void read_storyteller(Exhibit& exhibit, Fields fields, bool one_of_many,
 }
 
 void read_storytellers(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
-  root.object("storyteller", false,
-              [&](Fields fields) { read_storyteller(exhibit, std::move(fields), false, problems); });
+  root.object("storyteller", false, [&](Fields fields) {
+    read_storyteller(exhibit, std::move(fields), false, problems);
+  });
   if (root.has("storyteller") && root.has("storytellers"))
     root.problem("storytellers", "is there beside a \"storyteller\": one of them only");
-  root.objects("storytellers", false,
-               [&](Fields fields) { read_storyteller(exhibit, std::move(fields), true, problems); });
+  root.objects("storytellers", false, [&](Fields fields) {
+    read_storyteller(exhibit, std::move(fields), true, problems);
+  });
 }
 
 void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
@@ -203,7 +206,8 @@ void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) 
       SceneLoadOptions options;
       options.package = exhibit.folder;
       exhibit.scene = load_scene(path, options);
-      for (const std::string& warning : exhibit.scene.warnings) problems.push_back({path, "", warning, false});
+      for (const std::string& warning : exhibit.scene.warnings)
+        problems.push_back({path, "", warning, false});
     } catch (const LoadError& error) {
       problems.push_back({error.file, error.where, error.what_});
     }
@@ -305,7 +309,8 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
   }
   Fields root(std::get<json>(parsed), file, "", problems);
   std::string id = root.text("id", false, exhibit.id);
-  if (id != exhibit.id) root.problem("id", "'" + id + "' is not the folder's name '" + exhibit.id + "'");
+  if (id != exhibit.id)
+    root.problem("id", "'" + id + "' is not the folder's name '" + exhibit.id + "'");
   exhibit.title = root.local_text("title", true);
   exhibit.description = root.local_text("description", false);
   if (auto languages = root.texts("languages"); !languages.empty()) exhibit.languages = languages;

@@ -17,7 +17,8 @@ mat4 place_storyteller(const StorytellerPlace& place, const Scene& scene) {
 Scene make_exhibit_scene(Exhibit exhibit, double time) {
   Scene& scene = exhibit.scene;
   scene.viewpoints.clear();
-  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints) scene.viewpoints.push_back(viewpoint.view);
+  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints)
+    scene.viewpoints.push_back(viewpoint.view);
   if (exhibit.storytellers.empty()) return std::move(scene);
   const StorytellerPlace& place = exhibit.storytellers.front();
   const Character& character = place.character;

@@ -8,8 +8,8 @@ namespace wellspring {
 // The storyteller's placement in the world of `scene`.
 mat4 place_storyteller(const StorytellerPlace& place, const Scene& scene);
 
-// The exhibit's scene with its viewpoints as cameras and its storyteller standing where it stands, as it
-// idles `time` seconds after nobody came.
+// The exhibit's scene with its viewpoints as cameras and its storyteller standing where it stands,
+// as it idles `time` seconds after nobody came.
 Scene make_exhibit_scene(Exhibit exhibit, double time);
 
 }  // namespace wellspring

@@ -31,7 +31,8 @@ std::string read_file(const std::string& path) {
 }
 
 // What marks depend on: the sound, the text and how it is pronounced.
-std::string cache_name(const Sound& sound, const std::vector<StoryLine>& lines, const SpeechRequest& voice) {
+std::string cache_name(const Sound& sound, const std::vector<StoryLine>& lines,
+                       const SpeechRequest& voice) {
   uint64_t a = method, b = uint64_t(sound.rate);
   auto add = [&](uint64_t value) { a = mix64(a ^ value), b = mix64(b + value); };
   for (float sample : sound.samples) {
@@ -76,7 +77,8 @@ struct Reader {
     std::string edited = marks_file_of(recording);
     std::error_code code;
     if (fs::exists(edited, code)) return apply_marks(read_file(edited), edited, lines, sound);
-    std::string kept = options.cache.empty() ? "" : options.cache + "/" + cache_name(sound, lines, voice);
+    std::string kept =
+        options.cache.empty() ? "" : options.cache + "/" + cache_name(sound, lines, voice);
     if (!kept.empty() && fs::exists(kept, code)) {
       try {
         return apply_marks(read_file(kept), kept, lines, sound);
@@ -84,7 +86,8 @@ struct Reader {
         log::warn("{}; it is made anew", error.what());
       }
     }
-    log::info("finding the words of {} ({:.0f} s)", recording, double(sound.samples.size()) / sound.rate);
+    log::info("finding the words of {} ({:.0f} s)", recording,
+              double(sound.samples.size()) / sound.rate);
     Speech marked = mark_recording(process, lines, voice, sound);
     if (!kept.empty()) keep(options.cache, kept, marked);
     return marked;
@@ -96,7 +99,8 @@ struct Reader {
       if (lines == script.end()) continue;  // noted when the package was read
       try {
         Sound sound = load_sound(file);
-        if (sound.rate > best_rate) sound = {best_rate, resample(sound.samples, sound.rate, best_rate)};
+        if (sound.rate > best_rate)
+          sound = {best_rate, resample(sound.samples, sound.rate, best_rate)};
         SpeechRequest voice;
         voice.lang = lang;
         voice.pitch = manner.pitch;
@@ -123,13 +127,15 @@ std::string marks_file_of(const std::string& recording) {
   return fs::path(recording).replace_extension(".marks.json").string();
 }
 
-void read_recordings(Exhibit& exhibit, const RecordingOptions& options, std::vector<Problem>& problems) {
+void read_recordings(Exhibit& exhibit, const RecordingOptions& options,
+                     std::vector<Problem>& problems) {
   Reader reader{exhibit, options, problems, SpeechProcess(options.voice)};
   auto manner = [&](int teller) {
     size_t index = size_t(std::max(teller, 0));
     return index < exhibit.storytellers.size() ? exhibit.storytellers[index].voice : VoiceManner{};
   };
-  for (StoryText& story : exhibit.stories) reader.read(story.sound, story.text, manner(story.teller));
+  for (StoryText& story : exhibit.stories)
+    reader.read(story.sound, story.text, manner(story.teller));
   for (TourPlan& tour : exhibit.tours)
     for (TourStop& stop : tour.stops) {
       reader.read(stop.way_sound, stop.way_text, manner(-1));

@@ -18,7 +18,8 @@ namespace {
 
 bool is_story_name(const std::string& text) {
   std::string extension = std::filesystem::path(text).extension().string();
-  bool known = extension == ".story" || extension == ".ssml" || extension == ".xml" || extension == ".txt";
+  bool known =
+      extension == ".story" || extension == ".ssml" || extension == ".xml" || extension == ".txt";
   return known && text.find_first_of("<> \n") == std::string::npos;
 }
 
@@ -43,11 +44,13 @@ struct Reader {
     }
   }
 
-  void read(const json& value, const std::string& place, bool may_be_text, std::vector<StoryLine>& lines) {
+  void read(const json& value, const std::string& place, bool may_be_text,
+            std::vector<StoryLine>& lines) {
     const std::string where = exhibit.folder + "/exhibit.json: " + fields.where() + "/" + place;
     if (value.is_array() && !value.empty()) {
       for (size_t i = 0; i < value.size(); i++) {
-        if (!value[i].is_string()) fields.problem(place + "/" + std::to_string(i), "must be a text");
+        if (!value[i].is_string())
+          fields.problem(place + "/" + std::to_string(i), "must be a text");
         else
           add(lines, where + "/" + std::to_string(i),
               [&] { return read_story_line(value[i].get<std::string>(), where); });
@@ -60,7 +63,8 @@ struct Reader {
     } else if (value.is_string() && may_be_text) {
       add(lines, where, [&] { return read_story(value.get<std::string>(), where); });
     } else {
-      fields.problem(place, "must be a list of sentences, or the name of a .story, .ssml or .txt file");
+      fields.problem(place,
+                     "must be a list of sentences, or the name of a .story, .ssml or .txt file");
     }
   }
 };
@@ -76,9 +80,10 @@ struct Checker {
   // Whether every storyteller has it.
   bool knows_gesture(const std::string& name) const {
     if (exhibit.storytellers.empty()) return find_gesture(default_gestures(), name) >= 0;
-    return std::all_of(exhibit.storytellers.begin(), exhibit.storytellers.end(), [&](const auto& teller) {
-      return find_gesture(teller.gestures ? *teller.gestures : default_gestures(), name) >= 0;
-    });
+    return std::all_of(
+        exhibit.storytellers.begin(), exhibit.storytellers.end(), [&](const auto& teller) {
+          return find_gesture(teller.gestures ? *teller.gestures : default_gestures(), name) >= 0;
+        });
   }
 
   void check_mark(const StoryLine& line, const StoryMark& mark) {
@@ -101,9 +106,10 @@ struct Checker {
     for (const auto& [lang, lines] : script)
       if (lines.size() != script.begin()->second.size())
         problems.push_back({exhibit.folder + "/exhibit.json", what,
-                            "has " + std::to_string(lines.size()) + " sentences in '" + lang + "' and " +
-                                std::to_string(script.begin()->second.size()) + " in '" +
-                                script.begin()->first + "'; subtitles of one will not go with the other",
+                            "has " + std::to_string(lines.size()) + " sentences in '" + lang +
+                                "' and " + std::to_string(script.begin()->second.size()) + " in '" +
+                                script.begin()->first +
+                                "'; subtitles of one will not go with the other",
                             false});
   }
 };
@@ -136,7 +142,8 @@ LocalScript read_script(const Exhibit& exhibit, Fields& fields, const char* name
   return script;
 }
 
-LocalText read_sounds(const Exhibit& exhibit, Fields& fields, const char* name, const LocalScript& script) {
+LocalText read_sounds(const Exhibit& exhibit, Fields& fields, const char* name,
+                      const LocalScript& script) {
   LocalText sounds;
   fields.object(name, false, [&](Fields files) {
     for (const std::string& lang : files.names()) {
@@ -172,7 +179,8 @@ void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems) {
     checker.check("greetings of '" + teller.id + "'", teller.greetings);
     checker.check("farewells of '" + teller.id + "'", teller.farewells);
   }
-  for (const StoryText& story : exhibit.stories) checker.check("story '" + story.id + "'", story.text);
+  for (const StoryText& story : exhibit.stories)
+    checker.check("story '" + story.id + "'", story.text);
   for (const TourPlan& tour : exhibit.tours)
     for (size_t i = 0; i < tour.stops.size(); i++) {
       std::string what = "tour '" + tour.id + "', stop " + std::to_string(i + 1);

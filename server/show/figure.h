@@ -36,8 +36,8 @@ struct Figure {
 Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& moving,
                    std::vector<uint32_t>& moving_object);
 
-// Skins the character, moves its meshes and repaints what looks differently than before; call World::commit() afterwards. Once a tick; all
-// cores.
+// Skins the character, moves its meshes and repaints what looks differently than before; call
+// World::commit() afterwards. Once a tick; all cores.
 void pose_figure(World& world, Figure& figure, const Character& character, const Pose& pose,
                  const mat4& placement, SkinScratch& scratch);
 

@@ -10,7 +10,8 @@
 namespace wellspring {
 namespace {
 
-constexpr double motion_seconds = 0.05;  // in which motion is measured: inputs may come thirty times a second
+constexpr double motion_seconds =
+    0.05;  // in which motion is measured: inputs may come thirty times a second
 constexpr double longest_gap = 0.5;      // between two views that tell motion
 constexpr size_t most_past = 32;         // views of that time
 constexpr float fastest = 25;            // metres a second; more is a jump
@@ -29,9 +30,12 @@ bool note_view(Heading& heading, double time, const View& view) {
     leapt = length(view.position - past.back().view.position) > fastest * passed + smallest_leap;
   }
   auto alike = [&](const Heading::PastView& one) {
-    return !leapt && time - one.time <= longest_gap && one.view.width == view.width && one.view.height == view.height;
+    return !leapt && time - one.time <= longest_gap && one.view.width == view.width &&
+           one.view.height == view.height;
   };
-  auto of_use = [&](const Heading::PastView& one) { return alike(one) && time - one.time <= motion_seconds; };
+  auto of_use = [&](const Heading::PastView& one) {
+    return alike(one) && time - one.time <= motion_seconds;
+  };
   auto first = std::find_if(past.begin(), past.end(), of_use);
   // Where ticks come late the last one has to do, or there would be no motion.
   if (first == past.end() && !past.empty() && alike(past.back())) first--;
@@ -53,12 +57,15 @@ View expected_view(const Heading& heading, const View& now, double seconds) {
 }
 
 float expected_turn(const Heading& heading, const View& now, double seconds) {
-  return std::acos(std::clamp(dot(now.forward, expected_view(heading, now, seconds).forward), -1.0f, 1.0f));
+  return std::acos(
+      std::clamp(dot(now.forward, expected_view(heading, now, seconds).forward), -1.0f, 1.0f));
 }
 
-std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn, double seconds) {
+std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn,
+                                 double seconds) {
   View on = expected_view(heading, now, seconds);
-  if (std::max(missing_share(drawn, now), missing_share(drawn, on)) <= much_missing) return std::nullopt;
+  if (std::max(missing_share(drawn, now), missing_share(drawn, on)) <= much_missing)
+    return std::nullopt;
   View between = expected_view(heading, now, 0.5 * seconds);
   const View views[] = {keyframe_view(now), keyframe_view(between), keyframe_view(on)};
   return surrounding_view(views, surrounding_share);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a visitor is heading: what its view has done in the last moments, and where that leads by when a
-// picture that is drawn now is seen.
+// Where a visitor is heading: what its view has done in the last moments, and where that leads by
+// when a picture that is drawn now is seen.
 #pragma once
 #include <optional>
 #include <vector>
@@ -14,23 +14,26 @@ struct Heading {
     double time = 0;
     View view;
   };
-  std::vector<PastView> past;  // of the last twentieth of a second, at most 32; at least the last one before
+  std::vector<PastView>
+      past;  // of the last twentieth of a second, at most 32; at least the last one before
 };
 
 // The view at a later `time`. True: it has leapt to another place, so that nothing of before helps.
 bool note_view(Heading& heading, double time, const View& view);
 
-// Where the view is to be expected `seconds` after it was last noted, as `now`: straight on, and round the
-// same axis. Keys start and stop at once, so that motion is measured over as short a time as inputs allow,
-// which come in steps of their own; to expect less of motion the younger it is gains nothing more
-// (cache.turns.unknown).
+// Where the view is to be expected `seconds` after it was last noted, as `now`: straight on, and
+// round the same axis. Keys start and stop at once, so that motion is measured over as short a time
+// as inputs allow, which come in steps of their own; to expect less of motion the younger it is
+// gains nothing more (cache.turns.unknown).
 View expected_view(const Heading& heading, const View& now, double seconds);
 // By how many radians the view may turn away from there in `seconds` more or less.
 float expected_turn(const Heading& heading, const View& now, double seconds);
 
-// Where the keyframe drawn next, as `drawn`, would show much less than all of what may be asked for in the
-// next `seconds`, until another has taken its place, whether the visitor stops at once or goes on: a view of
-// all that (cache/keyframe.h), to be drawn as well in some of the pixels. Nothing: it is enough.
-std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn, double seconds);
+// Where the keyframe drawn next, as `drawn`, would show much less than all of what may be asked for
+// in the next `seconds`, until another has taken its place, whether the visitor stops at once or
+// goes on: a view of all that (cache/keyframe.h), to be drawn as well in some of the pixels.
+// Nothing: it is enough.
+std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn,
+                                 double seconds);
 
 }  // namespace wellspring

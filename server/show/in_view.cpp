@@ -19,7 +19,8 @@ vec3 above_feet(const Show& show, float height) {
 float distance_to_head(const Show& show, const Visitor& visitor) {
   if (!visitor.welcomed) return nobody_near;
   View view = view_of(show, visitor);
-  return sees_head(show, view) ? glm::length(view.position - above_feet(show, head_height)) : nobody_near;
+  return sees_head(show, view) ? glm::length(view.position - above_feet(show, head_height))
+                               : nobody_near;
 }
 
 }  // namespace
@@ -36,7 +37,8 @@ bool in_view(const View& view, vec3 centre, float radius) {
 
 View view_of(const Show& show, const Visitor& visitor) {
   const Viewpoint& at = visitor.view;
-  return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, visitor.width, visitor.height);
+  return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, visitor.width,
+                   visitor.height);
 }
 
 bool sees_head(const Show& show, const View& view) {
@@ -55,14 +57,16 @@ const Visitor* heard_on_tour(const Show& show) {
   for (const Visitor& visitor : show.visitors) {
     const Voice& voice = visitor.narration.voice;
     if (voice.queue.empty() || voice.paused) continue;
-    if (float distance = distance_to_head(show, visitor); distance < least) least = distance, nearest = &visitor;
+    if (float distance = distance_to_head(show, visitor); distance < least)
+      least = distance, nearest = &visitor;
   }
   return nearest;
 }
 
 float viewer_distance(const Show& show) {
   float nearest = nobody_near;
-  for (const Visitor& visitor : show.visitors) nearest = std::min(nearest, distance_to_head(show, visitor));
+  for (const Visitor& visitor : show.visitors)
+    nearest = std::min(nearest, distance_to_head(show, visitor));
   return nearest;
 }
 

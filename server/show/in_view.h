@@ -5,7 +5,8 @@
 
 namespace wellspring {
 
-// Whether a sphere touches the cone around the view's pyramid; says yes rather too often than too seldom.
+// Whether a sphere touches the cone around the view's pyramid; says yes rather too often than too
+// seldom.
 bool in_view(const View& view, vec3 centre, float radius);
 
 // Where the visitor looks now.
@@ -15,8 +16,8 @@ View view_of(const Show& show, const Visitor& visitor);
 bool sees_head(const Show& show, const View& view);
 bool sees_figure(const Show& show, const View& view);
 
-// Who moves the storyteller's lips besides its own voice: of the visitors on a tour that is told aloud
-// now and who may see its face, the nearest; null: nobody.
+// Who moves the storyteller's lips besides its own voice: of the visitors on a tour that is told
+// aloud now and who may see its face, the nearest; null: nobody.
 const Visitor* heard_on_tour(const Show& show);
 
 // Metres from the storyteller's head to the nearest visitor who may see it; far where nobody may.

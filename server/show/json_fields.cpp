@@ -20,9 +20,12 @@ bool is_language_tag(const std::string& tag) {
   return true;
 }
 
-Fields::Fields(const json& object, std::string file, std::string where, std::vector<Problem>& problems)
-    : object_(object.is_object() ? object : empty_object), file_(std::move(file)),
-      where_(std::move(where)), problems_(problems) {
+Fields::Fields(const json& object, std::string file, std::string where,
+               std::vector<Problem>& problems)
+    : object_(object.is_object() ? object : empty_object),
+      file_(std::move(file)),
+      where_(std::move(where)),
+      problems_(problems) {
   if (!object.is_object()) problems_.push_back({file_, where_, "must be an object"});
 }
 
@@ -39,7 +42,8 @@ std::vector<std::string> Fields::names() const {
 
 bool Fields::has(const char* name) const { return object_.contains(name); }
 
-const json* Fields::get(const char* name, bool required, json::value_t type, const char* type_name) {
+const json* Fields::get(const char* name, bool required, json::value_t type,
+                        const char* type_name) {
   read_.insert(name);
   auto found = object_.find(name);
   if (found == object_.end()) {
@@ -80,7 +84,8 @@ dvec3 Fields::triple(const char* name, bool required, dvec3 otherwise) {
   }
   for (int i = 0; i < 3; i++) {
     const json& part = (*value)[size_t(i)];
-    if (!part.is_number() || !std::isfinite(part.get<double>()) || std::abs(part.get<double>()) > 1e9) {
+    if (!part.is_number() || !std::isfinite(part.get<double>()) ||
+        std::abs(part.get<double>()) > 1e9) {
       problem(std::string(name) + "/" + std::to_string(i), "must be a number below 1e9");
       return otherwise;
     }
@@ -100,7 +105,8 @@ LocalText Fields::local_text(const char* name, bool required) {
   const json* value = get(name, required, json::value_t::object, "a text, or texts by language");
   if (!value) return result;
   for (const auto& [tag, text] : value->items()) {
-    if (!is_language_tag(tag)) problem(std::string(name) + "/" + tag, "is no language tag such as en");
+    if (!is_language_tag(tag))
+      problem(std::string(name) + "/" + tag, "is no language tag such as en");
     else if (!text.is_string()) problem(std::string(name) + "/" + tag, "must be a text");
     else result[tag] = text.get<std::string>();
   }

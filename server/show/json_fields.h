@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a curator's JSON: typed access that notes every problem with its JSON pointer and goes on.
+// Reading a curator's JSON: typed access that notes every problem with its JSON pointer and goes
+// on.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <set>
@@ -12,11 +13,13 @@ namespace wellspring {
 
 bool is_language_tag(const std::string& tag);
 
-// A JSON object and its place. Reading a missing optional field gives the default; a wrong one gives the
-// default and a fatal problem. finish() notes fields nobody read (a misspelt name) as not fatal.
+// A JSON object and its place. Reading a missing optional field gives the default; a wrong one
+// gives the default and a fatal problem. finish() notes fields nobody read (a misspelt name) as not
+// fatal.
 class Fields {
  public:
-  Fields(const nlohmann::json& object, std::string file, std::string where, std::vector<Problem>& problems);
+  Fields(const nlohmann::json& object, std::string file, std::string where,
+         std::vector<Problem>& problems);
 
   bool has(const char* name) const;
   std::string text(const char* name, bool required, const std::string& otherwise = "");
@@ -25,22 +28,26 @@ class Fields {
   // A text, or an object of texts by language tag.
   LocalText local_text(const char* name, bool required);
   std::vector<std::string> texts(const char* name);
-  // Calls each(Fields) for every object in the array (or, for `members`, of the object: name, Fields).
+  // Calls each(Fields) for every object in the array (or, for `members`, of the object: name,
+  // Fields).
   template <class Each>
   void objects(const char* name, bool required, const Each& each) {
-    if (const nlohmann::json* array = get(name, required, nlohmann::json::value_t::array, "an array"))
+    if (const nlohmann::json* array =
+            get(name, required, nlohmann::json::value_t::array, "an array"))
       for (size_t i = 0; i < array->size(); i++)
         each(Fields((*array)[i], file_, where_ + "/" + name + "/" + std::to_string(i), problems_));
   }
   template <class Each>
   void members(const char* name, const Each& each) {
-    if (const nlohmann::json* object = get(name, false, nlohmann::json::value_t::object, "an object"))
+    if (const nlohmann::json* object =
+            get(name, false, nlohmann::json::value_t::object, "an object"))
       for (const auto& [key, value] : object->items())
         each(key, Fields(value, file_, where_ + "/" + name + "/" + key, problems_));
   }
   template <class Each>
   void object(const char* name, bool required, const Each& each) {
-    if (const nlohmann::json* found = get(name, required, nlohmann::json::value_t::object, "an object"))
+    if (const nlohmann::json* found =
+            get(name, required, nlohmann::json::value_t::object, "an object"))
       each(Fields(*found, file_, where_ + "/" + name, problems_));
   }
   std::vector<std::string> names() const;  // of all that is there

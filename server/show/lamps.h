@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lamps of a running exhibit. All visitors share them: whoever switches one does it for everybody.
+// The lamps of a running exhibit. All visitors share them: whoever switches one does it for
+// everybody.
 //
-// What is wanted changes at once and is told to everybody; the light follows when the easel is idle, a fifth
-// of a second after the last change at the earliest, so that nobody makes it flash more than three times a
-// second (WCAG 2.2, success criterion 2.3.1: six changes). Each visitor's cache learns of it before its next
-// picture, and what was asked for in the old light is not taken any more.
+// What is wanted changes at once and is told to everybody; the light follows when the easel is
+// idle, a fifth of a second after the last change at the earliest, so that nobody makes it flash
+// more than three times a second (WCAG 2.2, success criterion 2.3.1: six changes). Each visitor's
+// cache learns of it before its next picture, and what was asked for in the old light is not taken
+// any more.
 #pragma once
 #include <string_view>
 #include <vector>

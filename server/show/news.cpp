@@ -27,7 +27,9 @@ const char* tour_word(TourRide::State state) {
 
 std::string welcome_news(const Show& show, const Visitor& visitor) {
   const Exhibit& exhibit = show.exhibit;
-  auto text = [&](const LocalText& local) { return text_in(local, visitor.lang, exhibit.languages); };
+  auto text = [&](const LocalText& local) {
+    return text_in(local, visitor.lang, exhibit.languages);
+  };
   json news = {{"type", "welcome"},
                {"protocol", "wellspring.v1"},
                {"session", visitor.link->id},
@@ -49,10 +51,13 @@ std::string welcome_news(const Show& show, const Visitor& visitor) {
         {{"name", viewpoint.view.name}, {"title", title.empty() ? viewpoint.view.name : title}});
   }
   for (const TourPlan& tour : exhibit.tours)
-    news["tours"].push_back({{"id", tour.id}, {"title", text(tour.title)}, {"stops", tour.stops.size()}});
+    news["tours"].push_back(
+        {{"id", tour.id}, {"title", text(tour.title)}, {"stops", tour.stops.size()}});
   for (const StoryText& story : exhibit.stories) {
-    json& entry = news["stories"].emplace_back(json{{"id", story.id}, {"title", text(story.title)}});
-    entry["teller"] = story.teller < 0 ? json(nullptr) : json(exhibit.storytellers[size_t(story.teller)].id);
+    json& entry =
+        news["stories"].emplace_back(json{{"id", story.id}, {"title", text(story.title)}});
+    entry["teller"] =
+        story.teller < 0 ? json(nullptr) : json(exhibit.storytellers[size_t(story.teller)].id);
   }
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     news["lamps"].push_back({{"name", exhibit.lamps[i].id},
@@ -89,7 +94,8 @@ std::string state_news(const Show& show, const Visitor& visitor) {
   if (!exhibit.lamps.empty()) news["lamps"] = json::object();
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     news["lamps"][exhibit.lamps[i].id] = bool(show.switches.wanted[i]);
-  if (visitor.viewpoint >= 0) news["viewpoint"] = exhibit.viewpoints[size_t(visitor.viewpoint)].view.name;
+  if (visitor.viewpoint >= 0)
+    news["viewpoint"] = exhibit.viewpoints[size_t(visitor.viewpoint)].view.name;
   if (visitor.tour.state != TourRide::State::none && visitor.tour.tour >= 0)
     news["tour"] = {{"id", exhibit.tours[size_t(visitor.tour.tour)].id},
                     {"state", tour_word(visitor.tour.state)},
@@ -98,8 +104,8 @@ std::string state_news(const Show& show, const Visitor& visitor) {
   return news.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string subtitle_news(const std::string& text, const std::string& lang, const std::string& speaker,
-                          float seconds) {
+std::string subtitle_news(const std::string& text, const std::string& lang,
+                          const std::string& speaker, float seconds) {
   json news = {{"type", "subtitle"}, {"text", text}, {"lang", lang}, {"speaker", speaker},
                {"seconds", seconds}};
   return news.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -109,7 +115,8 @@ std::string speech_news(uint32_t utterance, const Speech& speech, dvec3 mouth) {
   auto round = [](double x) { return std::round(x * 1e3) / 1e3; };
   json words = json::array();
   for (const SpeechWord& word : speech.words) {
-    size_t end = std::min(size_t(word.text_end), speech.text.size()), begin = std::min(size_t(word.text_begin), end);
+    size_t end = std::min(size_t(word.text_end), speech.text.size()),
+           begin = std::min(size_t(word.text_begin), end);
     words.push_back({{"text", speech.text.substr(begin, end - begin)},
                      {"begin", round(word.begin)},
                      {"end", round(word.end)}});
@@ -145,7 +152,8 @@ std::string agent_news(const Show& show) {
                {"humanlike", show.humanlike},
                {"story", show.voice.story.empty() ? json(nullptr) : json(show.voice.story)},
                {"sentence", show.voice.story.empty() ? 0 : show.voice.sentence},
-               {"sentences", show.voice.story.empty() ? 0 : show.voice.sentence + int(show.voice.queue.size())},
+               {"sentences",
+                show.voice.story.empty() ? 0 : show.voice.sentence + int(show.voice.queue.size())},
                {"paused", show.voice.paused}};
   StorytellerGaze gaze = eval_gaze(show.mind, show.storyteller, show.pose);
   news["looking_at"] = triple(dvec3(gaze.target) + show.exhibit.scene.origin);

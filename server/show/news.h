@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The server's words to a browser: JSON text of welcome, state, subtitle, agent and kiosk. Pure functions.
+// The server's words to a browser: JSON text of welcome, state, subtitle, agent and kiosk. Pure
+// functions.
 #pragma once
 #include <string>
 
@@ -12,9 +13,10 @@ namespace wellspring {
 std::string welcome_news(const Show& show, const Visitor& visitor);
 std::string state_news(const Show& show, const Visitor& visitor);
 // Empty text: the subtitle disappears.
-std::string subtitle_news(const std::string& text, const std::string& lang, const std::string& speaker,
-                          float seconds);
-// An utterance that is heard: what, when each word of it comes (seconds from its first sample), and where.
+std::string subtitle_news(const std::string& text, const std::string& lang,
+                          const std::string& speaker, float seconds);
+// An utterance that is heard: what, when each word of it comes (seconds from its first sample), and
+// where.
 std::string speech_news(uint32_t utterance, const Speech& speech, dvec3 mouth);
 std::string speech_stop_news(uint32_t utterance);
 std::string agent_news(const Show& show);

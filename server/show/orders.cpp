@@ -43,8 +43,8 @@ const StoryText* find_story(const Exhibit& exhibit, const std::string& id) {
 
 Answer obey_one(Show& show, Visitor& visitor, const Hello& hello) {
   if (!hello.exhibit.empty() && hello.exhibit != show.exhibit.id)
-    return WireError{"unknown_exhibit", "there is no exhibit '" + hello.exhibit + "' here; this is '" +
-                                            show.exhibit.id + "'"};
+    return WireError{"unknown_exhibit", "there is no exhibit '" + hello.exhibit +
+                                            "' here; this is '" + show.exhibit.id + "'"};
   visitor.lang = hello.lang.empty() ? show.exhibit.languages.front() : hello.lang;
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = hello.kiosk;
@@ -118,7 +118,8 @@ Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
       if (tour < 0) return WireError{"unknown_tour", "there is no tour '" + order.name + "'"};
       visitor.move = visitor.velocity = vec3(0);
       if (show.voice.asked_by == visitor.link->id) fall_silent(show);  // one voice at a time
-      start_tour(visitor.tour, visitor.narration.voice, tour, show.exhibit, show.roads, visitor.view);
+      start_tour(visitor.tour, visitor.narration.voice, tour, show.exhibit, show.roads,
+                 visitor.view);
       break;
     }
     case TourAction::pause: pause_tour(visitor.tour, visitor.narration.voice); break;

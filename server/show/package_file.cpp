@@ -12,8 +12,8 @@ std::string package_file(Fields& fields, const char* field, const std::string& f
                          const std::string& name) {
   if (name.empty()) return "";
   fs::path relative(name);
-  bool escapes = relative.is_absolute() ||
-                 std::any_of(relative.begin(), relative.end(), [](const fs::path& p) { return p == ".."; });
+  bool escapes = relative.is_absolute() || std::any_of(relative.begin(), relative.end(),
+                                                       [](const fs::path& p) { return p == ".."; });
   if (escapes) {
     fields.problem(field, "'" + name + "' leaves the package's folder");
     return "";

@@ -5,8 +5,8 @@
 
 namespace wellspring {
 
-// The path of a file inside the package's folder that is there. Empty when not, with the problem noted at
-// `field`; also for an empty name.
+// The path of a file inside the package's folder that is there. Empty when not, with the problem
+// noted at `field`; also for an empty name.
 std::string package_file(Fields& fields, const char* field, const std::string& folder,
                          const std::string& name);
 

@@ -36,7 +36,8 @@ std::map<std::string, PageFile> load_pages(const std::string& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder, ec)) {
     auto type = content_types.find(entry.path().extension().string());
     if (!entry.is_regular_file(ec) || type == content_types.end()) continue;
-    if (entry.path().filename().string().starts_with('.') || entry.file_size(ec) > (4u << 20)) continue;
+    if (entry.path().filename().string().starts_with('.') || entry.file_size(ec) > (4u << 20))
+      continue;
     std::ifstream in(entry.path(), std::ios::binary);
     std::stringstream body;
     body << in.rdbuf();
@@ -46,7 +47,8 @@ std::map<std::string, PageFile> load_pages(const std::string& folder) {
   if (!pages.contains("/index.html")) throw LoadError(folder, "", "holds no index.html");
   pages["/"] = pages["/index.html"];
   for (const char* name : {"/kiosk", "/status"})
-    if (auto page = pages.find(std::string(name) + ".html"); page != pages.end()) pages[name] = page->second;
+    if (auto page = pages.find(std::string(name) + ".html"); page != pages.end())
+      pages[name] = page->second;
   return pages;
 }
 

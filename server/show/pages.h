@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The visitor's page as files in memory, read once at start: web/ is small, and a museum's disk may be slow.
+// The visitor's page as files in memory, read once at start: web/ is small, and a museum's disk may
+// be slow.
 #pragma once
 #include <map>
 #include <string>
@@ -10,8 +11,8 @@ struct PageFile {
   std::string content_type, body, etag;
 };
 
-// Path as asked for ("/", "/kiosk", "/status", "/visit.js") to file. Throws LoadError when `folder` has no
-// index.html. Files over 4 MiB and names starting with a dot are left out.
+// Path as asked for ("/", "/kiosk", "/status", "/visit.js") to file. Throws LoadError when `folder`
+// has no index.html. Files over 4 MiB and names starting with a dot are left out.
 std::map<std::string, PageFile> load_pages(const std::string& folder);
 
 }  // namespace wellspring

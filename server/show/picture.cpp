@@ -21,7 +21,7 @@ constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
 constexpr double keyframe_rate = 30;   // pictures drawn a second while the visitor moves, at most
 constexpr float nearly_all = 0.999f;   // converged
-constexpr double around_kept = 2;      // seconds that what lies around is good for: turns come in bouts
+constexpr double around_kept = 2;  // seconds that what lies around is good for: turns come in bouts
 constexpr float forgotten = 0.998f;    // of what drawing took, a picture without it
 constexpr double predicted_pictures = 2;
 constexpr float predicted_share = 0.3f;    // of the samples, at most
@@ -284,7 +284,8 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   if (!order.keep) std::swap(show.easel.work.picture, visitor.picture);
   std::swap(show.easel.work.keyframe, visitor.keyframe);
   visitor.surrounded = false;
-  if (order.leaps != visitor.around_leaps || show.time - visitor.around_at > around_kept) visitor.around = {};
+  if (order.leaps != visitor.around_leaps || show.time - visitor.around_at > around_kept)
+    visitor.around = {};
   fit_memory(visitor);
   visitor.memory_bytes = picture_memory(visitor);
   show.easel.work_bytes = memory_bytes(show.easel.work);
@@ -298,8 +299,8 @@ void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) 
   DrawingWork& work = show.easel.work;
   follow_lamps(show, visitor);
   land(visitor.broker.collect(), *show.world, show.pose_number, visitor.cache);
-  visitor.cache.draw(*order.around, *show.sight, Tonemap{show.exhibit.exposure}, work.picture, &work.depth,
-                     true);
+  visitor.cache.draw(*order.around, *show.sight, Tonemap{show.exhibit.exposure}, work.picture,
+                     &work.depth, true);
   make_keyframe(*order.around, work.picture, work.depth, work.around);
 }
 

@@ -3,8 +3,8 @@
 // draw_picture() does it without looking at anything that the tick may change (view -> project ->
 // attend -> plan -> trace -> remember -> draw or reconstruct -> tonemap), finish_picture() takes it
 // over. In the background the middle one runs on the easel (show/easel.h), for a view predicted for
-// when it will be seen; show/present.h shows it. The time that is left of the visitor's share goes to
-// samples; those of a walking visitor are traced when its picture is done, and land in the next.
+// when it will be seen; show/present.h shows it. The time that is left of the visitor's share goes
+// to samples; those of a walking visitor are traced when its picture is done, and land in the next.
 #pragma once
 #include "show/show.h"
 

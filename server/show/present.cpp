@@ -21,13 +21,15 @@ constexpr double settling_rate = 12;   // while nothing moves: more time for sam
 constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr double on_time = 0.0005;     // seconds that a picture may come too early
 constexpr double warping_share = 0.5;  // of the cores, at most, for all visitors' warps and JPEGs
-constexpr float most_unknown = 0.8f;   // of a warped picture: beyond, the one before is as near to the truth (cache.warp)
-constexpr int animated_gain = 5;       // JPEG quality above the moving one while the storyteller moves
+constexpr float most_unknown =
+    0.8f;  // of a warped picture: beyond, the one before is as near to the truth (cache.warp)
+constexpr int animated_gain = 5;  // JPEG quality above the moving one while the storyteller moves
 
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
 
 // On another thread: the tick goes on meanwhile, and waits before it touches the image again.
-// The image of one that stands comes anew from its keyframe, should there be another: it is not kept.
+// The image of one that stands comes anew from its keyframe, should there be another: it is not
+// kept.
 void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool full_chroma) {
   Encoder* encoder = visitor.encoder.get();
   encoder->task.run([encoder, link = visitor.link, header, full_chroma] {
@@ -42,10 +44,12 @@ void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool full_
   });
 }
 
-// How much later than the pose was made for its pictures are dated: the mouth is posed for that moment.
+// How much later than the pose was made for its pictures are dated: the mouth is posed for that
+// moment.
 void note_lead(Show& show, uint64_t posed_us, uint64_t picture_us) {
   if (picture_us >= posed_us)
-    show.picture_lead += (std::min(1e-6f * float(picture_us - posed_us), 0.25f) - show.picture_lead) * 0.1f;
+    show.picture_lead +=
+        (std::min(1e-6f * float(picture_us - posed_us), 0.25f) - show.picture_lead) * 0.1f;
 }
 
 void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool still) {
@@ -57,8 +61,11 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   header.width = uint16_t(view.width);
   header.height = uint16_t(view.height);
   int quality = suggest_quality(visitor.flow, visitor.best_quality);
-  bool fine = still && !sees_figure(show, view);  // pictures that are looked at for long, few a second
-  if (still) quality = fine ? visitor.still_quality : std::min(visitor.still_quality, quality + animated_gain);
+  bool fine =
+      still && !sees_figure(show, view);  // pictures that are looked at for long, few a second
+  if (still)
+    quality =
+        fine ? visitor.still_quality : std::min(visitor.still_quality, quality + animated_gain);
   header.quality = uint8_t(quality);
   header.flags = uint8_t(packet_complete | (still ? packet_still : 0));
   note_sent(visitor.flow, header.frame, show.time);
@@ -68,7 +75,8 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   visitor.sent_at = show.time;
   // Where ticks come a little late, pictures keep their rate all the same.
   double period = 1 / picture_rate(show, visitor);
-  visitor.pictured_at = std::clamp(visitor.pictured_at + period, show.time - 0.5 * period, show.time);
+  visitor.pictured_at =
+      std::clamp(visitor.pictured_at + period, show.time - 0.5 * period, show.time);
   visitor.shown_seq = seq;
   visitor.shown_view = view;
   visitor.unshown = false;
@@ -147,8 +155,10 @@ void present(Show& show, Visitor& visitor) {
     send(show, visitor, view, visitor.seq, order.still);
   } else if (warp(show, visitor, view)) {
     send(show, visitor, view, visitor.seq, false);
-  } else if (visitor.unshown && is_later(order.seq, visitor.shown_seq) && warp(show, visitor, order.expected)) {
-    send(show, visitor, order.expected, order.seq, false);  // so quick a turn: what can be shown of it
+  } else if (visitor.unshown && is_later(order.seq, visitor.shown_seq) &&
+             warp(show, visitor, order.expected)) {
+    send(show, visitor, order.expected, order.seq,
+         false);  // so quick a turn: what can be shown of it
   }
 }
 

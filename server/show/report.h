@@ -14,7 +14,8 @@ struct ShowTotals {
   uint64_t surroundings = 0;  // drawn of quick turns
   uint64_t pictures = 0, picture_bytes = 0, samples = 0, messages = 0, refused_messages = 0;
   float tick_ms = 0, animate_ms = 0;  // of the last tick
-  uint64_t utterances = 0, sounds = 0, sounds_given_up = 0;  // spoken; packets sent; too slow a reader
+  uint64_t utterances = 0, sounds = 0,
+           sounds_given_up = 0;  // spoken; packets sent; too slow a reader
   uint64_t visits = 0, turned_away = 0, observations = 0, greetings = 0, farewells = 0, stories = 0;
   uint64_t lamps_switched = 0;
 };
@@ -23,7 +24,8 @@ struct VisitorReport {
   uint64_t id = 0;
   int width = 0, height = 0, budget = 0, looks = 0, quality = 0;
   bool primary = false, drawn = false;  // display path
-  float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, look_ms = 0, drawing_ms = 0, tonemap_ms = 0, encode_ms = 0;
+  float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, look_ms = 0, drawing_ms = 0,
+        tonemap_ms = 0, encode_ms = 0;
   float drawn_fps = 0, warp_ms = 0, whole_ms = 0;
   float fresh = 0, empty = 0, converged = 0, mean_age = 0;
   uint64_t cache_bytes = 0, memory_bytes = 0, dropped = 0;

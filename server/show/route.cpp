@@ -51,7 +51,8 @@ std::vector<int> search(const WalkMap& map, int from, int to, int& nearest) {
       if (next < 0 || done[size_t(next)]) continue;
       const WalkPlace& other = map.places[size_t(next)];
       if (other.clear < need && next != to) continue;
-      float tight = std::clamp((map.farthest - other.clear) / (map.farthest - map.radius), 0.0f, 1.0f);
+      float tight =
+          std::clamp((map.farthest - other.clear) / (map.farthest - map.radius), 0.0f, 1.0f);
       float there = cost[size_t(p)] +
                     glm::length(other.ground - place.ground) * (1 + narrow_cost * tight * tight);
       if (there >= cost[size_t(next)]) continue;
@@ -129,8 +130,8 @@ Route find_route(const WalkMap& map, vec3 from, vec3 to) {
     feet[i].y -= map.eye_height;
     places[i] = find_place(map, feet[i], lean, need_of(map));
     if (places[i] < 0) {
-      route.problem = "there is no room for a visitor of radius " + fmt::format("{:.2f}", map.radius) +
-                      " m at " + name_place(feet[i]);
+      route.problem = "there is no room for a visitor of radius " +
+                      fmt::format("{:.2f}", map.radius) + " m at " + name_place(feet[i]);
       return route;
     }
   }

@@ -40,8 +40,10 @@ void draw_text(Frame& frame, const std::string& text, int x, int y, int scale, v
                                   int(corners.size() * sizeof(Corner)));
   for (int q = 0; q < count; q++) {  // each stroke is an upright rectangle
     const Corner &a = corners[size_t(q) * 4], &b = corners[size_t(q) * 4 + 2];
-    int left = std::max(x + int(a.x) * scale, 0), right = std::min(x + int(b.x) * scale, frame.width);
-    int top = std::max(y + int(a.y) * scale, 0), bottom = std::min(y + int(b.y) * scale, frame.height);
+    int left = std::max(x + int(a.x) * scale, 0),
+        right = std::min(x + int(b.x) * scale, frame.width);
+    int top = std::max(y + int(a.y) * scale, 0),
+        bottom = std::min(y + int(b.y) * scale, frame.height);
     for (int row = top; row < bottom; row++)
       for (int column = left; column < right; column++)
         frame.color[size_t(row) * size_t(frame.width) + size_t(column)] = color;
@@ -53,7 +55,8 @@ Frame render_sheet(const Character& character, const std::vector<SheetCell>& cel
   Frame sheet;
   if (cells.empty()) return sheet;
   if (columns <= 0)
-    columns = int(std::ceil(std::sqrt(double(cells.size()) * shot.height / std::max(shot.width, 1))));
+    columns =
+        int(std::ceil(std::sqrt(double(cells.size()) * shot.height / std::max(shot.width, 1))));
   columns = std::clamp(columns, 1, int(cells.size()));
   int rows = (int(cells.size()) + columns - 1) / columns;
   int scale = std::max(shot.width / 180, 1), strip = 12 * scale;
@@ -70,7 +73,8 @@ Frame render_sheet(const Character& character, const std::vector<SheetCell>& cel
       std::copy_n(picture.color.begin() + ptrdiff_t(row) * shot.width, shot.width,
                   sheet.color.begin() + ptrdiff_t(top + row) * sheet.width + left);
     int middle = left + (shot.width - text_width(cells[i].label, scale)) / 2;
-    draw_text(sheet, cells[i].label, std::max(middle, left), top + shot.height + 3 * scale, scale, vec3(0.8f));
+    draw_text(sheet, cells[i].label, std::max(middle, left), top + shot.height + 3 * scale, scale,
+              vec3(0.8f));
   }
   return sheet;
 }

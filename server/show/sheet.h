@@ -18,8 +18,8 @@ struct SheetCell {
 Frame render_sheet(const Character& character, const std::vector<SheetCell>& cells,
                    const StudioShot& shot, int columns, std::vector<std::string>& warnings);
 
-// Writes `text` into a picture with its upper left corner at x, y, in letters 7 * scale pixels high;
-// what lies outside is cut off.
+// Writes `text` into a picture with its upper left corner at x, y, in letters 7 * scale pixels
+// high; what lies outside is cut off.
 void draw_text(Frame& frame, const std::string& text, int x, int y, int scale, vec3 color);
 int text_width(const std::string& text, int scale);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// One running exhibit: the world, its storyteller, the visitors and the kiosks' eyes. tick() is the whole
-// of it, one straight function of visible values: notice -> behave -> animate -> (per visitor) picture.
-// Everything here belongs to the thread that calls tick(), except Arrivals and the published ShowReport.
+// One running exhibit: the world, its storyteller, the visitors and the kiosks' eyes. tick() is the
+// whole of it, one straight function of visible values: notice -> behave -> animate -> (per
+// visitor) picture. Everything here belongs to the thread that calls tick(), except Arrivals and
+// the published ShowReport.
 #pragma once
 #include <list>
 #include <memory>
@@ -28,7 +29,8 @@ struct ShowSettings {
   float fps = 60;             // pictures a second a walking visitor gets, machine permitting
   int max_visitors = 16;      // more are told to come back
   std::string technique = "gather";      // while anything moves
-  std::string still_technique = "path";  // while the visitor stands still: the picture becomes the reference
+  std::string still_technique =
+      "path";  // while the visitor stands still: the picture becomes the reference
   TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}};
   DrawShapes draw = DrawShapes::automatic;
   bool background = true;     // pictures are drawn while the show goes on, and warped meanwhile
@@ -93,18 +95,18 @@ struct Show {
   Easel easel;  // reads much of the above: ends before it
 };
 
-// Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a tour
-// that cannot be walked.
+// Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a
+// tour that cannot be walked.
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
 
 // Who is there now; null: the exhibit has no storyteller.
 const StorytellerPlace* teller_of(const Show& show);
-// Another storyteller comes in place of the one that is there, who falls silent; knows nobody yet and
-// greets anew. Nothing happens when it is there already.
+// Another storyteller comes in place of the one that is there, who falls silent; knows nobody yet
+// and greets anew. Nothing happens when it is there already.
 void change_teller(Show& show, size_t teller);
 
-// One step at time `now` (seconds, any clock that does not run backwards; steps longer than a second
-// are taken as one second). Never throws, never waits for a peer.
+// One step at time `now` (seconds, any clock that does not run backwards; steps longer than a
+// second are taken as one second). Never throws, never waits for a peer.
 void tick(Show& show, Arrivals& arrivals, double now);
 
 // How long the caller may sleep after a tick, at time `now` on the same clock.

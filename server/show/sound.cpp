@@ -22,7 +22,8 @@ SpeechSource make_speech_source(std::shared_ptr<Speaker> speaker) {
 
 namespace {
 
-SpeechRequest request_of(const StoryLine& line, const std::string& lang, const VoiceManner& manner) {
+SpeechRequest request_of(const StoryLine& line, const std::string& lang,
+                         const VoiceManner& manner) {
   SpeechRequest request;
   request.text = line.text;
   request.lang = lang;
@@ -55,7 +56,8 @@ std::vector<SpeechRequest> lines_of(const Exhibit& exhibit) {
       if (story.teller < 0 ? i == 0 : story.teller == int(i)) add(story.text, teller.voice);
     add(teller.farewells, teller.voice);
   }
-  const VoiceManner narrator = exhibit.storytellers.empty() ? VoiceManner{} : exhibit.storytellers.front().voice;
+  const VoiceManner narrator =
+      exhibit.storytellers.empty() ? VoiceManner{} : exhibit.storytellers.front().voice;
   for (const TourPlan& tour : exhibit.tours)
     for (const TourStop& stop : tour.stops) {
       add(stop.way_text, narrator);
@@ -208,7 +210,8 @@ VoiceEvents advance_speech(Show& show, float dt) {
 
 VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt) {
   Narration& narration = visitor.narration;
-  return advance_channel(show, {narration.voice, narration.sounding, visitor.lang, listens(visitor)}, dt);
+  return advance_channel(show,
+                         {narration.voice, narration.sounding, visitor.lang, listens(visitor)}, dt);
 }
 
 void send_sounds(Show& show) {
@@ -216,13 +219,15 @@ void send_sounds(Show& show) {
   const bool anybody = told && std::any_of(show.visitors.begin(), show.visitors.end(), listens);
   Source teller{&show.voice, told ? &show.sounding : nullptr, dvec3(0), false};
   if (anybody)
-    teller.mouth = dvec3(eval_mouth(show.mind, show.storyteller, show.pose)) + show.exhibit.scene.origin;
+    teller.mouth =
+        dvec3(eval_mouth(show.mind, show.storyteller, show.pose)) + show.exhibit.scene.origin;
   for (Visitor& visitor : show.visitors) {
     Source source = teller;
     Narration& narration = visitor.narration;
     const Speech* narrated = update_sounding(show, narration.voice, narration.sounding);
     if (!narration.voice.queue.empty())
-      source = {&narration.voice, narrated ? &narration.sounding : nullptr, visitor.view.position, true};
+      source = {&narration.voice, narrated ? &narration.sounding : nullptr, visitor.view.position,
+                true};
     const bool hears =
         source.sounding && listens(visitor) && visitor.given_up != source.sounding->number;
     if (!hears || visitor.utterance != source.sounding->number) stop_sound(visitor);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The storyteller's voice on its way to the visitors. It speaks one language at a time, since one mouth
-// is seen by all: that of whoever asked for the story, else the kiosk's, else the first listener's;
-// subtitles stay everybody's own. Sound is sent in short pieces a little ahead of its time, so that a
-// stop is heard at once and a visitor who comes later hears the rest. Nothing is made for those who do
-// not listen. A visitor on a tour hears its narrator instead, and nobody else does.
+// The storyteller's voice on its way to the visitors. It speaks one language at a time, since one
+// mouth is seen by all: that of whoever asked for the story, else the kiosk's, else the first
+// listener's; subtitles stay everybody's own. Sound is sent in short pieces a little ahead of its
+// time, so that a stop is heard at once and a visitor who comes later hears the rest. Nothing is
+// made for those who do not listen. A visitor on a tour hears its narrator instead, and nobody else
+// does.
 #pragma once
 #include <functional>
 #include <future>
@@ -49,8 +50,8 @@ struct Narration {
   Sounding sounding;
 };
 
-// What the storytellers and the narrator of tours may say, greetings first: stories that anybody may tell
-// and tours in the voice of the first. The rest is made when it is asked for.
+// What the storytellers and the narrator of tours may say, greetings first: stories that anybody
+// may tell and tours in the voice of the first. The rest is made when it is asked for.
 std::vector<SpeechRequest> lines_of(const Exhibit& exhibit);
 
 // The language the storyteller speaks now.

@@ -17,7 +17,9 @@ constexpr int still_jpeg_quality = 90;
 }  // namespace
 
 StillRoom::StillRoom(const Show& show)
-    : exhibit_(show.exhibit), technique_(show.still_technique), transport_(show.settings.transport) {
+    : exhibit_(show.exhibit),
+      technique_(show.still_technique),
+      transport_(show.settings.transport) {
   // The moving meshes as they are now: at the show's start.
   std::vector<Mesh> moving;
   std::vector<uint32_t> moving_object;
@@ -35,13 +37,15 @@ StillRoom::StillRoom(const Show& show)
 
 std::string StillRoom::make(const StillOrder& order) {
   std::lock_guard lock(mutex_);
-  auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) { return kept.order == order; });
+  auto found = std::find_if(kept_.begin(), kept_.end(),
+                            [&](const Kept& kept) { return kept.order == order; });
   if (found != kept_.end()) {
     kept_.splice(kept_.begin(), kept_, found);
     return kept_.front().jpeg;
   }
   const Viewpoint& at = exhibit_.viewpoints[size_t(order.viewpoint)].view;
-  View view = make_view(exhibit_.scene, at.position, at.yaw, at.pitch, at.fov, order.width, order.height);
+  View view =
+      make_view(exhibit_.scene, at.position, at.yaw, at.pitch, at.fov, order.width, order.height);
   StillSettings settings;
   settings.spp = order.spp;
   settings.transport = transport_;

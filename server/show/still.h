@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finished pictures on request (still.jpg): their own copy of the world, so that a running show is never
-// waited for; at most half of the cores; the last few are remembered. Thread-safe; may take seconds.
+// Finished pictures on request (still.jpg): their own copy of the world, so that a running show is
+// never waited for; at most half of the cores; the last few are remembered. Thread-safe; may take
+// seconds.
 #pragma once
 #include <list>
 #include <mutex>
@@ -18,8 +19,8 @@ struct StillOrder {
 
 class StillRoom {
  public:
-  // Borrows `show`'s exhibit for its lifetime (not its world, which moves). The storyteller stands in its
-  // first pose, and lamps are as at first. Bounds of an order: see answer.cpp.
+  // Borrows `show`'s exhibit for its lifetime (not its world, which moves). The storyteller stands
+  // in its first pose, and lamps are as at first. Bounds of an order: see answer.cpp.
   explicit StillRoom(const Show& show);
   // JPEG bytes. One picture at a time; later callers wait.
   std::string make(const StillOrder& order);

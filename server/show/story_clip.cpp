@@ -7,8 +7,8 @@
 
 namespace wellspring {
 
-std::vector<StoryMoment> act_story(const Exhibit& exhibit, const Character& character, const mat4& placement,
-                                   const StoryText& story,
+std::vector<StoryMoment> act_story(const Exhibit& exhibit, const Character& character,
+                                   const mat4& placement, const StoryText& story,
                                    const std::vector<std::shared_ptr<const Speech>>& spoken,
                                    const ClipSettings& settings) {
   Storyteller storyteller{&character, placement};

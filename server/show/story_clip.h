@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A story acted without a show: what the storyteller's body does while it is told, moment by moment.
-// For pictures to look at, and for tests that it is the same every time.
+// A story acted without a show: what the storyteller's body does while it is told, moment by
+// moment. For pictures to look at, and for tests that it is the same every time.
 #pragma once
 #include <memory>
 #include <vector>
@@ -26,10 +26,11 @@ struct ClipSettings {
   vec3 guest{0.2f, 1.6f, 1.6f};  // eyes of the one it is told to, humanoid space
 };
 
-// `spoken` are the speeches of the story's lines in that language; null: as long as they take to read.
-// Objects of `exhibit` are looked and pointed at; its storyteller stands where the exhibit has it.
-std::vector<StoryMoment> act_story(const Exhibit& exhibit, const Character& character, const mat4& placement,
-                                   const StoryText& story,
+// `spoken` are the speeches of the story's lines in that language; null: as long as they take to
+// read. Objects of `exhibit` are looked and pointed at; its storyteller stands where the exhibit
+// has it.
+std::vector<StoryMoment> act_story(const Exhibit& exhibit, const Character& character,
+                                   const mat4& placement, const StoryText& story,
                                    const std::vector<std::shared_ptr<const Speech>>& spoken,
                                    const ClipSettings& settings);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A story's marks on the stage of an exhibit: names become places in the world, for the storyteller's
-// body.
+// A story's marks on the stage of an exhibit: names become places in the world, for the
+// storyteller's body.
 #pragma once
 #include "avatar/story_cue.h"
 #include "show/exhibit.h"

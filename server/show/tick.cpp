@@ -32,8 +32,9 @@ void welcome_links(Show& show, Arrivals& arrivals) {
       show.eyes.push_back(Eye{std::move(link), {}, -1e9, 0, 0});
     } else if (int(show.visitors.size()) >= show.settings.max_visitors) {
       show.totals.turned_away++;
-      link->send_text(write_error({"full", "this exhibit has as many visitors as it can serve; please "
-                                           "come back in a moment"}));
+      link->send_text(write_error({"full",
+                                   "this exhibit has as many visitors as it can serve; please "
+                                   "come back in a moment"}));
       link->close("full");
     } else {
       log::info("visitor {} connected from {}", link->id, link->peer);
@@ -98,15 +99,18 @@ void broadcast(Show& show, const std::string& news) {
     if (visitor.welcomed) visitor.link->send_text(news);
 }
 
-void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utterance, bool storyteller) {
+void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utterance,
+                   bool storyteller) {
   const Exhibit& exhibit = show.exhibit;
   const StorytellerPlace* teller = teller_of(show);
   std::string text, speaker;
-  if (const auto* line = utterance ? line_in(utterance->line, visitor.lang, exhibit.languages) : nullptr)
+  if (const auto* line =
+          utterance ? line_in(utterance->line, visitor.lang, exhibit.languages) : nullptr)
     text = line->second.text;
   if (teller && storyteller)
     speaker = text_in(teller->name, visitor.lang, exhibit.languages);
-  visitor.link->send_text(subtitle_news(text, visitor.lang, speaker, utterance ? utterance->seconds : 0));
+  visitor.link->send_text(
+      subtitle_news(text, visitor.lang, speaker, utterance ? utterance->seconds : 0));
 }
 
 bool is_narrated(const Visitor& visitor) {
@@ -124,7 +128,8 @@ void follow_story(Show& show, const VoiceEvents& events) {
     int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
     if (viewpoint < 0) continue;
     for (Visitor& visitor : show.visitors)
-      if (visitor.link->id == show.voice.asked_by && visitor.tour.tour < 0 && visitor.move == vec3(0))
+      if (visitor.link->id == show.voice.asked_by && visitor.tour.tour < 0 &&
+          visitor.move == vec3(0))
         glide_to(visitor.tour, viewpoint, visitor.view);
   }
 }
@@ -192,14 +197,16 @@ void behave(Show& show, float dt) {
   const StorytellerPlace& place = *teller_of(show);
   if (events.greeted) {
     show.totals.greetings++;
-    if (show.voice.story.empty()) say(show.voice, nth_line(place.greetings, show.greetings++), true);
+    if (show.voice.story.empty())
+      say(show.voice, nth_line(place.greetings, show.greetings++), true);
   }
   if (events.farewelled) {
     show.totals.farewells++;
     say(show.voice, nth_line(place.farewells, show.farewells++), true);
   }
 
-  bool news_due = show.time - show.agent_sent_at >= agent_interval || show.mind.mood != show.agent_mood;
+  bool news_due =
+      show.time - show.agent_sent_at >= agent_interval || show.mind.mood != show.agent_mood;
   if (news_due) {
     show.agent_sent_at = show.time;
     show.agent_mood = show.mind.mood;
@@ -213,8 +220,8 @@ void pose_world(Show& show) {
   Figure& figure = show.figures[show.teller];
   show_figure(*show.world, figure, show.storyteller_visible);
   if (show.storyteller_visible && !show.visitors.empty())
-    pose_figure(*show.world, figure, teller_of(show)->character, show.pose, show.storyteller.placement,
-                show.scratch);
+    pose_figure(*show.world, figure, teller_of(show)->character, show.pose,
+                show.storyteller.placement, show.scratch);
   show.world->commit();
   show.pose_number++;
 }
@@ -226,8 +233,8 @@ void send_state(Show& show, Visitor& visitor) {
   visitor.link->send_text(state_news(show, visitor));
 }
 
-// What the easel has finished. Returns whether it may be given the next: asked once a tick, as what it
-// finishes later in the tick has not been taken.
+// What the easel has finished. Returns whether it may be given the next: asked once a tick, as what
+// it finishes later in the tick has not been taken.
 bool take_finished(Show& show) {
   Easel& easel = show.easel;
   if (!easel.idle()) return false;
@@ -249,12 +256,14 @@ int waiting_for_drawings(const Show& show) {
 void use_easel(Show& show, int waiting) {
   Easel& easel = show.easel;
   if (order_samples(show)) {
-    easel.worker.run([&show] { show.easel.cores.execute([&] { trace_samples(show, show.easel); }); });
+    easel.worker.run(
+        [&show] { show.easel.cores.execute([&] { trace_samples(show, show.easel); }); });
     return;
   }
   Visitor* next = nullptr;
   for (Visitor& visitor : show.visitors)
-    if (wants_drawing(show, visitor) && (!next || visitor.drawn_at < next->drawn_at)) next = &visitor;
+    if (wants_drawing(show, visitor) && (!next || visitor.drawn_at < next->drawn_at))
+      next = &visitor;
   if (!next) return;
   easel.drawn = next;
   easel.order = order_picture(show, *next, waiting);
@@ -301,7 +310,8 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   int waiting = free ? waiting_for_drawings(show) : 0;
   // The storyteller moves for a picture; otherwise often enough to notice people.
   if (waiting > 0 || show.time - show.behaved_at >= behave_interval) {
-    behave(show, show.behaved_at < 0 ? 0 : float(std::clamp(show.time - show.behaved_at, 0.0, 1.0)));
+    behave(show,
+           show.behaved_at < 0 ? 0 : float(std::clamp(show.time - show.behaved_at, 0.0, 1.0)));
     show.behaved_at = show.time;
     show.totals.animate_ms = float(1000 * (seconds_now() - began));
   }
@@ -330,7 +340,8 @@ double seconds_to_next_tick(const Show& show, double now) {
   double wait = 1 / 20.0;  // nobody looks: only clocks and doors
   for (const Visitor& visitor : show.visitors)
     if (visitor.welcomed)
-      wait = std::min({wait, listening_interval, visitor.pictured_at + 1 / picture_rate(show, visitor) - now});
+      wait = std::min(
+          {wait, listening_interval, visitor.pictured_at + 1 / picture_rate(show, visitor) - now});
   return std::max(wait, least_wait);
 }
 

@@ -12,7 +12,8 @@ namespace wellspring {
 namespace {
 
 constexpr float pace_seconds = 0.35f;  // how softly a ride stops and goes on
-constexpr float look_hold = 1.5f, look_return = 0.8f;  // seconds until the gaze goes back, and its lag
+constexpr float look_hold = 1.5f,
+                look_return = 0.8f;  // seconds until the gaze goes back, and its lag
 constexpr float farthest_look = 2.1f, steepest = 1.45f;  // radians
 constexpr float storyteller_room = 0.35f;  // metres around her axis
 
@@ -20,7 +21,9 @@ const Viewpoint& view_of(const Exhibit& exhibit, int viewpoint) {
   return exhibit.viewpoints[size_t(viewpoint)].view;
 }
 
-bool is_at(const Viewpoint& a, const Viewpoint& b) { return glm::length(a.position - b.position) < 0.02; }
+bool is_at(const Viewpoint& a, const Viewpoint& b) {
+  return glm::length(a.position - b.position) < 0.02;
+}
 
 // The ride's next way, from where it is.
 void go_to(TourRide& ride, const Exhibit& exhibit, const TourRoads& roads, int viewpoint,
@@ -76,8 +79,8 @@ Viewpoint with_look(const TourRide& ride) {
 }  // namespace
 
 std::shared_ptr<const CameraPath> make_leg(const Exhibit& exhibit, const TourRoads& roads,
-                                           const Viewpoint& from, const Viewpoint& to, float least_seconds,
-                                           std::string& problem) {
+                                           const Viewpoint& from, const Viewpoint& to,
+                                           float least_seconds, std::string& problem) {
   std::vector<dvec3> eyes{from.position, to.position};
   if (roads.map && glm::length(from.position - to.position) > 1e-3) {
     const dvec3 origin = exhibit.scene.origin;
@@ -97,10 +100,12 @@ std::shared_ptr<const CameraPath> make_leg(const Exhibit& exhibit, const TourRoa
     }
     eyes.push_back(to.position);
   }
-  return std::make_shared<CameraPath>(make_camera_path(eyes, from, to, CameraLimits{}, least_seconds));
+  return std::make_shared<CameraPath>(
+      make_camera_path(eyes, from, to, CameraLimits{}, least_seconds));
 }
 
-TourRoads make_tour_roads(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems) {
+TourRoads make_tour_roads(const Exhibit& exhibit, const World& world,
+                          std::vector<Problem>& problems) {
   TourRoads roads;
   if (exhibit.tours.empty()) return roads;
   const dvec3 origin = exhibit.scene.origin;
@@ -119,17 +124,18 @@ TourRoads make_tour_roads(const Exhibit& exhibit, const World& world, std::vecto
     for (size_t i = 1; i < tour.stops.size(); i++) {
       std::string problem;
       legs[i] = make_leg(exhibit, roads, view_of(exhibit, tour.stops[i - 1].viewpoint),
-                         view_of(exhibit, tour.stops[i].viewpoint), tour.stops[i].travel_seconds, problem);
+                         view_of(exhibit, tour.stops[i].viewpoint), tour.stops[i].travel_seconds,
+                         problem);
       if (!legs[i])
-        problems.push_back({exhibit.folder + "/exhibit.json", fmt::format("/tours/{}/stops/{}", t, i),
-                            problem});
+        problems.push_back(
+            {exhibit.folder + "/exhibit.json", fmt::format("/tours/{}/stops/{}", t, i), problem});
     }
   }
   return roads;
 }
 
-void start_tour(TourRide& ride, Voice& narration, int tour, const Exhibit& exhibit, const TourRoads& roads,
-                const Viewpoint& from) {
+void start_tour(TourRide& ride, Voice& narration, int tour, const Exhibit& exhibit,
+                const TourRoads& roads, const Viewpoint& from) {
   bool resume = ride.state == TourRide::State::paused && ride.tour == tour;
   if (!resume) {
     stop_tour(ride, narration);
@@ -179,8 +185,8 @@ void look_round(TourRide& ride, vec2 by) {
   ride.looked = 0;
 }
 
-TourStep advance_tour(TourRide& ride, Voice& narration, const Exhibit& exhibit, const TourRoads& roads,
-                      float dt) {
+TourStep advance_tour(TourRide& ride, Voice& narration, const Exhibit& exhibit,
+                      const TourRoads& roads, float dt) {
   TourStep step;
   dt = std::clamp(dt, 0.0f, 0.25f);
   bool plays = ride.state == TourRide::State::playing;

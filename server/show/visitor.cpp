@@ -26,8 +26,9 @@ void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint) {
   stop_tour(visitor.tour, visitor.narration.voice);
 }
 
-void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, const TourRoads& roads,
-                  const std::optional<dvec3>& person, float dt, TourStep& tour_step) {
+void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit,
+                  const TourRoads& roads, const std::optional<dvec3>& person, float dt,
+                  TourStep& tour_step) {
   tour_step = TourStep{};
   TourRide& ride = visitor.tour;
   if (glm::length(visitor.move) > 0) {  // the visitor walks off: the tour waits

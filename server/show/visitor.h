@@ -53,7 +53,8 @@ struct Visitor {
   vec3 move{0};      // as last asked for: right, up, forward
   vec3 velocity{0};  // what the visitor does: follows `move` smoothly
   uint32_t seq = 0;  // of the last input, camera or viewpoint message
-  int viewpoint = 0;  // index of the named viewpoint last jumped to, while the visitor stays there; else -1
+  int viewpoint =
+      0;  // index of the named viewpoint last jumped to, while the visitor stays there; else -1
   TourRide tour;
   // Picture.
   int width = 1280, height = 720;
@@ -96,13 +97,15 @@ struct Visitor {
   float measured_fps = 0, drawn_fps = 0;
 };
 
-// All memory that pictures of one visitor take, between them; its encoder's as noted there, the rest
-// as it is: not while the easel is at work on it. Bounded by the picture's size: at most 64 MB (of 10^6
-// bytes) at 1280x720 while the visitor walks, 64 MiB at rest.
+// All memory that pictures of one visitor take, between them; its encoder's as noted there, the
+// rest as it is: not while the easel is at work on it. Bounded by the picture's size: at most 64 MB
+// (of 10^6 bytes) at 1280x720 while the visitor walks, 64 MiB at rest.
 size_t picture_memory(const Visitor& visitor);
-// Moves a visitor by `dt`: tour, or walking by its own input, not too near to the `person` who stands there.
-void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit, const TourRoads& roads,
-                  const std::optional<dvec3>& person, float dt, TourStep& tour_step);
+// Moves a visitor by `dt`: tour, or walking by its own input, not too near to the `person` who
+// stands there.
+void move_visitor(Visitor& visitor, const World& world, const Exhibit& exhibit,
+                  const TourRoads& roads, const std::optional<dvec3>& person, float dt,
+                  TourStep& tour_step);
 // There is then nothing left to be seen of where the visitor was.
 void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint);
 

@@ -94,7 +94,8 @@ void start_front(Voice& voice, SpeechState answer) {
 
 void act(Voice& voice, VoiceEvents& events) {
   Utterance& front = voice.queue.front();
-  for (const ActionEvent* event : advance_timeline(front.timeline, voice.cursor, double(voice.elapsed))) {
+  for (const ActionEvent* event :
+       advance_timeline(front.timeline, voice.cursor, double(voice.elapsed))) {
     hold(voice.held, *event);
     events.acts.push_back(*event);
   }

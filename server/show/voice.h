@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the storyteller, or a tour's narrator, is saying: a queue of sentences with times, shown as
-// subtitles, heard, and moving its mouth. A value advanced by time. A sentence takes as long as its speech;
-// where there is none (it is not ready in time, or nobody speaks its language) as long as its text takes to
-// read. The marks of its text become events at the times of their words.
+// subtitles, heard, and moving its mouth. A value advanced by time. A sentence takes as long as its
+// speech; where there is none (it is not ready in time, or nobody speaks its language) as long as
+// its text takes to read. The marks of its text become events at the times of their words.
 #pragma once
 #include <deque>
 #include <functional>
@@ -77,8 +77,8 @@ VoiceEvents advance_voice(Voice& voice, float dt, const AskSpeech& ask = {});
 const Speech* heard(const Voice& voice);
 // Mouth shapes of what is heard `ahead` seconds from now; silence where there is nothing.
 VisemeWeights mouth_shape(const Voice& voice, float ahead = 0);
-// Mouth activity `ahead` seconds from now, 0 to 1: what is not silence of the speech, else a rise at the
-// beginning of the sentence and a fall at its end.
+// Mouth activity `ahead` seconds from now, 0 to 1: what is not silence of the speech, else a rise
+// at the beginning of the sentence and a fall at its end.
 float speaking(const Voice& voice, float ahead = 0);
 
 }  // namespace wellspring

@@ -18,7 +18,8 @@ bool blocked(const World& world, vec3 from, vec3 direction, float distance) {
 }
 
 // Free to go `distance` along horizontal `direction`, for a body from above step height to the eye?
-bool body_fits(const World& world, vec3 eye, float eye_height, vec3 direction, float distance, float radius) {
+bool body_fits(const World& world, vec3 eye, float eye_height, vec3 direction, float distance,
+               float radius) {
   vec3 side(-direction.z, 0, direction.x);
   for (float height : {step_height + 0.05f, 0.6f * eye_height, eye_height})
     for (float offset : {-0.7f, 0.0f, 0.7f}) {
@@ -44,7 +45,8 @@ vec3 move_direction(vec3 move, float yaw) {
 
 dvec3 keep_distance(dvec3 from, dvec3 to, dvec3 centre, double distance) {
   glm::dvec2 before(from.x - centre.x, from.z - centre.z), after(to.x - centre.x, to.z - centre.z);
-  double was = glm::length(before), least = std::min(distance, was);  // never thrown out, never farther in
+  double was = glm::length(before),
+         least = std::min(distance, was);  // never thrown out, never farther in
   glm::dvec2 step = after - before;
   double length = glm::length(step);
   if (!(length > 0)) return to;
@@ -57,8 +59,8 @@ dvec3 keep_distance(dvec3 from, dvec3 to, dvec3 centre, double distance) {
   return {centre.x + after.x, to.y, centre.z + after.y};
 }
 
-dvec3 walk(const World& world, const std::optional<WalkSettings>& rules, dvec3 position, vec3 velocity,
-           float dt) {
+dvec3 walk(const World& world, const std::optional<WalkSettings>& rules, dvec3 position,
+           vec3 velocity, float dt) {
   dt = std::clamp(dt, 0.0f, 0.25f);
   if (!is_finite(velocity)) return position;
   if (!rules) return position + dvec3(velocity) * double(dt);
@@ -73,7 +75,8 @@ dvec3 walk(const World& world, const std::optional<WalkSettings>& rules, dvec3 p
       taken = step;
     } else {
       // Slide: the part of the step along either axis of the wall ahead, if that way is free.
-      Ray probe{eye + vec3(0, -0.4f * rules->eye_height, 0), 0.001f, direction, length + 2 * rules->radius};
+      Ray probe{eye + vec3(0, -0.4f * rules->eye_height, 0), 0.001f, direction,
+                length + 2 * rules->radius};
       Hit hit = world.intersect(probe);
       vec3 along[2] = {vec3(step.x, 0, 0), vec3(0, 0, step.z)};
       if (hit.valid()) {
@@ -91,7 +94,8 @@ dvec3 walk(const World& world, const std::optional<WalkSettings>& rules, dvec3 p
       for (vec3 slide : along) {
         float slide_length = glm::length(slide);
         if (slide_length > 0.05f * length &&
-            body_fits(world, eye, rules->eye_height, slide / slide_length, slide_length, rules->radius)) {
+            body_fits(world, eye, rules->eye_height, slide / slide_length, slide_length,
+                      rules->radius)) {
           taken = slide;
           break;
         }

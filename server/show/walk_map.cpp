@@ -63,7 +63,8 @@ void flood(const World& world, const std::vector<vec3>& seeds, WalkMap& map) {
   for (vec3 eye : seeds) {
     int x = cells.x_of(eye.x), z = cells.z_of(eye.z);
     float height = ground_below(world, eye, map.eye_height + 1);
-    if (!cells.inside(x, z) || std::isnan(height) || cells.find(x, z, height, walk_step) >= 0) continue;
+    if (!cells.inside(x, z) || std::isnan(height) || cells.find(x, z, height, walk_step) >= 0)
+      continue;
     open.push_back({add_place(map, x, z, height), x, z});
   }
   while (!open.empty()) {
@@ -73,8 +74,10 @@ void flood(const World& world, const std::vector<vec3>& seeds, WalkMap& map) {
     for (size_t way = 0; way < around.size(); way++) {
       int nx = x + around[way][0], nz = z + around[way][1];
       if (!cells.inside(nx, nz)) continue;
-      // Steps up and down are climbed; what is higher than a step is an obstacle on the ground below it.
-      vec3 from(map.corner.x + float(nx) * map.cell, ground.y + knee, map.corner.z + float(nz) * map.cell);
+      // Steps up and down are climbed; what is higher than a step is an obstacle on the ground
+      // below it.
+      vec3 from(map.corner.x + float(nx) * map.cell, ground.y + knee,
+                map.corner.z + float(nz) * map.cell);
       float height = ground_below(world, from, knee + walk_step);
       if (std::isnan(height) || std::abs(height - ground.y) > walk_step) continue;
       int next = cells.find(nx, nz, height, 0.5f * map.eye_height);
@@ -128,12 +131,14 @@ int clip(const std::array<vec3, 3>& triangle, float low, float high, std::array<
 
 // Lowers the clearance of the places in rows [row, end) that a triangle comes near to.
 void mark(const Cells& cells, WalkMap& map, const std::array<vec3, 3>& t, int row, int end) {
-  vec3 low = min(t[0], min(t[1], t[2])) - map.farthest, high = max(t[0], max(t[1], t[2])) + map.farthest;
+  vec3 low = min(t[0], min(t[1], t[2])) - map.farthest,
+       high = max(t[0], max(t[1], t[2])) + map.farthest;
   if (!is_finite(low) || !is_finite(high)) return;
   auto limit = [](int value, int most) { return std::clamp(value, 0, most); };
   int x0 = limit(cells.x_of(std::max(low.x, map.corner.x)), map.width - 1);
   int z0 = std::max(row, limit(cells.z_of(std::max(low.z, map.corner.z)), map.depth - 1));
-  float right = map.corner.x + float(map.width) * map.cell, back = map.corner.z + float(map.depth) * map.cell;
+  float right = map.corner.x + float(map.width) * map.cell,
+        back = map.corner.z + float(map.depth) * map.cell;
   if (high.x < map.corner.x || high.z < map.corner.z || low.x > right || low.z > back) return;
   int x1 = limit(cells.x_of(std::min(high.x, right)), map.width - 1);
   int z1 = std::min(end - 1, limit(cells.z_of(std::min(high.z, back)), map.depth - 1));
@@ -143,7 +148,8 @@ void mark(const Cells& cells, WalkMap& map, const std::array<vec3, 3>& t, int ro
   float clipped_at = NAN;
   for (int z = z0; z <= z1; z++)
     for (int x = x0; x <= x1; x++)
-      for (int p = map.column[size_t(cells.cell_of(x, z))]; p >= 0; p = map.place_after[size_t(p)]) {
+      for (int p = map.column[size_t(cells.cell_of(x, z))]; p >= 0;
+           p = map.place_after[size_t(p)]) {
         WalkPlace& place = map.places[size_t(p)];
         float foot = place.ground.y + knee, head = place.ground.y + map.eye_height + head_room;
         if (highest < foot || lowest > head) continue;
@@ -207,7 +213,9 @@ int find_place(const WalkMap& map, vec3 ground, float reach, float clear) {
   Cells cells{map};
   if (!is_finite(ground)) return -1;
   float limit = float(std::max(map.width, map.depth)) * map.cell;
-  if (std::abs(ground.x - map.corner.x) > 2 * limit || std::abs(ground.z - map.corner.z) > 2 * limit) return -1;
+  if (std::abs(ground.x - map.corner.x) > 2 * limit ||
+      std::abs(ground.z - map.corner.z) > 2 * limit)
+    return -1;
   int rings = int(std::ceil(std::min(reach, limit) / map.cell)) + 1;
   int x = cells.x_of(ground.x), z = cells.z_of(ground.z), best = -1;
   float least = reach;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a visitor can stand: the ground that can be walked to from the viewpoints, as a grid of places
-// with the distance to what stands in the way. Made once for an exhibit that has tours.
+// Where a visitor can stand: the ground that can be walked to from the viewpoints, as a grid of
+// places with the distance to what stands in the way. Made once for an exhibit that has tours.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -24,7 +24,8 @@ struct WalkMap {
   vec3 corner{0};         // of the grid, at x = z = 0 of its columns
   int width = 0, depth = 0;
   std::vector<WalkPlace> places;
-  std::vector<int32_t> column;  // of every cell the first of its places, one above the other: place_after
+  std::vector<int32_t>
+      column;  // of every cell the first of its places, one above the other: place_after
   std::vector<int32_t> place_after;  // the next place of the same column; -1: none
 };
 
@@ -37,16 +38,16 @@ struct WalkObstacle {
 inline constexpr float walk_step = 0.4f;        // what is climbed without thinking
 inline constexpr int most_walk_places = 400'000;  // larger grounds get wider cells
 
-// `seeds`: eyes of people who can stand where they are. Exact against triangles: nothing is too thin
-// to count. All cores, up to a second.
+// `seeds`: eyes of people who can stand where they are. Exact against triangles: nothing is too
+// thin to count. All cores, up to a second.
 WalkMap make_walk_map(const World& world, const WalkSettings& rules, const std::vector<vec3>& seeds,
                       const std::vector<WalkObstacle>& obstacles);
 
 // The place nearest to a point on the ground whose height is within walk_step, at most `reach` away
 // horizontally, with at least `clear` metres around it; -1: none.
 int find_place(const WalkMap& map, vec3 ground, float reach, float clear);
-// Metres to the nearest obstacle at a point on the ground, at most WalkMap::farthest; between places the
-// value of the nearest one less the distance to it. 0: off the map.
+// Metres to the nearest obstacle at a point on the ground, at most WalkMap::farthest; between
+// places the value of the nearest one less the distance to it. 0: off the map.
 float clear_at(const WalkMap& map, vec3 ground);
 // Height of the ground near (x, z), from the places around; `near` tells storeys apart.
 float ground_at(const WalkMap& map, float x, float z, float near);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A question over HTTP and its reply, free of any socket library. `show/answer` makes replies with pure
-// functions; `stream` carries them.
+// A question over HTTP and its reply, free of any socket library. `show/answer` makes replies with
+// pure functions; `stream` carries them.
 #pragma once
 #include <map>
 #include <string>
@@ -9,7 +9,7 @@ namespace wellspring {
 
 struct HttpQuestion {
   std::string method;                        // "GET", "HEAD", ...
-  std::string path;                          // percent-decoded, starts with '/', holds no "..", no NUL, no '\\'
+  std::string path;  // percent-decoded, starts with '/', holds no "..", no NUL, no '\\'
   std::map<std::string, std::string> query;  // percent-decoded; the last of equal names
   std::string if_none_match;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One connected peer as both sides see it: `stream` owns the socket, the show owns the visit, and this
-// is all they share. Pictures: one slot, newest wins. Text and sound: short bounded queues; sound that
-// a slow peer does not take is thrown away as a whole, since half a sentence is worse than none. No call blocks.
-// Every call may come from any thread. After close() or mark_closed() sending does nothing; texts that had
-// arrived by then can still be taken.
+// One connected peer as both sides see it: `stream` owns the socket, the show owns the visit, and
+// this is all they share. Pictures: one slot, newest wins. Text and sound: short bounded queues;
+// sound that a slow peer does not take is thrown away as a whole, since half a sentence is worse
+// than none. No call blocks. Every call may come from any thread. After close() or mark_closed()
+// sending does nothing; texts that had arrived by then can still be taken.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -25,9 +25,11 @@ class Link {
  public:
   static constexpr size_t max_texts_in = 256;  // more unread: the oldest are dropped and counted
   static constexpr size_t max_bytes_in = 1 << 20;  // likewise
-  static constexpr size_t max_texts_out = 128;  // more unsent: the link is closed (a reader this slow is gone)
+  static constexpr size_t max_texts_out =
+      128;  // more unsent: the link is closed (a reader this slow is gone)
 
-  static constexpr size_t max_sound_out = 192 * 1024;  // bytes unsent, four seconds of speech: all of it is dropped
+  static constexpr size_t max_sound_out =
+      192 * 1024;  // bytes unsent, four seconds of speech: all of it is dropped
 
   Link(uint64_t id, LinkKind kind, std::string peer) : id(id), kind(kind), peer(std::move(peer)) {}
   const uint64_t id;
@@ -35,13 +37,15 @@ class Link {
   const std::string peer;  // address, for the log
 
   // ---- called by the show ----
-  std::vector<std::string> take_texts();             // all that arrived since the last call, in order
+  std::vector<std::string> take_texts();  // all that arrived since the last call, in order
   void send_text(std::string text);                  // small JSON
   void send_picture(std::shared_ptr<const Packet>);  // replaces an unsent one
   // Kept in order with texts. False: the peer is too slow, all unsent sound is gone with this one.
   bool send_sound(std::shared_ptr<const Packet>);
   void drop_sound();  // whatever has not been sent yet
-  bool picture_pending() const { return picture_.full(); }  // the last picture has not been taken yet
+  bool picture_pending() const {
+    return picture_.full();
+  }                                                  // the last picture has not been taken yet
   void close(std::string reason);                    // asks the socket to close
   bool closed() const { return closed_; }
 
@@ -54,7 +58,8 @@ class Link {
   };
   bool take_out(Out& out);          // texts and sounds before pictures; false: nothing to send
   void push_text_in(std::string);   // a message arrived
-  void set_wake(std::function<void()> wake);  // called (from any thread) after something became sendable
+  void set_wake(
+      std::function<void()> wake);  // called (from any thread) after something became sendable
   void mark_closed();               // the socket is gone; the show will notice
   bool close_requested(std::string& reason) const;
   uint64_t pictures_dropped() const { return picture_.dropped(); }

@@ -20,9 +20,10 @@ struct Expression {  // 0..1 each
 };
 
 // One person. position: metres from the screen's centre, +x to the right as the
-// visitor sees the screen, +y up, +z out of the screen towards the visitor. rotation: yaw, pitch, roll of the head,
-// radians; 0 faces the screen squarely; yaw positive: turned to the screen's right as the visitor sees it;
-// pitch positive: looking up; roll positive: head tilted towards the visitor's right shoulder.
+// visitor sees the screen, +y up, +z out of the screen towards the visitor. rotation: yaw, pitch,
+// roll of the head, radians; 0 faces the screen squarely; yaw positive: turned to the screen's
+// right as the visitor sees it; pitch positive: looking up; roll positive: head tilted towards the
+// visitor's right shoulder.
 struct Person {
   uint32_t id = 0;
   vec3 position{0, 0, 1};
@@ -46,7 +47,8 @@ struct Observation {
 // ---- browser to server ----
 
 struct Hello {
-  std::string exhibit, lang, role, kiosk;  // role: "visitor" or "kiosk"; empty exhibit: the default one
+  std::string exhibit, lang, role,
+      kiosk;  // role: "visitor" or "kiosk"; empty exhibit: the default one
   int width = 1280, height = 720;
   bool operator==(const Hello&) const = default;
 };
@@ -102,7 +104,7 @@ struct Bye {
   bool operator==(const Bye&) const = default;
 };
 
-using BrowserMessage = std::variant<Hello, Input, CameraTo, ViewpointTo, Tour, StorytellerOrder, LampOrder,
-                                    Settings, Ack, Bye>;
+using BrowserMessage = std::variant<Hello, Input, CameraTo, ViewpointTo, Tour, StorytellerOrder,
+                                    LampOrder, Settings, Ack, Bye>;
 
 }  // namespace wellspring

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binary messages to the browser, little-endian: pictures (magic WSF1); sound_packet.h has sound (WSA1).
-// Picture: 0 magic, 4 u32 frame number, 8 u32 last input/camera seq this picture shows, 12 u64 server time
-// in microseconds, 20 u16 width, 22 u16 height, 24 u8 quality, 25 u8 flags, 26 u16 header length, payload.
+// Binary messages to the browser, little-endian: pictures (magic WSF1); sound_packet.h has sound
+// (WSA1). Picture: 0 magic, 4 u32 frame number, 8 u32 last input/camera seq this picture shows, 12
+// u64 server time in microseconds, 20 u16 width, 22 u16 height, 24 u8 quality, 25 u8 flags, 26 u16
+// header length, payload.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,7 +11,8 @@
 
 namespace wellspring {
 
-inline constexpr uint8_t packet_still = 1;     // the visitor stands still and this is the refined picture
+inline constexpr uint8_t packet_still =
+    1;  // the visitor stands still and this is the refined picture
 inline constexpr uint8_t packet_complete = 2;  // complete picture, not a part
 
 struct PacketHeader {
@@ -26,7 +28,8 @@ using Packet = std::vector<uint8_t>;
 
 // Writes the header over the first 28 bytes of `packet` (which must be at least that long).
 void write_packet_header(const PacketHeader& header, std::span<uint8_t> packet);
-// Empty when the bytes are no picture message (short, other magic, header length < 28 or past the end).
+// Empty when the bytes are no picture message (short, other magic, header length < 28 or past the
+// end).
 struct PacketView {
   PacketHeader header;
   std::span<const uint8_t> payload;

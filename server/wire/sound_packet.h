@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A piece of an utterance's sound as a binary message, little-endian: 0 magic WSA1, 4 u32 utterance,
-// 8 u32 first sample of this piece within the utterance, 12 u64 server time in microseconds at which
-// that sample is to sound (the clock of pictures: it goes with the picture of the same time), 20 u32
-// samples of the whole utterance, 24 u8 channels (1), 25 u8 flags (1: heard the same everywhere, as a
-// narrator is), 26 u16 header length, 28 u32 samples a second, 32 3 x f64 world position of the mouth,
-// then 16-bit samples.
+// A piece of an utterance's sound as a binary message, little-endian: 0 magic WSA1, 4 u32
+// utterance, 8 u32 first sample of this piece within the utterance, 12 u64 server time in
+// microseconds at which that sample is to sound (the clock of pictures: it goes with the picture of
+// the same time), 20 u32 samples of the whole utterance, 24 u8 channels (1), 25 u8 flags (1: heard
+// the same everywhere, as a narrator is), 26 u16 header length, 28 u32 samples a second, 32 3 x f64
+// world position of the mouth, then 16-bit samples.
 #pragma once
 #include "base/vec.h"
 #include "wire/packet.h"
@@ -26,8 +26,9 @@ struct SoundView {
   SoundHeader header;
   std::vector<int16_t> samples;  // of all channels, interleaved
 };
-// Empty when the bytes are no sound message: short, other magic, header length < 56 or past the end,
-// no channels or no rate, half a sample, more samples than the utterance has, a mouth that is nowhere.
+// Empty when the bytes are no sound message: short, other magic, header length < 56 or past the
+// end, no channels or no rate, half a sample, more samples than the utterance has, a mouth that is
+// nowhere.
 std::optional<SoundView> read_sound_packet(std::span<const uint8_t> bytes);
 
 }  // namespace wellspring

@@ -31,8 +31,8 @@ RTCRayHit to_embree(const Ray& ray) {
   return r;
 }
 
-// False for NaN in origin or direction, for places Embree does not accept (it ends at 1.84e18), and for an
-// empty interval.
+// False for NaN in origin or direction, for places Embree does not accept (it ends at 1.84e18), and
+// for an empty interval.
 bool is_traceable(const Ray& ray) {
   constexpr float farthest = 1e17f;
   vec3 sum = glm::abs(ray.origin) + glm::abs(ray.direction);

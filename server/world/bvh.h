@@ -102,13 +102,13 @@ class World {
   void move(int moving, std::span<const vec3> positions, std::span<const vec3> normals);
   void show(int moving, bool visible);
   void commit();
-  // Changes how a material looks that `repaints`, on the meshes that move; the scene's own stays as it is. The
-  // change counts from the scene's, not from the last one. While no ray is being traced.
+  // Changes how a material looks that `repaints`, on the meshes that move; the scene's own stays as
+  // it is. The change counts from the scene's, not from the last one. While no ray is being traced.
   void repaint(int material, const Repaint& change);
   uint64_t paints() const;  // how often anything was repainted
 
-  // The scene's lamps, by their numbers; all are on at first. While no ray is being traced. Lights have to
-  // be told: light/lamps.h.
+  // The scene's lamps, by their numbers; all are on at first. While no ray is being traced. Lights
+  // have to be told: light/lamps.h.
   void switch_lamp(int lamp, bool on);
   bool is_on(int lamp) const;
 
@@ -123,11 +123,11 @@ class World {
   bool occluded(const Ray& ray, PanesPassed& panes) const;
   // `count` coherent rays at once; results are those of intersect().
   void intersect_many(const Ray* rays, Hit* hits, int count) const;
-  // Bit i of the answer: occluded(ray i), for the rays whose bit is set in `active`. Pays where rays
-  // from neighbouring places go to one light: measured 2.8 times as fast as one by one.
+  // Bit i of the answer: occluded(ray i), for the rays whose bit is set in `active`. Pays where
+  // rays from neighbouring places go to one light: measured 2.8 times as fast as one by one.
   uint32_t occluded_packet(const RayPacket& rays, uint32_t active) const;
-  // One by one: intersect() and occluded() of the rays whose bit is set in `active`, with less to do
-  // around each. Pays where rays have nothing in common. hits[i] is ray i's.
+  // One by one: intersect() and occluded() of the rays whose bit is set in `active`, with less to
+  // do around each. Pays where rays have nothing in common. hits[i] is ray i's.
   void intersect_each(const RayPacket& rays, uint32_t active, Hit* hits) const;
   uint32_t occluded_each(const RayPacket& rays, uint32_t active) const;
   // Triangles that the unit direction `way` crosses between `before` metres before `place` and

@@ -262,7 +262,8 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
   w.lamp_on.assign(scene.lamps.size(), 1);
   for (const Lamp& lamp : scene.lamps)
     for (int material : lamp.materials)
-      w.of_lamps.emplace_back(material, std::make_unique<Material>(scene.materials.at(size_t(material))));
+      w.of_lamps.emplace_back(material,
+                              std::make_unique<Material>(scene.materials.at(size_t(material))));
   auto made_of = [&](int material) {
     for (const auto& [number, worn] : w.of_lamps)
       if (number == material) return const_cast<const Material*>(worn.get());
@@ -273,8 +274,8 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
       throw std::invalid_argument("World: an instance has no such mesh");
     const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
     w.placed.push_back({&mesh, made_of(mesh.material), instance.object, false,
-                        instance.to_world == mat4(1), is_mirrored(instance.to_world), instance.to_world,
-                        normal_matrix(instance.to_world)});
+                        instance.to_world == mat4(1), is_mirrored(instance.to_world),
+                        instance.to_world, normal_matrix(instance.to_world)});
   }
   // What moves wears copies of materials that may change.
   auto worn = [&](int number) -> const Material* {

@@ -40,11 +40,14 @@ struct World::Impl {
   const Scene* scene = nullptr;
   std::vector<Mesh> moving;
   std::vector<PlacedMesh> placed;
-  std::vector<std::pair<int, std::unique_ptr<Material>>> painted;  // of the scene's materials that repaint
+  std::vector<std::pair<int, std::unique_ptr<Material>>>
+      painted;  // of the scene's materials that repaint
   uint64_t paints = 0;
-  std::vector<std::pair<int, std::unique_ptr<Material>>> of_lamps;  // materials that lamps are made of
+  std::vector<std::pair<int, std::unique_ptr<Material>>>
+      of_lamps;  // materials that lamps are made of
   std::vector<char> lamp_on;
-  std::vector<std::vector<Face>> faces;  // of each instance of the scene, where placed points to them
+  std::vector<std::vector<Face>>
+      faces;              // of each instance of the scene, where placed points to them
   std::vector<Tag> tags;  // reserved up front: geometries point into it
   RTCScene still_scene = nullptr, moving_scene = nullptr;
   std::vector<RTCScene> mesh_scenes;     // of the instanced meshes

@@ -131,7 +131,8 @@ void World::intersect_each(const RayPacket& p, uint32_t active, Hit* hits) const
   const Impl& w = *impl_;
   const uint32_t asked = active;
   active = traceable(p, asked);
-  for (uint32_t bits = asked & ~active; bits; bits &= bits - 1) hits[std::countr_zero(bits)] = Hit();
+  for (uint32_t bits = asked & ~active; bits; bits &= bits - 1)
+    hits[std::countr_zero(bits)] = Hit();
   uint32_t moving = w.any_moving ? meeting(w.moving_bounds, p, active) : 0;
   Impl::Query query;
   embree::init(query);

@@ -12,7 +12,8 @@ namespace wellspring {
 
 enum class PunctualType : uint8_t { point, spot, directional };
 
-// Photometric units are taken as radiometric one to one: 1 candela is 1 W/sr, 1 lux is 1 W/m^2 per channel.
+// Photometric units are taken as radiometric one to one: 1 candela is 1 W/sr, 1 lux is 1 W/m^2 per
+// channel.
 struct PunctualLight {
   std::string name;
   PunctualType type = PunctualType::point;
@@ -23,8 +24,8 @@ struct PunctualLight {
   float inner_cone = 0, outer_cone = pi / 4;  // radians from the axis
 };
 
-// What is switched together: a chandelier with all its candles, the spots of a show-case. Nothing belongs to
-// two lamps. How one comes into a scene: world/lamp.h.
+// What is switched together: a chandelier with all its candles, the spots of a show-case. Nothing
+// belongs to two lamps. How one comes into a scene: world/lamp.h.
 struct Lamp {
   std::string name;
   std::vector<int> lights;     // of Scene::lights
@@ -38,8 +39,8 @@ struct SunDisc {
   float angular_radius = 0;  // radians, at most pi / 2
 };
 
-// Light from infinity. No image: `radiance` from everywhere. With an image: latitude-longitude, +Y up,
-// its middle column towards -Z, times `radiance`.
+// Light from infinity. No image: `radiance` from everywhere. With an image: latitude-longitude, +Y
+// up, its middle column towards -Z, times `radiance`.
 struct Environment {
   vec3 radiance{0};
   int image = -1;

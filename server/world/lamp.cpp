@@ -27,7 +27,9 @@ int material_of(const Scene& scene, const Instance& instance) {
   return scene.meshes[size_t(instance.mesh)].material;
 }
 
-bool shines(const Material& material) { return material.unlit || max_component(material.emission) > 0; }
+bool shines(const Material& material) {
+  return material.unlit || max_component(material.emission) > 0;
+}
 
 // Of each node of the scene: whether it or one above it has that name.
 std::vector<char> nodes_within(const Scene& scene, const std::string& name) {
@@ -133,7 +135,8 @@ std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene) {
     std::vector<char> within = nodes_within(scene, name);
     found.exists = std::find(within.begin(), within.end(), 1) != within.end();
     for (size_t i = 0; i < scene.lights.size(); i++)
-      if (scene.lights[i].name == name || is_within(within, scene.light_nodes, i)) found.add_light(scene, int(i));
+      if (scene.lights[i].name == name || is_within(within, scene.light_nodes, i))
+        found.add_light(scene, int(i));
     for (size_t i = 0; i < scene.instances.size(); i++) {
       uint32_t object = scene.instances[i].object;
       bool named = object < scene.objects.size() && scene.objects[object] == name;
@@ -144,7 +147,8 @@ std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene) {
   for (size_t n = 0; n < names.materials.size(); n++) {
     Gathered found;
     for (size_t i = 0; i < scene.instances.size(); i++)
-      if (scene.materials[size_t(material_of(scene, scene.instances[i]))].name == names.materials[n])
+      if (scene.materials[size_t(material_of(scene, scene.instances[i]))].name ==
+          names.materials[n])
         found.add_instance(scene, i);
     take(found, true, n, names.materials[n]);
   }

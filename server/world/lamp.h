@@ -7,7 +7,8 @@ namespace wellspring {
 
 struct LampNames {
   std::string name;
-  // Lights, and things of which something shines, by their nodes or by nodes above these; all of a name.
+  // Lights, and things of which something shines, by their nodes or by nodes above these; all of a
+  // name.
   std::vector<std::string> nodes;
   std::vector<std::string> materials;  // all that is made of them, wherever it is
 };
@@ -19,8 +20,9 @@ struct LampFault {
   std::string what;
 };
 
-// Adds a lamp of all that is named and is no fault to the scene. Materials and meshes that it shares with
-// what is no part of it are copied, so that they are its own: the picture stays as it was.
+// Adds a lamp of all that is named and is no fault to the scene. Materials and meshes that it
+// shares with what is no part of it are copied, so that they are its own: the picture stays as it
+// was.
 std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene);
 
 }  // namespace wellspring

@@ -8,7 +8,8 @@ Material repainted(const Material& m, const Repaint& change) {
   Material made = m;
   bool colors = is_finite(vec3(change.base_color)) && std::isfinite(change.base_color.w);
   if (colors) made.base_color = glm::clamp(m.base_color + change.base_color, vec4(0), vec4(1));
-  if (is_finite(change.emission)) made.emission = glm::clamp(m.emission + change.emission, vec3(0), vec3(most));
+  if (is_finite(change.emission))
+    made.emission = glm::clamp(m.emission + change.emission, vec3(0), vec3(most));
   const mat3& uv = change.uv;
   if (is_finite(uv[0]) && is_finite(uv[1]) && is_finite(uv[2]))
     each_texture(made, [&](TextureRef& use) { use.uv_transform += uv; });

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface is made of: glTF 2.0 metallic-roughness (appendix B) with KHR_materials_transmission,
-// ior, volume, emissive_strength, specular, clearcoat, sheen, anisotropy, dispersion and unlit.
-// Factors are linear. Ambient occlusion maps are not used: a path tracer finds occlusion itself.
+// What a surface is made of: glTF 2.0 metallic-roughness (appendix B) with
+// KHR_materials_transmission, ior, volume, emissive_strength, specular, clearcoat, sheen,
+// anisotropy, dispersion and unlit. Factors are linear. Ambient occlusion maps are not used: a path
+// tracer finds occlusion itself.
 #pragma once
 #include <limits>
 #include <string>
@@ -49,7 +50,8 @@ struct Material {
   TextureRef sheen_roughness_texture;  // A
   float anisotropy = 0, anisotropy_rotation = 0;  // 0..1; radians from the tangent
   TextureRef anisotropy_texture;  // RG: direction, B: strength
-  // World::repaint() may change its colours and how its pictures lie: nothing may be concluded from those.
+  // World::repaint() may change its colours and how its pictures lie: nothing may be concluded from
+  // those.
   bool repaints = false;
 };
 

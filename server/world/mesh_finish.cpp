@@ -40,7 +40,8 @@ vec3 any_perpendicular(vec3 n) {
   return normalize(cross(n, other));
 }
 
-// Along u over a triangle, weighted by its area; `determinant` tells which way round the picture lies.
+// Along u over a triangle, weighted by its area; `determinant` tells which way round the picture
+// lies.
 dvec3 face_tangent(const Mesh& mesh, const std::vector<vec2>& uv, const uvec3& t,
                    double& determinant) {
   dvec3 e1 = dvec3(mesh.positions[t.y]) - dvec3(mesh.positions[t.x]);

@@ -149,8 +149,9 @@ void Raster::Impl::drop_hidden(const View& view, const RasterView& raster, size_
     for (size_t i = first + size_t(begin); i < first + size_t(end); i++) {
       RasterPiece& piece = pieces[i];
       const PlacedMesh& placed = world.placed(piece.instance);
-      const Bounds& box = placed.moving ? moving[piece.instance]
-                                        : meshes[mesh_of[piece.instance]].clusters[piece.cluster].box;
+      const Bounds& box = placed.moving
+                              ? moving[piece.instance]
+                              : meshes[mesh_of[piece.instance]].clusters[piece.cluster].box;
       bool as_it_is = placed.moving || placed.in_place;
       if (is_hidden(view, raster, box, as_it_is ? nullptr : &placed.to_world, tiles))
         piece.depth = INFINITY;
@@ -389,7 +390,8 @@ void Raster::draw(const View& view, const RasterSettings& settings,
   r.hidden -= r.pieces.size();
   size_t second = fill(r.pieces.size());
   auto triangle_of = [&r](uint32_t number) { return &r.triangle_of(number); };
-  EdgeFinder finder{raster, 0.5f * float(view.height) / view.tan_half_fov, columns, r.tiles, triangle_of};
+  EdgeFinder finder{raster, 0.5f * float(view.height) / view.tan_half_fov, columns, r.tiles,
+                    triangle_of};
   parallel_for(columns * rows, [&](int i) {
     draw_tile(i, second);
     std::vector<Veil> veils;

@@ -41,8 +41,8 @@ struct RasterRun {
 // Pixel i of the run as a ray through its sampling place would have met it.
 Hit hit_of(const RasterRun& run, int i, const View& view, vec2 offset);
 
-// Of `pixel` (row after row from the picture's top left), the share that is covered by what `other`,
-// a neighbour, shows: above 0, at most a half.
+// Of `pixel` (row after row from the picture's top left), the share that is covered by what
+// `other`, a neighbour, shows: above 0, at most a half.
 struct EdgeShare {
   uint32_t pixel = 0, other = 0;
   float share = 0;
@@ -81,7 +81,8 @@ class Raster {
   // Of the last picture, if asked for: pixels that edges of objects and creases cut. Each pixel is
   // named in one of the lists only, there maybe more than once.
   std::span<const std::vector<EdgeShare>> edges() const;
-  // Of the last picture: clusters that were drawn, and those left out because nearer ones hide them.
+  // Of the last picture: clusters that were drawn, and those left out because nearer ones hide
+  // them.
   size_t drawn_clusters() const;
   size_t hidden_clusters() const;
 

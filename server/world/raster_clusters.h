@@ -20,8 +20,8 @@ struct Cluster {
   float area = 0;  // of all its triangles
 };
 
-// Triangles with a corner that is not finite are left out. Those of a cluster are of like size, so that
-// its bounds are close and walls, which hide much, lie together.
+// Triangles with a corner that is not finite are left out. Those of a cluster are of like size, so
+// that its bounds are close and walls, which hide much, lie together.
 struct MeshClusters {
   std::vector<Cluster> clusters;
   // Per corner, padded to eight by copies of the last: place and the vertex of the mesh it is.

@@ -9,7 +9,8 @@ namespace wellspring {
 Bounds moving_box(const PlacedMesh& placed) {
   Bounds box;
   if (!placed.moving) return box;
-  for (const vec3& p : placed.mesh->positions) box.low = min(box.low, p), box.high = max(box.high, p);
+  for (const vec3& p : placed.mesh->positions)
+    box.low = min(box.low, p), box.high = max(box.high, p);
   return box;
 }
 
@@ -45,7 +46,8 @@ void find_pieces(const View& view, const PlacedMesh& placed, const MeshClusters&
   }
   for (uint32_t k = 0; k < mesh.clusters.size(); k++) {
     const Cluster& cluster = mesh.clusters[k];
-    vec3 centre = placed.in_place ? cluster.centre : vec3(placed.to_world * vec4(cluster.centre, 1));
+    vec3 centre =
+        placed.in_place ? cluster.centre : vec3(placed.to_world * vec4(cluster.centre, 1));
     float radius = cluster.radius * scale * 1.001f + near, depth = nearest(centre, radius);
     if (depth != INFINITY) add(k, depth, cluster.area * scale * scale, radius);
   }

@@ -27,8 +27,8 @@ void find_pieces(const View& view, const PlacedMesh& placed, const MeshClusters&
                  uint32_t instance, const Bounds& box, float near,
                  std::vector<RasterPiece>& pieces);
 
-// Splits pieces into those to draw first and, returned, how many these are; each part is sorted, the
-// nearest first.
+// Splits pieces into those to draw first and, returned, how many these are; each part is sorted,
+// the nearest first.
 size_t put_hiding_first(std::vector<RasterPiece>& pieces);
 
 // Is all of the box behind what the tiles hold? Their `least` must be up to date. `to_world`: null

@@ -16,9 +16,9 @@ struct EdgeSide {
   float depth = 0;
 };
 
-// Between pixel (x, y) and the one to the right of it or, `vertical`, below. Positive: this share of
-// the first is covered by what the second shows; negative: the other way round. At most a half. 0:
-// both show one smooth surface, or the edge runs rather along the other axis. `focal`: pixels a
+// Between pixel (x, y) and the one to the right of it or, `vertical`, below. Positive: this share
+// of the first is covered by what the second shows; negative: the other way round. At most a half.
+// 0: both show one smooth surface, or the edge runs rather along the other axis. `focal`: pixels a
 // unit of slope.
 float find_edge(const EdgeSide& first, const EdgeSide& second, int x, int y, bool vertical,
                 const RasterView& view, float focal);
@@ -91,7 +91,8 @@ struct EdgeFinder {
   }
   EdgeSide side_of(int tile, int place) const {
     uint32_t number = tiles[size_t(tile)].number[place];
-    return {number == no_triangle ? nullptr : triangle_of(number), tiles[size_t(tile)].depth[place]};
+    return {number == no_triangle ? nullptr : triangle_of(number),
+            tiles[size_t(tile)].depth[place]};
   }
   void look(int tile1, int place1, int tile2, int place2, bool vertical,
             std::vector<EdgeShare>& found) const {

@@ -29,7 +29,8 @@ struct Slopes {
 // Places on an edge belong to the triangle to the right of it or below it, so to one of two.
 int32_t bias_of(int32_t a, int32_t b) { return a > 0 || (a == 0 && b > 0) ? 0 : -1; }
 
-// Does the triangle cover this place? Corners in the order that leaves the inside on the inner side.
+// Does the triangle cover this place? Corners in the order that leaves the inside on the inner
+// side.
 bool covers(const RasterPoint& p0, const RasterPoint& p1, const RasterPoint& p2, int32_t x,
             int32_t y) {
   auto inside = [&](const RasterPoint& from, const RasterPoint& to) {
@@ -55,8 +56,9 @@ void finish(const RasterView& view, const RasterPoint& p0, RasterPoint p1, Raste
                  int64_t(p2.step_x - p0.step_x) * (p1.step_y - p0.step_y);
   if (area == 0) return;
   if (area < 0) std::swap(p1, p2);
-  if (left == right && top == bottom && !covers(p0, p1, p2, left * raster_steps - view.centre_steps_x,
-                                                top * raster_steps - view.centre_steps_y))
+  if (left == right && top == bottom &&
+      !covers(p0, p1, p2, left * raster_steps - view.centre_steps_x,
+              top * raster_steps - view.centre_steps_y))
     return;
   RasterTriangle& t = out.emplace_back(unfinished);
   t.left = int16_t(left), t.right = int16_t(right), t.top = int16_t(top),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What exists: immutable once made, shared by every visitor and every thread. Plain data; indices, not
-// pointers. Positions are relative to `origin`, so that a scene far from zero keeps its precision.
+// What exists: immutable once made, shared by every visitor and every thread. Plain data; indices,
+// not pointers. Positions are relative to `origin`, so that a scene far from zero keeps its
+// precision.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,8 +12,8 @@
 
 namespace wellspring {
 
-// Indexed triangles of one material. `normals` is never empty (made from the faces if the file had none);
-// uv, colors and tangents are empty or as long as positions.
+// Indexed triangles of one material. `normals` is never empty (made from the faces if the file had
+// none); uv, colors and tangents are empty or as long as positions.
 struct Mesh {
   std::string name;
   std::vector<vec3> positions;

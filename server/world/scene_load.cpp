@@ -48,7 +48,8 @@ class Builder {
     scene.objects.push_back("");
     scene.object_nodes.push_back(-1);
     const json& list = items(file.root, "nodes");
-    for (size_t i = 0; i < nodes_.size(); i++) scene.nodes.push_back({text(list[i], "name"), nodes_[i].parent});
+    for (size_t i = 0; i < nodes_.size(); i++)
+      scene.nodes.push_back({text(list[i], "name"), nodes_[i].parent});
   }
 
   void build() {

@@ -142,7 +142,8 @@ struct Atmosphere {
                                      air.haze * haze_phase(cosine)) +
                                   all * further_at(at);
       dvec3 kept = glm::exp(-air.lost * step);
-      dvec3 share = (1.0 - kept) / glm::max(air.lost, dvec3(1e-20));  // of the step, as it thins out
+      dvec3 share =
+          (1.0 - kept) / glm::max(air.lost, dvec3(1e-20));  // of the step, as it thins out
       arrives += through * scatters * share;
       if (passed) *passed += through * all * share;
       through *= kept;
@@ -190,9 +191,11 @@ dvec3 sun_irradiance(const SkySettings& s, const SunTable& sunlight) {
 }  // namespace
 
 const char* sky_problem(const SkySettings& s) {
-  if (!(s.elevation >= -18 && s.elevation <= 90)) return "elevation: degrees from -18 to 90 expected";
+  if (!(s.elevation >= -18 && s.elevation <= 90))
+    return "elevation: degrees from -18 to 90 expected";
   if (!(std::abs(s.azimuth) <= 360)) return "azimuth: degrees from -360 to 360 expected";
-  if (!(s.turbidity >= 1 && s.turbidity <= 10)) return "turbidity: from 1 (pure air) to 10 expected";
+  if (!(s.turbidity >= 1 && s.turbidity <= 10))
+    return "turbidity: from 1 (pure air) to 10 expected";
   if (!(s.strength >= 0 && s.strength <= 1e6)) return "strength: from 0 to 1000000 expected";
   return nullptr;
 }

@@ -7,8 +7,8 @@
 // Sky and Atmosphere Rendering Technique", section 5.5). The three channels stand for 680, 550 and
 // 440 nm, white is sunlight outside the air.
 //
-// Units: an irradiance of 1 is 10,000 lux, a radiance of 1 is 10,000 cd/m^2. Outside the air the sun
-// gives 128,000 lux, so a clear noon comes to about 10, and to 1 or 2 in the shade.
+// Units: an irradiance of 1 is 10,000 lux, a radiance of 1 is 10,000 cd/m^2. Outside the air the
+// sun gives 128,000 lux, so a clear noon comes to about 10, and to 1 or 2 in the shade.
 #pragma once
 #include "world/scene.h"
 

@@ -5,8 +5,9 @@
 
 namespace wellspring {
 
-// Cuts [near, far] of a ray down to the slab [low, high] of one axis; `inverse`: 1 / direction. A ray in
-// the slab's very plane (0 times infinity) is not cut: boxes are asked whether something may be met.
+// Cuts [near, far] of a ray down to the slab [low, high] of one axis; `inverse`: 1 / direction. A
+// ray in the slab's very plane (0 times infinity) is not cut: boxes are asked whether something may
+// be met.
 inline void cut_by_slab(float low, float high, float origin, float inverse, float& near,
                         float& far) {
   float a = (low - origin) * inverse, b = (high - origin) * inverse;

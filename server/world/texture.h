@@ -11,8 +11,8 @@ namespace wellspring {
 
 enum class Wrap : uint8_t { repeat, mirror, clamp };
 
-// A decoded image. Exactly one of `texels8` (RGBA, 4 bytes a texel) and `texels` (float RGBA, linear)
-// is filled; top row first.
+// A decoded image. Exactly one of `texels8` (RGBA, 4 bytes a texel) and `texels` (float RGBA,
+// linear) is filled; top row first.
 struct Image {
   std::string name;
   int width = 0, height = 0;
@@ -35,8 +35,8 @@ struct TextureRef {
   mat3 uv_transform{1};  // applied to (u, v, 1)
 };
 
-// Linear RGBA at (u, v). Any finite uv; non-finite uv gives texel 0. Texels that are not finite read as 0.
-// An image without texels reads as 1 everywhere.
+// Linear RGBA at (u, v). Any finite uv; non-finite uv gives texel 0. Texels that are not finite
+// read as 0. An image without texels reads as 1 everywhere.
 vec4 eval_texture(const Image& image, const Texture& texture, vec2 uv);
 // The linear value of an 8-bit sRGB code (IEC 61966-2-1).
 float decode_srgb(uint8_t code);

@@ -5,7 +5,8 @@
 
 namespace wellspring {
 
-// Orthonormal axes; pixel (0,0) is the top left, pixel centres at +0.5. Position is relative to Scene::origin.
+// Orthonormal axes; pixel (0,0) is the top left, pixel centres at +0.5. Position is relative to
+// Scene::origin.
 struct View {
   vec3 position{0};
   vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
@@ -15,9 +16,11 @@ struct View {
 };
 
 // From yaw and pitch as in Viewpoint. `fov` vertical, radians, in (0, pi).
-View make_view(const Scene& scene, dvec3 position, float yaw, float pitch, float fov, int width, int height);
+View make_view(const Scene& scene, dvec3 position, float yaw, float pitch, float fov, int width,
+               int height);
 // From a target; `up` may not be parallel to the line of sight (then another is chosen).
-View make_view_towards(const Scene& scene, dvec3 eye, dvec3 target, vec3 up, float fov, int width, int height);
+View make_view_towards(const Scene& scene, dvec3 eye, dvec3 target, vec3 up, float fov, int width,
+                       int height);
 // Ray through picture position (x, y) in pixels; unit direction.
 Ray view_ray(const View& view, float x, float y);
 // Picture position and depth along the axis of a point; depth <= 0: behind.

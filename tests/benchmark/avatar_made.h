@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A figure as avatars' exporters write them, made in a moment: a body of tubes about bones, a head with
-// shapes, hair and a skirt of spring bones with colliders, twist bones, a map of normals, an expression that changes
-// a material. Each can be left out, so that its cost shows.
+// A figure as avatars' exporters write them, made in a moment: a body of tubes about bones, a head
+// with shapes, hair and a skirt of spring bones with colliders, twist bones, a map of normals, an
+// expression that changes a material. Each can be left out, so that its cost shows.
 #pragma once
 #include <string>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tick of figures on one core: animate, skin, and the refit of their meshes in the world. The default
-// storyteller, and an avatar made here that has what such files bring along, with and without each of it.
+// The tick of figures on one core: animate, skin, and the refit of their meshes in the world. The
+// default storyteller, and an avatar made here that has what such files bring along, with and
+// without each of it.
 #include <ctime>
 #include <filesystem>
 #include <oneapi/tbb/global_control.h>
@@ -78,9 +79,11 @@ struct Ticking {
 
 constexpr int ticks_before = 10;  // ticks before any counts
 
-// The made avatar in all its variants, ticking in turns, in processor time: a speaking face bends and repaints.
+// The made avatar in all its variants, ticking in turns, in processor time: a speaking face bends
+// and repaints.
 void bench_made(BenchReport& report, int ticks) {
-  std::string normals = (std::filesystem::temp_directory_path() / "wellspring_bench_normals.png").string();
+  std::string normals =
+      (std::filesystem::temp_directory_path() / "wellspring_bench_normals.png").string();
   Frame flat;
   flat.width = flat.height = 16;
   flat.color.assign(256, vec3(0.21f, 0.21f, 1));
@@ -90,9 +93,12 @@ void bench_made(BenchReport& report, int ticks) {
     MadeAvatar what;
     Character character;
   };
-  std::vector<Variant> variants = {{"plain", {false, false, false, false}, {}}, {"springs", {true, false, false, false}, {}},
-                                   {"normal_map", {false, true, false, false}, {}}, {"constraints", {false, false, true, false}, {}},
-                                   {"paint", {false, false, false, true}, {}}, {"all", {}, {}}};
+  std::vector<Variant> variants = {{"plain", {false, false, false, false}, {}},
+                                   {"springs", {true, false, false, false}, {}},
+                                   {"normal_map", {false, true, false, false}, {}},
+                                   {"constraints", {false, false, true, false}, {}},
+                                   {"paint", {false, false, false, true}, {}},
+                                   {"all", {}, {}}};
   std::vector<std::unique_ptr<Ticking>> figures;
   for (Variant& variant : variants) {
     variant.character = make_avatar(variant.what, normals);
@@ -108,7 +114,9 @@ void bench_made(BenchReport& report, int ticks) {
   }
   for (size_t i = 0; i < figures.size(); i++)
     figures[i]->report(report, "avatar.made",
-                       {{"scene", "made avatar"}, {"technique", variants[i].name}, {"springs", variants[i].character.springs.size()}});
+                       {{"scene", "made avatar"},
+                        {"technique", variants[i].name},
+                        {"springs", variants[i].character.springs.size()}});
 }
 
 }  // namespace

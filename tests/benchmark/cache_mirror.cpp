@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// cache.mirror.*: a visitor walks past a plane mirror, a ball of polished metal, and glass. What they
-// show is kept where its image lies (light/mirror_image.h), or on their surfaces and forgotten fast.
-// Error where the picture shows them: RMSE of display values, and FLIP, against converged pictures.
+// cache.mirror.*: a visitor walks past a plane mirror, a ball of polished metal, and glass. What
+// they show is kept where its image lies (light/mirror_image.h), or on their surfaces and forgotten
+// fast. Error where the picture shows them: RMSE of display values, and FLIP, against converged
+// pictures.
 #include <algorithm>
 #include <cmath>
 
@@ -24,27 +25,31 @@ constexpr int width = 192, height = 108, frames = 90, judged_every = 15, judged_
 Scene make_room(const std::string& what) {
   Scene scene = empty_scene();
   auto paint = [&](vec3 color) { return add_material(scene, diffuse(color)); };
-  int white = paint(vec3(0.7f)), red = paint({0.6f, 0.1f, 0.08f}), green = paint({0.12f, 0.4f, 0.15f}),
-      blue = paint({0.1f, 0.15f, 0.5f});
+  int white = paint(vec3(0.7f)), red = paint({0.6f, 0.1f, 0.08f}),
+      green = paint({0.12f, 0.4f, 0.15f}), blue = paint({0.1f, 0.15f, 0.5f});
   add_quad(scene, white, {-2.5f, 0, 3}, {5, 0, 0}, {0, 0, -6}, "floor");
   add_quad(scene, white, {-2.5f, 3, -3}, {5, 0, 0}, {0, 0, 6}, "ceiling");
   add_quad(scene, white, {-2.5f, 0, -3}, {5, 0, 0}, {0, 3, 0}, "far wall");
   add_quad(scene, white, {2.5f, 0, 3}, {-5, 0, 0}, {0, 3, 0}, "near wall");
   add_quad(scene, red, {-2.5f, 0, 3}, {0, 0, -6}, {0, 3, 0}, "left wall");
   add_quad(scene, green, {2.5f, 0, -3}, {0, 0, 6}, {0, 3, 0}, "right wall");
-  add_quad(scene, add_material(scene, emitter(vec3(9))), {-0.6f, 2.99f, -0.5f}, {1.2f, 0, 0}, {0, 0, 1.2f}, "lamp");
+  add_quad(scene, add_material(scene, emitter(vec3(9))), {-0.6f, 2.99f, -0.5f}, {1.2f, 0, 0},
+           {0, 0, 1.2f}, "lamp");
   for (int i = 0; i < 5; i++)
     add_mesh(scene, box_mesh(i % 2 ? blue : red, {0.3f, 0.5f + 0.25f * float(i), 0.3f}), "pillar",
              at({-1.8f + 0.9f * float(i), 0.25f + 0.125f * float(i), i % 2 ? 2.2f : 0.4f}));
   for (int i = 0; i < 6; i++)
-    add_quad(scene, i % 2 ? green : blue, {2.2f - 0.8f * float(i), 1.3f, 2.99f}, {-0.4f, 0, 0}, {0, 0.9f, 0}, "picture");
+    add_quad(scene, i % 2 ? green : blue, {2.2f - 0.8f * float(i), 1.3f, 2.99f}, {-0.4f, 0, 0},
+             {0, 0.9f, 0}, "picture");
   int mirror = add_material(scene, metal(vec3(0.95f), 0));
   if (what == "plane mirror")
     add_quad(scene, mirror, {-2, 0.4f, -2.9f}, {4, 0, 0}, {0, 2.2f, 0}, "subject");
-  if (what == "metal ball") add_mesh(scene, sphere_mesh(mirror, 0.8f, 96), "subject", at({0, 1.5f, -1.6f}));
+  if (what == "metal ball")
+    add_mesh(scene, sphere_mesh(mirror, 0.8f, 96), "subject", at({0, 1.5f, -1.6f}));
   if (what == "glass") {
     Material clear = glass(1.5f, 0, 0.4f);
-    add_mesh(scene, box_mesh(add_material(scene, clear), {1.6f, 1.8f, 0.4f}), "subject", at({0, 1.5f, -1.2f}));
+    add_mesh(scene, box_mesh(add_material(scene, clear), {1.6f, 1.8f, 0.4f}), "subject",
+             at({0, 1.5f, -1.2f}));
   }
   return scene;
 }
@@ -80,7 +85,8 @@ void bench_cache_mirror(BenchReport& report, const BenchOptions& options) {
     Lights lights = make_lights(world);
     auto view_at = [&](int frame) {  // a metre a second
       double x = -0.75 + frame / 60.0;
-      return make_view_towards(scene, {x, 1.6, 1.6}, {0.4 * x, 1.5, -2}, {0, 1, 0}, 0.9f, width, height);
+      return make_view_towards(scene, {x, 1.6, 1.6}, {0.4 * x, 1.5, -2}, {0, 1, 0}, 0.9f, width,
+                               height);
     };
     std::vector<Frame> truth;
     StillSettings still;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// cache.rest.flip: a visitor jumps to a place and stands still. FLIP and RMSE (of display values) of what is
-// shown after half a second to 20 s, against the converged `path` of that view. Samples are those that a
-// renderer of so many samples a second has for each pixel of 1280x720; pictures are smaller, with as many
-// samples a pixel, so that the machine's speed is stated and not in the result. Beside them:
-// cache.rest.truth_halves_flip, what of that the converged pictures' own noise may be, and
-// cache.rest.technique_flip, what the samples of the first two seconds would show if there were plenty.
+// cache.rest.flip: a visitor jumps to a place and stands still. FLIP and RMSE (of display values)
+// of what is shown after half a second to 20 s, against the converged `path` of that view. Samples
+// are those that a renderer of so many samples a second has for each pixel of 1280x720; pictures
+// are smaller, with as many samples a pixel, so that the machine's speed is stated and not in the
+// result. Beside them: cache.rest.truth_halves_flip, what of that the converged pictures' own noise
+// may be, and cache.rest.technique_flip, what the samples of the first two seconds would show if
+// there were plenty.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -28,8 +29,9 @@ constexpr double full_width = 1280, full_pixels = 1280.0 * 720.0;
 constexpr double judged_at[] = {0.5, 1, 2, 5, 20};
 constexpr float moving_clamp = 4, still_clamp = 12;  // as ShowSettings
 
-// Where visitors stand. `part`: not the whole picture but so many pixels of one that is 1280 wide, around
-// (right, up) of its centre in halves of its height: edges and textures are as wide as visitors see them.
+// Where visitors stand. `part`: not the whole picture but so many pixels of one that is 1280 wide,
+// around (right, up) of its centre in halves of its height: edges and textures are as wide as
+// visitors see them.
 struct Place {
   const char *name, *scene, *viewpoint;
   bool part = false;
@@ -54,7 +56,8 @@ struct Stand {
 
 View part_of(const View& whole, const Place& place, int width, int height) {
   View part = whole;
-  vec3 towards = whole.forward + whole.tan_half_fov * (place.right * whole.right + place.up * whole.up);
+  vec3 towards =
+      whole.forward + whole.tan_half_fov * (place.right * whole.right + place.up * whole.up);
   part.forward = normalize(towards);
   part.right = normalize(cross(part.forward, whole.up));
   part.up = cross(part.right, part.forward);
@@ -66,24 +69,28 @@ View part_of(const View& whole, const Place& place, int width, int height) {
 void judge(BenchReport& report, const std::string& name, const Frame& shown, const Truth& truth,
            const nlohmann::json& fields) {
   Image8 pictures[3];
-  tonemap(shown, {}, pictures[0]), tonemap(truth.half[0], {}, pictures[1]), tonemap(truth.half[1], {}, pictures[2]);
+  tonemap(shown, {}, pictures[0]), tonemap(truth.half[0], {}, pictures[1]),
+      tonemap(truth.half[1], {}, pictures[2]);
   report.add("cache.rest." + name + "flip", flip(shown, truth.picture), "FLIP", fields);
-  report.add("cache.rest." + name + "rmse", display_rmse(pictures[0], pictures[1], pictures[2]), "of white", fields);
+  report.add("cache.rest." + name + "rmse", display_rmse(pictures[0], pictures[1], pictures[2]),
+             "of white", fields);
 }
 
 // The picture and where it errs: FLIP of 0.25 and more is white.
-void save_judged(const BenchOptions& options, const std::string& name, const Frame& shown, const Truth& truth) {
+void save_judged(const BenchOptions& options, const std::string& name, const Frame& shown,
+                 const Truth& truth) {
   if (options.visit_pictures.empty()) return;
   std::string file = options.visit_pictures + "/rest_" + name;
   save_picture(file + ".png", shown, {});
   FlipMap map = eval_flip(shown, truth.picture);
   Frame error = shown;
-  for (size_t i = 0; i < map.error.size(); i++) error.color[i] = vec3(std::pow(std::min(4 * map.error[i], 1.0f), 2.2f));
+  for (size_t i = 0; i < map.error.size(); i++)
+    error.color[i] = vec3(std::pow(std::min(4 * map.error[i], 1.0f), 2.2f));
   save_picture(file + "_error.png", error, {});
 }
 
-void stand(BenchReport& report, const BenchOptions& options, const Stand& at, const std::string& name,
-           double samples_a_second) {
+void stand(BenchReport& report, const BenchOptions& options, const Stand& at,
+           const std::string& name, double samples_a_second) {
   std::unique_ptr<VisitMethod> method = make_visit_method(name);
   double pixels = double(at.view.width) * double(at.view.height), owed = 0, spent = 0;
   VisitPicture shown;
@@ -97,8 +104,8 @@ void stand(BenchReport& report, const BenchOptions& options, const Stand& at, co
   for (double seconds : judged_at) {
     if (options.quick && seconds > 2) break;
     for (; frame < int(std::lround(seconds * rate)); frame++) {
-      settled = wants_reference(frame / rate, settled, frame == 0, float(shown.stats.filled + shown.empty),
-                                shown.stats.converged);
+      settled = wants_reference(frame / rate, settled, frame == 0,
+                                float(shown.stats.filled + shown.empty), shown.stats.converged);
       moment.technique = find_technique(settled ? "path" : "gather");
       moment.transport.clamp = settled ? still_clamp : moving_clamp;
       moment.frame = frame;
@@ -111,10 +118,16 @@ void stand(BenchReport& report, const BenchOptions& options, const Stand& at, co
       method->show(moment, budget, shown);
     }
     judge(report, "", shown.frame, at.truth,
-          {{"scene", at.name}, {"method", name}, {"seconds", seconds}, {"samples_a_second", samples_a_second},
-           {"samples_a_pixel", spent / pixels}, {"settled", settled}});
-    save_judged(options, at.name + "_" + name + "_" + std::to_string(int(samples_a_second / 1000)) + "k_" +
-                             std::to_string(int(seconds * 10)), shown.frame, at.truth);
+          {{"scene", at.name},
+           {"method", name},
+           {"seconds", seconds},
+           {"samples_a_second", samples_a_second},
+           {"samples_a_pixel", spent / pixels},
+           {"settled", settled}});
+    save_judged(options,
+                at.name + "_" + name + "_" + std::to_string(int(samples_a_second / 1000)) + "k_" +
+                    std::to_string(int(seconds * 10)),
+                shown.frame, at.truth);
   }
 }
 
@@ -126,7 +139,8 @@ void judge_technique(BenchReport& report, const BenchOptions& options, const Sta
     still.transport.max_depth = at.max_depth;
     still.transport.clamp = clamp;
     Frame frame = render_still(*find_technique("gather"), at.world, at.lights, at.view, still);
-    judge(report, "technique_", frame, at.truth, {{"scene", at.name}, {"clamp", clamp}, {"spp", still.spp}});
+    judge(report, "technique_", frame, at.truth,
+          {{"scene", at.name}, {"clamp", clamp}, {"spp", still.spp}});
     save_judged(options, at.name + "_gather" + (clamp > 0 ? "_clamped" : ""), frame, at.truth);
   }
 }
@@ -136,10 +150,12 @@ bool is_wanted(const BenchOptions& options, const std::string& name) {
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-void bench_place(BenchReport& report, const BenchOptions& options, const Place& place, TruthSettings truths) {
+void bench_place(BenchReport& report, const BenchOptions& options, const Place& place,
+                 TruthSettings truths) {
   BenchScene scene = load_bench_scene(options, place.scene);
   if (*place.viewpoint)
-    for (const auto& one : load_exhibit((std::filesystem::path(options.content) / place.scene).string()).viewpoints)
+    for (const auto& one :
+         load_exhibit((std::filesystem::path(options.content) / place.scene).string()).viewpoints)
       if (one.view.name == place.viewpoint) scene.camera = one.view;
   World world(scene.scene);
   world.commit();
@@ -168,7 +184,8 @@ void bench_cache_rest(BenchReport& report, const BenchOptions& options) {
   truths.spp = options.visit_spp > 0 ? options.visit_spp : options.quick ? 64 : 256;
   truths.folder = truths_folder(options);
   for (const Place& place : places)
-    if (options.visit_trace.empty() || options.visit_trace == place.name) bench_place(report, options, place, truths);
+    if (options.visit_trace.empty() || options.visit_trace == place.name)
+      bench_place(report, options, place, truths);
 }
 
 }  // namespace wellspring

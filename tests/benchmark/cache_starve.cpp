@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// cache.starve.flip: what a visitor sees of a place never seen before while only a few samples a hundred
-// pixels are there, as on a busy machine: FLIP against the converged `path` of that view. Samples of
-// `gather`, each picture the four hundredth part of a sample a pixel, so that the machine's speed is not in
-// the result. Once more where a lamp without a size lights the box.
+// cache.starve.flip: what a visitor sees of a place never seen before while only a few samples a
+// hundred pixels are there, as on a busy machine: FLIP against the converged `path` of that view.
+// Samples of `gather`, each picture the four hundredth part of a sample a pixel, so that the
+// machine's speed is not in the result. Once more where a lamp without a size lights the box.
 #include <cmath>
 #include <filesystem>
 
@@ -26,8 +26,8 @@ struct Place {
   Viewpoint camera;
 };
 
-void starve(BenchReport& report, const BenchOptions& options, const VisitMoment& begun, const Truth& truth,
-            const Place& place, const char* name) {
+void starve(BenchReport& report, const BenchOptions& options, const VisitMoment& begun,
+            const Truth& truth, const Place& place, const char* name) {
   std::unique_ptr<VisitMethod> method = make_visit_method(name);
   VisitMoment moment = begun;
   VisitPicture shown;
@@ -43,7 +43,8 @@ void starve(BenchReport& report, const BenchOptions& options, const VisitMoment&
                {{"scene", place.scene}, {"view", place.name}, {"method", name},
                 {"samples_a_pixel", double(budget) * pictures / pixels}});
     if (options.visit_pictures.empty()) continue;
-    save_picture(options.visit_pictures + "/starve_" + place.name + "_" + name + "_" + std::to_string(pictures) + ".png",
+    save_picture(options.visit_pictures + "/starve_" + place.name + "_" + name + "_" +
+                     std::to_string(pictures) + ".png",
                  shown.frame, {});
   }
 }
@@ -57,11 +58,13 @@ void light_by_point(Scene& box) {
   box.lights.push_back(lamp);
 }
 
-std::vector<Place> places_of(const BenchOptions& options, const std::string& name, const Viewpoint& camera) {
+std::vector<Place> places_of(const BenchOptions& options, const std::string& name,
+                             const Viewpoint& camera) {
   if (name != "castle") return {{name, name, camera}};
   std::vector<Place> places;
   Exhibit castle = load_exhibit((std::filesystem::path(options.content) / "castle").string());
-  for (const ExhibitViewpoint& one : castle.viewpoints) places.push_back({name, one.view.name, one.view});
+  for (const ExhibitViewpoint& one : castle.viewpoints)
+    places.push_back({name, one.view.name, one.view});
   if (options.quick) places.resize(3);
   return places;
 }
@@ -79,7 +82,8 @@ void bench_cache_starve(BenchReport& report, const BenchOptions& options) {
   for (auto [from, one_point] : scenes) {
     BenchScene scene = load_bench_scene(options, from);
     if (one_point) light_by_point(scene.scene);
-    std::vector<Place> places = places_of(options, from + std::string(one_point ? "_point" : ""), scene.camera);
+    std::vector<Place> places =
+        places_of(options, from + std::string(one_point ? "_point" : ""), scene.camera);
     World world(scene.scene);
     world.commit();
     Lights lights = make_lights(world);

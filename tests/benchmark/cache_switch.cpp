@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// cache.switch.right: a lamp is switched before a visitor, and how many of the pixels that this changes by more
-// than 10 % are within 10 % of right (converged `path`) some time later. The cache is told (relight), has to find
-// out, or begins from nothing (cleared), which says what so few samples can tell at all. Pictures are 60 a second.
+// cache.switch.right: a lamp is switched before a visitor, and how many of the pixels that this
+// changes by more than 10 % are within 10 % of right (converged `path`) some time later. The cache
+// is told (relight), has to find out, or begins from nothing (cleared), which says what so few
+// samples can tell at all. Pictures are 60 a second.
 #include <cmath>
 #include <filesystem>
 
@@ -41,16 +42,19 @@ bool is_right(vec3 shown, vec3 wanted) {
   return std::abs(luminance(shown) - luminance(wanted)) <= tolerance * luminance(wanted) + darkest;
 }
 
-// Of the affected pixels. `map`: those that are right green, too bright ones red, too dark ones blue.
+// Of the affected pixels. `map`: those that are right green, too bright ones red, too dark ones
+// blue.
 float share_right(const Frame& shown, const Lit& was, const Lit& is, Frame& map) {
   int affected = 0, all_right = 0;
   map = shown;
   for (size_t i = 0; i < shown.color.size(); i++) {
     vec3 wanted = is.truth.picture.color[i], old = was.truth.picture.color[i];
     map.color[i] = vec3(0);
-    if (std::abs(luminance(wanted) - luminance(old)) <= tolerance * std::max(luminance(wanted), luminance(old)) + darkest)
+    if (std::abs(luminance(wanted) - luminance(old)) <=
+        tolerance * std::max(luminance(wanted), luminance(old)) + darkest)
       continue;
-    bool right = is_right(shown.color[i], wanted), bright = luminance(shown.color[i]) > luminance(wanted);
+    bool right = is_right(shown.color[i], wanted),
+         bright = luminance(shown.color[i]) > luminance(wanted);
     map.color[i] = right ? vec3(0, 0.3f, 0) : bright ? vec3(1, 0, 0) : vec3(0, 0, 1);
     affected++;
     all_right += right;
@@ -74,7 +78,8 @@ struct Onlooker {
   // Who moves passes the judged place every second picture.
   void show(const Lit& lit, int mismatch) {
     View view = lit.view;
-    if (way == Way::moving && pictures % 2 == 0) view.position += 0.004f * (pictures % 4 ? -1.0f : 1.0f) * view.right;
+    if (way == Way::moving && pictures % 2 == 0)
+      view.position += 0.004f * (pictures % 4 ? -1.0f : 1.0f) * view.right;
     const View seen = way == Way::moving ? light_view(view) : view;
     uint64_t seed = mix64(uint64_t(++pictures) * 0x9e3779b9u);
     TransportSettings transport;
@@ -94,7 +99,8 @@ struct Onlooker {
   }
 };
 
-void run(BenchReport& report, const BenchOptions& options, const Switch& scene, Way way, News news, bool on, int mismatch) {
+void run(BenchReport& report, const BenchOptions& options, const Switch& scene, Way way, News news,
+         bool on, int mismatch) {
   const Lit &was = on ? scene.off : scene.on, &is = on ? scene.on : scene.off;
   Onlooker visitor{.scene = scene, .way = way};
   if (news != News::cleared)
@@ -106,30 +112,36 @@ void run(BenchReport& report, const BenchOptions& options, const Switch& scene, 
     after += way == Way::moving ? after % 2 : 0;
     for (; picture < after; picture++) visitor.show(is, mismatch);
     report.add("cache.switch.right", share_right(visitor.frame, was, is, map), "share",
-               {{"scene", scene.scene}, {"way", way_names[int(way)]}, {"cache", news_names[int(news)]},
-                {"light", on ? "on" : "off"}, {"mismatch", mismatch}, {"pictures", after}});
+               {{"scene", scene.scene},
+                {"way", way_names[int(way)]},
+                {"cache", news_names[int(news)]},
+                {"light", on ? "on" : "off"},
+                {"mismatch", mismatch},
+                {"pictures", after}});
     if (options.visit_pictures.empty()) continue;
-    std::string file = options.visit_pictures + "/switch_" + scene.scene + "_" + way_names[int(way)] + "_" +
-                       news_names[int(news)] + (on ? "_on_" : "_off_") + std::to_string(mismatch) + "_" +
-                       std::to_string(after);
+    std::string file = options.visit_pictures + "/switch_" + scene.scene + "_" +
+                       way_names[int(way)] + "_" + news_names[int(news)] + (on ? "_on_" : "_off_") +
+                       std::to_string(mismatch) + "_" + std::to_string(after);
     save_picture(file + ".png", visitor.frame, {});
     save_picture(file + "_right.png", map, {});
   }
 }
 
-void prepare(const std::string& name, const BenchScene& scene, const TruthSettings& truths, int width, Lit& lit) {
+void prepare(const std::string& name, const BenchScene& scene, const TruthSettings& truths,
+             int width, Lit& lit) {
   lit.world = std::make_unique<World>(lit.scene);
   lit.world->commit();
   lit.lights = make_lights(*lit.world);
   lit.sight = std::make_unique<PictureSight>(*lit.world, lit.lights);
   lit.view = bench_view(scene, width, (width * 9 + 8) / 16);
   const Technique& technique = *find_technique(name);
-  if (technique.prepare) technique.prepare(*lit.world, std::span(&lit.view.position, 1), lit.lights);
+  if (technique.prepare)
+    technique.prepare(*lit.world, std::span(&lit.view.position, 1), lit.lights);
   lit.truth = find_truth(*lit.world, lit.lights, lit.view, truths);
 }
 
-// What is switched: a spot light beside the box's lamp or beside a point light instead of that, the lamp beside a
-// point light, or all lamps of the castle but its sun.
+// What is switched: a spot light beside the box's lamp or beside a point light instead of that, the
+// lamp beside a point light, or all lamps of the castle but its sun.
 void make_lamps(const std::string& what, Scene& off, Scene& on) {
   PunctualLight lamp;
   if (what == "box_points") {
@@ -153,7 +165,9 @@ void make_lamps(const std::string& what, Scene& off, Scene& on) {
     off.lights.push_back(lamp), on.lights.push_back(lamp);
     for (Material& material : off.materials) material.emission = vec3(0);
   } else {
-    std::erase_if(off.lights, [](const PunctualLight& light) { return light.type != PunctualType::directional; });
+    std::erase_if(off.lights, [](const PunctualLight& light) {
+      return light.type != PunctualType::directional;
+    });
   }
 }
 
@@ -168,26 +182,30 @@ void bench_cache_switch(BenchReport& report, const BenchOptions& options) {
   if (mismatches.empty()) mismatches = {4, 16, 64};
   for (const char* what : {"box_spot", "box_points", "box_lamp", "castle"}) {
     if (!options.visit_trace.empty() && options.visit_trace != what) continue;
-    BenchScene bench = load_bench_scene(options, what == std::string("castle") ? "castle" : "cornell_box");
+    BenchScene bench =
+        load_bench_scene(options, what == std::string("castle") ? "castle" : "cornell_box");
     Switch scene{what, options.visit_technique, bench.max_depth, {}, {}};
     truths.spp = options.visit_spp > 0 ? options.visit_spp : options.quick ? 96 : 512;
     truths.max_depth = bench.max_depth;
     scene.off.scene = bench.scene, scene.on.scene = bench.scene;
     // Light that falls directly owes little to chance: what is wrong then is the cache's fault.
-    if (what == std::string("box_points")) scene.technique = "path", scene.max_depth = truths.max_depth = 2;
+    if (what == std::string("box_points"))
+      scene.technique = "path", scene.max_depth = truths.max_depth = 2;
     make_lamps(what, scene.off.scene, scene.on.scene);
     for (Lit* lit : {&scene.off, &scene.on}) prepare(scene.technique, bench, truths, width, *lit);
     for (const Lit* lit : {&scene.off, &scene.on}) {
       int alike = 0;
       for (size_t i = 0; i < lit->truth.picture.color.size(); i++)
         alike += is_right(lit->truth.half[0].color[i], lit->truth.half[1].color[i]);
-      report.add("cache.switch.truth_halves_alike", double(alike) / double(lit->truth.picture.color.size()), "share",
+      report.add("cache.switch.truth_halves_alike",
+                 double(alike) / double(lit->truth.picture.color.size()), "share",
                  {{"scene", what}, {"light", lit == &scene.on ? "on" : "off"}});
     }
     for (int mismatch : mismatches)
       for (Way way : {Way::points, Way::moving, Way::still})
         for (bool on : {true, false})
-          for (News news : {News::told, News::found, News::cleared}) run(report, options, scene, way, news, on, mismatch);
+          for (News news : {News::told, News::found, News::cleared})
+            run(report, options, scene, way, news, on, mismatch);
   }
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// cache.turns.unknown: who turns by keys starts and stops at once, while pictures to warp are drawn for
-// where the view is expected to be. How much of the pictures shown lies outside of what was drawn, and so
-// repeats its border, for machines that take so long for a drawn picture; without prediction, predicted with
-// margins of the same width for all, and as the show does, with margins as wide as turns are quick.
+// cache.turns.unknown: who turns by keys starts and stops at once, while pictures to warp are drawn
+// for where the view is expected to be. How much of the pictures shown lies outside of what was
+// drawn, and so repeats its border, for machines that take so long for a drawn picture; without
+// prediction, predicted with margins of the same width for all, and as the show does, with margins
+// as wide as turns are quick.
 #include <cmath>
 #include <spdlog/fmt/fmt.h>
 
@@ -51,7 +52,9 @@ std::vector<double> turn_by_keys(double seconds, uint64_t seed) {
 
 using Expect = View (*)(const Heading&, const View& now, double seconds);
 View stay(const Heading&, const View& now, double) { return now; }
-View plain(const Heading& heading, const View& now, double seconds) { return expected_view(heading, now, seconds); }
+View plain(const Heading& heading, const View& now, double seconds) {
+  return expected_view(heading, now, seconds);
+}
 
 // Shares of pixels, one a tick.
 std::vector<double> unknown_shares(const std::vector<double>& yaws, double drawing, Expect expect) {
@@ -101,8 +104,9 @@ struct DrawnKeyframes {
 };
 
 // One picture judged in `stride` ticks.
-TurnErrors judge_turns(const VisitStage& stage, const PictureSight& sight, const std::vector<double>& yaws,
-                       double drawing, bool surrounded, size_t stride, const std::string& pictures) {
+TurnErrors judge_turns(const VisitStage& stage, const PictureSight& sight,
+                       const std::vector<double>& yaws, double drawing, bool surrounded,
+                       size_t stride, const std::string& pictures) {
   const Viewpoint& at = stage.exhibit().viewpoints[0].view;
   TurnErrors errors;
   Heading heading;
@@ -115,8 +119,8 @@ TurnErrors judge_turns(const VisitStage& stage, const PictureSight& sight, const
   std::optional<View> wide;
   for (size_t i = 0; i < yaws.size(); i++) {
     double time = double(i) / rate;
-    View view = make_view(stage.exhibit().scene, at.position, at.yaw + float(yaws[i]), at.pitch, at.fov, hall_width,
-                          hall_height);
+    View view = make_view(stage.exhibit().scene, at.position, at.yaw + float(yaws[i]), at.pitch,
+                          at.fov, hall_width, hall_height);
     note_view(heading, time, view);
     if (wide && time + 1e-9 >= surrounded_at) {
       frames.draw(*wide, frames.around);
@@ -130,7 +134,8 @@ TurnErrors judge_turns(const VisitStage& stage, const PictureSight& sight, const
       };
       finished = time + drawing;
       if (surrounded) wide = surroundings(heading, view, keyframe(0), 2 * drawing);
-      if (wide) finished += surroundings_time * drawing, surrounded_at = time + surroundings_time * drawing;
+      if (wide)
+        finished += surroundings_time * drawing, surrounded_at = time + surroundings_time * drawing;
       frames.draw(keyframe(wide ? surroundings_time * drawing : 0), frames.drawn);
       keyframes++, surroundings_drawn += wide.has_value();
     }
@@ -140,7 +145,8 @@ TurnErrors judge_turns(const VisitStage& stage, const PictureSight& sight, const
     errors.flips.push_back(double(eval_flip(out, truth.image).mean));
     errors.flip += errors.flips.back(), errors.unknown += unknown;
     if (pictures.empty()) continue;
-    std::string name = fmt::format("{}/turn_{:.0f}ms_{:04}_{}.png", pictures, 1000 * drawing, i, surrounded ? "with" : "without");
+    std::string name = fmt::format("{}/turn_{:.0f}ms_{:04}_{}.png", pictures, 1000 * drawing, i,
+                                   surrounded ? "with" : "without");
     save_image8(name, out);
   }
   errors.flip /= double(errors.flips.size()), errors.unknown /= double(errors.flips.size());
@@ -154,9 +160,12 @@ void bench_hall(BenchReport& report, const BenchOptions& options) {
   std::vector<double> yaws = turn_by_keys(options.quick ? 10 : 60, 11);
   for (double drawing : {1 / 30.0, 0.1, 0.2})
     for (bool surrounded : {false, true}) {
-      TurnErrors errors = judge_turns(stage, sight, yaws, drawing, surrounded, options.quick ? 11 : 7, options.visit_pictures);
-      nlohmann::json fields = {{"scene", "castle"}, {"size", fmt::format("{}x{}", hall_width, hall_height)},
-                               {"surroundings", surrounded}, {"drawing_ms", std::round(1000 * drawing)}};
+      TurnErrors errors = judge_turns(stage, sight, yaws, drawing, surrounded,
+                                      options.quick ? 11 : 7, options.visit_pictures);
+      nlohmann::json fields = {{"scene", "castle"},
+                               {"size", fmt::format("{}x{}", hall_width, hall_height)},
+                               {"surroundings", surrounded},
+                               {"drawing_ms", std::round(1000 * drawing)}};
       report.add("cache.turns.flip", errors.flip, "", fields);
       report.add("cache.turns.flip_p95", quantile(errors.flips, 0.95), "", fields);
       report.add("cache.turns.hall_unknown", 100 * errors.unknown, "%", fields);

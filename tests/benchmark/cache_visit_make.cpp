@@ -58,7 +58,8 @@ VisitTrace walk_through(const char* name, const char* about, const Exhibit& exhi
   return record(name, about, seconds, from, [&](double time, Viewpoint& view) {
     TourStep tour;
     intend(time, visitor);
-    move_visitor(visitor, world, exhibit, TourRoads{}, std::nullopt, time == 0 ? 0 : 1.0f / rate, tour);
+    move_visitor(visitor, world, exhibit, TourRoads{}, std::nullopt, time == 0 ? 0 : 1.0f / rate,
+                 tour);
     view = visitor.view;
   });
 }
@@ -75,13 +76,14 @@ VisitTrace make_stroll(const Exhibit& castle, const World& world) {
 
 VisitTrace make_pauses(const Exhibit& castle, const World& world) {
   Viewpoint from = viewpoint(castle, "hall");
-  return walk_through("pauses", "walks down the hall, stops twice for a second and a half to look at something", castle,
-                      world, 5.5, from, [&](double time, Visitor& visitor) {
-                        bool walks = std::fmod(time, 2.75) < 1.25;
-                        visitor.move = {0, 0, walks ? 1.4f : 0.0f};
-                        visitor.view.yaw = from.yaw + 0.3f * float(std::sin(std::min(time, 1.4)) +
-                                                                   std::sin(std::clamp(time - 2.75, 0.0, 1.4)));
-                      });
+  return walk_through(
+      "pauses", "walks down the hall, stops twice for a second and a half to look at something",
+      castle, world, 5.5, from, [&](double time, Visitor& visitor) {
+        bool walks = std::fmod(time, 2.75) < 1.25;
+        visitor.move = {0, 0, walks ? 1.4f : 0.0f};
+        visitor.view.yaw = from.yaw + 0.3f * float(std::sin(std::min(time, 1.4)) +
+                                                   std::sin(std::clamp(time - 2.75, 0.0, 1.4)));
+      });
 }
 
 VisitTrace make_turn(const Exhibit& castle) {
@@ -141,12 +143,14 @@ VisitTrace make_tour(const Exhibit& castle, const World& world) {
   return record("tour", "the guided tour from the paintings to the crown, and a rest there", 7.5,
                 from, [&](double time, Viewpoint& view) {
                   float before = view.yaw;
-                  view = advance_tour(ride, narration, castle, roads, time == 0 ? 0 : 1.0f / rate).view;
+                  view = advance_tour(ride, narration, castle, roads, time == 0 ? 0 : 1.0f / rate)
+                             .view;
                   view.yaw = before + std::remainder(view.yaw - before, 2 * pi);
                 });
 }
 
-// Between two viewpoints there is no way: the samples before and after lie less than a picture apart.
+// Between two viewpoints there is no way: the samples before and after lie less than a picture
+// apart.
 VisitTrace make_jump(const Exhibit& castle) {
   constexpr double stay = 1.2, leap = 0.001;
   VisitTrace trace;
@@ -156,7 +160,8 @@ VisitTrace make_jump(const Exhibit& castle) {
   double time = 0;
   for (const char* name : {"hall", "crown", "paintings", "well", "fireplace", "windows"}) {
     const Viewpoint& at = viewpoint(castle, name);
-    for (double t : {time, time + stay - leap}) trace.samples.push_back({t, at.position, at.yaw, at.pitch, at.fov});
+    for (double t : {time, time + stay - leap})
+      trace.samples.push_back({t, at.position, at.yaw, at.pitch, at.fov});
     time += stay;
   }
   return trace;
@@ -180,9 +185,9 @@ VisitTrace make_lamps(const Exhibit& castle) {
 
 void make_visit_traces(const Exhibit& castle, const World& world, const std::string& folder) {
   for (const VisitTrace& trace :
-       {make_stroll(castle, world), make_pauses(castle, world), make_turn(castle), make_approach(castle, world),
-        make_door(castle, world), make_orbit(castle), make_tour(castle, world), make_storyteller(castle),
-        make_lamps(castle), make_jump(castle)})
+       {make_stroll(castle, world), make_pauses(castle, world), make_turn(castle),
+        make_approach(castle, world), make_door(castle, world), make_orbit(castle),
+        make_tour(castle, world), make_storyteller(castle), make_lamps(castle), make_jump(castle)})
     save_visit_trace(trace, folder);
 }
 

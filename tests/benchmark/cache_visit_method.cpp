@@ -67,7 +67,8 @@ class CacheMethod : public VisitMethod {
     if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
     last_view_ = moment.view;
     // As show/picture.cpp draws what moves.
-    bool passing = primary_ && moment.frame - moved_ < still_after && sight(moment).can_see(moment.view);
+    bool passing =
+        primary_ && moment.frame - moved_ < still_after && sight(moment).can_see(moment.view);
     double pixels = double(moment.view.width) * double(moment.view.height);
     bool coarse = passing && !affords_fine_light(budget * displayed_rate / pixels, false);
     const View view = coarse ? light_view(moment.view) : moment.view;
@@ -140,7 +141,8 @@ class CacheMethod : public VisitMethod {
   View last_view_;
   int moved_ = 0;
   Batch batch_;
-  Broker broker_{{.piece = 512, .most_waiting = 1 << 20, .most_traced = 1 << 20, .most_answered = 1 << 20}};
+  Broker broker_{
+      {.piece = 512, .most_waiting = 1 << 20, .most_traced = 1 << 20, .most_answered = 1 << 20}};
   VisitPicture before_;
 };
 

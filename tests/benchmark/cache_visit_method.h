@@ -54,7 +54,8 @@ std::unique_ptr<VisitMethod> make_visit_method(const std::string& name);
 // come through a broker for the next; or the picture waits for them and is shown a frame late. A
 // tenth of the budget goes to looks at edges.
 enum class Answers { at_once, next_frame, waited_for };
-std::unique_ptr<VisitMethod> make_cache_method(Answers answers, const CacheSettings& settings = {.images = true});
+std::unique_ptr<VisitMethod> make_cache_method(Answers answers,
+                                               const CacheSettings& settings = {.images = true});
 // Display path `primary`: the looks at all pixels are part of its display and not charged.
 std::unique_ptr<VisitMethod> make_primary_method();
 // The whole picture at the resolution the budget allows, bilinear; while nothing changes, samples

@@ -88,8 +88,9 @@ std::string draw_mark(double x, double y, size_t kind) {
 }
 
 std::string stroke_of(const Curve& curve) {
-  return format("stroke=\"%s\"%s", colours[curve.colour % std::size(colours)],
-                curve.baseline ? " stroke-width=\"1.5\" stroke-dasharray=\"5 3\"" : " stroke-width=\"2\"");
+  return format(
+      "stroke=\"%s\"%s", colours[curve.colour % std::size(colours)],
+      curve.baseline ? " stroke-width=\"1.5\" stroke-dasharray=\"5 3\"" : " stroke-width=\"2\"");
 }
 
 std::string draw_curve(const Panel& p, const Curve& curve) {
@@ -103,8 +104,9 @@ std::string draw_curve(const Panel& p, const Curve& curve) {
 std::string draw_legend(const std::vector<Curve>& curves, double x, double y, double advance) {
   std::string svg;
   for (const Curve& curve : curves) {
-    svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" ", x, x + 24, y - 4, y - 4) +
-           stroke_of(curve) + "/>\n";
+    svg +=
+        format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" ", x, x + 24, y - 4, y - 4) +
+        stroke_of(curve) + "/>\n";
     svg += draw_mark(x + 12, y - 4, curve.colour) + write(x + 30, y, "start", 13, curve.name);
     x += advance;
   }

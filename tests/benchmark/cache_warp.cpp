@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a warped picture (cache/warp_picture.h) differs from one that is drawn for its view, along recorded
-// visits: reflectances in a light from one direction, without noise, so that nothing but the warp shows.
+// What a warped picture (cache/warp_picture.h) differs from one that is drawn for its view, along
+// recorded visits: reflectances in a light from one direction, without noise, so that nothing but
+// the warp shows.
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -17,10 +18,11 @@ namespace wellspring {
 namespace {
 
 constexpr int width = 1280, height = 720, levels = 16;
-constexpr double ages[] = {0.016, 0.033, 0.05, 0.3};  // seconds from the keyframe's view to the picture's
+constexpr double ages[] = {0.016, 0.033, 0.05,
+                           0.3};  // seconds from the keyframe's view to the picture's
 
-// Share of pixels that no pixel of the other picture within one pixel explains: a channel is outside of
-// the range of these by more than `levels` of 255.
+// Share of pixels that no pixel of the other picture within one pixel explains: a channel is
+// outside of the range of these by more than `levels` of 255.
 double displaced_share(const Image8& test, const Image8& reference) {
   size_t displaced = 0;
   for (int y = 1; y + 1 < reference.height; y++)
@@ -49,7 +51,9 @@ double processor_seconds() {
   return double(time.tv_sec) + double(time.tv_nsec) * 1e-9;
 }
 
-double mean_flip(const Image8& test, const Image8& reference) { return eval_flip(test, reference).mean; }
+double mean_flip(const Image8& test, const Image8& reference) {
+  return eval_flip(test, reference).mean;
+}
 
 }  // namespace
 
@@ -68,7 +72,8 @@ void bench_cache_warp(BenchReport& report, const BenchOptions& options) {
       double flip = 0, hold = 0, displaced = 0, unknown = 0, seconds = 0, making = 0;
       for (int i = 0; i < instants; i++) {
         double time = trace_seconds(trace) * (i + 0.5) / instants;
-        View view = stage.view(trace, time, width, height), old = stage.view(trace, time - age, width, height);
+        View view = stage.view(trace, time, width, height),
+             old = stage.view(trace, time - age, width, height);
         draw_picture(sight, view, now);
         draw_picture(sight, old, held);
         draw_picture(sight, keyframe_view(old), before);
@@ -82,11 +87,13 @@ void bench_cache_warp(BenchReport& report, const BenchOptions& options) {
         hold += mean_flip(held.image, now.image) / instants;
         displaced += displaced_share(warped, now.image) / instants;
         if (options.visit_pictures.empty()) continue;
-        std::string stem = fmt::format("{}/warp_{}_{:.0f}ms_{}", options.visit_pictures, name, 1000 * age, i);
+        std::string stem =
+            fmt::format("{}/warp_{}_{:.0f}ms_{}", options.visit_pictures, name, 1000 * age, i);
         save_image8(stem + ".png", warped);
         save_image8(stem + "_true.png", now.image);
       }
-      nlohmann::json fields = {{"trace", name}, {"age_ms", std::round(1000 * age)}, {"size", "1280x720"}};
+      nlohmann::json fields = {
+          {"trace", name}, {"age_ms", std::round(1000 * age)}, {"size", "1280x720"}};
       report.add("cache.warp.flip", flip, "", fields);
       report.add("cache.warp.held_flip", hold, "", fields);
       report.add("cache.warp.displaced", 100 * displaced, "%", fields);

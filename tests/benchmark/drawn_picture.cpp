@@ -18,7 +18,8 @@ void draw_picture(const PictureSight& sight, const View& view, DrawnPicture& dra
       Seen seen = run.see(i);
       size_t at = size_t(run.y) * size_t(view.width) + size_t(run.x + i);
       float size = length(seen.normal);
-      float light = 0.35f + (size > 0 ? 0.65f * std::abs(dot(seen.normal, towards_light)) / size : 0);
+      float light =
+          0.35f + (size > 0 ? 0.65f * std::abs(dot(seen.normal, towards_light)) / size : 0);
       frame.color[at] = seen.albedo * light + 0.5f * seen.glow;
       drawn.depth[at] = run.depth[i];
     }

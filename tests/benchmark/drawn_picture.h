@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of reflectances in a light from one direction, without noise: what differs between two of them
-// is not the light's.
+// Pictures of reflectances in a light from one direction, without noise: what differs between two
+// of them is not the light's.
 #pragma once
 #include <vector>
 

@@ -154,10 +154,11 @@ struct OtherRun {
 };
 OtherRun run_other(const std::filesystem::path& settings, int frames) {
   constexpr int before = 2;  // frames that it draws and does not count
-  std::string command = "cd '" + settings.parent_path().string() + "' && timeout 300 pathtracer -c " +
-                        settings.filename().string() + " --size " + std::to_string(width) + " " +
-                        std::to_string(height) + " --benchmark " + std::to_string(before) + " " +
-                        std::to_string(frames) + " 2>/dev/null </dev/null";
+  std::string command = "cd '" + settings.parent_path().string() +
+                        "' && timeout 300 pathtracer -c " + settings.filename().string() +
+                        " --size " + std::to_string(width) + " " + std::to_string(height) +
+                        " --benchmark " + std::to_string(before) + " " + std::to_string(frames) +
+                        " 2>/dev/null </dev/null";
   double began = processor_seconds(RUSAGE_CHILDREN);
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return {};

@@ -6,15 +6,15 @@
 // embree-tools): its quads, its diffuse colours, its one point light, its camera, and paths as
 // long as its own, eight vertices. A ray is any query for a nearest hit or for an occluder. Both
 // sides leave out shadow rays that they do not trace. The other program's count is taken as it
-// prints it (BENCHMARK_RENDER_MRAYPS_AVG). Ours are counted by tracing the same samples again on one
-// thread, untimed.
+// prints it (BENCHMARK_RENDER_MRAYPS_AVG). Ours are counted by tracing the same samples again on
+// one thread, untimed.
 #pragma once
 #include "report.h"
 
 namespace wellspring {
 
-// Adds light.path.rays_ratio and light.path.rays_processor_ratio (by the clock and in processor time;
-// medians over turns), and each side's rays a second.
+// Adds light.path.rays_ratio and light.path.rays_processor_ratio (by the clock and in processor
+// time; medians over turns), and each side's rays a second.
 void bench_light_rays(BenchReport& report, const BenchOptions& options);
 
 }  // namespace wellspring

@@ -63,7 +63,8 @@ void compare_times(BenchReport& report, const std::string& scene, const std::str
               {"measured", ours.measured && reference.measured}});
 }
 
-// What a visitor waits for: the diffuse hall, as good as `path` leaves it, in what share of its time.
+// What a visitor waits for: the diffuse hall, as good as `path` leaves it, in what share of its
+// time.
 void add_hall_ratio(BenchReport& report, const std::vector<CurvePoint>& curve,
                     const std::vector<CurvePoint>& path) {
   Reached ours = time_to_flip(by_cpu(curve), flip_level),
@@ -82,8 +83,13 @@ Plot make_plot(const BenchScene& bench, const View& view, const Reference& refer
   std::snprintf(subtitle, sizeof subtitle,
                 "%s. %dx%d; reference: path, %d samples a pixel, its own FLIP below %.3f",
                 bench.about.c_str(), view.width, view.height, reference.spp, reference.flip);
-  return {bench.name + ": error over time", subtitle, "processor time for the picture, all threads [s]",
-          "mean FLIP against the reference", {}, flip_level, "FLIP 0.10"};
+  return {bench.name + ": error over time",
+          subtitle,
+          "processor time for the picture, all threads [s]",
+          "mean FLIP against the reference",
+          {},
+          flip_level,
+          "FLIP 0.10"};
 }
 
 void bench_scene(BenchReport& report, const BenchOptions& options, const BenchScene& bench) {

@@ -29,9 +29,11 @@ int main(int argc, char** argv) {
       {"light.error", bench_light_error}, {"light.rays", bench_light_rays},
       {"light.cycles", bench_light_cycles}, {"light.photons", bench_light_photons}};
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
-  app.add_option("--only", only, "one part: stream, cache, light (or one of its own: light.error ...), avatar");
+  app.add_option("--only", only,
+                 "one part: stream, cache, light (or one of its own: light.error ...), avatar");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
-  app.add_option("--make-traces", traces, "instead: write the visits' camera traces into this folder")
+  app.add_option("--make-traces", traces,
+                 "instead: write the visits' camera traces into this folder")
       ->excludes(json);
   app.add_option("--plots", options.plots,
                  "what names of plots begin with; without it the report's name and _");
@@ -39,14 +41,18 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--content", options.content, "folder of exhibit packages")->capture_default_str();
   app.add_option("--web", options.web, "folder of the pages")->capture_default_str();
-  app.add_option("--server-option", options.server_words,
-                 "stream: a further word of the server's command line, as --server-option=--workers=4");
-  app.add_option("--cycles-case", options.cycles_case, "light.cycles: compare with Cycles in this case only");
+  app.add_option(
+      "--server-option", options.server_words,
+      "stream: a further word of the server's command line, as --server-option=--workers=4");
+  app.add_option("--cycles-case", options.cycles_case,
+                 "light.cycles: compare with Cycles in this case only");
   app.add_option("--visit-trace", options.visit_trace, "cache: simulate this visit only");
-  app.add_option("--visit-method", options.visit_methods, "cache: only these ways to keep the picture up");
+  app.add_option("--visit-method", options.visit_methods,
+                 "cache: only these ways to keep the picture up");
   app.add_option("--visit-mismatch", options.visit_mismatches, "cache: only these mismatches")
       ->check(CLI::Range(1, 4096));
-  app.add_option("--visit-technique", options.visit_technique, "cache: what answers samples in motion")
+  app.add_option("--visit-technique", options.visit_technique,
+                 "cache: what answers samples in motion")
       ->capture_default_str();
   app.add_option("--visit-width", options.visit_width, "cache: pixels of a row; pictures are 16:9")
       ->check(CLI::Range(16, 1920));
@@ -54,7 +60,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 100));
   app.add_option("--visit-spp", options.visit_spp, "cache: samples of half a converged picture")
       ->check(CLI::Range(1, 65536));
-  app.add_option("--visit-pictures", options.visit_pictures, "cache: folder for the pictures judged");
+  app.add_option("--visit-pictures", options.visit_pictures,
+                 "cache: folder for the pictures judged");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

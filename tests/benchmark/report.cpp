@@ -14,14 +14,19 @@ namespace wellspring {
 using nlohmann::json;
 
 void BenchReport::add(const std::string& name, double value, const std::string& unit, json fields) {
-  json result = {{"name", name}, {"metric", name.substr(name.rfind('.') + 1)}, {"value", value}, {"unit", unit}};
+  json result = {{"name", name},
+                 {"metric", name.substr(name.rfind('.') + 1)},
+                 {"value", value},
+                 {"unit", unit}};
   std::string about;
   for (const auto& [key, field] : fields.items()) {
     result[key] = field;
     char number[32];
     std::snprintf(number, sizeof number, "%.4g", field.is_number() ? field.get<double>() : 0);
     about += " " + key + "=" +
-             (field.is_string() ? field.get<std::string>() : field.is_number() ? number : field.dump());
+             (field.is_string()   ? field.get<std::string>()
+              : field.is_number() ? number
+                                  : field.dump());
   }
   std::printf("%-34s %12.4g %-10s%s\n", name.c_str(), value, unit.c_str(), about.c_str());
   std::fflush(stdout);

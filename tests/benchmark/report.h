@@ -26,9 +26,12 @@ std::string truths_folder(const BenchOptions& options);
 
 class BenchReport {
  public:
-  // Prints the line as it is added. `fields`: scene, technique and whatever else tells results apart.
-  void add(const std::string& name, double value, const std::string& unit, nlohmann::json fields = {});
-  // Writes {"machine":{..},"results":[..]}; throws std::runtime_error when the file cannot be written.
+  // Prints the line as it is added. `fields`: scene, technique and whatever else tells results
+  // apart.
+  void add(const std::string& name, double value, const std::string& unit,
+           nlohmann::json fields = {});
+  // Writes {"machine":{..},"results":[..]}; throws std::runtime_error when the file cannot be
+  // written.
   void save(const std::string& file) const;
   size_t size() const { return results_.size(); }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole way as a visitor has it: a server process, a scripted client that strolls through the castle
-// at 1280x720 over loopback, and the time from sending an input to receiving the picture that shows it.
+// The whole way as a visitor has it: a server process, a scripted client that strolls through the
+// castle at 1280x720 over loopback, and the time from sending an input to receiving the picture
+// that shows it.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -38,8 +39,9 @@ class ServerProcess {
     posix_spawn_file_actions_addclose(&actions, out[0]);
     posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
     std::string program = options.programs + "/wellspring_server";
-    std::vector<std::string> words = {program, "--port", "0", "--exhibit", exhibit, "--content", options.content,
-                                      "--web", options.web,       "--draw",  draw};
+    std::vector<std::string> words = {program,     "--port",        "0",     "--exhibit", exhibit,
+                                      "--content", options.content, "--web", options.web, "--draw",
+                                      draw};
     words.insert(words.end(), options.server_words.begin(), options.server_words.end());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
@@ -57,7 +59,8 @@ class ServerProcess {
     }
     close(out[0]);
     size_t colon = text.rfind(':');
-    if (colon == std::string::npos) throw std::runtime_error(program + ": did not print its address");
+    if (colon == std::string::npos)
+      throw std::runtime_error(program + ": did not print its address");
     port = uint16_t(std::stoi(text.substr(colon + 1)));
   }
   ~ServerProcess() {
@@ -87,7 +90,8 @@ double read_metric(uint16_t port, const std::string& name) {
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const std::string question = "GET /metrics HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+  const std::string question =
+      "GET /metrics HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
   std::string text;
   if (connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
       write(connection, question.data(), question.size()) == ssize_t(question.size())) {
@@ -100,8 +104,8 @@ double read_metric(uint16_t port, const std::string& name) {
 }
 
 // A stroll up and down: ahead, swaying, and round again every few seconds with the turn of a key
-// (web/controls.js), so that walls come and go and none is walked into, where there would be nothing new to
-// show between inputs.
+// (web/controls.js), so that walls come and go and none is walked into, where there would be
+// nothing new to show between inputs.
 Input stroll(double t, uint32_t seq, double interval) {
   constexpr double ahead = 2.5, turn_speed = 1.5, turning = std::numbers::pi / turn_speed;
   Input input;
@@ -114,7 +118,8 @@ Input stroll(double t, uint32_t seq, double interval) {
 }
 
 // Results are called `name`.fps and so on; `draw` goes to the server.
-void walk(BenchReport& report, const BenchOptions& options, const std::string& name, const std::string& draw) {
+void walk(BenchReport& report, const BenchOptions& options, const std::string& name,
+          const std::string& draw) {
   const double warm_up = 2, seconds = options.quick ? 6 : 20, input_interval = 1.0 / 30;
   ServerProcess server(options, "castle", draw);
   WsClient client;
@@ -169,11 +174,15 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
   if (arrivals.size() < 2) throw std::runtime_error("hardly any picture arrived");
   double counted = seconds_now() - counted_from;
   std::vector<double> gaps;
-  for (size_t i = 1; i < arrivals.size(); i++) gaps.push_back(1000 * (arrivals[i] - arrivals[i - 1]));
+  for (size_t i = 1; i < arrivals.size(); i++)
+    gaps.push_back(1000 * (arrivals[i] - arrivals[i - 1]));
   nlohmann::json where = {{"scene", "castle"}, {"size", "1280x720"}, {"draw", draw}};
-  report.add(name + ".fps", double(arrivals.size() - 1) / (arrivals.back() - arrivals.front()), "1/s", where);
-  report.add(name + ".drawn_fps", (read_metric(server.port, counters[0]) - counts_before[0]) / counted, "1/s", where);
-  report.add(name + ".warped_fps", (read_metric(server.port, counters[1]) - counts_before[1]) / counted, "1/s", where);
+  report.add(name + ".fps", double(arrivals.size() - 1) / (arrivals.back() - arrivals.front()),
+             "1/s", where);
+  report.add(name + ".drawn_fps",
+             (read_metric(server.port, counters[0]) - counts_before[0]) / counted, "1/s", where);
+  report.add(name + ".warped_fps",
+             (read_metric(server.port, counters[1]) - counts_before[1]) / counted, "1/s", where);
   report.add(name + ".repeated", 100 * double(repeated) / double(arrivals.size()), "%", where);
   report.add(name + ".latency_p50_ms", quantile(latencies, 0.5), "ms", where);
   report.add(name + ".latency_p95_ms", quantile(latencies, 0.95), "ms", where);

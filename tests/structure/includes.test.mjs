@@ -108,6 +108,18 @@ test('what a gateway header brings in stays in its folder', () => {
   assert.deepEqual(wrong, []);
 });
 
+test('no line is longer than 100 columns, but what raw strings quote', () => {
+  const wrong = [];
+  const every = ['server', 'avatar', 'kiosk', 'voice', 'tests'].flatMap((top) => [...sources(join(root, top))]);
+  for (const path of every.filter((name) => !name.includes('node_modules'))) {
+    const text = readFileSync(path, 'utf8').replace(/R"(\w*)\([\s\S]*?\)\1"/g, (raw) => raw.replace(/[^\n]/g, ''));
+    text.split('\n').forEach((line, i) => {
+      if ([...line].length > 100) wrong.push(`${relative(root, path)}:${i + 1}`);
+    });
+  }
+  assert.deepEqual(wrong, []);
+});
+
 test('one licence line per file, include guards, and no file over 500 lines', () => {
   const wrong = [];
   for (const { name, text, lines } of all) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small person as glTF: seventeen bones whose local axes lie as the test wishes, a skin of one box
-// a bone, an open mouth as morph target.
+// A small person as glTF: seventeen bones whose local axes lie as the test wishes, a skin of one
+// box a bone, an open mouth as morph target.
 #pragma once
 #include <map>
 
@@ -104,15 +104,20 @@ inline Asset make_person(const PersonOptions& options = {}) {
   std::vector<uint16_t> joints, indices;
   for (size_t i = 0; i < bones.size(); i++)
     for (int corner = 0; corner < 8; corner++) {
-      vec3 offset((corner & 1) ? 0.03f : -0.03f, (corner & 2) ? 0.03f : -0.03f, (corner & 4) ? 0.03f : -0.03f);
+      vec3 offset((corner & 1) ? 0.03f : -0.03f, (corner & 2) ? 0.03f : -0.03f,
+                  (corner & 4) ? 0.03f : -0.03f);
       vec3 p = ((corner & 1) ? bones[i].to : bones[i].place) + offset;
       vec3 n = options.world * normalize(offset);
-      vec3 move = std::string(bones[i].vrm) == "head" && !(corner & 2) ? vec3(0, -0.02f, 0) : vec3(0);
+      vec3 move =
+          std::string(bones[i].vrm) == "head" && !(corner & 2) ? vec3(0, -0.02f, 0) : vec3(0);
       p = options.world * (p * options.unit), move = options.world * (move * options.unit);
-      for (int k = 0; k < 3; k++) positions.push_back(p[k]), normals.push_back(n[k]), open.push_back(move[k]);
-      for (int k = 0; k < 4; k++) weights.push_back(k ? 0.0f : 1.0f), joints.push_back(uint16_t(k ? 0 : i));
+      for (int k = 0; k < 3; k++)
+        positions.push_back(p[k]), normals.push_back(n[k]), open.push_back(move[k]);
+      for (int k = 0; k < 4; k++)
+        weights.push_back(k ? 0.0f : 1.0f), joints.push_back(uint16_t(k ? 0 : i));
       if (corner) continue;
-      for (int face : {0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3})
+      for (int face : {0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1,
+                       2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3})
         indices.push_back(uint16_t(i * 8 + size_t(face)));
     }
   size_t count = bones.size() * 8;
@@ -120,8 +125,10 @@ inline Asset make_person(const PersonOptions& options = {}) {
   primitive["attributes"]["POSITION"] = asset.add_floats("VEC3", 3, positions);
   primitive["attributes"]["NORMAL"] = asset.add_floats("VEC3", 3, normals);
   primitive["attributes"]["WEIGHTS_0"] = asset.add_floats("VEC4", 4, weights);
-  primitive["attributes"]["JOINTS_0"] = asset.add_accessor(asset.add_view(joints), 5123, "VEC4", count);
-  primitive["indices"] = asset.add_accessor(asset.add_view(indices), 5123, "SCALAR", indices.size());
+  primitive["attributes"]["JOINTS_0"] =
+      asset.add_accessor(asset.add_view(joints), 5123, "VEC4", count);
+  primitive["indices"] =
+      asset.add_accessor(asset.add_view(indices), 5123, "SCALAR", indices.size());
   json target;
   target["POSITION"] = asset.add_floats("VEC3", 3, open);
   primitive["targets"] = json::array({target});
@@ -143,11 +150,17 @@ inline void add_vrm_1(Asset& asset) {
   asset.root["extensionsUsed"].push_back("VRMC_vrm");
   asset.root["extensions"]["VRMC_vrm"] = {
       {"specVersion", "1.0"},
-      {"meta", {{"name", "Ada"}, {"authors", {"A. Author", "B. Author"}}, {"licenseUrl", "https://vrm.dev/licenses/1.0/"}}},
+      {"meta",
+       {{"name", "Ada"},
+        {"authors", {"A. Author", "B. Author"}},
+        {"licenseUrl", "https://vrm.dev/licenses/1.0/"}}},
       {"humanoid", {{"humanBones", bones}}},
-      {"lookAt", {{"type", "bone"}, {"rangeMapHorizontalInner", {{"inputMaxValue", 90}, {"outputScale", 9}}}}},
+      {"lookAt",
+       {{"type", "bone"},
+        {"rangeMapHorizontalInner", {{"inputMaxValue", 90}, {"outputScale", 9}}}}},
       {"expressions",
-       {{"preset", {{"aa", {{"morphTargetBinds", {{{"node", 17}, {"index", 0}, {"weight", 0.5}}}}}}}}}}};
+       {{"preset",
+         {{"aa", {{"morphTargetBinds", {{{"node", 17}, {"index", 0}, {"weight", 0.5}}}}}}}}}}};
 }
 
 inline void add_vrm_0(Asset& asset) {
@@ -160,7 +173,9 @@ inline void add_vrm_0(Asset& asset) {
       {"humanoid", {{"humanBones", bones}}},
       {"blendShapeMaster",
        {{"blendShapeGroups",
-         {{{"name", "A"}, {"presetName", "a"}, {"binds", {{{"mesh", 0}, {"index", 0}, {"weight", 50}}}}}}}}},
+         {{{"name", "A"},
+           {"presetName", "a"},
+           {"binds", {{{"mesh", 0}, {"index", 0}, {"weight", 50}}}}}}}}},
       {"secondaryAnimation", {{"boneGroups", {{{"bones", {0}}}}}}},
       {"materialProperties", json::array()}};
 }

@@ -42,7 +42,8 @@ Samples drag_out(const Samples& sound, size_t begin, size_t end, size_t length, 
   for (size_t at = 0; at < length; at += grain / 2) {
     size_t from = begin + size_t(rng.uniform() * float(end - begin - grain + 1));
     for (size_t i = 0; i < grain; i++) {
-      float window = 0.5f - 0.5f * std::cos(2 * std::numbers::pi_v<float> * (float(i) + 0.5f) / float(grain));
+      float window =
+          0.5f - 0.5f * std::cos(2 * std::numbers::pi_v<float> * (float(i) + 0.5f) / float(grain));
       if (at + i < out.size()) out[at + i] += window * sound[from + i];
     }
   }
@@ -65,7 +66,8 @@ struct Telling {
   size_t at(double time) const { return std::min(size_t(time * speech.rate), sound.size()); }
   double now() const { return double(out.size()) / speech.rate; }
   Samples part(double begin, double end) const {
-    return {sound.begin() + ptrdiff_t(at(begin)), sound.begin() + ptrdiff_t(at(std::max(begin, end)))};
+    return {sound.begin() + ptrdiff_t(at(begin)),
+            sound.begin() + ptrdiff_t(at(std::max(begin, end)))};
   }
   void be_silent(float seconds) { append(out, Samples(size_t(seconds * float(speech.rate)))); }
   std::vector<const SpeechPhoneme*> phonemes(size_t word) const {
@@ -122,7 +124,8 @@ Samples reverberate(const Samples& sound, double seconds, int rate, Rng& rng) {
   for (int i = 0; i < 400; i++) {
     double time = seconds * double(rng.uniform());
     float sign = rng.uniform() < 0.5f ? -1.0f : 1.0f;
-    echoes.push_back({size_t((0.003 + time) * rate), 0.06f * sign * float(std::pow(10.0, -3 * time / seconds))});
+    echoes.push_back(
+        {size_t((0.003 + time) * rate), 0.06f * sign * float(std::pow(10.0, -3 * time / seconds))});
   }
   Samples out = sound;
   for (const Echo& echo : echoes)
@@ -178,8 +181,10 @@ Narrated narrate(SpeechProcess& process, const SpeechRequest& request, const Man
     if (w > 0) append(telling.out, telling.part(speech.words[w - 1].end, word.begin));
     float draw = rng.uniform();
     auto befalls = [&](float chance) { return (draw -= chance) < 0 && draw >= -chance; };
-    bool paused = befalls(manner.pause), repeated = befalls(manner.repeat), again = befalls(manner.again);
-    bool dragged = befalls(manner.prolong), blocked = befalls(manner.block), filled = befalls(manner.filler);
+    bool paused = befalls(manner.pause), repeated = befalls(manner.repeat),
+         again = befalls(manner.again);
+    bool dragged = befalls(manner.prolong), blocked = befalls(manner.block),
+         filled = befalls(manner.filler);
     if (paused) telling.be_silent(between(rng, 0.15f, 0.8f));
     if (repeated) telling.stutter(w);
     if (again && w > 0) {

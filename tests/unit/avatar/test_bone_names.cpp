@@ -18,20 +18,38 @@ std::map<std::string, std::string> named(const Tree& tree) {
   std::map<std::string, std::string> result;
   for (size_t i = 0; i < bones.size(); i++) {
     result[tree[i].first] = names.joints[i];
-    if (!names.joints[i].empty()) EXPECT_GE(hanim_joint_level(names.joints[i]), 0) << names.joints[i];
+    if (!names.joints[i].empty())
+      EXPECT_GE(hanim_joint_level(names.joints[i]), 0) << names.joints[i];
   }
   return result;
 }
 
 TEST(BoneNames, Mixamo) {
-  auto n = named({{"mixamorig:Hips", -1}, {"mixamorig:Spine", 0}, {"mixamorig:Spine1", 1}, {"mixamorig:Spine2", 2},
-                  {"mixamorig:Neck", 3}, {"mixamorig:Head", 4}, {"mixamorig:HeadTop_End", 5},
-                  {"mixamorig:LeftShoulder", 3}, {"mixamorig:LeftArm", 7}, {"mixamorig:LeftForeArm", 8},
-                  {"mixamorig:LeftHand", 9}, {"mixamorig:LeftHandThumb1", 10}, {"mixamorig:LeftHandThumb2", 11},
-                  {"mixamorig:LeftHandIndex1", 10}, {"mixamorig:LeftHandIndex2", 13}, {"mixamorig:LeftHandIndex3", 14},
-                  {"mixamorig:LeftHandIndex4", 15}, {"mixamorig:RightShoulder", 3}, {"mixamorig:RightArm", 17},
-                  {"mixamorig:RightForeArm", 18}, {"mixamorig:LeftUpLeg", 0}, {"mixamorig:LeftLeg", 20},
-                  {"mixamorig:LeftFoot", 21}, {"mixamorig:LeftToeBase", 22}, {"mixamorig:RightUpLeg", 0}});
+  auto n = named({{"mixamorig:Hips", -1},
+                  {"mixamorig:Spine", 0},
+                  {"mixamorig:Spine1", 1},
+                  {"mixamorig:Spine2", 2},
+                  {"mixamorig:Neck", 3},
+                  {"mixamorig:Head", 4},
+                  {"mixamorig:HeadTop_End", 5},
+                  {"mixamorig:LeftShoulder", 3},
+                  {"mixamorig:LeftArm", 7},
+                  {"mixamorig:LeftForeArm", 8},
+                  {"mixamorig:LeftHand", 9},
+                  {"mixamorig:LeftHandThumb1", 10},
+                  {"mixamorig:LeftHandThumb2", 11},
+                  {"mixamorig:LeftHandIndex1", 10},
+                  {"mixamorig:LeftHandIndex2", 13},
+                  {"mixamorig:LeftHandIndex3", 14},
+                  {"mixamorig:LeftHandIndex4", 15},
+                  {"mixamorig:RightShoulder", 3},
+                  {"mixamorig:RightArm", 17},
+                  {"mixamorig:RightForeArm", 18},
+                  {"mixamorig:LeftUpLeg", 0},
+                  {"mixamorig:LeftLeg", 20},
+                  {"mixamorig:LeftFoot", 21},
+                  {"mixamorig:LeftToeBase", 22},
+                  {"mixamorig:RightUpLeg", 0}});
   EXPECT_EQ(n["mixamorig:Hips"], "humanoid_root");
   EXPECT_EQ(n["mixamorig:Spine"], "vl5");
   EXPECT_EQ(n["mixamorig:Spine1"], "vt10");
@@ -53,11 +71,31 @@ TEST(BoneNames, Mixamo) {
 }
 
 TEST(BoneNames, UnrealWithTwistBonesAndTargets) {
-  auto n = named({{"root", -1}, {"pelvis", 0}, {"spine_01", 1}, {"spine_02", 2}, {"spine_03", 3}, {"clavicle_l", 4},
-                  {"upperarm_l", 5}, {"upperarm_twist_01_l", 6}, {"lowerarm_l", 6}, {"hand_l", 8},
-                  {"index_metacarpal_l", 9}, {"index_01_l", 10}, {"index_02_l", 11}, {"index_03_l", 12},
-                  {"clavicle_r", 4}, {"upperarm_r", 14}, {"neck_01", 4}, {"head", 16}, {"thigh_l", 1}, {"calf_l", 18},
-                  {"foot_l", 19}, {"ball_l", 20}, {"thigh_r", 1}, {"ik_foot_root", 0}, {"ik_foot_l", 23}});
+  auto n = named({{"root", -1},
+                  {"pelvis", 0},
+                  {"spine_01", 1},
+                  {"spine_02", 2},
+                  {"spine_03", 3},
+                  {"clavicle_l", 4},
+                  {"upperarm_l", 5},
+                  {"upperarm_twist_01_l", 6},
+                  {"lowerarm_l", 6},
+                  {"hand_l", 8},
+                  {"index_metacarpal_l", 9},
+                  {"index_01_l", 10},
+                  {"index_02_l", 11},
+                  {"index_03_l", 12},
+                  {"clavicle_r", 4},
+                  {"upperarm_r", 14},
+                  {"neck_01", 4},
+                  {"head", 16},
+                  {"thigh_l", 1},
+                  {"calf_l", 18},
+                  {"foot_l", 19},
+                  {"ball_l", 20},
+                  {"thigh_r", 1},
+                  {"ik_foot_root", 0},
+                  {"ik_foot_l", 23}});
   EXPECT_EQ(n["root"], "");
   EXPECT_EQ(n["pelvis"], "humanoid_root");
   EXPECT_EQ(n["upperarm_l"], "l_shoulder");
@@ -72,20 +110,37 @@ TEST(BoneNames, UnrealWithTwistBonesAndTargets) {
 }
 
 TEST(BoneNames, BipedFingersAndRigifysSpine) {
-  auto n = named({{"Bip01", -1}, {"Bip01 Pelvis", 0}, {"Bip01 Spine", 1}, {"Bip01 Neck", 2}, {"Bip01 Head", 3},
-                  {"Bip01 L Clavicle", 3}, {"Bip01 L UpperArm", 5}, {"Bip01 L Forearm", 6}, {"Bip01 L Hand", 7},
-                  {"Bip01 L Finger0", 8}, {"Bip01 L Finger1", 8}, {"Bip01 L Finger11", 10}, {"Bip01 L Finger1Nub", 11},
-                  {"Bip01 R Clavicle", 3}, {"Bip01 R UpperArm", 13}, {"Bip01 L Thigh", 2}, {"Bip01 L Calf", 15},
-                  {"Bip01 L Foot", 16}, {"Bip01 L Toe0", 17}, {"Bip01 R Thigh", 2}});
+  auto n = named({{"Bip01", -1},
+                  {"Bip01 Pelvis", 0},
+                  {"Bip01 Spine", 1},
+                  {"Bip01 Neck", 2},
+                  {"Bip01 Head", 3},
+                  {"Bip01 L Clavicle", 3},
+                  {"Bip01 L UpperArm", 5},
+                  {"Bip01 L Forearm", 6},
+                  {"Bip01 L Hand", 7},
+                  {"Bip01 L Finger0", 8},
+                  {"Bip01 L Finger1", 8},
+                  {"Bip01 L Finger11", 10},
+                  {"Bip01 L Finger1Nub", 11},
+                  {"Bip01 R Clavicle", 3},
+                  {"Bip01 R UpperArm", 13},
+                  {"Bip01 L Thigh", 2},
+                  {"Bip01 L Calf", 15},
+                  {"Bip01 L Foot", 16},
+                  {"Bip01 L Toe0", 17},
+                  {"Bip01 R Thigh", 2}});
   EXPECT_EQ(n["Bip01 Pelvis"], "humanoid_root");
   EXPECT_EQ(n["Bip01 L Finger0"], "l_carpometacarpal_1");
   EXPECT_EQ(n["Bip01 L Finger11"], "l_carpal_proximal_interphalangeal_2");
   EXPECT_EQ(n["Bip01 L Toe0"], "l_metatarsophalangeal_2");
-  n = named({{"DEF-spine", -1}, {"DEF-spine.001", 0}, {"DEF-spine.002", 1}, {"DEF-spine.003", 2}, {"DEF-spine.004", 3},
-             {"DEF-spine.005", 4}, {"DEF-spine.006", 5}, {"DEF-shoulder.L", 3}, {"DEF-upper_arm.L", 7},
-             {"DEF-upper_arm.L.001", 8}, {"DEF-forearm.L", 9}, {"DEF-hand.L", 10}, {"DEF-f_index.01.L", 11},
-             {"DEF-shoulder.R", 3}, {"DEF-upper_arm.R", 13}, {"DEF-thigh.L", 0}, {"DEF-shin.L", 15}, {"DEF-foot.L", 16},
-             {"DEF-thigh.R", 0}, {"DEF-eye.L", 6}, {"DEF-jaw", 6}});
+  n = named({{"DEF-spine", -1},          {"DEF-spine.001", 0},  {"DEF-spine.002", 1},
+             {"DEF-spine.003", 2},       {"DEF-spine.004", 3},  {"DEF-spine.005", 4},
+             {"DEF-spine.006", 5},       {"DEF-shoulder.L", 3}, {"DEF-upper_arm.L", 7},
+             {"DEF-upper_arm.L.001", 8}, {"DEF-forearm.L", 9},  {"DEF-hand.L", 10},
+             {"DEF-f_index.01.L", 11},   {"DEF-shoulder.R", 3}, {"DEF-upper_arm.R", 13},
+             {"DEF-thigh.L", 0},         {"DEF-shin.L", 15},    {"DEF-foot.L", 16},
+             {"DEF-thigh.R", 0},         {"DEF-eye.L", 6},      {"DEF-jaw", 6}});
   EXPECT_EQ(n["DEF-spine"], "humanoid_root");
   EXPECT_EQ(n["DEF-spine.001"], "vl5");
   EXPECT_EQ(n["DEF-spine.004"], "vc4");
@@ -99,18 +154,42 @@ TEST(BoneNames, BipedFingersAndRigifysSpine) {
 
 // "Shoulder" and "Hip" mean upper arm and thigh where collar and leg have their own words.
 TEST(BoneNames, MotionCaptureMeansOtherBonesByTheSameWords) {
-  auto n = named({{"Hips", -1}, {"Chest", 0}, {"LeftCollar", 1}, {"LeftShoulder", 2}, {"LeftElbow", 3}, {"LeftWrist", 4},
-                  {"RightCollar", 1}, {"RightShoulder", 6}, {"Neck", 1}, {"Head", 8}, {"LeftHip", 0}, {"LeftKnee", 10},
-                  {"LeftAnkle", 11}, {"RightHip", 0}});
+  auto n = named({{"Hips", -1},
+                  {"Chest", 0},
+                  {"LeftCollar", 1},
+                  {"LeftShoulder", 2},
+                  {"LeftElbow", 3},
+                  {"LeftWrist", 4},
+                  {"RightCollar", 1},
+                  {"RightShoulder", 6},
+                  {"Neck", 1},
+                  {"Head", 8},
+                  {"LeftHip", 0},
+                  {"LeftKnee", 10},
+                  {"LeftAnkle", 11},
+                  {"RightHip", 0}});
   EXPECT_EQ(n["LeftCollar"], "l_sternoclavicular");
   EXPECT_EQ(n["LeftShoulder"], "l_shoulder");
   EXPECT_EQ(n["LeftElbow"], "l_elbow");
   EXPECT_EQ(n["LeftWrist"], "l_radiocarpal");
   EXPECT_EQ(n["LeftHip"], "l_hip");
   EXPECT_EQ(n["LeftAnkle"], "l_talocrural");
-  n = named({{"Hips", -1}, {"LHipJoint", 0}, {"LeftUpLeg", 1}, {"LeftLeg", 2}, {"LeftFoot", 3}, {"RHipJoint", 0},
-             {"RightUpLeg", 5}, {"LowerBack", 0}, {"Spine", 7}, {"LeftShoulder", 8}, {"LeftArm", 9},
-             {"LeftForeArm", 10}, {"RightShoulder", 8}, {"RightArm", 12}, {"Neck", 8}, {"Head", 14}});
+  n = named({{"Hips", -1},
+             {"LHipJoint", 0},
+             {"LeftUpLeg", 1},
+             {"LeftLeg", 2},
+             {"LeftFoot", 3},
+             {"RHipJoint", 0},
+             {"RightUpLeg", 5},
+             {"LowerBack", 0},
+             {"Spine", 7},
+             {"LeftShoulder", 8},
+             {"LeftArm", 9},
+             {"LeftForeArm", 10},
+             {"RightShoulder", 8},
+             {"RightArm", 12},
+             {"Neck", 8},
+             {"Head", 14}});
   EXPECT_EQ(n["LHipJoint"], "");
   EXPECT_EQ(n["LeftUpLeg"], "l_hip");
   EXPECT_EQ(n["LowerBack"], "vl5");
@@ -118,8 +197,11 @@ TEST(BoneNames, MotionCaptureMeansOtherBonesByTheSameWords) {
 }
 
 TEST(BoneNames, WordsThatAreNoBody) {
-  for (const char* name : {"HairFront1", "J_Sec_L_Bust1", "SkirtLeft", "LeftHandProp", "CameraTarget", "Box01", ""})
-    EXPECT_TRUE(read_bone_name(name).part == BonePart::none || read_bone_name(name).part == BonePart::helper) << name;
+  for (const char* name :
+       {"HairFront1", "J_Sec_L_Bust1", "SkirtLeft", "LeftHandProp", "CameraTarget", "Box01", ""})
+    EXPECT_TRUE(read_bone_name(name).part == BonePart::none ||
+                read_bone_name(name).part == BonePart::helper)
+        << name;
   EXPECT_EQ(read_bone_name("rightUpperArm").side, 1);
   EXPECT_EQ(read_bone_name("upperarm_l").side, 0);
   EXPECT_EQ(read_bone_name("Arm").part, BonePart::none) << "of which side?";
@@ -130,7 +212,8 @@ TEST(BoneNames, ShapeAloneIsEnough) {
   for (const test::PersonBone& bone : test::person_bones())
     bones.push_back({"", bone.parent[0] ? test::person_bone(bone.parent) : -1, bone.place});
   for (const char* toe : {"leftFoot", "rightFoot"})  // feet point ahead
-    bones.push_back({"", test::person_bone(toe), test::person_bones()[size_t(test::person_bone(toe))].to});
+    bones.push_back(
+        {"", test::person_bone(toe), test::person_bones()[size_t(test::person_bone(toe))].to});
   for (float turned : {0.0f, pi / 2, pi}) {
     std::vector<Bone> turn = bones;
     for (Bone& bone : turn) bone.place = glm::angleAxis(turned, vec3(0, 1, 0)) * bone.place;

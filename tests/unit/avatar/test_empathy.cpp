@@ -183,8 +183,8 @@ TEST(Detail, WhatIsNotNeededIsNotComputed) {
 }
 
 TEST(Detail, AFaceIsThereInTheMiddleAndGoneFarAway) {
-  for (auto [distance, least, most] :
-       {std::tuple(1.0f, 0.4f, 1.0f), std::tuple(5.0f, 0.4f, 1.0f), std::tuple(20.0f, 0.0f, 0.0f)}) {
+  for (auto [distance, least, most] : {std::tuple(1.0f, 0.4f, 1.0f), std::tuple(5.0f, 0.4f, 1.0f),
+                                       std::tuple(20.0f, 0.0f, 0.0f)}) {
     Stage stage;
     stage.input.humanlike = false;
     stage.input.viewer_distance = distance;
@@ -246,7 +246,8 @@ TEST(Storyteller, AFarewellOverridesTheStorysFace) {
   stage.run(8);
   EXPECT_EQ(stage.displacer("smile_l"), 0);
   stage.input.guests.clear();
-  for (int i = 0; i < 60 * 5 && stage.state.mood != Mood::farewell; i++) stage.run(1 / 60.0, 1 / 60.0f);
+  for (int i = 0; i < 60 * 5 && stage.state.mood != Mood::farewell; i++)
+    stage.run(1 / 60.0, 1 / 60.0f);
   ASSERT_EQ(stage.state.mood, Mood::farewell);
   EXPECT_EQ(stage.state.gesture.clip, find_gesture("farewell"));
   stage.input.story.gesture = "shrug";

@@ -16,7 +16,8 @@ namespace {
 Character figure_with_everything() {
   Character character;
   for (const Control& control : default_expressions().controls)
-    if (!control.displacers.empty()) character.displacers.push_back({control.displacers[0], {}, {}});
+    if (!control.displacers.empty())
+      character.displacers.push_back({control.displacers[0], {}, {}});
   int parent = -1;
   for (const char* name : {"humanoid_root", "vc4", "skullbase"}) {
     Joint joint;
@@ -65,7 +66,8 @@ struct Algebra : testing::Test {
 
 bool same_bits(const Pose& a, const Pose& b) {
   return a.displacers == b.displacers && a.rotations.size() == b.rotations.size() &&
-         std::memcmp(a.rotations.data(), b.rotations.data(), a.rotations.size() * sizeof(quat)) == 0;
+         std::memcmp(a.rotations.data(), b.rotations.data(), a.rotations.size() * sizeof(quat)) ==
+             0;
 }
 
 TEST_F(Algebra, TheFigureLacksNothing) { EXPECT_TRUE(rig.missing.empty()) << rig.missing[0]; }
@@ -113,7 +115,8 @@ TEST_F(Algebra, ScalingIsLinearAndOppositeWeightsLeaveNothing) {
     add(twice, a, -w);
     ExpressionSum empty;
     clear(empty, rig);
-    // Nothing but the rounding of one product, which a fused multiply-add does not lose: 24 * 2^-24.
+    // Nothing but the rounding of one product, which a fused multiply-add does not lose: 24 *
+    // 2^-24.
     EXPECT_LE(distance(twice, empty), 24 * 0x1p-24f);
     add(back, random_sum(), 0);
     EXPECT_EQ(distance(back, a), 0);
@@ -247,7 +250,8 @@ TEST_F(Algebra, EachEmotionReachesItsFaceAndTheyDiffer) {
 }
 
 TEST_F(Algebra, AntipodalQuaternionsAreTheSameTurn) {
-  // Orientations written the long way round (angles of more than half a turn) interpolate as the short one.
+  // Orientations written the long way round (angles of more than half a turn) interpolate as the
+  // short one.
   for (int i = 0; i < 500; i++) {
     vec3 axis = glm::normalize(vec3(any(-1, 1), any(-1, 1), any(-1, 1)) + vec3(1e-3f));
     float angle = any(-0.9f, 0.9f) * pi, weight = any(-1.5f, 1.5f);
@@ -261,7 +265,8 @@ TEST_F(Algebra, AntipodalQuaternionsAreTheSameTurn) {
     EXPECT_NEAR(2 * std::acos(std::min(std::abs(x.w), 1.0f)),
                 std::abs(angle) * std::min(std::abs(weight), 1.0f), 2e-3f);
   }
-  Rotator half_turn{"h", "skullbase", {0, 1}, {}, {quat(1, 0, 0, 0), glm::angleAxis(pi, vec3(1, 0, 0))}};
+  Rotator half_turn{
+      "h", "skullbase", {0, 1}, {}, {quat(1, 0, 0, 0), glm::angleAxis(pi, vec3(1, 0, 0))}};
   for (float w : {0.0f, 0.5f, 1.0f, NAN, INFINITY})
     EXPECT_NEAR(glm::length(eval_rotator(half_turn, w)), 1, 1e-5f);
 }

@@ -68,13 +68,17 @@ TEST(Expressions, BadFilesAreRefusedWithTheirPlace) {
       {"{", ""},
       {"{\"format\":\"wellspring-gestures\",\"version\":1}", "/format"},
       {head("\"expresions\":[]"), "/expresions"},
-      {head(R"("rotators":[{"name":"r","joint":"j","weight_ranges":[0,0],"orientations":[[0,0,1,0],[0,0,1,0]]}])"),
+      {head(
+           R"("rotators":[{"name":"r","joint":"j","weight_ranges":[0,0],"orientations":[[0,0,1,0],[0,0,1,0]]}])"),
        "/rotators/0/weight_ranges/1"},
       {head(R"("rotators":[{"name":"r","joint":"j","weight_ranges":[0],"orientations":[]}])"),
        "/rotators/0/orientations"},
-      {head(R"("rotators":[{"name":"r","joint":"j","weight_ranges":[0],"orientations":[[0,0,0,1]]}])"),
+      {head(
+           R"("rotators":[{"name":"r","joint":"j","weight_ranges":[0],"orientations":[[0,0,0,1]]}])"),
        "/rotators/0/orientations/0"},
-      {head(R"("rotators":[{"name":"r","joint":"j","weight_ranges":[0],"orientations":[[0,0,1,1e400]]}])"), ""},
+      {head(
+           R"("rotators":[{"name":"r","joint":"j","weight_ranges":[0],"orientations":[[0,0,1,1e400]]}])"),
+       ""},
       {head(R"("controls":[{"name":"c","kind":"nose"}])"), "/controls/0/kind"},
       {head(R"("controls":[{"name":"c"},{"name":"c"}])"), "/controls/1/name"},
       {head(R"("controls":[{"name":"c","rotator":"r"}])"), "/controls/0/rotator"},

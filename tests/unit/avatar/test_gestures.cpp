@@ -154,8 +154,8 @@ TEST(Gesture, PassesOverIntoAnyOtherWithoutAJump) {
         state, {{1, {.clip = a, .lead = -1}}, {when, {.clip = b, .size = 0.7f, .lead = 0.4f}}},
         900);
     // A jump of one degree within a tick would be a change of speed of 3.5 rad/s.
-    EXPECT_LT(worst, worst_alone + 0.6f)
-        << library.clips[size_t(a)].name << " -> " << library.clips[size_t(b)].name << " at " << when;
+    EXPECT_LT(worst, worst_alone + 0.6f) << library.clips[size_t(a)].name << " -> "
+                                         << library.clips[size_t(b)].name << " at " << when;
   }
 }
 

@@ -31,7 +31,8 @@ std::vector<vec3> posed(const Character& c, const Pose& pose) {
   return positions;
 }
 
-void expect_same_places(const std::vector<vec3>& a, const std::vector<vec3>& b, float tolerance = 2e-5f) {
+void expect_same_places(const std::vector<vec3>& a, const std::vector<vec3>& b,
+                        float tolerance = 2e-5f) {
   ASSERT_EQ(a.size(), b.size());
   for (size_t v = 0; v < a.size(); v++) ASSERT_LT(glm::length(a[v] - b[v]), tolerance) << v;
 }
@@ -89,7 +90,8 @@ TEST(GltfFigure, HowTheFileTurnsItsBonesDoesNotShow) {
   pose.displacers[0] = 0.7f;
   for (const Character* c : {&turned, &lying}) {
     ASSERT_EQ(c->joints.size(), plain.joints.size());
-    for (size_t j = 0; j < c->joints.size(); j++) EXPECT_EQ(c->joints[j].name, plain.joints[j].name);
+    for (size_t j = 0; j < c->joints.size(); j++)
+      EXPECT_EQ(c->joints[j].name, plain.joints[j].name);
     expect_same_places(c->positions, plain.positions);
     expect_same_places(posed(*c, pose), posed(plain, pose), 5e-5f);
   }
@@ -113,8 +115,11 @@ TEST(GltfFigure, AFileThatPosesItsBonesRestsAsItWasBound) {
 
 TEST(GltfFigure, NamesOfOtherRigsAndNoNamesAtAll) {
   PersonOptions options;
-  options.names = {{"hips", "pelvis"}, {"leftUpperArm", "upperarm_l"}, {"leftLowerArm", "lowerarm_l"},
-                   {"leftHand", "hand_l"}, {"head", "Antenna"}};
+  options.names = {{"hips", "pelvis"},
+                   {"leftUpperArm", "upperarm_l"},
+                   {"leftLowerArm", "lowerarm_l"},
+                   {"leftHand", "hand_l"},
+                   {"head", "Antenna"}};
   Character c = load_asset(make_person(options), false);
   EXPECT_NEAR(centre(c, "l_radiocarpal").x, 0.7f, 1e-5f);
   EXPECT_GE(find_joint(c, "Antenna"), 0);
@@ -130,7 +135,8 @@ TEST(GltfFigure, EyesLookAsTheirAuthorDrewThem) {
   Asset asset = make_person();
   add_vrm_1(asset);
   auto& presets = asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"];
-  for (const char* look : {"lookUp", "lookDown", "lookLeft", "lookRight"}) presets[look] = presets["aa"];
+  for (const char* look : {"lookUp", "lookDown", "lookLeft", "lookRight"})
+    presets[look] = presets["aa"];
   Character c = load_asset(asset);
   Rig rig = make_rig(c);
   ASSERT_FALSE(rig.eyes_move);
@@ -182,9 +188,11 @@ TEST(GltfFigure, BadSkinsAreRefusedWithTheirPlace) {
   const json attributes = person.root["meshes"][0]["primitives"][0]["attributes"];
   int weights = attributes["WEIGHTS_0"].get<int>(), joints = attributes["JOINTS_0"].get<int>();
   int binds = person.root["skins"][0]["inverseBindMatrices"].get<int>();
-  EXPECT_NE(refusal(change(weights, NAN, 4 * 9)).find("/meshes/0/primitives/0: vertex 9"), std::string::npos);
+  EXPECT_NE(refusal(change(weights, NAN, 4 * 9)).find("/meshes/0/primitives/0: vertex 9"),
+            std::string::npos);
   EXPECT_NE(refusal(change(joints, uint16_t(17), 4 * 9)).find("joint 17 of 17"), std::string::npos);
-  EXPECT_NE(refusal(change(binds, NAN, 16 * 2)).find("/skins/0/inverseBindMatrices: matrix 2"), std::string::npos);
+  EXPECT_NE(refusal(change(binds, NAN, 16 * 2)).find("/skins/0/inverseBindMatrices: matrix 2"),
+            std::string::npos);
   Asset cycle = make_person();
   cycle.root["nodes"][4]["children"] = {2};
   EXPECT_NE(refusal(cycle).find("/nodes/"), std::string::npos);
@@ -219,14 +227,20 @@ TEST(GltfFigure, BadVrmIsRefusedWithItsPlace) {
     asset.root["extensions"][json::json_pointer(pointer)] = value;
     return refusal(asset);
   };
-  EXPECT_NE(broken("/VRMC_vrm/humanoid", 3).find("/extensions/VRMC_vrm/humanoid"), std::string::npos);
-  EXPECT_NE(broken("/VRMC_vrm/humanoid/humanBones/hips/node", 99).find("hips/node"), std::string::npos);
-  EXPECT_NE(broken("/VRMC_vrm/humanoid/humanBones/hips/node", -7).find("hips/node"), std::string::npos);
-  EXPECT_NE(broken("/VRMC_vrm/expressions/preset/aa", "x").find("preset/aa"), std::string::npos);
-  EXPECT_NE(broken("/VRM/humanoid/humanBones", json::object(), true).find("must be a list"), std::string::npos);
-  EXPECT_NE(broken("/VRM/blendShapeMaster/blendShapeGroups/0/binds/0/mesh", 5, true).find("binds/0/mesh"),
+  EXPECT_NE(broken("/VRMC_vrm/humanoid", 3).find("/extensions/VRMC_vrm/humanoid"),
             std::string::npos);
-  EXPECT_EQ(broken("/VRMC_vrm/humanoid/humanBones/tail", json{{"node", 3}}), "") << "unknown bones are told";
+  EXPECT_NE(broken("/VRMC_vrm/humanoid/humanBones/hips/node", 99).find("hips/node"),
+            std::string::npos);
+  EXPECT_NE(broken("/VRMC_vrm/humanoid/humanBones/hips/node", -7).find("hips/node"),
+            std::string::npos);
+  EXPECT_NE(broken("/VRMC_vrm/expressions/preset/aa", "x").find("preset/aa"), std::string::npos);
+  EXPECT_NE(broken("/VRM/humanoid/humanBones", json::object(), true).find("must be a list"),
+            std::string::npos);
+  EXPECT_NE(
+      broken("/VRM/blendShapeMaster/blendShapeGroups/0/binds/0/mesh", 5, true).find("binds/0/mesh"),
+      std::string::npos);
+  EXPECT_EQ(broken("/VRMC_vrm/humanoid/humanBones/tail", json{{"node", 3}}), "")
+      << "unknown bones are told";
 }
 
 TEST(GltfFigure, EveryTruncationAndFlippedByteIsRefusedOrLoads) {

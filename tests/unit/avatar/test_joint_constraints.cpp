@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Constraints between joints against the formulas of VRMC_node_constraint-1.0, which are about nodes
-// with axes of their own: the file's nodes are followed here as the format does it.
+// Constraints between joints against the formulas of VRMC_node_constraint-1.0, which are about
+// nodes with axes of their own: the file's nodes are followed here as the format does it.
 #include "avatar/joint_constraints.h"
 
 #include <gtest/gtest.h>
@@ -43,8 +43,9 @@ quat random_turn(Rng& rng) {
 // A node with a turn of its own below another; returns its index.
 size_t add_node(Asset& asset, size_t parent, vec3 place, quat q, const char* name) {
   size_t node = asset.root["nodes"].size();
-  asset.root["nodes"].push_back(
-      {{"name", name}, {"translation", {place.x, place.y, place.z}}, {"rotation", {q.x, q.y, q.z, q.w}}});
+  asset.root["nodes"].push_back({{"name", name},
+                                 {"translation", {place.x, place.y, place.z}},
+                                 {"rotation", {q.x, q.y, q.z, q.w}}});
   asset.root["nodes"][parent]["children"].push_back(node);
   return node;
 }
@@ -54,8 +55,8 @@ void constrain(Asset& asset, size_t node, const Asked& asked) {
   if (std::string(asked.kind) == "roll") one["rollAxis"] = asked.axis;
   if (std::string(asked.kind) == "aim") one["aimAxis"] = asked.axis;
   asset.root["extensionsUsed"].push_back("VRMC_node_constraint");
-  asset.root["nodes"][node]["extensions"]["VRMC_node_constraint"] = {{"specVersion", "1.0"},
-                                                                     {"constraint", {{asked.kind, one}}}};
+  asset.root["nodes"][node]["extensions"]["VRMC_node_constraint"] = {
+      {"specVersion", "1.0"}, {"constraint", {{asked.kind, one}}}};
 }
 
 // The file's nodes, as the format sees them.
@@ -67,11 +68,13 @@ struct Nodes {
   explicit Nodes(const json& root) : parent(root["nodes"].size(), -1) {
     for (size_t i = 0; i < parent.size(); i++) {
       const json& node = root["nodes"][i];
-      json r = node.value("rotation", json{0, 0, 0, 1}), t = node.value("translation", json{0, 0, 0});
+      json r = node.value("rotation", json{0, 0, 0, 1}),
+           t = node.value("translation", json{0, 0, 0});
       auto number = [](const json& v, size_t k) { return v[k].get<float>(); };
       rest.push_back(quat(number(r, 3), number(r, 0), number(r, 1), number(r, 2)));
       place.push_back({number(t, 0), number(t, 1), number(t, 2)});
-      for (const json& child : node.value("children", json::array())) parent[child.get<size_t>()] = int(i);
+      for (const json& child : node.value("children", json::array()))
+        parent[child.get<size_t>()] = int(i);
     }
     now = rest;
   }
@@ -79,7 +82,8 @@ struct Nodes {
     return i < 0 ? quat(1, 0, 0, 0) : turn(parent[size_t(i)], local) * local[size_t(i)];
   }
   vec3 position(int i) const {
-    return i < 0 ? vec3(0) : position(parent[size_t(i)]) + turn(parent[size_t(i)], now) * place[size_t(i)];
+    return i < 0 ? vec3(0)
+                 : position(parent[size_t(i)]) + turn(parent[size_t(i)], now) * place[size_t(i)];
   }
 };
 
@@ -90,7 +94,8 @@ quat from_to(vec3 a, vec3 b) {
 
 // The pseudocode of the specification, word for word.
 quat by_the_format(const Nodes& nodes, size_t node, const Asked& asked, vec3 axis) {
-  quat src_rest = nodes.rest[asked.source], src = nodes.now[asked.source], dst_rest = nodes.rest[node];
+  quat src_rest = nodes.rest[asked.source], src = nodes.now[asked.source],
+       dst_rest = nodes.rest[node];
   quat delta = glm::inverse(src_rest) * src, target;
   if (std::string(asked.kind) == "rotation") {
     target = dst_rest * delta;
@@ -154,7 +159,8 @@ TEST(JointConstraints, AreThoseOfTheFormatWhateverTheAxesOfTheNodes) {
       for (size_t i = 0; i < joint_of.size(); i++)
         rest_turn.push_back(glm::conjugate(options.world) * nodes.turn(int(i), nodes.rest));
       auto above = [&](size_t i) {
-        return nodes.parent[i] < 0 ? glm::conjugate(options.world) : rest_turn[size_t(nodes.parent[i])];
+        return nodes.parent[i] < 0 ? glm::conjugate(options.world)
+                                   : rest_turn[size_t(nodes.parent[i])];
       };
       for (int round = 0; round < 40; round++) {
         for (size_t i = 0; i < joint_of.size(); i++) {
@@ -180,8 +186,10 @@ TEST(JointConstraints, AtRestNothingTurns) {
   Asset asset = make_person(options);
   add_vrm_1(asset);
   size_t arm = size_t(person_bone("leftLowerArm"));
-  constrain(asset, add_node(asset, arm, {0.1f, 0, 0}, quat(0.6f, 0, 0.8f, 0), "one"), {"roll", "Z", arm, 0.7});
-  constrain(asset, add_node(asset, 0, {0.1f, 0, 0}, quat(0.8f, 0.6f, 0, 0), "two"), {"rotation", "", arm, 1});
+  constrain(asset, add_node(asset, arm, {0.1f, 0, 0}, quat(0.6f, 0, 0.8f, 0), "one"),
+            {"roll", "Z", arm, 0.7});
+  constrain(asset, add_node(asset, 0, {0.1f, 0, 0}, quat(0.8f, 0.6f, 0, 0), "two"),
+            {"rotation", "", arm, 1});
   Character character = load_asset(asset);
   ASSERT_EQ(character.constraints.size(), 2u);
   Pose pose = make_rest_pose(character);
@@ -189,7 +197,8 @@ TEST(JointConstraints, AtRestNothingTurns) {
   for (quat q : pose.rotations) EXPECT_NEAR(std::abs(q.w), 1, 1e-6f);
 }
 
-// Whatever their order in the file; and what cannot be ordered is told by name, while the rest works.
+// Whatever their order in the file; and what cannot be ordered is told by name, while the rest
+// works.
 TEST(JointConstraints, AreFollowedInTheOrderOfWhatTheyDependOn) {
   size_t arm = size_t(person_bone("leftLowerArm"));
   Asset asset = make_person();
@@ -197,26 +206,32 @@ TEST(JointConstraints, AreFollowedInTheOrderOfWhatTheyDependOn) {
   // Each takes the turn of the next; the last one that of the arm.
   std::vector<size_t> chain;
   for (int i = 0; i < 5; i++)
-    chain.push_back(add_node(asset, 0, {0.1f, 0, 0}, quat(1, 0, 0, 0), ("link" + std::to_string(i)).c_str()));
-  for (size_t i = 0; i < 5; i++) constrain(asset, chain[i], {"rotation", "", i < 4 ? chain[i + 1] : arm, 1});
+    chain.push_back(
+        add_node(asset, 0, {0.1f, 0, 0}, quat(1, 0, 0, 0), ("link" + std::to_string(i)).c_str()));
+  for (size_t i = 0; i < 5; i++)
+    constrain(asset, chain[i], {"rotation", "", i < 4 ? chain[i + 1] : arm, 1});
   Character character = load_asset(asset);
   ASSERT_EQ(character.constraints.size(), 5u);
   Pose pose = make_rest_pose(character);
   quat turn = glm::angleAxis(0.8f, normalize(vec3(1, 2, -1)));
   pose.rotations[size_t(find_joint(character, "l_elbow"))] = turn;
   follow_constraints(character, pose);
-  EXPECT_NEAR(std::abs(glm::dot(pose.rotations[size_t(find_joint(character, "link0"))], turn)), 1, 1e-5f);
+  EXPECT_NEAR(std::abs(glm::dot(pose.rotations[size_t(find_joint(character, "link0"))], turn)), 1,
+              1e-5f);
 
-  EXPECT_NE(describe_text(character).find("constraints  5 joints follow others"), std::string::npos);
+  EXPECT_NE(describe_text(character).find("constraints  5 joints follow others"),
+            std::string::npos);
   auto told = nlohmann::json::parse(describe_json(character))["constraints"];
   ASSERT_EQ(told.size(), 5u);
   EXPECT_EQ(told[0]["joint"], "link4") << "in the order they are followed";
   EXPECT_EQ(told[0]["source"], "l_elbow");
   EXPECT_EQ(told[0]["kind"], "rotation");
 
-  constrain(asset, chain[4], {"rotation", "", chain[2], 1});                               // 2, 3, 4 in a circle
-  constrain(asset, add_node(asset, 0, {0, 0, 0}, quat(1, 0, 0, 0), "narcissus"), {"rotation", "", 23, 1});
-  constrain(asset, add_node(asset, 0, {0, 0, 0}, quat(1, 0, 0, 0), "good"), {"rotation", "", arm, 1});
+  constrain(asset, chain[4], {"rotation", "", chain[2], 1});  // 2, 3, 4 in a circle
+  constrain(asset, add_node(asset, 0, {0, 0, 0}, quat(1, 0, 0, 0), "narcissus"),
+            {"rotation", "", 23, 1});
+  constrain(asset, add_node(asset, 0, {0, 0, 0}, quat(1, 0, 0, 0), "good"),
+            {"rotation", "", arm, 1});
   size_t tail = add_node(asset, chain[0], {0, 0.1f, 0}, quat(1, 0, 0, 0), "tail");
   size_t dog = add_node(asset, tail, {0, 0.1f, 0}, quat(1, 0, 0, 0), "dog");
   constrain(asset, tail, {"aim", "PositiveY", dog, 1});  // what it aims at turns with it
@@ -231,14 +246,16 @@ TEST(JointConstraints, AreFollowedInTheOrderOfWhatTheyDependOn) {
   pose = make_rest_pose(character);
   pose.rotations[size_t(find_joint(character, "l_elbow"))] = turn;
   follow_constraints(character, pose);
-  EXPECT_NEAR(std::abs(glm::dot(pose.rotations[size_t(find_joint(character, "good"))], turn)), 1, 1e-5f);
+  EXPECT_NEAR(std::abs(glm::dot(pose.rotations[size_t(find_joint(character, "good"))], turn)), 1,
+              1e-5f);
 }
 
 TEST(JointConstraints, TheStorytellersTwistBonesFollowItsArms) {
   size_t arm = size_t(person_bone("leftUpperArm"));
   Asset asset = make_person();
   add_vrm_1(asset);
-  constrain(asset, add_node(asset, 2, {0.1f, 0, 0}, quat(1, 0, 0, 0), "twin"), {"rotation", "", arm, 1});
+  constrain(asset, add_node(asset, 2, {0.1f, 0, 0}, quat(1, 0, 0, 0), "twin"),
+            {"rotation", "", arm, 1});
   Character character = load_asset(asset);
   Storyteller storyteller{&character, mat4(1)};
   StorytellerState state;
@@ -252,7 +269,8 @@ TEST(JointConstraints, TheStorytellersTwistBonesFollowItsArms) {
   }
   quat wanted = pose.rotations[size_t(find_joint(character, "l_shoulder"))];
   EXPECT_LT(std::abs(wanted.w), 0.95f) << "the arm hangs down from its T-pose";
-  EXPECT_NEAR(std::abs(glm::dot(pose.rotations[size_t(find_joint(character, "twin"))], wanted)), 1, 1e-5f);
+  EXPECT_NEAR(std::abs(glm::dot(pose.rotations[size_t(find_joint(character, "twin"))], wanted)), 1,
+              1e-5f);
 }
 
 TEST(JointConstraints, BadOnesAreRefusedWithTheirPlaceAndBadPosesAreSafe) {
@@ -261,15 +279,18 @@ TEST(JointConstraints, BadOnesAreRefusedWithTheirPlaceAndBadPosesAreSafe) {
     Asset asset = make_person();
     size_t node = add_node(asset, 2, {0.1f, 0, 0}, quat(1, 0, 0, 0), "twin");
     constrain(asset, node, {"aim", "PositiveX", arm, 1});
-    asset.root["nodes"][node]["extensions"]["VRMC_node_constraint"][json::json_pointer(pointer)] = value;
+    asset.root["nodes"][node]["extensions"]["VRMC_node_constraint"][json::json_pointer(pointer)] =
+        value;
     try {
       Character c = load_asset(asset);
-      return says(c, "not one of roll, aim and rotation") ? std::string("told") : std::string("loads");
+      return says(c, "not one of roll, aim and rotation") ? std::string("told")
+                                                          : std::string("loads");
     } catch (const LoadError& error) {
       return error.where + ": " + error.what_;
     }
   };
-  EXPECT_NE(refusal("/constraint/aim/aimAxis", "X").find("constraint/aim/aimAxis: 'X' is no axis"), std::string::npos);
+  EXPECT_NE(refusal("/constraint/aim/aimAxis", "X").find("constraint/aim/aimAxis: 'X' is no axis"),
+            std::string::npos);
   EXPECT_NE(refusal("/constraint/aim/source", 99).find("aim/source"), std::string::npos);
   EXPECT_NE(refusal("/constraint/aim/source", -1).find("has no source"), std::string::npos);
   EXPECT_NE(refusal("/constraint/aim", 3).find("must be an object"), std::string::npos);
@@ -280,9 +301,11 @@ TEST(JointConstraints, BadOnesAreRefusedWithTheirPlaceAndBadPosesAreSafe) {
   Character character;
   character.joints.resize(3);
   character.joints[1].parent = character.joints[2].parent = 0;
-  character.constraints = {{1, 2, Kind::roll, 1, vec3(0, 1, 0), {}}, {1, 2, Kind::aim, 1, vec3(0, 1, 0), {}}};
+  character.constraints = {{1, 2, Kind::roll, 1, vec3(0, 1, 0), {}},
+                           {1, 2, Kind::aim, 1, vec3(0, 1, 0), {}}};
   Pose pose = make_rest_pose(character);
-  for (quat bad : {quat(0, 0, 0, 0), quat(NAN, 0, 0, 0), quat(1e30f, 0, 0, 0), quat(0, 1, 0, 0), quat(0, 0, 0, -1)}) {
+  for (quat bad : {quat(0, 0, 0, 0), quat(NAN, 0, 0, 0), quat(1e30f, 0, 0, 0), quat(0, 1, 0, 0),
+                   quat(0, 0, 0, -1)}) {
     pose.rotations[2] = bad;
     for (const JointConstraint& constraint : character.constraints)
       EXPECT_NEAR(glm::length(eval_constraint(character, constraint, pose)), 1, 1e-5f);

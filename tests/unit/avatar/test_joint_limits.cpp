@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits of a file's joints: what a turn becomes, and that looking, pointing and gesturing keep to them.
+// Limits of a file's joints: what a turn becomes, and that looking, pointing and gesturing keep to
+// them.
 #include <gtest/gtest.h>
 
 #include "avatar/body.h"
@@ -21,14 +22,17 @@ vec3 rotation_vector(quat q) {
 
 quat random_turn(Rng& rng) {
   quat q;
-  do q = quat(rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f);
+  do
+    q = quat(rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f,
+             rng.uniform() - 0.5f);
   while (glm::length(q) < 0.05f || glm::length(q) > 0.5f);
   return glm::normalize(q);
 }
 
 // How far a joint's turn is beyond its limits, radians.
 float beyond(const Joint& joint, quat turn) {
-  vec3 v = rotation_vector(glm::conjugate(joint.limit_orientation) * turn * joint.limit_orientation);
+  vec3 v =
+      rotation_vector(glm::conjugate(joint.limit_orientation) * turn * joint.limit_orientation);
   float most = 0;
   for (int i = 0; i < 3 && has_limits(joint); i++)
     most = std::max({most, joint.limits[size_t(i)].x - v[i], v[i] - joint.limits[size_t(i)].y});
@@ -39,7 +43,8 @@ TEST(JointLimits, AreKeptWhateverTheTurn) {
   Rng rng{7};
   for (int i = 0; i < 20000; i++) {
     Joint joint;
-    for (int axis = 0; axis < 3; axis++) joint.limits.push_back({-1.5f * rng.uniform(), 1.5f * rng.uniform()});
+    for (int axis = 0; axis < 3; axis++)
+      joint.limits.push_back({-1.5f * rng.uniform(), 1.5f * rng.uniform()});
     joint.limit_orientation = random_turn(rng);
     quat turn = random_turn(rng), kept = limit_turn(joint, turn), same = limit_turn(joint, -turn);
     EXPECT_NEAR(std::abs(glm::dot(kept, same)), 1, 1e-5) << "the same turn, the other quaternion";
@@ -63,17 +68,22 @@ TEST(JointLimits, NoneAreNone) {
   EXPECT_NEAR(v.y, 0.2f, 1e-5);
   EXPECT_NEAR(v.z, free.z, 1e-5);
   joint.limits = {{0.5f, 1}, {-1, 1}, {-1, 1}};
-  EXPECT_EQ(limit_turn(joint, quat(1, 0, 0, 0)), quat(1, 0, 0, 0)) << "the rest pose is always allowed";
+  EXPECT_EQ(limit_turn(joint, quat(1, 0, 0, 0)), quat(1, 0, 0, 0))
+      << "the rest pose is always allowed";
 }
 
 // A figure whose neck, arms and eyes are limited, looking and pointing everywhere.
 TEST(JointLimits, LookingPointingAndGesturesKeepToThem) {
   Character figure = test::load_text(test::whole_figure());
   for (Joint& joint : figure.joints) {
-    bool leg = joint.name.find("hip") != std::string::npos || joint.name.find("knee") != std::string::npos ||
+    bool leg = joint.name.find("hip") != std::string::npos ||
+               joint.name.find("knee") != std::string::npos ||
                joint.name.find("talocrural") != std::string::npos || joint.name == "humanoid_root";
     if (leg) continue;
-    float most = joint.name.find("shoulder") != std::string::npos || joint.name.find("elbow") != std::string::npos ? 1.9f : 0.25f;
+    float most = joint.name.find("shoulder") != std::string::npos ||
+                         joint.name.find("elbow") != std::string::npos
+                     ? 1.9f
+                     : 0.25f;
     joint.limits.assign(3, {-most, most});
     joint.limit_orientation = glm::angleAxis(0.7f, normalize(vec3(1, 1, 0)));
   }
@@ -89,12 +99,14 @@ TEST(JointLimits, LookingPointingAndGesturesKeepToThem) {
   for (const char* gesture : {"point_far", "wave", "count_three", "open_arms", "bow", "think"})
     for (int i = 0; i < 90; i++, frame++) {
       float angle = 0.05f * float(frame);
-      input.story.look = vec3(2 * std::sin(angle), 1.5f + std::cos(1.7f * angle), 2 * std::cos(angle));
+      input.story.look =
+          vec3(2 * std::sin(angle), 1.5f + std::cos(1.7f * angle), 2 * std::cos(angle));
       input.story.point = vec3(std::sin(angle), 1 + 0.5f * std::sin(2 * angle), 1.2f);
       input.story.gesture = i == 0 ? gesture : "";
       input.telling = true;
       tick_storyteller(state, storyteller, input, pose, events);
-      for (size_t j = 0; j < figure.joints.size(); j++) worst = std::max(worst, beyond(figure.joints[j], pose.rotations[j]));
+      for (size_t j = 0; j < figure.joints.size(); j++)
+        worst = std::max(worst, beyond(figure.joints[j], pose.rotations[j]));
     }
   EXPECT_LT(worst, 2e-3f);
 }
@@ -111,7 +123,8 @@ TEST(JointLimits, APointingArmMakesUpForAShoulderThatMayNot) {
     float left = point_arm(rig, 1, Aim::finger, target, 1, pose);
     PointingLine line = eval_pointing_line(rig, pose, 1, Aim::finger);
     vec3 way = target - line.from;
-    EXPECT_NEAR(left, std::atan2(glm::length(cross(line.direction, way)), dot(line.direction, way)), 1e-3);
+    EXPECT_NEAR(left, std::atan2(glm::length(cross(line.direction, way)), dot(line.direction, way)),
+                1e-3);
     return std::pair(left, pose.rotations[size_t(rig.arm[1].shoulder)]);
   };
   auto [free_error, free_turn] = point(figure);

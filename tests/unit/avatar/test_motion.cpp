@@ -16,7 +16,8 @@ namespace {
 
 using test::make_person;
 
-Motion one_track(TrackKind kind, TrackCurve curve, std::vector<float> times, std::vector<float> values) {
+Motion one_track(TrackKind kind, TrackCurve curve, std::vector<float> times,
+                 std::vector<float> values) {
   Motion motion;
   motion.duration = times.back();
   motion.joints.push_back({"humanoid_root", -1, vec3(0, 1, 0)});
@@ -50,7 +51,8 @@ TEST(Motion, CurvesAreThoseOfGltf) {
   // Hermite with tangents 0, out 2 and in -2: at the middle (a + b) / 2 + span (out - in) / 8.
   Motion cubic = one_track(TrackKind::displacer, TrackCurve::cubic, {0, 2}, {0, 1, 2, -2, 3, 0});
   EXPECT_NEAR(weight_at(cubic, 1, false), 2 + 2 * (2 + 2) / 8.0f, 1e-5f);
-  Motion turn = one_track(TrackKind::rotation, TrackCurve::linear, {0, 1}, {0, 0, 0, 1, 0, -0.5f, 0, -0.8660254f});
+  Motion turn = one_track(TrackKind::rotation, TrackCurve::linear, {0, 1},
+                          {0, 0, 0, 1, 0, -0.5f, 0, -0.8660254f});
   MotionPose pose;
   eval_motion(turn, 0.5, false, pose);
   // The other sign of the same turn: the short way all the same.
@@ -68,22 +70,30 @@ std::string bvh(bool t_pose, const std::string& frames, const char* unit = "1", 
   };
   auto arm = [&](const char* side, double s) {
     std::string name = side;
-    auto bone = [&](double length) { return t_pose ? offset(s * length, 0, 0) : offset(0, -length, 0); };
-    return "JOINT " + name + "Shoulder {\n" + offset(s * 0.2, 0.4, 0) + "CHANNELS 3 Zrotation Xrotation Yrotation\nJOINT " +
-           name + "Elbow\n{\n" + bone(0.3) + "CHANNELS 3 Zrotation Xrotation Yrotation\nJOINT " + name + "Wrist\n{\n" +
-           bone(0.25) + "CHANNELS 3 zrotation XROTATION Yrotation\nEnd Site\n{\n" + bone(0.1) + "}\n}\n}\n}\n";
+    auto bone = [&](double length) {
+      return t_pose ? offset(s * length, 0, 0) : offset(0, -length, 0);
+    };
+    return "JOINT " + name + "Shoulder {\n" + offset(s * 0.2, 0.4, 0) +
+           "CHANNELS 3 Zrotation Xrotation Yrotation\nJOINT " + name + "Elbow\n{\n" + bone(0.3) +
+           "CHANNELS 3 Zrotation Xrotation Yrotation\nJOINT " + name + "Wrist\n{\n" + bone(0.25) +
+           "CHANNELS 3 zrotation XROTATION Yrotation\nEnd Site\n{\n" + bone(0.1) + "}\n}\n}\n}\n";
   };
   auto leg = [&](const char* side, double s) {
     std::string name = side;
-    return "JOINT " + name + "Hip\n{\n" + offset(s * 0.1, 0, 0) + "CHANNELS 3 Zrotation Xrotation Yrotation\nJOINT " + name +
-           "Knee\n{\n" + offset(0, -0.45, 0) + "CHANNELS 3 Zrotation Xrotation Yrotation\nJOINT " + name + "Ankle\n{\n" +
-           offset(0, -0.45, 0) + "CHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\n" + offset(0, -0.08, 0.15) + "}\n}\n}\n}\n";
+    return "JOINT " + name + "Hip\n{\n" + offset(s * 0.1, 0, 0) +
+           "CHANNELS 3 Zrotation Xrotation Yrotation\nJOINT " + name + "Knee\n{\n" +
+           offset(0, -0.45, 0) + "CHANNELS 3 Zrotation Xrotation Yrotation\nJOINT " + name +
+           "Ankle\n{\n" + offset(0, -0.45, 0) +
+           "CHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\n" + offset(0, -0.08, 0.15) +
+           "}\n}\n}\n}\n";
   };
-  std::string text = "HIERARCHY\nROOT Hips\n{\n" + offset(0, 0, 0) +
-                     "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\nJOINT Chest\n{\n" +
-                     offset(0, 0.2, 0) + "CHANNELS 3 Zrotation Xrotation Yrotation\nJOINT Head\n{\n" + offset(0, 0.5, 0) +
-                     "CHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\n" + offset(0, 0.2, 0) + "}\n}\n" + arm("Left", 1) +
-                     arm("Right", -1) + "}\n" + leg("Left", 1) + leg("Right", -1) + "}\n" + frames;
+  std::string text =
+      "HIERARCHY\nROOT Hips\n{\n" + offset(0, 0, 0) +
+      "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\nJOINT Chest\n{\n" +
+      offset(0, 0.2, 0) + "CHANNELS 3 Zrotation Xrotation Yrotation\nJOINT Head\n{\n" +
+      offset(0, 0.5, 0) + "CHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\n" +
+      offset(0, 0.2, 0) + "}\n}\n" + arm("Left", 1) + arm("Right", -1) + "}\n" + leg("Left", 1) +
+      leg("Right", -1) + "}\n" + frames;
   if (!crlf) return text;
   std::string windows;
   for (char c : text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
@@ -109,7 +119,8 @@ std::string one_frame(std::map<int, double> values) {
 }
 
 vec3 bone_of(const Character& c, const Pose& pose, const char* from, const char* to) {
-  vec3 a = eval_joint_frame(c, pose, find_joint(c, from)).center, b = eval_joint_frame(c, pose, find_joint(c, to)).center;
+  vec3 a = eval_joint_frame(c, pose, find_joint(c, from)).center,
+       b = eval_joint_frame(c, pose, find_joint(c, to)).center;
   return normalize(b - a);
 }
 
@@ -121,7 +132,8 @@ Pose play(const Motion& motion, const Character& c, double time = 0, float weigh
 
 TEST(Bvh, SkeletonIsNamedAndMeasuredInMetres) {
   for (const char* unit : {"1", "100", "39.37"}) {
-    Character c = load_bvh(bvh(true, one_frame({{1, 0.98 * std::atof(unit)}}), unit, unit[0] == '3'));
+    Character c =
+        load_bvh(bvh(true, one_frame({{1, 0.98 * std::atof(unit)}}), unit, unit[0] == '3'));
     EXPECT_EQ(c.joints.size(), 15u);
     ASSERT_GE(find_joint(c, "l_elbow"), 0);
     EXPECT_NEAR(c.joints[size_t(find_joint(c, "l_elbow"))].center.x, 0.5f, 2e-3f);
@@ -134,7 +146,8 @@ TEST(Bvh, SkeletonIsNamedAndMeasuredInMetres) {
 
 TEST(Bvh, ChannelsComposeInTheirOrder) {
   // Z, X, Y as listed: the arm's bone along +X.
-  Character c = load_bvh(bvh(true, one_frame({{left_shoulder, 30}, {left_shoulder + 1, 40}, {left_shoulder + 2, 50}})));
+  Character c = load_bvh(bvh(
+      true, one_frame({{left_shoulder, 30}, {left_shoulder + 1, 40}, {left_shoulder + 2, 50}})));
   Pose pose = play(c.motions[0], c);
   quat turn = glm::angleAxis(pi / 6, vec3(0, 0, 1)) * glm::angleAxis(pi * 40 / 180, vec3(1, 0, 0)) *
               glm::angleAxis(pi * 50 / 180, vec3(0, 1, 0));
@@ -169,13 +182,20 @@ TEST(Bvh, BrokenFilesNameTheLine) {
   };
   std::string good = bvh(true, one_frame({}));
   EXPECT_EQ(refusal(good), "");
-  EXPECT_NE(refusal("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Wrotation\n}\n").find("line 5: unknown channel"), std::string::npos);
-  EXPECT_NE(refusal("HIERARCHY\nROOT A\n{\nOFFSET 0 x 0\n}\n").find("line 4: 'x' is no number"), std::string::npos);
-  EXPECT_NE(refusal("HIERARCHY\nROOT A\n{\nOFFSET 0 nan 0\n}\n").find("line 4"), std::string::npos);
-  EXPECT_NE(refusal("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\n}\nROOT B\n{\nOFFSET 0 0 0\n}\n").find("second root"), std::string::npos);
-  EXPECT_NE(refusal(bvh(true, "MOTION\nFrames: 1000000000\nFrame Time: 0.1\n" + frame({}))).find("ends in frame 1 of 1000000000"),
+  EXPECT_NE(refusal("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 1 Wrotation\n}\n")
+                .find("line 5: unknown channel"),
             std::string::npos);
-  EXPECT_NE(refusal(bvh(true, "MOTION\nFrames: -3\nFrame Time: 0.1\n")).find("frames"), std::string::npos);
+  EXPECT_NE(refusal("HIERARCHY\nROOT A\n{\nOFFSET 0 x 0\n}\n").find("line 4: 'x' is no number"),
+            std::string::npos);
+  EXPECT_NE(refusal("HIERARCHY\nROOT A\n{\nOFFSET 0 nan 0\n}\n").find("line 4"), std::string::npos);
+  EXPECT_NE(refusal("HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\n}\nROOT B\n{\nOFFSET 0 0 0\n}\n")
+                .find("second root"),
+            std::string::npos);
+  EXPECT_NE(refusal(bvh(true, "MOTION\nFrames: 1000000000\nFrame Time: 0.1\n" + frame({})))
+                .find("ends in frame 1 of 1000000000"),
+            std::string::npos);
+  EXPECT_NE(refusal(bvh(true, "MOTION\nFrames: -3\nFrame Time: 0.1\n")).find("frames"),
+            std::string::npos);
   std::string deep = "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\n";
   for (int i = 0; i < 100000; i++) deep += "JOINT B\n{\nOFFSET 0 0 0\n";
   EXPECT_NE(refusal(deep).find("nested deeper"), std::string::npos);
@@ -196,12 +216,19 @@ TEST(Retarget, LimbsLieInSpaceAsInTheRecordingWhateverTheRestPoses) {
   // The same figure of arms: hanging, and stretched out by the recording.
   Character person = test::load_text(make_person().gltf(), ".gltf");  // T-pose
   for (bool t_pose : {true, false}) {
-    Character recorded = load_bvh(bvh(t_pose, one_frame({{left_shoulder, -25}, {left_shoulder + 1, 15},
-                                                          {left_elbow, 40}, {left_hip, 20}, {left_hip + 1, -35}})));
+    Character recorded = load_bvh(bvh(t_pose, one_frame({{left_shoulder, -25},
+                                                         {left_shoulder + 1, 15},
+                                                         {left_elbow, 40},
+                                                         {left_hip, 20},
+                                                         {left_hip + 1, -35}})));
     Pose theirs = play(recorded.motions[0], recorded), ours = play(recorded.motions[0], person);
-    for (auto [from, to] : {std::pair("l_shoulder", "l_elbow"), std::pair("l_elbow", "l_radiocarpal"),
-                            std::pair("r_shoulder", "r_elbow"), std::pair("l_hip", "l_knee"), std::pair("l_knee", "l_talocrural")})
-      EXPECT_LT(glm::length(bone_of(person, ours, from, to) - bone_of(recorded, theirs, from, to)), 2e-3f) << from << t_pose;
+    for (auto [from, to] :
+         {std::pair("l_shoulder", "l_elbow"), std::pair("l_elbow", "l_radiocarpal"),
+          std::pair("r_shoulder", "r_elbow"), std::pair("l_hip", "l_knee"),
+          std::pair("l_knee", "l_talocrural")})
+      EXPECT_LT(glm::length(bone_of(person, ours, from, to) - bone_of(recorded, theirs, from, to)),
+                2e-3f)
+          << from << t_pose;
   }
 }
 
@@ -228,10 +255,12 @@ TEST(Retarget, OneSpineJointBecomesMany) {
 TEST(Retarget, BlendsOverAPoseAndLeavesAloneWhatItDoesNotMove) {
   Character person = test::load_text(make_person().gltf(), ".gltf");
   Motion wave;
-  for (const Joint& joint : person.joints) wave.joints.push_back({joint.name, joint.parent, joint.center});
+  for (const Joint& joint : person.joints)
+    wave.joints.push_back({joint.name, joint.parent, joint.center});
   int elbow = find_joint(person, "r_elbow"), knee = find_joint(person, "r_knee");
   quat bent = glm::angleAxis(1.0f, vec3(0, 1, 0));
-  wave.tracks.push_back({TrackKind::rotation, TrackCurve::linear, elbow, {0}, {bent.x, bent.y, bent.z, bent.w}, {}});
+  wave.tracks.push_back(
+      {TrackKind::rotation, TrackCurve::linear, elbow, {0}, {bent.x, bent.y, bent.z, bent.w}, {}});
   Retarget retarget = make_retarget(wave, person);
   EXPECT_TRUE(retarget.same);
   Pose pose = make_rest_pose(person);
@@ -253,13 +282,14 @@ TEST(GltfMotion, AnimationsAreShownAsTheFileMeansThem) {
   options.odd_axes = true;
   options.posed["rightUpperArm"] = glm::angleAxis(0.5f, vec3(0, 0, 1));
   Asset asset = make_person(options);
-  auto key = [&](int node, const char* path, const std::vector<float>& values, const char* type, int width) {
+  auto key = [&](int node, const char* path, const std::vector<float>& values, const char* type,
+                 int width) {
     json& animation = asset.root["animations"][0];
     animation["name"] = "dance";
     animation["samplers"].push_back({{"input", asset.add_floats("SCALAR", 1, {0, 1, 2})},
                                      {"output", asset.add_floats(type, width, values)}});
-    animation["channels"].push_back(
-        {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
+    animation["channels"].push_back({{"sampler", animation["samplers"].size() - 1},
+                                     {"target", {{"node", node}, {"path", path}}}});
   };
   std::vector<float> turns;
   for (float angle : {0.2f, 0.9f, -0.4f}) {
@@ -290,7 +320,8 @@ TEST(GltfMotion, AnimationsAreShownAsTheFileMeansThem) {
     std::vector<gltf::Node> nodes = gltf::make_pose(file, time);
     for (size_t bone = 0; bone < 17; bone++) {
       dmat4 bind(1);
-      for (size_t i = 0; i < 16; i++) bind[int(i / 4)][int(i % 4)] = double((*binds)[bone * 16 + i]);
+      for (size_t i = 0; i < 16; i++)
+        bind[int(i / 4)][int(i % 4)] = double((*binds)[bone * 16 + i]);
       dmat4 m = nodes[bone].global * bind;
       for (size_t corner = 0; corner < 8; corner++) {
         const float* p = points->data() + (bone * 8 + corner) * 3;
@@ -306,8 +337,10 @@ TEST(GltfMotion, AnimationsAreShownAsTheFileMeansThem) {
 TEST(X3dMotion, HAnimMotionAsFilesWriteIt) {
   Character c = test::load_text(test::small_skin("", "").replace(
       test::small_skin("", "").find("</HAnimHumanoid>"), 0,
-      "<HAnimMotion name='sway' containerField='motions' enabled='false' frameDuration='0.5' loop='true'"
-      " joints='HumanoidRoot IGNORED vl5 tail' channels='6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
+      "<HAnimMotion name='sway' containerField='motions' enabled='false' frameDuration='0.5' "
+      "loop='true'"
+      " joints='HumanoidRoot IGNORED vl5 tail' channels='6 Xposition Yposition Zposition Zrotation "
+      "Xrotation Yrotation"
       " 1 Xrotation 3 Zrotation Xrotation Yrotation 1 Xrotation'"
       " values='0 0 0 0 0 0 7 0 0 0 1  0.5 0 0 90 0 0 7 90 90 0 2  1 2 3'/>"));
   ASSERT_EQ(c.motions.size(), 1u);
@@ -354,12 +387,14 @@ ROUTE Clock.fraction TO S.fraction
 ROUTE S.value_changed TO D.weight
 )";
   std::string many = xml;
-  std::string once = "<ROUTE fromNode='Clock' fromField='fraction_changed' toNode='O' toField='set_fraction'/>"
-                     "<ROUTE fromNode='O' fromField='value_changed' toNode='V' toField='rotation'/>";
+  std::string once =
+      "<ROUTE fromNode='Clock' fromField='fraction_changed' toNode='O' toField='set_fraction'/>"
+      "<ROUTE fromNode='O' fromField='value_changed' toNode='V' toField='rotation'/>";
   std::string thousands;
   for (int i = 0; i < 30'000; i++) thousands += once;
   many.insert(many.find("<ROUTE"), thousands);
-  for (const Character& c : {test::load_text(xml), test::load_text(many), test::load_text(classic, ".x3dv")}) {
+  for (const Character& c :
+       {test::load_text(xml), test::load_text(many), test::load_text(classic, ".x3dv")}) {
     ASSERT_EQ(c.motions.size(), 1u);
     EXPECT_EQ(c.motions[0].name, "Clock");
     EXPECT_EQ(c.motions[0].tracks.size(), 3u);

@@ -15,7 +15,9 @@ namespace {
 float angle_between(vec3 a, vec3 b) { return std::atan2(glm::length(cross(a, b)), dot(a, b)); }
 
 struct Stage {
-  explicit Stage(const Character& figure) : character(figure) { storyteller.character = &character; }
+  explicit Stage(const Character& figure) : character(figure) {
+    storyteller.character = &character;
+  }
   const Character& character;
   Storyteller storyteller;
   StorytellerState state;
@@ -57,7 +59,8 @@ TEST(Pointing, IsWithinTwoDegreesOfEveryPlaceThatCanBeReached) {
     for (float distance : {0.8f, 1.5f, 4.0f, 12.0f})
       for (float yaw = -180; yaw < 180; yaw += 22.5f)
         for (float height : {0.3f, 1.0f, 1.6f, 2.6f}) {
-          vec3 place(distance * std::sin(yaw * pi / 180), height, distance * std::cos(yaw * pi / 180));
+          vec3 place(distance * std::sin(yaw * pi / 180), height,
+                     distance * std::cos(yaw * pi / 180));
           Stage stage(*figure);
           stage.input.humanlike = false;
           stage.run(0.1);
@@ -129,7 +132,8 @@ TEST(Pointing, GoesOverFromPlaceToPlaceWithoutAJump) {
     if (i % 300 == 250 || i % 300 == 100) stage.input.story.point = places[(i / 100) % 4];
     stage.run(0.01, 0.01f);
     for (int s = 0; s < 2; s++)
-      ASSERT_LT(glm::length(eval_joint_frame(boxes(), stage.pose, wrist[s]).center - last[s]), 0.045f)
+      ASSERT_LT(glm::length(eval_joint_frame(boxes(), stage.pose, wrist[s]).center - last[s]),
+                0.045f)
           << i;
   }
 }
@@ -157,8 +161,9 @@ TEST(Looking, EyesThenHeadThenChestByTheirTimes) {
     EXPECT_LT(head, chest);
     EXPECT_NEAR(head, double(head_seconds), 0.08);
     EXPECT_NEAR(chest, double(torso_seconds), 0.1);
-    vec3 ahead = eval_joint_frame(boxes(), end.pose, find_joint(boxes(), "l_eyeball_joint")).rotation *
-                 vec3(0, 0, 1);
+    vec3 ahead =
+        eval_joint_frame(boxes(), end.pose, find_joint(boxes(), "l_eyeball_joint")).rotation *
+        vec3(0, 0, 1);
     vec3 eye = eval_joint_frame(boxes(), end.pose, find_joint(boxes(), "l_eyeball_joint")).center;
     EXPECT_LT(angle_between(ahead, *stage.input.story.look - eye), 2 * pi / 180);
   }
@@ -180,8 +185,9 @@ TEST(Feet, DoNotSlideDuringAnyGesture) {
       for (double t = 0; t < double(clip.seconds); t += 1 / 30.0) {
         stage.run(1 / 30.0);
         for (int s = 0; s < 2; s++)
-          drift = std::max(drift, glm::length(eval_joint_frame(*figure, stage.pose, ankle[s]).center -
-                                              planted[s]));
+          drift = std::max(
+              drift,
+              glm::length(eval_joint_frame(*figure, stage.pose, ankle[s]).center - planted[s]));
       }
     }
     EXPECT_LT(drift, 0.003f) << "metres, over all gestures with all noise";

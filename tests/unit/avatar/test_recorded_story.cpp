@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A narrator's recording of a story, whose times are known because another voice of the synthesiser is
-// the narrator: marks, sentences, and what is said of a recording that is something else.
+// A narrator's recording of a story, whose times are known because another voice of the synthesiser
+// is the narrator: marks, sentences, and what is said of a recording that is something else.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +16,10 @@ namespace wellspring {
 namespace {
 
 const char* const tale =
-    "<story>The castle stands above the river. <emotion name='joy'/>Its oldest tower was built by the bishop "
-    "in the longest winter. Nobody knows who paid for the great bell. On quiet evenings you can hear it "
+    "<story>The castle stands above the river. <emotion name='joy'/>Its oldest tower was built by "
+    "the bishop "
+    "in the longest winter. Nobody knows who paid for the great bell. On quiet evenings you can "
+    "hear it "
     "from the bridge, <break time='700ms'/>if you hold your breath.</story>";
 
 struct Narrator {
@@ -35,12 +37,14 @@ struct Narrator {
   }
   void pause(double seconds) {
     size_t count = size_t(seconds * recording.rate);
-    for (size_t i = 0; i < count; i++) recording.samples.push_back(0.0015f * (rng.uniform() - 0.5f));
+    for (size_t i = 0; i < count; i++)
+      recording.samples.push_back(0.0015f * (rng.uniform() - 0.5f));
   }
   void say(const std::string& text) {
     std::string error;
     auto speech = process.speak(
-        {.text = text, .lang = "en-us", .words_per_minute = 130, .pitch = 80, .variant = "f2"}, error);
+        {.text = text, .lang = "en-us", .words_per_minute = 130, .pitch = 80, .variant = "f2"},
+        error);
     ASSERT_TRUE(speech) << error;
     double begin = double(recording.samples.size()) / recording.rate;
     for (SpeechWord word : speech->words) {
@@ -82,8 +86,8 @@ TEST(RecordedStory, EverySentenceGetsItsPartOfTheSound) {
     EXPECT_EQ(part.text, lines[i].text);
     sum += part.duration;
     // The sound is a piece of the recording, after the one before, and times are times in it.
-    auto at = std::search(marked.pcm.begin() + ptrdiff_t(sample), marked.pcm.end(), part.pcm.begin(),
-                          part.pcm.begin() + 2000);
+    auto at = std::search(marked.pcm.begin() + ptrdiff_t(sample), marked.pcm.end(),
+                          part.pcm.begin(), part.pcm.begin() + 2000);
     ASSERT_NE(at, marked.pcm.end());
     double begin = double(at - marked.pcm.begin()) / marked.rate;
     sample = size_t(at - marked.pcm.begin()) + part.pcm.size();
@@ -95,7 +99,8 @@ TEST(RecordedStory, EverySentenceGetsItsPartOfTheSound) {
       words++;
     }
     EXPECT_FALSE(part.visemes.keys.empty());
-    for (const SpeechPhoneme& phoneme : part.phonemes) EXPECT_LT(phoneme.word, int(part.words.size()));
+    for (const SpeechPhoneme& phoneme : part.phonemes)
+      EXPECT_LT(phoneme.word, int(part.words.size()));
   }
   EXPECT_EQ(words, marked.words.size());
   EXPECT_NEAR(sum, marked.duration, 0.01) << "the narrator's own pauses, no more and no less";
@@ -120,14 +125,18 @@ TEST(RecordedStory, MarksMovedByHandWin) {
 TEST(RecordedStory, AnotherTextIsRefusedAndAnotherSentenceNoticed) {
   std::vector<StoryLine> lines = read_story(tale, "tale").lines;
   Narrator narrator(lines);
-  auto other = read_story("Two brothers once quarrelled about a horse. It was the best horse of all, and each of them "
-                          "said that it was his. They shouted so loudly that the ravens left the tower.",
-                          "other")
+  auto other = read_story(
+                   "Two brothers once quarrelled about a horse. It was the best horse of all, and "
+                   "each of them "
+                   "said that it was his. They shouted so loudly that the ravens left the tower.",
+                   "other")
                    .lines;
   EXPECT_THROW(mark_recording(narrator.process, other, {}, narrator.recording), std::runtime_error);
   // Most of it is the same, but something long is said that the text does not have.
   Narrator more(lines);
-  more.say("And now I shall tell you something else, which nobody has written down anywhere, not even in this book.");
+  more.say(
+      "And now I shall tell you something else, which nobody has written down anywhere, not even "
+      "in this book.");
   more.pause(0.3);
   Speech marked = mark_recording(more.process, lines, {}, more.recording);
   auto notes = doubtful_places(marked, lines);
@@ -135,25 +144,32 @@ TEST(RecordedStory, AnotherTextIsRefusedAndAnotherSentenceNoticed) {
   EXPECT_EQ(notes.back().place.line, lines.back().place.line);
 }
 
-// Twenty-four wrong pairs: with a threshold that one in ten thousand passes, a single one has a probability
-// of a quarter of a percent.
+// Twenty-four wrong pairs: with a threshold that one in ten thousand passes, a single one has a
+// probability of a quarter of a percent.
 TEST(SpeechFit, WrongTextsAreToldFromRightOnes) {
   const char* const texts[] = {
-      "When this castle was built, there was not a drop of water on the hill, and the masons drank the rain.",
-      "A young man dug for three long summers, and the others laughed at him, until they stopped laughing.",
-      "The goldsmith was so afraid that he could not sleep, and at midnight he crept into the great hall.",
-      "From then on they ruled together with one table, one key and one sword, and had the horse cast in bronze."};
+      "When this castle was built, there was not a drop of water on the hill, and the masons drank "
+      "the rain.",
+      "A young man dug for three long summers, and the others laughed at him, until they stopped "
+      "laughing.",
+      "The goldsmith was so afraid that he could not sleep, and at midnight he crept into the "
+      "great hall.",
+      "From then on they ruled together with one table, one key and one sword, and had the horse "
+      "cast in bronze."};
   SpeechProcess process;
   for (const char* variant : {"f3", "m7"})
     for (size_t said = 0; said < 4; said++) {
       std::string error;
-      auto sound = process.speak({.text = texts[said], .lang = "en-us", .words_per_minute = 130, .variant = variant}, error);
+      auto sound = process.speak(
+          {.text = texts[said], .lang = "en-us", .words_per_minute = 130, .variant = variant},
+          error);
       ASSERT_TRUE(sound) << error;
       for (size_t read = 0; read < 4; read++) {
         auto spoken = process.speak({.text = texts[read]}, error);
         ASSERT_TRUE(spoken) << error;
         double fit = eval_fit(*spoken, {sound->rate, from_pcm(sound->pcm)});
-        RecordProperty(std::string(variant) + std::to_string(said) + std::to_string(read), std::to_string(fit));
+        RecordProperty(std::string(variant) + std::to_string(said) + std::to_string(read),
+                       std::to_string(fit));
         if (said == read) EXPECT_GT(fit, least_fit) << variant << said;
         else EXPECT_LT(fit, least_fit) << variant << said << read;
       }

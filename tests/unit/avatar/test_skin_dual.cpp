@@ -12,7 +12,9 @@ quat random_turn(Rng& rng) {
   quat q(rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f);
   return glm::normalize(q);
 }
-vec3 random_point(Rng& rng) { return 4.0f * vec3(rng.uniform(), rng.uniform(), rng.uniform()) - 2.0f; }
+vec3 random_point(Rng& rng) {
+  return 4.0f * vec3(rng.uniform(), rng.uniform(), rng.uniform()) - 2.0f;
+}
 
 mat4 rigid(quat turn, vec3 way) { return glm::translate(mat4(1), way) * glm::mat4_cast(turn); }
 
@@ -37,7 +39,8 @@ TEST(SkinDual, ABlendOfRigidJointsIsRigid) {
     for (JointWeight& w : weights) w.weight /= sum;
     glm::mat3x4 rows = blend_dual_quaternions(weights.data(), weights.data() + 4, joints, {});
     vec3 a = random_point(rng), b = random_point(rng);
-    EXPECT_NEAR(glm::length(moved(rows, a) - moved(rows, b)), glm::length(a - b), 2e-5f * (1 + glm::length(a - b)));
+    EXPECT_NEAR(glm::length(moved(rows, a) - moved(rows, b)), glm::length(a - b),
+                2e-5f * (1 + glm::length(a - b)));
     vec3 x(rows[0]), y(rows[1]), z(rows[2]);
     EXPECT_NEAR(dot(cross(x, y), z), 1, 1e-4f);
   }
@@ -50,13 +53,21 @@ TEST(SkinDual, SignsDoNotMatter) {
     std::vector<DualQuaternion> joints, flipped;
     for (int j = 0; j < 3; j++) {
       joints.push_back(make_dual_quaternion(random_turn(rng), random_point(rng)));
-      flipped.push_back({j % 2 ? -joints.back().real : joints.back().real, j % 2 ? -joints.back().dual : joints.back().dual});
+      flipped.push_back({j % 2 ? -joints.back().real : joints.back().real,
+                         j % 2 ? -joints.back().dual : joints.back().dual});
     }
-    std::vector<JointWeight> weights{{0, 0.5f}, {1, 0.3f}, {2, 0.2f}}, turned{{2, 0.2f}, {0, 0.5f}, {1, 0.3f}};
+    std::vector<JointWeight> weights{{0, 0.5f}, {1, 0.3f}, {2, 0.2f}},
+        turned{{2, 0.2f}, {0, 0.5f}, {1, 0.3f}};
     vec3 p = random_point(rng);
     vec3 a = moved(blend_dual_quaternions(weights.data(), weights.data() + 3, joints, {}), p);
-    EXPECT_LT(glm::length(a - moved(blend_dual_quaternions(weights.data(), weights.data() + 3, flipped, {}), p)), 1e-4f);
-    EXPECT_LT(glm::length(a - moved(blend_dual_quaternions(turned.data(), turned.data() + 3, joints, {}), p)), 1e-4f);
+    EXPECT_LT(
+        glm::length(
+            a - moved(blend_dual_quaternions(weights.data(), weights.data() + 3, flipped, {}), p)),
+        1e-4f);
+    EXPECT_LT(
+        glm::length(a -
+                    moved(blend_dual_quaternions(turned.data(), turned.data() + 3, joints, {}), p)),
+        1e-4f);
   }
 }
 
@@ -65,10 +76,12 @@ TEST(SkinDual, OneJointIsItsMatrixWhateverItScales) {
   for (int i = 0; i < 500; i++) {
     mat4 m = rigid(random_turn(rng), random_point(rng));
     if (i % 3 == 1) m = glm::scale(m, vec3(0.2f + rng.uniform(), 0.2f + 3 * rng.uniform(), 1));
-    if (i % 3 == 2) m = m * rigid(random_turn(rng), vec3(0)) * glm::scale(mat4(1), vec3(1, 2, 0.5f));
+    if (i % 3 == 2)
+      m = m * rigid(random_turn(rng), vec3(0)) * glm::scale(mat4(1), vec3(1, 2, 0.5f));
     RigidPart part = split_matrix(m);
     std::vector<JointWeight> one{{0, 1.0f}};
-    glm::mat3x4 rows = blend_dual_quaternions(one.data(), one.data() + 1, {part.rigid}, {part.stretch});
+    glm::mat3x4 rows =
+        blend_dual_quaternions(one.data(), one.data() + 1, {part.rigid}, {part.stretch});
     vec3 p = random_point(rng);
     EXPECT_LT(glm::length(moved(rows, p) - vec3(m * vec4(p, 1))), 2e-4f);
     EXPECT_LT(glm::length(part.stretch[0] - glm::transpose(part.stretch)[0]), 1e-4f) << "symmetric";
@@ -76,7 +89,8 @@ TEST(SkinDual, OneJointIsItsMatrixWhateverItScales) {
 }
 
 TEST(SkinDual, FlatAndEmptyMatricesStayFinite) {
-  for (const mat4& m : {glm::scale(mat4(1), vec3(0)), glm::scale(mat4(1), vec3(1, 0, 1)), glm::scale(mat4(1), vec3(-1, 1, 1))}) {
+  for (const mat4& m : {glm::scale(mat4(1), vec3(0)), glm::scale(mat4(1), vec3(1, 0, 1)),
+                        glm::scale(mat4(1), vec3(-1, 1, 1))}) {
     RigidPart part = split_matrix(m);
     EXPECT_NEAR(glm::length(part.rigid.real), 1, 1e-5f);
     for (int c = 0; c < 3; c++) EXPECT_TRUE(is_finite(part.stretch[c]));
@@ -95,7 +109,8 @@ TEST(SkinDual, ATwistedLimbKeepsItsThickness) {
   SkinScratch scratch;
   std::vector<vec3> positions, normals;
   skin(c, pose, mat4(1), scratch, positions, normals);
-  EXPECT_LT(glm::length(vec2(positions[half].x, positions[half].z)), 0.01f) << "linear blending wrings it out";
+  EXPECT_LT(glm::length(vec2(positions[half].x, positions[half].z)), 0.01f)
+      << "linear blending wrings it out";
   c.skinning = Skinning::dual_quaternion;
   skin(c, pose, mat4(1), scratch, positions, normals);
   EXPECT_NEAR(glm::length(vec2(positions[half].x, positions[half].z)), 0.4f, 1e-3f);
@@ -112,8 +127,9 @@ TEST(SkinDual, PlacementsAndStretchesAsWithMatricesWhereOneJointMoves) {
   pose.stretches.assign(2, mat3(1));
   pose.stretches[0] = mat3(1.5f, 0.2f, 0, 0.2f, 0.8f, 0, 0, 0, 1);
   SkinScratch scratch;
-  for (const mat4& placement : {mat4(1), rigid(glm::angleAxis(2.0f, vec3(0, 1, 0)), {5, 0, 1}),
-                                glm::scale(rigid(glm::angleAxis(2.0f, vec3(0, 1, 0)), {5, 0, 1}), vec3(2, 1, -1))}) {
+  for (const mat4& placement :
+       {mat4(1), rigid(glm::angleAxis(2.0f, vec3(0, 1, 0)), {5, 0, 1}),
+        glm::scale(rigid(glm::angleAxis(2.0f, vec3(0, 1, 0)), {5, 0, 1}), vec3(2, 1, -1))}) {
     std::vector<vec3> linear, dual, linear_normals, dual_normals;
     c.skinning = Skinning::linear;
     skin(c, pose, placement, scratch, linear, linear_normals);
@@ -128,7 +144,8 @@ TEST(SkinDual, PlacementsAndStretchesAsWithMatricesWhereOneJointMoves) {
 
 TEST(SkinDual, TheFileMayAskForIt) {
   EXPECT_EQ(test::load_text(test::small_skin()).skinning, Skinning::linear);
-  Character c = test::load_text(test::small_skin("<MetadataString name='skinning' value='\"dual_quaternion\"' containerField='metadata'/>"));
+  Character c = test::load_text(test::small_skin(
+      "<MetadataString name='skinning' value='\"dual_quaternion\"' containerField='metadata'/>"));
   EXPECT_EQ(c.skinning, Skinning::dual_quaternion);
 }
 

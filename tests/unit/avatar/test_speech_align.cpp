@@ -115,7 +115,8 @@ std::vector<double> errors_of(const Speech& speech, const Narrated& narrated) {
 }
 
 // At the narrator's own pace.
-Speech align(SpeechProcess& process, const std::string& text, const std::string& lang, const Sound& recording) {
+Speech align(SpeechProcess& process, const std::string& text, const std::string& lang,
+             const Sound& recording) {
   std::string error;
   SpeechRequest request{.text = text, .lang = lang};
   auto spoken = process.speak(request, error);
@@ -126,12 +127,14 @@ Speech align(SpeechProcess& process, const std::string& text, const std::string&
 }
 
 TEST(SpeechMarks, ARecordingByAnotherVoiceIsAligned) {
-  const std::string text = "The castle stands above the river. Its oldest tower was built by the bishop in "
-                           "winter. Nobody knows who paid for the great bell. On quiet evenings you can hear "
-                           "it from the bridge.";
+  const std::string text =
+      "The castle stands above the river. Its oldest tower was built by the bishop in "
+      "winter. Nobody knows who paid for the great bell. On quiet evenings you can hear "
+      "it from the bridge.";
   SpeechProcess process;
-  Narrated narrated = narrate(
-      process, {.text = text, .lang = "en-us", .words_per_minute = 125, .pitch = 85}, {.pause = 0.15f, .hiss = 0.001f});
+  Narrated narrated =
+      narrate(process, {.text = text, .lang = "en-us", .words_per_minute = 125, .pitch = 85},
+              {.pause = 0.15f, .hiss = 0.001f});
   Speech spoken = speak({.text = text});
   double pace = measure_pace(spoken, narrated.recording);
   EXPECT_GT(pace, 1.05);
@@ -151,25 +154,42 @@ TEST(SpeechMarks, ARecordingByAnotherVoiceIsAligned) {
 // Speakers who repeat the beginnings of words and whole words, drag sounds out, fall silent within
 // words, say what is not in the text and breathe, on a tape that clicks, in rooms, by telephone.
 TEST(SpeechMarks, StutteringNarratorsAreAligned) {
-  const Manner stutter{.pause = 0.08f, .repeat = 0.08f, .again = 0.03f, .prolong = 0.08f, .block = 0.04f,
-                       .filler = 0.03f, .breath = 0.15f, .clicks = 0.5f, .hiss = 0.002f};
+  const Manner stutter{.pause = 0.08f,
+                       .repeat = 0.08f,
+                       .again = 0.03f,
+                       .prolong = 0.08f,
+                       .block = 0.04f,
+                       .filler = 0.03f,
+                       .breath = 0.15f,
+                       .clicks = 0.5f,
+                       .hiss = 0.002f};
   struct Case {
     std::string lang, voice, variant, text;
     double room = 0;
     int rate = 22050;
   };
   const std::vector<Case> cases = {
-      {"en", "en-us", "klatt2", "The castle stands above the river, where merchants once paid their toll in "
-       "silver. Its oldest tower was built by the bishop in the winter of a hungry year. Nobody knows who paid "
-       "for the great bell, but on quiet evenings you can hear it from the bridge.", 0.35},
-      {"de", "de", "m7", "Die Burg steht hoch über dem Fluss, wo die Händler einst ihren Zoll bezahlten. Der "
-       "älteste Turm wurde vom Bischof in einem harten Winter erbaut. Niemand weiß, wer die große Glocke "
+      {"en", "en-us", "klatt2",
+       "The castle stands above the river, where merchants once paid their toll in "
+       "silver. Its oldest tower was built by the bishop in the winter of a hungry year. Nobody "
+       "knows who paid "
+       "for the great bell, but on quiet evenings you can hear it from the bridge.",
+       0.35},
+      {"de", "de", "m7",
+       "Die Burg steht hoch über dem Fluss, wo die Händler einst ihren Zoll bezahlten. Der "
+       "älteste Turm wurde vom Bischof in einem harten Winter erbaut. Niemand weiß, wer die große "
+       "Glocke "
        "gestiftet hat, aber an stillen Abenden hört man sie von der Brücke."},
-      {"sk", "sk", "croak", "Hrad stojí vysoko nad riekou, kde kupci kedysi platili mýto. Najstaršiu vežu dal "
-       "postaviť biskup počas tuhej zimy. Nikto nevie, kto zaplatil veľký zvon.", 0, 8000},
-      {"fr", "fr", "klatt2", "Le château se dresse au-dessus de la rivière, où les marchands payaient autrefois "
-       "leur péage. La plus vieille tour fut bâtie par l'évêque pendant un hiver très dur.", 0.35},
-      {"es", "es", "m7", "El castillo está sobre el río, donde los mercaderes pagaban su peaje. La torre más "
+      {"sk", "sk", "croak",
+       "Hrad stojí vysoko nad riekou, kde kupci kedysi platili mýto. Najstaršiu vežu dal "
+       "postaviť biskup počas tuhej zimy. Nikto nevie, kto zaplatil veľký zvon.",
+       0, 8000},
+      {"fr", "fr", "klatt2",
+       "Le château se dresse au-dessus de la rivière, où les marchands payaient autrefois "
+       "leur péage. La plus vieille tour fut bâtie par l'évêque pendant un hiver très dur.",
+       0.35},
+      {"es", "es", "m7",
+       "El castillo está sobre el río, donde los mercaderes pagaban su peaje. La torre más "
        "antigua fue construida por el obispo en un invierno muy duro."}};
   SpeechProcess process;
   std::vector<double> errors;
@@ -179,9 +199,12 @@ TEST(SpeechMarks, StutteringNarratorsAreAligned) {
       manner.room = narrator.room;
       manner.rate = narrator.rate;
       manner.seed = seed;
-      Narrated narrated = narrate(
-          process, {.text = narrator.text, .lang = narrator.voice, .words_per_minute = 150, .variant = narrator.variant},
-          manner);
+      Narrated narrated = narrate(process,
+                                  {.text = narrator.text,
+                                   .lang = narrator.voice,
+                                   .words_per_minute = 150,
+                                   .variant = narrator.variant},
+                                  manner);
       Speech speech = align(process, narrator.text, narrator.lang, narrated.recording);
       ASSERT_EQ(speech.words.size(), narrated.words.size()) << narrator.lang;
       auto own = errors_of(speech, narrated);
@@ -196,8 +219,9 @@ TEST(SpeechMarks, StutteringNarratorsAreAligned) {
 
 // Where a narrator who says beginnings of words again is heard, his mouth does something.
 TEST(SpeechMarks, LipsStutterWithTheirNarrator) {
-  const std::string text = "The castle stands above the river, where merchants once paid their toll in silver. "
-                           "Nobody knows who paid for the great bell, but children hear it from the bridge.";
+  const std::string text =
+      "The castle stands above the river, where merchants once paid their toll in silver. "
+      "Nobody knows who paid for the great bell, but children hear it from the bridge.";
   SpeechProcess process;
   Narrated narrated = narrate(process, {.text = text, .lang = "en-us", .variant = "m7"},
                               {.repeat = 0.3f, .hiss = 0.0005f, .seed = 4});
@@ -207,7 +231,8 @@ TEST(SpeechMarks, LipsStutterWithTheirNarrator) {
   for (size_t i = 0; i + window < speech.pcm.size(); i += window) {
     double sum = 0, middle = (double(i) + 0.5 * double(window)) / speech.rate;
     for (size_t k = i; k < i + window; k++) sum += std::pow(double(speech.pcm[k]) / 32768, 2);
-    while (phoneme + 1 < speech.phonemes.size() && speech.phonemes[phoneme].end <= middle) phoneme++;
+    while (phoneme + 1 < speech.phonemes.size() && speech.phonemes[phoneme].end <= middle)
+      phoneme++;
     const SpeechPhoneme& now = speech.phonemes[phoneme];
     repeated += !is_pause(now.mnemonic) && now.word < 0;
     if (sum / double(window) < 1e-4) continue;
@@ -224,22 +249,25 @@ TEST(SpeechMarks, LipsStutterWithTheirNarrator) {
 
 // The lips of a p are shut while nothing is heard, before it bursts.
 TEST(SpeechMarks, ClosuresBelongToTheirStops) {
-  for (const SpeechText& text : {SpeechText{"en", "A happy copper pepper, a pocket of paper and a cap too."},
-                                 SpeechText{"sk", "Opica kope do papiera a pakuje topánky."},
-                                 SpeechText{"es", "La capa del poeta tapa la copa."}}) {
+  for (const SpeechText& text :
+       {SpeechText{"en", "A happy copper pepper, a pocket of paper and a cap too."},
+        SpeechText{"sk", "Opica kope do papiera a pakuje topánky."},
+        SpeechText{"es", "La capa del poeta tapa la copa."}}) {
     Speech speech = speak({.text = text.text, .lang = text.lang});
     double peak = 0;
     for (int16_t x : speech.pcm) peak = std::max(peak, std::abs(double(x)));
     int stops = 0, silent = 0, before = 0;
     auto quiet = [&](double begin, double end) {
       double most = 0;
-      for (size_t i = size_t(begin * speech.rate); i < size_t(end * speech.rate) && i < speech.pcm.size(); i++)
+      for (size_t i = size_t(begin * speech.rate);
+           i < size_t(end * speech.rate) && i < speech.pcm.size(); i++)
         most = std::max(most, std::abs(double(speech.pcm[i])));
       return most < 0.02 * peak;
     };
     for (size_t i = 1; i < speech.phonemes.size(); i++) {
       const SpeechPhoneme &stop = speech.phonemes[i], &last = speech.phonemes[i - 1];
-      bool voiceless = stop.ipa.starts_with("p") || stop.ipa.starts_with("t") || stop.ipa.starts_with("k");
+      bool voiceless =
+          stop.ipa.starts_with("p") || stop.ipa.starts_with("t") || stop.ipa.starts_with("k");
       EXPECT_GE(stop.begin, last.begin);
       EXPECT_EQ(stop.begin, last.end);
       if (!voiceless || is_pause(last.mnemonic) || stop.end - stop.begin < 0.03) continue;

@@ -142,7 +142,8 @@ TEST(SpeechProcess, KilledWhileItSpeaksItIsStartedAgain) {
   ASSERT_TRUE(speak(process, "One."));
   int before = process.process_id();
   std::string text;
-  while (text.size() < 9000) text += "The castle stands above the river, and nobody knows for whom. ";
+  while (text.size() < 9000)
+    text += "The castle stands above the river, and nobody knows for whom. ";
   std::thread killer([&] {
     usleep(20000);
     kill(before, SIGKILL);

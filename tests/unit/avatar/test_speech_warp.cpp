@@ -54,7 +54,8 @@ Problem make_problem(uint64_t seed, size_t templates) {
   }
   p.task.frames = p.frames.size();
   p.task.templates = templates;
-  for (size_t j = 0; j <= templates; j++) p.task.gap_before.push_back(j % 20 == 0 ? WarpGap::anything : WarpGap::none);
+  for (size_t j = 0; j <= templates; j++)
+    p.task.gap_before.push_back(j % 20 == 0 ? WarpGap::anything : WarpGap::none);
   for (float loud : p.loud) p.task.gap_cost.push_back(loud > 0 ? 1.0f : 0.1f);
   p.task.enter_gap = 0.2f;
   p.task.stay = p.task.skip = 0.01f;
@@ -150,8 +151,8 @@ TEST(SpeechWarp, CostIsTheSumAlongTheWay) {
   EXPECT_NEAR(result.cost, sum, 1e-3 * sum);
 }
 
-// Words of 20 templates, each made of parts that end after 8, 14 and 20 of them. Before a word, parts
-// of it are said once to three times with or without silence; within words voices fail.
+// Words of 20 templates, each made of parts that end after 8, 14 and 20 of them. Before a word,
+// parts of it are said once to three times with or without silence; within words voices fail.
 Problem make_stutter(uint64_t seed, size_t templates) {
   Rng rng{seed};
   Curve curve(rng, templates / 5 + 2);

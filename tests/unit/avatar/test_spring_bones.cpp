@@ -73,7 +73,8 @@ TEST(SpringBones, StepResponseIsItsFormulaAtAnyTickRate) {
         std::complex<double> formula =
             std::exp(-a * t) * (std::cosh(root * t) + a * std::sinh(root * t) / root);
         EXPECT_NEAR(double(lag(pose)), -double(lean) * formula.real(), 2e-4)
-            << "stiffness " << stiffness << " drag " << drag << " rate " << rate << " tick " << tick;
+            << "stiffness " << stiffness << " drag " << drag << " rate " << rate << " tick "
+            << tick;
       }
     }
 }
@@ -123,9 +124,11 @@ TEST(SpringBones, ABraidOfAnyNumberOfBonesComesToRestWhereItIsDrawn) {
 TEST(SpringBones, MeetsColliders) {
   std::vector<SpringCollider> cases(4);
   cases[0].place = cases[0].tail = vec3(0, -0.10f, -0.16f), cases[0].radius = 0.05f;
-  cases[1].place = vec3(-0.3f, -0.12f, -0.17f), cases[1].tail = vec3(0.3f, -0.12f, -0.17f), cases[1].radius = 0.03f;
+  cases[1].place = vec3(-0.3f, -0.12f, -0.17f), cases[1].tail = vec3(0.3f, -0.12f, -0.17f),
+  cases[1].radius = 0.03f;
   cases[2].place = cases[2].tail = vec3(0, 0, -0.15f), cases[2].normal = vec3(0, 0, 1);
-  cases[3].place = cases[3].tail = vec3(0, -0.03f, -0.1f), cases[3].radius = 0.135f, cases[3].inside = true;
+  cases[3].place = cases[3].tail = vec3(0, -0.03f, -0.1f), cases[3].radius = 0.135f,
+  cases[3].inside = true;
   for (size_t i = 0; i < cases.size(); i++) {
     SpringBone like = make_bone(0.4f, 0.2f);
     like.gravity = vec3(0, 0, -0.5f);  // a strong wind into it
@@ -156,7 +159,8 @@ TEST(SpringBones, AnyStepAndAnyNumbersAreSafe) {
   SpringBone like = make_bone(1, 0.4f);
   like.gravity = vec3(0, -0.2f, 0);
   Character character = make_braid(5, like);
-  character.springs[1].stiffness = 0, character.springs[1].gravity = vec3(0), character.springs[1].drag = 1;
+  character.springs[1].stiffness = 0, character.springs[1].gravity = vec3(0),
+  character.springs[1].drag = 1;
   character.springs[2].drag = 0;
   SpringBonesState state;
   Rng rng{7};
@@ -164,7 +168,10 @@ TEST(SpringBones, AnyStepAndAnyNumbersAreSafe) {
     Pose pose = posed(character, 3 * rng.uniform());
     pose.translation = vec3(rng.uniform(), 0, 0) * (tick % 100 == 5 ? 1e6f : 1.0f);
     if (tick % 97 == 3) pose.translation.y = NAN;
-    float dt = tick % 50 == 0 ? 1e6f : tick % 51 == 0 ? -1.0f : tick % 53 == 0 ? NAN : 0.05f * rng.uniform();
+    float dt = tick % 50 == 0   ? 1e6f
+               : tick % 51 == 0 ? -1.0f
+               : tick % 53 == 0 ? NAN
+                                : 0.05f * rng.uniform();
     tick_spring_bones(state, character, dt, pose);
     for (size_t j = 1; j < pose.rotations.size(); j++)
       ASSERT_NEAR(glm::length(pose.rotations[j]), 1, 1e-4f) << tick;
@@ -175,7 +182,8 @@ TEST(SpringBones, AnyStepAndAnyNumbersAreSafe) {
   for (int i = 0; i < 5; i++) {
     Pose again = posed(character, 0.2f);
     tick_spring_bones(state, character, 0, again);
-    for (size_t j = 1; j < 6; j++) EXPECT_GT(std::abs(dot(again.rotations[j], first.rotations[j])), 0.99999f);
+    for (size_t j = 1; j < 6; j++)
+      EXPECT_GT(std::abs(dot(again.rotations[j], first.rotations[j])), 0.99999f);
   }
 }
 
@@ -222,13 +230,20 @@ TEST(SpringBones, OfVersion1AreRead) {
       {"specVersion", "1.0"},
       {"colliders",
        {{{"node", head}, {"shape", {{"sphere", {{"offset", {0, 0.1, 0}}, {"radius", 0.09}}}}}},
-        {{"node", head}, {"shape", {{"capsule", {{"offset", {0, 0, 0}}, {"tail", {0, 0.1, 0}}, {"radius", 0.05}}}}}}}},
+        {{"node", head},
+         {"shape",
+          {{"capsule", {{"offset", {0, 0, 0}}, {"tail", {0, 0.1, 0}}, {"radius", 0.05}}}}}}}},
       {"colliderGroups", {{{"colliders", {0, 1}}}}},
       {"springs",
        {{{"colliderGroups", {0}},
          {"center", head},
          {"joints",
-          {{{"node", hair}, {"stiffness", 0.7}, {"dragForce", 0.3}, {"hitRadius", 0.02}, {"gravityPower", 0.5}, {"gravityDir", {0, -1, 0}}},
+          {{{"node", hair},
+            {"stiffness", 0.7},
+            {"dragForce", 0.3},
+            {"hitRadius", 0.02},
+            {"gravityPower", 0.5},
+            {"gravityDir", {0, -1, 0}}},
            {{"node", hair + 1}}}}}}}};
   Character character = figure_of(asset);
   ASSERT_EQ(character.springs.size(), 1u) << "the last joint is the end of the one before";
@@ -261,17 +276,27 @@ TEST(SpringBones, OfVersion0AreReadAndFaceTheOtherWay) {
   size_t hair = asset.root["nodes"].size() - 2, head = size_t(test::person_bone("head"));
   asset.root["extensions"]["VRM"]["secondaryAnimation"] = {
       {"boneGroups",
-       {{{"stiffiness", 0.6}, {"gravityPower", 0.1}, {"gravityDir", {{"x", 0}, {"y", 0}, {"z", -1}}}, {"dragForce", 0.2}, {"hitRadius", 0.03},
-         {"center", -1}, {"bones", {hair, head}}, {"colliderGroups", {0}}}}},
-      {"colliderGroups", {{{"node", head}, {"colliders", {{{"offset", {{"x", 0}, {"y", 0}, {"z", 0.05}}}, {"radius", 0.08}}}}}}}};
+       {{{"stiffiness", 0.6},
+         {"gravityPower", 0.1},
+         {"gravityDir", {{"x", 0}, {"y", 0}, {"z", -1}}},
+         {"dragForce", 0.2},
+         {"hitRadius", 0.03},
+         {"center", -1},
+         {"bones", {hair, head}},
+         {"colliderGroups", {0}}}}},
+      {"colliderGroups",
+       {{{"node", head},
+         {"colliders", {{{"offset", {{"x", 0}, {"y", 0}, {"z", 0.05}}}, {"radius", 0.08}}}}}}}};
   Character character = figure_of(asset);
   ASSERT_EQ(character.springs.size(), 2u) << "all that hangs below, but no bone of the body";
   EXPECT_EQ(character.joints[size_t(character.springs[1].joint)].name, "Hair2");
   EXPECT_NEAR(glm::length(character.springs[1].tail), 0.07f, 1e-5f);
   EXPECT_FLOAT_EQ(character.springs[0].stiffness, 0.6f);
-  EXPECT_LT(glm::length(character.springs[0].gravity - vec3(0, 0, 0.1f)), 1e-5f) << "turned with the figure";
+  EXPECT_LT(glm::length(character.springs[0].gravity - vec3(0, 0, 0.1f)), 1e-5f)
+      << "turned with the figure";
   ASSERT_EQ(character.spring_colliders.size(), 1u);
-  // The offset's z is left-handed in the file: -0.05 along the world's axes, and the head looks there.
+  // The offset's z is left-handed in the file: -0.05 along the world's axes, and the head looks
+  // there.
   EXPECT_LT(glm::length(character.spring_colliders[0].place - vec3(0, 1.52f, 0.05f)), 1e-4f);
   bool said = false;
   for (const std::string& warning : character.warnings)

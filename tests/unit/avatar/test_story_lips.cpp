@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lips against sound, over the stories that the castle tells: when the mouth opens after a silence and
-// when it rests again, against the energy of what is heard.
+// Lips against sound, over the stories that the castle tells: when the mouth opens after a silence
+// and when it rests again, against the energy of what is heard.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,8 @@ constexpr double window = 0.005;
 constexpr int least_silence = 20;  // windows
 
 StorySpeech tell(const std::string& story, const std::string& lang) {
-  std::string path = std::string(WELLSPRING_SOURCE) + "/content/castle/stories/" + story + "." + lang + ".story";
+  std::string path =
+      std::string(WELLSPRING_SOURCE) + "/content/castle/stories/" + story + "." + lang + ".story";
   std::ifstream in(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(in)), {});
   StoryScript script = read_story(text, path);
@@ -27,7 +28,8 @@ StorySpeech tell(const std::string& story, const std::string& lang) {
   std::vector<std::shared_ptr<const Speech>> spoken;
   for (const StoryLine& line : script.lines) {
     std::string error;
-    SpeechRequest request{.text = line.text, .lang = lang, .words_per_minute = 145, .pitch = 52, .variant = "f3"};
+    SpeechRequest request{
+        .text = line.text, .lang = lang, .words_per_minute = 145, .pitch = 52, .variant = "f3"};
     request.styles = line.styles;
     spoken.push_back(process.speak(request, error));
     EXPECT_TRUE(spoken.back()) << error;
@@ -82,7 +84,8 @@ Edges mouth_edges(const Speech& speech) {
   return edges;
 }
 
-void add_errors(const std::vector<double>& heard, const std::vector<double>& seen, std::vector<double>& errors) {
+void add_errors(const std::vector<double>& heard, const std::vector<double>& seen,
+                std::vector<double>& errors) {
   for (double at : heard) {
     double nearest = 1;
     for (double other : seen)

@@ -22,7 +22,9 @@ std::vector<std::string> texts(const StoryScript& script) {
 using Texts = std::vector<std::string>;
 
 // The text that a mark stands before.
-std::string after(const StoryLine& line, const StoryMark& mark) { return line.text.substr(mark.at); }
+std::string after(const StoryLine& line, const StoryMark& mark) {
+  return line.text.substr(mark.at);
+}
 
 const StoryMark* find(const StoryLine& line, StoryMarkKind kind) {
   for (const StoryMark& mark : line.marks)
@@ -32,7 +34,8 @@ const StoryMark* find(const StoryLine& line, StoryMarkKind kind) {
 
 TEST(StoryScript, PlainTextIsSentencesAndParagraphs) {
   StoryScript script = read_plain_story(
-      "Once upon a time,\nthere was a well. It had <no> water & no rope!\n\n“Why?” asked Matej.", "a");
+      "Once upon a time,\nthere was a well. It had <no> water & no rope!\n\n“Why?” asked Matej.",
+      "a");
   EXPECT_EQ(texts(script), (Texts{"Once upon a time, there was a well.",
                                   "It had <no> water & no rope!", "“Why?” asked Matej."}));
   EXPECT_EQ(script.lines[0].pause, 0);
@@ -44,12 +47,14 @@ TEST(StoryScript, PlainTextIsSentencesAndParagraphs) {
 TEST(StoryScript, SentencesEndInEveryLanguageOfTheCastle) {
   auto split = [](std::string_view text) {
     std::vector<std::string> list;
-    for (TextSpan span : find_sentences(text)) list.emplace_back(text.substr(span.begin, span.end - span.begin));
+    for (TextSpan span : find_sentences(text))
+      list.emplace_back(text.substr(span.begin, span.end - span.begin));
     return list;
   };
   EXPECT_EQ(split("Im 13. Jahrhundert war z. B. hier Wald. Danach nicht."),
             (Texts{"Im 13. Jahrhundert war z. B. hier Wald.", "Danach nicht."}));
-  EXPECT_EQ(split("That was in 1786. Then nothing."), (Texts{"That was in 1786.", "Then nothing."}));
+  EXPECT_EQ(split("That was in 1786. Then nothing."),
+            (Texts{"That was in 1786.", "Then nothing."}));
   EXPECT_EQ(split("„Kto je tam?“ spýtal sa. Čas plynul… Šli ďalej."),
             (Texts{"„Kto je tam?“ spýtal sa.", "Čas plynul…", "Šli ďalej."}));
   EXPECT_EQ(split("Počkal… čakal ďalej."), (Texts{"Počkal… čakal ďalej."}));
@@ -60,9 +65,11 @@ TEST(StoryScript, SentencesEndInEveryLanguageOfTheCastle) {
 
 TEST(StoryScript, MarksStandBeforeTheirWords) {
   StoryScript script = read_story(
-      "<story><p><emotion name=\"sadness\" weight=\"0.6\"/>He dug for <emphasis>three</emphasis> summers. "
+      "<story><p><emotion name=\"sadness\" weight=\"0.6\"/>He dug for <emphasis>three</emphasis> "
+      "summers. "
       "<look at=\"well\"/>And <gesture name='point_far'/>there, <break time=\"400ms\"/>nothing.</p>"
-      "<p><point at=\"crown\"/>Look!<view name=\"crown\"/></p></story>", "a");
+      "<p><point at=\"crown\"/>Look!<view name=\"crown\"/></p></story>",
+      "a");
   ASSERT_EQ(texts(script), (Texts{"He dug for three summers.", "And there, nothing.", "Look!"}));
   const StoryLine &first = script.lines[0], &second = script.lines[1], &third = script.lines[2];
   const StoryMark* emotion = find(first, StoryMarkKind::emotion);
@@ -73,7 +80,8 @@ TEST(StoryScript, MarksStandBeforeTheirWords) {
   ASSERT_TRUE(find(first, StoryMarkKind::beat));
   EXPECT_EQ(after(first, *find(first, StoryMarkKind::beat)), "three summers.");
   ASSERT_EQ(first.styles.size(), 1u);
-  EXPECT_EQ(first.text.substr(first.styles[0].begin, first.styles[0].end - first.styles[0].begin), "three");
+  EXPECT_EQ(first.text.substr(first.styles[0].begin, first.styles[0].end - first.styles[0].begin),
+            "three");
   EXPECT_EQ(first.styles[0].emphasis, 1);
   ASSERT_TRUE(find(second, StoryMarkKind::look) && find(second, StoryMarkKind::gesture));
   EXPECT_EQ(find(second, StoryMarkKind::look)->at, 0u);
@@ -88,7 +96,8 @@ TEST(StoryScript, MarksStandBeforeTheirWords) {
 }
 
 TEST(StoryScript, AnEmotionAroundWordsEndsWithThem) {
-  StoryScript script = read_story("<emotion name='joy'/>Ant. <emotion name='fear'>Bee. Cow.</emotion> Dog.", "a");
+  StoryScript script =
+      read_story("<emotion name='joy'/>Ant. <emotion name='fear'>Bee. Cow.</emotion> Dog.", "a");
   ASSERT_EQ(script.lines.size(), 4u);
   EXPECT_EQ(script.lines[0].marks[0].name, "joy");
   EXPECT_EQ(script.lines[1].marks[0].name, "fear");
@@ -108,7 +117,8 @@ TEST(StoryScript, SsmlIsUnderstood) {
   <p><s>The year was <say-as interpret-as="date">1786</say-as>.</s>
      <s><prosody rate="slow" pitch="+2st" volume="soft">Nobody</prosody> &#8211; knew. Not even he.</s></p>
   <sub alias="Saint">St</sub> Adela<mark name="here"/> said: <voice name="x">no</voice> <voice name="y">and no</voice>.
-</speak>)", "a.ssml");
+</speak>)",
+                                  "a.ssml");
   EXPECT_EQ(texts(script), (Texts{"The year was 1786.", "Nobody – knew. Not even he.",
                                   "St Adela said: no and no."}));
   ASSERT_EQ(script.notes.size(), 1u);  // once
@@ -121,11 +131,13 @@ TEST(StoryScript, SsmlIsUnderstood) {
   EXPECT_EQ(slow.end, 6u);
   EXPECT_EQ(script.lines[2].styles.at(0).alias, "Saint");
   ASSERT_TRUE(find(script.lines[2], StoryMarkKind::mark));
-  EXPECT_EQ(after(script.lines[2], *find(script.lines[2], StoryMarkKind::mark)), " said: no and no.");
+  EXPECT_EQ(after(script.lines[2], *find(script.lines[2], StoryMarkKind::mark)),
+            " said: no and no.");
 }
 
 TEST(StoryScript, APauseBetweenSentencesFollowsTheFirst) {
-  StoryScript script = read_story("A dog. <break time='1.5s'/> A cat.<break strength='weak'/>", "a");
+  StoryScript script =
+      read_story("A dog. <break time='1.5s'/> A cat.<break strength='weak'/>", "a");
   ASSERT_EQ(script.lines.size(), 2u);
   EXPECT_FLOAT_EQ(script.lines[0].pause, 1.5f);
   EXPECT_TRUE(script.lines[0].styles.empty() && script.lines[1].styles.empty());
@@ -133,7 +145,8 @@ TEST(StoryScript, APauseBetweenSentencesFollowsTheFirst) {
 }
 
 TEST(StoryScript, StylesGoOnOverSentencesAndParagraphs) {
-  StoryScript script = read_story("<prosody rate='80%'>One two. Three.\n\nFour.</prosody> Five.", "a");
+  StoryScript script =
+      read_story("<prosody rate='80%'>One two. Three.\n\nFour.</prosody> Five.", "a");
   ASSERT_EQ(script.lines.size(), 4u);
   for (size_t i = 0; i < 3; i++) {
     ASSERT_EQ(script.lines[i].styles.size(), 1u) << i;
@@ -189,8 +202,10 @@ TEST(StoryScript, MistakesHaveTheirPlace) {
 // Whatever is done to a text: it is read or refused, and what is read makes sense.
 TEST(StoryScript, DamagedTextsAreReadOrRefused) {
   const std::string good =
-      "<speak><p><emotion name=\"joy\">A <sub alias=\"b\">c</sub>. D, <break time=\"1s\"/>e.</emotion></p>"
-      "<s><prosody rate=\"90%\"><emphasis>F</emphasis> g</prosody></s><look at=\"x\"/>&amp; h.</speak>";
+      "<speak><p><emotion name=\"joy\">A <sub alias=\"b\">c</sub>. D, <break "
+      "time=\"1s\"/>e.</emotion></p>"
+      "<s><prosody rate=\"90%\"><emphasis>F</emphasis> g</prosody></s><look at=\"x\"/>&amp; "
+      "h.</speak>";
   Rng rng{7};
   int read = 0;
   for (int round = 0; round < 4000; round++) {
@@ -229,7 +244,8 @@ TEST(SpeechStyle, SsmlNamesTheByteOfEveryCharacter) {
   rest.pause = 0.25f;
   Ssml ssml = make_ssml(text, {slow, said, rest});
   EXPECT_EQ(ssml.text,
-            "<speak>Ä <prosody rate=\"80%\">&lt;b&gt;</prosody> twelve <break time=\"250ms\"/>go</speak>");
+            "<speak>Ä <prosody rate=\"80%\">&lt;b&gt;</prosody> twelve <break "
+            "time=\"250ms\"/>go</speak>");
   // Characters and sources go together.
   size_t character = 0;
   for (size_t i = 0; i < ssml.text.size(); i++) {
@@ -254,13 +270,15 @@ TEST(SpeechStyle, NestedFactorsMultiplyAndNonsenseIsCut) {
 TEST(StoryValue, AsSsmlWritesThem) {
   EXPECT_FLOAT_EQ(read_seconds("250ms").value(), 0.25f);
   EXPECT_FLOAT_EQ(read_seconds("+1.5s").value(), 1.5f);
-  for (const char* bad : {"", "1", "-1s", "11s", "s", "nan", "1 s", "infs"}) EXPECT_FALSE(read_seconds(bad)) << bad;
+  for (const char* bad : {"", "1", "-1s", "11s", "s", "nan", "1 s", "infs"})
+    EXPECT_FALSE(read_seconds(bad)) << bad;
   EXPECT_FLOAT_EQ(read_rate("110%").value(), 1.1f);
   EXPECT_FLOAT_EQ(read_rate("+10%").value(), 1.1f);
   EXPECT_FLOAT_EQ(read_rate("0.9").value(), 0.9f);
   EXPECT_FLOAT_EQ(read_pitch("-12st").value(), 0.5f);
   EXPECT_NEAR(read_volume("+6dB").value(), 1.995f, 1e-3);
-  for (const char* bad : {"", "x", "-200%", "0", "1e99", "2 %"}) EXPECT_FALSE(read_rate(bad)) << bad;
+  for (const char* bad : {"", "x", "-200%", "0", "1e99", "2 %"})
+    EXPECT_FALSE(read_rate(bad)) << bad;
   EXPECT_FLOAT_EQ(read_weight("60%").value(), 0.6f);
   EXPECT_FALSE(read_weight("1.1"));
 }

@@ -10,7 +10,8 @@ namespace {
 
 TEST(Thumbs, CloseAcrossThePalm) {
   for (const char* file : {"storyteller.x3d", "chronicler.x3d"}) {
-    Character figure = load_character(std::string(WELLSPRING_SOURCE) + "/content/castle/figures/" + file);
+    Character figure =
+        load_character(std::string(WELLSPRING_SOURCE) + "/content/castle/figures/" + file);
     Rig rig = make_rig(figure);
     for (int side = 0; side < 2; side++) {
       const ArmRig& bones = rig.arm[size_t(side)];

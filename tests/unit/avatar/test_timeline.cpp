@@ -27,8 +27,11 @@ double begin_of(const Speech& speech, const std::string& word) {
 }
 
 TEST(Timeline, MarksComeWithTheirWords) {
-  StoryLine line = read_story_line("<emotion name='joy'/>The old well keeps <gesture name='invite'/>every "
-                                   "<emphasis>single</emphasis> voice.<look at='visitor'/>", "a").lines[0];
+  StoryLine line = read_story_line(
+                       "<emotion name='joy'/>The old well keeps <gesture name='invite'/>every "
+                       "<emphasis>single</emphasis> voice.<look at='visitor'/>",
+                       "a")
+                       .lines[0];
   Speech speech = speak({.text = line.text, .styles = line.styles});
   Timeline timeline = make_timeline(line, &speech, 0);
   ASSERT_EQ(timeline.actions.size(), 4u);
@@ -39,20 +42,25 @@ TEST(Timeline, MarksComeWithTheirWords) {
   EXPECT_EQ(gesture.event.name, "invite");
   EXPECT_NEAR(gesture.time + double(gesture.event.lead), begin_of(speech, "every"), 1e-6);
   float stroke = default_gestures().clips.at(size_t(find_gesture("invite"))).stroke;
-  EXPECT_NEAR(gesture.event.lead, std::min(double(stroke), begin_of(speech, "every") - earliest_action), 1e-6);
+  EXPECT_NEAR(gesture.event.lead,
+              std::min(double(stroke), begin_of(speech, "every") - earliest_action), 1e-6);
   EXPECT_EQ(beat.event.kind, StoryMarkKind::beat);
   EXPECT_NEAR(beat.time, begin_of(speech, "single"), 1e-9);
   EXPECT_NEAR(look.time + double(look.event.lead), speech.words.back().end, 1e-6);
 }
 
 TEST(Timeline, EventsDoNotDependOnTheStep) {
-  StoryLine line = read_story_line("<gesture name='a'/>One <gesture name='b'/>two <gesture name='c'/>three.", "a").lines[0];
+  StoryLine line =
+      read_story_line("<gesture name='a'/>One <gesture name='b'/>two <gesture name='c'/>three.",
+                      "a")
+          .lines[0];
   Timeline timeline = make_timeline(line, nullptr, 3);
   auto run = [&](double step) {
     std::vector<std::string> names;
     size_t cursor = 0;
     for (double now = -0.3; now < 4; now += step)
-      for (const ActionEvent* event : advance_timeline(timeline, cursor, now)) names.push_back(event->name);
+      for (const ActionEvent* event : advance_timeline(timeline, cursor, now))
+        names.push_back(event->name);
     return names;
   };
   for (double step : {0.001, 0.01, 0.37, 2.0})
@@ -63,8 +71,10 @@ TEST(Timeline, EventsDoNotDependOnTheStep) {
 }
 
 TEST(Timeline, WhatHoldsBeforeALineIsWhatWasToldBefore) {
-  StoryScript script = read_story("<emotion name='joy' weight='0.4'/><look at='well'/>An ant. <point at='crown'/>A bee. "
-                                  "<emotion name='neutral'/>A cow.", "a");
+  StoryScript script = read_story(
+      "<emotion name='joy' weight='0.4'/><look at='well'/>An ant. <point at='crown'/>A bee. "
+      "<emotion name='neutral'/>A cow.",
+      "a");
   EXPECT_EQ(hold_before(script.lines, 0).emotion, "");
   EXPECT_EQ(hold_before(script.lines, 1).emotion, "joy");
   EXPECT_FLOAT_EQ(hold_before(script.lines, 1).emotion_weight, 0.4f);
@@ -83,8 +93,11 @@ TEST(SpeechStyleSound, PausesSlownessAndOtherWordsAreHeard) {
   pause.pause = 0.8f;
   Speech styled = speak({.text = text, .styles = {pause, alias, slow}});
   ASSERT_EQ(styled.words.size(), 8u);
-  for (size_t i = 0; i < 8; i++) EXPECT_EQ(styled.words[i].text_begin, plain.words[i].text_begin) << i;
-  auto length = [](const Speech& speech, size_t word) { return speech.words[word].end - speech.words[word].begin; };
+  for (size_t i = 0; i < 8; i++)
+    EXPECT_EQ(styled.words[i].text_begin, plain.words[i].text_begin) << i;
+  auto length = [](const Speech& speech, size_t word) {
+    return speech.words[word].end - speech.words[word].begin;
+  };
   EXPECT_GT(length(styled, 5), 1.4 * length(plain, 5));              // "silent"
   EXPECT_LT(length(styled, 1), 0.7 * length(plain, 1));              // "that year" for "1786"
   EXPECT_GT(styled.words[6].begin - styled.words[5].end, 0.6);       // the pause before "at"
@@ -92,7 +105,8 @@ TEST(SpeechStyleSound, PausesSlownessAndOtherWordsAreHeard) {
 }
 
 TEST(SpeechStyleSound, VariantsOfAVoiceDiffer) {
-  Speech plain = speak({.text = "The well."}), other = speak({.text = "The well.", .variant = "f3"});
+  Speech plain = speak({.text = "The well."}),
+         other = speak({.text = "The well.", .variant = "f3"});
   EXPECT_NE(plain.pcm, other.pcm);
   SpeechProcess process;
   std::string error;
@@ -115,10 +129,13 @@ TEST(Subtitles, ComeBackAsTheyWere) {
 }
 
 TEST(Subtitles, OthersFilesAreRead) {
-  auto cues = load_subtitles("\xef\xbb\xbfWEBVTT - title\r\nKind: captions\r\n\r\nNOTE a\r\nnote --> not a cue\r\n\r\n"
-                             "STYLE\r\n::cue { color: red }\r\n\r\n"
-                             "intro\r\n00:05.000 --> 00:06.500 align:start line:0\r\n<c.red>Late</c> &amp; <i>last</i>\r\n\r\n"
-                             "00:01.000\t-->\t00:02.000\r\n<v Old Anna>First</v>\r\nline <00:01.500>two", "a.vtt");
+  auto cues = load_subtitles(
+      "\xef\xbb\xbfWEBVTT - title\r\nKind: captions\r\n\r\nNOTE a\r\nnote --> not a cue\r\n\r\n"
+      "STYLE\r\n::cue { color: red }\r\n\r\n"
+      "intro\r\n00:05.000 --> 00:06.500 align:start line:0\r\n<c.red>Late</c> &amp; "
+      "<i>last</i>\r\n\r\n"
+      "00:01.000\t-->\t00:02.000\r\n<v Old Anna>First</v>\r\nline <00:01.500>two",
+      "a.vtt");
   ASSERT_EQ(cues.size(), 2u);
   EXPECT_EQ(cues[0].text, "First\nline two");
   EXPECT_EQ(cues[0].speaker, "Old Anna");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What VRM's expressions do besides moving vertices: materials they change, what they forbid, how eyes
-// turn; and cartoon materials as glTF's own.
+// What VRM's expressions do besides moving vertices: materials they change, what they forbid, how
+// eyes turn; and cartoon materials as glTF's own.
 #include <gtest/gtest.h>
 
 #include "avatar/body.h"
@@ -34,7 +34,9 @@ Asset dressed_person() {
         {{"baseColorFactor", {0.5, 0.4, 0.25, 0.5}},
          {"baseColorTexture",
           {{"index", 0},
-           {"extensions", {{"KHR_texture_transform", {{"scale", {2, 0.5}}, {"offset", {0.25, 0}}, {"rotation", 0.3}}}}}}}}},
+           {"extensions",
+            {{"KHR_texture_transform",
+              {{"scale", {2, 0.5}}, {"offset", {0.25, 0}}, {"rotation", 0.3}}}}}}}}},
        {"emissiveFactor", {0.1, 0, 0}},
        {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}}},
       {{"name", "ring"}}};
@@ -44,7 +46,9 @@ Asset dressed_person() {
   return asset;
 }
 
-json& presets(Asset& asset) { return asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"]; }
+json& presets(Asset& asset) {
+  return asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"];
+}
 
 Pose with(const Character& c, std::initializer_list<std::pair<const char*, float>> weights) {
   Pose pose = make_rest_pose(c);
@@ -81,7 +85,8 @@ TEST(VrmExpressions, Version1ChangesColoursAndWherePicturesLie) {
       {"textureTransformBinds", {{{"material", 0}, {"scale", {3, 0.5}}, {"offset", {0.75, 0.5}}}}}};
   Character c = load_asset(asset);
   EXPECT_TRUE(says(c, "rim, matcap and outline colours"));
-  EXPECT_NE(describe_text(c).find("2 displacers change materials: happy, sad"), std::string::npos) << describe_text(c);
+  EXPECT_NE(describe_text(c).find("2 displacers change materials: happy, sad"), std::string::npos)
+      << describe_text(c);
   LookChange none = change_of(c, make_rest_pose(c), 1);
   EXPECT_EQ(none.base_color, vec4(0));
   EXPECT_EQ(none.uv, mat3(0.0f));
@@ -93,7 +98,8 @@ TEST(VrmExpressions, Version1ChangesColoursAndWherePicturesLie) {
   // The matrix that KHR_texture_transform would make of the new numbers, less the old one.
   auto matrix = [](vec2 scale, vec2 offset) {
     float cosine = std::cos(0.3f), sine = std::sin(0.3f);
-    return mat3(cosine * scale.x, -sine * scale.x, 0, sine * scale.y, cosine * scale.y, 0, offset.x, offset.y, 1);
+    return mat3(cosine * scale.x, -sine * scale.x, 0, sine * scale.y, cosine * scale.y, 0, offset.x,
+                offset.y, 1);
   };
   mat3 uv = matrix({3, 0.5f}, {0.75f, 0.5f}) - matrix({2, 0.5f}, {0.25f, 0});
   for (int i = 0; i < 9; i++) EXPECT_NEAR(change.uv[i / 3][i % 3], uv[i / 3][i % 3], 1e-6f) << i;
@@ -107,12 +113,17 @@ TEST(VrmExpressions, Version0NamesMaterialsInUnitysTerms) {
   test::PersonOptions options;
   Asset asset = dressed_person();
   add_vrm_0(asset);
-  json values = {{{"materialName", "skin"}, {"propertyName", "_Color"}, {"targetValue", {0.5, 0, 1, 1}}},
-                 {{"materialName", "skin"}, {"propertyName", "_EmissionColor"}, {"targetValue", {2, 0, 0, 1}}},
-                 {{"materialName", "skin"}, {"propertyName", "_MainTex_ST"}, {"targetValue", {1, 0.25, 0.5, 0.25}}},
-                 {{"materialName", "ring"}, {"propertyName", "_MainTex_ST_S"}, {"targetValue", {1, 1, 0.5, 0}}},
-                 {{"materialName", "ghost"}, {"propertyName", "_Color"}, {"targetValue", {1, 1, 1, 1}}},
-                 {{"materialName", "skin"}, {"propertyName", "_ShadeColor"}, {"targetValue", {1, 1, 1, 1}}}};
+  json values = {
+      {{"materialName", "skin"}, {"propertyName", "_Color"}, {"targetValue", {0.5, 0, 1, 1}}},
+      {{"materialName", "skin"}, {"propertyName", "_EmissionColor"}, {"targetValue", {2, 0, 0, 1}}},
+      {{"materialName", "skin"},
+       {"propertyName", "_MainTex_ST"},
+       {"targetValue", {1, 0.25, 0.5, 0.25}}},
+      {{"materialName", "ring"},
+       {"propertyName", "_MainTex_ST_S"},
+       {"targetValue", {1, 1, 0.5, 0}}},
+      {{"materialName", "ghost"}, {"propertyName", "_Color"}, {"targetValue", {1, 1, 1, 1}}},
+      {{"materialName", "skin"}, {"propertyName", "_ShadeColor"}, {"targetValue", {1, 1, 1, 1}}}};
   asset.root["extensions"]["VRM"]["blendShapeMaster"]["blendShapeGroups"].push_back(
       {{"name", "Joy"}, {"presetName", "joy"}, {"isBinary", true}, {"materialValues", values}});
   auto& materials = asset.root["materials"];
@@ -136,11 +147,15 @@ TEST(VrmExpressions, Version0NamesMaterialsInUnitysTerms) {
   EXPECT_TRUE(c.expression_rules[0].binary);
 }
 
-// A file that blinks and speaks by pictures alone: controls made of its expressions change them, too.
+// A file that blinks and speaks by pictures alone: controls made of its expressions change them,
+// too.
 TEST(VrmExpressions, ControlsMadeOfExpressionsChangeMaterialsToo) {
   Asset asset = dressed_person();
   add_vrm_1(asset);
-  auto shift = [](double u) { return json{{"textureTransformBinds", {{{"material", 0}, {"scale", {2, 0.5}}, {"offset", {u, 0}}}}}}; };
+  auto shift = [](double u) {
+    return json{
+        {"textureTransformBinds", {{{"material", 0}, {"scale", {2, 0.5}}, {"offset", {u, 0}}}}}};
+  };
   presets(asset)["blink"] = shift(0.5);
   presets(asset)["aa"] = shift(0.75);
   presets(asset)["aa"]["isBinary"] = true;
@@ -154,7 +169,8 @@ TEST(VrmExpressions, ControlsMadeOfExpressionsChangeMaterialsToo) {
     follow_expression_rules(c, pose);
     return change_of(c, pose, 1).uv[2].x;
   };
-  EXPECT_NEAR(moved({{"blink_l", 1}, {"blink_r", 1}}), 0.25f, 1e-6f) << "both lids are the whole blink";
+  EXPECT_NEAR(moved({{"blink_l", 1}, {"blink_r", 1}}), 0.25f, 1e-6f)
+      << "both lids are the whole blink";
   EXPECT_NEAR(moved({{"viseme_ou", 0.5f}}), 0.5f, 1e-6f);
   EXPECT_EQ(moved({{"viseme_aa", 0.5f}}), 0) << "all or nothing";
   EXPECT_NEAR(moved({{"viseme_aa", 0.6f}}), 0.5f, 1e-6f);
@@ -165,7 +181,8 @@ TEST(VrmExpressions, ForbidBlinksGazeAndSpeechAsTheFormatSays) {
   Asset asset = dressed_person();
   add_vrm_1(asset);
   json mouth = presets(asset)["aa"];
-  for (const char* name : {"happy", "angry", "sad", "relaxed", "surprised", "blink", "blinkLeft", "lookUp", "oh"})
+  for (const char* name :
+       {"happy", "angry", "sad", "relaxed", "surprised", "blink", "blinkLeft", "lookUp", "oh"})
     presets(asset)[name] = mouth;
   presets(asset)["happy"]["overrideBlink"] = "blend";
   presets(asset)["angry"]["overrideBlink"] = "blend";
@@ -181,21 +198,30 @@ TEST(VrmExpressions, ForbidBlinksGazeAndSpeechAsTheFormatSays) {
     follow_expression_rules(c, pose);
     return pose;
   };
-  Pose pose = after({{"happy", 0.25f}, {"angry", 0.5f}, {"blink", 0.8f}, {"blinkLeft", 1}, {"blink_r", 1}, {"aa", 1}});
+  Pose pose = after({{"happy", 0.25f},
+                     {"angry", 0.5f},
+                     {"blink", 0.8f},
+                     {"blinkLeft", 1},
+                     {"blink_r", 1},
+                     {"aa", 1}});
   EXPECT_NEAR(weight_of(c, pose, "blink"), 0.8f * 0.25f, 1e-6f);
   EXPECT_NEAR(weight_of(c, pose, "blinkLeft"), 0.25f, 1e-6f);
   EXPECT_NEAR(weight_of(c, pose, "blink_r"), 0.25f, 1e-6f) << "what was made of it likewise";
   EXPECT_EQ(weight_of(c, pose, "aa"), 1) << "of another kind";
-  EXPECT_EQ(weight_of(c, after({{"happy", 0.7f}, {"angry", 0.7f}, {"blink", 1}}), "blink"), 0) << "not below 0";
-  EXPECT_EQ(weight_of(c, after({{"blink", 0.9f}}), "blink"), 0.9f) << "a blink does not forbid itself";
+  EXPECT_EQ(weight_of(c, after({{"happy", 0.7f}, {"angry", 0.7f}, {"blink", 1}}), "blink"), 0)
+      << "not below 0";
+  EXPECT_EQ(weight_of(c, after({{"blink", 0.9f}}), "blink"), 0.9f)
+      << "a blink does not forbid itself";
   pose = after({{"sad", 0.01f}, {"aa", 1}, {"viseme_aa", 0.7f}, {"blink", 1}});
-  EXPECT_EQ(weight_of(c, pose, "aa") + weight_of(c, pose, "viseme_aa"), 0) << "a little of it blocks all";
+  EXPECT_EQ(weight_of(c, pose, "aa") + weight_of(c, pose, "viseme_aa"), 0)
+      << "a little of it blocks all";
   EXPECT_EQ(weight_of(c, pose, "blink"), 1);
   // All or nothing, as it shows and not as it was asked for.
   EXPECT_EQ(weight_of(c, after({{"relaxed", 0.5f}, {"lookUp", 0.5f}}), "lookUp"), 0.5f);
   EXPECT_EQ(weight_of(c, after({{"relaxed", 0.51f}, {"lookUp", 0.5f}}), "lookUp"), 0);
   EXPECT_EQ(weight_of(c, after({{"relaxed", 0.51f}}), "relaxed"), 1);
-  EXPECT_EQ(weight_of(c, after({{"surprised", 0.1f}, {"oh", 0.9f}}), "oh"), 0) << "overridden a little: wholly";
+  EXPECT_EQ(weight_of(c, after({{"surprised", 0.1f}, {"oh", 0.9f}}), "oh"), 0)
+      << "overridden a little: wholly";
   EXPECT_NEAR(weight_of(c, after({{"surprised", 0.1f}, {"aa", 0.5f}}), "aa"), 0.45f, 1e-6f);
   EXPECT_EQ(weight_of(c, after({{"happy", NAN}, {"blink", 1}}), "blink"), 1);
 }
@@ -222,21 +248,28 @@ TEST(VrmExpressions, ComeBeforeMorphTargetsOfTheirName) {
   ExpressionRig rig = make_expression_rig(default_expressions(), c);
   Rig body = make_rig(c);
   ASSERT_GE(body.viseme[10], 0);
-  EXPECT_NEAR(c.displacers[size_t(body.viseme[10])].displacements[0].y, -0.01f, 1e-6f) << "half of the target";
+  EXPECT_NEAR(c.displacers[size_t(body.viseme[10])].displacements[0].y, -0.01f, 1e-6f)
+      << "half of the target";
   asset.root["meshes"][0]["extras"]["targetNames"][0] = "aa";
   c = load_asset(asset);
   EXPECT_NEAR(c.displacers[size_t(find_displacer(c, "aa"))].displacements[0].y, -0.01f, 1e-6f);
-  EXPECT_EQ(std::count_if(c.displacers.begin(), c.displacers.end(), [](const Displacer& d) { return d.name == "aa"; }), 1);
+  EXPECT_EQ(std::count_if(c.displacers.begin(), c.displacers.end(),
+                          [](const Displacer& d) { return d.name == "aa"; }),
+            1);
 }
 
 TEST(VrmExpressions, EyesTurnByBonesOrByShapesWithinTheirRanges) {
   Asset asset = make_person();
   add_vrm_1(asset);
-  for (const char* look : {"lookUp", "lookDown", "lookLeft", "lookRight"}) presets(asset)[look] = presets(asset)["aa"];
+  for (const char* look : {"lookUp", "lookDown", "lookLeft", "lookRight"})
+    presets(asset)[look] = presets(asset)["aa"];
   json range = {{"inputMaxValue", 30}, {"outputScale", 0.8}};
   asset.root["extensions"]["VRMC_vrm"]["lookAt"] = {
-      {"type", "expression"}, {"rangeMapHorizontalInner", {{"inputMaxValue", 1}, {"outputScale", 1}}},
-      {"rangeMapHorizontalOuter", range}, {"rangeMapVerticalUp", range}, {"rangeMapVerticalDown", {{"inputMaxValue", 0}, {"outputScale", 9}}}};
+      {"type", "expression"},
+      {"rangeMapHorizontalInner", {{"inputMaxValue", 1}, {"outputScale", 1}}},
+      {"rangeMapHorizontalOuter", range},
+      {"rangeMapVerticalUp", range},
+      {"rangeMapVerticalDown", {{"inputMaxValue", 0}, {"outputScale", 9}}}};
   Character c = load_asset(asset);
   ASSERT_TRUE(c.eye_ranges.by_shapes);
   Rig rig = make_rig(c);
@@ -249,7 +282,8 @@ TEST(VrmExpressions, EyesTurnByBonesOrByShapesWithinTheirRanges) {
   EXPECT_NEAR(weight_of(c, pose, "lookLeft"), 0.4f, 1e-4f) << "by the outer range, whichever eye";
   EXPECT_EQ(weight_of(c, pose, "lookRight"), 0);
   EXPECT_NEAR(weight_of(c, look_at({-1, 0, 0.1f}), "lookRight"), 0.8f, 1e-5f);
-  EXPECT_NEAR(weight_of(c, look_at({0, std::sin(10_deg), std::cos(10_deg)}), "lookUp"), 0.8f / 3, 1e-4f);
+  EXPECT_NEAR(weight_of(c, look_at({0, std::sin(10_deg), std::cos(10_deg)}), "lookUp"), 0.8f / 3,
+              1e-4f);
   EXPECT_EQ(weight_of(c, look_at({0, -0.5f, 1}), "lookDown"), 1) << "a weight is never more than 1";
 
   // Version 0 in its own words.
@@ -278,7 +312,8 @@ TEST(VrmExpressions, WhatOnlyTheWearerSeesIsNotShown) {
   asset.root["scenes"][0]["nodes"].push_back(18);
   size_t both = load_asset(asset).positions.size();
   auto note = [&](const char* type) {
-    asset.root["extensions"]["VRMC_vrm"]["firstPerson"]["meshAnnotations"] = {{{"node", 18}, {"type", type}}};
+    asset.root["extensions"]["VRMC_vrm"]["firstPerson"]["meshAnnotations"] = {
+        {{"node", 18}, {"type", type}}};
     return load_asset(asset).positions.size();
   };
   EXPECT_EQ(note("thirdPersonOnly"), both);
@@ -286,7 +321,8 @@ TEST(VrmExpressions, WhatOnlyTheWearerSeesIsNotShown) {
   EXPECT_EQ(note("firstPersonOnly"), both / 2);
   asset.root["extensions"].erase("VRMC_vrm");
   add_vrm_0(asset);
-  asset.root["extensions"]["VRM"]["firstPerson"]["meshAnnotations"] = {{{"mesh", 1}, {"firstPersonFlag", "FirstPersonOnly"}}};
+  asset.root["extensions"]["VRM"]["firstPerson"]["meshAnnotations"] = {
+      {{"mesh", 1}, {"firstPersonFlag", "FirstPersonOnly"}}};
   EXPECT_EQ(load_asset(asset).positions.size(), both / 2);
 }
 
@@ -317,9 +353,16 @@ TEST(VrmMaterials, OfVersion0AreAsTheirShaderHasThem) {
   auto& properties = asset.root["extensions"]["VRM"]["materialProperties"];
   properties = {{{"name", "skin"},
                  {"shader", "VRM/MToon"},
-                 {"floatProperties", {{"_Cutoff", 0.25}, {"_CullMode", 0}, {"_BumpScale", 0.5}, {"_OutlineWidthMode", 1}, {"_OutlineWidth", 0.1}}},
+                 {"floatProperties",
+                  {{"_Cutoff", 0.25},
+                   {"_CullMode", 0},
+                   {"_BumpScale", 0.5},
+                   {"_OutlineWidthMode", 1},
+                   {"_OutlineWidth", 0.1}}},
                  {"vectorProperties",
-                  {{"_Color", {0.5, 1, 0, 0.75}}, {"_EmissionColor", {0, 1, 0, 1}}, {"_MainTex", {0.125, 0.25, 2, 0.5}}}},
+                  {{"_Color", {0.5, 1, 0, 0.75}},
+                   {"_EmissionColor", {0, 1, 0, 1}},
+                   {"_MainTex", {0.125, 0.25, 2, 0.5}}}},
                  {"textureProperties", {{"_MainTex", 0}, {"_BumpMap", 0}, {"_EmissionMap", 0}}},
                  {"keywordMap", {{"_ALPHATEST_ON", true}}}},
                 {{"name", "ring"},
@@ -335,7 +378,8 @@ TEST(VrmMaterials, OfVersion0AreAsTheirShaderHasThem) {
   const json& pbr = skin["pbrMetallicRoughness"];
   EXPECT_NEAR(pbr["baseColorFactor"][0].get<float>(), 0.21404f, 1e-4f);
   EXPECT_EQ(pbr["baseColorFactor"][3], 0.75);
-  for (const json* picture : {&pbr["baseColorTexture"], &skin["normalTexture"], &skin["emissiveTexture"]}) {
+  for (const json* picture :
+       {&pbr["baseColorTexture"], &skin["normalTexture"], &skin["emissiveTexture"]}) {
     const json& lies = (*picture)["extensions"]["KHR_texture_transform"];
     EXPECT_EQ(lies["scale"], json({2, 0.5}));
     EXPECT_EQ(lies["offset"], json({0.125, 0.25})) << "1 - 0.5 - 0.25";
@@ -356,10 +400,12 @@ TEST(VrmMaterials, OfVersion0AreAsTheirShaderHasThem) {
   file = rewritten(asset);
   EXPECT_EQ(file.root["materials"][0]["alphaMode"], "BLEND");
   EXPECT_EQ(file.root["materials"][0]["doubleSided"], false);
-  EXPECT_FALSE(file.root["materials"][0].contains("emissiveFactor")) << "MToon's counts: it glows not";
+  EXPECT_FALSE(file.root["materials"][0].contains("emissiveFactor"))
+      << "MToon's counts: it glows not";
   properties[0]["shader"] = "VRM_USE_GLTFSHADER";
   file = rewritten(asset);
-  EXPECT_EQ(file.root["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][0], 0.5) << "glTF's own counts";
+  EXPECT_EQ(file.root["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][0], 0.5)
+      << "glTF's own counts";
   properties[0]["shader"] = "VRM/MToon";
   properties[0]["textureProperties"]["_MainTex"] = 7;
   EXPECT_THROW(load_asset(asset), LoadError);
@@ -369,20 +415,28 @@ TEST(VrmMaterials, OfVersion1TellWhatIsNotDrawn) {
   Asset asset = dressed_person();
   add_vrm_1(asset);
   asset.root["materials"][0]["extensions"]["VRMC_materials_mtoon"] = {
-      {"specVersion", "1.0"}, {"outlineWidthMode", "worldCoordinates"}, {"outlineWidthFactor", 0.01},
-      {"uvAnimationScrollXSpeedFactor", 0.1}, {"matcapTexture", {{"index", 0}}}};
-  asset.root["materials"][1]["extensions"]["VRMC_materials_hdr_emissiveMultiplier"] = {{"emissiveMultiplier", 3}};
+      {"specVersion", "1.0"},
+      {"outlineWidthMode", "worldCoordinates"},
+      {"outlineWidthFactor", 0.01},
+      {"uvAnimationScrollXSpeedFactor", 0.1},
+      {"matcapTexture", {{"index", 0}}}};
+  asset.root["materials"][1]["extensions"]["VRMC_materials_hdr_emissiveMultiplier"] = {
+      {"emissiveMultiplier", 3}};
   Character c = load_asset(asset);
-  for (const char* what : {"outlines of", "moving pictures of", "matcaps of"}) EXPECT_TRUE(says(c, what)) << what;
+  for (const char* what : {"outlines of", "moving pictures of", "matcaps of"})
+    EXPECT_TRUE(says(c, what)) << what;
   EXPECT_FALSE(says(c, "rims of"));
-  EXPECT_EQ(rewritten(asset).root["materials"][1]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"], 3.0);
+  EXPECT_EQ(rewritten(asset).root["materials"][1]["extensions"]["KHR_materials_emissive_strength"]
+                                 ["emissiveStrength"],
+            3.0);
 }
 
 TEST(VrmMaterials, MToonIgnoresColoursOfVertices) {
   Asset asset = dressed_person();
   std::vector<float> red;
   for (size_t v = 0; v < test::person_bones().size() * 8; v++) red.insert(red.end(), {1, 0, 0, 1});
-  asset.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = asset.add_floats("VEC4", 4, red);
+  asset.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+      asset.add_floats("VEC4", 4, red);
   Asset newer = asset;
   add_vrm_0(asset);
   EXPECT_FALSE(load_asset(asset).colors.empty());
@@ -426,7 +480,8 @@ TEST(VrmExpressions, FiguresWithoutSomeBonesStandAndBreathe) {
   }
 }
 
-// Any part of the extensions replaced by anything: refused with a place, or loaded; posed without a crash.
+// Any part of the extensions replaced by anything: refused with a place, or loaded; posed without a
+// crash.
 TEST(VrmExpressions, MutatedExtensionsNeverCrash) {
   std::vector<Asset> assets;
   for (int version : {0, 1}) {
@@ -434,40 +489,68 @@ TEST(VrmExpressions, MutatedExtensionsNeverCrash) {
     version == 0 ? add_vrm_0(asset) : add_vrm_1(asset);
     json color = {{"material", 0}, {"type", "color"}, {"targetValue", {1, 0, 0.25, 1}}};
     if (version == 1) {
-      presets(asset)["happy"] = {{"isBinary", true}, {"overrideBlink", "block"}, {"overrideLookAt", "blend"},
-                                 {"materialColorBinds", {color}},
-                                 {"textureTransformBinds", {{{"material", 0}, {"scale", {3, 0.5}}, {"offset", {0.75, 0.5}}}}}};
+      presets(asset)["happy"] = {
+          {"isBinary", true},
+          {"overrideBlink", "block"},
+          {"overrideLookAt", "blend"},
+          {"materialColorBinds", {color}},
+          {"textureTransformBinds",
+           {{{"material", 0}, {"scale", {3, 0.5}}, {"offset", {0.75, 0.5}}}}}};
       presets(asset)["blink"] = presets(asset)["aa"];
-      asset.root["extensions"]["VRMC_vrm"]["firstPerson"]["meshAnnotations"] = {{{"node", 17}, {"type", "both"}}};
+      asset.root["extensions"]["VRMC_vrm"]["firstPerson"]["meshAnnotations"] = {
+          {{"node", 17}, {"type", "both"}}};
       asset.root["nodes"][3]["extensions"]["VRMC_node_constraint"] = {
-          {"specVersion", "1.0"}, {"constraint", {{"roll", {{"source", 2}, {"rollAxis", "Y"}, {"weight", 0.5}}}}}};
+          {"specVersion", "1.0"},
+          {"constraint", {{"roll", {{"source", 2}, {"rollAxis", "Y"}, {"weight", 0.5}}}}}};
       asset.root["nodes"][7]["extensions"]["VRMC_node_constraint"] = {
-          {"specVersion", "1.0"}, {"constraint", {{"aim", {{"source", 4}, {"aimAxis", "PositiveX"}}}}}};
-      asset.root["materials"][0]["extensions"]["VRMC_materials_mtoon"] = {{"outlineWidthMode", "none"}, {"shadeColorFactor", {0, 0, 0}}};
+          {"specVersion", "1.0"},
+          {"constraint", {{"aim", {{"source", 4}, {"aimAxis", "PositiveX"}}}}}};
+      asset.root["materials"][0]["extensions"]["VRMC_materials_mtoon"] = {
+          {"outlineWidthMode", "none"}, {"shadeColorFactor", {0, 0, 0}}};
     } else {
       auto& vrm = asset.root["extensions"]["VRM"];
       vrm["blendShapeMaster"]["blendShapeGroups"][0]["materialValues"] = {
           {{"materialName", "skin"}, {"propertyName", "_Color"}, {"targetValue", {0.5, 0, 1, 1}}},
-          {{"materialName", "skin"}, {"propertyName", "_MainTex_ST"}, {"targetValue", {1, 0.25, 0.5, 0.25}}}};
-      vrm["firstPerson"] = {{"lookAtTypeName", "BlendShape"}, {"lookAtVerticalUp", {{"xRange", 60}, {"yRange", 1}}},
+          {{"materialName", "skin"},
+           {"propertyName", "_MainTex_ST"},
+           {"targetValue", {1, 0.25, 0.5, 0.25}}}};
+      vrm["firstPerson"] = {{"lookAtTypeName", "BlendShape"},
+                            {"lookAtVerticalUp", {{"xRange", 60}, {"yRange", 1}}},
                             {"meshAnnotations", {{{"mesh", 0}, {"firstPersonFlag", "Auto"}}}}};
-      vrm["materialProperties"] = {{{"shader", "VRM/MToon"}, {"floatProperties", {{"_Cutoff", 0.5}}},
-                                    {"vectorProperties", {{"_Color", {1, 1, 1, 1}}, {"_MainTex", {0, 0, 1, 1}}}},
-                                    {"textureProperties", {{"_MainTex", 0}}}, {"keywordMap", {{"_ALPHATEST_ON", true}}}}};
+      vrm["materialProperties"] = {
+          {{"shader", "VRM/MToon"},
+           {"floatProperties", {{"_Cutoff", 0.5}}},
+           {"vectorProperties", {{"_Color", {1, 1, 1, 1}}, {"_MainTex", {0, 0, 1, 1}}}},
+           {"textureProperties", {{"_MainTex", 0}}},
+           {"keywordMap", {{"_ALPHATEST_ON", true}}}}};
     }
     assets.push_back(asset);
   }
-  const json poisons[] = {nullptr, -1, 99, 3.5, 1e300, "x", "", true, json::array(), json::object(), json{{"x", 1}}, json{1, "y", nullptr}, 0};
+  const json poisons[] = {nullptr,
+                          -1,
+                          99,
+                          3.5,
+                          1e300,
+                          "x",
+                          "",
+                          true,
+                          json::array(),
+                          json::object(),
+                          json{{"x", 1}},
+                          json{1, "y", nullptr},
+                          0};
   Rng rng{20};
   int loaded = 0, refused = 0;
   for (const Asset& asset : assets) {
     std::vector<std::string> places;
     const json flat = asset.root.flatten();
     for (const auto& [place, value] : flat.items())
-      for (size_t end = place.size(); end != std::string::npos && end > 0; end = place.rfind('/', end - 1)) {
+      for (size_t end = place.size(); end != std::string::npos && end > 0;
+           end = place.rfind('/', end - 1)) {
         std::string part = place.substr(0, end);
         bool ours = part.find("/VRM") != std::string::npos;
-        if (ours && std::find(places.begin(), places.end(), part) == places.end()) places.push_back(part);
+        if (ours && std::find(places.begin(), places.end(), part) == places.end())
+          places.push_back(part);
       }
     ASSERT_GT(places.size(), 60u);
     for (const std::string& place : places)
@@ -487,7 +570,9 @@ TEST(VrmExpressions, MutatedExtensionsNeverCrash) {
           follow_expression_rules(c, pose);
           for (int look = 0; look < int(c.looks.size()); look++) {
             LookChange change = change_of(c, pose, size_t(look));
-            ASSERT_TRUE(is_finite(vec3(change.base_color)) && is_finite(change.emission) && is_finite(change.uv[2])) << place;
+            ASSERT_TRUE(is_finite(vec3(change.base_color)) && is_finite(change.emission) &&
+                        is_finite(change.uv[2]))
+                << place;
           }
           tick_storyteller(state, storyteller, input, pose, events);
           for (quat q : pose.rotations) ASSERT_NEAR(glm::length(q), 1, 1e-3f) << place;

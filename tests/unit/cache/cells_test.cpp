@@ -22,8 +22,8 @@ View front_view() {
   return view;
 }
 
-// A wall two metres off, of which one cell in six has a point: one sample, as a renderer gives it that
-// finds the only lamp by chance. Its mean is 1.
+// A wall two metres off, of which one cell in six has a point: one sample, as a renderer gives it
+// that finds the only lamp by chance. Its mean is 1.
 struct SparseWall {
   View view = front_view();
   Scratch scratch;
@@ -74,7 +74,8 @@ TEST(Cells, OneDarkSampleFarFromOthersIsNotSureOfItself) {
     double before = wall.error();
     ASSERT_TRUE(fill_cells(wall.view, wall.cells));
     filter_cells(wall.view, wall.cells);
-    // Some 130 samples lie within reach of the steps; were all weighed alike, a ninth would be left.
+    // Some 130 samples lie within reach of the steps; were all weighed alike, a ninth would be
+    // left.
     EXPECT_LT(wall.error(), before / 4) << "seed " << seed;
   }
 }
@@ -96,7 +97,8 @@ TEST(Cells, HolesLieInThePlaneAround) {
   vec3 up = normalize(vec3(0, 1, 0.02f));  // in the viewer's axes: right, up, forward
   vec3 plane = -up / 1.6f;                 // 1.6 m below the eye
   auto inverse_depth = [&](int x, int y) {
-    return dot(plane, vec3(rays.x((float(x) + 0.5f) * cell_size), rays.y((float(y) + 0.5f) * cell_size), 1));
+    return dot(plane, vec3(rays.x((float(x) + 0.5f) * cell_size),
+                           rays.y((float(y) + 0.5f) * cell_size), 1));
   };
   std::vector<uint8_t> known(cells.object.size());
   int first = height / 2 + 6;  // rows below the horizon
@@ -106,14 +108,16 @@ TEST(Cells, HolesLieInThePlaneAround) {
       if (y < first) cells.object[i] = no_object, cells.samples[i] = 0;
       if (cells.object[i] == no_object) continue;
       known[i] = 1;
-      for (size_t k = 0; k < 3; k++) cells.normal[k][i] = up[int(k)], cells.plane[k][i] = plane[int(k)];
+      for (size_t k = 0; k < 3; k++)
+        cells.normal[k][i] = up[int(k)], cells.plane[k][i] = plane[int(k)];
       cells.depth[i] = 1 / inverse_depth(x, y);
     }
   ASSERT_TRUE(fill_cells(wall.view, cells));
   for (int y = first + 4; y < cells.height; y++)
     for (int x = 0; x < cells.width; x++) {
       size_t i = size_t(cells.index(x, y));
-      ASSERT_NEAR(cells.depth[i] * inverse_depth(x, y), 1, 1e-3) << x << ", " << y << (known[i] ? " known" : "");
+      ASSERT_NEAR(cells.depth[i] * inverse_depth(x, y), 1, 1e-3)
+          << x << ", " << y << (known[i] ? " known" : "");
     }
 }
 

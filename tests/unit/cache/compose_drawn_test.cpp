@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures that are drawn: with few points the light is a guess, but shapes and reflectances are exact.
+// Pictures that are drawn: with few points the light is a guess, but shapes and reflectances are
+// exact.
 #include "cache/compose_drawn.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +33,8 @@ Scene make_room() {
   scene.textures.push_back(texture);
   Material picture = diffuse(vec3(1));
   picture.base_color_texture.texture = int(scene.textures.size()) - 1;
-  add_quad(scene, add_material(scene, picture), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0}, "picture");
+  add_quad(scene, add_material(scene, picture), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0},
+           "picture");
   return scene;
 }
 Stage make_room_with_ball() {
@@ -44,7 +46,8 @@ Stage make_room_with_ball() {
 Scene make_shining() {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(0.5f, 1, 2);
-  add_quad(scene, add_material(scene, emitter(vec3(3, 2, 1))), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0}, "lamp");
+  add_quad(scene, add_material(scene, emitter(vec3(3, 2, 1))), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0},
+           "lamp");
   return scene;
 }
 View view_from(const Stage& stage, double x, int width, int height) {
@@ -88,8 +91,8 @@ void expect_same_for_the_eye(DrawnVisit& drawn, const View& view, const PictureS
   }
 }
 
-// Of a place that nothing was known of a moment ago; odd sizes too: tiles, blocks and light pixels end
-// anywhere.
+// Of a place that nothing was known of a moment ago; odd sizes too: tiles, blocks and light pixels
+// end anywhere.
 TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
   for (ivec2 size : {ivec2(160, 120), ivec2(151, 97)}) {
     Stage stage = make_room_with_ball();
@@ -121,7 +124,8 @@ TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
   }
 }
 
-// Calm light is as bright as that with each point's own, but neighbours differ less, as few samples are noisy.
+// Calm light is as bright as that with each point's own, but neighbours differ less, as few samples
+// are noisy.
 TEST(Drawn, CalmLightIsThatOfCells) {
   Stage stage(make_room());
   DrawnVisit drawn;
@@ -143,7 +147,8 @@ TEST(Drawn, CalmLightIsThatOfCells) {
     for (int y = 0; y < height; y++)
       for (int x = 0; x + 2 < width; x++) {
         size_t i = 3 * size_t(y * width + x);
-        if (std::abs(truth.rgb[i] - truth.rgb[i + 6]) < 8) sum += std::abs(image.rgb[i] - image.rgb[i + 6]);
+        if (std::abs(truth.rgb[i] - truth.rgb[i + 6]) < 8)
+          sum += std::abs(image.rgb[i] - image.rgb[i + 6]);
       }
     return sum;
   };
@@ -215,7 +220,8 @@ TEST(Drawn, StillPicturesHaveExactShapesWithFewPoints) {
   expect_light(drawn.frame);
 }
 
-// Points of before that are seen through gaps of nearer ones lend no pixel their shape or their light.
+// Points of before that are seen through gaps of nearer ones lend no pixel their shape or their
+// light.
 TEST(Drawn, WhoStopsSeesNoPointThroughGaps) {
   Stage stage(make_room());
   DrawnVisit drawn, guessed;
@@ -223,7 +229,8 @@ TEST(Drawn, WhoStopsSeesNoPointThroughGaps) {
   for (int i = 0; i < 28; i++) {
     view = view_from(stage, 0.01 * std::min(i, 20), width, height);
     bool stands = i >= 21;
-    drawn.step(stage, view, stands ? pixels / 400 : pixels / 40, stands ? PictureOf::still : PictureOf::moving);
+    drawn.step(stage, view, stands ? pixels / 400 : pixels / 40,
+               stands ? PictureOf::still : PictureOf::moving);
     guessed.step(stage, view, stands ? pixels / 400 : pixels / 40, PictureOf::points);
   }
   EXPECT_LT(count_wrong_at_rest(stage, view, drawn.frame), pixels / 1000);
@@ -232,7 +239,8 @@ TEST(Drawn, WhoStopsSeesNoPointThroughGaps) {
   EXPECT_LT(rmse(drawn.frame, truth), 0.8 * rmse(guessed.frame, truth));
 }
 
-// Who stops is shown what was known before, and nothing is allocated anew but the mean of pictures at rest.
+// Who stops is shown what was known before, and nothing is allocated anew but the mean of pictures
+// at rest.
 TEST(Drawn, StartingAndStoppingLosesNoPoint) {
   Stage stage = make_room_with_ball();
   DrawnVisit visit;
@@ -250,7 +258,8 @@ TEST(Drawn, StartingAndStoppingLosesNoPoint) {
   EXPECT_LT(visit.cache.memory_bytes(), at_rest - 5 * pixels);  // what keeps samples comes later
   for (int i = 0; i < 2; i++) visit.step(stage, view(0), 0, PictureOf::still);
   EXPECT_NEAR(double(visit.cache.memory_bytes()), double(at_rest), 1 << 15);
-  EXPECT_NEAR(double(at_rest - moving), 12.0 * pixels, 1 << 15);  // means over pictures and over samples
+  EXPECT_NEAR(double(at_rest - moving), 12.0 * pixels,
+              1 << 15);  // means over pictures and over samples
 }
 
 // Lamps and the sky are as they are without a single sample.

@@ -138,7 +138,8 @@ TEST(CorrectStill, WhatMovesStaysAsItIsDrawn) {
   p.correct();
   int changed = 0;
   for (int i = 0; i < pixels; i++)
-    if (p.still.count[size_t(i)] == still_fresh) EXPECT_EQ(p.frame.color[size_t(i)], drawn[size_t(i)]) << i;
+    if (p.still.count[size_t(i)] == still_fresh)
+      EXPECT_EQ(p.frame.color[size_t(i)], drawn[size_t(i)]) << i;
     else changed += p.frame.color[size_t(i)] != drawn[size_t(i)];
   EXPECT_GT(changed, pixels / 2);
 }
@@ -153,8 +154,9 @@ TEST(CorrectStill, SamplesAreForgottenWhereThePictureBeginsAnew) {
   for (size_t i = 0; i < 10; i++) EXPECT_EQ(p.samples.count[i], i >= 5 && i <= 7 ? 0 : 3) << i;
 }
 
-// Of an exponential distribution the deviation is the mean. Means over 61 pixels of 200 samples each, four
-// of their standard deviations (one in 16,000), and two thousandths for what roundings do.
+// Of an exponential distribution the deviation is the mean. Means over 61 pixels of 200 samples
+// each, four of their standard deviations (one in 16,000), and two thousandths for what roundings
+// do.
 TEST(CorrectStill, MeansAndDeviationsAreThoseOfTheSamples) {
   Picture p;
   p.sample(200, 3);
@@ -164,9 +166,12 @@ TEST(CorrectStill, MeansAndDeviationsAreThoseOfTheSamples) {
     EXPECT_EQ(p.samples.count[i], 200);
     vec3 truth = truth_at(10, y);
     mean += double(unpack_rgb9e5(p.samples.mean[i]).x / truth.x) / height;
-    deviation += double(unpack_deviation(p.samples.deviation[i]) / std::sqrt(dot(truth, truth) / 3)) / height;
+    deviation +=
+        double(unpack_deviation(p.samples.deviation[i]) / std::sqrt(dot(truth, truth) / 3)) /
+        height;
   }
   EXPECT_NEAR(mean, 1, 4 / std::sqrt(200.0 * height) + 0.002);
-  // The deviation's own is sqrt(8 / 200) / 2, and it is 1 / 100 too small on average (half of its square).
+  // The deviation's own is sqrt(8 / 200) / 2, and it is 1 / 100 too small on average (half of its
+  // square).
   EXPECT_NEAR(deviation, 0.99, 4 * 0.1 / std::sqrt(double(height)) + 0.002);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is hard for pictures that are drawn in remembered light, while the visitor moves and at rest.
+// What is hard for pictures that are drawn in remembered light, while the visitor moves and at
+// rest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,12 +26,14 @@ struct Visitor : DrawnVisit {
 bool is_sound(const Frame& frame) {
   for (size_t i = 0; i < frame.color.size(); i++) {
     vec3 c = frame.color[i];
-    if (!is_finite(c) || glm::min(glm::min(c.x, c.y), c.z) < 0 || !(frame.depth[i] > 0)) return false;
+    if (!is_finite(c) || glm::min(glm::min(c.x, c.y), c.z) < 0 || !(frame.depth[i] > 0))
+      return false;
   }
   return true;
 }
 
-View view_of(const Stage& stage, dvec3 eye, float yaw, float fov = 0.9f, int across = width, int down = height) {
+View view_of(const Stage& stage, dvec3 eye, float yaw, float fov = 0.9f, int across = width,
+             int down = height) {
   return make_view(stage.scene, eye, yaw, 0, fov, across, down);
 }
 
@@ -44,22 +47,27 @@ double shown_error(Frame a, Frame b) {
 // A closed room of 4 x 3 x 4 m about (0, 1.5, 0) with a lamp, a pillar, and a thin screen.
 Scene make_room() {
   Scene scene = empty_scene();
-  add_mesh(scene, box_mesh(add_material(scene, diffuse(vec3(0.6f, 0.55f, 0.5f))), vec3(4, 3, 4), true), "room",
-           at(vec3(0, 1.5f, 0)));
-  add_mesh(scene, box_mesh(add_material(scene, diffuse(vec3(0.2f, 0.3f, 0.6f))), vec3(0.4f, 3, 0.4f)), "pillar",
-           at(vec3(1, 1.5f, -1)));
-  add_mesh(scene, box_mesh(add_material(scene, diffuse(vec3(0.6f, 0.2f, 0.1f))), vec3(2, 2, 0.02f)), "screen",
-           at(vec3(-0.6f, 1, -0.5f)));
-  add_quad(scene, add_material(scene, emitter(vec3(6))), {-0.5f, 2.99f, -0.5f}, {1, 0, 0}, {0, 0, 1}, "lamp");
+  add_mesh(scene,
+           box_mesh(add_material(scene, diffuse(vec3(0.6f, 0.55f, 0.5f))), vec3(4, 3, 4), true),
+           "room", at(vec3(0, 1.5f, 0)));
+  add_mesh(scene,
+           box_mesh(add_material(scene, diffuse(vec3(0.2f, 0.3f, 0.6f))), vec3(0.4f, 3, 0.4f)),
+           "pillar", at(vec3(1, 1.5f, -1)));
+  add_mesh(scene, box_mesh(add_material(scene, diffuse(vec3(0.6f, 0.2f, 0.1f))), vec3(2, 2, 0.02f)),
+           "screen", at(vec3(-0.6f, 1, -0.5f)));
+  add_quad(scene, add_material(scene, emitter(vec3(6))), {-0.5f, 2.99f, -0.5f}, {1, 0, 0},
+           {0, 0, 1}, "lamp");
   return scene;
 }
 
-// Towards the screen, through it and on through the wall behind: an eye upon a surface divides by nothing.
+// Towards the screen, through it and on through the wall behind: an eye upon a surface divides by
+// nothing.
 TEST(DrawnHardCases, ThroughASurfaceAndOut) {
   Stage stage(make_room());
   Visitor visitor;
   for (int i = 0; i <= 80; i++) {
-    double z = i == 40 ? -0.49 : 0.5 - 0.0325 * i;  // the screen's face itself at 40, the far wall at 77
+    double z =
+        i == 40 ? -0.49 : 0.5 - 0.0325 * i;  // the screen's face itself at 40, the far wall at 77
     View view = view_of(stage, {-0.4, 1.2, z}, 0);
     visitor.step(stage, view, pixels / 32);
     ASSERT_TRUE(is_sound(visitor.frame)) << i;
@@ -113,7 +121,9 @@ TEST(DrawnHardCases, FarFromTheOrigin) {
     Stage stage(std::move(scene));
     Visitor visitor;
     for (int i = 0; i < 24; i++) {
-      visitor.step(stage, view_of(stage, origin + dvec3(0.25 + std::min(i, 12) / 32.0, 1.5, 1), 0.2f), pixels / 8, i > 14);
+      visitor.step(stage,
+                   view_of(stage, origin + dvec3(0.25 + std::min(i, 12) / 32.0, 1.5, 1), 0.2f),
+                   pixels / 8, i > 14);
       if (i == 12) moving = visitor.frame;
     }
     still = visitor.frame;
@@ -157,10 +167,12 @@ TEST(DrawnHardCases, WithoutLightThereIsNone) {
     visitor.step(stage, view, pixels / 8, i > 6);
     for (vec3 c : visitor.frame.color) ASSERT_EQ(c, vec3(0));
   }
-  EXPECT_LE(count_wrong(stage, view, visitor.frame), pixels / 10);  // shapes are there, at other places of their pixels
+  EXPECT_LE(count_wrong(stage, view, visitor.frame),
+            pixels / 10);  // shapes are there, at other places of their pixels
 }
 
-// Two pictures in one plane: one of them is shown, and its light is that of the wall they hang before.
+// Two pictures in one plane: one of them is shown, and its light is that of the wall they hang
+// before.
 TEST(DrawnHardCases, CoplanarSurfaces) {
   Scene scene = make_room();
   int pale = add_material(scene, diffuse(vec3(0.6f, 0.55f, 0.5f)));
@@ -177,21 +189,24 @@ TEST(DrawnHardCases, CoplanarSurfaces) {
   EXPECT_LT(shown_error(visitor.frame, stage.truth(view, 64)), 0.015);
 }
 
-// Triangles without a size, as long as needles, and of coordinates that are no normal numbers; lamps that
-// give nothing.
+// Triangles without a size, as long as needles, and of coordinates that are no normal numbers;
+// lamps that give nothing.
 TEST(DrawnHardCases, DegenerateThings) {
   Scene scene = make_room();
   const float tiny = std::numeric_limits<float>::denorm_min();
   int red = add_material(scene, diffuse(vec3(0.8f, 0.1f, 0.1f)));
   Mesh mesh;
-  mesh.positions = {{0, 1, 0},     {0, 1, 0},        {0, 1, 0},          {0, 1, -1},    {0, 2, -1}, {0, 1.5f, -1},
-                    {tiny, 1, -1}, {0, 1 + tiny, -1}, {tiny, tiny, tiny}, {-1, 1.2f, -1}, {1, 1.2f, -1}, {1, 1.2f + 1e-6f, -1}};
+  mesh.positions = {{0, 1, 0},          {0, 1, 0},      {0, 1, 0},     {0, 1, -1},
+                    {0, 2, -1},         {0, 1.5f, -1},  {tiny, 1, -1}, {0, 1 + tiny, -1},
+                    {tiny, tiny, tiny}, {-1, 1.2f, -1}, {1, 1.2f, -1}, {1, 1.2f + 1e-6f, -1}};
   mesh.normals.assign(mesh.positions.size(), vec3(0));
   mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {9, 10, 11}};
   mesh.material = red;
   add_mesh(scene, mesh, "needles");
-  add_quad(scene, add_material(scene, emitter(vec3(tiny))), {-1, 0.5f, -1.5f}, {0.5f, 0, 0}, {0, 0.5f, 0}, "dark lamp");
-  add_quad(scene, add_material(scene, emitter(vec3(5))), {-1, 0.5f, -1.6f}, {0, 0, 0}, {0, 0.5f, 0}, "no lamp");
+  add_quad(scene, add_material(scene, emitter(vec3(tiny))), {-1, 0.5f, -1.5f}, {0.5f, 0, 0},
+           {0, 0.5f, 0}, "dark lamp");
+  add_quad(scene, add_material(scene, emitter(vec3(5))), {-1, 0.5f, -1.6f}, {0, 0, 0}, {0, 0.5f, 0},
+           "no lamp");
   Stage stage(std::move(scene));
   Visitor visitor;
   for (int i = 0; i < 40; i++) {
@@ -222,7 +237,8 @@ TEST(DrawnHardCases, ThinRailings) {
   Scene scene = make_room();
   int dark = add_material(scene, diffuse(vec3(0.05f)));
   for (int i = 0; i < 12; i++)
-    add_mesh(scene, box_mesh(dark, vec3(0.02f, 1, 0.02f)), "rail", at(vec3(-1.5f + 0.25f * float(i), 1.5f, -0.2f)));
+    add_mesh(scene, box_mesh(dark, vec3(0.02f, 1, 0.02f)), "rail",
+             at(vec3(-1.5f + 0.25f * float(i), 1.5f, -0.2f)));
   Stage stage(std::move(scene));
   Visitor visitor;
   for (int i = 0; i < 30; i++) {

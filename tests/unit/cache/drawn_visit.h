@@ -47,11 +47,12 @@ struct Stage {
   }
 };
 
-// Pixels that show an object that a ray through none of their `places` meets: by default about their
-// centres, as rays and drawing round otherwise where an edge runs through them.
+// Pixels that show an object that a ray through none of their `places` meets: by default about
+// their centres, as rays and drawing round otherwise where an edge runs through them.
 inline int count_wrong(const Stage& stage, const View& view, const Frame& frame,
                        std::span<const vec2> places = {}) {
-  static constexpr vec2 centre[] = {vec2(0.5f), vec2(0.49f), vec2(0.51f), vec2(0.49f, 0.51f), vec2(0.51f, 0.49f)};
+  static constexpr vec2 centre[] = {vec2(0.5f), vec2(0.49f), vec2(0.51f), vec2(0.49f, 0.51f),
+                                    vec2(0.51f, 0.49f)};
   if (places.empty()) places = centre;
   int wrong = 0;
   for (int y = 0; y < view.height; y++)
@@ -70,11 +71,13 @@ inline Scene make_barred_box(vec3 bars, float width) {
   Scene scene = scenes::make_cornell_box();
   int material = scenes::add_material(scene, scenes::diffuse(bars));
   for (int i = 0; i < 6; i++)
-    scenes::add_quad(scene, material, {-0.25f + 0.1f * float(i), 0, -0.1f}, {width, 0, 0}, {0, 0.5f, 0}, "bar");
+    scenes::add_quad(scene, material, {-0.25f + 0.1f * float(i), 0, -0.1f}, {width, 0, 0},
+                     {0, 0.5f, 0}, "bar");
   return scene;
 }
 inline Mesh add_ball(Scene& scene, vec3 place) {
-  Mesh ball = scenes::sphere_mesh(scenes::add_material(scene, scenes::diffuse(vec3(0.7f, 0.6f, 0.1f))), 0.08f, 16);
+  Mesh ball = scenes::sphere_mesh(
+      scenes::add_material(scene, scenes::diffuse(vec3(0.7f, 0.6f, 0.1f))), 0.08f, 16);
   for (vec3& p : ball.positions) p += place;
   scene.objects.push_back("ball");
   return ball;
@@ -101,7 +104,8 @@ struct DrawnVisit {
     trace(*find_technique("path"), *stage.world, stage.lights, {}, requests, samples);
     cache.remember(light, requests, samples);
     if (kind == PictureOf::points) cache.reconstruct(view, frame);
-    if (kind == PictureOf::moving || kind == PictureOf::moving_fine) cache.draw(view, *stage.sight, frame);
+    if (kind == PictureOf::moving || kind == PictureOf::moving_fine)
+      cache.draw(view, *stage.sight, frame);
     if (kind == PictureOf::still) cache.draw_still(view, *stage.sight, frame);
   }
 };

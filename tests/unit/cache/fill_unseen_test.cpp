@@ -26,8 +26,10 @@ struct Filled {
   int red(int x, int y) const { return after.rgb[3 * (size_t(y) * size_t(width) + size_t(x))]; }
 };
 constexpr uint8_t unset = 251;
-// Disparities differ from block to block only where `flat`. A unit of disparity is 100 pixels, sideways.
-Filled fill(int width, int height, const Paint& paint, vec3 parallax = vec3(100, 0, 0), bool flat = false) {
+// Disparities differ from block to block only where `flat`. A unit of disparity is 100 pixels,
+// sideways.
+Filled fill(int width, int height, const Paint& paint, vec3 parallax = vec3(100, 0, 0),
+            bool flat = false) {
   Unseen unseen;
   resize_unseen(width, height, unseen);
   std::fill(unseen.hidden.begin(), unseen.hidden.end(), 0);
@@ -43,7 +45,8 @@ Filled fill(int width, int height, const Paint& paint, vec3 parallax = vec3(100,
       unseen.disparity[size_t(y) * size_t(width) + size_t(x)] = p.disparity;
       if (flat) unseen.flat[size_t(y / 8) * size_t(unseen.columns) + size_t(x / 8)] = p.disparity;
       bool seen = p.kind == Kind::seen;
-      for (int share : {1, 2, 3}) filled.before.rgb.push_back(seen ? uint8_t(p.level / share) : unset);
+      for (int share : {1, 2, 3})
+        filled.before.rgb.push_back(seen ? uint8_t(p.level / share) : unset);
     }
   filled.after = filled.before;
   FillScratch scratch;
@@ -52,13 +55,14 @@ Filled fill(int width, int height, const Paint& paint, vec3 parallax = vec3(100,
     for (int x = 0; x < width; x++) {
       if (paint(x, y).kind != Kind::seen) continue;
       size_t i = 3 * (size_t(y) * size_t(width) + size_t(x));
-      EXPECT_TRUE(std::equal(&filled.after.rgb[i], &filled.after.rgb[i] + 3, &filled.before.rgb[i])) << x << ", " << y;
+      EXPECT_TRUE(std::equal(&filled.after.rgb[i], &filled.after.rgb[i] + 3, &filled.before.rgb[i]))
+          << x << ", " << y;
     }
   return filled;
 }
 
-// A near figure has uncovered forty pixels of what lies behind it, wherever blocks begin: nothing of the
-// figure gets there, and all channels are of one colour.
+// A near figure has uncovered forty pixels of what lies behind it, wherever blocks begin: nothing
+// of the figure gets there, and all channels are of one colour.
 TEST(FillUnseen, WhatWasHiddenIsNothingOfWhatHidIt) {
   for (int shift : {0, 1, 3, 6})
     for (bool mirrored : {false, true}) {
@@ -88,7 +92,9 @@ TEST(FillUnseen, TheFartherSideGoesOn) {
   Filled filled = fill(100, 100, paint);
   for (int y = 34; y < 67; y++)  // where that side is the end of the row
     for (int x = 36; x < 62; x++)
-      if (paint(x, y).kind == Kind::hidden) { ASSERT_NEAR(filled.red(x, y), 40, 6) << x << ", " << y; }
+      if (paint(x, y).kind == Kind::hidden) {
+        ASSERT_NEAR(filled.red(x, y), 40, 6) << x << ", " << y;
+      }
 }
 
 // Thin lead before the sky, of which a wall as near has hidden half: the sky goes on, not the lead.
@@ -103,7 +109,8 @@ TEST(FillUnseen, PanesGoOnAsWhatIsBehindTheirLead) {
   for (int y = 0; y < 120; y++)
     for (int x = 100; x < 200; x++) {
       if (paint(x, y).kind != Kind::hidden || (x + y) % 16 < 3 || (x - y + 400) % 16 < 3) continue;
-      if ((x + y) % 16 == 15 || (x - y + 400) % 16 == 15) continue;  // not at corners, where holes are narrow
+      if ((x + y) % 16 == 15 || (x - y + 400) % 16 == 15)
+        continue;  // not at corners, where holes are narrow
       sum += filled.red(x, y), count++;
     }
   EXPECT_GT(sum / count, 200);
@@ -130,8 +137,8 @@ TEST(FillUnseen, ACrackIsOfItsSurface) {
   for (int y = 0; y < 60; y++) ASSERT_NEAR(filled.red(45, y), 200, 2) << y;
 }
 
-// Rows black and white by turns go on as their mean, not as streaks: in the middle of what is unseen, rows
-// that follow each other differ by less than a twentieth of what they do around.
+// Rows black and white by turns go on as their mean, not as streaks: in the middle of what is
+// unseen, rows that follow each other differ by less than a twentieth of what they do around.
 TEST(FillUnseen, NoRowStandsForItself) {
   for (Kind kind : {Kind::hidden, Kind::outside}) {
     auto paint = [=](int x, int y) -> Pixel {
@@ -151,13 +158,16 @@ TEST(FillUnseen, NoRowStandsForItself) {
 TEST(FillUnseen, GoesOnWithoutSteps) {
   auto paint = [](int x, int y) -> Pixel {
     if (x >= 140) return {0, 0, Kind::outside};
-    return {int(std::lround(120 + 100 * std::sin(0.02 * x + 0.03 * y))), 0};  // 3.6 levels a pixel, at most
+    return {int(std::lround(120 + 100 * std::sin(0.02 * x + 0.03 * y))),
+            0};  // 3.6 levels a pixel, at most
   };
   Filled filled = fill(200, 120, paint, vec3(0), true);
   for (int y = 0; y < 120; y++)
     for (int x = 140; x < 200; x++) {
       ASSERT_LE(std::abs(filled.red(x, y) - filled.red(x - 1, y)), 12) << x << ", " << y;
-      if (y > 0) { ASSERT_LE(std::abs(filled.red(x, y) - filled.red(x, y - 1)), 12) << x << ", " << y; }
+      if (y > 0) {
+        ASSERT_LE(std::abs(filled.red(x, y) - filled.red(x, y - 1)), 12) << x << ", " << y;
+      }
     }
 }
 
@@ -165,7 +175,8 @@ TEST(FillUnseen, GoesOnWithoutSteps) {
 TEST(FillUnseen, StaysWithinWhatIsSeen) {
   const float odd[] = {0, 1e30f, 1e-30f, 0.3f, 1e4f};
   for (auto [width, height] : {std::pair(1, 1), std::pair(7, 300), std::pair(129, 65)})
-    for (vec3 parallax : {vec3(0), vec3(30, 5, 1), vec3(1e30f), vec3(std::nanf("")), vec3(INFINITY, 0, 0)}) {
+    for (vec3 parallax :
+         {vec3(0), vec3(30, 5, 1), vec3(1e30f), vec3(std::nanf("")), vec3(INFINITY, 0, 0)}) {
       auto paint = [&](int x, int y) -> Pixel {
         uint32_t hash = (uint32_t(x) * 2654435761u) ^ (uint32_t(y) * 40503u * 65537u);
         return {100 + int(hash >> 8 & 31), odd[hash % 5], Kind(hash >> 16 & 1 ? hash % 3 : 0)};
@@ -177,7 +188,9 @@ TEST(FillUnseen, StaysWithinWhatIsSeen) {
 }
 
 TEST(FillUnseen, WhereNothingIsSeenNothingChanges) {
-  Filled filled = fill(50, 40, [](int x, int) { return Pixel{0, 0, x % 2 ? Kind::hidden : Kind::outside}; });
+  Filled filled = fill(50, 40, [](int x, int) {
+    return Pixel{0, 0, x % 2 ? Kind::hidden : Kind::outside};
+  });
   EXPECT_EQ(filled.after.rgb, filled.before.rgb);
 }
 

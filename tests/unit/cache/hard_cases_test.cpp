@@ -63,14 +63,16 @@ TEST(HardCases, AFullTurnInThreeTenthsOfASecond) {
     ASSERT_TRUE(is_sound(v)) << i;
     EXPECT_EQ(v.cache.stats().empty, 0) << i;
   }
-  // What was seen before the turn is not all forgotten; a quarter of a second later nothing is amiss.
+  // What was seen before the turn is not all forgotten; a quarter of a second later nothing is
+  // amiss.
   EXPECT_GT(v.cache.stats().reprojected, 0.1);
   for (int i = 0; i < 15; i++) v.step(turned(0), pixels / 16);
   EXPECT_LT(wrong_share(v, turned(0)), 0.02f);
 }
 
 TEST(HardCases, FarFromTheOriginSurfacesAreAsRight) {
-  // Positions are relative to the scene's origin; what is left are coordinates of some hundred metres.
+  // Positions are relative to the scene's origin; what is left are coordinates of some hundred
+  // metres.
   auto visit = [](vec3 shift) {
     Visit v;
     v.room.noisy = false;

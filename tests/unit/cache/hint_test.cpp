@@ -34,8 +34,8 @@ Frame show(const World& world, const Lights& lights, const View& view, bool told
   return frame;
 }
 
-// Shadows of a lamp without a size are shadows, not noise; with a sample for five pixels no place was
-// seen twice, and only the hint tells.
+// Shadows of a lamp without a size are shadows, not noise; with a sample for five pixels no place
+// was seen twice, and only the hint tells.
 TEST(Hint, ShadowsOfALampWithoutASizeAreSure) {
   Scene scene = make_cornell_box();
   for (Material& material : scene.materials) material.emission = vec3(0);
@@ -50,7 +50,8 @@ TEST(Hint, ShadowsOfALampWithoutASizeAreSure) {
   StillSettings settings;
   settings.spp = 64;
   Frame truth = render_still(*find_technique("path"), world, lights, view, settings);
-  double told = flip(show(world, lights, view, true), truth), untold = flip(show(world, lights, view, false), truth);
+  double told = flip(show(world, lights, view, true), truth),
+         untold = flip(show(world, lights, view, false), truth);
   EXPECT_LT(told, 0.97 * untold);
 }
 

@@ -91,7 +91,8 @@ TEST(Mirror, AtRestConverges) {
   View view = beside(0);
   for (int i = 0; i < 200; i++) stroll.step(view, uint64_t(i + 1), true, pixels / 4);
   EXPECT_LT(wrong_share(stroll.frame, view), 0.002f);
-  EXPECT_GT(stroll.cache.stats().converged, 0.5f);  // beside a point in the mirror is still the mirror
+  EXPECT_GT(stroll.cache.stats().converged,
+            0.5f);  // beside a point in the mirror is still the mirror
 }
 
 TEST(Mirror, PlacesThatAreNoneDoNoHarm) {

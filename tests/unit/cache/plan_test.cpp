@@ -204,8 +204,8 @@ TEST_F(Changes, FewWitnessesAFrameAddUp) {
 }
 
 TEST_F(Changes, NoiseIsNoChange) {
-  // Half of the tiles hear samples of a skewed distribution: one in twenty is thirty times as bright as
-  // the rest, which are darker than the mean.
+  // Half of the tiles hear samples of a skewed distribution: one in twenty is thirty times as
+  // bright as the rest, which are darker than the mean.
   for (int frame = 0; frame < 400; frame++) {
     hear(32, 32, 20, [&] {
       bool bright = rng.uniform() < 0.05f;
@@ -244,7 +244,9 @@ TEST_F(Changes, AreFoundTogetherWhereNoTileTellsAlone) {
   auto everywhere = [&](float change) {
     for (int y = 4; y < 80; y += 16)
       for (int x = 4; x < 150; x += 16)
-        hear(x, y, 12, [&] { return Witness{0, change + (rng.uniform() < 0.5f ? -1.5f : 1.5f), 1.5f}; });
+        hear(x, y, 12, [&] {
+          return Witness{0, change + (rng.uniform() < 0.5f ? -1.5f : 1.5f), 1.5f};
+        });
   };
   auto forgotten = [&] {
     int count = 0;

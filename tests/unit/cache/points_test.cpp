@@ -337,7 +337,8 @@ TEST(Remember, AQuietPointThatChangesMarksItsNeighbourhood) {
   ASSERT_EQ(stage.image.witnesses.size(), 5u);
   for (size_t i = 0; i < 4; i++) EXPECT_NEAR(stage.image.witnesses[i].change, 0, 0.01) << i;
   EXPECT_EQ(stage.image.witnesses[4].point, 20u);
-  EXPECT_NEAR(stage.image.witnesses[4].change, -0.8f / (5.2f / 6), 0.01);  // over the mean of all six
+  EXPECT_NEAR(stage.image.witnesses[4].change, -0.8f / (5.2f / 6),
+              0.01);  // over the mean of all six
   EXPECT_EQ(stage.image.witnesses[4].noise, 0);
   // A noisy point proves nothing.
   Rng rng(4);
@@ -350,8 +351,8 @@ TEST(Remember, AQuietPointThatChangesMarksItsNeighbourhood) {
   EXPECT_LE(cries, 1);
 }
 
-// A rare bright sample among quiet ones is noise and counts for one; only when it comes again the light
-// has changed.
+// A rare bright sample among quiet ones is noise and counts for one; only when it comes again the
+// light has changed.
 TEST(Remember, OneSurpriseIsAveragedTwoBeginAnew) {
   AskedAgain asked;
   auto& [stage, requests, samples, targets] = asked;
@@ -372,8 +373,8 @@ TEST(Remember, OneSurpriseIsAveragedTwoBeginAnew) {
   EXPECT_EQ(stage.points.count[20], 1);
 }
 
-// What points testify of smooth light, of which one sample in eight brings nearly all: nothing on average while it
-// stays, with the noise that it has, and the change when it changes.
+// What points testify of smooth light, of which one sample in eight brings nearly all: nothing on
+// average while it stays, with the noise that it has, and the change when it changes.
 TEST(Remember, WitnessesOfNoisyLightAreFair) {
   constexpr int samples_each = 12, visits = 4000;
   Rng rng(21);
@@ -411,7 +412,8 @@ TEST(Remember, WitnessesOfNoisyLightAreFair) {
 TEST(ReadPoints, TellsSamplesWhateverTheDoubts) {
   Stage stage(64);
   stage.put(20, vec3(0, 0, -3), 3);
-  stage.points.count[20] = 5, stage.points.color[20].doubts = 0xfa, stage.points.color[20].noise = 77;
+  stage.points.count[20] = 5, stage.points.color[20].doubts = 0xfa,
+  stage.points.color[20].noise = 77;
   stage.project();
   SurfaceRows rows;
   rows.start(stage.view.width, 8);
@@ -427,7 +429,8 @@ TEST(Packing, DeviationsOverTheirMeanKeepTheirValue) {
   for (float s = 0.04f; s < 30; s *= 1.3f) {
     EXPECT_NEAR(unpack_relative(pack_relative(s)), s, 0.07f * s);
     double sum = 0;
-    for (int i = 0; i < 4000; i++) sum += std::log(unpack_relative(pack_relative(s, uint32_t(rng.uniform() * 65536))));
+    for (int i = 0; i < 4000; i++)
+      sum += std::log(unpack_relative(pack_relative(s, uint32_t(rng.uniform() * 65536))));
     EXPECT_NEAR(sum / 4000, std::log(s), 0.01) << s;
   }
 }

@@ -118,7 +118,8 @@ struct Edge {
 };
 Edge turn(bool predicts, int mismatch) {
   Visit v;
-  Broker broker({.piece = 64, .most_waiting = 1 << 16, .most_traced = 1 << 16, .most_answered = 1 << 16});
+  Broker broker(
+      {.piece = 64, .most_waiting = 1 << 16, .most_traced = 1 << 16, .most_answered = 1 << 16});
   constexpr int width = 160, height = 90, edge = 12;
   int budget = width * height / mismatch, pictures = 0;
   Edge result;
@@ -131,7 +132,8 @@ Edge turn(bool predicts, int mismatch) {
     v.cache.project(view);
     v.cache.attend();
     std::vector<Request> ahead;
-    if (predicts && i > 0) v.cache.predict(extrapolate(before, view, 2), budget * 3 / 10, v.tick, ahead);
+    if (predicts && i > 0)
+      v.cache.predict(extrapolate(before, view, 2), budget * 3 / 10, v.tick, ahead);
     v.cache.plan(view, budget - int(ahead.size()), v.tick++, v.requests);
     v.requests.insert(v.requests.end(), ahead.begin(), ahead.end());
     broker.ask(view, {}, v.requests);

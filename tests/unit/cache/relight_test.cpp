@@ -39,8 +39,8 @@ struct Affected {
   }
 };
 
-// A spot light is switched in a room that the lamp in its ceiling lights too; then half a second at 60
-// pictures a second and one sample for `mismatch` pixels.
+// A spot light is switched in a room that the lamp in its ceiling lights too; then half a second at
+// 60 pictures a second and one sample for `mismatch` pixels.
 struct Switched {
   float before = 0;          // share right of the same pixels, long at rest in the old light
   std::vector<float> right;  // of each picture
@@ -65,8 +65,8 @@ Switched switch_spot(bool told, bool on, int mismatch) {
   return result;
 }
 
-// Not all can be right: stripes finer than a pixel take more samples than these. So what counts is how
-// many are after a long rest.
+// Not all can be right: stripes finer than a pixel take more samples than these. So what counts is
+// how many are after a long rest.
 TEST(Relight, NineOfTenAffectedPixelsAreAsRightAsEverInHalfASecond) {
   for (bool on : {true, false}) {
     Switched told = switch_spot(true, on, 16);
@@ -80,8 +80,9 @@ TEST(Relight, NineOfTenAffectedPixelsAreAsRightAsEverInHalfASecond) {
   }
 }
 
-// A box whose lamp stays while a spot light, and a shadow with it, comes and goes; of light that falls directly, whose
-// converged picture is soon to be had. Shapes are drawn, as visitors see them.
+// A box whose lamp stays while a spot light, and a shadow with it, comes and goes; of light that
+// falls directly, whose converged picture is soon to be had. Shapes are drawn, as visitors see
+// them.
 struct Box {
   Scene scene = scenes::make_cornell_box();
   std::unique_ptr<World> world;
@@ -119,7 +120,8 @@ enum class Shown { moving, still };
 
 // Share of the affected pixels within 10 % of right after `pictures` in the new light.
 float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<vec3>& before,
-                              const std::vector<vec3>& after, Shown shown, bool told, int mismatch, int pictures) {
+                              const std::vector<vec3>& after, Shown shown, bool told, int mismatch,
+                              int pictures) {
   RenderCache cache;
   std::vector<Request> requests;
   std::vector<Sample> samples;
@@ -127,7 +129,8 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
   for (int i = -60; i < pictures; i++) {
     const Box& box = i < 0 ? was : is;
     View view = box.view();
-    if (shown == Shown::moving && (pictures - i) % 2 == 0) view.position.x += 0.004f;  // the last is seen from the place
+    if (shown == Shown::moving && (pictures - i) % 2 == 0)
+      view.position.x += 0.004f;  // the last is seen from the place
     const View seen = shown == Shown::moving ? light_view(view) : view;
     if (i == 0 && told) cache.relight(vec3(0), INFINITY);
     cache.resize(view.width, view.height);
@@ -143,7 +146,8 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
   }
   int affected = 0, right = 0;
   for (size_t i = 0; i < after.size(); i++) {
-    float old = luminance(before[i]), wanted = luminance(after[i]), light = luminance(frame.color[i]);
+    float old = luminance(before[i]), wanted = luminance(after[i]),
+          light = luminance(frame.color[i]);
     if (std::abs(old - wanted) <= 0.1f * std::max(old, wanted) + 1e-4f) continue;
     affected++;
     right += std::abs(light - wanted) <= 0.1f * wanted + 1e-4f;
@@ -152,15 +156,18 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
   return float(right) / float(std::max(affected, 1));
 }
 
-// Nine in ten of those that a switch changes, at one sample for 16 pixels; who moves has light of half the resolution.
+// Nine in ten of those that a switch changes, at one sample for 16 pixels; who moves has light of
+// half the resolution.
 TEST(Relight, DrawnPicturesAreRightInHalfASecond) {
   Box dark(false), lit(true);
   std::vector<vec3> without = dark.truth().color, with = lit.truth().color;
   for (Shown shown : {Shown::still, Shown::moving})
     for (bool told : {true, false}) {
       float least = shown == Shown::still ? 0.9f : 0.85f;
-      EXPECT_GE(right_in_drawn_pictures(dark, lit, without, with, shown, told, 16, 30), least) << told;
-      EXPECT_GE(right_in_drawn_pictures(lit, dark, with, without, shown, told, 16, 30), least) << told;
+      EXPECT_GE(right_in_drawn_pictures(dark, lit, without, with, shown, told, 16, 30), least)
+          << told;
+      EXPECT_GE(right_in_drawn_pictures(lit, dark, with, without, shown, told, 16, 30), least)
+          << told;
     }
 }
 

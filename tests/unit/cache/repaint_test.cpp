@@ -25,7 +25,8 @@ struct Wall {
     scene.materials = {painted, painted, painted};
     auto square = [](vec3 low, float size, int material) {
       Mesh mesh;
-      mesh.positions = {low, low + vec3(size, 0, 0), low + vec3(size, size, 0), low + vec3(0, size, 0)};
+      mesh.positions = {low, low + vec3(size, 0, 0), low + vec3(size, size, 0),
+                        low + vec3(0, size, 0)};
       mesh.normals.assign(4, vec3(0, 0, 1));
       mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
       mesh.material = material;
@@ -64,8 +65,8 @@ TEST(Repaint, PointsOfTheRepaintedInstancesTakeTheirReflectance) {
   EXPECT_FALSE(forget_paint(points, world, {}));
 }
 
-// The left square becomes brighter: the World says so, or (`told` false) samples alone do. Shares of the
-// pixels of either square that look as they should, after each of 20 pictures.
+// The left square becomes brighter: the World says so, or (`told` false) samples alone do. Shares
+// of the pixels of either square that look as they should, after each of 20 pictures.
 struct Shares {
   std::vector<float> left, right;
 };
@@ -96,8 +97,10 @@ Shares brighten(bool told) {
       sample.normal = vec3(0, 0, 1);
       sample.distance = hit.t;
       sample.object = world.object_of(hit.instance);
-      sample.instance = hit.instance, sample.triangle = hit.triangle, sample.barycentric = hit.barycentric;
-      sample.albedo = vec3(world.material_of(hit.instance).base_color) + (hit.instance == 1 ? untold : 0);
+      sample.instance = hit.instance, sample.triangle = hit.triangle,
+      sample.barycentric = hit.barycentric;
+      sample.albedo =
+          vec3(world.material_of(hit.instance).base_color) + (hit.instance == 1 ? untold : 0);
       sample.smooth = vec3(1);
       sample.flags = uint8_t(sample_hit | (moves ? sample_moving : 0));
       samples.push_back(sample);
@@ -109,7 +112,8 @@ Shares brighten(bool told) {
     int like = 0, all = 0;
     for (int y = 0; y < height; y++)
       for (int x = 0; x < width; x++) {
-        if (world.intersect(view_ray(view, float(x) + 0.5f, float(y) + 0.5f)).instance != instance) continue;
+        if (world.intersect(view_ray(view, float(x) + 0.5f, float(y) + 0.5f)).instance != instance)
+          continue;
         all++;
         like += std::abs(frame.color[size_t(y * width + x)].x - wanted) < 0.05f;
       }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures at rest that are drawn: antialiased in time where nothing moves, sharp where something does.
+// Pictures at rest that are drawn: antialiased in time where nothing moves, sharp where something
+// does.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +14,8 @@ namespace {
 
 constexpr int width = 120, height = 90, pixels = width * height;
 
-// A box with bars before its back wall that are thinner than a cell of light, and a ball that can be moved.
+// A box with bars before its back wall that are thinner than a cell of light, and a ball that can
+// be moved.
 struct Still : Stage {
   View view = make_view(scene, {0, 0.25, 0.6}, 0, 0, 0.7f, width, height);
   using Stage::Stage;
@@ -38,7 +40,8 @@ std::vector<bool> edge_pixels(const Still& stage) {
   for (int i = 0; i < pixels; i++) {
     uint32_t first = 0;
     for (int k = 0; k < 4; k++) {
-      float x = float(i % width) + 0.25f + 0.5f * float(k % 2), y = float(i / width) + 0.25f + 0.5f * float(k / 2);
+      float x = float(i % width) + 0.25f + 0.5f * float(k % 2),
+            y = float(i / width) + 0.25f + 0.5f * float(k / 2);
       Hit hit = stage.world->intersect(view_ray(stage.view, x, y));
       uint32_t object = hit.valid() ? stage.world->object_of(hit.instance) : 0;
       if (k == 0) first = object;
@@ -111,12 +114,14 @@ TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
   uint32_t ball = uint32_t(stage.scene.objects.size() - 1);
   auto expect_ball = [&] {
     for (int i = 0; i < pixels; i++) {
-      Hit hit = stage.world->intersect(view_ray(stage.view, float(i % width) + 0.5f, float(i / width) + 0.5f));
+      Hit hit = stage.world->intersect(
+          view_ray(stage.view, float(i % width) + 0.5f, float(i / width) + 0.5f));
       bool there = hit.valid() && stage.world->object_of(hit.instance) == ball;
       // Where it touches what stands still, that may be seen at another place of the pixel.
       bool rim = false;
       for (vec2 to : {vec2(0, 0), vec2(1, 0), vec2(0, 1), vec2(1, 1)}) {
-        Hit corner = stage.world->intersect(view_ray(stage.view, float(i % width) + to.x, float(i / width) + to.y));
+        Hit corner = stage.world->intersect(
+            view_ray(stage.view, float(i % width) + to.x, float(i / width) + to.y));
         rim |= corner.valid() && (stage.world->object_of(corner.instance) == ball) != there;
       }
       if (rim) continue;
@@ -149,7 +154,8 @@ TEST(StillDrawn, NothingOfAnotherViewRemains) {
   Visit visit;
   for (int i = 0; i < 4; i++) visit.step(stage, pixels / 4, true);
   View box = stage.view;
-  stage.view = make_view(stage.scene, {0, 0.25, 0.6}, float(pi), 0, 0.7f, width, height);  // nothing is there
+  stage.view = make_view(stage.scene, {0, 0.25, 0.6}, float(pi), 0, 0.7f, width,
+                         height);  // nothing is there
   visit.step(stage, pixels / 4, true);
   for (vec3 c : visit.frame.color) ASSERT_EQ(c, vec3(0));
   stage.view = box;
@@ -164,9 +170,10 @@ TEST(StillDrawn, NothingOfAnotherViewRemains) {
   EXPECT_EQ(again, 0);
 }
 
-// Two seconds after a jump (two dozen pictures) nothing tells a visitor who was somewhere else before from one
-// who was not: means over squares of eight pixels differ by chance alone. Student's t of eight visits each, 14
-// degrees of freedom; beyond 9.5 lies one in six million, so of 180 squares one in 33,000 runs fails by chance.
+// Two seconds after a jump (two dozen pictures) nothing tells a visitor who was somewhere else
+// before from one who was not: means over squares of eight pixels differ by chance alone. Student's
+// t of eight visits each, 14 degrees of freedom; beyond 9.5 lies one in six million, so of 180
+// squares one in 33,000 runs fails by chance.
 TEST(StillDrawn, NothingOfAnotherViewRemainsInTheMean) {
   constexpr int visits = 8, pictures = 24, across = width / 8, down = height / 8;
   Still stage = make_still();
@@ -185,13 +192,17 @@ TEST(StillDrawn, NothingOfAnotherViewRemainsInTheMean) {
       for (int b = 0; b < across * down; b++) {
         double light = 0;
         for (int p = 0; p < 64; p++)
-          light += double(luminance(seen.color[size_t((b / across * 8 + p / 8) * width + b % across * 8 + p % 8)])) / 64;
+          light +=
+              double(luminance(
+                  seen.color[size_t((b / across * 8 + p / 8) * width + b % across * 8 + p % 8)])) /
+              64;
         sum[size_t(b)][jumped] += light, sum2[size_t(b)][jumped] += light * light;
       }
     }
   for (size_t b = 0; b < sum.size(); b++) {
     dvec2 mean = sum[b] / double(visits), variance = (sum2[b] - sum[b] * mean) / double(visits - 1);
-    double error = std::sqrt((variance.x + variance.y) / visits) + 1e-6;  // squares of the lamp do not vary
+    double error =
+        std::sqrt((variance.x + variance.y) / visits) + 1e-6;  // squares of the lamp do not vary
     EXPECT_LT(std::abs(mean.y - mean.x), 9.5 * error) << b;
   }
 }
@@ -202,8 +213,10 @@ TEST(StillDrawn, NarrowThingsHaveTheirOwnLight) {
   Frame truth = stage.truth();
   std::vector<bool> bars(pixels, false);
   for (int i = 0; i < pixels; i++) {
-    Hit hit = stage.world->intersect(view_ray(stage.view, float(i % width) + 0.5f, float(i / width) + 0.5f));
-    bars[size_t(i)] = hit.valid() && stage.scene.objects[stage.world->object_of(hit.instance)] == "bar";
+    Hit hit = stage.world->intersect(
+        view_ray(stage.view, float(i % width) + 0.5f, float(i / width) + 0.5f));
+    bars[size_t(i)] =
+        hit.valid() && stage.scene.objects[stage.world->object_of(hit.instance)] == "bar";
   }
   ASSERT_GT(std::count(bars.begin(), bars.end(), true), 200);
   Visit visit;

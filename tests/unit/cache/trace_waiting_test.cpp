@@ -18,7 +18,8 @@ std::vector<uint64_t> traced;  // seeds, in order; one thread only
 Technique writing_down() {
   Technique technique;
   technique.name = "writes down what it is asked";
-  technique.trace = [](const World&, const Lights&, const TransportSettings&, const Request& request) {
+  technique.trace = [](const World&, const Lights&, const TransportSettings&,
+                       const Request& request) {
     traced.push_back(request.seed);
     Sample sample;
     sample.distance = float(request.seed);
@@ -49,7 +50,8 @@ TEST(TraceWaiting, VisitorsTakeTurnsHoweverMuchTheyAsk) {
   greedy.ask({}, {&bench.technique, {}}, seeded(0, 100));
   modest.ask({}, {&bench.technique, {}}, seeded(1000, 10));
   Broker* both[] = {&greedy, &modest};
-  size_t count = trace_waiting(both, bench.world, bench.lights, 7, std::numeric_limits<double>::infinity(), bench.guard);
+  size_t count = trace_waiting(both, bench.world, bench.lights, 7,
+                               std::numeric_limits<double>::infinity(), bench.guard);
   EXPECT_EQ(count, 110u);
   ASSERT_EQ(traced.size(), 110u);
   int of_modest = 0;
@@ -76,7 +78,8 @@ TEST(TraceWaiting, StopsWhenTimeIsUp) {
 
 TEST(TraceWaiting, OtherWorkersMayHelp) {
   Bench bench;
-  bench.technique.trace = [](const World&, const Lights&, const TransportSettings&, const Request& request) {
+  bench.technique.trace = [](const World&, const Lights&, const TransportSettings&,
+                             const Request& request) {
     Sample sample;
     sample.distance = float(request.seed);
     return sample;
@@ -99,7 +102,8 @@ TEST(TraceWaiting, OtherWorkersMayHelp) {
     }
   });
   Broker* one[] = {&broker};
-  trace_waiting(one, bench.world, bench.lights, 1, std::numeric_limits<double>::infinity(), bench.guard);
+  trace_waiting(one, bench.world, bench.lights, 1, std::numeric_limits<double>::infinity(),
+                bench.guard);
   helper.join();
   uint64_t expected = 0, sum = 0;
   for (uint64_t i = 0; i < 8000; i++) expected += i;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures warped from keyframes against what the view shows, of a wall and bars whose colours are known
-// everywhere.
+// Pictures warped from keyframes against what the view shows, of a wall and bars whose colours are
+// known everywhere.
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
@@ -59,9 +59,11 @@ Image8 warp(const Keyframe& keyframe, const View& view) {
   return out;
 }
 
-// A pattern without edges: at most 0.3 levels of second difference from pixel to pixel at the sizes used here.
+// A pattern without edges: at most 0.3 levels of second difference from pixel to pixel at the sizes
+// used here.
 vec3 pattern(float u, float v) {
-  return vec3(128 + 100 * std::sin(3 * u), 128 + 100 * std::cos(3 * v), 128 + 100 * std::sin(2 * (u + v)));
+  return vec3(128 + 100 * std::sin(3 * u), 128 + 100 * std::cos(3 * v),
+              128 + 100 * std::sin(2 * (u + v)));
 }
 float distance_to_wall(const Ray& ray, float z) {
   return ray.direction.z < 0 ? (z - ray.origin.z) / ray.direction.z : infinity;
@@ -74,7 +76,8 @@ SeenPlace wall(const Ray& ray) {
   return {pattern(p.x, p.y), t};
 }
 SeenPlace sky(const Ray& ray) {
-  return {pattern(2 * std::atan2(ray.direction.x, -ray.direction.z), 2 * ray.direction.y), infinity};
+  return {pattern(2 * std::atan2(ray.direction.x, -ray.direction.z), 2 * ray.direction.y),
+          infinity};
 }
 // Upright red bars, `width` wide, every half metre at z = -2 before a blue and green wall.
 Place bars(float width) {
@@ -90,7 +93,8 @@ Place bars(float width) {
 
 int largest_difference(const Image8& a, const Image8& b) {
   int largest = 0;
-  for (size_t i = 0; i < a.rgb.size(); i++) largest = std::max(largest, std::abs(int(a.rgb[i]) - int(b.rgb[i])));
+  for (size_t i = 0; i < a.rgb.size(); i++)
+    largest = std::max(largest, std::abs(int(a.rgb[i]) - int(b.rgb[i])));
   return a.rgb.size() == b.rgb.size() ? largest : 256;
 }
 
@@ -102,8 +106,8 @@ TEST(WarpPicture, OfTheSameViewIsThePictureItself) {
   EXPECT_EQ(warp(keyframe, view).rgb, drawn.picture.rgb);
 }
 
-// What lies outside of the keyframe is left out; the error of linear interpolation of the pattern stays
-// below a level, quantising twice adds one.
+// What lies outside of the keyframe is left out; the error of linear interpolation of the pattern
+// stays below a level, quantising twice adds one.
 TEST(WarpPicture, TurningShowsTheSameSky) {
   View before = look_at({0, 0, 0}, 0), now = look_at({0, 0, 0}, 0.05f);
   before.width = 260, before.height = 144;
@@ -125,7 +129,8 @@ TEST(WarpPicture, AnotherFieldOfView) {
   EXPECT_LE(largest_difference(warp(keyframe_of(wall, before), now), draw(wall, now).picture), 2);
 }
 
-// A step aside uncovers four pixels beside every bar. They show the wall, and every bar is where it is.
+// A step aside uncovers four pixels beside every bar. They show the wall, and every bar is where it
+// is.
 TEST(WarpPicture, WhatWasHiddenShowsWhatIsBehind) {
   Place place = bars(0.12f);
   View before = look_at({0, 0, 0}, 0), now = look_at({0.07f, 0, 0}, 0);
@@ -157,11 +162,13 @@ TEST(WarpPicture, ThinBarsStay) {
   View before = look_at({0, 0, 0}, 0), now = look_at({0.1f, 0, 0}, 0.03f);
   auto count_red = [](const Image8& image) {
     int red = 0;
-    for (size_t i = 0; i < image.rgb.size(); i += 3) red += image.rgb[i] > 100 && image.rgb[i + 1] < 100;
+    for (size_t i = 0; i < image.rgb.size(); i += 3)
+      red += image.rgb[i] > 100 && image.rgb[i + 1] < 100;
     return red;
   };
   // They stay as wide as they were; one of them, two pixels wide, may have come into view.
-  int drawn = count_red(draw(place, before).picture), warped = count_red(warp(keyframe_of(place, before), now));
+  int drawn = count_red(draw(place, before).picture),
+      warped = count_red(warp(keyframe_of(place, before), now));
   EXPECT_GT(drawn, 500);
   EXPECT_NEAR(warped, drawn, 2 * now.height);
 }
@@ -177,8 +184,10 @@ TEST(WarpPicture, SaysHowMuchTheKeyframeDoesNotShow) {
   int outside = 0;
   for (int y = 0; y < now.height; y++)
     for (int x = 0; x < now.width; x++) {
-      Projected there = project_point(before, view_ray(now, float(x) + 0.5f, float(y) + 0.5f).direction);
-      outside += !(there.x > 0 && there.y > 0 && there.x < float(before.width) && there.y < float(before.height));
+      Projected there =
+          project_point(before, view_ray(now, float(x) + 0.5f, float(y) + 0.5f).direction);
+      outside += !(there.x > 0 && there.y > 0 && there.x < float(before.width) &&
+                   there.y < float(before.height));
     }
   float pixels = float(now.width * now.height);
   EXPECT_NEAR(warp_picture(keyframe, now, 1, scratch, out), float(outside) / pixels, 0.01f);
@@ -208,9 +217,10 @@ TEST(WarpPicture, NothingIsReadElsewhere) {
   for (size_t i = 0; i < drawn.depth.size(); i += 3) drawn.depth[i] = odd[i / 3 % std::size(odd)];
   Keyframe keyframe;
   make_keyframe(before, drawn.picture, drawn.depth, keyframe);
-  std::vector<View> views = {look_at({0, 0, -2}, 0), look_at({0, 0, -2.0001f}, 0), look_at({0.4f, 0, 0}, 0.2f),
-                             look_at({nan, 0, 0}, 0), look_at({0, 0, 0}, nan), look_at({1e30f, 0, 0}, 0),
-                             look_at({0, 0, 0}, 3), look_at({0, 0, 0.5f}, 0, 7, 1000), look_at({0, 0, 0}, 0, 1, 1)};
+  std::vector<View> views = {
+      look_at({0, 0, -2}, 0),  look_at({0, 0, -2.0001f}, 0),      look_at({0.4f, 0, 0}, 0.2f),
+      look_at({nan, 0, 0}, 0), look_at({0, 0, 0}, nan),           look_at({1e30f, 0, 0}, 0),
+      look_at({0, 0, 0}, 3),   look_at({0, 0, 0.5f}, 0, 7, 1000), look_at({0, 0, 0}, 0, 1, 1)};
   views.push_back(before);
   views.back().tan_half_fov = 1e-3f;
   views.push_back(before);
@@ -246,34 +256,41 @@ TEST(WarpPicture, WhatIsOutsideComesFromAround) {
     WarpScratch scratch;
     float unknown = warp_picture(keyframe, now, 1, scratch, without);
     EXPECT_GT(unknown, 0.2f);
-    EXPECT_EQ(warp_picture(keyframe, around, now, 0, scratch, with), 0.0f);  // nothing is unknown, so none is too much
+    EXPECT_EQ(warp_picture(keyframe, around, now, 0, scratch, with),
+              0.0f);  // nothing is unknown, so none is too much
     size_t same = 0;
     int worst = 0;
     for (size_t i = 0; i < with.rgb.size(); i += 3) {
       same += std::equal(&with.rgb[i], &with.rgb[i] + 3, &without.rgb[i]);
-      for (size_t c = 0; c < 3; c++) worst = std::max(worst, std::abs(int(with.rgb[i + c]) - int(truth.rgb[i + c])));
+      for (size_t c = 0; c < 3; c++)
+        worst = std::max(worst, std::abs(int(with.rgb[i + c]) - int(truth.rgb[i + c])));
     }
     size_t pixels = truth.rgb.size() / 3;
-    // But for those at the seam: a column of three pixels, as the view turned to one side, and such a row.
+    // But for those at the seam: a column of three pixels, as the view turned to one side, and such
+    // a row.
     size_t seams = size_t(3 * now.height + 3 * now.width);
     EXPECT_GE(same + seams, pixels - size_t(std::lround(unknown * float(pixels))));
-    // Bilinear within pixels that are three times as wide: (3 h)^2 / 8 of the pattern's second derivative,
-    // 900 levels, of one that is h = 1/120 of the picture's distance wide; and places are right to half a small pixel.
+    // Bilinear within pixels that are three times as wide: (3 h)^2 / 8 of the pattern's second
+    // derivative, 900 levels, of one that is h = 1/120 of the picture's distance wide; and places
+    // are right to half a small pixel.
     EXPECT_LE(worst, 8);
   }
 }
 
-// At a keyframe's border its light passes into that of its surroundings: no step of more than a pixel's part
-// of the way, which is a 64th of its width, and one more for pixels seen at an angle.
+// At a keyframe's border its light passes into that of its surroundings: no step of more than a
+// pixel's part of the way, which is a 64th of its width, and one more for pixels seen at an angle.
 TEST(WarpPicture, PassesSmoothlyIntoWhatIsAround) {
-  auto plain = [](float level) { return Place([=](const Ray&) { return SeenPlace{vec3(level), infinity}; }); };
+  auto plain = [](float level) {
+    return Place([=](const Ray&) { return SeenPlace{vec3(level), infinity}; });
+  };
   View before = look_at({0, 0, 0}, 0), now = look_at({0, 0, 0}, 0.3f);
   const View views[] = {before, now};
   WarpScratch scratch;
   Image8 out;
-  EXPECT_EQ(warp_picture(keyframe_of(plain(50), before), keyframe_of(plain(200), surrounding_view(views, 0.25f)), now, 0,
-                         scratch, out),
-            0.0f);
+  EXPECT_EQ(
+      warp_picture(keyframe_of(plain(50), before),
+                   keyframe_of(plain(200), surrounding_view(views, 0.25f)), now, 0, scratch, out),
+      0.0f);
   auto at = [&](int x) { return int(out.rgb[3 * (size_t(60) * 200 + size_t(x))]); };
   EXPECT_EQ(at(0), 200);
   EXPECT_EQ(at(199), 50);
@@ -284,7 +301,8 @@ TEST(WarpPicture, PassesSmoothlyIntoWhatIsAround) {
 }
 
 TEST(WarpPicture, WhatIsNowhereStaysUnknown) {
-  View before = look_at({0, 0, 0}, 0), now = look_at({0, 0, 0}, 1.5f), beside = look_at({0, 0, 0}, 0.5f, 60, 36);
+  View before = look_at({0, 0, 0}, 0), now = look_at({0, 0, 0}, 1.5f),
+       beside = look_at({0, 0, 0}, 0.5f, 60, 36);
   Keyframe keyframe = keyframe_of(sky, before), around = keyframe_of(sky, beside);
   WarpScratch scratch;
   Image8 out;
@@ -322,9 +340,11 @@ TEST(SurroundingView, HoldsAllViewsInFewPixels) {
 }
 
 TEST(SurroundingView, TellsWhatIsMissing) {
-  View view = look_at({0, 0, 0}, 0), beside = look_at({0, 0, 0}, std::atan(view.tan_half_fov * 200 / 120));
+  View view = look_at({0, 0, 0}, 0),
+       beside = look_at({0, 0, 0}, std::atan(view.tan_half_fov * 200 / 120));
   EXPECT_EQ(missing_share(view, view), 0.0f);
-  EXPECT_NEAR(missing_share(view, beside), 0.5f, 0.1f);  // half of its columns are; edges are not upright there
+  EXPECT_NEAR(missing_share(view, beside), 0.5f,
+              0.1f);  // half of its columns are; edges are not upright there
   EXPECT_EQ(missing_share(view, look_at({0, 0, 0}, 3.14159f)), 1.0f);
   EXPECT_EQ(missing_share(keyframe_view(view), view), 0.0f);
 }

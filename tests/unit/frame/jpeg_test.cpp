@@ -101,7 +101,8 @@ TEST(Jpeg, FollowsWhatIsSkipped) {
     encode_jpeg(gradient(64, 48), quality, true, behind, 3);
     ASSERT_EQ(behind.size(), alone.size() + 3);
     EXPECT_TRUE(std::equal(alone.begin(), alone.end(), behind.begin() + 3));
-    EXPECT_EQ(std::vector<uint8_t>(behind.begin(), behind.begin() + 3), (std::vector<uint8_t>{1, 2, 3}));
+    EXPECT_EQ(std::vector<uint8_t>(behind.begin(), behind.begin() + 3),
+              (std::vector<uint8_t>{1, 2, 3}));
   }
 }
 

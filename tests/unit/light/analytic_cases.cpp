@@ -17,7 +17,8 @@ constexpr Claim claims[] = {
     {"direct", every_kind & ~unsigned(interreflection | caustics),
      "light between surfaces is left out by definition"},
     {"gather", every_kind & ~unsigned(interreflection),
-     "light between surfaces is read from cells, a little biased by their size, and polish that walks "
+     "light between surfaces is read from cells, a little biased by their size, and polish that "
+     "walks "
      "come upon is blunter"},
     {"instant_radiosity", every_kind & ~unsigned(caustics),
      "caustics are blurred by the photons' radius"},

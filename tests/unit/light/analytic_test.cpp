@@ -14,10 +14,10 @@ bool claims(const Technique& technique, const AnalyticCase& c) {
   return claim && (c.needs & ~claim->kinds) == 0;
 }
 
-// With as many samples as it takes to find the bias that has to be found, `effort` at most. Each trial is
-// drawn anew, and whether it does is told by its spread alone, never by its mean, so the t-test keeps its
-// significance (Stein 1945, "A two-sample test for a linear hypothesis whose power is independent of the
-// variance").
+// With as many samples as it takes to find the bias that has to be found, `effort` at most. Each
+// trial is drawn anew, and whether it does is told by its spread alone, never by its mean, so the
+// t-test keeps its significance (Stein 1945, "A two-sample test for a linear hypothesis whose power
+// is independent of the variance").
 Estimate estimate_well_enough(const Technique& technique, const World& world, Lights lights,
                               const View& view, const TransportSettings& transport, Effort effort,
                               double expected, size_t family_size) {

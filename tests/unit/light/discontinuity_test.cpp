@@ -73,7 +73,8 @@ void expect_apart(std::vector<Sample> samples, const char* what) {
 
 }  // namespace
 
-// One value per set, as interleaving leaves them: the pattern vanishes wherever the window is whole.
+// One value per set, as interleaving leaves them: the pattern vanishes wherever the window is
+// whole.
 TEST(Discontinuity, PatternOfSetsVanishesOnAPlane) {
   for (int n : {3, 5}) {
     std::vector<Sample> samples = see_plane({0, 1, 0.3f});
@@ -102,7 +103,8 @@ TEST(Discontinuity, NoLightIsWonOrLost) {
   }
 }
 
-// After the window of sets, one that looks three pixels far makes a pattern three times as wide vanish.
+// After the window of sets, one that looks three pixels far makes a pattern three times as wide
+// vanish.
 TEST(Discontinuity, WiderWindowTakesAWiderPattern) {
   std::vector<Sample> samples = see_plane({0, 1, 0.3f});
   for (int y = 0; y < height; y++)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours parted by glass, technique by technique: point lights and photons of instant_radiosity, whose
-// walks carry wavelengths from the lamp, and its rays from the eye bring what `path` does, channel by
-// channel, wherever the hues fall.
+// Colours parted by glass, technique by technique: point lights and photons of instant_radiosity,
+// whose walks carry wavelengths from the lamp, and its rays from the eye bring what `path` does,
+// channel by channel, wherever the hues fall.
 #include <array>
 
 #include "judge.h"
@@ -54,14 +54,16 @@ Scene make_prism_scene(Material prism, Material wall = diffuse(vec3(0.7f))) {
   Scene scene = empty_scene();
   int white = add_material(scene, diffuse(vec3(0.6f)));
   add_quad(scene, white, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, "floor");
-  add_quad(scene, add_material(scene, std::move(wall)), {0.9f, 0, 1}, {0, 0, -2}, {0, 1.4f, 0}, "wall");
+  add_quad(scene, add_material(scene, std::move(wall)), {0.9f, 0, 1}, {0, 0, -2}, {0, 1.4f, 0},
+           "wall");
   add_mesh(scene, prism_mesh(add_material(scene, std::move(prism))), "prism", at({0, 0.35f, 0}));
   add_quad(scene, add_material(scene, emitter(vec3(6))), {-0.9f, 0.2f, 0.5f}, {0, 0, -1},
            {-0.15f, 0.45f, 0}, "lamp");
   return scene;
 }
 
-// Channels of the left and the right half of a picture: what glass parts lies on one side or the other.
+// Channels of the left and the right half of a picture: what glass parts lies on one side or the
+// other.
 using Colors = std::array<Estimate, 6>;
 Colors estimate_colors(const char* name, const World& world, const Lights& lights,
                        const View& view, const TransportSettings& transport,
@@ -90,9 +92,9 @@ Colors estimate_colors(const char* name, const World& world, const Lights& light
 
 }  // namespace
 
-// The wall alone, with a spectrum on it; the prism before it, with what is seen through it; both again
-// in a mirror, and through rough glass. Photons only move light about, which between the halves of a
-// picture and across its border is stated as 1 %.
+// The wall alone, with a spectrum on it; the prism before it, with what is seen through it; both
+// again in a mirror, and through rough glass. Photons only move light about, which between the
+// halves of a picture and across its border is stated as 1 %.
 TEST(Dispersion, EveryTechniqueBringsTheSameColors) {
   constexpr double moved = 0.01;
   struct {
@@ -129,9 +131,9 @@ TEST(Dispersion, EveryTechniqueBringsTheSameColors) {
   }
 }
 
-// Parallel white light that goes through two faces of a prism near the least deviation comes out sorted:
-// the shorter the wavelength, the farther it is bent towards the base. The mean direction of each channel
-// is what Snell's law makes of the channel's response.
+// Parallel white light that goes through two faces of a prism near the least deviation comes out
+// sorted: the shorter the wavelength, the farther it is bent towards the base. The mean direction
+// of each channel is what Snell's law makes of the channel's response.
 TEST(Dispersion, PhotonsLeaveThePrismSortedByHue) {
   Material glass_of_prism = flint(0);
   Scene scene = make_prism_scene(glass_of_prism);
@@ -159,8 +161,8 @@ TEST(Dispersion, PhotonsLeaveThePrismSortedByHue) {
     glm::dvec3 off = glm::dvec3(p.flux) * (double(p.direction.y) - sine) / flux;
     square += off * off;
   }
-  // In the plane across the prism: in through the left face at each of its places, out through the right
-  // one unless the base is met first, and what Fresnel's formula lets through.
+  // In the plane across the prism: in through the left face at each of its places, out through the
+  // right one unless the base is met first, and what Fresnel's formula lets through.
   const dvec3 apex(0, 0.35, 0), left(-0.2, 0, 0), right(0.2, 0, 0);
   glm::dvec3 expected(0), weight(0);
   constexpr int wavelengths = 1024, places = 64;

@@ -138,8 +138,9 @@ TEST(Dispersion, ClustersAgreeWithSingleWavelengths) {
             significance_z * single[0].error());  // colours part
 }
 
-// An eye and a light of one hue each are, in the mean over the light's hues, one walk of the eye's: each
-// has coloured what it brings, and the colour counts once. Where either is in colour, nothing changes.
+// An eye and a light of one hue each are, in the mean over the light's hues, one walk of the eye's:
+// each has coloured what it brings, and the colour counts once. Where either is in colour, nothing
+// changes.
 TEST(Dispersion, HuesThatMeetCountOnce) {
   constexpr int steps = 8192;
   for (float eye : {0.0f, 0.01f, 0.3f, 0.5f, 0.97f}) {

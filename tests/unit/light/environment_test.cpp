@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light from infinity where it is hard to sample: poles, the seam, one bright texel, texels that are
-// no numbers, the sun's disc.
+// Light from infinity where it is hard to sample: poles, the seam, one bright texel, texels that
+// are no numbers, the sun's disc.
 #include "light/environment_light.h"
 
 #include <functional>
@@ -32,7 +32,8 @@ struct Sky {
   }
 };
 
-// The sphere cut into rows of equal height and columns: counts of samples against the integral of the density, and luminance by sampling against luminance by quadrature.
+// The sphere cut into rows of equal height and columns: counts of samples against the integral of
+// the density, and luminance by sampling against luminance by quadrature.
 void expect_sampled(const EnvironmentLight& sky, const char* what, int fine = 96) {
   constexpr int rows = 10, columns = 16, count = 40000;
   std::vector<double> counts(rows * columns), expected(rows * columns);
@@ -71,9 +72,12 @@ void expect_sampled(const EnvironmentLight& sky, const char* what, int fine = 96
   for (int row = 0; row < sky.rows; row++)
     for (int column = 0; column < sky.columns; column++) {
       auto edge = [&](int i) { return std::cos(double(pi) * i / sky.rows); };
-      double theta = double(pi) * (row + 0.5) / sky.rows, phi = 2 * double(pi) * (column + 0.5) / sky.columns;
-      vec3 d(float(std::sin(theta) * std::sin(phi)), float(std::cos(theta)), float(-std::sin(theta) * std::cos(phi)));
-      total += double(sample_environment_pdf(sky, d)) * (edge(row) - edge(row + 1)) * 2 * double(pi) / sky.columns;
+      double theta = double(pi) * (row + 0.5) / sky.rows,
+             phi = 2 * double(pi) * (column + 0.5) / sky.columns;
+      vec3 d(float(std::sin(theta) * std::sin(phi)), float(std::cos(theta)),
+             float(-std::sin(theta) * std::cos(phi)));
+      total += double(sample_environment_pdf(sky, d)) * (edge(row) - edge(row + 1)) * 2 *
+               double(pi) / sky.columns;
     }
   EXPECT_NEAR(total, 1, 1e-4) << what << ": the density is one in all";
   expect_chi_squared(counts, expected, what);
@@ -112,7 +116,8 @@ TEST(Environment, TexelsThatAreNoNumbersAreDark) {
   Sky sky(16, 8, [&](int x, int y) {
     return x == 3 ? vec3(nan) : x == 7 ? vec3(infinity) : x == 9 ? vec3(0) : vec3(1 + y);
   });
-  for (const AliasTable::Cell& cell : sky.light.cells.cells) ASSERT_TRUE(std::isfinite(cell.probability));
+  for (const AliasTable::Cell& cell : sky.light.cells.cells)
+    ASSERT_TRUE(std::isfinite(cell.probability));
   EXPECT_TRUE(std::isfinite(sky.light.mean_luminance));
   Rng rng(2);
   for (int i = 0; i < 2000; i++) {
@@ -146,7 +151,8 @@ TEST(Environment, TheSunsDiscIsSampledOverItsSolidAngle) {
                        : 0);
       if (!in_disc) continue;
       inside++;
-      float radius = length(away) / 0.0046f, angle = std::atan2(dot(away, bitangent), dot(away, tangent));
+      float radius = length(away) / 0.0046f,
+            angle = std::atan2(dot(away, bitangent), dot(away, tangent));
       int ring = std::min(int(radius * radius * 4), 3);
       int sector = std::clamp(int((angle / pi + 1) * 2), 0, 3);
       counts[size_t(ring * 4 + sector)]++;
@@ -156,7 +162,8 @@ TEST(Environment, TheSunsDiscIsSampledOverItsSolidAngle) {
     expect_mean(sunlight, 2e5 * solid + (sky == &with_sky ? solid : 0), "sunlight", 0.02);
   }
   EXPECT_FLOAT_EQ(alone.light.sun_share, 1);
-  EXPECT_EQ(luminance(eval_environment(alone.light, normalize(sun.direction + vec3(0.006f, 0, 0)))), 0);
+  EXPECT_EQ(luminance(eval_environment(alone.light, normalize(sun.direction + vec3(0.006f, 0, 0)))),
+            0);
 }
 
 // The floor under a sun of given irradiance, found by light sampling and by scattering alike.
@@ -169,17 +176,22 @@ TEST(Environment, AFloorInTheSunIsAsBrightAsTheCosineSays) {
   Lights lights = make_lights(world);
   ASSERT_TRUE(lights.tables->environment.is_sampled());
   // A disc wholly above the horizon: its irradiance is L pi sin^2(radius) times the cosine.
-  double expected = 0.5 / double(pi) * 4 * double(pi) * std::pow(std::sin(double(radius)), 2) * std::sqrt(0.5);
+  double expected =
+      0.5 / double(pi) * 4 * double(pi) * std::pow(std::sin(double(radius)), 2) * std::sqrt(0.5);
   for (const char* technique : {"path", "direct"}) {
     Mean replicates;
     for (uint64_t seed = 1; seed <= 20; seed++)
-      replicates.add(trace_mean(technique, world, lights, ray_towards({0, 2, 1}, {0, 0, 0}), 400, {}, seed).mean());
+      replicates.add(
+          trace_mean(technique, world, lights, ray_towards({0, 2, 1}, {0, 0, 0}), 400, {}, seed)
+              .mean());
     expect_mean(replicates, expected, technique);
   }
 }
 
 TEST(EmissionPicture, PlacesFollowBrightnessAndTheDensityIsExact) {
-  auto bright = [](vec2 b) { return b.x > 0.3f && b.x < 0.5f && b.y < 0.4f ? 20.0f : b.y > 0.8f ? 0.0f : 0.5f; };
+  auto bright = [](vec2 b) {
+    return b.x > 0.3f && b.x < 0.5f && b.y < 0.4f ? 20.0f : b.y > 0.8f ? 0.0f : 0.5f;
+  };
   EmissionPicture picture = make_emission_picture(900, bright);
   ASSERT_FALSE(picture.cells.cells.empty());
   constexpr int n = 8, count = 40000;

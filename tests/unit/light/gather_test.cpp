@@ -23,13 +23,14 @@ struct Prepared {
   Scene scene;
   World world;
   Lights lights;
-  explicit Prepared(Scene scene_, vec3 place) : scene(std::move(scene_)), world(scene), lights(make_lights(world)) {
+  explicit Prepared(Scene scene_, vec3 place)
+      : scene(std::move(scene_)), world(scene), lights(make_lights(world)) {
     find_technique("gather")->prepare(world, std::span(&place, 1), lights);
   }
 };
 
-// In the Cornell box no surface emits what it keeps; the mean of a cell's light, weighted by its samples,
-// must be what a path tracer finds at the same places.
+// In the Cornell box no surface emits what it keeps; the mean of a cell's light, weighted by its
+// samples, must be what a path tracer finds at the same places.
 TEST(Gather, CellsKnowWhatThePathTracerFinds) {
   Prepared p(scenes::make_cornell_box(), vec3(0, 0.27f, 0.3f));
   ASSERT_TRUE(p.lights.grid);
@@ -61,14 +62,16 @@ TEST(Gather, AgreesWithPathInTheCornellBox) {
   View view = scenes::cornell_view(p.scene, 48, 48);
   StillSettings settings;
   settings.spp = 64;
-  dvec3 reference = mean_of(render_still(*find_technique("path"), p.world, p.lights, view, settings));
-  dvec3 gathered = mean_of(render_still(*find_technique("gather"), p.world, p.lights, view, settings));
+  dvec3 reference =
+      mean_of(render_still(*find_technique("path"), p.world, p.lights, view, settings));
+  dvec3 gathered =
+      mean_of(render_still(*find_technique("gather"), p.world, p.lights, view, settings));
   for (int c = 0; c < 3; c++) EXPECT_NEAR(gathered[c] / reference[c], 1, 0.04);
 }
 
 // A small lamp and a polished ball: walls find the ball's highlight now and then, and each time are
-// dazzled. What a wide ray meets is blunter in `gather`: a bias in how that light is spread, for a smaller
-// error.
+// dazzled. What a wide ray meets is blunter in `gather`: a bias in how that light is spread, for a
+// smaller error.
 TEST(Gather, HighlightsMetByChanceAreNoSparks) {
   Scene scene = scenes::make_cornell_box();
   scene.materials[3].emission = vec3(0);  // its lamp
@@ -77,7 +80,8 @@ TEST(Gather, HighlightsMetByChanceAreNoSparks) {
   lamp.intensity = vec3(0.2f);
   scene.lights.push_back(lamp);
   int gold = scenes::add_material(scene, scenes::metal({1, 0.8f, 0.4f}, 0.15f));
-  scenes::add_mesh(scene, scenes::sphere_mesh(gold, 0.07f), "ball", scenes::at({0.1f, 0.3f, -0.1f}));
+  scenes::add_mesh(scene, scenes::sphere_mesh(gold, 0.07f), "ball",
+                   scenes::at({0.1f, 0.3f, -0.1f}));
   Prepared p(std::move(scene), vec3(0, 0.27f, 0.3f));
   View view = scenes::cornell_view(p.scene, 24, 24);
   StillSettings settings;

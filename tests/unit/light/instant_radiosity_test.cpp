@@ -53,8 +53,8 @@ void expect_dark_and_finite(const Scene& scene, const View& view, const char* wh
 
 }  // namespace
 
-// In a closed box every walk goes on until it is absorbed: the flux that arrives after d edges is the
-// power of the light times albedo^(d - 1).
+// In a closed box every walk goes on until it is absorbed: the flux that arrives after d edges is
+// the power of the light times albedo^(d - 1).
 TEST(InstantRadiosity, PointLightsCarryTheLightsPowerAndItsSeries) {
   const float albedo = 0.6f;
   Scene scene = make_furnace(albedo);
@@ -106,14 +106,15 @@ TEST(InstantRadiosity, QuasiRandomLightsVaryLessThanRandomOnes) {
   EXPECT_LT(ratio, 0.47);
 }
 
-// Lights chosen by their effect are worth what all candidates are, in every set, whether or not a probe
-// sees them; and they are the fewer that they were wanted to be.
+// Lights chosen by their effect are worth what all candidates are, in every set, whether or not a
+// probe sees them; and they are the fewer that they were wanted to be.
 TEST(InstantRadiosity, ChosenLightsAreWorthAllCandidates) {
   Scene scene = make_cornell_box();
   World world(scene);
   Lights lights = make_lights(world);
   // A corner of the floor: of most places there is nothing to be seen from it.
-  View view = make_view_towards(scene, {0.2f, 0.1f, 0.2f}, {0.27f, 0, 0.2f}, {0, 1, 0}, 0.2f, 16, 16);
+  View view =
+      make_view_towards(scene, {0.2f, 0.1f, 0.2f}, {0.27f, 0, 0.2f}, {0, 1, 0}, 0.2f, 16, 16);
   TransportSettings settings, all;
   settings.instant.columns = settings.instant.rows = 3;
   settings.instant.places = 2, settings.instant.walks = 2, settings.instant.bounced = 3;
@@ -145,8 +146,8 @@ TEST(InstantRadiosity, ChosenLightsAreWorthAllCandidates) {
   expect_same_mean(chosen_elsewhere, all_elsewhere, "where it does not");
 }
 
-// Sets and passes are subsequences of one sequence: sixteen sets of one walk stratify the lamp as one
-// set of sixteen does.
+// Sets and passes are subsequences of one sequence: sixteen sets of one walk stratify the lamp as
+// one set of sixteen does.
 TEST(InstantRadiosity, SetsAndPassesContinueOneSequence) {
   Scene scene = make_cornell_box();
   World world(scene);

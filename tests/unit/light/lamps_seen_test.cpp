@@ -17,7 +17,8 @@ namespace {
 
 enum RoofLamp : size_t { sun, below, above, lamps };
 
-// A floor, 2 m above it a roof over its middle, a lamp below and one above that, and the sun upright.
+// A floor, 2 m above it a roof over its middle, a lamp below and one above that, and the sun
+// upright.
 Scene roofed_floor() {
   Scene scene = scenes::empty_scene();
   int white = scenes::add_material(scene, scenes::diffuse(vec3(0.5f)));
@@ -57,7 +58,9 @@ Mean estimate(const Place& p, const LampsSeen* lamps, const SurfacePlace& place,
   for (int i = 0; i < count; i++) {
     LightSample light = sample_punctual_light(transport, place, {0, 1, 0}, false, sampler);
     float cosine = std::max(dot(light.direction, vec3(0, 1, 0)), 0.0f);
-    mean.add(light.pdf > 0 ? double(cosine * luminance(light.radiance * eval_visibility(transport, place, light))) : 0);
+    mean.add(light.pdf > 0 ? double(cosine * luminance(light.radiance *
+                                                       eval_visibility(transport, place, light)))
+                           : 0);
   }
   return mean;
 }
@@ -72,7 +75,8 @@ double exact(const Place& p, const SurfacePlace& place) {
     Transport transport{world, *lights.tables};
     Sampler sampler(1);
     LightSample light = sample_punctual_light(transport, place, {0, 1, 0}, false, sampler);
-    sum += double(light.direction.y * luminance(light.radiance * eval_visibility(transport, place, light)));
+    sum += double(light.direction.y *
+                  luminance(light.radiance * eval_visibility(transport, place, light)));
   }
   return sum;
 }
@@ -101,9 +105,11 @@ TEST(LampsSeen, SharesAreWhatArrives) {
 
 TEST(LampsSeen, TheChoiceByThemIsUnbiasedAndLessNoisy) {
   Place p;
-  for (SurfacePlace place : {on_floor(0.2f, 0.2f), on_floor(1.9f, 0.3f), on_floor(2.1f, 0.3f), on_floor(3.3f, 3.3f)}) {
+  for (SurfacePlace place :
+       {on_floor(0.2f, 0.2f), on_floor(1.9f, 0.3f), on_floor(2.1f, 0.3f), on_floor(3.3f, 3.3f)}) {
     double expected = exact(p, place);
-    Mean with = estimate(p, p.seen.get(), place, 20000), without = estimate(p, nullptr, place, 20000);
+    Mean with = estimate(p, p.seen.get(), place, 20000),
+         without = estimate(p, nullptr, place, 20000);
     expect_mean(with, expected, "by lamps seen", 0.05);
     expect_mean(without, expected, "by effects alone", 0.05);
     if (place.position.x < 1) {
@@ -117,11 +123,13 @@ TEST(LampsSeen, WhatWasNeverSeenIsStillFound) {
   Place p;
   SurfacePlace place = on_floor(3.3f, 3.3f);
   LampsSeen wrong = *p.seen;
-  for (LampsSeen::Shares& shares : wrong.shares) shares[sun] = shares[above] = 1, shares[below] = 255;
+  for (LampsSeen::Shares& shares : wrong.shares)
+    shares[sun] = shares[above] = 1, shares[below] = 255;
   expect_mean(estimate(p, &wrong, place, 400000), exact(p, place), "learned wrong", 0.05);
 }
 
-// While a lamp is switched off the others are known as before, though their places in the list change.
+// While a lamp is switched off the others are known as before, though their places in the list
+// change.
 TEST(LampsSeen, SwitchedOffLampsLeaveTheOthersTheirShares) {
   Place p;
   Shining shining = what_shines(p.world);
@@ -135,8 +143,10 @@ TEST(LampsSeen, SwitchedOffLampsLeaveTheOthersTheirShares) {
   for (uint64_t seed = 1; seed <= 200; seed++) {
     Sampler one(seed), other(seed);
     SurfacePlace place = on_floor(3.3f, 3.3f);
-    LightSample a = sample_punctual_light({p.world, *fewer, nullptr, &alike}, place, {0, 1, 0}, false, one);
-    LightSample b = sample_punctual_light({p.world, *fewer, nullptr, &uneven}, place, {0, 1, 0}, false, other);
+    LightSample a =
+        sample_punctual_light({p.world, *fewer, nullptr, &alike}, place, {0, 1, 0}, false, one);
+    LightSample b =
+        sample_punctual_light({p.world, *fewer, nullptr, &uneven}, place, {0, 1, 0}, false, other);
     EXPECT_EQ(a.share, b.share);
     EXPECT_EQ(a.direction, b.direction);
     near += std::isfinite(a.distance);

@@ -61,7 +61,8 @@ test::Estimate mean_of(const Technique& technique, const World& world, const Lig
   return test::estimate_prepared(technique, world, lights, view, transport, effort);
 }
 
-// Each is judged at a thousandth over all comparisons: |difference| below 4.2 standard errors, of eight.
+// Each is judged at a thousandth over all comparisons: |difference| below 4.2 standard errors, of
+// eight.
 void expect_same(const test::Estimate& a, const test::Estimate& b, const std::string& what) {
   double error = std::sqrt(a.error * a.error + b.error * b.error);
   EXPECT_LE(std::abs(a.mean - b.mean), 4.2 * error + 1e-6) << what;
@@ -135,7 +136,8 @@ TEST(SwitchedLamps, AChangeIsToldWhereItIs) {
   EXPECT_EQ(added, vec3(0));
   for (int c = 0; c < 3; c++) EXPECT_TRUE(kept[c] > 0.02f && kept[c] < 0.9f) << kept[c];
   vec3 left = kept;
-  EXPECT_FALSE(spot.changes(corner, wall, kept, added));  // beside the lamp, far from the spot's light
+  EXPECT_FALSE(
+      spot.changes(corner, wall, kept, added));  // beside the lamp, far from the spot's light
   kept = vec3(1), added = vec3(0);
   ASSERT_TRUE(back.changes(lit, floor, kept, added));
   EXPECT_EQ(kept, vec3(1));

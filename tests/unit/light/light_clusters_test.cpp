@@ -74,13 +74,14 @@ TEST(LightOrder, NeighboursAreNearAndFaceOneWay) {
     as_drawn += double(length(d.position - c.position));
     turns += dot(a.normal, b.normal) < 0.5f;
   }
-  // A curve through n places of a surface is about as long as their square root, not as their number.
+  // A curve through n places of a surface is about as long as their square root, not as their
+  // number.
   EXPECT_LT(walked, 0.2 * as_drawn);
   EXPECT_LT(turns, 200);  // of some thousands
 }
 
-// The second moment of choosing by shares s what would best be chosen by shares e is the sum of e^2/s: 1
-// at its best. Far and near places, one of them beside a wall.
+// The second moment of choosing by shares s what would best be chosen by shares e is the sum of
+// e^2/s: 1 at its best. Far and near places, one of them beside a wall.
 TEST(LightClusters, ChoosingByThemIsNearlyAsGoodAsByEachLight) {
   Box box(make_cornell_box(), 200);
   LightClusters clusters = make_light_clusters(*box.lights.tables, box.pass);

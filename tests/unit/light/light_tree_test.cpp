@@ -15,7 +15,8 @@ using namespace wellspring::test;
 namespace {
 
 vec3 random_place(Rng& rng, float size) {
-  return {size * (rng.uniform() - 0.5f), size * (rng.uniform() - 0.5f), size * (rng.uniform() - 0.5f)};
+  return {size * (rng.uniform() - 0.5f), size * (rng.uniform() - 0.5f),
+          size * (rng.uniform() - 0.5f)};
 }
 
 vec3 random_axis(Rng& rng) {
@@ -196,8 +197,8 @@ TEST(LightTree, LightsInOnePlaceAndLightsInAChain) {
 }
 
 // The whole of it in a scene: light from many lamps at a point is what adding them up says, with
-// most of them behind a wall or facing away. Of the wall the tree knows nothing: what it gains is by
-// nearness and facing alone, and that must be worth more than twice the samples.
+// most of them behind a wall or facing away. Of the wall the tree knows nothing: what it gains is
+// by nearness and facing alone, and that must be worth more than twice the samples.
 TEST(LightTree, ManyLampsBehindAWallAreSampledWithoutBias) {
   Scene scene = empty_scene();
   add_floor(scene, 0.5f);
@@ -205,7 +206,8 @@ TEST(LightTree, ManyLampsBehindAWallAreSampledWithoutBias) {
   for (int i = 0; i < 120; i++)
     add_quad(scene, lamp, {float(i % 12) - 6, 2.0f + 0.1f * float(i % 7), float(i / 12) - 5},
              {0.3f, 0, 0}, {0, 0, i % 3 ? 0.3f : -0.3f}, "lamp");
-  add_quad(scene, add_material(scene, diffuse(vec3(0))), {0.7f, 0, -9}, {0, 9, 0}, {0, 0, 18}, "wall");
+  add_quad(scene, add_material(scene, diffuse(vec3(0))), {0.7f, 0, -9}, {0, 9, 0}, {0, 0, 18},
+           "wall");
   World world(scene);
   Lights tree = make_lights(world);
   ASSERT_GE(tree.tables->emitter_choice.nodes.size(), 240u / lane_count);
@@ -220,7 +222,8 @@ TEST(LightTree, ManyLampsBehindAWallAreSampledWithoutBias) {
   for (uint64_t seed = 1; seed <= 40; seed++) {
     by_place.add(trace_mean("path", world, tree, ray, 500, settings, seed).mean());
     by_power.add(
-        trace_mean("path", world, {plain, tree.bad_samples}, ray, 1000, settings, 100 + seed).mean());
+        trace_mean("path", world, {plain, tree.bad_samples}, ray, 1000, settings, 100 + seed)
+            .mean());
   }
   expect_same_mean(by_place, by_power, "lamps behind a wall");
   EXPECT_LT(by_place.error(), 0.02 * by_place.mean());

@@ -86,12 +86,13 @@ TEST(Lights, EmittersArePickedByPowerAndPlaceAndTheirDensitiesAgree) {
     ASSERT_TRUE(hit.valid());
     Surface met = eval_surface(world, ray, hit);
     picked += hit.instance == uint32_t(strong);
-    float pdf = sample_emitter_pdf(*lights.tables, from.position, from.geometric_normal, ray.direction, met);
+    float pdf = sample_emitter_pdf(*lights.tables, from.position, from.geometric_normal,
+                                   ray.direction, met);
     ASSERT_NEAR(pdf, light.pdf, 2e-3f * light.pdf);
     ASSERT_EQ(met.emission, light.radiance);
   }
-  // The bright quad's triangles are picked as often as their probabilities say, less often than their power
-  // alone would have it (0.9), because the dim quad is nearer.
+  // The bright quad's triangles are picked as often as their probabilities say, less often than
+  // their power alone would have it (0.9), because the dim quad is nearer.
   const LightTree& tree = lights.tables->emitter_choice;
   double expected = 0, all = 0;
   for (uint32_t i = 0; i < lights.tables->emitters.size(); i++) {

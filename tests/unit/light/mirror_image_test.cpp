@@ -18,7 +18,8 @@ namespace {
 // A wall 3 m behind the eye, which is at the origin and looks along -Z.
 Scene make_stage() {
   Scene scene = empty_scene();
-  add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {20, -20, 3}, {-40, 0, 0}, {0, 40, 0}, "wall");
+  add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {20, -20, 3}, {-40, 0, 0}, {0, 40, 0},
+           "wall");
   return scene;
 }
 
@@ -36,7 +37,8 @@ Sample look(const Scene& scene, vec3 direction, vec3 eye = vec3(0)) {
 
 TEST(MirrorImage, OfAPlaneMirrorLiesAsFarBehindItAsThingsLieBefore) {
   Scene scene = make_stage();
-  add_quad(scene, add_material(scene, metal(vec3(0.9f), 0)), {-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, "mirror");
+  add_quad(scene, add_material(scene, metal(vec3(0.9f), 0)), {-5, -5, -2}, {10, 0, 0}, {0, 10, 0},
+           "mirror");
   for (vec3 d : {vec3(0, 0, -1), vec3(0.3f, -0.2f, -1), vec3(-0.7f, 0.5f, -1)}) {
     Sample sample = look(scene, d);
     EXPECT_TRUE(sample.flags & sample_specular);
@@ -50,7 +52,8 @@ TEST(MirrorImage, OfTwoPlaneMirrorsIsThatOfTheWholeWay) {
   int mirror = add_material(scene, metal(vec3(0.9f), 0));
   add_quad(scene, mirror, {-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, "far mirror");
   add_quad(scene, mirror, {8, -5, 1}, {-16, 0, 0}, {0, 10, 0}, "near mirror");
-  add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {6, -5, -9}, {0, 10, 0}, {0, 0, 20}, "side");
+  add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {6, -5, -9}, {0, 10, 0}, {0, 0, 20},
+           "side");
   Sample sample = look(scene, {1, 0, -1});  // 2 m to the mirror, 3 to the other, 1 to the side
   EXPECT_NEAR(sample.image, 6 * std::sqrt(2.0f), 0.02);
 }
@@ -66,15 +69,19 @@ TEST(MirrorImage, OfABallIsSmallAndJustBehindItsFront) {
 
 TEST(MirrorImage, BehindASlabOfGlassIsDrawnNearer) {
   Scene scene = make_stage();
-  add_quad(scene, add_material(scene, metal(vec3(0.9f), 0)), {-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, "mirror");
-  add_mesh(scene, box_mesh(add_material(scene, glass(1.5f, 0, 0.3f)), {4, 4, 0.3f}), "slab", at({0, 0, 1}));
+  add_quad(scene, add_material(scene, metal(vec3(0.9f), 0)), {-5, -5, -2}, {10, 0, 0}, {0, 10, 0},
+           "mirror");
+  add_mesh(scene, box_mesh(add_material(scene, glass(1.5f, 0, 0.3f)), {4, 4, 0.3f}), "slab",
+           at({0, 0, 1}));
   EXPECT_NEAR(look(scene, {0.01f, 0.02f, -1}).image, 7 - 0.3f * (1 - 1 / 1.5f), 0.02);
 }
 
 TEST(MirrorImage, ThroughGlassThereIsNone) {
   Scene scene = empty_scene();
-  add_mesh(scene, box_mesh(add_material(scene, glass(1.5f, 0, 0.3f)), {4, 4, 0.3f}), "slab", at({0, 0, -1}));
-  add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {-20, -20, -3}, {40, 0, 0}, {0, 40, 0}, "wall");
+  add_mesh(scene, box_mesh(add_material(scene, glass(1.5f, 0, 0.3f)), {4, 4, 0.3f}), "slab",
+           at({0, 0, -1}));
+  add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {-20, -20, -3}, {40, 0, 0}, {0, 40, 0},
+           "wall");
   Sample sample = look(scene, {0.01f, 0.02f, -1});
   EXPECT_TRUE(sample.flags & sample_specular);
   EXPECT_EQ(sample.image, 0);
@@ -83,18 +90,20 @@ TEST(MirrorImage, ThroughGlassThereIsNone) {
 TEST(MirrorImage, OfTheSkyIsFarAndOfMattThingsThereIsNone) {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(1);
-  add_quad(scene, add_material(scene, metal(vec3(0.9f), 0)), {-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, "mirror");
+  add_quad(scene, add_material(scene, metal(vec3(0.9f), 0)), {-5, -5, -2}, {10, 0, 0}, {0, 10, 0},
+           "mirror");
   EXPECT_GT(look(scene, {0.1f, 0, -1}).image, 500);
   EXPECT_EQ(look(make_stage(), {0, 0, 1}).image, 0);
 }
 
-// A hollow mirror of 2 m radius: what is 2.5 m before it is imaged, upside down, 1.67 m before it; what is
-// at its middle, there.
+// A hollow mirror of 2 m radius: what is 2.5 m before it is imaged, upside down, 1.67 m before it;
+// what is at its middle, there.
 TEST(MirrorImage, OfAHollowMirrorLiesBeforeItAndMayLieBehindTheEye) {
   auto image_of = [](float z) {
     Scene scene = empty_scene();
     add_mesh(scene, sphere_mesh(add_material(scene, metal(vec3(0.9f), 0)), 2, 256), "mirror");
-    add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {-0.5f, -0.5f, z}, {0, 1, 0}, {1, 0, 0}, "card");
+    add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {-0.5f, -0.5f, z}, {0, 1, 0},
+             {1, 0, 0}, "card");
     return look(scene, {0.004f, 0.003f, -1}, {0, 0, -0.2f}).image;
   };
   EXPECT_NEAR(image_of(0.5f), 1.8f - 1 / (1 - 1 / 2.5f), 0.01);

@@ -87,8 +87,8 @@ TEST(CausticPhotons, CastersHoldWhatIsSharpAndNothingElse) {
   EXPECT_TRUE(shoot({matt_world, *matt_lights.tables}, 1000, 1).empty());
 }
 
-// The density of directions is that of their choice: the mean of 1 / density over chosen directions is
-// the solid angle of the spheres together, which overlap, and one of which holds the place.
+// The density of directions is that of their choice: the mean of 1 / density over chosen directions
+// is the solid angle of the spheres together, which overlap, and one of which holds the place.
 TEST(CausticPhotons, DirectionsHaveTheirDensity) {
   std::vector<CasterSphere> casters{{{0, 0, -3}, 1, 1}, {{0.8f, 0, -3}, 1, 0.2f},
                                     {{0, 4, 0}, 0.3f, 1}};
@@ -133,9 +133,9 @@ TEST(CausticPhotons, ArriveFromSharpThingsOnRoughOnes) {
     ASSERT_LE(p.depth, 2u);  // with the eye's edge three: reflected only
 }
 
-// All ways of light together are what `path` finds: no path is missing, none counts twice. The floor's
-// mean, because that is where the density estimate, which only moves light about, has no bias but
-// for what it moves across the picture's border: stated as 0.5 %.
+// All ways of light together are what `path` finds: no path is missing, none counts twice. The
+// floor's mean, because that is where the density estimate, which only moves light about, has no
+// bias but for what it moves across the picture's border: stated as 0.5 %.
 TEST(CausticPhotons, WithEverythingElseTheyArePath) {
   constexpr double border_bias = 0.005;
   struct {

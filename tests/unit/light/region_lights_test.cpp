@@ -38,8 +38,8 @@ TransportSettings few_of_many() {
 
 }  // namespace
 
-// What a region asks is in the mean worth all lights, in every list, at a place that its probes see and at
-// one that they do not; and it is as few as it was wanted to be.
+// What a region asks is in the mean worth all lights, in every list, at a place that its probes see
+// and at one that they do not; and it is as few as it was wanted to be.
 TEST(RegionLights, AreWorthAllLights) {
   Scene scene = make_cornell_box();
   World world(scene);
@@ -69,8 +69,8 @@ TEST(RegionLights, AreWorthAllLights) {
     EXPECT_LE(std::abs(on_floor.mean()), significance_z * on_floor.error());
     EXPECT_LE(std::abs(on_ceiling.mean()), significance_z * on_ceiling.error());
     EXPECT_NEAR(asked / 300, 5, 0.6);  // a list gets one more or less
-    // Where probes look, the choice is the better one: F-test, a ratio of variances of 300 draws below
-    // 0.64 has probability 1e-4 if they were equal.
+    // Where probes look, the choice is the better one: F-test, a ratio of variances of 300 draws
+    // below 0.64 has probability 1e-4 if they were equal.
     double relative = on_floor.error() / 1, other = on_ceiling.error() / 1;
     EXPECT_LT(relative * relative, 0.64 * other * other);
   }
@@ -101,15 +101,16 @@ TEST(RegionLights, ChoiceForOnePlaceIsWorthItsSet) {
       ASSERT_LE(count, 5);
       double sum = 0;
       for (int k = 0; k < count; k++)
-        sum += double(chosen[k].factor) * irradiance(pass.lights[chosen[k].light], floor, {0, 1, 0});
+        sum +=
+            double(chosen[k].factor) * irradiance(pass.lights[chosen[k].light], floor, {0, 1, 0});
       mean.add(sum);
     }
     expect_mean(mean, all, "four of a set");
   }
 }
 
-// A pixel at the edge of something bright shows the share that the thing covers, sooner than by one ray a
-// pixel; far from edges nothing is done.
+// A pixel at the edge of something bright shows the share that the thing covers, sooner than by one
+// ray a pixel; far from edges nothing is done.
 TEST(EdgeSamples, EdgesAreMeansOverTheirPixels) {
   Scene scene = empty_scene();
   int bright = add_material(scene, emitter(vec3(1)));
@@ -170,7 +171,8 @@ TEST(PaneBoxes, EveryOneOfManyPanesIsAsked) {
 
 TEST(PaneBoxes, RaysElsewhereAskNoPane) {
   Scene scene = empty_scene();
-  int pane = add_material(scene, glass(1.5f, 0, 0)), wall = add_material(scene, diffuse(vec3(0.5f)));
+  int pane = add_material(scene, glass(1.5f, 0, 0)),
+      wall = add_material(scene, diffuse(vec3(0.5f)));
   add_mesh(scene, box_mesh(pane, {1, 1, 0.01f}), "pane", at({0, 0, -2}));
   add_mesh(scene, box_mesh(wall, {1, 1, 0.01f}), "wall", at({3, 0, -2}));
   int lamp = add_material(scene, emitter(vec3(1)));

@@ -49,7 +49,8 @@ TEST_P(See, AgreesWithTheSamplesOfTechniques) {
   View view = make_view_towards(scene, {0, 0.3, 4}, {0, 0, 0}, {0, 1, 0}, 1.2f, 96, 54);
   std::vector<Ray> rays;
   for (int y = 0; y < view.height; y++)
-    for (int x = 0; x < view.width; x++) rays.push_back(view_ray(view, float(x) + 0.5f, float(y) + 0.5f));
+    for (int x = 0; x < view.width; x++)
+      rays.push_back(view_ray(view, float(x) + 0.5f, float(y) + 0.5f));
   std::vector<Seen> seen(rays.size());
   see(world, lights, rays, seen);
   TransportSettings emission;  // one edge: what is there without any light falling

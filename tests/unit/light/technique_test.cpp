@@ -200,8 +200,8 @@ TEST(Technique, APaneShowsWhatIsBehindAndItsMirrorImage) {
                   0.96f * 3 + 0.04f * 50, 1e-3f);
 }
 
-// Of what a sample is sure of, every other sample of the same ray is the same, shadow or not; where one
-// of two lamps is drawn, or a gloss, it is not sure.
+// Of what a sample is sure of, every other sample of the same ray is the same, shadow or not; where
+// one of two lamps is drawn, or a gloss, it is not sure.
 TEST(Technique, SureSamplesRepeatThemselves) {
   Scene one_lamp = make_mixed_scene();
   Scene two_lamps = one_lamp;
@@ -303,7 +303,8 @@ TEST(Technique, ClampBoundsASampleAndKeepsItsHue) {
       }
       EXPECT_GT(bounded_samples, 16);
       // A lamp that is looked at is no matter of chance.
-      vec3 lamp = trace_one(technique, world, lights, ray_towards({0, 0.275f, 0.8f}, {0, 0.549f, -0.27f}), 1, bound)
+      vec3 lamp = trace_one(technique, world, lights,
+                            ray_towards({0, 0.275f, 0.8f}, {0, 0.549f, -0.27f}), 1, bound)
                       .radiance();
       EXPECT_NEAR(lamp.x, 17, 1e-4f);
       EXPECT_NEAR(lamp.z, 4, 1e-4f);

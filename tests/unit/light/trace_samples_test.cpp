@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples traced side by side: each the same as alone, bit for bit, and the same light as by the way
-// that knows all materials.
+// Samples traced side by side: each the same as alone, bit for bit, and the same light as by the
+// way that knows all materials.
 #include <gtest/gtest.h>
 
 #include <cstring>

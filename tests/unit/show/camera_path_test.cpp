@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ways of a tour's camera: smooth, within their limits, and clear of everything; on easy grounds and
-// hard ones.
+// Ways of a tour's camera: smooth, within their limits, and clear of everything; on easy grounds
+// and hard ones.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -79,7 +79,8 @@ TEST(CameraPath, KeepsItsLimitsBetweenAnyTwoViews) {
   auto random = [&](double reach) { return reach * (2 * double(rng.uniform()) - 1); };
   for (int i = 0; i < 60; i++) {
     Viewpoint from = view({random(8), 1.6, random(8)}, float(random(7)), float(random(1)));
-    Viewpoint to = view({random(8), 1.6 + random(1), random(8)}, float(random(7)), float(random(1)), 0.5f);
+    Viewpoint to =
+        view({random(8), 1.6 + random(1), random(8)}, float(random(7)), float(random(1)), 0.5f);
     CameraPath path = make_camera_path({from.position, to.position}, from, to, {});
     expect_comfortable(path, "way " + std::to_string(i));
     expect_ends(path, from, to);
@@ -103,7 +104,8 @@ TEST(CameraPath, HardLayouts) {
            {"a millimetre", {{1, 1.6, 1}, {1.001, 1.6, 1}}, 0, 0},
            {"far from zero", {{1e6, 1.6, -1e6}, {1e6 + 5, 1.6, -1e6}}, 0, 1},
            {"a kilometre", {{0, 1.6, 0}, {1000, 1.6, 0}}, 0, 1}}) {
-    Viewpoint from = view(hard.eyes.front(), hard.yaw_from), to = view(hard.eyes.back(), hard.yaw_to, -0.3f);
+    Viewpoint from = view(hard.eyes.front(), hard.yaw_from),
+              to = view(hard.eyes.back(), hard.yaw_to, -0.3f);
     CameraPath path = make_camera_path(hard.eyes, from, to, {});
     expect_comfortable(path, hard.what);
     expect_ends(path, from, to);
@@ -112,7 +114,8 @@ TEST(CameraPath, HardLayouts) {
 
 TEST(CameraPath, TakesAtLeastTheTimeItIsGivenAndNoneForNothing) {
   Viewpoint here = view({1, 1.6, 1}, 0.5f), there = view({3, 1.6, 1}, 0.5f);
-  EXPECT_NEAR(make_camera_path({here.position, there.position}, here, there, {}, 30).seconds, 30, 1e-6);
+  EXPECT_NEAR(make_camera_path({here.position, there.position}, here, there, {}, 30).seconds, 30,
+              1e-6);
   EXPECT_LT(make_camera_path({here.position, here.position}, here, here, {}).seconds, 0.05);
   double quick = make_camera_path({here.position, there.position}, here, there, {}).seconds;
   EXPECT_GT(quick, 2 / 1.2);
@@ -126,7 +129,8 @@ struct Ground {
   std::unique_ptr<World> world;
   WalkMap map;
 
-  explicit Ground(Exhibit made, const std::vector<WalkObstacle>& obstacles = {}) : exhibit(std::move(made)) {
+  explicit Ground(Exhibit made, const std::vector<WalkObstacle>& obstacles = {})
+      : exhibit(std::move(made)) {
     world = std::make_unique<World>(exhibit.scene);
     std::vector<vec3> seeds;
     for (const auto& viewpoint : exhibit.viewpoints)
@@ -139,7 +143,8 @@ struct Ground {
     for (float height = walk_step + 0.1f; height <= map.eye_height; height += 0.1f)
       for (int i = 0; i < 64; i++) {
         float angle = 2 * pi * float(i) / 64;
-        Hit hit = world->intersect({ground + vec3(0, height, 0), 0, {std::cos(angle), 0, std::sin(angle)}, least});
+        Hit hit = world->intersect(
+            {ground + vec3(0, height, 0), 0, {std::cos(angle), 0, std::sin(angle)}, least});
         if (hit.valid()) least = std::min(least, hit.t);
       }
     return least;
@@ -153,7 +158,8 @@ void expect_clear(const Ground& ground, const Route& route, const std::string& w
   float least = 1;
   for (size_t i = 1; i < route.points.size(); i++)
     for (int k = 0; k < 4; k++)
-      least = std::min(least, ground.nearest(mix(route.points[i - 1], route.points[i], 0.25f * float(k)), 1));
+      least = std::min(
+          least, ground.nearest(mix(route.points[i - 1], route.points[i], 0.25f * float(k)), 1));
   EXPECT_GE(least, ground.map.radius - 0.02f) << what;
 }
 
@@ -163,7 +169,8 @@ TEST(Route, GoesAroundAWall) {
   Route route = find_route(ground.map, door, corner);
   expect_clear(ground, route, "wall");
   float length = 0;
-  for (size_t i = 1; i < route.points.size(); i++) length += glm::length(route.points[i] - route.points[i - 1]);
+  for (size_t i = 1; i < route.points.size(); i++)
+    length += glm::length(route.points[i] - route.points[i - 1]);
   // The shortest way passes the wall's end at (1, 0) at arm's length.
   float shortest = glm::length(vec2(-2, 3) - vec2(1, 0)) + glm::length(vec2(1, 0) - vec2(3, -3));
   EXPECT_GT(length, shortest);
@@ -189,7 +196,8 @@ TEST(Route, FindsAGapAndRefusesASlit) {
 TEST(Route, NothingIsTooThin) {
   Exhibit exhibit = make_tiny_exhibit();
   Mesh& room = room_of(exhibit);
-  for (int i = 0; i < 24; i++) {  // a curtain of threads, 2 mm wide and 0.3 m apart, over the opening
+  for (int i = 0; i < 24;
+       i++) {  // a curtain of threads, 2 mm wide and 0.3 m apart, over the opening
     vec3 foot(1 + 0.13f * float(i), 0.6f, 0);
     add_quad(room, foot, {0.002f, 0, 0}, {0, 0.4f, 0});
   }
@@ -246,11 +254,14 @@ TEST(CastleTour, IsComfortableAndClear) {
       std::string what = "leg " + std::to_string(i);
       expect_comfortable(*legs[i], what);
       float least = 1;
-      dvec3 first = eval_camera_path(*legs[i], 0).position, last = eval_camera_path(*legs[i], 1e9).position;
+      dvec3 first = eval_camera_path(*legs[i], 0).position,
+            last = eval_camera_path(*legs[i], 1e9).position;
       for (double t = 0; t <= legs[i]->seconds; t += 0.05) {
         Viewpoint at = eval_camera_path(*legs[i], t);
         // Viewpoints themselves may lean over a case.
-        if (std::min(glm::length(at.position - first), glm::length(at.position - last)) < double(lean)) continue;
+        if (std::min(glm::length(at.position - first), glm::length(at.position - last)) <
+            double(lean))
+          continue;
         vec3 eye = vec3(at.position - ground.exhibit.scene.origin);
         least = std::min(least, ground.nearest(eye - vec3(0, ground.map.eye_height, 0), 1));
       }

@@ -26,7 +26,8 @@ TEST(DisplayPath, SpendsTheTimeThereIs) {
     for (double seconds : {0.002, 0.01, 0.05, 0.2})
       for (const DisplayPlan& before : {points, drawn, looked}) {
         DisplayPlan plan = plan_display(seconds, pixels, costs, before);
-        double spent = plan.samples / costs.samples_per_second + plan.looks / costs.looks_per_second +
+        double spent = plan.samples / costs.samples_per_second +
+                       plan.looks / costs.looks_per_second +
                        (plan.drawn ? costs.drawing_seconds : 0);
         // Light keeps a quarter of the time even where drawing slows pictures down.
         double slowed = plan.drawn ? std::max(0.0, costs.drawing_seconds - 0.75 * seconds) : 0;
@@ -50,7 +51,8 @@ TEST(DisplayPath, DoesNotAlternateWhereBothAreAboutAsGood) {
   EXPECT_LE(changes, 1);
   plan = {}, changes = 0;
   for (int i = 0; i < 100; i++) {
-    DisplayPlan next = plan_display(slow.drawing_seconds / 0.7 * (i % 2 ? 1.05 : 0.95), pixels, slow, plan);
+    DisplayPlan next =
+        plan_display(slow.drawing_seconds / 0.7 * (i % 2 ? 1.05 : 0.95), pixels, slow, plan);
     changes += plan.drawn != next.drawn;
     plan = next;
   }
@@ -111,9 +113,11 @@ TEST(DisplayPath, TheReferenceComesLast) {
   EXPECT_FALSE(wants_reference(1, false, false, 0, 1));
   EXPECT_FALSE(wants_reference(30, false, true, 0, 1));  // light is coarse yet
   EXPECT_FALSE(wants_reference(30, false, false, 0.4f, 0.6f));
-  EXPECT_FALSE(wants_reference(30, false, false, 0.05f, 0.3f));  // of few samples its noise would show
+  EXPECT_FALSE(
+      wants_reference(30, false, false, 0.05f, 0.3f));  // of few samples its noise would show
   EXPECT_TRUE(wants_reference(30, false, false, 0.05f, 0.6f));
-  EXPECT_TRUE(wants_reference(30, true, false, 0.15f, 0.4f));  // the storyteller moves: what she hid is new
+  EXPECT_TRUE(
+      wants_reference(30, true, false, 0.15f, 0.4f));  // the storyteller moves: what she hid is new
   EXPECT_FALSE(wants_reference(0.5, true, false, 0, 1));       // walks again
 }
 

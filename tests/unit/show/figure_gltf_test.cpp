@@ -39,7 +39,9 @@ Asset painted(const json& material) {
   return asset;
 }
 
-const Material& worn(const Made& made) { return made.scene.materials[size_t(made.moving[0].material)]; }
+const Material& worn(const Made& made) {
+  return made.scene.materials[size_t(made.moving[0].material)];
+}
 
 bool says(const Made& made, const std::string& text) {
   for (const std::string& warning : made.scene.warnings)
@@ -48,10 +50,12 @@ bool says(const Made& made, const std::string& text) {
 }
 
 TEST(FigureOfGltf, WearsTheFilesMaterial) {
-  Made made = make(painted({{"name", "silk"},
-                            {"alphaMode", "MASK"},
-                            {"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.4, 0.6, 1}}, {"roughnessFactor", 0.3}}},
-                            {"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {1, 0, 0}}}}}}}));
+  Made made =
+      make(painted({{"name", "silk"},
+                    {"alphaMode", "MASK"},
+                    {"pbrMetallicRoughness",
+                     {{"baseColorFactor", {0.2, 0.4, 0.6, 1}}, {"roughnessFactor", 0.3}}},
+                    {"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {1, 0, 0}}}}}}}));
   ASSERT_EQ(made.moving.size(), 1u);
   EXPECT_EQ(worn(made).name, "silk");
   EXPECT_FLOAT_EQ(worn(made).base_color.y, 0.4f);
@@ -69,7 +73,8 @@ TEST(FigureOfGltf, CartoonsAreShownMatt) {
   EXPECT_FLOAT_EQ(worn(made).metallic, 0);
   EXPECT_FLOAT_EQ(worn(made).roughness, 1);
   bool said = false;
-  for (const std::string& warning : made.character.warnings) said = said || warning.find("cartoons") != std::string::npos;
+  for (const std::string& warning : made.character.warnings)
+    said = said || warning.find("cartoons") != std::string::npos;
   EXPECT_TRUE(said);
 }
 
@@ -83,11 +88,13 @@ Asset mapped(json material) {
   for (const test::PersonBone& bone : test::person_bones())
     for (int corner = 0; corner < 8; corner++) {
       vec3 p = (corner & 1) ? bone.to : bone.place;
-      p += vec3((corner & 1) ? 0.03f : -0.03f, (corner & 2) ? 0.03f : -0.03f, (corner & 4) ? 0.03f : -0.03f);
+      p += vec3((corner & 1) ? 0.03f : -0.03f, (corner & 2) ? 0.03f : -0.03f,
+                (corner & 4) ? 0.03f : -0.03f);
       uv.push_back(p.x + 0.2f * p.y + 0.3f * p.z);  // no face of the boxes lies along u or v
       uv.push_back(0.15f * p.x - p.y + 0.25f * p.z);
     }
-  asset.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = asset.add_floats("VEC2", 2, uv);
+  asset.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+      asset.add_floats("VEC2", 2, uv);
   return asset;
 }
 
@@ -179,7 +186,8 @@ TEST(FigureOfGltf, ExpressionsRepaintMaterials) {
       if (run.y == 16 && run.x <= 16 && 16 < run.x + run.count) result.drawn = run.see(16 - run.x);
     });
     std::vector<Request> requests(64);
-    for (uint32_t i = 0; i < 64; i++) requests[i].ray = ray, requests[i].seed = 1, requests[i].index = i;
+    for (uint32_t i = 0; i < 64; i++)
+      requests[i].ray = ray, requests[i].seed = 1, requests[i].index = i;
     std::vector<Sample> samples(64);
     trace(*find_technique("path"), world, lights, {}, requests, samples);
     result.traced = vec3(0);
@@ -213,18 +221,23 @@ TEST(FigureOfGltf, ExpressionsRepaintMaterials) {
 
 // Eyes and mouths that are pictures: another part of them shows, to rays and in drawn pictures.
 TEST(FigureOfGltf, ExpressionsMovePictures) {
-  Asset asset = painted({{"name", "face"}, {"doubleSided", true}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}}}});
+  Asset asset = painted(
+      {{"name", "face"},
+       {"doubleSided", true},
+       {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}}}});
   test::add_vrm_1(asset);
   asset.root["textures"] = json::array({{{"source", 0}}});
   asset.root["images"] = json::array({{{"uri", "two.png"}}});
   std::vector<float> uv;
   for (size_t v = 0; v < test::person_bones().size() * 8; v++) uv.insert(uv.end(), {0.25f, 0.5f});
-  asset.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = asset.add_floats("VEC2", 2, uv);
-  asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"]["surprised"]["textureTransformBinds"] = {
-      {{"material", 0}, {"offset", {0.5, 0}}}};
+  asset.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+      asset.add_floats("VEC2", 2, uv);
+  asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"]["surprised"]
+            ["textureTransformBinds"] = {{{"material", 0}, {"offset", {0.5, 0}}}};
   Frame halves;
   halves.width = 8, halves.height = 4;
-  for (int i = 0; i < 32; i++) halves.color.push_back(i % 8 < 4 ? vec3(0.8f, 0.05f, 0.05f) : vec3(0.05f, 0.8f, 0.05f));
+  for (int i = 0; i < 32; i++)
+    halves.color.push_back(i % 8 < 4 ? vec3(0.8f, 0.05f, 0.05f) : vec3(0.05f, 0.8f, 0.05f));
   TempFolder folder;
   std::string path = folder.write("two.png", "");
   save_picture(path, halves, Tonemap{});
@@ -284,12 +297,14 @@ TEST(FigureOfX3d, WearsThePicturesOfItsMaterial) {
   const Material& material = worn(made);
   ASSERT_GE(material.normal_texture.texture, 0);
   EXPECT_FLOAT_EQ(material.normal_scale, 0.7f);
-  EXPECT_EQ(material.metallic_roughness_texture.texture, material.normal_texture.texture) << "read once";
+  EXPECT_EQ(material.metallic_roughness_texture.texture, material.normal_texture.texture)
+      << "read once";
   EXPECT_EQ(material.emission_texture.texture, -1);
   EXPECT_FALSE(made.moving[0].tangents.empty());
   size_t said = 0;
   for (const std::string& warning : made.character.warnings)
-    said += warning.find("occlusionTexture") != std::string::npos || warning.find("gone.png") != std::string::npos;
+    said += warning.find("occlusionTexture") != std::string::npos ||
+            warning.find("gone.png") != std::string::npos;
   EXPECT_EQ(said, 2u);
 }
 
@@ -299,7 +314,9 @@ TEST(FigureOfGltf, WhatNeedsNoTangentsHasNone) {
 }
 
 TEST(FigureOfGltf, MissingAndBrokenPicturesAreTold) {
-  Asset asset = painted({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"baseColorFactor", {0.5, 0.5, 0.5, 1}}}}});
+  Asset asset =
+      painted({{"pbrMetallicRoughness",
+                {{"baseColorTexture", {{"index", 0}}}, {"baseColorFactor", {0.5, 0.5, 0.5, 1}}}}});
   asset.root["textures"] = json::array({{{"source", 0}}});
   asset.root["images"] = json::array({{{"uri", "face.png"}}});
   Made missing = make(asset);

@@ -12,8 +12,9 @@ Character make_character() {
   character.name = "Two parts";
   character.joints.resize(1);
   character.joints[0].name = "humanoid_root";
-  character.looks = {{.name = "red", .base_color = {1, 0, 0}, .roughness = 0.3f},
-                     {.name = "glass", .base_color = {0, 1, 0}, .alpha = 0.5f, .double_sided = true}};
+  character.looks = {
+      {.name = "red", .base_color = {1, 0, 0}, .roughness = 0.3f},
+      {.name = "glass", .base_color = {0, 1, 0}, .alpha = 0.5f, .double_sided = true}};
   character.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   character.normals.assign(4, {0, 0, 1});
   character.uv = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};

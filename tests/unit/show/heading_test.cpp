@@ -54,7 +54,8 @@ TEST(Heading, QuickTurnsNeedWhatLiesAround) {
     Heading heading;
     View now;
     for (int i = 0; i <= 30; i++) note_view(heading, i / 60.0, now = facing(speed * float(i) / 60));
-    View drawn = keyframe_view(expected_view(heading, now, 0.15), expected_turn(heading, now, 0.05));
+    View drawn =
+        keyframe_view(expected_view(heading, now, 0.15), expected_turn(heading, now, 0.05));
     std::optional<View> around = surroundings(heading, now, drawn, 0.2);
     ASSERT_EQ(around.has_value(), std::abs(speed) > 1) << speed;
     if (!around) continue;
@@ -76,7 +77,8 @@ TEST(Heading, WhoStopsIsExpectedToStaySoon) {
 
 TEST(Heading, ALeapLeadsNowhere) {
   Heading heading;
-  for (int i = 0; i < 5; i++) EXPECT_FALSE(note_view(heading, i / 60.0, facing(0, vec3(0.02f * float(i), 0, 0))));
+  for (int i = 0; i < 5; i++)
+    EXPECT_FALSE(note_view(heading, i / 60.0, facing(0, vec3(0.02f * float(i), 0, 0))));
   View there = facing(2, vec3(9, 0, 0));
   EXPECT_TRUE(note_view(heading, 5 / 60.0, there));
   EXPECT_EQ(expected_view(heading, there, 1), there);
@@ -88,14 +90,18 @@ TEST(Heading, MarginsAreAsWideAsTheTurn) {
   for (float turn : {0.0f, 0.01f, 0.05f}) {
     View wide = keyframe_view(facing(0), turn);
     EXPECT_LE(wide.width, 320 + 2 * 32);
-    Image8 blank{wide.width, wide.height, std::vector<uint8_t>(3 * size_t(wide.width) * size_t(wide.height), 128)}, out;
+    Image8 blank{wide.width, wide.height,
+                 std::vector<uint8_t>(3 * size_t(wide.width) * size_t(wide.height), 128)},
+        out;
     std::vector<float> depth(size_t(wide.width) * size_t(wide.height), INFINITY);
     Keyframe keyframe;
     make_keyframe(wide, blank, depth, keyframe);
     WarpScratch scratch;
-    for (float yaw : {-turn, turn}) EXPECT_EQ(warp_picture(keyframe, facing(yaw), 1, scratch, out), 0.0f) << turn;
+    for (float yaw : {-turn, turn})
+      EXPECT_EQ(warp_picture(keyframe, facing(yaw), 1, scratch, out), 0.0f) << turn;
   }
-  EXPECT_EQ(keyframe_view(facing(0), 3).width, 320 + 2 * 32);  // quicker turns are not followed farther
+  EXPECT_EQ(keyframe_view(facing(0), 3).width,
+            320 + 2 * 32);  // quicker turns are not followed farther
   EXPECT_EQ(keyframe_view(facing(0), NAN).width, keyframe_view(facing(0)).width);
 }
 

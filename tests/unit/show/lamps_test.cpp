@@ -43,7 +43,8 @@ struct Lamps : testing::Test {
   double now = 0;
   std::unique_ptr<Show> show;
 
-  void begin(Exhibit exhibit, int visitors, const char* technique = "gather", bool background = false) {
+  void begin(Exhibit exhibit, int visitors, const char* technique = "gather",
+             bool background = false) {
     ShowSettings settings;
     settings.fps = 50;
     settings.background = background;
@@ -53,8 +54,8 @@ struct Lamps : testing::Test {
     for (int i = 0; i < visitors; i++) {
       links.push_back(std::make_shared<Link>(uint64_t(i + 1), LinkKind::visit, "test"));
       arrivals.put(links.back());
-      say(i, std::string(R"({"type":"hello","width":96,"height":64,"lang":")") + (i ? "de" : "en") + R"(","role":")" +
-                 (i ? "kiosk" : "visitor") + "\"}");
+      say(i, std::string(R"({"type":"hello","width":96,"height":64,"lang":")") + (i ? "de" : "en") +
+                 R"(","role":")" + (i ? "kiosk" : "visitor") + "\"}");
     }
     told.resize(size_t(visitors)), picture.resize(size_t(visitors));
   }
@@ -92,13 +93,15 @@ TEST_F(Lamps, OneSwitchesAndAllAreToldAndSeeIt) {
     links.clear(), told.clear(), picture.clear();
     begin(make_lit_exhibit(), 2, "gather", background);
     run(1.5);
-    EXPECT_EQ(last(0, "welcome")["lamps"], json::parse(R"([{"name":"ceiling","title":"Ceiling","on":true}])"));
+    EXPECT_EQ(last(0, "welcome")["lamps"],
+              json::parse(R"([{"name":"ceiling","title":"Ceiling","on":true}])"));
     EXPECT_EQ(last(1, "welcome")["lamps"][0]["title"], "Decke");
     double lit[2] = {level(0), level(1)};
     lamp(1, "ceiling", false);
     step();
     step();
-    for (int i : {0, 1}) EXPECT_EQ(last(i, "state")["lamps"], json::parse(R"({"ceiling":false})")) << i;
+    for (int i : {0, 1})
+      EXPECT_EQ(last(i, "state")["lamps"], json::parse(R"({"ceiling":false})")) << i;
     run(0.5);
     double dark[2] = {level(0), level(1)};
     for (int i : {0, 1}) EXPECT_LT(dark[i], 0.6 * lit[i]) << i;
@@ -133,7 +136,8 @@ TEST_F(Lamps, WhatIsOffAtFirstIsOffForStillsAndForWhoComes) {
   EXPECT_GT(level(0), 1.5 * dark);
 }
 
-// Nobody makes it flash: within a second the light changes five times at most, and ends as was asked for last.
+// Nobody makes it flash: within a second the light changes five times at most, and ends as was
+// asked for last.
 TEST_F(Lamps, TheLightChangesAFewTimesASecondAtMost) {
   begin(make_lit_exhibit(), 1, "direct");
   run(1);
@@ -171,7 +175,8 @@ TEST_F(Lamps, AnswersOfTheOldLightAreNotTaken) {
 }
 
 struct Package {
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("wellspring_lamps_" + std::to_string(getpid()));
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("wellspring_lamps_" + std::to_string(getpid()));
   json manifest;
   Package() {
     std::filesystem::create_directories(folder / "room");
@@ -193,14 +198,17 @@ struct Package {
   }
   bool says(const std::string& where, const std::string& what, bool fatal = true) {
     for (const Problem& problem : problems)
-      if (problem.where == where && problem.what.find(what) != std::string::npos && problem.fatal == fatal) return true;
+      if (problem.where == where && problem.what.find(what) != std::string::npos &&
+          problem.fatal == fatal)
+        return true;
     return false;
   }
 };
 
 TEST(ExhibitLamps, AreReadWithTitlesAndFirstStates) {
   Package package;
-  Exhibit exhibit = package.read(json::parse(R"([{"id":"bulb","title":{"en":"Bulb","de":"Birne"},"nodes":["Bulb"],"on":false},
+  Exhibit exhibit = package.read(
+      json::parse(R"([{"id":"bulb","title":{"en":"Bulb","de":"Birne"},"nodes":["Bulb"],"on":false},
                                                  {"id":"sun","title":{"en":"Sun","de":"Sonne"},"nodes":["Sun"]}])"));
   for (const Problem& problem : package.problems) EXPECT_FALSE(problem.fatal) << to_string(problem);
   ASSERT_EQ(exhibit.lamps.size(), 2u);

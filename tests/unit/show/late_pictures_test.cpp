@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures drawn in the background and warped meanwhile, driven by a clock of the test's own and by a
-// hand on the easel.
+// Pictures drawn in the background and warped meanwhile, driven by a clock of the test's own and by
+// a hand on the easel.
 #include <gtest/gtest.h>
 
 #include <future>
@@ -34,13 +34,14 @@ struct LatePictures : testing::Test {
     for (int i = 0; i < visitors; i++) {
       links.push_back(std::make_shared<Link>(uint64_t(i + 1), LinkKind::visit, "test"));
       arrivals.put(links.back());
-      say(R"({"type":"hello","exhibit":"","width":96,"height":64,"lang":"en","role":"visitor"})", i);
+      say(R"({"type":"hello","exhibit":"","width":96,"height":64,"lang":"en","role":"visitor"})",
+          i);
     }
   }
   void say(const std::string& text, int visitor = 0) { links[size_t(visitor)]->push_text_in(text); }
   void turn(double yaw, double forward = 0) {
-    say(R"({"type":"input","seq":)" + std::to_string(++seq) + R"(,"move":[0,0,)" + std::to_string(forward) +
-        R"(],"look":[)" + std::to_string(yaw) + ",0]}");
+    say(R"({"type":"input","seq":)" + std::to_string(++seq) + R"(,"move":[0,0,)" +
+        std::to_string(forward) + R"(],"look":[)" + std::to_string(yaw) + ",0]}");
   }
   // `finish`: what the easel has begun is finished before the next tick.
   void step(bool finish = true, double seconds = 0.02) {
@@ -86,7 +87,8 @@ struct LatePictures : testing::Test {
   static double difference(const Image8& a, const Image8& b) {
     EXPECT_EQ(a.rgb.size(), b.rgb.size());
     double sum = 0;
-    for (size_t i = 0; i < std::min(a.rgb.size(), b.rgb.size()); i++) sum += std::abs(int(a.rgb[i]) - int(b.rgb[i]));
+    for (size_t i = 0; i < std::min(a.rgb.size(), b.rgb.size()); i++)
+      sum += std::abs(int(a.rgb[i]) - int(b.rgb[i]));
     return sum / double(a.rgb.size());
   }
 };
@@ -103,7 +105,8 @@ TEST_F(LatePictures, GoOnWhileOneIsDrawn) {
     step(false);
   }
   ASSERT_EQ(pictures.size(), first + 6);  // one a tick, each of the newest input
-  for (size_t i = first; i < pictures.size(); i++) EXPECT_EQ(header(i).seq, seq - 5 + uint32_t(i - first));
+  for (size_t i = first; i < pictures.size(); i++)
+    EXPECT_EQ(header(i).seq, seq - 5 + uint32_t(i - first));
   EXPECT_EQ(show->totals.drawn, drawn);
   EXPECT_EQ(show->totals.warped, warped + 6);
   // What is sent shows the view as it is, not as it was.
@@ -182,9 +185,12 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
     unknown = warp_picture(visitor().keyframe, visitor().last_view, 1, scratch, alone);
   }
   EXPECT_GE(unknown, 0.17f);
-  EXPECT_LT(warp_picture(visitor().keyframe, visitor().around, visitor().last_view, 1, scratch, with), 0.6f * unknown);
+  EXPECT_LT(
+      warp_picture(visitor().keyframe, visitor().around, visitor().last_view, 1, scratch, with),
+      0.6f * unknown);
   EXPECT_EQ(header(pictures.size() - 1).seq, seq);
-  EXPECT_LT(difference(image(pictures.size() - 1), with), difference(image(pictures.size() - 1), alone));
+  EXPECT_LT(difference(image(pictures.size() - 1), with),
+            difference(image(pictures.size() - 1), alone));
   release_easel();
 
   // Soon it is no longer true.
@@ -281,7 +287,8 @@ TEST_F(LatePictures, VisitorsLeaveWhileTheirsIsDrawn) {
   EXPECT_EQ(show->easel.drawn, nullptr);
 }
 
-// Whenever a picture or its samples are finished, also in the midst of a tick, somebody gets the next.
+// Whenever a picture or its samples are finished, also in the midst of a tick, somebody gets the
+// next.
 TEST_F(LatePictures, NoVisitorIsForgottenWhenOneIsFinishedDuringATick) {
   begin(3);
   for (int i = 0; i < 3; i++) say(R"({"type":"input","seq":1,"move":[0,0,0.2],"look":[0.1,0]})", i);
@@ -293,8 +300,10 @@ TEST_F(LatePictures, NoVisitorIsForgottenWhenOneIsFinishedDuringATick) {
       Link::Out out;
       while (link->take_out(out)) {}
     }
-    auto at_work = std::count_if(show->visitors.begin(), show->visitors.end(), [](auto& one) { return one.at_work; });
-    ASSERT_EQ(size_t(at_work), show->easel.brokers.size() + (show->easel.drawn ? 1 : 0)) << "tick " << i;
+    auto at_work = std::count_if(show->visitors.begin(), show->visitors.end(),
+                                 [](auto& one) { return one.at_work; });
+    ASSERT_EQ(size_t(at_work), show->easel.brokers.size() + (show->easel.drawn ? 1 : 0))
+        << "tick " << i;
   }
   step();
 }
@@ -308,7 +317,8 @@ TEST_F(LatePictures, AllVisitorsGetDrawnPictures) {
     if (show->easel.drawn) drawn[size_t(show->easel.drawn->link->id - 1)]++;
   }
   for (int count : drawn) EXPECT_GT(count, 10);
-  EXPECT_LE(*std::max_element(drawn.begin(), drawn.end()), *std::min_element(drawn.begin(), drawn.end()) + 2);
+  EXPECT_LE(*std::max_element(drawn.begin(), drawn.end()),
+            *std::min_element(drawn.begin(), drawn.end()) + 2);
 }
 
 TEST_F(LatePictures, TheShowEndsWhileOneIsDrawn) {
@@ -327,7 +337,8 @@ TEST_F(LatePictures, ReportSaysWhatWasDrawnAndWarped) {
   EXPECT_GT(report.totals.warped, report.totals.drawn);
   EXPECT_GT(report.visitors.at(0).drawn_fps, 0);
   std::string text = write_metrics(report);
-  for (const char* name : {"pictures_drawn_total", "pictures_warped_total", "visitor_drawn_pictures_per_second"})
+  for (const char* name :
+       {"pictures_drawn_total", "pictures_warped_total", "visitor_drawn_pictures_per_second"})
     EXPECT_NE(text.find("wellspring_" + std::string(name)), std::string::npos) << name;
 }
 

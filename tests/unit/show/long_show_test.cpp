@@ -28,7 +28,8 @@ struct House {
     for (int i = 0; i < visitors; i++) {
       links.push_back(std::make_shared<Link>(uint64_t(i + 1), LinkKind::visit, "test"));
       arrivals.put(links.back());
-      say(i, R"({"type":"hello","exhibit":"","width":48,"height":32,"lang":"en","role":"visitor"})");
+      say(i,
+          R"({"type":"hello","exhibit":"","width":48,"height":32,"lang":"en","role":"visitor"})");
     }
   }
   void say(int visitor, const std::string& text) { links[size_t(visitor)]->push_text_in(text); }
@@ -55,9 +56,11 @@ TEST(LongShow, ADayOfIdlingAndWalkingNeitherGrowsNorDrifts) {
       house.say(0, R"({"type":"input","seq":)" + std::to_string(++seq) +
                        R"(,"move":[0.3,0,1],"look":[0.7,0.05]})");
     if (phase == 29)
-      house.say(0, R"({"type":"input","seq":)" + std::to_string(++seq) + R"(,"move":[0,0,0],"look":[0,-0.1]})");
+      house.say(0, R"({"type":"input","seq":)" + std::to_string(++seq) +
+                       R"(,"move":[0,0,0],"look":[0,-0.1]})");
     if (phase == 30)
-      house.say(0, R"({"type":"viewpoint","seq":)" + std::to_string(++seq) + R"(,"name":"corner"})");
+      house.say(0,
+                R"({"type":"viewpoint","seq":)" + std::to_string(++seq) + R"(,"name":"corner"})");
     house.step(step);
     house.step(0.02);
     const Visitor& visitor = house.show->visitors.front();
@@ -66,7 +69,8 @@ TEST(LongShow, ADayOfIdlingAndWalkingNeitherGrowsNorDrifts) {
     for (vec3 c : house.show->easel.work.frame.color) ASSERT_TRUE(is_finite(c)) << i;
     if (i == 62) memory = visitor.cache_bytes;
     if (i > 62) {
-      // Lists keep room for the most that they ever held, and how much that is depends on the machine.
+      // Lists keep room for the most that they ever held, and how much that is depends on the
+      // machine.
       ASSERT_LE(visitor.cache_bytes, memory + memory / 8) << i;
       ASSERT_LE(visitor.memory_bytes, memory + (1 << 19)) << i;
       ASSERT_LE(visitor.heading.past.size(), 64u);

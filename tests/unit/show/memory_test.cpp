@@ -35,8 +35,9 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
     bool walks = i < 8;
     if (i % 4 == 0)
       for (auto& link : links)
-        link->push_text_in(R"({"type":"input","seq":)" + std::to_string(i + 1) + R"(,"move":[0,0,)" +
-                           (walks ? "0.3" : "0") + R"(],"look":[)" + (walks ? "0.4" : "0") + ",0]}");
+        link->push_text_in(R"({"type":"input","seq":)" + std::to_string(i + 1) +
+                           R"(,"move":[0,0,)" + (walks ? "0.3" : "0") + R"(],"look":[)" +
+                           (walks ? "0.4" : "0") + ",0]}");
     tick(*show, arrivals, now += 0.05);
     show->easel.worker.wait_for(10);
     size_t k = 0;
@@ -46,7 +47,8 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
       if (k == 0 && !visitor.order.still) walking = std::max(walking, visitor.memory_bytes);
       if (k == 0) widest = std::max(widest, visitor.keyframe.view.width);
       still[k] = pictures[k] >= 8;
-      if (visitor.order.display.drawn && !visitor.order.passing && visitor.order.tick != last[k]) pictures[k]++;
+      if (visitor.order.display.drawn && !visitor.order.passing && visitor.order.tick != last[k])
+        pictures[k]++;
       last[k] = visitor.order.tick;
       k++;
     }

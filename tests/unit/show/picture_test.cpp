@@ -9,8 +9,8 @@
 namespace wellspring {
 namespace {
 
-// Of the first viewpoint, ticked until there are pictures: large ones, as of small ones every pixel may be
-// looked at.
+// Of the first viewpoint, ticked until there are pictures: large ones, as of small ones every pixel
+// may be looked at.
 std::unique_ptr<Show> make_visited(Exhibit exhibit, DrawShapes draw) {
   ShowSettings settings;
   settings.draw = draw;
@@ -20,7 +20,8 @@ std::unique_ptr<Show> make_visited(Exhibit exhibit, DrawShapes draw) {
   Arrivals arrivals;
   auto link = std::make_shared<Link>(1, LinkKind::visit, "test");
   arrivals.put(link);
-  link->push_text_in(R"({"type":"hello","exhibit":"","width":1280,"height":720,"lang":"en","role":"visitor"})");
+  link->push_text_in(
+      R"({"type":"hello","exhibit":"","width":1280,"height":720,"lang":"en","role":"visitor"})");
   for (int i = 0; i < 4; i++) {
     tick(*show, arrivals, 0.05 * i);
     for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();

@@ -17,27 +17,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const char* const texts[] = {"The castle stands above the river, and nobody remembers who built its oldest tower.",
-                             "On quiet evenings you can hear the great bell from the bridge, if you hold your breath."};
+const char* const texts[] = {
+    "The castle stands above the river, and nobody remembers who built its oldest tower.",
+    "On quiet evenings you can hear the great bell from the bridge, if you hold your breath."};
 
 struct Recordings : testing::Test {
-  fs::path folder = fs::temp_directory_path() / ("wellspring_recordings_" + std::to_string(::getpid()));
+  fs::path folder =
+      fs::temp_directory_path() / ("wellspring_recordings_" + std::to_string(::getpid()));
   fs::path package = folder / "room", cache = folder / "cache";
   std::vector<Problem> problems;
 
   void SetUp() override {
     fs::create_directories(package);
-    write("scene.gltf",
-          R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"camera":0,"name":"door"}],)"
-          R"("cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}]})");
+    write(
+        "scene.gltf",
+        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"camera":0,"name":"door"}],)"
+        R"("cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}]})");
     write_exhibit(R"({"en": "tale.wav"})", texts[0], texts[1]);
     record(texts[0], texts[1]);
   }
   void TearDown() override { fs::remove_all(folder); }
-  void write(const std::string& name, const std::string& text) { std::ofstream(package / name) << text; }
-  void write_exhibit(const std::string& sound, const std::string& first, const std::string& second) {
-    write("exhibit.json", R"({"id":"room","title":{"en":"Room"},"scene":"scene.gltf","stories":[{"id":"tale","text":{"en":[")" +
-                              first + "\",\"" + second + R"("]},"sound":)" + sound + "}]}");
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(package / name) << text;
+  }
+  void write_exhibit(const std::string& sound, const std::string& first,
+                     const std::string& second) {
+    write(
+        "exhibit.json",
+        R"({"id":"room","title":{"en":"Room"},"scene":"scene.gltf","stories":[{"id":"tale","text":{"en":[")" +
+            first + "\",\"" + second + R"("]},"sound":)" + sound + "}]}");
   }
   // Another voice reads it, with half a second between the sentences.
   void record(const std::string& first, const std::string& second) {
@@ -46,7 +54,8 @@ struct Recordings : testing::Test {
     int rate = 22050;
     for (const std::string& text : {first, second}) {
       std::string error;
-      auto speech = process.speak({.text = text, .lang = "en-us", .words_per_minute = 140, .variant = "f4"}, error);
+      auto speech = process.speak(
+          {.text = text, .lang = "en-us", .words_per_minute = 140, .variant = "f4"}, error);
       ASSERT_TRUE(speech) << error;
       pcm.insert(pcm.end(), speech->pcm.begin(), speech->pcm.end());
       pcm.resize(pcm.size() + 11025);
@@ -118,8 +127,10 @@ TEST_F(Recordings, MistakesAreNamed) {
   write_exhibit(R"({"de": "tale.wav"})", texts[0], texts[1]);
   read();
   EXPECT_NE(said().find("without a text"), std::string::npos) << said();
-  write_exhibit(R"({"en": "tale.wav"})", "Two brothers once quarrelled about the best horse of the whole wide valley.",
-                "They shouted so loudly that all of the ravens left the tower and never came back.");
+  write_exhibit(
+      R"({"en": "tale.wav"})",
+      "Two brothers once quarrelled about the best horse of the whole wide valley.",
+      "They shouted so loudly that all of the ravens left the tower and never came back.");
   read();
   ASSERT_EQ(problems.size(), 1u) << said();
   EXPECT_TRUE(problems[0].fatal);
@@ -145,7 +156,8 @@ TEST_F(Recordings, AreToldInTheirOwnTime) {
   double told = 0;
   for (; !voice.queue.empty() && told < 60; told += double(step)) {
     size_t before = begins.size();
-    if (voice.started && voice.elapsed >= 0 && size_t(voice.sentence) == before) begins.push_back(told);
+    if (voice.started && voice.elapsed >= 0 && size_t(voice.sentence) == before)
+      begins.push_back(told);
     advance_voice(voice, step, ask);
   }
   double seconds = double(sound.samples.size()) / sound.rate;

@@ -72,7 +72,8 @@ TEST_F(ShowTest, PicturesCarryTheLastSeqAndGrowingNumbers) {
   run(0.1);
   EXPECT_EQ(last_header().seq, 7u);
   for (size_t i = 1; i < pictures.size(); i++)
-    EXPECT_EQ(read_packet(pictures[i])->header.frame, read_packet(pictures[i - 1])->header.frame + 1);
+    EXPECT_EQ(read_packet(pictures[i])->header.frame,
+              read_packet(pictures[i - 1])->header.frame + 1);
 }
 
 TEST_F(ShowTest, WalksOnUntilTheNextInput) {
@@ -96,7 +97,8 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
   StillSettings settings;
   settings.spp = 768;
   settings.transport = show->settings.transport;
-  Frame reference = render_still(*show->still_technique, *show->world, show->lights, visitor.last_view, settings);
+  Frame reference =
+      render_still(*show->still_technique, *show->world, show->lights, visitor.last_view, settings);
   double error = 0, size = 0;
   for (size_t i = 0; i < reference.color.size(); i++) {
     // As it is shown: of lamps no more than white.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Speech in the show: how long it lasts, how long it is waited for, what is sent to whom, and its end.
+// Speech in the show: how long it lasts, how long it is waited for, what is sent to whom, and its
+// end.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -13,8 +14,8 @@
 namespace wellspring {
 namespace {
 
-std::shared_ptr<const Speech> make_speech(const std::string& text, const std::string& lang, double seconds,
-                                         int rate = 8000) {
+std::shared_ptr<const Speech> make_speech(const std::string& text, const std::string& lang,
+                                          double seconds, int rate = 8000) {
   auto speech = std::make_shared<Speech>();
   speech->text = text;
   speech->lang = lang;
@@ -57,7 +58,9 @@ TEST(VoiceWithSpeech, WaitsABoundedTimeThenTellsBySubtitles) {
   tell(voice, make_tiny_exhibit().stories[0]);
   bool there = false;
   auto speech = make_speech("Two.", "en", 1);
-  AskSpeech ask = [&](const Utterance&) { return there ? SpeechState{speech, false, "en"} : SpeechState{nullptr, true, "en"}; };
+  AskSpeech ask = [&](const Utterance&) {
+    return there ? SpeechState{speech, false, "en"} : SpeechState{nullptr, true, "en"};
+  };
   float waited = 0;
   while (!advance_voice(voice, 0.05f, ask).begun && waited < 10) waited += 0.05f;
   EXPECT_NEAR(waited, longest_wait, 0.11f);
@@ -110,8 +113,11 @@ struct SoundTest : testing::Test {
       teller.position = {1, 0, 2 - 0.5 * double(i)};
     }
     exhibit.storytellers[1].voice.variant = "m2";
-    show = make_show(std::move(exhibit), {.technique = "direct", .still_technique = "direct", .background = false});
-    show->speech.find = [this](const SpeechRequest& r) { return kept.contains(r.text) ? kept[r.text] : nullptr; };
+    show = make_show(std::move(exhibit),
+                     {.technique = "direct", .still_technique = "direct", .background = false});
+    show->speech.find = [this](const SpeechRequest& r) {
+      return kept.contains(r.text) ? kept[r.text] : nullptr;
+    };
     show->speech.speak = [this](const SpeechRequest& r) {
       spoken++;
       asked.push_back(r);
@@ -122,9 +128,11 @@ struct SoundTest : testing::Test {
     };
   }
   size_t join(const std::string& lang) {
-    peers.push_back({std::make_shared<Link>(peers.size() + 1, LinkKind::visit, "test"), {}, {}, {}});
+    peers.push_back(
+        {std::make_shared<Link>(peers.size() + 1, LinkKind::visit, "test"), {}, {}, {}});
     arrivals.put(peers.back().link);
-    order(peers.size() - 1, R"({"type":"hello","width":32,"height":32,"lang":")" + lang + R"(","role":"visitor"})");
+    order(peers.size() - 1,
+          R"({"type":"hello","width":32,"height":32,"lang":")" + lang + R"(","role":"visitor"})");
     return peers.size() - 1;
   }
   void order(size_t peer, const std::string& text) { peers[peer].link->push_text_in(text); }
@@ -136,7 +144,8 @@ struct SoundTest : testing::Test {
         Link::Out out;
         while (peer.reads && peer.link->take_out(out)) {
           if (out.binary) {
-            if (auto sound = read_sound_packet(*out.packet)) peer.sounds.push_back(std::move(*sound));
+            if (auto sound = read_sound_packet(*out.packet))
+              peer.sounds.push_back(std::move(*sound));
             continue;
           }
           auto message = nlohmann::json::parse(out.text);
@@ -286,7 +295,9 @@ TEST(VoiceWithSpeech, MarksBecomeEventsAtTheirWordsOnce) {
   Voice voice;
   StoryText story;
   story.id = "s";
-  story.text["en"] = read_story("<emotion name='joy' weight='0.5'/>one <emphasis>two</emphasis> three.", "a").lines;
+  story.text["en"] =
+      read_story("<emotion name='joy' weight='0.5'/>one <emphasis>two</emphasis> three.", "a")
+          .lines;
   tell(voice, story);
   auto speech = make_worded("one two three.", 3);
   AskSpeech ask = [&](const Utterance&) { return SpeechState{speech, false, "en"}; };
@@ -298,7 +309,8 @@ TEST(VoiceWithSpeech, MarksBecomeEventsAtTheirWordsOnce) {
       pause_voice(voice);
       resume_voice(voice);
     }
-    for (const ActionEvent& act : advance_voice(voice, 0.01f, ask).acts) seen.emplace_back(act.kind, at);
+    for (const ActionEvent& act : advance_voice(voice, 0.01f, ask).acts)
+      seen.emplace_back(act.kind, at);
     if (voice.started && voice.elapsed > 0.1f) { EXPECT_EQ(voice.held.emotion, "joy"); }
   }
   ASSERT_EQ(seen.size(), 2u);
@@ -312,7 +324,8 @@ TEST(VoiceWithSpeech, MarksBecomeEventsAtTheirWordsOnce) {
 TEST(VoiceWithSpeech, SkippingLeavesTheFaceAsIfAllHadBeenTold) {
   StoryText story;
   story.id = "s";
-  story.text["en"] = read_story("<emotion name='sadness'/><look at='well'/>First. Second. Third.", "a").lines;
+  story.text["en"] =
+      read_story("<emotion name='sadness'/><look at='well'/>First. Second. Third.", "a").lines;
   Voice voice;
   tell(voice, story, 2);
   EXPECT_EQ(voice.held.emotion, "sadness");
@@ -364,7 +377,8 @@ TEST_F(SoundTest, NobodyFarAwayTakesTheStorytellerFromWhoStandsBeforeIt) {
   order(a, R"({"type":"storyteller","story":"tale"})");
   run(0.4);
   uint64_t refused = show->totals.refused_messages;
-  for (const char* text : {R"("action":"stop")", R"("action":"pause")", R"("visible":false)", R"("teller":"otto")", R"("story":"tale")"}) {
+  for (const char* text : {R"("action":"stop")", R"("action":"pause")", R"("visible":false)",
+                           R"("teller":"otto")", R"("story":"tale")"}) {
     order(b, R"({"type":"storyteller",)" + std::string(text) + "}");
     run(0.08);
   }

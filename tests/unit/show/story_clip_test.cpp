@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The story's layer of the storyteller: told again it is the same, whoever tells it and however often.
+// The story's layer of the storyteller: told again it is the same, whoever tells it and however
+// often.
 #include <gtest/gtest.h>
 
 #include "avatar/character_load.h"
@@ -13,23 +14,29 @@ namespace {
 StoryText make_story() {
   StoryText story;
   story.id = "s";
-  story.text["en"] = read_story("<emotion name='joy'/>Once <gesture name='open_arms'/>there was a well. "
-                                "<emotion name='sadness'/>It <emphasis>had</emphasis> no water.", "a").lines;
+  story.text["en"] = read_story(
+                         "<emotion name='joy'/>Once <gesture name='open_arms'/>there was a well. "
+                         "<emotion name='sadness'/>It <emphasis>had</emphasis> no water.",
+                         "a")
+                         .lines;
   return story;
 }
 
 bool same(const std::vector<StoryMoment>& a, const std::vector<StoryMoment>& b) {
   if (a.size() != b.size()) return false;
   for (size_t i = 0; i < a.size(); i++)
-    if (a[i].time != b[i].time || a[i].sentence != b[i].sentence || a[i].pose.rotations != b[i].pose.rotations ||
-        a[i].pose.displacers != b[i].pose.displacers || a[i].pose.translation != b[i].pose.translation)
+    if (a[i].time != b[i].time || a[i].sentence != b[i].sentence ||
+        a[i].pose.rotations != b[i].pose.rotations ||
+        a[i].pose.displacers != b[i].pose.displacers ||
+        a[i].pose.translation != b[i].pose.translation)
       return false;
   return true;
 }
 
 TEST(StoryClip, ToldAgainItIsTheSame) {
   Exhibit exhibit = make_tiny_exhibit();
-  Character character = load_character(std::string(WELLSPRING_SOURCE) + "/content/castle/figures/storyteller.x3d");
+  Character character =
+      load_character(std::string(WELLSPRING_SOURCE) + "/content/castle/figures/storyteller.x3d");
   for (bool humanlike : {false, true}) {
     ClipSettings settings;
     settings.humanlike = humanlike;
@@ -44,7 +51,11 @@ TEST(StoryClip, WhatTheBodyIsAskedForDependsOnTheStoryAlone) {
   Exhibit exhibit = make_tiny_exhibit();
   exhibit.points.push_back({"well", "Well", 0, dvec3(1, 0.8, -2), {}});
   StoryText story = make_story();
-  story.text["en"] = read_story("<look at='well'/>One <point at='well'/>two. <gesture name='nod'/>Three.<look at='visitor'/>", "a").lines;
+  story.text["en"] = read_story(
+                         "<look at='well'/>One <point at='well'/>two. <gesture "
+                         "name='nod'/>Three.<look at='visitor'/>",
+                         "a")
+                         .lines;
   struct Asked {
     int sentence;
     std::string emotion, gesture;
@@ -58,7 +69,8 @@ TEST(StoryClip, WhatTheBodyIsAskedForDependsOnTheStoryAlone) {
     while (!voice.queue.empty()) {
       VoiceEvents said = advance_voice(voice, step);
       StoryCue cue = make_cue(exhibit, voice, said);
-      Asked now{voice.sentence, cue.emotion, cue.gesture, cue.look.has_value(), cue.point.has_value(), cue.seed};
+      Asked now{voice.sentence,       cue.emotion,           cue.gesture,
+                cue.look.has_value(), cue.point.has_value(), cue.seed};
       if (!voice.queue.empty() && (asked.empty() || asked.back() != now)) asked.push_back(now);
       if (cue.look) { EXPECT_EQ(*cue.look, vec3(1, 0.8f, -2)); }
     }

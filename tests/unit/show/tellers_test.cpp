@@ -35,7 +35,8 @@ struct TellersTest : testing::Test {
     exhibit.stories.push_back(exhibit.stories[0]);
     exhibit.stories[1].id = "bell";
     exhibit.stories[1].teller = 1;
-    show = make_show(std::move(exhibit), {.technique = "direct", .still_technique = "direct", .background = false});
+    show = make_show(std::move(exhibit),
+                     {.technique = "direct", .still_technique = "direct", .background = false});
     show->speech.find = [](const SpeechRequest&) { return nullptr; };
     show->speech.speak = [this](const SpeechRequest& request) {
       asked.push_back(request);
@@ -117,8 +118,9 @@ TEST_F(TellersTest, AKioskStandsBeforeWhoeverIsThereAndIsGreeted) {
   auto eye = std::make_shared<Link>(2, LinkKind::eye, "camera");
   arrivals.put(eye);
   for (int i = 0; i < 50 && asked.empty(); i++) {
-    eye->push_text_in(R"({"type":"observation","time":1,"presence":true,"state":"person",)"
-                      R"("people":[{"id":1,"position":[0,0,1],"rotation":[0,0,0],"confidence":1}]})");
+    eye->push_text_in(
+        R"({"type":"observation","time":1,"presence":true,"state":"person",)"
+        R"("people":[{"id":1,"position":[0,0,1],"rotation":[0,0,0],"confidence":1}]})");
     run(0.1);
   }
   ASSERT_FALSE(asked.empty());

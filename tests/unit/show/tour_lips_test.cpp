@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of a tour on the storyteller's lips: while it is in the visitor's picture, and only then.
+// The words of a tour on the storyteller's lips: while it is in the visitor's picture, and only
+// then.
 #include <gtest/gtest.h>
 
 #include "show/in_view.h"
@@ -43,7 +44,8 @@ struct TourLips : testing::Test {
     open.displacements = {{0, 0.01f, 0}};
     teller.character.displacers = {open};
     teller.position = {-2, 0, 1};  // 2 m before the viewpoint where the tour begins
-    show = make_show(std::move(exhibit), {.technique = "direct", .still_technique = "direct", .background = false});
+    show = make_show(std::move(exhibit),
+                     {.technique = "direct", .still_technique = "direct", .background = false});
     show->speech.find = [this](const SpeechRequest& request) {
       auto& speech = kept[request.text];
       if (!speech) speech = make_vowel(request.text);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ride through a tour: stops in order, text by text, paused, left, looked round in, and played on.
+// A ride through a tour: stops in order, text by text, paused, left, looked round in, and played
+// on.
 #include <gtest/gtest.h>
 
 #include "show/tour.h"
@@ -34,12 +35,15 @@ struct TourTest : testing::Test {
       VoiceEvents said = advance_voice(narration, dt);
       if (said.begun) told.push_back(said.begun->line.at("en").text);
       for (const ActionEvent& act : said.acts)
-        if (act.kind == StoryMarkKind::view) glide_to(ride, find_viewpoint(exhibit, act.name), last);
+        if (act.kind == StoryMarkKind::view)
+          glide_to(ride, find_viewpoint(exhibit, act.name), last);
       TourStep step = advance_tour(ride, narration, exhibit, roads, dt);
       if (step.arrived >= 0) arrivals.push_back(step.arrived);
       finished = step.finished;
       fastest = std::max(fastest, glm::length(step.view.position - last.position) / double(dt));
-      quickest_turn = std::max(quickest_turn, std::abs(std::remainder(double(step.view.yaw - last.yaw), 2 * double(pi))) / double(dt));
+      quickest_turn = std::max(
+          quickest_turn,
+          std::abs(std::remainder(double(step.view.yaw - last.yaw), 2 * double(pi))) / double(dt));
       last = step.view;
     }
   }
@@ -78,7 +82,8 @@ TEST_F(TourTest, TextOnTheWayIsToldOnTheWayAndEndsBeforeTheNext) {
 
 TEST_F(TourTest, MarksOfTheTextMoveTheCamera) {
   exhibit.tours[0].stops.resize(1);
-  exhibit.tours[0].stops[0].text["en"] = read_story("Look at <view name='corner'/>that corner, and back.", "a").lines;
+  exhibit.tours[0].stops[0].text["en"] =
+      read_story("Look at <view name='corner'/>that corner, and back.", "a").lines;
   prepare();
   play();
   run(100);

@@ -13,7 +13,8 @@ struct Walk : testing::TestWithParam<double> {
   World world{exhibit.scene};
   dvec3 go(dvec3 from, vec3 velocity, float seconds, float dt = 0.02f) {
     dvec3 position = origin + from;
-    for (float t = 0; t < seconds; t += dt) position = walk(world, exhibit.walk, position, velocity, dt);
+    for (float t = 0; t < seconds; t += dt)
+      position = walk(world, exhibit.walk, position, velocity, dt);
     return position - origin;
   }
 };
@@ -29,7 +30,8 @@ TEST(KeepDistance, NobodyComesNearerThanTheInnermostWall) {
       for (int step = 0; step < 400; step++) {
         dvec3 way = aim - at;
         way.y = 0;
-        dvec3 next = keep_distance(at, at + way * std::min(1.0, length / std::max(glm::length(way), 1e-6)), centre);
+        dvec3 next = keep_distance(
+            at, at + way * std::min(1.0, length / std::max(glm::length(way), 1e-6)), centre);
         at = next;
         ASSERT_GE(std::hypot(at.x - centre.x, at.z - centre.z), nearest_to_storyteller - 1e-6);
       }
@@ -45,7 +47,8 @@ TEST(KeepDistance, OneSlidesRoundAndGoesAway) {
   }
   EXPECT_LT(at.z, -2) << "past it, not stuck before it";
   EXPECT_NEAR(least, nearest_to_storyteller, 0.02);
-  // Who stands within (a viewpoint there, a storyteller that has just come) may leave, not go farther in.
+  // Who stands within (a viewpoint there, a storyteller that has just come) may leave, not go
+  // farther in.
   dvec3 within(0.4, 1.6, 0);
   EXPECT_NEAR(keep_distance(within, {0.2, 1.6, 0}, dvec3(0)).x, 0.4, 1e-9);
   EXPECT_EQ(keep_distance(within, {0.6, 1.7, 0}, dvec3(0)), dvec3(0.6, 1.7, 0));
@@ -88,7 +91,8 @@ TEST_P(Walk, NeverLeavesTheRoomWhateverTheStep) {
   for (float dt : {1e-6f, 0.01f, 0.25f, 5.0f})
     for (int angle = 0; angle < 16; angle++) {
       float a = float(angle) * pi / 8;
-      dvec3 end = go({-2, 1.6, 2}, 20.0f * vec3(std::cos(a), 0, std::sin(a)), std::min(1.0f, 200 * dt), dt);
+      dvec3 end =
+          go({-2, 1.6, 2}, 20.0f * vec3(std::cos(a), 0, std::sin(a)), std::min(1.0f, 200 * dt), dt);
       EXPECT_LT(std::abs(end.x), 4);
       EXPECT_LT(std::abs(end.z), 4);
       EXPECT_GT(end.y, 1);

@@ -28,7 +28,9 @@ TEST(RayPacket, AnswersAreThoseOfSingleRays) {
   for (int round = 0; round < 4000; round++) {
     RayPacket packet{};
     Ray rays[RayPacket::lanes];
-    uint32_t active = round % 3 == 0 ? rng.next() & 0xffff : round % 3 == 1 ? 1u << round % 16 : 0xffffu;
+    uint32_t active = round % 3 == 0   ? rng.next() & 0xffff
+                      : round % 3 == 1 ? 1u << round % 16
+                                       : 0xffffu;
     for (int i = 0; i < RayPacket::lanes; i++) {
       auto inside = [&] {
         return vec3(0.54f * rng.uniform() - 0.27f, 0.54f * rng.uniform(), -0.55f * rng.uniform());

@@ -10,8 +10,8 @@
 namespace wellspring {
 namespace {
 
-// Four squares in a row, at x = 0, 2, 4, 6: the first two are one mesh that shines, the third another of the
-// same material, the last shines by being unlit. Lights by two names.
+// Four squares in a row, at x = 0, 2, 4, 6: the first two are one mesh that shines, the third
+// another of the same material, the last shines by being unlit. Lights by two names.
 struct Row {
   Scene scene;
   Row() {
@@ -60,7 +60,8 @@ TEST(Lamp, WhatIsSharedBecomesItsOwnAndLooksAsBefore) {
   vec3 light[4];
   for (int i = 0; i < 4; i++) light[i] = shown(before, i);
   EXPECT_TRUE(add_lamp({"far", {"bulb far"}, {}}, row.scene).empty());
-  EXPECT_TRUE(add_lamp({"rest", {"spot"}, {"glow"}}, row.scene).size() == 1u);  // some of it is far's
+  EXPECT_TRUE(add_lamp({"rest", {"spot"}, {"glow"}}, row.scene).size() ==
+              1u);  // some of it is far's
   EXPECT_TRUE(add_lamp({"screen", {"screen", "sun"}, {}}, row.scene).empty());
   ASSERT_EQ(row.scene.lamps.size(), 3u);
   EXPECT_EQ(row.scene.lamps[1].lights, (std::vector<int>{0, 1}));
@@ -97,7 +98,8 @@ TEST(Lamp, WhatIsNoPartOfOneIsToldByName) {
   row.scene.meshes[2].material = 2;
   auto dark = add_lamp({"c", {"screen"}, {"stone"}}, row.scene);
   ASSERT_EQ(dark.size(), 2u);
-  for (const LampFault& fault : dark) EXPECT_NE(fault.what.find("shines"), std::string::npos) << fault.what;
+  for (const LampFault& fault : dark)
+    EXPECT_NE(fault.what.find("shines"), std::string::npos) << fault.what;
 }
 
 // A chandelier is often an empty node with candles and lights below it.
@@ -105,7 +107,8 @@ TEST(Lamp, ANodeStandsForAllBelowIt) {
   Asset asset;
   int position = asset.add_floats("VEC3", 3, {0, 0, 0, 1, 0, 0, 0, 1, 0});
   asset.root["materials"] = {{{"name", "wax"}, {"emissiveFactor", {1, 1, 1}}}};
-  asset.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}, {"material", 0}}}}}};
+  asset.root["meshes"] = {
+      {{"primitives", {{{"attributes", {{"POSITION", position}}}, {"material", 0}}}}}};
   asset.root["extensionsUsed"] = {"KHR_lights_punctual"};
   asset.root["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}}}}}}};
   json light = {{"KHR_lights_punctual", {{"light", 0}}}};

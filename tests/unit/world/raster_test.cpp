@@ -174,7 +174,8 @@ TEST(Raster, StillAndMovingMakeAll) {
     settings.shows = which;
     return draw(raster, view, settings);
   };
-  Picture all = shows(RasterShows::all), still = shows(RasterShows::still), moving = shows(RasterShows::moving);
+  Picture all = shows(RasterShows::all), still = shows(RasterShows::still),
+          moving = shows(RasterShows::moving);
   int from[2] = {};
   for (size_t i = 0; i < all.hits.size(); i++) {
     const Hit &a = all.hits[i], &s = still.hits[i], &m = moving.hits[i];
@@ -398,7 +399,8 @@ TEST(Raster, HardCases) {
 
 namespace {
 
-// Coverage of every pixel by an instance, as edges tell it from one sampling place, and as they do not.
+// Coverage of every pixel by an instance, as edges tell it from one sampling place, and as they do
+// not.
 struct Coverage {
   std::vector<float> plain, softened;
   size_t named = 0;
@@ -463,7 +465,8 @@ TEST(Raster, EdgesTellHowMuchOfAPixelIsCovered) {
           Hit hit = world.intersect(ray);
           covered += (hit.valid() && hit.instance == 0) / float(side * side);
         }
-        plain += std::pow(c.plain[i] - covered, 2), softened += std::pow(c.softened[i] - covered, 2);
+        plain += std::pow(c.plain[i] - covered, 2),
+            softened += std::pow(c.softened[i] - covered, 2);
         cut += covered > 0 && covered < 1;
       }
     EXPECT_GT(cut, 300);

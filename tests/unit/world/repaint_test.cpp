@@ -7,8 +7,8 @@
 namespace wellspring {
 namespace {
 
-// Two squares side by side that move and wear one material, one that moves and wears another, and one that
-// stands still and wears the first.
+// Two squares side by side that move and wear one material, one that moves and wears another, and
+// one that stands still and wears the first.
 struct Stage {
   Scene scene;
   std::vector<Mesh> moving;
@@ -69,7 +69,8 @@ TEST(Repaint, ChangesWhatMovesAndNothingElse) {
     EXPECT_EQ(look(world, x).base_color, vec3(0.5f, 0, 0)) << x;
     EXPECT_EQ(look(world, x).emission, vec3(0)) << x;
   }
-  EXPECT_EQ(stage.scene.materials[0].base_color, vec4(0.5f, 0.5f, 0.5f, 1)) << "the scene is as it was";
+  EXPECT_EQ(stage.scene.materials[0].base_color, vec4(0.5f, 0.5f, 0.5f, 1))
+      << "the scene is as it was";
   EXPECT_EQ(world.placed(1).paints, 1u);
   EXPECT_EQ(world.placed(0).paints + world.placed(3).paints, 0u);
   // A change counts from the scene's material, and pictures lie elsewhere.

@@ -24,8 +24,10 @@ struct Sky {
     for (int y = 0; y < image().height / 2; y++)
       for (int x = 0; x < image().width; x++) {
         double theta = 3.14159265 * (y + 0.5) / image().height;
-        double solid = std::sin(theta) * 2 * 3.14159265 * 3.14159265 / (image().width * image().height);
-        sum += dvec3(vec3(image().texels[size_t(y * image().width + x)])) * (std::cos(theta) * solid);
+        double solid =
+            std::sin(theta) * 2 * 3.14159265 * 3.14159265 / (image().width * image().height);
+        sum +=
+            dvec3(vec3(image().texels[size_t(y * image().width + x)])) * (std::cos(theta) * solid);
       }
     return vec3(sum);
   }
@@ -91,7 +93,8 @@ TEST(Sky, BelowTheHorizonThereIsTwilightWithoutASun) {
 }
 
 TEST(Sky, EverywhereFiniteAndSymmetricAboutTheSun) {
-  for (SkySettings s : {SkySettings{90, 0, 1, 1}, {0, 10, 10, 1}, {-18, 0, 1, 1}, {10, 180, 1, 0}}) {
+  for (SkySettings s :
+       {SkySettings{90, 0, 1, 1}, {0, 10, 10, 1}, {-18, 0, 1, 1}, {10, 180, 1, 0}}) {
     EXPECT_EQ(sky_problem(s), nullptr);
     Sky sky(s);
     for (const vec4& texel : sky.image().texels) {

@@ -2,9 +2,9 @@
 // No ray slips between two triangles that share an edge: rays from inside closed meshes, aimed at
 // edges as exactly as floats can say, whichever way they are asked. (Of a tree that is not
 // watertight one in fifteen slips.) Corners are left out: where many triangles meet, signs that
-// agree along each edge may still leave no triangle, and of rays aimed at a corner to the last digit
-// one in some hundreds does slip; a random ray comes that near to one with a chance of about 1e-13
-// times the triangles.
+// agree along each edge may still leave no triangle, and of rays aimed at a corner to the last
+// digit one in some hundreds does slip; a random ray comes that near to one with a chance of about
+// 1e-13 times the triangles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
