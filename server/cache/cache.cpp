@@ -121,7 +121,6 @@ struct RenderCache::Impl {
     corrects = true;
   }
   void count(const SurfaceCounts& counts, bool known);
-  void relight(const Forgotten& forgotten);
   // The image has room for what lies around a picture, as long as that is projected.
   void fit_image(int across, int down);
   // Coarser, unless the view itself is projected.
@@ -390,27 +389,18 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   });
 }
 
-void RenderCache::Impl::relight(const Forgotten& forgotten) {
-  vec3 kept, added;
-  relight_still(
-      points, image, [&](uint32_t point) { return forgotten(point, kept, added); }, still);
-  forget_light(points, forgotten);
-  relit = true;
-}
-
-void RenderCache::relight(vec3 place, float reach) {
-  Impl& c = *impl_;
-  c.relight(
-      [&](uint32_t point, vec3&, vec3&) { return is_lit_from(c.points, point, place, reach); });
-}
-
 void RenderCache::relight(const Changes& changes) {
   Impl& c = *impl_;
-  c.relight([&](uint32_t i, vec3& kept, vec3& added) {
+  auto forgotten = [&](uint32_t i, vec3& kept, vec3& added) {
     if (c.points.flags[i] & point_infinite) return false;
     vec3 place(c.points.x[i], c.points.y[i], c.points.z[i]);
     return changes(place, unpack_normal(c.points.normal[i]), kept, added);
-  });
+  };
+  vec3 kept, added;
+  relight_still(
+      c.points, c.image, [&](uint32_t i) { return forgotten(i, kept, added); }, c.still);
+  forget_light(c.points, forgotten);
+  c.relit = true;
 }
 
 void RenderCache::clear() {

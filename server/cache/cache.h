@@ -105,13 +105,11 @@ class RenderCache {
   // ones might be taken for a change of the light). Its light is not expected to be that of others.
   void set_reference(bool on);
   void set_attention(bool on);  // CacheSettings::attention
-  // A lamp at `place` was switched, dimmed or moved, and is much of the light within `reach` metres
-  // (infinite: everywhere): what was remembered of the light there counts no more, and is asked for
-  // first. Not for lamps that are little of it: there a change that resampling finds costs less.
-  void relight(vec3 place, float reach);
-  // The same of lights that are much of it where `changes` says so of a surface, on many threads.
-  // Until newer light is known there, `kept` of what is remembered, 1 unless changed, and the light
-  // `added` are shown.
+  // A lamp was switched, dimmed or moved, and is much of the light where `changes` says so of a
+  // surface, on many threads: what was remembered of the light there counts no more, and is asked
+  // for first. Until newer light is known, `kept` of it, 1 unless changed, and the light `added`
+  // are shown. Not where the lamp is little of the light: there a change that resampling finds
+  // costs less.
   using Changes = std::function<bool(vec3 place, vec3 normal, vec3& kept, vec3& added)>;
   void relight(const Changes& changes);
   // Forgets everything (another exhibit).

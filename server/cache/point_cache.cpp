@@ -112,12 +112,6 @@ int move_points_of(PointCache& points, uint32_t object, const mat4& moved) {
   return count;
 }
 
-bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach) {
-  vec3 away = vec3(points.x[i], points.y[i], points.z[i]) - place;
-  bool near = !(points.flags[i] & point_infinite) && dot(away, away) <= reach * reach;
-  return near || std::isinf(reach);
-}
-
 void forget_light_of(PointCache& points, uint32_t i, int ageing) {
   if (points.age[i] == evicted_age) return;
   points.age[i] = uint8_t(std::min(points.age[i] + ageing, oldest_age));
@@ -138,11 +132,6 @@ void forget_light(PointCache& points, const Forgotten& forgotten) {
       color.rest = pack_rgb9e5(kept * unpack_rgb9e5(color.rest));
     }
   });
-}
-
-void forget_light(PointCache& points, vec3 place, float reach) {
-  forget_light(points,
-               [&](uint32_t i, vec3&, vec3&) { return is_lit_from(points, i, place, reach); });
 }
 
 bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted) {

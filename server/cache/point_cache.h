@@ -83,14 +83,10 @@ int move_points_of(PointCache& points, uint32_t object, const mat4& moved);
 // newer is known around, and its next sample is as good as its first. It grows older by `ageing`,
 // so that it is asked for the sooner the surer the change is; `oldest_age`: among the first.
 void forget_light_of(PointCache& points, uint32_t i, int ageing);
-// The light has changed within `reach` metres of `place`: points there forget theirs. At infinity
-// only an infinite reach counts.
-void forget_light(PointCache& points, vec3 place, float reach);
-// Points of which `forgotten` says so, on many threads, do. Of what they show `kept` is left, 1
-// unless changed, and light `added` falls on them.
+// Points of which `forgotten` says so, on many threads, forget theirs. Of what they show `kept` is
+// left, 1 unless changed, and light `added` falls on them.
 using Forgotten = std::function<bool(uint32_t point, vec3& kept, vec3& added)>;
 void forget_light(PointCache& points, const Forgotten& forgotten);
-bool is_lit_from(const PointCache& points, uint32_t i, vec3 place, float reach);
 // Where a place on a mesh is now, with the side of the normal that `normal` faced; both stay as
 // they are where the world has no such triangle.
 void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric,

@@ -28,23 +28,6 @@ struct Tally {
   std::array<uint16_t, FewLights::most> tests{};
 };
 
-uint32_t find_slot(const LampsSeen& seen, uint64_t key) {
-  uint32_t slot = uint32_t(mix64(key)) & seen.mask;
-  while (seen.keys[slot] != 0 && seen.keys[slot] != key) slot = (slot + 1) & seen.mask;
-  return slot;
-}
-
-LightSample towards(const PunctualLight& lamp, vec3 from) {
-  LightSample light;
-  light.direction = -lamp.direction;
-  if (lamp.type == PunctualType::directional) return light;
-  vec3 line = lamp.position - from;
-  light.distance = length(line);
-  light.direction = line / std::max(light.distance, 1e-20f);
-  light.target = lamp.position;
-  return light;
-}
-
 SurfacePlace place_of(const World& world, const Ray& ray, const Hit& hit) {
   Face face = make_face(world.placed(hit.instance), hit.triangle);
   SurfacePlace place;
@@ -59,15 +42,15 @@ void visit(const Transport& transport, const LampsSeen& seen, const std::vector<
            const SurfacePlace& place, Visit& to) {
   const LightTables& tables = transport.tables;
   to.key = place_key(place.position, place.geometric_normal, seen.cell);
-  uint32_t slot = find_slot(seen, to.key);
+  uint32_t slot = find_place_slot(seen.keys, to.key);
   const Tally* known = seen.keys[slot] != 0 ? &tallies[slot] : nullptr;
   LightEffects effects;
   eval_effects(tables.few_punctual, place.position, place.geometric_normal, false, {}, effects);
   for (int i = 0; i < tables.few_punctual.count; i++) {
     size_t lamp = size_t(i);
     if (!(effects.effect[lamp] > 0) || (known && known->tests[lamp] >= enough_tests)) continue;
-    vec3 arrives =
-        eval_visibility(transport, place, towards(tables.punctual[lamp], place.position));
+    LightSample light = eval_punctual(tables.punctual[lamp], tables.cones[lamp], place);
+    vec3 arrives = eval_visibility(transport, place, light);
     to.tested |= 1u << i;
     to.arrived[lamp] = glm::clamp(max_component(arrives), 0.0f, 1.0f);
   }
@@ -88,9 +71,9 @@ void walk_once(const Transport& transport, const LampsSeen& seen, const std::vec
     if (!world.is_moving(hit.instance) && world.material_of(hit.instance).transmission == 0) {
       visit(transport, seen, tallies, place, visits[step]);
       vec3 local = sample_cosine_hemisphere(sampler.next2()), n = place.geometric_normal;
-      vec3 across =
-          normalize(std::abs(n.x) > 0.5f ? cross(n, vec3(0, 1, 0)) : cross(n, vec3(1, 0, 0)));
-      ray.direction = normalize(local.x * across + local.y * cross(n, across) + local.z * n);
+      vec3 tangent, bitangent;
+      make_frame_axes(n, tangent, bitangent);
+      ray.direction = normalize(local.x * tangent + local.y * bitangent + local.z * n);
     }
     ray.origin = offset_origin(place, ray.direction);
   }
@@ -104,7 +87,6 @@ std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport,
   if (transport.tables.few_punctual.count < 2 || places.empty()) return nullptr;
   auto seen = std::make_shared<LampsSeen>();
   seen->cell = cell;
-  seen->mask = table_size - 1;
   seen->keys.assign(table_size, 0);
   std::vector<Tally> tallies(table_size);
   std::vector<Visit> visits;
@@ -122,7 +104,7 @@ std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport,
     });
     for (const Visit& one : visits) {
       if (one.key == 0) continue;
-      uint32_t slot = find_slot(*seen, one.key);
+      uint32_t slot = find_place_slot(seen->keys, one.key);
       if (seen->keys[slot] == 0) {
         if (2 * (used + 1) > seen->keys.size()) continue;  // as much as the table is meant to hold
         seen->keys[slot] = one.key;
@@ -146,7 +128,7 @@ std::shared_ptr<const LampsSeen> learn_lamps_seen(const Transport& transport,
 }
 
 const LampsSeen::Shares* find_lamps_seen(const LampsSeen& seen, vec3 position, vec3 normal) {
-  uint32_t slot = find_slot(seen, place_key(position, normal, seen.cell));
+  uint32_t slot = find_place_slot(seen.keys, place_key(position, normal, seen.cell));
   return seen.keys[slot] != 0 ? &seen.shares[slot] : nullptr;
 }
 

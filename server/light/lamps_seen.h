@@ -22,8 +22,7 @@ struct LampsSeen {
   using Shares =
       std::array<uint8_t, FewLights::most>;  // of 255, at least 1; by LightTables::punctual_index
   float cell = 0.5f;           // metres
-  uint32_t mask = 0;           // table size - 1; open addressing, linear probing
-  std::vector<uint64_t> keys;  // place_key; 0: free
+  std::vector<uint64_t> keys;  // place_key, where find_place_slot() says; 0: free
   std::vector<Shares> shares;
 };
 

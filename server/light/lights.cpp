@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/memory.h"
 #include "light/caustic_photons.h"
 #include "light/light_bounds.h"
 #include "light/lamps.h"
@@ -109,20 +110,13 @@ float share_of(double first, double second) {
   return float(std::clamp(first / (first + second), 0.25, 0.75));
 }
 
-template <class T>
-size_t bytes_of(const std::vector<T>& v) {
-  return v.size() * sizeof(T);
-}
-
 }  // namespace
 
 size_t light_table_bytes(const LightTables& t) {
-  size_t bytes = bytes_of(t.emitters) + bytes_of(t.emitter_power) +
-                 bytes_of(t.environment.cells.cells) + bytes_of(t.punctual) + bytes_of(t.cones) +
-                 bytes_of(t.punctual_index);
+  size_t bytes = bytes_of(t.emitters, t.emitter_power, t.environment.cells.cells, t.punctual,
+                          t.cones, t.punctual_index);
   for (const LightTree* tree : {&t.emitter_choice, &t.near_choice, &t.distant_choice})
-    bytes += bytes_of(tree->nodes) + bytes_of(tree->leaf_of) + bytes_of(tree->strengths.cells) +
-             bytes_of(tree->shining);
+    bytes += bytes_of(tree->nodes, tree->leaf_of, tree->strengths.cells, tree->shining);
   for (const EmissionPicture& picture : t.pictures) bytes += bytes_of(picture.cells.cells);
   return bytes;
 }

@@ -26,12 +26,6 @@ struct Entries {
   std::vector<vec3> light;
 };
 
-uint32_t find_cell(const RadianceGrid& grid, uint64_t key) {
-  uint32_t slot = uint32_t(mix64(key)) & grid.mask;
-  while (grid.keys[slot] != 0 && grid.keys[slot] != key) slot = (slot + 1) & grid.mask;
-  return slot;
-}
-
 bool keeps_light(const Material& m) {
   return m.alpha_mode == AlphaMode::opaque && !m.unlit && m.transmission == 0 &&
          m.emission == vec3(0) && m.roughness >= clear_roughness;
@@ -52,7 +46,7 @@ struct Vertex {
 // scatters is the same for all.
 struct Walker {
   const RadianceGridSettings& settings;
-  float cell = 1;
+  const RadianceGrid& grid;  // whose cells and materials these are
   std::vector<Transport> parts;
   std::vector<uint8_t> part_of;  // each material's own light is of this part
 
@@ -97,16 +91,15 @@ void Walker::walk(vec3 origin, Sampler& sampler, std::vector<VertexLight>& scrat
     }
     if (material.unlit) break;
     Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
-    bool keep =
-        keeps_light(world.scene().materials[size_t(world.mesh_of(hit.instance).material)]) &&
-        !world.is_moving(hit.instance) && walk.media.here.count == 0;
+    bool keep = grid.keeps[size_t(world.mesh_of(hit.instance).material)] &&
+                !world.is_moving(hit.instance) && walk.media.here.count == 0;
     if (keep) {
       // From here on light is counted for this surface; what the way back dims is its weight.
       if (before) vertices[count - 1].weight = walk.throughput;
       Vertex& vertex = vertices[count++];
       vertex = Vertex{};
       if (walk.depth <= settings.kept_depth)
-        vertex.key = place_key(surface.position, surface.geometric_normal, cell);
+        vertex.key = place_key(surface.position, surface.geometric_normal, grid.cell);
       vertex.albedo = split_reflectance(bsdf).albedo;
       walk.throughput = vec3(1);
       for (size_t p = 0; p < n; p++)
@@ -158,7 +151,7 @@ bool add_entries(RadianceGrid& grid, const Entries& entries, std::vector<uint32_
   const size_t n = parts.light.size();
   for (size_t e = 0; e < entries.keys.size(); e++) {
     if (entries.keys[e] == 0) continue;
-    uint32_t slot = find_cell(grid, entries.keys[e]);
+    uint32_t slot = find_place_slot(grid.keys, entries.keys[e]);
     if (grid.keys[slot] == 0) {
       if (2 * (parts.slots.size() + 1) > grid.keys.size()) return false;
       grid.keys[slot] = entries.keys[e];
@@ -180,9 +173,9 @@ bool add_entries(RadianceGrid& grid, const Entries& entries, std::vector<uint32_
 
 Walker make_walker(const Transport& transport,
                    std::span<const std::shared_ptr<const LightTables>> parts,
-                   const RadianceGridSettings& settings, float cell) {
+                   const RadianceGridSettings& settings, const RadianceGrid& grid) {
   const Scene& scene = transport.world.scene();
-  Walker walker{settings, cell, {}, std::vector<uint8_t>(scene.materials.size(), 0)};
+  Walker walker{settings, grid, {}, std::vector<uint8_t>(scene.materials.size(), 0)};
   for (const auto& tables : parts) walker.parts.push_back({transport.world, *tables});
   if (parts.empty()) walker.parts.push_back(transport);
   for (size_t lamp = 0; lamp + 1 < walker.parts.size(); lamp++)
@@ -201,13 +194,12 @@ std::shared_ptr<const RadianceGrid> make_radiance_grid(
   grid->lamps =
       learn_lamps_seen(transport, places, lamp_cells * grid->cell, {.seed = settings.seed});
   size_t size = 1 << 19;
-  grid->mask = uint32_t(size - 1);
   grid->keys.assign(size, 0);
   grid->light.assign(size, vec3(0));
   grid->count.assign(size, 0);
   for (const Material& material : transport.world.scene().materials)
     grid->keeps.push_back(keeps_light(material));
-  const Walker walker = make_walker(transport, parts, settings, grid->cell);
+  const Walker walker = make_walker(transport, parts, settings, *grid);
   auto found = std::make_shared<RadianceGrid::Parts>();
   const size_t n = walker.parts.size();
   found->light.resize(n);
@@ -250,7 +242,7 @@ std::shared_ptr<const RadianceGrid> relit(const RadianceGrid& all, std::span<con
 }
 
 uint32_t find_grid_slot(const RadianceGrid& grid, vec3 place, vec3 normal) {
-  return find_cell(grid, place_key(place, normal, grid.cell));
+  return find_place_slot(grid.keys, place_key(place, normal, grid.cell));
 }
 
 glm::ivec3 grid_place(const RadianceGrid& grid, uint32_t slot) {
@@ -266,7 +258,7 @@ bool eval_grid(const RadianceGrid& grid, const World& world, const Ray& ray, con
     return false;
   vec3 normal = eval_face(world, hit.instance, hit.triangle);
   if (dot(normal, ray.direction) > 0) normal = -normal;
-  uint32_t slot = find_cell(grid, place_key(ray.origin + hit.t * ray.direction, normal, grid.cell));
+  uint32_t slot = find_grid_slot(grid, ray.origin + hit.t * ray.direction, normal);
   if (grid.count[slot] < enough_grid_samples) return false;
   radiance = grid.light[slot];
   return true;

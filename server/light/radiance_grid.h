@@ -20,8 +20,7 @@ struct LightTables;
 
 struct RadianceGrid {
   float cell = 0.25f;          // metres
-  uint32_t mask = 0;           // table size - 1; open addressing, linear probing
-  std::vector<uint64_t> keys;  // 0: free
+  std::vector<uint64_t> keys;  // place_key, where find_place_slot() says; 0: free
   std::vector<vec3> light;  // radiance scattered back, textures and all; of the lamps that are on
   std::vector<float> count;    // samples behind it
   std::shared_ptr<const LampsSeen> lamps;  // may be null

@@ -42,6 +42,12 @@ float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 normal, vec3
                          const Surface& met);
 float sample_sky_pdf(const LightTables& tables, vec3 direction);
 
+// What that light alone would send there if nothing were in between (glTF KHR_lights_punctual:
+// inverse square, range window, cone). `pdf` is 1, or 0 where it sends nothing; on the light itself
+// it has no direction either.
+LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
+                          const SurfacePlace& from);
+
 // Picks one by its unshadowed effect on a surface that scatters to its own side, or (`through`) to
 // both sides; of many by power and place first. `radiance` is already divided by the chance of the
 // pick. `lobe`: what the surface does with it, where that is known.

@@ -7,9 +7,7 @@
 #include "light/sample_light.h"
 
 namespace wellspring {
-namespace {
 
-// glTF KHR_lights_punctual: inverse square, range window, cone.
 LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
                           const SurfacePlace& from) {
   LightSample light;
@@ -39,6 +37,8 @@ LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
   light.pdf = strength > 0 ? 1.0f : 0.0f;
   return light;
 }
+
+namespace {
 
 // The distant one's chance. Two draws, near lights and distant ones, and then one of the two: the
 // sun outshines every lamp wherever it would shine, and indoors it rarely does, so it may not crowd

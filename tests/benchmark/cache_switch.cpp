@@ -105,7 +105,8 @@ void run(BenchReport& report, const BenchOptions& options, const Switch& scene, 
   Onlooker visitor{.scene = scene, .way = way};
   if (news != News::cleared)
     for (int i = 0; i < before; i++) visitor.show(was, mismatch);
-  if (news == News::told) visitor.cache.relight(vec3(0), INFINITY);
+  if (news == News::told)
+    visitor.cache.relight([](vec3, vec3, vec3&, vec3&) { return true; });
   int picture = 0;
   Frame map;
   for (int after : judged_after) {

@@ -2,9 +2,11 @@
 // Lamps are switched, and the cache is told.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "cache/compose_drawn.h"
+#include "cache/packing.h"
 #include "cache/point_cache.h"
 #include "light/technique.h"
 #include "scenes/scenes.h"
@@ -16,6 +18,9 @@ namespace {
 View hall() { return look_at(vec3(-1, 1.6f, 4), vec3(-0.2f, 0.9f, -2), 60, 160, 90); }
 
 constexpr int pixels = 160 * 90;
+
+// Of the light nothing is known but that it changes.
+bool everywhere(vec3, vec3, vec3&, vec3&) { return true; }
 
 // Of the pixels that look different in the other light: how many are within 10 % of right.
 struct Affected {
@@ -57,7 +62,7 @@ Switched switch_spot(bool told, bool on, int mismatch) {
   Switched result;
   result.before = Affected(other, v.room, 64).share_right(v.frame);
   v.room = other;
-  if (told) v.cache.relight(vec3(2.5f, 2.8f, 2.0f), INFINITY);
+  if (told) v.cache.relight(everywhere);
   for (int i = 0; i < 30; i++) {
     v.step(hall(), pixels / mismatch);
     result.right.push_back(affected.share_right(v.frame));
@@ -132,7 +137,7 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
     if (shown == Shown::moving && (pictures - i) % 2 == 0)
       view.position.x += 0.004f;  // the last is seen from the place
     const View seen = shown == Shown::moving ? light_view(view) : view;
-    if (i == 0 && told) cache.relight(vec3(0), INFINITY);
+    if (i == 0 && told) cache.relight(everywhere);
     cache.resize(view.width, view.height);
     cache.move_points(*box.world);
     cache.project(seen);
@@ -171,38 +176,76 @@ TEST(Relight, DrawnPicturesAreRightInHalfASecond) {
     }
 }
 
-TEST(Relight, BeyondItsReachNothingIsForgotten) {
+TEST(Relight, OnlyPointsOfWhichItIsSaidForget) {
   PointCache points;
   resize_points(points, 16);
   for (uint32_t i = 0; i < 16; i++) {
-    points.x[i] = float(i), points.y[i] = points.z[i] = 0;
     points.flags[i] = point_used | point_visible;
     points.age[i] = 3, points.count[i] = 20;
+    points.color[i].smooth = pack_rgb9e5(vec3(4, 2, 1));
+    points.color[i].rest = pack_rgb9e5(vec3(2));
   }
-  points.flags[1] |= point_infinite;
   points.age[2] = evicted_age;
-  forget_light(points, vec3(0), 4.5f);
+  forget_light(points, [](uint32_t i, vec3& kept, vec3& added) {
+    if (i == 3) kept = vec3(0.5f, 1, 0), added = vec3(0, 1, 8);
+    return i <= 4;
+  });
   for (uint32_t i = 0; i < 16; i++) {
-    bool near = i <= 4 && i != 1 && i != 2;
-    EXPECT_EQ(points.age[i], near ? 254 : i == 2 ? evicted_age : 3) << i;
-    EXPECT_EQ(points.count[i], near ? 0 : 20) << i;
-    EXPECT_EQ(bool(points.flags[i] & point_relit), near) << i;
+    bool lit = i <= 4 && i != 2;
+    EXPECT_EQ(points.age[i], lit ? 254 : i == 2 ? evicted_age : 3) << i;
+    EXPECT_EQ(points.count[i], lit ? 0 : 20) << i;
+    EXPECT_EQ(bool(points.flags[i] & point_relit), lit) << i;
+    vec3 smooth = i == 3 ? vec3(2, 3, 8) : vec3(4, 2, 1), rest = i == 3 ? vec3(1, 2, 0) : vec3(2);
+    EXPECT_EQ(unpack_rgb9e5(points.color[i].smooth), smooth) << i;
+    EXPECT_EQ(unpack_rgb9e5(points.color[i].rest), rest) << i;
   }
-  forget_light(points, vec3(0), INFINITY);
-  EXPECT_TRUE(points.flags[1] & point_relit);  // the sky may have changed too
-  EXPECT_EQ(points.age[2], evicted_age);
+}
+
+// The sky is no surface that a lamp lights.
+TEST(Relight, AsksForNothingAtInfinity) {
+  Visit v;
+  View view = look_at(vec3(0), vec3(0, 0, -1), 60, 32, 18);
+  v.cache.resize(view.width, view.height);
+  v.cache.project(view);
+  v.cache.attend();
+  v.cache.plan(view, view.width * view.height, 1, v.requests);
+  v.samples.assign(v.requests.size(), Sample{});
+  for (size_t i = 0; i < v.requests.size(); i++) {
+    const Ray& ray = v.requests[i].ray;
+    Sample& sample = v.samples[i];
+    sample.position = ray.direction, sample.distance = INFINITY, sample.rest = vec3(1);
+    if (i % 2 == 0) continue;
+    sample.position = ray.origin + 5.0f * ray.direction, sample.distance = 5;
+    sample.normal = -ray.direction, sample.albedo = vec3(0.5f);
+    sample.object = 1, sample.flags = sample_hit;
+  }
+  v.cache.remember(view, v.requests, v.samples);
+  std::atomic<int> surfaces = 0, others = 0;
+  v.cache.relight([&](vec3 place, vec3, vec3&, vec3&) {
+    (length(place) > 4 ? surfaces : others)++;
+    return true;
+  });
+  EXPECT_GT(surfaces, 100);
+  EXPECT_EQ(others, 0);
 }
 
 TEST(Relight, SwitchedAgainAndAgainStaysFinite) {
   Visit v;
   for (int i = 0; i < 40; i++) {
     v.room.spot = i % 3 != 0;
-    v.cache.relight(vec3(2.5f, 2.8f, 2.0f), i % 2 ? 3.0f : INFINITY);
+    v.cache.relight([&](vec3 place, vec3, vec3& kept, vec3& added) {
+      if (i % 4 == 0) kept = vec3(v.room.spot ? 1.0f : 0.5f), added = vec3(v.room.spot);
+      return i % 2 == 0 || length(place - vec3(2.5f, 2.8f, 2.0f)) < 3;
+    });
     v.step(hall(), i % 5 == 0 ? 0 : 500);
     for (vec3 c : v.frame.color) ASSERT_TRUE(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);
   }
-  v.cache.relight(vec3(NAN), NAN);
+  v.cache.relight([](vec3, vec3, vec3& kept, vec3& added) {
+    kept = vec3(-1, 0, NAN), added = vec3(NAN, -1, 0);
+    return true;
+  });
   v.step(hall(), 100);
+  for (vec3 c : v.frame.color) ASSERT_TRUE(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);
 }
 
 }  // namespace
