@@ -18,8 +18,10 @@
 #include "base/load_error.h"
 #include "base/log.h"
 #include "frame/picture_file.h"
+#include "light/lamps.h"
 #include "light/technique.h"
 #include "light/transport_plan.h"
+#include "show/exhibit_lamps.h"
 #include "show/exhibit_load.h"
 #include "show/exhibit_scene.h"
 #include "world/scene_load.h"
@@ -42,6 +44,7 @@ struct Options {
   double fov = 0, time = 0, exposure = 1;
   int spp = 16, max_depth = 8, threads = 0;
   uint64_t seed = 1;
+  std::vector<std::string> lamps;  // NAME=on, NAME=off
   bool list_techniques = false, explain = false;
 };
 
@@ -133,27 +136,34 @@ void check_resources(const Options& o, ivec2 size) {
                           " MB, which this machine does not have free");
 }
 
+struct LoadedScene {
+  Scene scene;
+  std::vector<char> lamps;  // of each of the scene's: is it on?
+};
+
 // SCENE by its kind, the first that knows it. More kinds of scene: one more line.
 struct SceneKind {
   const char* what;
   bool (*knows)(const std::string& path);
-  Scene (*load)(const std::string& path, double time);
+  LoadedScene (*load)(const std::string& path, double time);
 };
 const SceneKind scene_kinds[] = {
     {"exhibit package",
      [](const std::string& path) { return std::filesystem::exists(path + "/exhibit.json"); },
      [](const std::string& path, double time) {
-       return make_exhibit_scene(load_exhibit(path), time);
+       Exhibit exhibit = load_exhibit(path);
+       std::vector<char> lamps = first_lamps(exhibit);
+       return LoadedScene{make_exhibit_scene(std::move(exhibit), time), lamps};
      }},
     {"glTF file", [](const std::string& path) { return !std::filesystem::is_directory(path); },
      [](const std::string& path, double time) {
        SceneLoadOptions options;
        options.time = time;
-       return load_scene(path, options);
+       return LoadedScene{load_scene(path, options), {}};
      }},
 };
 
-Scene load_any_scene(const std::string& path, double time) {
+LoadedScene load_any_scene(const std::string& path, double time) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw LoadError(path, "", "no such file");
   for (const SceneKind& kind : scene_kinds)
@@ -162,6 +172,33 @@ Scene load_any_scene(const std::string& path, double time) {
   for (const SceneKind& kind : scene_kinds)
     kinds += (kinds.empty() ? "" : ", ") + std::string(kind.what);
   throw LoadError(path, "", "not a scene this program knows (" + kinds + ")");
+}
+
+// --lamp changes what the exhibit begins with.
+void apply_lamps(const std::vector<std::string>& orders, const Scene& scene,
+                 std::vector<char>& lamps) {
+  for (const std::string& order : orders) {
+    size_t cut = std::min(order.rfind('='), order.size());
+    std::string name = order.substr(0, cut), state = order.substr(cut), names;
+    if (state != "=on" && state != "=off")
+      throw UsageError("--lamp " + order + ": NAME=on or NAME=off expected");
+    size_t found = lamps.size();
+    for (size_t i = 0; i < lamps.size(); i++) {
+      if (scene.lamps[i].name == name) found = i;
+      names += (i ? ", " : "") + scene.lamps[i].name;
+    }
+    if (found == lamps.size())
+      throw UsageError("--lamp " + order + ": no such lamp; " +
+                       (names.empty() ? "the scene has none" : "there are " + names));
+    lamps[found] = state == "=on";
+  }
+}
+
+// Lights that were made, and are prepared, while all lamps were on.
+void light_lamps(const std::vector<char>& lamps, World& world, Lights& lights) {
+  if (lamps.empty()) return;
+  for (size_t i = 0; i < lamps.size(); i++) world.switch_lamp(int(i), lamps[i]);
+  lights = relit(lights, world);
 }
 
 void apply_sky(const std::string& text, Scene& scene) {
@@ -299,6 +336,8 @@ void add_options(CLI::App& app, Options& o) {
                  "ELEVATION,AZIMUTH[,TURBIDITY] of a sun and its sky instead: degrees over the "
                  "horizon, degrees clockwise from -Z, 1 (pure air) to 10 (haze)")
       ->excludes("--environment");
+  app.add_option("--lamp", o.lamps,
+                 "NAME=on or NAME=off: a lamp of the exhibit that is not to be as it begins");
   app.add_option("--threads", o.threads, "0: all cores")->capture_default_str();
   app.add_option("--replay", o.replay,
                  "x,y,i: print the radiance of sample i of pixel x,y instead");
@@ -308,8 +347,9 @@ void render(const Options& o) {
   ivec2 size = parse_size(o.size);
   check_options(o);
   check_resources(o, size);
-  Scene scene = load_any_scene(o.scene, o.time);
+  auto [scene, lamps] = load_any_scene(o.scene, o.time);
   for (const std::string& warning : scene.warnings) std::cerr << o.scene << ": " << warning << "\n";
+  apply_lamps(o.lamps, scene, lamps);
   if (!o.sky.empty()) apply_sky(o.sky, scene);
   else apply_environment(o.environment, scene);
   if (o.explain) return print_plan(o, scene);
@@ -318,6 +358,7 @@ void render(const Options& o) {
   Lights lights = make_lights(world);
   if (auto* prepare = find_technique(o.technique)->prepare)
     prepare(world, std::span(&view.position, 1), lights);
+  light_lamps(lamps, world, lights);
   StillSettings settings;
   settings.spp = o.spp;
   settings.seed = o.seed;

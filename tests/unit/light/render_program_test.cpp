@@ -120,6 +120,51 @@ TEST_F(RenderProgram, CamerasAndLightComeFromTheCommandLineToo) {
   EXPECT_EQ(picture("--environment 0,0,0.5")[0], vec3(0, 0, 0.5f));
 }
 
+// A red and a blue lamp before the triangle, of which an exhibit begins with the blue one alone.
+TEST_F(RenderProgram, LampsAreAsTheExhibitBeginsUnlessToldOtherwise) {
+  std::ofstream(folder / "lit.gltf")
+      << R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],
+      "extensions":{"KHR_lights_punctual":{"lights":[
+        {"type":"point","color":[1,0,0],"intensity":9},{"type":"point","color":[0,0,1],"intensity":9}]}},
+      "scene":0,"scenes":[{"nodes":[0,1,2]}],"nodes":[{"mesh":0},
+        {"name":"fire","translation":[0,0,1],"extensions":{"KHR_lights_punctual":{"light":0}}},
+        {"name":"moon","translation":[0.5,0.5,1],"extensions":{"KHR_lights_punctual":{"light":1}}}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+      "bufferViews":[{"buffer":0,"byteLength":36}],
+      "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+  std::ofstream(folder / "exhibit.json")
+      << R"({"title":{"en":"Lit"},"scene":"lit.gltf",
+        "viewpoints":[{"name":"front","title":{"en":"Front"},"position":[0,0,2]}],"lamps":[
+        {"id":"warm","title":{"en":"Fire"},"nodes":["fire"],"on":false},
+        {"id":"cold","title":{"en":"Moon"},"nodes":["moon"]}]})";
+  const std::string view =
+      folder.string() + " --eye 0.25,0.25,1 --target 0.25,0.25,0 --fov 10 --size 5x5 --spp 4";
+  auto light = [&](const std::string& arguments) {
+    Answer answer = run(view + " " + arguments + " --out " + out("lit.pfm"));
+    EXPECT_EQ(answer.status, 0) << answer.text;
+    vec3 sum(0);
+    for (vec3 c : load_linear_picture(out("lit.pfm")).color) sum += c;
+    return sum;
+  };
+  for (std::string technique : {"path", "gather", "instant_radiosity"}) {
+    std::string by = "--technique " + technique + " ";
+    vec3 first = light(by), told = light(by + "--lamp warm=on --lamp cold=off");
+    EXPECT_EQ(first.x, 0) << technique;
+    EXPECT_GT(first.z, 1) << technique;
+    EXPECT_GT(told.x, 1) << technique;
+    EXPECT_EQ(told.z, 0) << technique;
+    EXPECT_EQ(light(by + "--lamp cold=off"), vec3(0)) << technique;
+  }
+  for (const char* wrong : {"--lamp warm", "--lamp warm=dim", "--lamp =on", "--lamp sun=on"}) {
+    Answer answer = run(view + " " + wrong + " --out " + out("x.png"));
+    EXPECT_EQ(answer.status, 2) << wrong << ": " << answer.text;
+  }
+  EXPECT_NE(run(view + " --lamp sun=on --out " + out("x.png")).text.find("warm, cold"),
+            std::string::npos);
+  EXPECT_EQ(run(scene() + " --lamp warm=on --out " + out("x.png")).status, 2);
+}
+
 TEST_F(RenderProgram, WrongCommandLinesAreStatus2) {
   std::string good = scene() + " --out " + out("x.png");
   for (const char* wrong : {"--technique magic",
