@@ -21,7 +21,10 @@ export function run(name, args, { timeout = 60000 } = {}) {
     child.stdout.on('data', (chunk) => { stdout += chunk; });
     child.stderr.on('data', (chunk) => { stderr += chunk; });
     const timer = setTimeout(() => child.kill('SIGKILL'), timeout);
-    child.on('close', (status, signal) => { clearTimeout(timer); resolve({ status: signal ?? status, stdout, stderr }); });
+    child.on('close', (status, signal) => {
+      clearTimeout(timer);
+      resolve({ status: signal ?? status, stdout, stderr });
+    });
   });
 }
 
@@ -32,9 +35,15 @@ export function start_server(args = [], { port = 0, content = join(source, 'cont
       ['--content', content, '--web', join(source, 'web'), '--port', String(port), ...args],
       { stdio: ['ignore', 'pipe', 'pipe'] });
     let stdout = '', stderr = '';
-    const timer = setTimeout(() => { child.kill('SIGKILL'); reject(new Error(`no address within 60 s\n${stderr}`)); }, 60000);
+    const timer = setTimeout(() => {
+      child.kill('SIGKILL');
+      reject(new Error(`no address within 60 s\n${stderr}`));
+    }, 60000);
     child.stderr.on('data', (chunk) => { stderr += chunk; });
-    child.on('close', (status) => { clearTimeout(timer); reject(new Error(`server ended with ${status}\n${stderr}`)); });
+    child.on('close', (status) => {
+      clearTimeout(timer);
+      reject(new Error(`server ended with ${status}\n${stderr}`));
+    });
     child.stdout.on('data', (chunk) => {
       stdout += chunk;
       const match = /http:\/\/[^:]+:(\d+)\//.exec(stdout);
@@ -42,7 +51,8 @@ export function start_server(args = [], { port = 0, content = join(source, 'cont
       clearTimeout(timer);
       const found = Number(match[1]);
       resolve({
-        child, port: found, url: `http://127.0.0.1:${found}`, ws: `ws://127.0.0.1:${found}`, log: () => stderr,
+        child, port: found, url: `http://127.0.0.1:${found}`, ws: `ws://127.0.0.1:${found}`,
+        log: () => stderr,
         stop: (signal = 'SIGTERM') => new Promise((done) => {
           if (child.exitCode !== null || child.signalCode !== null) return done(child.exitCode);
           child.on('close', (status) => done(status));
@@ -57,7 +67,8 @@ export function read_picture(bytes) {
   if (bytes.length < 28 || bytes.toString('latin1', 0, 4) !== 'WSF1') return null;
   return {
     frame: bytes.readUInt32LE(4), seq: bytes.readUInt32LE(8), time_us: bytes.readBigUInt64LE(12),
-    width: bytes.readUInt16LE(20), height: bytes.readUInt16LE(22), quality: bytes[24], flags: bytes[25],
+    width: bytes.readUInt16LE(20), height: bytes.readUInt16LE(22), quality: bytes[24],
+    flags: bytes[25],
     header: bytes.readUInt16LE(26), jpeg: bytes.subarray(bytes.readUInt16LE(26)),
   };
 }
@@ -67,7 +78,8 @@ export function read_sound(bytes) {
   if (bytes.length < 56 || bytes.toString('latin1', 0, 4) !== 'WSA1') return null;
   const pcm = bytes.subarray(bytes.readUInt16LE(26));
   return {
-    utterance: bytes.readUInt32LE(4), start: bytes.readUInt32LE(8), time_us: Number(bytes.readBigUInt64LE(12)),
+    utterance: bytes.readUInt32LE(4), start: bytes.readUInt32LE(8),
+    time_us: Number(bytes.readBigUInt64LE(12)),
     total: bytes.readUInt32LE(20), channels: bytes[24], rate: bytes.readUInt32LE(28),
     mouth: [32, 40, 48].map((at) => bytes.readDoubleLE(at)),
     samples: Array.from({ length: pcm.length / 2 }, (_, i) => pcm.readInt16LE(2 * i)),
@@ -76,24 +88,32 @@ export function read_sound(bytes) {
 
 // A scripted visitor: collects messages and pictures, acknowledges every picture.
 export class Visitor {
-  constructor(server, { path = '/api/v1/visit', protocol = 'wellspring.v1', acknowledge = true } = {}) {
+  constructor(server,
+      { path = '/api/v1/visit', protocol = 'wellspring.v1', acknowledge = true } = {}) {
     this.messages = [];
     this.pictures = 0;
     this.sounds = [];
     this.waiting = [];
     this.socket = new WebSocket(server.ws + path, protocol);
-    this.closed = new Promise((resolve) => this.socket.on('close', (code, reason) => resolve({ code, reason: String(reason) })));
+    this.closed = new Promise((resolve) =>
+        this.socket.on('close', (code, reason) => resolve({ code, reason: String(reason) })));
     this.socket.on('error', () => {});
-    this.opened = new Promise((resolve, reject) => { this.socket.on('open', resolve); this.socket.on('error', reject); });
+    this.opened = new Promise((resolve, reject) => {
+      this.socket.on('open', resolve);
+      this.socket.on('error', reject);
+    });
     this.socket.on('message', (bytes, binary) => {
       const sound = binary && read_sound(bytes);
-      const item = sound ? { sound, at: performance.now() } : binary ? { picture: read_picture(bytes), at: performance.now() } : { message: JSON.parse(String(bytes)) };
+      const item = sound ? { sound, at: performance.now() }
+          : binary ? { picture: read_picture(bytes), at: performance.now() }
+          : { message: JSON.parse(String(bytes)) };
       if (sound) {
         this.sounds.push(sound);
       } else if (binary) {
         this.pictures++;
         this.last = item.picture;
-        if (acknowledge) this.send({ type: 'ack', frame: item.picture.frame, decoded_ms: 1, shown: true });
+        if (acknowledge)
+          this.send({ type: 'ack', frame: item.picture.frame, decoded_ms: 1, shown: true });
       } else {
         this.messages.push(item.message);
       }
@@ -117,15 +137,19 @@ export class Visitor {
     });
   }
   message(type, test = () => true) {
-    return this.next((item) => item.message?.type === type && test(item.message), `message ${type}`).then((item) => item.message);
+    const wanted = (item) => item.message?.type === type && test(item.message);
+    return this.next(wanted, `message ${type}`).then((item) => item.message);
   }
   picture(test = () => true, timeout = 15000) {
-    return this.next((item) => item.picture && test(item.picture), 'picture', timeout).then((item) => item.picture);
+    return this.next((item) => item.picture && test(item.picture), 'picture', timeout)
+        .then((item) => item.picture);
   }
   async hello(fields = {}) {
     await this.opened;
     const welcome = this.message('welcome');
-    this.send({ type: 'hello', exhibit: '', width: 320, height: 180, lang: 'en', role: 'visitor', ...fields });
+    this.send({
+      type: 'hello', exhibit: '', width: 320, height: 180, lang: 'en', role: 'visitor', ...fields,
+    });
     return welcome;
   }
   close() { this.socket.close(); return this.closed; }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The WebSocket to the server: says hello, hands messages on, and comes back by itself when the line breaks.
+// The WebSocket to the server: says hello, hands messages on, and comes back by itself when the
+// line breaks.
 
-// handlers: {hello() -> message, open(), lost(seconds_to_retry), message(object), binary(ArrayBuffer)}
+// handlers: {hello() -> message, open(), lost(seconds_to_retry), message(object),
+// binary(ArrayBuffer)}
 export function make_connection(handlers) {
   let socket = null, retry = 0, timer = 0, heard = 0, ended = false;
 
@@ -31,7 +33,8 @@ export function make_connection(handlers) {
     mine.onclose = () => { if (socket === mine && !ended) later(); };
   }
 
-  // Waits longer each time, with jitter, so that a restarted server is not stormed by every page at once.
+  // Waits longer each time, with jitter, so that a restarted server is not stormed by every page at
+  // once.
   function later() {
     socket = null;
     const seconds = Math.min(8, 0.4 * 2 ** retry++) * (0.75 + 0.5 * Math.random());
@@ -42,7 +45,8 @@ export function make_connection(handlers) {
 
   // A line that looks open but has been silent (a laptop that slept) is replaced.
   setInterval(() => {
-    if (socket && socket.readyState === WebSocket.OPEN && !document.hidden && performance.now() - heard > 8000) {
+    if (socket && socket.readyState === WebSocket.OPEN && !document.hidden
+        && performance.now() - heard > 8000) {
       const dead = socket;
       dead.onclose = null;
       dead.close();

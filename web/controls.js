@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys, pointer and touch made into the two numbers the server wants: how fast to move, how far to turn.
-const walk_keys = { KeyW: [0, 1], KeyS: [0, -1], KeyA: [-1, 0], KeyD: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+// Keys, pointer and touch made into the two numbers the server wants: how fast to move, how far to
+// turn.
+const walk_keys = {
+  KeyW: [0, 1], KeyS: [0, -1], KeyA: [-1, 0], KeyD: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
+};
 const turn_keys = { ArrowLeft: 1, ArrowRight: -1, KeyQ: 1, KeyE: -1 };
 const turn_speed = 1.5;  // radians a second
 
-// send({move, look}) at most 60 times a second and only on change; fov() vertical radians of the picture;
-// place(n) for the number keys.
+// send({move, look}) at most 60 times a second and only on change; fov() vertical radians of the
+// picture; place(n) for the number keys.
 export function make_controls(canvas, stick, knob, { send, fov, speed, place }) {
   const down = new Set();
-  let look = [0, 0], last_move = [0, 0, 0], stick_move = [0, 0], last_time = performance.now(), turning = 0;
+  let look = [0, 0], last_move = [0, 0, 0], stick_move = [0, 0], last_time = performance.now(),
+      turning = 0;
 
-  const busy = (target) => target instanceof Element && target.closest('input, select, textarea, button, a');
+  const busy = (target) => target instanceof Element
+      && target.closest('input, select, textarea, button, a');
   addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     if (/^Digit[1-9]$/.test(event.code) && !event.repeat) place(Number(event.code[5]) - 1);
@@ -50,19 +55,23 @@ export function make_controls(canvas, stick, knob, { send, fov, speed, place }) 
   }
   // The wheel takes a step.
   let step = 0;
-  canvas.addEventListener('wheel', (event) => { step = -Math.sign(event.deltaY); event.preventDefault(); }, { passive: false });
+  canvas.addEventListener('wheel',
+      (event) => { step = -Math.sign(event.deltaY); event.preventDefault(); }, { passive: false });
 
   // The stick on touch screens.
   const pull = (event) => {
     const box = stick.getBoundingClientRect(), radius = box.width / 2;
-    let x = (event.clientX - box.left - radius) / radius, y = (event.clientY - box.top - radius) / radius;
+    let x = (event.clientX - box.left - radius) / radius,
+        y = (event.clientY - box.top - radius) / radius;
     const length = Math.hypot(x, y);
     if (length > 1) { x /= length; y /= length; }
     knob.style.transform = `translate(${x * radius * 0.6}px, ${y * radius * 0.6}px)`;
     stick_move = length < 0.15 ? [0, 0] : [x, -y];
   };
-  stick.addEventListener('pointerdown', (event) => { stick.setPointerCapture(event.pointerId); pull(event); });
-  stick.addEventListener('pointermove', (event) => { if (stick.hasPointerCapture(event.pointerId)) pull(event); });
+  stick.addEventListener('pointerdown',
+      (event) => { stick.setPointerCapture(event.pointerId); pull(event); });
+  stick.addEventListener('pointermove',
+      (event) => { if (stick.hasPointerCapture(event.pointerId)) pull(event); });
   for (const end of ['pointerup', 'pointercancel'])
     stick.addEventListener(end, () => { stick_move = [0, 0]; knob.style.transform = ''; });
 

@@ -19,13 +19,15 @@ const sound = make_sound(by_id('sound-button'), {
   eager: true,
 });
 const picture = make_picture(by_id('picture'), (shown) => {
-  connection.send({ type: 'ack', frame: shown.frame, decoded_ms: Math.round(shown.decoded_ms * 10) / 10, shown: true });
+  const decoded_ms = Math.round(shown.decoded_ms * 10) / 10;
+  connection.send({ type: 'ack', frame: shown.frame, decoded_ms, shown: true });
   sound.shown(shown);
   by_id('picture').dataset.frame = shown.frame;
 });
 
 connection = make_connection({
-  hello: () => ({ type: 'hello', exhibit: '', lang, role: 'kiosk', kiosk: asked.get('kiosk') ?? '', ...wanted_size() }),
+  hello: () => ({ type: 'hello', exhibit: '', lang, role: 'kiosk', kiosk: asked.get('kiosk') ?? '',
+      ...wanted_size() }),
   open() {
     by_id('notice').hidden = true;
     sound.joined();
@@ -36,7 +38,10 @@ connection = make_connection({
     by_id('notice').hidden = false;
   },
   message(message) {
-    if (message.type === 'welcome') { by_id('title').textContent = message.title; document.title = message.title; }
+    if (message.type === 'welcome') {
+      by_id('title').textContent = message.title;
+      document.title = message.title;
+    }
     if (message.type === 'speech') sound.speech(message);
     if (message.type === 'state') sound.moved(message);
     if (message.type === 'subtitle') subtitles.show(message);
@@ -45,7 +50,10 @@ connection = make_connection({
       // Without a camera the screen is simply bright.
       document.body.classList.add(message.cameras === 0 ? 'person' : message.state);
     }
-    if (message.type === 'agent') { document.body.dataset.mood = message.mood; document.body.dataset.teller = message.teller; }
+    if (message.type === 'agent') {
+      document.body.dataset.mood = message.mood;
+      document.body.dataset.teller = message.teller;
+    }
     if (message.type === 'error') console.warn(`${message.code}: ${message.message}`);
   },
   binary: (buffer) => { if (!sound.receive(buffer)) picture.receive(buffer); },

@@ -14,7 +14,8 @@ function button(text, on_click) {
 
 // A check box that is read as what it is: on or off.
 function lamp_switch({ name, title, on }, on_change) {
-  const label = document.createElement('label'), input = document.createElement('input'), text = document.createElement('span');
+  const label = document.createElement('label'), input = document.createElement('input'),
+      text = document.createElement('span');
   label.className = 'switch';
   input.type = 'checkbox';
   input.setAttribute('role', 'switch');
@@ -26,7 +27,8 @@ function lamp_switch({ name, title, on }, on_change) {
   return label;
 }
 
-// orders: {viewpoint(name), tour(action, id), story(id), storyteller(fields), lamp(name, on), lang(tag), subtitles(on)}
+// orders: {viewpoint(name), tour(action, id), story(id), storyteller(fields), lamp(name, on),
+// lang(tag), subtitles(on)}
 export function make_menu(orders) {
   const menu = by_id('menu'), opener = by_id('menu-button');
   let lang = 'en', viewpoints = [];
@@ -37,11 +39,15 @@ export function make_menu(orders) {
   };
   opener.addEventListener('click', () => open(menu.hidden));
   by_id('menu-close').addEventListener('click', () => open(false));
-  addEventListener('keydown', (event) => { if (event.key === 'Escape' && !menu.hidden) open(false); });
+  addEventListener('keydown',
+      (event) => { if (event.key === 'Escape' && !menu.hidden) open(false); });
 
-  by_id('storyteller-visible').addEventListener('change', (event) => orders.storyteller({ visible: event.target.checked }));
-  by_id('storyteller-humanlike').addEventListener('change', (event) => orders.storyteller({ humanlike: event.target.checked }));
-  by_id('subtitles-on').addEventListener('change', (event) => orders.subtitles(event.target.checked));
+  by_id('storyteller-visible').addEventListener('change',
+      (event) => orders.storyteller({ visible: event.target.checked }));
+  by_id('storyteller-humanlike').addEventListener('change',
+      (event) => orders.storyteller({ humanlike: event.target.checked }));
+  by_id('subtitles-on').addEventListener('change',
+      (event) => orders.subtitles(event.target.checked));
 
   return {
     welcome(message) {
@@ -56,7 +62,10 @@ export function make_menu(orders) {
         element.dataset.viewpoint = name;
         return element;
       }));
-      by_id('tours').replaceChildren(...message.tours.map((tour) => button(tour.title, () => { orders.tour('play', tour.id); open(false); })));
+      by_id('tours').replaceChildren(...message.tours.map((tour) => button(tour.title, () => {
+        orders.tour('play', tour.id);
+        open(false);
+      })));
       by_id('tours-section').hidden = message.tours.length === 0;
       by_id('stories').replaceChildren(...message.stories.map((story) => {
         const element = button(story.title, () => { orders.story(story.id); open(false); });
@@ -66,12 +75,17 @@ export function make_menu(orders) {
       by_id('stories-section').hidden = message.stories.length === 0 || !message.storyteller;
       by_id('storyteller-section').hidden = !message.storyteller;
       by_id('tellers').replaceChildren(...message.storytellers.map(({ id, name, viewpoint }) => {
-        const element = button(name || id, () => { orders.storyteller({ teller: id }); orders.viewpoint(viewpoint); open(false); });
+        const element = button(name || id, () => {
+          orders.storyteller({ teller: id });
+          orders.viewpoint(viewpoint);
+          open(false);
+        });
         element.dataset.teller = id;
         return element;
       }));
       by_id('tellers').hidden = message.storytellers.length < 2;
-      by_id('lamps').replaceChildren(...message.lamps.map((lamp) => lamp_switch(lamp, orders.lamp)));
+      const lamps = message.lamps.map((lamp) => lamp_switch(lamp, orders.lamp));
+      by_id('lamps').replaceChildren(...lamps);
       by_id('lamps-section').hidden = message.lamps.length === 0;
       by_id('languages').replaceChildren(...message.languages.map((tag) => {
         const element = button(language_names[tag] ?? tag, () => orders.lang(tag));
@@ -81,8 +95,10 @@ export function make_menu(orders) {
     },
     state(message) {
       for (const element of by_id('places').children)
-        element.setAttribute('aria-current', String(element.dataset.viewpoint === message.viewpoint));
-      for (const input of by_id('lamps').querySelectorAll('input')) input.checked = message.lamps?.[input.dataset.lamp] ?? input.checked;
+        element.setAttribute('aria-current',
+            String(element.dataset.viewpoint === message.viewpoint));
+      for (const input of by_id('lamps').querySelectorAll('input'))
+        input.checked = message.lamps?.[input.dataset.lamp] ?? input.checked;
     },
     agent(message) {
       by_id('storyteller-visible').checked = message.visible;

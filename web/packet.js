@@ -23,8 +23,8 @@ export function read_picture(buffer) {
 
 const magic_sound = 0x31415357;
 
-// {utterance, start, time_us, total, rate, everywhere, mouth: [x, y, z], samples: Float32Array} of a sound ("WSA1"), or
-// null. Only one channel is sent.
+// {utterance, start, time_us, total, rate, everywhere, mouth: [x, y, z], samples: Float32Array} of
+// a sound ("WSA1"), or null. Only one channel is sent.
 export function read_sound(buffer) {
   if (buffer.byteLength < 56) return null;
   const view = new DataView(buffer);
@@ -37,7 +37,8 @@ export function read_sound(buffer) {
   const samples = new Float32Array(bytes / 2);
   for (let i = 0; i < samples.length; i++) samples[i] = view.getInt16(header + 2 * i, true) / 32768;
   return {
-    utterance: view.getUint32(4, true), start: view.getUint32(8, true), time_us: Number(view.getBigUint64(12, true)),
-    total: view.getUint32(20, true), rate, everywhere: (view.getUint8(25) & 1) !== 0, mouth, samples,
+    utterance: view.getUint32(4, true), start: view.getUint32(8, true),
+    time_us: Number(view.getBigUint64(12, true)), total: view.getUint32(20, true), rate,
+    everywhere: (view.getUint8(25) & 1) !== 0, mouth, samples,
   };
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows the newest picture: while one is being decoded only the latest that arrived meanwhile is kept.
+// Shows the newest picture: while one is being decoded only the latest that arrived meanwhile is
+// kept.
 import { read_picture } from './packet.js';
 
 // on_shown({frame, seq, decoded_ms, ...}) after a picture is on the canvas.
@@ -42,7 +43,8 @@ export function make_picture(canvas, on_shown) {
   };
 }
 
-// The size to ask the server for: the window's shape, at most `most` pixels, never more than the screen has.
+// The size to ask the server for: the window's shape, at most `most` pixels, never more than the
+// screen has.
 export function wanted_size(most = 1280 * 720) {
   const ratio = Math.min(window.devicePixelRatio || 1, 2);
   let width = Math.max(64, innerWidth * ratio), height = Math.max(64, innerHeight * ratio);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is being told, and the buttons for it: pause, skip, from the start, stop. A tour when there is one,
-// else the story.
+// What is being told, and the buttons for it: pause, skip, from the start, stop. A tour when there
+// is one, else the story.
 import { word } from './words.js';
 
 const by_id = (id) => document.getElementById(id);
@@ -17,7 +17,8 @@ export function make_player(orders, on_pause = () => {}) {
   by_id('player-skip').addEventListener('click', () => orders.story_action('skip'));
   by_id('player-restart').addEventListener('click', () => orders.story_action('restart'));
   addEventListener('keydown', (event) => {
-    const busy = event.target instanceof Element && event.target.closest('button, input, select, a');
+    const busy = event.target instanceof Element
+        && event.target.closest('button, input, select, a');
     if (event.code !== 'Space' || bar.hidden || busy || event.repeat) return;
     event.preventDefault();
     toggle();
@@ -54,11 +55,15 @@ export function make_player(orders, on_pause = () => {}) {
       show();
     },
     state({ tour: ride }) {
-      tour = ride && { id: ride.id, paused: ride.state === 'paused', at: ride.stop, of: ride.stops };
+      tour = ride && {
+        id: ride.id, paused: ride.state === 'paused', at: ride.stop, of: ride.stops,
+      };
       show();
     },
     agent(message) {
-      story = message.story && { id: message.story, paused: message.paused, at: message.sentence, of: message.sentences };
+      story = message.story && {
+        id: message.story, paused: message.paused, at: message.sentence, of: message.sentences,
+      };
       show();
     },
   };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The storyteller's voice: pieces of sound played with the picture of the same server time, from where
-// the mouth is. Browsers allow sound after a visitor has touched the page; until then none is asked for.
+// The storyteller's voice: pieces of sound played with the picture of the same server time, from
+// where the mouth is. Browsers allow sound after a visitor has touched the page; until then none is
+// asked for.
 import { read_sound } from './packet.js';
 
 const near = 1.5, faintest = 0.1;  // metres of full loudness; a far voice stays audible
@@ -16,8 +17,8 @@ export function in_front_of(state, position) {
   return [x * c - z * s, y, x * s + z * c];
 }
 
-// How long after its server time a picture is seen, on performance.now()'s clock: the median of the last
-// ones, since single pictures are late but none is early.
+// How long after its server time a picture is seen, on performance.now()'s clock: the median of the
+// last ones, since single pictures are late but none is early.
 export function make_delay(most = 31) {
   const seen = [];
   return {
@@ -30,8 +31,8 @@ export function make_delay(most = 31) {
   };
 }
 
-// button: turns sound on and off. on_wanted(bool): whether the server should send any. eager: try at once
-// (kiosks whose browser allows it). label(name): the words of this page.
+// button: turns sound on and off. on_wanted(bool): whether the server should send any. eager: try
+// at once (kiosks whose browser allows it). label(name): the words of this page.
 export function make_sound(button, { on_wanted, label, eager = false }) {
   let muted = localStorage.getItem('wellspring.sound') === 'off', wanted = null;
   let context = null, loud = null, panner = null, mouth = null, everywhere = false, state = null;
@@ -47,7 +48,8 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
     button.title = text;
     // Said to those who do not see the button, once it has changed.
     const state_text = document.getElementById('sound-state');
-    if (state_text && wanted !== null && wanted !== on) state_text.textContent = label(on ? 'sound_is_on' : 'sound_is_off');
+    if (state_text && wanted !== null && wanted !== on)
+      state_text.textContent = label(on ? 'sound_is_on' : 'sound_is_off');
     if (wanted !== on) on_wanted(wanted = on);
   }
 
@@ -75,21 +77,26 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
   function place() {
     if (context && everywhere) {  // a narrator: no direction, no distance
       loud.gain.setTargetAtTime(1, context.currentTime, 0.06);
-      [panner.positionX, panner.positionY, panner.positionZ].forEach((axis, i) => axis.setTargetAtTime(i === 2 ? -1 : 0, context.currentTime, 0.06));
+      [panner.positionX, panner.positionY, panner.positionZ].forEach(
+          (axis, i) => axis.setTargetAtTime(i === 2 ? -1 : 0, context.currentTime, 0.06));
       return;
     }
     if (!context || !mouth || !state) return;
     const at = in_front_of(state, mouth), distance = Math.hypot(...at), now = context.currentTime;
     loud.gain.setTargetAtTime(loudness(distance), now, 0.06);
     const away = Math.max(distance, 1e-3);
-    [panner.positionX, panner.positionY, panner.positionZ].forEach((axis, i) => axis.setTargetAtTime(at[i] / away, now, 0.06));
+    [panner.positionX, panner.positionY, panner.positionZ].forEach(
+        (axis, i) => axis.setTargetAtTime(at[i] / away, now, 0.06));
   }
 
-  // The context's time at which a sample must be started to be heard at `now_ms` of performance.now().
+  // The context's time at which a sample must be started to be heard at `now_ms` of
+  // performance.now().
   function context_time(now_ms) {
     const stamp = context.getOutputTimestamp?.();
-    if (stamp?.performanceTime > 0) return stamp.contextTime + (now_ms - stamp.performanceTime) / 1000;
-    return context.currentTime + (now_ms - performance.now()) / 1000 - (context.outputLatency || context.baseLatency || 0);
+    if (stamp?.performanceTime > 0)
+      return stamp.contextTime + (now_ms - stamp.performanceTime) / 1000;
+    return context.currentTime + (now_ms - performance.now()) / 1000
+        - (context.outputLatency || context.baseLatency || 0);
   }
 
   function play(sound) {
@@ -101,14 +108,16 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
     mouth = sound.mouth;
     everywhere = sound.everywhere;
     place();
-    const due = context_time(sound.time_us / 1000 + (delay.value() ?? performance.now() - sound.time_us / 1000));
+    const due = context_time(sound.time_us / 1000
+        + (delay.value() ?? performance.now() - sound.time_us / 1000));
     const joined = current.at !== null && Math.abs(due - current.at) < slip;
     const start = joined ? current.at : due, seconds = sound.samples.length / sound.rate;
     button.dataset.slip = current.at === null ? 0 : Math.round(1000 * (due - current.at));
     current.at = start + seconds;
     const late = Math.max(0, context.currentTime - start);
     if (late >= seconds) return;
-    const buffer = new AudioBuffer({ length: sound.samples.length, sampleRate: sound.rate, numberOfChannels: 1 });
+    const buffer = new AudioBuffer(
+        { length: sound.samples.length, sampleRate: sound.rate, numberOfChannels: 1 });
     buffer.copyToChannel(sound.samples, 0);
     const source = new AudioBufferSourceNode(context, { buffer });
     source.connect(panner);
@@ -127,7 +136,8 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
     show();
   });
   const touched = (event) => {
-    if (!muted && !(event.target instanceof Element && event.target.closest(`#${button.id}`))) open();
+    if (!muted && !(event.target instanceof Element && event.target.closest(`#${button.id}`)))
+      open();
   };
   for (const event of ['pointerup', 'keydown']) addEventListener(event, touched, { passive: true });
   if (eager && !muted) open();
@@ -141,7 +151,9 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
       if (!muted && context?.state === 'running') play(sound);
       return true;
     },
-    speech(message) { if (message.action === 'stop' && current?.number === message.utterance) stop(); },
+    speech(message) {
+      if (message.action === 'stop' && current?.number === message.utterance) stop();
+    },
     stop,
     shown: (picture) => delay.shown(picture.time_us, performance.now()),
     moved(to) { state = to; place(); },

@@ -9,7 +9,8 @@ export function parse_metrics(text) {
     const match = /^wellspring_(\w+?)(?:\{(.*)\})? (\S+)$/.exec(line);
     if (!match) continue;
     const labels = {};
-    for (const [, name, value] of (match[2] ?? '').matchAll(/(\w+)="([^"]*)"/g)) labels[name] = value;
+    for (const [, name, value] of (match[2] ?? '').matchAll(/(\w+)="([^"]*)"/g))
+      labels[name] = value;
     found.push({ name: match[1], labels, value: Number(match[3]) });
   }
   return found;
@@ -19,7 +20,8 @@ function rows(table, list) {
   table.replaceChildren(...list.map((cells, index) => {
     const row = document.createElement('tr');
     row.append(...cells.map((cell, column) => {
-      const element = document.createElement(column === 0 || (index === 0 && cells.length > 2) ? 'th' : 'td');
+      const element =
+          document.createElement(column === 0 || (index === 0 && cells.length > 2) ? 'th' : 'td');
       element.textContent = cell;
       return element;
     }));
@@ -28,7 +30,8 @@ function rows(table, list) {
 }
 
 const mebibytes = (bytes) => `${Math.round(bytes / 2 ** 20)} MiB`;
-const number = (value, digits = 0) => value === undefined ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits });
+const number = (value, digits = 0) => value === undefined
+  ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits });
 
 async function refresh() {
   const badge = by_id('health');
@@ -42,26 +45,45 @@ async function refresh() {
     rows(by_id('server'), [
       ['Up', `${Math.floor(seconds / 3600)} h ${Math.floor(seconds / 60) % 60} min`],
       ['Memory', mebibytes(one('resident_bytes') ?? 0)],
-      ['Tick', `${number(one('tick_milliseconds'), 1)} ms, of it the storyteller ${number(one('animate_milliseconds'), 1)} ms`],
-      ['Samples', `${number(one('samples_per_second'))} a second while tracing; dropped as invalid: ${number(one('bad_samples_total'))}`],
-      ['Pictures', `${number(one('pictures_total'))} (${mebibytes(one('picture_bytes_total') ?? 0)})`],
-      ['Connections', `${number(one('connections'))} open, ${number(one('slow_readers_closed_total'))} closed for reading too slowly`],
-      ['Messages', `${number(one('messages_total'))}, refused ${number(one('refused_messages_total'))}`],
+      ['Tick',
+        `${number(one('tick_milliseconds'), 1)} ms, of it the storyteller `
+          + `${number(one('animate_milliseconds'), 1)} ms`],
+      ['Samples',
+        `${number(one('samples_per_second'))} a second while tracing; dropped as invalid: `
+          + number(one('bad_samples_total'))],
+      ['Pictures',
+        `${number(one('pictures_total'))} (${mebibytes(one('picture_bytes_total') ?? 0)})`],
+      ['Connections',
+        `${number(one('connections'))} open, ${number(one('slow_readers_closed_total'))} closed `
+          + 'for reading too slowly'],
+      ['Messages',
+        `${number(one('messages_total'))}, refused ${number(one('refused_messages_total'))}`],
     ]);
     const ids = [...new Set(metrics.filter((m) => m.labels.visitor).map((m) => m.labels.visitor))];
-    const of = (id, name, digits) => number(metrics.find((m) => m.labels.visitor === id && m.name === `visitor_${name}`)?.value, digits);
+    const value_of = (id, name) =>
+      metrics.find((m) => m.labels.visitor === id && m.name === `visitor_${name}`)?.value;
+    const of = (id, name, digits) => number(value_of(id, name), digits);
     rows(by_id('visitors'), [
-      ['Visitor', 'Pictures/s', 'Round trip ms', 'Display ms', 'Trace ms', 'Tone ms', 'Encode ms', 'Samples', 'Looks', 'Path', 'Quality', 'Converged %'],
-      ...ids.map((id) => [id, of(id, 'pictures_per_second', 1), of(id, 'round_trip_milliseconds'), of(id, 'display_milliseconds', 1),
-        of(id, 'trace_milliseconds', 1), of(id, 'tonemap_milliseconds', 1), of(id, 'encode_milliseconds', 1), of(id, 'samples_per_picture'),
-        of(id, 'looks_per_picture'), of(id, 'primary_path') === number(1) ? 'primary' : 'cache', of(id, 'jpeg_quality'), number(100 * (metrics.find((m) => m.labels.visitor === id && m.name === 'visitor_converged_ratio')?.value ?? 0), 1)])]);
+      ['Visitor', 'Pictures/s', 'Round trip ms', 'Display ms', 'Trace ms', 'Tone ms', 'Encode ms',
+        'Samples', 'Looks', 'Path', 'Quality', 'Converged %'],
+      ...ids.map((id) => [id, of(id, 'pictures_per_second', 1), of(id, 'round_trip_milliseconds'),
+        of(id, 'display_milliseconds', 1), of(id, 'trace_milliseconds', 1),
+        of(id, 'tonemap_milliseconds', 1), of(id, 'encode_milliseconds', 1),
+        of(id, 'samples_per_picture'), of(id, 'looks_per_picture'),
+        of(id, 'primary_path') === number(1) ? 'primary' : 'cache', of(id, 'jpeg_quality'),
+        number(100 * (value_of(id, 'converged_ratio') ?? 0), 1)])]);
     rows(by_id('kiosks'), [
       ['Cameras', number(one('kiosk_cameras'))],
       ['Observations', number(one('kiosk_observations_total'))],
       ['Greetings', number(one('greetings_total'))],
       ['Farewells', number(one('farewells_total'))],
       ['Stories', number(one('stories_total'))],
-      ['Voice', `${one('voice_running') ? 'running' : 'not running'}, restarts ${number(one('voice_restarts_total'))}, lines kept ${number(one('voice_lines'))}, waiting ${number(one('voice_lines_waiting'))}, failed ${number(one('voice_failed_total'))}`],
+      ['Voice',
+        `${one('voice_running') ? 'running' : 'not running'}, `
+          + `restarts ${number(one('voice_restarts_total'))}, `
+          + `lines kept ${number(one('voice_lines'))}, `
+          + `waiting ${number(one('voice_lines_waiting'))}, `
+          + `failed ${number(one('voice_failed_total'))}`],
     ]);
   } catch {
     badge.textContent = 'no answer';

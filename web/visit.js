@@ -19,7 +19,8 @@ by_id('veil-text').textContent = word(lang, 'opening');
 
 const subtitles = make_subtitles(by_id('subtitle'));
 const picture = make_picture(canvas, (shown) => {
-  connection.send({ type: 'ack', frame: shown.frame, decoded_ms: Math.round(shown.decoded_ms * 10) / 10, shown: true });
+  const decoded_ms = Math.round(shown.decoded_ms * 10) / 10;
+  connection.send({ type: 'ack', frame: shown.frame, decoded_ms, shown: true });
   sound.shown(shown);
   by_id('veil').classList.add('lifted');
   const sent = asked.get(shown.seq);
@@ -48,23 +49,39 @@ connection = make_connection({
     asked.clear();
     sound.joined();
     // After a broken line: back to where the visitor stood.
-    if (state?.viewpoint) connection.send({ type: 'viewpoint', seq: next(), name: state.viewpoint });
-    else if (state) connection.send({ type: 'camera', seq: next(), position: state.position, yaw: state.yaw, pitch: state.pitch });
+    if (state?.viewpoint)
+      connection.send({ type: 'viewpoint', seq: next(), name: state.viewpoint });
+    else if (state)
+      connection.send({ type: 'camera', seq: next(), position: state.position, yaw: state.yaw,
+          pitch: state.pitch });
   },
   lost() { if (!full) notice(word(lang, 'lost')); },
   message(message) {
     switch (message.type) {
-      case 'welcome': walk_speed = message.walk_speed; lang = message.lang; menu.welcome(message); player.welcome(message); sound.relabel(); by_id('veil-title').textContent = message.title; break;
+      case 'welcome':
+        walk_speed = message.walk_speed;
+        lang = message.lang;
+        menu.welcome(message);
+        player.welcome(message);
+        sound.relabel();
+        by_id('veil-title').textContent = message.title;
+        break;
       case 'state':
         state = message;
         menu.state(message);
         player.state(message);
         sound.moved(message);
-        menu.figures(`${picture.rate()} fps · ${Math.round(round_trip)} ms · ${canvas.width}×${canvas.height} · ${Math.round(message.converged * 100)} %`);
+        menu.figures(
+            `${picture.rate()} fps · ${Math.round(round_trip)} ms · `
+            + `${canvas.width}×${canvas.height} · ${Math.round(message.converged * 100)} %`);
         break;
       case 'speech': sound.speech(message); break;
       case 'subtitle': subtitles.show(message); break;
-      case 'agent': menu.agent(message); player.agent(message); document.body.dataset.mood = message.mood; break;
+      case 'agent':
+        menu.agent(message);
+        player.agent(message);
+        document.body.dataset.mood = message.mood;
+        break;
       case 'kiosk': document.body.dataset.kiosk = message.state; break;
       case 'error':
         if (message.code === 'full') { full = true; notice(word(lang, 'full')); }
@@ -101,7 +118,11 @@ const menu = make_menu({
   story: (story) => connection.send({ type: 'storyteller', story }),
   storyteller: (fields) => connection.send({ type: 'storyteller', ...fields }),
   lamp: (name, on) => connection.send({ type: 'lamp', name, on }),
-  lang(tag) { lang = tag; localStorage.setItem('wellspring.lang', tag); connection.send({ type: 'settings', lang: tag }); },
+  lang(tag) {
+    lang = tag;
+    localStorage.setItem('wellspring.lang', tag);
+    connection.send({ type: 'settings', lang: tag });
+  },
   subtitles: (on) => subtitles.enable(on),
 });
 
@@ -109,7 +130,10 @@ make_controls(canvas, by_id('stick'), by_id('stick-knob'), {
   send: ({ move, look }) => connection.send({ type: 'input', seq: next(), move, look }),
   fov: () => state?.fov ?? 1,
   speed: () => walk_speed,
-  place(index) { const name = menu.place(index); if (name) connection.send({ type: 'viewpoint', seq: next(), name }); },
+  place(index) {
+    const name = menu.place(index);
+    if (name) connection.send({ type: 'viewpoint', seq: next(), name });
+  },
 });
 
 let resize_timer = 0;
@@ -118,7 +142,8 @@ addEventListener('resize', () => {
   resize_timer = setTimeout(() => connection.send({ type: 'settings', ...wanted_size() }), 200);
 });
 // A hidden page costs next to nothing.
-document.addEventListener('visibilitychange', () => connection.send({ type: 'settings', fps: document.hidden ? 1 : 0 }));
+document.addEventListener('visibilitychange',
+    () => connection.send({ type: 'settings', fps: document.hidden ? 1 : 0 }));
 
 // Controls fade while nobody touches them.
 let quiet_timer = 0;
@@ -127,6 +152,7 @@ function wake() {
   clearTimeout(quiet_timer);
   quiet_timer = setTimeout(() => document.body.classList.add('quiet'), 6000);
 }
-for (const event of ['pointermove', 'pointerdown', 'keydown', 'touchstart']) addEventListener(event, wake, { passive: true });
+for (const event of ['pointermove', 'pointerdown', 'keydown', 'touchstart'])
+  addEventListener(event, wake, { passive: true });
 wake();
 canvas.focus();

@@ -8,17 +8,22 @@ import { after, before, test } from 'node:test';
 import { load_module, sleep, start_server } from '../server.mjs';
 
 const { chromium } = load_module('playwright-core');
-const executable = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
+const executable = [
+  '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome',
+].find(existsSync);
 const skip = !executable && 'no Chromium on this machine';
-const pictures = process.env.WELLSPRING_PICTURES;  // a folder for screenshots, for people to look at
+// a folder for screenshots, for people to look at
+const pictures = process.env.WELLSPRING_PICTURES;
 
 let server, browser;
 before(async () => {
   if (skip) return;
   server = await start_server();
-  browser = await chromium.launchPersistentContext(mkdtempSync(join(tmpdir(), 'wellspring-chromium-')), {
+  const profile = mkdtempSync(join(tmpdir(), 'wellspring-chromium-'));
+  browser = await chromium.launchPersistentContext(profile, {
     executablePath: executable, headless: true, viewport: { width: 960, height: 540 },
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
+    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
+        '--disable-background-networking', '--disable-component-update', '--disable-sync'],
   });
 });
 after(async () => {
@@ -30,10 +35,14 @@ async function open(path = '/', size) {
   const page = await browser.newPage();
   const problems = [];
   page.on('pageerror', (error) => problems.push(String(error)));
-  page.on('console', (message) => { if (message.type() === 'error' && !/WebSocket connection|ERR_CONNECTION_REFUSED/.test(message.text())) problems.push(message.text()); });
+  page.on('console', (message) => {
+    const expected = /WebSocket connection|ERR_CONNECTION_REFUSED/.test(message.text());
+    if (message.type() === 'error' && !expected) problems.push(message.text());
+  });
   if (size) await page.setViewportSize(size);
   await page.goto(server.url + path);
-  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3, null, { timeout: 30000 });
+  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3,
+      null, { timeout: 30000 });
   return { page, problems };
 }
 
@@ -45,8 +54,11 @@ const look = (page) => page.evaluate(() => {
   context.drawImage(canvas, 0, 0, 24, 14);
   return [...context.getImageData(0, 0, 24, 14).data];
 });
-const difference = (a, b) => a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
-const shot = async (page, name) => { if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`) }); };
+const difference = (a, b) =>
+    a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
+const shot = async (page, name) => {
+  if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`) });
+};
 
 test('a lit picture appears and keys move it', { skip }, async () => {
   const { page, problems } = await open();
@@ -60,7 +72,8 @@ test('a lit picture appears and keys move it', { skip }, async () => {
   await page.keyboard.up('ArrowLeft');
   await sleep(800);
   const turned = await look(page);
-  assert.ok(difference(before_key, turned) > 8, `turning changed the picture by ${difference(before_key, turned)}`);
+  assert.ok(difference(before_key, turned) > 8,
+      `turning changed the picture by ${difference(before_key, turned)}`);
   await page.keyboard.down('KeyW');
   await sleep(700);
   await page.keyboard.up('KeyW');
@@ -82,7 +95,8 @@ test('places, menu, language and story', { skip }, async () => {
   assert.ok(await places.count() >= 5);
   const start = await look(page);
   await places.nth(2).click();
-  await page.waitForFunction(() => document.querySelectorAll('#places button')[2].getAttribute('aria-current') === 'true');
+  await page.waitForFunction(() =>
+      document.querySelectorAll('#places button')[2].getAttribute('aria-current') === 'true');
   await sleep(1500);
   assert.ok(difference(start, await look(page)) > 8);
   await shot(page, 'place');
@@ -96,8 +110,10 @@ test('places, menu, language and story', { skip }, async () => {
   assert.ok(await page.locator('#menu').isHidden());
   await shot(page, 'story');
   // The bar of what is told: its buttons, and the space bar.
-  const next = (action) => page.waitForFunction((wanted) => document.getElementById('player-pause').dataset.next === wanted, action);
-  assert.equal(await page.locator('#player-title').textContent(), await page.locator('#stories button').first().textContent());
+  const next = (action) => page.waitForFunction(
+      (wanted) => document.getElementById('player-pause').dataset.next === wanted, action);
+  assert.equal(await page.locator('#player-title').textContent(),
+      await page.locator('#stories button').first().textContent());
   await page.locator('#player-pause').click();
   await next('play');
   assert.equal(await page.getAttribute('#player-pause', 'aria-label'), 'Weiter');
@@ -117,17 +133,21 @@ test('a visitor and a kiosk choose who tells', { skip }, async () => {
   await page.locator('#menu-button').click();
   const tellers = page.locator('#tellers button');
   assert.equal(await tellers.count(), 2);
-  await page.waitForFunction(() => document.querySelector('#tellers [aria-pressed=true]')?.dataset.teller === 'ludmila');
+  await page.waitForFunction(() =>
+      document.querySelector('#tellers [aria-pressed=true]')?.dataset.teller === 'ludmila');
   await shot(page, 'tellers');
   await tellers.nth(1).click();
-  await page.waitForFunction(() => document.querySelector('#tellers [aria-pressed=true]')?.dataset.teller === 'matous');
-  await page.waitForFunction(() => document.querySelector('#places [aria-current=true]')?.dataset.viewpoint === 'chronicler');
+  await page.waitForFunction(() =>
+      document.querySelector('#tellers [aria-pressed=true]')?.dataset.teller === 'matous');
+  await page.waitForFunction(() =>
+      document.querySelector('#places [aria-current=true]')?.dataset.viewpoint === 'chronicler');
   await sleep(2500);
   await shot(page, 'chronicler');
   // A story of the other one brings her back.
   await page.locator('#menu-button').click();
   await page.locator('#stories [data-story=well]').click();
-  await page.waitForFunction(() => document.querySelector('#tellers [aria-pressed=true]')?.dataset.teller === 'ludmila');
+  await page.waitForFunction(() =>
+      document.querySelector('#tellers [aria-pressed=true]')?.dataset.teller === 'ludmila');
   await page.locator('#player-stop').click();
   assert.deepEqual(problems, []);
   await page.evaluate(() => localStorage.clear());
@@ -141,7 +161,9 @@ test('a visitor and a kiosk choose who tells', { skip }, async () => {
   await again.page.close();
 });
 
-test('the storyteller is heard after the first touch, from where she stands, and can be silenced', { skip: skip || !existsSync(join(process.env.WELLSPRING_BIN, 'wellspring_voice')) && 'wellspring_voice has not been built' }, async () => {
+test('the storyteller is heard after the first touch, from where she stands, and can be silenced',
+    { skip: skip || !existsSync(join(process.env.WELLSPRING_BIN, 'wellspring_voice'))
+        && 'wellspring_voice has not been built' }, async () => {
   const { page, problems } = await open();
   const button = page.locator('#sound-button');
   assert.equal(await button.getAttribute('aria-label'), 'Turn sound on');
@@ -149,8 +171,11 @@ test('the storyteller is heard after the first touch, from where she stands, and
   await page.waitForFunction(() => document.getElementById('sound-button').dataset.sound === 'on');
   assert.equal(await button.getAttribute('aria-pressed'), 'true');
   await page.locator('#stories button').first().click();
-  await page.waitForFunction(() => Number(document.getElementById('sound-button').dataset.pieces) >= 6, null, { timeout: 30000 });
-  assert.ok(Math.abs(Number(await button.getAttribute('data-slip'))) < 60, `pieces ${await button.getAttribute('data-slip')} ms off`);
+  await page.waitForFunction(
+      () => Number(document.getElementById('sound-button').dataset.pieces) >= 6, null,
+      { timeout: 30000 });
+  assert.ok(Math.abs(Number(await button.getAttribute('data-slip'))) < 60,
+      `pieces ${await button.getAttribute('data-slip')} ms off`);
   await shot(page, 'sound');
   await button.click();
   await page.waitForFunction(() => document.getElementById('sound-button').dataset.sound === 'off');
@@ -172,8 +197,10 @@ test('the storyteller is heard after the first touch, from where she stands, and
     view.setUint16(26, 58, true);
     const longer = read_sound(bytes);
     view.setUint16(26, 61, true);
-    return { samples: [...read.samples], mouth: read.mouth, longer: longer.samples.length, bad: read_sound(bytes), short: read_sound(new ArrayBuffer(55)),
-      right: in_front_of({ position: [1, 1, 1], yaw: 0 }, [3, 1, 1]), ahead: in_front_of({ position: [0, 0, 0], yaw: Math.PI / 2 }, [-2, 0, 0]),
+    return { samples: [...read.samples], mouth: read.mouth, longer: longer.samples.length,
+      bad: read_sound(bytes), short: read_sound(new ArrayBuffer(55)),
+      right: in_front_of({ position: [1, 1, 1], yaw: 0 }, [3, 1, 1]),
+      ahead: in_front_of({ position: [0, 0, 0], yaw: Math.PI / 2 }, [-2, 0, 0]),
       levels: [0, 1, 3, 1000].map(loudness) };
   });
   assert.deepEqual(told.samples, [-0.5, 0]);
@@ -192,14 +219,16 @@ test('lamps are switched in the menu, for everybody', { skip }, async () => {
   const { page, problems } = await open();
   const { page: other } = await open();
   await sleep(2500);
-  const level = async (of) => (await look(of)).reduce((sum, value, i) => sum + (i % 4 < 3 ? value : 0), 0) / (24 * 14 * 3);
+  const level = async (of) => (await look(of))
+      .reduce((sum, value, i) => sum + (i % 4 < 3 ? value : 0), 0) / (24 * 14 * 3);
   const lit = [await level(page), await level(other)];
   await page.locator('#menu-button').click();
   const lamp = page.getByRole('switch', { name: 'Daylight' });
   assert.equal(await lamp.isChecked(), true);
   await lamp.focus();
   await page.keyboard.press('Space');
-  await other.waitForFunction(() => document.querySelector('input[data-lamp=daylight]').checked === false);
+  await other.waitForFunction(() =>
+      document.querySelector('input[data-lamp=daylight]').checked === false);
   await sleep(2500);
   assert.equal(await lamp.isChecked(), false);
   await shot(page, 'lamps-off');
@@ -209,7 +238,8 @@ test('lamps are switched in the menu, for everybody', { skip }, async () => {
   }
   await other.locator('#menu-button').click();
   await other.getByRole('switch', { name: 'Daylight' }).click();
-  await page.waitForFunction(() => document.querySelector('input[data-lamp=daylight]').checked === true);
+  await page.waitForFunction(() =>
+      document.querySelector('input[data-lamp=daylight]').checked === true);
   await sleep(2500);
   assert.ok(await level(page) > 0.8 * lit[0]);
   await shot(page, 'lamps-on');
@@ -218,13 +248,19 @@ test('lamps are switched in the menu, for everybody', { skip }, async () => {
 });
 
 test('phone and kiosk sizes hold everything inside the window', { skip }, async () => {
-  for (const [path, width, height] of [['/', 390, 844], ['/', 844, 390], ['/', 1920, 1080], ['/kiosk', 1080, 1920]]) {
+  const windows = [['/', 390, 844], ['/', 844, 390], ['/', 1920, 1080], ['/kiosk', 1080, 1920]];
+  for (const [path, width, height] of windows) {
     const { page, problems } = await open(path, { width, height });
     await sleep(1200);
-    const overflow = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth || document.documentElement.scrollHeight > innerHeight);
+    const overflow = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth
+        || document.documentElement.scrollHeight > innerHeight);
     assert.equal(overflow, false, `${path} at ${width}x${height} overflows`);
-    const size = await page.evaluate(() => { const c = document.getElementById('picture'); return [c.width, c.height]; });
-    assert.ok(Math.abs(size[0] / size[1] - width / height) < 0.06, `picture ${size} in window ${width}x${height}`);
+    const size = await page.evaluate(() => {
+      const c = document.getElementById('picture');
+      return [c.width, c.height];
+    });
+    assert.ok(Math.abs(size[0] / size[1] - width / height) < 0.06,
+        `picture ${size} in window ${width}x${height}`);
     await shot(page, `page-${width}x${height}${path === '/' ? '' : '-kiosk'}`);
     assert.deepEqual(problems, []);
     await page.close();
@@ -234,7 +270,8 @@ test('phone and kiosk sizes hold everything inside the window', { skip }, async 
 test('the page comes back after a server restart, where the visitor stood', { skip }, async () => {
   const { page } = await open();
   await page.locator('#places button').nth(1).click();
-  await page.waitForFunction(() => document.querySelectorAll('#places button')[1].getAttribute('aria-current') === 'true');
+  await page.waitForFunction(() =>
+      document.querySelectorAll('#places button')[1].getAttribute('aria-current') === 'true');
   await sleep(1500);
   const before_restart = await look(page);
   const { port } = server;
@@ -242,8 +279,10 @@ test('the page comes back after a server restart, where the visitor stood', { sk
   await page.waitForFunction(() => !document.getElementById('notice').hidden);
   await shot(page, 'lost');
   server = await start_server([], { port });
-  await page.waitForFunction(() => document.getElementById('notice').hidden, null, { timeout: 30000 });
-  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3, null, { timeout: 20000 });
+  await page.waitForFunction(() => document.getElementById('notice').hidden, null,
+      { timeout: 30000 });
+  await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3,
+      null, { timeout: 20000 });
   await sleep(2000);
   assert.ok(difference(before_restart, await look(page)) < 12);
   await page.close();

@@ -29,7 +29,8 @@ test('health, metrics and description', async () => {
   const metrics = await get('/metrics');
   assert.match(metrics.headers.get('content-type'), /^text\/plain/);
   const text = await metrics.text();
-  for (const name of ['pictures_total', 'visitors', 'resident_bytes', 'bad_samples_total', 'connections'])
+  for (const name of ['pictures_total', 'visitors', 'resident_bytes', 'bad_samples_total',
+      'connections'])
     assert.match(text, new RegExp(`^wellspring_${name} [0-9.e+]+$`, 'm'));
   const api = await (await get('/api/v1/')).json();
   for (const path of ['/healthz', '/metrics', '/api/v1/exhibits', '/api/v1/visit', '/api/v1/eye'])
@@ -54,15 +55,19 @@ test('a still picture, and its wrong parameters', async () => {
   assert.equal(still.headers.get('content-type'), 'image/jpeg');
   const bytes = Buffer.from(await still.arrayBuffer());
   assert.deepEqual([...bytes.subarray(0, 2)], [0xff, 0xd8]);
-  const again = Buffer.from(await (await get(`${path}?viewpoint=hall&width=96&height=64&spp=4`)).arrayBuffer());
+  const same = await get(`${path}?viewpoint=hall&width=96&height=64&spp=4`);
+  const again = Buffer.from(await same.arrayBuffer());
   assert.ok(bytes.equals(again), 'the same question gives the same picture');
-  for (const query of ['width=0', 'width=99999', 'height=-4', 'spp=zero', 'spp=1e9', 'width=3840&height=3840&spp=1024'])
+  for (const query of ['width=0', 'width=99999', 'height=-4', 'spp=zero', 'spp=1e9',
+      'width=3840&height=3840&spp=1024'])
     assert.equal((await get(`${path}?${query}`)).status, 400, query);
   assert.equal((await get(`${path}?viewpoint=moon`)).status, 404);
 });
 
 test('pages, their types, their caching and their policy', async () => {
-  for (const [path, type] of [['/', 'text/html'], ['/kiosk', 'text/html'], ['/status', 'text/html'], ['/visit.js', 'text/javascript'], ['/style.css', 'text/css'], ['/icon.svg', 'image/svg+xml']]) {
+  for (const [path, type] of [['/', 'text/html'], ['/kiosk', 'text/html'], ['/status', 'text/html'],
+      ['/visit.js', 'text/javascript'], ['/style.css', 'text/css'],
+      ['/icon.svg', 'image/svg+xml']]) {
     const reply = await get(path);
     assert.equal(reply.status, 200, path);
     assert.ok(reply.headers.get('content-type').startsWith(type), path);
@@ -77,21 +82,28 @@ test('pages, their types, their caching and their policy', async () => {
 test('what is not there, and what may not be asked', async () => {
   assert.equal((await get('/nothing')).status, 404);
   assert.equal((await get('/api/v1/exhibits/castle/secret')).status, 404);
-  for (const method of ['POST', 'PUT', 'DELETE']) assert.equal((await get('/', { method })).status, 405, method);
+  for (const method of ['POST', 'PUT', 'DELETE'])
+    assert.equal((await get('/', { method })).status, 405, method);
   const head = await get('/', { method: 'HEAD' });
   assert.equal(head.status, 200);
   assert.equal((await head.text()).length, 0);
 });
 
 test('no path leaves the pages', async () => {
-  for (const path of ['/../../etc/passwd', '/%2e%2e/%2e%2e/etc/passwd', '/%252e%252e/etc/passwd', '/..%2f..%2fetc/passwd', '//etc/passwd', '/..\\..\\etc\\passwd', '/%00', '/visit.js%00.html', '/.git/config', '/../CMakeLists.txt']) {
-    const line = await raw(`GET ${path} HTTP/1.1\r\nHost: 127.0.0.1:${server.port}\r\nConnection: close\r\n\r\n`);
+  for (const path of ['/../../etc/passwd', '/%2e%2e/%2e%2e/etc/passwd', '/%252e%252e/etc/passwd',
+      '/..%2f..%2fetc/passwd', '//etc/passwd', '/..\\..\\etc\\passwd', '/%00', '/visit.js%00.html',
+      '/.git/config', '/../CMakeLists.txt']) {
+    const host = `127.0.0.1:${server.port}`;
+    const line = await raw(`GET ${path} HTTP/1.1\r\nHost: ${host}\r\nConnection: close\r\n\r\n`);
     assert.match(line, /^HTTP\/1\.1 40[04] /, path);
   }
 });
 
 test('broken requests do not harm', async () => {
-  for (const text of ['\r\n\r\n', 'GET\r\n\r\n', 'GET / HTTP/9.9\r\n\r\n', `GET / HTTP/1.1\r\nHost: x\r\nX: ${'a'.repeat(100000)}\r\n\r\n`, Buffer.from([0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc, 3, 3]), 'POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 99999999999\r\n\r\n'])
+  for (const text of ['\r\n\r\n', 'GET\r\n\r\n', 'GET / HTTP/9.9\r\n\r\n',
+      `GET / HTTP/1.1\r\nHost: x\r\nX: ${'a'.repeat(100000)}\r\n\r\n`,
+      Buffer.from([0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc, 3, 3]),
+      'POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 99999999999\r\n\r\n'])
     await raw(text).catch(() => {});
   assert.equal((await get('/healthz')).status, 200);
 });

@@ -12,7 +12,8 @@ before(async () => { server = await start_server(); });
 after(async () => { if (server) assert.equal(await server.stop(), 0); });
 
 function start_kiosk(camera, more = []) {
-  const child = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_kiosk'), ['--camera', camera, '--server', server.ws, '--print', ...more],
+  const child = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_kiosk'),
+      ['--camera', camera, '--server', server.ws, '--print', ...more],
     { stdio: ['ignore', 'pipe', 'pipe'] });
   const observations = [];
   let rest = '';
@@ -31,9 +32,11 @@ async function eye() {
   await visitor.opened;
   return visitor;
 }
-const person = (time, x = 0, y = 0, z = 1, id = 1) => ({ type: 'observation', time, presence: true, state: 'person',
+const person = (time, x = 0, y = 0, z = 1, id = 1) => ({
+  type: 'observation', time, presence: true, state: 'person',
   people: [{ id, position: [x, y, z], rotation: [0, 0, 0], confidence: 0.9 }] });
-const nobody = (time) => ({ type: 'observation', time, presence: false, state: 'absent', people: [] });
+const nobody = (time) =>
+    ({ type: 'observation', time, presence: false, state: 'absent', people: [] });
 
 test('a scripted person is soon greeted, looked at, and seen off', async () => {
   const page = new Visitor(server);
@@ -42,7 +45,8 @@ test('a scripted person is soon greeted, looked at, and seen off', async () => {
   let time = 0, x = -0.3, timer = setInterval(() => camera.send(person(time += 0.05, x)), 50);
   const appeared = performance.now();
   const subtitle = await page.message('subtitle', (message) => message.text.length > 0);
-  assert.ok(performance.now() - appeared < 3000, `greeted after ${performance.now() - appeared} ms`);
+  assert.ok(performance.now() - appeared < 3000,
+      `greeted after ${performance.now() - appeared} ms`);
   assert.equal(subtitle.lang, 'en');
   assert.equal(page.messages.filter((message) => message.type === 'kiosk').at(-1).state, 'person');
   await sleep(1500);
@@ -54,7 +58,8 @@ test('a scripted person is soon greeted, looked at, and seen off', async () => {
   assert.ok(right - left > 0.15, `gaze went from ${left} to ${right}`);
   clearInterval(timer);
   const farewell = page.message('agent', (message) => message.mood === 'farewell');
-  const goodbye = page.message('subtitle', (message) => message.text.length > 0 && message.text !== subtitle.text);
+  const goodbye = page.message('subtitle',
+      (message) => message.text.length > 0 && message.text !== subtitle.text);
   timer = setInterval(() => camera.send(nobody(time += 0.05)), 50);
   await Promise.all([farewell, goodbye]);
   clearInterval(timer);
@@ -64,7 +69,9 @@ test('a scripted person is soon greeted, looked at, and seen off', async () => {
 
 test('bad observations are answered, and the connection lives on', async () => {
   const camera = await eye();
-  for (const text of ['{', '{"type":"observation"}', '{"type":"observation","time":1,"presence":true,"state":"ghost","people":[]}', '['.repeat(40000)]) {
+  for (const text of ['{', '{"type":"observation"}',
+      '{"type":"observation","time":1,"presence":true,"state":"ghost","people":[]}',
+      '['.repeat(40000)]) {
     const error = camera.message('error');
     camera.send(text);
     assert.ok((await error).message);
@@ -75,11 +82,13 @@ test('bad observations are answered, and the connection lives on', async () => {
   await camera.close();
 });
 
-test('the synthetic camera brings a person, and the kiosk program survives a server that goes away', async () => {
+test('the synthetic camera brings a person, and the kiosk program survives a server that goes away',
+    async () => {
   const page = new Visitor(server);
   await page.hello({ role: 'kiosk' });
   const kiosk = start_kiosk('synthetic');
-  const greeting = await page.next((item) => item.message?.type === 'subtitle' && item.message.text, 'greeting', 40000);
+  const greeting = await page.next((item) => item.message?.type === 'subtitle' && item.message.text,
+      'greeting', 40000);
   assert.ok(greeting.message.text.length > 0);
   const seen = kiosk.observations.find((one) => one.state === 'person');
   assert.ok(seen && seen.people.length === 1 && seen.people[0].position[2] > 0.2);
@@ -90,22 +99,27 @@ test('the synthetic camera brings a person, and the kiosk program survives a ser
   server = await start_server([], { port });
   const again = new Visitor(server);
   await again.hello({ role: 'kiosk' });
-  await again.next((item) => item.message?.type === 'kiosk' && item.message.cameras === 1, 'kiosk back', 20000);
+  await again.next((item) => item.message?.type === 'kiosk' && item.message.cameras === 1,
+      'kiosk back', 20000);
   await again.close();
   await kiosk.stop();
 });
 
 const video = join(data, '5_faces', 'headtrackr', 'capture4.mp4');
-test('a filmed man: the storyteller\'s gaze follows his head', { skip: !existsSync(video) && 'no real videos beside this checkout' }, async () => {
+test('a filmed man: the storyteller\'s gaze follows his head',
+    { skip: !existsSync(video) && 'no real videos beside this checkout' }, async () => {
   const page = new Visitor(server);
   await page.hello({ role: 'kiosk' });
   const kiosk = start_kiosk(video);
   const pairs = [];
   const timer = setInterval(() => {
-    const last = kiosk.observations.at(-1), agent = page.messages.filter((message) => message.type === 'agent').at(-1);
-    if (last?.state === 'person' && agent?.guest) pairs.push([last.people[0].position[0], agent.gaze[0]]);
+    const last = kiosk.observations.at(-1),
+        agent = page.messages.filter((message) => message.type === 'agent').at(-1);
+    if (last?.state === 'person' && agent?.guest)
+      pairs.push([last.people[0].position[0], agent.gaze[0]]);
   }, 100);
-  const greeting = await page.next((item) => item.message?.type === 'subtitle' && item.message.text, 'greeting', 40000);
+  const greeting = await page.next((item) => item.message?.type === 'subtitle' && item.message.text,
+      'greeting', 40000);
   assert.ok(greeting);
   const first = kiosk.observations.find((one) => one.state === 'person');
   assert.ok(performance.now() - first.at < 3000, 'greeted seconds after the detector was sure');
@@ -115,10 +129,12 @@ test('a filmed man: the storyteller\'s gaze follows his head', { skip: !existsSy
   assert.ok(pairs.length > 20, `${pairs.length} pairs of head and gaze`);
   // Correlation of head place and gaze, the gaze trailing by up to half a second.
   const correlation = (lag) => {
-    const a = pairs.slice(0, pairs.length - lag).map((pair) => pair[0]), b = pairs.slice(lag).map((pair) => pair[1]);
+    const a = pairs.slice(0, pairs.length - lag).map((pair) => pair[0]),
+        b = pairs.slice(lag).map((pair) => pair[1]);
     const mean = (v) => v.reduce((s, x) => s + x, 0) / v.length, ma = mean(a), mb = mean(b);
     const cov = a.reduce((s, x, i) => s + (x - ma) * (b[i] - mb), 0);
-    return cov / Math.sqrt(a.reduce((s, x) => s + (x - ma) ** 2, 0) * b.reduce((s, x) => s + (x - mb) ** 2, 0));
+    return cov / Math.sqrt(a.reduce((s, x) => s + (x - ma) ** 2, 0)
+        * b.reduce((s, x) => s + (x - mb) ** 2, 0));
   };
   const best = Math.max(...[0, 1, 2, 3, 4, 5].map(correlation));
   assert.ok(best > 0.6, `correlation of head and gaze is ${best}`);

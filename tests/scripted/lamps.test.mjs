@@ -15,20 +15,24 @@ test('one switches, both are told, and the pictures of both follow', async () =>
   const { name } = welcome.lamps.find((lamp) => lamp.name === 'daylight');
   assert.ok(welcome.lamps.every((lamp) => lamp.on && lamp.title));
   assert.notEqual(greeted.lamps[0].title, welcome.lamps[0].title);
-  // Beside the storyteller, looking at a wall: nothing moves, so that pictures are alike but for their light.
-  for (const visitor of [one, other]) visitor.send({ type: 'viewpoint', seq: 1, name: 'paintings' });
+  // Beside the storyteller, looking at a wall: nothing moves, so that pictures are alike but for
+  // their light.
+  for (const visitor of [one, other])
+    visitor.send({ type: 'viewpoint', seq: 1, name: 'paintings' });
   await sleep(3000);
   // A dark picture says less: its JPEG is smaller at the same quality.
   const bytes = (visitor) => ({ size: visitor.last.jpeg.length, quality: visitor.last.quality });
   const lit = [bytes(one), bytes(other)];
-  const told = [one, other].map((visitor) => visitor.message('state', (message) => message.lamps[name] === false));
+  const told = [one, other].map(
+      (visitor) => visitor.message('state', (message) => message.lamps[name] === false));
   other.send({ type: 'lamp', name, on: false });
   for (const message of await Promise.all(told)) assert.equal(message.lamps.chandeliers, true);
   await sleep(3000);
   for (const [i, visitor] of [one, other].entries()) {
     const dark = bytes(visitor);
     assert.ok(dark.quality >= lit[i].quality, `${dark.quality} after ${lit[i].quality}`);
-    assert.ok(dark.size < 0.8 * lit[i].size, `visitor ${i}: ${lit[i].size} bytes lit, ${dark.size} dark`);
+    assert.ok(dark.size < 0.8 * lit[i].size,
+        `visitor ${i}: ${lit[i].size} bytes lit, ${dark.size} dark`);
   }
   // Who comes later finds it as it is.
   const late = new Visitor(server);
@@ -43,7 +47,8 @@ test('one switches, both are told, and the pictures of both follow', async () =>
 test('what is no lamp is refused', async () => {
   const visitor = new Visitor(server);
   await visitor.hello();
-  for (const [message, code] of [[{ type: 'lamp', name: 'moon', on: false }, 'unknown_lamp'], [{ type: 'lamp', name: 'fire' }, 'bad_field'], [{ type: 'lamp', on: true }, 'bad_field']]) {
+  for (const [message, code] of [[{ type: 'lamp', name: 'moon', on: false }, 'unknown_lamp'],
+      [{ type: 'lamp', name: 'fire' }, 'bad_field'], [{ type: 'lamp', on: true }, 'bad_field']]) {
     const error = visitor.message('error');
     visitor.send(message);
     assert.equal((await error).code, code);

@@ -19,7 +19,8 @@ function read_wav(path) {
   assert.equal(bytes.readUInt32LE(4), bytes.length - 8);
   assert.deepEqual([20, 22, 34].map((at) => bytes.readUInt16LE(at)), [1, 1, 16]);
   assert.equal(bytes.readUInt32LE(40), bytes.length - 44);
-  return { rate: bytes.readUInt32LE(24), samples: new Int16Array(bytes.buffer, bytes.byteOffset + 44, (bytes.length - 44) / 2) };
+  return { rate: bytes.readUInt32LE(24),
+    samples: new Int16Array(bytes.buffer, bytes.byteOffset + 44, (bytes.length - 44) / 2) };
 }
 
 function check_marks(marks, duration) {
@@ -27,7 +28,8 @@ function check_marks(marks, duration) {
   assert.ok(Math.abs(marks.duration - duration) < 1e-3);
   let last = 0;
   for (const { start, end } of marks.words) {
-    assert.ok(start >= last - 1e-4 && end > start && end <= marks.duration, `${start} ${end} after ${last}`);
+    assert.ok(start >= last - 1e-4 && end > start && end <= marks.duration,
+        `${start} ${end} after ${last}`);
     last = end;
   }
   last = 0;
@@ -44,7 +46,8 @@ function check_marks(marks, duration) {
     assert.ok(weight >= 0 && weight <= 1);
     sums.set(time, (sums.get(time) ?? 0) + weight);
   }
-  for (const [time, sum] of sums) assert.ok(Math.abs(sum - 1) < 0.01, `weights at ${time} sum to ${sum}`);
+  for (const [time, sum] of sums)
+    assert.ok(Math.abs(sum - 1) < 0.01, `weights at ${time} sum to ${sum}`);
 }
 
 test('speaks five languages, the same way every time', async () => {
@@ -56,7 +59,8 @@ test('speaks five languages, the same way every time', async () => {
     es: 'El pingüino Wenceslao hizo kilómetros bajo la lluvia.',
   };
   for (const [lang, text] of Object.entries(texts)) {
-    const { status, stderr } = await speak(text, '--lang', lang, '--wav', file('a.wav'), '--json', file('a.json'));
+    const { status, stderr } = await speak(text, '--lang', lang, '--wav', file('a.wav'), '--json',
+        file('a.json'));
     assert.equal(status, 0, stderr);
     assert.equal(stderr, '', lang);
     const { rate, samples } = read_wav(file('a.wav'));
@@ -70,7 +74,8 @@ test('speaks five languages, the same way every time', async () => {
       assert.equal(word, characters.slice(from, to).join(''));
     assert.equal(letters(marks.words.map(({ text: word }) => word)), letters([text]));
     // It is loud while it speaks and silent at the end.
-    const loud = (from, to) => Math.max(...samples.slice(Math.round(from * rate), Math.round(to * rate)).map(Math.abs));
+    const loud = (from, to) =>
+        Math.max(...samples.slice(Math.round(from * rate), Math.round(to * rate)).map(Math.abs));
     for (const { start, end } of marks.words) assert.ok(loud(start, end) > 1000, lang);
     assert.ok(loud(marks.duration - 0.1, marks.duration) < 300, lang);
     const again = await speak(text, '--lang', lang, '--wav', file('b.wav'));
@@ -87,21 +92,27 @@ test('prints words when no file is asked for', async () => {
 
 test('a recording gives its marks, and marks moved by hand are taken', async () => {
   const text = 'The oldest tower of the castle looks over the river.';
-  const said = await speak(text, '--lang', 'en-us', '--words-per-minute', '130', '--pitch', '80', '--wav', file('said.wav'), '--json', file('said.json'));
+  const said = await speak(text, '--lang', 'en-us', '--words-per-minute', '130', '--pitch', '80',
+      '--wav', file('said.wav'), '--json', file('said.json'));
   assert.equal(said.status, 0, said.stderr);
-  const { status, stderr } = await speak(text, '--audio', file('said.wav'), '--json', file('marks.json'), '--wav', file('same.wav'));
+  const { status, stderr } = await speak(text, '--audio', file('said.wav'), '--json',
+      file('marks.json'), '--wav', file('same.wav'));
   assert.equal(status, 0, stderr);
   const truth = JSON.parse(readFileSync(file('said.json'), 'utf8'));
   const marks = JSON.parse(readFileSync(file('marks.json'), 'utf8'));
   check_marks(marks, truth.duration);
-  assert.deepEqual(marks.words.map(({ text: word }) => word), truth.words.map(({ text: word }) => word));
-  const errors = marks.words.map(({ start }, i) => Math.abs(start - truth.words[i].start)).sort((a, b) => a - b);
+  assert.deepEqual(marks.words.map(({ text: word }) => word),
+      truth.words.map(({ text: word }) => word));
+  const errors = marks.words.map(({ start }, i) => Math.abs(start - truth.words[i].start))
+      .sort((a, b) => a - b);
   assert.ok(errors[errors.length >> 1] <= 0.03 && errors.at(-1) <= 0.08, errors.join(' '));
-  assert.equal(read_wav(file('same.wav')).samples.length, read_wav(file('said.wav')).samples.length);
+  assert.equal(read_wav(file('same.wav')).samples.length,
+      read_wav(file('said.wav')).samples.length);
 
   marks.words.at(-1).end += 0.05;
   writeFileSync(file('moved.json'), JSON.stringify(marks));
-  const moved = await speak(text, '--audio', file('said.wav'), '--marks', file('moved.json'), '--json', file('again.json'));
+  const moved = await speak(text, '--audio', file('said.wav'), '--marks', file('moved.json'),
+      '--json', file('again.json'));
   assert.equal(moved.status, 0, moved.stderr);
   const again = JSON.parse(readFileSync(file('again.json'), 'utf8'));
   check_marks(again, truth.duration);
@@ -112,12 +123,15 @@ test('a recording gives its marks, and marks moved by hand are taken', async () 
 test('wrong input is 1 and named', async () => {
   const text_file = file('text.wav'), silent_file = file('silent.wav');
   writeFileSync(text_file, 'This is no sound.');
-  const header = Buffer.from('524946460000000057415645666d74201000000001000100401f0000803e000002001000646174610000' + '0000', 'hex');
+  const header = Buffer.from(
+      '524946460000000057415645666d74201000000001000100401f0000803e000002001000646174610000'
+      + '0000', 'hex');
   header.writeUInt32LE(36 + 32000, 4);
   header.writeUInt32LE(32000, 40);
   writeFileSync(silent_file, Buffer.concat([header, Buffer.alloc(32000)]));
   const cases = [
-    [[''], /empty/], [['  \n'], /empty/], [['…'.repeat(3400)], /10200 bytes/], [['x'.repeat(100000)], /100000 bytes/],
+    [[''], /empty/], [['  \n'], /empty/], [['…'.repeat(3400)], /10200 bytes/],
+    [['x'.repeat(100000)], /100000 bytes/],
     [['hello', '--lang', 'xx'], /'xx'/], [['hello', '--lang', '../../etc'], /language/],
     [['hello', '--wav', join(folder, 'none', 'a.wav')], /none.a\.wav.*cannot be written/],
     [['hello', '--json', folder], /cannot be written/],
@@ -136,7 +150,8 @@ test('wrong input is 1 and named', async () => {
 });
 
 test('a wrong command line is 2', async () => {
-  for (const args of [[], ['a', 'b'], ['a', '--loud'], ['a', '--words-per-minute', '9'], ['a', '--wav']]) {
+  for (const args of [[], ['a', 'b'], ['a', '--loud'], ['a', '--words-per-minute', '9'],
+      ['a', '--wav']]) {
     const { status, stderr } = await speak(...args);
     assert.equal(status, 2, args.join(' '));
     assert.ok(stderr.length > 0);

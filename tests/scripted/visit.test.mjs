@@ -37,7 +37,8 @@ test('an input is answered by a picture that shows it, and the visitor moves', a
   const state = await visitor.message('state', (message) => message.seq === 2);
   const moved = Math.hypot(...state.position.map((v, i) => v - before_state.position[i]));
   assert.ok(moved > 0.3 && moved < 2.5, `moved ${moved} m`);
-  assert.ok(Math.abs(Math.atan2(Math.sin(state.yaw - before_state.yaw - 0.5), Math.cos(state.yaw - before_state.yaw - 0.5))) < 1e-3);
+  const off = state.yaw - before_state.yaw - 0.5;
+  assert.ok(Math.abs(Math.atan2(Math.sin(off), Math.cos(off))) < 1e-3);
   await visitor.close();
 });
 
@@ -56,7 +57,8 @@ test('viewpoints, camera, tour and settings', async () => {
   const riding = await visitor.message('state', (message) => message.tour?.state === 'playing');
   // It sets out softly, after a word of greeting perhaps.
   const way = (message) => Math.hypot(...message.position.map((x, i) => x - riding.position[i]));
-  const later = await visitor.message('state', (message) => message.tour?.state === 'playing' && way(message) > 0.05);
+  const later = await visitor.message('state',
+      (message) => message.tour?.state === 'playing' && way(message) > 0.05);
   assert.ok(way(later) < 3, 'it walks');
   visitor.send({ type: 'tour', action: 'pause' });
   await visitor.message('state', (message) => message.tour?.state === 'paused');
@@ -74,7 +76,8 @@ test('standing still gives stills of better quality', async () => {
   const [x, y, z] = storyteller.position;
   visitor.send({ type: 'settings', quality: 60, max_quality: 91 });
   // Beside the storyteller, looking away from her: nothing in the picture moves.
-  visitor.send({ type: 'camera', seq: 1, position: [x + 2, y + 1.6, z], yaw: -Math.PI / 2, pitch: 0 });
+  visitor.send(
+      { type: 'camera', seq: 1, position: [x + 2, y + 1.6, z], yaw: -Math.PI / 2, pitch: 0 });
   const moving = await visitor.picture((picture) => picture.seq === 1 && !(picture.flags & 1));
   assert.ok(moving.quality <= 60);
   const still = await visitor.picture((picture) => (picture.flags & 1) === 1);
@@ -102,11 +105,17 @@ test('wrong messages are answered and forgiven', async () => {
   const visitor = new Visitor(server);
   await visitor.hello();
   const wrong = [
-    ['{', 'bad_json'], ['[]', null], ['{"type":"dance"}', 'unknown_type'], ['{"type":"input","seq":-1,"move":[0,0,0],"look":[0,0]}', 'bad_field'],
-    ['{"type":"input","seq":1,"move":[0,0],"look":[0,0]}', 'bad_field'], ['{"type":"input","seq":1,"move":[1e999,0,0],"look":[0,0]}', null],
-    ['{"type":"viewpoint","seq":1,"name":"moon"}', 'unknown_viewpoint'], ['{"type":"tour","action":"fly"}', 'bad_field'],
-    [`{"type":"hello","exhibit":"${'x'.repeat(300)}"}`, 'bad_field'], ['{"type":"hello","exhibit":"atlantis","width":100,"height":100,"lang":"en","role":"visitor"}', 'unknown_exhibit'],
-    ['['.repeat(30000) + ']'.repeat(30000), 'too_deep'], ['{"type":"storyteller","story":"none"}', 'unknown_story'],
+    ['{', 'bad_json'], ['[]', null], ['{"type":"dance"}', 'unknown_type'],
+    ['{"type":"input","seq":-1,"move":[0,0,0],"look":[0,0]}', 'bad_field'],
+    ['{"type":"input","seq":1,"move":[0,0],"look":[0,0]}', 'bad_field'],
+    ['{"type":"input","seq":1,"move":[1e999,0,0],"look":[0,0]}', null],
+    ['{"type":"viewpoint","seq":1,"name":"moon"}', 'unknown_viewpoint'],
+    ['{"type":"tour","action":"fly"}', 'bad_field'],
+    [`{"type":"hello","exhibit":"${'x'.repeat(300)}"}`, 'bad_field'],
+    ['{"type":"hello","exhibit":"atlantis","width":100,"height":100,"lang":"en","role":"visitor"}',
+        'unknown_exhibit'],
+    ['['.repeat(30000) + ']'.repeat(30000), 'too_deep'],
+    ['{"type":"storyteller","story":"none"}', 'unknown_story'],
   ];
   for (const [text, code] of wrong) {
     const error = visitor.message('error');
@@ -131,13 +140,18 @@ test('hello must come first', async () => {
 test('foreign origins and protocols are refused, oversized messages close', async () => {
   const refused = (options, protocol) => new Promise((resolve) => {
     const socket = new WebSocket(`${server.ws}/api/v1/visit`, protocol, options);
-    socket.on('unexpected-response', (request, response) => { resolve(response.statusCode); request.destroy(); });
+    socket.on('unexpected-response', (request, response) => {
+      resolve(response.statusCode);
+      request.destroy();
+    });
     socket.on('open', () => { socket.close(); resolve('open'); });
     socket.on('error', () => {});
   });
   assert.equal(await refused({ origin: 'http://evil.example' }, 'wellspring.v1'), 403);
-  assert.equal(await refused({ origin: `http://127.0.0.1:${server.port}.evil.example` }, 'wellspring.v1'), 403);
-  assert.equal(await refused({ origin: `http://127.0.0.1:${server.port}` }, 'wellspring.v1'), 'open');
+  assert.equal(await refused({ origin: `http://127.0.0.1:${server.port}.evil.example` },
+      'wellspring.v1'), 403);
+  assert.equal(await refused({ origin: `http://127.0.0.1:${server.port}` }, 'wellspring.v1'),
+      'open');
   assert.equal(await refused({}, 'other.v9'), 400);
   const visitor = new Visitor(server);
   await visitor.hello();
@@ -150,7 +164,10 @@ test('foreign origins and protocols are refused, oversized messages close', asyn
 });
 
 test('a viewer that stops reading costs nothing that grows, and the others go on', async () => {
-  const resident = async () => Number(/^wellspring_resident_bytes (\S+)$/m.exec(await (await fetch(`${server.url}/metrics`)).text())[1]);
+  const resident = async () => {
+    const metrics = await (await fetch(`${server.url}/metrics`)).text();
+    return Number(/^wellspring_resident_bytes (\S+)$/m.exec(metrics)[1]);
+  };
   const lazy = new Visitor(server, { acknowledge: false });
   await lazy.hello({ width: 640, height: 360 });
   await lazy.picture();

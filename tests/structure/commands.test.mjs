@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line's promises: exit status 0 done, 1 the input is wrong, 2 the command line is wrong.
+// The command line's promises: exit status 0 done, 1 the input is wrong, 2 the command line is
+// wrong.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync, mkdirSync, statSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -15,7 +16,9 @@ const triangle = {
   asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0, name: 'Sail' }],
   meshes: [{ primitives: [{ attributes: { POSITION: 0 }, material: 0 }] }],
   materials: [{ emissiveFactor: [1, 0.5, 0.25], doubleSided: true }],
-  accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: 'VEC3', min: [-1, -1, 0], max: [1, 1, 0] }],
+  accessors: [{
+    bufferView: 0, componentType: 5126, count: 3, type: 'VEC3', min: [-1, -1, 0], max: [1, 1, 0],
+  }],
   bufferViews: [{ buffer: 0, byteLength: 36 }],
   buffers: [{ byteLength: 36, uri: 'data:application/octet-stream;base64,' +
     Buffer.from(new Float32Array([-1, -1, 0, 1, -1, 0, 0, 1, 0]).buffer).toString('base64') }],
@@ -26,7 +29,8 @@ writeFileSync(scene, JSON.stringify(triangle));
 test('render writes linear and tone-mapped pictures', async () => {
   for (const name of ['out.png', 'out.jpg', 'out.pfm', 'out.exr']) {
     const out = join(folder, name);
-    const args = [scene, '--technique', 'path', '--eye', '0,0,3', '--target', '0,0,0', '--fov', '50', '--size', '32x24', '--spp', '4', '--seed', '3', '--out', out];
+    const args = [scene, '--technique', 'path', '--eye', '0,0,3', '--target', '0,0,0', '--fov',
+        '50', '--size', '32x24', '--spp', '4', '--seed', '3', '--out', out];
     const { status, stderr } = await run('wellspring_render', args);
     assert.equal(status, 0, stderr);
     assert.ok(statSync(out).size > 100);
@@ -41,7 +45,9 @@ test('render writes linear and tone-mapped pictures', async () => {
 test('the same seed gives the same bits', async () => {
   const picture = async (name, threads) => {
     const out = join(folder, name);
-    const { status, stderr } = await run('wellspring_render', [scene, '--technique', 'path', '--size', '24x24', '--spp', '3', '--seed', '7', '--threads', String(threads), '--out', out]);
+    const { status, stderr } = await run('wellspring_render',
+        [scene, '--technique', 'path', '--size', '24x24', '--spp', '3', '--seed', '7', '--threads',
+            String(threads), '--out', out]);
     assert.equal(status, 0, stderr);
     return readFileSync(out);
   };
@@ -56,7 +62,9 @@ test('techniques are listed by name', async () => {
 
 test('a wrong command line is 2', async () => {
   const out = join(folder, 'x.png');
-  for (const args of [[], [scene], [scene, '--out', out, '--technique', 'magic'], [scene, '--out', out, '--size', '10'], [scene, '--out', out, '--spp', '0'], [scene, '--out', join(folder, 'x.tiff')], [scene, '--out', out, '--camera', 'nowhere']]) {
+  for (const args of [[], [scene], [scene, '--out', out, '--technique', 'magic'],
+      [scene, '--out', out, '--size', '10'], [scene, '--out', out, '--spp', '0'],
+      [scene, '--out', join(folder, 'x.tiff')], [scene, '--out', out, '--camera', 'nowhere']]) {
     const { status, stderr } = await run('wellspring_render', args);
     assert.equal(status, 2, `${args.join(' ')}\n${stderr}`);
     assert.ok(stderr.length > 0);
@@ -71,15 +79,20 @@ test('a wrong command line is 2', async () => {
 
 test('wrong input is 1 and named', async () => {
   const bad = join(folder, 'bad.gltf');
-  writeFileSync(bad, JSON.stringify({ ...triangle, accessors: [{ ...triangle.accessors[0], count: 400 }] }));
-  const { status, stderr } = await run('wellspring_render', [bad, '--out', join(folder, 'x.png'), '--size', '8x8', '--spp', '1']);
+  writeFileSync(bad,
+      JSON.stringify({ ...triangle, accessors: [{ ...triangle.accessors[0], count: 400 }] }));
+  const { status, stderr } = await run('wellspring_render',
+      [bad, '--out', join(folder, 'x.png'), '--size', '8x8', '--spp', '1']);
   assert.equal(status, 1);
   assert.match(stderr, /bad\.gltf/);
   assert.match(stderr, /accessors\/0/);
-  assert.equal((await run('wellspring_render', [join(folder, 'none.glb'), '--out', join(folder, 'x.png')])).status, 1);
+  const no_scene = [join(folder, 'none.glb'), '--out', join(folder, 'x.png')];
+  assert.equal((await run('wellspring_render', no_scene)).status, 1);
   assert.equal((await run('wellspring_avatar', [join(folder, 'none.x3d'), '--info'])).status, 1);
-  assert.equal((await run('wellspring_kiosk', ['--camera', join(folder, 'none.mp4'), '--print'])).status, 1);
-  assert.equal((await run('wellspring_speak', ['Hello', '--audio', join(folder, 'none.wav')])).status, 1);
+  assert.equal((await run('wellspring_kiosk', ['--camera', join(folder, 'none.mp4'), '--print']))
+      .status, 1);
+  assert.equal((await run('wellspring_speak', ['Hello', '--audio', join(folder, 'none.wav')]))
+      .status, 1);
 });
 
 test('check accepts the castle and lists every problem of a bad package', async () => {
@@ -89,20 +102,24 @@ test('check accepts the castle and lists every problem of a bad package', async 
   mkdirSync(bad);
   writeFileSync(join(bad, 'exhibit.json'), JSON.stringify({
     id: 'other', title: { en: 'Broken' }, scene: '../castle/scene.glb', exposure: -1, typo: 1,
-    viewpoints: [{ name: 'a', position: [0, 0], fov_deg: 400 }], start: 'b', tours: [{ id: 't', stops: [{ viewpoint: 'c' }] }],
+    viewpoints: [{ name: 'a', position: [0, 0], fov_deg: 400 }], start: 'b',
+    tours: [{ id: 't', stops: [{ viewpoint: 'c' }] }],
   }));
   const { status, stdout } = await run('wellspring_check', [bad]);
   assert.equal(status, 1);
-  for (const place of ['/id', '/scene', '/exposure', '/typo', '/viewpoints/0/position', '/viewpoints/0/fov_deg', '/start', '/tours/0/stops/0/viewpoint'])
+  for (const place of ['/id', '/scene', '/exposure', '/typo', '/viewpoints/0/position',
+      '/viewpoints/0/fov_deg', '/start', '/tours/0/stops/0/viewpoint'])
     assert.ok(stdout.includes(place), `${place} is not named in\n${stdout}`);
   assert.equal((await run('wellspring_check', [join(folder, 'nothing')])).status, 1);
 });
 
 test('avatar tells the storyteller\'s joints', async () => {
-  const { status, stdout, stderr } = await run('wellspring_avatar', [join(castle, 'figures', 'storyteller.x3d'), '--json']);
+  const { status, stdout, stderr } = await run('wellspring_avatar',
+      [join(castle, 'figures', 'storyteller.x3d'), '--json']);
   assert.equal(status, 0, stderr);
   const info = JSON.parse(stdout);
   const names = info.joints.map((joint) => joint.name);
-  for (const name of ['humanoid_root', 'sacroiliac', 'l_hip', 'r_knee', 'skullbase', 'l_shoulder', 'r_elbow', 'l_radiocarpal'])
+  for (const name of ['humanoid_root', 'sacroiliac', 'l_hip', 'r_knee', 'skullbase', 'l_shoulder',
+      'r_elbow', 'l_radiocarpal'])
     assert.ok(names.includes(name), `${name} is missing`);
 });

@@ -31,14 +31,15 @@ const heavy = [
   [/^(turbojpeg|OpenEXR|Imf)/, ['frame']],
 ];
 
-// The one header of a folder through which its own files reach a heavy library; no other folder may see it.
+// The one header of a folder through which its own files reach a heavy library; no other folder may
+// see it.
 const gateways = ['server/stream/asio.h', 'server/world/embree.h'];
 
-function* sources(folder) {
+function* sources(folder, kind = /\.(h|cpp)$/) {
   for (const entry of readdirSync(folder, { withFileTypes: true })) {
     const path = join(folder, entry.name);
-    if (entry.isDirectory()) yield* sources(path);
-    else if (/\.(h|cpp)$/.test(entry.name)) yield path;
+    if (entry.isDirectory() && entry.name !== 'node_modules') yield* sources(path, kind);
+    else if (kind.test(entry.name)) yield path;
   }
 }
 
@@ -50,8 +51,10 @@ function files() {
       const parts = name.split('/');
       const layer = parts[0] === 'server' ? (parts.length > 2 ? parts[1] : 'main') : parts[0];
       const text = readFileSync(path, 'utf8');
-      const includes = [...text.matchAll(/^\s*#\s*include\s*[<"]([^>"]+)[>"]/gm)].map((match) => match[1]);
-      found.push({ name, layer: /main[^/]*\.cpp$/.test(name) ? 'main' : layer, text, includes, lines: text.split('\n').length });
+      const includes =
+          [...text.matchAll(/^\s*#\s*include\s*[<"]([^>"]+)[>"]/gm)].map((match) => match[1]);
+      found.push({ name, layer: /main[^/]*\.cpp$/.test(name) ? 'main' : layer, text, includes,
+          lines: text.split('\n').length });
     }
   return found;
 }
@@ -68,7 +71,8 @@ test('includes follow the direction of the layers', () => {
     for (const include of includes) {
       const target = include.split('/')[0];
       if (!include.includes('/') || !(target in may_include)) continue;
-      if (target !== layer && !may_include[layer].includes(target)) wrong.push(`${name} includes ${include}`);
+      if (target !== layer && !may_include[layer].includes(target))
+        wrong.push(`${name} includes ${include}`);
     }
   }
   assert.deepEqual(wrong, []);
@@ -80,15 +84,18 @@ test('heavy headers stay in .cpp files of their own layer', () => {
     for (const include of includes)
       for (const [pattern, layers] of heavy)
         if (pattern.test(include)) {
-          const program = layer === 'main' && (name.startsWith('kiosk/') || (name === 'voice/main.cpp' && /^espeak/.test(include)));
+          const speaks = name === 'voice/main.cpp' && /^espeak/.test(include);
+          const program = layer === 'main' && (name.startsWith('kiosk/') || speaks);
           if (!(layers.includes(layer) || program)) wrong.push(`${name} includes ${include}`);
-          else if (name.endsWith('.h') && !gateways.includes(name)) wrong.push(`the header ${name} includes ${include}`);
+          else if (name.endsWith('.h') && !gateways.includes(name))
+            wrong.push(`the header ${name} includes ${include}`);
         }
   assert.deepEqual(wrong, []);
 });
 
 test('what a gateway header brings in stays in its folder', () => {
-  const path_of = (include) => ['', 'server/'].map((root) => root + include).find((name) => all.some((file) => file.name === name));
+  const path_of = (include) => ['', 'server/'].map((root) => root + include)
+      .find((name) => all.some((file) => file.name === name));
   const reaches = (name, seen = new Set()) => {
     if (gateways.includes(name)) return name;
     if (seen.has(name)) return null;
@@ -110,9 +117,11 @@ test('what a gateway header brings in stays in its folder', () => {
 
 test('no line is longer than 100 columns, but what raw strings quote', () => {
   const wrong = [];
-  const every = ['server', 'avatar', 'kiosk', 'voice', 'tests'].flatMap((top) => [...sources(join(root, top))]);
-  for (const path of every.filter((name) => !name.includes('node_modules'))) {
-    const text = readFileSync(path, 'utf8').replace(/R"(\w*)\([\s\S]*?\)\1"/g, (raw) => raw.replace(/[^\n]/g, ''));
+  const folders = ['server', 'avatar', 'kiosk', 'voice', 'web', 'content', 'tests'];
+  const kind = /\.(h|cpp|js|mjs|py)$/;
+  for (const path of folders.flatMap((top) => [...sources(join(root, top), kind)])) {
+    const text = readFileSync(path, 'utf8')
+        .replace(/R"(\w*)\([\s\S]*?\)\1"/g, (raw) => raw.replace(/[^\n]/g, ''));
     text.split('\n').forEach((line, i) => {
       if ([...line].length > 100) wrong.push(`${relative(root, path)}:${i + 1}`);
     });
@@ -123,8 +132,10 @@ test('no line is longer than 100 columns, but what raw strings quote', () => {
 test('one licence line per file, include guards, and no file over 500 lines', () => {
   const wrong = [];
   for (const { name, text, lines } of all) {
-    if (!text.startsWith('// SPDX-License-Identifier: Apache-2.0\n')) wrong.push(`${name}: no SPDX line`);
-    if (name.endsWith('.h') && !text.includes('#pragma once')) wrong.push(`${name}: no #pragma once`);
+    if (!text.startsWith('// SPDX-License-Identifier: Apache-2.0\n'))
+      wrong.push(`${name}: no SPDX line`);
+    if (name.endsWith('.h') && !text.includes('#pragma once'))
+      wrong.push(`${name}: no #pragma once`);
     if (lines > 500) wrong.push(`${name}: ${lines} lines`);
   }
   assert.deepEqual(wrong, []);

@@ -17,10 +17,12 @@ def tube(patch, points, radius, weights, segments=8, closed=False):
         a = points[i - 1] if i or closed else p
         b = points[(i + 1) % n] if i + 1 < n or closed else p
         t = unit(sub(b, a))
-        side = unit(cross(t, (0.31, 0.23, 0.92))) if side is None else unit(mad(side, t, -dot(side, t)))
+        side = (unit(cross(t, (0.31, 0.23, 0.92))) if side is None
+                else unit(mad(side, t, -dot(side, t))))
         up = cross(t, side)
         r = radius(i / max(n - 1, 1)) if callable(radius) else radius
-        rows.append([patch.vertex(mad(mad(p, side, r * cos(b)), up, r * sin(b)), (i * 0.3, j / segments), weights)
+        rows.append([patch.vertex(mad(mad(p, side, r * cos(b)), up, r * sin(b)),
+                                  (i * 0.3, j / segments), weights)
                      for j, b in enumerate(circle(segments))])
     if closed:
         rows.append(rows[0])
@@ -46,8 +48,10 @@ def make_belt(leather, gold):
     n = 96
     rows = []
     for y, lift in ((1.045, 0.004), (1.047, 0.0085), (1.0715, 0.0085), (1.0735, 0.004)):
-        rows.append([strap.vertex(p, (i / n * 20, (y - 1.045) / 0.0285), skirt_weights((p[0], 1.0, p[2])), ("belt",))
-                     for i in range(n + 1) for p in [belt_point(2 * pi * (i % n) / n + pi, y, lift)]])
+        rows.append([strap.vertex(p, (i / n * 20, (y - 1.045) / 0.0285),
+                                  skirt_weights((p[0], 1.0, p[2])), ("belt",))
+                     for i in range(n + 1)
+                     for p in [belt_point(2 * pi * (i % n) / n + pi, y, lift)]])
     strap.grid(rows)
     c = belt_point(0, 1.0595, 0.0105)
     disc(metal, c, (0, 0, 1), 0.0205, 0.005, skirt_weights((0, 1.0, 0.1)))
@@ -55,7 +59,8 @@ def make_belt(leather, gold):
         if k:
             phi = 0.30 * k
             c = belt_point(phi, 1.0595, 0.0085)
-            disc(metal, c, unit((sin(phi), 0, cos(phi))), 0.0065, 0.003, skirt_weights((c[0], 1.0, c[2])), 7)
+            disc(metal, c, unit((sin(phi), 0, cos(phi))), 0.0065, 0.003,
+                 skirt_weights((c[0], 1.0, c[2])), 7)
     return strap, metal
 
 
@@ -89,7 +94,8 @@ def make_keys(metal_look):
     y = y0 - 0.0065 - 0.0135 * links - 0.014
     c = front(y)
     tube(patch, oval(c, (0, 1, 0), 0.018, across, 0.018, 16), 0.0018, weights, 5, True)
-    for angle, size, fan_out in ((-0.22, 0.105, -0.004), (0.04, 0.125, 0.002), (0.26, 0.092, 0.007)):
+    for angle, size, fan_out in ((-0.22, 0.105, -0.004), (0.04, 0.125, 0.002),
+                                 (0.26, 0.092, 0.007)):
         slope = sub(skirt_point(phi, c[1] - 0.12), skirt_point(phi, c[1]))
         lean = (slope[0] * out[0] + slope[2] * out[2]) / 0.12
         d = unit(mad(mad((0, -1, 0), across, angle), out, lean + 0.05))
@@ -115,16 +121,19 @@ def make_shoes(leather):
         for k in range(15):
             t = k / 14
             z = lerp(-0.065, 0.168, t)
-            w = 0.037 * (max(1e-3, 1 - abs(2 * t - 1) ** 3.2)) ** 0.5 * (0.84 + 0.2 * smoothstep(0.3, 0.7, t))
-            h = lerp(0.085, 0.030, smoothstep(0.25, 0.9, t)) * (max(1e-3, 1 - abs(2 * t - 1) ** 4)) ** 0.5
+            w = (0.037 * (max(1e-3, 1 - abs(2 * t - 1) ** 3.2)) ** 0.5
+                 * (0.84 + 0.2 * smoothstep(0.3, 0.7, t)))
+            h = (lerp(0.085, 0.030, smoothstep(0.25, 0.9, t))
+                 * (max(1e-3, 1 - abs(2 * t - 1) ** 4)) ** 0.5)
             row = []
             for q in range(14):
                 b = 2 * pi * q / 14
                 x = 0.096 + 0.012 * t + w * cos(b)
                 y = max(0.0, h * (0.42 + 0.58 * sin(b)))
                 toe = smoothstep(0.075, 0.105, z)
-                row.append(patch.vertex((side * x, y, z), (t, q / 14), blend([(name + "_talocrural", 1 - toe),
-                                        (name + "_metatarsophalangeal_2", toe)]), ("shoe",)))
+                row.append(patch.vertex((side * x, y, z), (t, q / 14),
+                                        blend([(name + "_talocrural", 1 - toe),
+         (name + "_metatarsophalangeal_2", toe)]), ("shoe",)))
             rows.append(row)
         patch.grid(rows, closed=True, flip=side < 0)
         for r, flip in ((rows[0], side > 0), (rows[-1], side < 0)):

@@ -22,7 +22,8 @@ def make_looks(figure, who):
     look("hands", skin, 0.52)
     look("flesh", (0.62, 0.26, 0.22), 0.22)
     look("eye", (0.8, 0.78, 0.75), 0.06)
-    look("lash", (0.018, 0.012, 0.010) if WHO.lashes > 0.7 else (0.09, 0.065, 0.05), 0.6, double_sided=True)
+    look("lash", (0.018, 0.012, 0.010) if WHO.lashes > 0.7 else (0.09, 0.065, 0.05), 0.6,
+         double_sided=True)
     look("brow", linear(WHO.brow), 0.6, double_sided=True)
     look("mouth", (0.32, 0.07, 0.065), 0.35, double_sided=True)
     look("tooth", (0.88, 0.84, 0.75), 0.2)
@@ -48,8 +49,10 @@ def make_person(who):
     make_looks(figure, who)
     skin = face.make_face("skin")
     skin.uv = [texture_place(plane) for plane in skin.uv]
-    parts = [eyes.make_eyeball(1, "eye"), eyes.make_eyeball(-1, "eye"), eyes.make_lid_rims(skin, "flesh"),
-             eyes.make_lashes(skin, "lash"), eyes.make_brows("brow"), mouth.make_lining(skin, "mouth"), *mouth.make_teeth(True, "tooth", "gum"),
+    parts = [eyes.make_eyeball(1, "eye"), eyes.make_eyeball(-1, "eye"),
+             eyes.make_lid_rims(skin, "flesh"),
+             eyes.make_lashes(skin, "lash"), eyes.make_brows("brow"),
+             mouth.make_lining(skin, "mouth"), *mouth.make_teeth(True, "tooth", "gum"),
              *mouth.make_teeth(False, "tooth", "gum"), mouth.make_tongue("tongue")]
     for part in [skin] + parts:
         figure.add(place_head(part, rig.head_weights if part is skin else None))

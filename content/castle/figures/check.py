@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks an H-Anim figure:  python3 check.py storyteller.x3d
 
-Indices in range, weights of every vertex sum to one, displacers move something, names are unique, normals have
-length one, every triangle has an area, textures exist. Prints what it found; exit code 1 when something is wrong.
+Indices in range, weights of every vertex sum to one, displacers move something, names are unique,
+normals have length one, every triangle has an area, textures exist. Prints what it found; exit code
+1 when something is wrong.
 """
 import os
 import sys
@@ -45,7 +46,8 @@ def check(path):
             expect(index and len(index) == len(moves), "displacer " + d.get("name"))
             expect(all(0 <= i < count for i in index), "index out of range in " + d.get("name"))
             expect(d.get("name") not in displacers, "displacer twice: " + d.get("name"))
-            displacers[d.get("name")] = max(sum(x * x for x in m) ** 0.5 for m in moves) if moves else 0.0
+            displacers[d.get("name")] = (max(sum(x * x for x in m) ** 0.5 for m in moves) if moves
+                                         else 0.0)
     uneven = sum(abs(s - 1) >= 0.002 for s in sums)
     expect(uneven == 0, "vertices whose weights do not sum to one: %d" % uneven)
     idle = [name for name, farthest in displacers.items() if farthest < 3e-4]
@@ -53,7 +55,8 @@ def check(path):
     used, triangles, flat = set(), 0, 0
     for shape in humanoid.findall("Shape"):
         index = [int(i) for i in shape.find("IndexedTriangleSet").get("index").split()]
-        expect(len(index) % 3 == 0 and all(0 <= i < count for i in index), "triangles of " + shape.get("DEF"))
+        expect(len(index) % 3 == 0 and all(0 <= i < count for i in index),
+               "triangles of " + shape.get("DEF"))
         used.update(index)
         triangles += len(index) // 3
         for k in range(0, len(index), 3):
@@ -65,10 +68,12 @@ def check(path):
     expect(flat < 0.002 * triangles, "triangles without area: %d" % flat)
     for texture in humanoid.iter("ImageTexture"):
         for url in texture.get("url").replace('"', "").split():
-            expect(os.path.exists(os.path.join(os.path.dirname(path), url)), "texture missing: " + url)
+            expect(os.path.exists(os.path.join(os.path.dirname(path), url)),
+                   "texture missing: " + url)
     print("%d vertices, %d triangles, %d joints, %d displacers, %.2f MB" % (
         count, triangles, len(names), len(displacers), os.path.getsize(path) / 1e6))
-    print("farthest move in mm: " + ", ".join("%s %.1f" % (n, 1000 * m) for n, m in displacers.items()))
+    print("farthest move in mm: "
+          + ", ".join("%s %.1f" % (n, 1000 * m) for n, m in displacers.items()))
     for fault in faults[:40]:
         print("FAULT: " + fault)
     return not faults

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The clothes: gown, sleeves, shoulder cape (the Goller of Bohemian and German women about 1530), linen, belt,
-keys and shoes. Figure space."""
+"""The clothes: gown, sleeves, shoulder cape (the Goller of Bohemian and German women about 1530),
+linen, belt, keys and shoes. Figure space."""
 from math import asin, atan2, cos, pi, sin
 
-from form import (bell, capsule, cast, circle, clamp, cross, curve, ellipsoid, join, length, lerp, mad, mix,
+from form import (bell, capsule, cast, circle, clamp, cross, curve, ellipsoid, join, length, lerp,
+                  mad, mix,
                   noise, smoothstep, sub, unit)
 from patch import Patch
 from person import WHO
@@ -25,7 +26,8 @@ def trunk(p):
     w = WHO.waist
     d = join(d, ellipsoid(q, (0, 1.062, -0.018), (0.116 + w, 0.110, 0.088 + w)), 0.05)
     if WHO.belly:
-        d = join(d, ellipsoid(q, (0, 1.075, 0.030), (0.100, 0.115, 0.035 + 0.055 * WHO.belly)), 0.05)
+        d = join(d, ellipsoid(q, (0, 1.075, 0.030), (0.100, 0.115, 0.035 + 0.055 * WHO.belly)),
+                 0.05)
     d = join(d, ellipsoid(q, (0, 0.915, -0.018), (0.158, 0.120, 0.120)), 0.05)
     return d
 
@@ -39,11 +41,14 @@ def body(p):
     return join(d, capsule(q, (0.146, 1.345, -0.022), (0.184, 1.150, -0.028), 0.053, 0.062), 0.035)
 
 
-# ---- gown ---------------------------------------------------------------------------------------------
-HALF_WIDTH = [(0.0, 0.292), (0.02, 0.290), (0.30, 0.245), (0.60, 0.203), (0.80, 0.176), (0.92, 0.159), (1.0, 0.138),
+# ---- gown ----------------------------------------------------------------------------------------
+HALF_WIDTH = [(0.0, 0.292), (0.02, 0.290), (0.30, 0.245), (0.60, 0.203), (0.80, 0.176),
+              (0.92, 0.159), (1.0, 0.138),
               (1.062, 0.121)]
-FRONT = [(0.0, 0.285), (0.30, 0.236), (0.60, 0.190), (0.80, 0.152), (0.92, 0.126), (1.0, 0.104), (1.062, 0.084)]
-BACK = [(0.0, 0.325), (0.30, 0.272), (0.60, 0.222), (0.80, 0.184), (0.92, 0.160), (1.0, 0.132), (1.062, 0.108)]
+FRONT = [(0.0, 0.285), (0.30, 0.236), (0.60, 0.190), (0.80, 0.152), (0.92, 0.126), (1.0, 0.104),
+         (1.062, 0.084)]
+BACK = [(0.0, 0.325), (0.30, 0.272), (0.60, 0.222), (0.80, 0.184), (0.92, 0.160), (1.0, 0.132),
+        (1.062, 0.108)]
 
 
 def skirt_point(phi, y):
@@ -62,7 +67,8 @@ def skirt_point(phi, y):
     w1 = phi * 42 + 1.2 * noise((cos(phi) * 2, sin(phi) * 2, 0.0), 1.0, 5)
     w2 = (phi + sway) * 9.5 + 0.9 * sin(2 * phi + 0.7)
     gather = 0.0030 * sin(w1) * smoothstep(0.0, 0.03, below) * smoothstep(0.34, 0.08, below)
-    broad = (abs(sin(w2)) ** 0.75 - 0.62) * (0.004 + 0.052 * below ** 1.15) * smoothstep(0.0, 0.16, below)
+    broad = ((abs(sin(w2)) ** 0.75 - 0.62) * (0.004 + 0.052 * below ** 1.15)
+             * smoothstep(0.0, 0.16, below))
     fine = 0.006 * below * sin(phi * 31 + 4 * noise((cos(phi), sin(phi), y), 2.0, 9))
     r = gather + broad + fine + 0.006 * below * noise((x * 5, y * 3, z * 5), 1.0, 2)
     return (x + n[0] * r, y, z + n[2] * r)
@@ -70,7 +76,8 @@ def skirt_point(phi, y):
 
 def make_skirt(gown, trim):
     columns = 104
-    ys = [0.012, 0.050, 0.085, 0.108, 0.125, 0.19, 0.27, 0.35, 0.43, 0.51, 0.59, 0.67, 0.75, 0.82, 0.88,
+    ys = [0.012, 0.050, 0.085, 0.108, 0.125, 0.19, 0.27, 0.35, 0.43, 0.51, 0.59, 0.67, 0.75, 0.82,
+          0.88,
           0.93, 0.97, 1.00, 1.025, 1.045, 1.062]
     cloth, band = Patch("skirt", gown), Patch("skirt_trim", trim)
 
@@ -118,7 +125,8 @@ def make_bodice(gown, trim):
         return mad(p, d, crease)
 
     rows = [[cloth.vertex(p, (i / columns * 5, y * 5.2), torso_weights(p, 0.35), ("chest",))
-             for i in range(columns + 1) for p in [point(2 * pi * (i % columns) / columns + pi, y)]] for y in ys]
+             for i in range(columns + 1) for p in [point(2 * pi * (i % columns) / columns + pi, y)]]
+             for y in ys]
     cloth.grid(rows)
     for side in (1, -1):
         lines = []
@@ -135,9 +143,11 @@ def make_bodice(gown, trim):
     return cloth, band
 
 
-# ---- sleeves ------------------------------------------------------------------------------------------
-SLEEVE = [(0.0, 0.040), (0.06, 0.050), (0.16, 0.056), (0.28, 0.061), (0.40, 0.057), (0.48, 0.051), (0.56, 0.053),
-          (0.68, 0.059), (0.80, 0.060), (0.89, 0.053), (0.945, 0.037), (0.965, 0.0335), (1.0, 0.0335)]
+# ---- sleeves -------------------------------------------------------------------------------------
+SLEEVE = [(0.0, 0.040), (0.06, 0.050), (0.16, 0.056), (0.28, 0.061), (0.40, 0.057), (0.48, 0.051),
+          (0.56, 0.053),
+          (0.68, 0.059), (0.80, 0.060), (0.89, 0.053), (0.945, 0.037), (0.965, 0.0335),
+          (1.0, 0.0335)]
 ARM_TOP = (0.128, 1.372, -0.024)
 CUFF_END = mad(WRIST, unit(sub(WRIST, ELBOW)), -0.006)
 
@@ -158,13 +168,17 @@ def sleeve_point(t, a, side):
     out = cross(front, d)
     if out[0] < 0:
         out = tuple(-v for v in out)
-    r = curve(SLEEVE, t) * lerp(1.0, WHO.sleeve, smoothstep(0.10, 0.35, t) * smoothstep(0.97, 0.85, t))
+    r = (curve(SLEEVE, t)
+         * lerp(1.0, WHO.sleeve, smoothstep(0.10, 0.35, t) * smoothstep(0.97, 0.85, t)))
     inner = 1 - 0.22 * max(0.0, -sin(a)) * smoothstep(0.25, 0.55, t)
     u, v = cos(a) * 2, sin(a) * 2
     loose = smoothstep(0.02, 0.15, t) * smoothstep(0.97, 0.88, t)
-    gather = sin(a * 17 + 3 * noise((u, v, t * 2), 0.7, 1)) * 0.0026 * (bell(t - 0.93, 0.06) + 0.7 * bell(t - 0.02, 0.10))
-    elbow = 0.0050 * bell(t - 0.50, 0.10) * sin(t * 95 + 2.2 * u + noise((u, v, t * 4), 1.0, side)) * (0.45 + 0.55 * cos(a))
-    soft = 0.0065 * noise((u * 0.8, v * 0.8, t * 7), 1.0, 6 + side) + 0.003 * noise((u * 2, v * 2, t * 9), 1.0, 8)
+    gather = (sin(a * 17 + 3 * noise((u, v, t * 2), 0.7, 1)) * 0.0026
+              * (bell(t - 0.93, 0.06) + 0.7 * bell(t - 0.02, 0.10)))
+    elbow = (0.0050 * bell(t - 0.50, 0.10)
+             * sin(t * 95 + 2.2 * u + noise((u, v, t * 4), 1.0, side)) * (0.45 + 0.55 * cos(a)))
+    soft = (0.0065 * noise((u * 0.8, v * 0.8, t * 7), 1.0, 6 + side)
+            + 0.003 * noise((u * 2, v * 2, t * 9), 1.0, 8))
     r = r * inner + loose * (elbow + soft) + gather
     p = mad(mad(c, front, r * cos(a)), out, r * sin(a))
     return (side * p[0], p[1], p[2])
@@ -173,7 +187,8 @@ def sleeve_point(t, a, side):
 def make_sleeves(gown, trim, linen):
     cloth, cuff, frill = Patch("sleeves", gown), Patch("cuffs", trim), Patch("frills", linen)
     n = 28
-    ts = [0, .03, .06, .10, .14, .19, .24, .29, .34, .39, .43, .46, .49, .52, .55, .59, .64, .69, .74, .79, .83, .87, .90, .925,
+    ts = [0, .03, .06, .10, .14, .19, .24, .29, .34, .39, .43, .46, .49, .52, .55, .59, .64, .69,
+          .74, .79, .83, .87, .90, .925,
           .945, .962]
     for side, name in ((1, "l"), (-1, "r")):
         def ring(patch, t, v, tile, grow=0.0, y_shift=0.0, wave=0.0):
@@ -190,22 +205,25 @@ def make_sleeves(gown, trim, linen):
             return ids
         flip = side > 0
         cloth.grid([ring(cloth, t, t * 3.2, 2) for t in ts], flip=not flip)
-        cuff.grid([ring(cuff, 0.958, 0.0, 5, 0.0005), ring(cuff, 0.962, 0.1, 5, 0.0030), ring(cuff, 0.995, 0.9, 5, 0.0030),
+        cuff.grid([ring(cuff, 0.958, 0.0, 5, 0.0005), ring(cuff, 0.962, 0.1, 5, 0.0030),
+                   ring(cuff, 0.995, 0.9, 5, 0.0030),
                    ring(cuff, 1.0, 1.0, 5, 0.0)], flip=not flip)
         frill.grid([ring(frill, 0.99, 0.0, 3, -0.003), ring(frill, 1.0, 0.1, 3, -0.0015, -0.004),
-                    ring(frill, 1.0, 0.25, 3, 0.0005, -0.012, 0.0012), ring(frill, 1.0, 0.45, 3, 0.0025, -0.021, 0.0026)],
+                    ring(frill, 1.0, 0.25, 3, 0.0005, -0.012, 0.0012),
+                    ring(frill, 1.0, 0.45, 3, 0.0025, -0.021, 0.0026)],
                    flip=not flip)
     return cloth, cuff, frill
 
 
-# ---- shoulder cape and collar ----------------------------------------------------------------------------
+# ---- shoulder cape and collar --------------------------------------------------------------------
 CAPE_CENTER = (0.0, 1.235, -0.030)
 
 
 def cape_edges(phi):
     """Elevations of its lower edge and of its neck, seen from its centre."""
     c = cos(phi)
-    return 0.145 + 0.10 * sin(phi) ** 2 + (0.02 if c < 0 else -0.02) * c * c, 1.22 + 0.06 * sin(phi) ** 2
+    return (0.145 + 0.10 * sin(phi) ** 2 + (0.02 if c < 0 else -0.02) * c * c,
+            1.22 + 0.06 * sin(phi) ** 2)
 
 
 def cape_point(phi, s, lift=0.0):
@@ -216,8 +234,10 @@ def cape_point(phi, s, lift=0.0):
     d = (sin(phi) * cos(e), sin(e), c * cos(e))
     p = mad(cast(body, CAPE_CENTER, d, 0.35), d, lerp(0.006, 0.0155, smoothstep(0, 0.35, s)) + lift)
     turn = phi * 8 + 0.9 * sin(2 * phi + 0.4) + 0.5 * noise((cos(phi) * 2, sin(phi) * 2, s), 1.0, 7)
-    fold = (abs(sin(turn)) ** 0.7 - 0.55) * (0.55 + 0.45 * sin(3 * phi + 1.0))  # rounded ridges, sharp valleys
-    wave = 0.0105 * s ** 1.6 * fold * (1 - 0.55 * bell(phi, 0.45)) + 0.0022 * s * noise((p[0] * 16, p[1] * 9, p[2] * 16), 1.0, 3)
+    # rounded ridges, sharp valleys
+    fold = (abs(sin(turn)) ** 0.7 - 0.55) * (0.55 + 0.45 * sin(3 * phi + 1.0))
+    wave = (0.0105 * s ** 1.6 * fold * (1 - 0.55 * bell(phi, 0.45))
+            + 0.0022 * s * noise((p[0] * 16, p[1] * 9, p[2] * 16), 1.0, 3))
     return mad(p, unit((d[0], 0.2, d[2])), wave)
 
 
@@ -226,7 +246,8 @@ def cape_weights(p):
 
 
 def cape_under(p):
-    """What of the cape lies on the way to p from within the chest, and how far (m) p is above cloth and fur."""
+    """What of the cape lies on the way to p from within the chest, and how far (m) p is above cloth
+    and fur."""
     out = sub(p, CAPE_CENTER)
     d = unit(out)
     phi = atan2(d[0], d[2])
@@ -252,7 +273,8 @@ def make_cape(velvet, trim, fur):
     steps = [1.0, 0.92, 0.83, 0.73, 0.63, 0.53, 0.43, 0.33, 0.23, 0.14, 0.07, 0.0]
     cloth.grid([row(cloth, s, s * 1.5, 6) for s in steps])
     band.grid([row(band, s, v, 26, lift) for s, v, lift in
-               ((0.945, 0.0, 0.0004), (0.925, 0.1, 0.0020), (0.845, 0.9, 0.0020), (0.825, 1.0, 0.0004))])
+               ((0.945, 0.0, 0.0004), (0.925, 0.1, 0.0020), (0.845, 0.9, 0.0020),
+                (0.825, 1.0, 0.0004))])
     # a soft roll of fur closes the lower edge
     rolls = []
     for k in range(6):
@@ -280,12 +302,15 @@ def neck_ring(phi, t, grow=0.0, rise=0.0):
 
 
 def make_collar(linen, velvet, gold):
-    """Velvet stand-up collar open in front, pleated linen inside with a small ruffle, a gold clasp."""
+    """Velvet stand-up collar open in front, pleated linen inside with a small ruffle, a gold
+    clasp."""
     shirt, collar, clasp = Patch("chemise", linen), Patch("collar", velvet), Patch("clasp", gold)
     n = 128
     rows = []
-    for t, grow, wave, v in ((-0.35, 0.004, 0, 0), (0.2, -0.001, 0.0004, 0.3), (0.55, -0.001, 0.0005, 0.5), (0.86, 0.000, 0.0006, 0.7),
-                             (1.00, 0.0030, 0.0016, 0.8), (1.14, 0.0065, 0.0024, 0.9), (1.24, 0.0110, 0.0028, 1.0)):
+    for t, grow, wave, v in ((-0.35, 0.004, 0, 0), (0.2, -0.001, 0.0004, 0.3),
+                             (0.55, -0.001, 0.0005, 0.5), (0.86, 0.000, 0.0006, 0.7),
+                             (1.00, 0.0030, 0.0016, 0.8), (1.14, 0.0065, 0.0024, 0.9),
+                             (1.24, 0.0110, 0.0028, 1.0)):
         row = []
         for i in range(n + 1):
             phi = 2 * pi * (i % n) / n + pi
@@ -296,7 +321,8 @@ def make_collar(linen, velvet, gold):
     shirt.grid(rows)
     m = 64
     rows = []
-    for t, grow in ((-0.45, 0.004), (-0.10, 0.0060), (0.25, 0.0065), (0.50, 0.0080), (0.66, 0.0100), (0.70, 0.0085), (0.66, 0.0062),
+    for t, grow in ((-0.45, 0.004), (-0.10, 0.0060), (0.25, 0.0065), (0.50, 0.0080), (0.66, 0.0100),
+                    (0.70, 0.0085), (0.66, 0.0062),
                     (0.30, 0.0030)):
         row = []
         for i in range(m + 1):
@@ -319,10 +345,12 @@ def disc(patch, c, n, r, h, weights, segments=12):
     u = unit(cross((0, 1, 0), n))
     v = cross(n, u)
     rows = []
-    rings = ((1.0, -0.2), (1.0, 0.35), (0.85, 0.7), (0.72, 0.45), (0.50, 0.55), (0.3, 1.0)) if r > 0.01 else \
+    rings = ((1.0, -0.2), (1.0, 0.35), (0.85, 0.7), (0.72, 0.45), (0.50, 0.55),
+             (0.3, 1.0)) if r > 0.01 else \
         ((1.0, -0.2), (0.9, 0.6), (0.5, 1.0))
     for k, lift in rings:
-        rows.append([patch.vertex(mad(mad(mad(c, u, r * k * cos(a)), v, r * k * sin(a)), n, h * lift), (0.5, 0.5), weights)
+        rows.append([patch.vertex(mad(mad(mad(c, u, r * k * cos(a)), v, r * k * sin(a)), n,
+                                      h * lift), (0.5, 0.5), weights)
                      for a in circle(segments)])
     patch.grid(rows, closed=True)
     patch.fan(patch.vertex(mad(c, n, h * 1.15), (0.5, 0.5), weights), rows[-1])

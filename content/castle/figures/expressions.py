@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the face can do: each displacer is a field of small movements over the head, evaluated in rest.
+"""What the face can do: each displacer is a field of small movements over the head, evaluated in
+rest.
 
-Fields work in head space and are symmetric unless they name a side. Visemes combine simple movements with an
-opening of the jaw, so that one displacer is one mouth shape.
+Fields work in head space and are symmetric unless they name a side. Visemes combine simple
+movements with an opening of the jaw, so that one displacer is one mouth shape.
 """
 from math import atan2, sin
 
@@ -27,7 +28,7 @@ class Vertex:
             self.skin = Vertex("face", tag[1], ("lower" if tag[2] else "upper",), jaw)
 
 
-# ---- eyelids ------------------------------------------------------------------------------------------
+# ---- eyelids -------------------------------------------------------------------------------------
 def lid_place(v):
     """(side, place along the lid ring, distance 0..1 from the margin) or None."""
     tag = v.tag
@@ -49,7 +50,8 @@ class Lids:
         self.angle = {}
         for k, side in ((0, 1), (1, -1)):
             c = center(side)
-            self.angle[side] = [atan2(face.rest[i][1] - c[1], face.rest[i][2] - c[2]) for i in face.eye_rings[k][0]]
+            self.angle[side] = [atan2(face.rest[i][1] - c[1], face.rest[i][2] - c[2])
+                                for i in face.eye_rings[k][0]]
 
     def at(self, side, place):
         ring = self.angle[side]
@@ -57,7 +59,8 @@ class Lids:
         return lerp(ring[i % len(ring)], ring[(i + 1) % len(ring)], place - i)
 
     def move(self, v, upper, lower, only=None):
-        """upper, lower: how far each lid goes towards the closing line (1 closes, negative opens)."""
+        """upper, lower: how far each lid goes towards the closing line (1 closes, negative
+        opens)."""
         place = lid_place(v)
         if place is None or (only and place[0] != only):
             return ZERO
@@ -78,7 +81,8 @@ class Lids:
         c = center(side)
         turn = (meet - mine) * amount * w
         q = rotate(v.p, c, (1.0, 0.0, 0.0), -turn)
-        if v.tag[0] == "lid" and is_upper and amount > 0:  # the cornea lifts the closing lid a little
+        # the cornea lifts the closing lid a little
+        if v.tag[0] == "lid" and is_upper and amount > 0:
             d = sub(q, c)
             n = (d[0] ** 2 + d[1] ** 2 + d[2] ** 2) ** 0.5
             least = LID_RADIUS + 0.00045 * w
@@ -87,7 +91,7 @@ class Lids:
         return sub(q, v.p)
 
 
-# ---- mouth --------------------------------------------------------------------------------------------
+# ---- mouth ---------------------------------------------------------------------------------------
 def upper_side(v):
     if v.tag and v.tag[0] in ("upper", "lower"):
         return v.tag[0] == "upper"
@@ -119,21 +123,24 @@ def corner(v, side, radius=0.019):
     x, y = v.p[0] * side, v.p[1]
     if x < 0:
         return 0.0
-    return soft(v) * bell(x - MOUTH_HALF, radius * (0.85 if x < MOUTH_HALF else 1.0)) * bell(y - part_y(MOUTH_HALF), radius)
+    return (soft(v) * bell(x - MOUTH_HALF, radius * (0.85 if x < MOUTH_HALF else 1.0))
+            * bell(y - part_y(MOUTH_HALF), radius))
 
 
 def pull(v, side):
-    """How much the skin follows a corner of the mouth: growing from the middle of the lips, so that they bend in
-    an arc, most at the corner, fading over the cheek."""
+    """How much the skin follows a corner of the mouth: growing from the middle of the lips, so that
+    they bend in an arc, most at the corner, fading over the cheek."""
     x = v.p[0] * side
     if x <= 0:
         return 0.0
-    return soft(v) * smoothstep(0.0, 0.95 * MOUTH_HALF, x) * bell(x - 1.10 * MOUTH_HALF, 0.021) * bell(
-        v.p[1] - part_y(min(x, MOUTH_HALF)), 0.018)
+    return soft(v) * smoothstep(0.0, 0.95 * MOUTH_HALF, x) * bell(x - 1.10 * MOUTH_HALF,
+                                                                  0.021) * bell(
+v.p[1] - part_y(min(x, MOUTH_HALF)), 0.018)
 
 
 def nasolabial(v, side):
-    """(the fold from the wing of the nose past the mouth, the flesh beside it): what lifts a cheek deepens both."""
+    """(the fold from the wing of the nose past the mouth, the flesh beside it): what lifts a cheek
+    deepens both."""
     if v.part != "face":
         return 0.0, 0.0
     x, y = v.p[0] * side, v.p[1]
@@ -157,7 +164,8 @@ def smile(v, side):
 
 
 def cheek_up(v, lids):
-    """The muscle round the eye: the cheek rises against the lower lid, which it pushes up and wrinkles."""
+    """The muscle round the eye: the cheek rises against the lower lid, which it pushes up and
+    wrinkles."""
     total = lids.move(v, 0.06, 0.62)
     if v.part != "face":
         return total
@@ -166,11 +174,14 @@ def cheek_up(v, lids):
         x = v.p[0] * side
         cheek = soft(v) * bell(x - 0.037, 0.015) * bell(y + 0.028, 0.013)
         under = soft(v) * bell(x - 0.032, 0.017) * bell(y + 0.0125, 0.0055)
-        outer = soft(v) * bell(x - 0.052, 0.009) * bell(y - 0.001, 0.013)  # crow's feet: drawn to the eye
+        # crow's feet: drawn to the eye
+        outer = soft(v) * bell(x - 0.052, 0.009) * bell(y - 0.001, 0.013)
         tail = soft(v) * bell(x - 0.045, 0.012) * bell(y - 0.019, 0.008)
         crease, pad = nasolabial(v, side)
-        total = add(total, (-side * (0.0016 * outer + 0.0002 * cheek), 0.0038 * cheek + 0.0018 * under - 0.0012 * tail + 0.0006 * pad,
-                            0.0022 * cheek + 0.0010 * under + 0.0010 * pad - 0.0008 * crease))
+        total = add(total,
+                    (-side * (0.0016 * outer + 0.0002 * cheek),
+                     0.0038 * cheek + 0.0018 * under - 0.0012 * tail + 0.0006 * pad,
+                     0.0022 * cheek + 0.0010 * under + 0.0010 * pad - 0.0008 * crease))
     return total
 
 
@@ -182,7 +193,9 @@ def frown(v):
         total = add(total, (-side * 0.0004 * k, -0.0062 * k, -0.0012 * k))
     chin = soft(v) * bell(v.p[0], 0.018) * bell(v.p[1] + 0.089, 0.010) if v.part == "face" else 0.0
     middle = near_lips(v, down=0.016) * bell(v.p[0], 0.015)
-    return add(total, (0, 0.0020 * chin + 0.0011 * middle, 0.0014 * chin + (0.0 if upper_side(v) else 0.0012 * middle)))
+    return add(total,
+               (0, 0.0020 * chin + 0.0011 * middle,
+                0.0014 * chin + (0.0 if upper_side(v) else 0.0012 * middle)))
 
 
 def pucker(v):
@@ -191,7 +204,8 @@ def pucker(v):
     middle = bell(x, 0.022)
     gather = (part_y(abs(x)) - y) * 0.10
     u = min(abs(x) / MOUTH_HALF, 1.0)
-    return (-(0.42 + 0.12 * u ** 5) * x * k, (gather - 0.0048 * (abs(x) / MOUTH_HALF) ** 2) * k, (0.0056 * middle + 0.0018) * k)
+    return (-(0.42 + 0.12 * u ** 5) * x * k, (gather - 0.0048 * (abs(x) / MOUTH_HALF) ** 2) * k,
+            (0.0056 * middle + 0.0018) * k)
 
 
 def wide(v):
@@ -203,7 +217,8 @@ def wide(v):
 
 
 def drop(v):
-    """The corners as an opening jaw draws them: down and in, so that the mouth is an oval and no grin."""
+    """The corners as an opening jaw draws them: down and in, so that the mouth is an oval and no
+    grin."""
     total = ZERO
     for side in (1, -1):
         k = corner(v, side)
@@ -212,7 +227,8 @@ def drop(v):
 
 
 def press(v):
-    """The lips roll inwards upon each other: what is seen of the red grows narrow, the skin around it swells."""
+    """The lips roll inwards upon each other: what is seen of the red grows narrow, the skin around
+    it swells."""
     k = near_lips(v, up=0.010, down=0.011)
     x = abs(v.p[0])
     off = v.p[1] - part_y(min(x, MOUTH_HALF))
@@ -220,7 +236,8 @@ def press(v):
     s = 1 if off > 0 or (off == 0 and upper_side(v)) else -1
     edge = bell(abs(off) - 0.0052, 0.0045)
     swell = bell(abs(off) - 0.0125, 0.0050) * soft(v) * bell(x, 0.020) if v.part == "face" else 0.0
-    return (0, -s * 0.0026 * k * edge * roll - s * 0.0004 * k * bell(off, 0.002), -0.0026 * k * bell(off, 0.0075) + 0.0008 * swell)
+    return (0, -s * 0.0026 * k * edge * roll - s * 0.0004 * k * bell(off, 0.002),
+            -0.0026 * k * bell(off, 0.0075) + 0.0008 * swell)
 
 
 def lip_up(v):
@@ -262,21 +279,23 @@ def tongue(v, up, forward):
     return (0, up * tip, forward * (1 - v.tag[1]) ** 1.2)
 
 
-# ---- cheeks, nose, brows -------------------------------------------------------------------------------
+# ---- cheeks, nose, brows -------------------------------------------------------------------------
 def puff(v):
     if v.part != "face":
         return ZERO
     total = ZERO
     for side in (1, -1):
         x = v.p[0] * side
-        k = smoothstep(0.0, 0.012, x) * bell(x - 0.040, 0.018) * bell(v.p[1] + 0.056, 0.018) * smoothstep(0.0, 0.03, v.p[2])
+        k = (smoothstep(0.0, 0.012, x) * bell(x - 0.040, 0.018) * bell(v.p[1] + 0.056, 0.018)
+             * smoothstep(0.0, 0.03, v.p[2]))
         total = add(total, (side * 0.0068 * k, 0.0004 * k, 0.0052 * k))
     k = near_lips(v) * 0.25
     return add(total, (0, 0, 0.004 * k))
 
 
 def wrinkle(v):
-    """The nose wrinkles: its wings and the lip beside them rise, the skin of its bridge gathers, the brows come down to it."""
+    """The nose wrinkles: its wings and the lip beside them rise, the skin of its bridge gathers,
+    the brows come down to it."""
     if v.part not in ("face", "brows"):
         return ZERO
     x, y = abs(v.p[0]), v.p[1]
@@ -286,14 +305,19 @@ def wrinkle(v):
     tip = k * bell(x, 0.007) * bell(y + 0.037, 0.010)
     side = k * bell(x - 0.012, 0.008) * bell(y + 0.013, 0.013)
     brow = k * bell(x - 0.011, 0.012) * bell(y - 0.019, 0.010)
-    gather = k * smoothstep(0.018, 0.006, x) * smoothstep(-0.026, -0.018, y) * smoothstep(0.012, 0.004, y)
+    gather = (k * smoothstep(0.018, 0.006, x) * smoothstep(-0.026, -0.018, y)
+              * smoothstep(0.012, 0.004, y))
     rib = 0.00050 * gather * sin(y * 1250 + 0.12 * x * 1250)  # small cross folds over the bridge
     cheek = k * bell(x - 0.026, 0.010) * bell(y + 0.026, 0.013)
     crease, pad = nasolabial(v, s)
     high = smoothstep(-0.066, -0.048, y)
-    lip = k * upper_side(v) * bell(x - 0.013, 0.011) * smoothstep(-0.072, -0.060, y) * smoothstep(-0.038, -0.050, y)
-    return (s * (0.0016 * wing - 0.0003 * brow), 0.0044 * wing + 0.0016 * tip + 0.0022 * side - 0.0032 * brow + 0.0026 * cheek + 0.0034 * lip,
-            0.0008 * side + 0.0014 * cheek + 0.0010 * brow + rib + high * (0.0012 * pad - 0.0016 * crease) + 0.0004 * lip)
+    lip = (k * upper_side(v) * bell(x - 0.013, 0.011) * smoothstep(-0.072, -0.060, y)
+           * smoothstep(-0.038, -0.050, y))
+    return (s * (0.0016 * wing - 0.0003 * brow),
+            0.0044 * wing + 0.0016 * tip + 0.0022 * side - 0.0032 * brow + 0.0026 * cheek
+            + 0.0034 * lip,
+            0.0008 * side + 0.0014 * cheek + 0.0010 * brow + rib
+            + high * (0.0012 * pad - 0.0016 * crease) + 0.0004 * lip)
 
 
 def brow_band(v):
@@ -302,13 +326,16 @@ def brow_band(v):
         return 0.0
     y = v.p[1]
     low = 0.0085 + 0.35 * max(0.0, abs(v.p[0]) - 0.030)
-    return smoothstep(low - 0.0015, 0.0145 + (low - 0.0085), y) * smoothstep(0.058, 0.026, y) * smoothstep(0.015, 0.045, v.p[2])
+    return (smoothstep(low - 0.0015, 0.0145 + (low - 0.0085), y) * smoothstep(0.058, 0.026, y)
+            * smoothstep(0.015, 0.045, v.p[2]))
 
 
 def brow_up(v, side):
     x = v.p[0] * side
     k = brow_band(v) * smoothstep(-0.004, 0.018, x) * smoothstep(0.068, 0.048, x)
-    fold = soft(v) * bell(x - 0.034, 0.016) * bell(v.p[1] - 0.0135, 0.005) if v.part == "face" else 0.0  # the lid's skin is drawn up
+    # the lid's skin is drawn up
+    fold = (soft(v) * bell(x - 0.034, 0.016) * bell(v.p[1] - 0.0135, 0.005) if v.part == "face"
+            else 0.0)
     return (0, 0.0084 * k + 0.0016 * fold, -0.0012 * k - 0.0006 * fold)
 
 
@@ -324,12 +351,14 @@ def brow_down(v):
     x = abs(v.p[0])
     k = brow_band(v) * bell(x - 0.012, 0.018)
     s = 1 if v.p[0] > 0 else -1
-    knot = brow_band(v) * bell(x - 0.0085, 0.0055) * bell(v.p[1] - 0.020, 0.009)  # the muscle that draws them together bulges
+    # the muscle that draws them together bulges
+    knot = brow_band(v) * bell(x - 0.0085, 0.0055) * bell(v.p[1] - 0.020, 0.009)
     crease = brow_band(v) * bell(x - 0.0035, 0.0022) * bell(v.p[1] - 0.021, 0.008)
-    return (-s * 0.0015 * k * smoothstep(0, 0.008, x), -0.0054 * k, 0.0014 * k + 0.0012 * knot - 0.0010 * crease)
+    return (-s * 0.0015 * k * smoothstep(0, 0.008, x), -0.0054 * k,
+            0.0014 * k + 0.0012 * knot - 0.0010 * crease)
 
 
-# ---- the list -----------------------------------------------------------------------------------------
+# ---- the list ------------------------------------------------------------------------------------
 VISEMES = {  # jaw (radians), then movements
     "pp": (0.0, {press: 1.0}, None),
     "ff": (0.018, {tuck: 1.0, lip_up: 0.35}, None),
@@ -384,7 +413,8 @@ def controls(lids):
         "nose_wrinkle": wrinkle,
     }
     table = {name: (lambda v, move=move: move(v.skin)) for name, move in table.items()}
-    shapes = {"mouth_open": lambda v: shape(v, 0.24, {drop: 1.5, lip_down: 0.10, lip_up: 0.20}, None)}
+    shapes = {"mouth_open": lambda v: shape(v, 0.24, {drop: 1.5, lip_down: 0.10, lip_up: 0.20},
+                                            None)}
     for name, (angle, movements, tongue_move) in VISEMES.items():
         shapes["viseme_" + name] = lambda v, a=angle, m=movements, t=tongue_move: shape(v, a, m, t)
     return {**table, **shapes}
@@ -395,8 +425,10 @@ def breathe(p):
     k = bell(p[1] - 1.25, 0.13)
     front = smoothstep(-0.06, 0.12, p[2])
     side = 1 if p[0] > 0 else -1
-    return (side * 0.0022 * k * smoothstep(0.0, 0.10, abs(p[0])) * smoothstep(0.24, 0.16, abs(p[0])),
-            0.0028 * smoothstep(1.05, 1.30, p[1]) * smoothstep(1.47, 1.36, p[1]) * front, 0.0062 * k * front)
+    return (side * 0.0022 * k * smoothstep(0.0, 0.10, abs(p[0]))
+            * smoothstep(0.24, 0.16, abs(p[0])),
+            0.0028 * smoothstep(1.05, 1.30, p[1]) * smoothstep(1.47, 1.36, p[1]) * front,
+            0.0062 * k * front)
 
 
 LEAST = 4e-5  # metres: smaller movements are left out

@@ -28,9 +28,12 @@ def make_eyeball(side, look):
     def put(a, phi):
         radius = EYE_RADIUS + 0.00055 * smoothstep(0.56, 0.16, a)
         r = 0.5 * min(a / MAP_ANGLE, 1)
-        p = (c[0] + radius * sin(a) * cos(phi), c[1] + radius * sin(a) * sin(phi), c[2] + radius * cos(a))
-        i = patch.vertex(p, (0.5 + r * cos(phi), 0.5 + r * sin(phi)), {joint: 1.0}, ("eyeball", side))
-        # light glances off the steeper dome of the cornea, though the form stays low so that lids pass over it
+        p = (c[0] + radius * sin(a) * cos(phi), c[1] + radius * sin(a) * sin(phi),
+             c[2] + radius * cos(a))
+        i = patch.vertex(p, (0.5 + r * cos(phi), 0.5 + r * sin(phi)), {joint: 1.0},
+                         ("eyeball", side))
+        # light glances off the steeper dome of the cornea, though the form stays low so that lids
+        # pass over it
         dome = asin(min(EYE_RADIUS * sin(a) / CORNEA_RADIUS, 0.9)) if a < 1.2 else a
         b = lerp(dome, a, smoothstep(IRIS_ANGLE * 0.92, IRIS_ANGLE * 1.2, a))
         patch.normals[i] = (sin(b) * cos(phi), sin(b) * sin(phi), cos(b))
@@ -70,11 +73,14 @@ def make_lid_rims(skin, look):
         base = mad(inner, unit(sub(c, inner)), 0.0024)
         base = (base[0], base[1] - 0.0001, base[2] - 0.0012)
         tag = ("caruncle", side)
-        top = patch.vertex((base[0], base[1], base[2] + 0.0016), (0.5, 0.5), {"skullbase": 1.0}, tag)
+        top = patch.vertex((base[0], base[1], base[2] + 0.0016), (0.5, 0.5), {"skullbase": 1.0},
+                           tag)
         rings = []
         for a in (0.55, 1.1, 1.6):
-            rings.append([patch.vertex((base[0] + 0.0022 * sin(a) * cos(phi), base[1] + 0.0016 * sin(a) * sin(phi),
-                                        base[2] + 0.0016 * cos(a)), (0.5, 0.5), {"skullbase": 1.0}, tag)
+            rings.append([patch.vertex((base[0] + 0.0022 * sin(a) * cos(phi),
+                                        base[1] + 0.0016 * sin(a) * sin(phi),
+                                        base[2] + 0.0016 * cos(a)), (0.5, 0.5), {"skullbase": 1.0},
+                                        tag)
                           for phi in circle(10)])
         patch.fan(top, rings[0])
         patch.grid(rings, closed=True, flip=True)
@@ -100,7 +106,8 @@ def make_lashes(skin, look):
                 root = mad(root, out, -0.0003)
                 sideways = side * lerp(-0.35, 0.95, t) + rng.uniform(-0.12, 0.12)
                 up = 1.0 if upper else -1.0
-                length = size * WHO.lashes * (0.62 + 0.38 * sin(pi * min(1, t * 0.75 + 0.1))) * rng.uniform(0.8, 1.1)
+                length = (size * WHO.lashes * (0.62 + 0.38 * sin(pi * min(1, t * 0.75 + 0.1)))
+                          * rng.uniform(0.8, 1.1))
                 start = unit((sideways * 0.75, up * (0.12 if upper else 0.45), 1.0))
                 end = unit((sideways * 1.0, up * (1.15 if upper else 1.1), 0.62))
                 p1 = mad(root, start, length * 0.42)
@@ -112,7 +119,8 @@ def make_lashes(skin, look):
                 ids = []
                 for q, w in ((root, 1.0), (p1, 0.8), (p2, 0.5)):
                     for s in (-1, 1):
-                        ids.append(patch.vertex(mad(q, across, s * w * width), (0.5, 0.5), {"skullbase": 1.0}, tag))
+                        ids.append(patch.vertex(mad(q, across, s * w * width), (0.5, 0.5),
+                                                {"skullbase": 1.0}, tag))
                 tip = patch.vertex(p3, (0.5, 0.5), {"skullbase": 1.0}, tag)
                 patch.quad(ids[0], ids[1], ids[3], ids[2])
                 patch.quad(ids[2], ids[3], ids[5], ids[4])
@@ -121,7 +129,8 @@ def make_lashes(skin, look):
 
 
 def make_brows(look):
-    """Single hairs over the painted brow: upright at the nose, lying outwards towards the temple."""
+    """Single hairs over the painted brow: upright at the nose, lying outwards towards the
+    temple."""
     patch = Patch("brows", look)
     rng = random.Random(5)
     knots = [[(k[0], k[j]) for k in BROW_LINE] for j in (1, 2)]
@@ -145,9 +154,12 @@ def make_brows(look):
         root = mad(root, n, -0.0004)
         tint = rng.random()
         for side in (1, -1):
-            ids = [patch.vertex((side * q[0], q[1], q[2]), (tint, 0.5), {"skullbase": 1.0}, ("brow",))
-                   for p, w in ((root, 1.0), (p1, 0.75)) for q in (mad(p, across, -w * 0.00010), mad(p, across, w * 0.00010))]
-            tip = patch.vertex((side * p2[0], p2[1], p2[2]), (tint, 0.5), {"skullbase": 1.0}, ("brow",))
+            ids = [patch.vertex((side * q[0], q[1], q[2]), (tint, 0.5), {"skullbase": 1.0},
+                                ("brow",))
+                   for p, w in ((root, 1.0), (p1, 0.75))
+                   for q in (mad(p, across, -w * 0.00010), mad(p, across, w * 0.00010))]
+            tip = patch.vertex((side * p2[0], p2[1], p2[2]), (tint, 0.5), {"skullbase": 1.0},
+                               ("brow",))
             patch.quad(ids[0], ids[1], ids[3], ids[2])
             patch.triangle(ids[2], ids[3], tip)
     return patch
@@ -158,5 +170,6 @@ def bell_middle(t):
 
 
 def elevation(p, c):
-    """Angle of p about the left-right axis through the eye's centre; 0 straight ahead, up positive."""
+    """Angle of p about the left-right axis through the eye's centre; 0 straight ahead, up
+    positive."""
     return atan2(p[1] - c[1], p[2] - c[2])

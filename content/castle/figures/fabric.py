@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tiles of cloth, embroidery, hair and fur. Every colour function repeats with period 1 in u and v."""
+"""The tiles of cloth, embroidery, hair and fur. Every colour function repeats with period 1 in u
+and v."""
 from math import atan2, cos, hypot, pi, sin
 
 from form import bell, clamp, noise, smoothstep
@@ -10,7 +11,8 @@ from person import WHO
 def wrap_noise(u, v, fu, fv, seed):
     """Noise that repeats with the tile: walked on a torus."""
     a, b = 2 * pi * u, 2 * pi * v
-    return noise((cos(a) * fu + 3.7 * cos(b) * fv, sin(a) * fu + 2.9 * sin(b) * fv, sin(b) * fv * 1.7 + seed), 1.0, seed)
+    return noise((cos(a) * fu + 3.7 * cos(b) * fv, sin(a) * fu + 2.9 * sin(b) * fv,
+                  sin(b) * fv * 1.7 + seed), 1.0, seed)
 
 
 def weave(u, v, n):
@@ -22,7 +24,8 @@ def weave(u, v, n):
 
 
 def pomegranate(u, v):
-    """The figure of renaissance damask: a lobed fruit between leaves in a pointed oval, staggered; 0 ground .. 1 figure."""
+    """The figure of renaissance damask: a lobed fruit between leaves in a pointed oval, staggered;
+    0 ground .. 1 figure."""
     best = 0.0
     for du, dv in ((0, 0), (0.5, 0.5), (-0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)):
         x, y = u - 0.5 + du, v - 0.5 + dv
@@ -104,13 +107,17 @@ def fur_hairs(u, v, dark, light, seed):
 
 
 def leather_color(u, v):
-    return times(rgb("4b2d1c"), 1 + 0.16 * wrap_noise(u, v, 9, 9, 2) - 0.35 * max(bell(v - 0.12, 0.04), bell(v - 0.88, 0.04)))
+    return times(rgb("4b2d1c"),
+                 1 + 0.16 * wrap_noise(u, v, 9, 9, 2)
+                 - 0.35 * max(bell(v - 0.12, 0.04), bell(v - 0.88, 0.04)))
 
 
 def wool_color(u, v):
     """Dark blue broadcloth, a little felted."""
     c = rgb("2b3240")
-    return times(c, 1 + 0.10 * weave(u, v, 110) + 0.12 * wrap_noise(u, v, 3, 3, 15) + 0.10 * wrap_noise(u, v, 30, 30, 16))
+    return times(c,
+                 1 + 0.10 * weave(u, v, 110) + 0.12 * wrap_noise(u, v, 3, 3, 15)
+                 + 0.10 * wrap_noise(u, v, 30, 30, 16))
 
 
 def sable_color(u, v):
@@ -122,17 +129,20 @@ def doublet_color(u, v):
     a, b = (u * 12 + v * 12) % 1, (u * 12 - v * 12) % 1
     line = max(bell(a - 0.5, 0.10), bell(b - 0.5, 0.10))
     dot = smoothstep(0.16, 0.10, hypot(a if a < 0.5 else a - 1, b if b < 0.5 else b - 1))
-    return mixed(times(rgb("6e1d22"), 1 + 0.10 * weave(u, v, 96)), rgb("a8563f"), clamp(0.55 * line + 0.7 * dot))
+    return mixed(times(rgb("6e1d22"), 1 + 0.10 * weave(u, v, 96)), rgb("a8563f"),
+                 clamp(0.55 * line + 0.7 * dot))
 
 
 def black_color(u, v):
-    return times(rgb("26242a"), 1 + 0.25 * wrap_noise(u, v, 4, 4, 25) + 0.18 * wrap_noise(u, v, 24, 24, 26))
+    return times(rgb("26242a"),
+                 1 + 0.25 * wrap_noise(u, v, 4, 4, 25) + 0.18 * wrap_noise(u, v, 24, 24, 26))
 
 
 def hair_color(u, v):
     """Strands run along v; u 0 lies at the hairline, where some have turned grey."""
     across = u * 460
-    strand = noise((across, v * 2.0, 0.0), 1.0, 1) + 0.8 * noise((across * 2.7, v * 3.0, 0.0), 1.0, 2)
+    strand = (noise((across, v * 2.0, 0.0), 1.0, 1)
+              + 0.8 * noise((across * 2.7, v * 3.0, 0.0), 1.0, 2))
     lock = noise((u * 80, v * 1.6, 0.0), 1.0, 3)
     dark, light, grey_hair = (rgb(t) for t in WHO.hair)
     c = mixed(dark, light, clamp(0.38 + 0.42 * strand + 0.30 * lock))

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The skin of head and neck as a triangle mesh.
 
-The sculpture is unrolled to a plane; rings of points run round the eyes and the mouth, finer points lie on the
-nose, the rest is scattered evenly, coarser to the back. A constrained Delaunay triangulation joins them,
-the lid slits and the parting of the lips stay open, and each point goes back to its place in space.
+The sculpture is unrolled to a plane; rings of points run round the eyes and the mouth, finer points
+lie on the nose, the rest is scattered evenly, coarser to the back. A constrained Delaunay
+triangulation joins them, the lid slits and the parting of the lips stay open, and each point goes
+back to its place in space.
 """
 import random
 from math import cos, hypot, pi, sin
@@ -27,7 +28,8 @@ LIP_RINGS = [0.0, 0.07, 0.17, 0.30, 0.45, 0.62, 0.80, 0.93, 1.05, 1.20, 1.42, 1.
 
 
 def lid_opening(t, upper):
-    """The lid margin in the eye's front view (x outwards from the eye centre); t: 0 inner .. 1 outer corner."""
+    """The lid margin in the eye's front view (x outwards from the eye centre); t: 0 inner .. 1
+    outer corner."""
     x = lerp(-0.0153, 0.0148, t)
     base = lerp(-0.0019, 0.0011, t)
     arch = 4 * t * (1 - t)
@@ -66,7 +68,8 @@ def lip_ring(s, upper):
         else:
             k = s - 1
             ox = 0.0375 * cos(a)
-            oy = form.MOUTH_Y + (0.0175 if upper else -0.0215) * sin(a) ** 0.8 + 0.0030 * abs(cos(a))
+            oy = (form.MOUTH_Y + (0.0175 if upper else -0.0215) * sin(a) ** 0.8
+                  + 0.0030 * abs(cos(a)))
             line.append((lerp(x * 1.06, ox, k), lerp(edge, oy, k ** 0.9)))
     return line
 
@@ -86,7 +89,8 @@ def spacing(theta, v):
 
 
 class Points:
-    """Points of the left half plane (and the middle line), mirrored at the end; no two too close."""
+    """Points of the left half plane (and the middle line), mirrored at the end; no two too
+    close."""
 
     def __init__(self):
         self.plane, self.space, self.tags = [], [], []
@@ -149,7 +153,8 @@ def make_face(look):
     rng = random.Random(7)
     border = pi * UNROLL
     v = form.LOW
-    while v < form.HIGH:  # the seam at the back and the middle line in front come first: they must be straight
+    # the seam at the back and the middle line in front come first: they must be straight
+    while v < form.HIGH:
         for theta in (0.0, pi):
             uv = (theta * UNROLL, v)
             if points.free(uv, 0.6 * spacing(theta, v)):
@@ -161,7 +166,8 @@ def make_face(look):
             if points.free((theta * UNROLL, v), 0.003):
                 points.put((theta * UNROLL, v), form.sweep(theta, v))
     eye_border = [points.plane[i] for i in eye[-1]]
-    mouth_border = ([points.plane[i] for i in upper[-1]] + [points.plane[i] for i in reversed(lower[-1])])
+    mouth_border = ([points.plane[i] for i in upper[-1]]
+                    + [points.plane[i] for i in reversed(lower[-1])])
     for _ in range(60000):
         uv = (rng.uniform(0, border), rng.uniform(form.LOW, form.HIGH))
         d = spacing(uv[0] / UNROLL, uv[1])
@@ -220,7 +226,8 @@ def triangulate(points, eye, upper, lower, look):
         for r in rows[1:-1]:
             line = across(r)
             edges += list(zip(line, line[1:]))
-    coords, _, faces, origins, _, _ = delaunay_2d_cdt([Vector(p) for p in plane], edges, [], 0, 1e-7)
+    coords, _, faces, origins, _, _ = delaunay_2d_cdt([Vector(p) for p in plane], edges, [], 0,
+                                                      1e-7)
     holes = [[plane[i] for i in loop] for loop in (left_eye, right_eye, mouth)]
     patch = Patch("face", look)
     for i, co in enumerate(coords):
@@ -231,7 +238,8 @@ def triangulate(points, eye, upper, lower, look):
             patch.vertex(form.sweep(co[0] / UNROLL, co[1]), (co[0], co[1]))
     new = {o: i for i, origin in enumerate(origins) for o in origin}
     for a, b, c in faces:
-        center = ((coords[a][0] + coords[b][0] + coords[c][0]) / 3, (coords[a][1] + coords[b][1] + coords[c][1]) / 3)
+        center = ((coords[a][0] + coords[b][0] + coords[c][0]) / 3,
+                  (coords[a][1] + coords[b][1] + coords[c][1]) / 3)
         if any(inside(center, hole) for hole in holes):
             continue
         if abs(center[0]) > 1.95 * UNROLL and center[1] > -0.02:  # under hair and veil
@@ -240,6 +248,8 @@ def triangulate(points, eye, upper, lower, look):
         patch.triangles.append((a, b, c) if u[0] * w[1] - u[1] * w[0] > 0 else (a, c, b))
     kept = patch.drop_unused()
     new = {o: kept.get(i) for o, i in new.items()}
-    patch.eye_rings = [[[new[i] for i in r] for r in eye], [[new[mirror[i]] for i in r] for r in eye]]
-    patch.lip_rings = ([[new[i] for i in across(r)] for r in upper], [[new[i] for i in across(r)] for r in lower])
+    patch.eye_rings = [[[new[i] for i in r] for r in eye],
+                       [[new[mirror[i]] for i in r] for r in eye]]
+    patch.lip_rings = ([[new[i] for i in across(r)] for r in upper],
+                       [[new[i] for i in across(r)] for r in lower])
     return patch

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Words for describing form: smooth blends, signed distances, ray casts onto a form, noise.
 
-Points are plain (x, y, z) tuples in metres: a sculpture is evaluated some hundred thousand times, and
-tuples of floats are what Python is quickest with. Everything here is deterministic.
+Points are plain (x, y, z) tuples in metres: a sculpture is evaluated some hundred thousand times,
+and tuples of floats are what Python is quickest with. Everything here is deterministic.
 """
 from math import cos, exp, pi, sin, sqrt
 
 from mathutils import noise as _noise
 
 
-# ---- numbers ---------------------------------------------------------------------------------------
+# ---- numbers -------------------------------------------------------------------------------------
 def clamp(x, low=0.0, high=1.0):
     return low if x < low else high if x > high else x
 
@@ -29,7 +29,8 @@ def bell(x, width):
 
 
 def curve(knots, x):
-    """Smooth (monotone cubic) interpolation through sorted (x, y) knots; constant beyond the ends."""
+    """Smooth (monotone cubic) interpolation through sorted (x, y) knots; constant beyond the
+    ends."""
     if x <= knots[0][0]:
         return knots[0][1]
     if x >= knots[-1][0]:
@@ -53,7 +54,7 @@ def curve(knots, x):
             + (3 * t * t - 2 * t ** 3) * y1 + (t ** 3 - t * t) * h * m1)
 
 
-# ---- vectors ---------------------------------------------------------------------------------------
+# ---- vectors -------------------------------------------------------------------------------------
 def add(a, b):
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
@@ -107,7 +108,7 @@ def rotate(p, center, axis, angle):
             center[2] + v[2] * c + w[2] * s + axis[2] * k)
 
 
-# ---- signed distances ------------------------------------------------------------------------------
+# ---- signed distances ----------------------------------------------------------------------------
 def join(a, b, k):
     """Union with a fillet about `k` metres wide."""
     h = 0.5 + 0.5 * (b - a) / k
@@ -178,10 +179,11 @@ def cast(form, origin, direction, far, near=0.0):
     return mad(origin, direction, t)
 
 
-# ---- noise -----------------------------------------------------------------------------------------
+# ---- noise ---------------------------------------------------------------------------------------
 def noise(p, scale=1.0, seed=0.0):
     """Perlin noise, about -1..1; features about 1 / scale metres wide."""
-    return _noise.noise((p[0] * scale + seed * 17.3, p[1] * scale + seed * 5.1, p[2] * scale - seed * 9.7))
+    return _noise.noise((p[0] * scale + seed * 17.3, p[1] * scale + seed * 5.1,
+                         p[2] * scale - seed * 9.7))
 
 
 def fractal(p, scale=1.0, seed=0.0, octaves=4):

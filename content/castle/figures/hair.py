@@ -1,23 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hair parted in the middle and combed over the ears, the padded roll, the linen veil. Head space."""
+"""Hair parted in the middle and combed over the ears, the padded roll, the linen veil. Head
+space."""
 import random
 from math import cos, pi, sin
 
 from dress import CAPE_CENTER, body, cape_under, cape_weights
 from face_form import HEAD, face
-from form import (add, cast, circle, cross, curve, dot, ellipsoid, gradient, join, length, lerp, mad, mix, noise, rotate,
+from form import (add, cast, circle, cross, curve, dot, ellipsoid, gradient, join, length, lerp,
+                  mad, mix, noise, rotate,
                   smoothstep, sub, unit)
 from patch import Patch
 from rig import blend, scaled
 
 CENTER = (0.0, 0.005, -0.010)
 
-# edges of the left half of the hair, from the parting to the nape: along the forehead, and over the crown
-HAIRLINE = [(0.0, 0.0630, 0.083), (0.014, 0.0625, 0.082), (0.029, 0.0570, 0.076), (0.042, 0.0460, 0.066),
-            (0.0515, 0.0315, 0.055), (0.0575, 0.0110, 0.047), (0.0625, -0.0090, 0.038), (0.0660, -0.0270, 0.023),
+# edges of the left half of the hair, from the parting to the nape: along the forehead, and over the
+# crown
+HAIRLINE = [(0.0, 0.0630, 0.083), (0.014, 0.0625, 0.082), (0.029, 0.0570, 0.076),
+            (0.042, 0.0460, 0.066),
+            (0.0515, 0.0315, 0.055), (0.0575, 0.0110, 0.047), (0.0625, -0.0090, 0.038),
+            (0.0660, -0.0270, 0.023),
             (0.0650, -0.0410, 0.000), (0.058, -0.0460, -0.032), (0.042, -0.0470, -0.070)]
-CROWN = [(0.0, 0.1120, -0.040), (0.018, 0.1100, -0.044), (0.036, 0.1000, -0.050), (0.052, 0.0840, -0.056),
-         (0.064, 0.0620, -0.062), (0.070, 0.0400, -0.066), (0.070, 0.0200, -0.068), (0.066, 0.0000, -0.074),
+CROWN = [(0.0, 0.1120, -0.040), (0.018, 0.1100, -0.044), (0.036, 0.1000, -0.050),
+         (0.052, 0.0840, -0.056),
+         (0.064, 0.0620, -0.062), (0.070, 0.0400, -0.066), (0.070, 0.0200, -0.068),
+         (0.066, 0.0000, -0.074),
          (0.060, -0.0180, -0.078), (0.050, -0.0300, -0.080), (0.040, -0.0400, -0.080)]
 
 
@@ -34,18 +41,21 @@ def along(points, s):
     a = points[max(i - 1, 0)]
     b, c = points[i], points[i + 1]
     d = points[min(i + 2, len(points) - 1)]
-    return tuple(0.5 * (2 * q + (r - p) * t + (2 * p - 5 * q + 4 * r - e) * t * t + (3 * q - p - 3 * r + e) * t ** 3)
+    return tuple(0.5 * (2 * q + (r - p) * t + (2 * p - 5 * q + 4 * r - e) * t * t
+                        + (3 * q - p - 3 * r + e) * t ** 3)
                  for p, q, r, e in zip(a, b, c, d))
 
 
 def strand_point(side, c, s):
-    """Point of the hair's surface; c: 0 at the hairline .. 1 over the crown, s: 0 parting .. 1 nape."""
+    """Point of the hair's surface; c: 0 at the hairline .. 1 over the crown, s: 0 parting .. 1
+    nape."""
     p = mix(along(HAIRLINE, s), along(CROWN, s), c)
     d = unit(sub(p, CENTER))
     lay = cast(face, CENTER, d, 0.16)
     top = cast(hair, CENTER, d, 0.16)
     wave = 0.0011 * sin(19 * s + 5 * c + side) * smoothstep(0.1, 0.35, s)
-    wave += 0.0007 * noise((c * 16 + side * 40, s * 1.8, 0.3), 1.0) + 0.0002 * noise((c * 70, s * 3.0, side), 1.0)
+    wave += (0.0007 * noise((c * 16 + side * 40, s * 1.8, 0.3), 1.0)
+             + 0.0002 * noise((c * 70, s * 3.0, side), 1.0))
     full = max(dot(sub(top, CENTER), d), dot(sub(lay, CENTER), d) + 0.0045) + 0.002 + wave
     skin = dot(sub(lay, CENTER), d)
     rise = smoothstep(0.0, 0.13, c) ** 0.7
@@ -67,14 +77,16 @@ def make_hair(look):
             for j in range(ns + 1):
                 s = j / ns
                 p = strand_point(side, c, s ** 1.15)
-                row.append(patch.vertex(p, (0.5 * c + (0.5 if side < 0 else 0.0), s), {"skullbase": 1.0}, ("hair",)))
+                row.append(patch.vertex(p, (0.5 * c + (0.5 if side < 0 else 0.0), s),
+                                        {"skullbase": 1.0}, ("hair",)))
             rows.append(row)
         patch.grid(rows, flip=side < 0)
     return patch
 
 
 def ribbon(patch, points, outs, width, height, u, weights, tag, span=0.026):
-    """A lock: a strip with a raised middle that tapers towards its ends; `u`, `span`: its place across the texture."""
+    """A lock: a strip with a raised middle that tapers towards its ends; `u`, `span`: its place
+    across the texture."""
     rows = []
     n = len(points) - 1
     for k, (p, out) in enumerate(zip(points, outs)):
@@ -85,7 +97,8 @@ def ribbon(patch, points, outs, width, height, u, weights, tag, span=0.026):
         row = []
         for e, lift in (((-1, 0.0), (0, 1.0), (1, 0.0)) if height else ((-1, 0.0), (1, 0.0))):
             q = mad(mad(p, across, 0.5 * w * e), out, height * lift * (w / width))
-            row.append(patch.vertex(q, (u + span * e, t), weights(p) if callable(weights) else weights, tag))
+            row.append(patch.vertex(q, (u + span * e, t),
+                                    weights(p) if callable(weights) else weights, tag))
         rows.append(row)
     patch.grid(rows)
 
@@ -118,13 +131,16 @@ def make_strands(look):
                     points.append((side * p[0], p[1], p[2]))
                     outs.append((side * out[0], out[1], out[2]))
                 u = 0.5 * max(c, 0.0) + (0.5 if side < 0 else 0.0) + rng.uniform(-0.02, 0.02)
-                ribbon(patch, points, outs, rng.uniform(0.0030, 0.0065) if lock else rng.uniform(0.00024, 0.00042),
-                       rng.uniform(0.0002, 0.0006) if lock else 0.0, u, {"skullbase": 1.0}, ("hair",))
+                ribbon(patch, points, outs,
+                       rng.uniform(0.0030, 0.0065) if lock else rng.uniform(0.00024, 0.00042),
+                       rng.uniform(0.0002, 0.0006) if lock else 0.0, u, {"skullbase": 1.0},
+                       ("hair",))
     return patch
 
 
 def wisp(patch, rng, side):
-    """A fine hair that grows out of the skin before the hairline and lies down on the combed hair: no edge is sharp."""
+    """A fine hair that grows out of the skin before the hairline and lies down on the combed hair:
+    no edge is sharp."""
     s = rng.uniform(0.03, 0.80)
     ahead, reach, turn = rng.uniform(0.006, 0.050), rng.uniform(0.05, 0.12), rng.uniform(0.03, 0.09)
     points, outs = [], []
@@ -136,7 +152,8 @@ def wisp(patch, rng, side):
         p = mad(p, out, 0.0016 * (1 - smoothstep(0.0, 0.6, t)) + 0.0007 * sin(pi * t) + 0.0003)
         points.append((side * p[0], p[1], p[2]))
         outs.append((side * out[0], out[1], out[2]))
-    ribbon(patch, points, outs, rng.uniform(0.00022, 0.00040), 0.0, rng.uniform(0.02, 0.15) + (0.5 if side < 0 else 0.0),
+    ribbon(patch, points, outs, rng.uniform(0.00022, 0.00040), 0.0,
+           rng.uniform(0.02, 0.15) + (0.5 if side < 0 else 0.0),
            {"skullbase": 1.0}, ("hair",))
 
 
@@ -157,20 +174,26 @@ def make_fall(look):
             for i in range(n + 1):
                 t = i / n
                 q = (p[0], p[1] - step * i, p[2])
-                q = mad(q, out, 0.004 * sin(pi * min(1.0, 1.3 * t)) - 0.010 * t + curl * t * sin(2.5 * pi * t + phase))
-                near, least = face(q), 0.004 + (0.006 if kind == "lock" else 0.003) * min(1.0, 3 * t) * (1 - 0.3 * t)
+                q = mad(q, out,
+                        0.004 * sin(pi * min(1.0, 1.3 * t)) - 0.010 * t
+                        + curl * t * sin(2.5 * pi * t + phase))
+                near, least = (face(q), 0.004 + (0.006 if kind == "lock" else 0.003)
+                               * min(1.0, 3 * t) * (1 - 0.3 * t))
                 if near < least:
                     q = mad(q, gradient(face, q), least - near)
                 points.append(q)
                 outs.append(out)
             for side in (1, -1):
-                ribbon(patch, [(side * q[0], q[1], q[2]) for q in points], [(side * o[0], o[1], o[2]) for o in outs],
-                       rng.uniform(0.014, 0.019) if kind == "under" else rng.uniform(0.0016, 0.0034),
-                       0.0012 if kind == "under" else 0.0, 0.5 * c, {"skullbase": 1.0}, ("hair",), 0.03 if kind == "under" else 0.012)
+                ribbon(patch, [(side * q[0], q[1], q[2]) for q in points],
+                       [(side * o[0], o[1], o[2]) for o in outs],
+                       rng.uniform(0.014, 0.019) if kind == "under"
+                       else rng.uniform(0.0016, 0.0034),
+                       0.0012 if kind == "under" else 0.0, 0.5 * c, {"skullbase": 1.0}, ("hair",),
+                       0.03 if kind == "under" else 0.012)
     return patch
 
 
-# ---- roll ---------------------------------------------------------------------------------------------
+# ---- roll ----------------------------------------------------------------------------------------
 def roll_path(a):
     """Middle of the padded roll; a: 0 on top, + to the figure's left, pi at the nape."""
     top, low = (0, 0.117, 0.010), (0, -0.050, -0.088)
@@ -227,24 +250,27 @@ def ball(patch, c, r, weights, segments=6, rings=4):
     rows = []
     for i in range(1, rings):
         a = pi * i / rings
-        rows.append([patch.vertex((c[0] + r * sin(a) * sin(b), c[1] + r * cos(a), c[2] + r * sin(a) * cos(b)),
+        rows.append([patch.vertex((c[0] + r * sin(a) * sin(b), c[1] + r * cos(a),
+                                   c[2] + r * sin(a) * cos(b)),
                                   (0.5, 0.5), weights) for b in circle(segments)])
     patch.fan(top, rows[0])
     patch.grid(rows, closed=True, flip=True)
     patch.fan(patch.vertex((c[0], c[1] - r, c[2]), (0.5, 0), weights), rows[-1], flip=True)
 
 
-# ---- veil ---------------------------------------------------------------------------------------------
+# ---- veil ----------------------------------------------------------------------------------------
 def veil_weights(p):
-    """Head at the top; where it lies on the shoulders, as the cape right below it, so that neither comes through
-    the other when an arm is raised. Figure space."""
+    """Head at the top; where it lies on the shoulders, as the cape right below it, so that neither
+    comes through the other when an arm is raised. Figure space."""
     head = smoothstep(1.36, 1.50, p[1])
     below, gap = cape_under(p) if head < 1 else (p, 1.0)
-    head *= 1 - smoothstep(0.06, 0.11, abs(p[0])) * smoothstep(0.07, 0.02, gap)  # on a shoulder it stays there
+    # on a shoulder it stays there
+    head *= 1 - smoothstep(0.06, 0.11, abs(p[0])) * smoothstep(0.07, 0.02, gap)
     return blend([("skullbase", head)] + scaled(cape_weights(below), 1 - head))
 
 
-VEIL_TURN = [(0.0, 1.30), (0.32, 1.70), (0.45, 1.62), (0.90, 1.10)]  # from the nape to its edges: by the ears, the neck, over the shoulders
+# from the nape to its edges: by the ears, the neck, over the shoulders
+VEIL_TURN = [(0.0, 1.30), (0.32, 1.70), (0.45, 1.62), (0.90, 1.10)]
 
 
 def above_cape(p):
@@ -258,18 +284,21 @@ TURNED = 7  # columns of cloth turned in at each edge
 
 
 def turn_in(edge, s, t):
-    """Cloth turned in from the veil's edge: s 0 there .. 1 at the neck; t 0 on the roll .. 1 at the hem. Figure space."""
+    """Cloth turned in from the veil's edge: s 0 there .. 1 at the neck; t 0 on the roll .. 1 at the
+    hem. Figure space."""
     s *= lerp(0.03, 1.0, smoothstep(0.40, 0.56, t))  # below the roll; above it lies close anyway
     o = (0.0, edge[1], -0.030)
     out = sub(edge, o)
     far = length(out)
     out = rotate(unit(out), (0, 0, 0), (0.0, 1.0, 0.0), -0.16 * s * (1 if edge[0] > 0 else -1))
     above = smoothstep(1.400, 1.432, edge[1])  # of the collar
-    near = cast(lambda p: min(lerp(body(p) - 0.010, face(sub(p, HEAD)) + 0.002, above), hair(sub(p, HEAD)) - 0.003), o, out, 0.35)
+    near = cast(lambda p: min(lerp(body(p) - 0.010, face(sub(p, HEAD)) + 0.002, above),
+                              hair(sub(p, HEAD)) - 0.003), o, out, 0.35)
     close = min(dot(sub(near, o), out), far - 0.0004)
     p = mad(o, out, lerp(far, close, s))
     soft = smoothstep(0.05, 0.35, t) * (far - close)
-    return (p[0], p[1], p[2] + soft * (0.12 * sin(pi * s) + 0.11 * sin(4 * pi * s + 2 * t) * (1 - 0.6 * s)))
+    return (p[0], p[1],
+            p[2] + soft * (0.12 * sin(pi * s) + 0.11 * sin(4 * pi * s + 2 * t) * (1 - 0.6 * s)))
 
 
 def make_veil(look):
@@ -303,7 +332,8 @@ def make_veil(look):
             t = k / lower
             beta = u * curve(VEIL_TURN, t)
             out = (sin(beta), 0.0, -cos(beta))
-            x, _, z = rotate(middle, (0.0, 0.0, -0.010), (0.0, 1.0, 0.0), u * VEIL_TURN[0][1] - beta)
+            x, _, z = rotate(middle, (0.0, 0.0, -0.010), (0.0, 1.0, 0.0),
+                             u * VEIL_TURN[0][1] - beta)
             q = mad((x, lerp(middle[1], end_y, t), z), out, 0.030 * t ** 1.2)
             gap = body(q) - 0.034
             if gap < 0.012:  # lie softly on the shoulders
@@ -314,12 +344,16 @@ def make_veil(look):
             fold = amount * (sin(beta * 13 + 0.8 * sin(3 * t + u)) + 0.35 * sin(beta * 27 + 2 * t))
             q = above_cape(mad(q, out, fold + 0.55 * amount))
             rows[upper + k].append((q, (u, 0.5 + 0.5 * t)))
-    for k, row in enumerate(rows):  # both edges turn in towards the neck: from in front one sees cloth, no hollow
+    # both edges turn in towards the neck: from in front one sees cloth, no hollow
+    for k, row in enumerate(rows):
         t = k / (upper + lower)
-        turned = [[turn_in(row[end][0], j / TURNED, t) for j in range(1, TURNED + 1)] for end in (0, -1)]
+        turned = [[turn_in(row[end][0], j / TURNED, t) for j in range(1, TURNED + 1)]
+                  for end in (0, -1)]
         v = row[0][1][1]
-        rows[k] = ([(p, (-1 - 0.04 * (j + 1), v)) for j, p in reversed(list(enumerate(turned[0])))] + row
+        rows[k] = ([(p, (-1 - 0.04 * (j + 1), v)) for j, p in reversed(list(enumerate(turned[0])))]
+                   + row
                    + [(p, (1 + 0.04 * (j + 1), v)) for j, p in enumerate(turned[1])])
-    ids = [[patch.vertex(p, (uv[0] * 2.2, uv[1] * 3.2), veil_weights(p), ("veil",)) for p, uv in row] for row in rows]
+    ids = [[patch.vertex(p, (uv[0] * 2.2, uv[1] * 3.2), veil_weights(p), ("veil",))
+            for p, uv in row] for row in rows]
     patch.grid(ids)
     return patch

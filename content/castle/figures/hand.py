@@ -10,15 +10,19 @@ from form import capsule, carve, ellipsoid, gradient, join, mad, sub, unit
 from patch import Patch
 from rig import WRIST, ELBOW, blend
 
-# knuckle, then lengths of the three phalanges, then radii at knuckle, joints and tip, then bend in rest
+# knuckle, then lengths of the three phalanges, then radii at knuckle, joints and tip, then bend in
+# rest
 FINGERS = {
     2: ((0.0860, 0.0265, 0.0010), (0.0400, 0.0235, 0.0195), (0.0093, 0.0080, 0.0070, 0.0058), 0.10),
     3: ((0.0880, 0.0070, 0.0030), (0.0440, 0.0270, 0.0200), (0.0095, 0.0082, 0.0072, 0.0060), 0.15),
-    4: ((0.0835, -0.0120, 0.0015), (0.0405, 0.0255, 0.0200), (0.0090, 0.0077, 0.0068, 0.0057), 0.20),
-    5: ((0.0765, -0.0290, -0.0025), (0.0320, 0.0185, 0.0180), (0.0080, 0.0068, 0.0060, 0.0051), 0.24),
+    4: ((0.0835, -0.0120, 0.0015), (0.0405, 0.0255, 0.0200), (0.0090, 0.0077, 0.0068, 0.0057),
+        0.20),
+    5: ((0.0765, -0.0290, -0.0025), (0.0320, 0.0185, 0.0180), (0.0080, 0.0068, 0.0060, 0.0051),
+        0.24),
 }
 SPREAD = {2: 0.105, 3: 0.01, 4: -0.075, 5: -0.175}
-THUMB = [(0.0180, 0.0200, -0.0080), (0.0530, 0.0430, -0.0190), (0.0815, 0.0530, -0.0225), (0.1060, 0.0590, -0.0235)]
+THUMB = [(0.0180, 0.0200, -0.0080), (0.0530, 0.0430, -0.0190), (0.0815, 0.0530, -0.0225),
+         (0.1060, 0.0590, -0.0235)]
 THUMB_RADII = (0.0140, 0.0108, 0.0094, 0.0072)
 
 
@@ -80,21 +84,26 @@ def hand(p):
     for k, (knuckle, lengths, radii, _) in FINGERS.items():
         root = (0.012, knuckle[1] * 0.55, knuckle[2] * 0.4)
         d = join(d, capsule(flat, root, mad(knuckle, (1, 0, 0), -0.004), 0.0135, 0.0108), 0.014)
-    d = join(d, capsule(p, (0.026, 0.024, -0.010), (0.050, 0.036, -0.016), 0.0150, 0.0120), 0.016)  # ball of thumb
+    # ball of thumb
+    d = join(d, capsule(p, (0.026, 0.024, -0.010), (0.050, 0.036, -0.016), 0.0150, 0.0120), 0.016)
     d = join(d, ellipsoid(p, (0.040, -0.022, -0.007), (0.028, 0.011, 0.012)), 0.016)
-    d = carve(d, ellipsoid(p, (0.058, 0.003, -0.024), (0.026, 0.020, 0.0085)), 0.014)  # hollow of the palm
+    # hollow of the palm
+    d = carve(d, ellipsoid(p, (0.058, 0.003, -0.024), (0.026, 0.020, 0.0085)), 0.014)
     for k, (_, _, radii, _) in FINGERS.items():
         line = LINES[k]
         f = 1.0
         for i in range(3):
-            rod = capsule(p, line[i], line[i + 1] if i < 2 else mad(line[3], unit(sub(line[3], line[2])), -radii[3]),
+            rod = capsule(p, line[i], line[i + 1] if i < 2
+                          else mad(line[3], unit(sub(line[3], line[2])), -radii[3]),
                           radii[i], radii[i + 1])
             f = rod if i == 0 else join(f, rod, 0.003)
         d = join(d, ellipsoid(p, mad(line[0], (0, 0, 1), 0.003), (0.009, 0.0075, 0.0085)), 0.008)
         d = join(d, f, 0.0042)
     t = capsule(p, THUMB[0], THUMB[1], THUMB_RADII[0], THUMB_RADII[1])
     t = join(t, capsule(p, THUMB[1], THUMB[2], THUMB_RADII[1], THUMB_RADII[2]), 0.004)
-    t = join(t, capsule(p, THUMB[2], mad(THUMB[3], unit(sub(THUMB[3], THUMB[2])), -0.007), THUMB_RADII[2], 0.0072), 0.004)
+    t = join(t,
+             capsule(p, THUMB[2], mad(THUMB[3], unit(sub(THUMB[3], THUMB[2])), -0.007),
+                     THUMB_RADII[2], 0.0072), 0.004)
     return join(d, t, 0.011)
 
 
@@ -137,7 +146,8 @@ def surface_net(field, low, high, step):
         index[(i, j, k)] = len(vertices)
         vertices.append((low[0] + (i + total[0] / n) * step, low[1] + (j + total[1] / n) * step,
                          low[2] + (k + total[2] / n) * step))
-    axes = [((1, 0, 0), (0, 1, 0), (0, 0, 1)), ((0, 1, 0), (0, 0, 1), (1, 0, 0)), ((0, 0, 1), (1, 0, 0), (0, 1, 0))]
+    axes = [((1, 0, 0), (0, 1, 0), (0, 0, 1)), ((0, 1, 0), (0, 0, 1), (1, 0, 0)),
+            ((0, 0, 1), (1, 0, 0), (0, 1, 0))]
     for (i, j, k), v in sorted(values.items()):
         for axis, u, w in axes:
             o = values.get((i + axis[0], j + axis[1], k + axis[2]))
@@ -217,7 +227,8 @@ def make_hands(look):
                 p = exact[i]
                 q = to_figure(p)
                 u = (p[1] + 0.062) / 0.145 * 0.48 + (0.01 if back else 0.51)
-                made[(i, back)] = patch.vertex((s * q[0], q[1], q[2]), (u, (p[0] + 0.05) / 0.25), hand_weights(p, side),
+                made[(i, back)] = patch.vertex((s * q[0], q[1], q[2]), (u, (p[0] + 0.05) / 0.25),
+                                               hand_weights(p, side),
                                                ("hand", p))
             return made[(i, back)]
 
@@ -234,7 +245,8 @@ def orient(patch):
     volume = 0.0
     p = patch.positions
     for a, b, c in patch.triangles:
-        volume += (p[a][0] * (p[b][1] * p[c][2] - p[b][2] * p[c][1]) - p[a][1] * (p[b][0] * p[c][2] - p[b][2] * p[c][0])
+        volume += (p[a][0] * (p[b][1] * p[c][2] - p[b][2] * p[c][1])
+                   - p[a][1] * (p[b][0] * p[c][2] - p[b][2] * p[c][0])
                    + p[a][2] * (p[b][0] * p[c][1] - p[b][1] * p[c][0]))
     # the origin lies outside, so subtract the open wrist: compare against the centroid instead
     n = len(p)
@@ -242,6 +254,7 @@ def orient(patch):
     volume = 0.0
     for a, b, c in patch.triangles:
         u, v, w = sub(p[a], m), sub(p[b], m), sub(p[c], m)
-        volume += (u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0]))
+        volume += (u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0])
+                   + u[2] * (v[0] * w[1] - v[1] * w[0]))
     if volume < 0:
         patch.triangles = [(a, c, b) for a, b, c in patch.triangles]

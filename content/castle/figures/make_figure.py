@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes one of the storytellers:  blender -b --python make_figure.py -- PERSON [FOLDER] [--paint NAMES]
+"""Makes one of the storytellers:
+    blender -b --python make_figure.py -- PERSON [FOLDER] [--paint NAMES]
 
-PERSON is a module of people/. The X3D file and its textures are written into FOLDER (here, if none is named).
-`--paint skin,hair` paints only these textures and takes the others as they lie there, `--paint none` paints none:
-for trying out forms. Same script, same Blender: same bytes.
+PERSON is a module of people/. The X3D file and its textures are written into FOLDER (here, if none
+is named). `--paint skin,hair` paints only these textures and takes the others as they lie there,
+`--paint none` paints none: for trying out forms. Same script, same Blender: same bytes.
 """
 import argparse
 import os
@@ -38,7 +39,8 @@ def main():
     vertices = sum(len(p.positions) for p in figure.patches)
     triangles = sum(len(p.triangles) for p in figure.patches)
     print("%s: %d vertices, %d triangles, %d joints, %d displacers, %.1f MB" % (
-        path, vertices, triangles, len(skeleton), len(figure.displacers), os.path.getsize(path) / 1e6))
+        path, vertices, triangles, len(skeleton), len(figure.displacers),
+        os.path.getsize(path) / 1e6))
 
 
 main()

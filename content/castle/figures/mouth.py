@@ -15,32 +15,39 @@ def share(w):
 
 
 def make_lining(face, look):
-    """From the parting of the lips inwards: the wet inside of the lips, then a dark bag round the teeth."""
+    """From the parting of the lips inwards: the wet inside of the lips, then a dark bag round the
+    teeth."""
     patch = Patch("mouth", look)
     up = [face.positions[i] for i in face.lip_rings[0][0]]
     down = [face.positions[i] for i in face.lip_rings[1][0]]
     n = len(up) - 1
-    loop = [(i / n, True, p) for i, p in enumerate(up)] + [(i / n, False, down[i]) for i in range(n - 1, 0, -1)]
+    loop = ([(i / n, True, p) for i, p in enumerate(up)]
+            + [(i / n, False, down[i]) for i in range(n - 1, 0, -1)])
     # depth behind the lips, half height above / below, width kept, height of the middle
-    steps = [(0.0, 0.0, 1.0), (0.0016, 0.0006, 0.99), (0.0038, 0.0016, 0.98), (0.0060, 0.0060, 0.985),
-             (0.0085, 0.0130, 1.0), (0.016, 0.0155, 1.02), (0.030, 0.0165, 0.98), (0.045, 0.0150, 0.85),
+    steps = [(0.0, 0.0, 1.0), (0.0016, 0.0006, 0.99), (0.0038, 0.0016, 0.98),
+             (0.0060, 0.0060, 0.985),
+             (0.0085, 0.0130, 1.0), (0.016, 0.0155, 1.02), (0.030, 0.0165, 0.98),
+             (0.045, 0.0150, 0.85),
              (0.056, 0.0090, 0.55)]
     rows = []
     for depth, half, keep in steps:
         row = []
         for t, upper, p in loop:
             s = 1 if upper else -1
-            narrow = lerp(1.3, 0.6, smoothstep(0.004, 0.016, depth))  # the cheek closes in behind the corners
+            # the cheek closes in behind the corners
+            narrow = lerp(1.3, 0.6, smoothstep(0.004, 0.016, depth))
             lid = (4 * t * (1 - t)) ** narrow if 0 < t < 1 else 0.0
             x = p[0] * keep
             y = lerp(p[1], MOUTH_Y + 0.0004, smoothstep(0.004, 0.02, depth)) + s * half * lid
             w = jaw_weight((p[0], part_y(abs(p[0])), p[2]), not upper)
-            w = lerp(w, 0.5 if lid == 0 else (0.0 if upper else 1.0), smoothstep(0.006, 0.030, depth))
+            w = lerp(w, 0.5 if lid == 0 else (0.0 if upper else 1.0),
+                     smoothstep(0.006, 0.030, depth))
             row.append(patch.vertex((x, y, p[2] - depth), (0.5, clamp(depth / 0.03)), share(w),
                                     ("lining", t, upper, depth)))
         rows.append(row)
     patch.grid(rows, closed=True, flip=True)
-    end = patch.vertex((0, MOUTH_Y, up[n // 2][2] - 0.060), (0.5, 1.0), share(0.5), ("lining", 0.5, True, 0.06))
+    end = patch.vertex((0, MOUTH_Y, up[n // 2][2] - 0.060), (0.5, 1.0), share(0.5),
+                       ("lining", 0.5, True, 0.06))
     patch.fan(end, rows[-1], flip=True)
     return patch
 
@@ -86,13 +93,15 @@ def make_teeth(upper, tooth_look, gum_look):
                 for q in range(8):
                     a = 2 * pi * (q + 0.5) / 8
                     ca, sa = cos(a), sin(a)
-                    along = s + w / 2 + 0.512 * w * (0.88 + 0.12 * smoothstep(0, 0.6, v) - 0.07 * max(0, v - 0.85) / 0.15) \
+                    along = s + w / 2 + 0.512 * w * (0.88 + 0.12 * smoothstep(0, 0.6, v)
+                                                     - 0.07 * max(0, v - 0.85) / 0.15) \
                         * (abs(ca) ** 0.6 * (1 if ca > 0 else -1))
                     x, z, nx, nz = arch(max(along, 0.0002), upper)
                     depth = thick * (abs(sa) ** 0.7 * (1 if sa > 0 else -1)) * (1 - 0.62 * v ** 3)
                     out = depth - 0.0012 * (1 - v) + 0.0004 * sin(pi * v) - thick
                     y = tip - grow * h * (1 - v) - grow * 0.0002 * ca * ca * v
-                    row.append(teeth.vertex((side * (x + nx * out), y, z + nz * out), (0.5, v), weights, tag))
+                    row.append(teeth.vertex((side * (x + nx * out), y, z + nz * out), (0.5, v),
+                                            weights, tag))
                 rows.append(row)
             flip = (side > 0) == upper
             teeth.grid(rows, closed=True, flip=not flip)
@@ -119,7 +128,8 @@ def make_teeth(upper, tooth_look, gum_look):
             scallop = 0.0013 * (1 - (4 * clamp(t * (1 - t), 0, 0.25))) * (1 if up < 1 else 0)
             y = edge_y - grow * (0.0092 if upper else 0.0082) * up + grow * scallop
             side = 1 if i >= 0 else -1
-            row.append(gums.vertex((side * (x + nx * out), y, z + nz * out), (0.5, 0.5), weights, tag))
+            row.append(gums.vertex((side * (x + nx * out), y, z + nz * out), (0.5, 0.5), weights,
+                                   tag))
         rows.append(row)
     gums.grid(rows, flip=not upper)
     return teeth, gums
@@ -140,7 +150,8 @@ def make_tongue(look):
         for q in range(n):
             b = 2 * pi * q / n
             groove = -0.0012 * bell(cos(b), 0.25) if sin(b) > 0 else 0
-            row.append(patch.vertex((w * cos(b), y + h * sin(b) + groove, z), (0.5, 0.5), JAW, ("tongue", v)))
+            row.append(patch.vertex((w * cos(b), y + h * sin(b) + groove, z), (0.5, 0.5), JAW,
+                                    ("tongue", v)))
         rows.append(row)
     tip = patch.vertex((0, MOUTH_Y - 0.0074, 0.0885), (0.5, 0.5), JAW, ("tongue", 0.0))
     patch.fan(tip, rows[0])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Painting tools: images as rows of sRGB floats, patches spread over a texture, small colour sums."""
+"""Painting tools: images as rows of sRGB floats, patches spread over a texture, small colour
+sums."""
 from array import array
 from functools import lru_cache
 
@@ -37,14 +38,16 @@ class Image:
         self.pixels[4 * i + 2] = clamp(color[2])
 
     def grow(self, steps):
-        """Spreads painted texels into unpainted neighbours, so that filtering meets no ground colour."""
+        """Spreads painted texels into unpainted neighbours, so that filtering meets no ground
+        colour."""
         w, h, pixels = self.width, self.height, self.pixels
         edge = [i for i in range(w * h) if self.done[i]]
         for _ in range(steps):
             fresh = []
             for i in edge:
                 x, y = i % w, i // w
-                for j, ok in ((i - 1, x > 0), (i + 1, x < w - 1), (i - w, y > 0), (i + w, y < h - 1)):
+                for j, ok in ((i - 1, x > 0), (i + 1, x < w - 1), (i - w, y > 0),
+                              (i + w, y < h - 1)):
                     if ok and not self.done[j]:
                         self.done[j] = 1
                         pixels[4 * j:4 * j + 3] = pixels[4 * i:4 * i + 3]
@@ -53,7 +56,8 @@ class Image:
 
     def save(self, path, quality=92):
         import bpy
-        image = bpy.data.images.new("texture", self.width, self.height, alpha=False, float_buffer=False)
+        image = bpy.data.images.new("texture", self.width, self.height, alpha=False,
+                                    float_buffer=False)
         image.pixels.foreach_set(self.pixels)
         image.filepath_raw = path
         image.file_format = "JPEG"
@@ -73,11 +77,12 @@ def fill(width, height, color):
 
 
 def texels(patch, points, width, height, done):
-    """(x, y, point) of every texel `patch` covers in its texture, `points` interpolated over each triangle; those that
-    are `done` are left out."""
+    """(x, y, point) of every texel `patch` covers in its texture, `points` interpolated over each
+    triangle; those that are `done` are left out."""
     w, h = width, height
     for a, b, c in patch.triangles:
-        (ax, ay), (bx, by), (cx, cy) = [(patch.uv[i][0] * w - 0.5, patch.uv[i][1] * h - 0.5) for i in (a, b, c)]
+        (ax, ay), (bx, by), (cx, cy) = [(patch.uv[i][0] * w - 0.5, patch.uv[i][1] * h - 0.5)
+                                        for i in (a, b, c)]
         area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
         if abs(area) < 1e-9:
             continue

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Patches of surface and the figure they make up together.
 
-A patch has one look and its own vertices; each vertex has a place, a texture coordinate and the joints
-that move it. A figure strings all patches together into the one vertex list an H-Anim skin shares.
+A patch has one look and its own vertices; each vertex has a place, a texture coordinate and the
+joints that move it. A figure strings all patches together into the one vertex list an H-Anim skin
+shares.
 """
 from form import add, cross, sub, unit
 
@@ -15,7 +16,8 @@ class Patch:
         self.uv = []
         self.weights = []  # one {joint: weight} a vertex
         self.triangles = []
-        self.normals = {}  # of single vertices, where the maker knows better than the faces around them
+        # of single vertices, where the maker knows better than the faces around them
+        self.normals = {}
         self.tags = []  # what the maker wants to remember about a vertex (displacers ask)
 
     def vertex(self, position, uv=(0.0, 0.0), weights=None, tag=None):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Who is being made. One run makes one person: `choose` is called before any other module is imported, and the
-modules read their numbers from `WHO`. A person is a module of the folder people/ with
+"""Who is being made. One run makes one person: `choose` is called before any other module is
+imported, and the modules read their numbers from `WHO`. A person is a module of the folder people/
+with
 
   FILE       name of the figure's file and the beginning of its textures' names
   NUMBERS    what differs from the numbers below
@@ -8,7 +9,8 @@ modules read their numbers from `WHO`. A person is a module of the folder people
   tiles()                  textures of its own: {look: (colour function, width, height)}
   make_wear(figure, face)  hair, beard, headdress and clothes
 
-It imports what it uses inside these functions, because all other modules want to know the numbers first.
+It imports what it uses inside these functions, because all other modules want to know the numbers
+first.
 
 Lengths in metres, colours as sRGB.
 """
@@ -17,7 +19,8 @@ import importlib
 
 class Person:
     def __init__(self):
-        self.name, self.title, self.stature = "", "", 1.0  # stature: the whole figure is scaled by it
+        # stature: the whole figure is scaled by it
+        self.name, self.title, self.stature = "", "", 1.0
         # ---- head
         self.mouth_half = 0.0252  # middle to corner
         self.corner_rise = 0.0022  # how far the corners of the resting mouth stand above its middle
@@ -29,7 +32,8 @@ class Person:
         self.cheekbone = 0.0  # stands out by
         self.temple_hollow = 0.0
         self.brow_bone = 0.0
-        self.nose_width, self.nose_out, self.nose_drop, self.nose_hump, self.nose_bridge = 1.0, 0.0, 0.0, 0.0, 1.0
+        self.nose_width, self.nose_out, self.nose_drop = 1.0, 0.0, 0.0
+        self.nose_hump, self.nose_bridge = 0.0, 1.0
         self.neck_width = 1.0
         self.lid_open = 1.0
         self.lid_hood = 1.0

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Normal maps: relief too fine for triangles. A height function, in metres, over the skin or over a tile becomes a
-picture of slopes as glTF and X3D 4 have it: red along u, green along v, blue outwards."""
+"""Normal maps: relief too fine for triangles. A height function, in metres, over the skin or over a
+tile becomes a picture of slopes as glTF and X3D 4 have it: red along u, green along v, blue
+outwards."""
 from array import array
 from math import cos, sin, sqrt
 
 from beard import mask
-from face_form import CORNER_LINE, MOUTH_HALF, TEAR_LINE, beside, forehead_line, lower_lip_y, part_y, upper_lip_y
+from face_form import (CORNER_LINE, MOUTH_HALF, TEAR_LINE, beside, forehead_line, lower_lip_y,
+                       part_y, upper_lip_y)
 from fabric import wrap_noise
 from form import bell, clamp, fractal, lerp, noise, smoothstep
 from paint import Image, texels
@@ -20,7 +22,8 @@ def encode(slope_u, slope_v):
 
 
 def over_patch(patch, points, height, width, rows):
-    """The normal map of height(point) over a patch in its own texture; slopes are measured on the surface."""
+    """The normal map of height(point) over a patch in its own texture; slopes are measured on the
+    surface."""
     size = width * rows
     place = array("f", [0.0, 0.0, 0.0]) * size
     high = array("f", [0.0]) * size
@@ -47,9 +50,11 @@ def over_patch(patch, points, height, width, rows):
 
 
 def over_tile(width, rows, height, across, along):
-    """The normal map of a tile height(u, v) that is `across` metres wide and `along` metres high."""
+    """The normal map of a tile height(u, v) that is `across` metres wide and `along` metres
+    high."""
     image = Image(width, rows, FLAT)
-    high = [[height((x + 0.5) / width, (y + 0.5) / rows) for x in range(width)] for y in range(rows)]
+    high = [[height((x + 0.5) / width, (y + 0.5) / rows) for x in range(width)]
+            for y in range(rows)]
     for y in range(rows):
         above, below = high[(y + 1) % rows], high[y - 1]
         for x in range(width):
@@ -64,8 +69,10 @@ def laughter_lines(x, y):
     h = 0.0
     for a, size in ((0.62, 0.010), (0.36, 0.013), (0.10, 0.014), (-0.18, 0.013), (-0.45, 0.010)):
         dx, dy = x - 0.0475, y + 0.0005
-        along, off = dx * cos(a) + dy * sin(a), -dx * sin(a) + dy * cos(a) + 0.0006 * sin(300 * dx + 4 * a)
-        h += bell(off, 0.00042) * smoothstep(0.0012, 0.004, along) * smoothstep(size, 0.5 * size, along)
+        along, off = (dx * cos(a) + dy * sin(a),
+                      -dx * sin(a) + dy * cos(a) + 0.0006 * sin(300 * dx + 4 * a))
+        h += (bell(off, 0.00042) * smoothstep(0.0012, 0.004, along)
+              * smoothstep(size, 0.5 * size, along))
     return h
 
 
@@ -76,7 +83,9 @@ def skin_height(p):
     age = WHO.age
     red = 0.0
     if x < 1.05 * MOUTH_HALF and -0.085 < y < -0.055 and z > 0.05:
-        red = smoothstep(-0.0004, 0.0006, min(upper_lip_y(min(x, MOUTH_HALF)) - y, y - lower_lip_y(min(x, MOUTH_HALF))))
+        red = smoothstep(-0.0004, 0.0006,
+                         min(upper_lip_y(min(x, MOUTH_HALF)) - y,
+                             y - lower_lip_y(min(x, MOUTH_HALF))))
     cheek = bell(x - 0.022, 0.022) * bell(y + 0.028, 0.024)
     nose = bell(x, 0.014) * bell(y + 0.030, 0.018)
     chin = bell(x, 0.020) * bell(y + 0.098, 0.016)
@@ -93,10 +102,13 @@ def skin_height(p):
         for k in range(3):
             off = y - forehead_line(x, k) - 0.0006 * noise((p[0] * 60, k, 0.0), 1.0, 8)
             broken = clamp(0.65 + 0.9 * noise((p[0] * 70, k * 7.0, 0.0), 1.0, 18))
-            h -= (6e-5 + 3.2e-4 * age * age) * broken * bell(off, 0.0007) * smoothstep(0.046, 0.026, x) * front
+            h -= ((6e-5 + 3.2e-4 * age * age) * broken * bell(off, 0.0007)
+                  * smoothstep(0.046, 0.026, x) * front)
     under = bell(x - 0.030, 0.013) * bell(y + 0.0125, 0.0050) * front  # crepe under the eyes
     if under > 0.02:
-        h -= (5e-5 + 1.4e-4 * age) * under * smoothstep(-0.1, 0.5, noise((p[0] * 160 + y * 260, y * 1500 - p[0] * 240, 0.0), 1.0, 27))
+        h -= ((5e-5 + 1.4e-4 * age) * under
+              * smoothstep(-0.1, 0.5,
+                           noise((p[0] * 160 + y * 260, y * 1500 - p[0] * 240, 0.0), 1.0, 27)))
     if age > 0.5:
         net = abs(noise((p[0] * 520 + y * 300, y * 520 - p[0] * 200, z * 300), 1.0, 41))
         h -= 1.1e-4 * age * smoothstep(0.25, 0.0, net) * front * (1 - red)
@@ -109,7 +121,8 @@ def hair_height(u, v):
     """Strands along v, in locks."""
     lock = wrap_noise(u, v, 9.0, 0.16, 3)
     across = u * 420
-    strand = noise((across, v * 2.0, 0.0), 1.0, 1) + 0.7 * noise((across * 2.3, v * 2.6, 0.0), 1.0, 2)
+    strand = (noise((across, v * 2.0, 0.0), 1.0, 1)
+              + 0.7 * noise((across * 2.3, v * 2.6, 0.0), 1.0, 2))
     return 2.6e-4 * strand + 7.0e-4 * lock
 
 

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The skeleton (H-Anim level of articulation 3, all 94 joints) and the weights that tie surfaces to it."""
+"""The skeleton (H-Anim level of articulation 3, all 94 joints) and the weights that tie surfaces to
+it."""
 from face_form import EYE, HEAD, MOUTH_HALF, part_y
 from form import add, clamp, curve, lerp, smoothstep
 
-SPINE = ["vl5", "vl4", "vl3", "vl2", "vl1", "vt12", "vt11", "vt10", "vt9", "vt8", "vt7", "vt6", "vt5", "vt4",
+SPINE = ["vl5", "vl4", "vl3", "vl2", "vl1", "vt12", "vt11", "vt10", "vt9", "vt8", "vt7", "vt6",
+         "vt5", "vt4",
          "vt3", "vt2", "vt1", "vc7", "vc6", "vc5", "vc4", "vc3", "vc2", "vc1"]
-SPINE_Y = [1.000, 1.030, 1.060, 1.089, 1.118, 1.146, 1.173, 1.199, 1.224, 1.248, 1.272, 1.295, 1.317, 1.338,
+SPINE_Y = [1.000, 1.030, 1.060, 1.089, 1.118, 1.146, 1.173, 1.199, 1.224, 1.248, 1.272, 1.295,
+           1.317, 1.338,
            1.359, 1.380, 1.401, 1.421, 1.437, 1.453, 1.468, 1.483, 1.498, 1.512]
-SPINE_Z = [(1.000, -0.030), (1.12, -0.036), (1.25, -0.062), (1.35, -0.062), (1.42, -0.042), (1.512, -0.004)]
+SPINE_Z = [(1.000, -0.030), (1.12, -0.036), (1.25, -0.062), (1.35, -0.062), (1.42, -0.042),
+           (1.512, -0.004)]
 SKULLBASE = (0.0, 1.524, 0.010)
 
 # the arm hangs beside the body, a hand's breadth away at the wrist
@@ -26,7 +30,8 @@ def make_joints():
         chain = [("hip", "sacroiliac", HIP), ("knee", "hip", KNEE), ("talocrural", "knee", ANKLE),
                  ("tarsometatarsal_2", "talocrural", (0.093, 0.040, 0.030)),
                  ("metatarsophalangeal_2", "tarsometatarsal_2", (0.097, 0.020, 0.095)),
-                 ("tarsal_distal_interphalangeal_2", "metatarsophalangeal_2", (0.098, 0.012, 0.125))]
+                 ("tarsal_distal_interphalangeal_2", "metatarsophalangeal_2",
+                  (0.098, 0.012, 0.125))]
         for name, parent, c in chain:
             parent = parent if parent == "sacroiliac" else side + "_" + parent
             joints[side + "_" + name] = (parent, (s * c[0], c[1], c[2]))
@@ -57,7 +62,7 @@ def make_joints():
 TMJ = (0.0, -0.014, 0.008)  # of the jaw hinge, head space
 
 
-# ---- weights ----------------------------------------------------------------------------------------
+# ---- weights -------------------------------------------------------------------------------------
 def blend(pairs):
     """{joint: weight} of (joint, weight) pairs: sums repeated joints, drops traces, normalises."""
     total = {}
@@ -70,7 +75,8 @@ def blend(pairs):
 
 
 def scaled(weights, s):
-    return [(j, w * s) for j, w in weights.items()] if isinstance(weights, dict) else [(j, w * s) for j, w in weights]
+    return ([(j, w * s) for j, w in weights.items()] if isinstance(weights, dict)
+            else [(j, w * s) for j, w in weights])
 
 
 def spine(y):
@@ -87,11 +93,13 @@ def spine(y):
 
 
 def jaw_weight(p, lower=None):
-    """How much a point of the face (head space) follows the jaw; `lower`: on the lower lip, when that is known."""
+    """How much a point of the face (head space) follows the jaw; `lower`: on the lower lip, when
+    that is known."""
     if lower is None:
         lower = p[1] < part_y(abs(p[0]))
     x, y, z = abs(p[0]), p[1], p[2]
-    below = (-0.050 * (z - TMJ[2]) / 0.077 + TMJ[1] - y) * 0.84  # under the line from hinge to mouth corner
+    # under the line from hinge to mouth corner
+    below = (-0.050 * (z - TMJ[2]) / 0.077 + TMJ[1] - y) * 0.84
     cheek = smoothstep(-0.008, 0.030, below)
     u = x / MOUTH_HALF
     lips = (1 - min(u, 1.0) ** 2.1) ** 0.85  # the opening mouth is an oval
@@ -110,22 +118,26 @@ def head_weights(p, tag):
 
 
 def shoulder_share(p):
-    """How much cloth at the shoulder follows the upper arm: sleeve and cape must agree, or one pokes out."""
+    """How much cloth at the shoulder follows the upper arm: sleeve and cape must agree, or one
+    pokes out."""
     x, y = abs(p[0]), p[1]
-    return smoothstep(0.098, 0.180, x + 0.35 * clamp(SHOULDER[1] - y, 0.0, 0.12)) * smoothstep(1.10, 1.20, y)
+    return (smoothstep(0.098, 0.180, x + 0.35 * clamp(SHOULDER[1] - y, 0.0, 0.12))
+            * smoothstep(1.10, 1.20, y))
 
 
 def torso_weights(p, arm_share=1.0):
-    """Clothing of chest and shoulders, figure space: spine, then collar bone and shoulder outwards."""
+    """Clothing of chest and shoulders, figure space: spine, then collar bone and shoulder
+    outwards."""
     side = "l_" if p[0] >= 0 else "r_"
     x = abs(p[0])
     high = smoothstep(1.22, 1.36, p[1])
     clavicle = 0.75 * smoothstep(0.03, 0.13, x) * high
     arm = shoulder_share(p) * arm_share
     rest = (1 - arm) * (1 - clavicle)
-    return blend(scaled(spine(p[1]), rest) + [(side + "sternoclavicular", 0.5 * (1 - arm) * clavicle),
-                                              (side + "acromioclavicular", 0.5 * (1 - arm) * clavicle),
-                                              (side + "shoulder", arm)])
+    return blend(scaled(spine(p[1]), rest)
+                 + [(side + "sternoclavicular", 0.5 * (1 - arm) * clavicle),
+                    (side + "acromioclavicular", 0.5 * (1 - arm) * clavicle),
+                    (side + "shoulder", arm)])
 
 
 def arm_weights(p, side):
@@ -135,8 +147,9 @@ def arm_weights(p, side):
     elbow = smoothstep(ELBOW[1] + 0.045, ELBOW[1] - 0.045, y)
     wrist = smoothstep(WRIST[1] + 0.022, WRIST[1] - 0.016, y)
     arm = smoothstep(1.25, 1.17, y)
-    return blend(scaled(torso_weights(p), 1 - arm) + [(s + "shoulder", arm * (1 - elbow)), (s + "elbow", elbow * (1 - wrist)),
-                                                       (s + "radiocarpal", wrist)])
+    return blend(scaled(torso_weights(p), 1 - arm)
+                 + [(s + "shoulder", arm * (1 - elbow)), (s + "elbow", elbow * (1 - wrist)),
+                     (s + "radiocarpal", wrist)])
 
 
 def skirt_weights(p):
@@ -152,7 +165,8 @@ def skirt_weights(p):
 
 
 def make_sites():
-    """{joint: [(site, place)]}: end effectors, the view from the eyes, where the voice comes from."""
+    """{joint: [(site, place)]}: end effectors, the view from the eyes, where the voice comes
+    from."""
     from hand import LINES, to_figure
     tip = to_figure(LINES[3][3])
     return {"skullbase": [("skull_tip", add(HEAD, (0.0, 0.118, -0.008))),

@@ -1,21 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a learned man wore about 1530: a flat cap, a long gown with fur down its front and over the shoulders, a
-doublet and a shirt under it, a chain with a small bell. Cap in head space, the rest in figure space."""
+"""What a learned man wore about 1530: a flat cap, a long gown with fur down its front and over the
+shoulders, a doublet and a shirt under it, a chain with a small bell. Cap in head space, the rest in
+figure space."""
 from math import cos, pi, sin
 
 from accessories import oval, tube
-from dress import WAIST_Y, cape_point, cape_weights, disc, neck_ring, neck_weights, skirt_point, trunk
+from dress import (WAIST_Y, cape_point, cape_weights, disc, neck_ring, neck_weights, skirt_point,
+                   trunk)
 from form import bell, cast, circle, cross, lerp, mad, noise, rotate, smoothstep, sub, unit
 from hair import hair
 from patch import Patch
 from rig import skirt_weights, torso_weights
 
-# ---- cap ----------------------------------------------------------------------------------------------
+# ---- cap -----------------------------------------------------------------------------------------
 CAP_CENTER = (0.0, 0.020, -0.014)
 
 
 def cap_band(a, rise, lift):
-    """On the hair round the head; a: 0 in front, to the figure's left; the band sits lower at the back."""
+    """On the hair round the head; a: 0 in front, to the figure's left; the band sits lower at the
+    back."""
     y = lerp(0.026, 0.053, 0.5 + 0.5 * cos(a)) + rise - 0.005 * sin(a)
     d = unit((sin(a), 0.0, cos(a)))
     o = (0.0, min(y, 0.098), -0.012)
@@ -29,17 +32,22 @@ def make_cap(cloth_look, brim_look):
     weights = {"skullbase": 1.0}
 
     def ring(patch, row, v, tile):
-        return [patch.vertex(row(2 * pi * (i % n) / n + pi), (i / n * tile, v), weights, ("cap",)) for i in range(n + 1)]
+        return [patch.vertex(row(2 * pi * (i % n) / n + pi), (i / n * tile, v), weights, ("cap",))
+                for i in range(n + 1)]
 
     def crown(k):
-        """k: 0 where the cloth leaves the band .. 1 the middle of the top; puffed, gathered, sunk to one side."""
+        """k: 0 where the cloth leaves the band .. 1 the middle of the top; puffed, gathered, sunk
+        to one side."""
         def row(a):
             base = cap_band(a, 0.026, 0.006)
             out = 0.026 * sin(min(k / 0.34, 1.0) * pi / 2) * (1 - 0.1 * cos(a))
             shrink = smoothstep(0.30, 1.0, k)
-            height = 0.012 * min(k / 0.2, 1.0) + 0.046 * smoothstep(0.12, 0.55, k) - 0.002 * smoothstep(0.5, 1.0, k)
-            r = (lerp(base[0] + out * sin(a), -0.012, shrink), lerp(base[2] + out * cos(a), -0.022, shrink))
-            fold = 0.0042 * (1 - shrink) * sin(min(k / 0.3, 1.0) * pi * 0.55) * (abs(sin(a * 11 + 1.5 * sin(3 * a))) - 0.5)
+            height = (0.012 * min(k / 0.2, 1.0) + 0.046 * smoothstep(0.12, 0.55, k)
+                      - 0.002 * smoothstep(0.5, 1.0, k))
+            r = (lerp(base[0] + out * sin(a), -0.012, shrink),
+                 lerp(base[2] + out * cos(a), -0.022, shrink))
+            fold = (0.0042 * (1 - shrink) * sin(min(k / 0.3, 1.0) * pi * 0.55)
+                    * (abs(sin(a * 11 + 1.5 * sin(3 * a))) - 0.5))
             soft = 0.006 * noise((r[0] * 14, r[1] * 14, k * 2), 1.0, 5) * smoothstep(0.05, 0.3, k)
             y = lerp(base[1], 0.073 + 0.004 * cos(a), min(k / 0.15, 1.0)) + height + soft
             p = (r[0] * (1 + 8 * fold), y, r[1] * (1 + 8 * fold))
@@ -62,14 +70,17 @@ def make_cap(cloth_look, brim_look):
             return mad(p, (sin(a), 0.0, cos(a)), wave)
         return row
 
-    inner = [ring(brim, cap_rise, 0.0, 8) for cap_rise in (lambda a: cap_band(a, 0.036, 0.0045), lambda a: cap_band(a, 0.016, 0.001), lambda a: cap_band(a, -0.004, 0.0022))]
+    inner = [ring(brim, cap_rise, 0.0, 8)
+             for cap_rise in (lambda a: cap_band(a, 0.036, 0.0045),
+                              lambda a: cap_band(a, 0.016, 0.001),
+                              lambda a: cap_band(a, -0.004, 0.0022))]
     outer = [ring(brim, flap(t, 0.0), 0.3 + t, 8) for t in (0.0, 0.25, 0.55, 0.85, 1.0)]
     back = [ring(brim, flap(t, -0.0035), 1.3 + (1 - t), 8) for t in (1.0, 0.6, 0.2)]
     brim.grid(inner + outer + back)
     return cloth, brim
 
 
-# ---- gown ---------------------------------------------------------------------------------------------
+# ---- gown ----------------------------------------------------------------------------------------
 def gown_point(phi, y, lift=0.0):
     """The gown's surface, hem to neck."""
     d = (sin(phi), 0.0, cos(phi))
@@ -90,7 +101,8 @@ def gown_weights(p):
 def make_gown(cloth_look):
     cloth = Patch("gown", cloth_look)
     columns = 96
-    ys = [0.012, 0.04, 0.09, 0.15, 0.22, 0.30, 0.38, 0.46, 0.54, 0.62, 0.70, 0.78, 0.85, 0.91, 0.96, 1.00, 1.035, 1.062, 1.09,
+    ys = [0.012, 0.04, 0.09, 0.15, 0.22, 0.30, 0.38, 0.46, 0.54, 0.62, 0.70, 0.78, 0.85, 0.91, 0.96,
+          1.00, 1.035, 1.062, 1.09,
           1.12, 1.15, 1.18, 1.21, 1.24, 1.27, 1.30, 1.33]
     rows = []
     for y in [0.012] + ys:
@@ -100,7 +112,8 @@ def make_gown(cloth_look):
             phi = 2 * pi * (i % columns) / columns + pi
             p = gown_point(phi, y)
             p = (p[0] * (1 - inset), y + 0.2 * inset, p[2] * (1 - inset))
-            row.append(cloth.vertex(p, (i / columns * 6, y * 3.4), gown_weights(p), ("chest",) if y > 1.05 else ("skirt",)))
+            row.append(cloth.vertex(p, (i / columns * 6, y * 3.4), gown_weights(p),
+                                    ("chest",) if y > 1.05 else ("skirt",)))
         rows.append(row)
     cloth.grid(rows)
     return (cloth,)
@@ -117,14 +130,17 @@ def front_place(x, y, lift):
 
 def make_facings(fur_look, doublet_look, button_look):
     """Bands of fur down both edges of the gown, the doublet between them with its buttons."""
-    fur, doublet, buttons = Patch("facings", fur_look), Patch("doublet", doublet_look), Patch("buttons", button_look)
-    ys = [0.05, 0.14, 0.24, 0.34, 0.44, 0.54, 0.64, 0.73, 0.81, 0.88, 0.94, 0.99, 1.03, 1.07, 1.11, 1.15, 1.19, 1.23, 1.27, 1.31,
+    fur, doublet, buttons = (Patch("facings", fur_look), Patch("doublet", doublet_look),
+                             Patch("buttons", button_look))
+    ys = [0.05, 0.14, 0.24, 0.34, 0.44, 0.54, 0.64, 0.73, 0.81, 0.88, 0.94, 0.99, 1.03, 1.07, 1.11,
+          1.15, 1.19, 1.23, 1.27, 1.31,
           1.345]
 
     def inner_edge(y):
         return lerp(0.004, 0.036, smoothstep(0.98, 1.25, y)) + 0.010 * smoothstep(0.6, 0.0, y)
 
-    profile = ((0.0, -0.001), (0.06, 0.010), (0.30, 0.0165), (0.60, 0.0165), (0.92, 0.011), (1.0, -0.001))
+    profile = ((0.0, -0.001), (0.06, 0.010), (0.30, 0.0165), (0.60, 0.0165), (0.92, 0.011),
+               (1.0, -0.001))
     for side in (1, -1):
         rows = []
         for y in ys:
@@ -132,9 +148,11 @@ def make_facings(fur_look, doublet_look, button_look):
             width = lerp(0.062, 0.085, smoothstep(0.9, 1.3, y)) + 0.012 * smoothstep(0.6, 0.0, y)
             row = []
             for t, h in profile:
-                p = front_place(x0 + width * t, y, h * (1 + 0.22 * noise((t * 5 + side, y * 40, 0.0), 1.0, 4)))
+                p = front_place(x0 + width * t, y,
+                                h * (1 + 0.22 * noise((t * 5 + side, y * 40, 0.0), 1.0, 4)))
                 p = (side * p[0], p[1], p[2])
-                row.append(fur.vertex(p, (t * 3, y * 24), gown_weights(p), ("chest",) if y > 1.05 else ("skirt",)))
+                row.append(fur.vertex(p, (t * 3, y * 24), gown_weights(p),
+                                      ("chest",) if y > 1.05 else ("skirt",)))
             rows.append(row)
         fur.grid(rows, flip=side < 0)
     rows = []
@@ -162,11 +180,13 @@ def make_fur_collar(fur_look):
     n = 84
     gap = 0.26
     rows = []
-    for s, lift in ((0.80, 0.002), (0.80, 0.014), (0.72, 0.019), (0.60, 0.020), (0.48, 0.019), (0.36, 0.018), (0.24, 0.018), (0.13, 0.019),
+    for s, lift in ((0.80, 0.002), (0.80, 0.014), (0.72, 0.019), (0.60, 0.020), (0.48, 0.019),
+                    (0.36, 0.018), (0.24, 0.018), (0.13, 0.019),
                     (0.05, 0.018), (0.0, 0.012), (-0.01, 0.002)):
         row = []
         for i in range(n + 1):
-            phi = gap * (1 + 0.55 * max(s, 0.0)) + (2 * pi - 2 * gap * (1 + 0.55 * max(s, 0.0))) * i / n
+            phi = (gap * (1 + 0.55 * max(s, 0.0))
+                   + (2 * pi - 2 * gap * (1 + 0.55 * max(s, 0.0))) * i / n)
             edge = smoothstep(0.0, 0.06, min(i, n - i) / n)
             tuft = 1 + 0.20 * noise((i * 0.45, s * 30, 0.0), 1.0, 6)
             p = cape_point(phi, max(s, 0.0), lift * (0.25 + 0.75 * edge) * tuft)
@@ -181,21 +201,24 @@ def make_shirt(linen_look):
     shirt = Patch("shirt", linen_look)
     n = 112
     rows = []
-    for t, grow, wave, v in ((-0.35, 0.006, 0, 0), (0.2, 0.002, 0.0005, 0.3), (0.55, 0.0015, 0.0006, 0.5), (0.82, 0.002, 0.0007, 0.7),
-                             (0.92, 0.0030, 0.0012, 0.8), (0.97, 0.0045, 0.0016, 0.9), (0.98, 0.0056, 0.0016, 1.0)):
+    for t, grow, wave, v in ((-0.35, 0.006, 0, 0), (0.2, 0.002, 0.0005, 0.3),
+                             (0.55, 0.0015, 0.0006, 0.5), (0.82, 0.002, 0.0007, 0.7),
+                             (0.92, 0.0030, 0.0012, 0.8), (0.97, 0.0045, 0.0016, 0.9),
+                             (0.98, 0.0056, 0.0016, 1.0)):
         row = []
         for i in range(n + 1):
             phi = 2 * pi * (i % n) / n + pi
             wide = 0.0050 + 0.0065 * max(0.0, cos(phi))  # a man's neck, its larynx in front
             p = neck_ring(phi, t, grow + wide + wave * sin(phi * 14))
-            row.append(shirt.vertex((p[0], p[1] + (0.5 * wave * cos(phi * 14) if t > 0.9 else 0.0), p[2]), (i / n * 8, v),
+            row.append(shirt.vertex((p[0], p[1] + (0.5 * wave * cos(phi * 14) if t > 0.9 else 0.0),
+                                     p[2]), (i / n * 8, v),
                                     neck_weights(p), ("linen",)))
         rows.append(row)
     shirt.grid(rows)
     return shirt
 
 
-# ---- chain --------------------------------------------------------------------------------------------
+# ---- chain ---------------------------------------------------------------------------------------
 def make_chain(metal_look):
     """A chain over the fur with a small bell: he has cast many."""
     patch = Patch("chain", metal_look)
@@ -218,8 +241,10 @@ def make_chain(metal_look):
     c = links[len(links) // 2]
     weights = cape_weights(c)
     rows = []
-    for y, r in ((-0.004, 0.0020), (-0.007, 0.0060), (-0.011, 0.0082), (-0.022, 0.0098), (-0.028, 0.0125), (-0.0315, 0.0150), (-0.0320, 0.0140)):
-        rows.append([patch.vertex((c[0] + r * sin(a), c[1] + y, c[2] + r * cos(a) + 0.004), (0.5, 0.5), weights) for a in circle(14)])
+    for y, r in ((-0.004, 0.0020), (-0.007, 0.0060), (-0.011, 0.0082), (-0.022, 0.0098),
+                 (-0.028, 0.0125), (-0.0315, 0.0150), (-0.0320, 0.0140)):
+        rows.append([patch.vertex((c[0] + r * sin(a), c[1] + y, c[2] + r * cos(a) + 0.004),
+                                  (0.5, 0.5), weights) for a in circle(14)])
     patch.grid(rows[::-1], closed=True)
     patch.fan(patch.vertex((c[0], c[1] - 0.003, c[2] + 0.004), (0.5, 0.5), weights), rows[0])
     return patch

@@ -22,7 +22,8 @@ TILES = {  # look: (colour, width, height)
 
 
 def make_textures(figure, who, folder, wanted=None, size=1024):
-    """`wanted`: names of the textures to paint (None: all); the others are taken as they lie there."""
+    """`wanted`: names of the textures to paint (None: all); the others are taken as they lie
+    there."""
     def save(name, paint):
         texture = "%s_%s.jpg" % (who.FILE, name)
         if wanted is None or name in wanted:
@@ -48,4 +49,6 @@ def make_textures(figure, who, folder, wanted=None, size=1024):
     save("skin", lambda: spread_over(face, face.rest, skin.skin_color, size, skin.BASE))
     save_map("skin", lambda: relief.make_skin_map(face, size))
     save_map("hair", lambda: relief.make_hair_map(1024, 256))
-    save("hands", lambda: spread_over(hand, [tag[1] for tag in hand.tags], skin.hand_color, size // 2, skin.BASE))
+    save("hands",
+         lambda: spread_over(hand, [tag[1] for tag in hand.tags], skin.hand_color, size // 2,
+                             skin.BASE))

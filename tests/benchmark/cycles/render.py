@@ -3,18 +3,19 @@
 
     blender -b --factory-startup -P render.py -- JOB.json
 
-Runs inside Blender 3.4 (its glTF importer needs python3-numpy). The job names the file, camera, size,
-threads, bounces and renders; each render is one sample count and one seed into one EXR. What is
-set by hand after the import, because the importer leaves it to taste:
+Runs inside Blender 3.4 (its glTF importer needs python3-numpy). The job names the file, camera,
+size, threads, bounces and renders; each render is one sample count and one seed into one EXR. What
+is set by hand after the import, because the importer leaves it to taste:
   lights      no radius; intensity one to one (1 cd is 1 W/sr, 1 lux is 1 W/m2); spots fall off as
               KHR_lights_punctual says, by nodes, instead of Blender's smooth step
-  materials   Lambert's law by a Diffuse BSDF, emission from fronts alone where they are single-sided;
-              thin glass as Fresnel's share of a mirror image over a transparent rest; bare metal by a
-              Glossy BSDF (GGX, several meetings) of Schlick's colour, at the cosine of the surface
-              instead of each facet
+  materials   Lambert's law by a Diffuse BSDF, emission from fronts alone where they are
+              single-sided; thin glass as Fresnel's share of a mirror image over a transparent rest;
+              bare metal by a Glossy BSDF (GGX, several meetings) of Schlick's colour, at the cosine
+              of the surface instead of each facet
   pixels      box filter one pixel wide, no denoiser, no clamping, no adaptive sampling
-Times are wall seconds and processor seconds of a render with what was built before it (BVH, textures)
-kept, without the file's writing; the file JOB.json + ".times" receives a pair for each, in order.
+Times are wall seconds and processor seconds of a render with what was built before it (BVH,
+textures) kept, without the file's writing; the file JOB.json + ".times" receives a pair for each,
+in order.
 """
 import json
 import math
@@ -111,8 +112,9 @@ def make_shared(material, source):
         if index == 1:
             surface = through
     elif metallic == 1:
-        surface = nodes.add("ShaderNodeBsdfGlossy", {"Color": metal_color(nodes, color),
-                                                     "Roughness": roughness}, distribution="MULTI_GGX")
+        surface = nodes.add("ShaderNodeBsdfGlossy",
+                            {"Color": metal_color(nodes, color), "Roughness": roughness},
+                            distribution="MULTI_GGX")
         surface = surface.outputs[0]
     else:
         surface = nodes.add("ShaderNodeBsdfDiffuse", {"Color": color}).outputs[0]

@@ -59,8 +59,9 @@ def metal_box():
     scene = Scene()
     box_walls(scene)
     # White metal reflects all light at every angle, whatever a renderer makes of Fresnel's law.
-    brushed, polished, blunt = (scene.material(name, [1, 1, 1], roughness=r, metallic=1) for name, r in
-                                (("brushed", 0.2), ("polished", 0.1), ("blunt", 0.25)))
+    brushed, polished, blunt = (
+        scene.material(name, [1, 1, 1], roughness=r, metallic=1)
+        for name, r in (("brushed", 0.2), ("polished", 0.1), ("blunt", 0.25)))
     scene.mesh("tall block", brushed, tall_block())
     scene.mesh("ball", polished, Mesh().sphere([0.1, 0.09, -0.18], 0.09, 32))
     scene.mesh("step", blunt, Mesh().box([-0.22, 0, -0.16], [-0.02, 0.04, -0.06]))
@@ -227,7 +228,8 @@ def caustics():
     outside = [(0.0, 0.0), (0.06, 0.0)] + [
         (0.06 + 0.075 * math.sin(math.pi / 2 * i / 14), 0.1 * (1 - math.cos(math.pi / 2 * i / 14)))
         for i in range(1, 15)]
-    rim = [(0.135 - 0.006 + 0.006 * math.cos(math.pi * i / 8), 0.1 + 0.006 * math.sin(math.pi * i / 8))
+    rim = [(0.135 - 0.006 + 0.006 * math.cos(math.pi * i / 8),
+            0.1 + 0.006 * math.sin(math.pi * i / 8))
            for i in range(1, 9)]
     inside = [(0.055 + 0.068 * math.sin(math.pi / 2 * i / 14),
                0.014 + 0.086 * (1 - math.cos(math.pi / 2 * i / 14))) for i in range(13, -1, -1)]

@@ -3,7 +3,8 @@
 FILE = "storyteller"
 NUMBERS = {
     "name": "storyteller",
-    "title": "The storyteller of the castle: a chatelaine of about 1530, with face controls and visemes",
+    "title": "The storyteller of the castle: a chatelaine of about 1530, "
+             "with face controls and visemes",
 }
 
 
@@ -29,11 +30,14 @@ def make_wear(figure, face):
     import dress
     import hair
     from assemble import place_head
-    for part in (hair.make_hair("hair"), hair.make_strands("hair"), hair.make_roll("roll"), hair.make_pearls("pearl")):
+    for part in (hair.make_hair("hair"), hair.make_strands("hair"), hair.make_roll("roll"),
+                 hair.make_pearls("pearl")):
         figure.add(place_head(part))
     figure.add(hair.make_veil("linen"))
-    for group in (dress.make_bodice("gown", "trim"), dress.make_skirt("gown", "trim"), dress.make_sleeves("gown", "trim", "linen"),
-                  dress.make_cape("velvet", "trim", "fur"), dress.make_collar("linen", "velvet", "gold"),
+    for group in (dress.make_bodice("gown", "trim"), dress.make_skirt("gown", "trim"),
+                  dress.make_sleeves("gown", "trim", "linen"),
+                  dress.make_cape("velvet", "trim", "fur"),
+                  dress.make_collar("linen", "velvet", "gold"),
                   accessories.make_belt("leather", "gold")):
         for patch in group:
             figure.add(patch)
