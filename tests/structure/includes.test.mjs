@@ -138,5 +138,9 @@ test('one licence line per file, include guards, and no file over 500 lines', ()
       wrong.push(`${name}: no #pragma once`);
     if (lines > 500) wrong.push(`${name}: ${lines} lines`);
   }
+  for (const path of sources(join(root, 'tests'))) {
+    const lines = readFileSync(path, 'utf8').split('\n').length;
+    if (lines > 500) wrong.push(`${relative(root, path)}: ${lines} lines`);
+  }
   assert.deepEqual(wrong, []);
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What VRM's expressions do besides moving vertices: materials they change, what they forbid, how
-// eyes turn; and cartoon materials as glTF's own.
+// eyes turn.
 #include <gtest/gtest.h>
 
 #include "avatar/body.h"
@@ -9,46 +9,21 @@
 #include "avatar/expression_rules.h"
 #include "avatar/expression_sum.h"
 #include "avatar/storyteller.h"
-#include "avatar/vrm_color.h"
 #include "avatar/vrm_extension.h"
 #include "base/load_error.h"
-#include "base/rng.h"
-#include "unit/avatar/figures.h"
-#include "unit/avatar/gltf_person.h"
+#include "unit/avatar/vrm_person.h"
 
 namespace wellspring {
 namespace {
 
 using test::add_vrm_0;
 using test::add_vrm_1;
+using test::change_of;
+using test::dressed_person;
 using test::load_asset;
 using test::make_person;
+using test::presets;
 using test::says;
-
-// A person of two materials: skin, which the body wears, and a ring.
-Asset dressed_person() {
-  Asset asset = make_person();
-  asset.root["materials"] = {
-      {{"name", "skin"},
-       {"pbrMetallicRoughness",
-        {{"baseColorFactor", {0.5, 0.4, 0.25, 0.5}},
-         {"baseColorTexture",
-          {{"index", 0},
-           {"extensions",
-            {{"KHR_texture_transform",
-              {{"scale", {2, 0.5}}, {"offset", {0.25, 0}}, {"rotation", 0.3}}}}}}}}},
-       {"emissiveFactor", {0.1, 0, 0}},
-       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}}},
-      {{"name", "ring"}}};
-  asset.root["textures"] = json::array({json::object()});
-  asset.root["extensionsUsed"] = {"KHR_texture_transform", "KHR_materials_emissive_strength"};
-  asset.root["meshes"][0]["primitives"][0]["material"] = 0;
-  return asset;
-}
-
-json& presets(Asset& asset) {
-  return asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"];
-}
 
 Pose with(const Character& c, std::initializer_list<std::pair<const char*, float>> weights) {
   Pose pose = make_rest_pose(c);
@@ -58,13 +33,6 @@ Pose with(const Character& c, std::initializer_list<std::pair<const char*, float
     if (index >= 0) pose.displacers[size_t(index)] = weight;
   }
   return pose;
-}
-
-LookChange change_of(const Character& c, const Pose& pose, size_t look) {
-  std::vector<LookChange> changes;
-  eval_look_changes(c, pose, changes);
-  EXPECT_EQ(changes.size(), c.looks.size());
-  return changes[look];
 }
 
 float weight_of(const Character& c, const Pose& pose, const char* name) {
@@ -338,252 +306,6 @@ TEST(VrmExpressions, BindsMoveTheNodesTheyName) {
   size_t half = one.displacers[size_t(find_displacer(one, "aa"))].vertices.size();
   EXPECT_GT(half, 0u);
   EXPECT_EQ(both.displacers[size_t(find_displacer(both, "aa"))].vertices.size(), 2 * half);
-}
-
-gltf::File rewritten(const Asset& asset) {
-  test::TemporaryFile temporary(asset.glb(), ".glb");
-  gltf::File file = gltf::load_gltf(temporary.path(), "", vrm_extensions());
-  rewrite_vrm_materials(file);
-  return file;
-}
-
-TEST(VrmMaterials, OfVersion0AreAsTheirShaderHasThem) {
-  Asset asset = dressed_person();
-  add_vrm_0(asset);
-  auto& properties = asset.root["extensions"]["VRM"]["materialProperties"];
-  properties = {{{"name", "skin"},
-                 {"shader", "VRM/MToon"},
-                 {"floatProperties",
-                  {{"_Cutoff", 0.25},
-                   {"_CullMode", 0},
-                   {"_BumpScale", 0.5},
-                   {"_OutlineWidthMode", 1},
-                   {"_OutlineWidth", 0.1}}},
-                 {"vectorProperties",
-                  {{"_Color", {0.5, 1, 0, 0.75}},
-                   {"_EmissionColor", {0, 1, 0, 1}},
-                   {"_MainTex", {0.125, 0.25, 2, 0.5}}}},
-                 {"textureProperties", {{"_MainTex", 0}, {"_BumpMap", 0}, {"_EmissionMap", 0}}},
-                 {"keywordMap", {{"_ALPHATEST_ON", true}}}},
-                {{"name", "ring"},
-                 {"shader", "VRM/UnlitTransparent"},
-                 {"floatProperties", json::object()},
-                 {"vectorProperties", json::object()},
-                 {"textureProperties", {{"_MainTex", 0}}}}};
-  gltf::File file = rewritten(asset);
-  const json& skin = file.root["materials"][0];
-  EXPECT_EQ(skin["alphaMode"], "MASK");
-  EXPECT_EQ(skin["alphaCutoff"], 0.25);
-  EXPECT_EQ(skin["doubleSided"], true);
-  const json& pbr = skin["pbrMetallicRoughness"];
-  EXPECT_NEAR(pbr["baseColorFactor"][0].get<float>(), 0.21404f, 1e-4f);
-  EXPECT_EQ(pbr["baseColorFactor"][3], 0.75);
-  for (const json* picture :
-       {&pbr["baseColorTexture"], &skin["normalTexture"], &skin["emissiveTexture"]}) {
-    const json& lies = (*picture)["extensions"]["KHR_texture_transform"];
-    EXPECT_EQ(lies["scale"], json({2, 0.5}));
-    EXPECT_EQ(lies["offset"], json({0.125, 0.25})) << "1 - 0.5 - 0.25";
-  }
-  EXPECT_EQ(skin["normalTexture"]["scale"], 0.5);
-  EXPECT_EQ(skin["emissiveFactor"], json({0, 1, 0}));
-  EXPECT_EQ(file.root["materials"][1]["alphaMode"], "BLEND");
-  Character c = load_asset(asset);
-  EXPECT_TRUE(says(c, "outlines of cartoon materials (MToon) are not drawn"));
-  EXPECT_TRUE(says(c, "are shown matt"));
-  ASSERT_EQ(c.looks.size(), 3u);
-  EXPECT_TRUE(c.looks[1].matt && c.looks[2].matt);
-  EXPECT_TRUE(c.looks[1].double_sided);
-
-  properties[0]["keywordMap"] = {{"_ALPHABLEND_ON", true}};
-  properties[0]["floatProperties"]["_CullMode"] = 2;
-  properties[0]["vectorProperties"].erase("_EmissionColor");
-  file = rewritten(asset);
-  EXPECT_EQ(file.root["materials"][0]["alphaMode"], "BLEND");
-  EXPECT_EQ(file.root["materials"][0]["doubleSided"], false);
-  EXPECT_FALSE(file.root["materials"][0].contains("emissiveFactor"))
-      << "MToon's counts: it glows not";
-  properties[0]["shader"] = "VRM_USE_GLTFSHADER";
-  file = rewritten(asset);
-  EXPECT_EQ(file.root["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][0], 0.5)
-      << "glTF's own counts";
-  properties[0]["shader"] = "VRM/MToon";
-  properties[0]["textureProperties"]["_MainTex"] = 7;
-  EXPECT_THROW(load_asset(asset), LoadError);
-}
-
-TEST(VrmMaterials, OfVersion1TellWhatIsNotDrawn) {
-  Asset asset = dressed_person();
-  add_vrm_1(asset);
-  asset.root["materials"][0]["extensions"]["VRMC_materials_mtoon"] = {
-      {"specVersion", "1.0"},
-      {"outlineWidthMode", "worldCoordinates"},
-      {"outlineWidthFactor", 0.01},
-      {"uvAnimationScrollXSpeedFactor", 0.1},
-      {"matcapTexture", {{"index", 0}}}};
-  asset.root["materials"][1]["extensions"]["VRMC_materials_hdr_emissiveMultiplier"] = {
-      {"emissiveMultiplier", 3}};
-  Character c = load_asset(asset);
-  for (const char* what : {"outlines of", "moving pictures of", "matcaps of"})
-    EXPECT_TRUE(says(c, what)) << what;
-  EXPECT_FALSE(says(c, "rims of"));
-  EXPECT_EQ(rewritten(asset).root["materials"][1]["extensions"]["KHR_materials_emissive_strength"]
-                                 ["emissiveStrength"],
-            3.0);
-}
-
-TEST(VrmMaterials, MToonIgnoresColoursOfVertices) {
-  Asset asset = dressed_person();
-  std::vector<float> red;
-  for (size_t v = 0; v < test::person_bones().size() * 8; v++) red.insert(red.end(), {1, 0, 0, 1});
-  asset.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
-      asset.add_floats("VEC4", 4, red);
-  Asset newer = asset;
-  add_vrm_0(asset);
-  EXPECT_FALSE(load_asset(asset).colors.empty());
-  asset.root["extensions"]["VRM"]["materialProperties"] = {{{"shader", "VRM/MToon"}}};
-  EXPECT_TRUE(load_asset(asset).colors.empty());
-  newer.root["materials"][0]["extensions"]["VRMC_materials_mtoon"] = json::object();
-  EXPECT_TRUE(load_asset(newer).colors.empty());
-}
-
-TEST(VrmMaterials, UnityColoursAreLinear) {
-  EXPECT_EQ(linear_of_unity(vec3(0, -1, NAN)), vec3(0));
-  vec3 made = linear_of_unity(vec3(0.04f, 0.5f, 1));
-  EXPECT_NEAR(made.x, 0.04f / 12.92f, 1e-7f);
-  EXPECT_NEAR(made.y, 0.2140411f, 1e-6f);
-  EXPECT_NEAR(made.z, 1, 1e-6f);
-  EXPECT_NEAR(linear_of_unity(vec3(2)).x, std::pow(2.0f, 2.2f), 1e-5f);
-}
-
-// Only some bones are required, and files lack even those.
-TEST(VrmExpressions, FiguresWithoutSomeBonesStandAndBreathe) {
-  for (size_t missing = 0; missing <= test::person_bones().size(); missing++) {
-    Asset asset = dressed_person();
-    add_vrm_1(asset);
-    auto& bones = asset.root["extensions"]["VRMC_vrm"]["humanoid"]["humanBones"];
-    if (missing < test::person_bones().size()) bones.erase(test::person_bones()[missing].vrm);
-    else bones = {{"hips", {{"node", 0}}}, {"head", {{"node", 4}}}};
-    Character c = load_asset(asset);
-    Storyteller storyteller{&c, mat4(1)};
-    StorytellerState state;
-    StorytellerInput input;
-    StorytellerEvents events;
-    Pose pose;
-    for (int i = 0; i < 30; i++) {
-      input.dt = 0.1f;
-      input.time += 0.1;
-      input.speaking = 1;
-      tick_storyteller(state, storyteller, input, pose, events);
-      for (quat q : pose.rotations) ASSERT_NEAR(glm::length(q), 1, 1e-3f) << missing;
-      for (float w : pose.displacers) ASSERT_TRUE(std::isfinite(w)) << missing;
-    }
-  }
-}
-
-// Any part of the extensions replaced by anything: refused with a place, or loaded; posed without a
-// crash.
-TEST(VrmExpressions, MutatedExtensionsNeverCrash) {
-  std::vector<Asset> assets;
-  for (int version : {0, 1}) {
-    Asset asset = dressed_person();
-    version == 0 ? add_vrm_0(asset) : add_vrm_1(asset);
-    json color = {{"material", 0}, {"type", "color"}, {"targetValue", {1, 0, 0.25, 1}}};
-    if (version == 1) {
-      presets(asset)["happy"] = {
-          {"isBinary", true},
-          {"overrideBlink", "block"},
-          {"overrideLookAt", "blend"},
-          {"materialColorBinds", {color}},
-          {"textureTransformBinds",
-           {{{"material", 0}, {"scale", {3, 0.5}}, {"offset", {0.75, 0.5}}}}}};
-      presets(asset)["blink"] = presets(asset)["aa"];
-      asset.root["extensions"]["VRMC_vrm"]["firstPerson"]["meshAnnotations"] = {
-          {{"node", 17}, {"type", "both"}}};
-      asset.root["nodes"][3]["extensions"]["VRMC_node_constraint"] = {
-          {"specVersion", "1.0"},
-          {"constraint", {{"roll", {{"source", 2}, {"rollAxis", "Y"}, {"weight", 0.5}}}}}};
-      asset.root["nodes"][7]["extensions"]["VRMC_node_constraint"] = {
-          {"specVersion", "1.0"},
-          {"constraint", {{"aim", {{"source", 4}, {"aimAxis", "PositiveX"}}}}}};
-      asset.root["materials"][0]["extensions"]["VRMC_materials_mtoon"] = {
-          {"outlineWidthMode", "none"}, {"shadeColorFactor", {0, 0, 0}}};
-    } else {
-      auto& vrm = asset.root["extensions"]["VRM"];
-      vrm["blendShapeMaster"]["blendShapeGroups"][0]["materialValues"] = {
-          {{"materialName", "skin"}, {"propertyName", "_Color"}, {"targetValue", {0.5, 0, 1, 1}}},
-          {{"materialName", "skin"},
-           {"propertyName", "_MainTex_ST"},
-           {"targetValue", {1, 0.25, 0.5, 0.25}}}};
-      vrm["firstPerson"] = {{"lookAtTypeName", "BlendShape"},
-                            {"lookAtVerticalUp", {{"xRange", 60}, {"yRange", 1}}},
-                            {"meshAnnotations", {{{"mesh", 0}, {"firstPersonFlag", "Auto"}}}}};
-      vrm["materialProperties"] = {
-          {{"shader", "VRM/MToon"},
-           {"floatProperties", {{"_Cutoff", 0.5}}},
-           {"vectorProperties", {{"_Color", {1, 1, 1, 1}}, {"_MainTex", {0, 0, 1, 1}}}},
-           {"textureProperties", {{"_MainTex", 0}}},
-           {"keywordMap", {{"_ALPHATEST_ON", true}}}}};
-    }
-    assets.push_back(asset);
-  }
-  const json poisons[] = {nullptr,
-                          -1,
-                          99,
-                          3.5,
-                          1e300,
-                          "x",
-                          "",
-                          true,
-                          json::array(),
-                          json::object(),
-                          json{{"x", 1}},
-                          json{1, "y", nullptr},
-                          0};
-  Rng rng{20};
-  int loaded = 0, refused = 0;
-  for (const Asset& asset : assets) {
-    std::vector<std::string> places;
-    const json flat = asset.root.flatten();
-    for (const auto& [place, value] : flat.items())
-      for (size_t end = place.size(); end != std::string::npos && end > 0;
-           end = place.rfind('/', end - 1)) {
-        std::string part = place.substr(0, end);
-        bool ours = part.find("/VRM") != std::string::npos;
-        if (ours && std::find(places.begin(), places.end(), part) == places.end())
-          places.push_back(part);
-      }
-    ASSERT_GT(places.size(), 60u);
-    for (const std::string& place : places)
-      for (int round = 0; round < 4; round++) {
-        Asset changed = asset;
-        changed.root[json::json_pointer(place)] = poisons[size_t(rng.uniform() * 12.99f)];
-        try {
-          Character c = load_asset(changed);
-          loaded++;
-          Pose pose = make_rest_pose(c);
-          for (float& w : pose.displacers) w = rng.uniform() * 2 - 0.5f;
-          Storyteller storyteller{&c, mat4(1)};
-          StorytellerState state;
-          StorytellerInput input;
-          StorytellerEvents events;
-          input.dt = 0.05f;
-          follow_expression_rules(c, pose);
-          for (int look = 0; look < int(c.looks.size()); look++) {
-            LookChange change = change_of(c, pose, size_t(look));
-            ASSERT_TRUE(is_finite(vec3(change.base_color)) && is_finite(change.emission) &&
-                        is_finite(change.uv[2]))
-                << place;
-          }
-          tick_storyteller(state, storyteller, input, pose, events);
-          for (quat q : pose.rotations) ASSERT_NEAR(glm::length(q), 1, 1e-3f) << place;
-        } catch (const LoadError& error) {
-          refused++;
-          ASSERT_FALSE(error.what_.empty());
-        }
-      }
-  }
-  EXPECT_GT(loaded, 100);
-  EXPECT_GT(refused, 50);
 }
 
 }  // namespace
