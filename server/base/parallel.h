@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loops over cores (oneTBB). Bodies must not throw and must not depend on the order of their calls.
+// Between pieces, threads work on what is urgent (base/urgent.h).
 #pragma once
+#include <atomic>
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/partitioner.h>
@@ -24,6 +26,12 @@ class LoopOrder {
 #endif
 };
 
+extern std::atomic<bool> loop_is_urgent;  // perhaps: who looks once too often finds nothing
+void help_urgent_loop();
+inline void help_urgent() {
+  if (loop_is_urgent.load(std::memory_order_relaxed)) help_urgent_loop();
+}
+
 // body(begin, end) over disjoint pieces of [0, count), each of at least `grain` items where
 // possible.
 template <class Body>
@@ -34,6 +42,7 @@ void parallel_ranges(int count, int grain, const Body& body) {
   oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<int>(0, count, grain < 1 ? 1 : grain),
                             [&](const auto& range) {
                               order.passed();
+                              help_urgent();
                               body(range.begin(), range.end());
                               order.reached();
                             });
@@ -51,7 +60,10 @@ void parallel_each(int count, const Body& body) {
       oneapi::tbb::blocked_range<int>(0, count, 1),
       [&](const auto& range) {
         order.passed();
-        for (int i = range.begin(); i < range.end(); i++) body(i);
+        for (int i = range.begin(); i < range.end(); i++) {
+          help_urgent();
+          body(i);
+        }
         order.reached();
       },
       oneapi::tbb::simple_partitioner());
@@ -62,7 +74,10 @@ void parallel_each(int count, const Body& body) {
 template <class Body>
 void parallel_for(int count, const Body& body) {
   parallel_ranges(count, 1, [&](int begin, int end) {
-    for (int i = begin; i < end; i++) body(i);
+    for (int i = begin; i < end; i++) {
+      if (i > begin) help_urgent();
+      body(i);
+    }
   });
 }
 

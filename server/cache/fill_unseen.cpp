@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/urgent.h"
 
 namespace wellspring {
 namespace {
@@ -354,7 +354,7 @@ void fill_unseen(const Unseen& unseen, vec3 parallax, FillScratch& scratch, Imag
   prepare_levels(u, scratch);
   if (!find_blocks(u, scratch)) return;
   auto each = [](const std::vector<int>& blocks, const auto& body) {
-    parallel_ranges(int(blocks.size()), 32, [&](int begin, int end) {
+    urgent_ranges(int(blocks.size()), 32, [&](int begin, int end) {
       for (int i = begin; i < end; i++) body(blocks[size_t(i)]);
     });
   };

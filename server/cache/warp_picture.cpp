@@ -9,107 +9,20 @@
 #include <limits>
 
 #include "base/memory.h"
-#include "base/parallel.h"
-#include "cache/lanes.h"
+#include "base/urgent.h"
+#include "cache/warp_source.h"
 
 namespace wellspring {
 namespace {
 
+using namespace warping;
 constexpr int block = Keyframe::block;
 static_assert(block == lanes);
-constexpr float least_depth = 1e-6f;   // over that of the other view: nothing is nearer to a camera
 constexpr int most_steps = 96;         // along an epipolar line
 constexpr int most_blocks = 24;  // written per block, on average, when bounds are carried forward
 constexpr int seam_across = 64;        // of its width, a keyframe passes into what is around
 constexpr float found = 0.5f;          // pixels between a place and itself, carried there and back
-constexpr float half_step = 0.5f;      // pixels that disparities within a bilinear sample may open
-constexpr int fractions = 16;  // places of a bilinear sample between two pixels, as a power of 2
-constexpr int fraction_bits = 4;
-
-// From a pixel (x, y) and its disparity w in one view to another: one + x * across + y * down + w *
-// baseline is the place there times its depth over the depth here, and that ratio.
-struct Mapping {
-  vec3 one, across, down, baseline;
-};
-Mapping make_mapping(const View& from, const View& to) {
-  float scale = 2 * from.tan_half_fov / float(from.height);
-  float focal = float(to.height) * 0.5f / to.tan_half_fov;
-  auto seen = [&](vec3 d) {
-    double x = dot(dvec3(d), dvec3(to.right)), y = dot(dvec3(d), dvec3(to.up)),
-           z = dot(dvec3(d), dvec3(to.forward));
-    return vec3(float(focal * x + 0.5 * to.width * z), float(0.5 * to.height * z - focal * y),
-                float(z));
-  };
-  vec3 right = from.right * scale, down = from.up * -scale;
-  vec3 corner =
-      from.forward - right * (0.5f * float(from.width)) - down * (0.5f * float(from.height));
-  return {seen(corner), seen(right), seen(down), seen(from.position - to.position)};
-}
-
-struct Place {
-  f8 x, y, ratio;  // ratio: of depths, there over here
-};
-Place carry(const Mapping& m, const Place& base, const f8& w) {
-  f8 z = larger(base.ratio + w * m.baseline.z, splat(least_depth));
-  f8 inverse = 1.0f / z;
-  return {(base.x + w * m.baseline.x) * inverse, (base.y + w * m.baseline.y) * inverse, z};
-}
-
-template <class T>
-u8 gather(const T* from, const i8& index) {
-  static_assert(sizeof(T) == 4);
-#ifdef __AVX2__
-  return u8(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), __m256i(index), 4));
-#else
-  u8 v;
-  for (int i = 0; i < lanes; i++)
-    std::memcpy(reinterpret_cast<uint32_t*>(&v) + i, from + index[i], 4);
-  return v;
-#endif
-}
-// Words at the places and those after them.
-void gather_pairs(const uint32_t* from, const i8& index, u8& a, u8& b) {
-#ifdef __AVX2__
-  auto pairs = [&](const __m128i& i) {
-    return u8(_mm256_i32gather_epi64(reinterpret_cast<const long long*>(from), i, 4));
-  };
-  u8 low = pairs(__m128i(low_half(as<u8>(index)))), high = pairs(__m128i(high_half(as<u8>(index))));
-  a = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
-  b = __builtin_shufflevector(low, high, 1, 3, 5, 7, 9, 11, 13, 15);
-#else
-  a = gather(from, index), b = gather(from, index + 1);
-#endif
-}
-i8 to_int(const f8& v) { return __builtin_convertvector(v, i8); }
-// NaN becomes 0.
-f8 clamped(const f8& v, float high) {
-  return smaller(larger(v, f8{}), splat(high));
-}
-
-// What every pixel asks of the keyframe.
-struct Source {
-  const Keyframe& k;
-  Mapping to, back;  // from the new view to the keyframe's, and back
-  float last_x, last_y;
-  float seam = 0;  // pixels over which it passes into something else at its border
-  bool coarse;  // its pixels are large: colours are bilinear across silhouettes, too, which would
-                // have steps
-
-  Source(const Keyframe& k, const View& view, bool coarse = false)
-      : k(k), to(make_mapping(view, k.view)), back(make_mapping(k.view, view)),
-        last_x(float(k.view.width - 1)), last_y(float(k.view.height - 1)), coarse(coarse) {}
-  // Of the pixel that holds the place.
-  f8 disparity(const f8& x, const f8& y) const {
-    i8 index = to_int(clamped(y, last_y)) * k.view.width + to_int(clamped(x, last_x));
-    return as<f8>(gather(k.disparity.data(), index));
-  }
-  // What the keyframe shows there, as a disparity in the new view.
-  f8 surface(const f8& x, const f8& y) const {
-    f8 s = disparity(x, y);
-    f8 z = back.one.z + x * back.across.z + y * back.down.z + s * back.baseline.z;
-    return z > least_depth ? s / z : f8{};
-  }
-};
+constexpr float same = 0.125f;  // pixels between places of a block that one disparity stands for
 
 // Bounds of disparities of every block of the new view, from the keyframe's blocks carried forward.
 // False: they would move too far for that.
@@ -135,20 +48,16 @@ bool carry_bounds(const Source& source, const View& view, WarpScratch& scratch) 
          y = (m.one.y + qx * m.across.y + qy * m.down.y + s * m.baseline.y) * inverse *
              (1.0f / block),
          w = s * inverse;
-      float left_x = float(columns), right_x = -1, top = float(rows), bottom = -1;
-      float low = std::numeric_limits<float>::infinity(), high = -1;
-      for (int i = 0; i < lanes; i++) {
-        if (!seen[i]) continue;
-        left_x = std::min(left_x, x[i]), right_x = std::max(right_x, x[i]);
-        top = std::min(top, y[i]), bottom = std::max(bottom, y[i]);
-        low = std::min(low, w[i]), high = std::max(high, w[i]);
-      }
+      float left_x = least(seen ? x : splat(float(columns))), right_x = most(seen ? x : splat(-1)),
+            top = least(seen ? y : splat(float(rows))), bottom = most(seen ? y : splat(-1));
       if (!(right_x >= 0 && bottom >= 0 && left_x < float(columns) && top < float(rows))) continue;
       int x0 = std::max(int(left_x), 0),
           x1 = std::min(int(std::min(right_x, float(columns))), columns - 1);
       int y0 = std::max(int(top), 0), y1 = std::min(int(std::min(bottom, float(rows))), rows - 1);
       left -= int64_t(x1 - x0 + 1) * (y1 - y0 + 1);
       if (left < 0) return false;
+      float low = least(seen ? w : splat(std::numeric_limits<float>::infinity())),
+            high = most(seen ? w : splat(-1));
       for (int cy = y0; cy <= y1; cy++)
         for (int cx = x0; cx <= x1; cx++) {
           size_t c = size_t(cy) * size_t(columns) + size_t(cx);
@@ -179,6 +88,7 @@ void borrow_bounds(const WarpScratch& scratch, int columns, int rows, int bx, in
 struct Search {
   float nearest = 0, step = 0;
   int steps = 0;
+  bool look = true;  // without steps: the middle may be beside what is there
   float pixels = 0;  // a unit of disparity, at most
 };
 Search plan_search(const Source& source, float x, float y, float near, float far) {
@@ -191,61 +101,20 @@ Search plan_search(const Source& source, float x, float y, float near, float far
   };
   vec3 a = at(near), b = at(far);
   auto speed = [&](vec3 p) {
-    return std::hypot(m.baseline.x - p.x * m.baseline.z, m.baseline.y - p.y * m.baseline.z) / p.z;
+    return length(vec2(m.baseline) - vec2(p) * m.baseline.z) / p.z;
   };
-  float length = std::hypot(a.x - b.x, a.y - b.y);
+  float apart = length(vec2(a) - vec2(b));
   Search search;
   search.pixels = std::max(speed(a), speed(b));
   search.nearest = near;
-  if (!(length > found)) {  // one look in the middle
+  if (!(apart > found)) {  // one look in the middle
     search.nearest = 0.5f * (near + far);
+    search.look = apart > same;
     return search;
   }
-  search.steps = int(std::min(std::ceil(length), float(most_steps)));
+  search.steps = int(std::min(std::ceil(apart), float(most_steps)));
   search.step = (near - far) / float(search.steps);
   return search;
-}
-
-// Bilinear, of the pixels around that lie on the surface of the nearest of them.
-u8 sample_color(const Source& source, const f8& x, const f8& y, float pixels) {
-  const Keyframe& k = source.k;
-  int width = k.view.width;
-  auto place = [](const f8& v, float last) {
-    return to_int(clamped(v * fractions - (0.5f * fractions - 0.5f), last * fractions));
-  };
-  i8 px = place(x, source.last_x), py = place(y, source.last_y);
-  i8 x0 = px >> fraction_bits, y0 = py >> fraction_bits;
-  u8 fx = as<u8>(px & (fractions - 1)), fy = as<u8>(py & (fractions - 1));
-  // Where there is no further row its weight is 0; behind the last pixel there is one more.
-  i8 first = y0 * width + x0, below = first + (as<i8>(fy > 0u) & width);
-  u8 c00, c10, c01, c11;
-  gather_pairs(k.color.data(), first, c00, c10);
-  gather_pairs(k.color.data(), below, c01, c11);
-  u8 w11 = fx * fy, w10 = fx * fractions - w11, w01 = fy * fractions - w11,
-     w00 = uint32_t(fractions * fractions) - w10 - w01 - w11;
-  float allowed = half_step * Keyframe::step_scale / std::max(pixels, 1e-3f);
-  uint32_t limit = uint32_t(std::min(allowed, 255.0f));
-  if (any((c00 >> 24) > limit)) {
-    float apart = allowed / Keyframe::step_scale;
-    f8 own = source.disparity(x, y);
-    u8 lost{};
-    auto thin = [&](const i8& index, u8& weight) {
-      i8 other = magnitude(as<f8>(gather(k.disparity.data(), index)) - own) > apart;
-      lost += weight & as<u8>(other);
-      weight &= as<u8>(~other);
-    };
-    thin(first, w00), thin(first + 1, w10), thin(below, w01), thin(below + 1, w11);
-    // The nearest pixel is always of its own surface.
-    i8 is_right = as<i8>(fx) >= fractions / 2, is_below = as<i8>(fy) >= fractions / 2;
-    w11 += lost & as<u8>(is_right & is_below), w10 += lost & as<u8>(is_right & ~is_below);
-    w01 += lost & as<u8>(~is_right & is_below), w00 += lost & as<u8>(~is_right & ~is_below);
-  }
-  constexpr uint32_t two = 0x00ff00ffu;
-  u8 red_blue =
-      (c00 & two) * w00 + (c10 & two) * w10 + (c01 & two) * w01 + (c11 & two) * w11 + 0x00800080u;
-  auto green = [](const u8& c) { return (c >> 8) & 255u; };
-  u8 g = green(c00) * w00 + green(c10) * w10 + green(c01) * w01 + green(c11) * w11 + 128u;
-  return ((red_blue >> 8) & two) | (g & 0xff00u);
 }
 
 // Eight pixels from their words' lowest three bytes.
@@ -298,8 +167,9 @@ struct RowBits {
 };
 // `disparity`: of the pixels, written if search.steps > 0; `share`: how much of 255 the keyframe
 // has in them, written if any is not all its own. No more than `count`.
-RowBits warp_row(const Source& source, float x, float y, int count, const Search& search,
-                 uint8_t* to, float* disparity, uint8_t* share) {
+[[gnu::always_inline]] inline RowBits warp_row(const Source& source, float x, float y, int count,
+                                               const Search& search, uint8_t* to,
+                                               float* disparity, uint8_t* share) {
   const Mapping& m = source.to;
   f8 px = x + f8{0, 1, 2, 3, 4, 5, 6, 7};
   Place base{m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
@@ -308,9 +178,9 @@ RowBits warp_row(const Source& source, float x, float y, int count, const Search
   f8 at_x, at_y;
   if (search.steps ==
       0) {  // whatever lies in the middle is right to half a pixel, and then to much less
-    Place one = carry(m, base, splat(search.nearest));
-    Place two = carry(m, base, source.surface(one.x, one.y));
-    at_x = two.x, at_y = two.y;
+    Place place = carry(m, base, splat(search.nearest));
+    if (search.look) place = carry(m, base, source.surface(place.x, place.y));
+    at_x = place.x, at_y = place.y;
   } else {
     f8 seen;
     waiting =
@@ -335,14 +205,16 @@ RowBits warp_row(const Source& source, float x, float y, int count, const Search
   return bits;
 }
 
-// Calls warp(x, y, count, search) for every row of every block; (x, y): its first pixel.
-template <class Warp>
+// Calls warp(x, y, count, search) for every row of every block that wants(bx, by) it; (x, y): its
+// first pixel.
+template <class Wants, class Warp>
 void each_row(const Source& source, const View& view, const WarpScratch& scratch,
-              const Warp& warp) {
+              const Wants& wants, const Warp& warp) {
   int columns = (view.width + block - 1) / block, rows = (view.height + block - 1) / block;
-  parallel_ranges(rows, 2, [&](int begin, int end) {
+  urgent_ranges(rows, 1, [&](int begin, int end) {
     for (int by = begin; by < end; by++)
       for (int bx = 0; bx < columns; bx++) {
+        if (!wants(bx, by)) continue;
         size_t c = size_t(by) * size_t(columns) + size_t(bx);
         float far = scratch.farthest[c], near = scratch.nearest[c];
         if (near < 0) borrow_bounds(scratch, columns, rows, bx, by, far, near);
@@ -362,15 +234,23 @@ uint8_t* pixel_at(Image8& image, int x, int y) {
 // What the keyframe does not show, and near its border what it does, is taken from `around`.
 void warp_around(const Source& around, const View& view, WarpScratch& scratch, Image8& out) {
   Unseen& unseen = scratch.unseen;
-  each_row(around, view, scratch, [&](int x, int y, int count, const Search& search) {
+  auto wants = [&](int bx, int by) {
+    unsigned bits = 0;
+    for (int y = by * block; y < std::min((by + 1) * block, view.height); y++) {
+      size_t word = size_t(y) * size_t(unseen.columns) + size_t(bx);
+      bits |= unseen.outside[word] | scratch.at_seam[word];
+    }
+    return bits != 0;
+  };
+  each_row(around, view, scratch, wants, [&](int x, int y, int count, const Search& search) {
     size_t word = size_t(y) * size_t(unseen.columns) + size_t(x / block);
     unsigned outside = unseen.outside[word], wanted = outside | scratch.at_seam[word];
     if (wanted == 0) return;
-    uint8_t rgb[3 * block], *to = pixel_at(out, x, y);
+    uint8_t rgb[3 * block], no_share[block], *to = pixel_at(out, x, y);
     float disparity[block];
     std::fill_n(disparity, block, search.nearest);
     RowBits row =
-        warp_row(around, float(x) + 0.5f, float(y) + 0.5f, count, search, rgb, disparity, nullptr);
+        warp_row(around, float(x) + 0.5f, float(y) + 0.5f, count, search, rgb, disparity, no_share);
     size_t first = size_t(y) * size_t(view.width) + size_t(x);
     for (unsigned bits = wanted & ~row.outside & ~row.hidden; bits != 0; bits &= bits - 1) {
       int i = std::countr_zero(bits),
@@ -436,9 +316,10 @@ float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View&
     scratch.at_seam.resize(unseen.outside.size());
     scratch.share.resize(size_t(view.width) * size_t(view.height));
   }
-  std::atomic<bool> whole{true},
-      in_view{true};  // nothing is unseen; nor is the keyframe's border in the picture
-  each_row(source, view, scratch, [&](int x, int y, int count, const Search& search) {
+  constexpr unsigned hidden = 1, outside = 2, at_seam = 4;
+  std::atomic<unsigned> bits{0};  // those of them that some pixel is
+  auto all = [](int, int) { return true; };
+  each_row(source, view, scratch, all, [&](int x, int y, int count, const Search& search) {
     size_t word = size_t(y) * size_t(unseen.columns) + size_t(x / block);
     size_t first = size_t(y) * size_t(view.width) + size_t(x);
     RowBits row =
@@ -448,18 +329,20 @@ float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View&
       unseen.flat[size_t(y / block) * size_t(unseen.columns) + size_t(x / block)] =
           search.steps == 0 ? search.nearest : Unseen::many;
     unseen.hidden[word] = row.hidden, unseen.outside[word] = row.outside;
-    if (row.hidden | row.outside) whole = false;
-    if (around.empty()) return;
-    scratch.at_seam[word] = row.at_seam;
-    if (row.at_seam | row.outside) in_view = false;
+    if (!around.empty()) scratch.at_seam[word] = row.at_seam;
+    unsigned are = (row.hidden ? hidden : 0) | (row.outside ? outside : 0) |
+                   (row.at_seam ? at_seam : 0);
+    if (are & ~bits.load(std::memory_order_relaxed)) bits |= are;
   });
-  if (!in_view) {
+  if (!around.empty() && (bits & (outside | at_seam))) {
     Source wide(around, view, true);
-    spread_disparities(view, unseen);
+    if (bits & outside) spread_disparities(view, unseen);
     if (carry_bounds(wide, view, scratch)) warp_around(wide, view, scratch, out);
   }
-  if (whole) return 0;
-  float unknown = float(count_bits(unseen.outside)) / (float(view.width) * float(view.height));
+  if (!(bits & (hidden | outside))) return 0;
+  float unknown = bits & outside ? float(count_bits(unseen.outside)) /
+                                        (float(view.width) * float(view.height))
+                                  : 0;
   if (!(unknown > most_unknown)) fill_unseen(unseen, source.back.baseline, scratch.fill, out);
   return unknown;
 }
