@@ -2,15 +2,20 @@
 // cache.switch.right: a lamp is switched before a visitor, and how many of the pixels that this
 // changes by more than 10 % are within 10 % of right (converged `path`) some time later. The cache
 // is told (relight), has to find out, or begins from nothing (cleared), which says what so few
-// samples can tell at all. Pictures are 60 a second.
+// samples can tell at all. Pictures are 60 a second. Of an exhibit's own lamps it is told where
+// light changes and by how much (light/lamps.h), and what that takes is measured:
+// cache.switch.light_ms once for everybody, cache.switch.visitor_ms for each visitor.
 #include <cmath>
 #include <filesystem>
 
+#include "base/clock.h"
+#include "base/load_error.h"
 #include "base/rng.h"
 #include "cache/cache.h"
 #include "cache/compose_drawn.h"
 #include "cache_visit_truth.h"
 #include "frame/picture_file.h"
+#include "light/lamps.h"
 #include "light_scenes.h"
 #include "report.h"
 
@@ -24,8 +29,9 @@ constexpr float tolerance = 0.1f, darkest = 1e-4f;
 // A scene in one of its lights.
 struct Lit {
   Scene scene;
+  std::vector<char> lamps;  // of an exhibit's: is it on? Empty: another scene is another light
   std::unique_ptr<World> world;
-  Lights lights;
+  Lights lights, all;  // `all`: while all of the exhibit's lamps are on
   std::unique_ptr<PictureSight> sight;
   View view;
   Truth truth;
@@ -42,17 +48,26 @@ bool is_right(vec3 shown, vec3 wanted) {
   return std::abs(luminance(shown) - luminance(wanted)) <= tolerance * luminance(wanted) + darkest;
 }
 
+// Of an exhibit even many samples do not tell every pixel: judged are those of which they do.
+bool is_known(const Lit& lit, size_t i) {
+  return lit.lamps.empty() || is_right(lit.truth.half[0].color[i], lit.truth.half[1].color[i]);
+}
+
+bool is_affected(const Lit& a, const Lit& b, size_t i) {
+  if (!is_known(a, i) || !is_known(b, i)) return false;
+  float one = luminance(a.truth.picture.color[i]), other = luminance(b.truth.picture.color[i]);
+  return std::abs(one - other) > tolerance * std::max(one, other) + darkest;
+}
+
 // Of the affected pixels. `map`: those that are right green, too bright ones red, too dark ones
 // blue.
 float share_right(const Frame& shown, const Lit& was, const Lit& is, Frame& map) {
   int affected = 0, all_right = 0;
   map = shown;
   for (size_t i = 0; i < shown.color.size(); i++) {
-    vec3 wanted = is.truth.picture.color[i], old = was.truth.picture.color[i];
+    vec3 wanted = is.truth.picture.color[i];
     map.color[i] = vec3(0);
-    if (std::abs(luminance(wanted) - luminance(old)) <=
-        tolerance * std::max(luminance(wanted), luminance(old)) + darkest)
-      continue;
+    if (!is_affected(was, is, i)) continue;
     bool right = is_right(shown.color[i], wanted),
          bright = luminance(shown.color[i]) > luminance(wanted);
     map.color[i] = right ? vec3(0, 0.3f, 0) : bright ? vec3(1, 0, 0) : vec3(0, 0, 1);
@@ -99,14 +114,46 @@ struct Onlooker {
   }
 };
 
+// Tells the cache as the show does. Milliseconds that the light takes for everybody, and its cache
+// for each visitor.
+struct Told {
+  double light_ms = 0, visitor_ms = 0;
+};
+Told tell(const Lit& was, const Lit& is, RenderCache& cache) {
+  if (is.lamps.empty()) {
+    cache.relight([](vec3, vec3, vec3&, vec3&) { return true; });
+    return {};
+  }
+  auto put = [&](const std::vector<char>& lamps) {
+    for (size_t i = 0; i < lamps.size(); i++) is.world->switch_lamp(int(i), lamps[i]);
+  };
+  put(was.lamps);
+  double start = seconds_now();
+  put(is.lamps);
+  Lights lights = relit(is.all, *is.world);
+  double lit = seconds_now();
+  LightChange change(is.scene, is.all, was.lamps, is.lamps);
+  cache.relight([&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
+    return change.changes(place, normal, kept, added);
+  });
+  return {1e3 * (lit - start), 1e3 * (seconds_now() - lit)};
+}
+
 void run(BenchReport& report, const BenchOptions& options, const Switch& scene, Way way, News news,
          bool on, int mismatch) {
   const Lit &was = on ? scene.off : scene.on, &is = on ? scene.on : scene.off;
   Onlooker visitor{.scene = scene, .way = way};
   if (news != News::cleared)
     for (int i = 0; i < before; i++) visitor.show(was, mismatch);
-  if (news == News::told)
-    visitor.cache.relight([](vec3, vec3, vec3&, vec3&) { return true; });
+  if (news == News::told) {
+    Told told = tell(was, is, visitor.cache);
+    nlohmann::json fields = {{"scene", scene.scene}, {"way", way_names[int(way)]},
+                             {"light", on ? "on" : "off"}, {"mismatch", mismatch}};
+    if (!is.lamps.empty()) {
+      report.add("cache.switch.light_ms", told.light_ms, "ms", fields);
+      report.add("cache.switch.visitor_ms", told.visitor_ms, "ms", fields);
+    }
+  }
   int picture = 0;
   Frame map;
   for (int after : judged_after) {
@@ -138,12 +185,25 @@ void prepare(const std::string& name, const BenchScene& scene, const TruthSettin
   const Technique& technique = *find_technique(name);
   if (technique.prepare)
     technique.prepare(*lit.world, std::span(&lit.view.position, 1), lit.lights);
+  if (!lit.lamps.empty()) {
+    for (size_t i = 0; i < lit.lamps.size(); i++) lit.world->switch_lamp(int(i), lit.lamps[i]);
+    lit.all = lit.lights;
+    lit.lights = relit(lit.all, *lit.world);
+  }
   lit.truth = find_truth(*lit.world, lit.lights, lit.view, truths);
+}
+
+// One of the exhibit's lamps, while all others are on.
+void make_exhibit_lamps(const std::string& name, Lit& off, Lit& on) {
+  for (Lit* lit : {&off, &on}) lit->lamps.assign(lit->scene.lamps.size(), 1);
+  for (size_t i = 0; i < off.lamps.size(); i++) off.lamps[i] = off.scene.lamps[i].name != name;
+  if (off.lamps == on.lamps) throw LoadError("castle", "/lamps", "there is no '" + name + "'");
 }
 
 // What is switched: a spot light beside the box's lamp or beside a point light instead of that, the
 // lamp beside a point light, or all lamps of the castle but its sun.
 void make_lamps(const std::string& what, Scene& off, Scene& on) {
+  off.lamps.clear(), on.lamps.clear();
   PunctualLight lamp;
   if (what == "box_points") {
     for (Scene* scene : {&off, &on}) {
@@ -181,19 +241,23 @@ void bench_cache_switch(BenchReport& report, const BenchOptions& options) {
   int width = options.visit_width > 0 ? options.visit_width : 192;
   std::vector<int> mismatches = options.visit_mismatches;
   if (mismatches.empty()) mismatches = {4, 16, 64};
-  for (const char* what : {"box_spot", "box_points", "box_lamp", "castle"}) {
+  for (std::string what : {"box_spot", "box_points", "box_lamp", "castle", "daylight"}) {
     if (!options.visit_trace.empty() && options.visit_trace != what) continue;
-    BenchScene bench =
-        load_bench_scene(options, what == std::string("castle") ? "castle" : "cornell_box");
+    const bool box = what.starts_with("box"), exhibit = !box && what != "castle";
+    BenchScene bench = load_bench_scene(options, box ? "cornell_box" : "castle");
     Switch scene{what, options.visit_technique, bench.max_depth, {}, {}};
     truths.spp = options.visit_spp > 0 ? options.visit_spp : options.quick ? 96 : 512;
     truths.max_depth = bench.max_depth;
     scene.off.scene = bench.scene, scene.on.scene = bench.scene;
     // Light that falls directly owes little to chance: what is wrong then is the cache's fault.
-    if (what == std::string("box_points"))
+    if (what == "box_points")
       scene.technique = "path", scene.max_depth = truths.max_depth = 2;
-    make_lamps(what, scene.off.scene, scene.on.scene);
+    if (exhibit) make_exhibit_lamps(what, scene.off, scene.on);
+    else make_lamps(what, scene.off.scene, scene.on.scene);
     for (Lit* lit : {&scene.off, &scene.on}) prepare(scene.technique, bench, truths, width, *lit);
+    int affected = 0, pixels = int(scene.on.truth.picture.color.size());
+    for (int i = 0; i < pixels; i++) affected += is_affected(scene.off, scene.on, size_t(i));
+    report.add("cache.switch.affected", double(affected) / pixels, "share", {{"scene", what}});
     for (const Lit* lit : {&scene.off, &scene.on}) {
       int alike = 0;
       for (size_t i = 0; i < lit->truth.picture.color.size(); i++)
