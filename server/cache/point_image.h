@@ -51,10 +51,14 @@ inline void reserve_image(PointImage& image, int width, int height) {
 }
 
 // Enough witnesses of each tile to tell change from noise.
-inline void keep_newest_witnesses(PointImage& image) {
+inline size_t most_witnesses(const PointImage& image) {
   const size_t each = image.alarm > 0 ? 48 : 12, most = image.alarm > 0 ? 1 << 17 : 1 << 15;
-  size_t count = image.witnesses.size(),
-         kept = std::min({count, each * image.changed.size(), most});
+  return std::min(each * image.changed.size(), most);
+}
+// And room for so many more among them.
+inline void keep_newest_witnesses(PointImage& image, size_t more = 0) {
+  size_t count = image.witnesses.size(), most = most_witnesses(image),
+         kept = std::min(count, most - std::min(more, most));
   image.witnesses.erase(image.witnesses.begin(), image.witnesses.begin() + ptrdiff_t(count - kept));
 }
 

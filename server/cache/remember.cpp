@@ -358,11 +358,16 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
     });
     points.next_group = uint32_t((points.next_group + round) % groups);
   }
+  // Never more than are kept, or memory would be as large as there are samples.
+  auto tell = size_t(std::count_if(effects.begin(), effects.begin() + ptrdiff_t(count),
+                                   [](const auto& effect) { return effect.tells; }));
+  size_t left_out = tell - std::min(tell, most_witnesses(image));
+  keep_newest_witnesses(image, tell - left_out);
   for (size_t i = 0; i < count; i++) {
-    if (effects[i].tells) image.witnesses.push_back(effects[i].witness);
+    if (effects[i].tells && (left_out == 0 || left_out-- == 0))
+      image.witnesses.push_back(effects[i].witness);
     if (effects[i].restarted && shows(i)) result.restarted.push_back(requests[i].pixel);
   }
-  keep_newest_witnesses(image);
   add_anchors(points, samples.first(count), targets);
   result.kept = int(count) - result.rejected;
   result.merged = merged;

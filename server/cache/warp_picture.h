@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A picture of the view as it is now, made of one that was drawn for a view of a moment ago, in a
 // few milliseconds: between drawn pictures, visitors see what their input does (late reprojection;
-// Mark, McMillan, Bishop 1997, "Post-Rendering 3D Warping"). Backwards: every pixel looks along its
-// epipolar line in the keyframe, from the nearest disparity there may be to the farthest (bounds of
-// blocks, carried forward), for the first surface that it would see; where that is a short piece,
-// as nearly everywhere, a step of fixed-point iteration finds it (Bowles, Mitchell, Sumner, Moore,
-// Gross 2012, "Iterative Image Warping"), or none where places differ by less than what bilinear
-// samples tell apart. Cores that draw meanwhile take part (base/urgent.h). What was hidden in the keyframe takes colours of what
-// lies behind, never those of what hid it (cache/fill_unseen.h). Colours are bilinear within a
-// surface.
+// Mark, McMillan, Bishop 1997, "Post-Rendering 3D Warping"). Backwards: every pixel looks along
+// its epipolar line in the keyframe, from the nearest disparity there may be to the farthest
+// (bounds of blocks, carried forward), for the first surface that it would see; where that is a
+// short piece, as nearly everywhere, a step of fixed-point iteration finds it (Bowles, Mitchell,
+// Sumner, Moore, Gross 2012, "Iterative Image Warping"), or none where places differ by less than
+// what bilinear samples tell apart. Cores that draw meanwhile take part (base/urgent.h). What was
+// hidden in the keyframe takes colours of what lies behind, never those of what hid it
+// (cache/fill_unseen.h). Colours are bilinear within a surface.
 #pragma once
 #include "cache/fill_unseen.h"
 #include "cache/keyframe.h"

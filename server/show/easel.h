@@ -7,6 +7,7 @@
 //   idle --draw_next--> drawing --finish_drawing--> idle, or, if samples are asked for, --> tracing
 //   --> idle
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <oneapi/tbb/task_arena.h>
@@ -32,6 +33,7 @@ struct PictureOrder {
   uint32_t seq = 0;      // of the visitor's last input
   uint32_t leaps = 0;    // of the visitor, by then
   bool still = false;    // without motion for a moment
+  bool figure = false;   // the storyteller may be in it
   bool settled = false;  // for long: the reference takes over
   bool passing = false;  // drawn for a moment, and some around (cache/compose_drawn.h)
   bool coarse = false;   // that in coarser light
@@ -48,6 +50,7 @@ struct PictureCosts {
   float display = 0, light = 0, trace = 0, look = 0, drawing = 0, tonemap = 0;
   size_t samples = 0, looks = 0;
   bool late = false;     // its samples are still to be traced
+  bool given_up = false;  // there is no picture
   double seconds = 0;    // from its order on
 };
 
@@ -73,6 +76,9 @@ struct Easel {
   Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
   bool surrounds = false;    // only `order.around` of it
   PictureOrder order;        // for it
+  // By the tick: nobody needs that picture any more (is_outdated), so what is not drawn of it yet
+  // is left out.
+  std::atomic<bool> given_up{false};
   std::vector<Broker*> brokers;  // that what is being traced was asked by; empty: it is not tracing
   double seconds = 0;            // for that
   size_t traced = 0;             // samples

@@ -60,6 +60,8 @@ std::string write_metrics(const ShowReport& report) {
          double(totals.unwarpable));
   metric(out, "surroundings_drawn_total", "counter",
          "Small wide pictures drawn of what a quick turn may show", double(totals.surroundings));
+  metric(out, "drawings_given_up_total", "counter",
+         "Pictures not drawn since their visitors were elsewhere by then", double(totals.given_up));
   metric(out, "picture_bytes_total", "counter", "Bytes of pictures made",
          double(totals.picture_bytes));
   metric(out, "messages_total", "counter", "Messages from browsers", double(totals.messages));

@@ -26,6 +26,8 @@ constexpr float forgotten = 0.998f;    // of what drawing took, a picture withou
 constexpr double predicted_pictures = 2;
 constexpr float predicted_share = 0.3f;    // of the samples, at most
 constexpr float barely_covered = 0.1f;  // of the pixels by points
+constexpr size_t least_slice = 2048;  // samples
+constexpr double slice = 0.025;  // seconds of tracing at a time, while it may be given up
 constexpr float more_asked = 1.2f;  // than there is time for, by what was measured: none is idle
 
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
@@ -81,8 +83,20 @@ bool wants_drawing(const Show& show, const Visitor& visitor) {
   if (visitor.leaps != visitor.order.leaps) return true;
   bool moves = show.settings.background && !stands(show, visitor);
   if (visitor.unshown && !moves) return false;
+  // Other light, or the storyteller came or went: who rests sees it at once.
+  bool news = visitor.lamps != show.switches.lit ||
+              visitor.order.figure != sees_figure(show, visitor.last_view);
+  if (!moves && news) return true;
   double rate = moves ? picture_rate(show, visitor) : drawing_rate(show, visitor);
   return show.time - visitor.drawn_at >= 1 / rate - 0.0005;
+}
+
+bool is_outdated(const Show& show, const PictureOrder& order, const Visitor& visitor) {
+  if (visitor.left || visitor.leaps != order.leaps) return true;
+  bool has_one = visitor.drawn_at >= 0 && visitor.order.leaps == order.leaps;
+  return has_one && order.still &&
+         (visitor.last_view != order.expected || lamps_wait(show) ||
+          order.figure != sees_figure(show, visitor.last_view));
 }
 
 PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
@@ -93,6 +107,7 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   const View& now = visitor.last_view;
   order.expected = order.view = order.ahead = now;
   order.seq = visitor.seq;
+  order.figure = sees_figure(show, now);
   order.leaps = visitor.leaps;
   order.still = show.time - visitor.moved_at > still_after;
   const PictureOrder& before = visitor.order;
@@ -179,7 +194,18 @@ void trace_or_ask(Show& show, const PictureOrder& order, const Technique& techni
   if (technique.begin_pass)
     technique.begin_pass(*show.world, transport, lit, visitor.link->id, uint32_t(order.tick),
                          show.lights);
-  trace(technique, *show.world, show.lights, transport, work.requests, work.samples);
+  size_t all = work.requests.size(), traced = 0, most = all;
+  if (!technique.begin_pass)
+    most = size_t(std::max(slice * double(show.samples_per_second), double(least_slice)));
+  while (traced < all && !show.easel.given_up) {
+    size_t count = std::min(most, all - traced);
+    trace(technique, *show.world, show.lights, transport,
+          std::span(work.requests).subspan(traced, count),
+          std::span(work.samples).subspan(traced, count));
+    traced += count;
+  }
+  work.requests.resize(traced);
+  work.samples.resize(traced);
 }
 
 // A picture of points alone, into work.frame. Returns the seconds that looks took.
@@ -208,6 +234,12 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   trace_or_ask(show, order, technique, lit, work, visitor);
   double traced = seconds_now();
   if (!costs.late) cache.remember(lit, work.requests, work.samples);
+  costs.samples = work.samples.size();
+  costs.trace = float(1000 * (traced - planned));
+  if (show.easel.given_up) {
+    costs.given_up = true;
+    return;
+  }
   const Tonemap curve{show.exhibit.exposure};
   work.looks.clear();
   if (order.passing)
@@ -223,9 +255,7 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
                   work.keyframe);
   double finished = seconds_now();
 
-  costs.samples = work.samples.size();
   costs.looks = work.looks.size();
-  costs.trace = float(1000 * (traced - planned));
   costs.look = float(1000 * looking);
   costs.drawing = order.display.drawn ? cache.stats().drawing_ms : 0.0f;
   (order.passing ? costs.light : costs.display) =
@@ -256,6 +286,12 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   StageTimes& times = visitor.times;
   if (costs.samples > 0 && costs.trace > 0)
     smooth(show.samples_per_second, float(costs.samples) / (0.001f * costs.trace));
+  show.totals.samples += costs.samples;
+  if (costs.given_up) {
+    visitor.surrounded = false;
+    show.totals.given_up++;
+    return;
+  }
   if (costs.looks >= least_measured && costs.look > 0)
     smooth(show.looks_per_second, float(costs.looks) / (0.001f * costs.look));
   if (order.passing) {
@@ -292,7 +328,6 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   visitor.order = order;
   visitor.unshown = true;
   show.totals.drawn++;
-  show.totals.samples += costs.samples;
 }
 
 void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {

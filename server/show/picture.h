@@ -24,7 +24,12 @@ bool wants_drawing(const Show& show, const Visitor& visitor);
 
 // `busy` visitors share the time.
 PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy);
+// The picture of this order would not be shown, since the visitor is somewhere else by now or has
+// left; or one at rest would wait for samples of what is no longer so: its visitor moves on, lamps
+// were switched, the storyteller came or went.
+bool is_outdated(const Show& show, const PictureOrder& order, const Visitor& visitor);
 // Changes nothing but what of the visitor is the easel's, and what techniques keep in show.lights.
+// Ends early, with costs.given_up and all samples traced by then, once easel.given_up is set.
 void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor);
 void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor);
 // Before that, where the order has something around: it is shown as soon as it is there.

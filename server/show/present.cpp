@@ -17,7 +17,7 @@ namespace wellspring {
 namespace {
 
 constexpr double still_rate = 20;      // pictures a second while only the storyteller moves
-constexpr double settling_rate = 12;   // while nothing moves: more time for samples
+constexpr double settling_rate = 7;    // while nothing moves: more time for samples
 constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr double on_time = 0.0005;     // seconds that a picture may come too early
 constexpr double warping_share = 0.5;  // of the cores, at most, for all visitors' warps and JPEGs

@@ -12,6 +12,7 @@ namespace wellspring {
 struct ShowTotals {
   uint64_t drawn = 0, warped = 0, unwarpable = 0;  // pictures; warps given up
   uint64_t surroundings = 0;  // drawn of quick turns
+  uint64_t given_up = 0;      // pictures that nobody needed any more before they were drawn
   uint64_t pictures = 0, picture_bytes = 0, samples = 0, messages = 0, refused_messages = 0;
   float tick_ms = 0, animate_ms = 0;  // of the last tick
   uint64_t utterances = 0, sounds = 0,

@@ -270,6 +270,7 @@ void use_easel(Show& show, int waiting) {
   easel.surrounds = easel.order.around && !next->surrounded;
   if (!easel.surrounds) pose_world(show);
   next->at_work = true;
+  easel.given_up = false;
   easel.worker.run([&show] {
     Easel& easel = show.easel;
     const auto& draw = easel.surrounds ? draw_surroundings : draw_picture;
@@ -326,6 +327,8 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
     watch(show, visitor);
   }
+  Easel& easel = show.easel;
+  if (easel.drawn && is_outdated(show, easel.order, *easel.drawn)) easel.given_up = true;
   if (show.settings.background && free) use_easel(show, waiting);
   if (!show.settings.background) draw_now(show, waiting);
   for (Visitor& visitor : show.visitors) {

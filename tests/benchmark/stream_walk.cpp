@@ -4,104 +4,20 @@
 // that shows it.
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <deque>
-#include <fcntl.h>
-#include <netinet/in.h>
 #include <numbers>
-#include <spawn.h>
 #include <stdexcept>
-#include <sys/socket.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "base/clock.h"
 #include "report.h"
 #include "stream/ws_client.h"
+#include "stream_server.h"
 #include "wire/json.h"
 #include "wire/packet.h"
-
-extern char** environ;
 
 namespace wellspring {
 
 namespace {
-
-// A server of its own on a free port, ended with this value.
-class ServerProcess {
- public:
-  ServerProcess(const BenchOptions& options, const std::string& exhibit, const std::string& draw) {
-    int out[2];
-    if (pipe(out) != 0) throw std::runtime_error("pipe failed");
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, out[1], 1);
-    posix_spawn_file_actions_addclose(&actions, out[0]);
-    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-    std::string program = options.programs + "/wellspring_server";
-    std::vector<std::string> words = {program,     "--port",        "0",     "--exhibit", exhibit,
-                                      "--content", options.content, "--web", options.web, "--draw",
-                                      draw};
-    words.insert(words.end(), options.server_words.begin(), options.server_words.end());
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    int failed = posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(out[1]);
-    if (failed) throw std::runtime_error(program + ": cannot be started; build all programs first");
-    std::string text;
-    char part[256];
-    while (text.find('\n') == std::string::npos) {
-      ssize_t n = read(out[0], part, sizeof part);
-      if (n <= 0) break;
-      text.append(part, size_t(n));
-    }
-    close(out[0]);
-    size_t colon = text.rfind(':');
-    if (colon == std::string::npos)
-      throw std::runtime_error(program + ": did not print its address");
-    port = uint16_t(std::stoi(text.substr(colon + 1)));
-  }
-  ~ServerProcess() {
-    kill(pid_, SIGTERM);
-    waitpid(pid_, nullptr, 0);
-  }
-  // Resident memory in bytes.
-  double resident() const {
-    std::FILE* file = std::fopen(("/proc/" + std::to_string(pid_) + "/statm").c_str(), "r");
-    double total = 0, pages = 0;
-    if (file) {
-      if (std::fscanf(file, "%lf %lf", &total, &pages) != 2) pages = 0;
-      std::fclose(file);
-    }
-    return pages * double(sysconf(_SC_PAGESIZE));
-  }
-  uint16_t port = 0;
-
- private:
-  pid_t pid_ = 0;
-};
-
-// Of the server's /metrics; NaN where it has none of that name.
-double read_metric(uint16_t port, const std::string& name) {
-  int connection = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const std::string question =
-      "GET /metrics HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
-  std::string text;
-  if (connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
-      write(connection, question.data(), question.size()) == ssize_t(question.size())) {
-    char part[4096];
-    for (ssize_t n; (n = read(connection, part, sizeof part)) > 0;) text.append(part, size_t(n));
-  }
-  close(connection);
-  size_t at = text.find("\nwellspring_" + name + " ");
-  return at == std::string::npos ? std::nan("") : std::atof(&text[at + name.size() + 13]);
-}
 
 // A stroll up and down: ahead, swaying, and round again every few seconds with the turn of a key
 // (web/controls.js), so that walls come and go and none is walked into, where there would be

@@ -10,6 +10,7 @@
 #include "frame/jpeg.h"
 #include "frame/tonemap.h"
 #include "show/answer.h"
+#include "show/picture.h"
 #include "show/show.h"
 #include "tiny_exhibit.h"
 
@@ -215,6 +216,63 @@ TEST_F(LatePictures, NothingAroundTheOldPlaceAfterALeap) {
     }
   }
   EXPECT_EQ(visitor().order.leaps, visitor().leaps);
+}
+
+// What a still picture waits for is samples, which whoever moves on needs no more.
+TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
+  begin();
+  steps(60);
+  hold_easel();
+  Visitor& one = visitor();
+  PictureOrder order = order_picture(*show, one, 1);
+  ASSERT_TRUE(order.still);
+  EXPECT_FALSE(is_outdated(*show, order, one));
+  show->easel.drawn = &one;  // as if the easel were at work on it
+  show->easel.order = order;
+  one.at_work = true;
+  step(false);
+  EXPECT_FALSE(show->easel.given_up);
+  turn(0.02);
+  step(false);
+  EXPECT_TRUE(is_outdated(*show, order, one));
+  EXPECT_TRUE(show->easel.given_up);
+  EXPECT_EQ(header(pictures.size() - 1).seq, seq);  // meanwhile warped
+
+  Keyframe keyframe = one.keyframe;
+  uint64_t drawn = show->totals.drawn;
+  release_easel();
+  draw_picture(*show, order, one);
+  EXPECT_TRUE(one.costs.given_up);
+  EXPECT_EQ(one.costs.samples, 0u);
+  turn(0.02);
+  step();
+  EXPECT_EQ(show->totals.given_up, 1u);
+  EXPECT_EQ(show->totals.drawn, drawn);
+  EXPECT_EQ(one.keyframe.color, keyframe.color);
+  EXPECT_EQ(header(pictures.size() - 1).seq, seq);
+  step();
+  EXPECT_EQ(show->totals.drawn, drawn + 1);  // at once the next, of where the visitor is now
+  EXPECT_FALSE(one.order.still);
+  EXPECT_FALSE(one.costs.given_up);
+}
+
+TEST_F(LatePictures, AreOutdatedByLeapsAndByMotionAfterRest) {
+  begin();
+  Visitor unseen;
+  PictureOrder order;
+  order.still = true;
+  order.expected = unseen.last_view;
+  unseen.last_view.position.x += 1;
+  EXPECT_FALSE(is_outdated(*show, order, unseen));  // there is nothing else to show
+  unseen.leaps++;
+  EXPECT_TRUE(is_outdated(*show, order, unseen));
+  unseen.order.leaps = order.leaps = unseen.leaps;
+  unseen.drawn_at = 1;
+  EXPECT_TRUE(is_outdated(*show, order, unseen));
+  order.still = false;  // pictures of who moves are for views to come
+  EXPECT_FALSE(is_outdated(*show, order, unseen));
+  unseen.left = true;
+  EXPECT_TRUE(is_outdated(*show, order, unseen));
 }
 
 TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {
