@@ -213,7 +213,7 @@ def make_chandelier(name, x, candles=6, height=3.75):
         mesh.tube([(0.016 * math.cos(a), 0, 0.034 * math.sin(a)) for a in (2 * math.pi * i / 8
             for i in range(8))], 0.0055, 'iron', 5, closed=True)
     mesh.finish(location=(x, 0, height))
-    make_point(name + ' Light', (x, 0, height + 0.42), 8.0)
+    make_point(name + ' Light', (x, 0, height - 0.30), 8.0)
 
 
 def make_bench(mesh, x, y, angle, length=1.7):
