@@ -90,7 +90,12 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
 // Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
 // or chance nobody knows.
 constexpr float calm_counts = 1 / 64.0f;
-constexpr float moving_doubt = 3, few_samples = 4;
+constexpr float moving_doubt = 3;
+constexpr float smooth_doubts = 4;  // of these, for smooth light, where chance is larger
+// Of what is so narrow that no cell stands for it: samples that count as much as its surroundings
+// do, in moving pictures and in those at rest; how much more the same object's cells count than
+// others'; and light of lamps over smooth light, of which more is a lamp seen.
+constexpr float narrow_patience = 1, still_patience = 0.5f, same_object = 9, most_rest = 4;
 f8 under(const f8& light, const f8& albedo, const f8& theirs) {
   return light * rest_ratio(albedo, theirs);
 }
@@ -160,25 +165,36 @@ void read_rows(const PixelRays& rays, const Cells& cells, int first, int row, in
     rows.flat[part] = find_flat(rays, cells, first + 1 + part * lanes, row + 1);
 }
 
-// Lit as what is around, whatever surface that is.
-void light_as_neighbours(const PaintedCell* const* corners, const f8* weights, const i8& lit,
-                         Surroundings& s) {
+// Lit as what is around, rather as the same object there than as another. Returns whom that told.
+i8 light_as_neighbours(const PaintedCell* const* corners, const f8* weights, const i8& lit,
+                       const i8& mirrors, const u8& object, const f8& patience, Surroundings& s) {
   Surroundings a;
   f8 used{};
   for (int k = 0; k < 4; k++) {
-    // What lamps, mirrors and the sky show is no light that falls there.
-    if (corners[k]->albedo[0] + corners[k]->albedo[1] + corners[k]->albedo[2] < 0.01f) continue;
-    add(a, weights[k], *corners[k]);
-    used += weights[k];
+    PaintedCell corner = *corners[k];
+    i8 same = object == corner.object;
+    f8 weight = same ? same_object * weights[k] : weights[k];
+    // What mirrors show is no light that falls there, but what other mirrors there may show; what
+    // lamps and the sky shine with is neither.
+    if (corner.albedo[0] + corner.albedo[1] + corner.albedo[2] < 0.01f)
+      weight = keep(mirrors & same, weight);
+    else
+      for (size_t c = 0; c < 3; c++)
+        corner.rest[c] = std::min(corner.rest[c], most_rest * corner.smooth[c]);
+    add(a, weight, corner);
+    used += weight;
   }
-  f8 share = 1.0f / larger(used, splat(1e-3f));
-  auto take = [&](f8& to, const f8& from) { to = lit ? from : to; };
+  i8 told = lit & (used > 0.0f);
+  f8 share = 1.0f / larger(used, splat(1e-6f));
+  auto take = [&](f8& to, const f8& from) { to = told ? from : to; };
   auto take_color = [&](Color& to, const Color& from) {
     take(to.r, from.r * share), take(to.g, from.g * share), take(to.b, from.b * share);
   };
   take_color(s.smooth, a.smooth), take_color(s.rest, a.rest), take_color(s.albedo, a.albedo);
-  take(s.patience, a.patience), take(s.detail, a.detail), take(s.noise, a.noise);
-  s.lonely &= ~lit;
+  // Whatever its own points say beyond that is detail.
+  take(s.patience, patience), take(s.detail, splat(1e6f)), take(s.noise, f8{});
+  s.lonely &= ~told;
+  return told;
 }
 
 // The light of a lamp does not end where a picture on the wall does.
@@ -187,19 +203,25 @@ void light_group(const PaintedCell* const* corners, bool flat, const f8* weights
                  const FindNearby& find_nearby, Drawn& d) {
   Pixels& p = d.pixels;
   Surroundings around = look_around(corners, flat, weights, p);
-  if (any(around.lonely)) find_nearby(around.lonely);
-  // Polished metal of which nobody knows more than a sample or two shows about what is around it.
-  i8 mirrors = around.lonely & (p.samples < few_samples) &
-               (d.albedo.r + d.albedo.g + d.albedo.b < 0.01f);
-  i8 unknown = around.lonely & ((p.samples == 0.0f) | mirrors);
-  if (any(unknown)) light_as_neighbours(corners, weights, unknown, around);
+  f8 doubts = splat(doubt);
+  around.patience = larger(around.patience, smooth_doubts * doubts);
+  // Narrow things have few points of their own: what these say is weighed against what is around.
+  i8 mirrors{};
+  if (any(around.lonely)) {
+    find_nearby(around.lonely);
+    mirrors = around.lonely & (d.albedo.r + d.albedo.g + d.albedo.b < 0.01f);
+    f8 patience = splat(doubt > 0 ? narrow_patience : still_patience);
+    i8 told =
+        light_as_neighbours(corners, weights, around.lonely, mirrors, p.object, patience, around);
+    doubts = told ? patience : doubts;
+  }
   auto rest = [&](const f8& rest, const f8& smooth, const f8& albedo, const f8& theirs) {
     return mirrors ? theirs * smooth + rest : under(rest, albedo, theirs);
   };
   around.rest = {rest(around.rest.r, around.smooth.r, d.albedo.r, around.albedo.r),
                  rest(around.rest.g, around.smooth.g, d.albedo.g, around.albedo.g),
                  rest(around.rest.b, around.smooth.b, d.albedo.b, around.albedo.b)};
-  blend_light(around, p, doubt);
+  blend_light(around, p, doubts);
 }
 
 // All that pixels are lit by, and where in them they are seen.

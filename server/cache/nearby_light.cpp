@@ -9,12 +9,12 @@
 namespace wellspring {
 namespace {
 
-constexpr int rings = 3;
-constexpr float enough_points = 2.5f;  // found by a ring: no other is needed
+constexpr int rings = 5;
+constexpr float enough_points = 6;      // found by a ring: no other is needed
 constexpr float same_direction = 0.7f;  // cosine
 
 struct Sum {
-  float weights = 0, points = 0, samples = 0, deviation = 0;
+  float points = 0, samples = 0, squares = 0, deviation = 0;
   vec3 smooth{0}, rest{0};
 };
 
@@ -52,9 +52,9 @@ void add_pixel(const View& view, const PixelRays& rays, const Frame& light, cons
   if (place.albedo != vec3(0)) weight *= alike(view, rays, place, x, y, words);
   if (weight == 0) return;
   float share = weight * known;
-  sum.weights += weight;
   sum.points++;
   sum.samples += share;
+  sum.squares += share * weight;
   sum.deviation += share * unpack_deviation(uint8_t(more >> 24));
   sum.smooth += share * unpack_rgb9e5(words[plane_smooth]);
   sum.rest += share * unpack_rgb9e5(words[plane_rest]) * rest_ratio(place.albedo, theirs);
@@ -77,7 +77,7 @@ NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Fra
   found.smooth = sum.smooth / sum.samples;
   found.rest = sum.rest / sum.samples;
   found.deviation = sum.deviation / sum.samples;
-  found.samples = sum.samples / sum.weights;
+  found.samples = sum.samples * sum.samples / sum.squares;
   return found;
 }
 

@@ -18,7 +18,7 @@ struct SeenPlace {
 };
 struct NearbyLight {
   vec3 smooth{0}, rest{0};  // rest for the place's own reflectance
-  float samples = 0;        // of a point, on average; 0: nobody around knows
+  float samples = 0;        // behind that mean (Kish: as many as if they weighed alike); 0: none
   float deviation = 0;
 };
 

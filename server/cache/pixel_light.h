@@ -141,7 +141,7 @@ inline f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, mos
 // Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
 // more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
 // `doubt`: samples that make the own rest count for half of what it would.
-inline void blend_light(const Surroundings& s, Pixels& p, float doubt = 0) {
+inline void blend_light(const Surroundings& s, Pixels& p, const f8& doubt = f8{}) {
   const i8& lonely = s.lonely;
   f8 alone = keep(lonely, splat(1));
   // A lone bright sample may exceed its surroundings only as far as more samples confirm it.

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawn pictures of who moves, of one sample for dozens of pixels: calm, and nothing in them black
+// or glaring by chance.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "unit/cache/drawn_visit.h"
+
+namespace wellspring {
+namespace {
+
+using namespace scenes;
+
+constexpr int width = 160, height = 120, pixels = width * height;
+
+struct Shown {
+  View view;
+  Frame frame, truth;
+};
+// After a second of strolling sideways.
+Shown stroll(const Stage& stage, int pixels_a_sample) {
+  DrawnVisit visit;
+  Shown shown;
+  for (int i = 0; i < 30; i++) {
+    shown.view = make_view(stage.scene, {0.002 * i, 0.25, 0.6}, 0, 0, 0.7f, width, height);
+    visit.step(stage, shown.view, pixels / pixels_a_sample, PictureOf::moving_fine);
+  }
+  shown.frame = visit.frame;
+  shown.truth = stage.truth(shown.view, 256);
+  return shown;
+}
+
+// Whether the pixels around show the same object, too.
+bool is_inside(const Shown& shown, int x, int y) {
+  size_t at = size_t(y * width + x);
+  for (size_t other : {at - 1, at + 1, at - size_t(width), at + size_t(width)})
+    if (shown.frame.object[other] != shown.frame.object[at]) return false;
+  return true;
+}
+
+TEST(FewPoints, WallsAreNotPeppered) {
+  Stage stage(make_cornell_box());
+  Shown shown = stroll(stage, 64);
+  auto light = [&](size_t i) { return luminance(shown.frame.color[i]); };
+  int specks = 0, inside = 0;
+  for (int y = 1; y + 1 < height; y++)
+    for (int x = 1; x + 1 < width; x++) {
+      if (!is_inside(shown, x, y)) continue;
+      size_t at = size_t(y * width + x);
+      float around =
+          (light(at - 1) + light(at + 1) + light(at - size_t(width)) + light(at + size_t(width))) /
+          4;
+      inside++;
+      specks += std::abs(light(at) - around) > 0.15f * around;
+    }
+  EXPECT_GT(inside, pixels / 2);
+  EXPECT_LT(specks, inside / 33);
+}
+
+struct Bars {
+  double dark = 0, mean = 0, expected = 0;
+  int count = 0;
+};
+Bars look_at_bars(const Stage& stage, const Shown& shown) {
+  Bars bars;
+  for (size_t i = 0; i < shown.frame.color.size(); i++) {
+    uint32_t object = shown.frame.object[i];
+    if (object == 0 || stage.scene.objects[object] != "bar") continue;
+    float light = luminance(shown.frame.color[i]), truth = luminance(shown.truth.color[i]);
+    bars.count++;
+    bars.dark += light < 0.3f * truth;
+    bars.mean += double(light), bars.expected += double(truth);
+  }
+  return bars;
+}
+
+// Bars a pixel wide, of which most pixels have no sample of their own.
+TEST(FewPoints, NarrowThingsAreNeitherBlackNorGlaring) {
+  Scene scene = make_barred_box(vec3(0.7f), 0.004f);
+  Material sky = emitter(vec3(8));
+  sky.base_color = vec4(0.9f);  // a picture that shines tells nothing of light that falls there
+  add_quad(scene, add_material(scene, sky), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0},
+           "sky");
+  Stage matt(make_barred_box(vec3(0.7f), 0.004f)), before_sky(scene);
+  Material gilt = diffuse(vec3(1, 0.7f, 0.3f));
+  gilt.metallic = 1, gilt.roughness = 0.3f;
+  scene.materials[scene.materials.size() - 2] = gilt;
+  Stage polished(std::move(scene));
+  for (const Stage* stage : {&matt, &before_sky, &polished}) {
+    Bars bars = look_at_bars(*stage, stroll(*stage, 64));
+    EXPECT_GT(bars.count, 500);
+    EXPECT_LT(bars.dark, 0.01 * bars.count);
+    EXPECT_LT(bars.mean, 2.5 * bars.expected);  // they are darker than what is behind them
+  }
+}
+
+}  // namespace
+}  // namespace wellspring
