@@ -23,11 +23,14 @@ StillRoom::StillRoom(const Show& show)
   // The moving meshes as they are now: at the show's start.
   std::vector<Mesh> moving;
   std::vector<uint32_t> moving_object;
-  for (int i = int(exhibit_.scene.instances.size()); i < show.world->instance_count(); i++) {
+  const int first = int(exhibit_.scene.instances.size()), count = show.world->instance_count();
+  for (int i = first; i < count; i++) {
     moving.push_back(show.world->mesh_of(uint32_t(i)));
     moving_object.push_back(show.world->object_of(uint32_t(i)));
   }
   world_ = std::make_unique<World>(exhibit_.scene, std::move(moving), std::move(moving_object));
+  for (int i = first; i < count; i++)  // one storyteller at a time
+    world_->show(i - first, show.world->is_visible(uint32_t(i)));
   world_->commit();
   const std::vector<char> lamps = first_lamps(exhibit_);
   for (size_t i = 0; i < lamps.size(); i++) world_->switch_lamp(int(i), lamps[i]);

@@ -19,8 +19,8 @@ struct StillOrder {
 
 class StillRoom {
  public:
-  // Borrows `show`'s exhibit for its lifetime (not its world, which moves). The storyteller stands
-  // in its first pose, and lamps are as at first. Bounds of an order: see answer.cpp.
+  // Borrows `show`'s exhibit for its lifetime (not its world, which moves). The storyteller who is
+  // there stands in its first pose, and lamps are as at first. Bounds of an order: see answer.cpp.
   explicit StillRoom(const Show& show);
   // JPEG bytes. One picture at a time; later callers wait.
   std::string make(const StillOrder& order);

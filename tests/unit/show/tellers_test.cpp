@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "show/show.h"
+#include "show/still.h"
 #include "tiny_exhibit.h"
 #include "unit/show/tiny_figure.h"
 
@@ -93,6 +94,30 @@ TEST_F(TellersTest, OneIsThereAndTheOtherComesWhenCalled) {
   EXPECT_EQ(seen(), "otto");
   order(R"({"type":"storyteller","visible":false,"teller":"anna"})");
   EXPECT_EQ(seen(), "");
+}
+
+// Finished pictures (still.jpg) show who is there, too.
+TEST(Tellers, OneIsInFinishedPictures) {
+  auto picture = [](std::vector<dvec3> places) {
+    Exhibit exhibit = make_tiny_exhibit();
+    exhibit.storytellers.resize(places.size());
+    for (size_t i = 0; i < places.size(); i++) {
+      exhibit.storytellers[i].id = "teller" + std::to_string(i);
+      exhibit.storytellers[i].character = make_tiny_figure();
+      exhibit.storytellers[i].position = places[i];
+    }
+    exhibit.tours.clear();
+    exhibit.viewpoints[0].view.position = {0, 1.6, 3.5};  // sees the world's origin, too
+    exhibit.viewpoints[0].view.yaw = 0, exhibit.viewpoints[0].view.pitch = -0.3f;
+    std::unique_ptr<Show> show =
+        make_show(std::move(exhibit),
+                  {.technique = "direct", .still_technique = "direct", .background = false});
+    return StillRoom(*show).make({.width = 64, .height = 48, .spp = 4});
+  };
+  const dvec3 in_view(0, 0, 1.5), behind_the_wall(-3, 0, -3);
+  std::string nobody = picture({behind_the_wall});
+  EXPECT_TRUE(picture({in_view}) != nobody);
+  EXPECT_TRUE(picture({behind_the_wall, in_view}) == nobody);
 }
 
 TEST_F(TellersTest, AStoryBringsItsOwnTellerAndVoice) {
