@@ -15,10 +15,10 @@ test('one switches, both are told, and the pictures of both follow', async () =>
   const { name } = welcome.lamps.find((lamp) => lamp.name === 'daylight');
   assert.ok(welcome.lamps.every((lamp) => lamp.on && lamp.title));
   assert.notEqual(greeted.lamps[0].title, welcome.lamps[0].title);
-  // Beside the storyteller, looking at a wall: nothing moves, so that pictures are alike but for
-  // their light.
+  // Where nothing moves, so that pictures are alike but for their light, and most of that is the
+  // day's.
   for (const visitor of [one, other])
-    visitor.send({ type: 'viewpoint', seq: 1, name: 'paintings' });
+    visitor.send({ type: 'viewpoint', seq: 1, name: 'well' });
   await sleep(3000);
   // A dark picture says less: its JPEG is smaller at the same quality.
   const bytes = (visitor) => ({ size: visitor.last.jpeg.length, quality: visitor.last.quality });
