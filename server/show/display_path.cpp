@@ -49,6 +49,9 @@ DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& cost
   plan.drawn &= !plan.primary;
   if (plan.drawn)
     seconds = std::max(seconds + costs.display_seconds - display - drawing, least_light * seconds);
+  // Who stands gains by light what fewer pictures cost; who moves, by pictures.
+  if (plan.drawn && fine)
+    seconds = std::max(seconds, least_light / (1 - least_light) * (display + drawing));
   double look_seconds = plan.primary ? all_seconds : plan.drawn ? 0 : edge_share * seconds;
   plan.looks =
       plan.primary ? int(all_looks) : whole(look_seconds * costs.looks_per_second, all_looks);

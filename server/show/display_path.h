@@ -28,7 +28,8 @@ struct DisplayPlan {
 };
 
 // `seconds`: what there is for all. `before`: of the picture before, which is kept until another
-// way is clearly better, so that paths do not alternate. `fine`: see wants_fine_light().
+// way is clearly better, so that paths do not alternate. `fine`: see wants_fine_light(); then at
+// least a quarter of a drawn picture's time goes to light.
 DisplayPlan plan_display(double seconds, size_t pixels, const DisplayCosts& costs,
                          const DisplayPlan& before, bool fine = false,
                          DrawShapes wish = DrawShapes::automatic);

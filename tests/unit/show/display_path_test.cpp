@@ -38,6 +38,21 @@ TEST(DisplayPath, SpendsTheTimeThereIs) {
       }
 }
 
+// However dear drawing is, who stands gets a quarter of the time in light; who moves is shown more
+// pictures.
+TEST(DisplayPath, WhoStandsGetsAQuarterInLight) {
+  for (double drawing : {0.01, 0.05, 0.2}) {
+    DisplayCosts costs{1e6, 100e6, drawing, 0.03};
+    DisplayPlan still = plan_display(0.01, pixels, costs, drawn, true, DrawShapes::always),
+                moving = plan_display(0.01, pixels, costs, drawn, false, DrawShapes::always);
+    double light = still.samples / costs.samples_per_second;
+    EXPECT_NEAR(light, 0.25 * (light + drawing + costs.display_seconds), 1e-3 * light + 1e-6);
+    if (drawing > 0.02) {
+      EXPECT_LT(moving.samples, still.samples);
+    }
+  }
+}
+
 TEST(DisplayPath, DoesNotAlternateWhereBothAreAboutAsGood) {
   // Times that vary by a tenth around the limit change the path once at most.
   double at_limit = double(pixels) * looks_a_pixel / quick.looks_per_second / 0.45;
