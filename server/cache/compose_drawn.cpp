@@ -197,12 +197,13 @@ i8 light_as_neighbours(const PaintedCell* const* corners, const f8* weights, con
   return told;
 }
 
-// The light of a lamp does not end where a picture on the wall does.
+// The light of a lamp does not end where a picture on the wall does. `asked`: lanes that matter.
 template <class FindNearby>
 void light_group(const PaintedCell* const* corners, bool flat, const f8* weights, float doubt,
-                 const FindNearby& find_nearby, Drawn& d) {
+                 const i8& asked, const FindNearby& find_nearby, Drawn& d) {
   Pixels& p = d.pixels;
   Surroundings around = look_around(corners, flat, weights, p);
+  around.lonely &= asked;
   f8 doubts = splat(doubt);
   around.patience = larger(around.patience, smooth_doubts * doubts);
   // Narrow things have few points of their own: what these say is weighed against what is around.
@@ -241,7 +242,7 @@ struct Composer {
   const CellRows& rows_around(const SightRun& run) const;
   void light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const;
   Shown light_group_of(const SightRun& run, const RunPixels& p, uint64_t shining,
-                       const CellRows& rows, int g) const;
+                       const CellRows& rows, int g, LanePart part) const;
 };
 
 template <int Scale>
@@ -261,7 +262,7 @@ const CellRows& Composer<Scale>::rows_around(const SightRun& run) const {
 template <int Scale>
 void Composer<Scale>::light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const {
   Pixels& p = d.pixels;
-  for (unsigned bits = negative_lanes(lonely) & ((1u << group) - 1); bits != 0; bits &= bits - 1) {
+  for (unsigned bits = negative_lanes(lonely); bits != 0; bits &= bits - 1) {
     int k = std::countr_zero(bits);
     if (!(p.depth[k] < 0.5f * infinite_depth)) continue;
     vec3 albedo(d.albedo.r[k], d.albedo.g[k], d.albedo.b[k]);
@@ -282,10 +283,10 @@ void Composer<Scale>::light_narrow(const i8& lonely, int lx, int ly, Drawn& d) c
   }
 }
 
-// Group `g` of the run's pixels.
+// Group `g` of the run's pixels, of which `part` lies in the run: beyond it arrays hold anything.
 template <int Scale>
 Shown Composer<Scale>::light_group_of(const SightRun& run, const RunPixels& p, uint64_t shining,
-                                      const CellRows& rows, int g) const {
+                                      const CellRows& rows, int g, LanePart part) const {
   constexpr f8 lane{0, 1, 2, 3, 4, 5, 6, 7};
   int i = g * group - half_group, x = run.x + i;  // the first lane's pixel
   Drawn d;
@@ -303,6 +304,8 @@ Shown Composer<Scale>::light_group_of(const SightRun& run, const RunPixels& p, u
   take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
                   light_rays.y(float(ly) + 0.5f), d);
   q.samples *= own_counts;
+  unsigned here = (1u << part.end) - (1u << part.begin),
+           shines = unsigned(i < 0 ? shining << -i : shining >> i) & here;
   if (known) {
     const f8 fx = smaller((lane + 0.5f) * (1.0f / group), splat(1));
     float fy = (float(run.y - (rows.row + 1) * group + half_group) + 0.5f) / group;
@@ -310,7 +313,8 @@ Shown Composer<Scale>::light_group_of(const SightRun& run, const RunPixels& p, u
     const PaintedCell* corners[4] = {&rows.cell[0][g], &rows.cell[0][g + 1], &rows.cell[1][g],
                                      &rows.cell[1][g + 1]};
     auto find_nearby = [&](const i8& lonely) { light_narrow(lonely, lx, ly, d); };
-    light_group(corners, rows.flat[g / lanes][g % lanes], weights, doubt, find_nearby, d);
+    light_group(corners, rows.flat[g / lanes][g % lanes], weights, doubt,
+                lanes_of_bits(here & ~shines), find_nearby, d);
   }
   Shown shown{{positive(d.albedo.r * q.smooth.r + q.rest.r),
                positive(d.albedo.g * q.smooth.g + q.rest.g),
@@ -318,9 +322,8 @@ Shown Composer<Scale>::light_group_of(const SightRun& run, const RunPixels& p, u
               q.samples,
               q.depth < 0.5f * infinite_depth ? q.depth : splat(INFINITY),
               q.object};
-  uint64_t shines = i < 0 ? shining << -i : shining >> i;
-  for (uint32_t rest = uint32_t(shines) & ((1u << group) - 1); rest != 0; rest &= rest - 1) {
-    int k = std::countr_zero(rest);
+  for (; shines != 0; shines &= shines - 1) {
+    int k = std::countr_zero(shines);
     shown.color.r[k] = p.glow_red[i + k], shown.color.g[k] = p.glow_green[i + k];
     shown.color.b[k] = p.glow_blue[i + k];
     shown.samples[k] = 255;
@@ -341,7 +344,7 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
       int i = g * group - group / 2;
       LanePart part{std::max(-i, 0), std::min(run.count - i, group)};
       planes.put(row + size_t(i + part.begin), part,
-                 composer.light_group_of(run, p, shining, rows, g));
+                 composer.light_group_of(run, p, shining, rows, g, part));
     }
   };
 }
