@@ -13,10 +13,12 @@ namespace {
 
 // Pixels are lit in groups that lie between two columns of cell centres: four light pixels, which
 // are packed together, and four cells around. Groups begin half a group before a tile. `Scale`:
-// pixels a side of one of the light; where that is 1 half of the lanes are left unused.
+// pixels a side of one of the light; where that is 1 two groups lie side by side in the lanes.
 template <int Scale>
 constexpr int group = cell_size * Scale;
-static_assert(cell_size == packed_four && group<light_scale> == lanes);
+template <int Scale>
+constexpr int together = lanes / group<Scale>;
+static_assert(cell_size == packed_four && together<light_scale> == 1 && together<1> == 2);
 
 struct RunPixels {
   RunSurface surface;
@@ -49,41 +51,53 @@ f8 lanes_at(const float* from, int i) {
   return v;
 }
 
-// Four light pixels, each for `Scale` pixels of a row.
 template <int Scale>
-u8 spread(const u4& v) {
-  if constexpr (Scale == 1) return __builtin_shufflevector(v, v, 0, 1, 2, 3, 0, 1, 2, 3);
-  return __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
-}
-template <int Scale>
-constexpr f8 light_columns = Scale == 1 ? f8{0, 1, 2, 3, 0, 1, 2, 3} : f8{0, 0, 1, 1, 2, 2, 3, 3};
+constexpr f8 light_columns = Scale == 1 ? f8{0, 1, 2, 3, 4, 5, 6, 7} : f8{0, 0, 1, 1, 2, 2, 3, 3};
 
-// What the light's points say of the four light pixels of a group.
+// What the light's points say of eight pixels.
 struct OwnLight {
   u8 plane[surface_planes];
 };
-template <int Scale>
-OwnLight read_own(const Frame& light, int lx, int ly) {
-  OwnLight own;
-  PackedFour four(lx, light.width);
-  if (four.count == packed_four) {
-    size_t at = size_t(ly) * size_t(light.width) + size_t(lx);
-    own.plane[plane_object] = spread<Scale>(load<u4>(&light.object[at]));
-    own.plane[plane_more] = spread<Scale>(load<u4>(&light.confidence[at]));
-    own.plane[plane_depth] = spread<Scale>(load<u4>(&light.depth[at]));
-    const uint32_t* words = packed_words(light, lx, ly);
-    for (int p : {plane_albedo, plane_rest, plane_smooth})
-      own.plane[p] = spread<Scale>(load<u4>(words + packed_four * p));
-    return own;
-  }
-  uint32_t words[surface_planes][packed_four] = {};
-  for (uint32_t& object : words[plane_object]) object = no_object;
-  for (int x = four.first; x < four.first + four.count; x++) {
+// Of `count` light pixels, not all of them in the picture.
+[[gnu::noinline]] void read_cut(const Frame& light, int lx, int ly, int count,
+                                uint32_t (*words)[lanes]) {
+  for (int p = 0; p < surface_planes; p++)
+    std::fill_n(words[p], lanes, p == plane_object ? no_object : 0);
+  for (int x = std::max(lx, 0); x < std::min(lx + count, light.width); x++) {
     uint32_t word[surface_planes];
     read_packed(light, x, ly, word);
     for (int p = 0; p < surface_planes; p++) words[p][x - lx] = word[p];
   }
-  for (int p = 0; p < surface_planes; p++) own.plane[p] = spread<Scale>(load<u4>(words[p]));
+}
+// Each light pixel is for `Scale` pixels of a row.
+template <int Scale>
+OwnLight read_own(const Frame& light, int lx, int ly) {
+  constexpr int count = lanes / Scale;
+  auto spread = [](const uint32_t* from) {
+    if constexpr (Scale == 1) return load<u8>(from);
+    u4 v = load<u4>(from);
+    return __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
+  };
+  OwnLight own;
+  if (lx < 0 || lx + count > light.width) {
+    uint32_t words[surface_planes][lanes];
+    read_cut(light, lx, ly, count, words);
+    for (int p = 0; p < surface_planes; p++) own.plane[p] = spread(words[p]);
+    return own;
+  }
+  size_t at = size_t(ly) * size_t(light.width) + size_t(lx);
+  auto bits = [&](const std::vector<float>& plane) {
+    return reinterpret_cast<const uint32_t*>(&plane[at]);
+  };
+  own.plane[plane_object] = spread(&light.object[at]);
+  own.plane[plane_more] = spread(bits(light.confidence));
+  own.plane[plane_depth] = spread(bits(light.depth));
+  const uint32_t* words = packed_words(light, lx, ly);
+  for (int p : {plane_albedo, plane_rest, plane_smooth}) {
+    const uint32_t* four = words + packed_four * p;
+    if constexpr (Scale == 1) own.plane[p] = join(load<u4>(four), load<u4>(four + 3 * packed_four));
+    else own.plane[p] = spread(four);
+  }
   return own;
 }
 
@@ -142,46 +156,91 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
             keep(same, under(light.b, d.albedo.b, theirs.b))};
 }
 
-// Two rows of cells around a tile's blocks.
+// What the lanes of two groups side by side have to the same side of them.
+struct WideCell : CellLightOf<f8, u8> {
+  f8 albedo[3];
+};
+void spread_cells(const PaintedCell& left, const PaintedCell& right, WideCell& to) {
+  constexpr size_t count = sizeof(PaintedCell) / sizeof(float);
+  static_assert(sizeof(WideCell) == count * sizeof(f8));
+  float a[count], b[count];
+  std::memcpy(a, &left, sizeof a), std::memcpy(b, &right, sizeof b);
+  f8 both[count];
+  for (size_t i = 0; i < count; i++) both[i] = f8{a[i], a[i], a[i], a[i], b[i], b[i], b[i], b[i]};
+  std::memcpy(static_cast<void*>(&to), both, sizeof both);
+}
+
+// Two rows of cells around a tile's blocks. Where groups lie side by side, each as the next but one
+// needs it, too.
+template <int Scale>
 struct CellRows {
-  static constexpr int most = RasterRun::most / cell_size + 2;
+  using Cell = std::conditional_t<together<Scale> == 1, PaintedCell, WideCell>;
+  static constexpr int most = RasterRun::most / cell_size + 3;
   uint64_t picture = 0;
   int first = 0, row = 0, count = 0;
-  PaintedCell cell[2][most];
-  i8 flat[(most + lanes - 1) / lanes];
+  int above = 0;  // which of the rows
+  Cell cell[2][most];
+  i8 flat[most];  // lanes of each group and those beside it that lie between cells in one plane
+
+  const Cell& at(int r, int k) const { return cell[above ^ r][k]; }
+  void read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y, int columns);
+
+ private:
+  void read_row(const Cells& cells, int y, Cell* to) const;
 };
 
-void read_rows(const PixelRays& rays, const Cells& cells, int first, int row, int count,
-               CellRows& rows) {
-  rows.first = first, rows.row = row, rows.count = count;
-  for (int r = 0; r < 2; r++)
-    for (int k = 0; k < count; k++) {
-      PaintedCell& c = rows.cell[r][k];
-      read_cell(cells, first + k, row + r, c);
-      size_t i = nearest_cell(cells, first + k, row + r);
-      for (size_t n = 0; n < 3; n++) c.albedo[n] = cells.albedo[n][i];
-    }
-  for (int part = 0; part < (count + lanes - 1) / lanes; part++)
-    rows.flat[part] = find_flat(rays, cells, first + 1 + part * lanes, row + 1);
+template <int Scale>
+void CellRows<Scale>::read_row(const Cells& cells, int y, Cell* to) const {
+  PaintedCell before{}, here;
+  for (int k = 0; k < count; k++, before = here) {
+    read_cell(cells, first + k, y, here);
+    size_t i = nearest_cell(cells, first + k, y);
+    for (size_t n = 0; n < 3; n++) here.albedo[n] = cells.albedo[n][i];
+    if constexpr (together<Scale> == 1) to[k] = here;
+    else if (k > 0) spread_cells(before, here, to[k - 1]);
+  }
+}
+
+template <int Scale>
+void CellRows<Scale>::read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y,
+                           int columns) {
+  bool below = picture == of && first == x && row + 1 == y && count == columns;
+  picture = of, first = x, row = y, count = columns;
+  above = below ? above ^ 1 : 0;
+  if (!below) read_row(cells, y, cell[above]);
+  read_row(cells, y + 1, cell[above ^ 1]);
+  int32_t one_plane[most + 2 * lanes] = {};  // by groups
+  for (int g = 0; g < count; g += lanes)
+    store(one_plane + g, find_flat(rays, cells, first + 1 + g, row + 1));
+  for (int g = 0; g < count; g++)
+    for (int k = 0; k < lanes; k++) flat[g][k] = one_plane[g + k / group<Scale>];
 }
 
 // Lit as what is around, rather as the same object there than as another. Returns whom that told.
-i8 light_as_neighbours(const PaintedCell* const* corners, const f8* weights, const i8& lit,
+template <class Cell>
+i8 light_as_neighbours(const Cell* const* corners, const f8* weights, const i8& lit,
                        const i8& mirrors, const u8& object, const f8& patience, Surroundings& s) {
   Surroundings a;
   f8 used{};
   for (int k = 0; k < 4; k++) {
-    PaintedCell corner = *corners[k];
+    const Cell& corner = *corners[k];
+    WideCell c;
+    for (int n = 0; n < 3; n++) {
+      c.smooth[n] = f8{} + corner.smooth[n], c.rest[n] = f8{} + corner.rest[n];
+      c.albedo[n] = f8{} + corner.albedo[n];
+    }
+    c.patience = c.detail = c.noise = f8{};
     i8 same = object == corner.object;
     f8 weight = same ? same_object * weights[k] : weights[k];
     // What mirrors show is no light that falls there, but what other mirrors there may show; what
     // lamps and the sky shine with is neither.
-    if (corner.albedo[0] + corner.albedo[1] + corner.albedo[2] < 0.01f)
-      weight = keep(mirrors & same, weight);
-    else
-      for (size_t c = 0; c < 3; c++)
-        corner.rest[c] = std::min(corner.rest[c], most_rest * corner.smooth[c]);
-    add(a, weight, corner);
+    i8 dark = c.albedo[0] + c.albedo[1] + c.albedo[2] < 0.01f;
+    weight = dark ? keep(mirrors & same, weight) : weight;
+    for (f8& rest : c.rest) {
+      f8 most = most_rest * c.smooth[&rest - c.rest];
+      rest = dark ? rest : smaller(rest, most);
+    }
+    add(a, weight, c);
     used += weight;
   }
   i8 told = lit & (used > 0.0f);
@@ -198,8 +257,8 @@ i8 light_as_neighbours(const PaintedCell* const* corners, const f8* weights, con
 }
 
 // The light of a lamp does not end where a picture on the wall does. `asked`: lanes that matter.
-template <class FindNearby>
-void light_group(const PaintedCell* const* corners, bool flat, const f8* weights, float doubt,
+template <class Cell, class FindNearby>
+void light_group(const Cell* const* corners, const i8& flat, const f8* weights, float doubt,
                  const i8& asked, const FindNearby& find_nearby, Drawn& d) {
   Pixels& p = d.pixels;
   Surroundings around = look_around(corners, flat, weights, p);
@@ -238,23 +297,22 @@ struct Composer {
   float doubt = moving_doubt;
   float own_counts = 1;  // samples of a pixel's own point, each
 
-  static int groups_of(const SightRun& run) { return (run.count + half_group + group - 1) / group; }
-  const CellRows& rows_around(const SightRun& run) const;
+  // Eight lanes each.
+  static int parts_of(const SightRun& run) { return (run.count + half_group + lanes - 1) / lanes; }
+  const CellRows<Scale>& rows_around(const SightRun& run) const;
   void light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const;
-  Shown light_group_of(const SightRun& run, const RunPixels& p, uint64_t shining,
-                       const CellRows& rows, int g, LanePart part) const;
+  Shown light_part(const SightRun& run, const RunPixels& p, uint64_t shining,
+                   const CellRows<Scale>& rows, int n, LanePart part) const;
 };
 
 template <int Scale>
-const CellRows& Composer<Scale>::rows_around(const SightRun& run) const {
-  thread_local CellRows rows;
+const CellRows<Scale>& Composer<Scale>::rows_around(const SightRun& run) const {
+  thread_local CellRows<Scale> rows;
   int by = (run.y + half_group) / group, bx = run.x / group;  // the block's lower right cell
-  int count = groups_of(run) + 1;
+  int count = parts_of(run) * together<Scale> + 1;
   if (rows.picture != run.picture || rows.first != bx - 1 || rows.row != by - 1 ||
-      rows.count < count) {
-    read_rows(light_rays, cells, bx - 1, by - 1, count, rows);
-    rows.picture = run.picture;
-  }
+      rows.count < count)
+    rows.read(light_rays, cells, run.picture, bx - 1, by - 1, count);
   return rows;
 }
 
@@ -283,12 +341,13 @@ void Composer<Scale>::light_narrow(const i8& lonely, int lx, int ly, Drawn& d) c
   }
 }
 
-// Group `g` of the run's pixels, of which `part` lies in the run: beyond it arrays hold anything.
+// The `n`-th eight of the run's pixels, of which `part` lies in the run: beyond it arrays hold
+// anything.
 template <int Scale>
-Shown Composer<Scale>::light_group_of(const SightRun& run, const RunPixels& p, uint64_t shining,
-                                      const CellRows& rows, int g, LanePart part) const {
+Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, uint64_t shining,
+                                  const CellRows<Scale>& rows, int n, LanePart part) const {
   constexpr f8 lane{0, 1, 2, 3, 4, 5, 6, 7};
-  int i = g * group - half_group, x = run.x + i;  // the first lane's pixel
+  int i = n * lanes - half_group, x = run.x + i;  // the first lane's pixel
   Drawn d;
   Pixels& q = d.pixels;
   q.depth = smaller(lanes_at(run.depth, i), splat(infinite_depth));
@@ -307,14 +366,17 @@ Shown Composer<Scale>::light_group_of(const SightRun& run, const RunPixels& p, u
   unsigned here = (1u << part.end) - (1u << part.begin),
            shines = unsigned(i < 0 ? shining << -i : shining >> i) & here;
   if (known) {
-    const f8 fx = smaller((lane + 0.5f) * (1.0f / group), splat(1));
+    constexpr f8 across = group == lanes ? lane : f8{0, 1, 2, 3, 0, 1, 2, 3};
+    const f8 fx = (across + 0.5f) * (1.0f / group);
     float fy = (float(run.y - (rows.row + 1) * group + half_group) + 0.5f) / group;
     f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
-    const PaintedCell* corners[4] = {&rows.cell[0][g], &rows.cell[0][g + 1], &rows.cell[1][g],
-                                     &rows.cell[1][g + 1]};
+    const int g = n * together<Scale>;
+    using Cell = CellRows<Scale>::Cell;
+    const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g),
+                              &rows.at(1, g + 1)};
     auto find_nearby = [&](const i8& lonely) { light_narrow(lonely, lx, ly, d); };
-    light_group(corners, rows.flat[g / lanes][g % lanes], weights, doubt,
-                lanes_of_bits(here & ~shines), find_nearby, d);
+    light_group(corners, rows.flat[g], weights, doubt, lanes_of_bits(here & ~shines),
+                find_nearby, d);
   }
   Shown shown{{positive(d.albedo.r * q.smooth.r + q.rest.r),
                positive(d.albedo.g * q.smooth.g + q.rest.g),
@@ -335,16 +397,15 @@ Shown Composer<Scale>::light_group_of(const SightRun& run, const RunPixels& p, u
 template <int Scale, class Planes>
 auto taker(const Composer<Scale>& composer, const Planes& planes) {
   return [&composer, &planes](const SightRun& run) {
-    constexpr int group = Composer<Scale>::group;
     RunPixels p;
     uint64_t shining = describe_run(run, p);
-    const CellRows& rows = composer.rows_around(run);
+    const CellRows<Scale>& rows = composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
-    for (int g = 0, groups = composer.groups_of(run); g < groups; g++) {
-      int i = g * group - group / 2;
-      LanePart part{std::max(-i, 0), std::min(run.count - i, group)};
+    for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {
+      int i = n * lanes - composer.half_group;
+      LanePart part{std::max(-i, 0), std::min(run.count - i, lanes)};
       planes.put(row + size_t(i + part.begin), part,
-                 composer.light_group_of(run, p, shining, rows, g, part));
+                 composer.light_part(run, p, shining, rows, n, part));
     }
   };
 }

@@ -29,13 +29,14 @@ struct LanePart {
 struct FramePlanes {
   Frame& frame;
   void put(size_t at, LanePart part, const Shown& s) const {
-    float color[3 * lanes];
+    float cut[3 * lanes], *color = part.all() ? &frame.color[at].x : cut;
     const Color& c = s.color;
     interleave(wellspring::part<0>(c.r), wellspring::part<0>(c.g), wellspring::part<0>(c.b), color);
     interleave(wellspring::part<4>(c.r), wellspring::part<4>(c.g), wellspring::part<4>(c.b),
                color + 12);
-    std::memcpy(&frame.color[at].x, color + 3 * part.begin,
-                size_t(part.end - part.begin) * sizeof(vec3));
+    if (!part.all())
+      std::memcpy(&frame.color[at].x, cut + 3 * part.begin,
+                  size_t(part.end - part.begin) * sizeof(vec3));
     part.put(&frame.confidence[at], s.samples / (s.samples + 8.0f));
     part.put(&frame.depth[at], s.depth);
     part.put(&frame.object[at], s.object);

@@ -38,13 +38,10 @@ float alike(const View& view, const PixelRays& rays, const SeenPlace& place, int
 
 void add_pixel(const View& view, const PixelRays& rays, const Frame& light, const SeenPlace& place,
                int x, int y, Sum& sum) {
-  size_t at = size_t(y) * size_t(light.width) + size_t(x);
-  if (light.object[at] != place.object) return;
   uint32_t words[surface_planes];
   read_packed(light, x, y, words);
   uint32_t more = words[plane_more];
   float known = float((more >> 16) & 255u);
-  if (known == 0) return;
   float dx = float(x - place.x), dy = float(y - place.y);
   float weight = 1 / (0.5f + dx * dx + dy * dy);
   vec3 theirs = unpack_albedo(words[plane_albedo]);
@@ -60,17 +57,46 @@ void add_pixel(const View& view, const PixelRays& rays, const Frame& light, cons
   sum.rest += share * unpack_rgb9e5(words[plane_rest]) * rest_ratio(place.albedo, theirs);
 }
 
+// Bit k: at column x + k of row y, within the picture, samples are known of the object.
+constexpr int window = 2 * rings + 1;
+static_assert(window <= 2 * lanes);
+unsigned find_known(const Frame& light, uint32_t object, int x, int y) {
+  if (y < 0 || y >= light.height) return 0;
+  size_t row = size_t(y) * size_t(light.width);
+  unsigned known = 0;
+  if (x >= 0 && row + size_t(x + 2 * lanes) <= light.object.size()) {
+    for (int half = 0; half < 2; half++) {
+      size_t at = row + size_t(x + half * lanes);
+      u8 more = load<u8>(&light.confidence[at]);
+      known |= negative_lanes((load<u8>(&light.object[at]) == object) & ((more & 0xff0000u) != 0u))
+               << half * lanes;
+    }
+    return known & ((1u << std::min(window, light.width - x)) - 1);
+  }
+  for (int k = std::max(-x, 0); k < std::min(window, light.width - x); k++) {
+    size_t at = row + size_t(x + k);
+    uint32_t more = std::bit_cast<uint32_t>(light.confidence[at]);
+    known |= unsigned(light.object[at] == object && (more & 0xff0000u) != 0) << k;
+  }
+  return known;
+}
+
 }  // namespace
 
 NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Frame& light,
                               const SeenPlace& place) {
   Sum sum;
+  unsigned known[window];
   for (int ring = 0; ring <= rings && sum.points < enough_points; ring++)
-    for (int y = std::max(place.y - ring, 0); y <= std::min(place.y + ring, light.height - 1);
-         y++) {
-      bool whole = y == place.y - ring || y == place.y + ring;
-      for (int x = place.x - ring; x <= place.x + ring; x += whole || ring == 0 ? 1 : 2 * ring)
-        if (x >= 0 && x < light.width) add_pixel(view, rays, light, place, x, y, sum);
+    for (int dy = -ring; dy <= ring; dy++) {
+      unsigned& row = known[rings + dy];
+      bool whole = dy == -ring || dy == ring;
+      if (whole) row = find_known(light, place.object, place.x - rings, place.y + dy);
+      unsigned first = 1u << (rings - ring), last = 1u << (rings + ring),
+               here = row & (whole ? 2 * last - first : first | last);
+      for (; here != 0; here &= here - 1)
+        add_pixel(view, rays, light, place, place.x - rings + std::countr_zero(here), place.y + dy,
+                  sum);
     }
   NearbyLight found;
   if (sum.samples <= 0) return found;

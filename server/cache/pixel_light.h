@@ -135,6 +135,29 @@ Surroundings look_around(const Cell* const* corners, bool flat, const f8* weight
   return s;
 }
 
+// The same, where that is so for some of the pixels only.
+template <class Cell>
+Surroundings look_around(const Cell* const* corners, const i8& flat, const f8* weights,
+                         const Pixels& p) {
+  if (!any(~flat)) return look_around(corners, true, weights, p);
+  if (!any(flat)) return look_around(corners, false, weights, p);
+  constexpr float least = 1e-4f;
+  Surroundings s;
+  f8 inverse_normal2 = 1.0f / p.normal2, sum{};
+  for (int k = 0; k < 4; k++) {
+    f8 common = alike(*corners[k], p, inverse_normal2);
+    if (k == 0) s.lonely = flat & (common <= least);
+    f8 weight = flat ? weights[k] : weights[k] * common;
+    add(s, weight, *corners[k]);
+    sum += weight;
+  }
+  s.lonely |= ~flat & (sum <= least);
+  f8 share = 1.0f / larger(flat ? splat(1) : sum, splat(least));
+  for (Color* c : {&s.smooth, &s.rest, &s.albedo}) c->r *= share, c->g *= share, c->b *= share;
+  s.patience *= share, s.detail *= share, s.noise *= share;
+  return s;
+}
+
 // What is left of `own` light where more than `most` would be too much.
 inline f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, most) + 1e-12f); }
 
