@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "cache/lanes.h"
 #include "cache/packing.h"
+#include "cache/write_pixels.h"
 
 namespace wellspring {
 namespace {
@@ -32,16 +33,41 @@ constexpr float pixel_doubt = 0.8, square_doubt = 0.35;
 constexpr float first_repeats = 0.5f, enough_repeats = 1.5f;
 constexpr int band = 16;  // rows done by one thread
 
+// Rows are computed in whole lanes and have room for that.
+size_t padded(int width) { return size_t((width + lanes - 1) / lanes * lanes); }
+
 // A row of sums at the finest scale, or of a level.
 struct Row {
   std::vector<float> sum[3], weight, noise;
   void resize(int width) {
-    for (auto& s : sum) s.resize(size_t(width));
-    weight.resize(size_t(width)), noise.resize(size_t(width));
+    for (auto& s : sum) s.resize(padded(width));
+    weight.resize(padded(width)), noise.resize(padded(width));
   }
 };
 
 float square_mean(vec3 v) { return dot(v, v) * third; }
+f8 square_mean(const f8& r, const f8& g, const f8& b) { return (r * r + g * g + b * b) * third; }
+
+// Eight numbers in a plane of them, of which those from `count` on are beyond a row's end: 0.
+template <class T>
+u8 read_words(const T* from, int count) {
+  T cut[lanes] = {};
+  if (count < lanes) {
+    std::memcpy(cut, from, size_t(count) * sizeof(T));
+    from = cut;
+  }
+  if constexpr (sizeof(T) == 4) return load<u8>(from);
+#ifdef __AVX2__
+  else return u8(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))));
+#else
+  else return u8{from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]};
+#endif
+}
+void read_colors(const vec3* from, int count, f8 (&color)[3]) {
+  vec3 cut[lanes] = {};
+  if (count < lanes) from = std::copy_n(from, count, cut) - count;
+  deinterleave(&from->x, color[0], color[1], color[2]);
+}
 
 // How one sample's variance relates to the square of the light in all of the picture, and how many
 // second and later samples a pixel has.
@@ -59,20 +85,26 @@ Known pool_spread(const StillSamples& samples, const Frame& frame, StillCorrecti
       repeats(size_t(work.rows), 0);
   parallel_ranges(work.rows, 4, [&](int begin, int end) {
     for (int by = begin; by < end; by++)
-      for (int bx = 0; bx < work.columns; bx++) {
-        float sum = 0, count = 0, bright = 0;
-        for (int y = by * block; y < std::min((by + 1) * block, height); y++)
-          for (int x = bx * block; x < std::min((bx + 1) * block, width); x++) {
-            size_t i = size_t(y) * size_t(width) + size_t(x);
-            float more = float(std::max(int(samples.count[i]) - 1, 0));
-            float deviation = unpack_deviation(samples.deviation[i]);
-            sum += more * deviation * deviation, count += more;
-            bright += more * std::min(square_mean(frame.color[i]), 1.0f);
-          }
-        size_t b = size_t(by) * size_t(work.columns) + size_t(bx);
-        work.block_spread[b] = sum, work.block_samples[b] = count;
-        spread[size_t(by)] += double(std::min(sum, count)), light[size_t(by)] += double(bright);
-        repeats[size_t(by)] += double(count);
+      for (int x = 0; x < width; x += lanes) {
+        int here = std::min(lanes, width - x);
+        f8 sum{}, count{}, bright{};
+        for (int y = by * block; y < std::min((by + 1) * block, height); y++) {
+          size_t i = size_t(y) * size_t(width) + size_t(x);
+          f8 more = positive(to_float(read_words(&samples.count[i], here)) - 1.0f);
+          f8 deviation = unpack_deviation(read_words(&samples.deviation[i], here));
+          f8 color[3];
+          read_colors(&frame.color[i], here, color);
+          sum += more * deviation * deviation, count += more;
+          bright += more * smaller(square_mean(color[0], color[1], color[2]), splat(1));
+        }
+        for (int k = 0; k < here; k += block) {
+          auto add_four = [k](const f8& v) { return (v[k] + v[k + 1]) + (v[k + 2] + v[k + 3]); };
+          float own = add_four(sum), samples_here = add_four(count);
+          size_t b = size_t(by) * size_t(work.columns) + size_t((x + k) / block);
+          work.block_spread[b] = own, work.block_samples[b] = samples_here;
+          spread[size_t(by)] += double(std::min(own, samples_here));
+          light[size_t(by)] += double(add_four(bright)), repeats[size_t(by)] += double(samples_here);
+        }
       }
   });
   auto over_nine = [&](const std::vector<float>& from, std::vector<float>& to) {
@@ -107,107 +139,100 @@ class Residuals {
     int width = frame_.width;
     row.resize(width);
     for (int v = y - 1; v <= y + 1; v++) measure(std::clamp(v, 0, frame_.height - 1));
-    find_range(light(y - 1), light(y), light(y + 1));
-    unpack(y);
-    const float *own = light(y), *range = range_.data(), *spread = spread_.data(),
-                *samples = samples_near_.data(), *count = count_.data(),
-                *deviation = deviation_.data();
-    float *weight = row.weight.data(), *noise = row.noise.data(), relative = relative_;
-    for (int x = 0; x < width; x++) {
-      float variance = (spread[x] + guessed * relative * own[x] * own[x]) / (samples[x] + guessed) +
-                       placed * range[x] * range[x] + least_variance;
-      float n = count[x], some = std::max(n, 1.0f);
+    find_extremes(light(y - 1), light(y), light(y + 1));
+    const float *low = low_.data() + 1, *high = high_.data() + 1, *own = light(y);
+    size_t start = size_t(y) * size_t(width), blocks = size_t(y / block) * size_t(work_.columns);
+    for (int x = 0; x < width; x += lanes) {
+      int here = std::min(lanes, width - x);
+      size_t i = start + size_t(x), left = blocks + size_t(x / block),
+             right = std::min(left + 1, blocks + size_t(work_.columns) - 1);
+      auto of_blocks = [&](const std::vector<float>& of) {
+        float a = of[left], b = of[right];
+        return f8{a, a, a, a, b, b, b, b};
+      };
+      auto around = [x](const float* of, auto choose) {
+        return choose(choose(load<f8>(of + x - 1), load<f8>(of + x + 1)), load<f8>(of + x));
+      };
+      f8 range = around(high, larger) - around(low, smaller), lit = load<f8>(own + x);
+      f8 variance = (of_blocks(work_.spread) + guessed * relative_ * lit * lit) /
+                        (of_blocks(work_.samples) + guessed) +
+                    placed * range * range + least_variance;
+      f8 mean[3], residual[3], brightest{}, brightest_drawn{};
+      unpack_rgb9e5(read_words(&samples_.mean[i], here), mean[0], mean[1], mean[2]);
+      for (int c = 0; c < 3; c++) {
+        f8 drawn = load<f8>(&held(y).color[c][size_t(x)]);
+        residual[c] = mean[c] - drawn;
+        brightest = larger(brightest, mean[c]), brightest_drawn = larger(brightest_drawn, drawn);
+      }
+      // Beyond white differences are not seen, and samples are bounded.
+      i8 seen = smaller(brightest, brightest_drawn) <= 1.0f;
+      i8 rests = (read_words(&still_.count[i], here) & ~uint32_t(still_fresh)) != 0u;
+      f8 n = keep(seen & rests, to_float(read_words(&samples_.count[i], here)));
+      f8 per_sample = 1.0f / larger(n, splat(1)), per_variance = 1.0f / variance;
       // Around the picture, not around the mean: of few samples none is sure of what it says
       // (self-normalised).
-      float told = deviation[x] * deviation[x] * (some - 1) / some + square_[size_t(x)];
-      weight[x] = n / variance;
-      noise[x] = weight[x] * std::max(told / variance, 1.0f) * (1 + unsure / some);
-    }
-    for (int c = 0; c < 3; c++) {
-      float* sum = row.sum[c].data();
-      const float* residual = residual_[c].data();
-      for (int x = 0; x < width; x++) sum[x] = weight[x] * residual[x];
+      f8 deviation = unpack_deviation(read_words(&samples_.deviation[i], here));
+      f8 told = deviation * deviation * (1.0f - per_sample) +
+                square_mean(residual[0], residual[1], residual[2]);
+      f8 weight = n * per_variance;
+      store(&row.weight[size_t(x)], weight);
+      store(&row.noise[size_t(x)],
+            weight * larger(told * per_variance, splat(1)) * (1.0f + unsure * per_sample));
+      for (int c = 0; c < 3; c++) store(&row.sum[c][size_t(x)], weight * residual[c]);
     }
   }
 
  private:
-  const float* light(int y) const { return lines_[std::clamp(y, 0, frame_.height - 1) % 3].data(); }
+  // A row of the picture: its light, and its colours in planes.
+  struct Line {
+    int y = -1;
+    std::vector<float> light, color[3];
+  };
+  const Line& held(int y) const { return lines_[std::clamp(y, 0, frame_.height - 1) % 3]; }
+  const float* light(int y) const { return held(y).light.data(); }
   void measure(int y) {
-    if (held_[y % 3] == y) return;
-    held_[y % 3] = y;
-    std::vector<float>& line = lines_[y % 3];
-    line.resize(size_t(frame_.width));
-    const vec3* from = frame_.color.data() + size_t(y) * size_t(frame_.width);
-    for (size_t x = 0; x < line.size(); x++) line[x] = std::sqrt(square_mean(from[x]));
-  }
-  // By how much the picture differs among the pixels around each.
-  void find_range(const float* above, const float* row, const float* below) {
+    Line& line = lines_[y % 3];
+    if (line.y == y) return;
+    line.y = y;
     int width = frame_.width;
-    for (auto* line : {&low_, &high_, &range_}) line->resize(size_t(width) + 2);
-    float *low = low_.data() + 1, *high = high_.data() + 1, *range = range_.data();
-    for (int x = 0; x < width; x++) {
-      low[x] = std::min(std::min(above[x], below[x]), row[x]);
-      high[x] = std::max(std::max(above[x], below[x]), row[x]);
+    line.light.resize(padded(width));
+    for (auto& plane : line.color) plane.resize(padded(width));
+    const vec3* from = frame_.color.data() + size_t(y) * size_t(width);
+    for (int x = 0; x < width; x += lanes) {
+      f8 color[3];
+      read_colors(from + x, std::min(lanes, width - x), color);
+      for (int c = 0; c < 3; c++) store(&line.color[c][size_t(x)], color[c]);
+      store(&line.light[size_t(x)], lanes_sqrt(square_mean(color[0], color[1], color[2])));
+    }
+  }
+  // The least and the most light of three rows at each column, and one column more on both sides.
+  void find_extremes(const float* above, const float* row, const float* below) {
+    int width = frame_.width;
+    for (auto* line : {&low_, &high_}) line->resize(padded(width) + lanes);
+    float *low = low_.data() + 1, *high = high_.data() + 1;
+    for (int x = 0; x < width; x += lanes) {
+      f8 a = load<f8>(above + x), b = load<f8>(below + x), own = load<f8>(row + x);
+      store(low + x, smaller(smaller(a, b), own));
+      store(high + x, larger(larger(a, b), own));
     }
     low[-1] = low[0], high[-1] = high[0], low[width] = low[width - 1],
     high[width] = high[width - 1];
-    for (int x = 0; x < width; x++)
-      range[x] = std::max(std::max(high[x - 1], high[x + 1]), high[x]) -
-                 std::min(std::min(low[x - 1], low[x + 1]), low[x]);
-  }
-  // What is stored of a row, in arrays of their own.
-  void unpack(int y) {
-    int width = frame_.width, wide = (width + lanes - 1) / lanes * lanes;
-    for (auto* line : {&spread_, &samples_near_, &count_, &deviation_, &square_, &residual_[0],
-                       &residual_[1], &residual_[2]})
-      line->resize(size_t(wide));
-    size_t start = size_t(y) * size_t(width), blocks = size_t(y / block) * size_t(work_.columns);
-    for (int b = 0; b < wide / block; b++) {
-      size_t from = blocks + size_t(std::min(b, work_.columns - 1));
-      std::fill_n(&spread_[size_t(b * block)], block, work_.spread[from]);
-      std::fill_n(&samples_near_[size_t(b * block)], block, work_.samples[from]);
-    }
-    for (int x = 0; x < width; x += lanes) {
-      uint32_t words[lanes] = {}, deviations[lanes] = {}, counts[lanes] = {};
-      float color[3][lanes] = {};
-      int here = std::min(lanes, width - x);
-      for (int k = 0; k < here; k++) {
-        size_t i = start + size_t(x + k);
-        words[k] = samples_.mean[i], deviations[k] = samples_.deviation[i];
-        counts[k] = samples_.count[i] & (0u - uint32_t((still_.count[i] & ~still_fresh) != 0));
-        for (int c = 0; c < 3; c++) color[c][k] = frame_.color[i][c];
-      }
-      f8 mean[3], square{}, brightest{}, brightest_drawn{};
-      unpack_rgb9e5(load<u8>(words), mean[0], mean[1], mean[2]);
-      for (int c = 0; c < 3; c++) {
-        f8 drawn = load<f8>(color[c]), residual = mean[c] - drawn;
-        brightest = larger(brightest, mean[c]), brightest_drawn = larger(brightest_drawn, drawn);
-        square += residual * residual;
-        store(&residual_[size_t(c)][size_t(x)], residual);
-      }
-      // Beyond white differences are not seen, and samples are bounded.
-      i8 seen = smaller(brightest, brightest_drawn) <= 1.0f;
-      store(&square_[size_t(x)], square * third);
-      store(&deviation_[size_t(x)], unpack_deviation(load<u8>(deviations)));
-      store(&count_[size_t(x)], keep(seen, to_float(load<u8>(counts))));
-    }
   }
   const StillSamples& samples_;
   const StillImage& still_;
   const StillCorrection& work_;
   float relative_;
   const Frame& frame_;
-  std::vector<float> lines_[3], low_, high_, range_;
-  std::vector<float> spread_, samples_near_, count_, deviation_, square_, residual_[3];
-  int held_[3] = {-1, -1, -1};
+  Line lines_[3];
+  std::vector<float> low_, high_;
 };
 
 void start_level(int width, int height, ResidualLevel& level) {
   level.width = (width + 1) / 2, level.height = (height + 1) / 2;
   size_t count = size_t(level.width) * size_t(level.height);
   for (auto* planes : {&level.sum, &level.added})
-    for (auto& plane : *planes) plane.resize(count);
-  level.weight.resize(count), level.noise.resize(count);
+    for (auto& plane : *planes) plane.resize(count + lanes);
+  level.weight.resize(count + lanes), level.noise.resize(count + lanes);
 }
 
 // Adds up pairs of two rows (the second may be null) of `width`.
@@ -226,52 +251,58 @@ void for_planes(Level& level, const auto& body) {
   body(level.noise, 4);
 }
 
-// Row `y` at twice the resolution, bilinear between the squares' centres.
-void enlarge(const std::vector<float>& from, int columns, int rows, int y, int width, float* to) {
-  int near = y / 2, far = std::clamp(near + (y % 2 ? 1 : -1), 0, rows - 1);
-  const float *a = from.data() + size_t(near) * size_t(columns),
-              *b = from.data() + size_t(far) * size_t(columns);
-  auto at = [&](int x) { return 0.75f * a[x] + 0.25f * b[x]; };
-  float before = at(0), here = before;
-  for (int x = 0; x < columns; x++) {
-    float after = at(std::min(x + 1, columns - 1));
-    to[2 * x] = 0.75f * here + 0.25f * before;
-    if (2 * x + 1 < width) to[2 * x + 1] = 0.75f * here + 0.25f * after;
-    before = here, here = after;
-  }
-}
-
 // What a scale's means differ by from those of the next, and by how much more than their noise.
 struct Detail {
-  std::vector<float> part[3], added[3], power, larger[4];
+  std::vector<float> part[3], added[3], power, larger[4], line;
   void resize(int width) {
-    size_t count = size_t(width) + 1;
+    size_t count = padded(width) + 2 * lanes;
     for (auto& p : part) p.resize(count);
     for (auto& a : added) a.resize(count);
     for (auto& l : larger) l.resize(count);
-    power.resize(count);
+    power.resize(count), line.resize(count);
   }
 };
+
+// Row `y` at twice the resolution, bilinear between the squares' centres. `line` is scratch.
+void enlarge(const std::vector<float>& from, int columns, int rows, int y,
+             std::vector<float>& line, std::vector<float>& to) {
+  int near = y / 2, far = std::clamp(near + (y % 2 ? 1 : -1), 0, rows - 1);
+  const float *a = from.data() + size_t(near) * size_t(columns),
+              *b = from.data() + size_t(far) * size_t(columns);
+  float* middle = line.data() + 1;
+  for (int x = 0; x < columns; x += lanes)
+    store(middle + x, 0.75f * load<f8>(a + x) + 0.25f * load<f8>(b + x));
+  middle[-1] = middle[0], middle[columns] = middle[columns - 1];
+  for (int x = 0; x < columns; x += lanes) {
+    f8 here = 0.75f * load<f8>(middle + x), even = here + 0.25f * load<f8>(middle + x - 1),
+       odd = here + 0.25f * load<f8>(middle + x + 1);
+    store(&to[2 * size_t(x)], __builtin_shufflevector(even, odd, 0, 8, 1, 9, 2, 10, 3, 11));
+    store(&to[2 * size_t(x) + lanes],
+          __builtin_shufflevector(even, odd, 4, 12, 5, 13, 6, 14, 7, 15));
+  }
+}
+
 void find_detail(const float* const* row, const ResidualLevel& next, int y, int width, Detail& d) {
   d.resize(width);
   for (int c = 0; c < 3; c++) {
-    enlarge(next.sum[size_t(c)], next.width, next.height, y, width, d.larger[c].data());
-    enlarge(next.added[size_t(c)], next.width, next.height, y, width, d.added[c].data());
+    enlarge(next.sum[size_t(c)], next.width, next.height, y, d.line, d.larger[c]);
+    enlarge(next.added[size_t(c)], next.width, next.height, y, d.line, d.added[c]);
   }
-  enlarge(next.weight, next.width, next.height, y, width, d.larger[3].data());
-  std::fill(d.power.begin(), d.power.end(), 0.0f);
-  const float *weight = row[3], *noise = row[4];
-  for (int c = 0; c < 3; c++) {
-    const float *sum = row[c], *wide = d.larger[c].data(), *wide_weight = d.larger[3].data();
-    float *part = d.part[c].data(), *power = d.power.data(), *added = d.added[c].data();
-    for (int x = 0; x < width; x++) {
-      float per_weight = 1 / std::max(wide_weight[x], 1e-30f);
-      float own = keep_if(weight[x] > 0, sum[x] / weight[x]), around = wide[x] * per_weight;
-      added[x] *= per_weight;
-      part[x] = keep_if(weight[x] > 0, own - around);
-      power[x] +=
-          keep_if(weight[x] > 0, part[x] * part[x] * third * weight[x] * (weight[x] / noise[x]));
+  enlarge(next.weight, next.width, next.height, y, d.line, d.larger[3]);
+  for (int x = 0; x < width; x += lanes) {
+    size_t i = size_t(x);
+    f8 weight = load<f8>(row[3] + x);
+    i8 known = weight > 0.0f;
+    f8 own_share = 1.0f / (known ? weight : splat(1)),
+       share = 1.0f / larger(load<f8>(&d.larger[3][i]), splat(1e-30f)), power{};
+    for (int c = 0; c < 3; c++) {
+      f8 part = keep(known, load<f8>(row[c] + x) * own_share - load<f8>(&d.larger[c][i]) * share);
+      power += part * part;
+      store(&d.part[c][i], part);
+      store(&d.added[c][i], load<f8>(&d.added[c][i]) * share);
     }
+    power *= third * weight * (weight / load<f8>(row[4] + x));
+    store(&d.power[i], keep(known, power));
   }
 }
 
@@ -330,7 +361,7 @@ void add_level(const ResidualLevel& next, ResidualLevel& level) {
 
 // The largest squares have no others around.
 void add_largest(ResidualLevel& level) {
-  for (size_t i = 0; i < level.weight.size(); i++) {
+  for (size_t i = 0; i < size_t(level.width) * size_t(level.height); i++) {
     float weight = level.weight[i];
     vec3 mean =
         weight > 0 ? vec3(level.sum[0][i], level.sum[1][i], level.sum[2][i]) / weight : vec3(0);
@@ -388,11 +419,13 @@ void correct_still(const StillSamples& samples, const StillImage& still, StillCo
     const std::vector<float>* from[5];
     for_planes(fine, [&](const auto& plane, int p) { from[p] = &plane; });
     for_planes(level, [&](auto& plane, int p) {
-      for (int y = 0; y < level.height; y++) {
-        const float* above = from[p]->data() + size_t(2 * y) * size_t(fine.width);
-        add_squares(above, 2 * y + 1 < fine.height ? above + fine.width : nullptr, fine.width,
-                    plane.data() + size_t(y) * size_t(level.width));
-      }
+      parallel_ranges(level.height, 32, [&](int begin, int end) {
+        for (int y = begin; y < end; y++) {
+          const float* above = from[p]->data() + size_t(2 * y) * size_t(fine.width);
+          add_squares(above, 2 * y + 1 < fine.height ? above + fine.width : nullptr, fine.width,
+                      plane.data() + size_t(y) * size_t(level.width));
+        }
+      });
     });
   }
   add_largest(work.levels.back());

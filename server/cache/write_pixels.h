@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels of a frame from lanes.
+// Pixels of a frame from lanes, and back.
 #pragma once
 #include <cstring>
 
@@ -16,6 +16,16 @@ inline void interleave(const f4& r, const f4& g, const f4& b, float* to) {
   store(to, __builtin_shufflevector(low, b, 0, 1, 4, 2));
   store(to + 4, __builtin_shufflevector(middle, high, 0, 1, 4, 5));
   store(to + 8, __builtin_shufflevector(high, b, 6, 2, 3, 7));
+}
+// Eight pixels' channels, which lie one after the other.
+inline void deinterleave(const float* from, f8& r, f8& g, f8& b) {
+  f8 first = load<f8>(from), second = load<f8>(from + 8), third = load<f8>(from + 16);
+  r = __builtin_shufflevector(first, second, 0, 3, 6, 9, 12, 15, 0, 0);
+  g = __builtin_shufflevector(first, second, 1, 4, 7, 10, 13, 0, 0, 0);
+  b = __builtin_shufflevector(first, second, 2, 5, 8, 11, 14, 0, 0, 0);
+  r = __builtin_shufflevector(r, third, 0, 1, 2, 3, 4, 5, 10, 13);
+  g = __builtin_shufflevector(g, third, 0, 1, 2, 3, 4, 8, 11, 14);
+  b = __builtin_shufflevector(b, third, 0, 1, 2, 3, 4, 9, 12, 15);
 }
 template <int First>
 f4 part(const f8& v) {
