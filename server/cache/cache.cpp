@@ -56,6 +56,7 @@ struct CacheWork {
   std::vector<uint8_t> priority;  // PointImage's, between frames
   std::vector<uint32_t> targets;
   std::vector<uint8_t> occupied;  // cells of the view ahead
+  std::vector<uint8_t> peaks;     // of a picture for the eye: light beyond white
   std::vector<uint32_t> looked;  // pixels whose looks were asked for
   std::vector<LookedPixel> looked_pixels;
 };
@@ -63,7 +64,8 @@ std::shared_ptr<CacheWork> make_cache_work() { return std::make_shared<CacheWork
 
 size_t memory_bytes(const CacheWork& work) {
   return work.scratch.bytes() + memory_bytes(work.light) + memory_bytes(work.correction) +
-         bytes_of(work.priority, work.targets, work.occupied, work.looked, work.looked_pixels);
+         bytes_of(work.priority, work.targets, work.occupied, work.peaks, work.looked,
+                  work.looked_pixels);
 }
 
 struct RenderCache::Impl {
@@ -362,8 +364,8 @@ void RenderCache::draw(const View& view, const PictureSight& sight, const Tonema
   View lit = c.light_of(view);
   if (!c.projected || lit != c.view) project(lit);
   c.draw(lit, [&] {
-    compose_drawn(view, lit, sight, c.cells, c.known, c.work->light, tonemap, calm, image,
-                  depth);
+    compose_drawn(view, lit, sight, c.cells, c.known, c.work->light, tonemap, calm,
+                  c.work->peaks, image, depth);
   });
 }
 

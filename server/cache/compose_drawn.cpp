@@ -448,14 +448,16 @@ void compose_drawn(const View& view, const View& lit, const PictureSight& sight,
 }
 
 void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
-                   bool known, const Frame& light, const Tonemap& tonemap, bool calm, Image8& image,
-                   std::vector<float>* depth) {
+                   bool known, const Frame& light, const Tonemap& tonemap, bool calm,
+                   std::vector<uint8_t>& peaks, Image8& image, std::vector<float>* depth) {
   size_t pixels = size_t(view.width) * size_t(view.height);
   image.width = view.width, image.height = view.height;
   image.rgb.resize(3 * pixels);
+  peaks.resize(pixels);
   if (depth) depth->resize(pixels);
-  EyePlanes planes{tonemap.exposure, image.rgb.data(), depth ? depth->data() : nullptr};
-  soften_edges(compose_moment(view, lit, sight, cells, known, light, calm, planes), image);
+  EyePlanes planes{tonemap.exposure, image.rgb.data(), peaks.data(),
+                   depth ? depth->data() : nullptr};
+  soften_edges(compose_moment(view, lit, sight, cells, known, light, calm, planes), image, peaks);
 }
 
 void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,

@@ -23,10 +23,10 @@ void compose_drawn(const View& view, const View& lit, const PictureSight& sight,
 // reading them again takes longer than the curve. Resizes `image` and `depth` (null: not wanted;
 // metres along the viewing axis, infinity: nothing there). `calm`: light is that of the cells,
 // which are means; each point for itself would show as a square where pixels are as large as those
-// of surroundings.
+// of surroundings. `peaks` is scratch: light beyond white, until edges are softened.
 void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
-                   bool known, const Frame& light, const Tonemap& tonemap, bool calm, Image8& image,
-                   std::vector<float>* depth);
+                   bool known, const Frame& light, const Tonemap& tonemap, bool calm,
+                   std::vector<uint8_t>& peaks, Image8& image, std::vector<float>* depth);
 
 // What does not move of a picture at rest, in light of its own resolution, `light` being of `view`
 // itself, seen at one place of every pixel, `offset` (0 to 1): the mean over several such pictures

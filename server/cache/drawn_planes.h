@@ -60,11 +60,14 @@ struct NearerPlanes {
 // What the eye sees.
 struct EyePlanes {
   float exposure;
-  uint8_t* rgb;
-  float* depth;  // null: not wanted
+  uint8_t *rgb, *peaks;  // codes of what is shown, and eval_peak_codes() of its light
+  float* depth;          // null: not wanted
   void put(size_t at, LanePart part, const Shown& s) const {
     const Color& c = s.color;
-    LaneMask codes = eval_tone_curve(Lanes3{c.r, c.g, c.b} * all_lanes(exposure));
+    Lanes3 light = Lanes3{c.r, c.g, c.b} * all_lanes(exposure);
+    LaneMask codes = eval_tone_curve(light);
+    using Bytes = uint8_t __attribute__((vector_size(lanes)));
+    Bytes peak = __builtin_convertvector(eval_peak_codes(max_component(light)), Bytes);
     if (part.all()) {
       store_pixels(rgb + 3 * at, codes);
     } else {
@@ -72,6 +75,7 @@ struct EyePlanes {
       store_pixels(bytes, codes);
       std::memcpy(rgb + 3 * at, bytes + 3 * part.begin, 3 * size_t(part.end - part.begin));
     }
+    part.put(peaks + at, peak);
     if (depth) part.put(depth + at, s.depth);
   }
 };

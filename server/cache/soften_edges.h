@@ -12,8 +12,11 @@ namespace wellspring {
 
 // `edges`: Raster::edges() of the picture. Where several cut a pixel, each takes its share of what
 // the ones before have left.
-void soften_edges(std::span<const std::vector<EdgeShare>> edges,
-                  Image8& image);  // as eyes add light
 void soften_edges(std::span<const std::vector<EdgeShare>> edges, std::vector<vec3>& color);
+// Of a picture that has been through the tone curve (frame/tone_curve.h): its light is mixed as it
+// was before, since half a pixel of bright sky is white already. `peaks`: of each pixel the code of
+// its light, which it changes with it.
+void soften_edges(std::span<const std::vector<EdgeShare>> edges, Image8& image,
+                  std::span<uint8_t> peaks);
 
 }  // namespace wellspring

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The curve of frame/tonemap.h for eight pixels at a time: for those who make a picture for the eye
-// and need no picture of radiance in between.
+// and need no picture of radiance in between. And back, for those who mix light of such a picture.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -30,6 +31,58 @@ inline Lanes encode_srgb(Lanes x) {
   return x < 0.0031308f ? 12.92f * x : curve;
 }
 
+// A channel is shown as channel * scale + offset where the largest is `above`, at least
+// shoulder_start.
+template <class Number>
+void eval_shoulder(Number above, Number& scale, Number& offset) {
+  Number squeezed =
+      1 - shoulder_height * shoulder_height / (above + (shoulder_height - shoulder_start));
+  Number keep = 1 / (shoulder_desaturation * (above - squeezed) + 1);
+  scale = squeezed / above * keep, offset = squeezed * (1 - keep);
+}
+
+// What the codes of bright colours cannot tell any more, and light beyond white not at all: radiance
+// times exposure of a colour's largest channel in a byte, 32 steps an octave (the first bits of the
+// float). 0: less than least_peak; 255: most_peak or more.
+inline constexpr float least_peak = 0.5f;
+inline constexpr int peak_shift = 18;
+inline LaneMask eval_peak_codes(Lanes peak) {
+  auto bits = [](Lanes x) {
+    LaneMask b;
+    std::memcpy(&b, &x, sizeof b);
+    return b;
+  };
+  LaneMask code = (bits(peak) - bits(all_lanes(least_peak))) >> peak_shift;
+  code = code > 0 ? code : LaneMask{};
+  return code < 255 ? code : LaneMask{} + 255;
+}
+// The least peak that has this code.
+inline float peak_of(int code) {
+  int32_t bits;
+  std::memcpy(&bits, &least_peak, sizeof bits);
+  bits += code << peak_shift;
+  float peak;
+  std::memcpy(&peak, &bits, sizeof peak);
+  return peak;
+}
+
+inline constexpr float most_told = 1.1f;
+// Radiance times exposure from `shown`, the linear values of a pixel's codes, and its peak's code.
+inline vec3 invert_tone_curve(vec3 shown, uint8_t peak_code) {
+  float squeezed = std::max(shown.x, std::max(shown.y, shown.z));
+  if (squeezed <= shoulder_start) return shown;
+  // The codes tell the peak better than its own while there are many of them.
+  float low = peak_of(peak_code), high = peak_of(peak_code + 1), above = 0.5f * (low + high);
+  if (above < most_told)
+    above = std::clamp(shoulder_start - shoulder_height +
+                           shoulder_height * shoulder_height / std::max(1 - squeezed, 1e-6f),
+                       std::max(low, shoulder_start), std::max(high, shoulder_start));
+  float keep = 1 / (shoulder_desaturation * (above - squeezed) + 1);
+  vec3 light = (shown - squeezed * (1 - keep)) * (above / (squeezed * keep));
+  return {std::clamp(light.x, 0.0f, above), std::clamp(light.y, 0.0f, above),
+          std::clamp(light.z, 0.0f, above)};
+}
+
 // Radiance times exposure to red | green << 8 | blue << 16 of the eye's picture.
 inline LaneMask eval_tone_curve(Lanes3 c) {
   auto usable = [](Lanes x) {
@@ -39,17 +92,22 @@ inline LaneMask eval_tone_curve(Lanes3 c) {
   c = {usable(c.x), usable(c.y), usable(c.z)};
   Lanes peak = max_component(c);
   if (negative_lanes(LaneMask(peak > shoulder_start))) {
-    Lanes above = lanes_max(peak, all_lanes(shoulder_start));
-    Lanes squeezed =
-        1 - shoulder_height * shoulder_height / (above + (shoulder_height - shoulder_start));
-    Lanes keep = 1 / (shoulder_desaturation * (above - squeezed) + 1);
-    Lanes scale = squeezed / above * keep, offset = squeezed * (1 - keep);
+    Lanes above = lanes_max(peak, all_lanes(shoulder_start)), scale, offset;
+    eval_shoulder(above, scale, offset);
     c = {c.x * scale + offset, c.y * scale + offset, c.z * scale + offset};
   }
   auto code = [](Lanes x) {
     return __builtin_convertvector(encode_srgb(x) * 255 + 0.5f, LaneMask);
   };
   return code(c.x) | code(c.y) << 8 | code(c.z) << 16;
+}
+
+// The same of one pixel, whose channels are usable: neither negative nor more than brightest_shown.
+inline void eval_tone_curve(vec3 c, uint8_t* codes) {
+  float peak = std::max(c.x, std::max(c.y, c.z)), scale = 1, offset = 0;
+  if (peak > shoulder_start) eval_shoulder(peak, scale, offset);
+  Lanes code = encode_srgb(Lanes{c.x, c.y, c.z} * scale + offset) * 255 + 0.5f;
+  for (int k = 0; k < 3; k++) codes[k] = uint8_t(code[k]);
 }
 
 // Eight pixels as 24 bytes.

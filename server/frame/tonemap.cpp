@@ -17,18 +17,6 @@ inline float usable(float x) {
   return x < brightest_shown ? x : brightest_shown;
 }
 
-struct Shoulder {
-  float scale, offset;  // channel = radiance * scale + offset
-};
-
-// `above`: the colour's largest channel, at least shoulder_start.
-inline Shoulder shoulder(float above) {
-  float squeezed =
-      1 - shoulder_height * shoulder_height / (above + (shoulder_height - shoulder_start));
-  float keep = 1 / (shoulder_desaturation * (above - squeezed) + 1);
-  return {squeezed / above * keep, squeezed * (1 - keep)};
-}
-
 inline float encode_exact(float x) {
   return x < 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
 }
@@ -77,9 +65,10 @@ void tonemap(const Frame& frame, const Tonemap& settings, Image8& out) {
 vec3 tonemap_color(vec3 radiance, const Tonemap& settings) {
   vec3 c(usable(radiance.x * settings.exposure), usable(radiance.y * settings.exposure),
          usable(radiance.z * settings.exposure));
-  Shoulder s = shoulder(larger(max_component(c), shoulder_start));
-  return {encode_exact(c.x * s.scale + s.offset), encode_exact(c.y * s.scale + s.offset),
-          encode_exact(c.z * s.scale + s.offset)};
+  float scale, offset;
+  eval_shoulder(larger(max_component(c), shoulder_start), scale, offset);
+  return {encode_exact(c.x * scale + offset), encode_exact(c.y * scale + offset),
+          encode_exact(c.z * scale + offset)};
 }
 
 }  // namespace wellspring

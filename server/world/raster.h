@@ -42,7 +42,7 @@ struct RasterRun {
 Hit hit_of(const RasterRun& run, int i, const View& view, vec2 offset);
 
 // Of `pixel` (row after row from the picture's top left), the share that is covered by what
-// `other`, a neighbour, shows: above 0, at most a half.
+// `other`, a neighbour, shows: above 0, at most a half. Exact where one straight edge cuts it.
 struct EdgeShare {
   uint32_t pixel = 0, other = 0;
   float share = 0;

@@ -16,15 +16,19 @@ struct EdgeSide {
   float depth = 0;
 };
 
-// Between pixel (x, y) and the one to the right of it or, `vertical`, below. Positive: this share
-// of the first is covered by what the second shows; negative: the other way round. At most a half.
-// 0: both show one smooth surface, or the edge runs rather along the other axis. `focal`: pixels a
-// unit of slope.
-float find_edge(const EdgeSide& first, const EdgeSide& second, int x, int y, bool vertical,
+// How much of each of two neighbouring pixels is covered by what the other shows; at most a half.
+struct EdgeCover {
+  float first = 0, second = 0;
+};
+// Between pixel (x, y) and the one to the right of it or, `vertical`, below. None: both show one
+// smooth surface, or the edge runs rather along the other axis. `focal`: pixels a unit of slope.
+EdgeCover find_edge(const EdgeSide& first, const EdgeSide& second, int x, int y, bool vertical,
                 const RasterView& view, float focal);
 
 // Half the tangent of the angle that a smooth surface may turn by (find_edge()).
 inline constexpr float smooth_bend = 0.24f;
+
+inline constexpr float least_share = 1 / 256.0f;  // that is worth mixing
 
 // Goes through the tiles of a picture.
 template <class TriangleOf>
@@ -99,10 +103,10 @@ struct EdgeFinder {
     EdgeSide first = side_of(tile1, place1), second = side_of(tile2, place2);
     if (first.triangle == second.triangle) return;
     ivec2 at = corner_of(tile1) + ivec2(place1 % tile_width, place1 / tile_width);
-    float edge = find_edge(first, second, at.x, at.y, vertical, view, focal);
-    if (edge == 0) return;
+    EdgeCover edge = find_edge(first, second, at.x, at.y, vertical, view, focal);
     uint32_t a = uint32_t(at.y * view.width + at.x), b = a + uint32_t(vertical ? view.width : 1);
-    found.push_back(edge > 0 ? EdgeShare{a, b, edge} : EdgeShare{b, a, -edge});
+    if (edge.first > least_share) found.push_back({a, b, edge.first});
+    if (edge.second > least_share) found.push_back({b, a, edge.second});
   }
 };
 

@@ -3,14 +3,45 @@
 
 #include <gtest/gtest.h>
 
+#include "frame/tone_curve.h"
+#include "frame/tonemap.h"
+
 using namespace wellspring;
 
+namespace {
+
+// Through the tone curve as compose_drawn() does, softened, and what the curve says of light that
+// was mixed.
+void expect_mixed_before_the_curve(std::vector<vec3> light,
+                                   const std::vector<std::vector<EdgeShare>>& edges, int codes) {
+  Frame frame;
+  frame.width = int(light.size()), frame.height = 1, frame.color = light;
+  Image8 image, expected;
+  tonemap(frame, {}, image);
+  std::vector<uint8_t> peaks;
+  for (vec3 c : light)
+    peaks.push_back(uint8_t(eval_peak_codes(all_lanes(max_component(c)))[0]));
+  soften_edges(edges, image, peaks);
+  soften_edges(edges, frame.color);
+  tonemap(frame, {}, expected);
+  for (size_t i = 0; i < image.rgb.size(); i++)
+    EXPECT_NEAR(image.rgb[i], expected.rgb[i], codes) << "byte " << i;
+}
+
+}  // namespace
+
 TEST(SoftenEdges, MixesLightNotCodes) {
-  Image8 image{3, 1, {0, 0, 0, 255, 255, 255, 10, 20, 30}};
   std::vector<std::vector<EdgeShare>> edges{{{0, 1, 0.25f}}, {{1, 0, 0.5f}}};
-  soften_edges(edges, image);
-  // A quarter and a half of white's light: the first does not see the second's new colour.
-  EXPECT_EQ(image.rgb, (std::vector<uint8_t>{128, 128, 128, 180, 180, 180, 10, 20, 30}));
+  // A quarter and a half of the light: the first does not see the second's new colour.
+  expect_mixed_before_the_curve({vec3(0), vec3(0.7f), vec3(0.01f, 0.02f, 0.03f)}, edges, 1);
+}
+
+// Half of a sky that is eight times as bright as white is white, and so is a fifth.
+TEST(SoftenEdges, MixesWhatIsBrighterThanWhite) {
+  std::vector<std::vector<EdgeShare>> edges{{{0, 1, 0.2f}, {0, 2, 0.1f}}, {{1, 0, 0.5f}}};
+  for (float sky : {0.9f, 1.5f, 4.0f, 10.0f, 300.0f})
+    expect_mixed_before_the_curve({vec3(0.02f), sky * vec3(0.9f, 0.95f, 1), vec3(0.4f, 0.3f, 0.2f)},
+                                  edges, 3);
 }
 
 TEST(SoftenEdges, SeveralEdgesNeverTakeMoreThanThereIs) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame/tonemap.h"
 
+#include "frame/tone_curve.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -112,4 +114,33 @@ TEST(Tonemap, EveryPixelOfAnOddSizeIsWritten) {
     ASSERT_NEAR(image.rgb[3 * i + 2], tonemap_color(frame.color[i], {}).z * 255, 1) << i;
   frame.color.pop_back();
   EXPECT_THROW(tonemap(frame, {}, image), std::invalid_argument);
+}
+
+// Codes and the peak's byte give light back: to codes of darkness as near as codes are, and of what
+// is beyond white how bright it is, and of which colour as far as the codes show it.
+TEST(Tonemap, LightComesBackFromCodesAndPeaks) {
+  auto there_and_back = [](vec3 light, vec3& again) {
+    vec3 codes = shown(light);
+    uint8_t peak = uint8_t(eval_peak_codes(all_lanes(max_component(light)))[0]);
+    auto linear = [](float code) {
+      double x = code / 255.0;
+      return float(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+    };
+    again = invert_tone_curve({linear(codes.x), linear(codes.y), linear(codes.z)}, peak);
+    return codes;
+  };
+  for (float x = 0.01f; x < 120; x *= 1.01f) {
+    vec3 light = vec3(1, 0.9f, 0.8f) * x, again;
+    vec3 codes = there_and_back(light, again);
+    EXPECT_NEAR(again.x, light.x, 0.02f * light.x + 0.0005f);
+    EXPECT_NEAR(again.z, light.z, (x < 10 ? 0.04f : 0.25f) * light.z + 0.0005f) << x;
+    vec3 recoded = shown(again);
+    for (int c = 0; c < 3; c++) EXPECT_NEAR(recoded[c], codes[c], 1) << x;
+  }
+  vec3 again;
+  for (float x : {1e5f, INFINITY, NAN, -1.0f, 0.0f}) {
+    there_and_back(vec3(x), again);
+    for (int c = 0; c < 3; c++)
+      EXPECT_TRUE(x > 1 ? again[c] > 100 && again[c] < 130 : again[c] == 0) << x << ": " << again[c];
+  }
 }

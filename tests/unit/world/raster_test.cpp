@@ -470,8 +470,8 @@ TEST(Raster, EdgesTellHowMuchOfAPixelIsCovered) {
         cut += covered > 0 && covered < 1;
       }
     EXPECT_GT(cut, 300);
-    // The distance along one axis is off by an eighth of a pixel's area at most, of slopes of one.
-    EXPECT_LT(std::sqrt(softened), 0.35 * std::sqrt(plain)) << "background " << background;
+    // What is left are corners, and where edges run rather along the other axis.
+    EXPECT_LT(std::sqrt(softened), 0.2 * std::sqrt(plain)) << "background " << background;
   }
 }
 
