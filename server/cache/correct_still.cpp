@@ -103,7 +103,8 @@ Known pool_spread(const StillSamples& samples, const Frame& frame, StillCorrecti
           size_t b = size_t(by) * size_t(work.columns) + size_t((x + k) / block);
           work.block_spread[b] = own, work.block_samples[b] = samples_here;
           spread[size_t(by)] += double(std::min(own, samples_here));
-          light[size_t(by)] += double(add_four(bright)), repeats[size_t(by)] += double(samples_here);
+          light[size_t(by)] += double(add_four(bright));
+          repeats[size_t(by)] += double(samples_here);
         }
       }
   });

@@ -179,6 +179,37 @@ bool PictureSight::can_see(const View& view) const {
   return !impl_->lights.tables->any_solid || find_media(transport, view.position).innermost() < 0;
 }
 
+namespace {
+
+// Pixels side by side of one material, whose pictures are read at one level, maybe of several
+// triangles: of many small ones each for itself would leave most lanes unused.
+struct Stretch {
+  int begin, end;
+  const Material* material;
+  int index;                        // of the material in the scene
+  float base_texels, shine_texels;  // a pixel's width
+  bool alone;                       // each pixel has to be looked up by itself
+  bool goes_on_with(const Stretch& s) const {
+    return end == s.begin && material == s.material && index == s.index && alone == s.alone &&
+           pyramid_level(base_texels) == pyramid_level(s.base_texels) &&
+           pyramid_level(shine_texels) == pyramid_level(s.shine_texels);
+  }
+};
+struct PicturePlaces {
+  float u[RunSurface::most], v[RunSurface::most];
+  void put(const FacetPicture& place, Lanes a, Lanes b, int i) {
+    store_lanes(u + i, place.corner.x + place.edge1.x * a + place.edge2.x * b);
+    store_lanes(v + i, place.corner.y + place.edge1.y * a + place.edge2.y * b);
+  }
+};
+struct Stretches {
+  int count = 0;
+  Stretch of[RasterRun::most];
+  PicturePlaces base, shine;
+};
+
+}  // namespace
+
 struct SightRun::Impl {
   const PictureSight::Impl& sight;
   const View& view;
@@ -197,9 +228,24 @@ struct SightRun::Impl {
   }
   Seen see(int i) const;
   void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
-  bool read_lanes(const FacetPicture& place, const TextureRef& reference, int i, float width,
-                  Lanes (&rgb)[3]) const;
-  bool describe(int begin, int end, RunSurface& to) const;
+  vec3 scale_of(const Material& m, int index) const {
+    return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * sight.factor[size_t(index)];
+  }
+  bool has_picture(const TextureRef& reference) const {
+    const Scene& scene = *sight.pictures.scene;
+    return reference.texture >= 0 && scene.textures[size_t(reference.texture)].image >= 0;
+  }
+  bool reads_base(const Material& m, int index) const {
+    return has_picture(m.base_color_texture) && scale_of(m, index) != vec3(0);
+  }
+  bool reads_shine(const Material& m, int index) const {
+    return sight.reflectance[size_t(index)] == Reflectance::base &&
+           has_picture(m.metallic_roughness_texture);
+  }
+  bool place(const Facet& f, int begin, int end, Stretches& to) const;
+  bool read_lanes(const PicturePlaces& places, const TextureRef& reference, float texels, int i,
+                  int end, Lanes (&rgb)[3]) const;
+  void describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const;
 };
 
 // As kept_reflectance(), eight base colours at a time.
@@ -212,18 +258,18 @@ static void keep_lanes(Lanes metallic, Lanes roughness, Lanes (&rgb)[3]) {
   for (int k = 0; k < 3; k++) rgb[k] = diffuse ? matt[k] : soft ? metal[k] : all_lanes(0);
 }
 
-// Eight pixels of a facet from `i` on; false: they have to be looked up one by one.
-bool SightRun::Impl::read_lanes(const FacetPicture& place, const TextureRef& reference, int i,
-                                float width, Lanes (&rgb)[3]) const {
+// Eight pixels from `i` on, those before `end`; false: they have to be looked up one by one.
+bool SightRun::Impl::read_lanes(const PicturePlaces& places, const TextureRef& reference,
+                                float texels, int i, int end, Lanes (&rgb)[3]) const {
+  constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
   const Texture& texture = sight.pictures.scene->textures[size_t(reference.texture)];
-  if (texture.image < 0) return true;
-  if (!place.known) return false;
-  Lanes u = load_lanes(run->u + i), v = load_lanes(run->v + i);
+  Lanes u = load_lanes(places.u + i), v = load_lanes(places.v + i);
+  // What lies beyond is read where the last one is, which costs nothing.
+  LaneMask here = lane < float(end - i);
+  u = here ? u : all_lanes(places.u[end - 1]), v = here ? v : all_lanes(places.v[end - 1]);
   size_t image = size_t(texture.image);
   return eval_pyramid(sight.pictures.scene->images[image], sight.pictures.pyramids[image], texture,
-                      place.corner.x + place.edge1.x * u + place.edge2.x * v,
-                      place.corner.y + place.edge1.y * u + place.edge2.y * v,
-                      width * place.texels, rgb);
+                      u, v, texels, rgb);
 }
 
 void SightRun::Impl::describe_normals(const Facet& f, int begin, int end, RunSurface& to) const {
@@ -248,31 +294,45 @@ void SightRun::Impl::describe_normals(const Facet& f, int begin, int end, RunSur
   }
 }
 
-// Pixels [begin, end) of a run, all of one triangle. False: each has to be seen by itself.
-bool SightRun::Impl::describe(int begin, int end, RunSurface& to) const {
-  const RasterRun& r = *run;
-  const Facet& f = facet(begin);
-  const Mesh& mesh = *f.placed->mesh;
+// Pixels [begin, end) of a run, all of one triangle, become stretches or parts of such. False: each
+// has to be seen by itself.
+bool SightRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) const {
   const Material& m = *f.material;
-  size_t material = size_t(mesh.material);
-  Reflectance way = sight.reflectance[material];
-  if (m.unlit || way == Reflectance::traced || shines(f)) return false;
-  describe_normals(f, begin, end, to);
-  bool metal = way == Reflectance::metal, blended = way == Reflectance::base;
-  vec3 scale = glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * sight.factor[material];
-  bool plain = m.base_color_texture.texture < 0 || scale == vec3(0);
-  bool plain_shine = !blended || m.metallic_roughness_texture.texture < 0;
+  int index = f.placed->mesh->material;
+  if (m.unlit || sight.reflectance[size_t(index)] == Reflectance::traced || shines(f)) return false;
+  bool base = reads_base(m, index), shine = reads_shine(m, index);
+  bool alone = !f.placed->mesh->colors.empty() || (base && !f.base.known) ||
+               (shine && !f.shine.known);
   for (int i = begin; i < end; i += lane_count) {
-    Lanes rgb[3] = {all_lanes(1), all_lanes(1), all_lanes(1)}, shine[3] = {rgb[0], rgb[0], rgb[0]};
-    bool done = mesh.colors.empty();
-    if (done && !(plain && plain_shine)) {
+    Stretch s{i, std::min(i + lane_count, end), &m, index, 0, 0, alone};
+    if (!alone && (base || shine)) {
+      Lanes a = load_lanes(run->u + i), b = load_lanes(run->v + i);
       int middle = std::min(i + lane_count / 2, end - 1);
-      float width = pixel_width(f, r.depth[middle], direction(middle), blurred_angle);
-      if (!plain) done = read_lanes(f.base, m.base_color_texture, i, width, rgb);
-      if (done && !plain_shine)
-        done = read_lanes(f.shine, m.metallic_roughness_texture, i, width, shine);
+      float width = pixel_width(f, run->depth[middle], direction(middle), blurred_angle);
+      if (base) to.base.put(f.base, a, b, i), s.base_texels = width * f.base.texels;
+      if (shine) to.shine.put(f.shine, a, b, i), s.shine_texels = width * f.shine.texels;
     }
-    int last = std::min(i + lane_count, end);
+    if (to.count > 0 && to.of[to.count - 1].goes_on_with(s)) to.of[to.count - 1].end = s.end;
+    else to.of[to.count++] = s;
+  }
+  return true;
+}
+
+void SightRun::Impl::describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const {
+  const Material& m = *s.material;
+  Reflectance way = sight.reflectance[size_t(s.index)];
+  bool metal = way == Reflectance::metal, blended = way == Reflectance::base;
+  vec3 scale = scale_of(m, s.index);
+  bool reads = reads_base(m, s.index), reads_too = reads_shine(m, s.index);
+  for (int i = s.begin; i < s.end; i += lane_count) {
+    Lanes rgb[3] = {all_lanes(1), all_lanes(1), all_lanes(1)}, shine[3] = {rgb[0], rgb[0], rgb[0]};
+    bool done = !s.alone;
+    if (done && reads)
+      done = read_lanes(stretches.base, m.base_color_texture, s.base_texels, i, s.end, rgb);
+    if (done && reads_too)
+      done = read_lanes(stretches.shine, m.metallic_roughness_texture, s.shine_texels, i, s.end,
+                        shine);
+    int last = std::min(i + lane_count, s.end);
     if (!done) {
       for (int k = i; k < last; k++) {
         vec3 albedo = see(k).albedo;
@@ -289,24 +349,27 @@ bool SightRun::Impl::describe(int begin, int end, RunSurface& to) const {
     store_lanes(to.red + i, rgb[0]);
     store_lanes(to.green + i, rgb[1]);
     store_lanes(to.blue + i, rgb[2]);
-    for (int k = i; r.veil && k < last; k++) {
-      vec3 tint = r.veil[k].tint;
+    for (int k = i; run->veil && k < last; k++) {
+      vec3 tint = run->veil[k].tint;
       to.red[k] *= tint.x, to.green[k] *= tint.y, to.blue[k] *= tint.z;
     }
   }
-  return true;
 }
 
 uint64_t SightRun::describe(uint64_t wanted, RunSurface& to) const {
   const RasterRun& r = *impl_->run;
   uint64_t alone = 0;
+  Stretches stretches;
   for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
     int end = r.end[p];
     uint64_t these = (end - begin < 64 ? (uint64_t(1) << (end - begin)) - 1 : ~uint64_t(0))
                      << begin;
     if (!(wanted & these)) continue;
-    if (r.instance[begin] == RasterRun::nothing || !impl_->describe(begin, end, to)) alone |= these;
+    const Facet* f = r.instance[begin] == RasterRun::nothing ? nullptr : &impl_->facet(begin);
+    if (f && impl_->place(*f, begin, end, stretches)) impl_->describe_normals(*f, begin, end, to);
+    else alone |= these;
   }
+  for (int k = 0; k < stretches.count; k++) impl_->describe(stretches, stretches.of[k], to);
   for (int i = 0; r.veil && i < count; i++)
     if (r.veil[i].glow != vec3(0)) alone |= uint64_t(1) << i;
   return alone & wanted;

@@ -76,14 +76,14 @@ TexturePyramid make_pyramid(const Image& image) {
   return pyramid;
 }
 
-namespace {
-
 // The logarithm of the width to base 2, rounded: the exponent of the width over the root of one
 // half.
-int level_of(float texels) {
+int pyramid_level(float texels) {
   int level = int(std::bit_cast<uint32_t>(texels * 1.41421356f) >> 23 & 255) - 127;
   return texels > 1 ? level : 0;
 }
+
+namespace {
 
 LaneMask gather(const void* from, LaneMask index) {
 #ifdef __AVX2__
@@ -158,7 +158,7 @@ bool eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Textu
                   Lanes u, Lanes v, float texels, Lanes (&rgb)[3]) {
   if (image.texels8.empty() || texture.nearest || image.width <= 0 || image.height <= 0)
     return false;
-  int level = level_of(texels);
+  int level = pyramid_level(texels);
   if (level <= 0 || pyramid.levels.empty()) {
     static const Codes srgb = make_codes(true), linear = make_codes(false);
     const float* codes = image.srgb ? srgb.linear : linear.linear;
@@ -179,7 +179,7 @@ bool eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Textu
 
 vec3 eval_pyramid(const Image& image, const TexturePyramid& pyramid, const Texture& texture,
                   vec2 uv, float texels) {
-  int level = level_of(texels);
+  int level = pyramid_level(texels);
   if (level <= 0 || pyramid.levels.empty() || texture.nearest)
     return vec3(eval_texture(image, texture, uv));
   if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = vec2(0);

@@ -159,6 +159,44 @@ TEST(SeePicture, SeesWhatRaysSee) {
   EXPECT_GT(sky, 1000);
 }
 
+// Small triangles of one material share look-ups, each with its own place in the picture; others
+// beside them, and levels, keep theirs.
+TEST(SeePicture, SmallTrianglesSideBySideKeepTheirReflectance) {
+  Scene scene = empty_scene();
+  Material textured = diffuse(vec3(1)), shiny = plastic(vec3(0.6f, 0.3f, 0.2f), 0.5f);
+  textured.base_color_texture.texture = add_texture(scene, checks(64, true));
+  shiny.metallic = 0.5f;
+  shiny.metallic_roughness_texture.texture = add_texture(scene, checks(16, false));
+  Material both = shiny;
+  both.base_color_texture = textured.base_color_texture;
+  const int materials[] = {
+      add_material(scene, textured), add_material(scene, textured), add_material(scene, both),
+      add_material(scene, shiny), add_material(scene, diffuse(vec3(0.2f, 0.5f, 0.7f)))};
+  Rng rng(5);
+  constexpr int across = 50, down = 10;
+  for (int y = 0; y < down; y++)
+    for (int x = 0; x < across; x++) {
+      int made = add_quad(scene, materials[rng.next() % 5],
+                          {0.04f * float(x) - 1, 0.1f * float(y) - 0.5f, -2}, {0.04f, 0, 0},
+                          {0, 0.1f, 0});
+      float turns = rng.next() % 3 == 0 ? 0.5f : 0.05f;
+      vec2 from(float(rng.next() % 64) / 64, float(rng.next() % 64) / 64);
+      for (vec2& uv : scene.meshes[size_t(scene.instances[size_t(made)].mesh)].uv[0])
+        uv = from + uv * turns;
+    }
+  World world(scene);
+  world.commit();
+  PictureSight sight(world, make_lights(world));
+  Drawn drawn = draw(sight, make_view(scene, {0, 0, 0}, 0, 0, 0.55f, 150, 84));
+  double off = 0;
+  for (size_t i = 0; i < drawn.seen.size(); i++) {
+    float differs = glm::length(drawn.reflectance[i] - drawn.seen[i].albedo);
+    ASSERT_LT(differs, 0.1f) << i;  // levels are read bilinear in roots
+    off += double(differs) / double(drawn.seen.size());
+  }
+  EXPECT_LT(off, 0.004);
+}
+
 TEST(SeePicture, DepthIsAlongTheViewingAxis) {
   Scene scene = empty_scene();
   add_quad(scene, add_material(scene, diffuse(vec3(0.5f))), {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});
