@@ -113,6 +113,13 @@ size_t Broker::memory_bytes() const {
   return sum;
 }
 
+void follow_meshes(const World& world, std::span<Sample> samples) {
+  for (Sample& sample : samples)
+    if (sample.flags & sample_moving)
+      find_on_mesh(world, sample.instance, sample.triangle, sample.barycentric, sample.position,
+                   sample.normal);
+}
+
 int land(std::span<const Answer> answers, const World& world, uint64_t pose, RenderCache& cache) {
   std::vector<Request> requests;
   std::vector<Sample> samples;
@@ -126,13 +133,7 @@ int land(std::span<const Answer> answers, const World& world, uint64_t pose, Ren
       size_t before = samples.size();
       requests.insert(requests.end(), answer.piece.requests.begin(), answer.piece.requests.end());
       samples.insert(samples.end(), answer.samples.begin(), answer.samples.end());
-      if (answer.pose == pose) continue;
-      for (size_t k = before; k < samples.size(); k++) {
-        Sample& sample = samples[k];
-        if (sample.flags & sample_moving)
-          find_on_mesh(world, sample.instance, sample.triangle, sample.barycentric, sample.position,
-                       sample.normal);
-      }
+      if (answer.pose != pose) follow_meshes(world, std::span(samples).subspan(before));
     }
     cache.remember(first.view, requests, samples);
     landed += int(samples.size());

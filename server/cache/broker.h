@@ -90,6 +90,9 @@ class Broker {
   uint64_t pieces_made_ = 0, asks_ = 0, era_ = 0;
 };
 
+// Puts samples of what moves where their triangles are in `world`.
+void follow_meshes(const World& world, std::span<Sample> samples);
+
 // Enters answers into the cache, to be called between move_points() and project(). Samples of what
 // moves are put where their triangles are in `world`, whose pose is `pose`. Returns how many
 // samples.

@@ -14,6 +14,7 @@
 #include "cache/compose_drawn.h"
 #include "cache/correct_still.h"
 #include "cache/looks.h"
+#include "cache/moving_picture.h"
 #include "cache/packing.h"
 #include "cache/plan.h"
 #include "cache/point_cache.h"
@@ -34,20 +35,11 @@ constexpr int largest_side = 16384;
 constexpr size_t most_around =
     2;  // times the pixels of a picture: what lies around is no more to remember
 constexpr int still_project_period = 8;  // frames
+constexpr int enough_moving = 64;  // points on what moves, that it can be drawn by these alone
 constexpr uint8_t moving_mean = 48, still_mean = 255;  // samples a point's mean looks back on
 constexpr uint8_t moving_specular = 4;  // of what moves with the view and lies nowhere
 
 }  // namespace
-
-static void fit_frame(int width, int height, Frame& frame) {
-  size_t pixels = size_t(width) * size_t(height);
-  frame.width = width;
-  frame.height = height;
-  frame.color.resize(pixels);
-  frame.depth.resize(pixels);
-  frame.object.resize(pixels);
-  frame.confidence.resize(pixels);
-}
 
 struct CacheWork {
   Scratch scratch;
@@ -287,7 +279,7 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   for (uint32_t pixel : result.restarted) c.still.count[pixel] = 0;
   for (size_t i = 0; i < c.work->targets.size(); i++)
     if (c.work->targets[i] != no_point && requests[i].resample != c.work->targets[i] &&
-        requests[i].pixel < c.still.count.size()) {
+        requests[i].pixel < c.still.count.size() && !(samples[i].flags & sample_moving)) {
       c.still.count[requests[i].pixel] |= still_fresh;
       if (c.corrects)
         add_sample(c.still_samples, requests[i].pixel, samples[i].radiance(),
@@ -369,7 +361,8 @@ void RenderCache::draw(const View& view, const PictureSight& sight, const Tonema
   });
 }
 
-void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame& frame) {
+void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame& frame,
+                             StillShows shows) {
   Impl& c = *impl_;
   if (!c.projected || view != c.view) project(view);
   fit_frame(view.width, view.height, frame);
@@ -379,7 +372,7 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   c.draw(view, [&] {
     compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
     std::span<const std::vector<EdgeShare>> edges;
-    if (sight.anything_moves())
+    if (shows == StillShows::all && sight.anything_moves())
       edges = compose_moving(view, sight, c.cells, c.known, c.work->light, frame);
     bool changes = c.image.alarm > 0;  // what samples of the light before say is wrong
     if (c.corrects && changes) forget_samples(c.still_samples);
@@ -389,6 +382,39 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
     if (c.corrects && !changes) correct_still(c.still_samples, c.still, c.work->correction, frame);
     soften_edges(edges, frame.color);
   });
+}
+
+bool RenderCache::knows_moving() const {
+  const PointCache& points = impl_->points;
+  int shown = 0;
+  for (const Anchor& anchor : points.anchors)
+    if (points.flags[anchor.point] & point_visible && ++shown >= enough_moving) return true;
+  return false;
+}
+
+bool RenderCache::follows_moving(const Request& request) const {
+  const PointCache& points = impl_->points;
+  return request.resample < points.flags.size() && points.flags[request.resample] & point_moving;
+}
+
+bool RenderCache::draw_moving(const World& world, const Keyframe& backdrop,
+                              const PictureSight& sight, const Tonemap& tonemap, MovingLight& work,
+                              MovingPicture& picture) {
+  Impl& c = *impl_;
+  const View& view = backdrop.view;
+  picture.view = view;
+  picture.window = moving_window(world, view);
+  if (picture.empty()) return true;
+  c.image_stale |= !c.points.anchors.empty();
+  move_anchored_points(c.points, world);
+  const PictureWindow runs = whole_runs(picture.window, view);
+  light_moving(c.points, view, runs, work);
+  if (!work.known) return false;
+  copy_colors(backdrop, runs, work.picture);
+  guess_peaks(work.picture, runs, work.peaks);
+  compose_moving(view, sight, runs, tonemap, backdrop.disparity, c.still.count, work);
+  take_window(work.picture, picture);
+  return true;
 }
 
 void RenderCache::relight(const Changes& changes) {

@@ -29,6 +29,10 @@ struct CacheSettings {
 };
 
 struct Tonemap;
+struct Keyframe;       // cache/keyframe.h
+struct MovingPicture;  // cache/moving_picture.h: what moves in a picture at rest
+struct MovingLight;
+enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what moves
 struct PointCache;  // cache/point_cache.h: the points
 struct PointImage;  // cache/point_image.h: what projects where, priorities
 
@@ -100,7 +104,17 @@ class RenderCache {
   // The same at rest, in light of the view's own resolution, for which all of the frame before has
   // been done: what does not move is antialiased in time, seen at another place of the pixels each
   // time.
-  void draw_still(const View& view, const PictureSight& sight, Frame& frame);
+  void draw_still(const View& view, const PictureSight& sight, Frame& frame,
+                  StillShows shows = StillShows::all);
+  // Whether enough points that show lie on what moves.
+  bool knows_moving() const;
+  // Whether it asks for exactly a point on what moves, which is elsewhere soon.
+  bool follows_moving(const Request& request) const;
+  // What moves, as the world is now, to be laid over the last draw_still() without it, of which
+  // `backdrop` is the keyframe; needs no projection. False: no point lies on it. An empty picture:
+  // it is not to be seen.
+  bool draw_moving(const World& world, const Keyframe& backdrop, const PictureSight& sight,
+                   const Tonemap& tonemap, MovingLight& work, MovingPicture& picture);
   // Answers come from the reference from now on, or no longer (else that they differ from earlier
   // ones might be taken for a change of the light). Its light is not expected to be that of others.
   void set_reference(bool on);

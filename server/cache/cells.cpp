@@ -182,7 +182,7 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch) {
   take(cells.object, no_object);
 }
 
-void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells) {
+void build_cells(const WindowView& view, const SurfaceRows& rows, int cy, Cells& cells) {
   static_assert(cell_pad >= lanes - 1, "the last eight cells of a row may lie in the padding");
   PixelRays rays(view);
   vec3 axes[3] = {view.right, view.up, view.forward};

@@ -51,13 +51,13 @@ size_t cells_bytes(int width, int height);
 void take_cells(Cells& cells, int width, int height, Scratch& scratch);
 // Overwrites row cy of the cells: the means over the pixels that see each cell's object. `rows`
 // hold the rows of the picture that it covers.
-void build_cells(const View& view, const SurfaceRows& rows, int cy, Cells& cells);
+void build_cells(const WindowView& view, const SurfaceRows& rows, int cy, Cells& cells);
 // Cells that know nothing take what their surroundings know, the nearer the better; their samples
 // stay 0. False: nothing known anywhere.
-bool fill_cells(const View& view, Cells& cells);
+bool fill_cells(const WindowView& view, Cells& cells);
 // Filters smooth light and the noisy part of the rest as widely as their noise asks for, never
 // across objects, creases or steps; cells weigh what their samples are, so that filled ones take
 // and do not give (normalised convolution: Knutsson and Westin 1993).
-void filter_cells(const View& view, Cells& cells);
+void filter_cells(const WindowView& view, Cells& cells);
 
 }  // namespace wellspring

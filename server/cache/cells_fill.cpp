@@ -128,7 +128,7 @@ void write_cell(const PixelRays& rays, const Coarse& c, int x, int y, Cells& cel
 
 }  // namespace
 
-bool fill_cells(const View& view, Cells& cells) {
+bool fill_cells(const WindowView& view, Cells& cells) {
   PixelRays rays(view);
   bool all = true;
   for (int y = 0; y < cells.height && all; y++)

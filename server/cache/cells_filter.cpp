@@ -315,7 +315,7 @@ f8 compare_surfaces(const Cells& cells, size_t i, size_t j, const f8& ray_x, flo
 
 }  // namespace
 
-void filter_cells(const View& view, Cells& cells) {
+void filter_cells(const WindowView& view, Cells& cells) {
   estimate_variance(cells);
   PixelRays rays(view);
   std::vector<float> ray_x(size_t(cells.width) + lanes);

@@ -295,6 +295,7 @@ struct Composer {
   PixelRays rays, light_rays;
   vec2 offset{0.5f};
   float doubt = moving_doubt;
+  int left = 0, top = 0;   // where in the picture the light's begins, whole groups
   float own_counts = 1;  // samples of a pixel's own point, each
 
   // Eight lanes each.
@@ -308,7 +309,7 @@ struct Composer {
 template <int Scale>
 const CellRows<Scale>& Composer<Scale>::rows_around(const SightRun& run) const {
   thread_local CellRows<Scale> rows;
-  int by = (run.y + half_group) / group, bx = run.x / group;  // the block's lower right cell
+  int by = (run.y - top + half_group) / group, bx = (run.x - left) / group;  // the lower right cell
   int count = parts_of(run) * together<Scale> + 1;
   if (rows.picture != run.picture || rows.first != bx - 1 || rows.row != by - 1 ||
       rows.count < count)
@@ -359,7 +360,7 @@ Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, uint6
   q.normal2 = larger(q.nx * q.nx + q.ny * q.ny + q.nz * q.nz, splat(1e-30f));
   q.x = rays.x(float(x) + offset.x) + rays.inverse_focal * lane;
   q.y = splat(rays.y(float(run.y) + offset.y));
-  int lx = (x + half_group) / Scale + packed_start, ly = run.y / Scale;
+  int lx = (x - left + half_group) / Scale + packed_start, ly = (run.y - top) / Scale;
   take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
                   light_rays.y(float(ly) + 0.5f), d);
   q.samples *= own_counts;
@@ -368,7 +369,7 @@ Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, uint6
   if (known) {
     constexpr f8 across = group == lanes ? lane : f8{0, 1, 2, 3, 0, 1, 2, 3};
     const f8 fx = (across + 0.5f) * (1.0f / group);
-    float fy = (float(run.y - (rows.row + 1) * group + half_group) + 0.5f) / group;
+    float fy = (float(run.y - top - (rows.row + 1) * group + half_group) + 0.5f) / group;
     f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
     const int g = n * together<Scale>;
     using Cell = CellRows<Scale>::Cell;
@@ -430,16 +431,20 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const V
   return draw(CoarseComposer{view, cells, known, light, rays, PixelRays(lit)});
 }
 
-}  // namespace
-
-View light_view(const View& view) {
-  View light = view;
-  light.width = (view.width + light_scale - 1) / light_scale;
-  light.height = (view.height + light_scale - 1) / light_scale;
-  light.tan_half_fov =
-      view.tan_half_fov * float(light.height * light_scale) / float(view.height);
-  return light;
+// What moves, in runs within the window that show any of it. Returns its edges.
+template <class Take>
+std::span<const std::vector<EdgeShare>> see_moving(const View& view, const PictureSight& sight,
+                                                   const PictureWindow& window, const Take& take) {
+  auto take_what_is_there = [&](const SightRun& run) {
+    bool inside = run.x >= window.left && run.x + run.count <= window.left + window.width &&
+                  run.y >= window.top && run.y < window.top + window.height;
+    for (int i = 0; inside && i < run.count; i++)
+      if (run.object[i] != 0) return take(run);
+  };
+  return sight.see_edges(view, vec2(0.5f), take_what_is_there, RasterShows::moving);
 }
+
+}  // namespace
 
 void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
                    bool known, const Frame& light, Frame& frame) {
@@ -471,13 +476,20 @@ std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const P
                                                        const Cells& cells, bool known,
                                                        const Frame& light, Frame& frame) {
   FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), vec2(0.5f), 0};
-  NearerPlanes planes{frame};
-  auto take = taker(composer, planes);
-  auto take_what_is_there = [&](const SightRun& run) {
-    for (int i = 0; i < run.count; i++)
-      if (run.object[i] != 0) return take(run);
-  };
-  return sight.see_edges(view, vec2(0.5f), take_what_is_there, RasterShows::moving);
+  return see_moving(view, sight, {0, 0, view.width, view.height},
+                    taker(composer, NearerPlanes{frame}));
+}
+
+void compose_moving(const View& view, const PictureSight& sight, const PictureWindow& window,
+                    const Tonemap& tonemap, std::span<const float> disparity,
+                    std::span<uint8_t> covered, MovingLight& light) {
+  PixelRays rays(view), light_rays(WindowView(view, window));
+  FineComposer composer{view, light.cells, light.known, light.frame, rays,       light_rays,
+                        vec2(0.5f), 0, window.left, window.top};
+  NearerEyePlanes planes{tonemap.exposure, disparity.data(), covered.data(),
+                         light.picture.rgb.data(), light.peaks.data()};
+  soften_edges(see_moving(view, sight, window, taker(composer, planes)), light.picture,
+               light.peaks);
 }
 
 }  // namespace wellspring

@@ -3,7 +3,7 @@
 // reflectances are what has to be sharp, light is smoother than both. Where samples are few it has
 // half of the picture's resolution, as a quarter of the points tells it sooner and costs less.
 #pragma once
-#include "cache/cells.h"
+#include "cache/moving_picture.h"
 #include "frame/tonemap.h"
 #include "light/see_picture.h"
 
@@ -12,7 +12,14 @@ namespace wellspring {
 inline constexpr int light_scale = 2;  // pixels of the picture a side of one pixel of its light
 
 // The view of such coarser light: its pixels are light_scale pixels of the picture wide.
-View light_view(const View& view);
+inline View light_view(const View& view) {
+  View light = view;
+  light.width = (view.width + light_scale - 1) / light_scale;
+  light.height = (view.height + light_scale - 1) / light_scale;
+  light.tan_half_fov =
+      view.tan_half_fov * float(light.height * light_scale) / float(view.height);
+  return light;
+}
 
 // Overwrites all planes of `frame`. `light`: of the view `lit`, which is light_view(view) or `view`
 // itself, its planes packed as read_surface() leaves them, with `cells` filled from it; `known`:
@@ -38,5 +45,13 @@ void compose_still(const View& view, const PictureSight& sight, vec2 offset, con
 std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
                                                        const Cells& cells, bool known,
                                                        const Frame& light, Frame& frame);
+
+// The same over what the eye sees already: lit by what lies on it alone, where it is nearer than
+// `disparity` (as Keyframe's) says of the picture. Of pixels that it covers `covered` becomes 0.
+// light.picture and light.peaks: what the eye sees already, of which the window (whole_runs())
+// counts.
+void compose_moving(const View& view, const PictureSight& sight, const PictureWindow& window,
+                    const Tonemap& tonemap, std::span<const float> disparity,
+                    std::span<uint8_t> covered, MovingLight& light);
 
 }  // namespace wellspring

@@ -57,6 +57,27 @@ struct NearerPlanes {
   }
 };
 
+// What of it is nearer, likewise, where the eye sees something already.
+struct NearerEyePlanes {
+  float exposure;
+  const float* disparity;  // 1 / depth of what it sees
+  uint8_t* covered;        // becomes 0 there
+  uint8_t *rgb, *peaks;    // as EyePlanes'
+  void put(size_t at, LanePart part, const Shown& s) const {
+    const Color& c = s.color;
+    Lanes3 light = Lanes3{c.r, c.g, c.b} * all_lanes(exposure);
+    uint8_t bytes[3 * lanes];
+    store_pixels(bytes, eval_tone_curve(light));
+    LaneMask peak = eval_peak_codes(max_component(light));
+    for (int k = part.begin; k < part.end; k++, at++) {
+      if (!(s.depth[k] * disparity[at] < 1)) continue;
+      std::memcpy(rgb + 3 * at, bytes + 3 * k, 3);
+      peaks[at] = uint8_t(peak[k]);
+      covered[at] = 0;
+    }
+  }
+};
+
 // What the eye sees.
 struct EyePlanes {
   float exposure;

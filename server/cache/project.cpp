@@ -140,7 +140,7 @@ size_t project_scratch_bytes(int capacity, int width, int height) {
   return Scratch::rounded<uint64_t>(size_t(capacity)) + Scratch::rounded<uint16_t>(offsets);
 }
 
-void project_points(PointCache& points, const View& view, bool same_view, Scratch& scratch,
+void project_points(PointCache& points, const WindowView& view, bool same_view, Scratch& scratch,
                     PointImage& image) {
   int capacity = points.capacity();
   Tiles tiles = tiles_of(view.width, view.height);
@@ -154,8 +154,8 @@ void project_points(PointCache& points, const View& view, bool same_view, Scratc
                       view.up,
                       view.forward,
                       float(view.height) * 0.5f / view.tan_half_fov,
-                      0.5f * float(view.width),
-                      0.5f * float(view.height),
+                      0.5f * float(view.width) - view.shift.x,
+                      0.5f * float(view.height) - view.shift.y,
                       float(view.width),
                       float(view.height),
                       tiles.x,

@@ -7,14 +7,14 @@
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
 #include "cache/scratch.h"
-#include "world/view.h"
+#include "cache/surface_image.h"
 
 namespace wellspring {
 
 // Overwrites image.point and image.depth (image has the view's size) and the points' visible flag.
 // Points behind the camera, facing away, evicted or not finite fall nowhere. The nearest wins; of
 // equals the lower index. `same_view`: keeps the verified flags.
-void project_points(PointCache& points, const View& view, bool same_view, Scratch& scratch,
+void project_points(PointCache& points, const WindowView& view, bool same_view, Scratch& scratch,
                     PointImage& image);
 
 // Removes points that show through gaps of a nearer surface (paper, section 3.1, on 5x5 instead of

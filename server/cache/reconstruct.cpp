@@ -8,8 +8,8 @@
 
 namespace wellspring {
 
-SurfaceCounts read_surface(const View& view, const PointCache& points, const PointImage& image,
-                           Cells& cells, Frame& frame) {
+SurfaceCounts read_surface(const WindowView& view, const PointCache& points,
+                           const PointImage& image, Cells& cells, Frame& frame) {
   std::atomic<int64_t> shown{0}, converged{0};
   parallel_ranges(cells.height, 4, [&](int begin, int end) {
     thread_local SurfaceRows rows;

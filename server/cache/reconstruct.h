@@ -19,8 +19,8 @@ struct SurfaceCounts {
 
 // Reads every visible point once: builds the cells, fills holes from their neighbours and leaves
 // the surface packed in the frame's planes. Pixels far from any point stay unknown.
-SurfaceCounts read_surface(const View& view, const PointCache& points, const PointImage& image,
-                           Cells& cells, Frame& frame);
+SurfaceCounts read_surface(const WindowView& view, const PointCache& points,
+                           const PointImage& image, Cells& cells, Frame& frame);
 
 // Fills what is still unknown from the cells around and puts light together: overwrites all planes
 // of the frame. `known`: what fill_cells() said.

@@ -18,12 +18,31 @@ namespace wellspring {
 
 inline constexpr uint32_t no_object = 0xffffffffu;  // nothing known here
 
+// Pixels of a picture, from (left, top) on.
+struct PictureWindow {
+  int left = 0, top = 0, width = 0, height = 0;
+  bool empty() const { return width <= 0 || height <= 0; }
+};
+
+// What a window of a view's picture shows, as a picture of its own: the middle of that may lie off
+// the axis.
+struct WindowView : View {
+  vec2 shift{0};  // pixels that it lies to the right and below
+  WindowView(const View& view) : View(view) {}
+  WindowView(const View& view, const PictureWindow& window) : View(view) {
+    width = window.width, height = window.height;
+    tan_half_fov = view.tan_half_fov * float(height) / float(view.height);
+    shift = vec2(float(window.left) + 0.5f * float(width - view.width),
+                 float(window.top) + 0.5f * float(height - view.height));
+  }
+};
+
 // Rays through pixel centres in view coordinates (right, up, forward = 1).
 struct PixelRays {
   float half_width, half_height, inverse_focal;
-  explicit PixelRays(const View& view)
-      : half_width(0.5f * float(view.width)),
-        half_height(0.5f * float(view.height)),
+  explicit PixelRays(const WindowView& view)
+      : half_width(0.5f * float(view.width) - view.shift.x),
+        half_height(0.5f * float(view.height) - view.shift.y),
         inverse_focal(view.tan_half_fov * 2 / float(view.height)) {}
   float x(float column) const { return (column - half_width) * inverse_focal; }
   float y(float row) const { return (half_height - row) * inverse_focal; }

@@ -18,6 +18,16 @@ struct Frame {
   std::vector<uint32_t> object;   // 0: nothing hit
   std::vector<float> confidence;  // 0 (guessed) to 1 (converged)
 };
+// All planes of that size; what they hold means nothing.
+inline void fit_frame(int width, int height, Frame& frame) {
+  size_t pixels = size_t(width) * size_t(height);
+  frame.width = width;
+  frame.height = height;
+  frame.color.resize(pixels);
+  frame.depth.resize(pixels);
+  frame.object.resize(pixels);
+  frame.confidence.resize(pixels);
+}
 inline size_t memory_bytes(const Frame& frame) {
   return bytes_of(frame.color, frame.depth, frame.object, frame.confidence);
 }

@@ -41,9 +41,9 @@ void eval_shoulder(Number above, Number& scale, Number& offset) {
   scale = squeezed / above * keep, offset = squeezed * (1 - keep);
 }
 
-// What the codes of bright colours cannot tell any more, and light beyond white not at all: radiance
-// times exposure of a colour's largest channel in a byte, 32 steps an octave (the first bits of the
-// float). 0: less than least_peak; 255: most_peak or more.
+// What the codes of bright colours cannot tell any more, and of light beyond white not at all:
+// radiance times exposure of a colour's largest channel in a byte, 32 steps an octave (the first
+// bits of the float). 0: less than least_peak; 255: that of 255 or more.
 inline constexpr float least_peak = 0.5f;
 inline constexpr int peak_shift = 18;
 inline LaneMask eval_peak_codes(Lanes peak) {
@@ -66,6 +66,11 @@ inline float peak_of(int code) {
   return peak;
 }
 
+// The largest channel that is shown as `squeezed`, from shoulder_start to below 1.
+inline float invert_shoulder(float squeezed) {
+  return shoulder_start - shoulder_height +
+         shoulder_height * shoulder_height / std::max(1 - squeezed, 1e-6f);
+}
 inline constexpr float most_told = 1.1f;
 // Radiance times exposure from `shown`, the linear values of a pixel's codes, and its peak's code.
 inline vec3 invert_tone_curve(vec3 shown, uint8_t peak_code) {
@@ -74,9 +79,8 @@ inline vec3 invert_tone_curve(vec3 shown, uint8_t peak_code) {
   // The codes tell the peak better than its own while there are many of them.
   float low = peak_of(peak_code), high = peak_of(peak_code + 1), above = 0.5f * (low + high);
   if (above < most_told)
-    above = std::clamp(shoulder_start - shoulder_height +
-                           shoulder_height * shoulder_height / std::max(1 - squeezed, 1e-6f),
-                       std::max(low, shoulder_start), std::max(high, shoulder_start));
+    above = std::clamp(invert_shoulder(squeezed), std::max(low, shoulder_start),
+                       std::max(high, shoulder_start));
   float keep = 1 / (shoulder_desaturation * (above - squeezed) + 1);
   vec3 light = (shown - squeezed * (1 - keep)) * (above / (squeezed * keep));
   return {std::clamp(light.x, 0.0f, above), std::clamp(light.y, 0.0f, above),

@@ -6,6 +6,9 @@
 //
 //   idle --draw_next--> drawing --finish_drawing--> idle, or, if samples are asked for, --> tracing
 //   --> idle
+//
+// Between the steps of a picture at rest the world may move, and what moves be drawn
+// (show/moving.h).
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -18,6 +21,7 @@
 #include "cache/broker.h"
 #include "cache/cache.h"
 #include "cache/keyframe.h"
+#include "cache/moving_picture.h"
 #include "show/display_path.h"
 #include "world/view.h"
 
@@ -51,8 +55,12 @@ struct PictureCosts {
   size_t samples = 0, looks = 0;
   bool late = false;     // its samples are still to be traced
   bool given_up = false;  // there is no picture
-  double seconds = 0;    // from its order on
+  bool backdrop = false;  // of what does not move: the rest is to be laid over it
+  double seconds = 0;    // from its order on, without others' in between
 };
+
+// A picture at rest is drawn in steps, so that what moves in it need not wait for all of them.
+enum class DrawingStep : uint8_t { plan, trace, draw, done };
 
 struct Visitor;
 
@@ -67,6 +75,10 @@ struct DrawingWork {
   std::vector<Sample> samples;
   std::vector<Ray> looks;
   std::vector<Seen> seen;
+  size_t traced = 0;  // of the requests
+  uint64_t pose = 0;  // of the world, when they were made
+  MovingLight moving_light;
+  MovingPicture moving;  // when it is finished the visitor's old one
 };
 size_t memory_bytes(const DrawingWork& work);
 
@@ -74,6 +86,12 @@ struct Easel {
   DrawingWork work;
   size_t work_bytes = 0;     // of it, when last finished
   Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
+  DrawingStep step = DrawingStep::done;  // of that, to be done next
+  Visitor* posed = nullptr;  // for whom what moves is being drawn, between two such steps
+  bool moving_known = false;  // there was light for that
+  double posed_at = 0;       // show time of its order
+  uint64_t posed_us = 0;
+  double posed_seconds = 0;  // that it took
   bool surrounds = false;    // only `order.around` of it
   PictureOrder order;        // for it
   // By the tick: nobody needs that picture any more (is_outdated), so what is not drawn of it yet

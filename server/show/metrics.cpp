@@ -58,6 +58,8 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "warps_given_up_total", "counter",
          "Pictures not made since earlier ones show too little of the view",
          double(totals.unwarpable));
+  metric(out, "moving_drawn_total", "counter",
+         "What moves in pictures at rest, drawn by itself", double(totals.posed));
   metric(out, "surroundings_drawn_total", "counter",
          "Small wide pictures drawn of what a quick turn may show", double(totals.surroundings));
   metric(out, "drawings_given_up_total", "counter",
@@ -99,10 +101,12 @@ std::string write_metrics(const ShowReport& report) {
   per_visitor(out, report, "pictures_per_second", "Pictures a second",
               [](auto& v) { return v.fps; });
   per_visitor(out, report, "drawn_pictures_per_second",
-              "Pictures drawn a second; the others are warped",
+              "Pictures drawn a second; the others are warped, or have what moves drawn anew",
               [](auto& v) { return v.drawn_fps; });
   per_visitor(out, report, "warp_milliseconds", "Warping a picture",
               [](auto& v) { return v.warp_ms; });
+  per_visitor(out, report, "moving_milliseconds", "Drawing what moves in a picture at rest",
+              [](auto& v) { return v.moving_ms; });
   per_visitor(out, report, "drawn_after_milliseconds",
               "From deciding what to draw until it can be shown",
               [](auto& v) { return v.whole_ms; });

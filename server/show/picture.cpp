@@ -9,6 +9,7 @@
 #include "cache/compose_drawn.h"
 #include "cache/trace_waiting.h"
 #include "show/in_view.h"
+#include "show/moving.h"
 #include "show/present.h"
 
 namespace wellspring {
@@ -19,6 +20,7 @@ constexpr double still_after = 0.25;   // seconds without motion until a picture
 constexpr size_t least_measured = 1000;  // looks that tell how long one takes
 constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
+constexpr double backdrop_rate = 4;    // pictures a second of what does not move
 constexpr double keyframe_rate = 30;   // pictures drawn a second while the visitor moves, at most
 constexpr float nearly_all = 0.999f;   // converged
 constexpr double around_kept = 2;  // seconds that what lies around is good for: turns come in bouts
@@ -34,7 +36,7 @@ void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
 
 // Seconds of a picture's period that are left for samples and looks.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
-  double period = 1 / drawing_rate(show, visitor);
+  double period = (1 - moving_share(show)) / drawing_rate(show, visitor);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
   return std::max((period - slack) / std::max(busy, 1) - display, least_share * period);
 }
@@ -74,6 +76,7 @@ bool rests(const Show& show, const Visitor& visitor) {
 }
 
 double drawing_rate(const Show& show, const Visitor& visitor) {
+  if (visitor.backdrop && stands(show, visitor)) return backdrop_rate;
   double rate = picture_rate(show, visitor);
   return show.settings.background && !stands(show, visitor) ? std::min(rate, keyframe_rate) : rate;
 }
@@ -153,6 +156,12 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
 
 namespace {
 
+TransportSettings transport_of(const Show& show, const PictureOrder& order) {
+  TransportSettings transport = show.settings.transport;
+  if (!order.settled) transport.clamp = show.settings.moving_clamp;
+  return transport;
+}
+
 // The light that is missing for the picture, and for the next: fills work.requests. Says by
 // costs.late whether answers may come after it.
 void plan_samples(const Show& show, const PictureOrder& order, const Technique& technique,
@@ -179,33 +188,59 @@ void plan_samples(const Show& show, const PictureOrder& order, const Technique& 
   visitor.costs.late = late;
 }
 
-// work.samples: none where they may be late.
-void trace_or_ask(Show& show, const PictureOrder& order, const Technique& technique,
-                  const View& lit, DrawingWork& work, Visitor& visitor) {
-  TransportSettings transport = show.settings.transport;
-  if (!order.settled) transport.clamp = show.settings.moving_clamp;
+// Of a picture at rest the world moves on while it is traced: what lies on what moves comes first,
+// and what is too much for then is left to the next picture. Returns how many do.
+size_t put_moving_first(const RenderCache& cache, size_t most, std::vector<Request>& requests) {
+  auto others = std::stable_partition(
+      requests.begin(), requests.end(),
+      [&](const Request& request) { return cache.follows_moving(request); });
+  size_t moving = size_t(others - requests.begin()), kept = std::min(moving, most);
+  requests.erase(requests.begin() + ptrdiff_t(kept), others);
+  return kept;
+}
+
+size_t slice_of_samples(const Show& show) {
+  return size_t(std::max(slice * double(show.samples_per_second), double(least_slice)));
+}
+
+// Asks for what was planned, or begins to trace it. Returns whether it is traced here: work.samples
+// is empty where answers may be late.
+bool begin_samples(Show& show, const PictureOrder& order, const Technique& technique,
+                   const View& lit, DrawingWork& work, Visitor& visitor) {
   work.samples.clear();
+  work.traced = 0;
   if (visitor.costs.late) {
-    visitor.broker.ask(lit, {&technique, transport}, work.requests);
-    return;
+    visitor.broker.ask(lit, {&technique, transport_of(show, order)}, work.requests);
+    return false;
   }
   visitor.broker.forget();  // what was asked for on the way
-  work.samples.resize(work.requests.size());
+  work.pose = show.pose_number;
   if (technique.begin_pass)
-    technique.begin_pass(*show.world, transport, lit, visitor.link->id, uint32_t(order.tick),
-                         show.lights);
-  size_t all = work.requests.size(), traced = 0, most = all;
-  if (!technique.begin_pass)
-    most = size_t(std::max(slice * double(show.samples_per_second), double(least_slice)));
-  while (traced < all && !show.easel.given_up) {
-    size_t count = std::min(most, all - traced);
-    trace(technique, *show.world, show.lights, transport,
-          std::span(work.requests).subspan(traced, count),
-          std::span(work.samples).subspan(traced, count));
-    traced += count;
-  }
-  work.requests.resize(traced);
-  work.samples.resize(traced);
+    technique.begin_pass(*show.world, transport_of(show, order), lit, visitor.link->id,
+                         uint32_t(order.tick), show.lights);
+  return true;
+}
+
+// At least `least` of them, if there are so many. Returns whether some are left.
+bool trace_slice(Show& show, const PictureOrder& order, const Technique& technique, size_t least,
+                 DrawingWork& work) {
+  size_t all = work.requests.size(), count = all - work.traced;
+  if (!technique.begin_pass) count = std::min(count, std::max(least, slice_of_samples(show)));
+  work.samples.resize(all);
+  trace(technique, *show.world, show.lights, transport_of(show, order),
+        std::span(work.requests).subspan(work.traced, count),
+        std::span(work.samples).subspan(work.traced, count));
+  work.traced += count;
+  return work.traced < all;
+}
+
+void remember_traced(const Show& show, const View& lit, DrawingWork& work, Visitor& visitor) {
+  if (visitor.costs.late) return;
+  work.requests.resize(work.traced);
+  work.samples.resize(work.traced);
+  if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
+  visitor.cache.remember(lit, work.requests, work.samples);
+  visitor.costs.samples = work.samples.size();
 }
 
 // A picture of points alone, into work.frame. Returns the seconds that looks took.
@@ -222,30 +257,57 @@ double show_points(const Show& show, const PictureOrder& order, DrawingWork& wor
 
 }  // namespace
 
-void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
-  RenderCache& cache = visitor.cache;
+namespace {
+
+// What moves is drawn by itself where that is little of the picture, as what it covers is kept.
+bool draws_backdrop(const Show& show, const PictureOrder& order, const RenderCache& cache) {
+  if (!in_steps(order) || !order.figure || order.passing || !order.display.drawn) return false;
+  PictureWindow window = moving_window(*show.world, order.view);
+  return !window.empty() && may_be_laid_over(window, order.view) && cache.knows_moving();
+}
+
+DrawingStep plan_picture(Show& show, const PictureOrder& order, const Technique& technique,
+                         const View& lit, Visitor& visitor) {
   DrawingWork& work = show.easel.work;
   PictureCosts& costs = visitor.costs = {};
-  double began = seconds_now(), looking = 0;
-  const Technique& technique = order.settled ? *show.still_technique : *show.technique;
-  const View lit = order.coarse ? light_view(order.view) : order.view;
+  double began = seconds_now();
   plan_samples(show, order, technique, lit, work, visitor);
   double planned = seconds_now();
-  trace_or_ask(show, order, technique, lit, work, visitor);
-  double traced = seconds_now();
-  if (!costs.late) cache.remember(lit, work.requests, work.samples);
-  costs.samples = work.samples.size();
-  costs.trace = float(1000 * (traced - planned));
-  if (show.easel.given_up) {
-    costs.given_up = true;
-    return;
+  costs.display = float(1000 * (planned - began));
+  bool more = false;
+  if (begin_samples(show, order, technique, lit, work, visitor) && !show.easel.given_up) {
+    size_t moving = 0;
+    if (in_steps(order) && !technique.begin_pass)
+      moving = put_moving_first(visitor.cache, 2 * slice_of_samples(show), work.requests);
+    more = trace_slice(show, order, technique, moving, work);
   }
+  costs.trace = float(1000 * (seconds_now() - planned));
+  return more ? DrawingStep::trace : DrawingStep::draw;
+}
+
+DrawingStep trace_more(Show& show, const PictureOrder& order, const Technique& technique,
+                       Visitor& visitor) {
+  double began = seconds_now();
+  bool more = trace_slice(show, order, technique, 0, show.easel.work);
+  visitor.costs.trace += float(1000 * (seconds_now() - began));
+  return more ? DrawingStep::trace : DrawingStep::draw;
+}
+
+DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit,
+                          Visitor& visitor) {
+  RenderCache& cache = visitor.cache;
+  DrawingWork& work = show.easel.work;
+  PictureCosts& costs = visitor.costs;
+  double began = seconds_now(), looking = 0;
+  remember_traced(show, lit, work, visitor);
   const Tonemap curve{show.exhibit.exposure};
   work.looks.clear();
+  costs.backdrop = draws_backdrop(show, order, cache);
   if (order.passing)
     cache.draw(order.view, *show.sight, curve, work.picture, order.keep ? &work.depth : nullptr);
   else if (order.display.drawn)
-    cache.draw_still(order.view, *show.sight, work.frame);
+    cache.draw_still(order.view, *show.sight, work.frame,
+                     costs.backdrop ? StillShows::backdrop : StillShows::all);
   else
     looking = show_points(show, order, work, cache);
   double painted = seconds_now();
@@ -258,10 +320,39 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   costs.looks = work.looks.size();
   costs.look = float(1000 * looking);
   costs.drawing = order.display.drawn ? cache.stats().drawing_ms : 0.0f;
-  (order.passing ? costs.light : costs.display) =
-      float(1000 * ((planned - began) + (painted - traced) - looking)) - costs.drawing;
-  (order.passing ? costs.light : costs.tonemap) += float(1000 * (finished - painted));
-  costs.seconds = finished - began;
+  costs.display += float(1000 * (painted - began - looking)) - costs.drawing;
+  costs.tonemap = float(1000 * (finished - painted));
+  if (order.passing)
+    costs.light = std::exchange(costs.display, 0.0f) + std::exchange(costs.tonemap, 0.0f);
+  return DrawingStep::done;
+}
+
+}  // namespace
+
+bool in_steps(const PictureOrder& order) { return order.still && order.keep; }
+
+DrawingStep draw_step(Show& show, const PictureOrder& order, DrawingStep step, Visitor& visitor) {
+  double began = seconds_now();
+  const Technique& technique = order.settled ? *show.still_technique : *show.technique;
+  const View lit = order.coarse ? light_view(order.view) : order.view;
+  if (step == DrawingStep::plan) {
+    step = plan_picture(show, order, technique, lit, visitor);
+  } else if (show.easel.given_up) {
+    remember_traced(show, lit, show.easel.work, visitor);
+    visitor.costs.given_up = true;
+    step = DrawingStep::done;
+  } else if (step == DrawingStep::trace) {
+    step = trace_more(show, order, technique, visitor);
+  } else {
+    step = paint_picture(show, order, lit, visitor);
+  }
+  visitor.costs.seconds += seconds_now() - began;
+  return step;
+}
+
+void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
+  for (DrawingStep step = DrawingStep::plan; step != DrawingStep::done;)
+    step = draw_step(show, order, step, visitor);
 }
 
 // What was drawn in the memory of somebody else's larger picture does not keep it.
@@ -278,7 +369,8 @@ size_t memory_bytes(const DrawingWork& work) {
   return memory_bytes(*work.cache) + memory_bytes(work.frame) + memory_bytes(work.keyframe) +
          memory_bytes(work.around) +
          bytes_of(work.depth, work.picture.rgb, work.requests, work.ahead, work.samples, work.looks,
-                  work.seen);
+                  work.seen) +
+         memory_bytes(work.moving_light) + memory_bytes(work.moving);
 }
 
 void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
@@ -326,7 +418,7 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   visitor.memory_bytes = picture_memory(visitor);
   show.easel.work_bytes = memory_bytes(show.easel.work);
   visitor.order = order;
-  visitor.unshown = true;
+  finish_backdrop(visitor);
   show.totals.drawn++;
 }
 

@@ -31,6 +31,10 @@ bool is_outdated(const Show& show, const PictureOrder& order, const Visitor& vis
 // Changes nothing but what of the visitor is the easel's, and what techniques keep in show.lights.
 // Ends early, with costs.given_up and all samples traced by then, once easel.given_up is set.
 void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor);
+// The same step by step, between which the world may move and nothing but moving.h may be drawn.
+// Returns the next one; DrawingStep::done: none.
+bool in_steps(const PictureOrder& order);
+DrawingStep draw_step(Show& show, const PictureOrder& order, DrawingStep step, Visitor& visitor);
 void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor);
 // Before that, where the order has something around: it is shown as soon as it is there.
 void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor);

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "frame/jpeg.h"
 #include "show/in_view.h"
+#include "show/moving.h"
 #include "show/picture.h"
 #include "wire/packet.h"
 
@@ -16,7 +17,7 @@ namespace wellspring {
 
 namespace {
 
-constexpr double still_rate = 20;      // pictures a second while only the storyteller moves
+constexpr double still_rate = 25;      // pictures a second while only the storyteller moves
 constexpr double settling_rate = 7;    // while nothing moves: more time for samples
 constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr double on_time = 0.0005;     // seconds that a picture may come too early
@@ -85,18 +86,6 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
 
 bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
 
-// The picture that the keyframe was made of.
-void copy_colors(const Keyframe& keyframe, Image8& image) {
-  image.width = keyframe.view.width;
-  image.height = keyframe.view.height;
-  size_t pixels = size_t(image.width) * size_t(image.height);
-  image.rgb.resize(3 * pixels);
-  parallel_ranges(int(pixels), 1 << 16, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++)
-      for (size_t c = 0; c < 3; c++) image.rgb[3 * i + c] = uint8_t(keyframe.color[i] >> (8 * c));
-  });
-}
-
 // The encoder's image becomes the newest keyframe seen from `view`.
 bool warp(Show& show, Visitor& visitor, const View& view) {
   double began = seconds_now();
@@ -150,10 +139,15 @@ void present(Show& show, Visitor& visitor) {
     smooth(visitor.times.encode, encoder.milliseconds);
   }
   if (visitor.unshown && order.view == view) {  // drawn for this very view
-    if (order.keep) copy_colors(visitor.keyframe, encoder.image);
+    if (order.keep) copy_colors(visitor.keyframe, {0, 0, view.width, view.height}, encoder.image);
     else std::swap(encoder.image, visitor.picture);
+    if (!visitor.moving.empty()) lay_over(visitor.moving, encoder.image);
     send(show, visitor, view, visitor.seq, order.still);
-  } else if (warp(show, visitor, view)) {
+    return;
+  }
+  if (show.easel.posed == &visitor) return;  // reads the keyframe, and has soon done so
+  merge_moving(visitor);
+  if (warp(show, visitor, view)) {
     send(show, visitor, view, visitor.seq, false);
   } else if (visitor.unshown && is_later(order.seq, visitor.shown_seq) &&
              warp(show, visitor, order.expected)) {

@@ -47,6 +47,7 @@ ShowReport make_report(const Show& show) {
     one.encode_ms = visitor.times.encode;
     one.drawn_fps = visitor.drawn_fps;
     one.warp_ms = visitor.times.warp;
+    one.moving_ms = visitor.times.moving;
     one.whole_ms = visitor.times.whole;
     one.fresh = stats.fresh;
     one.empty = stats.empty;

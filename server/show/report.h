@@ -11,6 +11,7 @@ namespace wellspring {
 // Counters since the start, unless said otherwise.
 struct ShowTotals {
   uint64_t drawn = 0, warped = 0, unwarpable = 0;  // pictures; warps given up
+  uint64_t posed = 0;         // what moves in pictures at rest, drawn by itself
   uint64_t surroundings = 0;  // drawn of quick turns
   uint64_t given_up = 0;      // pictures that nobody needed any more before they were drawn
   uint64_t pictures = 0, picture_bytes = 0, samples = 0, messages = 0, refused_messages = 0;
@@ -27,7 +28,7 @@ struct VisitorReport {
   bool primary = false, drawn = false;  // display path
   float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, look_ms = 0, drawing_ms = 0,
         tonemap_ms = 0, encode_ms = 0;
-  float drawn_fps = 0, warp_ms = 0, whole_ms = 0;
+  float drawn_fps = 0, warp_ms = 0, moving_ms = 0, whole_ms = 0;
   float fresh = 0, empty = 0, converged = 0, mean_age = 0;
   uint64_t cache_bytes = 0, memory_bytes = 0, dropped = 0;
   bool kiosk = false;

@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "show/in_view.h"
+#include "show/moving.h"
 #include "show/news.h"
 #include "show/orders.h"
 #include "show/picture.h"
@@ -239,7 +240,12 @@ bool take_finished(Show& show) {
   Easel& easel = show.easel;
   if (!easel.idle()) return false;
   if (!easel.brokers.empty()) finish_samples(show);
-  if (!easel.drawn) return true;
+  if (Visitor* posed = std::exchange(easel.posed, nullptr)) {
+    finish_moving(show, *posed);
+    if (posed != easel.drawn) posed->at_work = false;
+    return true;
+  }
+  if (!easel.drawn || easel.step != DrawingStep::done) return true;
   if (std::exchange(easel.surrounds, false)) finish_surroundings(show, easel.order, *easel.drawn);
   else finish_picture(show, easel.order, *easel.drawn);
   easel.drawn->at_work = false;
@@ -252,12 +258,54 @@ int waiting_for_drawings(const Show& show) {
                            [&](const Visitor& visitor) { return wants_drawing(show, visitor); }));
 }
 
-// Samples that were asked for, else the picture that has been waited for longest.
+// Who has waited longest for what moves in its picture; null: it is not due for anybody.
+Visitor* next_to_pose(Show& show) {
+  Visitor* next = nullptr;
+  for (Visitor& visitor : show.visitors) {
+    bool busy = visitor.at_work && &visitor != show.easel.drawn;
+    if (!busy && wants_moving(show, visitor) && (!next || visitor.posed_at < next->posed_at))
+      next = &visitor;
+  }
+  return next;
+}
+
+void use_cores(Show& show, std::function<void()> work) {
+  show.easel.worker.run([&show, work = std::move(work)] { show.easel.cores.execute(work); });
+}
+
+void pose(Show& show, Visitor& visitor) {
+  Easel& easel = show.easel;
+  pose_world(show);
+  easel.posed = &visitor;
+  easel.posed_at = show.time;
+  easel.posed_us = show.time_us;
+  visitor.at_work = true;
+  use_cores(show, [&show] { draw_moving(show, *show.easel.posed); });
+}
+
+// The next of its steps, or all of them.
+void go_on_drawing(Show& show) {
+  use_cores(show, [&show] {
+    Easel& easel = show.easel;
+    if (easel.surrounds) {
+      draw_surroundings(show, easel.order, *easel.drawn);
+      easel.step = DrawingStep::done;
+    }
+    while (easel.step != DrawingStep::done) {
+      easel.step = draw_step(show, easel.order, easel.step, *easel.drawn);
+      if (in_steps(easel.order)) break;
+    }
+  });
+}
+
+// What moves comes first, then what is begun, then samples that were asked for, else the picture
+// that has been waited for longest.
 void use_easel(Show& show, int waiting) {
   Easel& easel = show.easel;
+  if (Visitor* next = next_to_pose(show)) return pose(show, *next);
+  if (easel.drawn) return go_on_drawing(show);
   if (order_samples(show)) {
-    easel.worker.run(
-        [&show] { show.easel.cores.execute([&] { trace_samples(show, show.easel); }); });
+    use_cores(show, [&show] { trace_samples(show, show.easel); });
     return;
   }
   Visitor* next = nullptr;
@@ -271,11 +319,8 @@ void use_easel(Show& show, int waiting) {
   if (!easel.surrounds) pose_world(show);
   next->at_work = true;
   easel.given_up = false;
-  easel.worker.run([&show] {
-    Easel& easel = show.easel;
-    const auto& draw = easel.surrounds ? draw_surroundings : draw_picture;
-    easel.cores.execute([&] { draw(show, easel.order, *easel.drawn); });
-  });
+  easel.step = DrawingStep::plan;
+  go_on_drawing(show);
 }
 
 // All that are due, one after the other, while the tick waits.
@@ -306,11 +351,12 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   welcome_links(show, arrivals);
   hear_visitors(show);
   hear_eyes(show);
-  if (free && lamps_wait(show)) light_lamps(show);
+  if (free && !show.easel.drawn && lamps_wait(show)) light_lamps(show);
   narrate(show, dt);
   int waiting = free ? waiting_for_drawings(show) : 0;
   // The storyteller moves for a picture; otherwise often enough to notice people.
-  if (waiting > 0 || show.time - show.behaved_at >= behave_interval) {
+  bool poses = waiting > 0 || (free && next_to_pose(show));
+  if (poses || show.time - show.behaved_at >= behave_interval) {
     behave(show,
            show.behaved_at < 0 ? 0 : float(std::clamp(show.time - show.behaved_at, 0.0, 1.0)));
     show.behaved_at = show.time;

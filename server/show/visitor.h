@@ -24,6 +24,7 @@ namespace wellspring {
 // Milliseconds of the last picture's stages, smoothed: for the status page and the budget.
 struct StageTimes {
   float display = 0, light = 0, trace = 0, look = 0, drawing = 0, tonemap = 0, warp = 0, encode = 0;
+  float moving = 0;    // what moves in a picture at rest
   float whole = 0;     // from a picture's order until it can be shown
   float interval = 0;  // from one picture drawn to the next, while the visitor moves
 };
@@ -78,6 +79,9 @@ struct Visitor {
   double around_at = -1e9;    // show time of its order
   uint32_t around_leaps = 0;  // of the visitor, by then
   bool surrounded = false;    // since the last picture was drawn
+  bool backdrop = false;      // the keyframe is without what moves (show/moving.h)
+  MovingPicture moving;       // that, to be laid over it; empty: nothing
+  double posed_at = -1e9;     // show time of its order
   PictureOrder order;
   bool unshown = false;       // nothing of it has been sent yet
   double drawn_at = -1e9;     // show time of the order of the last

@@ -24,8 +24,8 @@ struct TexturePyramid {
 // which may exceed 1, and for those read by the nearest texel, where edges are meant.
 TexturePyramid make_pyramid(const Image& image);
 
-// Which of the levels is read by a pixel that is `texels` texels of the picture wide; 0: the picture
-// itself.
+// Which of the levels is read by a pixel that is `texels` texels of the picture wide; 0: the
+// picture itself.
 int pyramid_level(float texels);
 
 // Linear RGB at (u, v) as seen by a pixel that is `texels` texels of the picture wide. As
