@@ -141,6 +141,7 @@ TEST(Tonemap, LightComesBackFromCodesAndPeaks) {
   for (float x : {1e5f, INFINITY, NAN, -1.0f, 0.0f}) {
     there_and_back(vec3(x), again);
     for (int c = 0; c < 3; c++)
-      EXPECT_TRUE(x > 1 ? again[c] > 100 && again[c] < 130 : again[c] == 0) << x << ": " << again[c];
+      EXPECT_TRUE(x > 1 ? again[c] > 100 && again[c] < 130 : again[c] == 0)
+          << x << ": " << again[c];
   }
 }
