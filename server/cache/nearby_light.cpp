@@ -2,6 +2,7 @@
 #include "cache/nearby_light.h"
 
 #include <bit>
+#include <utility>
 
 #include "cache/packing.h"
 #include "cache/pixel_light.h"
@@ -10,51 +11,64 @@ namespace wellspring {
 namespace {
 
 constexpr int rings = 5;
-constexpr float enough_points = 6;      // found by a ring: no other is needed
+constexpr int enough_points = 6;      // found by a ring: no other is needed
 constexpr float same_direction = 0.7f;  // cosine
 
 struct Sum {
-  float points = 0, samples = 0, squares = 0, deviation = 0;
-  vec3 smooth{0}, rest{0};
+  f8 samples{}, squares{}, deviation{};
+  Color smooth, rest;
 };
 
-// How much the surface that words tell of at (x, y) is the place's; 0: another one.
-float alike(const View& view, const PixelRays& rays, const SeenPlace& place, int x, int y,
-            const uint32_t* words) {
-  vec3 normal = unpack_octahedron(uint16_t(words[plane_more] & 0xffffu));
-  float facing = dot(normal, place.normal), length2 = dot(place.normal, place.normal);
-  if (!(facing > 0) ||
-      facing * facing < same_direction * same_direction * dot(normal, normal) * length2)
-    return 0;
-  float depth = std::bit_cast<float>(words[plane_depth]);
-  vec2 ray(rays.x(float(x) + 0.5f), rays.y(float(y) + 0.5f));
-  vec3 offset = (place.depth * place.ray.x - depth * ray.x) * view.right +
-                (place.depth * place.ray.y - depth * ray.y) * view.up +
-                (place.depth - depth) * view.forward;
-  float off = dot(offset, place.normal) / (plane_tolerance * place.depth);
-  off *= off / length2;
-  return off <= 1 ? 1 / (1 + off) : 0;
+// Points around that show the place's object, eight of which are weighed at a time.
+struct Points {
+  int count = 0;
+  uint32_t words[surface_planes][lanes] = {};  // lanes that were never filled are read, too
+  float x[lanes] = {}, y[lanes] = {};
+};
+
+// How much the surfaces that points tell of are the place's; 0: other ones.
+f8 alike(const View& view, const PixelRays& rays, const SeenPlace& place, const Points& points) {
+  f8 nx, ny, nz;
+  unpack_octahedron(load<u8>(points.words[plane_more]) & 0xffffu, nx, ny, nz);
+  vec3 n = place.normal;
+  f8 facing = nx * n.x + ny * n.y + nz * n.z;
+  float length2 = dot(n, n);
+  i8 same = (facing > 0.0f) & (facing * facing >= same_direction * same_direction * length2 *
+                                                      (nx * nx + ny * ny + nz * nz));
+  f8 depth = as<f8>(load<u8>(points.words[plane_depth]));
+  f8 across = (load<f8>(points.x) + 0.5f - rays.half_width) * rays.inverse_focal,
+     up = (rays.half_height - load<f8>(points.y) - 0.5f) * rays.inverse_focal;
+  f8 off = (place.depth * place.ray.x - depth * across) * dot(view.right, n) +
+           (place.depth * place.ray.y - depth * up) * dot(view.up, n) +
+           (place.depth - depth) * dot(view.forward, n);
+  off *= 1 / (plane_tolerance * place.depth);
+  off *= off * (1 / length2);
+  return keep(same & (off <= 1.0f), 1.0f / (1.0f + off));
 }
 
-void add_pixel(const View& view, const PixelRays& rays, const Frame& light, const SeenPlace& place,
-               int x, int y, Sum& sum) {
-  uint32_t words[surface_planes];
-  read_packed(light, x, y, words);
-  uint32_t more = words[plane_more];
-  float known = float((more >> 16) & 255u);
-  float dx = float(x - place.x), dy = float(y - place.y);
-  float weight = 1 / (0.5f + dx * dx + dy * dy);
-  vec3 theirs = unpack_albedo(words[plane_albedo]);
+// Returns how many of the points count, which are then forgotten.
+int add_points(const View& view, const PixelRays& rays, const SeenPlace& place, Points& points,
+               Sum& sum) {
+  constexpr f8 lane{0, 1, 2, 3, 4, 5, 6, 7};
+  i8 there = lane < float(std::exchange(points.count, 0));
+  u8 more = load<u8>(points.words[plane_more]);
+  f8 dx = load<f8>(points.x) - float(place.x), dy = load<f8>(points.y) - float(place.y);
+  f8 weight = 1.0f / (0.5f + dx * dx + dy * dy);
   // What a mirror shows has neither its place nor its normal.
-  if (place.albedo != vec3(0)) weight *= alike(view, rays, place, x, y, words);
-  if (weight == 0) return;
-  float share = weight * known;
-  sum.points++;
-  sum.samples += share;
-  sum.squares += share * weight;
-  sum.deviation += share * unpack_deviation(uint8_t(more >> 24));
-  sum.smooth += share * unpack_rgb9e5(words[plane_smooth]);
-  sum.rest += share * unpack_rgb9e5(words[plane_rest]) * rest_ratio(place.albedo, theirs);
+  if (place.albedo != vec3(0)) weight *= alike(view, rays, place, points);
+  weight = keep(there, weight);
+  f8 share = weight * keep(there, to_float((more >> 16) & 255u));
+  sum.samples += share, sum.squares += share * weight;
+  sum.deviation += share * keep(there, unpack_deviation(more >> 24));
+  Color light, theirs;
+  unpack_rgb9e5(load<u8>(points.words[plane_smooth]), light.r, light.g, light.b);
+  add(sum.smooth, share, light.r, light.g, light.b);
+  unpack_rgb9e5(load<u8>(points.words[plane_rest]), light.r, light.g, light.b);
+  unpack_albedo(load<u8>(points.words[plane_albedo]), theirs.r, theirs.g, theirs.b);
+  add(sum.rest, share, light.r * rest_ratio(splat(place.albedo.x), theirs.r),
+      light.g * rest_ratio(splat(place.albedo.y), theirs.g),
+      light.b * rest_ratio(splat(place.albedo.z), theirs.b));
+  return std::popcount(negative_lanes(weight > 0.0f));
 }
 
 // Bit k: at column x + k of row y, within the picture, samples are known of the object.
@@ -86,24 +100,37 @@ unsigned find_known(const Frame& light, uint32_t object, int x, int y) {
 NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Frame& light,
                               const SeenPlace& place) {
   Sum sum;
+  Points points;
   unsigned known[window];
-  for (int ring = 0; ring <= rings && sum.points < enough_points; ring++)
+  int found_points = 0;
+  for (int ring = 0; ring <= rings && found_points < enough_points; ring++) {
     for (int dy = -ring; dy <= ring; dy++) {
       unsigned& row = known[rings + dy];
       bool whole = dy == -ring || dy == ring;
       if (whole) row = find_known(light, place.object, place.x - rings, place.y + dy);
       unsigned first = 1u << (rings - ring), last = 1u << (rings + ring),
                here = row & (whole ? 2 * last - first : first | last);
-      for (; here != 0; here &= here - 1)
-        add_pixel(view, rays, light, place, place.x - rings + std::countr_zero(here), place.y + dy,
-                  sum);
+      for (; here != 0; here &= here - 1) {
+        int x = place.x - rings + std::countr_zero(here), y = place.y + dy, k = points.count++;
+        uint32_t words[surface_planes];
+        read_packed(light, x, y, words);
+        for (int p = 0; p < surface_planes; p++) points.words[p][k] = words[p];
+        points.x[k] = float(x), points.y[k] = float(y);
+        if (points.count == lanes) found_points += add_points(view, rays, place, points, sum);
+      }
     }
+    if (points.count > 0) found_points += add_points(view, rays, place, points, sum);
+  }
   NearbyLight found;
-  if (sum.samples <= 0) return found;
-  found.smooth = sum.smooth / sum.samples;
-  found.rest = sum.rest / sum.samples;
-  found.deviation = sum.deviation / sum.samples;
-  found.samples = sum.samples * sum.samples / sum.squares;
+  float samples = lanes_sum(sum.samples);
+  if (samples <= 0) return found;
+  auto mean = [&](const Color& c) {
+    return vec3(lanes_sum(c.r), lanes_sum(c.g), lanes_sum(c.b)) / samples;
+  };
+  found.smooth = mean(sum.smooth);
+  found.rest = mean(sum.rest);
+  found.deviation = lanes_sum(sum.deviation) / samples;
+  found.samples = samples * samples / lanes_sum(sum.squares);
   return found;
 }
 
