@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "frame/compare.h"
+#include "frame/flip.h"
 #include "unit/cache/visit.h"
 
 namespace wellspring {
@@ -173,8 +173,9 @@ TEST(BrokeredVisit, LateAnswersMakeTheSamePictureAtRest) {
     prompt.step(hall(), 700);
   }
   Frame truth = render_room(prompt.room, hall(), 256);
-  EXPECT_LT(relative_mse(late.visit.frame, truth), 1.05 * relative_mse(prompt.frame, truth));
-  EXPECT_LT(relative_mse(late.visit.frame, truth), 0.01);
+  // As it is seen: of squares over the reference a single pixel at an edge may be half the sum.
+  EXPECT_LT(flip(late.visit.frame, truth), 1.05 * flip(prompt.frame, truth));
+  EXPECT_LT(flip(late.visit.frame, truth), 0.033);
 }
 
 TEST(BrokeredVisit, AnswersAFewFramesLateInAnyOrderLandInTheRightPlaceWhileWalking) {
