@@ -87,6 +87,7 @@ struct Easel {
   size_t work_bytes = 0;     // of it, when last finished
   Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
   DrawingStep step = DrawingStep::done;  // of that, to be done next
+  double until_moving = 1;   // seconds from the step's beginning, until what moves is due
   Visitor* posed = nullptr;  // for whom what moves is being drawn, between two such steps
   bool moving_known = false;  // there was light for that
   double posed_at = 0;       // show time of its order

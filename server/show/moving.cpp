@@ -31,7 +31,7 @@ double moving_rate(const Show& show, const Visitor& visitor) {
 }  // namespace
 
 bool may_be_laid_over(const PictureWindow& window, const View& view) {
-  return 2 * size_t(window.width) * size_t(window.height) <=
+  return 3 * size_t(window.width) * size_t(window.height) <=
          size_t(view.width) * size_t(view.height);
 }
 
@@ -46,6 +46,15 @@ double moving_share(const Show& show) {
 bool wants_moving(const Show& show, const Visitor& visitor) {
   if (!has_backdrop(show, visitor) || visitor.unshown || !may_take(show, visitor)) return false;
   return show.time - visitor.posed_at >= 1 / moving_rate(show, visitor) - on_time;
+}
+
+double seconds_to_moving(const Show& show) {
+  double seconds = 1;
+  for (const Visitor& visitor : show.visitors)
+    if (has_backdrop(show, visitor))
+      seconds = std::min(
+          seconds, visitor.posed_at + 1 / moving_rate(show, visitor) - show.time);
+  return std::max(seconds, 0.0);
 }
 
 void draw_moving(Show& show, Visitor& visitor) {
@@ -70,7 +79,6 @@ void finish_moving(Show& show, Visitor& visitor) {
   std::swap(moving, visitor.moving);
   visitor.order.time_us = easel.posed_us;
   visitor.unshown = true;
-  visitor.memory_bytes = picture_memory(visitor);
   show.totals.posed++;
 }
 

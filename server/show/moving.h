@@ -6,7 +6,7 @@
 
 namespace wellspring {
 
-// What is laid over a picture is kept of each visitor: it may be half of it.
+// What is laid over a picture is kept of each visitor: it may be a third of it.
 bool may_be_laid_over(const PictureWindow& window, const View& view);
 
 // The share of the time that goes to it, of all visitors.
@@ -14,6 +14,8 @@ double moving_share(const Show& show);
 
 // It is due for this visitor, and the browser could take a picture.
 bool wants_moving(const Show& show, const Visitor& visitor);
+// Until it will be due for anybody, at most a second.
+double seconds_to_moving(const Show& show);
 // Reads the visitor's keyframe, which may not change meanwhile.
 void draw_moving(Show& show, Visitor& visitor);
 void finish_moving(Show& show, Visitor& visitor);

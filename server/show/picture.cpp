@@ -29,7 +29,8 @@ constexpr double predicted_pictures = 2;
 constexpr float predicted_share = 0.3f;    // of the samples, at most
 constexpr float barely_covered = 0.1f;  // of the pixels by points
 constexpr size_t least_slice = 2048;  // samples
-constexpr double slice = 0.025;  // seconds of tracing at a time, while it may be given up
+// Seconds of tracing at a time, while it may be given up, and where what moves is due soon.
+constexpr double slice = 0.025, least_slice_seconds = 0.006;
 constexpr float more_asked = 1.2f;  // than there is time for, by what was measured: none is idle
 
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
@@ -200,7 +201,8 @@ size_t put_moving_first(const RenderCache& cache, size_t most, std::vector<Reque
 }
 
 size_t slice_of_samples(const Show& show) {
-  return size_t(std::max(slice * double(show.samples_per_second), double(least_slice)));
+  double seconds = std::clamp(show.easel.until_moving, least_slice_seconds, slice);
+  return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
 }
 
 // Asks for what was planned, or begins to trace it. Returns whether it is traced here: work.samples

@@ -285,6 +285,7 @@ void pose(Show& show, Visitor& visitor) {
 
 // The next of its steps, or all of them.
 void go_on_drawing(Show& show) {
+  show.easel.until_moving = seconds_to_moving(show);
   use_cores(show, [&show] {
     Easel& easel = show.easel;
     if (easel.surrounds) {
