@@ -52,8 +52,8 @@ double seconds_to_moving(const Show& show) {
   double seconds = 1;
   for (const Visitor& visitor : show.visitors)
     if (has_backdrop(show, visitor))
-      seconds = std::min(
-          seconds, visitor.posed_at + 1 / moving_rate(show, visitor) - show.time);
+      seconds =
+          std::min(seconds, visitor.posed_at + 1 / moving_rate(show, visitor) - show.time);
   return std::max(seconds, 0.0);
 }
 

@@ -304,7 +304,11 @@ void go_on_drawing(Show& show) {
 void use_easel(Show& show, int waiting) {
   Easel& easel = show.easel;
   if (Visitor* next = next_to_pose(show)) return pose(show, *next);
-  if (easel.drawn) return go_on_drawing(show);
+  if (easel.drawn) {
+    // Light can wait for the next picture, others need not.
+    if (waiting > 0 && easel.step == DrawingStep::trace) easel.step = DrawingStep::draw;
+    return go_on_drawing(show);
+  }
   if (order_samples(show)) {
     use_cores(show, [&show] { trace_samples(show, show.easel); });
     return;

@@ -138,6 +138,24 @@ TEST_F(Moving, IsInWhatIsWarped) {
   EXPECT_TRUE(visitor().moving.empty());
 }
 
+// Who waits for a picture waits for no more light of another's.
+TEST_F(Moving, OthersNeedNotWaitForLight) {
+  ASSERT_TRUE(rested());
+  ASSERT_TRUE(step_until([&] {
+    show->samples_per_second = 50000;  // so few that they are traced in several steps
+    return show->easel.drawn && show->easel.step == DrawingStep::trace;
+  }));
+  size_t traced = show->easel.work.traced;
+  ASSERT_LT(traced, show->easel.work.requests.size());
+  auto other = std::make_shared<Link>(2, LinkKind::visit, "test");
+  arrivals.put(other);
+  other->push_text_in(
+      R"({"type":"hello","exhibit":"","width":64,"height":64,"lang":"en","role":"visitor"})");
+  ASSERT_TRUE(step_until([&] { return show->easel.drawn != &visitor(); }, 8));
+  EXPECT_EQ(visitor().costs.samples, traced);
+  EXPECT_TRUE(step_until([&] { return show->visitors.back().drawn_at > 0; }, 8));
+}
+
 // Between the steps of a picture the visitor may go, and the storyteller too.
 TEST_F(Moving, WhoLeavesBetweenStepsIsForgotten) {
   ASSERT_TRUE(rested());
