@@ -106,6 +106,9 @@ struct RenderCache::Impl {
     still_frames = 0;
     std::fill(still.count.begin(), still.count.end(), uint8_t(0));
     for (auto& plane : still.mean) std::vector<uint16_t>().swap(plane);
+    end_correction();
+  }
+  void end_correction() {
     still_samples = {};
     corrects = false;
   }
@@ -368,18 +371,18 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   fit_frame(view.width, view.height, frame);
   c.begin_still();
   // Who has just stopped has pictures of the walk in memory yet.
-  if (c.is_still()) c.start_correction();
+  bool changes = c.image.alarm > 0;  // what samples of the light before say is wrong
+  if (changes) c.end_correction();
+  else if (c.is_still()) c.start_correction();
   c.draw(view, [&] {
     compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
     std::span<const std::vector<EdgeShare>> edges;
     if (shows == StillShows::all && sight.anything_moves())
       edges = compose_moving(view, sight, c.cells, c.known, c.work->light, frame);
-    bool changes = c.image.alarm > 0;  // what samples of the light before say is wrong
-    if (c.corrects && changes) forget_samples(c.still_samples);
-    else if (c.corrects) forget_samples(c.still, c.still_samples);
+    if (c.corrects) forget_samples(c.still, c.still_samples);
     accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, changes, c.frames,
                      c.still, frame);
-    if (c.corrects && !changes) correct_still(c.still_samples, c.still, c.work->correction, frame);
+    if (c.corrects) correct_still(c.still_samples, c.still, c.work->correction, frame);
     soften_edges(edges, frame.color);
   });
 }

@@ -60,6 +60,7 @@ inline void keep_newest_witnesses(PointImage& image, size_t more = 0) {
   size_t count = image.witnesses.size(), most = most_witnesses(image),
          kept = std::min(count, most - std::min(more, most));
   image.witnesses.erase(image.witnesses.begin(), image.witnesses.begin() + ptrdiff_t(count - kept));
+  if (image.witnesses.capacity() > 2 * most) image.witnesses.shrink_to_fit();  // after an alarm
 }
 
 // Empties the image when its size changes.
