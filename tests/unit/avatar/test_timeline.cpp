@@ -33,6 +33,7 @@ TEST(Timeline, MarksComeWithTheirWords) {
                        "a")
                        .lines[0];
   Speech speech = speak({.text = line.text, .styles = line.styles});
+  ASSERT_FALSE(speech.words.empty());
   Timeline timeline = make_timeline(line, &speech, 0);
   ASSERT_EQ(timeline.actions.size(), 4u);
   const auto& [emotion, gesture, beat, look] = std::tie(timeline.actions[0], timeline.actions[1],
