@@ -411,7 +411,7 @@ bool RenderCache::draw_moving(const World& world, const Keyframe& backdrop,
   c.image_stale |= !c.points.anchors.empty();
   move_anchored_points(c.points, world);
   const PictureWindow runs = whole_runs(picture.window, view);
-  light_moving(c.points, view, runs, work);
+  light_moving(c.points, view, runs, c.settings.depth_threshold, work);
   if (!work.known) return false;
   copy_colors(backdrop, runs, work.picture);
   guess_peaks(work.picture, runs, work.peaks);

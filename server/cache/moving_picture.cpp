@@ -19,7 +19,6 @@ namespace {
 
 constexpr int run_pixels = RasterRun::most;
 constexpr float margin = 2;  // pixels around what moves
-constexpr float depth_threshold = 0.1f;  // as CacheSettings
 constexpr int points_grain = 1 << 14;
 constexpr float near_depth = 1e-3f;  // metres: what is nearer may be anywhere
 
@@ -132,7 +131,7 @@ static void take_anchored(const PointCache& from, PointCache& to) {
 }
 
 void light_moving(const PointCache& points, const View& view, const PictureWindow& window,
-                  MovingLight& light) {
+                  float depth_threshold, MovingLight& light) {
   WindowView part(view, window);
   take_anchored(points, light.points);
   resize_image(light.image, window.width, window.height);

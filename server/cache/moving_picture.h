@@ -42,8 +42,9 @@ PictureWindow moving_window(const World& world, const View& view);
 PictureWindow whole_runs(const PictureWindow& window, const View& view);
 
 // Reads the points with anchors. light.known: there is one that shows. `window`: of whole runs.
+// `depth_threshold`: as CacheSettings has it.
 void light_moving(const PointCache& points, const View& view, const PictureWindow& window,
-                  MovingLight& light);
+                  float depth_threshold, MovingLight& light);
 
 // What the keyframe shows there, into a picture of its size: others of its pixels stay.
 void copy_colors(const Keyframe& keyframe, const PictureWindow& window, Image8& image);

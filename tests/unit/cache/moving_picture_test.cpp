@@ -246,7 +246,7 @@ TEST(MovingPicture, CoversWhatLiesBehindIt) {
   View view = view_of(stage);
   MovingLight light;
   PictureWindow window = whole_runs(moving_window(*stage.world, view), view);
-  light_moving(PointCache{}, view, window, light);
+  light_moving(PointCache{}, view, window, CacheSettings{}.depth_threshold, light);
   EXPECT_FALSE(light.known);
   for (float depth : {0.5f, 3.0f}) {
     std::vector<float> disparity(pixels, 1 / depth);
