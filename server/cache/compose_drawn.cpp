@@ -424,7 +424,9 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const V
                                                        const Planes& planes) {
   auto draw = [&](auto composer) {
     if (calm) composer.own_counts = calm_counts;
-    return sight.see_edges(view, composer.offset, taker(composer, planes));
+    auto differ = [&planes](uint32_t a, uint32_t b) { return planes.differ(a, b); };
+    return sight.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
+                           differ);
   };
   PixelRays rays(view);
   if (lit == view) return draw(FineComposer{view, cells, known, light, rays, rays});

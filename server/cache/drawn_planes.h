@@ -28,6 +28,9 @@ struct LanePart {
 // All planes of a frame.
 struct FramePlanes {
   Frame& frame;
+  int differ(uint32_t pixel, uint32_t other) const {
+    return frame.color[pixel] == frame.color[other] ? 0 : 1 << 16;  // light knows no white
+  }
   void put(size_t at, LanePart part, const Shown& s) const {
     float cut[3 * lanes], *color = part.all() ? &frame.color[at].x : cut;
     const Color& c = s.color;
@@ -83,6 +86,14 @@ struct EyePlanes {
   float exposure;
   uint8_t *rgb, *peaks;  // codes of what is shown, and eval_peak_codes() of its light
   float* depth;          // null: not wanted
+  // In codes, of which light beyond white has more than they show.
+  int differ(uint32_t pixel, uint32_t other) const {
+    const uint8_t *a = rgb + 3 * size_t(pixel), *b = rgb + 3 * size_t(other);
+    int most = 0;
+    for (int k = 0; k < 3; k++) most = std::max(most, std::abs(a[k] - b[k]));
+    float peak = peak_of(std::max(peaks[pixel], peaks[other]));
+    return peak > 1 ? int(float(most) * peak) : most;
+  }
   void put(size_t at, LanePart part, const Shown& s) const {
     const Color& c = s.color;
     Lanes3 light = Lanes3{c.r, c.g, c.b} * all_lanes(exposure);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
+#include <cmath>
 
 #include "base/parallel.h"
 #include "frame/tone_curve.h"
@@ -12,15 +12,38 @@
 namespace wellspring {
 namespace {
 
+// Replaces a share of a pixel's `own` light in what it has `become`, by no more than there is.
+vec3 mix_in(float share, vec3 own, vec3 beyond, vec3 become) {
+  return clamp(become + share * (beyond - own), min(become, beyond), max(become, beyond));
+}
+
 struct LinearPicture {
   using Pixel = vec3;
   std::vector<vec3>& color;
   vec3 read(uint32_t pixel) const { return color[pixel]; }
-  void mix(const EdgeShare& edge, vec3 beyond) const {
-    vec3 light = (1 - edge.share) * color[edge.pixel] + edge.share * beyond;
-    color[edge.pixel] = glm::max(light, vec3(0));
+  void mix(const EdgeShare& edge, vec3 own, vec3 beyond) const {
+    color[edge.pixel] = mix_in(edge.share, own, beyond, color[edge.pixel]);
   }
 };
+
+// The sRGB transfer function in tables.
+struct Codes {
+  static constexpr int roots = 2047;  // steps from 0 to 1 of a linear value's square root
+  std::array<float, 256> linear{};
+  std::array<uint8_t, roots + 2> of_root{};
+};
+const Codes& known_codes() {
+  static const Codes known = [] {
+    Codes codes;
+    for (size_t i = 0; i < codes.linear.size(); i++) codes.linear[i] = decode_srgb(uint8_t(i));
+    for (size_t i = 0; i < codes.of_root.size(); i++) {
+      float root = std::min(float(i) / Codes::roots, 1.0f);
+      codes.of_root[i] = uint8_t(encode_srgb(all_lanes(root * root))[0] * 255 + 0.5f);
+    }
+    return codes;
+  }();
+  return known;
+}
 
 // Mixed through the tone curve.
 struct ShownPicture {
@@ -30,48 +53,48 @@ struct ShownPicture {
   };
   Image8& image;
   std::span<uint8_t> peaks;
-  const std::array<float, 256>& linear_of = linear_of_codes();
+  const Codes& codes = known_codes();
 
-  static const std::array<float, 256>& linear_of_codes() {
-    static const std::array<float, 256> linear = [] {
-      std::array<float, 256> all{};
-      for (size_t i = 0; i < all.size(); i++) all[i] = decode_srgb(uint8_t(i));
-      return all;
-    }();
-    return linear;
-  }
   Pixel read(uint32_t pixel) const {
     const uint8_t* c = &image.rgb[3 * size_t(pixel)];
     return {{c[0], c[1], c[2]}, peaks[pixel]};
   }
   vec3 light_of(const Pixel& p) const {
-    return invert_tone_curve({linear_of[p.code[0]], linear_of[p.code[1]], linear_of[p.code[2]]},
-                             p.peak);
+    const auto& linear = codes.linear;
+    return invert_tone_curve({linear[p.code[0]], linear[p.code[1]], linear[p.code[2]]}, p.peak);
   }
-  void mix(const EdgeShare& edge, const Pixel& beyond) const {
-    Pixel own = read(edge.pixel);
-    int most = 0;
-    for (size_t k = 0; k < 3; k++) most = std::max(most, std::abs(own.code[k] - beyond.code[k]));
-    if (float(most) * edge.share < 0.5f) return;  // most creases change no code
-    vec3 light = (1 - edge.share) * light_of(own) + edge.share * light_of(beyond);
-    peaks[edge.pixel] = uint8_t(eval_peak_codes(all_lanes(max_component(light)))[0]);
-    eval_tone_curve(light, &image.rgb[3 * size_t(edge.pixel)]);
+  void mix(const EdgeShare& edge, const Pixel& own, const Pixel& beyond) const {
+    vec3 light =
+        mix_in(edge.share, light_of(own), light_of(beyond), light_of(read(edge.pixel)));
+    write(edge.pixel, light);
+  }
+  void write(uint32_t pixel, vec3 light) const {
+    float peak = max_component(light), scale = 1, offset = 0;
+    peaks[pixel] = uint8_t(eval_peak_codes(all_lanes(peak))[0]);
+    if (peak > shoulder_start) eval_shoulder(peak, scale, offset);
+    for (int k = 0; k < 3; k++) {
+      float root = std::sqrt(light[k] * scale + offset);
+      image.rgb[3 * size_t(pixel) + size_t(k)] = codes.of_root[size_t(root * Codes::roots + 0.5f)];
+    }
   }
 };
 
-// All colours beyond edges are read before any pixel is written.
+// All colours are read before any pixel is written.
 template <class Picture>
 void soften(std::span<const std::vector<EdgeShare>> edges, const Picture& picture) {
-  std::vector<std::vector<typename Picture::Pixel>> beyond(edges.size());
+  using Pixel = typename Picture::Pixel;
+  std::vector<std::vector<std::pair<Pixel, Pixel>>> sides(edges.size());
   parallel_ranges(int(edges.size()), 4, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++) {
-      beyond[i].reserve(edges[i].size());
-      for (const EdgeShare& edge : edges[i]) beyond[i].push_back(picture.read(edge.other));
+      sides[i].reserve(edges[i].size());
+      for (const EdgeShare& edge : edges[i])
+        sides[i].push_back({picture.read(edge.pixel), picture.read(edge.other)});
     }
   });
   parallel_ranges(int(edges.size()), 4, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++)
-      for (size_t k = 0; k < edges[i].size(); k++) picture.mix(edges[i][k], beyond[i][k]);
+      for (size_t k = 0; k < edges[i].size(); k++)
+        picture.mix(edges[i][k], sides[i][k].first, sides[i][k].second);
   });
 }
 

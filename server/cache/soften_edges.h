@@ -10,8 +10,8 @@
 
 namespace wellspring {
 
-// `edges`: Raster::edges() of the picture. Where several cut a pixel, each takes its share of what
-// the ones before have left.
+// `edges`: Raster::edges() of the picture. Where several cut a pixel, such as both of a bar,
+// their shares add up, to all of it at most.
 void soften_edges(std::span<const std::vector<EdgeShare>> edges, std::vector<vec3>& color);
 // Of a picture that has been through the tone curve (frame/tone_curve.h): its light is mixed as it
 // was before, since half a pixel of bright sky is white already. `peaks`: of each pixel the code of

@@ -420,11 +420,12 @@ void PictureSight::see(const View& view, vec2 offset,
 
 std::span<const std::vector<EdgeShare>> PictureSight::see_edges(
     const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
-    RasterShows shows) const {
+    RasterShows shows, std::function<int(uint32_t, uint32_t)> differ) const {
   RasterSettings settings;
   settings.shows = shows;
   settings.offset = offset;
   settings.edges = true;
+  settings.differ = std::move(differ);
   draw(view, settings, 1, take);
   return impl_->raster.edges();
 }

@@ -54,10 +54,12 @@ class PictureSight {
   // averaged. Call after World::commit(), while nothing moves.
   void see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
            RasterShows shows = RasterShows::all, float blur = 1) const;
-  // The same, and then finds Raster::edges(), which are good until the next call.
+  // The same, and then finds Raster::edges(), which are good until the next call. `differ`: as
+  // RasterSettings has it.
   std::span<const std::vector<EdgeShare>> see_edges(
       const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
-      RasterShows shows = RasterShows::all) const;
+      RasterShows shows = RasterShows::all,
+      std::function<int(uint32_t pixel, uint32_t other)> differ = {}) const;
   // Is it of a mesh that moves?
   bool moves(uint32_t object) const;
   // Is there a visible one that does, wherever it is?

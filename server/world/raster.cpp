@@ -64,7 +64,8 @@ void transform(const Camera& camera, const PlacedMesh& placed, const float* px, 
 
 struct Raster::Impl {
   const World& world;
-  std::vector<MeshClusters> meshes;  // of the scene's, then of what moves
+  std::vector<MeshClusters> meshes;        // of the scene's, then of what moves
+  std::vector<MeshNeighbours> neighbours;  // of the same
   std::vector<uint32_t> mesh_of;     // of every instance
   std::vector<uint8_t> has_alpha;    // of every instance
   float near = 0;
@@ -106,10 +107,17 @@ Raster::Raster(const World& world) : impl_(std::make_unique<Impl>(world)) {
   int instances = world.instance_count(), still = int(scene.instances.size());
   int still_meshes = int(scene.meshes.size());
   r.meshes.resize(size_t(still_meshes + instances - still));
+  r.neighbours.resize(r.meshes.size());
   parallel_for(int(r.meshes.size()), [&](int i) {
-    r.meshes[size_t(i)] =
-        make_clusters(i < still_meshes ? scene.meshes[size_t(i)]
-                                       : world.mesh_of(uint32_t(still + i - still_meshes)));
+    const Mesh& mesh = i < still_meshes ? scene.meshes[size_t(i)]
+                                        : world.mesh_of(uint32_t(still + i - still_meshes));
+    MeshClusters& clusters = r.meshes[size_t(i)] = make_clusters(mesh);
+    MeshNeighbours& neighbours = r.neighbours[size_t(i)] = find_neighbours(mesh);
+    for (uint32_t t : clusters.triangle) {
+      clusters.width.push_back(neighbours.width[t]);
+      clusters.bar.push_back(neighbours.bar[t]);
+    }
+    neighbours.width = {}, neighbours.bar = {};
   });
   for (int i = 0; i < instances; i++) {
     uint32_t number = uint32_t(i);
@@ -185,10 +193,14 @@ void Raster::Impl::fill_block(Block& block, std::span<const RasterPiece> of, con
     RasterTriangle unfinished{};
     unfinished.instance = piece.instance;
     unfinished.has_alpha = has_alpha[piece.instance];
+    bool as_it_is = placed.moving || placed.in_place;
+    float scale = length(camera.right) * (as_it_is ? 1 : length(vec3(placed.to_world[0])));
     size_t material = size_t(placed.mesh->material);
     unfinished.veils = material < settings.see_through.size() ? settings.see_through[material] : 0;
     for (uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangles; t++) {
       unfinished.triangle = mesh.triangle[t];
+      unfinished.width = scale * mesh.width[t];
+      unfinished.bar = mesh.bar[t] != 0;
       std::array<uint8_t, 3> c = mesh.corner[t];
       add_triangle(raster, corners, c[0], c[1], c[2], unfinished, block.triangles);
     }
@@ -291,10 +303,14 @@ void Raster::Impl::hand_out(ivec2 corner, const View& view, const RasterView& ra
       ends[pieces++] = uint8_t(end);
       bool hit = number[x] != no_triangle;
       const RasterTriangle* t = hit ? &triangle_of(number[x]) : nullptr;
+      // Between narrow things of one instance there may be gaps.
+      bool apart = hit && t->bar && t->width * inverse[x] < narrow_width;
+      uint16_t kind = apart ? uint16_t(number[x] | TilePixels::narrow_kind)
+                            : uint16_t((hit ? t->instance : ~0u) & ~TilePixels::narrow_kind);
       for (int i = x; i < end; i++) {
         instance[i] = hit ? t->instance : RasterRun::nothing;
         triangle[i] = hit ? t->triangle : 0;
-        pixels.kind[y * tile_width + i] = uint16_t(hit ? t->instance : RasterRun::nothing);
+        pixels.kind[y * tile_width + i] = kind;
       }
       if (!hit) {
         std::fill(depth + x, depth + end, std::numeric_limits<float>::infinity());
@@ -390,8 +406,9 @@ void Raster::draw(const View& view, const RasterSettings& settings,
   r.hidden -= r.pieces.size();
   size_t second = fill(r.pieces.size());
   auto triangle_of = [&r](uint32_t number) { return &r.triangle_of(number); };
-  EdgeFinder finder{raster, 0.5f * float(view.height) / view.tan_half_fov, columns, r.tiles,
-                    triangle_of};
+  SurfaceWalk walk{r.world, r.neighbours, r.mesh_of, view, raster,
+                   0.5f * float(view.height) / view.tan_half_fov};
+  EdgeFinder finder{walk, raster, columns, settings.differ, r.tiles, triangle_of};
   parallel_for(columns * rows, [&](int i) {
     draw_tile(i, second);
     std::vector<Veil> veils;

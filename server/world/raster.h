@@ -42,7 +42,8 @@ struct RasterRun {
 Hit hit_of(const RasterRun& run, int i, const View& view, vec2 offset);
 
 // Of `pixel` (row after row from the picture's top left), the share that is covered by what
-// `other`, a neighbour, shows: above 0, at most a half. Exact where one straight edge cuts it.
+// `other`, a neighbour or a pixel near, shows: above 0, at most a half. Exact where one straight
+// edge cuts it.
 struct EdgeShare {
   uint32_t pixel = 0, other = 0;
   float share = 0;
@@ -61,6 +62,9 @@ struct RasterSettings {
   // one place are put together in no order.
   std::function<Veil(const Hit& hit, vec3 direction)> veil;
   bool edges = false;  // find Raster::edges()
+  // Of two neighbouring pixels that have been taken: by how many codes of 255 they differ. Asked by
+  // many threads; edges that change less than a code or two are left out. Without it none is.
+  std::function<int(uint32_t pixel, uint32_t other)> differ;
   RasterShows shows = RasterShows::all;
 };
 

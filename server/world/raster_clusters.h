@@ -30,6 +30,9 @@ struct MeshClusters {
   // Per triangle: its corners counted from the cluster's first, and its number in the mesh.
   std::vector<std::array<uint8_t, 3>> corner;
   std::vector<uint32_t> triangle;
+  // Of each, as MeshNeighbours (world/raster_walk.h) has them; left to who knows these.
+  std::vector<float> width;
+  std::vector<uint8_t> bar;
 };
 MeshClusters make_clusters(const Mesh& mesh);
 

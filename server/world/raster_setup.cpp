@@ -61,6 +61,7 @@ void finish(const RasterView& view, const RasterPoint& p0, RasterPoint p1, Raste
               top * raster_steps - view.centre_steps_y))
     return;
   RasterTriangle& t = out.emplace_back(unfinished);
+  t.turned = area < 0;
   t.left = int16_t(left), t.right = int16_t(right), t.top = int16_t(top),
   t.bottom = int16_t(bottom);
 
@@ -175,9 +176,11 @@ void add_triangle(const RasterView& view, const RasterCorners& c, int i, int j, 
     cut.x = std::clamp(cut.x, -raster_reach * cut.w, raster_reach * cut.w);
     cut.y = std::clamp(cut.y, -raster_reach * cut.w, raster_reach * cut.w);
   }
+  RasterTriangle part = unfinished;
+  part.clipped = true;
   for (int m = 1; m + 1 < count; m++)
     finish(view, to_picture(polygon[side][0]), to_picture(polygon[side][m]),
-           to_picture(polygon[side][m + 1]), unfinished, out);
+           to_picture(polygon[side][m + 1]), part, out);
 }
 
 }  // namespace wellspring

@@ -42,12 +42,16 @@ struct RasterTriangle {
   // a * (x - from.x) + b * (y - from.y) + bias; inside: none of the three is negative.
   int32_t a[3], b[3], from_x[3], from_y[3], bias[3];
   uint32_t instance, triangle;
+  float width;  // of it and its neighbours, pixels over inverse depth
+  bool bar;     // MeshNeighbours::bar (world/raster_walk.h)
   // Inverse depth, and it times the barycentrics: value at `corner` and slopes a pixel.
   vec2 corner;
   vec3 depth, u, v;  // value, slope along x, slope along y
   float least_depth, most_depth;
   int16_t left, top, right, bottom;  // pixels it may cover, inclusive, from the picture's top left
   bool has_alpha;
+  bool turned;    // its corners in the mesh are the first, the third and the second
+  bool clipped;   // its corners are others than in the mesh
   uint8_t veils;  // RasterSettings::see_through of its material
 };
 
@@ -63,7 +67,7 @@ struct RasterView {
 void project_corners(const RasterView& view, int count, RasterCorners& corners);
 
 // Appends the parts of triangle (i, j, k) that can cover a sampling place. `unfinished` holds
-// instance, triangle, has_alpha and veils.
+// instance, triangle, has_alpha, bar, veils and width.
 void add_triangle(const RasterView& view, const RasterCorners& corners, int i, int j, int k,
                   const RasterTriangle& unfinished, std::vector<RasterTriangle>& out);
 

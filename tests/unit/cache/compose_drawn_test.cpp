@@ -123,8 +123,8 @@ TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
   }
 }
 
-// A lattice of dark bars, about a pixel wide, before a sky ten times as bright as white: what is
-// left of the sky in a pixel is more than the bar.
+// A lattice of dark bars, two pixels wide, before a sky ten times as bright as white: what is left
+// of the sky in a pixel is more than the bar.
 TEST(Drawn, DarkBarsBeforeABrightSkyAreThoseOfAllOfThePixel) {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(9, 10, 11);

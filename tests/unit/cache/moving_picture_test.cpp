@@ -104,7 +104,9 @@ TEST(MovingPicture, WindowHoldsWhatMoves) {
     }
     EXPECT_EQ(whole_runs(window, view).left % RasterRun::most, 0);
     EXPECT_EQ(whole_runs(window, view).top % cell_size, 0);
-    if (z == 1.2) EXPECT_LT(window.width * window.height, pixels / 2);
+    if (z == 1.2) {
+      EXPECT_LT(window.width * window.height, pixels / 2);
+    }
   }
   // Within the ball it may be anywhere; behind the eye it is nowhere, and so it is when hidden.
   PictureWindow whole = moving_window(*stage.world, view_of(stage, ball_place.z + 0.02f));
@@ -149,7 +151,9 @@ TEST(MovingPicture, IsThatOfWholePictures) {
       if (ball) sum += difference(got, wanted, x, y);
       if (is_inside(parts.moving.window, x, y) && stage.scene.objects[object] == "bar") bars++;
       // The rest is corrected by its own samples, scale by scale: a little also by what it hides.
-      if (!is_inside(parts.moving.window, x, y)) EXPECT_LE(difference(got, wanted, x, y), 1);
+      if (!is_inside(parts.moving.window, x, y)) {
+        EXPECT_LE(difference(got, wanted, x, y), 1);
+      }
     }
   EXPECT_GT(of_ball, 300);
   EXPECT_GT(bars, 100);  // before it, and not covered

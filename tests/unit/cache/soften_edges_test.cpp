@@ -48,11 +48,11 @@ TEST(SoftenEdges, SeveralEdgesNeverTakeMoreThanThereIs) {
   std::vector<vec3> color{vec3(1), vec3(100), vec3(3)};
   std::vector<std::vector<EdgeShare>> edges{{{1, 2, 0.5f}, {1, 0, 0.25f}}};
   soften_edges(edges, color);
-  EXPECT_EQ(color[1], vec3(0.75f * (0.5f * 100 + 0.5f * 3) + 0.25f * 1));
+  EXPECT_EQ(color[1], vec3(0.25f * 100 + 0.5f * 3 + 0.25f * 1));
   EXPECT_EQ(color[0], vec3(1));
   color = {vec3(1), vec3(100), vec3(3)};
   edges = {{{1, 2, 0.5f}, {1, 0, 0.5f}, {1, 2, 0.5f}, {1, 0, 0.5f}}};
   soften_edges(edges, color);  // of a thing narrower than the pixel
-  EXPECT_GT(color[1].x, 1);
+  EXPECT_GE(color[1].x, 1);
   EXPECT_LT(color[1].x, 10);
 }
