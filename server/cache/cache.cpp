@@ -75,6 +75,7 @@ struct RenderCache::Impl {
   View view;  // of the last projection
   bool projected = false;
   bool reference = false;  // set_reference()
+  bool drawn = false;      // set_drawn()
   bool relit = false;  // points may wait for a sample of their new light
   bool image_stale = true;  // points have changed since, and the image was not told
   int still_frames = 0;  // projections of the same view before the last
@@ -136,6 +137,7 @@ RenderCache::RenderCache(const CacheSettings& settings, std::shared_ptr<CacheWor
 }
 RenderCache::~RenderCache() = default;
 void RenderCache::set_reference(bool on) { impl_->reference = on; }
+void RenderCache::set_drawn(bool on) { impl_->drawn = on; }
 void RenderCache::set_attention(bool on) { impl_->settings.attention = on; }
 RenderCache::RenderCache(RenderCache&&) noexcept = default;
 RenderCache& RenderCache::operator=(RenderCache&&) noexcept = default;
@@ -272,6 +274,7 @@ void RenderCache::remember(const View& view, std::span<const Request> requests,
   settings.longest_specular = settings.still ? still_mean : moving_specular;
   settings.images = c.settings.images;
   settings.reference = c.reference;
+  settings.glow = !c.drawn;
   Remembered result =
       remember_samples(c.points, view, requests, samples, settings, c.image, c.work->targets);
   // What moves may have been seen elsewhere than it is now, and what had no pixel may have one.

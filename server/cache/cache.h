@@ -119,6 +119,9 @@ class RenderCache {
   // ones might be taken for a change of the light). Its light is not expected to be that of others.
   void set_reference(bool on);
   void set_attention(bool on);  // CacheSettings::attention
+  // From now on pictures are drawn (draw(), draw_still()): points remember no light that surfaces
+  // emit themselves, as these pictures know it exactly, from texel to texel (Sample::glow).
+  void set_drawn(bool on);
   // A lamp was switched, dimmed or moved, and is much of the light where `changes` says so of a
   // surface, on many threads: what was remembered of the light there counts no more, and is asked
   // for first. Until newer light is known, `kept` of it, 1 unless changed, and the light `added`

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cache/drawn_planes.h"
+#include "cache/drawn_run.h"
 #include "cache/nearby_light.h"
 #include "cache/soften_edges.h"
 
@@ -19,29 +20,6 @@ constexpr int group = cell_size * Scale;
 template <int Scale>
 constexpr int together = lanes / group<Scale>;
 static_assert(cell_size == packed_four && together<light_scale> == 1 && together<1> == 2);
-
-struct RunPixels {
-  RunSurface surface;
-  float glow_red[RasterRun::most], glow_green[RasterRun::most], glow_blue[RasterRun::most];
-};
-
-// Everything that is drawn of a run. Returns its pixels' bits that shine by themselves.
-uint64_t describe_run(const SightRun& run, RunPixels& p) {
-  uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
-  uint64_t alone = run.describe(all, p.surface), shining = 0;
-  for (; alone != 0; alone &= alone - 1) {
-    int i = std::countr_zero(alone);
-    Seen seen = run.see(i);
-    p.surface.red[i] = seen.albedo.x, p.surface.green[i] = seen.albedo.y;
-    p.surface.blue[i] = seen.albedo.z;
-    p.surface.nx[i] = seen.normal.x, p.surface.ny[i] = seen.normal.y;
-    p.surface.nz[i] = seen.normal.z;
-    if (seen.scatters && seen.glow == vec3(0)) continue;
-    shining |= uint64_t(1) << i;
-    p.glow_red[i] = seen.glow.x, p.glow_green[i] = seen.glow.y, p.glow_blue[i] = seen.glow.z;
-  }
-  return shining;
-}
 
 // Eight lanes of a run's array from lane `i` on, which may begin before it and end behind it.
 f8 lanes_at(const float* from, int i) {
@@ -302,7 +280,7 @@ struct Composer {
   static int parts_of(const SightRun& run) { return (run.count + half_group + lanes - 1) / lanes; }
   const CellRows<Scale>& rows_around(const SightRun& run) const;
   void light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const;
-  Shown light_part(const SightRun& run, const RunPixels& p, uint64_t shining,
+  Shown light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
                    const CellRows<Scale>& rows, int n, LanePart part) const;
 };
 
@@ -345,7 +323,7 @@ void Composer<Scale>::light_narrow(const i8& lonely, int lx, int ly, Drawn& d) c
 // The `n`-th eight of the run's pixels, of which `part` lies in the run: beyond it arrays hold
 // anything.
 template <int Scale>
-Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, uint64_t shining,
+Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
                                   const CellRows<Scale>& rows, int n, LanePart part) const {
   constexpr f8 lane{0, 1, 2, 3, 4, 5, 6, 7};
   int i = n * lanes - half_group, x = run.x + i;  // the first lane's pixel
@@ -365,7 +343,8 @@ Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, uint6
                   light_rays.y(float(ly) + 0.5f), d);
   q.samples *= own_counts;
   unsigned here = (1u << part.end) - (1u << part.begin),
-           shines = unsigned(i < 0 ? shining << -i : shining >> i) & here;
+           shines = unsigned(i < 0 ? shining.some << -i : shining.some >> i) & here,
+           only = unsigned(i < 0 ? shining.only << -i : shining.only >> i) & here;
   if (known) {
     constexpr f8 across = group == lanes ? lane : f8{0, 1, 2, 3, 0, 1, 2, 3};
     const f8 fx = (across + 0.5f) * (1.0f / group);
@@ -376,7 +355,7 @@ Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, uint6
     const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g),
                               &rows.at(1, g + 1)};
     auto find_nearby = [&](const i8& lonely) { light_narrow(lonely, lx, ly, d); };
-    light_group(corners, rows.flat[g], weights, doubt, lanes_of_bits(here & ~shines),
+    light_group(corners, rows.flat[g], weights, doubt, lanes_of_bits(here & ~only),
                 find_nearby, d);
   }
   Shown shown{{positive(d.albedo.r * q.smooth.r + q.rest.r),
@@ -387,9 +366,10 @@ Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, uint6
               q.object};
   for (; shines != 0; shines &= shines - 1) {
     int k = std::countr_zero(shines);
-    shown.color.r[k] = p.glow_red[i + k], shown.color.g[k] = p.glow_green[i + k];
-    shown.color.b[k] = p.glow_blue[i + k];
-    shown.samples[k] = 255;
+    bool alone = only >> k & 1;
+    Color& c = shown.color;
+    if (alone) c.r[k] = c.g[k] = c.b[k] = 0, shown.samples[k] = 255;
+    c.r[k] += p.glow_red[i + k], c.g[k] += p.glow_green[i + k], c.b[k] += p.glow_blue[i + k];
   }
   return shown;
 }
@@ -399,7 +379,7 @@ template <int Scale, class Planes>
 auto taker(const Composer<Scale>& composer, const Planes& planes) {
   return [&composer, &planes](const SightRun& run) {
     RunPixels p;
-    uint64_t shining = describe_run(run, p);
+    Shining shining = describe_run(run, p);
     const CellRows<Scale>& rows = composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
     for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {

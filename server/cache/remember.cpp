@@ -26,7 +26,8 @@ constexpr int noise_memory = 64;     // samples the noise estimate looks back on
 
 bool is_usable(const Sample& sample) {
   return std::isfinite(sample.image) && is_finite(sample.position) && is_finite(sample.normal) &&
-         is_finite(sample.albedo) && is_finite(sample.smooth) && is_finite(sample.rest);
+         is_finite(sample.albedo) && is_finite(sample.smooth) && is_finite(sample.rest) &&
+         is_finite(sample.glow);
 }
 
 bool is_infinite(const Sample& sample) { return !(sample.flags & sample_hit); }
@@ -41,12 +42,14 @@ struct Found {
   bool image;  // the place is that of an image
   bool reference;
   vec3 place;
+  vec3 rest;  // of the sample, as far as points keep it; not negative
 };
 Found find(const Request& request, const Sample& sample, const RememberSettings& settings) {
   bool image = settings.images && sample.image > 0 && (sample.flags & sample_specular) &&
                !(sample.flags & sample_moving);  // those follow their triangles
   return {sample, image, settings.reference,
-          image ? request.ray.origin + sample.image * request.ray.direction : sample.position};
+          image ? request.ray.origin + sample.image * request.ray.direction : sample.position,
+          max(settings.glow ? sample.rest : sample.rest - sample.glow, vec3(0))};
 }
 
 // The sample saw the surface the point lies on, at the point (`exact`) or near it in the same
@@ -102,7 +105,7 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Found& 
   points.color[i].noise = sample.flags & sample_sure ? sure_noise : uint8_t(0);
   points.color[i].doubts = 0;
   points.color[i].smooth = pack_rgb9e5(sample.smooth, random);
-  points.color[i].rest = pack_rgb9e5(sample.rest, random >> 4);
+  points.color[i].rest = pack_rgb9e5(found.rest, random >> 4);
   points.color[i].object = sample.object;
 }
 
@@ -151,7 +154,7 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
     return effect;
   }
   float deviation = unpack_deviation(color.noise);
-  float before = luminance(rest), now = luminance(max(sample.rest, vec3(0))),
+  float before = luminance(rest), now = luminance(found.rest),
         step = std::abs(now - before);
   float level = std::max(before, now);
   vec3 reflectance = unpack_albedo(color.albedo);
@@ -187,7 +190,7 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
       points.flags[i] & point_specular ? settings.longest_specular : settings.longest_mean;
   float share = 1 / float(std::min(n, longest - 1) + 1);
   smooth += (max(sample.smooth, vec3(0)) - smooth) * share;
-  rest += (max(sample.rest, vec3(0)) - rest) * share;
+  rest += (found.rest - rest) * share;
   if (exact) {
     points.age[i] = 0;
   } else {

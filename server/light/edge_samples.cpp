@@ -147,6 +147,7 @@ void refine_edges(const World& world, const Lights& lights, const TransportSetti
       float own = 1 / float(1 + pixel.lit);
       sample.albedo *= own;
       sample.rest = own * (sample.rest + pixel.radiance);
+      sample.glow *= own;
       sample = finish_sample(lights, settings, sample);
     }
   });

@@ -108,6 +108,7 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
         is_pane(surface, material) && !has_diffuse(bsdf) && bsdf.metallic == 0 && !material.unlit;
     if (clear && walk.panes < most_panes) {
       sample.rest += first.tint * surface.emission;
+      sample.glow += first.tint * surface.emission;
       if (max_depth > 1)
         add_reflection(first, reflections, surface, eval_mirror(bsdf), sampler);
       BsdfSample straight;
@@ -119,10 +120,13 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
       continue;
     }
     describe_place(world, hit, surface, surface.normal, distance, sample);
-    sample.rest += first.tint * surface_emission(surface, material);
+    vec3 emission = first.tint * surface_emission(surface, material);
+    sample.rest += emission;
+    sample.glow += emission;
     first.scatters = !material.unlit && max_depth > 1;
     break;
   }
+  if (!first.scatters) sample.glow = vec3(0);
   first.mirrored = reflections > 0;
   first.reflection.throughput *= reflections;
   return first;

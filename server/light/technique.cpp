@@ -63,16 +63,16 @@ void finish_samples(const Lights& lights, const TransportSettings& settings,
   for (Sample& sample : samples) {
     if (!is_light(sample)) {
       lights.bad_samples->fetch_add(1, std::memory_order_relaxed);
-      sample.albedo = sample.smooth = sample.rest = vec3(0);
+      sample.albedo = sample.smooth = sample.rest = sample.glow = vec3(0);
       sample.flags &= uint8_t(~sample_sure);
     }
     if (!(settings.clamp > 0)) continue;
     // What owes nothing to chance, such as a lamp that is looked at, is as bright as it is.
-    bool sure = sample.flags & sample_sure;
-    float largest = max_component(sure ? sample.albedo * sample.smooth : sample.radiance());
+    vec3 sure = sample.flags & sample_sure ? sample.rest : sample.glow;
+    float largest = max_component(sample.radiance() - sure), share = settings.clamp / largest;
     if (!(largest > settings.clamp)) continue;
-    sample.smooth *= settings.clamp / largest;
-    if (!sure) sample.rest *= settings.clamp / largest;
+    sample.smooth *= share;
+    sample.rest = sure + (sample.rest - sure) * share;
   }
 }
 

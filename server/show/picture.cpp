@@ -172,6 +172,7 @@ void plan_samples(const Show& show, const PictureOrder& order, const Technique& 
   View ahead = order.coarse ? light_view(order.ahead) : order.ahead;
   cache.set_attention(order.attention);
   cache.set_reference(order.settled);
+  cache.set_drawn(order.display.drawn);
   // What is around has light of half its size.
   cache.resize(order.expected.width, order.expected.height);
   cache.move_points(*show.world);

@@ -100,6 +100,7 @@ struct Onlooker {
     TransportSettings transport;
     transport.max_depth = scene.max_depth;
     transport.clamp = 4;  // as ShowSettings::moving_clamp
+    cache.set_drawn(way != Way::points);
     cache.resize(view.width, view.height);
     cache.move_points(*lit.world);
     cache.project(seen);

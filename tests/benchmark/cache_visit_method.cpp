@@ -67,8 +67,9 @@ class CacheMethod : public VisitMethod {
     if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
     last_view_ = moment.view;
     // As show/picture.cpp draws what moves.
-    bool passing =
-        primary_ && moment.frame - moved_ < still_after && sight(moment).can_see(moment.view);
+    bool drawn = primary_ && sight(moment).can_see(moment.view);
+    bool passing = drawn && moment.frame - moved_ < still_after;
+    cache_.set_drawn(drawn);
     double pixels = double(moment.view.width) * double(moment.view.height);
     bool coarse = passing && !affords_fine_light(budget * displayed_rate / pixels, false);
     const View view = coarse ? light_view(moment.view) : moment.view;
@@ -104,7 +105,7 @@ class CacheMethod : public VisitMethod {
     }
     if (passing)
       cache_.draw(moment.view, sight(moment), shown.frame);
-    else if (primary_ && sight(moment).can_see(moment.view))
+    else if (drawn)
       cache_.draw_still(moment.view, sight(moment), shown.frame);
     else
       finish(moment, looks, shown.frame);

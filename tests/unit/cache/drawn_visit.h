@@ -101,6 +101,7 @@ struct DrawnVisit {
     cache.attend();
     cache.plan(light, budget, tick++, requests);
     samples.resize(requests.size());
+    cache.set_drawn(kind != PictureOf::points);
     trace(*find_technique("path"), *stage.world, stage.lights, {}, requests, samples);
     cache.remember(light, requests, samples);
     if (kind == PictureOf::points) cache.reconstruct(view, frame);

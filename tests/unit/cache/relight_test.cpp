@@ -138,6 +138,7 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
       view.position.x += 0.004f;  // the last is seen from the place
     const View seen = shown == Shown::moving ? light_view(view) : view;
     if (i == 0 && told) cache.relight(everywhere);
+    cache.set_drawn(true);
     cache.resize(view.width, view.height);
     cache.move_points(*box.world);
     cache.project(seen);
