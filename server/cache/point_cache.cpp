@@ -11,6 +11,7 @@
 #include "cache/lanes.h"
 #include "cache/packing.h"
 #include "light/first_surface.h"
+#include "light/material_use.h"
 #include "world/surface.h"
 
 namespace wellspring {
@@ -149,7 +150,11 @@ bool forget_paint(PointCache& points, const World& world, const std::vector<char
       Surface surface = eval_surface(world, {.origin = place + way, .direction = -way}, hit);
       bool known = surface.transmission == 0 && surface.anisotropy == 0 &&
                    !world.material_of(a.instance).unlit;
-      if (known) points.color[i].albedo = pack_albedo(kept_reflectance(surface).albedo);
+      if (!known) continue;
+      // As far as this place tells; the next sample knows.
+      bool metal = surface.metallic >= all_metal && surface.roughness >= least_kept_roughness;
+      points.color[i].albedo = pack_albedo(
+          kept_albedo(surface, metal ? KeptMetal::reflectance : KeptMetal::none));
     }
   });
   return found;

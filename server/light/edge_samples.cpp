@@ -8,7 +8,6 @@
 #include "base/parallel.h"
 #include "light/first_surface.h"
 #include "light/matt_eyes.h"
-#include "light/split_reflectance.h"
 #include "light/technique_list.h"
 
 namespace wellspring {
@@ -71,7 +70,7 @@ bool eval_alike(const Refining& r, const Request& request, vec2 place, vec3& rad
     return true;
   }
   if (!first.scatters || max_component(sample.rest) > 0) return false;
-  sample.albedo = split_reflectance(first.bsdf).albedo * first.tint;
+  sample.albedo = kept_reflectance(first).albedo * first.tint;
   return take_light(r, sample, place, radiance);
 }
 

@@ -25,32 +25,35 @@ void add_reflection(FirstSurface& first, float& reflections, const Surface& surf
   advance(first.reflection, surface, unit);
 }
 
-// Rough gloss looks nearly the same from everywhere: as a share of the reflectance it may be
-// filtered with the diffuse light.
-KeptReflectance keep(vec3 diffuse, vec3 metal, float alpha, bool transmits) {
-  KeptReflectance kept;
-  kept.diffuse = max_component(diffuse) > least_albedo;
-  kept.albedo = kept.diffuse ? diffuse : metal;
-  vec3 a = kept.albedo;
-  kept.soft = alpha >= soft_alpha && !transmits && std::min({a.x, a.y, a.z}) > least_kept_metal;
-  if (!kept.diffuse && !kept.soft) kept.albedo = vec3(0);
-  return kept;
+vec3 keep(vec3 diffuse, vec3 metal, float metallic, KeptMetal kept) {
+  vec3 albedo = max_component(diffuse) > least_albedo ? diffuse : vec3(0);
+  return kept == KeptMetal::none ? albedo
+                                 : max(albedo + metal, vec3(least_kept_metal * metallic));
 }
 
 }  // namespace
 
-KeptReflectance kept_reflectance(const Bsdf& b) {
-  return keep(b.diffuse, b.metallic * b.metal, b.alpha, max_component(b.transmit) > 0);
+KeptReflectance kept_reflectance(const FirstSurface& first) {
+  const Bsdf& b = first.bsdf;
+  KeptReflectance kept;
+  kept.diffuse = max_component(b.diffuse) > least_albedo;
+  kept.albedo = keep(b.diffuse, b.metallic * b.metal, b.metallic, first.metal);
+  vec3 a = kept.albedo;
+  if (first.metal != KeptMetal::none)
+    kept.diffuse_share = kept.diffuse ? b.diffuse / a : vec3(0);
+  if (first.metal == KeptMetal::light) {
+    kept.lit_gloss = 1, kept.other_gloss = 1 - b.dielectric_share;
+  } else if (b.alpha >= soft_alpha && !(max_component(b.transmit) > 0) &&
+             std::min({a.x, a.y, a.z}) > least_kept_metal) {
+    kept.lit_gloss = b.dielectric_share;
+  }
+  return kept;
 }
 
-KeptReflectance kept_reflectance(vec3 base_color, float metallic, float roughness) {
+vec3 kept_albedo(vec3 base_color, float metallic, KeptMetal metal) {
   metallic = clean(metallic);
   vec3 base = clean(base_color);
-  return keep(base * (1 - metallic), base * metallic, alpha_of(roughness), false);
-}
-
-KeptReflectance kept_reflectance(const Surface& surface) {
-  return kept_reflectance(surface.base_color, surface.metallic, surface.roughness);
+  return keep(base * (1 - metallic), base * metallic, metallic, metal);
 }
 
 void describe_place(const World& world, const Hit& hit, const SurfacePlace& place, vec3 normal,
@@ -124,6 +127,7 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
     sample.rest += emission;
     sample.glow += emission;
     first.scatters = !material.unlit && max_depth > 1;
+    first.metal = traits_of(transport, hit).metal;
     break;
   }
   if (!first.scatters) sample.glow = vec3(0);

@@ -9,7 +9,6 @@
 #include "light/eye_light.h"
 #include "light/first_surface.h"
 #include "light/instant_matt.h"
-#include "light/split_reflectance.h"
 #include "light/technique_list.h"
 
 namespace wellspring {
@@ -27,19 +26,20 @@ struct Eye {
   FirstSurface first;
   std::unique_ptr<std::optional<WavelengthSpread>> spread;  // of its colours, if it parts them
   PixelGroup group;
-  bool soft = false;    // rough gloss is filtered with the diffuse light
-  vec3 reflectance{0};  // sample.albedo without the tint
+  KeptReflectance kept;  // without the tint
   PlaceLight light;
 };
 
 // Of reflectance 1, so that light is kept apart from what reflects it.
 void split_first(Eye& eye) {
   Bsdf& bsdf = eye.first.bsdf;
-  SplitReflectance split = split_reflectance(bsdf);
-  eye.soft = split.soft;
-  eye.reflectance = split.albedo;
-  eye.sample.albedo = split.albedo * eye.first.tint;
-  bsdf.diffuse = max_component(bsdf.diffuse) > 1e-4f ? vec3(1) : vec3(0);
+  eye.kept = kept_reflectance(eye.first);
+  vec3 a = eye.kept.albedo;
+  bool soft = !has_sharp(bsdf, mirror_alpha) && !(max_component(bsdf.transmit) > 0) &&
+              std::min({a.x, a.y, a.z}) >= least_kept_metal;
+  eye.kept.lit_gloss = soft ? 1 : 0;
+  eye.sample.albedo = a * eye.first.tint;
+  bsdf.diffuse = eye.kept.diffuse ? vec3(1) : vec3(0);
   if (bsdf.alpha < 0.1f && bsdf.diffuse_share < 0.5f) eye.sample.flags |= sample_specular;
 }
 
@@ -77,10 +77,11 @@ void finish(const EyeLight& light, Eye& eye) {
     gather_rest(light, place, eye.sampler, eye.light);
     Sample& sample = eye.sample;
     const PlaceLight& got = eye.light;
-    vec3 albedo = has_diffuse(eye.first.bsdf) ? sample.albedo : vec3(0);
-    sample.smooth += got.diffuse;
+    const KeptReflectance& kept = eye.kept;
+    vec3 albedo = kept.diffuse ? sample.albedo * kept.diffuse_share : vec3(0);
+    sample.smooth += kept.diffuse_share * got.diffuse;
     sample.rest += albedo * got.exact_diffuse;
-    if (eye.soft) sample.smooth += got.specular / eye.reflectance;
+    if (kept.lit_gloss > 0) sample.smooth += got.specular / kept.albedo;
     else sample.rest += eye.first.tint * got.specular;
     sample.rest += eye.first.tint * got.exact_specular;
     follow_first(light, eye);
@@ -99,7 +100,7 @@ void trace_others(const Transport& transport, const InstantPass& pass, int max_d
   for (size_t i = 0; i < numbers.size(); i++) {
     const Request& request = requests[numbers[i]];
     Eye& eye =
-        eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, {}, {}, false, {}, {}});
+        eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, {}, {}, {}, {}});
     eye.group = group_of_pixel(pass, request.pixel);
     if (max_depth < 1) continue;
     eye.first = find_first_surface(transport, max_depth, request, eye.sampler, eye.sample);

@@ -35,6 +35,7 @@ struct MaterialTraits {
   const DielectricAlbedo* albedo = nullptr;  // null: nothing in use is made of it
   bool maybe_pane = false;  // some place of it may be a thin smooth pane
   bool matt = false;        // is_matt
+  KeptMetal metal = KeptMetal::none;
 };
 
 // Around a part of what scatters sharply; `weight`: about the share of light that it does so with.

@@ -207,7 +207,8 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
         plan.materials[i].visible
             ? &dielectric_albedo(m.ior, m.transmission > 0 && m.thickness > 0)
             : nullptr;
-    tables->materials.push_back({albedo, plan.materials[i].pane, is_matt(m)});
+    tables->materials.push_back({albedo, plan.materials[i].pane, is_matt(m),
+                                 plan.materials[i].metal});
     tables->any_matt |= plan.materials[i].visible && is_matt(m);
   }
   tables->casters = find_casters(world, plan, false);

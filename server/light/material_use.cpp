@@ -79,7 +79,8 @@ MaterialUse merge(const MaterialUse& a, const MaterialUse& b) {
           a.absorbs || b.absorbs,
           a.disperses || b.disperses,
           a.coated || b.coated,
-          a.sharp || b.sharp};
+          a.sharp || b.sharp,
+          std::max(a.metal, b.metal)};
 }
 
 MaterialUse find_material_use(const Material& m, const Mesh& mesh, TextureRanges& ranges) {
@@ -115,6 +116,8 @@ MaterialUse find_material_use(const Material& m, const Mesh& mesh, TextureRanges
   float smoothest = usable_roughness(m.roughness * rough_metal.low.y),
         roughest = usable_roughness(m.roughness * rough_metal.high.y);
   float least_metal = m.metallic * rough_metal.low.z;
+  if (least_metal >= all_metal && smoothest >= least_kept_roughness)
+    use.metal = smoothest >= least_filtered_roughness ? KeptMetal::light : KeptMetal::reflectance;
   bool transmits =
       m.transmission > 0 && least_metal < 1 && ranges.of(m.transmission_texture).high.x > 0;
   use.solid = transmits && m.thickness > 0;

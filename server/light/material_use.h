@@ -4,6 +4,7 @@
 // zero, a black texture or an alpha that is always cut off counts as not being there. Bounds, not
 // guesses: what is ruled out here cannot happen at any place of the surface.
 #pragma once
+#include <cstdint>
 #include <map>
 #include <vector>
 
@@ -13,6 +14,15 @@ namespace wellspring {
 
 // Lobes smoother than this perceptual roughness cast light sharply enough to be called a caustic.
 inline constexpr float caustic_roughness = 0.3f;
+
+// What the first surface that an eye meets keeps of a metal (light/first_surface.h).
+enum class KeptMetal : uint8_t {
+  none,
+  reflectance,  // it is metal all over, and nowhere a mirror
+  light,        // and rough enough all over that its light is filtered as diffuse light is
+};
+inline constexpr float all_metal = 0.8f;  // metallic
+inline constexpr float least_kept_roughness = 0.2f, least_filtered_roughness = 0.25f;
 
 // Of a material in use: each is whether it may be so at some place of the surface.
 struct MaterialUse {
@@ -27,6 +37,7 @@ struct MaterialUse {
   bool disperses = false;
   bool coated = false;  // clearcoat or sheen
   bool sharp = false;   // casts caustics: some lobe is smoother than caustic_roughness
+  KeptMetal metal = KeptMetal::none;
 };
 // What holds for either.
 MaterialUse merge(const MaterialUse& a, const MaterialUse& b);

@@ -36,7 +36,7 @@ Seen see_slowly(const Transport& transport, const Ray& ray) {
   if (!hit) return seen;
   seen.object = sample.object;
   seen.scatters = first.scatters;
-  if (first.scatters) seen.albedo = first.tint * kept_reflectance(first.bsdf).albedo;
+  if (first.scatters) seen.albedo = first.tint * kept_reflectance(first).albedo;
   return seen;
 }
 
@@ -57,7 +57,7 @@ Seen see_surface(const Transport& transport, const Ray& ray, const Hit& hit) {
   seen.object = surface.object;
   seen.glow = surface_emission(surface, material);
   seen.scatters = !material.unlit;
-  if (seen.scatters) seen.albedo = kept_reflectance(surface).albedo;
+  if (seen.scatters) seen.albedo = kept_albedo(surface, traits_of(transport, hit).metal);
   return seen;
 }
 
@@ -69,8 +69,7 @@ void see_packet(const Transport& transport, std::span<const Ray> rays, Seen* see
   if (plain) world.intersect_many(rays.data(), hits, int(rays.size()));
   for (size_t i = 0; i < rays.size(); i++) {
     const Hit& hit = hits[i];
-    bool pane = plain && hit.valid() &&
-                tables.materials[size_t(world.mesh_of(hit.instance).material)].maybe_pane;
+    bool pane = plain && hit.valid() && traits_of(transport, hit).maybe_pane;
     if (!plain || pane) seen[i] = see_slowly(transport, rays[i]);
     else if (hit.valid()) seen[i] = see_surface(transport, rays[i], hit);
     else seen[i] = see_nothing(tables, rays[i].direction);

@@ -17,24 +17,21 @@ namespace {
 
 // How the reflectance of a material is found.
 enum class Reflectance : uint8_t {
-  scaled,  // a factor times base colour
-  metal,   // base colour, where it is not too dark to be kept
-  base,    // base colour, metallic and roughness of each place say all
+  scaled,  // a factor times base colour, and no less than a floor
+  base,    // base colour and metallic of each place say all
   traced,  // ask a ray
 };
 
-// Base colour with this factor is what kept_reflectance() gives of it: matt, or metal too sharp to
-// keep.
-Reflectance find_reflectance(const Material& m, float& factor) {
+// What kept_albedo() makes of base colour.
+struct KeptScale {
+  float factor = 1, floor = 0;
+};
+Reflectance find_reflectance(const Material& m, KeptMetal metal, KeptScale& scale) {
   if (m.transmission > 0 || m.anisotropy > 0) return Reflectance::traced;
-  factor = 1 - m.metallic;
-  bool textured = m.metallic_roughness_texture.texture >= 0;
-  if (factor == 1) return Reflectance::scaled;
-  if (!textured && m.metallic < 1) return Reflectance::scaled;
-  if (textured) return Reflectance::base;
-  bool soft = kept_reflectance(vec3(1), 1, m.roughness).soft;
-  factor = soft ? 1 : 0;
-  return soft ? Reflectance::metal : Reflectance::scaled;
+  if (m.metallic > 0 && m.metallic_roughness_texture.texture >= 0) return Reflectance::base;
+  bool kept = metal != KeptMetal::none;
+  scale = {kept ? 1 : 1 - clean(m.metallic), kept ? least_kept_metal * clean(m.metallic) : 0};
+  return Reflectance::scaled;
 }
 
 // RasterSettings::see_through of what is a clear pane everywhere.
@@ -96,9 +93,9 @@ bool shines(const Facet& f) {
   return (f.front || f.material->double_sided) && f.material->emission != vec3(0);
 }
 
-// `pixel`: its width on the surface, metres.
-Seen see_facet(const Pictures& pictures, const World& world, const Facet& f, const Hit& hit,
-               float pixel) {
+// `metal`: its material's; `pixel`: its width on the surface, metres.
+Seen see_facet(const Pictures& pictures, const World& world, const Facet& f, KeptMetal metal,
+               const Hit& hit, float pixel) {
   const Mesh& mesh = *f.placed->mesh;
   const Material& m = *f.material;
   vec2 at = hit.barycentric;
@@ -117,12 +114,10 @@ Seen see_facet(const Pictures& pictures, const World& world, const Facet& f, con
   if (!mesh.colors.empty())
     base *= vec3(
         mix3(mesh.colors[f.corner.x], mesh.colors[f.corner.y], mesh.colors[f.corner.z], weight));
-  float metallic = m.metallic, roughness = m.roughness;
-  if (m.metallic_roughness_texture.texture >= 0 && m.metallic > 0) {
-    vec3 t = read_picture(pictures, f.shine, m.metallic_roughness_texture, at, pixel);
-    roughness *= t.y, metallic *= t.z;
-  }
-  if (seen.scatters) seen.albedo = kept_reflectance(base, metallic, roughness).albedo;
+  float metallic = m.metallic;
+  if (m.metallic_roughness_texture.texture >= 0 && m.metallic > 0)
+    metallic *= read_picture(pictures, f.shine, m.metallic_roughness_texture, at, pixel).z;
+  if (seen.scatters) seen.albedo = kept_albedo(base, metallic, metal);
   if (m.unlit || shines(f)) {
     Surface surface;  // what surface_emission() reads
     surface.front = f.front;
@@ -144,9 +139,12 @@ struct PictureSight::Impl {
   Raster raster;
   Pictures pictures;
   std::vector<Reflectance> reflectance;  // of each material
-  std::vector<float> factor;             // of those scaled
+  std::vector<KeptScale> scale;          // of those scaled
   std::vector<uint8_t> panes;            // of each material: is one everywhere
   std::vector<uint8_t> moving_object;  // by object
+  KeptMetal metal_of(int material) const {
+    return lights.tables->materials[size_t(material)].metal;
+  }
   Impl(const World& w, const Lights& l)
       : world(w), lights(l), raster(w), pictures(make_pictures(w.scene())) {}
 };
@@ -162,9 +160,10 @@ PictureSight::PictureSight(const World& world, const Lights& lights)
   }
   for (size_t i = 0; i < scene.materials.size(); i++) {
     const Material& m = scene.materials[i];
-    float factor = 0;
-    impl_->reflectance.push_back(m.unlit ? Reflectance::base : find_reflectance(m, factor));
-    impl_->factor.push_back(impl_->reflectance.back() == Reflectance::base ? 1 : factor);
+    KeptScale scale;
+    impl_->reflectance.push_back(
+        m.unlit ? Reflectance::base : find_reflectance(m, impl_->metal_of(int(i)), scale));
+    impl_->scale.push_back(scale);
     impl_->panes.push_back(pane_kind(m));
   }
 }
@@ -229,7 +228,7 @@ struct SightRun::Impl {
   Seen see(int i) const;
   void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
   vec3 scale_of(const Material& m, int index) const {
-    return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * sight.factor[size_t(index)];
+    return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * sight.scale[size_t(index)].factor;
   }
   bool has_picture(const TextureRef& reference) const {
     const Scene& scene = *sight.pictures.scene;
@@ -248,14 +247,15 @@ struct SightRun::Impl {
   void describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const;
 };
 
-// As kept_reflectance(), eight base colours at a time.
-static void keep_lanes(Lanes metallic, Lanes roughness, Lanes (&rgb)[3]) {
-  Lanes matt[3], metal[3];
-  for (int k = 0; k < 3; k++) matt[k] = rgb[k] * (1 - metallic), metal[k] = rgb[k] * metallic;
-  LaneMask diffuse = lanes_max(lanes_max(matt[0], matt[1]), matt[2]) > least_albedo;
-  LaneMask soft = (roughness >= least_soft_roughness) &
-                  (lanes_min(lanes_min(metal[0], metal[1]), metal[2]) > least_kept_metal);
-  for (int k = 0; k < 3; k++) rgb[k] = diffuse ? matt[k] : soft ? metal[k] : all_lanes(0);
+// As kept_albedo(), eight base colours at a time.
+static void keep_lanes(KeptMetal metal, Lanes metallic, Lanes (&rgb)[3]) {
+  if (metal == KeptMetal::none) {
+    LaneMask diffuse =
+        lanes_max(lanes_max(rgb[0], rgb[1]), rgb[2]) * (1 - metallic) > least_albedo;
+    for (Lanes& channel : rgb) channel = diffuse ? channel * (1 - metallic) : all_lanes(0);
+  } else {
+    for (Lanes& channel : rgb) channel = lanes_max(channel, least_kept_metal * metallic);
+  }
 }
 
 // Eight pixels from `i` on, those before `end`; false: they have to be looked up one by one.
@@ -321,7 +321,8 @@ bool SightRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) co
 void SightRun::Impl::describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const {
   const Material& m = *s.material;
   Reflectance way = sight.reflectance[size_t(s.index)];
-  bool metal = way == Reflectance::metal, blended = way == Reflectance::base;
+  bool blended = way == Reflectance::base;
+  float floor = sight.scale[size_t(s.index)].floor;
   vec3 scale = scale_of(m, s.index);
   bool reads = reads_base(m, s.index), reads_too = reads_shine(m, s.index);
   for (int i = s.begin; i < s.end; i += lane_count) {
@@ -340,12 +341,8 @@ void SightRun::Impl::describe(const Stretches& stretches, const Stretch& s, RunS
       }
       continue;
     }
-    for (int k = 0; k < 3; k++) rgb[k] *= scale[k];
-    if (blended) keep_lanes(m.metallic * shine[2], m.roughness * shine[1], rgb);
-    if (metal) {
-      LaneMask kept = lanes_min(lanes_min(rgb[0], rgb[1]), rgb[2]) > least_kept_metal;
-      for (Lanes& channel : rgb) channel = kept ? channel : all_lanes(0);
-    }
+    for (int k = 0; k < 3; k++) rgb[k] = lanes_max(rgb[k] * scale[k], all_lanes(floor));
+    if (blended) keep_lanes(sight.metal_of(s.index), m.metallic * shine[2], rgb);
     store_lanes(to.red + i, rgb[0]);
     store_lanes(to.green + i, rgb[1]);
     store_lanes(to.blue + i, rgb[2]);
@@ -392,7 +389,8 @@ Seen SightRun::Impl::see(int i) const {
       return seen;
     }
     float pixel = pixel_width(f, run->depth[i], direction(i), blurred_angle);
-    seen = see_facet(sight.pictures, sight.world, f, hit, pixel);
+    seen = see_facet(sight.pictures, sight.world, f, sight.metal_of(f.placed->mesh->material), hit,
+                     pixel);
   }
   if (run->veil) {
     const Veil& veil = run->veil[i];

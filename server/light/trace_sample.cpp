@@ -10,17 +10,21 @@ namespace {
 
 // The first surface's light, its diffuse lobe (of reflectance 1) and its specular lobes sampled
 // apart.
-void shade_first(const Transport& transport, const WalkRules& rules, const Walk& walk,
-                 const Surface& surface, Bsdf& bsdf, vec3 tint, Sampler& sampler, Sample& sample) {
+void shade_first(const Transport& transport, const WalkRules& rules, FirstSurface& first,
+                 Sampler& sampler, Sample& sample) {
+  const Walk& walk = first.walk;
+  const Surface& surface = first.surface;
+  const vec3 tint = first.tint;
+  Bsdf& bsdf = first.bsdf;
   const uint32_t base = Dimensions::first_surface;
   std::optional<WavelengthSpread> spread;
   part_colors(transport, walk, surface, base, sampler, bsdf, spread);
-  KeptReflectance kept = kept_reflectance(bsdf);
-  bool diffuse = kept.diffuse, soft = kept.soft;
-  vec3 albedo = kept.albedo;
-  auto add_gloss = [&](vec3 light) {
-    if (soft) sample.smooth += light / albedo;
-    else sample.rest += tint * light;
+  KeptReflectance kept = kept_reflectance(first);
+  bool diffuse = kept.diffuse;
+  vec3 albedo = kept.albedo, diffuse_albedo = kept.diffuse ? bsdf.diffuse : vec3(0);
+  auto add_gloss = [&](vec3 light, float filtered) {
+    if (filtered > 0) sample.smooth += filtered * light / albedo;
+    if (filtered < 1) sample.rest += (1 - filtered) * tint * light;
   };
   bsdf.diffuse = diffuse ? vec3(1) : vec3(0);
   sample.albedo = albedo * tint;
@@ -29,9 +33,9 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
   sampler.seek(base);
   if (!is_smooth(bsdf)) {
     DirectLight direct = sample_direct_light(transport, walk, surface, bsdf, true, sampler);
-    sample.smooth += walk.throughput * direct.area_diffuse;
-    sample.rest += tint * walk.throughput * albedo * direct.punctual_diffuse;
-    add_gloss(walk.throughput * direct.specular);
+    sample.smooth += walk.throughput * kept.diffuse_share * direct.area_diffuse;
+    sample.rest += tint * walk.throughput * diffuse_albedo * direct.punctual_diffuse;
+    add_gloss(walk.throughput * direct.specular, kept.lit_gloss);
     if (!direct.sure_of_punctual()) sample.flags &= uint8_t(~sample_sure);
   }
   if (diffuse) {
@@ -42,7 +46,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
     if (advance(next, surface, scattered)) {
       next.from_normal = lit_side(surface, bsdf);
       sampler.seek(Dimensions::walk);
-      sample.smooth += follow(transport, rules, next, sampler);
+      sample.smooth += kept.diffuse_share * follow(transport, rules, next, sampler);
     }
   }
   // A faint gloss over a diffuse layer is followed now and then, a strong one each time.
@@ -59,7 +63,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, const Walk&
     if (advance(next, surface, scattered)) {
       if (scattered.bounce != Bounce::pass) next.from_normal = lit_side(surface, bsdf);
       sampler.seek(2 * Dimensions::walk);
-      sample.rest += tint * follow(transport, rules, next, sampler);
+      add_gloss(follow(transport, rules, next, sampler), kept.other_gloss);
     }
   }
 }
@@ -116,8 +120,7 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
       find_first_surface(transport, rules.max_depth, walk, hit, sampler, sample);
   sample.flags |= sample_sure;  // until chance comes in
   if (first.scatters)
-    shade_first(transport, rules, first.walk, first.surface, first.bsdf, first.tint, sampler,
-                sample);
+    shade_first(transport, rules, first, sampler, sample);
   if (request.image && (sample.flags & sample_specular))
     sample.image = find_image_distance(transport, begun, hit);
   if (first.mirrored) {

@@ -95,8 +95,11 @@ inline vec3 eval_absorption(const Transport& transport, int medium, float length
 }
 
 // Whether the shortest way through the shading will do.
+inline const MaterialTraits& traits_of(const Transport& transport, const Hit& hit) {
+  return transport.tables.materials[size_t(transport.world.mesh_of(hit.instance).material)];
+}
 inline bool met_matt(const Transport& transport, const Hit& hit) {
-  return transport.tables.materials[size_t(transport.world.mesh_of(hit.instance).material)].matt;
+  return traits_of(transport, hit).matt;
 }
 
 // The whole of each sample: what trace functions of techniques call. A sample is the same alone and
