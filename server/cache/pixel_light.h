@@ -163,7 +163,10 @@ inline f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, mos
 
 // Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
 // more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
-// `doubt`: samples that make the own rest count for half of what it would.
+// `doubt`: samples that make the own rest count for half of what it would. What few samples vary by
+// may be alike by chance, most of all where now and then one finds a light: what those around vary
+// by counts as so many of them.
+inline constexpr float prior_samples = 4;
 inline void blend_light(const Surroundings& s, Pixels& p, const f8& doubt = f8{}) {
   const i8& lonely = s.lonely;
   f8 alone = keep(lonely, splat(1));
@@ -178,10 +181,11 @@ inline void blend_light(const Surroundings& s, Pixels& p, const f8& doubt = f8{}
   // path.
   i8 known = p.samples > 1.0f;
   f8 own_rest = luminance(p.rest);
-  f8 quiet = keep(known & (p.deviation <= 0.1f * own_rest), splat(1));
+  f8 counts = known ? p.samples : f8{};
+  f8 noise = (p.deviation * p.deviation * counts + s.noise * prior_samples) / (counts + prior_samples);
+  f8 quiet = keep(known & (noise <= 0.01f * own_rest * own_rest), splat(1));
   f8 most_rest = luminance(s.rest) * (3.0f + p.samples) + 1e-4f + (quiet + alone) * own_rest;
-  f8 variance = known ? p.deviation * p.deviation : s.noise;
-  variance /= larger(p.samples, splat(1));
+  f8 variance = noise / larger(p.samples, splat(1));
   f8 detail = s.detail + 1e-9f, own_detail = detail / (detail + variance);
   own_detail *= p.samples / (p.samples + doubt + 1e-6f);
   own_detail = lonely ? splat(1) : own_detail;
