@@ -182,7 +182,8 @@ inline void blend_light(const Surroundings& s, Pixels& p, const f8& doubt = f8{}
   i8 known = p.samples > 1.0f;
   f8 own_rest = luminance(p.rest);
   f8 counts = known ? p.samples : f8{};
-  f8 noise = (p.deviation * p.deviation * counts + s.noise * prior_samples) / (counts + prior_samples);
+  f8 noise = (p.deviation * p.deviation * counts + s.noise * prior_samples) /
+             (counts + prior_samples);
   f8 quiet = keep(known & (noise <= 0.01f * own_rest * own_rest), splat(1));
   f8 most_rest = luminance(s.rest) * (3.0f + p.samples) + 1e-4f + (quiet + alone) * own_rest;
   f8 variance = noise / larger(p.samples, splat(1));

@@ -116,8 +116,6 @@ MaterialUse find_material_use(const Material& m, const Mesh& mesh, TextureRanges
   float smoothest = usable_roughness(m.roughness * rough_metal.low.y),
         roughest = usable_roughness(m.roughness * rough_metal.high.y);
   float least_metal = m.metallic * rough_metal.low.z;
-  if (least_metal >= all_metal && smoothest >= least_kept_roughness)
-    use.metal = smoothest >= least_filtered_roughness ? KeptMetal::light : KeptMetal::reflectance;
   bool transmits =
       m.transmission > 0 && least_metal < 1 && ranges.of(m.transmission_texture).high.x > 0;
   use.solid = transmits && m.thickness > 0;
@@ -130,6 +128,11 @@ MaterialUse find_material_use(const Material& m, const Mesh& mesh, TextureRanges
   bool sheen = max_component(m.sheen_color) > 0 &&
                max_component(m.sheen_color * vec3(ranges.of(m.sheen_color_texture).high)) > 0;
   use.coated = clearcoat || sheen;
+  if (least_metal >= all_metal && smoothest >= least_kept_roughness) {
+    bool filtered =
+        smoothest >= least_filtered_roughness && !use.coated && m.anisotropy == 0 && !transmits;
+    use.metal = filtered ? KeptMetal::light : KeptMetal::reflectance;
+  }
 
   bool reflects = m.metallic > 0 || m.ior != 1;
   if (smoothest < caustic_roughness) use.sharp = reflects || transmits;

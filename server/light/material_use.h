@@ -19,7 +19,7 @@ inline constexpr float caustic_roughness = 0.3f;
 enum class KeptMetal : uint8_t {
   none,
   reflectance,  // it is metal all over, and nowhere a mirror
-  light,        // and rough enough all over that its light is filtered as diffuse light is
+  light,  // and rough enough all over, without a coat, that its light is filtered as diffuse is
 };
 inline constexpr float all_metal = 0.8f;  // metallic
 inline constexpr float least_kept_roughness = 0.2f, least_filtered_roughness = 0.25f;

@@ -168,6 +168,29 @@ TEST(TransportPlan, TexturesAreLookedAt) {
   EXPECT_TRUE(make_transport_plan(dark).materials.back().emits);
 }
 
+// The least metallic and the smoothest texel decide for all of a material.
+TEST(TransportPlan, MetalsAreKeptByWhatTheyAreAllOver) {
+  auto kept = [](const Material& material, std::vector<vec4> texels) {
+    Scene scene = scene_with(material);
+    scene.materials.back().metallic_roughness_texture.texture =
+        add_picture(scene, std::move(texels));
+    return make_transport_plan(scene).materials.back().metal;
+  };
+  auto texel = [](float roughness, float metallic) { return vec4(0, roughness, metallic, 1); };
+  Material gold = metal(vec3(1, 0.8f, 0.3f), 1);
+  EXPECT_EQ(kept(gold, {texel(0.3f, 1), texel(0.9f, 1)}), KeptMetal::light);
+  EXPECT_EQ(kept(gold, {texel(0.3f, 0.9f), texel(0.9f, 1)}), KeptMetal::light);
+  EXPECT_EQ(kept(gold, {texel(0.22f, 1), texel(0.9f, 1)}), KeptMetal::reflectance);
+  EXPECT_EQ(kept(gold, {texel(0.1f, 1), texel(0.9f, 1)}), KeptMetal::none);
+  EXPECT_EQ(kept(gold, {texel(0.9f, 1), texel(0.9f, 0)}), KeptMetal::none);
+  EXPECT_EQ(kept(diffuse(vec3(0.5f)), {texel(0.9f, 1)}), KeptMetal::none);
+  // A coat is as sharp as it is, whatever lies beneath.
+  Material coated = with(gold, [](Material& m) { m.clearcoat = 1; });
+  EXPECT_EQ(kept(coated, {texel(0.9f, 1)}), KeptMetal::reflectance);
+  Material brushed = with(gold, [](Material& m) { m.anisotropy = 0.5f; });
+  EXPECT_EQ(kept(brushed, {texel(0.9f, 1)}), KeptMetal::reflectance);
+}
+
 TEST(TransportPlan, EightBitPicturesInBothEncodings) {
   for (bool srgb : {false, true}) {
     Image image;
