@@ -41,7 +41,8 @@ struct UsageError : std::runtime_error {
 struct Options {
   std::string scene, technique = "path", camera, eye, target, up = "0,1,0", size = "1280x720", out,
                      environment, sky, replay;
-  double fov = 0, time = 0, exposure = 1;
+  double fov = 0, time = 0;
+  std::optional<double> exposure;  // else the exhibit's
   int spp = 16, max_depth = 8, threads = 0;
   uint64_t seed = 1;
   std::vector<std::string> lamps;  // NAME=on, NAME=off
@@ -101,7 +102,7 @@ void check_options(const Options& o) {
     throw UsageError("--max-depth " + std::to_string(o.max_depth) + ": at least 1");
   if (o.threads < 0)
     throw UsageError("--threads " + std::to_string(o.threads) + ": 0 (all cores) or more");
-  if (!std::isfinite(o.exposure) || o.exposure < 0)
+  if (o.exposure && (!std::isfinite(*o.exposure) || *o.exposure < 0))
     throw UsageError("--exposure: a number, 0 or more, expected");
   if (!std::isfinite(o.time) || o.time < 0)
     throw UsageError("--time: seconds, 0 or more, expected");
@@ -139,6 +140,7 @@ void check_resources(const Options& o, ivec2 size) {
 struct LoadedScene {
   Scene scene;
   std::vector<char> lamps;  // of each of the scene's: is it on?
+  float exposure = 1;
 };
 
 // SCENE by its kind, the first that knows it. More kinds of scene: one more line.
@@ -153,7 +155,8 @@ const SceneKind scene_kinds[] = {
      [](const std::string& path, double time) {
        Exhibit exhibit = load_exhibit(path);
        std::vector<char> lamps = first_lamps(exhibit);
-       return LoadedScene{make_exhibit_scene(std::move(exhibit), time), lamps};
+       float exposure = float(exhibit.exposure);
+       return LoadedScene{make_exhibit_scene(std::move(exhibit), time), lamps, exposure};
      }},
     {"glTF file", [](const std::string& path) { return !std::filesystem::is_directory(path); },
      [](const std::string& path, double time) {
@@ -328,7 +331,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--seed", o.seed, "of all random numbers")->capture_default_str();
   app.add_option("--time", o.time, "seconds into the file's animation")->capture_default_str();
   app.add_option("--out", o.out, "picture: .png .jpg tone-mapped, .pfm .exr linear radiance");
-  app.add_option("--exposure", o.exposure, "factor before tone mapping")->capture_default_str();
+  app.add_option("--exposure", o.exposure,
+                 "factor before tone mapping; without it the exhibit's, or 1");
   app.add_option("--max-depth", o.max_depth, "path edges counted from the eye")
       ->capture_default_str();
   app.add_option("--environment", o.environment, "none, or radiance r,g,b, or a picture FILE.hdr");
@@ -347,7 +351,7 @@ void render(const Options& o) {
   ivec2 size = parse_size(o.size);
   check_options(o);
   check_resources(o, size);
-  auto [scene, lamps] = load_any_scene(o.scene, o.time);
+  auto [scene, lamps, exposure] = load_any_scene(o.scene, o.time);
   for (const std::string& warning : scene.warnings) std::cerr << o.scene << ": " << warning << "\n";
   apply_lamps(o.lamps, scene, lamps);
   if (!o.sky.empty()) apply_sky(o.sky, scene);
@@ -367,7 +371,7 @@ void render(const Options& o) {
   double start = seconds_now();
   Frame frame = render_still(*find_technique(o.technique), world, lights, view, settings);
   double seconds = seconds_now() - start;
-  save_picture(o.out, frame, {float(o.exposure)});
+  save_picture(o.out, frame, {float(o.exposure.value_or(exposure))});
   double samples = double(size.x) * double(size.y) * double(o.spp);
   std::fprintf(
       stderr, "%s: %dx%d, %d samples a pixel by %s, %.2f s, %.2f million samples a second\n",

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "frame/jpeg.h"
 #include "frame/picture_file.h"
 #include "statistics.h"
 
@@ -163,6 +164,31 @@ TEST_F(RenderProgram, LampsAreAsTheExhibitBeginsUnlessToldOtherwise) {
   EXPECT_NE(run(view + " --lamp sun=on --out " + out("x.png")).text.find("warm, cold"),
             std::string::npos);
   EXPECT_EQ(run(scene() + " --lamp warm=on --out " + out("x.png")).status, 2);
+}
+
+// What visitors of an exhibit see, and what is asked for.
+TEST_F(RenderProgram, ExposureIsTheExhibitsUnlessToldOtherwise) {
+  auto brightness = [&](const std::string& what, const std::string& arguments) {
+    Answer answer = run(what + " --eye 0.25,0.25,1 --target 0.25,0.25,0 --fov 10 --size 5x5 " +
+                        "--environment 0.2,0.2,0.2 " + arguments + " --out " + out("x.jpg"));
+    EXPECT_EQ(answer.status, 0) << answer.text;
+    std::ifstream file(out("x.jpg"), std::ios::binary);
+    std::vector<uint8_t> bytes((std::istreambuf_iterator<char>(file)), {});
+    return int(decode_jpeg(bytes, "x.jpg").rgb[3 * 12]);
+  };
+  auto write = [&](const char* exposure) {
+    std::ofstream(folder / "exhibit.json")
+        << R"({"title":{"en":"Lit"},"scene":"scene.gltf",)" << exposure <<
+        R"("viewpoints":[{"name":"front","title":{"en":"Front"},"position":[0,0,2]}]})";
+  };
+  int plain = brightness(scene(), "");
+  EXPECT_GT(plain, 20);
+  write("");
+  EXPECT_EQ(brightness(folder.string(), ""), plain);
+  write(R"("exposure":2,)");
+  EXPECT_EQ(brightness(folder.string(), ""), brightness(scene(), "--exposure 2"));
+  EXPECT_GT(brightness(folder.string(), ""), plain + 20);
+  EXPECT_EQ(brightness(folder.string(), "--exposure 1"), plain);
 }
 
 TEST_F(RenderProgram, WrongCommandLinesAreStatus2) {
