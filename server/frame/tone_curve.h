@@ -106,14 +106,6 @@ inline LaneMask eval_tone_curve(Lanes3 c) {
   return code(c.x) | code(c.y) << 8 | code(c.z) << 16;
 }
 
-// The same of one pixel, whose channels are usable: neither negative nor more than brightest_shown.
-inline void eval_tone_curve(vec3 c, uint8_t* codes) {
-  float peak = std::max(c.x, std::max(c.y, c.z)), scale = 1, offset = 0;
-  if (peak > shoulder_start) eval_shoulder(peak, scale, offset);
-  Lanes code = encode_srgb(Lanes{c.x, c.y, c.z} * scale + offset) * 255 + 0.5f;
-  for (int k = 0; k < 3; k++) codes[k] = uint8_t(code[k]);
-}
-
 // Eight pixels as 24 bytes.
 inline void store_pixels(uint8_t* to, LaneMask codes) {
   using Bytes = uint8_t __attribute__((vector_size(4 * lane_count)));

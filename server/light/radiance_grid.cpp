@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "light/light_walk.h"
 #include "light/place_key.h"
-#include "light/split_reflectance.h"
 #include "light/walk.h"
 #include "light/warp.h"
 
@@ -29,6 +29,16 @@ struct Entries {
 bool keeps_light(const Material& m) {
   return m.alpha_mode == AlphaMode::opaque && !m.unlit && m.transmission == 0 &&
          m.emission == vec3(0) && m.roughness >= clear_roughness;
+}
+
+// What multiplies light that neighbours share: the diffuse colour, or without a diffuse layer that
+// of a rough metal.
+vec3 shared_reflectance(const Bsdf& bsdf) {
+  if (max_component(bsdf.diffuse) > 1e-4f) return bsdf.diffuse;
+  vec3 metal = bsdf.metallic * bsdf.metal;
+  bool soft = !has_sharp(bsdf, mirror_alpha) && !(max_component(bsdf.transmit) > 0) &&
+              std::min({metal.x, metal.y, metal.z}) > 0.02f;
+  return soft ? metal : vec3(0);
 }
 
 // A walk's surfaces, first to last, until their light is known. Of each part of the light:
@@ -100,7 +110,7 @@ void Walker::walk(vec3 origin, Sampler& sampler, std::vector<VertexLight>& scrat
       vertex = Vertex{};
       if (walk.depth <= settings.kept_depth)
         vertex.key = place_key(surface.position, surface.geometric_normal, grid.cell);
-      vertex.albedo = split_reflectance(bsdf).albedo;
+      vertex.albedo = shared_reflectance(bsdf);
       walk.throughput = vec3(1);
       for (size_t p = 0; p < n; p++)
         light_of(count - 1)[p] = {
