@@ -19,21 +19,27 @@ namespace wellspring::test {
 
 class RawClient {
  public:
-  explicit RawClient(uint16_t port, int receive_buffer = 0) {
-    fd_ = socket(AF_INET, SOCK_STREAM, 0);
+  explicit RawClient(uint16_t port, int receive_buffer = 0) : RawClient() {
     if (receive_buffer > 0)
       setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof(receive_buffer));
+    connect(port);
+  }
+  // Has its descriptor, but is connected nowhere yet.
+  RawClient() : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
     const int on = 1;
     setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+  }
+  ~RawClient() { close(); }
+  RawClient(const RawClient&) = delete;
+
+  bool connect(uint16_t port) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     connected_ = ::connect(fd_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0;
+    return connected_;
   }
-  ~RawClient() { close(); }
-  RawClient(const RawClient&) = delete;
-
   bool connected() const { return connected_; }
   void close() {
     if (fd_ >= 0) ::close(fd_);
