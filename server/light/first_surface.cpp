@@ -25,6 +25,13 @@ void add_reflection(FirstSurface& first, float& reflections, const Surface& surf
   advance(first.reflection, surface, unit);
 }
 
+// What a surface emits is light of the sample like any other, and told by itself.
+void add_emission(vec3 tint, vec3 emission, Sample& sample) {
+  vec3 light = tint * emission;
+  sample.rest += light;
+  sample.glow += light;
+}
+
 vec3 keep(vec3 diffuse, vec3 metal, float metallic, KeptMetal kept) {
   vec3 albedo = max_component(diffuse) > least_albedo ? diffuse : vec3(0);
   return kept == KeptMetal::none ? albedo
@@ -110,8 +117,7 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
     bool clear =
         is_pane(surface, material) && !has_diffuse(bsdf) && bsdf.metallic == 0 && !material.unlit;
     if (clear && walk.panes < most_panes) {
-      sample.rest += first.tint * surface.emission;
-      sample.glow += first.tint * surface.emission;
+      add_emission(first.tint, surface.emission, sample);
       if (max_depth > 1)
         add_reflection(first, reflections, surface, eval_mirror(bsdf), sampler);
       BsdfSample straight;
@@ -123,9 +129,7 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
       continue;
     }
     describe_place(world, hit, surface, surface.normal, distance, sample);
-    vec3 emission = first.tint * surface_emission(surface, material);
-    sample.rest += emission;
-    sample.glow += emission;
+    add_emission(first.tint, surface_emission(surface, material), sample);
     first.scatters = !material.unlit && max_depth > 1;
     first.metal = traits_of(transport, hit).metal;
     break;

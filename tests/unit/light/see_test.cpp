@@ -87,6 +87,38 @@ TEST_P(See, AgreesWithTheSamplesOfTechniques) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, See, testing::Values(false, true));
 
+// A shining pane before a shining board: what each emits is light of the sample, and told by itself
+// where other light falls there, too.
+TEST(SeeRays, WhatPanesAndSurfacesEmitIsLightAndToldByItself) {
+  Scene scene = empty_scene();
+  Material pane = glass(1.5f, 0, 0), board = diffuse(vec3(0.5f));
+  pane.base_color = {0.5f, 0.9f, 0.7f, 1};
+  pane.emission = {0.3f, 0.2f, 0.1f};
+  pane.double_sided = true;
+  board.emission = {1, 2, 4};
+  add_quad(scene, add_material(scene, pane), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, "pane");
+  add_quad(scene, add_material(scene, board), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0}, "board");
+  World world(scene);
+  Lights lights = make_lights(world);
+  Request request;
+  request.ray.direction = {0, 0, -1};
+  TransportSettings emission;
+  emission.max_depth = 1;
+  const Technique& path = *find_technique("path");
+  Sample dark = path.trace(world, lights, emission, request),
+         lit = path.trace(world, lights, {}, request);
+  EXPECT_EQ(lit.object, dark.object);
+  EXPECT_GT(lit.albedo.y, 0.1f);
+  // Schlick's 4 % at both sides, and the colour.
+  float through = 0.96f * 0.96f;
+  for (int c = 0; c < 3; c++) {
+    float wanted = pane.emission[c] + pane.base_color[c] * through * board.emission[c];
+    EXPECT_NEAR(dark.rest[c], wanted, 0.05f * wanted) << c;
+    EXPECT_EQ(lit.glow[c], dark.rest[c]) << c;
+    EXPECT_GE(lit.rest[c], lit.glow[c]) << c;
+  }
+}
+
 TEST(SeeRays, NoneAndBrokenOnesDoNoHarm) {
   Scene scene = make_assembly(false);
   World world(scene);
