@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/lamps.h"
 
-#include "light/lamps.h"
+#include <algorithm>
+
 #include "show/exhibit_lamps.h"
 #include "show/show.h"
 
@@ -9,6 +10,15 @@ namespace wellspring {
 namespace {
 
 constexpr double least_between = 0.2;  // seconds from one change of the light to the next
+
+const LightChange& change_since(Show& show, const std::vector<char>& before) {
+  Switches& switches = show.switches;
+  for (const LightStep& step : switches.steps)
+    if (step.before == before) return step.change;
+  switches.steps.push_back(
+      {before, LightChange(show.exhibit.scene, switches.all, before, switches.lit)});
+  return switches.steps.back().change;
+}
 
 }  // namespace
 
@@ -42,6 +52,7 @@ void light_lamps(Show& show) {
   show.lights = relit(switches.all, *show.world);
   switches.lit = switches.wanted;
   switches.lit_at = show.time;
+  switches.steps.clear();
   for (Visitor& visitor : show.visitors) {
     visitor.around = {};               // it shows another light
     visitor.stats.converged = 0;       // who rests looks again,
@@ -49,17 +60,25 @@ void light_lamps(Show& show) {
   }
 }
 
-void follow_lamps(const Show& show, Visitor& visitor) {
+void follow_lamps(Show& show, Visitor& visitor) {
   const std::vector<char>& lit = show.switches.lit;
   if (visitor.lamps == lit) return;
   if (visitor.lamps.size() == lit.size()) {
-    LightChange change(show.exhibit.scene, show.switches.all, visitor.lamps, lit);
+    const LightChange& change = change_since(show, visitor.lamps);
     visitor.cache.relight([&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
       return change.changes(place, normal, kept, added);
     });
   }
   visitor.broker.forget();
   visitor.lamps = lit;
+}
+
+void forget_light_steps(Show& show) {
+  Switches& switches = show.switches;
+  std::erase_if(switches.steps, [&](const LightStep& step) {
+    return std::none_of(show.visitors.begin(), show.visitors.end(),
+                        [&](const Visitor& visitor) { return visitor.lamps == step.before; });
+  });
 }
 
 }  // namespace wellspring

@@ -11,17 +11,25 @@
 #include <string_view>
 #include <vector>
 
-#include "light/lights.h"
+#include "light/lamps.h"
 
 namespace wellspring {
 
 struct Show;
 struct Visitor;
 
+// What became of the light between the lamps as they were and as the world is.
+struct LightStep {
+  std::vector<char> before;
+  LightChange change;
+};
+
 struct Switches {
   std::vector<char> wanted, lit;  // of each lamp: as it was asked for, as the world is
   double lit_at = -1e9;           // show time
   Lights all;                     // made while all were on; empty where there are none
+  // To `lit`, while visitors have yet to follow: of each state that any cache knew, one for all.
+  std::vector<LightStep> steps;
 };
 
 // Puts the lamps as they are at first. show.lights were made, and are prepared, while all were on.
@@ -32,7 +40,10 @@ bool switch_lamp(Show& show, std::string_view name, bool on);
 bool lamps_wait(const Show& show);
 // The world and its lights as they are wanted; milliseconds. Only while the easel is idle.
 void light_lamps(Show& show);
-// Before anything is drawn for a visitor: its cache forgets what another light was.
-void follow_lamps(const Show& show, Visitor& visitor);
+// Before anything is drawn for a visitor, by whoever draws: its cache forgets what another light
+// was.
+void follow_lamps(Show& show, Visitor& visitor);
+// What only visitors need who have yet to follow is kept no longer. Only while the easel is idle.
+void forget_light_steps(Show& show);
 
 }  // namespace wellspring

@@ -165,7 +165,7 @@ TransportSettings transport_of(const Show& show, const PictureOrder& order) {
 
 // The light that is missing for the picture, and for the next: fills work.requests. Says by
 // costs.late whether answers may come after it.
-void plan_samples(const Show& show, const PictureOrder& order, const Technique& technique,
+void plan_samples(Show& show, const PictureOrder& order, const Technique& technique,
                   const View& lit, DrawingWork& work, Visitor& visitor) {
   RenderCache& cache = visitor.cache;
   follow_lamps(show, visitor);

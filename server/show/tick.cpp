@@ -356,6 +356,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   welcome_links(show, arrivals);
   hear_visitors(show);
   hear_eyes(show);
+  if (free) forget_light_steps(show);
   if (free && !show.easel.drawn && lamps_wait(show)) light_lamps(show);
   narrate(show, dt);
   int waiting = free ? waiting_for_drawings(show) : 0;

@@ -112,6 +112,38 @@ TEST_F(Lamps, OneSwitchesAndAllAreToldAndSeeIt) {
   }
 }
 
+// What becomes of the light is found out once for all caches that knew the same lamps, and kept
+// until the last of them has followed.
+TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
+  Exhibit exhibit = make_lit_exhibit();
+  add_lamp({"corner", {"weak"}, {}}, exhibit.scene);
+  exhibit.lamps.push_back({"corner", {{"en", "Corner"}}, true});
+  begin(std::move(exhibit), 4);
+  run(1);
+  lamp(0, "ceiling", false);
+  std::vector<LightStep>& steps = show->switches.steps;
+  ASSERT_TRUE(steps.empty());
+  for (int i = 0; i < 50 && steps.empty(); i++) step();  // all are drawn in the same tick
+  ASSERT_EQ(steps.size(), 1u);
+  const std::vector<char> lit{0, 1};
+  for (const Visitor& visitor : show->visitors) EXPECT_EQ(visitor.lamps, lit);
+  step();
+  EXPECT_TRUE(steps.empty());
+
+  // Who has missed a switch before has another way to go.
+  const std::vector<char> known[] = {{1, 1}, {1, 0}, {1, 1}, {1, 0}};
+  size_t i = 0;
+  for (Visitor& visitor : show->visitors) visitor.lamps = known[i++];
+  for (Visitor& visitor : show->visitors) follow_lamps(*show, visitor);
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_EQ(steps[0].before, known[0]);
+  EXPECT_EQ(steps[1].before, known[1]);
+  show->visitors.front().lamps = known[1];  // as if it had yet to follow
+  forget_light_steps(*show);
+  ASSERT_EQ(steps.size(), 1u);
+  EXPECT_EQ(steps[0].before, known[1]);
+}
+
 TEST_F(Lamps, UnknownOnesAreRefusedAndNothingChanges) {
   begin(make_lit_exhibit(), 1, "path");
   run(0.1);
