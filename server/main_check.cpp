@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "show/exhibit_sound.h"
 #include "show/tour.h"
+#include "show/walk.h"
 
 int main(int argc, char** argv) {
   wellspring::log::start("check");
@@ -28,8 +29,9 @@ int main(int argc, char** argv) {
     wellspring::read_recordings(exhibit, recordings, problems);
     bool usable =
         std::none_of(problems.begin(), problems.end(), [](const auto& p) { return p.fatal; });
-    if (usable && !exhibit.tours.empty()) {
+    if (usable && (exhibit.walk || !exhibit.tours.empty())) {
       wellspring::World world(exhibit.scene);
+      wellspring::check_ground(exhibit, world, problems);
       wellspring::make_tour_roads(exhibit, world, problems);
     }
   } catch (const std::exception& error) {

@@ -37,6 +37,7 @@ size_t line_count(const LocalScript& script);  // of the longest language
 struct ExhibitViewpoint {
   Viewpoint view;
   LocalText title;
+  std::string where;  // in exhibit.json; empty: a camera of the scene
 };
 
 struct TourStop {

@@ -60,6 +60,7 @@ void read_walk(Exhibit& exhibit, Fields fields) {
 void read_viewpoints(Exhibit& exhibit, Fields& root) {
   root.objects("viewpoints", false, [&](Fields fields) {
     ExhibitViewpoint viewpoint;
+    viewpoint.where = fields.where();
     viewpoint.view.name = fields.text("name", true);
     if (find_viewpoint(exhibit, viewpoint.view.name) >= 0)
       fields.problem("name", "'" + viewpoint.view.name + "' is taken by another viewpoint");
@@ -320,7 +321,7 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
   read_lamps(exhibit, root);
   read_viewpoints(exhibit, root);
   for (const Viewpoint& view : exhibit.scene.viewpoints)
-    if (find_viewpoint(exhibit, view.name) < 0) exhibit.viewpoints.push_back({view, {}});
+    if (find_viewpoint(exhibit, view.name) < 0) exhibit.viewpoints.push_back({view, {}, {}});
   if (exhibit.viewpoints.empty())
     root.problem("viewpoints", "there is no viewpoint here and no camera in the scene");
   exhibit.start = read_viewpoint_name(exhibit, root, "start", false);

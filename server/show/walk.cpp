@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace wellspring {
 
@@ -57,6 +58,22 @@ dvec3 keep_distance(dvec3 from, dvec3 to, dvec3 centre, double distance) {
   if (is < 1e-9) after = was > 1e-9 ? before : glm::dvec2(1, 0), is = glm::length(after);
   after *= least / is;
   return {centre.x + after.x, to.y, centre.z + after.y};
+}
+
+void check_ground(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems) {
+  if (!exhibit.walk) return;
+  const float eye_height = exhibit.walk->eye_height;
+  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints) {
+    vec3 eye = vec3(viewpoint.view.position - exhibit.scene.origin);
+    if (!std::isnan(ground_under(world, eye, eye_height))) continue;
+    bool camera = viewpoint.where.empty();
+    problems.push_back(
+        {exhibit.folder + "/exhibit.json", camera ? "/scene" : viewpoint.where + "/position",
+         fmt::format("no ground within {:g} m under {} '{}': nobody can walk from there",
+                     eye_height + fall_distance, camera ? "camera" : "viewpoint",
+                     viewpoint.view.name),
+         false});
+  }
 }
 
 dvec3 walk(const World& world, const std::optional<WalkSettings>& rules, dvec3 position,

@@ -98,6 +98,7 @@ test('wrong input is 1 and named', async () => {
 test('check accepts the castle and lists every problem of a bad package', async () => {
   const good = await run('wellspring_check', [castle]);
   assert.equal(good.status, 0, good.stdout);
+  assert.ok(!good.stdout.includes('no ground'), good.stdout);
   const bad = join(folder, 'broken');
   mkdirSync(bad);
   writeFileSync(join(bad, 'exhibit.json'), JSON.stringify({
@@ -111,6 +112,26 @@ test('check accepts the castle and lists every problem of a bad package', async 
       '/viewpoints/0/fov_deg', '/start', '/tours/0/stops/0/viewpoint'])
     assert.ok(stdout.includes(place), `${place} is not named in\n${stdout}`);
   assert.equal((await run('wellspring_check', [join(folder, 'nothing')])).status, 1);
+});
+
+test('check notes where nobody can walk', async () => {
+  const folly = join(folder, 'folly');
+  mkdirSync(folly);
+  // The triangle lies on the ground.
+  const rotation = [-Math.SQRT1_2, 0, 0, Math.SQRT1_2];
+  const lying = { ...triangle, nodes: [{ mesh: 0, rotation }] };
+  writeFileSync(join(folly, 'scene.gltf'), JSON.stringify(lying));
+  const at = (name, position) => ({ name, position });
+  const exhibit = { title: { en: 'Folly' }, scene: 'scene.gltf', walk: {},
+    viewpoints: [at('on', [0, 1.65, 0.5]), at('beside', [3, 1.65, 0])] };
+  writeFileSync(join(folly, 'exhibit.json'), JSON.stringify(exhibit));
+  const { status, stdout } = await run('wellspring_check', [folly]);
+  assert.equal(status, 0, stdout);
+  assert.match(stdout, /^note: .*exhibit\.json: \/viewpoints\/1\/position: no ground .*'beside'/m);
+  assert.ok(!stdout.includes('/viewpoints/0'), stdout);
+  writeFileSync(join(folly, 'exhibit.json'), JSON.stringify({ ...exhibit, walk: undefined }));
+  const flying = await run('wellspring_check', [folly]);
+  assert.ok(!flying.stdout.includes('/viewpoints'), flying.stdout);
 });
 
 test('avatar tells the storyteller\'s joints', async () => {

@@ -55,6 +55,41 @@ TEST(KeepDistance, OneSlidesRoundAndGoesAway) {
   EXPECT_EQ(keep_distance({0, 1.6, 5}, {0, 1.6, 4}, dvec3(0)), dvec3(0, 1.6, 4));
 }
 
+TEST_P(Walk, ViewpointsWithoutGroundAreNamed) {
+  exhibit.folder = "content/tiny";
+  const dvec3 more[] = {{0, 5.5, 3}, {0, 5.7, 3}, {6, 1.6, 0}, {0, -1, 0}, {3, 1.8, 3}};
+  for (dvec3 position : more) {
+    exhibit.viewpoints.push_back(exhibit.viewpoints[0]);
+    exhibit.viewpoints.back().view.position = origin + position;
+    exhibit.viewpoints.back().where = "/viewpoints/" + std::to_string(exhibit.viewpoints.size());
+  }
+  exhibit.viewpoints[4].view.name = "outside";
+  exhibit.viewpoints[5].where.clear();
+  // Of these the second is too high above the ceiling, one can climb down from the first.
+  for (size_t i = 2; i < 4; i++) exhibit.viewpoints[i].view.position.y += 4;
+  std::vector<Problem> problems;
+  check_ground(exhibit, world, problems);
+  ASSERT_EQ(problems.size(), 3u);
+  const char* places[] = {"/viewpoints/4/position", "/viewpoints/5/position", "/scene"};
+  for (size_t i = 0; i < 3; i++) {
+    EXPECT_EQ(problems[i].file, "content/tiny/exhibit.json");
+    EXPECT_EQ(problems[i].where, places[i]);
+    EXPECT_FALSE(problems[i].fatal) << "whoever only looks from there may";
+  }
+  EXPECT_NE(problems[1].what.find("5.6 m under viewpoint 'outside'"), std::string::npos)
+      << problems[1].what;
+  // Walking says the same.
+  for (int i = 0; i < int(exhibit.viewpoints.size()); i++) {
+    dvec3 from = exhibit.viewpoints[size_t(i)].view.position,
+          to = walk(world, exhibit.walk, from, {0.5f, 0, 0}, 0.1f);
+    EXPECT_EQ(to.x == from.x, i >= 3 && i <= 5) << i;
+  }
+  exhibit.walk.reset();  // who flies needs none
+  problems.clear();
+  check_ground(exhibit, world, problems);
+  EXPECT_TRUE(problems.empty());
+}
+
 TEST_P(Walk, StraightOverFreeFloor) {
   dvec3 end = go({-2, 1.6, 3}, {0, 0, -1}, 1.5f);
   EXPECT_NEAR(end.z, 1.5, 0.05);
