@@ -18,6 +18,7 @@
 #include "cache/packing.h"
 #include "cache/plan.h"
 #include "cache/point_cache.h"
+#include "cache/point_glow.h"
 #include "cache/point_image.h"
 #include "cache/predict.h"
 #include "cache/project.h"
@@ -76,6 +77,7 @@ struct RenderCache::Impl {
   bool projected = false;
   bool reference = false;  // set_reference()
   bool drawn = false;      // set_drawn()
+  bool glow_unknown = false;  // points are to tell what they emit, and what they say is old
   bool relit = false;  // points may wait for a sample of their new light
   bool image_stale = true;  // points have changed since, and the image was not told
   int still_frames = 0;  // projections of the same view before the last
@@ -137,7 +139,13 @@ RenderCache::RenderCache(const CacheSettings& settings, std::shared_ptr<CacheWor
 }
 RenderCache::~RenderCache() = default;
 void RenderCache::set_reference(bool on) { impl_->reference = on; }
-void RenderCache::set_drawn(bool on) { impl_->drawn = on; }
+void RenderCache::set_drawn(bool on) {
+  Impl& c = *impl_;
+  if (on == c.drawn) return;
+  c.drawn = on;
+  c.glow_unknown = !on;
+  if (on) forget_glow(c.points);
+}
 void RenderCache::set_attention(bool on) { impl_->settings.attention = on; }
 RenderCache::RenderCache(RenderCache&&) noexcept = default;
 RenderCache& RenderCache::operator=(RenderCache&&) noexcept = default;
@@ -189,7 +197,7 @@ void RenderCache::Impl::notice_paint(const World& world) {
     repainted[i] = now != paints_of[i];
     paints_of[i] = now;
   }
-  relit |= forget_paint(points, world, repainted);
+  relit |= forget_paint(points, world, repainted, !drawn);
 }
 
 void RenderCache::move_points(const World& world) {
@@ -197,6 +205,7 @@ void RenderCache::move_points(const World& world) {
   c.image_stale |= !c.points.anchors.empty();
   move_anchored_points(c.points, world);
   c.notice_paint(world);
+  if (std::exchange(c.glow_unknown, false)) learn_glow(c.points, world);
   age_points(c.points, c.new_points);
 }
 
@@ -316,7 +325,7 @@ void RenderCache::survey(const View& view, int most, Frame& frame, std::vector<R
       height = std::clamp(view.height, 1, largest_side);
   fit_frame(width, height, frame);
   if (!c.projected || view != c.view) project(view);
-  c.corrects = false;
+  c.end_correction();
   c.read_light(view, frame);
   if (most >= looks_a_pixel) {
     c.borrow_priority();
@@ -435,6 +444,7 @@ void RenderCache::relight(const Changes& changes) {
       c.points, c.image, [&](uint32_t i) { return forgotten(i, kept, added); }, c.still);
   forget_light(c.points, forgotten);
   c.relit = true;
+  c.glow_unknown = !c.drawn;  // the lamp's own, too
 }
 
 void RenderCache::clear() {

@@ -120,7 +120,8 @@ class RenderCache {
   void set_reference(bool on);
   void set_attention(bool on);  // CacheSettings::attention
   // From now on pictures are drawn (draw(), draw_still()): points remember no light that surfaces
-  // emit themselves, as these pictures know it exactly, from texel to texel (Sample::glow).
+  // emit themselves, as these pictures know it exactly, from texel to texel (Sample::glow). Or are
+  // no longer: the next move_points() finds out what all points emit that are known.
   void set_drawn(bool on);
   // A lamp was switched, dimmed or moved, and is much of the light where `changes` says so of a
   // surface, on many threads: what was remembered of the light there counts no more, and is asked

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "cache/lanes.h"
 #include "cache/packing.h"
+#include "cache/point_glow.h"
 #include "light/first_surface.h"
 #include "light/material_use.h"
 #include "world/surface.h"
@@ -52,6 +53,7 @@ void resize_points(PointCache& points, int capacity) {
   fit(points.age, evicted_age);
   fit(points.count, uint8_t(0));
   fit(points.color, PointColor{});
+  if (!points.glow.empty()) fit(points.glow, uint32_t(0));
   fit(points.seen, uint64_t(0));
   points.seen.resize((size + 63) / 64);
   points.seen.shrink_to_fit();
@@ -135,7 +137,10 @@ void forget_light(PointCache& points, const Forgotten& forgotten) {
   });
 }
 
-bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted) {
+bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted,
+                  bool glow) {
+  for (uint32_t i = 0; i < repainted.size() && glow && points.glow.empty(); i++)
+    if (repainted[i] && may_glow(world, i)) begin_glow(points);
   std::atomic<bool> found = false;
   parallel_ranges(int(points.anchors.size()), 512, [&](int begin, int end) {
     for (int k = begin; k < end; k++) {
@@ -155,6 +160,8 @@ bool forget_paint(PointCache& points, const World& world, const std::vector<char
       bool metal = surface.metallic >= all_metal && surface.roughness >= least_kept_roughness;
       points.color[i].albedo = pack_albedo(
           kept_albedo(surface, metal ? KeptMetal::reflectance : KeptMetal::none));
+      if (!points.glow.empty())
+        points.glow[i] = pack_glow(world, surface, points.color[i].albedo);
     }
   });
   return found;
@@ -212,7 +219,7 @@ void move_anchored_points(PointCache& points, const World& world) {
 
 size_t points_bytes(const PointCache& points) {
   return bytes_of(points.x, points.y, points.z, points.normal, points.flags, points.age,
-                  points.count, points.color, points.anchors, points.seen);
+                  points.count, points.color, points.glow, points.anchors, points.seen);
 }
 
 }  // namespace wellspring

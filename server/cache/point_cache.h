@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The points of a render cache (Walter 1999, section 3 and figure 4): what was seen, where, how
 // long ago. Fixed capacity. What is walked every frame lies in arrays of its own; what is looked up
-// only for points that show (PointColor) lies together, one cache line fetch a point. 36 bytes a
-// point.
+// only for points that show (PointColor) lies together, one cache line fetch a point. 37 bytes a
+// point, and 4 more where no shapes are drawn and something shines.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -28,7 +28,7 @@ enum PointFlags : uint8_t {
 struct PointColor {
   uint32_t albedo = 0;  // pack_albedo
   uint32_t smooth = 0;  // pack_rgb9e5, mean over `count` samples
-  uint32_t rest = 0;    // pack_rgb9e5, mean likewise
+  uint32_t rest = 0;    // pack_rgb9e5, mean likewise; without Sample::glow
   uint32_t object = 0;
   uint16_t normal = 0;  // as PointCache::normal
   // Low 2 bits: samples in a row that differ from what was known well; else pack_relative: the
@@ -62,6 +62,7 @@ struct PointCache {
   std::vector<uint8_t> age;    // 0 new; see age_points()
   std::vector<uint8_t> count;  // samples in the means, at most 255
   BigVector<PointColor> color;
+  BigVector<uint32_t> glow;  // pack_rgb9e5, of the last sample; or empty: see cache/point_glow.h
   std::vector<Anchor> anchors;
   std::vector<uint64_t> seen;  // scratch of move_points(): one bit a point
   uint32_t next_group = 0;     // round robin of replacement
@@ -95,8 +96,10 @@ void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2
 void move_anchored_points(PointCache& points, const World& world);
 // What instances are made of looks different now: their points take the reflectance that it has
 // there and forget their light. Of those with anchors, so after move_anchored_points().
-// `repainted`: of each of the world's instances. Returns whether any point was found.
-bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted);
+// `repainted`: of each of the world's instances. `glow`: they keep what they emit, as soon as they
+// do. Returns whether any point was found.
+bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted,
+                  bool glow);
 // Most anchors a cache of this capacity may hold; moving points beyond are forgotten after one
 // frame.
 int max_anchors(int capacity);

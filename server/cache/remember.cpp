@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "cache/packing.h"
+#include "cache/point_glow.h"
 
 namespace wellspring {
 namespace {
@@ -42,14 +43,14 @@ struct Found {
   bool image;  // the place is that of an image
   bool reference;
   vec3 place;
-  vec3 rest;  // of the sample, as far as points keep it; not negative
+  vec3 rest;  // of the sample, but for its glow; not negative
 };
 Found find(const Request& request, const Sample& sample, const RememberSettings& settings) {
   bool image = settings.images && sample.image > 0 && (sample.flags & sample_specular) &&
                !(sample.flags & sample_moving);  // those follow their triangles
   return {sample, image, settings.reference,
           image ? request.ray.origin + sample.image * request.ray.direction : sample.position,
-          max(settings.glow ? sample.rest : sample.rest - sample.glow, vec3(0))};
+          max(sample.rest - sample.glow, vec3(0))};
 }
 
 // The sample saw the surface the point lies on, at the point (`exact`) or near it in the same
@@ -96,6 +97,10 @@ void place_point(PointCache& points, uint32_t i, const View& view, const Found& 
   points.color[i].albedo = pack_albedo(sample.albedo);
 }
 
+void keep_glow(PointCache& points, uint32_t i, const Sample& sample, uint32_t random) {
+  if (!points.glow.empty()) points.glow[i] = pack_rgb9e5(sample.glow, random >> 8);
+}
+
 void begin_point(PointCache& points, uint32_t i, const View& view, const Found& found,
                  uint32_t random) {
   const Sample& sample = found.sample;
@@ -107,6 +112,7 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Found& 
   points.color[i].smooth = pack_rgb9e5(sample.smooth, random);
   points.color[i].rest = pack_rgb9e5(found.rest, random >> 4);
   points.color[i].object = sample.object;
+  keep_glow(points, i, sample, random);
 }
 
 // What a sample did to the point that it was given to.
@@ -201,6 +207,7 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
   points.count[i] = uint8_t(std::min(n + 1, longest));
   color.smooth = pack_rgb9e5(smooth, random);
   color.rest = pack_rgb9e5(rest, random >> 4);
+  keep_glow(points, i, sample, random);
   return effect;
 }
 
@@ -287,9 +294,12 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   auto found = [&](size_t i) { return find(requests[i], samples[i], settings); };
   // Sort out which samples have a point to join. Late answers find theirs only by its place.
   constexpr uint32_t reject = no_point - 1;  // beyond every capacity
+  std::atomic<bool> glows = false;
   parallel_ranges(int(count), 512, [&](int begin, int end) {
+    bool glows_here = false;
     for (size_t i = size_t(begin); i < size_t(end); i++) {
       const Request& request = requests[i];
+      glows_here |= samples[i].glow != vec3(0);
       bool here = settings.current && request.pixel < pixels;
       if (!is_usable(samples[i]) || (settings.current && !here && request.pixel != no_pixel)) {
         targets[i] = reject;
@@ -302,7 +312,9 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
         point = no_point;
       targets[i] = point;
     }
+    if (glows_here) glows = true;
   });
+  if (glows && settings.glow && points.glow.empty()) begin_glow(points);
   std::vector<uint32_t> additions;
   additions.reserve(count);
   for (size_t i = 0; i < count; i++) {

@@ -22,7 +22,7 @@ struct RememberSettings {
   uint8_t longest_mean = 64;  // samples a mean looks back on
   uint8_t longest_specular =
       64;                  // likewise, of what moves with the view and whose image lies nowhere
-  bool glow = true;        // points keep Sample::glow, too
+  bool glow = true;        // points keep Sample::glow, too, by itself
   bool reference = false;  // answers are of the reference; of a point that others know, smooth
                            // light tells no change
   bool images = true;  // what mirrors and glass show is kept where its image lies (Sample::image)

@@ -30,7 +30,9 @@ void relight_still_pixel(const PointCache& points, uint32_t point, size_t pixel,
   if (n <= relit_samples) return;
   const PointColor& color = points.color[point];
   vec3 albedo = unpack_albedo(color.albedo);
-  vec3 light = light_of(albedo * unpack_rgb9e5(color.smooth) + unpack_rgb9e5(color.rest), albedo);
+  vec3 glow = points.glow.empty() ? vec3(0) : unpack_rgb9e5(points.glow[point]);
+  vec3 light = light_of(
+      albedo * unpack_rgb9e5(color.smooth) + unpack_rgb9e5(color.rest) + glow, albedo);
   vec3 mean(unpack_half(still.mean[0][pixel]), unpack_half(still.mean[1][pixel]),
             unpack_half(still.mean[2][pixel]));
   bool known =

@@ -4,8 +4,23 @@
 #include <algorithm>
 
 #include "cache/lanes.h"
+#include "cache/packing.h"
 
 namespace wellspring {
+namespace {
+
+// What eight points emit is of their `rest`, too, where pictures are made of points alone.
+u8 add_glow(const u8& rest, const uint32_t* glow, const uint32_t* point) {
+  alignas(32) uint32_t sum[lanes], own[lanes];
+  store(sum, rest);
+  for (int i = 0; i < lanes; i++) own[i] = glow[point[i]];
+  if (!any(load<i8>(own) != 0)) return rest;
+  for (int i = 0; i < lanes; i++)
+    if (own[i] != 0) sum[i] = pack_rgb9e5(unpack_rgb9e5(sum[i]) + unpack_rgb9e5(own[i]));
+  return load<u8>(sum);
+}
+
+}  // namespace
 
 int read_points(const PointCache& points, const PointImage& image, int y, SurfaceRows& rows) {
   constexpr int ahead = 32;  // pixels by which point data is fetched early
@@ -18,6 +33,7 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
   const float* depth = image.depth.data() + size_t(y) * size_t(width);
   const PointColor* colors = points.color.data();
   const uint8_t* counts = points.count.data();
+  const uint32_t* glow = points.glow.empty() ? nullptr : points.glow.data();
   uint32_t* albedo = rows.row(plane_albedo, y);
   uint32_t* rest = rows.row(plane_rest, y);
   uint32_t* smooth = rows.row(plane_smooth, y);
@@ -45,6 +61,7 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
     store(point, index & known);
     u8 a, s, r, o;
     transpose([&](int i) { return &colors[point[i]]; }, a, s, r, o);  // in the order of PointColor
+    if (glow) r = add_glow(r, glow, point);
     auto more = [&](int i) {
       uint32_t word;
       std::memcpy(&word, &colors[point[i]].normal, sizeof word);

@@ -428,6 +428,7 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
 void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {
   DrawingWork& work = show.easel.work;
   follow_lamps(show, visitor);
+  visitor.cache.set_drawn(true);
   land(visitor.broker.collect(), *show.world, show.pose_number, visitor.cache);
   visitor.cache.draw(*order.around, *show.sight, Tonemap{show.exhibit.exposure}, work.picture,
                      &work.depth, true);

@@ -95,13 +95,13 @@ struct DrawnVisit {
 
   void step(const Stage& stage, const View& view, int budget, PictureOf kind) {
     View light = kind == PictureOf::moving ? light_view(view) : view;
+    cache.set_drawn(kind != PictureOf::points);
     cache.resize(view.width, view.height);
     cache.move_points(*stage.world);
     cache.project(light);
     cache.attend();
     cache.plan(light, budget, tick++, requests);
     samples.resize(requests.size());
-    cache.set_drawn(kind != PictureOf::points);
     trace(*find_technique("path"), *stage.world, stage.lights, {}, requests, samples);
     cache.remember(light, requests, samples);
     if (kind == PictureOf::points) cache.reconstruct(view, frame);

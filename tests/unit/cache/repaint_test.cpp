@@ -52,8 +52,11 @@ TEST(Repaint, PointsOfTheRepaintedInstancesTakeTheirReflectance) {
     points.anchors.push_back({i, 1 + i % 2, 0, 20000, 20000});
   }
   points.age[5] = evicted_age;
-  world.repaint(1, {vec4(0.6f, 0, 0, 0), vec3(0), mat3(0.0f)});
-  EXPECT_TRUE(forget_paint(points, world, {0, 0, 1}));
+  world.repaint(1, {vec4(0.6f, 0, 0, 0), vec3(0, 3, 0), mat3(0.0f)});
+  EXPECT_TRUE(forget_paint(points, world, {0, 0, 1}, false));
+  EXPECT_TRUE(points.glow.empty()) << "who is drawn pictures keeps none";
+  EXPECT_TRUE(forget_paint(points, world, {0, 0, 1}, true));
+  ASSERT_EQ(points.glow.size(), 8u);
   for (uint32_t i = 0; i < 8; i++) {
     bool forgotten = i % 2 == 1 && i != 5;
     EXPECT_EQ(points.age[i], forgotten ? 254 : i == 5 ? evicted_age : 3) << i;
@@ -61,8 +64,9 @@ TEST(Repaint, PointsOfTheRepaintedInstancesTakeTheirReflectance) {
     EXPECT_EQ(bool(points.flags[i] & point_relit), forgotten) << i;
     EXPECT_NEAR(unpack_albedo(points.color[i].albedo).x, forgotten ? 0.8f : 0.2f, 0.01f) << i;
     EXPECT_NEAR(unpack_albedo(points.color[i].albedo).y, 0.2f, 0.01f) << i;
+    EXPECT_NEAR(unpack_rgb9e5(points.glow[i]).y, forgotten ? 3.0f : 0.0f, 0.01f) << i;
   }
-  EXPECT_FALSE(forget_paint(points, world, {}));
+  EXPECT_FALSE(forget_paint(points, world, {}, true));
 }
 
 // The left square becomes brighter: the World says so, or (`told` false) samples alone do. Shares
