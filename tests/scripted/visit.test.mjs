@@ -29,6 +29,7 @@ test('an input is answered by a picture that shows it, and the visitor moves', a
   const visitor = new Visitor(server);
   await visitor.hello();
   const before_state = await visitor.message('state');
+  const began = performance.now();
   visitor.send({ type: 'input', seq: 1, move: [0, 0, 1.4], look: [0, 0] });
   await visitor.picture((picture) => picture.seq === 1);
   await sleep(600);
@@ -36,7 +37,8 @@ test('an input is answered by a picture that shows it, and the visitor moves', a
   await visitor.picture((picture) => picture.seq === 2);
   const state = await visitor.message('state', (message) => message.seq === 2);
   const moved = Math.hypot(...state.position.map((v, i) => v - before_state.position[i]));
-  assert.ok(moved > 0.3 && moved < 2.5, `moved ${moved} m`);
+  const seconds = (performance.now() - began) / 1000;  // however busy the machine is
+  assert.ok(moved > 0.3 && moved < 1.4 * seconds + 0.1, `moved ${moved} m in ${seconds} s`);
   const off = state.yaw - before_state.yaw - 0.5;
   assert.ok(Math.abs(Math.atan2(Math.sin(off), Math.cos(off))) < 1e-3);
   await visitor.close();
@@ -179,8 +181,7 @@ test('a viewer that stops reading costs nothing that grows, and the others go on
   await sleep(3000);
   const pictures = other.pictures;
   assert.ok((await resident()) - early < 24 * 2 ** 20, 'memory grew');
-  await sleep(500);
-  assert.ok(other.pictures > pictures, 'the other visitor stopped receiving');
+  if (other.pictures === pictures) await other.picture();
   lazy.socket.terminate();
   await other.close();
 });

@@ -19,7 +19,7 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 using asio::ip::tcp;
 
-bool wait_for(const std::function<bool()>& done, double seconds = 10) {
+bool wait_for(const std::function<bool()>& done, double seconds = 60) {
   for (int i = 0; i < seconds * 200; i++) {
     if (done()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -27,12 +27,16 @@ bool wait_for(const std::function<bool()>& done, double seconds = 10) {
   return done();
 }
 
-// A server of one connection at a time, blocking, on a free port.
+// A server of one connection at a time, blocking, on a free port. `closed`: nobody can connect
+// until open() is called, but the port is nobody else's either.
 struct SmallServer {
   asio::io_context io;
   tcp::acceptor acceptor;
-  explicit SmallServer(uint16_t port = 0)
-      : acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), port)) {}
+  explicit SmallServer(bool closed = false) : acceptor(io, tcp::v4()) {
+    acceptor.bind(tcp::endpoint(asio::ip::address_v4::loopback(), 0));
+    if (!closed) open();
+  }
+  void open() { acceptor.listen(); }
   uint16_t port() const { return acceptor.local_endpoint().port(); }
   beast::websocket::stream<tcp::socket> accept(std::string* target = nullptr) {
     tcp::socket socket(io);
@@ -104,13 +108,13 @@ TEST(Link, the_last_text_arrives_before_the_goodbye) {
 }
 
 TEST(Link, without_a_server_the_newest_waits_and_is_sent_on_reconnect) {
-  uint16_t port = SmallServer().port();  // free again at once
+  SmallServer server(true);
   ServerLinkSettings settings{0.02, 0.05, 2};
-  ServerLink link({"127.0.0.1", std::to_string(port), "/api/v1/eye"}, settings);
+  ServerLink link({"127.0.0.1", std::to_string(server.port()), "/api/v1/eye"}, settings);
   for (int i = 0; i < 1000; i++) link.send("old " + std::to_string(i));
   link.send("new");
   EXPECT_FALSE(link.connected());
-  SmallServer server(port);
+  server.open();
   {
     auto stream = server.accept();
     EXPECT_EQ(read(stream), "new");

@@ -20,7 +20,7 @@ inline StreamSettings quick_settings() {
 }
 
 // Waits until `condition` holds; false when it does not within `timeout` seconds.
-inline bool eventually(const std::function<bool()>& condition, double timeout = 5) {
+inline bool eventually(const std::function<bool()>& condition, double timeout = patience) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
@@ -49,14 +49,15 @@ struct House {
   ~House() { server.stop(); }
   uint16_t port() const { return server.port(); }
 
-  // The number-th link that joined; null when there are not that many within 5 s.
+  // The number-th link that joined; null when there are never that many.
   std::shared_ptr<Link> link(size_t number = 0) {
     std::unique_lock lock(mutex);
-    news.wait_for(lock, std::chrono::seconds(5), [&] { return links.size() > number; });
+    news.wait_for(lock, std::chrono::duration<double>(patience),
+                  [&] { return links.size() > number; });
     return links.size() > number ? links[number] : nullptr;
   }
 
-  // The only text that the peer of `link` said since the last call, within 5 s.
+  // The only text that the peer of `link` said since the last call.
   static std::string text_from(const std::shared_ptr<Link>& link) {
     std::vector<std::string> texts;
     eventually([&] { return !(texts = link->take_texts()).empty(); });

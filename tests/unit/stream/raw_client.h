@@ -17,6 +17,10 @@
 
 namespace wellspring::test {
 
+// Seconds that a test waits for what is to happen: only who fails waits so long, however busy the
+// machine is.
+inline constexpr double patience = 60;
+
 class RawClient {
  public:
   explicit RawClient(uint16_t port, int receive_buffer = 0) : RawClient() {
@@ -57,7 +61,7 @@ class RawClient {
 
   // Reads more into `input`; false at the end of the stream, an error, or when nothing came in
   // time.
-  bool more(double timeout = 5) {
+  bool more(double timeout = patience) {
     if (fd_ < 0) return false;
     pollfd waiting{fd_, POLLIN, 0};
     if (poll(&waiting, 1, int(timeout * 1000)) <= 0) return false;
@@ -73,7 +77,7 @@ class RawClient {
   }
 
   // True when the other side ends the connection within `timeout` seconds.
-  bool ends(double timeout = 5) {
+  bool ends(double timeout = patience) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout);
     while (!ended_ && std::chrono::steady_clock::now() < end) more(0.05);
     return ended_;
@@ -147,7 +151,7 @@ class RawClient {
                                                : uint8_t(payload[0]) * 256 + uint8_t(payload[1]);
     }
   };
-  std::optional<Frame> next_frame(double timeout = 5) {
+  std::optional<Frame> next_frame(double timeout = patience) {
     const auto need = [&](size_t bytes) {
       while (input.size() < bytes)
         if (!more(timeout)) return false;
@@ -171,7 +175,7 @@ class RawClient {
     return frame;
   }
   // The close code that the server sends, skipping other frames; 0 where none comes.
-  int closed_with(double timeout = 5) {
+  int closed_with(double timeout = patience) {
     while (auto frame = next_frame(timeout))
       if (frame->opcode == 8) return frame->close_code();
     return 0;

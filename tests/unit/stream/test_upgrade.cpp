@@ -188,21 +188,21 @@ TEST(Client, talks_both_ways_and_keeps_what_arrived_meanwhile) {
   link->send_text("hello");
   EXPECT_TRUE(client.send_text("{\"type\":\"bye\"}"));
   EXPECT_EQ(House::text_from(link), "{\"type\":\"bye\"}");
-  ASSERT_EQ(client.receive(message, 5), WsClient::Got::message);
+  ASSERT_EQ(client.receive(message, patience), WsClient::Got::message);
   EXPECT_FALSE(message.binary);
   EXPECT_EQ(message.text(), "hello");
   link->send_picture(picture(7, 300'000));
-  ASSERT_EQ(client.receive(message, 5), WsClient::Got::message);
+  ASSERT_EQ(client.receive(message, patience), WsClient::Got::message);
   EXPECT_TRUE(message.binary);
   EXPECT_EQ(message.bytes.size(), 300'000u);
   EXPECT_EQ(read_packet(message.bytes)->header.frame, 7u);
   link->close("enough");
-  ASSERT_EQ(client.receive(message, 5), WsClient::Got::closed);
+  ASSERT_EQ(client.receive(message, patience), WsClient::Got::closed);
   EXPECT_EQ(client.close_code(), 1000);
   EXPECT_EQ(client.close_reason(), "enough");
   EXPECT_FALSE(client.connected());
   EXPECT_FALSE(client.send_text("x"));
-  EXPECT_EQ(client.receive(message, 1), WsClient::Got::closed);
+  EXPECT_EQ(client.receive(message, patience), WsClient::Got::closed);
 }
 
 TEST(Client, closes_politely_and_connects_anew) {
@@ -237,5 +237,5 @@ TEST(Client, errors_name_address_and_cause) {
   EXPECT_NE(message_of({.port = port}).find("127.0.0.1:" + std::to_string(port)),
             std::string::npos);
   WsMessage message;
-  EXPECT_EQ(client.receive(message, 0.1), WsClient::Got::closed);
+  EXPECT_EQ(client.receive(message, patience), WsClient::Got::closed);
 }
