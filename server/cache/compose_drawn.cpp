@@ -7,6 +7,7 @@
 #include "cache/drawn_planes.h"
 #include "cache/drawn_run.h"
 #include "cache/nearby_light.h"
+#include "cache/object_light.h"
 #include "cache/soften_edges.h"
 
 namespace wellspring {
@@ -85,9 +86,9 @@ constexpr float calm_counts = 1 / 64.0f;
 constexpr float moving_doubt = 3;
 constexpr float smooth_doubts = 4;  // of these, for smooth light, where chance is larger
 // Of what is so narrow that no cell stands for it: samples that count as much as its surroundings
-// do, in moving pictures and in those at rest; how much more the same object's cells count than
-// others'; and light of lamps over smooth light, of which more is a lamp seen.
-constexpr float narrow_patience = 1, still_patience = 0.5f, same_object = 9, most_rest = 4;
+// do, in moving pictures and in those at rest; and how much the cells beside it count for that show
+// other objects: nothing to speak of, where any around shows the same.
+constexpr float narrow_patience = 1, still_patience = 0.5f, other_object = 1e-4f;
 f8 under(const f8& light, const f8& albedo, const f8& theirs) {
   return light * rest_ratio(albedo, theirs);
 }
@@ -194,12 +195,14 @@ void CellRows<Scale>::read(const PixelRays& rays, const Cells& cells, uint64_t o
     for (int k = 0; k < lanes; k++) flat[g][k] = one_plane[g + k / group<Scale>];
 }
 
-// Lit as what is around, rather as the same object there than as another. Returns whom that told.
+// Lit as what is around: the same object, as far as it shows there, else others. Returns whom that
+// told.
 template <class Cell>
-i8 light_as_neighbours(const Cell* const* corners, const f8* weights, const i8& lit,
-                       const i8& mirrors, const u8& object, const f8& patience, Surroundings& s) {
+i8 light_as_neighbours(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
+                       const f8* weights, const i8& lit, const i8& mirrors, const Pixels& p,
+                       const f8& patience, Surroundings& s) {
   Surroundings a;
-  f8 used{};
+  f8 used = add_object_light(cells, at, p, lit, mirrors, LightOf::same_object, a);
   for (int k = 0; k < 4; k++) {
     const Cell& corner = *corners[k];
     WideCell c;
@@ -208,21 +211,18 @@ i8 light_as_neighbours(const Cell* const* corners, const f8* weights, const i8& 
       c.albedo[n] = f8{} + corner.albedo[n];
     }
     c.patience = c.detail = c.noise = f8{};
-    i8 same = object == corner.object;
-    f8 weight = same ? same_object * weights[k] : weights[k];
-    // What mirrors show is no light that falls there, but what other mirrors there may show; what
-    // lamps and the sky shine with is neither.
-    i8 dark = c.albedo[0] + c.albedo[1] + c.albedo[2] < 0.01f;
-    weight = dark ? keep(mirrors & same, weight) : weight;
-    for (f8& rest : c.rest) {
-      f8 most = most_rest * c.smooth[&rest - c.rest];
-      rest = dark ? rest : smaller(rest, most);
-    }
+    // What mirrors show is no light that falls there, and what lamps and the sky shine with is
+    // neither.
+    i8 dark = c.albedo[0] + c.albedo[1] + c.albedo[2] < no_reflectance;
+    f8 weight = keep(~dark & (p.object != corner.object), other_object * weights[k]);
+    for (int n = 0; n < 3; n++) c.rest[n] = smaller(c.rest[n], most_rest * c.smooth[n]);
     add(a, weight, c);
     used += weight;
   }
+  i8 untold = lit & (used <= 0.0f);
+  if (any(untold)) used += add_object_light(cells, at, p, untold, mirrors, LightOf::any_object, a);
   i8 told = lit & (used > 0.0f);
-  f8 share = 1.0f / larger(used, splat(1e-6f));
+  f8 share = 1.0f / larger(used, splat(1e-9f));
   auto take = [&](f8& to, const f8& from) { to = told ? from : to; };
   auto take_color = [&](Color& to, const Color& from) {
     take(to.r, from.r * share), take(to.g, from.g * share), take(to.b, from.b * share);
@@ -234,32 +234,45 @@ i8 light_as_neighbours(const Cell* const* corners, const f8* weights, const i8& 
   return told;
 }
 
-// The light of a lamp does not end where a picture on the wall does. `asked`: lanes that matter.
-template <class Cell, class FindNearby>
-void light_group(const Cell* const* corners, const i8& flat, const f8* weights, float doubt,
-                 const i8& asked, const FindNearby& find_nearby, Drawn& d) {
-  Pixels& p = d.pixels;
-  Surroundings around = look_around(corners, flat, weights, p);
-  around.lonely &= asked;
-  f8 doubts = splat(doubt);
-  around.patience = larger(around.patience, smooth_doubts * doubts);
-  // Narrow things have few points of their own: what these say is weighed against what is around.
-  i8 mirrors{};
-  if (any(around.lonely)) {
-    find_nearby(around.lonely);
-    mirrors = around.lonely & (d.albedo.r + d.albedo.g + d.albedo.b < 0.01f);
-    f8 patience = splat(doubt > 0 ? narrow_patience : still_patience);
-    i8 told =
-        light_as_neighbours(corners, weights, around.lonely, mirrors, p.object, patience, around);
-    doubts = told ? patience : doubts;
-  }
+// The light of a lamp does not end where a picture on the wall does.
+void light_as(Surroundings& around, const i8& mirrors, const f8& doubts, Drawn& d) {
   auto rest = [&](const f8& rest, const f8& smooth, const f8& albedo, const f8& theirs) {
     return mirrors ? theirs * smooth + rest : under(rest, albedo, theirs);
   };
   around.rest = {rest(around.rest.r, around.smooth.r, d.albedo.r, around.albedo.r),
                  rest(around.rest.g, around.smooth.g, d.albedo.g, around.albedo.g),
                  rest(around.rest.b, around.smooth.b, d.albedo.b, around.albedo.b)};
-  blend_light(around, p, doubts);
+  blend_light(around, d.pixels, doubts);
+}
+
+// `asked`: lanes that matter.
+template <class Cell, class FindNearby>
+void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
+                 const i8& flat, const f8* weights, float doubt, const i8& asked,
+                 const FindNearby& find_nearby, Drawn& d) {
+  Surroundings around = look_around(corners, flat, weights, d.pixels);
+  i8 lonely = asked & around.lonely, unsure = asked & (around.known < 1.0f);
+  around.lonely = i8{};
+  f8 doubts = splat(doubt);
+  around.patience = larger(around.patience, smooth_doubts * doubts);
+  if (!any(unsure)) return light_as(around, i8{}, doubts, d);
+  // Narrow things have few points of their own: what these say is weighed against what is around.
+  // Between those and others light passes gradually.
+  Drawn narrow = d;
+  Surroundings theirs = around;
+  theirs.lonely = unsure;
+  find_nearby(unsure, narrow);
+  i8 mirrors = unsure & (d.albedo.r + d.albedo.g + d.albedo.b < no_reflectance);
+  f8 patience = splat(doubt > 0 ? narrow_patience : still_patience);
+  i8 told = light_as_neighbours(cells, at, corners, weights, unsure, mirrors, d.pixels, patience,
+                                theirs);
+  light_as(theirs, mirrors, told ? patience : doubts, narrow);
+  light_as(around, i8{}, doubts, d);
+  f8 known = unsure ? (lonely ? f8{} : around.known) : splat(1);
+  Pixels &p = d.pixels, &q = narrow.pixels;
+  p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
+  p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);
+  p.samples = lonely ? q.samples : p.samples;
 }
 
 // All that pixels are lit by, and where in them they are seen.
@@ -354,8 +367,10 @@ Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const
     using Cell = CellRows<Scale>::Cell;
     const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g),
                               &rows.at(1, g + 1)};
-    auto find_nearby = [&](const i8& lonely) { light_narrow(lonely, lx, ly, d); };
-    light_group(corners, rows.flat[g], weights, doubt, lanes_of_bits(here & ~only),
+    auto find_nearby = [&](const i8& lonely, Drawn& of) { light_narrow(lonely, lx, ly, of); };
+    constexpr f8 beside = together<Scale> == 1 ? f8{} : f8{0, 0, 0, 0, 1, 1, 1, 1};
+    CellPlaces at{fx + beside + float(rows.first + g), float(rows.row) + fy};
+    light_group(cells, at, corners, rows.flat[g], weights, doubt, lanes_of_bits(here & ~only),
                 find_nearby, d);
   }
   Shown shown{{positive(d.albedo.r * q.smooth.r + q.rest.r),

@@ -12,10 +12,20 @@ namespace {
 
 constexpr int rings = 5;
 constexpr int enough_points = 6;      // found by a ring: no other is needed
-constexpr float same_direction = 0.7f;  // cosine
+// Cosines squared: from no less on it is the same surface, and certainly from there on.
+constexpr float turned_away = 0.49f, same_direction = 0.75f;
+constexpr float reach2 = (rings + 0.5f) * (rings + 0.5f);
+constexpr float least_fade = 1e-3f;  // the light is told all the same, should nothing else know it
+
+// Of squared distances in pixels. Else each point would light a square as large as the rings.
+f8 fade_out(const f8& distance2) {
+  f8 left = positive(1.0f - distance2 * (1 / reach2));
+  return larger(left * left, splat(least_fade));
+}
 
 struct Sum {
   f8 samples{}, squares{}, deviation{};
+  f8 reached{};  // samples, were none of them far off
   Color smooth, rest;
 };
 
@@ -26,15 +36,17 @@ struct Points {
   float x[lanes] = {}, y[lanes] = {};
 };
 
-// How much the surfaces that points tell of are the place's; 0: other ones.
+// How much the surfaces that points tell of are the place's; 0: other ones. It ends nowhere at
+// once, as places side by side differ a little.
 f8 alike(const View& view, const PixelRays& rays, const SeenPlace& place, const Points& points) {
   f8 nx, ny, nz;
   unpack_octahedron(load<u8>(points.words[plane_more]) & 0xffffu, nx, ny, nz);
   vec3 n = place.normal;
   f8 facing = nx * n.x + ny * n.y + nz * n.z;
   float length2 = dot(n, n);
-  i8 same = (facing > 0.0f) & (facing * facing >= same_direction * same_direction * length2 *
-                                                      (nx * nx + ny * ny + nz * nz));
+  f8 cosine2 = facing * facing / (length2 * (nx * nx + ny * ny + nz * nz));
+  f8 same = positive(cosine2 - turned_away) * (1 / (same_direction - turned_away));
+  same = keep(facing > 0.0f, smaller(same, splat(1)));
   f8 depth = as<f8>(load<u8>(points.words[plane_depth]));
   f8 across = (load<f8>(points.x) + 0.5f - rays.half_width) * rays.inverse_focal,
      up = (rays.half_height - load<f8>(points.y) - 0.5f) * rays.inverse_focal;
@@ -43,7 +55,7 @@ f8 alike(const View& view, const PixelRays& rays, const SeenPlace& place, const 
            (place.depth - depth) * dot(view.forward, n);
   off *= 1 / (plane_tolerance * place.depth);
   off *= off * (1 / length2);
-  return keep(same & (off <= 1.0f), 1.0f / (1.0f + off));
+  return same * positive(1.0f - off);
 }
 
 // Returns how many of the points count, which are then forgotten.
@@ -53,11 +65,13 @@ int add_points(const View& view, const PixelRays& rays, const SeenPlace& place, 
   i8 there = lane < float(std::exchange(points.count, 0));
   u8 more = load<u8>(points.words[plane_more]);
   f8 dx = load<f8>(points.x) - float(place.x), dy = load<f8>(points.y) - float(place.y);
-  f8 weight = 1.0f / (0.5f + dx * dx + dy * dy);
+  f8 distance2 = dx * dx + dy * dy, near = 1.0f / (0.5f + distance2);
+  f8 weight = near * fade_out(distance2);
   // What a mirror shows has neither its place nor its normal.
   if (place.albedo != vec3(0)) weight *= alike(view, rays, place, points);
   weight = keep(there, weight);
-  f8 share = weight * keep(there, to_float((more >> 16) & 255u));
+  f8 samples = keep(there, to_float((more >> 16) & 255u)), share = weight * samples;
+  sum.reached += keep(weight > 0.0f, near * samples);
   sum.samples += share, sum.squares += share * weight;
   sum.deviation += share * keep(there, unpack_deviation(more >> 24));
   Color light, theirs;
@@ -130,7 +144,7 @@ NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Fra
   found.smooth = mean(sum.smooth);
   found.rest = mean(sum.rest);
   found.deviation = lanes_sum(sum.deviation) / samples;
-  found.samples = samples * samples / lanes_sum(sum.squares);
+  found.samples = samples * samples / lanes_sum(sum.squares) * (samples / lanes_sum(sum.reached));
   return found;
 }
 

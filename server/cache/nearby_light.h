@@ -18,7 +18,9 @@ struct SeenPlace {
 };
 struct NearbyLight {
   vec3 smooth{0}, rest{0};  // rest for the place's own reflectance
-  float samples = 0;        // behind that mean (Kish: as many as if they weighed alike); 0: none
+  // Behind that mean (Kish: as many as if they weighed alike), the fewer the farther off they are
+  // or the less their surface is the place's; 0: none.
+  float samples = 0;
   float deviation = 0;
 };
 

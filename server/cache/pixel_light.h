@@ -81,7 +81,8 @@ struct Surroundings {
   Color smooth, rest;
   f8 patience{}, detail{}, noise{};
   Color albedo;  // of cells that tell it
-  i8 lonely;     // no cell lies on this surface
+  i8 lonely{};   // no cell lies on this surface
+  f8 known{};    // 0 to 1: cells hardly do, or some certainly do
 };
 // With the reflectance that its rest was seen under.
 struct PaintedCell : CellLight {
@@ -97,6 +98,9 @@ template <class Cell>
   if constexpr (requires { c.albedo; })
     add(sum.albedo, weight, c.albedo[0], c.albedo[1], c.albedo[2]);
 }
+
+inline constexpr float enough_alike = 0.01f;  // of the cells around, for Surroundings::known
+inline f8 known_by(const f8& alike) { return smaller(alike * (1 / enough_alike), splat(1)); }
 
 // How much a cell's surface is that of the pixels.
 template <class Cell>
@@ -119,7 +123,8 @@ Surroundings look_around(const Cell* const* corners, bool flat, const f8* weight
   f8 inverse_normal2 = 1.0f / p.normal2;
   if (flat) {
     for (int k = 0; k < 4; k++) add(s, weights[k], *corners[k]);
-    s.lonely = alike(*corners[0], p, inverse_normal2) <= least;
+    f8 common = alike(*corners[0], p, inverse_normal2);
+    s.lonely = common <= least, s.known = known_by(common);
     return s;
   }
   f8 sum{};
@@ -128,7 +133,7 @@ Surroundings look_around(const Cell* const* corners, bool flat, const f8* weight
     add(s, weight, *corners[k]);
     sum += weight;
   }
-  s.lonely = sum <= least;
+  s.lonely = sum <= least, s.known = known_by(sum);
   f8 share = 1.0f / larger(sum, splat(least));
   for (Color* c : {&s.smooth, &s.rest, &s.albedo}) c->r *= share, c->g *= share, c->b *= share;
   s.patience *= share, s.detail *= share, s.noise *= share;
@@ -146,12 +151,12 @@ Surroundings look_around(const Cell* const* corners, const i8& flat, const f8* w
   f8 inverse_normal2 = 1.0f / p.normal2, sum{};
   for (int k = 0; k < 4; k++) {
     f8 common = alike(*corners[k], p, inverse_normal2);
-    if (k == 0) s.lonely = flat & (common <= least);
+    if (k == 0) s.lonely = flat & (common <= least), s.known = known_by(common);
     f8 weight = flat ? weights[k] : weights[k] * common;
     add(s, weight, *corners[k]);
     sum += weight;
   }
-  s.lonely |= ~flat & (sum <= least);
+  s.lonely |= ~flat & (sum <= least), s.known = flat ? s.known : known_by(sum);
   f8 share = 1.0f / larger(flat ? splat(1) : sum, splat(least));
   for (Color* c : {&s.smooth, &s.rest, &s.albedo}) c->r *= share, c->g *= share, c->b *= share;
   s.patience *= share, s.detail *= share, s.noise *= share;

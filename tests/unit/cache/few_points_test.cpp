@@ -95,5 +95,50 @@ TEST(FewPoints, NarrowThingsAreNeitherBlackNorGlaring) {
   }
 }
 
+// A bumpy ball before the box, which moves, and hardly a point on either: light may be wrong, but
+// has no borders where there are none, and nothing is lit by what is before or behind it.
+TEST(FewPoints, LightHasNoSquares) {
+  Scene scene = make_cornell_box();
+  scene.environment.radiance = vec3(0.4f, 0.5f, 0.7f);
+  Mesh ball = sphere_mesh(add_material(scene, diffuse(vec3(0.6f))), 0.2f, 48);
+  for (vec3& p : ball.positions)
+    p = p * (1 + 0.1f * std::sin(40 * p.x) * std::sin(40 * p.y)) + vec3(0, 0.3f, 0);
+  scene.objects.push_back("ball");
+  Stage stage(std::move(scene), std::move(ball));
+  constexpr int across = 320, down = 240, pixels_a_sample = 400;
+  for (PictureOf kind : {PictureOf::moving, PictureOf::moving_fine}) {
+    DrawnVisit visit;
+    View view;
+    for (int i = 0; i < 8; i++) {
+      stage.push_ball(i % 2 ? 0.01f : -0.01f);
+      view = make_view(stage.scene, {0.01 * i, 0.3, 0.9}, 0, 0, 0.7f, across, down);
+      visit.step(stage, view, across * down / pixels_a_sample, kind);
+    }
+    Frame truth = stage.truth(view, 256);
+    const Frame& shown = visit.frame;
+    int pairs = 0, borders = 0;
+    double sum = 0, error = 0;
+    auto differ = [](const Frame& frame, size_t a, size_t b) {
+      float first = luminance(frame.color[a]), second = luminance(frame.color[b]);
+      return std::abs(first - second) / (first + second + 1e-3f);
+    };
+    for (int y = 0; y + 1 < down; y++)
+      for (int x = 0; x + 1 < across; x++) {
+        size_t at = size_t(y * across + x);
+        if (shown.object[at] == 0) continue;
+        sum += double(luminance(truth.color[at]));
+        error += std::abs(double(luminance(shown.color[at]) - luminance(truth.color[at])));
+        for (size_t other : {at + 1, at + size_t(across)}) {
+          if (shown.object[other] != shown.object[at] || differ(truth, at, other) > 0.05f) continue;
+          pairs++;
+          borders += differ(shown, at, other) > 0.2f;
+        }
+      }
+    ASSERT_GT(pairs, 20000);
+    EXPECT_LT(borders, pairs / (kind == PictureOf::moving ? 500 : 200));
+    EXPECT_LT(error, 0.135 * sum);
+  }
+}
+
 }  // namespace
 }  // namespace wellspring
