@@ -387,10 +387,12 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   if (changes) c.end_correction();
   else if (c.is_still()) c.start_correction();
   c.draw(view, [&] {
-    compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light, frame);
+    float guessed = c.stats.filled + c.stats.empty;
+    compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light,
+                  guessed, frame);
     std::span<const std::vector<EdgeShare>> edges;
     if (shows == StillShows::all && sight.anything_moves())
-      edges = compose_moving(view, sight, c.cells, c.known, c.work->light, frame);
+      edges = compose_moving(view, sight, c.cells, c.known, c.work->light, guessed, frame);
     if (c.corrects) forget_samples(c.still, c.still_samples);
     accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, changes, c.frames,
                      c.still, frame);

@@ -84,6 +84,7 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
 // or chance nobody knows.
 constexpr float calm_counts = 1 / 64.0f;
 constexpr float moving_doubt = 3;
+constexpr float still_told = 0.4f;  // at rest: guessed share of the light at which doubt begins
 constexpr float smooth_doubts = 4;  // of these, for smooth light, where chance is larger
 // Of what is so narrow that no cell stands for it: samples that count as much as its surroundings
 // do, in moving pictures and in those at rest; and how much the cells beside it count for that show
@@ -248,8 +249,8 @@ void light_as(Surroundings& around, const i8& mirrors, const f8& doubts, Drawn& 
 // `asked`: lanes that matter.
 template <class Cell, class FindNearby>
 void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
-                 const i8& flat, const f8* weights, float doubt, const i8& asked,
-                 const FindNearby& find_nearby, Drawn& d) {
+                 const i8& flat, const f8* weights, float doubt, float narrow_doubt,
+                 const i8& asked, const FindNearby& find_nearby, Drawn& d) {
   Surroundings around = look_around(corners, flat, weights, d.pixels);
   i8 lonely = asked & around.lonely, unsure = asked & (around.known < 1.0f);
   around.lonely = i8{};
@@ -263,7 +264,7 @@ void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* co
   theirs.lonely = unsure;
   find_nearby(unsure, narrow);
   i8 mirrors = unsure & (d.albedo.r + d.albedo.g + d.albedo.b < no_reflectance);
-  f8 patience = splat(doubt > 0 ? narrow_patience : still_patience);
+  f8 patience = splat(narrow_doubt);
   i8 told = light_as_neighbours(cells, at, corners, weights, unsure, mirrors, d.pixels, patience,
                                 theirs);
   light_as(theirs, mirrors, told ? patience : doubts, narrow);
@@ -285,7 +286,7 @@ struct Composer {
   const Frame& light;
   PixelRays rays, light_rays;
   vec2 offset{0.5f};
-  float doubt = moving_doubt;
+  float doubt = moving_doubt, narrow = narrow_patience;
   int left = 0, top = 0;   // where in the picture the light's begins, whole groups
   float own_counts = 1;  // samples of a pixel's own point, each
 
@@ -370,8 +371,8 @@ Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const
     auto find_nearby = [&](const i8& lonely, Drawn& of) { light_narrow(lonely, lx, ly, of); };
     constexpr f8 beside = together<Scale> == 1 ? f8{} : f8{0, 0, 0, 0, 1, 1, 1, 1};
     CellPlaces at{fx + beside + float(rows.first + g), float(rows.row) + fy};
-    light_group(cells, at, corners, rows.flat[g], weights, doubt, lanes_of_bits(here & ~only),
-                find_nearby, d);
+    light_group(cells, at, corners, rows.flat[g], weights, doubt, narrow,
+                lanes_of_bits(here & ~only), find_nearby, d);
   }
   Shown shown{{positive(d.albedo.r * q.smooth.r + q.rest.r),
                positive(d.albedo.g * q.smooth.g + q.rest.g),
@@ -409,6 +410,10 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
 using CoarseComposer = Composer<light_scale>;
 using FineComposer = Composer<1>;
 constexpr float still_blur = 0.5f;  // the mean over places in the pixel blurs enough
+
+float still_doubt(float guessed) {
+  return moving_doubt * std::clamp((guessed - still_told) / still_told, 0.0f, 1.0f);
+}
 
 // A picture that stands for itself. Returns its edges.
 template <class Planes>
@@ -463,16 +468,19 @@ void compose_drawn(const View& view, const View& lit, const PictureSight& sight,
 }
 
 void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,
-                   bool known, const Frame& light, Frame& frame) {
-  FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), offset, 0};
+                   bool known, const Frame& light, float guessed, Frame& frame) {
+  FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), offset,
+                        still_doubt(guessed), still_patience};
   FramePlanes planes{frame};
   sight.see(view, offset, taker(composer, planes), RasterShows::still, still_blur);
 }
 
 std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light, Frame& frame) {
-  FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), vec2(0.5f), 0};
+                                                       const Frame& light, float guessed,
+                                                       Frame& frame) {
+  FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), vec2(0.5f),
+                        still_doubt(guessed), still_patience};
   return see_moving(view, sight, {0, 0, view.width, view.height},
                     taker(composer, NearerPlanes{frame}));
 }
@@ -481,8 +489,8 @@ void compose_moving(const View& view, const PictureSight& sight, const PictureWi
                     const Tonemap& tonemap, std::span<const float> disparity,
                     std::span<uint8_t> covered, MovingLight& light) {
   PixelRays rays(view), light_rays(WindowView(view, window));
-  FineComposer composer{view, light.cells, light.known, light.frame, rays,       light_rays,
-                        vec2(0.5f), 0, window.left, window.top};
+  FineComposer composer{view, light.cells, light.known, light.frame, rays, light_rays,
+                        vec2(0.5f), 0, still_patience, window.left, window.top};
   NearerEyePlanes planes{tonemap.exposure, disparity.data(), covered.data(),
                          light.picture.rgb.data(), light.peaks.data()};
   soften_edges(see_moving(view, sight, window, taker(composer, planes)), light.picture,

@@ -37,14 +37,16 @@ void compose_drawn(const View& view, const View& lit, const PictureSight& sight,
 
 // What does not move of a picture at rest, in light of its own resolution, `light` being of `view`
 // itself, seen at one place of every pixel, `offset` (0 to 1): the mean over several such pictures
-// is antialiased.
+// is antialiased. `guessed`: the share of its light that no point tells, by which a pixel's own few
+// samples are doubted as they are while the visitor moves.
 void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,
-                   bool known, const Frame& light, Frame& frame);
+                   bool known, const Frame& light, float guessed, Frame& frame);
 // What moves, laid over that, always at the middle of the pixels, so that nothing trembles. Returns
 // its edges, good until the sight's next picture: see soften_edges().
 std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light, Frame& frame);
+                                                       const Frame& light, float guessed,
+                                                       Frame& frame);
 
 // The same over what the eye sees already: lit by what lies on it alone, where it is nearer than
 // `disparity` (as Keyframe's) says of the picture. Of pixels that it covers `covered` becomes 0.

@@ -140,5 +140,31 @@ TEST(FewPoints, LightHasNoSquares) {
   }
 }
 
+// Who has just come to rest: what lamps do on a floor that shines is seen by one sample in many.
+TEST(FewPoints, FloorsThatShineAreNotPepperedAtRest) {
+  Scene scene = make_cornell_box();
+  for (Material& material : scene.materials)
+    if (material.emission == vec3(0)) material.roughness = 0.4f, material.specular = 1;
+  Stage stage(std::move(scene));
+  Shown shown;
+  shown.view = make_view(stage.scene, {0, 0.25, 0.6}, 0, -0.25f, 0.7f, width, height);
+  DrawnVisit visit;
+  for (int i = 0; i < 6; i++) visit.step(stage, shown.view, pixels / 24, PictureOf::still);
+  shown.frame = visit.frame;
+  auto light = [&](size_t i) { return luminance(shown.frame.color[i]); };
+  int specks = 0, inside = 0;
+  for (int y = 1; y + 1 < height; y++)
+    for (int x = 1; x + 1 < width; x++) {
+      if (!is_inside(shown, x, y)) continue;
+      size_t at = size_t(y * width + x);
+      float around =
+          (light(at - 1) + light(at + 1) + light(at - size_t(width)) + light(at + size_t(width))) /
+          4;
+      inside++;
+      specks += std::abs(light(at) - around) > 0.15f * around;
+    }
+  EXPECT_LT(specks, inside / 42);
+}
+
 }  // namespace
 }  // namespace wellspring
