@@ -382,14 +382,13 @@ void RenderCache::draw_still(const View& view, const PictureSight& sight, Frame&
   if (!c.projected || view != c.view) project(view);
   fit_frame(view.width, view.height, frame);
   c.begin_still();
-  // Who has just stopped has pictures of the walk in memory yet.
   bool changes = c.image.alarm > 0;  // what samples of the light before say is wrong
   if (changes) c.end_correction();
   else if (c.is_still()) c.start_correction();
   c.draw(view, [&] {
+    const vec2 place = still_place(c.still_frames);
     float guessed = c.stats.filled + c.stats.empty;
-    compose_still(view, sight, still_place(c.still_frames), c.cells, c.known, c.work->light,
-                  guessed, frame);
+    compose_still(view, sight, place, c.cells, c.known, c.work->light, guessed, frame);
     std::span<const std::vector<EdgeShare>> edges;
     if (shows == StillShows::all && sight.anything_moves())
       edges = compose_moving(view, sight, c.cells, c.known, c.work->light, guessed, frame);

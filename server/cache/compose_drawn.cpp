@@ -414,7 +414,6 @@ constexpr float still_blur = 0.5f;  // the mean over places in the pixel blurs e
 float still_doubt(float guessed) {
   return moving_doubt * std::clamp((guessed - still_told) / still_told, 0.0f, 1.0f);
 }
-
 // A picture that stands for itself. Returns its edges.
 template <class Planes>
 std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const View& lit,
