@@ -39,11 +39,13 @@ bool is_inside(const Shown& shown, int x, int y) {
   return true;
 }
 
-TEST(FewPoints, WallsAreNotPeppered) {
-  Stage stage(make_cornell_box());
-  Shown shown = stroll(stage, 64);
-  auto light = [&](size_t i) { return luminance(shown.frame.color[i]); };
+// Of pixels inside of objects: those brighter or darker than what is around by more than 15 %.
+struct Specks {
   int specks = 0, inside = 0;
+};
+Specks count_specks(const Shown& shown) {
+  auto light = [&](size_t i) { return luminance(shown.frame.color[i]); };
+  Specks found;
   for (int y = 1; y + 1 < height; y++)
     for (int x = 1; x + 1 < width; x++) {
       if (!is_inside(shown, x, y)) continue;
@@ -51,9 +53,16 @@ TEST(FewPoints, WallsAreNotPeppered) {
       float around =
           (light(at - 1) + light(at + 1) + light(at - size_t(width)) + light(at + size_t(width))) /
           4;
-      inside++;
-      specks += std::abs(light(at) - around) > 0.15f * around;
+      found.inside++;
+      found.specks += std::abs(light(at) - around) > 0.15f * around;
     }
+  return found;
+}
+
+TEST(FewPoints, WallsAreNotPeppered) {
+  Stage stage(make_cornell_box());
+  Shown shown = stroll(stage, 64);
+  const auto [specks, inside] = count_specks(shown);
   EXPECT_GT(inside, pixels / 2);
   EXPECT_LT(specks, inside / 33);
 }
@@ -151,18 +160,7 @@ TEST(FewPoints, FloorsThatShineAreNotPepperedAtRest) {
   DrawnVisit visit;
   for (int i = 0; i < 6; i++) visit.step(stage, shown.view, pixels / 24, PictureOf::still);
   shown.frame = visit.frame;
-  auto light = [&](size_t i) { return luminance(shown.frame.color[i]); };
-  int specks = 0, inside = 0;
-  for (int y = 1; y + 1 < height; y++)
-    for (int x = 1; x + 1 < width; x++) {
-      if (!is_inside(shown, x, y)) continue;
-      size_t at = size_t(y * width + x);
-      float around =
-          (light(at - 1) + light(at + 1) + light(at - size_t(width)) + light(at + size_t(width))) /
-          4;
-      inside++;
-      specks += std::abs(light(at) - around) > 0.15f * around;
-    }
+  const auto [specks, inside] = count_specks(shown);
   EXPECT_LT(specks, inside / 42);
 }
 
