@@ -17,7 +17,9 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "denoise/denoise.h"
 #include "frame/picture_file.h"
+#include "light/guides.h"
 #include "light/lamps.h"
 #include "light/technique.h"
 #include "light/transport_plan.h"
@@ -41,6 +43,7 @@ struct UsageError : std::runtime_error {
 struct Options {
   std::string scene, technique = "path", camera, eye, target, up = "0,1,0", size = "1280x720", out,
                      environment, sky, replay;
+  std::string denoise, albedo, normal;  // a network's name, and files of guides; empty: none
   double fov = 0, time = 0;
   std::optional<double> exposure;  // else the exhibit's
   int spp = 16, max_depth = 8, threads = 0;
@@ -112,8 +115,13 @@ void check_options(const Options& o) {
     throw UsageError("--camera and --eye exclude each other");
   if (o.eye.empty() != o.target.empty()) throw UsageError("--eye and --target belong together");
   if (o.out.empty() && o.replay.empty() && !o.explain) throw UsageError("--out FILE is missing");
-  if (!o.out.empty() && !is_picture_name(o.out))
-    throw UsageError("--out " + o.out + ": name must end in .png, .jpg, .pfm or .exr");
+  for (const auto& [option, file] : {std::pair("--out", o.out), std::pair("--albedo", o.albedo),
+                                     std::pair("--normal", o.normal)})
+    if (!file.empty() && !is_picture_name(file))
+      throw UsageError(std::string(option) + " " + file +
+                       ": name must end in .png, .jpg, .pfm or .exr");
+  if (!o.denoise.empty() && !find_net_size(o.denoise))
+    throw UsageError("--denoise " + o.denoise + ": small, base or large expected");
 }
 
 // Before minutes of work: can the picture be written, and does it fit?
@@ -331,6 +339,14 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--seed", o.seed, "of all random numbers")->capture_default_str();
   app.add_option("--time", o.time, "seconds into the file's animation")->capture_default_str();
   app.add_option("--out", o.out, "picture: .png .jpg tone-mapped, .pfm .exr linear radiance");
+  app.add_option("--denoise", o.denoise,
+                 "learned reconstruction of few samples, by the network small, base (without a "
+                 "name) or large")
+      ->expected(0, 1)
+      ->default_str("base");
+  app.add_option("--albedo", o.albedo, "another picture: what of the light leaves, 0 to 1");
+  app.add_option("--normal", o.normal,
+                 "another: normals in world space; n / 2 + 1 / 2 in .png and .jpg");
   app.add_option("--exposure", o.exposure,
                  "factor before tone mapping; without it the exhibit's, or 1");
   app.add_option("--max-depth", o.max_depth, "path edges counted from the eye")
@@ -347,10 +363,41 @@ void add_options(CLI::App& app, Options& o) {
                  "x,y,i: print the radiance of sample i of pixel x,y instead");
 }
 
+// The guides of `frame`, as a picture of its own.
+void save_guide(const std::string& path, const Frame& frame, const std::vector<vec3>& plane,
+                bool is_normal) {
+  if (path.empty()) return;
+  Frame guide;
+  guide.width = frame.width, guide.height = frame.height;
+  guide.color = plane;
+  if (!is_normal || is_linear_picture_name(path)) return save_picture(path, guide, {});
+  Image8 image{frame.width, frame.height, {}};
+  for (vec3 n : plane)
+    for (int c = 0; c < 3; c++)
+      image.rgb.push_back(uint8_t(std::clamp(n[c] * 127.5f + 128.0f, 0.0f, 255.0f)));
+  save_image8(path, image);
+}
+
+// Writes the guides that are wanted, and denoises `frame` if that is. Returns how it was done.
+std::string use_guides(const Options& o, Denoiser* denoiser, const World& world,
+                       const Lights& lights, const View& view, Frame& frame) {
+  if (!denoiser && o.albedo.empty() && o.normal.empty()) return "not denoised";
+  GuidePlanes guides = make_guides(world, lights, view);
+  save_guide(o.albedo, frame, guides.albedo, false);
+  save_guide(o.normal, frame, guides.normal, true);
+  if (!denoiser) return "not denoised";
+  denoiser->run({view.width, view.height, frame.color, guides.albedo, guides.normal}, frame.color);
+  return "denoised by the network " + o.denoise;
+}
+
 void render(const Options& o) {
   ivec2 size = parse_size(o.size);
   check_options(o);
   check_resources(o, size);
+  std::unique_ptr<Denoiser> denoiser;
+  std::string problem;
+  if (!o.denoise.empty()) denoiser = load_denoiser(*find_net_size(o.denoise), problem);
+  if (!problem.empty()) throw LoadError("--denoise " + o.denoise, "", problem);
   auto [scene, lamps, exposure] = load_any_scene(o.scene, o.time);
   for (const std::string& warning : scene.warnings) std::cerr << o.scene << ": " << warning << "\n";
   apply_lamps(o.lamps, scene, lamps);
@@ -371,11 +418,17 @@ void render(const Options& o) {
   double start = seconds_now();
   Frame frame = render_still(*find_technique(o.technique), world, lights, view, settings);
   double seconds = seconds_now() - start;
-  save_picture(o.out, frame, {float(o.exposure.value_or(exposure))});
+  std::string comment = std::to_string(o.spp) + " samples a pixel by " + o.technique + ", " +
+                        use_guides(o, denoiser.get(), world, lights, view, frame);
+  double all_seconds = seconds_now() - start;
+  save_picture(o.out, frame, {float(o.exposure.value_or(exposure))}, comment);
   double samples = double(size.x) * double(size.y) * double(o.spp);
   std::fprintf(
       stderr, "%s: %dx%d, %d samples a pixel by %s, %.2f s, %.2f million samples a second\n",
       o.out.c_str(), size.x, size.y, o.spp, o.technique.c_str(), seconds, samples / seconds * 1e-6);
+  if (denoiser)
+    std::fprintf(stderr, "%s: guides and reconstruction took %.2f s\n", o.out.c_str(),
+                 all_seconds - seconds);
   if (uint64_t bad = lights.bad_samples->load())
     std::fprintf(stderr, "%s: %llu samples were not finite and count as black\n", o.out.c_str(),
                  static_cast<unsigned long long>(bad));

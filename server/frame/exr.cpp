@@ -4,6 +4,7 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 
 #include <array>
@@ -34,10 +35,12 @@ std::array<std::string, 3> color_channels(const Imf::ChannelList& channels,
 
 }  // namespace
 
-std::vector<char> encode_exr(const Frame& frame, const std::string& path) {
+std::vector<char> encode_exr(const Frame& frame, const std::string& path,
+                             const std::string& comment) {
   try {
     Imf::Header header(frame.width, frame.height);
     header.compression() = Imf::ZIP_COMPRESSION;
+    if (!comment.empty()) Imf::addComments(header, comment);
     Imf::FrameBuffer buffer;
     auto add = [&](const char* name, const float* plane, size_t step) {
       header.channels().insert(name, Imf::Channel(Imf::FLOAT));

@@ -43,6 +43,14 @@ void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector
   out.insert(out.end(), bytes, bytes + size);
 }
 
+void add_jpeg_comment(const std::string& comment, std::vector<uint8_t>& jpeg) {
+  constexpr size_t most = 65533, begin = 2;  // begin: of the file, SOI
+  const size_t size = std::min(comment.size(), most) + 2;
+  std::vector<uint8_t> segment = {0xff, 0xfe, uint8_t(size >> 8), uint8_t(size)};
+  segment.insert(segment.end(), comment.begin(), comment.begin() + ptrdiff_t(size - 2));
+  jpeg.insert(jpeg.begin() + begin, segment.begin(), segment.end());
+}
+
 Image8 decode_jpeg(std::span<const uint8_t> bytes, const char* file) {
   Handle handle(tjInitDecompress());
   if (!handle) throw LoadError(file, "", tjGetErrorStr2(nullptr));

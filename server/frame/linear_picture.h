@@ -15,7 +15,8 @@ inline constexpr int largest_picture_side = 16384;
 
 std::vector<char> encode_pfm(const Frame& frame);
 // `path` is only for messages. A depth plane, if there, is written as channel Z.
-std::vector<char> encode_exr(const Frame& frame, const std::string& path);
+std::vector<char> encode_exr(const Frame& frame, const std::string& path,
+                             const std::string& comment = {});
 
 Frame decode_pfm(std::istream& in, const std::string& path);
 // Scan lines or tiles, half or float; channels R, G, B, or Y alone, or the first layer that has

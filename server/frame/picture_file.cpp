@@ -21,6 +21,7 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb_image_write.h>
 #pragma GCC diagnostic pop
+#include <zlib.h>
 
 namespace wellspring {
 namespace {
@@ -54,6 +55,21 @@ void write_file(const std::string& path, std::span<const char> bytes) {
   }
 }
 
+// A tEXt chunk behind the header (PNG specification, section 11.3.4.3).
+void add_png_comment(const std::string& comment, std::vector<char>& png) {
+  constexpr size_t header_end = 33;  // signature 8, IHDR 25
+  std::string chunk = "tEXtComment";
+  chunk.push_back(0);
+  chunk += comment;
+  auto number = [](uint32_t value) {
+    return std::string{char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
+  };
+  uint32_t sum = uint32_t(
+      crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), uInt(chunk.size())));
+  chunk = number(uint32_t(chunk.size() - 4)) + chunk + number(sum);
+  png.insert(png.begin() + header_end, chunk.begin(), chunk.end());
+}
+
 std::vector<char> encode_png(const Image8& image) {
   std::vector<char> bytes;
   auto append = [](void* context, void* data, int size) {
@@ -73,7 +89,10 @@ bool is_picture_name(const std::string& path) {
   return is_linear(ending) || is_8bit(ending);
 }
 
-void save_picture(const std::string& path, const Frame& frame, const Tonemap& settings) {
+bool is_linear_picture_name(const std::string& path) { return is_linear(ending_of(path)); }
+
+void save_picture(const std::string& path, const Frame& frame, const Tonemap& settings,
+                  const std::string& comment) {
   std::string ending = ending_of(path);
   if (!is_picture_name(path))
     throw LoadError(path, "", "name must end in .png, .jpg, .pfm or .exr");
@@ -81,15 +100,15 @@ void save_picture(const std::string& path, const Frame& frame, const Tonemap& se
       frame.color.size() != size_t(frame.width) * size_t(frame.height))
     throw LoadError(path, "", "there is no picture to write");
   if (is_linear(ending)) {
-    write_file(path, ending == "pfm" ? encode_pfm(frame) : encode_exr(frame, path));
+    write_file(path, ending == "pfm" ? encode_pfm(frame) : encode_exr(frame, path, comment));
   } else {
     Image8 image;
     tonemap(frame, settings, image);
-    save_image8(path, image);
+    save_image8(path, image, comment);
   }
 }
 
-void save_image8(const std::string& path, const Image8& image) {
+void save_image8(const std::string& path, const Image8& image, const std::string& comment) {
   std::string ending = ending_of(path);
   if (!is_8bit(ending)) throw LoadError(path, "", "name must end in .png or .jpg");
   if (image.width < 1 || image.height < 1 || image.width > 16384 || image.height > 16384 ||
@@ -98,10 +117,12 @@ void save_image8(const std::string& path, const Image8& image) {
   if (ending == "png") {
     std::vector<char> bytes = encode_png(image);
     if (bytes.empty()) throw LoadError(path, "", "picture is too large for PNG");
+    if (!comment.empty()) add_png_comment(comment, bytes);
     write_file(path, bytes);
   } else {
     std::vector<uint8_t> bytes;
     encode_jpeg(image, 95, true, bytes);
+    if (!comment.empty()) add_jpeg_comment(comment, bytes);
     write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   }
 }

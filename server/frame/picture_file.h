@@ -10,9 +10,13 @@ namespace wellspring {
 
 // True for a file name whose ending we can write.
 bool is_picture_name(const std::string& path);
+bool is_linear_picture_name(const std::string& path);  // of radiance: .pfm .exr
 // Writes to a temporary name and renames, so a reader never sees half a file. Throws LoadError.
-void save_picture(const std::string& path, const Frame& frame, const Tonemap& settings);
-void save_image8(const std::string& path, const Image8& image);  // .png or .jpg
+// `comment`: kept in the file (PNG text "Comment", OpenEXR "comments", JPEG comment; PFM has none).
+void save_picture(const std::string& path, const Frame& frame, const Tonemap& settings,
+                  const std::string& comment = {});
+// .png or .jpg
+void save_image8(const std::string& path, const Image8& image, const std::string& comment = {});
 // Linear pictures back (.pfm .exr): colour only. Throws LoadError.
 Frame load_linear_picture(const std::string& path);
 

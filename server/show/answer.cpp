@@ -100,9 +100,12 @@ HttpReply answer_still(const AnswerSources& sources, const HttpQuestion& questio
   if (!height) return reply;
   auto spp = number_of(question, "spp", order.spp, 1, max_still_spp, reply);
   if (!spp) return reply;
+  auto denoise = number_of(question, "denoise", 1, 0, 1, reply);
+  if (!denoise) return reply;
   order.width = *width;
   order.height = *height;
   order.spp = *spp;
+  order.denoise = *denoise == 1;
   if (double(order.width) * order.height * order.spp > max_still_work)
     return error_reply(400, "too_much_work",
                        "width * height * spp may be at most 1920 * 1080 * 256");

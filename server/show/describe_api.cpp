@@ -21,8 +21,8 @@ std::string describe_api() {
     {"method": "GET", "path": "/api/v1/exhibits/ID", "answers": "title, languages, viewpoints, stories, tours, lamps"},
     {"method": "GET", "path": "/api/v1/exhibits/ID/still.jpg",
      "query": {"viewpoint": "name; the exhibit's start", "width": "1..3840; 640", "height": "1..3840; 360",
-               "spp": "samples a pixel, 1..1024; 16"},
-     "answers": "one finished picture"},
+               "spp": "samples a pixel, 1..1024; 16", "denoise": "1, or 0: its samples as they are; 1"},
+     "answers": "one finished picture; its JPEG comment says whether it was denoised"},
     {"method": "WS", "path": "/api/v1/visit", "subprotocol": "wellspring.v1", "answers": "a visit"},
     {"method": "WS", "path": "/api/v1/eye", "answers": "a kiosk's observations in"}],
   "browser_to_server": {

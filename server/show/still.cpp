@@ -5,8 +5,10 @@
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include "denoise/denoise.h"
 #include "frame/jpeg.h"
 #include "frame/tonemap.h"
+#include "light/guides.h"
 #include "show/exhibit_lamps.h"
 
 namespace wellspring {
@@ -14,6 +16,7 @@ namespace wellspring {
 namespace {
 constexpr size_t most_kept = 12;
 constexpr int still_jpeg_quality = 90;
+constexpr NetSize still_net = NetSize::base;
 }  // namespace
 
 StillRoom::StillRoom(const Show& show)
@@ -38,6 +41,27 @@ StillRoom::StillRoom(const Show& show)
   transport_.clamp = 0;
 }
 
+Frame StillRoom::render(const StillOrder& order, std::string& comment) const {
+  const Viewpoint& at = exhibit_.viewpoints[size_t(order.viewpoint)].view;
+  View view =
+      make_view(exhibit_.scene, at.position, at.yaw, at.pitch, at.fov, order.width, order.height);
+  StillSettings settings;
+  settings.spp = order.spp;
+  settings.transport = transport_;
+  Frame frame = render_still(*technique_, *world_, lights_, view, settings);
+  std::string problem;
+  auto denoiser = order.denoise ? load_denoiser(still_net, problem) : nullptr;
+  if (denoiser) {
+    GuidePlanes guides = make_guides(*world_, lights_, view);
+    denoiser->run({view.width, view.height, frame.color, guides.albedo, guides.normal},
+                  frame.color);
+  }
+  comment = std::to_string(order.spp) + " samples a pixel by " + technique_->name +
+            (denoiser ? std::string(", denoised by the network ") + net_name(still_net)
+                      : ", not denoised");
+  return frame;
+}
+
 std::string StillRoom::make(const StillOrder& order) {
   std::lock_guard lock(mutex_);
   auto found = std::find_if(kept_.begin(), kept_.end(),
@@ -46,20 +70,15 @@ std::string StillRoom::make(const StillOrder& order) {
     kept_.splice(kept_.begin(), kept_, found);
     return kept_.front().jpeg;
   }
-  const Viewpoint& at = exhibit_.viewpoints[size_t(order.viewpoint)].view;
-  View view =
-      make_view(exhibit_.scene, at.position, at.yaw, at.pitch, at.fov, order.width, order.height);
-  StillSettings settings;
-  settings.spp = order.spp;
-  settings.transport = transport_;
   std::vector<uint8_t> bytes;
   int cores = std::max(1, oneapi::tbb::info::default_concurrency() / 2);
   oneapi::tbb::task_arena arena(cores, 1, oneapi::tbb::task_arena::priority::low);
   arena.execute([&] {
-    Frame frame = render_still(*technique_, *world_, lights_, view, settings);
+    std::string comment;
     Image8 image;
-    tonemap(frame, Tonemap{exhibit_.exposure}, image);
+    tonemap(render(order, comment), Tonemap{exhibit_.exposure}, image);
     encode_jpeg(image, still_jpeg_quality, true, bytes);
+    add_jpeg_comment(comment, bytes);
   });
   kept_.push_front({order, std::string(bytes.begin(), bytes.end())});
   if (kept_.size() > most_kept) kept_.pop_back();

@@ -14,6 +14,7 @@ namespace wellspring {
 
 struct StillOrder {
   int viewpoint = 0, width = 640, height = 360, spp = 16;
+  bool denoise = true;  // where there are weights, else nothing is done
   bool operator==(const StillOrder&) const = default;
 };
 
@@ -22,7 +23,8 @@ class StillRoom {
   // Borrows `show`'s exhibit for its lifetime (not its world, which moves). The storyteller who is
   // there stands in its first pose, and lamps are as at first. Bounds of an order: see answer.cpp.
   explicit StillRoom(const Show& show);
-  // JPEG bytes. One picture at a time; later callers wait.
+  // JPEG bytes, whose comment says whether it was denoised. One picture at a time; later callers
+  // wait.
   std::string make(const StillOrder& order);
 
  private:
@@ -36,6 +38,7 @@ class StillRoom {
   TransportSettings transport_;
   std::unique_ptr<World> world_;
   Lights lights_;
+  Frame render(const StillOrder& order, std::string& comment) const;
   std::list<Kept> kept_;  // newest first
 };
 

@@ -26,12 +26,13 @@ int main(int argc, char** argv) {
       {"show.rest", bench_show_rest},
       {"cache.starve", bench_cache_starve}, {"cache.turns", bench_cache_turns},
       {"cache.switch", bench_cache_switch},
+      {"denoise.ms", bench_denoise_time}, {"denoise.flip", bench_denoise_flip},
       {"light.frame", bench_light_frame}, {"light.scaling", bench_light_scaling},
       {"light.error", bench_light_error}, {"light.rays", bench_light_rays},
       {"light.cycles", bench_light_cycles}, {"light.photons", bench_light_photons}};
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only,
-                 "one part: stream, cache, light (or one of its own: light.error ...), avatar");
+                 "one part: stream, cache, denoise, light (or one of its own: light.error ...), avatar");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
   app.add_option("--make-traces", traces,
                  "instead: write the visits' camera traces into this folder")

@@ -58,7 +58,14 @@ test('a still picture, and its wrong parameters', async () => {
   const same = await get(`${path}?viewpoint=hall&width=96&height=64&spp=4`);
   const again = Buffer.from(await same.arrayBuffer());
   assert.ok(bytes.equals(again), 'the same question gives the same picture');
-  for (const query of ['width=0', 'width=99999', 'height=-4', 'spp=zero', 'spp=1e9',
+  const comment = (jpeg) => jpeg.subarray(6, 4 + jpeg.readUInt16BE(4)).toString();
+  assert.equal(bytes.readUInt16BE(2), 0xfffe, 'a comment comes first');
+  assert.match(comment(bytes), /^4 samples a pixel by path, (denoised by the network base|not denoised)$/);
+  const plain = Buffer.from(await (await get(
+      `${path}?viewpoint=hall&width=96&height=64&spp=4&denoise=0`)).arrayBuffer());
+  assert.match(comment(plain), /^4 samples a pixel by path, not denoised$/);
+  assert.equal(plain.subarray(50).equals(bytes.subarray(50)), !comment(bytes).includes('network'));
+  for (const query of ['width=0', 'width=99999', 'height=-4', 'spp=zero', 'spp=1e9', 'denoise=2',
       'width=3840&height=3840&spp=1024'])
     assert.equal((await get(`${path}?${query}`)).status, 400, query);
   assert.equal((await get(`${path}?viewpoint=moon`)).status, 404);
