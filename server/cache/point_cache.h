@@ -10,7 +10,7 @@
 
 #include "cache/big_pages.h"
 #include "light/sample.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

@@ -5,7 +5,7 @@
 #pragma once
 #include <cstdint>
 
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

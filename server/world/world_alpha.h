@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a surface with alpha lets a ray pass. Used by bvh.cpp from Embree's filter functions.
+// Where a surface with alpha lets a ray pass. Used by world.cpp from Embree's filter functions.
 #pragma once
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "world/bvh.h"
+#include "world/world.h"
 
 #include <gtest/gtest.h>
 
@@ -107,12 +107,12 @@ void expect_same(const World& world, int rays, uint64_t seed) {
   EXPECT_GT(hits, rays / 10);
 }
 
-TEST(Bvh, HitsAreThoseOfBruteForce) {
+TEST(World, HitsAreThoseOfBruteForce) {
   Scene scene = scene_of(random_mesh(1, 300, 0.2f));
   expect_same(World(scene), 2000, 11);
 }
 
-TEST(Bvh, InstancesScaleTurnAndMirror) {
+TEST(World, InstancesScaleTurnAndMirror) {
   Scene scene = scene_of(random_mesh(2, 60, 0.3f));
   scene.instances.clear();
   Rng rng(5);
@@ -128,7 +128,7 @@ TEST(Bvh, InstancesScaleTurnAndMirror) {
 }
 
 // More triangles in all than are copied flat, so Embree instances are at work.
-TEST(Bvh, ThousandsOfInstances) {
+TEST(World, ThousandsOfInstances) {
   Scene scene = scene_of(random_mesh(3, 600, 0.3f));
   scene.instances.clear();
   for (int x = 0; x < 50; x++)
@@ -170,7 +170,7 @@ TEST(Bvh, ThousandsOfInstances) {
   EXPECT_TRUE(world.intersect(at_flat).valid());
 }
 
-TEST(Bvh, ManyRaysAtOnceAgreeWithOneByOne) {
+TEST(World, ManyRaysAtOnceAgreeWithOneByOne) {
   Scene scene = scene_of(random_mesh(4, 200, 0.3f));
   World world(scene, {random_mesh(5, 40, 0.4f)}, {0});
   Rng rng(9);
@@ -190,7 +190,7 @@ TEST(Bvh, ManyRaysAtOnceAgreeWithOneByOne) {
   }
 }
 
-TEST(Bvh, MovingMeshMovesHidesAndReturns) {
+TEST(World, MovingMeshMovesHidesAndReturns) {
   Scene scene = scene_of(square());
   World world(scene, {square()}, {7});
   EXPECT_TRUE(world.is_moving(1));
@@ -222,7 +222,7 @@ TEST(Bvh, MovingMeshMovesHidesAndReturns) {
   EXPECT_EQ(world.mesh_of(1).positions[0], vec3(30, 0, 1));
 }
 
-TEST(Bvh, MovingMeshMatchesBruteForceAfterManyMoves) {
+TEST(World, MovingMeshMatchesBruteForceAfterManyMoves) {
   Scene scene = scene_of(random_mesh(6, 20, 0.2f));
   Mesh mesh = random_mesh(7, 100, 0.2f);
   World world(scene, {mesh}, {0});
@@ -235,7 +235,7 @@ TEST(Bvh, MovingMeshMatchesBruteForceAfterManyMoves) {
   expect_same(world, 500, 13);
 }
 
-TEST(Bvh, VerticesThatAreNotFiniteStayWhereTheyWere) {
+TEST(World, VerticesThatAreNotFiniteStayWhereTheyWere) {
   Scene scene = scene_of(square());
   World world(scene, {square()}, {0});
   std::vector<vec3> positions(4, vec3(std::nanf("")));
@@ -247,7 +247,7 @@ TEST(Bvh, VerticesThatAreNotFiniteStayWhereTheyWere) {
   EXPECT_THROW(world.move(0, std::vector<vec3>(3), std::vector<vec3>(4)), std::invalid_argument);
 }
 
-TEST(Bvh, NothingAndSliversAreSafe) {
+TEST(World, NothingAndSliversAreSafe) {
   Scene nothing;
   nothing.materials.resize(1);
   World empty(nothing);
@@ -272,7 +272,7 @@ TEST(Bvh, NothingAndSliversAreSafe) {
   for (int i = 0; i < 100; i++) EXPECT_FALSE(world.intersect(random_ray(rng)).valid());
 }
 
-TEST(Bvh, RaysThatAreNotFiniteHitNothing) {
+TEST(World, RaysThatAreNotFiniteHitNothing) {
   Scene scene = scene_of(square());
   World world(scene);
   float bad = std::nanf("");
@@ -307,7 +307,7 @@ Scene window_scene(AlphaMode mode, uint8_t left_alpha) {
   return scene;
 }
 
-TEST(Bvh, MaskedSurfacesHaveHoles) {
+TEST(World, MaskedSurfacesHaveHoles) {
   Scene scene = window_scene(AlphaMode::mask, 0);
   World world(scene, {}, {});
   Rng rng(1);
@@ -325,7 +325,7 @@ TEST(Bvh, MaskedSurfacesHaveHoles) {
   EXPECT_TRUE(World(opaque).occluded(rays[0]));
 }
 
-TEST(Bvh, MaskedInstancesHaveHolesWhereTheyStand) {
+TEST(World, MaskedInstancesHaveHolesWhereTheyStand) {
   Scene scene = window_scene(AlphaMode::mask, 0);
   scene.meshes[0].triangles.resize(4000, uvec3(0, 0, 0));  // padding that is never hit
   scene.instances.clear();
@@ -341,7 +341,7 @@ TEST(Bvh, MaskedInstancesHaveHolesWhereTheyStand) {
   }
 }
 
-TEST(Bvh, BlendedSurfacesPassTheRightShareAndRepeat) {
+TEST(World, BlendedSurfacesPassTheRightShareAndRepeat) {
   Scene scene = window_scene(AlphaMode::blend, 77);  // alpha 0.302
   World world(scene);
   Rng rng(4);
@@ -361,7 +361,7 @@ TEST(Bvh, BlendedSurfacesPassTheRightShareAndRepeat) {
   EXPECT_NEAR(hits, count * alpha, 4 * deviation);
 }
 
-TEST(Bvh, WrongScenesAreRefused) {
+TEST(World, WrongScenesAreRefused) {
   Scene scene = scene_of(square());
   scene.meshes[0].triangles[0].x = 99;
   EXPECT_THROW(World{scene}, std::invalid_argument);

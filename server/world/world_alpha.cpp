@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "world/bvh_alpha.h"
+#include "world/world_alpha.h"
 
 #include <bit>
 

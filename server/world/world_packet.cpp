@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "base/lanes.h"
-#include "world/bvh_impl.h"
 #include "world/slab.h"
+#include "world/world_impl.h"
 
 namespace wellspring {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "world/bvh.h"
+#include "world/world.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
 
-#include "world/bvh_impl.h"
 #include "world/mesh_finish.h"
 #include "world/slab.h"
+#include "world/world_impl.h"
 
 namespace wellspring {
 namespace {

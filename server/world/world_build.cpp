@@ -6,10 +6,10 @@
 #include <string>
 
 #include "base/log.h"
-#include "world/bvh_alpha.h"
-#include "world/bvh_impl.h"
 #include "world/mesh_finish.h"
 #include "world/surface.h"
+#include "world/world_alpha.h"
+#include "world/world_impl.h"
 
 namespace wellspring {
 namespace {

@@ -2,8 +2,8 @@
 // Triangles around a place, by Embree's point queries.
 #include <cmath>
 
-#include "world/bvh.h"
-#include "world/bvh_impl.h"
+#include "world/world.h"
+#include "world/world_impl.h"
 
 namespace wellspring {
 namespace {
