@@ -95,7 +95,7 @@ class RenderCache {
   void reconstruct(const View& view, std::span<const Seen> seen, Frame& frame);
   // A picture of `view` drawn in the light of `view` or of light_view(view)
   // (cache/compose_drawn.h), whichever all of the frame before has been done for (neither: the
-  // latter); needs sight.can_see(view). The second for the eye at once, and of a `depth` that is
+  // latter); needs sight.rasterises(view). The second for the eye at once, and of a `depth` that is
   // not null metres along the viewing axis, infinity: nothing there. `calm`: of pixels so large
   // that a point's own light would show as a square.
   void draw(const View& view, const PictureSight& sight, Frame& frame);

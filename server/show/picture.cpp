@@ -124,7 +124,7 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   order.attention = visitor.attention;
   order.keep = show.settings.background;
   order.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
-  bool may_draw = show.sight && show.sight->can_see(now);
+  bool may_draw = show.sight && show.sight->rasterises(now);
   order.display = plan_display(
       seconds_to_trace(show, visitor, busy), size_t(visitor.width) * size_t(visitor.height),
       display_costs(show, visitor), before.display, fine,

@@ -67,7 +67,7 @@ class CacheMethod : public VisitMethod {
     if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
     last_view_ = moment.view;
     // As show/picture.cpp draws what moves.
-    bool drawn = primary_ && sight(moment).can_see(moment.view);
+    bool drawn = primary_ && sight(moment).rasterises(moment.view);
     bool passing = drawn && moment.frame - moved_ < still_after;
     cache_.set_drawn(drawn);
     double pixels = double(moment.view.width) * double(moment.view.height);

@@ -55,14 +55,14 @@ Exhibit make_cubed(bool glass) {
 TEST(Picture, IsNotDrawnForAnEyeInSolidGlass) {
   for (DrawShapes draw : {DrawShapes::automatic, DrawShapes::always}) {
     auto inside = make_visited(make_cubed(true), draw);
-    ASSERT_FALSE(inside->sight->can_see(inside->visitors.front().last_view));
+    ASSERT_FALSE(inside->sight->rasterises(inside->visitors.front().last_view));
     const PictureOrder& order = inside->visitors.front().order;
     EXPECT_FALSE(order.display.drawn);
     EXPECT_FALSE(order.coarse);
     EXPECT_GT(inside->totals.drawn, 0u);
     EXPECT_EQ(inside->easel.work.frame.width, 1280);  // and is a picture of points
     auto elsewhere = make_visited(make_cubed(false), draw);
-    ASSERT_TRUE(elsewhere->sight->can_see(elsewhere->visitors.front().last_view));
+    ASSERT_TRUE(elsewhere->sight->rasterises(elsewhere->visitors.front().last_view));
     EXPECT_TRUE(elsewhere->visitors.front().order.display.drawn || draw != DrawShapes::always);
   }
 }
