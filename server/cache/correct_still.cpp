@@ -167,7 +167,7 @@ class Residuals {
       }
       // Beyond white differences are not seen, and samples are bounded.
       i8 seen = smaller(brightest, brightest_drawn) <= 1.0f;
-      i8 rests = (read_words(&still_.count[i], here) & ~uint32_t(still_fresh)) != 0u;
+      i8 rests = read_words(&still_.count[i], here) != 0u;
       f8 n = keep(seen & rests, to_float(read_words(&samples_.count[i], here)));
       f8 per_sample = 1.0f / larger(n, splat(1)), per_variance = 1.0f / variance;
       // Around the picture, not around the mean: of few samples none is sure of what it says
@@ -451,7 +451,7 @@ void correct_still(const StillSamples& samples, const StillImage& still, StillCo
                 size_t start = size_t(y) * size_t(width);
                 for (size_t x = 0; x < size_t(width); x++) {
                   size_t i = start + x;
-                  bool moves = (still.count[i] & ~still_fresh) == 0;
+                  bool moves = still.count[i] == 0;
                   vec3 more = moves ? vec3(0) : share * vec3(to[0][x], to[1][x], to[2][x]);
                   work.color[i] = max(frame.color[i] + more, vec3(0));
                 }

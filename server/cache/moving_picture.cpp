@@ -10,7 +10,6 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "cache/project.h"
-#include "cache/reconstruct.h"
 #include "frame/tone_curve.h"
 #include "world/texture.h"
 

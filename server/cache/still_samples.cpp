@@ -24,10 +24,8 @@ void forget_samples(const StillImage& still, StillSamples& samples) {
                   [&](int begin, int end) {
                     const uint8_t* known = still.count.data();
                     uint8_t* count = samples.count.data();
-                    for (int i = begin; i < end; i++) {
-                      int n = known[i] & ~still_fresh;
-                      count[i] = n == 0 || n == still_relit ? uint8_t(0) : count[i];
-                    }
+                    for (int i = begin; i < end; i++)
+                      count[i] = known[i] == 0 ? uint8_t(0) : count[i];
                   });
 }
 

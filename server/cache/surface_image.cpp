@@ -2,26 +2,14 @@
 #include "cache/surface_image.h"
 
 #include <algorithm>
+#include <atomic>
 
+#include "base/parallel.h"
+#include "cache/cells.h"
 #include "cache/lanes.h"
 #include "cache/packing.h"
 
 namespace wellspring {
-namespace {
-
-// What eight points emit is of their `rest`, too, where pictures are made of points alone.
-u8 add_glow(const u8& rest, const uint32_t* glow, const uint32_t* point) {
-  alignas(32) uint32_t sum[lanes], own[lanes];
-  store(sum, rest);
-  for (int i = 0; i < lanes; i++) own[i] = glow[point[i]];
-  if (!any(load<i8>(own) != 0)) return rest;
-  for (int i = 0; i < lanes; i++)
-    if (own[i] != 0) sum[i] = pack_rgb9e5(unpack_rgb9e5(sum[i]) + unpack_rgb9e5(own[i]));
-  return load<u8>(sum);
-}
-
-}  // namespace
-
 int read_points(const PointCache& points, const PointImage& image, int y, SurfaceRows& rows) {
   constexpr int ahead = 32;  // pixels by which point data is fetched early
   if (y < 0 || y >= image.height || points.capacity() == 0) {
@@ -33,7 +21,6 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
   const float* depth = image.depth.data() + size_t(y) * size_t(width);
   const PointColor* colors = points.color.data();
   const uint8_t* counts = points.count.data();
-  const uint32_t* glow = points.glow.empty() ? nullptr : points.glow.data();
   uint32_t* albedo = rows.row(plane_albedo, y);
   uint32_t* rest = rows.row(plane_rest, y);
   uint32_t* smooth = rows.row(plane_smooth, y);
@@ -61,7 +48,6 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
     store(point, index & known);
     u8 a, s, r, o;
     transpose([&](int i) { return &colors[point[i]]; }, a, s, r, o);  // in the order of PointColor
-    if (glow) r = add_glow(r, glow, point);
     auto more = [&](int i) {
       uint32_t word;
       std::memcpy(&word, &colors[point[i]].normal, sizeof word);
@@ -226,6 +212,30 @@ int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame) {
   int sum = 0;
   for (int i = 0; i < lanes; i++) sum += int(points[i]);
   return sum;
+}
+
+ShownPoints read_surface(const WindowView& view, const PointCache& points,
+                           const PointImage& image, Cells& cells, Frame& frame) {
+  std::atomic<int64_t> shown{0}, converged{0};
+  parallel_ranges(cells.height, 4, [&](int begin, int end) {
+    thread_local SurfaceRows rows;
+    rows.start(image.width, 2 * cell_size);
+    ShownPoints here;
+    int next = begin * cell_size - 1, last = end * cell_size;
+    for (int cy = begin; cy < end; cy++) {
+      int top = cy * cell_size, bottom = top + cell_size;
+      for (; next <= bottom; next++) {
+        int enough = read_points(points, image, next, rows);
+        if (next >= begin * cell_size && next < last) here.converged += enough;
+      }
+      build_cells(view, rows, cy, cells);
+      for (int y = top; y < std::min(bottom, image.height); y++)
+        here.points += fill_from_neighbours(rows, y, frame);
+    }
+    shown += here.points;
+    converged += here.converged;
+  });
+  return {shown, converged};
 }
 
 }  // namespace wellspring

@@ -1,41 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the points say about every pixel, before light is put together. A few rows of it lie in
-// SurfaceRows while cells are built and holes filled; the whole picture lies packed in the frame's
-// own planes until compose() overwrites them, pixel by pixel, with what they are meant for.
+// SurfaceRows while cells are built and holes filled; the whole picture lies packed in the planes
+// of a frame.
 #pragma once
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <vector>
 
+#include "cache/cache.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
 #include "cache/scratch.h"
+#include "cache/window_view.h"
 #include "frame/frame.h"
-#include "world/view.h"
 
 namespace wellspring {
 
 inline constexpr uint32_t no_object = 0xffffffffu;  // nothing known here
-
-// Pixels of a picture, from (left, top) on.
-struct PictureWindow {
-  int left = 0, top = 0, width = 0, height = 0;
-  bool empty() const { return width <= 0 || height <= 0; }
-};
-
-// What a window of a view's picture shows, as a picture of its own: the middle of that may lie off
-// the axis.
-struct WindowView : View {
-  vec2 shift{0};  // pixels that it lies to the right and below
-  WindowView(const View& view) : View(view) {}
-  WindowView(const View& view, const PictureWindow& window) : View(view) {
-    width = window.width, height = window.height;
-    tan_half_fov = view.tan_half_fov * float(height) / float(view.height);
-    shift = vec2(float(window.left) + 0.5f * float(width - view.width),
-                 float(window.top) + 0.5f * float(height - view.height));
-  }
-};
 
 // Rays through pixel centres in view coordinates (right, up, forward = 1).
 struct PixelRays {
@@ -85,7 +67,6 @@ class SurfaceRows {
 
 // Reads the points of row y of the picture; a row outside becomes empty. Returns how many hold
 // `converged_samples` or more.
-inline constexpr uint32_t converged_samples = 32;
 int read_points(const PointCache& points, const PointImage& image, int y, SurfaceRows& rows);
 
 // Row y packed into the frame, its holes filled from their 3x3 neighbours (weights 2 and 1 for
@@ -97,8 +78,8 @@ int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame);
 // Where a picture's surface lies in its frame. Depth, object and `more` of a pixel lie in its own
 // place of the planes depth, object and confidence. Albedo, rest and smooth share the place of the
 // colours four pixels at a time: of the pixels x to x + 3 first four words of albedo, then four of
-// rest, then four of smooth. Such fours start two pixels left of the picture, where the blocks of
-// compose() do, which can so be composed in place; at the edges a four has fewer pixels.
+// rest, then four of smooth. Such fours start two pixels left of the picture, where the groups of
+// compose_drawn.cpp do; at the edges a four has fewer pixels.
 inline constexpr int packed_four = 4, packed_start = -2;
 struct PackedFour {
   int first, count;  // pixels of the four that lie in the picture
@@ -127,5 +108,11 @@ inline void read_packed(const Frame& frame, int x, int y, uint32_t* words) {
   std::memcpy(&words[plane_more], &frame.confidence[at], sizeof(uint32_t));
   std::memcpy(&words[plane_depth], &frame.depth[at], sizeof(uint32_t));
 }
+
+struct Cells;
+// Reads every visible point once: builds the cells, fills holes from their neighbours and leaves
+// the surface packed in the frame's planes. Pixels far from any point stay unknown.
+ShownPoints read_surface(const WindowView& view, const PointCache& points, const PointImage& image,
+                         Cells& cells, Frame& frame);
 
 }  // namespace wellspring

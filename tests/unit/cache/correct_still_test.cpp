@@ -133,12 +133,12 @@ TEST(CorrectStill, WhatMovesStaysAsItIsDrawn) {
   draw_wrongly(p);
   p.sample(64, 9);
   for (int i = 0; i < pixels; i++)
-    if (i % width >= 30 && i % width < 50) p.still.count[size_t(i)] = still_fresh;
+    if (i % width >= 30 && i % width < 50) p.still.count[size_t(i)] = 0;
   std::vector<vec3> drawn = p.frame.color;
   p.correct();
   int changed = 0;
   for (int i = 0; i < pixels; i++)
-    if (p.still.count[size_t(i)] == still_fresh)
+    if (p.still.count[size_t(i)] == 0)
       EXPECT_EQ(p.frame.color[size_t(i)], drawn[size_t(i)]) << i;
     else changed += p.frame.color[size_t(i)] != drawn[size_t(i)];
   EXPECT_GT(changed, pixels / 2);
@@ -148,10 +148,8 @@ TEST(CorrectStill, SamplesAreForgottenWhereThePictureBeginsAnew) {
   Picture p;
   p.sample(3, 1);
   p.still.count[5] = 0;
-  p.still.count[6] = still_fresh;
-  p.still.count[7] = still_relit;
   forget_samples(p.still, p.samples);
-  for (size_t i = 0; i < 10; i++) EXPECT_EQ(p.samples.count[i], i >= 5 && i <= 7 ? 0 : 3) << i;
+  for (size_t i = 0; i < 10; i++) EXPECT_EQ(p.samples.count[i], i == 5 ? 0 : 3) << i;
 }
 
 // Of an exponential distribution the deviation is the mean. Means over 61 pixels of 200 samples

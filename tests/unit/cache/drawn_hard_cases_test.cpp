@@ -91,6 +91,7 @@ TEST(DrawnHardCases, AFullTurnInThreeTenthsOfASecond) {
     ASSERT_TRUE(is_sound(visitor.frame)) << i;
     ASSERT_LE(count_wrong(stage, turned(i), visitor.frame), 2) << i;
   }
+  EXPECT_GT(visitor.cache.stats().reprojected, 0.1);  // not all is forgotten
   // Back where it began nothing is worse than if the visitor had stood.
   for (int i = 0; i < 5; i++) visitor.step(stage, turned(18), pixels / 16);
   EXPECT_LT(shown_error(visitor.frame, truth), 1.15 * before);
@@ -230,6 +231,32 @@ TEST(DrawnHardCases, AlongTheFloor) {
     }
   }
   EXPECT_LT(shown_error(visitor.frame, stage.truth(view, 64)), 0.015);
+}
+
+// Within a solid of glass rays are cast. Through a ball of it, and at rest in its middle: its
+// surface shows the room around, as the reference has it.
+TEST(DrawnHardCases, AnEyeWithinGlass) {
+  Scene scene = make_room();
+  add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 0.5f), "glass",
+           at(vec3(-0.4f, 1.2f, 1)));
+  Stage stage(std::move(scene));
+  Visitor visitor;
+  auto view = [&](int i) {
+    return view_of(stage, {-0.4, 1.2, 1.8 - 0.04 * i}, 0.1f);
+  };
+  int inside = 0;
+  for (int i = 0; i <= 40; i++) {
+    inside += !stage.sight->rasterises(view(i));
+    visitor.step(stage, view(i), pixels / 16);
+    ASSERT_TRUE(is_sound(visitor.frame)) << i;
+    ASSERT_LE(count_wrong(stage, view(i), visitor.frame), pixels / 100) << i;
+  }
+  EXPECT_NEAR(inside, 25, 3);
+  ASSERT_FALSE(stage.sight->rasterises(view(20)));
+  Frame truth = stage.truth(view(20), 64);
+  for (int i = 0; i < 120; i++) visitor.step(stage, view(20), pixels / 2, true);
+  EXPECT_LE(count_wrong(stage, view(20), visitor.frame), pixels / 100);
+  EXPECT_LT(shown_error(visitor.frame, truth), 0.033);
 }
 
 // What is finer than its light's pixels is neither lost nor moved.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// One visitor of a scene, shown pictures of points alone or such as are drawn.
+// One visitor of a scene.
 #pragma once
 #include <memory>
 #include <span>
 
-#include "cache/cache.h"
 #include "cache/compose_drawn.h"
+#include "cache/compositor.h"
 #include "light/technique.h"
 #include "scenes/scenes.h"
 
@@ -83,19 +83,21 @@ inline Mesh add_ball(Scene& scene, vec3 place) {
   return ball;
 }
 
-// RenderCache::reconstruct(), draw() in coarser light and in fine, draw_still()
-enum class PictureOf { points, moving, moving_fine, still };
+// draw() in coarser light and in fine, draw_still()
+enum class PictureOf { moving, moving_fine, still };
 
 struct DrawnVisit {
   RenderCache cache;
+  Compositor compositor;
   std::vector<Request> requests;
   std::vector<Sample> samples;
   Frame frame;
   uint64_t tick = 1;
 
+  size_t memory_bytes() const { return cache.memory_bytes() + compositor.memory_bytes(); }
+
   void step(const Stage& stage, const View& view, int budget, PictureOf kind) {
     View light = kind == PictureOf::moving ? light_view(view) : view;
-    cache.set_drawn(kind != PictureOf::points);
     cache.resize(view.width, view.height);
     cache.move_points(*stage.world);
     cache.project(light);
@@ -103,11 +105,9 @@ struct DrawnVisit {
     cache.plan(light, budget, tick++, requests);
     samples.resize(requests.size());
     trace(*find_technique("path"), *stage.world, stage.lights, {}, requests, samples);
-    cache.remember(light, requests, samples);
-    if (kind == PictureOf::points) cache.reconstruct(view, frame);
-    if (kind == PictureOf::moving || kind == PictureOf::moving_fine)
-      cache.draw(view, *stage.sight, frame);
-    if (kind == PictureOf::still) cache.draw_still(view, *stage.sight, frame);
+    compositor.add_samples(cache, requests, samples, cache.remember(light, requests, samples));
+    if (kind == PictureOf::still) compositor.draw_still(cache, view, *stage.sight, frame);
+    else compositor.draw(cache, view, *stage.sight, frame);
   }
 };
 

@@ -65,8 +65,7 @@ TEST(Glow, IsAddedToTheLightThatFallsThere) {
   Stage stage(make_board());
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.3f), size, size);
   Frame truth = stage.truth(view, 64);
-  for (PictureOf kind :
-       {PictureOf::points, PictureOf::moving, PictureOf::moving_fine, PictureOf::still}) {
+  for (PictureOf kind : {PictureOf::moving, PictureOf::moving_fine, PictureOf::still}) {
     DrawnVisit visit;
     for (int i = 0; i < 24; i++) visit.step(stage, view, size * size / 4, kind);
     for (int stripe = 0; stripe < 4; stripe++) {
@@ -81,79 +80,6 @@ TEST(Glow, IsAddedToTheLightThatFallsThere) {
   }
 }
 
-// A coloured pane before it.
-Scene make_glazed_board() {
-  Scene scene = make_board();
-  Material pane = glass(1.5f, 0, 0);
-  pane.base_color = {0.5f, 0.9f, 0.7f, 1};
-  add_quad(scene, add_material(scene, pane), {-2, -2, -3}, {4, 0, 0}, {0, 4, 0}, "pane");
-  return scene;
-}
-
-// Not one sample later than the way changes: what a surface emits is neither missing nor twice
-// there.
-TEST(Glow, IsRightAtOnceWhenPicturesAreMadeAnotherWay) {
-  for (bool glazed : {false, true}) {
-    Stage stage(glazed ? make_glazed_board() : make_board());
-    View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.3f), size, size);
-    Frame truth = stage.truth(view, 256);
-    const PictureOf drawn[] = {PictureOf::moving, PictureOf::moving_fine, PictureOf::still};
-    for (PictureOf kind : drawn) {
-      // Those with and without points of what shines on the way.
-      for (bool points_first : {true, false}) {
-        PictureOf first = points_first ? PictureOf::points : kind,
-                  second = points_first ? kind : PictureOf::points;
-        DrawnVisit visit;
-        for (int i = 0; i < 40; i++) visit.step(stage, view, size * size, first);
-        visit.step(stage, view, 0, second);
-        // Of light of half the size every second pixel is like one beside it.
-        float allowed = first == PictureOf::moving ? 0.1f : 0.03f;
-        for (int stripe = 0; stripe < 4; stripe++) {
-          Mean mean = compare(visit.frame, truth, view, stripe);
-          EXPECT_LT(glm::length(mean.shown - mean.wanted), allowed * mean.wanted.x)
-              << "glazed " << glazed << ", from " << int(first) << " to " << int(second)
-              << ", stripe " << stripe << ": " << mean.shown.x << " for " << mean.wanted.x;
-        }
-        visit.step(stage, view, 0, first);  // and back
-        Mean mean = compare(visit.frame, truth, view, 3);
-        EXPECT_LT(glm::length(mean.shown - mean.wanted), 0.03f * mean.wanted.x)
-            << "glazed " << glazed << ", from " << int(second) << " back to " << int(first);
-      }
-    }
-  }
-}
-
-// The same of a ball that has moved meanwhile.
-TEST(Glow, OfWhatMovesIsRightAtOnceToo) {
-  Scene scene = empty_scene();
-  scene.environment.radiance = vec3(1);
-  Material shining = diffuse(vec3(0.5f));
-  shining.emission = vec3(2, 1, 0.5f);
-  Mesh ball = sphere_mesh(add_material(scene, shining), 0.4f, 32);
-  for (vec3& p : ball.positions) p += vec3(-0.3f, 0, -2);
-  scene.objects.push_back("ball");
-  Stage stage(std::move(scene), std::move(ball));
-  View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.4f), size, size);
-  DrawnVisit visit;
-  for (int i = 0; i < 40; i++) visit.step(stage, view, size * size, PictureOf::moving_fine);
-  stage.push_ball(0.3f);
-  visit.step(stage, view, 0, PictureOf::points);
-  vec3 shown(0);
-  int count = 0;
-  for (int y = size / 2 - 8; y < size / 2 + 8; y++)
-    for (int x = size / 2 - 8; x < size / 2 + 8; x++) {
-      size_t i = size_t(y * size + x);
-      if (visit.frame.object[i] == 0) continue;  // sky, where points lie apart now
-      shown += visit.frame.color[i], count++;
-    }
-  ASSERT_GT(count, 100);
-  shown /= float(count);
-  for (int c = 0; c < 3; c++) {  // light from all around
-    float wanted = 0.5f + shining.emission[c];
-    EXPECT_NEAR(shown[c], wanted, 0.05f * wanted) << c;
-  }
-}
-
 // A lamp's own light goes with the lamp.
 TEST(Glow, FollowsTheLampThatIsSwitched) {
   Scene scene = make_board();
@@ -161,45 +87,13 @@ TEST(Glow, FollowsTheLampThatIsSwitched) {
   Stage stage(std::move(scene));
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.3f), size, size);
   DrawnVisit visit;
-  for (int i = 0; i < 40; i++) visit.step(stage, view, size * size, PictureOf::points);
+  for (int i = 0; i < 40; i++) visit.step(stage, view, size * size, PictureOf::moving_fine);
   float lit = compare(visit.frame, visit.frame, view, 3).shown.x;
   EXPECT_GT(lit, 2);
   stage.world->switch_lamp(0, false);
   visit.cache.relight([](vec3, vec3, vec3&, vec3&) { return true; });
-  visit.step(stage, view, 0, PictureOf::points);
+  visit.step(stage, view, 0, PictureOf::moving_fine);
   EXPECT_NEAR(compare(visit.frame, visit.frame, view, 3).shown.x, 0.5f, 0.05f);
-}
-
-// What points keep of it takes no more than means of samples do, which only drawn pictures have.
-TEST(Glow, TakesNoMoreMemoryThanPicturesThatAreDrawn) {
-  Stage stage(make_board());
-  View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.3f), size, size);
-  size_t bytes[2];
-  for (bool drawn : {false, true}) {
-    DrawnVisit visit;
-    for (int i = 0; i < 12; i++)
-      visit.step(stage, view, size * size, i < 6 || drawn ? PictureOf::still : PictureOf::points);
-    bytes[drawn] = visit.cache.memory_bytes();
-  }
-  EXPECT_LE(bytes[0], bytes[1]);
-  EXPECT_GT(bytes[0], bytes[1] - bytes[1] / 20);  // and it is counted
-}
-
-// Who was shown points alone and is drawn pictures from now on, and the other way round: what is
-// remembered becomes what those need.
-TEST(Glow, FollowsTheWayPicturesAreMade) {
-  Stage stage(make_board());
-  View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.3f), size, size);
-  Frame truth = stage.truth(view, 64);
-  DrawnVisit visit;
-  for (PictureOf kind : {PictureOf::points, PictureOf::moving_fine, PictureOf::points}) {
-    for (int i = 0; i < 60; i++) visit.step(stage, view, size * size, kind);
-    for (int stripe = 0; stripe < 4; stripe++) {
-      Mean mean = compare(visit.frame, truth, view, stripe);
-      EXPECT_LT(glm::length(mean.shown - mean.wanted), 0.03f * mean.wanted.x)
-          << "picture " << int(kind) << ", stripe " << stripe;
-    }
-  }
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // What techniques know of their samples' noise, and what the cache makes of it.
 #include <gtest/gtest.h>
 
-#include "cache/cache.h"
+#include "cache/compositor.h"
 #include "frame/flip.h"
 #include "light/technique.h"
 #include "scenes/scenes.h"
@@ -14,7 +14,9 @@ using namespace scenes;
 
 // A picture after five times one sample for 25 pixels. `told`: hints reach the cache.
 Frame show(const World& world, const Lights& lights, const View& view, bool told) {
+  PictureSight sight(world, lights);
   RenderCache cache;
+  Compositor compositor;
   std::vector<Request> requests;
   std::vector<Sample> samples;
   Frame frame;
@@ -29,7 +31,7 @@ Frame show(const World& world, const Lights& lights, const View& view, bool told
     for (Sample& sample : samples)
       if (!told) sample.flags &= uint8_t(~sample_sure);
     cache.remember(view, requests, samples);
-    cache.reconstruct(view, frame);
+    compositor.draw(cache, view, sight, frame);
   }
   return frame;
 }

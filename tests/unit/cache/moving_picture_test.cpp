@@ -6,9 +6,9 @@
 
 #include <cstdlib>
 
-#include "drawn_visit.h"
 #include "frame/tone_curve.h"
 #include "frame/tonemap.h"
+#include "unit/cache/drawn_visit.h"
 
 namespace wellspring {
 namespace {
@@ -71,12 +71,15 @@ struct Rested {
   Keyframe draw_backdrop(const Stage& stage, const View& view) {
     visit.cache.move_points(*stage.world);
     visit.cache.project(view);
-    visit.cache.draw_still(view, *stage.sight, backdrop, StillShows::backdrop);
+    visit.compositor.draw_still(visit.cache, view, *stage.sight, backdrop, StillShows::backdrop);
     return keyframe_of(view, backdrop);
   }
+  bool draw_moving(const Stage& stage, const Keyframe& keyframe) {
+    return visit.compositor.draw_moving(visit.cache, *stage.world, keyframe, *stage.sight, {},
+                                        light, moving);
+  }
   Image8 draw_over(const Stage& stage, const Keyframe& keyframe) {
-    EXPECT_TRUE(
-        visit.cache.draw_moving(*stage.world, keyframe, *stage.sight, {}, light, moving));
+    EXPECT_TRUE(draw_moving(stage, keyframe));
     return laid_over(keyframe, moving);
   }
 };
@@ -136,7 +139,7 @@ TEST(MovingPicture, IsThatOfWholePictures) {
   Rested whole(stage, view), parts(stage, view);
   whole.visit.cache.move_points(*stage.world);
   whole.visit.cache.project(view);
-  whole.visit.cache.draw_still(view, *stage.sight, whole.visit.frame);
+  whole.visit.compositor.draw_still(whole.visit.cache, view, *stage.sight, whole.visit.frame);
   Image8 wanted = shown(whole.visit.frame);
   Keyframe keyframe = parts.draw_backdrop(stage, view);
   for (uint32_t object : parts.backdrop.object) ASSERT_NE(object, ball_of(stage));
@@ -277,12 +280,10 @@ TEST(MovingPicture, NeedsPointsOnWhatMoves) {
   rested.visit.step(stage, view, 0, PictureOf::still);
   EXPECT_FALSE(rested.visit.cache.knows_moving());
   Keyframe keyframe = rested.draw_backdrop(stage, view);
-  EXPECT_FALSE(rested.visit.cache.draw_moving(*stage.world, keyframe, *stage.sight, {},
-                                              rested.light, rested.moving));
+  EXPECT_FALSE(rested.draw_moving(stage, keyframe));
   stage.world->show(0, false);
   stage.world->commit();
-  EXPECT_TRUE(rested.visit.cache.draw_moving(*stage.world, keyframe, *stage.sight, {},
-                                             rested.light, rested.moving));
+  EXPECT_TRUE(rested.draw_moving(stage, keyframe));
   EXPECT_TRUE(rested.moving.empty());
 }
 

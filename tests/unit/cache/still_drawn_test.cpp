@@ -29,8 +29,8 @@ Still make_still_with_ball() {
 }
 
 struct Visit : DrawnVisit {
-  void step(const Still& stage, int budget, bool drawn) {
-    DrawnVisit::step(stage, stage.view, budget, drawn ? PictureOf::still : PictureOf::points);
+  void step(const Still& stage, int budget) {
+    DrawnVisit::step(stage, stage.view, budget, PictureOf::still);
   }
 };
 
@@ -67,27 +67,26 @@ double error_at(const Frame& a, const Frame& b, const std::vector<bool>& at) {
   return std::sqrt(sum / count);
 }
 
-// Edges are smooth after few samples, long before points alone have had enough of both sides.
+// Edges are smooth after few samples.
 TEST(StillDrawn, EdgesAreAntialiasedInTime) {
   Still stage = make_still();
   Frame truth = stage.truth();
   std::vector<bool> edges = edge_pixels(stage);
   ASSERT_GT(std::count(edges.begin(), edges.end(), true), pixels / 20);
-  Visit drawn, points;
+  Visit drawn;
   double first = 0;
   for (int i = 0; i < 24; i++) {
-    drawn.step(stage, pixels / 8, true);
-    points.step(stage, pixels / 8, false);
+    drawn.step(stage, pixels / 8);
     if (i == 3) first = error_at(drawn.frame, truth, edges);
   }
   double error = error_at(drawn.frame, truth, edges);
   EXPECT_LT(error, 0.7 * first);
-  EXPECT_LT(error, 0.7 * error_at(points.frame, truth, edges));
-  EXPECT_LT(rmse(drawn.frame, truth), 0.8 * rmse(points.frame, truth));
+  EXPECT_LT(error, 0.12);
+  EXPECT_LT(rmse(drawn.frame, truth), 0.045);
   // Nothing trembles when no more is learned.
-  for (int i = 0; i < 32; i++) drawn.step(stage, 0, true);
+  for (int i = 0; i < 32; i++) drawn.step(stage, 0);
   std::vector<vec3> before = shown(drawn.frame).color;
-  drawn.step(stage, 0, true);
+  drawn.step(stage, 0);
   std::vector<vec3> now = shown(drawn.frame).color;
   for (size_t i = 0; i < before.size(); i++) ASSERT_LT(length(now[i] - before[i]), 0.05f) << i;
 }
@@ -99,7 +98,7 @@ TEST(StillDrawn, ConvergesToTheReference) {
   Visit drawn;
   double error[3];
   for (int k = 0, i = 0; k < 3; k++) {
-    for (; i < 12 << (2 * k); i++) drawn.step(stage, pixels / 4, true);
+    for (; i < 12 << (2 * k); i++) drawn.step(stage, pixels / 4);
     error[k] = rmse(shown(drawn.frame), shown(truth));
   }
   EXPECT_LT(error[1], 0.8 * error[0]);
@@ -110,7 +109,7 @@ TEST(StillDrawn, ConvergesToTheReference) {
 TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
   Still stage = make_still_with_ball();
   Visit visit;
-  for (int i = 0; i < 20; i++) visit.step(stage, pixels / 8, true);
+  for (int i = 0; i < 20; i++) visit.step(stage, pixels / 8);
   uint32_t ball = uint32_t(stage.scene.objects.size() - 1);
   auto expect_ball = [&] {
     for (int i = 0; i < pixels; i++) {
@@ -131,12 +130,12 @@ TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
   expect_ball();
   for (int i = 0; i < 10; i++) {
     stage.push_ball(0.02f);
-    visit.step(stage, pixels / 8, true);
+    visit.step(stage, pixels / 8);
     expect_ball();
   }
   // Of its colour nothing stays where it was: a yellow that the walls have not.
   Frame truth = stage.truth();
-  for (int i = 0; i < 4; i++) visit.step(stage, pixels / 8, true);
+  for (int i = 0; i < 4; i++) visit.step(stage, pixels / 8);
   double yellow = 0, expected = 0;
   for (int y = 50; y < 70; y++)
     for (int x = 30; x < 50; x++) {
@@ -152,19 +151,19 @@ TEST(StillDrawn, WhatMovesIsWhereItIsAndLeavesNothing) {
 TEST(StillDrawn, NothingOfAnotherViewRemains) {
   Still stage = make_still();
   Visit visit;
-  for (int i = 0; i < 4; i++) visit.step(stage, pixels / 4, true);
+  for (int i = 0; i < 4; i++) visit.step(stage, pixels / 4);
   View box = stage.view;
   stage.view = make_view(stage.scene, {0, 0.25, 0.6}, float(pi), 0, 0.7f, width,
                          height);  // nothing is there
-  visit.step(stage, pixels / 4, true);
+  visit.step(stage, pixels / 4);
   for (vec3 c : visit.frame.color) ASSERT_EQ(c, vec3(0));
   stage.view = box;
-  visit.step(stage, pixels / 4, true);
+  visit.step(stage, pixels / 4);
   Frame once = visit.frame;
   double light = 0, again = 0;
   for (vec3 c : once.color) light += luminance(c);
   stage.view = make_view(stage.scene, {0, 0.25, 0.6}, float(pi), 0, 0.7f, width, height);
-  visit.step(stage, pixels / 4, true);
+  visit.step(stage, pixels / 4);
   for (vec3 c : visit.frame.color) again += luminance(c);
   EXPECT_GT(light, 100);
   EXPECT_EQ(again, 0);
@@ -185,9 +184,9 @@ TEST(StillDrawn, NothingOfAnotherViewRemainsInTheMean) {
       Visit visit;
       visit.tick = uint64_t(1000 * (2 * i + jumped) + 1);
       stage.view = there;
-      for (int k = 0; jumped && k < pictures; k++) visit.step(stage, pixels / 4, true);
+      for (int k = 0; jumped && k < pictures; k++) visit.step(stage, pixels / 4);
       stage.view = here;
-      for (int k = 0; k < pictures; k++) visit.step(stage, pixels / 4, true);
+      for (int k = 0; k < pictures; k++) visit.step(stage, pixels / 4);
       Frame seen = shown(visit.frame);
       for (int b = 0; b < across * down; b++) {
         double light = 0;
@@ -220,7 +219,7 @@ TEST(StillDrawn, NarrowThingsHaveTheirOwnLight) {
   }
   ASSERT_GT(std::count(bars.begin(), bars.end(), true), 200);
   Visit visit;
-  for (int i = 0; i < 16; i++) visit.step(stage, pixels / 8, true);
+  for (int i = 0; i < 16; i++) visit.step(stage, pixels / 8);
   double mean = 0, expected = 0;
   for (size_t i = 0; i < bars.size(); i++)
     if (bars[i]) mean += luminance(visit.frame.color[i]), expected += luminance(truth.color[i]);
