@@ -19,9 +19,9 @@
 
 #include "base/worker.h"
 #include "cache/broker.h"
-#include "cache/compositor.h"
-#include "cache/keyframe.h"
-#include "cache/moving_picture.h"
+#include "picture/compositor.h"
+#include "picture/keyframe.h"
+#include "picture/moving_picture.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -38,7 +38,7 @@ struct PictureOrder {
   bool still = false;    // without motion for a moment
   bool figure = false;   // the storyteller may be in it
   bool settled = false;  // for long: the reference takes over
-  bool passing = false;  // drawn for a moment, and some around (cache/compose_drawn.h)
+  bool passing = false;  // drawn for a moment, and some around (picture/compose_drawn.h)
   bool coarse = false;   // that in coarser light
   bool attention = true;
   bool keep = false;     // as a keyframe, for others to be made of

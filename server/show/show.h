@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "avatar/storyteller.h"
-#include "cache/warp_picture.h"
 #include "light/see_picture.h"
 #include "light/technique.h"
+#include "picture/warp_picture.h"
 #include "show/audience.h"
 #include "show/exhibit.h"
 #include "show/figure.h"

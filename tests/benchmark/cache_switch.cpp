@@ -11,12 +11,12 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/rng.h"
-#include "cache/compose_drawn.h"
-#include "cache/compositor.h"
 #include "cache_visit_truth.h"
 #include "frame/picture_file.h"
 #include "light/lamps.h"
 #include "light_scenes.h"
+#include "picture/compose_drawn.h"
+#include "picture/compositor.h"
 #include "report.h"
 
 namespace wellspring {

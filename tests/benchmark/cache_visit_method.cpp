@@ -8,9 +8,9 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "cache/broker.h"
-#include "cache/compose_drawn.h"
-#include "cache/compositor.h"
 #include "cache/predict.h"
+#include "picture/compose_drawn.h"
+#include "picture/compositor.h"
 #include "show/sample_budget.h"
 
 namespace wellspring {

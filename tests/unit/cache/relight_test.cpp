@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cmath>
 
-#include "cache/compose_drawn.h"
 #include "cache/packing.h"
 #include "cache/point_cache.h"
 #include "light/technique.h"
+#include "picture/compose_drawn.h"
 #include "scenes/scenes.h"
 #include "unit/cache/visit.h"
 

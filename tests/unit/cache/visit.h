@@ -3,8 +3,8 @@
 #pragma once
 #include <optional>
 
-#include "cache/compositor.h"
 #include "light/lights.h"
+#include "picture/compositor.h"
 #include "unit/cache/room.h"
 
 namespace wellspring {
