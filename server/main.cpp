@@ -54,14 +54,6 @@ int read_options(Options& options, int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--still-technique", options.show.still_technique, "how light is sampled at rest")
       ->capture_default_str();
-  const std::map<std::string, DrawShapes> wishes{{"automatic", DrawShapes::automatic},
-                                                 {"never", DrawShapes::never},
-                                                 {"always", DrawShapes::always}};
-  app.add_option(
-         "--draw", options.show.draw,
-         "shapes drawn exactly in every picture, sharper and slower: automatic, never, always")
-      ->transform(CLI::CheckedTransformer(wishes))
-      ->option_text("WISH=automatic");
   app.add_flag("--background,!--no-background", options.show.background,
                "pictures are drawn while visitors are shown earlier ones as they look from where "
                "they are now")

@@ -65,12 +65,11 @@ async function refresh() {
     const of = (id, name, digits) => number(value_of(id, name), digits);
     rows(by_id('visitors'), [
       ['Visitor', 'Pictures/s', 'Round trip ms', 'Display ms', 'Trace ms', 'Tone ms', 'Encode ms',
-        'Samples', 'Looks', 'Path', 'Quality', 'Converged %'],
+        'Samples', 'Quality', 'Converged %'],
       ...ids.map((id) => [id, of(id, 'pictures_per_second', 1), of(id, 'round_trip_milliseconds'),
         of(id, 'display_milliseconds', 1), of(id, 'trace_milliseconds', 1),
         of(id, 'tonemap_milliseconds', 1), of(id, 'encode_milliseconds', 1),
-        of(id, 'samples_per_picture'), of(id, 'looks_per_picture'),
-        of(id, 'primary_path') === number(1) ? 'primary' : 'cache', of(id, 'jpeg_quality'),
+        of(id, 'samples_per_picture'), of(id, 'jpeg_quality'),
         number(100 * (value_of(id, 'converged_ratio') ?? 0), 1)])]);
     rows(by_id('kiosks'), [
       ['Cameras', number(one('kiosk_cameras'))],

@@ -36,14 +36,14 @@ void forget_old_light(PointCache& points, uint32_t i) {
   forget_light_of(points, i, change_ageing);
 }
 
-void age_tile(PointCache& points, const PointImage& image, StillImage& still, int tx, int ty) {
+void age_tile(PointCache& points, PointImage& image, int tx, int ty) {
   int x1 = std::min((tx + 1) * change_tile, image.width),
       y1 = std::min((ty + 1) * change_tile, image.height);
   for (int y = ty * change_tile; y < y1; y++)
     for (int x = tx * change_tile; x < x1; x++) {
       size_t at = size_t(y) * size_t(image.width) + size_t(x);
       uint32_t point = image.point[at];
-      if (at < still.count.size()) still.count[at] = 0;
+      image.renewed[at] = 1;
       if (point != no_point) forget_old_light(points, point);
     }
 }
@@ -186,7 +186,7 @@ using Levels = std::array<uint8_t, 256>;
 
 }  // namespace
 
-bool age_changed(PointCache& points, const View& view, PointImage& image, StillImage& still) {
+bool age_changed(PointCache& points, const View& view, PointImage& image) {
   image.alarm = std::max(image.alarm - 1, 0);
   if (image.witnesses.empty()) return false;
   keep_newest_witnesses(image);
@@ -199,7 +199,7 @@ bool age_changed(PointCache& points, const View& view, PointImage& image, StillI
       for (int tx = 0; tx < image.changed_width; tx++) {
         if (!has_changed(image, tx, ty, proof)) continue;
         verdict[size_t(ty) * size_t(image.changed_width) + size_t(tx)] = 1;
-        age_tile(points, image, still, tx, ty);
+        age_tile(points, image, tx, ty);
       }
   });
   // Their change is not to be told twice, and what is not seen now may have changed back when it

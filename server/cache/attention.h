@@ -4,17 +4,16 @@
 #include "cache/cache.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
-#include "cache/still_image.h"
 #include "world/view.h"
 
 namespace wellspring {
 
 // Where the witnesses of 3x3 tiles agree that the light has changed, by more than their noise can
 // explain, points of the tile get older by an eighth of the scale and forget their light as
-// forget_light() does, and the picture's mean there starts over. The image is projected for `view`.
+// forget_light() does, and image.renewed says so. The image is projected for `view`.
 // Witnesses that were heard and those who are not in view are dismissed. Returns whether there was
 // such a place.
-bool age_changed(PointCache& points, const View& view, PointImage& image, StillImage& still);
+bool age_changed(PointCache& points, const View& view, PointImage& image);
 
 // Points whose light was forgotten are lent that of the nearest newer point of the same surface in
 // their block of `lent_block` pixels a side, if there is one. Returns whether any still waits for a

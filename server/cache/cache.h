@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The render cache of one visitor (Walter, Drettakis, Parker 1999, "Interactive Rendering using the
 // Render Cache"): samples as points in space, reprojected every frame, and where to look next. One
-// frame: project -> attend -> plan -> (trace) -> remember -> reconstruct. All functions use all
-// cores, never fail and never block; memory is bounded by the room asked for with resize().
+// frame: project -> attend -> plan -> (trace) -> remember, then a picture of what the points say:
+// somebody else's, or reconstruct() as published. All functions use all cores, never fail and never
+// block; memory is bounded by the room asked for with resize().
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -12,7 +13,6 @@
 
 #include "frame/frame.h"
 #include "light/sample.h"
-#include "light/see_picture.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -23,27 +23,23 @@ struct CacheSettings {
   float color_change = 0.25f;  // relative change of a resampled point that ages its neighbours
   float budget_share_old = 1;  // weight of age against emptiness in the priority
   bool attention = true;       // false: samples spread evenly
-  // What mirrors show is kept where its image lies, not on them. For pictures made of points alone:
-  // where shapes are drawn, light is looked for on the surfaces.
-  bool images = false;
 };
 
-struct Tonemap;
-struct Keyframe;       // cache/keyframe.h
-struct MovingPicture;  // cache/moving_picture.h: what moves in a picture at rest
-struct MovingLight;
-enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what moves
 struct PointCache;  // cache/point_cache.h: the points
 struct PointImage;  // cache/point_image.h: what projects where, priorities
+class Scratch;
 
 // What the last frame looked like, in numbers (for /metrics, the status page and tests).
 struct CacheStats {
   int points = 0;                                           // in use
   float fresh = 0, reprojected = 0, filled = 0, empty = 0;  // shares of the picture's pixels
-  float drawing_ms =
-      0;  // of the last picture that was drawn: PictureSight, and light put on what it sees
   float mean_age = 0;   // of the visible points, 0 (new) to 254; see age_points()
   float converged = 0;  // share of pixels whose point has reached its sample goal
+};
+// Of a picture's pixels: those with a point, and with one of `converged_samples` or more.
+inline constexpr uint32_t converged_samples = 32;
+struct ShownPoints {
+  int64_t points = 0, converged = 0;
 };
 
 // What is needed from project() until the picture is there and means nothing afterwards. Caches
@@ -66,9 +62,8 @@ class RenderCache {
   // Points on moving meshes follow their triangles, and are forgotten where these were repainted;
   // ages advance. Call once a frame after World::commit().
   void move_points(const World& world);
-  // The object was carried off as a whole, by `moved` (rigid) from where it was: its points go
-  // along.
-  void move_object(uint32_t object, const mat4& moved);
+  // Only the first of that: between frames.
+  void follow_moving(const World& world);
   // Where every point falls in `view`; depth cull. Views of less than the room there is, such as
   // light_view()'s, cost no memory and no point. Those of up to twice as many pixels have a larger
   // image, and larger ones room for more points.
@@ -83,46 +78,22 @@ class RenderCache {
   // Appends requests for what the view `ahead` will show and no point is near (cache/predict.h), at
   // most `most`; their answers are to be remembered with the others.
   void predict(const View& ahead, int most, uint64_t seed, std::vector<Request>& requests);
-  // Puts answers into the cache and into the current projection.
-  void remember(const View& view, std::span<const Request> requests,
-                std::span<const Sample> samples);
-  // The picture of points alone: overwrites `frame` (color, confidence; depth and object for those
-  // who ask later).
+  // Puts answers into the cache and into the current projection. Returns the point that each went
+  // to, or no_point: good until the next call of any cache of this work.
+  std::span<const uint32_t> remember(const View& view, std::span<const Request> requests,
+                                     std::span<const Sample> samples);
+  // The picture as published: of points alone, holes filled from 3x3 pixels (cache/reconstruct.h).
+  // Projects `view` if it is not projected. Pixels without points around stay as they were.
   void reconstruct(const View& view, Frame& frame);
-  // The same in two steps, for sharper edges: survey() asks what rays (at most `most`) see, and
-  // answers to all of them are shown. The frame must not be touched in between.
-  void survey(const View& view, int most, Frame& frame, std::vector<Ray>& looks);
-  void reconstruct(const View& view, std::span<const Seen> seen, Frame& frame);
-  // A picture of `view` drawn in the light of `view` or of light_view(view)
-  // (cache/compose_drawn.h), whichever all of the frame before has been done for (neither: the
-  // latter); needs sight.can_see(view). The second for the eye at once, and of a `depth` that is
-  // not null metres along the viewing axis, infinity: nothing there. `calm`: of pixels so large
-  // that a point's own light would show as a square.
-  void draw(const View& view, const PictureSight& sight, Frame& frame);
-  void draw(const View& view, const PictureSight& sight, const Tonemap& tonemap, Image8& image,
-            std::vector<float>* depth = nullptr, bool calm = false);
-  // The same at rest, in light of the view's own resolution, for which all of the frame before has
-  // been done: what does not move is antialiased in time, seen at another place of the pixels each
-  // time.
-  void draw_still(const View& view, const PictureSight& sight, Frame& frame,
-                  StillShows shows = StillShows::all);
+
   // Whether enough points that show lie on what moves.
   bool knows_moving() const;
   // Whether it asks for exactly a point on what moves, which is elsewhere soon.
   bool follows_moving(const Request& request) const;
-  // What moves, as the world is now, to be laid over the last draw_still() without it, of which
-  // `backdrop` is the keyframe; needs no projection. False: no point lies on it. An empty picture:
-  // it is not to be seen.
-  bool draw_moving(const World& world, const Keyframe& backdrop, const PictureSight& sight,
-                   const Tonemap& tonemap, MovingLight& work, MovingPicture& picture);
   // Answers come from the reference from now on, or no longer (else that they differ from earlier
   // ones might be taken for a change of the light). Its light is not expected to be that of others.
   void set_reference(bool on);
   void set_attention(bool on);  // CacheSettings::attention
-  // From now on pictures are drawn (draw(), draw_still()): points remember no light that surfaces
-  // emit themselves, as these pictures know it exactly, from texel to texel (Sample::glow). Or are
-  // no longer: the next move_points() finds out what all points emit that are known.
-  void set_drawn(bool on);
   // A lamp was switched, dimmed or moved, and is much of the light where `changes` says so of a
   // surface, on many threads: what was remembered of the light there counts no more, and is asked
   // for first. Until newer light is known, `kept` of it, 1 unless changed, and the light `added`
@@ -136,6 +107,19 @@ class RenderCache {
   const CacheSettings& settings() const;
   const CacheStats& stats() const;
   size_t memory_bytes() const;  // without work that is shared
+
+  // For whoever makes the picture of the last projection:
+  bool has_projected(const View& view) const;
+  uint64_t projection() const;  // another number for every view, and after clear() and resize()
+  int still_frames() const;     // projections of that view before the last
+  bool is_still() const { return still_frames() >= 2; }
+  const PointCache& points() const;
+  const PointImage& image() const;
+  Scratch& scratch();
+  // Points whose light was forgotten are lent that of newer ones around.
+  void lend_light();
+  // The picture is made: what only it needed is given back. Counts what it has shown.
+  void end_frame(const ShownPoints& shown);
 
  private:
   struct Impl;

@@ -112,10 +112,4 @@ inline uint16_t pack_half(float v, uint32_t random = 0x1000) {
 }
 inline float unpack_half(uint16_t h) { return std::bit_cast<float>(uint32_t(h) << 13) * 0x1p112f; }
 
-// value where the condition holds, else 0: as bits, because GCC makes a branch of the other ways to
-// say it and then does not vectorise the loop around.
-inline float keep_if(bool condition, float value) {
-  return std::bit_cast<float>(std::bit_cast<uint32_t>(value) & (0u - uint32_t(condition)));
-}
-
 }  // namespace wellspring

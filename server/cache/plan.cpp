@@ -19,7 +19,6 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
   Request request;
   request.pixel = uint32_t(pixel);
   request.seed = sample_seed(settings.seed, x, y, 0);
-  request.image = true;
   uint64_t random = mix64(request.seed ^ 0x706c616e);
   uint32_t point = image.point[pixel];
   // Standing still, one in four is still resampled exactly: those can tell that the light has

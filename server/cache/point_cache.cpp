@@ -10,7 +10,6 @@
 #include "base/parallel.h"
 #include "cache/lanes.h"
 #include "cache/packing.h"
-#include "cache/point_glow.h"
 #include "light/first_surface.h"
 #include "light/material_use.h"
 #include "world/surface.h"
@@ -53,7 +52,6 @@ void resize_points(PointCache& points, int capacity) {
   fit(points.age, evicted_age);
   fit(points.count, uint8_t(0));
   fit(points.color, PointColor{});
-  if (!points.glow.empty()) fit(points.glow, uint32_t(0));
   fit(points.seen, uint64_t(0));
   points.seen.resize((size + 63) / 64);
   points.seen.shrink_to_fit();
@@ -93,28 +91,6 @@ void age_points(PointCache& points, float new_points) {
   });
 }
 
-int move_points_of(PointCache& points, uint32_t object, const mat4& moved) {
-  mat3 turn(moved);
-  if (!is_finite(vec3(moved[3])) || !is_finite(turn[0] + turn[1] + turn[2])) return 0;
-  std::atomic<int> count{0};
-  parallel_ranges(points.capacity(), 1 << 14, [&](int begin, int end) {
-    int here = 0;
-    for (size_t i = size_t(begin); i < size_t(end); i++) {
-      if (!is_alive(points, uint32_t(i)) || points.color[i].object != object ||
-          (points.flags[i] & point_infinite))
-        continue;
-      vec3 p = vec3(moved * vec4(points.x[i], points.y[i], points.z[i], 1));
-      points.x[i] = p.x, points.y[i] = p.y, points.z[i] = p.z;
-      points.normal[i] = points.color[i].normal =
-          pack_normal(turn * unpack_normal(points.normal[i]));
-      points.flags[i] &= uint8_t(~point_verified);
-      here++;
-    }
-    count += here;
-  });
-  return count;
-}
-
 void forget_light_of(PointCache& points, uint32_t i, int ageing) {
   if (points.age[i] == evicted_age) return;
   points.age[i] = uint8_t(std::min(points.age[i] + ageing, oldest_age));
@@ -137,10 +113,7 @@ void forget_light(PointCache& points, const Forgotten& forgotten) {
   });
 }
 
-bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted,
-                  bool glow) {
-  for (uint32_t i = 0; i < repainted.size() && glow && points.glow.empty(); i++)
-    if (repainted[i] && may_glow(world, i)) begin_glow(points);
+bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted) {
   std::atomic<bool> found = false;
   parallel_ranges(int(points.anchors.size()), 512, [&](int begin, int end) {
     for (int k = begin; k < end; k++) {
@@ -160,8 +133,6 @@ bool forget_paint(PointCache& points, const World& world, const std::vector<char
       bool metal = surface.metallic >= all_metal && surface.roughness >= least_kept_roughness;
       points.color[i].albedo = pack_albedo(
           kept_albedo(surface, metal ? KeptMetal::reflectance : KeptMetal::none));
-      if (!points.glow.empty())
-        points.glow[i] = pack_glow(world, surface, points.color[i].albedo);
     }
   });
   return found;
@@ -219,7 +190,7 @@ void move_anchored_points(PointCache& points, const World& world) {
 
 size_t points_bytes(const PointCache& points) {
   return bytes_of(points.x, points.y, points.z, points.normal, points.flags, points.age,
-                  points.count, points.color, points.glow, points.anchors, points.seen);
+                  points.count, points.color, points.anchors, points.seen);
 }
 
 }  // namespace wellspring

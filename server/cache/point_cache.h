@@ -2,7 +2,7 @@
 // The points of a render cache (Walter 1999, section 3 and figure 4): what was seen, where, how
 // long ago. Fixed capacity. What is walked every frame lies in arrays of its own; what is looked up
 // only for points that show (PointColor) lies together, one cache line fetch a point. 37 bytes a
-// point, and 4 more where no shapes are drawn and something shines.
+// point.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -10,7 +10,7 @@
 
 #include "cache/big_pages.h"
 #include "light/sample.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 
@@ -62,7 +62,6 @@ struct PointCache {
   std::vector<uint8_t> age;    // 0 new; see age_points()
   std::vector<uint8_t> count;  // samples in the means, at most 255
   BigVector<PointColor> color;
-  BigVector<uint32_t> glow;  // pack_rgb9e5, of the last sample; or empty: see cache/point_glow.h
   std::vector<Anchor> anchors;
   std::vector<uint64_t> seen;  // scratch of move_points(): one bit a point
   uint32_t next_group = 0;     // round robin of replacement
@@ -77,9 +76,6 @@ void clear_points(PointCache& points);
 // have replaced all (Walter 2002); specular and moving points age three times as fast, unseen ones
 // twice. Unseen points that reach 255 are evicted; seen ones stop at `oldest_age`.
 void age_points(PointCache& points, float new_points);
-// Points of an object that was carried by `moved` (rigid), as many as are returned. Moves that are
-// not finite move nothing.
-int move_points_of(PointCache& points, uint32_t object, const mat4& moved);
 // The light of a point has changed, or seems to: of what it remembers nothing counts where anything
 // newer is known around, and its next sample is as good as its first. It grows older by `ageing`,
 // so that it is asked for the sooner the surer the change is; `oldest_age`: among the first.
@@ -96,10 +92,8 @@ void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2
 void move_anchored_points(PointCache& points, const World& world);
 // What instances are made of looks different now: their points take the reflectance that it has
 // there and forget their light. Of those with anchors, so after move_anchored_points().
-// `repainted`: of each of the world's instances. `glow`: they keep what they emit, as soon as they
-// do. Returns whether any point was found.
-bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted,
-                  bool glow);
+// `repainted`: of each of the world's instances. Returns whether any point was found.
+bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted);
 // Most anchors a cache of this capacity may hold; moving points beyond are forgotten after one
 // frame.
 int max_anchors(int capacity);

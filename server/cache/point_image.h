@@ -35,6 +35,7 @@ struct PointImage {
   BigVector<uint32_t> point;      // index into the cache, or no_point
   BigVector<float> depth;         // along the viewing axis; 0 where there is no point
   std::vector<uint8_t> priority;  // 0: nothing to learn or already asked; 255: most urgent
+  std::vector<uint8_t> renewed;   // not 0: the light there is another than in the last picture
   std::vector<Witness> witnesses;   // the newest, oldest first; see age_changed()
   std::vector<TileChange> changed;  // scratch of age_changed()
   int changed_width = 0, changed_height = 0;
@@ -47,6 +48,7 @@ inline void reserve_image(PointImage& image, int width, int height) {
   auto tiles = [](int side) { return size_t((side + change_tile - 1) / change_tile); };
   image.point.reserve(pixels);
   image.depth.reserve(pixels);
+  image.renewed.reserve(pixels);
   image.changed.reserve(tiles(width) * tiles(height));
 }
 
@@ -74,6 +76,7 @@ inline void resize_image(PointImage& image, int width, int height) {
   image.point.assign(pixels, no_point);
   image.depth.assign(pixels, 0.0f);
   image.priority.assign(pixels, uint8_t(0));
+  image.renewed.assign(pixels, uint8_t(0));
   image.changed.assign(size_t(image.changed_width) * size_t(image.changed_height), TileChange{});
 }
 

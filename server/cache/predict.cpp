@@ -119,7 +119,6 @@ void predict_requests(const PointCache& points, const View& ahead, int most, uin
     Request request;
     request.pixel = no_pixel;
     request.seed = sample_seed(seed, x, y, 1);
-    request.image = true;
     uint64_t place = mix64(request.seed);
     float u = float(place & 0xffffff) * 0x1p-24f, v = float((place >> 24) & 0xffffff) * 0x1p-24f;
     request.ray = view_ray(ahead, std::min((float(x) + u) * cell_pixels, float(ahead.width)),

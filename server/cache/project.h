@@ -7,7 +7,7 @@
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
 #include "cache/scratch.h"
-#include "cache/surface_image.h"
+#include "cache/window_view.h"
 
 namespace wellspring {
 

@@ -3,29 +3,52 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 
 #include "base/parallel.h"
+#include "cache/packing.h"
 
 namespace wellspring {
+namespace {
 
-SurfaceCounts read_surface(const WindowView& view, const PointCache& points,
-                           const PointImage& image, Cells& cells, Frame& frame) {
+vec3 color_of(const PointColor& point) {
+  return unpack_albedo(point.albedo) * unpack_rgb9e5(point.smooth) + unpack_rgb9e5(point.rest);
+}
+
+}  // namespace
+
+ShownPoints reconstruct_points(const PointCache& points, const PointImage& image, Frame& frame) {
+  const int width = image.width, height = image.height;
+  fit_frame(width, height, frame);
   std::atomic<int64_t> shown{0}, converged{0};
-  parallel_ranges(cells.height, 4, [&](int begin, int end) {
-    thread_local SurfaceRows rows;
-    rows.start(image.width, 2 * cell_size);
-    SurfaceCounts here;
-    int next = begin * cell_size - 1, last = end * cell_size;
-    for (int cy = begin; cy < end; cy++) {
-      int top = cy * cell_size, bottom = top + cell_size;
-      for (; next <= bottom; next++) {
-        int enough = read_points(points, image, next, rows);
-        if (next >= begin * cell_size && next < last) here.converged += enough;
+  parallel_ranges(height, 8, [&](int begin, int end) {
+    ShownPoints here;
+    for (int y = begin; y < end; y++)
+      for (int x = 0; x < width; x++) {
+        const size_t at = size_t(y) * size_t(width) + size_t(x);
+        vec3 sum(0);
+        float weights = 0, most = 0;
+        for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); v++)
+          for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); u++) {
+            const size_t from = size_t(v) * size_t(width) + size_t(u);
+            const uint32_t point = image.point[from];
+            if (point == no_point) continue;
+            const float weight = (u == x ? 2.0f : 1.0f) * (v == y ? 2.0f : 1.0f);
+            sum += weight * color_of(points.color[point]);
+            weights += weight;
+            if (weight <= most) continue;
+            most = weight;
+            const bool far = image.depth[from] >= 0.5f * infinite_depth;
+            frame.depth[at] = far ? std::numeric_limits<float>::infinity() : image.depth[from];
+            frame.object[at] = points.color[point].object;
+          }
+        if (weights > 0) frame.color[at] = sum / weights;
+        const uint32_t own = image.point[at];
+        const uint8_t count = own == no_point ? uint8_t(0) : points.count[own];
+        frame.confidence[at] = float(count) / (float(count) + 8);
+        here.points += own != no_point;
+        here.converged += own != no_point && count >= converged_samples;
       }
-      build_cells(view, rows, cy, cells);
-      for (int y = top; y < std::min(bottom, image.height); y++)
-        here.points += fill_from_neighbours(rows, y, frame);
-    }
     shown += here.points;
     converged += here.converged;
   });

@@ -8,13 +8,11 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "cache/packing.h"
-#include "cache/point_glow.h"
 
 namespace wellspring {
 namespace {
 
 constexpr float same_place = 0.01f;  // of the distance: farther off is another surface
-constexpr float same_image = 0.05f;  // likewise, in mirrors and glass
 constexpr float same_normal = 0.8f;  // cosine
 constexpr float same_albedo = 0.03f;
 // Points whose samples repeat themselves begin anew when one does not: at once where all were
@@ -26,9 +24,8 @@ constexpr float unseen_bonus = 96;   // in age: unseen points are overwritten be
 constexpr int noise_memory = 64;     // samples the noise estimate looks back on
 
 bool is_usable(const Sample& sample) {
-  return std::isfinite(sample.image) && is_finite(sample.position) && is_finite(sample.normal) &&
-         is_finite(sample.albedo) && is_finite(sample.smooth) && is_finite(sample.rest) &&
-         is_finite(sample.glow);
+  return is_finite(sample.position) && is_finite(sample.normal) && is_finite(sample.albedo) &&
+         is_finite(sample.smooth) && is_finite(sample.rest) && is_finite(sample.glow);
 }
 
 bool is_infinite(const Sample& sample) { return !(sample.flags & sample_hit); }
@@ -37,21 +34,12 @@ vec3 position_of(const PointCache& points, uint32_t i) {
   return {points.x[i], points.y[i], points.z[i]};
 }
 
-// An answer, and where it is kept.
+// An answer, and what of it is kept.
 struct Found {
   const Sample& sample;
-  bool image;  // the place is that of an image
   bool reference;
-  vec3 place;
   vec3 rest;  // of the sample, but for its glow; not negative
 };
-Found find(const Request& request, const Sample& sample, const RememberSettings& settings) {
-  bool image = settings.images && sample.image > 0 && (sample.flags & sample_specular) &&
-               !(sample.flags & sample_moving);  // those follow their triangles
-  return {sample, image, settings.reference,
-          image ? request.ray.origin + sample.image * request.ray.direction : sample.position,
-          max(sample.rest - sample.glow, vec3(0))};
-}
 
 // The sample saw the surface the point lies on, at the point (`exact`) or near it in the same
 // pixel.
@@ -62,11 +50,9 @@ bool is_same_surface(const PointCache& points, uint32_t i, const View& view, con
   if (infinite != is_infinite(sample) || points.color[i].object != sample.object) return false;
   if (infinite) return true;
   vec3 normal = unpack_normal(points.color[i].normal),
-       offset = found.place - position_of(points, i);
+       offset = sample.position - position_of(points, i);
   if (dot(normal, sample.normal) < same_normal) return false;
-  float distance = length(found.place - view.position);
-  // Beside it in a mirror lies what may be elsewhere; of the same image, places are estimates.
-  if (found.image) return !exact || length(offset) <= same_image * distance;
+  float distance = length(sample.position - view.position);
   float away = exact ? length(offset) : std::abs(dot(offset, normal));
   return away <= same_place * distance;
 }
@@ -76,14 +62,14 @@ uint8_t flags_of(const Found& found) {
   uint8_t flags = point_used;
   if (found.reference) flags |= point_reference;
   if (is_infinite(sample)) flags |= point_infinite;
-  if ((sample.flags & sample_specular) && !found.image) flags |= point_specular;
+  if (sample.flags & sample_specular) flags |= point_specular;
   if (sample.flags & sample_moving) flags |= point_moving;
   return flags;
 }
 
 void place_point(PointCache& points, uint32_t i, const View& view, const Found& found) {
   const Sample& sample = found.sample;
-  vec3 p = found.place, n = sample.normal;
+  vec3 p = sample.position, n = sample.normal;
   // At infinity, and where a technique gave no normal, the point faces the viewer.
   if (is_infinite(sample))
     n = -p;
@@ -97,10 +83,6 @@ void place_point(PointCache& points, uint32_t i, const View& view, const Found& 
   points.color[i].albedo = pack_albedo(sample.albedo);
 }
 
-void keep_glow(PointCache& points, uint32_t i, const Sample& sample, uint32_t random) {
-  if (!points.glow.empty()) points.glow[i] = pack_rgb9e5(sample.glow, random >> 8);
-}
-
 void begin_point(PointCache& points, uint32_t i, const View& view, const Found& found,
                  uint32_t random) {
   const Sample& sample = found.sample;
@@ -112,7 +94,6 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Found& 
   points.color[i].smooth = pack_rgb9e5(sample.smooth, random);
   points.color[i].rest = pack_rgb9e5(found.rest, random >> 4);
   points.color[i].object = sample.object;
-  keep_glow(points, i, sample, random);
 }
 
 // What a sample did to the point that it was given to.
@@ -167,9 +148,8 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
   float whole = luminance(reflectance * smooth) + level;
   // Elsewhere in the pixel a texture may differ too: only an equal reflectance tells about light,
   // and of what a mirror shows nobody knows it.
-  effect.tells =
-      !(points.flags[i] & point_specular) &&
-      (exact || (!found.image && max_component(abs(reflectance - sample.albedo)) <= same_albedo));
+  effect.tells = !(points.flags[i] & point_specular) &&
+                 (exact || max_component(abs(reflectance - sample.albedo)) <= same_albedo);
   float light = luminance(smooth), new_light = luminance(max(sample.smooth, vec3(0)));
   float varies = light * unpack_relative(color.doubts >> 2);
   // Of two techniques one may be biased.
@@ -207,7 +187,6 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
   points.count[i] = uint8_t(std::min(n + 1, longest));
   color.smooth = pack_rgb9e5(smooth, random);
   color.rest = pack_rgb9e5(rest, random >> 4);
-  keep_glow(points, i, sample, random);
   return effect;
 }
 
@@ -291,15 +270,14 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   targets.assign(count, no_point);
   if (groups == 0) return result;
 
-  auto found = [&](size_t i) { return find(requests[i], samples[i], settings); };
+  auto found = [&](size_t i) {
+    return Found{samples[i], settings.reference, max(samples[i].rest - samples[i].glow, vec3(0))};
+  };
   // Sort out which samples have a point to join. Late answers find theirs only by its place.
   constexpr uint32_t reject = no_point - 1;  // beyond every capacity
-  std::atomic<bool> glows = false;
   parallel_ranges(int(count), 512, [&](int begin, int end) {
-    bool glows_here = false;
     for (size_t i = size_t(begin); i < size_t(end); i++) {
       const Request& request = requests[i];
-      glows_here |= samples[i].glow != vec3(0);
       bool here = settings.current && request.pixel < pixels;
       if (!is_usable(samples[i]) || (settings.current && !here && request.pixel != no_pixel)) {
         targets[i] = reject;
@@ -312,9 +290,7 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
         point = no_point;
       targets[i] = point;
     }
-    if (glows_here) glows = true;
   });
-  if (glows && settings.glow && points.glow.empty()) begin_glow(points);
   std::vector<uint32_t> additions;
   additions.reserve(count);
   for (size_t i = 0; i < count; i++) {
@@ -381,7 +357,7 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   for (size_t i = 0; i < count; i++) {
     if (effects[i].tells && (left_out == 0 || left_out-- == 0))
       image.witnesses.push_back(effects[i].witness);
-    if (effects[i].restarted && shows(i)) result.restarted.push_back(requests[i].pixel);
+    if (effects[i].restarted && shows(i)) image.renewed[requests[i].pixel] = 1;
   }
   add_anchors(points, samples.first(count), targets);
   result.kept = int(count) - result.rejected;

@@ -20,24 +20,21 @@ struct RememberSettings {
   bool current = true;
   bool still = false;   // answers are spread over their pixel and join the point that shows there
   uint8_t longest_mean = 64;  // samples a mean looks back on
-  uint8_t longest_specular =
-      64;                  // likewise, of what moves with the view and whose image lies nowhere
-  bool glow = true;        // points keep Sample::glow, too, by itself
+  uint8_t longest_specular = 64;  // likewise, of what moves with the view
   bool reference = false;  // answers are of the reference; of a point that others know, smooth
                            // light tells no change
-  bool images = true;  // what mirrors and glass show is kept where its image lies (Sample::image)
 };
 
 struct Remembered {
   int kept = 0, merged = 0, added = 0, changed = 0, rejected = 0;
   int unplaced = 0;  // of those kept: without a pixel of the current view
-  std::vector<uint32_t> restarted;  // pixels whose points are among the changed
 };
 
-// Samples that are not finite are rejected; negative light counts as none; pixels outside the image
-// are wrong in answers for the current view, unless no_pixel. `targets` is overwritten
-// with the point each sample went to, or no_point. The result does not depend on the number of
-// threads.
+// What surfaces emit themselves (Sample::glow) is not remembered: whoever shows them knows it.
+// Pixels whose points began anew are told in image.renewed. Samples that are not finite are
+// rejected; negative light counts as none; pixels outside the image are wrong in answers for the
+// current view, unless no_pixel. `targets` is overwritten with the point each sample went to, or
+// no_point. The result does not depend on the number of threads.
 Remembered remember_samples(PointCache& points, const View& view, std::span<const Request> requests,
                             std::span<const Sample> samples, const RememberSettings& settings,
                             PointImage& image, std::vector<uint32_t>& targets);

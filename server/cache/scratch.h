@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Memory that one stage of a frame borrows and the next may overwrite: the bins of the projection
-// and the planes of the reconstruction share it.
+// and the cells of a picture share it.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -14,7 +14,7 @@
 #include "light/medium.h"
 #include "light/pane_boxes.h"
 #include "light/transport_plan.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

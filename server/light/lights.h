@@ -5,7 +5,7 @@
 #include <atomic>
 #include <memory>
 
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

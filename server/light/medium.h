@@ -11,7 +11,7 @@
 // Scenes without solids (TransportPart::refraction) pay one branch at each hit.
 #pragma once
 #include "light/bsdf.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

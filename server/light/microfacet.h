@@ -35,9 +35,6 @@ inline vec3 sample_visible_normal(vec3 v, vec2 alpha, vec2 u) {
   vec3 h = vec3(radius * std::cos(phi), radius * std::sin(phi), z) + stretched;
   return normalize(vec3(h.x * alpha.x, h.y * alpha.y, std::max(h.z, 1e-7f)));
 }
-inline float sample_visible_normal_pdf(vec3 v, vec3 h, vec2 alpha) {
-  return ggx_masking(v, alpha) * std::max(0.0f, dot(v, h)) * ggx_distribution(h, alpha) / v.z;
-}
 
 // Reflectance of a smooth boundary; eta = index beyond over index here, cosine >= 0 on this side.
 inline float fresnel_dielectric(float cosine, float eta) {

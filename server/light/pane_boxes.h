@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/lanes.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

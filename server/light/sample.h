@@ -5,7 +5,7 @@
 #pragma once
 #include <cstdint>
 
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 
@@ -18,7 +18,6 @@ struct Request {
   uint32_t resample = no_cache_id;  // cached point this ray passes exactly through, if any
   uint64_t seed = 0;   // names a sequence of samples that share a pixel, well spread among them
   uint32_t index = 0;  // in that sequence: the whole sample is a function of ray, seed and index
-  bool image = false;  // Sample::image is wanted
 };
 
 enum SampleFlags : uint8_t {
@@ -36,7 +35,6 @@ struct Sample {
   vec3 position{0};
   vec3 normal{0};      // shading normal, unit
   float distance = 0;  // along the ray; infinity: nothing was hit
-  float image = 0;     // of mirrors, along the ray: where what they show appears to lie; 0: unknown
   uint32_t object = 0;
   uint32_t instance = 0, triangle = 0;
   vec2 barycentric{0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What rays from the eye meet, without the light that falls there: for display paths that know the
-// light from elsewhere. A twentieth of a sample's cost.
+// What rays from the eye meet, without the light that falls there: for pictures whose light is
+// known from elsewhere. A twentieth of a sample's cost.
 #pragma once
 #include <span>
 

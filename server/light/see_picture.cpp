@@ -173,7 +173,7 @@ bool PictureSight::moves(uint32_t object) const {
   return object < impl_->moving_object.size() && impl_->moving_object[object];
 }
 
-bool PictureSight::can_see(const View& view) const {
+bool PictureSight::rasterises(const View& view) const {
   Transport transport{impl_->world, *impl_->lights.tables};
   return !impl_->lights.tables->any_solid || find_media(transport, view.position).innermost() < 0;
 }
@@ -354,6 +354,7 @@ void SightRun::Impl::describe(const Stretches& stretches, const Stretch& s, RunS
 }
 
 uint64_t SightRun::describe(uint64_t wanted, RunSurface& to) const {
+  if (seen_) return wanted;
   const RasterRun& r = *impl_->run;
   uint64_t alone = 0;
   Stretches stretches;
@@ -372,7 +373,7 @@ uint64_t SightRun::describe(uint64_t wanted, RunSurface& to) const {
   return alone & wanted;
 }
 
-Seen SightRun::see(int i) const { return impl_->see(i); }
+Seen SightRun::see(int i) const { return seen_ ? seen_[i] : impl_->see(i); }
 
 Seen SightRun::Impl::see(int i) const {
   Hit hit = hit_of(*run, i, view, offset);
@@ -424,14 +425,46 @@ std::span<const std::vector<EdgeShare>> PictureSight::see_edges(
   settings.offset = offset;
   settings.edges = true;
   settings.differ = std::move(differ);
-  draw(view, settings, 1, take);
+  if (!draw(view, settings, 1, take)) return {};
   return impl_->raster.edges();
 }
 
-void PictureSight::draw(const View& view, RasterSettings settings, float blur,
+// Row by row, 64 pixels at a time.
+void PictureSight::cast(const View& view, vec2 offset, uint64_t picture,
+                        const std::function<void(const SightRun&)>& take) const {
+  constexpr int most = RasterRun::most;
+  parallel_for(view.height, [&](int y) {
+    for (int x = 0; x < view.width; x += most) {
+      SightRun run;
+      run.picture = picture;
+      run.x = x, run.y = y, run.count = std::min(most, view.width - x);
+      Ray rays[most];
+      Seen seen[most];
+      float depth[most + 8];
+      uint32_t object[most + 8];
+      for (int i = 0; i < run.count; i++)
+        rays[i] = view_ray(view, float(x + i) + offset.x, float(y) + offset.y);
+      wellspring::see(impl_->world, impl_->lights, std::span(rays, size_t(run.count)),
+                      std::span(seen, size_t(run.count)));
+      for (int i = 0; i < run.count; i++) {
+        object[i] = seen[i].object;
+        depth[i] = seen[i].distance * dot(rays[i].direction, view.forward);
+      }
+      run.depth = depth, run.object = object, run.seen_ = seen;
+      take(run);
+    }
+  });
+}
+
+// Whether edges may be asked for: it was rasterised.
+bool PictureSight::draw(const View& view, RasterSettings settings, float blur,
                         const std::function<void(const SightRun&)>& take) const {
   static std::atomic<uint64_t> pictures = 0;
   const uint64_t picture = ++pictures;
+  if (!rasterises(view)) {
+    if (settings.shows != RasterShows::moving) cast(view, settings.offset, picture, take);
+    return false;
+  }
   const Impl& s = *impl_;
   settings.see_through = s.panes;
   settings.veil = [&](const Hit& hit, vec3 direction) {
@@ -460,6 +493,7 @@ void PictureSight::draw(const View& view, RasterSettings settings, float blur,
     run.impl_ = &run_impl;
     take(run);
   });
+  return true;
 }
 
 }  // namespace wellspring

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every pixel of a view sees, without the light that falls there, drawn instead of traced
 // (world/raster.h): shape and reflectance of a whole picture for the price of a few thousand
-// samples.
+// samples. Within a solid of glass, whose own light and colour only rays meet, rays are cast.
 #pragma once
 #include <functional>
 #include <memory>
@@ -41,6 +41,7 @@ class SightRun {
   friend class PictureSight;
   struct Impl;
   const Impl* impl_ = nullptr;
+  const Seen* seen_ = nullptr;  // by rays: of each pixel, instead
 };
 
 class PictureSight {
@@ -64,13 +65,15 @@ class PictureSight {
   bool moves(uint32_t object) const;
   // Is there a visible one that does, wherever it is?
   bool anything_moves() const;
-  // Does the view's eye stand where runs are right? Not within a solid of glass, whose own light
-  // and colour only rays meet.
-  bool can_see(const View& view) const;
+  // Is the view rasterised? Otherwise rays are cast: no edges are found, and what moves counts as
+  // still.
+  bool rasterises(const View& view) const;
 
  private:
   friend class SightRun;
-  void draw(const View& view, RasterSettings settings, float blur,
+  bool draw(const View& view, RasterSettings settings, float blur,
+            const std::function<void(const SightRun&)>& take) const;
+  void cast(const View& view, vec2 offset, uint64_t picture,
             const std::function<void(const SightRun&)>& take) const;
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -3,10 +3,12 @@
 #include <cmath>
 
 #include "light/first_surface.h"
-#include "light/mirror_image.h"
 
 namespace wellspring {
 namespace {
+
+// Mirrors, glass and polished metal: what is seen there moves with the view.
+bool looks_specular(const Bsdf& bsdf) { return bsdf.alpha < 0.1f && bsdf.diffuse_share < 0.5f; }
 
 // The first surface's light, its diffuse lobe (of reflectance 1) and its specular lobes sampled
 // apart.
@@ -106,7 +108,6 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
   Sampler sampler(request.seed, request.index);
   Sample sample;
   Walk walk = begin_walk(transport, request);
-  const Walk begun = walk;
   if (!hit.valid()) {
     describe_sky(transport, walk.ray.direction, vec3(1), sample);
     sample.flags |= sample_sure;
@@ -121,8 +122,6 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
   sample.flags |= sample_sure;  // until chance comes in
   if (first.scatters)
     shade_first(transport, rules, first, sampler, sample);
-  if (request.image && (sample.flags & sample_specular))
-    sample.image = find_image_distance(transport, begun, hit);
   if (first.mirrored) {
     sample.flags &= uint8_t(~sample_sure);
     sampler.seek(3 * Dimensions::walk);

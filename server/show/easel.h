@@ -19,10 +19,9 @@
 
 #include "base/worker.h"
 #include "cache/broker.h"
-#include "cache/cache.h"
-#include "cache/keyframe.h"
-#include "cache/moving_picture.h"
-#include "show/display_path.h"
+#include "picture/compositor.h"
+#include "picture/keyframe.h"
+#include "picture/moving_picture.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -39,20 +38,20 @@ struct PictureOrder {
   bool still = false;    // without motion for a moment
   bool figure = false;   // the storyteller may be in it
   bool settled = false;  // for long: the reference takes over
-  bool passing = false;  // drawn for a moment, and some around (cache/compose_drawn.h)
+  bool passing = false;  // drawn for a moment, and some around (picture/compose_drawn.h)
   bool coarse = false;   // that in coarser light
   bool attention = true;
   bool keep = false;     // as a keyframe, for others to be made of
   uint64_t seed = 0;
   std::optional<View>
       around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels
-  DisplayPlan display;
+  int samples = 0;
 };
 
 // What it took: milliseconds, and counts.
 struct PictureCosts {
-  float display = 0, light = 0, trace = 0, look = 0, drawing = 0, tonemap = 0;
-  size_t samples = 0, looks = 0;
+  float display = 0, light = 0, trace = 0, drawing = 0, tonemap = 0;
+  size_t samples = 0;
   bool late = false;     // its samples are still to be traced
   bool given_up = false;  // there is no picture
   bool backdrop = false;  // of what does not move: the rest is to be laid over it
@@ -67,14 +66,13 @@ struct Visitor;
 // What drawing a picture takes, whoever it is for.
 struct DrawingWork {
   std::shared_ptr<CacheWork> cache = make_cache_work();  // of all visitors' caches
+  std::shared_ptr<CompositorWork> compositor = std::make_shared<CompositorWork>();  // likewise
   Frame frame;
   std::vector<float> depth;  // of what is drawn for a moment
   Image8 picture;            // when it is finished the visitor's old one
   Keyframe keyframe, around;  // likewise
   std::vector<Request> requests, ahead;
   std::vector<Sample> samples;
-  std::vector<Ray> looks;
-  std::vector<Seen> seen;
   size_t traced = 0;  // of the requests
   uint64_t pose = 0;  // of the world, when they were made
   MovingLight moving_light;

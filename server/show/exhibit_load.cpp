@@ -342,14 +342,4 @@ Exhibit load_exhibit(const std::string& folder) {
   return exhibit;
 }
 
-std::vector<std::string> list_exhibits(const std::string& content) {
-  std::vector<std::string> names;
-  std::error_code ec;
-  for (const auto& entry : fs::directory_iterator(content, ec))
-    if (fs::is_regular_file(entry.path() / "exhibit.json", ec))
-      names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 }  // namespace wellspring

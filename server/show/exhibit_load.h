@@ -26,7 +26,5 @@ struct ExhibitError : std::runtime_error {
 Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems);
 // Throws ExhibitError when a problem is fatal; logs the others.
 Exhibit load_exhibit(const std::string& folder);
-// Packages below `content`: the names of folders that hold an exhibit.json, sorted.
-std::vector<std::string> list_exhibits(const std::string& content);
 
 }  // namespace wellspring

@@ -6,7 +6,7 @@
 //   each tick: pose_figure(world, figure, character, pose, placement, scratch); world.commit();
 #pragma once
 #include "avatar/skin.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cache/keyframe.h"
 #include "cache/predict.h"
+#include "picture/keyframe.h"
 
 namespace wellspring {
 namespace {

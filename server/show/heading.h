@@ -31,7 +31,7 @@ float expected_turn(const Heading& heading, const View& now, double seconds);
 
 // Where the keyframe drawn next, as `drawn`, would show much less than all of what may be asked for
 // in the next `seconds`, until another has taken its place, whether the visitor stops at once or
-// goes on: a view of all that (cache/keyframe.h), to be drawn as well in some of the pixels.
+// goes on: a view of all that (picture/keyframe.h), to be drawn as well in some of the pixels.
 // Nothing: it is enough.
 std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn,
                                  double seconds);

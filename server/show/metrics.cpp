@@ -44,8 +44,6 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "animate_milliseconds", "gauge", "The storyteller's part of it", totals.animate_ms);
   metric(out, "samples_per_second", "gauge", "Samples a second while tracing, all cores",
          report.samples_per_second);
-  metric(out, "looks_per_second", "gauge", "Rays a second that only see, without light, all cores",
-         report.looks_per_second);
   metric(out, "samples_total", "counter", "Samples traced", double(totals.samples));
   metric(out, "bad_samples_total", "counter", "Samples dropped for not being finite or positive",
          double(report.bad_samples));
@@ -112,28 +110,19 @@ std::string write_metrics(const ShowReport& report) {
               [](auto& v) { return v.whole_ms; });
   per_visitor(out, report, "round_trip_milliseconds", "Picture sent to acknowledged",
               [](auto& v) { return v.round_trip_ms; });
-  per_visitor(out, report, "display_milliseconds", "Reprojection and reconstruction",
+  per_visitor(out, report, "display_milliseconds", "Reprojection and light",
               [](auto& v) { return v.display_ms; });
   per_visitor(out, report, "trace_milliseconds", "Tracing samples",
               [](auto& v) { return v.trace_ms; });
-  per_visitor(out, report, "look_milliseconds", "Seeing edges, or every pixel on the path primary",
-              [](auto& v) { return v.look_ms; });
   per_visitor(out, report, "tonemap_milliseconds", "Tone mapping",
               [](auto& v) { return v.tonemap_ms; });
   per_visitor(out, report, "encode_milliseconds", "JPEG encoding",
               [](auto& v) { return v.encode_ms; });
   per_visitor(out, report, "samples_per_picture", "Samples traced for a picture",
               [](auto& v) { return v.budget; });
-  per_visitor(out, report, "looks_per_picture", "Rays that only see, of a picture",
-              [](auto& v) { return v.looks; });
-  per_visitor(out, report, "drawing_milliseconds", "Drawing shape and reflectance of a picture",
+  per_visitor(out, report, "drawing_milliseconds",
+              "Drawing shapes and reflectances of a picture, and shading them",
               [](auto& v) { return v.drawing_ms; });
-  per_visitor(out, report, "drawn_path",
-              "1: shape and reflectance of every pixel are drawn; 0: points alone",
-              [](auto& v) { return int(v.drawn); });
-  per_visitor(out, report, "primary_path",
-              "1: every pixel is looked at; 0: reprojected points, edges looked at",
-              [](auto& v) { return int(v.primary); });
   per_visitor(out, report, "converged_ratio", "Share of converged pixels",
               [](auto& v) { return v.converged; });
   per_visitor(out, report, "empty_ratio", "Share of pixels without a point",

@@ -60,8 +60,8 @@ double seconds_to_moving(const Show& show) {
 void draw_moving(Show& show, Visitor& visitor) {
   Easel& easel = show.easel;
   double began = seconds_now();
-  easel.moving_known = visitor.cache.draw_moving(
-      *show.world, visitor.keyframe, *show.sight, Tonemap{show.exhibit.exposure},
+  easel.moving_known = visitor.compositor.draw_moving(
+      visitor.cache, *show.world, visitor.keyframe, *show.sight, Tonemap{show.exhibit.exposure},
       easel.work.moving_light, easel.work.moving);
   easel.posed_seconds = seconds_now() - began;
 }

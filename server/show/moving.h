@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of pictures at rest what moves is drawn by itself (cache/moving_picture.h), several times as
+// Of pictures at rest what moves is drawn by itself (picture/moving_picture.h), several times as
 // often as the rest, and between that one's steps. In three steps as in show/picture.h.
 #pragma once
 #include "show/show.h"

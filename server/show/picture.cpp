@@ -6,25 +6,24 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/rng.h"
-#include "cache/compose_drawn.h"
 #include "cache/trace_waiting.h"
+#include "picture/compose_drawn.h"
 #include "show/in_view.h"
 #include "show/moving.h"
 #include "show/present.h"
+#include "show/sample_budget.h"
 
 namespace wellspring {
 
 namespace {
 
 constexpr double still_after = 0.25;   // seconds without motion until a picture counts as a still
-constexpr size_t least_measured = 1000;  // looks that tell how long one takes
 constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
 constexpr double backdrop_rate = 4;    // pictures a second of what does not move
 constexpr double keyframe_rate = 30;   // pictures drawn a second while the visitor moves, at most
 constexpr float nearly_all = 0.999f;   // converged
 constexpr double around_kept = 2;  // seconds that what lies around is good for: turns come in bouts
-constexpr float forgotten = 0.998f;    // of what drawing took, a picture without it
 constexpr double predicted_pictures = 2;
 constexpr float predicted_share = 0.3f;    // of the samples, at most
 constexpr float barely_covered = 0.1f;  // of the pixels by points
@@ -35,7 +34,7 @@ constexpr float more_asked = 1.2f;  // than there is time for, by what was measu
 
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
 
-// Seconds of a picture's period that are left for samples and looks.
+// Seconds of a picture's period that are left for samples.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
   double period = (1 - moving_share(show)) / drawing_rate(show, visitor);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
@@ -50,11 +49,11 @@ bool may_be_late(const Show& show, const Visitor& visitor, const Technique& tech
          samples <= BrokerSettings{}.most_waiting && visitor.cache.covered() > barely_covered;
 }
 
-DisplayCosts display_costs(const Show& show, const Visitor& visitor) {
+DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
   const StageTimes& times = visitor.times;
   auto seconds = [](float milliseconds) { return 0.001 * double(milliseconds); };
-  return {show.samples_per_second, show.looks_per_second, seconds(times.drawing),
-          seconds(times.display + times.tonemap), seconds(times.light)};
+  return {show.samples_per_second, seconds(times.drawing), seconds(times.display + times.tonemap),
+          seconds(times.light)};
 }
 
 }  // namespace
@@ -124,18 +123,16 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   order.attention = visitor.attention;
   order.keep = show.settings.background;
   order.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
-  bool may_draw = show.sight && show.sight->can_see(now);
-  order.display = plan_display(
-      seconds_to_trace(show, visitor, busy), size_t(visitor.width) * size_t(visitor.height),
-      display_costs(show, visitor), before.display, fine,
-      may_draw ? show.settings.draw : DrawShapes::never);
+  order.samples = sample_budget(seconds_to_trace(show, visitor, busy),
+                                size_t(visitor.width) * size_t(visitor.height),
+                                drawing_costs(show, visitor), fine);
   // Who moves is shown shapes and reflectances as they are, in light of half their resolution where
   // samples are few; who stops, until more is known.
   double interval = 1 / drawing_rate(show, visitor);
   double seen_for = std::max(interval, 0.001 * double(visitor.times.interval));
   double pixels = double(visitor.width) * double(visitor.height);
-  order.passing = order.display.drawn && !fine;
-  order.coarse = order.passing && !affords_fine_light(order.display.samples / (seen_for * pixels),
+  order.passing = !fine;
+  order.coarse = order.passing && !affords_fine_light(order.samples / (seen_for * pixels),
                                                       before.passing && !before.coarse);
   if (order.keep && !order.still && visitor.frame_number > 0) {
     // It is seen from when it is finished until the next one is.
@@ -172,16 +169,15 @@ void plan_samples(Show& show, const PictureOrder& order, const Technique& techni
   View ahead = order.coarse ? light_view(order.ahead) : order.ahead;
   cache.set_attention(order.attention);
   cache.set_reference(order.settled);
-  cache.set_drawn(order.display.drawn);
   // What is around has light of half its size.
   cache.resize(order.expected.width, order.expected.height);
   cache.move_points(*show.world);
   land(visitor.broker.collect(), *show.world, show.pose_number, cache);
   cache.project(lit);
   cache.attend();
-  int most_asked = int(more_asked * float(order.display.samples));
+  int most_asked = int(more_asked * float(order.samples));
   bool late = !order.still && may_be_late(show, visitor, technique, most_asked);
-  int asked = late ? most_asked : order.display.samples;
+  int asked = late ? most_asked : order.samples;
   work.ahead.clear();
   if (ahead != lit && !technique.begin_pass)
     cache.predict(ahead, int(predicted_share * float(asked)), order.seed, work.ahead);
@@ -242,29 +238,15 @@ void remember_traced(const Show& show, const View& lit, DrawingWork& work, Visit
   work.requests.resize(work.traced);
   work.samples.resize(work.traced);
   if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
-  visitor.cache.remember(lit, work.requests, work.samples);
+  std::span<const uint32_t> points = visitor.cache.remember(lit, work.requests, work.samples);
+  visitor.compositor.add_samples(visitor.cache, work.requests, work.samples, points);
   visitor.costs.samples = work.samples.size();
 }
 
-// A picture of points alone, into work.frame. Returns the seconds that looks took.
-double show_points(const Show& show, const PictureOrder& order, DrawingWork& work,
-                   RenderCache& cache) {
-  cache.survey(order.view, order.display.looks, work.frame, work.looks);
-  work.seen.resize(work.looks.size());
-  double surveyed = seconds_now();
-  see(*show.world, show.lights, work.looks, work.seen);
-  double looked = seconds_now();
-  cache.reconstruct(order.view, work.seen, work.frame);
-  return looked - surveyed;
-}
-
-}  // namespace
-
-namespace {
-
 // What moves is drawn by itself where that is little of the picture, as what it covers is kept.
 bool draws_backdrop(const Show& show, const PictureOrder& order, const RenderCache& cache) {
-  if (!in_steps(order) || !order.figure || order.passing || !order.display.drawn) return false;
+  if (!in_steps(order) || !order.figure || order.passing) return false;
+  if (!show.sight->rasterises(order.view)) return false;
   PictureWindow window = moving_window(*show.world, order.view);
   return !window.empty() && may_be_laid_over(window, order.view) && cache.knows_moving();
 }
@@ -299,20 +281,19 @@ DrawingStep trace_more(Show& show, const PictureOrder& order, const Technique& t
 DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit,
                           Visitor& visitor) {
   RenderCache& cache = visitor.cache;
+  Compositor& compositor = visitor.compositor;
   DrawingWork& work = show.easel.work;
   PictureCosts& costs = visitor.costs;
-  double began = seconds_now(), looking = 0;
+  double began = seconds_now();
   remember_traced(show, lit, work, visitor);
   const Tonemap curve{show.exhibit.exposure};
-  work.looks.clear();
   costs.backdrop = draws_backdrop(show, order, cache);
   if (order.passing)
-    cache.draw(order.view, *show.sight, curve, work.picture, order.keep ? &work.depth : nullptr);
-  else if (order.display.drawn)
-    cache.draw_still(order.view, *show.sight, work.frame,
-                     costs.backdrop ? StillShows::backdrop : StillShows::all);
+    compositor.draw(cache, order.view, *show.sight, curve, work.picture,
+                    order.keep ? &work.depth : nullptr);
   else
-    looking = show_points(show, order, work, cache);
+    compositor.draw_still(cache, order.view, *show.sight, work.frame,
+                          costs.backdrop ? StillShows::backdrop : StillShows::all);
   double painted = seconds_now();
   if (!order.passing) tonemap(work.frame, curve, work.picture);
   if (order.keep)
@@ -320,10 +301,8 @@ DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit
                   work.keyframe);
   double finished = seconds_now();
 
-  costs.looks = work.looks.size();
-  costs.look = float(1000 * looking);
-  costs.drawing = order.display.drawn ? cache.stats().drawing_ms : 0.0f;
-  costs.display += float(1000 * (painted - began - looking)) - costs.drawing;
+  costs.drawing = compositor.drawing_ms();
+  costs.display += float(1000 * (painted - began)) - costs.drawing;
   costs.tonemap = float(1000 * (finished - painted));
   if (order.passing)
     costs.light = std::exchange(costs.display, 0.0f) + std::exchange(costs.tonemap, 0.0f);
@@ -369,10 +348,9 @@ static void fit_memory(Visitor& visitor) {
 }
 
 size_t memory_bytes(const DrawingWork& work) {
-  return memory_bytes(*work.cache) + memory_bytes(work.frame) + memory_bytes(work.keyframe) +
-         memory_bytes(work.around) +
-         bytes_of(work.depth, work.picture.rgb, work.requests, work.ahead, work.samples, work.looks,
-                  work.seen) +
+  return memory_bytes(*work.cache) + memory_bytes(*work.compositor) + memory_bytes(work.frame) +
+         memory_bytes(work.keyframe) + memory_bytes(work.around) +
+         bytes_of(work.depth, work.picture.rgb, work.requests, work.ahead, work.samples) +
          memory_bytes(work.moving_light) + memory_bytes(work.moving);
 }
 
@@ -387,17 +365,13 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
     show.totals.given_up++;
     return;
   }
-  if (costs.looks >= least_measured && costs.look > 0)
-    smooth(show.looks_per_second, float(costs.looks) / (0.001f * costs.look));
   if (order.passing) {
     smooth(times.light, costs.light);
   } else {
     smooth(times.display, costs.display);
     smooth(times.tonemap, costs.tonemap);
   }
-  if (costs.drawing > 0) smooth(times.drawing, costs.drawing);
-  else times.drawing *= forgotten;  // a moment's load is no verdict
-  smooth(times.look, costs.look);
+  smooth(times.drawing, costs.drawing);
   if (!costs.late) smooth(times.trace, costs.trace);
   if (!order.still) smooth(times.whole, float(1000 * costs.seconds));
   double interval = order.time - visitor.drawn_at;
@@ -407,10 +381,10 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   }
   visitor.drawn_at = order.time;
   visitor.broker_seconds =
-      costs.late ? double(order.display.samples) / std::max(double(show.samples_per_second), 1.0)
+      costs.late ? double(order.samples) / std::max(double(show.samples_per_second), 1.0)
                  : 0;
   visitor.stats = visitor.cache.stats();
-  visitor.cache_bytes = visitor.cache.memory_bytes();
+  visitor.cache_bytes = visitor.cache.memory_bytes() + visitor.compositor.memory_bytes();
   // Else its keyframe has the colours.
   if (!order.keep) std::swap(show.easel.work.picture, visitor.picture);
   std::swap(show.easel.work.keyframe, visitor.keyframe);
@@ -428,10 +402,9 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
 void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {
   DrawingWork& work = show.easel.work;
   follow_lamps(show, visitor);
-  visitor.cache.set_drawn(true);
   land(visitor.broker.collect(), *show.world, show.pose_number, visitor.cache);
-  visitor.cache.draw(*order.around, *show.sight, Tonemap{show.exhibit.exposure}, work.picture,
-                     &work.depth, true);
+  visitor.compositor.draw(visitor.cache, *order.around, *show.sight,
+                          Tonemap{show.exhibit.exposure}, work.picture, &work.depth, true);
   make_keyframe(*order.around, work.picture, work.depth, work.around);
 }
 

@@ -13,7 +13,6 @@ ShowReport make_report(const Show& show) {
   report.drawing_bytes = show.easel.work_bytes + memory_bytes(show.warp);
   report.bad_samples = show.lights.bad_samples ? show.lights.bad_samples->load() : 0;
   report.samples_per_second = show.samples_per_second;
-  report.looks_per_second = show.looks_per_second;
   report.kiosks = int(show.eyes.size());
   report.audience = to_string(show.audience.state);
   report.mood = to_string(show.mind.mood);
@@ -32,12 +31,8 @@ ShowReport make_report(const Show& show) {
     one.id = visitor.link->id;
     one.width = visitor.width;
     one.height = visitor.height;
-    one.budget = visitor.order.display.samples;
-    one.looks = visitor.order.display.looks;
-    one.primary = visitor.order.display.primary;
-    one.drawn = visitor.order.display.drawn;
+    one.budget = visitor.order.samples;
     one.drawing_ms = visitor.times.drawing;
-    one.look_ms = visitor.times.look;
     one.quality = suggest_quality(visitor.flow, visitor.best_quality);
     one.fps = visitor.measured_fps;
     one.round_trip_ms = 1000 * visitor.flow.round_trip;

@@ -24,9 +24,8 @@ struct ShowTotals {
 
 struct VisitorReport {
   uint64_t id = 0;
-  int width = 0, height = 0, budget = 0, looks = 0, quality = 0;
-  bool primary = false, drawn = false;  // display path
-  float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, look_ms = 0, drawing_ms = 0,
+  int width = 0, height = 0, budget = 0, quality = 0;
+  float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, drawing_ms = 0,
         tonemap_ms = 0, encode_ms = 0;
   float drawn_fps = 0, warp_ms = 0, moving_ms = 0, whole_ms = 0;
   float fresh = 0, empty = 0, converged = 0, mean_age = 0;
@@ -38,7 +37,7 @@ struct ShowReport {
   bool ready = false;
   double time = 0;
   uint64_t ticks = 0, bad_samples = 0, drawing_bytes = 0;
-  float samples_per_second = 0, looks_per_second = 0;
+  float samples_per_second = 0;
   int kiosks = 0;
   std::string audience = "absent", mood = "idle";
   ShowTotals totals;

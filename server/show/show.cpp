@@ -84,8 +84,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   show->roads = make_tour_roads(show->exhibit, *show->world, problems);
   if (!problems.empty()) throw ExhibitError(std::move(problems));
   show->lights = make_lights(*show->world);
-  if (settings.draw != DrawShapes::never)
-    show->sight = std::make_unique<PictureSight>(*show->world, show->lights);
+  show->sight = std::make_unique<PictureSight>(*show->world, show->lights);
   std::vector<vec3> places = places_of(show->exhibit);
   for (const Technique* technique : {show->technique, show->still_technique})
     if (technique->prepare) technique->prepare(*show->world, places, show->lights);

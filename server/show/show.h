@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "avatar/storyteller.h"
-#include "cache/warp_picture.h"
 #include "light/see_picture.h"
 #include "light/technique.h"
+#include "picture/warp_picture.h"
 #include "show/audience.h"
 #include "show/exhibit.h"
 #include "show/figure.h"
@@ -32,7 +32,6 @@ struct ShowSettings {
   std::string still_technique =
       "path";  // while the visitor stands still: the picture becomes the reference
   TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}};
-  DrawShapes draw = DrawShapes::automatic;
   bool background = true;     // pictures are drawn while the show goes on, and warped meanwhile
   bool late_samples = true;   // of who walks are traced behind the picture, for the next
   float moving_clamp = 4;     // instead of transport.clamp while the visitor moves: fewer sparks
@@ -89,7 +88,6 @@ struct Show {
   uint64_t time_us = 0;        // of the present tick on the clock of pictures and sound
   float picture_lead = 0.02f;  // seconds from a tick to the times of its pictures, smoothed
   float samples_per_second = 200000;  // measured, all cores
-  float looks_per_second = 4e6f;      // likewise
   ShowTotals totals;
   WarpScratch warp;  // of all visitors, whose pictures are warped one after the other
   Easel easel;  // reads much of the above: ends before it

@@ -41,9 +41,8 @@ void welcome_links(Show& show, Arrivals& arrivals) {
       log::info("visitor {} connected from {}", link->id, link->peer);
       Visitor& visitor = show.visitors.emplace_back();
       visitor.link = std::move(link);
-      CacheSettings settings;
-      settings.images = show.settings.draw == DrawShapes::never;
-      visitor.cache = RenderCache(settings, show.easel.work.cache);
+      visitor.cache = RenderCache({}, show.easel.work.cache);
+      visitor.compositor = Compositor(show.easel.work.compositor);
     }
   }
 }

@@ -13,7 +13,8 @@ constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
 }
 
 size_t picture_memory(const Visitor& visitor) {
-  return visitor.cache.memory_bytes() + visitor.broker.memory_bytes() +
+  return visitor.cache.memory_bytes() + visitor.compositor.memory_bytes() +
+         visitor.broker.memory_bytes() +
          memory_bytes(visitor.keyframe) + memory_bytes(visitor.around) +
          memory_bytes(visitor.moving) +
          bytes_of(visitor.picture.rgb) + visitor.encoder->memory_bytes;

@@ -8,8 +8,8 @@
 #include "base/worker.h"
 #include "cache/broker.h"
 #include "cache/cache.h"
-#include "cache/keyframe.h"
 #include "frame/tonemap.h"
+#include "picture/keyframe.h"
 #include "show/easel.h"
 #include "show/flow.h"
 #include "show/heading.h"
@@ -23,7 +23,7 @@ namespace wellspring {
 
 // Milliseconds of the last picture's stages, smoothed: for the status page and the budget.
 struct StageTimes {
-  float display = 0, light = 0, trace = 0, look = 0, drawing = 0, tonemap = 0, warp = 0, encode = 0;
+  float display = 0, light = 0, trace = 0, drawing = 0, tonemap = 0, warp = 0, encode = 0;
   float moving = 0;    // what moves in a picture at rest
   float whole = 0;     // from a picture's order until it can be shown
   float interval = 0;  // from one picture drawn to the next, while the visitor moves
@@ -66,6 +66,7 @@ struct Visitor {
   bool at_work = false;
   std::vector<char> lamps;    // whose light its cache knows: see show/lamps.h
   RenderCache cache;
+  Compositor compositor;
   Broker broker;              // what is traced after its picture, for the next
   PictureCosts costs;
   // What was drawn last, and for what.

@@ -3,7 +3,7 @@
 // the world decide; a visitor inside a wall is not trapped there.
 #pragma once
 #include "show/exhibit_load.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one place that knows which Embree this is: 3 (contexts carry flags) or 4 (arguments carry
-// contexts). Only bvh*.cpp include it.
+// contexts). Only world*.cpp include it.
 #pragma once
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>

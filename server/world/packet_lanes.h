@@ -2,7 +2,7 @@
 // Filling the lanes of ray packets.
 #pragma once
 #include "base/lanes3.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

@@ -9,12 +9,12 @@
 
 #include "base/lanes.h"
 #include "base/parallel.h"
-#include "world/bvh_alpha.h"
 #include "world/raster_clusters.h"
 #include "world/raster_cull.h"
 #include "world/raster_edges.h"
 #include "world/raster_setup.h"
 #include "world/raster_tile.h"
+#include "world/world_alpha.h"
 
 namespace wellspring {
 namespace {

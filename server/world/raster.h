@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "world/bvh.h"
 #include "world/view.h"
+#include "world/world.h"
 
 namespace wellspring {
 
@@ -69,7 +69,7 @@ struct RasterSettings {
 };
 
 // Keeps its arrays from picture to picture. Surfaces with alpha are passed through where a ray
-// would (world/bvh.h). Surfaces nearer to the eye than a millionth of the scene's size are not
+// would (world/world.h). Surfaces nearer to the eye than a millionth of the scene's size are not
 // seen.
 class Raster {
  public:

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "world/bvh.h"
 #include "world/raster_setup.h"
 #include "world/view.h"
+#include "world/world.h"
 
 namespace wellspring {
 

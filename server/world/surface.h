@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A hit made into a place with a material: interpolated, textured, ready for a BSDF. No randomness.
 #pragma once
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

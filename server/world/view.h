@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A camera for one picture: where, which way, how wide. A value; made afresh each tick.
 #pragma once
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

@@ -12,7 +12,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "cache/cache.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 namespace {

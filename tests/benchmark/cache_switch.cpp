@@ -11,12 +11,12 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/rng.h"
-#include "cache/cache.h"
-#include "cache/compose_drawn.h"
 #include "cache_visit_truth.h"
 #include "frame/picture_file.h"
 #include "light/lamps.h"
 #include "light_scenes.h"
+#include "picture/compose_drawn.h"
+#include "picture/compositor.h"
 #include "report.h"
 
 namespace wellspring {
@@ -77,8 +77,8 @@ float share_right(const Frame& shown, const Lit& was, const Lit& is, Frame& map)
   return float(all_right) / float(std::max(affected, 1));
 }
 
-enum class Way { points, moving, still };
-constexpr const char* way_names[] = {"points", "moving", "still"};
+enum class Way { moving, still };
+constexpr const char* way_names[] = {"moving", "still"};
 enum class News { told, found, cleared };
 constexpr const char* news_names[] = {"told", "found", "cleared"};
 
@@ -86,6 +86,7 @@ struct Onlooker {
   const Switch& scene;
   Way way;
   RenderCache cache{};
+  Compositor compositor{};
   std::vector<Request> requests{};
   std::vector<Sample> samples{};
   Frame frame{};
@@ -100,7 +101,6 @@ struct Onlooker {
     TransportSettings transport;
     transport.max_depth = scene.max_depth;
     transport.clamp = 4;  // as ShowSettings::moving_clamp
-    cache.set_drawn(way != Way::points);
     cache.resize(view.width, view.height);
     cache.move_points(*lit.world);
     cache.project(seen);
@@ -108,10 +108,9 @@ struct Onlooker {
     cache.plan(seen, view.width * view.height / mismatch, seed, requests);
     samples.resize(requests.size());
     trace(*find_technique(scene.technique), *lit.world, lit.lights, transport, requests, samples);
-    cache.remember(seen, requests, samples);
-    if (way == Way::points) cache.reconstruct(view, frame);
-    else if (way == Way::moving) cache.draw(view, *lit.sight, frame);
-    else cache.draw_still(view, *lit.sight, frame);
+    compositor.add_samples(cache, requests, samples, cache.remember(seen, requests, samples));
+    if (way == Way::moving) compositor.draw(cache, view, *lit.sight, frame);
+    else compositor.draw_still(cache, view, *lit.sight, frame);
   }
 };
 
@@ -268,7 +267,7 @@ void bench_cache_switch(BenchReport& report, const BenchOptions& options) {
                  {{"scene", what}, {"light", lit == &scene.on ? "on" : "off"}});
     }
     for (int mismatch : mismatches)
-      for (Way way : {Way::points, Way::moving, Way::still})
+      for (Way way : {Way::moving, Way::still})
         for (bool on : {true, false})
           for (News news : {News::told, News::found, News::cleared})
             run(report, options, scene, way, news, on, mismatch);

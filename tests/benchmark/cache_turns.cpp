@@ -8,11 +8,11 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "base/rng.h"
-#include "cache/warp_picture.h"
 #include "cache_visit_stage.h"
 #include "drawn_picture.h"
 #include "frame/flip.h"
 #include "frame/picture_file.h"
+#include "picture/warp_picture.h"
 #include "report.h"
 #include "show/heading.h"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "frame/frame.h"
-#include "world/bvh.h"
 #include "world/view.h"
+#include "world/world.h"
 
 namespace wellspring {
 

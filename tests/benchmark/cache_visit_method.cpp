@@ -8,10 +8,10 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "cache/broker.h"
-#include "cache/compose_drawn.h"
-#include "cache/looks.h"
 #include "cache/predict.h"
-#include "show/display_path.h"
+#include "picture/compose_drawn.h"
+#include "picture/compositor.h"
+#include "show/sample_budget.h"
 
 namespace wellspring {
 namespace {
@@ -51,25 +51,42 @@ struct Batch {
   }
 };
 
-// As show/display_path.cpp divides the time; a look costs about a twentieth of a sample of `gather`
-// (cache.primary.sample_looks).
-constexpr double look_share = 0.12;
-constexpr int looks_a_sample = 20;
 constexpr double displayed_rate = 60;    // frames a second
 constexpr float predicted_frames = 2;    // as show/picture.cpp
 constexpr double predicted_share = 0.3;  // of the budget, at most
 
-class CacheMethod : public VisitMethod {
+class PublishedCache : public VisitMethod {
  public:
-  CacheMethod(Answers answers, bool primary, const CacheSettings& settings = {})
-      : answers_(answers), primary_(primary), cache_(settings) {}
+  void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
+    cache_.set_reference(moment.technique == find_technique("path"));
+    cache_.resize(moment.view.width, moment.view.height);
+    cache_.move_points(*moment.world);
+    cache_.project(moment.view);
+    cache_.attend();
+    cache_.plan(moment.view, budget, moment.seed, batch_.requests);
+    batch_.trace(moment);
+    for (Sample& sample : batch_.samples) sample.glow = vec3(0);  // points show all of it
+    cache_.remember(moment.view, batch_.requests, batch_.samples);
+    cache_.reconstruct(moment.view, frame_);
+    shown.frame = frame_;
+    shown.stats = cache_.stats();
+    shown.empty = shown.stats.empty;
+  }
+
+ private:
+  RenderCache cache_;
+  Batch batch_;
+  Frame frame_;  // pixels without points around stay
+};
+
+class Deferred : public VisitMethod {
+ public:
+  explicit Deferred(Answers answers) : answers_(answers) {}
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
     if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
     last_view_ = moment.view;
     // As show/picture.cpp draws what moves.
-    bool drawn = primary_ && sight(moment).can_see(moment.view);
-    bool passing = drawn && moment.frame - moved_ < still_after;
-    cache_.set_drawn(drawn);
+    bool passing = moment.frame - moved_ < still_after;
     double pixels = double(moment.view.width) * double(moment.view.height);
     bool coarse = passing && !affords_fine_light(budget * displayed_rate / pixels, false);
     const View view = coarse ? light_view(moment.view) : moment.view;
@@ -80,9 +97,6 @@ class CacheMethod : public VisitMethod {
     land(broker_.collect(), *moment.world, pose, cache_);
     cache_.project(view);
     cache_.attend();
-    int price = passing ? 0 : int(look_share * budget);
-    int looks = std::min(looks_a_pixel * view.width * view.height, price * looks_a_sample);
-    budget -= price;
     ahead_.clear();
     if (moment.frame > 0 && view != view_before_)
       cache_.predict(extrapolate(view_before_, view, predicted_frames),
@@ -101,14 +115,11 @@ class CacheMethod : public VisitMethod {
       }
     } else {
       batch_.trace(moment);
-      cache_.remember(view, batch_.requests, batch_.samples);
+      compositor_.add_samples(cache_, batch_.requests, batch_.samples,
+                              cache_.remember(view, batch_.requests, batch_.samples));
     }
-    if (passing)
-      cache_.draw(moment.view, sight(moment), shown.frame);
-    else if (drawn)
-      cache_.draw_still(moment.view, sight(moment), shown.frame);
-    else
-      finish(moment, looks, shown.frame);
+    if (passing) compositor_.draw(cache_, moment.view, sight(moment), shown.frame);
+    else compositor_.draw_still(cache_, moment.view, sight(moment), shown.frame);
     shown.stats = cache_.stats();
     shown.empty = shown.stats.empty;
     if (answers_ != Answers::waited_for) return;
@@ -118,12 +129,6 @@ class CacheMethod : public VisitMethod {
 
  private:
   static constexpr int still_after = 15;  // frames
-  void finish(const VisitMoment& moment, int looks, Frame& frame) {
-    cache_.survey(moment.view, looks, frame, rays_);
-    seen_.resize(rays_.size());
-    see(*moment.world, *moment.lights, rays_, seen_);
-    cache_.reconstruct(moment.view, seen_, frame);
-  }
   const PictureSight& sight(const VisitMoment& moment) {
     if (!sight_ || sees_ != moment.lights->tables)
       sight_ = std::make_unique<PictureSight>(*moment.world, *moment.lights);
@@ -131,14 +136,12 @@ class CacheMethod : public VisitMethod {
     return *sight_;
   }
   Answers answers_;
-  bool primary_;
   View view_before_;
   std::vector<Request> ahead_;
   std::unique_ptr<PictureSight> sight_;
   std::shared_ptr<const LightTables> sees_;
-  std::vector<Ray> rays_;
-  std::vector<Seen> seen_;
   RenderCache cache_;
+  Compositor compositor_;
   View last_view_;
   int moved_ = 0;
   Batch batch_;
@@ -280,13 +283,13 @@ class Frameless : public VisitMethod {
 };
 
 constexpr VisitMethodEntry list[] = {
-    {"cache", "render cache, answers in the same frame", false,
-     [] { return make_cache_method(Answers::at_once); }},
-    {"primary", "the same with shapes and reflectances drawn", false, make_primary_method},
-    {"cache_late", "render cache, answers a frame late", false,
-     [] { return make_cache_method(Answers::next_frame); }},
-    {"cache_behind", "render cache, pictures a frame late", false,
-     [] { return make_cache_method(Answers::waited_for); }},
+    {"cache", "render cache as published, points alone", false, make_published_cache},
+    {"primary", "shapes and reflectances drawn in the cache's light", false,
+     [] { return make_deferred(Answers::at_once); }},
+    {"primary_late", "the same, answers a frame late", false,
+     [] { return make_deferred(Answers::next_frame); }},
+    {"primary_behind", "the same, pictures a frame late", false,
+     [] { return make_deferred(Answers::waited_for); }},
     {"resolution_drop", "whole pictures, as coarse as the budget", true, make_resolution_drop},
     {"hold", "the last complete picture", true, make_hold},
     {"frameless", "random pixels replaced", true, make_frameless},
@@ -300,11 +303,9 @@ std::unique_ptr<VisitMethod> make_visit_method(const std::string& name) {
     if (entry.name == name) return entry.make();
   return nullptr;
 }
-std::unique_ptr<VisitMethod> make_cache_method(Answers answers, const CacheSettings& settings) {
-  return std::make_unique<CacheMethod>(answers, false, settings);
-}
-std::unique_ptr<VisitMethod> make_primary_method() {
-  return std::make_unique<CacheMethod>(Answers::at_once, true);
+std::unique_ptr<VisitMethod> make_published_cache() { return std::make_unique<PublishedCache>(); }
+std::unique_ptr<VisitMethod> make_deferred(Answers answers) {
+  return std::make_unique<Deferred>(answers);
 }
 std::unique_ptr<VisitMethod> make_resolution_drop() { return std::make_unique<ResolutionDrop>(); }
 std::unique_ptr<VisitMethod> make_hold() { return std::make_unique<Hold>(); }

@@ -45,19 +45,17 @@ struct VisitMethodEntry {
   std::unique_ptr<VisitMethod> (*make)();
 };
 
-// The one explicit list, in the report's order. A further display path is one more line here.
+// The one explicit list, in the report's order. A further way is one more line here.
 std::span<const VisitMethodEntry> visit_methods();
 // nullptr: there is none of that name.
 std::unique_ptr<VisitMethod> make_visit_method(const std::string& name);
 
-// server/cache as show/picture.cpp drives it. Answers are there for the picture that asked; or they
-// come through a broker for the next; or the picture waits for them and is shown a frame late. A
-// tenth of the budget goes to looks at edges.
+// The render cache as published: points alone, each picture of the frame's own answers.
+std::unique_ptr<VisitMethod> make_published_cache();
+// Pictures as show/picture.cpp draws them. Answers are there for the picture that asked; or they
+// come through a broker for the next; or the picture waits for them and is shown a frame late.
 enum class Answers { at_once, next_frame, waited_for };
-std::unique_ptr<VisitMethod> make_cache_method(Answers answers,
-                                               const CacheSettings& settings = {.images = true});
-// Display path `primary`: the looks at all pixels are part of its display and not charged.
-std::unique_ptr<VisitMethod> make_primary_method();
+std::unique_ptr<VisitMethod> make_deferred(Answers answers);
 // The whole picture at the resolution the budget allows, bilinear; while nothing changes, samples
 // add up in pixels of their own.
 std::unique_ptr<VisitMethod> make_resolution_drop();

@@ -87,7 +87,7 @@ void bench_cache_visit(BenchReport& report, const BenchOptions& options) {
     }
   }
   // A quarter of the samples: still better?
-  double ratio = mean_flip(result, "cache", 64) / best_baseline(result, 16);
+  double ratio = mean_flip(result, "primary", 64) / best_baseline(result, 16);
   if (ratio > 0)
     report.add("cache.visit.flip_ratio_64_to_16", ratio, "ratio", {{"scene", "castle"}});
   save_budget_plot(options.plots + "visit_budget.svg", result, settings.mismatches);

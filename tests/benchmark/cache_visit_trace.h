@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "show/exhibit.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 

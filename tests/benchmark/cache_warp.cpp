@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a warped picture (cache/warp_picture.h) differs from one that is drawn for its view, along
+// What a warped picture (picture/warp_picture.h) differs from one that is drawn for its view, along
 // recorded visits: reflectances in a light from one direction, without noise, so that nothing but
 // the warp shows.
 #include <algorithm>
@@ -7,11 +7,11 @@
 #include <ctime>
 #include <spdlog/fmt/fmt.h>
 
-#include "cache/warp_picture.h"
 #include "cache_visit_stage.h"
 #include "drawn_picture.h"
 #include "frame/flip.h"
 #include "frame/picture_file.h"
+#include "picture/warp_picture.h"
 #include "report.h"
 
 namespace wellspring {

@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
       {"stream", bench_stream},           {"avatar", bench_avatar},
       {"cache.display", bench_cache_display}, {"cache.warp", bench_cache_warp},
       {"cache.visit", bench_cache_visit},
-      {"cache.mirror", bench_cache_mirror}, {"cache.rest", bench_cache_rest},
+      {"cache.rest", bench_cache_rest},
       {"show.rest", bench_show_rest},
       {"cache.starve", bench_cache_starve}, {"cache.turns", bench_cache_turns},
       {"cache.switch", bench_cache_switch},

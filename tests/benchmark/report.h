@@ -49,7 +49,6 @@ void bench_show_rest(BenchReport& report, const BenchOptions& options);
 void bench_cache_display(BenchReport& report, const BenchOptions& options);
 void bench_cache_warp(BenchReport& report, const BenchOptions& options);
 void bench_cache_visit(BenchReport& report, const BenchOptions& options);
-void bench_cache_mirror(BenchReport& report, const BenchOptions& options);
 void bench_cache_rest(BenchReport& report, const BenchOptions& options);
 void bench_cache_starve(BenchReport& report, const BenchOptions& options);
 void bench_cache_turns(BenchReport& report, const BenchOptions& options);

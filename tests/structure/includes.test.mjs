@@ -16,8 +16,9 @@ const may_include = {
   world: ['gltf', 'base'],
   light: ['world', 'frame', 'base'],
   cache: ['light', 'world', 'frame', 'base'],
+  picture: ['cache', 'light', 'world', 'frame', 'base'],
   avatar: ['gltf', 'base'],
-  show: ['cache', 'light', 'world', 'gltf', 'frame', 'avatar', 'wire', 'base'],
+  show: ['picture', 'cache', 'light', 'world', 'gltf', 'frame', 'avatar', 'wire', 'base'],
   stream: ['wire', 'base'],
   kiosk: ['wire', 'base'],
 };

@@ -154,7 +154,6 @@ TEST(Attention, EmptyBeforeOldBeforeFresh) {
 
 struct Changes : testing::Test {
   Planner p;
-  StillImage still;
   Rng rng{11};
   void SetUp() override {
     for (uint32_t i = 0; i < 14400; i++) {
@@ -177,7 +176,7 @@ struct Changes : testing::Test {
   void hear(int x, int y, int count, float change, float noise = 0) {
     hear(x, y, count, [&] { return Witness{0, change, noise}; });
   }
-  void judge() { age_changed(p.points, p.view, p.image, still); }
+  void judge() { age_changed(p.points, p.view, p.image); }
 };
 
 TEST_F(Changes, AgeTheNeighbourhoodOnce) {
@@ -188,6 +187,8 @@ TEST_F(Changes, AgeTheNeighbourhoodOnce) {
   judge();
   EXPECT_EQ(p.points.age[at(44, 44)], 42);
   EXPECT_LE(p.points.count[at(44, 44)], 2);
+  EXPECT_TRUE(p.image.renewed[at(44, 44)]);  // and pictures are told
+  EXPECT_FALSE(p.image.renewed[at(140, 80)]);
   EXPECT_EQ(p.points.age[at(28, 44)], 42);
   EXPECT_EQ(p.points.age[at(100, 44)], 10);
   judge();
@@ -295,7 +296,7 @@ TEST_F(Changes, AreSeenWhereTheViewHasCarriedThem) {
   View turned = look_at(vec3(0), view_ray(p.view, 120, 45).direction, 60, 160, 90);
   hear(116, 41, 40, 0.9f);  // what was at column 120 is in the middle now
   hear(2, 2, 40, 0.9f);     // of these nobody is there any more
-  age_changed(p.points, turned, p.image, still);
+  age_changed(p.points, turned, p.image);
   EXPECT_EQ(p.points.age[at(80, 45)], 42);
   EXPECT_EQ(p.points.age[at(4, 4)], 10);
   EXPECT_TRUE(p.image.witnesses.empty());

@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "base/rng.h"
-#include "cache/surface_image.h"
 #include "cache/packing.h"
 #include "cache/project.h"
 #include "cache/remember.h"
+#include "picture/surface_image.h"
 #include "unit/cache/room.h"
 
 namespace wellspring {

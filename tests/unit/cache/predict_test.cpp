@@ -127,8 +127,8 @@ Edge turn(bool predicts, int mismatch) {
   for (int i = 0; i < 90; i++) {
     View view = turned(float(i) * 2 * pi / 180);
     v.cache.resize(width, height);
-    v.cache.move_points(v.world);
-    land(broker.collect(), v.world, 0, v.cache);
+    v.cache.move_points(v.world());
+    land(broker.collect(), v.world(), 0, v.cache);
     v.cache.project(view);
     v.cache.attend();
     std::vector<Request> ahead;
@@ -142,8 +142,7 @@ Edge turn(bool predicts, int mismatch) {
       trace_room(v.room, answer.piece.requests, answer.samples);
       broker.answer(std::move(answer));
     }
-    v.cache.survey(view, 0, v.frame, v.looks);
-    v.cache.reconstruct(view, {}, v.frame);
+    v.cache.reconstruct(view, v.frame);
     before = view;
     if (i < 30) continue;
     Frame truth = render_room(v.room, view, 1);

@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cmath>
 
-#include "cache/compose_drawn.h"
 #include "cache/packing.h"
 #include "cache/point_cache.h"
 #include "light/technique.h"
+#include "picture/compose_drawn.h"
 #include "scenes/scenes.h"
 #include "unit/cache/visit.h"
 
@@ -128,6 +128,7 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
                               const std::vector<vec3>& after, Shown shown, bool told, int mismatch,
                               int pictures) {
   RenderCache cache;
+  Compositor compositor;
   std::vector<Request> requests;
   std::vector<Sample> samples;
   Frame frame;
@@ -138,7 +139,6 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
       view.position.x += 0.004f;  // the last is seen from the place
     const View seen = shown == Shown::moving ? light_view(view) : view;
     if (i == 0 && told) cache.relight(everywhere);
-    cache.set_drawn(true);
     cache.resize(view.width, view.height);
     cache.move_points(*box.world);
     cache.project(seen);
@@ -146,9 +146,9 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
     cache.plan(seen, view.width * view.height / mismatch, uint64_t(i + 100), requests);
     samples.resize(requests.size());
     trace(*find_technique("path"), *box.world, box.lights, box.transport, requests, samples);
-    cache.remember(seen, requests, samples);
-    if (shown == Shown::moving) cache.draw(view, *box.sight, frame);
-    else cache.draw_still(view, *box.sight, frame);
+    compositor.add_samples(cache, requests, samples, cache.remember(seen, requests, samples));
+    if (shown == Shown::moving) compositor.draw(cache, view, *box.sight, frame);
+    else compositor.draw_still(cache, view, *box.sight, frame);
   }
   int affected = 0, right = 0;
   for (size_t i = 0; i < after.size(); i++) {

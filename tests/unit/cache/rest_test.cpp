@@ -91,6 +91,7 @@ TEST(Rest, WhatMovesBeforeAStillCameraLeavesItsPlace) {
     cache.move_points(world);
     cache.project(view);
     cache.attend();
+    frame = {};  // pixels without points stay as they were
     cache.reconstruct(view, frame);
   };
   cache.resize(64, 48);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "scenes/build.h"
 
 namespace wellspring {
 namespace {
@@ -26,6 +27,10 @@ struct Ball {
   vec3 albedo;
   bool mirror;
 };
+constexpr Ball balls[4] = {{{-1.2f, 0.6f, -1.5f}, 0.6f, {0.8f, 0.75f, 0.2f}, false},
+                           {{1.3f, 0.8f, -2.6f}, 0.8f, {0.2f, 0.7f, 0.3f}, false},
+                           {{0.2f, 0.35f, -0.4f}, 0.35f, {0.8f, 0.8f, 0.8f}, false},
+                           {{2.6f, 0.7f, -0.8f}, 0.7f, {0, 0, 0}, true}};
 
 float checker(float u, float v) {
   return (int(std::floor(u)) + int(std::floor(v))) & 1 ? 1.0f : 0.0f;
@@ -70,11 +75,6 @@ RoomHit hit_room(const Room& room, vec3 o, vec3 d) {
     hit.emission = lamp_radiance;
     hit.object = 7;
   }
-  const Ball balls[4] = {
-      {vec3(-1.2f, 0.6f, -1.5f) + room.ball_offset, 0.6f, vec3(0.8f, 0.75f, 0.2f), false},
-      {vec3(1.3f, 0.8f, -2.6f), 0.8f, vec3(0.2f, 0.7f, 0.3f), false},
-      {vec3(0.2f, 0.35f, -0.4f), 0.35f, vec3(0.8f), false},
-      {vec3(2.6f, 0.7f, -0.8f), 0.7f, vec3(0), true}};
   for (uint32_t i = 0; i < 4; i++) {
     vec3 to = o - balls[i].center;
     float b = dot(to, d), c = dot(to, to) - balls[i].radius * balls[i].radius, disc = b * b - c;
@@ -180,6 +180,7 @@ Sample trace_room(const Room& room, const Request& request) {
     sample.albedo = hit.albedo;
     sample.smooth = smooth;
     sample.rest = rest;
+    sample.glow = hit.emission;
   }
   return sample;
 }
@@ -231,17 +232,64 @@ View look_at(vec3 eye, vec3 target, float fov_degrees, int width, int height) {
   return view;
 }
 
-void see_room(const Room& room, std::span<const Ray> rays, std::vector<Seen>& seen) {
-  Room dark = room;
-  dark.spot = dark.noisy = false;
-  seen.resize(rays.size());
-  for (size_t i = 0; i < rays.size(); i++) {
-    Request request;
-    request.ray = rays[i];
-    Sample sample = trace_room(dark, request);
-    bool shines = sample.albedo == vec3(0) && !(sample.flags & sample_specular);
-    seen[i] = {sample.normal, sample.distance, sample.albedo, sample.rest, sample.object, !shines};
-  }
+namespace {
+
+// Of the wall's surface from `a` along u and v, in metres: reflectances as a picture.
+Material paint_wall(Scene& scene, uint32_t object, vec3 a, vec3 u, vec3 v, int columns, int rows) {
+  Image image;
+  image.width = columns, image.height = rows;
+  image.srgb = true;
+  for (int y = 0; y < rows; y++)
+    for (int x = 0; x < columns; x++) {
+      vec3 p = a + u * ((float(x) + 0.5f) / float(columns)) + v * ((float(y) + 0.5f) / float(rows));
+      vec3 albedo = wall_albedo(object, p);
+      for (int c = 0; c < 3; c++) {
+        float l = albedo[c];
+        float code = l <= 0.0031308f ? 12.92f * l : 1.055f * std::pow(l, 1 / 2.4f) - 0.055f;
+        image.texels8.push_back(uint8_t(code * 255 + 0.5f));
+      }
+      image.texels8.push_back(255);
+    }
+  scene.images.push_back(std::move(image));
+  Texture texture;
+  texture.image = int(scene.images.size()) - 1;
+  texture.nearest = true;
+  scene.textures.push_back(texture);
+  Material material = scenes::diffuse(vec3(1));
+  material.base_color_texture.texture = int(scene.textures.size()) - 1;
+  return material;
+}
+
+}  // namespace
+
+Scene make_room_scene(const Room& room) {
+  using namespace scenes;
+  Scene scene = empty_scene();
+  const vec3 size = high - low, x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+  // In the order of RoomHit::object.
+  auto plain = [&](uint32_t object) {
+    return add_material(scene, diffuse(wall_albedo(object, vec3(0))));
+  };
+  const vec3 front = low + z, back = low + x;
+  add_quad(scene, add_material(scene, paint_wall(scene, 1, front, x, -z, 512, 640)), front, x,
+           -z, "floor");
+  add_quad(scene, plain(2), low + y, x, z, "ceiling");
+  add_quad(scene, plain(3), front, -z, y, "left");
+  add_quad(scene, plain(4), back, z, y, "right");
+  add_quad(scene, add_material(scene, paint_wall(scene, 5, low, x, y, 1024, 384)), low, x, y,
+           "back");
+  add_quad(scene, add_material(scene, paint_wall(scene, 6, high - y, -x, y, 1024, 384)), high - y,
+           -x, y, "front");
+  if (room.lamp)
+    add_quad(scene, add_material(scene, emitter(lamp_radiance)),
+             {-lamp_half, high.y - 1e-3f, -lamp_half}, {2 * lamp_half, 0, 0},
+             {0, 0, 2 * lamp_half}, "lamp");
+  else
+    scene.objects.push_back("lamp");
+  for (const Ball& ball : balls)
+    add_mesh(scene, sphere_mesh(add_material(scene, diffuse(ball.albedo)), ball.radius, 64), "ball",
+             at(ball.center));
+  return scene;
 }
 
 }  // namespace wellspring

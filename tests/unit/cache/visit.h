@@ -1,36 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 // One visitor of the analytic room: what the show does for a picture, in one place.
 #pragma once
-#include "cache/cache.h"
+#include <optional>
+
+#include "light/lights.h"
+#include "picture/compositor.h"
 #include "unit/cache/room.h"
 
 namespace wellspring {
 
 struct Visit {
-  Scene scene;
-  World world{scene};
-  Room room;
+  Room room;  // with or without its lamp for good, once there is a picture
   RenderCache cache;
+  Compositor compositor;
   std::vector<Request> requests;
   std::vector<Sample> samples;
-  std::vector<Ray> looks;
-  std::vector<Seen> seen;
   Frame frame;
   uint64_t tick = 1;
-  int most_looks = 0;
 
   void step(const View& view, int budget) {
-    cache.resize(view.width, view.height);
-    cache.move_points(world);
-    cache.project(view);
-    cache.attend();
+    begin(view);
     cache.plan(view, budget, tick++, requests);
     trace_room(room, requests, samples);
-    cache.remember(view, requests, samples);
-    cache.survey(view, most_looks, frame, looks);
-    see_room(room, looks, seen);
-    cache.reconstruct(view, seen, frame);
+    compositor.add_samples(cache, requests, samples, cache.remember(view, requests, samples));
+    show(view);
   }
+  void begin(const View& view) {
+    cache.resize(view.width, view.height);
+    cache.move_points(place().world);
+    cache.project(view);
+    cache.attend();
+  }
+  // At rest from the second picture of a view on.
+  void show(const View& view) {
+    if (view == shown_) compositor.draw_still(cache, view, place().sight, frame);
+    else compositor.draw(cache, view, place().sight, frame);
+    shown_ = view;
+  }
+  const World& world() { return place().world; }
+
+ private:
+  struct Place {
+    Scene scene;
+    World world{scene};
+    PictureSight sight;
+    explicit Place(Scene made) : scene(std::move(made)), sight(commit(world), make_lights(world)) {}
+    static const World& commit(World& world) {
+      world.commit();
+      return world;
+    }
+  };
+  const Place& place() {
+    if (!place_) place_ = std::make_unique<Place>(make_room_scene(room));
+    return *place_;
+  }
+  std::unique_ptr<Place> place_;
+  View shown_;
 };
 
 }  // namespace wellspring

@@ -123,7 +123,7 @@ TEST(SeePicture, SeesWhatRaysSee) {
   Lights lights = make_lights(world);
   PictureSight sight(world, lights);
   View view = make_view(scene, {0, 0.1, 0}, 0, 0, 0.7f, 241, 160);
-  ASSERT_TRUE(sight.can_see(view));
+  ASSERT_TRUE(sight.rasterises(view));
   Drawn drawn = draw(sight, view);
   std::vector<Seen> traced = trace_picture(world, lights, view);
   int told = 0, edges = 0, shining = 0, tinted = 0, dark = 0, sky = 0;
@@ -230,12 +230,44 @@ TEST(SeePicture, PicturesFarAwayAreTheirMean) {
   }
 }
 
-TEST(SeePicture, AnEyeInSolidGlassIsNotServed) {
+// Every pixel once, and of each what a ray sees; there are no edges.
+TEST(SeePicture, AnEyeInSolidGlassIsServedByRays) {
   Scene scene = empty_scene();
+  scene.environment.radiance = vec3(1, 2, 3);
   add_mesh(scene, sphere_mesh(add_material(scene, glass(1.5f, 0, 1)), 1), "ball");
+  add_quad(scene, add_material(scene, emitter(vec3(5))), {-0.2f, -0.2f, -0.5f}, {0.4f, 0, 0},
+           {0, 0.4f, 0}, "within");
   World world(scene);
   world.commit();
-  PictureSight sight(world, make_lights(world));
-  EXPECT_FALSE(sight.can_see(make_view(scene, {0, 0, 0}, 0, 0, 1, 8, 8)));
-  EXPECT_TRUE(sight.can_see(make_view(scene, {0, 0, 2}, 0, 0, 1, 8, 8)));
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  EXPECT_TRUE(sight.rasterises(make_view(scene, {0, 0, 2}, 0, 0, 1, 8, 8)));
+  View view = make_view(scene, {0, 0, 0}, 0.3f, 0.1f, 1, 75, 20);
+  ASSERT_FALSE(sight.rasterises(view));
+  vec2 offset(0.3f, 0.8f);
+  std::vector<int> calls(75 * 20, 0), lamp = calls;
+  auto edges = sight.see_edges(view, offset, [&](const SightRun& run) {
+    RunSurface surface;
+    uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
+    EXPECT_EQ(run.describe(all, surface), all);  // only see() knows
+    for (int i = 0; i < run.count; i++) {
+      Ray ray = view_ray(view, float(run.x + i) + offset.x, float(run.y) + offset.y);
+      Seen seen, drawn = run.see(i);
+      see(world, lights, std::span(&ray, 1), std::span(&seen, 1));
+      size_t pixel = size_t(run.y * 75 + run.x + i);
+      calls[pixel]++;
+      lamp[pixel] = drawn.glow != vec3(0);
+      EXPECT_EQ(run.object[i], seen.object);
+      EXPECT_EQ(drawn.distance, seen.distance);
+      EXPECT_EQ(drawn.glow, seen.glow);
+      EXPECT_NEAR(run.depth[i], seen.distance * dot(ray.direction, view.forward), 1e-5f);
+    }
+  });
+  EXPECT_TRUE(edges.empty());
+  for (int count : calls) ASSERT_EQ(count, 1);
+  EXPECT_GT(std::count(lamp.begin(), lamp.end(), 1), 100);
+  EXPECT_LT(std::count(lamp.begin(), lamp.end(), 1), 75 * 20 / 2);
+  int moving = 0;
+  sight.see(view, offset, [&](const SightRun&) { moving++; }, RasterShows::moving);
+  EXPECT_EQ(moving, 0);
 }

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "cache/warp_picture.h"
+#include "picture/warp_picture.h"
 
 namespace wellspring {
 namespace {

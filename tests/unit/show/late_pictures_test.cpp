@@ -26,9 +26,8 @@ struct LatePictures : testing::Test {
   std::promise<void> held;
   std::unique_ptr<Show> show;
 
-  void begin(int visitors = 1, DrawShapes draw = DrawShapes::automatic) {
+  void begin(int visitors = 1) {
     ShowSettings settings;
-    settings.draw = draw;
     settings.fps = 50;
     settings.technique = settings.still_technique = "direct";
     show = make_show(make_tiny_exhibit(), settings);
@@ -157,8 +156,7 @@ TEST_F(LatePictures, QuickTurnsShowWhatIsDrawn) {
 }
 
 TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
-  begin(1, DrawShapes::always);
-  show->looks_per_second = 1;  // or these would do without drawing
+  begin();
   for (int i = 0; i < 30; i++) turn(0.01, 0.5), step(true, 0.08);
   EXPECT_EQ(show->totals.surroundings, 0u);
   EXPECT_TRUE(visitor().around.empty());
@@ -204,8 +202,7 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
 }
 
 TEST_F(LatePictures, NothingAroundTheOldPlaceAfterALeap) {
-  begin(1, DrawShapes::always);
-  show->looks_per_second = 1;  // or these would do without drawing
+  begin();
   for (int i = 0; i < 60; i++) turn(0.3), step(true, 0.08);  // a slow machine
   ASSERT_FALSE(visitor().around.empty());
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");

@@ -35,10 +35,8 @@ struct Moving : testing::Test {
 
   void SetUp() override {
     ShowSettings settings;
-    settings.draw = DrawShapes::always;
     settings.technique = settings.still_technique = "direct";
     show = make_show(make_exhibit(), settings);
-    show->looks_per_second = 1000;  // else all of so small a picture is looked at
     arrivals.put(link);
     link->push_text_in(
         R"({"type":"hello","exhibit":"","width":192,"height":128,"lang":"en","role":"visitor"})");

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "asset.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 namespace {

@@ -2,7 +2,7 @@
 // Files that are wrong, hostile or broken: each is refused with its place, and none crashes.
 #include "asset.h"
 #include "base/rng.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 namespace wellspring {
 namespace {

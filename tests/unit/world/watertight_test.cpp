@@ -11,7 +11,7 @@
 
 #include "base/rng.h"
 #include "scenes/scenes.h"
-#include "world/bvh.h"
+#include "world/world.h"
 
 using namespace wellspring;
 using namespace wellspring::scenes;

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+// Eight cells at a time. What lies on either side of a row is empty, so nothing asks where it ends.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/parallel.h"
+#include "cache/lanes.h"
+#include "picture/cells.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int steps = 4;  // taps 1, 2, 4 and 8 cells apart
+constexpr float plane_tolerance =
+    0.03f;  // relative depth off the other cell's plane that halves a weight
+// Squared, in variances of the mean. Of a few samples these are no better known than the light, and
+// count for `unsure_variance` times as much.
+constexpr float light_tolerance = 4, unsure_variance = 6;
+constexpr float least_samples = 1 / 512.0f;  // of a cell that remembers none
+constexpr float most_samples = 64;    // that a cell counts for: its neighbours show other places
+constexpr float plenty_of_points = 48;  // in nine cells, to tell how light deviates there
+constexpr float enough_pairs = 12;      // of neighbours, likewise
+constexpr float least_detail =
+    1 / 48.0f;  // of smooth light among nine cells: a variance over the mean squared
+constexpr float most_patience = 192;       // samples
+
+f8 load_at(std::span<const float> plane, size_t i) { return load<f8>(plane.data() + i); }
+f8 clamped(const f8& v, float low, float high) {
+  return smaller(larger(v, splat(low)), splat(high));
+}
+
+// Sums over cells of one object.
+struct Pool {
+  f8 samples{}, points{}, sum{}, sum2{};
+  f8 rest{}, rest2{}, rest_noise{}, rest_known{};
+  f8 pairs{}, pair_sum{};
+};
+using PoolPlanes = decltype(Cells::pooled);
+
+template <class Read>
+void add(Pool& pool, const i8& same, const Read& read) {
+  pool.samples += keep(same, read(0)), pool.points += keep(same, read(1));
+  pool.sum += keep(same, read(2)), pool.sum2 += keep(same, read(3));
+  pool.rest += keep(same, read(4)), pool.rest2 += keep(same, read(5));
+  pool.rest_noise += keep(same, read(6)), pool.rest_known += keep(same, read(7));
+  pool.pairs += keep(same, read(8)), pool.pair_sum += keep(same, read(9));
+}
+
+PoolPlanes own_planes(const Cells& c) {
+  return {c.samples,   c.points,     c.sum,        c.sum2,  c.rest_sum,
+          c.rest_sum2, c.rest_noise, c.rest_known, c.pairs, c.pair_sum};
+}
+
+// Over the cells `step` apart around eight, and these.
+Pool pool_around(const Cells& cells, const PoolPlanes& planes, size_t i, const u8& object,
+                 int step) {
+  Pool pool;
+  for (int dy = -1; dy <= 1; dy++)
+    for (int dx = -1; dx <= 1; dx++) {
+      size_t j = size_t(ptrdiff_t(i) + step * (dy * cells.stride + dx));
+      add(pool, load<u8>(&cells.object[j]) == object,
+          [&](size_t k) { return load_at(planes[k], j); });
+    }
+  return pool;
+}
+
+// The brightest means around.
+struct Brightest {
+  f8 light{}, rest{};
+};
+Brightest brightest_around(const Cells& cells, size_t i, const u8& object) {
+  Brightest b;
+  for (int dy = -1; dy <= 1; dy++)
+    for (int dx = -1; dx <= 1; dx++) {
+      if (dx == 0 && dy == 0) continue;
+      size_t j = size_t(ptrdiff_t(i) + dy * cells.stride + dx);
+      i8 same = load<u8>(&cells.object[j]) == object;
+      f8 per_sample = keep(same, 1.0f / larger(load_at(cells.samples, j), splat(least_samples)));
+      b.light = larger(b.light, load_at(cells.sum, j) * per_sample);
+      b.rest = larger(b.rest, load_at(cells.rest_sum, j) * per_sample);
+    }
+  return b;
+}
+
+struct Estimate {
+  f8 scale, rest_scale;  // below 1: an outlier, brought down to its surroundings
+  f8 mean_variance, patience, rest_detail, rest_noise, rest_mean_variance;
+};
+
+// What cells somewhat farther around say, for those with few points near.
+struct Prior {
+  f8 mean, variance, rest_mean;
+  i8 told;
+};
+Prior make_prior(const Pool& wide) {
+  constexpr float guess_points = 3;
+  f8 per_sample = 1.0f / larger(wide.samples, splat(least_samples));
+  Prior prior;
+  prior.mean = wide.sum * per_sample;
+  f8 spread = positive(wide.sum2 - wide.sum * prior.mean);
+  prior.variance =
+      (spread + prior.mean * prior.mean * guess_points) / (wide.points + guess_points) + 1e-6f;
+  prior.rest_mean = wide.rest * per_sample;
+  prior.told = wide.points >= 4.0f;
+  return prior;
+}
+
+// Where few points tell, smooth light is assumed to deviate as it does farther around, and what
+// varies in the rest to be noise by `rest_share`. `samples` > 0; `light` and `rest_light` are the
+// cells' sums over their samples; `unsure`: some point of a cell may owe its rest to chance, and
+// these differ.
+Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& brightest,
+                        const f8& samples, const f8& light_sum, const f8& rest_sum,
+                        const i8& unsure, float rest_share) {
+  constexpr float guess_points = 3;
+  Estimate e;
+  f8 per_sample = 1.0f / samples, per_pooled = 1.0f / pool.samples;
+  Prior prior = make_prior(wide);
+  f8 mean = pool.sum * per_pooled, spread = positive(pool.sum2 - pool.sum * mean);
+  f8 expected = (pool.sum + prior.mean * guess_points) / (pool.samples + guess_points);
+  f8 variance = (spread + prior.variance * guess_points) / (pool.points + guess_points);
+  // What points spread beyond that is detail: their means of many samples differ where the light
+  // does.
+  f8 paired = pool.pairs / (pool.pairs + enough_pairs);
+  f8 deviates = pool.pair_sum / larger(pool.pairs, splat(1));
+  f8 detail = paired * positive(variance - deviates) * pool.points * per_pooled;
+  variance += paired * (deviates - variance);
+  e.patience = clamped(variance / (detail + least_detail * expected * expected + 1e-6f), 0.5f,
+                       most_patience);
+  f8 known_badly = 1.0f + (unsure_variance - 1) * (1.0f - paired);
+  e.mean_variance = variance * per_sample * known_badly;
+  // What varies from place to place beyond what varies from sample to sample is detail.
+  f8 rest_spread = positive(pool.rest2 - pool.rest * pool.rest * per_pooled) /
+                   larger(pool.points - 1.0f, splat(1));
+  f8 wide_spread = positive(wide.rest2 - wide.rest * wide.rest / larger(wide.samples, splat(1))) /
+                   larger(wide.points - 1.0f, splat(1));
+  f8 near_share = pool.points / (pool.points + guess_points);
+  rest_spread = rest_spread * near_share + wide_spread * (1.0f - near_share);
+  e.rest_noise = (pool.rest_noise + rest_spread * rest_share) / (pool.rest_known + 1.0f);
+  e.rest_detail = positive(rest_spread - e.rest_noise) * pool.points * per_pooled;
+  e.rest_mean_variance = e.rest_noise * per_sample * known_badly;
+  // A cell brighter than all around it, or far brighter than their mean, owes that to a lucky path,
+  // unless many samples say so or, of the rest, it stays so from sample to sample.
+  f8 light = light_sum * per_sample, rest_light = rest_sum * per_sample;
+  f8 others = pool.samples - samples;
+  i8 near = others >= 3.0f;
+  f8 all_others = wide.samples - samples;
+  f8 per_other = 1.0f / larger(near ? others : all_others, splat(1));
+  f8 other_light = ((near ? pool.sum : wide.sum) - light_sum) * per_other,
+     other_rest = ((near ? pool.rest : wide.rest) - rest_sum) * per_other;
+  f8 confirmed = 2.5f + 0.05f * samples;
+  f8 peak = 1.25f + 0.05f * samples;
+  f8 most = confirmed * other_light, rest_most = confirmed * other_rest;
+  most = near ? smaller(most, peak * brightest.light) : most;
+  rest_most = near ? smaller(rest_most, peak * brightest.rest) : rest_most;
+  i8 told = near | (all_others >= 6.0f),
+     noisy = unsure | (e.rest_noise > 0.25f * rest_light * rest_light);
+  f8 one = splat(1);
+  e.scale = told & (light > most) ? (most + 1e-6f) / (light + 1e-6f) : one;
+  e.rest_scale =
+      told & noisy & (rest_light > rest_most) ? (rest_most + 1e-6f) / (rest_light + 1e-6f) : one;
+  return e;
+}
+
+// Of all that varies in the rest of the whole picture, how much is noise? Every third row tells;
+// each adds up for itself, so that the sum does not depend on the threads.
+float share_of_noise(const Cells& cells) {
+  struct Sums {
+    double noise = 0, spread = 0, known = 0;
+  };
+  std::vector<Sums> rows(size_t(cells.height + 2) / 3);
+  parallel_ranges(int(rows.size()), 8, [&](int begin, int end) {
+    for (int row = begin; row < end; row++) {
+      Sums sums;
+      for (int x = 0; x < cells.width; x++) {
+        size_t i = size_t(cells.index(x, row * 3));
+        if (cells.rest_known[i] == 0) continue;
+        float spread =
+            cells.rest_sum2[i] - cells.rest_sum[i] * cells.rest_sum[i] / cells.samples[i];
+        sums.noise += double(std::min(cells.rest_noise[i], 1.0f));
+        sums.spread += double(std::clamp(spread, 0.0f, 1.0f));
+        sums.known += 1;
+      }
+      rows[size_t(row)] = sums;
+    }
+  });
+  Sums all;
+  for (const Sums& row : rows)
+    all.noise += row.noise, all.spread += row.spread, all.known += row.known;
+  if (all.known == 0) return 0.5f;
+  return float(std::clamp(all.noise / (all.noise + all.spread + 1e-9), 0.5, 1.0));
+}
+
+void pool_cells(Cells& cells) {
+  PoolPlanes own = own_planes(cells);
+  parallel_ranges(cells.height, 4, [&](int begin, int end) {
+    for (int y = begin; y < end; y++)
+      for (int x = 0; x < cells.width; x += lanes) {
+        size_t i = size_t(cells.index(x, y));
+        Pool pool = pool_around(cells, own, i, load<u8>(&cells.object[i]), 1);
+        const f8 sums[] = {pool.samples, pool.points, pool.sum,        pool.sum2,
+                           pool.rest,    pool.rest2,  pool.rest_noise, pool.rest_known,
+                           pool.pairs,   pool.pair_sum};
+        for (size_t k = 0; k < cells.pooled.size(); k++) store(&cells.pooled[k][i], sums[k]);
+      }
+  });
+}
+
+// Replaces the moments by what follows from them; the other side of the a-trous steps serves
+// meanwhile.
+void estimate_variance(Cells& cells) {
+  float rest_share = share_of_noise(cells);
+  auto& [mean_variance, rest_detail, rest_noise] = cells.spare;
+  auto& rest_mean_variance = cells.rest_spare[0];
+  pool_cells(cells);
+  parallel_ranges(cells.height, 4, [&](int begin, int end) {
+    for (int y = begin; y < end; y++)
+      for (int x = 0; x < cells.width; x += lanes) {
+        size_t i = size_t(cells.index(x, y));
+        u8 object = load<u8>(&cells.object[i]);
+        i8 known = object != no_object;
+        if (!any(known)) {
+          for (auto* plane : {&mean_variance, &rest_detail, &rest_noise, &rest_mean_variance})
+            store(&(*plane)[i], f8{});
+          continue;
+        }
+        Pool pool;
+        add(pool, known, [&](size_t k) { return load_at(cells.pooled[k], i); });
+        Pool wide = pool;
+        if (any(known & (pool.points < plenty_of_points)))
+          wide = pool_around(cells, cells.pooled, i, object, 3);
+        const f8 few = splat(least_samples);
+        pool.samples = larger(pool.samples, few);
+        f8 samples = larger(load_at(cells.samples, i), few);
+        f8 rest_sum = load_at(cells.rest_sum, i), rest_sum2 = load_at(cells.rest_sum2, i);
+        f8 spread = samples * rest_sum2 - rest_sum * rest_sum;
+        i8 unsure = (load_at(cells.rest_known, i) < load_at(cells.points, i)) &
+                    (spread > 0.25f * rest_sum * rest_sum);
+        Estimate e =
+            estimate_cells(pool, wide, brightest_around(cells, i, object), samples,
+                           load_at(cells.sum, i), rest_sum, unsure, rest_share);
+        for (size_t c = 0; c < 3; c++) {
+          store(&cells.smooth[c][i], load_at(cells.smooth[c], i) * e.scale);
+          store(&cells.rest[c][i], load_at(cells.rest[c], i) * e.rest_scale);
+        }
+        store(&cells.patience[i], keep(known, e.patience));
+        store(&mean_variance[i], keep(known, e.mean_variance));
+        store(&rest_detail[i], keep(known, e.rest_detail));
+        store(&rest_noise[i], keep(known, e.rest_noise));
+        store(&rest_mean_variance[i], keep(known, e.rest_mean_variance));
+      }
+  });
+  std::swap(cells.sum, mean_variance);
+  std::swap(cells.rest_sum2, rest_detail);
+  std::swap(cells.rest_noise, rest_noise);
+  std::swap(cells.rest_known, rest_mean_variance);
+}
+
+// Light of eight cells and the variance of its mean, weighed by samples.
+struct LightSums {
+  f8 r, g, b, variance, weight, own_r, own_g, own_b, tolerance;
+};
+struct LightPlanes {
+  const float *r, *g, *b, *variance;
+};
+constexpr float own_weight = 4;  // of a step's nine cells
+LightSums begin_sums(const LightPlanes& from, size_t i, const f8& samples) {
+  f8 r = load<f8>(from.r + i), g = load<f8>(from.g + i), b = load<f8>(from.b + i),
+     v = load<f8>(from.variance + i), w = own_weight * samples;
+  return {w * r, w * g, w * b, w * w * v, w, r, g, b, 1.0f / (light_tolerance * v + 1e-12f)};
+}
+// `common`: what the two cells' surfaces have in common; `apart`: one plus their squared distance.
+// Returns how much of the cells' samples counted.
+f8 add(LightSums& sums, const LightPlanes& from, size_t j, const f8& common, const f8& apart,
+       const f8& samples) {
+  f8 r = load<f8>(from.r + j), g = load<f8>(from.g + j), b = load<f8>(from.b + j);
+  f8 dr = r - sums.own_r, dg = g - sums.own_g, db = b - sums.own_b;
+  f8 differs = luminance(dr * dr, dg * dg, db * db) * sums.tolerance;
+  f8 share = common / (apart * (1.0f + differs * differs)), weight = share * samples;
+  sums.r += weight * r, sums.g += weight * g, sums.b += weight * b;
+  sums.variance += weight * weight * load<f8>(from.variance + j);
+  sums.weight += weight;
+  return share;
+}
+// Where no sample lies within reach, what was there before stays.
+void store_sums(const LightSums& sums, const LightPlanes& from, size_t i, float* r, float* g,
+                float* b, float* variance) {
+  i8 told = sums.weight > 1e-6f;
+  f8 share = 1.0f / (told ? sums.weight : splat(1));
+  store(r, told ? sums.r * share : load<f8>(from.r + i));
+  store(g, told ? sums.g * share : load<f8>(from.g + i));
+  store(b, told ? sums.b * share : load<f8>(from.b + i));
+  store(variance, told ? sums.variance * share * share : load<f8>(from.variance + i));
+}
+
+// What the surfaces of eight cells at i and those at j have in common: object and orientation; and
+// how far those at i lie off the planes at j.
+f8 compare_surfaces(const Cells& cells, size_t i, size_t j, const f8& ray_x, float ray_y,
+                    f8& apart) {
+  f8 facing = load_at(cells.normal[0], i) * load_at(cells.normal[0], j) +
+              load_at(cells.normal[1], i) * load_at(cells.normal[1], j) +
+              load_at(cells.normal[2], i) * load_at(cells.normal[2], j);
+  facing = positive(facing);
+  facing *= facing, facing *= facing, facing *= facing;
+  f8 off = load_at(cells.depth, i) * (load_at(cells.plane[0], j) * ray_x +
+                                      load_at(cells.plane[1], j) * ray_y +
+                                      load_at(cells.plane[2], j)) -
+           1.0f;
+  off *= 1 / plane_tolerance;
+  apart = 1.0f + off * off;
+  return keep(load<u8>(&cells.object[i]) == load<u8>(&cells.object[j]), facing);
+}
+
+}  // namespace
+
+void filter_cells(const WindowView& view, Cells& cells) {
+  estimate_variance(cells);
+  PixelRays rays(view);
+  std::vector<float> ray_x(size_t(cells.width) + lanes);
+  for (int x = 0; x < int(ray_x.size()); x++)
+    ray_x[size_t(x)] = rays.x((float(x) + 0.5f) * cell_size);
+  std::span<float>& next_samples = cells.pooled[0];
+  for (int k = 0; k < steps; k++) {
+    int step = 1 << k;
+    LightPlanes smooth{cells.smooth[0].data(), cells.smooth[1].data(), cells.smooth[2].data(),
+                       cells.sum.data()},
+        rest{cells.rest[0].data(), cells.rest[1].data(), cells.rest[2].data(),
+             cells.rest_known.data()};
+    parallel_ranges(cells.height, 4, [&](int begin, int end) {
+      for (int y = begin; y < end; y++) {
+        float ray_y = rays.y((float(y) + 0.5f) * cell_size);
+        for (int x = 0; x < cells.width; x += lanes) {
+          size_t i = size_t(cells.index(x, y));
+          f8 own = smaller(load_at(cells.samples, i), splat(most_samples));
+          LightSums s = begin_sums(smooth, i, own), r = begin_sums(rest, i, own);
+          // A mean's samples are as many as equally weighed ones of its variance would be.
+          f8 weights = own_weight * own, weights2 = own_weight * own_weight * own;
+          f8 across = load<f8>(&ray_x[size_t(x)]);
+          for (int dy = -1; dy <= 1; dy++)
+            for (int dx = -1; dx <= 1; dx++) {
+              if (dx == 0 && dy == 0) continue;
+              size_t j = size_t(ptrdiff_t(i) + step * (dy * cells.stride + dx));
+              f8 apart, common = compare_surfaces(cells, i, j, across, ray_y, apart);
+              if (dx == 0 || dy == 0) common += common;
+              f8 samples = smaller(load_at(cells.samples, j), splat(most_samples));
+              f8 share = add(s, smooth, j, common, apart, samples);
+              add(r, rest, j, common, apart, samples);
+              weights += share * samples, weights2 += share * share * samples;
+            }
+          store_sums(s, smooth, i, &cells.spare[0][i], &cells.spare[1][i], &cells.spare[2][i],
+                     &cells.sum2[i]);
+          store_sums(r, rest, i, &cells.rest_spare[0][i], &cells.rest_spare[1][i],
+                     &cells.rest_spare[2][i], &cells.points[i]);
+          store(&next_samples[i], weights * weights / larger(weights2, splat(1e-12f)));
+        }
+      }
+    });
+    std::swap(cells.smooth, cells.spare);
+    std::swap(cells.rest, cells.rest_spare);
+    std::swap(cells.sum, cells.sum2);
+    std::swap(cells.rest_known, cells.points);
+    std::swap(cells.samples, next_samples);
+  }
+}
+
+}  // namespace wellspring

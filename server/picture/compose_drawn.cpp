@@ -1,0 +1,499 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/compose_drawn.h"
+
+#include <bit>
+#include <cmath>
+
+#include "picture/drawn_planes.h"
+#include "picture/drawn_run.h"
+#include "picture/nearby_light.h"
+#include "picture/object_light.h"
+#include "picture/soften_edges.h"
+
+namespace wellspring {
+namespace {
+
+// Pixels are lit in groups that lie between two columns of cell centres: four light pixels, which
+// are packed together, and four cells around. Groups begin half a group before a tile. `Scale`:
+// pixels a side of one of the light; where that is 1 two groups lie side by side in the lanes.
+template <int Scale>
+constexpr int group = cell_size * Scale;
+template <int Scale>
+constexpr int together = lanes / group<Scale>;
+static_assert(cell_size == packed_four && together<light_scale> == 1 && together<1> == 2);
+
+// Eight lanes of a run's array from lane `i` on, which may begin before it and end behind it.
+f8 lanes_at(const float* from, int i) {
+  if (i >= 0) return load<f8>(from + i);  // arrays may be read up to eight beyond their end
+  f8 v{};
+  std::memcpy(reinterpret_cast<float*>(&v) - i, from, size_t(lanes + i) * sizeof(float));
+  return v;
+}
+
+template <int Scale>
+constexpr f8 light_columns = Scale == 1 ? f8{0, 1, 2, 3, 4, 5, 6, 7} : f8{0, 0, 1, 1, 2, 2, 3, 3};
+
+// What the light's points say of eight pixels.
+struct OwnLight {
+  u8 plane[surface_planes];
+};
+// Of `count` light pixels, not all of them in the picture.
+[[gnu::noinline]] void read_cut(const Frame& light, int lx, int ly, int count,
+                                uint32_t (*words)[lanes]) {
+  for (int p = 0; p < surface_planes; p++)
+    std::fill_n(words[p], lanes, p == plane_object ? no_object : 0);
+  for (int x = std::max(lx, 0); x < std::min(lx + count, light.width); x++) {
+    uint32_t word[surface_planes];
+    read_packed(light, x, ly, word);
+    for (int p = 0; p < surface_planes; p++) words[p][x - lx] = word[p];
+  }
+}
+// Each light pixel is for `Scale` pixels of a row.
+template <int Scale>
+OwnLight read_own(const Frame& light, int lx, int ly) {
+  constexpr int count = lanes / Scale;
+  auto spread = [](const uint32_t* from) {
+    if constexpr (Scale == 1) return load<u8>(from);
+    u4 v = load<u4>(from);
+    return __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
+  };
+  OwnLight own;
+  if (lx < 0 || lx + count > light.width) {
+    uint32_t words[surface_planes][lanes];
+    read_cut(light, lx, ly, count, words);
+    for (int p = 0; p < surface_planes; p++) own.plane[p] = spread(words[p]);
+    return own;
+  }
+  size_t at = size_t(ly) * size_t(light.width) + size_t(lx);
+  auto bits = [&](const std::vector<float>& plane) {
+    return reinterpret_cast<const uint32_t*>(&plane[at]);
+  };
+  own.plane[plane_object] = spread(&light.object[at]);
+  own.plane[plane_more] = spread(bits(light.confidence));
+  own.plane[plane_depth] = spread(bits(light.depth));
+  const uint32_t* words = packed_words(light, lx, ly);
+  for (int p : {plane_albedo, plane_rest, plane_smooth}) {
+    const uint32_t* four = words + packed_four * p;
+    if constexpr (Scale == 1) own.plane[p] = join(load<u4>(four), load<u4>(four + 3 * packed_four));
+    else own.plane[p] = spread(four);
+  }
+  return own;
+}
+
+// Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
+// or chance nobody knows.
+constexpr float calm_counts = 1 / 64.0f;
+constexpr float moving_doubt = 3;
+constexpr float still_told = 0.4f;  // at rest: guessed share of the light at which doubt begins
+constexpr float smooth_doubts = 4;  // of these, for smooth light, where chance is larger
+// Of what is so narrow that no cell stands for it: samples that count as much as its surroundings
+// do, in moving pictures and in those at rest; and how much the cells beside it count for that show
+// other objects: nothing to speak of, where any around shows the same.
+constexpr float narrow_patience = 1, still_patience = 0.5f, other_object = 1e-4f;
+f8 under(const f8& light, const f8& albedo, const f8& theirs) {
+  return light * rest_ratio(albedo, theirs);
+}
+
+struct Drawn {
+  Pixels pixels;
+  Color albedo;
+};
+
+// Own light of the pixels, as far as their light pixel's point lies on the same surface.
+template <int Scale>
+void take_own(const View& view, const PixelRays& rays, const OwnLight& own, float light_x,
+              float light_y, Drawn& d) {
+  Pixels& p = d.pixels;
+  u8 more = own.plane[plane_more];
+  f8 samples = to_float((more >> 16) & 255u);
+  auto along = [&](vec3 axis) { return p.nx * axis.x + p.ny * axis.y + p.nz * axis.z; };
+  f8 depth = as<f8>(own.plane[plane_depth]);
+  f8 lx = light_x + Scale * rays.inverse_focal * light_columns<Scale>;
+  f8 off = along(view.right) * (p.depth * p.x - depth * lx) +
+           along(view.up) * (p.depth * p.y - depth * light_y) +
+           along(view.forward) * (p.depth - depth);
+  f8 nx, ny, nz;
+  unpack_octahedron(more & 0xffffu, nx, ny, nz);
+  f8 facing = p.nx * nx + p.ny * ny + p.nz * nz;
+  i8 near = off * off <= plane_tolerance * plane_tolerance * p.depth * p.depth * p.normal2;
+  near |=
+      d.albedo.r + d.albedo.g + d.albedo.b == 0.0f;  // what mirrors show lies where its image does
+  i8 alike = (facing > 0.0f) &
+             (facing * facing > 0.5f * p.normal2 * (nx * nx + ny * ny + nz * nz));
+  i8 same = (p.object == own.plane[plane_object]) & (samples > 0.0f) & near & alike;
+  // At infinity there are no planes.
+  i8 far = p.depth >= 0.5f * infinite_depth;
+  same |= far & (samples > 0.0f) & (depth >= 0.5f * infinite_depth);
+  p.samples = keep(same, samples);
+  p.deviation = keep(same, unpack_deviation(more >> 24));
+  Color light, theirs;
+  unpack_rgb9e5(own.plane[plane_smooth], light.r, light.g, light.b);
+  p.smooth = {keep(same, light.r), keep(same, light.g), keep(same, light.b)};
+  unpack_rgb9e5(own.plane[plane_rest], light.r, light.g, light.b);
+  unpack_albedo(own.plane[plane_albedo], theirs.r, theirs.g, theirs.b);
+  p.rest = {keep(same, under(light.r, d.albedo.r, theirs.r)),
+            keep(same, under(light.g, d.albedo.g, theirs.g)),
+            keep(same, under(light.b, d.albedo.b, theirs.b))};
+}
+
+// What the lanes of two groups side by side have to the same side of them.
+struct WideCell : CellLightOf<f8, u8> {
+  f8 albedo[3];
+};
+void spread_cells(const PaintedCell& left, const PaintedCell& right, WideCell& to) {
+  constexpr size_t count = sizeof(PaintedCell) / sizeof(float);
+  static_assert(sizeof(WideCell) == count * sizeof(f8));
+  float a[count], b[count];
+  std::memcpy(a, &left, sizeof a), std::memcpy(b, &right, sizeof b);
+  f8 both[count];
+  for (size_t i = 0; i < count; i++) both[i] = f8{a[i], a[i], a[i], a[i], b[i], b[i], b[i], b[i]};
+  std::memcpy(static_cast<void*>(&to), both, sizeof both);
+}
+
+// Two rows of cells around a tile's blocks. Where groups lie side by side, each as the next but one
+// needs it, too.
+template <int Scale>
+struct CellRows {
+  using Cell = std::conditional_t<together<Scale> == 1, PaintedCell, WideCell>;
+  static constexpr int most = RasterRun::most / cell_size + 3;
+  uint64_t picture = 0;
+  int first = 0, row = 0, count = 0;
+  int above = 0;  // which of the rows
+  Cell cell[2][most];
+  i8 flat[most];  // lanes of each group and those beside it that lie between cells in one plane
+
+  const Cell& at(int r, int k) const { return cell[above ^ r][k]; }
+  void read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y, int columns);
+
+ private:
+  void read_row(const Cells& cells, int y, Cell* to) const;
+};
+
+template <int Scale>
+void CellRows<Scale>::read_row(const Cells& cells, int y, Cell* to) const {
+  PaintedCell before{}, here;
+  for (int k = 0; k < count; k++, before = here) {
+    read_cell(cells, first + k, y, here);
+    size_t i = nearest_cell(cells, first + k, y);
+    for (size_t n = 0; n < 3; n++) here.albedo[n] = cells.albedo[n][i];
+    if constexpr (together<Scale> == 1) to[k] = here;
+    else if (k > 0) spread_cells(before, here, to[k - 1]);
+  }
+}
+
+template <int Scale>
+void CellRows<Scale>::read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y,
+                           int columns) {
+  bool below = picture == of && first == x && row + 1 == y && count == columns;
+  picture = of, first = x, row = y, count = columns;
+  above = below ? above ^ 1 : 0;
+  if (!below) read_row(cells, y, cell[above]);
+  read_row(cells, y + 1, cell[above ^ 1]);
+  int32_t one_plane[most + 2 * lanes] = {};  // by groups
+  for (int g = 0; g < count; g += lanes)
+    store(one_plane + g, find_flat(rays, cells, first + 1 + g, row + 1));
+  for (int g = 0; g < count; g++)
+    for (int k = 0; k < lanes; k++) flat[g][k] = one_plane[g + k / group<Scale>];
+}
+
+// Lit as what is around: the same object, as far as it shows there, else others. Returns whom that
+// told.
+template <class Cell>
+i8 light_as_neighbours(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
+                       const f8* weights, const i8& lit, const i8& mirrors, const Pixels& p,
+                       const f8& patience, Surroundings& s) {
+  Surroundings a;
+  f8 used = add_object_light(cells, at, p, lit, mirrors, LightOf::same_object, a);
+  for (int k = 0; k < 4; k++) {
+    const Cell& corner = *corners[k];
+    WideCell c;
+    for (int n = 0; n < 3; n++) {
+      c.smooth[n] = f8{} + corner.smooth[n], c.rest[n] = f8{} + corner.rest[n];
+      c.albedo[n] = f8{} + corner.albedo[n];
+    }
+    c.patience = c.detail = c.noise = f8{};
+    // What mirrors show is no light that falls there, and what lamps and the sky shine with is
+    // neither.
+    i8 dark = c.albedo[0] + c.albedo[1] + c.albedo[2] < no_reflectance;
+    f8 weight = keep(~dark & (p.object != corner.object), other_object * weights[k]);
+    for (int n = 0; n < 3; n++) c.rest[n] = smaller(c.rest[n], most_rest * c.smooth[n]);
+    add(a, weight, c);
+    used += weight;
+  }
+  i8 untold = lit & (used <= 0.0f);
+  if (any(untold)) used += add_object_light(cells, at, p, untold, mirrors, LightOf::any_object, a);
+  i8 told = lit & (used > 0.0f);
+  f8 share = 1.0f / larger(used, splat(1e-9f));
+  auto take = [&](f8& to, const f8& from) { to = told ? from : to; };
+  auto take_color = [&](Color& to, const Color& from) {
+    take(to.r, from.r * share), take(to.g, from.g * share), take(to.b, from.b * share);
+  };
+  take_color(s.smooth, a.smooth), take_color(s.rest, a.rest), take_color(s.albedo, a.albedo);
+  // Whatever its own points say beyond that is detail.
+  take(s.patience, patience), take(s.detail, splat(1e6f)), take(s.noise, f8{});
+  s.lonely &= ~told;
+  return told;
+}
+
+// The light of a lamp does not end where a picture on the wall does.
+void light_as(Surroundings& around, const i8& mirrors, const f8& doubts, Drawn& d) {
+  auto rest = [&](const f8& rest, const f8& smooth, const f8& albedo, const f8& theirs) {
+    return mirrors ? theirs * smooth + rest : under(rest, albedo, theirs);
+  };
+  around.rest = {rest(around.rest.r, around.smooth.r, d.albedo.r, around.albedo.r),
+                 rest(around.rest.g, around.smooth.g, d.albedo.g, around.albedo.g),
+                 rest(around.rest.b, around.smooth.b, d.albedo.b, around.albedo.b)};
+  blend_light(around, d.pixels, doubts);
+}
+
+// `asked`: lanes that matter.
+template <class Cell, class FindNearby>
+void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
+                 const i8& flat, const f8* weights, float doubt, float narrow_doubt,
+                 const i8& asked, const FindNearby& find_nearby, Drawn& d) {
+  Surroundings around = look_around(corners, flat, weights, d.pixels);
+  i8 lonely = asked & around.lonely, unsure = asked & (around.known < 1.0f);
+  around.lonely = i8{};
+  f8 doubts = splat(doubt);
+  around.patience = larger(around.patience, smooth_doubts * doubts);
+  if (!any(unsure)) return light_as(around, i8{}, doubts, d);
+  // Narrow things have few points of their own: what these say is weighed against what is around.
+  // Between those and others light passes gradually.
+  Drawn narrow = d;
+  Surroundings theirs = around;
+  theirs.lonely = unsure;
+  find_nearby(unsure, narrow);
+  i8 mirrors = unsure & (d.albedo.r + d.albedo.g + d.albedo.b < no_reflectance);
+  f8 patience = splat(narrow_doubt);
+  i8 told = light_as_neighbours(cells, at, corners, weights, unsure, mirrors, d.pixels, patience,
+                                theirs);
+  light_as(theirs, mirrors, told ? patience : doubts, narrow);
+  light_as(around, i8{}, doubts, d);
+  f8 known = unsure ? (lonely ? f8{} : around.known) : splat(1);
+  Pixels &p = d.pixels, &q = narrow.pixels;
+  p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
+  p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);
+  p.samples = lonely ? q.samples : p.samples;
+}
+
+// All that pixels are lit by, and where in them they are seen.
+template <int Scale>
+struct Composer {
+  static constexpr int group = wellspring::group<Scale>, half_group = group / 2;
+  const View& view;
+  const Cells& cells;
+  bool known;
+  const Frame& light;
+  PixelRays rays, light_rays;
+  vec2 offset{0.5f};
+  float doubt = moving_doubt, narrow = narrow_patience;
+  int left = 0, top = 0;   // where in the picture the light's begins, whole groups
+  float own_counts = 1;  // samples of a pixel's own point, each
+
+  // Eight lanes each.
+  static int parts_of(const SightRun& run) { return (run.count + half_group + lanes - 1) / lanes; }
+  const CellRows<Scale>& rows_around(const SightRun& run) const;
+  void light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const;
+  Shown light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
+                   const CellRows<Scale>& rows, int n, LanePart part) const;
+};
+
+template <int Scale>
+const CellRows<Scale>& Composer<Scale>::rows_around(const SightRun& run) const {
+  thread_local CellRows<Scale> rows;
+  int by = (run.y - top + half_group) / group, bx = (run.x - left) / group;  // the lower right cell
+  int count = parts_of(run) * together<Scale> + 1;
+  if (rows.picture != run.picture || rows.first != bx - 1 || rows.row != by - 1 ||
+      rows.count < count)
+    rows.read(light_rays, cells, run.picture, bx - 1, by - 1, count);
+  return rows;
+}
+
+// Pixels of which no cell knows the surface: light of the points around that lie on it.
+template <int Scale>
+void Composer<Scale>::light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const {
+  Pixels& p = d.pixels;
+  for (unsigned bits = negative_lanes(lonely); bits != 0; bits &= bits - 1) {
+    int k = std::countr_zero(bits);
+    if (!(p.depth[k] < 0.5f * infinite_depth)) continue;
+    vec3 albedo(d.albedo.r[k], d.albedo.g[k], d.albedo.b[k]);
+    if (albedo == vec3(0) && p.samples[k] > 0) continue;  // mirrors are sharp
+    SeenPlace place{lx + k / Scale,
+                    ly,
+                    vec2(p.x[k], p.y[k]),
+                    p.depth[k],
+                    vec3(p.nx[k], p.ny[k], p.nz[k]),
+                    albedo,
+                    p.object[k]};
+    NearbyLight found = find_light_nearby(view, light_rays, light, place);
+    if (found.samples == 0) continue;
+    p.samples[k] = found.samples;
+    p.deviation[k] = found.deviation;
+    p.smooth.r[k] = found.smooth.x, p.smooth.g[k] = found.smooth.y, p.smooth.b[k] = found.smooth.z;
+    p.rest.r[k] = found.rest.x, p.rest.g[k] = found.rest.y, p.rest.b[k] = found.rest.z;
+  }
+}
+
+// The `n`-th eight of the run's pixels, of which `part` lies in the run: beyond it arrays hold
+// anything.
+template <int Scale>
+Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
+                                  const CellRows<Scale>& rows, int n, LanePart part) const {
+  constexpr f8 lane{0, 1, 2, 3, 4, 5, 6, 7};
+  int i = n * lanes - half_group, x = run.x + i;  // the first lane's pixel
+  Drawn d;
+  Pixels& q = d.pixels;
+  q.depth = smaller(lanes_at(run.depth, i), splat(infinite_depth));
+  q.object = as<u8>(lanes_at(reinterpret_cast<const float*>(run.object), i));
+  q.nx = lanes_at(p.surface.nx, i), q.ny = lanes_at(p.surface.ny, i);
+  q.nz = lanes_at(p.surface.nz, i);
+  d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
+              lanes_at(p.surface.blue, i)};
+  q.normal2 = larger(q.nx * q.nx + q.ny * q.ny + q.nz * q.nz, splat(1e-30f));
+  q.x = rays.x(float(x) + offset.x) + rays.inverse_focal * lane;
+  q.y = splat(rays.y(float(run.y) + offset.y));
+  int lx = (x - left + half_group) / Scale + packed_start, ly = (run.y - top) / Scale;
+  take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
+                  light_rays.y(float(ly) + 0.5f), d);
+  q.samples *= own_counts;
+  unsigned here = (1u << part.end) - (1u << part.begin),
+           shines = unsigned(i < 0 ? shining.some << -i : shining.some >> i) & here,
+           only = unsigned(i < 0 ? shining.only << -i : shining.only >> i) & here;
+  if (known) {
+    constexpr f8 across = group == lanes ? lane : f8{0, 1, 2, 3, 0, 1, 2, 3};
+    const f8 fx = (across + 0.5f) * (1.0f / group);
+    float fy = (float(run.y - top - (rows.row + 1) * group + half_group) + 0.5f) / group;
+    f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
+    const int g = n * together<Scale>;
+    using Cell = CellRows<Scale>::Cell;
+    const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g),
+                              &rows.at(1, g + 1)};
+    auto find_nearby = [&](const i8& lonely, Drawn& of) { light_narrow(lonely, lx, ly, of); };
+    constexpr f8 beside = together<Scale> == 1 ? f8{} : f8{0, 0, 0, 0, 1, 1, 1, 1};
+    CellPlaces at{fx + beside + float(rows.first + g), float(rows.row) + fy};
+    light_group(cells, at, corners, rows.flat[g], weights, doubt, narrow,
+                lanes_of_bits(here & ~only), find_nearby, d);
+  }
+  Shown shown{{positive(d.albedo.r * q.smooth.r + q.rest.r),
+               positive(d.albedo.g * q.smooth.g + q.rest.g),
+               positive(d.albedo.b * q.smooth.b + q.rest.b)},
+              q.samples,
+              q.depth < 0.5f * infinite_depth ? q.depth : splat(INFINITY),
+              q.object};
+  for (; shines != 0; shines &= shines - 1) {
+    int k = std::countr_zero(shines);
+    bool alone = only >> k & 1;
+    Color& c = shown.color;
+    if (alone) c.r[k] = c.g[k] = c.b[k] = 0, shown.samples[k] = 255;
+    c.r[k] += p.glow_red[i + k], c.g[k] += p.glow_green[i + k], c.b[k] += p.glow_blue[i + k];
+  }
+  return shown;
+}
+
+// Runs of the picture, put into `planes`.
+template <int Scale, class Planes>
+auto taker(const Composer<Scale>& composer, const Planes& planes) {
+  return [&composer, &planes](const SightRun& run) {
+    RunPixels p;
+    Shining shining = describe_run(run, p);
+    const CellRows<Scale>& rows = composer.rows_around(run);
+    size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
+    for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {
+      int i = n * lanes - composer.half_group;
+      LanePart part{std::max(-i, 0), std::min(run.count - i, lanes)};
+      planes.put(row + size_t(i + part.begin), part,
+                 composer.light_part(run, p, shining, rows, n, part));
+    }
+  };
+}
+
+using CoarseComposer = Composer<light_scale>;
+using FineComposer = Composer<1>;
+constexpr float still_blur = 0.5f;  // the mean over places in the pixel blurs enough
+
+float still_doubt(float guessed) {
+  return moving_doubt * std::clamp((guessed - still_told) / still_told, 0.0f, 1.0f);
+}
+// A picture that stands for itself. Returns its edges.
+template <class Planes>
+std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const View& lit,
+                                                       const PictureSight& sight,
+                                                       const Cells& cells, bool known,
+                                                       const Frame& light, bool calm,
+                                                       const Planes& planes) {
+  auto draw = [&](auto composer) {
+    if (calm) composer.own_counts = calm_counts;
+    auto differ = [&planes](uint32_t a, uint32_t b) { return planes.differ(a, b); };
+    return sight.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
+                           differ);
+  };
+  PixelRays rays(view);
+  if (lit == view) return draw(FineComposer{view, cells, known, light, rays, rays});
+  return draw(CoarseComposer{view, cells, known, light, rays, PixelRays(lit)});
+}
+
+// What moves, in runs within the window that show any of it. Returns its edges.
+template <class Take>
+std::span<const std::vector<EdgeShare>> see_moving(const View& view, const PictureSight& sight,
+                                                   const PictureWindow& window, const Take& take) {
+  auto take_what_is_there = [&](const SightRun& run) {
+    bool inside = run.x >= window.left && run.x + run.count <= window.left + window.width &&
+                  run.y >= window.top && run.y < window.top + window.height;
+    for (int i = 0; inside && i < run.count; i++)
+      if (run.object[i] != 0) return take(run);
+  };
+  return sight.see_edges(view, vec2(0.5f), take_what_is_there, RasterShows::moving);
+}
+
+}  // namespace
+
+void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
+                   bool known, const Frame& light, Frame& frame) {
+  FramePlanes planes{frame};
+  soften_edges(compose_moment(view, lit, sight, cells, known, light, false, planes), frame.color);
+}
+
+void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
+                   bool known, const Frame& light, const Tonemap& tonemap, bool calm,
+                   std::vector<uint8_t>& peaks, Image8& image, std::vector<float>* depth) {
+  size_t pixels = size_t(view.width) * size_t(view.height);
+  image.width = view.width, image.height = view.height;
+  image.rgb.resize(3 * pixels);
+  peaks.resize(pixels);
+  if (depth) depth->resize(pixels);
+  EyePlanes planes{tonemap.exposure, image.rgb.data(), peaks.data(),
+                   depth ? depth->data() : nullptr};
+  soften_edges(compose_moment(view, lit, sight, cells, known, light, calm, planes), image, peaks);
+}
+
+void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,
+                   bool known, const Frame& light, float guessed, Frame& frame) {
+  FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), offset,
+                        still_doubt(guessed), still_patience};
+  FramePlanes planes{frame};
+  sight.see(view, offset, taker(composer, planes), RasterShows::still, still_blur);
+}
+
+std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
+                                                       const Cells& cells, bool known,
+                                                       const Frame& light, float guessed,
+                                                       Frame& frame) {
+  FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), vec2(0.5f),
+                        still_doubt(guessed), still_patience};
+  return see_moving(view, sight, {0, 0, view.width, view.height},
+                    taker(composer, NearerPlanes{frame}));
+}
+
+void compose_moving(const View& view, const PictureSight& sight, const PictureWindow& window,
+                    const Tonemap& tonemap, std::span<const float> disparity,
+                    std::span<uint8_t> covered, MovingLight& light) {
+  PixelRays rays(view), light_rays(WindowView(view, window));
+  FineComposer composer{view, light.cells, light.known, light.frame, rays, light_rays,
+                        vec2(0.5f), 0, still_patience, window.left, window.top};
+  NearerEyePlanes planes{tonemap.exposure, disparity.data(), covered.data(),
+                         light.picture.rgb.data(), light.peaks.data()};
+  soften_edges(see_moving(view, sight, window, taker(composer, planes)), light.picture,
+               light.peaks);
+}
+
+}  // namespace wellspring

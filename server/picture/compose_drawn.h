@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture drawn anew every frame (light/see_picture.h) in light that points remember: shapes and
+// reflectances are what has to be sharp, light is smoother than both. Where samples are few it has
+// half of the picture's resolution, as a quarter of the points tells it sooner and costs less.
+#pragma once
+#include "frame/tonemap.h"
+#include "light/see_picture.h"
+#include "picture/moving_picture.h"
+
+namespace wellspring {
+
+inline constexpr int light_scale = 2;  // pixels of the picture a side of one pixel of its light
+
+// The view of such coarser light: its pixels are light_scale pixels of the picture wide.
+inline View light_view(const View& view) {
+  View light = view;
+  light.width = (view.width + light_scale - 1) / light_scale;
+  light.height = (view.height + light_scale - 1) / light_scale;
+  light.tan_half_fov =
+      view.tan_half_fov * float(light.height * light_scale) / float(view.height);
+  return light;
+}
+
+// Overwrites all planes of `frame`. `light`: of the view `lit`, which is light_view(view) or `view`
+// itself, its planes packed as read_surface() leaves them, with `cells` filled from it; `known`:
+// what fill_cells() said.
+void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
+                   bool known, const Frame& light, Frame& frame);
+// The same for the eye at once, as frame/tonemap.h would show it: writing colours to memory and
+// reading them again takes longer than the curve. Resizes `image` and `depth` (null: not wanted;
+// metres along the viewing axis, infinity: nothing there). `calm`: light is that of the cells,
+// which are means; each point for itself would show as a square where pixels are as large as those
+// of surroundings. `peaks` is scratch: light beyond white, until edges are softened.
+void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
+                   bool known, const Frame& light, const Tonemap& tonemap, bool calm,
+                   std::vector<uint8_t>& peaks, Image8& image, std::vector<float>* depth);
+
+// What does not move of a picture at rest, in light of its own resolution, `light` being of `view`
+// itself, seen at one place of every pixel, `offset` (0 to 1): the mean over several such pictures
+// is antialiased. `guessed`: the share of its light that no point tells, by which a pixel's own few
+// samples are doubted as they are while the visitor moves.
+void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,
+                   bool known, const Frame& light, float guessed, Frame& frame);
+// What moves, laid over that, always at the middle of the pixels, so that nothing trembles. Returns
+// its edges, good until the sight's next picture: see soften_edges().
+std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
+                                                       const Cells& cells, bool known,
+                                                       const Frame& light, float guessed,
+                                                       Frame& frame);
+
+// The same over what the eye sees already: lit by what lies on it alone, where it is nearer than
+// `disparity` (as Keyframe's) says of the picture. Of pixels that it covers `covered` becomes 0.
+// light.picture and light.peaks: what the eye sees already, of which the window (whole_runs())
+// counts.
+void compose_moving(const View& view, const PictureSight& sight, const PictureWindow& window,
+                    const Tonemap& tonemap, std::span<const float> disparity,
+                    std::span<uint8_t> covered, MovingLight& light);
+
+}  // namespace wellspring

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/compositor.h"
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/rng.h"
+#include "picture/compose_drawn.h"
+#include "picture/keyframe.h"
+#include "picture/moving_picture.h"
+#include "picture/soften_edges.h"
+#include "picture/surface_image.h"
+
+namespace wellspring {
+
+size_t memory_bytes(const CompositorWork& work) {
+  return memory_bytes(work.light) + memory_bytes(work.correction) + bytes_of(work.peaks);
+}
+
+Compositor::Compositor(std::shared_ptr<CompositorWork> shared)
+    : shares_(shared != nullptr),
+      work_(shares_ ? std::move(shared) : std::make_shared<CompositorWork>()) {}
+
+// Coarser, unless the view itself was projected.
+View Compositor::light_of(const RenderCache& cache, const View& view) const {
+  return cache.has_projected(view) ? view : light_view(view);
+}
+
+// Of another view nothing is kept.
+void Compositor::begin(const RenderCache& cache) {
+  if (projection_ == cache.projection()) return;
+  projection_ = cache.projection();
+  still_ = {};
+  samples_ = {};
+  corrects_ = false;
+}
+
+// What the cache found changed starts over.
+void Compositor::begin_still(const RenderCache& cache) {
+  begin(cache);
+  const PointImage& image = cache.image();
+  const size_t pixels = image.point.size();
+  for (auto& plane : still_.mean) plane.resize(pixels);
+  still_.count.resize(pixels, 0);
+  for (size_t i = 0; i < pixels; i++)
+    if (image.renewed[i]) still_.count[i] = 0;
+  const bool changes = image.alarm > 0;  // what samples of the light before say is wrong
+  if (changes) {
+    samples_ = {};
+    corrects_ = false;
+  } else if (cache.is_still() && !corrects_) {
+    resize_samples(samples_, pixels);
+    corrects_ = true;
+  }
+}
+
+// Finds the light of `lit`, which is projected, then calls compose() and takes the time.
+template <class Compose>
+void Compositor::draw(RenderCache& cache, const View& lit, const Compose& compose) {
+  Frame& light = work_->light;
+  fit_frame(lit.width, lit.height, light);
+  cache.lend_light();
+  cache.scratch().start(cells_bytes(lit.width, lit.height));
+  take_cells(cells_, lit.width, lit.height, cache.scratch());
+  ShownPoints shown = read_surface(lit, cache.points(), cache.image(), cells_, light);
+  known_ = fill_cells(lit, cells_);
+  filter_cells(lit, cells_);
+  const double began = seconds_now();
+  compose(float(shown.points) / float(light.color.size()));
+  drawing_ms_ = float(1000 * (seconds_now() - began));
+  pictures_++;
+  cache.end_frame(shown);
+}
+
+void Compositor::draw(RenderCache& cache, const View& view, const PictureSight& sight,
+                      Frame& frame) {
+  View lit = light_of(cache, view);
+  if (!cache.has_projected(lit)) cache.project(lit);
+  begin(cache);
+  fit_frame(view.width, view.height, frame);
+  draw(cache, lit, [&](float) {
+    compose_drawn(view, lit, sight, cells_, known_, work_->light, frame);
+  });
+}
+
+void Compositor::draw(RenderCache& cache, const View& view, const PictureSight& sight,
+                      const Tonemap& tonemap, Image8& image, std::vector<float>* depth,
+                      bool calm) {
+  View lit = light_of(cache, view);
+  if (!cache.has_projected(lit)) cache.project(lit);
+  begin(cache);
+  draw(cache, lit, [&](float) {
+    compose_drawn(view, lit, sight, cells_, known_, work_->light, tonemap, calm, work_->peaks,
+                  image, depth);
+  });
+}
+
+void Compositor::draw_still(RenderCache& cache, const View& view, const PictureSight& sight,
+                            Frame& frame, StillShows shows) {
+  if (!cache.has_projected(view)) cache.project(view);
+  begin_still(cache);
+  fit_frame(view.width, view.height, frame);
+  const bool changes = cache.image().alarm > 0;
+  draw(cache, view, [&](float told) {
+    const float guessed = 1 - told;
+    compose_still(view, sight, still_place(cache.still_frames()), cells_, known_, work_->light,
+                  guessed, frame);
+    std::span<const std::vector<EdgeShare>> edges;
+    if (shows == StillShows::all && sight.anything_moves())
+      edges = compose_moving(view, sight, cells_, known_, work_->light, guessed, frame);
+    if (corrects_) forget_samples(still_, samples_);
+    accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, changes, pictures_,
+                     still_, frame);
+    if (corrects_) correct_still(samples_, still_, work_->correction, frame);
+    soften_edges(edges, frame.color);
+  });
+}
+
+void Compositor::add_samples(const RenderCache& cache, std::span<const Request> requests,
+                             std::span<const Sample> samples, std::span<const uint32_t> points) {
+  if (!corrects_ || projection_ != cache.projection()) return;
+  for (size_t i = 0; i < points.size(); i++)
+    if (points[i] != no_point && requests[i].resample != points[i] &&
+        requests[i].pixel < samples_.count.size() && !(samples[i].flags & sample_moving))
+      add_sample(samples_, requests[i].pixel, samples[i].radiance(),
+                 uint32_t(mix64(requests[i].seed)));
+}
+
+bool Compositor::draw_moving(RenderCache& cache, const World& world, const Keyframe& backdrop,
+                             const PictureSight& sight, const Tonemap& tonemap, MovingLight& work,
+                             MovingPicture& picture) {
+  const View& view = backdrop.view;
+  picture.view = view;
+  picture.window = moving_window(world, view);
+  if (picture.empty()) return true;
+  cache.follow_moving(world);
+  const PictureWindow runs = whole_runs(picture.window, view);
+  light_moving(cache.points(), view, runs, cache.settings().depth_threshold, work);
+  if (!work.known) return false;
+  copy_colors(backdrop, runs, work.picture);
+  guess_peaks(work.picture, runs, work.peaks);
+  still_.count.resize(backdrop.disparity.size(), 0);
+  compose_moving(view, sight, runs, tonemap, backdrop.disparity, still_.count, work);
+  take_window(work.picture, picture);
+  return true;
+}
+
+size_t Compositor::memory_bytes() const {
+  size_t sum = bytes_of(still_.count) + samples_bytes(samples_);
+  for (const auto& plane : still_.mean) sum += bytes_of(plane);
+  return sum + (shares_ ? 0 : wellspring::memory_bytes(*work_));
+}
+
+}  // namespace wellspring

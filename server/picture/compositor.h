@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// One visitor's pictures: what is visible (light/see_picture.h), in the light that the points of a
+// render cache remember (picture/compose_drawn.h). While the view stands still it keeps the mean of
+// its pictures and of their samples.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "cache/cache.h"
+#include "frame/tonemap.h"
+#include "light/see_picture.h"
+#include "picture/cells.h"
+#include "picture/correct_still.h"
+#include "picture/still_image.h"
+#include "picture/still_samples.h"
+
+namespace wellspring {
+
+struct Keyframe;       // picture/keyframe.h
+struct MovingPicture;  // picture/moving_picture.h: what moves in a picture at rest
+struct MovingLight;
+enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what moves
+
+// What a picture needs and nobody afterwards. Those that are never under way at the same time may
+// share it.
+struct CompositorWork {
+  Frame light;  // packed (picture/surface_image.h)
+  StillCorrection correction;
+  std::vector<uint8_t> peaks;  // of a picture for the eye: light beyond white
+};
+size_t memory_bytes(const CompositorWork& work);
+
+class Compositor {
+ public:
+  explicit Compositor(std::shared_ptr<CompositorWork> shared = nullptr);
+
+  // A picture of `view` in the light of `view` or of light_view(view) (picture/compose_drawn.h),
+  // whichever was projected (neither: the latter). The second for the eye at once, and of a `depth`
+  // that is not null metres along the viewing axis, infinity: nothing there. `calm`: of pixels so
+  // large that a point's own light would show as a square.
+  void draw(RenderCache& cache, const View& view, const PictureSight& sight, Frame& frame);
+  void draw(RenderCache& cache, const View& view, const PictureSight& sight,
+            const Tonemap& tonemap, Image8& image, std::vector<float>* depth = nullptr,
+            bool calm = false);
+  // The same at rest, in light of the view's own resolution: what does not move is antialiased in
+  // time, seen at another place of the pixels each time.
+  void draw_still(RenderCache& cache, const View& view, const PictureSight& sight, Frame& frame,
+                  StillShows shows = StillShows::all);
+  // What the cache has just remembered, `points` being its answer: at rest samples are kept by
+  // themselves, too.
+  void add_samples(const RenderCache& cache, std::span<const Request> requests,
+                   std::span<const Sample> samples, std::span<const uint32_t> points);
+  // What moves, as the world is now, to be laid over the last draw_still() without it, of which
+  // `backdrop` is the keyframe; needs no projection. False: no point lies on it. An empty picture:
+  // it is not to be seen.
+  bool draw_moving(RenderCache& cache, const World& world, const Keyframe& backdrop,
+                   const PictureSight& sight, const Tonemap& tonemap, MovingLight& work,
+                   MovingPicture& picture);
+
+  float drawing_ms() const { return drawing_ms_; }  // visibility and shading of the last picture
+  size_t memory_bytes() const;  // without work that is shared
+
+ private:
+  View light_of(const RenderCache& cache, const View& view) const;
+  template <class Compose>
+  void draw(RenderCache& cache, const View& lit, const Compose& compose);
+  void begin(const RenderCache& cache);
+  void begin_still(const RenderCache& cache);
+
+  bool shares_;
+  std::shared_ptr<CompositorWork> work_;
+  Cells cells_;         // in the cache's scratch
+  bool known_ = false;  // any light
+  StillImage still_;
+  StillSamples samples_;
+  bool corrects_ = false;    // the last picture was at rest, and its samples are kept
+  uint64_t projection_ = 0;  // RenderCache::projection() of what is kept
+  uint32_t pictures_ = 0;
+  float drawing_ms_ = 0;
+};
+
+}  // namespace wellspring

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where pixels of a drawn picture go, eight at a time.
+#pragma once
+#include "frame/tone_curve.h"
+#include "picture/pixel_light.h"
+#include "picture/write_pixels.h"
+
+namespace wellspring {
+
+// What has been found out about eight pixels of a row.
+struct Shown {
+  Color color;
+  f8 samples, depth;  // infinity: nothing there
+  u8 object;
+};
+
+// Takes the pixels [begin, end) of eight to place `at` of a plane, where lane `begin` belongs.
+struct LanePart {
+  int begin, end;
+  bool all() const { return end - begin == lanes; }
+  template <class T, class V>
+  void put(T* to, const V& from) const {
+    if (all()) return store(to, from);
+    std::memcpy(to, reinterpret_cast<const T*>(&from) + begin, size_t(end - begin) * sizeof(T));
+  }
+};
+
+// All planes of a frame.
+struct FramePlanes {
+  Frame& frame;
+  int differ(uint32_t pixel, uint32_t other) const {
+    return frame.color[pixel] == frame.color[other] ? 0 : 1 << 16;  // light knows no white
+  }
+  void put(size_t at, LanePart part, const Shown& s) const {
+    float cut[3 * lanes], *color = part.all() ? &frame.color[at].x : cut;
+    const Color& c = s.color;
+    interleave(wellspring::part<0>(c.r), wellspring::part<0>(c.g), wellspring::part<0>(c.b), color);
+    interleave(wellspring::part<4>(c.r), wellspring::part<4>(c.g), wellspring::part<4>(c.b),
+               color + 12);
+    if (!part.all())
+      std::memcpy(&frame.color[at].x, cut + 3 * part.begin,
+                  size_t(part.end - part.begin) * sizeof(vec3));
+    part.put(&frame.confidence[at], s.samples / (s.samples + 8.0f));
+    part.put(&frame.depth[at], s.depth);
+    part.put(&frame.object[at], s.object);
+  }
+};
+
+// What is nearer than what the frame shows is laid over it.
+struct NearerPlanes {
+  Frame& frame;
+  void put(size_t at, LanePart part, const Shown& s) const {
+    for (int k = part.begin; k < part.end; k++, at++) {
+      if (!(s.depth[k] < frame.depth[at])) continue;
+      frame.color[at] = vec3(s.color.r[k], s.color.g[k], s.color.b[k]);
+      frame.confidence[at] = s.samples[k] / (s.samples[k] + 8.0f);
+      frame.depth[at] = s.depth[k];
+      frame.object[at] = s.object[k];
+    }
+  }
+};
+
+// What of it is nearer, likewise, where the eye sees something already.
+struct NearerEyePlanes {
+  float exposure;
+  const float* disparity;  // 1 / depth of what it sees
+  uint8_t* covered;        // becomes 0 there
+  uint8_t *rgb, *peaks;    // as EyePlanes'
+  void put(size_t at, LanePart part, const Shown& s) const {
+    const Color& c = s.color;
+    Lanes3 light = Lanes3{c.r, c.g, c.b} * all_lanes(exposure);
+    uint8_t bytes[3 * lanes];
+    store_pixels(bytes, eval_tone_curve(light));
+    LaneMask peak = eval_peak_codes(max_component(light));
+    for (int k = part.begin; k < part.end; k++, at++) {
+      if (!(s.depth[k] * disparity[at] < 1)) continue;
+      std::memcpy(rgb + 3 * at, bytes + 3 * k, 3);
+      peaks[at] = uint8_t(peak[k]);
+      covered[at] = 0;
+    }
+  }
+};
+
+// What the eye sees.
+struct EyePlanes {
+  float exposure;
+  uint8_t *rgb, *peaks;  // codes of what is shown, and eval_peak_codes() of its light
+  float* depth;          // null: not wanted
+  // In codes, of which light beyond white has more than they show.
+  int differ(uint32_t pixel, uint32_t other) const {
+    const uint8_t *a = rgb + 3 * size_t(pixel), *b = rgb + 3 * size_t(other);
+    int most = 0;
+    for (int k = 0; k < 3; k++) most = std::max(most, std::abs(a[k] - b[k]));
+    float peak = peak_of(std::max(peaks[pixel], peaks[other]));
+    return peak > 1 ? int(float(most) * peak) : most;
+  }
+  void put(size_t at, LanePart part, const Shown& s) const {
+    const Color& c = s.color;
+    Lanes3 light = Lanes3{c.r, c.g, c.b} * all_lanes(exposure);
+    LaneMask codes = eval_tone_curve(light);
+    using Bytes = uint8_t __attribute__((vector_size(lanes)));
+    Bytes peak = __builtin_convertvector(eval_peak_codes(max_component(light)), Bytes);
+    if (part.all()) {
+      store_pixels(rgb + 3 * at, codes);
+    } else {
+      uint8_t bytes[3 * lanes];
+      store_pixels(bytes, codes);
+      std::memcpy(rgb + 3 * at, bytes + 3 * part.begin, 3 * size_t(part.end - part.begin));
+    }
+    part.put(peaks + at, peak);
+    if (depth) part.put(depth + at, s.depth);
+  }
+};
+
+}  // namespace wellspring

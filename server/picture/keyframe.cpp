@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/keyframe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+
+namespace wellspring {
+namespace {
+
+// On each side, of width and height: turning goes sideways.
+constexpr int margin_across = 40, margin_down = 45;
+constexpr int widest_across = 10;  // of quick turns
+constexpr float widest_tangent = 3;  // from the middle of surroundings to their border
+constexpr int asked_across = 16, asked_down = 9;  // directions that stand for a view
+constexpr float nearest_depth = 1e-4f;  // metres, as in project_points()
+
+float disparity_of(float depth) {
+  return depth > 0 ? 1 / std::max(depth, nearest_depth)
+                   : 0.0f;  // 1 / infinity is 0; NaN is not > 0
+}
+
+// Of a row: how far apart disparities are there and in the row below.
+void write_steps(const Keyframe& k, int y, uint32_t* color) {
+  int width = k.view.width;
+  const float* row = &k.disparity[size_t(y) * size_t(width)];
+  const float* below = y + 1 < k.view.height ? row + width : row;
+  auto write = [&](int x, int right) {
+    float low = std::min(std::min(row[x], row[right]), std::min(below[x], below[right]));
+    float high = std::max(std::max(row[x], row[right]), std::max(below[x], below[right]));
+    float step = std::min((high - low) * Keyframe::step_scale + 0.999f, 255.0f);
+    color[x] |= uint32_t(int(step)) << 24;
+  };
+  for (int x = 0; x + 1 < width; x++) write(x, x + 1);
+  write(width - 1, width - 1);
+}
+
+void bound_block(const Keyframe& k, int column, int row, float& farthest, float& nearest) {
+  int x0 = std::max(column * Keyframe::block - 1, 0), y0 = std::max(row * Keyframe::block - 1, 0);
+  int x1 = std::min((column + 1) * Keyframe::block + 1, k.view.width),
+      y1 = std::min((row + 1) * Keyframe::block + 1, k.view.height);
+  float low = k.disparity[size_t(y0) * size_t(k.view.width) + size_t(x0)], high = low;
+  for (int y = y0; y < y1; y++) {
+    const float* line = &k.disparity[size_t(y) * size_t(k.view.width)];
+    for (int x = x0; x < x1; x++) low = std::min(low, line[x]), high = std::max(high, line[x]);
+  }
+  farthest = low, nearest = high;
+}
+
+}  // namespace
+
+View keyframe_view(View view, float turn) {
+  int height = view.height;
+  auto margin = [](int pixels, int share) { return (pixels / share + 7) / 8 * 8; };
+  // At the sides a turn moves more than in the middle.
+  float middle = 0.5f * float(height) / view.tan_half_fov, side = 0.5f * float(view.width) / middle;
+  float moves = turn > 0 ? middle * (1 + side * side) * turn : 0.0f,
+        most = float(view.width / widest_across);
+  int turning = margin(int(std::min(moves, most)), 1);
+  view.width += 2 * std::max(margin(view.width, margin_across), turning);
+  view.height += 2 * margin(view.height, margin_down);
+  view.tan_half_fov *= float(view.height) / float(height);
+  return view;
+}
+
+static vec3 direction_at(const View& view, float across, float down) {  // of the picture, 0 to 1
+  float high = view.tan_half_fov, wide = high * float(view.width) / float(view.height);
+  return view.forward + view.right * (wide * (2 * across - 1)) + view.up * (high * (1 - 2 * down));
+}
+
+View surrounding_view(std::span<const View> views, float share) {
+  View around;
+  around.width = around.height = 0;
+  if (views.empty() || views[0].width < 1 || views[0].height < 1) return around;
+  around = views[0];
+  vec3 middle(0);
+  for (const View& view : views) middle += view.forward;
+  if (length(middle) > 0.5f * float(views.size())) {
+    around.forward = normalize(middle);
+    around.right = normalize(cross(around.forward, views[0].up));
+    around.up = cross(around.right, around.forward);
+  }
+  float wide = 0, high = 0;
+  for (const View& view : views)
+    for (float across : {0.0f, 0.5f, 1.0f})
+      for (float down : {0.0f, 0.5f, 1.0f}) {
+        vec3 d = direction_at(view, across, down);
+        float z = dot(d, around.forward), x = std::abs(dot(d, around.right)),
+              y = std::abs(dot(d, around.up));
+        wide = std::max(wide, x < widest_tangent * z ? x / z : widest_tangent);
+        high = std::max(high, y < widest_tangent * z ? y / z : widest_tangent);
+      }
+  wide = std::max(wide, 1e-6f), high = std::max(high, 1e-6f);
+  float pixels = share * float(views[0].width) * float(views[0].height);
+  auto side = [](float length) { return std::max(int(std::lround(length)), 1); };
+  float across = std::min(std::sqrt(pixels * wide / high), float(views[0].width)),
+        down = std::min(std::sqrt(pixels * high / wide), float(views[0].height));
+  around.width = side(std::min(across, down * wide / high));
+  around.height = side(float(around.width) * high / wide);
+  around.tan_half_fov = std::max(high, wide * float(around.height) / float(around.width));
+  return around;
+}
+
+float missing_share(const View& drawn, const View& wanted) {
+  float high = drawn.tan_half_fov, wide = high * float(drawn.width) / float(drawn.height);
+  int missing = 0;
+  for (int y = 0; y < asked_down; y++)
+    for (int x = 0; x < asked_across; x++) {
+      vec3 d =
+          direction_at(wanted, (float(x) + 0.5f) / asked_across, (float(y) + 0.5f) / asked_down);
+      float z = dot(d, drawn.forward);
+      missing +=
+          !(std::abs(dot(d, drawn.right)) <= wide * z && std::abs(dot(d, drawn.up)) <= high * z);
+    }
+  return float(missing) / float(asked_across * asked_down);
+}
+
+void make_keyframe(const View& view, const Image8& picture, std::span<const float> depth,
+                   Keyframe& keyframe) {
+  size_t width = size_t(std::max(view.width, 0)), height = size_t(std::max(view.height, 0));
+  if (width * height == 0 || picture.rgb.size() != 3 * width * height ||
+      depth.size() != width * height)
+    throw std::invalid_argument("make_keyframe: picture and depth are not of the view's size");
+  Keyframe& k = keyframe;
+  k.view = view;
+  k.color.resize(width * height + 1);
+  k.disparity.resize(width * height + 1);
+  k.columns = (view.width + Keyframe::block - 1) / Keyframe::block;
+  k.rows = (view.height + Keyframe::block - 1) / Keyframe::block;
+  k.farthest.resize(size_t(k.columns) * size_t(k.rows));
+  k.nearest.resize(k.farthest.size());
+  parallel_ranges(view.height, 16, [&](int begin, int end) {
+    for (size_t i = size_t(begin) * width; i < size_t(end) * width; i++) {
+      const uint8_t* rgb = &picture.rgb[3 * i];
+      k.color[i] = uint32_t(rgb[0] | rgb[1] << 8 | rgb[2] << 16);
+      k.disparity[i] = disparity_of(depth[i]);
+    }
+  });
+  parallel_ranges(k.rows, 2, [&](int begin, int end) {
+    for (int row = begin; row < end; row++)
+      for (int column = 0; column < k.columns; column++) {
+        size_t i = size_t(row) * size_t(k.columns) + size_t(column);
+        bound_block(k, column, row, k.farthest[i], k.nearest[i]);
+      }
+    for (int y = begin * Keyframe::block; y < std::min(end * Keyframe::block, view.height); y++)
+      write_steps(k, y, &k.color[size_t(y) * width]);
+  });
+}
+
+size_t memory_bytes(const Keyframe& keyframe) {
+  return bytes_of(keyframe.color, keyframe.disparity, keyframe.farthest, keyframe.nearest);
+}
+
+}  // namespace wellspring

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What moves in a picture at rest, drawn by itself over what does not: a storyteller who breathes
+// and speaks is a few hundredths of a picture, and the rest of it need not be drawn again for each
+// of her moves. Lit by the points that lie on her alone, which move with her skin.
+#pragma once
+#include "frame/tonemap.h"
+#include "light/see_picture.h"
+#include "picture/cells.h"
+#include "picture/keyframe.h"
+
+namespace wellspring {
+
+// A window of a picture, to be laid over the rest of it.
+struct MovingPicture {
+  View view;  // of the whole
+  PictureWindow window;
+  std::vector<uint8_t> rgb;  // of the window, row after row
+  bool empty() const { return window.empty(); }
+};
+size_t memory_bytes(const MovingPicture& picture);
+// Into a picture of the size of picture.view.
+void lay_over(const MovingPicture& picture, Image8& image);
+void lay_over(const MovingPicture& picture, Keyframe& keyframe);  // its depths stay
+
+// The light of what moves: scratch, overwritten by every picture.
+struct MovingLight {
+  PointCache points;  // those on what moves
+  PointImage image;
+  Scratch scratch;
+  Cells cells;
+  Frame frame;
+  bool known = false;
+  Image8 picture;     // of the whole view, the window alone filled
+  std::vector<uint8_t> peaks;  // of its pixels, as soften_edges() needs them
+};
+size_t memory_bytes(const MovingLight& light);
+
+// Of `view`, where visible moving meshes of the world may show, with some around that edges reach;
+// empty: nowhere.
+PictureWindow moving_window(const World& world, const View& view);
+// What of the picture Raster's runs and cells of light take that lie in the window.
+PictureWindow whole_runs(const PictureWindow& window, const View& view);
+
+// Reads the points with anchors. light.known: there is one that shows. `window`: of whole runs.
+// `depth_threshold`: as CacheSettings has it.
+void light_moving(const PointCache& points, const View& view, const PictureWindow& window,
+                  float depth_threshold, MovingLight& light);
+
+// What the keyframe shows there, into a picture of its size: others of its pixels stay.
+void copy_colors(const Keyframe& keyframe, const PictureWindow& window, Image8& image);
+// The peaks of its pixels, as far as its colours tell them: of white the least.
+void guess_peaks(const Image8& image, const PictureWindow& window, std::vector<uint8_t>& peaks);
+void take_window(const Image8& image, MovingPicture& picture);
+
+}  // namespace wellspring

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "world/mesh_finish.h"
+#include "world/slab.h"
+#include "world/world_impl.h"
+
+namespace wellspring {
+namespace {
+
+thread_local uint64_t traced = 0;
+
+bool has_packets() {
+  static bool native =
+      rtcGetDeviceProperty(shared_device(), RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0;
+  return native;
+}
+
+RTCRayHit to_embree(const Ray& ray) {
+  RTCRayHit r;
+  r.ray.org_x = ray.origin.x, r.ray.org_y = ray.origin.y, r.ray.org_z = ray.origin.z;
+  r.ray.dir_x = ray.direction.x, r.ray.dir_y = ray.direction.y, r.ray.dir_z = ray.direction.z;
+  r.ray.tnear = ray.t_min, r.ray.tfar = ray.t_max;
+  r.ray.time = 0, r.ray.mask = ~0u, r.ray.id = 0, r.ray.flags = 0;
+  r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return r;
+}
+
+// False for NaN in origin or direction, for places Embree does not accept (it ends at 1.84e18), and
+// for an empty interval.
+bool is_traceable(const Ray& ray) {
+  constexpr float farthest = 1e17f;
+  vec3 sum = glm::abs(ray.origin) + glm::abs(ray.direction);
+  return sum.x + sum.y + sum.z <= farthest && ray.t_min <= ray.t_max;
+}
+
+float half_area(const Bounds& box) {
+  vec3 d = box.high - box.low;
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+bool meets(const Bounds& box, const Ray& ray, float t_max) {
+  if (!(box.low.x <= box.high.x)) return false;  // nothing moves, or all is hidden
+  vec3 inverse = 1.0f / ray.direction;
+  float near = ray.t_min, far = t_max;
+  for (int i = 0; i < 3; i++)
+    cut_by_slab(box.low[i], box.high[i], ray.origin[i], inverse[i], near, far);
+  return near <= far * 1.00001f;
+}
+
+}  // namespace
+
+uint64_t rays_traced() { return traced; }
+void count_rays(uint64_t more) { traced += more; }
+
+void World::Impl::update_moving_bounds() {
+  moving_bounds = Bounds();
+  for (size_t i = 0; i < moving.size(); i++) {
+    if (!visible[i] || moving[i].triangles.empty()) continue;
+    moving_bounds.low = glm::min(moving_bounds.low, moving_boxes[i].low);
+    moving_bounds.high = glm::max(moving_bounds.high, moving_boxes[i].high);
+  }
+  any_moving = moving_bounds.low.x <= moving_bounds.high.x;
+}
+
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+const Scene& World::scene() const { return *impl_->scene; }
+int World::instance_count() const { return int(impl_->placed.size()); }
+const PlacedMesh& World::placed(uint32_t instance) const { return impl_->placed[instance]; }
+const Mesh& World::mesh_of(uint32_t instance) const { return *placed(instance).mesh; }
+const Material& World::material_of(uint32_t instance) const { return *placed(instance).material; }
+uint32_t World::object_of(uint32_t instance) const { return placed(instance).object; }
+const mat4& World::to_world(uint32_t instance) const { return placed(instance).to_world; }
+const mat3& World::normal_to_world(uint32_t instance) const {
+  return placed(instance).normal_to_world;
+}
+bool World::is_moving(uint32_t instance) const { return placed(instance).moving; }
+bool World::is_visible(uint32_t instance) const {
+  return !is_moving(instance) || impl_->visible[instance - impl_->scene->instances.size()];
+}
+
+void World::move(int moving, std::span<const vec3> positions, std::span<const vec3> normals) {
+  Impl& w = *impl_;
+  Mesh& mesh = w.moving.at(size_t(moving));
+  if (positions.size() != mesh.positions.size() || normals.size() != mesh.normals.size())
+    throw std::invalid_argument("World::move: mesh \"" + mesh.name + "\" keeps its vertex count");
+  for (size_t i = 0; i < positions.size(); i++)
+    if (is_finite(positions[i])) mesh.positions[i] = positions[i];
+  std::copy(normals.begin(), normals.end(), mesh.normals.begin());
+  if (int uv = w.moving_tangent_uv[size_t(moving)]; uv >= 0) update_tangents(mesh, uv);
+  RTCGeometry geometry = w.moving_geometry[size_t(moving)];
+  if (mesh.positions.empty()) return;
+  std::memcpy(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0), mesh.positions.data(),
+              mesh.positions.size() * sizeof(vec3));
+  rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+  w.moving_boxes[size_t(moving)] = box_of(mesh.positions);
+  float area = half_area(w.moving_boxes[size_t(moving)]), &built = w.built_area[size_t(moving)];
+  if (!(area < 2 * built) || area < 0.25f * built) {  // always the first time
+    built = area;
+    rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0);  // asks for a new tree
+  }
+  rtcCommitGeometry(geometry);
+  w.moved = true;
+}
+
+void World::show(int moving, bool visible) {
+  Impl& w = *impl_;
+  if (bool(w.visible.at(size_t(moving))) == visible) return;
+  w.visible[size_t(moving)] = visible;
+  RTCGeometry geometry = w.moving_geometry[size_t(moving)];
+  visible ? rtcEnableGeometry(geometry) : rtcDisableGeometry(geometry);
+  w.moved = true;
+}
+
+void World::repaint(int material, const Repaint& change) {
+  Impl& w = *impl_;
+  for (auto& [number, own] : w.painted) {
+    if (number != material) continue;
+    *own = repainted(w.scene->materials[size_t(material)], change);
+    w.paints++;
+    for (PlacedMesh& placed : w.placed)
+      if (placed.material == own.get()) placed.paints++;
+  }
+}
+
+uint64_t World::paints() const { return impl_->paints; }
+
+void World::switch_lamp(int lamp, bool on) {
+  Impl& w = *impl_;
+  if (bool(w.lamp_on.at(size_t(lamp))) == on) return;
+  w.lamp_on[size_t(lamp)] = on;
+  for (int material : w.scene->lamps[size_t(lamp)].materials)
+    for (auto& [number, worn] : w.of_lamps) {
+      if (number != material) continue;
+      const Material& own = w.scene->materials[size_t(material)];
+      *worn = on ? own : switched_off(own);
+    }
+}
+
+bool World::is_on(int lamp) const { return impl_->lamp_on.at(size_t(lamp)); }
+
+void World::commit() {
+  if (!impl_->moved) return;
+  impl_->moved = false;
+  impl_->update_moving_bounds();
+  rtcCommitScene(impl_->moving_scene);
+}
+
+Hit World::intersect(const Ray& ray) const {
+  const Impl& w = *impl_;
+  Hit hit;
+  if (!is_traceable(ray)) return hit;
+  traced++;
+  Impl::Query query;
+  embree::init(query);
+  query.rays = &ray;
+  RTCRayHit r = to_embree(ray);
+  embree::intersect1(w.still_scene, query, r);
+  hit = w.to_hit(r.hit.geomID, r.hit.instID[0], r.hit.primID, r.hit.u, r.hit.v, r.ray.tfar, false);
+  if (w.any_moving && meets(w.moving_bounds, ray, r.ray.tfar)) {
+    r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    embree::intersect1(w.moving_scene, query, r);
+    if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID)
+      hit =
+          w.to_hit(r.hit.geomID, r.hit.instID[0], r.hit.primID, r.hit.u, r.hit.v, r.ray.tfar, true);
+  }
+  return hit;
+}
+
+bool World::Impl::is_occluded(const Ray& ray, PanesPassed* panes) const {
+  if (!is_traceable(ray)) return false;
+  traced++;
+  Query query;
+  embree::init(query);
+  query.rays = &ray;
+  query.panes = panes;
+  RTCRay r = to_embree(ray).ray;
+  embree::occluded1(still_scene, query, r);
+  if (r.tfar < ray.t_min) return true;  // Embree says so with -infinity
+  if (!any_moving || !meets(moving_bounds, ray, ray.t_max)) return false;
+  embree::occluded1(moving_scene, query, r);
+  return r.tfar < ray.t_min;
+}
+
+bool World::occluded(const Ray& ray) const { return impl_->is_occluded(ray, nullptr); }
+
+bool World::occluded(const Ray& ray, PanesPassed& panes) const {
+  panes.count = 0;
+  panes.more = false;
+  return impl_->is_occluded(ray, &panes);
+}
+
+void World::Impl::intersect8(const Ray* rays, Hit* hits, int count) const {
+  alignas(32) int valid[8];
+  RTCRayHit8 r;
+  Query query;
+  embree::init(query);
+  query.rays = rays;
+  for (int i = 0; i < 8; i++) {
+    const Ray& ray = rays[i < count ? i : 0];
+    valid[i] = i < count && is_traceable(ray) ? -1 : 0;
+    traced += valid[i] != 0;
+    r.ray.org_x[i] = ray.origin.x, r.ray.org_y[i] = ray.origin.y, r.ray.org_z[i] = ray.origin.z;
+    r.ray.dir_x[i] = ray.direction.x, r.ray.dir_y[i] = ray.direction.y;
+    r.ray.dir_z[i] = ray.direction.z;
+    r.ray.tnear[i] = ray.t_min, r.ray.tfar[i] = ray.t_max;
+    r.ray.time[i] = 0, r.ray.mask[i] = ~0u, r.ray.id[i] = unsigned(i), r.ray.flags[i] = 0;
+    r.hit.geomID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  auto hit_of = [&](int i, bool is_moving_hit) {
+    return to_hit(r.hit.geomID[i], r.hit.instID[0][i], r.hit.primID[i], r.hit.u[i], r.hit.v[i],
+                  r.ray.tfar[i], is_moving_hit);
+  };
+  embree::intersect8(still_scene, query, valid, r);
+  bool any = false;
+  for (int i = 0; i < count; i++) {
+    hits[i] = valid[i] ? hit_of(i, false) : Hit();
+    if (valid[i] && !meets(moving_bounds, rays[i], r.ray.tfar[i])) valid[i] = 0;
+    any |= valid[i] != 0;
+    r.hit.geomID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  if (!any) return;
+  embree::intersect8(moving_scene, query, valid, r);
+  for (int i = 0; i < count; i++)
+    if (valid[i] && r.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) hits[i] = hit_of(i, true);
+}
+
+void World::intersect_many(const Ray* rays, Hit* hits, int count) const {
+  int i = 0;
+  if (has_packets())
+    for (; i < count; i += 8) impl_->intersect8(rays + i, hits + i, std::min(8, count - i));
+  for (; i < count; i++) hits[i] = intersect(rays[i]);
+}
+
+}  // namespace wellspring

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inside of a World, shared by world.cpp (rays) and world_build.cpp (trees). Two Embree scenes:
+// what stands still, built once at high quality, and what moves, refitted by commit(). A ray visits
+// the still one, then the moving one if it meets its box before the hit. Measured against one scene
+// with an instance per moving mesh: no instance transform on the way to walls, and commit() costs
+// nothing that grows with the museum.
+#pragma once
+#include "world/embree.h"
+#include "world/world.h"
+
+namespace wellspring {
+
+// One device for the whole process, never released: its threads outlive every World.
+RTCDevice shared_device();
+void count_rays(uint64_t more);  // for rays_traced()
+Bounds box_of(const std::vector<vec3>& positions);
+
+struct World::Impl {
+  // What a filter function needs to know about the geometry it is called for.
+  struct Tag {
+    const Impl* impl;
+    uint32_t instance;  // unused inside an Embree instance, whose own id says which it is
+    bool instanced;
+    bool alpha = false;  // it has places that rays pass
+    bool pane = false;   // it may be a thin pane somewhere
+  };
+  struct Query : embree::Context {
+    const Ray* rays = nullptr;  // one of these two
+    const RayPacket* packet = nullptr;
+    PanesPassed* panes = nullptr;  // where panes are passed and told
+    Ray ray(unsigned i) const {
+      if (rays) return rays[i];
+      return {{packet->origin_x[i], packet->origin_y[i], packet->origin_z[i]},
+              0,
+              {packet->direction_x[i], packet->direction_y[i], packet->direction_z[i]},
+              packet->t_max[i]};
+    }
+  };
+
+  const Scene* scene = nullptr;
+  std::vector<Mesh> moving;
+  std::vector<PlacedMesh> placed;
+  std::vector<std::pair<int, std::unique_ptr<Material>>>
+      painted;  // of the scene's materials that repaint
+  uint64_t paints = 0;
+  std::vector<std::pair<int, std::unique_ptr<Material>>>
+      of_lamps;  // materials that lamps are made of
+  std::vector<char> lamp_on;
+  std::vector<std::vector<Face>>
+      faces;              // of each instance of the scene, where placed points to them
+  std::vector<Tag> tags;  // reserved up front: geometries point into it
+  RTCScene still_scene = nullptr, moving_scene = nullptr;
+  std::vector<RTCScene> mesh_scenes;     // of the instanced meshes
+  std::vector<uint32_t> still_instance;  // Embree geometry id -> instance
+  std::vector<RTCGeometry> moving_geometry;
+  std::vector<char> visible;
+  std::vector<Bounds> moving_boxes;
+  std::vector<int> moving_tangent_uv;  // texture coordinates of its tangents; -1: it has none
+  std::vector<float> built_area;  // of a moving mesh's box when its tree was last built anew
+  Bounds moving_bounds;           // of all that is visible
+  bool any_moving = false;        // that is visible
+  bool moved = false;             // since the last commit
+
+  ~Impl() {
+    for (RTCGeometry geometry : moving_geometry) rtcReleaseGeometry(geometry);
+    if (still_scene) rtcReleaseScene(still_scene);
+    if (moving_scene) rtcReleaseScene(moving_scene);
+    for (RTCScene s : mesh_scenes) rtcReleaseScene(s);
+  }
+
+  static void filter(const RTCFilterFunctionNArguments* arguments);
+  static void filter_shadow(const RTCFilterFunctionNArguments* arguments);
+  static Hit hit_of(const RTCFilterFunctionNArguments* arguments, unsigned i);
+  bool is_occluded(const Ray& ray, PanesPassed* panes) const;
+  RTCGeometry make_geometry(const Mesh& mesh, const mat4* to_world, const Tag& tag,
+                            RTCBuildQuality);
+  void build_still();
+  void build_faces(PlacedMesh& placed, std::vector<Face>& faces);
+  void build_moving();
+  void update_moving_bounds();
+  Hit to_hit(unsigned geometry, unsigned instance, unsigned primitive, float u, float v, float t,
+             bool is_moving_hit) const {
+    Hit hit;
+    if (geometry == RTC_INVALID_GEOMETRY_ID) return hit;
+    hit.t = t;
+    hit.triangle = primitive;
+    hit.barycentric = {u, v};
+    if (is_moving_hit)
+      hit.instance = uint32_t(scene->instances.size()) + geometry;
+    else
+      hit.instance = still_instance[instance != RTC_INVALID_GEOMETRY_ID ? instance : geometry];
+    return hit;
+  }
+  void intersect8(const Ray* rays, Hit* hits, int count) const;
+  // Answers for lanes [first, first + width); Lanes is an RTCRay8 or RTCRay16.
+  template <class Lanes, int width>
+  uint32_t occluded_lanes(const RayPacket& rays, uint32_t active, int first) const;
+};
+
+}  // namespace wellspring

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawn pictures of who moves, of one sample for dozens of pixels: calm, and nothing in them black
+// or glaring by chance.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "unit/picture/drawn_visit.h"
+
+namespace wellspring {
+namespace {
+
+using namespace scenes;
+
+constexpr int width = 160, height = 120, pixels = width * height;
+
+struct Shown {
+  View view;
+  Frame frame, truth;
+};
+// After a second of strolling sideways.
+Shown stroll(const Stage& stage, int pixels_a_sample) {
+  DrawnVisit visit;
+  Shown shown;
+  for (int i = 0; i < 30; i++) {
+    shown.view = make_view(stage.scene, {0.002 * i, 0.25, 0.6}, 0, 0, 0.7f, width, height);
+    visit.step(stage, shown.view, pixels / pixels_a_sample, PictureOf::moving_fine);
+  }
+  shown.frame = visit.frame;
+  shown.truth = stage.truth(shown.view, 256);
+  return shown;
+}
+
+// Whether the pixels around show the same object, too.
+bool is_inside(const Shown& shown, int x, int y) {
+  size_t at = size_t(y * width + x);
+  for (size_t other : {at - 1, at + 1, at - size_t(width), at + size_t(width)})
+    if (shown.frame.object[other] != shown.frame.object[at]) return false;
+  return true;
+}
+
+// Of pixels inside of objects: those brighter or darker than what is around by more than 15 %.
+struct Specks {
+  int specks = 0, inside = 0;
+};
+Specks count_specks(const Shown& shown) {
+  auto light = [&](size_t i) { return luminance(shown.frame.color[i]); };
+  Specks found;
+  for (int y = 1; y + 1 < height; y++)
+    for (int x = 1; x + 1 < width; x++) {
+      if (!is_inside(shown, x, y)) continue;
+      size_t at = size_t(y * width + x);
+      float around =
+          (light(at - 1) + light(at + 1) + light(at - size_t(width)) + light(at + size_t(width))) /
+          4;
+      found.inside++;
+      found.specks += std::abs(light(at) - around) > 0.15f * around;
+    }
+  return found;
+}
+
+TEST(FewPoints, WallsAreNotPeppered) {
+  Stage stage(make_cornell_box());
+  Shown shown = stroll(stage, 64);
+  const auto [specks, inside] = count_specks(shown);
+  EXPECT_GT(inside, pixels / 2);
+  EXPECT_LT(specks, inside / 33);
+}
+
+struct Bars {
+  double dark = 0, mean = 0, expected = 0;
+  int count = 0;
+};
+Bars look_at_bars(const Stage& stage, const Shown& shown) {
+  Bars bars;
+  for (size_t i = 0; i < shown.frame.color.size(); i++) {
+    uint32_t object = shown.frame.object[i];
+    if (object == 0 || stage.scene.objects[object] != "bar") continue;
+    float light = luminance(shown.frame.color[i]), truth = luminance(shown.truth.color[i]);
+    bars.count++;
+    bars.dark += light < 0.3f * truth;
+    bars.mean += double(light), bars.expected += double(truth);
+  }
+  return bars;
+}
+
+// Bars a pixel wide, of which most pixels have no sample of their own.
+TEST(FewPoints, NarrowThingsAreNeitherBlackNorGlaring) {
+  Scene scene = make_barred_box(vec3(0.7f), 0.004f);
+  Material sky = emitter(vec3(8));
+  sky.base_color = vec4(0.9f);  // a picture that shines tells nothing of light that falls there
+  add_quad(scene, add_material(scene, sky), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0},
+           "sky");
+  Stage matt(make_barred_box(vec3(0.7f), 0.004f)), before_sky(scene);
+  Material gilt = diffuse(vec3(1, 0.7f, 0.3f));
+  gilt.metallic = 1, gilt.roughness = 0.3f;
+  scene.materials[scene.materials.size() - 2] = gilt;
+  Stage polished(std::move(scene));
+  for (const Stage* stage : {&matt, &before_sky, &polished}) {
+    Bars bars = look_at_bars(*stage, stroll(*stage, 64));
+    EXPECT_GT(bars.count, 500);
+    EXPECT_LT(bars.dark, 0.01 * bars.count);
+    EXPECT_LT(bars.mean, 2.5 * bars.expected);  // they are darker than what is behind them
+  }
+}
+
+// A bumpy ball before the box, which moves, and hardly a point on either: light may be wrong, but
+// has no borders where there are none, and nothing is lit by what is before or behind it.
+TEST(FewPoints, LightHasNoSquares) {
+  Scene scene = make_cornell_box();
+  scene.environment.radiance = vec3(0.4f, 0.5f, 0.7f);
+  Mesh ball = sphere_mesh(add_material(scene, diffuse(vec3(0.6f))), 0.2f, 48);
+  for (vec3& p : ball.positions)
+    p = p * (1 + 0.1f * std::sin(40 * p.x) * std::sin(40 * p.y)) + vec3(0, 0.3f, 0);
+  scene.objects.push_back("ball");
+  Stage stage(std::move(scene), std::move(ball));
+  constexpr int across = 320, down = 240, pixels_a_sample = 400;
+  for (PictureOf kind : {PictureOf::moving, PictureOf::moving_fine}) {
+    DrawnVisit visit;
+    View view;
+    for (int i = 0; i < 8; i++) {
+      stage.push_ball(i % 2 ? 0.01f : -0.01f);
+      view = make_view(stage.scene, {0.01 * i, 0.3, 0.9}, 0, 0, 0.7f, across, down);
+      visit.step(stage, view, across * down / pixels_a_sample, kind);
+    }
+    Frame truth = stage.truth(view, 256);
+    const Frame& shown = visit.frame;
+    int pairs = 0, borders = 0;
+    double sum = 0, error = 0;
+    auto differ = [](const Frame& frame, size_t a, size_t b) {
+      float first = luminance(frame.color[a]), second = luminance(frame.color[b]);
+      return std::abs(first - second) / (first + second + 1e-3f);
+    };
+    for (int y = 0; y + 1 < down; y++)
+      for (int x = 0; x + 1 < across; x++) {
+        size_t at = size_t(y * across + x);
+        if (shown.object[at] == 0) continue;
+        sum += double(luminance(truth.color[at]));
+        error += std::abs(double(luminance(shown.color[at]) - luminance(truth.color[at])));
+        for (size_t other : {at + 1, at + size_t(across)}) {
+          if (shown.object[other] != shown.object[at] || differ(truth, at, other) > 0.05f) continue;
+          pairs++;
+          borders += differ(shown, at, other) > 0.2f;
+        }
+      }
+    ASSERT_GT(pairs, 20000);
+    EXPECT_LT(borders, pairs / (kind == PictureOf::moving ? 500 : 200));
+    EXPECT_LT(error, 0.135 * sum);
+  }
+}
+
+// Who has just come to rest: what lamps do on a floor that shines is seen by one sample in many.
+TEST(FewPoints, FloorsThatShineAreNotPepperedAtRest) {
+  Scene scene = make_cornell_box();
+  for (Material& material : scene.materials)
+    if (material.emission == vec3(0)) material.roughness = 0.4f, material.specular = 1;
+  Stage stage(std::move(scene));
+  Shown shown;
+  shown.view = make_view(stage.scene, {0, 0.25, 0.6}, 0, -0.25f, 0.7f, width, height);
+  DrawnVisit visit;
+  for (int i = 0; i < 6; i++) visit.step(stage, shown.view, pixels / 24, PictureOf::still);
+  shown.frame = visit.frame;
+  const auto [specks, inside] = count_specks(shown);
+  EXPECT_LT(specks, inside / 42);
+}
+
+}  // namespace
+}  // namespace wellspring

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pixels that lie side by side are lit as each would be alone.
+#include "picture/pixel_light.h"
+
+#include <gtest/gtest.h>
+
+#include "base/rng.h"
+
+using namespace wellspring;
+
+TEST(PixelLight, SomeFlatPixelsAreLitAsAllWouldBe) {
+  Rng rng(3);
+  auto number = [&] { return float(rng.next() >> 8) * 0x1p-24f; };
+  auto numbers = [&] {
+    return f8{number(), number(), number(), number(), number(), number(), number(), number()};
+  };
+  for (int round = 0; round < 200; round++) {
+    Pixels p;
+    p.x = numbers() - 0.5f, p.y = numbers() - 0.5f, p.depth = 0.9f + 0.2f * numbers();
+    p.nx = numbers() - 0.5f, p.ny = numbers() - 0.5f, p.nz = splat(1);
+    p.normal2 = p.nx * p.nx + p.ny * p.ny + p.nz * p.nz;
+    p.object = u8{1, 1, 1, 2, 1, 1, 1, 2};
+    CellLightOf<f8, u8> cell[4];
+    const CellLightOf<f8, u8>* corners[4];
+    f8 weights[4];
+    for (int k = 0; k < 4; k++) {
+      CellLightOf<f8, u8>& c = cell[k];
+      corners[k] = &c, weights[k] = splat(0.25f);
+      for (int n = 0; n < 3; n++) c.smooth[n] = numbers(), c.rest[n] = numbers();
+      c.patience = numbers(), c.detail = numbers(), c.noise = numbers();
+      c.normal[0] = c.normal[1] = f8{}, c.normal[2] = splat(1);
+      c.plane[0] = 0.1f * numbers(), c.plane[1] = 0.1f * numbers(), c.plane[2] = splat(1);
+      c.object = u8{1, 1, 1, 1, 1, 1, 1, 2} + uint32_t(k == round % 4);
+    }
+    i8 flat = lanes_of_bits(rng.next() & 255);
+    Surroundings some = look_around(corners, flat, weights, p),
+                 all = look_around(corners, true, weights, p),
+                 none = look_around(corners, false, weights, p);
+    for (int i = 0; i < lanes; i++) {
+      const Surroundings& wanted = flat[i] ? all : none;
+      ASSERT_EQ(some.lonely[i], wanted.lonely[i]) << round << " " << i;
+      ASSERT_NEAR(some.smooth.g[i], wanted.smooth.g[i], 1e-5f) << round << " " << i;
+      ASSERT_NEAR(some.rest.b[i], wanted.rest.b[i], 1e-5f) << round << " " << i;
+      ASSERT_NEAR(some.patience[i], wanted.patience[i], 1e-5f) << round << " " << i;
+      ASSERT_NEAR(some.noise[i], wanted.noise[i], 1e-5f) << round << " " << i;
+    }
+  }
+}
