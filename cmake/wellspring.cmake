@@ -56,9 +56,8 @@ target_link_libraries(turbojpeg INTERFACE ${TURBOJPEG})
 # oneDNN 2 or 3, by name: its CMake files ask for OpenCL. Its threads are OpenMP's, of which denoise
 # asks for one a call.
 find_library(DNNL dnnl REQUIRED)
-find_package(OpenMP REQUIRED)
 add_library(dnnl_any INTERFACE)
-target_link_libraries(dnnl_any INTERFACE ${DNNL} OpenMP::OpenMP_CXX)
+target_link_libraries(dnnl_any INTERFACE ${DNNL} gomp)
 
 find_library(PUGIXML pugixml REQUIRED)
 add_library(pugixml_any INTERFACE)

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <csignal>
 #include <iostream>
-#include <map>
 #include <spdlog/fmt/fmt.h>
 
 #include "base/clock.h"
@@ -43,6 +42,9 @@ int read_options(Options& options, int argc, char** argv) {
                  "a further Origin whose pages may open a visit; * for any");
   app.add_option("--content", options.content, "folder of exhibit packages")->capture_default_str();
   app.add_option("--web", options.web, "folder of the pages")->capture_default_str();
+  app.add_option("--weights", options.show.weights,
+                 "folder of the networks' weights; without it pictures at rest are not denoised")
+      ->envname("WELLSPRING_WEIGHTS");
   app.add_option("--cache", options.recordings.cache,
                  "folder that keeps what is found out about recordings; empty: nothing is kept");
   app.add_option("--fps", options.show.fps, "pictures a second for each visitor")

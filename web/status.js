@@ -33,6 +33,14 @@ const mebibytes = (bytes) => `${Math.round(bytes / 2 ** 20)} MiB`;
 const number = (value, digits = 0) => value === undefined
   ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits });
 
+function denoiser(metrics) {
+  const found = metrics.find((metric) => metric.name === 'denoiser');
+  if (!found?.value) return `off: ${found?.labels.problem ?? 'unknown'}`;
+  const one = (name) => metrics.find((metric) => metric.name === name)?.value;
+  return `${number(one('reconstructions_total'))} pictures at rest, the last in `
+      + `${number(one('reconstruction_milliseconds'))} ms`;
+}
+
 async function refresh() {
   const badge = by_id('health');
   try {
@@ -51,6 +59,7 @@ async function refresh() {
       ['Samples',
         `${number(one('samples_per_second'))} a second while tracing; dropped as invalid: `
           + number(one('bad_samples_total'))],
+      ['Learned reconstruction', denoiser(metrics)],
       ['Pictures',
         `${number(one('pictures_total'))} (${mebibytes(one('picture_bytes_total') ?? 0)})`],
       ['Connections',

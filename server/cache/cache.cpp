@@ -244,8 +244,12 @@ void RenderCache::lend_light() {
 }
 
 void RenderCache::end_frame(const ShownPoints& shown) {
+  impl_->count(shown);
+  end_frame();
+}
+
+void RenderCache::end_frame() {
   Impl& c = *impl_;
-  c.count(shown);
   std::fill(c.image.renewed.begin(), c.image.renewed.end(), uint8_t(0));
   c.work->priority = std::exchange(c.image.priority, {});
 }

@@ -120,6 +120,7 @@ class RenderCache {
   void lend_light();
   // The picture is made: what only it needed is given back. Counts what it has shown.
   void end_frame(const ShownPoints& shown);
+  void end_frame();  // none was made
 
  private:
   struct Impl;

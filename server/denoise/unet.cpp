@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstring>
 #include <dnnl.hpp>
 #include <oneapi/tbb/enumerable_thread_specific.h>
@@ -17,6 +15,8 @@
 #include "base/load_error.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "denoise/tile.h"
+#include "denoise/unet_form.h"
 
 namespace wellspring {
 namespace {
@@ -27,49 +27,12 @@ constexpr int alignment = 16;  // sizes are padded to multiples of it, so that a
 // and leave no core without work.
 constexpr std::array<int, levels> tile_size = {128, 96, 64, 48, 32};
 
-int round_up(int value, int step) { return (value + step - 1) / step * step; }
-
-// 32-bit floats, or the upper halves of them (bfloat16) where the processor multiplies these.
-struct Format {
-  int block = 8;  // channels side by side in memory
-  bool bfloat16 = false;
-  size_t bytes() const { return bfloat16 ? 2 : 4; }
-  dnnl::memory::data_type type() const {
-    return bfloat16 ? dnnl::memory::data_type::bf16 : dnnl::memory::data_type::f32;
-  }
-  dnnl::memory::format_tag tag() const {
-    return block == 16 ? dnnl::memory::format_tag::nChw16c : dnnl::memory::format_tag::nChw8c;
-  }
-};
-
-Format best_format() {
-  Format format;
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw")) format.block = 16;
-  format.bfloat16 = format.block == 16 && __builtin_cpu_supports("avx512bf16");
-#endif
-  return format;
+dnnl::memory::data_type type_of(const Format& format) {
+  return format.bfloat16 ? dnnl::memory::data_type::bf16 : dnnl::memory::data_type::f32;
 }
-
-float read_element(const std::byte* from, const Format& format) {
-  if (!format.bfloat16) {
-    float value;
-    std::memcpy(&value, from, 4);
-    return value;
-  }
-  uint16_t upper;
-  std::memcpy(&upper, from, 2);
-  return std::bit_cast<float>(uint32_t(upper) << 16);
-}
-
-void write_element(float value, const Format& format, std::byte* to) {
-  if (!format.bfloat16) {
-    std::memcpy(to, &value, 4);
-    return;
-  }
-  uint32_t bits = std::bit_cast<uint32_t>(value);
-  auto upper = uint16_t((bits + 0x7fff + ((bits >> 16) & 1)) >> 16);  // to nearest, even
-  std::memcpy(to, &upper, 2);
+dnnl::memory::format_tag tag_of(const Format& format) {
+  return format.block == 16 ? dnnl::memory::format_tag::nChw16c
+                            : dnnl::memory::format_tag::nChw8c;
 }
 
 // The features of one level: planes of `block` channels, rows, pixels.
@@ -108,80 +71,11 @@ struct Stage {
   int width = 0, height = 0, tile_width = 0, tile_height = 0, columns = 0, rows = 0;
 };
 
-// A part of a level, which may reach beyond it.
-struct Part {
-  int left = 0, top = 0, width = 0, height = 0;
-};
-
 struct Scratch {
   RawVector<std::byte> tile[2];
   RawVector<std::byte> pad;
   dnnl::stream stream;
 };
-
-// Copies rows of pixels that lie within the level, zeros around.
-template <class CopyPixels>
-void copy_part(const Part& part, int width, int height, size_t pixel_bytes, std::byte* to,
-               const CopyPixels& copy) {
-  int first = std::clamp(-part.left, 0, part.width),
-      last = std::clamp(width - part.left, first, part.width);
-  size_t row_bytes = size_t(part.width) * pixel_bytes;
-  for (int y = 0; y < part.height; y++, to += row_bytes) {
-    int row = part.top + y;
-    if (row < 0 || row >= height) {
-      std::memset(to, 0, row_bytes);
-      continue;
-    }
-    std::memset(to, 0, size_t(first) * pixel_bytes);
-    if (last > first)
-      copy(row, part.left + first, last - first, to + size_t(first) * pixel_bytes);
-    std::memset(to + size_t(last) * pixel_bytes, 0, size_t(part.width - last) * pixel_bytes);
-  }
-}
-
-// What a layer leaves beyond the level's border is no feature: the next one reads zeros there.
-void clear_beyond(const Part& part, int width, int height, int channels, const Format& format,
-                  std::byte* data) {
-  int first = std::clamp(-part.left, 0, part.width),
-      last = std::clamp(width - part.left, first, part.width);
-  int top = std::clamp(-part.top, 0, part.height),
-      bottom = std::clamp(height - part.top, top, part.height);
-  if (first == 0 && last == part.width && top == 0 && bottom == part.height) return;
-  size_t pixel = size_t(format.block) * format.bytes(), row = size_t(part.width) * pixel;
-  for (int block = 0; block < channels / format.block; block++)
-    for (int y = 0; y < part.height; y++, data += row) {
-      if (y < top || y >= bottom) {
-        std::memset(data, 0, row);
-        continue;
-      }
-      std::memset(data, 0, size_t(first) * pixel);
-      std::memset(data + size_t(last) * pixel, 0, size_t(part.width - last) * pixel);
-    }
-}
-
-int tile_extent(int extent, int wanted) {
-  int count = std::max(1, (extent + wanted / 2) / wanted);
-  return round_up((extent + count - 1) / count, 2);
-}
-
-// Names of the layers of one stage, and the names and forms of both published networks.
-struct StageForm {
-  int level;
-  std::vector<std::string> layers;
-  bool pools;
-};
-const std::vector<StageForm> plain_form = {
-    {0, {"enc_conv0", "enc_conv1"}, true},   {1, {"enc_conv2"}, true},
-    {2, {"enc_conv3"}, true},                {3, {"enc_conv4"}, true},
-    {4, {"enc_conv5a", "enc_conv5b"}, false}, {3, {"dec_conv4a", "dec_conv4b"}, false},
-    {2, {"dec_conv3a", "dec_conv3b"}, false}, {1, {"dec_conv2a", "dec_conv2b"}, false},
-    {0, {"dec_conv1a", "dec_conv1b", "dec_conv0"}, false}};
-const std::vector<StageForm> large_form = {
-    {0, {"enc_conv1a", "enc_conv1b"}, true},  {1, {"enc_conv2a", "enc_conv2b"}, true},
-    {2, {"enc_conv3a", "enc_conv3b"}, true},  {3, {"enc_conv4a", "enc_conv4b"}, true},
-    {4, {"enc_conv5a", "enc_conv5b"}, false}, {3, {"dec_conv4a", "dec_conv4b"}, false},
-    {2, {"dec_conv3a", "dec_conv3b"}, false}, {1, {"dec_conv2a", "dec_conv2b"}, false},
-    {0, {"dec_conv1a", "dec_conv1b", "dec_conv1c"}, false}};
 
 }  // namespace
 
@@ -287,9 +181,10 @@ void UNet::Impl::prepare_layer(Layer& layer, const Stage& stage, int across, int
   using dnnl::memory;
   const Tensor& from = weights.at(layer.name + ".weight");
   const Tensor& bias = weights.at(layer.name + ".bias");
-  layer.source = memory::desc({1, layer.inputs, down, across}, format.type(), format.tag());
-  layer.target = memory::desc({1, layer.outputs, down - 2, across - 2}, format.type(), format.tag());
-  memory::desc any({layer.outputs, layer.inputs, 3, 3}, format.type(), memory::format_tag::any);
+  layer.source = memory::desc({1, layer.inputs, down, across}, type_of(format), tag_of(format));
+  layer.target =
+      memory::desc({1, layer.outputs, down - 2, across - 2}, type_of(format), tag_of(format));
+  memory::desc any({layer.outputs, layer.inputs, 3, 3}, type_of(format), memory::format_tag::any);
   memory::desc bias_desc({layer.outputs}, memory::data_type::f32, memory::format_tag::x);
   dnnl::primitive_attr attributes;
   attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);
@@ -469,8 +364,9 @@ void UNet::Impl::compute_tile(const Stage& stage, int tile) {
   for (auto& buffer : own.tile) buffer.resize(tile_bytes);
   own.pad.resize(pad_bytes);
   if (!own.stream) own.stream = dnnl::stream(engine);
-  const Part target{tile % stage.columns * stage.tile_width, tile / stage.columns * stage.tile_height,
-                    stage.tile_width, stage.tile_height};
+  const Part target{tile % stage.columns * stage.tile_width,
+                    tile / stage.columns * stage.tile_height, stage.tile_width,
+                    stage.tile_height};
   int beyond = int(stage.layers.size());
   auto reaching = [&](int pixels) {
     return Part{target.left - pixels, target.top - pixels, target.width + 2 * pixels,

@@ -13,7 +13,6 @@ namespace wellspring {
 namespace {
 
 constexpr int most_specular = 8;      // surfaces on the way: mirrors may face mirrors
-constexpr float sharp_alpha = 0.1f;   // of GGX: blunter ones show no picture of their own
 constexpr float least_tint = 0.02f;   // of what is followed further
 constexpr int grain = 256;            // rays
 

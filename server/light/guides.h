@@ -2,9 +2,9 @@
 // Guides of a picture's reconstruction (denoise/denoise.h): what is known of each pixel without
 // noise. Albedo is the share of light that leaves where the eye looks, diffuse and glossy
 // reflection together; light sources and the sky count with their own colour, at most white. The
-// normal is the shading normal, in world space, 0 in the sky. Of what is polished the ray is followed
-// to what that mirrors or lets through, by the share of light this is; mirrors, glass and polished
-// metal have no normal of their own but that of what they show.
+// normal is the shading normal, in world space, 0 in the sky. Of what is polished the ray is
+// followed to what that mirrors or lets through, by the share of light this is; mirrors, glass and
+// polished metal have no normal of their own but that of what they show.
 #pragma once
 #include <span>
 #include <vector>
@@ -13,6 +13,9 @@
 #include "world/view.h"
 
 namespace wellspring {
+
+// Surfaces whose facets are sharper than this (alpha of GGX) show a picture of others.
+inline constexpr float sharp_alpha = 0.1f;
 
 struct Guide {
   vec3 albedo{0};  // 0 to 1

@@ -10,40 +10,11 @@
 #include "base/parallel.h"
 #include "light/facet.h"
 #include "light/first_surface.h"
+#include "light/sight_material.h"
 #include "world/texture_pyramid.h"
 
 namespace wellspring {
 namespace {
-
-// How the reflectance of a material is found.
-enum class Reflectance : uint8_t {
-  scaled,  // a factor times base colour, and no less than a floor
-  base,    // base colour and metallic of each place say all
-  traced,  // ask a ray
-};
-
-// What kept_albedo() makes of base colour.
-struct KeptScale {
-  float factor = 1, floor = 0;
-};
-Reflectance find_reflectance(const Material& m, KeptMetal metal, KeptScale& scale) {
-  if (m.transmission > 0 || m.anisotropy > 0) return Reflectance::traced;
-  if (m.metallic > 0 && m.metallic_roughness_texture.texture >= 0) return Reflectance::base;
-  bool kept = metal != KeptMetal::none;
-  scale = {kept ? 1 : 1 - clean(m.metallic), kept ? least_kept_metal * clean(m.metallic) : 0};
-  return Reflectance::scaled;
-}
-
-// RasterSettings::see_through of what is a clear pane everywhere.
-uint8_t pane_kind(const Material& m) {
-  bool clear = m.transmission == 1 && m.transmission_texture.texture < 0 && m.thickness == 0 &&
-               m.metallic == 0 && m.roughness == 0 && m.alpha_mode == AlphaMode::opaque && !m.unlit;
-  if (!clear || m.anisotropy > 0 || m.clearcoat > 0 || m.sheen_color != vec3(0)) return 0;
-  bool alike = m.base_color_texture.texture < 0 && m.specular_texture.texture < 0 &&
-               m.specular_color_texture.texture < 0 && m.normal_texture.texture < 0 &&
-               m.emission_texture.texture < 0;
-  return alike ? 1 : 2;
-}
 
 template <class T>
 T mix3(const T& a, const T& b, const T& c, vec3 w) {
@@ -141,6 +112,7 @@ struct PictureSight::Impl {
   std::vector<Reflectance> reflectance;  // of each material
   std::vector<KeptScale> scale;          // of those scaled
   std::vector<uint8_t> panes;            // of each material: is one everywhere
+  std::vector<uint8_t> polished;         // of each material: some place of it may be
   std::vector<uint8_t> moving_object;  // by object
   KeptMetal metal_of(int material) const {
     return lights.tables->materials[size_t(material)].metal;
@@ -158,9 +130,11 @@ PictureSight::PictureSight(const World& world, const Lights& lights)
     if (world.is_moving(uint32_t(i)) && object < scene.objects.size())
       impl_->moving_object[object] = 1;
   }
+  TextureRanges ranges(scene);
   for (size_t i = 0; i < scene.materials.size(); i++) {
     const Material& m = scene.materials[i];
     KeptScale scale;
+    impl_->polished.push_back(may_be_polished(m, ranges));
     impl_->reflectance.push_back(
         m.unlit ? Reflectance::base : find_reflectance(m, impl_->metal_of(int(i)), scale));
     impl_->scale.push_back(scale);
@@ -371,6 +345,19 @@ uint64_t SightRun::describe(uint64_t wanted, RunSurface& to) const {
   for (int i = 0; r.veil && i < count; i++)
     if (r.veil[i].glow != vec3(0)) alone |= uint64_t(1) << i;
   return alone & wanted;
+}
+
+uint64_t SightRun::polished() const {
+  if (seen_) return ~uint64_t(0) >> (64 - count);
+  const RasterRun& r = *impl_->run;
+  uint64_t found = 0;
+  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
+    if (r.instance[begin] == RasterRun::nothing) continue;
+    int material = impl_->facet(begin).placed->mesh->material;
+    if (!impl_->sight.polished[size_t(material)]) continue;
+    for (int i = begin; i < r.end[p]; i++) found |= uint64_t(1) << i;
+  }
+  return found;
 }
 
 Seen SightRun::see(int i) const { return seen_ ? seen_[i] : impl_->see(i); }

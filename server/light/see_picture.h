@@ -34,6 +34,9 @@ class SightRun {
   // Of the pixels whose bit is set, and maybe of others. Returns those of the set bits that shine,
   // or of which see() knows more or only see() knows.
   uint64_t describe(uint64_t wanted, RunSurface& to) const;
+  // Pixels that may see what is polished: their guides are those of what it shows
+  // (light/guides.h).
+  uint64_t polished() const;
   // Everything of pixel i; costs as much as a dozen descriptions.
   Seen see(int i) const;
 

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/spread.h"
 #include "picture/compose_drawn.h"
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"
@@ -11,6 +12,9 @@
 #include "picture/surface_image.h"
 
 namespace wellspring {
+
+// Of a pixel: until then aimed ones count, too.
+static constexpr int few_samples = 4;
 
 size_t memory_bytes(const CompositorWork& work) {
   return memory_bytes(work.light) + memory_bytes(work.correction) + bytes_of(work.peaks);
@@ -30,27 +34,22 @@ void Compositor::begin(const RenderCache& cache) {
   if (projection_ == cache.projection()) return;
   projection_ = cache.projection();
   still_ = {};
-  samples_ = {};
-  corrects_ = false;
+  if (!cache.has_projected(sampled_)) samples_ = {};
 }
 
-// What the cache found changed starts over.
 void Compositor::begin_still(const RenderCache& cache) {
   begin(cache);
-  const PointImage& image = cache.image();
-  const size_t pixels = image.point.size();
+  const size_t pixels = cache.image().point.size();
   for (auto& plane : still_.mean) plane.resize(pixels);
   still_.count.resize(pixels, 0);
   for (size_t i = 0; i < pixels; i++)
-    if (image.renewed[i]) still_.count[i] = 0;
-  const bool changes = image.alarm > 0;  // what samples of the light before say is wrong
-  if (changes) {
-    samples_ = {};
-    corrects_ = false;
-  } else if (cache.is_still() && !corrects_) {
-    resize_samples(samples_, pixels);
-    corrects_ = true;
-  }
+    if (cache.image().renewed[i]) still_.count[i] = 0;
+}
+
+void Compositor::follow_changes(const RenderCache& cache) {
+  if (!cache.has_projected(sampled_)) return;
+  for (size_t i = 0; i < samples_.count.size(); i++)
+    if (cache.image().renewed[i]) samples_.count[i] = 0;
 }
 
 // Finds the light of `lit`, which is projected, then calls compose() and takes the time.
@@ -102,28 +101,39 @@ void Compositor::draw_still(RenderCache& cache, const View& view, const PictureS
   const bool changes = cache.image().alarm > 0;
   draw(cache, view, [&](float told) {
     const float guessed = 1 - told;
-    compose_still(view, sight, still_place(cache.still_frames()), cells_, known_, work_->light,
+    compose_still(view, sight, spread_in_pixel(cache.still_frames()), cells_, known_, work_->light,
                   guessed, frame);
     std::span<const std::vector<EdgeShare>> edges;
     if (shows == StillShows::all && sight.anything_moves())
       edges = compose_moving(view, sight, cells_, known_, work_->light, guessed, frame);
-    if (corrects_) forget_samples(still_, samples_);
+    const bool corrects = !reconstructed_ && sampled_ == view && !samples_.count.empty();
+    if (corrects) wellspring::forget_samples(still_, samples_);
     accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, changes, pictures_,
                      still_, frame);
-    if (corrects_) correct_still(samples_, still_, work_->correction, frame);
+    if (corrects) correct_still(samples_, still_, work_->correction, frame);
     soften_edges(edges, frame.color);
   });
 }
 
-void Compositor::add_samples(const RenderCache& cache, std::span<const Request> requests,
-                             std::span<const Sample> samples, std::span<const uint32_t> points) {
-  if (!corrects_ || projection_ != cache.projection()) return;
-  for (size_t i = 0; i < points.size(); i++)
-    if (points[i] != no_point && requests[i].resample != points[i] &&
-        requests[i].pixel < samples_.count.size() && !(samples[i].flags & sample_moving))
-      add_sample(samples_, requests[i].pixel, samples[i].radiance(),
-                 uint32_t(mix64(requests[i].seed)));
+void Compositor::add_samples(const View& view, std::span<const Request> requests,
+                             std::span<const Sample> samples) {
+  if (requests.empty()) return;
+  const size_t pixels = size_t(view.width) * size_t(view.height);
+  if (view != sampled_ || samples_.count.size() != pixels) {
+    sampled_ = view;
+    resize_samples(samples_, pixels);
+  }
+  for (size_t i = 0; i < requests.size(); i++) {
+    const uint32_t pixel = requests[i].pixel;
+    if (pixel >= pixels || (samples[i].flags & sample_moving)) continue;
+    if (requests[i].resample == no_cache_id ||
+        (reconstructed_ && samples_.count[pixel] < few_samples))
+      add_sample(samples_, pixel, samples[i].radiance(),
+                 uint32_t(mix64(requests[i].seed + requests[i].index)));
+  }
 }
+
+void Compositor::forget_samples() { samples_ = {}; }
 
 bool Compositor::draw_moving(RenderCache& cache, const World& world, const Keyframe& backdrop,
                              const PictureSight& sight, const Tonemap& tonemap, MovingLight& work,

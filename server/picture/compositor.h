@@ -47,10 +47,17 @@ class Compositor {
   // time, seen at another place of the pixels each time.
   void draw_still(RenderCache& cache, const View& view, const PictureSight& sight, Frame& frame,
                   StillShows shows = StillShows::all);
-  // What the cache has just remembered, `points` being its answer: at rest samples are kept by
-  // themselves, too.
-  void add_samples(const RenderCache& cache, std::span<const Request> requests,
-                   std::span<const Sample> samples, std::span<const uint32_t> points);
+  // At rest, after RenderCache::remember(): samples of pixels whose light it found changed since
+  // the last picture are forgotten.
+  void follow_changes(const RenderCache& cache);
+  // At rest: answers to requests of `view` are kept for each pixel by itself, until the view is
+  // another. Those that are aimed at a point, not anywhere in the pixel, are not; but see below.
+  void add_samples(const View& view, std::span<const Request> requests,
+                   std::span<const Sample> samples);
+  void forget_samples();  // other light
+  // Pictures at rest serve as what reconstruction begins with (picture/reconstruct_still.h): they
+  // are not corrected by samples, and while a pixel has few of these, aimed ones count, too.
+  void set_reconstructed(bool on) { reconstructed_ = on; }
   // What moves, as the world is now, to be laid over the last draw_still() without it, of which
   // `backdrop` is the keyframe; needs no projection. False: no point lies on it. An empty picture:
   // it is not to be seen.
@@ -58,6 +65,8 @@ class Compositor {
                    const PictureSight& sight, const Tonemap& tonemap, MovingLight& work,
                    MovingPicture& picture);
 
+  // What the pixels of a view at rest have been found to be by samples; empty before.
+  const StillSamples& samples() const { return samples_; }
   float drawing_ms() const { return drawing_ms_; }  // visibility and shading of the last picture
   size_t memory_bytes() const;  // without work that is shared
 
@@ -74,7 +83,8 @@ class Compositor {
   bool known_ = false;  // any light
   StillImage still_;
   StillSamples samples_;
-  bool corrects_ = false;    // the last picture was at rest, and its samples are kept
+  View sampled_;             // the view of samples_
+  bool reconstructed_ = false;
   uint64_t projection_ = 0;  // RenderCache::projection() of what is kept
   uint32_t pictures_ = 0;
   float drawing_ms_ = 0;

@@ -15,14 +15,6 @@ constexpr int still_drawn = 4 * still_places;  // drawn pictures that the mean l
 
 }  // namespace
 
-vec2 still_place(int pictures) {
-  // The additive recurrence of the plastic number's powers (Roberts 2018), which is as even in any
-  // row of its places.
-  uint32_t i = uint32_t(pictures % (still_places * 64));
-  auto part = [i](uint32_t step) { return float((0x80000000u + step * i) >> 8) * 0x1p-24f; };
-  return {part(3242174889u), part(2447445414u)};
-}
-
 void accumulate_drawn(const std::function<bool(uint32_t)>& moves, bool changes, uint32_t seed,
                       StillImage& still, Frame& frame) {
   const int longest = changes ? still_places : still_drawn;

@@ -17,10 +17,8 @@ struct StillImage {
   std::vector<uint8_t> count;                 // of pictures in the mean; 0: begins anew
 };
 
-// Where in their pixels the picture after `pictures` others is seen: any `still_places` of them in
-// a row are spread evenly.
+// Pictures, each seen at another place of the pixels (base/spread.h), that antialias well enough.
 inline constexpr int still_places = 16;
-vec2 still_place(int pictures);
 
 // Averages a drawn picture into `still` and shows the average, but for pixels of objects of which
 // `moves` says so. `changes`: the light does, and the mean is over few pictures.

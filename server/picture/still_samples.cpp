@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "cache/packing.h"
 
 namespace wellspring {
@@ -15,18 +14,9 @@ void resize_samples(StillSamples& samples, size_t pixels) {
   samples.count = std::vector<uint8_t>(pixels);
 }
 
-void forget_samples(StillSamples& samples) {
-  std::fill(samples.count.begin(), samples.count.end(), uint8_t(0));
-}
-
 void forget_samples(const StillImage& still, StillSamples& samples) {
-  parallel_ranges(int(std::min(still.count.size(), samples.count.size())), 1 << 16,
-                  [&](int begin, int end) {
-                    const uint8_t* known = still.count.data();
-                    uint8_t* count = samples.count.data();
-                    for (int i = begin; i < end; i++)
-                      count[i] = known[i] == 0 ? uint8_t(0) : count[i];
-                  });
+  for (size_t i = 0; i < std::min(still.count.size(), samples.count.size()); i++)
+    if (still.count[i] == 0) samples.count[i] = 0;
 }
 
 void add_sample(StillSamples& samples, size_t pixel, vec3 light, uint32_t random) {

@@ -21,8 +21,8 @@ struct StillSamples {
 };
 inline constexpr int most_still_samples = 254;
 
+// All of them without a sample.
 void resize_samples(StillSamples& samples, size_t pixels);
-void forget_samples(StillSamples& samples);
 // Where `still` is to begin anew, as its light has changed or something moves there.
 void forget_samples(const StillImage& still, StillSamples& samples);
 // `light`: finite, of a place anywhere in the pixel. `random` decides roundings.

@@ -22,31 +22,9 @@
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"
-#include "world/view.h"
+#include "show/picture_order.h"
 
 namespace wellspring {
-
-// All that a picture's drawing depends on besides the world and what the visitor's cache remembers.
-struct PictureOrder {
-  double time = 0;       // of the tick that ordered it
-  uint64_t time_us = 0, tick = 0;
-  View expected;         // what the visitor will see when it is shown
-  View view;             // drawn: that, and some around
-  View ahead;            // in the picture after that, when answers to its requests are shown
-  uint32_t seq = 0;      // of the visitor's last input
-  uint32_t leaps = 0;    // of the visitor, by then
-  bool still = false;    // without motion for a moment
-  bool figure = false;   // the storyteller may be in it
-  bool settled = false;  // for long: the reference takes over
-  bool passing = false;  // drawn for a moment, and some around (picture/compose_drawn.h)
-  bool coarse = false;   // that in coarser light
-  bool attention = true;
-  bool keep = false;     // as a keyframe, for others to be made of
-  uint64_t seed = 0;
-  std::optional<View>
-      around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels
-  int samples = 0;
-};
 
 // What it took: milliseconds, and counts.
 struct PictureCosts {
@@ -54,12 +32,13 @@ struct PictureCosts {
   size_t samples = 0;
   bool late = false;     // its samples are still to be traced
   bool given_up = false;  // there is no picture
+  double guide_seconds = 0;  // for what a reconstruction begins with
   bool backdrop = false;  // of what does not move: the rest is to be laid over it
   double seconds = 0;    // from its order on, without others' in between
 };
 
 // A picture at rest is drawn in steps, so that what moves in it need not wait for all of them.
-enum class DrawingStep : uint8_t { plan, trace, draw, done };
+enum class DrawingStep : uint8_t { plan, trace, draw, guide, done };
 
 struct Visitor;
 
@@ -74,6 +53,7 @@ struct DrawingWork {
   std::vector<Request> requests, ahead;
   std::vector<Sample> samples;
   size_t traced = 0;  // of the requests
+  int guided = 0;     // visibility passes done of a reconstruction's guides
   uint64_t pose = 0;  // of the world, when they were made
   MovingLight moving_light;
   MovingPicture moving;  // when it is finished the visitor's old one

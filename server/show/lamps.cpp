@@ -55,6 +55,7 @@ void light_lamps(Show& show) {
   switches.steps.clear();
   for (Visitor& visitor : show.visitors) {
     visitor.around = {};               // it shows another light
+    visitor.rest = {};
     visitor.stats.converged = 0;       // who rests looks again,
     visitor.order.settled = false;     // and first at what is soon to be known
   }
@@ -70,6 +71,7 @@ void follow_lamps(Show& show, Visitor& visitor) {
     });
   }
   visitor.broker.forget();
+  visitor.compositor.forget_samples();
   visitor.lamps = lit;
 }
 

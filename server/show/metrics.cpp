@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <fstream>
 #include <unistd.h>
 
@@ -45,6 +46,18 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "samples_per_second", "gauge", "Samples a second while tracing, all cores",
          report.samples_per_second);
   metric(out, "samples_total", "counter", "Samples traced", double(totals.samples));
+  // The problem is a sentence of ours, or a file's path: quotes would end the label.
+  std::string problem = report.denoiser_problem;
+  std::replace_if(problem.begin(), problem.end(),
+                  [](char c) { return c == '"' || c == '\\' || c == '\n'; }, '\'');
+  out += fmt::format(
+      "# HELP wellspring_denoiser 1: pictures at rest are reconstructed by a network; 0: why not\n"
+      "# TYPE wellspring_denoiser gauge\nwellspring_denoiser{{problem=\"{}\"}} {}\n",
+      problem, problem.empty() ? 1 : 0);
+  metric(out, "reconstructions_total", "counter", "Pictures at rest reconstructed by the network",
+         double(totals.reconstructed));
+  metric(out, "reconstruction_milliseconds", "gauge", "What the last of them took, all cores",
+         double(totals.reconstruction_ms));
   metric(out, "bad_samples_total", "counter", "Samples dropped for not being finite or positive",
          double(report.bad_samples));
   metric(out, "pictures_total", "counter", "Pictures sent", double(totals.pictures));

@@ -8,8 +8,11 @@
 #include "base/rng.h"
 #include "cache/trace_waiting.h"
 #include "picture/compose_drawn.h"
+#include "picture/plan_still.h"
+#include "picture/still_guides.h"
 #include "show/in_view.h"
 #include "show/moving.h"
+#include "show/picture_samples.h"
 #include "show/present.h"
 #include "show/sample_budget.h"
 
@@ -21,16 +24,12 @@ constexpr double still_after = 0.25;   // seconds without motion until a picture
 constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
 constexpr double backdrop_rate = 4;    // pictures a second of what does not move
+constexpr double learning_rate = 1.5;  // likewise, before the first reconstruction
 constexpr double keyframe_rate = 30;   // pictures drawn a second while the visitor moves, at most
 constexpr float nearly_all = 0.999f;   // converged
 constexpr double around_kept = 2;  // seconds that what lies around is good for: turns come in bouts
 constexpr double predicted_pictures = 2;
-constexpr float predicted_share = 0.3f;    // of the samples, at most
-constexpr float barely_covered = 0.1f;  // of the pixels by points
-constexpr size_t least_slice = 2048;  // samples
-// Seconds of tracing at a time, while it may be given up, and where what moves is due soon.
-constexpr double slice = 0.025, least_slice_seconds = 0.006;
-constexpr float more_asked = 1.2f;  // than there is time for, by what was measured: none is idle
+constexpr double settled_samples = 8;  // a pixel, after which the reference takes over
 
 void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
 
@@ -39,14 +38,6 @@ double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
   double period = (1 - moving_share(show)) / drawing_rate(show, visitor);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
   return std::max((period - slack) / std::max(busy, 1) - display, least_share * period);
-}
-
-// Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a
-// still camera's picture, waits for its own.
-bool may_be_late(const Show& show, const Visitor& visitor, const Technique& technique,
-                 int samples) {
-  return show.settings.late_samples && !technique.begin_pass &&
-         samples <= BrokerSettings{}.most_waiting && visitor.cache.covered() > barely_covered;
 }
 
 DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
@@ -60,7 +51,10 @@ DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
 
 void watch(const Show& show, Visitor& visitor) {
   View view = view_of(show, visitor);
-  if (view != visitor.last_view) visitor.moved_at = show.time;
+  if (view != visitor.last_view) {
+    visitor.moved_at = show.time;
+    visitor.rest = {};
+  }
   if (note_view(visitor.heading, show.time, view)) visitor.leaps++;
   visitor.last_view = view;
 }
@@ -71,14 +65,20 @@ bool stands(const Show& show, const Visitor& visitor) {
 }
 
 bool rests(const Show& show, const Visitor& visitor) {
-  return stands(show, visitor) && !sees_figure(show, visitor.last_view) &&
-         visitor.stats.converged >= nearly_all;
+  if (!stands(show, visitor) || sees_figure(show, visitor.last_view)) return false;
+  return keeps_picture(show, visitor) ? has_all_samples(visitor.rest)
+                                      : visitor.stats.converged >= nearly_all;
 }
 
 double drawing_rate(const Show& show, const Visitor& visitor) {
-  if (visitor.backdrop && stands(show, visitor)) return backdrop_rate;
   double rate = picture_rate(show, visitor);
-  return show.settings.background && !stands(show, visitor) ? std::min(rate, keyframe_rate) : rate;
+  if (!stands(show, visitor))
+    return show.settings.background ? std::min(rate, keyframe_rate) : rate;
+  if (visitor.backdrop) rate = backdrop_rate;
+  // Until the first reconstruction, samples do more for it than pictures.
+  bool first = show.pass.denoiser && !visitor.rest.reconstructed && !rests(show, visitor);
+  first &= visitor.backdrop || !visitor.order.figure;
+  return first ? std::min(rate, learning_rate) : rate;
 }
 
 bool wants_drawing(const Show& show, const Visitor& visitor) {
@@ -86,6 +86,7 @@ bool wants_drawing(const Show& show, const Visitor& visitor) {
   if (visitor.leaps != visitor.order.leaps) return true;
   bool moves = show.settings.background && !stands(show, visitor);
   if (visitor.unshown && !moves) return false;
+  if (show.pass.visitor == &visitor && !moves) return false;
   // Other light, or the storyteller came or went: who rests sees it at once.
   bool news = visitor.lamps != show.switches.lit ||
               visitor.order.figure != sees_figure(show, visitor.last_view);
@@ -113,19 +114,27 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   order.figure = sees_figure(show, now);
   order.leaps = visitor.leaps;
   order.still = show.time - visitor.moved_at > still_after;
+  order.keep = show.settings.background;
   const PictureOrder& before = visitor.order;
   // Of a place that was never seen, nothing is known.
   bool seen = visitor.drawn_at >= 0 && visitor.leaps == before.leaps;
   float guessed = seen ? visitor.stats.filled + visitor.stats.empty : 1;
-  order.settled = wants_reference(show.time - visitor.moved_at, seen && before.settled,
-                                  !seen || before.coarse, guessed, visitor.stats.converged);
-  bool fine = wants_fine_light(order.still, !seen || before.coarse, guessed);
+  bool learns = show.pass.denoiser && in_steps(order);
+  order.settled = learns ? visitor.rest.samples >= settled_samples
+                         : wants_reference(show.time - visitor.moved_at, seen && before.settled,
+                                           !seen || before.coarse, guessed,
+                                           visitor.stats.converged);
+  order.reconstruct = learns && wants_pass(show, visitor);
+  order.samples_only = learns && !order.reconstruct && keeps_picture(show, visitor);
+  bool fine = learns || wants_fine_light(order.still, !seen || before.coarse, guessed);
   order.attention = visitor.attention;
-  order.keep = show.settings.background;
   order.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
   order.samples = sample_budget(seconds_to_trace(show, visitor, busy),
                                 size_t(visitor.width) * size_t(visitor.height),
                                 drawing_costs(show, visitor), fine);
+  // When all is known, what changes is looked for.
+  if (order.samples_only && has_all_samples(visitor.rest))
+    order.samples = samples_to_watch(order.samples);
   // Who moves is shown shapes and reflectances as they are, in light of half their resolution where
   // samples are few; who stops, until more is known.
   double interval = 1 / drawing_rate(show, visitor);
@@ -153,95 +162,6 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
 }
 
 namespace {
-
-TransportSettings transport_of(const Show& show, const PictureOrder& order) {
-  TransportSettings transport = show.settings.transport;
-  if (!order.settled) transport.clamp = show.settings.moving_clamp;
-  return transport;
-}
-
-// The light that is missing for the picture, and for the next: fills work.requests. Says by
-// costs.late whether answers may come after it.
-void plan_samples(Show& show, const PictureOrder& order, const Technique& technique,
-                  const View& lit, DrawingWork& work, Visitor& visitor) {
-  RenderCache& cache = visitor.cache;
-  follow_lamps(show, visitor);
-  View ahead = order.coarse ? light_view(order.ahead) : order.ahead;
-  cache.set_attention(order.attention);
-  cache.set_reference(order.settled);
-  // What is around has light of half its size.
-  cache.resize(order.expected.width, order.expected.height);
-  cache.move_points(*show.world);
-  land(visitor.broker.collect(), *show.world, show.pose_number, cache);
-  cache.project(lit);
-  cache.attend();
-  int most_asked = int(more_asked * float(order.samples));
-  bool late = !order.still && may_be_late(show, visitor, technique, most_asked);
-  int asked = late ? most_asked : order.samples;
-  work.ahead.clear();
-  if (ahead != lit && !technique.begin_pass)
-    cache.predict(ahead, int(predicted_share * float(asked)), order.seed, work.ahead);
-  cache.plan(lit, asked - int(work.ahead.size()), order.seed, work.requests);
-  work.requests.insert(work.requests.end(), work.ahead.begin(), work.ahead.end());
-  visitor.costs.late = late;
-}
-
-// Of a picture at rest the world moves on while it is traced: what lies on what moves comes first,
-// and what is too much for then is left to the next picture. Returns how many do.
-size_t put_moving_first(const RenderCache& cache, size_t most, std::vector<Request>& requests) {
-  auto others = std::stable_partition(
-      requests.begin(), requests.end(),
-      [&](const Request& request) { return cache.follows_moving(request); });
-  size_t moving = size_t(others - requests.begin()), kept = std::min(moving, most);
-  requests.erase(requests.begin() + ptrdiff_t(kept), others);
-  return kept;
-}
-
-size_t slice_of_samples(const Show& show) {
-  double seconds = std::clamp(show.easel.until_moving, least_slice_seconds, slice);
-  return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
-}
-
-// Asks for what was planned, or begins to trace it. Returns whether it is traced here: work.samples
-// is empty where answers may be late.
-bool begin_samples(Show& show, const PictureOrder& order, const Technique& technique,
-                   const View& lit, DrawingWork& work, Visitor& visitor) {
-  work.samples.clear();
-  work.traced = 0;
-  if (visitor.costs.late) {
-    visitor.broker.ask(lit, {&technique, transport_of(show, order)}, work.requests);
-    return false;
-  }
-  visitor.broker.forget();  // what was asked for on the way
-  work.pose = show.pose_number;
-  if (technique.begin_pass)
-    technique.begin_pass(*show.world, transport_of(show, order), lit, visitor.link->id,
-                         uint32_t(order.tick), show.lights);
-  return true;
-}
-
-// At least `least` of them, if there are so many. Returns whether some are left.
-bool trace_slice(Show& show, const PictureOrder& order, const Technique& technique, size_t least,
-                 DrawingWork& work) {
-  size_t all = work.requests.size(), count = all - work.traced;
-  if (!technique.begin_pass) count = std::min(count, std::max(least, slice_of_samples(show)));
-  work.samples.resize(all);
-  trace(technique, *show.world, show.lights, transport_of(show, order),
-        std::span(work.requests).subspan(work.traced, count),
-        std::span(work.samples).subspan(work.traced, count));
-  work.traced += count;
-  return work.traced < all;
-}
-
-void remember_traced(const Show& show, const View& lit, DrawingWork& work, Visitor& visitor) {
-  if (visitor.costs.late) return;
-  work.requests.resize(work.traced);
-  work.samples.resize(work.traced);
-  if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
-  std::span<const uint32_t> points = visitor.cache.remember(lit, work.requests, work.samples);
-  visitor.compositor.add_samples(visitor.cache, work.requests, work.samples, points);
-  visitor.costs.samples = work.samples.size();
-}
 
 // What moves is drawn by itself where that is little of the picture, as what it covers is kept.
 bool draws_backdrop(const Show& show, const PictureOrder& order, const RenderCache& cache) {
@@ -285,7 +205,11 @@ DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit
   DrawingWork& work = show.easel.work;
   PictureCosts& costs = visitor.costs;
   double began = seconds_now();
-  remember_traced(show, lit, work, visitor);
+  remember_traced(show, order, lit, work, visitor);
+  if (order.samples_only) {
+    cache.end_frame();
+    return DrawingStep::done;
+  }
   const Tonemap curve{show.exhibit.exposure};
   costs.backdrop = draws_backdrop(show, order, cache);
   if (order.passing)
@@ -294,6 +218,12 @@ DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit
   else
     compositor.draw_still(cache, order.view, *show.sight, work.frame,
                           costs.backdrop ? StillShows::backdrop : StillShows::all);
+  if (order.reconstruct) {
+    std::swap(work.frame, show.pass.frame);
+    work.guided = 0;
+    costs.guide_seconds = seconds_now() - began;
+    return DrawingStep::guide;
+  }
   double painted = seconds_now();
   if (!order.passing) tonemap(work.frame, curve, work.picture);
   if (order.keep)
@@ -309,6 +239,22 @@ DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit
   return DrawingStep::done;
 }
 
+// One visibility pass of a reconstruction's guides; the last also encodes its input.
+DrawingStep find_guides(Show& show, const PictureOrder& order, Visitor& visitor) {
+  DrawingWork& work = show.easel.work;
+  StillPass& pass = show.pass;
+  double began = seconds_now();
+  bool all = work.guided == guide_places;
+  if (!all)
+    add_still_guides(*show.world, show.lights, *show.sight, order.view,
+                     visitor.costs.backdrop ? RasterShows::still : RasterShows::all, work.guided++,
+                     pass.work.guides);
+  else
+    begin_reconstruction(visitor.compositor.samples(), pass.frame, *pass.denoiser, pass.work);
+  visitor.costs.guide_seconds += seconds_now() - began;
+  return all ? DrawingStep::done : DrawingStep::guide;
+}
+
 }  // namespace
 
 bool in_steps(const PictureOrder& order) { return order.still && order.keep; }
@@ -320,13 +266,15 @@ DrawingStep draw_step(Show& show, const PictureOrder& order, DrawingStep step, V
   if (step == DrawingStep::plan) {
     step = plan_picture(show, order, technique, lit, visitor);
   } else if (show.easel.given_up) {
-    remember_traced(show, lit, show.easel.work, visitor);
+    if (step != DrawingStep::guide) remember_traced(show, order, lit, show.easel.work, visitor);
     visitor.costs.given_up = true;
     step = DrawingStep::done;
   } else if (step == DrawingStep::trace) {
     step = trace_more(show, order, technique, visitor);
-  } else {
+  } else if (step == DrawingStep::draw) {
     step = paint_picture(show, order, lit, visitor);
+  } else {
+    step = find_guides(show, order, visitor);
   }
   visitor.costs.seconds += seconds_now() - began;
   return step;
@@ -365,6 +313,14 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
     show.totals.given_up++;
     return;
   }
+  if (!costs.late) smooth(times.trace, costs.trace);
+  if (order.samples_only || order.reconstruct) {
+    visitor.drawn_at = order.time;
+    visitor.order.settled = order.settled;
+    if (order.reconstruct) begin_pass(show, order, visitor);
+    show.easel.work_bytes = memory_bytes(show.easel.work) + memory_bytes(show.pass);
+    return;
+  }
   if (order.passing) {
     smooth(times.light, costs.light);
   } else {
@@ -372,7 +328,6 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
     smooth(times.tonemap, costs.tonemap);
   }
   smooth(times.drawing, costs.drawing);
-  if (!costs.late) smooth(times.trace, costs.trace);
   if (!order.still) smooth(times.whole, float(1000 * costs.seconds));
   double interval = order.time - visitor.drawn_at;
   if (interval > 0 && interval < 1) {
@@ -389,11 +344,13 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   if (!order.keep) std::swap(show.easel.work.picture, visitor.picture);
   std::swap(show.easel.work.keyframe, visitor.keyframe);
   visitor.surrounded = false;
-  if (order.leaps != visitor.around_leaps || show.time - visitor.around_at > around_kept)
+  bool settles = order.still && !order.passing;  // samples of its pixels take that memory
+  if (settles || order.leaps != visitor.around_leaps ||
+      show.time - visitor.around_at > around_kept)
     visitor.around = {};
   fit_memory(visitor);
   visitor.memory_bytes = picture_memory(visitor);
-  show.easel.work_bytes = memory_bytes(show.easel.work);
+  show.easel.work_bytes = memory_bytes(show.easel.work) + memory_bytes(show.pass);
   visitor.order = order;
   finish_backdrop(visitor);
   show.totals.drawn++;

@@ -13,6 +13,7 @@ ShowReport make_report(const Show& show) {
   report.drawing_bytes = show.easel.work_bytes + memory_bytes(show.warp);
   report.bad_samples = show.lights.bad_samples ? show.lights.bad_samples->load() : 0;
   report.samples_per_second = show.samples_per_second;
+  report.denoiser_problem = show.pass.problem;
   report.kiosks = int(show.eyes.size());
   report.audience = to_string(show.audience.state);
   report.mood = to_string(show.mind.mood);

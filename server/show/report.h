@@ -12,6 +12,8 @@ namespace wellspring {
 struct ShowTotals {
   uint64_t drawn = 0, warped = 0, unwarpable = 0;  // pictures; warps given up
   uint64_t posed = 0;         // what moves in pictures at rest, drawn by itself
+  uint64_t reconstructed = 0;  // pictures at rest, by the network
+  float reconstruction_ms = 0;  // of the last of these
   uint64_t surroundings = 0;  // drawn of quick turns
   uint64_t given_up = 0;      // pictures that nobody needed any more before they were drawn
   uint64_t pictures = 0, picture_bytes = 0, samples = 0, messages = 0, refused_messages = 0;
@@ -37,6 +39,7 @@ struct ShowReport {
   bool ready = false;
   double time = 0;
   uint64_t ticks = 0, bad_samples = 0, drawing_bytes = 0;
+  std::string denoiser_problem;  // why there is no network; empty: there is one
   float samples_per_second = 0;
   int kiosks = 0;
   std::string audience = "absent", mood = "idle";

@@ -85,6 +85,9 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   if (!problems.empty()) throw ExhibitError(std::move(problems));
   show->lights = make_lights(*show->world);
   show->sight = std::make_unique<PictureSight>(*show->world, show->lights);
+  StillPass& pass = show->pass;
+  if (show->settings.weights.empty()) pass.problem = "no folder of weights was named";
+  else pass.denoiser = load_denoiser(NetSize::small, pass.problem, show->settings.weights);
   std::vector<vec3> places = places_of(show->exhibit);
   for (const Technique* technique : {show->technique, show->still_technique})
     if (technique->prepare) technique->prepare(*show->world, places, show->lights);

@@ -33,6 +33,8 @@ struct ShowSettings {
       "path";  // while the visitor stands still: the picture becomes the reference
   TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}};
   bool background = true;     // pictures are drawn while the show goes on, and warped meanwhile
+  // Folder of the networks' weights (denoise/denoise.h); empty: pictures at rest are drawn only.
+  std::string weights;
   bool late_samples = true;   // of who walks are traced behind the picture, for the next
   float moving_clamp = 4;     // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
@@ -90,6 +92,7 @@ struct Show {
   float samples_per_second = 200000;  // measured, all cores
   ShowTotals totals;
   WarpScratch warp;  // of all visitors, whose pictures are warped one after the other
+  StillPass pass;
   Easel easel;  // reads much of the above: ends before it
 };
 

@@ -22,7 +22,8 @@ constexpr NetSize still_net = NetSize::base;
 StillRoom::StillRoom(const Show& show)
     : exhibit_(show.exhibit),
       technique_(show.still_technique),
-      transport_(show.settings.transport) {
+      transport_(show.settings.transport),
+      weights_(show.settings.weights) {
   // The moving meshes as they are now: at the show's start.
   std::vector<Mesh> moving;
   std::vector<uint32_t> moving_object;
@@ -50,7 +51,7 @@ Frame StillRoom::render(const StillOrder& order, std::string& comment) const {
   settings.transport = transport_;
   Frame frame = render_still(*technique_, *world_, lights_, view, settings);
   std::string problem;
-  auto denoiser = order.denoise ? load_denoiser(still_net, problem) : nullptr;
+  auto denoiser = order.denoise ? load_denoiser(still_net, problem, weights_) : nullptr;
   if (denoiser) {
     GuidePlanes guides = make_guides(*world_, lights_, view);
     denoiser->run({view.width, view.height, frame.color, guides.albedo, guides.normal},

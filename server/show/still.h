@@ -36,6 +36,7 @@ class StillRoom {
   const Exhibit& exhibit_;
   const Technique* technique_;
   TransportSettings transport_;
+  std::string weights_;
   std::unique_ptr<World> world_;
   Lights lights_;
   Frame render(const StillOrder& order, std::string& comment) const;

@@ -59,13 +59,15 @@ void hear_visitors(Show& show) {
       show.totals.refused_messages++;
       visitor.link->send_text(write_error(*error));
     }
-  std::erase_if(show.visitors, [](Visitor& visitor) {
+  std::erase_if(show.visitors, [&show](Visitor& visitor) {
     bool gone = visitor.left || visitor.link->closed();
     if (gone) {
       visitor.left = true;
       visitor.welcomed = false;
       visitor.link->close("bye");
-      if (visitor.at_work) return false;  // soon
+      bool in_pass = show.pass.visitor == &visitor;
+      if (in_pass) show.pass.given_up = true;
+      if (visitor.at_work || in_pass) return false;  // soon
       log::info("visitor {} left", visitor.link->id);
     }
     return gone;
@@ -239,6 +241,7 @@ bool take_finished(Show& show) {
   Easel& easel = show.easel;
   if (!easel.idle()) return false;
   if (!easel.brokers.empty()) finish_samples(show);
+  if (show.pass.at_work) take_pass(show);
   if (Visitor* posed = std::exchange(easel.posed, nullptr)) {
     finish_moving(show, *posed);
     if (posed != easel.drawn) posed->at_work = false;
@@ -252,9 +255,12 @@ bool take_finished(Show& show) {
   return true;
 }
 
+// Those who do not wait for a picture, but whose reconstruction gains by samples, are not counted.
 int waiting_for_drawings(const Show& show) {
-  return int(std::count_if(show.visitors.begin(), show.visitors.end(),
-                           [&](const Visitor& visitor) { return wants_drawing(show, visitor); }));
+  return int(std::count_if(
+      show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
+        return wants_drawing(show, visitor) && !keeps_picture(show, visitor);
+      }));
 }
 
 // Who has waited longest for what moves in its picture; null: it is not due for anybody.
@@ -298,6 +304,14 @@ void go_on_drawing(Show& show) {
   });
 }
 
+void use_cores_for_pass(Show& show) {
+  StillPass& pass = show.pass;
+  show.easel.until_moving = seconds_to_moving(show);
+  pass.at_work = true;
+  if (pass.step == StillPass::Step::finish) pass.visitor->at_work = true;
+  use_cores(show, [&show] { go_on_with_pass(show); });
+}
+
 // What moves comes first, then what is begun, then samples that were asked for, else the picture
 // that has been waited for longest.
 void use_easel(Show& show, int waiting) {
@@ -312,13 +326,15 @@ void use_easel(Show& show, int waiting) {
     use_cores(show, [&show] { trace_samples(show, show.easel); });
     return;
   }
+  if (show.pass.visitor && waiting == 0) return use_cores_for_pass(show);
   Visitor* next = nullptr;
   for (Visitor& visitor : show.visitors)
-    if (wants_drawing(show, visitor) && (!next || visitor.drawn_at < next->drawn_at))
+    if (wants_drawing(show, visitor) && (waiting == 0 || !keeps_picture(show, visitor)) &&
+        (!next || visitor.drawn_at < next->drawn_at))
       next = &visitor;
   if (!next) return;
   easel.drawn = next;
-  easel.order = order_picture(show, *next, waiting);
+  easel.order = order_picture(show, *next, std::max(waiting, 1));
   easel.surrounds = easel.order.around && !next->surrounded;
   if (!easel.surrounds) pose_world(show);
   next->at_work = true;
@@ -378,6 +394,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
     watch(show, visitor);
   }
+  watch_pass(show);
   Easel& easel = show.easel;
   if (easel.drawn && is_outdated(show, easel.order, *easel.drawn)) easel.given_up = true;
   if (show.settings.background && free) use_easel(show, waiting);
@@ -402,7 +419,7 @@ double seconds_to_next_tick(const Show& show, double now) {
 void wait_for_tick(const Show& show, double now) {
   double seconds = seconds_to_next_tick(show, now);
   const Easel& easel = show.easel;
-  bool nothing_comes = !easel.drawn && easel.brokers.empty();
+  bool nothing_comes = !easel.drawn && easel.brokers.empty() && !show.pass.at_work;
   if (nothing_comes) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   else easel.worker.wait_for(seconds);
 }

@@ -14,6 +14,7 @@
 #include "show/flow.h"
 #include "show/heading.h"
 #include "show/sound.h"
+#include "show/still_pass.h"
 #include "show/tour.h"
 #include "wire/link.h"
 #include "wire/messages.h"
@@ -80,6 +81,7 @@ struct Visitor {
   double around_at = -1e9;    // show time of its order
   uint32_t around_leaps = 0;  // of the visitor, by then
   bool surrounded = false;    // since the last picture was drawn
+  RestState rest;
   bool backdrop = false;      // the keyframe is without what moves (show/moving.h)
   MovingPicture moving;       // that, to be laid over it; empty: nothing
   double posed_at = -1e9;     // show time of its order

@@ -91,7 +91,8 @@ void save_judged(const BenchOptions& options, const std::string& name, const Fra
 
 void stand(BenchReport& report, const BenchOptions& options, const Stand& at,
            const std::string& name, double samples_a_second) {
-  std::unique_ptr<VisitMethod> method = make_visit_method(name);
+  std::unique_ptr<VisitMethod> method =
+      name == "denoised" ? make_denoised() : make_visit_method(name);
   double pixels = double(at.view.width) * double(at.view.height), owed = 0, spent = 0;
   VisitPicture shown;
   VisitMoment moment;
@@ -171,7 +172,7 @@ void bench_place(BenchReport& report, const BenchOptions& options, const Place& 
   save_judged(options, std::string(place.name) + "_truth", truth.picture, truth);
   Stand at{place.name, world, lights, view, truth, scene.max_depth};
   if (is_wanted(options, "technique")) judge_technique(report, options, at);
-  for (const char* method : {"cache", "primary"})
+  for (const char* method : {"cache", "primary", "denoised"})
     if (is_wanted(options, method))
       for (double speed : {0.5e6, 2e6, 8e6}) stand(report, options, at, method, speed);
 }

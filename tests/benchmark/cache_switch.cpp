@@ -108,7 +108,9 @@ struct Onlooker {
     cache.plan(seen, view.width * view.height / mismatch, seed, requests);
     samples.resize(requests.size());
     trace(*find_technique(scene.technique), *lit.world, lit.lights, transport, requests, samples);
-    compositor.add_samples(cache, requests, samples, cache.remember(seen, requests, samples));
+    cache.remember(seen, requests, samples);
+    compositor.follow_changes(cache);
+    compositor.add_samples(seen, requests, samples);
     if (way == Way::moving) compositor.draw(cache, view, *lit.sight, frame);
     else compositor.draw_still(cache, view, *lit.sight, frame);
   }

@@ -10,6 +10,9 @@
 #include "cache/broker.h"
 #include "cache/predict.h"
 #include "picture/compose_drawn.h"
+#include "picture/plan_still.h"
+#include "picture/reconstruct_still.h"
+#include "picture/still_guides.h"
 #include "picture/compositor.h"
 #include "show/sample_budget.h"
 
@@ -81,7 +84,11 @@ class PublishedCache : public VisitMethod {
 
 class Deferred : public VisitMethod {
  public:
-  explicit Deferred(Answers answers) : answers_(answers) {}
+  explicit Deferred(Answers answers, bool denoises = false) : answers_(answers) {
+    std::string problem;
+    if (denoises) denoiser_ = load_denoiser(NetSize::small, problem);
+    if (!problem.empty()) throw std::runtime_error(problem);
+  }
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
     if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
     last_view_ = moment.view;
@@ -102,7 +109,15 @@ class Deferred : public VisitMethod {
       cache_.predict(extrapolate(view_before_, view, predicted_frames),
                      int(predicted_share * budget), moment.seed, ahead_);
     view_before_ = view;
-    cache_.plan(view, budget - int(ahead_.size()), moment.seed, batch_.requests);
+    bool learns = denoiser_ && !passing;
+    compositor_.set_reconstructed(learns);
+    double kept = learns ? mean_count(compositor_.samples()) : 0;
+    bool spread = kept >= spread_from;
+    int tested = spread ? int(tested_share * budget) : budget - int(ahead_.size());
+    cache_.plan(view, tested, moment.seed, batch_.requests);
+    if (!learns) asked_ = 0, passed_ = 0;
+    else if (spread) plan_still(view, asked_, budget - tested, still_seed, batch_.requests);
+    if (spread) asked_ += uint64_t(budget - tested);
     batch_.requests.insert(batch_.requests.end(), ahead_.begin(), ahead_.end());
     if (answers_ == Answers::next_frame) {
       broker_.ask(view, {moment.technique, moment.transport}, batch_.requests);
@@ -115,11 +130,13 @@ class Deferred : public VisitMethod {
       }
     } else {
       batch_.trace(moment);
-      compositor_.add_samples(cache_, batch_.requests, batch_.samples,
-                              cache_.remember(view, batch_.requests, batch_.samples));
+      cache_.remember(view, batch_.requests, batch_.samples);
+      compositor_.follow_changes(cache_);
+      if (!passing) compositor_.add_samples(view, batch_.requests, batch_.samples);
     }
     if (passing) compositor_.draw(cache_, moment.view, sight(moment), shown.frame);
-    else compositor_.draw_still(cache_, moment.view, sight(moment), shown.frame);
+    else if (passed_ == 0) compositor_.draw_still(cache_, moment.view, sight(moment), shown.frame);
+    if (learns && !reconstruct(moment, shown.frame) && passed_ > 0) cache_.end_frame();
     shown.stats = cache_.stats();
     shown.empty = shown.stats.empty;
     if (answers_ != Answers::waited_for) return;
@@ -129,6 +146,25 @@ class Deferred : public VisitMethod {
 
  private:
   static constexpr int still_after = 15;  // frames
+  static constexpr int first_pass = 29;   // likewise; then at so many times as many samples:
+  static constexpr double growth = 1.3;
+  // As show/picture.cpp spreads samples.
+  static constexpr double tested_share = 0.0625, spread_from = 0.8;
+  static constexpr uint64_t still_seed = 17;
+  bool reconstruct(const VisitMoment& moment, Frame& frame) {
+    double kept = mean_count(compositor_.samples());
+    if (moment.frame - moved_ < first_pass || kept < growth * passed_) return false;
+    passed_ = kept;
+    compositor_.draw_still(cache_, moment.view, sight(moment), frame);
+    for (int place = 0; place < guide_places; place++)
+      add_still_guides(*moment.world, *moment.lights, sight(moment), moment.view, RasterShows::all,
+                       place, work_.guides);
+    begin_reconstruction(compositor_.samples(), frame, *denoiser_, work_);
+    while (denoiser_->advance(1)) {
+    }
+    finish_reconstruction(compositor_.samples(), *denoiser_, work_, frame);
+    return true;
+  }
   const PictureSight& sight(const VisitMoment& moment) {
     if (!sight_ || sees_ != moment.lights->tables)
       sight_ = std::make_unique<PictureSight>(*moment.world, *moment.lights);
@@ -136,6 +172,10 @@ class Deferred : public VisitMethod {
     return *sight_;
   }
   Answers answers_;
+  std::unique_ptr<Denoiser> denoiser_;
+  StillReconstruction work_;
+  uint64_t asked_ = 0;  // samples spread over the view at rest
+  double passed_ = 0;   // samples a pixel in the last pass
   View view_before_;
   std::vector<Request> ahead_;
   std::unique_ptr<PictureSight> sight_;
@@ -306,6 +346,9 @@ std::unique_ptr<VisitMethod> make_visit_method(const std::string& name) {
 std::unique_ptr<VisitMethod> make_published_cache() { return std::make_unique<PublishedCache>(); }
 std::unique_ptr<VisitMethod> make_deferred(Answers answers) {
   return std::make_unique<Deferred>(answers);
+}
+std::unique_ptr<VisitMethod> make_denoised() {
+  return std::make_unique<Deferred>(Answers::at_once, true);
 }
 std::unique_ptr<VisitMethod> make_resolution_drop() { return std::make_unique<ResolutionDrop>(); }
 std::unique_ptr<VisitMethod> make_hold() { return std::make_unique<Hold>(); }

@@ -56,6 +56,9 @@ std::unique_ptr<VisitMethod> make_published_cache();
 // come through a broker for the next; or the picture waits for them and is shown a frame late.
 enum class Answers { at_once, next_frame, waited_for };
 std::unique_ptr<VisitMethod> make_deferred(Answers answers);
+// That pipeline, at rest with learned reconstruction. Throws std::runtime_error where there are no
+// weights.
+std::unique_ptr<VisitMethod> make_denoised();
 // The whole picture at the resolution the budget allows, bilinear; while nothing changes, samples
 // add up in pixels of their own.
 std::unique_ptr<VisitMethod> make_resolution_drop();

@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
       {"light.cycles", bench_light_cycles}, {"light.photons", bench_light_photons}};
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only,
-                 "one part: stream, cache, denoise, light (or one of its own: light.error ...), avatar");
+                 "one part: stream, cache, show, denoise, avatar, light (or one of its own: "
+                 "light.error ...)");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
   app.add_option("--make-traces", traces,
                  "instead: write the visits' camera traces into this folder")

@@ -60,7 +60,8 @@ test('a still picture, and its wrong parameters', async () => {
   assert.ok(bytes.equals(again), 'the same question gives the same picture');
   const comment = (jpeg) => jpeg.subarray(6, 4 + jpeg.readUInt16BE(4)).toString();
   assert.equal(bytes.readUInt16BE(2), 0xfffe, 'a comment comes first');
-  assert.match(comment(bytes), /^4 samples a pixel by path, (denoised by the network base|not denoised)$/);
+  assert.match(comment(bytes),
+      /^4 samples a pixel by path, (denoised by the network base|not denoised)$/);
   const plain = Buffer.from(await (await get(
       `${path}?viewpoint=hall&width=96&height=64&spp=4&denoise=0`)).arrayBuffer());
   assert.match(comment(plain), /^4 samples a pixel by path, not denoised$/);

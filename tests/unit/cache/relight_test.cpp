@@ -146,7 +146,9 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
     cache.plan(seen, view.width * view.height / mismatch, uint64_t(i + 100), requests);
     samples.resize(requests.size());
     trace(*find_technique("path"), *box.world, box.lights, box.transport, requests, samples);
-    compositor.add_samples(cache, requests, samples, cache.remember(seen, requests, samples));
+    cache.remember(seen, requests, samples);
+    compositor.follow_changes(cache);
+    compositor.add_samples(seen, requests, samples);
     if (shown == Shown::moving) compositor.draw(cache, view, *box.sight, frame);
     else compositor.draw_still(cache, view, *box.sight, frame);
   }

@@ -22,7 +22,9 @@ struct Visit {
     begin(view);
     cache.plan(view, budget, tick++, requests);
     trace_room(room, requests, samples);
-    compositor.add_samples(cache, requests, samples, cache.remember(view, requests, samples));
+    cache.remember(view, requests, samples);
+    compositor.follow_changes(cache);
+    compositor.add_samples(view, requests, samples);
     show(view);
   }
   void begin(const View& view) {

@@ -52,7 +52,8 @@ TEST(Guides, TellColourOfBluntMetal) {
 
 TEST(Guides, FollowMirrorsToWhatTheyShow) {
   Scene scene = with_wall(metal(vec3(0.9f), 0));
-  add_quad(scene, add_material(scene, diffuse(green)), {-9, -9, 5}, {0, 18, 0}, {18, 0, 0}, "behind");
+  add_quad(scene, add_material(scene, diffuse(green)), {-9, -9, 5}, {0, 18, 0}, {18, 0, 0},
+           "behind");
   Guide guide = guide_of(scene, {0, 0, 0}, {0.1f, 0, -1});
   expect_near(guide.albedo, 0.9f * green, 0.05f);
   expect_near(guide.normal, {0, 0, -1}, 1e-3f);
@@ -62,8 +63,9 @@ TEST(Guides, LookThroughPanesAndSolidGlass) {
   for (float thickness : {0.0f, 1.0f}) {
     Scene scene = with_wall(diffuse(red));
     Material clear = glass(1.5f, 0, thickness);
-    if (thickness > 0) add_mesh(scene, box_mesh(add_material(scene, clear), {4, 4, 1}), "block", at({0, 0, -1.5f}));
-    else add_quad(scene, add_material(scene, clear), {-4, -4, -1}, {8, 0, 0}, {0, 8, 0}, "pane");
+    int material = add_material(scene, clear);
+    if (thickness > 0) add_mesh(scene, box_mesh(material, {4, 4, 1}), "block", at({0, 0, -1.5f}));
+    else add_quad(scene, material, {-4, -4, -1}, {8, 0, 0}, {0, 8, 0}, "pane");
     Guide guide = guide_of(scene, {0, 0, 0}, {0.1f, 0.05f, -1});
     expect_near(guide.albedo, red, 0.12f);
     expect_near(guide.normal, {0, 0, 1}, 1e-2f);
@@ -72,7 +74,8 @@ TEST(Guides, LookThroughPanesAndSolidGlass) {
 
 TEST(Guides, MirrorsThatFaceEachOtherEnd) {
   Scene scene = with_wall(metal(vec3(0.95f), 0));
-  add_quad(scene, add_material(scene, metal(vec3(0.95f), 0)), {-9, -9, 3}, {0, 18, 0}, {18, 0, 0}, "other");
+  add_quad(scene, add_material(scene, metal(vec3(0.95f), 0)), {-9, -9, 3}, {0, 18, 0}, {18, 0, 0},
+           "other");
   Guide guide = guide_of(scene, {0, 0, 0}, {0, 0, -1});
   EXPECT_TRUE(is_finite(guide.albedo));
   EXPECT_GT(guide.albedo.x, 0.5f);
@@ -93,7 +96,8 @@ TEST(Guides, LampsAndSkyCountWithTheirColourAtMostWhite) {
 TEST(Guides, OfAPictureAreAntialiased) {
   Scene scene = empty_scene();
   add_quad(scene, add_material(scene, diffuse(red)), {-9, -9, -3}, {9, 0, 0}, {0, 18, 0}, "left");
-  add_quad(scene, add_material(scene, diffuse(green)), {0, -9, -3}, {9, 0, 0}, {0, 18, 0}, "right");
+  add_quad(scene, add_material(scene, diffuse(green)), {0, -9, -3}, {9, 0, 0}, {0, 18, 0},
+           "right");
   World world(scene);
   world.commit();
   Lights lights = make_lights(world);
@@ -110,6 +114,7 @@ TEST(Guides, AreFiniteOnBadTriangles) {
   Mesh broken;
   broken.material = 0;
   broken.positions = {{-1, -1, -2}, {-1, -1, -2}, {1, 1, -2}, {NAN, 0, -2}};
+  broken.normals.assign(4, vec3(0, 0, 1));
   broken.triangles = {{0, 1, 2}, {0, 2, 3}};
   add_mesh(scene, broken, "broken");
   World world(scene);

@@ -275,7 +275,7 @@ TEST(Drawn, StartingAndStoppingLosesNoPoint) {
   visit.step(stage, view(0), 0, PictureOf::still);
   EXPECT_GT(visit.cache.stats().reprojected, 0.98f * rested.reprojected);
   EXPECT_LT(visit.memory_bytes(), at_rest - 5 * pixels);  // what keeps samples comes later
-  for (int i = 0; i < 2; i++) visit.step(stage, view(0), 0, PictureOf::still);
+  for (int i = 0; i < 2; i++) visit.step(stage, view(0), pixels / 8, PictureOf::still);
   EXPECT_NEAR(double(visit.memory_bytes()), double(at_rest), 1 << 15);
   EXPECT_NEAR(double(at_rest - moving), 12.0 * pixels,
               1 << 15);  // means over pictures and over samples

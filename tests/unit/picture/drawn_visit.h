@@ -105,7 +105,9 @@ struct DrawnVisit {
     cache.plan(light, budget, tick++, requests);
     samples.resize(requests.size());
     trace(*find_technique("path"), *stage.world, stage.lights, {}, requests, samples);
-    compositor.add_samples(cache, requests, samples, cache.remember(light, requests, samples));
+    cache.remember(light, requests, samples);
+    compositor.follow_changes(cache);
+    if (kind == PictureOf::still) compositor.add_samples(light, requests, samples);
     if (kind == PictureOf::still) compositor.draw_still(cache, view, *stage.sight, frame);
     else compositor.draw(cache, view, *stage.sight, frame);
   }

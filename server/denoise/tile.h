@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts of a network's features, as tiles of it read and leave them (denoise/unet.h): planes of
+// `block` channels side by side, each rows of pixels.
+#pragma once
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace wellspring {
+
+inline int round_up(int value, int step) { return (value + step - 1) / step * step; }
+
+// 32-bit floats, or the upper halves of them (bfloat16) where the processor multiplies these.
+struct Format {
+  int block = 8;  // channels side by side in memory
+  bool bfloat16 = false;
+  size_t bytes() const { return bfloat16 ? 2 : 4; }
+};
+
+inline Format best_format() {
+  Format format;
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw")) format.block = 16;
+  format.bfloat16 = format.block == 16 && __builtin_cpu_supports("avx512bf16");
+#endif
+  return format;
+}
+
+inline float read_element(const std::byte* from, const Format& format) {
+  if (!format.bfloat16) {
+    float value;
+    std::memcpy(&value, from, 4);
+    return value;
+  }
+  uint16_t upper;
+  std::memcpy(&upper, from, 2);
+  return std::bit_cast<float>(uint32_t(upper) << 16);
+}
+
+inline void write_element(float value, const Format& format, std::byte* to) {
+  if (!format.bfloat16) {
+    std::memcpy(to, &value, 4);
+    return;
+  }
+  uint32_t bits = std::bit_cast<uint32_t>(value);
+  auto upper = uint16_t((bits + 0x7fff + ((bits >> 16) & 1)) >> 16);  // to nearest, even
+  std::memcpy(to, &upper, 2);
+}
+
+// A part of a level, which may reach beyond it.
+struct Part {
+  int left = 0, top = 0, width = 0, height = 0;
+};
+
+// Copies rows of pixels that lie within the level, zeros around.
+template <class CopyPixels>
+void copy_part(const Part& part, int width, int height, size_t pixel_bytes, std::byte* to,
+               const CopyPixels& copy) {
+  int first = std::clamp(-part.left, 0, part.width),
+      last = std::clamp(width - part.left, first, part.width);
+  size_t row_bytes = size_t(part.width) * pixel_bytes;
+  for (int y = 0; y < part.height; y++, to += row_bytes) {
+    int row = part.top + y;
+    if (row < 0 || row >= height) {
+      std::memset(to, 0, row_bytes);
+      continue;
+    }
+    std::memset(to, 0, size_t(first) * pixel_bytes);
+    if (last > first)
+      copy(row, part.left + first, last - first, to + size_t(first) * pixel_bytes);
+    std::memset(to + size_t(last) * pixel_bytes, 0, size_t(part.width - last) * pixel_bytes);
+  }
+}
+
+// What a layer leaves beyond the level's border is no feature: the next one reads zeros there.
+inline void clear_beyond(const Part& part, int width, int height, int channels,
+                         const Format& format, std::byte* data) {
+  int first = std::clamp(-part.left, 0, part.width),
+      last = std::clamp(width - part.left, first, part.width);
+  int top = std::clamp(-part.top, 0, part.height),
+      bottom = std::clamp(height - part.top, top, part.height);
+  if (first == 0 && last == part.width && top == 0 && bottom == part.height) return;
+  size_t pixel = size_t(format.block) * format.bytes(), row = size_t(part.width) * pixel;
+  for (int block = 0; block < channels / format.block; block++)
+    for (int y = 0; y < part.height; y++, data += row) {
+      if (y < top || y >= bottom) {
+        std::memset(data, 0, row);
+        continue;
+      }
+      std::memset(data, 0, size_t(first) * pixel);
+      std::memset(data + size_t(last) * pixel, 0, size_t(part.width - last) * pixel);
+    }
+}
+
+// A tile's side of about `wanted`, even, so that whole ones cover the extent.
+inline int tile_extent(int extent, int wanted) {
+  int count = std::max(1, (extent + wanted / 2) / wanted);
+  return round_up((extent + count - 1) / count, 2);
+}
+
+}  // namespace wellspring
