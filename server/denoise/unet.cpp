@@ -25,7 +25,7 @@ constexpr int levels = 5;      // full resolution and four halvings
 constexpr int alignment = 16;  // sizes are padded to multiples of it, so that all halvings are even
 // Pixels a side of a tile of each level, about: larger ones repeat less, smaller ones fit caches
 // and leave no core without work.
-constexpr std::array<int, levels> tile_size = {128, 96, 64, 48, 32};
+constexpr std::array<int, levels> tile_size = {192, 128, 96, 64, 48};
 
 dnnl::memory::data_type type_of(const Format& format) {
   return format.bfloat16 ? dnnl::memory::data_type::bf16 : dnnl::memory::data_type::f32;
@@ -411,7 +411,7 @@ bool UNet::advance(double seconds, const std::atomic<bool>* stop) {
   while (net.stage < net.stages.size()) {
     const Stage& stage = net.stages[net.stage];
     int all = stage.columns * stage.rows;
-    int some = std::min(2 * oneapi::tbb::this_task_arena::max_concurrency(), all - net.next_tile);
+    int some = std::min(oneapi::tbb::this_task_arena::max_concurrency(), all - net.next_tile);
     parallel_each(some, [&](int i) { net.compute_tile(stage, net.next_tile + i); });
     net.next_tile += some;
     if (net.next_tile == all) net.stage++, net.next_tile = 0;

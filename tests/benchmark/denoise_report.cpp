@@ -33,10 +33,9 @@ double measure_peak() {
     parallel_each(cores, [&](int core) {
       Vector sum[chains], factor = Vector{} + 0.999f, term = Vector{} + float(core + 1);
       for (Vector& one : sum) one = term;
-      for (int i = 0; i < steps; i++) {
-        for (Vector& one : sum) one = one * factor + term;
-        asm volatile("" : "+x"(sum[0]));
-      }
+      for (int i = 0; i < steps; i++)
+#pragma GCC unroll 12
+        for (int k = 0; k < chains; k++) sum[k] = sum[k] * factor + term;
       for (Vector& one : sum) keep[size_t(core)] += one[0];
     });
     double operations = 2.0 * 8 * chains * steps * cores;
