@@ -81,7 +81,8 @@ float share_at(const std::vector<float>& shares, int columns, int rows, int x, i
 }  // namespace
 
 size_t memory_bytes(const StillReconstruction& work) {
-  return bytes_of(work.guides.albedo, work.guides.normal, work.color, work.shares);
+  return bytes_of(work.guides.albedo, work.guides.normal, work.followed, work.color,
+                  work.shares);
 }
 
 double mean_count(const StillSamples& samples) {

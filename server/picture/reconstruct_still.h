@@ -21,6 +21,7 @@ namespace wellspring {
 struct StillReconstruction {
   int width = 0, height = 0;  // of the picture
   GuidePlanes guides;  // of its pixels
+  std::vector<uint8_t> followed;  // picture/still_guides.h
   std::vector<vec3> color;    // of its pixels: the input, then what was found
   std::vector<float> shares;  // of the mean, for squares of pixels
 };

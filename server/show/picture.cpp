@@ -248,7 +248,7 @@ DrawingStep find_guides(Show& show, const PictureOrder& order, Visitor& visitor)
   if (!all)
     add_still_guides(*show.world, show.lights, *show.sight, order.view,
                      visitor.costs.backdrop ? RasterShows::still : RasterShows::all, work.guided++,
-                     pass.work.guides);
+                     pass.work.guides, pass.work.followed);
   else
     begin_reconstruction(visitor.compositor.samples(), pass.frame, *pass.denoiser, pass.work);
   visitor.costs.guide_seconds += seconds_now() - began;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/clock.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "frame/tonemap.h"
 #include "show/moving.h"
@@ -55,6 +56,9 @@ void begin_pass(Show& show, const PictureOrder& order, Visitor& visitor) {
   pass.step = StillPass::Step::compute;
   pass.given_up = false;
   pass.seconds = visitor.costs.guide_seconds;
+  log::debug("visitor {}: reconstruction begins at {:.2f} samples a pixel, drawn and guided in "
+             "{:.0f} ms",
+             visitor.link->id, visitor.rest.samples, 1000 * pass.seconds);
   visitor.rest.passed_samples = visitor.rest.samples;
 }
 
@@ -93,6 +97,7 @@ void take_pass(Show& show) {
   rest.reconstructed = true;
   rest.passed_at = show.time;
   rest.passed_seconds = pass.seconds;
+  log::debug("visitor {}: reconstruction took {:.0f} ms", visitor.link->id, 1000 * pass.seconds);
   show.totals.reconstructed++;
   show.totals.reconstruction_ms = float(1000 * pass.seconds);
   pass.visitor = nullptr;

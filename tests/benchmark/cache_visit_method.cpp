@@ -158,7 +158,7 @@ class Deferred : public VisitMethod {
     compositor_.draw_still(cache_, moment.view, sight(moment), frame);
     for (int place = 0; place < guide_places; place++)
       add_still_guides(*moment.world, *moment.lights, sight(moment), moment.view, RasterShows::all,
-                       place, work_.guides);
+                       place, work_.guides, work_.followed);
     begin_reconstruction(compositor_.samples(), frame, *denoiser_, work_);
     while (denoiser_->advance(1)) {
     }

@@ -37,9 +37,11 @@ TEST(StillGuides, AgreeWithThoseOfRays) {
   Lights lights = make_lights(world);
   PictureSight sight(world, lights);
   View view = make_view_towards(scene, {0, 0.5, 4}, {0, -0.2, 0}, {0, 1, 0}, 1.0f, 160, 90);
+  std::vector<uint8_t> followed;
   GuidePlanes drawn, traced = make_guides(world, lights, view, 16);
   for (int place = 0; place < guide_places; place++)
-    add_still_guides(world, lights, sight, view, RasterShows::all, place, drawn);
+    add_still_guides(world, lights, sight, view, RasterShows::all, place, drawn,
+                     followed);
   ASSERT_EQ(drawn.albedo.size(), traced.albedo.size());
   double albedo = 0, normal = 0;
   int far = 0;
@@ -68,10 +70,11 @@ TEST(StillGuides, OfWhatStandsStillLeaveOutWhatMoves) {
   Lights lights = make_lights(world);
   PictureSight sight(world, lights);
   View view = make_view_towards(scene, {0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 1.0f, 65, 65);
+  std::vector<uint8_t> followed, others;
   GuidePlanes all, still;
   for (int place = 0; place < guide_places; place++) {
-    add_still_guides(world, lights, sight, view, RasterShows::all, place, all);
-    add_still_guides(world, lights, sight, view, RasterShows::still, place, still);
+    add_still_guides(world, lights, sight, view, RasterShows::all, place, all, followed);
+    add_still_guides(world, lights, sight, view, RasterShows::still, place, still, others);
   }
   const size_t middle = 32 * 65 + 32;
   EXPECT_NEAR(all.albedo[middle].x, 0.8f, 0.05f);
