@@ -25,7 +25,6 @@ constexpr int largest_side = 16384;
 // Times the pixels of a picture: what lies around is no more to remember.
 constexpr size_t most_around = 2;
 constexpr int still_project_period = 8;  // frames
-constexpr int enough_moving = 64;  // points on what moves, that it can be drawn by these alone
 constexpr uint8_t moving_mean = 48, still_mean = 255;  // samples a point's mean looks back on
 constexpr uint8_t moving_specular = 4;                 // of what moves with the view
 
@@ -137,15 +136,10 @@ void RenderCache::Impl::notice_paint(const World& world) {
 
 void RenderCache::move_points(const World& world) {
   Impl& c = *impl_;
-  follow_moving(world);
-  c.notice_paint(world);
-  age_points(c.points, c.new_points);
-}
-
-void RenderCache::follow_moving(const World& world) {
-  Impl& c = *impl_;
   c.image_stale |= !c.points.anchors.empty();
   move_anchored_points(c.points, world);
+  c.notice_paint(world);
+  age_points(c.points, c.new_points);
 }
 
 void RenderCache::project(const View& view) {
@@ -252,19 +246,6 @@ void RenderCache::end_frame() {
   Impl& c = *impl_;
   std::fill(c.image.renewed.begin(), c.image.renewed.end(), uint8_t(0));
   c.work->priority = std::exchange(c.image.priority, {});
-}
-
-bool RenderCache::knows_moving() const {
-  const PointCache& points = impl_->points;
-  int shown = 0;
-  for (const Anchor& anchor : points.anchors)
-    if (points.flags[anchor.point] & point_visible && ++shown >= enough_moving) return true;
-  return false;
-}
-
-bool RenderCache::follows_moving(const Request& request) const {
-  const PointCache& points = impl_->points;
-  return request.resample < points.flags.size() && points.flags[request.resample] & point_moving;
 }
 
 void RenderCache::relight(const Changes& changes) {

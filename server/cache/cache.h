@@ -62,8 +62,6 @@ class RenderCache {
   // Points on moving meshes follow their triangles, and are forgotten where these were repainted;
   // ages advance. Call once a frame after World::commit().
   void move_points(const World& world);
-  // Only the first of that: between frames.
-  void follow_moving(const World& world);
   // Where every point falls in `view`; depth cull. Views of less than the room there is, such as
   // light_view()'s, cost no memory and no point. Those of up to twice as many pixels have a larger
   // image, and larger ones room for more points.
@@ -85,11 +83,6 @@ class RenderCache {
   // The picture as published: of points alone, holes filled from 3x3 pixels (cache/reconstruct.h).
   // Projects `view` if it is not projected. Pixels without points around stay as they were.
   void reconstruct(const View& view, Frame& frame);
-
-  // Whether enough points that show lie on what moves.
-  bool knows_moving() const;
-  // Whether it asks for exactly a point on what moves, which is elsewhere soon.
-  bool follows_moving(const Request& request) const;
   // Answers come from the reference from now on, or no longer (else that they differ from earlier
   // ones might be taken for a change of the light). Its light is not expected to be that of others.
   void set_reference(bool on);

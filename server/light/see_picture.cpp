@@ -10,100 +10,12 @@
 #include "base/parallel.h"
 #include "light/facet.h"
 #include "light/first_surface.h"
+#include "light/gloss_albedo.h"
+#include "light/see_facet.h"
 #include "light/sight_material.h"
-#include "world/texture_pyramid.h"
+#include "light/skin_light.h"
 
 namespace wellspring {
-namespace {
-
-template <class T>
-T mix3(const T& a, const T& b, const T& c, vec3 w) {
-  return a * w.x + b * w.y + c * w.z;
-}
-
-// Pictures with their smaller selves, of all that a scene's reflectance is made of.
-struct Pictures {
-  const Scene* scene = nullptr;
-  std::vector<TexturePyramid> pyramids;  // of each image; empty where none is needed
-};
-
-Pictures make_pictures(const Scene& scene) {
-  Pictures pictures{&scene, std::vector<TexturePyramid>(scene.images.size())};
-  std::vector<uint8_t> used(scene.images.size(), 0);
-  for (const Material& m : scene.materials)
-    for (const TextureRef* r :
-         {&m.base_color_texture, &m.metallic_roughness_texture, &m.emission_texture})
-      if (r->texture >= 0 && scene.textures[size_t(r->texture)].image >= 0)
-        used[size_t(scene.textures[size_t(r->texture)].image)] = 1;
-  parallel_for(int(used.size()), [&](int i) {
-    if (used[size_t(i)]) pictures.pyramids[size_t(i)] = make_pyramid(scene.images[size_t(i)]);
-  });
-  return pictures;
-}
-
-// A pixel's width in metres on the surface it sees: the root of its area there. `direction` leads
-// to it at depth 1.
-float pixel_width(const Facet& f, float depth, vec3 direction, float pixel_angle) {
-  float length = std::sqrt(dot(direction, direction));
-  float cosine = std::abs(dot(f.face, direction)) / length;
-  return depth * length * pixel_angle / std::sqrt(std::max(cosine, 0.02f));
-}
-
-vec3 read_picture(const Pictures& pictures, const FacetPicture& place, const TextureRef& reference,
-                  vec2 barycentric, float pixel) {
-  const Texture& texture = pictures.scene->textures[size_t(reference.texture)];
-  if (texture.image < 0) return vec3(1);
-  vec2 uv = place.corner + place.edge1 * barycentric.x + place.edge2 * barycentric.y;
-  if (!place.known) uv = vec2(reference.uv_transform * vec3(0, 0, 1));
-  size_t image = size_t(texture.image);
-  return eval_pyramid(pictures.scene->images[image], pictures.pyramids[image], texture, uv,
-                      pixel * place.texels);
-}
-
-bool shines(const Facet& f) {
-  return (f.front || f.material->double_sided) && f.material->emission != vec3(0);
-}
-
-// `metal`: its material's; `pixel`: its width on the surface, metres.
-Seen see_facet(const Pictures& pictures, const World& world, const Facet& f, KeptMetal metal,
-               const Hit& hit, float pixel) {
-  const Mesh& mesh = *f.placed->mesh;
-  const Material& m = *f.material;
-  vec2 at = hit.barycentric;
-  vec3 weight(1 - at.x - at.y, at.x, at.y);
-  Seen seen;
-  seen.distance = hit.t;
-  seen.object = f.placed->object;
-  vec3 normal = f.one_normal ? f.normal[0] : mix3(f.normal[0], f.normal[1], f.normal[2], weight);
-  float length2 = dot(normal, normal);
-  normal = length2 > 1e-25f ? normal / std::sqrt(length2) : f.face;
-  seen.normal = f.front ? normal : -normal;
-  seen.scatters = !m.unlit;
-  vec3 base = vec3(m.base_color);
-  if (m.base_color_texture.texture >= 0)
-    base *= read_picture(pictures, f.base, m.base_color_texture, at, pixel);
-  if (!mesh.colors.empty())
-    base *= vec3(
-        mix3(mesh.colors[f.corner.x], mesh.colors[f.corner.y], mesh.colors[f.corner.z], weight));
-  float metallic = m.metallic;
-  if (m.metallic_roughness_texture.texture >= 0 && m.metallic > 0)
-    metallic *= read_picture(pictures, f.shine, m.metallic_roughness_texture, at, pixel).z;
-  if (seen.scatters) seen.albedo = kept_albedo(base, metallic, metal);
-  if (m.unlit || shines(f)) {
-    Surface surface;  // what surface_emission() reads
-    surface.front = f.front;
-    surface.base_color = glm::max(base, vec3(0));
-    surface.emission = shines(f) ? m.emission : vec3(0);
-    if (shines(f) && m.emission_texture.texture >= 0)
-      surface.emission *= read_picture(pictures, place_picture(world, f, m.emission_texture),
-                                       m.emission_texture, at, pixel);
-    seen.glow = surface_emission(surface, m);
-  }
-  return seen;
-}
-
-}  // namespace
-
 struct PictureSight::Impl {
   const World& world;
   Lights lights;
@@ -358,6 +270,36 @@ uint64_t SightRun::polished() const {
     for (int i = begin; i < r.end[p]; i++) found |= uint64_t(1) << i;
   }
   return found;
+}
+
+uint64_t SightRun::light(const SkinLight& skin, const RunSurface& surface, RunSkin& to) const {
+  if (seen_) return 0;
+  uint64_t moving = 0;
+  constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+  const RasterRun& r = *impl_->run;
+  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
+    if (r.instance[begin] == RasterRun::nothing) continue;
+    const Facet& f = impl_->facet(begin);
+    if (!f.placed->moving) continue;
+    SkinTriangle light = find_skin(skin, r.instance[begin], f.corner, !f.front);
+    for (int i = begin; i < r.end[p]; i++) moving |= uint64_t(1) << i;
+    for (int i = begin; i < r.end[p]; i += lane_count) {
+      Lanes u = load_lanes(r.u + i), v = load_lanes(r.v + i);
+      store_lanes(to.red + i, light.corner.x + light.edge1.x * u + light.edge2.x * v);
+      store_lanes(to.green + i, light.corner.y + light.edge1.y * u + light.edge2.y * v);
+      store_lanes(to.blue + i, light.corner.z + light.edge1.z * u + light.edge2.z * v);
+      vec3 way = -impl_->direction(i);
+      const vec3 step = impl_->view.right * impl_->pixel_angle;
+      Lanes x = way.x - step.x * lane, y = way.y - step.y * lane, z = way.z - step.z * lane;
+      Lanes nx = load_lanes(surface.nx + i), ny = load_lanes(surface.ny + i),
+            nz = load_lanes(surface.nz + i);
+      Lanes lengths = (nx * nx + ny * ny + nz * nz) * (x * x + y * y + z * z);
+      Lanes cosine = (nx * x + ny * y + nz * z) / lanes_sqrt(lanes_max(lengths, all_lanes(1e-30f)));
+      cosine = lanes_min(lanes_max(cosine, all_lanes(0)), all_lanes(1));
+      store_lanes(to.gloss + i, gloss_albedo(*f.material, cosine));
+    }
+  }
+  return moving;
 }
 
 Seen SightRun::see(int i) const { return seen_ ? seen_[i] : impl_->see(i); }

@@ -21,6 +21,13 @@ struct RunSurface {
   float nx[most], ny[most], nz[most];               // normal, towards the eye; not unit
 };
 
+// Light that a run's pixels reflect of what moves, and how: radiance is
+// light * (reflectance * (1 - gloss) + gloss).
+struct RunSkin {
+  float red[RunSurface::most], green[RunSurface::most], blue[RunSurface::most];
+  float gloss[RunSurface::most];  // albedo of the dielectric's reflection, 0 to 1
+};
+
 // Up to 64 pixels of a row, from (x, y) to the right. As light/see.h answers for rays through the
 // pixels' sampling places, but that normals are those of the mesh, without normal maps, pictures
 // are averaged over the pixel, and clear panes tint a part of the picture alike.
@@ -37,6 +44,9 @@ class SightRun {
   // Pixels that may see what is polished: their guides are those of what it shows
   // (light/guides.h).
   uint64_t polished() const;
+  // Of its pixels that show what moves, as `surface` describes it (light/skin_light.h); of others
+  // anything. Returns those, a bit each; none where rays have seen them.
+  uint64_t light(const struct SkinLight& skin, const RunSurface& surface, RunSkin& to) const;
   // Everything of pixel i; costs as much as a dozen descriptions.
   Seen see(int i) const;
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "picture/cell_rows.h"
 #include "picture/drawn_planes.h"
 #include "picture/drawn_run.h"
 #include "picture/nearby_light.h"
@@ -12,23 +13,6 @@
 
 namespace wellspring {
 namespace {
-
-// Pixels are lit in groups that lie between two columns of cell centres: four light pixels, which
-// are packed together, and four cells around. Groups begin half a group before a tile. `Scale`:
-// pixels a side of one of the light; where that is 1 two groups lie side by side in the lanes.
-template <int Scale>
-constexpr int group = cell_size * Scale;
-template <int Scale>
-constexpr int together = lanes / group<Scale>;
-static_assert(cell_size == packed_four && together<light_scale> == 1 && together<1> == 2);
-
-// Eight lanes of a run's array from lane `i` on, which may begin before it and end behind it.
-f8 lanes_at(const float* from, int i) {
-  if (i >= 0) return load<f8>(from + i);  // arrays may be read up to eight beyond their end
-  f8 v{};
-  std::memcpy(reinterpret_cast<float*>(&v) - i, from, size_t(lanes + i) * sizeof(float));
-  return v;
-}
 
 template <int Scale>
 constexpr f8 light_columns = Scale == 1 ? f8{0, 1, 2, 3, 4, 5, 6, 7} : f8{0, 0, 1, 1, 2, 2, 3, 3};
@@ -136,66 +120,6 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
             keep(same, under(light.b, d.albedo.b, theirs.b))};
 }
 
-// What the lanes of two groups side by side have to the same side of them.
-struct WideCell : CellLightOf<f8, u8> {
-  f8 albedo[3];
-};
-void spread_cells(const PaintedCell& left, const PaintedCell& right, WideCell& to) {
-  constexpr size_t count = sizeof(PaintedCell) / sizeof(float);
-  static_assert(sizeof(WideCell) == count * sizeof(f8));
-  float a[count], b[count];
-  std::memcpy(a, &left, sizeof a), std::memcpy(b, &right, sizeof b);
-  f8 both[count];
-  for (size_t i = 0; i < count; i++) both[i] = f8{a[i], a[i], a[i], a[i], b[i], b[i], b[i], b[i]};
-  std::memcpy(static_cast<void*>(&to), both, sizeof both);
-}
-
-// Two rows of cells around a tile's blocks. Where groups lie side by side, each as the next but one
-// needs it, too.
-template <int Scale>
-struct CellRows {
-  using Cell = std::conditional_t<together<Scale> == 1, PaintedCell, WideCell>;
-  static constexpr int most = RasterRun::most / cell_size + 3;
-  uint64_t picture = 0;
-  int first = 0, row = 0, count = 0;
-  int above = 0;  // which of the rows
-  Cell cell[2][most];
-  i8 flat[most];  // lanes of each group and those beside it that lie between cells in one plane
-
-  const Cell& at(int r, int k) const { return cell[above ^ r][k]; }
-  void read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y, int columns);
-
- private:
-  void read_row(const Cells& cells, int y, Cell* to) const;
-};
-
-template <int Scale>
-void CellRows<Scale>::read_row(const Cells& cells, int y, Cell* to) const {
-  PaintedCell before{}, here;
-  for (int k = 0; k < count; k++, before = here) {
-    read_cell(cells, first + k, y, here);
-    size_t i = nearest_cell(cells, first + k, y);
-    for (size_t n = 0; n < 3; n++) here.albedo[n] = cells.albedo[n][i];
-    if constexpr (together<Scale> == 1) to[k] = here;
-    else if (k > 0) spread_cells(before, here, to[k - 1]);
-  }
-}
-
-template <int Scale>
-void CellRows<Scale>::read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y,
-                           int columns) {
-  bool below = picture == of && first == x && row + 1 == y && count == columns;
-  picture = of, first = x, row = y, count = columns;
-  above = below ? above ^ 1 : 0;
-  if (!below) read_row(cells, y, cell[above]);
-  read_row(cells, y + 1, cell[above ^ 1]);
-  int32_t one_plane[most + 2 * lanes] = {};  // by groups
-  for (int g = 0; g < count; g += lanes)
-    store(one_plane + g, find_flat(rays, cells, first + 1 + g, row + 1));
-  for (int g = 0; g < count; g++)
-    for (int k = 0; k < lanes; k++) flat[g][k] = one_plane[g + k / group<Scale>];
-}
-
 // Lit as what is around: the same object, as far as it shows there, else others. Returns whom that
 // told.
 template <class Cell>
@@ -289,13 +213,17 @@ struct Composer {
   float doubt = moving_doubt, narrow = narrow_patience;
   int left = 0, top = 0;   // where in the picture the light's begins, whole groups
   float own_counts = 1;  // samples of a pixel's own point, each
+  const SkinLight* skin = nullptr;  // what moves is lit by; null: as everything else
 
   // Eight lanes each.
   static int parts_of(const SightRun& run) { return (run.count + half_group + lanes - 1) / lanes; }
   const CellRows<Scale>& rows_around(const SightRun& run) const;
   void light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const;
+  void light_run(const RunPixels& p, const SightRun& run, const CellRows<Scale>& rows,
+                 const Shining& shining, int n, LanePart part, Drawn& d) const;
   Shown light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
-                   const CellRows<Scale>& rows, int n, LanePart part) const;
+                   const RunMoving& moving, const CellRows<Scale>& rows, int n,
+                   LanePart part) const;
 };
 
 template <int Scale>
@@ -335,16 +263,14 @@ void Composer<Scale>::light_narrow(const i8& lonely, int lx, int ly, Drawn& d) c
 }
 
 // The `n`-th eight of the run's pixels, of which `part` lies in the run: beyond it arrays hold
-// anything.
+// anything. What the light of points says of them.
 template <int Scale>
-Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
-                                  const CellRows<Scale>& rows, int n, LanePart part) const {
+void Composer<Scale>::light_run(const RunPixels& p, const SightRun& run,
+                                const CellRows<Scale>& rows, const Shining& shining, int n,
+                                LanePart part, Drawn& d) const {
   constexpr f8 lane{0, 1, 2, 3, 4, 5, 6, 7};
   int i = n * lanes - half_group, x = run.x + i;  // the first lane's pixel
-  Drawn d;
   Pixels& q = d.pixels;
-  q.depth = smaller(lanes_at(run.depth, i), splat(infinite_depth));
-  q.object = as<u8>(lanes_at(reinterpret_cast<const float*>(run.object), i));
   q.nx = lanes_at(p.surface.nx, i), q.ny = lanes_at(p.surface.ny, i);
   q.nz = lanes_at(p.surface.nz, i);
   d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
@@ -356,37 +282,43 @@ Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const
   take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
                   light_rays.y(float(ly) + 0.5f), d);
   q.samples *= own_counts;
-  unsigned here = (1u << part.end) - (1u << part.begin),
-           shines = unsigned(i < 0 ? shining.some << -i : shining.some >> i) & here,
-           only = unsigned(i < 0 ? shining.only << -i : shining.only >> i) & here;
-  if (known) {
-    constexpr f8 across = group == lanes ? lane : f8{0, 1, 2, 3, 0, 1, 2, 3};
-    const f8 fx = (across + 0.5f) * (1.0f / group);
-    float fy = (float(run.y - top - (rows.row + 1) * group + half_group) + 0.5f) / group;
-    f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
-    const int g = n * together<Scale>;
-    using Cell = CellRows<Scale>::Cell;
-    const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g),
-                              &rows.at(1, g + 1)};
-    auto find_nearby = [&](const i8& lonely, Drawn& of) { light_narrow(lonely, lx, ly, of); };
-    constexpr f8 beside = together<Scale> == 1 ? f8{} : f8{0, 0, 0, 0, 1, 1, 1, 1};
-    CellPlaces at{fx + beside + float(rows.first + g), float(rows.row) + fy};
-    light_group(cells, at, corners, rows.flat[g], weights, doubt, narrow,
-                lanes_of_bits(here & ~only), find_nearby, d);
-  }
-  Shown shown{{positive(d.albedo.r * q.smooth.r + q.rest.r),
-               positive(d.albedo.g * q.smooth.g + q.rest.g),
-               positive(d.albedo.b * q.smooth.b + q.rest.b)},
-              q.samples,
-              q.depth < 0.5f * infinite_depth ? q.depth : splat(INFINITY),
+  if (!known) return;
+  constexpr f8 across = group == lanes ? lane : f8{0, 1, 2, 3, 0, 1, 2, 3};
+  const f8 fx = (across + 0.5f) * (1.0f / group);
+  float fy = (float(run.y - top - (rows.row + 1) * group + half_group) + 0.5f) / group;
+  f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
+  const int g = n * together<Scale>;
+  using Cell = CellRows<Scale>::Cell;
+  const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g),
+                            &rows.at(1, g + 1)};
+  auto find_nearby = [&](const i8& lonely, Drawn& of) { light_narrow(lonely, lx, ly, of); };
+  constexpr f8 beside = together<Scale> == 1 ? f8{} : f8{0, 0, 0, 0, 1, 1, 1, 1};
+  CellPlaces at{fx + beside + float(rows.first + g), float(rows.row) + fy};
+  light_group(cells, at, corners, rows.flat[g], weights, doubt, narrow,
+              lanes_of_bits(part.bits() & ~bits_at(shining.only, i)), find_nearby, d);
+}
+
+template <int Scale>
+Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
+                                  const RunMoving& moving, const CellRows<Scale>& rows, int n,
+                                  LanePart part) const {
+  const int i = n * lanes - half_group;
+  const unsigned here = part.bits(), moves = bits_at(moving.pixels, i) & here;
+  Drawn d;
+  Pixels& q = d.pixels;
+  q.depth = smaller(lanes_at(run.depth, i), splat(infinite_depth));
+  q.object = as<u8>(lanes_at(reinterpret_cast<const float*>(run.object), i));
+  Shown shown{{}, splat(skin_samples), q.depth < 0.5f * infinite_depth ? q.depth : splat(INFINITY),
               q.object};
-  for (; shines != 0; shines &= shines - 1) {
-    int k = std::countr_zero(shines);
-    bool alone = only >> k & 1;
-    Color& c = shown.color;
-    if (alone) c.r[k] = c.g[k] = c.b[k] = 0, shown.samples[k] = 255;
-    c.r[k] += p.glow_red[i + k], c.g[k] += p.glow_green[i + k], c.b[k] += p.glow_blue[i + k];
+  if (moves != here) {
+    light_run(p, run, rows, shining, n, part, d);
+    shown.color = {positive(d.albedo.r * q.smooth.r + q.rest.r),
+                   positive(d.albedo.g * q.smooth.g + q.rest.g),
+                   positive(d.albedo.b * q.smooth.b + q.rest.b)};
+    shown.samples = q.samples;
   }
+  if (moves) put_moving(p, moving.light, i, lanes_of_bits(moves), shown);
+  add_glow(p, shining, i, here, shown);
   return shown;
 }
 
@@ -395,14 +327,16 @@ template <int Scale, class Planes>
 auto taker(const Composer<Scale>& composer, const Planes& planes) {
   return [&composer, &planes](const SightRun& run) {
     RunPixels p;
+    RunMoving moving;
     Shining shining = describe_run(run, p);
+    if (composer.skin) moving.pixels = run.light(*composer.skin, p.surface, moving.light);
     const CellRows<Scale>& rows = composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
     for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {
       int i = n * lanes - composer.half_group;
       LanePart part{std::max(-i, 0), std::min(run.count - i, lanes)};
       planes.put(row + size_t(i + part.begin), part,
-                 composer.light_part(run, p, shining, rows, n, part));
+                 composer.light_part(run, p, shining, moving, rows, n, part));
     }
   };
 }
@@ -419,10 +353,12 @@ template <class Planes>
 std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const View& lit,
                                                        const PictureSight& sight,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light, bool calm,
+                                                       const Frame& light,
+                                                       const SkinLight* skin, bool calm,
                                                        const Planes& planes) {
   auto draw = [&](auto composer) {
     if (calm) composer.own_counts = calm_counts;
+    composer.skin = skin;
     auto differ = [&planes](uint32_t a, uint32_t b) { return planes.differ(a, b); };
     return sight.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
                            differ);
@@ -448,14 +384,16 @@ std::span<const std::vector<EdgeShare>> see_moving(const View& view, const Pictu
 }  // namespace
 
 void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
-                   bool known, const Frame& light, Frame& frame) {
+                   bool known, const Frame& light, const SkinLight* skin, Frame& frame) {
   FramePlanes planes{frame};
-  soften_edges(compose_moment(view, lit, sight, cells, known, light, false, planes), frame.color);
+  soften_edges(compose_moment(view, lit, sight, cells, known, light, skin, false, planes),
+               frame.color);
 }
 
 void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
-                   bool known, const Frame& light, const Tonemap& tonemap, bool calm,
-                   std::vector<uint8_t>& peaks, Image8& image, std::vector<float>* depth) {
+                   bool known, const Frame& light, const SkinLight* skin, const Tonemap& tonemap,
+                   bool calm, std::vector<uint8_t>& peaks, Image8& image,
+                   std::vector<float>* depth) {
   size_t pixels = size_t(view.width) * size_t(view.height);
   image.width = view.width, image.height = view.height;
   image.rgb.resize(3 * pixels);
@@ -463,7 +401,8 @@ void compose_drawn(const View& view, const View& lit, const PictureSight& sight,
   if (depth) depth->resize(pixels);
   EyePlanes planes{tonemap.exposure, image.rgb.data(), peaks.data(),
                    depth ? depth->data() : nullptr};
-  soften_edges(compose_moment(view, lit, sight, cells, known, light, calm, planes), image, peaks);
+  soften_edges(compose_moment(view, lit, sight, cells, known, light, skin, calm, planes), image,
+               peaks);
 }
 
 void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,
@@ -476,24 +415,14 @@ void compose_still(const View& view, const PictureSight& sight, vec2 offset, con
 
 std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light, float guessed,
+                                                       const Frame& light,
+                                                       const SkinLight* skin, float guessed,
                                                        Frame& frame) {
   FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), vec2(0.5f),
                         still_doubt(guessed), still_patience};
+  composer.skin = skin;
   return see_moving(view, sight, {0, 0, view.width, view.height},
                     taker(composer, NearerPlanes{frame}));
-}
-
-void compose_moving(const View& view, const PictureSight& sight, const PictureWindow& window,
-                    const Tonemap& tonemap, std::span<const float> disparity,
-                    std::span<uint8_t> covered, MovingLight& light) {
-  PixelRays rays(view), light_rays(WindowView(view, window));
-  FineComposer composer{view, light.cells, light.known, light.frame, rays, light_rays,
-                        vec2(0.5f), 0, still_patience, window.left, window.top};
-  NearerEyePlanes planes{tonemap.exposure, disparity.data(), covered.data(),
-                         light.picture.rgb.data(), light.peaks.data()};
-  soften_edges(see_moving(view, sight, window, taker(composer, planes)), light.picture,
-               light.peaks);
 }
 
 }  // namespace wellspring

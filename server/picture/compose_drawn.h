@@ -9,6 +9,8 @@
 
 namespace wellspring {
 
+struct SkinLight;  // light/skin_light.h
+
 inline constexpr int light_scale = 2;  // pixels of the picture a side of one pixel of its light
 
 // The view of such coarser light: its pixels are light_scale pixels of the picture wide.
@@ -23,17 +25,18 @@ inline View light_view(const View& view) {
 
 // Overwrites all planes of `frame`. `light`: of the view `lit`, which is light_view(view) or `view`
 // itself, its planes packed as read_surface() leaves them, with `cells` filled from it; `known`:
-// what fill_cells() said.
+// what fill_cells() said. `skin`: what moves is lit by (null: by points like everything else).
 void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
-                   bool known, const Frame& light, Frame& frame);
+                   bool known, const Frame& light, const SkinLight* skin, Frame& frame);
 // The same for the eye at once, as frame/tonemap.h would show it: writing colours to memory and
 // reading them again takes longer than the curve. Resizes `image` and `depth` (null: not wanted;
 // metres along the viewing axis, infinity: nothing there). `calm`: light is that of the cells,
 // which are means; each point for itself would show as a square where pixels are as large as those
 // of surroundings. `peaks` is scratch: light beyond white, until edges are softened.
 void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
-                   bool known, const Frame& light, const Tonemap& tonemap, bool calm,
-                   std::vector<uint8_t>& peaks, Image8& image, std::vector<float>* depth);
+                   bool known, const Frame& light, const SkinLight* skin, const Tonemap& tonemap,
+                   bool calm, std::vector<uint8_t>& peaks, Image8& image,
+                   std::vector<float>* depth);
 
 // What does not move of a picture at rest, in light of its own resolution, `light` being of `view`
 // itself, seen at one place of every pixel, `offset` (0 to 1): the mean over several such pictures
@@ -45,15 +48,16 @@ void compose_still(const View& view, const PictureSight& sight, vec2 offset, con
 // its edges, good until the sight's next picture: see soften_edges().
 std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light, float guessed,
+                                                       const Frame& light,
+                                                       const SkinLight* skin, float guessed,
                                                        Frame& frame);
 
-// The same over what the eye sees already: lit by what lies on it alone, where it is nearer than
-// `disparity` (as Keyframe's) says of the picture. Of pixels that it covers `covered` becomes 0.
-// light.picture and light.peaks: what the eye sees already, of which the window (whole_runs())
-// counts.
+// The same over what the eye sees already, in the light that is kept on its skin, where it is
+// nearer than `disparity` (as Keyframe's) says of the picture. Of pixels that it covers
+// `covered` becomes 0. light.picture and light.peaks: what the eye sees already, of which the
+// window (whole_runs()) counts.
 void compose_moving(const View& view, const PictureSight& sight, const PictureWindow& window,
                     const Tonemap& tonemap, std::span<const float> disparity,
-                    std::span<uint8_t> covered, MovingLight& light);
+                    std::span<uint8_t> covered, const SkinLight& skin, MovingLight& light);
 
 }  // namespace wellspring

@@ -77,7 +77,7 @@ void Compositor::draw(RenderCache& cache, const View& view, const PictureSight& 
   begin(cache);
   fit_frame(view.width, view.height, frame);
   draw(cache, lit, [&](float) {
-    compose_drawn(view, lit, sight, cells_, known_, work_->light, frame);
+    compose_drawn(view, lit, sight, cells_, known_, work_->light, skin_, frame);
   });
 }
 
@@ -88,8 +88,8 @@ void Compositor::draw(RenderCache& cache, const View& view, const PictureSight& 
   if (!cache.has_projected(lit)) cache.project(lit);
   begin(cache);
   draw(cache, lit, [&](float) {
-    compose_drawn(view, lit, sight, cells_, known_, work_->light, tonemap, calm, work_->peaks,
-                  image, depth);
+    compose_drawn(view, lit, sight, cells_, known_, work_->light, skin_, tonemap, calm,
+                  work_->peaks, image, depth);
   });
 }
 
@@ -105,7 +105,7 @@ void Compositor::draw_still(RenderCache& cache, const View& view, const PictureS
                   guessed, frame);
     std::span<const std::vector<EdgeShare>> edges;
     if (shows == StillShows::all && sight.anything_moves())
-      edges = compose_moving(view, sight, cells_, known_, work_->light, guessed, frame);
+      edges = compose_moving(view, sight, cells_, known_, work_->light, skin_, guessed, frame);
     const bool corrects = !reconstructed_ && sampled_ == view && !samples_.count.empty();
     if (corrects) wellspring::forget_samples(still_, samples_);
     accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, changes, pictures_,
@@ -135,23 +135,19 @@ void Compositor::add_samples(const View& view, std::span<const Request> requests
 
 void Compositor::forget_samples() { samples_ = {}; }
 
-bool Compositor::draw_moving(RenderCache& cache, const World& world, const Keyframe& backdrop,
+void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
                              const PictureSight& sight, const Tonemap& tonemap, MovingLight& work,
                              MovingPicture& picture) {
   const View& view = backdrop.view;
   picture.view = view;
   picture.window = moving_window(world, view);
-  if (picture.empty()) return true;
-  cache.follow_moving(world);
+  if (picture.empty()) return;
   const PictureWindow runs = whole_runs(picture.window, view);
-  light_moving(cache.points(), view, runs, cache.settings().depth_threshold, work);
-  if (!work.known) return false;
   copy_colors(backdrop, runs, work.picture);
   guess_peaks(work.picture, runs, work.peaks);
   still_.count.resize(backdrop.disparity.size(), 0);
-  compose_moving(view, sight, runs, tonemap, backdrop.disparity, still_.count, work);
+  compose_moving(view, sight, runs, tonemap, backdrop.disparity, still_.count, *skin_, work);
   take_window(work.picture, picture);
-  return true;
 }
 
 size_t Compositor::memory_bytes() const {

@@ -20,6 +20,7 @@ namespace wellspring {
 struct Keyframe;       // picture/keyframe.h
 struct MovingPicture;  // picture/moving_picture.h: what moves in a picture at rest
 struct MovingLight;
+struct SkinLight;      // light/skin_light.h
 enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what moves
 
 // What a picture needs and nobody afterwards. Those that are never under way at the same time may
@@ -35,6 +36,8 @@ class Compositor {
  public:
   explicit Compositor(std::shared_ptr<CompositorWork> shared = nullptr);
 
+  // What moves is lit by it from now on (borrowed; null: by points like everything else).
+  void set_skin(const SkinLight* skin) { skin_ = skin; }
   // A picture of `view` in the light of `view` or of light_view(view) (picture/compose_drawn.h),
   // whichever was projected (neither: the latter). The second for the eye at once, and of a `depth`
   // that is not null metres along the viewing axis, infinity: nothing there. `calm`: of pixels so
@@ -59,11 +62,10 @@ class Compositor {
   // are not corrected by samples, and while a pixel has few of these, aimed ones count, too.
   void set_reconstructed(bool on) { reconstructed_ = on; }
   // What moves, as the world is now, to be laid over the last draw_still() without it, of which
-  // `backdrop` is the keyframe; needs no projection. False: no point lies on it. An empty picture:
-  // it is not to be seen.
-  bool draw_moving(RenderCache& cache, const World& world, const Keyframe& backdrop,
-                   const PictureSight& sight, const Tonemap& tonemap, MovingLight& work,
-                   MovingPicture& picture);
+  // `backdrop` is the keyframe; in the light that is kept on its skin. Needs
+  // sight.rasterises(backdrop.view) and set_skin(). An empty picture: it is not to be seen.
+  void draw_moving(const World& world, const Keyframe& backdrop, const PictureSight& sight,
+                   const Tonemap& tonemap, MovingLight& work, MovingPicture& picture);
 
   // What the pixels of a view at rest have been found to be by samples; empty before.
   const StillSamples& samples() const { return samples_; }
@@ -79,6 +81,7 @@ class Compositor {
 
   bool shares_;
   std::shared_ptr<CompositorWork> work_;
+  const SkinLight* skin_ = nullptr;
   Cells cells_;         // in the cache's scratch
   bool known_ = false;  // any light
   StillImage still_;

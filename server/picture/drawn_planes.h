@@ -18,6 +18,7 @@ struct Shown {
 struct LanePart {
   int begin, end;
   bool all() const { return end - begin == lanes; }
+  unsigned bits() const { return (1u << end) - (1u << begin); }
   template <class T, class V>
   void put(T* to, const V& from) const {
     if (all()) return store(to, from);

@@ -3,8 +3,10 @@
 #pragma once
 #include <bit>
 #include <cstdint>
+#include <cstring>
 
 #include "light/see_picture.h"
+#include "picture/drawn_planes.h"
 #include "world/raster.h"
 
 namespace wellspring {
@@ -38,6 +40,53 @@ inline Shining describe_run(const SightRun& run, RunPixels& p) {
     p.glow_red[i] = seen.glow.x, p.glow_green[i] = seen.glow.y, p.glow_blue[i] = seen.glow.z;
   }
   return shining;
+}
+
+// Eight lanes of a run's array from lane `i` on, which may begin before it and end behind it.
+inline f8 lanes_at(const float* from, int i) {
+  if (i >= 0) return load<f8>(from + i);  // arrays may be read up to eight beyond their end
+  f8 v{};
+  std::memcpy(reinterpret_cast<float*>(&v) - i, from, size_t(lanes + i) * sizeof(float));
+  return v;
+}
+
+// What of a run moves, and its light.
+struct RunMoving {
+  uint64_t pixels = 0;  // a bit each
+  RunSkin light;
+};
+
+// Eight of a run's bits, from lane `i` on, which may begin before it.
+inline unsigned bits_at(uint64_t bits, int i) {
+  return unsigned(i < 0 ? bits << -i : bits >> i) & 0xff;
+}
+
+inline constexpr float skin_samples = 64;  // as much as light of the skin is sure of
+
+// Radiance of those of eight pixels, from lane `i` on, that reflect the light of the skin.
+inline void put_moving(const RunPixels& p, const RunSkin& skin, int i, const i8& lanes_that_move,
+                       Shown& shown) {
+  f8 gloss = lanes_at(skin.gloss, i);
+  auto put = [&](const float* light, const float* reflectance, f8& to) {
+    f8 lit = lanes_at(light, i) * (lanes_at(reflectance, i) * (1.0f - gloss) + gloss);
+    to = lanes_that_move ? positive(lit) : to;
+  };
+  put(skin.red, p.surface.red, shown.color.r);
+  put(skin.green, p.surface.green, shown.color.g);
+  put(skin.blue, p.surface.blue, shown.color.b);
+  shown.samples = lanes_that_move ? splat(skin_samples) : shown.samples;
+}
+
+// What of eight pixels shines by itself. `here`: lanes that count, a bit each.
+inline void add_glow(const RunPixels& p, const Shining& shining, int i, unsigned here,
+                     Shown& shown) {
+  const unsigned only = bits_at(shining.only, i);
+  for (unsigned bits = bits_at(shining.some, i) & here; bits != 0; bits &= bits - 1) {
+    int k = std::countr_zero(bits);
+    Color& c = shown.color;
+    if (only >> k & 1) c.r[k] = c.g[k] = c.b[k] = 0, shown.samples[k] = 255;
+    c.r[k] += p.glow_red[i + k], c.g[k] += p.glow_green[i + k], c.b[k] += p.glow_blue[i + k];
+  }
 }
 
 }  // namespace wellspring

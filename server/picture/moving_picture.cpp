@@ -9,7 +9,6 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "cache/project.h"
 #include "frame/tone_curve.h"
 #include "world/texture.h"
 
@@ -18,7 +17,6 @@ namespace {
 
 constexpr int run_pixels = RasterRun::most;
 constexpr float margin = 2;  // pixels around what moves
-constexpr int points_grain = 1 << 14;
 constexpr float near_depth = 1e-3f;  // metres: what is nearer may be anywhere
 
 // Where places fall in a picture.
@@ -54,9 +52,7 @@ int whole(float v, int most) { return int(std::clamp(v, 0.0f, float(most))); }
 
 size_t memory_bytes(const MovingPicture& picture) { return bytes_of(picture.rgb); }
 size_t memory_bytes(const MovingLight& light) {
-  return points_bytes(light.points) + light.scratch.bytes() + memory_bytes(light.frame) +
-         bytes_of(light.image.point, light.image.depth, light.image.priority, light.image.changed,
-                  light.picture.rgb, light.peaks);
+  return bytes_of(light.picture.rgb, light.peaks);
 }
 
 void lay_over(const MovingPicture& picture, Image8& image) {
@@ -105,43 +101,6 @@ PictureWindow whole_runs(const PictureWindow& window, const View& view) {
   runs.width = up(window.left + window.width, run_pixels, view.width) - runs.left;
   runs.height = up(window.top + window.height, cell_size, view.height) - runs.top;
   return runs;
-}
-
-static void take_anchored(const PointCache& from, PointCache& to) {
-  size_t count = from.anchors.size();
-  size_t room = (count + points_grain - 1) / points_grain * points_grain;
-  if (size_t(to.capacity()) < room || size_t(to.capacity()) > 4 * room)
-    resize_points(to, int(std::max<size_t>(room, points_grain)));
-  parallel_ranges(to.capacity(), points_grain, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++) {
-      if (i >= count) {
-        to.flags[i] = 0, to.age[i] = evicted_age;
-        continue;
-      }
-      uint32_t point = from.anchors[i].point;
-      to.x[i] = from.x[point], to.y[i] = from.y[point], to.z[i] = from.z[point];
-      to.normal[i] = from.normal[point];
-      to.flags[i] = uint8_t(from.flags[point] & ~(point_visible | point_verified));
-      to.age[i] = from.flags[point] & point_moving ? from.age[point] : evicted_age;
-      to.count[i] = from.count[point];
-      to.color[i] = from.color[point];
-    }
-  });
-}
-
-void light_moving(const PointCache& points, const View& view, const PictureWindow& window,
-                  float depth_threshold, MovingLight& light) {
-  WindowView part(view, window);
-  take_anchored(points, light.points);
-  resize_image(light.image, window.width, window.height);
-  project_points(light.points, part, false, light.scratch, light.image);
-  depth_cull(light.points, depth_threshold, light.image);
-  fit_frame(window.width, window.height, light.frame);
-  light.scratch.start(cells_bytes(window.width, window.height));
-  take_cells(light.cells, window.width, window.height, light.scratch);
-  read_surface(part, light.points, light.image, light.cells, light.frame);
-  light.known = fill_cells(part, light.cells);
-  filter_cells(part, light.cells);
 }
 
 void copy_colors(const Keyframe& keyframe, const PictureWindow& window, Image8& image) {

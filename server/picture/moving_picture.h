@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What moves in a picture at rest, drawn by itself over what does not: a storyteller who breathes
 // and speaks is a few hundredths of a picture, and the rest of it need not be drawn again for each
-// of her moves. Lit by the points that lie on her alone, which move with her skin.
+// of her moves. Lit by what is kept on her skin (light/skin_light.h).
 #pragma once
 #include "frame/tonemap.h"
 #include "light/see_picture.h"
@@ -22,15 +22,9 @@ size_t memory_bytes(const MovingPicture& picture);
 void lay_over(const MovingPicture& picture, Image8& image);
 void lay_over(const MovingPicture& picture, Keyframe& keyframe);  // its depths stay
 
-// The light of what moves: scratch, overwritten by every picture.
+// Scratch, overwritten by every picture.
 struct MovingLight {
-  PointCache points;  // those on what moves
-  PointImage image;
-  Scratch scratch;
-  Cells cells;
-  Frame frame;
-  bool known = false;
-  Image8 picture;     // of the whole view, the window alone filled
+  Image8 picture;              // of the whole view, the window alone filled
   std::vector<uint8_t> peaks;  // of its pixels, as soften_edges() needs them
 };
 size_t memory_bytes(const MovingLight& light);
@@ -38,13 +32,8 @@ size_t memory_bytes(const MovingLight& light);
 // Of `view`, where visible moving meshes of the world may show, with some around that edges reach;
 // empty: nowhere.
 PictureWindow moving_window(const World& world, const View& view);
-// What of the picture Raster's runs and cells of light take that lie in the window.
+// What of the picture Raster's runs take that lie in the window.
 PictureWindow whole_runs(const PictureWindow& window, const View& view);
-
-// Reads the points with anchors. light.known: there is one that shows. `window`: of whole runs.
-// `depth_threshold`: as CacheSettings has it.
-void light_moving(const PointCache& points, const View& view, const PictureWindow& window,
-                  float depth_threshold, MovingLight& light);
 
 // What the keyframe shows there, into a picture of its size: others of its pixels stay.
 void copy_colors(const Keyframe& keyframe, const PictureWindow& window, Image8& image);

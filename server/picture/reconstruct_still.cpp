@@ -13,7 +13,9 @@ namespace wellspring {
 namespace {
 
 constexpr float prior_weight = 0.5f;  // samples that the drawn picture counts as
-constexpr int square = 8;                    // pixels a side of what takes one share of the mean
+constexpr int square = 8;             // pixels a side of what takes one share of the mean
+// Samples of a pixel from which on they tell their own noise: two that agree by chance say nothing.
+constexpr int least_judged = 8;
 constexpr int rows_at_once = 8;
 
 int squares(int extent) { return (extent + square - 1) / square; }
@@ -22,19 +24,27 @@ vec3 mean_of(const StillSamples& samples, size_t pixel) {
   return unpack_rgb9e5(samples.mean[pixel]);
 }
 
-// Of squares of pixels: what the mean and the reconstruction differ by, squared, and how much of
-// that the mean's own noise is.
+// Of squares of pixels: what the mean and the reconstruction differ by, squared, how much of that
+// the mean's own noise is, and how many of the pixels tell.
 struct Difference {
-  float squared = 0, noise = 0;
+  float squared = 0, noise = 0, judged = 0, pixels = 0;
+  void add(const Difference& other) {
+    squared += other.squared, noise += other.noise;
+    judged += other.judged, pixels += other.pixels;
+  }
+  float share() const {
+    if (2 * judged < pixels || !(squared > 0)) return 0;
+    return std::max(1 - noise / squared, 0.0f);
+  }
 };
 
 Difference difference_of(const StillSamples& samples, const std::vector<vec3>& color,
                          size_t pixel) {
   const int n = samples.count[pixel];
-  if (n < 2) return {};
+  if (n < least_judged) return {0, 0, 0, 1};
   float deviation = unpack_deviation(samples.deviation[pixel]);
   vec3 apart = mean_of(samples, pixel) - color[pixel];
-  return {dot(apart, apart) * (1 / 3.0f), deviation * deviation / float(n)};
+  return {dot(apart, apart) * (1 / 3.0f), deviation * deviation / float(n), 1, 1};
 }
 
 // The mean's share with the least error where the reconstruction's is what the two differ by beyond
@@ -47,8 +57,7 @@ void find_shares(const StillSamples& samples, StillReconstruction& work) {
       for (int x = 0; x < work.width; x++) {
         Difference one = difference_of(samples, work.color,
                                        size_t(y) * size_t(work.width) + size_t(x));
-        Difference& sum = sums[size_t(y / square) * size_t(columns) + size_t(x / square)];
-        sum.squared += one.squared, sum.noise += one.noise;
+        sums[size_t(y / square) * size_t(columns) + size_t(x / square)].add(one);
       }
   });
   work.shares.resize(sums.size());
@@ -56,12 +65,9 @@ void find_shares(const StillSamples& samples, StillReconstruction& work) {
     for (int column = 0; column < columns; column++) {
       Difference around;
       for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows - 1); y++)
-        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns - 1); x++) {
-          const Difference& one = sums[size_t(y) * size_t(columns) + size_t(x)];
-          around.squared += one.squared, around.noise += one.noise;
-        }
-      float share = around.squared > 0 ? 1 - around.noise / around.squared : 0;
-      work.shares[size_t(row) * size_t(columns) + size_t(column)] = std::max(share, 0.0f);
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns - 1); x++)
+          around.add(sums[size_t(y) * size_t(columns) + size_t(x)]);
+      work.shares[size_t(row) * size_t(columns) + size_t(column)] = around.share();
     }
 }
 

@@ -60,14 +60,24 @@ struct DrawingWork {
 };
 size_t memory_bytes(const DrawingWork& work);
 
+// Light on what moves (light/skin_light.h), that all visitors share, is to be found.
+struct SkinOrder {
+  bool wanted = false;
+  double time = -1e9;  // show time
+  int samples = 0, cycles = 2;  // of smoothing
+  uint64_t seed = 0;
+  std::vector<vec3> eyes;
+  size_t traced = 0;  // samples that the tick has not counted yet
+};
+
 struct Easel {
   DrawingWork work;
+  SkinOrder skin;
   size_t work_bytes = 0;     // of it, when last finished
   Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
   DrawingStep step = DrawingStep::done;  // of that, to be done next
   double until_moving = 1;   // seconds from the step's beginning, until what moves is due
   Visitor* posed = nullptr;  // for whom what moves is being drawn, between two such steps
-  bool moving_known = false;  // there was light for that
   double posed_at = 0;       // show time of its order
   uint64_t posed_us = 0;
   double posed_seconds = 0;  // that it took

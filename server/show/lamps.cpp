@@ -47,12 +47,20 @@ bool lamps_wait(const Show& show) {
 
 void light_lamps(Show& show) {
   Switches& switches = show.switches;
+  const std::vector<char> before = switches.lit;
   for (size_t lamp = 0; lamp < switches.wanted.size(); lamp++)
     show.world->switch_lamp(int(lamp), switches.wanted[lamp]);
   show.lights = relit(switches.all, *show.world);
   switches.lit = switches.wanted;
   switches.lit_at = show.time;
   switches.steps.clear();
+  if (before != switches.lit && !show.skin.places.empty()) {
+    const LightChange& change = change_since(show, before);
+    auto changes = [&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
+      return change.changes(place, normal, kept, added);
+    };
+    relight_skin(*show.world, changes, show.skin);
+  }
   for (Visitor& visitor : show.visitors) {
     visitor.around = {};               // it shows another light
     visitor.rest = {};

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/clock.h"
+#include "base/rng.h"
 #include "show/in_view.h"
 #include "show/picture.h"
 #include "show/present.h"
@@ -11,8 +12,12 @@
 namespace wellspring {
 namespace {
 
-constexpr double most_share = 0.35;  // of the time
+constexpr double most_share = 0.5;   // of the time
 constexpr double on_time = 0.0005;   // seconds that it may come too early
+constexpr double skin_rate = 10;     // times a second that light on what moves is found
+constexpr double skin_share = 0.3;  // of the time, for its samples
+constexpr int cycles = 2, first_cycles = 6;  // of smoothing; when it was not found for a while
+constexpr double least_skin_samples = 200, most_skin_seconds = 0.25;
 
 bool has_backdrop(const Show& show, const Visitor& visitor) {
   return visitor.welcomed && visitor.backdrop && visitor.order.leaps == visitor.leaps &&
@@ -57,12 +62,43 @@ double seconds_to_moving(const Show& show) {
   return std::max(seconds, 0.0);
 }
 
+void order_skin(Show& show) {
+  SkinOrder& order = show.easel.skin;
+  show.totals.samples += std::exchange(order.traced, 0);
+  order.wanted = !show.skin.places.empty() && show.storyteller_visible &&
+                 show.time - order.time >= 1 / skin_rate - on_time;
+  if (!order.wanted) return;
+  order.eyes.clear();
+  for (const Visitor& visitor : show.visitors)
+    if (visitor.welcomed) order.eyes.push_back(visitor.last_view.position);
+  double seconds = std::min(show.time - order.time, most_skin_seconds);
+  order.cycles = show.time - order.time > 1 ? first_cycles : cycles;
+  order.samples =
+      int(std::max(skin_share * seconds * double(show.samples_per_second), least_skin_samples));
+  order.time = show.time;
+  order.seed = mix64(show.ticks);
+}
+
+void light_skin(Show& show) {
+  SkinOrder& order = show.easel.skin;
+  if (!std::exchange(order.wanted, false)) return;
+  SkinUpdate update;
+  update.samples = order.samples;
+  update.seed = order.seed;
+  update.eyes = order.eyes;
+  update.transport = show.settings.transport;
+  update.transport.clamp = show.settings.moving_clamp;
+  order.traced += size_t(update_skin(*show.world, show.lights, update, show.skin));
+  smooth_skin(*show.world, show.skin, order.cycles);
+}
+
 void draw_moving(Show& show, Visitor& visitor) {
   Easel& easel = show.easel;
   double began = seconds_now();
-  easel.moving_known = visitor.compositor.draw_moving(
-      visitor.cache, *show.world, visitor.keyframe, *show.sight, Tonemap{show.exhibit.exposure},
-      easel.work.moving_light, easel.work.moving);
+  light_skin(show);
+  visitor.compositor.draw_moving(*show.world, visitor.keyframe, *show.sight,
+                                 Tonemap{show.exhibit.exposure}, easel.work.moving_light,
+                                 easel.work.moving);
   easel.posed_seconds = seconds_now() - began;
 }
 
@@ -71,7 +107,7 @@ void finish_moving(Show& show, Visitor& visitor) {
   visitor.posed_at = easel.posed_at;
   MovingPicture& moving = easel.work.moving;
   // Else all of it is drawn anew.
-  visitor.backdrop &= easel.moving_known && may_be_laid_over(moving.window, moving.view);
+  visitor.backdrop &= may_be_laid_over(moving.window, moving.view);
   if (!visitor.backdrop) return;
   float& smoothed = visitor.times.moving;
   float milliseconds = float(1000 * easel.posed_seconds);

@@ -164,11 +164,11 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
 namespace {
 
 // What moves is drawn by itself where that is little of the picture, as what it covers is kept.
-bool draws_backdrop(const Show& show, const PictureOrder& order, const RenderCache& cache) {
+bool draws_backdrop(const Show& show, const PictureOrder& order) {
   if (!in_steps(order) || !order.figure || order.passing) return false;
   if (!show.sight->rasterises(order.view)) return false;
   PictureWindow window = moving_window(*show.world, order.view);
-  return !window.empty() && may_be_laid_over(window, order.view) && cache.knows_moving();
+  return !window.empty() && may_be_laid_over(window, order.view);
 }
 
 DrawingStep plan_picture(Show& show, const PictureOrder& order, const Technique& technique,
@@ -181,10 +181,7 @@ DrawingStep plan_picture(Show& show, const PictureOrder& order, const Technique&
   costs.display = float(1000 * (planned - began));
   bool more = false;
   if (begin_samples(show, order, technique, lit, work, visitor) && !show.easel.given_up) {
-    size_t moving = 0;
-    if (in_steps(order) && !technique.begin_pass)
-      moving = put_moving_first(visitor.cache, 2 * slice_of_samples(show), work.requests);
-    more = trace_slice(show, order, technique, moving, work);
+    more = trace_slice(show, order, technique, work);
   }
   costs.trace = float(1000 * (seconds_now() - planned));
   return more ? DrawingStep::trace : DrawingStep::draw;
@@ -193,7 +190,7 @@ DrawingStep plan_picture(Show& show, const PictureOrder& order, const Technique&
 DrawingStep trace_more(Show& show, const PictureOrder& order, const Technique& technique,
                        Visitor& visitor) {
   double began = seconds_now();
-  bool more = trace_slice(show, order, technique, 0, show.easel.work);
+  bool more = trace_slice(show, order, technique, show.easel.work);
   visitor.costs.trace += float(1000 * (seconds_now() - began));
   return more ? DrawingStep::trace : DrawingStep::draw;
 }
@@ -211,7 +208,7 @@ DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit
     return DrawingStep::done;
   }
   const Tonemap curve{show.exhibit.exposure};
-  costs.backdrop = draws_backdrop(show, order, cache);
+  costs.backdrop = draws_backdrop(show, order);
   if (order.passing)
     compositor.draw(cache, order.view, *show.sight, curve, work.picture,
                     order.keep ? &work.depth : nullptr);
@@ -264,6 +261,7 @@ DrawingStep draw_step(Show& show, const PictureOrder& order, DrawingStep step, V
   const Technique& technique = order.settled ? *show.still_technique : *show.technique;
   const View lit = order.coarse ? light_view(order.view) : order.view;
   if (step == DrawingStep::plan) {
+    light_skin(show);
     step = plan_picture(show, order, technique, lit, visitor);
   } else if (show.easel.given_up) {
     if (step != DrawingStep::guide) remember_traced(show, order, lit, show.easel.work, visitor);

@@ -42,6 +42,12 @@ bool spreads_samples(const Show& show, const PictureOrder& order, const Techniqu
          rest.samples >= spread_from && !has_all_samples(rest);
 }
 
+// So many are traced at a time.
+size_t slice_of_samples(const Show& show) {
+  double seconds = std::clamp(show.easel.until_moving, least_slice_seconds, slice);
+  return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
+}
+
 }  // namespace
 
 int samples_to_watch(int samples) { return int(aimed_share * samples); }
@@ -78,20 +84,6 @@ void plan_samples(Show& show, const PictureOrder& order, const Technique& techni
   visitor.costs.late = late;
 }
 
-size_t put_moving_first(const RenderCache& cache, size_t most, std::vector<Request>& requests) {
-  auto others = std::stable_partition(
-      requests.begin(), requests.end(),
-      [&](const Request& request) { return cache.follows_moving(request); });
-  size_t moving = size_t(others - requests.begin()), kept = std::min(moving, most);
-  requests.erase(requests.begin() + ptrdiff_t(kept), others);
-  return kept;
-}
-
-size_t slice_of_samples(const Show& show) {
-  double seconds = std::clamp(show.easel.until_moving, least_slice_seconds, slice);
-  return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
-}
-
 bool begin_samples(Show& show, const PictureOrder& order, const Technique& technique,
                    const View& lit, DrawingWork& work, Visitor& visitor) {
   work.samples.clear();
@@ -108,10 +100,10 @@ bool begin_samples(Show& show, const PictureOrder& order, const Technique& techn
   return true;
 }
 
-bool trace_slice(Show& show, const PictureOrder& order, const Technique& technique, size_t least,
+bool trace_slice(Show& show, const PictureOrder& order, const Technique& technique,
                  DrawingWork& work) {
   size_t all = work.requests.size(), count = all - work.traced;
-  if (!technique.begin_pass) count = std::min(count, std::max(least, slice_of_samples(show)));
+  if (!technique.begin_pass) count = std::min(count, slice_of_samples(show));
   work.samples.resize(all);
   trace(technique, *show.world, show.lights, transport_of(show, order),
         std::span(work.requests).subspan(work.traced, count),

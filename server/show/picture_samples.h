@@ -11,17 +11,12 @@ int samples_to_watch(int samples);
 // costs.late whether answers may come after it.
 void plan_samples(Show& show, const PictureOrder& order, const Technique& technique,
                   const View& lit, DrawingWork& work, Visitor& visitor);
-// Of a picture at rest the world moves on while it is traced: what lies on what moves comes first,
-// and what is too much for then is left to the next picture. Returns how many do.
-size_t put_moving_first(const RenderCache& cache, size_t most, std::vector<Request>& requests);
-// So many are traced at a time.
-size_t slice_of_samples(const Show& show);
 // Asks for what was planned, or begins to trace it. Returns whether it is traced here: work.samples
 // is empty where answers may be late.
 bool begin_samples(Show& show, const PictureOrder& order, const Technique& technique,
                    const View& lit, DrawingWork& work, Visitor& visitor);
-// At least `least` of them, if there are so many. Returns whether some are left.
-bool trace_slice(Show& show, const PictureOrder& order, const Technique& technique, size_t least,
+// A slice of them. Returns whether some are left.
+bool trace_slice(Show& show, const PictureOrder& order, const Technique& technique,
                  DrawingWork& work);
 // Those traced, for the visitor's cache and, at rest, for each pixel by itself.
 void remember_traced(const Show& show, const PictureOrder& order, const View& lit,

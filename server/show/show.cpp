@@ -79,6 +79,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   for (const StorytellerPlace& place : show->exhibit.storytellers)
     show->figures.push_back(make_figure(place.character, scene, moving, moving_object));
   show->world = std::make_unique<World>(scene, std::move(moving), std::move(moving_object));
+  show->skin = make_skin_light(*show->world);
   if (!show->figures.empty()) enter(*show);
   std::vector<Problem> problems;
   show->roads = make_tour_roads(show->exhibit, *show->world, problems);

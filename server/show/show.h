@@ -12,6 +12,7 @@
 
 #include "avatar/storyteller.h"
 #include "light/see_picture.h"
+#include "light/skin_light.h"
 #include "light/technique.h"
 #include "picture/warp_picture.h"
 #include "show/audience.h"
@@ -58,6 +59,7 @@ struct Show {
   Lights lights;
   Switches switches;
   std::unique_ptr<PictureSight> sight;  // one picture at a time
+  SkinLight skin;                       // on what moves, for all visitors
   const Technique* technique = nullptr;
   const Technique* still_technique = nullptr;
 

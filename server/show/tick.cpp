@@ -43,6 +43,7 @@ void welcome_links(Show& show, Arrivals& arrivals) {
       visitor.link = std::move(link);
       visitor.cache = RenderCache({}, show.easel.work.cache);
       visitor.compositor = Compositor(show.easel.work.compositor);
+      visitor.compositor.set_skin(&show.skin);
     }
   }
 }
@@ -281,6 +282,7 @@ void use_cores(Show& show, std::function<void()> work) {
 void pose(Show& show, Visitor& visitor) {
   Easel& easel = show.easel;
   pose_world(show);
+  order_skin(show);
   easel.posed = &visitor;
   easel.posed_at = show.time;
   easel.posed_us = show.time_us;
@@ -337,6 +339,7 @@ void use_easel(Show& show, int waiting) {
   easel.order = order_picture(show, *next, std::max(waiting, 1));
   easel.surrounds = easel.order.around && !next->surrounded;
   if (!easel.surrounds) pose_world(show);
+  if (easel.order.figure) order_skin(show);
   next->at_work = true;
   easel.given_up = false;
   easel.step = DrawingStep::plan;
@@ -349,6 +352,7 @@ void draw_now(Show& show, int waiting) {
   for (Visitor& visitor : show.visitors) {
     if (!wants_drawing(show, visitor)) continue;
     PictureOrder order = order_picture(show, visitor, waiting);
+    if (order.figure) order_skin(show);
     draw_picture(show, order, visitor);
     finish_picture(show, order, visitor);
     present(show, visitor);

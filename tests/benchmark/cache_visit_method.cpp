@@ -190,6 +190,53 @@ class Deferred : public VisitMethod {
   VisitPicture before_;
 };
 
+// Each moving picture goes through the network, at a part of its resolution: what that changes there
+// is multiplied with the full picture.
+class ReconstructedInMotion : public VisitMethod {
+ public:
+  explicit ReconstructedInMotion(int scale) : scale_(scale) {
+    std::string problem;
+    denoiser_ = load_denoiser(NetSize::small, problem);
+    if (!denoiser_) throw std::runtime_error(problem);
+  }
+  void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
+    drawn_.show(moment, budget, shown);
+    View view = moment.view;
+    view.width = (view.width + scale_ - 1) / scale_;
+    view.height = (view.height + scale_ - 1) / scale_;
+    view.tan_half_fov *= float(view.height * scale_) / float(moment.view.height);
+    const Frame& full = shown.frame;
+    fit_frame(view.width, view.height, low_);
+    fit_frame(full.width, full.height, change_);
+    for (int y = 0; y < view.height; y++)
+      for (int x = 0; x < view.width; x++) {
+        vec3 sum(0);
+        for (int k = 0; k < scale_ * scale_; k++) {
+          int column = std::min(x * scale_ + k % scale_, full.width - 1),
+              row = std::min(y * scale_ + k / scale_, full.height - 1);
+          sum += full.color[size_t(row) * size_t(full.width) + size_t(column)];
+        }
+        low_.color[size_t(y) * size_t(view.width) + size_t(x)] = sum / float(scale_ * scale_);
+      }
+    GuidePlanes guides = make_guides(*moment.world, *moment.lights, view, 4);
+    found_.resize(low_.color.size());
+    denoiser_->run({view.width, view.height, low_.color, guides.albedo, guides.normal},
+                   found_);
+    constexpr float dark = 1e-3f;
+    for (size_t i = 0; i < found_.size(); i++)
+      low_.color[i] = clamp((found_[i] + dark) / (low_.color[i] + dark), 0.25f, 4.0f);
+    upsample(low_, change_);
+    for (size_t i = 0; i < full.color.size(); i++) shown.frame.color[i] *= change_.color[i];
+  }
+
+ private:
+  Deferred drawn_{Answers::at_once};
+  int scale_;
+  std::unique_ptr<Denoiser> denoiser_;
+  Frame low_, change_;
+  std::vector<vec3> found_;
+};
+
 class ResolutionDrop : public VisitMethod {
  public:
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
@@ -330,6 +377,10 @@ constexpr VisitMethodEntry list[] = {
      [] { return make_deferred(Answers::next_frame); }},
     {"primary_behind", "the same, pictures a frame late", false,
      [] { return make_deferred(Answers::waited_for); }},
+    {"reconstructed", "primary, each picture through the small network", false,
+     [] { return make_reconstructed(1); }},
+    {"reconstructed_half", "the same at half the resolution", false,
+     [] { return make_reconstructed(2); }},
     {"resolution_drop", "whole pictures, as coarse as the budget", true, make_resolution_drop},
     {"hold", "the last complete picture", true, make_hold},
     {"frameless", "random pixels replaced", true, make_frameless},
@@ -349,6 +400,9 @@ std::unique_ptr<VisitMethod> make_deferred(Answers answers) {
 }
 std::unique_ptr<VisitMethod> make_denoised() {
   return std::make_unique<Deferred>(Answers::at_once, true);
+}
+std::unique_ptr<VisitMethod> make_reconstructed(int scale) {
+  return std::make_unique<ReconstructedInMotion>(scale);
 }
 std::unique_ptr<VisitMethod> make_resolution_drop() { return std::make_unique<ResolutionDrop>(); }
 std::unique_ptr<VisitMethod> make_hold() { return std::make_unique<Hold>(); }

@@ -58,6 +58,9 @@ enum class Answers { at_once, next_frame, waited_for };
 std::unique_ptr<VisitMethod> make_deferred(Answers answers);
 // That pipeline, at rest with learned reconstruction. Throws std::runtime_error where there are no
 // weights.
+// make_deferred(at_once), each picture through the small network at 1 / scale of its resolution.
+// Throws std::runtime_error without its weights.
+std::unique_ptr<VisitMethod> make_reconstructed(int scale);
 std::unique_ptr<VisitMethod> make_denoised();
 // The whole picture at the resolution the budget allows, bilinear; while nothing changes, samples
 // add up in pixels of their own.

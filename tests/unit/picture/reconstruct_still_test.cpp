@@ -103,9 +103,20 @@ TEST_F(ReconstructStill, BecomesTheMeanOfManySamples) {
 TEST_F(ReconstructStill, CertainSamplesAreShownAsTheyAre) {
   Rest rest;
   for (size_t i = 0; i < rest.frame.color.size(); i++)
-    for (int k = 0; k < 3; k++) add_sample(rest.samples, i, vec3(fine_pattern(i)), 0x808080u);
+    for (int k = 0; k < 16; k++) add_sample(rest.samples, i, vec3(fine_pattern(i)), 0x808080u);
   rest.reconstruct(*denoiser);
   EXPECT_LT(rest.error(fine_pattern), 0.01);
+}
+
+// Of rare bright samples, most pixels' few samples agree on black by chance.
+TEST_F(ReconstructStill, FewSamplesThatAgreeAreNotBelieved) {
+  Rest rest;
+  std::mt19937 random(3);
+  for (size_t i = 0; i < rest.frame.color.size(); i++)
+    for (int k = 0; k < int(random() % 4); k++)
+      add_sample(rest.samples, i, vec3(random() % 8 == 0 ? 2.4f : 0.0f), uint32_t(random()));
+  rest.reconstruct(*denoiser);
+  EXPECT_LT(rest.error([](size_t) { return 0.3f; }), 0.5);  // of the means: 2 and more
 }
 
 TEST_F(ReconstructStill, LivesThroughLightOfAnyStrength) {

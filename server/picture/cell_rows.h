@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of cells (picture/cells.h) as groups of pixels read them, for picture/compose_drawn.cpp.
+#pragma once
+#include <cstring>
+
+#include "picture/cells.h"
+#include "picture/compose_drawn.h"
+#include "picture/pixel_light.h"
+
+namespace wellspring {
+
+// Pixels are lit in groups that lie between two columns of cell centres: four light pixels, which
+// are packed together, and four cells around. Groups begin half a group before a tile. `Scale`:
+// pixels a side of one of the light; where that is 1 two groups lie side by side in the lanes.
+template <int Scale>
+constexpr int group = cell_size * Scale;
+template <int Scale>
+constexpr int together = lanes / group<Scale>;
+static_assert(cell_size == packed_four && together<light_scale> == 1 && together<1> == 2);
+
+// What the lanes of two groups side by side have to the same side of them.
+struct WideCell : CellLightOf<f8, u8> {
+  f8 albedo[3];
+};
+inline void spread_cells(const PaintedCell& left, const PaintedCell& right, WideCell& to) {
+  constexpr size_t count = sizeof(PaintedCell) / sizeof(float);
+  static_assert(sizeof(WideCell) == count * sizeof(f8));
+  float a[count], b[count];
+  std::memcpy(a, &left, sizeof a), std::memcpy(b, &right, sizeof b);
+  f8 both[count];
+  for (size_t i = 0; i < count; i++) both[i] = f8{a[i], a[i], a[i], a[i], b[i], b[i], b[i], b[i]};
+  std::memcpy(static_cast<void*>(&to), both, sizeof both);
+}
+
+// Two rows of cells around a tile's blocks. Where groups lie side by side, each as the next but one
+// needs it, too.
+template <int Scale>
+struct CellRows {
+  using Cell = std::conditional_t<together<Scale> == 1, PaintedCell, WideCell>;
+  static constexpr int most = RasterRun::most / cell_size + 3;
+  uint64_t picture = 0;
+  int first = 0, row = 0, count = 0;
+  int above = 0;  // which of the rows
+  Cell cell[2][most];
+  i8 flat[most];  // lanes of each group and those beside it that lie between cells in one plane
+
+  const Cell& at(int r, int k) const { return cell[above ^ r][k]; }
+  void read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y, int columns);
+
+ private:
+  void read_row(const Cells& cells, int y, Cell* to) const;
+};
+
+template <int Scale>
+void CellRows<Scale>::read_row(const Cells& cells, int y, Cell* to) const {
+  PaintedCell before{}, here;
+  for (int k = 0; k < count; k++, before = here) {
+    read_cell(cells, first + k, y, here);
+    size_t i = nearest_cell(cells, first + k, y);
+    for (size_t n = 0; n < 3; n++) here.albedo[n] = cells.albedo[n][i];
+    if constexpr (together<Scale> == 1) to[k] = here;
+    else if (k > 0) spread_cells(before, here, to[k - 1]);
+  }
+}
+
+template <int Scale>
+void CellRows<Scale>::read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y,
+                           int columns) {
+  bool below = picture == of && first == x && row + 1 == y && count == columns;
+  picture = of, first = x, row = y, count = columns;
+  above = below ? above ^ 1 : 0;
+  if (!below) read_row(cells, y, cell[above]);
+  read_row(cells, y + 1, cell[above ^ 1]);
+  int32_t one_plane[most + 2 * lanes] = {};  // by groups
+  for (int g = 0; g < count; g += lanes)
+    store(one_plane + g, find_flat(rays, cells, first + 1 + g, row + 1));
+  for (int g = 0; g < count; g++)
+    for (int k = 0; k < lanes; k++) flat[g][k] = one_plane[g + k / group<Scale>];
+}
+
+}  // namespace wellspring

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What moves, drawn in the light that is kept on its skin (light/skin_light.h).
+#include <algorithm>
+
+#include "light/skin_light.h"
+#include "picture/compose_drawn.h"
+#include "picture/drawn_run.h"
+#include "picture/soften_edges.h"
+
+namespace wellspring {
+namespace {
+
+Shown light_part(const SightRun& run, const RunPixels& p, const RunMoving& moving,
+                 const Shining& shining, int i) {
+  Shown shown{{}, f8{}, load<f8>(run.depth + i), load<u8>(run.object + i)};
+  put_moving(p, moving.light, i, i8{} - 1, shown);
+  add_glow(p, shining, i, 0xff, shown);
+  return shown;
+}
+
+bool shows_any(const SightRun& run) {
+  return std::any_of(run.object, run.object + run.count, [](uint32_t o) { return o != 0; });
+}
+
+}  // namespace
+
+void compose_moving(const View& view, const PictureSight& sight, const PictureWindow& window,
+                    const Tonemap& tonemap, std::span<const float> disparity,
+                    std::span<uint8_t> covered, const SkinLight& skin, MovingLight& light) {
+  NearerEyePlanes planes{tonemap.exposure, disparity.data(), covered.data(),
+                         light.picture.rgb.data(), light.peaks.data()};
+  auto take = [&](const SightRun& run) {
+    if (run.x < window.left || run.x + run.count > window.left + window.width) return;
+    if (run.y < window.top || run.y >= window.top + window.height || !shows_any(run)) return;
+    RunPixels p;
+    RunMoving moving;
+    Shining shining = describe_run(run, p);
+    moving.pixels = run.light(skin, p.surface, moving.light);
+    size_t row = size_t(run.y) * size_t(view.width) + size_t(run.x);
+    for (int i = 0; i < run.count; i += lanes)
+      planes.put(row + size_t(i), LanePart{0, std::min(run.count - i, lanes)},
+                 light_part(run, p, moving, shining, i));
+  };
+  soften_edges(sight.see_edges(view, vec2(0.5f), take, RasterShows::moving), light.picture,
+               light.peaks);
+}
+
+}  // namespace wellspring
