@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// show.load: a visitor is led along a guided tour of the castle while the server has few cores, idle
-// or wanted by as many busy threads. FLIP of each displayed picture against the truth of the pose
-// that it shows, both at 320x180: `path`, reconstructed by the network. So that every picture's pose
-// is known exactly, the client sends the tour's poses itself, thirty a second, and the packet header
-// tells the last that the picture has followed; the field of view stays that of the first stop.
-// (Of turns so quick that four fifths of a warp were unknown, the pose is a predicted one.) Beside
-// it: the worst of twenty, pictures a second, the longest time without one, keyframes a second, and
-// the time from a pose to its picture. The storytellers are sent away.
+// show.load: a visitor is led along a guided tour of the castle while the server has few cores,
+// idle or wanted by as many busy threads. FLIP of each displayed picture against the truth of the
+// pose that it shows, both at 320x180: `path`, reconstructed by the network. So that every
+// picture's pose is known exactly, the client sends the tour's poses itself, thirty a second, and
+// the packet header tells the last that the picture has followed; the field of view stays that of
+// the first stop. (Of turns so quick that four fifths of a warp were unknown, the pose is a
+// predicted one.) Beside it: the worst of twenty, pictures a second, the longest time without one,
+// keyframes a second, and the time from a pose to its picture. The storytellers are sent away.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
