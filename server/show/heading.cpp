@@ -68,9 +68,7 @@ std::optional<View> surroundings(const Heading& heading, const View& now, const 
     return std::nullopt;
   View between = expected_view(heading, now, 0.5 * seconds);
   const View views[] = {keyframe_view(now), keyframe_view(between), keyframe_view(on)};
-  // A keyframe in larger pixels is drawn in less time, and so is this.
-  float scale = float(drawn.height) / float(std::max(views[0].height, 1));
-  return surrounding_view(views, surrounding_share * std::min(scale, 1.0f));
+  return surrounding_view(views, surrounding_share);
 }
 
 }  // namespace wellspring
