@@ -66,6 +66,12 @@ View keyframe_view(View view, float turn) {
   return view;
 }
 
+View scaled_view(View view, float scale) {
+  view.width = std::max(int(std::lround(scale * float(view.width))), 1);
+  view.height = std::max(int(std::lround(scale * float(view.height))), 1);
+  return view;
+}
+
 static vec3 direction_at(const View& view, float across, float down) {  // of the picture, 0 to 1
   float high = view.tan_half_fov, wide = high * float(view.width) / float(view.height);
   return view.forward + view.right * (wide * (2 * across - 1)) + view.up * (high * (1 - 2 * down));

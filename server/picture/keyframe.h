@@ -33,6 +33,9 @@ size_t memory_bytes(const Keyframe& keyframe);
 // warps. To the sides so much that it may turn by `turn` radians, within a tenth of its width.
 View keyframe_view(View view, float turn = 0);
 
+// The same in larger pixels: sides of `scale` times as many.
+View scaled_view(View view, float scale);
+
 // One view of all that several of nearly the same place show, in their middle direction and as wide
 // as it takes, within what a flat picture can hold; about `share` of the first one's pixels, and no
 // larger than that to any side. No views: an empty one.

@@ -335,7 +335,7 @@ float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View&
     if (are & ~bits.load(std::memory_order_relaxed)) bits |= are;
   });
   if (!around.empty() && (bits & (outside | at_seam))) {
-    Source wide(around, view, true);
+    Source wide(around, view);
     if (bits & outside) spread_disparities(view, unseen);
     if (carry_bounds(wide, view, scratch)) warp_around(wide, view, scratch, out);
   }

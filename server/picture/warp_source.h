@@ -14,6 +14,9 @@ namespace wellspring::warping {
 inline constexpr float least_depth = 1e-6f;
 // Pixels that disparities within a bilinear sample may open.
 inline constexpr float half_step = 0.5f;
+// Pixels of a keyframe that are as many times as large as the picture's count as larger: margins
+// are rounded to whole pixels, and a field of view may change a little between two keyframes.
+inline constexpr float larger_pixel = 1.1f;
 // Places of a bilinear sample between two pixels, as a power of 2.
 inline constexpr int fractions = 16, fraction_bits = 4;
 
@@ -106,16 +109,17 @@ struct Source {
   Mapping to, back;  // from the new view to the keyframe's, and back
   float last_x, last_y;
   float seam = 0;  // pixels over which it passes into something else at its border
-  // Its pixels are large: colours are bilinear across silhouettes, too, which would have steps.
+  // Its pixels are larger: colours are bilinear across silhouettes, too, which would have steps.
   bool coarse;
 
-  Source(const Keyframe& k, const View& view, bool coarse = false)
+  Source(const Keyframe& k, const View& view)
       : k(k),
         to(make_mapping(view, k.view)),
         back(make_mapping(k.view, view)),
         last_x(float(k.view.width - 1)),
         last_y(float(k.view.height - 1)),
-        coarse(coarse) {}
+        coarse(k.view.tan_half_fov * float(view.height) >
+               larger_pixel * view.tan_half_fov * float(k.view.height)) {}
   // Of the pixel that holds the place.
   f8 disparity(const f8& x, const f8& y) const {
     i8 index = to_int(clamped(y, last_y)) * k.view.width + to_int(clamped(x, last_x));

@@ -25,13 +25,14 @@ constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
 constexpr double backdrop_rate = 4;    // pictures a second of what does not move
 constexpr double learning_rate = 1.5;  // likewise, before the first reconstruction
-constexpr double keyframe_rate = 30;   // pictures drawn a second while the visitor moves, at most
 constexpr float nearly_all = 0.999f;   // converged
 constexpr double around_kept = 2;  // seconds that what lies around is good for: turns come in bouts
 constexpr double predicted_pictures = 2;
 constexpr double settled_samples = 8;  // a pixel, after which the reference takes over
 
-void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
+void smooth(float& value, float sample, float share = 0.1f) { value += (sample - value) * share; }
+// What resolution is decided by: follows a change of load within some three keyframes.
+constexpr float soon = 0.3f;
 
 // Seconds of a picture's period that are left for samples.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
@@ -47,7 +48,25 @@ DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
           seconds(times.light)};
 }
 
+KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor) {
+  const DrawingCosts costs = drawing_costs(show, visitor);
+  double light = costs.light_seconds > 0 ? costs.light_seconds : costs.display_seconds;
+  return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(show), 1),
+                       visitor.order.scale);
+}
+
+// Times measured in one resolution, as they are to be expected in another.
+void carry_times(double factor, StageTimes& times) {
+  for (float* one : {&times.drawing, &times.light, &times.whole, &times.interval})
+    *one *= float(factor);
+}
+
 }  // namespace
+
+int count_moving(const Show& show) {
+  auto moves = [&](const Visitor& one) { return one.welcomed && !stands(show, one); };
+  return int(std::count_if(show.visitors.begin(), show.visitors.end(), moves));
+}
 
 void watch(const Show& show, Visitor& visitor) {
   View view = view_of(show, visitor);
@@ -73,7 +92,9 @@ bool rests(const Show& show, const Visitor& visitor) {
 double drawing_rate(const Show& show, const Visitor& visitor) {
   double rate = picture_rate(show, visitor);
   if (!stands(show, visitor))
-    return show.settings.background ? std::min(rate, keyframe_rate) : rate;
+    return show.settings.background
+               ? std::min(rate, 1 / plan_next_keyframe(show, visitor).period)
+               : rate;
   if (visitor.backdrop) rate = backdrop_rate;
   // Until the first reconstruction, samples do more for it than pictures.
   bool first = show.pass.denoiser && !visitor.rest.reconstructed && !rests(show, visitor);
@@ -129,9 +150,15 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   bool fine = learns || wants_fine_light(order.still, !seen || before.coarse, guessed);
   order.attention = visitor.attention;
   order.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
-  order.samples = sample_budget(seconds_to_trace(show, visitor, busy),
-                                size_t(visitor.width) * size_t(visitor.height),
-                                drawing_costs(show, visitor), fine);
+  const bool moves = order.keep && !order.still && visitor.frame_number > 0;
+  if (moves) order.scale = plan_next_keyframe(show, visitor).scale;
+  const View shown = scaled_view(now, order.scale);
+  const double pixels = double(shown.width) * double(shown.height);
+  DrawingCosts costs = drawing_costs(show, visitor);
+  double factor = keyframe_cost(order.scale) / keyframe_cost(before.scale);
+  costs.drawing_seconds *= factor, costs.light_seconds *= factor;
+  order.samples =
+      sample_budget(seconds_to_trace(show, visitor, busy), size_t(pixels), costs, fine);
   // When all is known, what changes is looked for.
   if (order.samples_only && has_all_samples(visitor.rest))
     order.samples = samples_to_watch(order.samples);
@@ -139,20 +166,19 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   // samples are few; who stops, until more is known.
   double interval = 1 / drawing_rate(show, visitor);
   double seen_for = std::max(interval, 0.001 * double(visitor.times.interval));
-  double pixels = double(visitor.width) * double(visitor.height);
   order.passing = !fine;
   order.coarse = order.passing && !affords_fine_light(order.samples / (seen_for * pixels),
                                                       before.passing && !before.coarse);
-  if (order.keep && !order.still && visitor.frame_number > 0) {
+  if (moves) {
     // It is seen from when it is finished until the next one is.
     interval = seen_for;
     double seen_in = 0.001 * double(visitor.times.whole) + 0.5 * interval;
     order.expected = expected_view(visitor.heading, now, seen_in);
     order.ahead = expected_view(visitor.heading, now, seen_in + interval);
     float turn = expected_turn(visitor.heading, now, 0.5 * interval);
-    order.view = order.passing ? keyframe_view(order.expected, turn) : order.expected;
+    order.view = scaled_view(keyframe_view(order.expected, turn), order.scale);
     if (order.passing) {
-      order.ahead = keyframe_view(order.ahead);
+      order.ahead = scaled_view(keyframe_view(order.ahead), order.scale);
       order.around = surroundings(visitor.heading, now, order.view, seen_in + 0.5 * interval);
     }
   } else {
@@ -319,18 +345,21 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
     show.easel.work_bytes = memory_bytes(show.easel.work) + memory_bytes(show.pass);
     return;
   }
+  if (order.scale != visitor.order.scale)
+    carry_times(keyframe_cost(order.scale) / keyframe_cost(visitor.order.scale), times);
+  const float share = order.still ? 0.1f : soon;
   if (order.passing) {
-    smooth(times.light, costs.light);
+    smooth(times.light, costs.light, share);
   } else {
     smooth(times.display, costs.display);
     smooth(times.tonemap, costs.tonemap);
   }
-  smooth(times.drawing, costs.drawing);
-  if (!order.still) smooth(times.whole, float(1000 * costs.seconds));
+  smooth(times.drawing, costs.drawing, share);
+  if (!order.still) smooth(times.whole, float(1000 * costs.seconds), share);
   double interval = order.time - visitor.drawn_at;
   if (interval > 0 && interval < 1) {
     smooth(visitor.drawn_fps, float(1 / interval));
-    if (!order.still) smooth(times.interval, float(1000 * interval));
+    if (!order.still) smooth(times.interval, float(1000 * interval), share);
   }
   visitor.drawn_at = order.time;
   visitor.broker_seconds =

@@ -17,6 +17,8 @@ bool stands(const Show& show, const Visitor& visitor);
 // Nothing in the picture changes any more.
 bool rests(const Show& show, const Visitor& visitor);
 
+// Visitors who do not stand: the time is divided among them.
+int count_moving(const Show& show);
 // Pictures a second that should be drawn for this visitor.
 double drawing_rate(const Show& show, const Visitor& visitor);
 // One is due, and the visitor's browser and socket could take it.

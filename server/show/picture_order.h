@@ -24,6 +24,7 @@ struct PictureOrder {
   bool settled = false;  // for long: the reference takes over
   bool passing = false;  // drawn for a moment, and some around (picture/compose_drawn.h)
   bool coarse = false;   // that in coarser light
+  float scale = 1;       // sides of its view, in pixels, over those of the visitor's picture
   bool attention = true;
   bool keep = false;     // as a keyframe, for others to be made of
   uint64_t seed = 0;

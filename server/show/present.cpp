@@ -21,7 +21,7 @@ constexpr double still_rate = 25;      // pictures a second while only the story
 constexpr double settling_rate = 7;    // while nothing moves: more time for samples
 constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr double on_time = 0.0005;     // seconds that a picture may come too early
-constexpr double warping_share = 0.5;  // of the cores, at most, for all visitors' warps and JPEGs
+constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
 constexpr float most_unknown =
     0.8f;  // of a warped picture: beyond, the one before is as near to the truth (cache.warp)
 constexpr int animated_gain = 5;  // JPEG quality above the moving one while the storyteller moves
@@ -108,12 +108,11 @@ double picture_rate(const Show& show, const Visitor& visitor) {
     rate = std::min(rate, sees_figure(show, visitor.last_view) ? still_rate
                           : rests(show, visitor)               ? resting_rate
                                                                : settling_rate);
-  } else if (show.settings.background && visitor.times.encode > 0) {
-    // A warp costs about what its JPEG does.
-    auto moves = [&](const Visitor& one) { return one.welcomed && !stands(show, one); };
-    auto movers = std::count_if(show.visitors.begin(), show.visitors.end(), moves);
-    double each = 2 * 0.001 * double(visitor.times.encode) * double(std::max<ptrdiff_t>(movers, 1));
-    rate = std::min(rate, warping_share * oneapi::tbb::info::default_concurrency() / each);
+  } else if (show.settings.background && visitor.times.warp > 0) {
+    // A warp takes all cores, its JPEG one.
+    double milliseconds = double(visitor.times.warp) +
+                          double(visitor.times.encode) / oneapi::tbb::info::default_concurrency();
+    rate = std::min(rate, warping_share / (0.001 * milliseconds * std::max(count_moving(show), 1)));
   }
   return std::clamp(rate, 1.0, 120.0);
 }

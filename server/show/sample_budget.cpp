@@ -2,6 +2,7 @@
 #include "show/sample_budget.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace wellspring {
 namespace {
@@ -17,6 +18,12 @@ constexpr float few_guessed = 0.25f;  // of the pixels of coarser light: some 1.
 constexpr float nearly_none = 0.1f;   // of the picture's pixels
 constexpr float most_known = 0.5f;    // likewise
 constexpr double settled_after = 2;   // seconds
+constexpr float keyframe_scales[] = {1, 0.75f, 0.5f, 0.375f};
+// Seconds from keyframe to keyframe. Beyond a tenth turns and near things uncover much.
+constexpr double shortest_period = 1 / 30.0, longest_period = 1 / 10.0;
+constexpr double sample_share = 0.3;  // of that time, at least
+constexpr double climbing = 0.7;      // of the time allowed, when a larger keyframe is drawn again
+constexpr float most_uncovered = 0.2f;  // of a picture's width, by a tour's turn
 
 }  // namespace
 
@@ -40,6 +47,25 @@ bool wants_fine_light(bool stands, bool coarse, float guessed) {
 
 bool affords_fine_light(double samples, bool before) {
   return samples >= (before ? leave_fine : enter_fine);
+}
+
+double keyframe_cost(float scale) {
+  return double(scale);
+}
+
+KeyframePlan plan_keyframe(double seconds, float before) {
+  constexpr double most = (1 - sample_share) * longest_period;
+  auto cost = [&](float scale) { return seconds * keyframe_cost(scale) / keyframe_cost(before); };
+  auto fits = [&](float scale) { return cost(scale) <= (scale > before ? climbing * most : most); };
+  const float* found = std::find_if(std::begin(keyframe_scales), std::end(keyframe_scales), fits);
+  float scale = found == std::end(keyframe_scales) ? *std::prev(found) : *found;
+  return {scale,
+          std::clamp(cost(scale) / (1 - sample_share), shortest_period, longest_period)};
+}
+
+float tour_pace(float turn, float fov) {
+  float most = most_uncovered * fov;
+  return turn > most ? most / turn : 1.0f;
 }
 
 bool wants_reference(double seconds_at_rest, bool before, bool coarse, float guessed, float known) {

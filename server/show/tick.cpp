@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tick: one straight function. See show.h.
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "base/clock.h"
@@ -11,6 +12,7 @@
 #include "show/orders.h"
 #include "show/picture.h"
 #include "show/present.h"
+#include "show/sample_budget.h"
 #include "show/show.h"
 #include "show/story_stage.h"
 #include "wire/json.h"
@@ -229,6 +231,14 @@ void pose_world(Show& show) {
   show.pose_number++;
 }
 
+// A tour's camera waits for keyframes that are slow; a visitor's own turn does not.
+void pace_tour(Visitor& visitor) {
+  double seconds = 0.001 * double(std::max(visitor.times.interval, visitor.times.whole));
+  float across = 2 * std::atan(std::tan(0.5f * visitor.view.fov) * float(visitor.width) /
+                               float(visitor.height));
+  visitor.tour.most_pace = tour_pace(turn_ahead(visitor.tour, seconds), across);
+}
+
 void send_state(Show& show, Visitor& visitor) {
   double interval = visitor.utterance != 0 ? heard_state_interval : state_interval;
   if (show.time - visitor.state_sent_at < interval) return;
@@ -393,6 +403,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     person = teller->position;
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
+    pace_tour(visitor);
     TourStep step;
     move_visitor(visitor, *show.world, show.exhibit, show.roads, person, dt, step);
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;

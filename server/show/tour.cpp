@@ -185,14 +185,21 @@ void look_round(TourRide& ride, vec2 by) {
   ride.looked = 0;
 }
 
+float turn_ahead(const TourRide& ride, double seconds) {
+  if (!ride.path) return 0;
+  Viewpoint now = eval_camera_path(*ride.path, ride.time),
+            then = eval_camera_path(*ride.path, ride.time + seconds);
+  return std::hypot(then.yaw - now.yaw, then.pitch - now.pitch);
+}
+
 TourStep advance_tour(TourRide& ride, Voice& narration, const Exhibit& exhibit,
                       const TourRoads& roads, float dt) {
   TourStep step;
   dt = std::clamp(dt, 0.0f, 0.25f);
   bool plays = ride.state == TourRide::State::playing;
-  ride.pace += (float(plays) - ride.pace) * (1 - std::exp(-dt / pace_seconds));
-  if (!plays && ride.pace < 0.01f) ride.pace = 0;
-  if (plays && ride.pace > 0.99f) ride.pace = 1;
+  const float goal = plays ? ride.most_pace : 0.0f;
+  ride.pace += (goal - ride.pace) * (1 - std::exp(-dt / pace_seconds));
+  if (std::abs(ride.pace - goal) < 0.01f) ride.pace = goal;
   if (ride.path) {
     ride.time += double(dt * ride.pace);
     ride.view = eval_camera_path(*ride.path, ride.time);

@@ -36,7 +36,8 @@ struct TourRide {
   int target = 0;             // viewpoint that `path` leads to
   std::shared_ptr<const CameraPath> path;
   double time = 0;            // on the path
-  float pace = 0;             // 0..1 of the path's own speed: eased when paused and played on
+  float pace = 0;  // 0..1 of the path's own speed: eased when paused, played on and slowed down
+  float most_pace = 1;  // 0..1: of that, so that pictures follow its turns
   float stayed = 0;           // seconds since the stop was reached
   Viewpoint view;  // where the tour has the camera, the visitor's own looking round left out
   vec2 look{0};               // that: yaw, pitch
@@ -59,6 +60,9 @@ void stop_tour(TourRide& ride, Voice& narration);
 // The camera shall go to a viewpoint as soon as it rests; from `from` when no ride is under way.
 void glide_to(TourRide& ride, int viewpoint, const Viewpoint& from);
 void look_round(TourRide& ride, vec2 by);
+
+// Radians that the way turns within the next `seconds` at its own speed.
+float turn_ahead(const TourRide& ride, double seconds);
 
 // Moves on by `dt` seconds, 0 to 0.25; longer steps are cut. Adds to the narrator's queue.
 TourStep advance_tour(TourRide& ride, Voice& narration, const Exhibit& exhibit,

@@ -190,7 +190,7 @@ class Deferred : public VisitMethod {
   VisitPicture before_;
 };
 
-// Each moving picture goes through the network, at a part of its resolution: what that changes there
+// Each moving picture goes through the network, at a part of its resolution: what changes there
 // is multiplied with the full picture.
 class ReconstructedInMotion : public VisitMethod {
  public:

@@ -70,7 +70,7 @@ void bench_show_rest(BenchReport& report, const BenchOptions& options) {
   truths.spp = options.visit_spp > 0 ? options.visit_spp : options.quick ? 24 : 128;
   truths.folder = truths_folder(options);
   Museum museum(options.content + "/castle");
-  ServerProcess server(options, "castle", "automatic");
+  ServerProcess server(options, "castle");
   Rest rest;
   WsTarget target;
   target.port = server.port;

@@ -18,8 +18,7 @@ extern char** environ;
 
 namespace wellspring {
 
-ServerProcess::ServerProcess(const BenchOptions& options, const std::string& exhibit,
-                             const std::string& draw) {
+ServerProcess::ServerProcess(const BenchOptions& options, const std::string& exhibit) {
   int out[2];
   if (pipe(out) != 0) throw std::runtime_error("pipe failed");
   posix_spawn_file_actions_t actions;
@@ -29,8 +28,7 @@ ServerProcess::ServerProcess(const BenchOptions& options, const std::string& exh
   posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
   std::string program = options.programs + "/wellspring_server";
   std::vector<std::string> words = {program,     "--port",        "0",     "--exhibit", exhibit,
-                                    "--content", options.content, "--web", options.web, "--draw",
-                                    draw};
+                                    "--content", options.content, "--web", options.web};
   words.insert(words.end(), options.server_words.begin(), options.server_words.end());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

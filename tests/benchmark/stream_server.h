@@ -13,8 +13,7 @@ namespace wellspring {
 // be started.
 class ServerProcess {
  public:
-  // `draw`: its --draw.
-  ServerProcess(const BenchOptions& options, const std::string& exhibit, const std::string& draw);
+  ServerProcess(const BenchOptions& options, const std::string& exhibit);
   ~ServerProcess();
   ServerProcess(const ServerProcess&) = delete;
   ServerProcess& operator=(const ServerProcess&) = delete;

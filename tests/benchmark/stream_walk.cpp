@@ -33,11 +33,10 @@ Input stroll(double t, uint32_t seq, double interval) {
   return input;
 }
 
-// Results are called `name`.fps and so on; `draw` goes to the server.
-void walk(BenchReport& report, const BenchOptions& options, const std::string& name,
-          const std::string& draw) {
+// Results are called `name`.fps and so on.
+void walk(BenchReport& report, const BenchOptions& options, const std::string& name) {
   const double warm_up = 2, seconds = options.quick ? 6 : 20, input_interval = 1.0 / 30;
-  ServerProcess server(options, "castle", draw);
+  ServerProcess server(options, "castle");
   WsClient client;
   WsTarget target;
   target.port = server.port;
@@ -92,7 +91,7 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
   std::vector<double> gaps;
   for (size_t i = 1; i < arrivals.size(); i++)
     gaps.push_back(1000 * (arrivals[i] - arrivals[i - 1]));
-  nlohmann::json where = {{"scene", "castle"}, {"size", "1280x720"}, {"draw", draw}};
+  nlohmann::json where = {{"scene", "castle"}, {"size", "1280x720"}};
   report.add(name + ".fps", double(arrivals.size() - 1) / (arrivals.back() - arrivals.front()),
              "1/s", where);
   report.add(name + ".drawn_fps",
@@ -111,8 +110,7 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
 }  // namespace
 
 void bench_stream(BenchReport& report, const BenchOptions& options) {
-  walk(report, options, "stream.walk", "automatic");
-  walk(report, options, "stream.walk_points", "never");
+  walk(report, options, "stream.walk");
 }
 
 }  // namespace wellspring

@@ -129,6 +129,21 @@ TEST(WarpPicture, AnotherFieldOfView) {
   EXPECT_LE(largest_difference(warp(keyframe_of(wall, before), now), draw(wall, now).picture), 2);
 }
 
+// A keyframe in larger pixels is seen softly: edges that it draws within one of its pixels have no
+// steps.
+TEST(WarpPicture, OfLargerPixelsIsSoft) {
+  View view = look_at({0.3f, 1, 0.2f}, 0);
+  for (float scale : {0.75f, 0.5f, 0.375f}) {
+    Image8 soft = warp(keyframe_of(bars(0.2f), scaled_view(view, scale)), view);
+    int step = 0;
+    for (size_t i = 3; i < soft.rgb.size(); i++)
+      if (i / 3 % size_t(view.width) != 0)
+        step = std::max(step, std::abs(int(soft.rgb[i]) - int(soft.rgb[i - 3])));
+    EXPECT_LT(step, 255 * scale + 16) << scale;
+    EXPECT_GT(step, 64);
+  }
+}
+
 // A step aside uncovers four pixels beside every bar. They show the wall, and every bar is where it
 // is.
 TEST(WarpPicture, WhatWasHiddenShowsWhatIsBehind) {

@@ -77,6 +77,43 @@ TEST(SampleBudget, WhoMovesHasFineLightWhereSamplesAreNotFew) {
   EXPECT_TRUE(affords_fine_light(0.35, true));
 }
 
+TEST(PlanKeyframe, ResolutionFallsBeforeKeyframesComeLate) {
+  struct {
+    double seconds;  // that a keyframe of scale `before` took
+    float before, scale;
+    double period;
+  } const table[] = {
+      {0.005, 1, 1, 1 / 30.0},     {0.05, 1, 1, 0.05 / 0.7},     {0.069, 1, 1, 0.069 / 0.7},
+      {0.08, 1, 0.75f, 0.06 / 0.7}, {0.12, 1, 0.5f, 0.06 / 0.7}, {0.6, 1, 0.375f, 0.1},
+      {0, 1, 1, 1 / 30.0},  // nothing measured yet
+      // It climbs back when there is time to spare.
+      {0.06, 0.75f, 0.75f, 0.06 / 0.7},  {0.04, 0.75f, 0.75f, 0.04 / 0.7},
+      {0.03, 0.75f, 1, 0.04 / 0.7},      {0.01, 0.375f, 1, 0.08 / 3 / 0.7},
+      {0.07, 0.375f, 0.375f, 0.1},       {0.35, 0.375f, 0.375f, 0.1},
+  };
+  for (const auto& one : table) {
+    KeyframePlan plan = plan_keyframe(one.seconds, one.before);
+    EXPECT_EQ(plan.scale, one.scale) << one.seconds << " at " << one.before;
+    EXPECT_NEAR(plan.period, one.period, 1e-6) << one.seconds << " at " << one.before;
+  }
+}
+
+// Where nothing changes, the next picture is not of another size again.
+TEST(PlanKeyframe, Settles) {
+  for (double full = 0.01; full < 0.4; full += 0.003)
+    for (float before : {1.0f, 0.75f, 0.5f, 0.375f}) {
+      float first = plan_keyframe(full * keyframe_cost(before), before).scale;
+      EXPECT_EQ(plan_keyframe(full * keyframe_cost(first), first).scale, first) << full;
+    }
+}
+
+TEST(TourPace, SlowsDownWhereAKeyframeWouldMissAFifth) {
+  EXPECT_EQ(tour_pace(0, 1.5f), 1);
+  EXPECT_EQ(tour_pace(0.29f, 1.5f), 1);
+  EXPECT_FLOAT_EQ(tour_pace(0.6f, 1.5f), 0.5f);
+  EXPECT_FLOAT_EQ(tour_pace(3, 1.5f), 0.1f);
+}
+
 TEST(SampleBudget, TheReferenceComesLast) {
   EXPECT_FALSE(wants_reference(1, false, false, 0, 1));
   EXPECT_FALSE(wants_reference(30, false, true, 0, 1));  // light is coarse yet

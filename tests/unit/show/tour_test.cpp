@@ -111,6 +111,26 @@ TEST_F(TourTest, PauseComesToRestSoftlyAndHoldsThePlaceAndTheText) {
   EXPECT_LE(fastest, 1.01 * double(CameraLimits{}.speed));
 }
 
+// Slower pictures: the same way in more time, softly, and at its own pace afterwards.
+TEST_F(TourTest, WaitsForPictures) {
+  glide_to(ride, 1, last);
+  run(0.1);
+  ASSERT_TRUE(ride.path);
+  double way = ride.path->seconds;
+  ride.time = 0;
+  EXPECT_EQ(turn_ahead(ride, 0), 0);
+  EXPECT_NEAR(turn_ahead(ride, way), 2, 0.3);  // and keeps to a way around what stands there
+  ride.most_pace = 0.25f;
+  run(2);
+  EXPECT_EQ(ride.pace, 0.25f);
+  double before = ride.time;
+  run(0.4);
+  EXPECT_NEAR(ride.time - before, 0.1, 0.01);
+  ride.most_pace = 1;
+  run(2);
+  EXPECT_EQ(ride.pace, 1);
+}
+
 TEST_F(TourTest, WhoHasWalkedOffIsFetched) {
   play();
   run(6);
