@@ -274,30 +274,39 @@ uint64_t SightRun::polished() const {
 
 uint64_t SightRun::light(const SkinLight& skin, const RunSurface& surface, RunSkin& to) const {
   if (seen_) return 0;
-  uint64_t moving = 0;
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
   const RasterRun& r = *impl_->run;
+  float f0[RunSurface::most], roughness[RunSurface::most], share[RunSurface::most];
+  uint64_t moving = 0;
   for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
     if (r.instance[begin] == RasterRun::nothing) continue;
     const Facet& f = impl_->facet(begin);
     if (!f.placed->moving) continue;
     SkinTriangle light = find_skin(skin, r.instance[begin], f.corner, !f.front);
+    GlossFactors gloss = gloss_factors(*f.material);
     for (int i = begin; i < r.end[p]; i++) moving |= uint64_t(1) << i;
     for (int i = begin; i < r.end[p]; i += lane_count) {
       Lanes u = load_lanes(r.u + i), v = load_lanes(r.v + i);
       store_lanes(to.red + i, light.corner.x + light.edge1.x * u + light.edge2.x * v);
       store_lanes(to.green + i, light.corner.y + light.edge1.y * u + light.edge2.y * v);
       store_lanes(to.blue + i, light.corner.z + light.edge1.z * u + light.edge2.z * v);
-      vec3 way = -impl_->direction(i);
-      const vec3 step = impl_->view.right * impl_->pixel_angle;
-      Lanes x = way.x - step.x * lane, y = way.y - step.y * lane, z = way.z - step.z * lane;
-      Lanes nx = load_lanes(surface.nx + i), ny = load_lanes(surface.ny + i),
-            nz = load_lanes(surface.nz + i);
-      Lanes lengths = (nx * nx + ny * ny + nz * nz) * (x * x + y * y + z * z);
-      Lanes cosine = (nx * x + ny * y + nz * z) / lanes_sqrt(lanes_max(lengths, all_lanes(1e-30f)));
-      cosine = lanes_min(lanes_max(cosine, all_lanes(0)), all_lanes(1));
-      store_lanes(to.gloss + i, gloss_albedo(*f.material, cosine));
+      store_lanes(f0 + i, all_lanes(gloss.f0));
+      store_lanes(roughness + i, all_lanes(gloss.roughness));
+      store_lanes(share + i, all_lanes(gloss.share));
     }
+  }
+  const vec3 step = impl_->view.right * impl_->pixel_angle;
+  for (int i = 0; i < count; i += lane_count) {
+    if (!(moving >> i & 0xff)) continue;
+    vec3 way = -impl_->direction(i);
+    Lanes x = way.x - step.x * lane, y = way.y - step.y * lane, z = way.z - step.z * lane;
+    Lanes nx = load_lanes(surface.nx + i), ny = load_lanes(surface.ny + i),
+          nz = load_lanes(surface.nz + i);
+    Lanes lengths = (nx * nx + ny * ny + nz * nz) * (x * x + y * y + z * z);
+    Lanes cosine = (nx * x + ny * y + nz * z) / lanes_sqrt(lanes_max(lengths, all_lanes(1e-30f)));
+    cosine = lanes_min(lanes_max(cosine, all_lanes(0)), all_lanes(1));
+    store_lanes(to.gloss + i, gloss_albedo(load_lanes(f0 + i), load_lanes(roughness + i),
+                                           load_lanes(share + i), cosine));
   }
   return moving;
 }

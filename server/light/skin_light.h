@@ -81,6 +81,7 @@ struct SkinLight {
   std::vector<vec4> light;  // of each place; w: 0 where nothing is known
   vec3 mean{0};         // of all that is known of what is visible
   float noise = 0.5f;   // relative variance of a sample, measured
+  float samples = 0;    // of a place that is visible and known, on average
   float reach = 0;      // metres: what is hit nearer than that blocks
   float usual_area = 0;  // of places
   uint32_t cursor = 0, turn = 0;  // whose turn it is

@@ -97,19 +97,20 @@ void solve(const SkinLight& skin, size_t level, Equations& finer) {
 
 // The relative variance of samples, and the mean light of what is visible.
 void measure(std::span<const uint8_t> visible, SkinLight& skin) {
-  double squares = 0, whole = 0, count = 0;
+  double squares = 0, whole = 0, count = 0, samples = 0;
   dvec3 sum(0);
   for (size_t i = 0; i < skin.places.size(); i++) {
     const vec4& light = skin.light[i];
     if (!(light.w > 0) || !visible[skin.places[i].instance - skin.first_instance]) continue;
     sum += dvec3(vec3(light)), count++;
+    samples += double(skin.history[i].newer.count + skin.history[i].older.count);
     for (const SkinMean* mean : {&skin.history[i].newer, &skin.history[i].older}) {
       if (!(mean->count > 1)) continue;
       double known = double(luminance(vec3(light)));
       squares += double(mean->squares), whole += double(mean->count - 1) * known * known;
     }
   }
-  if (count > 0) skin.mean = vec3(sum / count);
+  if (count > 0) skin.mean = vec3(sum / count), skin.samples = float(samples / count);
   // While most places have one sample, little is known of that.
   const double prior = prior_samples * double(luminance(skin.mean)) * double(luminance(skin.mean));
   squares += prior_noise * prior, whole += prior;

@@ -19,6 +19,7 @@
 
 #include "base/worker.h"
 #include "cache/broker.h"
+#include "light/skin_light.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"
@@ -60,14 +61,14 @@ struct DrawingWork {
 };
 size_t memory_bytes(const DrawingWork& work);
 
-// Light on what moves (light/skin_light.h), that all visitors share, is to be found.
+// Light on what moves is being found (show/moving.h).
 struct SkinOrder {
-  bool wanted = false;
+  bool at_work = false;
   double time = -1e9;  // show time
-  int samples = 0, cycles = 2;  // of smoothing
-  uint64_t seed = 0;
+  SkinUpdate update;
   std::vector<vec3> eyes;
-  size_t traced = 0;  // samples that the tick has not counted yet
+  int cycles = 1;     // of smoothing
+  size_t traced = 0;  // samples
 };
 
 struct Easel {

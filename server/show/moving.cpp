@@ -14,10 +14,11 @@ namespace {
 
 constexpr double most_share = 0.5;   // of the time
 constexpr double on_time = 0.0005;   // seconds that it may come too early
-constexpr double skin_rate = 10;     // times a second that light on what moves is found
-constexpr double skin_share = 0.3;  // of the time, for its samples
+constexpr double skin_rate = 5;      // times a second that light on what moves is found
+constexpr double most_skin_seconds = 0.025;  // of tracing, each time; when there are
+constexpr float enough_samples = 8;          // of a place, less, but
+constexpr double least_share = 0.25;         // of that at least: she moves
 constexpr int cycles = 2, first_cycles = 6;  // of smoothing; when it was not found for a while
-constexpr double least_skin_samples = 200, most_skin_seconds = 0.25;
 
 bool has_backdrop(const Show& show, const Visitor& visitor) {
   return visitor.welcomed && visitor.backdrop && visitor.order.leaps == visitor.leaps &&
@@ -62,40 +63,46 @@ double seconds_to_moving(const Show& show) {
   return std::max(seconds, 0.0);
 }
 
+bool wants_skin(const Show& show) {
+  if (show.skin.places.empty() || show.time - show.easel.skin.time < 1 / skin_rate - on_time)
+    return false;
+  return std::any_of(show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
+    return visitor.welcomed && sees_figure(show, visitor.last_view);
+  });
+}
+
 void order_skin(Show& show) {
   SkinOrder& order = show.easel.skin;
-  show.totals.samples += std::exchange(order.traced, 0);
-  order.wanted = !show.skin.places.empty() && show.storyteller_visible &&
-                 show.time - order.time >= 1 / skin_rate - on_time;
-  if (!order.wanted) return;
+  order.update = {};
   order.eyes.clear();
   for (const Visitor& visitor : show.visitors)
     if (visitor.welcomed) order.eyes.push_back(visitor.last_view.position);
-  double seconds = std::min(show.time - order.time, most_skin_seconds);
+  order.update.eyes = order.eyes;
+  double seconds = most_skin_seconds *
+                   std::clamp(double(enough_samples / show.skin.samples), least_share, 1.0);
+  order.update.samples = int(seconds * double(show.samples_per_second));
+  order.update.seed = mix64(show.ticks);
+  order.update.transport = show.settings.transport;
+  order.update.transport.clamp = show.settings.moving_clamp;
   order.cycles = show.time - order.time > 1 ? first_cycles : cycles;
-  order.samples =
-      int(std::max(skin_share * seconds * double(show.samples_per_second), least_skin_samples));
   order.time = show.time;
-  order.seed = mix64(show.ticks);
+  order.at_work = true;
 }
 
 void light_skin(Show& show) {
   SkinOrder& order = show.easel.skin;
-  if (!std::exchange(order.wanted, false)) return;
-  SkinUpdate update;
-  update.samples = order.samples;
-  update.seed = order.seed;
-  update.eyes = order.eyes;
-  update.transport = show.settings.transport;
-  update.transport.clamp = show.settings.moving_clamp;
-  order.traced += size_t(update_skin(*show.world, show.lights, update, show.skin));
+  order.traced = size_t(update_skin(*show.world, show.lights, order.update, show.skin));
   smooth_skin(*show.world, show.skin, order.cycles);
+}
+
+void finish_skin(Show& show) {
+  show.easel.skin.at_work = false;
+  show.totals.samples += show.easel.skin.traced;
 }
 
 void draw_moving(Show& show, Visitor& visitor) {
   Easel& easel = show.easel;
   double began = seconds_now();
-  light_skin(show);
   visitor.compositor.draw_moving(*show.world, visitor.keyframe, *show.sight,
                                  Tonemap{show.exhibit.exposure}, easel.work.moving_light,
                                  easel.work.moving);

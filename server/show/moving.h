@@ -16,11 +16,13 @@ double moving_share(const Show& show);
 bool wants_moving(const Show& show, const Visitor& visitor);
 // Until it will be due for anybody, at most a second.
 double seconds_to_moving(const Show& show);
-// By the tick, while the easel is idle and before it draws what moves: the light on that is to be
-// found anew, if it is time.
+// Light on what moves (light/skin_light.h), that all visitors share: it is time to find it anew,
+// as somebody may see it. By the tick, while the easel is idle, then on the easel, as the world is
+// then, then by the tick.
+bool wants_skin(const Show& show);
 void order_skin(Show& show);
-// On the easel, before anything is drawn: does so, as the world is now.
 void light_skin(Show& show);
+void finish_skin(Show& show);
 // Reads the visitor's keyframe, which may not change meanwhile.
 void draw_moving(Show& show, Visitor& visitor);
 void finish_moving(Show& show, Visitor& visitor);

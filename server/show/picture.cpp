@@ -24,7 +24,8 @@ constexpr double still_after = 0.25;   // seconds without motion until a picture
 constexpr double slack = 0.0015;       // seconds kept free of every period
 constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
 constexpr double backdrop_rate = 4;    // pictures a second of what does not move
-constexpr double learning_rate = 1.5;  // likewise, before the first reconstruction
+constexpr double learning_rate = 1.5;  // of pictures before the first reconstruction,
+constexpr double learning_backdrop_rate = 0.75;  // likewise of what does not move
 constexpr float nearly_all = 0.999f;   // converged
 constexpr double around_kept = 2;  // seconds that what lies around is good for: turns come in bouts
 constexpr double predicted_pictures = 2;
@@ -99,7 +100,7 @@ double drawing_rate(const Show& show, const Visitor& visitor) {
   // Until the first reconstruction, samples do more for it than pictures.
   bool first = show.pass.denoiser && !visitor.rest.reconstructed && !rests(show, visitor);
   first &= visitor.backdrop || !visitor.order.figure;
-  return first ? std::min(rate, learning_rate) : rate;
+  return first ? std::min(rate, visitor.backdrop ? learning_backdrop_rate : learning_rate) : rate;
 }
 
 bool wants_drawing(const Show& show, const Visitor& visitor) {
@@ -287,7 +288,6 @@ DrawingStep draw_step(Show& show, const PictureOrder& order, DrawingStep step, V
   const Technique& technique = order.settled ? *show.still_technique : *show.technique;
   const View lit = order.coarse ? light_view(order.view) : order.view;
   if (step == DrawingStep::plan) {
-    light_skin(show);
     step = plan_picture(show, order, technique, lit, visitor);
   } else if (show.easel.given_up) {
     if (step != DrawingStep::guide) remember_traced(show, order, lit, show.easel.work, visitor);

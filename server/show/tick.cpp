@@ -253,6 +253,7 @@ bool take_finished(Show& show) {
   if (!easel.idle()) return false;
   if (!easel.brokers.empty()) finish_samples(show);
   if (show.pass.at_work) take_pass(show);
+  if (easel.skin.at_work) finish_skin(show);
   if (Visitor* posed = std::exchange(easel.posed, nullptr)) {
     finish_moving(show, *posed);
     if (posed != easel.drawn) posed->at_work = false;
@@ -292,7 +293,6 @@ void use_cores(Show& show, std::function<void()> work) {
 void pose(Show& show, Visitor& visitor) {
   Easel& easel = show.easel;
   pose_world(show);
-  order_skin(show);
   easel.posed = &visitor;
   easel.posed_at = show.time;
   easel.posed_us = show.time_us;
@@ -324,11 +324,15 @@ void use_cores_for_pass(Show& show) {
   use_cores(show, [&show] { go_on_with_pass(show); });
 }
 
-// What moves comes first, then what is begun, then samples that were asked for, else the picture
+// What moves comes first, and its light, then what is begun, then samples that were asked for, else the picture
 // that has been waited for longest.
 void use_easel(Show& show, int waiting) {
   Easel& easel = show.easel;
   if (Visitor* next = next_to_pose(show)) return pose(show, *next);
+  if (wants_skin(show)) {
+    order_skin(show);
+    return use_cores(show, [&show] { light_skin(show); });
+  }
   if (easel.drawn) {
     // Light can wait for the next picture, others need not.
     if (waiting > 0 && easel.step == DrawingStep::trace) easel.step = DrawingStep::draw;
@@ -349,7 +353,6 @@ void use_easel(Show& show, int waiting) {
   easel.order = order_picture(show, *next, std::max(waiting, 1));
   easel.surrounds = easel.order.around && !next->surrounded;
   if (!easel.surrounds) pose_world(show);
-  if (easel.order.figure) order_skin(show);
   next->at_work = true;
   easel.given_up = false;
   easel.step = DrawingStep::plan;
@@ -359,10 +362,10 @@ void use_easel(Show& show, int waiting) {
 // All that are due, one after the other, while the tick waits.
 void draw_now(Show& show, int waiting) {
   if (waiting > 0) pose_world(show);
+  if (waiting > 0 && wants_skin(show)) order_skin(show), light_skin(show), finish_skin(show);
   for (Visitor& visitor : show.visitors) {
     if (!wants_drawing(show, visitor)) continue;
     PictureOrder order = order_picture(show, visitor, waiting);
-    if (order.figure) order_skin(show);
     draw_picture(show, order, visitor);
     finish_picture(show, order, visitor);
     present(show, visitor);
@@ -434,7 +437,8 @@ double seconds_to_next_tick(const Show& show, double now) {
 void wait_for_tick(const Show& show, double now) {
   double seconds = seconds_to_next_tick(show, now);
   const Easel& easel = show.easel;
-  bool nothing_comes = !easel.drawn && easel.brokers.empty() && !show.pass.at_work;
+  bool nothing_comes = !easel.drawn && easel.brokers.empty() && !show.pass.at_work &&
+                       !easel.skin.at_work;
   if (nothing_comes) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   else easel.worker.wait_for(seconds);
 }

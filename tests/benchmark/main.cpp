@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
       {"cache.rest", bench_cache_rest},
       {"show.rest", bench_show_rest},
       {"show.teller", bench_show_teller},
-      {"show.rest", bench_show_rest}, {"show.load", bench_show_load},
+      {"show.load", bench_show_load},
       {"cache.starve", bench_cache_starve}, {"cache.turns", bench_cache_turns},
       {"cache.switch", bench_cache_switch},
       {"denoise.ms", bench_denoise_time}, {"denoise.flip", bench_denoise_flip},
