@@ -62,7 +62,7 @@ void light_lamps(Show& show) {
     relight_skin(*show.world, changes, show.skin);
   }
   for (Visitor& visitor : show.visitors) {
-    visitor.around = {};               // it shows another light
+    visitor.around = {}, visitor.fade = {};  // they show another light
     visitor.rest = {};
     visitor.stats.converged = 0;       // who rests looks again,
     visitor.order.settled = false;     // and first at what is soon to be known

@@ -141,7 +141,7 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy) {
   // Of a place that was never seen, nothing is known.
   bool seen = visitor.drawn_at >= 0 && visitor.leaps == before.leaps;
   float guessed = seen ? visitor.stats.filled + visitor.stats.empty : 1;
-  bool learns = show.pass.denoiser && in_steps(order);
+  bool learns = may_reconstruct(show, order);
   order.settled = learns ? visitor.rest.samples >= settled_samples
                          : wants_reference(show.time - visitor.moved_at, seen && before.settled,
                                            !seen || before.coarse, guessed,
@@ -282,6 +282,10 @@ DrawingStep find_guides(Show& show, const PictureOrder& order, Visitor& visitor)
 }  // namespace
 
 bool in_steps(const PictureOrder& order) { return order.still && order.keep; }
+
+bool may_reconstruct(const Show& show, const PictureOrder& order) {
+  return show.pass.denoiser && in_steps(order);
+}
 
 DrawingStep draw_step(Show& show, const PictureOrder& order, DrawingStep step, Visitor& visitor) {
   double began = seconds_now();

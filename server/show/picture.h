@@ -36,6 +36,8 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor);
 // The same step by step, between which the world may move and nothing but moving.h may be drawn.
 // Returns the next one; DrawingStep::done: none.
 bool in_steps(const PictureOrder& order);
+// It may become a reconstruction (show/still_pass.h).
+bool may_reconstruct(const Show& show, const PictureOrder& order);
 DrawingStep draw_step(Show& show, const PictureOrder& order, DrawingStep step, Visitor& visitor);
 void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor);
 // Before that, where the order has something around: it is shown as soon as it is there.

@@ -38,7 +38,7 @@ TransportSettings transport_of(const Show& show, const PictureOrder& order) {
 // later ones are spread evenly, but for some, aimed at points, to find what changes.
 bool spreads_samples(const Show& show, const PictureOrder& order, const Technique& technique,
                      const RestState& rest) {
-  return show.pass.denoiser && in_steps(order) && !technique.begin_pass &&
+  return may_reconstruct(show, order) && !technique.begin_pass &&
          rest.samples >= spread_from && !has_all_samples(rest);
 }
 
@@ -59,7 +59,7 @@ void plan_samples(Show& show, const PictureOrder& order, const Technique& techni
   View ahead = order.coarse ? light_view(order.ahead) : order.ahead;
   cache.set_attention(order.attention);
   cache.set_reference(order.settled);
-  visitor.compositor.set_reconstructed(show.pass.denoiser && in_steps(order));
+  visitor.compositor.set_reconstructed(may_reconstruct(show, order));
   // What is around has light of half its size.
   cache.resize(order.expected.width, order.expected.height);
   cache.move_points(*show.world);
@@ -121,7 +121,7 @@ void remember_traced(const Show& show, const PictureOrder& order, const View& li
   visitor.cache.remember(lit, work.requests, work.samples);
   visitor.costs.samples = work.samples.size();
   // A picture that is drawn, not reconstructed, has a use for them only when it is kept for long.
-  bool learns = show.pass.denoiser && in_steps(order);
+  bool learns = may_reconstruct(show, order);
   bool kept_long = !order.passing && visitor.cache.is_still();
   if (!order.still || order.coarse || !(learns || kept_long)) return;
   visitor.compositor.follow_changes(visitor.cache);

@@ -22,6 +22,7 @@ constexpr double settling_rate = 7;    // while nothing moves: more time for sam
 constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr double on_time = 0.0005;     // seconds that a picture may come too early
 constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
+constexpr double fade_rate = 12;       // pictures a second from one picture at rest to the next
 constexpr float most_unknown =
     0.8f;  // of a warped picture: beyond, the one before is as near to the truth (cache.warp)
 constexpr int animated_gain = 5;  // JPEG quality above the moving one while the storyteller moves
@@ -126,7 +127,8 @@ void present(Show& show, Visitor& visitor) {
   if (order.leaps != visitor.leaps || visitor.drawn_at < 0 || !may_take(show, visitor)) return;
   const View view = visitor.last_view;
   bool stood = order.still && order.view == view;
-  if (!visitor.unshown && (!order.keep || view == visitor.shown_view)) return;
+  bool fades = !visitor.fade.from.rgb.empty() && show.time - visitor.sent_at >= 1 / fade_rate;
+  if (!visitor.unshown && !fades && (!order.keep || view == visitor.shown_view)) return;
   if (!stood && show.time - visitor.pictured_at < 1 / picture_rate(show, visitor) - on_time) return;
 
   Encoder& encoder = *visitor.encoder;
@@ -137,13 +139,17 @@ void present(Show& show, Visitor& visitor) {
     show.totals.picture_bytes += std::exchange(encoder.bytes, 0);
     smooth(visitor.times.encode, encoder.milliseconds);
   }
-  if (visitor.unshown && order.view == view) {  // drawn for this very view
+  const float newer = fade_share(visitor.fade, view, show.time);
+  if ((visitor.unshown || fades) && order.view == view) {  // drawn for this very view
     if (order.keep) copy_colors(visitor.keyframe, {0, 0, view.width, view.height}, encoder.image);
     else std::swap(encoder.image, visitor.picture);
+    if (newer < 1) mix_fade(visitor.fade, newer, encoder.image);
+    else visitor.fade = {};
     if (!visitor.moving.empty()) lay_over(visitor.moving, encoder.image);
-    send(show, visitor, view, visitor.seq, order.still);
+    send(show, visitor, view, visitor.seq, order.still && newer == 1);
     return;
   }
+  visitor.fade = {};
   if (show.easel.posed == &visitor) return;  // reads the keyframe, and has soon done so
   merge_moving(visitor);
   if (warp(show, visitor, view)) {

@@ -89,6 +89,8 @@ void take_pass(Show& show) {
     return;
   }
   if (pass.step != StillPass::Step::done) return;
+  if (visitor.keyframe.view == pass.keyframe.view)
+    begin_fade(visitor.keyframe, show.time, visitor.fade);
   std::swap(pass.keyframe, visitor.keyframe);
   visitor.order = pass.order;
   visitor.costs.backdrop = pass.backdrop;

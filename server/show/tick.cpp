@@ -324,8 +324,8 @@ void use_cores_for_pass(Show& show) {
   use_cores(show, [&show] { go_on_with_pass(show); });
 }
 
-// What moves comes first, and its light, then what is begun, then samples that were asked for, else the picture
-// that has been waited for longest.
+// What moves comes first, and its light, then what is begun, then samples that were asked for, else
+// the picture that has been waited for longest.
 void use_easel(Show& show, int waiting) {
   Easel& easel = show.easel;
   if (Visitor* next = next_to_pose(show)) return pose(show, *next);

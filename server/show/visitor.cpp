@@ -17,7 +17,7 @@ size_t picture_memory(const Visitor& visitor) {
          visitor.broker.memory_bytes() +
          memory_bytes(visitor.keyframe) + memory_bytes(visitor.around) +
          memory_bytes(visitor.moving) +
-         bytes_of(visitor.picture.rgb) + visitor.encoder->memory_bytes;
+         bytes_of(visitor.picture.rgb, visitor.fade.from.rgb) + visitor.encoder->memory_bytes;
 }
 
 void go_to_viewpoint(Visitor& visitor, const Exhibit& exhibit, int viewpoint) {

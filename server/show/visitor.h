@@ -11,6 +11,7 @@
 #include "frame/tonemap.h"
 #include "picture/keyframe.h"
 #include "show/easel.h"
+#include "show/fade.h"
 #include "show/flow.h"
 #include "show/heading.h"
 #include "show/sound.h"
@@ -82,6 +83,7 @@ struct Visitor {
   uint32_t around_leaps = 0;  // of the visitor, by then
   bool surrounded = false;    // since the last picture was drawn
   RestState rest;
+  Fade fade;                  // to the keyframe
   bool backdrop = false;      // the keyframe is without what moves (show/moving.h)
   MovingPicture moving;       // that, to be laid over it; empty: nothing
   double posed_at = -1e9;     // show time of its order

@@ -65,6 +65,8 @@ struct StillPassTest : testing::Test {
     return holds();
   }
   Visitor& visitor() { return show->visitors.front(); }
+  // The last reconstruction, as it is.
+  bool is_shown() { return !visitor().unshown && visitor().fade.from.rgb.empty(); }
   double error_of_last() {
     StillSettings settings;
     settings.spp = 256;
@@ -83,7 +85,7 @@ struct StillPassTest : testing::Test {
 TEST_F(StillPassTest, WhoRestsIsShownAReconstructionAndThenTimeGoesToSamples) {
   if (!begin()) GTEST_SKIP() << show->pass.problem;
   ASSERT_TRUE(steps_until([&] { return show->totals.reconstructed >= 1; }));
-  ASSERT_TRUE(steps_until([&] { return !visitor().unshown; }));
+  ASSERT_TRUE(steps_until([&] { return is_shown(); }));
   EXPECT_TRUE(visitor().rest.reconstructed);
   EXPECT_LT(error_of_last(), 6);
   uint64_t drawn = show->totals.drawn, samples = show->totals.samples;
@@ -93,8 +95,35 @@ TEST_F(StillPassTest, WhoRestsIsShownAReconstructionAndThenTimeGoesToSamples) {
   EXPECT_GT(visitor().rest.passed_samples, 0.5);
   ASSERT_TRUE(steps_until([&] { return visitor().rest.samples > 60; }, 20000));
   ASSERT_TRUE(steps_until([&] { return visitor().rest.passed_samples > 60; }, 20000));
-  ASSERT_TRUE(steps_until([&] { return !visitor().unshown; }));
+  ASSERT_TRUE(steps_until([&] { return is_shown(); }));
   EXPECT_LT(error_of_last(), 4);
+}
+
+TEST_F(StillPassTest, OnePictureFadesIntoTheNext) {
+  if (!begin()) GTEST_SKIP() << show->pass.problem;
+  ASSERT_TRUE(steps_until([&] { return show->totals.reconstructed >= 1; }));
+  ASSERT_FALSE(is_shown());
+  pictures.clear();
+  double began = now;
+  ASSERT_TRUE(steps_until([&] { return is_shown(); }));
+  EXPECT_GT(now - began, 0.3);
+  EXPECT_LT(now - began, 1);
+  EXPECT_GE(pictures.size(), 4u);
+  EXPECT_LE(pictures.size(), 12u);
+  for (size_t i = 0; i < pictures.size(); i++) {
+    bool still = read_packet(pictures[i])->header.flags & packet_still;
+    EXPECT_EQ(still, i + 1 == pictures.size());
+  }
+}
+
+// Who moves on sees the newest at once.
+TEST_F(StillPassTest, NobodyWaitsForAFade) {
+  if (!begin()) GTEST_SKIP() << show->pass.problem;
+  ASSERT_TRUE(steps_until([&] { return show->totals.reconstructed >= 1; }));
+  turn(0.1);
+  step();
+  step();
+  EXPECT_TRUE(visitor().fade.from.rgb.empty());
 }
 
 TEST_F(StillPassTest, WhoMovesOnLeavesItBehind) {
