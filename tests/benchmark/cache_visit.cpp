@@ -51,8 +51,8 @@ std::vector<Running> start_runs(const VisitSettings& settings, const VisitTrace&
   std::vector<Running> runs;
   for (const VisitMethodEntry& entry : visit_methods()) {
     const auto& asked = settings.methods;
-    if (!asked.empty() && std::find(asked.begin(), asked.end(), entry.name) == asked.end())
-      continue;
+    bool named = std::find(asked.begin(), asked.end(), entry.name) != asked.end();
+    if (asked.empty() ? entry.when_named : !named) continue;
     for (int mismatch : settings.mismatches) {
       Running& running = runs.emplace_back();
       running.method = entry.make();

@@ -43,6 +43,7 @@ struct VisitMethodEntry {
   const char* summary;
   bool baseline;  // ours is measured against the best of these
   std::unique_ptr<VisitMethod> (*make)();
+  bool when_named = false;  // runs only then: it is slow, and needs the network's weights
 };
 
 // The one explicit list, in the report's order. A further way is one more line here.

@@ -280,6 +280,7 @@ TEST(VisitMethod, EveryMethodComesToRestAtTheRightPicture) {
   };
   double plain = distance_of(4), filtered = distance_of(2);
   for (const VisitMethodEntry& entry : visit_methods()) {
+    if (entry.when_named) continue;
     auto method = entry.make();
     VisitPicture picture;
     for (int frame = 0; frame < 240; frame++) {
