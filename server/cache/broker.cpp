@@ -2,22 +2,12 @@
 #include "cache/broker.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "base/memory.h"
+#include "base/spread.h"
 #include "cache/point_cache.h"
 
 namespace wellspring {
-namespace {
-
-// Steps of about the golden section through n pieces, which meet each of them once.
-size_t spreading_step(size_t n) {
-  size_t step = std::max<size_t>(size_t(double(n) * 0.618), 1);
-  while (std::gcd(step, n) != 1) step++;
-  return step;
-}
-
-}  // namespace
 
 Broker::Broker(const BrokerSettings& settings) : settings_(settings) {
   settings_.piece = std::max(settings_.piece, 1);
@@ -31,7 +21,7 @@ void Broker::ask(const View& view, const TraceOrder& order, std::span<const Requ
   if (requests.empty()) return;
   asks_++;
   size_t size = size_t(settings_.piece), n = (requests.size() + size - 1) / size,
-         step = spreading_step(n);
+         step = golden_step(n);
   for (size_t i = 0, at = 0; i < n; i++, at = (at + step) % n) {
     std::span<const Request> part =
         requests.subspan(at * size, std::min(size, requests.size() - at * size));

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "base/spread.h"
 #include "light/first_surface.h"
 #include "light/radiance_grid.h"
 
@@ -154,9 +154,7 @@ void choose(const World& world, const SkinUpdate& update, SkinLight& skin,
   const size_t most = size_t(std::max(update.samples, 0));
   const std::vector<uint8_t> shows = find_visible(world, skin);
   if (std::find(shows.begin(), shows.end(), 1) == shows.end()) return;
-  // Golden steps spread those of one update over all.
-  uint64_t step = std::max<uint64_t>(uint64_t(0.6180339887 * double(count)), 1);
-  while (std::gcd(step, uint64_t(count)) != 1) step++;
+  const uint64_t step = golden_step(count);
   auto place_at = [&](uint64_t i) { return uint32_t((i * step) % count); };
   auto take = [&](uint32_t place) { asked.push_back({place, skin.history[place].asked++}); };
   auto shown = [&](uint32_t place) {

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/plan_still.h"
 
-#include <algorithm>
-#include <numeric>
-
 #include "base/rng.h"
+#include "base/spread.h"
 #include "light/pixel_requests.h"
 
 namespace wellspring {
 namespace {
-
-// Rows of squares are taken at steps of about the golden ratio: neighbours in time lie far apart.
-int golden_step(int rows) {
-  int step = std::max(1, int(0.618034 * rows));
-  while (std::gcd(step, rows) != 1) step++;
-  return step;
-}
 
 // Pixel k of a square, in an order of its own, so that no direction is preferred.
 ivec2 pixel_of_square(uint64_t seed, int column, int row, int k) {
@@ -32,13 +23,13 @@ void plan_still(const View& view, uint64_t first, int count, uint64_t seed,
                 std::vector<Request>& requests) {
   const int columns = (view.width + 1) / 2, rows = (view.height + 1) / 2;
   const uint64_t squares = uint64_t(columns) * uint64_t(rows);
-  const int step = golden_step(rows);
+  const uint64_t step = golden_step(uint64_t(rows));  // of rows of squares
   std::vector<PixelSample> which;
   which.reserve(size_t(count));
   for (uint64_t i = first; i < first + uint64_t(count); i++) {
     uint64_t round = i / squares, square = i % squares;
     int column = int(square % uint64_t(columns));
-    int row = int(square / uint64_t(columns) * uint64_t(step) % uint64_t(rows));
+    int row = int(square / uint64_t(columns) * step % uint64_t(rows));
     ivec2 pixel = pixel_of_square(seed, column, row, int(round % 4));
     if (pixel.x < view.width && pixel.y < view.height)
       which.push_back({pixel.x, pixel.y, int(round / 4)});

@@ -116,14 +116,7 @@ struct Walk {
 Walk walk(const ServerProcess& server, const std::vector<Pose>& poses) {
   const double rest = 2;  // before the tour
   WsClient client;
-  WsTarget target;
-  target.port = server.port;
-  client.connect(target);
-  Hello hello;
-  hello.role = "visitor";
-  hello.lang = "en";
-  hello.width = width, hello.height = height;
-  client.send_text(write_message(hello));
+  join_visit(client, server.port, width, height);
   StorytellerOrder away;
   away.visible = false;
   client.send_text(write_message(away));

@@ -72,13 +72,7 @@ void bench_show_rest(BenchReport& report, const BenchOptions& options) {
   Museum museum(options.content + "/castle");
   ServerProcess server(options, "castle");
   Rest rest;
-  WsTarget target;
-  target.port = server.port;
-  rest.client.connect(target);
-  Hello hello;
-  hello.role = "visitor";
-  hello.lang = "en";
-  rest.client.send_text(write_message(hello));
+  join_visit(rest.client, server.port);
   StorytellerOrder away;
   away.visible = false;
   rest.client.send_text(write_message(away));

@@ -14,6 +14,8 @@
 #include <unistd.h>
 #include <vector>
 
+#include "wire/json.h"
+
 extern char** environ;
 
 namespace wellspring {
@@ -83,6 +85,17 @@ std::string fetch(uint16_t port, const std::string& path) {
   close(connection);
   size_t head = text.find("\r\n\r\n");
   return head == std::string::npos ? "" : text.substr(head + 4);
+}
+
+void join_visit(WsClient& client, uint16_t port, int width, int height) {
+  WsTarget target;
+  target.port = port;
+  client.connect(target);
+  Hello hello;
+  hello.role = "visitor";
+  hello.lang = "en";
+  hello.width = width, hello.height = height;
+  client.send_text(write_message(hello));
 }
 
 double read_metric(uint16_t port, const std::string& name) {

@@ -6,6 +6,7 @@
 #include <sys/types.h>
 
 #include "report.h"
+#include "stream/ws_client.h"
 
 namespace wellspring {
 
@@ -23,6 +24,9 @@ class ServerProcess {
  private:
   pid_t pid_ = 0;
 };
+
+// Opens a visit there, of pictures of this size.
+void join_visit(WsClient& client, uint16_t port, int width = 1280, int height = 720);
 
 // The body of what it answers; empty where it does not. `path` begins with a slash.
 std::string fetch(uint16_t port, const std::string& path);

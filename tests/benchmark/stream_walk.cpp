@@ -38,13 +38,7 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
   const double warm_up = 2, seconds = options.quick ? 6 : 20, input_interval = 1.0 / 30;
   ServerProcess server(options, "castle");
   WsClient client;
-  WsTarget target;
-  target.port = server.port;
-  client.connect(target);
-  Hello hello;
-  hello.role = "visitor";
-  hello.lang = "en";
-  client.send_text(write_message(hello));
+  join_visit(client, server.port);
 
   std::deque<std::pair<uint32_t, double>> asked;  // seq, when sent
   std::vector<double> latencies, arrivals, bytes;
