@@ -8,14 +8,14 @@
 #include <iostream>
 #include <sstream>
 
-#include "avatar/recorded_story.h"
-#include "avatar/speech_align.h"
-#include "avatar/speech_json.h"
-#include "avatar/speech_process.h"
-#include "avatar/speech_sound.h"
-#include "avatar/story_load.h"
-#include "avatar/story_sentence.h"
-#include "avatar/story_speech.h"
+#include "avatar/story/recorded_story.h"
+#include "avatar/speech/align.h"
+#include "avatar/speech/speech_json.h"
+#include "avatar/speech/process.h"
+#include "avatar/speech/sound_file.h"
+#include "avatar/story/story_load.h"
+#include "avatar/story/story_sentence.h"
+#include "avatar/story/story_speech.h"
 #include "base/load_error.h"
 #include "base/log.h"
 

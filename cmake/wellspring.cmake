@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Compiler settings, packages, and the two words CMakeLists.txt is written in:
-# wellspring_layer(NAME FOLDER LINKS ...)  a static library of every .cpp in FOLDER but main*.cpp
+# wellspring_layer(NAME FOLDER LINKS ...)  a static library of every .cpp below FOLDER but main*.cpp
 # wellspring_program(NAME FILES LINKS ...)  an executable of one main file, or of all that match
 
 set(CMAKE_CXX_STANDARD 20)
@@ -91,7 +91,7 @@ include_directories(${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/server)
 
 function(wellspring_layer name folder)
   cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/main[^/]*\\.cpp$")
   if(sources)
     add_library(${name} STATIC ${sources})

@@ -9,11 +9,11 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
-#include "show/answer.h"
-#include "show/exhibit_sound.h"
-#include "show/pages.h"
-#include "show/show.h"
-#include "show/still.h"
+#include "show/answer/answer.h"
+#include "show/storyteller/recordings.h"
+#include "show/answer/pages.h"
+#include "show/state/show.h"
+#include "show/answer/still.h"
 #include "stream/stream.h"
 
 namespace {

@@ -5,19 +5,19 @@
 #include <cmath>
 #include <iostream>
 
-#include "avatar/bone_surface.h"
-#include "avatar/character_load.h"
-#include "avatar/describe.h"
-#include "avatar/expression_rules.h"
-#include "avatar/expression_sum.h"
-#include "avatar/joint_constraints.h"
-#include "avatar/retarget.h"
-#include "avatar/speech_visemes.h"
-#include "avatar/storyteller.h"
+#include "avatar/figure/bone_surface.h"
+#include "avatar/load/character_load.h"
+#include "avatar/figure/describe.h"
+#include "avatar/face/expression_rules.h"
+#include "avatar/face/expression_sum.h"
+#include "avatar/figure/joint_constraints.h"
+#include "avatar/figure/retarget.h"
+#include "avatar/speech/visemes.h"
+#include "avatar/mind/storyteller.h"
 #include "base/load_error.h"
 #include "base/log.h"
 #include "frame/picture_file.h"
-#include "show/sheet.h"
+#include "show/storyteller/contact_sheet.h"
 
 namespace wellspring {
 namespace {

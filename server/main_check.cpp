@@ -5,9 +5,9 @@
 #include <iostream>
 
 #include "base/log.h"
-#include "show/exhibit_sound.h"
-#include "show/tour.h"
-#include "show/walk.h"
+#include "show/storyteller/recordings.h"
+#include "show/visit/tour.h"
+#include "show/visit/walk.h"
 
 int main(int argc, char** argv) {
   wellspring::log::start("check");

@@ -8,16 +8,16 @@
 #include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
 
-#include "avatar/character_load.h"
-#include "avatar/speech_process.h"
-#include "avatar/speech_sound.h"
-#include "avatar/story_load.h"
-#include "avatar/story_speech.h"
+#include "avatar/load/character_load.h"
+#include "avatar/speech/process.h"
+#include "avatar/speech/sound_file.h"
+#include "avatar/story/story_load.h"
+#include "avatar/story/story_speech.h"
 #include "base/load_error.h"
 #include "base/log.h"
 #include "frame/picture_file.h"
-#include "show/story_clip.h"
-#include "show/studio.h"
+#include "show/storyteller/story_clip.h"
+#include "show/storyteller/portrait.h"
 
 extern char** environ;
 

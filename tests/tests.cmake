@@ -6,7 +6,7 @@ include(GoogleTest)
 set(WELLSPRING_DATA "${PROJECT_SOURCE_DIR}/../shared/data" CACHE PATH "real files for the corpus tests; they are skipped without it")
 
 function(wellspring_unit_test folder)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/unit/${folder}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/unit/${folder}/*.cpp)
   if(NOT sources)
     return()
   endif()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // wellspring_voice: speaks texts for other programs through eSpeak NG, over the protocol of
-// avatar/speech_protocol.h.
+// avatar/speech/protocol.h.
 //
 // Licence. eSpeak NG is GPL-3.0-or-later. This file is the only one that includes its header and
 // this program the only one that links it; the source of this file is offered under Apache-2.0,
@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "avatar/speech_protocol.h"
+#include "avatar/speech/protocol.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "cache/cache.h"
-#include "light/technique.h"
+#include "light/technique/technique.h"
 
 namespace wellspring {
 

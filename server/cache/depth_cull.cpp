@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "cache/lanes.h"
+#include "cache/simd.h"
 #include "cache/project.h"
 
 namespace wellspring {

@@ -8,10 +8,10 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "cache/lanes.h"
+#include "cache/simd.h"
 #include "cache/packing.h"
-#include "light/first_surface.h"
-#include "light/material_use.h"
+#include "light/walk/first_surface.h"
+#include "light/material/material_use.h"
 #include "world/surface.h"
 
 namespace wellspring {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "cache/broker.h"
-#include "light/lights.h"
+#include "light/sample/lights.h"
 
 namespace wellspring {
 

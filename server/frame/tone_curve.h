@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "base/lanes3.h"
+#include "base/simd3.h"
 
 namespace wellspring {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cache/lanes.h"
+#include "cache/simd.h"
 
 namespace wellspring {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "cache/lanes.h"
+#include "cache/simd.h"
 #include "picture/cells.h"
 
 namespace wellspring {

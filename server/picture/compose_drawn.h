@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture drawn anew every frame (light/see_picture.h) in light that points remember: shapes and
+// A picture drawn anew every frame (light/visible/visibility.h) in light that points remember: shapes and
 // reflectances are what has to be sharp, light is smoother than both. Where samples are few it has
 // half of the picture's resolution, as a quarter of the points tells it sooner and costs less.
 #pragma once
 #include "frame/tonemap.h"
-#include "light/see_picture.h"
+#include "light/visible/visibility.h"
 #include "picture/moving_picture.h"
 
 namespace wellspring {
 
-struct SkinLight;  // light/skin_light.h
+struct SkinLight;  // light/known/skin_light.h
 
 inline constexpr int light_scale = 2;  // pixels of the picture a side of one pixel of its light
 

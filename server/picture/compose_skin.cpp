@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What moves, drawn in the light that is kept on its skin (light/skin_light.h).
+// What moves, drawn in the light that is kept on its skin (light/known/skin_light.h).
 #include <algorithm>
 
-#include "light/skin_light.h"
+#include "light/known/skin_light.h"
 #include "picture/compose_drawn.h"
 #include "picture/drawn_run.h"
 #include "picture/soften_edges.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One visitor's pictures: what is visible (light/see_picture.h), in the light that the points of a
+// One visitor's pictures: what is visible (light/visible/visibility.h), in the light that the points of a
 // render cache remember (picture/compose_drawn.h). While the view stands still it keeps the mean of
 // its pictures and of their samples.
 #pragma once
@@ -9,18 +9,18 @@
 
 #include "cache/cache.h"
 #include "frame/tonemap.h"
-#include "light/see_picture.h"
+#include "light/visible/visibility.h"
 #include "picture/cells.h"
-#include "picture/correct_still.h"
-#include "picture/still_image.h"
-#include "picture/still_samples.h"
+#include "picture/still/correct_still.h"
+#include "picture/still/still_image.h"
+#include "picture/still/still_samples.h"
 
 namespace wellspring {
 
 struct Keyframe;       // picture/keyframe.h
 struct MovingPicture;  // picture/moving_picture.h: what moves in a picture at rest
 struct MovingLight;
-struct SkinLight;      // light/skin_light.h
+struct SkinLight;      // light/known/skin_light.h
 enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what moves
 
 // What a picture needs and nobody afterwards. Those that are never under way at the same time may
@@ -58,7 +58,7 @@ class Compositor {
   void add_samples(const View& view, std::span<const Request> requests,
                    std::span<const Sample> samples);
   void forget_samples();  // other light
-  // Pictures at rest serve as what reconstruction begins with (picture/reconstruct_still.h): they
+  // Pictures at rest serve as what reconstruction begins with (picture/still/reconstruct_still.h): they
   // are not corrected by samples, and while a pixel has few of these, aimed ones count, too.
   void set_reconstructed(bool on) { reconstructed_ = on; }
   // What moves, as the world is now, to be laid over the last draw_still() without it, of which

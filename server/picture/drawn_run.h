@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <cstring>
 
-#include "light/see_picture.h"
+#include "light/visible/visibility.h"
 #include "picture/drawn_planes.h"
-#include "world/raster.h"
+#include "world/raster/raster.h"
 
 namespace wellspring {
 

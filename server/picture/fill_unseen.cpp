@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/memory.h"
-#include "base/urgent.h"
+#include "base/priority.h"
 
 namespace wellspring {
 namespace {

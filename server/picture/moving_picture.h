@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What moves in a picture at rest, drawn by itself over what does not: a storyteller who breathes
 // and speaks is a few hundredths of a picture, and the rest of it need not be drawn again for each
-// of her moves. Lit by what is kept on her skin (light/skin_light.h).
+// of her moves. Lit by what is kept on her skin (light/known/skin_light.h).
 #pragma once
 #include "frame/tonemap.h"
-#include "light/see_picture.h"
+#include "light/visible/visibility.h"
 #include "picture/cells.h"
 #include "picture/keyframe.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "cache/lanes.h"
+#include "cache/simd.h"
 #include "cache/packing.h"
 #include "picture/cells.h"
 

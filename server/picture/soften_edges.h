@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "frame/frame.h"
-#include "world/raster.h"
+#include "world/raster/raster.h"
 
 namespace wellspring {
 

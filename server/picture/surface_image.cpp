@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "base/parallel.h"
-#include "cache/lanes.h"
+#include "cache/simd.h"
 #include "cache/packing.h"
 #include "picture/cells.h"
 

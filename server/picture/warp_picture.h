@@ -6,7 +6,7 @@
 // (bounds of blocks, carried forward), for the first surface that it would see; where that is a
 // short piece, as nearly everywhere, a step of fixed-point iteration finds it (Bowles, Mitchell,
 // Sumner, Moore, Gross 2012, "Iterative Image Warping"), or none where places differ by less than
-// what bilinear samples tell apart. Cores that draw meanwhile take part (base/urgent.h). What was
+// what bilinear samples tell apart. Cores that draw meanwhile take part (base/priority.h). What was
 // hidden in the keyframe takes colours of what lies behind, never those of what hid it
 // (picture/fill_unseen.h). Colours are bilinear within a surface.
 #pragma once

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "cache/lanes.h"
+#include "cache/simd.h"
 #include "picture/keyframe.h"
 
 namespace wellspring::warping {

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstring>
 
-#include "cache/lanes.h"
+#include "cache/simd.h"
 #include "frame/frame.h"
 
 namespace wellspring {

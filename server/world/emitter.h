@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light that is no surface: KHR_lights_punctual and the environment. Emissive surfaces are found by
-// their material (light/lights.h gathers them).
+// their material (light/sample/lights.h gathers them).
 #pragma once
 #include <limits>
 #include <string>
@@ -25,7 +25,7 @@ struct PunctualLight {
 };
 
 // What is switched together: a chandelier with all its candles, the spots of a show-case. Nothing
-// belongs to two lamps. How one comes into a scene: world/lamp.h.
+// belongs to two lamps. How one comes into a scene: world/load/lamp.h.
 struct Lamp {
   std::string name;
   std::vector<int> lights;     // of Scene::lights

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 #include "world/texture.h"
 
 namespace wellspring {

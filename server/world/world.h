@@ -108,7 +108,7 @@ class World {
   uint64_t paints() const;  // how often anything was repainted
 
   // The scene's lamps, by their numbers; all are on at first. While no ray is being traced. Lights
-  // have to be told: light/lamps.h.
+  // have to be told: light/known/lamps.h.
   void switch_lamp(int lamp, bool on);
   bool is_on(int lamp) const;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 #include "world/slab.h"
 #include "world/world_impl.h"
 

@@ -5,7 +5,7 @@
 #pragma once
 #include <string>
 
-#include "avatar/character.h"
+#include "avatar/figure/character.h"
 
 namespace wellspring {
 

@@ -6,13 +6,13 @@
 #include <filesystem>
 #include <oneapi/tbb/global_control.h>
 
-#include "avatar/storyteller.h"
+#include "avatar/mind/storyteller.h"
 #include "avatar_made.h"
 #include "base/clock.h"
 #include "frame/picture_file.h"
 #include "report.h"
-#include "show/exhibit_load.h"
-#include "show/figure.h"
+#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/figure.h"
 
 namespace wellspring {
 namespace {

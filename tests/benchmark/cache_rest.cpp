@@ -18,8 +18,8 @@
 #include "frame/picture_file.h"
 #include "light_scenes.h"
 #include "report.h"
-#include "show/exhibit_load.h"
-#include "show/sample_budget.h"
+#include "show/exhibit/exhibit_load.h"
+#include "show/draw/sample_budget.h"
 
 namespace wellspring {
 namespace {

@@ -13,7 +13,7 @@
 #include "frame/picture_file.h"
 #include "light_scenes.h"
 #include "report.h"
-#include "show/exhibit_load.h"
+#include "show/exhibit/exhibit_load.h"
 
 namespace wellspring {
 namespace {

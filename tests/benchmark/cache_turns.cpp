@@ -14,7 +14,7 @@
 #include "frame/picture_file.h"
 #include "picture/warp_picture.h"
 #include "report.h"
-#include "show/heading.h"
+#include "show/visit/heading.h"
 
 namespace wellspring {
 namespace {

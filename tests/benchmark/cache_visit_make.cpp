@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "cache_visit_trace.h"
-#include "show/tour.h"
-#include "show/visitor.h"
-#include "show/walk.h"
+#include "show/visit/tour.h"
+#include "show/state/visitor.h"
+#include "show/visit/walk.h"
 
 namespace wellspring {
 namespace {

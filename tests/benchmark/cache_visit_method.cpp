@@ -10,11 +10,11 @@
 #include "cache/broker.h"
 #include "cache/predict.h"
 #include "picture/compose_drawn.h"
-#include "picture/plan_still.h"
-#include "picture/reconstruct_still.h"
-#include "picture/still_guides.h"
+#include "picture/still/plan_still.h"
+#include "picture/still/reconstruct_still.h"
+#include "picture/still/still_guides.h"
 #include "picture/compositor.h"
-#include "show/sample_budget.h"
+#include "show/draw/sample_budget.h"
 
 namespace wellspring {
 namespace {
@@ -55,7 +55,7 @@ struct Batch {
 };
 
 constexpr double displayed_rate = 60;    // frames a second
-constexpr float predicted_frames = 2;    // as show/picture.cpp
+constexpr float predicted_frames = 2;    // as show/draw/picture.cpp
 constexpr double predicted_share = 0.3;  // of the budget, at most
 
 class PublishedCache : public VisitMethod {
@@ -92,7 +92,7 @@ class Deferred : public VisitMethod {
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
     if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
     last_view_ = moment.view;
-    // As show/picture.cpp draws what moves.
+    // As show/draw/picture.cpp draws what moves.
     bool passing = moment.frame - moved_ < still_after;
     double pixels = double(moment.view.width) * double(moment.view.height);
     bool coarse = passing && !affords_fine_light(budget * displayed_rate / pixels, false);
@@ -148,7 +148,7 @@ class Deferred : public VisitMethod {
   static constexpr int still_after = 15;  // frames
   static constexpr int first_pass = 29;   // likewise; then at so many times as many samples:
   static constexpr double growth = 1.3;
-  // As show/picture.cpp spreads samples.
+  // As show/draw/picture.cpp spreads samples.
   static constexpr double tested_share = 0.0625, spread_from = 0.8;
   static constexpr uint64_t still_seed = 17;
   bool reconstruct(const VisitMoment& moment, Frame& frame) {

@@ -2,9 +2,9 @@
 #include "cache_visit_stage.h"
 
 #include "base/parallel.h"
-#include "light/technique.h"
-#include "show/exhibit_load.h"
-#include "show/news.h"
+#include "light/technique/technique.h"
+#include "show/exhibit/exhibit_load.h"
+#include "show/answer/events.h"
 
 namespace wellspring {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "cache_visit_judge.h"
 #include "cache_visit_trace.h"
-#include "show/show.h"
+#include "show/state/show.h"
 
 namespace wellspring {
 

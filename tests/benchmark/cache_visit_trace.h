@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "show/exhibit.h"
+#include "show/exhibit/exhibit.h"
 #include "world/world.h"
 
 namespace wellspring {

@@ -5,7 +5,7 @@
 #pragma once
 #include <string>
 
-#include "light/technique.h"
+#include "light/technique/technique.h"
 
 namespace wellspring {
 

@@ -13,7 +13,7 @@
 #include "denoise/denoise.h"
 #include "frame/flip.h"
 #include "frame/picture_file.h"
-#include "light/guides.h"
+#include "light/visible/guides.h"
 #include "light_scenes.h"
 #include "report.h"
 

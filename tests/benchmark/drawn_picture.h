@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "frame/frame.h"
-#include "light/see_picture.h"
+#include "light/visible/visibility.h"
 
 namespace wellspring {
 

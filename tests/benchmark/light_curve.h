@@ -4,7 +4,7 @@
 #pragma once
 #include <vector>
 
-#include "light/technique.h"
+#include "light/technique/technique.h"
 
 namespace wellspring {
 

@@ -12,10 +12,10 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "cycles_job.h"
-#include "light/technique.h"
+#include "light/technique/technique.h"
 #include "light_scenes.h"
 #include "picture_pair.h"
-#include "world/scene_load.h"
+#include "world/load/scene_load.h"
 
 namespace wellspring {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "light/caustic_photons.h"
-#include "light/first_surface.h"
+#include "light/instant/caustic_photons.h"
+#include "light/walk/first_surface.h"
 #include "light_scenes.h"
 
 namespace wellspring {

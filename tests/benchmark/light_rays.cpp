@@ -13,7 +13,7 @@
 #include <sstream>
 
 #include "base/clock.h"
-#include "light/technique.h"
+#include "light/technique/technique.h"
 #include "world/scene.h"
 #include "world/view.h"
 

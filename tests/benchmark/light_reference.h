@@ -2,7 +2,7 @@
 // A converged picture by `path`, and how far it still is from the truth: it is made of two
 // independent halves, whose difference tells the noise of their mean.
 #pragma once
-#include "light/technique.h"
+#include "light/technique/technique.h"
 
 namespace wellspring {
 

@@ -5,9 +5,9 @@
 #include <ctime>
 
 #include "base/parallel.h"
-#include "light/sampler.h"
-#include "light/technique.h"
-#include "light/warp.h"
+#include "light/random/sampler.h"
+#include "light/technique/technique.h"
+#include "light/random/warp.h"
 #include "light_scenes.h"
 #include "plot.h"
 #include "tessellate.h"

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "base/load_error.h"
-#include "show/exhibit_load.h"
-#include "world/scene_load.h"
+#include "show/exhibit/exhibit_load.h"
+#include "world/load/scene_load.h"
 
 namespace wellspring {
 namespace {

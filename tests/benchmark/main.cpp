@@ -10,7 +10,7 @@
 #include "light_photons.h"
 #include "light_rays.h"
 #include "report.h"
-#include "show/exhibit_load.h"
+#include "show/exhibit/exhibit_load.h"
 
 int main(int argc, char** argv) {
   using namespace wellspring;

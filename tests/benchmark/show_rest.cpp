@@ -12,7 +12,7 @@
 #include "frame/jpeg.h"
 #include "frame/picture_file.h"
 #include "frame/tonemap.h"
-#include "show/exhibit_load.h"
+#include "show/exhibit/exhibit_load.h"
 #include "stream/ws_client.h"
 #include "stream_server.h"
 #include "wire/json.h"

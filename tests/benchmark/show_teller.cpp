@@ -17,7 +17,7 @@
 #include "frame/flip.h"
 #include "frame/picture_file.h"
 #include "frame/tonemap.h"
-#include "light/skin_light.h"
+#include "light/known/skin_light.h"
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"

@@ -8,7 +8,7 @@
 
 #include <unistd.h>
 
-#include "avatar/character_load.h"
+#include "avatar/load/character_load.h"
 
 namespace wellspring::test {
 

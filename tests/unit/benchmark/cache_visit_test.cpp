@@ -12,7 +12,7 @@
 #include "benchmark/cache_visit_judge.h"
 #include "benchmark/cache_visit_method.h"
 #include "benchmark/cache_visit_trace.h"
-#include "light/lights.h"
+#include "light/sample/lights.h"
 #include "scenes/scenes.h"
 
 namespace wellspring {

@@ -7,7 +7,7 @@
 
 #include "cache/packing.h"
 #include "cache/point_cache.h"
-#include "light/technique.h"
+#include "light/technique/technique.h"
 #include "picture/compose_drawn.h"
 #include "scenes/scenes.h"
 #include "unit/cache/visit.h"

@@ -3,7 +3,7 @@
 #pragma once
 #include <optional>
 
-#include "light/lights.h"
+#include "light/sample/lights.h"
 #include "picture/compositor.h"
 #include "unit/cache/room.h"
 

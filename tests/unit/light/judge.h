@@ -14,7 +14,7 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "light/technique.h"
+#include "light/technique/technique.h"
 
 namespace wellspring::test {
 

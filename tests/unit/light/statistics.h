@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/rng.h"
-#include "light/technique.h"
+#include "light/technique/technique.h"
 
 namespace wellspring::test {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "light/technique.h"
+#include "light/technique/technique.h"
 #include "picture/compose_drawn.h"
 #include "picture/compositor.h"
 #include "scenes/scenes.h"

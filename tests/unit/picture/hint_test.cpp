@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "frame/flip.h"
-#include "light/technique.h"
+#include "light/technique/technique.h"
 #include "picture/compositor.h"
 #include "scenes/scenes.h"
 

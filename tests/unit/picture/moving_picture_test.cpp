@@ -8,7 +8,7 @@
 
 #include "frame/tone_curve.h"
 #include "frame/tonemap.h"
-#include "light/skin_light.h"
+#include "light/known/skin_light.h"
 #include "unit/picture/drawn_visit.h"
 
 namespace wellspring {

@@ -13,7 +13,7 @@
 #include "base/load_error.h"
 #include "base/parallel.h"
 #include "frame/picture_file.h"
-#include "light/technique.h"
+#include "light/technique/technique.h"
 #include "mitsuba_mesh.h"
 #include "mitsuba_scene.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "frame/jpeg.h"
-#include "show/show.h"
+#include "show/state/show.h"
 #include "tiny_exhibit.h"
 #include "wire/packet.h"
 

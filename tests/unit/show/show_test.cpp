@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "frame/jpeg.h"
-#include "show/answer.h"
-#include "show/show.h"
+#include "show/answer/answer.h"
+#include "show/state/show.h"
 #include "tiny_exhibit.h"
 #include "wire/json.h"
 

@@ -2,7 +2,7 @@
 // A small exhibit made in code: a lit room of 8 x 4 x 8 m with a wall in the middle, two
 // viewpoints, a tour and a story.
 #pragma once
-#include "show/exhibit.h"
+#include "show/exhibit/exhibit.h"
 
 namespace wellspring {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The smallest storyteller: one joint, and a flat plate at the height of 0.5 m.
 #pragma once
-#include "avatar/character.h"
+#include "avatar/figure/character.h"
 
 namespace wellspring {
 

@@ -2,7 +2,7 @@
 // Materials, textures and pictures of glTF files.
 #include <cmath>
 
-#include "asset.h"
+#include "unit/world/load/asset.h"
 
 namespace wellspring {
 namespace {

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every figure is held to, whatever file it comes from.
+#pragma once
+#include "avatar/figure/character.h"
+
+namespace wellspring {
+
+// Puts the figure on y = 0 (motions along with it) and adds warnings: joints of the face that lie
+// where no face is, a size no person has. Called once, at the end of loading.
+void check_figure(Character& character);
+
+}  // namespace wellspring

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// A character seen by those who move it: which joints are its spine, neck, arms, legs and eyes, and
+// how its arms must turn to hang straight down, so that one gesture fits figures drawn in I-, A- or
+// T-pose. Whatever a figure lacks is -1 and stays still. Made once per character.
+#pragma once
+#include <array>
+
+#include "avatar/figure/character.h"
+
+namespace wellspring {
+
+struct WeightedJoint {
+  int joint = -1;
+  float share = 1;  // of the whole chain's turn; sums to 1
+};
+
+struct FingerJoint {
+  int joint = -1;
+  int finger = 0;   // 0 thumb .. 4 little
+  int knuckle = 0;  // 0 at the palm, 1, 2
+  float bent = 0;   // flexion at rest, radians
+  vec3 axis{0};     // humanoid space at rest: turning about it bends the joint
+};
+
+struct ArmRig {
+  int collar = -1, shoulder = -1, elbow = -1, wrist = -1;
+  // Rotations of the rest pose (humanoid space) that make upper arm, forearm and hand hang straight
+  // down, palm in.
+  quat upper_hangs{1, 0, 0, 0}, fore_hangs{1, 0, 0, 0}, hand_hangs{1, 0, 0, 0};
+  float spread = 0;  // how far the upper arm stands off at rest, radians
+  std::vector<FingerJoint> fingers;
+  vec3 curl_axis{0};  // humanoid space at rest: turning about it closes the fingers but the thumb
+};
+
+struct LegRig {
+  int hip = -1, knee = -1, ankle = -1;
+  vec3 pole{0, 0, 1};  // where the knee points at rest
+  bool complete() const { return hip >= 0 && knee >= 0 && ankle >= 0; }
+};
+
+struct Rig {
+  const Character* character = nullptr;
+  size_t joints = 0, displacers = 0;
+  int root = 0;
+  std::vector<WeightedJoint> spine, neck;  // from below
+  int skull = -1, jaw = -1;
+  std::array<int, 2> eye{-1, -1}, lid{-1, -1};                   // left, right; joints
+  bool jaw_moves = false, lids_move = false, eyes_move = false;  // the joint has vertices
+  std::array<ArmRig, 2> arm;
+  std::array<LegRig, 2> leg;
+  vec3 eyes_center{0};  // at rest, humanoid space
+
+  // Displacers by name.
+  std::array<int, 2> blink{-1, -1}, smile{-1, -1}, brow_up{-1, -1};
+  int brow_inner_up = -1, mouth_open = -1, breathe = -1;
+  std::array<int, 2> squint{-1, -1}, lid_wide{-1, -1};  // "squint_l" or, for both, "squint"
+  std::array<int, 15> viseme{};  // in the order sil PP FF TH DD kk CH SS nn RR aa E ih oh ou
+  std::array<int, 4> look{-1, -1, -1,
+                          -1};  // displacers of eyes without joints: up, down, left, right
+};
+
+Rig make_rig(const Character& character);
+
+}  // namespace wellspring

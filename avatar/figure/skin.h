@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Moves the vertices: displacers, then joints, blended as Character::skinning says; normals follow.
+// All cores, no allocation after the first call. Called once a tick.
+#pragma once
+#include <vector>
+
+#include "avatar/figure/pose.h"
+#include "avatar/figure/skin_dual.h"
+
+namespace wellspring {
+
+// Faces around the vertices that displacers move, so that a closing lid is shaded as it lies.
+struct SkinFolds {
+  const Character* character = nullptr;  // whom the rest was made for
+  size_t vertex_count = 0;
+  std::vector<uint32_t> vertices,
+      group;                    // vertices whose normal may turn, and the group each belongs to
+  uint32_t group_count = 0;     // vertices at one place with one normal
+  std::vector<uint32_t> first;  // triangles[first[g] .. first[g + 1]) lie around group g
+  std::vector<uvec3> triangles;
+  std::vector<vec3> rest_normal;  // mean of the faces at rest
+  std::vector<quat> turn;         // from there to the present displacement
+};
+
+// Working memory of skin(); one per figure and thread. Made by the first call.
+struct SkinScratch {
+  std::vector<mat4> joints;       // after skin(): eval_joints() of the pose
+  std::vector<glm::mat3x4> rows;  // the same in the world, first three rows of each
+  std::vector<DualQuaternion> rigid;  // for dual quaternions: each joint's turn and way ...
+  std::vector<mat3> stretches;        // ... and what it stretches; empty: nothing
+  std::vector<vec3> displaced, displaced_normals;
+  SkinFolds folds;
+};
+
+// `placement` takes humanoid space to the world. Output vectors are resized to the character's
+// vertices.
+void skin(const Character& character, const Pose& pose, const mat4& placement, SkinScratch& scratch,
+          std::vector<vec3>& positions, std::vector<vec3>& normals);
+
+// Unit area-weighted mean normal of the faces around a group; zero where they cancel.
+vec3 eval_fold_normal(const SkinFolds& folds, uint32_t group, const std::vector<vec3>& positions);
+
+}  // namespace wellspring

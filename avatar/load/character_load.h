@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of figures to a Character, told apart by their content: H-Anim in X3D's encodings and
+// VRML97, glTF skins, VRM, BVH. Throws LoadError naming file and line (or node). Cost linear in the
+// file.
+#pragma once
+#include <string>
+
+#include "avatar/figure/character.h"
+
+namespace wellspring {
+
+Character load_character(const std::string& path);
+
+}  // namespace wellspring

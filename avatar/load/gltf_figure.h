@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Skins of glTF files and VRM models as H-Anim figures. The skeleton (gltf_figure_joints.cpp) is
+// turned to face +Z and put at rest in its bind pose with all joint axes along humanoid space, so
+// that gestures need not know how the file's bones lie; the surfaces (gltf_figure_skin.cpp) come to
+// rest with it; morph targets become displacers and VRM's expressions sums of them; every animation
+// becomes a Motion (gltf_motion.cpp).
+#pragma once
+#include "avatar/figure/character.h"
+#include "avatar/load/vrm_extension.h"
+#include "gltf/pose.h"
+
+namespace wellspring {
+
+inline constexpr size_t most_displacements = 20'000'000;  // of a figure's vertices
+
+// Working state of one reading.
+struct GltfFigure {
+  gltf::File file;
+  std::vector<gltf::Node> nodes;  // with their transforms at rest
+  Vrm vrm;
+  Character character;
+  std::vector<int> joint_of;      // per node; -1: none
+  std::vector<int> nearest_joint;  // per node: its own joint or that of the nearest node above
+  std::vector<size_t> node_of;    // per joint
+  dmat4 to_humanoid{1};           // the file's world to humanoid space
+  std::vector<dmat4> rest;        // per node: to the file's world, in the figure's rest pose
+  std::map<std::pair<size_t, size_t>, Displacer> moves;  // what morph target (node, target) does
+};
+
+void read_gltf_joints(GltfFigure& figure);
+void read_gltf_surfaces(GltfFigure& figure);
+void read_gltf_expressions(GltfFigure& figure);
+void read_gltf_constraints(GltfFigure& figure);
+void read_gltf_springs(GltfFigure& figure);
+void read_gltf_motions(GltfFigure& figure);
+
+// A whole figure; one without surface where the file only moves. Throws LoadError; refuses files
+// without a skeleton.
+Character character_from_gltf(const std::string& path);
+
+}  // namespace wellspring

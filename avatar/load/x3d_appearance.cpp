@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "avatar/load/x3d_appearance.h"
+
+#include <filesystem>
+
+namespace wellspring {
+namespace {
+
+vec3 linear_from_srgb(vec3 c) {
+  vec3 result;
+  for (int i = 0; i < 3; i++) {
+    float v = glm::clamp(c[i], 0.0f, 1.0f);
+    result[i] = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+  }
+  return result;
+}
+
+// The first picture of `url` that lies beside the file or below it.
+std::string find_picture(X3dFile& file, const X3dNode& node) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> urls = strings_of(node, "url");
+  for (std::string url : urls) {
+    for (char& c : url)
+      if (c == '\\') c = '/';
+    fs::path path(url);
+    bool foreign = url.find("://") != std::string::npos || path.is_absolute();
+    for (const fs::path& part : path) foreign = foreign || part == "..";
+    if (url.empty() || foreign) continue;
+    fs::path full = fs::path(file.path).parent_path() / path;
+    std::error_code error;
+    if (fs::is_regular_file(full, error)) return full.string();
+  }
+  if (!urls.empty())
+    warn_once(file.warnings,
+              where(node) + ": no picture '" + urls[0].substr(0, 80) + "' beside the file");
+  return "";
+}
+
+mat3 texture_transform(X3dFile& file, const X3dNode& node) {
+  auto vec2_of = [&](const char* name, vec2 otherwise) {
+    std::vector<float> v = floats_of(file, node, name);
+    return v.size() < 2 ? otherwise : vec2(v[0], v[1]);
+  };
+  vec2 center = vec2_of("center", vec2(0)), scale = vec2_of("scale", vec2(1));
+  vec2 translation = vec2_of("translation", vec2(0));
+  float angle = float_of(file, node, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
+  mat3 to(1), turn(1), size(1), back(1), move(1);  // X3D 4, 18.4.10: -C S R C T
+  to[2] = vec3(center, 1);
+  back[2] = vec3(-center, 1);
+  move[2] = vec3(translation, 1);
+  turn[0] = vec3(c, s, 0);
+  turn[1] = vec3(-s, c, 0);
+  size[0].x = scale.x;
+  size[1].y = scale.y;
+  return back * size * turn * to * move;
+}
+
+// Path of the picture that `field` names; empty: none.
+std::string picture_of(X3dFile& file, const X3dNode& material, const char* field) {
+  int picture = find_child(file, material, field, {});
+  if (picture < 0) return "";
+  const X3dNode& node = file.nodes[size_t(picture)];
+  if (node.type == "ImageTexture") return find_picture(file, node);
+  warn_once(file.warnings, "texture of type " + node.type + " is not used");
+  return "";
+}
+
+}  // namespace
+
+X3dLook make_x3d_look(X3dFile& file, int appearance, const vec3* color) {
+  X3dLook result;
+  Look& look = result.look;
+  if (color) look.base_color = linear_from_srgb(*color);
+  if (appearance < 0) return result;
+  const X3dNode& node = file.nodes[size_t(appearance)];
+  look.name = node.def;
+  int picture = find_child(file, node, "texture", {"ImageTexture"});
+  int material = find_child(file, node, "material",
+                            {"Material", "PhysicalMaterial", "UnlitMaterial", "TwoSidedMaterial"});
+  if (material >= 0) {
+    const X3dNode& m = file.nodes[size_t(material)];
+    if (!m.def.empty()) look.name = m.def;
+    look.alpha = 1 - glm::clamp(float_of(file, m, "transparency", 0), 0.0f, 1.0f);
+    vec3 emissive = glm::max(vec3_of(file, m, "emissiveColor", vec3(0)), vec3(0));
+    if (m.type == "PhysicalMaterial") {
+      if (!color)
+        look.base_color = glm::clamp(vec3_of(file, m, "baseColor", vec3(1)), vec3(0), vec3(1));
+      look.metallic = glm::clamp(float_of(file, m, "metallic", 1), 0.0f, 1.0f);
+      look.roughness = glm::clamp(float_of(file, m, "roughness", 1), 0.0f, 1.0f);
+      look.emission = emissive;
+      int base = find_child(file, m, "baseTexture", {});
+      if (base >= 0) picture = base;
+      look.normal_texture = picture_of(file, m, "normalTexture");
+      look.normal_scale = glm::clamp(float_of(file, m, "normalScale", 1), 0.0f, 100.0f);
+      look.metallic_roughness_texture = picture_of(file, m, "metallicRoughnessTexture");
+      look.emission_texture = picture_of(file, m, "emissiveTexture");
+      if (find_child(file, m, "occlusionTexture", {}) >= 0)
+        warn_once(file.warnings,
+                  "occlusionTexture of a PhysicalMaterial is not used: shadows are traced");
+    } else if (m.type == "UnlitMaterial") {
+      look.base_color = vec3(0);
+      look.emission = linear_from_srgb(vec3_of(file, m, "emissiveColor", vec3(1)));
+    } else {
+      if (!color) look.base_color = linear_from_srgb(vec3_of(file, m, "diffuseColor", vec3(0.8f)));
+      look.emission = linear_from_srgb(emissive);
+      // Blinn-Phong exponent 128 * shininess as a GGX roughness, as far as there is a highlight at
+      // all.
+      float exponent = 128 * glm::clamp(float_of(file, m, "shininess", 0.2f), 0.0f, 1.0f);
+      float shiny = std::sqrt(std::sqrt(2 / (exponent + 2)));
+      float highlight =
+          glm::clamp(2 * max_component(vec3_of(file, m, "specularColor", vec3(0))), 0.0f, 1.0f);
+      look.roughness = glm::mix(0.9f, shiny, highlight);
+      int diffuse = find_child(file, m, "diffuseTexture", {});
+      if (diffuse >= 0) picture = diffuse;
+      look.double_sided = m.type == "TwoSidedMaterial";
+    }
+  }
+  if (picture >= 0) {
+    const X3dNode& p = file.nodes[size_t(picture)];
+    if (p.type == "ImageTexture") {
+      look.texture = find_picture(file, p);
+      // A texture takes the place of the older Material's colour (X3D 4, 17.2.2.3).
+      bool physical = material >= 0 && file.nodes[size_t(material)].type == "PhysicalMaterial";
+      if (!look.texture.empty() && !physical) look.base_color = vec3(1);
+    } else {
+      warn_once(file.warnings, "texture of type " + p.type + " is not used");
+    }
+  }
+  int transform = find_child(file, node, "textureTransform", {"TextureTransform"});
+  if (transform >= 0 && file.nodes[size_t(transform)].type == "TextureTransform")
+    result.uv_transform = texture_transform(file, file.nodes[size_t(transform)]);
+  return result;
+}
+
+}  // namespace wellspring

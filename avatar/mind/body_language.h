@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which gesture is due: the story's before the situation's, and what a polite person does unasked
+// (welcome, farewell, a nod while listening, an invitation to somebody who waits). State is a
+// value.
+#pragma once
+#include <optional>
+
+#include "avatar/body/gesture.h"
+#include "avatar/mind/storyteller_io.h"
+#include "base/rng.h"
+
+namespace wellspring {
+
+struct BodyLanguageState {
+  double next_nod = 0;
+  double attending_since = -1e30;  // how long somebody has waited before it
+  int invitations = 0;             // given to this guest since then
+  double answered = -1e30;         // when a visitor's gesture was last answered
+  bool pointing = false;           // the story has had it point since the last tick
+  vec3 pointed{0};                 // where; world
+};
+
+// Seconds of patience with a guest to whom nothing happens, before the first invitation and between
+// the next ones.
+inline constexpr double patience_seconds = 18, patience_again_seconds = 40;
+inline constexpr int most_invitations = 3;
+
+// May shorten what `gesture` holds (a pointing hand sinks when the story has finished with the
+// place). `to_here`: world to humanoid space.
+GestureOrder choose_gesture(BodyLanguageState& state, GestureState& gesture,
+                            const GestureLibrary& library, const StorytellerInput& input,
+                            const StorytellerEvents& events, Mood mood, const mat4& to_here,
+                            Rng& rng, double now);
+
+}  // namespace wellspring

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "avatar/mind/gaze.h"
+
+#include <algorithm>
+
+namespace wellspring {
+namespace {
+
+constexpr float nine_tenths =
+    3.89f;  // of a critically damped step are made after this many 1 / rate
+constexpr float eye_rate = nine_tenths / eye_seconds, head_rate = nine_tenths / head_seconds,
+                calm_head_rate = 3.5f, torso_rate = nine_tenths / torso_seconds;
+constexpr float eye_reach_yaw = 22_deg,
+                eye_reach_pitch = 15_deg;  // beyond it the head must come along
+constexpr float head_reach = 55_deg, torso_reach = 18_deg;
+
+float nearest_turn(float angle, float to) {
+  return angle + 2 * pi * std::round((to - angle) / (2 * pi));
+}
+
+// The guest to look at: kiosk guests before remote ones, the nearest first, the present one kept
+// unless another is clearly nearer. nullptr: nobody.
+const Guest* choose_guest(const GazeState& state, std::span<const Guest> guests, vec3 from) {
+  const Guest* best = nullptr;
+  float least = 1e30f;
+  for (const Guest& guest : guests) {
+    float distance = glm::length(guest.head - from);
+    bool kept = state.at_guest && state.guest == guest.id;
+    if (!guest.kiosk && distance > remote_radius + (kept ? 0.5f : 0)) continue;
+    float rank = distance - (kept ? 0.3f : 0) + (guest.kiosk ? 0 : 1e6f);
+    if (rank < least) least = rank, best = &guest;
+  }
+  return best;
+}
+
+void choose_target(GazeState& state, const BehaviourState& behaviour, const GazeInput& input,
+                   vec3 from, Rng& rng, double now) {
+  float heading = input.heading;
+  bool motion = input.kiosk_motion, humanlike = input.humanlike;
+  const Guest* guest = choose_guest(state, input.guests, from);
+  if (guest && guest->kiosk) {
+    state.kiosk_known = true;
+    state.kiosk_place = guest->head;
+  }
+  if (input.look && is_finite(*input.look) && behaviour.mood != Mood::farewell) {
+    state.at_guest = false;
+    state.guest = 0;
+    state.target = *input.look;
+    return;
+  }
+  bool waits = behaviour.mood == Mood::farewell || behaviour.company || motion ||
+               behaviour.mood == Mood::greeting;
+  if (!(guest && guest->kiosk) && waits && (!guest || behaviour.mood != Mood::telling)) {
+    state.at_guest = false;
+    state.guest = 0;
+    state.target = state.kiosk_known ? state.kiosk_place : vec3(0, from.y, 1.5f);
+    return;
+  }
+  if (guest && !guest->kiosk && humanlike && now >= state.glance_until) {
+    // A long look, a short rest for both.
+    state.glancing_away = state.at_guest && !state.glancing_away;
+    state.glance_until = now + (state.glancing_away ? 1.2 + 1.5 * double(rng.uniform())
+                                                    : 8 + 6 * double(rng.uniform()));
+    if (state.glancing_away) state.wander_until = 0;
+  }
+  if (guest && (guest->kiosk || !humanlike || !state.glancing_away)) {
+    state.at_guest = true;
+    state.guest = guest->id;
+    state.target = guest->head;
+    return;
+  }
+  if (!guest) state.glance_until = 0, state.glancing_away = false;
+  state.at_guest = false;
+  state.guest = 0;
+  if (!humanlike) {
+    state.wander = {0, -2_deg, 4};
+  } else if (now >= state.wander_until) {
+    float wide = rng.uniform() < 0.2f ? 40_deg : 18_deg;
+    float yaw = (rng.uniform() + rng.uniform() - 1) * wide;
+    state.wander = {yaw, -8_deg + 11_deg * rng.uniform(), 2.5f + 4 * rng.uniform()};
+    state.wander_until = now + 1.5 + 3.5 * double(rng.uniform());
+  }
+  float yaw = heading + state.wander.x, pitch = state.wander.y;
+  state.target = from + state.wander.z * vec3(std::sin(yaw) * std::cos(pitch), std::sin(pitch),
+                                              std::cos(yaw) * std::cos(pitch));
+}
+
+}  // namespace
+
+vec3 eyes_origin(const Rig& rig, float heading) {
+  vec3 axis = rig.character->joints[size_t(rig.root)].center;
+  axis.y = 0;
+  return axis + glm::angleAxis(heading, vec3(0, 1, 0)) * (rig.eyes_center - axis);
+}
+
+vec3 gaze_point(const GazeState& state, const Rig& rig, float heading) {
+  float yaw = state.yaw.value + state.saccade.x, pitch = state.pitch.value + state.saccade.y;
+  float distance = 1 / std::clamp(state.nearness.value, 0.01f, 4.0f);
+  return eyes_origin(rig, heading) + distance * vec3(std::sin(yaw) * std::cos(pitch),
+                                                     std::sin(pitch),
+                                                     std::cos(yaw) * std::cos(pitch));
+}
+
+bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour,
+               const GazeInput& input, Rng& rng, double now, float dt) {
+  float heading = input.heading;
+  vec3 from = eyes_origin(rig, heading);
+  vec3 before = state.target;
+  choose_target(state, behaviour, input, from, rng, now);
+  vec3 way = state.target - from;
+  float distance = std::max(glm::length(way), 0.25f);
+  float flat = glm::length(vec2(way.x, way.z));
+  float yaw = flat > 1e-3f ? nearest_turn(std::atan2(way.x, way.z), heading) : heading;
+  float pitch = std::atan2(way.y, std::max(flat, 1e-3f));
+
+  if (!input.humanlike || !input.saccades) {
+    state.saccade = vec2(0);
+  } else if (now >= state.next_saccade) {
+    float reach = state.at_guest ? 0.5_deg : 1.2_deg;
+    state.saccade = reach * (2.0f * vec2(rng.uniform(), rng.uniform()) - 1.0f);
+    state.next_saccade = now + 0.35 + 1.4 * double(rng.uniform());
+  }
+  // What the head and the chest do about it.
+  float turn = yaw - heading;
+  bool eyes = rig.eyes_move;
+  float torso = std::clamp(0.25f * turn, -torso_reach, torso_reach);
+  float head = eyes ? 0.85f * std::copysign(std::max(std::abs(turn) - 3_deg, 0.0f), turn) : turn;
+  if (eyes) head = std::clamp(head, turn - eye_reach_yaw, turn + eye_reach_yaw);
+  head = std::clamp(head, torso - head_reach, torso + head_reach);
+  float nod =
+      eyes ? std::clamp(0.65f * pitch, pitch - eye_reach_pitch, pitch + eye_reach_pitch) : pitch;
+  nod = std::clamp(nod, -32_deg, 28_deg);
+
+  bool jump = state.begun && glm::length(state.target - before) > 0.35f * distance;
+  if (!state.begun) {
+    state.yaw = {yaw, 0};
+    state.pitch = {pitch, 0};
+    state.nearness = {1 / distance, 0};
+    state.head_yaw = {heading + head, 0};
+    state.head_pitch = {nod, 0};
+    state.torso_yaw = {torso, 0};
+    state.begun = true;
+  }
+  state.yaw.value = nearest_turn(state.yaw.value, yaw);
+  state.head_yaw.value = nearest_turn(state.head_yaw.value, heading);
+  settle(state.yaw, yaw, eye_rate, dt);
+  settle(state.pitch, pitch, eye_rate, dt);
+  settle(state.nearness, 1 / distance, eye_rate, dt);
+  bool meant = state.at_guest || input.look || behaviour.mood != Mood::idle;
+  float rate = meant ? head_rate : calm_head_rate;
+  settle(state.head_yaw, heading + head, rate, dt);
+  settle(state.head_pitch, nod, rate, dt);
+  settle(state.torso_yaw, torso, torso_rate, dt);
+  return jump;
+}
+
+}  // namespace wellspring

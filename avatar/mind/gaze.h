@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the storyteller looks, and how its eyes, head and chest share the way: eyes first and fast,
+// then the head, then the chest. Angles are in humanoid space, about +Y from +Z (positive to its
+// own left) and up.
+#pragma once
+#include <optional>
+#include <span>
+
+#include "avatar/mind/behaviour.h"
+#include "avatar/figure/rig.h"
+#include "avatar/figure/spring.h"
+#include "base/rng.h"
+
+namespace wellspring {
+
+inline constexpr float remote_radius = 8;  // metres within which a visitor's camera is looked at
+
+struct GazeState {
+  bool begun = false;
+  bool at_guest = false;
+  uint32_t guest = 0;
+  bool kiosk_known = false;
+  vec3 kiosk_place{0};      // where the last kiosk guest's eyes were, humanoid space
+  double glance_until = 0;  // remote guests: not stared at without end
+  bool glancing_away = false;
+  double wander_until = 0;
+  vec3 wander{0, 0, 4};  // yaw, pitch, distance while looking at nobody
+  double next_saccade = 0;
+  vec2 saccade{0};                         // small step of the eyes around the target
+  vec3 target{0, 1.6f, 4};                 // what is looked at, humanoid space
+  Spring yaw, pitch, nearness{0.25f, 0};   // line of sight of the eyes; nearness = 1 / distance
+  Spring head_yaw, head_pitch, torso_yaw;  // torso_yaw: relative to the heading
+};
+
+struct GazeInput {
+  std::span<const Guest> guests;  // with their heads in humanoid space
+  std::optional<vec3> look;       // what the story wants looked at instead, humanoid space
+  float heading = 0;              // where the body faces
+  bool kiosk_motion = false, humanlike = true;
+  bool saccades = true;           // false: nobody is near enough to see them
+};
+
+// Times after which eyes, head and chest have made nine tenths of a turn (3.9 / rate of their
+// springs).
+inline constexpr float eye_seconds = 0.14f, head_seconds = 0.65f, torso_seconds = 1.56f;
+
+// One tick. Returns true when the gaze has made a large jump (the eyes like to blink then).
+bool tick_gaze(GazeState& state, const Rig& rig, const BehaviourState& behaviour,
+               const GazeInput& input, Rng& rng, double now, float dt);
+
+// The middle between the eyes while the body faces `heading`, standing still.
+vec3 eyes_origin(const Rig& rig, float heading);
+// The point the eyes converge on.
+vec3 gaze_point(const GazeState& state, const Rig& rig, float heading);
+
+}  // namespace wellspring

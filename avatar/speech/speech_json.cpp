@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "avatar/speech/speech_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "avatar/speech/mouth_shapes.h"
+#include "avatar/speech/text.h"
+#include "base/load_error.h"
+
+namespace wellspring {
+
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr size_t most_entries = 1'000'000;
+constexpr double longest = 24 * 3600;
+
+double rounded(double value, double per_unit = 1e4) {
+  return std::round(value * per_unit) / per_unit;
+}
+
+// A key of a shape is worth saying where the shape, or its key before or after, is there.
+ordered_json write_visemes(const VisemeTrack& track) {
+  ordered_json list = ordered_json::array();
+  auto weight = [&](size_t key, size_t viseme) {
+    return key < track.keys.size() ? track.keys[key].weights[viseme] : 0.0f;
+  };
+  for (size_t k = 0; k < track.keys.size(); k++)
+    for (size_t v = 0; v < viseme_count; v++)
+      if (weight(k, v) > 0 || weight(k + 1, v) > 0 || (k > 0 && weight(k - 1, v) > 0))
+        list.push_back({{"time", rounded(track.keys[k].time)},
+                        {"viseme", viseme_names[v]},
+                        {"weight", rounded(double(weight(k, v)), 1e3)}});
+  return list;
+}
+
+struct Reader {
+  const std::string& file;
+
+  [[noreturn]] void fail(const std::string& where, const std::string& what) const {
+    throw LoadError(file, where, what);
+  }
+  const json& member(const json& object, const std::string& where, const char* name) const {
+    if (!object.is_object()) fail(where, "an object is expected");
+    auto found = object.find(name);
+    if (found == object.end()) fail(where + "/" + name, "is missing");
+    return *found;
+  }
+  double number(const json& object, const std::string& where, const char* name) const {
+    const json& value = member(object, where, name);
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+      fail(where + "/" + name, "a number is expected");
+    return value.get<double>();
+  }
+  std::string string(const json& object, const std::string& where, const char* name) const {
+    const json& value = member(object, where, name);
+    if (!value.is_string()) fail(where + "/" + name, "a string is expected");
+    return value.get<std::string>();
+  }
+  const json& list(const json& object, const char* name) const {
+    const json& value = member(object, "", name);
+    if (!value.is_array()) fail(std::string("/") + name, "a list is expected");
+    if (value.size() > most_entries) fail(std::string("/") + name, "is too long");
+    return value;
+  }
+  void span(const json& entry, const std::string& where, double after, double duration,
+            double& begin, double& end) const {
+    begin = number(entry, where, "start");
+    end = number(entry, where, "end");
+    constexpr double slack = 2e-4;  // times are written with four decimals
+    if (begin < after - slack) fail(where + "/start", "is before the end of what comes before");
+    if (end < begin - slack) fail(where + "/end", "is before the start");
+    if (end > duration + slack) fail(where + "/end", "is after the end of the sound");
+    begin = std::clamp(begin, after, duration);
+    end = std::clamp(end, begin, duration);
+  }
+};
+
+void read_words(const Reader& reader, const json& root, Speech& speech) {
+  std::vector<uint32_t> bytes = character_starts(speech.text);
+  const json& list = reader.list(root, "words");
+  for (size_t i = 0; i < list.size(); i++) {
+    std::string where = "/words/" + std::to_string(i);
+    SpeechWord word;
+    double after = speech.words.empty() ? 0 : speech.words.back().end;
+    reader.span(list[i], where, after, speech.duration, word.begin, word.end);
+    const json& range = reader.member(list[i], where, "characters");
+    if (!range.is_array() || range.size() != 2 || !range[0].is_number_unsigned() ||
+        !range[1].is_number_unsigned())
+      reader.fail(where + "/characters", "two counts of characters are expected");
+    size_t from = range[0].get<size_t>(), to = range[1].get<size_t>();
+    if (from > to || to >= bytes.size())
+      reader.fail(where + "/characters", "is outside of the text");
+    word.text_begin = bytes[from];
+    word.text_end = bytes[to];
+    speech.words.push_back(word);
+  }
+}
+
+void read_phonemes(const Reader& reader, const json& root, Speech& speech) {
+  const json& list = reader.list(root, "phonemes");
+  double after = 0;
+  int word = 0;
+  for (size_t i = 0; i < list.size(); i++) {
+    std::string where = "/phonemes/" + std::to_string(i);
+    SpeechPhoneme phoneme;
+    phoneme.mnemonic = reader.string(list[i], where, "phoneme");
+    phoneme.ipa = reader.string(list[i], where, "ipa");
+    double index = reader.number(list[i], where, "word");
+    if (index != std::floor(index) || index < -1 || index >= double(speech.words.size()))
+      reader.fail(where + "/word", "is no word of the list");
+    phoneme.word = int(index);
+    if (phoneme.word < 0 && is_pause(phoneme.mnemonic)) continue;  // pauses are made anew
+    if (phoneme.word < 0) {
+      reader.span(list[i], where, 0, longest, phoneme.begin, phoneme.end);
+      speech.phonemes.push_back(std::move(phoneme));
+      continue;
+    }
+    if (phoneme.word < word) reader.fail(where + "/word", "is out of order");
+    // Phonemes keep their proportions only; their word may have been moved away from them.
+    if (phoneme.word > word) after = 0;
+    word = phoneme.word;
+    double begin = reader.number(list[i], where, "start");
+    double end = reader.number(list[i], where, "end");
+    if (begin < after - 2e-4 || end < begin)
+      reader.fail(where + "/start", "times are out of order");
+    if (begin < 0 || end > longest) reader.fail(where + "/end", "is no time of the sound");
+    phoneme.begin = begin;
+    phoneme.end = after = end;
+    speech.phonemes.push_back(std::move(phoneme));
+  }
+}
+
+}  // namespace
+
+std::string write_speech_json(const Speech& speech) {
+  ordered_json words = ordered_json::array(), phonemes = ordered_json::array();
+  std::string_view text = speech.text;
+  auto character = [&](uint32_t byte) { return count_characters(text, byte); };
+  for (const SpeechWord& word : speech.words)
+    words.push_back({{"text", text.substr(word.text_begin, word.text_end - word.text_begin)},
+                     {"start", rounded(word.begin)},
+                     {"end", rounded(word.end)},
+                     {"characters",
+                      {character(word.text_begin), character(word.text_end)}}});
+  for (const SpeechPhoneme& phoneme : speech.phonemes)
+    phonemes.push_back({{"phoneme", phoneme.mnemonic},
+                        {"ipa", phoneme.ipa},
+                        {"start", rounded(phoneme.begin)},
+                        {"end", rounded(phoneme.end)},
+                        {"word", phoneme.word}});
+  auto text_of = [](const ordered_json& value) {
+    return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  };
+  // One entry a line, so that a person can find and change it.
+  std::string out = "{\"version\": 1";
+  auto add = [&](const char* name, const ordered_json& value) {
+    out += std::string(",\n \"") + name + "\": " + text_of(value);
+  };
+  add("text", speech.text);
+  add("lang", speech.lang);
+  add("rate", speech.rate);
+  add("duration", rounded(speech.duration));
+  auto add_list = [&](const char* name, const ordered_json& list) {
+    out += std::string(",\n \"") + name + "\": [";
+    for (size_t i = 0; i < list.size(); i++) out += (i ? ",\n  " : "\n  ") + text_of(list[i]);
+    out += "\n ]";
+  };
+  add_list("words", words);
+  add_list("phonemes", phonemes);
+  add_list("visemes", write_visemes(speech.visemes));
+  return out + "\n}\n";
+}
+
+Speech load_speech_marks(std::string_view text, const std::string& file) {
+  Reader reader{file};
+  // Depth 6 is more than the format has; what is deeper is refused before it is built.
+  bool too_deep = false;
+  auto guard = [&](int depth, json::parse_event_t, json&) {
+    too_deep = too_deep || depth > 6;
+    return !too_deep;
+  };
+  json root = json::parse(text, guard, false);
+  if (too_deep) reader.fail("", "is nested too deeply");
+  if (root.is_discarded()) reader.fail("", "is no JSON");
+  if (reader.number(root, "", "version") != 1) reader.fail("/version", "1 is expected");
+  Speech speech;
+  speech.text = reader.string(root, "", "text");
+  if (find_broken_utf8(speech.text) != std::string::npos) reader.fail("/text", "is no UTF-8");
+  speech.lang = reader.string(root, "", "lang");
+  double rate = reader.number(root, "", "rate");
+  if (!(rate >= 4000 && rate <= 192000)) reader.fail("/rate", "4000 to 192000 is expected");
+  speech.rate = int(rate);
+  speech.duration = reader.number(root, "", "duration");
+  if (!(speech.duration >= 0 && speech.duration <= longest))
+    reader.fail("/duration", "0 to 86400 seconds are expected");
+  read_words(reader, root, speech);
+  read_phonemes(reader, root, speech);
+  fit_phonemes(speech);
+  fill_visemes(speech);
+  return speech;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Speech as JSON, for people who correct marks by hand and for programs. Times in seconds from the
+// beginning of the sound; characters are Unicode code points of "text", [first, past the last].
+//
+//   {"version": 1, "text": "...", "lang": "en", "rate": 22050, "duration": 1.23,
+//    "words":    [{"text": "tower", "start": 0.10, "end": 0.52, "characters": [4, 9]}, ...],
+//    "phonemes": [{"phoneme": "t", "ipa": "t", "start": 0.10, "end": 0.17, "word": 0}, ...],
+//    "visemes":  [{"time": 0.12, "viseme": "DD", "weight": 0.5}, ...]}
+//
+// A pause, or a sound that is no part of the words (a speaker stutters), has "word" -1. Visemes are
+// keys: each mouth shape goes from one of its keys to its next by a smooth step (3x^2 - 2x^3);
+// before its first and after its last it is as there.
+//
+// Marks edited by hand. Words rule: move "start" and "end" of words; when the file is read, the
+// phonemes of every word are stretched into it, pauses fill the rest, and the visemes are made
+// anew. "phonemes" may be edited within a word; "visemes" and what is not named here is ignored.
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "avatar/speech/speech.h"
+
+namespace wellspring {
+
+std::string write_speech_json(const Speech& speech);
+
+// Marks without a sound: pcm is empty, duration is the file's. `file` names the source in errors.
+// Throws LoadError with a JSON pointer: no JSON, wrong types, times not finite, negative, out of
+// order or beyond the duration, characters outside the text, more than a million entries.
+Speech load_speech_marks(std::string_view json, const std::string& file);
+
+}  // namespace wellspring

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Story files: .txt is plain text, all else is markup.
+#pragma once
+#include <string>
+
+#include "avatar/story/story_script.h"
+
+namespace wellspring {
+
+// Throws LoadError naming the file: it cannot be read, it is larger than most_markup_bytes, and
+// what read_story and read_plain_story throw.
+StoryScript load_story(const std::string& file);
+
+}  // namespace wellspring

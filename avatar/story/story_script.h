@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// A story as its author wrote it, in one language: sentences, how they are to be said, and marks
+// for face, hands, eyes and camera between their words. docs/stories.md describes the markup; plain
+// text and SSML 1.1 are read by the same reader.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "avatar/speech/style.h"
+#include "avatar/story/story_markup.h"
+
+namespace wellspring {
+
+struct Speech;
+
+enum class StoryMarkKind : uint8_t { emotion, gesture, look, point, view, beat, mark };
+
+struct StoryMark {
+  StoryMarkKind kind = StoryMarkKind::mark;
+  uint32_t at = 0;   // byte of StoryLine::text that it stands before; its size: after the last word
+  std::string name;  // emotion, gesture, object, viewpoint or mark; empty: back to none
+  float weight = 1;  // 0..1
+  MarkupPlace place; // in the file
+};
+
+// A sentence: one subtitle, spoken in one breath.
+struct StoryLine {
+  std::string text;                 // as subtitles show it
+  std::vector<SpeechStyle> styles;  // in its bytes
+  std::vector<StoryMark> marks;     // in order of `at`
+  float pause = 0;                  // seconds of silence after it, besides the breath
+  std::shared_ptr<const Speech> recording{};  // a narrator's, instead of a synthesis; null: none
+  std::string file;                 // and the place in it, for messages
+  MarkupPlace place;
+};
+
+struct StoryNote {
+  MarkupPlace place;
+  std::string what;
+};
+
+struct StoryScript {
+  std::vector<StoryLine> lines;
+  std::vector<StoryNote> notes;  // what is asked for and not done; each unknown tag once
+};
+
+inline constexpr float paragraph_pause = 0.6f;
+inline constexpr size_t most_line_bytes = 2000;
+
+// Never without a line. Throws LoadError{file, "line l, column c", what}: as read_markup; a time, a
+// number or a name missing or out of range; nothing to say; a sentence longer than most_line_bytes.
+StoryScript read_story(std::string_view text, const std::string& file);
+// The same of a text without markup: an empty line divides paragraphs.
+StoryScript read_plain_story(std::string_view text, const std::string& file);
+// One line whatever it says: a greeting, or a sentence of a list. <s> and <p> inside still divide.
+StoryScript read_story_line(std::string_view text, const std::string& file);
+
+}  // namespace wellspring

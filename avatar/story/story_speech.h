@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole story as one speech: its sentences one after the other with their pauses, as a show tells
+// them.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "avatar/speech/speech.h"
+#include "avatar/speech/process.h"
+#include "avatar/story/story_script.h"
+#include "avatar/story/subtitle.h"
+
+namespace wellspring {
+
+inline constexpr double story_breath = 0.55;  // between two sentences of a show: breath and lead
+
+struct StorySpeech {
+  Speech speech;                   // of all sentences; its text has a line for each
+  std::vector<double> begins;      // of every sentence's first sample
+  std::vector<SubtitleCue> cues;
+};
+
+// Every line in the voice of `request`, whose text and styles are the lines'. Throws LoadError with
+// the place in `file` of a line that cannot be spoken.
+std::vector<std::shared_ptr<const Speech>> speak_lines(SpeechProcess& process,
+                                                       const std::vector<StoryLine>& lines,
+                                                       SpeechRequest request,
+                                                       const std::string& file);
+
+// `spoken` are the lines' speeches, all of one rate; null ones are left out, with their time to
+// read.
+StorySpeech join_lines(const std::vector<StoryLine>& lines,
+                       const std::vector<std::shared_ptr<const Speech>>& spoken);
+
+}  // namespace wellspring

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What happens when while a line of a story is told: the marks of its text at the times of the
+// words they stand before. Names as in the storyteller and kiosk paper: a TimelineAction is when,
+// an ActionEvent what. A timeline is a value; a cursor runs through it, so that the same line gives
+// the same events in the same order whatever the steps of time.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "avatar/speech/speech.h"
+#include "avatar/story/story_cue.h"
+#include "avatar/story/story_script.h"
+
+namespace wellspring {
+
+struct ActionEvent {
+  StoryMarkKind kind = StoryMarkKind::mark;
+  std::string name;
+  float weight = 1;
+  float lead = 0;  // seconds from the event to the word it belongs to
+};
+
+struct TimelineAction {
+  double time = 0;  // seconds from the line's first sample; below 0: in the breath before
+  ActionEvent event;
+};
+
+struct Timeline {
+  std::vector<TimelineAction> actions;  // in order of time
+};
+
+// Hands and eyes need a moment: the stroke of a gesture is to meet the word (its clip says when
+// that is).
+inline constexpr double point_lead = 0.5, look_lead = 0.25, earliest_action = -0.2;
+
+// `speech` gives the times of words; without one, `seconds` are shared out by characters.
+Timeline make_timeline(const StoryLine& line, const Speech* speech, double seconds);
+
+// Events with time <= `now` that `cursor` has not passed yet; moves it on. Pointers into
+// `timeline`.
+std::vector<const ActionEvent*> advance_timeline(const Timeline& timeline, size_t& cursor,
+                                                 double now);
+
+// What a story holds on to between its events: names, not yet places.
+struct StoryHold {
+  std::string emotion;
+  float emotion_weight = 0;
+  std::string look, point;  // names; empty: the visitor, nothing
+};
+void hold(StoryHold& held, const ActionEvent& event);
+// What holds before line `index`, had all lines before it been told.
+StoryHold hold_before(const std::vector<StoryLine>& lines, size_t index);
+
+}  // namespace wellspring

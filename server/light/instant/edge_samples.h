@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// More rays from the eye where a picture needs them: light is smooth and costs most, what reflects
+// it ends sharply and costs little. After the discontinuity buffer, pixels whose neighbours show
+// another surface or another colour get more rays; each finds out what it shows and takes the light
+// of the nearest pixel that shows the same surface. Where none does, it is lit by itself. (The
+// paper of instant_radiosity.h antialiases by accumulating pictures alone, section 4.)
+#pragma once
+#include <span>
+
+#include "light/instant/discontinuity_buffer.h"
+#include "light/technique/technique.h"
+
+namespace wellspring {
+
+// samples[y * width + x], filtered, become means over `rays` more samples a pixel at `edges`,
+// filter_smooth's. `lights.pass` is the pass they were traced in.
+void refine_edges(const World& world, const Lights& lights, const TransportSettings& settings,
+                  const View& view, const DiscontinuitySettings& continuity, int rays,
+                  uint64_t seed, uint32_t index, std::span<const uint8_t> edges,
+                  std::span<Sample> samples);
+
+}  // namespace wellspring

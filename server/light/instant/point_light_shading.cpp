@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/instant/point_light_shading.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "light/sample/emission.h"
+#include "light/walk/walk.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int lanes = RayPacket::lanes;
+
+LitGroup make_group(const LitPlace* places, int count) {
+  LitGroup group{};
+  for (int i = 0; i < lanes; i++) {
+    const LitPlace& place = places[i < count ? i : 0];
+    const Bsdf& bsdf = *place.bsdf;
+    group.position.set(i, place.surface->position);
+    group.origin.set(i, offset_origin(*place.surface, place.surface->geometric_normal));
+    group.normal.set(i, bsdf.normal);
+    group.face.set(i, bsdf.geometric_normal);
+    group.extent[i] = place.surface->extent;
+    if (i >= count) continue;
+    group.used |= 1u << i;
+    bool plain = place.media->here.count == 0 && place.hue() < 0;
+    if (!has_specular(bsdf) && plain) group.matt |= 1u << i;
+    if (max_component(bsdf.transmit) > 0 && smoothest_alpha(bsdf) >= place.sharp)
+      group.through |= 1u << i;
+  }
+  return group;
+}
+
+// What of the light arrives through thin panes where something is in between.
+vec3 through_panes(const Transport& transport, const LitGroup& group, const SeenLight& seen,
+                   int i) {
+  vec3 origin{seen.rays.origin_x[i], seen.rays.origin_y[i], seen.rays.origin_z[i]};
+  vec3 way{seen.rays.direction_x[i], seen.rays.direction_y[i], seen.rays.direction_z[i]};
+  Ray ray;
+  ray.origin = origin;
+  ray.direction = way;
+  ray.t_max = seen.rays.t_max[i];
+  if (!may_cross_pane(transport.tables.pane_boxes, ray)) return vec3(0);
+  LightSample sample;
+  sample.direction = normalize(way);
+  if (std::isfinite(seen.rays.t_max[i])) {
+    sample.direction = -sample.direction;
+    sample.distance = std::sqrt(seen.distance2[i]);
+    sample.target = origin;
+  }
+  return eval_visibility(transport, group.place(i), sample);
+}
+
+void add_lane(const Transport& transport, const LitPlace& place, const PointLight& light,
+              const InstantPass& pass, const SeenLight& seen, vec3 radiance, int i,
+              PlaceLight& sum) {
+  if (light.hue >= 0) radiance *= meet_hues(place.hue(), light.hue);
+  float distance = std::sqrt(seen.distance2[i]);
+  vec3 direction = seen.direction.at(i) / distance;
+  BsdfValue value = eval_bsdf(*place.bsdf, direction);
+  if (has_sharp(*place.bsdf, place.sharp)) value.specular = vec3(0);
+  if (!(max_component(value.diffuse + value.specular) > 0)) return;
+  if (light.kind == PointLightKind::scattering)
+    radiance *= eval_scattered(pass.arrivals[light.index], -direction) /
+                std::max(seen.distance2[i], pass.clip * pass.clip);
+  else radiance *= seen.strength[i];
+  if (transport.tables.any_tint)
+    radiance *= eval_absorption(transport, medium_towards(*place.media, *place.surface, direction),
+                                std::isfinite(seen.rays.t_max[i])
+                                    ? distance
+                                    : std::numeric_limits<float>::infinity());
+  (light.exact ? sum.exact_diffuse : sum.diffuse) += value.diffuse * radiance;
+  (light.exact ? sum.exact_specular : sum.specular) += value.specular * radiance;
+}
+
+// Of matt lanes.
+void add_matt_lanes(const PointLight& light, const InstantPass& pass, const SeenLight& seen,
+                    vec3 radiance, uint32_t clear, MattLight& sum) {
+  GroupLane3& to = light.exact ? sum.exact : sum.smooth;
+  if (light.kind == PointLightKind::scattering) {
+    for (; clear; clear &= clear - 1) {
+      int i = std::countr_zero(clear);
+      vec3 direction = seen.direction.at(i) / std::sqrt(seen.distance2[i]);
+      vec3 leaves = eval_scattered(pass.arrivals[light.index], -direction) /
+                    std::max(seen.distance2[i], pass.clip * pass.clip);
+      to.set(i, to.at(i) + radiance * leaves * seen.cosine[i]);
+    }
+    return;
+  }
+  const Lanes3 color = all_lanes(radiance);
+  for (int h = 0; h < GroupLane::halves; h++) {
+    Lanes arrives = seen.strength.half(h) * seen.cosine.half(h);
+    arrives = lanes_of_bits(clear >> h * lane_count & 0xff) ? arrives : Lanes{};
+    to.set_half(h, to.half(h) + color * arrives);
+  }
+}
+
+// Calls visit(light, factor) for every light that is asked.
+template <class Visit>
+void for_each_asked(const InstantPass& pass, const SetShare& choice, const Visit& visit) {
+  for (const RegionLight& one : choice.few) visit(pass.lights[one.light], one.factor);
+  if (!choice.few.empty()) return;
+  bool numbered = choice.end != 0;
+  uint32_t end = numbered ? choice.end : pass.first[size_t(choice.set) + 1],
+           begin = numbered ? choice.start : pass.first[size_t(choice.set)];
+  if (choice.region < 0) {
+    if (!numbered) begin += choice.start;
+    for (uint32_t k = begin; k < end; k += choice.step) visit(pass.lights[k], float(choice.step));
+    return;
+  }
+  for (uint32_t k = begin; k < end && pass.lights[k].depth == 0; k++)
+    if (pass.lights[k].exact) visit(pass.lights[k], 1.0f);
+  size_t cell = size_t(choice.region) * size_t(pass.lists()) + size_t(choice.list);
+  const RegionLights& regions = pass.regions;
+  for (uint32_t k = regions.first[cell]; k < regions.first[cell + 1]; k++)
+    visit(pass.lights[regions.lights[k].light], regions.lights[k].factor);
+}
+
+}  // namespace
+
+void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
+                           const SetShare& choice, int max_depth, const LitPlace* places,
+                           int count, PlaceLight* light) {
+  const LitGroup group = make_group(places, count);
+  int deepest = 0;
+  for (int i = 0; i < count; i++) deepest = std::max(deepest, max_depth - 1 - places[i].depth);
+  float clip2 = pass.clip * pass.clip;
+  SeenLight seen;
+  MattLight sum{};
+  for_each_asked(pass, choice, [&](const PointLight& source, float factor) {
+    if (source.depth > deepest) return;
+    vec3 radiance;
+    see_light(transport.tables, group, source, clip2, seen, radiance);
+    radiance *= factor;
+    for (int i = 0; i < count; i++)
+      if (places[i].depth + 1 + int(source.depth) > max_depth) seen.active &= ~(1u << i);
+    if (seen.active == 0) return;
+    uint32_t blocked = choice.few.empty()
+                           ? transport.world.occluded_packet(seen.rays, seen.active)
+                           : transport.world.occluded_each(seen.rays, seen.active);
+    uint32_t clear = seen.active & ~blocked;
+    if (clear & group.matt) add_matt_lanes(source, pass, seen, radiance, clear & group.matt, sum);
+    for (uint32_t slow = clear & ~group.matt; slow; slow &= slow - 1) {
+      int i = std::countr_zero(slow);
+      add_lane(transport, places[i], source, pass, seen, radiance, i, light[i]);
+    }
+    if (!transport.tables.any_pane) return;
+    for (; blocked; blocked &= blocked - 1) {
+      int i = std::countr_zero(blocked);
+      vec3 tint = through_panes(transport, group, seen, i);
+      if (max_component(tint) > 0)
+        add_lane(transport, places[i], source, pass, seen, radiance * tint, i, light[i]);
+    }
+  });
+  for (int i = 0; i < count; i++) {
+    if (!(group.matt >> i & 1)) continue;
+    vec3 value = places[i].bsdf->diffuse / pi;
+    light[i].diffuse += sum.smooth.at(i) * value;
+    light[i].exact_diffuse += sum.exact.at(i) * value;
+  }
+}
+
+void shade_matt_by_point_lights(const Transport& transport, const InstantPass& pass,
+                                const SetShare& choice, int max_depth, const LitGroup& group,
+                                MattLight& sum) {
+  float clip2 = pass.clip * pass.clip;
+  SeenLight seen;
+  for_each_asked(pass, choice, [&](const PointLight& source, float factor) {
+    if (source.depth > max_depth - 2) return;
+    vec3 radiance;
+    see_light(transport.tables, group, source, clip2, seen, radiance);
+    if (seen.active == 0) return;
+    radiance *= factor;
+    uint32_t blocked = transport.world.occluded_packet(seen.rays, seen.active);
+    add_matt_lanes(source, pass, seen, radiance, seen.active & ~blocked, sum);
+    if (!transport.tables.any_pane) return;
+    for (; blocked; blocked &= blocked - 1) {
+      int i = std::countr_zero(blocked);
+      vec3 tint = through_panes(transport, group, seen, i);
+      if (max_component(tint) > 0)
+        add_matt_lanes(source, pass, seen, radiance * tint, 1u << i, sum);
+    }
+  });
+}
+
+}  // namespace wellspring

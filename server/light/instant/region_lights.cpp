@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/instant/region_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "base/parallel.h"
+#include "light/walk/first_surface.h"
+#include "light/instant/light_clusters.h"
+
+namespace wellspring {
+namespace {
+
+constexpr uint32_t region_probes = 16;
+// Share of the choice that asks for no effect: surfaces that no probe met, and gloss.
+constexpr double blind = 0.15f;
+
+// Places that a region shows.
+int probe_region(const Transport& transport, const View& view, int max_depth,
+                 const RegionLights& regions, int region, uint64_t seed, uint32_t first_sample,
+                 LitPoint* points) {
+  int met = 0, left = region % regions.columns * regions.width,
+      top = region / regions.columns * regions.height;
+  vec2 size(float(std::min(regions.width, view.width - left)),
+            float(std::min(regions.height, view.height - top)));
+  for (uint32_t p = 0; p < region_probes; p++) {
+    Sampler sampler(seed, first_sample + p);
+    vec2 place = vec2(float(left), float(top)) + size * sampler.next2();
+    Request request;
+    request.ray = view_ray(view, place.x, place.y);
+    Sample sample;
+    FirstSurface seen = find_first_surface(transport, max_depth, request, sampler, sample);
+    if (seen.scatters) points[met++] = make_lit_point(seen.surface.position, seen.bsdf);
+  }
+  return met;
+}
+
+// The lists by turns of getting a light: those of any window as large as the pattern of sets get
+// lights from all over the order.
+std::vector<uint32_t> turns_of_lists(const InstantPass& pass) {
+  constexpr int finer = RegionLights::finer;
+  std::vector<uint32_t> lists;
+  for (int copy = 0; copy < finer * finer; copy++)
+    for (int set = 0; set < pass.sets(); set++) {
+      int x = copy % finer * pass.columns + set % pass.columns,
+          y = copy / finer * pass.rows + set / pass.columns;
+      lists.push_back(uint32_t(y * pass.columns * finer + x));
+    }
+  return lists;
+}
+
+// Chooses about `wanted` lights. Systematic sampling: neighbours in the order of lights are much
+// alike, so that every so many-th of those chosen are from everywhere.
+void choose_lights(const LightClusters& clusters, const ClusterShares& shares, bool lit,
+                   double wanted, double worth, float choose_u,
+                   std::vector<RegionLight>& chosen) {
+  chosen.clear();
+  const float even = float(wanted * (lit ? blind : 1) / double(clusters.number));
+  const float by_share = lit ? float(wanted * (1 - blind)) : 0;
+  double sum = double(choose_u) - 1;  // whole numbers that it passes are choices
+  for (size_t c = 0; c < clusters.size(); c++) {
+    const int held = clusters.held[c];
+    const double all = double((lit ? by_share * shares.of_cluster[c] : 0.0f) + even * float(held));
+    if (sum + all <= 0) {
+      sum += all;
+      continue;
+    }
+    Lanes often = all_lanes(even);
+    if (lit) often += by_share * shares_in(clusters, shares, c);
+    float here = float(sum);
+    for (int lane = 0; lane < held; lane++)
+      for (here += often[lane]; here > 0; here--)
+        chosen.push_back({clusters.lights.number[c * lane_count + size_t(lane)],
+                          float(worth) / often[lane]});
+    sum = double(here);
+  }
+}
+
+// A region's lights list by list, and how many each list has.
+struct Dealt {
+  std::vector<RegionLight> lights;
+  std::vector<uint32_t> number;
+};
+Dealt deal_lights(std::span<const uint32_t> turns, std::span<const RegionLight> chosen,
+                  float deal_u) {
+  const size_t lists = turns.size();
+  const size_t start = std::min(size_t(deal_u * float(lists)), lists - 1);
+  Dealt dealt;
+  dealt.number.assign(lists, 0);
+  auto for_each_turn = [&](const auto& body) {
+    size_t turn = start;
+    for (size_t k = 0; k < chosen.size(); k++, turn = turn + 1 < lists ? turn + 1 : 0)
+      body(turns[turn], chosen[k]);
+  };
+  for_each_turn([&](uint32_t list, const RegionLight&) { dealt.number[list]++; });
+  std::vector<uint32_t> next(lists, 0);
+  for (size_t l = 1; l < lists; l++) next[l] = next[l - 1] + dealt.number[l - 1];
+  dealt.lights.resize(chosen.size());
+  for_each_turn([&](uint32_t list, const RegionLight& one) { dealt.lights[next[list]++] = one; });
+  return dealt;
+}
+
+}  // namespace
+
+void choose_region_lights(const Transport& transport, const View& view, int max_depth, int asked,
+                          uint64_t seed, uint32_t index, InstantPass& pass) {
+  RegionLights& regions = pass.regions;
+  regions = {};
+  size_t lists = size_t(pass.lists());
+  size_t number = size_t(std::count_if(pass.lights.begin(), pass.lights.end(),
+                                       [](const PointLight& light) { return !light.exact; }));
+  if (asked < 1 || number <= size_t(asked) * size_t(pass.sets())) return;
+  const LightClusters clusters = make_light_clusters(transport.tables, pass);
+  regions.width = pass.columns * RegionLights::finer * RegionLights::across;
+  regions.height = pass.rows * RegionLights::finer * RegionLights::across;
+  regions.columns = (view.width + regions.width - 1) / regions.width;
+  int rows = (view.height + regions.height - 1) / regions.height, count = regions.columns * rows;
+  const double wanted = double(asked) * double(lists), worth = double(lists) / double(pass.sets());
+  const std::vector<uint32_t> turns = turns_of_lists(pass);
+  std::vector<Dealt> dealt(static_cast<size_t>(count));
+  parallel_ranges(count, 1, [&](int first, int last) {
+    ClusterShares shares;
+    std::vector<RegionLight> chosen;
+    for (int r = first; r < last; r++) {
+      Sampler sampler(seed, index * uint32_t(count) + uint32_t(r));
+      float choose_u = sampler.next(), deal_u = sampler.next();
+      LitPoint points[region_probes];
+      int met = probe_region(transport, view, max_depth, regions, r,
+                             mix64(seed ^ uint64_t(r + 1) << 32), index * region_probes, points);
+      bool lit =
+          met > 0 && share_lights(clusters, pass.clip, std::span(points, size_t(met)), shares);
+      choose_lights(clusters, shares, lit, wanted, worth, choose_u, chosen);
+      dealt[size_t(r)] = deal_lights(turns, chosen, deal_u);
+    }
+  });
+  regions.first.reserve(dealt.size() * lists + 1);
+  uint32_t total = 0;
+  for (const Dealt& region : dealt)
+    for (uint32_t of_list : region.number) {
+      regions.first.push_back(total);
+      total += of_list;
+    }
+  regions.first.push_back(total);
+  regions.lights.resize(total);
+  parallel_ranges(count, 16, [&](int first, int last) {
+    for (size_t r = size_t(first); r < size_t(last); r++)
+      std::copy(dealt[r].lights.begin(), dealt[r].lights.end(),
+                regions.lights.begin() + regions.first[r * lists]);
+  });
+}
+
+}  // namespace wellspring

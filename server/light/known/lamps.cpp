@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/known/lamps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "light/sample/light_tables.h"
+#include "light/sample/radiance_grid.h"
+
+namespace wellspring {
+namespace {
+
+constexpr float noticed = 0.1f;       // change of light, of the brighter
+constexpr float darkest = 0.02f;      // reflectance by which light can be told
+constexpr size_t most_cells = 1 << 20;
+constexpr int never = 1 << 28;
+
+std::vector<char> states_of(const World& world) {
+  std::vector<char> on;
+  for (size_t lamp = 0; lamp < world.scene().lamps.size(); lamp++)
+    on.push_back(world.is_on(int(lamp)));
+  return on;
+}
+
+bool differs(vec3 was, vec3 left, vec3 added) {
+  float a = luminance(was), b = luminance(left + added);
+  // Lights that take each other's place are another light, too.
+  return luminance(was - left) + luminance(added) > noticed * std::max(a, b);
+}
+
+Shining shining(const Scene& scene, char others, const std::function<char(size_t lamp)>& is_on) {
+  Shining shining{std::vector<char>(scene.materials.size(), others),
+                  std::vector<char>(scene.lights.size(), others), bool(others)};
+  for (size_t lamp = 0; lamp < scene.lamps.size(); lamp++) {
+    for (int material : scene.lamps[lamp].materials)
+      shining.materials[size_t(material)] = is_on(lamp);
+    for (int light : scene.lamps[lamp].lights) shining.lights[size_t(light)] = is_on(lamp);
+  }
+  return shining;
+}
+
+}  // namespace
+
+Shining what_shines(const World& world) {
+  return shining(world.scene(), 1, [&](size_t lamp) { return char(world.is_on(int(lamp))); });
+}
+
+Shining what_shines_of(const Scene& scene, int lamp) {
+  return shining(scene, lamp < 0, [&](size_t other) { return char(int(other) == lamp); });
+}
+
+Lights relit(const Lights& all, const World& world) {
+  Lights lights = all;
+  lights.tables = relit(*all.tables, world.scene(), what_shines(world));
+  if (all.grid && all.grid->parts) lights.grid = relit(*all.grid, states_of(world));
+  lights.pass = nullptr;
+  return lights;
+}
+
+LightChange::LightChange(const Scene& scene, const Lights& all, std::span<const char> before,
+                         std::span<const char> after) {
+  if (std::equal(before.begin(), before.end(), after.begin(), after.end())) return;
+  if (!all.grid || !all.grid->parts) {
+    everywhere_ = true;
+    return;
+  }
+  grid_ = all.grid;
+  const RadianceGrid& grid = *grid_;
+  const RadianceGrid::Parts& parts = *grid.parts;
+  known_of_.assign(grid.keys.size(), 0);
+  known_.resize(1);
+  for (size_t i = 0; i < parts.slots.size(); i++) {
+    uint32_t slot = parts.slots[i];
+    if (grid.count[slot] < enough_grid_samples) continue;
+    Known k{parts.light[0][i], parts.light[0][i], vec3(0), parts.albedo[i], grid.count[slot]};
+    for (size_t lamp = 0; lamp < before.size(); lamp++) {
+      vec3 more = parts.light[lamp + 1][i];
+      if (before[lamp]) k.was += more;
+      if (before[lamp] && after[lamp]) k.left += more;
+      if (!before[lamp] && after[lamp]) k.added += more;
+    }
+    k.changes = differs(k.was, k.left, k.added);
+    known_of_[slot] = uint32_t(known_.size());
+    known_.push_back(k);
+    if (!k.changes) continue;
+    vec3 corner = grid.cell * vec3(grid_place(grid, slot));
+    box_.low = glm::min(box_.low, corner);
+    box_.high = glm::max(box_.high, corner + grid.cell);
+  }
+  fill_cells(scene, all, before, after);
+  guess_unknown();
+}
+
+// Coarser cells than kept light's, without sides, so that few are unknown.
+void LightChange::fill_cells(const Scene& scene, const Lights& all, std::span<const char> before,
+                             std::span<const char> after) {
+  std::vector<char> switched(scene.materials.size(), 0);
+  for (size_t lamp = 0; lamp < before.size(); lamp++)
+    for (int material : scene.lamps[lamp].materials)
+      switched[size_t(material)] = before[lamp] != after[lamp];
+  std::vector<vec3> shining;
+  for (const EmitterTriangle& e : all.tables->emitters)
+    if (switched[size_t(scene.meshes[size_t(scene.instances[e.instance].mesh)].material)])
+      for (vec3 corner : {e.corner, e.corner + e.edge1, e.corner + e.edge2})
+        if (is_finite(corner)) shining.push_back(corner);
+  for (vec3 corner : shining) {
+    box_.low = glm::min(box_.low, corner - grid_->cell);
+    box_.high = glm::max(box_.high, corner + grid_->cell);
+  }
+  if (!(box_.low.x <= box_.high.x)) return;  // nothing to speak of, anywhere
+  for (cell_ = 2 * grid_->cell;; cell_ *= 2) {
+    vec3 cells = (box_.high - box_.low) / cell_ + 1.0f;
+    size_ = glm::ivec3(glm::min(cells, vec3(most_cells)));
+    if (double(size_.x) * size_.y * size_.z <= double(most_cells)) break;
+  }
+  cells_.resize(size_t(size_.x) * size_t(size_.y) * size_t(size_.z));
+  for (vec3 corner : shining) cells_[cell_at(corner)].changes = true;
+  for (uint32_t slot : grid_->parts->slots) {
+    if (known_of_[slot] == 0) continue;
+    vec3 middle = grid_->cell * (vec3(grid_place(*grid_, slot)) + 0.5f);
+    if (!(middle == glm::clamp(middle, box_.low, box_.high))) continue;
+    const Known& k = known_[known_of_[slot]];
+    Known& cell = cells_[cell_at(middle)];
+    cell.was += k.weight * k.was, cell.left += k.weight * k.left, cell.added += k.weight * k.added;
+    cell.albedo += k.weight * k.albedo, cell.weight += k.weight;
+    cell.changes |= k.changes;
+  }
+}
+
+// Steps from cell to cell to the nearest of which `is_from` says so, visited nearest first:
+// `visit(cell, from)`.
+template <class IsFrom, class Visit>
+std::vector<int> LightChange::steps_from(const IsFrom& is_from, const Visit& visit) const {
+  std::vector<int> steps(cells_.size(), never);
+  std::vector<glm::ivec3> edge, next;
+  for (int z = 0; z < size_.z; z++)
+    for (int y = 0; y < size_.y; y++)
+      for (int x = 0; x < size_.x; x++)
+        if (is_from(cells_[index_of({x, y, z})]))
+          edge.push_back({x, y, z}), steps[index_of({x, y, z})] = 0;
+  for (int step = 1; !edge.empty(); step++) {
+    for (glm::ivec3 at : edge)
+      for (int axis = 0; axis < 3; axis++)
+        for (int side : {-1, 1}) {
+          glm::ivec3 beside = at;
+          beside[axis] += side;
+          if (beside[axis] < 0 || beside[axis] >= size_[axis] || steps[index_of(beside)] != never)
+            continue;
+          steps[index_of(beside)] = step;
+          visit(index_of(beside), index_of(at));
+          next.push_back(beside);
+        }
+    edge.swap(next);
+    next.clear();
+  }
+  return steps;
+}
+
+// What nothing is known of is as the nearest cell is of which something is. It changes where
+// something does that is not much farther: what is asked for in vain costs less than what stays
+// wrong.
+void LightChange::guess_unknown() {
+  std::vector<int> to_change =
+      steps_from([](const Known& k) { return k.changes; }, [](size_t, size_t) {});
+  std::vector<int> to_known =
+      steps_from([](const Known& k) { return k.weight > 0; },
+                 [&](size_t at, size_t from) { cells_[at] = cells_[from]; });
+  for (size_t i = 0; i < cells_.size(); i++)
+    if (to_known[i] > 0) cells_[i].changes = to_change[i] <= 2 * to_known[i] + 1;
+}
+
+size_t LightChange::index_of(glm::ivec3 at) const {
+  return (size_t(at.z) * size_t(size_.y) + size_t(at.y)) * size_t(size_.x) + size_t(at.x);
+}
+
+size_t LightChange::cell_at(vec3 place) const {
+  return index_of(glm::clamp(glm::ivec3((place - box_.low) / cell_), glm::ivec3(0), size_ - 1));
+}
+
+bool LightChange::changes(vec3 place, vec3 normal, vec3& kept, vec3& added) const {
+  if (everywhere_) return true;
+  if (cells_.empty() || !(place == glm::clamp(place, box_.low, box_.high))) return false;
+  const Known& cell = cells_[cell_at(place)];
+  uint32_t exactly = known_of_[find_grid_slot(*grid_, place, normal)];
+  const Known& k = exactly ? known_[exactly] : cell;
+  if (exactly ? !k.changes : !cell.changes) return false;
+  const float weight = exactly ? 1 : cell.weight;
+  for (int c = 0; c < 3; c++) {
+    if (k.was[c] > 0) kept[c] = std::min(k.left[c] / k.was[c], 1.0f);
+    if (k.albedo[c] > darkest * weight) added[c] = k.added[c] / k.albedo[c];
+  }
+  return true;
+}
+
+}  // namespace wellspring

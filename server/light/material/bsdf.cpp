@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/material/bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "light/material/bsdf_frame.h"
+#include "light/material/bsdf_gloss.h"
+#include "light/material/bsdf_layers.h"
+#include "light/material/dispersion.h"
+#include "light/material/microfacet.h"
+
+namespace wellspring {
+namespace {
+
+// KHR_materials_anisotropy: rougher along the tangent by the square of its strength.
+void set_roughness(Bsdf& b, const Surface& surface) {
+  b.alpha = alpha_of(surface.roughness);
+  b.alphas = vec2(b.alpha);
+  float strength = clean(surface.anisotropy);
+  if (strength > 0) {
+    float along = glm::mix(b.alpha, 1.0f, strength * strength);
+    if (along >= 1.02f * std::max(b.alpha, smooth_alpha) &&
+        make_frame_along(b.normal, surface.tangent, b.tangent, b.bitangent)) {
+      b.alphas = {along, std::max(b.alpha, smooth_alpha)};
+      b.alpha = std::sqrt(b.alphas.x * b.alphas.y);
+      return;
+    }
+  }
+  make_frame_axes(b.normal, b.tangent, b.bitangent);
+}
+
+}  // namespace
+
+float refractive_index(const Material& material) {
+  if (material.ior == 0) return 1e6f;
+  return material.ior > 1 ? std::min(material.ior, 1e6f) : 1.0f;
+}
+
+Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
+               const DielectricAlbedo& albedo, float index, float outside) {
+  Bsdf b;
+  vec3 v = -direction;
+  b.geometric_normal = surface.geometric_normal;
+  b.normal = usable_normal(surface.normal, surface.geometric_normal, v);
+  set_roughness(b, surface);
+  b.view = to_local(b, v);
+  b.view.z = glm::clamp(b.view.z, 1e-4f, 1.0f);
+  b.metallic = clean(surface.metallic);
+  vec3 base = clean(surface.base_color);
+  float transmission = clean(surface.transmission);
+  if (!(index > 0)) index = refractive_index(material);
+  index /= outside;
+  b.thin = !(material.thickness > 0);
+  b.within = !b.thin && !surface.front && transmission > 0;
+  b.eta = b.within ? 1 / index : index;
+  b.diffuse = base * ((1 - b.metallic) * (1 - transmission));
+  b.transmit = base * ((1 - b.metallic) * transmission);
+  if (!b.thin && std::abs(b.eta - 1) < 2e-3f && max_component(b.transmit) > 0) {
+    // Facets between equal indices bend nothing: however rough, light goes straight on.
+    if (b.metallic == 0) b.alpha = 0;
+    else b.eta = b.eta < 1 ? 0.998f : 1.002f;
+  }
+  if (b.metallic > 0) b.metal = base;
+  set_gloss(b, albedo, transmission, clean(surface.specular),
+            clean(surface.specular_color, 1e9f));
+  if (surface.clearcoat > 0 || max_component(surface.sheen_color) > 0) set_layers(b, surface, v);
+
+  float diffuse = luminance(b.diffuse) * b.coat_passes * b.beneath;
+  float specular = luminance(b.transmit) + (1 - b.metallic) * (1 - b.coat_passes) +
+                   b.metallic * luminance(fresnel_schlick(b.metal, b.view.z));
+  specular = glm::mix(1.0f, specular, b.beneath);
+  if (diffuse <= 0) b.diffuse_share = 0;
+  else if (specular <= 1e-4f && !has_specular(b)) b.diffuse_share = 1;
+  else b.diffuse_share = glm::clamp(diffuse / (diffuse + specular), 0.1f, 0.9f);
+  return b;
+}
+
+bool has_diffuse(const Bsdf& b) { return max_component(b.diffuse) > 0; }
+
+bool has_specular(const Bsdf& b) { return has_gloss(b) || b.beneath < 1; }
+
+bool is_smooth(const Bsdf& b) {
+  return !has_diffuse(b) && b.alpha == 0 &&
+         (b.beneath == 1 || (!has_sheen(b) && b.clearcoat.alpha == 0));
+}
+
+namespace {
+
+// As if no colours were parted here.
+BsdfValue eval_lobes(const Bsdf& b, vec3 direction) {
+  BsdfValue value;
+  vec3 l = to_local(b, direction);
+  float side = dot(direction, b.geometric_normal);
+  if (side > 0) {
+    if (l.z > 1e-6f) {
+      l.z = std::min(l.z, 1.0f);
+      value.diffuse_pdf = l.z / pi;
+      if (has_diffuse(b)) {
+        float passes = b.has_coat ? b.coat_passes * (1 - eval_coat(b, l.z)) * b.coat_scale : 1;
+        value.diffuse = b.diffuse * (value.diffuse_pdf * b.beneath * passes);
+      }
+      if (b.alpha > 0 && has_gloss(b)) eval_gloss(b, l, value.specular, value.specular_pdf);
+    }
+  } else if (l.z < -1e-6f && side < 0 && b.alpha > 0 && max_component(b.transmit) > 0) {
+    eval_gloss(b, l, value.specular, value.specular_pdf);
+  }
+  if (b.beneath < 1) {
+    value.specular *= b.beneath;
+    value.specular_pdf *= gloss_share(b);
+    if (side > 0) eval_layers(b, direction, value.specular, value.specular_pdf);
+  }
+  return value;
+}
+
+}  // namespace
+
+BsdfValue eval_bsdf(const Bsdf& b, vec3 direction) {
+  BsdfValue value = eval_lobes(b, direction);
+  if (b.spread) blend_wavelengths(*b.spread, direction, value);
+  return value;
+}
+
+float sample_bsdf_pdf(const Bsdf& b, const BsdfValue& value, Lobes lobes) {
+  if (lobes == Lobes::diffuse) return value.diffuse_pdf;
+  if (lobes == Lobes::specular) return value.specular_pdf;
+  return glm::mix(value.specular_pdf, value.diffuse_pdf, b.diffuse_share);
+}
+
+BsdfSample sample_bsdf(const Bsdf& b, Lobes lobes, Sampler& sampler) {
+  float share = lobes == Lobes::all ? b.diffuse_share : lobes == Lobes::diffuse ? 1.0f : 0.0f;
+  BsdfSample s;
+  // Where there is nothing to choose, the number's place in the sequence is left out.
+  bool choice = share < 1 && (share > 0 || b.beneath < 1);
+  float u = choice ? sampler.next() : (sampler.seek(sampler.drawn + 1), 0.0f);
+  if (u < share) {
+    s.direction = to_world(b, sample_cosine_hemisphere(sampler.next2()));
+  } else if (!has_specular(b)) {
+    return {};
+  } else {
+    float chance = 1 - share;
+    u = (u - share) / chance;  // anew uniform
+    float coat = b.beneath < 1 ? clearcoat_share(b) : 0, sheen = b.beneath < 1 ? sheen_share(b) : 0;
+    if (u < coat) {
+      if (b.clearcoat.alpha == 0) {
+        s = eval_clearcoat_mirror(b);
+        s.weight /= chance * coat;
+        return s;
+      }
+      s.direction = sample_clearcoat(b, sampler);
+    } else if (u < coat + sheen) {
+      s.direction = sample_sheen(b, sampler);
+    } else if (b.alpha == 0) {
+      s = sample_smooth_gloss(b, sampler.next());
+      s.weight *= b.beneath / (chance * gloss_share(b));
+      return s;
+    } else {
+      vec3 l = sample_gloss(b, sampler);
+      if (l == vec3(0)) return {};
+      s.direction = to_world(b, l);
+    }
+    if (s.direction == vec3(0)) return {};
+  }
+  BsdfValue value = eval_lobes(b, s.direction);
+  s.pdf = sample_bsdf_pdf(b, value, lobes);
+  vec3 sum = (lobes != Lobes::specular ? value.diffuse : vec3(0)) +
+             (lobes != Lobes::diffuse ? value.specular : vec3(0));
+  if (!(s.pdf > 0)) return {};
+  s.weight = sum / s.pdf;
+  if (dot(s.direction, b.geometric_normal) < 0)
+    s.bounce = b.thin ? Bounce::reflect : Bounce::refract;
+  return s;
+}
+
+BsdfSample eval_mirror(const Bsdf& b) {
+  BsdfSample s;
+  s.direction = to_world(b, {-b.view.x, -b.view.y, b.view.z});
+  if (dot(s.direction, b.geometric_normal) > 0) s.weight = facet_color(b, b.view.z).reflect;
+  return s;
+}
+
+bool is_pane(const Surface& surface, const Material& material) {
+  bool plain = !(surface.anisotropy > 0) && !(surface.clearcoat > 0) &&
+               !(max_component(surface.sheen_color) > 0);
+  return !(material.thickness > 0) && surface.transmission > 0 && surface.metallic < 1 &&
+         alpha_of(surface.roughness) == 0 && plain;
+}
+
+vec3 pane_transmittance(const Surface& surface, const Material& material, vec3 direction) {
+  Bsdf b;
+  vec3 v = -direction;
+  vec3 normal = usable_normal(surface.normal, surface.geometric_normal, v);
+  b.metallic = clean(surface.metallic);
+  b.transmit =
+      clean(surface.base_color) * ((1 - b.metallic) * clean(surface.transmission));
+  b.eta = refractive_index(material);
+  set_facets(b, clean(surface.specular), clean(surface.specular_color, 1e9f));
+  return facet_color(b, glm::clamp(dot(v, normal), 1e-4f, 1.0f)).transmit;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/sample/lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/memory.h"
+#include "light/instant/caustic_photons.h"
+#include "light/sample/light_bounds.h"
+#include "light/known/lamps.h"
+#include "light/sample/light_tables.h"
+#include "light/sample/pane_boxes.h"
+#include "world/surface.h"
+
+namespace wellspring {
+namespace {
+
+// Mean emission over a triangle by a fixed pattern of look-ups, more where its texture is finer.
+vec3 mean_emission(const World& world, const EmitterTriangle& e, int look_ups) {
+  vec3 sum{0};
+  Ray ray;
+  ray.origin = e.corner + e.normal;
+  ray.direction = -e.normal;
+  for (int i = 0; i < look_ups; i++) {
+    // Points of a rank-1 lattice (Korobov; the plastic number), folded into the triangle.
+    float a = std::fmod(0.5f + float(i) * 0.7548776662f, 1.0f),
+          b = std::fmod(0.5f + float(i) * 0.5698402910f, 1.0f);
+    if (a + b > 1) a = 1 - a, b = 1 - b;
+    Hit hit;
+    hit.t = 1;
+    hit.instance = e.instance;
+    hit.triangle = e.triangle;
+    hit.barycentric = {a, b};
+    Surface s = eval_surface(world, ray, hit);
+    sum += surface_emission(s, world.material_of(e.instance)) * s.alpha;
+  }
+  return sum / float(look_ups);
+}
+
+// Texels of the emission's picture that a triangle covers.
+float texels_covered(const Scene& scene, const Mesh& mesh, const TextureRef& reference,
+                     uvec3 corner) {
+  if (reference.texture < 0 || mesh.uv[reference.uv_set].empty()) return 1;
+  int index = scene.textures[size_t(reference.texture)].image;
+  if (index < 0) return 1;
+  const Image& image = scene.images[size_t(index)];
+  const auto& uv = mesh.uv[reference.uv_set];
+  auto texel = [&](uint32_t v) {
+    return vec2(reference.uv_transform * vec3(uv[v], 1)) *
+           vec2(float(image.width), float(image.height));
+  };
+  vec2 a = texel(corner.y) - texel(corner.x), b = texel(corner.z) - texel(corner.x);
+  return 0.5f * std::abs(a.x * b.y - a.y * b.x);
+}
+
+// The emission at one place of a uniform emitter, or an estimate of its mean.
+void gather_instance(const World& world, uint32_t instance, LightTables& tables,
+                     std::vector<float>& power) {
+  const Mesh& mesh = world.mesh_of(instance);
+  const Material& material = world.material_of(instance);
+  tables.first_emitter[instance] = uint32_t(tables.emitters.size());
+  bool uniform = !tables.plan.uses(TransportPart::emission_texture) ||
+                 !tables.plan.materials[size_t(mesh.material)].emission_varies;
+  const TextureRef& picture =
+      material.unlit ? material.base_color_texture : material.emission_texture;
+  // Big pictures on big meshes: a bounded amount of work in all.
+  float budget = 4e6f / float(std::max<size_t>(mesh.triangles.size(), 1));
+  for (uint32_t t = 0; t < mesh.triangles.size(); t++) {
+    EmitterTriangle e;
+    e.instance = instance;
+    e.triangle = t;
+    e.corner = eval_position(world, instance, t, {0, 0});
+    e.edge1 = eval_position(world, instance, t, {1, 0}) - e.corner;
+    e.edge2 = eval_position(world, instance, t, {0, 1}) - e.corner;
+    e.normal = eval_face(world, instance, t, &e.area);
+    e.extent = max_component(glm::max(
+        glm::abs(e.corner), glm::max(glm::abs(e.corner + e.edge1), glm::abs(e.corner + e.edge2))));
+    e.uniform = uniform;
+    e.double_sided = material.double_sided || material.unlit;
+    vec3 mean{0};
+    if (std::isfinite(e.area) && e.area > 0) {
+      float look_ups =
+          uniform
+              ? 1
+              : std::min(texels_covered(world.scene(), mesh, picture, mesh.triangles[t]), budget);
+      mean = mean_emission(world, e, int(std::clamp(look_ups, uniform ? 1.0f : 4.0f, 256.0f)));
+      e.emission = uniform ? mean : vec3(0);
+      if (!uniform) add_emission_picture(world, look_ups, e, tables);
+    }
+    power.push_back(luminance(mean) * e.area * pi * (e.double_sided ? 2 : 1));
+    tables.emitters.push_back(e);
+  }
+}
+
+float power_of(const PunctualLight& light, float scene_radius) {
+  float strength = luminance(light.intensity);
+  switch (light.type) {
+    case PunctualType::point: return strength * 4 * pi;
+    case PunctualType::spot: return strength * 2 * pi * (1 - std::cos(light.outer_cone));
+    case PunctualType::directional: return strength * pi * scene_radius * scene_radius;
+  }
+  return 0;
+}
+
+// The share of the first of two kinds of light; neither is starved, since power says little of one
+// place.
+float share_of(double first, double second) {
+  if (!(first > 0)) return 0;
+  if (!(second > 0)) return 1;
+  return float(std::clamp(first / (first + second), 0.25, 0.75));
+}
+
+}  // namespace
+
+size_t light_table_bytes(const LightTables& t) {
+  size_t bytes = bytes_of(t.emitters, t.emitter_power, t.environment.cells.cells, t.punctual,
+                          t.cones, t.punctual_index);
+  for (const LightTree* tree : {&t.emitter_choice, &t.near_choice, &t.distant_choice})
+    bytes += bytes_of(tree->nodes, tree->leaf_of, tree->strengths.cells, tree->shining);
+  for (const EmissionPicture& picture : t.pictures) bytes += bytes_of(picture.cells.cells);
+  return bytes;
+}
+
+vec3 surface_emission(const Surface& surface, const Material& material) {
+  return material.unlit ? surface.base_color : surface.emission;
+}
+
+TransportPlan make_plan(const World& world) {
+  std::vector<const Mesh*> moving;
+  for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
+    if (world.is_moving(i)) moving.push_back(&world.mesh_of(i));
+  return make_transport_plan(world.scene(), moving);
+}
+
+Lights make_lights(const World& world) { return make_lights(world, make_plan(world)); }
+
+namespace {
+
+// What is chosen among, and how likely each is: all that shine of the sources.
+void choose_sources(const Scene& scene, const Shining& shining, LightTables& tables) {
+  using enum TransportPart;
+  const TransportPlan& plan = tables.plan;
+  tables.emitter_choice =
+      make_emitter_tree(tables.emitters, tables.emitter_power,
+                        plan.uses(light_tree) ? LightChoice::by_place : LightChoice::by_strength);
+  float radius = 0.5f * length(tables.bounds.high - tables.bounds.low);
+  if (!std::isfinite(radius)) radius = 1;
+  const EnvironmentLight& sky = tables.environment;
+  double environment_power = sky.cells.cells.empty() ? 0
+                                                             : double(sky.mean_luminance) *
+                                                                   pi * pi * 4 * radius * radius;
+  double sun_power = double(luminance(sky.sun_radiance)) * double(sky.sun_chord2) * pi * pi *
+                     double(radius) * double(radius);
+  environment_power += sun_power;
+  double emitter_power = tables.emitter_choice.total * double(pi);
+  tables.emitter_share = share_of(emitter_power, environment_power);
+
+  double punctual_power = 0;
+  std::vector<float> punctual_powers;
+  tables.punctual.clear(), tables.cones.clear(), tables.punctual_index.clear();
+  uint32_t index = 0;
+  for (size_t i = 0; i < scene.lights.size(); i++) {
+    const PunctualLight& light = scene.lights[i];
+    if (!plan.uses(punctual_lights)) break;
+    float p = power_of(light, radius);
+    bool finite =
+        is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
+    if (!(p > 0) || !std::isfinite(p) || !finite) continue;
+    index++;
+    if (!shining.lights[i]) continue;
+    tables.punctual.push_back(light);
+    tables.punctual_index.push_back(index - 1);
+    float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
+    tables.cones.push_back({outer, 1 / std::max(0.001f, inner - outer)});
+    punctual_powers.push_back(p);
+    punctual_power += double(p);
+  }
+  float sky_power = luminance(sky.radiance) > 0
+                        ? sky.mean_luminance * 4 * pi * pi * radius * radius
+                        : 0.0f;
+  tables.emission = make_emission_choice(tables, tables.emitter_power, punctual_powers,
+                                         sky_power + float(sun_power), tables.bounds);
+  tables.area_share = share_of(emitter_power + environment_power, punctual_power);
+  add_punctual_choice(tables);
+}
+
+}  // namespace
+
+Lights make_lights(const World& world, const TransportPlan& plan) {
+  using enum TransportPart;
+  const Scene& scene = world.scene();
+  auto tables = std::make_shared<LightTables>();
+  tables->plan = plan;
+  tables->first_emitter.assign(size_t(world.instance_count()), no_emitter);
+  if (plan.uses(area_lights))
+    for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++)
+      if (!world.is_moving(i) && plan.materials[size_t(world.mesh_of(i).material)].emits)
+        gather_instance(world, i, *tables, tables->emitter_power);
+  tables->bounds = scene_bounds(scene);
+  if (plan.uses(TransportPart::environment))
+    tables->environment = make_environment_light(scene, plan.uses(environment_importance));
+  choose_sources(scene, what_shines(world), *tables);
+
+  for (size_t i = 0; i < scene.materials.size(); i++) {
+    const Material& m = scene.materials[i];
+    const DielectricAlbedo* albedo =
+        plan.materials[i].visible
+            ? &dielectric_albedo(m.ior, m.transmission > 0 && m.thickness > 0)
+            : nullptr;
+    tables->materials.push_back({albedo, plan.materials[i].pane, is_matt(m),
+                                 plan.materials[i].metal});
+    tables->any_matt |= plan.materials[i].visible && is_matt(m);
+  }
+  tables->casters = find_casters(world, plan, false);
+  tables->any_pane = plan.uses(panes);
+  if (tables->any_pane) tables->pane_boxes = make_pane_boxes(world, tables->materials);
+  tables->any_solid = plan.uses(refraction);
+  tables->any_tint = plan.uses(absorption);
+  if (tables->any_solid) tables->solids = find_solid_bounds(world, plan);
+  return {tables, std::make_shared<std::atomic<uint64_t>>(0), nullptr};
+}
+
+std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene,
+                                         const Shining& shining) {
+  auto tables = std::make_shared<LightTables>(all);
+  for (size_t i = 0; i < tables->emitters.size(); i++) {
+    EmitterTriangle& e = tables->emitters[i];
+    const Mesh& mesh = scene.meshes[size_t(scene.instances[e.instance].mesh)];
+    if (shining.materials[size_t(mesh.material)]) continue;
+    e.emission = vec3(0);
+    tables->emitter_power[i] = 0;
+  }
+  if (!shining.sky) tables->environment = {};
+  choose_sources(scene, shining, *tables);
+  return tables;
+}
+
+}  // namespace wellspring

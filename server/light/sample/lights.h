@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// All light sources of a world, ready to be sampled: emissive triangles, punctual lights,
+// environment. Built once per scene (moving meshes do not emit).
+#pragma once
+#include <atomic>
+#include <memory>
+
+#include "world/world.h"
+
+namespace wellspring {
+
+struct InstantPass;    // light/instant/instant_radiosity.h
+struct RadianceGrid;   // light/sample/radiance_grid.h
+struct TransportPlan;  // light/transport_plan.h
+struct LightTables;  // alias tables, triangle lists, environment distribution: light/sample/light_tables.h
+
+struct Lights {
+  std::shared_ptr<const LightTables> tables;
+  // NaN, infinite or negative samples that were dropped instead of reaching a Frame.
+  std::shared_ptr<std::atomic<uint64_t>> bad_samples;
+  // Of techniques that keep light; null until they prepare it.
+  std::shared_ptr<const RadianceGrid> grid = nullptr;
+  // Of techniques that draw light anew for each pass; null until one begins.
+  std::shared_ptr<const InstantPass> pass = nullptr;
+};
+
+Lights make_lights(const World& world);
+// By another plan than the scene's own: tests force parts on to prove that leaving them out changes
+// nothing. Leaving out what matters is what one would expect it to be.
+Lights make_lights(const World& world, const TransportPlan& plan);
+TransportPlan make_plan(const World& world);  // of its scene and what moves in it
+
+}  // namespace wellspring

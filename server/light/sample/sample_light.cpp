@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/sample/sample_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "light/random/warp.h"
+
+namespace wellspring {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+constexpr float below_one = 0x1.fffffep-1f;
+
+// Radiance of an emitter that is not the same all over, at one place of it.
+vec3 emission_at(const World& world, const EmitterTriangle& e, const Ray& ray, float distance,
+                 vec2 barycentric) {
+  Hit hit;
+  hit.t = distance;
+  hit.instance = e.instance;
+  hit.triangle = e.triangle;
+  hit.barycentric = barycentric;
+  Surface shown = eval_surface(world, ray, hit);
+  const Material& material = world.material_of(e.instance);
+  float cover = 1;
+  if (material.alpha_mode == AlphaMode::mask) cover = shown.alpha < material.alpha_cutoff ? 0 : 1;
+  if (material.alpha_mode == AlphaMode::blend) cover = shown.alpha;
+  return surface_emission(shown, material) * cover;
+}
+
+LightSample sample_emitter(const Transport& transport, const SurfacePlace& from, vec3 normal,
+                           vec2 u, Sampler& sampler) {
+  const LightTables& tables = transport.tables;
+  LightPick pick = pick_light(tables.emitter_choice, from.position, normal, u.x);
+  if (!(pick.probability > 0)) return {};
+  // A choice among many uses the number up.
+  if (pick.probability < 0x1p-10f) pick.u = sampler.next();
+  const EmitterTriangle& e = tables.emitters[pick.index];
+  PicturePlace at{sample_triangle({pick.u, u.y}), 1};
+  if (e.picture >= 0)
+    at = sample_emission_picture(tables.pictures[size_t(e.picture)], {pick.u, u.y});
+  SurfacePlace place;
+  place.position = e.corner + at.barycentric.x * e.edge1 + at.barycentric.y * e.edge2;
+  place.geometric_normal = e.normal;
+  place.extent = e.extent;
+  vec3 line = place.position - from.position;
+  float distance2 = dot(line, line);
+  LightSample light;
+  if (!(distance2 > 0) || !(e.area > 0)) return light;
+  light.distance = std::sqrt(distance2);
+  light.direction = line / light.distance;
+  float cosine = -dot(light.direction, e.normal);
+  if (cosine <= 0) {
+    if (!e.double_sided) return light;
+    cosine = -cosine;
+  }
+  if (cosine < 1e-7f) return light;
+  light.radiance = e.emission;
+  if (!e.uniform) {
+    Ray ray;
+    ray.origin = from.position;
+    ray.direction = light.direction;
+    light.radiance = emission_at(transport.world, e, ray, light.distance, at.barycentric);
+  }
+  light.target = offset_origin(place, -light.direction);
+  light.pdf = tables.emitter_share * pick.probability * at.density * distance2 / (cosine * e.area);
+  return light;
+}
+
+}  // namespace
+
+vec3 lit_side(const Surface& surface, const Bsdf& bsdf) {
+  return max_component(bsdf.transmit) > 0 ? vec3(0) : surface.geometric_normal;
+}
+
+LightSample sample_area_light(const Transport& transport, const SurfacePlace& from, vec3 normal,
+                              Sampler& sampler) {
+  const LightTables& tables = transport.tables;
+  bool emitters = !tables.emitter_choice.empty(), sky = tables.environment.is_sampled();
+  if (!emitters && !sky) return {};
+  vec2 u = sampler.next2();
+  if (emitters) {
+    if (!sky) return sample_emitter(transport, from, normal, u, sampler);
+    if (u.x < tables.emitter_share) {
+      u.x = std::min(u.x / tables.emitter_share, below_one);
+      return sample_emitter(transport, from, normal, u, sampler);
+    }
+    u.x = std::min((u.x - tables.emitter_share) / (1 - tables.emitter_share), below_one);
+  }
+  EnvironmentSample s = sample_environment(tables.environment, u);
+  LightSample light;
+  light.direction = s.direction;
+  light.radiance = eval_environment(tables.environment, s.direction);
+  light.pdf = (1 - tables.emitter_share) * s.pdf;
+  return light;
+}
+
+float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 normal, vec3 direction,
+                         const Surface& met) {
+  uint32_t first = tables.first_emitter[met.instance];
+  if (first == no_emitter || tables.emitter_choice.empty()) return 0;
+  const EmitterTriangle& e = tables.emitters[first + met.triangle];
+  float cosine = std::abs(dot(direction, e.normal));
+  if (!(e.area > 0) || cosine < 1e-7f) return 0;
+  vec3 line = met.position - from;
+  float density = 1;
+  if (e.picture >= 0)
+    density = sample_emission_picture_pdf(tables.pictures[size_t(e.picture)], met.barycentric);
+  return tables.emitter_share * density *
+         pick_light_probability(tables.emitter_choice, from, normal, first + met.triangle) *
+         dot(line, line) / (cosine * e.area);
+}
+
+float sample_sky_pdf(const LightTables& tables, vec3 direction) {
+  return (1 - tables.emitter_share) * sample_environment_pdf(tables.environment, direction);
+}
+
+namespace {
+
+// What panes that a ray passed let through together.
+vec3 pass_panes(const Transport& transport, const Ray& ray, PanesPassed& panes) {
+  const World& world = transport.world;
+  // Told in the order of the tree: results may not hang on it.
+  std::sort(panes.hits, panes.hits + panes.count, [](const Hit& a, const Hit& b) {
+    return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
+  });
+  vec3 arrives(1);
+  for (int i = 0; i < panes.count; i++) {
+    int index = world.mesh_of(panes.hits[i].instance).material;
+    if (!transport.tables.materials[size_t(index)].maybe_pane) return vec3(0);
+    Surface surface = eval_surface(world, ray, panes.hits[i]);
+    const Material& material = world.material_of(panes.hits[i].instance);
+    if (!is_pane(surface, material)) return vec3(0);
+    arrives *= pane_transmittance(surface, material, ray.direction);
+  }
+  return arrives;
+}
+
+// The same for any number of panes, one after the other.
+vec3 step_through_panes(const World& world, Ray ray, const LightSample& light) {
+  vec3 arrives(1);
+  for (int pane = 0; pane < most_panes; pane++) {
+    Hit hit = world.intersect(ray);
+    if (!hit.valid()) return arrives;
+    Surface surface = eval_surface(world, ray, hit);
+    const Material& material = world.material_of(hit.instance);
+    if (!is_pane(surface, material)) return vec3(0);
+    arrives *= pane_transmittance(surface, material, ray.direction);
+    if (!(max_component(arrives) > 0)) return vec3(0);
+    ray.origin = offset_origin(surface, ray.direction);
+    if (!std::isfinite(light.distance)) continue;
+    vec3 line = light.target - ray.origin;
+    ray.t_max = length(line);
+    if (!(ray.t_max > 0) || dot(line, light.direction) <= 0) return arrives;
+    ray.direction = line / ray.t_max;
+  }
+  return vec3(0);
+}
+
+}  // namespace
+
+vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,
+                     const LightSample& light) {
+  const World& world = transport.world;
+  Ray ray;
+  ray.origin = offset_origin(from, light.direction);
+  ray.direction = light.direction;
+  if (std::isfinite(light.distance)) {
+    // As long as it is: no ray needs a unit direction to ask what is in between.
+    ray.direction = light.target - ray.origin;
+    ray.t_max = 1;
+    if (!(dot(ray.direction, light.direction) > 0)) return vec3(1);
+  }
+  if (!transport.tables.any_pane) return world.occluded(ray) ? vec3(0) : vec3(1);
+  PanesPassed panes;
+  bool blocked = world.occluded(ray, panes);
+  if (blocked && !panes.more) return vec3(0);
+  if (panes.count == 0) return vec3(1);
+  float length = std::sqrt(dot(ray.direction, ray.direction));
+  ray.direction /= length;
+  ray.t_max *= length;
+  return panes.more ? step_through_panes(world, ray, light) : pass_panes(transport, ray, panes);
+}
+
+}  // namespace wellspring

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// One light seen from one place, and whether anything stands between. Two kinds, because only the
+// first can also be met by a scattered ray: area light (emitting triangles, environment pictures)
+// and punctual.
+#pragma once
+#include "light/material/bsdf.h"
+#include "light/sample/light_tables.h"
+
+namespace wellspring {
+
+// Everything a sample needs to know of what stays the same during a call.
+struct Transport {
+  const World& world;
+  const LightTables& tables;
+  const struct RadianceGrid* grid = nullptr;  // light that stays, where a technique may use it
+  const struct LampsSeen* lamps = nullptr;    // what weighs the choice among few lamps, where known
+};
+
+struct LightSample {
+  vec3 direction{0};
+  vec3 radiance{0};  // punctual: intensity over squared distance, as if pdf were 1
+  vec3 target{0};    // end of the shadow ray, already clear of the emitter
+  float distance = std::numeric_limits<float>::infinity();
+  float pdf = 0;  // over solid angle; 0: nothing
+  float share = 1;  // of a punctual one: the chance with which it was drawn, of all that may matter
+};
+
+// The side from which light reaches a surface of that material: its geometric normal, or 0 for
+// both.
+vec3 lit_side(const Surface& surface, const Bsdf& bsdf);
+
+// Picks a triangle by power and place, or a direction of the environment by brightness. `normal`:
+// lit_side() of the surface.
+LightSample sample_area_light(const Transport& transport, const SurfacePlace& from, vec3 normal,
+                              Sampler& sampler);
+inline LightSample sample_area_light(const Transport& transport, const SurfacePlace& from,
+                                     Sampler& sampler) {
+  return sample_area_light(transport, from, from.geometric_normal, sampler);
+}
+// Densities with which sample_area_light(from that place) would have found what a ray has met.
+float sample_emitter_pdf(const LightTables& tables, vec3 from, vec3 normal, vec3 direction,
+                         const Surface& met);
+float sample_sky_pdf(const LightTables& tables, vec3 direction);
+
+// What that light alone would send there if nothing were in between (glTF KHR_lights_punctual:
+// inverse square, range window, cone). `pdf` is 1, or 0 where it sends nothing; on the light itself
+// it has no direction either.
+LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
+                          const SurfacePlace& from);
+
+// Picks one by its unshadowed effect on a surface that scatters to its own side, or (`through`) to
+// both sides; of many by power and place first. `radiance` is already divided by the chance of the
+// pick. `lobe`: what the surface does with it, where that is known.
+LightSample sample_punctual_light(const Transport& transport, const SurfacePlace& from, vec3 normal,
+                                  bool through, Sampler& sampler, const LobeHint& lobe = {});
+
+// What part of the light arrives: 0 or 1, or the tint of the thin panes in between.
+vec3 eval_visibility(const Transport& transport, const SurfacePlace& from,
+                     const LightSample& light);
+
+inline constexpr int most_panes = 64;  // straight through so many in a row, then the light is lost
+
+}  // namespace wellspring

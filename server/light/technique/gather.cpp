@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Technique `gather`: path tracing whose walks end where a wide ray meets light that is already
+// known (RadianceGrid). Static light and geometry make that light worth keeping; one gathering
+// bounce hides its cells. Without a grid it is `path`.
+#include "light/known/lamps.h"
+#include "light/sample/radiance_grid.h"
+#include "light/technique/technique_list.h"
+#include "light/walk/walk.h"
+
+namespace wellspring {
+namespace {
+
+// So that what a matt surface's rays meet has an alpha of 1/4, a roughness of 1/2.
+constexpr float blunt = 0.14f;
+
+}  // namespace
+
+void trace_many_gather(const World& world, const Lights& lights, const TransportSettings& settings,
+                       std::span<const Request> requests, std::span<Sample> samples) {
+  WalkRules rules;
+  rules.max_depth = settings.max_depth;
+  if (lights.grid) rules.blunt = blunt;
+  const LampsSeen* lamps = lights.grid ? lights.grid->lamps.get() : nullptr;
+  trace_samples({world, *lights.tables, lights.grid.get(), lamps}, rules, requests, samples);
+  finish_samples(lights, settings, samples);
+}
+
+Sample trace_gather(const World& world, const Lights& lights, const TransportSettings& settings,
+                    const Request& request) {
+  Sample sample;
+  trace_many_gather(world, lights, settings, std::span(&request, 1), std::span(&sample, 1));
+  return sample;
+}
+
+void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights) {
+  if (!lights.tables->plan.uses(TransportPart::kept_light)) return;
+  const Scene& scene = world.scene();
+  std::vector<std::shared_ptr<const LightTables>> parts;
+  for (int lamp = -1; lamp < int(scene.lamps.size()) && !scene.lamps.empty(); lamp++)
+    parts.push_back(relit(*lights.tables, scene, what_shines_of(scene, lamp)));
+  lights.grid = make_radiance_grid({world, *lights.tables}, places, {}, parts);
+}
+
+}  // namespace wellspring

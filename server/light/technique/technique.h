@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// The techniques, one explicit list. A technique turns requests into samples; it has no state of
+// its own beyond Lights, so samples can be computed on any thread, in any order, and replayed one
+// by one.
+#pragma once
+#include <span>
+#include <string_view>
+
+#include "frame/frame.h"
+#include "light/sample/lights.h"
+#include "light/sample.h"
+#include "world/view.h"
+
+namespace wellspring {
+
+// Of instant_radiosity: numbers of each of the columns x rows sets of point lights and photons.
+struct InstantRadiositySettings {
+  int columns = 3, rows = 3;  // pixels that do not share a set; odd, up to 7
+  int places = 24;            // on emitters and in the sky
+  int walks = 32;             // from them, each leaving point lights where it scatters
+  int bounced = 96;           // of those lights are kept, where few of them do most to the view
+  int asked = 10;             // by a pixel, chosen by what they may do to its region; 0: all kept
+  int edge_rays = 2;          // more eye rays for a pixel at an edge of a surface or colour
+  int candidates = 16;  // times as many places and walks are drawn as numbered here; 1: all kept
+  float clip = -1;      // metres: shortest distance that counts; 0: none; <0: by the scene's size
+  bool compensate = true;     // what clipping took is gathered by a ray, else it is missing
+  int photons = 12000;        // emitted towards specular things
+  float photon_radius = 0;    // metres; 0: by the scene's size, shrinking from pass to pass
+};
+
+struct TransportSettings {
+  int max_depth = 8;  // path edges counted from the eye; 1: emission only, 2: direct light
+  float clamp =
+      0;  // >0: bound of what one sample owes to chance (radiance; biased, for display); 0: none
+  InstantRadiositySettings instant;
+};
+
+struct Technique {
+  const char* name;
+  const char* summary;
+  // Never throws; results are finite and not negative (dropped samples count in
+  // Lights::bad_samples).
+  Sample (*trace)(const World& world, const Lights& lights, const TransportSettings& settings,
+                  const Request& request);
+  // What must be known before the first sample, for eyes near `places` (scene coordinates); may
+  // take seconds. nullptr: nothing.
+  void (*prepare)(const World& world, std::span<const vec3> places, Lights& lights) = nullptr;
+  // What is drawn anew for each pass over a picture (point lights, photons), from seed and index
+  // alone: passes of one seed complement each other, those of different seeds are independent. The
+  // samples traced until the next call use it; without it they lack what it would have drawn.
+  // Milliseconds. nullptr: nothing.
+  void (*begin_pass)(const World& world, const TransportSettings& settings, const View& view,
+                     uint64_t seed, uint32_t index, Lights& lights) = nullptr;
+  // Filters a whole pass, samples[y * width + x], in place. nullptr: nothing.
+  void (*finish_pass)(const World& world, const Lights& lights, const View& view,
+                      std::span<Sample> samples) = nullptr;
+  // trace() for neighbouring requests at once, the same bits, where that is quicker. nullptr: one
+  // by one.
+  void (*trace_many)(const World& world, const Lights& lights, const TransportSettings& settings,
+                     std::span<const Request> requests, std::span<Sample> samples) = nullptr;
+};
+
+std::span<const Technique> techniques();
+const Technique* find_technique(std::string_view name);  // nullptr: no such name
+
+// samples[i] answers requests[i]; all cores.
+void trace(const Technique& technique, const World& world, const Lights& lights,
+           const TransportSettings& settings, std::span<const Request> requests,
+           std::span<Sample> samples);
+
+// A whole picture, `spp` samples a pixel, box filter over the pixel, all cores; the same bits
+// whatever the thread count. A technique of passes draws `spp` of them, one sample a pixel each;
+// `lights` is changed by nothing else.
+struct StillSettings {
+  int spp = 16;
+  uint64_t seed = 1;
+  TransportSettings transport;
+};
+// Sample `index` of pixel (x, y) as render_still asks for it: tracing it alone gives the same bits.
+Request pixel_request(const View& view, uint64_t seed, int x, int y, int index);
+uint64_t pass_seed(uint64_t seed);  // of its passes; sample `index` is traced in pass `index`
+// That sample alone, as it was before any finish_pass.
+Sample replay_sample(const Technique& technique, const World& world, Lights lights,
+                     const View& view, const StillSettings& settings, int x, int y, int index);
+Frame render_still(const Technique& technique, const World& world, const Lights& lights,
+                   const View& view, const StillSettings& settings);
+
+}  // namespace wellspring

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/visible/facet.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wellspring {
+
+FacetPicture place_picture(const World& world, const Facet& facet, const TextureRef& reference) {
+  const Scene& scene = world.scene();
+  const Mesh& mesh = *facet.placed->mesh;
+  FacetPicture p;
+  if (reference.texture < 0) return p;
+  const std::vector<vec2>& uv = mesh.uv[reference.uv_set];
+  int image = scene.textures[size_t(reference.texture)].image;
+  if (uv.empty() || image < 0) return p;
+  auto at = [&](int k) { return vec2(reference.uv_transform * vec3(uv[facet.corner[k]], 1)); };
+  p.corner = at(0), p.edge1 = at(1) - p.corner, p.edge2 = at(2) - p.corner;
+  const Image& of = scene.images[size_t(image)];
+  float area = 0.5f * std::abs(p.edge1.x * p.edge2.y - p.edge1.y * p.edge2.x);
+  p.texels =
+      std::sqrt(area * float(of.width) * float(of.height)) / std::max(facet.root_area, 1e-20f);
+  p.known = true;
+  return p;
+}
+
+Facet make_facet(const World& world, uint32_t instance, uint32_t triangle, vec3 eye) {
+  Facet f;
+  f.instance = instance;
+  f.triangle = triangle;
+  f.placed = &world.placed(instance);
+  f.material = f.placed->material;
+  const PlacedMesh& placed = *f.placed;
+  const Mesh& mesh = *placed.mesh;
+  f.corner = mesh.triangles[triangle];
+  float area = 0;
+  f.face = eval_face(world, instance, triangle, &area);
+  vec3 place = mesh.positions[f.corner.x];
+  if (!placed.in_place) place = vec3(placed.to_world * vec4(place, 1));
+  f.front = dot(f.face, place - eye) <= 0;
+  for (int k = 0; k < 3; k++) {
+    vec3 n = mesh.normals[f.corner[k]];
+    f.normal[k] = placed.in_place ? n : placed.normal_to_world * n;
+  }
+  f.one_normal = f.normal[0] == f.normal[1] && f.normal[0] == f.normal[2];
+  f.root_area = std::sqrt(area);
+  f.base = place_picture(world, f, f.material->base_color_texture);
+  f.shine = place_picture(world, f, f.material->metallic_roughness_texture);
+  return f;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/visible/guides.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/parallel.h"
+#include "base/spread.h"
+#include "light/walk/walk.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int most_specular = 8;      // surfaces on the way: mirrors may face mirrors
+constexpr float least_tint = 0.02f;   // of what is followed further
+constexpr int grain = 256;            // rays
+
+bool is_polished(const Bsdf& bsdf) { return bsdf.alpha < sharp_alpha; }
+
+// Of a polished surface that lets nothing through: the share of light that it mirrors.
+vec3 mirrored_share(const Bsdf& bsdf, vec3 direction) {
+  float r = (bsdf.eta - 1) / (bsdf.eta + 1), cosine = std::abs(dot(bsdf.normal, direction));
+  float fresnel = r * r + (1 - r * r) * std::pow(1 - std::min(cosine, 1.0f), 5.0f);  // Schlick 1994
+  vec3 dielectric = bsdf.facet_base + bsdf.facet_slope * fresnel;
+  return glm::mix(dielectric, bsdf.metal, bsdf.metallic);
+}
+
+// What a polished surface that light goes through does with most of it: mirrors or refracts it.
+BsdfSample turn(const Surface& surface, const Bsdf& bsdf, const Material& material,
+                vec3 direction) {
+  vec3 n = dot(bsdf.normal, direction) > 0 ? -bsdf.normal : bsdf.normal;
+  BsdfSample turned;
+  turned.direction = glm::reflect(direction, n);
+  turned.weight = vec3(1);
+  if (bsdf.thin) {
+    turned.direction = direction;
+    turned.bounce = Bounce::pass;
+    turned.weight = is_pane(surface, material) ? pane_transmittance(surface, material, direction)
+                                               : bsdf.transmit;
+    return turned;
+  }
+  vec3 through = glm::refract(direction, n, 1 / bsdf.eta);
+  if (through == vec3(0)) return turned;  // total reflection
+  float here = -dot(direction, n), beyond = -dot(through, n);
+  float across = (here - bsdf.eta * beyond) / (here + bsdf.eta * beyond),
+        along = (bsdf.eta * here - beyond) / (bsdf.eta * here + beyond);
+  if (across * across + along * along > 1) return turned;  // more than half is reflected
+  turned.direction = through;
+  turned.bounce = Bounce::refract;
+  turned.weight = bsdf.transmit;
+  return turned;
+}
+
+vec3 share(vec3 v) { return is_finite(v) ? clamp(v, vec3(0), vec3(1)) : vec3(0); }
+
+// Diffuse and glossy reflectance together, of what shows no picture of its own.
+vec3 reflectance(const Bsdf& bsdf) {
+  vec3 glossy = bsdf.metallic * bsdf.metal + (1 - bsdf.metallic) * bsdf.facet_base;
+  return bsdf.diffuse + bsdf.transmit + glossy;
+}
+
+Guide eval_guide(const Transport& transport, const Ray& ray) {
+  Walk walk;
+  walk.ray = ray;
+  if (transport.tables.any_solid) walk.media.here = find_media(transport, ray.origin);
+  vec3 tint(1), albedo(0);
+  Guide guide;
+  for (int met = 0; met <= most_specular; met++) {
+    Hit hit = transport.world.intersect(walk.ray);
+    if (!hit.valid()) {
+      albedo += tint * share(eval_environment(transport.tables.environment, walk.ray.direction));
+      break;
+    }
+    Surface surface = meet_surface(transport, walk.ray, hit, walk.media);
+    const Material& material = transport.world.material_of(hit.instance);
+    tint *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
+    Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
+    bool last = material.unlit || met == most_specular || !is_polished(bsdf);
+    bool clear = max_component(bsdf.transmit) > 0 && !last;
+    albedo += tint * share(surface_emission(surface, material) +
+                           (material.unlit ? vec3(0) : last ? reflectance(bsdf) : bsdf.diffuse));
+    if (!clear && guide.normal == vec3(0) && (last || has_diffuse(bsdf)))
+      guide.normal = bsdf.normal;
+    if (last) break;
+    BsdfSample turned;
+    if (clear) {
+      turned = turn(surface, bsdf, material, walk.ray.direction);
+    } else {
+      vec3 n = dot(bsdf.normal, walk.ray.direction) > 0 ? -bsdf.normal : bsdf.normal;
+      turned.direction = glm::reflect(walk.ray.direction, n);
+      turned.weight = mirrored_share(bsdf, walk.ray.direction);
+    }
+    tint *= turned.weight;
+    if (!(max_component(tint) > least_tint) || !advance(walk, surface, turned)) {
+      if (guide.normal == vec3(0)) guide.normal = bsdf.normal;
+      break;
+    }
+  }
+  guide.albedo = share(albedo);
+  return guide;
+}
+
+}  // namespace
+
+void eval_guides(const World& world, const Lights& lights, std::span<const Ray> rays,
+                 std::span<Guide> guides) {
+  if (rays.size() != guides.size()) throw std::invalid_argument("eval_guides: one answer a ray");
+  Transport transport{world, *lights.tables};
+  parallel_ranges(int(rays.size()), grain, [&](int begin, int end) {
+    for (size_t i = size_t(begin); i < size_t(end); i++)
+      guides[i] = eval_guide(transport, rays[i]);
+  });
+}
+
+GuidePlanes make_guides(const World& world, const Lights& lights, const View& view, int rays) {
+  Transport transport{world, *lights.tables};
+  GuidePlanes planes;
+  planes.albedo.resize(size_t(view.width) * size_t(view.height));
+  planes.normal.resize(planes.albedo.size());
+  parallel_ranges(view.height, 1, [&](int begin, int end) {
+    for (int y = begin; y < end; y++)
+      for (int x = 0; x < view.width; x++) {
+        Guide sum;
+        for (int i = 0; i < rays; i++) {
+          vec2 at = spread_in_pixel(i);
+          Guide one = eval_guide(transport, view_ray(view, float(x) + at.x, float(y) + at.y));
+          sum.albedo += one.albedo, sum.normal += one.normal;
+        }
+        size_t pixel = size_t(y) * size_t(view.width) + size_t(x);
+        planes.albedo[pixel] = sum.albedo / float(rays);
+        planes.normal[pixel] = sum.normal / float(rays);
+      }
+  });
+  return planes;
+}
+
+}  // namespace wellspring

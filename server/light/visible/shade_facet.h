@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one pixel sees of the triangle it shows (light/visible/facet.h), pictures averaged over the pixel.
+#pragma once
+#include <vector>
+
+#include "light/visible/facet.h"
+#include "light/walk/first_surface.h"
+#include "light/visible/see_through.h"
+#include "world/texture_pyramid.h"
+
+namespace wellspring {
+
+// Pictures with their smaller selves, of all that a scene's reflectance is made of.
+struct Pictures {
+  const Scene* scene = nullptr;
+  std::vector<TexturePyramid> pyramids;  // of each image; empty where none is needed
+};
+
+// All cores.
+Pictures make_pictures(const Scene& scene);
+
+// A pixel's width in metres on the surface it sees: the root of its area there. `direction` leads
+// to it at depth 1.
+float pixel_width(const Facet& f, float depth, vec3 direction, float pixel_angle);
+
+inline bool shines(const Facet& f) {
+  return (f.front || f.material->double_sided) && f.material->emission != vec3(0);
+}
+
+// `metal`: its material's; `pixel`: its width on the surface, metres.
+Seen see_facet(const Pictures& pictures, const World& world, const Facet& f, KeptMetal metal,
+               const Hit& hit, float pixel);
+
+}  // namespace wellspring

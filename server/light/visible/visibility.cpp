@@ -1,0 +1,437 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/visible/visibility.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/parallel.h"
+#include "light/visible/facet.h"
+#include "light/walk/first_surface.h"
+#include "light/material/gloss_albedo.h"
+#include "light/visible/shade_facet.h"
+#include "light/visible/visible_material.h"
+#include "light/known/skin_light.h"
+
+namespace wellspring {
+struct PictureSight::Impl {
+  const World& world;
+  Lights lights;
+  Raster raster;
+  Pictures pictures;
+  std::vector<Reflectance> reflectance;  // of each material
+  std::vector<KeptScale> scale;          // of those scaled
+  std::vector<uint8_t> panes;            // of each material: is one everywhere
+  std::vector<uint8_t> polished;         // of each material: some place of it may be
+  std::vector<uint8_t> moving_object;  // by object
+  KeptMetal metal_of(int material) const {
+    return lights.tables->materials[size_t(material)].metal;
+  }
+  Impl(const World& w, const Lights& l)
+      : world(w), lights(l), raster(w), pictures(make_pictures(w.scene())) {}
+};
+
+PictureSight::PictureSight(const World& world, const Lights& lights)
+    : impl_(std::make_unique<Impl>(world, lights)) {
+  const Scene& scene = world.scene();
+  impl_->moving_object.resize(scene.objects.size(), 0);
+  for (int i = 0; i < world.instance_count(); i++) {
+    uint32_t object = world.object_of(uint32_t(i));
+    if (world.is_moving(uint32_t(i)) && object < scene.objects.size())
+      impl_->moving_object[object] = 1;
+  }
+  TextureRanges ranges(scene);
+  for (size_t i = 0; i < scene.materials.size(); i++) {
+    const Material& m = scene.materials[i];
+    KeptScale scale;
+    impl_->polished.push_back(may_be_polished(m, ranges));
+    impl_->reflectance.push_back(
+        m.unlit ? Reflectance::base : find_reflectance(m, impl_->metal_of(int(i)), scale));
+    impl_->scale.push_back(scale);
+    impl_->panes.push_back(pane_kind(m));
+  }
+}
+PictureSight::~PictureSight() = default;
+
+bool PictureSight::moves(uint32_t object) const {
+  return object < impl_->moving_object.size() && impl_->moving_object[object];
+}
+
+bool PictureSight::rasterises(const View& view) const {
+  Transport transport{impl_->world, *impl_->lights.tables};
+  return !impl_->lights.tables->any_solid || find_media(transport, view.position).innermost() < 0;
+}
+
+namespace {
+
+// Pixels side by side of one material, whose pictures are read at one level, maybe of several
+// triangles: of many small ones each for itself would leave most lanes unused.
+struct Stretch {
+  int begin, end;
+  const Material* material;
+  int index;                        // of the material in the scene
+  float base_texels, shine_texels;  // a pixel's width
+  bool alone;                       // each pixel has to be looked up by itself
+  bool goes_on_with(const Stretch& s) const {
+    return end == s.begin && material == s.material && index == s.index && alone == s.alone &&
+           pyramid_level(base_texels) == pyramid_level(s.base_texels) &&
+           pyramid_level(shine_texels) == pyramid_level(s.shine_texels);
+  }
+};
+struct PicturePlaces {
+  float u[RunSurface::most], v[RunSurface::most];
+  void put(const FacetPicture& place, Lanes a, Lanes b, int i) {
+    store_lanes(u + i, place.corner.x + place.edge1.x * a + place.edge2.x * b);
+    store_lanes(v + i, place.corner.y + place.edge1.y * a + place.edge2.y * b);
+  }
+};
+struct Stretches {
+  int count = 0;
+  Stretch of[RasterRun::most];
+  PicturePlaces base, shine;
+};
+
+}  // namespace
+
+struct SightRun::Impl {
+  const PictureSight::Impl& sight;
+  const View& view;
+  vec2 offset;
+  float pixel_angle, blurred_angle;
+  FacetCache& facets;
+  const RasterRun* run = nullptr;
+  // Towards pixel i, at depth 1.
+  vec3 direction(int i) const {
+    float x = float(run->x + i) + offset.x - 0.5f * float(view.width),
+          y = 0.5f * float(view.height) - float(run->y) - offset.y;
+    return view.forward + view.right * (x * pixel_angle) + view.up * (y * pixel_angle);
+  }
+  const Facet& facet(int i) const {
+    return facets.find(sight.world, run->instance[i], run->triangle[i], view.position);
+  }
+  Seen see(int i) const;
+  void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
+  vec3 scale_of(const Material& m, int index) const {
+    return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * sight.scale[size_t(index)].factor;
+  }
+  bool has_picture(const TextureRef& reference) const {
+    const Scene& scene = *sight.pictures.scene;
+    return reference.texture >= 0 && scene.textures[size_t(reference.texture)].image >= 0;
+  }
+  bool reads_base(const Material& m, int index) const {
+    return has_picture(m.base_color_texture) && scale_of(m, index) != vec3(0);
+  }
+  bool reads_shine(const Material& m, int index) const {
+    return sight.reflectance[size_t(index)] == Reflectance::base &&
+           has_picture(m.metallic_roughness_texture);
+  }
+  bool place(const Facet& f, int begin, int end, Stretches& to) const;
+  bool read_lanes(const PicturePlaces& places, const TextureRef& reference, float texels, int i,
+                  int end, Lanes (&rgb)[3]) const;
+  void describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const;
+};
+
+// As kept_albedo(), eight base colours at a time.
+static void keep_lanes(KeptMetal metal, Lanes metallic, Lanes (&rgb)[3]) {
+  if (metal == KeptMetal::none) {
+    LaneMask diffuse =
+        lanes_max(lanes_max(rgb[0], rgb[1]), rgb[2]) * (1 - metallic) > least_albedo;
+    for (Lanes& channel : rgb) channel = diffuse ? channel * (1 - metallic) : all_lanes(0);
+  } else {
+    for (Lanes& channel : rgb) channel = lanes_max(channel, least_kept_metal * metallic);
+  }
+}
+
+// Eight pixels from `i` on, those before `end`; false: they have to be looked up one by one.
+bool SightRun::Impl::read_lanes(const PicturePlaces& places, const TextureRef& reference,
+                                float texels, int i, int end, Lanes (&rgb)[3]) const {
+  constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+  const Texture& texture = sight.pictures.scene->textures[size_t(reference.texture)];
+  Lanes u = load_lanes(places.u + i), v = load_lanes(places.v + i);
+  // What lies beyond is read where the last one is, which costs nothing.
+  LaneMask here = lane < float(end - i);
+  u = here ? u : all_lanes(places.u[end - 1]), v = here ? v : all_lanes(places.v[end - 1]);
+  size_t image = size_t(texture.image);
+  return eval_pyramid(sight.pictures.scene->images[image], sight.pictures.pyramids[image], texture,
+                      u, v, texels, rgb);
+}
+
+void SightRun::Impl::describe_normals(const Facet& f, int begin, int end, RunSurface& to) const {
+  float side = f.front ? 1.0f : -1.0f;
+  vec3 a = f.normal[0] * side;
+  if (f.one_normal && dot(a, a) > 1e-25f) {
+    for (int i = begin; i < end; i += lane_count) {
+      store_lanes(to.nx + i, all_lanes(a.x));
+      store_lanes(to.ny + i, all_lanes(a.y));
+      store_lanes(to.nz + i, all_lanes(a.z));
+    }
+    return;
+  }
+  vec3 b = f.normal[1] * side - a, c = f.normal[2] * side - a, face = f.face * side;
+  for (int i = begin; i < end; i += lane_count) {
+    Lanes u = load_lanes(run->u + i), v = load_lanes(run->v + i);
+    Lanes x = a.x + b.x * u + c.x * v, y = a.y + b.y * u + c.y * v, z = a.z + b.z * u + c.z * v;
+    LaneMask some = x * x + y * y + z * z > 1e-25f;
+    store_lanes(to.nx + i, some ? x : all_lanes(face.x));
+    store_lanes(to.ny + i, some ? y : all_lanes(face.y));
+    store_lanes(to.nz + i, some ? z : all_lanes(face.z));
+  }
+}
+
+// Pixels [begin, end) of a run, all of one triangle, become stretches or parts of such. False: each
+// has to be seen by itself.
+bool SightRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) const {
+  const Material& m = *f.material;
+  int index = f.placed->mesh->material;
+  if (m.unlit || sight.reflectance[size_t(index)] == Reflectance::traced || shines(f)) return false;
+  bool base = reads_base(m, index), shine = reads_shine(m, index);
+  bool alone = !f.placed->mesh->colors.empty() || (base && !f.base.known) ||
+               (shine && !f.shine.known);
+  for (int i = begin; i < end; i += lane_count) {
+    Stretch s{i, std::min(i + lane_count, end), &m, index, 0, 0, alone};
+    if (!alone && (base || shine)) {
+      Lanes a = load_lanes(run->u + i), b = load_lanes(run->v + i);
+      int middle = std::min(i + lane_count / 2, end - 1);
+      float width = pixel_width(f, run->depth[middle], direction(middle), blurred_angle);
+      if (base) to.base.put(f.base, a, b, i), s.base_texels = width * f.base.texels;
+      if (shine) to.shine.put(f.shine, a, b, i), s.shine_texels = width * f.shine.texels;
+    }
+    if (to.count > 0 && to.of[to.count - 1].goes_on_with(s)) to.of[to.count - 1].end = s.end;
+    else to.of[to.count++] = s;
+  }
+  return true;
+}
+
+void SightRun::Impl::describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const {
+  const Material& m = *s.material;
+  Reflectance way = sight.reflectance[size_t(s.index)];
+  bool blended = way == Reflectance::base;
+  float floor = sight.scale[size_t(s.index)].floor;
+  vec3 scale = scale_of(m, s.index);
+  bool reads = reads_base(m, s.index), reads_too = reads_shine(m, s.index);
+  for (int i = s.begin; i < s.end; i += lane_count) {
+    Lanes rgb[3] = {all_lanes(1), all_lanes(1), all_lanes(1)}, shine[3] = {rgb[0], rgb[0], rgb[0]};
+    bool done = !s.alone;
+    if (done && reads)
+      done = read_lanes(stretches.base, m.base_color_texture, s.base_texels, i, s.end, rgb);
+    if (done && reads_too)
+      done = read_lanes(stretches.shine, m.metallic_roughness_texture, s.shine_texels, i, s.end,
+                        shine);
+    int last = std::min(i + lane_count, s.end);
+    if (!done) {
+      for (int k = i; k < last; k++) {
+        vec3 albedo = see(k).albedo;
+        to.red[k] = albedo.x, to.green[k] = albedo.y, to.blue[k] = albedo.z;
+      }
+      continue;
+    }
+    for (int k = 0; k < 3; k++) rgb[k] = lanes_max(rgb[k] * scale[k], all_lanes(floor));
+    if (blended) keep_lanes(sight.metal_of(s.index), m.metallic * shine[2], rgb);
+    store_lanes(to.red + i, rgb[0]);
+    store_lanes(to.green + i, rgb[1]);
+    store_lanes(to.blue + i, rgb[2]);
+    for (int k = i; run->veil && k < last; k++) {
+      vec3 tint = run->veil[k].tint;
+      to.red[k] *= tint.x, to.green[k] *= tint.y, to.blue[k] *= tint.z;
+    }
+  }
+}
+
+uint64_t SightRun::describe(uint64_t wanted, RunSurface& to) const {
+  if (seen_) return wanted;
+  const RasterRun& r = *impl_->run;
+  uint64_t alone = 0;
+  Stretches stretches;
+  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
+    int end = r.end[p];
+    uint64_t these = (end - begin < 64 ? (uint64_t(1) << (end - begin)) - 1 : ~uint64_t(0))
+                     << begin;
+    if (!(wanted & these)) continue;
+    const Facet* f = r.instance[begin] == RasterRun::nothing ? nullptr : &impl_->facet(begin);
+    if (f && impl_->place(*f, begin, end, stretches)) impl_->describe_normals(*f, begin, end, to);
+    else alone |= these;
+  }
+  for (int k = 0; k < stretches.count; k++) impl_->describe(stretches, stretches.of[k], to);
+  for (int i = 0; r.veil && i < count; i++)
+    if (r.veil[i].glow != vec3(0)) alone |= uint64_t(1) << i;
+  return alone & wanted;
+}
+
+uint64_t SightRun::polished() const {
+  if (seen_) return ~uint64_t(0) >> (64 - count);
+  const RasterRun& r = *impl_->run;
+  uint64_t found = 0;
+  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
+    if (r.instance[begin] == RasterRun::nothing) continue;
+    int material = impl_->facet(begin).placed->mesh->material;
+    if (!impl_->sight.polished[size_t(material)]) continue;
+    for (int i = begin; i < r.end[p]; i++) found |= uint64_t(1) << i;
+  }
+  return found;
+}
+
+uint64_t SightRun::light(const SkinLight& skin, const RunSurface& surface, RunSkin& to) const {
+  if (seen_) return 0;
+  constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+  const RasterRun& r = *impl_->run;
+  float f0[RunSurface::most], roughness[RunSurface::most], share[RunSurface::most];
+  uint64_t moving = 0;
+  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
+    if (r.instance[begin] == RasterRun::nothing) continue;
+    const Facet& f = impl_->facet(begin);
+    if (!f.placed->moving) continue;
+    SkinTriangle light = find_skin(skin, r.instance[begin], f.corner, !f.front);
+    GlossFactors gloss = gloss_factors(*f.material);
+    for (int i = begin; i < r.end[p]; i++) moving |= uint64_t(1) << i;
+    for (int i = begin; i < r.end[p]; i += lane_count) {
+      Lanes u = load_lanes(r.u + i), v = load_lanes(r.v + i);
+      store_lanes(to.red + i, light.corner.x + light.edge1.x * u + light.edge2.x * v);
+      store_lanes(to.green + i, light.corner.y + light.edge1.y * u + light.edge2.y * v);
+      store_lanes(to.blue + i, light.corner.z + light.edge1.z * u + light.edge2.z * v);
+      store_lanes(f0 + i, all_lanes(gloss.f0));
+      store_lanes(roughness + i, all_lanes(gloss.roughness));
+      store_lanes(share + i, all_lanes(gloss.share));
+    }
+  }
+  const vec3 step = impl_->view.right * impl_->pixel_angle;
+  for (int i = 0; i < count; i += lane_count) {
+    if (!(moving >> i & 0xff)) continue;
+    vec3 way = -impl_->direction(i);
+    Lanes x = way.x - step.x * lane, y = way.y - step.y * lane, z = way.z - step.z * lane;
+    Lanes nx = load_lanes(surface.nx + i), ny = load_lanes(surface.ny + i),
+          nz = load_lanes(surface.nz + i);
+    Lanes lengths = (nx * nx + ny * ny + nz * nz) * (x * x + y * y + z * z);
+    Lanes cosine = (nx * x + ny * y + nz * z) / lanes_sqrt(lanes_max(lengths, all_lanes(1e-30f)));
+    cosine = lanes_min(lanes_max(cosine, all_lanes(0)), all_lanes(1));
+    store_lanes(to.gloss + i, gloss_albedo(load_lanes(f0 + i), load_lanes(roughness + i),
+                                           load_lanes(share + i), cosine));
+  }
+  return moving;
+}
+
+Seen SightRun::see(int i) const { return seen_ ? seen_[i] : impl_->see(i); }
+
+Seen SightRun::Impl::see(int i) const {
+  Hit hit = hit_of(*run, i, view, offset);
+  Ray ray = view_ray(view, float(run->x + i) + offset.x, float(run->y) + offset.y);
+  Seen seen;
+  if (!hit.valid()) {
+    seen.normal = -ray.direction;
+    seen.distance = std::numeric_limits<float>::infinity();
+    seen.glow = eval_environment(sight.lights.tables->environment, ray.direction);
+  } else {
+    const Facet& f = facet(i);
+    if (sight.reflectance[size_t(f.placed->mesh->material)] == Reflectance::traced) {
+      wellspring::see(sight.world, sight.lights, std::span(&ray, 1), std::span(&seen, 1));
+      return seen;
+    }
+    float pixel = pixel_width(f, run->depth[i], direction(i), blurred_angle);
+    seen = see_facet(sight.pictures, sight.world, f, sight.metal_of(f.placed->mesh->material), hit,
+                     pixel);
+  }
+  if (run->veil) {
+    const Veil& veil = run->veil[i];
+    seen.albedo *= veil.tint;
+    seen.glow = seen.glow * veil.tint + veil.glow;
+  }
+  return seen;
+}
+
+bool PictureSight::anything_moves() const {
+  const World& world = impl_->world;
+  for (int i = 0; i < world.instance_count(); i++)
+    if (world.is_moving(uint32_t(i)) && world.is_visible(uint32_t(i))) return true;
+  return false;
+}
+
+void PictureSight::see(const View& view, vec2 offset,
+                       const std::function<void(const SightRun&)>& take, RasterShows shows,
+                       float blur) const {
+  RasterSettings settings;
+  settings.shows = shows;
+  settings.offset = offset;
+  draw(view, settings, blur, take);
+}
+
+std::span<const std::vector<EdgeShare>> PictureSight::see_edges(
+    const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
+    RasterShows shows, std::function<int(uint32_t, uint32_t)> differ) const {
+  RasterSettings settings;
+  settings.shows = shows;
+  settings.offset = offset;
+  settings.edges = true;
+  settings.differ = std::move(differ);
+  if (!draw(view, settings, 1, take)) return {};
+  return impl_->raster.edges();
+}
+
+// Row by row, 64 pixels at a time.
+void PictureSight::cast(const View& view, vec2 offset, uint64_t picture,
+                        const std::function<void(const SightRun&)>& take) const {
+  constexpr int most = RasterRun::most;
+  parallel_for(view.height, [&](int y) {
+    for (int x = 0; x < view.width; x += most) {
+      SightRun run;
+      run.picture = picture;
+      run.x = x, run.y = y, run.count = std::min(most, view.width - x);
+      Ray rays[most];
+      Seen seen[most];
+      float depth[most + 8];
+      uint32_t object[most + 8];
+      for (int i = 0; i < run.count; i++)
+        rays[i] = view_ray(view, float(x + i) + offset.x, float(y) + offset.y);
+      wellspring::see(impl_->world, impl_->lights, std::span(rays, size_t(run.count)),
+                      std::span(seen, size_t(run.count)));
+      for (int i = 0; i < run.count; i++) {
+        object[i] = seen[i].object;
+        depth[i] = seen[i].distance * dot(rays[i].direction, view.forward);
+      }
+      run.depth = depth, run.object = object, run.seen_ = seen;
+      take(run);
+    }
+  });
+}
+
+// Whether edges may be asked for: it was rasterised.
+bool PictureSight::draw(const View& view, RasterSettings settings, float blur,
+                        const std::function<void(const SightRun&)>& take) const {
+  static std::atomic<uint64_t> pictures = 0;
+  const uint64_t picture = ++pictures;
+  if (!rasterises(view)) {
+    if (settings.shows != RasterShows::moving) cast(view, settings.offset, picture, take);
+    return false;
+  }
+  const Impl& s = *impl_;
+  settings.see_through = s.panes;
+  settings.veil = [&](const Hit& hit, vec3 direction) {
+    Ray ray;
+    ray.origin = view.position;
+    ray.direction = direction;
+    Surface pane = eval_surface(s.world, ray, hit);
+    return Veil{pane_transmittance(pane, s.world.material_of(hit.instance), direction),
+                pane.emission};
+  };
+  float slope = 2 * view.tan_half_fov / float(view.height);
+  impl_->raster.draw(view, settings, [&](const RasterRun& raster_run) {
+    thread_local FacetCache facets;
+    facets.start(picture);
+    uint32_t object[RasterRun::most + 8];
+    for (int p = 0, begin = 0; p < raster_run.pieces; begin = raster_run.end[p++]) {
+      uint32_t instance = raster_run.instance[begin];
+      uint32_t shown = instance == RasterRun::nothing ? 0 : s.world.object_of(instance);
+      std::fill(object + begin, object + raster_run.end[p], shown);
+    }
+    SightRun::Impl run_impl{s, view, settings.offset, slope, blur * slope, facets, &raster_run};
+    SightRun run;
+    run.picture = picture;
+    run.x = raster_run.x, run.y = raster_run.y, run.count = raster_run.count;
+    run.depth = raster_run.depth, run.object = object;
+    run.impl_ = &run_impl;
+    take(run);
+  });
+  return true;
+}
+
+}  // namespace wellspring

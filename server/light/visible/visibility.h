@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every pixel of a view sees, without the light that falls there, drawn instead of traced
+// (world/raster/raster.h): shape and reflectance of a whole picture for the price of a few thousand
+// samples. Within a solid of glass, whose own light and colour only rays meet, rays are cast.
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "light/visible/see_through.h"
+#include "world/raster/raster.h"
+
+namespace wellspring {
+
+class PictureSight;
+
+// What light falls on at a run's pixels.
+struct RunSurface {
+  static constexpr int most = RasterRun::most + 8;  // vectors are stored whole
+  float red[most], green[most], blue[most];         // reflectance, linear
+  float nx[most], ny[most], nz[most];               // normal, towards the eye; not unit
+};
+
+// Light that a run's pixels reflect of what moves, and how: radiance is
+// light * (reflectance * (1 - gloss) + gloss).
+struct RunSkin {
+  float red[RunSurface::most], green[RunSurface::most], blue[RunSurface::most];
+  float gloss[RunSurface::most];  // albedo of the dielectric's reflection, 0 to 1
+};
+
+// Up to 64 pixels of a row, from (x, y) to the right. As light/visible/see_through.h answers for rays through the
+// pixels' sampling places, but that normals are those of the mesh, without normal maps, pictures
+// are averaged over the pixel, and clear panes tint a part of the picture alike.
+class SightRun {
+ public:
+  int x = 0, y = 0, count = 0;
+  uint64_t picture = 0;  // a number that no other call of see() has
+  // Arrays may be read, not trusted, up to RasterRun::most + 8.
+  const float* depth = nullptr;      // along the viewing axis; infinity: nothing there
+  const uint32_t* object = nullptr;  // 0: nothing there
+  // Of the pixels whose bit is set, and maybe of others. Returns those of the set bits that shine,
+  // or of which see() knows more or only see() knows.
+  uint64_t describe(uint64_t wanted, RunSurface& to) const;
+  // Pixels that may see what is polished: their guides are those of what it shows
+  // (light/visible/guides.h).
+  uint64_t polished() const;
+  // Of its pixels that show what moves, as `surface` describes it (light/known/skin_light.h); of others
+  // anything. Returns those, a bit each; none where rays have seen them.
+  uint64_t light(const struct SkinLight& skin, const RunSurface& surface, RunSkin& to) const;
+  // Everything of pixel i; costs as much as a dozen descriptions.
+  Seen see(int i) const;
+
+ private:
+  friend class PictureSight;
+  struct Impl;
+  const Impl* impl_ = nullptr;
+  const Seen* seen_ = nullptr;  // by rays: of each pixel, instead
+};
+
+class PictureSight {
+ public:
+  // Borrows `world`; keeps what it needs of `lights`. A second or so for a scene of many pictures.
+  PictureSight(const World& world, const Lights& lights);
+  ~PictureSight();
+
+  // Calls `take` from many threads; together the calls cover every pixel once. `offset`: of the
+  // sampling place in its pixel, 0 to 1. `blur`: pixels over which pictures on surfaces are
+  // averaged. Call after World::commit(), while nothing moves.
+  void see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
+           RasterShows shows = RasterShows::all, float blur = 1) const;
+  // The same, and then finds Raster::edges(), which are good until the next call. `differ`: as
+  // RasterSettings has it.
+  std::span<const std::vector<EdgeShare>> see_edges(
+      const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
+      RasterShows shows = RasterShows::all,
+      std::function<int(uint32_t pixel, uint32_t other)> differ = {}) const;
+  // Is it of a mesh that moves?
+  bool moves(uint32_t object) const;
+  // Is there a visible one that does, wherever it is?
+  bool anything_moves() const;
+  // Is the view rasterised? Otherwise rays are cast: no edges are found, and what moves counts as
+  // still.
+  bool rasterises(const View& view) const;
+
+ private:
+  friend class SightRun;
+  bool draw(const View& view, RasterSettings settings, float blur,
+            const std::function<void(const SightRun&)>& take) const;
+  void cast(const View& view, vec2 offset, uint64_t picture,
+            const std::function<void(const SightRun&)>& take) const;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace wellspring

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the visibility pass (light/visible/visibility.h) has to know of materials before it begins.
+#pragma once
+#include "light/walk/first_surface.h"
+#include "light/visible/guides.h"
+#include "light/material/material_use.h"
+
+namespace wellspring {
+
+// How the reflectance of a material is found.
+enum class Reflectance : uint8_t {
+  scaled,  // a factor times base colour, and no less than a floor
+  base,    // base colour and metallic of each place say all
+  traced,  // ask a ray
+};
+
+// What kept_albedo() makes of base colour.
+struct KeptScale {
+  float factor = 1, floor = 0;
+};
+inline Reflectance find_reflectance(const Material& m, KeptMetal metal, KeptScale& scale) {
+  if (m.transmission > 0 || m.anisotropy > 0) return Reflectance::traced;
+  if (m.metallic > 0 && m.metallic_roughness_texture.texture >= 0) return Reflectance::base;
+  bool kept = metal != KeptMetal::none;
+  scale = {kept ? 1 : 1 - clean(m.metallic), kept ? least_kept_metal * clean(m.metallic) : 0};
+  return Reflectance::scaled;
+}
+
+// RasterSettings::see_through of what is a clear pane everywhere.
+inline uint8_t pane_kind(const Material& m) {
+  bool clear = m.transmission == 1 && m.transmission_texture.texture < 0 && m.thickness == 0 &&
+               m.metallic == 0 && m.roughness == 0 && m.alpha_mode == AlphaMode::opaque && !m.unlit;
+  if (!clear || m.anisotropy > 0 || m.clearcoat > 0 || m.sheen_color != vec3(0)) return 0;
+  bool alike = m.base_color_texture.texture < 0 && m.specular_texture.texture < 0 &&
+               m.specular_color_texture.texture < 0 && m.normal_texture.texture < 0 &&
+               m.emission_texture.texture < 0;
+  return alike ? 1 : 2;
+}
+
+// Some place of it may be: what it shows is that of others (light/visible/guides.h).
+inline bool may_be_polished(const Material& m, TextureRanges& ranges) {
+  if (m.unlit) return false;
+  if (m.transmission > 0) return true;
+  float roughness = m.roughness * ranges.of(m.metallic_roughness_texture).low.y;
+  return roughness * roughness < sharp_alpha;
+}
+
+}  // namespace wellspring

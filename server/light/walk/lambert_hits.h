@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the eye sees first, eight requests at a time, where that is matt and met in air: what
+// first_surface.h finds there, without what other materials need.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "light/sample/sample_light.h"
+#include "light/sample.h"
+
+namespace wellspring {
+
+struct MattEye {
+  uint32_t request = 0;  // number among those asked
+  vec3 position{0};
+  vec3 normal{0}, face{0};  // shading and geometric, on the viewer's side
+  vec3 origin{0};           // of a ray that leaves to the side of `face`
+  float extent = 0;         // SurfacePlace
+};
+
+struct MattEyes {
+  std::vector<MattEye> eyes;
+  std::vector<uint32_t> nothing;  // numbers of those that meet nothing: their samples are complete
+  std::vector<uint32_t> others;   // that see something else: their samples are not touched
+};
+// Describes the samples of requests that see something matt, or nothing.
+MattEyes see_matt(const Transport& transport, std::span<const Request> requests,
+                  std::span<Sample> samples);
+
+}  // namespace wellspring

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// Eight samples side by side, each at its own depth, for as long as all that they meet is matt:
+// what shade_first_matt and scatter_matt do one by one. Rays are traced one by one all the same,
+// because they have nothing in common. A sample that meets anything else goes on alone, and the
+// next one takes its lane. Nothing in a lane depends on the others.
+#include <bit>
+#include <cmath>
+
+#include "light/walk/first_surface.h"
+#include "light/material/lambert_simd.h"
+#include "light/sample/radiance_grid.h"
+#include "light/random/sampler_simd.h"
+#include "world/packet_simd.h"
+#include "world/surface_simd.h"
+
+namespace wellspring {
+namespace {
+
+struct MattWalks {
+  uint32_t held = 0;  // lanes that hold a sample, which has arrived at hits[lane], a matt surface
+  Hit hits[lane_count];
+  size_t sample[lane_count];
+  SamplerLanes samplers;
+  LaneMask depth{};  // 1: seen by the eye
+  Lanes3 direction, throughput, smooth, rest;
+  // Where the ray left.
+  Lanes3 from, from_normal;
+  Lanes pdf{};
+};
+
+struct Batch {
+  const Transport& transport;
+  const WalkRules& rules;
+  std::span<const Request> requests;
+  std::span<Sample> samples;
+  size_t next = 0;
+};
+
+// As walk.h has it, of the surface at that depth.
+LaneBits dimensions_of(LaneMask depth) {
+  LaneBits later = Dimensions::walk + LaneBits(depth - 2) * Dimensions::surface;
+  return depth == 1 ? all_lanes(uint32_t(Dimensions::first_surface)) : later;
+}
+
+template <class Body>
+void for_each_lane(uint32_t lanes, const Body& body) {
+  for (; lanes; lanes &= lanes - 1) body(std::countr_zero(lanes));
+}
+
+// Whether the sample that the eye's ray belongs to begins on something matt; else it is answered.
+bool begins_matt(Batch& batch, int lane, MattWalks& walks) {
+  const Transport& transport = batch.transport;
+  const Request& request = batch.requests[walks.sample[lane]];
+  Sample& sample = batch.samples[walks.sample[lane]];
+  Hit& hit = walks.hits[lane];
+  if (request.ray.t_min != 0) hit = transport.world.intersect(request.ray);  // not in packets
+  bool in_solid =
+      transport.tables.any_solid && find_media(transport, request.ray.origin).count > 0;
+  if (!hit.valid() || in_solid || !met_matt(transport, hit)) {
+    sample = trace_sample(transport, batch.rules, request, hit);
+    return false;
+  }
+  sample = Sample();
+  walks.samplers.set(lane, Sampler(request.seed, request.index));
+  walks.depth[lane] = 1;
+  walks.direction.set(lane, request.ray.direction);
+  walks.throughput.set(lane, vec3(1));
+  walks.smooth.set(lane, vec3(0));
+  walks.rest.set(lane, vec3(0));
+  return true;
+}
+
+// Gives each of those lanes the next sample that the eye sees on something matt; what lies before
+// it is answered on the way.
+void fill_lanes(Batch& batch, uint32_t lanes, RayPacket& rays, MattWalks& walks) {
+  while (lanes && batch.next < batch.requests.size()) {
+    uint32_t asking = 0;
+    for_each_lane(lanes, [&](int i) {
+      if (batch.next == batch.requests.size()) return;
+      walks.sample[i] = batch.next++;
+      set_ray(batch.requests[walks.sample[i]].ray, i, rays);
+      asking |= 1u << i;
+    });
+    batch.transport.world.intersect_each(rays, asking, walks.hits);
+    for_each_lane(asking, [&](int i) {
+      if (!begins_matt(batch, i, walks)) return;
+      walks.held |= 1u << i;
+      lanes &= ~(1u << i);
+    });
+  }
+}
+
+void end_walk(Batch& batch, int lane, MattWalks& walks) {
+  Sample& sample = batch.samples[walks.sample[lane]];
+  sample.smooth = walks.smooth.at(lane);
+  sample.rest = walks.rest.at(lane);
+  walks.held &= ~(1u << lane);
+}
+
+struct DirectLanes {
+  Lanes3 area, punctual;
+};
+
+// sample_direct_light where there is one punctual light and no other.
+DirectLanes light_by_lamp(const Transport& transport, const MattSurfaceLanes& surface,
+                          const MattLobeLanes& lobes, uint32_t lanes, RayPacket& rays) {
+  const PunctualLight& lamp = transport.tables.punctual[0];
+  const SpotCone& cone = transport.tables.cones[0];
+  const bool near = lamp.type != PunctualType::directional;
+  const Lanes zero{}, one = all_lanes(1.0f);
+  Lanes3 way = all_lanes(-lamp.direction);
+  Lanes strength = one;
+  if (near) {
+    Lanes3 line = all_lanes(lamp.position) - surface.position;
+    Lanes distance2 = dot(line, line);
+    way = line * (one / lanes_sqrt(distance2));
+    strength = one / distance2;
+    if (std::isfinite(lamp.range) && lamp.range > 0) {
+      Lanes ratio2 = distance2 * (1 / (lamp.range * lamp.range));
+      strength *= lanes_max(1 - ratio2 * ratio2, zero);
+    }
+    if (lamp.type == PunctualType::spot) {
+      Lanes cosine = -dot(way, all_lanes(lamp.direction));
+      Lanes t = lanes_min(lanes_max((cosine - cone.outer) * cone.scale, zero), one);
+      strength *= t * t;
+    }
+    LaneMask usual = (distance2 > 1e-20f) & (distance2 < 3e38f);
+    strength = usual ? strength : zero;
+  }
+  Lanes effect = strength * eval_matt_pdfs(lobes, way);
+  lanes &= negative_lanes(effect > zero);
+  Lanes3 origin = offset_origins(surface, way);
+  uint32_t seen = 0;
+  if (near) {
+    Lanes3 line = all_lanes(lamp.position) - origin;
+    seen = lanes & ~negative_lanes(dot(line, way) > zero);  // nothing fits in between
+    set_rays(origin, line, one, 0, rays);
+  } else {
+    set_rays(origin, way, all_lanes(std::numeric_limits<float>::infinity()), 0, rays);
+  }
+  DirectLanes direct;
+  Lanes3 light = all_lanes(lamp.intensity) * effect;
+  if (!transport.tables.any_pane) {
+    seen |= (lanes & ~seen) & ~transport.world.occluded_each(rays, lanes & ~seen);
+  } else {
+    for_each_lane(lanes & ~seen, [&](int i) {
+      LightSample to;
+      to.direction = way.at(i);
+      to.target = lamp.position;
+      if (near) to.distance = length(lamp.position - surface.position.at(i));
+      vec3 arrives = eval_visibility(transport, surface.place(i), to);
+      light.set(i, light.at(i) * arrives);
+      seen |= 1u << i;
+    });
+  }
+  direct.punctual = choose(lanes_of_bits(seen), light, Lanes3{});
+  return direct;
+}
+
+DirectLanes light_by_choice(const Batch& batch, const MattSurfaceLanes& surface,
+                            const MattLobeLanes& lobes, const MattWalks& walks, LaneBits dimensions,
+                            uint32_t lanes) {
+  DirectLanes direct;
+  const Walk in_air{};
+  for_each_lane(lanes, [&](int i) {
+    Sampler sampler = walks.samplers.at(i);
+    sampler.seek(dimensions[i]);
+    const bool first = walks.depth[i] == 1;
+    DirectLight one =
+        sample_direct_light(batch.transport, in_air, surface.place(i), lobes.at(i), first, sampler);
+    direct.area.set(i, one.area_diffuse);
+    direct.punctual.set(i, one.punctual_diffuse);
+    if (first && !one.sure_of_punctual())
+      batch.samples[walks.sample[i]].flags &= uint8_t(~sample_sure);
+  });
+  return direct;
+}
+
+// Shades what the lanes have arrived at and sends them on; returns those that go.
+uint32_t scatter_lanes(Batch& batch, MattWalks& walks, RayPacket& rays) {
+  const Transport& transport = batch.transport;
+  const LightTables& tables = transport.tables;
+  const Lanes zero{};
+  MattSurfaceLanes surface =
+      eval_matt_surfaces(transport.world, walks.direction, walks.hits, walks.held);
+  MattLobeLanes lobes = make_matt(surface, walks.direction);
+  const LaneMask first = walks.depth == 1;
+  const uint32_t first_bits = negative_lanes(first) & walks.held;
+  Lanes least = first ? all_lanes(least_albedo) : zero;
+  uint32_t lanes = walks.held & negative_lanes(max_component(lobes.reflectance) > least);
+  if (batch.rules.max_depth < 2) lanes &= ~first_bits;
+  for_each_lane(first_bits, [&](int i) {
+    Sample& sample = batch.samples[walks.sample[i]];
+    describe_place(transport.world, walks.hits[i], surface.place(i), surface.normal.at(i),
+                   walks.hits[i].t, sample);
+    sample.flags |= sample_sure;
+    if (lanes >> i & 1) sample.albedo = lobes.reflectance.at(i);
+  });
+  const LaneBits dimensions = dimensions_of(walks.depth);
+  const bool one_lamp = tables.punctual.size() == 1 && tables.area_share <= 0;
+  DirectLanes direct =
+      one_lamp ? light_by_lamp(transport, surface, lobes, lanes, rays)
+               : light_by_choice(batch, surface, lobes, walks, dimensions, lanes);
+  const LaneMask lit = lanes_of_bits(lanes);
+  Lanes3 later = walks.throughput * lobes.reflectance * (direct.area + direct.punctual);
+  walks.smooth = walks.smooth + choose(lit, choose(first, direct.area, later), Lanes3{});
+  walks.rest = walks.rest + choose(lit & first, lobes.reflectance * direct.punctual, Lanes3{});
+
+  Lanes u, v;
+  walks.samplers.pair(dimensions + (Dimensions::scatter + 1), u, v);
+  walks.direction = sample_cosine_directions(lobes.normal, u, v);
+  walks.pdf = eval_matt_pdfs(lobes, walks.direction);
+  walks.from = surface.position;
+  walks.from_normal = surface.geometric_normal;
+  walks.throughput = choose(first, walks.throughput, walks.throughput * lobes.reflectance);
+  walks.depth += 1;
+  set_rays(offset_origins(surface, walks.direction), walks.direction,
+           all_lanes(std::numeric_limits<float>::infinity()), 0, rays);
+  // As survives() has it.
+  Lanes largest = max_component(walks.throughput);
+  lanes &= negative_lanes((walks.pdf > zero) & (largest > zero));
+  LaneMask doubtful = walks.depth > roulette_depth;
+  if (negative_lanes(doubtful) & lanes) {
+    Lanes chance = lanes_min(all_lanes(0.95f), largest);
+    Lanes number = walks.samplers.number(dimensions + uint32_t(Dimensions::survival));
+    lanes &= ~negative_lanes(doubtful & (number >= chance));
+    walks.throughput = walks.throughput * (1 / (doubtful ? chance : all_lanes(1.0f)));
+  }
+  return lanes;
+}
+
+Walk lone_walk(const LightTables& tables, const MattWalks& walks, const RayPacket& rays, int i) {
+  Walk walk;
+  walk.ray.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
+  walk.ray.direction = walks.direction.at(i);
+  walk.throughput = walks.throughput.at(i);
+  walk.depth = walks.depth[i];
+  walk.pdf = walks.pdf[i];
+  walk.from = walks.from.at(i);
+  walk.from_normal = walks.from_normal.at(i);
+  // At the first surface both kinds of light are sampled.
+  walk.area_share = walk.depth > 2 || tables.area_share <= 0 ? tables.area_share : 1;
+  walk.scattered = walk.depth - 1;
+  return walk;
+}
+
+// Whether the lane's sample has arrived at the next matt surface; else it is answered.
+bool goes_on(Batch& batch, const RayPacket& rays, int i, bool sky, MattWalks& walks) {
+  const Transport& transport = batch.transport;
+  const Hit& hit = walks.hits[i];
+  if (!hit.valid() && !sky) return false;
+  bool matt = hit.valid() && met_matt(transport, hit);
+  vec3 kept;
+  if (matt && transport.grid) {
+    Ray ray;
+    ray.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
+    ray.direction = walks.direction.at(i);
+    float footprint = hit.t / std::sqrt(walks.pdf[i]);
+    if (eval_grid(*transport.grid, transport.world, ray, hit, footprint, kept)) {
+      walks.smooth.set(i, walks.smooth.at(i) + walks.throughput.at(i) * kept);
+      return false;
+    }
+  }
+  if (matt)
+    return walks.depth[i] <= batch.rules.scatterings && walks.depth[i] < batch.rules.max_depth;
+  Sampler sampler = walks.samplers.at(i);
+  sampler.seek(dimensions_of(walks.depth)[i]);
+  Walk walk = lone_walk(transport.tables, walks, rays, i);
+  vec3 more = follow(transport, batch.rules, walk, hit, sampler);
+  walks.smooth.set(i, walks.smooth.at(i) + more);
+  return false;
+}
+
+}  // namespace
+
+void trace_samples(const Transport& transport, const WalkRules& rules,
+                   std::span<const Request> requests, std::span<Sample> samples) {
+  if (!transport.tables.any_matt || rules.max_depth < 1) {
+    for (size_t i = 0; i < requests.size(); i++)
+      samples[i] = trace_sample(transport, rules, requests[i]);
+    return;
+  }
+  Batch batch{transport, rules, requests, samples};
+  const bool sky = transport.tables.plan.uses(TransportPart::environment);
+  RayPacket rays{};
+  MattWalks walks;
+  fill_lanes(batch, (1u << lane_count) - 1, rays, walks);
+  while (walks.held) {
+    uint32_t going = scatter_lanes(batch, walks, rays), arrived = 0;
+    transport.world.intersect_each(rays, going, walks.hits);
+    for_each_lane(going, [&](int i) {
+      arrived |= uint32_t(goes_on(batch, rays, i, sky, walks)) << i;
+    });
+    const uint32_t ended = walks.held & ~arrived;
+    for_each_lane(ended, [&](int i) { end_walk(batch, i, walks); });
+    fill_lanes(batch, ended, rays, walks);
+  }
+}
+
+}  // namespace wellspring

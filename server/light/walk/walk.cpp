@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/walk/walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "light/material/bsdf_frame.h"
+#include "light/material/bsdf_gloss.h"
+#include "light/walk/part_colors.h"
+#include "light/sample/radiance_grid.h"
+#include "light/random/warp.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int mirrored_depth = 12;  // chains of perfect mirrors and glass that are never cut short
+
+// Russian roulette: survivors carry the share of those that stop. False: this one stops.
+bool survives(Walk& walk, Sampler& sampler) {
+  if (!(max_component(walk.throughput) > 0)) return false;
+  if (walk.depth <= (walk.pdf > 0 ? roulette_depth : mirrored_depth)) return true;
+  float chance = std::min(0.95f, max_component(walk.throughput) * walk.density);
+  if (sampler.next() >= chance) return false;
+  walk.throughput /= chance;
+  return true;
+}
+
+}  // namespace
+
+vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
+                       const Material& material) {
+  vec3 emission = surface_emission(surface, material);
+  if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(emission) > 0)) return emission;
+  float other = walk.area_share *
+                sample_emitter_pdf(transport.tables, walk.from, walk.from_normal,
+                                   walk.ray.direction, surface);
+  return emission * mis_weight(walk.pdf, other);
+}
+
+vec3 walk_met_sky(const Transport& transport, const Walk& walk) {
+  vec3 radiance = eval_environment(transport.tables.environment, walk.ray.direction);
+  if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(radiance) > 0)) return radiance;
+  float other = walk.area_share * sample_sky_pdf(transport.tables, walk.ray.direction);
+  return radiance * mis_weight(walk.pdf, other);
+}
+
+vec3 eval_tint(const Transport& transport, int medium, float length) {
+  if (!std::isfinite(length)) return vec3(1);
+  const Material& m = transport.world.scene().materials[size_t(medium)];
+  if (!std::isfinite(m.attenuation_distance) || !(m.attenuation_distance > 0)) return vec3(1);
+  float lengths = length / m.attenuation_distance;
+  vec3 c = glm::clamp(m.attenuation_color, vec3(0), vec3(1));
+  return {std::pow(c.x, lengths), std::pow(c.y, lengths), std::pow(c.z, lengths)};
+}
+
+void part_colors(const Transport& transport, const Walk& walk, const Surface& surface,
+                 uint32_t dimensions, Sampler& sampler, Bsdf& bsdf,
+                 std::optional<WavelengthSpread>& spread) {
+  if (!parts_colors(transport, walk.media, surface)) return;
+  sampler.seek(dimensions + Dimensions::wavelength);
+  float u = walk.wavelengths.carried == 0 ? sampler.next() : 0;
+  part_colors(transport, walk.media, walk.ray.direction, surface, walk.wavelengths, u, bsdf,
+              spread);
+}
+
+bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered) {
+  if (!(max_component(scattered.weight) > 0)) return false;
+  walk.throughput *= scattered.weight;
+  walk.ray.direction = scattered.direction;
+  walk.ray.origin = offset_origin(place, scattered.direction);
+  if (scattered.bounce == Bounce::pass) return ++walk.panes <= most_panes;
+  walk.panes = 0;
+  walk.depth++;
+  walk.pdf = scattered.pdf;
+  walk.from = place.position;
+  walk.from_normal = place.geometric_normal;
+  walk.scattered += scattered.pdf > 0;
+  if (scattered.bounce == Bounce::refract) walk.media.here = walk.media.beyond;
+  return true;
+}
+
+namespace {
+
+// How a surface scatters, as light sampling asks: the value towards a direction, and the density
+// with which sampling all of its lobes draws that.
+constexpr float blunt_alpha = 0.6f;  // rougher gloss is spread as matt light is
+struct ByBsdf {
+  const Bsdf& bsdf;
+  BsdfValue eval(vec3 direction) const { return eval_bsdf(bsdf, direction); }
+  float pdf(const BsdfValue& value) const { return sample_bsdf_pdf(bsdf, value, Lobes::all); }
+  LobeHint hint() const {
+    LobeHint lobe;
+    if (max_component(bsdf.transmit) > 0) return lobe;  // has a sharp lobe on either side
+    lobe.diffuse = luminance(bsdf.diffuse);
+    if (bsdf.alpha > 0 && bsdf.alpha < blunt_alpha) {
+      lobe.specular = eval_gloss_strength(bsdf);
+      lobe.alpha = bsdf.alpha;
+      lobe.view = to_world(bsdf, bsdf.view);
+    }
+    // With nothing to go by all lights are weighed as by a matt surface.
+    if (!(lobe.diffuse + lobe.specular > 0)) lobe.diffuse = 1;
+    return lobe;
+  }
+};
+struct ByMatt {
+  const MattLobe& lobe;
+  BsdfValue eval(vec3 direction) const {
+    float pdf = eval_matt_pdf(lobe, direction);
+    return {vec3(pdf), vec3(0), pdf, 0};
+  }
+  float pdf(const BsdfValue& value) const { return value.diffuse_pdf; }
+  LobeHint hint() const { return {}; }
+};
+
+// `side`: lit_side.
+template <class Scattering>
+DirectLight direct_light(const Transport& transport, const Walk& walk, const SurfacePlace& place,
+                         vec3 side, vec3 normal, const Scattering& scattering, bool apart,
+                         Sampler& sampler) {
+  const LightTables& tables = transport.tables;
+  const uint32_t base = sampler.drawn;
+  DirectLight direct;
+  bool area = tables.area_share > 0, punctual = !tables.punctual.empty();
+  float area_chance = 1, punctual_chance = 1;
+  if (!apart && area && punctual) {
+    area_chance = tables.area_share;
+    punctual_chance = 1 - area_chance;
+    (sampler.next() < area_chance ? punctual : area) = false;
+  }
+  auto arriving = [&](const LightSample& light, float chance) {
+    return light.radiance * eval_visibility(transport, place, light) *
+           eval_absorption(transport, medium_towards(walk.media, place, light.direction),
+                           light.distance) / chance;
+  };
+  if (area) {
+    sampler.seek(base + 1);
+    LightSample light = sample_area_light(transport, place, side, sampler);
+    float light_pdf = light.pdf * area_chance;
+    if (light.pdf > 0 && max_component(light.radiance) > 0) {
+      BsdfValue value = scattering.eval(light.direction);
+      if (max_component(value.diffuse + value.specular) > 0) {
+        vec3 arrives = arriving(light, light_pdf);
+        float both = scattering.pdf(value);
+        direct.area_diffuse =
+            value.diffuse * arrives * mis_weight(light_pdf, apart ? value.diffuse_pdf : both);
+        direct.specular =
+            value.specular * arrives * mis_weight(light_pdf, apart ? value.specular_pdf : both);
+      }
+    }
+  }
+  if (punctual) {
+    bool through = side == vec3(0);
+    sampler.seek(base + Dimensions::punctual);
+    LightSample light =
+        sample_punctual_light(transport, place, normal, through, sampler, scattering.hint());
+    direct.punctual_share = light.share;
+    if (light.pdf > 0) {
+      BsdfValue value = scattering.eval(light.direction);
+      if (max_component(value.diffuse + value.specular) > 0) {
+        vec3 arrives = arriving(light, punctual_chance);
+        direct.punctual_diffuse = value.diffuse * arrives;
+        direct.specular += value.specular * arrives;
+      }
+    }
+  }
+  return direct;
+}
+
+}  // namespace
+
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
+                                const Surface& surface, const Bsdf& bsdf, bool apart,
+                                Sampler& sampler) {
+  return direct_light(transport, walk, surface, lit_side(surface, bsdf), bsdf.normal, ByBsdf{bsdf},
+                      apart, sampler);
+}
+
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
+                                const SurfacePlace& place, const MattLobe& lobe, bool apart,
+                                Sampler& sampler) {
+  return direct_light(transport, walk, place, place.geometric_normal, lobe.normal, ByMatt{lobe},
+                      apart, sampler);
+}
+
+namespace {
+
+void make_blunt(const WalkRules& rules, const Walk& walk, Surface& surface) {
+  constexpr float bluntest = 0.25f;
+  bool perfect = alpha_of(surface.roughness) == 0;  // no lamp without a size has a highlight there
+  if (!(walk.pdf > 0) || perfect || surface.transmission > 0) return;
+  float alpha = std::min(bluntest, rules.blunt / std::sqrt(walk.pdf));
+  surface.roughness = std::max(surface.roughness, std::sqrt(alpha));
+  surface.clearcoat_roughness = std::max(surface.clearcoat_roughness, std::sqrt(alpha));
+}
+
+// One step of the walk at a matt surface. False: it ends here.
+bool scatter_matt(const Transport& transport, const WalkRules& rules, Walk& walk, const Hit& hit,
+                  uint32_t base, Sampler& sampler, vec3& radiance) {
+  bool last = walk.scattered >= rules.scatterings || walk.depth >= rules.max_depth;
+  if (last) return false;
+  MattSurface surface = eval_matt_surface(transport.world, walk.ray, hit);
+  MattLobe lobe = make_matt(surface, walk.ray.direction);
+  if (!(max_component(lobe.reflectance) > 0)) return false;
+  walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
+  sampler.seek(base);
+  radiance += walk.throughput * lobe.reflectance *
+              sample_direct_light(transport, walk, surface, lobe, false, sampler).sum();
+  sampler.seek(base + Dimensions::scatter + 1);  // as sample_bsdf has it without a choice
+  if (!advance(walk, surface, sample_matt(lobe, sampler.next2()))) return false;
+  walk.area_share = transport.tables.area_share;
+  sampler.seek(base + Dimensions::survival);
+  return survives(walk, sampler);
+}
+
+}  // namespace
+
+vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler) {
+  return follow(transport, rules, walk, transport.world.intersect(walk.ray), sampler);
+}
+
+vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit hit,
+            Sampler& sampler) {
+  const World& world = transport.world;
+  vec3 radiance(0);
+  const uint32_t block = sampler.drawn;
+  for (uint32_t base = block;; base += Dimensions::surface, hit = world.intersect(walk.ray)) {
+    if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
+    vec3 kept;
+    if (transport.grid && walk.pdf > 0 && walk.media.here.count == 0 &&
+        eval_grid(*transport.grid, world, walk.ray, hit, hit.t / std::sqrt(walk.pdf), kept))
+      return radiance + walk.throughput * kept;
+    if (met_matt(transport, hit)) {
+      if (!scatter_matt(transport, rules, walk, hit, base, sampler, radiance)) return radiance;
+      continue;
+    }
+    Surface surface = meet_surface(transport, walk.ray, hit, walk.media);
+    const Material& material = world.material_of(hit.instance);
+    walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
+    radiance += walk.throughput * walk_met_emission(transport, walk, surface, material);
+    if (material.unlit) return radiance;
+
+    bool last = walk.scattered >= rules.scatterings || walk.depth >= rules.max_depth;
+    if (last) {  // only straight on, where a shadow ray would have gone too
+      if (!is_pane(surface, material)) return radiance;
+      BsdfSample straight;
+      straight.direction = walk.ray.direction;
+      straight.weight = pane_transmittance(surface, material, walk.ray.direction);
+      straight.bounce = Bounce::pass;
+      if (!advance(walk, surface, straight)) return radiance;
+      continue;
+    }
+    if (rules.blunt > 0) make_blunt(rules, walk, surface);
+    Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
+    std::optional<WavelengthSpread> spread;
+    part_colors(transport, walk, surface, base, sampler, bsdf, spread);
+    bool smooth = is_smooth(bsdf);
+    sampler.seek(base);
+    if (!smooth)
+      radiance += walk.throughput *
+                  sample_direct_light(transport, walk, surface, bsdf, false, sampler).sum();
+    sampler.seek(base + Dimensions::scatter);
+    BsdfSample scattered = sample_bsdf(bsdf, Lobes::all, sampler);
+    if (spread) carry_wavelengths(*spread, bsdf, Lobes::all, scattered, walk.wavelengths);
+    if (!advance(walk, surface, scattered)) return radiance;
+    if (scattered.bounce != Bounce::pass) {
+      walk.area_share = scattered.pdf > 0 ? transport.tables.area_share : 0;
+      walk.from_normal = lit_side(surface, bsdf);
+    }
+    if (scattered.bounce == Bounce::refract) walk.density *= bsdf.eta * bsdf.eta;
+    sampler.seek(base + Dimensions::survival);
+    if (!survives(walk, sampler)) return radiance;
+  }
+}
+
+}  // namespace wellspring

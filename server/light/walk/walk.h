@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// The random walk that `path` and `direct` share: next-event estimation and scattering combined by
+// multiple importance sampling (Veach 1997, chapter 9), with thin smooth panes passed straight by
+// light and eye alike. The first surface is treated with more care, because its parts are told
+// apart in the Sample.
+#pragma once
+#include "light/material/dispersion.h"
+#include "light/material/lambert.h"
+#include "light/sample/sample_light.h"
+#include "light/technique/technique.h"
+
+namespace wellspring {
+
+struct WalkRules {
+  int max_depth = 8;          // edges, panes passed straight not counted
+  int scatterings = 1 << 30;  // surfaces that may scatter other than perfectly; then one edge more
+  // >0: what a ray met by chance reflects no sharper than the ray stands for, alpha at least
+  // `blunt` over the root of its density. A highlight of a small lamp that a wide ray comes upon is
+  // a spark (Kaplanyan and Dachsbacher 2013, "Path Space Regularization"). Biased.
+  float blunt = 0;
+};
+
+// One walk in flight: the ray that comes next, and what must be known of where it left.
+struct Walk {
+  Ray ray;
+  vec3 throughput{1};
+  int depth = 1;         // this ray's number, counted from the eye
+  float pdf = 0;         // density of its direction where it last scattered; 0: perfect, or the eye
+  vec3 from_normal{0, 1, 0};  // the side from which light was sampled there
+  vec3 from{0};          // there
+  float area_share = 0;  // chance that area light was sampled there; 0: it was not
+  Media media;           // that it runs in, and beyond the surface it met last
+  float density = 1;     // in there radiance is denser by this (squared index), says the roulette
+  int scattered = 0;
+  int panes = 0;  // passed in a row
+  Wavelengths wavelengths;  // once it has met something dispersive
+};
+
+inline constexpr int roulette_depth = 2;  // edges that Russian roulette never cuts short
+
+// Radiance that comes back along the walk, times its throughput.
+vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Sampler& sampler);
+// The same where what the walk's ray meets first is known.
+vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit hit,
+            Sampler& sampler);
+
+// Emission met by the walk's ray, weighted against the chance that light sampling had found it
+// where the ray left.
+vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surface& surface,
+                       const Material& material);
+vec3 walk_met_sky(const Transport& transport, const Walk& walk);
+
+// A sample's dimensions: the eye's way to the first surface, then each walk a block of its own, and
+// each of its surfaces a place in it, so that a number means the same in all samples of a pixel.
+struct Dimensions {
+  static constexpr uint32_t first_surface = 96;  // panes come before
+  static constexpr uint32_t walk = 1u << 16;     // the k-th walk begins at k times this
+  static constexpr uint32_t surface = 32;        // from one surface of a walk to the next
+  // Within a surface.
+  static constexpr uint32_t punctual = 4, scatter = 8, specular = 16, survival = 24,
+                            wavelength = 28;
+};
+
+// Parts the colours where `surface` does so: `bsdf` becomes the hero wavelength's. After sampling,
+// `spread` if set goes to carry_wavelengths.
+void part_colors(const Transport& transport, const Walk& walk, const Surface& surface,
+                 uint32_t dimensions, Sampler& sampler, Bsdf& bsdf,
+                 std::optional<WavelengthSpread>& spread);
+
+// The walk's next ray after `place` scattered it; false: it ends here.
+bool advance(Walk& walk, const SurfacePlace& place, const BsdfSample& scattered);
+
+// Light arriving at a surface from one area light and one punctual light, scattered towards the
+// viewer.
+struct DirectLight {
+  vec3 area_diffuse{0}, punctual_diffuse{0}, specular{0};
+  float punctual_share = 1;  // LightSample::share
+  bool sure_of_punctual() const { return punctual_share > 0.99f; }
+  vec3 sum() const { return area_diffuse + punctual_diffuse + specular; }
+};
+// `apart`: the caller samples the diffuse and specular lobes one by one (else as a mixture), and
+// both kinds of light are sampled (else one of them, by area_share).
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
+                                const Surface& surface, const Bsdf& bsdf, bool apart,
+                                Sampler& sampler);
+// The same where the surface is matt, its lobe's reflectance left out.
+DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
+                                const SurfacePlace& place, const MattLobe& lobe, bool apart,
+                                Sampler& sampler);
+
+// Share of light left after a length of the solid it runs in (Beer's law); -1: in none.
+vec3 eval_tint(const Transport& transport, int medium, float length);
+inline vec3 eval_absorption(const Transport& transport, int medium, float length) {
+  return medium < 0 || !transport.tables.any_tint ? vec3(1) : eval_tint(transport, medium, length);
+}
+
+// Whether the shortest way through the shading will do.
+inline const MaterialTraits& traits_of(const Transport& transport, const Hit& hit) {
+  return transport.tables.materials[size_t(transport.world.mesh_of(hit.instance).material)];
+}
+inline bool met_matt(const Transport& transport, const Hit& hit) {
+  return traits_of(transport, hit).matt;
+}
+
+// The whole of each sample: what trace functions of techniques call. A sample is the same alone and
+// among others.
+void trace_samples(const Transport& transport, const WalkRules& rules,
+                   std::span<const Request> requests, std::span<Sample> samples);
+// One sample by the way that knows all materials, where trace_samples has none quicker.
+Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request);
+Sample trace_sample(const Transport& transport, const WalkRules& rules, const Request& request,
+                    const Hit& first_hit);
+
+}  // namespace wellspring

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the samples of each pixel say by themselves while the view stands still: the mean of their
+// light over the pixel, whatever surfaces it shows, which of more and more samples is the
+// reference. 6 bytes a pixel.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/memory.h"
+#include "base/vec.h"
+#include "picture/still/still_image.h"
+
+namespace wellspring {
+
+struct StillSamples {
+  std::vector<uint32_t> mean;      // pack_rgb9e5
+  std::vector<uint8_t>
+      deviation;               // pack_deviation: of one sample, root mean square over the channels
+  std::vector<uint8_t> count;  // at most most_still_samples, over which the mean then looks back
+};
+inline constexpr int most_still_samples = 254;
+
+// All of them without a sample.
+void resize_samples(StillSamples& samples, size_t pixels);
+// Where `still` is to begin anew, as its light has changed or something moves there.
+void forget_samples(const StillImage& still, StillSamples& samples);
+// `light`: finite, of a place anywhere in the pixel. `random` decides roundings.
+void add_sample(StillSamples& samples, size_t pixel, vec3 light, uint32_t random);
+
+inline size_t samples_bytes(const StillSamples& samples) {
+  return bytes_of(samples.mean, samples.deviation, samples.count);
+}
+
+}  // namespace wellspring

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a browser asks for, carried out on the show. Refusals are answers to that browser alone.
+#pragma once
+#include <optional>
+
+#include "show/state/show.h"
+#include "wire/json.h"
+
+namespace wellspring {
+
+// Applies one message; the error to send back, if any.
+std::optional<WireError> obey(Show& show, Visitor& visitor, const BrowserMessage& message);
+
+// The storyteller is there for those who are there: a story that was paused by somebody who has
+// left since is over, and so is any story when nobody is left. After visitors have left.
+void forget_absent_listeners(Show& show);
+
+}  // namespace wellspring

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/answer/events.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace wellspring {
+
+using nlohmann::json;
+
+namespace {
+
+json triple(dvec3 v) {
+  auto round = [](double x) { return std::round(x * 1e4) / 1e4; };
+  return json::array({round(v.x), round(v.y), round(v.z)});
+}
+
+const char* tour_word(TourRide::State state) {
+  switch (state) {
+    case TourRide::State::playing: return "playing";
+    case TourRide::State::paused: return "paused";
+    default: return "none";
+  }
+}
+
+}  // namespace
+
+std::string welcome_news(const Show& show, const Visitor& visitor) {
+  const Exhibit& exhibit = show.exhibit;
+  auto text = [&](const LocalText& local) {
+    return text_in(local, visitor.lang, exhibit.languages);
+  };
+  json news = {{"type", "welcome"},
+               {"protocol", "wellspring.v1"},
+               {"session", visitor.link->id},
+               {"exhibit", exhibit.id},
+               {"title", text(exhibit.title)},
+               {"description", text(exhibit.description)},
+               {"lang", visitor.lang},
+               {"languages", exhibit.languages},
+               {"width", visitor.width},
+               {"height", visitor.height},
+               {"walk_speed", exhibit.walk ? exhibit.walk->speed : 2.0f},
+               {"viewpoints", json::array()},
+               {"tours", json::array()},
+               {"stories", json::array()},
+               {"lamps", json::array()}};
+  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints) {
+    std::string title = text(viewpoint.title);
+    news["viewpoints"].push_back(
+        {{"name", viewpoint.view.name}, {"title", title.empty() ? viewpoint.view.name : title}});
+  }
+  for (const TourPlan& tour : exhibit.tours)
+    news["tours"].push_back(
+        {{"id", tour.id}, {"title", text(tour.title)}, {"stops", tour.stops.size()}});
+  for (const StoryText& story : exhibit.stories) {
+    json& entry =
+        news["stories"].emplace_back(json{{"id", story.id}, {"title", text(story.title)}});
+    entry["teller"] =
+        story.teller < 0 ? json(nullptr) : json(exhibit.storytellers[size_t(story.teller)].id);
+  }
+  for (size_t i = 0; i < exhibit.lamps.size(); i++)
+    news["lamps"].push_back({{"name", exhibit.lamps[i].id},
+                             {"title", text(exhibit.lamps[i].title)},
+                             {"on", bool(show.switches.wanted[i])}});
+  auto about = [&](const StorytellerPlace& teller) {
+    std::string name = text(teller.name);
+    return json{{"id", teller.id}, {"name", name}, {"position", triple(teller.position)},
+                {"viewpoint", exhibit.viewpoints[size_t(teller.kiosk_viewpoint)].view.name}};
+  };
+  news["storyteller"] = nullptr;
+  if (const StorytellerPlace* teller = teller_of(show)) {
+    news["storyteller"] = about(*teller);
+    news["storyteller"]["visible"] = show.storyteller_visible;
+  }
+  news["storytellers"] = json::array();
+  for (const StorytellerPlace& teller : exhibit.storytellers)
+    news["storytellers"].push_back(about(teller));
+  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string state_news(const Show& show, const Visitor& visitor) {
+  const Exhibit& exhibit = show.exhibit;
+  json news = {{"type", "state"},
+               {"seq", visitor.seq},
+               {"position", triple(visitor.view.position)},
+               {"yaw", visitor.view.yaw},
+               {"pitch", visitor.view.pitch},
+               {"fov", visitor.view.fov},
+               {"fps", std::round(visitor.measured_fps * 10) / 10},
+               {"converged", std::round(visitor.stats.converged * 1000) / 1000},
+               {"viewpoint", nullptr},
+               {"tour", nullptr}};
+  if (!exhibit.lamps.empty()) news["lamps"] = json::object();
+  for (size_t i = 0; i < exhibit.lamps.size(); i++)
+    news["lamps"][exhibit.lamps[i].id] = bool(show.switches.wanted[i]);
+  if (visitor.viewpoint >= 0)
+    news["viewpoint"] = exhibit.viewpoints[size_t(visitor.viewpoint)].view.name;
+  if (visitor.tour.state != TourRide::State::none && visitor.tour.tour >= 0)
+    news["tour"] = {{"id", exhibit.tours[size_t(visitor.tour.tour)].id},
+                    {"state", tour_word(visitor.tour.state)},
+                    {"stop", visitor.tour.stop},
+                    {"stops", exhibit.tours[size_t(visitor.tour.tour)].stops.size()}};
+  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string subtitle_news(const std::string& text, const std::string& lang,
+                          const std::string& speaker, float seconds) {
+  json news = {{"type", "subtitle"}, {"text", text}, {"lang", lang}, {"speaker", speaker},
+               {"seconds", seconds}};
+  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string speech_news(uint32_t utterance, const Speech& speech, dvec3 mouth) {
+  auto round = [](double x) { return std::round(x * 1e3) / 1e3; };
+  json words = json::array();
+  for (const SpeechWord& word : speech.words) {
+    size_t end = std::min(size_t(word.text_end), speech.text.size()),
+           begin = std::min(size_t(word.text_begin), end);
+    words.push_back({{"text", speech.text.substr(begin, end - begin)},
+                     {"begin", round(word.begin)},
+                     {"end", round(word.end)}});
+  }
+  json news = {{"type", "speech"},         {"utterance", utterance},
+               {"action", "start"},        {"text", speech.text},
+               {"lang", speech.lang},      {"seconds", round(speech.duration)},
+               {"position", triple(mouth)}, {"words", std::move(words)}};
+  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string speech_stop_news(uint32_t utterance) {
+  return json{{"type", "speech"}, {"utterance", utterance}, {"action", "stop"}}.dump();
+}
+
+// The mouth as the next picture shows it, in the utterance's own time.
+json mouth_news(const Show& show) {
+  const Speech* speech = show.sounding.going ? heard(show.voice) : nullptr;
+  if (!speech) return nullptr;
+  double at = double(show.voice.elapsed + show.picture_lead);
+  VisemeWeights weights = mouth_shape(show.voice, show.picture_lead);
+  size_t strongest = size_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
+  return {{"utterance", show.sounding.number},
+          {"seconds", std::round(at * 1e3) / 1e3},
+          {"viseme", viseme_names[strongest]}};
+}
+
+std::string agent_news(const Show& show) {
+  json news = {{"type", "agent"},
+               {"mood", to_string(show.mind.mood)},
+               {"teller", teller_of(show) ? json(teller_of(show)->id) : json(nullptr)},
+               {"visible", show.storyteller_visible},
+               {"humanlike", show.humanlike},
+               {"story", show.voice.story.empty() ? json(nullptr) : json(show.voice.story)},
+               {"sentence", show.voice.story.empty() ? 0 : show.voice.sentence},
+               {"sentences",
+                show.voice.story.empty() ? 0 : show.voice.sentence + int(show.voice.queue.size())},
+               {"paused", show.voice.paused}};
+  StorytellerGaze gaze = eval_gaze(show.mind, show.storyteller, show.pose);
+  news["looking_at"] = triple(dvec3(gaze.target) + show.exhibit.scene.origin);
+  news["gaze"] = {std::round(gaze.yaw * 1e4) / 1e4, std::round(gaze.pitch * 1e4) / 1e4};
+  news["guest"] = gaze.guest;
+  news["mouth"] = mouth_news(show);
+  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string kiosk_news(const Audience& audience, size_t cameras) {
+  json news = {{"type", "kiosk"},
+               {"state", to_string(audience.state)},
+               {"people", audience.guests.size()},
+               {"cameras", cameras}};
+  return news.dump();
+}
+
+}  // namespace wellspring

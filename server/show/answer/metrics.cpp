@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <fstream>
+#include <unistd.h>
+
+#include "show/answer/answer.h"
+
+namespace wellspring {
+
+namespace {
+
+void metric(std::string& out, const char* name, const char* type, const char* help, double value) {
+  out += fmt::format("# HELP wellspring_{0} {1}\n# TYPE wellspring_{0} {2}\nwellspring_{0} {3}\n",
+                     name, help, type, value);
+}
+
+template <class Value>
+void per_visitor(std::string& out, const ShowReport& report, const char* name, const char* help,
+                 const Value& value) {
+  if (report.visitors.empty()) return;
+  out += fmt::format("# HELP wellspring_visitor_{0} {1}\n# TYPE wellspring_visitor_{0} gauge\n",
+                     name, help);
+  for (const VisitorReport& one : report.visitors)
+    out += fmt::format("wellspring_visitor_{}{{visitor=\"{}\",role=\"{}\"}} {}\n", name, one.id,
+                       one.kiosk ? "kiosk" : "visitor", value(one));
+}
+
+double resident_bytes() {
+  std::ifstream in("/proc/self/statm");
+  double total = 0, resident = 0;
+  in >> total >> resident;
+  return resident * double(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+std::string write_metrics(const ShowReport& report) {
+  std::string out;
+  const ShowTotals& totals = report.totals;
+  metric(out, "up_seconds", "counter", "Seconds since the show began", report.time);
+  metric(out, "ticks_total", "counter", "Ticks of the show", double(report.ticks));
+  metric(out, "tick_milliseconds", "gauge", "Length of the last tick", totals.tick_ms);
+  metric(out, "animate_milliseconds", "gauge", "The storyteller's part of it", totals.animate_ms);
+  metric(out, "samples_per_second", "gauge", "Samples a second while tracing, all cores",
+         report.samples_per_second);
+  metric(out, "samples_total", "counter", "Samples traced", double(totals.samples));
+  // The problem is a sentence of ours, or a file's path: quotes would end the label.
+  std::string problem = report.denoiser_problem;
+  std::replace_if(problem.begin(), problem.end(),
+                  [](char c) { return c == '"' || c == '\\' || c == '\n'; }, '\'');
+  out += fmt::format(
+      "# HELP wellspring_denoiser 1: pictures at rest are reconstructed by a network; 0: why not\n"
+      "# TYPE wellspring_denoiser gauge\nwellspring_denoiser{{problem=\"{}\"}} {}\n",
+      problem, problem.empty() ? 1 : 0);
+  metric(out, "reconstructions_total", "counter", "Pictures at rest reconstructed by the network",
+         double(totals.reconstructed));
+  metric(out, "reconstruction_milliseconds", "gauge", "What the last of them took, all cores",
+         double(totals.reconstruction_ms));
+  metric(out, "bad_samples_total", "counter", "Samples dropped for not being finite or positive",
+         double(report.bad_samples));
+  metric(out, "pictures_total", "counter", "Pictures sent", double(totals.pictures));
+  metric(out, "pictures_drawn_total", "counter", "Pictures drawn from samples",
+         double(totals.drawn));
+  metric(out, "pictures_warped_total", "counter",
+         "Pictures sent that are warped from earlier ones to where the visitor is",
+         double(totals.warped));
+  metric(out, "warps_given_up_total", "counter",
+         "Pictures not made since earlier ones show too little of the view",
+         double(totals.unwarpable));
+  metric(out, "moving_drawn_total", "counter",
+         "What moves in pictures at rest, drawn by itself", double(totals.posed));
+  metric(out, "surroundings_drawn_total", "counter",
+         "Small wide pictures drawn of what a quick turn may show", double(totals.surroundings));
+  metric(out, "drawings_given_up_total", "counter",
+         "Pictures not drawn since their visitors were elsewhere by then", double(totals.given_up));
+  metric(out, "picture_bytes_total", "counter", "Bytes of pictures made",
+         double(totals.picture_bytes));
+  metric(out, "messages_total", "counter", "Messages from browsers", double(totals.messages));
+  metric(out, "refused_messages_total", "counter", "Messages refused",
+         double(totals.refused_messages));
+  metric(out, "visits_total", "counter", "Visits begun", double(totals.visits));
+  metric(out, "visits_turned_away_total", "counter", "Visits refused because the house was full",
+         double(totals.turned_away));
+  metric(out, "visitors", "gauge", "Visitors now", double(report.visitors.size()));
+  metric(out, "kiosk_cameras", "gauge", "Kiosk cameras connected", report.kiosks);
+  metric(out, "kiosk_observations_total", "counter", "Observations received",
+         double(totals.observations));
+  metric(out, "greetings_total", "counter", "Greetings said", double(totals.greetings));
+  metric(out, "farewells_total", "counter", "Farewells said", double(totals.farewells));
+  metric(out, "lamps_switched_total", "counter", "Lamps switched on or off",
+         double(totals.lamps_switched));
+  metric(out, "stories_total", "counter", "Stories begun", double(totals.stories));
+  metric(out, "voice_running", "gauge", "The voice program was running when it was last asked",
+         report.voice_running);
+  metric(out, "voice_restarts_total", "counter", "Starts of the voice program after the first",
+         double(report.voice_restarts));
+  metric(out, "voice_lines", "gauge", "Spoken lines kept in memory", double(report.voice_lines));
+  metric(out, "voice_lines_waiting", "gauge", "Lines still to be spoken",
+         double(report.voice_waiting));
+  metric(out, "voice_failed_total", "counter", "Lines that could not be spoken",
+         double(report.voice_failed));
+  metric(out, "utterances_total", "counter", "Lines said with a voice", double(totals.utterances));
+  metric(out, "sounds_total", "counter", "Sound packets sent", double(totals.sounds));
+  metric(out, "sounds_given_up_total", "counter",
+         "Utterances dropped for readers that were too slow", double(totals.sounds_given_up));
+  metric(out, "drawing_bytes", "gauge",
+         "Memory for drawing and warping pictures, one after the other, whoever they are for",
+         double(report.drawing_bytes));
+  metric(out, "resident_bytes", "gauge", "Memory of the server process", resident_bytes());
+  per_visitor(out, report, "pictures_per_second", "Pictures a second",
+              [](auto& v) { return v.fps; });
+  per_visitor(out, report, "drawn_pictures_per_second",
+              "Pictures drawn a second; the others are warped, or have what moves drawn anew",
+              [](auto& v) { return v.drawn_fps; });
+  per_visitor(out, report, "warp_milliseconds", "Warping a picture",
+              [](auto& v) { return v.warp_ms; });
+  per_visitor(out, report, "moving_milliseconds", "Drawing what moves in a picture at rest",
+              [](auto& v) { return v.moving_ms; });
+  per_visitor(out, report, "drawn_after_milliseconds",
+              "From deciding what to draw until it can be shown",
+              [](auto& v) { return v.whole_ms; });
+  per_visitor(out, report, "round_trip_milliseconds", "Picture sent to acknowledged",
+              [](auto& v) { return v.round_trip_ms; });
+  per_visitor(out, report, "display_milliseconds", "Reprojection and light",
+              [](auto& v) { return v.display_ms; });
+  per_visitor(out, report, "trace_milliseconds", "Tracing samples",
+              [](auto& v) { return v.trace_ms; });
+  per_visitor(out, report, "tonemap_milliseconds", "Tone mapping",
+              [](auto& v) { return v.tonemap_ms; });
+  per_visitor(out, report, "encode_milliseconds", "JPEG encoding",
+              [](auto& v) { return v.encode_ms; });
+  per_visitor(out, report, "samples_per_picture", "Samples traced for a picture",
+              [](auto& v) { return v.budget; });
+  per_visitor(out, report, "drawing_milliseconds",
+              "Drawing shapes and reflectances of a picture, and shading them",
+              [](auto& v) { return v.drawing_ms; });
+  per_visitor(out, report, "converged_ratio", "Share of converged pixels",
+              [](auto& v) { return v.converged; });
+  per_visitor(out, report, "empty_ratio", "Share of pixels without a point",
+              [](auto& v) { return v.empty; });
+  per_visitor(out, report, "fresh_ratio", "Share of pixels sampled in this picture",
+              [](auto& v) { return v.fresh; });
+  per_visitor(out, report, "mean_age_pictures", "Age of the visible points",
+              [](auto& v) { return v.mean_age; });
+  per_visitor(out, report, "jpeg_quality", "Quality of moving pictures",
+              [](auto& v) { return v.quality; });
+  per_visitor(out, report, "cache_bytes", "Memory of the render cache",
+              [](auto& v) { return v.cache_bytes; });
+  per_visitor(out, report, "memory_bytes",
+              "Memory of all that is kept for the visitor's pictures, the cache included",
+              [](auto& v) { return v.memory_bytes; });
+  per_visitor(out, report, "pictures_dropped_total", "Pictures replaced before they were sent",
+              [](auto& v) { return v.dropped; });
+  return out;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/answer/report.h"
+
+#include "show/state/show.h"
+
+namespace wellspring {
+
+ShowReport make_report(const Show& show) {
+  ShowReport report;
+  report.ready = true;
+  report.time = show.time;
+  report.ticks = show.ticks;
+  report.drawing_bytes = show.easel.work_bytes + memory_bytes(show.warp);
+  report.bad_samples = show.lights.bad_samples ? show.lights.bad_samples->load() : 0;
+  report.samples_per_second = show.samples_per_second;
+  report.denoiser_problem = show.pass.problem;
+  report.kiosks = int(show.eyes.size());
+  report.audience = to_string(show.audience.state);
+  report.mood = to_string(show.mind.mood);
+  report.totals = show.totals;
+  if (show.speech.counts) {
+    Speaker::Counts counts = show.speech.counts();
+    report.voice_running = counts.process_id != 0;
+    report.voice_restarts = counts.starts > 0 ? counts.starts - 1 : 0;
+    report.voice_lines = counts.kept;
+    report.voice_waiting = counts.waiting;
+    report.voice_failed = counts.failed;
+  }
+  for (const Visitor& visitor : show.visitors) {
+    const CacheStats& stats = visitor.stats;
+    VisitorReport one;
+    one.id = visitor.link->id;
+    one.width = visitor.width;
+    one.height = visitor.height;
+    one.budget = visitor.order.samples;
+    one.drawing_ms = visitor.times.drawing;
+    one.quality = suggest_quality(visitor.flow, visitor.best_quality);
+    one.fps = visitor.measured_fps;
+    one.round_trip_ms = 1000 * visitor.flow.round_trip;
+    one.display_ms = visitor.times.display;
+    one.trace_ms = visitor.times.trace;
+    one.tonemap_ms = visitor.times.tonemap;
+    one.encode_ms = visitor.times.encode;
+    one.drawn_fps = visitor.drawn_fps;
+    one.warp_ms = visitor.times.warp;
+    one.moving_ms = visitor.times.moving;
+    one.whole_ms = visitor.times.whole;
+    one.fresh = stats.fresh;
+    one.empty = stats.empty;
+    one.converged = stats.converged;
+    one.mean_age = stats.mean_age;
+    one.cache_bytes = visitor.cache_bytes;
+    one.memory_bytes = visitor.memory_bytes;
+    one.dropped = visitor.link->pictures_dropped();
+    one.kiosk = visitor.kiosk;
+    report.visitors.push_back(one);
+  }
+  return report;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Of pictures at rest what moves is drawn by itself (picture/moving_picture.h), several times as
+// often as the rest, and between that one's steps. In three steps as in show/draw/picture.h.
+#pragma once
+#include "show/state/show.h"
+
+namespace wellspring {
+
+// What is laid over a picture is kept of each visitor: it may be a third of it.
+bool may_be_laid_over(const PictureWindow& window, const View& view);
+
+// The share of the time that goes to it, of all visitors.
+double moving_share(const Show& show);
+
+// It is due for this visitor, and the browser could take a picture.
+bool wants_moving(const Show& show, const Visitor& visitor);
+// Until it will be due for anybody, at most a second.
+double seconds_to_moving(const Show& show);
+// Light on what moves (light/known/skin_light.h), that all visitors share: it is time to find it anew,
+// as somebody may see it. By the tick, while the easel is idle, then on the easel, as the world is
+// then, then by the tick.
+bool wants_skin(const Show& show);
+void order_skin(Show& show);
+void light_skin(Show& show);
+void finish_skin(Show& show);
+// Reads the visitor's keyframe, which may not change meanwhile.
+void draw_moving(Show& show, Visitor& visitor);
+void finish_moving(Show& show, Visitor& visitor);
+
+// A picture was drawn: what moves is in it, or is to be laid over it.
+void finish_backdrop(Visitor& visitor);
+// For warps, the keyframe shows what was last laid over it from now on.
+void merge_moving(Visitor& visitor);
+
+}  // namespace wellspring

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// The samples of one picture (show/draw/picture.h): planned, traced in slices, remembered. On the easel.
+#pragma once
+#include "show/state/show.h"
+
+namespace wellspring {
+
+// Of so many samples at rest, those that are to find changes of the light.
+int samples_to_watch(int samples);
+// The light that is missing for the picture, and for the next: fills work.requests. Says by
+// costs.late whether answers may come after it.
+void plan_samples(Show& show, const PictureOrder& order, const Technique& technique,
+                  const View& lit, DrawingWork& work, Visitor& visitor);
+// Asks for what was planned, or begins to trace it. Returns whether it is traced here: work.samples
+// is empty where answers may be late.
+bool begin_samples(Show& show, const PictureOrder& order, const Technique& technique,
+                   const View& lit, DrawingWork& work, Visitor& visitor);
+// A slice of them. Returns whether some are left.
+bool trace_slice(Show& show, const PictureOrder& order, const Technique& technique,
+                 DrawingWork& work);
+// Those traced, for the visitor's cache and, at rest, for each pixel by itself.
+void remember_traced(const Show& show, const PictureOrder& order, const View& lit,
+                     DrawingWork& work, Visitor& visitor);
+
+}  // namespace wellspring

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a visitor is sent, and when: the picture that was drawn last, warped to where the visitor is
+// now (picture/warp_picture.h), at the rate of the display whatever drawing takes. It says the last
+// input that the view it shows has followed. After a leap, or where a warp would show too much that
+// was never drawn, nothing is sent until a picture of the new place is there.
+#pragma once
+#include "show/state/show.h"
+
+namespace wellspring {
+
+// Pictures a second this visitor should get.
+double picture_rate(const Show& show, const Visitor& visitor);
+// The visitor's browser and socket can take one.
+bool may_take(const Show& show, const Visitor& visitor);
+
+// Sends a picture if one is due and there is something new to show: the place, the storyteller or
+// the light.
+void present(Show& show, Visitor& visitor);
+
+}  // namespace wellspring

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/draw/sample_budget.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace wellspring {
+namespace {
+
+constexpr double unmeasured_light = 0.4;  // of the display's time, where light is coarser
+constexpr double least_light = 0.25;      // of the time goes to light, whatever is drawn
+constexpr double least_samples = 1000;    // a picture, however slow the machine
+constexpr double most_a_pixel = 0.5;
+// Samples a second for each pixel, from which on finer light shows who moves less error, though
+// most of its pixels have no point.
+constexpr double enter_fine = 0.4, leave_fine = 0.25;
+constexpr float few_guessed = 0.25f;  // of the pixels of coarser light: some 1.4 samples each
+constexpr float nearly_none = 0.1f;   // of the picture's pixels
+constexpr float most_known = 0.5f;    // likewise
+constexpr double settled_after = 2;   // seconds
+constexpr float keyframe_scales[] = {1, 0.75f, 0.5f, 0.375f};
+// Seconds from keyframe to keyframe. Beyond a tenth turns and near things uncover much.
+constexpr double shortest_period = 1 / 30.0, longest_period = 1 / 10.0;
+constexpr double sample_share = 0.3;  // of that time, at least
+constexpr double climbing = 0.7;      // of the time allowed, when a larger keyframe is drawn again
+constexpr float most_uncovered = 0.2f;  // of a picture's width, by a tour's turn
+
+}  // namespace
+
+int sample_budget(double seconds, size_t pixels, const DrawingCosts& costs, bool fine) {
+  double display = costs.display_seconds;
+  if (!fine) display = costs.light_seconds > 0 ? costs.light_seconds : unmeasured_light * display;
+  double tracing = std::max(seconds + costs.display_seconds - display - costs.drawing_seconds,
+                            least_light * seconds);
+  // Who stands gains by light what fewer pictures cost; who moves, by pictures.
+  if (fine)
+    tracing = std::max(tracing,
+                       least_light / (1 - least_light) * (display + costs.drawing_seconds));
+  double samples = std::clamp(tracing * costs.samples_per_second, 0.0,
+                              most_a_pixel * double(pixels));
+  return int(std::max(samples, std::min(least_samples, double(pixels))));
+}
+
+bool wants_fine_light(bool stands, bool coarse, float guessed) {
+  return stands && !(coarse && guessed > few_guessed);
+}
+
+bool affords_fine_light(double samples, bool before) {
+  return samples >= (before ? leave_fine : enter_fine);
+}
+
+double keyframe_cost(float scale) {
+  return double(scale);
+}
+
+KeyframePlan plan_keyframe(double seconds, float before) {
+  constexpr double most = (1 - sample_share) * longest_period;
+  auto cost = [&](float scale) { return seconds * keyframe_cost(scale) / keyframe_cost(before); };
+  auto fits = [&](float scale) { return cost(scale) <= (scale > before ? climbing * most : most); };
+  const float* found = std::find_if(std::begin(keyframe_scales), std::end(keyframe_scales), fits);
+  float scale = found == std::end(keyframe_scales) ? *std::prev(found) : *found;
+  return {scale,
+          std::clamp(cost(scale) / (1 - sample_share), shortest_period, longest_period)};
+}
+
+float tour_pace(float turn, float fov) {
+  float most = most_uncovered * fov;
+  return turn > most ? most / turn : 1.0f;
+}
+
+bool wants_reference(double seconds_at_rest, bool before, bool coarse, float guessed, float known) {
+  if (seconds_at_rest <= settled_after || coarse) return false;
+  return before || (guessed <= nearly_none && known >= most_known);
+}
+
+}  // namespace wellspring

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// An exhibit package as loaded: what content/<id>/exhibit.json says, with its scene and its
+// storyteller's figure. Immutable once loaded; borrowed by the Show for as long as it runs.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "avatar/figure/character.h"
+#include "avatar/face/expression.h"
+#include "avatar/body/gesture_library.h"
+#include "avatar/story/story_script.h"
+#include "world/scene.h"
+
+namespace wellspring {
+
+using LocalText = std::map<std::string, std::string>;                // language tag -> text
+using LocalLine = std::map<std::string, StoryLine>;                 // language tag -> a sentence
+using LocalScript = std::map<std::string, std::vector<StoryLine>>;  // language tag -> sentences
+
+// The text in `lang`, else in its base language ("de" for "de-AT"), else in the first of
+// `languages` that has one, else any; "" when there is none at all.
+const std::string& text_in(const LocalText& text, const std::string& lang,
+                           const std::vector<std::string>& languages);
+// The language tag of the text that text_in gives; "" when there is none.
+std::string tag_in(const LocalText& text, const std::string& lang,
+                   const std::vector<std::string>& languages);
+// The same of a line; null when there is none.
+const LocalLine::value_type* line_in(const LocalLine& line, const std::string& lang,
+                                     const std::vector<std::string>& languages);
+LocalLine plain_line(const LocalText& text);
+// Sentence `index` of every language that has one.
+LocalLine line_at(const LocalScript& script, size_t index);
+size_t line_count(const LocalScript& script);  // of the longest language
+
+struct ExhibitViewpoint {
+  Viewpoint view;
+  LocalText title;
+  std::string where;  // in exhibit.json; empty: a camera of the scene
+};
+
+struct TourStop {
+  int viewpoint = 0;         // index into Exhibit::viewpoints
+  float travel_seconds = 0;  // the way there takes at least this long
+  float stay_seconds = 1.5;  // and the stay, and as long as its text takes
+  LocalScript way_text, text;  // told on the way, and there
+  LocalText way_sound, sound;  // language tag -> file of a recording of it
+};
+struct TourPlan {
+  std::string id;
+  LocalText title;
+  std::vector<TourStop> stops;
+};
+
+struct StoryText {
+  std::string id;
+  LocalText title;
+  LocalScript text;
+  LocalText sound;  // language tag -> file of a recording of the text
+  int teller = -1;  // index into Exhibit::storytellers; -1: whoever is there
+};
+
+// A voice of the synthesiser.
+struct VoiceManner {
+  int words_per_minute = 155;  // 80 to 450
+  int pitch = 45;              // 0 to 100
+  std::string variant;         // "f3", "m2", ...; empty: the language's own
+};
+
+// How visitors may move. Without one they fly freely.
+struct WalkSettings {
+  float eye_height = 1.65f;  // metres above the ground under the visitor
+  float speed = 1.4f;        // metres a second, for the page's keys
+  float radius = 0.25f;      // distance kept from walls
+  std::optional<Bounds> bounds;
+};
+
+// A storyteller: figure, place, and its own greetings and manner.
+struct StorytellerPlace {
+  std::string id;
+  std::string figure;  // file beside exhibit.json
+  LocalText name;
+  dvec3 position{0};  // of the feet
+  float yaw = 0;      // as Viewpoint: 0 faces -Z
+  LocalScript greetings, farewells;  // a line each
+  VoiceManner voice;
+  int kiosk_viewpoint = 0;
+  Character character;
+  std::optional<ExpressionSet> expressions;  // the package's own, in place of the program's
+  std::optional<GestureLibrary> gestures;
+};
+
+struct PointOfInterest {
+  std::string id, node;
+  uint32_t object = 0;  // index into Scene::objects
+  dvec3 place{0};       // its middle, where one looks or points; absolute
+  LocalText title;
+};
+
+// What visitors may switch: scene.lamps[i] is what it is made of.
+struct ExhibitLamp {
+  std::string id;
+  LocalText title;
+  bool on = true;  // at first
+};
+inline constexpr size_t most_lamps = 32;
+
+struct Exhibit {
+  std::string id, folder;
+  LocalText title, description;
+  std::vector<std::string> languages{"en"};
+  float exposure = 1;
+  std::optional<WalkSettings> walk;
+  std::vector<ExhibitViewpoint> viewpoints;  // never empty
+  int start = 0;
+  std::vector<StorytellerPlace> storytellers;  // one is there at a time, the first to begin with
+  std::vector<TourPlan> tours;
+  std::vector<StoryText> stories;
+  std::vector<PointOfInterest> points;
+  std::vector<ExhibitLamp> lamps;  // of each of the scene's
+  Scene scene;
+};
+
+int find_viewpoint(const Exhibit& exhibit, std::string_view name);  // -1: none
+int find_storyteller(const Exhibit& exhibit, std::string_view id);  // likewise
+int find_lamp(const Exhibit& exhibit, std::string_view id);         // likewise
+const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id);
+
+}  // namespace wellspring

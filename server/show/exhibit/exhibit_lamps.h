@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lamps that a package names, out of its exhibit.json: see content/README.md.
+#pragma once
+#include "show/exhibit/json_fields.h"
+
+namespace wellspring {
+
+// Fills exhibit.lamps, and exhibit.scene.lamps one for one. Call when the scene is there.
+void read_lamps(Exhibit& exhibit, Fields& root);
+
+// As the exhibit is at first.
+std::vector<char> first_lamps(const Exhibit& exhibit);
+
+}  // namespace wellspring

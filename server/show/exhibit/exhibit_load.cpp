@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/exhibit/exhibit_load.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "avatar/load/character_load.h"
+#include "avatar/face/expression_sum.h"
+#include "base/load_error.h"
+#include "base/log.h"
+#include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_story.h"
+#include "show/exhibit/json_fields.h"
+#include "show/exhibit/package_file.h"
+#include "wire/json.h"
+#include "world/load/scene_load.h"
+#include "world/sky.h"
+
+namespace wellspring {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+constexpr size_t max_manifest_bytes = 8 << 20;
+constexpr double degree = 3.14159265358979323846 / 180;
+
+std::string join(const std::vector<Problem>& problems) {
+  std::string all;
+  for (const Problem& problem : problems)
+    if (problem.fatal) all += (all.empty() ? "" : "\n") + to_string(problem);
+  return all;
+}
+
+bool is_identifier(const std::string& id) {
+  return !id.empty() && id.size() <= 100 && std::all_of(id.begin(), id.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '-' || c == '_' || c == '.';
+  });
+}
+
+void read_walk(Exhibit& exhibit, Fields fields) {
+  WalkSettings walk;
+  walk.eye_height = float(fields.number("eye_height", false, 1.65, 0.2, 10));
+  walk.speed = float(fields.number("speed", false, 1.4, 0.05, 20));
+  walk.radius = float(fields.number("radius", false, 0.25, 0.01, 5));
+  fields.object("bounds", false, [&](Fields box) {
+    dvec3 low = box.triple("low", true), high = box.triple("high", true);
+    if (!(low.x < high.x && low.y < high.y && low.z < high.z))
+      box.problem("", "low must be below high on every axis");
+    walk.bounds = Bounds{vec3(low), vec3(high)};
+    box.finish();
+  });
+  fields.finish();
+  exhibit.walk = walk;
+}
+
+void read_viewpoints(Exhibit& exhibit, Fields& root) {
+  root.objects("viewpoints", false, [&](Fields fields) {
+    ExhibitViewpoint viewpoint;
+    viewpoint.where = fields.where();
+    viewpoint.view.name = fields.text("name", true);
+    if (find_viewpoint(exhibit, viewpoint.view.name) >= 0)
+      fields.problem("name", "'" + viewpoint.view.name + "' is taken by another viewpoint");
+    viewpoint.title = fields.local_text("title", false);
+    viewpoint.view.position = fields.triple("position", true);
+    viewpoint.view.yaw = float(fields.number("yaw_deg", false, 0, -720, 720) * degree);
+    viewpoint.view.pitch = float(fields.number("pitch_deg", false, 0, -89, 89) * degree);
+    viewpoint.view.fov = float(fields.number("fov_deg", false, 55, 5, 150) * degree);
+    fields.finish();
+    exhibit.viewpoints.push_back(std::move(viewpoint));
+  });
+}
+
+int read_viewpoint_name(const Exhibit& exhibit, Fields& fields, const char* name, bool required) {
+  std::string viewpoint = fields.text(name, required);
+  if (viewpoint.empty()) return 0;
+  int index = find_viewpoint(exhibit, viewpoint);
+  if (index < 0) fields.problem(name, "there is no viewpoint '" + viewpoint + "'");
+  return std::max(index, 0);
+}
+
+// A file of expressions or gestures in place of those that come with the program.
+template <class Language, class Load>
+void read_language(const Exhibit& exhibit, Fields& fields, const char* name,
+                   std::optional<Language>& language, const Load& load,
+                   std::vector<Problem>& problems) {
+  std::string file = fields.text(name, false);
+  if (file.empty()) return;
+  std::string path = package_file(fields, name, exhibit.folder, file);
+  if (path.empty()) return;
+  try {
+    language = load(path);
+  } catch (const LoadError& error) {
+    problems.push_back({error.file, error.where, error.what_});
+  }
+}
+
+// The figure, as the package wants it skinned, and what it goes without.
+void read_figure(const Exhibit& exhibit, Fields& fields, StorytellerPlace& place,
+                 std::vector<Problem>& problems) {
+  std::string skinning = fields.text("skinning", false);
+  if (!skinning.empty() && skinning != "linear" && skinning != "dual_quaternion")
+    fields.problem("skinning",
+                   "is 'linear' or 'dual_quaternion'; without it the figure's file says");
+  std::string path = package_file(fields, "figure", exhibit.folder, place.figure);
+  if (path.empty()) return;
+  try {
+    place.character = load_character(path);
+  } catch (const LoadError& error) {
+    problems.push_back({error.file, error.where, error.what_});
+    return;
+  }
+  if (skinning == "linear") place.character.skinning = Skinning::linear;
+  if (skinning == "dual_quaternion") place.character.skinning = Skinning::dual_quaternion;
+  for (const std::string& warning : place.character.warnings)
+    problems.push_back({path, "", warning, false});
+  const ExpressionSet& set = place.expressions ? *place.expressions : default_expressions();
+  std::string missing;
+  for (const std::string& name : make_expression_rig(set, place.character).missing)
+    missing += (missing.empty() ? "" : ", ") + name;
+  if (!missing.empty())
+    problems.push_back({path, "", "the figure goes without these expressions: " + missing, false});
+}
+
+void read_storyteller(Exhibit& exhibit, Fields fields, bool one_of_many,
+                      std::vector<Problem>& problems) {
+  StorytellerPlace place;
+  place.id = fields.text("id", one_of_many, one_of_many ? "" : "storyteller");
+  if (find_storyteller(exhibit, place.id) >= 0)
+    fields.problem("id", "'" + place.id + "' is taken by another storyteller");
+  place.figure = fields.text("figure", true);
+  place.name = fields.local_text("name", false);
+  place.position = fields.triple("position", true);
+  place.yaw = float(fields.number("yaw_deg", false, 0, -720, 720) * degree);
+  place.greetings = read_script(exhibit, fields, "greetings", false, false, problems);
+  place.farewells = read_script(exhibit, fields, "farewells", false, false, problems);
+  place.voice = read_manner(fields, "voice", {});
+  place.kiosk_viewpoint = read_viewpoint_name(exhibit, fields, "kiosk_viewpoint", false);
+  for (const std::string& lang : exhibit.languages) {
+    if (!place.greetings.contains(lang))
+      fields.problem("greetings", "has nothing in '" + lang + "'", false);
+    if (!place.farewells.contains(lang))
+      fields.problem("farewells", "has nothing in '" + lang + "'", false);
+  }
+  read_language(exhibit, fields, "expressions", place.expressions, load_expressions, problems);
+  read_language(exhibit, fields, "gestures", place.gestures, load_gestures, problems);
+  read_figure(exhibit, fields, place, problems);
+  fields.finish();
+  exhibit.storytellers.push_back(std::move(place));
+}
+
+void read_storytellers(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
+  root.object("storyteller", false, [&](Fields fields) {
+    read_storyteller(exhibit, std::move(fields), false, problems);
+  });
+  if (root.has("storyteller") && root.has("storytellers"))
+    root.problem("storytellers", "is there beside a \"storyteller\": one of them only");
+  root.objects("storytellers", false, [&](Fields fields) {
+    read_storyteller(exhibit, std::move(fields), true, problems);
+  });
+}
+
+void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
+  root.objects("tours", false, [&](Fields fields) {
+    TourPlan tour;
+    tour.id = fields.text("id", true);
+    tour.title = fields.local_text("title", false);
+    fields.objects("stops", true, [&](Fields stop_fields) {
+      TourStop stop;
+      stop.viewpoint = read_viewpoint_name(exhibit, stop_fields, "viewpoint", true);
+      stop.text = read_script(exhibit, stop_fields, "text", false, true, problems);
+      stop.way_text = read_script(exhibit, stop_fields, "way_text", false, true, problems);
+      stop.sound = read_sounds(exhibit, stop_fields, "sound", stop.text);
+      stop.way_sound = read_sounds(exhibit, stop_fields, "way_sound", stop.way_text);
+      stop.travel_seconds = float(stop_fields.number("travel_seconds", false, 0, 0, 600));
+      double stay = stop.text.empty() ? 6 : 1.5;
+      stop.stay_seconds = float(stop_fields.number("stay_seconds", false, stay, 0, 3600));
+      stop_fields.finish();
+      tour.stops.push_back(std::move(stop));
+    });
+    if (tour.stops.empty()) fields.problem("stops", "must name at least one stop");
+    fields.finish();
+    exhibit.tours.push_back(std::move(tour));
+  });
+  root.objects("stories", false, [&](Fields fields) {
+    StoryText story;
+    story.id = fields.text("id", true);
+    story.title = fields.local_text("title", false);
+    story.text = read_script(exhibit, fields, "text", true, false, problems);
+    story.sound = read_sounds(exhibit, fields, "sound", story.text);
+    if (std::string teller = fields.text("teller", false); !teller.empty()) {
+      story.teller = find_storyteller(exhibit, teller);
+      if (story.teller < 0) fields.problem("teller", "there is no storyteller '" + teller + "'");
+    }
+    fields.finish();
+    exhibit.stories.push_back(std::move(story));
+  });
+}
+
+void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
+  std::string path = package_file(root, "scene", exhibit.folder, root.text("scene", true));
+  if (!path.empty()) {
+    try {
+      SceneLoadOptions options;
+      options.package = exhibit.folder;
+      exhibit.scene = load_scene(path, options);
+      for (const std::string& warning : exhibit.scene.warnings)
+        problems.push_back({path, "", warning, false});
+    } catch (const LoadError& error) {
+      problems.push_back({error.file, error.where, error.what_});
+    }
+  }
+  root.object("environment", false, [&](Fields fields) {
+    exhibit.scene.environment.radiance = vec3(fields.triple("radiance", false, dvec3(1)));
+    std::string picture = fields.text("image", false);
+    std::string picture_path = package_file(fields, "image", exhibit.folder, picture);
+    if (!picture_path.empty()) {
+      try {
+        load_environment(picture_path, exhibit.scene);
+      } catch (const LoadError& error) {
+        problems.push_back({error.file, error.where, error.what_});
+      }
+    }
+    fields.object("sky", false, [&](Fields sky) {
+      SkySettings settings;
+      settings.elevation = sky.number("elevation_deg", true, settings.elevation, -18, 90);
+      settings.azimuth = sky.number("azimuth_deg", true, settings.azimuth, -360, 360);
+      settings.turbidity = sky.number("turbidity", false, settings.turbidity, 1, 10);
+      settings.strength = sky.number("strength", false, settings.strength, 0, 1e6);
+      sky.finish();
+      if (!picture.empty()) fields.problem("sky", "is there beside an \"image\": one of them only");
+      else if (!sky_problem(settings)) add_sky(settings, exhibit.scene);
+    });
+    fields.finish();
+  });
+  if (!path.empty() && !has_light(exhibit.scene))
+    root.problem("environment", "the scene has no light of any kind; it will be black", false);
+}
+
+// The middle of all that belongs to an object, relative to the scene's origin.
+vec3 object_middle(const Scene& scene, uint32_t object) {
+  Bounds bounds;
+  for (const Instance& instance : scene.instances) {
+    if (instance.object != object) continue;
+    for (vec3 position : scene.meshes[size_t(instance.mesh)].positions) {
+      vec3 p = vec3(instance.to_world * vec4(position, 1));
+      bounds.low = min(bounds.low, p);
+      bounds.high = max(bounds.high, p);
+    }
+  }
+  vec3 middle = 0.5f * (bounds.low + bounds.high);
+  return is_finite(middle) ? middle : vec3(0);
+}
+
+void read_points(Exhibit& exhibit, Fields& root) {
+  root.members("objects", [&](const std::string& id, Fields fields) {
+    PointOfInterest point;
+    point.id = id;
+    point.node = fields.text("node", true);
+    point.title = fields.local_text("title", false);
+    const auto& names = exhibit.scene.objects;
+    auto found = std::find(names.begin(), names.end(), point.node);
+    if (found == names.end() || point.node.empty())
+      fields.problem("node", "the scene has no node '" + point.node + "'");
+    else
+      point.object = uint32_t(found - names.begin());
+    dvec3 middle = exhibit.scene.origin + dvec3(object_middle(exhibit.scene, point.object));
+    point.place = fields.triple("at", false, middle);
+    fields.finish();
+    exhibit.points.push_back(std::move(point));
+  });
+}
+
+}  // namespace
+
+std::string to_string(const Problem& problem) {
+  return problem.file + (problem.where.empty() ? "" : ": " + problem.where) + ": " + problem.what;
+}
+
+ExhibitError::ExhibitError(std::vector<Problem> problems_)
+    : std::runtime_error(join(problems_)), problems(std::move(problems_)) {}
+
+Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) {
+  Exhibit exhibit;
+  std::error_code ec;
+  exhibit.folder = folder;
+  exhibit.id = fs::weakly_canonical(folder, ec).filename().string();
+  std::string file = (fs::path(folder) / "exhibit.json").string();
+  if (!is_identifier(exhibit.id))
+    problems.push_back({folder, "", "the folder's name must be letters, digits, '-', '_' or '.'"});
+  std::ifstream in(file, std::ios::binary);
+  auto size = fs::file_size(file, ec);
+  if (!in || ec) {
+    problems.push_back({file, "", "cannot be read"});
+    return exhibit;
+  }
+  if (size > max_manifest_bytes) {
+    problems.push_back({file, "", "is larger than 8 MiB"});
+    return exhibit;
+  }
+  std::stringstream text;
+  text << in.rdbuf();
+  auto parsed = parse_json(text.str());
+  if (const WireError* error = std::get_if<WireError>(&parsed)) {
+    problems.push_back({file, "", error->message});
+    return exhibit;
+  }
+  Fields root(std::get<json>(parsed), file, "", problems);
+  std::string id = root.text("id", false, exhibit.id);
+  if (id != exhibit.id)
+    root.problem("id", "'" + id + "' is not the folder's name '" + exhibit.id + "'");
+  exhibit.title = root.local_text("title", true);
+  exhibit.description = root.local_text("description", false);
+  if (auto languages = root.texts("languages"); !languages.empty()) exhibit.languages = languages;
+  exhibit.exposure = float(root.number("exposure", false, 1, 1e-6, 1e6));
+  root.object("walk", false, [&](Fields fields) { read_walk(exhibit, std::move(fields)); });
+  read_scene(exhibit, root, problems);
+  read_lamps(exhibit, root);
+  read_viewpoints(exhibit, root);
+  for (const Viewpoint& view : exhibit.scene.viewpoints)
+    if (find_viewpoint(exhibit, view.name) < 0) exhibit.viewpoints.push_back({view, {}, {}});
+  if (exhibit.viewpoints.empty())
+    root.problem("viewpoints", "there is no viewpoint here and no camera in the scene");
+  exhibit.start = read_viewpoint_name(exhibit, root, "start", false);
+  read_storytellers(exhibit, root, problems);
+  read_tours_and_stories(exhibit, root, problems);
+  read_points(exhibit, root);
+  check_marks(exhibit, problems);
+  root.finish();
+  return exhibit;
+}
+
+Exhibit load_exhibit(const std::string& folder) {
+  std::vector<Problem> problems;
+  Exhibit exhibit = read_exhibit(folder, problems);
+  if (std::any_of(problems.begin(), problems.end(), [](const Problem& p) { return p.fatal; }))
+    throw ExhibitError(std::move(problems));
+  for (const Problem& problem : problems) log::warn("{}", to_string(problem));
+  return exhibit;
+}
+
+}  // namespace wellspring

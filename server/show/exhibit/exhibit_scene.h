@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole exhibit as one still scene: for pictures of it without a running show.
+#pragma once
+#include "show/exhibit/exhibit.h"
+
+namespace wellspring {
+
+// The storyteller's placement in the world of `scene`.
+mat4 place_storyteller(const StorytellerPlace& place, const Scene& scene);
+
+// The exhibit's scene with its viewpoints as cameras and its storyteller standing where it stands,
+// as it idles `time` seconds after nobody came.
+Scene make_exhibit_scene(Exhibit exhibit, double time);
+
+}  // namespace wellspring

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/exhibit/exhibit_story.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "avatar/face/emotion.h"
+#include "avatar/body/gesture_library.h"
+#include "avatar/story/story_load.h"
+#include "base/load_error.h"
+#include "show/exhibit/package_file.h"
+
+namespace wellspring {
+
+using nlohmann::json;
+
+namespace {
+
+bool is_story_name(const std::string& text) {
+  std::string extension = std::filesystem::path(text).extension().string();
+  bool known =
+      extension == ".story" || extension == ".ssml" || extension == ".xml" || extension == ".txt";
+  return known && text.find_first_of("<> \n") == std::string::npos;
+}
+
+struct Reader {
+  const Exhibit& exhibit;
+  Fields& fields;
+  std::vector<Problem>& problems;
+
+  // Adds the lines of a text; `where` is its place in exhibit.json, or its file.
+  template <class Read>
+  void add(std::vector<StoryLine>& lines, const std::string& where, const Read& read) {
+    try {
+      StoryScript script = read();
+      for (const StoryNote& note : script.notes)
+        problems.push_back({where, to_string(note.place), note.what, false});
+      for (StoryLine& line : script.lines) {
+        line.file = where;
+        lines.push_back(std::move(line));
+      }
+    } catch (const LoadError& error) {
+      problems.push_back({where, error.where, error.what_});
+    }
+  }
+
+  void read(const json& value, const std::string& place, bool may_be_text,
+            std::vector<StoryLine>& lines) {
+    const std::string where = exhibit.folder + "/exhibit.json: " + fields.where() + "/" + place;
+    if (value.is_array() && !value.empty()) {
+      for (size_t i = 0; i < value.size(); i++) {
+        if (!value[i].is_string())
+          fields.problem(place + "/" + std::to_string(i), "must be a text");
+        else
+          add(lines, where + "/" + std::to_string(i),
+              [&] { return read_story_line(value[i].get<std::string>(), where); });
+      }
+    } else if (value.is_string() && is_story_name(value.get<std::string>())) {
+      std::string name = value.get<std::string>();
+      std::string path = package_file(fields, place.c_str(), exhibit.folder, name);
+      if (path.empty()) return;
+      add(lines, path, [&] { return load_story(path); });
+    } else if (value.is_string() && may_be_text) {
+      add(lines, where, [&] { return read_story(value.get<std::string>(), where); });
+    } else {
+      fields.problem(place,
+                     "must be a list of sentences, or the name of a .story, .ssml or .txt file");
+    }
+  }
+};
+
+struct Checker {
+  const Exhibit& exhibit;
+  std::vector<Problem>& problems;
+
+  void note(const StoryLine& line, const MarkupPlace& place, const std::string& what) {
+    problems.push_back({line.file, to_string(place), what, false});
+  }
+
+  // Whether every storyteller has it.
+  bool knows_gesture(const std::string& name) const {
+    if (exhibit.storytellers.empty()) return find_gesture(default_gestures(), name) >= 0;
+    return std::all_of(
+        exhibit.storytellers.begin(), exhibit.storytellers.end(), [&](const auto& teller) {
+          return find_gesture(teller.gestures ? *teller.gestures : default_gestures(), name) >= 0;
+        });
+  }
+
+  void check_mark(const StoryLine& line, const StoryMark& mark) {
+    if (mark.name.empty()) return;
+    bool object = mark.kind == StoryMarkKind::look || mark.kind == StoryMarkKind::point;
+    if (object && !find_point(exhibit, mark.name))
+      note(line, mark.place, "the exhibit has no object '" + mark.name + "'");
+    if (mark.kind == StoryMarkKind::view && find_viewpoint(exhibit, mark.name) < 0)
+      note(line, mark.place, "the exhibit has no viewpoint '" + mark.name + "'");
+    if (mark.kind == StoryMarkKind::emotion && find_emotion(mark.name) < 0)
+      note(line, mark.place, "there is no emotion '" + mark.name + "'");
+    if (mark.kind == StoryMarkKind::gesture && !knows_gesture(mark.name))
+      note(line, mark.place, "there is no gesture '" + mark.name + "'");
+  }
+
+  void check(const std::string& what, const LocalScript& script) {
+    for (const auto& [lang, lines] : script)
+      for (const StoryLine& line : lines)
+        for (const StoryMark& mark : line.marks) check_mark(line, mark);
+    for (const auto& [lang, lines] : script)
+      if (lines.size() != script.begin()->second.size())
+        problems.push_back({exhibit.folder + "/exhibit.json", what,
+                            "has " + std::to_string(lines.size()) + " sentences in '" + lang +
+                                "' and " + std::to_string(script.begin()->second.size()) + " in '" +
+                                script.begin()->first +
+                                "'; subtitles of one will not go with the other",
+                            false});
+  }
+};
+
+}  // namespace
+
+LocalScript read_script(const Exhibit& exhibit, Fields& fields, const char* name, bool required,
+                        bool may_be_text, std::vector<Problem>& problems) {
+  LocalScript script;
+  const json* value = fields.value(name);
+  if (!value) {
+    if (required) fields.problem(name, "is missing");
+    return script;
+  }
+  Reader reader{exhibit, fields, problems};
+  if (value->is_string() && may_be_text) {
+    reader.read(*value, name, may_be_text, script[exhibit.languages.front()]);
+    return script;
+  }
+  if (!value->is_object()) {
+    fields.problem(name, "must hold a text for each language");
+    return script;
+  }
+  for (const auto& [lang, text] : value->items()) {
+    std::string place = std::string(name) + "/" + lang;
+    if (!is_language_tag(lang)) fields.problem(place, "is no language tag such as en");
+    else reader.read(text, place, may_be_text, script[lang]);
+  }
+  std::erase_if(script, [](const auto& entry) { return entry.second.empty(); });
+  return script;
+}
+
+LocalText read_sounds(const Exhibit& exhibit, Fields& fields, const char* name,
+                      const LocalScript& script) {
+  LocalText sounds;
+  fields.object(name, false, [&](Fields files) {
+    for (const std::string& lang : files.names()) {
+      std::string file = files.text(lang.c_str(), true);
+      std::string path = package_file(files, lang.c_str(), exhibit.folder, file);
+      if (!script.contains(lang)) files.problem(lang, "is a recording without a text");
+      else if (!path.empty()) sounds[lang] = path;
+    }
+    files.finish();
+  });
+  return sounds;
+}
+
+VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& otherwise) {
+  VoiceManner manner = otherwise;
+  fields.object(name, false, [&](Fields voice) {
+    manner.words_per_minute =
+        int(voice.number("words_per_minute", false, manner.words_per_minute, 80, 450));
+    manner.pitch = int(voice.number("pitch", false, manner.pitch, 0, 100));
+    manner.variant = voice.text("variant", false, manner.variant);
+    bool plain = std::all_of(manner.variant.begin(), manner.variant.end(), [](unsigned char c) {
+      return std::isalnum(c) || c == '-' || c == '_';
+    });
+    if (!plain || manner.variant.size() > 40) voice.problem("variant", "is no name such as f3");
+    voice.finish();
+  });
+  return manner;
+}
+
+void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems) {
+  Checker checker{exhibit, problems};
+  for (const StorytellerPlace& teller : exhibit.storytellers) {
+    checker.check("greetings of '" + teller.id + "'", teller.greetings);
+    checker.check("farewells of '" + teller.id + "'", teller.farewells);
+  }
+  for (const StoryText& story : exhibit.stories)
+    checker.check("story '" + story.id + "'", story.text);
+  for (const TourPlan& tour : exhibit.tours)
+    for (size_t i = 0; i < tour.stops.size(); i++) {
+      std::string what = "tour '" + tour.id + "', stop " + std::to_string(i + 1);
+      checker.check(what, tour.stops[i].text);
+      checker.check(what, tour.stops[i].way_text);
+    }
+}
+
+}  // namespace wellspring

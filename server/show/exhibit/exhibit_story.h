@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Texts of an exhibit that are told: read from exhibit.json or from files beside it, their marks
+// checked against what the exhibit has. Problems are noted with file, line and column.
+#pragma once
+#include "show/exhibit/exhibit.h"
+#include "show/exhibit/json_fields.h"
+
+namespace wellspring {
+
+// A text for each language: a sentence list (each a line), or the name of a .story, .ssml, .xml or
+// .txt file of the package. Also one text with markup, whose sentences are lines, where
+// `may_be_text`.
+LocalScript read_script(const Exhibit& exhibit, Fields& fields, const char* name, bool required,
+                        bool may_be_text, std::vector<Problem>& problems);
+
+// Recordings of such texts: for each language a sound file of the package; their paths.
+LocalText read_sounds(const Exhibit& exhibit, Fields& fields, const char* name,
+                      const LocalScript& script);
+
+VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& otherwise);
+
+// After everything is read: whether emotions, gestures, objects and viewpoints of all marks are
+// there, and languages have as many sentences as each other. What is not is not fatal.
+void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems);
+
+}  // namespace wellspring

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/state/lamps.h"
+
+#include <algorithm>
+
+#include "show/exhibit/exhibit_lamps.h"
+#include "show/state/show.h"
+
+namespace wellspring {
+namespace {
+
+constexpr double least_between = 0.2;  // seconds from one change of the light to the next
+
+const LightChange& change_since(Show& show, const std::vector<char>& before) {
+  Switches& switches = show.switches;
+  for (const LightStep& step : switches.steps)
+    if (step.before == before) return step.change;
+  switches.steps.push_back(
+      {before, LightChange(show.exhibit.scene, switches.all, before, switches.lit)});
+  return switches.steps.back().change;
+}
+
+}  // namespace
+
+void begin_lamps(Show& show) {
+  show.switches.lit.assign(show.exhibit.lamps.size(), 1);
+  show.switches.wanted = first_lamps(show.exhibit);
+  if (show.exhibit.lamps.empty()) return;
+  show.switches.all = show.lights;
+  light_lamps(show);
+}
+
+bool switch_lamp(Show& show, std::string_view name, bool on) {
+  int lamp = find_lamp(show.exhibit, name);
+  if (lamp < 0) return false;
+  if (bool(show.switches.wanted[size_t(lamp)]) == on) return true;
+  show.switches.wanted[size_t(lamp)] = on;
+  show.totals.lamps_switched++;
+  for (Visitor& visitor : show.visitors) visitor.state_sent_at = -1e9;
+  return true;
+}
+
+bool lamps_wait(const Show& show) {
+  const Switches& switches = show.switches;
+  return switches.wanted != switches.lit && show.time - switches.lit_at >= least_between;
+}
+
+void light_lamps(Show& show) {
+  Switches& switches = show.switches;
+  const std::vector<char> before = switches.lit;
+  for (size_t lamp = 0; lamp < switches.wanted.size(); lamp++)
+    show.world->switch_lamp(int(lamp), switches.wanted[lamp]);
+  show.lights = relit(switches.all, *show.world);
+  switches.lit = switches.wanted;
+  switches.lit_at = show.time;
+  switches.steps.clear();
+  if (before != switches.lit && !show.skin.places.empty()) {
+    const LightChange& change = change_since(show, before);
+    auto changes = [&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
+      return change.changes(place, normal, kept, added);
+    };
+    relight_skin(*show.world, changes, show.skin);
+  }
+  for (Visitor& visitor : show.visitors) {
+    visitor.around = {}, visitor.fade = {};  // they show another light
+    visitor.rest = {};
+    visitor.stats.converged = 0;       // who rests looks again,
+    visitor.order.settled = false;     // and first at what is soon to be known
+  }
+}
+
+void follow_lamps(Show& show, Visitor& visitor) {
+  const std::vector<char>& lit = show.switches.lit;
+  if (visitor.lamps == lit) return;
+  if (visitor.lamps.size() == lit.size()) {
+    const LightChange& change = change_since(show, visitor.lamps);
+    visitor.cache.relight([&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
+      return change.changes(place, normal, kept, added);
+    });
+  }
+  visitor.broker.forget();
+  visitor.compositor.forget_samples();
+  visitor.lamps = lit;
+}
+
+void forget_light_steps(Show& show) {
+  Switches& switches = show.switches;
+  std::erase_if(switches.steps, [&](const LightStep& step) {
+    return std::none_of(show.visitors.begin(), show.visitors.end(),
+                        [&](const Visitor& visitor) { return visitor.lamps == step.before; });
+  });
+}
+
+}  // namespace wellspring

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lamps of a running exhibit. All visitors share them: whoever switches one does it for
+// everybody.
+//
+// What is wanted changes at once and is told to everybody; the light follows when the easel is
+// idle, a fifth of a second after the last change at the earliest, so that nobody makes it flash
+// more than three times a second (WCAG 2.2, success criterion 2.3.1: six changes). Each visitor's
+// cache learns of it before its next picture, and what was asked for in the old light is not taken
+// any more.
+#pragma once
+#include <string_view>
+#include <vector>
+
+#include "light/known/lamps.h"
+
+namespace wellspring {
+
+struct Show;
+struct Visitor;
+
+// What became of the light between the lamps as they were and as the world is.
+struct LightStep {
+  std::vector<char> before;
+  LightChange change;
+};
+
+struct Switches {
+  std::vector<char> wanted, lit;  // of each lamp: as it was asked for, as the world is
+  double lit_at = -1e9;           // show time
+  Lights all;                     // made while all were on; empty where there are none
+  // To `lit`, while visitors have yet to follow: of each state that any cache knew, one for all.
+  std::vector<LightStep> steps;
+};
+
+// Puts the lamps as they are at first. show.lights were made, and are prepared, while all were on.
+void begin_lamps(Show& show);
+// Everybody hears of it with the next tick. False: there is no such lamp.
+bool switch_lamp(Show& show, std::string_view name, bool on);
+// Is the light to follow now?
+bool lamps_wait(const Show& show);
+// The world and its lights as they are wanted; milliseconds. Only while the easel is idle.
+void light_lamps(Show& show);
+// Before anything is drawn for a visitor, by whoever draws: its cache forgets what another light
+// was.
+void follow_lamps(Show& show, Visitor& visitor);
+// What only visitors need who have yet to follow is kept no longer. Only while the easel is idle.
+void forget_light_steps(Show& show);
+
+}  // namespace wellspring

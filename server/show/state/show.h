@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// One running exhibit: the world, its storyteller, the visitors and the kiosks' eyes. tick() is the
+// whole of it, one straight function of visible values: notice -> behave -> animate -> (per
+// visitor) picture. Everything here belongs to the thread that calls tick(), except Arrivals and
+// the published ShowReport.
+#pragma once
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "avatar/mind/storyteller.h"
+#include "light/visible/visibility.h"
+#include "light/known/skin_light.h"
+#include "light/technique/technique.h"
+#include "picture/warp_picture.h"
+#include "show/storyteller/audience.h"
+#include "show/exhibit/exhibit.h"
+#include "show/exhibit/figure.h"
+#include "show/state/lamps.h"
+#include "show/answer/report.h"
+#include "show/storyteller/sound.h"
+#include "show/state/visitor.h"
+#include "show/storyteller/voice.h"
+
+namespace wellspring {
+
+struct ShowSettings {
+  float fps = 60;             // pictures a second a walking visitor gets, machine permitting
+  int max_visitors = 16;      // more are told to come back
+  std::string technique = "gather";      // while anything moves
+  std::string still_technique =
+      "path";  // while the visitor stands still: the picture becomes the reference
+  TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}};
+  bool background = true;     // pictures are drawn while the show goes on, and warped meanwhile
+  // Folder of the networks' weights (denoise/denoise.h); empty: pictures at rest are drawn only.
+  std::string weights;
+  bool late_samples = true;   // of who walks are traced behind the picture, for the next
+  float moving_clamp = 4;     // instead of transport.clamp while the visitor moves: fewer sparks
+  int max_pixels = 1920 * 1200;
+};
+
+// New links, handed over by the I/O threads.
+class Arrivals {
+ public:
+  void put(std::shared_ptr<Link> link);
+  std::vector<std::shared_ptr<Link>> take();
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::shared_ptr<Link>> links_;
+};
+
+struct Show {
+  ShowSettings settings;
+  Exhibit exhibit;  // the scene inside has the figure's materials and object added
+  std::unique_ptr<World> world;
+  Lights lights;
+  Switches switches;
+  std::unique_ptr<PictureSight> sight;  // one picture at a time
+  SkinLight skin;                       // on what moves, for all visitors
+  const Technique* technique = nullptr;
+  const Technique* still_technique = nullptr;
+
+  // The storyteller: who of the exhibit's is there, and how it is.
+  std::vector<Figure> figures;  // of all of them; the others are hidden
+  size_t teller = 0;
+  Storyteller storyteller;
+  StorytellerState mind;
+  Pose pose;
+  SkinScratch scratch;
+  Voice voice;
+  SpeechSource speech;  // empty: the storyteller speaks by subtitles
+  Sounding sounding;
+  uint32_t utterances = 0;  // numbers of what is heard, the storyteller's and narrators' alike
+  size_t greetings = 0, farewells = 0;
+  bool storyteller_visible = true, humanlike = true;
+  std::string kiosk_news;   // the last kiosk message, to send only changes
+  double agent_sent_at = -1e9;
+  double behaved_at = -1;  // when the storyteller was last moved
+  Mood agent_mood = Mood::idle;
+
+  TourRoads roads;
+  std::list<Visitor> visitors;
+  std::vector<Eye> eyes;
+  Audience audience;
+
+  uint64_t ticks = 0;
+  uint64_t pose_number = 1;    // of the world: counts commits
+  double time = 0;             // of the present tick, seconds
+  uint64_t time_us = 0;        // of the present tick on the clock of pictures and sound
+  float picture_lead = 0.02f;  // seconds from a tick to the times of its pictures, smoothed
+  float samples_per_second = 200000;  // measured, all cores
+  ShowTotals totals;
+  WarpScratch warp;  // of all visitors, whose pictures are warped one after the other
+  StillPass pass;
+  Easel easel;  // reads much of the above: ends before it
+};
+
+// Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a
+// tour that cannot be walked.
+std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
+
+// Who is there now; null: the exhibit has no storyteller.
+const StorytellerPlace* teller_of(const Show& show);
+// Another storyteller comes in place of the one that is there, who falls silent; knows nobody yet
+// and greets anew. Nothing happens when it is there already.
+void change_teller(Show& show, size_t teller);
+
+// One step at time `now` (seconds, any clock that does not run backwards; steps longer than a
+// second are taken as one second). Never throws, never waits for a peer.
+void tick(Show& show, Arrivals& arrivals, double now);
+
+// How long the caller may sleep after a tick, at time `now` on the same clock.
+double seconds_to_next_tick(const Show& show, double now);
+// Sleeps until the next tick is due, or what is drawn meanwhile is finished.
+void wait_for_tick(const Show& show, double now);
+
+}  // namespace wellspring

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// A figure in a photographer's studio, to look at: soft area lights, a floor that curves up into
+// the background.
+#pragma once
+#include "avatar/figure/character.h"
+#include "avatar/figure/pose.h"
+#include "frame/frame.h"
+
+namespace wellspring {
+
+struct StudioShot {
+  int width = 720, height = 1080, spp = 64;
+  bool close = false;  // head and shoulders instead of the whole figure
+  float turn =
+      0;  // camera's way round the figure, radians; 0: before its face, positive: to its left
+};
+
+// All cores; seconds. Pictures of the figure that cannot be read are named in `warnings`.
+Frame render_studio(const Character& character, const Pose& pose, const StudioShot& shot,
+                    std::vector<std::string>& warnings);
+
+}  // namespace wellspring

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/storyteller/sound.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/log.h"
+#include "show/answer/events.h"
+#include "show/state/show.h"
+#include "wire/sound_packet.h"
+
+namespace wellspring {
+
+SpeechSource make_speech_source(std::shared_ptr<Speaker> speaker) {
+  SpeechSource source;
+  source.speak = [speaker](const SpeechRequest& request) { return speaker->speak(request); };
+  source.find = [speaker](const SpeechRequest& request) { return speaker->find(request); };
+  source.prepare = [speaker](const std::vector<SpeechRequest>& lines) { speaker->prepare(lines); };
+  source.counts = [speaker] { return speaker->counts(); };
+  return source;
+}
+
+namespace {
+
+SpeechRequest request_of(const StoryLine& line, const std::string& lang,
+                         const VoiceManner& manner) {
+  SpeechRequest request;
+  request.text = line.text;
+  request.lang = lang;
+  request.words_per_minute = manner.words_per_minute;
+  request.pitch = manner.pitch;
+  request.variant = manner.variant;
+  request.styles = line.styles;
+  return request;
+}
+
+VoiceManner manner_of(const Show& show) {
+  const StorytellerPlace* teller = teller_of(show);
+  return teller ? teller->voice : VoiceManner{};
+}
+
+}  // namespace
+
+std::vector<SpeechRequest> lines_of(const Exhibit& exhibit) {
+  std::vector<SpeechRequest> lines;
+  auto add = [&](const LocalScript& script, const VoiceManner& manner) {
+    for (const std::string& lang : exhibit.languages)
+      if (auto found = script.find(lang); found != script.end())
+        for (const StoryLine& line : found->second)
+          if (!line.recording) lines.push_back(request_of(line, lang, manner));
+  };
+  for (size_t i = 0; i < exhibit.storytellers.size(); i++) {
+    const StorytellerPlace& teller = exhibit.storytellers[i];
+    add(teller.greetings, teller.voice);
+    for (const StoryText& story : exhibit.stories)
+      if (story.teller < 0 ? i == 0 : story.teller == int(i)) add(story.text, teller.voice);
+    add(teller.farewells, teller.voice);
+  }
+  const VoiceManner narrator =
+      exhibit.storytellers.empty() ? VoiceManner{} : exhibit.storytellers.front().voice;
+  for (const TourPlan& tour : exhibit.tours)
+    for (const TourStop& stop : tour.stops) {
+      add(stop.way_text, narrator);
+      add(stop.text, narrator);
+    }
+  return lines;
+}
+
+namespace {
+
+constexpr uint8_t heard_everywhere = 1;  // flag of a sound packet
+
+bool listens(const Visitor& visitor) { return visitor.welcomed && visitor.sound; }
+
+// A voice, what is heard of it, and the language it speaks.
+struct Channel {
+  Voice& voice;
+  Sounding& sounding;
+  std::string lang;
+  bool anybody = false;  // listens
+};
+
+SpeechState ask_speech(Show& show, Channel& channel, const Utterance& utterance) {
+  Sounding& sounding = channel.sounding;
+  const auto* line = line_in(utterance.line, channel.lang, show.exhibit.languages);
+  if (line->second.recording) return {line->second.recording, false, line->first};
+  SpeechRequest request = request_of(line->second, line->first, manner_of(show));
+  std::string lang = request.lang;
+  if (!show.speech.find || !show.speech.speak) return {nullptr, false, channel.lang};
+  if (auto speech = show.speech.find(request)) return {speech, false, lang};
+  if (!channel.anybody) return {nullptr, false, lang};
+  if (sounding.asked != request || !sounding.answer.valid()) {
+    sounding.answer = show.speech.speak(request);
+    sounding.asked = std::move(request);
+  }
+  if (!is_ready(sounding.answer)) return {nullptr, true, lang};
+  SpeechAnswer answer = sounding.answer.get();
+  sounding.answer = {};
+  if (!answer.speech && answer.error != sounding.last_error)
+    log::warn("no voice, subtitles only: {}", sounding.last_error = answer.error);
+  return {answer.speech, false, lang};
+}
+
+VoiceEvents advance_channel(Show& show, Channel channel, float dt) {
+  auto ask = [&](const Utterance& utterance) { return ask_speech(show, channel, utterance); };
+  VoiceEvents events = advance_voice(channel.voice, dt, ask);
+  if (events.ended) {  // heard to its end: nothing to stop
+    for (Visitor& visitor : show.visitors)
+      if (visitor.utterance == channel.sounding.number) visitor.utterance = 0;
+    channel.sounding.going = false;
+  }
+  if (events.begun) {
+    show.totals.utterances += events.begun->speech != nullptr;
+    // The next line, should it have been forgotten meanwhile.
+    if (show.speech.prepare && events.begun->speech && channel.voice.queue.size() > 1) {
+      const auto* next = line_in(channel.voice.queue[1].line, channel.lang, show.exhibit.languages);
+      if (!next->second.recording)
+        show.speech.prepare({request_of(next->second, next->first, manner_of(show))});
+    }
+  }
+  return events;
+}
+
+// Whether something of the voice is heard now, under which number and since when.
+const Speech* update_sounding(Show& show, const Voice& voice, Sounding& sounding) {
+  const Speech* now = heard(voice);
+  if (!now || now != sounding.speech.get() || voice.cuts != sounding.cuts) sounding.going = false;
+  if (now && !sounding.going) {
+    sounding.number = ++show.utterances;
+    sounding.going = true;
+    sounding.cuts = voice.cuts;
+    sounding.speech = voice.queue.front().speech;
+    sounding.zero_us = show.time_us - uint64_t(std::llround(1e6 * double(voice.elapsed)));
+  }
+  if (!now) sounding.speech = nullptr;
+  return now;
+}
+
+void stop_sound(Visitor& visitor) {
+  if (visitor.utterance == 0) return;
+  visitor.link->drop_sound();
+  visitor.link->send_text(speech_stop_news(visitor.utterance));
+  visitor.utterance = 0;
+}
+
+// What a visitor is to hear.
+struct Source {
+  const Voice* voice = nullptr;
+  const Sounding* sounding = nullptr;
+  dvec3 mouth{0};
+  bool everywhere = false;
+};
+
+void send_pieces(Show& show, Visitor& visitor, const Source& source) {
+  const Sounding& sounding = *source.sounding;
+  const Speech& speech = *sounding.speech;
+  const size_t piece = std::max(size_t(sound_piece * speech.rate), size_t(1));
+  const double due = (double(source.voice->elapsed) + sound_ahead) * speech.rate;
+  while (visitor.samples_sent < speech.pcm.size() && double(visitor.samples_sent) < due) {
+    const size_t count = std::min(piece, speech.pcm.size() - visitor.samples_sent);
+    SoundHeader header;
+    header.utterance = sounding.number;
+    header.start = uint32_t(visitor.samples_sent);
+    header.time_us = sounding.zero_us + uint64_t(1e6 * double(header.start) / speech.rate);
+    header.total = uint32_t(speech.pcm.size());
+    header.rate = uint32_t(speech.rate);
+    header.flags = source.everywhere ? heard_everywhere : 0;
+    header.mouth = source.mouth;
+    auto packet = std::make_shared<Packet>(
+        make_sound_packet(header, std::span(speech.pcm).subspan(header.start, count)));
+    if (!visitor.link->send_sound(std::move(packet))) {
+      visitor.given_up = sounding.number;
+      show.totals.sounds_given_up++;
+      stop_sound(visitor);
+      return;
+    }
+    show.totals.sounds++;
+    visitor.samples_sent += count;
+  }
+}
+
+// A visitor begins to hear what is being said, from the present moment on.
+void start_sound(Visitor& visitor, const Source& source) {
+  const Sounding& sounding = *source.sounding;
+  double from = std::max({double(source.voice->elapsed), double(source.voice->silent_until), 0.0});
+  double at = std::round(from * sounding.speech->rate);
+  visitor.utterance = sounding.number;
+  visitor.samples_sent = std::min(size_t(at), sounding.speech->pcm.size());
+  visitor.link->send_text(speech_news(sounding.number, *sounding.speech, source.mouth));
+}
+
+}  // namespace
+
+std::string spoken_language(const Show& show) {
+  const Visitor *kiosk = nullptr, *first = nullptr;
+  for (const Visitor& visitor : show.visitors) {
+    if (!visitor.welcomed) continue;
+    if (show.voice.asked_by != 0 && visitor.link->id == show.voice.asked_by) return visitor.lang;
+    if (!kiosk && visitor.kiosk) kiosk = &visitor;
+    if (!first && visitor.sound) first = &visitor;
+  }
+  if (kiosk) return kiosk->lang;
+  return first ? first->lang : show.exhibit.languages.front();
+}
+
+VoiceEvents advance_speech(Show& show, float dt) {
+  bool anybody = std::any_of(show.visitors.begin(), show.visitors.end(), listens);
+  return advance_channel(show, {show.voice, show.sounding, spoken_language(show), anybody}, dt);
+}
+
+VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt) {
+  Narration& narration = visitor.narration;
+  return advance_channel(show,
+                         {narration.voice, narration.sounding, visitor.lang, listens(visitor)}, dt);
+}
+
+void send_sounds(Show& show) {
+  const Speech* told = update_sounding(show, show.voice, show.sounding);
+  const bool anybody = told && std::any_of(show.visitors.begin(), show.visitors.end(), listens);
+  Source teller{&show.voice, told ? &show.sounding : nullptr, dvec3(0), false};
+  if (anybody)
+    teller.mouth =
+        dvec3(eval_mouth(show.mind, show.storyteller, show.pose)) + show.exhibit.scene.origin;
+  for (Visitor& visitor : show.visitors) {
+    Source source = teller;
+    Narration& narration = visitor.narration;
+    const Speech* narrated = update_sounding(show, narration.voice, narration.sounding);
+    if (!narration.voice.queue.empty())
+      source = {&narration.voice, narrated ? &narration.sounding : nullptr, visitor.view.position,
+                true};
+    const bool hears =
+        source.sounding && listens(visitor) && visitor.given_up != source.sounding->number;
+    if (!hears || visitor.utterance != source.sounding->number) stop_sound(visitor);
+    if (!hears) continue;
+    if (visitor.utterance == 0) start_sound(visitor, source);
+    send_pieces(show, visitor, source);
+  }
+}
+
+}  // namespace wellspring

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the storyteller, or a tour's narrator, is saying: a queue of sentences with times, shown as
+// subtitles, heard, and moving its mouth. A value advanced by time. A sentence takes as long as its
+// speech; where there is none (it is not ready in time, or nobody speaks its language) as long as
+// its text takes to read. The marks of its text become events at the times of their words.
+#pragma once
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "avatar/speech/speech.h"
+#include "avatar/story/timeline.h"
+#include "show/exhibit/exhibit.h"
+
+namespace wellspring {
+
+struct Utterance {
+  LocalLine line;
+  float seconds = 0;
+  std::shared_ptr<const Speech> speech;  // set when it begins; null: subtitles only
+  std::string lang;                      // whose marks count; set when it begins
+  Timeline timeline;
+};
+
+struct Voice {
+  std::deque<Utterance> queue;  // front: being said
+  float elapsed = 0;            // of the front; below 0: the breath before it
+  float silent_until = -1e9f;   // of the front: its sound begins only there (it was paused)
+  float waited = 0;             // seconds the front has waited for its speech
+  bool started = false;         // the front's subtitle has been shown
+  bool paused = false;
+  size_t cursor = 0;            // into the front's timeline
+  StoryHold held;               // emotion and gaze that the marks so far ask for
+  std::string story;            // id of the story being told; "" for greetings and the like
+  int sentence = 0;             // of the story
+  uint32_t cuts = 0;            // how often what was being said has been broken off
+  uint64_t asked_by = 0;        // link id of the visitor who asked for it; 0: nobody
+};
+
+struct VoiceEvents {
+  const Utterance* begun = nullptr;  // points into the queue; valid until the next change
+  bool ended = false;                // the one before has been said to its end
+  bool fell_silent = false;
+  std::vector<ActionEvent> acts;     // marks whose time has come, in order
+};
+
+// The speech of a sentence that is due: there, on its way, or none.
+struct SpeechState {
+  std::shared_ptr<const Speech> speech;
+  bool pending = false;
+  std::string lang;  // that it is, or would be, spoken in; empty: any
+};
+using AskSpeech = std::function<SpeechState(const Utterance&)>;
+
+inline constexpr float longest_wait = 1.5f;  // seconds for a speech that is not ready
+inline constexpr float speech_lead = 0.2f;   // silence before a speech: its sound travels ahead
+
+// How long a text takes to say and read: 0.9 s and 60 ms a character of its longest language.
+float speaking_seconds(const LocalLine& line);
+// Sentence number `index` (wrapping) of every language.
+LocalLine nth_line(const LocalScript& lines, size_t index);
+
+// Replaces what is being said (override) or follows it.
+void say(Voice& voice, LocalLine line, bool override_all);
+// Says all sentences of a script after what is queued.
+void say_all(Voice& voice, const LocalScript& script);
+// From a later sentence with what the ones before it would have left: face and gaze.
+void tell(Voice& voice, const StoryText& story, int from_sentence = 0);
+void hush(Voice& voice);
+void pause_voice(Voice& voice);
+// Goes on with the word that was being said when it was paused, after speech_lead.
+void resume_voice(Voice& voice);
+// Without `ask` everything is told by subtitles.
+VoiceEvents advance_voice(Voice& voice, float dt, const AskSpeech& ask = {});
+// What is being heard now, or null: between sentences, in a pause, without a speech.
+const Speech* heard(const Voice& voice);
+// Mouth shapes of what is heard `ahead` seconds from now; silence where there is nothing.
+VisemeWeights mouth_shape(const Voice& voice, float ahead = 0);
+// Mouth activity `ahead` seconds from now, 0 to 1: what is not silence of the speech, else a rise
+// at the beginning of the sentence and a fall at its end.
+float speaking(const Voice& voice, float ahead = 0);
+
+}  // namespace wellspring

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/visit/heading.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cache/predict.h"
+#include "picture/keyframe.h"
+
+namespace wellspring {
+namespace {
+
+constexpr double motion_seconds =
+    0.05;  // in which motion is measured: inputs may come thirty times a second
+constexpr double longest_gap = 0.5;      // between two views that tell motion
+constexpr size_t most_past = 32;         // views of that time
+constexpr float fastest = 25;            // metres a second; more is a jump
+constexpr float smallest_leap = 0.5f;    // metres
+
+constexpr float much_missing = 0.12f;          // of a picture
+constexpr float surrounding_share = 1 / 8.0f;  // of its pixels that its surroundings have
+
+}  // namespace
+
+bool note_view(Heading& heading, double time, const View& view) {
+  std::vector<Heading::PastView>& past = heading.past;
+  bool leapt = false;
+  if (!past.empty()) {
+    float passed = float(time - past.back().time);
+    leapt = length(view.position - past.back().view.position) > fastest * passed + smallest_leap;
+  }
+  auto alike = [&](const Heading::PastView& one) {
+    return !leapt && time - one.time <= longest_gap && one.view.width == view.width &&
+           one.view.height == view.height;
+  };
+  auto of_use = [&](const Heading::PastView& one) {
+    return alike(one) && time - one.time <= motion_seconds;
+  };
+  auto first = std::find_if(past.begin(), past.end(), of_use);
+  // Where ticks come late the last one has to do, or there would be no motion.
+  if (first == past.end() && !past.empty() && alike(past.back())) first--;
+  past.erase(past.begin(), first);
+  if (past.size() >= most_past) past.erase(past.begin());
+  past.push_back({time, view});
+  return leapt;
+}
+
+View expected_view(const Heading& heading, const View& now, double seconds) {
+  // Of a quick turn less than all views are enough.
+  for (const Heading::PastView& past : heading.past) {
+    double passed = heading.past.back().time - past.time;
+    if (!(passed > 0)) break;
+    View ahead = extrapolate(past.view, now, float(seconds / passed));
+    if (ahead != now) return ahead;
+  }
+  return now;
+}
+
+float expected_turn(const Heading& heading, const View& now, double seconds) {
+  return std::acos(
+      std::clamp(dot(now.forward, expected_view(heading, now, seconds).forward), -1.0f, 1.0f));
+}
+
+std::optional<View> surroundings(const Heading& heading, const View& now, const View& drawn,
+                                 double seconds) {
+  View on = expected_view(heading, now, seconds);
+  if (std::max(missing_share(drawn, now), missing_share(drawn, on)) <= much_missing)
+    return std::nullopt;
+  View between = expected_view(heading, now, 0.5 * seconds);
+  const View views[] = {keyframe_view(now), keyframe_view(between), keyframe_view(on)};
+  return surrounding_view(views, surrounding_share);
+}
+
+}  // namespace wellspring

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// A way on foot from one place to another, around what stands there: A* over the walk map (Hart,
+// Nilsson, Raphael 1968) that prefers room, pulled straight and smoothed as an elastic band
+// (Quinlan & Khatib 1993) that never comes nearer to anything than the visitor's radius.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "show/visit/walk_map.h"
+
+namespace wellspring {
+
+struct Route {
+  std::vector<vec3> points;  // on the ground, some 0.15 m apart, the ends included; empty: no way
+  std::string problem;       // why, and where
+};
+
+// Both ends are eyes, relative to the scene's origin; an end may stand nearer to things than the
+// radius (people lean over), by at most `lean` metres from where the way is free.
+inline constexpr float lean = 0.45f;
+Route find_route(const WalkMap& map, vec3 from, vec3 to);
+
+}  // namespace wellspring

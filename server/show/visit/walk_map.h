@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a visitor can stand: the ground that can be walked to from the viewpoints, as a grid of
+// places with the distance to what stands in the way. Made once for an exhibit that has tours.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "show/exhibit/exhibit.h"
+#include "world/world.h"
+
+namespace wellspring {
+
+struct WalkPlace {
+  vec3 ground{0};     // relative to the scene's origin
+  float clear = 0;    // metres, horizontally, to the nearest obstacle; at most WalkMap::farthest
+  std::array<int32_t, 8> next{-1, -1, -1, -1, -1, -1, -1, -1};  // places around it; -1: no way
+};
+
+struct WalkMap {
+  float cell = 0.1f;      // metres between places
+  float eye_height = 1.65f, radius = 0.25f;
+  float farthest = 0.6f;  // to which obstacles are told apart
+  vec3 corner{0};         // of the grid, at x = z = 0 of its columns
+  int width = 0, depth = 0;
+  std::vector<WalkPlace> places;
+  std::vector<int32_t>
+      column;  // of every cell the first of its places, one above the other: place_after
+  std::vector<int32_t> place_after;  // the next place of the same column; -1: none
+};
+
+// An obstacle that is in no mesh: somebody who stands there.
+struct WalkObstacle {
+  vec3 ground{0};
+  float radius = 0.3f;
+};
+
+inline constexpr float walk_step = 0.4f;        // what is climbed without thinking
+inline constexpr int most_walk_places = 400'000;  // larger grounds get wider cells
+
+// `seeds`: eyes of people who can stand where they are. Exact against triangles: nothing is too
+// thin to count. All cores, up to a second.
+WalkMap make_walk_map(const World& world, const WalkSettings& rules, const std::vector<vec3>& seeds,
+                      const std::vector<WalkObstacle>& obstacles);
+
+// The place nearest to a point on the ground whose height is within walk_step, at most `reach` away
+// horizontally, with at least `clear` metres around it; -1: none.
+int find_place(const WalkMap& map, vec3 ground, float reach, float clear);
+// Metres to the nearest obstacle at a point on the ground, at most WalkMap::farthest; between
+// places the value of the nearest one less the distance to it. 0: off the map.
+float clear_at(const WalkMap& map, vec3 ground);
+// Height of the ground near (x, z), from the places around; `near` tells storeys apart.
+float ground_at(const WalkMap& map, float x, float z, float near);
+
+}  // namespace wellspring

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/load/gltf_image.h"
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_HDR
+#define STBI_NO_STDIO
+#define STBI_MAX_DIMENSIONS 16384
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+#include <stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace wellspring {
+namespace {
+
+struct Free {
+  void operator()(void* p) const { stbi_image_free(p); }
+};
+
+float decode_srgb16(uint16_t code) {
+  float s = float(code) / 65535.0f;
+  return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+}
+
+bool starts_with(std::span<const uint8_t> bytes, const char* magic, size_t length) {
+  return bytes.size() >= length && std::memcmp(bytes.data(), magic, length) == 0;
+}
+
+// Width and height from the header alone, so that a bomb is refused before it is unpacked.
+std::string check_size(std::span<const uint8_t> bytes, int64_t texels_left) {
+  int width = 0, height = 0, components = 0;
+  if (bytes.size() > size_t(INT32_MAX)) return "picture file is too large";
+  if (!stbi_info_from_memory(bytes.data(), int(bytes.size()), &width, &height, &components))
+    return std::string("picture cannot be decoded: ") + stbi_failure_reason();
+  if (width > image_side_limit || height > image_side_limit)
+    return "picture of " + std::to_string(width) + "x" + std::to_string(height) +
+           " is larger than " + std::to_string(image_side_limit) + " a side";
+  if (int64_t(width) * height > texels_left) return "pictures have too many texels in total";
+  return "";
+}
+
+}  // namespace
+
+std::string decode_image(std::span<const uint8_t> bytes, bool srgb, Image& image,
+                         int64_t& texels_left) {
+  bool png = starts_with(bytes, "\x89PNG\r\n\x1a\n", 8),
+       jpeg = starts_with(bytes, "\xff\xd8\xff", 3);
+  if (!png && !jpeg) return "picture is neither PNG nor JPEG";
+  if (std::string problem = check_size(bytes, texels_left); !problem.empty()) return problem;
+  int size = int(bytes.size()), components = 0;
+  size_t count = 0;
+  if (png && stbi_is_16_bit_from_memory(bytes.data(), size)) {
+    std::unique_ptr<uint16_t, Free> texels(
+        stbi_load_16_from_memory(bytes.data(), size, &image.width, &image.height, &components, 4));
+    if (!texels) return std::string("picture cannot be decoded: ") + stbi_failure_reason();
+    count = size_t(image.width) * size_t(image.height);
+    image.srgb = false;
+    image.texels.resize(count);
+    for (size_t i = 0; i < count; i++) {
+      const uint16_t* t = texels.get() + 4 * i;
+      for (int c = 0; c < 4; c++)
+        image.texels[i][c] = srgb && c < 3 ? decode_srgb16(t[c]) : float(t[c]) / 65535.0f;
+    }
+  } else {
+    std::unique_ptr<uint8_t, Free> texels(
+        stbi_load_from_memory(bytes.data(), size, &image.width, &image.height, &components, 4));
+    if (!texels) return std::string("picture cannot be decoded: ") + stbi_failure_reason();
+    count = size_t(image.width) * size_t(image.height);
+    image.srgb = srgb;
+    image.texels8.assign(texels.get(), texels.get() + count * 4);
+  }
+  texels_left -= int64_t(count);
+  return "";
+}
+
+std::string decode_radiance(std::span<const uint8_t> bytes, Image& image) {
+  if (!starts_with(bytes, "#?", 2)) return "not a Radiance .hdr picture";
+  if (std::string problem = check_size(bytes, image_texel_limit / 4); !problem.empty())
+    return problem;
+  int components = 0;
+  std::unique_ptr<float, Free> texels(stbi_loadf_from_memory(
+      bytes.data(), int(bytes.size()), &image.width, &image.height, &components, 3));
+  if (!texels) return std::string("picture cannot be decoded: ") + stbi_failure_reason();
+  size_t count = size_t(image.width) * size_t(image.height);
+  image.srgb = false;
+  image.texels.resize(count);
+  for (size_t i = 0; i < count; i++) {
+    const float* t = texels.get() + 3 * i;
+    for (int c = 0; c < 3; c++) image.texels[i][c] = std::isfinite(t[c]) && t[c] > 0 ? t[c] : 0;
+    image.texels[i].w = 1;
+  }
+  return "";
+}
+
+}  // namespace wellspring

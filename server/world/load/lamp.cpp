@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/load/lamp.h"
+
+#include <algorithm>
+#include <map>
+
+namespace wellspring {
+namespace {
+
+bool has(const std::vector<int>& list, int value) {
+  return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+const Lamp* owner_of_light(const Scene& scene, int light) {
+  for (const Lamp& lamp : scene.lamps)
+    if (has(lamp.lights, light)) return &lamp;
+  return nullptr;
+}
+
+const Lamp* owner_of_material(const Scene& scene, int material) {
+  for (const Lamp& lamp : scene.lamps)
+    if (has(lamp.materials, material)) return &lamp;
+  return nullptr;
+}
+
+int material_of(const Scene& scene, const Instance& instance) {
+  return scene.meshes[size_t(instance.mesh)].material;
+}
+
+bool shines(const Material& material) {
+  return material.unlit || max_component(material.emission) > 0;
+}
+
+// Of each node of the scene: whether it or one above it has that name.
+std::vector<char> nodes_within(const Scene& scene, const std::string& name) {
+  constexpr char unknown = 2;
+  std::vector<char> within(scene.nodes.size(), unknown);
+  std::vector<size_t> way;
+  for (size_t i = 0; i < scene.nodes.size(); i++) {
+    char answer = 0;
+    for (int at = int(i); at >= 0; at = scene.nodes[size_t(at)].parent) {
+      if (within[size_t(at)] == unknown && scene.nodes[size_t(at)].name != name) {
+        way.push_back(size_t(at));
+        continue;
+      }
+      answer = within[size_t(at)] = within[size_t(at)] == unknown ? 1 : within[size_t(at)];
+      break;
+    }
+    for (size_t passed : way) within[passed] = answer;
+    way.clear();
+  }
+  return within;
+}
+
+// Does what has this number come from such a node?
+bool is_within(const std::vector<char>& within, const std::vector<int>& nodes, size_t number) {
+  return number < nodes.size() && nodes[number] >= 0 && within[size_t(nodes[number])];
+}
+
+// What a lamp is going to be, and what is said about one name.
+struct Gathered {
+  std::vector<int> lights;
+  std::vector<size_t> instances;
+  bool exists = false, shines = false;
+  const Lamp* taken = nullptr;
+
+  void add_light(const Scene& scene, int light) {
+    exists = shines = true;
+    if (const Lamp* owner = owner_of_light(scene, light)) taken = owner;
+    else if (!has(lights, light)) lights.push_back(light);
+  }
+  void add_instance(const Scene& scene, size_t instance) {
+    exists = true;
+    int material = material_of(scene, scene.instances[instance]);
+    if (!wellspring::shines(scene.materials[size_t(material)])) return;
+    shines = true;
+    if (const Lamp* owner = owner_of_material(scene, material)) taken = owner;
+    else instances.push_back(instance);
+  }
+  std::string fault(const std::string& kind, const std::string& name) const {
+    if (!exists) return "the scene has no " + kind + " '" + name + "'";
+    if (!shines) return "nothing of the " + kind + " '" + name + "' shines";
+    return taken ? "'" + name + "' belongs to the lamp '" + taken->name + "'" : "";
+  }
+};
+
+// Gives the instances of one material to the lamp: their own material, and their own meshes of it.
+void take_instances(const std::vector<size_t>& instances, int material, Scene& scene, Lamp& lamp) {
+  std::vector<char> taken(scene.instances.size(), 0);
+  for (size_t i : instances) taken[i] = 1;
+  std::vector<char> shared_mesh(scene.meshes.size(), 0);
+  bool shared = false;
+  for (size_t i = 0; i < scene.instances.size(); i++) {
+    if (taken[i]) continue;
+    shared_mesh[size_t(scene.instances[i].mesh)] = 1;
+    shared |= material_of(scene, scene.instances[i]) == material;
+  }
+  int own = material;
+  if (shared) {
+    own = int(scene.materials.size());
+    scene.materials.push_back(Material(scene.materials[size_t(material)]));
+  }
+  lamp.materials.push_back(own);
+  std::map<int, int> own_mesh;
+  for (size_t i : instances) {
+    int& mesh = scene.instances[i].mesh;
+    if (shared_mesh[size_t(mesh)]) {
+      auto [found, made] = own_mesh.try_emplace(mesh, int(scene.meshes.size()));
+      if (made) scene.meshes.push_back(Mesh(scene.meshes[size_t(mesh)]));
+      mesh = found->second;
+      if (made) shared_mesh.push_back(0);
+    }
+    scene.meshes[size_t(mesh)].material = own;
+  }
+}
+
+}  // namespace
+
+std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene) {
+  std::vector<LampFault> faults;
+  Lamp lamp;
+  lamp.name = names.name;
+  std::vector<size_t> instances;
+  auto take = [&](const Gathered& found, bool is_material, size_t index, const std::string& name) {
+    std::string fault = found.fault(is_material ? "material" : "node", name);
+    if (!fault.empty()) faults.push_back({is_material, index, fault});
+    for (int light : found.lights)
+      if (!has(lamp.lights, light)) lamp.lights.push_back(light);
+    instances.insert(instances.end(), found.instances.begin(), found.instances.end());
+  };
+  for (size_t n = 0; n < names.nodes.size(); n++) {
+    const std::string& name = names.nodes[n];
+    Gathered found;
+    if (name.empty()) continue;
+    std::vector<char> within = nodes_within(scene, name);
+    found.exists = std::find(within.begin(), within.end(), 1) != within.end();
+    for (size_t i = 0; i < scene.lights.size(); i++)
+      if (scene.lights[i].name == name || is_within(within, scene.light_nodes, i))
+        found.add_light(scene, int(i));
+    for (size_t i = 0; i < scene.instances.size(); i++) {
+      uint32_t object = scene.instances[i].object;
+      bool named = object < scene.objects.size() && scene.objects[object] == name;
+      if (named || is_within(within, scene.object_nodes, object)) found.add_instance(scene, i);
+    }
+    take(found, false, n, name);
+  }
+  for (size_t n = 0; n < names.materials.size(); n++) {
+    Gathered found;
+    for (size_t i = 0; i < scene.instances.size(); i++)
+      if (scene.materials[size_t(material_of(scene, scene.instances[i]))].name ==
+          names.materials[n])
+        found.add_instance(scene, i);
+    take(found, true, n, names.materials[n]);
+  }
+  std::sort(instances.begin(), instances.end());
+  instances.erase(std::unique(instances.begin(), instances.end()), instances.end());
+  std::map<int, std::vector<size_t>> by_material;
+  for (size_t i : instances) by_material[material_of(scene, scene.instances[i])].push_back(i);
+  for (const auto& [material, of_it] : by_material) take_instances(of_it, material, scene, lamp);
+  scene.lamps.push_back(std::move(lamp));
+  return faults;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Filling the lanes of ray packets.
+#pragma once
+#include "base/simd3.h"
+#include "world/world.h"
+
+namespace wellspring {
+
+inline void set_ray(const Ray& ray, int lane, RayPacket& rays) {
+  rays.origin_x[lane] = ray.origin.x, rays.origin_y[lane] = ray.origin.y;
+  rays.origin_z[lane] = ray.origin.z;
+  rays.direction_x[lane] = ray.direction.x, rays.direction_y[lane] = ray.direction.y;
+  rays.direction_z[lane] = ray.direction.z;
+  rays.t_max[lane] = ray.t_max;
+}
+
+// lane_count of them, from lane `first` on.
+inline void set_rays(const Lanes3& origin, const Lanes3& direction, Lanes t_max, int first,
+                     RayPacket& rays) {
+  store_lanes(rays.origin_x + first, origin.x);
+  store_lanes(rays.origin_y + first, origin.y);
+  store_lanes(rays.origin_z + first, origin.z);
+  store_lanes(rays.direction_x + first, direction.x);
+  store_lanes(rays.direction_y + first, direction.y);
+  store_lanes(rays.direction_z + first, direction.z);
+  store_lanes(rays.t_max + first, t_max);
+}
+
+}  // namespace wellspring

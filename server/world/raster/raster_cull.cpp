@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/raster/raster_cull.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wellspring {
+
+Bounds moving_box(const PlacedMesh& placed) {
+  Bounds box;
+  if (!placed.moving) return box;
+  for (const vec3& p : placed.mesh->positions)
+    box.low = min(box.low, p), box.high = max(box.high, p);
+  return box;
+}
+
+void find_pieces(const View& view, const PlacedMesh& placed, const MeshClusters& mesh,
+                 uint32_t instance, const Bounds& box, float near,
+                 std::vector<RasterPiece>& pieces) {
+  float up = view.tan_half_fov, side = up * float(view.width) / float(view.height);
+  float up_norm = 1 / std::sqrt(1 + up * up), side_norm = 1 / std::sqrt(1 + side * side);
+  // The depth of the nearest place of a sphere, infinite where none of it is in sight.
+  auto nearest = [&](vec3 centre, float radius) {
+    vec3 d = centre - view.position;
+    float w = dot(d, view.forward);
+    bool beside = (std::abs(dot(d, view.right)) - side * w) * side_norm > radius ||
+                  (std::abs(dot(d, view.up)) - up * w) * up_norm > radius;
+    return w < -radius || beside ? INFINITY : w - radius;
+  };
+  auto add = [&](uint32_t cluster, float depth, float area, float size) {
+    float away = std::max(depth, 0.1f * size) + near;
+    pieces.push_back({instance, cluster, depth, area / (away * away)});
+  };
+  if (placed.moving) {  // its clusters are not where they were: all of it or nothing
+    float radius = 0.5f * glm::length(box.high - box.low) * 1.001f + near;
+    float depth = nearest(0.5f * box.low + 0.5f * box.high, radius);
+    if (depth == INFINITY) return;
+    for (uint32_t k = 0; k < mesh.clusters.size(); k++) add(k, depth, 0, radius);
+    return;
+  }
+  float scale = 1;
+  if (!placed.in_place) {
+    float row = 0;  // no length grows by more than the root of the sum of squares
+    for (int k = 0; k < 3; k++) row += dot(vec3(placed.to_world[k]), vec3(placed.to_world[k]));
+    scale = std::sqrt(row);
+  }
+  for (uint32_t k = 0; k < mesh.clusters.size(); k++) {
+    const Cluster& cluster = mesh.clusters[k];
+    vec3 centre =
+        placed.in_place ? cluster.centre : vec3(placed.to_world * vec4(cluster.centre, 1));
+    float radius = cluster.radius * scale * 1.001f + near, depth = nearest(centre, radius);
+    if (depth != INFINITY) add(k, depth, cluster.area * scale * scale, radius);
+  }
+}
+
+size_t put_hiding_first(std::vector<RasterPiece>& pieces) {
+  constexpr size_t share = 6, least = 32;  // a sixth of them hides most of what is hidden
+  size_t first = std::min(std::max(pieces.size() / share, least), pieces.size());
+  auto same_order = [](const RasterPiece& a, const RasterPiece& b) {
+    return a.instance != b.instance ? a.instance < b.instance : a.cluster < b.cluster;
+  };
+  auto middle = pieces.begin() + ptrdiff_t(first);
+  std::nth_element(pieces.begin(), middle, pieces.end(),
+                   [&](const RasterPiece& a, const RasterPiece& b) {
+                     return a.hiding != b.hiding ? a.hiding > b.hiding : same_order(a, b);
+                   });
+  auto nearer = [&](const RasterPiece& a, const RasterPiece& b) {
+    return a.depth != b.depth ? a.depth < b.depth : same_order(a, b);
+  };
+  std::sort(pieces.begin(), middle, nearer);
+  std::sort(middle, pieces.end(), nearer);
+  return first;
+}
+
+bool is_hidden(const View& view, const RasterView& raster, const Bounds& box, const mat4* to_world,
+               std::span<const TilePixels> tiles) {
+  Lanes x, y, z;
+  for (int k = 0; k < lane_count; k++) {
+    vec3 p(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y,
+           k & 4 ? box.high.z : box.low.z);
+    if (to_world) p = vec3(*to_world * vec4(p, 1));
+    p -= view.position;
+    x[k] = p.x, y[k] = p.y, z[k] = p.z;
+  }
+  auto along = [&](vec3 axis) { return axis.x * x + axis.y * y + axis.z * z; };
+  Lanes w = along(view.forward);
+  // Rounding grows with the distance of what is projected.
+  Lanes nearest = w - 1e-5f * (lanes_abs(x) + lanes_abs(y) + lanes_abs(z));
+  if (negative_lanes(LaneMask(nearest > raster.near)) != 255) return false;
+  float scale = 0.5f * float(view.height) / view.tan_half_fov;
+  Lanes inverse = 1 / nearest;
+  Lanes column = along(view.right) * scale / w + raster.centre_x,
+        row = raster.centre_y - along(view.up) * scale / w;
+  float low_x = column[0], high_x = low_x, low_y = row[0], high_y = low_y, most = inverse[0];
+  for (int k = 1; k < lane_count; k++) {
+    low_x = std::min(low_x, column[k]), high_x = std::max(high_x, column[k]);
+    low_y = std::min(low_y, row[k]), high_y = std::max(high_y, row[k]);
+    most = std::max(most, inverse[k]);
+  }
+  auto square_of = [](float at, int size) {
+    return at > 0 ? int(std::min(at, float(size - 1))) / TilePixels::square : 0;
+  };
+  int x0 = square_of(low_x - 1, view.width), x1 = square_of(high_x + 1, view.width),
+      y0 = square_of(low_y - 1, view.height), y1 = square_of(high_y + 1, view.height);
+  constexpr int across = TilePixels::across, down = tile_height / TilePixels::square;
+  int columns = (view.width + tile_width - 1) / tile_width;
+  for (int sy = y0; sy <= y1; sy++)
+    for (int sx = x0; sx <= x1; sx++) {
+      const TilePixels& tile = tiles[size_t(sy / down * columns + sx / across)];
+      if (tile.least[sy % down * across + sx % across] < most) return false;
+    }
+  return true;
+}
+
+}  // namespace wellspring

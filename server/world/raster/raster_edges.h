@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the edges of what a picture shows run between its sampling places: analytic, from the
+// triangles themselves (after Persson, "Geometric Antialiasing Methods", GPU Pro 3, 2012).
+#pragma once
+#include <cmath>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "world/raster/raster.h"
+#include "world/raster/raster_tile.h"
+#include "world/raster/raster_walk.h"
+
+namespace wellspring {
+
+// One of two neighbouring sampling places: its triangle (null: nothing there) and inverse depth.
+struct EdgeSide {
+  const RasterTriangle* triangle = nullptr;
+  float depth = 0;
+};
+
+// Narrower than this, in pixels: places between sampling places are looked for (SurfaceWalk).
+inline constexpr float narrow_width = 1.5f;
+
+// How much of each of two neighbouring pixels is covered by what the other shows; at most a half.
+struct EdgeCover {
+  float first = 0, second = 0;
+};
+// Between pixel (x, y) and the one to the right of it or, `vertical`, below. None: both show one
+// smooth surface, or the edge runs rather along the other axis.
+EdgeCover find_edge(const EdgeSide& first, const EdgeSide& second, int x, int y, bool vertical,
+                    const SurfaceWalk& walk);
+
+// The same by what is seen between the two, both of them narrow, which may be of one instance.
+EdgeCover find_gap(const EdgeSide& first, const EdgeSide& second, int x, int y, bool vertical,
+                   const SurfaceWalk& walk);
+
+// Half the tangent of the angle that a smooth surface may turn by (find_edge()).
+inline constexpr float smooth_bend = 0.24f;
+
+// What is worth mixing: codes between neighbours, changed codes, and a share.
+inline constexpr float alike = 9, least_change = 0.75f, least_share = 1 / 256.0f;
+inline constexpr float behind_both = 0.97f;       // of inverse depths
+
+// Goes through the tiles of a picture.
+template <class TriangleOf>
+struct EdgeFinder {
+  const SurfaceWalk& walk;
+  const RasterView& view;
+  int columns;  // of tiles
+  const std::function<int(uint32_t, uint32_t)>& differ;  // RasterSettings'
+  std::span<const TilePixels> tiles;
+  TriangleOf triangle_of;  // of a number in the tiles
+
+  // Between two of a tile's own pixels.
+  void find_within(int tile, std::vector<EdgeShare>& found) const {
+    const TilePixels& pixels = tiles[size_t(tile)];
+    ivec2 size = size_of(tile);
+    for (int y = 0; y < size.y; y++)
+      for (bool vertical : {false, true}) {
+        if (vertical && y + 1 == size.y) break;
+        const uint32_t* row = pixels.number + y * tile_width;
+        int next = vertical ? tile_width : 1, pairs = size.x - !vertical;
+        for (int x = 0; x < pairs; x += lane_count) {
+          LaneMask here, there;
+          std::memcpy(&here, row + x, sizeof here);
+          std::memcpy(&there, row + x + next, sizeof there);
+          unsigned differ = negative_lanes(here != there);
+          bool inside = vertical ? y > 0 && y + 2 < size.y : x > 0 && x + lane_count < pairs;
+          if (differ && inside) differ &= ~smooth_pairs(pixels, y * tile_width + x, next);
+          if (pairs - x < lane_count) differ &= (1u << (pairs - x)) - 1;
+          for (; differ != 0; differ &= differ - 1) {
+            int place = y * tile_width + x + __builtin_ctz(differ);
+            look(tile, place, tile, place + next, vertical, found);
+          }
+        }
+      }
+  }
+  // Between a pixel of the tile to the left or above and one of this tile.
+  void find_borders(int tile, std::vector<EdgeShare>& found) const {
+    ivec2 size = size_of(tile);
+    for (int y = 0; tile % columns > 0 && y < size.y; y++)
+      look(tile - 1, y * tile_width + tile_width - 1, tile, y * tile_width, false, found);
+    for (int x = 0; tile >= columns && x < size.x; x++)
+      look(tile - columns, (tile_height - 1) * tile_width + x, tile, x, true, found);
+  }
+
+ private:
+  // Of eight pixels from `place` on, those that lie with the next and the ones before and behind on
+  // one instance's smooth surface: inverse depths of planes have no second differences, and a bend
+  // shows in two of them.
+  unsigned smooth_pairs(const TilePixels& pixels, int place, int next) const {
+    using Kinds = uint16_t __attribute__((vector_size(2 * lane_count)));
+    Kinds kind, next_kind;
+    std::memcpy(&kind, pixels.kind + place, sizeof kind);
+    std::memcpy(&next_kind, pixels.kind + place + next, sizeof next_kind);
+    auto depth = [&](int k) { return load_lanes(pixels.depth + place + k * next); };
+    Lanes a = depth(-1), b = depth(0), c = depth(1), d = depth(2);
+    Lanes bend = lanes_max(lanes_abs(a - 2 * b + c), lanes_abs(b - 2 * c + d));
+    LaneMask same = __builtin_convertvector(kind == next_kind, LaneMask);
+    return negative_lanes(same & LaneMask(bend <= b * (smooth_bend / walk.focal)));
+  }
+  ivec2 corner_of(int tile) const {
+    return {tile % columns * tile_width, tile / columns * tile_height};
+  }
+  ivec2 size_of(int tile) const {
+    return min(ivec2(tile_width, tile_height), ivec2(view.width, view.height) - corner_of(tile));
+  }
+  EdgeSide side_of(int tile, int place) const {
+    uint32_t number = tiles[size_t(tile)].number[place];
+    return {number == no_triangle ? nullptr : triangle_of(number),
+            tiles[size_t(tile)].depth[place]};
+  }
+  void look(int tile1, int place1, int tile2, int place2, bool vertical,
+            std::vector<EdgeShare>& found) const {
+    const TilePixels &one = tiles[size_t(tile1)], &other = tiles[size_t(tile2)];
+    if (one.number[place1] == other.number[place2]) return;
+    ivec2 at = corner_of(tile1) + ivec2(place1 % tile_width, place1 / tile_width);
+    uint32_t a = uint32_t(at.y * view.width + at.x), b = a + uint32_t(vertical ? view.width : 1);
+    bool narrow = (one.kind[place1] & other.kind[place2] & TilePixels::narrow_kind) != 0;
+    float codes = differ ? float(differ(a, b)) : INFINITY;
+    bool differs = codes > alike;
+    if (!narrow && !differs) return;
+    ivec2 behind(-1);
+    if (narrow)
+      behind = find_behind(tile1, place1, std::min(one.depth[place1], other.depth[place2]));
+    if (behind.x < 0 && !differs) return;
+    EdgeSide first = side_of(tile1, place1), second = side_of(tile2, place2);
+    auto add = [&](const EdgeCover& edge, uint32_t seen_by_a, uint32_t seen_by_b, float least) {
+      if (edge.first > least) found.push_back({a, seen_by_a, edge.first});
+      if (edge.second > least) found.push_back({b, seen_by_b, edge.second});
+    };
+    EdgeCover gap;
+    if (behind.x >= 0) gap = find_gap(first, second, at.x, at.y, vertical, walk);
+    uint32_t seen = uint32_t(behind.y * view.width + behind.x);
+    if (gap.first + gap.second > least_share) add(gap, seen, seen, least_share);
+    else if (differs)
+      add(find_edge(first, second, at.x, at.y, vertical, walk), b, a,
+          std::max(least_change / codes, least_share));
+  }
+  // The nearest pixel of the tile that shows what is behind; (-1, -1): there is none near.
+  ivec2 find_behind(int tile, int place, float depth) const {
+    constexpr int farthest = 4;
+    ivec2 last = size_of(tile) - 1, from(place % tile_width, place / tile_width);
+    const float* depths = tiles[size_t(tile)].depth;
+    for (int far = 1; far <= farthest; far++) {
+      int left = std::max(from.x - far, 0), right = std::min(from.x + far, last.x);
+      int top = std::max(from.y - far, 0), bottom = std::min(from.y + far, last.y);
+      for (ivec2 at : {ivec2(right, from.y), ivec2(left, from.y), ivec2(from.x, bottom),
+                       ivec2(from.x, top)})
+        if (depths[at.y * tile_width + at.x] < behind_both * depth) return corner_of(tile) + at;
+    }
+    return ivec2(-1);
+  }
+};
+
+}  // namespace wellspring

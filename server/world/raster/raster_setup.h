@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles on their way from the eye's coordinates to pixels: clipped where they must be, their
+// edges and what is interpolated over them as linear functions of the picture place. Pixels are
+// counted from the picture's centre, x to the right, y down.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace wellspring {
+
+// Subdivision of a pixel that corners are rounded to; the furthest pixel from the centre they may
+// reach.
+inline constexpr int raster_step_bits = 8, raster_steps = 1 << raster_step_bits;
+inline constexpr float raster_reach = 4096;
+
+// A corner before division: picture place is (x, y) / w.
+struct RasterCorner {
+  float x = 0, y = 0, w = 0;
+  vec2 barycentric{0};
+};
+
+// A corner after it.
+struct RasterPoint {
+  float x, y, depth;  // picture place, inverse depth
+  vec2 barycentric;
+  int32_t step_x, step_y;  // the place, rounded
+};
+
+// Corners of many triangles; the second half is meaningless where `outside` is not 0.
+struct RasterCorners {
+  static constexpr int most = 256;
+  alignas(32) float x[most], y[most], w[most];
+  alignas(32) float picture_x[most], picture_y[most], depth[most];
+  alignas(32) int32_t step_x[most], step_y[most];
+  alignas(32) int32_t outside[most];  // a bit for each plane of the visible space that it is beyond
+};
+
+struct RasterTriangle {
+  // Twice the area on the inner side of edge i at (x, y), in steps from the picture's centre, is
+  // a * (x - from.x) + b * (y - from.y) + bias; inside: none of the three is negative.
+  int32_t a[3], b[3], from_x[3], from_y[3], bias[3];
+  uint32_t instance, triangle;
+  float width;  // of it and its neighbours, pixels over inverse depth
+  bool bar;     // MeshNeighbours::bar (world/raster/raster_walk.h)
+  // Inverse depth, and it times the barycentrics: value at `corner` and slopes a pixel.
+  vec2 corner;
+  vec3 depth, u, v;  // value, slope along x, slope along y
+  float least_depth, most_depth;
+  int16_t left, top, right, bottom;  // pixels it may cover, inclusive, from the picture's top left
+  bool has_alpha;
+  bool turned;    // its corners in the mesh are the first, the third and the second
+  bool clipped;   // its corners are others than in the mesh
+  uint8_t veils;  // RasterSettings::see_through of its material
+};
+
+struct RasterView {
+  float near = 0;  // smallest w
+  int width = 0, height = 0;
+  float centre_x = 0,
+        centre_y = 0;  // picture centre minus sampling offset: pixel i samples i - centre
+  int32_t centre_steps_x = 0, centre_steps_y = 0;  // the same in steps, exactly
+};
+
+// Fills all but x, y and w of the first `count` corners, a multiple of eight.
+void project_corners(const RasterView& view, int count, RasterCorners& corners);
+
+// Appends the parts of triangle (i, j, k) that can cover a sampling place. `unfinished` holds
+// instance, triangle, has_alpha, bar, veils and width.
+void add_triangle(const RasterView& view, const RasterCorners& corners, int i, int j, int k,
+                  const RasterTriangle& unfinished, std::vector<RasterTriangle>& out);
+
+}  // namespace wellspring

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light of lamps that are switched is that of a scene which never had the others.
+#include "light/known/lamps.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "light/sample/light_tables.h"
+#include "light/sample/radiance_grid.h"
+#include "light/technique/technique.h"
+#include "scenes/scenes.h"
+#include "unit/light/judge.h"
+#include "world/load/lamp.h"
+
+namespace wellspring {
+namespace {
+
+// The Cornell box with its lamp, a spot onto its floor, and light from outside.
+Scene make_box(bool lamp, bool spot, bool rest) {
+  Scene scene = scenes::make_cornell_box();
+  if (rest) scene.environment.radiance = vec3(0.3f, 0.35f, 0.4f);
+  if (!lamp)
+    for (Material& material : scene.materials) material.emission = vec3(0);
+  PunctualLight light;
+  light.name = "spot";
+  light.type = PunctualType::spot;
+  light.position = {-0.2f, 0.5f, -0.1f};
+  light.direction = normalize(vec3(0.3f, -1, -0.2f));
+  light.inner_cone = 0.3f, light.outer_cone = 0.4f;
+  light.intensity = {0.9f, 0.8f, 0.6f};
+  if (spot) scene.lights.push_back(light);
+  return scene;
+}
+
+struct Switched {
+  Scene scene = make_box(true, true, true);
+  std::unique_ptr<World> world;
+  Lights all;
+  Switched(const char* technique = nullptr) {
+    EXPECT_TRUE(add_lamp({"lamp", {"lamp"}, {}}, scene).empty());
+    EXPECT_TRUE(add_lamp({"spot", {"spot"}, {}}, scene).empty());
+    world = std::make_unique<World>(scene);
+    all = make_lights(*world);
+    vec3 place(0, 0.27f, 0.3f);
+    if (technique) find_technique(technique)->prepare(*world, std::span(&place, 1), all);
+  }
+  Lights light(bool lamp, bool spot) {
+    world->switch_lamp(0, lamp);
+    world->switch_lamp(1, spot);
+    return relit(all, *world);
+  }
+};
+
+test::Estimate mean_of(const Technique& technique, const World& world, const Lights& lights) {
+  test::Effort effort;
+  effort.replicates = 32, effort.spp = technique.begin_pass ? 8 : 32;
+  View view = scenes::cornell_view(world.scene(), 16, 16);
+  TransportSettings transport;
+  transport.max_depth = 5;
+  return test::estimate_prepared(technique, world, lights, view, transport, effort);
+}
+
+// Each is judged at a thousandth over all comparisons: |difference| below 4.2 standard errors, of
+// eight.
+void expect_same(const test::Estimate& a, const test::Estimate& b, const std::string& what) {
+  double error = std::sqrt(a.error * a.error + b.error * b.error);
+  EXPECT_LE(std::abs(a.mean - b.mean), 4.2 * error + 1e-6) << what;
+  EXPECT_LT(error, 0.02 * b.mean + 1e-6) << what << ": too noisy to say";
+}
+
+TEST(SwitchedLamps, LightIsThatOfASceneWithoutThem) {
+  Switched switched;
+  for (const char* name : {"path", "instant_radiosity"})
+    for (int states = 0; states < 4; states++) {
+      bool lamp = states & 1, spot = states & 2;
+      Scene other = make_box(lamp, spot, true);
+      World world(other);
+      expect_same(mean_of(*find_technique(name), *switched.world, switched.light(lamp, spot)),
+                  mean_of(*find_technique(name), world, make_lights(world)),
+                  std::string(name) + " " + std::to_string(states));
+    }
+}
+
+TEST(SwitchedLamps, WithoutAnyOtherLightItIsDarkAndFinite) {
+  Scene scene = make_box(true, true, false);
+  add_lamp({"all", {"lamp", "spot"}, {}}, scene);
+  World world(scene);
+  Lights all = make_lights(world);
+  world.switch_lamp(0, false);
+  Lights dark = relit(all, world);
+  for (const Technique& technique : techniques())
+    EXPECT_EQ(mean_of(technique, world, dark).mean, 0) << technique.name;
+  EXPECT_EQ(dark.bad_samples->load(), 0u);
+  world.switch_lamp(0, true);
+  EXPECT_GT(mean_of(*find_technique("path"), world, relit(all, world)).mean, 0);
+}
+
+// Mean kept light, weighted by samples.
+double kept_light(const RadianceGrid& grid) {
+  double sum = 0, weight = 0;
+  for (size_t i = 0; i < grid.keys.size(); i++) {
+    sum += double(grid.count[i]) * double(luminance(grid.light[i]));
+    weight += double(grid.count[i]);
+  }
+  return sum / weight;
+}
+
+TEST(SwitchedLamps, KeptLightIsThatOfASceneWithoutThem) {
+  Switched switched("gather");
+  ASSERT_TRUE(switched.all.grid && switched.all.grid->parts);
+  vec3 place(0, 0.27f, 0.3f);
+  for (int states = 0; states < 4; states++) {
+    bool lamp = states & 1, spot = states & 2;
+    Scene other = make_box(lamp, spot, true);
+    World world(other);
+    Lights lights = make_lights(world);
+    find_technique("gather")->prepare(world, std::span(&place, 1), lights);
+    double kept = kept_light(*switched.light(lamp, spot).grid), wanted = kept_light(*lights.grid);
+    // Both are means over some 1e6 vertices of 4e5 walks, whose light deviates by about its mean.
+    EXPECT_NEAR(kept / wanted, 1, 5 * std::sqrt(2.0 / 4e5)) << states;
+  }
+}
+
+TEST(SwitchedLamps, AChangeIsToldWhereItIs) {
+  Switched switched("gather");
+  const char both[] = {1, 1}, without_spot[] = {1, 0}, none[] = {0, 0};
+  LightChange nothing(switched.scene, switched.all, both, both);
+  LightChange spot(switched.scene, switched.all, both, without_spot);
+  LightChange back(switched.scene, switched.all, without_spot, both);
+  LightChange all(switched.scene, switched.all, both, none);
+  vec3 kept(1), added(0);
+  vec3 lit(-0.11f, 0, -0.16f), corner(0.26f, 0.5f, -0.5f), floor(0, 1, 0), wall(-1, 0, 0);
+  EXPECT_FALSE(nothing.changes(lit, floor, kept, added));
+  ASSERT_TRUE(spot.changes(lit, floor, kept, added));
+  EXPECT_EQ(added, vec3(0));
+  for (int c = 0; c < 3; c++) EXPECT_TRUE(kept[c] > 0.02f && kept[c] < 0.9f) << kept[c];
+  vec3 left = kept;
+  EXPECT_FALSE(
+      spot.changes(corner, wall, kept, added));  // beside the lamp, far from the spot's light
+  kept = vec3(1), added = vec3(0);
+  ASSERT_TRUE(back.changes(lit, floor, kept, added));
+  EXPECT_EQ(kept, vec3(1));
+  // What comes back is what went: of radiance scattered by a known reflectance.
+  for (int c = 0; c < 3; c++) EXPECT_GT(added[c], 0.2f);
+  EXPECT_LT(left.x, 1);
+  kept = vec3(1);
+  ASSERT_TRUE(all.changes(corner, wall, kept, added));
+  EXPECT_LT(luminance(kept), 0.6f);
+  // Whoever keeps no light knows nothing of places.
+  Switched unprepared;
+  LightChange unknown(unprepared.scene, unprepared.all, both, none);
+  kept = vec3(1), added = vec3(0);
+  EXPECT_TRUE(unknown.changes(vec3(1e9f), floor, kept, added));
+  EXPECT_EQ(kept, vec3(1));
+  EXPECT_FALSE(all.changes(vec3(NAN), floor, kept, added));
+}
+
+}  // namespace
+}  // namespace wellspring

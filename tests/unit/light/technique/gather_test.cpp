@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kept light: the technique `gather` against the reference and against a formula.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "light/sample/radiance_grid.h"
+#include "light/technique/technique.h"
+#include "light/walk/walk.h"
+#include "light/random/warp.h"
+#include "scenes/scenes.h"
+
+namespace wellspring {
+namespace {
+
+dvec3 mean_of(const Frame& frame) {
+  dvec3 sum(0);
+  for (vec3 c : frame.color) sum += dvec3(c);
+  return sum / double(frame.color.size());
+}
+
+struct Prepared {
+  Scene scene;
+  World world;
+  Lights lights;
+  explicit Prepared(Scene scene_, vec3 place)
+      : scene(std::move(scene_)), world(scene), lights(make_lights(world)) {
+    find_technique("gather")->prepare(world, std::span(&place, 1), lights);
+  }
+};
+
+// In the Cornell box no surface emits what it keeps; the mean of a cell's light, weighted by its
+// samples, must be what a path tracer finds at the same places.
+TEST(Gather, CellsKnowWhatThePathTracerFinds) {
+  Prepared p(scenes::make_cornell_box(), vec3(0, 0.27f, 0.3f));
+  ASSERT_TRUE(p.lights.grid);
+  const RadianceGrid& grid = *p.lights.grid;
+  Transport transport{p.world, *p.lights.tables};
+  double kept_sum = 0, traced_sum = 0;
+  int asked = 0;
+  Rng rng(5);
+  for (int i = 0; i < 6000; i++) {
+    Ray ray;
+    ray.origin = vec3(0, 0.27f, -0.1f);
+    ray.direction = sample_sphere({rng.uniform(), rng.uniform()});
+    Hit hit = p.world.intersect(ray);
+    vec3 kept;
+    if (!hit.valid() || !eval_grid(grid, p.world, ray, hit, 10, kept)) continue;
+    asked++;
+    kept_sum += luminance(kept);
+    Walk walk;
+    walk.ray = ray;
+    Sampler sampler(uint64_t(i) + 1000);
+    traced_sum += luminance(follow(transport, WalkRules{.max_depth = 6}, walk, sampler));
+  }
+  EXPECT_GT(asked, 3000);
+  EXPECT_NEAR(kept_sum / traced_sum, 1, 0.06);
+}
+
+TEST(Gather, AgreesWithPathInTheCornellBox) {
+  Prepared p(scenes::make_cornell_box(), vec3(0, 0.27f, 0.3f));
+  View view = scenes::cornell_view(p.scene, 48, 48);
+  StillSettings settings;
+  settings.spp = 64;
+  dvec3 reference =
+      mean_of(render_still(*find_technique("path"), p.world, p.lights, view, settings));
+  dvec3 gathered =
+      mean_of(render_still(*find_technique("gather"), p.world, p.lights, view, settings));
+  for (int c = 0; c < 3; c++) EXPECT_NEAR(gathered[c] / reference[c], 1, 0.04);
+}
+
+// A small lamp and a polished ball: walls find the ball's highlight now and then, and each time are
+// dazzled. What a wide ray meets is blunter in `gather`: a bias in how that light is spread, for a
+// smaller error.
+TEST(Gather, HighlightsMetByChanceAreNoSparks) {
+  Scene scene = scenes::make_cornell_box();
+  scene.materials[3].emission = vec3(0);  // its lamp
+  PunctualLight lamp;
+  lamp.position = {0.1f, 0.5f, -0.1f};
+  lamp.intensity = vec3(0.2f);
+  scene.lights.push_back(lamp);
+  int gold = scenes::add_material(scene, scenes::metal({1, 0.8f, 0.4f}, 0.15f));
+  scenes::add_mesh(scene, scenes::sphere_mesh(gold, 0.07f), "ball",
+                   scenes::at({0.1f, 0.3f, -0.1f}));
+  Prepared p(std::move(scene), vec3(0, 0.27f, 0.3f));
+  View view = scenes::cornell_view(p.scene, 24, 24);
+  StillSettings settings;
+  settings.spp = 2048;
+  Frame truth = render_still(*find_technique("path"), p.world, p.lights, view, settings);
+  settings.seed = 2;
+  settings.spp = 16;
+  auto error_of = [&](const char* technique, double& mean) {
+    Frame frame = render_still(*find_technique(technique), p.world, p.lights, view, settings);
+    double sum = 0;
+    for (size_t i = 0; i < frame.color.size(); i++) {
+      double off = luminance(frame.color[i]) - luminance(truth.color[i]),
+             there = luminance(truth.color[i]);
+      sum += off * off / (there * there + 1e-4);
+    }
+    mean = luminance(vec3(mean_of(frame))) / luminance(vec3(mean_of(truth)));
+    return sum / double(frame.color.size());
+  };
+  double path_mean, gather_mean;
+  double path_error = error_of("path", path_mean), gather_error = error_of("gather", gather_mean);
+  EXPECT_LT(gather_error, 0.8 * path_error);
+  EXPECT_NEAR(gather_mean, 1, 0.04);
+}
+
+TEST(Gather, WithoutAGridItIsPathBitForBit) {
+  Scene scene = scenes::make_cornell_box();
+  World world(scene);
+  Lights lights = make_lights(world);
+  View view = scenes::cornell_view(scene, 16, 16);
+  StillSettings settings;
+  settings.spp = 2;
+  Frame a = render_still(*find_technique("path"), world, lights, view, settings);
+  Frame b = render_still(*find_technique("gather"), world, lights, view, settings);
+  EXPECT_EQ(a.color, b.color);
+}
+
+TEST(Gather, TheGridIsTheSameEachTime) {
+  Scene scene = scenes::make_cornell_box();
+  World world(scene);
+  Lights lights = make_lights(world);
+  vec3 place(0, 0.27f, 0.3f);
+  RadianceGridSettings settings;
+  settings.paths = 40000;
+  auto a = make_radiance_grid({world, *lights.tables}, std::span(&place, 1), settings);
+  auto b = make_radiance_grid({world, *lights.tables}, std::span(&place, 1), settings);
+  EXPECT_EQ(a->keys, b->keys);
+  EXPECT_EQ(a->light, b->light);
+  EXPECT_GT(std::count_if(a->count.begin(), a->count.end(), [](float n) { return n >= 12; }), 40);
+}
+
+TEST(Gather, NoPlacesNoGeometryNoHarm) {
+  Scene scene = scenes::empty_scene();
+  World world(scene);
+  Lights lights = make_lights(world);
+  vec3 place(0);
+  find_technique("gather")->prepare(world, {}, lights);
+  find_technique("gather")->prepare(world, std::span(&place, 1), lights);
+  StillSettings settings;
+  settings.spp = 1;
+  View view;
+  Frame frame = render_still(*find_technique("gather"), world, lights, view, settings);
+  EXPECT_EQ(frame.color[0], vec3(0));
+}
+
+TEST(Gather, NarrowFootprintsLampsMirrorsAndMovingMeshesAreNotAsked) {
+  Scene scene = scenes::make_cornell_box();
+  int mirror = scenes::add_material(scene, scenes::metal(vec3(0.9f), 0.05f));
+  scenes::add_quad(scene, mirror, {-0.27f, 0.3f, -0.1f}, {0, 0, -0.2f}, {0, 0.2f, 0}, "mirror");
+  Prepared p(std::move(scene), vec3(0, 0.27f, 0.3f));
+  const RadianceGrid& grid = *p.lights.grid;
+  auto ask = [&](vec3 direction, float footprint) {
+    Ray ray;
+    ray.origin = vec3(0, 0.27f, 0.1f);
+    ray.direction = normalize(direction);
+    Hit hit = p.world.intersect(ray);
+    vec3 light;
+    return hit.valid() && eval_grid(grid, p.world, ray, hit, footprint, light);
+  };
+  EXPECT_TRUE(ask({1, 0.2f, -1}, 10));
+  EXPECT_FALSE(ask({1, 0.2f, -1}, grid.cell));
+  EXPECT_FALSE(ask({-0.27f, 0.13f, -0.3f}, 10));  // the mirror
+  EXPECT_FALSE(ask({0, 0.28f, -0.38f}, 10));  // the lamp
+}
+
+}  // namespace
+}  // namespace wellspring

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// What reconstruction is told of each pixel without noise.
+#include "light/visible/guides.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes/scenes.h"
+
+using namespace wellspring;
+using namespace wellspring::scenes;
+
+namespace {
+
+const vec3 red(0.8f, 0.1f, 0.2f), green(0.1f, 0.7f, 0.2f);
+
+Guide guide_of(const Scene& scene, vec3 origin, vec3 direction) {
+  World world(scene);
+  world.commit();
+  Lights lights = make_lights(world);
+  Ray ray;
+  ray.origin = origin, ray.direction = normalize(direction);
+  Guide guide;
+  eval_guides(world, lights, std::span(&ray, 1), std::span(&guide, 1));
+  return guide;
+}
+
+void expect_near(vec3 is, vec3 wanted, float error) {
+  for (int c = 0; c < 3; c++) EXPECT_NEAR(is[c], wanted[c], error) << "channel " << c;
+}
+
+// A wall at z = -3, seen from the origin.
+Scene with_wall(const Material& material) {
+  Scene scene = empty_scene();
+  add_quad(scene, add_material(scene, material), {-9, -9, -3}, {18, 0, 0}, {0, 18, 0}, "wall");
+  return scene;
+}
+
+}  // namespace
+
+TEST(Guides, TellColourAndNormalOfWhatIsMatt) {
+  Guide guide = guide_of(with_wall(diffuse(red)), {0, 0, 0}, {0.2f, 0.1f, -1});
+  expect_near(guide.albedo, red, 0.05f);  // and a little gloss
+  expect_near(guide.normal, {0, 0, 1}, 1e-3f);
+}
+
+TEST(Guides, TellColourOfBluntMetal) {
+  Guide guide = guide_of(with_wall(metal(red, 0.6f)), {0, 0, 0}, {0, 0, -1});
+  expect_near(guide.albedo, red, 0.02f);
+}
+
+TEST(Guides, FollowMirrorsToWhatTheyShow) {
+  Scene scene = with_wall(metal(vec3(0.9f), 0));
+  add_quad(scene, add_material(scene, diffuse(green)), {-9, -9, 5}, {0, 18, 0}, {18, 0, 0},
+           "behind");
+  Guide guide = guide_of(scene, {0, 0, 0}, {0.1f, 0, -1});
+  expect_near(guide.albedo, 0.9f * green, 0.05f);
+  expect_near(guide.normal, {0, 0, -1}, 1e-3f);
+}
+
+TEST(Guides, LookThroughPanesAndSolidGlass) {
+  for (float thickness : {0.0f, 1.0f}) {
+    Scene scene = with_wall(diffuse(red));
+    Material clear = glass(1.5f, 0, thickness);
+    int material = add_material(scene, clear);
+    if (thickness > 0) add_mesh(scene, box_mesh(material, {4, 4, 1}), "block", at({0, 0, -1.5f}));
+    else add_quad(scene, material, {-4, -4, -1}, {8, 0, 0}, {0, 8, 0}, "pane");
+    Guide guide = guide_of(scene, {0, 0, 0}, {0.1f, 0.05f, -1});
+    expect_near(guide.albedo, red, 0.12f);
+    expect_near(guide.normal, {0, 0, 1}, 1e-2f);
+  }
+}
+
+TEST(Guides, MirrorsThatFaceEachOtherEnd) {
+  Scene scene = with_wall(metal(vec3(0.95f), 0));
+  add_quad(scene, add_material(scene, metal(vec3(0.95f), 0)), {-9, -9, 3}, {0, 18, 0}, {18, 0, 0},
+           "other");
+  Guide guide = guide_of(scene, {0, 0, 0}, {0, 0, -1});
+  EXPECT_TRUE(is_finite(guide.albedo));
+  EXPECT_GT(guide.albedo.x, 0.5f);
+  EXPECT_LE(guide.albedo.x, 1);
+}
+
+TEST(Guides, LampsAndSkyCountWithTheirColourAtMostWhite) {
+  Guide lamp = guide_of(with_wall(emitter({30, 0.5f, 0})), {0, 0, 0}, {0, 0, -1});
+  EXPECT_FLOAT_EQ(lamp.albedo.x, 1);
+  EXPECT_GE(lamp.albedo.y, 0.5f);
+  Scene scene = empty_scene();
+  scene.environment.radiance = {0.2f, 0.5f, 7};
+  Guide sky = guide_of(scene, {0, 0, 0}, {0, 1, 0});
+  expect_near(sky.albedo, {0.2f, 0.5f, 1}, 1e-5f);
+  EXPECT_EQ(sky.normal, vec3(0));
+}
+
+TEST(Guides, OfAPictureAreAntialiased) {
+  Scene scene = empty_scene();
+  add_quad(scene, add_material(scene, diffuse(red)), {-9, -9, -3}, {9, 0, 0}, {0, 18, 0}, "left");
+  add_quad(scene, add_material(scene, diffuse(green)), {0, -9, -3}, {9, 0, 0}, {0, 18, 0},
+           "right");
+  World world(scene);
+  world.commit();
+  Lights lights = make_lights(world);
+  View view = make_view_towards(scene, {0, 0, 0}, {0, 0, -3}, {0, 1, 0}, 1.0f, 5, 3);
+  GuidePlanes guides = make_guides(world, lights, view, 64);
+  vec3 a = guides.albedo[5], middle = guides.albedo[7], b = guides.albedo[9];
+  expect_near(a, red, 0.05f);
+  expect_near(b, green, 0.05f);
+  expect_near(middle, 0.5f * (a + b), 0.03f);
+}
+
+TEST(Guides, AreFiniteOnBadTriangles) {
+  Scene scene = with_wall(diffuse(red));
+  Mesh broken;
+  broken.material = 0;
+  broken.positions = {{-1, -1, -2}, {-1, -1, -2}, {1, 1, -2}, {NAN, 0, -2}};
+  broken.normals.assign(4, vec3(0, 0, 1));
+  broken.triangles = {{0, 1, 2}, {0, 2, 3}};
+  add_mesh(scene, broken, "broken");
+  World world(scene);
+  world.commit();
+  Lights lights = make_lights(world);
+  View view = make_view_towards(scene, {0, 0, 0}, {0, 0, -3}, {0, 1, 0}, 1.0f, 33, 17);
+  GuidePlanes guides = make_guides(world, lights, view, 2);
+  for (size_t i = 0; i < guides.albedo.size(); i++) {
+    ASSERT_TRUE(is_finite(guides.albedo[i]) && is_finite(guides.normal[i])) << i;
+    ASSERT_LE(max_component(guides.albedo[i]), 1.0f);
+  }
+}

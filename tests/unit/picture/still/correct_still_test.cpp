@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture at rest errs by is corrected by its samples, as far as these know it.
+#include "picture/still/correct_still.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/rng.h"
+#include "cache/packing.h"
+
+using namespace wellspring;
+
+namespace {
+
+constexpr int width = 93, height = 61, pixels = width * height;  // sizes that no square divides
+
+// Half dark, half bright, with a step that a pixel-wide line follows.
+vec3 truth_at(int x, int y) {
+  if (x == 40) return vec3(0.9f, 0.8f, 0.1f);
+  return x < 40 ? vec3(0.1f, 0.12f, 0.15f) : vec3(0.5f, 0.45f, 0.4f) + 0.002f * float(y);
+}
+
+struct Picture {
+  Frame frame;
+  StillImage still;
+  StillSamples samples;
+  StillCorrection work;
+  std::vector<vec3> sums = std::vector<vec3>(pixels, vec3(0));
+  int taken = 0;
+  Picture() {
+    frame.width = width, frame.height = height;
+    for (int i = 0; i < pixels; i++) frame.color.push_back(truth_at(i % width, i / width));
+    still.count.assign(pixels, 1);
+    resize_samples(samples, pixels);
+  }
+  // Samples of the truth, exponentially distributed: a few bright ones make most of the light.
+  void sample(int count, uint64_t seed) {
+    Rng rng(mix64(seed));
+    for (int n = 0; n < count; n++, taken++)
+      for (int i = 0; i < pixels; i++) {
+        float share = -std::log(1 - float(rng.next() >> 8) * 0x1p-24f);
+        vec3 light = share * truth_at(i % width, i / width);
+        sums[size_t(i)] += light;
+        add_sample(samples, size_t(i), light, rng.next());
+      }
+  }
+  double means_error() const {
+    double sum = 0;
+    for (int i = 0; i < pixels; i++) {
+      vec3 d = sums[size_t(i)] / float(taken) - truth_at(i % width, i / width);
+      sum += double(dot(d, d));
+    }
+    return std::sqrt(sum / (3 * pixels));
+  }
+  double error() const {
+    double sum = 0;
+    for (int i = 0; i < pixels; i++) {
+      vec3 d = frame.color[size_t(i)] - truth_at(i % width, i / width);
+      sum += double(dot(d, d));
+    }
+    return std::sqrt(sum / (3 * pixels));
+  }
+  void correct() { correct_still(samples, still, work, frame); }
+};
+
+// Drawn without the line, and a tenth too bright.
+void draw_wrongly(Picture& p) {
+  for (int i = 0; i < pixels; i++) {
+    int x = i % width;
+    p.frame.color[size_t(i)] = 1.1f * truth_at(x == 40 ? 41 : x, i / width);
+  }
+}
+
+}  // namespace
+
+TEST(CorrectStill, WhatIsDrawnWrongBecomesTheMeanOfItsSamples) {
+  double before = 1;
+  for (int count : {4, 16, 64, 250}) {
+    Picture p;
+    draw_wrongly(p);
+    double drawn = p.error();
+    p.sample(count, uint64_t(count));
+    p.correct();
+    EXPECT_LT(p.error(), 0.9 * drawn) << count;
+    EXPECT_LT(p.error(), 0.8 * p.means_error()) << count;
+    EXPECT_LT(p.error(), before) << count;
+    before = p.error();
+  }
+  // The line's 61 pixels are no longer what errs most.
+  EXPECT_LT(before, 0.02);
+}
+
+TEST(CorrectStill, LeavesWhatIsRight) {
+  for (int count : {1, 2, 4, 16, 64}) {
+    Picture p;
+    p.sample(count, 77 + uint64_t(count));
+    p.correct();
+    EXPECT_LT(p.error(), 0.45 * p.means_error()) << count;
+  }
+}
+
+// How far first samples are off nobody knows.
+TEST(CorrectStill, FirstSamplesCorrectNothing) {
+  Picture p;
+  draw_wrongly(p);
+  p.sample(1, 3);
+  std::vector<vec3> drawn = p.frame.color;
+  p.correct();
+  EXPECT_EQ(p.frame.color, drawn);
+  p.sample(3, 4);
+  p.correct();
+  EXPECT_NE(p.frame.color, drawn);
+}
+
+// One sample far brighter than all others may be chance, however many the others are.
+TEST(CorrectStill, OneBrightSampleIsNoDetail) {
+  for (int others : {0, 3, 15, 63}) {
+    Picture p;
+    p.sample(others, 5);
+    size_t at = size_t(30 * width + 20);
+    p.sums[at] += vec3(4);
+    add_sample(p.samples, at, vec3(4), 0x808080);
+    std::vector<vec3> drawn = p.frame.color;
+    p.correct();
+    float moved = 4.0f / float(others + 1);
+    EXPECT_LT(length(p.frame.color[at] - drawn[at]), 0.15f * moved) << others;
+  }
+}
+
+TEST(CorrectStill, WhatMovesStaysAsItIsDrawn) {
+  Picture p;
+  draw_wrongly(p);
+  p.sample(64, 9);
+  for (int i = 0; i < pixels; i++)
+    if (i % width >= 30 && i % width < 50) p.still.count[size_t(i)] = 0;
+  std::vector<vec3> drawn = p.frame.color;
+  p.correct();
+  int changed = 0;
+  for (int i = 0; i < pixels; i++)
+    if (p.still.count[size_t(i)] == 0)
+      EXPECT_EQ(p.frame.color[size_t(i)], drawn[size_t(i)]) << i;
+    else changed += p.frame.color[size_t(i)] != drawn[size_t(i)];
+  EXPECT_GT(changed, pixels / 2);
+}
+
+TEST(CorrectStill, SamplesAreForgottenWhereThePictureBeginsAnew) {
+  Picture p;
+  p.sample(3, 1);
+  p.still.count[5] = 0;
+  forget_samples(p.still, p.samples);
+  for (size_t i = 0; i < 10; i++) EXPECT_EQ(p.samples.count[i], i == 5 ? 0 : 3) << i;
+}
+
+// Of an exponential distribution the deviation is the mean. Means over 61 pixels of 200 samples
+// each, four of their standard deviations (one in 16,000), and two thousandths for what roundings
+// do.
+TEST(CorrectStill, MeansAndDeviationsAreThoseOfTheSamples) {
+  Picture p;
+  p.sample(200, 3);
+  double mean = 0, deviation = 0;
+  for (int y = 0; y < height; y++) {
+    size_t i = size_t(y * width + 10);
+    EXPECT_EQ(p.samples.count[i], 200);
+    vec3 truth = truth_at(10, y);
+    mean += double(unpack_rgb9e5(p.samples.mean[i]).x / truth.x) / height;
+    deviation +=
+        double(unpack_deviation(p.samples.deviation[i]) / std::sqrt(dot(truth, truth) / 3)) /
+        height;
+  }
+  EXPECT_NEAR(mean, 1, 4 / std::sqrt(200.0 * height) + 0.002);
+  // The deviation's own is sqrt(8 / 200) / 2, and it is 1 / 100 too small on average (half of its
+  // square).
+  EXPECT_NEAR(deviation, 0.99, 4 * 0.1 / std::sqrt(double(height)) + 0.002);
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Guides of the visibility pass are those that rays find.
+#include "picture/still/still_guides.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes/scenes.h"
+
+using namespace wellspring;
+using namespace wellspring::scenes;
+
+namespace {
+
+Scene make_assembly() {
+  Scene scene = empty_scene();
+  scene.environment.radiance = {0.2f, 0.3f, 0.5f};
+  add_quad(scene, add_material(scene, plastic({0.6f, 0.5f, 0.4f}, 0.1f)), {-3, -1, 3}, {6, 0, 0},
+           {0, 0, -6}, "floor");
+  const Material balls[] = {diffuse({0.2f, 0.4f, 0.6f}), metal({0.9f, 0.8f, 0.6f}, 0),
+                            metal({0.8f, 0.5f, 0.4f}, 0.7f), emitter({3, 0.2f, 0.1f}),
+                            glass(1.5f, 0, 1)};
+  float x = -2;
+  for (const Material& ball : balls)
+    add_mesh(scene, sphere_mesh(add_material(scene, ball), 0.45f), "ball",
+             glm::translate(mat4(1), vec3(x++, 0, -1)));
+  return scene;
+}
+
+}  // namespace
+
+TEST(StillGuides, AgreeWithThoseOfRays) {
+  Scene scene = make_assembly();
+  World world(scene);
+  world.commit();
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  View view = make_view_towards(scene, {0, 0.5, 4}, {0, -0.2, 0}, {0, 1, 0}, 1.0f, 160, 90);
+  std::vector<uint8_t> followed;
+  GuidePlanes drawn, traced = make_guides(world, lights, view, 16);
+  for (int place = 0; place < guide_places; place++)
+    add_still_guides(world, lights, sight, view, RasterShows::all, place, drawn,
+                     followed);
+  ASSERT_EQ(drawn.albedo.size(), traced.albedo.size());
+  double albedo = 0, normal = 0;
+  int far = 0;
+  for (size_t i = 0; i < traced.albedo.size(); i++) {
+    vec3 a = glm::abs(drawn.albedo[i] - traced.albedo[i]);
+    vec3 n = glm::abs(drawn.normal[i] - traced.normal[i]);
+    ASSERT_TRUE(is_finite(drawn.albedo[i]) && is_finite(drawn.normal[i])) << i;
+    albedo += max_component(a), normal += max_component(n);
+    far += max_component(a) > 0.2f;
+  }
+  const double pixels = double(traced.albedo.size());
+  EXPECT_LT(albedo / pixels, 0.03);  // the gloss of matt surfaces is left out, edges are coarser
+  EXPECT_LT(normal / pixels, 0.03);
+  EXPECT_LT(far / pixels, 0.03);
+}
+
+TEST(StillGuides, OfWhatStandsStillLeaveOutWhatMoves) {
+  Scene scene = empty_scene();
+  scene.environment.radiance = vec3(0.5f);
+  add_quad(scene, add_material(scene, diffuse({0.1f, 0.6f, 0.1f})), {-9, -9, -3}, {18, 0, 0},
+           {0, 18, 0}, "wall");
+  int red = add_material(scene, diffuse({0.8f, 0.1f, 0.1f}));
+  scene.objects.push_back("moving");
+  World world(scene, {sphere_mesh(red, 1)}, {uint32_t(scene.objects.size() - 1)});
+  world.commit();
+  Lights lights = make_lights(world);
+  PictureSight sight(world, lights);
+  View view = make_view_towards(scene, {0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 1.0f, 65, 65);
+  std::vector<uint8_t> followed, others;
+  GuidePlanes all, still;
+  for (int place = 0; place < guide_places; place++) {
+    add_still_guides(world, lights, sight, view, RasterShows::all, place, all, followed);
+    add_still_guides(world, lights, sight, view, RasterShows::still, place, still, others);
+  }
+  const size_t middle = 32 * 65 + 32;
+  EXPECT_NEAR(all.albedo[middle].x, 0.8f, 0.05f);
+  EXPECT_NEAR(still.albedo[middle].x, 0.1f, 0.05f);
+}

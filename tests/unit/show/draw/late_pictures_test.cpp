@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures drawn in the background and warped meanwhile, driven by a clock of the test's own and by
+// a hand on the easel.
+#include <gtest/gtest.h>
+
+#include <future>
+#include <utility>
+
+#include "base/rng.h"
+#include "frame/jpeg.h"
+#include "frame/tonemap.h"
+#include "show/answer/answer.h"
+#include "show/draw/picture.h"
+#include "show/state/show.h"
+#include "unit/show/tiny_exhibit.h"
+
+namespace wellspring {
+namespace {
+
+struct LatePictures : testing::Test {
+  Arrivals arrivals;
+  std::vector<std::shared_ptr<Link>> links;
+  std::vector<Packet> pictures;  // of the first visitor
+  double now = 0;
+  uint32_t seq = 0;
+  std::promise<void> held;
+  std::unique_ptr<Show> show;
+
+  void begin(int visitors = 1) {
+    ShowSettings settings;
+    settings.fps = 50;
+    settings.technique = settings.still_technique = "direct";
+    show = make_show(make_tiny_exhibit(), settings);
+    for (int i = 0; i < visitors; i++) {
+      links.push_back(std::make_shared<Link>(uint64_t(i + 1), LinkKind::visit, "test"));
+      arrivals.put(links.back());
+      say(R"({"type":"hello","exhibit":"","width":96,"height":64,"lang":"en","role":"visitor"})",
+          i);
+    }
+  }
+  void say(const std::string& text, int visitor = 0) { links[size_t(visitor)]->push_text_in(text); }
+  void turn(double yaw, double forward = 0) {
+    say(R"({"type":"input","seq":)" + std::to_string(++seq) + R"(,"move":[0,0,)" +
+        std::to_string(forward) + R"(],"look":[)" + std::to_string(yaw) + ",0]}");
+  }
+  // `finish`: what the easel has begun is finished before the next tick.
+  void step(bool finish = true, double seconds = 0.02) {
+    tick(*show, arrivals, now += seconds);
+    for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+    if (finish) show->easel.worker.wait();
+    for (const auto& link : links) {
+      Link::Out out;
+      while (link->take_out(out))
+        if (out.picture && link == links.front()) pictures.push_back(*out.packet);
+    }
+  }
+  void steps(int count) {
+    for (int i = 0; i < count; i++) step();
+  }
+  // From now on the easel is busy, as if a picture took long.
+  void hold_easel() {
+    step();
+    step();
+    while (!show->easel.idle()) step();
+    show->easel.worker.run([wait = held.get_future().share()] { wait.wait(); });
+  }
+  void release_easel() {
+    held.set_value();
+    held = {};
+    show->easel.worker.wait();
+  }
+  ~LatePictures() override {
+    if (show && !show->easel.idle()) held.set_value();
+  }
+  Visitor& visitor() { return show->visitors.front(); }
+  PacketHeader header(size_t i) { return read_packet(pictures[i])->header; }
+  Image8 image(size_t i) { return decode_jpeg(read_packet(pictures[i])->payload, "picture"); }
+  Image8 truth(const View& view) {
+    StillSettings settings;
+    settings.spp = 64;
+    settings.transport = show->settings.transport;
+    Image8 picture;
+    tonemap(render_still(*show->still_technique, *show->world, show->lights, view, settings),
+            Tonemap{show->exhibit.exposure}, picture);
+    return picture;
+  }
+  static double difference(const Image8& a, const Image8& b) {
+    EXPECT_EQ(a.rgb.size(), b.rgb.size());
+    double sum = 0;
+    for (size_t i = 0; i < std::min(a.rgb.size(), b.rgb.size()); i++)
+      sum += std::abs(int(a.rgb[i]) - int(b.rgb[i]));
+    return sum / double(a.rgb.size());
+  }
+};
+
+TEST_F(LatePictures, GoOnWhileOneIsDrawn) {
+  begin();
+  steps(60);
+  hold_easel();
+  Image8 before = image(pictures.size() - 1);
+  size_t first = pictures.size();
+  uint64_t drawn = show->totals.drawn, warped = show->totals.warped;
+  for (int i = 0; i < 6; i++) {
+    turn(0.02, 0.5);
+    step(false);
+  }
+  ASSERT_EQ(pictures.size(), first + 6);  // one a tick, each of the newest input
+  for (size_t i = first; i < pictures.size(); i++)
+    EXPECT_EQ(header(i).seq, seq - 5 + uint32_t(i - first));
+  EXPECT_EQ(show->totals.drawn, drawn);
+  EXPECT_EQ(show->totals.warped, warped + 6);
+  // What is sent shows the view as it is, not as it was.
+  Image8 now = truth(visitor().last_view), shown = image(pictures.size() - 1);
+  EXPECT_LT(difference(shown, now), 0.5 * difference(before, now));
+  release_easel();
+}
+
+TEST_F(LatePictures, StandingStillIsShownAsDrawn) {
+  begin();
+  for (int i = 0; i < 20; i++) turn(0.01), step();
+  steps(200);
+  EXPECT_TRUE(header(pictures.size() - 1).flags & packet_still);
+  EXPECT_EQ(visitor().keyframe.view, visitor().last_view);
+  EXPECT_LT(difference(image(pictures.size() - 1), truth(visitor().last_view)), 4);
+}
+
+TEST_F(LatePictures, SeqNeverGoesBack) {
+  begin();
+  steps(10);
+  for (int i = 0; i < 150; i++) {
+    turn(i % 50 < 10 ? 0.9 : 0.03, 1);  // at times too quick for warps
+    step(i % 3 == 0);
+  }
+  turn(0);
+  steps(30);
+  ASSERT_GT(pictures.size(), 60u);
+  for (size_t i = 1; i < pictures.size(); i++) {
+    EXPECT_GE(header(i).seq, header(i - 1).seq);
+    EXPECT_EQ(header(i).frame, header(i - 1).frame + 1);
+  }
+  EXPECT_EQ(header(pictures.size() - 1).seq, seq);
+}
+
+TEST_F(LatePictures, QuickTurnsShowWhatIsDrawn) {
+  begin();
+  steps(20);
+  size_t before = pictures.size();
+  for (int i = 0; i < 50; i++) turn(0.5), step();  // four turns a second: some of it is there
+  EXPECT_EQ(show->totals.unwarpable, 0u);
+  EXPECT_GT(pictures.size(), before + 40);
+  before = pictures.size();
+  Rng rng(5);  // nothing is to be foreseen of that
+  for (int i = 0; i < 50; i++) turn(1.2 + 0.2 * double(rng.next() % 20)), step();
+  EXPECT_GT(show->totals.unwarpable, 5u);
+  EXPECT_GT(pictures.size(), before + 15);
+}
+
+TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
+  begin();
+  for (int i = 0; i < 30; i++) turn(0.01, 0.5), step(true, 0.08);
+  EXPECT_EQ(show->totals.surroundings, 0u);
+  EXPECT_TRUE(visitor().around.empty());
+  for (int i = 0; i < 30; i++) turn(0.3), step(true, 0.08);  // a slow machine
+  ASSERT_GT(show->totals.surroundings, 0u);
+  ASSERT_FALSE(visitor().around.empty());
+  const View& around = visitor().around.view;
+  const View& keyframe = visitor().keyframe.view;
+  EXPECT_LE(around.width * around.height, keyframe.width * keyframe.height / 7);
+  size_t memory = picture_memory(visitor());
+  Keyframe kept = std::exchange(visitor().around, {});
+  EXPECT_GE(memory, picture_memory(visitor()) + kept.color.size() * 8);  // colours and disparities
+  visitor().around = std::move(kept);
+
+  // Farther than the keyframe shows while nothing can be drawn, so that it alone would not do.
+  hold_easel();
+  WarpScratch scratch;
+  Image8 alone, with;
+  float unknown = 0;
+  // The keyframe may be of a view yet to come, and what lies around of an earlier one.
+  bool to_the_left = dot(visitor().around.view.forward, visitor().keyframe.view.right) < 0;
+  for (int i = 0; i < 60 && unknown < 0.17f; i++) {
+    turn(to_the_left ? 0.03 : -0.03);
+    step(false);
+    unknown = warp_picture(visitor().keyframe, visitor().last_view, 1, scratch, alone);
+  }
+  EXPECT_GE(unknown, 0.17f);
+  EXPECT_LT(
+      warp_picture(visitor().keyframe, visitor().around, visitor().last_view, 1, scratch, with),
+      0.6f * unknown);
+  EXPECT_EQ(header(pictures.size() - 1).seq, seq);
+  EXPECT_LT(difference(image(pictures.size() - 1), with),
+            difference(image(pictures.size() - 1), alone));
+  release_easel();
+
+  // Soon it is no longer true.
+  turn(0);
+  steps(160);
+  uint64_t drawn = show->totals.surroundings;
+  EXPECT_TRUE(visitor().around.empty());
+  steps(20);
+  EXPECT_EQ(show->totals.surroundings, drawn);
+}
+
+TEST_F(LatePictures, NothingAroundTheOldPlaceAfterALeap) {
+  begin();
+  for (int i = 0; i < 60; i++) turn(0.3), step(true, 0.08);  // a slow machine
+  ASSERT_FALSE(visitor().around.empty());
+  say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
+  for (int i = 0; i < 6; i++) {
+    step();
+    if (visitor().order.leaps == visitor().leaps) {
+      EXPECT_TRUE(visitor().around.empty());
+    }
+  }
+  EXPECT_EQ(visitor().order.leaps, visitor().leaps);
+}
+
+// What a still picture waits for is samples, which whoever moves on needs no more.
+TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
+  begin();
+  steps(60);
+  hold_easel();
+  Visitor& one = visitor();
+  PictureOrder order = order_picture(*show, one, 1);
+  ASSERT_TRUE(order.still);
+  EXPECT_FALSE(is_outdated(*show, order, one));
+  show->easel.drawn = &one;  // as if the easel were at work on it
+  show->easel.order = order;
+  one.at_work = true;
+  step(false);
+  EXPECT_FALSE(show->easel.given_up);
+  turn(0.02);
+  step(false);
+  EXPECT_TRUE(is_outdated(*show, order, one));
+  EXPECT_TRUE(show->easel.given_up);
+  EXPECT_EQ(header(pictures.size() - 1).seq, seq);  // meanwhile warped
+
+  Keyframe keyframe = one.keyframe;
+  uint64_t drawn = show->totals.drawn;
+  release_easel();
+  draw_picture(*show, order, one);
+  EXPECT_TRUE(one.costs.given_up);
+  EXPECT_EQ(one.costs.samples, 0u);
+  turn(0.02);
+  step();
+  EXPECT_EQ(show->totals.given_up, 1u);
+  EXPECT_EQ(show->totals.drawn, drawn);
+  EXPECT_EQ(one.keyframe.color, keyframe.color);
+  EXPECT_EQ(header(pictures.size() - 1).seq, seq);
+  step();
+  EXPECT_EQ(show->totals.drawn, drawn + 1);  // at once the next, of where the visitor is now
+  EXPECT_FALSE(one.order.still);
+  EXPECT_FALSE(one.costs.given_up);
+}
+
+TEST_F(LatePictures, AreOutdatedByLeapsAndByMotionAfterRest) {
+  begin();
+  Visitor unseen;
+  PictureOrder order;
+  order.still = true;
+  order.expected = unseen.last_view;
+  unseen.last_view.position.x += 1;
+  EXPECT_FALSE(is_outdated(*show, order, unseen));  // there is nothing else to show
+  unseen.leaps++;
+  EXPECT_TRUE(is_outdated(*show, order, unseen));
+  unseen.order.leaps = order.leaps = unseen.leaps;
+  unseen.drawn_at = 1;
+  EXPECT_TRUE(is_outdated(*show, order, unseen));
+  order.still = false;  // pictures of who moves are for views to come
+  EXPECT_FALSE(is_outdated(*show, order, unseen));
+  unseen.left = true;
+  EXPECT_TRUE(is_outdated(*show, order, unseen));
+}
+
+TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {
+  begin();
+  turn(0, 1);
+  steps(20);
+  hold_easel();
+  size_t before = pictures.size();
+  say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
+  for (int i = 0; i < 10; i++) step(false);
+  EXPECT_EQ(pictures.size(), before);
+  release_easel();
+  steps(4);
+  ASSERT_GT(pictures.size(), before);
+  EXPECT_EQ(header(before).seq, 900u);
+  Image8 there = truth(visitor().last_view);
+  EXPECT_LT(difference(image(before), there), 25);
+  // A camera that is put elsewhere has leapt as well; a small step is no leap.
+  hold_easel();
+  before = pictures.size();
+  say(R"({"type":"camera","seq":901,"position":[3,1.6,-2.95],"yaw":2,"pitch":0})");
+  step(false);
+  EXPECT_EQ(pictures.size(), before + 1);
+  say(R"({"type":"camera","seq":902,"position":[-2,1.6,3],"yaw":2,"pitch":0})");
+  for (int i = 0; i < 5; i++) step(false);
+  EXPECT_EQ(pictures.size(), before + 1);
+  release_easel();
+}
+
+TEST_F(LatePictures, ALeapWhileDrawingDiscardsThatPicture) {
+  begin();
+  turn(0, 1);
+  steps(20);
+  while (!visitor().at_work) step(false);
+  ASSERT_NE(show->easel.drawn, nullptr);
+  say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
+  size_t before = pictures.size();
+  steps(6);
+  ASSERT_GT(pictures.size(), before);
+  for (size_t i = before; i < pictures.size(); i++) EXPECT_EQ(header(i).seq, 900u);
+  EXPECT_LT(difference(image(before), truth(visitor().last_view)), 25);
+}
+
+TEST_F(LatePictures, SizesChangeWhileOneIsDrawn) {
+  begin();
+  turn(0, 1);
+  steps(20);
+  for (int width : {64, 120, 16, 96}) {
+    say(R"({"type":"settings","width":)" + std::to_string(width) + R"(,"height":64})");
+    step(false);
+    steps(3);
+    EXPECT_EQ(header(pictures.size() - 1).width, width);
+    EXPECT_EQ(image(pictures.size() - 1).width, width);
+  }
+}
+
+TEST_F(LatePictures, VisitorsLeaveWhileTheirsIsDrawn) {
+  begin(3);
+  for (int i = 0; i < 3; i++) say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0.1,0]})", i);
+  steps(30);
+  for (int i = 2; i >= 0; i--) {
+    say(R"({"type":"input","seq":2,"move":[0,0,1],"look":[0.1,0]})", i);
+    step(false);
+    if (i == 1) links[size_t(i)]->mark_closed();
+    else say(R"({"type":"bye"})", i);
+    step(false);
+    steps(3);
+    EXPECT_EQ(show->visitors.size(), size_t(i));
+  }
+  EXPECT_EQ(show->easel.drawn, nullptr);
+}
+
+// Whenever a picture or its samples are finished, also in the midst of a tick, somebody gets the
+// next.
+TEST_F(LatePictures, NoVisitorIsForgottenWhenOneIsFinishedDuringATick) {
+  begin(3);
+  for (int i = 0; i < 3; i++) say(R"({"type":"input","seq":1,"move":[0,0,0.2],"look":[0.1,0]})", i);
+  steps(10);
+  for (int i = 0; i < 300; i++) {
+    for (int k = 0; k < 100; k++) turn(0.001);  // much to hear, which takes most of the tick
+    tick(*show, arrivals, now += 0.02);
+    for (const auto& link : links) {
+      Link::Out out;
+      while (link->take_out(out)) {}
+    }
+    auto at_work = std::count_if(show->visitors.begin(), show->visitors.end(),
+                                 [](auto& one) { return one.at_work; });
+    ASSERT_EQ(size_t(at_work), show->easel.brokers.size() + (show->easel.drawn ? 1 : 0))
+        << "tick " << i;
+  }
+  step();
+}
+
+TEST_F(LatePictures, AllVisitorsGetDrawnPictures) {
+  begin(3);
+  for (int i = 0; i < 3; i++) say(R"({"type":"input","seq":1,"move":[0,0,0.2],"look":[0.1,0]})", i);
+  std::vector<int> drawn(3, 0);
+  for (int i = 0; i < 120; i++) {
+    step();
+    if (show->easel.drawn) drawn[size_t(show->easel.drawn->link->id - 1)]++;
+  }
+  for (int count : drawn) EXPECT_GT(count, 10);
+  EXPECT_LE(*std::max_element(drawn.begin(), drawn.end()),
+            *std::min_element(drawn.begin(), drawn.end()) + 2);
+}
+
+TEST_F(LatePictures, TheShowEndsWhileOneIsDrawn) {
+  begin(2);
+  for (int i = 0; i < 2; i++) say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0,0]})", i);
+  for (int i = 0; i < 20; i++) step(false);
+  while (!show->easel.drawn) step(false);
+  show.reset();
+}
+
+TEST_F(LatePictures, ReportSaysWhatWasDrawnAndWarped) {
+  begin();
+  for (int i = 0; i < 40; i++) turn(0.02, 0.5), step();
+  ShowReport report = make_report(*show);
+  EXPECT_GT(report.totals.drawn, 5u);
+  EXPECT_GT(report.totals.warped, report.totals.drawn);
+  EXPECT_GT(report.visitors.at(0).drawn_fps, 0);
+  std::string text = write_metrics(report);
+  for (const char* name :
+       {"pictures_drawn_total", "pictures_warped_total", "visitor_drawn_pictures_per_second"})
+    EXPECT_NE(text.find("wellspring_" + std::string(name)), std::string::npos) << name;
+}
+
+}  // namespace
+}  // namespace wellspring

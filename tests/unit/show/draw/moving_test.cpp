@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// The storyteller in pictures at rest, drawn by itself between those of the rest.
+#include "show/draw/moving.h"
+
+#include <gtest/gtest.h>
+
+#include "frame/jpeg.h"
+#include "show/draw/picture.h"
+#include "unit/show/tiny_exhibit.h"
+#include "unit/show/tiny_figure.h"
+
+namespace wellspring {
+namespace {
+
+// A storyteller as flat as a door stands before the visitor.
+Exhibit make_exhibit() {
+  Exhibit exhibit = make_tiny_exhibit();
+  exhibit.storytellers.resize(1);
+  StorytellerPlace& teller = exhibit.storytellers[0];
+  teller.id = "anna";
+  teller.character = make_tiny_figure();
+  teller.character.positions = {{-0.4f, 0.6f, 0}, {0.4f, 0.6f, 0}, {0, 2.2f, 0}};
+  teller.character.normals.assign(3, {0, 0, 1});
+  teller.character.looks[0].base_color = vec4(0.8f, 0.05f, 0.05f, 1);
+  teller.position = dvec3(-2, 0, 0.5);
+  return exhibit;
+}
+
+struct Moving : testing::Test {
+  Arrivals arrivals;
+  std::shared_ptr<Link> link = std::make_shared<Link>(1, LinkKind::visit, "test");
+  std::unique_ptr<Show> show;
+  std::vector<Packet> pictures;
+  double now = 0;
+
+  void SetUp() override {
+    ShowSettings settings;
+    settings.technique = settings.still_technique = "direct";
+    show = make_show(make_exhibit(), settings);
+    arrivals.put(link);
+    link->push_text_in(
+        R"({"type":"hello","exhibit":"","width":192,"height":128,"lang":"en","role":"visitor"})");
+  }
+  Visitor& visitor() { return show->visitors.front(); }
+  void step() {
+    tick(*show, arrivals, now += 0.01);
+    for (Visitor& one : show->visitors) one.encoder->task.wait();
+    show->easel.worker.wait();
+    for (Link::Out out; link->take_out(out);)
+      if (out.picture) pictures.push_back(*out.packet);
+  }
+  void steps(int count) {
+    for (int i = 0; i < count; i++) step();
+  }
+  template <class Condition>
+  bool step_until(const Condition& condition, int most = 600) {
+    while (most-- > 0 && !condition()) step();
+    return condition();
+  }
+  // A picture of the rest is begun, and not finished.
+  bool is_between_steps() {
+    return step_until(
+        [&] { return show->easel.drawn && show->easel.step != DrawingStep::done; });
+  }
+  bool rested() {
+    return step_until([&] { return !show->visitors.empty() && visitor().backdrop; }) &&
+           step_until([&] { return show->totals.posed > 20; });
+  }
+  Image8 picture() { return decode_jpeg(read_packet(pictures.back())->payload, "picture"); }
+  // Red over green about where the place falls: the room is grey.
+  double red_at(const Image8& image, vec3 place) {
+    Projected at = project_point(visitor().last_view, place);
+    double sum = 0;
+    for (int dy = -3; dy <= 3; dy++)
+      for (int dx = -3; dx <= 3; dx++)
+        for (size_t c = 0; c < 2; c++)
+          sum += (c == 0 ? 1 : -1) *
+                 int(image.rgb[3 * size_t((int(at.y) + dy) * image.width + int(at.x) + dx) + c]);
+    return sum / 49;
+  }
+};
+
+TEST_F(Moving, IsDrawnMoreOftenThanTheRest) {
+  ASSERT_TRUE(rested());
+  uint64_t drawn = show->totals.drawn, posed = show->totals.posed;
+  size_t sent = pictures.size();
+  for (int i = 0; i < 200; i++) {
+    visitor().times.moving = 1;  // however slow the machine is, which would draw it less often
+    step();
+  }
+  EXPECT_GE(show->totals.drawn, drawn + 2);
+  EXPECT_GT(show->totals.posed - posed, 2 * (show->totals.drawn - drawn));
+  EXPECT_NEAR(double(pictures.size() - sent), double(show->totals.posed - posed), 2);
+  EXPECT_TRUE(visitor().backdrop);
+  EXPECT_FALSE(visitor().moving.empty());
+  const PictureWindow& window = visitor().moving.window;
+  EXPECT_LT(2 * window.width * window.height, 192 * 128);
+}
+
+// It is shown where it is by now, though nothing else is drawn anew, and where it was, what lies
+// behind.
+TEST_F(Moving, ShowsWhereItIs) {
+  ASSERT_TRUE(rested());
+  steps(200);
+  vec3 here(-2, 1, 0.5f), there(-1, 1, 0.5f);
+  ASSERT_TRUE(is_between_steps());
+  uint64_t drawn = show->totals.drawn, posed = show->totals.posed;
+  Image8 before = picture();
+  show->storyteller.placement[3].x += 1;
+  ASSERT_TRUE(step_until([&] { return show->totals.posed > posed; }));
+  size_t sent = pictures.size();
+  ASSERT_TRUE(step_until([&] { return pictures.size() > sent; }));
+  Image8 after = picture();
+  EXPECT_LE(show->totals.drawn, drawn + 1);
+  EXPECT_GT(red_at(before, here), 40);
+  EXPECT_LT(red_at(before, there), 20);
+  EXPECT_GT(red_at(after, there), 40);
+  EXPECT_LT(red_at(after, here), 20);
+}
+
+// Who walks on sees it in pictures that are warped from what was shown.
+TEST_F(Moving, IsInWhatIsWarped) {
+  ASSERT_TRUE(rested());
+  steps(200);
+  ASSERT_TRUE(step_until([&] { return visitor().backdrop && !visitor().moving.empty(); }));
+  vec3 here(-2, 1, 0.5f);
+  double shown = red_at(picture(), here);
+  link->push_text_in(R"({"type":"input","seq":1,"move":[0,0,0],"look":[0.02,0]})");
+  EXPECT_GT(shown, 40);
+  uint64_t warped = show->totals.warped, drawn = show->totals.drawn;
+  ASSERT_TRUE(step_until([&] { return show->totals.warped > warped; }));
+  EXPECT_LE(show->totals.drawn, drawn + 1);
+  step();
+  EXPECT_NEAR(red_at(picture(), here), shown, 8);
+  EXPECT_FALSE(visitor().backdrop);
+  EXPECT_TRUE(visitor().moving.empty());
+}
+
+// Who waits for a picture waits for no more light of another's.
+TEST_F(Moving, OthersNeedNotWaitForLight) {
+  ASSERT_TRUE(rested());
+  ASSERT_TRUE(step_until([&] {
+    show->samples_per_second = 50000;  // so few that they are traced in several steps
+    return show->easel.drawn && show->easel.step == DrawingStep::trace;
+  }));
+  size_t traced = show->easel.work.traced;
+  ASSERT_LT(traced, show->easel.work.requests.size());
+  auto other = std::make_shared<Link>(2, LinkKind::visit, "test");
+  arrivals.put(other);
+  other->push_text_in(
+      R"({"type":"hello","exhibit":"","width":64,"height":64,"lang":"en","role":"visitor"})");
+  ASSERT_TRUE(step_until([&] { return show->easel.drawn != &visitor(); }, 8));
+  EXPECT_EQ(visitor().costs.samples, traced);
+  EXPECT_TRUE(step_until([&] { return show->visitors.back().drawn_at > 0; }, 8));
+}
+
+// Between the steps of a picture the visitor may go, and the storyteller too.
+TEST_F(Moving, WhoLeavesBetweenStepsIsForgotten) {
+  ASSERT_TRUE(rested());
+  ASSERT_TRUE(is_between_steps());
+  link->mark_closed();
+  EXPECT_TRUE(step_until([&] { return show->visitors.empty(); }, 50));
+  EXPECT_EQ(show->easel.drawn, nullptr);
+}
+TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
+  ASSERT_TRUE(rested());
+  steps(200);
+  vec3 here(-2, 1, 0.5f);
+  EXPECT_GT(red_at(picture(), here), 40);
+  show->storyteller_visible = false;
+  ASSERT_TRUE(step_until([&] { return !visitor().order.figure; }));
+  steps(30);
+  EXPECT_LT(red_at(picture(), here), 20);
+  EXPECT_FALSE(visitor().backdrop);
+}
+
+}  // namespace
+}  // namespace wellspring

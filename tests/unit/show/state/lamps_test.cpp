@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lamps of a running exhibit: switched by visitors, for all of them.
+#include "show/state/lamps.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "frame/jpeg.h"
+#include "show/answer/answer.h"
+#include "show/exhibit/exhibit_lamps.h"
+#include "show/state/in_view.h"
+#include "show/state/show.h"
+#include "unit/show/tiny_exhibit.h"
+#include "world/load/lamp.h"
+
+namespace wellspring {
+namespace {
+
+using nlohmann::json;
+
+// The tiny room's lamp can be switched, and so can a weak one that stands in its corner.
+Exhibit make_lit_exhibit(bool on_at_first = true) {
+  Exhibit exhibit = make_tiny_exhibit();
+  PunctualLight weak;
+  weak.name = "weak";
+  weak.position = {3, 2, -3};
+  weak.intensity = vec3(0.5f);
+  exhibit.scene.lights.push_back(weak);
+  add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
+  exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}, {"de", "Decke"}}, on_at_first}};
+  return exhibit;
+}
+
+struct Lamps : testing::Test {
+  Arrivals arrivals;
+  std::vector<std::shared_ptr<Link>> links;
+  std::vector<std::vector<json>> told;
+  std::vector<Image8> picture;  // the last, of each visitor
+  double now = 0;
+  std::unique_ptr<Show> show;
+
+  void begin(Exhibit exhibit, int visitors, const char* technique = "gather",
+             bool background = false) {
+    ShowSettings settings;
+    settings.fps = 50;
+    settings.background = background;
+    settings.technique = technique;
+    settings.still_technique = std::string(technique) == "gather" ? "path" : technique;
+    show = make_show(std::move(exhibit), settings);
+    for (int i = 0; i < visitors; i++) {
+      links.push_back(std::make_shared<Link>(uint64_t(i + 1), LinkKind::visit, "test"));
+      arrivals.put(links.back());
+      say(i, std::string(R"({"type":"hello","width":96,"height":64,"lang":")") + (i ? "de" : "en") +
+                 R"(","role":")" + (i ? "kiosk" : "visitor") + "\"}");
+    }
+    told.resize(size_t(visitors)), picture.resize(size_t(visitors));
+  }
+  void say(int visitor, const std::string& text) { links[size_t(visitor)]->push_text_in(text); }
+  void lamp(int visitor, const char* name, bool on) {
+    say(visitor, json{{"type", "lamp"}, {"name", name}, {"on", on}}.dump());
+  }
+  void step() {
+    tick(*show, arrivals, now += 0.02);
+    for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+    show->easel.worker.wait();
+    for (size_t i = 0; i < links.size(); i++)
+      for (Link::Out out; links[i]->take_out(out);) {
+        if (out.picture) picture[i] = decode_jpeg(read_packet(*out.packet)->payload, "picture");
+        else if (!out.text.empty()) told[i].push_back(json::parse(out.text));
+      }
+  }
+  void run(double seconds) {
+    for (double end = now + seconds; now < end;) step();
+  }
+  json last(int visitor, const std::string& type) {
+    for (auto it = told[size_t(visitor)].rbegin(); it != told[size_t(visitor)].rend(); ++it)
+      if ((*it)["type"] == type) return *it;
+    return {};
+  }
+  double level(int visitor) {
+    double sum = 0;
+    for (uint8_t value : picture[size_t(visitor)].rgb) sum += value;
+    return sum / double(picture[size_t(visitor)].rgb.size());
+  }
+};
+
+TEST_F(Lamps, OneSwitchesAndAllAreToldAndSeeIt) {
+  for (bool background : {false, true}) {
+    links.clear(), told.clear(), picture.clear();
+    begin(make_lit_exhibit(), 2, "gather", background);
+    run(1.5);
+    EXPECT_EQ(last(0, "welcome")["lamps"],
+              json::parse(R"([{"name":"ceiling","title":"Ceiling","on":true}])"));
+    EXPECT_EQ(last(1, "welcome")["lamps"][0]["title"], "Decke");
+    double lit[2] = {level(0), level(1)};
+    lamp(1, "ceiling", false);
+    step();
+    step();
+    for (int i : {0, 1})
+      EXPECT_EQ(last(i, "state")["lamps"], json::parse(R"({"ceiling":false})")) << i;
+    run(0.5);
+    double dark[2] = {level(0), level(1)};
+    for (int i : {0, 1}) EXPECT_LT(dark[i], 0.6 * lit[i]) << i;
+    lamp(0, "ceiling", true);
+    run(1);
+    for (int i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
+    EXPECT_EQ(make_report(*show).totals.lamps_switched, 2u);
+  }
+}
+
+// What becomes of the light is found out once for all caches that knew the same lamps, and kept
+// until the last of them has followed.
+TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
+  Exhibit exhibit = make_lit_exhibit();
+  add_lamp({"corner", {"weak"}, {}}, exhibit.scene);
+  exhibit.lamps.push_back({"corner", {{"en", "Corner"}}, true});
+  begin(std::move(exhibit), 4);
+  run(1);
+  lamp(0, "ceiling", false);
+  std::vector<LightStep>& steps = show->switches.steps;
+  ASSERT_TRUE(steps.empty());
+  for (int i = 0; i < 50 && steps.empty(); i++) step();  // all are drawn in the same tick
+  ASSERT_EQ(steps.size(), 1u);
+  const std::vector<char> lit{0, 1};
+  for (const Visitor& visitor : show->visitors) EXPECT_EQ(visitor.lamps, lit);
+  step();
+  EXPECT_TRUE(steps.empty());
+
+  // Who has missed a switch before has another way to go.
+  const std::vector<char> known[] = {{1, 1}, {1, 0}, {1, 1}, {1, 0}};
+  size_t i = 0;
+  for (Visitor& visitor : show->visitors) visitor.lamps = known[i++];
+  for (Visitor& visitor : show->visitors) follow_lamps(*show, visitor);
+  ASSERT_EQ(steps.size(), 2u);
+  EXPECT_EQ(steps[0].before, known[0]);
+  EXPECT_EQ(steps[1].before, known[1]);
+  show->visitors.front().lamps = known[1];  // as if it had yet to follow
+  forget_light_steps(*show);
+  ASSERT_EQ(steps.size(), 1u);
+  EXPECT_EQ(steps[0].before, known[1]);
+}
+
+TEST_F(Lamps, UnknownOnesAreRefusedAndNothingChanges) {
+  begin(make_lit_exhibit(), 1, "path");
+  run(0.1);
+  lamp(0, "moon", false);
+  run(0.1);
+  EXPECT_EQ(last(0, "error")["code"], "unknown_lamp");
+  EXPECT_TRUE(show->world->is_on(0));
+  lamp(0, "ceiling", true);  // it is
+  run(0.1);
+  EXPECT_EQ(show->totals.lamps_switched, 0u);
+}
+
+TEST_F(Lamps, WhatIsOffAtFirstIsOffForStillsAndForWhoComes) {
+  begin(make_lit_exhibit(false), 1, "path");
+  run(0.2);
+  EXPECT_EQ(last(0, "welcome")["lamps"][0]["on"], false);
+  EXPECT_FALSE(show->world->is_on(0));
+  run(0.5);
+  double dark = level(0);
+  lamp(0, "ceiling", true);
+  run(0.6);
+  EXPECT_GT(level(0), 1.5 * dark);
+}
+
+// Nobody makes it flash: within a second the light changes five times at most, and ends as was
+// asked for last.
+TEST_F(Lamps, TheLightChangesAFewTimesASecondAtMost) {
+  begin(make_lit_exhibit(), 1, "direct");
+  run(1);
+  int changes = 0;
+  for (int i = 0; i < 50; i++) {
+    bool before = show->world->is_on(0);
+    lamp(0, "ceiling", i % 2 == 1);
+    step();
+    changes += before != show->world->is_on(0);
+  }
+  EXPECT_LE(changes, 6);
+  EXPECT_GE(changes, 1);
+  run(0.4);
+  EXPECT_TRUE(show->world->is_on(0));
+}
+
+// Requests of the old light are out, and some are answered, when the lamp is switched.
+TEST_F(Lamps, AnswersOfTheOldLightAreNotTaken) {
+  begin(make_lit_exhibit(), 1, "path");
+  run(0.5);
+  Visitor& visitor = show->visitors.front();
+  View view = view_of(*show, visitor);
+  std::vector<Request> requests(64);
+  for (size_t i = 0; i < requests.size(); i++)
+    requests[i] = pixel_request(view, 5, int(i), 20, 0);
+  visitor.broker.ask(view, {show->technique, show->settings.transport}, requests);
+  std::optional<Piece> piece = visitor.broker.take();
+  ASSERT_TRUE(piece);
+  Answer old{*piece, show->pose_number, std::vector<Sample>(piece->requests.size())};
+  lamp(0, "ceiling", false);
+  run(0.2);
+  EXPECT_EQ(visitor.lamps, std::vector<char>{0});
+  EXPECT_FALSE(visitor.broker.answer(old));
+  EXPECT_TRUE(visitor.broker.collect().empty());
+}
+
+struct Package {
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("wellspring_lamps_" + std::to_string(getpid()));
+  json manifest;
+  Package() {
+    std::filesystem::create_directories(folder / "room");
+    json scene = json::parse(R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],
+      "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"},{"type":"directional"}]}},
+      "nodes":[{"name":"Bulb","extensions":{"KHR_lights_punctual":{"light":0}}},
+               {"name":"Sun","extensions":{"KHR_lights_punctual":{"light":1}}},{"name":"Eye","camera":0}],
+      "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}],"scenes":[{"nodes":[0,1,2]}]})");
+    std::ofstream(folder / "room" / "scene.gltf") << scene.dump();
+    manifest = {{"title", "Room"}, {"languages", {"en", "de"}}, {"scene", "scene.gltf"}};
+  }
+  ~Package() { std::filesystem::remove_all(folder); }
+  std::vector<Problem> problems;
+  Exhibit read(const json& lamps) {
+    manifest["lamps"] = lamps;
+    std::ofstream(folder / "room" / "exhibit.json") << manifest.dump();
+    problems.clear();
+    return read_exhibit((folder / "room").string(), problems);
+  }
+  bool says(const std::string& where, const std::string& what, bool fatal = true) {
+    for (const Problem& problem : problems)
+      if (problem.where == where && problem.what.find(what) != std::string::npos &&
+          problem.fatal == fatal)
+        return true;
+    return false;
+  }
+};
+
+TEST(ExhibitLamps, AreReadWithTitlesAndFirstStates) {
+  Package package;
+  Exhibit exhibit = package.read(
+      json::parse(R"([{"id":"bulb","title":{"en":"Bulb","de":"Birne"},"nodes":["Bulb"],"on":false},
+                                                 {"id":"sun","title":{"en":"Sun","de":"Sonne"},"nodes":["Sun"]}])"));
+  for (const Problem& problem : package.problems) EXPECT_FALSE(problem.fatal) << to_string(problem);
+  ASSERT_EQ(exhibit.lamps.size(), 2u);
+  EXPECT_EQ(first_lamps(exhibit), (std::vector<char>{0, 1}));
+  EXPECT_EQ(exhibit.lamps[1].title.at("de"), "Sonne");
+  EXPECT_EQ(exhibit.scene.lamps[1].lights, (std::vector<int>{1}));
+}
+
+TEST(ExhibitLamps, EveryProblemIsToldWithItsPlace) {
+  Package package;
+  package.read(json::parse(R"([{"id":"a","title":{"en":"A"},"nodes":["Moon","Bulb"]},
+                               {"id":"a","title":{"en":"A","de":"A"},"nodes":["Sun"]},
+                               {"id":"c","nodes":["Bulb"],"materials":["wax"],"on":"yes"},
+                               {"id":"d","title":{"en":"D","de":"D"}, "lights":["Sun"]},
+                               {"title":{"en":"E","de":"E"},"nodes":"Sun"}])"));
+  EXPECT_TRUE(package.says("/lamps/0/nodes/0", "no node 'Moon'"));
+  EXPECT_TRUE(package.says("/lamps/0/title", "'de'", false));
+  EXPECT_TRUE(package.says("/lamps/1/id", "taken"));
+  EXPECT_TRUE(package.says("/lamps/2/title", ""));
+  EXPECT_TRUE(package.says("/lamps/2/nodes/0", "the lamp 'a'"));
+  EXPECT_TRUE(package.says("/lamps/2/materials/0", "no material 'wax'"));
+  EXPECT_TRUE(package.says("/lamps/2/on", "true or false"));
+  EXPECT_TRUE(package.says("/lamps/3", "neither"));
+  EXPECT_TRUE(package.says("/lamps/3/lights", "ignored", false));
+  EXPECT_TRUE(package.says("/lamps/4/id", ""));
+  EXPECT_TRUE(package.says("/lamps/4/nodes", "list"));
+  json many = json::array();
+  for (int i = 0; i <= int(most_lamps); i++)
+    many.push_back({{"id", "l" + std::to_string(i)}, {"title", "L"}, {"nodes", {"Bulb"}}});
+  package.read(many);
+  EXPECT_TRUE(package.says("/lamps/" + std::to_string(most_lamps), "one more"));
+}
+
+}  // namespace
+}  // namespace wellspring

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/visit/heading.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "picture/warp_picture.h"
+
+namespace wellspring {
+namespace {
+
+View facing(float yaw, vec3 place = vec3(0)) {
+  View view;
+  view.width = 320, view.height = 180;
+  view.tan_half_fov = 0.52f;
+  view.position = place;
+  view.forward = vec3(-std::sin(yaw), 0, -std::cos(yaw));
+  view.right = vec3(std::cos(yaw), 0, -std::sin(yaw));
+  view.up = vec3(0, 1, 0);
+  return view;
+}
+float yaw_of(const View& view) { return std::atan2(-view.forward.x, -view.forward.z); }
+
+// 60 ticks a second; the visitor's input arrives with every `every`-th.
+TEST(Heading, GoesOnAsItWent) {
+  for (int every : {1, 2}) {
+    Heading heading;
+    View view;
+    for (int i = 0; i <= 30; i++) {
+      int seen = i / every * every;
+      view = facing(0.02f * float(seen), vec3(0, 0, -0.03f * float(seen)));
+      EXPECT_FALSE(note_view(heading, i / 60.0, view));
+    }
+    View ahead = expected_view(heading, view, 0.1);
+    EXPECT_NEAR(yaw_of(ahead) - yaw_of(view), 0.12f, every == 1 ? 1e-4f : 0.05f);
+    EXPECT_NEAR(ahead.position.z - view.position.z, -0.18f, every == 1 ? 1e-4f : 0.07f);
+    EXPECT_NEAR(expected_turn(heading, view, 0.1), std::abs(yaw_of(ahead) - yaw_of(view)), 1e-3f);
+  }
+}
+
+// Where ticks come later than motion is measured over.
+TEST(Heading, GoesOnAsItWentWhereTicksAreFew) {
+  Heading heading;
+  View view;
+  for (int i = 0; i <= 4; i++) note_view(heading, i * 0.08, view = facing(0.1f * float(i)));
+  EXPECT_NEAR(expected_turn(heading, view, 0.16), 0.2f, 1e-3f);
+  note_view(heading, 0.32 + 0.6, view = facing(0.5f));  // nobody knows what was in between
+  EXPECT_EQ(expected_turn(heading, view, 0.16), 0.0f);
+}
+
+TEST(Heading, QuickTurnsNeedWhatLiesAround) {
+  for (float speed : {0.0f, 0.2f, 2.0f, -2.0f}) {
+    Heading heading;
+    View now;
+    for (int i = 0; i <= 30; i++) note_view(heading, i / 60.0, now = facing(speed * float(i) / 60));
+    View drawn =
+        keyframe_view(expected_view(heading, now, 0.15), expected_turn(heading, now, 0.05));
+    std::optional<View> around = surroundings(heading, now, drawn, 0.2);
+    ASSERT_EQ(around.has_value(), std::abs(speed) > 1) << speed;
+    if (!around) continue;
+    EXPECT_EQ(missing_share(*around, now), 0.0f);
+    EXPECT_EQ(missing_share(*around, expected_view(heading, now, 0.1)), 0.0f);
+    EXPECT_EQ(missing_share(*around, expected_view(heading, now, 0.2)), 0.0f);
+    EXPECT_LE(around->width * around->height, 336 * 188 / 7);
+  }
+}
+
+TEST(Heading, WhoStopsIsExpectedToStaySoon) {
+  Heading heading;
+  View view = facing(0.6f);
+  for (int i = 0; i <= 30; i++) note_view(heading, i / 60.0, facing(0.02f * float(i)));
+  for (int i = 31; i <= 34; i++) note_view(heading, i / 60.0, view);
+  EXPECT_EQ(expected_view(heading, view, 0.2), view);
+  EXPECT_EQ(expected_turn(heading, view, 0.2), 0.0f);
+}
+
+TEST(Heading, ALeapLeadsNowhere) {
+  Heading heading;
+  for (int i = 0; i < 5; i++)
+    EXPECT_FALSE(note_view(heading, i / 60.0, facing(0, vec3(0.02f * float(i), 0, 0))));
+  View there = facing(2, vec3(9, 0, 0));
+  EXPECT_TRUE(note_view(heading, 5 / 60.0, there));
+  EXPECT_EQ(expected_view(heading, there, 1), there);
+  EXPECT_EQ(expected_view(Heading{}, there, 1), there);
+}
+
+// What is drawn around a view for a turn shows all of the view that the turn leads to.
+TEST(Heading, MarginsAreAsWideAsTheTurn) {
+  for (float turn : {0.0f, 0.01f, 0.05f}) {
+    View wide = keyframe_view(facing(0), turn);
+    EXPECT_LE(wide.width, 320 + 2 * 32);
+    Image8 blank{wide.width, wide.height,
+                 std::vector<uint8_t>(3 * size_t(wide.width) * size_t(wide.height), 128)},
+        out;
+    std::vector<float> depth(size_t(wide.width) * size_t(wide.height), INFINITY);
+    Keyframe keyframe;
+    make_keyframe(wide, blank, depth, keyframe);
+    WarpScratch scratch;
+    for (float yaw : {-turn, turn})
+      EXPECT_EQ(warp_picture(keyframe, facing(yaw), 1, scratch, out), 0.0f) << turn;
+  }
+  EXPECT_EQ(keyframe_view(facing(0), 3).width,
+            320 + 2 * 32);  // quicker turns are not followed farther
+  EXPECT_EQ(keyframe_view(facing(0), NAN).width, keyframe_view(facing(0)).width);
+}
+
+}  // namespace
+}  // namespace wellspring

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// The words of a tour on the storyteller's lips: while it is in the visitor's picture, and only
+// then.
+#include <gtest/gtest.h>
+
+#include "show/state/in_view.h"
+#include "show/state/show.h"
+#include "unit/show/tiny_exhibit.h"
+#include "unit/show/tiny_figure.h"
+
+namespace wellspring {
+namespace {
+
+// One vowel of four seconds.
+std::shared_ptr<const Speech> make_vowel(const std::string& text) {
+  auto speech = std::make_shared<Speech>();
+  speech->text = text;
+  speech->rate = 8000;
+  speech->duration = 4;
+  speech->pcm.resize(32000);
+  VisemeKey key;
+  key.weights[size_t(Viseme::aa)] = 1;
+  speech->visemes.keys = {key};
+  key.time = 4;
+  speech->visemes.keys.push_back(key);
+  return speech;
+}
+
+struct TourLips : testing::Test {
+  std::unique_ptr<Show> show;
+  Arrivals arrivals;
+  std::vector<std::shared_ptr<Link>> links;
+  std::map<std::string, std::shared_ptr<const Speech>> kept;
+  double now = 0;
+
+  void SetUp() override {
+    Exhibit exhibit = make_tiny_exhibit();
+    StorytellerPlace& teller = exhibit.storytellers.emplace_back();
+    teller.id = "anna";
+    teller.character = make_tiny_figure();
+    Displacer open;
+    open.name = "viseme_aa";
+    open.vertices = {0};
+    open.displacements = {{0, 0.01f, 0}};
+    teller.character.displacers = {open};
+    teller.position = {-2, 0, 1};  // 2 m before the viewpoint where the tour begins
+    show = make_show(std::move(exhibit),
+                     {.technique = "direct", .still_technique = "direct", .background = false});
+    show->speech.find = [this](const SpeechRequest& request) {
+      auto& speech = kept[request.text];
+      if (!speech) speech = make_vowel(request.text);
+      return speech;
+    };
+    show->speech.speak = [](const SpeechRequest&) { return std::shared_future<SpeechAnswer>(); };
+  }
+  void join() {
+    links.push_back(std::make_shared<Link>(links.size() + 1, LinkKind::visit, "test"));
+    arrivals.put(links.back());
+    order(links.size() - 1, R"({"type":"hello","width":32,"height":32,"role":"visitor"})");
+  }
+  void order(size_t peer, const std::string& text) {
+    links[peer]->push_text_in(text);
+    run(0.1);
+  }
+  void run(double seconds) {
+    for (double end = now + seconds; now < end; now += 0.04) {
+      tick(*show, arrivals, now);
+      for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+      for (auto& link : links)
+        for (Link::Out out; link->take_out(out);) {}
+    }
+  }
+  float lips() const { return show->pose.displacers.at(0); }
+};
+
+TEST_F(TourLips, MoveWhileTheTourIsTold) {
+  join();
+  run(1);
+  EXPECT_LT(lips(), 0.05f);
+  order(0, R"({"type":"tour","action":"play"})");
+  run(1.5);
+  ASSERT_TRUE(heard(show->visitors.front().narration.voice));
+  EXPECT_GT(lips(), 0.5f);
+  order(0, R"({"type":"tour","action":"pause"})");
+  run(1);
+  EXPECT_LT(lips(), 0.05f);
+}
+
+TEST_F(TourLips, NothingOfTheFaceRunsBehindTheVisitorsBack) {
+  join();
+  order(0, R"({"type":"tour","action":"play"})");
+  run(1);
+  StorytellerWork before = show->mind.work;
+  EXPECT_GT(before.visemes, 0u);
+  EXPECT_GT(before.blinks, 0u);
+  // Half round; the tour goes on.
+  order(0, R"({"type":"input","seq":1,"move":[0,0,0],"look":[3.1416,0]})");
+  ASSERT_FALSE(sees_head(*show, view_of(*show, show->visitors.front())));
+  ASSERT_TRUE(heard(show->visitors.front().narration.voice));
+  before = show->mind.work;
+  run(0.8);
+  EXPECT_GT(show->mind.work.ticks, before.ticks);
+  EXPECT_EQ(show->mind.work.visemes, before.visemes);
+  EXPECT_EQ(show->mind.work.blinks, before.blinks);
+  EXPECT_EQ(show->mind.work.flexes, before.flexes);
+  EXPECT_EQ(show->mind.work.expressions, before.expressions);
+  EXPECT_EQ(show->mind.work.eyes, before.eyes);
+  EXPECT_EQ(lips(), 0);
+}
+
+TEST_F(TourLips, HerOwnWordsComeFirst) {
+  join();
+  join();
+  auto silence = std::make_shared<Speech>(*make_vowel("One."));
+  for (VisemeKey& key : silence->visemes.keys) {
+    key.weights.fill(0);
+    key.weights[size_t(Viseme::sil)] = 1;
+  }
+  kept["One."] = silence;
+  order(0, R"({"type":"tour","action":"play"})");
+  run(1);
+  EXPECT_GT(lips(), 0.5f);
+  order(1, R"({"type":"storyteller","story":"tale"})");
+  run(1);
+  ASSERT_TRUE(heard(show->visitors.front().narration.voice)) << "the tour goes on";
+  EXPECT_LT(lips(), 0.05f);
+}
+
+TEST_F(TourLips, OfTwoToursTheNearerOneInViewCounts) {
+  join();
+  join();
+  for (size_t i = 0; i < 2; i++) order(i, R"({"type":"tour","action":"play"})");
+  Visitor &far = show->visitors.front(), &near = show->visitors.back();
+  far.view.position = {-2, 1.6, 3.5};
+  near.view.position = {-2, 1.6, 2.5};
+  far.view.yaw = near.view.yaw = 0;
+  EXPECT_EQ(heard_on_tour(*show), &near);
+  near.view.yaw = 3.1f;
+  EXPECT_EQ(heard_on_tour(*show), &far);
+  EXPECT_NEAR(viewer_distance(*show), 2.5f, 0.15f);
+  show->storyteller_visible = false;
+  EXPECT_EQ(heard_on_tour(*show), nullptr);
+}
+
+TEST(InView, AgreesWithProjectionAtTheEdge) {
+  Scene scene;
+  View view = make_view(scene, {1, 2, 3}, 0.4f, -0.2f, 0.9f, 160, 90);
+  // Points: in the picture they are always in view; far outside of its circle never.
+  int shown = 0;
+  for (int i = 0; i < 4000; i++) {
+    vec3 p(float(i % 20) - 9.5f, float(i / 20 % 10) - 3.5f, float(i / 200) - 9.5f);
+    Projected at = project_point(view, p);
+    bool inside = at.depth > 0 && at.x >= 0 && at.x < 160 && at.y >= 0 && at.y < 90;
+    float round = std::hypot(at.x - 80, at.y - 45) / std::hypot(80.0f, 45.0f);
+    shown += inside;
+    if (inside) { EXPECT_TRUE(in_view(view, p, 0)); }
+    if (at.depth <= 0 || round > 1.01f) { EXPECT_FALSE(in_view(view, p, 0)) << i; }
+  }
+  EXPECT_GT(shown, 50);
+}
+
+}  // namespace
+}  // namespace wellspring
