@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <csignal>
 #include <iostream>
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include "base/clock.h"
 #include "base/load_error.h"

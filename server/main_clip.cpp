@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <iostream>
 #include <spawn.h>
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 #include <sys/wait.h>
 
 #include "avatar/load/character_load.h"

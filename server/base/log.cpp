@@ -3,8 +3,16 @@
 
 #include <cstdlib>
 #include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
 
 namespace wellspring::log {
+
+void write(Level level, fmt::string_view format, fmt::format_args arguments) {
+  constexpr spdlog::level::level_enum levels[] = {spdlog::level::debug, spdlog::level::info,
+                                                  spdlog::level::warn, spdlog::level::err};
+  auto shown = levels[size_t(level)];
+  if (spdlog::should_log(shown)) spdlog::log(shown, fmt::vformat(format, arguments));
+}
 
 void start(const char* program) {
   auto logger = std::make_shared<spdlog::logger>(

@@ -1,15 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 // The log: one line an event on stderr, level names as spdlog's. WELLSPRING_LOG=debug shows more.
 // Usage: log::info("exhibit {} loaded in {:.1f} s", id, seconds);
+// Formats are checked when they are compiled; lines are put together in log.cpp alone, since what
+// does that takes seconds to compile.
 #pragma once
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 namespace wellspring::log {
-using spdlog::debug;
-using spdlog::error;
-using spdlog::info;
-using spdlog::warn;
+
+enum class Level { debug, info, warn, error };
+
+// One line, when lines of that level are shown. Any thread.
+void write(Level level, fmt::string_view format, fmt::format_args arguments);
+
+template <class... T>
+void debug(fmt::format_string<T...> format, T&&... arguments) {
+  write(Level::debug, format, fmt::make_format_args(arguments...));
+}
+template <class... T>
+void info(fmt::format_string<T...> format, T&&... arguments) {
+  write(Level::info, format, fmt::make_format_args(arguments...));
+}
+template <class... T>
+void warn(fmt::format_string<T...> format, T&&... arguments) {
+  write(Level::warn, format, fmt::make_format_args(arguments...));
+}
+template <class... T>
+void error(fmt::format_string<T...> format, T&&... arguments) {
+  write(Level::error, format, fmt::make_format_args(arguments...));
+}
 
 // Sends the log to stderr and reads WELLSPRING_LOG. Call once at the start of main().
 void start(const char* program);
+
 }  // namespace wellspring::log

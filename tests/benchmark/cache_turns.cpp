@@ -5,7 +5,7 @@
 // prediction, predicted with margins of the same width for all, and as the show does, with margins
 // as wide as turns are quick.
 #include <cmath>
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include "base/rng.h"
 #include "cache_visit_stage.h"

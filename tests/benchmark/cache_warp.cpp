@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 #include "cache_visit_stage.h"
 #include "drawn_picture.h"

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 #include <sstream>
 
 #include "base/load_error.h"

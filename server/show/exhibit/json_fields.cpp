@@ -3,7 +3,7 @@
 
 
 #include <cmath>
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 namespace wellspring {
 

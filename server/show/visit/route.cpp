@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
-#include <spdlog/fmt/fmt.h>
+#include <fmt/core.h>
 
 namespace wellspring {
 

@@ -7,7 +7,6 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -115,33 +114,9 @@ struct Family {
   }
 };
 
-inline Verdict judge(const Comparison& c, size_t family_size) {
-  Verdict v;
-  if (c.expected == 0 && c.error == 0) {  // darkness is exact
-    v.refuted = c.estimate.mean != 0;
-    return v;
-  }
-  double alone = 1 - std::pow(1 - family_significance, 1.0 / double(family_size));
-  boost::math::students_t_distribution<double> student(c.degrees);
-  double error = std::hypot(c.error, rounding * std::abs(c.expected));
-  v.limit = quantile(complement(student, alone / 2));
-  v.t = (c.estimate.mean - c.expected) / error;
-  v.refuted = !(std::abs(v.t) <= v.limit);  // NaN is refuted
-  v.detectable = (v.limit + quantile(student, power_to_find_it)) * error / std::abs(c.expected);
-  v.weak = !(v.detectable <= bias_to_find);
-  return v;
-}
+Verdict judge(const Comparison& comparison, size_t family_size);
 
 // `find`: share of the expected value that must be found; larger where only a rough check is meant.
-inline void expect_family(const Family& family, double find = bias_to_find) {
-  ASSERT_FALSE(family.comparisons.empty());
-  for (const Comparison& c : family.comparisons) {
-    Verdict v = judge(c, family.comparisons.size());
-    EXPECT_FALSE(v.refuted) << c.what << ": " << c.estimate.mean << " +- " << c.error
-                            << ", expected " << c.expected << ", t = " << v.t << " beyond "
-                            << v.limit;
-    EXPECT_LE(v.detectable, find) << c.what << ": too noisy to find that bias";
-  }
-}
+void expect_family(const Family& family, double find = bias_to_find);
 
 }  // namespace wellspring::test
