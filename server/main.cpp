@@ -46,7 +46,7 @@ int read_options(Options& options, int argc, char** argv) {
                  "folder of the networks' weights; without it pictures at rest are not denoised")
       ->envname("WELLSPRING_WEIGHTS");
   app.add_option("--cache", options.recordings.cache,
-                 "folder that keeps what is found out about recordings; empty: nothing is kept");
+                 "folder that keeps speech and what is found out about recordings; empty: neither is kept");
   app.add_option("--fps", options.show.fps, "pictures a second for each visitor")
       ->check(CLI::Range(1.0, 120.0))->capture_default_str();
   app.add_option("--max-visitors", options.show.max_visitors)
@@ -111,7 +111,9 @@ int serve(const Options& options) {
   Exhibit exhibit = load_exhibit(folder);
   read_recordings_or_fail(exhibit, options.recordings);
   auto show = make_show(std::move(exhibit), options.show);
-  show->speech = make_speech_source(std::make_shared<Speaker>());
+  SpeakerOptions speaker;
+  if (!options.recordings.cache.empty()) speaker.folder = options.recordings.cache + "/speech";
+  show->speech = make_speech_source(std::make_shared<Speaker>(speaker));
   show->speech.prepare(lines_of(show->exhibit));
   StillRoom stills(*show);
   ReportBoard board;

@@ -78,7 +78,5 @@ int find_gesture(const GestureLibrary& library, std::string_view name);
 // JSON as docs/expressions.md has it. Throws LoadError; `file` names it in messages.
 GestureLibrary read_gestures(std::string_view json, const std::string& file);
 GestureLibrary load_gestures(const std::string& file);
-// What read_gestures reads to the same library again.
-std::string write_gestures(const GestureLibrary& library);
 
 }  // namespace wellspring

@@ -11,7 +11,6 @@ namespace wellspring {
 namespace {
 
 using nlohmann::json;
-using nlohmann::ordered_json;
 
 constexpr double radian = 3.14159265358979323846 / 180;
 constexpr const char* arm_fields[] = {"forward", "side", "turn",  "elbow", "pronate",
@@ -202,44 +201,6 @@ void finish(GestureClip& clip) {
 
 constexpr const char* aim_names[] = {"none", "finger", "palm"};
 
-double degrees_of(float radians) { return double(radians) / radian; }
-
-// What differs from the row before; of the first row everything that is not 0.
-ordered_json write_key(float time, const GestureRow& row, const GestureRow& before) {
-  ordered_json key = {{"time", time}};
-  auto put = [&](ordered_json& to, const char* field, const std::string& name) {
-    size_t c = channel_of(name);
-    if (row[c] != before[c]) to[field] = is_weight(c) ? double(row[c]) : degrees_of(row[c]);
-  };
-  for (const char* side : {"left", "right"}) {
-    ordered_json arm = ordered_json::object();
-    put(arm, "weight", std::string(side) + ".weight");
-    for (const char* field : arm_fields) put(arm, field, std::string(side) + "." + field);
-    if (!arm.empty()) key[side] = arm;
-  }
-  ordered_json head = ordered_json::object(), chest = ordered_json::object();
-  for (const char* field : head_fields) put(head, field, std::string("head.") + field);
-  for (const char* field : chest_fields) put(chest, field, std::string("chest.") + field);
-  if (!head.empty()) key["head"] = head;
-  if (!chest.empty()) key["chest"] = chest;
-  put(key, "shoulders", "shoulders");
-  return key;
-}
-
-std::string channel_name(int channel) {
-  for (const char* side : {"left.", "right."})
-    for (const char* field : arm_fields)
-      if (find_gesture_channel(std::string(side) + field) == channel)
-        return std::string(side) + field;
-  for (const char* field : head_fields)
-    if (find_gesture_channel(std::string("head.") + field) == channel)
-      return std::string("head.") + field;
-  for (const char* field : chest_fields)
-    if (find_gesture_channel(std::string("chest.") + field) == channel)
-      return std::string("chest.") + field;
-  return "shoulders";
-}
-
 }  // namespace
 
 GestureLibrary read_gestures(std::string_view text, const std::string& file) {
@@ -285,35 +246,6 @@ GestureLibrary read_gestures(std::string_view text, const std::string& file) {
 
 GestureLibrary load_gestures(const std::string& file) {
   return read_gestures(read_text_file(file), file);
-}
-
-std::string write_gestures(const GestureLibrary& library) {
-  ordered_json root = {{"format", "wellspring-gestures"}, {"version", 1}};
-  ordered_json list = ordered_json::array();
-  for (const GestureClip& clip : library.clips) {
-    ordered_json entry = {{"name", clip.name}, {"about", clip.about}, {"stroke", clip.stroke}};
-    if (clip.hold >= 0) entry["hold"] = clip.hold;
-    if (clip.aim != Aim::none) entry["aim"] = aim_names[size_t(clip.aim)];
-    ordered_json keys = ordered_json::array();
-    // The first key names every angle that is ever used, lest a later one be taken for it.
-    GestureRow before{};
-    for (size_t c = 0; c < gesture_channels; c++)
-      for (const GestureRow& row : clip.rows)
-        if (row[c] != 0) before[c] = std::numeric_limits<float>::quiet_NaN();
-    for (size_t k = 0; k < clip.rows.size(); before = clip.rows[k], k++)
-      keys.push_back(write_key(clip.times[k], clip.rows[k], before));
-    entry["keys"] = keys;
-    for (const Swing& swing : clip.swings)
-      entry["swings"].push_back({{"channel", channel_name(swing.channel)},
-                                 {"degrees", degrees_of(swing.amplitude)},
-                                 {"hertz", swing.hertz},
-                                 {"from", swing.from},
-                                 {"to", swing.to},
-                                 {"phase", swing.phase}});
-    list.push_back(entry);
-  }
-  root["gestures"] = list;
-  return root.dump(1) + "\n";
 }
 
 }  // namespace wellspring

@@ -72,7 +72,5 @@ const ExpressionSet& default_expressions();
 // expression may be used only after its own entry.
 ExpressionSet read_expressions(std::string_view json, const std::string& file);
 ExpressionSet load_expressions(const std::string& file);
-// What read_expressions reads to the same set again.
-std::string write_expressions(const ExpressionSet& set);
 
 }  // namespace wellspring

@@ -9,7 +9,6 @@ namespace wellspring {
 namespace {
 
 using nlohmann::json;
-using nlohmann::ordered_json;
 
 constexpr const char* kind_names[] = {"plain", "mouth",      "parts_lips",
                                       "blink", "opens_lids", "viseme"};
@@ -172,45 +171,6 @@ ExpressionSet read_expressions(std::string_view text, const std::string& file) {
 
 ExpressionSet load_expressions(const std::string& file) {
   return read_expressions(read_text_file(file), file);
-}
-
-std::string write_expressions(const ExpressionSet& set) {
-  ordered_json root = {{"format", "wellspring-expressions"}, {"version", 1}};
-  for (const char* field : {"rotators", "controls", "expressions"})
-    root[field] = ordered_json::array();
-  for (const Rotator& rotator : set.rotators) {
-    ordered_json turns = ordered_json::array();
-    for (const dvec4& turn : rotator.turns) turns.push_back({turn.x, turn.y, turn.z, turn.w});
-    root["rotators"].push_back({{"name", rotator.name},
-                                {"joint", rotator.joint},
-                                {"weight_ranges", rotator.weights},
-                                {"orientations", turns}});
-  }
-  for (const Control& control : set.controls) {
-    ordered_json entry = {{"name", control.name}};
-    if (control.kind != ControlKind::plain) entry["kind"] = kind_names[size_t(control.kind)];
-    if (!control.displacers.empty()) entry["displacers"] = control.displacers;
-    if (!control.shared.empty()) entry["shared"] = control.shared;
-    if (control.rotator >= 0) entry["rotator"] = set.rotators[size_t(control.rotator)].name;
-    root["controls"].push_back(entry);
-  }
-  for (const NamedExpression& expression : set.expressions) {
-    ordered_json entry = {{"name", expression.name}};
-    if (!expression.about.empty()) entry["about"] = expression.about;
-    size_t kind = size_t(expression.kind);
-    ordered_json parts = ordered_json::array();
-    for (const ExpressionPart& part : expression.parts) {
-      const std::string& of = kind == 0   ? set.rotators[size_t(part.index)].name
-                              : kind == 1 ? set.controls[size_t(part.index)].name
-                                          : set.expressions[size_t(part.index)].name;
-      parts.push_back({{part_names[kind], of}, {"weight", part.weight}});
-    }
-    entry[list_names[kind]] = parts;
-    if (expression.otherwise >= 0)
-      entry["otherwise"] = set.expressions[size_t(expression.otherwise)].name;
-    root["expressions"].push_back(entry);
-  }
-  return root.dump(1) + "\n";
 }
 
 }  // namespace wellspring

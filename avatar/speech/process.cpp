@@ -32,14 +32,6 @@ namespace {
 
 enum class Transfer { done, late, broken };
 
-std::string default_program() {
-  if (const char* path = std::getenv("WELLSPRING_VOICE")) return path;
-  char own[PATH_MAX];
-  ssize_t length = readlink("/proc/self/exe", own, sizeof own);
-  std::string path(own, length > 0 ? size_t(length) : 0);
-  return path.substr(0, path.rfind('/') + 1) + "wellspring_voice";
-}
-
 // Waits until `socket` can do `events`, at most until `deadline`.
 Transfer wait_for(int socket, short events, double deadline) {
   for (;;) {
@@ -120,6 +112,15 @@ std::string check_speech_request(const SpeechRequest& request) {
       !std::all_of(request.variant.begin(), request.variant.end(), is_tag_character))
     return "'" + request.variant.substr(0, 40) + "' is no variant of a voice";
   return {};
+}
+
+std::string program_path(const VoiceProgram& program) {
+  if (!program.path.empty()) return program.path;
+  if (const char* path = std::getenv("WELLSPRING_VOICE")) return path;
+  char own[PATH_MAX];
+  ssize_t length = readlink("/proc/self/exe", own, sizeof own);
+  std::string path(own, length > 0 ? size_t(length) : 0);
+  return path.substr(0, path.rfind('/') + 1) + "wellspring_voice";
 }
 
 struct SpeechProcess::Impl {
@@ -229,7 +230,7 @@ struct SpeechProcess::Impl {
 
 SpeechProcess::SpeechProcess(VoiceProgram program) : impl_(std::make_unique<Impl>()) {
   impl_->program = std::move(program);
-  if (impl_->program.path.empty()) impl_->program.path = default_program();
+  impl_->program.path = program_path(impl_->program);
 }
 
 SpeechProcess::~SpeechProcess() { impl_->stop(); }

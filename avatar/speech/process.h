@@ -32,6 +32,9 @@ struct VoiceProgram {
   double rest_seconds = 5;  // after three starts that led to nothing, before the next
 };
 
+// The file that is started.
+std::string program_path(const VoiceProgram& program);
+
 class SpeechProcess {
  public:
   explicit SpeechProcess(VoiceProgram program = {});

@@ -104,7 +104,7 @@ struct Speaker::Impl {
 
   void work() {
     SpeechProcess process(options.voice);
-    SpeechFolder folder(options.folder, options.folder_bytes);
+    SpeechFolder folder(options.folder, options.folder_bytes, program_path(options.voice));
     std::unique_lock lock(mutex);
     for (std::string key; next(lock, key);) {
       SpeechRequest request = jobs.at(key).request;

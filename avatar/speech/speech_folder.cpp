@@ -73,8 +73,8 @@ std::string speech_key(const SpeechRequest& request) {
          (request.styles.empty() ? "" : "\n\n" + describe_styles(request.styles));
 }
 
-SpeechFolder::SpeechFolder(std::string path, size_t most_bytes)
-    : path_(std::move(path)), most_bytes_(most_bytes) {}
+SpeechFolder::SpeechFolder(std::string path, size_t most_bytes, std::string made_by)
+    : path_(std::move(path)), most_bytes_(most_bytes), made_by_(std::move(made_by)) {}
 
 std::shared_ptr<const Speech> SpeechFolder::load(const SpeechRequest& request) const {
   if (path_.empty()) return nullptr;
@@ -83,7 +83,9 @@ std::shared_ptr<const Speech> SpeechFolder::load(const SpeechRequest& request) c
   unsigned char bytes[protocol::header_bytes];
   if (!in.read(reinterpret_cast<char*>(bytes), sizeof bytes)) return nullptr;
   protocol::Header header = protocol::read_header(bytes);
-  std::error_code code;
+  std::error_code code, none;
+  if (auto made = fs::last_write_time(made_by_, none); !none && fs::last_write_time(file, code) < made)
+    return nullptr;
   uintmax_t size = fs::file_size(file, code);
   if (code || size != sizeof bytes + uintmax_t(header.json) + header.sound ||
       header.json > protocol::max_answer_json || header.sound > protocol::max_sound_bytes ||

@@ -33,30 +33,6 @@ TEST(GestureLibrary, HasTheWordsOfBodyLanguage) {
   }
 }
 
-bool same(const GestureClip& a, const GestureClip& b) {
-  auto swings_match = [&] {
-    for (size_t i = 0; i < a.swings.size(); i++) {
-      const Swing &x = a.swings[i], &y = b.swings[i];
-      if (x.channel != y.channel || x.amplitude != y.amplitude || x.hertz != y.hertz ||
-          x.from != y.from || x.to != y.to || x.phase != y.phase)
-        return false;
-    }
-    return true;
-  };
-  return a.name == b.name && a.about == b.about && a.seconds == b.seconds &&
-         a.stroke == b.stroke && a.hold == b.hold && a.aim == b.aim && a.times == b.times &&
-         a.rows == b.rows && a.slopes == b.slopes && a.uses_arm == b.uses_arm &&
-         a.swings.size() == b.swings.size() && swings_match();
-}
-
-TEST(GestureLibrary, WrittenAndReadAgainItIsTheSame) {
-  const GestureLibrary& library = default_gestures();
-  GestureLibrary again = read_gestures(write_gestures(library), "again.json");
-  ASSERT_EQ(again.clips.size(), library.clips.size());
-  for (size_t i = 0; i < library.clips.size(); i++)
-    EXPECT_TRUE(same(library.clips[i], again.clips[i])) << library.clips[i].name;
-}
-
 TEST(GestureLibrary, ClipsBeginAndEndAtRestAndStayWithinHumanLimits) {
   for (const GestureClip& clip : default_gestures().clips) {
     for (float t : {0.0f, clip.seconds}) {

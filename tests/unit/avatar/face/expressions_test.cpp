@@ -21,40 +21,6 @@ TEST(Expressions, TheSetHasTheSixTheVisemesAndWhatAFaceDoes) {
     EXPECT_GE(find_expression(set, name), 0) << name;
 }
 
-TEST(Expressions, WrittenAndReadAgainTheyAreTheSame) {
-  const ExpressionSet& a = default_expressions();
-  ExpressionSet b = read_expressions(write_expressions(a), "again.json");
-  ASSERT_EQ(a.rotators.size(), b.rotators.size());
-  for (size_t i = 0; i < a.rotators.size(); i++) {
-    EXPECT_EQ(a.rotators[i].name, b.rotators[i].name);
-    EXPECT_EQ(a.rotators[i].joint, b.rotators[i].joint);
-    EXPECT_EQ(a.rotators[i].weights, b.rotators[i].weights);
-    EXPECT_EQ(a.rotators[i].turns, b.rotators[i].turns);
-    EXPECT_EQ(a.rotators[i].orientations, b.rotators[i].orientations);
-  }
-  ASSERT_EQ(a.controls.size(), b.controls.size());
-  for (size_t i = 0; i < a.controls.size(); i++) {
-    EXPECT_EQ(a.controls[i].name, b.controls[i].name);
-    EXPECT_EQ(a.controls[i].kind, b.controls[i].kind);
-    EXPECT_EQ(a.controls[i].displacers, b.controls[i].displacers);
-    EXPECT_EQ(a.controls[i].shared, b.controls[i].shared);
-    EXPECT_EQ(a.controls[i].rotator, b.controls[i].rotator);
-  }
-  ASSERT_EQ(a.expressions.size(), b.expressions.size());
-  for (size_t i = 0; i < a.expressions.size(); i++) {
-    const NamedExpression &x = a.expressions[i], &y = b.expressions[i];
-    EXPECT_EQ(x.name, y.name);
-    EXPECT_EQ(x.about, y.about);
-    EXPECT_EQ(x.kind, y.kind);
-    EXPECT_EQ(x.otherwise, y.otherwise);
-    ASSERT_EQ(x.parts.size(), y.parts.size());
-    for (size_t k = 0; k < x.parts.size(); k++) {
-      EXPECT_EQ(x.parts[k].index, y.parts[k].index);
-      EXPECT_EQ(x.parts[k].weight, y.parts[k].weight);
-    }
-  }
-}
-
 TEST(Expressions, BadFilesAreRefusedWithTheirPlace) {
   auto head = [](const std::string& rest) {
     return "{\"format\":\"wellspring-expressions\",\"version\":1," + rest + "}";

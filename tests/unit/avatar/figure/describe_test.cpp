@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "avatar/figure/describe.h"
-#include "avatar/mind/measure.h"
 #include "unit/avatar/figures.h"
 
 namespace wellspring {
@@ -33,13 +32,6 @@ TEST(Describe, NamesThatAreNoUtf8DoNotBreakTheJson) {
   nlohmann::json j = nlohmann::json::parse(describe_json(c));
   EXPECT_EQ(j["unknown_joints"].size(), 1u);
   EXPECT_NE(describe_text(c).find("not H-Anim"), std::string::npos);
-}
-
-TEST(Describe, MeasuringWorksOnAnyFigure) {
-  Character c = test::load_text(test::whole_figure());
-  AvatarTimes times = measure_avatar(c, 5);
-  EXPECT_GT(times.behave_ms, 0);
-  EXPECT_GT(times.skin_ms, 0);
 }
 
 }  // namespace

@@ -114,6 +114,21 @@ TEST(Speaker, AFolderOutlivesTheSpeakerAndDamageIsNoticed) {
   EXPECT_EQ(speaker.counts().spoken, 1u);
 }
 
+TEST(Speaker, WhatAnOlderVoiceProgramSpokeIsSpokenAnew) {
+  Folder folder;
+  SpeakerOptions options;
+  options.folder = folder.path.string();
+  SpeechRequest request{.text = "Spoken before the update.", .lang = "en"};
+  ASSERT_TRUE(get(Speaker(options).speak(request)).speech);
+  auto updated = fs::last_write_time(program_path(options.voice));
+  for (const auto& entry : fs::directory_iterator(options.folder))
+    fs::last_write_time(entry.path(), updated - std::chrono::seconds(1));
+  Speaker speaker(options);
+  EXPECT_TRUE(get(speaker.speak(request)).speech);
+  EXPECT_EQ(speaker.counts().from_folder, 0u);
+  EXPECT_EQ(speaker.counts().spoken, 1u);
+}
+
 TEST(Speaker, AFolderIsBounded) {
   Folder folder;
   SpeakerOptions options;
