@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Documents are short, and what they name exists.
+import assert from 'node:assert/strict';
+import { existsSync, readFileSync, readdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+
+const root = process.env.WELLSPRING_SOURCE;
+const read = (name) => readFileSync(join(root, name), 'utf8');
+
+function files(folder, kind) {
+  return readdirSync(join(root, folder), { withFileTypes: true, recursive: true })
+      .filter((entry) => entry.isFile() && kind.test(entry.name))
+      .map((entry) => join(entry.parentPath ?? entry.path, entry.name));
+}
+const code = ['server', 'avatar', 'kiosk', 'tests/unit', 'tests/benchmark']
+    .flatMap((top) => files(top, /\.(h|cpp)$/)).map((file) => readFileSync(file, 'utf8')).join('\n');
+
+// `a/b`, `a/b.h`, `a/b/` or a stem of files: a place in the tree, seen from its root or server/.
+function is_place(name) {
+  const found = ['', 'server/', 'tests/'].map((top) => top + name.replace(/\/$/, ''));
+  return found.some((path) => ['', '.h', '.cpp'].some((end) => existsSync(join(root, path + end))));
+}
+const documents = ['ARCHITECTURE.md', 'CONTRIBUTING.md', 'README.md', 'BENCHMARKS.md',
+  'CHANGELOG.md', 'docs/terms.md', 'docs/tried.md', 'docs/mechanisms.md', 'content/README.md'];
+
+test('ARCHITECTURE.md has at most 250 lines', () =>
+  assert.ok(read('ARCHITECTURE.md').split('\n').length <= 250));
+
+test('every function in ARCHITECTURE.md exists', () => {
+  const names = [...read('ARCHITECTURE.md').matchAll(/\b([a-z_0-9]+)\(\)/g)].map((m) => m[1]);
+  assert.ok(names.length > 20, 'the drawings name functions');
+  const missing = names.filter((name) => !new RegExp(`[ *&:]${name}\\(`).test(code));
+  assert.deepEqual(missing, []);
+});
+
+test('every file and folder that a document names exists', () => {
+  const wrong = [];
+  for (const document of documents) {
+    const places = [...read(document).matchAll(
+        /`((?:server|avatar|kiosk|tests|docs|base|wire|frame|denoise|gltf|world|light|cache|picture|show|stream)\/[\w./]*)`/g)];
+    for (const [, name] of places)
+      if (!is_place(name) && !/NAME/.test(name)) wrong.push(`${document}: ${name}`);
+  }
+  assert.deepEqual(wrong, []);
+});
+
+test('every mechanism in docs/mechanisms.md is there', () => {
+  const rows = read('docs/mechanisms.md').split('\n').filter((line) => /^\| [a-z]/.test(line));
+  assert.ok(rows.length > 15);
+  const wrong = [];
+  for (const row of rows.slice(1))
+    for (const [, name] of row.split('|')[1].matchAll(/`([\w/]+)\*?`/g)) {
+      const known = is_place(name) || new RegExp(`\\b${name}`).test(code) ||
+          ['cache', 'picture', 'picture/still', 'world/raster'].some((f) => is_place(`${f}/${name}`));
+      if (!known) wrong.push(name);
+    }
+  assert.deepEqual(wrong, []);
+});
+
+test('lines of documents end at 100 columns, but in tables', () => {
+  const wrong = [];
+  for (const document of documents)
+    read(document).split('\n').forEach((line, i) => {
+      if ([...line].length > 100 && !/^\s*\||https?:/.test(line)) wrong.push(`${document}:${i + 1}`);
+    });
+  assert.deepEqual(wrong, []);
+});
