@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "avatar/speech/features.h"
+#include "avatar/align/features.h"
 
 #include <algorithm>
 #include <array>

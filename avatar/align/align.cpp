@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "avatar/speech/align.h"
+#include "avatar/align/align.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "avatar/speech/coarse.h"
-#include "avatar/speech/learn.h"
-#include "avatar/speech/template.h"
-#include "avatar/speech/time_warp.h"
+#include "avatar/align/coarse.h"
+#include "avatar/align/learn.h"
+#include "avatar/align/template.h"
+#include "avatar/align/time_warp.h"
 
 namespace wellspring {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "avatar/speech/learn.h"
+#include "avatar/align/learn.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "avatar/speech/coarse.h"
+#include "avatar/align/coarse.h"
 
 #include <algorithm>
 #include <array>

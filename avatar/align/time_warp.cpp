@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "avatar/speech/time_warp.h"
+#include "avatar/align/time_warp.h"
 
 #include <algorithm>
 #include <limits>

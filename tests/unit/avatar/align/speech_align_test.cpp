@@ -11,9 +11,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "avatar/speech/align.h"
-#include "avatar/speech/process.h"
+#include "avatar/align/align.h"
 #include "avatar/speech/mouth_shapes.h"
+#include "avatar/speech/process.h"
 #include "base/rng.h"
 #include "unit/avatar/speech/narrator.h"
 #include "unit/avatar/speech/speech_texts.h"

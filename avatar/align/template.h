@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "avatar/align/time_warp.h"
 #include "avatar/speech/speech.h"
-#include "avatar/speech/time_warp.h"
 
 namespace wellspring {
 

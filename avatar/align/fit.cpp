@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "avatar/speech/fit.h"
+#include "avatar/align/fit.h"
 
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "avatar/speech/coarse.h"
+#include "avatar/align/coarse.h"
 #include "base/rng.h"
 
 namespace wellspring {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "avatar/speech/time_warp.h"
+#include "avatar/align/time_warp.h"
 #include "base/rng.h"
 
 namespace wellspring {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "avatar/speech/template.h"
+#include "avatar/align/template.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "avatar/speech/features.h"
+#include "avatar/align/features.h"
 
 namespace wellspring {
 

@@ -2,10 +2,10 @@
 // A recording and the text as it is synthesised, as features that can be compared, and the first,
 // coarse way from one to the other.
 #pragma once
+#include "avatar/align/features.h"
+#include "avatar/align/template.h"
+#include "avatar/align/time_warp.h"
 #include "avatar/speech/speech.h"
-#include "avatar/speech/features.h"
-#include "avatar/speech/template.h"
-#include "avatar/speech/time_warp.h"
 
 namespace wellspring {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether a recording says a text at all.
 #pragma once
-#include "avatar/speech/speech.h"
 #include "avatar/speech/sound_file.h"
+#include "avatar/speech/speech.h"
 
 namespace wellspring {
 

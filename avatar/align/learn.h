@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "avatar/speech/features.h"
-#include "avatar/speech/template.h"
+#include "avatar/align/features.h"
+#include "avatar/align/template.h"
 
 namespace wellspring {
 

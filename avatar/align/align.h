@@ -13,8 +13,8 @@
 #pragma once
 #include <string>
 
-#include "avatar/speech/speech.h"
 #include "avatar/speech/sound_file.h"
+#include "avatar/speech/speech.h"
 
 namespace wellspring {
 
