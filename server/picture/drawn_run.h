@@ -43,10 +43,10 @@ inline Shining describe_run(const SightRun& run, RunPixels& p) {
 }
 
 // Eight lanes of a run's array from lane `i` on, which may begin before it and end behind it.
-inline f8 lanes_at(const float* from, int i) {
-  if (i >= 0) return load<f8>(from + i);  // arrays may be read up to eight beyond their end
-  f8 v{};
-  std::memcpy(reinterpret_cast<float*>(&v) - i, from, size_t(lanes + i) * sizeof(float));
+inline Lanes lanes_at(const float* from, int i) {
+  if (i >= 0) return load_lanes(from + i);  // arrays may be read up to eight beyond their end
+  Lanes v{};
+  std::memcpy(reinterpret_cast<float*>(&v) - i, from, size_t(lane_count + i) * sizeof(float));
   return v;
 }
 
@@ -64,17 +64,17 @@ inline unsigned bits_at(uint64_t bits, int i) {
 inline constexpr float skin_samples = 64;  // as much as light of the skin is sure of
 
 // Radiance of those of eight pixels, from lane `i` on, that reflect the light of the skin.
-inline void put_moving(const RunPixels& p, const RunSkin& skin, int i, const i8& lanes_that_move,
-                       Shown& shown) {
-  f8 gloss = lanes_at(skin.gloss, i);
-  auto put = [&](const float* light, const float* reflectance, f8& to) {
-    f8 lit = lanes_at(light, i) * (lanes_at(reflectance, i) * (1.0f - gloss) + gloss);
-    to = lanes_that_move ? positive(lit) : to;
+inline void put_moving(const RunPixels& p, const RunSkin& skin, int i,
+                       const LaneMask& lanes_that_move, Shown& shown) {
+  Lanes gloss = lanes_at(skin.gloss, i);
+  auto put = [&](const float* light, const float* reflectance, Lanes& to) {
+    Lanes lit = lanes_at(light, i) * (lanes_at(reflectance, i) * (1.0f - gloss) + gloss);
+    to = lanes_that_move ? positive_lanes(lit) : to;
   };
   put(skin.red, p.surface.red, shown.color.r);
   put(skin.green, p.surface.green, shown.color.g);
   put(skin.blue, p.surface.blue, shown.color.b);
-  shown.samples = lanes_that_move ? splat(skin_samples) : shown.samples;
+  shown.samples = lanes_that_move ? all_lanes(skin_samples) : shown.samples;
 }
 
 // What of eight pixels shines by itself. `here`: lanes that count, a bit each.
