@@ -2,8 +2,8 @@
 // Where pixels of a drawn picture go, eight at a time.
 #pragma once
 #include "frame/tone_curve.h"
+#include "frame/write_pixels.h"
 #include "picture/pixel_light.h"
-#include "picture/write_pixels.h"
 
 namespace wellspring {
 

@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "cache/packing.h"
 #include "cache/packing_simd.h"
-#include "picture/write_pixels.h"
+#include "frame/write_pixels.h"
 
 namespace wellspring {
 namespace {
