@@ -4,8 +4,9 @@
 #include <cstring>
 
 #include "picture/cells.h"
-#include "picture/compose_drawn.h"
+#include "picture/light_view.h"
 #include "picture/pixel_light.h"
+#include "world/raster/raster.h"
 
 namespace wellspring {
 

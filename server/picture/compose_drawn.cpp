@@ -227,8 +227,8 @@ struct Composer {
   const CellRows<Scale>& rows_around(const SightRun& run) const;
   void light_narrow(const LaneMask& lonely, int lx, int ly, Drawn& d) const;
   void light_run(const RunPixels& p, const SightRun& run, const CellRows<Scale>& rows,
-                 const Shining& shining, int n, LanePart part, Drawn& d) const;
-  Shown light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
+                 const RunGlow& shining, int n, LanePart part, Drawn& d) const;
+  Shown light_part(const SightRun& run, const RunPixels& p, const RunGlow& shining,
                    const RunMoving& moving, const CellRows<Scale>& rows, int n,
                    LanePart part) const;
 };
@@ -273,7 +273,7 @@ void Composer<Scale>::light_narrow(const LaneMask& lonely, int lx, int ly, Drawn
 // anything. What the light of points says of them.
 template <int Scale>
 void Composer<Scale>::light_run(const RunPixels& p, const SightRun& run,
-                                const CellRows<Scale>& rows, const Shining& shining, int n,
+                                const CellRows<Scale>& rows, const RunGlow& shining, int n,
                                 LanePart part, Drawn& d) const {
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
   int i = n * lane_count - half_group, x = run.x + i;  // the first lane's pixel
@@ -306,7 +306,7 @@ void Composer<Scale>::light_run(const RunPixels& p, const SightRun& run,
 }
 
 template <int Scale>
-Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
+Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const RunGlow& shining,
                                   const RunMoving& moving, const CellRows<Scale>& rows, int n,
                                   LanePart part) const {
   const int i = n * lane_count - half_group;
@@ -337,7 +337,7 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
   return [&composer, &planes](const SightRun& run) {
     RunPixels p;
     RunMoving moving;
-    Shining shining = describe_run(run, p);
+    RunGlow shining = describe_run(run, p);
     if (composer.skin) moving.pixels = run.light(*composer.skin, p.surface, moving.light);
     const CellRows<Scale>& rows = composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
