@@ -8,11 +8,11 @@
 #include <iostream>
 #include <sstream>
 
-#include "avatar/story/recorded_story.h"
-#include "avatar/speech/align.h"
-#include "avatar/speech/speech_json.h"
+#include "avatar/align/align.h"
 #include "avatar/speech/process.h"
 #include "avatar/speech/sound_file.h"
+#include "avatar/speech/speech_json.h"
+#include "avatar/story/recorded_story.h"
 #include "avatar/story/story_load.h"
 #include "avatar/story/story_sentence.h"
 #include "avatar/story/story_speech.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "avatar/figure/joint_limits.h"
 #include "avatar/body/point_at.h"
+#include "avatar/figure/joint_limits.h"
 
 namespace wellspring {
 namespace {
@@ -198,21 +198,6 @@ void pose_drawn_eyes(const Rig& rig, vec3 point, Pose& pose) {
 }
 
 }  // namespace
-
-JointFrame eval_joint_frame(const Character& character, const Pose& pose, int joint) {
-  // From the joint up to the root: p' = c + r (p - c).
-  quat rotation(1, 0, 0, 0);
-  vec3 place = character.joints[size_t(joint)].center;
-  for (int j = joint; j >= 0; j = character.joints[size_t(j)].parent) {
-    quat turn = pose.rotations[size_t(j)];
-    vec3 center = character.joints[size_t(j)].center;
-    place = center + turn * (place - center);
-    if (size_t(j) < pose.translations.size()) place += pose.translations[size_t(j)];
-    rotation = turn * rotation;
-    if (character.joints[size_t(j)].parent < 0) place += pose.translation;
-  }
-  return {rotation, place};
-}
 
 void eval_body(const Rig& rig, const BodyPlan& plan, Pose& pose) {
   quat heading = about_y(plan.heading);

@@ -36,13 +36,6 @@ void eval_body(const Rig& rig, const BodyPlan& plan, Pose& pose);
 // Turns both eyes to the gaze point from wherever the head is by now.
 void aim_eyes(const Rig& rig, vec3 gaze_point, Pose& pose);
 
-// A joint's frame as posed: rotation and place of its centre, humanoid space.
-struct JointFrame {
-  quat rotation{1, 0, 0, 0};
-  vec3 center{0};
-};
-JointFrame eval_joint_frame(const Character& character, const Pose& pose, int joint);
-
 // Largest turns of an eye in its socket.
 inline constexpr float eye_limit_yaw = 0.62f, eye_limit_up = 0.45f, eye_limit_down = 0.55f;
 

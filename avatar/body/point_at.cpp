@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "avatar/body/body.h"
 #include "avatar/figure/joint_limits.h"
 
 namespace wellspring {

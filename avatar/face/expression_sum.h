@@ -5,8 +5,8 @@
 // A sum has one number a control and one a rotator. Adding is linear, so it is commutative, has the
 // empty sum as identity, and weights that cancel leave nothing. Bounds are put on once, when a sum
 // is applied; clamping in between would make the result depend on the order. docs/expressions.md
-// writes the laws down, tests/unit/avatar/face/expression_algebra_test.cpp draws random sums against
-// them.
+// writes the laws down, tests/unit/avatar/face/expression_algebra_test.cpp draws random sums
+// against them.
 #pragma once
 #include <array>
 #include <string>

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "avatar/body/body.h"
 
 namespace wellspring {
 namespace {

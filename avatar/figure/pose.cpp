@@ -30,4 +30,19 @@ void eval_joints(const Character& character, const Pose& pose, std::vector<mat4>
   }
 }
 
+JointFrame eval_joint_frame(const Character& character, const Pose& pose, int joint) {
+  // From the joint up to the root: p' = c + r (p - c).
+  quat rotation(1, 0, 0, 0);
+  vec3 place = character.joints[size_t(joint)].center;
+  for (int j = joint; j >= 0; j = character.joints[size_t(j)].parent) {
+    quat turn = pose.rotations[size_t(j)];
+    vec3 center = character.joints[size_t(j)].center;
+    place = center + turn * (place - center);
+    if (size_t(j) < pose.translations.size()) place += pose.translations[size_t(j)];
+    rotation = turn * rotation;
+    if (character.joints[size_t(j)].parent < 0) place += pose.translation;
+  }
+  return {rotation, place};
+}
+
 }  // namespace wellspring

@@ -23,4 +23,11 @@ Pose make_rest_pose(const Character& character);
 // humanoid space.
 void eval_joints(const Character& character, const Pose& pose, std::vector<mat4>& to_humanoid);
 
+// A joint's frame as posed: rotation and place of its centre, humanoid space.
+struct JointFrame {
+  quat rotation{1, 0, 0, 0};
+  vec3 center{0};
+};
+JointFrame eval_joint_frame(const Character& character, const Pose& pose, int joint);
+
 }  // namespace wellspring

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "avatar/body/body.h"
 
 namespace wellspring {
 namespace {

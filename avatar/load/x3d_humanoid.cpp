@@ -9,6 +9,7 @@
 #include "avatar/figure/figure_check.h"
 #include "avatar/figure/hanim_names.h"
 #include "avatar/load/x3d_motion.h"
+#include "avatar/load/x3d_reader.h"
 #include "base/load_error.h"
 
 namespace wellspring {

@@ -3,7 +3,7 @@
 // TimeSensor drives and that ROUTEs lead to joints, the humanoid or displacers: one Motion a
 // TimeSensor.
 #pragma once
-#include "avatar/load/x3d_humanoid.h"
+#include "avatar/load/x3d_reader.h"
 
 namespace wellspring {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "avatar/load/x3d_humanoid.h"
 #include "avatar/load/x3d_appearance.h"
+#include "avatar/load/x3d_reader.h"
 #include "base/load_error.h"
 
 namespace wellspring {

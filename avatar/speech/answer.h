@@ -7,7 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "avatar/speech/process.h"
+#include "avatar/speech/request.h"
+#include "avatar/speech/speech.h"
 
 namespace wellspring {
 

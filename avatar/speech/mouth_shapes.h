@@ -32,14 +32,4 @@ std::vector<MouthShape> mouth_shapes(std::string_view ipa, std::string* unknown 
 // Whether an eSpeak NG mnemonic is a pause ("_", "_:", "_::", "_!", "_|" ...).
 bool is_pause(std::string_view mnemonic);
 
-// A phoneme as the mouth sees it, input of make_visemes.
-struct MouthSound {
-  double begin = 0, end = 0;
-  std::vector<MouthShape> shapes;  // none: keeps on its way to the next (h, glottal stop)
-  bool pause = false;
-};
-
-// `sounds` in order of time. Sounds shorter than 15 ms are passed over, but for closures.
-VisemeTrack make_visemes(const std::vector<MouthSound>& sounds);
-
 }  // namespace wellspring

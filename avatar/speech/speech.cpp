@@ -5,7 +5,7 @@
 #include <mutex>
 #include <set>
 
-#include "avatar/speech/mouth_shapes.h"
+#include "avatar/speech/make_visemes.h"
 #include "base/log.h"
 
 namespace wellspring {

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mouth of a speaker over time: fifteen weights (the MPEG-4 set in Oculus' naming) that glide
-// from one held shape to the next.
-//
-// Co-articulation. Every phoneme has a shape and a share: bilabials and labiodentals keep all of
-// the mouth, the tongue's consonants (d, k, n, ...) leave most of it to the vowels around them,
-// the coming vowel more than the past one (look-ahead, Pelachaud, Badler, Steedman 1996, section
-// 4; the shares stand for the dominance of Cohen & Massaro 1993). Diphthongs are two shapes or
-// three. A held shape is reached and left by a smooth step, so weights have no corners.
+// from one held shape to the next. make_visemes.h makes it from sounds.
 //
 // Laws, at every time: each weight in [0, 1]; their sum is 1, `sil` being the rest; a closure (p b
 // m) holds PP = 1 from the beginning of its sound until it opens. Evaluation keeps no state, so it

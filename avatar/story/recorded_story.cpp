@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "avatar/speech/align.h"
-#include "avatar/speech/features.h"
-#include "avatar/speech/fit.h"
+#include "avatar/align/align.h"
+#include "avatar/align/features.h"
+#include "avatar/align/fit.h"
 #include "avatar/speech/speech_json.h"
 #include "avatar/story/story_speech.h"
 #include "base/load_error.h"

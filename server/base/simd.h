@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight floats side by side, as vector units compute them; arithmetic and comparisons are the
-// compiler's (GCC and Clang vector extensions), `mask ? a : b` chooses lane by lane.
+// Eight numbers side by side, as vector units compute them, written once for every processor:
+// arithmetic and comparisons are the compiler's (GCC and Clang vector extensions). Comparisons give
+// lanes of all bits or none; `mask ? a : b` chooses lane by lane.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -13,13 +14,27 @@ namespace wellspring {
 
 inline constexpr int lane_count = 8;
 using Lanes = float __attribute__((vector_size(4 * lane_count)));
-using LaneMask = int __attribute__((vector_size(4 * lane_count)));
+using LaneMask = int32_t __attribute__((vector_size(4 * lane_count)));  // whole numbers, too
 using LaneBits = uint32_t __attribute__((vector_size(4 * lane_count)));
+using HalfLanes = float __attribute__((vector_size(2 * lane_count)));
+using HalfLaneBits = uint32_t __attribute__((vector_size(2 * lane_count)));
 
 inline Lanes all_lanes(float x) { return Lanes{x, x, x, x, x, x, x, x}; }
+inline LaneBits all_lane_bits(uint32_t x) { return LaneBits{x, x, x, x, x, x, x, x}; }
 inline Lanes lanes_max(Lanes a, Lanes b) { return a > b ? a : b; }
 inline Lanes lanes_min(Lanes a, Lanes b) { return a < b ? a : b; }
-inline Lanes lanes_abs(Lanes a) { return a < 0 ? -a : a; }
+// The same bits in other lanes of the same size.
+template <class To, class From>
+inline To lanes_as(const From& v) {
+  static_assert(sizeof(To) == sizeof(From));
+  return reinterpret_cast<To>(v);
+}
+inline Lanes lanes_abs(Lanes a) { return lanes_as<Lanes>(lanes_as<LaneBits>(a) & 0x7fffffffu); }
+inline Lanes positive_lanes(Lanes a) { return lanes_max(a, Lanes{}); }
+// 0 where the mask has no bits.
+inline Lanes keep_lanes(LaneMask mask, Lanes a) {
+  return lanes_as<Lanes>(lanes_as<LaneMask>(a) & mask);
+}
 inline Lanes lanes_sqrt(Lanes a) {
 #ifdef __AVX__
   return Lanes(_mm256_sqrt_ps(__m256(a)));
@@ -28,14 +43,23 @@ inline Lanes lanes_sqrt(Lanes a) {
   return a;
 #endif
 }
-// Eight neighbours in memory, aligned or not.
-inline Lanes load_lanes(const float* from) {
-  Lanes a;
-  std::memcpy(&a, from, sizeof a);
-  return a;
+// Neighbours in memory, aligned or not.
+template <class V = Lanes, class T>
+inline V load_lanes(const T* from) {
+  V v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
 }
-inline void store_lanes(float* to, Lanes a) { std::memcpy(to, &a, sizeof a); }
-inline void store_lanes(int32_t* to, LaneMask a) { std::memcpy(to, &a, sizeof a); }
+template <class T, class V>
+inline void store_lanes(T* to, const V& v) {
+  std::memcpy(to, &v, sizeof v);
+}
+// Two halves side by side.
+inline LaneBits join_halves(HalfLaneBits low, HalfLaneBits high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+inline HalfLaneBits low_half(LaneBits a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
+inline HalfLaneBits high_half(LaneBits a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
 // Eight rows become eight columns.
 inline void transpose_lanes(Lanes (&row)[lane_count]) {
   Lanes pair[lane_count], four[lane_count];
@@ -53,6 +77,29 @@ inline void transpose_lanes(Lanes (&row)[lane_count]) {
     row[i] = __builtin_shufflevector(four[i], four[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
     row[i + 4] = __builtin_shufflevector(four[i], four[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
   }
+}
+// Eight records of four words each, `record(0)` to `record(7)`, become four times eight lanes.
+template <class Record>
+inline void transpose_records(const Record& record, LaneBits& a, LaneBits& b, LaneBits& c,
+                              LaneBits& d) {
+  auto pair = [&](int i) {
+    return join_halves(load_lanes<HalfLaneBits>(record(i)),
+                       load_lanes<HalfLaneBits>(record(i + 4)));
+  };
+  LaneBits r04 = pair(0), r15 = pair(1), r26 = pair(2), r37 = pair(3);
+  LaneBits ab01 = __builtin_shufflevector(r04, r15, 0, 8, 1, 9, 4, 12, 5, 13),
+           cd01 = __builtin_shufflevector(r04, r15, 2, 10, 3, 11, 6, 14, 7, 15),
+           ab23 = __builtin_shufflevector(r26, r37, 0, 8, 1, 9, 4, 12, 5, 13),
+           cd23 = __builtin_shufflevector(r26, r37, 2, 10, 3, 11, 6, 14, 7, 15);
+  a = __builtin_shufflevector(ab01, ab23, 0, 1, 8, 9, 4, 5, 12, 13);
+  b = __builtin_shufflevector(ab01, ab23, 2, 3, 10, 11, 6, 7, 14, 15);
+  c = __builtin_shufflevector(cd01, cd23, 0, 1, 8, 9, 4, 5, 12, 13);
+  d = __builtin_shufflevector(cd01, cd23, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+inline Lanes to_float(LaneBits a) { return __builtin_convertvector(lanes_as<LaneMask>(a), Lanes); }
+// Cut off towards 0.
+inline LaneBits to_whole(Lanes a) {
+  return lanes_as<LaneBits>(__builtin_convertvector(a, LaneMask));
 }
 // To the nearest whole number, as std::lrint does.
 inline LaneMask round_lanes(Lanes a) {
@@ -72,6 +119,19 @@ inline unsigned negative_lanes(LaneMask a) {
   unsigned bits = 0;
   for (int i = 0; i < lane_count; i++) bits |= unsigned(a[i] < 0) << i;
   return bits;
+#endif
+}
+// Whether any bit is set.
+template <class V>
+inline bool any_lane(const V& v) {
+  static_assert(sizeof v == 32);
+#ifdef __AVX__
+  return !_mm256_testz_si256(__m256i(v), __m256i(v));
+#else
+  uint64_t words[sizeof v / 8], sum = 0;
+  std::memcpy(words, &v, sizeof v);
+  for (uint64_t w : words) sum |= w;
+  return sum != 0;
 #endif
 }
 // The comparison's answer that has these bits.

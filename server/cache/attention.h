@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How urgent a new sample is at every pixel (Walter 1999, section 4 and 4.1).
 #pragma once
-#include "cache/cache.h"
+#include "cache/cache_settings.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
 #include "world/view.h"

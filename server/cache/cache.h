@@ -11,36 +11,17 @@
 #include <span>
 #include <vector>
 
+#include "cache/cache_settings.h"
+#include "cache/cache_stats.h"
 #include "frame/frame.h"
 #include "light/sample.h"
 #include "world/view.h"
 
 namespace wellspring {
 
-struct CacheSettings {
-  float points_per_pixel = 1.0625f;  // capacity over pixels (paper, section 4.3: slightly larger)
-  float depth_threshold = 0.1f;      // paper, section 3.1
-  float color_change = 0.25f;  // relative change of a resampled point that ages its neighbours
-  float budget_share_old = 1;  // weight of age against emptiness in the priority
-  bool attention = true;       // false: samples spread evenly
-};
-
 struct PointCache;  // cache/point_cache.h: the points
 struct PointImage;  // cache/point_image.h: what projects where, priorities
 class Scratch;
-
-// What the last frame looked like, in numbers (for /metrics, the status page and tests).
-struct CacheStats {
-  int points = 0;                                           // in use
-  float fresh = 0, reprojected = 0, filled = 0, empty = 0;  // shares of the picture's pixels
-  float mean_age = 0;   // of the visible points, 0 (new) to 254; see age_points()
-  float converged = 0;  // share of pixels whose point has reached its sample goal
-};
-// Of a picture's pixels: those with a point, and with one of `converged_samples` or more.
-inline constexpr uint32_t converged_samples = 32;
-struct ShownPoints {
-  int64_t points = 0, converged = 0;
-};
 
 // What is needed from project() until the picture is there and means nothing afterwards. Caches
 // whose frames are never under way at the same time may share it.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "cache/simd.h"
+#include "base/simd.h"
 #include "cache/project.h"
 
 namespace wellspring {
@@ -56,23 +56,23 @@ struct Codes {
 
 // All bits where a pixel's point lies behind what surrounds it. `rows` point at the first pixel.
 ShortLanes judge(const int16_t* const* rows, const int16_t* limits) {
-  ShortLanes limit = load<ShortLanes>(limits), columns[window] = {}, lines[window] = {};
+  ShortLanes limit = load_lanes<ShortLanes>(limits), columns[window] = {}, lines[window] = {};
 #pragma GCC unroll 5
   for (int dy = 0; dy < window; dy++)
 #pragma GCC unroll 5
     for (int dx = 0; dx < window; dx++) {
-      ShortLanes nearer = load<ShortLanes>(rows[dy] + dx - reach) < limit;
+      ShortLanes nearer = load_lanes<ShortLanes>(rows[dy] + dx - reach) < limit;
       columns[dx] += nearer;
       lines[dy] += nearer;
     }
   ShortLanes nearer = -(columns[0] + columns[1] + columns[2] + columns[3] + columns[4]);
   ShortLanes several = nearer >= 3;
-  if (!any(several)) return several;
+  if (!any_lane(several)) return several;
   ShortLanes sx = 2 * (columns[4] - columns[0]) + columns[3] - columns[1],
         sy = 2 * (lines[4] - lines[0]) + lines[3] - lines[1], others = ShortLanes{} - 1;
   for (int dy = 0; dy < window; dy++)
     for (int dx = 0; dx < window; dx++)
-      others -= load<ShortLanes>(rows[dy] + dx - reach) != nothing;
+      others -= load_lanes<ShortLanes>(rows[dy] + dx - reach) != nothing;
   // Nearer neighbours on all sides have a short mean offset; those of a silhouette a long one. They
   // hide only as the majority: through a lattice the background shows rightly.
   ShortLanes around =

@@ -8,10 +8,10 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "cache/simd.h"
+#include "base/simd.h"
 #include "cache/packing.h"
-#include "light/walk/first_surface.h"
 #include "light/material/material_use.h"
+#include "light/walk/first_surface.h"
 #include "world/surface.h"
 
 namespace wellspring {
@@ -23,14 +23,14 @@ static_assert(group_size == sizeof(GroupBytes), "capacities are whole groups");
 
 template <class Bytes>
 void age_some(uint8_t* age, const uint8_t* flags, uint8_t step) {
-  Bytes base = Bytes{} + step, flag = load<Bytes>(flags), old = load<Bytes>(age);
-  Bytes seen = as<Bytes>((flag & uint8_t(point_visible)) != 0),
-        fast = as<Bytes>((flag & uint8_t(point_specular | point_moving)) != 0);
+  Bytes base = Bytes{} + step, flag = load_lanes<Bytes>(flags), old = load_lanes<Bytes>(age);
+  Bytes seen = lanes_as<Bytes>((flag & uint8_t(point_visible)) != 0),
+        fast = lanes_as<Bytes>((flag & uint8_t(point_specular | point_moving)) != 0);
   Bytes sum = old + (base + (uint8_t(2) * base & fast) + (base & ~seen));
-  sum |= as<Bytes>(sum < old);  // beyond 255 it wrapped around
+  sum |= lanes_as<Bytes>(sum < old);  // beyond 255 it wrapped around
   // A seen point stops one before eviction; one that was evicted meanwhile stays evicted.
-  sum += seen & as<Bytes>(sum == evicted_age);
-  store(age, sum | as<Bytes>(old == evicted_age));
+  sum += seen & lanes_as<Bytes>(sum == evicted_age);
+  store_lanes(age, sum | lanes_as<Bytes>(old == evicted_age));
 }
 
 }  // namespace

@@ -2,9 +2,10 @@
 // The picture of points alone as it was published (Walter, Drettakis, Parker 1999, section 3.1):
 // what others are compared with.
 #pragma once
-#include "cache/cache.h"
+#include "cache/cache_stats.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
+#include "frame/frame.h"
 
 namespace wellspring {
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Key frames of a glTF file: STEP, LINEAR (spherical for rotations) and CUBICSPLINE, appendix C.
 #pragma once
-#include "gltf/pose.h"
+#include <string>
+#include <vector>
+
+#include "gltf/file.h"
+#include "gltf/node.h"
 
 namespace wellspring::gltf {
 

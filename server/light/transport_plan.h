@@ -4,8 +4,9 @@
 // compute, only what the plan uses: `tables->plan` of Lights.
 //
 // A part is left out only where it provably cannot change a picture: a material counts by what its
-// textures, vertex colours and alpha leave of it (light/material/material_use.h), a light by its power, and
-// what no instance shows does not count. Milliseconds, more where big textures must be looked at.
+// textures, vertex colours and alpha leave of it (light/material/material_use.h), a light by its
+// power, and what no instance shows does not count. Milliseconds, more where big textures must be
+// looked at.
 #pragma once
 #include <span>
 #include <string>

@@ -4,8 +4,9 @@
 #include <cstring>
 
 #include "picture/cells.h"
-#include "picture/compose_drawn.h"
+#include "picture/light_view.h"
 #include "picture/pixel_light.h"
+#include "world/raster/raster.h"
 
 namespace wellspring {
 
@@ -15,20 +16,21 @@ namespace wellspring {
 template <int Scale>
 constexpr int group = cell_size * Scale;
 template <int Scale>
-constexpr int together = lanes / group<Scale>;
+constexpr int together = lane_count / group<Scale>;
 static_assert(cell_size == packed_four && together<light_scale> == 1 && together<1> == 2);
 
 // What the lanes of two groups side by side have to the same side of them.
-struct WideCell : CellLightOf<f8, u8> {
-  f8 albedo[3];
+struct WideCell : CellLightOf<Lanes, LaneBits> {
+  Lanes albedo[3];
 };
 inline void spread_cells(const PaintedCell& left, const PaintedCell& right, WideCell& to) {
   constexpr size_t count = sizeof(PaintedCell) / sizeof(float);
-  static_assert(sizeof(WideCell) == count * sizeof(f8));
+  static_assert(sizeof(WideCell) == count * sizeof(Lanes));
   float a[count], b[count];
   std::memcpy(a, &left, sizeof a), std::memcpy(b, &right, sizeof b);
-  f8 both[count];
-  for (size_t i = 0; i < count; i++) both[i] = f8{a[i], a[i], a[i], a[i], b[i], b[i], b[i], b[i]};
+  Lanes both[count];
+  for (size_t i = 0; i < count; i++)
+    both[i] = Lanes{a[i], a[i], a[i], a[i], b[i], b[i], b[i], b[i]};
   std::memcpy(static_cast<void*>(&to), both, sizeof both);
 }
 
@@ -42,7 +44,8 @@ struct CellRows {
   int first = 0, row = 0, count = 0;
   int above = 0;  // which of the rows
   Cell cell[2][most];
-  i8 flat[most];  // lanes of each group and those beside it that lie between cells in one plane
+  LaneMask
+      flat[most];  // lanes of each group and those beside it that lie between cells in one plane
 
   const Cell& at(int r, int k) const { return cell[above ^ r][k]; }
   void read(const PixelRays& rays, const Cells& cells, uint64_t of, int x, int y, int columns);
@@ -71,11 +74,11 @@ void CellRows<Scale>::read(const PixelRays& rays, const Cells& cells, uint64_t o
   above = below ? above ^ 1 : 0;
   if (!below) read_row(cells, y, cell[above]);
   read_row(cells, y + 1, cell[above ^ 1]);
-  int32_t one_plane[most + 2 * lanes] = {};  // by groups
-  for (int g = 0; g < count; g += lanes)
-    store(one_plane + g, find_flat(rays, cells, first + 1 + g, row + 1));
+  int32_t one_plane[most + 2 * lane_count] = {};  // by groups
+  for (int g = 0; g < count; g += lane_count)
+    store_lanes(one_plane + g, find_flat(rays, cells, first + 1 + g, row + 1));
   for (int g = 0; g < count; g++)
-    for (int k = 0; k < lanes; k++) flat[g][k] = one_plane[g + k / group<Scale>];
+    for (int k = 0; k < lane_count; k++) flat[g][k] = one_plane[g + k / group<Scale>];
 }
 
 }  // namespace wellspring

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "cache/simd.h"
+#include "cache/packing_simd.h"
 #include "picture/cells.h"
 
 namespace wellspring {
@@ -26,26 +26,26 @@ constexpr float least_detail =
     1 / 48.0f;  // of smooth light among nine cells: a variance over the mean squared
 constexpr float most_patience = 192;       // samples
 
-f8 load_at(std::span<const float> plane, size_t i) { return load<f8>(plane.data() + i); }
-f8 clamped(const f8& v, float low, float high) {
-  return smaller(larger(v, splat(low)), splat(high));
+Lanes load_at(std::span<const float> plane, size_t i) { return load_lanes(plane.data() + i); }
+Lanes clamped(const Lanes& v, float low, float high) {
+  return lanes_min(lanes_max(v, all_lanes(low)), all_lanes(high));
 }
 
 // Sums over cells of one object.
 struct Pool {
-  f8 samples{}, points{}, sum{}, sum2{};
-  f8 rest{}, rest2{}, rest_noise{}, rest_known{};
-  f8 pairs{}, pair_sum{};
+  Lanes samples{}, points{}, sum{}, sum2{};
+  Lanes rest{}, rest2{}, rest_noise{}, rest_known{};
+  Lanes pairs{}, pair_sum{};
 };
 using PoolPlanes = decltype(Cells::pooled);
 
 template <class Read>
-void add(Pool& pool, const i8& same, const Read& read) {
-  pool.samples += keep(same, read(0)), pool.points += keep(same, read(1));
-  pool.sum += keep(same, read(2)), pool.sum2 += keep(same, read(3));
-  pool.rest += keep(same, read(4)), pool.rest2 += keep(same, read(5));
-  pool.rest_noise += keep(same, read(6)), pool.rest_known += keep(same, read(7));
-  pool.pairs += keep(same, read(8)), pool.pair_sum += keep(same, read(9));
+void add(Pool& pool, const LaneMask& same, const Read& read) {
+  pool.samples += keep_lanes(same, read(0)), pool.points += keep_lanes(same, read(1));
+  pool.sum += keep_lanes(same, read(2)), pool.sum2 += keep_lanes(same, read(3));
+  pool.rest += keep_lanes(same, read(4)), pool.rest2 += keep_lanes(same, read(5));
+  pool.rest_noise += keep_lanes(same, read(6)), pool.rest_known += keep_lanes(same, read(7));
+  pool.pairs += keep_lanes(same, read(8)), pool.pair_sum += keep_lanes(same, read(9));
 }
 
 PoolPlanes own_planes(const Cells& c) {
@@ -54,13 +54,13 @@ PoolPlanes own_planes(const Cells& c) {
 }
 
 // Over the cells `step` apart around eight, and these.
-Pool pool_around(const Cells& cells, const PoolPlanes& planes, size_t i, const u8& object,
+Pool pool_around(const Cells& cells, const PoolPlanes& planes, size_t i, const LaneBits& object,
                  int step) {
   Pool pool;
   for (int dy = -1; dy <= 1; dy++)
     for (int dx = -1; dx <= 1; dx++) {
       size_t j = size_t(ptrdiff_t(i) + step * (dy * cells.stride + dx));
-      add(pool, load<u8>(&cells.object[j]) == object,
+      add(pool, load_lanes<LaneBits>(&cells.object[j]) == object,
           [&](size_t k) { return load_at(planes[k], j); });
     }
   return pool;
@@ -68,38 +68,39 @@ Pool pool_around(const Cells& cells, const PoolPlanes& planes, size_t i, const u
 
 // The brightest means around.
 struct Brightest {
-  f8 light{}, rest{};
+  Lanes light{}, rest{};
 };
-Brightest brightest_around(const Cells& cells, size_t i, const u8& object) {
+Brightest brightest_around(const Cells& cells, size_t i, const LaneBits& object) {
   Brightest b;
   for (int dy = -1; dy <= 1; dy++)
     for (int dx = -1; dx <= 1; dx++) {
       if (dx == 0 && dy == 0) continue;
       size_t j = size_t(ptrdiff_t(i) + dy * cells.stride + dx);
-      i8 same = load<u8>(&cells.object[j]) == object;
-      f8 per_sample = keep(same, 1.0f / larger(load_at(cells.samples, j), splat(least_samples)));
-      b.light = larger(b.light, load_at(cells.sum, j) * per_sample);
-      b.rest = larger(b.rest, load_at(cells.rest_sum, j) * per_sample);
+      LaneMask same = load_lanes<LaneBits>(&cells.object[j]) == object;
+      Lanes per_sample =
+          keep_lanes(same, 1.0f / lanes_max(load_at(cells.samples, j), all_lanes(least_samples)));
+      b.light = lanes_max(b.light, load_at(cells.sum, j) * per_sample);
+      b.rest = lanes_max(b.rest, load_at(cells.rest_sum, j) * per_sample);
     }
   return b;
 }
 
 struct Estimate {
-  f8 scale, rest_scale;  // below 1: an outlier, brought down to its surroundings
-  f8 mean_variance, patience, rest_detail, rest_noise, rest_mean_variance;
+  Lanes scale, rest_scale;  // below 1: an outlier, brought down to its surroundings
+  Lanes mean_variance, patience, rest_detail, rest_noise, rest_mean_variance;
 };
 
 // What cells somewhat farther around say, for those with few points near.
 struct Prior {
-  f8 mean, variance, rest_mean;
-  i8 told;
+  Lanes mean, variance, rest_mean;
+  LaneMask told;
 };
 Prior make_prior(const Pool& wide) {
   constexpr float guess_points = 3;
-  f8 per_sample = 1.0f / larger(wide.samples, splat(least_samples));
+  Lanes per_sample = 1.0f / lanes_max(wide.samples, all_lanes(least_samples));
   Prior prior;
   prior.mean = wide.sum * per_sample;
-  f8 spread = positive(wide.sum2 - wide.sum * prior.mean);
+  Lanes spread = positive_lanes(wide.sum2 - wide.sum * prior.mean);
   prior.variance =
       (spread + prior.mean * prior.mean * guess_points) / (wide.points + guess_points) + 1e-6f;
   prior.rest_mean = wide.rest * per_sample;
@@ -112,52 +113,53 @@ Prior make_prior(const Pool& wide) {
 // cells' sums over their samples; `unsure`: some point of a cell may owe its rest to chance, and
 // these differ.
 Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& brightest,
-                        const f8& samples, const f8& light_sum, const f8& rest_sum,
-                        const i8& unsure, float rest_share) {
+                        const Lanes& samples, const Lanes& light_sum, const Lanes& rest_sum,
+                        const LaneMask& unsure, float rest_share) {
   constexpr float guess_points = 3;
   Estimate e;
-  f8 per_sample = 1.0f / samples, per_pooled = 1.0f / pool.samples;
+  Lanes per_sample = 1.0f / samples, per_pooled = 1.0f / pool.samples;
   Prior prior = make_prior(wide);
-  f8 mean = pool.sum * per_pooled, spread = positive(pool.sum2 - pool.sum * mean);
-  f8 expected = (pool.sum + prior.mean * guess_points) / (pool.samples + guess_points);
-  f8 variance = (spread + prior.variance * guess_points) / (pool.points + guess_points);
+  Lanes mean = pool.sum * per_pooled, spread = positive_lanes(pool.sum2 - pool.sum * mean);
+  Lanes expected = (pool.sum + prior.mean * guess_points) / (pool.samples + guess_points);
+  Lanes variance = (spread + prior.variance * guess_points) / (pool.points + guess_points);
   // What points spread beyond that is detail: their means of many samples differ where the light
   // does.
-  f8 paired = pool.pairs / (pool.pairs + enough_pairs);
-  f8 deviates = pool.pair_sum / larger(pool.pairs, splat(1));
-  f8 detail = paired * positive(variance - deviates) * pool.points * per_pooled;
+  Lanes paired = pool.pairs / (pool.pairs + enough_pairs);
+  Lanes deviates = pool.pair_sum / lanes_max(pool.pairs, all_lanes(1));
+  Lanes detail = paired * positive_lanes(variance - deviates) * pool.points * per_pooled;
   variance += paired * (deviates - variance);
   e.patience = clamped(variance / (detail + least_detail * expected * expected + 1e-6f), 0.5f,
                        most_patience);
-  f8 known_badly = 1.0f + (unsure_variance - 1) * (1.0f - paired);
+  Lanes known_badly = 1.0f + (unsure_variance - 1) * (1.0f - paired);
   e.mean_variance = variance * per_sample * known_badly;
   // What varies from place to place beyond what varies from sample to sample is detail.
-  f8 rest_spread = positive(pool.rest2 - pool.rest * pool.rest * per_pooled) /
-                   larger(pool.points - 1.0f, splat(1));
-  f8 wide_spread = positive(wide.rest2 - wide.rest * wide.rest / larger(wide.samples, splat(1))) /
-                   larger(wide.points - 1.0f, splat(1));
-  f8 near_share = pool.points / (pool.points + guess_points);
+  Lanes rest_spread = positive_lanes(pool.rest2 - pool.rest * pool.rest * per_pooled) /
+                      lanes_max(pool.points - 1.0f, all_lanes(1));
+  Lanes wide_spread =
+      positive_lanes(wide.rest2 - wide.rest * wide.rest / lanes_max(wide.samples, all_lanes(1))) /
+      lanes_max(wide.points - 1.0f, all_lanes(1));
+  Lanes near_share = pool.points / (pool.points + guess_points);
   rest_spread = rest_spread * near_share + wide_spread * (1.0f - near_share);
   e.rest_noise = (pool.rest_noise + rest_spread * rest_share) / (pool.rest_known + 1.0f);
-  e.rest_detail = positive(rest_spread - e.rest_noise) * pool.points * per_pooled;
+  e.rest_detail = positive_lanes(rest_spread - e.rest_noise) * pool.points * per_pooled;
   e.rest_mean_variance = e.rest_noise * per_sample * known_badly;
   // A cell brighter than all around it, or far brighter than their mean, owes that to a lucky path,
   // unless many samples say so or, of the rest, it stays so from sample to sample.
-  f8 light = light_sum * per_sample, rest_light = rest_sum * per_sample;
-  f8 others = pool.samples - samples;
-  i8 near = others >= 3.0f;
-  f8 all_others = wide.samples - samples;
-  f8 per_other = 1.0f / larger(near ? others : all_others, splat(1));
-  f8 other_light = ((near ? pool.sum : wide.sum) - light_sum) * per_other,
-     other_rest = ((near ? pool.rest : wide.rest) - rest_sum) * per_other;
-  f8 confirmed = 2.5f + 0.05f * samples;
-  f8 peak = 1.25f + 0.05f * samples;
-  f8 most = confirmed * other_light, rest_most = confirmed * other_rest;
-  most = near ? smaller(most, peak * brightest.light) : most;
-  rest_most = near ? smaller(rest_most, peak * brightest.rest) : rest_most;
-  i8 told = near | (all_others >= 6.0f),
-     noisy = unsure | (e.rest_noise > 0.25f * rest_light * rest_light);
-  f8 one = splat(1);
+  Lanes light = light_sum * per_sample, rest_light = rest_sum * per_sample;
+  Lanes others = pool.samples - samples;
+  LaneMask near = others >= 3.0f;
+  Lanes all_others = wide.samples - samples;
+  Lanes per_other = 1.0f / lanes_max(near ? others : all_others, all_lanes(1));
+  Lanes other_light = ((near ? pool.sum : wide.sum) - light_sum) * per_other,
+        other_rest = ((near ? pool.rest : wide.rest) - rest_sum) * per_other;
+  Lanes confirmed = 2.5f + 0.05f * samples;
+  Lanes peak = 1.25f + 0.05f * samples;
+  Lanes most = confirmed * other_light, rest_most = confirmed * other_rest;
+  most = near ? lanes_min(most, peak * brightest.light) : most;
+  rest_most = near ? lanes_min(rest_most, peak * brightest.rest) : rest_most;
+  LaneMask told = near | (all_others >= 6.0f),
+           noisy = unsure | (e.rest_noise > 0.25f * rest_light * rest_light);
+  Lanes one = all_lanes(1);
   e.scale = told & (light > most) ? (most + 1e-6f) / (light + 1e-6f) : one;
   e.rest_scale =
       told & noisy & (rest_light > rest_most) ? (rest_most + 1e-6f) / (rest_light + 1e-6f) : one;
@@ -197,13 +199,13 @@ void pool_cells(Cells& cells) {
   PoolPlanes own = own_planes(cells);
   parallel_ranges(cells.height, 4, [&](int begin, int end) {
     for (int y = begin; y < end; y++)
-      for (int x = 0; x < cells.width; x += lanes) {
+      for (int x = 0; x < cells.width; x += lane_count) {
         size_t i = size_t(cells.index(x, y));
-        Pool pool = pool_around(cells, own, i, load<u8>(&cells.object[i]), 1);
-        const f8 sums[] = {pool.samples, pool.points, pool.sum,        pool.sum2,
-                           pool.rest,    pool.rest2,  pool.rest_noise, pool.rest_known,
-                           pool.pairs,   pool.pair_sum};
-        for (size_t k = 0; k < cells.pooled.size(); k++) store(&cells.pooled[k][i], sums[k]);
+        Pool pool = pool_around(cells, own, i, load_lanes<LaneBits>(&cells.object[i]), 1);
+        const Lanes sums[] = {pool.samples, pool.points,  pool.sum,        pool.sum2,
+                              pool.rest,    pool.rest2,   pool.rest_noise, pool.rest_known,
+                              pool.pairs,   pool.pair_sum};
+        for (size_t k = 0; k < cells.pooled.size(); k++) store_lanes(&cells.pooled[k][i], sums[k]);
       }
   });
 }
@@ -217,39 +219,39 @@ void estimate_variance(Cells& cells) {
   pool_cells(cells);
   parallel_ranges(cells.height, 4, [&](int begin, int end) {
     for (int y = begin; y < end; y++)
-      for (int x = 0; x < cells.width; x += lanes) {
+      for (int x = 0; x < cells.width; x += lane_count) {
         size_t i = size_t(cells.index(x, y));
-        u8 object = load<u8>(&cells.object[i]);
-        i8 known = object != no_object;
-        if (!any(known)) {
+        LaneBits object = load_lanes<LaneBits>(&cells.object[i]);
+        LaneMask known = object != no_object;
+        if (!any_lane(known)) {
           for (auto* plane : {&mean_variance, &rest_detail, &rest_noise, &rest_mean_variance})
-            store(&(*plane)[i], f8{});
+            store_lanes(&(*plane)[i], Lanes{});
           continue;
         }
         Pool pool;
         add(pool, known, [&](size_t k) { return load_at(cells.pooled[k], i); });
         Pool wide = pool;
-        if (any(known & (pool.points < plenty_of_points)))
+        if (any_lane(known & (pool.points < plenty_of_points)))
           wide = pool_around(cells, cells.pooled, i, object, 3);
-        const f8 few = splat(least_samples);
-        pool.samples = larger(pool.samples, few);
-        f8 samples = larger(load_at(cells.samples, i), few);
-        f8 rest_sum = load_at(cells.rest_sum, i), rest_sum2 = load_at(cells.rest_sum2, i);
-        f8 spread = samples * rest_sum2 - rest_sum * rest_sum;
-        i8 unsure = (load_at(cells.rest_known, i) < load_at(cells.points, i)) &
-                    (spread > 0.25f * rest_sum * rest_sum);
+        const Lanes few = all_lanes(least_samples);
+        pool.samples = lanes_max(pool.samples, few);
+        Lanes samples = lanes_max(load_at(cells.samples, i), few);
+        Lanes rest_sum = load_at(cells.rest_sum, i), rest_sum2 = load_at(cells.rest_sum2, i);
+        Lanes spread = samples * rest_sum2 - rest_sum * rest_sum;
+        LaneMask unsure = (load_at(cells.rest_known, i) < load_at(cells.points, i)) &
+                          (spread > 0.25f * rest_sum * rest_sum);
         Estimate e =
             estimate_cells(pool, wide, brightest_around(cells, i, object), samples,
                            load_at(cells.sum, i), rest_sum, unsure, rest_share);
         for (size_t c = 0; c < 3; c++) {
-          store(&cells.smooth[c][i], load_at(cells.smooth[c], i) * e.scale);
-          store(&cells.rest[c][i], load_at(cells.rest[c], i) * e.rest_scale);
+          store_lanes(&cells.smooth[c][i], load_at(cells.smooth[c], i) * e.scale);
+          store_lanes(&cells.rest[c][i], load_at(cells.rest[c], i) * e.rest_scale);
         }
-        store(&cells.patience[i], keep(known, e.patience));
-        store(&mean_variance[i], keep(known, e.mean_variance));
-        store(&rest_detail[i], keep(known, e.rest_detail));
-        store(&rest_noise[i], keep(known, e.rest_noise));
-        store(&rest_mean_variance[i], keep(known, e.rest_mean_variance));
+        store_lanes(&cells.patience[i], keep_lanes(known, e.patience));
+        store_lanes(&mean_variance[i], keep_lanes(known, e.mean_variance));
+        store_lanes(&rest_detail[i], keep_lanes(known, e.rest_detail));
+        store_lanes(&rest_noise[i], keep_lanes(known, e.rest_noise));
+        store_lanes(&rest_mean_variance[i], keep_lanes(known, e.rest_mean_variance));
       }
   });
   std::swap(cells.sum, mean_variance);
@@ -260,57 +262,58 @@ void estimate_variance(Cells& cells) {
 
 // Light of eight cells and the variance of its mean, weighed by samples.
 struct LightSums {
-  f8 r, g, b, variance, weight, own_r, own_g, own_b, tolerance;
+  Lanes r, g, b, variance, weight, own_r, own_g, own_b, tolerance;
 };
 struct LightPlanes {
   const float *r, *g, *b, *variance;
 };
 constexpr float own_weight = 4;  // of a step's nine cells
-LightSums begin_sums(const LightPlanes& from, size_t i, const f8& samples) {
-  f8 r = load<f8>(from.r + i), g = load<f8>(from.g + i), b = load<f8>(from.b + i),
-     v = load<f8>(from.variance + i), w = own_weight * samples;
+LightSums begin_sums(const LightPlanes& from, size_t i, const Lanes& samples) {
+  Lanes r = load_lanes(from.r + i), g = load_lanes(from.g + i), b = load_lanes(from.b + i),
+        v = load_lanes(from.variance + i), w = own_weight * samples;
   return {w * r, w * g, w * b, w * w * v, w, r, g, b, 1.0f / (light_tolerance * v + 1e-12f)};
 }
 // `common`: what the two cells' surfaces have in common; `apart`: one plus their squared distance.
 // Returns how much of the cells' samples counted.
-f8 add(LightSums& sums, const LightPlanes& from, size_t j, const f8& common, const f8& apart,
-       const f8& samples) {
-  f8 r = load<f8>(from.r + j), g = load<f8>(from.g + j), b = load<f8>(from.b + j);
-  f8 dr = r - sums.own_r, dg = g - sums.own_g, db = b - sums.own_b;
-  f8 differs = luminance(dr * dr, dg * dg, db * db) * sums.tolerance;
-  f8 share = common / (apart * (1.0f + differs * differs)), weight = share * samples;
+Lanes add(LightSums& sums, const LightPlanes& from, size_t j, const Lanes& common,
+          const Lanes& apart, const Lanes& samples) {
+  Lanes r = load_lanes(from.r + j), g = load_lanes(from.g + j), b = load_lanes(from.b + j);
+  Lanes dr = r - sums.own_r, dg = g - sums.own_g, db = b - sums.own_b;
+  Lanes differs = luminance(dr * dr, dg * dg, db * db) * sums.tolerance;
+  Lanes share = common / (apart * (1.0f + differs * differs)), weight = share * samples;
   sums.r += weight * r, sums.g += weight * g, sums.b += weight * b;
-  sums.variance += weight * weight * load<f8>(from.variance + j);
+  sums.variance += weight * weight * load_lanes(from.variance + j);
   sums.weight += weight;
   return share;
 }
 // Where no sample lies within reach, what was there before stays.
 void store_sums(const LightSums& sums, const LightPlanes& from, size_t i, float* r, float* g,
                 float* b, float* variance) {
-  i8 told = sums.weight > 1e-6f;
-  f8 share = 1.0f / (told ? sums.weight : splat(1));
-  store(r, told ? sums.r * share : load<f8>(from.r + i));
-  store(g, told ? sums.g * share : load<f8>(from.g + i));
-  store(b, told ? sums.b * share : load<f8>(from.b + i));
-  store(variance, told ? sums.variance * share * share : load<f8>(from.variance + i));
+  LaneMask told = sums.weight > 1e-6f;
+  Lanes share = 1.0f / (told ? sums.weight : all_lanes(1));
+  store_lanes(r, told ? sums.r * share : load_lanes(from.r + i));
+  store_lanes(g, told ? sums.g * share : load_lanes(from.g + i));
+  store_lanes(b, told ? sums.b * share : load_lanes(from.b + i));
+  store_lanes(variance, told ? sums.variance * share * share : load_lanes(from.variance + i));
 }
 
 // What the surfaces of eight cells at i and those at j have in common: object and orientation; and
 // how far those at i lie off the planes at j.
-f8 compare_surfaces(const Cells& cells, size_t i, size_t j, const f8& ray_x, float ray_y,
-                    f8& apart) {
-  f8 facing = load_at(cells.normal[0], i) * load_at(cells.normal[0], j) +
-              load_at(cells.normal[1], i) * load_at(cells.normal[1], j) +
-              load_at(cells.normal[2], i) * load_at(cells.normal[2], j);
-  facing = positive(facing);
+Lanes compare_surfaces(const Cells& cells, size_t i, size_t j, const Lanes& ray_x, float ray_y,
+                       Lanes& apart) {
+  Lanes facing = load_at(cells.normal[0], i) * load_at(cells.normal[0], j) +
+                 load_at(cells.normal[1], i) * load_at(cells.normal[1], j) +
+                 load_at(cells.normal[2], i) * load_at(cells.normal[2], j);
+  facing = positive_lanes(facing);
   facing *= facing, facing *= facing, facing *= facing;
-  f8 off = load_at(cells.depth, i) * (load_at(cells.plane[0], j) * ray_x +
-                                      load_at(cells.plane[1], j) * ray_y +
-                                      load_at(cells.plane[2], j)) -
-           1.0f;
+  Lanes off =
+      load_at(cells.depth, i) * (load_at(cells.plane[0], j) * ray_x +
+                                 load_at(cells.plane[1], j) * ray_y + load_at(cells.plane[2], j)) -
+      1.0f;
   off *= 1 / plane_tolerance;
   apart = 1.0f + off * off;
-  return keep(load<u8>(&cells.object[i]) == load<u8>(&cells.object[j]), facing);
+  return keep_lanes(
+      load_lanes<LaneBits>(&cells.object[i]) == load_lanes<LaneBits>(&cells.object[j]), facing);
 }
 
 }  // namespace
@@ -318,7 +321,7 @@ f8 compare_surfaces(const Cells& cells, size_t i, size_t j, const f8& ray_x, flo
 void filter_cells(const WindowView& view, Cells& cells) {
   estimate_variance(cells);
   PixelRays rays(view);
-  std::vector<float> ray_x(size_t(cells.width) + lanes);
+  std::vector<float> ray_x(size_t(cells.width) + lane_count);
   for (int x = 0; x < int(ray_x.size()); x++)
     ray_x[size_t(x)] = rays.x((float(x) + 0.5f) * cell_size);
   std::span<float>& next_samples = cells.pooled[0];
@@ -331,21 +334,21 @@ void filter_cells(const WindowView& view, Cells& cells) {
     parallel_ranges(cells.height, 4, [&](int begin, int end) {
       for (int y = begin; y < end; y++) {
         float ray_y = rays.y((float(y) + 0.5f) * cell_size);
-        for (int x = 0; x < cells.width; x += lanes) {
+        for (int x = 0; x < cells.width; x += lane_count) {
           size_t i = size_t(cells.index(x, y));
-          f8 own = smaller(load_at(cells.samples, i), splat(most_samples));
+          Lanes own = lanes_min(load_at(cells.samples, i), all_lanes(most_samples));
           LightSums s = begin_sums(smooth, i, own), r = begin_sums(rest, i, own);
           // A mean's samples are as many as equally weighed ones of its variance would be.
-          f8 weights = own_weight * own, weights2 = own_weight * own_weight * own;
-          f8 across = load<f8>(&ray_x[size_t(x)]);
+          Lanes weights = own_weight * own, weights2 = own_weight * own_weight * own;
+          Lanes across = load_lanes(&ray_x[size_t(x)]);
           for (int dy = -1; dy <= 1; dy++)
             for (int dx = -1; dx <= 1; dx++) {
               if (dx == 0 && dy == 0) continue;
               size_t j = size_t(ptrdiff_t(i) + step * (dy * cells.stride + dx));
-              f8 apart, common = compare_surfaces(cells, i, j, across, ray_y, apart);
+              Lanes apart, common = compare_surfaces(cells, i, j, across, ray_y, apart);
               if (dx == 0 || dy == 0) common += common;
-              f8 samples = smaller(load_at(cells.samples, j), splat(most_samples));
-              f8 share = add(s, smooth, j, common, apart, samples);
+              Lanes samples = lanes_min(load_at(cells.samples, j), all_lanes(most_samples));
+              Lanes share = add(s, smooth, j, common, apart, samples);
               add(r, rest, j, common, apart, samples);
               weights += share * samples, weights2 += share * share * samples;
             }
@@ -353,7 +356,7 @@ void filter_cells(const WindowView& view, Cells& cells) {
                      &cells.sum2[i]);
           store_sums(r, rest, i, &cells.rest_spare[0][i], &cells.rest_spare[1][i],
                      &cells.rest_spare[2][i], &cells.points[i]);
-          store(&next_samples[i], weights * weights / larger(weights2, splat(1e-12f)));
+          store_lanes(&next_samples[i], weights * weights / lanes_max(weights2, all_lanes(1e-12f)));
         }
       }
     });

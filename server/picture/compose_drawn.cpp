@@ -15,17 +15,18 @@ namespace wellspring {
 namespace {
 
 template <int Scale>
-constexpr f8 light_columns = Scale == 1 ? f8{0, 1, 2, 3, 4, 5, 6, 7} : f8{0, 0, 1, 1, 2, 2, 3, 3};
+constexpr Lanes light_columns =
+    Scale == 1 ? Lanes{0, 1, 2, 3, 4, 5, 6, 7} : Lanes{0, 0, 1, 1, 2, 2, 3, 3};
 
 // What the light's points say of eight pixels.
 struct OwnLight {
-  u8 plane[surface_planes];
+  LaneBits plane[surface_planes];
 };
 // Of `count` light pixels, not all of them in the picture.
 [[gnu::noinline]] void read_cut(const Frame& light, int lx, int ly, int count,
-                                uint32_t (*words)[lanes]) {
+                                uint32_t (*words)[lane_count]) {
   for (int p = 0; p < surface_planes; p++)
-    std::fill_n(words[p], lanes, p == plane_object ? no_object : 0);
+    std::fill_n(words[p], lane_count, p == plane_object ? no_object : 0);
   for (int x = std::max(lx, 0); x < std::min(lx + count, light.width); x++) {
     uint32_t word[surface_planes];
     read_packed(light, x, ly, word);
@@ -35,15 +36,15 @@ struct OwnLight {
 // Each light pixel is for `Scale` pixels of a row.
 template <int Scale>
 OwnLight read_own(const Frame& light, int lx, int ly) {
-  constexpr int count = lanes / Scale;
+  constexpr int count = lane_count / Scale;
   auto spread = [](const uint32_t* from) {
-    if constexpr (Scale == 1) return load<u8>(from);
-    u4 v = load<u4>(from);
+    if constexpr (Scale == 1) return load_lanes<LaneBits>(from);
+    HalfLaneBits v = load_lanes<HalfLaneBits>(from);
     return __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
   };
   OwnLight own;
   if (lx < 0 || lx + count > light.width) {
-    uint32_t words[surface_planes][lanes];
+    uint32_t words[surface_planes][lane_count];
     read_cut(light, lx, ly, count, words);
     for (int p = 0; p < surface_planes; p++) own.plane[p] = spread(words[p]);
     return own;
@@ -58,7 +59,9 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
   const uint32_t* words = packed_words(light, lx, ly);
   for (int p : {plane_albedo, plane_rest, plane_smooth}) {
     const uint32_t* four = words + packed_four * p;
-    if constexpr (Scale == 1) own.plane[p] = join(load<u4>(four), load<u4>(four + 3 * packed_four));
+    if constexpr (Scale == 1)
+      own.plane[p] = join_halves(load_lanes<HalfLaneBits>(four),
+                                 load_lanes<HalfLaneBits>(four + 3 * packed_four));
     else own.plane[p] = spread(four);
   }
   return own;
@@ -74,7 +77,7 @@ constexpr float smooth_doubts = 4;  // of these, for smooth light, where chance 
 // do, in moving pictures and in those at rest; and how much the cells beside it count for that show
 // other objects: nothing to speak of, where any around shows the same.
 constexpr float narrow_patience = 1, still_patience = 0.5f, other_object = 1e-4f;
-f8 under(const f8& light, const f8& albedo, const f8& theirs) {
+Lanes under(const Lanes& light, const Lanes& albedo, const Lanes& theirs) {
   return light * rest_ratio(albedo, theirs);
 }
 
@@ -88,80 +91,82 @@ template <int Scale>
 void take_own(const View& view, const PixelRays& rays, const OwnLight& own, float light_x,
               float light_y, Drawn& d) {
   Pixels& p = d.pixels;
-  u8 more = own.plane[plane_more];
-  f8 samples = to_float((more >> 16) & 255u);
+  LaneBits more = own.plane[plane_more];
+  Lanes samples = to_float((more >> 16) & 255u);
   auto along = [&](vec3 axis) { return p.nx * axis.x + p.ny * axis.y + p.nz * axis.z; };
-  f8 depth = as<f8>(own.plane[plane_depth]);
-  f8 lx = light_x + Scale * rays.inverse_focal * light_columns<Scale>;
-  f8 off = along(view.right) * (p.depth * p.x - depth * lx) +
-           along(view.up) * (p.depth * p.y - depth * light_y) +
-           along(view.forward) * (p.depth - depth);
-  f8 nx, ny, nz;
+  Lanes depth = lanes_as<Lanes>(own.plane[plane_depth]);
+  Lanes lx = light_x + Scale * rays.inverse_focal * light_columns<Scale>;
+  Lanes off = along(view.right) * (p.depth * p.x - depth * lx) +
+              along(view.up) * (p.depth * p.y - depth * light_y) +
+              along(view.forward) * (p.depth - depth);
+  Lanes nx, ny, nz;
   unpack_octahedron(more & 0xffffu, nx, ny, nz);
-  f8 facing = p.nx * nx + p.ny * ny + p.nz * nz;
-  i8 near = off * off <= plane_tolerance * plane_tolerance * p.depth * p.depth * p.normal2;
+  Lanes facing = p.nx * nx + p.ny * ny + p.nz * nz;
+  LaneMask near = off * off <= plane_tolerance * plane_tolerance * p.depth * p.depth * p.normal2;
   near |=
       d.albedo.r + d.albedo.g + d.albedo.b == 0.0f;  // what mirrors show lies where its image does
-  i8 alike = (facing > 0.0f) &
-             (facing * facing > 0.5f * p.normal2 * (nx * nx + ny * ny + nz * nz));
-  i8 same = (p.object == own.plane[plane_object]) & (samples > 0.0f) & near & alike;
+  LaneMask alike =
+      (facing > 0.0f) & (facing * facing > 0.5f * p.normal2 * (nx * nx + ny * ny + nz * nz));
+  LaneMask same = (p.object == own.plane[plane_object]) & (samples > 0.0f) & near & alike;
   // At infinity there are no planes.
-  i8 far = p.depth >= 0.5f * infinite_depth;
+  LaneMask far = p.depth >= 0.5f * infinite_depth;
   same |= far & (samples > 0.0f) & (depth >= 0.5f * infinite_depth);
-  p.samples = keep(same, samples);
-  p.deviation = keep(same, unpack_deviation(more >> 24));
+  p.samples = keep_lanes(same, samples);
+  p.deviation = keep_lanes(same, unpack_deviation(more >> 24));
   Color light, theirs;
   unpack_rgb9e5(own.plane[plane_smooth], light.r, light.g, light.b);
-  p.smooth = {keep(same, light.r), keep(same, light.g), keep(same, light.b)};
+  p.smooth = {keep_lanes(same, light.r), keep_lanes(same, light.g), keep_lanes(same, light.b)};
   unpack_rgb9e5(own.plane[plane_rest], light.r, light.g, light.b);
   unpack_albedo(own.plane[plane_albedo], theirs.r, theirs.g, theirs.b);
-  p.rest = {keep(same, under(light.r, d.albedo.r, theirs.r)),
-            keep(same, under(light.g, d.albedo.g, theirs.g)),
-            keep(same, under(light.b, d.albedo.b, theirs.b))};
+  p.rest = {keep_lanes(same, under(light.r, d.albedo.r, theirs.r)),
+            keep_lanes(same, under(light.g, d.albedo.g, theirs.g)),
+            keep_lanes(same, under(light.b, d.albedo.b, theirs.b))};
 }
 
 // Lit as what is around: the same object, as far as it shows there, else others. Returns whom that
 // told.
 template <class Cell>
-i8 light_as_neighbours(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
-                       const f8* weights, const i8& lit, const i8& mirrors, const Pixels& p,
-                       const f8& patience, Surroundings& s) {
+LaneMask light_as_neighbours(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
+                             const Lanes* weights, const LaneMask& lit, const LaneMask& mirrors,
+                             const Pixels& p, const Lanes& patience, Surroundings& s) {
   Surroundings a;
-  f8 used = add_object_light(cells, at, p, lit, mirrors, LightOf::same_object, a);
+  Lanes used = add_object_light(cells, at, p, lit, mirrors, LightOf::same_object, a);
   for (int k = 0; k < 4; k++) {
     const Cell& corner = *corners[k];
     WideCell c;
     for (int n = 0; n < 3; n++) {
-      c.smooth[n] = f8{} + corner.smooth[n], c.rest[n] = f8{} + corner.rest[n];
-      c.albedo[n] = f8{} + corner.albedo[n];
+      c.smooth[n] = Lanes{} + corner.smooth[n], c.rest[n] = Lanes{} + corner.rest[n];
+      c.albedo[n] = Lanes{} + corner.albedo[n];
     }
-    c.patience = c.detail = c.noise = f8{};
+    c.patience = c.detail = c.noise = Lanes{};
     // What mirrors show is no light that falls there, and what lamps and the sky shine with is
     // neither.
-    i8 dark = c.albedo[0] + c.albedo[1] + c.albedo[2] < no_reflectance;
-    f8 weight = keep(~dark & (p.object != corner.object), other_object * weights[k]);
-    for (int n = 0; n < 3; n++) c.rest[n] = smaller(c.rest[n], most_rest * c.smooth[n]);
+    LaneMask dark = c.albedo[0] + c.albedo[1] + c.albedo[2] < no_reflectance;
+    Lanes weight = keep_lanes(~dark & (p.object != corner.object), other_object * weights[k]);
+    for (int n = 0; n < 3; n++) c.rest[n] = lanes_min(c.rest[n], most_rest * c.smooth[n]);
     add(a, weight, c);
     used += weight;
   }
-  i8 untold = lit & (used <= 0.0f);
-  if (any(untold)) used += add_object_light(cells, at, p, untold, mirrors, LightOf::any_object, a);
-  i8 told = lit & (used > 0.0f);
-  f8 share = 1.0f / larger(used, splat(1e-9f));
-  auto take = [&](f8& to, const f8& from) { to = told ? from : to; };
+  LaneMask untold = lit & (used <= 0.0f);
+  if (any_lane(untold))
+    used += add_object_light(cells, at, p, untold, mirrors, LightOf::any_object, a);
+  LaneMask told = lit & (used > 0.0f);
+  Lanes share = 1.0f / lanes_max(used, all_lanes(1e-9f));
+  auto take = [&](Lanes& to, const Lanes& from) { to = told ? from : to; };
   auto take_color = [&](Color& to, const Color& from) {
     take(to.r, from.r * share), take(to.g, from.g * share), take(to.b, from.b * share);
   };
   take_color(s.smooth, a.smooth), take_color(s.rest, a.rest), take_color(s.albedo, a.albedo);
   // Whatever its own points say beyond that is detail.
-  take(s.patience, patience), take(s.detail, splat(1e6f)), take(s.noise, f8{});
+  take(s.patience, patience), take(s.detail, all_lanes(1e6f)), take(s.noise, Lanes{});
   s.lonely &= ~told;
   return told;
 }
 
 // The light of a lamp does not end where a picture on the wall does.
-void light_as(Surroundings& around, const i8& mirrors, const f8& doubts, Drawn& d) {
-  auto rest = [&](const f8& rest, const f8& smooth, const f8& albedo, const f8& theirs) {
+void light_as(Surroundings& around, const LaneMask& mirrors, const Lanes& doubts, Drawn& d) {
+  auto rest = [&](const Lanes& rest, const Lanes& smooth, const Lanes& albedo,
+                  const Lanes& theirs) {
     return mirrors ? theirs * smooth + rest : under(rest, albedo, theirs);
   };
   around.rest = {rest(around.rest.r, around.smooth.r, d.albedo.r, around.albedo.r),
@@ -173,27 +178,27 @@ void light_as(Surroundings& around, const i8& mirrors, const f8& doubts, Drawn& 
 // `asked`: lanes that matter.
 template <class Cell, class FindNearby>
 void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
-                 const i8& flat, const f8* weights, float doubt, float narrow_doubt,
-                 const i8& asked, const FindNearby& find_nearby, Drawn& d) {
+                 const LaneMask& flat, const Lanes* weights, float doubt, float narrow_doubt,
+                 const LaneMask& asked, const FindNearby& find_nearby, Drawn& d) {
   Surroundings around = look_around(corners, flat, weights, d.pixels);
-  i8 lonely = asked & around.lonely, unsure = asked & (around.known < 1.0f);
-  around.lonely = i8{};
-  f8 doubts = splat(doubt);
-  around.patience = larger(around.patience, smooth_doubts * doubts);
-  if (!any(unsure)) return light_as(around, i8{}, doubts, d);
+  LaneMask lonely = asked & around.lonely, unsure = asked & (around.known < 1.0f);
+  around.lonely = LaneMask{};
+  Lanes doubts = all_lanes(doubt);
+  around.patience = lanes_max(around.patience, smooth_doubts * doubts);
+  if (!any_lane(unsure)) return light_as(around, LaneMask{}, doubts, d);
   // Narrow things have few points of their own: what these say is weighed against what is around.
   // Between those and others light passes gradually.
   Drawn narrow = d;
   Surroundings theirs = around;
   theirs.lonely = unsure;
   find_nearby(unsure, narrow);
-  i8 mirrors = unsure & (d.albedo.r + d.albedo.g + d.albedo.b < no_reflectance);
-  f8 patience = splat(narrow_doubt);
-  i8 told = light_as_neighbours(cells, at, corners, weights, unsure, mirrors, d.pixels, patience,
-                                theirs);
+  LaneMask mirrors = unsure & (d.albedo.r + d.albedo.g + d.albedo.b < no_reflectance);
+  Lanes patience = all_lanes(narrow_doubt);
+  LaneMask told =
+      light_as_neighbours(cells, at, corners, weights, unsure, mirrors, d.pixels, patience, theirs);
   light_as(theirs, mirrors, told ? patience : doubts, narrow);
-  light_as(around, i8{}, doubts, d);
-  f8 known = unsure ? (lonely ? f8{} : around.known) : splat(1);
+  light_as(around, LaneMask{}, doubts, d);
+  Lanes known = unsure ? (lonely ? Lanes{} : around.known) : all_lanes(1);
   Pixels &p = d.pixels, &q = narrow.pixels;
   p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
   p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);
@@ -216,12 +221,14 @@ struct Composer {
   const SkinLight* skin = nullptr;  // what moves is lit by; null: as everything else
 
   // Eight lanes each.
-  static int parts_of(const SightRun& run) { return (run.count + half_group + lanes - 1) / lanes; }
+  static int parts_of(const SightRun& run) {
+    return (run.count + half_group + lane_count - 1) / lane_count;
+  }
   const CellRows<Scale>& rows_around(const SightRun& run) const;
-  void light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const;
+  void light_narrow(const LaneMask& lonely, int lx, int ly, Drawn& d) const;
   void light_run(const RunPixels& p, const SightRun& run, const CellRows<Scale>& rows,
-                 const Shining& shining, int n, LanePart part, Drawn& d) const;
-  Shown light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
+                 const RunGlow& shining, int n, LanePart part, Drawn& d) const;
+  Shown light_part(const SightRun& run, const RunPixels& p, const RunGlow& shining,
                    const RunMoving& moving, const CellRows<Scale>& rows, int n,
                    LanePart part) const;
 };
@@ -239,7 +246,7 @@ const CellRows<Scale>& Composer<Scale>::rows_around(const SightRun& run) const {
 
 // Pixels of which no cell knows the surface: light of the points around that lie on it.
 template <int Scale>
-void Composer<Scale>::light_narrow(const i8& lonely, int lx, int ly, Drawn& d) const {
+void Composer<Scale>::light_narrow(const LaneMask& lonely, int lx, int ly, Drawn& d) const {
   Pixels& p = d.pixels;
   for (unsigned bits = negative_lanes(lonely); bits != 0; bits &= bits - 1) {
     int k = std::countr_zero(bits);
@@ -266,55 +273,57 @@ void Composer<Scale>::light_narrow(const i8& lonely, int lx, int ly, Drawn& d) c
 // anything. What the light of points says of them.
 template <int Scale>
 void Composer<Scale>::light_run(const RunPixels& p, const SightRun& run,
-                                const CellRows<Scale>& rows, const Shining& shining, int n,
+                                const CellRows<Scale>& rows, const RunGlow& shining, int n,
                                 LanePart part, Drawn& d) const {
-  constexpr f8 lane{0, 1, 2, 3, 4, 5, 6, 7};
-  int i = n * lanes - half_group, x = run.x + i;  // the first lane's pixel
+  constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+  int i = n * lane_count - half_group, x = run.x + i;  // the first lane's pixel
   Pixels& q = d.pixels;
   q.nx = lanes_at(p.surface.nx, i), q.ny = lanes_at(p.surface.ny, i);
   q.nz = lanes_at(p.surface.nz, i);
   d.albedo = {lanes_at(p.surface.red, i), lanes_at(p.surface.green, i),
               lanes_at(p.surface.blue, i)};
-  q.normal2 = larger(q.nx * q.nx + q.ny * q.ny + q.nz * q.nz, splat(1e-30f));
+  q.normal2 = lanes_max(q.nx * q.nx + q.ny * q.ny + q.nz * q.nz, all_lanes(1e-30f));
   q.x = rays.x(float(x) + offset.x) + rays.inverse_focal * lane;
-  q.y = splat(rays.y(float(run.y) + offset.y));
+  q.y = all_lanes(rays.y(float(run.y) + offset.y));
   int lx = (x - left + half_group) / Scale + packed_start, ly = (run.y - top) / Scale;
   take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
                   light_rays.y(float(ly) + 0.5f), d);
   q.samples *= own_counts;
   if (!known) return;
-  constexpr f8 across = group == lanes ? lane : f8{0, 1, 2, 3, 0, 1, 2, 3};
-  const f8 fx = (across + 0.5f) * (1.0f / group);
+  constexpr Lanes across = group == lane_count ? lane : Lanes{0, 1, 2, 3, 0, 1, 2, 3};
+  const Lanes fx = (across + 0.5f) * (1.0f / group);
   float fy = (float(run.y - top - (rows.row + 1) * group + half_group) + 0.5f) / group;
-  f8 weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
+  Lanes weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
   const int g = n * together<Scale>;
   using Cell = CellRows<Scale>::Cell;
   const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g),
                             &rows.at(1, g + 1)};
-  auto find_nearby = [&](const i8& lonely, Drawn& of) { light_narrow(lonely, lx, ly, of); };
-  constexpr f8 beside = together<Scale> == 1 ? f8{} : f8{0, 0, 0, 0, 1, 1, 1, 1};
+  auto find_nearby = [&](const LaneMask& lonely, Drawn& of) { light_narrow(lonely, lx, ly, of); };
+  constexpr Lanes beside = together<Scale> == 1 ? Lanes{} : Lanes{0, 0, 0, 0, 1, 1, 1, 1};
   CellPlaces at{fx + beside + float(rows.first + g), float(rows.row) + fy};
   light_group(cells, at, corners, rows.flat[g], weights, doubt, narrow,
               lanes_of_bits(part.bits() & ~bits_at(shining.only, i)), find_nearby, d);
 }
 
 template <int Scale>
-Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const Shining& shining,
+Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const RunGlow& shining,
                                   const RunMoving& moving, const CellRows<Scale>& rows, int n,
                                   LanePart part) const {
-  const int i = n * lanes - half_group;
+  const int i = n * lane_count - half_group;
   const unsigned here = part.bits(), moves = bits_at(moving.pixels, i) & here;
   Drawn d;
   Pixels& q = d.pixels;
-  q.depth = smaller(lanes_at(run.depth, i), splat(infinite_depth));
-  q.object = as<u8>(lanes_at(reinterpret_cast<const float*>(run.object), i));
-  Shown shown{{}, splat(skin_samples), q.depth < 0.5f * infinite_depth ? q.depth : splat(INFINITY),
+  q.depth = lanes_min(lanes_at(run.depth, i), all_lanes(infinite_depth));
+  q.object = lanes_as<LaneBits>(lanes_at(reinterpret_cast<const float*>(run.object), i));
+  Shown shown{{},
+              all_lanes(skin_samples),
+              q.depth < 0.5f * infinite_depth ? q.depth : all_lanes(INFINITY),
               q.object};
   if (moves != here) {
     light_run(p, run, rows, shining, n, part, d);
-    shown.color = {positive(d.albedo.r * q.smooth.r + q.rest.r),
-                   positive(d.albedo.g * q.smooth.g + q.rest.g),
-                   positive(d.albedo.b * q.smooth.b + q.rest.b)};
+    shown.color = {positive_lanes(d.albedo.r * q.smooth.r + q.rest.r),
+                   positive_lanes(d.albedo.g * q.smooth.g + q.rest.g),
+                   positive_lanes(d.albedo.b * q.smooth.b + q.rest.b)};
     shown.samples = q.samples;
   }
   if (moves) put_moving(p, moving.light, i, lanes_of_bits(moves), shown);
@@ -328,13 +337,13 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
   return [&composer, &planes](const SightRun& run) {
     RunPixels p;
     RunMoving moving;
-    Shining shining = describe_run(run, p);
+    RunGlow shining = describe_run(run, p);
     if (composer.skin) moving.pixels = run.light(*composer.skin, p.surface, moving.light);
     const CellRows<Scale>& rows = composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
     for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {
-      int i = n * lanes - composer.half_group;
-      LanePart part{std::max(-i, 0), std::min(run.count - i, lanes)};
+      int i = n * lane_count - composer.half_group;
+      LanePart part{std::max(-i, 0), std::min(run.count - i, lane_count)};
       planes.put(row + size_t(i + part.begin), part,
                  composer.light_part(run, p, shining, moving, rows, n, part));
     }

@@ -1,27 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture drawn anew every frame (light/visible/visibility.h) in light that points remember: shapes and
-// reflectances are what has to be sharp, light is smoother than both. Where samples are few it has
-// half of the picture's resolution, as a quarter of the points tells it sooner and costs less.
+// A picture drawn anew every frame (light/visible/visibility.h) in light that points remember:
+// shapes and reflectances are what has to be sharp, light is smoother than both. Where samples are
+// few it has half of the picture's resolution, as a quarter of the points tells it sooner and costs
+// less.
 #pragma once
 #include "frame/tonemap.h"
 #include "light/visible/visibility.h"
+#include "picture/light_view.h"
 #include "picture/moving_picture.h"
 
 namespace wellspring {
 
 struct SkinLight;  // light/known/skin_light.h
-
-inline constexpr int light_scale = 2;  // pixels of the picture a side of one pixel of its light
-
-// The view of such coarser light: its pixels are light_scale pixels of the picture wide.
-inline View light_view(const View& view) {
-  View light = view;
-  light.width = (view.width + light_scale - 1) / light_scale;
-  light.height = (view.height + light_scale - 1) / light_scale;
-  light.tan_half_fov =
-      view.tan_half_fov * float(light.height * light_scale) / float(view.height);
-  return light;
-}
 
 // Overwrites all planes of `frame`. `light`: of the view `lit`, which is light_view(view) or `view`
 // itself, its planes packed as read_surface() leaves them, with `cells` filled from it; `known`:

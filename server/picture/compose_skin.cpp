@@ -11,9 +11,9 @@ namespace wellspring {
 namespace {
 
 Shown light_part(const SightRun& run, const RunPixels& p, const RunMoving& moving,
-                 const Shining& shining, int i) {
-  Shown shown{{}, f8{}, load<f8>(run.depth + i), load<u8>(run.object + i)};
-  put_moving(p, moving.light, i, i8{} - 1, shown);
+                 const RunGlow& shining, int i) {
+  Shown shown{{}, Lanes{}, load_lanes(run.depth + i), load_lanes<LaneBits>(run.object + i)};
+  put_moving(p, moving.light, i, LaneMask{} - 1, shown);
   add_glow(p, shining, i, 0xff, shown);
   return shown;
 }
@@ -34,11 +34,11 @@ void compose_moving(const View& view, const PictureSight& sight, const PictureWi
     if (run.y < window.top || run.y >= window.top + window.height || !shows_any(run)) return;
     RunPixels p;
     RunMoving moving;
-    Shining shining = describe_run(run, p);
+    RunGlow shining = describe_run(run, p);
     moving.pixels = run.light(skin, p.surface, moving.light);
     size_t row = size_t(run.y) * size_t(view.width) + size_t(run.x);
-    for (int i = 0; i < run.count; i += lanes)
-      planes.put(row + size_t(i), LanePart{0, std::min(run.count - i, lanes)},
+    for (int i = 0; i < run.count; i += lane_count)
+      planes.put(row + size_t(i), LanePart{0, std::min(run.count - i, lane_count)},
                  light_part(run, p, moving, shining, i));
   };
   soften_edges(sight.see_edges(view, vec2(0.5f), take, RasterShows::moving), light.picture,

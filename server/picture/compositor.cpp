@@ -8,8 +8,8 @@
 #include "picture/compose_drawn.h"
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"
+#include "picture/read_surface.h"
 #include "picture/soften_edges.h"
-#include "picture/surface_image.h"
 
 namespace wellspring {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One visitor's pictures: what is visible (light/visible/visibility.h), in the light that the points of a
-// render cache remember (picture/compose_drawn.h). While the view stands still it keeps the mean of
-// its pictures and of their samples.
+// One visitor's pictures: what is visible (light/visible/visibility.h), in the light that the
+// points of a render cache remember (picture/compose_drawn.h). While the view stands still it keeps
+// the mean of its pictures and of their samples.
 #pragma once
 #include <memory>
 #include <span>
@@ -58,8 +58,8 @@ class Compositor {
   void add_samples(const View& view, std::span<const Request> requests,
                    std::span<const Sample> samples);
   void forget_samples();  // other light
-  // Pictures at rest serve as what reconstruction begins with (picture/still/reconstruct_still.h): they
-  // are not corrected by samples, and while a pixel has few of these, aimed ones count, too.
+  // Pictures at rest serve as what reconstruction begins with (picture/still/reconstruct_still.h):
+  // they are not corrected by samples, and while a pixel has few of these, aimed ones count, too.
   void set_reconstructed(bool on) { reconstructed_ = on; }
   // What moves, as the world is now, to be laid over the last draw_still() without it, of which
   // `backdrop` is the keyframe; in the light that is kept on its skin. Needs

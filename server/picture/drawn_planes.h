@@ -2,26 +2,26 @@
 // Where pixels of a drawn picture go, eight at a time.
 #pragma once
 #include "frame/tone_curve.h"
+#include "frame/write_pixels.h"
 #include "picture/pixel_light.h"
-#include "picture/write_pixels.h"
 
 namespace wellspring {
 
 // What has been found out about eight pixels of a row.
 struct Shown {
   Color color;
-  f8 samples, depth;  // infinity: nothing there
-  u8 object;
+  Lanes samples, depth;  // infinity: nothing there
+  LaneBits object;
 };
 
 // Takes the pixels [begin, end) of eight to place `at` of a plane, where lane `begin` belongs.
 struct LanePart {
   int begin, end;
-  bool all() const { return end - begin == lanes; }
+  bool all() const { return end - begin == lane_count; }
   unsigned bits() const { return (1u << end) - (1u << begin); }
   template <class T, class V>
   void put(T* to, const V& from) const {
-    if (all()) return store(to, from);
+    if (all()) return store_lanes(to, from);
     std::memcpy(to, reinterpret_cast<const T*>(&from) + begin, size_t(end - begin) * sizeof(T));
   }
 };
@@ -33,7 +33,7 @@ struct FramePlanes {
     return frame.color[pixel] == frame.color[other] ? 0 : 1 << 16;  // light knows no white
   }
   void put(size_t at, LanePart part, const Shown& s) const {
-    float cut[3 * lanes], *color = part.all() ? &frame.color[at].x : cut;
+    float cut[3 * lane_count], *color = part.all() ? &frame.color[at].x : cut;
     const Color& c = s.color;
     interleave(wellspring::part<0>(c.r), wellspring::part<0>(c.g), wellspring::part<0>(c.b), color);
     interleave(wellspring::part<4>(c.r), wellspring::part<4>(c.g), wellspring::part<4>(c.b),
@@ -70,7 +70,7 @@ struct NearerEyePlanes {
   void put(size_t at, LanePart part, const Shown& s) const {
     const Color& c = s.color;
     Lanes3 light = Lanes3{c.r, c.g, c.b} * all_lanes(exposure);
-    uint8_t bytes[3 * lanes];
+    uint8_t bytes[3 * lane_count];
     store_pixels(bytes, eval_tone_curve(light));
     LaneMask peak = eval_peak_codes(max_component(light));
     for (int k = part.begin; k < part.end; k++, at++) {
@@ -99,12 +99,12 @@ struct EyePlanes {
     const Color& c = s.color;
     Lanes3 light = Lanes3{c.r, c.g, c.b} * all_lanes(exposure);
     LaneMask codes = eval_tone_curve(light);
-    using Bytes = uint8_t __attribute__((vector_size(lanes)));
+    using Bytes = uint8_t __attribute__((vector_size(lane_count)));
     Bytes peak = __builtin_convertvector(eval_peak_codes(max_component(light)), Bytes);
     if (part.all()) {
       store_pixels(rgb + 3 * at, codes);
     } else {
-      uint8_t bytes[3 * lanes];
+      uint8_t bytes[3 * lane_count];
       store_pixels(bytes, codes);
       std::memcpy(rgb + 3 * at, bytes + 3 * part.begin, 3 * size_t(part.end - part.begin));
     }

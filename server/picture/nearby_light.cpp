@@ -18,86 +18,87 @@ constexpr float reach2 = (rings + 0.5f) * (rings + 0.5f);
 constexpr float least_fade = 1e-3f;  // the light is told all the same, should nothing else know it
 
 // Of squared distances in pixels. Else each point would light a square as large as the rings.
-f8 fade_out(const f8& distance2) {
-  f8 left = positive(1.0f - distance2 * (1 / reach2));
-  return larger(left * left, splat(least_fade));
+Lanes fade_out(const Lanes& distance2) {
+  Lanes left = positive_lanes(1.0f - distance2 * (1 / reach2));
+  return lanes_max(left * left, all_lanes(least_fade));
 }
 
 struct Sum {
-  f8 samples{}, squares{}, deviation{};
-  f8 reached{};  // samples, were none of them far off
+  Lanes samples{}, squares{}, deviation{};
+  Lanes reached{};  // samples, were none of them far off
   Color smooth, rest;
 };
 
 // Points around that show the place's object, eight of which are weighed at a time.
 struct Points {
   int count = 0;
-  uint32_t words[surface_planes][lanes] = {};  // lanes that were never filled are read, too
-  float x[lanes] = {}, y[lanes] = {};
+  uint32_t words[surface_planes][lane_count] = {};  // lanes that were never filled are read, too
+  float x[lane_count] = {}, y[lane_count] = {};
 };
 
 // How much the surfaces that points tell of are the place's; 0: other ones. It ends nowhere at
 // once, as places side by side differ a little.
-f8 alike(const View& view, const PixelRays& rays, const SeenPlace& place, const Points& points) {
-  f8 nx, ny, nz;
-  unpack_octahedron(load<u8>(points.words[plane_more]) & 0xffffu, nx, ny, nz);
+Lanes alike(const View& view, const PixelRays& rays, const SeenPlace& place, const Points& points) {
+  Lanes nx, ny, nz;
+  unpack_octahedron(load_lanes<LaneBits>(points.words[plane_more]) & 0xffffu, nx, ny, nz);
   vec3 n = place.normal;
-  f8 facing = nx * n.x + ny * n.y + nz * n.z;
+  Lanes facing = nx * n.x + ny * n.y + nz * n.z;
   float length2 = dot(n, n);
-  f8 cosine2 = facing * facing / (length2 * (nx * nx + ny * ny + nz * nz));
-  f8 same = positive(cosine2 - turned_away) * (1 / (same_direction - turned_away));
-  same = keep(facing > 0.0f, smaller(same, splat(1)));
-  f8 depth = as<f8>(load<u8>(points.words[plane_depth]));
-  f8 across = (load<f8>(points.x) + 0.5f - rays.half_width) * rays.inverse_focal,
-     up = (rays.half_height - load<f8>(points.y) - 0.5f) * rays.inverse_focal;
-  f8 off = (place.depth * place.ray.x - depth * across) * dot(view.right, n) +
-           (place.depth * place.ray.y - depth * up) * dot(view.up, n) +
-           (place.depth - depth) * dot(view.forward, n);
+  Lanes cosine2 = facing * facing / (length2 * (nx * nx + ny * ny + nz * nz));
+  Lanes same = positive_lanes(cosine2 - turned_away) * (1 / (same_direction - turned_away));
+  same = keep_lanes(facing > 0.0f, lanes_min(same, all_lanes(1)));
+  Lanes depth = lanes_as<Lanes>(load_lanes<LaneBits>(points.words[plane_depth]));
+  Lanes across = (load_lanes(points.x) + 0.5f - rays.half_width) * rays.inverse_focal,
+        up = (rays.half_height - load_lanes(points.y) - 0.5f) * rays.inverse_focal;
+  Lanes off = (place.depth * place.ray.x - depth * across) * dot(view.right, n) +
+              (place.depth * place.ray.y - depth * up) * dot(view.up, n) +
+              (place.depth - depth) * dot(view.forward, n);
   off *= 1 / (plane_tolerance * place.depth);
   off *= off * (1 / length2);
-  return same * positive(1.0f - off);
+  return same * positive_lanes(1.0f - off);
 }
 
 // Returns how many of the points count, which are then forgotten.
 int add_points(const View& view, const PixelRays& rays, const SeenPlace& place, Points& points,
                Sum& sum) {
-  constexpr f8 lane{0, 1, 2, 3, 4, 5, 6, 7};
-  i8 there = lane < float(std::exchange(points.count, 0));
-  u8 more = load<u8>(points.words[plane_more]);
-  f8 dx = load<f8>(points.x) - float(place.x), dy = load<f8>(points.y) - float(place.y);
-  f8 distance2 = dx * dx + dy * dy, near = 1.0f / (0.5f + distance2);
-  f8 weight = near * fade_out(distance2);
+  constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+  LaneMask there = lane < float(std::exchange(points.count, 0));
+  LaneBits more = load_lanes<LaneBits>(points.words[plane_more]);
+  Lanes dx = load_lanes(points.x) - float(place.x), dy = load_lanes(points.y) - float(place.y);
+  Lanes distance2 = dx * dx + dy * dy, near = 1.0f / (0.5f + distance2);
+  Lanes weight = near * fade_out(distance2);
   // What a mirror shows has neither its place nor its normal.
   if (place.albedo != vec3(0)) weight *= alike(view, rays, place, points);
-  weight = keep(there, weight);
-  f8 samples = keep(there, to_float((more >> 16) & 255u)), share = weight * samples;
-  sum.reached += keep(weight > 0.0f, near * samples);
+  weight = keep_lanes(there, weight);
+  Lanes samples = keep_lanes(there, to_float((more >> 16) & 255u)), share = weight * samples;
+  sum.reached += keep_lanes(weight > 0.0f, near * samples);
   sum.samples += share, sum.squares += share * weight;
-  sum.deviation += share * keep(there, unpack_deviation(more >> 24));
+  sum.deviation += share * keep_lanes(there, unpack_deviation(more >> 24));
   Color light, theirs;
-  unpack_rgb9e5(load<u8>(points.words[plane_smooth]), light.r, light.g, light.b);
+  unpack_rgb9e5(load_lanes<LaneBits>(points.words[plane_smooth]), light.r, light.g, light.b);
   add(sum.smooth, share, light.r, light.g, light.b);
-  unpack_rgb9e5(load<u8>(points.words[plane_rest]), light.r, light.g, light.b);
-  unpack_albedo(load<u8>(points.words[plane_albedo]), theirs.r, theirs.g, theirs.b);
-  add(sum.rest, share, light.r * rest_ratio(splat(place.albedo.x), theirs.r),
-      light.g * rest_ratio(splat(place.albedo.y), theirs.g),
-      light.b * rest_ratio(splat(place.albedo.z), theirs.b));
+  unpack_rgb9e5(load_lanes<LaneBits>(points.words[plane_rest]), light.r, light.g, light.b);
+  unpack_albedo(load_lanes<LaneBits>(points.words[plane_albedo]), theirs.r, theirs.g, theirs.b);
+  add(sum.rest, share, light.r * rest_ratio(all_lanes(place.albedo.x), theirs.r),
+      light.g * rest_ratio(all_lanes(place.albedo.y), theirs.g),
+      light.b * rest_ratio(all_lanes(place.albedo.z), theirs.b));
   return std::popcount(negative_lanes(weight > 0.0f));
 }
 
 // Bit k: at column x + k of row y, within the picture, samples are known of the object.
 constexpr int window = 2 * rings + 1;
-static_assert(window <= 2 * lanes);
+static_assert(window <= 2 * lane_count);
 unsigned find_known(const Frame& light, uint32_t object, int x, int y) {
   if (y < 0 || y >= light.height) return 0;
   size_t row = size_t(y) * size_t(light.width);
   unsigned known = 0;
-  if (x >= 0 && row + size_t(x + 2 * lanes) <= light.object.size()) {
+  if (x >= 0 && row + size_t(x + 2 * lane_count) <= light.object.size()) {
     for (int half = 0; half < 2; half++) {
-      size_t at = row + size_t(x + half * lanes);
-      u8 more = load<u8>(&light.confidence[at]);
-      known |= negative_lanes((load<u8>(&light.object[at]) == object) & ((more & 0xff0000u) != 0u))
-               << half * lanes;
+      size_t at = row + size_t(x + half * lane_count);
+      LaneBits more = load_lanes<LaneBits>(&light.confidence[at]);
+      known |= negative_lanes((load_lanes<LaneBits>(&light.object[at]) == object) &
+                              ((more & 0xff0000u) != 0u))
+               << half * lane_count;
     }
     return known & ((1u << std::min(window, light.width - x)) - 1);
   }
@@ -130,7 +131,7 @@ NearbyLight find_light_nearby(const View& view, const PixelRays& rays, const Fra
         read_packed(light, x, y, words);
         for (int p = 0; p < surface_planes; p++) points.words[p][k] = words[p];
         points.x[k] = float(x), points.y[k] = float(y);
-        if (points.count == lanes) found_points += add_points(view, rays, place, points, sum);
+        if (points.count == lane_count) found_points += add_points(view, rays, place, points, sum);
       }
     }
     if (points.count > 0) found_points += add_points(view, rays, place, points, sum);

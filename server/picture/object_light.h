@@ -11,7 +11,7 @@ namespace wellspring {
 // Where eight pixels lie among the cells, one of which lies around each whole number. The columns
 // of all lie within two.
 struct CellPlaces {
-  f8 x;
+  Lanes x;
   float y = 0;
 };
 
@@ -21,8 +21,9 @@ enum class LightOf : uint8_t { same_object, any_object };
 // their weight there: less the farther off they are and the more they are turned away, 0 where
 // there is none. Cells without a reflectance, which tell of no light that falls there, count for
 // such pixels of the same object alone. Reads the pixels' objects and normals.
-f8 add_object_light(const Cells& cells, const CellPlaces& at, const Pixels& pixels,
-                    const i8& asked, const i8& mirrors, LightOf of, Surroundings& sum);
+Lanes add_object_light(const Cells& cells, const CellPlaces& at, const Pixels& pixels,
+                       const LaneMask& asked, const LaneMask& mirrors, LightOf of,
+                       Surroundings& sum);
 
 // Reflectances below that are those of mirrors, lamps and the sky.
 inline constexpr float no_reflectance = 0.01f;

@@ -3,27 +3,25 @@
 
 namespace wellspring {
 
-i8 find_flat(const PixelRays& rays, const Cells& cells, int bx, int by) {
+LaneMask find_flat(const PixelRays& rays, const Cells& cells, int bx, int by) {
   constexpr float same_direction = 0.998f, same_depth = 0.1f * plane_tolerance;
-  auto at = [&](const auto& plane, size_t i) {
-    return load<f8>(plane.data() + i);
-  };
+  auto at = [&](const auto& plane, size_t i) { return load_lanes(plane.data() + i); };
   size_t a = size_t(cells.index(bx - 1, by - 1));
-  u8 object = load<u8>(&cells.object[a]);
-  f8 nx = at(cells.normal[0], a), ny = at(cells.normal[1], a), nz = at(cells.normal[2], a),
-     px = at(cells.plane[0], a), py = at(cells.plane[1], a), pz = at(cells.plane[2], a);
-  f8 left = rays.x((float(bx) - 0.5f) * cell_size) +
-            float(cell_size) * rays.inverse_focal * f8{0, 1, 2, 3, 4, 5, 6, 7};
-  i8 flat = object != no_object;
+  LaneBits object = load_lanes<LaneBits>(&cells.object[a]);
+  Lanes nx = at(cells.normal[0], a), ny = at(cells.normal[1], a), nz = at(cells.normal[2], a),
+        px = at(cells.plane[0], a), py = at(cells.plane[1], a), pz = at(cells.plane[2], a);
+  Lanes left = rays.x((float(bx) - 0.5f) * cell_size) +
+               float(cell_size) * rays.inverse_focal * Lanes{0, 1, 2, 3, 4, 5, 6, 7};
+  LaneMask flat = object != no_object;
   for (int k = 1; k < 4; k++) {
     size_t c = a + size_t(k & 1) + size_t(k >> 1) * size_t(cells.stride);
-    f8 x = left + float(k & 1) * float(cell_size) * rays.inverse_focal;
+    Lanes x = left + float(k & 1) * float(cell_size) * rays.inverse_focal;
     float y = rays.y((float(by + (k >> 1)) - 0.5f) * cell_size);
-    f8 cosine = nx * at(cells.normal[0], c) + ny * at(cells.normal[1], c) +
-                nz * at(cells.normal[2], c);
-    f8 off = at(cells.depth, c) * (px * x + py * y + pz) - 1.0f;
-    flat &= (object == load<u8>(&cells.object[c])) & (cosine >= same_direction) &
-            (magnitude(off) < same_depth);
+    Lanes cosine =
+        nx * at(cells.normal[0], c) + ny * at(cells.normal[1], c) + nz * at(cells.normal[2], c);
+    Lanes off = at(cells.depth, c) * (px * x + py * y + pz) - 1.0f;
+    flat &= (object == load_lanes<LaneBits>(&cells.object[c])) & (cosine >= same_direction) &
+            (lanes_abs(off) < same_depth);
   }
   return flat;
 }

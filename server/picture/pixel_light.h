@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "cache/simd.h"
 #include "cache/packing.h"
+#include "cache/packing_simd.h"
 #include "picture/cells.h"
 
 namespace wellspring {
@@ -14,22 +14,23 @@ namespace wellspring {
 inline constexpr float plane_tolerance = 0.02f;  // of the depth: farther off is another surface
 
 struct Color {
-  f8 r{}, g{}, b{};
+  Lanes r{}, g{}, b{};
 };
-inline f8 luminance(const Color& c) { return wellspring::luminance(c.r, c.g, c.b); }
+inline Lanes luminance(const Color& c) { return wellspring::luminance(c.r, c.g, c.b); }
 template <class T>
-void add(Color& sum, const f8& weight, const T& r, const T& g, const T& b) {
+void add(Color& sum, const Lanes& weight, const T& r, const T& g, const T& b) {
   sum.r += weight * r, sum.g += weight * g, sum.b += weight * b;
 }
-inline Color weighted_sum(const Color& a, const f8& kept, const Color& b, const f8& other) {
+inline Color weighted_sum(const Color& a, const Lanes& kept, const Color& b, const Lanes& other) {
   return {kept * a.r + other * b.r, kept * a.g + other * b.g, kept * a.b + other * b.b};
 }
 
 // Rest holds light of lamps with the reflectance in it: how much of what was seen under `theirs`
 // there is under `own`.
 inline constexpr float dark_reflectance = 0.05f, most_brighter = 4;
-inline f8 rest_ratio(const f8& own, const f8& theirs) {
-  return smaller((own + dark_reflectance) / (theirs + dark_reflectance), splat(most_brighter));
+inline Lanes rest_ratio(const Lanes& own, const Lanes& theirs) {
+  return lanes_min((own + dark_reflectance) / (theirs + dark_reflectance),
+                   all_lanes(most_brighter));
 }
 inline vec3 rest_ratio(vec3 own, vec3 theirs) {
   return min((own + dark_reflectance) / (theirs + dark_reflectance), vec3(most_brighter));
@@ -37,11 +38,11 @@ inline vec3 rest_ratio(vec3 own, vec3 theirs) {
 
 // Eight pixels, or places in them.
 struct Pixels {
-  u8 object;
-  f8 x, y, depth, samples;
-  f8 nx, ny, nz, normal2;  // not normalised; its length squared
+  LaneBits object;
+  Lanes x, y, depth, samples;
+  Lanes nx, ny, nz, normal2;  // not normalised; its length squared
   Color smooth, rest;
-  f8 deviation;  // of one sample's rest
+  Lanes deviation;  // of one sample's rest
 };
 
 // What pixels want to know of a cell, in one place: of the same cell for all (float, uint32_t), or
@@ -74,22 +75,22 @@ inline void read_cell(const Cells& cells, int x, int y, CellLight& c) {
 
 // Which of the eight blocks from bx on lie between four cells in one plane: what a pixel has in
 // common with one of those, it has with all.
-i8 find_flat(const PixelRays& rays, const Cells& cells, int bx, int by);
+LaneMask find_flat(const PixelRays& rays, const Cells& cells, int bx, int by);
 
 // What the four cells say at each pixel, as far as they lie on the same surface.
 struct Surroundings {
   Color smooth, rest;
-  f8 patience{}, detail{}, noise{};
+  Lanes patience{}, detail{}, noise{};
   Color albedo;  // of cells that tell it
-  i8 lonely{};   // no cell lies on this surface
-  f8 known{};    // 0 to 1: cells hardly do, or some certainly do
+  LaneMask lonely{};  // no cell lies on this surface
+  Lanes known{};      // 0 to 1: cells hardly do, or some certainly do
 };
 // With the reflectance that its rest was seen under.
 struct PaintedCell : CellLight {
   float albedo[3];
 };
 template <class Cell>
-[[gnu::always_inline]] inline void add(Surroundings& sum, const f8& weight, const Cell& c) {
+[[gnu::always_inline]] inline void add(Surroundings& sum, const Lanes& weight, const Cell& c) {
   add(sum.smooth, weight, c.smooth[0], c.smooth[1], c.smooth[2]);
   add(sum.rest, weight, c.rest[0], c.rest[1], c.rest[2]);
   sum.patience += weight * c.patience;
@@ -100,41 +101,43 @@ template <class Cell>
 }
 
 inline constexpr float enough_alike = 0.01f;  // of the cells around, for Surroundings::known
-inline f8 known_by(const f8& alike) { return smaller(alike * (1 / enough_alike), splat(1)); }
+inline Lanes known_by(const Lanes& alike) {
+  return lanes_min(alike * (1 / enough_alike), all_lanes(1));
+}
 
 // How much a cell's surface is that of the pixels.
 template <class Cell>
-f8 alike(const Cell& c, const Pixels& p, const f8& inverse_normal2) {
-  f8 facing = positive(c.normal[0] * p.nx + c.normal[1] * p.ny + c.normal[2] * p.nz);
+Lanes alike(const Cell& c, const Pixels& p, const Lanes& inverse_normal2) {
+  Lanes facing = positive_lanes(c.normal[0] * p.nx + c.normal[1] * p.ny + c.normal[2] * p.nz);
   facing *= facing * inverse_normal2;  // the cosine's second, then its eighth power
   facing *= facing, facing *= facing;
-  f8 off = p.depth * (c.plane[0] * p.x + c.plane[1] * p.y + c.plane[2]);
+  Lanes off = p.depth * (c.plane[0] * p.x + c.plane[1] * p.y + c.plane[2]);
   off = (off - 1.0f) * (1 / plane_tolerance);
-  return keep(p.object == c.object, facing / (1.0f + off * off));
+  return keep_lanes(p.object == c.object, facing / (1.0f + off * off));
 }
 
 // `weights`: how much of each corner a pixel's place asks for, adding up to one. `flat`: all four
 // lie in one plane, and so what a pixel has in common with one it has with all.
 template <class Cell>
-Surroundings look_around(const Cell* const* corners, bool flat, const f8* weights,
+Surroundings look_around(const Cell* const* corners, bool flat, const Lanes* weights,
                          const Pixels& p) {
   constexpr float least = 1e-4f;
   Surroundings s;
-  f8 inverse_normal2 = 1.0f / p.normal2;
+  Lanes inverse_normal2 = 1.0f / p.normal2;
   if (flat) {
     for (int k = 0; k < 4; k++) add(s, weights[k], *corners[k]);
-    f8 common = alike(*corners[0], p, inverse_normal2);
+    Lanes common = alike(*corners[0], p, inverse_normal2);
     s.lonely = common <= least, s.known = known_by(common);
     return s;
   }
-  f8 sum{};
+  Lanes sum{};
   for (int k = 0; k < 4; k++) {
-    f8 weight = weights[k] * alike(*corners[k], p, inverse_normal2);
+    Lanes weight = weights[k] * alike(*corners[k], p, inverse_normal2);
     add(s, weight, *corners[k]);
     sum += weight;
   }
   s.lonely = sum <= least, s.known = known_by(sum);
-  f8 share = 1.0f / larger(sum, splat(least));
+  Lanes share = 1.0f / lanes_max(sum, all_lanes(least));
   for (Color* c : {&s.smooth, &s.rest, &s.albedo}) c->r *= share, c->g *= share, c->b *= share;
   s.patience *= share, s.detail *= share, s.noise *= share;
   return s;
@@ -142,29 +145,31 @@ Surroundings look_around(const Cell* const* corners, bool flat, const f8* weight
 
 // The same, where that is so for some of the pixels only.
 template <class Cell>
-Surroundings look_around(const Cell* const* corners, const i8& flat, const f8* weights,
+Surroundings look_around(const Cell* const* corners, const LaneMask& flat, const Lanes* weights,
                          const Pixels& p) {
-  if (!any(~flat)) return look_around(corners, true, weights, p);
-  if (!any(flat)) return look_around(corners, false, weights, p);
+  if (!any_lane(~flat)) return look_around(corners, true, weights, p);
+  if (!any_lane(flat)) return look_around(corners, false, weights, p);
   constexpr float least = 1e-4f;
   Surroundings s;
-  f8 inverse_normal2 = 1.0f / p.normal2, sum{};
+  Lanes inverse_normal2 = 1.0f / p.normal2, sum{};
   for (int k = 0; k < 4; k++) {
-    f8 common = alike(*corners[k], p, inverse_normal2);
+    Lanes common = alike(*corners[k], p, inverse_normal2);
     if (k == 0) s.lonely = flat & (common <= least), s.known = known_by(common);
-    f8 weight = flat ? weights[k] : weights[k] * common;
+    Lanes weight = flat ? weights[k] : weights[k] * common;
     add(s, weight, *corners[k]);
     sum += weight;
   }
   s.lonely |= ~flat & (sum <= least), s.known = flat ? s.known : known_by(sum);
-  f8 share = 1.0f / larger(flat ? splat(1) : sum, splat(least));
+  Lanes share = 1.0f / lanes_max(flat ? all_lanes(1) : sum, all_lanes(least));
   for (Color* c : {&s.smooth, &s.rest, &s.albedo}) c->r *= share, c->g *= share, c->b *= share;
   s.patience *= share, s.detail *= share, s.noise *= share;
   return s;
 }
 
 // What is left of `own` light where more than `most` would be too much.
-inline f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, most) + 1e-12f); }
+inline Lanes cut_to(const Lanes& own, const Lanes& most) {
+  return most / (lanes_max(own, most) + 1e-12f);
+}
 
 // Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
 // more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
@@ -172,30 +177,30 @@ inline f8 cut_to(const f8& own, const f8& most) { return most / (larger(own, mos
 // may be alike by chance, most of all where now and then one finds a light: what those around vary
 // by counts as so many of them.
 inline constexpr float prior_samples = 4;
-inline void blend_light(const Surroundings& s, Pixels& p, const f8& doubt = f8{}) {
-  const i8& lonely = s.lonely;
-  f8 alone = keep(lonely, splat(1));
+inline void blend_light(const Surroundings& s, Pixels& p, const Lanes& doubt = Lanes{}) {
+  const LaneMask& lonely = s.lonely;
+  Lanes alone = keep_lanes(lonely, all_lanes(1));
   // A lone bright sample may exceed its surroundings only as far as more samples confirm it.
-  f8 own_light = luminance(p.smooth);
-  f8 most = luminance(s.smooth) * (2.0f + 0.25f * p.samples) + alone * own_light;
-  f8 own = p.samples / (p.samples + s.patience + 1e-6f);
-  own = lonely ? splat(1) : own;
+  Lanes own_light = luminance(p.smooth);
+  Lanes most = luminance(s.smooth) * (2.0f + 0.25f * p.samples) + alone * own_light;
+  Lanes own = p.samples / (p.samples + s.patience + 1e-6f);
+  own = lonely ? all_lanes(1) : own;
   p.smooth = weighted_sum(p.smooth, own * cut_to(own_light, most), s.smooth, 1.0f - own);
 
   // The same for the rest, unless it is known to repeat itself: then it is a highlight, not a lucky
   // path.
-  i8 known = p.samples > 1.0f;
-  f8 own_rest = luminance(p.rest);
-  f8 counts = known ? p.samples : f8{};
-  f8 noise = (p.deviation * p.deviation * counts + s.noise * prior_samples) /
-             (counts + prior_samples);
-  f8 quiet = keep(known & (noise <= 0.01f * own_rest * own_rest), splat(1));
-  f8 most_rest = luminance(s.rest) * (3.0f + p.samples) + 1e-4f + (quiet + alone) * own_rest;
-  f8 variance = noise / larger(p.samples, splat(1));
-  f8 detail = s.detail + 1e-9f, own_detail = detail / (detail + variance);
+  LaneMask known = p.samples > 1.0f;
+  Lanes own_rest = luminance(p.rest);
+  Lanes counts = known ? p.samples : Lanes{};
+  Lanes noise =
+      (p.deviation * p.deviation * counts + s.noise * prior_samples) / (counts + prior_samples);
+  Lanes quiet = keep_lanes(known & (noise <= 0.01f * own_rest * own_rest), all_lanes(1));
+  Lanes most_rest = luminance(s.rest) * (3.0f + p.samples) + 1e-4f + (quiet + alone) * own_rest;
+  Lanes variance = noise / lanes_max(p.samples, all_lanes(1));
+  Lanes detail = s.detail + 1e-9f, own_detail = detail / (detail + variance);
   own_detail *= p.samples / (p.samples + doubt + 1e-6f);
-  own_detail = lonely ? splat(1) : own_detail;
-  f8 kept = own_detail * cut_to(own_rest, most_rest);
+  own_detail = lonely ? all_lanes(1) : own_detail;
+  Lanes kept = own_detail * cut_to(own_rest, most_rest);
   p.rest = weighted_sum(p.rest, kept, s.rest, 1.0f - own_detail);
 }
 

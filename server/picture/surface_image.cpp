@@ -2,12 +2,10 @@
 #include "picture/surface_image.h"
 
 #include <algorithm>
-#include <atomic>
 
-#include "base/parallel.h"
-#include "cache/simd.h"
+#include "base/simd.h"
+#include "cache/cache_stats.h"
 #include "cache/packing.h"
-#include "picture/cells.h"
 
 namespace wellspring {
 int read_points(const PointCache& points, const PointImage& image, int y, SurfaceRows& rows) {
@@ -26,45 +24,46 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
   uint32_t* smooth = rows.row(plane_smooth, y);
   uint32_t* object = rows.row(plane_object, y);
   uint32_t* more_row = rows.row(plane_more, y);
-  u8 converged{};
-  for (int x = 0; x < width; x += lanes) {
+  LaneBits converged{};
+  for (int x = 0; x < width; x += lane_count) {
     // No branch: where there is no point, the first one is read and thrown away.
-    alignas(32) uint32_t point[lanes];
-    if (x + ahead + lanes <= width) {
-      u8 early = load<u8>(row + x + ahead);
-      store(point, early & as<u8>(early != no_point));
+    alignas(32) uint32_t point[lane_count];
+    if (x + ahead + lane_count <= width) {
+      LaneBits early = load_lanes<LaneBits>(row + x + ahead);
+      store_lanes(point, early & lanes_as<LaneBits>(early != no_point));
       for (uint32_t next : point) {
         auto record = reinterpret_cast<const char*>(&colors[next]);
         __builtin_prefetch(record);
         __builtin_prefetch(record + sizeof(PointColor) - 1);  // they do not stop at cache lines
       }
     }
-    u8 index = u8{} + no_point;
-    if (x + lanes <= width)
-      index = load<u8>(row + x);
+    LaneBits index = LaneBits{} + no_point;
+    if (x + lane_count <= width)
+      index = load_lanes<LaneBits>(row + x);
     else
       std::memcpy(&index, row + x, size_t(width - x) * sizeof(uint32_t));
-    u8 known = as<u8>(index != no_point);
-    store(point, index & known);
-    u8 a, s, r, o;
-    transpose([&](int i) { return &colors[point[i]]; }, a, s, r, o);  // in the order of PointColor
+    LaneBits known = lanes_as<LaneBits>(index != no_point);
+    store_lanes(point, index & known);
+    LaneBits a, s, r, o;
+    transpose_records([&](int i) { return &colors[point[i]]; }, a, s, r,
+                      o);  // in the order of PointColor
     auto more = [&](int i) {
       uint32_t word;
       std::memcpy(&word, &colors[point[i]].normal, sizeof word);
       return (word & 0xff00ffffu) | uint32_t(counts[point[i]]) << 16;  // in place of its doubts
     };
-    u8 m{more(0), more(1), more(2), more(3), more(4), more(5), more(6), more(7)};
+    LaneBits m{more(0), more(1), more(2), more(3), more(4), more(5), more(6), more(7)};
     m &= known;
-    store(albedo + x, a & known);
-    store(smooth + x, s & known);
-    store(rest + x, r & known);
-    store(object + x, o | ~known);
-    store(more_row + x, m);
-    converged -= as<u8>(((m >> 16) & 255u) >= converged_samples);
+    store_lanes(albedo + x, a & known);
+    store_lanes(smooth + x, s & known);
+    store_lanes(rest + x, r & known);
+    store_lanes(object + x, o | ~known);
+    store_lanes(more_row + x, m);
+    converged -= lanes_as<LaneBits>(((m >> 16) & 255u) >= converged_samples);
   }
   std::memcpy(rows.row(plane_depth, y), depth, size_t(width) * sizeof(float));
   int sum = 0;
-  for (int i = 0; i < lanes; i++) sum += int(converged[i]);
+  for (int i = 0; i < lane_count; i++) sum += int(converged[i]);
   return sum;
 }
 
@@ -78,22 +77,22 @@ struct Neighbour {
 
 // The object of most weight among the neighbours of eight pixels at x (exact where one object has
 // more than half). Mostly all show the same, and no vote is needed.
-u8 elect_object(const Neighbour* around, int x, const i8& asked) {
-  u8 least = u8{} + no_object, most{};  // no_object itself wraps around to 0 in `most`
+LaneBits elect_object(const Neighbour* around, int x, const LaneMask& asked) {
+  LaneBits least = LaneBits{} + no_object, most{};  // no_object itself wraps around to 0 in `most`
   for (int k = 0; k < 8; k++) {
-    u8 other = load<u8>(around[k].object + x), next = other + 1u;
+    LaneBits other = load_lanes<LaneBits>(around[k].object + x), next = other + 1u;
     least = least < other ? least : other;
     most = most > next ? most : next;
   }
-  if (!any(asked & (least + 1u != most))) return least;
-  u8 elected = u8{} + no_object;
-  i8 votes{};
+  if (!any_lane(asked & (least + 1u != most))) return least;
+  LaneBits elected = LaneBits{} + no_object;
+  LaneMask votes{};
   for (int k = 0; k < 8; k++) {
     int32_t weight = k < 4 ? 2 : 1;
-    u8 other = load<u8>(around[k].object + x);
-    i8 there = other != no_object, same = other == elected;
+    LaneBits other = load_lanes<LaneBits>(around[k].object + x);
+    LaneMask there = other != no_object, same = other == elected;
     votes += there & ((same & (2 * weight)) - weight);
-    i8 lost = votes < 0;
+    LaneMask lost = votes < 0;
     elected = lost ? other : elected;
     votes = (votes ^ lost) - lost;
   }
@@ -102,78 +101,79 @@ u8 elect_object(const Neighbour* around, int x, const i8& asked) {
 
 // Sums over the neighbours of one kind (beside or diagonal) that show the elected object.
 struct Sums {
-  u8 red_blue{}, green{}, count{};
-  f8 depth{};
+  LaneBits red_blue{}, green{}, count{};
+  Lanes depth{};
 };
-i8 add(const Neighbour& from, int x, const u8& elected, Sums& sums) {
-  i8 mask = load<u8>(from.object + x) == elected;
-  u8 same = as<u8>(mask), color = load<u8>(from.albedo + x) & same;
+LaneMask add(const Neighbour& from, int x, const LaneBits& elected, Sums& sums) {
+  LaneMask mask = load_lanes<LaneBits>(from.object + x) == elected;
+  LaneBits same = lanes_as<LaneBits>(mask), color = load_lanes<LaneBits>(from.albedo + x) & same;
   sums.red_blue += (color & 2047u) | ((color >> 6) & (1023u << 16));
   sums.green += (color >> 11) & 2047u;
   sums.count -= same;
-  sums.depth += as<f8>(load<u8>(from.depth + x) & same);
+  sums.depth += lanes_as<Lanes>(load_lanes<LaneBits>(from.depth + x) & same);
   return mask;
 }
 struct Nearest {
-  u8 rest{}, smooth{}, more{};
+  LaneBits rest{}, smooth{}, more{};
 };
-void take(const Neighbour& from, int x, const i8& mask, Nearest& nearest) {
-  nearest.rest = mask ? load<u8>(from.rest + x) : nearest.rest;
-  nearest.smooth = mask ? load<u8>(from.smooth + x) : nearest.smooth;
-  nearest.more = mask ? load<u8>(from.more + x) : nearest.more;
+void take(const Neighbour& from, int x, const LaneMask& mask, Nearest& nearest) {
+  nearest.rest = mask ? load_lanes<LaneBits>(from.rest + x) : nearest.rest;
+  nearest.smooth = mask ? load_lanes<LaneBits>(from.smooth + x) : nearest.smooth;
+  nearest.more = mask ? load_lanes<LaneBits>(from.more + x) : nearest.more;
 }
 
 // Eight pixels at x, of which those `asked` for matter: averages the neighbours of the elected
 // object.
-void fill(const Neighbour* around, int x, const i8& asked, u8* words) {
-  u8 elected = elect_object(around, x, asked);
+void fill(const Neighbour* around, int x, const LaneMask& asked, LaneBits* words) {
+  LaneBits elected = elect_object(around, x, asked);
   Sums beside, diagonal;
   Nearest nearest;
-  i8 masks[8];
+  LaneMask masks[8];
   for (int k = 0; k < 4; k++) masks[k] = add(around[k], x, elected, beside);
   for (int k = 4; k < 8; k++) masks[k] = add(around[k], x, elected, diagonal);
   // The nearest last, so that it stays.
-  if (any(asked & (beside.count == 0u)))
+  if (any_lane(asked & (beside.count == 0u)))
     for (int k = 7; k >= 4; k--) take(around[k], x, masks[k], nearest);
   for (int k = 3; k >= 0; k--) take(around[k], x, masks[k], nearest);
-  u8 weight = 2 * beside.count + diagonal.count, red_blue = 2 * beside.red_blue + diagonal.red_blue,
-     green = 2 * beside.green + diagonal.green;
-  i8 filled = elected != no_object;
-  f8 share = 1.0f / larger(to_float(weight), splat(1));
-  auto mean = [&](const u8& sum) {
-    return as<u8>(__builtin_convertvector(to_float(sum) * share + 0.5f, i8));
+  LaneBits weight = 2 * beside.count + diagonal.count,
+           red_blue = 2 * beside.red_blue + diagonal.red_blue,
+           green = 2 * beside.green + diagonal.green;
+  LaneMask filled = elected != no_object;
+  Lanes share = 1.0f / lanes_max(to_float(weight), all_lanes(1));
+  auto mean = [&](const LaneBits& sum) {
+    return lanes_as<LaneBits>(__builtin_convertvector(to_float(sum) * share + 0.5f, LaneMask));
   };
-  u8 known = as<u8>(filled);
+  LaneBits known = lanes_as<LaneBits>(filled);
   words[plane_albedo] =
       (mean(red_blue & 0xffffu) | mean(green) << 11 | mean(red_blue >> 16) << 22) & known;
   words[plane_rest] = nearest.rest & known;
   words[plane_smooth] = nearest.smooth & known;
   words[plane_object] = elected;
   words[plane_more] = nearest.more & known & 0xffffu;  // of the samples, none are its own
-  words[plane_depth] = as<u8>((2.0f * beside.depth + diagonal.depth) * share) & known;
+  words[plane_depth] = lanes_as<LaneBits>((2.0f * beside.depth + diagonal.depth) * share) & known;
 }
 
 // Writes eight pixels at x to the frame.
-void pack(const u8* words, int x, int y, Frame& frame) {
+void pack(const LaneBits* words, int x, int y, Frame& frame) {
   size_t row = size_t(y) * size_t(frame.width);
-  if (x >= 0 && x + lanes <= frame.width) {
+  if (x >= 0 && x + lane_count <= frame.width) {
     size_t at = row + size_t(x);
-    store(&frame.object[at], words[plane_object]);
-    store(&frame.confidence[at], words[plane_more]);
-    store(&frame.depth[at], words[plane_depth]);
+    store_lanes(&frame.object[at], words[plane_object]);
+    store_lanes(&frame.confidence[at], words[plane_more]);
+    store_lanes(&frame.depth[at], words[plane_depth]);
     uint32_t* to = packed_words(frame, x, y);
     for (int p : {plane_albedo, plane_rest, plane_smooth}) {
-      store(to + packed_four * p, low_half(words[p]));
-      store(to + packed_four * (p + 3), high_half(words[p]));
+      store_lanes(to + packed_four * p, low_half(words[p]));
+      store_lanes(to + packed_four * (p + 3), high_half(words[p]));
     }
     return;
   }
-  for (int half = 0; half < lanes; half += packed_four) {
+  for (int half = 0; half < lane_count; half += packed_four) {
     PackedFour four(x + half, frame.width);
     if (four.count <= 0) continue;
     auto put = [&](int plane, auto* to) {
-      uint32_t word[lanes];
-      store(word, words[plane]);
+      uint32_t word[lane_count];
+      store_lanes(word, words[plane]);
       std::memcpy(to, word + (four.first - x), sizeof(uint32_t) * size_t(four.count));
     };
     size_t at = row + size_t(four.first);
@@ -196,46 +196,22 @@ int fill_from_neighbours(const SurfaceRows& rows, int y, Frame& frame) {
   }
   const uint32_t* own[surface_planes];
   for (int p = 0; p < surface_planes; p++) own[p] = rows.row(SurfacePlane(p), y);
-  u8 points{};
-  for (int x = packed_start; x < frame.width; x += lanes) {
-    u8 words[surface_planes];
-    for (int p = 0; p < surface_planes; p++) words[p] = load<u8>(own[p] + x);
-    i8 hole = words[plane_object] == no_object;  // beyond the ends all are
-    points += as<u8>(hole) + 1u;
-    if (any(hole)) {
-      u8 filled[surface_planes];
+  LaneBits points{};
+  for (int x = packed_start; x < frame.width; x += lane_count) {
+    LaneBits words[surface_planes];
+    for (int p = 0; p < surface_planes; p++) words[p] = load_lanes<LaneBits>(own[p] + x);
+    LaneMask hole = words[plane_object] == no_object;  // beyond the ends all are
+    points += lanes_as<LaneBits>(hole) + 1u;
+    if (any_lane(hole)) {
+      LaneBits filled[surface_planes];
       fill(around, x, hole, filled);
       for (int p = 0; p < surface_planes; p++) words[p] = hole ? filled[p] : words[p];
     }
     pack(words, x, y, frame);
   }
   int sum = 0;
-  for (int i = 0; i < lanes; i++) sum += int(points[i]);
+  for (int i = 0; i < lane_count; i++) sum += int(points[i]);
   return sum;
-}
-
-ShownPoints read_surface(const WindowView& view, const PointCache& points,
-                           const PointImage& image, Cells& cells, Frame& frame) {
-  std::atomic<int64_t> shown{0}, converged{0};
-  parallel_ranges(cells.height, 4, [&](int begin, int end) {
-    thread_local SurfaceRows rows;
-    rows.start(image.width, 2 * cell_size);
-    ShownPoints here;
-    int next = begin * cell_size - 1, last = end * cell_size;
-    for (int cy = begin; cy < end; cy++) {
-      int top = cy * cell_size, bottom = top + cell_size;
-      for (; next <= bottom; next++) {
-        int enough = read_points(points, image, next, rows);
-        if (next >= begin * cell_size && next < last) here.converged += enough;
-      }
-      build_cells(view, rows, cy, cells);
-      for (int y = top; y < std::min(bottom, image.height); y++)
-        here.points += fill_from_neighbours(rows, y, frame);
-    }
-    shown += here.points;
-    converged += here.converged;
-  });
-  return {shown, converged};
 }
 
 }  // namespace wellspring

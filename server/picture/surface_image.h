@@ -8,7 +8,6 @@
 #include <cstring>
 #include <vector>
 
-#include "cache/cache.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
 #include "cache/scratch.h"
@@ -108,11 +107,5 @@ inline void read_packed(const Frame& frame, int x, int y, uint32_t* words) {
   std::memcpy(&words[plane_more], &frame.confidence[at], sizeof(uint32_t));
   std::memcpy(&words[plane_depth], &frame.depth[at], sizeof(uint32_t));
 }
-
-struct Cells;
-// Reads every visible point once: builds the cells, fills holes from their neighbours and leaves
-// the surface packed in the frame's planes. Pixels far from any point stay unknown.
-ShownPoints read_surface(const WindowView& view, const PointCache& points, const PointImage& image,
-                         Cells& cells, Frame& frame);
 
 }  // namespace wellspring

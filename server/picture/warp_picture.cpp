@@ -17,7 +17,7 @@ namespace {
 
 using namespace warping;
 constexpr int block = Keyframe::block;
-static_assert(block == lanes);
+static_assert(block == lane_count);
 constexpr int most_steps = 96;         // along an epipolar line
 constexpr int most_blocks = 24;  // written per block, on average, when bounds are carried forward
 constexpr int seam_across = 64;        // of its width, a keyframe passes into what is around
@@ -33,31 +33,32 @@ bool carry_bounds(const Source& source, const View& view, WarpScratch& scratch) 
   scratch.farthest.assign(size_t(columns) * size_t(rows), std::numeric_limits<float>::infinity());
   scratch.nearest.assign(scratch.farthest.size(), -1);
   int64_t left = int64_t(most_blocks) * columns * rows;
-  constexpr f8 corner_x{0, 1, 0, 1, 0, 1, 0, 1}, corner_y{0, 0, 1, 1, 0, 0, 1, 1};
+  constexpr Lanes corner_x{0, 1, 0, 1, 0, 1, 0, 1}, corner_y{0, 0, 1, 1, 0, 0, 1, 1};
   for (int by = 0; by < k.rows; by++)
     for (int bx = 0; bx < k.columns; bx++) {
       size_t b = size_t(by) * size_t(k.columns) + size_t(bx);
       float near = k.nearest[b], far = k.farthest[b];
-      f8 s{far, far, far, far, near, near, near, near};
-      f8 qx = (corner_x + float(bx)) * float(block), qy = (corner_y + float(by)) * float(block);
-      f8 z = m.one.z + qx * m.across.z + qy * m.down.z + s * m.baseline.z;
-      i8 seen = z > least_depth;
-      f8 inverse = 1.0f / larger(z, splat(least_depth));
-      f8 x = (m.one.x + qx * m.across.x + qy * m.down.x + s * m.baseline.x) * inverse *
-             (1.0f / block),
-         y = (m.one.y + qx * m.across.y + qy * m.down.y + s * m.baseline.y) * inverse *
-             (1.0f / block),
-         w = s * inverse;
-      float left_x = least(seen ? x : splat(float(columns))), right_x = most(seen ? x : splat(-1)),
-            top = least(seen ? y : splat(float(rows))), bottom = most(seen ? y : splat(-1));
+      Lanes s{far, far, far, far, near, near, near, near};
+      Lanes qx = (corner_x + float(bx)) * float(block), qy = (corner_y + float(by)) * float(block);
+      Lanes z = m.one.z + qx * m.across.z + qy * m.down.z + s * m.baseline.z;
+      LaneMask seen = z > least_depth;
+      Lanes inverse = 1.0f / lanes_max(z, all_lanes(least_depth));
+      Lanes x = (m.one.x + qx * m.across.x + qy * m.down.x + s * m.baseline.x) * inverse *
+                (1.0f / block),
+            y = (m.one.y + qx * m.across.y + qy * m.down.y + s * m.baseline.y) * inverse *
+                (1.0f / block),
+            w = s * inverse;
+      float left_x = least(seen ? x : all_lanes(float(columns))),
+            right_x = most(seen ? x : all_lanes(-1)),
+            top = least(seen ? y : all_lanes(float(rows))), bottom = most(seen ? y : all_lanes(-1));
       if (!(right_x >= 0 && bottom >= 0 && left_x < float(columns) && top < float(rows))) continue;
       int x0 = std::max(int(left_x), 0),
           x1 = std::min(int(std::min(right_x, float(columns))), columns - 1);
       int y0 = std::max(int(top), 0), y1 = std::min(int(std::min(bottom, float(rows))), rows - 1);
       left -= int64_t(x1 - x0 + 1) * (y1 - y0 + 1);
       if (left < 0) return false;
-      float low = least(seen ? w : splat(std::numeric_limits<float>::infinity())),
-            high = most(seen ? w : splat(-1));
+      float low = least(seen ? w : all_lanes(std::numeric_limits<float>::infinity())),
+            high = most(seen ? w : all_lanes(-1));
       for (int cy = y0; cy <= y1; cy++)
         for (int cx = x0; cx <= x1; cx++) {
           size_t c = size_t(cy) * size_t(columns) + size_t(cx);
@@ -118,42 +119,42 @@ Search plan_search(const Source& source, float x, float y, float near, float far
 }
 
 // Eight pixels from their words' lowest three bytes.
-void write_rgb(const u8& words, uint8_t* to, int count) {
+void write_rgb(const LaneBits& words, uint8_t* to, int count) {
   using b16 = uint8_t __attribute__((vector_size(16)));
   uint8_t bytes[2 * 12 + 4];
-  uint8_t* at = count == lanes ? to : bytes;
-  for (const u4& four : {low_half(words), high_half(words)}) {
+  uint8_t* at = count == lane_count ? to : bytes;
+  for (const HalfLaneBits& four : {low_half(words), high_half(words)}) {
     b16 v = reinterpret_cast<const b16&>(four);
     v = __builtin_shufflevector(v, v, 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, 3, 7, 11, 15);
     std::memcpy(at, &v, 12);
     at += 12;
   }
-  if (count < lanes) std::memcpy(to, bytes, size_t(count) * 3);
+  if (count < lane_count) std::memcpy(to, bytes, size_t(count) * 3);
 }
 
 // The first of eight neighbours' epipolar lines' places that shows what the pixel would see, and
 // its disparity; or the last, and that of what hides them. Returns which of the wanted have none.
-i8 follow_line(const Source& source, const Place& base, const Search& search, i8 waiting, f8& at_x,
-               f8& at_y, f8& disparity) {
+LaneMask follow_line(const Source& source, const Place& base, const Search& search,
+                     LaneMask waiting, Lanes& at_x, Lanes& at_y, Lanes& disparity) {
   const Mapping& m = source.to;
-  at_x = at_y = disparity = f8{};
+  at_x = at_y = disparity = Lanes{};
   float candidate = search.step + found / std::max(search.pixels, 1e-30f);
   Place one{};
-  f8 first{};
-  for (int i = 0; i <= search.steps && any(waiting); i++) {
-    f8 w = splat(search.nearest - float(i) * search.step);
+  Lanes first{};
+  for (int i = 0; i <= search.steps && any_lane(waiting); i++) {
+    Lanes w = all_lanes(search.nearest - float(i) * search.step);
     one = carry(m, base, w);
     first = source.surface(one.x, one.y);
-    i8 near = waiting & (magnitude(first - w) <= candidate);
-    if (!any(near)) continue;
+    LaneMask near = waiting & (lanes_abs(first - w) <= candidate);
+    if (!any_lane(near)) continue;
     Place two = carry(m, base, first);
-    f8 second = source.surface(two.x, two.y);
+    Lanes second = source.surface(two.x, two.y);
     Place three = carry(m, base, second);
-    i8 hit = near & (magnitude(second - first) * search.pixels <= found);
+    LaneMask hit = near & (lanes_abs(second - first) * search.pixels <= found);
     at_x = hit ? three.x : at_x, at_y = hit ? three.y : at_y, disparity = hit ? second : disparity;
     waiting &= ~hit;
   }
-  if (any(waiting)) {
+  if (any_lane(waiting)) {
     at_x = waiting ? one.x : at_x, at_y = waiting ? one.y : at_y;
     disparity = waiting ? first : disparity;
   }
@@ -171,36 +172,36 @@ struct RowBits {
                                                const Search& search, uint8_t* to,
                                                float* disparity, uint8_t* share) {
   const Mapping& m = source.to;
-  f8 px = x + f8{0, 1, 2, 3, 4, 5, 6, 7};
+  Lanes px = x + Lanes{0, 1, 2, 3, 4, 5, 6, 7};
   Place base{m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
              m.one.z + px * m.across.z + y * m.down.z};
-  i8 waiting{};
-  f8 at_x, at_y;
+  LaneMask waiting{};
+  Lanes at_x, at_y;
   if (search.steps ==
       0) {  // whatever lies in the middle is right to half a pixel, and then to much less
-    Place place = carry(m, base, splat(search.nearest));
+    Place place = carry(m, base, all_lanes(search.nearest));
     if (search.look) place = carry(m, base, source.surface(place.x, place.y));
     at_x = place.x, at_y = place.y;
   } else {
-    f8 seen;
-    waiting =
-        follow_line(source, base, search, i8{0, 1, 2, 3, 4, 5, 6, 7} < count, at_x, at_y, seen);
+    Lanes seen;
+    waiting = follow_line(source, base, search, LaneMask{0, 1, 2, 3, 4, 5, 6, 7} < count, at_x,
+                          at_y, seen);
     std::memcpy(disparity, &seen, size_t(count) * sizeof(float));
   }
   write_rgb(sample_color(source, at_x, at_y, source.coarse ? 0 : search.pixels), to, count);
-  i8 inside = (at_x >= -found) & (at_y >= -found) & (at_x <= source.last_x + (1 + found)) &
-              (at_y <= source.last_y + (1 + found)) & (base.ratio > least_depth);
+  LaneMask inside = (at_x >= -found) & (at_y >= -found) & (at_x <= source.last_x + (1 + found)) &
+                    (at_y <= source.last_y + (1 + found)) & (base.ratio > least_depth);
   unsigned all = (1u << count) - 1;
   RowBits bits;
   bits.hidden = uint8_t(negative_lanes(waiting) & all);
   bits.outside = uint8_t(negative_lanes(~inside & ~waiting) & all);
   if (!(source.seam > 0)) return bits;
-  f8 border =
-      smaller(smaller(at_x, source.last_x + 1 - at_x), smaller(at_y, source.last_y + 1 - at_y));
-  i8 near = (border < source.seam) & ~waiting;
-  if (!any(near)) return bits;
+  Lanes border = lanes_min(lanes_min(at_x, source.last_x + 1 - at_x),
+                           lanes_min(at_y, source.last_y + 1 - at_y));
+  LaneMask near = (border < source.seam) & ~waiting;
+  if (!any_lane(near)) return bits;
   bits.at_seam = uint8_t(negative_lanes(near) & all & ~bits.outside);
-  i8 shares = to_int(smaller(positive(border * (255 / source.seam)), splat(255)));
+  LaneMask shares = to_int(lanes_min(positive_lanes(border * (255 / source.seam)), all_lanes(255)));
   for (int i = 0; i < count; i++) share[i] = uint8_t(shares[i]);
   return bits;
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "cache/simd.h"
+#include "base/simd.h"
 #include "picture/keyframe.h"
 
 namespace wellspring::warping {
@@ -41,33 +41,34 @@ inline Mapping make_mapping(const View& from, const View& to) {
 }
 
 struct Place {
-  f8 x, y, ratio;  // ratio: of depths, there over here
+  Lanes x, y, ratio;  // ratio: of depths, there over here
 };
-inline Place carry(const Mapping& m, const Place& base, const f8& w) {
-  f8 z = larger(base.ratio + w * m.baseline.z, splat(least_depth));
-  f8 inverse = 1.0f / z;
+inline Place carry(const Mapping& m, const Place& base, const Lanes& w) {
+  Lanes z = lanes_max(base.ratio + w * m.baseline.z, all_lanes(least_depth));
+  Lanes inverse = 1.0f / z;
   return {(base.x + w * m.baseline.x) * inverse, (base.y + w * m.baseline.y) * inverse, z};
 }
 
 template <class T>
-inline u8 gather(const T* from, const i8& index) {
+inline LaneBits gather(const T* from, const LaneMask& index) {
   static_assert(sizeof(T) == 4);
 #ifdef __AVX2__
-  return u8(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), __m256i(index), 4));
+  return LaneBits(_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), __m256i(index), 4));
 #else
-  u8 v;
-  for (int i = 0; i < lanes; i++)
+  LaneBits v;
+  for (int i = 0; i < lane_count; i++)
     std::memcpy(reinterpret_cast<uint32_t*>(&v) + i, from + index[i], 4);
   return v;
 #endif
 }
 // Words at the places and those after them.
-inline void gather_pairs(const uint32_t* from, const i8& index, u8& a, u8& b) {
+inline void gather_pairs(const uint32_t* from, const LaneMask& index, LaneBits& a, LaneBits& b) {
 #ifdef __AVX2__
   auto pairs = [&](const __m128i& i) {
-    return u8(_mm256_i32gather_epi64(reinterpret_cast<const long long*>(from), i, 4));
+    return LaneBits(_mm256_i32gather_epi64(reinterpret_cast<const long long*>(from), i, 4));
   };
-  u8 low = pairs(__m128i(low_half(as<u8>(index)))), high = pairs(__m128i(high_half(as<u8>(index))));
+  LaneBits low = pairs(__m128i(low_half(lanes_as<LaneBits>(index)))),
+           high = pairs(__m128i(high_half(lanes_as<LaneBits>(index))));
   a = __builtin_shufflevector(low, high, 0, 2, 4, 6, 8, 10, 12, 14);
   b = __builtin_shufflevector(low, high, 1, 3, 5, 7, 9, 11, 13, 15);
 #else
@@ -77,31 +78,35 @@ inline void gather_pairs(const uint32_t* from, const i8& index, u8& a, u8& b) {
 #ifdef __AVX2__
 // Sixteen words in a row, of which eight are picked much faster than gathered.
 struct Window {
-  u8 low, high;
+  LaneBits low, high;
   explicit Window(const void* from)
-      : low(load<u8>(from)), high(load<u8>(static_cast<const uint32_t*>(from) + lanes)) {}
-  u8 pick(const i8& at) const {  // 0 to 15
-    auto permute = [&](const u8& v) {
-      return i8(_mm256_permutevar8x32_epi32(__m256i(v), __m256i(at)));
+      : low(load_lanes<LaneBits>(from)),
+        high(load_lanes<LaneBits>(static_cast<const uint32_t*>(from) + lane_count)) {}
+  LaneBits pick(const LaneMask& at) const {  // 0 to 15
+    auto permute = [&](const LaneBits& v) {
+      return LaneMask(_mm256_permutevar8x32_epi32(__m256i(v), __m256i(at)));
     };
-    return as<u8>(at < lanes ? permute(low) : permute(high));
+    return lanes_as<LaneBits>(at < lane_count ? permute(low) : permute(high));
   }
 };
 #endif
-inline constexpr int window = 2 * lanes;
+inline constexpr int window = 2 * lane_count;
 // Whether neighbours lie in a window that begins with the first of them.
-inline bool lie_close(const i8& index, int width_of_pick) {
-  return !any(as<i8>(as<u8>(index - index[0]) > uint32_t(window - width_of_pick)));
+inline bool lie_close(const LaneMask& index, int width_of_pick) {
+  return !any_lane(
+      lanes_as<LaneMask>(lanes_as<LaneBits>(index - index[0]) > uint32_t(window - width_of_pick)));
 }
-inline i8 to_int(const f8& v) { return __builtin_convertvector(v, i8); }
-inline float least(const f8& v) {
-  f8 a = smaller(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
-  a = smaller(a, __builtin_shufflevector(a, a, 2, 3, 0, 1, 6, 7, 4, 5));
+inline LaneMask to_int(const Lanes& v) { return __builtin_convertvector(v, LaneMask); }
+inline float least(const Lanes& v) {
+  Lanes a = lanes_min(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+  a = lanes_min(a, __builtin_shufflevector(a, a, 2, 3, 0, 1, 6, 7, 4, 5));
   return std::min(a[0], a[1]);
 }
-inline float most(const f8& v) { return -least(-v); }
+inline float most(const Lanes& v) { return -least(-v); }
 // NaN becomes 0.
-inline f8 clamped(const f8& v, float high) { return smaller(larger(v, f8{}), splat(high)); }
+inline Lanes clamped(const Lanes& v, float high) {
+  return lanes_min(lanes_max(v, Lanes{}), all_lanes(high));
+}
 
 // What every pixel asks of the keyframe.
 struct Source {
@@ -121,29 +126,29 @@ struct Source {
         coarse(k.view.tan_half_fov * float(view.height) >
                larger_pixel * view.tan_half_fov * float(k.view.height)) {}
   // Of the pixel that holds the place.
-  f8 disparity(const f8& x, const f8& y) const {
-    i8 index = to_int(clamped(y, last_y)) * k.view.width + to_int(clamped(x, last_x));
+  Lanes disparity(const Lanes& x, const Lanes& y) const {
+    LaneMask index = to_int(clamped(y, last_y)) * k.view.width + to_int(clamped(x, last_x));
 #ifdef __AVX2__
     if (lie_close(index, 1) && size_t(index[0]) + window <= k.disparity.size())
-      return as<f8>(Window(&k.disparity[size_t(index[0])]).pick(index - index[0]));
+      return lanes_as<Lanes>(Window(&k.disparity[size_t(index[0])]).pick(index - index[0]));
 #endif
-    return as<f8>(gather(k.disparity.data(), index));
+    return lanes_as<Lanes>(gather(k.disparity.data(), index));
   }
   // What the keyframe shows there, as a disparity in the new view.
-  f8 surface(const f8& x, const f8& y) const {
-    f8 s = disparity(x, y);
-    f8 z = back.one.z + x * back.across.z + y * back.down.z + s * back.baseline.z;
-    return z > least_depth ? s / z : f8{};
+  Lanes surface(const Lanes& x, const Lanes& y) const {
+    Lanes s = disparity(x, y);
+    Lanes z = back.one.z + x * back.across.z + y * back.down.z + s * back.baseline.z;
+    return z > least_depth ? s / z : Lanes{};
   }
 };
 
 // Four pixels each: the first, that after it, and those below both where `below` is not `first`.
-inline void read_corners(const Keyframe& k, const i8& first, const i8& below, u8& c00, u8& c10,
-                         u8& c01, u8& c11) {
+inline void read_corners(const Keyframe& k, const LaneMask& first, const LaneMask& below,
+                         LaneBits& c00, LaneBits& c10, LaneBits& c01, LaneBits& c11) {
 #ifdef __AVX2__
   size_t begin = size_t(first[0]), next = begin + size_t(k.view.width);
   if (lie_close(first, 2) && next + window <= k.color.size()) {
-    i8 at = first - first[0], after = at + 1;
+    LaneMask at = first - first[0], after = at + 1;
     Window row(&k.color[begin]), row_below(&k.color[next]);
     c00 = row.pick(at), c10 = row.pick(after);
     c01 = row_below.pick(at), c11 = row_below.pick(after);
@@ -155,43 +160,47 @@ inline void read_corners(const Keyframe& k, const i8& first, const i8& below, u8
 }
 
 // Bilinear, of the pixels around that lie on the surface of the nearest of them.
-inline u8 sample_color(const Source& source, const f8& x, const f8& y, float pixels) {
+inline LaneBits sample_color(const Source& source, const Lanes& x, const Lanes& y, float pixels) {
   const Keyframe& k = source.k;
   int width = k.view.width;
-  auto place = [](const f8& v, float last) {
+  auto place = [](const Lanes& v, float last) {
     return to_int(clamped(v * fractions - (0.5f * fractions - 0.5f), last * fractions));
   };
-  i8 px = place(x, source.last_x), py = place(y, source.last_y);
-  i8 x0 = px >> fraction_bits, y0 = py >> fraction_bits;
-  u8 fx = as<u8>(px & (fractions - 1)), fy = as<u8>(py & (fractions - 1));
+  LaneMask px = place(x, source.last_x), py = place(y, source.last_y);
+  LaneMask x0 = px >> fraction_bits, y0 = py >> fraction_bits;
+  LaneBits fx = lanes_as<LaneBits>(px & (fractions - 1)),
+           fy = lanes_as<LaneBits>(py & (fractions - 1));
   // Where there is no further row its weight is 0; behind the last pixel there is one more.
-  i8 first = y0 * width + x0, below = first + (as<i8>(fy > 0u) & width);
-  u8 c00, c10, c01, c11;
+  LaneMask first = y0 * width + x0, below = first + (lanes_as<LaneMask>(fy > 0u) & width);
+  LaneBits c00, c10, c01, c11;
   read_corners(k, first, below, c00, c10, c01, c11);
-  u8 w11 = fx * fy, w10 = fx * fractions - w11, w01 = fy * fractions - w11,
-     w00 = uint32_t(fractions * fractions) - w10 - w01 - w11;
+  LaneBits w11 = fx * fy, w10 = fx * fractions - w11, w01 = fy * fractions - w11,
+           w00 = uint32_t(fractions * fractions) - w10 - w01 - w11;
   float allowed = half_step * Keyframe::step_scale / std::max(pixels, 1e-3f);
   uint32_t limit = uint32_t(std::min(allowed, 255.0f));
-  if (any((c00 >> 24) > limit)) {
+  if (any_lane((c00 >> 24) > limit)) {
     float apart = allowed / Keyframe::step_scale;
-    f8 own = source.disparity(x, y);
-    u8 lost{};
-    auto thin = [&](const i8& index, u8& weight) {
-      i8 other = magnitude(as<f8>(gather(k.disparity.data(), index)) - own) > apart;
-      lost += weight & as<u8>(other);
-      weight &= as<u8>(~other);
+    Lanes own = source.disparity(x, y);
+    LaneBits lost{};
+    auto thin = [&](const LaneMask& index, LaneBits& weight) {
+      LaneMask other = lanes_abs(lanes_as<Lanes>(gather(k.disparity.data(), index)) - own) > apart;
+      lost += weight & lanes_as<LaneBits>(other);
+      weight &= lanes_as<LaneBits>(~other);
     };
     thin(first, w00), thin(first + 1, w10), thin(below, w01), thin(below + 1, w11);
     // The nearest pixel is always of its own surface.
-    i8 is_right = as<i8>(fx) >= fractions / 2, is_below = as<i8>(fy) >= fractions / 2;
-    w11 += lost & as<u8>(is_right & is_below), w10 += lost & as<u8>(is_right & ~is_below);
-    w01 += lost & as<u8>(~is_right & is_below), w00 += lost & as<u8>(~is_right & ~is_below);
+    LaneMask is_right = lanes_as<LaneMask>(fx) >= fractions / 2,
+             is_below = lanes_as<LaneMask>(fy) >= fractions / 2;
+    w11 += lost & lanes_as<LaneBits>(is_right & is_below),
+        w10 += lost & lanes_as<LaneBits>(is_right & ~is_below);
+    w01 += lost & lanes_as<LaneBits>(~is_right & is_below),
+        w00 += lost & lanes_as<LaneBits>(~is_right & ~is_below);
   }
   constexpr uint32_t two = 0x00ff00ffu;
-  u8 red_blue =
+  LaneBits red_blue =
       (c00 & two) * w00 + (c10 & two) * w10 + (c01 & two) * w01 + (c11 & two) * w11 + 0x00800080u;
-  auto green = [](const u8& c) { return (c >> 8) & 255u; };
-  u8 g = green(c00) * w00 + green(c10) * w10 + green(c01) * w01 + green(c11) * w11 + 128u;
+  auto green = [](const LaneBits& c) { return (c >> 8) & 255u; };
+  LaneBits g = green(c00) * w00 + green(c10) * w10 + green(c01) * w01 + green(c11) * w11 + 128u;
   return ((red_blue >> 8) & two) | (g & 0xff00u);
 }
 

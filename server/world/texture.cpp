@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "world/texture_taps.h"
-
 namespace wellspring {
 namespace {
 

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "world/texture_taps.h"
 
 namespace wellspring {
-
-enum class Wrap : uint8_t { repeat, mirror, clamp };
 
 // A decoded image. Exactly one of `texels8` (RGBA, 4 bytes a texel) and `texels` (float RGBA,
 // linear) is filled; top row first.

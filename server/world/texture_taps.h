@@ -2,10 +2,13 @@
 // Where a texture coordinate falls between texels (glTF 2.0 section 3.8.4).
 #pragma once
 #include <cmath>
+#include <cstdint>
 
-#include "world/texture.h"
+#include "base/vec.h"
 
 namespace wellspring {
+
+enum class Wrap : uint8_t { repeat, mirror, clamp };
 
 // The two texels on one axis and the weight of the second.
 struct Taps {

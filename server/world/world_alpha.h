@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a surface with alpha lets a ray pass. Used by world.cpp from Embree's filter functions.
+// Where a surface with alpha lets a ray pass; asked by Embree's filter functions (world_rays.cpp).
 #pragma once
 #include "world/world.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inside of a World, shared by world.cpp (rays) and world_build.cpp (trees). Two Embree scenes:
-// what stands still, built once at high quality, and what moves, refitted by commit(). A ray visits
-// the still one, then the moving one if it meets its box before the hit. Measured against one scene
-// with an instance per moving mesh: no instance transform on the way to walls, and commit() costs
-// nothing that grows with the museum.
+// The inside of a World, shared by world_rays.cpp (rays) and world_build.cpp (trees). Two Embree
+// scenes: what stands still, built once at high quality, and what moves, refitted by commit(). A
+// ray visits the still one, then the moving one if it meets its box before the hit. Measured
+// against one scene with an instance per moving mesh: no instance transform on the way to walls,
+// and commit() costs nothing that grows with the museum.
 #pragma once
 #include "world/embree.h"
 #include "world/world.h"

@@ -53,8 +53,8 @@ std::unique_ptr<VisitMethod> make_visit_method(const std::string& name);
 
 // The render cache as published: points alone, each picture of the frame's own answers.
 std::unique_ptr<VisitMethod> make_published_cache();
-// Pictures as show/draw/picture.cpp draws them. Answers are there for the picture that asked; or they
-// come through a broker for the next; or the picture waits for them and is shown a frame late.
+// Pictures as show/draw/picture.cpp draws them. Answers are there for the picture that asked; or
+// they come through a broker for the next; or the picture waits for them and is shown a frame late.
 enum class Answers { at_once, next_frame, waited_for };
 std::unique_ptr<VisitMethod> make_deferred(Answers answers);
 // That pipeline, at rest with learned reconstruction. Throws std::runtime_error where there are no

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "light/instant/caustic_photons.h"
+#include "light/instant/instant_radiosity.h"
 #include "light/walk/first_surface.h"
 #include "light_scenes.h"
 

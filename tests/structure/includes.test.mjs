@@ -24,6 +24,46 @@ const may_include = {
   stream: ['wire', 'base'],
   kiosk: ['wire', 'base'],
 };
+// Rooms: layer -> room -> rooms of the same layer it may include, besides itself. '' is the layer's
+// own folder. Every room has a README.md that says who lives there.
+const may_enter = {
+  avatar: {
+    figure: [],
+    load: ['figure'],
+    speech: [],
+    align: ['speech'],
+    face: ['figure', 'speech'],
+    body: ['figure', 'face'],
+    story: ['body', 'align', 'speech'],
+    mind: ['figure', 'face', 'body', 'story'],
+  },
+  world: {
+    '': [],
+    load: [''],
+    raster: [''],
+  },
+  light: {
+    random: [],
+    material: ['random'],
+    '': ['material'],
+    sample: ['', 'material', 'random'],
+    walk: ['', 'sample', 'material', 'random'],
+    known: ['', 'walk', 'sample', 'material', 'random'],
+    visible: ['', 'known', 'walk', 'sample', 'material', 'random'],
+    instant: ['', 'walk', 'sample', 'material', 'random'],
+    technique: ['', 'instant', 'known', 'walk', 'sample', 'material', 'random'],
+  },
+  picture: {
+    still: [],
+    '': ['still'],
+  },
+};
+// Files in a layer's own folder where that is no room.
+const at_home = { avatar: /^main[^/]*\.cpp$/ };
+const most_files_a_folder = 40;
+// Units that may still include one another in a circle: all of them in one of these folders.
+const circles_allowed = ['server/show/'];
+
 // Heavy headers appear in .cpp files of these layers only.
 const heavy = [
   [/^(boost\/(beast|asio)|boost\/)/, ['stream', 'kiosk']],
@@ -64,6 +104,34 @@ function files() {
 }
 
 const all = files();
+const by_name = new Map(all.map((file) => [file.name, file]));
+const path_of = (include) => ['', 'server/'].map((top) => top + include)
+    .find((name) => by_name.has(name));
+const included = (file) => file.includes.map(path_of).filter((name) => name);
+
+// Groups of more than one node from each of which every other can be reached (Tarjan 1972).
+function circles(graph) {
+  const index = new Map(), low = new Map(), stack = [], found = [];
+  const visit = (node) => {
+    index.set(node, index.size), low.set(node, index.get(node)), stack.push(node);
+    for (const next of graph.get(node)) {
+      if (!index.has(next)) visit(next), low.set(node, Math.min(low.get(node), low.get(next)));
+      else if (stack.includes(next)) low.set(node, Math.min(low.get(node), index.get(next)));
+    }
+    if (low.get(node) < index.get(node)) return;
+    const group = stack.splice(stack.indexOf(node));
+    if (group.length > 1) found.push(group.sort());
+  };
+  for (const node of graph.keys()) if (!index.has(node)) visit(node);
+  return found;
+}
+
+// A layer's folder and the rest of a file's path.
+const folder_of = (layer) => layer === 'avatar' ? 'avatar/' : `server/${layer}/`;
+const room_of = (layer, name) => {
+  const rest = name.slice(folder_of(layer).length);
+  return rest.includes('/') ? rest.slice(0, rest.lastIndexOf('/')) : '';
+};
 
 test('there are sources to check', () => assert.ok(all.length > 50));
 
@@ -79,6 +147,69 @@ test('includes follow the direction of the layers', () => {
         wrong.push(`${name} includes ${include}`);
     }
   }
+  assert.deepEqual(wrong, []);
+});
+
+test('units include one another in one direction', () => {
+  // A header and its .cpp are one unit.
+  const unit_of = (name) => name.replace(/\.(h|cpp)$/, '');
+  const graph = new Map(all.map((file) => [unit_of(file.name), new Set()]));
+  for (const file of all)
+    for (const name of included(file))
+      if (unit_of(name) !== unit_of(file.name)) graph.get(unit_of(file.name)).add(unit_of(name));
+  const wrong = circles(graph).filter((group) =>
+      !circles_allowed.some((folder) => group.every((unit) => unit.startsWith(folder))));
+  assert.deepEqual(wrong, []);
+});
+
+test('rooms of a layer include one another as their table says', () => {
+  const wrong = [];
+  for (const [layer, rooms] of Object.entries(may_enter)) {
+    assert.deepEqual(circles(new Map(Object.entries(rooms))), [], `${layer}'s table`);
+    for (const file of all) {
+      if (!file.name.startsWith(folder_of(layer))) continue;
+      const room = room_of(layer, file.name);
+      if (!(room in rooms)) {
+        if (room !== '' || !at_home[layer]?.test(file.name.slice(folder_of(layer).length)))
+          wrong.push(`${file.name} is in no known room`);
+        continue;
+      }
+      for (const name of included(file)) {
+        if (!name.startsWith(folder_of(layer))) continue;
+        const entered = room_of(layer, name);
+        if (entered !== room && !rooms[room].includes(entered))
+          wrong.push(`${file.name} includes ${name}`);
+      }
+    }
+  }
+  assert.deepEqual(wrong, []);
+});
+
+test('every room says who lives there, in a few lines', () => {
+  const wrong = [];
+  for (const [layer, rooms] of Object.entries(may_enter))
+    for (const room of Object.keys(rooms).filter((name) => name !== '')) {
+      const name = `${folder_of(layer)}${room}/README.md`;
+      let lines = [];
+      try {
+        lines = readFileSync(join(root, name), 'utf8').trimEnd().split('\n');
+      } catch {
+        wrong.push(`${name}: missing`);
+        continue;
+      }
+      if (lines.length < 5 || lines.length > 12) wrong.push(`${name}: ${lines.length} lines`);
+      if (lines.some((line) => [...line].length > 100)) wrong.push(`${name}: over 100 columns`);
+    }
+  assert.deepEqual(wrong, []);
+});
+
+test(`no folder holds more than ${most_files_a_folder} source files`, () => {
+  const count = new Map();
+  for (const { name } of all) {
+    const folder = name.slice(0, name.lastIndexOf('/'));
+    count.set(folder, (count.get(folder) ?? 0) + 1);
+  }
+  const wrong = [...count].filter(([, files]) => files > most_files_a_folder);
   assert.deepEqual(wrong, []);
 });
 
@@ -98,15 +229,12 @@ test('heavy headers stay in .cpp files of their own layer', () => {
 });
 
 test('what a gateway header brings in stays in its folder', () => {
-  const path_of = (include) => ['', 'server/'].map((root) => root + include)
-      .find((name) => all.some((file) => file.name === name));
   const reaches = (name, seen = new Set()) => {
     if (gateways.includes(name)) return name;
     if (seen.has(name)) return null;
     seen.add(name);
-    const file = all.find((one) => one.name === name);
-    for (const include of file.includes) {
-      const next = path_of(include), found = next && reaches(next, seen);
+    for (const next of included(by_name.get(name))) {
+      const found = reaches(next, seen);
       if (found) return found;
     }
     return null;

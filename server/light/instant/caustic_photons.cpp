@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "light/material/bsdf_simd.h"
+#include "light/sample/caustic_casters.h"
 #include "light/sample/emission.h"
 #include "light/random/warp.h"
 

@@ -6,17 +6,9 @@
 #pragma once
 #include "light/instant/photon_grid.h"
 #include "light/instant/point_light_shading.h"
+#include "light/sample/light_tables.h"
 
 namespace wellspring {
-
-// Spheres around the instances whose material the plan calls sharp, large ones in parts. `moving`:
-// those that move, else those that do not.
-std::vector<CasterSphere> find_casters(const World& world, const TransportPlan& plan, bool moving);
-
-// Density of directions towards the spheres as seen from a place, over solid angle; and one of
-// them. Zero density: there is nothing to aim at.
-float sample_caster_pdf(std::span<const CasterSphere> casters, vec3 from, vec3 direction);
-vec3 sample_caster(std::span<const CasterSphere> casters, vec3 from, vec2 u);
 
 // The photons `[first, first + count)` of the sequence of `seed`; each stands for `share` of the
 // light.

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "light/instant/instant_samples.h"
+#include "light/sample/finish_samples.h"
 #include "light/walk/first_surface.h"
 #include "light/walk/lambert_hits.h"
-#include "light/technique/technique_list.h"
 
 namespace wellspring {
 namespace {

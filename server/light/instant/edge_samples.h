@@ -8,7 +8,10 @@
 #include <span>
 
 #include "light/instant/discontinuity_buffer.h"
-#include "light/technique/technique.h"
+#include "light/sample.h"
+#include "light/sample/lights.h"
+#include "light/transport_settings.h"
+#include "world/view.h"
 
 namespace wellspring {
 

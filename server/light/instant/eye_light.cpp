@@ -6,6 +6,7 @@
 
 #include "light/instant/caustic_photons.h"
 #include "light/instant/point_lights_simd.h"
+#include "light/sample/medium.h"
 #include "light/walk/part_colors.h"
 
 namespace wellspring {

@@ -56,7 +56,7 @@ void gather_clipped(const EyeLight& light, std::span<const Request> requests, co
     surface.extent = group.extent.half(h);
     MattLobeLanes lobes{group.normal.half(h), surface.geometric_normal, {}};
     Lanes u, v;
-    samplers.pair(all_lanes(direction_dimension), u, v);
+    samplers.pair(all_lane_bits(direction_dimension), u, v);
     Lanes3 direction = sample_cosine_directions(lobes.normal, u, v);
     active |= negative_lanes(eval_matt_pdfs(lobes, direction) > Lanes{}) << h * lane_count;
     set_rays(offset_origins(surface, direction), direction, all_lanes(light.pass.clip),

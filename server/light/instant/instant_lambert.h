@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "light/instant/instant_radiosity.h"
+#include "light/instant/instant_pass.h"
 #include "light/sample.h"
 
 namespace wellspring {

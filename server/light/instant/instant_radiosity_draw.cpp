@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "light/instant/caustic_photons.h"
+#include "light/sample/caustic_casters.h"
 #include "light/sample/emission.h"
 #include "light/instant/instant_radiosity.h"
 #include "light/instant/point_lights_simd.h"

@@ -3,7 +3,7 @@
 // not depend on the others.
 #pragma once
 #include "base/simd3.h"
-#include "light/instant/instant_radiosity.h"
+#include "light/instant/instant_pass.h"
 
 namespace wellspring {
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "light/instant/lit_group.h"
+#include "light/sample/medium.h"
 
 namespace wellspring {
 

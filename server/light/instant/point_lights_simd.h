@@ -6,7 +6,7 @@
 #include <span>
 
 #include "base/simd.h"
-#include "light/instant/instant_radiosity.h"
+#include "light/instant/instant_pass.h"
 
 namespace wellspring {
 

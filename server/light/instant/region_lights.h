@@ -9,7 +9,8 @@
 // Importance Sampling for Unstructured Direct Illumination" (2009), with a picture's regions for
 // clusters.
 #pragma once
-#include "light/instant/instant_radiosity.h"
+#include "light/instant/instant_pass.h"
+#include "world/view.h"
 
 namespace wellspring {
 

@@ -6,6 +6,8 @@
 // that of all.
 #pragma once
 #include "light/instant/point_light_shading.h"
+#include "light/sample/medium.h"
+#include "world/view.h"
 
 namespace wellspring {
 

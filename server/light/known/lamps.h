@@ -10,19 +10,6 @@
 
 namespace wellspring {
 
-// What shines of a scene.
-struct Shining {
-  std::vector<char> materials, lights;  // of each of the scene's
-  bool sky = true;
-};
-Shining what_shines(const World& world);  // as its lamps are
-// That lamp alone; -1: all that belongs to no lamp.
-Shining what_shines_of(const Scene& scene, int lamp);
-
-// The tables of fewer sources than those of `all`, which was made while all lamps were on.
-std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene,
-                                         const Shining& shining);
-
 // The lights of `world` as its lamps are now. `all`: of the same world, made and prepared for all
 // techniques in use while all lamps were on. A technique of passes has to begin one before the next
 // sample.

@@ -6,13 +6,13 @@
 // Vertices that share a position and about a normal at rest are one place, so that seams of texture
 // coordinates do not show; meshes of two-sided materials have places for either side. A sample
 // gathers the light that arrives around a place as on a white Lambertian surface (next-event
-// estimation and one scattered ray, light/walk/walk.h). Samples are averaged over time, the older ones
-// dropped when the newer say otherwise: the means of two windows are compared, pooled over a place
-// and its neighbours, against the standard error of their difference (as temporal gradients drop
-// history in Schied, Peters, Dachsbacher 2018, "Gradient Estimation for Real-Time Adaptive Temporal
-// Filtering"). Between neighbours light is smoothed as a Gaussian Markov random field (Rue and Held
-// 2005, section 2): the least squares of what samples say, each weighed by its count, and of
-// differences along edges, weighed by how alike light is there. Multigrid by aggregation solves
+// estimation and one scattered ray, light/walk/walk.h). Samples are averaged over time, the older
+// ones dropped when the newer say otherwise: the means of two windows are compared, pooled over a
+// place and its neighbours, against the standard error of their difference (as temporal gradients
+// drop history in Schied, Peters, Dachsbacher 2018, "Gradient Estimation for Real-Time Adaptive
+// Temporal Filtering"). Between neighbours light is smoothed as a Gaussian Markov random field (Rue
+// and Held 2005, section 2): the least squares of what samples say, each weighed by its count, and
+// of differences along edges, weighed by how alike light is there. Multigrid by aggregation solves
 // that (Briggs, Henson, McCormick 2000, "A Multigrid Tutorial", chapter 8), a V-cycle a call, going
 // on from the last. So one sample a place already gives calm light.
 //
@@ -23,7 +23,8 @@
 #include <span>
 #include <vector>
 
-#include "light/technique/technique.h"
+#include "light/sample/lights.h"
+#include "light/transport_settings.h"
 
 namespace wellspring {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the light on what moves is kept (light/known/skin_light.h): places, the triangles around them and
-// their neighbours.
+// Where the light on what moves is kept (light/known/skin_light.h): places, the triangles around
+// them and their neighbours.
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light between places: a Gaussian Markov random field solved by multigrid (light/known/skin_light.h).
+// Light between places: a Gaussian Markov random field solved by multigrid
+// (light/known/skin_light.h).
 #include <algorithm>
 #include <cmath>
 

@@ -7,8 +7,8 @@
 #include "light/material/bsdf_frame.h"
 #include "light/material/bsdf_gloss.h"
 #include "light/material/bsdf_layers.h"
-#include "light/material/dispersion.h"
 #include "light/material/microfacet.h"
+#include "light/material/wavelengths.h"
 
 namespace wellspring {
 namespace {
@@ -117,7 +117,12 @@ BsdfValue eval_lobes(const Bsdf& b, vec3 direction) {
 
 BsdfValue eval_bsdf(const Bsdf& b, vec3 direction) {
   BsdfValue value = eval_lobes(b, direction);
-  if (b.spread) blend_wavelengths(*b.spread, direction, value);
+  if (b.spread) {
+    BsdfValue others[wavelength_count - 1];
+    for (int i = 1; i < b.spread->before.carried; i++)
+      others[i - 1] = eval_lobes(b.spread->others[i - 1], direction);
+    blend_wavelengths(*b.spread, others, value);
+  }
   return value;
 }
 

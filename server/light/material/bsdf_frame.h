@@ -3,7 +3,7 @@
 #pragma once
 #include <cmath>
 
-#include "light/material/bsdf.h"
+#include "light/material/bsdf_types.h"
 #include "light/random/warp.h"
 
 namespace wellspring {

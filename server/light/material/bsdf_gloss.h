@@ -3,7 +3,8 @@
 // mirrored lobe, and what scatters between facets more than once. Directions are local, z along the
 // normal; values carry the cosine and count for radiance: beyond a boundary it is eta^2 denser.
 #pragma once
-#include "light/material/bsdf.h"
+#include "light/material/bsdf_types.h"
+#include "light/random/sampler.h"
 
 namespace wellspring {
 

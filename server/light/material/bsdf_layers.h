@@ -10,7 +10,8 @@
 // and gains nothing. That is not reciprocal: with viewer and light exchanged the base differs by
 // (1 - reflected(v)) / (1 - reflected(l)).
 #pragma once
-#include "light/material/bsdf.h"
+#include "light/material/bsdf_types.h"
+#include "light/random/sampler.h"
 
 namespace wellspring {
 

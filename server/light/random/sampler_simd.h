@@ -6,8 +6,6 @@
 
 namespace wellspring {
 
-inline LaneBits all_lanes(uint32_t x) { return LaneBits{x, x, x, x, x, x, x, x}; }
-
 inline LaneBits reverse_bits(LaneBits x) {
   x = (x >> 16) | (x << 16);
   x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What photons aim at.
+#include "light/sample/caustic_casters.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "light/instant/caustic_photons.h"
 #include "light/random/warp.h"
 
 namespace wellspring {

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "light/sample/sample_light.h"
 #include "light/random/warp.h"
+#include "light/sample/light_tables.h"
+#include "light/sample/transport.h"
 
 namespace wellspring {
 namespace {

@@ -4,27 +4,15 @@
 #pragma once
 #include <span>
 
-#include "light/random/alias_table.h"
-#include "light/sample/environment_light.h"
 #include "light/random/sampler.h"
+#include "light/sample/emission_choice.h"
+#include "light/sample/environment_light.h"
 #include "world/surface.h"
 
 namespace wellspring {
 
 struct LightTables;
 struct Transport;
-
-// Sources are numbered: emitting triangles, then punctual lights, then the environment.
-struct EmissionChoice {
-  AliasTable rays;    // all of them, by power
-  AliasTable
-      places;  // those that light only a share of a picture's pixels each: see exact_punctual
-  AliasTable caustics;  // sources of photons: without a sky that is the same all over
-  bool exact_punctual = true;  // few punctual lights: every pixel asks each of them
-  vec3 centre{0};              // of a sphere around the scene
-  float radius = 1;
-};
-inline constexpr size_t most_exact_punctual = 4;
 
 // `power` of each triangle and of each punctual light of `tables`.
 EmissionChoice make_emission_choice(const LightTables& tables, std::span<const float> emitter_power,

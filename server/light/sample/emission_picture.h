@@ -5,8 +5,8 @@
 #pragma once
 #include <functional>
 
-#include "light/random/alias_table.h"
 #include "base/vec.h"
+#include "light/random/alias_table.h"
 
 namespace wellspring {
 

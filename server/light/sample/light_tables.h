@@ -5,14 +5,14 @@
 #pragma once
 #include <vector>
 
-#include "light/material/albedo_table.h"
-#include "light/sample/emission.h"
+#include "light/sample/emission_choice.h"
 #include "light/sample/emission_picture.h"
 #include "light/sample/environment_light.h"
 #include "light/sample/few_lights.h"
 #include "light/sample/light_tree.h"
-#include "light/sample/medium.h"
+#include "light/sample/material_traits.h"
 #include "light/sample/pane_boxes.h"
+#include "light/sample/solid_bounds.h"
 #include "light/transport_plan.h"
 #include "world/world.h"
 
@@ -29,13 +29,6 @@ struct EmitterTriangle {
   bool uniform = true;  // neither texture nor alpha: emission is the same all over
   bool double_sided = false;
   int picture = -1;  // index into LightTables::pictures where its brightness varies much
-};
-
-struct MaterialTraits {
-  const DielectricAlbedo* albedo = nullptr;  // null: nothing in use is made of it
-  bool maybe_pane = false;  // some place of it may be a thin smooth pane
-  bool matt = false;        // is_matt
-  KeptMetal metal = KeptMetal::none;
 };
 
 // Around a part of what scatters sharply; `weight`: about the share of light that it does so with.

@@ -5,11 +5,13 @@
 #include <cmath>
 
 #include "base/memory.h"
-#include "light/instant/caustic_photons.h"
+#include "light/sample/caustic_casters.h"
+#include "light/sample/emission.h"
 #include "light/sample/light_bounds.h"
-#include "light/known/lamps.h"
 #include "light/sample/light_tables.h"
+#include "light/sample/medium.h"
 #include "light/sample/pane_boxes.h"
+#include "light/sample/shining.h"
 #include "world/surface.h"
 
 namespace wellspring {

@@ -9,10 +9,11 @@
 
 namespace wellspring {
 
-struct InstantPass;    // light/instant/instant_radiosity.h
+struct InstantPass;    // light/instant/instant_pass.h
+struct LightTables;    // light/sample/light_tables.h
 struct RadianceGrid;   // light/sample/radiance_grid.h
+struct Shining;        // light/sample/shining.h
 struct TransportPlan;  // light/transport_plan.h
-struct LightTables;  // alias tables, triangle lists, environment distribution: light/sample/light_tables.h
 
 struct Lights {
   std::shared_ptr<const LightTables> tables;
@@ -29,5 +30,9 @@ Lights make_lights(const World& world);
 // nothing. Leaving out what matters is what one would expect it to be.
 Lights make_lights(const World& world, const TransportPlan& plan);
 TransportPlan make_plan(const World& world);  // of its scene and what moves in it
+
+// The tables of fewer sources than those of `all`, which was made while all lamps were on.
+std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene,
+                                         const Shining& shining);
 
 }  // namespace wellspring

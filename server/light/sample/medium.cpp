@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 
-#include "light/sample/sample_light.h"
+#include "light/material/bsdf.h"
+#include "light/sample/light_tables.h"
+#include "light/sample/solid_bounds.h"
+#include "light/sample/transport.h"
 
 namespace wellspring {
 namespace {
@@ -27,15 +29,6 @@ void enter_before_all(MediumStack& stack, int material) {
   stack.count++;
 }
 
-Bounds bounds_of(const PlacedMesh& placed) {
-  Bounds box;
-  for (vec3 p : placed.mesh->positions) {
-    if (!placed.in_place) p = vec3(placed.to_world * vec4(p, 1));
-    box.low = glm::min(box.low, p);
-    box.high = glm::max(box.high, p);
-  }
-  return box;
-}
 float size_of(const World& world, uint32_t instance) {
   Bounds box = bounds_of(world.placed(instance));
   return length(box.high - box.low);
@@ -180,21 +173,6 @@ void leave_solid(MediumStack& stack, int material) {
     stack.count--;
     return;
   }
-}
-
-SolidBounds find_solid_bounds(const World& world, const TransportPlan& plan) {
-  static std::atomic<uint64_t> keys{0};
-  SolidBounds solids;
-  solids.key = ++keys;
-  for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++) {
-    const PlacedMesh& placed = world.placed(i);
-    if (placed.moving || !plan.materials[size_t(placed.mesh->material)].solid) continue;
-    Bounds box = bounds_of(placed);
-    solids.each.push_back(box);
-    solids.all.low = glm::min(solids.all.low, box.low);
-    solids.all.high = glm::max(solids.all.high, box.high);
-  }
-  return solids;
 }
 
 MediumStack find_media(const Transport& transport, vec3 place) {

@@ -10,13 +10,12 @@
 //
 // Scenes without solids (TransportPart::refraction) pay one branch at each hit.
 #pragma once
-#include "light/material/bsdf.h"
+#include "light/material/bsdf_types.h"
 #include "world/world.h"
 
 namespace wellspring {
 
 struct Transport;
-struct TransportPlan;
 
 // Materials, the outermost first. Beyond `most` the outermost is forgotten.
 struct MediumStack {
@@ -36,14 +35,6 @@ struct Media {
 inline int medium_towards(const Media& media, const SurfacePlace& place, vec3 direction) {
   return (dot(direction, place.geometric_normal) < 0 ? media.beyond : media.here).innermost();
 }
-
-// Boxes of the solids that stand still, for places that ask whether they are in one.
-struct SolidBounds {
-  Bounds all;
-  std::vector<Bounds> each;
-  uint64_t key = 0;  // no other has it
-};
-SolidBounds find_solid_bounds(const World& world, const TransportPlan& plan);
 
 // The solids around a place, found by rays in several directions that must agree: what they leave
 // without having entered it was around their start. Each thread remembers the last place asked for.

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "light/sample/light_tables.h"
-
 namespace wellspring {
 namespace {
 

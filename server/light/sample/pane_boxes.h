@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "base/simd.h"
+#include "light/sample/material_traits.h"
 #include "world/world.h"
 
 namespace wellspring {
-
-struct MaterialTraits;
 
 // Eight a group, the last filled up with its last one.
 struct PaneBoxes {

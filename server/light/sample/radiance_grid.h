@@ -9,14 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "light/material/bsdf.h"
 #include "light/sample/lamps_seen.h"
 #include "world/surface.h"
 
 namespace wellspring {
-
-struct Transport;
-struct LightTables;
 
 struct RadianceGrid {
   float cell = 0.25f;          // metres
@@ -36,22 +32,6 @@ struct RadianceGrid {
 };
 inline constexpr float enough_grid_samples = 12;  // a cell with fewer is not asked
 
-struct RadianceGridSettings {
-  int paths = 400000;  // random walks that fill it
-  int max_depth = 9;
-  int kept_depth = 5;  // surfaces met later have too little of their walk left to know their light
-  uint64_t seed = 1;
-  float cell = 0;      // metres; 0: a twenty-fourth of the median free view from the places
-};
-
-// Walks start at `places` (scene coordinates: where eyes are likely to be) in all directions; every
-// surface they meet learns its light. All cores, a few seconds; the same grid whatever the thread
-// count. `parts`: tables of what belongs to no lamp, and of each lamp alone, while all are on:
-// every walk learns the light of each of them.
-std::shared_ptr<const RadianceGrid> make_radiance_grid(
-    const Transport& transport, std::span<const vec3> places,
-    const RadianceGridSettings& settings = {},
-    std::span<const std::shared_ptr<const LightTables>> parts = {});
 // Its light where lamps[i] says whether lamp i is on. Milliseconds.
 std::shared_ptr<const RadianceGrid> relit(const RadianceGrid& all, std::span<const char> lamps);
 // The slot of a surface there: of light that was met, or a free one.

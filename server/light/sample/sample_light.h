@@ -5,16 +5,9 @@
 #pragma once
 #include "light/material/bsdf.h"
 #include "light/sample/light_tables.h"
+#include "light/sample/transport.h"
 
 namespace wellspring {
-
-// Everything a sample needs to know of what stays the same during a call.
-struct Transport {
-  const World& world;
-  const LightTables& tables;
-  const struct RadianceGrid* grid = nullptr;  // light that stays, where a technique may use it
-  const struct LampsSeen* lamps = nullptr;    // what weighs the choice among few lamps, where known
-};
 
 struct LightSample {
   vec3 direction{0};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Technique `direct`: emission and the light that reaches a surface straight, seen also in chains
 // of perfect mirrors and glass. No light between rough surfaces.
+#include "light/sample/finish_samples.h"
 #include "light/technique/technique_list.h"
 #include "light/walk/walk.h"
 

@@ -2,8 +2,12 @@
 // Technique `gather`: path tracing whose walks end where a wide ray meets light that is already
 // known (RadianceGrid). Static light and geometry make that light worth keeping; one gathering
 // bounce hides its cells. Without a grid it is `path`.
+#include "light/known/fill_radiance_grid.h"
 #include "light/known/lamps.h"
+#include "light/sample/finish_samples.h"
+#include "light/sample/light_tables.h"
 #include "light/sample/radiance_grid.h"
+#include "light/sample/shining.h"
 #include "light/technique/technique_list.h"
 #include "light/walk/walk.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Technique `path`: unbiased path tracing, the reference.
+#include "light/sample/finish_samples.h"
 #include "light/technique/technique_list.h"
 #include "light/walk/walk.h"
 

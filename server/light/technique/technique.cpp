@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <stdexcept>
 
-#include "base/simd.h"
 #include "base/parallel.h"
 #include "base/raw_vector.h"
 #include "base/rng.h"
+#include "light/instant/instant_radiosity.h"
+#include "light/instant/instant_samples.h"
 #include "light/technique/pixel_requests.h"
 #include "light/technique/technique_list.h"
 
@@ -36,18 +36,6 @@ constexpr int pass_tile = 24;
 // Samples of a tile that it gets at once elsewhere: few enough to stay in a core's cache.
 constexpr size_t most_at_once = 256;
 
-// Light of a sample is finite and not negative. Bit by bit: one branch for all.
-bool is_light(const Sample& sample) {
-  constexpr float most = std::numeric_limits<float>::max();
-  static_assert(offsetof(Sample, rest) == offsetof(Sample, albedo) + 6 * sizeof(float));
-  const vec3 sum = sample.radiance();
-  const Lanes first = load_lanes(&sample.albedo.x);  // all but the last number of `rest`
-  const Lanes others = {sample.rest.z, sum.x, sum.y, sum.z, 0, 0, 0, 0}, zero{};
-  // NaN is neither.
-  LaneMask fine = (first >= zero) & (first <= most) & (others >= zero) & (others <= most);
-  return negative_lanes(fine) == 0xff;
-}
-
 }  // namespace
 
 std::span<const Technique> techniques() { return list; }
@@ -56,24 +44,6 @@ const Technique* find_technique(std::string_view name) {
   for (const Technique& technique : list)
     if (name == technique.name) return &technique;
   return nullptr;
-}
-
-void finish_samples(const Lights& lights, const TransportSettings& settings,
-                    std::span<Sample> samples) {
-  for (Sample& sample : samples) {
-    if (!is_light(sample)) {
-      lights.bad_samples->fetch_add(1, std::memory_order_relaxed);
-      sample.albedo = sample.smooth = sample.rest = sample.glow = vec3(0);
-      sample.flags &= uint8_t(~sample_sure);
-    }
-    if (!(settings.clamp > 0)) continue;
-    // What owes nothing to chance, such as a lamp that is looked at, is as bright as it is.
-    vec3 sure = sample.flags & sample_sure ? sample.rest : sample.glow;
-    float largest = max_component(sample.radiance() - sure), share = settings.clamp / largest;
-    if (!(largest > settings.clamp)) continue;
-    sample.smooth *= share;
-    sample.rest = sure + (sample.rest - sure) * share;
-  }
 }
 
 void trace(const Technique& technique, const World& world, const Lights& lights,

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/spread.h"
+#include "light/sample/medium.h"
 #include "light/walk/walk.h"
 
 namespace wellspring {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one pixel sees of the triangle it shows (light/visible/facet.h), pictures averaged over the pixel.
+// What one pixel sees of the triangle it shows (light/visible/facet.h), pictures averaged over the
+// pixel.
 #pragma once
 #include <vector>
 
 #include "light/visible/facet.h"
-#include "light/walk/first_surface.h"
 #include "light/visible/see_through.h"
+#include "light/walk/first_surface.h"
 #include "world/texture_pyramid.h"
 
 namespace wellspring {

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "light/visible/facet.h"
-#include "light/walk/first_surface.h"
+#include "light/known/skin_light.h"
 #include "light/material/gloss_albedo.h"
+#include "light/sample/medium.h"
+#include "light/visible/facet.h"
 #include "light/visible/shade_facet.h"
 #include "light/visible/visible_material.h"
-#include "light/known/skin_light.h"
+#include "light/walk/first_surface.h"
 
 namespace wellspring {
 struct PictureSight::Impl {

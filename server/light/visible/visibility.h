@@ -28,9 +28,9 @@ struct RunSkin {
   float gloss[RunSurface::most];  // albedo of the dielectric's reflection, 0 to 1
 };
 
-// Up to 64 pixels of a row, from (x, y) to the right. As light/visible/see_through.h answers for rays through the
-// pixels' sampling places, but that normals are those of the mesh, without normal maps, pictures
-// are averaged over the pixel, and clear panes tint a part of the picture alike.
+// Up to 64 pixels of a row, from (x, y) to the right. As light/visible/see_through.h answers for
+// rays through the pixels' sampling places, but that normals are those of the mesh, without normal
+// maps, pictures are averaged over the pixel, and clear panes tint a part of the picture alike.
 class SightRun {
  public:
   int x = 0, y = 0, count = 0;
@@ -44,8 +44,8 @@ class SightRun {
   // Pixels that may see what is polished: their guides are those of what it shows
   // (light/visible/guides.h).
   uint64_t polished() const;
-  // Of its pixels that show what moves, as `surface` describes it (light/known/skin_light.h); of others
-  // anything. Returns those, a bit each; none where rays have seen them.
+  // Of its pixels that show what moves, as `surface` describes it (light/known/skin_light.h); of
+  // others anything. Returns those, a bit each; none where rays have seen them.
   uint64_t light(const struct SkinLight& skin, const RunSurface& surface, RunSkin& to) const;
   // Everything of pixel i; costs as much as a dozen descriptions.
   Seen see(int i) const;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the visibility pass (light/visible/visibility.h) has to know of materials before it begins.
 #pragma once
-#include "light/walk/first_surface.h"
-#include "light/visible/guides.h"
 #include "light/material/material_use.h"
+#include "light/visible/guides.h"
+#include "light/walk/first_surface.h"
 
 namespace wellspring {
 

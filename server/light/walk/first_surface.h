@@ -3,6 +3,7 @@
 // the Sample, and one of their mirror images, chosen by how bright it may be, is left to be
 // followed.
 #pragma once
+#include "light/sample/medium.h"
 #include "light/walk/walk.h"
 
 namespace wellspring {

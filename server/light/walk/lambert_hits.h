@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "light/sample/sample_light.h"
 #include "light/sample.h"
+#include "light/sample/sample_light.h"
 
 namespace wellspring {
 

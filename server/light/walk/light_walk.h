@@ -6,8 +6,9 @@
 // A scattering is `sharp` where a lobe smoother than caustic_roughness did it. Sharp and rough
 // scatterings are told apart so that each path of light is found by one technique only.
 #pragma once
-#include "light/walk/part_colors.h"
+#include "light/sample/medium.h"
 #include "light/sample/sample_light.h"
+#include "light/walk/part_colors.h"
 
 namespace wellspring {
 

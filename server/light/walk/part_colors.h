@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "light/material/dispersion.h"
+#include "light/sample/medium.h"
 #include "light/sample/sample_light.h"
 
 namespace wellspring {

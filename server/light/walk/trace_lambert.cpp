@@ -39,7 +39,7 @@ struct Batch {
 // As walk.h has it, of the surface at that depth.
 LaneBits dimensions_of(LaneMask depth) {
   LaneBits later = Dimensions::walk + LaneBits(depth - 2) * Dimensions::surface;
-  return depth == 1 ? all_lanes(uint32_t(Dimensions::first_surface)) : later;
+  return depth == 1 ? all_lane_bits(uint32_t(Dimensions::first_surface)) : later;
 }
 
 template <class Body>

@@ -6,8 +6,9 @@
 #pragma once
 #include "light/material/dispersion.h"
 #include "light/material/lambert.h"
+#include "light/sample.h"
+#include "light/sample/medium.h"
 #include "light/sample/sample_light.h"
-#include "light/technique/technique.h"
 
 namespace wellspring {
 

@@ -6,9 +6,9 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "cache/simd.h"
 #include "cache/packing.h"
-#include "picture/write_pixels.h"
+#include "cache/packing_simd.h"
+#include "frame/write_pixels.h"
 
 namespace wellspring {
 namespace {
@@ -34,7 +34,7 @@ constexpr float first_repeats = 0.5f, enough_repeats = 1.5f;
 constexpr int band = 16;  // rows done by one thread
 
 // Rows are computed in whole lanes and have room for that.
-size_t padded(int width) { return size_t((width + lanes - 1) / lanes * lanes); }
+size_t padded(int width) { return size_t((width + lane_count - 1) / lane_count * lane_count); }
 
 // A row of sums at the finest scale, or of a level.
 struct Row {
@@ -46,26 +46,30 @@ struct Row {
 };
 
 float square_mean(vec3 v) { return dot(v, v) * third; }
-f8 square_mean(const f8& r, const f8& g, const f8& b) { return (r * r + g * g + b * b) * third; }
+Lanes square_mean(const Lanes& r, const Lanes& g, const Lanes& b) {
+  return (r * r + g * g + b * b) * third;
+}
 
 // Eight numbers in a plane of them, of which those from `count` on are beyond a row's end: 0.
 template <class T>
-u8 read_words(const T* from, int count) {
-  T cut[lanes] = {};
-  if (count < lanes) {
+LaneBits read_words(const T* from, int count) {
+  T cut[lane_count] = {};
+  if (count < lane_count) {
     std::memcpy(cut, from, size_t(count) * sizeof(T));
     from = cut;
   }
-  if constexpr (sizeof(T) == 4) return load<u8>(from);
+  if constexpr (sizeof(T) == 4) return load_lanes<LaneBits>(from);
 #ifdef __AVX2__
-  else return u8(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))));
+  else
+    return LaneBits(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))));
 #else
-  else return u8{from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]};
+  else
+    return LaneBits{from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]};
 #endif
 }
-void read_colors(const vec3* from, int count, f8 (&color)[3]) {
-  vec3 cut[lanes] = {};
-  if (count < lanes) from = std::copy_n(from, count, cut) - count;
+void read_colors(const vec3* from, int count, Lanes (&color)[3]) {
+  vec3 cut[lane_count] = {};
+  if (count < lane_count) from = std::copy_n(from, count, cut) - count;
   deinterleave(&from->x, color[0], color[1], color[2]);
 }
 
@@ -85,20 +89,20 @@ Known pool_spread(const StillSamples& samples, const Frame& frame, StillCorrecti
       repeats(size_t(work.rows), 0);
   parallel_ranges(work.rows, 4, [&](int begin, int end) {
     for (int by = begin; by < end; by++)
-      for (int x = 0; x < width; x += lanes) {
-        int here = std::min(lanes, width - x);
-        f8 sum{}, count{}, bright{};
+      for (int x = 0; x < width; x += lane_count) {
+        int here = std::min(lane_count, width - x);
+        Lanes sum{}, count{}, bright{};
         for (int y = by * block; y < std::min((by + 1) * block, height); y++) {
           size_t i = size_t(y) * size_t(width) + size_t(x);
-          f8 more = positive(to_float(read_words(&samples.count[i], here)) - 1.0f);
-          f8 deviation = unpack_deviation(read_words(&samples.deviation[i], here));
-          f8 color[3];
+          Lanes more = positive_lanes(to_float(read_words(&samples.count[i], here)) - 1.0f);
+          Lanes deviation = unpack_deviation(read_words(&samples.deviation[i], here));
+          Lanes color[3];
           read_colors(&frame.color[i], here, color);
           sum += more * deviation * deviation, count += more;
-          bright += more * smaller(square_mean(color[0], color[1], color[2]), splat(1));
+          bright += more * lanes_min(square_mean(color[0], color[1], color[2]), all_lanes(1));
         }
         for (int k = 0; k < here; k += block) {
-          auto add_four = [k](const f8& v) { return (v[k] + v[k + 1]) + (v[k + 2] + v[k + 3]); };
+          auto add_four = [k](const Lanes& v) { return (v[k] + v[k + 1]) + (v[k + 2] + v[k + 3]); };
           float own = add_four(sum), samples_here = add_four(count);
           size_t b = size_t(by) * size_t(work.columns) + size_t((x + k) / block);
           work.block_spread[b] = own, work.block_samples[b] = samples_here;
@@ -143,43 +147,44 @@ class Residuals {
     find_extremes(light(y - 1), light(y), light(y + 1));
     const float *low = low_.data() + 1, *high = high_.data() + 1, *own = light(y);
     size_t start = size_t(y) * size_t(width), blocks = size_t(y / block) * size_t(work_.columns);
-    for (int x = 0; x < width; x += lanes) {
-      int here = std::min(lanes, width - x);
+    for (int x = 0; x < width; x += lane_count) {
+      int here = std::min(lane_count, width - x);
       size_t i = start + size_t(x), left = blocks + size_t(x / block),
              right = std::min(left + 1, blocks + size_t(work_.columns) - 1);
       auto of_blocks = [&](const std::vector<float>& of) {
         float a = of[left], b = of[right];
-        return f8{a, a, a, a, b, b, b, b};
+        return Lanes{a, a, a, a, b, b, b, b};
       };
       auto around = [x](const float* of, auto choose) {
-        return choose(choose(load<f8>(of + x - 1), load<f8>(of + x + 1)), load<f8>(of + x));
+        return choose(choose(load_lanes(of + x - 1), load_lanes(of + x + 1)), load_lanes(of + x));
       };
-      f8 range = around(high, larger) - around(low, smaller), lit = load<f8>(own + x);
-      f8 variance = (of_blocks(work_.spread) + guessed * relative_ * lit * lit) /
-                        (of_blocks(work_.samples) + guessed) +
-                    placed * range * range + least_variance;
-      f8 mean[3], residual[3], brightest{}, brightest_drawn{};
+      Lanes range = around(high, lanes_max) - around(low, lanes_min), lit = load_lanes(own + x);
+      Lanes variance = (of_blocks(work_.spread) + guessed * relative_ * lit * lit) /
+                           (of_blocks(work_.samples) + guessed) +
+                       placed * range * range + least_variance;
+      Lanes mean[3], residual[3], brightest{}, brightest_drawn{};
       unpack_rgb9e5(read_words(&samples_.mean[i], here), mean[0], mean[1], mean[2]);
       for (int c = 0; c < 3; c++) {
-        f8 drawn = load<f8>(&held(y).color[c][size_t(x)]);
+        Lanes drawn = load_lanes(&held(y).color[c][size_t(x)]);
         residual[c] = mean[c] - drawn;
-        brightest = larger(brightest, mean[c]), brightest_drawn = larger(brightest_drawn, drawn);
+        brightest = lanes_max(brightest, mean[c]),
+        brightest_drawn = lanes_max(brightest_drawn, drawn);
       }
       // Beyond white differences are not seen, and samples are bounded.
-      i8 seen = smaller(brightest, brightest_drawn) <= 1.0f;
-      i8 rests = read_words(&still_.count[i], here) != 0u;
-      f8 n = keep(seen & rests, to_float(read_words(&samples_.count[i], here)));
-      f8 per_sample = 1.0f / larger(n, splat(1)), per_variance = 1.0f / variance;
+      LaneMask seen = lanes_min(brightest, brightest_drawn) <= 1.0f;
+      LaneMask rests = read_words(&still_.count[i], here) != 0u;
+      Lanes n = keep_lanes(seen & rests, to_float(read_words(&samples_.count[i], here)));
+      Lanes per_sample = 1.0f / lanes_max(n, all_lanes(1)), per_variance = 1.0f / variance;
       // Around the picture, not around the mean: of few samples none is sure of what it says
       // (self-normalised).
-      f8 deviation = unpack_deviation(read_words(&samples_.deviation[i], here));
-      f8 told = deviation * deviation * (1.0f - per_sample) +
-                square_mean(residual[0], residual[1], residual[2]);
-      f8 weight = n * per_variance;
-      store(&row.weight[size_t(x)], weight);
-      store(&row.noise[size_t(x)],
-            weight * larger(told * per_variance, splat(1)) * (1.0f + unsure * per_sample));
-      for (int c = 0; c < 3; c++) store(&row.sum[c][size_t(x)], weight * residual[c]);
+      Lanes deviation = unpack_deviation(read_words(&samples_.deviation[i], here));
+      Lanes told = deviation * deviation * (1.0f - per_sample) +
+                   square_mean(residual[0], residual[1], residual[2]);
+      Lanes weight = n * per_variance;
+      store_lanes(&row.weight[size_t(x)], weight);
+      store_lanes(&row.noise[size_t(x)], weight * lanes_max(told * per_variance, all_lanes(1)) *
+                                             (1.0f + unsure * per_sample));
+      for (int c = 0; c < 3; c++) store_lanes(&row.sum[c][size_t(x)], weight * residual[c]);
     }
   }
 
@@ -199,22 +204,22 @@ class Residuals {
     line.light.resize(padded(width));
     for (auto& plane : line.color) plane.resize(padded(width));
     const vec3* from = frame_.color.data() + size_t(y) * size_t(width);
-    for (int x = 0; x < width; x += lanes) {
-      f8 color[3];
-      read_colors(from + x, std::min(lanes, width - x), color);
-      for (int c = 0; c < 3; c++) store(&line.color[c][size_t(x)], color[c]);
-      store(&line.light[size_t(x)], lanes_sqrt(square_mean(color[0], color[1], color[2])));
+    for (int x = 0; x < width; x += lane_count) {
+      Lanes color[3];
+      read_colors(from + x, std::min(lane_count, width - x), color);
+      for (int c = 0; c < 3; c++) store_lanes(&line.color[c][size_t(x)], color[c]);
+      store_lanes(&line.light[size_t(x)], lanes_sqrt(square_mean(color[0], color[1], color[2])));
     }
   }
   // The least and the most light of three rows at each column, and one column more on both sides.
   void find_extremes(const float* above, const float* row, const float* below) {
     int width = frame_.width;
-    for (auto* line : {&low_, &high_}) line->resize(padded(width) + lanes);
+    for (auto* line : {&low_, &high_}) line->resize(padded(width) + lane_count);
     float *low = low_.data() + 1, *high = high_.data() + 1;
-    for (int x = 0; x < width; x += lanes) {
-      f8 a = load<f8>(above + x), b = load<f8>(below + x), own = load<f8>(row + x);
-      store(low + x, smaller(smaller(a, b), own));
-      store(high + x, larger(larger(a, b), own));
+    for (int x = 0; x < width; x += lane_count) {
+      Lanes a = load_lanes(above + x), b = load_lanes(below + x), own = load_lanes(row + x);
+      store_lanes(low + x, lanes_min(lanes_min(a, b), own));
+      store_lanes(high + x, lanes_max(lanes_max(a, b), own));
     }
     low[-1] = low[0], high[-1] = high[0], low[width] = low[width - 1],
     high[width] = high[width - 1];
@@ -232,8 +237,8 @@ void start_level(int width, int height, ResidualLevel& level) {
   level.width = (width + 1) / 2, level.height = (height + 1) / 2;
   size_t count = size_t(level.width) * size_t(level.height);
   for (auto* planes : {&level.sum, &level.added})
-    for (auto& plane : *planes) plane.resize(count + lanes);
-  level.weight.resize(count + lanes), level.noise.resize(count + lanes);
+    for (auto& plane : *planes) plane.resize(count + lane_count);
+  level.weight.resize(count + lane_count), level.noise.resize(count + lane_count);
 }
 
 // Adds up pairs of two rows (the second may be null) of `width`.
@@ -256,7 +261,7 @@ void for_planes(Level& level, const auto& body) {
 struct Detail {
   std::vector<float> part[3], added[3], power, larger[4], line;
   void resize(int width) {
-    size_t count = padded(width) + 2 * lanes;
+    size_t count = padded(width) + 2 * lane_count;
     for (auto& p : part) p.resize(count);
     for (auto& a : added) a.resize(count);
     for (auto& l : larger) l.resize(count);
@@ -271,15 +276,15 @@ void enlarge(const std::vector<float>& from, int columns, int rows, int y,
   const float *a = from.data() + size_t(near) * size_t(columns),
               *b = from.data() + size_t(far) * size_t(columns);
   float* middle = line.data() + 1;
-  for (int x = 0; x < columns; x += lanes)
-    store(middle + x, 0.75f * load<f8>(a + x) + 0.25f * load<f8>(b + x));
+  for (int x = 0; x < columns; x += lane_count)
+    store_lanes(middle + x, 0.75f * load_lanes(a + x) + 0.25f * load_lanes(b + x));
   middle[-1] = middle[0], middle[columns] = middle[columns - 1];
-  for (int x = 0; x < columns; x += lanes) {
-    f8 here = 0.75f * load<f8>(middle + x), even = here + 0.25f * load<f8>(middle + x - 1),
-       odd = here + 0.25f * load<f8>(middle + x + 1);
-    store(&to[2 * size_t(x)], __builtin_shufflevector(even, odd, 0, 8, 1, 9, 2, 10, 3, 11));
-    store(&to[2 * size_t(x) + lanes],
-          __builtin_shufflevector(even, odd, 4, 12, 5, 13, 6, 14, 7, 15));
+  for (int x = 0; x < columns; x += lane_count) {
+    Lanes here = 0.75f * load_lanes(middle + x), even = here + 0.25f * load_lanes(middle + x - 1),
+          odd = here + 0.25f * load_lanes(middle + x + 1);
+    store_lanes(&to[2 * size_t(x)], __builtin_shufflevector(even, odd, 0, 8, 1, 9, 2, 10, 3, 11));
+    store_lanes(&to[2 * size_t(x) + lane_count],
+                __builtin_shufflevector(even, odd, 4, 12, 5, 13, 6, 14, 7, 15));
   }
 }
 
@@ -290,20 +295,21 @@ void find_detail(const float* const* row, const ResidualLevel& next, int y, int 
     enlarge(next.added[size_t(c)], next.width, next.height, y, d.line, d.added[c]);
   }
   enlarge(next.weight, next.width, next.height, y, d.line, d.larger[3]);
-  for (int x = 0; x < width; x += lanes) {
+  for (int x = 0; x < width; x += lane_count) {
     size_t i = size_t(x);
-    f8 weight = load<f8>(row[3] + x);
-    i8 known = weight > 0.0f;
-    f8 own_share = 1.0f / (known ? weight : splat(1)),
-       share = 1.0f / larger(load<f8>(&d.larger[3][i]), splat(1e-30f)), power{};
+    Lanes weight = load_lanes(row[3] + x);
+    LaneMask known = weight > 0.0f;
+    Lanes own_share = 1.0f / (known ? weight : all_lanes(1)),
+          share = 1.0f / lanes_max(load_lanes(&d.larger[3][i]), all_lanes(1e-30f)), power{};
     for (int c = 0; c < 3; c++) {
-      f8 part = keep(known, load<f8>(row[c] + x) * own_share - load<f8>(&d.larger[c][i]) * share);
+      Lanes part = keep_lanes(
+          known, load_lanes(row[c] + x) * own_share - load_lanes(&d.larger[c][i]) * share);
       power += part * part;
-      store(&d.part[c][i], part);
-      store(&d.added[c][i], load<f8>(&d.added[c][i]) * share);
+      store_lanes(&d.part[c][i], part);
+      store_lanes(&d.added[c][i], load_lanes(&d.added[c][i]) * share);
     }
-    power *= third * weight * (weight / load<f8>(row[4] + x));
-    store(&d.power[i], keep(known, power));
+    power *= third * weight * (weight / load_lanes(row[4] + x));
+    store_lanes(&d.power[i], keep_lanes(known, power));
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/spread.h"
-#include "picture/drawn_run.h"
+#include "light/visible/describe_run.h"
 
 namespace wellspring {
 namespace {
@@ -48,7 +48,7 @@ void GuidePass::follow(const SightRun& run, uint64_t polished, size_t begin) con
 
 void GuidePass::take(const SightRun& run) const {
   RunPixels p;
-  const Shining shining = describe_run(run, p);
+  const RunGlow shining = describe_run(run, p);
   const uint64_t polished = first ? run.polished() : 0;
   const size_t begin = size_t(run.y) * size_t(view.width) + size_t(run.x);
   for (int i = 0; i < run.count; i++) {

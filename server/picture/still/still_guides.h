@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Guides of a picture at rest (light/visible/guides.h), from the visibility pass: the surface of every
-// pixel at a few places of it. Only of what may be polished a ray is asked, in the first pass, as
-// its guides are those of what it shows.
+// Guides of a picture at rest (light/visible/guides.h), from the visibility pass: the surface of
+// every pixel at a few places of it. Only of what may be polished a ray is asked, in the first
+// pass, as its guides are those of what it shows.
 #pragma once
 #include <cstdint>
 #include <vector>

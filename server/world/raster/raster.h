@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "world/raster/edge_share.h"
 #include "world/view.h"
 #include "world/world.h"
 
@@ -40,14 +41,6 @@ struct RasterRun {
 };
 // Pixel i of the run as a ray through its sampling place would have met it.
 Hit hit_of(const RasterRun& run, int i, const View& view, vec2 offset);
-
-// Of `pixel` (row after row from the picture's top left), the share that is covered by what
-// `other`, a neighbour or a pixel near, shows: above 0, at most a half. Exact where one straight
-// edge cuts it.
-struct EdgeShare {
-  uint32_t pixel = 0, other = 0;
-  float share = 0;
-};
 
 // Of a scene's instances, those to be drawn. What is see-through and still veils what moves too.
 enum class RasterShows : uint8_t { all, still, moving };

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "world/raster/raster.h"
+#include "world/raster/edge_share.h"
 #include "world/raster/raster_tile.h"
 #include "world/raster/raster_walk.h"
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "avatar/story/recorded_story.h"
-#include "avatar/speech/fit.h"
+#include "avatar/align/fit.h"
 #include "avatar/speech/speech_json.h"
+#include "avatar/story/recorded_story.h"
 #include "base/load_error.h"
 #include "base/rng.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "light/instant/instant_radiosity.h"
 #include "light/instant/light_clusters.h"
 
 #include <algorithm>

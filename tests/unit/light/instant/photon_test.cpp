@@ -4,6 +4,7 @@
 
 #include "unit/light/judge.h"
 #include "light/instant/caustic_photons.h"
+#include "light/sample/caustic_casters.h"
 #include "scenes/scenes.h"
 #include "unit/light/statistics.h"
 

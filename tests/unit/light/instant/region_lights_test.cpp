@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "light/instant/edge_samples.h"
+#include "light/instant/instant_radiosity.h"
 #include "light/instant/point_lights_simd.h"
 #include "light/sample/pane_boxes.h"
 #include "scenes/scenes.h"

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/rng.h"
+#include "light/material/bsdf.h"
 
 using namespace wellspring;
 

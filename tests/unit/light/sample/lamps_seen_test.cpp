@@ -5,6 +5,7 @@
 #include "light/known/lamps.h"
 #include "light/sample/lamps_seen.h"
 #include "light/sample/lights.h"
+#include "light/sample/shining.h"
 #include "light/random/place_key.h"
 #include "light/sample/sample_light.h"
 #include "scenes/scenes.h"

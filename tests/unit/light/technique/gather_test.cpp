@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "light/known/fill_radiance_grid.h"
 #include "light/sample/radiance_grid.h"
 #include "light/technique/technique.h"
 #include "light/walk/walk.h"

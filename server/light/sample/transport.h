@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What light is carried through: a world, its lights and what is known of both.
+#pragma once
+
+namespace wellspring {
+
+class World;
+struct LampsSeen;     // light/sample/lamps_seen.h
+struct LightTables;   // light/sample/light_tables.h
+struct RadianceGrid;  // light/sample/radiance_grid.h
+
+// Everything a sample needs to know of what stays the same during a call.
+struct Transport {
+  const World& world;
+  const LightTables& tables;
+  const RadianceGrid* grid = nullptr;  // light that stays, where a technique may use it
+  const LampsSeen* lamps = nullptr;    // what weighs the choice among few lamps, where known
+};
+
+}  // namespace wellspring
