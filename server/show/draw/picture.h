@@ -2,7 +2,7 @@
 // Drawing one picture for one visitor, in three steps: order_picture() decides what and how,
 // draw_picture() does it without looking at anything that the tick may change (view -> project ->
 // attend -> plan -> trace -> remember -> draw), finish_picture() takes it
-// over. In the background the middle one runs on the easel (show/draw/renderer.h), for a view predicted for
+// over. In the background the middle one runs on the easel (show/state/renderer.h), for a view predicted for
 // when it will be seen; show/draw/present.h shows it. The time that is left of the visitor's share goes
 // to samples; those of a walking visitor are traced when its picture is done, and land in the next.
 #pragma once

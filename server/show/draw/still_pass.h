@@ -14,7 +14,7 @@
 #include "frame/frame.h"
 #include "picture/keyframe.h"
 #include "picture/still/reconstruct_still.h"
-#include "show/draw/picture_job.h"
+#include "show/state/picture_job.h"
 
 namespace wellspring {
 

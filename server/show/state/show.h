@@ -20,7 +20,7 @@
 #include "show/exhibit/figure.h"
 #include "show/state/lamps.h"
 #include "show/answer/report.h"
-#include "show/storyteller/sound.h"
+#include "show/answer/sound.h"
 #include "show/state/visitor.h"
 #include "show/storyteller/voice.h"
 

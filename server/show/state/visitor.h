@@ -10,11 +10,11 @@
 #include "cache/cache.h"
 #include "frame/tonemap.h"
 #include "picture/keyframe.h"
-#include "show/draw/renderer.h"
-#include "show/draw/fade.h"
+#include "show/state/renderer.h"
+#include "show/state/fade.h"
 #include "show/visit/flow.h"
 #include "show/visit/heading.h"
-#include "show/storyteller/sound.h"
+#include "show/answer/sound.h"
 #include "show/draw/still_pass.h"
 #include "show/visit/tour.h"
 #include "wire/link.h"
@@ -64,7 +64,7 @@ struct Visitor {
   float fps = 0;  // wanted; 0: the show's
   int best_quality = 82, still_quality = 92;
   bool attention = true;  // CacheSettings::attention
-  // The easel's (show/draw/renderer.h) while a picture of this visitor is drawn or its samples are traced.
+  // The easel's (show/state/renderer.h) while a picture of this visitor is drawn or its samples are traced.
   bool at_work = false;
   std::vector<char> lamps;    // whose light its cache knows: see show/state/lamps.h
   RenderCache cache;

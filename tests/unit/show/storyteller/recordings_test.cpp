@@ -10,7 +10,7 @@
 #include "avatar/speech/speech_json.h"
 #include "avatar/speech/sound_file.h"
 #include "show/storyteller/recordings.h"
-#include "show/storyteller/sound.h"
+#include "show/answer/sound.h"
 
 namespace wellspring {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/storyteller/sound.h"
+#include "show/answer/sound.h"
 
 #include <algorithm>
 #include <cmath>

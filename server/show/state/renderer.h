@@ -23,7 +23,7 @@
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"
-#include "show/draw/picture_job.h"
+#include "show/state/picture_job.h"
 
 namespace wellspring {
 
