@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "show/answer/events.h"
+#include "show/state/lamps.h"
+#include "show/state/make_show.h"
 
 namespace wellspring {
 

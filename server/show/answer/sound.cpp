@@ -6,67 +6,16 @@
 
 #include "base/log.h"
 #include "show/answer/events.h"
-#include "show/state/show.h"
 #include "wire/sound_packet.h"
 
 namespace wellspring {
 
-SpeechSource make_speech_source(std::shared_ptr<Speaker> speaker) {
-  SpeechSource source;
-  source.speak = [speaker](const SpeechRequest& request) { return speaker->speak(request); };
-  source.find = [speaker](const SpeechRequest& request) { return speaker->find(request); };
-  source.prepare = [speaker](const std::vector<SpeechRequest>& lines) { speaker->prepare(lines); };
-  source.counts = [speaker] { return speaker->counts(); };
-  return source;
-}
-
 namespace {
-
-SpeechRequest request_of(const StoryLine& line, const std::string& lang,
-                         const VoiceManner& manner) {
-  SpeechRequest request;
-  request.text = line.text;
-  request.lang = lang;
-  request.words_per_minute = manner.words_per_minute;
-  request.pitch = manner.pitch;
-  request.variant = manner.variant;
-  request.styles = line.styles;
-  return request;
-}
 
 VoiceManner manner_of(const Show& show) {
   const StorytellerPlace* teller = teller_of(show);
   return teller ? teller->voice : VoiceManner{};
 }
-
-}  // namespace
-
-std::vector<SpeechRequest> lines_of(const Exhibit& exhibit) {
-  std::vector<SpeechRequest> lines;
-  auto add = [&](const LocalScript& script, const VoiceManner& manner) {
-    for (const std::string& lang : exhibit.languages)
-      if (auto found = script.find(lang); found != script.end())
-        for (const StoryLine& line : found->second)
-          if (!line.recording) lines.push_back(request_of(line, lang, manner));
-  };
-  for (size_t i = 0; i < exhibit.storytellers.size(); i++) {
-    const StorytellerPlace& teller = exhibit.storytellers[i];
-    add(teller.greetings, teller.voice);
-    for (const StoryText& story : exhibit.stories)
-      if (story.teller < 0 ? i == 0 : story.teller == int(i)) add(story.text, teller.voice);
-    add(teller.farewells, teller.voice);
-  }
-  const VoiceManner narrator =
-      exhibit.storytellers.empty() ? VoiceManner{} : exhibit.storytellers.front().voice;
-  for (const TourPlan& tour : exhibit.tours)
-    for (const TourStop& stop : tour.stops) {
-      add(stop.way_text, narrator);
-      add(stop.text, narrator);
-    }
-  return lines;
-}
-
-namespace {
 
 constexpr uint8_t heard_everywhere = 1;  // flag of a sound packet
 

@@ -5,70 +5,20 @@
 
 #include "base/clock.h"
 #include "base/rng.h"
-#include "show/state/in_view.h"
-#include "show/draw/picture.h"
-#include "show/draw/present.h"
 
 namespace wellspring {
 namespace {
 
-constexpr double most_share = 0.5;   // of the time
-constexpr double on_time = 0.0005;   // seconds that it may come too early
-constexpr double skin_rate = 5;      // times a second that light on what moves is found
 constexpr double most_skin_seconds = 0.025;  // of tracing, each time; when there are
 constexpr float enough_samples = 8;          // of a place, less, but
 constexpr double least_share = 0.25;         // of that at least: she moves
 constexpr int cycles = 2, first_cycles = 6;  // of smoothing; when it was not found for a while
-
-bool has_backdrop(const Show& show, const Visitor& visitor) {
-  return visitor.welcomed && visitor.backdrop && visitor.order.leaps == visitor.leaps &&
-         visitor.order.view == visitor.last_view && stands(show, visitor);
-}
-
-// Pictures a second, for each of those who have a backdrop.
-double moving_rate(const Show& show, const Visitor& visitor) {
-  auto has = [&](const Visitor& one) { return has_backdrop(show, one); };
-  auto count = std::count_if(show.visitors.begin(), show.visitors.end(), has);
-  double seconds = 0.001 * double(visitor.times.moving) * double(std::max<ptrdiff_t>(count, 1));
-  double rate = picture_rate(show, visitor);
-  return seconds > 0 ? std::min(rate, most_share / seconds) : rate;
-}
 
 }  // namespace
 
 bool may_be_laid_over(const PictureWindow& window, const View& view) {
   return 3 * size_t(window.width) * size_t(window.height) <=
          size_t(view.width) * size_t(view.height);
-}
-
-double moving_share(const Show& show) {
-  double share = 0;
-  for (const Visitor& visitor : show.visitors)
-    if (has_backdrop(show, visitor))
-      share += 0.001 * double(visitor.times.moving) * moving_rate(show, visitor);
-  return std::min(share, most_share);
-}
-
-bool wants_moving(const Show& show, const Visitor& visitor) {
-  if (!has_backdrop(show, visitor) || visitor.unshown || !may_take(show, visitor)) return false;
-  return show.time - visitor.posed_at >= 1 / moving_rate(show, visitor) - on_time;
-}
-
-double seconds_to_moving(const Show& show) {
-  double seconds = 1;
-  for (const Visitor& visitor : show.visitors)
-    if (has_backdrop(show, visitor))
-      seconds =
-          std::min(seconds, visitor.posed_at + 1 / moving_rate(show, visitor) - show.time);
-  return std::max(seconds, 0.0);
-}
-
-bool wants_skin(const Show& show) {
-  if (show.skin.places.empty() || show.time - show.easel.skin.time < 1 / skin_rate - on_time)
-    return false;
-  return std::any_of(show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
-    return visitor.welcomed && sees_figure(show, visitor.last_view);
-  });
 }
 
 void order_skin(Show& show) {

@@ -6,7 +6,8 @@
 #include "cache/trace_waiting.h"
 #include "picture/compose_drawn.h"
 #include "picture/still/plan_still.h"
-#include "show/draw/picture.h"
+#include "show/draw/sample_budget.h"
+#include "show/state/lamps.h"
 
 namespace wellspring {
 namespace {
@@ -16,7 +17,6 @@ constexpr float barely_covered = 0.1f;  // of the pixels by points
 constexpr size_t least_slice = 2048;  // samples
 // Seconds of tracing at a time, while it may be given up, and where what moves is due soon.
 constexpr double slice = 0.025, least_slice_seconds = 0.006;
-constexpr double aimed_share = 0.0625;  // of the samples at rest
 constexpr double spread_from = 0.8;    // samples a pixel
 constexpr float more_asked = 1.2f;  // than there is time for, by what was measured: none is idle
 
@@ -36,10 +36,10 @@ TransportSettings transport_of(const Show& show, const PictureOrder& order) {
 
 // Where pictures are reconstructed, the first samples serve the drawn picture that it begins with;
 // later ones are spread evenly, but for some, aimed at points, to find what changes.
-bool spreads_samples(const Show& show, const PictureOrder& order, const Technique& technique,
+bool spreads_samples(const PictureOrder& order, const Technique& technique,
                      const RestState& rest) {
-  return may_reconstruct(show, order) && !technique.begin_pass &&
-         rest.samples >= spread_from && !has_all_samples(rest);
+  return order.learns && !technique.begin_pass && rest.samples >= spread_from &&
+         !has_all_samples(rest);
 }
 
 // So many are traced at a time.
@@ -50,8 +50,6 @@ size_t slice_of_samples(const Show& show) {
 
 }  // namespace
 
-int samples_to_watch(int samples) { return int(aimed_share * samples); }
-
 void plan_samples(Show& show, const PictureOrder& order, const Technique& technique,
                   const View& lit, DrawingWork& work, Visitor& visitor) {
   RenderCache& cache = visitor.cache;
@@ -59,7 +57,7 @@ void plan_samples(Show& show, const PictureOrder& order, const Technique& techni
   View ahead = order.coarse ? light_view(order.ahead) : order.ahead;
   cache.set_attention(order.attention);
   cache.set_reference(order.settled);
-  visitor.compositor.set_reconstructed(may_reconstruct(show, order));
+  visitor.compositor.set_reconstructed(order.learns);
   // What is around has light of half its size.
   cache.resize(order.expected.width, order.expected.height);
   cache.move_points(*show.world);
@@ -73,7 +71,7 @@ void plan_samples(Show& show, const PictureOrder& order, const Technique& techni
   if (ahead != lit && !technique.begin_pass)
     cache.predict(ahead, int(predicted_share * float(asked)), order.seed, work.ahead);
   const int planned = asked - int(work.ahead.size());
-  const bool spread = spreads_samples(show, order, technique, visitor.rest);
+  const bool spread = spreads_samples(order, technique, visitor.rest);
   const int aimed = spread ? samples_to_watch(planned) : planned;
   cache.plan(lit, aimed, order.seed, work.requests);
   if (spread) {
@@ -121,9 +119,8 @@ void remember_traced(const Show& show, const PictureOrder& order, const View& li
   visitor.cache.remember(lit, work.requests, work.samples);
   visitor.costs.samples = work.samples.size();
   // A picture that is drawn, not reconstructed, has a use for them only when it is kept for long.
-  bool learns = may_reconstruct(show, order);
   bool kept_long = !order.passing && visitor.cache.is_still();
-  if (!order.still || order.coarse || !(learns || kept_long)) return;
+  if (!order.still || order.coarse || !(order.learns || kept_long)) return;
   visitor.compositor.follow_changes(visitor.cache);
   visitor.compositor.add_samples(lit, work.requests, work.samples);
   visitor.rest.samples = mean_count(visitor.compositor.samples());

@@ -2,32 +2,26 @@
 #include "show/draw/present.h"
 
 #include <algorithm>
-#include <oneapi/tbb/info.h>
+#include <utility>
 
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "frame/jpeg.h"
-#include "show/state/in_view.h"
 #include "show/draw/moving.h"
-#include "show/draw/picture.h"
+#include "show/draw/pace.h"
+#include "show/state/in_view.h"
 #include "wire/packet.h"
 
 namespace wellspring {
 
 namespace {
 
-constexpr double still_rate = 25;      // pictures a second while only the storyteller moves
-constexpr double settling_rate = 7;    // while nothing moves: more time for samples
-constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr double on_time = 0.0005;     // seconds that a picture may come too early
-constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
 constexpr double fade_rate = 12;       // pictures a second from one picture at rest to the next
 constexpr float most_unknown =
     0.8f;  // of a warped picture: beyond, the one before is as near to the truth (cache.warp)
 constexpr int animated_gain = 5;  // JPEG quality above the moving one while the storyteller moves
-
-void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
 
 // On another thread: the tick goes on meanwhile, and waits before it touches the image again.
 // The image of one that stands comes anew from its keyframe, should there be another: it is not
@@ -102,25 +96,6 @@ bool warp(Show& show, Visitor& visitor, const View& view) {
 }
 
 }  // namespace
-
-double picture_rate(const Show& show, const Visitor& visitor) {
-  double rate = visitor.fps > 0 ? double(visitor.fps) : double(show.settings.fps);
-  if (stands(show, visitor)) {
-    rate = std::min(rate, sees_figure(show, visitor.last_view) ? still_rate
-                          : rests(show, visitor)               ? resting_rate
-                                                               : settling_rate);
-  } else if (show.settings.background && visitor.times.warp > 0) {
-    // A warp takes all cores, its JPEG one.
-    double milliseconds = double(visitor.times.warp) +
-                          double(visitor.times.encode) / oneapi::tbb::info::default_concurrency();
-    rate = std::min(rate, warping_share / (0.001 * milliseconds * std::max(count_moving(show), 1)));
-  }
-  return std::clamp(rate, 1.0, 120.0);
-}
-
-bool may_take(const Show& show, const Visitor& visitor) {
-  return !visitor.link->picture_pending() && may_send(visitor.flow, show.time);
-}
 
 void present(Show& show, Visitor& visitor) {
   const PictureOrder& order = visitor.order;

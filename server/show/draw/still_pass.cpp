@@ -5,48 +5,16 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "base/memory.h"
 #include "frame/tonemap.h"
 #include "show/draw/moving.h"
-#include "show/draw/picture.h"
+#include "show/draw/order_picture.h"
 
 namespace wellspring {
 namespace {
 
-constexpr double first_after = 0.5;     // seconds at rest
-constexpr double least_samples = 0.25;  // a pixel: of fewer it makes no better picture
-constexpr double growth = 1.4;          // times as many samples as in the pass before
-constexpr double most_share = 0.35;     // of the time goes to passes
-constexpr double most_samples = 0.98 * most_still_samples;  // a pixel, on average
 constexpr double slice = 0.02, least_slice = 0.004;  // seconds
 
 }  // namespace
-
-size_t memory_bytes(const StillPass& pass) {
-  return memory_bytes(pass.frame) + memory_bytes(pass.work) + memory_bytes(pass.keyframe) +
-         bytes_of(pass.picture.rgb) + (pass.denoiser ? pass.denoiser->memory_bytes() : 0);
-}
-
-bool has_all_samples(const RestState& rest) { return rest.samples >= most_samples; }
-
-bool wants_pass(const Show& show, const Visitor& visitor) {
-  const RestState& rest = visitor.rest;
-  if (!show.pass.denoiser || show.pass.visitor || !stands(show, visitor)) return false;
-  if (show.time - visitor.moved_at < first_after || rest.samples < least_samples) return false;
-  // What moves is not in it.
-  if (visitor.order.figure && !visitor.backdrop) return false;
-  if (!rest.reconstructed) return true;
-  double pause = rest.passed_seconds * (1 / most_share - 1);
-  bool enough = rest.samples >= growth * rest.passed_samples ||
-                (has_all_samples(rest) && rest.passed_samples < most_samples);
-  return enough && show.time - rest.passed_at >= pause;
-}
-
-bool keeps_picture(const Show& show, const Visitor& visitor) {
-  return visitor.rest.reconstructed && stands(show, visitor) &&
-         visitor.order.view == visitor.last_view && visitor.order.leaps == visitor.leaps &&
-         visitor.lamps == show.switches.lit;
-}
 
 void begin_pass(Show& show, const PictureOrder& order, Visitor& visitor) {
   StillPass& pass = show.pass;

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "show/exhibit/exhibit_lamps.h"
-#include "show/state/show.h"
 
 namespace wellspring {
 namespace {

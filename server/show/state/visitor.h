@@ -10,12 +10,12 @@
 #include "cache/cache.h"
 #include "frame/tonemap.h"
 #include "picture/keyframe.h"
-#include "show/state/renderer.h"
 #include "show/state/fade.h"
+#include "show/state/reconstruction.h"
+#include "show/state/renderer.h"
+#include "show/storyteller/sounding.h"
 #include "show/visit/flow.h"
 #include "show/visit/heading.h"
-#include "show/answer/sound.h"
-#include "show/draw/still_pass.h"
 #include "show/visit/tour.h"
 #include "wire/link.h"
 #include "wire/messages.h"
@@ -30,6 +30,10 @@ struct StageTimes {
   float whole = 0;     // from a picture's order until it can be shown
   float interval = 0;  // from one picture drawn to the next, while the visitor moves
 };
+
+inline void smooth(float& value, float sample, float share = 0.1f) {
+  value += (sample - value) * share;
+}
 
 // The JPEG made while the next tick begins.
 struct Encoder {

@@ -6,6 +6,8 @@
 
 #include "frame/jpeg.h"
 #include "show/state/show.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 #include "tiny_exhibit.h"
 #include "wire/packet.h"
 

@@ -7,6 +7,8 @@
 #include "frame/jpeg.h"
 #include "show/answer/answer.h"
 #include "show/state/show.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 #include "tiny_exhibit.h"
 #include "wire/json.h"
 

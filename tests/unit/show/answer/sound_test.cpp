@@ -8,6 +8,8 @@
 
 #include "show/answer/events.h"
 #include "show/state/show.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "wire/sound_packet.h"
 

@@ -12,6 +12,9 @@
 #include "show/answer/answer.h"
 #include "show/draw/picture.h"
 #include "show/state/show.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
+#include "show/draw/order_picture.h"
 #include "unit/show/tiny_exhibit.h"
 
 namespace wellspring {

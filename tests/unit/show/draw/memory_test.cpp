@@ -4,6 +4,8 @@
 
 #include "show/answer/answer.h"
 #include "show/state/show.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 
 namespace wellspring {

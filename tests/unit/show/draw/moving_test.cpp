@@ -6,6 +6,8 @@
 
 #include "frame/jpeg.h"
 #include "show/draw/picture.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "unit/show/tiny_figure.h"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A visitor's pictures where hardly anything can be rasterised.
 #include "show/draw/picture.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,8 @@
 #include "frame/compare.h"
 #include "frame/jpeg.h"
 #include "show/state/show.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "wire/packet.h"
 

@@ -12,8 +12,11 @@
 #include "frame/jpeg.h"
 #include "show/answer/answer.h"
 #include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_load.h"
 #include "show/state/in_view.h"
 #include "show/state/show.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "world/load/lamp.h"
 

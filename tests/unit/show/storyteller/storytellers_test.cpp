@@ -6,6 +6,9 @@
 
 #include "show/state/show.h"
 #include "show/answer/still.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
+#include "show/storyteller/sounding.h"
 #include "unit/show/tiny_exhibit.h"
 #include "unit/show/tiny_figure.h"
 

@@ -5,6 +5,8 @@
 
 #include "show/state/in_view.h"
 #include "show/state/show.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "unit/show/tiny_figure.h"
 
