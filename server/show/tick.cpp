@@ -46,9 +46,9 @@ void welcome_links(Show& show, Arrivals& arrivals) {
       log::info("visitor {} connected from {}", link->id, link->peer);
       Visitor& visitor = show.visitors.emplace_back();
       visitor.link = std::move(link);
-      visitor.cache = RenderCache({}, show.easel.work.cache);
-      visitor.compositor = Compositor(show.easel.work.compositor);
-      visitor.compositor.set_skin(&show.skin);
+      visitor.picture.cache = RenderCache({}, show.easel.work.cache);
+      visitor.picture.compositor = Compositor(show.easel.work.compositor);
+      visitor.picture.compositor.set_skin(&show.skin);
     }
   }
 }
@@ -73,7 +73,7 @@ void hear_visitors(Show& show) {
       visitor.link->close("bye");
       bool in_pass = show.pass.visitor == &visitor;
       if (in_pass) show.pass.given_up = true;
-      if (visitor.at_work || in_pass) return false;  // soon
+      if (visitor.picture.at_work || in_pass) return false;  // soon
       log::info("visitor {} left", visitor.link->id);
     }
     return gone;
@@ -122,7 +122,7 @@ void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utteranc
 }
 
 bool is_narrated(const Visitor& visitor) {
-  return !visitor.narration.voice.queue.empty() && !visitor.narration.voice.paused;
+  return !visitor.hearing.narration.voice.queue.empty() && !visitor.hearing.narration.voice.paused;
 }
 
 void show_subtitles(Show& show, const Utterance* utterance) {
@@ -136,16 +136,16 @@ void follow_story(Show& show, const VoiceEvents& events) {
     int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
     if (viewpoint < 0) continue;
     for (Visitor& visitor : show.visitors)
-      if (visitor.link->id == show.voice.asked_by && visitor.tour.tour < 0 &&
-          visitor.move == vec3(0))
-        glide_to(visitor.tour, viewpoint, visitor.view);
+      if (visitor.link->id == show.voice.asked_by && visitor.place.tour.tour < 0 &&
+          visitor.place.move == vec3(0))
+        glide_to(visitor.place.tour, viewpoint, visitor.place.view);
   }
 }
 
 // Tours: their narrators speak, each to one visitor.
 void narrate(Show& show, float dt) {
   for (Visitor& visitor : show.visitors) {
-    Narration& narration = visitor.narration;
+    Narration& narration = visitor.hearing.narration;
     if (!visitor.welcomed || narration.voice.queue.empty()) continue;
     if (dt >= 1) narration.sounding.going = false;  // the show stood still while the sound went on
     VoiceEvents said = advance_narration(show, visitor, dt);
@@ -153,7 +153,7 @@ void narrate(Show& show, float dt) {
     else if (said.fell_silent) show_subtitle(show, visitor, nullptr, false);
     for (const ActionEvent& act : said.acts) {
       int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
-      if (viewpoint >= 0) glide_to(visitor.tour, viewpoint, visitor.view);
+      if (viewpoint >= 0) glide_to(visitor.place.tour, viewpoint, visitor.place.view);
     }
   }
 }
@@ -187,7 +187,7 @@ void behave(Show& show, float dt) {
   // Its own words come before those of a tour, which are heard by one visitor alone.
   const Voice* told = &show.voice;
   if (const Visitor* on_tour = show.voice.queue.empty() ? heard_on_tour(show) : nullptr)
-    told = &on_tour->narration.voice;
+    told = &on_tour->hearing.narration.voice;
   input.speaking = speaking(*told, show.picture_lead);
   if (heard(*told)) input.visemes = mouth_shape(*told, show.picture_lead);
   input.telling = !show.voice.story.empty();
@@ -196,7 +196,7 @@ void behave(Show& show, float dt) {
     if (!visitor.welcomed || visitor.kiosk) continue;  // a kiosk page's eyes are its camera
     Guest guest;
     guest.id = uint32_t(visitor.link->id);
-    guest.head = vec3(visitor.view.position - show.exhibit.scene.origin);
+    guest.head = vec3(visitor.place.view.position - show.exhibit.scene.origin);
     input.guests.push_back(guest);
   }
   input.viewer_distance = viewer_distance(show);
@@ -232,13 +232,15 @@ void use_easel(Show& show, int waiting) {
 // A tour's camera waits for keyframes that are slow; a visitor's own turn does not.
 void pace_tour(Visitor& visitor) {
   double seconds = 0.001 * double(std::max(visitor.times.interval, visitor.times.whole));
-  float across = 2 * std::atan(std::tan(0.5f * visitor.view.fov) * float(visitor.width) /
-                               float(visitor.height));
-  visitor.tour.most_pace = tour_pace(turn_ahead(visitor.tour, seconds), across);
+  const PictureWishes& wants = visitor.wants;
+  VisitorPlace& place = visitor.place;
+  float across = 2 * std::atan(std::tan(0.5f * place.view.fov) * float(wants.width) /
+                               float(wants.height));
+  place.tour.most_pace = tour_pace(turn_ahead(place.tour, seconds), across);
 }
 
 void send_state(Show& show, Visitor& visitor) {
-  double interval = visitor.utterance != 0 ? heard_state_interval : state_interval;
+  double interval = visitor.hearing.utterance != 0 ? heard_state_interval : state_interval;
   if (show.time - visitor.state_sent_at < interval) return;
   visitor.state_sent_at = show.time;
   visitor.link->send_text(state_news(show, visitor));
@@ -277,8 +279,8 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
     pace_tour(visitor);
-    TourStep step;
-    move_visitor(visitor, *show.world, show.exhibit, show.roads, person, dt, step);
+    TourStep step = move_visitor(visitor.place, visitor.hearing.narration.voice, *show.world,
+                                 show.exhibit, show.roads, person, dt);
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
     watch(show, visitor);
   }
@@ -298,9 +300,10 @@ void tick(Show& show, Arrivals& arrivals, double now) {
 double seconds_to_next_tick(const Show& show, double now) {
   double wait = 1 / 20.0;  // nobody looks: only clocks and doors
   for (const Visitor& visitor : show.visitors)
-    if (visitor.welcomed)
-      wait = std::min(
-          {wait, listening_interval, visitor.pictured_at + 1 / picture_rate(show, visitor) - now});
+    if (visitor.welcomed) {
+      double due = visitor.shown.pictured_at + 1 / picture_rate(show, visitor);
+      wait = std::min({wait, listening_interval, due - now});
+    }
   return std::max(wait, least_wait);
 }
 

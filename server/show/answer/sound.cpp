@@ -19,7 +19,7 @@ VoiceManner manner_of(const Show& show) {
 
 constexpr uint8_t heard_everywhere = 1;  // flag of a sound packet
 
-bool listens(const Visitor& visitor) { return visitor.welcomed && visitor.sound; }
+bool listens(const Visitor& visitor) { return visitor.welcomed && visitor.hearing.wanted; }
 
 // A voice, what is heard of it, and the language it speaks.
 struct Channel {
@@ -55,7 +55,7 @@ VoiceEvents advance_channel(Show& show, Channel channel, float dt) {
   VoiceEvents events = advance_voice(channel.voice, dt, ask);
   if (events.ended) {  // heard to its end: nothing to stop
     for (Visitor& visitor : show.visitors)
-      if (visitor.utterance == channel.sounding.number) visitor.utterance = 0;
+      if (visitor.hearing.utterance == channel.sounding.number) visitor.hearing.utterance = 0;
     channel.sounding.going = false;
   }
   if (events.begun) {
@@ -86,10 +86,10 @@ const Speech* update_sounding(Show& show, const Voice& voice, Sounding& sounding
 }
 
 void stop_sound(Visitor& visitor) {
-  if (visitor.utterance == 0) return;
+  if (visitor.hearing.utterance == 0) return;
   visitor.link->drop_sound();
-  visitor.link->send_text(speech_stop_news(visitor.utterance));
-  visitor.utterance = 0;
+  visitor.link->send_text(speech_stop_news(visitor.hearing.utterance));
+  visitor.hearing.utterance = 0;
 }
 
 // What a visitor is to hear.
@@ -101,15 +101,16 @@ struct Source {
 };
 
 void send_pieces(Show& show, Visitor& visitor, const Source& source) {
+  VisitorSound& hearing = visitor.hearing;
   const Sounding& sounding = *source.sounding;
   const Speech& speech = *sounding.speech;
   const size_t piece = std::max(size_t(sound_piece * speech.rate), size_t(1));
   const double due = (double(source.voice->elapsed) + sound_ahead) * speech.rate;
-  while (visitor.samples_sent < speech.pcm.size() && double(visitor.samples_sent) < due) {
-    const size_t count = std::min(piece, speech.pcm.size() - visitor.samples_sent);
+  while (hearing.samples_sent < speech.pcm.size() && double(hearing.samples_sent) < due) {
+    const size_t count = std::min(piece, speech.pcm.size() - hearing.samples_sent);
     SoundHeader header;
     header.utterance = sounding.number;
-    header.start = uint32_t(visitor.samples_sent);
+    header.start = uint32_t(hearing.samples_sent);
     header.time_us = sounding.zero_us + uint64_t(1e6 * double(header.start) / speech.rate);
     header.total = uint32_t(speech.pcm.size());
     header.rate = uint32_t(speech.rate);
@@ -118,23 +119,24 @@ void send_pieces(Show& show, Visitor& visitor, const Source& source) {
     auto packet = std::make_shared<Packet>(
         make_sound_packet(header, std::span(speech.pcm).subspan(header.start, count)));
     if (!visitor.link->send_sound(std::move(packet))) {
-      visitor.given_up = sounding.number;
+      hearing.given_up = sounding.number;
       show.totals.sounds_given_up++;
       stop_sound(visitor);
       return;
     }
     show.totals.sounds++;
-    visitor.samples_sent += count;
+    hearing.samples_sent += count;
   }
 }
 
 // A visitor begins to hear what is being said, from the present moment on.
 void start_sound(Visitor& visitor, const Source& source) {
+  VisitorSound& hearing = visitor.hearing;
   const Sounding& sounding = *source.sounding;
   double from = std::max({double(source.voice->elapsed), double(source.voice->silent_until), 0.0});
   double at = std::round(from * sounding.speech->rate);
-  visitor.utterance = sounding.number;
-  visitor.samples_sent = std::min(size_t(at), sounding.speech->pcm.size());
+  hearing.utterance = sounding.number;
+  hearing.samples_sent = std::min(size_t(at), sounding.speech->pcm.size());
   visitor.link->send_text(speech_news(sounding.number, *sounding.speech, source.mouth));
 }
 
@@ -146,7 +148,7 @@ std::string spoken_language(const Show& show) {
     if (!visitor.welcomed) continue;
     if (show.voice.asked_by != 0 && visitor.link->id == show.voice.asked_by) return visitor.lang;
     if (!kiosk && visitor.kiosk) kiosk = &visitor;
-    if (!first && visitor.sound) first = &visitor;
+    if (!first && visitor.hearing.wanted) first = &visitor;
   }
   if (kiosk) return kiosk->lang;
   return first ? first->lang : show.exhibit.languages.front();
@@ -158,7 +160,7 @@ VoiceEvents advance_speech(Show& show, float dt) {
 }
 
 VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt) {
-  Narration& narration = visitor.narration;
+  Narration& narration = visitor.hearing.narration;
   return advance_channel(show,
                          {narration.voice, narration.sounding, visitor.lang, listens(visitor)}, dt);
 }
@@ -172,16 +174,16 @@ void send_sounds(Show& show) {
         dvec3(eval_mouth(show.mind, show.storyteller, show.pose)) + show.exhibit.scene.origin;
   for (Visitor& visitor : show.visitors) {
     Source source = teller;
-    Narration& narration = visitor.narration;
+    Narration& narration = visitor.hearing.narration;
     const Speech* narrated = update_sounding(show, narration.voice, narration.sounding);
     if (!narration.voice.queue.empty())
-      source = {&narration.voice, narrated ? &narration.sounding : nullptr, visitor.view.position,
-                true};
+      source = {&narration.voice, narrated ? &narration.sounding : nullptr,
+                visitor.place.view.position, true};
     const bool hears =
-        source.sounding && listens(visitor) && visitor.given_up != source.sounding->number;
-    if (!hears || visitor.utterance != source.sounding->number) stop_sound(visitor);
+        source.sounding && listens(visitor) && visitor.hearing.given_up != source.sounding->number;
+    if (!hears || visitor.hearing.utterance != source.sounding->number) stop_sound(visitor);
     if (!hears) continue;
-    if (visitor.utterance == 0) start_sound(visitor, source);
+    if (visitor.hearing.utterance == 0) start_sound(visitor, source);
     send_pieces(show, visitor, source);
   }
 }

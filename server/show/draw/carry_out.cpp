@@ -40,7 +40,7 @@ void draw_what_moves(Show& show, Visitor& visitor) {
   easel.posed = &visitor;
   easel.posed_at = show.time;
   easel.posed_us = show.time_us;
-  visitor.at_work = true;
+  visitor.picture.at_work = true;
   use_cores(show, [&show] { draw_moving(show, *show.easel.posed); });
 }
 
@@ -64,9 +64,9 @@ void begin_picture(Show& show, Visitor& visitor, int waiting, Purpose purpose) {
   Easel& easel = show.easel;
   easel.drawn = &visitor;
   easel.order = order_picture(show, visitor, std::max(waiting, 1), purpose);
-  easel.surrounds = easel.order.around && !visitor.surrounded;
+  easel.surrounds = easel.order.around && !visitor.picture.around.drawn;
   if (!easel.surrounds) pose_world(show);
-  visitor.at_work = true;
+  visitor.picture.at_work = true;
   easel.given_up = false;
   easel.step = DrawingStep::plan;
   go_on_drawing(show);
@@ -76,7 +76,7 @@ void use_cores_for_pass(Show& show) {
   StillPass& pass = show.pass;
   show.easel.until_moving = seconds_to_moving(show);
   pass.at_work = true;
-  if (pass.step == StillPass::Step::finish) pass.visitor->at_work = true;
+  if (pass.step == StillPass::Step::finish) pass.visitor->picture.at_work = true;
   use_cores(show, [&show] { go_on_with_pass(show); });
 }
 
@@ -90,13 +90,13 @@ bool take_finished(Show& show) {
   if (easel.skin.at_work) finish_skin(show);
   if (Visitor* posed = std::exchange(easel.posed, nullptr)) {
     finish_moving(show, *posed);
-    if (posed != easel.drawn) posed->at_work = false;
+    if (posed != easel.drawn) posed->picture.at_work = false;
     return true;
   }
   if (!easel.drawn || easel.step != DrawingStep::done) return true;
   if (std::exchange(easel.surrounds, false)) finish_surroundings(show, easel.order, *easel.drawn);
   else finish_picture(show, easel.order, *easel.drawn);
-  easel.drawn->at_work = false;
+  easel.drawn->picture.at_work = false;
   easel.drawn = nullptr;
   return true;
 }

@@ -15,10 +15,10 @@ bool order_samples(Show& show) {
   easel.brokers.clear();
   easel.seconds = 0;
   for (Visitor& visitor : show.visitors) {
-    if (visitor.broker_seconds <= 0) continue;
-    easel.brokers.push_back(&visitor.broker);
-    easel.seconds += std::exchange(visitor.broker_seconds, 0.0);
-    visitor.at_work = true;
+    if (visitor.picture.broker_seconds <= 0) continue;
+    easel.brokers.push_back(&visitor.picture.broker);
+    easel.seconds += std::exchange(visitor.picture.broker_seconds, 0.0);
+    visitor.picture.at_work = true;
   }
   return !easel.brokers.empty();
 }
@@ -37,10 +37,10 @@ void finish_samples(Show& show) {
   if (easel.traced > 0 && easel.traced_seconds > 0)
     smooth(show.samples_per_second, float(double(easel.traced) / easel.traced_seconds));
   for (Visitor& visitor : show.visitors) {
-    auto found = std::find(easel.brokers.begin(), easel.brokers.end(), &visitor.broker);
+    auto found = std::find(easel.brokers.begin(), easel.brokers.end(), &visitor.picture.broker);
     if (found == easel.brokers.end()) continue;
     smooth(visitor.times.trace, float(1000 * easel.traced_seconds / double(easel.brokers.size())));
-    visitor.at_work = false;
+    visitor.picture.at_work = false;
   }
   easel.brokers.clear();
 }

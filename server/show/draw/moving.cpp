@@ -26,7 +26,7 @@ void order_skin(Show& show) {
   order.update = {};
   order.eyes.clear();
   for (const Visitor& visitor : show.visitors)
-    if (visitor.welcomed) order.eyes.push_back(visitor.last_view.position);
+    if (visitor.welcomed) order.eyes.push_back(visitor.place.last_view.position);
   order.update.eyes = order.eyes;
   double seconds = most_skin_seconds *
                    std::clamp(double(enough_samples / show.skin.samples), least_share, 1.0);
@@ -53,40 +53,41 @@ void finish_skin(Show& show) {
 void draw_moving(Show& show, Visitor& visitor) {
   Easel& easel = show.easel;
   double began = seconds_now();
-  visitor.compositor.draw_moving(*show.world, visitor.keyframe, *show.sight,
+  visitor.picture.compositor.draw_moving(*show.world, visitor.picture.keyframe, *show.sight,
                                  Tonemap{show.exhibit.exposure}, easel.work.moving_light,
                                  easel.work.moving);
   easel.posed_seconds = seconds_now() - began;
 }
 
 void finish_moving(Show& show, Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
   Easel& easel = show.easel;
-  visitor.posed_at = easel.posed_at;
+  picture.posed_at = easel.posed_at;
   MovingPicture& moving = easel.work.moving;
   // Else all of it is drawn anew.
-  visitor.backdrop &= may_be_laid_over(moving.window, moving.view);
-  if (!visitor.backdrop) return;
+  picture.backdrop &= may_be_laid_over(moving.window, moving.view);
+  if (!picture.backdrop) return;
   float& smoothed = visitor.times.moving;
   float milliseconds = float(1000 * easel.posed_seconds);
   smoothed = smoothed > 0 ? smoothed + (milliseconds - smoothed) * 0.1f : milliseconds;
-  std::swap(moving, visitor.moving);
-  visitor.order.time_us = easel.posed_us;
-  visitor.unshown = true;
+  std::swap(moving, picture.moving);
+  picture.order.time_us = easel.posed_us;
+  picture.unshown = true;
   show.totals.posed++;
 }
 
-void finish_backdrop(Visitor& visitor) {
-  visitor.backdrop = visitor.costs.backdrop;
-  visitor.unshown = !visitor.backdrop;
-  visitor.posed_at = -1e9;
-  if (!visitor.backdrop || visitor.moving.view != visitor.keyframe.view) visitor.moving = {};
+void finish_backdrop(VisitorPicture& picture) {
+  picture.backdrop = picture.costs.backdrop;
+  picture.unshown = !picture.backdrop;
+  picture.posed_at = -1e9;
+  if (!picture.backdrop || picture.moving.view != picture.keyframe.view) picture.moving = {};
 }
 
-void merge_moving(Visitor& visitor) {
-  if (visitor.moving.empty()) return;
-  lay_over(visitor.moving, visitor.keyframe);
-  visitor.moving = {};
-  visitor.backdrop = false;
+void merge_moving(VisitorPicture& picture) {
+  if (picture.moving.empty()) return;
+  lay_over(picture.moving, picture.keyframe);
+  picture.moving = {};
+  picture.backdrop = false;
 }
 
 }  // namespace wellspring

@@ -19,8 +19,8 @@ void draw_moving(Show& show, Visitor& visitor);
 void finish_moving(Show& show, Visitor& visitor);
 
 // A picture was drawn: what moves is in it, or is to be laid over it.
-void finish_backdrop(Visitor& visitor);
+void finish_backdrop(VisitorPicture& picture);
 // For warps, the keyframe shows what was last laid over it from now on.
-void merge_moving(Visitor& visitor);
+void merge_moving(VisitorPicture& picture);
 
 }  // namespace wellspring

@@ -30,32 +30,34 @@ double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
 
 PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy,
                            Purpose purpose) {
+  const VisitorPicture& picture = visitor.picture;
+  const VisitorPlace& place = visitor.place;
   PictureOrder order;
   order.time = show.time;
   order.time_us = show.time_us;
   order.tick = show.ticks;
-  const View& now = visitor.last_view;
+  const View& now = place.last_view;
   order.expected = order.view = order.ahead = now;
-  order.seq = visitor.seq;
+  order.seq = place.seq;
   order.figure = sees_figure(show, now);
-  order.leaps = visitor.leaps;
-  order.still = show.time - visitor.moved_at > still_after;
+  order.leaps = place.leaps;
+  order.still = show.time - place.moved_at > still_after;
   order.keep = show.settings.background;
-  const PictureOrder& before = visitor.order;
+  const PictureOrder& before = picture.order;
   // Of a place that was never seen, nothing is known.
-  bool seen = visitor.drawn_at >= 0 && visitor.leaps == before.leaps;
-  float guessed = seen ? visitor.stats.filled + visitor.stats.empty : 1;
+  bool seen = picture.drawn_at >= 0 && place.leaps == before.leaps;
+  float guessed = seen ? picture.stats.filled + picture.stats.empty : 1;
   order.learns = show.pass.denoiser && in_steps(order);
   order.settled = order.learns
-                      ? visitor.rest.samples >= settled_samples
-                      : wants_reference(show.time - visitor.moved_at, seen && before.settled,
-                                        !seen || before.coarse, guessed, visitor.stats.converged);
+                      ? picture.rest.samples >= settled_samples
+                      : wants_reference(show.time - place.moved_at, seen && before.settled,
+                                        !seen || before.coarse, guessed, picture.stats.converged);
   order.reconstruct = order.learns && purpose == Purpose::reconstruction;
   order.samples_only = order.learns && purpose == Purpose::samples;
   bool fine = order.learns || wants_fine_light(order.still, !seen || before.coarse, guessed);
-  order.attention = visitor.attention;
+  order.attention = visitor.wants.attention;
   order.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
-  const bool moves = order.keep && !order.still && visitor.frame_number > 0;
+  const bool moves = order.keep && !order.still && visitor.shown.frame_number > 0;
   if (moves) order.scale = plan_next_keyframe(show, visitor).scale;
   const View shown = scaled_view(now, order.scale);
   const double pixels = double(shown.width) * double(shown.height);
@@ -65,7 +67,7 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy,
   order.samples =
       sample_budget(seconds_to_trace(show, visitor, busy), size_t(pixels), costs, fine);
   // When all is known, what changes is looked for.
-  if (order.samples_only && has_all_samples(visitor.rest))
+  if (order.samples_only && has_all_samples(picture.rest))
     order.samples = samples_to_watch(order.samples);
   // Who moves is shown shapes and reflectances as they are, in light of half their resolution where
   // samples are few; who stops, until more is known.
@@ -78,26 +80,26 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy,
     // It is seen from when it is finished until the next one is.
     interval = seen_for;
     double seen_in = 0.001 * double(visitor.times.whole) + 0.5 * interval;
-    order.expected = expected_view(visitor.heading, now, seen_in);
-    order.ahead = expected_view(visitor.heading, now, seen_in + interval);
-    float turn = expected_turn(visitor.heading, now, 0.5 * interval);
+    order.expected = expected_view(place.heading, now, seen_in);
+    order.ahead = expected_view(place.heading, now, seen_in + interval);
+    float turn = expected_turn(place.heading, now, 0.5 * interval);
     order.view = scaled_view(keyframe_view(order.expected, turn), order.scale);
     if (order.passing) {
       order.ahead = scaled_view(keyframe_view(order.ahead), order.scale);
-      order.around = surroundings(visitor.heading, now, order.view, seen_in + 0.5 * interval);
+      order.around = surroundings(place.heading, now, order.view, seen_in + 0.5 * interval);
     }
   } else {
-    order.ahead = expected_view(visitor.heading, now, predicted_pictures * interval);
+    order.ahead = expected_view(place.heading, now, predicted_pictures * interval);
   }
   return order;
 }
 
 bool is_outdated(const Show& show, const PictureOrder& order, const Visitor& visitor) {
-  if (visitor.left || visitor.leaps != order.leaps) return true;
-  bool has_one = visitor.drawn_at >= 0 && visitor.order.leaps == order.leaps;
+  if (visitor.left || visitor.place.leaps != order.leaps) return true;
+  bool has_one = visitor.picture.drawn_at >= 0 && visitor.picture.order.leaps == order.leaps;
   return has_one && order.still &&
-         (visitor.last_view != order.expected || lamps_wait(show) ||
-          order.figure != sees_figure(show, visitor.last_view));
+         (visitor.place.last_view != order.expected || lamps_wait(show) ||
+          order.figure != sees_figure(show, visitor.place.last_view));
 }
 
 }  // namespace wellspring

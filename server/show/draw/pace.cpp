@@ -21,24 +21,26 @@ constexpr float nearly_all = 0.999f;   // converged
 
 // Of draw_state() what does not depend on rates.
 VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
+  const VisitorPicture& picture = visitor.picture;
+  const VisitorPlace& place = visitor.place;
   VisitorDrawState state;
   state.welcomed = visitor.welcomed;
-  state.at_work = visitor.at_work;
+  state.at_work = picture.at_work;
   state.can_take = may_take(show, visitor);
   state.stands = stands(show, visitor);
-  state.new_place = visitor.leaps != visitor.order.leaps;
-  state.same_view = visitor.order.view == visitor.last_view;
-  state.other_light = visitor.lamps != show.switches.lit;
-  state.sees_figure = visitor.welcomed && sees_figure(show, visitor.last_view);
-  state.drew_figure = visitor.order.figure;
-  state.unshown = visitor.unshown;
-  state.backdrop = visitor.backdrop;
+  state.new_place = place.leaps != picture.order.leaps;
+  state.same_view = picture.order.view == place.last_view;
+  state.other_light = picture.lamps != show.switches.lit;
+  state.sees_figure = visitor.welcomed && sees_figure(show, place.last_view);
+  state.drew_figure = picture.order.figure;
+  state.unshown = picture.unshown;
+  state.backdrop = picture.backdrop;
   state.in_pass = show.pass.visitor == &visitor;
-  state.drawn_at = visitor.drawn_at;
-  state.posed_at = visitor.posed_at;
-  state.moved_at = visitor.moved_at;
-  state.asked_seconds = visitor.broker_seconds;
-  state.rest = visitor.rest;
+  state.drawn_at = picture.drawn_at;
+  state.posed_at = picture.posed_at;
+  state.moved_at = place.moved_at;
+  state.asked_seconds = picture.broker_seconds;
+  state.rest = picture.rest;
   return state;
 }
 
@@ -65,24 +67,25 @@ VisitorDrawState state_of(const Show& show, const Visitor& visitor, int backdrop
 }  // namespace
 
 void watch(const Show& show, Visitor& visitor) {
+  VisitorPlace& place = visitor.place;
   View view = view_of(show, visitor);
-  if (view != visitor.last_view) {
-    visitor.moved_at = show.time;
-    visitor.rest = {};
+  if (view != place.last_view) {
+    place.moved_at = show.time;
+    visitor.picture.rest = {};
   }
-  if (note_view(visitor.heading, show.time, view)) visitor.leaps++;
-  visitor.last_view = view;
+  if (note_view(place.heading, show.time, view)) place.leaps++;
+  place.last_view = view;
 }
 
 bool stands(const Show& show, const Visitor& visitor) {
-  return visitor.frame_number > 0 && show.time - visitor.moved_at > still_after &&
-         visitor.velocity == vec3(0) && visitor.move == vec3(0);
+  return visitor.shown.frame_number > 0 && show.time - visitor.place.moved_at > still_after &&
+         visitor.place.velocity == vec3(0) && visitor.place.move == vec3(0);
 }
 
 bool rests(const Show& show, const Visitor& visitor) {
-  if (!stands(show, visitor) || sees_figure(show, visitor.last_view)) return false;
-  return keeps_picture(facts_of(show, visitor)) ? has_all_samples(visitor.rest)
-                                                : visitor.stats.converged >= nearly_all;
+  if (!stands(show, visitor) || sees_figure(show, visitor.place.last_view)) return false;
+  return keeps_picture(facts_of(show, visitor)) ? has_all_samples(visitor.picture.rest)
+                                                : visitor.picture.stats.converged >= nearly_all;
 }
 
 int count_moving(const Show& show) {
@@ -91,13 +94,13 @@ int count_moving(const Show& show) {
 }
 
 bool may_take(const Show& show, const Visitor& visitor) {
-  return !visitor.link->picture_pending() && may_send(visitor.flow, show.time);
+  return !visitor.link->picture_pending() && may_send(visitor.shown.flow, show.time);
 }
 
 double picture_rate(const Show& show, const Visitor& visitor) {
-  double rate = visitor.fps > 0 ? double(visitor.fps) : double(show.settings.fps);
+  double rate = visitor.wants.fps > 0 ? double(visitor.wants.fps) : double(show.settings.fps);
   if (stands(show, visitor)) {
-    rate = std::min(rate, sees_figure(show, visitor.last_view) ? still_rate
+    rate = std::min(rate, sees_figure(show, visitor.place.last_view) ? still_rate
                           : rests(show, visitor)               ? resting_rate
                                                                : settling_rate);
   } else if (show.settings.background && visitor.times.warp > 0) {
@@ -110,16 +113,17 @@ double picture_rate(const Show& show, const Visitor& visitor) {
 }
 
 double drawing_rate(const Show& show, const Visitor& visitor) {
+  const VisitorPicture& picture = visitor.picture;
   double rate = picture_rate(show, visitor);
   if (!stands(show, visitor))
     return show.settings.background
                ? std::min(rate, 1 / plan_next_keyframe(show, visitor).period)
                : rate;
-  if (visitor.backdrop) rate = backdrop_rate;
+  if (picture.backdrop) rate = backdrop_rate;
   // Until the first reconstruction, samples do more for it than pictures.
-  bool first = show.pass.denoiser && !visitor.rest.reconstructed && !rests(show, visitor);
-  first &= visitor.backdrop || !visitor.order.figure;
-  return first ? std::min(rate, visitor.backdrop ? learning_backdrop_rate : learning_rate) : rate;
+  bool first = show.pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
+  first &= picture.backdrop || !picture.order.figure;
+  return first ? std::min(rate, picture.backdrop ? learning_backdrop_rate : learning_rate) : rate;
 }
 
 double moving_share(const Show& show) {
@@ -135,9 +139,10 @@ double seconds_to_moving(const Show& show) {
   const int backdrops = count_backdrops(show);
   double seconds = 1;
   for (const Visitor& visitor : show.visitors)
-    if (has_backdrop(facts_of(show, visitor)))
-      seconds = std::min(
-          seconds, visitor.posed_at + 1 / moving_rate(show, visitor, backdrops) - show.time);
+    if (has_backdrop(facts_of(show, visitor))) {
+      double due = visitor.picture.posed_at + 1 / moving_rate(show, visitor, backdrops);
+      seconds = std::min(seconds, due - show.time);
+    }
   return std::max(seconds, 0.0);
 }
 
@@ -152,7 +157,7 @@ KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor) {
   const DrawingCosts costs = drawing_costs(show, visitor);
   double light = costs.light_seconds > 0 ? costs.light_seconds : costs.display_seconds;
   return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(show), 1),
-                       visitor.order.scale);
+                       visitor.picture.order.scale);
 }
 
 VisitorDrawState draw_state(const Show& show, const Visitor& visitor) {

@@ -40,7 +40,7 @@ bool draws_backdrop(const Show& show, const PictureOrder& order) {
 DrawingStep plan_picture(Show& show, const PictureOrder& order, const Technique& technique,
                          const View& lit, Visitor& visitor) {
   DrawingWork& work = show.easel.work;
-  PictureCosts& costs = visitor.costs = {};
+  PictureCosts& costs = visitor.picture.costs = {};
   double began = seconds_now();
   plan_samples(show, order, technique, lit, work, visitor);
   double planned = seconds_now();
@@ -57,16 +57,16 @@ DrawingStep trace_more(Show& show, const PictureOrder& order, const Technique& t
                        Visitor& visitor) {
   double began = seconds_now();
   bool more = trace_slice(show, order, technique, show.easel.work);
-  visitor.costs.trace += float(1000 * (seconds_now() - began));
+  visitor.picture.costs.trace += float(1000 * (seconds_now() - began));
   return more ? DrawingStep::trace : DrawingStep::draw;
 }
 
 DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit,
                           Visitor& visitor) {
-  RenderCache& cache = visitor.cache;
-  Compositor& compositor = visitor.compositor;
+  RenderCache& cache = visitor.picture.cache;
+  Compositor& compositor = visitor.picture.compositor;
   DrawingWork& work = show.easel.work;
-  PictureCosts& costs = visitor.costs;
+  PictureCosts& costs = visitor.picture.costs;
   double began = seconds_now();
   remember_traced(show, order, lit, work, visitor);
   if (order.samples_only) {
@@ -103,18 +103,18 @@ DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit
 }
 
 // One visibility pass of a reconstruction's guides; the last also encodes its input.
-DrawingStep find_guides(Show& show, const PictureOrder& order, Visitor& visitor) {
+DrawingStep find_guides(Show& show, const PictureOrder& order, VisitorPicture& picture) {
   DrawingWork& work = show.easel.work;
   StillPass& pass = show.pass;
   double began = seconds_now();
   bool all = work.guided == guide_places;
   if (!all)
     add_still_guides(*show.world, show.lights, *show.sight, order.view,
-                     visitor.costs.backdrop ? RasterShows::still : RasterShows::all, work.guided++,
+                     picture.costs.backdrop ? RasterShows::still : RasterShows::all, work.guided++,
                      pass.work.guides, pass.work.followed);
   else
-    begin_reconstruction(visitor.compositor.samples(), pass.frame, *pass.denoiser, pass.work);
-  visitor.costs.guide_seconds += seconds_now() - began;
+    begin_reconstruction(picture.compositor.samples(), pass.frame, *pass.denoiser, pass.work);
+  picture.costs.guide_seconds += seconds_now() - began;
   return all ? DrawingStep::done : DrawingStep::guide;
 }
 
@@ -128,16 +128,16 @@ DrawingStep draw_step(Show& show, const PictureOrder& order, DrawingStep step, V
     step = plan_picture(show, order, technique, lit, visitor);
   } else if (show.easel.given_up) {
     if (step != DrawingStep::guide) remember_traced(show, order, lit, show.easel.work, visitor);
-    visitor.costs.given_up = true;
+    visitor.picture.costs.given_up = true;
     step = DrawingStep::done;
   } else if (step == DrawingStep::trace) {
     step = trace_more(show, order, technique, visitor);
   } else if (step == DrawingStep::draw) {
     step = paint_picture(show, order, lit, visitor);
   } else {
-    step = find_guides(show, order, visitor);
+    step = find_guides(show, order, visitor.picture);
   }
-  visitor.costs.seconds += seconds_now() - began;
+  visitor.picture.costs.seconds += seconds_now() - began;
   return step;
 }
 
@@ -147,36 +147,37 @@ void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
 }
 
 // What was drawn in the memory of somebody else's larger picture does not keep it.
-static void fit_memory(Visitor& visitor) {
+static void fit_memory(VisitorPicture& picture) {
   auto fit = [](auto& v) {
     if (v.capacity() > v.size() + v.size() / 4) v.shrink_to_fit();
   };
-  for (Keyframe* keyframe : {&visitor.keyframe, &visitor.around})
+  for (Keyframe* keyframe : {&picture.keyframe, &picture.around.keyframe})
     fit(keyframe->color), fit(keyframe->disparity), fit(keyframe->farthest), fit(keyframe->nearest);
-  fit(visitor.picture.rgb);
+  fit(picture.image.rgb);
 }
 
 void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
-  const PictureCosts& costs = visitor.costs;
+  VisitorPicture& picture = visitor.picture;
+  const PictureCosts& costs = picture.costs;
   StageTimes& times = visitor.times;
   if (costs.samples > 0 && costs.trace > 0)
     smooth(show.samples_per_second, float(costs.samples) / (0.001f * costs.trace));
   show.totals.samples += costs.samples;
   if (costs.given_up) {
-    visitor.surrounded = false;
+    picture.around.drawn = false;
     show.totals.given_up++;
     return;
   }
   if (!costs.late) smooth(times.trace, costs.trace);
   if (order.samples_only || order.reconstruct) {
-    visitor.drawn_at = order.time;
-    visitor.order.settled = order.settled;
+    picture.drawn_at = order.time;
+    picture.order.settled = order.settled;
     if (order.reconstruct) begin_pass(show, order, visitor);
     show.easel.work_bytes = memory_bytes(show.easel.work) + memory_bytes(show.pass);
     return;
   }
-  if (order.scale != visitor.order.scale)
-    carry_times(keyframe_cost(order.scale) / keyframe_cost(visitor.order.scale), times);
+  if (order.scale != picture.order.scale)
+    carry_times(keyframe_cost(order.scale) / keyframe_cost(picture.order.scale), times);
   const float share = order.still ? 0.1f : soon;
   if (order.passing) {
     smooth(times.light, costs.light, share);
@@ -186,49 +187,52 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   }
   smooth(times.drawing, costs.drawing, share);
   if (!order.still) smooth(times.whole, float(1000 * costs.seconds), share);
-  double interval = order.time - visitor.drawn_at;
+  double interval = order.time - picture.drawn_at;
   if (interval > 0 && interval < 1) {
-    smooth(visitor.drawn_fps, float(1 / interval));
+    smooth(picture.drawn_fps, float(1 / interval));
     if (!order.still) smooth(times.interval, float(1000 * interval), share);
   }
-  visitor.drawn_at = order.time;
-  visitor.broker_seconds =
+  picture.drawn_at = order.time;
+  picture.broker_seconds =
       costs.late ? double(order.samples) / std::max(double(show.samples_per_second), 1.0)
                  : 0;
-  visitor.stats = visitor.cache.stats();
-  visitor.cache_bytes = visitor.cache.memory_bytes() + visitor.compositor.memory_bytes();
+  picture.stats = picture.cache.stats();
+  picture.cache_bytes = picture.cache.memory_bytes() + picture.compositor.memory_bytes();
   // Else its keyframe has the colours.
-  if (!order.keep) std::swap(show.easel.work.picture, visitor.picture);
-  std::swap(show.easel.work.keyframe, visitor.keyframe);
-  visitor.surrounded = false;
+  if (!order.keep) std::swap(show.easel.work.picture, picture.image);
+  std::swap(show.easel.work.keyframe, picture.keyframe);
+  picture.around.drawn = false;
   bool settles = order.still && !order.passing;  // samples of its pixels take that memory
-  if (settles || order.leaps != visitor.around_leaps ||
-      show.time - visitor.around_at > around_kept)
-    visitor.around = {};
-  fit_memory(visitor);
-  visitor.memory_bytes = picture_memory(visitor);
+  if (settles || order.leaps != picture.around.leaps ||
+      show.time - picture.around.ordered_at > around_kept)
+    picture.around.keyframe = {};
+  fit_memory(picture);
+  picture.memory_bytes = picture_memory(visitor);
   show.easel.work_bytes = memory_bytes(show.easel.work) + memory_bytes(show.pass);
-  visitor.order = order;
-  finish_backdrop(visitor);
+  picture.order = order;
+  finish_backdrop(picture);
   show.totals.drawn++;
 }
 
 void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
   DrawingWork& work = show.easel.work;
   follow_lamps(show, visitor);
-  land(visitor.broker.collect(), *show.world, show.pose_number, visitor.cache);
-  visitor.compositor.draw(visitor.cache, *order.around, *show.sight,
+  land(picture.broker.collect(), *show.world, show.pose_number, picture.cache);
+  picture.compositor.draw(picture.cache, *order.around, *show.sight,
                           Tonemap{show.exhibit.exposure}, work.picture, &work.depth, true);
   make_keyframe(*order.around, work.picture, work.depth, work.around);
 }
 
 void finish_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {
-  std::swap(show.easel.work.around, visitor.around);
-  visitor.around_at = order.time;
-  visitor.around_leaps = order.leaps;
-  visitor.surrounded = true;
-  fit_memory(visitor);
-  visitor.memory_bytes = picture_memory(visitor);
+  VisitorPicture& picture = visitor.picture;
+  Surroundings& around = picture.around;
+  std::swap(show.easel.work.around, around.keyframe);
+  around.ordered_at = order.time;
+  around.leaps = order.leaps;
+  around.drawn = true;
+  fit_memory(picture);
+  picture.memory_bytes = picture_memory(visitor);
   show.totals.surroundings++;
 }
 

@@ -22,10 +22,10 @@ constexpr float more_asked = 1.2f;  // than there is time for, by what was measu
 
 // Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a
 // still camera's picture, waits for its own.
-bool may_be_late(const Show& show, const Visitor& visitor, const Technique& technique,
+bool may_be_late(const Show& show, const RenderCache& cache, const Technique& technique,
                  int samples) {
   return show.settings.late_samples && !technique.begin_pass &&
-         samples <= BrokerSettings{}.most_waiting && visitor.cache.covered() > barely_covered;
+         samples <= BrokerSettings{}.most_waiting && cache.covered() > barely_covered;
 }
 
 TransportSettings transport_of(const Show& show, const PictureOrder& order) {
@@ -52,45 +52,47 @@ size_t slice_of_samples(const Show& show) {
 
 void plan_samples(Show& show, const PictureOrder& order, const Technique& technique,
                   const View& lit, DrawingWork& work, Visitor& visitor) {
-  RenderCache& cache = visitor.cache;
+  VisitorPicture& picture = visitor.picture;
+  RenderCache& cache = picture.cache;
   follow_lamps(show, visitor);
   View ahead = order.coarse ? light_view(order.ahead) : order.ahead;
   cache.set_attention(order.attention);
   cache.set_reference(order.settled);
-  visitor.compositor.set_reconstructed(order.learns);
+  picture.compositor.set_reconstructed(order.learns);
   // What is around has light of half its size.
   cache.resize(order.expected.width, order.expected.height);
   cache.move_points(*show.world);
-  land(visitor.broker.collect(), *show.world, show.pose_number, cache);
+  land(picture.broker.collect(), *show.world, show.pose_number, cache);
   cache.project(lit);
   cache.attend();
   int most_asked = int(more_asked * float(order.samples));
-  bool late = !order.still && may_be_late(show, visitor, technique, most_asked);
+  bool late = !order.still && may_be_late(show, cache, technique, most_asked);
   int asked = late ? most_asked : order.samples;
   work.ahead.clear();
   if (ahead != lit && !technique.begin_pass)
     cache.predict(ahead, int(predicted_share * float(asked)), order.seed, work.ahead);
   const int planned = asked - int(work.ahead.size());
-  const bool spread = spreads_samples(order, technique, visitor.rest);
+  const bool spread = spreads_samples(order, technique, picture.rest);
   const int aimed = spread ? samples_to_watch(planned) : planned;
   cache.plan(lit, aimed, order.seed, work.requests);
   if (spread) {
-    plan_still(lit, visitor.rest.asked, planned - aimed, visitor.link->id, work.requests);
-    visitor.rest.asked += uint64_t(planned - aimed);
+    plan_still(lit, picture.rest.asked, planned - aimed, visitor.link->id, work.requests);
+    picture.rest.asked += uint64_t(planned - aimed);
   }
   work.requests.insert(work.requests.end(), work.ahead.begin(), work.ahead.end());
-  visitor.costs.late = late;
+  picture.costs.late = late;
 }
 
 bool begin_samples(Show& show, const PictureOrder& order, const Technique& technique,
                    const View& lit, DrawingWork& work, Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
   work.samples.clear();
   work.traced = 0;
-  if (visitor.costs.late) {
-    visitor.broker.ask(lit, {&technique, transport_of(show, order)}, work.requests);
+  if (picture.costs.late) {
+    picture.broker.ask(lit, {&technique, transport_of(show, order)}, work.requests);
     return false;
   }
-  visitor.broker.forget();  // what was asked for on the way
+  picture.broker.forget();  // what was asked for on the way
   work.pose = show.pose_number;
   if (technique.begin_pass)
     technique.begin_pass(*show.world, transport_of(show, order), lit, visitor.link->id,
@@ -112,18 +114,19 @@ bool trace_slice(Show& show, const PictureOrder& order, const Technique& techniq
 
 void remember_traced(const Show& show, const PictureOrder& order, const View& lit,
                      DrawingWork& work, Visitor& visitor) {
-  if (visitor.costs.late) return;
+  VisitorPicture& picture = visitor.picture;
+  if (picture.costs.late) return;
   work.requests.resize(work.traced);
   work.samples.resize(work.traced);
   if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
-  visitor.cache.remember(lit, work.requests, work.samples);
-  visitor.costs.samples = work.samples.size();
+  picture.cache.remember(lit, work.requests, work.samples);
+  picture.costs.samples = work.samples.size();
   // A picture that is drawn, not reconstructed, has a use for them only when it is kept for long.
-  bool kept_long = !order.passing && visitor.cache.is_still();
+  bool kept_long = !order.passing && picture.cache.is_still();
   if (!order.still || order.coarse || !(order.learns || kept_long)) return;
-  visitor.compositor.follow_changes(visitor.cache);
-  visitor.compositor.add_samples(lit, work.requests, work.samples);
-  visitor.rest.samples = mean_count(visitor.compositor.samples());
+  picture.compositor.follow_changes(picture.cache);
+  picture.compositor.add_samples(lit, work.requests, work.samples);
+  picture.rest.samples = mean_count(picture.compositor.samples());
 }
 
 }  // namespace wellspring
