@@ -15,8 +15,8 @@ ShowReport make_report(const Show& show) {
   report.samples_per_second = show.samples_per_second;
   report.denoiser_problem = show.pass.problem;
   report.kiosks = int(show.eyes.size());
-  report.audience = to_string(show.audience.state);
-  report.mood = to_string(show.mind.mood);
+  report.audience = show.audience.state;
+  report.mood = show.mind.mood;
   report.totals = show.totals;
   if (show.speech.counts) {
     Speaker::Counts counts = show.speech.counts();
@@ -41,6 +41,7 @@ ShowReport make_report(const Show& show) {
     one.trace_ms = visitor.times.trace;
     one.tonemap_ms = visitor.times.tonemap;
     one.encode_ms = visitor.times.encode;
+    one.decode_ms = visitor.shown.flow.decode_ms;
     one.drawn_fps = visitor.picture.drawn_fps;
     one.warp_ms = visitor.times.warp;
     one.moving_ms = visitor.times.moving;
@@ -53,6 +54,7 @@ ShowReport make_report(const Show& show) {
     one.memory_bytes = visitor.picture.memory_bytes;
     one.dropped = visitor.link->pictures_dropped();
     one.kiosk = visitor.kiosk;
+    one.name = visitor.name;
     report.visitors.push_back(one);
   }
   return report;

@@ -52,7 +52,8 @@ struct Visitor {
   std::shared_ptr<Link> link;
   bool welcomed = false, left = false;
   bool kiosk = false;
-  std::string lang = "en", name;
+  std::string lang = "en";
+  std::string name;  // of a kiosk, as its page says it; may be empty
   double state_sent_at = -1e9;  // show time of the last state message
   VisitorSound hearing;         // show/answer/sound.h
   VisitorPlace place;           // show/visit
