@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is kept of one visitor for drawing its pictures (show/draw): the light that is known, the
 // picture that was drawn last, and what is laid over it. The easel's (show/state/renderer.h) while
-// `at_work`, but for what the tick alone asks: when it was drawn, for what, and whether it was sent.
+// `at_work`, but for what the tick asks: when it was drawn, for what, and whether it was sent.
 #pragma once
 #include <cstddef>
 #include <vector>
