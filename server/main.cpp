@@ -12,8 +12,12 @@
 #include "show/answer/answer.h"
 #include "show/storyteller/recordings.h"
 #include "show/answer/pages.h"
+#include "show/exhibit/exhibit_load.h"
 #include "show/state/show.h"
 #include "show/answer/still.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
+#include "show/storyteller/sounding.h"
 #include "stream/stream.h"
 
 namespace {

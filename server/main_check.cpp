@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "base/log.h"
+#include "show/exhibit/exhibit_load.h"
 #include "show/storyteller/recordings.h"
 #include "show/visit/tour.h"
 #include "show/visit/walk.h"

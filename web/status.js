@@ -69,19 +69,28 @@ async function refresh() {
         `${number(one('messages_total'))}, refused ${number(one('refused_messages_total'))}`],
     ]);
     const ids = [...new Set(metrics.filter((m) => m.labels.visitor).map((m) => m.labels.visitor))];
+    const state_of = (name) =>
+      metrics.find((metric) => metric.name === name && metric.value === 1)?.labels.state ?? '–';
+    const name_of = (id) => {
+      const kiosk = metrics.find((m) => m.labels.visitor === id && m.labels.kiosk)?.labels.kiosk;
+      return kiosk ? `${id} (${kiosk})` : id;
+    };
     const value_of = (id, name) =>
       metrics.find((m) => m.labels.visitor === id && m.name === `visitor_${name}`)?.value;
     const of = (id, name, digits) => number(value_of(id, name), digits);
     rows(by_id('visitors'), [
       ['Visitor', 'Pictures/s', 'Round trip ms', 'Display ms', 'Trace ms', 'Tone ms', 'Encode ms',
-        'Samples', 'Quality', 'Converged %'],
-      ...ids.map((id) => [id, of(id, 'pictures_per_second', 1), of(id, 'round_trip_milliseconds'),
+        'Decode ms', 'Samples', 'Quality', 'Converged %'],
+      ...ids.map((id) => [
+        name_of(id), of(id, 'pictures_per_second', 1), of(id, 'round_trip_milliseconds'),
         of(id, 'display_milliseconds', 1), of(id, 'trace_milliseconds', 1),
         of(id, 'tonemap_milliseconds', 1), of(id, 'encode_milliseconds', 1),
-        of(id, 'samples_per_picture'), of(id, 'jpeg_quality'),
+        of(id, 'decode_milliseconds', 1), of(id, 'samples_per_picture'), of(id, 'jpeg_quality'),
         number(100 * (value_of(id, 'converged_ratio') ?? 0), 1)])]);
     rows(by_id('kiosks'), [
       ['Cameras', number(one('kiosk_cameras'))],
+      ['Before them', state_of('audience')],
+      ['Storyteller', state_of('storyteller_mood')],
       ['Observations', number(one('kiosk_observations_total'))],
       ['Greetings', number(one('greetings_total'))],
       ['Farewells', number(one('farewells_total'))],

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tick: one straight function. See show.h.
+#include "show/tick.h"
+
 #include <algorithm>
 #include <cmath>
 #include <thread>
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "show/state/in_view.h"
-#include "show/draw/moving.h"
-#include "show/answer/events.h"
 #include "show/answer/commands.h"
-#include "show/draw/picture.h"
+#include "show/answer/events.h"
+#include "show/answer/sound.h"
+#include "show/draw/carry_out.h"
+#include "show/draw/order_picture.h"
+#include "show/draw/pace.h"
 #include "show/draw/present.h"
-#include "show/draw/sample_budget.h"
-#include "show/state/show.h"
+#include "show/draw/still_pass.h"
+#include "show/state/in_view.h"
+#include "show/state/lamps.h"
 #include "show/storyteller/story_marks.h"
 #include "wire/json.h"
 
@@ -43,9 +46,9 @@ void welcome_links(Show& show, Arrivals& arrivals) {
       log::info("visitor {} connected from {}", link->id, link->peer);
       Visitor& visitor = show.visitors.emplace_back();
       visitor.link = std::move(link);
-      visitor.cache = RenderCache({}, show.easel.work.cache);
-      visitor.compositor = Compositor(show.easel.work.compositor);
-      visitor.compositor.set_skin(&show.skin);
+      visitor.picture.cache = RenderCache({}, show.easel.work.cache);
+      visitor.picture.compositor = Compositor(show.easel.work.compositor);
+      visitor.picture.compositor.set_skin(&show.skin);
     }
   }
 }
@@ -70,7 +73,7 @@ void hear_visitors(Show& show) {
       visitor.link->close("bye");
       bool in_pass = show.pass.visitor == &visitor;
       if (in_pass) show.pass.given_up = true;
-      if (visitor.at_work || in_pass) return false;  // soon
+      if (visitor.picture.at_work || in_pass) return false;  // soon
       log::info("visitor {} left", visitor.link->id);
     }
     return gone;
@@ -119,7 +122,7 @@ void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utteranc
 }
 
 bool is_narrated(const Visitor& visitor) {
-  return !visitor.narration.voice.queue.empty() && !visitor.narration.voice.paused;
+  return !visitor.hearing.narration.voice.queue.empty() && !visitor.hearing.narration.voice.paused;
 }
 
 void show_subtitles(Show& show, const Utterance* utterance) {
@@ -133,16 +136,16 @@ void follow_story(Show& show, const VoiceEvents& events) {
     int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
     if (viewpoint < 0) continue;
     for (Visitor& visitor : show.visitors)
-      if (visitor.link->id == show.voice.asked_by && visitor.tour.tour < 0 &&
-          visitor.move == vec3(0))
-        glide_to(visitor.tour, viewpoint, visitor.view);
+      if (visitor.link->id == show.voice.asked_by && visitor.place.tour.tour < 0 &&
+          visitor.place.move == vec3(0))
+        glide_to(visitor.place.tour, viewpoint, visitor.place.view);
   }
 }
 
 // Tours: their narrators speak, each to one visitor.
 void narrate(Show& show, float dt) {
   for (Visitor& visitor : show.visitors) {
-    Narration& narration = visitor.narration;
+    Narration& narration = visitor.hearing.narration;
     if (!visitor.welcomed || narration.voice.queue.empty()) continue;
     if (dt >= 1) narration.sounding.going = false;  // the show stood still while the sound went on
     VoiceEvents said = advance_narration(show, visitor, dt);
@@ -150,7 +153,7 @@ void narrate(Show& show, float dt) {
     else if (said.fell_silent) show_subtitle(show, visitor, nullptr, false);
     for (const ActionEvent& act : said.acts) {
       int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
-      if (viewpoint >= 0) glide_to(visitor.tour, viewpoint, visitor.view);
+      if (viewpoint >= 0) glide_to(visitor.place.tour, viewpoint, visitor.place.view);
     }
   }
 }
@@ -184,7 +187,7 @@ void behave(Show& show, float dt) {
   // Its own words come before those of a tour, which are heard by one visitor alone.
   const Voice* told = &show.voice;
   if (const Visitor* on_tour = show.voice.queue.empty() ? heard_on_tour(show) : nullptr)
-    told = &on_tour->narration.voice;
+    told = &on_tour->hearing.narration.voice;
   input.speaking = speaking(*told, show.picture_lead);
   if (heard(*told)) input.visemes = mouth_shape(*told, show.picture_lead);
   input.telling = !show.voice.story.empty();
@@ -193,7 +196,7 @@ void behave(Show& show, float dt) {
     if (!visitor.welcomed || visitor.kiosk) continue;  // a kiosk page's eyes are its camera
     Guest guest;
     guest.id = uint32_t(visitor.link->id);
-    guest.head = vec3(visitor.view.position - show.exhibit.scene.origin);
+    guest.head = vec3(visitor.place.view.position - show.exhibit.scene.origin);
     input.guests.push_back(guest);
   }
   input.viewer_distance = viewer_distance(show);
@@ -219,160 +222,28 @@ void behave(Show& show, float dt) {
   }
 }
 
-// The world as it is now. Nothing may be drawn meanwhile.
-void pose_world(Show& show) {
-  if (show.figures.empty()) return;
-  Figure& figure = show.figures[show.teller];
-  show_figure(*show.world, figure, show.storyteller_visible);
-  if (show.storyteller_visible && !show.visitors.empty())
-    pose_figure(*show.world, figure, teller_of(show)->character, show.pose,
-                show.storyteller.placement, show.scratch);
-  show.world->commit();
-  show.pose_number++;
+// The next thing, if there is any, of what is due by now.
+void use_easel(Show& show, int waiting) {
+  RendererState renderer = renderer_state(show);
+  renderer.waiting = waiting;
+  carry_out(show, decide(show.time, draw_states(show), renderer), waiting);
 }
 
 // A tour's camera waits for keyframes that are slow; a visitor's own turn does not.
 void pace_tour(Visitor& visitor) {
   double seconds = 0.001 * double(std::max(visitor.times.interval, visitor.times.whole));
-  float across = 2 * std::atan(std::tan(0.5f * visitor.view.fov) * float(visitor.width) /
-                               float(visitor.height));
-  visitor.tour.most_pace = tour_pace(turn_ahead(visitor.tour, seconds), across);
+  const PictureWishes& wants = visitor.wants;
+  VisitorPlace& place = visitor.place;
+  float across = 2 * std::atan(std::tan(0.5f * place.view.fov) * float(wants.width) /
+                               float(wants.height));
+  place.tour.most_pace = tour_pace(turn_ahead(place.tour, seconds), across);
 }
 
 void send_state(Show& show, Visitor& visitor) {
-  double interval = visitor.utterance != 0 ? heard_state_interval : state_interval;
+  double interval = visitor.hearing.utterance != 0 ? heard_state_interval : state_interval;
   if (show.time - visitor.state_sent_at < interval) return;
   visitor.state_sent_at = show.time;
   visitor.link->send_text(state_news(show, visitor));
-}
-
-// What the easel has finished. Returns whether it may be given the next: asked once a tick, as what
-// it finishes later in the tick has not been taken.
-bool take_finished(Show& show) {
-  Easel& easel = show.easel;
-  if (!easel.idle()) return false;
-  if (!easel.brokers.empty()) finish_samples(show);
-  if (show.pass.at_work) take_pass(show);
-  if (easel.skin.at_work) finish_skin(show);
-  if (Visitor* posed = std::exchange(easel.posed, nullptr)) {
-    finish_moving(show, *posed);
-    if (posed != easel.drawn) posed->at_work = false;
-    return true;
-  }
-  if (!easel.drawn || easel.step != DrawingStep::done) return true;
-  if (std::exchange(easel.surrounds, false)) finish_surroundings(show, easel.order, *easel.drawn);
-  else finish_picture(show, easel.order, *easel.drawn);
-  easel.drawn->at_work = false;
-  easel.drawn = nullptr;
-  return true;
-}
-
-// Those who do not wait for a picture, but whose reconstruction gains by samples, are not counted.
-int waiting_for_drawings(const Show& show) {
-  return int(std::count_if(
-      show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
-        return wants_drawing(show, visitor) && !keeps_picture(show, visitor);
-      }));
-}
-
-// Who has waited longest for what moves in its picture; null: it is not due for anybody.
-Visitor* next_to_pose(Show& show) {
-  Visitor* next = nullptr;
-  for (Visitor& visitor : show.visitors) {
-    bool busy = visitor.at_work && &visitor != show.easel.drawn;
-    if (!busy && wants_moving(show, visitor) && (!next || visitor.posed_at < next->posed_at))
-      next = &visitor;
-  }
-  return next;
-}
-
-void use_cores(Show& show, std::function<void()> work) {
-  show.easel.worker.run([&show, work = std::move(work)] { show.easel.cores.execute(work); });
-}
-
-void pose(Show& show, Visitor& visitor) {
-  Easel& easel = show.easel;
-  pose_world(show);
-  easel.posed = &visitor;
-  easel.posed_at = show.time;
-  easel.posed_us = show.time_us;
-  visitor.at_work = true;
-  use_cores(show, [&show] { draw_moving(show, *show.easel.posed); });
-}
-
-// The next of its steps, or all of them.
-void go_on_drawing(Show& show) {
-  show.easel.until_moving = seconds_to_moving(show);
-  use_cores(show, [&show] {
-    Easel& easel = show.easel;
-    if (easel.surrounds) {
-      draw_surroundings(show, easel.order, *easel.drawn);
-      easel.step = DrawingStep::done;
-    }
-    while (easel.step != DrawingStep::done) {
-      easel.step = draw_step(show, easel.order, easel.step, *easel.drawn);
-      if (in_steps(easel.order)) break;
-    }
-  });
-}
-
-void use_cores_for_pass(Show& show) {
-  StillPass& pass = show.pass;
-  show.easel.until_moving = seconds_to_moving(show);
-  pass.at_work = true;
-  if (pass.step == StillPass::Step::finish) pass.visitor->at_work = true;
-  use_cores(show, [&show] { go_on_with_pass(show); });
-}
-
-// What moves comes first, and its light, then what is begun, then samples that were asked for, else
-// the picture that has been waited for longest.
-void use_easel(Show& show, int waiting) {
-  Easel& easel = show.easel;
-  if (Visitor* next = next_to_pose(show)) return pose(show, *next);
-  if (wants_skin(show)) {
-    order_skin(show);
-    return use_cores(show, [&show] { light_skin(show); });
-  }
-  if (easel.drawn) {
-    // Light can wait for the next picture, others need not.
-    if (waiting > 0 && easel.step == DrawingStep::trace) easel.step = DrawingStep::draw;
-    return go_on_drawing(show);
-  }
-  if (order_samples(show)) {
-    use_cores(show, [&show] { trace_samples(show, show.easel); });
-    return;
-  }
-  if (show.pass.visitor && waiting == 0) return use_cores_for_pass(show);
-  Visitor* next = nullptr;
-  for (Visitor& visitor : show.visitors)
-    if (wants_drawing(show, visitor) && (waiting == 0 || !keeps_picture(show, visitor)) &&
-        (!next || visitor.drawn_at < next->drawn_at))
-      next = &visitor;
-  if (!next) return;
-  easel.drawn = next;
-  easel.order = order_picture(show, *next, std::max(waiting, 1));
-  easel.surrounds = easel.order.around && !next->surrounded;
-  if (!easel.surrounds) pose_world(show);
-  next->at_work = true;
-  easel.given_up = false;
-  easel.step = DrawingStep::plan;
-  go_on_drawing(show);
-}
-
-// All that are due, one after the other, while the tick waits.
-void draw_now(Show& show, int waiting) {
-  if (waiting > 0) pose_world(show);
-  if (waiting > 0 && wants_skin(show)) order_skin(show), light_skin(show), finish_skin(show);
-  for (Visitor& visitor : show.visitors) {
-    if (!wants_drawing(show, visitor)) continue;
-    PictureOrder order = order_picture(show, visitor, waiting);
-    draw_picture(show, order, visitor);
-    finish_picture(show, order, visitor);
-    present(show, visitor);
-  }
-  if (!order_samples(show)) return;
-  trace_samples(show, show.easel);
-  finish_samples(show);
 }
 
 }  // namespace
@@ -391,9 +262,10 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   if (free) forget_light_steps(show);
   if (free && !show.easel.drawn && lamps_wait(show)) light_lamps(show);
   narrate(show, dt);
-  int waiting = free ? waiting_for_drawings(show) : 0;
+  Demand demand;
+  if (free) demand = find_demand(show.time, draw_states(show), renderer_state(show));
   // The storyteller moves for a picture; otherwise often enough to notice people.
-  bool poses = waiting > 0 || (free && next_to_pose(show));
+  const bool poses = demand.waiting > 0 || demand.moving;
   if (poses || show.time - show.behaved_at >= behave_interval) {
     behave(show,
            show.behaved_at < 0 ? 0 : float(std::clamp(show.time - show.behaved_at, 0.0, 1.0)));
@@ -407,16 +279,16 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
     pace_tour(visitor);
-    TourStep step;
-    move_visitor(visitor, *show.world, show.exhibit, show.roads, person, dt, step);
+    TourStep step = move_visitor(visitor.place, visitor.hearing.narration.voice, *show.world,
+                                 show.exhibit, show.roads, person, dt);
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
     watch(show, visitor);
   }
   watch_pass(show);
   Easel& easel = show.easel;
   if (easel.drawn && is_outdated(show, easel.order, *easel.drawn)) easel.given_up = true;
-  if (show.settings.background && free) use_easel(show, waiting);
-  if (!show.settings.background) draw_now(show, waiting);
+  if (!show.settings.background) draw_now(show, demand.waiting);
+  else if (free) use_easel(show, demand.waiting);
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
     if (show.settings.background) present(show, visitor);
@@ -428,9 +300,10 @@ void tick(Show& show, Arrivals& arrivals, double now) {
 double seconds_to_next_tick(const Show& show, double now) {
   double wait = 1 / 20.0;  // nobody looks: only clocks and doors
   for (const Visitor& visitor : show.visitors)
-    if (visitor.welcomed)
-      wait = std::min(
-          {wait, listening_interval, visitor.pictured_at + 1 / picture_rate(show, visitor) - now});
+    if (visitor.welcomed) {
+      double due = visitor.shown.pictured_at + 1 / picture_rate(show, visitor);
+      wait = std::min({wait, listening_interval, due - now});
+    }
   return std::max(wait, least_wait);
 }
 

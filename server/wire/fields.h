@@ -13,8 +13,6 @@
 
 namespace wellspring {
 
-enum class Need : uint8_t { optional, required };
-
 class Fields {
  public:
   // `prefix` names the object in messages ("people[2]."). Both are borrowed by the caller's scope.
@@ -41,13 +39,6 @@ class Fields {
   // The member itself when it is there and of that type.
   const nlohmann::json* object(const char* name);
   const nlohmann::json* array(const char* name, size_t max_size);
-
-  // Only read when the field is there: makes std::optional members short to write.
-  template <class T, class Read>
-  void maybe(std::optional<T>& out, const Read& read) {
-    T value{};
-    if (read(value)) out = value;
-  }
 
   void fail(const std::string& name, const std::string& what);
   bool good() const { return !error_; }

@@ -14,26 +14,10 @@
 #include <string_view>
 #include <variant>
 
+#include "wire/limits.h"
 #include "wire/messages.h"
 
 namespace wellspring {
-
-inline constexpr size_t max_message_bytes = 64 * 1024;
-inline constexpr int max_message_depth = 32;
-
-// Limits of single fields; outside of them a message is refused with bad_field.
-inline constexpr size_t max_name_bytes = 200;    // every string: UTF-8 without control characters
-inline constexpr double max_speed = 20;          // m/s, length of input.move
-inline constexpr double max_angle = 100;         // radians, every angle; the user wraps it
-inline constexpr double max_coordinate = 1e6;    // metres, camera.position
-inline constexpr double max_kiosk_distance = 100;  // metres, each coordinate of a person's position
-inline constexpr double max_time = 1e12;         // seconds, observation.time, both signs
-inline constexpr double max_decoded_ms = 600e3;  // ack.decoded_ms, from 0
-inline constexpr int min_side = 16, max_side = 4096;  // width and height in pixels
-inline constexpr double min_fps = 0, max_fps = 240;   // settings.fps; 0: as the server likes
-inline constexpr int min_jpeg_quality = 1,
-                     max_jpeg_quality = 100;     // settings.quality and .max_quality
-inline constexpr size_t max_people = 32;         // in one observation
 
 // Why a message was refused: `code` is a fixed word for programs (bad_json, too_deep, too_large,
 // unknown_type, bad_field), `message` a sentence naming the field.
@@ -53,6 +37,8 @@ std::string write_error(const WireError& error);  // {"type":"error","code":..,"
 // Browser messages as clients write them (bench, tests): read_browser_message(write_message(m)) ==
 // m.
 std::string write_message(const BrowserMessage& message);
+// {type: {field: what it means}} of all of them, for GET /api/v1/.
+nlohmann::json describe_browser_messages();
 
 // Parses with a depth limit: nlohmann's own parser takes any depth, but copying or dumping what it
 // made of 100,000 brackets overflows the stack. Stops at the first bracket too many (depth of

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "wire/limits.h"
 
 namespace wellspring {
 
@@ -45,62 +46,144 @@ struct Observation {
 };
 
 // ---- browser to server ----
+//
+// A message is a struct with its `type` on the wire, its fields, and list(), which names each of
+// them once: kind, name, limits, value, what it means, and whether it must be there. Reading,
+// writing and GET /api/v1/ go through this list, so a new message is a struct here (and in
+// BrowserMessage), its handler in show/answer/commands.cpp, and its rows in tests/protocol. The
+// kinds are those of MessageReader (read_messages.cpp). A std::optional is there or is not; a text
+// that is empty is not written, unless it is required.
+
+enum class Need : uint8_t { optional, required };
 
 struct Hello {
+  static constexpr const char* type = "hello";
   std::string exhibit, lang, role,
       kiosk;  // role: "visitor" or "kiosk"; empty exhibit: the default one
   int width = 1280, height = 720;
+  static void list(auto& message, auto& fields) {
+    fields.text("exhibit", message.exhibit, "id, empty for the one shown");
+    fields.text("lang", message.lang, "BCP 47");
+    fields.text("kiosk", message.kiosk, "name, optional");
+    fields.word("role", {"visitor", "kiosk"}, message.role, "visitor or kiosk");
+    fields.integer("width", min_side, max_side, message.width, "16..4096");
+    fields.integer("height", min_side, max_side, message.height, "16..4096");
+  }
   bool operator==(const Hello&) const = default;
 };
 struct Input {
+  static constexpr const char* type = "input";
   uint32_t seq = 0;
   vec3 move{0};  // right, up, forward, metres a second, kept until the next input
   vec2 look{0};  // yaw, pitch to turn by now
+  static void list(auto& message, auto& fields) {
+    fields.u32("seq", message.seq, "u32, grows by one", Need::required);
+    fields.vector("look", max_angle, message.look,
+                  "[yaw, pitch] radians to turn by now; yaw positive turns left, pitch positive "
+                  "up");
+    fields.speed("move", max_speed, message.move,
+                 "[right, up, forward] m/s, kept until the next input");
+  }
   bool operator==(const Input&) const = default;
 };
 struct CameraTo {
+  static constexpr const char* type = "camera";
   uint32_t seq = 0;
   dvec3 position{0};
   float yaw = 0, pitch = 0;
+  static void list(auto& message, auto& fields) {
+    fields.u32("seq", message.seq, "u32", Need::required);
+    fields.vector("position", max_coordinate, message.position, "[x, y, z] m", Need::required);
+    fields.number("yaw", -max_angle, max_angle, message.yaw, "radians, 0 looks down -Z");
+    fields.number("pitch", -max_angle, max_angle, message.pitch, "radians");
+  }
   bool operator==(const CameraTo&) const = default;
 };
 struct ViewpointTo {
+  static constexpr const char* type = "viewpoint";
   uint32_t seq = 0;
   std::string name;
+  static void list(auto& message, auto& fields) {
+    fields.u32("seq", message.seq, "u32", Need::required);
+    fields.text("name", message.name, "a viewpoint's name", Need::required);
+  }
   bool operator==(const ViewpointTo&) const = default;
 };
 enum class TourAction : uint8_t { play, pause, stop };
 struct Tour {
+  static constexpr const char* type = "tour";
   TourAction action = TourAction::play;
   std::string name;  // empty: the first
+  static void list(auto& message, auto& fields) {
+    fields.choice("action", {"play", "pause", "stop"}, message.action, "play, pause or stop",
+                  Need::required);
+    fields.text("name", message.name, "a tour's id, optional");
+  }
   bool operator==(const Tour&) const = default;
 };
 struct StorytellerOrder {
+  static constexpr const char* type = "storyteller";
   std::optional<bool> visible, humanlike;
   std::string teller{};  // id of the storyteller that shall be there; empty: no change
   std::string story;   // id of a story to tell; empty: no change
   std::string action;  // "play", "pause", "stop", "restart", "skip" or empty
+  static void list(auto& message, auto& fields) {
+    fields.boolean("visible", message.visible, "boolean");
+    fields.boolean("humanlike", message.humanlike, "boolean");
+    fields.text("teller", message.teller, "a storyteller's id: who shall be there");
+    fields.text("story", message.story, "a story's id");
+    fields.word("action", {"play", "pause", "stop", "restart", "skip"}, message.action,
+                "play, pause, stop, restart or skip");
+  }
   bool operator==(const StorytellerOrder&) const = default;
 };
 struct LampOrder {
+  static constexpr const char* type = "lamp";
   std::string name;
   bool on = true;
+  static void list(auto& message, auto& fields) {
+    fields.text("name", message.name, "a lamp's name", Need::required);
+    fields.boolean("on", message.on, "boolean: for everybody who is there", Need::required);
+  }
   bool operator==(const LampOrder&) const = default;
 };
 struct Settings {
+  static constexpr const char* type = "settings";
   std::optional<float> fps;
   std::optional<bool> attention, sound;
   std::optional<int> quality, max_quality, width, height;
   std::string lang;
+  static void list(auto& message, auto& fields) {
+    fields.number("fps", min_fps, max_fps, message.fps,
+                  "pictures a second, 0 for the server's choice");
+    fields.boolean("attention", message.attention, "boolean");
+    fields.boolean("sound", message.sound,
+                   "boolean: whether speech is to be sent; at first it is");
+    fields.integer("quality", min_jpeg_quality, max_jpeg_quality, message.quality,
+                   "JPEG quality in motion");
+    fields.integer("max_quality", min_jpeg_quality, max_jpeg_quality, message.max_quality,
+                   "JPEG quality at rest");
+    fields.integer("width", min_side, max_side, message.width, "16..4096");
+    fields.integer("height", min_side, max_side, message.height, "16..4096");
+    fields.text("lang", message.lang, "BCP 47");
+  }
   bool operator==(const Settings&) const = default;
 };
 struct Ack {
+  static constexpr const char* type = "ack";
   uint32_t frame = 0;
   float decoded_ms = 0;
   bool shown = true;
+  static void list(auto& message, auto& fields) {
+    fields.u32("frame", message.frame, "u32 frame number", Need::required);
+    fields.number("decoded_ms", 0, max_decoded_ms, message.decoded_ms, "milliseconds");
+    fields.boolean("shown", message.shown, "boolean");
+  }
   bool operator==(const Ack&) const = default;
 };
 struct Bye {
+  static constexpr const char* type = "bye";
+  static void list(auto&, auto&) {}
   bool operator==(const Bye&) const = default;
 };
 

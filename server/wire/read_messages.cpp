@@ -8,94 +8,94 @@ namespace wellspring {
 
 using nlohmann::json;
 
-static Hello read_hello(Fields& fields) {
-  Hello hello;
-  fields.text("exhibit", hello.exhibit);
-  fields.text("lang", hello.lang);
-  fields.text("kiosk", hello.kiosk);
-  fields.word("role", {"visitor", "kiosk"}, hello.role);
-  fields.integer("width", min_side, max_side, hello.width);
-  fields.integer("height", min_side, max_side, hello.height);
-  return hello;
+namespace {
+
+// Takes the fields that a message lists out of an object: the kinds of fields that there are.
+// Absent ones keep the message's defaults.
+class MessageReader {
+ public:
+  explicit MessageReader(Fields& fields) : fields_(fields) {}
+
+  void text(const char* name, std::string& value, const char*, Need need = Need::optional) {
+    fields_.text(name, value, need);
+  }
+  // One of `words`, or empty.
+  void word(const char* name, std::initializer_list<const char*> words, std::string& value,
+            const char*, Need need = Need::optional) {
+    fields_.word(name, words, value, need);
+  }
+  // One of `words`, which name the values of an enumeration in order.
+  template <class Choice>
+  void choice(const char* name, std::initializer_list<const char*> words, Choice& value,
+              const char*, Need need = Need::optional) {
+    std::string word;
+    if (!fields_.word(name, words, word, need)) return;
+    const auto found = std::ranges::find(words, word);
+    if (found != words.end()) value = Choice(found - words.begin());
+  }
+  template <class Value>
+  void number(const char* name, double low, double high, Value& value, const char*,
+              Need need = Need::optional) {
+    read(value, [&](auto& v) { return fields_.number(name, low, high, v, need); });
+  }
+  template <class Value>
+  void integer(const char* name, int low, int high, Value& value, const char*,
+               Need need = Need::optional) {
+    read(value, [&](int& v) { return fields_.integer(name, low, high, v, need); });
+  }
+  void u32(const char* name, uint32_t& value, const char*, Need need = Need::optional) {
+    fields_.u32(name, value, need);
+  }
+  template <class Value>
+  void boolean(const char* name, Value& value, const char*, Need need = Need::optional) {
+    read(value, [&](bool& v) { return fields_.boolean(name, v, need); });
+  }
+  // Each of its numbers is at most `limit`, of either sign.
+  template <class Vector>
+  void vector(const char* name, double limit, Vector& value, const char*,
+              Need need = Need::optional) {
+    fields_.vector(name, limit, value, need);
+  }
+  // Metres a second: so is its length.
+  void speed(const char* name, double limit, vec3& value, const char*,
+             Need need = Need::optional) {
+    dvec3 speed{0};
+    if (!fields_.vector(name, limit, speed, need)) return;
+    if (glm::length(speed) > limit)
+      fields_.fail(name, "must be at most " + std::to_string(int(limit)) + " m/s long");
+    value = vec3(speed);
+  }
+
+ private:
+  template <class Value, class Read>
+  void read(Value& value, const Read& read) {
+    read(value);
+  }
+  template <class Value, class Read>
+  void read(std::optional<Value>& value, const Read& read) {
+    Value found{};
+    if (read(found)) value = found;
+  }
+  Fields& fields_;
+};
+
+template <class Message>
+bool read_if(const std::string& type, Fields& fields, BrowserMessage& message) {
+  if (type != Message::type) return false;
+  Message read;
+  MessageReader reader(fields);
+  Message::list(read, reader);
+  message = std::move(read);
+  return true;
 }
 
-static Input read_input(Fields& fields) {
-  Input input;
-  dvec3 move{0};
-  fields.u32("seq", input.seq, Need::required);
-  fields.vector("look", max_angle, input.look);
-  fields.vector("move", max_speed, move);
-  if (glm::length(move) > max_speed) fields.fail("move", "must be at most 20 m/s long");
-  input.move = vec3(move);
-  return input;
+// Into whichever of the messages is of that type; false: none is.
+template <class... Messages>
+bool read_one_of(const std::string& type, Fields& fields, std::variant<Messages...>& message) {
+  return (read_if<Messages>(type, fields, message) || ...);
 }
 
-static CameraTo read_camera(Fields& fields) {
-  CameraTo camera;
-  fields.u32("seq", camera.seq, Need::required);
-  fields.vector("position", max_coordinate, camera.position, Need::required);
-  fields.number("yaw", -max_angle, max_angle, camera.yaw);
-  fields.number("pitch", -max_angle, max_angle, camera.pitch);
-  return camera;
-}
-
-static ViewpointTo read_viewpoint(Fields& fields) {
-  ViewpointTo viewpoint;
-  fields.u32("seq", viewpoint.seq, Need::required);
-  fields.text("name", viewpoint.name, Need::required);
-  return viewpoint;
-}
-
-static Tour read_tour(Fields& fields) {
-  Tour tour;
-  std::string action;
-  fields.word("action", {"play", "pause", "stop"}, action, Need::required);
-  if (action == "pause") tour.action = TourAction::pause;
-  if (action == "stop") tour.action = TourAction::stop;
-  fields.text("name", tour.name);
-  return tour;
-}
-
-static StorytellerOrder read_storyteller(Fields& fields) {
-  StorytellerOrder order;
-  fields.maybe(order.visible, [&](bool& value) { return fields.boolean("visible", value); });
-  fields.maybe(order.humanlike, [&](bool& value) { return fields.boolean("humanlike", value); });
-  fields.text("teller", order.teller);
-  fields.text("story", order.story);
-  fields.word("action", {"play", "pause", "stop", "restart", "skip"}, order.action);
-  return order;
-}
-
-static LampOrder read_lamp(Fields& fields) {
-  LampOrder order;
-  fields.text("name", order.name, Need::required);
-  fields.boolean("on", order.on, Need::required);
-  return order;
-}
-
-static Settings read_settings(Fields& fields) {
-  Settings settings;
-  const auto integer = [&](const char* name, int low, int high) {
-    return [&fields, name, low, high](int& v) { return fields.integer(name, low, high, v); };
-  };
-  fields.maybe(settings.fps, [&](float& v) { return fields.number("fps", min_fps, max_fps, v); });
-  fields.maybe(settings.attention, [&](bool& v) { return fields.boolean("attention", v); });
-  fields.maybe(settings.sound, [&](bool& v) { return fields.boolean("sound", v); });
-  fields.maybe(settings.quality, integer("quality", min_jpeg_quality, max_jpeg_quality));
-  fields.maybe(settings.max_quality, integer("max_quality", min_jpeg_quality, max_jpeg_quality));
-  fields.maybe(settings.width, integer("width", min_side, max_side));
-  fields.maybe(settings.height, integer("height", min_side, max_side));
-  fields.text("lang", settings.lang);
-  return settings;
-}
-
-static Ack read_ack(Fields& fields) {
-  Ack ack;
-  fields.u32("frame", ack.frame, Need::required);
-  fields.number("decoded_ms", 0, max_decoded_ms, ack.decoded_ms);
-  fields.boolean("shown", ack.shown);
-  return ack;
-}
+}  // namespace
 
 std::variant<BrowserMessage, WireError> read_browser_message(std::string_view text) {
   auto opened = open_envelope(text);
@@ -104,27 +104,7 @@ std::variant<BrowserMessage, WireError> read_browser_message(std::string_view te
   std::optional<WireError> error;
   Fields fields(object, type + ".", error);
   BrowserMessage message;
-  if (type == "hello")
-    message = read_hello(fields);
-  else if (type == "input")
-    message = read_input(fields);
-  else if (type == "camera")
-    message = read_camera(fields);
-  else if (type == "viewpoint")
-    message = read_viewpoint(fields);
-  else if (type == "tour")
-    message = read_tour(fields);
-  else if (type == "storyteller")
-    message = read_storyteller(fields);
-  else if (type == "lamp")
-    message = read_lamp(fields);
-  else if (type == "settings")
-    message = read_settings(fields);
-  else if (type == "ack")
-    message = read_ack(fields);
-  else if (type == "bye")
-    message = Bye{};
-  else
+  if (!read_one_of(type, fields, message))
     return WireError{"unknown_type", "unknown type " + short_quote(type)};
   if (error) return std::move(*error);
   return message;

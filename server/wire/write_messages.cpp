@@ -47,79 +47,77 @@ std::string write_error(const WireError& error) {
   return to_text({{"type", "error"}, {"code", error.code}, {"message", error.message}});
 }
 
-static json to_json(const Hello& hello) {
-  json out = {{"type", "hello"}, {"width", hello.width}, {"height", hello.height}};
-  if (!hello.exhibit.empty()) out["exhibit"] = hello.exhibit;
-  if (!hello.lang.empty()) out["lang"] = hello.lang;
-  if (!hello.role.empty()) out["role"] = hello.role;
-  if (!hello.kiosk.empty()) out["kiosk"] = hello.kiosk;
-  return out;
-}
+namespace {
 
-static json to_json(const Input& input) {
-  return {{"type", "input"},
-          {"seq", input.seq},
-          {"move", {input.move.x, input.move.y, input.move.z}},
-          {"look", {input.look.x, input.look.y}}};
-}
+// Writes the fields that a message lists.
+class MessageWriter {
+ public:
+  explicit MessageWriter(const char* type) { out = {{"type", type}}; }
+  json out;
 
-static json to_json(const CameraTo& camera) {
-  return {{"type", "camera"},
-          {"seq", camera.seq},
-          {"position", {camera.position.x, camera.position.y, camera.position.z}},
-          {"yaw", camera.yaw},
-          {"pitch", camera.pitch}};
-}
+  void text(const char* name, const std::string& value, const char*,
+            Need need = Need::optional) {
+    if (need == Need::required || !value.empty()) out[name] = value;
+  }
+  void word(const char* name, std::initializer_list<const char*>, const std::string& value,
+            const char* about, Need need = Need::optional) {
+    text(name, value, about, need);
+  }
+  template <class Choice>
+  void choice(const char* name, std::initializer_list<const char*> words, Choice value,
+              const char*, Need = Need::optional) {
+    out[name] = words.begin()[size_t(value)];
+  }
+  template <class Value>
+  void number(const char* name, double, double, const Value& value, const char*,
+              Need = Need::optional) {
+    put(name, value);
+  }
+  template <class Value>
+  void integer(const char* name, int, int, const Value& value, const char*,
+               Need = Need::optional) {
+    put(name, value);
+  }
+  void u32(const char* name, uint32_t value, const char*, Need = Need::optional) {
+    put(name, value);
+  }
+  template <class Value>
+  void boolean(const char* name, const Value& value, const char*, Need = Need::optional) {
+    put(name, value);
+  }
+  template <class Vector>
+  void vector(const char* name, double, const Vector& value, const char*,
+              Need = Need::optional) {
+    json numbers = json::array();
+    for (int i = 0; i < value.length(); i++) numbers.push_back(value[i]);
+    out[name] = std::move(numbers);
+  }
+  void speed(const char* name, double limit, const vec3& value, const char* about,
+             Need need = Need::optional) {
+    vector(name, limit, value, about, need);
+  }
 
-static json to_json(const ViewpointTo& viewpoint) {
-  return {{"type", "viewpoint"}, {"seq", viewpoint.seq}, {"name", viewpoint.name}};
-}
+ private:
+  template <class Value>
+  void put(const char* name, const Value& value) {
+    out[name] = value;
+  }
+  template <class Value>
+  void put(const char* name, const std::optional<Value>& value) {
+    if (value) out[name] = *value;
+  }
+};
 
-static json to_json(const Tour& tour) {
-  const char* action = tour.action == TourAction::play    ? "play"
-                       : tour.action == TourAction::pause ? "pause"
-                                                          : "stop";
-  json out = {{"type", "tour"}, {"action", action}};
-  if (!tour.name.empty()) out["name"] = tour.name;
-  return out;
-}
-
-static json to_json(const StorytellerOrder& order) {
-  json out = {{"type", "storyteller"}};
-  if (order.visible) out["visible"] = *order.visible;
-  if (order.humanlike) out["humanlike"] = *order.humanlike;
-  if (!order.teller.empty()) out["teller"] = order.teller;
-  if (!order.story.empty()) out["story"] = order.story;
-  if (!order.action.empty()) out["action"] = order.action;
-  return out;
-}
-
-static json to_json(const LampOrder& order) {
-  return {{"type", "lamp"}, {"name", order.name}, {"on", order.on}};
-}
-
-static json to_json(const Settings& settings) {
-  json out = {{"type", "settings"}};
-  if (settings.fps) out["fps"] = *settings.fps;
-  if (settings.attention) out["attention"] = *settings.attention;
-  if (settings.sound) out["sound"] = *settings.sound;
-  if (settings.quality) out["quality"] = *settings.quality;
-  if (settings.max_quality) out["max_quality"] = *settings.max_quality;
-  if (settings.width) out["width"] = *settings.width;
-  if (settings.height) out["height"] = *settings.height;
-  if (!settings.lang.empty()) out["lang"] = settings.lang;
-  return out;
-}
-
-static json to_json(const Ack& ack) {
-  return {
-      {"type", "ack"}, {"frame", ack.frame}, {"decoded_ms", ack.decoded_ms}, {"shown", ack.shown}};
-}
-
-static json to_json(const Bye&) { return {{"type", "bye"}}; }
+}  // namespace
 
 std::string write_message(const BrowserMessage& message) {
-  return std::visit([](const auto& m) { return to_text(to_json(m)); }, message);
+  return std::visit(
+      [](const auto& one) {
+        MessageWriter writer(one.type);
+        one.list(one, writer);
+        return to_text(writer.out);
+      },
+      message);
 }
 
 }  // namespace wellspring

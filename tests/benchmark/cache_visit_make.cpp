@@ -4,7 +4,7 @@
 
 #include "cache_visit_trace.h"
 #include "show/visit/tour.h"
-#include "show/state/visitor.h"
+#include "show/visit/place.h"
 #include "show/visit/walk.h"
 
 namespace wellspring {
@@ -53,13 +53,13 @@ VisitTrace record(const char* name, const char* about, double seconds, Viewpoint
 template <class Intend>
 VisitTrace walk_through(const char* name, const char* about, const Exhibit& exhibit,
                         const World& world, double seconds, const Viewpoint& from, Intend intend) {
-  Visitor visitor;
+  VisitorPlace visitor;
+  Voice narrator;
   visitor.view = from;
   return record(name, about, seconds, from, [&](double time, Viewpoint& view) {
-    TourStep tour;
     intend(time, visitor);
-    move_visitor(visitor, world, exhibit, TourRoads{}, std::nullopt, time == 0 ? 0 : 1.0f / rate,
-                 tour);
+    move_visitor(visitor, narrator, world, exhibit, TourRoads{}, std::nullopt,
+                 time == 0 ? 0 : 1.0f / rate);
     view = visitor.view;
   });
 }
@@ -67,7 +67,7 @@ VisitTrace walk_through(const char* name, const char* about, const Exhibit& exhi
 VisitTrace make_stroll(const Exhibit& castle, const World& world) {
   Viewpoint from = viewpoint(castle, "hall");
   return walk_through("stroll", "walks down the hall at 1.4 m/s and looks about", castle, world, 6,
-                      from, [&](double time, Visitor& visitor) {
+                      from, [&](double time, VisitorPlace& visitor) {
                         visitor.move = {0, 0, castle.walk ? castle.walk->speed : 1.4f};
                         visitor.view.yaw = from.yaw + 0.35f * float(std::sin(1.3 * time));
                         visitor.view.pitch = from.pitch + 0.06f * float(std::sin(0.9 * time));
@@ -78,7 +78,7 @@ VisitTrace make_pauses(const Exhibit& castle, const World& world) {
   Viewpoint from = viewpoint(castle, "hall");
   return walk_through(
       "pauses", "walks down the hall, stops twice for a second and a half to look at something",
-      castle, world, 5.5, from, [&](double time, Visitor& visitor) {
+      castle, world, 5.5, from, [&](double time, VisitorPlace& visitor) {
         bool walks = std::fmod(time, 2.75) < 1.25;
         visitor.move = {0, 0, walks ? 1.4f : 0.0f};
         visitor.view.yaw = from.yaw + 0.3f * float(std::sin(std::min(time, 1.4)) +
@@ -101,7 +101,7 @@ VisitTrace make_approach(const Exhibit& castle, const World& world) {
   from.position = {3.4, from.position.y, -0.3};
   look_at(from, crown);
   return walk_through("approach", "walks up to the crown in its case and leans closer", castle,
-                      world, 5.5, from, [&](double time, Visitor& visitor) {
+                      world, 5.5, from, [&](double time, VisitorPlace& visitor) {
                         double away = glm::length(crown - visitor.view.position);
                         float speed = float(std::clamp(1.6 * (away - 0.95), 0.0, 1.2));
                         visitor.move = {0, 0, speed};
@@ -115,7 +115,7 @@ VisitTrace make_door(Exhibit castle, const World& world) {
   from.position.x = -3.6;
   if (castle.walk) castle.walk->bounds.reset();  // beyond the rope the courtyard goes on
   return walk_through("door", "walks from the hall through the gate into the sunlit courtyard",
-                      castle, world, 6, from, [&](double time, Visitor& visitor) {
+                      castle, world, 6, from, [&](double time, VisitorPlace& visitor) {
                         visitor.move = {0, 0, 1.4f};
                         visitor.view.yaw = from.yaw + 0.5f * float(ease((time - 4) / 1.5));
                       });

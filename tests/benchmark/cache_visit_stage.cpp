@@ -5,6 +5,7 @@
 #include "light/technique/technique.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/answer/events.h"
+#include "show/state/make_show.h"
 
 namespace wellspring {
 namespace {

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "show/answer/events.h"
+#include "show/state/lamps.h"
+#include "show/state/make_show.h"
 
 namespace wellspring {
 
@@ -15,7 +17,7 @@ using Answer = std::optional<WireError>;
 constexpr float steepest = 1.45f;  // radians a visitor may look up or down
 constexpr double farthest = 1e7;   // metres from the scene's origin a camera may be put
 
-void set_size(Visitor& visitor, const ShowSettings& settings, int width, int height) {
+void set_size(PictureWishes& wants, const ShowSettings& settings, int width, int height) {
   width = std::clamp(width, 16, 4096);
   height = std::clamp(height, 16, 4096);
   double pixels = double(width) * height;
@@ -25,8 +27,8 @@ void set_size(Visitor& visitor, const ShowSettings& settings, int width, int hei
     height = int(height * scale);
   }
   // Multiples of 8: whole JPEG blocks, and no resize for a page that is a few pixels off.
-  visitor.width = std::max(16, width / 8 * 8);
-  visitor.height = std::max(16, height / 8 * 8);
+  wants.width = std::max(16, width / 8 * 8);
+  wants.height = std::max(16, height / 8 * 8);
 }
 
 int find_tour(const Exhibit& exhibit, const std::string& id) {
@@ -48,9 +50,9 @@ Answer obey_one(Show& show, Visitor& visitor, const Hello& hello) {
   visitor.lang = hello.lang.empty() ? show.exhibit.languages.front() : hello.lang;
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = hello.kiosk;
-  set_size(visitor, show.settings, hello.width, hello.height);
+  set_size(visitor.wants, show.settings, hello.width, hello.height);
   const StorytellerPlace* teller = teller_of(show);
-  go_to_viewpoint(visitor, show.exhibit,
+  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
                   visitor.kiosk && teller ? teller->kiosk_viewpoint : show.exhibit.start);
   visitor.welcomed = true;
   show.totals.visits++;
@@ -61,37 +63,39 @@ Answer obey_one(Show& show, Visitor& visitor, const Hello& hello) {
 }
 
 Answer obey_one(Show&, Visitor& visitor, const Input& input) {
-  visitor.seq = input.seq;
-  visitor.move = input.move;
-  if (input.look != vec2(0) && visitor.tour.state == TourRide::State::playing) {
-    look_round(visitor.tour, input.look);
+  VisitorPlace& place = visitor.place;
+  place.seq = input.seq;
+  place.move = input.move;
+  if (input.look != vec2(0) && place.tour.state == TourRide::State::playing) {
+    look_round(place.tour, input.look);
   } else if (input.look != vec2(0)) {
-    visitor.view.yaw = std::remainder(visitor.view.yaw + input.look.x, 2 * pi);
-    visitor.view.pitch = std::clamp(visitor.view.pitch + input.look.y, -steepest, steepest);
-    visitor.viewpoint = -1;
-    visitor.tour.pace = 0;  // a paused ride does not come to rest by itself any more
+    place.view.yaw = std::remainder(place.view.yaw + input.look.x, 2 * pi);
+    place.view.pitch = std::clamp(place.view.pitch + input.look.y, -steepest, steepest);
+    place.viewpoint = -1;
+    place.tour.pace = 0;  // a paused ride does not come to rest by itself any more
   }
   return {};
 }
 
 Answer obey_one(Show& show, Visitor& visitor, const CameraTo& camera) {
+  VisitorPlace& place = visitor.place;
   if (glm::length(camera.position - show.exhibit.scene.origin) > farthest)
     return WireError{"bad_field", "camera.position: is farther than 1e7 m from the exhibit"};
-  visitor.seq = camera.seq;
-  visitor.view.position = camera.position;
-  visitor.view.yaw = std::remainder(camera.yaw, 2 * pi);
-  visitor.view.pitch = std::clamp(camera.pitch, -steepest, steepest);
-  visitor.move = visitor.velocity = vec3(0);
-  visitor.viewpoint = -1;
-  stop_tour(visitor.tour, visitor.narration.voice);
+  place.seq = camera.seq;
+  place.view.position = camera.position;
+  place.view.yaw = std::remainder(camera.yaw, 2 * pi);
+  place.view.pitch = std::clamp(camera.pitch, -steepest, steepest);
+  place.move = place.velocity = vec3(0);
+  place.viewpoint = -1;
+  stop_tour(place.tour, visitor.hearing.narration.voice);
   return {};
 }
 
 Answer obey_one(Show& show, Visitor& visitor, const ViewpointTo& to) {
   int index = find_viewpoint(show.exhibit, to.name);
   if (index < 0) return WireError{"unknown_viewpoint", "there is no viewpoint '" + to.name + "'"};
-  visitor.seq = to.seq;
-  go_to_viewpoint(visitor, show.exhibit, index);
+  visitor.place.seq = to.seq;
+  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit, index);
   return {};
 }
 
@@ -104,28 +108,29 @@ void fall_silent(Show& show) {
   bool shown = show.voice.started;
   hush(show.voice);
   for (Visitor& visitor : show.visitors) {
-    const Voice& own = visitor.narration.voice;
+    const Voice& own = visitor.hearing.narration.voice;
     if (shown && visitor.welcomed && (own.queue.empty() || own.paused)) clear_subtitle(visitor);
   }
 }
 
 Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
+  VisitorPlace& place = visitor.place;
+  Voice& narrator = visitor.hearing.narration.voice;
   switch (order.action) {
     case TourAction::play: {
-      bool resume = order.name.empty() && visitor.tour.state == TourRide::State::paused &&
-                    visitor.tour.tour >= 0;
-      int tour = resume ? visitor.tour.tour : find_tour(show.exhibit, order.name);
+      bool resume = order.name.empty() && place.tour.state == TourRide::State::paused &&
+                    place.tour.tour >= 0;
+      int tour = resume ? place.tour.tour : find_tour(show.exhibit, order.name);
       if (tour < 0) return WireError{"unknown_tour", "there is no tour '" + order.name + "'"};
-      visitor.move = visitor.velocity = vec3(0);
+      place.move = place.velocity = vec3(0);
       if (show.voice.asked_by == visitor.link->id) fall_silent(show);  // one voice at a time
-      start_tour(visitor.tour, visitor.narration.voice, tour, show.exhibit, show.roads,
-                 visitor.view);
+      start_tour(place.tour, narrator, tour, show.exhibit, show.roads, place.view);
       break;
     }
-    case TourAction::pause: pause_tour(visitor.tour, visitor.narration.voice); break;
+    case TourAction::pause: pause_tour(place.tour, narrator); break;
     case TourAction::stop:
-      if (visitor.narration.voice.started) clear_subtitle(visitor);
-      stop_tour(visitor.tour, visitor.narration.voice);
+      if (narrator.started) clear_subtitle(visitor);
+      stop_tour(place.tour, narrator);
       break;
   }
   visitor.state_sent_at = -1e9;
@@ -138,8 +143,9 @@ void call_teller(Show& show, size_t teller) {
   fall_silent(show);
   change_teller(show, teller);
   for (Visitor& visitor : show.visitors)
-    if (visitor.welcomed && visitor.kiosk && visitor.tour.state == TourRide::State::none)
-      go_to_viewpoint(visitor, show.exhibit, teller_of(show)->kiosk_viewpoint);
+    if (visitor.welcomed && visitor.kiosk && visitor.place.tour.state == TourRide::State::none)
+      go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
+                      teller_of(show)->kiosk_viewpoint);
 }
 
 const Visitor* who_asked(const Show& show) {
@@ -173,7 +179,7 @@ Answer obey_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
     if (!story) return WireError{"unknown_story", "there is no story '" + order.story + "'"};
     if (story->teller >= 0) call_teller(show, size_t(story->teller));
     tell(show.voice, *story);
-    pause_tour(visitor.tour, visitor.narration.voice);
+    pause_tour(visitor.place.tour, visitor.hearing.narration.voice);
     show.voice.asked_by = visitor.link->id;
     show.totals.stories++;
   }
@@ -195,15 +201,16 @@ Answer obey_one(Show& show, Visitor&, const LampOrder& order) {
 }
 
 Answer obey_one(Show& show, Visitor& visitor, const Settings& settings) {
-  if (settings.fps) visitor.fps = std::clamp(*settings.fps, 0.0f, 120.0f);
-  if (settings.sound) visitor.sound = *settings.sound;
-  if (settings.quality) visitor.best_quality = *settings.quality;
-  if (settings.max_quality) visitor.still_quality = *settings.max_quality;
-  visitor.best_quality = std::min(visitor.best_quality, visitor.still_quality);
-  if (settings.attention) visitor.attention = *settings.attention;
+  PictureWishes& wants = visitor.wants;
+  if (settings.fps) wants.fps = std::clamp(*settings.fps, 0.0f, 120.0f);
+  if (settings.sound) visitor.hearing.wanted = *settings.sound;
+  if (settings.quality) wants.best_quality = *settings.quality;
+  if (settings.max_quality) wants.still_quality = *settings.max_quality;
+  wants.best_quality = std::min(wants.best_quality, wants.still_quality);
+  if (settings.attention) wants.attention = *settings.attention;
   if (settings.width || settings.height)
-    set_size(visitor, show.settings, settings.width.value_or(visitor.width),
-             settings.height.value_or(visitor.height));
+    set_size(visitor.wants, show.settings, settings.width.value_or(wants.width),
+             settings.height.value_or(wants.height));
   if (!settings.lang.empty() && settings.lang != visitor.lang) {
     visitor.lang = settings.lang;
     visitor.link->send_text(welcome_news(show, visitor));
@@ -212,7 +219,7 @@ Answer obey_one(Show& show, Visitor& visitor, const Settings& settings) {
 }
 
 Answer obey_one(Show& show, Visitor& visitor, const Ack& ack) {
-  note_ack(visitor.flow, ack.frame, ack.decoded_ms, show.time);
+  note_ack(visitor.shown.flow, ack.frame, ack.decoded_ms, show.time);
   return {};
 }
 

@@ -2,11 +2,12 @@
 #include <nlohmann/json.hpp>
 
 #include "show/answer/answer.h"
+#include "wire/json.h"
 
 namespace wellspring {
 
-// The machine-readable twin of the protocol's description in ARCHITECTURE.md. A test sends every
-// message named here through the reader.
+// The machine-readable twin of the protocol's description in ARCHITECTURE.md. What a browser may
+// say comes from the messages' own lists of fields (wire/messages.h).
 std::string describe_api() {
   static const char* text = R"json({
   "name": "Wellspring", "version": "v1",
@@ -25,24 +26,6 @@ std::string describe_api() {
      "answers": "one finished picture; its JPEG comment says whether it was denoised"},
     {"method": "WS", "path": "/api/v1/visit", "subprotocol": "wellspring.v1", "answers": "a visit"},
     {"method": "WS", "path": "/api/v1/eye", "answers": "a kiosk's observations in"}],
-  "browser_to_server": {
-    "hello": {"exhibit": "id, empty for the one shown", "width": "16..4096", "height": "16..4096",
-              "lang": "BCP 47", "role": "visitor or kiosk", "kiosk": "name, optional"},
-    "input": {"seq": "u32, grows by one", "move": "[right, up, forward] m/s, kept until the next input",
-              "look": "[yaw, pitch] radians to turn by now; yaw positive turns left, pitch positive up"},
-    "camera": {"seq": "u32", "position": "[x, y, z] m", "yaw": "radians, 0 looks down -Z", "pitch": "radians"},
-    "viewpoint": {"seq": "u32", "name": "a viewpoint's name"},
-    "tour": {"action": "play, pause or stop", "name": "a tour's id, optional"},
-    "storyteller": {"visible": "boolean", "humanlike": "boolean",
-                    "teller": "a storyteller's id: who shall be there", "story": "a story's id",
-                    "action": "play, pause, stop, restart or skip"},
-    "lamp": {"name": "a lamp's name", "on": "boolean: for everybody who is there"},
-    "settings": {"fps": "pictures a second, 0 for the server's choice", "attention": "boolean",
-                 "sound": "boolean: whether speech is to be sent; at first it is",
-                 "quality": "JPEG quality in motion", "max_quality": "JPEG quality at rest",
-                 "width": "16..4096", "height": "16..4096", "lang": "BCP 47"},
-    "ack": {"frame": "u32 frame number", "decoded_ms": "milliseconds", "shown": "boolean"},
-    "bye": {}},
   "server_to_browser": {
     "welcome": {"protocol": "wellspring.v1", "session": "number", "exhibit": "id", "title": "text",
                 "languages": "tags", "width": "px", "height": "px", "walk_speed": "m/s",
@@ -87,7 +70,11 @@ std::string describe_api() {
     "observation": {"time": "seconds", "presence": "boolean", "state": "absent, motion or person",
       "people": "[{id, position [x, y, z] m from the screen's centre, rotation [yaw, pitch, roll], confidence, expression?, gesture?}]"}}
 })json";
-  static const std::string body = nlohmann::json::parse(text).dump();
+  static const std::string body = [] {
+    nlohmann::json api = nlohmann::json::parse(text);
+    api["browser_to_server"] = describe_browser_messages();
+    return api.dump();
+  }();
   return body;
 }
 

@@ -38,8 +38,8 @@ std::string welcome_news(const Show& show, const Visitor& visitor) {
                {"description", text(exhibit.description)},
                {"lang", visitor.lang},
                {"languages", exhibit.languages},
-               {"width", visitor.width},
-               {"height", visitor.height},
+               {"width", visitor.wants.width},
+               {"height", visitor.wants.height},
                {"walk_speed", exhibit.walk ? exhibit.walk->speed : 2.0f},
                {"viewpoints", json::array()},
                {"tours", json::array()},
@@ -80,27 +80,28 @@ std::string welcome_news(const Show& show, const Visitor& visitor) {
 }
 
 std::string state_news(const Show& show, const Visitor& visitor) {
+  const VisitorPlace& place = visitor.place;
   const Exhibit& exhibit = show.exhibit;
   json news = {{"type", "state"},
-               {"seq", visitor.seq},
-               {"position", triple(visitor.view.position)},
-               {"yaw", visitor.view.yaw},
-               {"pitch", visitor.view.pitch},
-               {"fov", visitor.view.fov},
-               {"fps", std::round(visitor.measured_fps * 10) / 10},
-               {"converged", std::round(visitor.stats.converged * 1000) / 1000},
+               {"seq", place.seq},
+               {"position", triple(place.view.position)},
+               {"yaw", place.view.yaw},
+               {"pitch", place.view.pitch},
+               {"fov", place.view.fov},
+               {"fps", std::round(visitor.shown.measured_fps * 10) / 10},
+               {"converged", std::round(visitor.picture.stats.converged * 1000) / 1000},
                {"viewpoint", nullptr},
                {"tour", nullptr}};
   if (!exhibit.lamps.empty()) news["lamps"] = json::object();
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     news["lamps"][exhibit.lamps[i].id] = bool(show.switches.wanted[i]);
-  if (visitor.viewpoint >= 0)
-    news["viewpoint"] = exhibit.viewpoints[size_t(visitor.viewpoint)].view.name;
-  if (visitor.tour.state != TourRide::State::none && visitor.tour.tour >= 0)
-    news["tour"] = {{"id", exhibit.tours[size_t(visitor.tour.tour)].id},
-                    {"state", tour_word(visitor.tour.state)},
-                    {"stop", visitor.tour.stop},
-                    {"stops", exhibit.tours[size_t(visitor.tour.tour)].stops.size()}};
+  if (place.viewpoint >= 0)
+    news["viewpoint"] = exhibit.viewpoints[size_t(place.viewpoint)].view.name;
+  if (place.tour.state != TourRide::State::none && place.tour.tour >= 0)
+    news["tour"] = {{"id", exhibit.tours[size_t(place.tour.tour)].id},
+                    {"state", tour_word(place.tour.state)},
+                    {"stop", place.tour.stop},
+                    {"stops", exhibit.tours[size_t(place.tour.tour)].stops.size()}};
   return news.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

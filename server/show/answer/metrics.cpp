@@ -16,15 +16,34 @@ void metric(std::string& out, const char* name, const char* type, const char* he
                      name, help, type, value);
 }
 
+// As the value of a label: quotes, or a backslash, would end it.
+std::string label(std::string text) {
+  std::replace_if(text.begin(), text.end(),
+                  [](char c) { return c == '"' || c == '\\' || c == '\n'; }, '\'');
+  return text;
+}
+
+// Which of its states something is in: 1 for that one, 0 for the others.
+template <class State>
+void states(std::string& out, const char* name, const char* help,
+            std::initializer_list<State> all, State now) {
+  out += fmt::format("# HELP wellspring_{0} {1}\n# TYPE wellspring_{0} gauge\n", name, help);
+  for (State state : all)
+    out += fmt::format("wellspring_{}{{state=\"{}\"}} {}\n", name, to_string(state),
+                       int(state == now));
+}
+
 template <class Value>
 void per_visitor(std::string& out, const ShowReport& report, const char* name, const char* help,
                  const Value& value) {
   if (report.visitors.empty()) return;
   out += fmt::format("# HELP wellspring_visitor_{0} {1}\n# TYPE wellspring_visitor_{0} gauge\n",
                      name, help);
-  for (const VisitorReport& one : report.visitors)
-    out += fmt::format("wellspring_visitor_{}{{visitor=\"{}\",role=\"{}\"}} {}\n", name, one.id,
-                       one.kiosk ? "kiosk" : "visitor", value(one));
+  for (const VisitorReport& one : report.visitors) {
+    std::string kiosk = one.name.empty() ? "" : fmt::format(",kiosk=\"{}\"", label(one.name));
+    out += fmt::format("wellspring_visitor_{}{{visitor=\"{}\",role=\"{}\"{}}} {}\n", name, one.id,
+                       one.kiosk ? "kiosk" : "visitor", kiosk, value(one));
+  }
 }
 
 double resident_bytes() {
@@ -46,10 +65,7 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "samples_per_second", "gauge", "Samples a second while tracing, all cores",
          report.samples_per_second);
   metric(out, "samples_total", "counter", "Samples traced", double(totals.samples));
-  // The problem is a sentence of ours, or a file's path: quotes would end the label.
-  std::string problem = report.denoiser_problem;
-  std::replace_if(problem.begin(), problem.end(),
-                  [](char c) { return c == '"' || c == '\\' || c == '\n'; }, '\'');
+  const std::string problem = label(report.denoiser_problem);
   out += fmt::format(
       "# HELP wellspring_denoiser 1: pictures at rest are reconstructed by a network; 0: why not\n"
       "# TYPE wellspring_denoiser gauge\nwellspring_denoiser{{problem=\"{}\"}} {}\n",
@@ -87,6 +103,12 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "kiosk_cameras", "gauge", "Kiosk cameras connected", report.kiosks);
   metric(out, "kiosk_observations_total", "counter", "Observations received",
          double(totals.observations));
+  states(out, "audience", "What the kiosks' cameras see",
+         {Presence::absent, Presence::motion, Presence::person}, report.audience);
+  states(out, "storyteller_mood", "What the storyteller is about",
+         {Mood::idle, Mood::noticing, Mood::greeting, Mood::attending, Mood::telling,
+          Mood::farewell},
+         report.mood);
   metric(out, "greetings_total", "counter", "Greetings said", double(totals.greetings));
   metric(out, "farewells_total", "counter", "Farewells said", double(totals.farewells));
   metric(out, "lamps_switched_total", "counter", "Lamps switched on or off",
@@ -131,6 +153,8 @@ std::string write_metrics(const ShowReport& report) {
               [](auto& v) { return v.tonemap_ms; });
   per_visitor(out, report, "encode_milliseconds", "JPEG encoding",
               [](auto& v) { return v.encode_ms; });
+  per_visitor(out, report, "decode_milliseconds", "Decoding a picture, as the browser measures it",
+              [](auto& v) { return v.decode_ms; });
   per_visitor(out, report, "samples_per_picture", "Samples traced for a picture",
               [](auto& v) { return v.budget; });
   per_visitor(out, report, "drawing_milliseconds",

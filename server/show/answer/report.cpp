@@ -15,8 +15,8 @@ ShowReport make_report(const Show& show) {
   report.samples_per_second = show.samples_per_second;
   report.denoiser_problem = show.pass.problem;
   report.kiosks = int(show.eyes.size());
-  report.audience = to_string(show.audience.state);
-  report.mood = to_string(show.mind.mood);
+  report.audience = show.audience.state;
+  report.mood = show.mind.mood;
   report.totals = show.totals;
   if (show.speech.counts) {
     Speaker::Counts counts = show.speech.counts();
@@ -27,21 +27,22 @@ ShowReport make_report(const Show& show) {
     report.voice_failed = counts.failed;
   }
   for (const Visitor& visitor : show.visitors) {
-    const CacheStats& stats = visitor.stats;
+    const CacheStats& stats = visitor.picture.stats;
     VisitorReport one;
     one.id = visitor.link->id;
-    one.width = visitor.width;
-    one.height = visitor.height;
-    one.budget = visitor.order.samples;
+    one.width = visitor.wants.width;
+    one.height = visitor.wants.height;
+    one.budget = visitor.picture.order.samples;
     one.drawing_ms = visitor.times.drawing;
-    one.quality = suggest_quality(visitor.flow, visitor.best_quality);
-    one.fps = visitor.measured_fps;
-    one.round_trip_ms = 1000 * visitor.flow.round_trip;
+    one.quality = suggest_quality(visitor.shown.flow, visitor.wants.best_quality);
+    one.fps = visitor.shown.measured_fps;
+    one.round_trip_ms = 1000 * visitor.shown.flow.round_trip;
     one.display_ms = visitor.times.display;
     one.trace_ms = visitor.times.trace;
     one.tonemap_ms = visitor.times.tonemap;
     one.encode_ms = visitor.times.encode;
-    one.drawn_fps = visitor.drawn_fps;
+    one.decode_ms = visitor.shown.flow.decode_ms;
+    one.drawn_fps = visitor.picture.drawn_fps;
     one.warp_ms = visitor.times.warp;
     one.moving_ms = visitor.times.moving;
     one.whole_ms = visitor.times.whole;
@@ -49,10 +50,11 @@ ShowReport make_report(const Show& show) {
     one.empty = stats.empty;
     one.converged = stats.converged;
     one.mean_age = stats.mean_age;
-    one.cache_bytes = visitor.cache_bytes;
-    one.memory_bytes = visitor.memory_bytes;
+    one.cache_bytes = visitor.picture.cache_bytes;
+    one.memory_bytes = visitor.picture.memory_bytes;
     one.dropped = visitor.link->pictures_dropped();
     one.kiosk = visitor.kiosk;
+    one.name = visitor.name;
     report.visitors.push_back(one);
   }
   return report;

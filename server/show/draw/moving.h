@@ -9,17 +9,8 @@ namespace wellspring {
 // What is laid over a picture is kept of each visitor: it may be a third of it.
 bool may_be_laid_over(const PictureWindow& window, const View& view);
 
-// The share of the time that goes to it, of all visitors.
-double moving_share(const Show& show);
-
-// It is due for this visitor, and the browser could take a picture.
-bool wants_moving(const Show& show, const Visitor& visitor);
-// Until it will be due for anybody, at most a second.
-double seconds_to_moving(const Show& show);
-// Light on what moves (light/known/skin_light.h), that all visitors share: it is time to find it anew,
-// as somebody may see it. By the tick, while the easel is idle, then on the easel, as the world is
-// then, then by the tick.
-bool wants_skin(const Show& show);
+// Light on what moves (light/known/skin_light.h), that all visitors share. By the tick, while the
+// easel is idle, then on the easel, as the world is then, then by the tick.
 void order_skin(Show& show);
 void light_skin(Show& show);
 void finish_skin(Show& show);
@@ -28,8 +19,8 @@ void draw_moving(Show& show, Visitor& visitor);
 void finish_moving(Show& show, Visitor& visitor);
 
 // A picture was drawn: what moves is in it, or is to be laid over it.
-void finish_backdrop(Visitor& visitor);
+void finish_backdrop(VisitorPicture& picture);
 // For warps, the keyframe shows what was last laid over it from now on.
-void merge_moving(Visitor& visitor);
+void merge_moving(VisitorPicture& picture);
 
 }  // namespace wellspring

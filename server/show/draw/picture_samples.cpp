@@ -6,7 +6,8 @@
 #include "cache/trace_waiting.h"
 #include "picture/compose_drawn.h"
 #include "picture/still/plan_still.h"
-#include "show/draw/picture.h"
+#include "show/draw/sample_budget.h"
+#include "show/state/lamps.h"
 
 namespace wellspring {
 namespace {
@@ -16,16 +17,15 @@ constexpr float barely_covered = 0.1f;  // of the pixels by points
 constexpr size_t least_slice = 2048;  // samples
 // Seconds of tracing at a time, while it may be given up, and where what moves is due soon.
 constexpr double slice = 0.025, least_slice_seconds = 0.006;
-constexpr double aimed_share = 0.0625;  // of the samples at rest
 constexpr double spread_from = 0.8;    // samples a pixel
 constexpr float more_asked = 1.2f;  // than there is time for, by what was measured: none is idle
 
 // Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a
 // still camera's picture, waits for its own.
-bool may_be_late(const Show& show, const Visitor& visitor, const Technique& technique,
+bool may_be_late(const Show& show, const RenderCache& cache, const Technique& technique,
                  int samples) {
   return show.settings.late_samples && !technique.begin_pass &&
-         samples <= BrokerSettings{}.most_waiting && visitor.cache.covered() > barely_covered;
+         samples <= BrokerSettings{}.most_waiting && cache.covered() > barely_covered;
 }
 
 TransportSettings transport_of(const Show& show, const PictureOrder& order) {
@@ -36,10 +36,10 @@ TransportSettings transport_of(const Show& show, const PictureOrder& order) {
 
 // Where pictures are reconstructed, the first samples serve the drawn picture that it begins with;
 // later ones are spread evenly, but for some, aimed at points, to find what changes.
-bool spreads_samples(const Show& show, const PictureOrder& order, const Technique& technique,
+bool spreads_samples(const PictureOrder& order, const Technique& technique,
                      const RestState& rest) {
-  return may_reconstruct(show, order) && !technique.begin_pass &&
-         rest.samples >= spread_from && !has_all_samples(rest);
+  return order.learns && !technique.begin_pass && rest.samples >= spread_from &&
+         !has_all_samples(rest);
 }
 
 // So many are traced at a time.
@@ -50,49 +50,49 @@ size_t slice_of_samples(const Show& show) {
 
 }  // namespace
 
-int samples_to_watch(int samples) { return int(aimed_share * samples); }
-
 void plan_samples(Show& show, const PictureOrder& order, const Technique& technique,
                   const View& lit, DrawingWork& work, Visitor& visitor) {
-  RenderCache& cache = visitor.cache;
+  VisitorPicture& picture = visitor.picture;
+  RenderCache& cache = picture.cache;
   follow_lamps(show, visitor);
   View ahead = order.coarse ? light_view(order.ahead) : order.ahead;
   cache.set_attention(order.attention);
   cache.set_reference(order.settled);
-  visitor.compositor.set_reconstructed(may_reconstruct(show, order));
+  picture.compositor.set_reconstructed(order.learns);
   // What is around has light of half its size.
   cache.resize(order.expected.width, order.expected.height);
   cache.move_points(*show.world);
-  land(visitor.broker.collect(), *show.world, show.pose_number, cache);
+  land(picture.broker.collect(), *show.world, show.pose_number, cache);
   cache.project(lit);
   cache.attend();
   int most_asked = int(more_asked * float(order.samples));
-  bool late = !order.still && may_be_late(show, visitor, technique, most_asked);
+  bool late = !order.still && may_be_late(show, cache, technique, most_asked);
   int asked = late ? most_asked : order.samples;
   work.ahead.clear();
   if (ahead != lit && !technique.begin_pass)
     cache.predict(ahead, int(predicted_share * float(asked)), order.seed, work.ahead);
   const int planned = asked - int(work.ahead.size());
-  const bool spread = spreads_samples(show, order, technique, visitor.rest);
+  const bool spread = spreads_samples(order, technique, picture.rest);
   const int aimed = spread ? samples_to_watch(planned) : planned;
   cache.plan(lit, aimed, order.seed, work.requests);
   if (spread) {
-    plan_still(lit, visitor.rest.asked, planned - aimed, visitor.link->id, work.requests);
-    visitor.rest.asked += uint64_t(planned - aimed);
+    plan_still(lit, picture.rest.asked, planned - aimed, visitor.link->id, work.requests);
+    picture.rest.asked += uint64_t(planned - aimed);
   }
   work.requests.insert(work.requests.end(), work.ahead.begin(), work.ahead.end());
-  visitor.costs.late = late;
+  picture.costs.late = late;
 }
 
 bool begin_samples(Show& show, const PictureOrder& order, const Technique& technique,
                    const View& lit, DrawingWork& work, Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
   work.samples.clear();
   work.traced = 0;
-  if (visitor.costs.late) {
-    visitor.broker.ask(lit, {&technique, transport_of(show, order)}, work.requests);
+  if (picture.costs.late) {
+    picture.broker.ask(lit, {&technique, transport_of(show, order)}, work.requests);
     return false;
   }
-  visitor.broker.forget();  // what was asked for on the way
+  picture.broker.forget();  // what was asked for on the way
   work.pose = show.pose_number;
   if (technique.begin_pass)
     technique.begin_pass(*show.world, transport_of(show, order), lit, visitor.link->id,
@@ -114,19 +114,19 @@ bool trace_slice(Show& show, const PictureOrder& order, const Technique& techniq
 
 void remember_traced(const Show& show, const PictureOrder& order, const View& lit,
                      DrawingWork& work, Visitor& visitor) {
-  if (visitor.costs.late) return;
+  VisitorPicture& picture = visitor.picture;
+  if (picture.costs.late) return;
   work.requests.resize(work.traced);
   work.samples.resize(work.traced);
   if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
-  visitor.cache.remember(lit, work.requests, work.samples);
-  visitor.costs.samples = work.samples.size();
+  picture.cache.remember(lit, work.requests, work.samples);
+  picture.costs.samples = work.samples.size();
   // A picture that is drawn, not reconstructed, has a use for them only when it is kept for long.
-  bool learns = may_reconstruct(show, order);
-  bool kept_long = !order.passing && visitor.cache.is_still();
-  if (!order.still || order.coarse || !(learns || kept_long)) return;
-  visitor.compositor.follow_changes(visitor.cache);
-  visitor.compositor.add_samples(lit, work.requests, work.samples);
-  visitor.rest.samples = mean_count(visitor.compositor.samples());
+  bool kept_long = !order.passing && picture.cache.is_still();
+  if (!order.still || order.coarse || !(order.learns || kept_long)) return;
+  picture.compositor.follow_changes(picture.cache);
+  picture.compositor.add_samples(lit, work.requests, work.samples);
+  picture.rest.samples = mean_count(picture.compositor.samples());
 }
 
 }  // namespace wellspring

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples of one picture (show/draw/picture.h): planned, traced in slices, remembered. On the easel.
+// The samples of one picture (show/draw/picture.h): planned, traced in slices, remembered. On the
+// easel.
 #pragma once
 #include "show/state/show.h"
 
 namespace wellspring {
 
-// Of so many samples at rest, those that are to find changes of the light.
-int samples_to_watch(int samples);
 // The light that is missing for the picture, and for the next: fills work.requests. Says by
 // costs.late whether answers may come after it.
 void plan_samples(Show& show, const PictureOrder& order, const Technique& technique,

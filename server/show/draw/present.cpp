@@ -2,38 +2,32 @@
 #include "show/draw/present.h"
 
 #include <algorithm>
-#include <oneapi/tbb/info.h>
+#include <utility>
 
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "frame/jpeg.h"
-#include "show/state/in_view.h"
 #include "show/draw/moving.h"
-#include "show/draw/picture.h"
+#include "show/draw/pace.h"
+#include "show/state/in_view.h"
 #include "wire/packet.h"
 
 namespace wellspring {
 
 namespace {
 
-constexpr double still_rate = 25;      // pictures a second while only the storyteller moves
-constexpr double settling_rate = 7;    // while nothing moves: more time for samples
-constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr double on_time = 0.0005;     // seconds that a picture may come too early
-constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
 constexpr double fade_rate = 12;       // pictures a second from one picture at rest to the next
 constexpr float most_unknown =
     0.8f;  // of a warped picture: beyond, the one before is as near to the truth (cache.warp)
 constexpr int animated_gain = 5;  // JPEG quality above the moving one while the storyteller moves
 
-void smooth(float& value, float sample) { value += (sample - value) * 0.1f; }
-
 // On another thread: the tick goes on meanwhile, and waits before it touches the image again.
 // The image of one that stands comes anew from its keyframe, should there be another: it is not
 // kept.
 void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool full_chroma) {
-  Encoder* encoder = visitor.encoder.get();
+  Encoder* encoder = visitor.shown.encoder.get();
   encoder->task.run([encoder, link = visitor.link, header, full_chroma] {
     double began = seconds_now();
     auto packet = std::make_shared<Packet>(packet_header_bytes);
@@ -55,33 +49,33 @@ void note_lead(Show& show, uint64_t posed_us, uint64_t picture_us) {
 }
 
 void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool still) {
+  VisitorDelivery& shown = visitor.shown;
   PacketHeader header;
-  header.frame = ++visitor.frame_number;
+  header.frame = ++shown.frame_number;
   header.seq = seq;
   header.time_us = microseconds_now();
-  note_lead(show, visitor.order.time_us, header.time_us);
+  note_lead(show, visitor.picture.order.time_us, header.time_us);
   header.width = uint16_t(view.width);
   header.height = uint16_t(view.height);
-  int quality = suggest_quality(visitor.flow, visitor.best_quality);
+  int quality = suggest_quality(shown.flow, visitor.wants.best_quality);
   bool fine =
       still && !sees_figure(show, view);  // pictures that are looked at for long, few a second
-  if (still)
-    quality =
-        fine ? visitor.still_quality : std::min(visitor.still_quality, quality + animated_gain);
+  const int still_quality = visitor.wants.still_quality;
+  if (still) quality = fine ? still_quality : std::min(still_quality, quality + animated_gain);
   header.quality = uint8_t(quality);
   header.flags = uint8_t(packet_complete | (still ? packet_still : 0));
-  note_sent(visitor.flow, header.frame, show.time);
+  note_sent(shown.flow, header.frame, show.time);
   encode_and_publish(visitor, header, fine);
-  if (visitor.sent_at > 0 && show.time > visitor.sent_at)
-    smooth(visitor.measured_fps, float(1 / (show.time - visitor.sent_at)));
-  visitor.sent_at = show.time;
+  if (shown.sent_at > 0 && show.time > shown.sent_at)
+    smooth(shown.measured_fps, float(1 / (show.time - shown.sent_at)));
+  shown.sent_at = show.time;
   // Where ticks come a little late, pictures keep their rate all the same.
   double period = 1 / picture_rate(show, visitor);
-  visitor.pictured_at =
-      std::clamp(visitor.pictured_at + period, show.time - 0.5 * period, show.time);
-  visitor.shown_seq = seq;
-  visitor.shown_view = view;
-  visitor.unshown = false;
+  shown.pictured_at =
+      std::clamp(shown.pictured_at + period, show.time - 0.5 * period, show.time);
+  shown.seq = seq;
+  shown.view = view;
+  visitor.picture.unshown = false;
   show.totals.pictures++;
 }
 
@@ -90,8 +84,9 @@ bool is_later(uint32_t seq, uint32_t than) { return int32_t(seq - than) >= 0; }
 // The encoder's image becomes the newest keyframe seen from `view`.
 bool warp(Show& show, Visitor& visitor, const View& view) {
   double began = seconds_now();
-  float unknown = warp_picture(visitor.keyframe, visitor.around, view, most_unknown, show.warp,
-                               visitor.encoder->image);
+  const VisitorPicture& picture = visitor.picture;
+  float unknown = warp_picture(picture.keyframe, picture.around.keyframe, view, most_unknown,
+                               show.warp, visitor.shown.encoder->image);
   smooth(visitor.times.warp, float(1000 * (seconds_now() - began)));
   if (unknown > most_unknown) {
     show.totals.unwarpable++;
@@ -103,58 +98,42 @@ bool warp(Show& show, Visitor& visitor, const View& view) {
 
 }  // namespace
 
-double picture_rate(const Show& show, const Visitor& visitor) {
-  double rate = visitor.fps > 0 ? double(visitor.fps) : double(show.settings.fps);
-  if (stands(show, visitor)) {
-    rate = std::min(rate, sees_figure(show, visitor.last_view) ? still_rate
-                          : rests(show, visitor)               ? resting_rate
-                                                               : settling_rate);
-  } else if (show.settings.background && visitor.times.warp > 0) {
-    // A warp takes all cores, its JPEG one.
-    double milliseconds = double(visitor.times.warp) +
-                          double(visitor.times.encode) / oneapi::tbb::info::default_concurrency();
-    rate = std::min(rate, warping_share / (0.001 * milliseconds * std::max(count_moving(show), 1)));
-  }
-  return std::clamp(rate, 1.0, 120.0);
-}
-
-bool may_take(const Show& show, const Visitor& visitor) {
-  return !visitor.link->picture_pending() && may_send(visitor.flow, show.time);
-}
-
 void present(Show& show, Visitor& visitor) {
-  const PictureOrder& order = visitor.order;
-  if (order.leaps != visitor.leaps || visitor.drawn_at < 0 || !may_take(show, visitor)) return;
-  const View view = visitor.last_view;
+  VisitorPicture& picture = visitor.picture;
+  VisitorDelivery& shown = visitor.shown;
+  const PictureOrder& order = picture.order;
+  if (order.leaps != visitor.place.leaps || picture.drawn_at < 0) return;
+  if (!may_take(show, visitor)) return;
+  const View view = visitor.place.last_view;
   bool stood = order.still && order.view == view;
-  bool fades = !visitor.fade.from.rgb.empty() && show.time - visitor.sent_at >= 1 / fade_rate;
-  if (!visitor.unshown && !fades && (!order.keep || view == visitor.shown_view)) return;
-  if (!stood && show.time - visitor.pictured_at < 1 / picture_rate(show, visitor) - on_time) return;
+  bool fades = !picture.fade.from.rgb.empty() && show.time - shown.sent_at >= 1 / fade_rate;
+  if (!picture.unshown && !fades && (!order.keep || view == shown.view)) return;
+  if (!stood && show.time - shown.pictured_at < 1 / picture_rate(show, visitor) - on_time) return;
 
-  Encoder& encoder = *visitor.encoder;
+  Encoder& encoder = *shown.encoder;
   encoder.task.wait();
   // One packet is being sent when the next is made.
   if (encoder.bytes > 0) encoder.memory_bytes = bytes_of(encoder.image.rgb) + 2 * encoder.bytes;
-  if (visitor.frame_number > 0 && encoder.bytes > 0) {
+  if (shown.frame_number > 0 && encoder.bytes > 0) {
     show.totals.picture_bytes += std::exchange(encoder.bytes, 0);
     smooth(visitor.times.encode, encoder.milliseconds);
   }
-  const float newer = fade_share(visitor.fade, view, show.time);
-  if ((visitor.unshown || fades) && order.view == view) {  // drawn for this very view
-    if (order.keep) copy_colors(visitor.keyframe, {0, 0, view.width, view.height}, encoder.image);
-    else std::swap(encoder.image, visitor.picture);
-    if (newer < 1) mix_fade(visitor.fade, newer, encoder.image);
-    else visitor.fade = {};
-    if (!visitor.moving.empty()) lay_over(visitor.moving, encoder.image);
-    send(show, visitor, view, visitor.seq, order.still && newer == 1);
+  const float newer = fade_share(picture.fade, view, show.time);
+  if ((picture.unshown || fades) && order.view == view) {  // drawn for this very view
+    if (order.keep) copy_colors(picture.keyframe, {0, 0, view.width, view.height}, encoder.image);
+    else std::swap(encoder.image, picture.image);
+    if (newer < 1) mix_fade(picture.fade, newer, encoder.image);
+    else picture.fade = {};
+    if (!picture.moving.empty()) lay_over(picture.moving, encoder.image);
+    send(show, visitor, view, visitor.place.seq, order.still && newer == 1);
     return;
   }
-  visitor.fade = {};
+  picture.fade = {};
   if (show.easel.posed == &visitor) return;  // reads the keyframe, and has soon done so
-  merge_moving(visitor);
+  merge_moving(picture);
   if (warp(show, visitor, view)) {
-    send(show, visitor, view, visitor.seq, false);
-  } else if (visitor.unshown && is_later(order.seq, visitor.shown_seq) &&
+    send(show, visitor, view, visitor.place.seq, false);
+  } else if (picture.unshown && is_later(order.seq, shown.seq) &&
              warp(show, visitor, order.expected)) {
     send(show, visitor, order.expected, order.seq,
          false);  // so quick a turn: what can be shown of it

@@ -8,11 +8,6 @@
 
 namespace wellspring {
 
-// Pictures a second this visitor should get.
-double picture_rate(const Show& show, const Visitor& visitor);
-// The visitor's browser and socket can take one.
-bool may_take(const Show& show, const Visitor& visitor);
-
 // Sends a picture if one is due and there is something new to show: the place, the storyteller or
 // the light.
 void present(Show& show, Visitor& visitor);

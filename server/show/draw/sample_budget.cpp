@@ -11,6 +11,7 @@ constexpr double unmeasured_light = 0.4;  // of the display's time, where light 
 constexpr double least_light = 0.25;      // of the time goes to light, whatever is drawn
 constexpr double least_samples = 1000;    // a picture, however slow the machine
 constexpr double most_a_pixel = 0.5;
+constexpr double aimed_share = 0.0625;  // of the samples at rest
 // Samples a second for each pixel, from which on finer light shows who moves less error, though
 // most of its pixels have no point.
 constexpr double enter_fine = 0.4, leave_fine = 0.25;
@@ -40,6 +41,8 @@ int sample_budget(double seconds, size_t pixels, const DrawingCosts& costs, bool
                               most_a_pixel * double(pixels));
   return int(std::max(samples, std::min(least_samples, double(pixels))));
 }
+
+int samples_to_watch(int samples) { return int(aimed_share * samples); }
 
 bool wants_fine_light(bool stands, bool coarse, float guessed) {
   return stands && !(coarse && guessed > few_guessed);

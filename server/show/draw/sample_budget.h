@@ -17,6 +17,9 @@ struct DrawingCosts {
 // picture's time goes to light.
 int sample_budget(double seconds, size_t pixels, const DrawingCosts& costs, bool fine);
 
+// Of so many samples at rest, those that are to find changes of the light.
+int samples_to_watch(int samples);
+
 // Light of the picture's own resolution, for who stands, once there are samples enough: below some
 // 0.35 a pixel light of half of it has less error (castle, the storyteller: FLIP 0.193 after 0.213
 // at a tenth). `coarse`, `guessed`: of the picture before, and the share of its light that no point

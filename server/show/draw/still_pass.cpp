@@ -5,61 +5,30 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "base/memory.h"
 #include "frame/tonemap.h"
 #include "show/draw/moving.h"
-#include "show/draw/picture.h"
+#include "show/draw/order_picture.h"
 
 namespace wellspring {
 namespace {
 
-constexpr double first_after = 0.5;     // seconds at rest
-constexpr double least_samples = 0.25;  // a pixel: of fewer it makes no better picture
-constexpr double growth = 1.4;          // times as many samples as in the pass before
-constexpr double most_share = 0.35;     // of the time goes to passes
-constexpr double most_samples = 0.98 * most_still_samples;  // a pixel, on average
 constexpr double slice = 0.02, least_slice = 0.004;  // seconds
 
 }  // namespace
 
-size_t memory_bytes(const StillPass& pass) {
-  return memory_bytes(pass.frame) + memory_bytes(pass.work) + memory_bytes(pass.keyframe) +
-         bytes_of(pass.picture.rgb) + (pass.denoiser ? pass.denoiser->memory_bytes() : 0);
-}
-
-bool has_all_samples(const RestState& rest) { return rest.samples >= most_samples; }
-
-bool wants_pass(const Show& show, const Visitor& visitor) {
-  const RestState& rest = visitor.rest;
-  if (!show.pass.denoiser || show.pass.visitor || !stands(show, visitor)) return false;
-  if (show.time - visitor.moved_at < first_after || rest.samples < least_samples) return false;
-  // What moves is not in it.
-  if (visitor.order.figure && !visitor.backdrop) return false;
-  if (!rest.reconstructed) return true;
-  double pause = rest.passed_seconds * (1 / most_share - 1);
-  bool enough = rest.samples >= growth * rest.passed_samples ||
-                (has_all_samples(rest) && rest.passed_samples < most_samples);
-  return enough && show.time - rest.passed_at >= pause;
-}
-
-bool keeps_picture(const Show& show, const Visitor& visitor) {
-  return visitor.rest.reconstructed && stands(show, visitor) &&
-         visitor.order.view == visitor.last_view && visitor.order.leaps == visitor.leaps &&
-         visitor.lamps == show.switches.lit;
-}
-
 void begin_pass(Show& show, const PictureOrder& order, Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
   StillPass& pass = show.pass;
   pass.visitor = &visitor;
   pass.order = order;
-  pass.backdrop = visitor.costs.backdrop;
+  pass.backdrop = picture.costs.backdrop;
   pass.step = StillPass::Step::compute;
   pass.given_up = false;
-  pass.seconds = visitor.costs.guide_seconds;
+  pass.seconds = picture.costs.guide_seconds;
   log::debug("visitor {}: reconstruction begins at {:.2f} samples a pixel, drawn and guided in "
              "{:.0f} ms",
-             visitor.link->id, visitor.rest.samples, 1000 * pass.seconds);
-  visitor.rest.passed_samples = visitor.rest.samples;
+             visitor.link->id, picture.rest.samples, 1000 * pass.seconds);
+  picture.rest.passed_samples = picture.rest.samples;
 }
 
 void go_on_with_pass(Show& show) {
@@ -69,7 +38,7 @@ void go_on_with_pass(Show& show) {
     double seconds = std::clamp(show.easel.until_moving, least_slice, slice);
     if (!pass.denoiser->advance(seconds, &pass.given_up)) pass.step = StillPass::Step::finish;
   } else if (pass.step == StillPass::Step::finish) {
-    finish_reconstruction(pass.visitor->compositor.samples(), *pass.denoiser, pass.work,
+    finish_reconstruction(pass.visitor->picture.compositor.samples(), *pass.denoiser, pass.work,
                           pass.frame);
     tonemap(pass.frame, Tonemap{show.exhibit.exposure}, pass.picture);
     make_keyframe(pass.order.view, pass.picture, pass.frame.depth, pass.keyframe);
@@ -82,20 +51,20 @@ void take_pass(Show& show) {
   StillPass& pass = show.pass;
   Visitor& visitor = *pass.visitor;
   pass.at_work = false;
-  if (pass.step != StillPass::Step::compute) visitor.at_work = false;
+  if (pass.step != StillPass::Step::compute) visitor.picture.at_work = false;
   if (pass.given_up) {
     pass.visitor = nullptr;
     show.totals.given_up++;
     return;
   }
   if (pass.step != StillPass::Step::done) return;
-  if (visitor.keyframe.view == pass.keyframe.view)
-    begin_fade(visitor.keyframe, show.time, visitor.fade);
-  std::swap(pass.keyframe, visitor.keyframe);
-  visitor.order = pass.order;
-  visitor.costs.backdrop = pass.backdrop;
-  finish_backdrop(visitor);
-  RestState& rest = visitor.rest;
+  if (visitor.picture.keyframe.view == pass.keyframe.view)
+    begin_fade(visitor.picture.keyframe, show.time, visitor.picture.fade);
+  std::swap(pass.keyframe, visitor.picture.keyframe);
+  visitor.picture.order = pass.order;
+  visitor.picture.costs.backdrop = pass.backdrop;
+  finish_backdrop(visitor.picture);
+  RestState& rest = visitor.picture.rest;
   rest.reconstructed = true;
   rest.passed_at = show.time;
   rest.passed_seconds = pass.seconds;

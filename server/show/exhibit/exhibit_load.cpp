@@ -28,13 +28,6 @@ namespace {
 constexpr size_t max_manifest_bytes = 8 << 20;
 constexpr double degree = 3.14159265358979323846 / 180;
 
-std::string join(const std::vector<Problem>& problems) {
-  std::string all;
-  for (const Problem& problem : problems)
-    if (problem.fatal) all += (all.empty() ? "" : "\n") + to_string(problem);
-  return all;
-}
-
 bool is_identifier(const std::string& id) {
   return !id.empty() && id.size() <= 100 && std::all_of(id.begin(), id.end(), [](unsigned char c) {
     return std::isalnum(c) || c == '-' || c == '_' || c == '.';
@@ -275,13 +268,6 @@ void read_points(Exhibit& exhibit, Fields& root) {
 }
 
 }  // namespace
-
-std::string to_string(const Problem& problem) {
-  return problem.file + (problem.where.empty() ? "" : ": " + problem.where) + ": " + problem.what;
-}
-
-ExhibitError::ExhibitError(std::vector<Problem> problems_)
-    : std::runtime_error(join(problems_)), problems(std::move(problems_)) {}
 
 Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) {
   Exhibit exhibit;

@@ -2,24 +2,13 @@
 // Reads and validates a whole exhibit package; every problem is listed with file and place, not
 // only the first. Blocks on the disk; called at start and by `./wellspring check`.
 #pragma once
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "show/exhibit/exhibit.h"
+#include "show/exhibit/problem.h"
 
 namespace wellspring {
-
-struct Problem {
-  std::string file, where, what;
-  bool fatal = true;  // false: the exhibit runs, but a curator should know
-};
-std::string to_string(const Problem& problem);  // "file: where: what"
-
-struct ExhibitError : std::runtime_error {
-  std::vector<Problem> problems;
-  explicit ExhibitError(std::vector<Problem> problems);
-};
 
 // `folder` holds exhibit.json; the folder's name is the exhibit's id. Appends to `problems`; the
 // exhibit is usable when none of them is fatal.

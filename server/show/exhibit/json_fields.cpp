@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/exhibit/json_fields.h"
 
-
 #include <cmath>
 #include <fmt/core.h>
 

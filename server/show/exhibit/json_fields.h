@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/exhibit.h"
+#include "show/exhibit/problem.h"
 
 namespace wellspring {
 

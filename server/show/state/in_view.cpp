@@ -36,9 +36,9 @@ bool in_view(const View& view, vec3 centre, float radius) {
 }
 
 View view_of(const Show& show, const Visitor& visitor) {
-  const Viewpoint& at = visitor.view;
-  return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, visitor.width,
-                   visitor.height);
+  const Viewpoint& at = visitor.place.view;
+  return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, visitor.wants.width,
+                   visitor.wants.height);
 }
 
 bool sees_head(const Show& show, const View& view) {
@@ -55,7 +55,7 @@ const Visitor* heard_on_tour(const Show& show) {
   const Visitor* nearest = nullptr;
   float least = nobody_near;
   for (const Visitor& visitor : show.visitors) {
-    const Voice& voice = visitor.narration.voice;
+    const Voice& voice = visitor.hearing.narration.voice;
     if (voice.queue.empty() || voice.paused) continue;
     if (float distance = distance_to_head(show, visitor); distance < least)
       least = distance, nearest = &visitor;

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "show/exhibit/exhibit_lamps.h"
-#include "show/state/show.h"
 
 namespace wellspring {
 namespace {
@@ -62,32 +61,33 @@ void light_lamps(Show& show) {
     relight_skin(*show.world, changes, show.skin);
   }
   for (Visitor& visitor : show.visitors) {
-    visitor.around = {}, visitor.fade = {};  // they show another light
-    visitor.rest = {};
-    visitor.stats.converged = 0;       // who rests looks again,
-    visitor.order.settled = false;     // and first at what is soon to be known
+    visitor.picture.around.keyframe = {}, visitor.picture.fade = {};  // they show another light
+    visitor.picture.rest = {};
+    visitor.picture.stats.converged = 0;    // who rests looks again,
+    visitor.picture.order.settled = false;  // and first at what is soon to be known
   }
 }
 
 void follow_lamps(Show& show, Visitor& visitor) {
+  VisitorPicture& picture = visitor.picture;
   const std::vector<char>& lit = show.switches.lit;
-  if (visitor.lamps == lit) return;
-  if (visitor.lamps.size() == lit.size()) {
-    const LightChange& change = change_since(show, visitor.lamps);
-    visitor.cache.relight([&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
+  if (picture.lamps == lit) return;
+  if (picture.lamps.size() == lit.size()) {
+    const LightChange& change = change_since(show, picture.lamps);
+    picture.cache.relight([&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
       return change.changes(place, normal, kept, added);
     });
   }
-  visitor.broker.forget();
-  visitor.compositor.forget_samples();
-  visitor.lamps = lit;
+  picture.broker.forget();
+  picture.compositor.forget_samples();
+  picture.lamps = lit;
 }
 
 void forget_light_steps(Show& show) {
   Switches& switches = show.switches;
   std::erase_if(switches.steps, [&](const LightStep& step) {
-    return std::none_of(show.visitors.begin(), show.visitors.end(),
-                        [&](const Visitor& visitor) { return visitor.lamps == step.before; });
+    auto needs = [&](const Visitor& visitor) { return visitor.picture.lamps == step.before; };
+    return std::none_of(show.visitors.begin(), show.visitors.end(), needs);
   });
 }
 

@@ -9,28 +9,10 @@
 // any more.
 #pragma once
 #include <string_view>
-#include <vector>
 
-#include "light/known/lamps.h"
+#include "show/state/show.h"
 
 namespace wellspring {
-
-struct Show;
-struct Visitor;
-
-// What became of the light between the lamps as they were and as the world is.
-struct LightStep {
-  std::vector<char> before;
-  LightChange change;
-};
-
-struct Switches {
-  std::vector<char> wanted, lit;  // of each lamp: as it was asked for, as the world is
-  double lit_at = -1e9;           // show time
-  Lights all;                     // made while all were on; empty where there are none
-  // To `lit`, while visitors have yet to follow: of each state that any cache knew, one for all.
-  std::vector<LightStep> steps;
-};
 
 // Puts the lamps as they are at first. show.lights were made, and are prepared, while all were on.
 void begin_lamps(Show& show);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/show.h"
 
-#include <stdexcept>
-
-#include "base/log.h"
-#include "show/exhibit/exhibit_scene.h"
+#include <utility>
 
 namespace wellspring {
 
@@ -18,84 +15,8 @@ std::vector<std::shared_ptr<Link>> Arrivals::take() {
   return std::exchange(links_, {});
 }
 
-namespace {
-
-// Where visitors' eyes are likely to be: the viewpoints, and places on the way between them.
-std::vector<vec3> places_of(const Exhibit& exhibit) {
-  std::vector<vec3> places;
-  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints)
-    places.push_back(vec3(viewpoint.view.position - exhibit.scene.origin));
-  for (size_t i = 1, count = places.size(); i < count; i++)
-    places.push_back(0.5f * (places[i - 1] + places[i]));
-  return places;
-}
-
-// The storyteller as it stands when it has just come.
-void enter(Show& show) {
-  const StorytellerPlace& place = show.exhibit.storytellers[show.teller];
-  show.storyteller = {};
-  show.storyteller.character = &place.character;
-  if (place.expressions) show.storyteller.expressions = &*place.expressions;
-  if (place.gestures) show.storyteller.gestures = &*place.gestures;
-  show.storyteller.placement = place_storyteller(place, show.exhibit.scene);
-  show.mind = {};
-  show.pose = make_rest_pose(place.character);
-  for (size_t i = 0; i < show.figures.size(); i++)
-    show_figure(*show.world, show.figures[i], i == show.teller && show.storyteller_visible);
-  StorytellerEvents events;
-  tick_storyteller(show.mind, show.storyteller, StorytellerInput{}, show.pose, events);
-  pose_figure(*show.world, show.figures[show.teller], place.character, show.pose,
-              show.storyteller.placement, show.scratch);
-  show.world->commit();
-}
-
-}  // namespace
-
 const StorytellerPlace* teller_of(const Show& show) {
   return show.figures.empty() ? nullptr : &show.exhibit.storytellers[show.teller];
-}
-
-void change_teller(Show& show, size_t teller) {
-  if (teller == show.teller || teller >= show.figures.size()) return;
-  show.easel.worker.wait();  // the world changes
-  hush(show.voice);
-  show.teller = teller;
-  enter(show);
-  show.agent_sent_at = -1e9;
-}
-
-std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
-  auto show = std::make_unique<Show>();
-  show->settings = settings;
-  show->technique = find_technique(settings.technique);
-  show->still_technique = find_technique(settings.still_technique);
-  for (const auto& [technique, name] : {std::pair(show->technique, settings.technique),
-                                        std::pair(show->still_technique, settings.still_technique)})
-    if (!technique) throw std::invalid_argument("unknown technique '" + name + "'");
-  show->exhibit = std::move(exhibit);
-  Scene& scene = show->exhibit.scene;
-  std::vector<Mesh> moving;
-  std::vector<uint32_t> moving_object;
-  for (const StorytellerPlace& place : show->exhibit.storytellers)
-    show->figures.push_back(make_figure(place.character, scene, moving, moving_object));
-  show->world = std::make_unique<World>(scene, std::move(moving), std::move(moving_object));
-  show->skin = make_skin_light(*show->world);
-  if (!show->figures.empty()) enter(*show);
-  std::vector<Problem> problems;
-  show->roads = make_tour_roads(show->exhibit, *show->world, problems);
-  if (!problems.empty()) throw ExhibitError(std::move(problems));
-  show->lights = make_lights(*show->world);
-  show->sight = std::make_unique<PictureSight>(*show->world, show->lights);
-  StillPass& pass = show->pass;
-  if (show->settings.weights.empty()) pass.problem = "no folder of weights was named";
-  else pass.denoiser = load_denoiser(NetSize::small, pass.problem, show->settings.weights);
-  std::vector<vec3> places = places_of(show->exhibit);
-  for (const Technique* technique : {show->technique, show->still_technique})
-    if (technique->prepare) technique->prepare(*show->world, places, show->lights);
-  begin_lamps(*show);
-  log::info("exhibit '{}': {} triangles, {} viewpoints, {} materials", show->exhibit.id,
-            triangle_count(scene), show->exhibit.viewpoints.size(), scene.materials.size());
-  return show;
 }
 
 }  // namespace wellspring

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One running exhibit: the world, its storyteller, the visitors and the kiosks' eyes. tick() is the
-// whole of it, one straight function of visible values: notice -> behave -> animate -> (per
-// visitor) picture. Everything here belongs to the thread that calls tick(), except Arrivals and
-// the published ShowReport.
+// One running exhibit as values: the world, its storyteller, the visitors and the kiosks' eyes.
+// make_show() (show/state/make_show.h) begins it, tick() (show/tick.h) advances it. Everything here
+// belongs to the thread that calls tick(), except Arrivals, and what the easel is at work on.
 #pragma once
 #include <list>
 #include <memory>
@@ -11,17 +10,19 @@
 #include <vector>
 
 #include "avatar/mind/storyteller.h"
-#include "light/visible/visibility.h"
 #include "light/known/skin_light.h"
 #include "light/technique/technique.h"
+#include "light/visible/visibility.h"
 #include "picture/warp_picture.h"
-#include "show/storyteller/audience.h"
 #include "show/exhibit/exhibit.h"
 #include "show/exhibit/figure.h"
-#include "show/state/lamps.h"
-#include "show/answer/report.h"
-#include "show/storyteller/sound.h"
+#include "show/state/reconstruction.h"
+#include "show/state/renderer.h"
+#include "show/state/switches.h"
+#include "show/state/totals.h"
 #include "show/state/visitor.h"
+#include "show/storyteller/audience.h"
+#include "show/storyteller/sounding.h"
 #include "show/storyteller/voice.h"
 
 namespace wellspring {
@@ -98,23 +99,7 @@ struct Show {
   Easel easel;  // reads much of the above: ends before it
 };
 
-// Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a
-// tour that cannot be walked.
-std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
-
 // Who is there now; null: the exhibit has no storyteller.
 const StorytellerPlace* teller_of(const Show& show);
-// Another storyteller comes in place of the one that is there, who falls silent; knows nobody yet
-// and greets anew. Nothing happens when it is there already.
-void change_teller(Show& show, size_t teller);
-
-// One step at time `now` (seconds, any clock that does not run backwards; steps longer than a
-// second are taken as one second). Never throws, never waits for a peer.
-void tick(Show& show, Arrivals& arrivals, double now);
-
-// How long the caller may sleep after a tick, at time `now` on the same clock.
-double seconds_to_next_tick(const Show& show, double now);
-// Sleeps until the next tick is due, or what is drawn meanwhile is finished.
-void wait_for_tick(const Show& show, double now);
 
 }  // namespace wellspring

@@ -4,7 +4,8 @@
 // kept.
 #pragma once
 #include "avatar/speech/process.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/exhibit.h"
+#include "show/exhibit/problem.h"
 
 namespace wellspring {
 

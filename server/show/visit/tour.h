@@ -6,7 +6,8 @@
 #include <memory>
 
 #include "show/visit/camera_path.h"
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/exhibit.h"
+#include "show/exhibit/problem.h"
 #include "show/storyteller/voice.h"
 #include "show/visit/walk_map.h"
 

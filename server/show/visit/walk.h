@@ -2,7 +2,8 @@
 // How a visitor gets about: walls stop, floors carry, stairs are climbed, bounds hold. Rays against
 // the world decide; a visitor inside a wall is not trapped there.
 #pragma once
-#include "show/exhibit/exhibit_load.h"
+#include "show/exhibit/exhibit.h"
+#include "show/exhibit/problem.h"
 #include "world/world.h"
 
 namespace wellspring {

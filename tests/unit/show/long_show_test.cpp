@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "frame/jpeg.h"
+#include "show/state/make_show.h"
 #include "show/state/show.h"
+#include "show/tick.h"
 #include "tiny_exhibit.h"
 #include "wire/packet.h"
 
@@ -35,7 +37,7 @@ struct House {
   void say(int visitor, const std::string& text) { links[size_t(visitor)]->push_text_in(text); }
   void step(double seconds) {
     tick(*show, arrivals, now += seconds);
-    for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+    for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
     for (size_t i = 0; i < links.size(); i++) {
       Link::Out out;
       while (links[i]->take_out(out))
@@ -64,17 +66,17 @@ TEST(LongShow, ADayOfIdlingAndWalkingNeitherGrowsNorDrifts) {
     house.step(step);
     house.step(0.02);
     const Visitor& visitor = house.show->visitors.front();
-    vec3 place(visitor.view.position);
+    vec3 place(visitor.place.view.position);
     ASSERT_TRUE(is_finite(place) && std::abs(place.x) < 4 && std::abs(place.z) < 4) << i;
     for (vec3 c : house.show->easel.work.frame.color) ASSERT_TRUE(is_finite(c)) << i;
-    if (i == 62) memory = visitor.cache_bytes;
+    if (i == 62) memory = visitor.picture.cache_bytes;
     if (i > 62) {
       // Lists keep room for the most that they ever held, and how much that is depends on the
       // machine.
-      ASSERT_LE(visitor.cache_bytes, memory + memory / 8) << i;
-      ASSERT_LE(visitor.memory_bytes, memory + (1 << 19)) << i;
-      ASSERT_LE(visitor.heading.past.size(), 64u);
-      ASSERT_LE(visitor.flow.in_flight.size(), 4096u);
+      ASSERT_LE(visitor.picture.cache_bytes, memory + memory / 8) << i;
+      ASSERT_LE(visitor.picture.memory_bytes, memory + (1 << 19)) << i;
+      ASSERT_LE(visitor.place.heading.past.size(), 64u);
+      ASSERT_LE(visitor.shown.flow.in_flight.size(), 4096u);
     }
   }
   EXPECT_GT(house.pictures[0], 900u);
@@ -94,9 +96,9 @@ TEST(LongShow, TwoVisitorsGetPicturesAndSamplesAlike) {
   }
   EXPECT_EQ(house.pictures[0], house.pictures[1]);
   const Visitor &one = house.show->visitors.front(), &other = house.show->visitors.back();
-  EXPECT_GT(one.broker.stats().asked, 0u);
-  double share = double(one.broker.stats().asked) /
-                 double(one.broker.stats().asked + other.broker.stats().asked);
+  EXPECT_GT(one.picture.broker.stats().asked, 0u);
+  double share = double(one.picture.broker.stats().asked) /
+                 double(one.picture.broker.stats().asked + other.picture.broker.stats().asked);
   EXPECT_NEAR(share, 0.5, 0.2);
 }
 

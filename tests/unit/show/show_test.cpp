@@ -6,7 +6,9 @@
 
 #include "frame/jpeg.h"
 #include "show/answer/answer.h"
+#include "show/state/make_show.h"
 #include "show/state/show.h"
+#include "show/tick.h"
 #include "tiny_exhibit.h"
 #include "wire/json.h"
 
@@ -32,7 +34,7 @@ struct ShowTest : testing::Test {
   void run(double seconds) {
     for (double end = now + seconds; now < end; now += 0.02) {
       tick(*show, arrivals, now);
-      for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+      for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
       Link::Out out;
       while (link->take_out(out)) {
         if (out.binary) pictures.push_back(*out.packet);
@@ -79,15 +81,15 @@ TEST_F(ShowTest, PicturesCarryTheLastSeqAndGrowingNumbers) {
 TEST_F(ShowTest, WalksOnUntilTheNextInput) {
   begin();
   run(0.1);
-  dvec3 from = show->visitors.front().view.position;
+  dvec3 from = show->visitors.front().place.view.position;
   say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0,0]})");
   run(1);
   say(R"({"type":"input","seq":2,"move":[0,0,0],"look":[0,0]})");
   run(0.5);
-  dvec3 to = show->visitors.front().view.position;
+  dvec3 to = show->visitors.front().place.view.position;
   EXPECT_NEAR(from.z - to.z, 1, 0.1);
   run(1);
-  EXPECT_EQ(show->visitors.front().view.position, to);
+  EXPECT_EQ(show->visitors.front().place.view.position, to);
 }
 
 TEST_F(ShowTest, StandingStillConvergesToTheReference) {
@@ -100,7 +102,8 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
   settings.spp = 768;
   settings.transport = show->settings.transport;
   Frame reference =
-      render_still(*show->still_technique, *show->world, show->lights, visitor.last_view, settings);
+      render_still(*show->still_technique, *show->world, show->lights, visitor.place.last_view,
+                   settings);
   double error = 0, size = 0;
   for (size_t i = 0; i < reference.color.size(); i++) {
     // As it is shown: of lamps no more than white.
@@ -137,7 +140,7 @@ TEST_F(ShowTest, OrdersAreObeyedOrAnswered) {
   say(R"({"type":"viewpoint","seq":4,"name":"moon"})");
   run(0.1);
   EXPECT_EQ(last("error")["code"], "unknown_viewpoint");
-  EXPECT_EQ(show->visitors.front().seq, 3u);
+  EXPECT_EQ(show->visitors.front().place.seq, 3u);
   say(R"({"type":"viewpoint","seq":5,"name":"door"})");
   say(R"({"type":"tour","action":"play","name":"round"})");
   run(0.6);
@@ -158,7 +161,7 @@ TEST_F(ShowTest, TheTourWaitsForAVisitorWhoWalksOff) {
   run(0.5);
   say(R"({"type":"input","seq":1,"move":[0,0,0.5],"look":[0,0]})");
   run(0.1);
-  EXPECT_EQ(show->visitors.front().tour.state, TourRide::State::paused);
+  EXPECT_EQ(show->visitors.front().place.tour.state, TourRide::State::paused);
 }
 
 TEST_F(ShowTest, ByeAndClosedLinksLeave) {
@@ -201,7 +204,7 @@ TEST_F(ShowTest, ClockJumpsAreSurvived) {
     now += jump;
     run(0.06);
   }
-  dvec3 position = show->visitors.front().view.position;
+  dvec3 position = show->visitors.front().place.view.position;
   EXPECT_LT(std::abs(position.x), 4);
   EXPECT_LT(std::abs(position.z), 4);
 }

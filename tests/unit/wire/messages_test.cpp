@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "wire/json.h"
 
@@ -35,6 +36,18 @@ TEST(Messages, good_browser_messages_mean_what_the_golden_file_says) {
     const auto again = read_browser_message(written);
     ASSERT_EQ(error_of(again), "") << written;
     EXPECT_TRUE(std::get<BrowserMessage>(again) == std::get<BrowserMessage>(message)) << written;
+  }
+}
+
+TEST(Messages, every_kind_is_described_and_has_a_row_of_the_golden_file) {
+  const json described = describe_browser_messages();
+  EXPECT_EQ(described.size(), std::variant_size_v<BrowserMessage>);
+  std::set<std::string> golden_types;
+  for (const json& row : golden("browser_good.jsonl"))
+    golden_types.insert(row["means"]["type"].get<std::string>());
+  for (const auto& [type, fields] : described.items()) {
+    EXPECT_TRUE(golden_types.contains(type)) << type;
+    for (const auto& [name, about] : fields.items()) EXPECT_TRUE(about.is_string()) << name;
   }
 }
 

@@ -10,8 +10,11 @@
 #include "frame/jpeg.h"
 #include "frame/tonemap.h"
 #include "show/answer/answer.h"
+#include "show/draw/order_picture.h"
 #include "show/draw/picture.h"
+#include "show/state/make_show.h"
 #include "show/state/show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 
 namespace wellspring {
@@ -46,7 +49,7 @@ struct LatePictures : testing::Test {
   // `finish`: what the easel has begun is finished before the next tick.
   void step(bool finish = true, double seconds = 0.02) {
     tick(*show, arrivals, now += seconds);
-    for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+    for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
     if (finish) show->easel.worker.wait();
     for (const auto& link : links) {
       Link::Out out;
@@ -110,7 +113,7 @@ TEST_F(LatePictures, GoOnWhileOneIsDrawn) {
   EXPECT_EQ(show->totals.drawn, drawn);
   EXPECT_EQ(show->totals.warped, warped + 6);
   // What is sent shows the view as it is, not as it was.
-  Image8 now = truth(visitor().last_view), shown = image(pictures.size() - 1);
+  Image8 now = truth(visitor().place.last_view), shown = image(pictures.size() - 1);
   EXPECT_LT(difference(shown, now), 0.5 * difference(before, now));
   release_easel();
 }
@@ -120,8 +123,8 @@ TEST_F(LatePictures, StandingStillIsShownAsDrawn) {
   for (int i = 0; i < 20; i++) turn(0.01), step();
   steps(200);
   EXPECT_TRUE(header(pictures.size() - 1).flags & packet_still);
-  EXPECT_EQ(visitor().keyframe.view, visitor().last_view);
-  EXPECT_LT(difference(image(pictures.size() - 1), truth(visitor().last_view)), 4);
+  EXPECT_EQ(visitor().picture.keyframe.view, visitor().place.last_view);
+  EXPECT_LT(difference(image(pictures.size() - 1), truth(visitor().place.last_view)), 4);
 }
 
 TEST_F(LatePictures, SeqNeverGoesBack) {
@@ -159,17 +162,17 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   begin();
   for (int i = 0; i < 30; i++) turn(0.01, 0.5), step(true, 0.08);
   EXPECT_EQ(show->totals.surroundings, 0u);
-  EXPECT_TRUE(visitor().around.empty());
+  EXPECT_TRUE(visitor().picture.around.keyframe.empty());
   for (int i = 0; i < 30; i++) turn(0.3), step(true, 0.08);  // a slow machine
   ASSERT_GT(show->totals.surroundings, 0u);
-  ASSERT_FALSE(visitor().around.empty());
-  const View& around = visitor().around.view;
-  const View& keyframe = visitor().keyframe.view;
+  ASSERT_FALSE(visitor().picture.around.keyframe.empty());
+  const View& around = visitor().picture.around.keyframe.view;
+  const View& keyframe = visitor().picture.keyframe.view;
   EXPECT_LE(around.width * around.height, keyframe.width * keyframe.height / 7);
   size_t memory = picture_memory(visitor());
-  Keyframe kept = std::exchange(visitor().around, {});
+  Keyframe kept = std::exchange(visitor().picture.around.keyframe, {});
   EXPECT_GE(memory, picture_memory(visitor()) + kept.color.size() * 8);  // colours and disparities
-  visitor().around = std::move(kept);
+  visitor().picture.around.keyframe = std::move(kept);
 
   // Farther than the keyframe shows while nothing can be drawn, so that it alone would not do.
   hold_easel();
@@ -177,16 +180,17 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   Image8 alone, with;
   float unknown = 0;
   // The keyframe may be of a view yet to come, and what lies around of an earlier one.
-  bool to_the_left = dot(visitor().around.view.forward, visitor().keyframe.view.right) < 0;
+  const VisitorPicture& picture = visitor().picture;
+  bool to_the_left = dot(picture.around.keyframe.view.forward, picture.keyframe.view.right) < 0;
+  const View& seen = visitor().place.last_view;
   for (int i = 0; i < 60 && unknown < 0.17f; i++) {
     turn(to_the_left ? 0.03 : -0.03);
     step(false);
-    unknown = warp_picture(visitor().keyframe, visitor().last_view, 1, scratch, alone);
+    unknown = warp_picture(picture.keyframe, seen, 1, scratch, alone);
   }
   EXPECT_GE(unknown, 0.17f);
-  EXPECT_LT(
-      warp_picture(visitor().keyframe, visitor().around, visitor().last_view, 1, scratch, with),
-      0.6f * unknown);
+  EXPECT_LT(warp_picture(picture.keyframe, picture.around.keyframe, seen, 1, scratch, with),
+            0.6f * unknown);
   EXPECT_EQ(header(pictures.size() - 1).seq, seq);
   EXPECT_LT(difference(image(pictures.size() - 1), with),
             difference(image(pictures.size() - 1), alone));
@@ -196,7 +200,7 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   turn(0);
   steps(160);
   uint64_t drawn = show->totals.surroundings;
-  EXPECT_TRUE(visitor().around.empty());
+  EXPECT_TRUE(visitor().picture.around.keyframe.empty());
   steps(20);
   EXPECT_EQ(show->totals.surroundings, drawn);
 }
@@ -204,15 +208,15 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
 TEST_F(LatePictures, NothingAroundTheOldPlaceAfterALeap) {
   begin();
   for (int i = 0; i < 60; i++) turn(0.3), step(true, 0.08);  // a slow machine
-  ASSERT_FALSE(visitor().around.empty());
+  ASSERT_FALSE(visitor().picture.around.keyframe.empty());
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   for (int i = 0; i < 6; i++) {
     step();
-    if (visitor().order.leaps == visitor().leaps) {
-      EXPECT_TRUE(visitor().around.empty());
+    if (visitor().picture.order.leaps == visitor().place.leaps) {
+      EXPECT_TRUE(visitor().picture.around.keyframe.empty());
     }
   }
-  EXPECT_EQ(visitor().order.leaps, visitor().leaps);
+  EXPECT_EQ(visitor().picture.order.leaps, visitor().place.leaps);
 }
 
 // What a still picture waits for is samples, which whoever moves on needs no more.
@@ -226,7 +230,7 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   EXPECT_FALSE(is_outdated(*show, order, one));
   show->easel.drawn = &one;  // as if the easel were at work on it
   show->easel.order = order;
-  one.at_work = true;
+  one.picture.at_work = true;
   step(false);
   EXPECT_FALSE(show->easel.given_up);
   turn(0.02);
@@ -235,22 +239,22 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   EXPECT_TRUE(show->easel.given_up);
   EXPECT_EQ(header(pictures.size() - 1).seq, seq);  // meanwhile warped
 
-  Keyframe keyframe = one.keyframe;
+  Keyframe keyframe = one.picture.keyframe;
   uint64_t drawn = show->totals.drawn;
   release_easel();
   draw_picture(*show, order, one);
-  EXPECT_TRUE(one.costs.given_up);
-  EXPECT_EQ(one.costs.samples, 0u);
+  EXPECT_TRUE(one.picture.costs.given_up);
+  EXPECT_EQ(one.picture.costs.samples, 0u);
   turn(0.02);
   step();
   EXPECT_EQ(show->totals.given_up, 1u);
   EXPECT_EQ(show->totals.drawn, drawn);
-  EXPECT_EQ(one.keyframe.color, keyframe.color);
+  EXPECT_EQ(one.picture.keyframe.color, keyframe.color);
   EXPECT_EQ(header(pictures.size() - 1).seq, seq);
   step();
   EXPECT_EQ(show->totals.drawn, drawn + 1);  // at once the next, of where the visitor is now
-  EXPECT_FALSE(one.order.still);
-  EXPECT_FALSE(one.costs.given_up);
+  EXPECT_FALSE(one.picture.order.still);
+  EXPECT_FALSE(one.picture.costs.given_up);
 }
 
 TEST_F(LatePictures, AreOutdatedByLeapsAndByMotionAfterRest) {
@@ -258,13 +262,13 @@ TEST_F(LatePictures, AreOutdatedByLeapsAndByMotionAfterRest) {
   Visitor unseen;
   PictureOrder order;
   order.still = true;
-  order.expected = unseen.last_view;
-  unseen.last_view.position.x += 1;
+  order.expected = unseen.place.last_view;
+  unseen.place.last_view.position.x += 1;
   EXPECT_FALSE(is_outdated(*show, order, unseen));  // there is nothing else to show
-  unseen.leaps++;
+  unseen.place.leaps++;
   EXPECT_TRUE(is_outdated(*show, order, unseen));
-  unseen.order.leaps = order.leaps = unseen.leaps;
-  unseen.drawn_at = 1;
+  unseen.picture.order.leaps = order.leaps = unseen.place.leaps;
+  unseen.picture.drawn_at = 1;
   EXPECT_TRUE(is_outdated(*show, order, unseen));
   order.still = false;  // pictures of who moves are for views to come
   EXPECT_FALSE(is_outdated(*show, order, unseen));
@@ -285,7 +289,7 @@ TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {
   steps(4);
   ASSERT_GT(pictures.size(), before);
   EXPECT_EQ(header(before).seq, 900u);
-  Image8 there = truth(visitor().last_view);
+  Image8 there = truth(visitor().place.last_view);
   EXPECT_LT(difference(image(before), there), 25);
   // A camera that is put elsewhere has leapt as well; a small step is no leap.
   hold_easel();
@@ -303,14 +307,14 @@ TEST_F(LatePictures, ALeapWhileDrawingDiscardsThatPicture) {
   begin();
   turn(0, 1);
   steps(20);
-  while (!visitor().at_work) step(false);
+  while (!visitor().picture.at_work) step(false);
   ASSERT_NE(show->easel.drawn, nullptr);
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   size_t before = pictures.size();
   steps(6);
   ASSERT_GT(pictures.size(), before);
   for (size_t i = before; i < pictures.size(); i++) EXPECT_EQ(header(i).seq, 900u);
-  EXPECT_LT(difference(image(before), truth(visitor().last_view)), 25);
+  EXPECT_LT(difference(image(before), truth(visitor().place.last_view)), 25);
 }
 
 TEST_F(LatePictures, SizesChangeWhileOneIsDrawn) {
@@ -356,7 +360,7 @@ TEST_F(LatePictures, NoVisitorIsForgottenWhenOneIsFinishedDuringATick) {
       while (link->take_out(out)) {}
     }
     auto at_work = std::count_if(show->visitors.begin(), show->visitors.end(),
-                                 [](auto& one) { return one.at_work; });
+                                 [](auto& one) { return one.picture.at_work; });
     ASSERT_EQ(size_t(at_work), show->easel.brokers.size() + (show->easel.drawn ? 1 : 0))
         << "tick " << i;
   }

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "show/answer/answer.h"
+#include "show/state/make_show.h"
 #include "show/state/show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 
 namespace wellspring {
@@ -44,13 +46,14 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
     show->easel.worker.wait_for(10);
     size_t k = 0;
     for (Visitor& visitor : show->visitors) {
-      visitor.encoder->task.wait();
-      most[k] = std::max(most[k], visitor.memory_bytes);
-      if (k == 0 && !visitor.order.still) walking = std::max(walking, visitor.memory_bytes);
-      if (k == 0) widest = std::max(widest, visitor.keyframe.view.width);
+      visitor.shown.encoder->task.wait();
+      const VisitorPicture& picture = visitor.picture;
+      most[k] = std::max(most[k], picture.memory_bytes);
+      if (k == 0 && !picture.order.still) walking = std::max(walking, picture.memory_bytes);
+      if (k == 0) widest = std::max(widest, picture.keyframe.view.width);
       still[k] = pictures[k] >= 8;
-      if (!visitor.order.passing && visitor.order.tick != last[k]) pictures[k]++;
-      last[k] = visitor.order.tick;
+      if (!picture.order.passing && picture.order.tick != last[k]) pictures[k]++;
+      last[k] = picture.order.tick;
       k++;
     }
     for (auto& link : links)

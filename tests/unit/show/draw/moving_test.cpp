@@ -6,6 +6,8 @@
 
 #include "frame/jpeg.h"
 #include "show/draw/picture.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "unit/show/tiny_figure.h"
 
@@ -44,7 +46,7 @@ struct Moving : testing::Test {
   Visitor& visitor() { return show->visitors.front(); }
   void step() {
     tick(*show, arrivals, now += 0.01);
-    for (Visitor& one : show->visitors) one.encoder->task.wait();
+    for (Visitor& one : show->visitors) one.shown.encoder->task.wait();
     show->easel.worker.wait();
     for (Link::Out out; link->take_out(out);)
       if (out.picture) pictures.push_back(*out.packet);
@@ -63,13 +65,13 @@ struct Moving : testing::Test {
         [&] { return show->easel.drawn && show->easel.step != DrawingStep::done; });
   }
   bool rested() {
-    return step_until([&] { return !show->visitors.empty() && visitor().backdrop; }) &&
+    return step_until([&] { return !show->visitors.empty() && visitor().picture.backdrop; }) &&
            step_until([&] { return show->totals.posed > 20; });
   }
   Image8 picture() { return decode_jpeg(read_packet(pictures.back())->payload, "picture"); }
   // Red over green about where the place falls: the room is grey.
   double red_at(const Image8& image, vec3 place) {
-    Projected at = project_point(visitor().last_view, place);
+    Projected at = project_point(visitor().place.last_view, place);
     double sum = 0;
     for (int dy = -3; dy <= 3; dy++)
       for (int dx = -3; dx <= 3; dx++)
@@ -91,9 +93,9 @@ TEST_F(Moving, IsDrawnMoreOftenThanTheRest) {
   EXPECT_GE(show->totals.drawn, drawn + 2);
   EXPECT_GT(show->totals.posed - posed, 2 * (show->totals.drawn - drawn));
   EXPECT_NEAR(double(pictures.size() - sent), double(show->totals.posed - posed), 2);
-  EXPECT_TRUE(visitor().backdrop);
-  EXPECT_FALSE(visitor().moving.empty());
-  const PictureWindow& window = visitor().moving.window;
+  EXPECT_TRUE(visitor().picture.backdrop);
+  EXPECT_FALSE(visitor().picture.moving.empty());
+  const PictureWindow& window = visitor().picture.moving.window;
   EXPECT_LT(2 * window.width * window.height, 192 * 128);
 }
 
@@ -122,7 +124,9 @@ TEST_F(Moving, ShowsWhereItIs) {
 TEST_F(Moving, IsInWhatIsWarped) {
   ASSERT_TRUE(rested());
   steps(200);
-  ASSERT_TRUE(step_until([&] { return visitor().backdrop && !visitor().moving.empty(); }));
+  ASSERT_TRUE(step_until([&] {
+    return visitor().picture.backdrop && !visitor().picture.moving.empty();
+  }));
   vec3 here(-2, 1, 0.5f);
   double shown = red_at(picture(), here);
   link->push_text_in(R"({"type":"input","seq":1,"move":[0,0,0],"look":[0.02,0]})");
@@ -132,8 +136,8 @@ TEST_F(Moving, IsInWhatIsWarped) {
   EXPECT_LE(show->totals.drawn, drawn + 1);
   step();
   EXPECT_NEAR(red_at(picture(), here), shown, 8);
-  EXPECT_FALSE(visitor().backdrop);
-  EXPECT_TRUE(visitor().moving.empty());
+  EXPECT_FALSE(visitor().picture.backdrop);
+  EXPECT_TRUE(visitor().picture.moving.empty());
 }
 
 // Who waits for a picture waits for no more light of another's.
@@ -150,8 +154,8 @@ TEST_F(Moving, OthersNeedNotWaitForLight) {
   other->push_text_in(
       R"({"type":"hello","exhibit":"","width":64,"height":64,"lang":"en","role":"visitor"})");
   ASSERT_TRUE(step_until([&] { return show->easel.drawn != &visitor(); }, 8));
-  EXPECT_EQ(visitor().costs.samples, traced);
-  EXPECT_TRUE(step_until([&] { return show->visitors.back().drawn_at > 0; }, 8));
+  EXPECT_EQ(visitor().picture.costs.samples, traced);
+  EXPECT_TRUE(step_until([&] { return show->visitors.back().picture.drawn_at > 0; }, 8));
 }
 
 // Between the steps of a picture the visitor may go, and the storyteller too.
@@ -168,10 +172,10 @@ TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   vec3 here(-2, 1, 0.5f);
   EXPECT_GT(red_at(picture(), here), 40);
   show->storyteller_visible = false;
-  ASSERT_TRUE(step_until([&] { return !visitor().order.figure; }));
+  ASSERT_TRUE(step_until([&] { return !visitor().picture.order.figure; }));
   steps(30);
   EXPECT_LT(red_at(picture(), here), 20);
-  EXPECT_FALSE(visitor().backdrop);
+  EXPECT_FALSE(visitor().picture.backdrop);
 }
 
 }  // namespace

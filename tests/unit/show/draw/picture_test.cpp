@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A visitor's pictures where hardly anything can be rasterised.
 #include "show/draw/picture.h"
+#include "show/state/make_show.h"
+#include "show/tick.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +32,7 @@ struct Visited {
         R"({"type":"hello","exhibit":"","width":160,"height":90,"lang":"en","role":"visitor"})");
     for (int i = 0; i < 40; i++) {
       tick(*show, arrivals, 0.05 * i);
-      for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+      for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
       for (Link::Out out; link->take_out(out);)
         if (out.picture) picture = *out.packet;
     }
@@ -62,7 +64,7 @@ TEST(Picture, IsRightForAnEyeInSolidGlassToo) {
   for (bool glass : {true, false}) {
     Visited visited(make_cubed(glass));
     const Show& show = *visited.show;
-    const View& view = show.visitors.front().last_view;
+    const View& view = show.visitors.front().place.last_view;
     EXPECT_EQ(show.sight->rasterises(view), !glass);
     StillSettings settings;
     settings.spp = 64;

@@ -6,7 +6,10 @@
 
 #include "frame/compare.h"
 #include "frame/jpeg.h"
+#include "show/answer/report.h"
+#include "show/state/make_show.h"
 #include "show/state/show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "wire/packet.h"
 
@@ -42,7 +45,7 @@ struct StillPassTest : testing::Test {
   }
   void step() {
     tick(*show, arrivals, now += 0.02);
-    for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+    for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
     show->easel.worker.wait();
     for (const auto& link : links) {
       Link::Out out;
@@ -66,13 +69,13 @@ struct StillPassTest : testing::Test {
   }
   Visitor& visitor() { return show->visitors.front(); }
   // The last reconstruction, as it is.
-  bool is_shown() { return !visitor().unshown && visitor().fade.from.rgb.empty(); }
+  bool is_shown() { return !visitor().picture.unshown && visitor().picture.fade.from.rgb.empty(); }
   double error_of_last() {
     StillSettings settings;
     settings.spp = 256;
     settings.transport = show->settings.transport;
     Frame truth = render_still(*show->still_technique, *show->world, show->lights,
-                               visitor().last_view, settings);
+                               visitor().place.last_view, settings);
     Image8 wanted, shown = decode_jpeg(read_packet(pictures.back())->payload, "picture");
     tonemap(truth, Tonemap{show->exhibit.exposure}, wanted);
     double sum = 0;
@@ -86,15 +89,15 @@ TEST_F(StillPassTest, WhoRestsIsShownAReconstructionAndThenTimeGoesToSamples) {
   if (!begin()) GTEST_SKIP() << show->pass.problem;
   ASSERT_TRUE(steps_until([&] { return show->totals.reconstructed >= 1; }));
   ASSERT_TRUE(steps_until([&] { return is_shown(); }));
-  EXPECT_TRUE(visitor().rest.reconstructed);
+  EXPECT_TRUE(visitor().picture.rest.reconstructed);
   EXPECT_LT(error_of_last(), 6);
   uint64_t drawn = show->totals.drawn, samples = show->totals.samples;
   ASSERT_TRUE(steps_until([&] { return show->totals.reconstructed >= 4; }));
   EXPECT_EQ(show->totals.drawn, drawn);
   EXPECT_GT(show->totals.samples, samples);
-  EXPECT_GT(visitor().rest.passed_samples, 0.5);
-  ASSERT_TRUE(steps_until([&] { return visitor().rest.samples > 60; }, 20000));
-  ASSERT_TRUE(steps_until([&] { return visitor().rest.passed_samples > 60; }, 20000));
+  EXPECT_GT(visitor().picture.rest.passed_samples, 0.5);
+  ASSERT_TRUE(steps_until([&] { return visitor().picture.rest.samples > 60; }, 20000));
+  ASSERT_TRUE(steps_until([&] { return visitor().picture.rest.passed_samples > 60; }, 20000));
   ASSERT_TRUE(steps_until([&] { return is_shown(); }));
   EXPECT_LT(error_of_last(), 4);
 }
@@ -123,7 +126,7 @@ TEST_F(StillPassTest, NobodyWaitsForAFade) {
   turn(0.1);
   step();
   step();
-  EXPECT_TRUE(visitor().fade.from.rgb.empty());
+  EXPECT_TRUE(visitor().picture.fade.from.rgb.empty());
 }
 
 TEST_F(StillPassTest, WhoMovesOnLeavesItBehind) {
@@ -135,9 +138,9 @@ TEST_F(StillPassTest, WhoMovesOnLeavesItBehind) {
   EXPECT_EQ(show->pass.visitor, nullptr);
   EXPECT_EQ(show->totals.reconstructed, 0u);
   EXPECT_GE(show->totals.given_up, 1u);
-  EXPECT_FALSE(visitor().rest.reconstructed);
+  EXPECT_FALSE(visitor().picture.rest.reconstructed);
   ASSERT_TRUE(steps_until([&] { return show->totals.reconstructed >= 1; }));
-  ASSERT_TRUE(steps_until([&] { return !visitor().unshown; }));
+  ASSERT_TRUE(steps_until([&] { return !visitor().picture.unshown; }));
   EXPECT_LT(error_of_last(), 6);  // of where the visitor is now
 }
 
@@ -156,7 +159,7 @@ TEST_F(StillPassTest, EverybodyWhoRestsHasATurn) {
   EXPECT_TRUE(steps_until([&] {
     return !show->visitors.empty() &&
            std::all_of(show->visitors.begin(), show->visitors.end(),
-                       [](const Visitor& one) { return one.rest.reconstructed; });
+                       [](const Visitor& one) { return one.picture.rest.reconstructed; });
   }));
 }
 

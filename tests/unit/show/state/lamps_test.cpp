@@ -12,8 +12,11 @@
 #include "frame/jpeg.h"
 #include "show/answer/answer.h"
 #include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_load.h"
 #include "show/state/in_view.h"
+#include "show/state/make_show.h"
 #include "show/state/show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "world/load/lamp.h"
 
@@ -65,7 +68,7 @@ struct Lamps : testing::Test {
   }
   void step() {
     tick(*show, arrivals, now += 0.02);
-    for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+    for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
     show->easel.worker.wait();
     for (size_t i = 0; i < links.size(); i++)
       for (Link::Out out; links[i]->take_out(out);) {
@@ -126,19 +129,19 @@ TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   for (int i = 0; i < 50 && steps.empty(); i++) step();  // all are drawn in the same tick
   ASSERT_EQ(steps.size(), 1u);
   const std::vector<char> lit{0, 1};
-  for (const Visitor& visitor : show->visitors) EXPECT_EQ(visitor.lamps, lit);
+  for (const Visitor& visitor : show->visitors) EXPECT_EQ(visitor.picture.lamps, lit);
   step();
   EXPECT_TRUE(steps.empty());
 
   // Who has missed a switch before has another way to go.
   const std::vector<char> known[] = {{1, 1}, {1, 0}, {1, 1}, {1, 0}};
   size_t i = 0;
-  for (Visitor& visitor : show->visitors) visitor.lamps = known[i++];
+  for (Visitor& visitor : show->visitors) visitor.picture.lamps = known[i++];
   for (Visitor& visitor : show->visitors) follow_lamps(*show, visitor);
   ASSERT_EQ(steps.size(), 2u);
   EXPECT_EQ(steps[0].before, known[0]);
   EXPECT_EQ(steps[1].before, known[1]);
-  show->visitors.front().lamps = known[1];  // as if it had yet to follow
+  show->visitors.front().picture.lamps = known[1];  // as if it had yet to follow
   forget_light_steps(*show);
   ASSERT_EQ(steps.size(), 1u);
   EXPECT_EQ(steps[0].before, known[1]);
@@ -195,15 +198,15 @@ TEST_F(Lamps, AnswersOfTheOldLightAreNotTaken) {
   std::vector<Request> requests(64);
   for (size_t i = 0; i < requests.size(); i++)
     requests[i] = pixel_request(view, 5, int(i), 20, 0);
-  visitor.broker.ask(view, {show->technique, show->settings.transport}, requests);
-  std::optional<Piece> piece = visitor.broker.take();
+  visitor.picture.broker.ask(view, {show->technique, show->settings.transport}, requests);
+  std::optional<Piece> piece = visitor.picture.broker.take();
   ASSERT_TRUE(piece);
   Answer old{*piece, show->pose_number, std::vector<Sample>(piece->requests.size())};
   lamp(0, "ceiling", false);
   run(0.2);
-  EXPECT_EQ(visitor.lamps, std::vector<char>{0});
-  EXPECT_FALSE(visitor.broker.answer(old));
-  EXPECT_TRUE(visitor.broker.collect().empty());
+  EXPECT_EQ(visitor.picture.lamps, std::vector<char>{0});
+  EXPECT_FALSE(visitor.picture.broker.answer(old));
+  EXPECT_TRUE(visitor.picture.broker.collect().empty());
 }
 
 struct Package {

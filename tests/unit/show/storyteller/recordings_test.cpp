@@ -9,8 +9,9 @@
 
 #include "avatar/speech/speech_json.h"
 #include "avatar/speech/sound_file.h"
+#include "show/exhibit/exhibit_load.h"
 #include "show/storyteller/recordings.h"
-#include "show/storyteller/sound.h"
+#include "show/storyteller/sounding.h"
 
 namespace wellspring {
 namespace {

@@ -4,8 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "show/state/show.h"
 #include "show/answer/still.h"
+#include "show/state/make_show.h"
+#include "show/state/show.h"
+#include "show/storyteller/sounding.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "unit/show/tiny_figure.h"
 
@@ -57,7 +60,7 @@ struct TellersTest : testing::Test {
   void run(double seconds) {
     for (double end = now + seconds; now < end; now += 0.04) {
       tick(*show, arrivals, now);
-      for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+      for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
       for (Link::Out out; link->take_out(out);)
         if (!out.binary) {
           auto message = nlohmann::json::parse(out.text);
@@ -137,9 +140,9 @@ TEST_F(TellersTest, AStoryBringsItsOwnTellerAndVoice) {
 
 TEST_F(TellersTest, AKioskStandsBeforeWhoeverIsThereAndIsGreeted) {
   join("kiosk");
-  EXPECT_EQ(show->visitors.front().viewpoint, 0);
+  EXPECT_EQ(show->visitors.front().place.viewpoint, 0);
   order(R"({"type":"storyteller","teller":"otto"})");
-  EXPECT_EQ(show->visitors.front().viewpoint, 1);
+  EXPECT_EQ(show->visitors.front().place.viewpoint, 1);
   auto eye = std::make_shared<Link>(2, LinkKind::eye, "camera");
   arrivals.put(eye);
   for (int i = 0; i < 50 && asked.empty(); i++) {

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "show/state/in_view.h"
+#include "show/state/make_show.h"
 #include "show/state/show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "unit/show/tiny_figure.h"
 
@@ -65,7 +67,7 @@ struct TourLips : testing::Test {
   void run(double seconds) {
     for (double end = now + seconds; now < end; now += 0.04) {
       tick(*show, arrivals, now);
-      for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+      for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
       for (auto& link : links)
         for (Link::Out out; link->take_out(out);) {}
     }
@@ -79,7 +81,7 @@ TEST_F(TourLips, MoveWhileTheTourIsTold) {
   EXPECT_LT(lips(), 0.05f);
   order(0, R"({"type":"tour","action":"play"})");
   run(1.5);
-  ASSERT_TRUE(heard(show->visitors.front().narration.voice));
+  ASSERT_TRUE(heard(show->visitors.front().hearing.narration.voice));
   EXPECT_GT(lips(), 0.5f);
   order(0, R"({"type":"tour","action":"pause"})");
   run(1);
@@ -96,7 +98,7 @@ TEST_F(TourLips, NothingOfTheFaceRunsBehindTheVisitorsBack) {
   // Half round; the tour goes on.
   order(0, R"({"type":"input","seq":1,"move":[0,0,0],"look":[3.1416,0]})");
   ASSERT_FALSE(sees_head(*show, view_of(*show, show->visitors.front())));
-  ASSERT_TRUE(heard(show->visitors.front().narration.voice));
+  ASSERT_TRUE(heard(show->visitors.front().hearing.narration.voice));
   before = show->mind.work;
   run(0.8);
   EXPECT_GT(show->mind.work.ticks, before.ticks);
@@ -122,7 +124,7 @@ TEST_F(TourLips, HerOwnWordsComeFirst) {
   EXPECT_GT(lips(), 0.5f);
   order(1, R"({"type":"storyteller","story":"tale"})");
   run(1);
-  ASSERT_TRUE(heard(show->visitors.front().narration.voice)) << "the tour goes on";
+  ASSERT_TRUE(heard(show->visitors.front().hearing.narration.voice)) << "the tour goes on";
   EXPECT_LT(lips(), 0.05f);
 }
 
@@ -131,11 +133,11 @@ TEST_F(TourLips, OfTwoToursTheNearerOneInViewCounts) {
   join();
   for (size_t i = 0; i < 2; i++) order(i, R"({"type":"tour","action":"play"})");
   Visitor &far = show->visitors.front(), &near = show->visitors.back();
-  far.view.position = {-2, 1.6, 3.5};
-  near.view.position = {-2, 1.6, 2.5};
-  far.view.yaw = near.view.yaw = 0;
+  far.place.view.position = {-2, 1.6, 3.5};
+  near.place.view.position = {-2, 1.6, 2.5};
+  far.place.view.yaw = near.place.view.yaw = 0;
   EXPECT_EQ(heard_on_tour(*show), &near);
-  near.view.yaw = 3.1f;
+  near.place.view.yaw = 3.1f;
   EXPECT_EQ(heard_on_tour(*show), &far);
   EXPECT_NEAR(viewer_distance(*show), 2.5f, 0.15f);
   show->storyteller_visible = false;

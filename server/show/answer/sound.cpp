@@ -1,76 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/storyteller/sound.h"
+#include "show/answer/sound.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/log.h"
 #include "show/answer/events.h"
-#include "show/state/show.h"
 #include "wire/sound_packet.h"
 
 namespace wellspring {
 
-SpeechSource make_speech_source(std::shared_ptr<Speaker> speaker) {
-  SpeechSource source;
-  source.speak = [speaker](const SpeechRequest& request) { return speaker->speak(request); };
-  source.find = [speaker](const SpeechRequest& request) { return speaker->find(request); };
-  source.prepare = [speaker](const std::vector<SpeechRequest>& lines) { speaker->prepare(lines); };
-  source.counts = [speaker] { return speaker->counts(); };
-  return source;
-}
-
 namespace {
-
-SpeechRequest request_of(const StoryLine& line, const std::string& lang,
-                         const VoiceManner& manner) {
-  SpeechRequest request;
-  request.text = line.text;
-  request.lang = lang;
-  request.words_per_minute = manner.words_per_minute;
-  request.pitch = manner.pitch;
-  request.variant = manner.variant;
-  request.styles = line.styles;
-  return request;
-}
 
 VoiceManner manner_of(const Show& show) {
   const StorytellerPlace* teller = teller_of(show);
   return teller ? teller->voice : VoiceManner{};
 }
 
-}  // namespace
-
-std::vector<SpeechRequest> lines_of(const Exhibit& exhibit) {
-  std::vector<SpeechRequest> lines;
-  auto add = [&](const LocalScript& script, const VoiceManner& manner) {
-    for (const std::string& lang : exhibit.languages)
-      if (auto found = script.find(lang); found != script.end())
-        for (const StoryLine& line : found->second)
-          if (!line.recording) lines.push_back(request_of(line, lang, manner));
-  };
-  for (size_t i = 0; i < exhibit.storytellers.size(); i++) {
-    const StorytellerPlace& teller = exhibit.storytellers[i];
-    add(teller.greetings, teller.voice);
-    for (const StoryText& story : exhibit.stories)
-      if (story.teller < 0 ? i == 0 : story.teller == int(i)) add(story.text, teller.voice);
-    add(teller.farewells, teller.voice);
-  }
-  const VoiceManner narrator =
-      exhibit.storytellers.empty() ? VoiceManner{} : exhibit.storytellers.front().voice;
-  for (const TourPlan& tour : exhibit.tours)
-    for (const TourStop& stop : tour.stops) {
-      add(stop.way_text, narrator);
-      add(stop.text, narrator);
-    }
-  return lines;
-}
-
-namespace {
-
 constexpr uint8_t heard_everywhere = 1;  // flag of a sound packet
 
-bool listens(const Visitor& visitor) { return visitor.welcomed && visitor.sound; }
+bool listens(const Visitor& visitor) { return visitor.welcomed && visitor.hearing.wanted; }
 
 // A voice, what is heard of it, and the language it speaks.
 struct Channel {
@@ -106,7 +55,7 @@ VoiceEvents advance_channel(Show& show, Channel channel, float dt) {
   VoiceEvents events = advance_voice(channel.voice, dt, ask);
   if (events.ended) {  // heard to its end: nothing to stop
     for (Visitor& visitor : show.visitors)
-      if (visitor.utterance == channel.sounding.number) visitor.utterance = 0;
+      if (visitor.hearing.utterance == channel.sounding.number) visitor.hearing.utterance = 0;
     channel.sounding.going = false;
   }
   if (events.begun) {
@@ -137,10 +86,10 @@ const Speech* update_sounding(Show& show, const Voice& voice, Sounding& sounding
 }
 
 void stop_sound(Visitor& visitor) {
-  if (visitor.utterance == 0) return;
+  if (visitor.hearing.utterance == 0) return;
   visitor.link->drop_sound();
-  visitor.link->send_text(speech_stop_news(visitor.utterance));
-  visitor.utterance = 0;
+  visitor.link->send_text(speech_stop_news(visitor.hearing.utterance));
+  visitor.hearing.utterance = 0;
 }
 
 // What a visitor is to hear.
@@ -152,15 +101,16 @@ struct Source {
 };
 
 void send_pieces(Show& show, Visitor& visitor, const Source& source) {
+  VisitorSound& hearing = visitor.hearing;
   const Sounding& sounding = *source.sounding;
   const Speech& speech = *sounding.speech;
   const size_t piece = std::max(size_t(sound_piece * speech.rate), size_t(1));
   const double due = (double(source.voice->elapsed) + sound_ahead) * speech.rate;
-  while (visitor.samples_sent < speech.pcm.size() && double(visitor.samples_sent) < due) {
-    const size_t count = std::min(piece, speech.pcm.size() - visitor.samples_sent);
+  while (hearing.samples_sent < speech.pcm.size() && double(hearing.samples_sent) < due) {
+    const size_t count = std::min(piece, speech.pcm.size() - hearing.samples_sent);
     SoundHeader header;
     header.utterance = sounding.number;
-    header.start = uint32_t(visitor.samples_sent);
+    header.start = uint32_t(hearing.samples_sent);
     header.time_us = sounding.zero_us + uint64_t(1e6 * double(header.start) / speech.rate);
     header.total = uint32_t(speech.pcm.size());
     header.rate = uint32_t(speech.rate);
@@ -169,23 +119,24 @@ void send_pieces(Show& show, Visitor& visitor, const Source& source) {
     auto packet = std::make_shared<Packet>(
         make_sound_packet(header, std::span(speech.pcm).subspan(header.start, count)));
     if (!visitor.link->send_sound(std::move(packet))) {
-      visitor.given_up = sounding.number;
+      hearing.given_up = sounding.number;
       show.totals.sounds_given_up++;
       stop_sound(visitor);
       return;
     }
     show.totals.sounds++;
-    visitor.samples_sent += count;
+    hearing.samples_sent += count;
   }
 }
 
 // A visitor begins to hear what is being said, from the present moment on.
 void start_sound(Visitor& visitor, const Source& source) {
+  VisitorSound& hearing = visitor.hearing;
   const Sounding& sounding = *source.sounding;
   double from = std::max({double(source.voice->elapsed), double(source.voice->silent_until), 0.0});
   double at = std::round(from * sounding.speech->rate);
-  visitor.utterance = sounding.number;
-  visitor.samples_sent = std::min(size_t(at), sounding.speech->pcm.size());
+  hearing.utterance = sounding.number;
+  hearing.samples_sent = std::min(size_t(at), sounding.speech->pcm.size());
   visitor.link->send_text(speech_news(sounding.number, *sounding.speech, source.mouth));
 }
 
@@ -197,7 +148,7 @@ std::string spoken_language(const Show& show) {
     if (!visitor.welcomed) continue;
     if (show.voice.asked_by != 0 && visitor.link->id == show.voice.asked_by) return visitor.lang;
     if (!kiosk && visitor.kiosk) kiosk = &visitor;
-    if (!first && visitor.sound) first = &visitor;
+    if (!first && visitor.hearing.wanted) first = &visitor;
   }
   if (kiosk) return kiosk->lang;
   return first ? first->lang : show.exhibit.languages.front();
@@ -209,7 +160,7 @@ VoiceEvents advance_speech(Show& show, float dt) {
 }
 
 VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt) {
-  Narration& narration = visitor.narration;
+  Narration& narration = visitor.hearing.narration;
   return advance_channel(show,
                          {narration.voice, narration.sounding, visitor.lang, listens(visitor)}, dt);
 }
@@ -223,16 +174,16 @@ void send_sounds(Show& show) {
         dvec3(eval_mouth(show.mind, show.storyteller, show.pose)) + show.exhibit.scene.origin;
   for (Visitor& visitor : show.visitors) {
     Source source = teller;
-    Narration& narration = visitor.narration;
+    Narration& narration = visitor.hearing.narration;
     const Speech* narrated = update_sounding(show, narration.voice, narration.sounding);
     if (!narration.voice.queue.empty())
-      source = {&narration.voice, narrated ? &narration.sounding : nullptr, visitor.view.position,
-                true};
+      source = {&narration.voice, narrated ? &narration.sounding : nullptr,
+                visitor.place.view.position, true};
     const bool hears =
-        source.sounding && listens(visitor) && visitor.given_up != source.sounding->number;
-    if (!hears || visitor.utterance != source.sounding->number) stop_sound(visitor);
+        source.sounding && listens(visitor) && visitor.hearing.given_up != source.sounding->number;
+    if (!hears || visitor.hearing.utterance != source.sounding->number) stop_sound(visitor);
     if (!hears) continue;
-    if (visitor.utterance == 0) start_sound(visitor, source);
+    if (visitor.hearing.utterance == 0) start_sound(visitor, source);
     send_pieces(show, visitor, source);
   }
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where pictures are drawn while the show goes on: one thing at a time, as all of them read the
 // world and use all cores. Whatever it is at work on belongs to it; the tick looks in
-// (show/draw/picture.h), takes what is finished, moves the world, which nobody reads then, and gives it
-// the next (of a quick turn the surroundings first):
+// (show/draw/carry_out.h), takes what is finished, moves the world, which nobody reads then, and
+// gives it the next that is decided (show/draw/decide.h; of a quick turn the surroundings first):
 //
-//   idle --draw_next--> drawing --finish_drawing--> idle, or, if samples are asked for, --> tracing
+//   idle --carry_out--> drawing --take_finished--> idle, or, if samples are asked for, --> tracing
 //   --> idle
 //
 // Between the steps of a picture at rest the world may move, and what moves be drawn
@@ -23,7 +23,7 @@
 #include "picture/compositor.h"
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"
-#include "show/draw/picture_job.h"
+#include "show/state/picture_job.h"
 
 namespace wellspring {
 

@@ -19,6 +19,7 @@ struct PictureOrder {
   uint32_t leaps = 0;    // of the visitor, by then
   bool still = false;    // without motion for a moment
   bool figure = false;   // the storyteller may be in it
+  bool learns = false;   // its samples are kept for each pixel, for reconstructions
   bool reconstruct = false;  // it becomes a reconstruction instead of being shown
   bool samples_only = false;  // nothing is drawn
   bool settled = false;  // for long: the reference takes over
@@ -32,5 +33,8 @@ struct PictureOrder {
       around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels
   int samples = 0;
 };
+
+// It is drawn in steps, between which the world may move and what moves be drawn.
+inline bool in_steps(const PictureOrder& order) { return order.still && order.keep; }
 
 }  // namespace wellspring

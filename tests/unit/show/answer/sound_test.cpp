@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "show/answer/events.h"
+#include "show/state/make_show.h"
 #include "show/state/show.h"
+#include "show/tick.h"
 #include "unit/show/tiny_exhibit.h"
 #include "wire/sound_packet.h"
 
@@ -139,7 +141,7 @@ struct SoundTest : testing::Test {
   void run(double seconds) {
     for (double end = now + seconds; now < end; now += 0.04) {
       tick(*show, arrivals, now);
-      for (Visitor& visitor : show->visitors) visitor.encoder->task.wait();
+      for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
       for (Peer& peer : peers) {
         Link::Out out;
         while (peer.reads && peer.link->take_out(out)) {

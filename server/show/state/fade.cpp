@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/draw/fade.h"
+#include "show/state/fade.h"
 
 #include <algorithm>
 

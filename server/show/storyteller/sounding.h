@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The storyteller's voice on its way to the visitors. It speaks one language at a time, since one
-// mouth is seen by all: that of whoever asked for the story, else the kiosk's, else the first
-// listener's; subtitles stay everybody's own. Sound is sent in short pieces a little ahead of its
-// time, so that a stop is heard at once and a visitor who comes later hears the rest. Nothing is
-// made for those who do not listen. A visitor on a tour hears its narrator instead, and nobody else
-// does.
+// The sound of a voice as values: who can speak, what of it is being heard, and what of it one
+// visitor has been sent. Nothing is made for those who do not listen. What is done with them, tick
+// by tick: show/answer/sound.h.
 #pragma once
 #include <functional>
 #include <future>
@@ -17,8 +14,6 @@
 #include "show/storyteller/voice.h"
 
 namespace wellspring {
-
-struct Show;
 
 // Who speaks: a Speaker, or a test's stand-in. Each call returns at once.
 struct SpeechSource {
@@ -41,29 +36,26 @@ struct Sounding {
   std::string last_error;
 };
 
-inline constexpr double sound_piece = 0.25;  // seconds of one packet
-inline constexpr double sound_ahead = 1.2;   // seconds sent before they are due
-
 // Who says what to one visitor alone: the narrator of a tour.
 struct Narration {
   Voice voice;
   Sounding sounding;
 };
 
+// What one visitor hears.
+struct VisitorSound {
+  bool wanted = true;        // the visitor wants to hear
+  uint32_t utterance = 0;    // whose sound is being sent; 0: none
+  uint32_t given_up = 0;     // the utterance that was too much for its connection
+  size_t samples_sent = 0;   // of the utterance
+  Narration narration;       // of the tour
+};
+
+// A line as the synthesiser is asked for it.
+SpeechRequest request_of(const StoryLine& line, const std::string& lang,
+                         const VoiceManner& manner);
 // What the storytellers and the narrator of tours may say, greetings first: stories that anybody
 // may tell and tours in the voice of the first. The rest is made when it is asked for.
 std::vector<SpeechRequest> lines_of(const Exhibit& exhibit);
-
-// The language the storyteller speaks now.
-std::string spoken_language(const Show& show);
-
-// advance_voice with the speech of the show, and what follows from it.
-VoiceEvents advance_speech(Show& show, float dt);
-struct Visitor;
-VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt);
-
-// Sends what is due to every visitor who listens, and stops what has been stopped. After orders and
-// advance_speech, once a tick.
-void send_sounds(Show& show);
 
 }  // namespace wellspring

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/draw/decide.h"
+
+#include <algorithm>
+
+namespace wellspring {
+namespace {
+
+constexpr double on_time = 0.0005;  // seconds that a picture may come too early
+constexpr double skin_rate = 5;     // times a second that light on what moves is found
+// Of reconstructions.
+constexpr double first_after = 0.5;     // seconds at rest
+constexpr double least_samples = 0.25;  // a pixel: of fewer it makes no better picture
+constexpr double growth = 1.4;          // times as many samples as in the pass before
+constexpr double most_share = 0.35;     // of the time goes to passes
+
+bool moves(const VisitorDrawState& state, const RendererState& renderer) {
+  return renderer.background && !state.stands;
+}
+
+bool is_busy(int index, const VisitorDrawState& state, const RendererState& renderer) {
+  return state.at_work && index != renderer.drawn;
+}
+
+// Who has waited longest of those whom `wants` names; -1: nobody.
+template <class Wants, class Since>
+int longest_waiting(std::span<const VisitorDrawState> states, const Wants& wants,
+                    const Since& since) {
+  int next = -1;
+  for (int i = 0; i < int(states.size()); i++)
+    if (wants(i) && (next < 0 || since(states[size_t(i)]) < since(states[size_t(next)]))) next = i;
+  return next;
+}
+
+int next_to_pose(double now, std::span<const VisitorDrawState> states,
+                 const RendererState& renderer) {
+  auto wants = [&](int i) {
+    const VisitorDrawState& state = states[size_t(i)];
+    return !is_busy(i, state, renderer) && wants_moving(now, state);
+  };
+  return longest_waiting(states, wants, [](const VisitorDrawState& one) { return one.posed_at; });
+}
+
+// Where others wait, those whose picture stays do without more samples.
+int next_to_draw(double now, std::span<const VisitorDrawState> states,
+                 const RendererState& renderer) {
+  auto wants = [&](int i) {
+    const VisitorDrawState& state = states[size_t(i)];
+    return wants_picture(now, state, renderer) &&
+           (renderer.waiting == 0 || !keeps_picture(state));
+  };
+  return longest_waiting(states, wants, [](const VisitorDrawState& one) { return one.drawn_at; });
+}
+
+Purpose purpose_of(double now, const VisitorDrawState& state, const RendererState& renderer) {
+  if (wants_pass(now, state, renderer)) return Purpose::reconstruction;
+  bool learns = renderer.background && renderer.can_reconstruct;
+  return learns && keeps_picture(state) ? Purpose::samples : Purpose::shown;
+}
+
+}  // namespace
+
+bool has_backdrop(const VisitorDrawState& state) {
+  return state.welcomed && state.backdrop && !state.new_place && state.same_view && state.stands;
+}
+
+bool wants_moving(double now, const VisitorDrawState& state) {
+  if (!has_backdrop(state) || state.unshown || !state.can_take) return false;
+  return now - state.posed_at >= 1 / state.moving_rate - on_time;
+}
+
+bool wants_skin(double now, std::span<const VisitorDrawState> states,
+                const RendererState& renderer) {
+  if (!renderer.has_skin || now - renderer.skin_at < 1 / skin_rate - on_time) return false;
+  auto sees = [](const VisitorDrawState& one) { return one.welcomed && one.sees_figure; };
+  return std::any_of(states.begin(), states.end(), sees);
+}
+
+bool wants_picture(double now, const VisitorDrawState& state, const RendererState& renderer) {
+  if (!state.welcomed || state.at_work || !state.can_take) return false;
+  if (state.new_place) return true;
+  const bool walks = moves(state, renderer);
+  if ((state.unshown || state.in_pass) && !walks) return false;
+  // Other light, or the storyteller came or went: who rests sees it at once.
+  bool news = state.other_light || state.drew_figure != state.sees_figure;
+  if (!walks && news) return true;
+  double rate = walks ? state.picture_rate : state.drawing_rate;
+  return now - state.drawn_at >= 1 / rate - on_time;
+}
+
+bool keeps_picture(const VisitorDrawState& state) {
+  return state.rest.reconstructed && state.stands && state.same_view && !state.new_place &&
+         !state.other_light;
+}
+
+bool wants_pass(double now, const VisitorDrawState& state, const RendererState& renderer) {
+  const RestState& rest = state.rest;
+  if (!renderer.background || !renderer.can_reconstruct || renderer.in_pass) return false;
+  if (!state.stands || now - state.moved_at < first_after || rest.samples < least_samples)
+    return false;
+  // What moves is not in it.
+  if (state.drew_figure && !state.backdrop) return false;
+  if (!rest.reconstructed) return true;
+  double pause = rest.passed_seconds * (1 / most_share - 1);
+  bool enough = rest.samples >= growth * rest.passed_samples ||
+                (has_all_samples(rest) && rest.passed_samples < most_rest_samples);
+  return enough && now - rest.passed_at >= pause;
+}
+
+Demand find_demand(double now, std::span<const VisitorDrawState> states,
+                   const RendererState& renderer) {
+  if (!renderer.idle) return {};
+  auto waits = [&](const VisitorDrawState& state) {
+    return wants_picture(now, state, renderer) && !keeps_picture(state);
+  };
+  return {int(std::count_if(states.begin(), states.end(), waits)),
+          next_to_pose(now, states, renderer) >= 0};
+}
+
+Decision decide(double now, std::span<const VisitorDrawState> states,
+                const RendererState& renderer) {
+  if (!renderer.idle || !renderer.background) return {};
+  if (int next = next_to_pose(now, states, renderer); next >= 0) return {Drawing::moving, next};
+  if (wants_skin(now, states, renderer)) return {Drawing::skin};
+  if (renderer.drawn >= 0)
+    return {Drawing::go_on, renderer.drawn, renderer.traces && renderer.waiting > 0};
+  auto asks = [](const VisitorDrawState& one) { return one.asked_seconds > 0; };
+  if (std::any_of(states.begin(), states.end(), asks)) return {Drawing::samples};
+  if (renderer.in_pass && renderer.waiting == 0) return {Drawing::pass};
+  int next = next_to_draw(now, states, renderer);
+  if (next < 0) return {};
+  return {Drawing::picture, next, false, purpose_of(now, states[size_t(next)], renderer)};
+}
+
+}  // namespace wellspring

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// What pictures of walking visitors have asked for, in turn, in the time that was left for it: the
+// answers are in the next ones. Likewise in three steps (show/draw/picture.h).
+#pragma once
+#include "show/state/show.h"
+
+namespace wellspring {
+
+// By the tick, while the easel is idle. Says whether there is anything.
+bool order_samples(Show& show);
+// On the easel.
+void trace_samples(const Show& show, Easel& easel);
+// By the tick, when that is done.
+void finish_samples(Show& show);
+
+}  // namespace wellspring

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture is to be, decided before it is drawn: for which view, how finely, with how many
+// samples. Pure functions of the show.
+#pragma once
+#include "show/draw/decide.h"
+#include "show/state/show.h"
+
+namespace wellspring {
+
+// `busy` visitors share the time.
+PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy,
+                           Purpose purpose = Purpose::shown);
+// The picture of this order would not be shown, since the visitor is somewhere else by now or has
+// left; or one at rest would wait for samples of what is no longer so: its visitor moves on, lamps
+// were switched, the storyteller came or went.
+bool is_outdated(const Show& show, const PictureOrder& order, const Visitor& visitor);
+
+}  // namespace wellspring

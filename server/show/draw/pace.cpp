@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/draw/pace.h"
+
+#include <algorithm>
+#include <oneapi/tbb/info.h>
+
+#include "show/state/in_view.h"
+
+namespace wellspring {
+namespace {
+
+constexpr double still_rate = 25;      // pictures a second while only the storyteller moves
+constexpr double settling_rate = 7;    // while nothing moves: more time for samples
+constexpr double resting_rate = 4;     // when nothing in the picture changes any more
+constexpr double backdrop_rate = 4;    // pictures a second of what does not move
+constexpr double learning_rate = 1.5;  // of pictures before the first reconstruction,
+constexpr double learning_backdrop_rate = 0.75;  // likewise of what does not move
+constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
+constexpr double most_moving_share = 0.5;  // of the time, for what moves
+constexpr float nearly_all = 0.999f;   // converged
+
+// Of draw_state() what does not depend on rates.
+VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
+  const VisitorPicture& picture = visitor.picture;
+  const VisitorPlace& place = visitor.place;
+  VisitorDrawState state;
+  state.welcomed = visitor.welcomed;
+  state.at_work = picture.at_work;
+  state.can_take = may_take(show, visitor);
+  state.stands = stands(show, visitor);
+  state.new_place = place.leaps != picture.order.leaps;
+  state.same_view = picture.order.view == place.last_view;
+  state.other_light = picture.lamps != show.switches.lit;
+  state.sees_figure = visitor.welcomed && sees_figure(show, place.last_view);
+  state.drew_figure = picture.order.figure;
+  state.unshown = picture.unshown;
+  state.backdrop = picture.backdrop;
+  state.in_pass = show.pass.visitor == &visitor;
+  state.drawn_at = picture.drawn_at;
+  state.posed_at = picture.posed_at;
+  state.moved_at = place.moved_at;
+  state.asked_seconds = picture.broker_seconds;
+  state.rest = picture.rest;
+  return state;
+}
+
+int count_backdrops(const Show& show) {
+  auto has = [&](const Visitor& one) { return has_backdrop(facts_of(show, one)); };
+  return int(std::count_if(show.visitors.begin(), show.visitors.end(), has));
+}
+
+// Pictures a second of what moves, for each of the `backdrops` visitors who have one.
+double moving_rate(const Show& show, const Visitor& visitor, int backdrops) {
+  double seconds = 0.001 * double(visitor.times.moving) * double(std::max(backdrops, 1));
+  double rate = picture_rate(show, visitor);
+  return seconds > 0 ? std::min(rate, most_moving_share / seconds) : rate;
+}
+
+VisitorDrawState state_of(const Show& show, const Visitor& visitor, int backdrops) {
+  VisitorDrawState state = facts_of(show, visitor);
+  state.picture_rate = picture_rate(show, visitor);
+  state.drawing_rate = drawing_rate(show, visitor);
+  state.moving_rate = moving_rate(show, visitor, backdrops);
+  return state;
+}
+
+}  // namespace
+
+void watch(const Show& show, Visitor& visitor) {
+  VisitorPlace& place = visitor.place;
+  View view = view_of(show, visitor);
+  if (view != place.last_view) {
+    place.moved_at = show.time;
+    visitor.picture.rest = {};
+  }
+  if (note_view(place.heading, show.time, view)) place.leaps++;
+  place.last_view = view;
+}
+
+bool stands(const Show& show, const Visitor& visitor) {
+  return visitor.shown.frame_number > 0 && show.time - visitor.place.moved_at > still_after &&
+         visitor.place.velocity == vec3(0) && visitor.place.move == vec3(0);
+}
+
+bool rests(const Show& show, const Visitor& visitor) {
+  if (!stands(show, visitor) || sees_figure(show, visitor.place.last_view)) return false;
+  return keeps_picture(facts_of(show, visitor)) ? has_all_samples(visitor.picture.rest)
+                                                : visitor.picture.stats.converged >= nearly_all;
+}
+
+int count_moving(const Show& show) {
+  auto moves = [&](const Visitor& one) { return one.welcomed && !stands(show, one); };
+  return int(std::count_if(show.visitors.begin(), show.visitors.end(), moves));
+}
+
+bool may_take(const Show& show, const Visitor& visitor) {
+  return !visitor.link->picture_pending() && may_send(visitor.shown.flow, show.time);
+}
+
+double picture_rate(const Show& show, const Visitor& visitor) {
+  double rate = visitor.wants.fps > 0 ? double(visitor.wants.fps) : double(show.settings.fps);
+  if (stands(show, visitor)) {
+    rate = std::min(rate, sees_figure(show, visitor.place.last_view) ? still_rate
+                          : rests(show, visitor)               ? resting_rate
+                                                               : settling_rate);
+  } else if (show.settings.background && visitor.times.warp > 0) {
+    // A warp takes all cores, its JPEG one.
+    double milliseconds = double(visitor.times.warp) +
+                          double(visitor.times.encode) / oneapi::tbb::info::default_concurrency();
+    rate = std::min(rate, warping_share / (0.001 * milliseconds * std::max(count_moving(show), 1)));
+  }
+  return std::clamp(rate, 1.0, 120.0);
+}
+
+double drawing_rate(const Show& show, const Visitor& visitor) {
+  const VisitorPicture& picture = visitor.picture;
+  double rate = picture_rate(show, visitor);
+  if (!stands(show, visitor))
+    return show.settings.background
+               ? std::min(rate, 1 / plan_next_keyframe(show, visitor).period)
+               : rate;
+  if (picture.backdrop) rate = backdrop_rate;
+  // Until the first reconstruction, samples do more for it than pictures.
+  bool first = show.pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
+  first &= picture.backdrop || !picture.order.figure;
+  return first ? std::min(rate, picture.backdrop ? learning_backdrop_rate : learning_rate) : rate;
+}
+
+double moving_share(const Show& show) {
+  const int backdrops = count_backdrops(show);
+  double share = 0;
+  for (const Visitor& visitor : show.visitors)
+    if (has_backdrop(facts_of(show, visitor)))
+      share += 0.001 * double(visitor.times.moving) * moving_rate(show, visitor, backdrops);
+  return std::min(share, most_moving_share);
+}
+
+double seconds_to_moving(const Show& show) {
+  const int backdrops = count_backdrops(show);
+  double seconds = 1;
+  for (const Visitor& visitor : show.visitors)
+    if (has_backdrop(facts_of(show, visitor))) {
+      double due = visitor.picture.posed_at + 1 / moving_rate(show, visitor, backdrops);
+      seconds = std::min(seconds, due - show.time);
+    }
+  return std::max(seconds, 0.0);
+}
+
+DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
+  const StageTimes& times = visitor.times;
+  auto seconds = [](float milliseconds) { return 0.001 * double(milliseconds); };
+  return {show.samples_per_second, seconds(times.drawing), seconds(times.display + times.tonemap),
+          seconds(times.light)};
+}
+
+KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor) {
+  const DrawingCosts costs = drawing_costs(show, visitor);
+  double light = costs.light_seconds > 0 ? costs.light_seconds : costs.display_seconds;
+  return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(show), 1),
+                       visitor.picture.order.scale);
+}
+
+VisitorDrawState draw_state(const Show& show, const Visitor& visitor) {
+  return state_of(show, visitor, count_backdrops(show));
+}
+
+std::vector<VisitorDrawState> draw_states(const Show& show) {
+  const int backdrops = count_backdrops(show);
+  std::vector<VisitorDrawState> states;
+  for (const Visitor& visitor : show.visitors)
+    states.push_back(state_of(show, visitor, backdrops));
+  return states;
+}
+
+RendererState renderer_state(const Show& show) {
+  const Easel& easel = show.easel;
+  RendererState state;
+  state.idle = easel.idle();
+  state.background = show.settings.background;
+  int index = 0;
+  for (const Visitor& visitor : show.visitors) {
+    if (&visitor == easel.drawn) state.drawn = index;
+    index++;
+  }
+  state.traces = easel.step == DrawingStep::trace;
+  state.can_reconstruct = show.pass.denoiser != nullptr;
+  state.in_pass = show.pass.visitor != nullptr;
+  state.has_skin = !show.skin.places.empty();
+  state.skin_at = easel.skin.time;
+  return state;
+}
+
+}  // namespace wellspring

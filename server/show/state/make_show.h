@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The beginning of a show, and of a storyteller.
+#pragma once
+#include <memory>
+
+#include "show/state/show.h"
+
+namespace wellspring {
+
+// Takes the exhibit over. Throws std::invalid_argument for an unknown technique, ExhibitError for a
+// tour that cannot be walked.
+std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
+
+// Another storyteller comes in place of the one that is there, who falls silent; knows nobody yet
+// and greets anew. Nothing happens when it is there already.
+void change_teller(Show& show, size_t teller);
+
+}  // namespace wellspring

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is drawn when: a table with a row for every rule.
+#include "show/draw/decide.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace wellspring {
+
+void PrintTo(const Decision& one, std::ostream* out) {
+  static const char* names[] = {"nothing", "moving", "skin", "go_on", "samples", "pass", "picture"};
+  *out << names[int(one.what)] << " of " << one.visitor << (one.hurry ? ", in a hurry" : "")
+       << ", purpose " << int(one.purpose);
+}
+
+void PrintTo(const Demand& one, std::ostream* out) {
+  *out << one.waiting << " wait" << (one.moving ? ", what moves is due" : "");
+}
+
+namespace {
+
+constexpr double now = 100;  // show time
+
+using States = std::vector<VisitorDrawState>;
+
+// Who walks, whose last picture was sent, and whose next is not due for a second.
+VisitorDrawState walker() {
+  VisitorDrawState state;
+  state.welcomed = state.can_take = true;
+  state.drawn_at = now;
+  state.moved_at = now;
+  return state;
+}
+
+// Who has stood for a while: nothing changes in its picture.
+VisitorDrawState stander() {
+  VisitorDrawState state = walker();
+  state.stands = state.same_view = true;
+  state.moved_at = now - 20;
+  return state;
+}
+
+// Before whom the storyteller stands, drawn by herself over a picture at rest.
+VisitorDrawState listener() {
+  VisitorDrawState state = stander();
+  state.sees_figure = state.drew_figure = state.backdrop = true;
+  state.posed_at = now;
+  return state;
+}
+
+// Whose picture is a reconstruction.
+VisitorDrawState reconstructed() {
+  VisitorDrawState state = stander();
+  state.rest.reconstructed = true;
+  state.rest.samples = state.rest.passed_samples = 4;
+  state.rest.passed_at = now - 10;
+  state.rest.passed_seconds = 1;
+  return state;
+}
+
+// For whom a picture is due.
+VisitorDrawState due(VisitorDrawState state, double seconds_ago = 2) {
+  state.drawn_at = now - seconds_ago;
+  return state;
+}
+
+// For whom what moves is due.
+VisitorDrawState moving_due(VisitorDrawState state, double seconds_ago = 2) {
+  state.posed_at = now - seconds_ago;
+  return state;
+}
+
+struct Row {
+  const char* rule;
+  std::function<void(States&, RendererState&)> given;
+  Decision expected;
+};
+
+const std::vector<Row> rows = {
+    {"nobody is there: nothing is drawn", [](States&, RendererState&) {}, {}},
+    {"what the renderer has in hand is waited for",
+     [](States& all, RendererState& renderer) {
+       all = {due(walker())};
+       renderer.idle = false;
+     },
+     {}},
+    {"without a background the tick draws all by itself",
+     [](States& all, RendererState& renderer) {
+       all = {due(walker())};
+       renderer.background = false;
+     },
+     {}},
+    {"who has not been welcomed gets no picture",
+     [](States& all, RendererState&) {
+       all = {due(walker())};
+       all[0].welcomed = false;
+     },
+     {}},
+    {"whose browser or socket cannot take one gets no picture",
+     [](States& all, RendererState&) {
+       all = {due(walker())};
+       all[0].can_take = false;
+     },
+     {}},
+    {"a walker gets pictures at its rate",
+     [](States& all, RendererState&) { all = {due(walker(), 0.99), due(walker(), 1)}; },
+     {Drawing::picture, 1}},
+    {"who walks fast enough for it gets them as often as they are shown, not as they are drawn",
+     [](States& all, RendererState&) {
+       all = {due(walker(), 0.5)};
+       all[0].picture_rate = 4;
+       all[0].drawing_rate = 1;
+     },
+     {Drawing::picture, 0}},
+    {"who stands gets them as often as pictures at rest are drawn",
+     [](States& all, RendererState&) {
+       all = {due(stander(), 0.5)};
+       all[0].picture_rate = 4;
+       all[0].drawing_rate = 1;
+     },
+     {}},
+    {"a new place is drawn at once",
+     [](States& all, RendererState&) {
+       all = {stander()};
+       all[0].new_place = all[0].unshown = true;
+     },
+     {Drawing::picture, 0}},
+    {"who stands is shown one picture before the next is drawn",
+     [](States& all, RendererState&) {
+       all = {due(stander())};
+       all[0].unshown = true;
+     },
+     {}},
+    {"a walker's next is drawn before the last was sent: that is warped meanwhile",
+     [](States& all, RendererState&) {
+       all = {due(walker())};
+       all[0].unshown = true;
+     },
+     {Drawing::picture, 0}},
+    {"who rests sees switched lamps at once",
+     [](States& all, RendererState&) {
+       all = {stander()};
+       all[0].other_light = true;
+     },
+     {Drawing::picture, 0}},
+    {"a walker sees switched lamps in its next picture",
+     [](States& all, RendererState&) {
+       all = {walker()};
+       all[0].other_light = true;
+     },
+     {}},
+    {"who rests sees at once that the storyteller came or went",
+     [](States& all, RendererState&) {
+       all = {stander()};
+       all[0].sees_figure = true;
+     },
+     {Drawing::picture, 0}},
+    {"who has waited longest comes first",
+     [](States& all, RendererState&) {
+       all = {due(walker(), 2), due(walker(), 4), due(walker(), 3)};
+     },
+     {Drawing::picture, 1}},
+    {"of two who wait alike the first comes first",
+     [](States& all, RendererState&) { all = {due(walker()), due(walker())}; },
+     {Drawing::picture, 0}},
+    {"what moves is drawn over a picture at rest, at its own rate",
+     [](States& all, RendererState&) {
+       all = {moving_due(listener(), 0.99), moving_due(listener())};
+     },
+     {Drawing::moving, 1}},
+    {"what moves comes before pictures",
+     [](States& all, RendererState&) { all = {due(walker()), moving_due(listener())}; },
+     {Drawing::moving, 1}},
+    {"what moves comes between the steps of the same visitor's picture",
+     [](States& all, RendererState& renderer) {
+       all = {moving_due(listener())};
+       all[0].at_work = true;
+       renderer.drawn = 0;
+     },
+     {Drawing::moving, 0}},
+    {"what moves waits for the visitor's samples",
+     [](States& all, RendererState&) {
+       all = {moving_due(listener())};
+       all[0].at_work = true;
+     },
+     {}},
+    {"what moves is not laid over a picture that nobody has seen yet",
+     [](States& all, RendererState&) {
+       all = {moving_due(listener())};
+       all[0].unshown = true;
+     },
+     {}},
+    {"over a picture of another view nothing is laid",
+     [](States& all, RendererState&) {
+       all = {moving_due(listener())};
+       all[0].same_view = false;
+     },
+     {}},
+    {"light on what moves is found five times a second where somebody sees it",
+     [](States& all, RendererState& renderer) {
+       all = {listener()};
+       renderer.has_skin = true;
+       renderer.skin_at = now - 0.2;
+     },
+     {Drawing::skin}},
+    {"and not more often",
+     [](States& all, RendererState& renderer) {
+       all = {listener()};
+       renderer.has_skin = true;
+       renderer.skin_at = now - 0.19;
+     },
+     {}},
+    {"light on what moves is not found where nobody sees it",
+     [](States& all, RendererState& renderer) {
+       all = {stander()};
+       renderer.has_skin = true;
+     },
+     {}},
+    {"light on what moves comes after what moves and before what is begun",
+     [](States& all, RendererState& renderer) {
+       all = {due(walker()), listener()};
+       renderer.has_skin = true;
+       renderer.drawn = 0;
+     },
+     {Drawing::skin}},
+    {"a picture that is begun goes on before the next",
+     [](States& all, RendererState& renderer) {
+       all = {due(stander()), due(walker(), 9)};
+       all[0].at_work = true;
+       renderer.drawn = 0;
+     },
+     {Drawing::go_on, 0}},
+    {"where others wait, it is drawn with the samples that it has by then",
+     [](States& all, RendererState& renderer) {
+       all = {due(stander()), due(walker(), 9)};
+       renderer.drawn = 0;
+       renderer.traces = true;
+       renderer.waiting = 1;
+     },
+     {Drawing::go_on, 0, true}},
+    {"its other steps are not left out",
+     [](States& all, RendererState& renderer) {
+       all = {due(stander()), due(walker(), 9)};
+       renderer.drawn = 0;
+       renderer.waiting = 1;
+     },
+     {Drawing::go_on, 0, false}},
+    {"samples that were asked for come before the next picture",
+     [](States& all, RendererState&) {
+       all = {due(walker()), walker()};
+       all[1].asked_seconds = 0.01;
+     },
+     {Drawing::samples}},
+    {"a reconstruction goes on while nobody waits",
+     [](States& all, RendererState& renderer) {
+       all = {stander()};
+       all[0].in_pass = renderer.in_pass = true;
+     },
+     {Drawing::pass}},
+    {"others' pictures come before it",
+     [](States& all, RendererState& renderer) {
+       all = {due(stander(), 9), due(walker())};
+       all[0].in_pass = renderer.in_pass = true;
+       renderer.waiting = 1;
+     },
+     {Drawing::picture, 1}},
+    {"half a second after a visitor stands its picture becomes a reconstruction",
+     [](States& all, RendererState& renderer) {
+       all = {due(stander())};
+       all[0].moved_at = now - 0.5;
+       all[0].rest.samples = 0.25;
+       renderer.can_reconstruct = true;
+     },
+     {Drawing::picture, 0, false, Purpose::reconstruction}},
+    {"not sooner",
+     [](States& all, RendererState& renderer) {
+       all = {due(stander())};
+       all[0].moved_at = now - 0.49;
+       all[0].rest.samples = 1;
+       renderer.can_reconstruct = true;
+     },
+     {Drawing::picture, 0, false, Purpose::shown}},
+    {"not of fewer samples than a quarter a pixel",
+     [](States& all, RendererState& renderer) {
+       all = {due(stander())};
+       all[0].rest.samples = 0.24;
+       renderer.can_reconstruct = true;
+     },
+     {Drawing::picture, 0, false, Purpose::shown}},
+    {"not where what moves would be in it",
+     [](States& all, RendererState& renderer) {
+       all = {due(listener())};
+       all[0].backdrop = false;
+       all[0].rest.samples = 1;
+       renderer.can_reconstruct = true;
+     },
+     {Drawing::picture, 0, false, Purpose::shown}},
+    {"not where there is no network",
+     [](States& all, RendererState&) {
+       all = {due(stander())};
+       all[0].rest.samples = 1;
+     },
+     {Drawing::picture, 0, false, Purpose::shown}},
+    {"who has a reconstruction gets samples alone",
+     [](States& all, RendererState& renderer) {
+       all = {due(reconstructed())};
+       renderer.can_reconstruct = true;
+     },
+     {Drawing::picture, 0, false, Purpose::samples}},
+    {"the next one begins at 1.4 times as many samples",
+     [](States& all, RendererState& renderer) {
+       all = {due(reconstructed())};
+       all[0].rest.samples = 1.4 * 4;
+       renderer.can_reconstruct = true;
+     },
+     {Drawing::picture, 0, false, Purpose::reconstruction}},
+    {"passes take a third of the time at most",
+     [](States& all, RendererState& renderer) {
+       all = {due(reconstructed())};
+       all[0].rest.samples = 8;
+       all[0].rest.passed_at = now - 1.8;
+       renderer.can_reconstruct = true;
+     },
+     {Drawing::picture, 0, false, Purpose::samples}},
+    {"the last one has all samples that are kept",
+     [](States& all, RendererState& renderer) {
+       all = {due(reconstructed())};
+       all[0].rest.samples = most_rest_samples;
+       all[0].rest.passed_samples = 0.9 * most_rest_samples;
+       renderer.can_reconstruct = true;
+     },
+     {Drawing::picture, 0, false, Purpose::reconstruction}},
+    {"of a reconstruction in other light a drawn picture is made",
+     [](States& all, RendererState& renderer) {
+       all = {due(reconstructed())};
+       all[0].other_light = true;
+       all[0].rest.samples = 4;
+       renderer.can_reconstruct = true;
+     },
+     {Drawing::picture, 0, false, Purpose::shown}},
+    {"where others wait, who only gains by samples does without",
+     [](States& all, RendererState& renderer) {
+       all = {due(reconstructed(), 9), due(walker())};
+       renderer.can_reconstruct = true;
+       renderer.waiting = 1;
+     },
+     {Drawing::picture, 1}},
+};
+
+TEST(Decide, every_rule_of_the_table) {
+  for (const Row& row : rows) {
+    States states;
+    RendererState renderer;
+    row.given(states, renderer);
+    EXPECT_EQ(decide(now, states, renderer), row.expected) << row.rule;
+  }
+}
+
+TEST(Demand, counts_who_waits_for_a_picture_and_not_who_gains_by_samples) {
+  RendererState renderer;
+  renderer.can_reconstruct = true;
+  const States states{due(walker()), due(reconstructed()), walker(), due(stander())};
+  EXPECT_EQ(find_demand(now, states, renderer), (Demand{2, false}));
+}
+
+TEST(Demand, the_storyteller_moves_where_what_moves_is_due) {
+  EXPECT_EQ(find_demand(now, States{moving_due(listener())}, {}), (Demand{0, true}));
+}
+
+TEST(Demand, nobody_waits_while_the_renderer_is_busy) {
+  RendererState renderer;
+  renderer.idle = false;
+  const States states{due(walker()), moving_due(listener())};
+  EXPECT_EQ(find_demand(now, states, renderer), Demand{});
+}
+
+}  // namespace
+}  // namespace wellspring
