@@ -224,6 +224,22 @@ TEST(MarkdownPage, ResultsBelongToTheReportThatMadeThem) {
   EXPECT_EQ(reports_in(older), std::vector<std::string>{"cache.warp"});
 }
 
+TEST(MarkdownPage, EveryReportIsInTheDocuments) {
+  auto read = [](const std::string& file) {
+    std::stringstream text;
+    text << std::ifstream(std::string(WELLSPRING_SOURCE) + "/" + file).rdbuf();
+    return text.str();
+  };
+  const std::string index = read("BENCHMARKS.md");
+  for (const ReportEntry& entry : report_entries()) {
+    std::string file = std::string("docs/benchmarks/") + entry.name + ".md", page = read(file);
+    EXPECT_NE(page.find(std::string("# ") + entry.name + "\n"), std::string::npos) << file;
+    EXPECT_LE(count_lines(page), most_page_lines) << file;
+    EXPECT_NE(index.find("](" + file + ")"), std::string::npos) << file << " is not in the index";
+  }
+  EXPECT_LE(count_lines(index), most_page_lines);
+}
+
 TEST(MarkdownPage, PagesAreWrittenFromFiles) {
   namespace fs = std::filesystem;
   fs::path folder = fs::temp_directory_path() / "wellspring_markdown_page_test";
