@@ -2,6 +2,7 @@
 #include "markdown_page.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -56,10 +57,21 @@ bool shows(const PageColumn& column, const json& result) {
   return column.metric == text_of(result, "name") || column.metric == metric_of(result);
 }
 
+bool has_words(std::string_view text, std::string_view words) {
+  auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  for (size_t at = text.find(words); at != text.npos; at = text.find(words, at + 1)) {
+    size_t end = at + words.size();
+    if ((at == 0 || !is_letter(text[at - 1])) && (end == text.size() || !is_letter(text[end])))
+      return true;
+  }
+  return false;
+}
+
 std::string heading_of(const PageColumn& column, const json& result) {
   std::string unit = column.unit;
   if (unit.empty() && column.field == "value") unit = text_of(result, "unit");
-  if (unit.empty() || unit == "1" || column.heading.find(unit) != std::string::npos)
+  if (unit == "1/s") unit = "a second";
+  if (unit.empty() || unit == "1" || has_words(column.heading, unit))
     return escape_cell(column.heading);
   return escape_cell(column.heading + ", " + unit);
 }
@@ -187,15 +199,15 @@ std::string print_table(Lines lines, size_t most_rows) {
 }
 
 // Broken between words so that no line is longer than a page is wide.
-std::string wrap(std::string_view text) {
+std::string wrap(std::string_view text, size_t indent = 0) {
   std::string wrapped;
   size_t column = 0;
   while (!text.empty()) {
     size_t end = std::min(text.find(' '), text.size());
     if (end > 0 && column > 0) {
       bool fits = column + 1 + end <= page_width;
-      wrapped += fits ? ' ' : '\n';
-      column = fits ? column + 1 : 0;
+      wrapped += fits ? " " : "\n" + std::string(indent, ' ');
+      column = fits ? column + 1 : indent;
     }
     wrapped += text.substr(0, end);
     column += end;
@@ -210,7 +222,7 @@ std::string print_head(const ReportPage& page) {
   std::string text =
       "<!-- Written by ./wellspring bench --markdown: what is changed here is lost. -->\n# " +
       page.report + "\n\n" + wrap(page.question) + "\n";
-  for (const std::string& note : page.notes) text += wrap("- " + note);
+  for (const std::string& note : page.notes) text += wrap("- " + note, 2);
   return page.notes.empty() ? text : text + "\n";
 }
 
@@ -257,12 +269,12 @@ std::string escape_cell(std::string_view text) {
 std::string format_figure(double value) {
   if (!std::isfinite(value)) return nothing;
   double size = std::abs(value);
-  char text[400];
+  char digits[400];
+  std::snprintf(digits, sizeof digits, size >= 999.5 ? "%.0f" : "%.3g", size < 5e-5 ? 0 : size);
+  std::string text = digits;
   if (size >= 999.5)
-    std::snprintf(text, sizeof text, "%.0f", value);
-  else
-    std::snprintf(text, sizeof text, "%.3g", size < 5e-5 ? 0 : value);
-  return text;
+    for (size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
+  return value < 0 && size >= 5e-5 ? "-" + text : text;
 }
 
 std::vector<std::string> reports_in(const json& report) {

@@ -16,7 +16,7 @@ constexpr int most_page_lines = 60;
 // What a column shows of a result.
 struct PageColumn {
   std::string metric;   // of the results: "flip"; or a whole name, where two metrics are alike
-  std::string heading;  // the unit is put behind it
+  std::string heading;  // the unit is put behind it unless it has it
   double scale = 1;
   std::string unit = {};        // of the scaled value; empty: the result's own
   std::string field = "value";  // or another of the result's fields
@@ -66,7 +66,7 @@ ReportPage plain_page(const std::string& name);
 // The most lines that the page can have, whatever the results.
 int count_page_lines(const ReportPage& page);
 
-// Three digits, or all that are before the point: 0.0372, 60.1, 47600.
+// Three digits, or all that are before the point: 0.0372, 60.1, 47,600.
 std::string format_figure(double value);
 
 // What stands in a cell of a table: without line ends, | as \|.
