@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The visits' curves as SVG: to be read in a browser and beside the text of BENCHMARKS.md.
+// The visits' curves as SVG: to be read in a browser and beside the tables of docs/benchmarks.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,42 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
-// wellspring bench: measures the parts and the whole, prints and saves the report.
+// wellspring bench: measures the parts and the whole, prints and saves the report, as JSON and as
+// pages of Markdown.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 
 #include "base/log.h"
 #include "cache_visit_trace.h"
-#include "light_cycles.h"
-#include "light_photons.h"
-#include "light_rays.h"
 #include "report.h"
+#include "reports.h"
 #include "show/exhibit/exhibit_load.h"
+
+namespace {
+
+// The words of the command line that say what is measured; places of files are left out.
+std::vector<std::string> words_of(const CLI::App& app) {
+  std::vector<std::string> words;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    bool is_place = name == "--json" || name == "--markdown" || name == "--plots" ||
+                    name == "--scenes" || name == "--content" || name == "--web" ||
+                    name == "--visit-pictures";
+    if (option->count() == 0 || is_place) continue;
+    words.push_back(name);
+    if (option->get_items_expected_max() > 0)
+      for (const std::string& value : option->results()) words.push_back(value);
+  }
+  return words;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace wellspring;
   log::start("bench");
   CLI::App app{"Speed against error, measured on this machine."};
   BenchOptions options;
-  std::string only, file, traces;
-  const std::pair<const char*, void (*)(BenchReport&, const BenchOptions&)> parts[] = {
-      {"stream", bench_stream},           {"avatar", bench_avatar},
-      {"cache.display", bench_cache_display}, {"cache.warp", bench_cache_warp},
-      {"cache.visit", bench_cache_visit},
-      {"cache.rest", bench_cache_rest},
-      {"show.rest", bench_show_rest},
-      {"show.teller", bench_show_teller},
-      {"show.load", bench_show_load},
-      {"cache.starve", bench_cache_starve}, {"cache.turns", bench_cache_turns},
-      {"cache.switch", bench_cache_switch},
-      {"denoise.ms", bench_denoise_time}, {"denoise.flip", bench_denoise_flip},
-      {"light.frame", bench_light_frame}, {"light.scaling", bench_light_scaling},
-      {"light.error", bench_light_error}, {"light.rays", bench_light_rays},
-      {"light.cycles", bench_light_cycles}, {"light.photons", bench_light_photons}};
+  std::string only, file, traces, pages;
+  std::vector<std::string> read;
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only,
                  "one part: stream, cache, show, denoise, avatar, light (or one of its own: "
                  "light.error ...)");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
+  app.add_option("--markdown", pages,
+                 "where to write it for readers: a file.md, or a folder for a page of each");
+  app.add_option("--from", read, "instead of measuring: the JSON files that --markdown shows")
+      ->excludes(json);
   app.add_option("--make-traces", traces,
                  "instead: write the visits' camera traces into this folder")
       ->excludes(json);
@@ -72,35 +82,43 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (file.empty() && traces.empty()) {
+  if (!read.empty() && pages.empty()) {
+    std::cerr << "--from: --markdown says where to write\n";
+    return 2;
+  }
+  if (file.empty() && traces.empty() && read.empty()) {
     std::cerr << "--json is required\n";
     return 2;
   }
   options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
   if (options.plots.empty())
     options.plots = std::filesystem::path(file).replace_extension("").string() + "_";
-  BenchReport report;
+  BenchReport report(describe_run(words_of(app), options.scenes));
   bool found = only.empty();
   try {
+    if (!read.empty()) {
+      write_pages_from(read, pages);
+      return 0;
+    }
     if (!traces.empty()) {
       Exhibit castle = load_exhibit((std::filesystem::path(options.content) / "castle").string());
       make_visit_traces(castle, World(castle.scene), traces);
       return 0;
     }
-    for (const auto& [name, run] : parts)
-      if (only.empty() || name == only || std::string_view(name).starts_with(only + ".")) {
-        found = true;
-        run(report, options);
-      }
-    if (only == "light.hall") {  // a part of light.error
+    for (const ReportEntry& entry : report_entries()) {
+      std::string_view name = entry.name;
+      bool is_asked = only.empty() || name.starts_with(only + ".");
+      if (name != only && (entry.is_part || !is_asked)) continue;
       found = true;
-      bench_light_hall(report, options);
+      report.begin(entry.name);
+      entry.run(report, options);
     }
     if (!found) {
       std::cerr << "--only: there is no part '" << only << "'\n";
       return 2;
     }
     report.save(file);
+    if (!pages.empty()) write_pages(report.to_json(), pages);
   } catch (const std::exception& error) {
     std::cerr << "error: " << error.what() << "\n";
     return 1;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -18,6 +20,7 @@ void BenchReport::add(const std::string& name, double value, const std::string& 
                  {"metric", name.substr(name.rfind('.') + 1)},
                  {"value", value},
                  {"unit", unit}};
+  if (!part_.empty()) result["report"] = part_;
   std::string about;
   for (const auto& [key, field] : fields.items()) {
     result[key] = field;
@@ -33,10 +36,33 @@ void BenchReport::add(const std::string& name, double value, const std::string& 
   results_.push_back(std::move(result));
 }
 
+json BenchReport::to_json() const {
+  return {{"machine", describe_machine()}, {"run", run_}, {"results", results_}};
+}
+
 void BenchReport::save(const std::string& file) const {
   std::ofstream out(file);
-  out << json{{"machine", describe_machine()}, {"results", results_}}.dump(1) << "\n";
+  out << to_json().dump(1) << "\n";
   if (!out.flush()) throw std::runtime_error(file + ": cannot be written");
+}
+
+json describe_run(const std::vector<std::string>& arguments, const std::string& folder) {
+  std::time_t now = std::time(nullptr);
+  char date[16];
+  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
+  json run = {{"date", date}, {"arguments", arguments}};
+  std::string quoted;
+  for (char c : folder) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  std::string command =
+      "git -C '" + quoted + "' describe --always --dirty --exclude '*' 2>/dev/null";
+  char commit[64] = {};
+  if (FILE* pipe = popen(command.c_str(), "r")) {
+    if (!std::fgets(commit, sizeof commit, pipe)) commit[0] = 0;
+    pclose(pipe);
+  }
+  commit[std::strcspn(commit, "\n")] = 0;
+  if (*commit) run["commit"] = commit;
+  return run;
 }
 
 json describe_machine() {
@@ -47,6 +73,11 @@ json describe_machine() {
       machine["cpu"] = line.substr(line.find(": ") + 2);
       break;
     }
+  std::ifstream memory("/proc/meminfo");
+  std::string word;
+  double kilobytes = 0;
+  if (memory >> word >> kilobytes && word == "MemTotal:")
+    machine["memory_gib"] = std::round(kilobytes / (1 << 20));
   std::ifstream load("/proc/loadavg");
   double one = 0;
   load >> one;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The benchmark's report: named values with units, and the machine they were measured on.
+// The benchmark's report: named values with units, and where, when and how they were measured.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -24,20 +24,32 @@ struct BenchOptions {
 // Where converged pictures are kept from run to run.
 std::string truths_folder(const BenchOptions& options);
 
+// How a report came about: {"date":"YYYY-MM-DD" (UTC), "commit":.., "arguments":[..]}. The commit
+// is that of the checkout that `folder` lies in, with "-dirty" where files differ from it; without
+// git there is none.
+nlohmann::json describe_run(const std::vector<std::string>& arguments, const std::string& folder);
+
 class BenchReport {
  public:
+  explicit BenchReport(nlohmann::json run = {}) : run_(std::move(run)) {}
+  // What is added from now on belongs to this report: "cache.warp".
+  void begin(const std::string& part) { part_ = part; }
   // Prints the line as it is added. `fields`: scene, technique and whatever else tells results
   // apart.
   void add(const std::string& name, double value, const std::string& unit,
            nlohmann::json fields = {});
-  // Writes {"machine":{..},"results":[..]}; throws std::runtime_error when the file cannot be
-  // written.
+  // {"machine":{..},"run":{..},"results":[{"report","name","metric","value","unit",..},..]}
+  nlohmann::json to_json() const;
+  // Writes that; throws std::runtime_error when the file cannot be written.
   void save(const std::string& file) const;
   size_t size() const { return results_.size(); }
 
  private:
-  nlohmann::json results_ = nlohmann::json::array();
+  nlohmann::json run_, results_ = nlohmann::json::array();
+  std::string part_;
 };
+
+// {"cpu":..,"cores":..,"memory_gib":..,"compiler":..,"load_at_end":..}
 
 nlohmann::json describe_machine();
 // The p-quantile (0..1) of values, by the nearest rank; NaN of none.

@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each report's page shows: its question, how to read its figures, and tables.
+#include "reports.h"
+
+namespace wellspring {
+namespace {
+
+ReportPage stream_page() {
+  return {
+      "stream",
+      "How quickly does a visitor see what an input does? The server and a scripted client that "
+      "strolls up and down the castle over loopback, at 1280x720; both share the cores.",
+      {"Wanted: 60 pictures a second and at most 50 ms from input to picture (95th percentile)."},
+      {{.caption = "",
+        .columns = {{"fps", "pictures a second", 1, "1/s"},
+                    {"drawn_fps", "of them drawn anew"},
+                    {"warped_fps", "warps of drawn ones"},
+                    {"repeated", "the same as the one before"},
+                    {"latency_p50_ms", "input to picture, median"},
+                    {"latency_p95_ms", "input to picture, 95th percentile"},
+                    {"gap_p95_ms", "gap between pictures, 95th percentile"},
+                    {"picture_bytes_p50", "a picture, median", 1e-3, "kB"},
+                    {"server_memory", "memory of the server with one visitor"}}}}};
+}
+
+ReportPage avatar_page() {
+  std::vector<PageColumn> parts = {{"avatar.made.tick.ms", "whole tick, ms"},
+                                   {"avatar.made.animate.ms", "decide and animate, ms"},
+                                   {"avatar.made.skin.ms", "skin, ms"},
+                                   {"avatar.made.refit.ms", "refit of the ray tracer's tree, ms"}};
+  std::vector<PageColumn> teller = parts;
+  for (PageColumn& column : teller) column.metric.erase(7, 5);  // avatar.tick.ms
+  teller.push_back({"avatar.tick.ms", "triangles", 1, "", "triangles"});
+  return {"avatar",
+          "What does a figure cost each tick? One core.",
+          {"Medians of the ticks; the made avatar's variants tick in turns, in processor time."},
+          {{.caption = "The castle's storyteller", .columns = teller},
+           {.caption = "An avatar that the benchmark makes, speaking",
+            .rows = {{"technique", "what it has"}, {"springs", "spring bones"}},
+            .columns = parts}}};
+}
+
+ReportPage cache_display_page() {
+  return {
+      "cache.display",
+      "What does showing remembered points cost, without tracing? The render cache as published, "
+      "all points in use, a stroll at 1280x720.",
+      {"The yardstick is a bare loop on one core: transform, divide, z-test, store.",
+       "One core: processor time. All cores: by the clock."},
+      {{.caption = "",
+        .columns = {{"ms", "all cores"},
+                    {"ms_one_core", "one core"},
+                    {"yardstick_ms_one_core", "the yardstick"},
+                    {"yardstick_ratio", "one core over the yardstick", 1, "1"},
+                    {"memory", "memory of a cache"}}},
+       {.caption = "Stages on one core",
+        .rows = {{"stage", "stage"}},
+        .columns = {{"stage_ms", "time"}},
+        .most_rows = 10},
+       {.caption = "Other sizes",
+        .rows = {{"size", "size"}},
+        .columns = {{"size_ms", "all cores"}, {"size_ms_one_core", "one core"}},
+        .most_rows = 4}}};
+}
+
+ReportPage cache_warp_page() {
+  return {
+      "cache.warp",
+      "How good is a drawn picture that is warped to a later view? Reflectances in a light from "
+      "one direction, so that nothing but the warp differs; recorded visits at 1280x720.",
+      {"Held: the drawn picture as it was.",
+       "Displaced: pixels that nothing within one pixel of the true picture explains.",
+       "Outside: pixels beyond the drawn picture and its margin; they continue its border."},
+      {{.caption = "",
+        .rows = {{"trace", "visit"}, {"age_ms", "age, ms"}},
+        .columns = {{"flip", "FLIP warped"},
+                    {"held_flip", "FLIP held"},
+                    {"displaced", "displaced"},
+                    {"unknown", "outside"},
+                    {"processor_ms", "a warp, processor"},
+                    {"keyframe_processor_ms", "making the keyframe, processor"}},
+        .most_rows = 30}}};
+}
+
+ReportPage cache_visit_page() {
+  return {
+      "cache.visit",
+      "How much error has the picture that a walking visitor sees, at equal numbers of samples? "
+      "Recorded visits of the castle, every method with the same samples a frame.",
+      {"Mismatch: pixels over samples a frame. First: mean FLIP over the visits; lag counts.",
+       "cache: points as published; primary: the show's own way; the others are baselines."},
+      {{.caption = "",
+        .rows = {{"mismatch", "mismatch"}},
+        .columns = {{"mean_flip", "FLIP"}},
+        .across = "method",
+        .most_rows = 7},
+       {.caption = "FLIP over that of the best baseline",
+        .rows = {{"mismatch", "mismatch"}},
+        .columns = {{"flip_ratio", "ratio"}},
+        .across = "method",
+        .most_rows = 7},
+       {.caption = "Each visit at the last mismatch, by the show's own way",
+        .rows = {{"trace", "visit"}},
+        .columns = {{"flip", "FLIP"},
+                    {"rmse", "RMSE, display"},
+                    {"temporal", "change along the motion, display"},
+                    {"wrong_surface", "wrong surface", 100, "%"}},
+        .only = {{"method", {"primary"}}}}}};
+}
+
+ReportPage cache_rest_page() {
+  return {
+      "cache.rest",
+      "How soon does a picture at rest become the reference? FLIP after a jump to a place never "
+      "seen, for tracers of so many samples a second at 1280x720.",
+      {"cache: points as published; primary: drawn and corrected by samples; denoised: learned "
+       "reconstruction. Wanted: 0.03 after 2 s.",
+       "castle_part is a piece of a view 1280 wide; castle is all of it, mostly edges.",
+       "Halves: what the two halves of the converged picture differ by, which all figures have."},
+      {{.caption = "After 2 seconds",
+        .rows = {{"scene", "scene"}, {"samples_a_second", "samples a second"}},
+        .columns = {{"cache.rest.flip", "FLIP"}},
+        .across = "method",
+        .only = {{"seconds", {2}}},
+        .most_rows = 12},
+       {.caption = "By the show's own way, without the network: RMSE after 2 seconds",
+        .rows = {{"scene", "scene"}},
+        .columns = {{"cache.rest.rmse", "RMSE"}},
+        .across = "samples_a_second",
+        .only = {{"seconds", {2}}, {"method", {"primary"}}},
+        .most_rows = 4},
+       {.caption = "What the figures contain",
+        .rows = {{"scene", "scene"}},
+        .columns = {{"truth_halves_flip", "FLIP of the halves"}},
+        .most_rows = 4}}};
+}
+
+ReportPage cache_starve_page() {
+  return {
+      "cache.starve",
+      "What does a picture of very few samples look like? FLIP by samples a pixel, nobody moving.",
+      {"cache: points as published; primary: the show's own way."},
+      {{.caption = "",
+        .rows = {{"view", "view"}, {"method", "method"}},
+        .columns = {{"flip", "FLIP"}},
+        .across = "samples_a_pixel",
+        .most_rows = 16}}};
+}
+
+ReportPage cache_turns_page() {
+  return {"cache.turns",
+          "What does somebody see who turns quickly by keys, where a keyframe takes long? Turns of "
+          "1.5 rad/s, held for 0.1 to 2 s.",
+          {"Outside: pixels beyond the keyframe, by what is foreseen of the motion.",
+           "Surroundings: a small wide picture of what lies around, drawn before the keyframe."},
+          {{.caption = "Outside of the keyframe, over a minute",
+            .rows = {{"drawing_ms", "a keyframe takes, ms"}, {"prediction", "prediction"}},
+            .columns = {{"unknown", "mean"}, {"unknown_p95", "95th percentile"}},
+            .most_rows = 16},
+           {.caption = "In the castle's hall",
+            .rows = {{"drawing_ms", "a keyframe takes, ms"}, {"surroundings", "surroundings"}},
+            .columns = {{"flip", "FLIP"},
+                        {"flip_p95", "FLIP, 95th percentile"},
+                        {"hall_unknown", "unknown"},
+                        {"surroundings_drawn", "keyframes with surroundings"}},
+            .most_rows = 8}}};
+}
+
+ReportPage cache_switch_page() {
+  return {
+      "cache.switch",
+      "How soon is the light right after a lamp was switched? Of the pixels that the switch "
+      "changes by more than 10 %, the share within 10 % of the converged picture.",
+      {"told: the show told the cache; found: the cache had to find out; cleared: it forgot all.",
+       "Pictures: drawn since the switch, of 60 a second. One sample for as many pixels as the "
+       "mismatch says."},
+      {{.caption = "Half a second after",
+        .rows =
+            {{"scene", "scene"}, {"way", "visitor"}, {"light", "lamp"}, {"mismatch", "mismatch"}},
+        .columns = {{"right", "right"}},
+        .across = "cache",
+        .only = {{"pictures", {30}}},
+        .most_rows = 24},
+       {.caption = "What a switch takes",
+        .rows = {{"scene", "scene"}, {"light", "lamp"}},
+        .columns = {{"light_ms", "for everybody"}, {"visitor_ms", "for each visitor"}},
+        .most_rows = 4}}};
+}
+
+ReportPage denoise_time_page() {
+  return {"denoise.ms",
+          "How long does the learned reconstruction of one picture take?",
+          {"The peak is that of the processor's fused multiplications and additions, measured."},
+          {{.caption = "", .columns = {{"denoise.peak", "peak of the processor"}}, .most_rows = 1},
+           {.caption = "",
+            .rows = {{"net", "network"}, {"width", "width"}, {"height", "height"}},
+            .columns = {{"denoise.ms", "reconstruction"},
+                        {"encode_ms", "preparing its input"},
+                        {"peak_share", "of the peak", 100, "%"},
+                        {"bytes", "memory for all visitors", 1e-6, "MB"}}}}};
+}
+
+ReportPage denoise_flip_page() {
+  return {
+      "denoise.flip",
+      "How much error has a picture of few samples after learned reconstruction? The castle.",
+      {"Halves: what the two halves of the converged picture differ by, which all figures have."},
+      {{.caption = "",
+        .rows = {{"spp", "samples a pixel"}},
+        .columns = {{"denoise.flip", "FLIP"}},
+        .across = "net"},
+       {.caption = "", .columns = {{"truth_halves_flip", "FLIP of the halves"}}, .most_rows = 1}}};
+}
+
+ReportPage show_rest_page() {
+  return {
+      "show.rest",
+      "What does the running server show a visitor who has jumped somewhere and rests? The castle "
+      "at 1280x720, one visitor, the storyteller sent away.",
+      {"FLIP of the last picture that was sent, against a converged one with its own noise."},
+      {{.caption = "",
+        .rows = {{"viewpoint", "viewpoint"}, {"seconds", "seconds at rest"}},
+        .columns = {{"flip", "FLIP"},
+                    {"fps", "pictures a second", 1, "1/s"},
+                    {"samples", "samples a second", 1, "1/s"},
+                    {"flip", "samples a pixel of the converged picture", 1, "", "spp"}}}}};
+}
+
+ReportPage show_teller_page() {
+  return {"show.teller",
+          "How soon is the light on the storyteller right? Her head while she tells, against a "
+          "converged picture; nothing is known of her light at the beginning.",
+          {"Of the samples an eighth are hers. Wanted: FLIP 0.15."},
+          {{.caption = "FLIP by samples a second of the whole picture",
+            .rows = {{"seconds", "seconds"}},
+            .columns = {{"flip", "FLIP"}},
+            .across = "samples_a_second"},
+           {.caption = "One core's time",
+            .rows = {{"part", "part"}},
+            .columns = {{"ms", "time", 1, "ms"}},
+            .most_rows = 4},
+           {.caption = "",
+            .columns = {{"places", "places where her light is kept"},
+                        {"bytes", "memory for all visitors", 1e-6, "MB"},
+                        {"truth_halves_flip", "FLIP of the converged picture's halves"}},
+            .most_rows = 3}}};
+}
+
+ReportPage show_load_page() {
+  return {
+      "show.load",
+      "What does a tour look like on few or busy cores? The castle's first tour for ten seconds at "
+      "1280x720; each shown picture against the true one of its pose.",
+      {"Busy: as many threads that do nothing but compute, on the server's cores."},
+      {{.caption = "",
+        .rows = {{"cores", "cores"}, {"busy", "busy"}},
+        .columns = {{"flip", "FLIP, mean"},
+                    {"flip_worst", "FLIP, 95th percentile"},
+                    {"fps", "pictures a second", 1, "1/s"},
+                    {"drawn_fps", "keyframes a second", 1, "1/s"},
+                    {"latency_ms", "pose to picture, median"},
+                    {"still_gap_ms", "longest gap"},
+                    {"picture_bytes", "a picture, median", 1e-3, "kB"}}}}};
+}
+
+ReportPage light_frame_page() {
+  return {"light.frame",
+          "How long does one frame of the Cornell box take? 640x480, one sample a pixel.",
+          {},
+          {{.caption = "",
+            .rows = {{"technique", "technique"}},
+            .columns = {{"frame_ms", "by the clock"},
+                        {"frame_ms", "of all processors, ms", 1, "", "cpu_ms"}}}}};
+}
+
+ReportPage light_scaling_page() {
+  return {"light.scaling",
+          "How does the cost of a ray grow with the number of triangles? The same picture of the "
+          "Cornell box, cut into ever more triangles; processor time.",
+          {},
+          {{.caption = "",
+            .rows = {{"triangles", "triangles"}},
+            .columns = {{"ray_ns", "a scattered ray"}, {"sample_ns", "a sample of path"}}},
+           {.caption = "",
+            .columns = {{"ns_per_doubling", "for each doubling"},
+                        {"exponent", "time grows with this power of the triangles"}},
+            .most_rows = 2}}};
+}
+
+// light.error, or a part of it.
+ReportPage light_error_page(const std::string& name) {
+  std::vector<PageTable> tables = {
+      {.caption = "Time to FLIP 0.10",
+       .rows = {{"scene", "scene"}, {"technique", "technique"}},
+       .columns = {{"time_to_flip_ratio", "of path's time"},
+                   {"time_to_flip_ratio", "of path's processor time", 1, "", "cpu_ratio"},
+                   {"time_to_flip_ratio", "seconds", 1, "", "seconds"},
+                   {"time_to_flip_ratio", "path's seconds", 1, "", "path_seconds"},
+                   {"time_to_flip_ratio", "measured, not extrapolated", 1, "", "measured"}},
+       .most_rows = 16},
+      {.caption = "The references' own error",
+       .rows = {{"scene", "scene"}},
+       .columns = {{"light.reference.flip", "FLIP"},
+                   {"light.reference.rmse", "RMSE, radiance"},
+                   {"light.reference.flip", "samples a pixel", 1, "", "spp"}},
+       .most_rows = 5},
+      {.caption = "The diffuse hall: processor time of instant_radiosity to FLIP 0.10, over path's",
+       .columns = {{"instant_radiosity_over_path", "ratio (wanted: 0.1 at most)"}},
+       .most_rows = 1}};
+  return {
+      name,
+      "How much error does each light technique leave after how much time? Pictures of 1, 2, 4 "
+      "... samples a pixel against a long run of path, in five scenes.",
+      {"FLIP of tone-mapped pictures at 67 pixels a degree. Plots are written beside the JSON."},
+      tables};
+}
+
+ReportPage light_rays_page() {
+  return {
+      "light.rays",
+      "How many rays a second does path trace, compared with Embree's own path tracer? Its Cornell "
+      "box at 1280x720, both in turns.",
+      {"Wanted: 0.8. Processor time is disturbed less by other work."},
+      {{.caption = "",
+        .columns = {
+            {"light.path.rays_per_second", "ours, million a second", 1e-6, "1"},
+            {"light.embree_pathtracer.rays_per_second", "theirs, million a second", 1e-6, "1"},
+            {"rays_ratio", "ours over theirs, by the clock"},
+            {"rays_ratio", "lowest of the turns", 1, "", "lowest"},
+            {"rays_ratio", "highest of the turns", 1, "", "highest"},
+            {"rays_processor_ratio", "ours over theirs, processor time"}}}}};
+}
+
+ReportPage light_cycles_page() {
+  return {"light.cycles",
+          "Is path as quick as Blender's Cycles, and does it find the same light? The same glTF in "
+          "both; time until path's RMSE is that of Cycles.",
+          {"Wanted: at most 1. Mean: our mean radiance over theirs, less 1.",
+           "Blocks: differences over their standard error (1: nothing but noise).",
+           "Neighbours: the correlation of neighbouring blocks (0: no structure)."},
+          {{.caption = "",
+            .rows = {{"scene", "scene"}},
+            .columns = {{"cycles_time_ratio", "time over theirs"},
+                        {"cycles_processor_ratio", "processor time over theirs"},
+                        {"cycles_relative_mean", "mean", 100, "%"},
+                        {"cycles_relative_mean", "its standard error", 100, "%", "standard_error"},
+                        {"cycles_block_z", "blocks"},
+                        {"cycles_block_correlation", "neighbours"}}}}};
+}
+
+ReportPage light_photons_page() {
+  return {"light.photons",
+          "What do caustic photons cost? Stored in grids and asked by every pixel.",
+          {"Processor time over the cores."},
+          {{.caption = "",
+            .columns = {{"photons_ms", "storing and asking"},
+                        {"photons_ms", "photons", 1, "", "photons"},
+                        {"photons_ms", "storing, processor", 1, "ms", "store_cpu_ms"},
+                        {"photons_ms", "asking, processor", 1, "ms", "query_cpu_ms"},
+                        {"photons_ms", "pixels lit", 1, "", "pixels_lit"}}}}};
+}
+
+std::vector<ReportPage> declared_pages() {
+  return {stream_page(),
+          avatar_page(),
+          cache_display_page(),
+          cache_warp_page(),
+          cache_visit_page(),
+          cache_rest_page(),
+          cache_starve_page(),
+          cache_turns_page(),
+          cache_switch_page(),
+          denoise_time_page(),
+          denoise_flip_page(),
+          show_rest_page(),
+          show_teller_page(),
+          show_load_page(),
+          light_frame_page(),
+          light_scaling_page(),
+          light_error_page("light.error"),
+          light_error_page("light.hall"),
+          light_rays_page(),
+          light_cycles_page(),
+          light_photons_page()};
+}
+
+}  // namespace
+
+ReportPage find_page(const std::string& name) {
+  for (ReportPage& page : declared_pages())
+    if (page.report == name) return page;
+  return plain_page(name);
+}
+
+}  // namespace wellspring

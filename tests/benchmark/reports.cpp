@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports.h"
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+
+#include "light_cycles.h"
+#include "light_photons.h"
+#include "light_rays.h"
+
+namespace wellspring {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr ReportEntry entries[] = {{"stream", bench_stream},
+                                   {"avatar", bench_avatar},
+                                   {"cache.display", bench_cache_display},
+                                   {"cache.warp", bench_cache_warp},
+                                   {"cache.visit", bench_cache_visit},
+                                   {"cache.rest", bench_cache_rest},
+                                   {"show.rest", bench_show_rest},
+                                   {"show.teller", bench_show_teller},
+                                   {"show.load", bench_show_load},
+                                   {"cache.starve", bench_cache_starve},
+                                   {"cache.turns", bench_cache_turns},
+                                   {"cache.switch", bench_cache_switch},
+                                   {"denoise.ms", bench_denoise_time},
+                                   {"denoise.flip", bench_denoise_flip},
+                                   {"light.frame", bench_light_frame},
+                                   {"light.scaling", bench_light_scaling},
+                                   {"light.error", bench_light_error},
+                                   {"light.rays", bench_light_rays},
+                                   {"light.cycles", bench_light_cycles},
+                                   {"light.photons", bench_light_photons},
+                                   {"light.hall", bench_light_hall, true}};
+
+using Pages = std::map<std::string, std::string>;
+
+void add_pages(const json& report, Pages& pages) {
+  for (const std::string& name : reports_in(report))
+    pages[name] = make_page(find_page(name), report);
+}
+
+void save(const std::string& text, const std::string& file) {
+  std::ofstream out(file);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(file + ": cannot be written");
+}
+
+void save(const Pages& pages, const std::string& where) {
+  if (fs::path(where).extension() == ".md") {
+    std::string all;
+    for (const auto& [name, text] : pages) all += (all.empty() ? "" : "\n") + text;
+    return save(all, where);
+  }
+  fs::create_directories(where);
+  for (const auto& [name, text] : pages) {
+    std::string file = name;
+    for (char& c : file)
+      if (c == '/') c = '_';
+    save(text, (fs::path(where) / (file + ".md")).string());
+  }
+}
+
+}  // namespace
+
+std::span<const ReportEntry> report_entries() { return entries; }
+
+void write_pages(const json& report, const std::string& where) {
+  Pages pages;
+  add_pages(report, pages);
+  save(pages, where);
+}
+
+void write_pages_from(const std::vector<std::string>& files, const std::string& where) {
+  Pages pages;
+  for (const std::string& file : files) {
+    std::ifstream in(file);
+    json report = json::parse(in, nullptr, false);
+    if (!report.is_object() || !report.contains("results") || !report["results"].is_array())
+      throw std::runtime_error(file + ": is no report of wellspring bench");
+    add_pages(report, pages);
+  }
+  save(pages, where);
+}
+
+}  // namespace wellspring

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reports of `wellspring bench --only NAME`, and the page that each is printed on.
+#pragma once
+#include <span>
+#include <string_view>
+
+#include "markdown_page.h"
+#include "report.h"
+
+namespace wellspring {
+
+struct ReportEntry {
+  const char* name;
+  void (*run)(BenchReport& report, const BenchOptions& options);
+  bool is_part = false;  // of another report: run only when it is named
+};
+
+std::span<const ReportEntry> report_entries();
+
+// What is declared for this report, else plain_page.
+ReportPage find_page(const std::string& name);
+
+// Writes a page for each report of `report`: into the file `where` if that ends with .md, one below
+// the other, else into that folder as NAME.md. A page that is there is replaced. Throws
+// std::runtime_error when a file cannot be written.
+void write_pages(const nlohmann::json& report, const std::string& where);
+// The same of JSON files, which may tell the same report again: the last one counts.
+void write_pages_from(const std::vector<std::string>& files, const std::string& where);
+
+}  // namespace wellspring
