@@ -50,7 +50,7 @@ int read_options(Options& options, int argc, char** argv) {
                  "folder of the networks' weights; without it pictures at rest are not denoised")
       ->envname("WELLSPRING_WEIGHTS");
   app.add_option("--cache", options.recordings.cache,
-                 "folder that keeps speech and what is found out about recordings; empty: neither is kept");
+                 "folder that keeps speech and words of recordings; empty: nothing is kept");
   app.add_option("--fps", options.show.fps, "pictures a second for each visitor")
       ->check(CLI::Range(1.0, 120.0))->capture_default_str();
   app.add_option("--max-visitors", options.show.max_visitors)
@@ -128,7 +128,7 @@ int serve(const Options& options) {
   sources.exhibit = &show->exhibit;
   sources.pages = &pages;
   sources.board = &board;
-  sources.make_still = [&](const StillOrder& order) { return stills.make(order); };
+  sources.make_still = [&](const StillJob& order) { return stills.make(order); };
   sources.stream_metrics = [&] { return server ? stream_metrics(*server) : std::string(); };
   Doors doors;
   doors.answer = [&](const HttpQuestion& question) { return answer(sources, question); };

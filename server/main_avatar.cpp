@@ -27,7 +27,7 @@ struct Options {
   std::vector<std::string> displacers;
   std::string gesture, motion, skinning, sheet;
   std::vector<std::string> expressions;
-  std::vector<float> point, look;
+  std::vector<float> point, appearance;
   std::vector<float> guest;
   bool info = false, json = false, close = false, rest = false, calm = false;
   double time = 0;
@@ -35,7 +35,7 @@ struct Options {
   int spp = 64;
 };
 
-bool read_size(const std::string& text, StudioShot& shot) {
+bool read_size(const std::string& text, PortraitShot& shot) {
   char rest = 0;
   return std::sscanf(text.c_str(), "%dx%d%c", &shot.width, &shot.height, &rest) == 2 &&
          shot.width >= 16 && shot.height >= 16 && shot.width <= 8192 && shot.height <= 8192;
@@ -57,7 +57,7 @@ Pose pose_at(const Character& character, const Options& options) {
     return at.size() == 3 ? std::optional(vec3(at[0], at[1], at[2])) : std::nullopt;
   };
   input.story.point = place(options.point);
-  input.story.look = place(options.look);
+  input.story.appearance = place(options.appearance);
   input.story.gesture = options.gesture;
   input.story.gesture_lead = 60;  // from its beginning
   if (int clip = find_gesture(options.gesture); clip >= 0)
@@ -144,7 +144,7 @@ int fail(const std::string& text, int status) {
 }
 
 int run(Options options) {
-  StudioShot shot;
+  PortraitShot shot;
   if (!read_size(options.size, shot)) return fail("--size wants WIDTHxHEIGHT, 16 to 8192 each", 2);
   if (!options.out.empty() && !is_picture_name(options.out))
     return fail("--out: no kind of picture we write", 2);
@@ -199,7 +199,7 @@ int run(Options options) {
   follow_constraints(character, pose);
   std::vector<std::string> warnings;
   Frame frame = options.sheet.empty()
-                    ? render_studio(character, pose, shot, warnings)
+                    ? render_portrait(character, pose, shot, warnings)
                     : render_sheet(character, sheet_cells(character, options.sheet, pose), shot, 0,
                                    warnings);
   for (const std::string& warning : warnings) std::cerr << "note: " << warning << "\n";
@@ -246,7 +246,7 @@ int main(int argc, char** argv) {
                  "NAME or NAME=WEIGHT instead of the pose's face, may repeat and is summed");
   app.add_option("--point", options.point, "points at x,y,z, as a story would have it")
       ->delimiter(',')->expected(3);
-  app.add_option("--look", options.look, "looks at x,y,z")->delimiter(',')->expected(3);
+  app.add_option("--look", options.appearance, "looks at x,y,z")->delimiter(',')->expected(3);
   app.add_option("--gesture", options.gesture,
                  "motion of the gesture library, seen --time seconds after it began");
   app.add_option("--displacer", options.displacers,

@@ -61,7 +61,7 @@ bool make_film(const std::string& folder, double fps) {
 }
 
 int run(Options& options) {
-  StudioShot shot;
+  PortraitShot shot;
   char rest = 0;
   bool sized =
       std::sscanf(options.size.c_str(), "%dx%d%c", &shot.width, &shot.height, &rest) == 2 &&
@@ -117,7 +117,7 @@ int run(Options& options) {
   sheet.rgb.resize(size_t(sheet.width) * size_t(sheet.height) * 3);
   std::vector<std::string> warnings;
   for (size_t i = 0; i < moments.size(); i++) {
-    Frame frame = render_studio(character, moments[i].pose, shot, warnings);
+    Frame frame = render_portrait(character, moments[i].pose, shot, warnings);
     Image8 picture;
     tonemap(frame, Tonemap{}, picture);
     save_image8(options.out + fmt::format("/{:04}.png", i), picture);

@@ -46,15 +46,15 @@ void follow_expression_rules(const Character& character, Pose& pose) {
       pose.rotations[size_t(eye)] = glm::slerp(quat(1, 0, 0, 0), pose.rotations[size_t(eye)], gaze);
 }
 
-void eval_look_changes(const Character& character, const Pose& pose,
-                       std::vector<LookChange>& changes) {
-  changes.assign(character.looks.size(), {});
-  for (const LookChange& change : character.look_changes) {
-    if (size_t(change.displacer) >= pose.displacers.size() || size_t(change.look) >= changes.size())
+void eval_appearance_changes(const Character& character, const Pose& pose,
+                       std::vector<AppearanceChange>& changes) {
+  changes.assign(character.appearances.size(), {});
+  for (const AppearanceChange& change : character.appearance_changes) {
+    if (size_t(change.displacer) >= pose.displacers.size() || size_t(change.appearance) >= changes.size())
       continue;
     float weight = between_0_and_1(pose.displacers[size_t(change.displacer)]);
     if (weight == 0) continue;
-    LookChange& sum = changes[size_t(change.look)];
+    AppearanceChange& sum = changes[size_t(change.appearance)];
     sum.base_color += weight * change.base_color;
     sum.emission += weight * change.emission;
     sum.uv += weight * change.uv;

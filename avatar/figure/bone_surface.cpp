@@ -43,9 +43,9 @@ void add_bone(Character& character, Part& part, int joint, vec3 from, vec3 to, f
 void add_bone_surface(Character& character) {
   if (!character.parts.empty() || character.joints.empty()) return;
   character.material_file.clear();
-  character.looks.assign(1, Look{});
-  character.looks[0].name = "bone";
-  character.looks[0].base_color = vec3(0.75f, 0.72f, 0.64f);
+  character.appearances.assign(1, Appearance{});
+  character.appearances[0].name = "bone";
+  character.appearances[0].base_color = vec3(0.75f, 0.72f, 0.64f);
   character.uv.clear(), character.second_uv.clear(), character.colors.clear();
   character.positions.clear(), character.normals.clear(), character.weights.clear();
   character.first_weight = {0};

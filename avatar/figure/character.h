@@ -49,7 +49,7 @@ struct Displacer {
 };
 
 // How a part of the figure looks (X3D 4 PhysicalMaterial; older Material is converted).
-struct Look {
+struct Appearance {
   std::string name;
   vec3 base_color{0.8f};
   float metallic = 0, roughness = 0.7f, alpha = 1;
@@ -68,7 +68,7 @@ struct Look {
 // Triangles of one look.
 struct Part {
   std::string name;
-  int look = 0;
+  int appearance = 0;
   std::vector<uvec3> triangles;  // into Character::positions
 };
 
@@ -90,8 +90,8 @@ struct EyeRanges {
 
 // What a displacer's whole weight adds to a look: an expression that blushes, glows or shows other
 // parts of a picture (VRM's material binds).
-struct LookChange {
-  int displacer = 0, look = 0;
+struct AppearanceChange {
+  int displacer = 0, appearance = 0;
   vec4 base_color{0};
   vec3 emission{0};
   mat3 uv{0.0f};  // to the matrix of texture coordinates
@@ -146,7 +146,7 @@ struct Character {
   std::vector<Segment> segments;
   std::vector<Site> sites;
   std::vector<Displacer> displacers;
-  std::vector<Look> looks;
+  std::vector<Appearance> appearances;
   std::vector<Part> parts;
   // Vertices, shared by all parts; at rest, in humanoid space (metres, +Y up, facing +Z, feet at y
   // = 0).
@@ -161,7 +161,7 @@ struct Character {
   std::vector<JointWeight> weights;
   Skinning skinning = Skinning::linear;
   EyeRanges eye_ranges;
-  std::vector<LookChange> look_changes;
+  std::vector<AppearanceChange> appearance_changes;
   std::vector<ExpressionRule> expression_rules;  // one a displacer at most; empty: nothing is asked
   std::vector<JointConstraint> constraints;  // in the order they are to be followed
   std::vector<SpringBone> springs;  // by joint, parents first

@@ -14,7 +14,7 @@ namespace {
 // Displacers that change materials, each once.
 std::vector<std::string> painting(const Character& character) {
   std::vector<std::string> names;
-  for (const LookChange& change : character.look_changes) {
+  for (const AppearanceChange& change : character.appearance_changes) {
     const std::string& name = character.displacers[size_t(change.displacer)].name;
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
@@ -80,7 +80,7 @@ std::string describe_text(const Character& character) {
   text += format(
       "surface      %zu vertices, %zu triangles, %zu parts, %zu looks, up to %zu joints a vertex\n",
       character.positions.size(), triangle_count(character), character.parts.size(),
-      character.looks.size(), most_weights(character));
+      character.appearances.size(), most_weights(character));
   text += format("joints       %zu (name, parent, centre in metres)\n", character.joints.size());
   for (size_t j = 0; j < character.joints.size(); j++) {
     const Joint& joint = character.joints[j];
@@ -151,8 +151,8 @@ std::string describe_json(const Character& character) {
       {"most_joints_a_vertex", most_weights(character)},
       {"skinning", character.skinning == Skinning::linear ? "linear" : "dual_quaternion"}};
   all["looks"] = json::array();
-  for (const Look& look : character.looks)
-    all["looks"].push_back({{"name", look.name}, {"texture", look.texture}});
+  for (const Appearance& appearance : character.appearances)
+    all["looks"].push_back({{"name", appearance.name}, {"texture", appearance.texture}});
   all["motions"] = json::array();
   for (const Motion& motion : character.motions)
     all["motions"].push_back({{"name", motion.name},

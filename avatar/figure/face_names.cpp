@@ -198,7 +198,7 @@ struct Face {
   }
 
   // `changes` and `binary`: what the control does to looks, and whether it is all or nothing.
-  bool make(const Recipe& recipe, Displacer& made, std::vector<LookChange>& changes,
+  bool make(const Recipe& recipe, Displacer& made, std::vector<AppearanceChange>& changes,
             bool& binary) const {
     std::map<uint32_t, vec3> sum;
     binary = false;
@@ -215,7 +215,7 @@ struct Face {
       for (size_t i = 0; i < shape.vertices.size(); i++)
         if (takes(recipe.cut, shape.vertices[i]))
           sum[shape.vertices[i]] += shape.displacements[i] * weight;
-      for (LookChange change : character.look_changes) {
+      for (AppearanceChange change : character.appearance_changes) {
         if (size_t(change.displacer) != found->second || share == 0) continue;
         change.base_color *= weight * share, change.emission *= weight * share,
             change.uv *= weight * share;
@@ -261,23 +261,23 @@ void complete_face(Character& character) {
   if (character.displacers.empty()) return;
   Face face(character);
   std::vector<Displacer> made;
-  std::vector<LookChange> all_changes;
+  std::vector<AppearanceChange> all_changes;
   std::vector<ExpressionRule> rules;
   std::unordered_set<std::string> done;
   for (const Recipe& recipe : recipes) {
     if (face.place.count(key_of(recipe.control)) || done.count(recipe.control)) continue;
     Displacer displacer;
-    std::vector<LookChange> changes;
+    std::vector<AppearanceChange> changes;
     bool binary = false;
     if (!face.make(recipe, displacer, changes, binary)) continue;
     done.insert(recipe.control);
     int index = int(character.displacers.size() + made.size());
-    for (LookChange& change : changes) change.displacer = index, all_changes.push_back(change);
+    for (AppearanceChange& change : changes) change.displacer = index, all_changes.push_back(change);
     if (binary) rules.push_back({index, true, -1, {}});
     made.push_back(std::move(displacer));
   }
   for (Displacer& displacer : made) character.displacers.push_back(std::move(displacer));
-  character.look_changes.insert(character.look_changes.end(), all_changes.begin(),
+  character.appearance_changes.insert(character.appearance_changes.end(), all_changes.begin(),
                                 all_changes.end());
   character.expression_rules.insert(character.expression_rules.end(), rules.begin(), rules.end());
   complete_rules(character);

@@ -196,8 +196,8 @@ Rig make_rig(const Character& character) {
     rig.viseme[i] = displacer(name);
     if (rig.viseme[i] < 0) rig.viseme[i] = displacer(small);
   }
-  const char* looks[4] = {"lookUp", "lookDown", "lookLeft", "lookRight"};
-  for (size_t i = 0; i < 4; i++) rig.look[i] = find_displacer(character, looks[i]);
+  const char* names[4] = {"lookUp", "lookDown", "lookLeft", "lookRight"};
+  for (size_t i = 0; i < 4; i++) rig.look[i] = find_displacer(character, names[i]);
   return rig;
 }
 

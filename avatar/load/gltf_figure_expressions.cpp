@@ -67,13 +67,13 @@ vec2 pair_of(const json& object, const char* key, float otherwise) {
 
 void Reader::add_changes(const VrmExpression& expression, int displacer) {
   const json& materials = items(figure.file.root, "materials");
-  std::map<size_t, LookChange> changes;  // by material
+  std::map<size_t, AppearanceChange> changes;  // by material
   for (const VrmColorBind& bind : expression.colors) {
     const json& material = materials[bind.material];
-    LookChange& change = changes[bind.material];
+    AppearanceChange& change = changes[bind.material];
     if (!bind.emission) {
-      const Look& look = character.looks[bind.material + 1];
-      change.base_color += bind.target - vec4(look.base_color, look.alpha);
+      const Appearance& appearance = character.appearances[bind.material + 1];
+      change.base_color += bind.target - vec4(appearance.base_color, appearance.alpha);
       continue;
     }
     vec3 factor(0);
@@ -105,8 +105,8 @@ void Reader::add_changes(const VrmExpression& expression, int displacer) {
   }
   for (auto& [material, change] : changes) {
     change.displacer = displacer;
-    change.look = int(material) + 1;  // 0 is the default material
-    character.look_changes.push_back(change);
+    change.appearance = int(material) + 1;  // 0 is the default material
+    character.appearance_changes.push_back(change);
   }
 }
 

@@ -26,7 +26,7 @@ struct Reader {
   size_t displacements = 0;
   bool second_uv = false, colors = false;
 
-  void read_looks();
+  void read_appearances();
   void read_node(size_t node);
   void read_primitive(size_t node, size_t mesh, size_t index);
   // Matrix of each vertex from its mesh to humanoid space at rest; appends the weights.
@@ -37,32 +37,32 @@ struct Reader {
                     const std::vector<double>& weights);
 };
 
-void Reader::read_looks() {
+void Reader::read_appearances() {
   const json& materials = items(file.root, "materials");
   for (size_t m = 0; m <= materials.size(); m++) {
-    Look look;
-    look.material = int(m);  // 0 is the default material, as in world/load/gltf_material.h
+    Appearance appearance;
+    appearance.material = int(m);  // 0 is the default material, as in world/load/gltf_material.h
     if (m == 0) {
-      look.name = "default";
+      appearance.name = "default";
     } else {
       const json& material = materials[m - 1];
-      look.name = gltf::text(material, "name");
-      look.double_sided = gltf::boolean(material, "doubleSided", false);
-      look.matt = figure.vrm.matt.count(m - 1) > 0;
+      appearance.name = gltf::text(material, "name");
+      appearance.double_sided = gltf::boolean(material, "doubleSided", false);
+      appearance.matt = figure.vrm.matt.count(m - 1) > 0;
       if (const json* pbr = gltf::find(material, "pbrMetallicRoughness")) {
         if (const json* color = gltf::find(*pbr, "baseColorFactor")) {
           for (int c = 0; c < 3; c++)
-            look.base_color[c] = gltf::to_float((*color)[size_t(c)].get<double>());
-          look.alpha = gltf::to_float((*color)[3].get<double>());
+            appearance.base_color[c] = gltf::to_float((*color)[size_t(c)].get<double>());
+          appearance.alpha = gltf::to_float((*color)[3].get<double>());
         }
-        look.metallic = gltf::to_float(gltf::number(*pbr, "metallicFactor", 1));
-        look.roughness = gltf::to_float(gltf::number(*pbr, "roughnessFactor", 1));
+        appearance.metallic = gltf::to_float(gltf::number(*pbr, "metallicFactor", 1));
+        appearance.roughness = gltf::to_float(gltf::number(*pbr, "roughnessFactor", 1));
       }
-      if (look.matt)
+      if (appearance.matt)
         gltf::warn(file, at("/materials", m - 1),
                    "materials drawn as cartoons (MToon, unlit) are shown matt, lit as all else is");
     }
-    character.looks.push_back(look);
+    character.appearances.push_back(appearance);
   }
 }
 
@@ -250,7 +250,7 @@ void Reader::read_primitive(size_t node, size_t mesh_index, size_t index) {
 
   Part part;
   part.name = gltf::text(items(file.root, "nodes")[node], "name", gltf::text(mesh, "name"));
-  part.look = int(material) + 1;
+  part.appearance = int(material) + 1;
   size_t dropped = 0;
   for (uvec3 t : corners.triangles) {
     if (bad[t.x] || bad[t.y] || bad[t.z]) {
@@ -286,7 +286,7 @@ void Reader::read_node(size_t node) {
 
 void read_gltf_surfaces(GltfFigure& figure) {
   Reader reader{figure};
-  reader.read_looks();
+  reader.read_appearances();
   for (size_t i = 0; i < figure.nodes.size(); i++)
     if (figure.nodes[i].shown) reader.read_node(i);
   Character& character = figure.character;

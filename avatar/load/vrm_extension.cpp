@@ -41,11 +41,11 @@ struct RangeKeys {
   const char *inner, *outer, *up, *down, *input, *output;
 };
 
-EyeRanges read_ranges(File& file, const json& look, bool by_shapes, const RangeKeys& keys,
+EyeRanges read_ranges(File& file, const json& appearance, bool by_shapes, const RangeKeys& keys,
                       const std::string& where) {
   constexpr float least_input = 0.1f, most_turn = 60, degree = pi / 180;
   auto range = [&](const char* key) {
-    const json& object = object_in(file, look, key, where);
+    const json& object = object_in(file, appearance, key, where);
     const json& curve = list_in(file, object, "curve", where + "/" + key);
     static const json straight = {0, 0, 0, 1, 1, 1, 1, 0};
     if (!curve.empty() && curve != straight)
@@ -92,17 +92,17 @@ void read_version_0(File& file, const json& object, Vrm& vrm) {
              where);
   }
   read_vrm_expressions(file, object, vrm);
-  const json& look = object_in(file, object, "firstPerson", root);
+  const json& appearance = object_in(file, object, "firstPerson", root);
   constexpr RangeKeys keys{"lookAtHorizontalInner",
                            "lookAtHorizontalOuter",
                            "lookAtVerticalUp",
                            "lookAtVerticalDown",
                            "xRange",
                            "yRange"};
-  std::string type = text_in(look, "lookAtTypeName");
+  std::string type = text_in(appearance, "lookAtTypeName");
   if (type == "Bone" || type == "BlendShape")
-    vrm.eye_ranges = read_ranges(file, look, type == "BlendShape", keys, root + "/firstPerson");
-  read_first_person(file, look, "mesh", "meshes", "firstPersonFlag", root + "/firstPerson",
+    vrm.eye_ranges = read_ranges(file, appearance, type == "BlendShape", keys, root + "/firstPerson");
+  read_first_person(file, appearance, "mesh", "meshes", "firstPersonFlag", root + "/firstPerson",
                     vrm.hidden_meshes);
 }
 
@@ -112,13 +112,13 @@ void read_version_1(File& file, const json& object, Vrm& vrm) {
   add_metadata(file, object_in(file, object, "meta", root), root, vrm);
   add_named_bones(file, object, root, vrm);
   read_vrm_expressions(file, object, vrm);
-  const json& look = object_in(file, object, "lookAt", root);
+  const json& appearance = object_in(file, object, "lookAt", root);
   constexpr RangeKeys keys{"rangeMapHorizontalInner", "rangeMapHorizontalOuter",
                            "rangeMapVerticalUp",      "rangeMapVerticalDown",
                            "inputMaxValue",           "outputScale"};
-  std::string type = text_in(look, "type");
+  std::string type = text_in(appearance, "type");
   if (type == "bone" || type == "expression")
-    vrm.eye_ranges = read_ranges(file, look, type == "expression", keys, root + "/lookAt");
+    vrm.eye_ranges = read_ranges(file, appearance, type == "expression", keys, root + "/lookAt");
   read_first_person(file, object_in(file, object, "firstPerson", root), "node", "nodes", "type",
                     root + "/firstPerson", vrm.hidden_nodes);
 }

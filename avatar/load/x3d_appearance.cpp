@@ -67,61 +67,61 @@ std::string picture_of(X3dFile& file, const X3dNode& material, const char* field
 
 }  // namespace
 
-X3dLook make_x3d_look(X3dFile& file, int appearance, const vec3* color) {
-  X3dLook result;
-  Look& look = result.look;
-  if (color) look.base_color = linear_from_srgb(*color);
-  if (appearance < 0) return result;
-  const X3dNode& node = file.nodes[size_t(appearance)];
-  look.name = node.def;
+X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3* color) {
+  X3dAppearance result;
+  Appearance& appearance = result.appearance;
+  if (color) appearance.base_color = linear_from_srgb(*color);
+  if (appearance_node < 0) return result;
+  const X3dNode& node = file.nodes[size_t(appearance_node)];
+  appearance.name = node.def;
   int picture = find_child(file, node, "texture", {"ImageTexture"});
   int material = find_child(file, node, "material",
                             {"Material", "PhysicalMaterial", "UnlitMaterial", "TwoSidedMaterial"});
   if (material >= 0) {
     const X3dNode& m = file.nodes[size_t(material)];
-    if (!m.def.empty()) look.name = m.def;
-    look.alpha = 1 - glm::clamp(float_of(file, m, "transparency", 0), 0.0f, 1.0f);
+    if (!m.def.empty()) appearance.name = m.def;
+    appearance.alpha = 1 - glm::clamp(float_of(file, m, "transparency", 0), 0.0f, 1.0f);
     vec3 emissive = glm::max(vec3_of(file, m, "emissiveColor", vec3(0)), vec3(0));
     if (m.type == "PhysicalMaterial") {
       if (!color)
-        look.base_color = glm::clamp(vec3_of(file, m, "baseColor", vec3(1)), vec3(0), vec3(1));
-      look.metallic = glm::clamp(float_of(file, m, "metallic", 1), 0.0f, 1.0f);
-      look.roughness = glm::clamp(float_of(file, m, "roughness", 1), 0.0f, 1.0f);
-      look.emission = emissive;
+        appearance.base_color = glm::clamp(vec3_of(file, m, "baseColor", vec3(1)), vec3(0), vec3(1));
+      appearance.metallic = glm::clamp(float_of(file, m, "metallic", 1), 0.0f, 1.0f);
+      appearance.roughness = glm::clamp(float_of(file, m, "roughness", 1), 0.0f, 1.0f);
+      appearance.emission = emissive;
       int base = find_child(file, m, "baseTexture", {});
       if (base >= 0) picture = base;
-      look.normal_texture = picture_of(file, m, "normalTexture");
-      look.normal_scale = glm::clamp(float_of(file, m, "normalScale", 1), 0.0f, 100.0f);
-      look.metallic_roughness_texture = picture_of(file, m, "metallicRoughnessTexture");
-      look.emission_texture = picture_of(file, m, "emissiveTexture");
+      appearance.normal_texture = picture_of(file, m, "normalTexture");
+      appearance.normal_scale = glm::clamp(float_of(file, m, "normalScale", 1), 0.0f, 100.0f);
+      appearance.metallic_roughness_texture = picture_of(file, m, "metallicRoughnessTexture");
+      appearance.emission_texture = picture_of(file, m, "emissiveTexture");
       if (find_child(file, m, "occlusionTexture", {}) >= 0)
         warn_once(file.warnings,
                   "occlusionTexture of a PhysicalMaterial is not used: shadows are traced");
     } else if (m.type == "UnlitMaterial") {
-      look.base_color = vec3(0);
-      look.emission = linear_from_srgb(vec3_of(file, m, "emissiveColor", vec3(1)));
+      appearance.base_color = vec3(0);
+      appearance.emission = linear_from_srgb(vec3_of(file, m, "emissiveColor", vec3(1)));
     } else {
-      if (!color) look.base_color = linear_from_srgb(vec3_of(file, m, "diffuseColor", vec3(0.8f)));
-      look.emission = linear_from_srgb(emissive);
+      if (!color) appearance.base_color = linear_from_srgb(vec3_of(file, m, "diffuseColor", vec3(0.8f)));
+      appearance.emission = linear_from_srgb(emissive);
       // Blinn-Phong exponent 128 * shininess as a GGX roughness, as far as there is a highlight at
       // all.
       float exponent = 128 * glm::clamp(float_of(file, m, "shininess", 0.2f), 0.0f, 1.0f);
       float shiny = std::sqrt(std::sqrt(2 / (exponent + 2)));
       float highlight =
           glm::clamp(2 * max_component(vec3_of(file, m, "specularColor", vec3(0))), 0.0f, 1.0f);
-      look.roughness = glm::mix(0.9f, shiny, highlight);
+      appearance.roughness = glm::mix(0.9f, shiny, highlight);
       int diffuse = find_child(file, m, "diffuseTexture", {});
       if (diffuse >= 0) picture = diffuse;
-      look.double_sided = m.type == "TwoSidedMaterial";
+      appearance.double_sided = m.type == "TwoSidedMaterial";
     }
   }
   if (picture >= 0) {
     const X3dNode& p = file.nodes[size_t(picture)];
     if (p.type == "ImageTexture") {
-      look.texture = find_picture(file, p);
+      appearance.texture = find_picture(file, p);
       // A texture takes the place of the older Material's colour (X3D 4, 17.2.2.3).
       bool physical = material >= 0 && file.nodes[size_t(material)].type == "PhysicalMaterial";
-      if (!look.texture.empty() && !physical) look.base_color = vec3(1);
+      if (!appearance.texture.empty() && !physical) appearance.base_color = vec3(1);
     } else {
       warn_once(file.warnings, "texture of type " + p.type + " is not used");
     }

@@ -7,13 +7,13 @@
 
 namespace wellspring {
 
-struct X3dLook {
-  Look look;
+struct X3dAppearance {
+  Appearance appearance;
   mat3 uv_transform{1};  // TextureTransform, for X3D texture coordinates
 };
 
-// `appearance` < 0: the default look. `color`: the geometry's own colour, which replaces the
+// `appearance_node` < 0: the default one. `color`: the geometry's own colour, which replaces the
 // material's.
-X3dLook make_x3d_look(X3dFile& file, int appearance, const vec3* color);
+X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3* color);
 
 }  // namespace wellspring

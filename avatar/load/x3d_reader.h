@@ -24,7 +24,7 @@ struct HumanoidReader {
   std::vector<int> joint_node;  // per joint: its node
   std::unordered_set<int> seen_joints;
   std::map<std::tuple<int, int, int>, int>
-      looks;  // (appearance, geometry with colours, solid) -> look
+      appearances;  // (appearance, geometry with colours, solid) -> look
   int visits = 0, depth = 0;
   size_t bytes_read = 0;  // of geometry
 

@@ -108,17 +108,17 @@ void HumanoidReader::add_shape(int shape, const mat4& matrix, int joint, const S
   if (first + mesh.point_of.size() > max_vertices)
     throw LoadError(file.path, where(node),
                     "more than " + std::to_string(max_vertices) + " vertices");
-  int appearance = find_child(file, node, "appearance", {"Appearance"});
-  X3dLook look = make_x3d_look(file, appearance, mesh.color ? &*mesh.color : nullptr);
+  int appearance_node = find_child(file, node, "appearance", {"Appearance"});
+  X3dAppearance appearance = make_x3d_appearance(file, appearance_node, mesh.color ? &*mesh.color : nullptr);
   auto [place, added] =
-      looks.emplace(std::tuple(appearance, mesh.color ? geometry : -1, int(mesh.solid)),
-                    int(character.looks.size()));
+      appearances.emplace(std::tuple(appearance_node, mesh.color ? geometry : -1, int(mesh.solid)),
+                    int(character.appearances.size()));
   if (added) {
-    look.look.double_sided = look.look.double_sided || !mesh.solid;
-    character.looks.push_back(look.look);
+    appearance.appearance.double_sided = appearance.appearance.double_sided || !mesh.solid;
+    character.appearances.push_back(appearance.appearance);
   }
   Part part{
-      .name = node.def.empty() ? look.look.name : node.def, .look = place->second, .triangles = {}};
+      .name = node.def.empty() ? appearance.appearance.name : node.def, .appearance = place->second, .triangles = {}};
   if (!character.segments.empty() && !skin && node.def.empty())
     part.name = character.segments.back().name;
 
@@ -140,7 +140,7 @@ void HumanoidReader::add_shape(int shape, const mat4& matrix, int joint, const S
       throw LoadError(file.path, where(node), "a point lies beyond all numbers");
     character.positions.push_back(position);
     character.normals.push_back(safe_normal(to_rest, mesh.normals[v]));
-    vec3 uv = look.uv_transform * vec3(mesh.uv[v], 1);
+    vec3 uv = appearance.uv_transform * vec3(mesh.uv[v], 1);
     character.uv.push_back({uv.x, 1 - uv.y});
     character.first_weight.push_back(uint32_t(character.weights.size()));
   }

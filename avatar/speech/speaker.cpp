@@ -72,7 +72,7 @@ struct Speaker::Impl {
     }
   }
 
-  // With the lock held. The job of a request, made or made urgent; null when too many wait.
+  // With the lock held. The job of a request, made or made of high priority; null when too many wait.
   Job* add(const SpeechRequest& request, const std::string& key, bool at_once) {
     auto found = jobs.find(key);
     if (found == jobs.end()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loops over cores (oneTBB). Bodies must not throw and must not depend on the order of their calls.
-// Between pieces, threads work on what is urgent (base/priority.h).
+// Between pieces, threads work on what is of high priority (base/priority.h).
 #pragma once
 #include <atomic>
 #include <oneapi/tbb/blocked_range.h>
@@ -26,10 +26,10 @@ class LoopOrder {
 #endif
 };
 
-extern std::atomic<bool> loop_is_urgent;  // perhaps: who looks once too often finds nothing
-void help_urgent_loop();
-inline void help_urgent() {
-  if (loop_is_urgent.load(std::memory_order_relaxed)) help_urgent_loop();
+extern std::atomic<bool> loop_has_priority;  // perhaps: who looks once too often finds nothing
+void help_priority_loop();
+inline void help_priority() {
+  if (loop_has_priority.load(std::memory_order_relaxed)) help_priority_loop();
 }
 
 // body(begin, end) over disjoint pieces of [0, count), each of at least `grain` items where
@@ -42,7 +42,7 @@ void parallel_ranges(int count, int grain, const Body& body) {
   oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<int>(0, count, grain < 1 ? 1 : grain),
                             [&](const auto& range) {
                               order.passed();
-                              help_urgent();
+                              help_priority();
                               body(range.begin(), range.end());
                               order.reached();
                             });
@@ -61,7 +61,7 @@ void parallel_each(int count, const Body& body) {
       [&](const auto& range) {
         order.passed();
         for (int i = range.begin(); i < range.end(); i++) {
-          help_urgent();
+          help_priority();
           body(i);
         }
         order.reached();
@@ -75,7 +75,7 @@ template <class Body>
 void parallel_for(int count, const Body& body) {
   parallel_ranges(count, 1, [&](int begin, int end) {
     for (int i = begin; i < end; i++) {
-      if (i > begin) help_urgent();
+      if (i > begin) help_priority();
       body(i);
     }
   });

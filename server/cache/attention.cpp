@@ -17,23 +17,23 @@ constexpr float darkest_lit = 0.01f;  // reflectance that can tell of light, or 
 constexpr float same_facing = 0.9f;   // cosine
 // Little enough that places nobody has told of yet are asked, too.
 constexpr int change_ageing = 32;  // of points near places where the light seems to have changed
-// Light has changed in a tile where the witnesses of 3x3 tiles agree that it did: by how many
+// Light has changed in a tile where the change samples of 3x3 tiles agree that it did: by how many
 // standard deviations their sum is off, each taken by its own size or by the noise known of it,
 // whichever is more (a self-normalised sum: rare bright samples neither make a change nor hide one
 // for long; Pena, Lai, Shao 2009), and by how much on average.
-struct Proof {
+struct ChangeTest {
   float deviations, least_change;
 };
-constexpr Proof beyond_doubt{5, 0.15f};
+constexpr ChangeTest beyond_doubt{5, 0.15f};
 // Where one thing has changed, another may well have: for so many pictures less will do, of more
-// witnesses.
-constexpr Proof likely{3, 0.05f};
+// change samples.
+constexpr ChangeTest likely{3, 0.05f};
 constexpr int alarm_pictures = 45;
 
 // A point where the light has changed. What was sampled just now has seen the new light already.
-void forget_old_light(PointCache& points, uint32_t i) {
+void invalidate_old_light(PointCache& points, uint32_t i) {
   if ((points.flags[i] & point_relit) || (points.age[i] == 0 && points.count[i] == 1)) return;
-  forget_light_of(points, i, change_ageing);
+  invalidate_light_of(points, i, change_ageing);
 }
 
 void age_tile(PointCache& points, PointImage& image, int tx, int ty) {
@@ -44,11 +44,11 @@ void age_tile(PointCache& points, PointImage& image, int tx, int ty) {
       size_t at = size_t(y) * size_t(image.width) + size_t(x);
       uint32_t point = image.point[at];
       image.renewed[at] = 1;
-      if (point != no_point) forget_old_light(points, point);
+      if (point != no_point) invalidate_old_light(points, point);
     }
 }
 
-// The tile where a witness lies now, or -1: answers may be frames late, and the view has moved on.
+// The tile where a change sample lies now, or -1: answers may be frames late, and the view has moved on.
 int tile_of(const PointCache& points, const View& view, const PointImage& image, uint32_t i) {
   if (i >= uint32_t(points.capacity()) || !is_alive(points, i)) return -1;
   vec3 place(points.x[i], points.y[i], points.z[i]);
@@ -67,22 +67,22 @@ void age_hidden(PointCache& points, const View& view, const PointImage& image,
     for (uint32_t i = uint32_t(begin); i < uint32_t(end); i++) {
       if (points.flags[i] & (point_visible | point_relit)) continue;
       int tile = tile_of(points, view, image, i);
-      if (tile >= 0 && verdict[size_t(tile)]) forget_old_light(points, i);
+      if (tile >= 0 && verdict[size_t(tile)]) invalidate_old_light(points, i);
     }
   });
 }
 
-void place_witnesses(const PointCache& points, const View& view, PointImage& image,
+void place_change_samples(const PointCache& points, const View& view, PointImage& image,
                      std::vector<int>& tiles) {
   std::fill(image.changed.begin(), image.changed.end(), TileChange{});
-  tiles.resize(image.witnesses.size());
+  tiles.resize(image.change_samples.size());
   for (size_t i = 0; i < tiles.size(); i++) {
-    const Witness& witness = image.witnesses[i];
-    tiles[i] = tile_of(points, view, image, witness.point);
+    const ChangeSample& change_sample = image.change_samples[i];
+    tiles[i] = tile_of(points, view, image, change_sample.point);
     if (tiles[i] < 0) continue;
     TileChange& tile = image.changed[size_t(tiles[i])];
-    tile.change += witness.change;
-    tile.square += std::max(witness.change * witness.change, witness.noise * witness.noise);
+    tile.change += change_sample.change;
+    tile.square += std::max(change_sample.change * change_sample.change, change_sample.noise * change_sample.noise);
     tile.count++;
   }
 }
@@ -93,20 +93,20 @@ void add(TileChange& sum, const TileChange& tile) {
   sum.count += tile.count;
 }
 
-bool proves(const TileChange& sum, const Proof& proof) {
-  return sum.change * sum.change > proof.deviations * proof.deviations * sum.square &&
-         std::abs(sum.change) > proof.least_change * float(sum.count);
+bool proves(const TileChange& sum, const ChangeTest& change_test) {
+  return sum.change * sum.change > change_test.deviations * change_test.deviations * sum.square &&
+         std::abs(sum.change) > change_test.least_change * float(sum.count);
 }
 
-bool has_changed(const PointImage& image, int tx, int ty, const Proof& proof) {
+bool has_changed(const PointImage& image, int tx, int ty, const ChangeTest& change_test) {
   TileChange sum;
   for (int y = std::max(ty - 1, 0); y <= std::min(ty + 1, image.changed_height - 1); y++)
     for (int x = std::max(tx - 1, 0); x <= std::min(tx + 1, image.changed_width - 1); x++)
       add(sum, image.changed[size_t(y) * size_t(image.changed_width) + size_t(x)]);
-  return proves(sum, proof);
+  return proves(sum, change_test);
 }
 
-// Is a change beyond doubt in any square of 2, 4, 8 ... tiles a side? Where samples are noisy or
+// Is a change beyond prior variance in any square of 2, 4, 8 ... tiles a side? Where samples are noisy or
 // the change is small, it takes many tiles to tell.
 bool has_changed_widely(const PointImage& image) {
   std::vector<TileChange> tiles = image.changed, wider;
@@ -188,16 +188,16 @@ using Levels = std::array<uint8_t, 256>;
 
 bool age_changed(PointCache& points, const View& view, PointImage& image) {
   image.alarm = std::max(image.alarm - 1, 0);
-  if (image.witnesses.empty()) return false;
-  keep_newest_witnesses(image);
+  if (image.change_samples.empty()) return false;
+  keep_newest_change_samples(image);
   std::vector<int> tiles;
-  place_witnesses(points, view, image, tiles);
-  const Proof& proof = image.alarm > 0 ? likely : beyond_doubt;
+  place_change_samples(points, view, image, tiles);
+  const ChangeTest& change_test = image.alarm > 0 ? likely : beyond_doubt;
   std::vector<uint8_t> verdict(image.changed.size(), 0);
   parallel_ranges(image.changed_height, 4, [&](int begin, int end) {
     for (int ty = begin; ty < end; ty++)
       for (int tx = 0; tx < image.changed_width; tx++) {
-        if (!has_changed(image, tx, ty, proof)) continue;
+        if (!has_changed(image, tx, ty, change_test)) continue;
         verdict[size_t(ty) * size_t(image.changed_width) + size_t(tx)] = 1;
         age_tile(points, image, tx, ty);
       }
@@ -206,10 +206,10 @@ bool age_changed(PointCache& points, const View& view, PointImage& image) {
   // is.
   size_t kept = 0;
   for (size_t i = 0; i < tiles.size(); i++)
-    if (tiles[i] >= 0 && !verdict[size_t(tiles[i])]) image.witnesses[kept++] = image.witnesses[i];
-  image.witnesses.resize(kept);
-  if (image.witnesses.capacity() > 2 * kept + 4096)
-    image.witnesses.shrink_to_fit();  // many at once
+    if (tiles[i] >= 0 && !verdict[size_t(tiles[i])]) image.change_samples[kept++] = image.change_samples[i];
+  image.change_samples.resize(kept);
+  if (image.change_samples.capacity() > 2 * kept + 4096)
+    image.change_samples.shrink_to_fit();  // many at once
   bool changed =
       std::any_of(verdict.begin(), verdict.end(), [](uint8_t aged) { return aged != 0; });
   if (changed) age_hidden(points, view, image, verdict);

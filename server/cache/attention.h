@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How urgent a new sample is at every pixel (Walter 1999, section 4 and 4.1).
+// How of high priority a new sample is at every pixel (Walter 1999, section 4 and 4.1).
 #pragma once
 #include "cache/cache_settings.h"
 #include "cache/point_cache.h"
@@ -8,9 +8,9 @@
 
 namespace wellspring {
 
-// Where the witnesses of 3x3 tiles agree that the light has changed, by more than their noise can
+// Where the change samples of 3x3 tiles agree that the light has changed, by more than their noise can
 // explain, points of the tile get older by an eighth of the scale and forget their light as
-// forget_light() does, and image.renewed says so. The image is projected for `view`.
+// invalidate_light() does, and image.renewed says so. The image is projected for `view`.
 // Witnesses that were heard and those who are not in view are dismissed. Returns whether there was
 // such a place.
 bool age_changed(PointCache& points, const View& view, PointImage& image);

@@ -13,7 +13,7 @@ Broker::Broker(const BrokerSettings& settings) : settings_(settings) {
   settings_.piece = std::max(settings_.piece, 1);
 }
 
-void Broker::ask(const View& view, const TraceOrder& order, std::span<const Request> requests) {
+void Broker::ask(const View& view, const TraceJob& order, std::span<const Request> requests) {
   stats_.asked += requests.size();
   stats_.dropped += uint64_t(waiting_);
   pieces_.clear();

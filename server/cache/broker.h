@@ -18,7 +18,7 @@
 namespace wellspring {
 
 // What to trace, and how.
-struct TraceOrder {
+struct TraceJob {
   const Technique* technique = nullptr;  // without passes over a picture
   TransportSettings transport;
 };
@@ -28,7 +28,7 @@ struct Piece {
   uint64_t asked = 0;   // pieces of one ask() share it
   uint64_t era = 0;     // see forget()
   View view;            // that asked
-  TraceOrder order;
+  TraceJob order;
   std::vector<Request> requests;
 };
 
@@ -61,7 +61,7 @@ class Broker {
   // The cache's side. ask() replaces what nobody has taken yet: the newest view counts, and what is
   // still wanted is in it again. Pieces go out in an order that spreads them over the picture, so
   // that whatever is not reached is missed everywhere alike.
-  void ask(const View& view, const TraceOrder& order, std::span<const Request> requests);
+  void ask(const View& view, const TraceJob& order, std::span<const Request> requests);
   // Everything answered since the last call, in the order it was asked for.
   std::vector<Answer> collect();
   // What was asked so far has no meaning any more (another exhibit, another light): pieces are

@@ -131,7 +131,7 @@ void RenderCache::Impl::notice_paint(const World& world) {
     repainted[i] = now != paints_of[i];
     paints_of[i] = now;
   }
-  relit |= forget_paint(points, world, repainted);
+  relit |= invalidate_paint(points, world, repainted);
 }
 
 void RenderCache::move_points(const World& world) {
@@ -255,7 +255,7 @@ void RenderCache::relight(const Changes& changes) {
     vec3 place(c.points.x[i], c.points.y[i], c.points.z[i]);
     return changes(place, unpack_normal(c.points.normal[i]), kept, added);
   };
-  forget_light(c.points, forgotten);
+  invalidate_light(c.points, forgotten);
   c.relit = true;
   for (size_t i = 0; i < c.image.point.size(); i++) {
     uint32_t point = c.image.point[i];
@@ -269,7 +269,7 @@ void RenderCache::clear() {
   c.image_stale = true;
   std::fill(c.image.point.begin(), c.image.point.end(), no_point);
   std::fill(c.image.depth.begin(), c.image.depth.end(), 0.0f);
-  c.image.witnesses.clear();
+  c.image.change_samples.clear();
   c.begin_view();
 }
 
@@ -305,7 +305,7 @@ size_t RenderCache::memory_bytes() const {
   const Impl& c = *impl_;
   size_t sum = points_bytes(c.points) + bytes_of(c.paints_of, c.repainted) +
                bytes_of(c.image.point, c.image.depth, c.image.priority, c.image.renewed,
-                        c.image.changed, c.image.witnesses);
+                        c.image.changed, c.image.change_samples);
   return sum + (c.shares ? 0 : wellspring::memory_bytes(*c.work));
 }
 

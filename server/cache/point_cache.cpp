@@ -91,7 +91,7 @@ void age_points(PointCache& points, float new_points) {
   });
 }
 
-void forget_light_of(PointCache& points, uint32_t i, int ageing) {
+void invalidate_light_of(PointCache& points, uint32_t i, int ageing) {
   if (points.age[i] == evicted_age) return;
   points.age[i] = uint8_t(std::min(points.age[i] + ageing, oldest_age));
   points.count[i] = 0;
@@ -100,12 +100,12 @@ void forget_light_of(PointCache& points, uint32_t i, int ageing) {
   points.flags[i] |= point_relit;
 }
 
-void forget_light(PointCache& points, const Forgotten& forgotten) {
+void invalidate_light(PointCache& points, const Forgotten& forgotten) {
   parallel_ranges(points.capacity(), 1 << 14, [&](int begin, int end) {
     for (uint32_t i = uint32_t(begin); i < uint32_t(end); i++) {
       vec3 kept(1), added(0);
       if (!is_alive(points, i) || !forgotten(i, kept, added)) continue;
-      forget_light_of(points, i, oldest_age);
+      invalidate_light_of(points, i, oldest_age);
       PointColor& color = points.color[i];
       color.smooth = pack_rgb9e5(kept * unpack_rgb9e5(color.smooth) + added);
       color.rest = pack_rgb9e5(kept * unpack_rgb9e5(color.rest));
@@ -113,7 +113,7 @@ void forget_light(PointCache& points, const Forgotten& forgotten) {
   });
 }
 
-bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted) {
+bool invalidate_paint(PointCache& points, const World& world, const std::vector<char>& repainted) {
   std::atomic<bool> found = false;
   parallel_ranges(int(points.anchors.size()), 512, [&](int begin, int end) {
     for (int k = begin; k < end; k++) {
@@ -122,7 +122,7 @@ bool forget_paint(PointCache& points, const World& world, const std::vector<char
       if (a.instance >= repainted.size() || !repainted[a.instance] || !is_alive(points, a.point))
         continue;
       found = true;
-      forget_light_of(points, uint32_t(i), oldest_age);
+      invalidate_light_of(points, uint32_t(i), oldest_age);
       vec3 place(points.x[i], points.y[i], points.z[i]), way = unpack_normal(points.normal[i]);
       Hit hit{1, a.instance, a.triangle, vec2(a.u, a.v) * (1.0f / 65535)};
       Surface surface = eval_surface(world, {.origin = place + way, .direction = -way}, hit);
@@ -130,9 +130,9 @@ bool forget_paint(PointCache& points, const World& world, const std::vector<char
                    !world.material_of(a.instance).unlit;
       if (!known) continue;
       // As far as this place tells; the next sample knows.
-      bool metal = surface.metallic >= all_metal && surface.roughness >= least_kept_roughness;
+      bool metal = surface.metallic >= all_metal && surface.roughness >= least_demodulated_roughness;
       points.color[i].albedo = pack_albedo(
-          kept_albedo(surface, metal ? KeptMetal::reflectance : KeptMetal::none));
+          demodulated_albedo(surface, metal ? MetalDemodulation::reflectance : MetalDemodulation::none));
     }
   });
   return found;

@@ -21,7 +21,7 @@ enum PointFlags : uint8_t {
   point_moving = 8,     // has an anchor
   point_visible = 16,   // shows in the current projection
   point_verified = 32,  // was sampled from exactly the current view: surely not hidden
-  point_relit = 64,     // the light has changed since it was sampled: see forget_light()
+  point_relit = 64,     // the light has changed since it was sampled: see invalidate_light()
   point_reference = 128,  // began with a sample of the reference: see RenderCache::set_reference()
 };
 
@@ -79,11 +79,11 @@ void age_points(PointCache& points, float new_points);
 // The light of a point has changed, or seems to: of what it remembers nothing counts where anything
 // newer is known around, and its next sample is as good as its first. It grows older by `ageing`,
 // so that it is asked for the sooner the surer the change is; `oldest_age`: among the first.
-void forget_light_of(PointCache& points, uint32_t i, int ageing);
+void invalidate_light_of(PointCache& points, uint32_t i, int ageing);
 // Points of which `forgotten` says so, on many threads, forget theirs. Of what they show `kept` is
 // left, 1 unless changed, and light `added` falls on them.
 using Forgotten = std::function<bool(uint32_t point, vec3& kept, vec3& added)>;
-void forget_light(PointCache& points, const Forgotten& forgotten);
+void invalidate_light(PointCache& points, const Forgotten& forgotten);
 // Where a place on a mesh is now, with the side of the normal that `normal` faced; both stay as
 // they are where the world has no such triangle.
 void find_on_mesh(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric,
@@ -93,7 +93,7 @@ void move_anchored_points(PointCache& points, const World& world);
 // What instances are made of looks different now: their points take the reflectance that it has
 // there and forget their light. Of those with anchors, so after move_anchored_points().
 // `repainted`: of each of the world's instances. Returns whether any point was found.
-bool forget_paint(PointCache& points, const World& world, const std::vector<char>& repainted);
+bool invalidate_paint(PointCache& points, const World& world, const std::vector<char>& repainted);
 // Most anchors a cache of this capacity may hold; moving points beyond are forgotten after one
 // frame.
 int max_anchors(int capacity);

@@ -16,7 +16,7 @@ inline constexpr float infinite_depth = 1e18f;  // of points at infinity; Frame:
 inline constexpr int change_tile = 16;          // pixels a side of one cell of `changed`
 
 // What one sample says of a change in the light of a point that was known before.
-struct Witness {
+struct ChangeSample {
   uint32_t point = 0;
   // Of its luminance, over the mean with the new sample in it: of no change that is 0 on average,
   // whatever the samples' distribution, since any of them might as well have been the last.
@@ -24,7 +24,7 @@ struct Witness {
   float noise =
       0;  // standard deviation that such a change has where nothing has changed; 0: unknown
 };
-// The sums of a tile's witnesses.
+// The sums of a tile's change samples.
 struct TileChange {
   float change = 0, square = 0;  // square: of the change or of its noise, whichever is more
   int count = 0;
@@ -34,9 +34,9 @@ struct PointImage {
   int width = 0, height = 0;
   BigVector<uint32_t> point;      // index into the cache, or no_point
   BigVector<float> depth;         // along the viewing axis; 0 where there is no point
-  std::vector<uint8_t> priority;  // 0: nothing to learn or already asked; 255: most urgent
+  std::vector<uint8_t> priority;  // 0: nothing to learn or already asked; 255: most of high priority
   std::vector<uint8_t> renewed;   // not 0: the light there is another than in the last picture
-  std::vector<Witness> witnesses;   // the newest, oldest first; see age_changed()
+  std::vector<ChangeSample> change_samples;   // the newest, oldest first; see age_changed()
   std::vector<TileChange> changed;  // scratch of age_changed()
   int changed_width = 0, changed_height = 0;
   int alarm = 0;  // pictures for which smaller changes are looked for, too
@@ -52,17 +52,17 @@ inline void reserve_image(PointImage& image, int width, int height) {
   image.changed.reserve(tiles(width) * tiles(height));
 }
 
-// Enough witnesses of each tile to tell change from noise.
-inline size_t most_witnesses(const PointImage& image) {
+// Enough change samples of each tile to tell change from noise.
+inline size_t most_change_samples(const PointImage& image) {
   const size_t each = image.alarm > 0 ? 48 : 12, most = image.alarm > 0 ? 1 << 17 : 1 << 15;
   return std::min(each * image.changed.size(), most);
 }
 // And room for so many more among them.
-inline void keep_newest_witnesses(PointImage& image, size_t more = 0) {
-  size_t count = image.witnesses.size(), most = most_witnesses(image),
+inline void keep_newest_change_samples(PointImage& image, size_t more = 0) {
+  size_t count = image.change_samples.size(), most = most_change_samples(image),
          kept = std::min(count, most - std::min(more, most));
-  image.witnesses.erase(image.witnesses.begin(), image.witnesses.begin() + ptrdiff_t(count - kept));
-  if (image.witnesses.capacity() > 2 * most) image.witnesses.shrink_to_fit();  // after an alarm
+  image.change_samples.erase(image.change_samples.begin(), image.change_samples.begin() + ptrdiff_t(count - kept));
+  if (image.change_samples.capacity() > 2 * most) image.change_samples.shrink_to_fit();  // after an alarm
 }
 
 // Empties the image when its size changes.

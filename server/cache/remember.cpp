@@ -99,8 +99,8 @@ void begin_point(PointCache& points, uint32_t i, const View& view, const Found& 
 // What a sample did to the point that it was given to.
 struct Effect {
   bool restarted = false;  // the point began anew, as its light is another
-  bool tells = false;      // `witness` is good
-  Witness witness;
+  bool tells = false;      // `change sample` is good
+  ChangeSample change_sample;
 };
 
 // The standard deviation of one sample, after another that lies `step` off the mean of n.
@@ -117,7 +117,7 @@ struct Heard {
   T before, now;
 };
 // `deviations`: of one sample's smooth and rest. The change is no number where all is black.
-Witness testify(uint32_t point, int n, vec3 reflectance, const Heard<vec3>& smooth,
+ChangeSample add_change_sample(uint32_t point, int n, vec3 reflectance, const Heard<vec3>& smooth,
                 const Heard<float>& rest, const vec2& deviations) {
   float before = luminance(reflectance * smooth.before) + rest.before,
         now = luminance(reflectance * max(smooth.now, vec3(0))) + rest.now,
@@ -154,10 +154,10 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
   float varies = light * unpack_relative(color.doubts >> 2);
   // Of two techniques one may be biased.
   bool comparable = bool(points.flags[i] & point_reference) == settings.reference;
-  effect.witness = testify(i, n, reflectance, {smooth, comparable ? sample.smooth : smooth},
+  effect.change_sample = add_change_sample(i, n, reflectance, {smooth, comparable ? sample.smooth : smooth},
                            {before, now}, {comparable ? varies : 0.0f, deviation});
   effect.tells &=
-      std::isfinite(effect.witness.change);  // of black that stays black there is nothing to say
+      std::isfinite(effect.change_sample.change);  // of black that stays black there is nothing to say
   int surprises = color.doubts & 3;
   bool alike = n >= few_samples && deviation <= no_noise * before;
   bool surprising = effect.tells && step > settings.color_change * whole && step > 4 * deviation &&
@@ -352,11 +352,11 @@ Remembered remember_samples(PointCache& points, const View& view, std::span<cons
   // Never more than are kept, or memory would be as large as there are samples.
   auto tell = size_t(std::count_if(effects.begin(), effects.begin() + ptrdiff_t(count),
                                    [](const auto& effect) { return effect.tells; }));
-  size_t left_out = tell - std::min(tell, most_witnesses(image));
-  keep_newest_witnesses(image, tell - left_out);
+  size_t left_out = tell - std::min(tell, most_change_samples(image));
+  keep_newest_change_samples(image, tell - left_out);
   for (size_t i = 0; i < count; i++) {
     if (effects[i].tells && (left_out == 0 || left_out-- == 0))
-      image.witnesses.push_back(effects[i].witness);
+      image.change_samples.push_back(effects[i].change_sample);
     if (effects[i].restarted && shows(i)) image.renewed[requests[i].pixel] = 1;
   }
   add_anchors(points, samples.first(count), targets);

@@ -36,7 +36,7 @@ size_t trace_waiting(std::span<Broker* const> brokers, const World& world, const
   };
   parallel_for(oneapi::tbb::this_task_arena::max_concurrency(), [&](int) {
     while (seconds_now() < until) {
-      help_urgent();
+      help_priority();
       Broker* from = nullptr;
       std::optional<Piece> piece = take(from);
       if (!piece) return;

@@ -43,7 +43,7 @@ struct Sample {
   vec3 rest{
       0};  // emission, specular, and diffusely reflected light of punctual lights (sharp shadows)
   // Of `rest`, what the surface emits, and panes before it, where it reflects light, too: a picture
-  // that is drawn (PictureSight) knows that exactly. 0 of the sky and of what only shines.
+  // that is drawn (VisibilityPass) knows that exactly. 0 of the sky and of what only emits light.
   vec3 glow{0};
   uint8_t flags = 0;
   vec3 radiance() const { return albedo * smooth + rest; }

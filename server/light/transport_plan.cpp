@@ -17,7 +17,7 @@ static_assert(std::size(names) == transport_parts);
 struct Census {
   std::vector<MaterialUse> use;  // of each material
   size_t triangles = 0;          // visible, instances counted
-  size_t emitting = 0;           // still and shining, of those
+  size_t emitting = 0;           // still and emitting, of those
   size_t lit = 0;                // that light makes a difference to
   size_t still_rough = 0;        // that stand still and scatter
   size_t moving = 0;
@@ -26,7 +26,7 @@ struct Census {
   bool any_light() const { return emitting > 0 || lamps > 0 || sky || sun; }
 };
 
-bool shines(const PunctualLight& light) {
+bool emits(const PunctualLight& light) {
   bool finite =
       is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
   bool wide = light.type != PunctualType::spot || light.outer_cone > 0;
@@ -59,7 +59,7 @@ Census take_census(const Scene& scene, std::span<const Mesh* const> moving) {
     count_mesh(scene, scene.meshes[i], instances[i], false, ranges, census);
   for (const Mesh* mesh : moving) count_mesh(scene, *mesh, 1, true, ranges, census);
   for (const PunctualLight& light : scene.lights)
-    (shines(light) ? census.lamps : census.dark_lamps)++;
+    (emits(light) ? census.lamps : census.dark_lamps)++;
   const Environment& sky = scene.environment;
   census.sky = max_component(sky.radiance) > 0;
   bool picture = sky.image >= 0 && size_t(sky.image) < scene.images.size() &&
@@ -79,7 +79,7 @@ std::string count_of(size_t n, const char* one, const char* many) {
   return digits + " " + (n == 1 ? one : many);
 }
 
-// As a file names it, short and without anything a terminal would obey.
+// As a file names it, short and without anything a terminal would handle.
 std::string shown_name(const std::string& name) {
   constexpr size_t longest = 40;
   std::string text = name.substr(0, longest);
@@ -205,7 +205,7 @@ void decide_results(const Scene& scene, const Census& c, Deciding& d) {
       c.moving ? "; " + count_of(c.moving, "moving triangle is", "moving triangles are") +
                      " lit afresh"
                : "";
-  d.decide(kept_light, c.still_rough > 0 && c.any_light(),
+  d.decide(cached_radiance, c.still_rough > 0 && c.any_light(),
            "lights and " + count_of(c.still_rough, "rough triangle", "rough triangles") +
                " stand still" + except,
            !c.any_light() ? "no light"
@@ -257,7 +257,7 @@ std::span<const char* const> technique_notes(TransportPart part) {
   static constexpr const char* kept[] = {"gather alone asks for it"};
   if (part == TransportPart::dispersion) return dispersion;
   if (part == TransportPart::caustics) return caustics;
-  if (part == TransportPart::kept_light) return kept;
+  if (part == TransportPart::cached_radiance) return kept;
   return {};
 }
 

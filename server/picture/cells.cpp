@@ -179,7 +179,7 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch) {
         &cells.plane})
     for (auto& plane : *triple) take(plane, 0.0f);
   for (auto* plane : {&cells.depth, &cells.samples, &cells.points, &cells.sum, &cells.sum2,
-                      &cells.patience, &cells.rest_sum, &cells.rest_sum2, &cells.rest_noise,
+                      &cells.prior_weight, &cells.rest_sum, &cells.rest_sum2, &cells.rest_noise,
                       &cells.rest_known, &cells.pairs, &cells.pair_sum})
     take(*plane, 0.0f);
   for (auto& plane : cells.pooled) take(plane, 0.0f);
@@ -231,7 +231,7 @@ void build_cells(const WindowView& view, const SurfaceRows& rows, int cy, Cells&
     store_lanes(&cells.rest_known[i], g.rest_known);
     store_lanes(&cells.pairs[i], g.pairs);
     store_lanes(&cells.pair_sum[i], g.pair_sum);
-    store_lanes(&cells.patience[i], Lanes{});
+    store_lanes(&cells.prior_weight[i], Lanes{});
     store_lanes(&cells.object[i], any_point ? g.object : LaneBits{} + no_object);
   }
 }

@@ -33,7 +33,7 @@ struct Cells {
   // Of neighbouring pixels that both have a point: how many pairs, and the sum of what the
   // difference of their smooth light says of the variance of one sample.
   std::span<float> pairs, pair_sum;
-  std::span<float> patience;  // samples a pixel needs before its own light counts for half
+  std::span<float> prior_weight;  // samples a pixel needs before its own light counts for half
   // `rest` is sharp where it repeats itself and noise where it does not (glossy reflections).
   std::span<float> rest_sum;   // of its luminance over samples
   std::span<float> rest_sum2;  // second moment likewise; then variance of its detail

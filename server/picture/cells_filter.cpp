@@ -24,7 +24,7 @@ constexpr float plenty_of_points = 48;  // in nine cells, to tell how light devi
 constexpr float enough_pairs = 12;      // of neighbours, likewise
 constexpr float least_detail =
     1 / 48.0f;  // of smooth light among nine cells: a variance over the mean squared
-constexpr float most_patience = 192;       // samples
+constexpr float most_prior_weight = 192;       // samples
 
 Lanes load_at(std::span<const float> plane, size_t i) { return load_lanes(plane.data() + i); }
 Lanes clamped(const Lanes& v, float low, float high) {
@@ -87,7 +87,7 @@ Brightest brightest_around(const Cells& cells, size_t i, const LaneBits& object)
 
 struct Estimate {
   Lanes scale, rest_scale;  // below 1: an outlier, brought down to its surroundings
-  Lanes mean_variance, patience, rest_detail, rest_noise, rest_mean_variance;
+  Lanes mean_variance, prior_weight, rest_detail, rest_noise, rest_mean_variance;
 };
 
 // What cells somewhat farther around say, for those with few points near.
@@ -128,8 +128,8 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
   Lanes deviates = pool.pair_sum / lanes_max(pool.pairs, all_lanes(1));
   Lanes detail = paired * positive_lanes(variance - deviates) * pool.points * per_pooled;
   variance += paired * (deviates - variance);
-  e.patience = clamped(variance / (detail + least_detail * expected * expected + 1e-6f), 0.5f,
-                       most_patience);
+  e.prior_weight = clamped(variance / (detail + least_detail * expected * expected + 1e-6f), 0.5f,
+                       most_prior_weight);
   Lanes known_badly = 1.0f + (unsure_variance - 1) * (1.0f - paired);
   e.mean_variance = variance * per_sample * known_badly;
   // What varies from place to place beyond what varies from sample to sample is detail.
@@ -247,7 +247,7 @@ void estimate_variance(Cells& cells) {
           store_lanes(&cells.smooth[c][i], load_at(cells.smooth[c], i) * e.scale);
           store_lanes(&cells.rest[c][i], load_at(cells.rest[c], i) * e.rest_scale);
         }
-        store_lanes(&cells.patience[i], keep_lanes(known, e.patience));
+        store_lanes(&cells.prior_weight[i], keep_lanes(known, e.prior_weight));
         store_lanes(&mean_variance[i], keep_lanes(known, e.mean_variance));
         store_lanes(&rest_detail[i], keep_lanes(known, e.rest_detail));
         store_lanes(&rest_noise[i], keep_lanes(known, e.rest_noise));

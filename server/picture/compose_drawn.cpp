@@ -70,13 +70,13 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
 // Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
 // or chance nobody knows.
 constexpr float calm_counts = 1 / 64.0f;
-constexpr float moving_doubt = 3;
-constexpr float still_told = 0.4f;  // at rest: guessed share of the light at which doubt begins
-constexpr float smooth_doubts = 4;  // of these, for smooth light, where chance is larger
+constexpr float moving_prior_variance = 3;
+constexpr float still_told = 0.4f;  // at rest: guessed share of the light at which prior variance begins
+constexpr float smooth_prior_variances = 4;  // of these, for smooth light, where chance is larger
 // Of what is so narrow that no cell stands for it: samples that count as much as its surroundings
 // do, in moving pictures and in those at rest; and how much the cells beside it count for that show
 // other objects: nothing to speak of, where any around shows the same.
-constexpr float narrow_patience = 1, still_patience = 0.5f, other_object = 1e-4f;
+constexpr float thin_prior_weight = 1, still_prior_weight = 0.5f, other_object = 1e-4f;
 Lanes under(const Lanes& light, const Lanes& albedo, const Lanes& theirs) {
   return light * rest_ratio(albedo, theirs);
 }
@@ -128,7 +128,7 @@ void take_own(const View& view, const PixelRays& rays, const OwnLight& own, floa
 template <class Cell>
 LaneMask light_as_neighbours(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
                              const Lanes* weights, const LaneMask& lit, const LaneMask& mirrors,
-                             const Pixels& p, const Lanes& patience, Surroundings& s) {
+                             const Pixels& p, const Lanes& prior_weight, Surroundings& s) {
   Surroundings a;
   Lanes used = add_object_light(cells, at, p, lit, mirrors, LightOf::same_object, a);
   for (int k = 0; k < 4; k++) {
@@ -138,8 +138,8 @@ LaneMask light_as_neighbours(const Cells& cells, const CellPlaces& at, const Cel
       c.smooth[n] = Lanes{} + corner.smooth[n], c.rest[n] = Lanes{} + corner.rest[n];
       c.albedo[n] = Lanes{} + corner.albedo[n];
     }
-    c.patience = c.detail = c.noise = Lanes{};
-    // What mirrors show is no light that falls there, and what lamps and the sky shine with is
+    c.prior_weight = c.detail = c.noise = Lanes{};
+    // What mirrors show is no light that falls there, and what lamps and the sky emit light with is
     // neither.
     LaneMask dark = c.albedo[0] + c.albedo[1] + c.albedo[2] < no_reflectance;
     Lanes weight = keep_lanes(~dark & (p.object != corner.object), other_object * weights[k]);
@@ -158,13 +158,13 @@ LaneMask light_as_neighbours(const Cells& cells, const CellPlaces& at, const Cel
   };
   take_color(s.smooth, a.smooth), take_color(s.rest, a.rest), take_color(s.albedo, a.albedo);
   // Whatever its own points say beyond that is detail.
-  take(s.patience, patience), take(s.detail, all_lanes(1e6f)), take(s.noise, Lanes{});
+  take(s.prior_weight, prior_weight), take(s.detail, all_lanes(1e6f)), take(s.noise, Lanes{});
   s.lonely &= ~told;
   return told;
 }
 
 // The light of a lamp does not end where a picture on the wall does.
-void light_as(Surroundings& around, const LaneMask& mirrors, const Lanes& doubts, Drawn& d) {
+void light_as(Surroundings& around, const LaneMask& mirrors, const Lanes& prior_variances, Drawn& d) {
   auto rest = [&](const Lanes& rest, const Lanes& smooth, const Lanes& albedo,
                   const Lanes& theirs) {
     return mirrors ? theirs * smooth + rest : under(rest, albedo, theirs);
@@ -172,34 +172,34 @@ void light_as(Surroundings& around, const LaneMask& mirrors, const Lanes& doubts
   around.rest = {rest(around.rest.r, around.smooth.r, d.albedo.r, around.albedo.r),
                  rest(around.rest.g, around.smooth.g, d.albedo.g, around.albedo.g),
                  rest(around.rest.b, around.smooth.b, d.albedo.b, around.albedo.b)};
-  blend_light(around, d.pixels, doubts);
+  blend_light(around, d.pixels, prior_variances);
 }
 
 // `asked`: lanes that matter.
 template <class Cell, class FindNearby>
 void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
-                 const LaneMask& flat, const Lanes* weights, float doubt, float narrow_doubt,
+                 const LaneMask& flat, const Lanes* weights, float prior_variance, float thin_prior_variance,
                  const LaneMask& asked, const FindNearby& find_nearby, Drawn& d) {
   Surroundings around = look_around(corners, flat, weights, d.pixels);
   LaneMask lonely = asked & around.lonely, unsure = asked & (around.known < 1.0f);
   around.lonely = LaneMask{};
-  Lanes doubts = all_lanes(doubt);
-  around.patience = lanes_max(around.patience, smooth_doubts * doubts);
-  if (!any_lane(unsure)) return light_as(around, LaneMask{}, doubts, d);
+  Lanes prior_variances = all_lanes(prior_variance);
+  around.prior_weight = lanes_max(around.prior_weight, smooth_prior_variances * prior_variances);
+  if (!any_lane(unsure)) return light_as(around, LaneMask{}, prior_variances, d);
   // Narrow things have few points of their own: what these say is weighed against what is around.
   // Between those and others light passes gradually.
-  Drawn narrow = d;
+  Drawn thin = d;
   Surroundings theirs = around;
   theirs.lonely = unsure;
-  find_nearby(unsure, narrow);
+  find_nearby(unsure, thin);
   LaneMask mirrors = unsure & (d.albedo.r + d.albedo.g + d.albedo.b < no_reflectance);
-  Lanes patience = all_lanes(narrow_doubt);
+  Lanes prior_weight = all_lanes(thin_prior_variance);
   LaneMask told =
-      light_as_neighbours(cells, at, corners, weights, unsure, mirrors, d.pixels, patience, theirs);
-  light_as(theirs, mirrors, told ? patience : doubts, narrow);
-  light_as(around, LaneMask{}, doubts, d);
+      light_as_neighbours(cells, at, corners, weights, unsure, mirrors, d.pixels, prior_weight, theirs);
+  light_as(theirs, mirrors, told ? prior_weight : prior_variances, thin);
+  light_as(around, LaneMask{}, prior_variances, d);
   Lanes known = unsure ? (lonely ? Lanes{} : around.known) : all_lanes(1);
-  Pixels &p = d.pixels, &q = narrow.pixels;
+  Pixels &p = d.pixels, &q = thin.pixels;
   p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
   p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);
   p.samples = lonely ? q.samples : p.samples;
@@ -215,26 +215,26 @@ struct Composer {
   const Frame& light;
   PixelRays rays, light_rays;
   vec2 offset{0.5f};
-  float doubt = moving_doubt, narrow = narrow_patience;
+  float prior_variance = moving_prior_variance, thin = thin_prior_weight;
   int left = 0, top = 0;   // where in the picture the light's begins, whole groups
   float own_counts = 1;  // samples of a pixel's own point, each
   const SkinLight* skin = nullptr;  // what moves is lit by; null: as everything else
 
   // Eight lanes each.
-  static int parts_of(const SightRun& run) {
+  static int parts_of(const VisibleRun& run) {
     return (run.count + half_group + lane_count - 1) / lane_count;
   }
-  const CellRows<Scale>& rows_around(const SightRun& run) const;
-  void light_narrow(const LaneMask& lonely, int lx, int ly, Drawn& d) const;
-  void light_run(const RunPixels& p, const SightRun& run, const CellRows<Scale>& rows,
-                 const RunGlow& shining, int n, LanePart part, Drawn& d) const;
-  Shown light_part(const SightRun& run, const RunPixels& p, const RunGlow& shining,
+  const CellRows<Scale>& rows_around(const VisibleRun& run) const;
+  void light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) const;
+  void light_run(const RunPixels& p, const VisibleRun& run, const CellRows<Scale>& rows,
+                 const RunGlow& emitting, int n, LanePart part, Drawn& d) const;
+  Shown light_part(const VisibleRun& run, const RunPixels& p, const RunGlow& emitting,
                    const RunMoving& moving, const CellRows<Scale>& rows, int n,
                    LanePart part) const;
 };
 
 template <int Scale>
-const CellRows<Scale>& Composer<Scale>::rows_around(const SightRun& run) const {
+const CellRows<Scale>& Composer<Scale>::rows_around(const VisibleRun& run) const {
   thread_local CellRows<Scale> rows;
   int by = (run.y - top + half_group) / group, bx = (run.x - left) / group;  // the lower right cell
   int count = parts_of(run) * together<Scale> + 1;
@@ -246,7 +246,7 @@ const CellRows<Scale>& Composer<Scale>::rows_around(const SightRun& run) const {
 
 // Pixels of which no cell knows the surface: light of the points around that lie on it.
 template <int Scale>
-void Composer<Scale>::light_narrow(const LaneMask& lonely, int lx, int ly, Drawn& d) const {
+void Composer<Scale>::light_thin(const LaneMask& lonely, int lx, int ly, Drawn& d) const {
   Pixels& p = d.pixels;
   for (unsigned bits = negative_lanes(lonely); bits != 0; bits &= bits - 1) {
     int k = std::countr_zero(bits);
@@ -272,8 +272,8 @@ void Composer<Scale>::light_narrow(const LaneMask& lonely, int lx, int ly, Drawn
 // The `n`-th eight of the run's pixels, of which `part` lies in the run: beyond it arrays hold
 // anything. What the light of points says of them.
 template <int Scale>
-void Composer<Scale>::light_run(const RunPixels& p, const SightRun& run,
-                                const CellRows<Scale>& rows, const RunGlow& shining, int n,
+void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
+                                const CellRows<Scale>& rows, const RunGlow& emitting, int n,
                                 LanePart part, Drawn& d) const {
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
   int i = n * lane_count - half_group, x = run.x + i;  // the first lane's pixel
@@ -298,15 +298,15 @@ void Composer<Scale>::light_run(const RunPixels& p, const SightRun& run,
   using Cell = CellRows<Scale>::Cell;
   const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g),
                             &rows.at(1, g + 1)};
-  auto find_nearby = [&](const LaneMask& lonely, Drawn& of) { light_narrow(lonely, lx, ly, of); };
+  auto find_nearby = [&](const LaneMask& lonely, Drawn& of) { light_thin(lonely, lx, ly, of); };
   constexpr Lanes beside = together<Scale> == 1 ? Lanes{} : Lanes{0, 0, 0, 0, 1, 1, 1, 1};
   CellPlaces at{fx + beside + float(rows.first + g), float(rows.row) + fy};
-  light_group(cells, at, corners, rows.flat[g], weights, doubt, narrow,
-              lanes_of_bits(part.bits() & ~bits_at(shining.only, i)), find_nearby, d);
+  light_group(cells, at, corners, rows.flat[g], weights, prior_variance, thin,
+              lanes_of_bits(part.bits() & ~bits_at(emitting.only, i)), find_nearby, d);
 }
 
 template <int Scale>
-Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const RunGlow& shining,
+Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p, const RunGlow& emitting,
                                   const RunMoving& moving, const CellRows<Scale>& rows, int n,
                                   LanePart part) const {
   const int i = n * lane_count - half_group;
@@ -320,24 +320,24 @@ Shown Composer<Scale>::light_part(const SightRun& run, const RunPixels& p, const
               q.depth < 0.5f * infinite_depth ? q.depth : all_lanes(INFINITY),
               q.object};
   if (moves != here) {
-    light_run(p, run, rows, shining, n, part, d);
+    light_run(p, run, rows, emitting, n, part, d);
     shown.color = {positive_lanes(d.albedo.r * q.smooth.r + q.rest.r),
                    positive_lanes(d.albedo.g * q.smooth.g + q.rest.g),
                    positive_lanes(d.albedo.b * q.smooth.b + q.rest.b)};
     shown.samples = q.samples;
   }
   if (moves) put_moving(p, moving.light, i, lanes_of_bits(moves), shown);
-  add_glow(p, shining, i, here, shown);
+  add_glow(p, emitting, i, here, shown);
   return shown;
 }
 
 // Runs of the picture, put into `planes`.
 template <int Scale, class Planes>
 auto taker(const Composer<Scale>& composer, const Planes& planes) {
-  return [&composer, &planes](const SightRun& run) {
+  return [&composer, &planes](const VisibleRun& run) {
     RunPixels p;
     RunMoving moving;
-    RunGlow shining = describe_run(run, p);
+    RunGlow emitting = describe_run(run, p);
     if (composer.skin) moving.pixels = run.light(*composer.skin, p.surface, moving.light);
     const CellRows<Scale>& rows = composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
@@ -345,7 +345,7 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
       int i = n * lane_count - composer.half_group;
       LanePart part{std::max(-i, 0), std::min(run.count - i, lane_count)};
       planes.put(row + size_t(i + part.begin), part,
-                 composer.light_part(run, p, shining, moving, rows, n, part));
+                 composer.light_part(run, p, emitting, moving, rows, n, part));
     }
   };
 }
@@ -354,13 +354,13 @@ using CoarseComposer = Composer<light_scale>;
 using FineComposer = Composer<1>;
 constexpr float still_blur = 0.5f;  // the mean over places in the pixel blurs enough
 
-float still_doubt(float guessed) {
-  return moving_doubt * std::clamp((guessed - still_told) / still_told, 0.0f, 1.0f);
+float still_prior_variance(float guessed) {
+  return moving_prior_variance * std::clamp((guessed - still_told) / still_told, 0.0f, 1.0f);
 }
 // A picture that stands for itself. Returns its edges.
 template <class Planes>
 std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const View& lit,
-                                                       const PictureSight& sight,
+                                                       const VisibilityPass& visibility,
                                                        const Cells& cells, bool known,
                                                        const Frame& light,
                                                        const SkinLight* skin, bool calm,
@@ -369,7 +369,7 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const V
     if (calm) composer.own_counts = calm_counts;
     composer.skin = skin;
     auto differ = [&planes](uint32_t a, uint32_t b) { return planes.differ(a, b); };
-    return sight.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
+    return visibility.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
                            differ);
   };
   PixelRays rays(view);
@@ -379,27 +379,27 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const V
 
 // What moves, in runs within the window that show any of it. Returns its edges.
 template <class Take>
-std::span<const std::vector<EdgeShare>> see_moving(const View& view, const PictureSight& sight,
+std::span<const std::vector<EdgeShare>> see_moving(const View& view, const VisibilityPass& visibility,
                                                    const PictureWindow& window, const Take& take) {
-  auto take_what_is_there = [&](const SightRun& run) {
+  auto take_what_is_there = [&](const VisibleRun& run) {
     bool inside = run.x >= window.left && run.x + run.count <= window.left + window.width &&
                   run.y >= window.top && run.y < window.top + window.height;
     for (int i = 0; inside && i < run.count; i++)
       if (run.object[i] != 0) return take(run);
   };
-  return sight.see_edges(view, vec2(0.5f), take_what_is_there, RasterShows::moving);
+  return visibility.see_edges(view, vec2(0.5f), take_what_is_there, RasterShows::moving);
 }
 
 }  // namespace
 
-void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
+void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility, const Cells& cells,
                    bool known, const Frame& light, const SkinLight* skin, Frame& frame) {
   FramePlanes planes{frame};
-  soften_edges(compose_moment(view, lit, sight, cells, known, light, skin, false, planes),
+  soften_edges(compose_moment(view, lit, visibility, cells, known, light, skin, false, planes),
                frame.color);
 }
 
-void compose_drawn(const View& view, const View& lit, const PictureSight& sight, const Cells& cells,
+void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility, const Cells& cells,
                    bool known, const Frame& light, const SkinLight* skin, const Tonemap& tonemap,
                    bool calm, std::vector<uint8_t>& peaks, Image8& image,
                    std::vector<float>* depth) {
@@ -410,27 +410,27 @@ void compose_drawn(const View& view, const View& lit, const PictureSight& sight,
   if (depth) depth->resize(pixels);
   EyePlanes planes{tonemap.exposure, image.rgb.data(), peaks.data(),
                    depth ? depth->data() : nullptr};
-  soften_edges(compose_moment(view, lit, sight, cells, known, light, skin, calm, planes), image,
+  soften_edges(compose_moment(view, lit, visibility, cells, known, light, skin, calm, planes), image,
                peaks);
 }
 
-void compose_still(const View& view, const PictureSight& sight, vec2 offset, const Cells& cells,
+void compose_still(const View& view, const VisibilityPass& visibility, vec2 offset, const Cells& cells,
                    bool known, const Frame& light, float guessed, Frame& frame) {
   FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), offset,
-                        still_doubt(guessed), still_patience};
+                        still_prior_variance(guessed), still_prior_weight};
   FramePlanes planes{frame};
-  sight.see(view, offset, taker(composer, planes), RasterShows::still, still_blur);
+  visibility.see(view, offset, taker(composer, planes), RasterShows::still, still_blur);
 }
 
-std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const PictureSight& sight,
+std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const VisibilityPass& visibility,
                                                        const Cells& cells, bool known,
                                                        const Frame& light,
                                                        const SkinLight* skin, float guessed,
                                                        Frame& frame) {
   FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), vec2(0.5f),
-                        still_doubt(guessed), still_patience};
+                        still_prior_variance(guessed), still_prior_weight};
   composer.skin = skin;
-  return see_moving(view, sight, {0, 0, view.width, view.height},
+  return see_moving(view, visibility, {0, 0, view.width, view.height},
                     taker(composer, NearerPlanes{frame}));
 }
 

@@ -10,38 +10,38 @@
 namespace wellspring {
 namespace {
 
-Shown light_part(const SightRun& run, const RunPixels& p, const RunMoving& moving,
-                 const RunGlow& shining, int i) {
+Shown light_part(const VisibleRun& run, const RunPixels& p, const RunMoving& moving,
+                 const RunGlow& emitting, int i) {
   Shown shown{{}, Lanes{}, load_lanes(run.depth + i), load_lanes<LaneBits>(run.object + i)};
   put_moving(p, moving.light, i, LaneMask{} - 1, shown);
-  add_glow(p, shining, i, 0xff, shown);
+  add_glow(p, emitting, i, 0xff, shown);
   return shown;
 }
 
-bool shows_any(const SightRun& run) {
+bool shows_any(const VisibleRun& run) {
   return std::any_of(run.object, run.object + run.count, [](uint32_t o) { return o != 0; });
 }
 
 }  // namespace
 
-void compose_moving(const View& view, const PictureSight& sight, const PictureWindow& window,
+void compose_moving(const View& view, const VisibilityPass& visibility, const PictureWindow& window,
                     const Tonemap& tonemap, std::span<const float> disparity,
                     std::span<uint8_t> covered, const SkinLight& skin, MovingLight& light) {
   NearerEyePlanes planes{tonemap.exposure, disparity.data(), covered.data(),
                          light.picture.rgb.data(), light.peaks.data()};
-  auto take = [&](const SightRun& run) {
+  auto take = [&](const VisibleRun& run) {
     if (run.x < window.left || run.x + run.count > window.left + window.width) return;
     if (run.y < window.top || run.y >= window.top + window.height || !shows_any(run)) return;
     RunPixels p;
     RunMoving moving;
-    RunGlow shining = describe_run(run, p);
+    RunGlow emitting = describe_run(run, p);
     moving.pixels = run.light(skin, p.surface, moving.light);
     size_t row = size_t(run.y) * size_t(view.width) + size_t(run.x);
     for (int i = 0; i < run.count; i += lane_count)
       planes.put(row + size_t(i), LanePart{0, std::min(run.count - i, lane_count)},
-                 light_part(run, p, moving, shining, i));
+                 light_part(run, p, moving, emitting, i));
   };
-  soften_edges(sight.see_edges(view, vec2(0.5f), take, RasterShows::moving), light.picture,
+  soften_edges(visibility.see_edges(view, vec2(0.5f), take, RasterShows::moving), light.picture,
                light.peaks);
 }
 

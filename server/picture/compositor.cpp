@@ -70,30 +70,30 @@ void Compositor::draw(RenderCache& cache, const View& lit, const Compose& compos
   cache.end_frame(shown);
 }
 
-void Compositor::draw(RenderCache& cache, const View& view, const PictureSight& sight,
+void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                       Frame& frame) {
   View lit = light_of(cache, view);
   if (!cache.has_projected(lit)) cache.project(lit);
   begin(cache);
   fit_frame(view.width, view.height, frame);
   draw(cache, lit, [&](float) {
-    compose_drawn(view, lit, sight, cells_, known_, work_->light, skin_, frame);
+    compose_drawn(view, lit, visibility, cells_, known_, work_->light, skin_, frame);
   });
 }
 
-void Compositor::draw(RenderCache& cache, const View& view, const PictureSight& sight,
+void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                       const Tonemap& tonemap, Image8& image, std::vector<float>* depth,
                       bool calm) {
   View lit = light_of(cache, view);
   if (!cache.has_projected(lit)) cache.project(lit);
   begin(cache);
   draw(cache, lit, [&](float) {
-    compose_drawn(view, lit, sight, cells_, known_, work_->light, skin_, tonemap, calm,
+    compose_drawn(view, lit, visibility, cells_, known_, work_->light, skin_, tonemap, calm,
                   work_->peaks, image, depth);
   });
 }
 
-void Compositor::draw_still(RenderCache& cache, const View& view, const PictureSight& sight,
+void Compositor::draw_still(RenderCache& cache, const View& view, const VisibilityPass& visibility,
                             Frame& frame, StillShows shows) {
   if (!cache.has_projected(view)) cache.project(view);
   begin_still(cache);
@@ -101,14 +101,14 @@ void Compositor::draw_still(RenderCache& cache, const View& view, const PictureS
   const bool changes = cache.image().alarm > 0;
   draw(cache, view, [&](float told) {
     const float guessed = 1 - told;
-    compose_still(view, sight, spread_in_pixel(cache.still_frames()), cells_, known_, work_->light,
+    compose_still(view, visibility, spread_in_pixel(cache.still_frames()), cells_, known_, work_->light,
                   guessed, frame);
     std::span<const std::vector<EdgeShare>> edges;
-    if (shows == StillShows::all && sight.anything_moves())
-      edges = compose_moving(view, sight, cells_, known_, work_->light, skin_, guessed, frame);
+    if (shows == StillShows::all && visibility.anything_moves())
+      edges = compose_moving(view, visibility, cells_, known_, work_->light, skin_, guessed, frame);
     const bool corrects = !reconstructed_ && sampled_ == view && !samples_.count.empty();
-    if (corrects) wellspring::forget_samples(still_, samples_);
-    accumulate_drawn([&](uint32_t object) { return sight.moves(object); }, changes, pictures_,
+    if (corrects) wellspring::invalidate_samples(still_, samples_);
+    accumulate_drawn([&](uint32_t object) { return visibility.moves(object); }, changes, pictures_,
                      still_, frame);
     if (corrects) correct_still(samples_, still_, work_->correction, frame);
     soften_edges(edges, frame.color);
@@ -133,10 +133,10 @@ void Compositor::add_samples(const View& view, std::span<const Request> requests
   }
 }
 
-void Compositor::forget_samples() { samples_ = {}; }
+void Compositor::invalidate_samples() { samples_ = {}; }
 
 void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
-                             const PictureSight& sight, const Tonemap& tonemap, MovingLight& work,
+                             const VisibilityPass& visibility, const Tonemap& tonemap, MovingLight& work,
                              MovingPicture& picture) {
   const View& view = backdrop.view;
   picture.view = view;
@@ -146,7 +146,7 @@ void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
   copy_colors(backdrop, runs, work.picture);
   guess_peaks(work.picture, runs, work.peaks);
   still_.count.resize(backdrop.disparity.size(), 0);
-  compose_moving(view, sight, runs, tonemap, backdrop.disparity, still_.count, *skin_, work);
+  compose_moving(view, visibility, runs, tonemap, backdrop.disparity, still_.count, *skin_, work);
   take_window(work.picture, picture);
 }
 

@@ -42,13 +42,13 @@ class Compositor {
   // whichever was projected (neither: the latter). The second for the eye at once, and of a `depth`
   // that is not null metres along the viewing axis, infinity: nothing there. `calm`: of pixels so
   // large that a point's own light would show as a square.
-  void draw(RenderCache& cache, const View& view, const PictureSight& sight, Frame& frame);
-  void draw(RenderCache& cache, const View& view, const PictureSight& sight,
+  void draw(RenderCache& cache, const View& view, const VisibilityPass& visibility, Frame& frame);
+  void draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
             const Tonemap& tonemap, Image8& image, std::vector<float>* depth = nullptr,
             bool calm = false);
   // The same at rest, in light of the view's own resolution: what does not move is antialiased in
   // time, seen at another place of the pixels each time.
-  void draw_still(RenderCache& cache, const View& view, const PictureSight& sight, Frame& frame,
+  void draw_still(RenderCache& cache, const View& view, const VisibilityPass& visibility, Frame& frame,
                   StillShows shows = StillShows::all);
   // At rest, after RenderCache::remember(): samples of pixels whose light it found changed since
   // the last picture are forgotten.
@@ -57,14 +57,14 @@ class Compositor {
   // another. Those that are aimed at a point, not anywhere in the pixel, are not; but see below.
   void add_samples(const View& view, std::span<const Request> requests,
                    std::span<const Sample> samples);
-  void forget_samples();  // other light
+  void invalidate_samples();  // other light
   // Pictures at rest serve as what reconstruction begins with (picture/still/reconstruct_still.h):
   // they are not corrected by samples, and while a pixel has few of these, aimed ones count, too.
   void set_reconstructed(bool on) { reconstructed_ = on; }
   // What moves, as the world is now, to be laid over the last draw_still() without it, of which
   // `backdrop` is the keyframe; in the light that is kept on its skin. Needs
   // sight.rasterises(backdrop.view) and set_skin(). An empty picture: it is not to be seen.
-  void draw_moving(const World& world, const Keyframe& backdrop, const PictureSight& sight,
+  void draw_moving(const World& world, const Keyframe& backdrop, const VisibilityPass& visibility,
                    const Tonemap& tonemap, MovingLight& work, MovingPicture& picture);
 
   // What the pixels of a view at rest have been found to be by samples; empty before.

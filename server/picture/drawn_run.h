@@ -47,11 +47,11 @@ inline void put_moving(const RunPixels& p, const RunSkin& skin, int i,
   shown.samples = lanes_that_move ? all_lanes(skin_samples) : shown.samples;
 }
 
-// What of eight pixels shines by itself. `here`: lanes that count, a bit each.
-inline void add_glow(const RunPixels& p, const RunGlow& shining, int i, unsigned here,
+// What of eight pixels emits light by itself. `here`: lanes that count, a bit each.
+inline void add_glow(const RunPixels& p, const RunGlow& emitting, int i, unsigned here,
                      Shown& shown) {
-  const unsigned only = bits_at(shining.only, i);
-  for (unsigned bits = bits_at(shining.some, i) & here; bits != 0; bits &= bits - 1) {
+  const unsigned only = bits_at(emitting.only, i);
+  for (unsigned bits = bits_at(emitting.some, i) & here; bits != 0; bits &= bits - 1) {
     int k = std::countr_zero(bits);
     Color& c = shown.color;
     if (only >> k & 1) c.r[k] = c.g[k] = c.b[k] = 0, shown.samples[k] = 255;

@@ -354,7 +354,7 @@ void fill_unseen(const Unseen& unseen, vec3 parallax, FillScratch& scratch, Imag
   prepare_levels(u, scratch);
   if (!find_blocks(u, scratch)) return;
   auto each = [](const std::vector<int>& blocks, const auto& body) {
-    urgent_ranges(int(blocks.size()), 32, [&](int begin, int end) {
+    priority_ranges(int(blocks.size()), 32, [&](int begin, int end) {
       for (int i = begin; i < end; i++) body(blocks[size_t(i)]);
     });
   };

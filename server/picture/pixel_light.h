@@ -49,7 +49,7 @@ struct Pixels {
 // of one for each (f8, u8).
 template <class Number, class Id>
 struct CellLightOf {
-  Number smooth[3], rest[3], patience, detail, noise;
+  Number smooth[3], rest[3], prior_weight, detail, noise;
   Number normal[3], plane[3];
   Id object;
 };
@@ -67,7 +67,7 @@ inline void read_cell(const Cells& cells, int x, int y, CellLight& c) {
     c.normal[k] = cells.normal[k][i];
     c.plane[k] = cells.plane[k][i];
   }
-  c.patience = cells.patience[i];
+  c.prior_weight = cells.prior_weight[i];
   c.detail = cells.rest_sum2[i];
   c.noise = cells.rest_noise[i];
   c.object = cells.object[i];
@@ -80,7 +80,7 @@ LaneMask find_flat(const PixelRays& rays, const Cells& cells, int bx, int by);
 // What the four cells say at each pixel, as far as they lie on the same surface.
 struct Surroundings {
   Color smooth, rest;
-  Lanes patience{}, detail{}, noise{};
+  Lanes prior_weight{}, detail{}, noise{};
   Color albedo;  // of cells that tell it
   LaneMask lonely{};  // no cell lies on this surface
   Lanes known{};      // 0 to 1: cells hardly do, or some certainly do
@@ -93,7 +93,7 @@ template <class Cell>
 [[gnu::always_inline]] inline void add(Surroundings& sum, const Lanes& weight, const Cell& c) {
   add(sum.smooth, weight, c.smooth[0], c.smooth[1], c.smooth[2]);
   add(sum.rest, weight, c.rest[0], c.rest[1], c.rest[2]);
-  sum.patience += weight * c.patience;
+  sum.prior_weight += weight * c.prior_weight;
   sum.detail += weight * c.detail;
   sum.noise += weight * c.noise;
   if constexpr (requires { c.albedo; })
@@ -139,7 +139,7 @@ Surroundings look_around(const Cell* const* corners, bool flat, const Lanes* wei
   s.lonely = sum <= least, s.known = known_by(sum);
   Lanes share = 1.0f / lanes_max(sum, all_lanes(least));
   for (Color* c : {&s.smooth, &s.rest, &s.albedo}) c->r *= share, c->g *= share, c->b *= share;
-  s.patience *= share, s.detail *= share, s.noise *= share;
+  s.prior_weight *= share, s.detail *= share, s.noise *= share;
   return s;
 }
 
@@ -162,7 +162,7 @@ Surroundings look_around(const Cell* const* corners, const LaneMask& flat, const
   s.lonely |= ~flat & (sum <= least), s.known = flat ? s.known : known_by(sum);
   Lanes share = 1.0f / lanes_max(flat ? all_lanes(1) : sum, all_lanes(least));
   for (Color* c : {&s.smooth, &s.rest, &s.albedo}) c->r *= share, c->g *= share, c->b *= share;
-  s.patience *= share, s.detail *= share, s.noise *= share;
+  s.prior_weight *= share, s.detail *= share, s.noise *= share;
   return s;
 }
 
@@ -173,17 +173,17 @@ inline Lanes cut_to(const Lanes& own, const Lanes& most) {
 
 // Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
 // more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
-// `doubt`: samples that make the own rest count for half of what it would. What few samples vary by
+// `prior variance`: samples that make the own rest count for half of what it would. What few samples vary by
 // may be alike by chance, most of all where now and then one finds a light: what those around vary
 // by counts as so many of them.
 inline constexpr float prior_samples = 4;
-inline void blend_light(const Surroundings& s, Pixels& p, const Lanes& doubt = Lanes{}) {
+inline void blend_light(const Surroundings& s, Pixels& p, const Lanes& prior_variance = Lanes{}) {
   const LaneMask& lonely = s.lonely;
   Lanes alone = keep_lanes(lonely, all_lanes(1));
   // A lone bright sample may exceed its surroundings only as far as more samples confirm it.
   Lanes own_light = luminance(p.smooth);
   Lanes most = luminance(s.smooth) * (2.0f + 0.25f * p.samples) + alone * own_light;
-  Lanes own = p.samples / (p.samples + s.patience + 1e-6f);
+  Lanes own = p.samples / (p.samples + s.prior_weight + 1e-6f);
   own = lonely ? all_lanes(1) : own;
   p.smooth = weighted_sum(p.smooth, own * cut_to(own_light, most), s.smooth, 1.0f - own);
 
@@ -198,7 +198,7 @@ inline void blend_light(const Surroundings& s, Pixels& p, const Lanes& doubt = L
   Lanes most_rest = luminance(s.rest) * (3.0f + p.samples) + 1e-4f + (quiet + alone) * own_rest;
   Lanes variance = noise / lanes_max(p.samples, all_lanes(1));
   Lanes detail = s.detail + 1e-9f, own_detail = detail / (detail + variance);
-  own_detail *= p.samples / (p.samples + doubt + 1e-6f);
+  own_detail *= p.samples / (p.samples + prior_variance + 1e-6f);
   own_detail = lonely ? all_lanes(1) : own_detail;
   Lanes kept = own_detail * cut_to(own_rest, most_rest);
   p.rest = weighted_sum(p.rest, kept, s.rest, 1.0f - own_detail);

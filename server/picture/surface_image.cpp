@@ -50,7 +50,7 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
     auto more = [&](int i) {
       uint32_t word;
       std::memcpy(&word, &colors[point[i]].normal, sizeof word);
-      return (word & 0xff00ffffu) | uint32_t(counts[point[i]]) << 16;  // in place of its doubts
+      return (word & 0xff00ffffu) | uint32_t(counts[point[i]]) << 16;  // in place of its prior variances
     };
     LaneBits m{more(0), more(1), more(2), more(3), more(4), more(5), more(6), more(7)};
     m &= known;

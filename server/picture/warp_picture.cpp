@@ -212,7 +212,7 @@ template <class Wants, class Warp>
 void each_row(const Source& source, const View& view, const WarpScratch& scratch,
               const Wants& wants, const Warp& warp) {
   int columns = (view.width + block - 1) / block, rows = (view.height + block - 1) / block;
-  urgent_ranges(rows, 1, [&](int begin, int end) {
+  priority_ranges(rows, 1, [&](int begin, int end) {
     for (int by = begin; by < end; by++)
       for (int bx = 0; bx < columns; bx++) {
         if (!wants(bx, by)) continue;

@@ -11,7 +11,7 @@
 #include "show/answer/events.h"
 #include "show/answer/sound.h"
 #include "show/draw/carry_out.h"
-#include "show/draw/order_picture.h"
+#include "show/draw/make_picture_job.h"
 #include "show/draw/pace.h"
 #include "show/draw/present.h"
 #include "show/draw/still_pass.h"
@@ -46,21 +46,21 @@ void welcome_links(Show& show, Arrivals& arrivals) {
       log::info("visitor {} connected from {}", link->id, link->peer);
       Visitor& visitor = show.visitors.emplace_back();
       visitor.link = std::move(link);
-      visitor.picture.cache = RenderCache({}, show.easel.work.cache);
-      visitor.picture.compositor = Compositor(show.easel.work.compositor);
+      visitor.picture.cache = RenderCache({}, show.renderer.work.cache);
+      visitor.picture.compositor = Compositor(show.renderer.work.compositor);
       visitor.picture.compositor.set_skin(&show.skin);
     }
   }
 }
 
-void hear_visitors(Show& show) {
+void read_visitors(Show& show) {
   for (Visitor& visitor : show.visitors)
     for (const std::string& text : visitor.link->take_texts()) {
       show.totals.messages++;
       auto message = read_browser_message(text);
       std::optional<WireError> error;
       if (const WireError* bad = std::get_if<WireError>(&message)) error = *bad;
-      else error = obey(show, visitor, std::get<BrowserMessage>(message));
+      else error = handle(show, visitor, std::get<BrowserMessage>(message));
       if (!error) continue;
       show.totals.refused_messages++;
       visitor.link->send_text(write_error(*error));
@@ -81,7 +81,7 @@ void hear_visitors(Show& show) {
   forget_absent_listeners(show);
 }
 
-void hear_eyes(Show& show) {
+void read_cameras(Show& show) {
   for (Eye& eye : show.eyes)
     for (const std::string& text : eye.link->take_texts()) {
       auto observation = read_observation(text);
@@ -102,23 +102,23 @@ void hear_eyes(Show& show) {
   });
 }
 
-void broadcast(Show& show, const std::string& news) {
+void broadcast(Show& show, const std::string& message) {
   for (Visitor& visitor : show.visitors)
-    if (visitor.welcomed) visitor.link->send_text(news);
+    if (visitor.welcomed) visitor.link->send_text(message);
 }
 
 void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utterance,
                    bool storyteller) {
   const Exhibit& exhibit = show.exhibit;
-  const StorytellerPlace* teller = teller_of(show);
+  const StorytellerPlace* storyteller_place = storyteller_of(show);
   std::string text, speaker;
   if (const auto* line =
           utterance ? line_in(utterance->line, visitor.lang, exhibit.languages) : nullptr)
     text = line->second.text;
-  if (teller && storyteller)
-    speaker = text_in(teller->name, visitor.lang, exhibit.languages);
+  if (storyteller_place && storyteller)
+    speaker = text_in(storyteller_place->name, visitor.lang, exhibit.languages);
   visitor.link->send_text(
-      subtitle_news(text, visitor.lang, speaker, utterance ? utterance->seconds : 0));
+      subtitle_message(text, visitor.lang, speaker, utterance ? utterance->seconds : 0));
 }
 
 bool is_narrated(const Visitor& visitor) {
@@ -159,7 +159,7 @@ void narrate(Show& show, float dt) {
 }
 
 View kiosk_view(const Show& show) {
-  const Viewpoint& at = show.exhibit.viewpoints[size_t(teller_of(show)->kiosk_viewpoint)].view;
+  const Viewpoint& at = show.exhibit.viewpoints[size_t(storyteller_of(show)->kiosk_viewpoint)].view;
   return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, 16, 9);
 }
 
@@ -167,8 +167,8 @@ View kiosk_view(const Show& show) {
 void behave(Show& show, float dt) {
   if (show.figures.empty()) return;
   show.audience = gather_audience(show.eyes, kiosk_view(show), show.time);
-  std::string news = kiosk_news(show.audience, show.eyes.size());
-  if (news != show.kiosk_news) broadcast(show, show.kiosk_news = news);
+  std::string message = kiosk_message(show.audience, show.eyes.size());
+  if (message != show.kiosk_message) broadcast(show, show.kiosk_message = message);
   if (show.visitors.empty() && show.eyes.empty()) return;
 
   if (dt >= 1) show.sounding.going = false;  // the show stood still while the sound went on
@@ -202,7 +202,7 @@ void behave(Show& show, float dt) {
   input.viewer_distance = viewer_distance(show);
   StorytellerEvents events;
   tick_storyteller(show.mind, show.storyteller, input, show.pose, events);
-  const StorytellerPlace& place = *teller_of(show);
+  const StorytellerPlace& place = *storyteller_of(show);
   if (events.greeted) {
     show.totals.greetings++;
     if (show.voice.story.empty())
@@ -213,17 +213,17 @@ void behave(Show& show, float dt) {
     say(show.voice, nth_line(place.farewells, show.farewells++), true);
   }
 
-  bool news_due =
+  bool message_due =
       show.time - show.agent_sent_at >= agent_interval || show.mind.mood != show.agent_mood;
-  if (news_due) {
+  if (message_due) {
     show.agent_sent_at = show.time;
     show.agent_mood = show.mind.mood;
-    broadcast(show, agent_news(show));
+    broadcast(show, agent_message(show));
   }
 }
 
 // The next thing, if there is any, of what is due by now.
-void use_easel(Show& show, int waiting) {
+void use_renderer(Show& show, int waiting) {
   RendererState renderer = renderer_state(show);
   renderer.waiting = waiting;
   carry_out(show, decide(show.time, draw_states(show), renderer), waiting);
@@ -243,7 +243,7 @@ void send_state(Show& show, Visitor& visitor) {
   double interval = visitor.hearing.utterance != 0 ? heard_state_interval : state_interval;
   if (show.time - visitor.state_sent_at < interval) return;
   visitor.state_sent_at = show.time;
-  visitor.link->send_text(state_news(show, visitor));
+  visitor.link->send_text(state_message(show, visitor));
 }
 
 }  // namespace
@@ -257,10 +257,10 @@ void tick(Show& show, Arrivals& arrivals, double now) {
 
   bool free = take_finished(show);
   welcome_links(show, arrivals);
-  hear_visitors(show);
-  hear_eyes(show);
-  if (free) forget_light_steps(show);
-  if (free && !show.easel.drawn && lamps_wait(show)) light_lamps(show);
+  read_visitors(show);
+  read_cameras(show);
+  if (free) invalidate_light_steps(show);
+  if (free && !show.renderer.drawn && lamps_wait(show)) light_lamps(show);
   narrate(show, dt);
   Demand demand;
   if (free) demand = find_demand(show.time, draw_states(show), renderer_state(show));
@@ -274,8 +274,8 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   }
   send_sounds(show);
   std::optional<dvec3> person;
-  if (const StorytellerPlace* teller = show.storyteller_visible ? teller_of(show) : nullptr)
-    person = teller->position;
+  if (const StorytellerPlace* storyteller_place = show.storyteller_visible ? storyteller_of(show) : nullptr)
+    person = storyteller_place->position;
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
     pace_tour(visitor);
@@ -285,10 +285,10 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     watch(show, visitor);
   }
   watch_pass(show);
-  Easel& easel = show.easel;
-  if (easel.drawn && is_outdated(show, easel.order, *easel.drawn)) easel.given_up = true;
+  Renderer& renderer = show.renderer;
+  if (renderer.drawn && is_outdated(show, renderer.order, *renderer.drawn)) renderer.given_up = true;
   if (!show.settings.background) draw_now(show, demand.waiting);
-  else if (free) use_easel(show, demand.waiting);
+  else if (free) use_renderer(show, demand.waiting);
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
     if (show.settings.background) present(show, visitor);
@@ -309,11 +309,11 @@ double seconds_to_next_tick(const Show& show, double now) {
 
 void wait_for_tick(const Show& show, double now) {
   double seconds = seconds_to_next_tick(show, now);
-  const Easel& easel = show.easel;
-  bool nothing_comes = !easel.drawn && easel.brokers.empty() && !show.pass.at_work &&
-                       !easel.skin.at_work;
+  const Renderer& renderer = show.renderer;
+  bool nothing_comes = !renderer.drawn && renderer.brokers.empty() && !show.pass.at_work &&
+                       !renderer.skin.at_work;
   if (nothing_comes) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-  else easel.worker.wait_for(seconds);
+  else renderer.worker.wait_for(seconds);
 }
 
 }  // namespace wellspring

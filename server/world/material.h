@@ -35,7 +35,7 @@ struct Material {
   vec3 attenuation_color{1};
   float attenuation_distance = std::numeric_limits<float>::infinity();
   float dispersion = 0;  // 20 over the Abbe number
-  float specular = 1;    // strength of the dielectric reflection; 0: a perfectly matt surface
+  float specular = 1;    // strength of the dielectric reflection; 0: a perfectly Lambertian surface
   TextureRef specular_texture;  // A
   vec3 specular_color{1};       // tints it at normal incidence
   TextureRef specular_color_texture;

@@ -70,7 +70,7 @@ struct Bounds {
 };
 Bounds scene_bounds(const Scene& scene);
 size_t triangle_count(const Scene& scene);  // instances counted
-// A light that can shine: an emissive material in use, a punctual light or a lit environment.
+// A light that can emit light: an emissive material in use, a punctual light or a lit environment.
 bool has_light(const Scene& scene);
 
 }  // namespace wellspring

@@ -227,20 +227,20 @@ Face make_face(const PlacedMesh& placed, uint32_t triangle) {
   return face;
 }
 
-bool is_matt(const Material& m) {
+bool is_lambertian(const Material& m) {
   bool gloss = m.ior != 1 && m.specular > 0;
   bool layered = m.clearcoat > 0 || max_component(m.sheen_color) > 0;
   return !m.unlit && !m.repaints && !gloss && !layered && m.metallic == 0 && m.transmission == 0 &&
          m.emission == vec3(0) && m.normal_texture.texture < 0;
 }
 
-MattSurface eval_matt_surface(const World& world, const Ray& ray, const Hit& hit) {
+LambertSurface eval_lambert_surface(const World& world, const Ray& ray, const Hit& hit) {
   const PlacedMesh& placed = world.placed(hit.instance);
   const Material& m = *placed.material;
   const Mesh& mesh = *placed.mesh;
   Face own;
   const Face& face = face_of(placed, hit.triangle, own);
-  MattSurface surface;
+  LambertSurface surface;
   Side side = locate(face, hit.barycentric, ray, surface);
   surface.normal = surface.geometric_normal;
   vec4 base = m.base_color;

@@ -34,19 +34,19 @@ struct Surface : SurfacePlace {
   float sheen_roughness = 0;
 };
 
-// All there is to a surface of which only `base_color` shows: see is_matt.
-struct MattSurface : SurfacePlace {
+// All there is to a surface of which only `base_color` shows: see is_lambertian.
+struct LambertSurface : SurfacePlace {
   vec3 normal{0, 1, 0};  // as in Surface
   vec3 base_color{1};
 };
 // Lambert's law is all that can happen there: opaque but for its alpha, no gloss, no light of its
 // own, no map of normals.
-bool is_matt(const Material& material);
+bool is_lambertian(const Material& material);
 
 // `hit` must be valid().
 Surface eval_surface(const World& world, const Ray& ray, const Hit& hit);
-// The same values in less time, where the material is_matt.
-MattSurface eval_matt_surface(const World& world, const Ray& ray, const Hit& hit);
+// The same values in less time, where the material is_lambertian.
+LambertSurface eval_lambert_surface(const World& world, const Ray& ray, const Hit& hit);
 // Position on a triangle at barycentric weights of its second and third corner, world space.
 vec3 eval_position(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric);
 // Unit geometric normal towards the side the winding faces (0, 1, 0 for a triangle without area),

@@ -17,10 +17,10 @@ inline int next_lane(unsigned& bits) {
 
 }  // namespace
 
-MattSurfaceLanes eval_matt_surfaces(const World& world, const Lanes3& direction, const Hit* hits,
+LambertSurfaceLanes eval_lambert_surfaces(const World& world, const Lanes3& direction, const Hit* hits,
                                     unsigned active) {
   static const Face nowhere{};
-  MattSurfaceLanes s;
+  LambertSurfaceLanes s;
   const Face* faces[lane_count];
   Face own[lane_count];  // of what is not plain, as flat as it is there
   float color[3][lane_count] = {};
@@ -37,7 +37,7 @@ MattSurfaceLanes eval_matt_surfaces(const World& world, const Lanes3& direction,
     } else {
       Ray ray;
       ray.direction = direction.at(i);
-      MattSurface surface = eval_matt_surface(world, ray, hit);
+      LambertSurface surface = eval_lambert_surface(world, ray, hit);
       own[i] = nowhere;
       own[i].corner = surface.position;
       own[i].extent = surface.extent;
@@ -68,7 +68,7 @@ MattSurfaceLanes eval_matt_surfaces(const World& world, const Lanes3& direction,
   return s;
 }
 
-Lanes3 offset_origins(const MattSurfaceLanes& s, const Lanes3& direction) {
+Lanes3 offset_origins(const LambertSurfaceLanes& s, const Lanes3& direction) {
   // offset_origin's constants, and its reasons.
   const Lanes one = all_lanes(1), zero{};
   Lanes small = lanes_min(s.extent, one), unit = s.extent > zero ? small : one;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What surface.h says of matt surfaces, of eight hits side by side. Each lane's answer is its own:
+// What surface.h says of Lambertian surfaces, of eight hits side by side. Each lane's answer is its own:
 // what the other lanes hold does not matter.
 #pragma once
 #include "base/simd3.h"
@@ -7,7 +7,7 @@
 
 namespace wellspring {
 
-struct MattSurfaceLanes {
+struct LambertSurfaceLanes {
   Lanes3 position, geometric_normal, normal, base_color;
   Lanes extent{};
   unsigned bent = 0;  // bit i: the normal of lane i may be another than the geometric one
@@ -19,9 +19,9 @@ struct MattSurfaceLanes {
     return one;
   }
 };
-// eval_matt_surface of hits[i] for the bits of `active`, met by rays of those unit directions.
-MattSurfaceLanes eval_matt_surfaces(const World& world, const Lanes3& direction, const Hit* hits,
+// eval_lambert_surface of hits[i] for the bits of `active`, met by rays of those unit directions.
+LambertSurfaceLanes eval_lambert_surfaces(const World& world, const Lanes3& direction, const Hit* hits,
                                     unsigned active);
-Lanes3 offset_origins(const MattSurfaceLanes& surface, const Lanes3& direction);
+Lanes3 offset_origins(const LambertSurfaceLanes& surface, const Lanes3& direction);
 
 }  // namespace wellspring

@@ -121,10 +121,10 @@ Character make_avatar(const MadeAvatar& what, const std::string& normals) {
   Character character;
   character.name = "made avatar";
   character.first_weight = {0};
-  Look look;
+  Appearance look;
   look.name = "skin";
   if (what.normal_map) look.normal_texture = normals;
-  character.looks = {look, look, look};
+  character.appearances = {look, look, look};
   Part body{"body", 0, {}}, head{"head", 1, {}}, hair{"hair", 2, {}};
   Maker maker{character};
   for (const Bone& bone : bones)
@@ -168,10 +168,10 @@ Character make_avatar(const MadeAvatar& what, const std::string& normals) {
       }
   character.parts = {body, head, hair};
   if (what.paint) {
-    LookChange blush;
-    blush.look = 1, blush.base_color = vec4(0.1f, -0.1f, -0.1f, 0);
+    AppearanceChange blush;
+    blush.appearance = 1, blush.base_color = vec4(0.1f, -0.1f, -0.1f, 0);
     for (const char* name : {"happy", "viseme_aa", "viseme_E"})
-      blush.displacer = find_displacer(character, name), character.look_changes.push_back(blush);
+      blush.displacer = find_displacer(character, name), character.appearance_changes.push_back(blush);
   }
   return character;
 }

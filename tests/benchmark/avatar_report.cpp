@@ -127,12 +127,12 @@ void bench_avatar(BenchReport& report, const BenchOptions& options) {
   bench_made(report, ticks);
   Exhibit castle = load_exhibit((std::filesystem::path(options.content) / "castle").string());
   if (castle.storytellers.empty()) return;
-  Ticking teller(castle.storytellers.front().character, castle.scene);
+  Ticking storyteller_place(castle.storytellers.front().character, castle.scene);
   for (int i = 0; i < ticks + ticks_before; i++) {
-    if (i == ticks_before) teller.forget();
-    teller.tick(seconds_now, false);
+    if (i == ticks_before) storyteller_place.forget();
+    storyteller_place.tick(seconds_now, false);
   }
-  teller.report(report, "avatar", {{"scene", "castle"}});
+  storyteller_place.report(report, "avatar", {{"scene", "castle"}});
 }
 
 }  // namespace wellspring

@@ -32,7 +32,7 @@ struct Lit {
   std::vector<char> lamps;  // of an exhibit's: is it on? Empty: another scene is another light
   std::unique_ptr<World> world;
   Lights lights, all;  // `all`: while all of the exhibit's lamps are on
-  std::unique_ptr<PictureSight> sight;
+  std::unique_ptr<VisibilityPass> visibility;
   View view;
   Truth truth;
 };
@@ -80,7 +80,7 @@ float share_right(const Frame& shown, const Lit& was, const Lit& is, Frame& map)
 enum class Way { moving, still };
 constexpr const char* way_names[] = {"moving", "still"};
 enum class News { told, found, cleared };
-constexpr const char* news_names[] = {"told", "found", "cleared"};
+constexpr const char* event_names[] = {"told", "found", "cleared"};
 
 struct Onlooker {
   const Switch& scene;
@@ -111,8 +111,8 @@ struct Onlooker {
     cache.remember(seen, requests, samples);
     compositor.follow_changes(cache);
     compositor.add_samples(seen, requests, samples);
-    if (way == Way::moving) compositor.draw(cache, view, *lit.sight, frame);
-    else compositor.draw_still(cache, view, *lit.sight, frame);
+    if (way == Way::moving) compositor.draw(cache, view, *lit.visibility, frame);
+    else compositor.draw_still(cache, view, *lit.visibility, frame);
   }
 };
 
@@ -164,13 +164,13 @@ void run(BenchReport& report, const BenchOptions& options, const Switch& scene, 
     report.add("cache.switch.right", share_right(visitor.frame, was, is, map), "share",
                {{"scene", scene.scene},
                 {"way", way_names[int(way)]},
-                {"cache", news_names[int(news)]},
+                {"cache", event_names[int(news)]},
                 {"light", on ? "on" : "off"},
                 {"mismatch", mismatch},
                 {"pictures", after}});
     if (options.visit_pictures.empty()) continue;
     std::string file = options.visit_pictures + "/switch_" + scene.scene + "_" +
-                       way_names[int(way)] + "_" + news_names[int(news)] + (on ? "_on_" : "_off_") +
+                       way_names[int(way)] + "_" + event_names[int(news)] + (on ? "_on_" : "_off_") +
                        std::to_string(mismatch) + "_" + std::to_string(after);
     save_picture(file + ".png", visitor.frame, {});
     save_picture(file + "_right.png", map, {});
@@ -182,7 +182,7 @@ void prepare(const std::string& name, const BenchScene& scene, const TruthSettin
   lit.world = std::make_unique<World>(lit.scene);
   lit.world->commit();
   lit.lights = make_lights(*lit.world);
-  lit.sight = std::make_unique<PictureSight>(*lit.world, lit.lights);
+  lit.visibility = std::make_unique<VisibilityPass>(*lit.world, lit.lights);
   lit.view = bench_view(scene, width, (width * 9 + 8) / 16);
   const Technique& technique = *find_technique(name);
   if (technique.prepare)

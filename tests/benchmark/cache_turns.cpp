@@ -94,23 +94,23 @@ struct TurnErrors {
 };
 
 struct DrawnKeyframes {
-  const PictureSight& sight;
+  const VisibilityPass& visibility;
   Keyframe shown, drawn, around;
   DrawnPicture picture;
   void draw(const View& view, Keyframe& to) {
-    draw_picture(sight, view, picture);
+    draw_picture(visibility, view, picture);
     make_keyframe(view, picture.image, picture.depth, to);
   }
 };
 
 // One picture judged in `stride` ticks.
-TurnErrors judge_turns(const VisitStage& stage, const PictureSight& sight,
+TurnErrors judge_turns(const VisitStage& stage, const VisibilityPass& visibility,
                        const std::vector<double>& yaws, double drawing, bool surrounded,
                        size_t stride, const std::string& pictures) {
   const Viewpoint& at = stage.exhibit().viewpoints[0].view;
   TurnErrors errors;
   Heading heading;
-  DrawnKeyframes frames{sight, {}, {}, {}, {}};
+  DrawnKeyframes frames{visibility, {}, {}, {}, {}};
   WarpScratch scratch;
   Image8 out;
   DrawnPicture truth;
@@ -141,7 +141,7 @@ TurnErrors judge_turns(const VisitStage& stage, const PictureSight& sight,
     }
     if (frames.shown.empty() || i % stride != 0) continue;
     double unknown = double(warp_picture(frames.shown, frames.around, view, 1, scratch, out));
-    draw_picture(sight, view, truth);
+    draw_picture(visibility, view, truth);
     errors.flips.push_back(double(eval_flip(out, truth.image).mean));
     errors.flip += errors.flips.back(), errors.unknown += unknown;
     if (pictures.empty()) continue;
@@ -156,11 +156,11 @@ TurnErrors judge_turns(const VisitStage& stage, const PictureSight& sight,
 
 void bench_hall(BenchReport& report, const BenchOptions& options) {
   VisitStage stage(options.content + "/castle", "direct");
-  PictureSight sight(stage.world(), stage.lights());
+  VisibilityPass visibility(stage.world(), stage.lights());
   std::vector<double> yaws = turn_by_keys(options.quick ? 10 : 60, 11);
   for (double drawing : {1 / 30.0, 0.1, 0.2})
     for (bool surrounded : {false, true}) {
-      TurnErrors errors = judge_turns(stage, sight, yaws, drawing, surrounded,
+      TurnErrors errors = judge_turns(stage, visibility, yaws, drawing, surrounded,
                                       options.quick ? 11 : 7, options.visit_pictures);
       nlohmann::json fields = {{"scene", "castle"},
                                {"size", fmt::format("{}x{}", hall_width, hall_height)},

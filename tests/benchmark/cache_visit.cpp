@@ -85,7 +85,7 @@ Image8 through_jpeg(const Image8& image, int quality) {
 }
 
 // What has been seen of a trace so far: this frame and the one before.
-struct Seen {
+struct PrimaryHit {
   TrueView now, before;
   std::vector<vec2> motion;
 };
@@ -124,7 +124,7 @@ void add_noise(const Truth& truth, float exposure, TruthNoise& noise, int instan
   noise.rmse += display_rmse(half[0], half[1]) / instants;
 }
 
-void step(const VisitMoment& moment, const Seen& seen, float exposure, Running& running) {
+void step(const VisitMoment& moment, const PrimaryHit& seen, float exposure, Running& running) {
   running.method->show(moment, running.budget, running.picture);
   std::swap(running.image, running.image_before);
   tonemap(running.picture.frame, Tonemap{exposure}, running.image);
@@ -148,7 +148,7 @@ void simulate(const VisitSettings& settings, VisitStage& stage, const VisitTrace
   float exposure = stage.exhibit().exposure;
   const ShowSettings& show = stage.settings();
   double moved_at = 0;
-  Seen seen;
+  PrimaryHit seen;
   stage.begin(trace);
   for (int i = 0; i < frames; i++) {
     double time = i / visit_rate;

@@ -152,7 +152,7 @@ VisitTrace make_tour(const Exhibit& castle, const World& world) {
 // Between two viewpoints there is no way: the samples before and after lie less than a picture
 // apart.
 VisitTrace make_jump(const Exhibit& castle) {
-  constexpr double stay = 1.2, leap = 0.001;
+  constexpr double stay = 1.2, camera_cut = 0.001;
   VisitTrace trace;
   trace.name = "jump";
   trace.about = "asks for one viewpoint after the other";
@@ -160,7 +160,7 @@ VisitTrace make_jump(const Exhibit& castle) {
   double time = 0;
   for (const char* name : {"hall", "crown", "paintings", "well", "fireplace", "windows"}) {
     const Viewpoint& at = viewpoint(castle, name);
-    for (double t : {time, time + stay - leap})
+    for (double t : {time, time + stay - camera_cut})
       trace.samples.push_back({t, at.position, at.yaw, at.pitch, at.fov});
     time += stay;
   }

@@ -134,8 +134,8 @@ class Deferred : public VisitMethod {
       compositor_.follow_changes(cache_);
       if (!passing) compositor_.add_samples(view, batch_.requests, batch_.samples);
     }
-    if (passing) compositor_.draw(cache_, moment.view, sight(moment), shown.frame);
-    else if (passed_ == 0) compositor_.draw_still(cache_, moment.view, sight(moment), shown.frame);
+    if (passing) compositor_.draw(cache_, moment.view, visibility(moment), shown.frame);
+    else if (passed_ == 0) compositor_.draw_still(cache_, moment.view, visibility(moment), shown.frame);
     if (learns && !reconstruct(moment, shown.frame) && passed_ > 0) cache_.end_frame();
     shown.stats = cache_.stats();
     shown.empty = shown.stats.empty;
@@ -155,9 +155,9 @@ class Deferred : public VisitMethod {
     double kept = mean_count(compositor_.samples());
     if (moment.frame - moved_ < first_pass || kept < growth * passed_) return false;
     passed_ = kept;
-    compositor_.draw_still(cache_, moment.view, sight(moment), frame);
+    compositor_.draw_still(cache_, moment.view, visibility(moment), frame);
     for (int place = 0; place < guide_places; place++)
-      add_still_guides(*moment.world, *moment.lights, sight(moment), moment.view, RasterShows::all,
+      add_still_guides(*moment.world, *moment.lights, visibility(moment), moment.view, RasterShows::all,
                        place, work_.guides, work_.followed);
     begin_reconstruction(compositor_.samples(), frame, *denoiser_, work_);
     while (denoiser_->advance(1)) {
@@ -165,11 +165,11 @@ class Deferred : public VisitMethod {
     finish_reconstruction(compositor_.samples(), *denoiser_, work_, frame);
     return true;
   }
-  const PictureSight& sight(const VisitMoment& moment) {
-    if (!sight_ || sees_ != moment.lights->tables)
-      sight_ = std::make_unique<PictureSight>(*moment.world, *moment.lights);
+  const VisibilityPass& visibility(const VisitMoment& moment) {
+    if (!visibility_ || sees_ != moment.lights->tables)
+      visibility_ = std::make_unique<VisibilityPass>(*moment.world, *moment.lights);
     sees_ = moment.lights->tables;
-    return *sight_;
+    return *visibility_;
   }
   Answers answers_;
   std::unique_ptr<Denoiser> denoiser_;
@@ -178,7 +178,7 @@ class Deferred : public VisitMethod {
   double passed_ = 0;   // samples a pixel in the last pass
   View view_before_;
   std::vector<Request> ahead_;
-  std::unique_ptr<PictureSight> sight_;
+  std::unique_ptr<VisibilityPass> visibility_;
   std::shared_ptr<const LightTables> sees_;
   RenderCache cache_;
   Compositor compositor_;

@@ -72,7 +72,7 @@ void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
   StorytellerEvents events;
   tick_storyteller(show.mind, show.storyteller, input, show.pose, events);
   advance_voice(show.voice, dt);
-  pose_figure(*show.world, show.figures[show.teller], teller_of(show)->character, show.pose,
+  pose_figure(*show.world, show.figures[show.storyteller_index], storyteller_of(show)->character, show.pose,
               show.storyteller.placement, show.scratch);
   show.world->commit();
 }

@@ -59,7 +59,7 @@ double mean_flip(const Image8& test, const Image8& reference) {
 
 void bench_cache_warp(BenchReport& report, const BenchOptions& options) {
   VisitStage stage(options.content + "/castle", "direct");
-  PictureSight sight(stage.world(), stage.lights());
+  VisibilityPass visibility(stage.world(), stage.lights());
   const int instants = options.quick ? 4 : 12;
   WarpScratch scratch;
   DrawnPicture before, held, now;
@@ -74,9 +74,9 @@ void bench_cache_warp(BenchReport& report, const BenchOptions& options) {
         double time = trace_seconds(trace) * (i + 0.5) / instants;
         View view = stage.view(trace, time, width, height),
              old = stage.view(trace, time - age, width, height);
-        draw_picture(sight, view, now);
-        draw_picture(sight, old, held);
-        draw_picture(sight, keyframe_view(old), before);
+        draw_picture(visibility, view, now);
+        draw_picture(visibility, old, held);
+        draw_picture(visibility, keyframe_view(old), before);
         double began = processor_seconds();
         make_keyframe(keyframe_view(old), before.image, before.depth, keyframe);
         double made = processor_seconds();

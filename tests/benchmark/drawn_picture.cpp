@@ -7,15 +7,15 @@
 
 namespace wellspring {
 
-void draw_picture(const PictureSight& sight, const View& view, DrawnPicture& drawn) {
+void draw_picture(const VisibilityPass& visibility, const View& view, DrawnPicture& drawn) {
   Frame frame;
   frame.width = view.width, frame.height = view.height;
   frame.color.resize(size_t(view.width) * size_t(view.height));
   drawn.depth.resize(frame.color.size());
   const vec3 towards_light = normalize(vec3(0.3f, 0.8f, 0.5f));
-  sight.see(view, vec2(0.5f), [&](const SightRun& run) {
+  visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
     for (int i = 0; i < run.count; i++) {
-      Seen seen = run.see(i);
+      PrimaryHit seen = run.see(i);
       size_t at = size_t(run.y) * size_t(view.width) + size_t(run.x + i);
       float size = length(seen.normal);
       float light =

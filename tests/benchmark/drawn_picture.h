@@ -14,6 +14,6 @@ struct DrawnPicture {
   std::vector<float> depth;
 };
 
-void draw_picture(const PictureSight& sight, const View& view, DrawnPicture& drawn);
+void draw_picture(const VisibilityPass& visibility, const View& view, DrawnPicture& drawn);
 
 }  // namespace wellspring

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr int threads = 4, max_depth = 8;
 
-// What is compared: a file, and whether its metals are kept or matt (cycles_job.h).
+// What is compared: a file, and whether its metals are kept or Lambertian (cycles_job.h).
 struct Case {
   const char* name;
   bool is_castle, metals;

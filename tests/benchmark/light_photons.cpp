@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "light/instant/caustic_photons.h"
 #include "light/instant/instant_radiosity.h"
+#include "light/technique/technique.h"
 #include "light/walk/first_surface.h"
 #include "light_scenes.h"
 

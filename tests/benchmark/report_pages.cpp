@@ -28,13 +28,13 @@ ReportPage avatar_page() {
                                    {"avatar.made.animate.ms", "decide and animate, ms"},
                                    {"avatar.made.skin.ms", "skin, ms"},
                                    {"avatar.made.refit.ms", "refit of the ray tracer's tree, ms"}};
-  std::vector<PageColumn> teller = parts;
-  for (PageColumn& column : teller) column.metric.erase(7, 5);  // avatar.tick.ms
-  teller.push_back({"avatar.tick.ms", "triangles", 1, "", "triangles"});
+  std::vector<PageColumn> storyteller_place = parts;
+  for (PageColumn& column : storyteller_place) column.metric.erase(7, 5);  // avatar.tick.ms
+  storyteller_place.push_back({"avatar.tick.ms", "triangles", 1, "", "triangles"});
   return {"avatar",
           "What does a figure cost each tick? One core.",
           {"Medians of the ticks; the made avatar's variants tick in turns, in processor time."},
-          {{.caption = "The castle's storyteller", .columns = teller},
+          {{.caption = "The castle's storyteller", .columns = storyteller_place},
            {.caption = "An avatar that the benchmark makes, speaking",
             .rows = {{"technique", "what it has"}, {"springs", "spring bones"}},
             .columns = parts}}};
@@ -226,8 +226,8 @@ ReportPage show_rest_page() {
                     {"flip", "samples a pixel of the converged picture", 1, "", "spp"}}}}};
 }
 
-ReportPage show_teller_page() {
-  return {"show.teller",
+ReportPage show_storyteller_page() {
+  return {"show.storyteller",
           "How soon is the light on the storyteller right? Her head while she tells, against a "
           "converged picture; nothing is known of her light at the beginning.",
           {"Of the samples an eighth are hers. Wanted: FLIP 0.15."},
@@ -373,7 +373,7 @@ std::vector<ReportPage> declared_pages() {
           denoise_time_page(),
           denoise_flip_page(),
           show_rest_page(),
-          show_teller_page(),
+          show_storyteller_page(),
           show_load_page(),
           light_frame_page(),
           light_scaling_page(),

@@ -114,7 +114,7 @@ void for_each_counting(const PhotonGrid& grid, vec3 place, vec3 normal, int deep
 }
 
 // Flux that arrives around a place from before it.
-vec3 sum_matt(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest, PhotonCells& cells) {
+vec3 sum_lambert(const PhotonGrid& grid, vec3 place, vec3 normal, int deepest, PhotonCells& cells) {
   Lanes red = all_lanes(0), green = red, blue = red, none = red;
   for_each_counting(grid, place, normal, deepest, cells, [&](size_t at, LaneMask counts) {
     red += counts ? grid.flux.x.at(at) : none;
@@ -151,8 +151,8 @@ Scattered sum_scattered(const PhotonGrid& grid, vec3 place, const Bsdf& bsdf, in
         1 / (direction.x * normal.x + direction.y * normal.y + direction.z * normal.z);
     if (!lanes) lanes = make_bsdf_lanes(bsdf);
     BsdfLanesValue value = eval_bsdf_lanes(*lanes, direction);
-    Lanes matt = value.diffuse * spread;
-    diffuse.x += matt * flux.x, diffuse.y += matt * flux.y, diffuse.z += matt * flux.z;
+    Lanes lambertian = value.diffuse * spread;
+    diffuse.x += lambertian * flux.x, diffuse.y += lambertian * flux.y, diffuse.z += lambertian * flux.z;
     specular.x += value.specular.x * spread * flux.x;
     specular.y += value.specular.y * spread * flux.y;
     specular.z += value.specular.z * spread * flux.z;
@@ -210,10 +210,10 @@ void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& pla
   float hue = place.hue();
   bool hued = hue >= 0 && !grid.hue.values.empty();
   // One reflectance for all directions.
-  bool matt = !has_specular(bsdf) && bsdf.normal == normal && !hued;
+  bool lambertian = !has_specular(bsdf) && bsdf.normal == normal && !hued;
   float area = pi * grid.radius * grid.radius;
-  if (matt) {
-    vec3 flux = sum_matt(grid, place.surface->position, normal, max_depth - place.depth, cells);
+  if (lambertian) {
+    vec3 flux = sum_lambert(grid, place.surface->position, normal, max_depth - place.depth, cells);
     light.diffuse += flux * bsdf.diffuse / (pi * area);
     return;
   }

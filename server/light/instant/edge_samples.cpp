@@ -71,7 +71,7 @@ bool eval_alike(const Refining& r, const Request& request, vec2 place, vec3& rad
     return true;
   }
   if (!first.scatters || max_component(sample.rest) > 0) return false;
-  sample.albedo = kept_reflectance(first).albedo * first.tint;
+  sample.albedo = demodulated_reflectance(first).albedo * first.tint;
   return take_light(r, sample, place, radiance);
 }
 
@@ -111,14 +111,14 @@ void refine_row(const Refining& r, int y, std::vector<Refined>& refined) {
   Looks looks = look_at_edges(r, y, refined);
   std::vector<uint32_t> unknown;
   std::vector<Sample> samples(looks.requests.size());
-  MattEyes seen = see_matt({r.world, *r.lights.tables}, looks.requests, samples);
+  LambertHits seen = see_lambert({r.world, *r.lights.tables}, looks.requests, samples);
   vec3 radiance;
   auto answer = [&](uint32_t i, bool known) {
     if (known) refined[looks.pixels[i]].radiance += radiance;
     else unknown.push_back(i);
   };
   for (uint32_t i : seen.nothing) refined[looks.pixels[i]].radiance += samples[i].rest;
-  for (const MattEye& eye : seen.eyes)
+  for (const LambertHit& eye : seen.eyes)
     answer(eye.request, take_light(r, samples[eye.request], looks.places[eye.request], radiance));
   for (uint32_t i : seen.others)
     answer(i, eval_alike(r, looks.requests[i], looks.places[i], radiance));

@@ -18,17 +18,17 @@ constexpr int item_bits = 22, list_bits = 10;
 
 // Up to 16 eyes of one group.
 struct Packet {
-  std::span<const MattEye> eyes;
+  std::span<const LambertHit> eyes;
   uint32_t items[RayPacket::lanes];
   int count = 0;
-  const MattEye& eye(int i) const { return eyes[items[i < count ? i : 0]]; }
+  const LambertHit& eye(int i) const { return eyes[items[i < count ? i : 0]]; }
 };
 
 LitGroup make_group(const Packet& packet) {
   LitGroup group;
-  group.used = group.matt = (1u << packet.count) - 1;
+  group.used = group.lambertian = (1u << packet.count) - 1;
   for (int i = 0; i < RayPacket::lanes; i++) {
-    const MattEye& eye = packet.eye(i);
+    const LambertHit& eye = packet.eye(i);
     group.position.set(i, eye.position);
     group.normal.set(i, eye.normal);
     group.face.set(i, eye.face);
@@ -40,7 +40,7 @@ LitGroup make_group(const Packet& packet) {
 
 // What clipping took (gather_rest): few rays meet anything so near, which is asked of all at once.
 void gather_clipped(const EyeLight& light, std::span<const Request> requests, const Packet& packet,
-                    const LitGroup& group, MattLight& sum) {
+                    const LitGroup& group, LambertLight& sum) {
   constexpr uint32_t direction_dimension = 0, later_dimensions = 1;
   RayPacket rays;
   uint32_t active = 0;
@@ -50,15 +50,15 @@ void gather_clipped(const EyeLight& light, std::span<const Request> requests, co
       const Request& request = requests[packet.eye(h * lane_count + i).request];
       samplers.set(i, Sampler(request.seed, request.index));
     }
-    MattSurfaceLanes surface;
+    LambertSurfaceLanes surface;
     surface.position = group.position.half(h);
     surface.geometric_normal = group.face.half(h);
     surface.extent = group.extent.half(h);
-    MattLobeLanes lobes{group.normal.half(h), surface.geometric_normal, {}};
+    LambertLobeLanes lobes{group.normal.half(h), surface.geometric_normal, {}};
     Lanes u, v;
     samplers.pair(all_lane_bits(direction_dimension), u, v);
     Lanes3 direction = sample_cosine_directions(lobes.normal, u, v);
-    active |= negative_lanes(eval_matt_pdfs(lobes, direction) > Lanes{}) << h * lane_count;
+    active |= negative_lanes(eval_lambert_pdfs(lobes, direction) > Lanes{}) << h * lane_count;
     set_rays(offset_origins(surface, direction), direction, all_lanes(light.pass.clip),
              h * lane_count, rays);
   }
@@ -101,11 +101,11 @@ size_t GroupOrder::take(size_t begin, size_t most, uint32_t* items, PixelGroup& 
   return count;
 }
 
-std::vector<uint32_t> trace_matt_eyes(const Transport& transport, const InstantPass& pass,
+std::vector<uint32_t> trace_lambert_hits(const Transport& transport, const InstantPass& pass,
                                       int max_depth, std::span<const Request> requests,
                                       std::span<Sample> samples) {
-  MattEyes seen = see_matt(transport, requests, samples);
-  const std::vector<MattEye>& eyes = seen.eyes;
+  LambertHits seen = see_lambert(transport, requests, samples);
+  const std::vector<LambertHit>& eyes = seen.eyes;
   GroupOrder order;
   for (size_t i = 0; i < eyes.size(); i++) {
     vec3& albedo = samples[eyes[i].request].albedo;
@@ -121,9 +121,9 @@ std::vector<uint32_t> trace_matt_eyes(const Transport& transport, const InstantP
     packet.count = int(order.take(begin, RayPacket::lanes, packet.items, name));
     begin += size_t(packet.count);
     const LitGroup group = make_group(packet);
-    MattLight light{};
+    LambertLight light{};
     int set = set_of_list(pass, name.list);
-    shade_matt_by_point_lights(transport, pass, {set, 0, 1, 0, name.region, name.list}, max_depth,
+    shade_lambert_by_point_lights(transport, pass, {set, 0, 1, 0, name.region, name.list}, max_depth,
                                group, light);
     if (clipped) gather_clipped({transport, pass, max_depth, set}, requests, packet, group, light);
     for (int i = 0; i < packet.count; i++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shortest way through `instant_radiosity`: matt places that the eye sees first, whose light is
+// The shortest way through `instant_radiosity`: Lambertian places that the eye sees first, whose light is
 // one irradiance, side by side from the eye's ray to the last light.
 #pragma once
 #include <span>
@@ -10,9 +10,9 @@
 
 namespace wellspring {
 
-// Answers the requests that see something matt, or nothing; returns the numbers of the others. Not
-// for passes with caustics, where more may be seen from a matt place than point lights.
-std::vector<uint32_t> trace_matt_eyes(const Transport& transport, const InstantPass& pass,
+// Answers the requests that see something Lambertian, or nothing; returns the numbers of the others. Not
+// for passes with caustics, where more may be seen from a Lambertian place than point lights.
+std::vector<uint32_t> trace_lambert_hits(const Transport& transport, const InstantPass& pass,
                                       int max_depth, std::span<const Request> requests,
                                       std::span<Sample> samples);
 

@@ -12,14 +12,14 @@
 namespace wellspring {
 
 enum class PointLightKind : uint8_t {
-  matt,        // as seen by Lambert: area light, or light scattered by a matt surface
+  lambertian,        // as seen by Lambert: area light, or light scattered by a Lambertian surface
   scattering,  // whatever the surface does: `arrival`
   distant,     // from infinity
   punctual,    // of the scene
 };
 
 struct PointLight {
-  PointLightKind kind = PointLightKind::matt;
+  PointLightKind kind = PointLightKind::lambertian;
   bool double_sided = false;
   bool exact = false;  // in every set alike: what it lights needs no filter
   uint16_t depth = 0;  // edges from the source
@@ -27,7 +27,7 @@ struct PointLight {
   vec3 position{0};    // distant: unit direction to it
   vec3 normal{0, 1, 0};  // geometric
   vec3 target{0};        // a shadow ray ends here, clear of the surface
-  vec3 radiance{0};      // matt: intensity at cosine 1; scattering: flux; else a factor
+  vec3 radiance{0};      // Lambertian: intensity at cosine 1; scattering: flux; else a factor
   float hue = -1;        // hue_of its walk; `radiance` has that colour
 };
 

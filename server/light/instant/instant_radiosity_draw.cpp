@@ -89,7 +89,7 @@ void add_arrival(const LightWalk& walk, const Arrival& arrival, const Wavelength
     light.kind = PointLightKind::scattering;
     light.index = uint32_t(set.arrivals.size());
     light.radiance = arrival.flux * share;
-    if (parted) {  // one wavelength for all that it shines on
+    if (parted) {  // one wavelength for all that it emits light on
       light.radiance *= hero_tint(*parted);
       light.hue = parted->before.place;
     }
@@ -223,23 +223,23 @@ void join_sets(const LightTables& tables, std::vector<DrawnSet>& sets, InstantPa
 }
 
 // Lights of a pool that a set has besides its exact ones.
-struct KeptLight {
+struct KeptPointLight {
   uint32_t light = 0;
   float factor = 1;  // on its radiance
 };
 
 // Every set: `exact`, then what it keeps of the pool, by depth.
 void join_kept(const LightTables& tables, const InstantPass& pool, const DrawnSet& exact,
-               std::vector<std::vector<KeptLight>>& kept, InstantPass& pass) {
+               std::vector<std::vector<KeptPointLight>>& kept, InstantPass& pass) {
   std::vector<uint32_t> first_arrival(kept.size() + 1, 0);
   parallel_for(int(kept.size()), [&](int k) {
-    std::vector<KeptLight>& lights = kept[size_t(k)];
-    auto depth = [&](const KeptLight& one) { return pool.lights[one.light].depth; };
-    std::stable_sort(lights.begin(), lights.end(), [&](const KeptLight& a, const KeptLight& b) {
+    std::vector<KeptPointLight>& lights = kept[size_t(k)];
+    auto depth = [&](const KeptPointLight& one) { return pool.lights[one.light].depth; };
+    std::stable_sort(lights.begin(), lights.end(), [&](const KeptPointLight& a, const KeptPointLight& b) {
       return depth(a) < depth(b);
     });
     first_arrival[size_t(k) + 1] = uint32_t(
-        std::count_if(lights.begin(), lights.end(), [&](const KeptLight& one) {
+        std::count_if(lights.begin(), lights.end(), [&](const KeptPointLight& one) {
           return pool.lights[one.light].kind == PointLightKind::scattering;
         }));
   });
@@ -254,7 +254,7 @@ void join_kept(const LightTables& tables, const InstantPass& pool, const DrawnSe
     PointLight* to = &pass.lights[0] + pass.first[size_t(k)];
     to = std::copy(exact.lights.begin(), exact.lights.end(), to);
     uint32_t arrival = first_arrival[size_t(k)];
-    for (const KeptLight& one : kept[size_t(k)]) {
+    for (const KeptPointLight& one : kept[size_t(k)]) {
       PointLight light = pool.lights[one.light];
       light.radiance *= one.factor;
       if (light.kind == PointLightKind::scattering) {
@@ -344,7 +344,7 @@ InstantPass draw_instant_pass(const Transport& transport, const TransportSetting
   Sampler sampler(mix64(seed ^ choice_stream), index);
   DrawnSet exact;
   add_exact(tables, exact);
-  std::vector<std::vector<KeptLight>> kept(size_t(pass.sets()));
+  std::vector<std::vector<KeptPointLight>> kept(size_t(pass.sets()));
   auto keep = [&](uint32_t begin, uint32_t end, int wanted) {
     float choose_u = sampler.next(), deal_u = sampler.next();
     for (const ChosenLight& c :

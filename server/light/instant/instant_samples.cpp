@@ -19,17 +19,17 @@ struct Eye {
   FirstSurface first;
   std::unique_ptr<std::optional<WavelengthSpread>> spread;  // of its colours, if it parts them
   PixelGroup group;
-  KeptReflectance kept;  // without the tint
+  DemodulatedReflectance kept;  // without the tint
   PlaceLight light;
 };
 
 // Of reflectance 1, so that light is kept apart from what reflects it.
 void split_first(Eye& eye) {
   Bsdf& bsdf = eye.first.bsdf;
-  eye.kept = kept_reflectance(eye.first);
+  eye.kept = demodulated_reflectance(eye.first);
   vec3 a = eye.kept.albedo;
   bool soft = !has_sharp(bsdf, mirror_alpha) && !(max_component(bsdf.transmit) > 0) &&
-              std::min({a.x, a.y, a.z}) >= least_kept_metal;
+              std::min({a.x, a.y, a.z}) >= least_demodulated_metal;
   eye.kept.lit_gloss = soft ? 1 : 0;
   eye.sample.albedo = a * eye.first.tint;
   bsdf.diffuse = eye.kept.diffuse ? vec3(1) : vec3(0);
@@ -70,7 +70,7 @@ void finish(const EyeLight& light, Eye& eye) {
     gather_rest(light, place, eye.sampler, eye.light);
     Sample& sample = eye.sample;
     const PlaceLight& got = eye.light;
-    const KeptReflectance& kept = eye.kept;
+    const DemodulatedReflectance& kept = eye.kept;
     vec3 albedo = kept.diffuse ? sample.albedo * kept.diffuse_share : vec3(0);
     sample.smooth += kept.diffuse_share * got.diffuse;
     sample.rest += albedo * got.exact_diffuse;
@@ -152,7 +152,7 @@ void trace_many_instant(const World& world, const Lights& lights,
   if (pass.sharp || settings.max_depth < 2) {
     for (size_t i = 0; i < requests.size(); i++) others.push_back(uint32_t(i));
   } else {
-    others = trace_matt_eyes(transport, pass, settings.max_depth, requests, samples);
+    others = trace_lambert_hits(transport, pass, settings.max_depth, requests, samples);
   }
   trace_others(transport, pass, settings.max_depth, requests, others, samples);
   finish_samples(lights, settings, samples);

@@ -30,14 +30,14 @@ void aim_lane(const LitGroup& group, vec3 target, const SeenLight& seen, int i, 
 
 void see_area(const LitGroup& group, const PointLight& light, float clip2, SeenLight& seen) {
   uint32_t lit = 0, back = 0;
-  const Lanes3 place = all_lanes(light.position), shines = all_lanes(light.normal);
+  const Lanes3 place = all_lanes(light.position), emits = all_lanes(light.normal);
   const Lanes most = all_lanes(clip2 > 0 ? 1 / clip2 : infinity), zero{};
   for (int h = 0; h < halves; h++) {
     Lanes3 way = place - group.position.half(h);
     Lanes distance2 = dot(way, way);
     Lanes inverse = 1 / lanes_sqrt(lanes_max(distance2, all_lanes(1e-30f)));
     Lanes here = dot(group.normal.half(h), way) * inverse, face = dot(group.face.half(h), way);
-    Lanes there = -dot(shines, way) * inverse;
+    Lanes there = -dot(emits, way) * inverse;
     seen.direction.set_half(h, way);
     seen.distance2.set_half(h, distance2);
     seen.cosine.set_half(h, here);

@@ -26,7 +26,7 @@ struct GroupLane3 {
 
 struct LitGroup {
   uint32_t used = 0;     // lanes with a place
-  uint32_t matt = 0;     // that are Lambert's, and nothing else
+  uint32_t lambertian = 0;     // that are Lambert's, and nothing else
   uint32_t through = 0;  // that scatter light from behind, too
   GroupLane3 position, normal, face;
   GroupLane3 origin;  // of a ray that leaves to the side of `face`
@@ -41,7 +41,7 @@ struct LitGroup {
 };
 
 struct SeenLight {
-  uint32_t active = 0;   // lanes that it may shine on
+  uint32_t active = 0;   // lanes that it may emit light on
   GroupLane3 direction;  // to it; not unit where `distance2` says so
   GroupLane distance2;   // squared length of direction
   GroupLane cosine;      // at the surface, unit

@@ -26,7 +26,7 @@ LitGroup make_group(const LitPlace* places, int count) {
     if (i >= count) continue;
     group.used |= 1u << i;
     bool plain = place.media->here.count == 0 && place.hue() < 0;
-    if (!has_specular(bsdf) && plain) group.matt |= 1u << i;
+    if (!has_specular(bsdf) && plain) group.lambertian |= 1u << i;
     if (max_component(bsdf.transmit) > 0 && smoothest_alpha(bsdf) >= place.sharp)
       group.through |= 1u << i;
   }
@@ -75,9 +75,9 @@ void add_lane(const Transport& transport, const LitPlace& place, const PointLigh
   (light.exact ? sum.exact_specular : sum.specular) += value.specular * radiance;
 }
 
-// Of matt lanes.
-void add_matt_lanes(const PointLight& light, const InstantPass& pass, const SeenLight& seen,
-                    vec3 radiance, uint32_t clear, MattLight& sum) {
+// Of Lambertian lanes.
+void add_lambert_lanes(const PointLight& light, const InstantPass& pass, const SeenLight& seen,
+                    vec3 radiance, uint32_t clear, LambertLight& sum) {
   GroupLane3& to = light.exact ? sum.exact : sum.smooth;
   if (light.kind == PointLightKind::scattering) {
     for (; clear; clear &= clear - 1) {
@@ -128,7 +128,7 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
   for (int i = 0; i < count; i++) deepest = std::max(deepest, max_depth - 1 - places[i].depth);
   float clip2 = pass.clip * pass.clip;
   SeenLight seen;
-  MattLight sum{};
+  LambertLight sum{};
   for_each_asked(pass, choice, [&](const PointLight& source, float factor) {
     if (source.depth > deepest) return;
     vec3 radiance;
@@ -141,8 +141,8 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
                            ? transport.world.occluded_packet(seen.rays, seen.active)
                            : transport.world.occluded_each(seen.rays, seen.active);
     uint32_t clear = seen.active & ~blocked;
-    if (clear & group.matt) add_matt_lanes(source, pass, seen, radiance, clear & group.matt, sum);
-    for (uint32_t slow = clear & ~group.matt; slow; slow &= slow - 1) {
+    if (clear & group.lambertian) add_lambert_lanes(source, pass, seen, radiance, clear & group.lambertian, sum);
+    for (uint32_t slow = clear & ~group.lambertian; slow; slow &= slow - 1) {
       int i = std::countr_zero(slow);
       add_lane(transport, places[i], source, pass, seen, radiance, i, light[i]);
     }
@@ -155,16 +155,16 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
     }
   });
   for (int i = 0; i < count; i++) {
-    if (!(group.matt >> i & 1)) continue;
+    if (!(group.lambertian >> i & 1)) continue;
     vec3 value = places[i].bsdf->diffuse / pi;
     light[i].diffuse += sum.smooth.at(i) * value;
     light[i].exact_diffuse += sum.exact.at(i) * value;
   }
 }
 
-void shade_matt_by_point_lights(const Transport& transport, const InstantPass& pass,
+void shade_lambert_by_point_lights(const Transport& transport, const InstantPass& pass,
                                 const SetShare& choice, int max_depth, const LitGroup& group,
-                                MattLight& sum) {
+                                LambertLight& sum) {
   float clip2 = pass.clip * pass.clip;
   SeenLight seen;
   for_each_asked(pass, choice, [&](const PointLight& source, float factor) {
@@ -174,13 +174,13 @@ void shade_matt_by_point_lights(const Transport& transport, const InstantPass& p
     if (seen.active == 0) return;
     radiance *= factor;
     uint32_t blocked = transport.world.occluded_packet(seen.rays, seen.active);
-    add_matt_lanes(source, pass, seen, radiance, seen.active & ~blocked, sum);
+    add_lambert_lanes(source, pass, seen, radiance, seen.active & ~blocked, sum);
     if (!transport.tables.any_pane) return;
     for (; blocked; blocked &= blocked - 1) {
       int i = std::countr_zero(blocked);
       vec3 tint = through_panes(transport, group, seen, i);
       if (max_component(tint) > 0)
-        add_matt_lanes(source, pass, seen, radiance * tint, 1u << i, sum);
+        add_lambert_lanes(source, pass, seen, radiance * tint, 1u << i, sum);
     }
   });
 }

@@ -44,12 +44,12 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
                            int count, PlaceLight* light);
 
 // Irradiance by lights of the set alone, and by those that every set has alike.
-struct MattLight {
+struct LambertLight {
   GroupLane3 smooth, exact;
 };
-// The same of matt places in air that the eye's first ray found: adds their irradiance.
-void shade_matt_by_point_lights(const Transport& transport, const InstantPass& pass,
+// The same of Lambertian places in air that the eye's first ray found: adds their irradiance.
+void shade_lambert_by_point_lights(const Transport& transport, const InstantPass& pass,
                                 const SetShare& choice, int max_depth, const LitGroup& group,
-                                MattLight& sum);
+                                LambertLight& sum);
 
 }  // namespace wellspring

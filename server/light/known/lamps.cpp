@@ -33,7 +33,7 @@ bool differs(vec3 was, vec3 left, vec3 added) {
 
 Lights relit(const Lights& all, const World& world) {
   Lights lights = all;
-  lights.tables = relit(*all.tables, world.scene(), what_shines(world));
+  lights.tables = relit(*all.tables, world.scene(), find_emitting(world));
   if (all.grid && all.grid->parts) lights.grid = relit(*all.grid, states_of(world));
   lights.pass = nullptr;
   return lights;
@@ -73,19 +73,19 @@ LightChange::LightChange(const Scene& scene, const Lights& all, std::span<const 
   guess_unknown();
 }
 
-// Coarser cells than kept light's, without sides, so that few are unknown.
+// Coarser cells than cached radiance's, without sides, so that few are unknown.
 void LightChange::fill_cells(const Scene& scene, const Lights& all, std::span<const char> before,
                              std::span<const char> after) {
   std::vector<char> switched(scene.materials.size(), 0);
   for (size_t lamp = 0; lamp < before.size(); lamp++)
     for (int material : scene.lamps[lamp].materials)
       switched[size_t(material)] = before[lamp] != after[lamp];
-  std::vector<vec3> shining;
+  std::vector<vec3> emitting;
   for (const EmitterTriangle& e : all.tables->emitters)
     if (switched[size_t(scene.meshes[size_t(scene.instances[e.instance].mesh)].material)])
       for (vec3 corner : {e.corner, e.corner + e.edge1, e.corner + e.edge2})
-        if (is_finite(corner)) shining.push_back(corner);
-  for (vec3 corner : shining) {
+        if (is_finite(corner)) emitting.push_back(corner);
+  for (vec3 corner : emitting) {
     box_.low = glm::min(box_.low, corner - grid_->cell);
     box_.high = glm::max(box_.high, corner + grid_->cell);
   }
@@ -96,7 +96,7 @@ void LightChange::fill_cells(const Scene& scene, const Lights& all, std::span<co
     if (double(size_.x) * size_.y * size_.z <= double(most_cells)) break;
   }
   cells_.resize(size_t(size_.x) * size_t(size_.y) * size_t(size_.z));
-  for (vec3 corner : shining) cells_[cell_at(corner)].changes = true;
+  for (vec3 corner : emitting) cells_[cell_at(corner)].changes = true;
   for (uint32_t slot : grid_->parts->slots) {
     if (known_of_[slot] == 0) continue;
     vec3 middle = grid_->cell * (vec3(grid_place(*grid_, slot)) + 0.5f);

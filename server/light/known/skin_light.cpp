@@ -102,7 +102,7 @@ Answer gather(const Transport& transport, const WalkRules& rules, const SkinLigh
   request.ray.origin = offset_origin(point.place, point.place.geometric_normal);
   request.ray.direction = -point.place.geometric_normal;
   Walk walk = begin_walk(transport, request);
-  MattLobe lobe{point.normal, point.place.geometric_normal, vec3(1)};
+  LambertLobe lobe{point.normal, point.place.geometric_normal, vec3(1)};
   const uint32_t base = Dimensions::first_surface;
   sampler.seek(base);
   DirectLight direct = sample_direct_light(transport, walk, point.place, lobe, true, sampler);
@@ -113,7 +113,7 @@ Answer gather(const Transport& transport, const WalkRules& rules, const SkinLigh
   BsdfSample scattered;
   for (uint32_t i = 0; i < most_tries && !(scattered.pdf > 0); i++) {
     sampler.seek(i == 0 ? base + Dimensions::scatter + 1 : again + i);
-    scattered = sample_matt(lobe, sampler.next2());
+    scattered = sample_lambert(lobe, sampler.next2());
   }
   if (!advance(walk, point.place, scattered)) return answer;
   walk.area_share = transport.tables.area_share > 0 ? 1.0f : 0.0f;

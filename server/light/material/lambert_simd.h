@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lambert's law (matt.h) at eight places side by side.
+// Lambert's law (Lambertian.h) at eight places side by side.
 #pragma once
 #include <bit>
 
@@ -8,9 +8,9 @@
 
 namespace wellspring {
 
-struct MattLobeLanes {
+struct LambertLobeLanes {
   Lanes3 normal, geometric_normal, reflectance;
-  MattLobe at(int lane) const {
+  LambertLobe at(int lane) const {
     return {normal.at(lane), geometric_normal.at(lane), reflectance.at(lane)};
   }
 };
@@ -21,8 +21,8 @@ inline Lanes3 clean(Lanes3 c) {
   return {within(c.x), within(c.y), within(c.z)};
 }
 
-inline MattLobeLanes make_matt(const MattSurfaceLanes& surface, const Lanes3& direction) {
-  MattLobeLanes lobes{surface.normal, surface.geometric_normal, clean(surface.base_color)};
+inline LambertLobeLanes make_lambert(const LambertSurfaceLanes& surface, const Lanes3& direction) {
+  LambertLobeLanes lobes{surface.normal, surface.geometric_normal, clean(surface.base_color)};
   unsigned grazing = negative_lanes(dot(surface.normal, direction) >= 0);
   for (unsigned bits = grazing | surface.bent; bits; bits &= bits - 1) {
     int i = std::countr_zero(bits);
@@ -32,8 +32,8 @@ inline MattLobeLanes make_matt(const MattSurfaceLanes& surface, const Lanes3& di
   return lobes;
 }
 
-// eval_matt_pdf.
-inline Lanes eval_matt_pdfs(const MattLobeLanes& lobes, const Lanes3& direction) {
+// eval_lambert_pdf.
+inline Lanes eval_lambert_pdfs(const LambertLobeLanes& lobes, const Lanes3& direction) {
   Lanes cosine = dot(direction, lobes.normal);
   LaneMask above = (dot(direction, lobes.geometric_normal) > 0) & (cosine > 1e-6f);
   return above ? lanes_min(cosine, all_lanes(1.0f)) * (1 / pi) : Lanes{};

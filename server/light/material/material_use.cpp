@@ -128,10 +128,10 @@ MaterialUse find_material_use(const Material& m, const Mesh& mesh, TextureRanges
   bool sheen = max_component(m.sheen_color) > 0 &&
                max_component(m.sheen_color * vec3(ranges.of(m.sheen_color_texture).high)) > 0;
   use.coated = clearcoat || sheen;
-  if (least_metal >= all_metal && smoothest >= least_kept_roughness) {
+  if (least_metal >= all_metal && smoothest >= least_demodulated_roughness) {
     bool filtered =
         smoothest >= least_filtered_roughness && !use.coated && m.anisotropy == 0 && !transmits;
-    use.metal = filtered ? KeptMetal::light : KeptMetal::reflectance;
+    use.metal = filtered ? MetalDemodulation::light : MetalDemodulation::reflectance;
   }
 
   bool reflects = m.metallic > 0 || m.ior != 1;

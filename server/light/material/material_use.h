@@ -16,13 +16,13 @@ namespace wellspring {
 inline constexpr float caustic_roughness = 0.3f;
 
 // What the first surface that an eye meets keeps of a metal (light/walk/first_surface.h).
-enum class KeptMetal : uint8_t {
+enum class MetalDemodulation : uint8_t {
   none,
   reflectance,  // it is metal all over, and nowhere a mirror
   light,  // and rough enough all over, without a coat, that its light is filtered as diffuse is
 };
 inline constexpr float all_metal = 0.8f;  // metallic
-inline constexpr float least_kept_roughness = 0.2f, least_filtered_roughness = 0.25f;
+inline constexpr float least_demodulated_roughness = 0.2f, least_filtered_roughness = 0.25f;
 
 // Of a material in use: each is whether it may be so at some place of the surface.
 struct MaterialUse {
@@ -37,7 +37,7 @@ struct MaterialUse {
   bool disperses = false;
   bool coated = false;  // clearcoat or sheen
   bool sharp = false;   // casts caustics: some lobe is smoother than caustic_roughness
-  KeptMetal metal = KeptMetal::none;
+  MetalDemodulation metal = MetalDemodulation::none;
 };
 // What holds for either.
 MaterialUse merge(const MaterialUse& a, const MaterialUse& b);

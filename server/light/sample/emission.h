@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light where it starts: places on what shines, and rays that leave it, chosen by power. The other
+// Light where it starts: places on what emits, and rays that leave it, chosen by power. The other
 // way round from sample_light.h, which starts where light arrives.
 #pragma once
 #include <span>

@@ -37,14 +37,14 @@ bool meets_sun(const EnvironmentLight& light, vec3 direction) {
 
 void add_sun(const SunDisc& sun, bool importance, EnvironmentLight& light) {
   float length2 = dot(sun.direction, sun.direction);
-  bool shines = luminance(sun.radiance) > 0 && is_finite(sun.radiance) && length2 > 0 &&
+  bool emits = luminance(sun.radiance) > 0 && is_finite(sun.radiance) && length2 > 0 &&
                 std::isfinite(length2) && sun.angular_radius > 0;
-  if (!shines) return;
+  if (!emits) return;
   float half = std::sin(0.5f * std::min(sun.angular_radius, 0.5f * pi));
   light.sun_direction = sun.direction / std::sqrt(length2);
   light.sun_radiance = glm::max(sun.radiance, vec3(0));
   light.sun_chord2 = 4 * half * half;
-  // Where the sun shines it is most of the light; in its shadow the sky is all of it.
+  // Where the sun emits light it is most of the light; in its shadow the sky is all of it.
   if (importance) light.sun_share = light.cells.cells.empty() ? 1.0f : 0.5f;
 }
 

@@ -33,7 +33,7 @@ struct LightEffects {
   alignas(Lanes) float effect[FewLights::most];
   float near_sum = 0, distant_sum = 0;
 };
-// What a surface does with light, as far as the choice among lights asks: a matt part and a GGX
+// What a surface does with light, as far as the choice among lights asks: a Lambertian part and a GGX
 // lobe of reflection. A highlight whose lamp is rarely chosen is a firefly.
 struct LobeHint {
   float diffuse = 1, specular = 0;  // reflectances; specular 0: the rest is not set

@@ -37,7 +37,7 @@ SurfacePlace place_of(const World& world, const Ray& ray, const Hit& hit) {
   return place;
 }
 
-// Asks the lamps that might shine there and of which the cell does not know enough yet.
+// Asks the lamps that might emit light there and of which the cell does not know enough yet.
 void visit(const Transport& transport, const LampsSeen& seen, const std::vector<Tally>& tallies,
            const SurfacePlace& place, Visit& to) {
   const LightTables& tables = transport.tables;
@@ -56,7 +56,7 @@ void visit(const Transport& transport, const LampsSeen& seen, const std::vector<
   }
 }
 
-// A walk over the scene's surfaces, which scatter it as matt ones do, whatever they are; glass lets
+// A walk over the scene's surfaces, which scatter it as Lambertian ones do, whatever they are; glass lets
 // it pass.
 void walk_once(const Transport& transport, const LampsSeen& seen, const std::vector<Tally>& tallies,
                vec3 origin, Sampler& sampler, Visit* visits) {

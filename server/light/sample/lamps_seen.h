@@ -4,7 +4,7 @@
 // light that arrive, learned by shadow rays from random places before the first sample, weigh the
 // choice among the lamps (Vevoda, Kondapaneni, Krivanek 2018, "Bayesian online regression for
 // adaptive direct illumination sampling", learned beforehand, so that a sample remains a function
-// of its ray and seed). Every lamp keeps a chance wherever it might shine, so nothing is biased,
+// of its ray and seed). Every lamp keeps a chance wherever it might emit light, so nothing is biased,
 // whatever moves into the light later.
 #pragma once
 #include <array>

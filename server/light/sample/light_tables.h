@@ -23,7 +23,7 @@ inline constexpr uint32_t no_emitter = 0xffffffffu;
 struct EmitterTriangle {
   uint32_t instance = 0, triangle = 0;
   vec3 corner{0}, edge1{0}, edge2{0};  // world space; p = corner + b1 edge1 + b2 edge2
-  vec3 normal{0, 1, 0};                // towards the side that shines
+  vec3 normal{0, 1, 0};                // towards the side that emits light
   float area = 0, extent = 0;
   vec3 emission{0};     // where uniform
   bool uniform = true;  // neither texture nor alpha: emission is the same all over
@@ -59,7 +59,7 @@ struct LightTables {
   EmissionChoice emission;  // of techniques that follow light from its sources
   std::vector<CasterSphere> casters;  // of caustics, that stand still
   std::vector<MaterialTraits> materials;
-  bool any_matt = false;   // else no sample asks whether it may take the shortest way
+  bool any_lambertian = false;   // else no sample asks whether it may take the shortest way
   bool any_pane = false;   // else shadow rays only ask whether anything is in between
   PaneBoxes pane_boxes;  // and elsewhere than in these, too
   bool any_solid = false;  // else walks do not ask what they run in

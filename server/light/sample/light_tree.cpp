@@ -41,13 +41,13 @@ Importances importances(const Node& node, vec3 place, vec3 normal) {
   // The angle beyond the spread, less the angle of the sphere.
   Lanes c = cosine * node.cos_spread + sine * node.sin_spread;
   Lanes s = sine * node.cos_spread - cosine * node.sin_spread;
-  Lanes shines = c * cos_seen + s * sin_seen;
+  Lanes emits = c * cos_seen + s * sin_seen;
   LaneMask full = (cosine >= node.cos_spread) | (c >= cos_seen);
-  reaches = reaches & (full | (shines > node.cos_reach));
-  shines = full ? one : lanes_max(shines, all_lanes(1e-4f));
+  reaches = reaches & (full | (emits > node.cos_reach));
+  emits = full ? one : lanes_max(emits, all_lanes(1e-4f));
   // The floor keeps a chance for glossy lobes at grazing angles.
   constexpr float grazing = 0.05f;
-  Lanes importance = node.strength * shines * (facing + grazing) * (inverse * inverse);
+  Lanes importance = node.strength * emits * (facing + grazing) * (inverse * inverse);
   importance = reaches ? lanes_min(importance, all_lanes(1e30f)) : zero;
   importance = inside ? node.inside : importance;
   Importances all;
@@ -62,7 +62,7 @@ LightPick pick_light(const LightTree& tree, vec3 place, vec3 normal, float u) {
   LightPick pick;
   if (!tree.strengths.cells.empty()) {
     AliasPick chosen = sample_alias(tree.strengths, u);
-    return {tree.shining[chosen.index], tree.strengths.cells[chosen.index].probability,
+    return {tree.emitting[chosen.index], tree.strengths.cells[chosen.index].probability,
             std::min(chosen.u, below_one)};
   }
   float probability = 1;

@@ -26,7 +26,7 @@ struct LightBounds {
   float cos_reach = 0;   // beyond the spread it fades, and ends at this angle
   float strength = 0;    // radiant intensity along the axis, W/sr; not above 0 or not finite: dark
   float range = std::numeric_limits<float>::infinity();  // it ends at this distance
-  bool two_sided = false;                                // shines along -axis too
+  bool two_sided = false;                                // emits light along -axis too
 };
 
 enum class LightChoice : uint8_t { by_strength, by_place };
@@ -49,7 +49,7 @@ struct LightTree {
   std::vector<uint32_t> leaf_of;  // each light's node * lane_count + lane; no_leaf: dark
   // Where the choice is by strength alone: lights that are not dark, each `leaf_of` its place here.
   AliasTable strengths;
-  std::vector<uint32_t> shining;
+  std::vector<uint32_t> emitting;
   double total = 0;               // strength of all
   bool empty() const { return !(total > 0); }
 };

@@ -197,23 +197,23 @@ LightTree make_light_tree(std::span<const LightBounds> lights, LightChoice choic
   Builder builder{lights, {}, tree};
   for (uint32_t i = 0; i < lights.size(); i++) {
     const LightBounds& b = lights[i];
-    bool shines = b.strength > 0 && std::isfinite(b.strength) && is_finite(b.low) &&
+    bool emits = b.strength > 0 && std::isfinite(b.strength) && is_finite(b.low) &&
                   is_finite(b.high) && is_finite(b.axis);
-    strength.push_back(shines ? b.strength * (b.two_sided ? 2 : 1) : 0);
-    if (!shines) continue;
+    strength.push_back(emits ? b.strength * (b.two_sided ? 2 : 1) : 0);
+    if (!emits) continue;
     builder.order.push_back(i);
     tree.total += double(strength.back());
   }
   if (builder.order.empty()) return tree;
   tree.leaf_of.assign(lights.size(), LightTree::no_leaf);
   if (choice == LightChoice::by_strength) {
-    std::vector<float> shining;
+    std::vector<float> emitting;
     for (uint32_t light : builder.order) {
-      tree.leaf_of[light] = uint32_t(shining.size());
-      shining.push_back(strength[light]);
+      tree.leaf_of[light] = uint32_t(emitting.size());
+      emitting.push_back(strength[light]);
     }
-    tree.shining = builder.order;
-    tree.strengths = make_alias_table(shining);
+    tree.emitting = builder.order;
+    tree.strengths = make_alias_table(emitting);
     return tree;
   }
   tree.nodes.emplace_back();

@@ -118,7 +118,7 @@ size_t light_table_bytes(const LightTables& t) {
   size_t bytes = bytes_of(t.emitters, t.emitter_power, t.environment.cells.cells, t.punctual,
                           t.cones, t.punctual_index);
   for (const LightTree* tree : {&t.emitter_choice, &t.near_choice, &t.distant_choice})
-    bytes += bytes_of(tree->nodes, tree->leaf_of, tree->strengths.cells, tree->shining);
+    bytes += bytes_of(tree->nodes, tree->leaf_of, tree->strengths.cells, tree->emitting);
   for (const EmissionPicture& picture : t.pictures) bytes += bytes_of(picture.cells.cells);
   return bytes;
 }
@@ -138,8 +138,8 @@ Lights make_lights(const World& world) { return make_lights(world, make_plan(wor
 
 namespace {
 
-// What is chosen among, and how likely each is: all that shine of the sources.
-void choose_sources(const Scene& scene, const Shining& shining, LightTables& tables) {
+// What is chosen among, and how likely each is: all that emit light of the sources.
+void choose_sources(const Scene& scene, const EmittingSources& emitting, LightTables& tables) {
   using enum TransportPart;
   const TransportPlan& plan = tables.plan;
   tables.emitter_choice =
@@ -169,7 +169,7 @@ void choose_sources(const Scene& scene, const Shining& shining, LightTables& tab
         is_finite(light.intensity) && is_finite(light.position) && is_finite(light.direction);
     if (!(p > 0) || !std::isfinite(p) || !finite) continue;
     index++;
-    if (!shining.lights[i]) continue;
+    if (!emitting.lights[i]) continue;
     tables.punctual.push_back(light);
     tables.punctual_index.push_back(index - 1);
     float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
@@ -201,7 +201,7 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   tables->bounds = scene_bounds(scene);
   if (plan.uses(TransportPart::environment))
     tables->environment = make_environment_light(scene, plan.uses(environment_importance));
-  choose_sources(scene, what_shines(world), *tables);
+  choose_sources(scene, find_emitting(world), *tables);
 
   for (size_t i = 0; i < scene.materials.size(); i++) {
     const Material& m = scene.materials[i];
@@ -209,9 +209,9 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
         plan.materials[i].visible
             ? &dielectric_albedo(m.ior, m.transmission > 0 && m.thickness > 0)
             : nullptr;
-    tables->materials.push_back({albedo, plan.materials[i].pane, is_matt(m),
+    tables->materials.push_back({albedo, plan.materials[i].pane, is_lambertian(m),
                                  plan.materials[i].metal});
-    tables->any_matt |= plan.materials[i].visible && is_matt(m);
+    tables->any_lambertian |= plan.materials[i].visible && is_lambertian(m);
   }
   tables->casters = find_casters(world, plan, false);
   tables->any_pane = plan.uses(panes);
@@ -223,17 +223,17 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
 }
 
 std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene,
-                                         const Shining& shining) {
+                                         const EmittingSources& emitting) {
   auto tables = std::make_shared<LightTables>(all);
   for (size_t i = 0; i < tables->emitters.size(); i++) {
     EmitterTriangle& e = tables->emitters[i];
     const Mesh& mesh = scene.meshes[size_t(scene.instances[e.instance].mesh)];
-    if (shining.materials[size_t(mesh.material)]) continue;
+    if (emitting.materials[size_t(mesh.material)]) continue;
     e.emission = vec3(0);
     tables->emitter_power[i] = 0;
   }
-  if (!shining.sky) tables->environment = {};
-  choose_sources(scene, shining, *tables);
+  if (!emitting.sky) tables->environment = {};
+  choose_sources(scene, emitting, *tables);
   return tables;
 }
 

@@ -12,7 +12,7 @@ namespace wellspring {
 struct InstantPass;    // light/instant/instant_pass.h
 struct LightTables;    // light/sample/light_tables.h
 struct RadianceGrid;   // light/sample/radiance_grid.h
-struct Shining;        // light/sample/shining.h
+struct EmittingSources;        // light/sample/emitting.h
 struct TransportPlan;  // light/transport_plan.h
 
 struct Lights {
@@ -33,6 +33,6 @@ TransportPlan make_plan(const World& world);  // of its scene and what moves in 
 
 // The tables of fewer sources than those of `all`, which was made while all lamps were on.
 std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene,
-                                         const Shining& shining);
+                                         const EmittingSources& emitting);
 
 }  // namespace wellspring

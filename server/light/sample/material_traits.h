@@ -9,8 +9,8 @@ namespace wellspring {
 struct MaterialTraits {
   const DielectricAlbedo* albedo = nullptr;  // null: nothing in use is made of it
   bool maybe_pane = false;  // some place of it may be a thin smooth pane
-  bool matt = false;        // is_matt
-  KeptMetal metal = KeptMetal::none;
+  bool lambertian = false;        // is_lambertian
+  MetalDemodulation metal = MetalDemodulation::none;
 };
 
 }  // namespace wellspring

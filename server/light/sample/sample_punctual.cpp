@@ -41,7 +41,7 @@ LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
 namespace {
 
 // The distant one's chance. Two draws, near lights and distant ones, and then one of the two: the
-// sun outshines every lamp wherever it would shine, and indoors it rarely does, so it may not crowd
+// sun outshines every lamp wherever it would emit light, and indoors it rarely does, so it may not crowd
 // the lamps out.
 float distant_chance(float near_sum, float distant_sum) {
   if (near_sum == 0) return 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which sources of a scene shine while its lamps are switched.
+// Which sources of a scene emit light while its lamps are switched.
 #pragma once
 #include <vector>
 
@@ -7,13 +7,13 @@
 
 namespace wellspring {
 
-// What shines of a scene.
-struct Shining {
+// What emits of a scene.
+struct EmittingSources {
   std::vector<char> materials, lights;  // of each of the scene's
   bool sky = true;
 };
-Shining what_shines(const World& world);  // as its lamps are
+EmittingSources find_emitting(const World& world);  // as its lamps are
 // That lamp alone; -1: all that belongs to no lamp.
-Shining what_shines_of(const Scene& scene, int lamp);
+EmittingSources find_emitting_of(const Scene& scene, int lamp);
 
 }  // namespace wellspring

@@ -14,7 +14,7 @@
 namespace wellspring {
 namespace {
 
-// So that what a matt surface's rays meet has an alpha of 1/4, a roughness of 1/2.
+// So that what a Lambertian surface's rays meet has an alpha of 1/4, a roughness of 1/2.
 constexpr float blunt = 0.14f;
 
 }  // namespace
@@ -37,11 +37,11 @@ Sample trace_gather(const World& world, const Lights& lights, const TransportSet
 }
 
 void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights) {
-  if (!lights.tables->plan.uses(TransportPart::kept_light)) return;
+  if (!lights.tables->plan.uses(TransportPart::cached_radiance)) return;
   const Scene& scene = world.scene();
   std::vector<std::shared_ptr<const LightTables>> parts;
   for (int lamp = -1; lamp < int(scene.lamps.size()) && !scene.lamps.empty(); lamp++)
-    parts.push_back(relit(*lights.tables, scene, what_shines_of(scene, lamp)));
+    parts.push_back(relit(*lights.tables, scene, find_emitting_of(scene, lamp)));
   lights.grid = make_radiance_grid({world, *lights.tables}, places, {}, parts);
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr size_t packet = 64;  // rays intersected before their surfaces are looked at
 
-Seen see_nothing(const LightTables& tables, vec3 direction) {
-  Seen seen;
+PrimaryHit see_nothing(const LightTables& tables, vec3 direction) {
+  PrimaryHit seen;
   seen.normal = -direction;
   seen.distance = std::numeric_limits<float>::infinity();
   seen.glow = eval_environment(tables.environment, direction);
@@ -22,13 +22,13 @@ Seen see_nothing(const LightTables& tables, vec3 direction) {
 }
 
 // The whole way, as samples go it: through panes and whatever the eye is in.
-Seen see_slowly(const Transport& transport, const Ray& ray) {
+PrimaryHit see_slowly(const Transport& transport, const Ray& ray) {
   Request request;
   request.ray = ray;
   Sampler sampler(0, 0);
   Sample sample;
   FirstSurface first = find_first_surface(transport, 2, request, sampler, sample);
-  Seen seen;
+  PrimaryHit seen;
   seen.distance = sample.distance;
   seen.glow = sample.rest;
   bool hit = sample.flags & sample_hit;
@@ -36,32 +36,32 @@ Seen see_slowly(const Transport& transport, const Ray& ray) {
   if (!hit) return seen;
   seen.object = sample.object;
   seen.scatters = first.scatters;
-  if (first.scatters) seen.albedo = first.tint * kept_reflectance(first).albedo;
+  if (first.scatters) seen.albedo = first.tint * demodulated_reflectance(first).albedo;
   return seen;
 }
 
-Seen see_surface(const Transport& transport, const Ray& ray, const Hit& hit) {
+PrimaryHit see_surface(const Transport& transport, const Ray& ray, const Hit& hit) {
   const World& world = transport.world;
-  if (met_matt(transport, hit)) {
-    MattSurface surface = eval_matt_surface(world, ray, hit);
-    vec3 albedo = make_matt(surface, ray.direction).reflectance;
+  if (met_lambertian(transport, hit)) {
+    LambertSurface surface = eval_lambert_surface(world, ray, hit);
+    vec3 albedo = make_lambert(surface, ray.direction).reflectance;
     if (!(max_component(albedo) > least_albedo)) albedo = vec3(0);
     return {surface.normal, hit.t, albedo, vec3(0), world.object_of(hit.instance), true};
   }
   Surface surface = eval_surface(world, ray, hit);
   if (surface.transmission > 0 || surface.anisotropy > 0) return see_slowly(transport, ray);
   const Material& material = world.material_of(hit.instance);
-  Seen seen;
+  PrimaryHit seen;
   seen.normal = surface.normal;
   seen.distance = hit.t;
   seen.object = surface.object;
   seen.glow = surface_emission(surface, material);
   seen.scatters = !material.unlit;
-  if (seen.scatters) seen.albedo = kept_albedo(surface, traits_of(transport, hit).metal);
+  if (seen.scatters) seen.albedo = demodulated_albedo(surface, traits_of(transport, hit).metal);
   return seen;
 }
 
-void see_packet(const Transport& transport, std::span<const Ray> rays, Seen* seen) {
+void see_packet(const Transport& transport, std::span<const Ray> rays, PrimaryHit* seen) {
   const LightTables& tables = transport.tables;
   const World& world = transport.world;
   Hit hits[packet];
@@ -79,7 +79,7 @@ void see_packet(const Transport& transport, std::span<const Ray> rays, Seen* see
 }  // namespace
 
 void see(const World& world, const Lights& lights, std::span<const Ray> rays,
-         std::span<Seen> seen) {
+         std::span<PrimaryHit> seen) {
   if (rays.size() != seen.size()) throw std::invalid_argument("see: one answer a ray");
   Transport transport{world, *lights.tables};
   int packets = int((rays.size() + packet - 1) / packet);

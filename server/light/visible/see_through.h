@@ -9,7 +9,7 @@
 namespace wellspring {
 
 // As in the Sample a technique would give for the same ray, panes looked through.
-struct Seen {
+struct PrimaryHit {
   vec3 normal{0};      // unit; towards the eye where nothing was hit
   float distance = 0;  // along the ray; infinity: nothing was hit
   vec3 albedo{0};
@@ -20,6 +20,6 @@ struct Seen {
 
 // seen[i] answers rays[i]; neighbours side by side are quickest. All cores.
 void see(const World& world, const Lights& lights, std::span<const Ray> rays,
-         std::span<Seen> seen);
+         std::span<PrimaryHit> seen);
 
 }  // namespace wellspring

@@ -47,13 +47,13 @@ float pixel_width(const Facet& f, float depth, vec3 direction, float pixel_angle
   return depth * length * pixel_angle / std::sqrt(std::max(cosine, 0.02f));
 }
 
-Seen see_facet(const Pictures& pictures, const World& world, const Facet& f, KeptMetal metal,
+PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f, MetalDemodulation metal,
                const Hit& hit, float pixel) {
   const Mesh& mesh = *f.placed->mesh;
   const Material& m = *f.material;
   vec2 at = hit.barycentric;
   vec3 weight(1 - at.x - at.y, at.x, at.y);
-  Seen seen;
+  PrimaryHit seen;
   seen.distance = hit.t;
   seen.object = f.placed->object;
   vec3 normal = f.one_normal ? f.normal[0] : mix3(f.normal[0], f.normal[1], f.normal[2], weight);
@@ -70,13 +70,13 @@ Seen see_facet(const Pictures& pictures, const World& world, const Facet& f, Kep
   float metallic = m.metallic;
   if (m.metallic_roughness_texture.texture >= 0 && m.metallic > 0)
     metallic *= read_picture(pictures, f.shine, m.metallic_roughness_texture, at, pixel).z;
-  if (seen.scatters) seen.albedo = kept_albedo(base, metallic, metal);
-  if (m.unlit || shines(f)) {
+  if (seen.scatters) seen.albedo = demodulated_albedo(base, metallic, metal);
+  if (m.unlit || emits(f)) {
     Surface surface;  // what surface_emission() reads
     surface.front = f.front;
     surface.base_color = glm::max(base, vec3(0));
-    surface.emission = shines(f) ? m.emission : vec3(0);
-    if (shines(f) && m.emission_texture.texture >= 0)
+    surface.emission = emits(f) ? m.emission : vec3(0);
+    if (emits(f) && m.emission_texture.texture >= 0)
       surface.emission *= read_picture(pictures, place_picture(world, f, m.emission_texture),
                                        m.emission_texture, at, pixel);
     seen.glow = surface_emission(surface, m);

@@ -24,12 +24,12 @@ Pictures make_pictures(const Scene& scene);
 // to it at depth 1.
 float pixel_width(const Facet& f, float depth, vec3 direction, float pixel_angle);
 
-inline bool shines(const Facet& f) {
+inline bool emits(const Facet& f) {
   return (f.front || f.material->double_sided) && f.material->emission != vec3(0);
 }
 
 // `metal`: its material's; `pixel`: its width on the surface, metres.
-Seen see_facet(const Pictures& pictures, const World& world, const Facet& f, KeptMetal metal,
+PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f, MetalDemodulation metal,
                const Hit& hit, float pixel);
 
 }  // namespace wellspring

@@ -17,24 +17,24 @@
 #include "light/walk/first_surface.h"
 
 namespace wellspring {
-struct PictureSight::Impl {
+struct VisibilityPass::Impl {
   const World& world;
   Lights lights;
   Raster raster;
   Pictures pictures;
   std::vector<Reflectance> reflectance;  // of each material
-  std::vector<KeptScale> scale;          // of those scaled
+  std::vector<DemodulationScale> scale;          // of those scaled
   std::vector<uint8_t> panes;            // of each material: is one everywhere
   std::vector<uint8_t> polished;         // of each material: some place of it may be
   std::vector<uint8_t> moving_object;  // by object
-  KeptMetal metal_of(int material) const {
+  MetalDemodulation metal_of(int material) const {
     return lights.tables->materials[size_t(material)].metal;
   }
   Impl(const World& w, const Lights& l)
       : world(w), lights(l), raster(w), pictures(make_pictures(w.scene())) {}
 };
 
-PictureSight::PictureSight(const World& world, const Lights& lights)
+VisibilityPass::VisibilityPass(const World& world, const Lights& lights)
     : impl_(std::make_unique<Impl>(world, lights)) {
   const Scene& scene = world.scene();
   impl_->moving_object.resize(scene.objects.size(), 0);
@@ -46,7 +46,7 @@ PictureSight::PictureSight(const World& world, const Lights& lights)
   TextureRanges ranges(scene);
   for (size_t i = 0; i < scene.materials.size(); i++) {
     const Material& m = scene.materials[i];
-    KeptScale scale;
+    DemodulationScale scale;
     impl_->polished.push_back(may_be_polished(m, ranges));
     impl_->reflectance.push_back(
         m.unlit ? Reflectance::base : find_reflectance(m, impl_->metal_of(int(i)), scale));
@@ -54,13 +54,13 @@ PictureSight::PictureSight(const World& world, const Lights& lights)
     impl_->panes.push_back(pane_kind(m));
   }
 }
-PictureSight::~PictureSight() = default;
+VisibilityPass::~VisibilityPass() = default;
 
-bool PictureSight::moves(uint32_t object) const {
+bool VisibilityPass::moves(uint32_t object) const {
   return object < impl_->moving_object.size() && impl_->moving_object[object];
 }
 
-bool PictureSight::rasterises(const View& view) const {
+bool VisibilityPass::rasterises(const View& view) const {
   Transport transport{impl_->world, *impl_->lights.tables};
   return !impl_->lights.tables->any_solid || find_media(transport, view.position).innermost() < 0;
 }
@@ -73,12 +73,12 @@ struct Stretch {
   int begin, end;
   const Material* material;
   int index;                        // of the material in the scene
-  float base_texels, shine_texels;  // a pixel's width
+  float base_texels, emission_texels;  // a pixel's width
   bool alone;                       // each pixel has to be looked up by itself
   bool goes_on_with(const Stretch& s) const {
     return end == s.begin && material == s.material && index == s.index && alone == s.alone &&
            pyramid_level(base_texels) == pyramid_level(s.base_texels) &&
-           pyramid_level(shine_texels) == pyramid_level(s.shine_texels);
+           pyramid_level(emission_texels) == pyramid_level(s.emission_texels);
   }
 };
 struct PicturePlaces {
@@ -96,8 +96,8 @@ struct Stretches {
 
 }  // namespace
 
-struct SightRun::Impl {
-  const PictureSight::Impl& sight;
+struct VisibleRun::Impl {
+  const VisibilityPass::Impl& visibility;
   const View& view;
   vec2 offset;
   float pixel_angle, blurred_angle;
@@ -110,22 +110,22 @@ struct SightRun::Impl {
     return view.forward + view.right * (x * pixel_angle) + view.up * (y * pixel_angle);
   }
   const Facet& facet(int i) const {
-    return facets.find(sight.world, run->instance[i], run->triangle[i], view.position);
+    return facets.find(visibility.world, run->instance[i], run->triangle[i], view.position);
   }
-  Seen see(int i) const;
+  PrimaryHit see(int i) const;
   void describe_normals(const Facet& f, int begin, int end, RunSurface& to) const;
   vec3 scale_of(const Material& m, int index) const {
-    return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * sight.scale[size_t(index)].factor;
+    return glm::clamp(vec3(m.base_color), 0.0f, 1.0f) * visibility.scale[size_t(index)].factor;
   }
   bool has_picture(const TextureRef& reference) const {
-    const Scene& scene = *sight.pictures.scene;
+    const Scene& scene = *visibility.pictures.scene;
     return reference.texture >= 0 && scene.textures[size_t(reference.texture)].image >= 0;
   }
   bool reads_base(const Material& m, int index) const {
     return has_picture(m.base_color_texture) && scale_of(m, index) != vec3(0);
   }
-  bool reads_shine(const Material& m, int index) const {
-    return sight.reflectance[size_t(index)] == Reflectance::base &&
+  bool reads_emission(const Material& m, int index) const {
+    return visibility.reflectance[size_t(index)] == Reflectance::base &&
            has_picture(m.metallic_roughness_texture);
   }
   bool place(const Facet& f, int begin, int end, Stretches& to) const;
@@ -134,32 +134,32 @@ struct SightRun::Impl {
   void describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const;
 };
 
-// As kept_albedo(), eight base colours at a time.
-static void keep_lanes(KeptMetal metal, Lanes metallic, Lanes (&rgb)[3]) {
-  if (metal == KeptMetal::none) {
+// As demodulated_albedo(), eight base colours at a time.
+static void keep_lanes(MetalDemodulation metal, Lanes metallic, Lanes (&rgb)[3]) {
+  if (metal == MetalDemodulation::none) {
     LaneMask diffuse =
         lanes_max(lanes_max(rgb[0], rgb[1]), rgb[2]) * (1 - metallic) > least_albedo;
     for (Lanes& channel : rgb) channel = diffuse ? channel * (1 - metallic) : all_lanes(0);
   } else {
-    for (Lanes& channel : rgb) channel = lanes_max(channel, least_kept_metal * metallic);
+    for (Lanes& channel : rgb) channel = lanes_max(channel, least_demodulated_metal * metallic);
   }
 }
 
 // Eight pixels from `i` on, those before `end`; false: they have to be looked up one by one.
-bool SightRun::Impl::read_lanes(const PicturePlaces& places, const TextureRef& reference,
+bool VisibleRun::Impl::read_lanes(const PicturePlaces& places, const TextureRef& reference,
                                 float texels, int i, int end, Lanes (&rgb)[3]) const {
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
-  const Texture& texture = sight.pictures.scene->textures[size_t(reference.texture)];
+  const Texture& texture = visibility.pictures.scene->textures[size_t(reference.texture)];
   Lanes u = load_lanes(places.u + i), v = load_lanes(places.v + i);
   // What lies beyond is read where the last one is, which costs nothing.
   LaneMask here = lane < float(end - i);
   u = here ? u : all_lanes(places.u[end - 1]), v = here ? v : all_lanes(places.v[end - 1]);
   size_t image = size_t(texture.image);
-  return eval_pyramid(sight.pictures.scene->images[image], sight.pictures.pyramids[image], texture,
+  return eval_pyramid(visibility.pictures.scene->images[image], visibility.pictures.pyramids[image], texture,
                       u, v, texels, rgb);
 }
 
-void SightRun::Impl::describe_normals(const Facet& f, int begin, int end, RunSurface& to) const {
+void VisibleRun::Impl::describe_normals(const Facet& f, int begin, int end, RunSurface& to) const {
   float side = f.front ? 1.0f : -1.0f;
   vec3 a = f.normal[0] * side;
   if (f.one_normal && dot(a, a) > 1e-25f) {
@@ -183,11 +183,11 @@ void SightRun::Impl::describe_normals(const Facet& f, int begin, int end, RunSur
 
 // Pixels [begin, end) of a run, all of one triangle, become stretches or parts of such. False: each
 // has to be seen by itself.
-bool SightRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) const {
+bool VisibleRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) const {
   const Material& m = *f.material;
   int index = f.placed->mesh->material;
-  if (m.unlit || sight.reflectance[size_t(index)] == Reflectance::traced || shines(f)) return false;
-  bool base = reads_base(m, index), shine = reads_shine(m, index);
+  if (m.unlit || visibility.reflectance[size_t(index)] == Reflectance::traced || emits(f)) return false;
+  bool base = reads_base(m, index), shine = reads_emission(m, index);
   bool alone = !f.placed->mesh->colors.empty() || (base && !f.base.known) ||
                (shine && !f.shine.known);
   for (int i = begin; i < end; i += lane_count) {
@@ -197,7 +197,7 @@ bool SightRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) co
       int middle = std::min(i + lane_count / 2, end - 1);
       float width = pixel_width(f, run->depth[middle], direction(middle), blurred_angle);
       if (base) to.base.put(f.base, a, b, i), s.base_texels = width * f.base.texels;
-      if (shine) to.shine.put(f.shine, a, b, i), s.shine_texels = width * f.shine.texels;
+      if (shine) to.shine.put(f.shine, a, b, i), s.emission_texels = width * f.shine.texels;
     }
     if (to.count > 0 && to.of[to.count - 1].goes_on_with(s)) to.of[to.count - 1].end = s.end;
     else to.of[to.count++] = s;
@@ -205,20 +205,20 @@ bool SightRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) co
   return true;
 }
 
-void SightRun::Impl::describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const {
+void VisibleRun::Impl::describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const {
   const Material& m = *s.material;
-  Reflectance way = sight.reflectance[size_t(s.index)];
+  Reflectance way = visibility.reflectance[size_t(s.index)];
   bool blended = way == Reflectance::base;
-  float floor = sight.scale[size_t(s.index)].floor;
+  float floor = visibility.scale[size_t(s.index)].floor;
   vec3 scale = scale_of(m, s.index);
-  bool reads = reads_base(m, s.index), reads_too = reads_shine(m, s.index);
+  bool reads = reads_base(m, s.index), reads_too = reads_emission(m, s.index);
   for (int i = s.begin; i < s.end; i += lane_count) {
     Lanes rgb[3] = {all_lanes(1), all_lanes(1), all_lanes(1)}, shine[3] = {rgb[0], rgb[0], rgb[0]};
     bool done = !s.alone;
     if (done && reads)
       done = read_lanes(stretches.base, m.base_color_texture, s.base_texels, i, s.end, rgb);
     if (done && reads_too)
-      done = read_lanes(stretches.shine, m.metallic_roughness_texture, s.shine_texels, i, s.end,
+      done = read_lanes(stretches.shine, m.metallic_roughness_texture, s.emission_texels, i, s.end,
                         shine);
     int last = std::min(i + lane_count, s.end);
     if (!done) {
@@ -229,7 +229,7 @@ void SightRun::Impl::describe(const Stretches& stretches, const Stretch& s, RunS
       continue;
     }
     for (int k = 0; k < 3; k++) rgb[k] = lanes_max(rgb[k] * scale[k], all_lanes(floor));
-    if (blended) keep_lanes(sight.metal_of(s.index), m.metallic * shine[2], rgb);
+    if (blended) keep_lanes(visibility.metal_of(s.index), m.metallic * shine[2], rgb);
     store_lanes(to.red + i, rgb[0]);
     store_lanes(to.green + i, rgb[1]);
     store_lanes(to.blue + i, rgb[2]);
@@ -240,7 +240,7 @@ void SightRun::Impl::describe(const Stretches& stretches, const Stretch& s, RunS
   }
 }
 
-uint64_t SightRun::describe(uint64_t wanted, RunSurface& to) const {
+uint64_t VisibleRun::describe(uint64_t wanted, RunSurface& to) const {
   if (seen_) return wanted;
   const RasterRun& r = *impl_->run;
   uint64_t alone = 0;
@@ -260,20 +260,20 @@ uint64_t SightRun::describe(uint64_t wanted, RunSurface& to) const {
   return alone & wanted;
 }
 
-uint64_t SightRun::polished() const {
+uint64_t VisibleRun::polished() const {
   if (seen_) return ~uint64_t(0) >> (64 - count);
   const RasterRun& r = *impl_->run;
   uint64_t found = 0;
   for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
     if (r.instance[begin] == RasterRun::nothing) continue;
     int material = impl_->facet(begin).placed->mesh->material;
-    if (!impl_->sight.polished[size_t(material)]) continue;
+    if (!impl_->visibility.polished[size_t(material)]) continue;
     for (int i = begin; i < r.end[p]; i++) found |= uint64_t(1) << i;
   }
   return found;
 }
 
-uint64_t SightRun::light(const SkinLight& skin, const RunSurface& surface, RunSkin& to) const {
+uint64_t VisibleRun::light(const SkinLight& skin, const RunSurface& surface, RunSkin& to) const {
   if (seen_) return 0;
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
   const RasterRun& r = *impl_->run;
@@ -312,24 +312,24 @@ uint64_t SightRun::light(const SkinLight& skin, const RunSurface& surface, RunSk
   return moving;
 }
 
-Seen SightRun::see(int i) const { return seen_ ? seen_[i] : impl_->see(i); }
+PrimaryHit VisibleRun::see(int i) const { return seen_ ? seen_[i] : impl_->see(i); }
 
-Seen SightRun::Impl::see(int i) const {
+PrimaryHit VisibleRun::Impl::see(int i) const {
   Hit hit = hit_of(*run, i, view, offset);
   Ray ray = view_ray(view, float(run->x + i) + offset.x, float(run->y) + offset.y);
-  Seen seen;
+  PrimaryHit seen;
   if (!hit.valid()) {
     seen.normal = -ray.direction;
     seen.distance = std::numeric_limits<float>::infinity();
-    seen.glow = eval_environment(sight.lights.tables->environment, ray.direction);
+    seen.glow = eval_environment(visibility.lights.tables->environment, ray.direction);
   } else {
     const Facet& f = facet(i);
-    if (sight.reflectance[size_t(f.placed->mesh->material)] == Reflectance::traced) {
-      wellspring::see(sight.world, sight.lights, std::span(&ray, 1), std::span(&seen, 1));
+    if (visibility.reflectance[size_t(f.placed->mesh->material)] == Reflectance::traced) {
+      wellspring::see(visibility.world, visibility.lights, std::span(&ray, 1), std::span(&seen, 1));
       return seen;
     }
     float pixel = pixel_width(f, run->depth[i], direction(i), blurred_angle);
-    seen = see_facet(sight.pictures, sight.world, f, sight.metal_of(f.placed->mesh->material), hit,
+    seen = see_facet(visibility.pictures, visibility.world, f, visibility.metal_of(f.placed->mesh->material), hit,
                      pixel);
   }
   if (run->veil) {
@@ -340,15 +340,15 @@ Seen SightRun::Impl::see(int i) const {
   return seen;
 }
 
-bool PictureSight::anything_moves() const {
+bool VisibilityPass::anything_moves() const {
   const World& world = impl_->world;
   for (int i = 0; i < world.instance_count(); i++)
     if (world.is_moving(uint32_t(i)) && world.is_visible(uint32_t(i))) return true;
   return false;
 }
 
-void PictureSight::see(const View& view, vec2 offset,
-                       const std::function<void(const SightRun&)>& take, RasterShows shows,
+void VisibilityPass::see(const View& view, vec2 offset,
+                       const std::function<void(const VisibleRun&)>& take, RasterShows shows,
                        float blur) const {
   RasterSettings settings;
   settings.shows = shows;
@@ -356,8 +356,8 @@ void PictureSight::see(const View& view, vec2 offset,
   draw(view, settings, blur, take);
 }
 
-std::span<const std::vector<EdgeShare>> PictureSight::see_edges(
-    const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
+std::span<const std::vector<EdgeShare>> VisibilityPass::see_edges(
+    const View& view, vec2 offset, const std::function<void(const VisibleRun&)>& take,
     RasterShows shows, std::function<int(uint32_t, uint32_t)> differ) const {
   RasterSettings settings;
   settings.shows = shows;
@@ -369,16 +369,16 @@ std::span<const std::vector<EdgeShare>> PictureSight::see_edges(
 }
 
 // Row by row, 64 pixels at a time.
-void PictureSight::cast(const View& view, vec2 offset, uint64_t picture,
-                        const std::function<void(const SightRun&)>& take) const {
+void VisibilityPass::cast(const View& view, vec2 offset, uint64_t picture,
+                        const std::function<void(const VisibleRun&)>& take) const {
   constexpr int most = RasterRun::most;
   parallel_for(view.height, [&](int y) {
     for (int x = 0; x < view.width; x += most) {
-      SightRun run;
+      VisibleRun run;
       run.picture = picture;
       run.x = x, run.y = y, run.count = std::min(most, view.width - x);
       Ray rays[most];
-      Seen seen[most];
+      PrimaryHit seen[most];
       float depth[most + 8];
       uint32_t object[most + 8];
       for (int i = 0; i < run.count; i++)
@@ -396,8 +396,8 @@ void PictureSight::cast(const View& view, vec2 offset, uint64_t picture,
 }
 
 // Whether edges may be asked for: it was rasterised.
-bool PictureSight::draw(const View& view, RasterSettings settings, float blur,
-                        const std::function<void(const SightRun&)>& take) const {
+bool VisibilityPass::draw(const View& view, RasterSettings settings, float blur,
+                        const std::function<void(const VisibleRun&)>& take) const {
   static std::atomic<uint64_t> pictures = 0;
   const uint64_t picture = ++pictures;
   if (!rasterises(view)) {
@@ -424,8 +424,8 @@ bool PictureSight::draw(const View& view, RasterSettings settings, float blur,
       uint32_t shown = instance == RasterRun::nothing ? 0 : s.world.object_of(instance);
       std::fill(object + begin, object + raster_run.end[p], shown);
     }
-    SightRun::Impl run_impl{s, view, settings.offset, slope, blur * slope, facets, &raster_run};
-    SightRun run;
+    VisibleRun::Impl run_impl{s, view, settings.offset, slope, blur * slope, facets, &raster_run};
+    VisibleRun run;
     run.picture = picture;
     run.x = raster_run.x, run.y = raster_run.y, run.count = raster_run.count;
     run.depth = raster_run.depth, run.object = object;

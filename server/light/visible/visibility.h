@@ -12,7 +12,7 @@
 
 namespace wellspring {
 
-class PictureSight;
+class VisibilityPass;
 
 // What light falls on at a run's pixels.
 struct RunSurface {
@@ -31,14 +31,14 @@ struct RunSkin {
 // Up to 64 pixels of a row, from (x, y) to the right. As light/visible/see_through.h answers for
 // rays through the pixels' sampling places, but that normals are those of the mesh, without normal
 // maps, pictures are averaged over the pixel, and clear panes tint a part of the picture alike.
-class SightRun {
+class VisibleRun {
  public:
   int x = 0, y = 0, count = 0;
   uint64_t picture = 0;  // a number that no other call of see() has
   // Arrays may be read, not trusted, up to RasterRun::most + 8.
   const float* depth = nullptr;      // along the viewing axis; infinity: nothing there
   const uint32_t* object = nullptr;  // 0: nothing there
-  // Of the pixels whose bit is set, and maybe of others. Returns those of the set bits that shine,
+  // Of the pixels whose bit is set, and maybe of others. Returns those of the set bits that emit light,
   // or of which see() knows more or only see() knows.
   uint64_t describe(uint64_t wanted, RunSurface& to) const;
   // Pixels that may see what is polished: their guides are those of what it shows
@@ -48,30 +48,30 @@ class SightRun {
   // others anything. Returns those, a bit each; none where rays have seen them.
   uint64_t light(const struct SkinLight& skin, const RunSurface& surface, RunSkin& to) const;
   // Everything of pixel i; costs as much as a dozen descriptions.
-  Seen see(int i) const;
+  PrimaryHit see(int i) const;
 
  private:
-  friend class PictureSight;
+  friend class VisibilityPass;
   struct Impl;
   const Impl* impl_ = nullptr;
-  const Seen* seen_ = nullptr;  // by rays: of each pixel, instead
+  const PrimaryHit* seen_ = nullptr;  // by rays: of each pixel, instead
 };
 
-class PictureSight {
+class VisibilityPass {
  public:
   // Borrows `world`; keeps what it needs of `lights`. A second or so for a scene of many pictures.
-  PictureSight(const World& world, const Lights& lights);
-  ~PictureSight();
+  VisibilityPass(const World& world, const Lights& lights);
+  ~VisibilityPass();
 
   // Calls `take` from many threads; together the calls cover every pixel once. `offset`: of the
   // sampling place in its pixel, 0 to 1. `blur`: pixels over which pictures on surfaces are
   // averaged. Call after World::commit(), while nothing moves.
-  void see(const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
+  void see(const View& view, vec2 offset, const std::function<void(const VisibleRun&)>& take,
            RasterShows shows = RasterShows::all, float blur = 1) const;
   // The same, and then finds Raster::edges(), which are good until the next call. `differ`: as
   // RasterSettings has it.
   std::span<const std::vector<EdgeShare>> see_edges(
-      const View& view, vec2 offset, const std::function<void(const SightRun&)>& take,
+      const View& view, vec2 offset, const std::function<void(const VisibleRun&)>& take,
       RasterShows shows = RasterShows::all,
       std::function<int(uint32_t pixel, uint32_t other)> differ = {}) const;
   // Is it of a mesh that moves?
@@ -83,11 +83,11 @@ class PictureSight {
   bool rasterises(const View& view) const;
 
  private:
-  friend class SightRun;
+  friend class VisibleRun;
   bool draw(const View& view, RasterSettings settings, float blur,
-            const std::function<void(const SightRun&)>& take) const;
+            const std::function<void(const VisibleRun&)>& take) const;
   void cast(const View& view, vec2 offset, uint64_t picture,
-            const std::function<void(const SightRun&)>& take) const;
+            const std::function<void(const VisibleRun&)>& take) const;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -32,32 +32,32 @@ void add_emission(vec3 tint, vec3 emission, Sample& sample) {
   sample.glow += light;
 }
 
-vec3 keep(vec3 diffuse, vec3 metal, float metallic, KeptMetal kept) {
+vec3 keep(vec3 diffuse, vec3 metal, float metallic, MetalDemodulation kept) {
   vec3 albedo = max_component(diffuse) > least_albedo ? diffuse : vec3(0);
-  return kept == KeptMetal::none ? albedo
-                                 : max(albedo + metal, vec3(least_kept_metal * metallic));
+  return kept == MetalDemodulation::none ? albedo
+                                 : max(albedo + metal, vec3(least_demodulated_metal * metallic));
 }
 
 }  // namespace
 
-KeptReflectance kept_reflectance(const FirstSurface& first) {
+DemodulatedReflectance demodulated_reflectance(const FirstSurface& first) {
   const Bsdf& b = first.bsdf;
-  KeptReflectance kept;
+  DemodulatedReflectance kept;
   kept.diffuse = max_component(b.diffuse) > least_albedo;
   kept.albedo = keep(b.diffuse, b.metallic * b.metal, b.metallic, first.metal);
   vec3 a = kept.albedo;
-  if (first.metal != KeptMetal::none)
+  if (first.metal != MetalDemodulation::none)
     kept.diffuse_share = kept.diffuse ? b.diffuse / a : vec3(0);
-  if (first.metal == KeptMetal::light) {
+  if (first.metal == MetalDemodulation::light) {
     kept.lit_gloss = 1, kept.other_gloss = 1 - b.dielectric_share;
   } else if (b.alpha >= soft_alpha && !(max_component(b.transmit) > 0) &&
-             std::min({a.x, a.y, a.z}) > least_kept_metal) {
+             std::min({a.x, a.y, a.z}) > least_demodulated_metal) {
     kept.lit_gloss = b.dielectric_share;
   }
   return kept;
 }
 
-vec3 kept_albedo(vec3 base_color, float metallic, KeptMetal metal) {
+vec3 demodulated_albedo(vec3 base_color, float metallic, MetalDemodulation metal) {
   metallic = clean(metallic);
   vec3 base = clean(base_color);
   return keep(base * (1 - metallic), base * metallic, metallic, metal);

@@ -14,7 +14,7 @@ struct FirstSurface {
   Surface surface;
   Bsdf bsdf;
   vec3 tint{1};  // by panes and by what the ray ran in
-  KeptMetal metal = KeptMetal::none;  // its material's
+  MetalDemodulation metal = MetalDemodulation::none;  // its material's
   bool mirrored = false;
   Walk reflection;  // if mirrored: carries what the panes reflect, divided by the chance of the
                     // choice
@@ -36,12 +36,12 @@ void describe_sky(const Transport& transport, vec3 direction, vec3 tint, Sample&
 inline constexpr float least_albedo = 1e-4f;  // below it nothing is diffuse
 
 // What of a first surface's reflectance is kept apart as Sample::albedo: the diffuse layer's, and
-// of metals that of materials which are nothing else (KeptMetal). Where paint and bare metal are
+// of metals that of materials which are nothing else (MetalDemodulation). Where paint and bare metal are
 // one material, what metal reflects is none of their common light. So no threshold lies within what
 // a texture says, on whose sides neighbours would be lit differently.
-inline constexpr float least_kept_metal = 0.02f;  // of every channel, by how metallic it is
+inline constexpr float least_demodulated_metal = 0.02f;  // of every channel, by how metallic it is
 inline constexpr float least_soft_roughness = 0.346f;
-struct KeptReflectance {
+struct DemodulatedReflectance {
   vec3 albedo{0};
   vec3 diffuse_share{1};  // of it
   bool diffuse = false;   // has a diffuse layer
@@ -49,11 +49,11 @@ struct KeptReflectance {
   // everywhere: of what lights give, and of all else.
   float lit_gloss = 0, other_gloss = 0;
 };
-KeptReflectance kept_reflectance(const FirstSurface& first);
+DemodulatedReflectance demodulated_reflectance(const FirstSurface& first);
 // Its albedo, of an opaque surface whose gloss is alike all around, without asking for its Bsdf.
-vec3 kept_albedo(vec3 base_color, float metallic, KeptMetal metal);
-inline vec3 kept_albedo(const Surface& surface, KeptMetal metal) {
-  return kept_albedo(surface.base_color, surface.metallic, metal);
+vec3 demodulated_albedo(vec3 base_color, float metallic, MetalDemodulation metal);
+inline vec3 demodulated_albedo(const Surface& surface, MetalDemodulation metal) {
+  return demodulated_albedo(surface.base_color, surface.metallic, metal);
 }
 
 }  // namespace wellspring

@@ -15,11 +15,11 @@ namespace {
 // Eight of them, `first` on.
 void describe_lanes(const Transport& transport, const RayPacket& rays, const Hit* hits,
                     uint32_t lanes, size_t first, std::span<Sample> samples,
-                    std::vector<MattEye>& eyes) {
+                    std::vector<LambertHit>& eyes) {
   Lanes3 direction{load_lanes(rays.direction_x), load_lanes(rays.direction_y),
                    load_lanes(rays.direction_z)};
-  MattSurfaceLanes surface = eval_matt_surfaces(transport.world, direction, hits, lanes);
-  MattLobeLanes lobes = make_matt(surface, direction);
+  LambertSurfaceLanes surface = eval_lambert_surfaces(transport.world, direction, hits, lanes);
+  LambertLobeLanes lobes = make_lambert(surface, direction);
   Lanes3 origin = offset_origins(surface, surface.geometric_normal);
   for (uint32_t bits = lanes; bits; bits &= bits - 1) {
     int i = std::countr_zero(bits);
@@ -35,20 +35,20 @@ void describe_lanes(const Transport& transport, const RayPacket& rays, const Hit
 
 }  // namespace
 
-MattEyes see_matt(const Transport& transport, std::span<const Request> requests,
+LambertHits see_lambert(const Transport& transport, std::span<const Request> requests,
                   std::span<Sample> samples) {
-  MattEyes seen;
+  LambertHits seen;
   seen.eyes.reserve(requests.size());
   for (size_t first = 0; first < requests.size(); first += lane_count) {
     int count = int(std::min(requests.size() - first, size_t(lane_count)));
     RayPacket rays{};
     Hit hits[RayPacket::lanes];
-    uint32_t asked = 0, matt = 0;
+    uint32_t asked = 0, lambertian = 0;
     for (int i = 0; i < count; i++) {
       const Request& request = requests[first + size_t(i)];
       bool in_solid = transport.tables.any_solid &&
                       find_media(transport, request.ray.origin).count > 0;
-      if (!transport.tables.any_matt || in_solid || request.ray.t_min != 0) continue;
+      if (!transport.tables.any_lambertian || in_solid || request.ray.t_min != 0) continue;
       set_ray(request.ray, i, rays);
       asked |= 1u << i;
     }
@@ -61,13 +61,13 @@ MattEyes see_matt(const Transport& transport, std::span<const Request> requests,
         samples[number] = Sample();
         describe_sky(transport, requests[number].ray.direction, vec3(1), samples[number]);
         seen.nothing.push_back(number);
-      } else if (met_matt(transport, hits[i])) {
-        matt |= 1u << i;
+      } else if (met_lambertian(transport, hits[i])) {
+        lambertian |= 1u << i;
       } else {
         seen.others.push_back(number);
       }
     }
-    if (matt) describe_lanes(transport, rays, hits, matt, first, samples, seen.eyes);
+    if (lambertian) describe_lanes(transport, rays, hits, lambertian, first, samples, seen.eyes);
   }
   return seen;
 }

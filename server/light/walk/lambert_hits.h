@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the eye sees first, eight requests at a time, where that is matt and met in air: what
+// What the eye sees first, eight requests at a time, where that is Lambertian and met in air: what
 // first_surface.h finds there, without what other materials need.
 #pragma once
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace wellspring {
 
-struct MattEye {
+struct LambertHit {
   uint32_t request = 0;  // number among those asked
   vec3 position{0};
   vec3 normal{0}, face{0};  // shading and geometric, on the viewer's side
@@ -18,13 +18,13 @@ struct MattEye {
   float extent = 0;         // SurfacePlace
 };
 
-struct MattEyes {
-  std::vector<MattEye> eyes;
+struct LambertHits {
+  std::vector<LambertHit> eyes;
   std::vector<uint32_t> nothing;  // numbers of those that meet nothing: their samples are complete
   std::vector<uint32_t> others;   // that see something else: their samples are not touched
 };
-// Describes the samples of requests that see something matt, or nothing.
-MattEyes see_matt(const Transport& transport, std::span<const Request> requests,
+// Describes the samples of requests that see something Lambertian, or nothing.
+LambertHits see_lambert(const Transport& transport, std::span<const Request> requests,
                   std::span<Sample> samples);
 
 }  // namespace wellspring

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight samples side by side, each at its own depth, for as long as all that they meet is matt:
-// what shade_first_matt and scatter_matt do one by one. Rays are traced one by one all the same,
+// Eight samples side by side, each at its own depth, for as long as all that they meet is Lambertian:
+// what shade_first_lambert and scatter_lambert do one by one. Rays are traced one by one all the same,
 // because they have nothing in common. A sample that meets anything else goes on alone, and the
 // next one takes its lane. Nothing in a lane depends on the others.
 #include <bit>
@@ -16,8 +16,8 @@
 namespace wellspring {
 namespace {
 
-struct MattWalks {
-  uint32_t held = 0;  // lanes that hold a sample, which has arrived at hits[lane], a matt surface
+struct LambertWalks {
+  uint32_t held = 0;  // lanes that hold a sample, which has arrived at hits[lane], a Lambertian surface
   Hit hits[lane_count];
   size_t sample[lane_count];
   SamplerLanes samplers;
@@ -47,8 +47,8 @@ void for_each_lane(uint32_t lanes, const Body& body) {
   for (; lanes; lanes &= lanes - 1) body(std::countr_zero(lanes));
 }
 
-// Whether the sample that the eye's ray belongs to begins on something matt; else it is answered.
-bool begins_matt(Batch& batch, int lane, MattWalks& walks) {
+// Whether the sample that the eye's ray belongs to begins on something Lambertian; else it is answered.
+bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
   const Transport& transport = batch.transport;
   const Request& request = batch.requests[walks.sample[lane]];
   Sample& sample = batch.samples[walks.sample[lane]];
@@ -56,7 +56,7 @@ bool begins_matt(Batch& batch, int lane, MattWalks& walks) {
   if (request.ray.t_min != 0) hit = transport.world.intersect(request.ray);  // not in packets
   bool in_solid =
       transport.tables.any_solid && find_media(transport, request.ray.origin).count > 0;
-  if (!hit.valid() || in_solid || !met_matt(transport, hit)) {
+  if (!hit.valid() || in_solid || !met_lambertian(transport, hit)) {
     sample = trace_sample(transport, batch.rules, request, hit);
     return false;
   }
@@ -70,9 +70,9 @@ bool begins_matt(Batch& batch, int lane, MattWalks& walks) {
   return true;
 }
 
-// Gives each of those lanes the next sample that the eye sees on something matt; what lies before
+// Gives each of those lanes the next sample that the eye sees on something Lambertian; what lies before
 // it is answered on the way.
-void fill_lanes(Batch& batch, uint32_t lanes, RayPacket& rays, MattWalks& walks) {
+void fill_lanes(Batch& batch, uint32_t lanes, RayPacket& rays, LambertWalks& walks) {
   while (lanes && batch.next < batch.requests.size()) {
     uint32_t asking = 0;
     for_each_lane(lanes, [&](int i) {
@@ -83,14 +83,14 @@ void fill_lanes(Batch& batch, uint32_t lanes, RayPacket& rays, MattWalks& walks)
     });
     batch.transport.world.intersect_each(rays, asking, walks.hits);
     for_each_lane(asking, [&](int i) {
-      if (!begins_matt(batch, i, walks)) return;
+      if (!begins_lambertian(batch, i, walks)) return;
       walks.held |= 1u << i;
       lanes &= ~(1u << i);
     });
   }
 }
 
-void end_walk(Batch& batch, int lane, MattWalks& walks) {
+void end_walk(Batch& batch, int lane, LambertWalks& walks) {
   Sample& sample = batch.samples[walks.sample[lane]];
   sample.smooth = walks.smooth.at(lane);
   sample.rest = walks.rest.at(lane);
@@ -102,8 +102,8 @@ struct DirectLanes {
 };
 
 // sample_direct_light where there is one punctual light and no other.
-DirectLanes light_by_lamp(const Transport& transport, const MattSurfaceLanes& surface,
-                          const MattLobeLanes& lobes, uint32_t lanes, RayPacket& rays) {
+DirectLanes light_by_lamp(const Transport& transport, const LambertSurfaceLanes& surface,
+                          const LambertLobeLanes& lobes, uint32_t lanes, RayPacket& rays) {
   const PunctualLight& lamp = transport.tables.punctual[0];
   const SpotCone& cone = transport.tables.cones[0];
   const bool near = lamp.type != PunctualType::directional;
@@ -127,7 +127,7 @@ DirectLanes light_by_lamp(const Transport& transport, const MattSurfaceLanes& su
     LaneMask usual = (distance2 > 1e-20f) & (distance2 < 3e38f);
     strength = usual ? strength : zero;
   }
-  Lanes effect = strength * eval_matt_pdfs(lobes, way);
+  Lanes effect = strength * eval_lambert_pdfs(lobes, way);
   lanes &= negative_lanes(effect > zero);
   Lanes3 origin = offset_origins(surface, way);
   uint32_t seen = 0;
@@ -157,8 +157,8 @@ DirectLanes light_by_lamp(const Transport& transport, const MattSurfaceLanes& su
   return direct;
 }
 
-DirectLanes light_by_choice(const Batch& batch, const MattSurfaceLanes& surface,
-                            const MattLobeLanes& lobes, const MattWalks& walks, LaneBits dimensions,
+DirectLanes light_by_choice(const Batch& batch, const LambertSurfaceLanes& surface,
+                            const LambertLobeLanes& lobes, const LambertWalks& walks, LaneBits dimensions,
                             uint32_t lanes) {
   DirectLanes direct;
   const Walk in_air{};
@@ -177,13 +177,13 @@ DirectLanes light_by_choice(const Batch& batch, const MattSurfaceLanes& surface,
 }
 
 // Shades what the lanes have arrived at and sends them on; returns those that go.
-uint32_t scatter_lanes(Batch& batch, MattWalks& walks, RayPacket& rays) {
+uint32_t scatter_lanes(Batch& batch, LambertWalks& walks, RayPacket& rays) {
   const Transport& transport = batch.transport;
   const LightTables& tables = transport.tables;
   const Lanes zero{};
-  MattSurfaceLanes surface =
-      eval_matt_surfaces(transport.world, walks.direction, walks.hits, walks.held);
-  MattLobeLanes lobes = make_matt(surface, walks.direction);
+  LambertSurfaceLanes surface =
+      eval_lambert_surfaces(transport.world, walks.direction, walks.hits, walks.held);
+  LambertLobeLanes lobes = make_lambert(surface, walks.direction);
   const LaneMask first = walks.depth == 1;
   const uint32_t first_bits = negative_lanes(first) & walks.held;
   Lanes least = first ? all_lanes(least_albedo) : zero;
@@ -209,7 +209,7 @@ uint32_t scatter_lanes(Batch& batch, MattWalks& walks, RayPacket& rays) {
   Lanes u, v;
   walks.samplers.pair(dimensions + (Dimensions::scatter + 1), u, v);
   walks.direction = sample_cosine_directions(lobes.normal, u, v);
-  walks.pdf = eval_matt_pdfs(lobes, walks.direction);
+  walks.pdf = eval_lambert_pdfs(lobes, walks.direction);
   walks.from = surface.position;
   walks.from_normal = surface.geometric_normal;
   walks.throughput = choose(first, walks.throughput, walks.throughput * lobes.reflectance);
@@ -229,7 +229,7 @@ uint32_t scatter_lanes(Batch& batch, MattWalks& walks, RayPacket& rays) {
   return lanes;
 }
 
-Walk lone_walk(const LightTables& tables, const MattWalks& walks, const RayPacket& rays, int i) {
+Walk lone_walk(const LightTables& tables, const LambertWalks& walks, const RayPacket& rays, int i) {
   Walk walk;
   walk.ray.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
   walk.ray.direction = walks.direction.at(i);
@@ -244,14 +244,14 @@ Walk lone_walk(const LightTables& tables, const MattWalks& walks, const RayPacke
   return walk;
 }
 
-// Whether the lane's sample has arrived at the next matt surface; else it is answered.
-bool goes_on(Batch& batch, const RayPacket& rays, int i, bool sky, MattWalks& walks) {
+// Whether the lane's sample has arrived at the next Lambertian surface; else it is answered.
+bool goes_on(Batch& batch, const RayPacket& rays, int i, bool sky, LambertWalks& walks) {
   const Transport& transport = batch.transport;
   const Hit& hit = walks.hits[i];
   if (!hit.valid() && !sky) return false;
-  bool matt = hit.valid() && met_matt(transport, hit);
+  bool lambertian = hit.valid() && met_lambertian(transport, hit);
   vec3 kept;
-  if (matt && transport.grid) {
+  if (lambertian && transport.grid) {
     Ray ray;
     ray.origin = {rays.origin_x[i], rays.origin_y[i], rays.origin_z[i]};
     ray.direction = walks.direction.at(i);
@@ -261,7 +261,7 @@ bool goes_on(Batch& batch, const RayPacket& rays, int i, bool sky, MattWalks& wa
       return false;
     }
   }
-  if (matt)
+  if (lambertian)
     return walks.depth[i] <= batch.rules.scatterings && walks.depth[i] < batch.rules.max_depth;
   Sampler sampler = walks.samplers.at(i);
   sampler.seek(dimensions_of(walks.depth)[i]);
@@ -275,7 +275,7 @@ bool goes_on(Batch& batch, const RayPacket& rays, int i, bool sky, MattWalks& wa
 
 void trace_samples(const Transport& transport, const WalkRules& rules,
                    std::span<const Request> requests, std::span<Sample> samples) {
-  if (!transport.tables.any_matt || rules.max_depth < 1) {
+  if (!transport.tables.any_lambertian || rules.max_depth < 1) {
     for (size_t i = 0; i < requests.size(); i++)
       samples[i] = trace_sample(transport, rules, requests[i]);
     return;
@@ -283,7 +283,7 @@ void trace_samples(const Transport& transport, const WalkRules& rules,
   Batch batch{transport, rules, requests, samples};
   const bool sky = transport.tables.plan.uses(TransportPart::environment);
   RayPacket rays{};
-  MattWalks walks;
+  LambertWalks walks;
   fill_lanes(batch, (1u << lane_count) - 1, rays, walks);
   while (walks.held) {
     uint32_t going = scatter_lanes(batch, walks, rays), arrived = 0;

@@ -21,7 +21,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
   const uint32_t base = Dimensions::first_surface;
   std::optional<WavelengthSpread> spread;
   part_colors(transport, walk, surface, base, sampler, bsdf, spread);
-  KeptReflectance kept = kept_reflectance(first);
+  DemodulatedReflectance kept = demodulated_reflectance(first);
   bool diffuse = kept.diffuse;
   vec3 albedo = kept.albedo, diffuse_albedo = kept.diffuse ? bsdf.diffuse : vec3(0);
   auto add_gloss = [&](vec3 light, float filtered) {
@@ -70,14 +70,14 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
   }
 }
 
-// The same where that surface is matt: one lobe and no gloss.
-void shade_first_matt(const Transport& transport, const WalkRules& rules, Walk& walk,
+// The same where that surface is Lambertian: one lobe and no gloss.
+void shade_first_lambert(const Transport& transport, const WalkRules& rules, Walk& walk,
                       const Hit& hit, Sampler& sampler, Sample& sample) {
-  MattSurface surface = eval_matt_surface(transport.world, walk.ray, hit);
+  LambertSurface surface = eval_lambert_surface(transport.world, walk.ray, hit);
   describe_place(transport.world, hit, surface, surface.normal, hit.t, sample);
   sample.flags |= sample_sure;
   if (rules.max_depth < 2) return;
-  MattLobe lobe = make_matt(surface, walk.ray.direction);
+  LambertLobe lobe = make_lambert(surface, walk.ray.direction);
   if (!(max_component(lobe.reflectance) > least_albedo)) return;
   sample.albedo =
       lobe.reflectance * eval_absorption(transport, walk.media.here.innermost(), hit.t);
@@ -88,7 +88,7 @@ void shade_first_matt(const Transport& transport, const WalkRules& rules, Walk& 
   sample.rest += sample.albedo * direct.punctual_diffuse;
   if (!direct.sure_of_punctual()) sample.flags &= uint8_t(~sample_sure);
   sampler.seek(base + Dimensions::scatter + 1);
-  BsdfSample scattered = sample_matt(lobe, sampler.next2());
+  BsdfSample scattered = sample_lambert(lobe, sampler.next2());
   if (scattered.pdf > 0) scattered.weight = vec3(1);
   if (!advance(walk, surface, scattered)) return;
   walk.area_share = transport.tables.area_share > 0 ? 1.0f : 0.0f;
@@ -113,8 +113,8 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
     sample.flags |= sample_sure;
     return sample;
   }
-  if (met_matt(transport, hit)) {
-    shade_first_matt(transport, rules, walk, hit, sampler, sample);
+  if (met_lambertian(transport, hit)) {
+    shade_first_lambert(transport, rules, walk, hit, sampler, sample);
     return sample;
   }
   FirstSurface first =

@@ -83,7 +83,7 @@ namespace {
 
 // How a surface scatters, as light sampling asks: the value towards a direction, and the density
 // with which sampling all of its lobes draws that.
-constexpr float blunt_alpha = 0.6f;  // rougher gloss is spread as matt light is
+constexpr float blunt_alpha = 0.6f;  // rougher gloss is spread as Lambertian light is
 struct ByBsdf {
   const Bsdf& bsdf;
   BsdfValue eval(vec3 direction) const { return eval_bsdf(bsdf, direction); }
@@ -97,15 +97,15 @@ struct ByBsdf {
       lobe.alpha = bsdf.alpha;
       lobe.view = to_world(bsdf, bsdf.view);
     }
-    // With nothing to go by all lights are weighed as by a matt surface.
+    // With nothing to go by all lights are weighed as by a Lambertian surface.
     if (!(lobe.diffuse + lobe.specular > 0)) lobe.diffuse = 1;
     return lobe;
   }
 };
-struct ByMatt {
-  const MattLobe& lobe;
+struct ByLambert {
+  const LambertLobe& lobe;
   BsdfValue eval(vec3 direction) const {
-    float pdf = eval_matt_pdf(lobe, direction);
+    float pdf = eval_lambert_pdf(lobe, direction);
     return {vec3(pdf), vec3(0), pdf, 0};
   }
   float pdf(const BsdfValue& value) const { return value.diffuse_pdf; }
@@ -176,9 +176,9 @@ DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
 }
 
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
-                                const SurfacePlace& place, const MattLobe& lobe, bool apart,
+                                const SurfacePlace& place, const LambertLobe& lobe, bool apart,
                                 Sampler& sampler) {
-  return direct_light(transport, walk, place, place.geometric_normal, lobe.normal, ByMatt{lobe},
+  return direct_light(transport, walk, place, place.geometric_normal, lobe.normal, ByLambert{lobe},
                       apart, sampler);
 }
 
@@ -193,20 +193,20 @@ void make_blunt(const WalkRules& rules, const Walk& walk, Surface& surface) {
   surface.clearcoat_roughness = std::max(surface.clearcoat_roughness, std::sqrt(alpha));
 }
 
-// One step of the walk at a matt surface. False: it ends here.
-bool scatter_matt(const Transport& transport, const WalkRules& rules, Walk& walk, const Hit& hit,
+// One step of the walk at a Lambertian surface. False: it ends here.
+bool scatter_lambert(const Transport& transport, const WalkRules& rules, Walk& walk, const Hit& hit,
                   uint32_t base, Sampler& sampler, vec3& radiance) {
   bool last = walk.scattered >= rules.scatterings || walk.depth >= rules.max_depth;
   if (last) return false;
-  MattSurface surface = eval_matt_surface(transport.world, walk.ray, hit);
-  MattLobe lobe = make_matt(surface, walk.ray.direction);
+  LambertSurface surface = eval_lambert_surface(transport.world, walk.ray, hit);
+  LambertLobe lobe = make_lambert(surface, walk.ray.direction);
   if (!(max_component(lobe.reflectance) > 0)) return false;
   walk.throughput *= eval_absorption(transport, walk.media.here.innermost(), hit.t);
   sampler.seek(base);
   radiance += walk.throughput * lobe.reflectance *
               sample_direct_light(transport, walk, surface, lobe, false, sampler).sum();
   sampler.seek(base + Dimensions::scatter + 1);  // as sample_bsdf has it without a choice
-  if (!advance(walk, surface, sample_matt(lobe, sampler.next2()))) return false;
+  if (!advance(walk, surface, sample_lambert(lobe, sampler.next2()))) return false;
   walk.area_share = transport.tables.area_share;
   sampler.seek(base + Dimensions::survival);
   return survives(walk, sampler);
@@ -229,8 +229,8 @@ vec3 follow(const Transport& transport, const WalkRules& rules, Walk walk, Hit h
     if (transport.grid && walk.pdf > 0 && walk.media.here.count == 0 &&
         eval_grid(*transport.grid, world, walk.ray, hit, hit.t / std::sqrt(walk.pdf), kept))
       return radiance + walk.throughput * kept;
-    if (met_matt(transport, hit)) {
-      if (!scatter_matt(transport, rules, walk, hit, base, sampler, radiance)) return radiance;
+    if (met_lambertian(transport, hit)) {
+      if (!scatter_lambert(transport, rules, walk, hit, base, sampler, radiance)) return radiance;
       continue;
     }
     Surface surface = meet_surface(transport, walk.ray, hit, walk.media);

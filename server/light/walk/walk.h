@@ -84,9 +84,9 @@ struct DirectLight {
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
                                 const Surface& surface, const Bsdf& bsdf, bool apart,
                                 Sampler& sampler);
-// The same where the surface is matt, its lobe's reflectance left out.
+// The same where the surface is Lambertian, its lobe's reflectance left out.
 DirectLight sample_direct_light(const Transport& transport, const Walk& walk,
-                                const SurfacePlace& place, const MattLobe& lobe, bool apart,
+                                const SurfacePlace& place, const LambertLobe& lobe, bool apart,
                                 Sampler& sampler);
 
 // Share of light left after a length of the solid it runs in (Beer's law); -1: in none.
@@ -99,8 +99,8 @@ inline vec3 eval_absorption(const Transport& transport, int medium, float length
 inline const MaterialTraits& traits_of(const Transport& transport, const Hit& hit) {
   return transport.tables.materials[size_t(transport.world.mesh_of(hit.instance).material)];
 }
-inline bool met_matt(const Transport& transport, const Hit& hit) {
-  return traits_of(transport, hit).matt;
+inline bool met_lambertian(const Transport& transport, const Hit& hit) {
+  return traits_of(transport, hit).lambertian;
 }
 
 // The whole of each sample: what trace functions of techniques call. A sample is the same alone and

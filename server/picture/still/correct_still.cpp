@@ -27,7 +27,7 @@ constexpr float third = 1 / 3.0f;
 constexpr float detail_noise = 0.8164f;
 // Of pixels single means tell, of squares many: how many times the noise counts. One sample more is
 // assumed to be as unlike as all were, since of few a bright one may be missing.
-constexpr float pixel_doubt = 0.8, square_doubt = 0.35;
+constexpr float pixel_prior_variance = 0.8, squared_prior = 0.35;
 // Second and later samples of a pixel, of the whole picture's mean, from which on and at which in
 // full they correct it: what first samples deviate by nobody knows.
 constexpr float first_repeats = 0.5f, enough_repeats = 1.5f;
@@ -314,7 +314,7 @@ void find_detail(const float* const* row, const ResidualLevel& next, int y, int 
 }
 
 // Of the middle one of three rows: what is to be added.
-void add_detail(const Detail& above, const Detail& row, const Detail& below, int width, float doubt,
+void add_detail(const Detail& above, const Detail& row, const Detail& below, int width, float prior_variance,
                 std::vector<float>& column, float* const* to) {
   column.resize(size_t(width) + 2);
   for (int x = 0; x < width; x++)
@@ -324,7 +324,7 @@ void add_detail(const Detail& above, const Detail& row, const Detail& below, int
   for (int x = 0; x < width; x++) {
     size_t i = size_t(x);
     float power = 0.25f * (column[i] + column[i + 2]) + 0.5f * column[i + 1];
-    float share = std::max(0.0f, 1 - doubt * detail_noise / (power + 1e-12f));
+    float share = std::max(0.0f, 1 - prior_variance * detail_noise / (power + 1e-12f));
     for (int c = 0; c < 3; c++) to[c][x] = row.added[c][i] + share * row.part[c][i];
   }
 }
@@ -359,7 +359,7 @@ void add_level(const ResidualLevel& next, ResidualLevel& level) {
                 float* to[3];
                 size_t start = size_t(y) * size_t(level.width);
                 for (size_t c = 0; c < 3; c++) to[c] = level.added[c].data() + start;
-                add_detail(above, row, below, level.width, square_doubt, column, to);
+                add_detail(above, row, below, level.width, squared_prior, column, to);
                 for (float* line : to)
                   for (int x = 0; x < level.width; x++) line[x] *= level.weight[start + size_t(x)];
               });
@@ -373,7 +373,7 @@ void add_largest(ResidualLevel& level) {
     vec3 mean =
         weight > 0 ? vec3(level.sum[0][i], level.sum[1][i], level.sum[2][i]) / weight : vec3(0);
     float power = weight > 0 ? square_mean(mean) * weight * (weight / level.noise[i]) : 0;
-    float share = std::max(0.0f, 1 - square_doubt / (power + 1e-12f));
+    float share = std::max(0.0f, 1 - squared_prior / (power + 1e-12f));
     for (size_t c = 0; c < 3; c++) level.added[c][i] = share * level.sum[c][i];
   }
 }
@@ -453,7 +453,7 @@ void correct_still(const StillSamples& samples, const StillImage& still, StillCo
     };
     by_threes(begin, end, height, width, read,
               [&](int y, const Detail& above, const Detail& row, const Detail& below) {
-                add_detail(above, row, below, width, pixel_doubt, column, to);
+                add_detail(above, row, below, width, pixel_prior_variance, column, to);
                 size_t start = size_t(y) * size_t(width);
                 for (size_t x = 0; x < size_t(width); x++) {
                   size_t i = start + x;

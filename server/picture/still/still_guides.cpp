@@ -25,12 +25,12 @@ struct GuidePass {
     planes.albedo[pixel] += guide.albedo * share;
     planes.normal[pixel] += guide.normal * share;
   }
-  void take(const SightRun& run) const;
-  void follow(const SightRun& run, uint64_t polished, size_t begin) const;
+  void take(const VisibleRun& run) const;
+  void follow(const VisibleRun& run, uint64_t polished, size_t begin) const;
 };
 
 // Rays at what the run shows of polished surfaces.
-void GuidePass::follow(const SightRun& run, uint64_t polished, size_t begin) const {
+void GuidePass::follow(const VisibleRun& run, uint64_t polished, size_t begin) const {
   Ray rays[RasterRun::most];
   Guide guides[RasterRun::most];
   int pixel[RasterRun::most], count = 0;
@@ -46,18 +46,18 @@ void GuidePass::follow(const SightRun& run, uint64_t polished, size_t begin) con
   }
 }
 
-void GuidePass::take(const SightRun& run) const {
+void GuidePass::take(const VisibleRun& run) const {
   RunPixels p;
-  const RunGlow shining = describe_run(run, p);
+  const RunGlow emitting = describe_run(run, p);
   const uint64_t polished = first ? run.polished() : 0;
   const size_t begin = size_t(run.y) * size_t(view.width) + size_t(run.x);
   for (int i = 0; i < run.count; i++) {
     const uint64_t bit = uint64_t(1) << i;
     if ((polished & bit) || followed[begin + size_t(i)]) continue;
     Guide guide;
-    if (!(shining.only & bit))
+    if (!(emitting.only & bit))
       guide.albedo = vec3(p.surface.red[i], p.surface.green[i], p.surface.blue[i]);
-    if (shining.some & bit)
+    if (emitting.some & bit)
       guide.albedo += vec3(p.glow_red[i], p.glow_green[i], p.glow_blue[i]);
     guide.albedo = clamp(guide.albedo, vec3(0), vec3(1));
     if (std::isfinite(run.depth[i])) {
@@ -72,7 +72,7 @@ void GuidePass::take(const SightRun& run) const {
 
 }  // namespace
 
-void add_still_guides(const World& world, const Lights& lights, const PictureSight& sight,
+void add_still_guides(const World& world, const Lights& lights, const VisibilityPass& visibility,
                       const View& view, RasterShows shows, int place, GuidePlanes& planes,
                       std::vector<uint8_t>& followed) {
   const size_t pixels = size_t(view.width) * size_t(view.height);
@@ -81,7 +81,7 @@ void add_still_guides(const World& world, const Lights& lights, const PictureSig
     followed.assign(pixels, uint8_t(0));
   }
   GuidePass pass{world, lights, view, spread_in_pixel(place), place == 0, planes, followed};
-  sight.see(view, pass.place, [&](const SightRun& run) { pass.take(run); }, shows);
+  visibility.see(view, pass.place, [&](const VisibleRun& run) { pass.take(run); }, shows);
 }
 
 }  // namespace wellspring

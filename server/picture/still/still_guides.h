@@ -16,7 +16,7 @@ inline constexpr int guide_places = 4;  // that antialias well enough
 // One visibility pass: adds what it sees at place `place` of the pixels, of guide_places. The first
 // makes the planes the view's size, begins anew and overwrites `followed`: not 0 of pixels whose
 // guides are a ray's, which the others leave alone.
-void add_still_guides(const World& world, const Lights& lights, const PictureSight& sight,
+void add_still_guides(const World& world, const Lights& lights, const VisibilityPass& visibility,
                       const View& view, RasterShows shows, int place, GuidePlanes& planes,
                       std::vector<uint8_t>& followed);
 

@@ -14,7 +14,7 @@ void resize_samples(StillSamples& samples, size_t pixels) {
   samples.count = std::vector<uint8_t>(pixels);
 }
 
-void forget_samples(const StillImage& still, StillSamples& samples) {
+void invalidate_samples(const StillImage& still, StillSamples& samples) {
   for (size_t i = 0; i < std::min(still.count.size(), samples.count.size()); i++)
     if (still.count[i] == 0) samples.count[i] = 0;
 }

@@ -24,7 +24,7 @@ inline constexpr int most_still_samples = 254;
 // All of them without a sample.
 void resize_samples(StillSamples& samples, size_t pixels);
 // Where `still` is to begin anew, as its light has changed or something moves there.
-void forget_samples(const StillImage& still, StillSamples& samples);
+void invalidate_samples(const StillImage& still, StillSamples& samples);
 // `light`: finite, of a place anywhere in the pixel. `random` decides roundings.
 void add_sample(StillSamples& samples, size_t pixel, vec3 light, uint32_t random);
 

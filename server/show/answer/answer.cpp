@@ -48,7 +48,7 @@ json describe(const Exhibit& exhibit) {
          {"fov", viewpoint.view.fov}});
   for (const StoryText& story : exhibit.stories) {
     json& entry = about["stories"].emplace_back(json{{"id", story.id}, {"title", story.title}});
-    if (story.teller >= 0) entry["teller"] = exhibit.storytellers[size_t(story.teller)].id;
+    if (story.storyteller_index >= 0) entry["teller"] = exhibit.storytellers[size_t(story.storyteller_index)].id;
   }
   for (const TourPlan& tour : exhibit.tours)
     about["tours"].push_back(
@@ -61,8 +61,8 @@ json describe(const Exhibit& exhibit) {
   about["storyteller"] =
       exhibit.storytellers.empty() ? json(nullptr) : json(exhibit.storytellers.front().name);
   about["storytellers"] = json::array();
-  for (const StorytellerPlace& teller : exhibit.storytellers)
-    about["storytellers"].push_back({{"id", teller.id}, {"name", teller.name}});
+  for (const StorytellerPlace& storyteller_place : exhibit.storytellers)
+    about["storytellers"].push_back({{"id", storyteller_place.id}, {"name", storyteller_place.name}});
   about["start"] = exhibit.viewpoints[size_t(exhibit.start)].view.name;
   return about;
 }
@@ -86,7 +86,7 @@ std::optional<int> number_of(const HttpQuestion& question, const char* name, int
 HttpReply answer_still(const AnswerSources& sources, const HttpQuestion& question) {
   const Exhibit& exhibit = *sources.exhibit;
   HttpReply reply;
-  StillOrder order;
+  StillJob order;
   order.viewpoint = exhibit.start;
   if (auto name = question.query.find("viewpoint");
       name != question.query.end() && !name->second.empty()) {

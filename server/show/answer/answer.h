@@ -18,7 +18,7 @@ struct AnswerSources {
   const Exhibit* exhibit = nullptr;
   const std::map<std::string, PageFile>* pages = nullptr;
   const ReportBoard* board = nullptr;
-  std::function<std::string(const StillOrder&)> make_still;
+  std::function<std::string(const StillJob&)> make_still;
   std::function<std::string()> stream_metrics;  // further Prometheus lines; may be empty
 };
 

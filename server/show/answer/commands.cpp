@@ -43,7 +43,7 @@ const StoryText* find_story(const Exhibit& exhibit, const std::string& id) {
   return nullptr;
 }
 
-Answer obey_one(Show& show, Visitor& visitor, const Hello& hello) {
+Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   if (!hello.exhibit.empty() && hello.exhibit != show.exhibit.id)
     return WireError{"unknown_exhibit", "there is no exhibit '" + hello.exhibit +
                                             "' here; this is '" + show.exhibit.id + "'"};
@@ -51,18 +51,18 @@ Answer obey_one(Show& show, Visitor& visitor, const Hello& hello) {
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = hello.kiosk;
   set_size(visitor.wants, show.settings, hello.width, hello.height);
-  const StorytellerPlace* teller = teller_of(show);
+  const StorytellerPlace* storyteller_place = storyteller_of(show);
   go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
-                  visitor.kiosk && teller ? teller->kiosk_viewpoint : show.exhibit.start);
+                  visitor.kiosk && storyteller_place ? storyteller_place->kiosk_viewpoint : show.exhibit.start);
   visitor.welcomed = true;
   show.totals.visits++;
-  visitor.link->send_text(welcome_news(show, visitor));
-  visitor.link->send_text(agent_news(show));
-  if (!show.kiosk_news.empty()) visitor.link->send_text(show.kiosk_news);
+  visitor.link->send_text(welcome_message(show, visitor));
+  visitor.link->send_text(agent_message(show));
+  if (!show.kiosk_message.empty()) visitor.link->send_text(show.kiosk_message);
   return {};
 }
 
-Answer obey_one(Show&, Visitor& visitor, const Input& input) {
+Answer handle_one(Show&, Visitor& visitor, const Input& input) {
   VisitorPlace& place = visitor.place;
   place.seq = input.seq;
   place.move = input.move;
@@ -77,7 +77,7 @@ Answer obey_one(Show&, Visitor& visitor, const Input& input) {
   return {};
 }
 
-Answer obey_one(Show& show, Visitor& visitor, const CameraTo& camera) {
+Answer handle_one(Show& show, Visitor& visitor, const CameraTo& camera) {
   VisitorPlace& place = visitor.place;
   if (glm::length(camera.position - show.exhibit.scene.origin) > farthest)
     return WireError{"bad_field", "camera.position: is farther than 1e7 m from the exhibit"};
@@ -91,7 +91,7 @@ Answer obey_one(Show& show, Visitor& visitor, const CameraTo& camera) {
   return {};
 }
 
-Answer obey_one(Show& show, Visitor& visitor, const ViewpointTo& to) {
+Answer handle_one(Show& show, Visitor& visitor, const ViewpointTo& to) {
   int index = find_viewpoint(show.exhibit, to.name);
   if (index < 0) return WireError{"unknown_viewpoint", "there is no viewpoint '" + to.name + "'"};
   visitor.place.seq = to.seq;
@@ -101,7 +101,7 @@ Answer obey_one(Show& show, Visitor& visitor, const ViewpointTo& to) {
 
 // Subtitles go with what is broken off.
 void clear_subtitle(Visitor& visitor) {
-  visitor.link->send_text(subtitle_news("", visitor.lang, "", 0));
+  visitor.link->send_text(subtitle_message("", visitor.lang, "", 0));
 }
 
 void fall_silent(Show& show) {
@@ -113,7 +113,7 @@ void fall_silent(Show& show) {
   }
 }
 
-Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
+Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
   VisitorPlace& place = visitor.place;
   Voice& narrator = visitor.hearing.narration.voice;
   switch (order.action) {
@@ -138,14 +138,14 @@ Answer obey_one(Show& show, Visitor& visitor, const Tour& order) {
 }
 
 // Kiosks stand before whoever is there.
-void call_teller(Show& show, size_t teller) {
-  if (teller == show.teller) return;
+void call_storyteller(Show& show, size_t storyteller_index) {
+  if (storyteller_index == show.storyteller_index) return;
   fall_silent(show);
-  change_teller(show, teller);
+  change_storyteller(show, storyteller_index);
   for (Visitor& visitor : show.visitors)
     if (visitor.welcomed && visitor.kiosk && visitor.place.tour.state == TourRide::State::none)
       go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
-                      teller_of(show)->kiosk_viewpoint);
+                      storyteller_of(show)->kiosk_viewpoint);
 }
 
 const Visitor* who_asked(const Show& show) {
@@ -162,22 +162,22 @@ bool belongs_to_a_kiosk(const Show& show, const Visitor& other) {
   return asked && asked->kiosk;
 }
 
-Answer obey_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
-  if (!teller_of(show)) return WireError{"no_storyteller", "this exhibit has no storyteller"};
+Answer handle_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
+  if (!storyteller_of(show)) return WireError{"no_storyteller", "this exhibit has no storyteller"};
   if (belongs_to_a_kiosk(show, visitor))
     return WireError{"storyteller_busy", "somebody at the kiosk is being told a story"};
   if (!order.teller.empty()) {
-    int teller = find_storyteller(show.exhibit, order.teller);
-    if (teller < 0)
+    int storyteller_index = find_storyteller(show.exhibit, order.teller);
+    if (storyteller_index < 0)
       return WireError{"unknown_storyteller", "there is no storyteller '" + order.teller + "'"};
-    call_teller(show, size_t(teller));
+    call_storyteller(show, size_t(storyteller_index));
   }
   if (order.visible) show.storyteller_visible = *order.visible;
   if (order.humanlike) show.humanlike = *order.humanlike;
   if (!order.story.empty()) {
     const StoryText* story = find_story(show.exhibit, order.story);
     if (!story) return WireError{"unknown_story", "there is no story '" + order.story + "'"};
-    if (story->teller >= 0) call_teller(show, size_t(story->teller));
+    if (story->storyteller_index >= 0) call_storyteller(show, size_t(story->storyteller_index));
     tell(show.voice, *story);
     pause_tour(visitor.place.tour, visitor.hearing.narration.voice);
     show.voice.asked_by = visitor.link->id;
@@ -195,12 +195,12 @@ Answer obey_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
   return {};
 }
 
-Answer obey_one(Show& show, Visitor&, const LampOrder& order) {
+Answer handle_one(Show& show, Visitor&, const LampOrder& order) {
   if (switch_lamp(show, order.name, order.on)) return {};
   return WireError{"unknown_lamp", "there is no lamp '" + order.name + "'"};
 }
 
-Answer obey_one(Show& show, Visitor& visitor, const Settings& settings) {
+Answer handle_one(Show& show, Visitor& visitor, const Settings& settings) {
   PictureWishes& wants = visitor.wants;
   if (settings.fps) wants.fps = std::clamp(*settings.fps, 0.0f, 120.0f);
   if (settings.sound) visitor.hearing.wanted = *settings.sound;
@@ -213,17 +213,17 @@ Answer obey_one(Show& show, Visitor& visitor, const Settings& settings) {
              settings.height.value_or(wants.height));
   if (!settings.lang.empty() && settings.lang != visitor.lang) {
     visitor.lang = settings.lang;
-    visitor.link->send_text(welcome_news(show, visitor));
+    visitor.link->send_text(welcome_message(show, visitor));
   }
   return {};
 }
 
-Answer obey_one(Show& show, Visitor& visitor, const Ack& ack) {
+Answer handle_one(Show& show, Visitor& visitor, const Ack& ack) {
   note_ack(visitor.shown.flow, ack.frame, ack.decoded_ms, show.time);
   return {};
 }
 
-Answer obey_one(Show&, Visitor& visitor, const Bye&) {
+Answer handle_one(Show&, Visitor& visitor, const Bye&) {
   visitor.left = true;
   return {};
 }
@@ -239,11 +239,11 @@ void forget_absent_listeners(Show& show) {
   show.agent_sent_at = -1e9;
 }
 
-std::optional<WireError> obey(Show& show, Visitor& visitor, const BrowserMessage& message) {
+std::optional<WireError> handle(Show& show, Visitor& visitor, const BrowserMessage& message) {
   bool may_speak = visitor.welcomed || std::holds_alternative<Hello>(message) ||
                    std::holds_alternative<Bye>(message);
   if (!may_speak) return WireError{"hello_first", "the first message must be hello"};
-  return std::visit([&](const auto& one) { return obey_one(show, visitor, one); }, message);
+  return std::visit([&](const auto& one) { return handle_one(show, visitor, one); }, message);
 }
 
 }  // namespace wellspring

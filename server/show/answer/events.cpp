@@ -25,12 +25,12 @@ const char* tour_word(TourRide::State state) {
 
 }  // namespace
 
-std::string welcome_news(const Show& show, const Visitor& visitor) {
+std::string welcome_message(const Show& show, const Visitor& visitor) {
   const Exhibit& exhibit = show.exhibit;
   auto text = [&](const LocalText& local) {
     return text_in(local, visitor.lang, exhibit.languages);
   };
-  json news = {{"type", "welcome"},
+  json message = {{"type", "welcome"},
                {"protocol", "wellspring.v1"},
                {"session", visitor.link->id},
                {"exhibit", exhibit.id},
@@ -47,42 +47,42 @@ std::string welcome_news(const Show& show, const Visitor& visitor) {
                {"lamps", json::array()}};
   for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints) {
     std::string title = text(viewpoint.title);
-    news["viewpoints"].push_back(
+    message["viewpoints"].push_back(
         {{"name", viewpoint.view.name}, {"title", title.empty() ? viewpoint.view.name : title}});
   }
   for (const TourPlan& tour : exhibit.tours)
-    news["tours"].push_back(
+    message["tours"].push_back(
         {{"id", tour.id}, {"title", text(tour.title)}, {"stops", tour.stops.size()}});
   for (const StoryText& story : exhibit.stories) {
     json& entry =
-        news["stories"].emplace_back(json{{"id", story.id}, {"title", text(story.title)}});
+        message["stories"].emplace_back(json{{"id", story.id}, {"title", text(story.title)}});
     entry["teller"] =
-        story.teller < 0 ? json(nullptr) : json(exhibit.storytellers[size_t(story.teller)].id);
+        story.storyteller_index < 0 ? json(nullptr) : json(exhibit.storytellers[size_t(story.storyteller_index)].id);
   }
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
-    news["lamps"].push_back({{"name", exhibit.lamps[i].id},
+    message["lamps"].push_back({{"name", exhibit.lamps[i].id},
                              {"title", text(exhibit.lamps[i].title)},
                              {"on", bool(show.switches.wanted[i])}});
-  auto about = [&](const StorytellerPlace& teller) {
-    std::string name = text(teller.name);
-    return json{{"id", teller.id}, {"name", name}, {"position", triple(teller.position)},
-                {"viewpoint", exhibit.viewpoints[size_t(teller.kiosk_viewpoint)].view.name}};
+  auto about = [&](const StorytellerPlace& storyteller_place) {
+    std::string name = text(storyteller_place.name);
+    return json{{"id", storyteller_place.id}, {"name", name}, {"position", triple(storyteller_place.position)},
+                {"viewpoint", exhibit.viewpoints[size_t(storyteller_place.kiosk_viewpoint)].view.name}};
   };
-  news["storyteller"] = nullptr;
-  if (const StorytellerPlace* teller = teller_of(show)) {
-    news["storyteller"] = about(*teller);
-    news["storyteller"]["visible"] = show.storyteller_visible;
+  message["storyteller"] = nullptr;
+  if (const StorytellerPlace* storyteller_place = storyteller_of(show)) {
+    message["storyteller"] = about(*storyteller_place);
+    message["storyteller"]["visible"] = show.storyteller_visible;
   }
-  news["storytellers"] = json::array();
-  for (const StorytellerPlace& teller : exhibit.storytellers)
-    news["storytellers"].push_back(about(teller));
-  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+  message["storytellers"] = json::array();
+  for (const StorytellerPlace& storyteller_place : exhibit.storytellers)
+    message["storytellers"].push_back(about(storyteller_place));
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string state_news(const Show& show, const Visitor& visitor) {
+std::string state_message(const Show& show, const Visitor& visitor) {
   const VisitorPlace& place = visitor.place;
   const Exhibit& exhibit = show.exhibit;
-  json news = {{"type", "state"},
+  json message = {{"type", "state"},
                {"seq", place.seq},
                {"position", triple(place.view.position)},
                {"yaw", place.view.yaw},
@@ -92,27 +92,27 @@ std::string state_news(const Show& show, const Visitor& visitor) {
                {"converged", std::round(visitor.picture.stats.converged * 1000) / 1000},
                {"viewpoint", nullptr},
                {"tour", nullptr}};
-  if (!exhibit.lamps.empty()) news["lamps"] = json::object();
+  if (!exhibit.lamps.empty()) message["lamps"] = json::object();
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
-    news["lamps"][exhibit.lamps[i].id] = bool(show.switches.wanted[i]);
+    message["lamps"][exhibit.lamps[i].id] = bool(show.switches.wanted[i]);
   if (place.viewpoint >= 0)
-    news["viewpoint"] = exhibit.viewpoints[size_t(place.viewpoint)].view.name;
+    message["viewpoint"] = exhibit.viewpoints[size_t(place.viewpoint)].view.name;
   if (place.tour.state != TourRide::State::none && place.tour.tour >= 0)
-    news["tour"] = {{"id", exhibit.tours[size_t(place.tour.tour)].id},
+    message["tour"] = {{"id", exhibit.tours[size_t(place.tour.tour)].id},
                     {"state", tour_word(place.tour.state)},
                     {"stop", place.tour.stop},
                     {"stops", exhibit.tours[size_t(place.tour.tour)].stops.size()}};
-  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string subtitle_news(const std::string& text, const std::string& lang,
+std::string subtitle_message(const std::string& text, const std::string& lang,
                           const std::string& speaker, float seconds) {
-  json news = {{"type", "subtitle"}, {"text", text}, {"lang", lang}, {"speaker", speaker},
+  json message = {{"type", "subtitle"}, {"text", text}, {"lang", lang}, {"speaker", speaker},
                {"seconds", seconds}};
-  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string speech_news(uint32_t utterance, const Speech& speech, dvec3 mouth) {
+std::string speech_message(uint32_t utterance, const Speech& speech, dvec3 mouth) {
   auto round = [](double x) { return std::round(x * 1e3) / 1e3; };
   json words = json::array();
   for (const SpeechWord& word : speech.words) {
@@ -122,19 +122,19 @@ std::string speech_news(uint32_t utterance, const Speech& speech, dvec3 mouth) {
                      {"begin", round(word.begin)},
                      {"end", round(word.end)}});
   }
-  json news = {{"type", "speech"},         {"utterance", utterance},
+  json message = {{"type", "speech"},         {"utterance", utterance},
                {"action", "start"},        {"text", speech.text},
                {"lang", speech.lang},      {"seconds", round(speech.duration)},
                {"position", triple(mouth)}, {"words", std::move(words)}};
-  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string speech_stop_news(uint32_t utterance) {
+std::string speech_stop_message(uint32_t utterance) {
   return json{{"type", "speech"}, {"utterance", utterance}, {"action", "stop"}}.dump();
 }
 
 // The mouth as the next picture shows it, in the utterance's own time.
-json mouth_news(const Show& show) {
+json mouth_message(const Show& show) {
   const Speech* speech = show.sounding.going ? heard(show.voice) : nullptr;
   if (!speech) return nullptr;
   double at = double(show.voice.elapsed + show.picture_lead);
@@ -145,10 +145,10 @@ json mouth_news(const Show& show) {
           {"viseme", viseme_names[strongest]}};
 }
 
-std::string agent_news(const Show& show) {
-  json news = {{"type", "agent"},
+std::string agent_message(const Show& show) {
+  json message = {{"type", "agent"},
                {"mood", to_string(show.mind.mood)},
-               {"teller", teller_of(show) ? json(teller_of(show)->id) : json(nullptr)},
+               {"teller", storyteller_of(show) ? json(storyteller_of(show)->id) : json(nullptr)},
                {"visible", show.storyteller_visible},
                {"humanlike", show.humanlike},
                {"story", show.voice.story.empty() ? json(nullptr) : json(show.voice.story)},
@@ -157,19 +157,19 @@ std::string agent_news(const Show& show) {
                 show.voice.story.empty() ? 0 : show.voice.sentence + int(show.voice.queue.size())},
                {"paused", show.voice.paused}};
   StorytellerGaze gaze = eval_gaze(show.mind, show.storyteller, show.pose);
-  news["looking_at"] = triple(dvec3(gaze.target) + show.exhibit.scene.origin);
-  news["gaze"] = {std::round(gaze.yaw * 1e4) / 1e4, std::round(gaze.pitch * 1e4) / 1e4};
-  news["guest"] = gaze.guest;
-  news["mouth"] = mouth_news(show);
-  return news.dump(-1, ' ', false, json::error_handler_t::replace);
+  message["looking_at"] = triple(dvec3(gaze.target) + show.exhibit.scene.origin);
+  message["gaze"] = {std::round(gaze.yaw * 1e4) / 1e4, std::round(gaze.pitch * 1e4) / 1e4};
+  message["guest"] = gaze.guest;
+  message["mouth"] = mouth_message(show);
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string kiosk_news(const Audience& audience, size_t cameras) {
-  json news = {{"type", "kiosk"},
+std::string kiosk_message(const Audience& audience, size_t cameras) {
+  json message = {{"type", "kiosk"},
                {"state", to_string(audience.state)},
                {"people", audience.guests.size()},
                {"cameras", cameras}};
-  return news.dump();
+  return message.dump();
 }
 
 }  // namespace wellspring

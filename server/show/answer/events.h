@@ -10,16 +10,16 @@
 
 namespace wellspring {
 
-std::string welcome_news(const Show& show, const Visitor& visitor);
-std::string state_news(const Show& show, const Visitor& visitor);
+std::string welcome_message(const Show& show, const Visitor& visitor);
+std::string state_message(const Show& show, const Visitor& visitor);
 // Empty text: the subtitle disappears.
-std::string subtitle_news(const std::string& text, const std::string& lang,
+std::string subtitle_message(const std::string& text, const std::string& lang,
                           const std::string& speaker, float seconds);
 // An utterance that is heard: what, when each word of it comes (seconds from its first sample), and
 // where.
-std::string speech_news(uint32_t utterance, const Speech& speech, dvec3 mouth);
-std::string speech_stop_news(uint32_t utterance);
-std::string agent_news(const Show& show);
-std::string kiosk_news(const Audience& audience, size_t cameras);
+std::string speech_message(uint32_t utterance, const Speech& speech, dvec3 mouth);
+std::string speech_stop_message(uint32_t utterance);
+std::string agent_message(const Show& show);
+std::string kiosk_message(const Audience& audience, size_t cameras);
 
 }  // namespace wellspring

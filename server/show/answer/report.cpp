@@ -10,7 +10,7 @@ ShowReport make_report(const Show& show) {
   report.ready = true;
   report.time = show.time;
   report.ticks = show.ticks;
-  report.drawing_bytes = show.easel.work_bytes + memory_bytes(show.warp);
+  report.drawing_bytes = show.renderer.work_bytes + memory_bytes(show.warp);
   report.bad_samples = show.lights.bad_samples ? show.lights.bad_samples->load() : 0;
   report.samples_per_second = show.samples_per_second;
   report.denoiser_problem = show.pass.problem;

@@ -13,8 +13,8 @@ namespace wellspring {
 namespace {
 
 VoiceManner manner_of(const Show& show) {
-  const StorytellerPlace* teller = teller_of(show);
-  return teller ? teller->voice : VoiceManner{};
+  const StorytellerPlace* storyteller_place = storyteller_of(show);
+  return storyteller_place ? storyteller_place->voice : VoiceManner{};
 }
 
 constexpr uint8_t heard_everywhere = 1;  // flag of a sound packet
@@ -88,7 +88,7 @@ const Speech* update_sounding(Show& show, const Voice& voice, Sounding& sounding
 void stop_sound(Visitor& visitor) {
   if (visitor.hearing.utterance == 0) return;
   visitor.link->drop_sound();
-  visitor.link->send_text(speech_stop_news(visitor.hearing.utterance));
+  visitor.link->send_text(speech_stop_message(visitor.hearing.utterance));
   visitor.hearing.utterance = 0;
 }
 
@@ -137,7 +137,7 @@ void start_sound(Visitor& visitor, const Source& source) {
   double at = std::round(from * sounding.speech->rate);
   hearing.utterance = sounding.number;
   hearing.samples_sent = std::min(size_t(at), sounding.speech->pcm.size());
-  visitor.link->send_text(speech_news(sounding.number, *sounding.speech, source.mouth));
+  visitor.link->send_text(speech_message(sounding.number, *sounding.speech, source.mouth));
 }
 
 }  // namespace
@@ -168,12 +168,12 @@ VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt) {
 void send_sounds(Show& show) {
   const Speech* told = update_sounding(show, show.voice, show.sounding);
   const bool anybody = told && std::any_of(show.visitors.begin(), show.visitors.end(), listens);
-  Source teller{&show.voice, told ? &show.sounding : nullptr, dvec3(0), false};
+  Source storyteller_place{&show.voice, told ? &show.sounding : nullptr, dvec3(0), false};
   if (anybody)
-    teller.mouth =
+    storyteller_place.mouth =
         dvec3(eval_mouth(show.mind, show.storyteller, show.pose)) + show.exhibit.scene.origin;
   for (Visitor& visitor : show.visitors) {
-    Source source = teller;
+    Source source = storyteller_place;
     Narration& narration = visitor.hearing.narration;
     const Speech* narrated = update_sounding(show, narration.voice, narration.sounding);
     if (!narration.voice.queue.empty())

@@ -42,7 +42,7 @@ StillRoom::StillRoom(const Show& show)
   transport_.clamp = 0;
 }
 
-Frame StillRoom::render(const StillOrder& order, std::string& comment) const {
+Frame StillRoom::render(const StillJob& order, std::string& comment) const {
   const Viewpoint& at = exhibit_.viewpoints[size_t(order.viewpoint)].view;
   View view =
       make_view(exhibit_.scene, at.position, at.yaw, at.pitch, at.fov, order.width, order.height);
@@ -63,7 +63,7 @@ Frame StillRoom::render(const StillOrder& order, std::string& comment) const {
   return frame;
 }
 
-std::string StillRoom::make(const StillOrder& order) {
+std::string StillRoom::make(const StillJob& order) {
   std::lock_guard lock(mutex_);
   auto found = std::find_if(kept_.begin(), kept_.end(),
                             [&](const Kept& kept) { return kept.order == order; });

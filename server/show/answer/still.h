@@ -12,10 +12,10 @@
 
 namespace wellspring {
 
-struct StillOrder {
+struct StillJob {
   int viewpoint = 0, width = 640, height = 360, spp = 16;
   bool denoise = true;  // where there are weights, else nothing is done
-  bool operator==(const StillOrder&) const = default;
+  bool operator==(const StillJob&) const = default;
 };
 
 class StillRoom {
@@ -25,11 +25,11 @@ class StillRoom {
   explicit StillRoom(const Show& show);
   // JPEG bytes, whose comment says whether it was denoised. One picture at a time; later callers
   // wait.
-  std::string make(const StillOrder& order);
+  std::string make(const StillJob& order);
 
  private:
   struct Kept {
-    StillOrder order;
+    StillJob order;
     std::string jpeg;
   };
   std::mutex mutex_;
@@ -39,7 +39,7 @@ class StillRoom {
   std::string weights_;
   std::unique_ptr<World> world_;
   Lights lights_;
-  Frame render(const StillOrder& order, std::string& comment) const;
+  Frame render(const StillJob& order, std::string& comment) const;
   std::list<Kept> kept_;  // newest first
 };
 

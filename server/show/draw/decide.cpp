@@ -69,7 +69,7 @@ bool wants_moving(double now, const VisitorDrawState& state) {
   return now - state.posed_at >= 1 / state.moving_rate - on_time;
 }
 
-bool wants_skin(double now, std::span<const VisitorDrawState> states,
+bool wants_skin_light(double now, std::span<const VisitorDrawState> states,
                 const RendererState& renderer) {
   if (!renderer.has_skin || now - renderer.skin_at < 1 / skin_rate - on_time) return false;
   auto sees = [](const VisitorDrawState& one) { return one.welcomed && one.sees_figure; };
@@ -82,8 +82,8 @@ bool wants_picture(double now, const VisitorDrawState& state, const RendererStat
   const bool walks = moves(state, renderer);
   if ((state.unshown || state.in_pass) && !walks) return false;
   // Other light, or the storyteller came or went: who rests sees it at once.
-  bool news = state.other_light || state.drew_figure != state.sees_figure;
-  if (!walks && news) return true;
+  bool changed = state.other_light || state.drew_figure != state.sees_figure;
+  if (!walks && changed) return true;
   double rate = walks ? state.picture_rate : state.drawing_rate;
   return now - state.drawn_at >= 1 / rate - on_time;
 }
@@ -121,7 +121,7 @@ Decision decide(double now, std::span<const VisitorDrawState> states,
                 const RendererState& renderer) {
   if (!renderer.idle || !renderer.background) return {};
   if (int next = next_to_pose(now, states, renderer); next >= 0) return {Drawing::moving, next};
-  if (wants_skin(now, states, renderer)) return {Drawing::skin};
+  if (wants_skin_light(now, states, renderer)) return {Drawing::skin};
   if (renderer.drawn >= 0)
     return {Drawing::go_on, renderer.drawn, renderer.traces && renderer.waiting > 0};
   auto asks = [](const VisitorDrawState& one) { return one.asked_seconds > 0; };

@@ -91,7 +91,7 @@ bool has_backdrop(const VisitorDrawState& state);
 // What moves is due, and the browser could take a picture.
 bool wants_moving(double now, const VisitorDrawState& state);
 // Light on what moves, that all visitors share, is due, and somebody may see it.
-bool wants_skin(double now, std::span<const VisitorDrawState> states,
+bool wants_skin_light(double now, std::span<const VisitorDrawState> states,
                 const RendererState& renderer);
 // A picture is due, and the browser could take it.
 bool wants_picture(double now, const VisitorDrawState& state, const RendererState& renderer);

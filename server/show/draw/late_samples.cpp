@@ -10,39 +10,39 @@
 
 namespace wellspring {
 
-bool order_samples(Show& show) {
-  Easel& easel = show.easel;
-  easel.brokers.clear();
-  easel.seconds = 0;
+bool request_samples(Show& show) {
+  Renderer& renderer = show.renderer;
+  renderer.brokers.clear();
+  renderer.seconds = 0;
   for (Visitor& visitor : show.visitors) {
     if (visitor.picture.broker_seconds <= 0) continue;
-    easel.brokers.push_back(&visitor.picture.broker);
-    easel.seconds += std::exchange(visitor.picture.broker_seconds, 0.0);
+    renderer.brokers.push_back(&visitor.picture.broker);
+    renderer.seconds += std::exchange(visitor.picture.broker_seconds, 0.0);
     visitor.picture.at_work = true;
   }
-  return !easel.brokers.empty();
+  return !renderer.brokers.empty();
 }
 
-void trace_samples(const Show& show, Easel& easel) {
+void trace_samples(const Show& show, Renderer& renderer) {
   std::mutex guard;
   double began = seconds_now();
-  easel.traced = trace_waiting(easel.brokers, *show.world, show.lights, show.pose_number,
-                               began + easel.seconds, guard);
-  easel.traced_seconds = seconds_now() - began;
+  renderer.traced = trace_waiting(renderer.brokers, *show.world, show.lights, show.pose_number,
+                               began + renderer.seconds, guard);
+  renderer.traced_seconds = seconds_now() - began;
 }
 
 void finish_samples(Show& show) {
-  Easel& easel = show.easel;
-  show.totals.samples += easel.traced;
-  if (easel.traced > 0 && easel.traced_seconds > 0)
-    smooth(show.samples_per_second, float(double(easel.traced) / easel.traced_seconds));
+  Renderer& renderer = show.renderer;
+  show.totals.samples += renderer.traced;
+  if (renderer.traced > 0 && renderer.traced_seconds > 0)
+    smooth(show.samples_per_second, float(double(renderer.traced) / renderer.traced_seconds));
   for (Visitor& visitor : show.visitors) {
-    auto found = std::find(easel.brokers.begin(), easel.brokers.end(), &visitor.picture.broker);
-    if (found == easel.brokers.end()) continue;
-    smooth(visitor.times.trace, float(1000 * easel.traced_seconds / double(easel.brokers.size())));
+    auto found = std::find(renderer.brokers.begin(), renderer.brokers.end(), &visitor.picture.broker);
+    if (found == renderer.brokers.end()) continue;
+    smooth(visitor.times.trace, float(1000 * renderer.traced_seconds / double(renderer.brokers.size())));
     visitor.picture.at_work = false;
   }
-  easel.brokers.clear();
+  renderer.brokers.clear();
 }
 
 }  // namespace wellspring

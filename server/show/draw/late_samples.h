@@ -6,10 +6,10 @@
 
 namespace wellspring {
 
-// By the tick, while the easel is idle. Says whether there is anything.
-bool order_samples(Show& show);
-// On the easel.
-void trace_samples(const Show& show, Easel& easel);
+// By the tick, while the renderer is idle. Says whether there is anything.
+bool request_samples(Show& show);
+// On the renderer.
+void trace_samples(const Show& show, Renderer& renderer);
 // By the tick, when that is done.
 void finish_samples(Show& show);
 

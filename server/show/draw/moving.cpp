@@ -21,8 +21,8 @@ bool may_be_laid_over(const PictureWindow& window, const View& view) {
          size_t(view.width) * size_t(view.height);
 }
 
-void order_skin(Show& show) {
-  SkinOrder& order = show.easel.skin;
+void begin_skin_light(Show& show) {
+  SkinJob& order = show.renderer.skin;
   order.update = {};
   order.eyes.clear();
   for (const Visitor& visitor : show.visitors)
@@ -39,39 +39,39 @@ void order_skin(Show& show) {
   order.at_work = true;
 }
 
-void light_skin(Show& show) {
-  SkinOrder& order = show.easel.skin;
+void compute_skin_light(Show& show) {
+  SkinJob& order = show.renderer.skin;
   order.traced = size_t(update_skin(*show.world, show.lights, order.update, show.skin));
   smooth_skin(*show.world, show.skin, order.cycles);
 }
 
-void finish_skin(Show& show) {
-  show.easel.skin.at_work = false;
-  show.totals.samples += show.easel.skin.traced;
+void finish_skin_light(Show& show) {
+  show.renderer.skin.at_work = false;
+  show.totals.samples += show.renderer.skin.traced;
 }
 
 void draw_moving(Show& show, Visitor& visitor) {
-  Easel& easel = show.easel;
+  Renderer& renderer = show.renderer;
   double began = seconds_now();
-  visitor.picture.compositor.draw_moving(*show.world, visitor.picture.keyframe, *show.sight,
-                                 Tonemap{show.exhibit.exposure}, easel.work.moving_light,
-                                 easel.work.moving);
-  easel.posed_seconds = seconds_now() - began;
+  visitor.picture.compositor.draw_moving(*show.world, visitor.picture.keyframe, *show.visibility,
+                                 Tonemap{show.exhibit.exposure}, renderer.work.moving_light,
+                                 renderer.work.moving);
+  renderer.posed_seconds = seconds_now() - began;
 }
 
 void finish_moving(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
-  Easel& easel = show.easel;
-  picture.posed_at = easel.posed_at;
-  MovingPicture& moving = easel.work.moving;
+  Renderer& renderer = show.renderer;
+  picture.posed_at = renderer.posed_at;
+  MovingPicture& moving = renderer.work.moving;
   // Else all of it is drawn anew.
   picture.backdrop &= may_be_laid_over(moving.window, moving.view);
   if (!picture.backdrop) return;
   float& smoothed = visitor.times.moving;
-  float milliseconds = float(1000 * easel.posed_seconds);
+  float milliseconds = float(1000 * renderer.posed_seconds);
   smoothed = smoothed > 0 ? smoothed + (milliseconds - smoothed) * 0.1f : milliseconds;
   std::swap(moving, picture.moving);
-  picture.order.time_us = easel.posed_us;
+  picture.order.time_us = renderer.posed_us;
   picture.unshown = true;
   show.totals.posed++;
 }

@@ -10,10 +10,10 @@ namespace wellspring {
 bool may_be_laid_over(const PictureWindow& window, const View& view);
 
 // Light on what moves (light/known/skin_light.h), that all visitors share. By the tick, while the
-// easel is idle, then on the easel, as the world is then, then by the tick.
-void order_skin(Show& show);
-void light_skin(Show& show);
-void finish_skin(Show& show);
+// renderer is idle, then on the renderer, as the world is then, then by the tick.
+void begin_skin_light(Show& show);
+void compute_skin_light(Show& show);
+void finish_skin_light(Show& show);
 // Reads the visitor's keyframe, which may not change meanwhile.
 void draw_moving(Show& show, Visitor& visitor);
 void finish_moving(Show& show, Visitor& visitor);

@@ -28,7 +28,7 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.at_work = picture.at_work;
   state.can_take = may_take(show, visitor);
   state.stands = stands(show, visitor);
-  state.new_place = place.leaps != picture.order.leaps;
+  state.new_place = place.camera_cuts != picture.order.camera_cuts;
   state.same_view = picture.order.view == place.last_view;
   state.other_light = picture.lamps != show.switches.lit;
   state.sees_figure = visitor.welcomed && sees_figure(show, place.last_view);
@@ -73,7 +73,7 @@ void watch(const Show& show, Visitor& visitor) {
     place.moved_at = show.time;
     visitor.picture.rest = {};
   }
-  if (note_view(place.heading, show.time, view)) place.leaps++;
+  if (note_view(place.heading, show.time, view)) place.camera_cuts++;
   place.last_view = view;
 }
 
@@ -173,20 +173,20 @@ std::vector<VisitorDrawState> draw_states(const Show& show) {
 }
 
 RendererState renderer_state(const Show& show) {
-  const Easel& easel = show.easel;
+  const Renderer& renderer = show.renderer;
   RendererState state;
-  state.idle = easel.idle();
+  state.idle = renderer.idle();
   state.background = show.settings.background;
   int index = 0;
   for (const Visitor& visitor : show.visitors) {
-    if (&visitor == easel.drawn) state.drawn = index;
+    if (&visitor == renderer.drawn) state.drawn = index;
     index++;
   }
-  state.traces = easel.step == DrawingStep::trace;
+  state.traces = renderer.step == DrawingStep::trace;
   state.can_reconstruct = show.pass.denoiser != nullptr;
   state.in_pass = show.pass.visitor != nullptr;
   state.has_skin = !show.skin.places.empty();
-  state.skin_at = easel.skin.time;
+  state.skin_at = renderer.skin.time;
   return state;
 }
 

@@ -13,7 +13,7 @@ namespace wellspring {
 
 inline constexpr double still_after = 0.25;  // seconds without motion until a picture is a still
 
-// Once a tick for every visitor, after it was moved: notices motion and leaps.
+// Once a tick for every visitor, after it was moved: notices motion and camera cuts.
 void watch(const Show& show, Visitor& visitor);
 // Nothing moves for a moment, so that pictures become better instead of following.
 bool stands(const Show& show, const Visitor& visitor);

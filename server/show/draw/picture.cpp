@@ -30,42 +30,42 @@ void carry_times(double factor, StageTimes& times) {
 }
 
 // What moves is drawn by itself where that is little of the picture, as what it covers is kept.
-bool draws_backdrop(const Show& show, const PictureOrder& order) {
+bool draws_backdrop(const Show& show, const PictureJob& order) {
   if (!in_steps(order) || !order.figure || order.passing) return false;
-  if (!show.sight->rasterises(order.view)) return false;
+  if (!show.visibility->rasterises(order.view)) return false;
   PictureWindow window = moving_window(*show.world, order.view);
   return !window.empty() && may_be_laid_over(window, order.view);
 }
 
-DrawingStep plan_picture(Show& show, const PictureOrder& order, const Technique& technique,
+DrawingStep plan_picture(Show& show, const PictureJob& order, const Technique& technique,
                          const View& lit, Visitor& visitor) {
-  DrawingWork& work = show.easel.work;
+  DrawingWork& work = show.renderer.work;
   PictureCosts& costs = visitor.picture.costs = {};
   double began = seconds_now();
   plan_samples(show, order, technique, lit, work, visitor);
   double planned = seconds_now();
   costs.display = float(1000 * (planned - began));
   bool more = false;
-  if (begin_samples(show, order, technique, lit, work, visitor) && !show.easel.given_up) {
+  if (begin_samples(show, order, technique, lit, work, visitor) && !show.renderer.given_up) {
     more = trace_slice(show, order, technique, work);
   }
   costs.trace = float(1000 * (seconds_now() - planned));
   return more ? DrawingStep::trace : DrawingStep::draw;
 }
 
-DrawingStep trace_more(Show& show, const PictureOrder& order, const Technique& technique,
+DrawingStep trace_more(Show& show, const PictureJob& order, const Technique& technique,
                        Visitor& visitor) {
   double began = seconds_now();
-  bool more = trace_slice(show, order, technique, show.easel.work);
+  bool more = trace_slice(show, order, technique, show.renderer.work);
   visitor.picture.costs.trace += float(1000 * (seconds_now() - began));
   return more ? DrawingStep::trace : DrawingStep::draw;
 }
 
-DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit,
+DrawingStep paint_picture(Show& show, const PictureJob& order, const View& lit,
                           Visitor& visitor) {
   RenderCache& cache = visitor.picture.cache;
   Compositor& compositor = visitor.picture.compositor;
-  DrawingWork& work = show.easel.work;
+  DrawingWork& work = show.renderer.work;
   PictureCosts& costs = visitor.picture.costs;
   double began = seconds_now();
   remember_traced(show, order, lit, work, visitor);
@@ -76,10 +76,10 @@ DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit
   const Tonemap curve{show.exhibit.exposure};
   costs.backdrop = draws_backdrop(show, order);
   if (order.passing)
-    compositor.draw(cache, order.view, *show.sight, curve, work.picture,
+    compositor.draw(cache, order.view, *show.visibility, curve, work.picture,
                     order.keep ? &work.depth : nullptr);
   else
-    compositor.draw_still(cache, order.view, *show.sight, work.frame,
+    compositor.draw_still(cache, order.view, *show.visibility, work.frame,
                           costs.backdrop ? StillShows::backdrop : StillShows::all);
   if (order.reconstruct) {
     std::swap(work.frame, show.pass.frame);
@@ -103,13 +103,13 @@ DrawingStep paint_picture(Show& show, const PictureOrder& order, const View& lit
 }
 
 // One visibility pass of a reconstruction's guides; the last also encodes its input.
-DrawingStep find_guides(Show& show, const PictureOrder& order, VisitorPicture& picture) {
-  DrawingWork& work = show.easel.work;
+DrawingStep find_guides(Show& show, const PictureJob& order, VisitorPicture& picture) {
+  DrawingWork& work = show.renderer.work;
   StillPass& pass = show.pass;
   double began = seconds_now();
   bool all = work.guided == guide_places;
   if (!all)
-    add_still_guides(*show.world, show.lights, *show.sight, order.view,
+    add_still_guides(*show.world, show.lights, *show.visibility, order.view,
                      picture.costs.backdrop ? RasterShows::still : RasterShows::all, work.guided++,
                      pass.work.guides, pass.work.followed);
   else
@@ -120,14 +120,14 @@ DrawingStep find_guides(Show& show, const PictureOrder& order, VisitorPicture& p
 
 }  // namespace
 
-DrawingStep draw_step(Show& show, const PictureOrder& order, DrawingStep step, Visitor& visitor) {
+DrawingStep draw_step(Show& show, const PictureJob& order, DrawingStep step, Visitor& visitor) {
   double began = seconds_now();
   const Technique& technique = order.settled ? *show.still_technique : *show.technique;
   const View lit = order.coarse ? light_view(order.view) : order.view;
   if (step == DrawingStep::plan) {
     step = plan_picture(show, order, technique, lit, visitor);
-  } else if (show.easel.given_up) {
-    if (step != DrawingStep::guide) remember_traced(show, order, lit, show.easel.work, visitor);
+  } else if (show.renderer.given_up) {
+    if (step != DrawingStep::guide) remember_traced(show, order, lit, show.renderer.work, visitor);
     visitor.picture.costs.given_up = true;
     step = DrawingStep::done;
   } else if (step == DrawingStep::trace) {
@@ -141,7 +141,7 @@ DrawingStep draw_step(Show& show, const PictureOrder& order, DrawingStep step, V
   return step;
 }
 
-void draw_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
+void draw_picture(Show& show, const PictureJob& order, Visitor& visitor) {
   for (DrawingStep step = DrawingStep::plan; step != DrawingStep::done;)
     step = draw_step(show, order, step, visitor);
 }
@@ -156,7 +156,7 @@ static void fit_memory(VisitorPicture& picture) {
   fit(picture.image.rgb);
 }
 
-void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
+void finish_picture(Show& show, const PictureJob& order, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   const PictureCosts& costs = picture.costs;
   StageTimes& times = visitor.times;
@@ -173,7 +173,7 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
     picture.drawn_at = order.time;
     picture.order.settled = order.settled;
     if (order.reconstruct) begin_pass(show, order, visitor);
-    show.easel.work_bytes = memory_bytes(show.easel.work) + memory_bytes(show.pass);
+    show.renderer.work_bytes = memory_bytes(show.renderer.work) + memory_bytes(show.pass);
     return;
   }
   if (order.scale != picture.order.scale)
@@ -199,37 +199,37 @@ void finish_picture(Show& show, const PictureOrder& order, Visitor& visitor) {
   picture.stats = picture.cache.stats();
   picture.cache_bytes = picture.cache.memory_bytes() + picture.compositor.memory_bytes();
   // Else its keyframe has the colours.
-  if (!order.keep) std::swap(show.easel.work.picture, picture.image);
-  std::swap(show.easel.work.keyframe, picture.keyframe);
+  if (!order.keep) std::swap(show.renderer.work.picture, picture.image);
+  std::swap(show.renderer.work.keyframe, picture.keyframe);
   picture.around.drawn = false;
   bool settles = order.still && !order.passing;  // samples of its pixels take that memory
-  if (settles || order.leaps != picture.around.leaps ||
+  if (settles || order.camera_cuts != picture.around.camera_cuts ||
       show.time - picture.around.ordered_at > around_kept)
     picture.around.keyframe = {};
   fit_memory(picture);
   picture.memory_bytes = picture_memory(visitor);
-  show.easel.work_bytes = memory_bytes(show.easel.work) + memory_bytes(show.pass);
+  show.renderer.work_bytes = memory_bytes(show.renderer.work) + memory_bytes(show.pass);
   picture.order = order;
   finish_backdrop(picture);
   show.totals.drawn++;
 }
 
-void draw_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {
+void draw_surroundings(Show& show, const PictureJob& order, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
-  DrawingWork& work = show.easel.work;
+  DrawingWork& work = show.renderer.work;
   follow_lamps(show, visitor);
   land(picture.broker.collect(), *show.world, show.pose_number, picture.cache);
-  picture.compositor.draw(picture.cache, *order.around, *show.sight,
+  picture.compositor.draw(picture.cache, *order.around, *show.visibility,
                           Tonemap{show.exhibit.exposure}, work.picture, &work.depth, true);
   make_keyframe(*order.around, work.picture, work.depth, work.around);
 }
 
-void finish_surroundings(Show& show, const PictureOrder& order, Visitor& visitor) {
+void finish_surroundings(Show& show, const PictureJob& order, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   Surroundings& around = picture.around;
-  std::swap(show.easel.work.around, around.keyframe);
+  std::swap(show.renderer.work.around, around.keyframe);
   around.ordered_at = order.time;
-  around.leaps = order.leaps;
+  around.camera_cuts = order.camera_cuts;
   around.drawn = true;
   fit_memory(picture);
   picture.memory_bytes = picture_memory(visitor);

@@ -28,7 +28,7 @@ bool may_be_late(const Show& show, const RenderCache& cache, const Technique& te
          samples <= BrokerSettings{}.most_waiting && cache.covered() > barely_covered;
 }
 
-TransportSettings transport_of(const Show& show, const PictureOrder& order) {
+TransportSettings transport_of(const Show& show, const PictureJob& order) {
   TransportSettings transport = show.settings.transport;
   if (!order.settled) transport.clamp = show.settings.moving_clamp;
   return transport;
@@ -36,7 +36,7 @@ TransportSettings transport_of(const Show& show, const PictureOrder& order) {
 
 // Where pictures are reconstructed, the first samples serve the drawn picture that it begins with;
 // later ones are spread evenly, but for some, aimed at points, to find what changes.
-bool spreads_samples(const PictureOrder& order, const Technique& technique,
+bool spreads_samples(const PictureJob& order, const Technique& technique,
                      const RestState& rest) {
   return order.learns && !technique.begin_pass && rest.samples >= spread_from &&
          !has_all_samples(rest);
@@ -44,13 +44,13 @@ bool spreads_samples(const PictureOrder& order, const Technique& technique,
 
 // So many are traced at a time.
 size_t slice_of_samples(const Show& show) {
-  double seconds = std::clamp(show.easel.until_moving, least_slice_seconds, slice);
+  double seconds = std::clamp(show.renderer.until_moving, least_slice_seconds, slice);
   return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
 }
 
 }  // namespace
 
-void plan_samples(Show& show, const PictureOrder& order, const Technique& technique,
+void plan_samples(Show& show, const PictureJob& order, const Technique& technique,
                   const View& lit, DrawingWork& work, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   RenderCache& cache = picture.cache;
@@ -83,7 +83,7 @@ void plan_samples(Show& show, const PictureOrder& order, const Technique& techni
   picture.costs.late = late;
 }
 
-bool begin_samples(Show& show, const PictureOrder& order, const Technique& technique,
+bool begin_samples(Show& show, const PictureJob& order, const Technique& technique,
                    const View& lit, DrawingWork& work, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   work.samples.clear();
@@ -100,7 +100,7 @@ bool begin_samples(Show& show, const PictureOrder& order, const Technique& techn
   return true;
 }
 
-bool trace_slice(Show& show, const PictureOrder& order, const Technique& technique,
+bool trace_slice(Show& show, const PictureJob& order, const Technique& technique,
                  DrawingWork& work) {
   size_t all = work.requests.size(), count = all - work.traced;
   if (!technique.begin_pass) count = std::min(count, slice_of_samples(show));
@@ -112,7 +112,7 @@ bool trace_slice(Show& show, const PictureOrder& order, const Technique& techniq
   return work.traced < all;
 }
 
-void remember_traced(const Show& show, const PictureOrder& order, const View& lit,
+void remember_traced(const Show& show, const PictureJob& order, const View& lit,
                      DrawingWork& work, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   if (picture.costs.late) return;

@@ -101,8 +101,8 @@ bool warp(Show& show, Visitor& visitor, const View& view) {
 void present(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   VisitorDelivery& shown = visitor.shown;
-  const PictureOrder& order = picture.order;
-  if (order.leaps != visitor.place.leaps || picture.drawn_at < 0) return;
+  const PictureJob& order = picture.order;
+  if (order.camera_cuts != visitor.place.camera_cuts || picture.drawn_at < 0) return;
   if (!may_take(show, visitor)) return;
   const View view = visitor.place.last_view;
   bool stood = order.still && order.view == view;
@@ -129,7 +129,7 @@ void present(Show& show, Visitor& visitor) {
     return;
   }
   picture.fade = {};
-  if (show.easel.posed == &visitor) return;  // reads the keyframe, and has soon done so
+  if (show.renderer.posed == &visitor) return;  // reads the keyframe, and has soon done so
   merge_moving(picture);
   if (warp(show, visitor, view)) {
     send(show, visitor, view, visitor.place.seq, false);

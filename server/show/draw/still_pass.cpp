@@ -7,7 +7,7 @@
 #include "base/log.h"
 #include "frame/tonemap.h"
 #include "show/draw/moving.h"
-#include "show/draw/order_picture.h"
+#include "show/draw/make_picture_job.h"
 
 namespace wellspring {
 namespace {
@@ -16,7 +16,7 @@ constexpr double slice = 0.02, least_slice = 0.004;  // seconds
 
 }  // namespace
 
-void begin_pass(Show& show, const PictureOrder& order, Visitor& visitor) {
+void begin_pass(Show& show, const PictureJob& order, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   StillPass& pass = show.pass;
   pass.visitor = &visitor;
@@ -35,7 +35,7 @@ void go_on_with_pass(Show& show) {
   StillPass& pass = show.pass;
   double began = seconds_now();
   if (pass.step == StillPass::Step::compute) {
-    double seconds = std::clamp(show.easel.until_moving, least_slice, slice);
+    double seconds = std::clamp(show.renderer.until_moving, least_slice, slice);
     if (!pass.denoiser->advance(seconds, &pass.given_up)) pass.step = StillPass::Step::finish;
   } else if (pass.step == StillPass::Step::finish) {
     finish_reconstruction(pass.visitor->picture.compositor.samples(), *pass.denoiser, pass.work,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learned reconstruction of pictures at rest (picture/still/reconstruct_still.h), of one visitor at
 // a time, while nobody waits for a picture. A picture's order says that it is to become one
-// (PictureOrder::reconstruct): it is drawn and its guides are found step by step, but it is not
+// (PictureJob::reconstruct): it is drawn and its guides are found step by step, but it is not
 // shown; then the network computes in slices, between which what moves may be drawn and the world
 // may change; what it has found is shown instead. From then on the visitor's time goes to samples
 // alone, and the next pass comes when there are so many more of them that it pays
@@ -11,9 +11,9 @@
 
 namespace wellspring {
 
-// By the tick, while the easel is idle: the order's picture is drawn, and `pass` begins with it.
-void begin_pass(Show& show, const PictureOrder& order, Visitor& visitor);
-// On the easel: one slice.
+// By the tick, while the renderer is idle: the order's picture is drawn, and `pass` begins with it.
+void begin_pass(Show& show, const PictureJob& order, Visitor& visitor);
+// On the renderer: one slice.
 void go_on_with_pass(Show& show);
 // By the tick, when a slice is done: takes over what is finished, lets go what was given up.
 void take_pass(Show& show);

@@ -58,7 +58,7 @@ struct StoryText {
   LocalText title;
   LocalScript text;
   LocalText sound;  // language tag -> file of a recording of the text
-  int teller = -1;  // index into Exhibit::storytellers; -1: whoever is there
+  int storyteller_index = -1;  // index into Exhibit::storytellers; -1: whoever is there
 };
 
 // A voice of the synthesiser.

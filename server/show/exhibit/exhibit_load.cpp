@@ -184,9 +184,9 @@ void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>
     story.title = fields.local_text("title", false);
     story.text = read_script(exhibit, fields, "text", true, false, problems);
     story.sound = read_sounds(exhibit, fields, "sound", story.text);
-    if (std::string teller = fields.text("teller", false); !teller.empty()) {
-      story.teller = find_storyteller(exhibit, teller);
-      if (story.teller < 0) fields.problem("teller", "there is no storyteller '" + teller + "'");
+    if (std::string id = fields.text("teller", false); !id.empty()) {
+      story.storyteller_index = find_storyteller(exhibit, id);
+      if (story.storyteller_index < 0) fields.problem("teller", "there is no storyteller '" + id + "'");
     }
     fields.finish();
     exhibit.stories.push_back(std::move(story));

@@ -81,8 +81,8 @@ struct Checker {
   bool knows_gesture(const std::string& name) const {
     if (exhibit.storytellers.empty()) return find_gesture(default_gestures(), name) >= 0;
     return std::all_of(
-        exhibit.storytellers.begin(), exhibit.storytellers.end(), [&](const auto& teller) {
-          return find_gesture(teller.gestures ? *teller.gestures : default_gestures(), name) >= 0;
+        exhibit.storytellers.begin(), exhibit.storytellers.end(), [&](const auto& storyteller_place) {
+          return find_gesture(storyteller_place.gestures ? *storyteller_place.gestures : default_gestures(), name) >= 0;
         });
   }
 
@@ -175,9 +175,9 @@ VoiceManner read_manner(Fields& fields, const char* name, const VoiceManner& oth
 
 void check_marks(const Exhibit& exhibit, std::vector<Problem>& problems) {
   Checker checker{exhibit, problems};
-  for (const StorytellerPlace& teller : exhibit.storytellers) {
-    checker.check("greetings of '" + teller.id + "'", teller.greetings);
-    checker.check("farewells of '" + teller.id + "'", teller.farewells);
+  for (const StorytellerPlace& storyteller_place : exhibit.storytellers) {
+    checker.check("greetings of '" + storyteller_place.id + "'", storyteller_place.greetings);
+    checker.check("farewells of '" + storyteller_place.id + "'", storyteller_place.farewells);
   }
   for (const StoryText& story : exhibit.stories)
     checker.check("story '" + story.id + "'", story.text);

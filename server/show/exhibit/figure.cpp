@@ -47,20 +47,20 @@ struct Pictures {
   }
 };
 
-Material make_material(const Look& look, Pictures& pictures) {
+Material make_material(const Appearance& appearance, Pictures& pictures) {
   Material material;
-  material.name = look.name;
-  material.base_color = vec4(look.base_color, look.alpha);
-  material.base_color_texture = pictures.find(look.texture, true);
-  material.normal_texture = pictures.find(look.normal_texture, false);
-  material.normal_scale = look.normal_scale;
-  material.metallic_roughness_texture = pictures.find(look.metallic_roughness_texture, false);
-  material.emission_texture = pictures.find(look.emission_texture, true);
-  material.metallic = look.metallic;
-  material.roughness = look.roughness;
-  material.emission = look.emission;
-  material.alpha_mode = look.alpha < 1 ? AlphaMode::blend : AlphaMode::opaque;
-  material.double_sided = look.double_sided;
+  material.name = appearance.name;
+  material.base_color = vec4(appearance.base_color, appearance.alpha);
+  material.base_color_texture = pictures.find(appearance.texture, true);
+  material.normal_texture = pictures.find(appearance.normal_texture, false);
+  material.normal_scale = appearance.normal_scale;
+  material.metallic_roughness_texture = pictures.find(appearance.metallic_roughness_texture, false);
+  material.emission_texture = pictures.find(appearance.emission_texture, true);
+  material.metallic = appearance.metallic;
+  material.roughness = appearance.roughness;
+  material.emission = appearance.emission;
+  material.alpha_mode = appearance.alpha < 1 ? AlphaMode::blend : AlphaMode::opaque;
+  material.double_sided = appearance.double_sided;
   return material;
 }
 
@@ -92,8 +92,8 @@ int add_file_materials(Scene& scene, const std::string& path) {
   return first_material;
 }
 
-// Cartoon shading has no gloss; its colours are those of a matt surface.
-void make_matt(Material& material) {
+// Cartoon shading has no gloss; its colours are those of a Lambertian surface.
+void make_lambert(Material& material) {
   material.unlit = false;
   material.metallic = 0;
   material.roughness = 1;
@@ -104,9 +104,9 @@ void make_matt(Material& material) {
 // Looks that expressions change, where they have changed.
 void paint_figure(World& world, Figure& figure, const Character& character, const Pose& pose) {
   if (figure.paints.empty()) return;
-  eval_look_changes(character, pose, figure.look_changes);
+  eval_appearance_changes(character, pose, figure.appearance_changes);
   for (FigurePaint& paint : figure.paints) {
-    const LookChange& sum = figure.look_changes[size_t(paint.look)];
+    const AppearanceChange& sum = figure.appearance_changes[size_t(paint.appearance)];
     Repaint change{sum.base_color, sum.emission, sum.uv};
     if (change == paint.change) continue;
     paint.change = change;
@@ -126,17 +126,17 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
   Pictures pictures{scene, {}};
   int first_of_file = add_file_materials(scene, character.material_file);
   int first_material = int(scene.materials.size());
-  for (const Look& look : character.looks) {
-    if (look.material >= 0 && first_of_file >= 0) {
-      scene.materials.push_back(scene.materials[size_t(first_of_file + look.material)]);
-      if (look.matt) make_matt(scene.materials.back());
+  for (const Appearance& appearance : character.appearances) {
+    if (appearance.material >= 0 && first_of_file >= 0) {
+      scene.materials.push_back(scene.materials[size_t(first_of_file + appearance.material)]);
+      if (appearance.matt) make_lambert(scene.materials.back());
       continue;
     }
-    scene.materials.push_back(make_material(look, pictures));
+    scene.materials.push_back(make_material(appearance, pictures));
   }
 
-  std::vector<char> changes(character.looks.size(), 0);
-  for (const LookChange& change : character.look_changes) changes[size_t(change.look)] = 1;
+  std::vector<char> changes(character.appearances.size(), 0);
+  for (const AppearanceChange& change : character.appearance_changes) changes[size_t(change.appearance)] = 1;
   constexpr uint32_t none = 0xffffffffu;
   std::vector<uint32_t> place_of(character.positions.size(), none);
   for (const Part& part : character.parts) {
@@ -144,10 +144,10 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
     made.moving = int(moving.size());
     Mesh mesh;
     mesh.name = part.name;
-    mesh.material = first_material + part.look;
-    if (changes[size_t(part.look)] && !scene.materials[size_t(mesh.material)].repaints) {
+    mesh.material = first_material + part.appearance;
+    if (changes[size_t(part.appearance)] && !scene.materials[size_t(mesh.material)].repaints) {
       scene.materials[size_t(mesh.material)].repaints = true;
-      figure.paints.push_back({part.look, mesh.material, {}});
+      figure.paints.push_back({part.appearance, mesh.material, {}});
     }
     for (uvec3 t : part.triangles) {
       uvec3 local;

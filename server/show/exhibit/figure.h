@@ -17,7 +17,7 @@ struct FigurePart {
 
 // A look that expressions change, as it is now.
 struct FigurePaint {
-  int look = 0, material = 0;  // of the character, of the scene
+  int appearance = 0, material = 0;  // of the character, of the scene
   Repaint change;
 };
 
@@ -27,7 +27,7 @@ struct Figure {
   uint32_t object = 0;  // in Scene::objects, named as the character
   // Working memory of pose_figure.
   std::vector<vec3> positions, normals, part_positions, part_normals;
-  std::vector<LookChange> look_changes;
+  std::vector<AppearanceChange> appearance_changes;
 };
 
 // Appends the character's materials, pictures and its object to `scene`, and its meshes (at rest,

@@ -79,11 +79,11 @@ void follow_lamps(Show& show, Visitor& visitor) {
     });
   }
   picture.broker.forget();
-  picture.compositor.forget_samples();
+  picture.compositor.invalidate_samples();
   picture.lamps = lit;
 }
 
-void forget_light_steps(Show& show) {
+void invalidate_light_steps(Show& show) {
   Switches& switches = show.switches;
   std::erase_if(switches.steps, [&](const LightStep& step) {
     auto needs = [&](const Visitor& visitor) { return visitor.picture.lamps == step.before; };

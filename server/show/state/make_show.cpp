@@ -23,7 +23,7 @@ std::vector<vec3> places_of(const Exhibit& exhibit) {
 
 // The storyteller as it stands when it has just come.
 void enter(Show& show) {
-  const StorytellerPlace& place = show.exhibit.storytellers[show.teller];
+  const StorytellerPlace& place = show.exhibit.storytellers[show.storyteller_index];
   show.storyteller = {};
   show.storyteller.character = &place.character;
   if (place.expressions) show.storyteller.expressions = &*place.expressions;
@@ -32,21 +32,21 @@ void enter(Show& show) {
   show.mind = {};
   show.pose = make_rest_pose(place.character);
   for (size_t i = 0; i < show.figures.size(); i++)
-    show_figure(*show.world, show.figures[i], i == show.teller && show.storyteller_visible);
+    show_figure(*show.world, show.figures[i], i == show.storyteller_index && show.storyteller_visible);
   StorytellerEvents events;
   tick_storyteller(show.mind, show.storyteller, StorytellerInput{}, show.pose, events);
-  pose_figure(*show.world, show.figures[show.teller], place.character, show.pose,
+  pose_figure(*show.world, show.figures[show.storyteller_index], place.character, show.pose,
               show.storyteller.placement, show.scratch);
   show.world->commit();
 }
 
 }  // namespace
 
-void change_teller(Show& show, size_t teller) {
-  if (teller == show.teller || teller >= show.figures.size()) return;
-  show.easel.worker.wait();  // the world changes
+void change_storyteller(Show& show, size_t storyteller_index) {
+  if (storyteller_index == show.storyteller_index || storyteller_index >= show.figures.size()) return;
+  show.renderer.worker.wait();  // the world changes
   hush(show.voice);
-  show.teller = teller;
+  show.storyteller_index = storyteller_index;
   enter(show);
   show.agent_sent_at = -1e9;
 }
@@ -72,7 +72,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   show->roads = make_tour_roads(show->exhibit, *show->world, problems);
   if (!problems.empty()) throw ExhibitError(std::move(problems));
   show->lights = make_lights(*show->world);
-  show->sight = std::make_unique<PictureSight>(*show->world, show->lights);
+  show->visibility = std::make_unique<VisibilityPass>(*show->world, show->lights);
   StillPass& pass = show->pass;
   if (show->settings.weights.empty()) pass.problem = "no folder of weights was named";
   else pass.denoiser = load_denoiser(NetSize::small, pass.problem, show->settings.weights);

@@ -13,6 +13,6 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
 
 // Another storyteller comes in place of the one that is there, who falls silent; knows nobody yet
 // and greets anew. Nothing happens when it is there already.
-void change_teller(Show& show, size_t teller);
+void change_storyteller(Show& show, size_t storyteller_index);
 
 }  // namespace wellspring

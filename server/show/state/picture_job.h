@@ -9,14 +9,14 @@
 namespace wellspring {
 
 // All that a picture's drawing depends on besides the world and what the visitor's cache remembers.
-struct PictureOrder {
+struct PictureJob {
   double time = 0;       // of the tick that ordered it
   uint64_t time_us = 0, tick = 0;
   View expected;         // what the visitor will see when it is shown
   View view;             // drawn: that, and some around
   View ahead;            // in the picture after that, when answers to its requests are shown
   uint32_t seq = 0;      // of the visitor's last input
-  uint32_t leaps = 0;    // of the visitor, by then
+  uint32_t camera_cuts = 0;    // of the visitor, by then
   bool still = false;    // without motion for a moment
   bool figure = false;   // the storyteller may be in it
   bool learns = false;   // its samples are kept for each pixel, for reconstructions
@@ -35,6 +35,6 @@ struct PictureOrder {
 };
 
 // It is drawn in steps, between which the world may move and what moves be drawn.
-inline bool in_steps(const PictureOrder& order) { return order.still && order.keep; }
+inline bool in_steps(const PictureJob& order) { return order.still && order.keep; }
 
 }  // namespace wellspring

@@ -21,10 +21,10 @@ struct Visitor;
 struct StillPass {
   enum class Step : uint8_t { compute, finish, done };
   Visitor* visitor = nullptr;  // whose picture it is; null: none is under way
-  PictureOrder order;
+  PictureJob order;
   bool backdrop = false;  // it is without what moves (show/draw/moving.h)
   Step step = Step::compute;
-  bool at_work = false;            // the easel is at it
+  bool at_work = false;            // the renderer is at it
   std::atomic<bool> given_up{false};
   double seconds = 0;              // of computing, so far
   Frame frame;                     // drawn; then as it is shown

@@ -62,7 +62,7 @@ struct DrawingWork {
 size_t memory_bytes(const DrawingWork& work);
 
 // Light on what moves is being found (show/draw/moving.h).
-struct SkinOrder {
+struct SkinJob {
   bool at_work = false;
   double time = -1e9;  // show time
   SkinUpdate update;
@@ -71,9 +71,9 @@ struct SkinOrder {
   size_t traced = 0;  // samples
 };
 
-struct Easel {
+struct Renderer {
   DrawingWork work;
-  SkinOrder skin;
+  SkinJob skin;
   size_t work_bytes = 0;     // of it, when last finished
   Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
   DrawingStep step = DrawingStep::done;  // of that, to be done next
@@ -83,7 +83,7 @@ struct Easel {
   uint64_t posed_us = 0;
   double posed_seconds = 0;  // that it took
   bool surrounds = false;    // only `order.around` of it
-  PictureOrder order;        // for it
+  PictureJob order;        // for it
   // By the tick: nobody needs that picture any more (is_outdated), so what is not drawn of it yet
   // is left out.
   std::atomic<bool> given_up{false};

@@ -15,8 +15,8 @@ std::vector<std::shared_ptr<Link>> Arrivals::take() {
   return std::exchange(links_, {});
 }
 
-const StorytellerPlace* teller_of(const Show& show) {
-  return show.figures.empty() ? nullptr : &show.exhibit.storytellers[show.teller];
+const StorytellerPlace* storyteller_of(const Show& show) {
+  return show.figures.empty() ? nullptr : &show.exhibit.storytellers[show.storyteller_index];
 }
 
 }  // namespace wellspring

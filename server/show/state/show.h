@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One running exhibit as values: the world, its storyteller, the visitors and the kiosks' eyes.
 // make_show() (show/state/make_show.h) begins it, tick() (show/tick.h) advances it. Everything here
-// belongs to the thread that calls tick(), except Arrivals, and what the easel is at work on.
+// belongs to the thread that calls tick(), except Arrivals, and what the renderer is at work on.
 #pragma once
 #include <list>
 #include <memory>
@@ -59,14 +59,14 @@ struct Show {
   std::unique_ptr<World> world;
   Lights lights;
   Switches switches;
-  std::unique_ptr<PictureSight> sight;  // one picture at a time
+  std::unique_ptr<VisibilityPass> visibility;  // one picture at a time
   SkinLight skin;                       // on what moves, for all visitors
   const Technique* technique = nullptr;
   const Technique* still_technique = nullptr;
 
   // The storyteller: who of the exhibit's is there, and how it is.
   std::vector<Figure> figures;  // of all of them; the others are hidden
-  size_t teller = 0;
+  size_t storyteller_index = 0;
   Storyteller storyteller;
   StorytellerState mind;
   Pose pose;
@@ -77,7 +77,7 @@ struct Show {
   uint32_t utterances = 0;  // numbers of what is heard, the storyteller's and narrators' alike
   size_t greetings = 0, farewells = 0;
   bool storyteller_visible = true, humanlike = true;
-  std::string kiosk_news;   // the last kiosk message, to send only changes
+  std::string kiosk_message;   // the last kiosk message, to send only changes
   double agent_sent_at = -1e9;
   double behaved_at = -1;  // when the storyteller was last moved
   Mood agent_mood = Mood::idle;
@@ -96,10 +96,10 @@ struct Show {
   ShowTotals totals;
   WarpScratch warp;  // of all visitors, whose pictures are warped one after the other
   StillPass pass;
-  Easel easel;  // reads much of the above: ends before it
+  Renderer renderer;  // reads much of the above: ends before it
 };
 
 // Who is there now; null: the exhibit has no storyteller.
-const StorytellerPlace* teller_of(const Show& show);
+const StorytellerPlace* storyteller_of(const Show& show);
 
 }  // namespace wellspring

@@ -64,7 +64,7 @@ struct Visitor {
 };
 
 // All memory that pictures of one visitor take, between them; its encoder's as noted there, the
-// rest as it is: not while the easel is at work on it. Bounded by the picture's size: at most 64 MB
+// rest as it is: not while the renderer is at work on it. Bounded by the picture's size: at most 64 MB
 // (of 10^6 bytes) at 1280x720 while the visitor walks, 64 MiB at rest.
 size_t picture_memory(const Visitor& visitor);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is kept of one visitor for drawing its pictures (show/draw): the light that is known, the
-// picture that was drawn last, and what is laid over it. The easel's (show/state/renderer.h) while
+// picture that was drawn last, and what is laid over it. The renderer's (show/state/renderer.h) while
 // `at_work`, but for what the tick asks: when it was drawn, for what, and whether it was sent.
 #pragma once
 #include <cstddef>
@@ -31,7 +31,7 @@ struct PictureWishes {
 struct Surroundings {
   Keyframe keyframe;         // empty: nothing
   double ordered_at = -1e9;  // show time
-  uint32_t leaps = 0;        // of the visitor, by then
+  uint32_t camera_cuts = 0;        // of the visitor, by then
   bool drawn = false;        // since the last picture was
 };
 
@@ -45,7 +45,7 @@ struct VisitorPicture {
   double broker_seconds = 0;  // of all cores, for what was last asked
   RestState rest;
   // What was drawn last, and for what.
-  PictureOrder order;
+  PictureJob order;
   PictureCosts costs;
   CacheStats stats;
   double drawn_at = -1e9;     // show time of its order
@@ -61,7 +61,7 @@ struct VisitorPicture {
   size_t cache_bytes = 0, memory_bytes = 0;  // of its cache; of all that is kept for its pictures
 };
 
-// The same memory as it is now: not while the easel is at work on it.
+// The same memory as it is now: not while the renderer is at work on it.
 size_t memory_bytes(const VisitorPicture& picture);
 
 }  // namespace wellspring

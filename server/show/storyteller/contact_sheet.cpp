@@ -51,7 +51,7 @@ void draw_text(Frame& frame, const std::string& text, int x, int y, int scale, v
 }
 
 Frame render_sheet(const Character& character, const std::vector<SheetCell>& cells,
-                   const StudioShot& shot, int columns, std::vector<std::string>& warnings) {
+                   const PortraitShot& shot, int columns, std::vector<std::string>& warnings) {
   Frame sheet;
   if (cells.empty()) return sheet;
   if (columns <= 0)
@@ -65,7 +65,7 @@ Frame render_sheet(const Character& character, const std::vector<SheetCell>& cel
   sheet.color.assign(size_t(sheet.width) * size_t(sheet.height), vec3(0.02f));
   for (size_t i = 0; i < cells.size(); i++) {
     std::vector<std::string> said;
-    Frame picture = render_studio(character, cells[i].pose, shot, said);
+    Frame picture = render_portrait(character, cells[i].pose, shot, said);
     if (i == 0) warnings.insert(warnings.end(), said.begin(), said.end());
     int left = gap + int(i) % columns * (shot.width + gap);
     int top = gap + int(i) / columns * (shot.height + strip + gap);

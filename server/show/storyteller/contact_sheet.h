@@ -16,7 +16,7 @@ struct SheetCell {
 // `shot` is that of one cell; columns <= 0: as many as make the sheet about as wide as high. All
 // cores; seconds a cell. Empty where there is no cell.
 Frame render_sheet(const Character& character, const std::vector<SheetCell>& cells,
-                   const StudioShot& shot, int columns, std::vector<std::string>& warnings);
+                   const PortraitShot& shot, int columns, std::vector<std::string>& warnings);
 
 // Writes `text` into a picture with its upper left corner at x, y, in letters 7 * scale pixels
 // high; what lies outside is cut off.

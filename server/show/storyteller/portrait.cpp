@@ -51,7 +51,7 @@ Mesh make_sweep(float size) {
   return mesh;
 }
 
-// A square that shines towards `at`.
+// A square that emits light towards `at`.
 void add_panel(Scene& scene, vec3 place, vec3 at, float side, vec3 radiance) {
   vec3 n = normalize(at - place), u = normalize(cross(vec3(0, 1, 0), n)), v = cross(n, u);
   Material light = paint("panel", vec3(0), 1);
@@ -70,7 +70,7 @@ void add_panel(Scene& scene, vec3 place, vec3 at, float side, vec3 radiance) {
 
 }  // namespace
 
-Frame render_studio(const Character& character, const Pose& pose, const StudioShot& shot,
+Frame render_portrait(const Character& character, const Pose& pose, const PortraitShot& shot,
                     std::vector<std::string>& warnings) {
   SkinScratch scratch;
   std::vector<vec3> positions, normals;
@@ -94,7 +94,7 @@ Frame render_studio(const Character& character, const Pose& pose, const StudioSh
   float aspect = float(shot.width) / float(shot.height);
   float across = 0.55f * (high.x - low.x) / aspect;
   if (!shot.close) reach = std::max(reach, across);
-  // The studio stands where the figure is.
+  // The portrait scene stands where the figure is.
   vec3 middle(0.5f * (low.x + high.x), 0, 0.5f * (low.z + high.z));
   auto round = [&](vec3 v) { return glm::angleAxis(shot.turn, vec3(0, 1, 0)) * v; };
   vec3 eye = centre + round(vec3(0, 0.02f * height, reach / std::tan(0.5f * fov)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A figure in a photographer's studio, to look at: soft area lights, a floor that curves up into
+// A figure in a photographer's portrait scene, to look at: soft area lights, a floor that curves up into
 // the background.
 #pragma once
 #include "avatar/figure/character.h"
@@ -8,7 +8,7 @@
 
 namespace wellspring {
 
-struct StudioShot {
+struct PortraitShot {
   int width = 720, height = 1080, spp = 64;
   bool close = false;  // head and shoulders instead of the whole figure
   float turn =
@@ -16,7 +16,7 @@ struct StudioShot {
 };
 
 // All cores; seconds. Pictures of the figure that cannot be read are named in `warnings`.
-Frame render_studio(const Character& character, const Pose& pose, const StudioShot& shot,
+Frame render_portrait(const Character& character, const Pose& pose, const PortraitShot& shot,
                     std::vector<std::string>& warnings);
 
 }  // namespace wellspring

@@ -130,12 +130,12 @@ std::string marks_file_of(const std::string& recording) {
 void read_recordings(Exhibit& exhibit, const RecordingOptions& options,
                      std::vector<Problem>& problems) {
   Reader reader{exhibit, options, problems, SpeechProcess(options.voice)};
-  auto manner = [&](int teller) {
-    size_t index = size_t(std::max(teller, 0));
+  auto manner = [&](int storyteller_index) {
+    size_t index = size_t(std::max(storyteller_index, 0));
     return index < exhibit.storytellers.size() ? exhibit.storytellers[index].voice : VoiceManner{};
   };
   for (StoryText& story : exhibit.stories)
-    reader.read(story.sound, story.text, manner(story.teller));
+    reader.read(story.sound, story.text, manner(story.storyteller_index));
   for (TourPlan& tour : exhibit.tours)
     for (TourStop& stop : tour.stops) {
       reader.read(stop.way_sound, stop.way_text, manner(-1));

@@ -33,11 +33,11 @@ std::vector<SpeechRequest> lines_of(const Exhibit& exhibit) {
           if (!line.recording) lines.push_back(request_of(line, lang, manner));
   };
   for (size_t i = 0; i < exhibit.storytellers.size(); i++) {
-    const StorytellerPlace& teller = exhibit.storytellers[i];
-    add(teller.greetings, teller.voice);
+    const StorytellerPlace& storyteller_place = exhibit.storytellers[i];
+    add(storyteller_place.greetings, storyteller_place.voice);
     for (const StoryText& story : exhibit.stories)
-      if (story.teller < 0 ? i == 0 : story.teller == int(i)) add(story.text, teller.voice);
-    add(teller.farewells, teller.voice);
+      if (story.storyteller_index < 0 ? i == 0 : story.storyteller_index == int(i)) add(story.text, storyteller_place.voice);
+    add(storyteller_place.farewells, storyteller_place.voice);
   }
   const VoiceManner narrator =
       exhibit.storytellers.empty() ? VoiceManner{} : exhibit.storytellers.front().voice;

@@ -15,7 +15,7 @@ constexpr double motion_seconds =
 constexpr double longest_gap = 0.5;      // between two views that tell motion
 constexpr size_t most_past = 32;         // views of that time
 constexpr float fastest = 25;            // metres a second; more is a jump
-constexpr float smallest_leap = 0.5f;    // metres
+constexpr float smallest_cut = 0.5f;    // metres
 
 constexpr float much_missing = 0.12f;          // of a picture
 constexpr float surrounding_share = 1 / 8.0f;  // of its pixels that its surroundings have
@@ -24,13 +24,13 @@ constexpr float surrounding_share = 1 / 8.0f;  // of its pixels that its surroun
 
 bool note_view(Heading& heading, double time, const View& view) {
   std::vector<Heading::PastView>& past = heading.past;
-  bool leapt = false;
+  bool cut = false;
   if (!past.empty()) {
     float passed = float(time - past.back().time);
-    leapt = length(view.position - past.back().view.position) > fastest * passed + smallest_leap;
+    cut = length(view.position - past.back().view.position) > fastest * passed + smallest_cut;
   }
   auto alike = [&](const Heading::PastView& one) {
-    return !leapt && time - one.time <= longest_gap && one.view.width == view.width &&
+    return !cut && time - one.time <= longest_gap && one.view.width == view.width &&
            one.view.height == view.height;
   };
   auto of_use = [&](const Heading::PastView& one) {
@@ -42,7 +42,7 @@ bool note_view(Heading& heading, double time, const View& view) {
   past.erase(past.begin(), first);
   if (past.size() >= most_past) past.erase(past.begin());
   past.push_back({time, view});
-  return leapt;
+  return cut;
 }
 
 View expected_view(const Heading& heading, const View& now, double seconds) {

@@ -15,7 +15,7 @@ void go_to_viewpoint(VisitorPlace& place, Voice& narrator, const Exhibit& exhibi
                      int viewpoint) {
   place.view = exhibit.viewpoints[size_t(viewpoint)].view;
   place.viewpoint = viewpoint;
-  place.leaps++;
+  place.camera_cuts++;
   place.move = place.velocity = vec3(0);
   stop_tour(place.tour, narrator);
 }

@@ -22,7 +22,7 @@ struct VisitorPlace {
   TourRide tour;
   // Noticed once a tick (show/draw/pace.h).
   View last_view;       // of the last tick
-  uint32_t leaps = 0;   // to other places, so that nothing seen before helps
+  uint32_t camera_cuts = 0;   // to other places, so that nothing seen before helps
   Heading heading;
   double moved_at = 0;  // show time of the last change of view
 };

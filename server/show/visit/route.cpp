@@ -11,7 +11,7 @@ namespace wellspring {
 namespace {
 
 constexpr float spacing = 0.15f;     // of the points of a way
-constexpr float narrow_cost = 3;     // how much dearer a metre is where there is no room to spare
+constexpr float thin_cost = 3;     // how much dearer a metre is where there is no room to spare
 constexpr int smoothing_rounds = 150;
 
 std::string name_place(vec3 p) { return fmt::format("({:.2f}, {:.2f}, {:.2f})", p.x, p.y, p.z); }
@@ -54,7 +54,7 @@ std::vector<int> search(const WalkMap& map, int from, int to, int& nearest) {
       float tight =
           std::clamp((map.farthest - other.clear) / (map.farthest - map.radius), 0.0f, 1.0f);
       float there = cost[size_t(p)] +
-                    glm::length(other.ground - place.ground) * (1 + narrow_cost * tight * tight);
+                    glm::length(other.ground - place.ground) * (1 + thin_cost * tight * tight);
       if (there >= cost[size_t(next)]) continue;
       cost[size_t(next)] = there;
       before[size_t(next)] = p;

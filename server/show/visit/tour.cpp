@@ -69,7 +69,7 @@ void ease_look(TourRide& ride, float dt) {
   if (glm::length(ride.look) < 1e-5f) ride.look = vec2(0);
 }
 
-Viewpoint with_look(const TourRide& ride) {
+Viewpoint with_appearance(const TourRide& ride) {
   Viewpoint view = ride.view;
   view.yaw += ride.look.x;
   view.pitch = std::clamp(view.pitch + ride.look.y, -steepest, steepest);
@@ -205,7 +205,7 @@ TourStep advance_tour(TourRide& ride, Voice& narration, const Exhibit& exhibit,
     ride.view = eval_camera_path(*ride.path, ride.time);
   }
   if (plays) ease_look(ride, dt);
-  step.view = with_look(ride);
+  step.view = with_appearance(ride);
   if (!plays || !has_arrived(ride)) return step;
 
   if (!ride.wanted.empty()) {

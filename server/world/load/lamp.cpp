@@ -27,7 +27,7 @@ int material_of(const Scene& scene, const Instance& instance) {
   return scene.meshes[size_t(instance.mesh)].material;
 }
 
-bool shines(const Material& material) {
+bool emits(const Material& material) {
   return material.unlit || max_component(material.emission) > 0;
 }
 
@@ -61,25 +61,25 @@ bool is_within(const std::vector<char>& within, const std::vector<int>& nodes, s
 struct Gathered {
   std::vector<int> lights;
   std::vector<size_t> instances;
-  bool exists = false, shines = false;
+  bool exists = false, emits = false;
   const Lamp* taken = nullptr;
 
   void add_light(const Scene& scene, int light) {
-    exists = shines = true;
+    exists = emits = true;
     if (const Lamp* owner = owner_of_light(scene, light)) taken = owner;
     else if (!has(lights, light)) lights.push_back(light);
   }
   void add_instance(const Scene& scene, size_t instance) {
     exists = true;
     int material = material_of(scene, scene.instances[instance]);
-    if (!wellspring::shines(scene.materials[size_t(material)])) return;
-    shines = true;
+    if (!wellspring::emits(scene.materials[size_t(material)])) return;
+    emits = true;
     if (const Lamp* owner = owner_of_material(scene, material)) taken = owner;
     else instances.push_back(instance);
   }
   std::string fault(const std::string& kind, const std::string& name) const {
     if (!exists) return "the scene has no " + kind + " '" + name + "'";
-    if (!shines) return "nothing of the " + kind + " '" + name + "' shines";
+    if (!emits) return "nothing of the " + kind + " '" + name + "' shines";
     return taken ? "'" + name + "' belongs to the lamp '" + taken->name + "'" : "";
   }
 };

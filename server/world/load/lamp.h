@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps out of a scene's file: lights and what shines, named by those who furnish an exhibit.
+// Lamps out of a scene's file: lights and what emits, named by those who furnish an exhibit.
 #pragma once
 #include "world/scene.h"
 
@@ -7,7 +7,7 @@ namespace wellspring {
 
 struct LampNames {
   std::string name;
-  // Lights, and things of which something shines, by their nodes or by nodes above these; all of a
+  // Lights, and things of which something emits light, by their nodes or by nodes above these; all of a
   // name.
   std::vector<std::string> nodes;
   std::vector<std::string> materials;  // all that is made of them, wherever it is

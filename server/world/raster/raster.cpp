@@ -304,9 +304,9 @@ void Raster::Impl::hand_out(ivec2 corner, const View& view, const RasterView& ra
       bool hit = number[x] != no_triangle;
       const RasterTriangle* t = hit ? &triangle_of(number[x]) : nullptr;
       // Between narrow things of one instance there may be gaps.
-      bool apart = hit && t->bar && t->width * inverse[x] < narrow_width;
-      uint16_t kind = apart ? uint16_t(number[x] | TilePixels::narrow_kind)
-                            : uint16_t((hit ? t->instance : ~0u) & ~TilePixels::narrow_kind);
+      bool apart = hit && t->bar && t->width * inverse[x] < thin_width;
+      uint16_t kind = apart ? uint16_t(number[x] | TilePixels::thin_kind)
+                            : uint16_t((hit ? t->instance : ~0u) & ~TilePixels::thin_kind);
       for (int i = x; i < end; i++) {
         instance[i] = hit ? t->instance : RasterRun::nothing;
         triangle[i] = hit ? t->triangle : 0;

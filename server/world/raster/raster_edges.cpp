@@ -33,8 +33,8 @@ float share_beyond(float at, float slope) {
   return low >= 0 ? 0.5f - at : high * high / (2 * slope);
 }
 
-bool is_narrow(const EdgeSide& side) {
-  return side.triangle && side.triangle->bar && side.triangle->width * side.depth < narrow_width;
+bool is_thin(const EdgeSide& side) {
+  return side.triangle && side.triangle->bar && side.triangle->width * side.depth < thin_width;
 }
 
 // Does the edge cut the line rather than run along it?
@@ -52,7 +52,7 @@ float share_between(const EdgeLine& own, const EdgeLine& other) {
 
 EdgeCover find_gap(const EdgeSide& first, const EdgeSide& second, int x, int y, bool vertical,
                    const SurfaceWalk& walk) {
-  if (!is_narrow(first) || !is_narrow(second)) return {};
+  if (!is_thin(first) || !is_thin(second)) return {};
   int next_x = x + !vertical, next_y = y + vertical;
   TriangleExit here = exit_of(*first.triangle, x, y, 1, vertical, walk.raster),
                there = exit_of(*second.triangle, next_x, next_y, -1, vertical, walk.raster);
@@ -74,7 +74,7 @@ EdgeCover find_edge(const EdgeSide& first, const EdgeSide& second, int x, int y,
     const EdgeSide& side = own ? first : second;
     int from_x = own ? x : x + !vertical, from_y = own ? y : y + vertical, step = own ? 1 : -1;
     TriangleExit e = exit_of(*side.triangle, from_x, from_y, step, vertical, walk.raster);
-    if (e.at > 1 || !apart || !is_narrow(side)) return e;
+    if (e.at > 1 || !apart || !is_thin(side)) return e;
     return walk.end_of(*side.triangle, e, from_x, from_y, step, vertical);
   };
   auto slope = [&](const EdgeSide& s) {

@@ -20,7 +20,7 @@ struct EdgeSide {
 };
 
 // Narrower than this, in pixels: places between sampling places are looked for (SurfaceWalk).
-inline constexpr float narrow_width = 1.5f;
+inline constexpr float thin_width = 1.5f;
 
 // How much of each of two neighbouring pixels is covered by what the other shows; at most a half.
 struct EdgeCover {
@@ -117,12 +117,12 @@ struct EdgeFinder {
     if (one.number[place1] == other.number[place2]) return;
     ivec2 at = corner_of(tile1) + ivec2(place1 % tile_width, place1 / tile_width);
     uint32_t a = uint32_t(at.y * view.width + at.x), b = a + uint32_t(vertical ? view.width : 1);
-    bool narrow = (one.kind[place1] & other.kind[place2] & TilePixels::narrow_kind) != 0;
+    bool thin = (one.kind[place1] & other.kind[place2] & TilePixels::thin_kind) != 0;
     float codes = differ ? float(differ(a, b)) : INFINITY;
     bool differs = codes > alike;
-    if (!narrow && !differs) return;
+    if (!thin && !differs) return;
     ivec2 behind(-1);
-    if (narrow)
+    if (thin)
       behind = find_behind(tile1, place1, std::min(one.depth[place1], other.depth[place2]));
     if (behind.x < 0 && !differs) return;
     EdgeSide first = side_of(tile1, place1), second = side_of(tile2, place2);

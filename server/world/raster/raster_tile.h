@@ -16,9 +16,9 @@ inline constexpr uint32_t no_triangle = 0xffffffffu;
 struct TilePixels {
   alignas(32) float depth[tile_width * tile_height];  // inverse; 0: nothing there
   alignas(32) uint32_t number[tile_width * tile_height + lane_count];  // read beyond its end
-  // Tells instances apart, and where narrow_kind is set triangles; set by hand_out().
+  // Tells instances apart, and where thin_kind is set triangles; set by hand_out().
   uint16_t kind[tile_width * tile_height + lane_count];
-  static constexpr uint16_t narrow_kind = 0x8000;
+  static constexpr uint16_t thin_kind = 0x8000;
   // The least depth of squares of `square` pixels, for triangles that lie behind all of one; bits
   // of those that have changed since it was found.
   static constexpr int square = 16, across = tile_width / square;

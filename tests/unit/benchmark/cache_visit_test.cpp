@@ -95,13 +95,13 @@ TEST(VisitTrace, MisspeltNamesAreRefusedBeforeAnythingIsMeasured) {
 TEST(VisitTrace, CommittedTracesLoadAndMoveAsPeopleDo) {
   std::vector<VisitTrace> traces = load_visit_traces(WELLSPRING_SOURCE "/tests/benchmark/traces");
   EXPECT_EQ(traces.size(), 10u);
-  int leaps = 0;
+  int camera_cuts = 0;
   for (const VisitTrace& trace : traces) {
     EXPECT_GT(trace_seconds(trace), 3) << trace.name;
     for (size_t i = 1; i < trace.samples.size(); i++) {
       const TraceSample &a = trace.samples[i - 1], &b = trace.samples[i];
       if (b.time - a.time < 0.5 / visit_rate) {  // asked for another viewpoint
-        leaps += trace.name == "jump";
+        camera_cuts += trace.name == "jump";
         continue;
       }
       EXPECT_LT(glm::length(b.position - a.position), 3 * (b.time - a.time))
@@ -109,7 +109,7 @@ TEST(VisitTrace, CommittedTracesLoadAndMoveAsPeopleDo) {
       EXPECT_LT(std::abs(b.yaw - a.yaw), 4 * (b.time - a.time)) << trace.name << " " << i;
     }
   }
-  EXPECT_EQ(leaps, 5);
+  EXPECT_EQ(camera_cuts, 5);
 }
 
 Image8 make_image(int width, int height, auto shade) {

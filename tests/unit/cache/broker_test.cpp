@@ -255,6 +255,31 @@ TEST(BrokeredVisit, AWorkerThatNeverAnswersCostsItsShareOnly) {
 }
 
 // A figure's triangle before a wall; its answers come when it has moved on.
+// A grey triangle that may move before a wall, as the world is now.
+Sample trace_figure(const World& world, const Request& request) {
+  Hit hit = world.intersect(request.ray);
+  vec3 d = request.ray.direction;
+  Sample sample;
+  sample.position = d * (hit.valid() ? hit.t : 5 / -d.z);
+  sample.normal = vec3(0, 0, 1);
+  sample.object = hit.valid() ? 7 : 1;
+  sample.albedo = sample.smooth = vec3(0.5f);
+  sample.flags = sample_hit;
+  if (!hit.valid()) return sample;
+  sample.flags |= sample_moving;
+  sample.instance = hit.instance, sample.triangle = hit.triangle;
+  sample.barycentric = hit.barycentric;
+  return sample;
+}
+
+// Whether a pixel of the mask, 64 x 48, or one of its neighbours is set.
+bool is_near(const std::vector<uint8_t>& mask, int x, int y) {
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, 47); v++)
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, 63); u++)
+      if (mask[size_t(v * 64 + u)]) return true;
+  return false;
+}
+
 TEST(BrokeredVisit, AnswersAboutAFigureThatHasMovedOnLandOnItsSkin) {
   Mesh mesh;
   mesh.positions = {vec3(-1, -1, -3), vec3(1, -1, -3), vec3(0, 1, -3)};
@@ -275,21 +300,7 @@ TEST(BrokeredVisit, AnswersAboutAFigureThatHasMovedOnLandOnItsSkin) {
     request.ray = view_ray(view, float(pixel % 64) + 0.5f, float(pixel / 64) + 0.5f);
     requests.push_back(request);
   }
-  auto trace = [&](const Request& request) {  // as the world is now
-    Hit hit = world.intersect(request.ray);
-    vec3 d = request.ray.direction;
-    Sample sample;
-    sample.position = d * (hit.valid() ? hit.t : 5 / -d.z);
-    sample.normal = vec3(0, 0, 1);
-    sample.object = hit.valid() ? 7 : 1;
-    sample.albedo = sample.smooth = vec3(0.5f);
-    sample.flags = sample_hit;
-    if (!hit.valid()) return sample;
-    sample.flags |= sample_moving;
-    sample.instance = hit.instance, sample.triangle = hit.triangle;
-    sample.barycentric = hit.barycentric;
-    return sample;
-  };
+  auto trace = [&](const Request& request) { return trace_figure(world, request); };
   cache.resize(64, 48);
   cache.move_points(world);
   cache.project(view);
@@ -319,17 +330,11 @@ TEST(BrokeredVisit, AnswersAboutAFigureThatHasMovedOnLandOnItsSkin) {
   }
   EXPECT_GT(std::count(there.begin(), there.end(), 1), 300);
   // What was seen at pixel centres lies beside them now: the outline may err by a pixel.
-  auto near = [](const std::vector<uint8_t>& mask, int x, int y) {
-    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, 47); v++)
-      for (int u = std::max(x - 1, 0); u <= std::min(x + 1, 63); u++)
-        if (mask[size_t(v * 64 + u)]) return true;
-    return false;
-  };
   for (int y = 0; y < 48; y++)
     for (int x = 0; x < 64; x++) {
       size_t i = size_t(y * 64 + x);
-      EXPECT_TRUE(!shown[i] || near(there, x, y)) << "a ghost at " << x << " " << y;
-      EXPECT_TRUE(!there[i] || near(shown, x, y)) << "missing at " << x << " " << y;
+      EXPECT_TRUE(!shown[i] || is_near(there, x, y)) << "a ghost at " << x << " " << y;
+      EXPECT_TRUE(!there[i] || is_near(shown, x, y)) << "missing at " << x << " " << y;
     }
 }
 

@@ -164,17 +164,17 @@ struct Changes : testing::Test {
     }
   }
   static uint32_t at(int x, int y) { return uint32_t(y * 160 + x); }
-  // `count` witnesses around (x, y), each from `say`.
+  // `count` change samples around (x, y), each from `say`.
   template <class Say>
   void hear(int x, int y, int count, const Say& say) {
     for (int i = 0; i < count; i++) {
-      Witness witness = say();
-      witness.point = at(x + i % 8, y + i / 8 % 8);
-      p.image.witnesses.push_back(witness);
+      ChangeSample change_sample = say();
+      change_sample.point = at(x + i % 8, y + i / 8 % 8);
+      p.image.change_samples.push_back(change_sample);
     }
   }
   void hear(int x, int y, int count, float change, float noise = 0) {
-    hear(x, y, count, [&] { return Witness{0, change, noise}; });
+    hear(x, y, count, [&] { return ChangeSample{0, change, noise}; });
   }
   void judge() { age_changed(p.points, p.view, p.image); }
 };
@@ -210,17 +210,17 @@ TEST_F(Changes, NoiseIsNoChange) {
   for (int frame = 0; frame < 400; frame++) {
     hear(32, 32, 20, [&] {
       bool bright = rng.uniform() < 0.05f;
-      return Witness{0, bright ? 0.92f : -0.6f, 2.6f};
+      return ChangeSample{0, bright ? 0.92f : -0.6f, 2.6f};
     });
     // And of points that have few samples yet, and know no noise.
-    hear(96, 32, 20, [&] { return Witness{0, rng.uniform() < 0.5f ? -0.7f : 0.7f, 0}; });
+    hear(96, 32, 20, [&] { return ChangeSample{0, rng.uniform() < 0.5f ? -0.7f : 0.7f, 0}; });
     judge();
   }
   EXPECT_EQ(p.points.age[at(36, 36)], 10);
   EXPECT_EQ(p.points.age[at(100, 36)], 10);
 }
 
-// A small change here, of which there is no doubt elsewhere.
+// A small change here, of which there is no prior variance elsewhere.
 TEST_F(Changes, WhereOneThingHasChangedLessWillDo) {
   auto small = [&] { hear(108, 44, 60, -0.1f, 0.15f); };
   small();
@@ -246,7 +246,7 @@ TEST_F(Changes, AreFoundTogetherWhereNoTileTellsAlone) {
     for (int y = 4; y < 80; y += 16)
       for (int x = 4; x < 150; x += 16)
         hear(x, y, 12, [&] {
-          return Witness{0, change + (rng.uniform() < 0.5f ? -1.5f : 1.5f), 1.5f};
+          return ChangeSample{0, change + (rng.uniform() < 0.5f ? -1.5f : 1.5f), 1.5f};
         });
   };
   auto forgotten = [&] {
@@ -299,7 +299,7 @@ TEST_F(Changes, AreSeenWhereTheViewHasCarriedThem) {
   age_changed(p.points, turned, p.image);
   EXPECT_EQ(p.points.age[at(80, 45)], 42);
   EXPECT_EQ(p.points.age[at(4, 4)], 10);
-  EXPECT_TRUE(p.image.witnesses.empty());
+  EXPECT_TRUE(p.image.change_samples.empty());
 }
 
 }  // namespace

@@ -334,12 +334,12 @@ TEST(Remember, AQuietPointThatChangesMarksItsNeighbourhood) {
   EXPECT_EQ(changed(), 1);
   EXPECT_EQ(stage.points.count[20], 1);
   EXPECT_NEAR(unpack_rgb9e5(stage.points.color[20].rest).x, 0.2, 0.01);
-  ASSERT_EQ(stage.image.witnesses.size(), 5u);
-  for (size_t i = 0; i < 4; i++) EXPECT_NEAR(stage.image.witnesses[i].change, 0, 0.01) << i;
-  EXPECT_EQ(stage.image.witnesses[4].point, 20u);
-  EXPECT_NEAR(stage.image.witnesses[4].change, -0.8f / (5.2f / 6),
+  ASSERT_EQ(stage.image.change_samples.size(), 5u);
+  for (size_t i = 0; i < 4; i++) EXPECT_NEAR(stage.image.change_samples[i].change, 0, 0.01) << i;
+  EXPECT_EQ(stage.image.change_samples[4].point, 20u);
+  EXPECT_NEAR(stage.image.change_samples[4].change, -0.8f / (5.2f / 6),
               0.01);  // over the mean of all six
-  EXPECT_EQ(stage.image.witnesses[4].noise, 0);
+  EXPECT_EQ(stage.image.change_samples[4].noise, 0);
   // A noisy point proves nothing.
   Rng rng(4);
   int cries = 0;
@@ -373,7 +373,7 @@ TEST(Remember, OneSurpriseIsAveragedTwoBeginAnew) {
   EXPECT_EQ(stage.points.count[20], 1);
 }
 
-// What points testify of smooth light, of which one sample in eight brings nearly all: nothing on
+// What points are compared of smooth light, of which one sample in eight brings nearly all: nothing on
 // average while it stays, with the noise that it has, and the change when it changes.
 TEST(Remember, WitnessesOfNoisyLightAreFair) {
   constexpr int samples_each = 12, visits = 4000;
@@ -394,7 +394,7 @@ TEST(Remember, WitnessesOfNoisyLightAreFair) {
         if (i == 0) color.smooth = pack_rgb9e5(samples[0].smooth);
         else asked.remember();
       }
-      Witness last = stage.image.witnesses.back();
+      ChangeSample last = stage.image.change_samples.back();
       sum += double(last.change), square += double(last.change * last.change);
       noise += double(last.noise * last.noise);
       count++;

@@ -92,7 +92,7 @@ struct Box {
   Scene scene = scenes::make_cornell_box();
   std::unique_ptr<World> world;
   Lights lights;
-  std::unique_ptr<PictureSight> sight;
+  std::unique_ptr<VisibilityPass> visibility;
   TransportSettings transport;
   explicit Box(bool spot) {
     for (Material& material : scene.materials) material.emission = vec3(0);
@@ -109,7 +109,7 @@ struct Box {
     world = std::make_unique<World>(scene);
     world->commit();
     lights = make_lights(*world);
-    sight = std::make_unique<PictureSight>(*world, lights);
+    visibility = std::make_unique<VisibilityPass>(*world, lights);
     transport.max_depth = 2;
   }
   View view() const { return make_view(scene, {0, 0.25, 0.6}, 0, 0, 0.75f, 160, 120); }
@@ -149,8 +149,8 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
     cache.remember(seen, requests, samples);
     compositor.follow_changes(cache);
     compositor.add_samples(seen, requests, samples);
-    if (shown == Shown::moving) compositor.draw(cache, view, *box.sight, frame);
-    else compositor.draw_still(cache, view, *box.sight, frame);
+    if (shown == Shown::moving) compositor.draw(cache, view, *box.visibility, frame);
+    else compositor.draw_still(cache, view, *box.visibility, frame);
   }
   int affected = 0, right = 0;
   for (size_t i = 0; i < after.size(); i++) {
@@ -189,7 +189,7 @@ TEST(Relight, OnlyPointsOfWhichItIsSaidForget) {
     points.color[i].rest = pack_rgb9e5(vec3(2));
   }
   points.age[2] = evicted_age;
-  forget_light(points, [](uint32_t i, vec3& kept, vec3& added) {
+  invalidate_light(points, [](uint32_t i, vec3& kept, vec3& added) {
     if (i == 3) kept = vec3(0.5f, 1, 0), added = vec3(0, 1, 8);
     return i <= 4;
   });

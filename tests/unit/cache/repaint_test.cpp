@@ -53,7 +53,7 @@ TEST(Repaint, PointsOfTheRepaintedInstancesTakeTheirReflectance) {
   }
   points.age[5] = evicted_age;
   world.repaint(1, {vec4(0.6f, 0, 0, 0), vec3(0, 3, 0), mat3(0.0f)});
-  EXPECT_TRUE(forget_paint(points, world, {0, 0, 1}));
+  EXPECT_TRUE(invalidate_paint(points, world, {0, 0, 1}));
   for (uint32_t i = 0; i < 8; i++) {
     bool forgotten = i % 2 == 1 && i != 5;
     EXPECT_EQ(points.age[i], forgotten ? 254 : i == 5 ? evicted_age : 3) << i;
@@ -62,7 +62,7 @@ TEST(Repaint, PointsOfTheRepaintedInstancesTakeTheirReflectance) {
     EXPECT_NEAR(unpack_albedo(points.color[i].albedo).x, forgotten ? 0.8f : 0.2f, 0.01f) << i;
     EXPECT_NEAR(unpack_albedo(points.color[i].albedo).y, 0.2f, 0.01f) << i;
   }
-  EXPECT_FALSE(forget_paint(points, world, {}));
+  EXPECT_FALSE(invalidate_paint(points, world, {}));
 }
 
 // The left square becomes brighter: the World says so, or (`told` false) samples alone do. Shares

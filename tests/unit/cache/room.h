@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A room for tests of the render cache: a textured floor and pictures on a wall, three matt
+// A room for tests of the render cache: a textured floor and pictures on a wall, three Lambertian
 // spheres, a mirror sphere, a lamp in the ceiling and a sharp spot light. Answers requests as a
 // path tracer would, one noisy path a sample, but by formulas.
 #pragma once

@@ -35,8 +35,8 @@ struct Visit {
   }
   // At rest from the second picture of a view on.
   void show(const View& view) {
-    if (view == shown_) compositor.draw_still(cache, view, place().sight, frame);
-    else compositor.draw(cache, view, place().sight, frame);
+    if (view == shown_) compositor.draw_still(cache, view, place().visibility, frame);
+    else compositor.draw(cache, view, place().visibility, frame);
     shown_ = view;
   }
   const World& world() { return place().world; }
@@ -45,8 +45,8 @@ struct Visit {
   struct Place {
     Scene scene;
     World world{scene};
-    PictureSight sight;
-    explicit Place(Scene made) : scene(std::move(made)), sight(commit(world), make_lights(world)) {}
+    VisibilityPass visibility;
+    explicit Place(Scene made) : scene(std::move(made)), visibility(commit(world), make_lights(world)) {}
     static const World& commit(World& world) {
       world.commit();
       return world;

@@ -66,7 +66,7 @@ TEST(TransportPlan, ADiffuseSceneWithOneLampNeedsLittle) {
   TransportPlan plan = plan_with(diffuse(vec3(0.5f)));
   for (size_t i = 0; i < transport_parts; i++) {
     TransportPart part = TransportPart(i);
-    EXPECT_EQ(plan.uses(part), part == area_lights || part == kept_light)
+    EXPECT_EQ(plan.uses(part), part == area_lights || part == cached_radiance)
         << transport_part_name(part);
   }
 }
@@ -124,12 +124,12 @@ TEST(TransportPlan, CausticsNeedSomethingSharpSomethingRoughAndLight) {
   mirrors.environment.radiance = vec3(1);
   add_mesh(mirrors, sphere_mesh(add_material(mirrors, metal(vec3(0.9f), 0)), 1, 8), "ball");
   EXPECT_FALSE(make_transport_plan(mirrors).uses(caustics));  // nothing rough to see them on
-  EXPECT_FALSE(make_transport_plan(mirrors).uses(kept_light));
+  EXPECT_FALSE(make_transport_plan(mirrors).uses(cached_radiance));
   add_floor(mirrors, 0.5f);
   EXPECT_TRUE(make_transport_plan(mirrors).uses(caustics));
   mirrors.environment.radiance = vec3(0);
   EXPECT_FALSE(make_transport_plan(mirrors).uses(caustics));
-  EXPECT_FALSE(make_transport_plan(mirrors).uses(kept_light));
+  EXPECT_FALSE(make_transport_plan(mirrors).uses(cached_radiance));
 }
 
 TEST(TransportPlan, TexturesAreLookedAt) {
@@ -178,17 +178,17 @@ TEST(TransportPlan, MetalsAreKeptByWhatTheyAreAllOver) {
   };
   auto texel = [](float roughness, float metallic) { return vec4(0, roughness, metallic, 1); };
   Material gold = metal(vec3(1, 0.8f, 0.3f), 1);
-  EXPECT_EQ(kept(gold, {texel(0.3f, 1), texel(0.9f, 1)}), KeptMetal::light);
-  EXPECT_EQ(kept(gold, {texel(0.3f, 0.9f), texel(0.9f, 1)}), KeptMetal::light);
-  EXPECT_EQ(kept(gold, {texel(0.22f, 1), texel(0.9f, 1)}), KeptMetal::reflectance);
-  EXPECT_EQ(kept(gold, {texel(0.1f, 1), texel(0.9f, 1)}), KeptMetal::none);
-  EXPECT_EQ(kept(gold, {texel(0.9f, 1), texel(0.9f, 0)}), KeptMetal::none);
-  EXPECT_EQ(kept(diffuse(vec3(0.5f)), {texel(0.9f, 1)}), KeptMetal::none);
+  EXPECT_EQ(kept(gold, {texel(0.3f, 1), texel(0.9f, 1)}), MetalDemodulation::light);
+  EXPECT_EQ(kept(gold, {texel(0.3f, 0.9f), texel(0.9f, 1)}), MetalDemodulation::light);
+  EXPECT_EQ(kept(gold, {texel(0.22f, 1), texel(0.9f, 1)}), MetalDemodulation::reflectance);
+  EXPECT_EQ(kept(gold, {texel(0.1f, 1), texel(0.9f, 1)}), MetalDemodulation::none);
+  EXPECT_EQ(kept(gold, {texel(0.9f, 1), texel(0.9f, 0)}), MetalDemodulation::none);
+  EXPECT_EQ(kept(diffuse(vec3(0.5f)), {texel(0.9f, 1)}), MetalDemodulation::none);
   // A coat is as sharp as it is, whatever lies beneath.
   Material coated = with(gold, [](Material& m) { m.clearcoat = 1; });
-  EXPECT_EQ(kept(coated, {texel(0.9f, 1)}), KeptMetal::reflectance);
+  EXPECT_EQ(kept(coated, {texel(0.9f, 1)}), MetalDemodulation::reflectance);
   Material brushed = with(gold, [](Material& m) { m.anisotropy = 0.5f; });
-  EXPECT_EQ(kept(brushed, {texel(0.9f, 1)}), KeptMetal::reflectance);
+  EXPECT_EQ(kept(brushed, {texel(0.9f, 1)}), MetalDemodulation::reflectance);
 }
 
 TEST(TransportPlan, EightBitPicturesInBothEncodings) {
@@ -275,11 +275,11 @@ TEST(TransportPlan, KeptLightNeedsSomethingThatStandsStill) {
   scene.environment.radiance = vec3(1);
   Mesh figure = sphere_mesh(add_material(scene, diffuse(vec3(0.5f))), 1, 8);
   const Mesh* moving = &figure;
-  EXPECT_FALSE(make_transport_plan(scene, std::span(&moving, 1)).uses(kept_light));
+  EXPECT_FALSE(make_transport_plan(scene, std::span(&moving, 1)).uses(cached_radiance));
   add_floor(scene, 0.5f);
   TransportPlan plan = make_transport_plan(scene, std::span(&moving, 1));
-  EXPECT_TRUE(plan.uses(kept_light));
-  EXPECT_NE(plan.decisions[size_t(kept_light)].why.find("moving"), std::string::npos);
+  EXPECT_TRUE(plan.uses(cached_radiance));
+  EXPECT_NE(plan.decisions[size_t(cached_radiance)].why.find("moving"), std::string::npos);
 }
 
 TEST(TransportPlan, ExplanationListsEveryPartOnce) {

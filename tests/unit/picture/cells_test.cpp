@@ -49,7 +49,7 @@ struct SparseWall {
         cells.samples[i] = cells.points[i] = known;
         cells.sum[i] = known ? light : 0;
         cells.sum2[i] = known ? light * light : 0;
-        cells.patience[i] = cells.rest_sum[i] = cells.rest_sum2[i] = 0;
+        cells.prior_weight[i] = cells.rest_sum[i] = cells.rest_sum2[i] = 0;
         cells.rest_noise[i] = cells.rest_known[i] = 0;
         cells.object[i] = known ? 7 : no_object;
       }

@@ -43,7 +43,7 @@ Stage make_room_with_ball() {
   return Stage(std::move(scene), std::move(ball));
 }
 // Light that no surface is needed for: a lamp before a bright sky.
-Scene make_shining() {
+Scene make_emitting() {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(0.5f, 1, 2);
   add_quad(scene, add_material(scene, emitter(vec3(3, 2, 1))), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0},
@@ -68,20 +68,20 @@ void expect_light(const Frame& frame) {
 
 // What is drawn for the eye at once is the frame, tone-mapped; along edges light is mixed as the
 // codes tell it.
-void expect_same_for_the_eye(DrawnVisit& drawn, const View& view, const PictureSight& sight) {
+void expect_same_for_the_eye(DrawnVisit& drawn, const View& view, const VisibilityPass& visibility) {
   for (float exposure : {1.0f, 3.5f}) {
     Image8 expected, shown, alone;
     std::vector<float> depth;
     tonemap(drawn.frame, {exposure}, expected);
-    drawn.compositor.draw(drawn.cache, view, sight, Tonemap{exposure}, shown, &depth);
-    drawn.compositor.draw(drawn.cache, view, sight, Tonemap{exposure}, alone);
+    drawn.compositor.draw(drawn.cache, view, visibility, Tonemap{exposure}, shown, &depth);
+    drawn.compositor.draw(drawn.cache, view, visibility, Tonemap{exposure}, alone);
     EXPECT_EQ(shown.width, view.width);
     EXPECT_EQ(shown.height, view.height);
     EXPECT_EQ(depth, drawn.frame.depth);
     EXPECT_EQ(alone.rgb, shown.rgb);
     ASSERT_EQ(shown.rgb.size(), expected.rgb.size());
     std::vector<bool> mixed(depth.size(), false);
-    for (const auto& list : sight.see_edges(view, vec2(0.5f), [](const SightRun&) {}))
+    for (const auto& list : visibility.see_edges(view, vec2(0.5f), [](const VisibleRun&) {}))
       for (const EdgeShare& edge : list) mixed[edge.pixel] = true;
     EXPECT_LT(std::count(mixed.begin(), mixed.end(), true), ptrdiff_t(mixed.size() / 8));
     for (size_t i = 0; i < shown.rgb.size(); i++)
@@ -105,7 +105,7 @@ TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
       fine.step(stage, view, count / 60, PictureOf::moving_fine);
     }
     ASSERT_EQ(drawn.frame.color.size(), size_t(count));
-    expect_same_for_the_eye(drawn, view, *stage.sight);
+    expect_same_for_the_eye(drawn, view, *stage.visibility);
     EXPECT_LT(count_wrong(stage, view, drawn.frame), count / 1000);
     for (size_t i = 0; i < drawn.frame.object.size(); i++)
       ASSERT_EQ(drawn.frame.object[i] == 0, std::isinf(drawn.frame.depth[i])) << i;
@@ -116,7 +116,7 @@ TEST(Drawn, MovingPicturesHaveExactShapesWithFewPoints) {
     for (DrawnVisit* shown : {&drawn, &fine}) {
       EXPECT_LT(rmse(shown->frame, truth), 0.21) << size.x;
       expect_light(shown->frame);
-      expect_same_for_the_eye(*shown, view, *stage.sight);
+      expect_same_for_the_eye(*shown, view, *stage.visibility);
     }
   }
 }
@@ -136,7 +136,7 @@ TEST(Drawn, DarkBarsBeforeABrightSkyAreThoseOfAllOfThePixel) {
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 0.7f, width, height);
   for (int i = 0; i < 12; i++) visit.step(stage, view, pixels / 8, PictureOf::moving);
   Image8 shown, expected;
-  visit.compositor.draw(visit.cache, view, *stage.sight, Tonemap{1}, shown);
+  visit.compositor.draw(visit.cache, view, *stage.visibility, Tonemap{1}, shown);
   tonemap(stage.truth(view, 256), {1}, expected);
   double error = 0, dark = 0;
   for (size_t i = 0; i < shown.rgb.size(); i++) {
@@ -155,8 +155,8 @@ TEST(Drawn, CalmLightIsThatOfCells) {
   View view = view_from(stage, 0, width, height);
   for (int i = 0; i < 6; i++) drawn.step(stage, view, pixels / 20, PictureOf::moving);
   Image8 own, calm;
-  drawn.compositor.draw(drawn.cache, view, *stage.sight, Tonemap{1}, own);
-  drawn.compositor.draw(drawn.cache, view, *stage.sight, Tonemap{1}, calm, nullptr, true);
+  drawn.compositor.draw(drawn.cache, view, *stage.visibility, Tonemap{1}, own);
+  drawn.compositor.draw(drawn.cache, view, *stage.visibility, Tonemap{1}, calm, nullptr, true);
   auto sum = [](const Image8& image) {
     double sum = 0;
     for (uint8_t c : image.rgb) sum += c;
@@ -212,9 +212,9 @@ TEST(Drawn, SurroundingsInFineLightCostNoPoint) {
     trace(*find_technique("path"), *stage.world, stage.lights, {}, drawn.requests, drawn.samples);
     drawn.cache.remember(seen, drawn.requests, drawn.samples);
     if (kind == PictureOf::still)
-      drawn.compositor.draw_still(drawn.cache, seen, *stage.sight, drawn.frame);
+      drawn.compositor.draw_still(drawn.cache, seen, *stage.visibility, drawn.frame);
     else
-      drawn.compositor.draw(drawn.cache, seen, *stage.sight, drawn.frame);
+      drawn.compositor.draw(drawn.cache, seen, *stage.visibility, drawn.frame);
     EXPECT_EQ(drawn.frame.width, seen.width);
     expect_light(drawn.frame);
   };
@@ -283,7 +283,7 @@ TEST(Drawn, StartingAndStoppingLosesNoPoint) {
 
 // Lamps and the sky are as they are without a single sample.
 TEST(Drawn, ShinesWithoutASample) {
-  Stage stage(make_shining());
+  Stage stage(make_emitting());
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 1, 101, 67);
   for (PictureOf kind : {PictureOf::moving, PictureOf::still})
     for (int budget : {0, 12}) {

@@ -246,13 +246,13 @@ TEST(DrawnHardCases, AnEyeWithinGlass) {
   };
   int inside = 0;
   for (int i = 0; i <= 40; i++) {
-    inside += !stage.sight->rasterises(view(i));
+    inside += !stage.visibility->rasterises(view(i));
     visitor.step(stage, view(i), pixels / 16);
     ASSERT_TRUE(is_sound(visitor.frame)) << i;
     ASSERT_LE(count_wrong(stage, view(i), visitor.frame), pixels / 100) << i;
   }
   EXPECT_NEAR(inside, 25, 3);
-  ASSERT_FALSE(stage.sight->rasterises(view(20)));
+  ASSERT_FALSE(stage.visibility->rasterises(view(20)));
   Frame truth = stage.truth(view(20), 64);
   for (int i = 0; i < 120; i++) visitor.step(stage, view(20), pixels / 2, true);
   EXPECT_LE(count_wrong(stage, view(20), visitor.frame), pixels / 100);

@@ -17,7 +17,7 @@ struct Stage {
   Mesh ball;
   std::unique_ptr<World> world;
   Lights lights;
-  std::unique_ptr<PictureSight> sight;
+  std::unique_ptr<VisibilityPass> visibility;
 
   explicit Stage(Scene made) : scene(std::move(made)) { open({}, {}); }
   Stage(Scene made, Mesh moving) : scene(std::move(made)), ball(std::move(moving)) {
@@ -43,7 +43,7 @@ struct Stage {
     world = std::make_unique<World>(scene, std::move(moving), std::move(objects));
     world->commit();
     lights = make_lights(*world);
-    sight = std::make_unique<PictureSight>(*world, lights);
+    visibility = std::make_unique<VisibilityPass>(*world, lights);
   }
 };
 
@@ -108,8 +108,8 @@ struct DrawnVisit {
     cache.remember(light, requests, samples);
     compositor.follow_changes(cache);
     if (kind == PictureOf::still) compositor.add_samples(light, requests, samples);
-    if (kind == PictureOf::still) compositor.draw_still(cache, view, *stage.sight, frame);
-    else compositor.draw(cache, view, *stage.sight, frame);
+    if (kind == PictureOf::still) compositor.draw_still(cache, view, *stage.visibility, frame);
+    else compositor.draw(cache, view, *stage.visibility, frame);
   }
 };
 

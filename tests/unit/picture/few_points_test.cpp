@@ -40,12 +40,12 @@ bool is_inside(const Shown& shown, int x, int y) {
 }
 
 // Of pixels inside of objects: those brighter or darker than what is around by more than 15 %.
-struct Specks {
-  int specks = 0, inside = 0;
+struct Outliers {
+  int outliers = 0, inside = 0;
 };
-Specks count_specks(const Shown& shown) {
+Outliers count_outliers(const Shown& shown) {
   auto light = [&](size_t i) { return luminance(shown.frame.color[i]); };
-  Specks found;
+  Outliers found;
   for (int y = 1; y + 1 < height; y++)
     for (int x = 1; x + 1 < width; x++) {
       if (!is_inside(shown, x, y)) continue;
@@ -54,7 +54,7 @@ Specks count_specks(const Shown& shown) {
           (light(at - 1) + light(at + 1) + light(at - size_t(width)) + light(at + size_t(width))) /
           4;
       found.inside++;
-      found.specks += std::abs(light(at) - around) > 0.15f * around;
+      found.outliers += std::abs(light(at) - around) > 0.15f * around;
     }
   return found;
 }
@@ -62,9 +62,9 @@ Specks count_specks(const Shown& shown) {
 TEST(FewPoints, WallsAreNotPeppered) {
   Stage stage(make_cornell_box());
   Shown shown = stroll(stage, 64);
-  const auto [specks, inside] = count_specks(shown);
+  const auto [outliers, inside] = count_outliers(shown);
   EXPECT_GT(inside, pixels / 2);
-  EXPECT_LT(specks, inside / 33);
+  EXPECT_LT(outliers, inside / 33);
 }
 
 struct Bars {
@@ -88,15 +88,15 @@ Bars look_at_bars(const Stage& stage, const Shown& shown) {
 TEST(FewPoints, NarrowThingsAreNeitherBlackNorGlaring) {
   Scene scene = make_barred_box(vec3(0.7f), 0.004f);
   Material sky = emitter(vec3(8));
-  sky.base_color = vec4(0.9f);  // a picture that shines tells nothing of light that falls there
+  sky.base_color = vec4(0.9f);  // a picture that emits light tells nothing of light that falls there
   add_quad(scene, add_material(scene, sky), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0},
            "sky");
-  Stage matt(make_barred_box(vec3(0.7f), 0.004f)), before_sky(scene);
+  Stage lambertian(make_barred_box(vec3(0.7f), 0.004f)), before_sky(scene);
   Material gilt = diffuse(vec3(1, 0.7f, 0.3f));
   gilt.metallic = 1, gilt.roughness = 0.3f;
   scene.materials[scene.materials.size() - 2] = gilt;
   Stage polished(std::move(scene));
-  for (const Stage* stage : {&matt, &before_sky, &polished}) {
+  for (const Stage* stage : {&lambertian, &before_sky, &polished}) {
     Bars bars = look_at_bars(*stage, stroll(*stage, 64));
     EXPECT_GT(bars.count, 500);
     EXPECT_LT(bars.dark, 0.01 * bars.count);
@@ -149,7 +149,7 @@ TEST(FewPoints, LightHasNoSquares) {
   }
 }
 
-// Who has just come to rest: what lamps do on a floor that shines is seen by one sample in many.
+// Who has just come to rest: what lamps do on a floor that emits light is seen by one sample in many.
 TEST(FewPoints, FloorsThatShineAreNotPepperedAtRest) {
   Scene scene = make_cornell_box();
   for (Material& material : scene.materials)
@@ -160,8 +160,8 @@ TEST(FewPoints, FloorsThatShineAreNotPepperedAtRest) {
   DrawnVisit visit;
   for (int i = 0; i < 6; i++) visit.step(stage, shown.view, pixels / 24, PictureOf::still);
   shown.frame = visit.frame;
-  const auto [specks, inside] = count_specks(shown);
-  EXPECT_LT(specks, inside / 42);
+  const auto [outliers, inside] = count_outliers(shown);
+  EXPECT_LT(outliers, inside / 42);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces that shine a little here and there and are lit by others, too: screens, dials, coals.
+// Surfaces that emit light a little here and there and are lit by others, too: screens, dials, coals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ using namespace scenes;
 
 constexpr int size = 96;
 
-// A grey board under an even sky; in stripes four texels wide it shines not at all, hardly (as
+// A grey board under an even sky; in stripes four texels wide it emits light not at all, hardly (as
 // what is left of black in a compressed picture), and brightly.
 Scene make_board() {
   Scene scene = empty_scene();
@@ -60,7 +60,7 @@ Mean compare(const Frame& frame, const Frame& truth, const View& view, int strip
   return mean;
 }
 
-// However little a place shines, the light that falls on it is not lost, and none counts twice.
+// However little a place emits light, the light that falls on it is not lost, and none counts twice.
 TEST(Glow, IsAddedToTheLightThatFallsThere) {
   Stage stage(make_board());
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.3f), size, size);

@@ -14,7 +14,7 @@ using namespace scenes;
 
 // A picture after five times one sample for 25 pixels. `told`: hints reach the cache.
 Frame show(const World& world, const Lights& lights, const View& view, bool told) {
-  PictureSight sight(world, lights);
+  VisibilityPass visibility(world, lights);
   RenderCache cache;
   Compositor compositor;
   std::vector<Request> requests;
@@ -31,7 +31,7 @@ Frame show(const World& world, const Lights& lights, const View& view, bool told
     for (Sample& sample : samples)
       if (!told) sample.flags &= uint8_t(~sample_sure);
     cache.remember(view, requests, samples);
-    compositor.draw(cache, view, sight, frame);
+    compositor.draw(cache, view, visibility, frame);
   }
   return frame;
 }

@@ -85,7 +85,7 @@ TEST(Metal, IsKeptAlikeByAllWhoSee) {
       Stage stage(make_board(roughness, metallic));
       View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 0.06f, 48, 48);  // texels are large
       std::vector<vec3> drawn(48 * 48);
-      stage.sight->see(view, vec2(0.5f), [&](const SightRun& run) {
+      stage.visibility->see(view, vec2(0.5f), [&](const VisibleRun& run) {
         RunSurface r;
         ASSERT_EQ(run.describe(~uint64_t(0), r), 0u);
         for (int i = 0; i < run.count; i++)
@@ -98,7 +98,7 @@ TEST(Metal, IsKeptAlikeByAllWhoSee) {
           std::vector<Request> requests{request};
           std::vector<Sample> samples(1);
           std::vector<Ray> rays{request.ray};
-          std::vector<Seen> seen(1);
+          std::vector<PrimaryHit> seen(1);
           see(*stage.world, stage.lights, rays, seen);
           EXPECT_LT(glm::length(seen[0].albedo - drawn[size_t(k)]), 0.02f);
           const Technique& way = *find_technique(technique);

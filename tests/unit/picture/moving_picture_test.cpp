@@ -70,10 +70,10 @@ struct Rested {
   Rested(const Stage& stage, const View& view, int pictures = 24) {
     for (int i = 0; i < pictures; i++) visit.step(stage, view, pixels / 4, PictureOf::still);
     skin = make_skin_light(*stage.world);
-    light_skin(stage);
+    compute_skin_light(stage);
     visit.compositor.set_skin(&skin);
   }
-  void light_skin(const Stage& stage) {
+  void compute_skin_light(const Stage& stage) {
     SkinUpdate update;
     update.samples = 32 * int(skin.places.size());
     update_skin(*stage.world, stage.lights, update, skin);
@@ -82,11 +82,11 @@ struct Rested {
   Keyframe draw_backdrop(const Stage& stage, const View& view) {
     visit.cache.move_points(*stage.world);
     visit.cache.project(view);
-    visit.compositor.draw_still(visit.cache, view, *stage.sight, backdrop, StillShows::backdrop);
+    visit.compositor.draw_still(visit.cache, view, *stage.visibility, backdrop, StillShows::backdrop);
     return keyframe_of(view, backdrop);
   }
   Image8 draw_over(const Stage& stage, const Keyframe& keyframe) {
-    visit.compositor.draw_moving(*stage.world, keyframe, *stage.sight, {}, light, moving);
+    visit.compositor.draw_moving(*stage.world, keyframe, *stage.visibility, {}, light, moving);
     return laid_over(keyframe, moving);
   }
 };
@@ -147,7 +147,7 @@ TEST(MovingPicture, IsThatOfWholePictures) {
   Rested whole(stage, view), parts(stage, view);
   whole.visit.cache.move_points(*stage.world);
   whole.visit.cache.project(view);
-  whole.visit.compositor.draw_still(whole.visit.cache, view, *stage.sight, whole.visit.frame);
+  whole.visit.compositor.draw_still(whole.visit.cache, view, *stage.visibility, whole.visit.frame);
   Image8 wanted = shown(whole.visit.frame);
   Keyframe keyframe = parts.draw_backdrop(stage, view);
   for (uint32_t object : parts.backdrop.object) ASSERT_NE(object, ball_of(stage));
@@ -272,7 +272,7 @@ TEST(MovingPicture, CoversWhatLiesBehindIt) {
     light.picture.width = width, light.picture.height = height;
     light.picture.rgb.assign(3 * pixels, 99);
     guess_peaks(light.picture, window, light.peaks);
-    compose_moving(view, *stage.sight, window, {}, disparity, covered, skin, light);
+    compose_moving(view, *stage.visibility, window, {}, disparity, covered, skin, light);
     int count = int(std::count(covered.begin(), covered.end(), uint8_t(0)));
     EXPECT_EQ(count + std::count(covered.begin(), covered.end(), uint8_t(7)), pixels);
     if (depth < 1) EXPECT_EQ(count, 0);

@@ -27,7 +27,7 @@ TEST(PixelLight, SomeFlatPixelsAreLitAsAllWouldBe) {
       CellLightOf<Lanes, LaneBits>& c = cell[k];
       corners[k] = &c, weights[k] = all_lanes(0.25f);
       for (int n = 0; n < 3; n++) c.smooth[n] = numbers(), c.rest[n] = numbers();
-      c.patience = numbers(), c.detail = numbers(), c.noise = numbers();
+      c.prior_weight = numbers(), c.detail = numbers(), c.noise = numbers();
       c.normal[0] = c.normal[1] = Lanes{}, c.normal[2] = all_lanes(1);
       c.plane[0] = 0.1f * numbers(), c.plane[1] = 0.1f * numbers(), c.plane[2] = all_lanes(1);
       c.object = LaneBits{1, 1, 1, 1, 1, 1, 1, 2} + uint32_t(k == round % 4);
@@ -41,7 +41,7 @@ TEST(PixelLight, SomeFlatPixelsAreLitAsAllWouldBe) {
       ASSERT_EQ(some.lonely[i], wanted.lonely[i]) << round << " " << i;
       ASSERT_NEAR(some.smooth.g[i], wanted.smooth.g[i], 1e-5f) << round << " " << i;
       ASSERT_NEAR(some.rest.b[i], wanted.rest.b[i], 1e-5f) << round << " " << i;
-      ASSERT_NEAR(some.patience[i], wanted.patience[i], 1e-5f) << round << " " << i;
+      ASSERT_NEAR(some.prior_weight[i], wanted.prior_weight[i], 1e-5f) << round << " " << i;
       ASSERT_NEAR(some.noise[i], wanted.noise[i], 1e-5f) << round << " " << i;
     }
   }

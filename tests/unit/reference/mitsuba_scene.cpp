@@ -67,7 +67,7 @@ double index_named(pugi::xml_node bsdf, const char* name, double otherwise) {
 }
 
 // A material and what is special about the surface that wears it.
-struct Look {
+struct Appearance {
   Material material;
   std::string inexact;                 // why
   bool two_sided = false;              // else its back is black
@@ -75,10 +75,10 @@ struct Look {
   vec3 blend[2] = {vec3(0), vec3(1)};  // of two colours by a weight
 };
 
-Look make_look(Conversion& c, pugi::xml_node bsdf);
+Appearance make_appearance(Conversion& c, pugi::xml_node bsdf);
 
-Look make_diffuse(Conversion& c, pugi::xml_node bsdf) {
-  Look look;
+Appearance make_diffuse(Conversion& c, pugi::xml_node bsdf) {
+  Appearance look;
   look.material = scenes::diffuse(vec3(0.5f));
   pugi::xml_node reflectance = find_property(bsdf, "reflectance");
   pugi::xml_node value = resolve(c.document, reflectance);
@@ -95,8 +95,8 @@ Look make_diffuse(Conversion& c, pugi::xml_node bsdf) {
 }
 
 // Opacity: the picture's grey, decoded, as alpha under the nested material's colour.
-Look make_mask(Conversion& c, pugi::xml_node bsdf) {
-  Look look = make_look(c, bsdf.child("bsdf"));
+Appearance make_mask(Conversion& c, pugi::xml_node bsdf) {
+  Appearance look = make_appearance(c, bsdf.child("bsdf"));
   if (look.material.base_color_texture.texture >= 0) refuse("mask", "over a texture");
   int index = add_texture(c, find_property(bsdf, "opacity"), look.material.base_color_texture);
   Image& image = c.out.scene.images[size_t(index)];
@@ -107,12 +107,12 @@ Look make_mask(Conversion& c, pugi::xml_node bsdf) {
   return look;
 }
 
-Look make_look(Conversion& c, pugi::xml_node bsdf) {
+Appearance make_appearance(Conversion& c, pugi::xml_node bsdf) {
   std::string type = type_of(bsdf);
-  Look look;
+  Appearance look;
   if (!bsdf || type == "diffuse") return make_diffuse(c, bsdf);
   if (type == "twosided") {
-    look = make_look(c, bsdf.child("bsdf"));
+    look = make_appearance(c, bsdf.child("bsdf"));
     look.two_sided = true;
   } else if (type == "mask") {
     look = make_mask(c, bsdf);
@@ -121,7 +121,7 @@ Look make_look(Conversion& c, pugi::xml_node bsdf) {
     look.attribute = text(resolve(c.document, find_property(bsdf, "weight")), "name", "");
     int i = 0;
     for (pugi::xml_node part : bsdf.children("bsdf"))
-      if (i < 2) look.blend[i++] = vec3(make_look(c, part).material.base_color);
+      if (i < 2) look.blend[i++] = vec3(make_appearance(c, part).material.base_color);
   } else if (type == "dielectric" || type == "roughdielectric") {
     double ior = index_named(bsdf, "int_ior", 1.5046) / index_named(bsdf, "ext_ior", 1.000277);
     float alpha = type == "dielectric" ? 0 : float(number(bsdf, "alpha", 0.1));
@@ -144,7 +144,7 @@ MeshWithAttributes load_shape(Conversion& c, pugi::xml_node shape) {
   refuse(type, "shape");
 }
 
-void apply_attribute(const Look& look, MeshWithAttributes& m) {
+void apply_attribute(const Appearance& look, MeshWithAttributes& m) {
   bool of_faces = look.attribute.rfind("face_", 0) == 0;
   if (of_faces) split_faces(m);
   for (size_t i = 0; i < m.mesh.positions.size(); i++) {
@@ -184,7 +184,7 @@ void add_shape(Conversion& c, pugi::xml_node shape, const glm::dmat4& outer) {
   }
   Scene& scene = c.out.scene;
   MeshWithAttributes m = load_shape(c, shape);
-  Look look = make_look(c, bsdf_of(c, shape));
+  Appearance look = make_appearance(c, bsdf_of(c, shape));
   if (pugi::xml_node emitter = emitter_of(c, shape)) {
     if (type_of(emitter) != "area") refuse(type_of(emitter), "emitter of a shape");
     look.material.emission = color_value(find_property(emitter, "radiance"), vec3(1));

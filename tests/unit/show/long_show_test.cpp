@@ -68,7 +68,7 @@ TEST(LongShow, ADayOfIdlingAndWalkingNeitherGrowsNorDrifts) {
     const Visitor& visitor = house.show->visitors.front();
     vec3 place(visitor.place.view.position);
     ASSERT_TRUE(is_finite(place) && std::abs(place.x) < 4 && std::abs(place.z) < 4) << i;
-    for (vec3 c : house.show->easel.work.frame.color) ASSERT_TRUE(is_finite(c)) << i;
+    for (vec3 c : house.show->renderer.work.frame.color) ASSERT_TRUE(is_finite(c)) << i;
     if (i == 62) memory = visitor.picture.cache_bytes;
     if (i > 62) {
       // Lists keep room for the most that they ever held, and how much that is depends on the

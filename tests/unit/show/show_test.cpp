@@ -108,7 +108,7 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
   for (size_t i = 0; i < reference.color.size(); i++) {
     // As it is shown: of lamps no more than white.
     auto seen = [&](vec3 light) { return luminance(min(light * show->exhibit.exposure, vec3(1))); };
-    error += std::abs(seen(show->easel.work.frame.color[i]) - seen(reference.color[i]));
+    error += std::abs(seen(show->renderer.work.frame.color[i]) - seen(reference.color[i]));
     size += seen(reference.color[i]);
   }
   EXPECT_LT(error / size, 0.08);
@@ -118,12 +118,12 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
 TEST_F(ShowTest, FarFromTheOriginThePictureIsTheSame) {
   begin();
   run(2);
-  std::vector<vec3> near = show->easel.work.frame.color;
+  std::vector<vec3> near = show->renderer.work.frame.color;
   link = std::make_shared<Link>(2, LinkKind::visit, "test");
   begin(dvec3(1e6, 0, -1e6));
   run(2);
   double error = 0, size = 0;
-  const std::vector<vec3>& far = show->easel.work.frame.color;
+  const std::vector<vec3>& far = show->renderer.work.frame.color;
   for (size_t i = 0; i < near.size(); i++) {
     error += std::abs(luminance(near[i]) - luminance(far[i]));
     size += luminance(near[i]);

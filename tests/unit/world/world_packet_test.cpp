@@ -11,6 +11,25 @@
 using namespace wellspring;
 using namespace wellspring::scenes;
 
+// Rays within the box; every 50th round one of them is not a number.
+RayPacket make_rays(Rng& rng, int round, Ray (&rays)[RayPacket::lanes]) {
+  RayPacket packet{};
+  for (int i = 0; i < RayPacket::lanes; i++) {
+    auto inside = [&] {
+      return vec3(0.54f * rng.uniform() - 0.27f, 0.54f * rng.uniform(), -0.55f * rng.uniform());
+    };
+    rays[i].origin = inside();
+    rays[i].direction = inside() - rays[i].origin;
+    rays[i].t_max = round % 2 ? 1.0f : std::numeric_limits<float>::infinity();
+    if (round % 50 == 0 && i == 3) rays[i].direction.x = std::nanf("");
+    packet.origin_x[i] = rays[i].origin.x, packet.origin_y[i] = rays[i].origin.y;
+    packet.origin_z[i] = rays[i].origin.z, packet.direction_x[i] = rays[i].direction.x;
+    packet.direction_y[i] = rays[i].direction.y, packet.direction_z[i] = rays[i].direction.z;
+    packet.t_max[i] = rays[i].t_max;
+  }
+  return packet;
+}
+
 TEST(RayPacket, AnswersAreThoseOfSingleRays) {
   Scene scene = make_cornell_box();
   Material leaf = diffuse(vec3(0.5f));
@@ -26,24 +45,11 @@ TEST(RayPacket, AnswersAreThoseOfSingleRays) {
   Rng rng(11);
   int blocked_rays = 0, clear_rays = 0, moving_hits = 0;
   for (int round = 0; round < 4000; round++) {
-    RayPacket packet{};
     Ray rays[RayPacket::lanes];
     uint32_t active = round % 3 == 0   ? rng.next() & 0xffff
                       : round % 3 == 1 ? 1u << round % 16
                                        : 0xffffu;
-    for (int i = 0; i < RayPacket::lanes; i++) {
-      auto inside = [&] {
-        return vec3(0.54f * rng.uniform() - 0.27f, 0.54f * rng.uniform(), -0.55f * rng.uniform());
-      };
-      rays[i].origin = inside();
-      rays[i].direction = inside() - rays[i].origin;
-      rays[i].t_max = round % 2 ? 1.0f : std::numeric_limits<float>::infinity();
-      if (round % 50 == 0 && i == 3) rays[i].direction.x = std::nanf("");
-      packet.origin_x[i] = rays[i].origin.x, packet.origin_y[i] = rays[i].origin.y;
-      packet.origin_z[i] = rays[i].origin.z, packet.direction_x[i] = rays[i].direction.x;
-      packet.direction_y[i] = rays[i].direction.y, packet.direction_z[i] = rays[i].direction.z;
-      packet.t_max[i] = rays[i].t_max;
-    }
+    RayPacket packet = make_rays(rng, round, rays);
     uint32_t blocked = world.occluded_packet(packet, active);
     EXPECT_EQ(world.occluded_each(packet, active), blocked) << round;
     Hit hits[RayPacket::lanes];

@@ -82,12 +82,12 @@ TEST_P(CastleFigure, IsWholeAndKnownToTheRig) {
   EXPECT_EQ(c.joints.size(), 94u);
   EXPECT_EQ(c.displacers.size(), std::size(displacer_names));
   for (const char* name : displacer_names) EXPECT_GE(find_displacer(c, name), 0) << name;
-  for (const Look& look : c.looks)
-    if (!look.texture.empty()) EXPECT_TRUE(std::filesystem::exists(look.texture)) << look.texture;
-  for (const Look& look : c.looks)  // what is near the eye has relief too fine for triangles
-    if (look.texture.find("_skin.") != std::string::npos ||
-        look.texture.find("_hair.") != std::string::npos)
-      EXPECT_TRUE(std::filesystem::exists(look.normal_texture)) << look.texture;
+  for (const Appearance& appearance : c.appearances)
+    if (!appearance.texture.empty()) EXPECT_TRUE(std::filesystem::exists(appearance.texture)) << appearance.texture;
+  for (const Appearance& appearance : c.appearances)  // what is near the eye has relief too fine for triangles
+    if (appearance.texture.find("_skin.") != std::string::npos ||
+        appearance.texture.find("_hair.") != std::string::npos)
+      EXPECT_TRUE(std::filesystem::exists(appearance.normal_texture)) << appearance.texture;
   Rig rig = make_rig(c);
   EXPECT_TRUE(rig.eyes_move);
   EXPECT_TRUE(rig.leg[0].complete() && rig.leg[1].complete());

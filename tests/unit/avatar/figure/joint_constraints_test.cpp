@@ -111,6 +111,27 @@ quat by_the_format(const Nodes& nodes, size_t node, const Asked& asked, vec3 axi
   return glm::slerp(dst_rest, target, float(asked.weight));
 }
 
+// The joint of each node that is a bone, found by its place; -1: none.
+std::vector<int> joints_of_nodes(const Nodes& nodes, const Character& character, quat world) {
+  std::vector<int> joint_of(nodes.parent.size(), -1);
+  const auto& bones = test::person_bones();
+  for (size_t i = 0; i < bones.size(); i++)
+    for (size_t j = 0; j < character.joints.size(); j++)
+      if (glm::length(world * character.joints[j].center - world * vec3(0) -
+                      world * bones[i].place) < 1e-4f)
+        joint_of[i] = int(j);
+  return joint_of;
+}
+
+// A node between the bone `upper` and another one below it that will be constrained.
+struct ExtraNodes {
+  size_t between, twist;
+};
+ExtraNodes add_extra_nodes(Asset& asset, size_t upper, Rng& rng) {
+  size_t between = add_node(asset, upper, {0.1f, 0.02f, 0}, random_turn(rng), "between");
+  return {between, add_node(asset, between, {0.05f, 0.1f, 0.03f}, random_turn(rng), "twist")};
+}
+
 TEST(JointConstraints, AreThoseOfTheFormatWhateverTheAxesOfTheNodes) {
   struct Case {
     Asked asked;
@@ -137,23 +158,15 @@ TEST(JointConstraints, AreThoseOfTheFormatWhateverTheAxesOfTheNodes) {
       if (version_0) options.world = quat(0, 0, 1, 0);
       Asset asset = make_person(options);
       version_0 ? add_vrm_0(asset) : add_vrm_1(asset);
-      size_t between = add_node(asset, upper, {0.1f, 0.02f, 0}, random_turn(rng), "between");
-      size_t twist = add_node(asset, between, {0.05f, 0.1f, 0.03f}, random_turn(rng), "twist");
+      const auto [between, twist] = add_extra_nodes(asset, upper, rng);
       constrain(asset, twist, c.asked);
       Character character = load_asset(asset);
       ASSERT_EQ(character.constraints.size(), 1u);
       const JointConstraint& constraint = character.constraints[0];
       EXPECT_EQ(character.joints[size_t(constraint.joint)].name, "twist");
-
       Nodes nodes(asset.root);
       Pose pose = make_rest_pose(character);
-      std::vector<int> joint_of(nodes.parent.size(), -1);
-      const auto& bones = test::person_bones();
-      for (size_t i = 0; i < bones.size(); i++)
-        for (size_t j = 0; j < character.joints.size(); j++)
-          if (glm::length(options.world * character.joints[j].center - options.world * vec3(0) -
-                          options.world * bones[i].place) < 1e-4f)
-            joint_of[i] = int(j);
+      std::vector<int> joint_of = joints_of_nodes(nodes, character, options.world);
       joint_of[between] = find_joint(character, "between"), joint_of[twist] = constraint.joint;
       std::vector<quat> rest_turn;  // of each node in humanoid space
       for (size_t i = 0; i < joint_of.size(); i++)

@@ -94,10 +94,10 @@ void expect_same(const Character& a, const Character& b, const char* what) {
   }
   ASSERT_EQ(a.parts.size(), b.parts.size());
   for (size_t p = 0; p < a.parts.size(); p++) EXPECT_EQ(a.parts[p].triangles, b.parts[p].triangles);
-  ASSERT_EQ(a.looks.size(), b.looks.size());
-  for (size_t l = 0; l < a.looks.size(); l++) {
-    EXPECT_EQ(a.looks[l].base_color, b.looks[l].base_color);
-    EXPECT_EQ(a.looks[l].double_sided, b.looks[l].double_sided);
+  ASSERT_EQ(a.appearances.size(), b.appearances.size());
+  for (size_t l = 0; l < a.appearances.size(); l++) {
+    EXPECT_EQ(a.appearances[l].base_color, b.appearances[l].base_color);
+    EXPECT_EQ(a.appearances[l].double_sided, b.appearances[l].double_sided);
   }
   ASSERT_EQ(a.displacers.size(), b.displacers.size());
   for (size_t d = 0; d < a.displacers.size(); d++) {

@@ -135,27 +135,27 @@ TEST(GltfFigure, EyesLookAsTheirAuthorDrewThem) {
   Asset asset = make_person();
   add_vrm_1(asset);
   auto& presets = asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"];
-  for (const char* look : {"lookUp", "lookDown", "lookLeft", "lookRight"})
-    presets[look] = presets["aa"];
+  for (const char* appearance : {"lookUp", "lookDown", "lookLeft", "lookRight"})
+    presets[appearance] = presets["aa"];
   Character c = load_asset(asset);
   Rig rig = make_rig(c);
   ASSERT_FALSE(rig.eyes_move);
-  for (int look : rig.look) ASSERT_GE(look, 0);
+  for (int appearance : rig.appearance) ASSERT_GE(appearance, 0);
   Pose pose = make_rest_pose(c);
   aim_eyes(rig, rig.eyes_center + vec3(1, 0, 4), pose);  // to its own left
-  EXPECT_NEAR(pose.displacers[size_t(rig.look[2])], std::atan(0.25f) / eye_limit_yaw, 1e-3f);
-  EXPECT_EQ(pose.displacers[size_t(rig.look[3])], 0);
+  EXPECT_NEAR(pose.displacers[size_t(rig.appearance[2])], std::atan(0.25f) / eye_limit_yaw, 1e-3f);
+  EXPECT_EQ(pose.displacers[size_t(rig.appearance[3])], 0);
   aim_eyes(rig, rig.eyes_center + vec3(-100, -1000, 0.1f), pose);
-  EXPECT_EQ(pose.displacers[size_t(rig.look[2])], 0);
-  EXPECT_EQ(pose.displacers[size_t(rig.look[1])], 1);
+  EXPECT_EQ(pose.displacers[size_t(rig.appearance[2])], 0);
+  EXPECT_EQ(pose.displacers[size_t(rig.appearance[1])], 1);
 
   Character eyed = test::load_text(test::whole_figure());
   Rig eyed_rig = make_rig(eyed);
   ASSERT_TRUE(eyed_rig.eyes_move);
   auto turn_of = [&](int side) {
-    Pose look = make_rest_pose(eyed);
-    aim_eyes(eyed_rig, eyed_rig.eyes_center + vec3(100, 0, 300), look);
-    return glm::angle(look.rotations[size_t(eyed_rig.eye[size_t(side)])]);
+    Pose appearance = make_rest_pose(eyed);
+    aim_eyes(eyed_rig, eyed_rig.eyes_center + vec3(100, 0, 300), appearance);
+    return glm::angle(appearance.rotations[size_t(eyed_rig.eye[size_t(side)])]);
   };
   float left = turn_of(0), right = turn_of(1);
   EXPECT_GT(left, 0.2f);

@@ -234,8 +234,8 @@ TEST(Load, SmoothAndFacetedNormals) {
   expect_near(smooth.normals[0], normalize(vec3(0, 1, 1)));
   Character flipped = make("ccw='false'");
   expect_near(flipped.normals[0], {0, 0, -1});
-  EXPECT_FALSE(smooth.looks[size_t(smooth.parts[0].look)].double_sided);
-  EXPECT_TRUE(make("solid='false'").looks[0].double_sided);
+  EXPECT_FALSE(smooth.appearances[size_t(smooth.parts[0].appearance)].double_sided);
+  EXPECT_TRUE(make("solid='false'").appearances[0].double_sided);
 }
 
 TEST(Load, GivenNormalsAndTextureCoordinatesByTheirOwnIndex) {
@@ -310,13 +310,13 @@ TEST(Load, LooksOfBothMaterials) {
                      "roughness='0.2'/><ImageTexture "
                      "url='\"missing.png\"'/></Appearance><Box/></Shape></HAnimSegment>",
                      root)));
-  ASSERT_EQ(c.looks.size(), 2u);
-  EXPECT_EQ(c.looks[0].name, "Red");
-  expect_near(c.looks[0].base_color, {1, 0, 0});
-  EXPECT_FLOAT_EQ(c.looks[0].alpha, 0.75f);
-  EXPECT_FLOAT_EQ(c.looks[1].metallic, 0.3f);
-  expect_near(c.looks[1].base_color, vec3(0.5f));
-  EXPECT_TRUE(c.looks[1].texture.empty());
+  ASSERT_EQ(c.appearances.size(), 2u);
+  EXPECT_EQ(c.appearances[0].name, "Red");
+  expect_near(c.appearances[0].base_color, {1, 0, 0});
+  EXPECT_FLOAT_EQ(c.appearances[0].alpha, 0.75f);
+  EXPECT_FLOAT_EQ(c.appearances[1].metallic, 0.3f);
+  expect_near(c.appearances[1].base_color, vec3(0.5f));
+  EXPECT_TRUE(c.appearances[1].texture.empty());
   EXPECT_TRUE(warned(c, "no picture 'missing.png'"));
 }
 

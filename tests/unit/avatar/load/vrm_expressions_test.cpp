@@ -55,10 +55,10 @@ TEST(VrmExpressions, Version1ChangesColoursAndWherePicturesLie) {
   EXPECT_TRUE(says(c, "rim, matcap and outline colours"));
   EXPECT_NE(describe_text(c).find("2 displacers change materials: happy, sad"), std::string::npos)
       << describe_text(c);
-  LookChange none = change_of(c, make_rest_pose(c), 1);
+  AppearanceChange none = change_of(c, make_rest_pose(c), 1);
   EXPECT_EQ(none.base_color, vec4(0));
   EXPECT_EQ(none.uv, mat3(0.0f));
-  LookChange change = change_of(c, with(c, {{"happy", 0.5f}, {"sad", 1}}), 1);
+  AppearanceChange change = change_of(c, with(c, {{"happy", 0.5f}, {"sad", 1}}), 1);
   vec4 wanted = 0.5f * vec4(0.5f, -0.4f, 0, 0.5f);
   for (int i = 0; i < 4; i++) EXPECT_NEAR(change.base_color[i], wanted[i], 1e-6f) << i;
   vec3 glow = 0.5f * 4.0f * vec3(0.5f, 1, 0);
@@ -99,7 +99,7 @@ TEST(VrmExpressions, Version0NamesMaterialsInUnitysTerms) {
   Character c = load_asset(asset);
   EXPECT_TRUE(says(c, "materials that the file has not"));
   EXPECT_TRUE(says(c, "shade, rim, matcap"));
-  LookChange change = change_of(c, with(c, {{"happy", 1}}), 1);
+  AppearanceChange change = change_of(c, with(c, {{"happy", 1}}), 1);
   EXPECT_NEAR(change.base_color.x, 0.21404f - 0.5f, 1e-4f) << "0.5 of sRGB";
   EXPECT_NEAR(change.base_color.z, 1 - 0.25f, 1e-6f);
   EXPECT_NEAR(change.emission.x, (std::pow(2.0f, 2.2f) - 0.1f) * 4, 1e-3f);
@@ -107,7 +107,7 @@ TEST(VrmExpressions, Version0NamesMaterialsInUnitysTerms) {
   EXPECT_NEAR(change.uv[1].y, 0.25f - 1, 1e-6f);
   EXPECT_NEAR(change.uv[2].x, 0.5f, 1e-6f);
   EXPECT_NEAR(change.uv[2].y, 1 - 0.25f - 0.25f, 1e-6f) << "from above as glTF has it";
-  LookChange ring = change_of(c, with(c, {{"happy", 1}}), 2);
+  AppearanceChange ring = change_of(c, with(c, {{"happy", 1}}), 2);
   EXPECT_NEAR(ring.uv[2].x, 0.5f, 1e-6f);
   EXPECT_EQ(ring.uv[1], vec3(0)) << "one axis alone";
   EXPECT_EQ(ring.uv[2].y, 0);
@@ -199,7 +199,7 @@ TEST(VrmExpressions, AFigureThatAsksForNothingIsLeftAlone) {
   add_vrm_1(asset);
   Character c = load_asset(asset);
   EXPECT_TRUE(c.expression_rules.empty());
-  EXPECT_TRUE(c.look_changes.empty());
+  EXPECT_TRUE(c.appearance_changes.empty());
   EXPECT_TRUE(c.constraints.empty());
   Pose pose = with(c, {{"aa", 0.3f}});
   std::vector<float> before = pose.displacers;
@@ -229,8 +229,8 @@ TEST(VrmExpressions, ComeBeforeMorphTargetsOfTheirName) {
 TEST(VrmExpressions, EyesTurnByBonesOrByShapesWithinTheirRanges) {
   Asset asset = make_person();
   add_vrm_1(asset);
-  for (const char* look : {"lookUp", "lookDown", "lookLeft", "lookRight"})
-    presets(asset)[look] = presets(asset)["aa"];
+  for (const char* appearance : {"lookUp", "lookDown", "lookLeft", "lookRight"})
+    presets(asset)[appearance] = presets(asset)["aa"];
   json range = {{"inputMaxValue", 30}, {"outputScale", 0.8}};
   asset.root["extensions"]["VRMC_vrm"]["lookAt"] = {
       {"type", "expression"},

@@ -25,11 +25,11 @@ gltf::File rewritten(const Asset& asset) {
   return file;
 }
 
-TEST(VrmMaterials, OfVersion0AreAsTheirShaderHasThem) {
+// A person of VRM 0 with a cartoon material and an unlit one.
+Asset cartoon_person() {
   Asset asset = dressed_person();
   add_vrm_0(asset);
-  auto& properties = asset.root["extensions"]["VRM"]["materialProperties"];
-  properties = {{{"name", "skin"},
+  asset.root["extensions"]["VRM"]["materialProperties"] = {{{"name", "skin"},
                  {"shader", "VRM/MToon"},
                  {"floatProperties",
                   {{"_Cutoff", 0.25},
@@ -48,6 +48,11 @@ TEST(VrmMaterials, OfVersion0AreAsTheirShaderHasThem) {
                  {"floatProperties", json::object()},
                  {"vectorProperties", json::object()},
                  {"textureProperties", {{"_MainTex", 0}}}}};
+  return asset;
+}
+
+TEST(VrmMaterials, OfVersion0AreAsTheirShaderHasThem) {
+  Asset asset = cartoon_person();
   gltf::File file = rewritten(asset);
   const json& skin = file.root["materials"][0];
   EXPECT_EQ(skin["alphaMode"], "MASK");
@@ -68,14 +73,18 @@ TEST(VrmMaterials, OfVersion0AreAsTheirShaderHasThem) {
   Character c = load_asset(asset);
   EXPECT_TRUE(says(c, "outlines of cartoon materials (MToon) are not drawn"));
   EXPECT_TRUE(says(c, "are shown matt"));
-  ASSERT_EQ(c.looks.size(), 3u);
-  EXPECT_TRUE(c.looks[1].matt && c.looks[2].matt);
-  EXPECT_TRUE(c.looks[1].double_sided);
+  ASSERT_EQ(c.appearances.size(), 3u);
+  EXPECT_TRUE(c.appearances[1].matt && c.appearances[2].matt);
+  EXPECT_TRUE(c.appearances[1].double_sided);
+}
 
+TEST(VrmMaterials, OfVersion0FollowKeywordsAndTheShaderThatTheyName) {
+  Asset asset = cartoon_person();
+  auto& properties = asset.root["extensions"]["VRM"]["materialProperties"];
   properties[0]["keywordMap"] = {{"_ALPHABLEND_ON", true}};
   properties[0]["floatProperties"]["_CullMode"] = 2;
   properties[0]["vectorProperties"].erase("_EmissionColor");
-  file = rewritten(asset);
+  gltf::File file = rewritten(asset);
   EXPECT_EQ(file.root["materials"][0]["alphaMode"], "BLEND");
   EXPECT_EQ(file.root["materials"][0]["doubleSided"], false);
   EXPECT_FALSE(file.root["materials"][0].contains("emissiveFactor"))

@@ -34,11 +34,11 @@ inline json& presets(Asset& asset) {
   return asset.root["extensions"]["VRMC_vrm"]["expressions"]["preset"];
 }
 
-inline LookChange change_of(const Character& c, const Pose& pose, size_t look) {
-  std::vector<LookChange> changes;
-  eval_look_changes(c, pose, changes);
-  EXPECT_EQ(changes.size(), c.looks.size());
-  return changes[look];
+inline AppearanceChange change_of(const Character& c, const Pose& pose, size_t appearance) {
+  std::vector<AppearanceChange> changes;
+  eval_appearance_changes(c, pose, changes);
+  EXPECT_EQ(changes.size(), c.appearances.size());
+  return changes[appearance];
 }
 
 }  // namespace wellspring::test

@@ -68,7 +68,7 @@ TEST(InstantRadiosity, PointLightsCarryTheLightsPowerAndItsSeries) {
     InstantPass pass = draw(world, lights, settings, seed);
     double emitted = 0, sum[6] = {};
     for (const PointLight& light : pass.lights) {
-      ASSERT_EQ(light.kind, PointLightKind::matt);
+      ASSERT_EQ(light.kind, PointLightKind::lambertian);
       ASSERT_LE(light.depth, 5);
       if (light.depth == 0) emitted += double(light.radiance.x * pi);
       else sum[light.depth] += double(light.radiance.x * pi / albedo);

@@ -81,11 +81,11 @@ TEST(CausticPhotons, CastersHoldWhatIsSharpAndNothingElse) {
     ASSERT_TRUE(held);
   }
   for (const CasterSphere& c : lights.tables->casters) EXPECT_LT(c.radius, 0.5f);
-  Scene matt = make_ball_scene(diffuse(vec3(0.5f)));
-  World matt_world(matt);
-  Lights matt_lights = make_lights(matt_world);
-  EXPECT_TRUE(matt_lights.tables->casters.empty());
-  EXPECT_TRUE(shoot({matt_world, *matt_lights.tables}, 1000, 1).empty());
+  Scene lambertian = make_ball_scene(diffuse(vec3(0.5f)));
+  World lambert_world(lambertian);
+  Lights lambert_lights = make_lights(lambert_world);
+  EXPECT_TRUE(lambert_lights.tables->casters.empty());
+  EXPECT_TRUE(shoot({lambert_world, *lambert_lights.tables}, 1000, 1).empty());
 }
 
 // The density of directions is that of their choice: the mean of 1 / density over chosen directions

@@ -96,8 +96,8 @@ TEST(SwitchedLamps, WithoutAnyOtherLightItIsDarkAndFinite) {
   EXPECT_GT(mean_of(*find_technique("path"), world, relit(all, world)).mean, 0);
 }
 
-// Mean kept light, weighted by samples.
-double kept_light(const RadianceGrid& grid) {
+// Mean cached radiance, weighted by samples.
+double cached_radiance(const RadianceGrid& grid) {
   double sum = 0, weight = 0;
   for (size_t i = 0; i < grid.keys.size(); i++) {
     sum += double(grid.count[i]) * double(luminance(grid.light[i]));
@@ -116,7 +116,7 @@ TEST(SwitchedLamps, KeptLightIsThatOfASceneWithoutThem) {
     World world(other);
     Lights lights = make_lights(world);
     find_technique("gather")->prepare(world, std::span(&place, 1), lights);
-    double kept = kept_light(*switched.light(lamp, spot).grid), wanted = kept_light(*lights.grid);
+    double kept = cached_radiance(*switched.light(lamp, spot).grid), wanted = cached_radiance(*lights.grid);
     // Both are means over some 1e6 vertices of 4e5 walks, whose light deviates by about its mean.
     EXPECT_NEAR(kept / wanted, 1, 5 * std::sqrt(2.0 / 4e5)) << states;
   }

@@ -25,7 +25,7 @@ struct Stage {
   SkinLight skin;
   SkinUpdate update;
 
-  int add_matt(bool two_sided = false) {
+  int add_lambert(bool two_sided = false) {
     Material m = scenes::diffuse(vec3(0.5f));
     m.double_sided = two_sided;
     return scenes::add_material(scene, m);
@@ -66,7 +66,7 @@ struct Stage {
 
 Stage make_sphere_stage(float radius = 0.1f) {
   Stage stage;
-  stage.moving.push_back(scenes::sphere_mesh(stage.add_matt(), radius, sphere_rings));
+  stage.moving.push_back(scenes::sphere_mesh(stage.add_lambert(), radius, sphere_rings));
   return stage;
 }
 PunctualLight make_sun(vec3 direction = {0, -1, 0}, float intensity = pi) {
@@ -133,7 +133,7 @@ TEST(SkinLight, WhiteFurnace) {
 TEST(SkinLight, HasNoBiasUnderALampOfSomeSize) {
   Stage stage;
   stage.moving.emplace_back();
-  stage.moving[0].material = stage.add_matt();
+  stage.moving[0].material = stage.add_lambert();
   scenes::append_quad(stage.moving[0], {-0.02f, 0, 0.02f}, {0.04f, 0, 0}, {0, 0, -0.04f});
   Scene lamp = scenes::make_plane_with_rect_light(3);  // as its formula wants it
   stage.scene.materials.push_back(scenes::emitter(vec3(3)));
@@ -216,7 +216,7 @@ TEST(SkinLight, VerticesAtOnePositionShareLight) {
   EXPECT_LT(stage.skin.places.size(), stage.moving[0].positions.size());
   // A box's corners do not: its sides face elsewhere.
   Stage box;
-  box.moving.push_back(scenes::box_mesh(box.add_matt(), vec3(0.1f)));
+  box.moving.push_back(scenes::box_mesh(box.add_lambert(), vec3(0.1f)));
   box.begin();
   EXPECT_EQ(box.skin.places.size(), 24u);
 }
@@ -224,7 +224,7 @@ TEST(SkinLight, VerticesAtOnePositionShareLight) {
 TEST(SkinLight, TwoSidesOfAThinThingAreLitEachByItself) {
   Stage stage;
   stage.moving.emplace_back();
-  stage.moving[0].material = stage.add_matt(true);
+  stage.moving[0].material = stage.add_lambert(true);
   scenes::append_quad(stage.moving[0], {-0.1f, 0, 0.1f}, {0.2f, 0, 0}, {0, 0, -0.2f});
   stage.scene.lights.push_back(make_sun());
   stage.begin();
@@ -239,7 +239,7 @@ TEST(SkinLight, HiddenVerticesDoNotDarkenVisibleOnes) {
   // A strip that runs under a cover a millimetre above it.
   Stage stage;
   stage.moving.resize(2);
-  stage.moving[0].material = stage.moving[1].material = stage.add_matt();
+  stage.moving[0].material = stage.moving[1].material = stage.add_lambert();
   constexpr int columns = 20;
   Mesh& strip = stage.moving[0];
   for (int x = 0; x <= columns; x++)
@@ -370,7 +370,7 @@ TEST(SkinLight, OddMeshesAreLitFinitely) {
     for (size_t i = 0; i < odd.size(); i++) {
       Stage stage;
       stage.moving = all ? odd : std::vector{odd[i]};
-      int material = stage.add_matt(i % 2);
+      int material = stage.add_lambert(i % 2);
       for (Mesh& mesh : stage.moving) mesh.material = material;
       stage.scene.lights.push_back(make_sun());
       stage.scene.environment.radiance = vec3(0.5f);
@@ -389,7 +389,7 @@ TEST(SkinLight, OddMeshesAreLitFinitely) {
     }
   Stage one;
   one.moving = {odd[1]};
-  one.moving[0].material = one.add_matt();
+  one.moving[0].material = one.add_lambert();
   one.scene.environment.radiance = vec3(0.5f);
   one.begin();
   one.look(3, 4);
@@ -421,8 +421,8 @@ TEST(SkinLight, NothingToDo) {
 // Where nothing was sampled yet, light is that of what is known, not black.
 TEST(SkinLight, WhatIsUnknownIsNotBlack) {
   Stage stage;
-  int matt = stage.add_matt();
-  stage.moving = {scenes::sphere_mesh(matt, 0.1f, 8), scenes::sphere_mesh(matt, 0.1f, 8)};
+  int lambertian = stage.add_lambert();
+  stage.moving = {scenes::sphere_mesh(lambertian, 0.1f, 8), scenes::sphere_mesh(lambertian, 0.1f, 8)};
   for (vec3& p : stage.moving[1].positions) p.x += 1;
   stage.scene.environment.radiance = vec3(1);
   stage.begin();

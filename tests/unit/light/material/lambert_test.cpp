@@ -20,7 +20,7 @@ vec3 in_box(Rng& rng) {
   return {x, y, z};
 }
 
-Material matt() {
+Material lambertian() {
   Material m;
   m.base_color = {0.7f, 0.5f, 0.2f, 1};
   m.metallic = 0;
@@ -50,7 +50,7 @@ Mesh heap(uint64_t seed) {
 // One heap where it is, one turned, stretched and mirrored.
 Scene heaps() {
   Scene scene;
-  scene.materials = {matt()};
+  scene.materials = {lambertian()};
   Image image;
   image.width = image.height = 2;
   for (int i = 0; i < 16; i++) image.texels8.push_back(uint8_t(40 + 13 * i));
@@ -86,14 +86,14 @@ int for_each_hit(const World& world, const See& see) {
 
 }  // namespace
 
-TEST(Matt, SurfacesAreThoseOfTheLongWay) {
+TEST(Lambert, SurfacesAreThoseOfTheLongWay) {
   Scene scene = heaps();
   std::vector<Mesh> moving = {heap(3)};
   World world(scene, moving);
   int moved = 0;
   int hits = for_each_hit(world, [&](const Ray& ray, const Hit& hit) {
     Surface all = eval_surface(world, ray, hit);
-    MattSurface few = eval_matt_surface(world, ray, hit);
+    LambertSurface few = eval_lambert_surface(world, ray, hit);
     moved += world.is_moving(hit.instance);
     EXPECT_EQ(few.position, all.position);
     EXPECT_EQ(few.extent, all.extent);
@@ -110,7 +110,7 @@ TEST(Matt, SurfacesAreThoseOfTheLongWay) {
 }
 
 // What is kept of a triangle and what is made of a moving one on the way are the same.
-TEST(Matt, StillAndMovingMeshesLookTheSame) {
+TEST(Lambert, StillAndMovingMeshesLookTheSame) {
   Scene still = heaps(), empty = heaps();
   still.instances.resize(1);
   empty.instances.clear();
@@ -119,7 +119,7 @@ TEST(Matt, StillAndMovingMeshesLookTheSame) {
     Hit same = made.intersect(ray);
     ASSERT_TRUE(same.valid());
     ASSERT_EQ(same.triangle, hit.triangle);
-    MattSurface a = eval_matt_surface(kept, ray, hit), b = eval_matt_surface(made, ray, same);
+    LambertSurface a = eval_lambert_surface(kept, ray, hit), b = eval_lambert_surface(made, ray, same);
     EXPECT_LE(length(a.position - b.position), 1e-5f);
     EXPECT_LE(length(a.normal - b.normal), 1e-4f);
     EXPECT_LE(length(a.base_color - b.base_color), 1e-3f);
@@ -127,7 +127,7 @@ TEST(Matt, StillAndMovingMeshesLookTheSame) {
   EXPECT_GT(hits, 1000);
 }
 
-TEST(Matt, LobesAreThoseOfTheLongWay) {
+TEST(Lambert, LobesAreThoseOfTheLongWay) {
   Scene scene = heaps();
   World world(scene);
   const Material& material = scene.materials[0];
@@ -135,16 +135,16 @@ TEST(Matt, LobesAreThoseOfTheLongWay) {
   Rng rng(9);
   for_each_hit(world, [&](const Ray& ray, const Hit& hit) {
     Bsdf bsdf = make_bsdf(eval_surface(world, ray, hit), material, ray.direction, albedo);
-    MattLobe lobe = make_matt(eval_matt_surface(world, ray, hit), ray.direction);
+    LambertLobe lobe = make_lambert(eval_lambert_surface(world, ray, hit), ray.direction);
     vec3 way = normalize(in_box(rng));
     BsdfValue value = eval_bsdf(bsdf, way);
-    float pdf = eval_matt_pdf(lobe, way);
+    float pdf = eval_lambert_pdf(lobe, way);
     EXPECT_NEAR(pdf, sample_bsdf_pdf(bsdf, value, Lobes::all), 1e-5f);
     EXPECT_LE(length(lobe.reflectance * pdf - value.diffuse - value.specular), 1e-5f);
     Sampler a(rng.next()), b(a);
     BsdfSample all = sample_bsdf(bsdf, Lobes::all, a);
     b.seek(1);
-    BsdfSample few = sample_matt(lobe, b.next2());
+    BsdfSample few = sample_lambert(lobe, b.next2());
     EXPECT_LE(length(all.weight - few.weight), 1e-5f);
     if (!(all.pdf > 0)) return;
     EXPECT_LE(length(all.direction - few.direction), 1e-4f);
@@ -152,14 +152,14 @@ TEST(Matt, LobesAreThoseOfTheLongWay) {
   });
 }
 
-TEST(Matt, MaterialsWithMoreToThemAreNot) {
-  EXPECT_TRUE(is_matt(matt()));
+TEST(Lambert, MaterialsWithMoreToThemAreNot) {
+  EXPECT_TRUE(is_lambertian(lambertian()));
   auto is = [](auto change) {
-    Material m = matt();
+    Material m = lambertian();
     change(m);
-    return is_matt(m);
+    return is_lambertian(m);
   };
-  EXPECT_FALSE(is_matt(Material()));
+  EXPECT_FALSE(is_lambertian(Material()));
   EXPECT_TRUE(is([](Material& m) { m.ior = 1.5f, m.specular = 0; }));
   EXPECT_FALSE(is([](Material& m) { m.ior = 1.5f; }));
   EXPECT_FALSE(is([](Material& m) { m.ior = 0; }));

@@ -133,9 +133,9 @@ TEST(LampsSeen, WhatWasNeverSeenIsStillFound) {
 // change.
 TEST(LampsSeen, SwitchedOffLampsLeaveTheOthersTheirShares) {
   Place p;
-  Shining shining = what_shines(p.world);
-  shining.lights[below] = 0;
-  std::shared_ptr<const LightTables> fewer = relit(*p.lights.tables, p.scene, shining);
+  EmittingSources emitting = find_emitting(p.world);
+  emitting.lights[below] = 0;
+  std::shared_ptr<const LightTables> fewer = relit(*p.lights.tables, p.scene, emitting);
   ASSERT_EQ(fewer->punctual.size(), 2u);
   LampsSeen alike = *p.seen, uneven = alike;
   for (LampsSeen::Shares& shares : alike.shares) shares.fill(255);

@@ -104,7 +104,7 @@ TEST(LightTree, PicksAreAsProbableAsItSaysAndAddUpToOne) {
 TEST(LightTree, LightsThatAllReachAPlaceShareAllOfTheProbability) {
   for (int count : {2, 9, 104, 3000}) {
     std::vector<LightBounds> lights = random_lights(count, 8);
-    for (LightBounds& b : lights) b.cos_spread = -1;  // shining everywhere
+    for (LightBounds& b : lights) b.cos_spread = -1;  // emitting everywhere
     LightTree tree = make_light_tree(lights, LightChoice::by_place);
     Rng rng(4);
     for (vec3 place : {vec3(0), random_place(rng, 10), vec3(-1e6f, 3, 1), vec3(0, 40, 0)}) {
@@ -142,7 +142,7 @@ TEST(LightTree, NearAndFacingLightsArePreferred) {
   for (int i = 0; i < 100; i++) {
     LightBounds b;
     b.low = b.high = {float(i), 2, 0};
-    b.axis = {0, i == 50 ? 1.0f : -1.0f, 0};  // the one in the middle shines upwards
+    b.axis = {0, i == 50 ? 1.0f : -1.0f, 0};  // the one in the middle emits light upwards
     b.strength = 1;
     lights.push_back(b);
   }

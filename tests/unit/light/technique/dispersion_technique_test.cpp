@@ -49,7 +49,7 @@ Mesh prism_mesh(int material) {
   return mesh;
 }
 
-// A prism above a floor, and a strip of a lamp that shines through it onto a wall.
+// A prism above a floor, and a strip of a lamp that emits light through it onto a wall.
 Scene make_prism_scene(Material prism, Material wall = diffuse(vec3(0.7f))) {
   Scene scene = empty_scene();
   int white = add_material(scene, diffuse(vec3(0.6f)));
@@ -134,6 +134,42 @@ TEST(Dispersion, EveryTechniqueBringsTheSameColors) {
 // Parallel white light that goes through two faces of a prism near the least deviation comes out
 // sorted: the shorter the wavelength, the farther it is bent towards the base. The mean direction
 // of each channel is what Snell's law makes of the channel's response.
+// The mean sine of the angles at which light leaves the prism, each channel by itself.
+// In the plane across the prism: in through the left face at each of its places, out through the
+// right one unless the base is met first, and what Fresnel's formula lets through.
+glm::dvec3 expected_sines(const Material& glass_of_prism, vec3 sun_direction) {
+  const dvec3 apex(0, 0.35, 0), left(-0.2, 0, 0), right(0.2, 0, 0);
+  glm::dvec3 expected(0), weight(0);
+  constexpr int wavelengths = 1024, places = 64;
+  for (int i = 0; i < wavelengths; i++) {
+    float hue = (float(i) + 0.5f) / wavelengths;
+    double index = double(index_at(glass_of_prism, wavelength_at(hue))), passes = 1;
+    dvec3 d(sun_direction);
+    auto refract = [&](dvec3 n, double eta) {
+      double c = -dot(n, d), k = 1 - eta * eta * (1 - c * c);
+      if (k <= 0) return false;
+      passes *= 1 - double(fresnel_dielectric(float(c), float(1 / eta)));
+      d = eta * d + (eta * c - std::sqrt(k)) * n;
+      return true;
+    };
+    if (!refract(normalize(dvec3(-0.35, 0.2, 0)), 1 / index)) continue;
+    dvec3 inside = d;
+    if (!refract(normalize(dvec3(-0.35, -0.2, 0)), index)) continue;
+    int reach = 0;
+    for (int k = 0; k < places; k++) {
+      dvec3 from = glm::mix(left, apex, (k + 0.5) / places), along = apex - right;
+      // from + t inside = right + s along
+      double t = ((right.x - from.x) * along.y - (right.y - from.y) * along.x) /
+                 (inside.x * along.y - inside.y * along.x);
+      reach += from.y + t * inside.y > 0;
+    }
+    glm::dvec3 share = glm::dvec3(response_at(hue)) * (passes * reach);
+    expected += share * -d.y;
+    weight += share;
+  }
+  return expected / weight;
+}
+
 TEST(Dispersion, PhotonsLeaveThePrismSortedByHue) {
   Material glass_of_prism = flint(0);
   Scene scene = make_prism_scene(glass_of_prism);
@@ -161,38 +197,7 @@ TEST(Dispersion, PhotonsLeaveThePrismSortedByHue) {
     glm::dvec3 off = glm::dvec3(p.flux) * (double(p.direction.y) - sine) / flux;
     square += off * off;
   }
-  // In the plane across the prism: in through the left face at each of its places, out through the
-  // right one unless the base is met first, and what Fresnel's formula lets through.
-  const dvec3 apex(0, 0.35, 0), left(-0.2, 0, 0), right(0.2, 0, 0);
-  glm::dvec3 expected(0), weight(0);
-  constexpr int wavelengths = 1024, places = 64;
-  for (int i = 0; i < wavelengths; i++) {
-    float hue = (float(i) + 0.5f) / wavelengths;
-    double index = double(index_at(glass_of_prism, wavelength_at(hue))), passes = 1;
-    dvec3 d(sun.direction);
-    auto refract = [&](dvec3 n, double eta) {
-      double c = -dot(n, d), k = 1 - eta * eta * (1 - c * c);
-      if (k <= 0) return false;
-      passes *= 1 - double(fresnel_dielectric(float(c), float(1 / eta)));
-      d = eta * d + (eta * c - std::sqrt(k)) * n;
-      return true;
-    };
-    if (!refract(normalize(dvec3(-0.35, 0.2, 0)), 1 / index)) continue;
-    dvec3 inside = d;
-    if (!refract(normalize(dvec3(-0.35, -0.2, 0)), index)) continue;
-    int reach = 0;
-    for (int k = 0; k < places; k++) {
-      dvec3 from = glm::mix(left, apex, (k + 0.5) / places), along = apex - right;
-      // from + t inside = right + s along
-      double t = ((right.x - from.x) * along.y - (right.y - from.y) * along.x) /
-                 (inside.x * along.y - inside.y * along.x);
-      reach += from.y + t * inside.y > 0;
-    }
-    glm::dvec3 share = glm::dvec3(response_at(hue)) * (passes * reach);
-    expected += share * -d.y;
-    weight += share;
-  }
-  expected /= weight;
+  const glm::dvec3 expected = expected_sines(glass_of_prism, sun.direction);
   for (int c = 0; c < 3; c++) {
     EXPECT_NEAR(sine[c], expected[c], significance_z * std::sqrt(square[c])) << "channel " << c;
     EXPECT_LT(std::sqrt(square[c]), 0.003) << "channel " << c;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kept light: the technique `gather` against the reference and against a formula.
+// Cached radiance: the technique `gather` against the reference and against a formula.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -157,7 +157,7 @@ TEST(PlanSaves, LookingUpALampThatIsTheSameAllOver) {
   both.expect_same_mean(0.02);
 }
 
-// A scan whose picture carries its light: a million triangles that shine and light nobody.
+// A scan whose picture carries its light: a million triangles that emit light and light nobody.
 TEST(PlanSaves, TablesOfEmittersThatLightNobody) {
   Scene scene = empty_scene();
   Material scan = diffuse({0.7f, 0.6f, 0.5f});
@@ -207,7 +207,7 @@ TEST(PlanSaves, AGridOfLightThatNothingKeeps) {
   scene.environment.radiance = vec3(1);
   add_mesh(scene, sphere_mesh(add_material(scene, metal({0.9f, 0.8f, 0.7f}, 0)), 0.3f, 12), "ball");
   add_quad(scene, 1, {-2, -0.3f, 2}, {4, 0, 0}, {0, 0, -4}, "mirror floor");
-  BothWays both(scene, kept_light);
+  BothWays both(scene, cached_radiance);
   const Technique& gather = *find_technique("gather");
   vec3 eye = both.view(1, 1).position;
   gather.prepare(both.world, std::span(&eye, 1), both.planned);

@@ -13,7 +13,7 @@ using namespace wellspring::scenes;
 
 namespace {
 
-// One of everything: matt, glossy, mirror, rough metal, brushed, unlit, a lamp, a pane; and sky
+// One of everything: Lambertian, glossy, mirror, rough metal, brushed, unlit, a lamp, a pane; and sky
 // where there is no wall.
 Scene make_assembly(bool solid) {
   Scene scene = empty_scene();
@@ -51,7 +51,7 @@ TEST_P(See, AgreesWithTheSamplesOfTechniques) {
   for (int y = 0; y < view.height; y++)
     for (int x = 0; x < view.width; x++)
       rays.push_back(view_ray(view, float(x) + 0.5f, float(y) + 0.5f));
-  std::vector<Seen> seen(rays.size());
+  std::vector<PrimaryHit> seen(rays.size());
   see(world, lights, rays, seen);
   TransportSettings emission;  // one edge: what is there without any light falling
   emission.max_depth = 1;
@@ -87,7 +87,7 @@ TEST_P(See, AgreesWithTheSamplesOfTechniques) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, See, testing::Values(false, true));
 
-// A shining pane before a shining board: what each emits is light of the sample, and told by itself
+// A emitting pane before a emitting board: what each emits is light of the sample, and told by itself
 // where other light falls there, too.
 TEST(SeeRays, WhatPanesAndSurfacesEmitIsLightAndToldByItself) {
   Scene scene = empty_scene();
@@ -127,8 +127,8 @@ TEST(SeeRays, NoneAndBrokenOnesDoNoHarm) {
   Ray broken;
   broken.direction = vec3(NAN);
   std::vector<Ray> rays(100, broken);
-  std::vector<Seen> seen(rays.size());
+  std::vector<PrimaryHit> seen(rays.size());
   see(world, lights, rays, seen);
-  for (const Seen& s : seen) EXPECT_EQ(s.object, 0u);
+  for (const PrimaryHit& s : seen) EXPECT_EQ(s.object, 0u);
   EXPECT_THROW(see(world, lights, rays, std::span(seen).first(3)), std::invalid_argument);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A drawn picture sees what rays see: surfaces, reflectances and what shines, through panes too.
+// A drawn picture sees what rays see: surfaces, reflectances and what emits, through panes too.
 #include "light/visible/visibility.h"
 
 #include <gtest/gtest.h>
@@ -35,19 +35,19 @@ int add_texture(Scene& scene, Image image) {
 }
 
 struct Drawn {
-  std::vector<Seen> seen;
+  std::vector<PrimaryHit> seen;
   std::vector<vec3> reflectance, normal;
   std::vector<uint8_t> told;
   std::vector<uint32_t> object;
   std::vector<float> depth;
 };
 
-Drawn draw(const PictureSight& sight, const View& view) {
+Drawn draw(const VisibilityPass& visibility, const View& view) {
   size_t pixels = size_t(view.width) * size_t(view.height);
-  Drawn d{std::vector<Seen>(pixels), std::vector<vec3>(pixels), std::vector<vec3>(pixels),
+  Drawn d{std::vector<PrimaryHit>(pixels), std::vector<vec3>(pixels), std::vector<vec3>(pixels),
           std::vector<uint8_t>(pixels), std::vector<uint32_t>(pixels),
           std::vector<float>(pixels)};
-  sight.see(view, vec2(0.5f), [&](const SightRun& run) {
+  visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
     size_t first = size_t(run.y) * size_t(view.width) + size_t(run.x);
     RunSurface r;
     uint64_t alone = run.describe(~uint64_t(0), r);
@@ -65,17 +65,17 @@ Drawn draw(const PictureSight& sight, const View& view) {
   return d;
 }
 
-std::vector<Seen> trace_picture(const World& world, const Lights& lights, const View& view) {
+std::vector<PrimaryHit> trace_picture(const World& world, const Lights& lights, const View& view) {
   std::vector<Ray> rays;
   for (int y = 0; y < view.height; y++)
     for (int x = 0; x < view.width; x++)
       rays.push_back(view_ray(view, float(x) + 0.5f, float(y) + 0.5f));
-  std::vector<Seen> seen(rays.size());
+  std::vector<PrimaryHit> seen(rays.size());
   see(world, lights, rays, seen);
   return seen;
 }
 
-// A shelf of everything: matt, gloss, soft and sharp metal, textures near and repeated, colours of
+// A shelf of everything: Lambertian, gloss, soft and sharp metal, textures near and repeated, colours of
 // corners, a lamp, an unlit sign, a pane before half of it, coloured glass, sky beside it.
 Scene make_shelf() {
   Scene scene = empty_scene();
@@ -121,14 +121,14 @@ TEST(SeePicture, SeesWhatRaysSee) {
   World world(scene);
   world.commit();
   Lights lights = make_lights(world);
-  PictureSight sight(world, lights);
+  VisibilityPass visibility(world, lights);
   View view = make_view(scene, {0, 0.1, 0}, 0, 0, 0.7f, 241, 160);
-  ASSERT_TRUE(sight.rasterises(view));
-  Drawn drawn = draw(sight, view);
-  std::vector<Seen> traced = trace_picture(world, lights, view);
-  int told = 0, edges = 0, shining = 0, tinted = 0, dark = 0, sky = 0;
+  ASSERT_TRUE(visibility.rasterises(view));
+  Drawn drawn = draw(visibility, view);
+  std::vector<PrimaryHit> traced = trace_picture(world, lights, view);
+  int told = 0, edges = 0, emitting = 0, tinted = 0, dark = 0, sky = 0;
   for (size_t i = 0; i < traced.size(); i++) {
-    const Seen &a = drawn.seen[i], &b = traced[i];
+    const PrimaryHit &a = drawn.seen[i], &b = traced[i];
     if (a.object != b.object) {  // an edge runs within a hair of the pixel's centre
       edges++;
       continue;
@@ -148,12 +148,12 @@ TEST(SeePicture, SeesWhatRaysSee) {
     EXPECT_GT(dot(glm::normalize(drawn.normal[i]), a.normal), 0.9999f) << i;
     EXPECT_TRUE(!drawn.told[i] || (a.scatters && a.glow == vec3(0))) << i;
     told += drawn.told[i];
-    shining += a.glow.x > 1, dark += a.albedo == vec3(0) && a.object != 0;
+    emitting += a.glow.x > 1, dark += a.albedo == vec3(0) && a.object != 0;
     tinted += a.object == 1 && a.albedo.x < 0.97f * 0.6f;
   }
   EXPECT_LT(edges, 40);
   EXPECT_GT(told, 5000);
-  EXPECT_GT(shining, 100);
+  EXPECT_GT(emitting, 100);
   EXPECT_GT(dark, 100);  // the sharp metal
   EXPECT_GT(tinted, 100);
   EXPECT_GT(sky, 1000);
@@ -186,8 +186,8 @@ TEST(SeePicture, SmallTrianglesSideBySideKeepTheirReflectance) {
     }
   World world(scene);
   world.commit();
-  PictureSight sight(world, make_lights(world));
-  Drawn drawn = draw(sight, make_view(scene, {0, 0, 0}, 0, 0, 0.55f, 150, 84));
+  VisibilityPass visibility(world, make_lights(world));
+  Drawn drawn = draw(visibility, make_view(scene, {0, 0, 0}, 0, 0, 0.55f, 150, 84));
   double off = 0;
   for (size_t i = 0; i < drawn.seen.size(); i++) {
     float differs = glm::length(drawn.reflectance[i] - drawn.seen[i].albedo);
@@ -203,8 +203,8 @@ TEST(SeePicture, DepthIsAlongTheViewingAxis) {
   World world(scene);
   world.commit();
   Lights lights = make_lights(world);
-  PictureSight sight(world, lights);
-  Drawn drawn = draw(sight, make_view(scene, {0, 0, 0}, 0, 0, 1.2f, 64, 48));
+  VisibilityPass visibility(world, lights);
+  Drawn drawn = draw(visibility, make_view(scene, {0, 0, 0}, 0, 0, 1.2f, 64, 48));
   for (float depth : drawn.depth) EXPECT_NEAR(depth, 3, 1e-5f);
 }
 
@@ -219,10 +219,10 @@ TEST(SeePicture, PicturesFarAwayAreTheirMean) {
   World world(scene);
   world.commit();
   Lights lights = make_lights(world);
-  PictureSight sight(world, lights);
+  VisibilityPass visibility(world, lights);
   float mean = 0.5f * (decode_srgb(230) + decode_srgb(40));
   for (float x : {0.0f, 0.0137f}) {
-    Drawn drawn = draw(sight, make_view(scene, {double(x), 0, 0}, 0, 0, 1, 64, 64));
+    Drawn drawn = draw(visibility, make_view(scene, {double(x), 0, 0}, 0, 0, 1, 64, 64));
     for (size_t i = 0; i < drawn.seen.size(); i++) {
       ASSERT_NEAR(drawn.seen[i].albedo.x, mean, 0.02f);
       ASSERT_NEAR(drawn.reflectance[i].x, mean, 0.02f);
@@ -240,19 +240,19 @@ TEST(SeePicture, AnEyeInSolidGlassIsServedByRays) {
   World world(scene);
   world.commit();
   Lights lights = make_lights(world);
-  PictureSight sight(world, lights);
-  EXPECT_TRUE(sight.rasterises(make_view(scene, {0, 0, 2}, 0, 0, 1, 8, 8)));
+  VisibilityPass visibility(world, lights);
+  EXPECT_TRUE(visibility.rasterises(make_view(scene, {0, 0, 2}, 0, 0, 1, 8, 8)));
   View view = make_view(scene, {0, 0, 0}, 0.3f, 0.1f, 1, 75, 20);
-  ASSERT_FALSE(sight.rasterises(view));
+  ASSERT_FALSE(visibility.rasterises(view));
   vec2 offset(0.3f, 0.8f);
   std::vector<int> calls(75 * 20, 0), lamp = calls;
-  auto edges = sight.see_edges(view, offset, [&](const SightRun& run) {
+  auto edges = visibility.see_edges(view, offset, [&](const VisibleRun& run) {
     RunSurface surface;
     uint64_t all = run.count < 64 ? (uint64_t(1) << run.count) - 1 : ~uint64_t(0);
     EXPECT_EQ(run.describe(all, surface), all);  // only see() knows
     for (int i = 0; i < run.count; i++) {
       Ray ray = view_ray(view, float(run.x + i) + offset.x, float(run.y) + offset.y);
-      Seen seen, drawn = run.see(i);
+      PrimaryHit seen, drawn = run.see(i);
       see(world, lights, std::span(&ray, 1), std::span(&seen, 1));
       size_t pixel = size_t(run.y * 75 + run.x + i);
       calls[pixel]++;
@@ -268,6 +268,6 @@ TEST(SeePicture, AnEyeInSolidGlassIsServedByRays) {
   EXPECT_GT(std::count(lamp.begin(), lamp.end(), 1), 100);
   EXPECT_LT(std::count(lamp.begin(), lamp.end(), 1), 75 * 20 / 2);
   int moving = 0;
-  sight.see(view, offset, [&](const SightRun&) { moving++; }, RasterShows::moving);
+  visibility.see(view, offset, [&](const VisibleRun&) { moving++; }, RasterShows::moving);
   EXPECT_EQ(moving, 0);
 }

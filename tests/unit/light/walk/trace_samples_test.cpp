@@ -159,7 +159,7 @@ TEST(TraceSamples, LanesSayWhatTheLongWaySays) {
       WalkRules rules;
       rules.scatterings = scatterings;
       Transport transport{room.world, *room.lights.tables};
-      ASSERT_TRUE(transport.tables.any_matt);
+      ASSERT_TRUE(transport.tables.any_lambertian);
       std::vector<Sample> samples(room.requests.size());
       trace_samples(transport, rules, room.requests, samples);
       size_t strays = 0;
@@ -244,15 +244,15 @@ TEST(SurfaceLanes, ArePlacesAndOriginsOfTheSameSurfaces) {
       direction.set(i, rays[i].direction);
       away.set(i, normalize(inside()));
       hits[i] = room.world.intersect(rays[i]);
-      bool matt = hits[i].valid() && is_matt(room.world.material_of(hits[i].instance));
-      active |= unsigned(matt) << i;
+      bool lambertian = hits[i].valid() && is_lambertian(room.world.material_of(hits[i].instance));
+      active |= unsigned(lambertian) << i;
     }
-    MattSurfaceLanes lanes = eval_matt_surfaces(room.world, direction, hits, active);
+    LambertSurfaceLanes lanes = eval_lambert_surfaces(room.world, direction, hits, active);
     Lanes3 origin = offset_origins(lanes, away);
     bent += std::popcount(lanes.bent);
     for (int i = 0; i < lane_count; i++) {
       if (!(active >> i & 1)) continue;
-      MattSurface one = eval_matt_surface(room.world, rays[i], hits[i]);
+      LambertSurface one = eval_lambert_surface(room.world, rays[i], hits[i]);
       compared++;
       moving += room.world.is_moving(hits[i].instance);
       EXPECT_LE(length(lanes.position.at(i) - one.position), 1e-7f);

@@ -148,7 +148,7 @@ TEST(CorrectStill, SamplesAreForgottenWhereThePictureBeginsAnew) {
   Picture p;
   p.sample(3, 1);
   p.still.count[5] = 0;
-  forget_samples(p.still, p.samples);
+  invalidate_samples(p.still, p.samples);
   for (size_t i = 0; i < 10; i++) EXPECT_EQ(p.samples.count[i], i == 5 ? 0 : 3) << i;
 }
 

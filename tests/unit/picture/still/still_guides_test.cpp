@@ -35,12 +35,12 @@ TEST(StillGuides, AgreeWithThoseOfRays) {
   World world(scene);
   world.commit();
   Lights lights = make_lights(world);
-  PictureSight sight(world, lights);
+  VisibilityPass visibility(world, lights);
   View view = make_view_towards(scene, {0, 0.5, 4}, {0, -0.2, 0}, {0, 1, 0}, 1.0f, 160, 90);
   std::vector<uint8_t> followed;
   GuidePlanes drawn, traced = make_guides(world, lights, view, 16);
   for (int place = 0; place < guide_places; place++)
-    add_still_guides(world, lights, sight, view, RasterShows::all, place, drawn,
+    add_still_guides(world, lights, visibility, view, RasterShows::all, place, drawn,
                      followed);
   ASSERT_EQ(drawn.albedo.size(), traced.albedo.size());
   double albedo = 0, normal = 0;
@@ -53,7 +53,7 @@ TEST(StillGuides, AgreeWithThoseOfRays) {
     far += max_component(a) > 0.2f;
   }
   const double pixels = double(traced.albedo.size());
-  EXPECT_LT(albedo / pixels, 0.03);  // the gloss of matt surfaces is left out, edges are coarser
+  EXPECT_LT(albedo / pixels, 0.03);  // the gloss of Lambertian surfaces is left out, edges are coarser
   EXPECT_LT(normal / pixels, 0.03);
   EXPECT_LT(far / pixels, 0.03);
 }
@@ -68,13 +68,13 @@ TEST(StillGuides, OfWhatStandsStillLeaveOutWhatMoves) {
   World world(scene, {sphere_mesh(red, 1)}, {uint32_t(scene.objects.size() - 1)});
   world.commit();
   Lights lights = make_lights(world);
-  PictureSight sight(world, lights);
+  VisibilityPass visibility(world, lights);
   View view = make_view_towards(scene, {0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 1.0f, 65, 65);
   std::vector<uint8_t> followed, others;
   GuidePlanes all, still;
   for (int place = 0; place < guide_places; place++) {
-    add_still_guides(world, lights, sight, view, RasterShows::all, place, all, followed);
-    add_still_guides(world, lights, sight, view, RasterShows::still, place, still, others);
+    add_still_guides(world, lights, visibility, view, RasterShows::all, place, all, followed);
+    add_still_guides(world, lights, visibility, view, RasterShows::still, place, still, others);
   }
   const size_t middle = 32 * 65 + 32;
   EXPECT_NEAR(all.albedo[middle].x, 0.8f, 0.05f);

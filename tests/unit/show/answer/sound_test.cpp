@@ -109,10 +109,10 @@ struct SoundTest : testing::Test {
     character.weights.assign(3, {0, 1});
     exhibit.storytellers.resize(2);
     for (size_t i = 0; i < 2; i++) {
-      StorytellerPlace& teller = exhibit.storytellers[i];
-      teller.id = i == 0 ? "anna" : "otto";
-      teller.character = character;
-      teller.position = {1, 0, 2 - 0.5 * double(i)};
+      StorytellerPlace& storyteller_place = exhibit.storytellers[i];
+      storyteller_place.id = i == 0 ? "anna" : "otto";
+      storyteller_place.character = character;
+      storyteller_place.position = {1, 0, 2 - 0.5 * double(i)};
     }
     exhibit.storytellers[1].voice.variant = "m2";
     show = make_show(std::move(exhibit),
@@ -388,7 +388,7 @@ TEST_F(SoundTest, NobodyFarAwayTakesTheStorytellerFromWhoStandsBeforeIt) {
   EXPECT_EQ(show->voice.story, "tale");
   EXPECT_EQ(show->voice.asked_by, peers[a].link->id);
   EXPECT_TRUE(show->storyteller_visible);
-  EXPECT_EQ(show->teller, 0u);
+  EXPECT_EQ(show->storyteller_index, 0u);
   EXPECT_FALSE(show->voice.paused);
   // The kiosk may, and afterwards everybody may again.
   order(a, R"({"type":"storyteller","action":"stop"})");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures drawn in the background and warped meanwhile, driven by a clock of the test's own and by
-// a hand on the easel.
+// a hand on the renderer.
 #include <gtest/gtest.h>
 
 #include <future>
@@ -10,7 +10,7 @@
 #include "frame/jpeg.h"
 #include "frame/tonemap.h"
 #include "show/answer/answer.h"
-#include "show/draw/order_picture.h"
+#include "show/draw/make_picture_job.h"
 #include "show/draw/picture.h"
 #include "show/state/make_show.h"
 #include "show/state/show.h"
@@ -46,11 +46,11 @@ struct LatePictures : testing::Test {
     say(R"({"type":"input","seq":)" + std::to_string(++seq) + R"(,"move":[0,0,)" +
         std::to_string(forward) + R"(],"look":[)" + std::to_string(yaw) + ",0]}");
   }
-  // `finish`: what the easel has begun is finished before the next tick.
+  // `finish`: what the renderer has begun is finished before the next tick.
   void step(bool finish = true, double seconds = 0.02) {
     tick(*show, arrivals, now += seconds);
     for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-    if (finish) show->easel.worker.wait();
+    if (finish) show->renderer.worker.wait();
     for (const auto& link : links) {
       Link::Out out;
       while (link->take_out(out))
@@ -60,20 +60,20 @@ struct LatePictures : testing::Test {
   void steps(int count) {
     for (int i = 0; i < count; i++) step();
   }
-  // From now on the easel is busy, as if a picture took long.
-  void hold_easel() {
+  // From now on the renderer is busy, as if a picture took long.
+  void hold_renderer() {
     step();
     step();
-    while (!show->easel.idle()) step();
-    show->easel.worker.run([wait = held.get_future().share()] { wait.wait(); });
+    while (!show->renderer.idle()) step();
+    show->renderer.worker.run([wait = held.get_future().share()] { wait.wait(); });
   }
-  void release_easel() {
+  void release_renderer() {
     held.set_value();
     held = {};
-    show->easel.worker.wait();
+    show->renderer.worker.wait();
   }
   ~LatePictures() override {
-    if (show && !show->easel.idle()) held.set_value();
+    if (show && !show->renderer.idle()) held.set_value();
   }
   Visitor& visitor() { return show->visitors.front(); }
   PacketHeader header(size_t i) { return read_packet(pictures[i])->header; }
@@ -99,7 +99,7 @@ struct LatePictures : testing::Test {
 TEST_F(LatePictures, GoOnWhileOneIsDrawn) {
   begin();
   steps(60);
-  hold_easel();
+  hold_renderer();
   Image8 before = image(pictures.size() - 1);
   size_t first = pictures.size();
   uint64_t drawn = show->totals.drawn, warped = show->totals.warped;
@@ -115,7 +115,7 @@ TEST_F(LatePictures, GoOnWhileOneIsDrawn) {
   // What is sent shows the view as it is, not as it was.
   Image8 now = truth(visitor().place.last_view), shown = image(pictures.size() - 1);
   EXPECT_LT(difference(shown, now), 0.5 * difference(before, now));
-  release_easel();
+  release_renderer();
 }
 
 TEST_F(LatePictures, StandingStillIsShownAsDrawn) {
@@ -175,7 +175,7 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   visitor().picture.around.keyframe = std::move(kept);
 
   // Farther than the keyframe shows while nothing can be drawn, so that it alone would not do.
-  hold_easel();
+  hold_renderer();
   WarpScratch scratch;
   Image8 alone, with;
   float unknown = 0;
@@ -194,7 +194,7 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   EXPECT_EQ(header(pictures.size() - 1).seq, seq);
   EXPECT_LT(difference(image(pictures.size() - 1), with),
             difference(image(pictures.size() - 1), alone));
-  release_easel();
+  release_renderer();
 
   // Soon it is no longer true.
   turn(0);
@@ -212,36 +212,36 @@ TEST_F(LatePictures, NothingAroundTheOldPlaceAfterALeap) {
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   for (int i = 0; i < 6; i++) {
     step();
-    if (visitor().picture.order.leaps == visitor().place.leaps) {
+    if (visitor().picture.order.camera_cuts == visitor().place.camera_cuts) {
       EXPECT_TRUE(visitor().picture.around.keyframe.empty());
     }
   }
-  EXPECT_EQ(visitor().picture.order.leaps, visitor().place.leaps);
+  EXPECT_EQ(visitor().picture.order.camera_cuts, visitor().place.camera_cuts);
 }
 
 // What a still picture waits for is samples, which whoever moves on needs no more.
 TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   begin();
   steps(60);
-  hold_easel();
+  hold_renderer();
   Visitor& one = visitor();
-  PictureOrder order = order_picture(*show, one, 1);
+  PictureJob order = make_picture_job(*show, one, 1);
   ASSERT_TRUE(order.still);
   EXPECT_FALSE(is_outdated(*show, order, one));
-  show->easel.drawn = &one;  // as if the easel were at work on it
-  show->easel.order = order;
+  show->renderer.drawn = &one;  // as if the renderer were at work on it
+  show->renderer.order = order;
   one.picture.at_work = true;
   step(false);
-  EXPECT_FALSE(show->easel.given_up);
+  EXPECT_FALSE(show->renderer.given_up);
   turn(0.02);
   step(false);
   EXPECT_TRUE(is_outdated(*show, order, one));
-  EXPECT_TRUE(show->easel.given_up);
+  EXPECT_TRUE(show->renderer.given_up);
   EXPECT_EQ(header(pictures.size() - 1).seq, seq);  // meanwhile warped
 
   Keyframe keyframe = one.picture.keyframe;
   uint64_t drawn = show->totals.drawn;
-  release_easel();
+  release_renderer();
   draw_picture(*show, order, one);
   EXPECT_TRUE(one.picture.costs.given_up);
   EXPECT_EQ(one.picture.costs.samples, 0u);
@@ -260,14 +260,14 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
 TEST_F(LatePictures, AreOutdatedByLeapsAndByMotionAfterRest) {
   begin();
   Visitor unseen;
-  PictureOrder order;
+  PictureJob order;
   order.still = true;
   order.expected = unseen.place.last_view;
   unseen.place.last_view.position.x += 1;
   EXPECT_FALSE(is_outdated(*show, order, unseen));  // there is nothing else to show
-  unseen.place.leaps++;
+  unseen.place.camera_cuts++;
   EXPECT_TRUE(is_outdated(*show, order, unseen));
-  unseen.picture.order.leaps = order.leaps = unseen.place.leaps;
+  unseen.picture.order.camera_cuts = order.camera_cuts = unseen.place.camera_cuts;
   unseen.picture.drawn_at = 1;
   EXPECT_TRUE(is_outdated(*show, order, unseen));
   order.still = false;  // pictures of who moves are for views to come
@@ -280,19 +280,19 @@ TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {
   begin();
   turn(0, 1);
   steps(20);
-  hold_easel();
+  hold_renderer();
   size_t before = pictures.size();
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   for (int i = 0; i < 10; i++) step(false);
   EXPECT_EQ(pictures.size(), before);
-  release_easel();
+  release_renderer();
   steps(4);
   ASSERT_GT(pictures.size(), before);
   EXPECT_EQ(header(before).seq, 900u);
   Image8 there = truth(visitor().place.last_view);
   EXPECT_LT(difference(image(before), there), 25);
-  // A camera that is put elsewhere has leapt as well; a small step is no leap.
-  hold_easel();
+  // A camera that is put elsewhere has leapt as well; a small step is no camera cut.
+  hold_renderer();
   before = pictures.size();
   say(R"({"type":"camera","seq":901,"position":[3,1.6,-2.95],"yaw":2,"pitch":0})");
   step(false);
@@ -300,7 +300,7 @@ TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {
   say(R"({"type":"camera","seq":902,"position":[-2,1.6,3],"yaw":2,"pitch":0})");
   for (int i = 0; i < 5; i++) step(false);
   EXPECT_EQ(pictures.size(), before + 1);
-  release_easel();
+  release_renderer();
 }
 
 TEST_F(LatePictures, ALeapWhileDrawingDiscardsThatPicture) {
@@ -308,7 +308,7 @@ TEST_F(LatePictures, ALeapWhileDrawingDiscardsThatPicture) {
   turn(0, 1);
   steps(20);
   while (!visitor().picture.at_work) step(false);
-  ASSERT_NE(show->easel.drawn, nullptr);
+  ASSERT_NE(show->renderer.drawn, nullptr);
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   size_t before = pictures.size();
   steps(6);
@@ -343,7 +343,7 @@ TEST_F(LatePictures, VisitorsLeaveWhileTheirsIsDrawn) {
     steps(3);
     EXPECT_EQ(show->visitors.size(), size_t(i));
   }
-  EXPECT_EQ(show->easel.drawn, nullptr);
+  EXPECT_EQ(show->renderer.drawn, nullptr);
 }
 
 // Whenever a picture or its samples are finished, also in the midst of a tick, somebody gets the
@@ -361,7 +361,7 @@ TEST_F(LatePictures, NoVisitorIsForgottenWhenOneIsFinishedDuringATick) {
     }
     auto at_work = std::count_if(show->visitors.begin(), show->visitors.end(),
                                  [](auto& one) { return one.picture.at_work; });
-    ASSERT_EQ(size_t(at_work), show->easel.brokers.size() + (show->easel.drawn ? 1 : 0))
+    ASSERT_EQ(size_t(at_work), show->renderer.brokers.size() + (show->renderer.drawn ? 1 : 0))
         << "tick " << i;
   }
   step();
@@ -373,7 +373,7 @@ TEST_F(LatePictures, AllVisitorsGetDrawnPictures) {
   std::vector<int> drawn(3, 0);
   for (int i = 0; i < 120; i++) {
     step();
-    if (show->easel.drawn) drawn[size_t(show->easel.drawn->link->id - 1)]++;
+    if (show->renderer.drawn) drawn[size_t(show->renderer.drawn->link->id - 1)]++;
   }
   for (int count : drawn) EXPECT_GT(count, 10);
   EXPECT_LE(*std::max_element(drawn.begin(), drawn.end()),
@@ -384,7 +384,7 @@ TEST_F(LatePictures, TheShowEndsWhileOneIsDrawn) {
   begin(2);
   for (int i = 0; i < 2; i++) say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0,0]})", i);
   for (int i = 0; i < 20; i++) step(false);
-  while (!show->easel.drawn) step(false);
+  while (!show->renderer.drawn) step(false);
   show.reset();
 }
 

@@ -43,7 +43,7 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
     if (walks)
       for (Visitor& visitor : show->visitors) visitor.times = {};
     tick(*show, arrivals, now += 0.05);
-    show->easel.worker.wait_for(10);
+    show->renderer.worker.wait_for(10);
     size_t k = 0;
     for (Visitor& visitor : show->visitors) {
       visitor.shown.encoder->task.wait();
@@ -67,7 +67,7 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
   EXPECT_GE(most[0], 50'000'000u);  // all of it is counted
   EXPECT_LE(most[1], (size_t(64) << 20) * 9 / 4);
   EXPECT_GE(double(most[1]), 2.0 * double(most[0]));
-  EXPECT_GT(show->easel.work_bytes, size_t(40) << 20);
+  EXPECT_GT(show->renderer.work_bytes, size_t(40) << 20);
 
   std::string told = write_metrics(make_report(*show));
   EXPECT_NE(told.find("wellspring_visitor_memory_bytes{visitor=\"1\""), std::string::npos);

@@ -18,13 +18,13 @@ namespace {
 Exhibit make_exhibit() {
   Exhibit exhibit = make_tiny_exhibit();
   exhibit.storytellers.resize(1);
-  StorytellerPlace& teller = exhibit.storytellers[0];
-  teller.id = "anna";
-  teller.character = make_tiny_figure();
-  teller.character.positions = {{-0.4f, 0.6f, 0}, {0.4f, 0.6f, 0}, {0, 2.2f, 0}};
-  teller.character.normals.assign(3, {0, 0, 1});
-  teller.character.looks[0].base_color = vec4(0.8f, 0.05f, 0.05f, 1);
-  teller.position = dvec3(-2, 0, 0.5);
+  StorytellerPlace& storyteller_place = exhibit.storytellers[0];
+  storyteller_place.id = "anna";
+  storyteller_place.character = make_tiny_figure();
+  storyteller_place.character.positions = {{-0.4f, 0.6f, 0}, {0.4f, 0.6f, 0}, {0, 2.2f, 0}};
+  storyteller_place.character.normals.assign(3, {0, 0, 1});
+  storyteller_place.character.looks[0].base_color = vec4(0.8f, 0.05f, 0.05f, 1);
+  storyteller_place.position = dvec3(-2, 0, 0.5);
   return exhibit;
 }
 
@@ -47,7 +47,7 @@ struct Moving : testing::Test {
   void step() {
     tick(*show, arrivals, now += 0.01);
     for (Visitor& one : show->visitors) one.shown.encoder->task.wait();
-    show->easel.worker.wait();
+    show->renderer.worker.wait();
     for (Link::Out out; link->take_out(out);)
       if (out.picture) pictures.push_back(*out.packet);
   }
@@ -62,7 +62,7 @@ struct Moving : testing::Test {
   // A picture of the rest is begun, and not finished.
   bool is_between_steps() {
     return step_until(
-        [&] { return show->easel.drawn && show->easel.step != DrawingStep::done; });
+        [&] { return show->renderer.drawn && show->renderer.step != DrawingStep::done; });
   }
   bool rested() {
     return step_until([&] { return !show->visitors.empty() && visitor().picture.backdrop; }) &&
@@ -145,15 +145,15 @@ TEST_F(Moving, OthersNeedNotWaitForLight) {
   ASSERT_TRUE(rested());
   ASSERT_TRUE(step_until([&] {
     show->samples_per_second = 50000;  // so few that they are traced in several steps
-    return show->easel.drawn && show->easel.step == DrawingStep::trace;
+    return show->renderer.drawn && show->renderer.step == DrawingStep::trace;
   }));
-  size_t traced = show->easel.work.traced;
-  ASSERT_LT(traced, show->easel.work.requests.size());
+  size_t traced = show->renderer.work.traced;
+  ASSERT_LT(traced, show->renderer.work.requests.size());
   auto other = std::make_shared<Link>(2, LinkKind::visit, "test");
   arrivals.put(other);
   other->push_text_in(
       R"({"type":"hello","exhibit":"","width":64,"height":64,"lang":"en","role":"visitor"})");
-  ASSERT_TRUE(step_until([&] { return show->easel.drawn != &visitor(); }, 8));
+  ASSERT_TRUE(step_until([&] { return show->renderer.drawn != &visitor(); }, 8));
   EXPECT_EQ(visitor().picture.costs.samples, traced);
   EXPECT_TRUE(step_until([&] { return show->visitors.back().picture.drawn_at > 0; }, 8));
 }
@@ -164,7 +164,7 @@ TEST_F(Moving, WhoLeavesBetweenStepsIsForgotten) {
   ASSERT_TRUE(is_between_steps());
   link->mark_closed();
   EXPECT_TRUE(step_until([&] { return show->visitors.empty(); }, 50));
-  EXPECT_EQ(show->easel.drawn, nullptr);
+  EXPECT_EQ(show->renderer.drawn, nullptr);
 }
 TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   ASSERT_TRUE(rested());

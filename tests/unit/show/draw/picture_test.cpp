@@ -65,7 +65,7 @@ TEST(Picture, IsRightForAnEyeInSolidGlassToo) {
     Visited visited(make_cubed(glass));
     const Show& show = *visited.show;
     const View& view = show.visitors.front().place.last_view;
-    EXPECT_EQ(show.sight->rasterises(view), !glass);
+    EXPECT_EQ(show.visibility->rasterises(view), !glass);
     StillSettings settings;
     settings.spp = 64;
     settings.transport = show.settings.transport;

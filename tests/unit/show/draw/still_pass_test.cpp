@@ -46,7 +46,7 @@ struct StillPassTest : testing::Test {
   void step() {
     tick(*show, arrivals, now += 0.02);
     for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-    show->easel.worker.wait();
+    show->renderer.worker.wait();
     for (const auto& link : links) {
       Link::Out out;
       while (link->take_out(out)) {

@@ -146,6 +146,30 @@ TEST(FigureOfGltf, TangentsOfNormalMapsFollowTheBentSkin) {
 }
 
 // A VRM person that blushes and glows: the ray tracer's look, drawn pictures and paths all show it.
+// One place of a figure's chest: as a ray sees it, as it is drawn, and in traced light.
+struct ChestSeen {
+  PrimaryHit seen, drawn;
+  vec3 traced{0};
+};
+ChestSeen see_chest(const Scene& scene, const World& world, const Lights& lights,
+                    const VisibilityPass& visibility) {
+  vec3 chest(0, 1.3f, 0.0f);
+  Ray ray{.origin = chest + vec3(0.004f, 0.003f, 2), .direction = {0, 0, -1}};
+  View view = make_view(scene, {0.004, 1.303, 2}, 0, 0, 0.05f, 33, 33);
+  ChestSeen result;
+  see(world, lights, std::span(&ray, 1), std::span(&result.seen, 1));
+  visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
+    if (run.y == 16 && run.x <= 16 && 16 < run.x + run.count) result.drawn = run.see(16 - run.x);
+  });
+  std::vector<Request> requests(64);
+  for (uint32_t i = 0; i < 64; i++)
+    requests[i].ray = ray, requests[i].seed = 1, requests[i].index = i;
+  std::vector<Sample> samples(64);
+  trace(*find_technique("path"), world, lights, {}, requests, samples);
+  for (const Sample& sample : samples) result.traced += sample.radiance() / 64.0f;
+  return result;
+}
+
 TEST(FigureOfGltf, ExpressionsRepaintMaterials) {
   Asset asset = painted({{"name", "skin"}, {"doubleSided", true},
                          {"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.2, 0.2, 1}}}},
@@ -170,39 +194,18 @@ TEST(FigureOfGltf, ExpressionsRepaintMaterials) {
   };
   show(0);
   Lights lights = make_lights(world);
-  PictureSight sight(world, lights);
+  VisibilityPass visibility(world, lights);
   EXPECT_EQ(world.paints(), 0u) << "nothing is done while nothing changes";
-  vec3 chest(0, 1.3f, 0.0f);
-  Ray ray{.origin = chest + vec3(0.004f, 0.003f, 2), .direction = {0, 0, -1}};
-  View view = make_view(made.scene, {0.004, 1.303, 2}, 0, 0, 0.05f, 33, 33);
-  struct Look {
-    Seen seen, drawn;
-    vec3 traced;
-  };
-  auto look = [&] {
-    Look result;
-    see(world, lights, std::span(&ray, 1), std::span(&result.seen, 1));
-    sight.see(view, vec2(0.5f), [&](const SightRun& run) {
-      if (run.y == 16 && run.x <= 16 && 16 < run.x + run.count) result.drawn = run.see(16 - run.x);
-    });
-    std::vector<Request> requests(64);
-    for (uint32_t i = 0; i < 64; i++)
-      requests[i].ray = ray, requests[i].seed = 1, requests[i].index = i;
-    std::vector<Sample> samples(64);
-    trace(*find_technique("path"), world, lights, {}, requests, samples);
-    result.traced = vec3(0);
-    for (const Sample& sample : samples) result.traced += sample.radiance() / 64.0f;
-    return result;
-  };
-  Look pale = look();
+  auto chest = [&] { return see_chest(made.scene, world, lights, visibility); };
+  ChestSeen pale = chest();
   EXPECT_NEAR(pale.seen.albedo.x, pale.seen.albedo.y, 1e-5f);
   show(1);
-  Look red = look();
+  ChestSeen red = chest();
   EXPECT_EQ(world.paints(), 1u);
   EXPECT_NEAR(red.seen.albedo.x / pale.seen.albedo.x, 5, 0.05f);
   EXPECT_NEAR(red.seen.albedo.z, pale.seen.albedo.z, 1e-4f);
   EXPECT_NEAR(red.seen.glow.y, 0.5f, 1e-5f);
-  for (const Look* l : {&pale, &red})
+  for (const ChestSeen* l : {&pale, &red})
     for (int c = 0; c < 3; c++) {
       EXPECT_NEAR(l->drawn.albedo[c], l->seen.albedo[c], 1e-3f);
       EXPECT_NEAR(l->drawn.glow[c], l->seen.glow[c], 1e-5f);
@@ -214,7 +217,7 @@ TEST(FigureOfGltf, ExpressionsRepaintMaterials) {
   show(0.5f);
   EXPECT_NEAR(world.material_of(0).base_color.x, 0.6f, 1e-6f);
   show(0);
-  Look again = look();
+  ChestSeen again = chest();
   EXPECT_EQ(again.seen.albedo, pale.seen.albedo);
   EXPECT_EQ(again.seen.glow, vec3(0));
 }
@@ -251,19 +254,19 @@ TEST(FigureOfGltf, ExpressionsMovePictures) {
   pose_figure(world, made.figure, made.character, pose, mat4(1), scratch);
   world.commit();
   Lights lights = make_lights(world);
-  PictureSight sight(world, lights);
+  VisibilityPass visibility(world, lights);
   Ray ray{.origin = vec3(0.004f, 1.303f, 2), .direction = {0, 0, -1}};
   View view = make_view(made.scene, {0.004, 1.303, 2}, 0, 0, 0.05f, 33, 33);
   for (float weight : {0.0f, 1.0f, 0.0f}) {
     pose.displacers[size_t(find_displacer(made.character, "surprised"))] = weight;
     pose_figure(world, made.figure, made.character, pose, mat4(1), scratch);
     world.commit();
-    Seen seen, drawn;
+    PrimaryHit seen, drawn;
     see(world, lights, std::span(&ray, 1), std::span(&seen, 1));
-    sight.see(view, vec2(0.5f), [&](const SightRun& run) {
+    visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
       if (run.y == 16 && run.x <= 16 && 16 < run.x + run.count) drawn = run.see(16 - run.x);
     });
-    for (const Seen& one : {seen, drawn}) {
+    for (const PrimaryHit& one : {seen, drawn}) {
       EXPECT_EQ(one.albedo.x > 4 * one.albedo.y, weight == 0) << weight;
       EXPECT_EQ(one.albedo.y > 4 * one.albedo.x, weight == 1) << weight;
     }

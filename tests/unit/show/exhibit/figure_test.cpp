@@ -12,14 +12,14 @@ Character make_character() {
   character.name = "Two parts";
   character.joints.resize(1);
   character.joints[0].name = "humanoid_root";
-  character.looks = {
+  character.appearances = {
       {.name = "red", .base_color = {1, 0, 0}, .roughness = 0.3f},
       {.name = "glass", .base_color = {0, 1, 0}, .alpha = 0.5f, .double_sided = true}};
   character.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   character.normals.assign(4, {0, 0, 1});
   character.uv = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
-  character.parts = {{.name = "low", .look = 0, .triangles = {{0, 1, 2}}},
-                     {.name = "high", .look = 1, .triangles = {{1, 3, 2}}}};
+  character.parts = {{.name = "low", .appearance = 0, .triangles = {{0, 1, 2}}},
+                     {.name = "high", .appearance = 1, .triangles = {{1, 3, 2}}}};
   character.first_weight = {0, 1, 2, 3, 4};
   character.weights.assign(4, {0, 1});
   return character;
@@ -78,7 +78,7 @@ TEST(Figure, MovesInTheWorldAndHides) {
 
 TEST(Figure, AMissingPictureIsAWarningOfTheScene) {
   Character character = make_character();
-  character.looks[0].texture = "/nonexistent/picture.png";
+  character.appearances[0].texture = "/nonexistent/picture.png";
   Scene scene;
   std::vector<Mesh> moving;
   std::vector<uint32_t> objects;

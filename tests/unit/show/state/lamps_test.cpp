@@ -69,7 +69,7 @@ struct Lamps : testing::Test {
   void step() {
     tick(*show, arrivals, now += 0.02);
     for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-    show->easel.worker.wait();
+    show->renderer.worker.wait();
     for (size_t i = 0; i < links.size(); i++)
       for (Link::Out out; links[i]->take_out(out);) {
         if (out.picture) picture[i] = decode_jpeg(read_packet(*out.packet)->payload, "picture");
@@ -142,7 +142,7 @@ TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   EXPECT_EQ(steps[0].before, known[0]);
   EXPECT_EQ(steps[1].before, known[1]);
   show->visitors.front().picture.lamps = known[1];  // as if it had yet to follow
-  forget_light_steps(*show);
+  invalidate_light_steps(*show);
   ASSERT_EQ(steps.size(), 1u);
   EXPECT_EQ(steps[0].before, known[1]);
 }

@@ -36,7 +36,7 @@ TEST(Sheet, CellsStandInRowsWithTheirLabels) {
   character.looks.push_back({});
   character.parts.push_back({"flag", 0, {{0, 1, 2}}});
   std::vector<SheetCell> cells(3, {"one", make_rest_pose(character)});
-  StudioShot shot{.width = 32, .height = 32, .spp = 1};
+  PortraitShot shot{.width = 32, .height = 32, .spp = 1};
   std::vector<std::string> warnings;
   Frame sheet = render_sheet(character, cells, shot, 2, warnings);
   EXPECT_EQ(sheet.width, 2 * 36 + 4);

@@ -15,7 +15,7 @@
 namespace wellspring {
 namespace {
 
-struct TellersTest : testing::Test {
+struct StorytellersTest : testing::Test {
   std::unique_ptr<Show> show;
   Arrivals arrivals;
   std::shared_ptr<Link> link = std::make_shared<Link>(1, LinkKind::visit, "test");
@@ -27,18 +27,18 @@ struct TellersTest : testing::Test {
     Exhibit exhibit = make_tiny_exhibit();
     exhibit.storytellers.resize(2);
     for (size_t i = 0; i < 2; i++) {
-      StorytellerPlace& teller = exhibit.storytellers[i];
-      teller.id = i == 0 ? "anna" : "otto";
-      teller.name = {{"en", i == 0 ? "Anna" : "Otto"}};
-      teller.character = make_tiny_figure();
-      teller.position = i == 0 ? dvec3(-2, 0, 2) : dvec3(3, 0, -2);
-      teller.kiosk_viewpoint = int(i);
-      teller.voice.variant = i == 0 ? "f3" : "m3";
-      teller.greetings["en"].emplace_back().text = i == 0 ? "I am Anna." : "I am Otto.";
+      StorytellerPlace& storyteller_place = exhibit.storytellers[i];
+      storyteller_place.id = i == 0 ? "anna" : "otto";
+      storyteller_place.name = {{"en", i == 0 ? "Anna" : "Otto"}};
+      storyteller_place.character = make_tiny_figure();
+      storyteller_place.position = i == 0 ? dvec3(-2, 0, 2) : dvec3(3, 0, -2);
+      storyteller_place.kiosk_viewpoint = int(i);
+      storyteller_place.voice.variant = i == 0 ? "f3" : "m3";
+      storyteller_place.greetings["en"].emplace_back().text = i == 0 ? "I am Anna." : "I am Otto.";
     }
     exhibit.stories.push_back(exhibit.stories[0]);
     exhibit.stories[1].id = "bell";
-    exhibit.stories[1].teller = 1;
+    exhibit.stories[1].storyteller_index = 1;
     show = make_show(std::move(exhibit),
                      {.technique = "direct", .still_technique = "direct", .background = false});
     show->speech.find = [](const SpeechRequest&) { return nullptr; };
@@ -71,17 +71,17 @@ struct TellersTest : testing::Test {
   // Who is to be seen: rays from above onto the places where the two stand.
   std::string seen() {
     std::string who;
-    for (const StorytellerPlace& teller : show->exhibit.storytellers) {
+    for (const StorytellerPlace& storyteller_place : show->exhibit.storytellers) {
       Ray ray;
-      ray.origin = vec3(teller.position) + vec3(0.02f, 2, 0.02f);
+      ray.origin = vec3(storyteller_place.position) + vec3(0.02f, 2, 0.02f);
       ray.direction = vec3(0, -1, 0);
-      if (std::abs(show->world->intersect(ray).t - 1.5f) < 0.1f) who += teller.id;
+      if (std::abs(show->world->intersect(ray).t - 1.5f) < 0.1f) who += storyteller_place.id;
     }
     return who;
   }
 };
 
-TEST_F(TellersTest, OneIsThereAndTheOtherComesWhenCalled) {
+TEST_F(StorytellersTest, OneIsThereAndTheOtherComesWhenCalled) {
   join("visitor");
   EXPECT_EQ(last["welcome"]["storyteller"]["id"], "anna");
   ASSERT_EQ(last["welcome"]["storytellers"].size(), 2u);
@@ -100,7 +100,7 @@ TEST_F(TellersTest, OneIsThereAndTheOtherComesWhenCalled) {
 }
 
 // Finished pictures (still.jpg) show who is there, too.
-TEST(Tellers, OneIsInFinishedPictures) {
+TEST(Storytellers, OneIsInFinishedPictures) {
   auto picture = [](std::vector<dvec3> places) {
     Exhibit exhibit = make_tiny_exhibit();
     exhibit.storytellers.resize(places.size());
@@ -123,7 +123,7 @@ TEST(Tellers, OneIsInFinishedPictures) {
   EXPECT_TRUE(picture({behind_the_wall, in_view}) == nobody);
 }
 
-TEST_F(TellersTest, AStoryBringsItsOwnTellerAndVoice) {
+TEST_F(StorytellersTest, AStoryBringsItsOwnTellerAndVoice) {
   join("visitor");
   order(R"({"type":"storyteller","story":"tale"})");
   ASSERT_FALSE(asked.empty());
@@ -138,7 +138,7 @@ TEST_F(TellersTest, AStoryBringsItsOwnTellerAndVoice) {
   EXPECT_EQ(last["agent"]["story"], nullptr) << "who goes falls silent";
 }
 
-TEST_F(TellersTest, AKioskStandsBeforeWhoeverIsThereAndIsGreeted) {
+TEST_F(StorytellersTest, AKioskStandsBeforeWhoeverIsThereAndIsGreeted) {
   join("kiosk");
   EXPECT_EQ(show->visitors.front().place.viewpoint, 0);
   order(R"({"type":"storyteller","teller":"otto"})");
@@ -155,13 +155,13 @@ TEST_F(TellersTest, AKioskStandsBeforeWhoeverIsThereAndIsGreeted) {
   EXPECT_EQ(asked.back().text, "I am Otto.");
 }
 
-TEST(Tellers, OnlyTheirOwnStoriesAreMadeReadyForThem) {
+TEST(Storytellers, OnlyTheirOwnStoriesAreMadeReadyForThem) {
   Exhibit exhibit = make_tiny_exhibit();
   exhibit.storytellers.resize(2);
   exhibit.storytellers[0].voice.variant = "f3";
   exhibit.storytellers[1].voice.variant = "m3";
   exhibit.stories.push_back(exhibit.stories[0]);
-  exhibit.stories[1].teller = 1;
+  exhibit.stories[1].storyteller_index = 1;
   int by_first = 0, by_second = 0;
   for (const SpeechRequest& line : lines_of(exhibit)) {
     by_first += line.variant == "f3";

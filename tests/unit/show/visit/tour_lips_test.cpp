@@ -37,15 +37,15 @@ struct TourLips : testing::Test {
 
   void SetUp() override {
     Exhibit exhibit = make_tiny_exhibit();
-    StorytellerPlace& teller = exhibit.storytellers.emplace_back();
-    teller.id = "anna";
-    teller.character = make_tiny_figure();
+    StorytellerPlace& storyteller_place = exhibit.storytellers.emplace_back();
+    storyteller_place.id = "anna";
+    storyteller_place.character = make_tiny_figure();
     Displacer open;
     open.name = "viseme_aa";
     open.vertices = {0};
     open.displacements = {{0, 0.01f, 0}};
-    teller.character.displacers = {open};
-    teller.position = {-2, 0, 1};  // 2 m before the viewpoint where the tour begins
+    storyteller_place.character.displacers = {open};
+    storyteller_place.position = {-2, 0, 1};  // 2 m before the viewpoint where the tour begins
     show = make_show(std::move(exhibit),
                      {.technique = "direct", .still_technique = "direct", .background = false});
     show->speech.find = [this](const SpeechRequest& request) {

@@ -10,24 +10,24 @@
 namespace wellspring {
 namespace {
 
-// Four squares in a row, at x = 0, 2, 4, 6: the first two are one mesh that shines, the third
-// another of the same material, the last shines by being unlit. Lights by two names.
+// Four squares in a row, at x = 0, 2, 4, 6: the first two are one mesh that emits light, the third
+// another of the same material, the last emits light by being unlit. Lights by two names.
 struct Row {
   Scene scene;
   Row() {
     scene.objects = {"", "bulb", "bulb far", "strip", "screen"};
-    Material shining;
-    shining.name = "glow";
-    shining.base_color = vec4(0.2f, 0.2f, 0.2f, 1);
-    shining.metallic = 0;
-    shining.emission = vec3(3, 2, 1);
+    Material emitting;
+    emitting.name = "glow";
+    emitting.base_color = vec4(0.2f, 0.2f, 0.2f, 1);
+    emitting.metallic = 0;
+    emitting.emission = vec3(3, 2, 1);
     Material unlit;
     unlit.name = "screen";
     unlit.unlit = true;
     unlit.base_color = vec4(0.5f, 0.6f, 0.7f, 1);
     Material dull;
     dull.name = "stone";
-    scene.materials = {shining, unlit, dull};
+    scene.materials = {emitting, unlit, dull};
     Mesh square;
     square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     square.normals.assign(4, vec3(0, 0, 1));
@@ -124,10 +124,10 @@ TEST(Lamp, ANodeStandsForAllBelowIt) {
   EXPECT_TRUE(add_lamp({"chandelier", {"chandelier"}, {}}, scene).empty());
   EXPECT_EQ(scene.lamps[0].lights.size(), 1u);
   ASSERT_EQ(scene.lamps[0].materials.size(), 1u);
-  size_t shining = 0;
+  size_t emitting = 0;
   for (const Instance& instance : scene.instances)
-    shining += scene.meshes[size_t(instance.mesh)].material == scene.lamps[0].materials[0];
-  EXPECT_EQ(shining, 1u);  // the other candle belongs to nobody
+    emitting += scene.meshes[size_t(instance.mesh)].material == scene.lamps[0].materials[0];
+  EXPECT_EQ(emitting, 1u);  // the other candle belongs to nobody
   auto rest = add_lamp({"rest", {"candle", "glow"}, {}}, scene);
   EXPECT_EQ(rest.size(), 2u);  // of each name, one is taken
   EXPECT_EQ(scene.lamps[1].lights.size(), 1u);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// show.teller.flip: a visitor stands before the storyteller of the castle, who tells a story. FLIP
+// show.storyteller.flip: a visitor stands before the storyteller of the castle, who tells a story. FLIP
 // of her head, where she is seen, in pictures of what moves as the show lays them over a backdrop,
 // against `path` with many samples of the same moment. A simulated clock: samples are those that so
 // many a second allow, so that the machine's speed is stated and not in the result.
-// show.teller.ms, by `part`: what a picture of her costs one core, and what finding her light does,
-// which is done skin_rate times a second. show.teller.places, .bytes: of the light kept on figures.
+// show.storyteller.ms, by `part`: what a picture of her costs one core, and what finding her light does,
+// which is done skin_rate times a second. show.storyteller.places, .bytes: of the light kept on figures.
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -88,7 +88,7 @@ struct Visit {
   const VisitStage& stage;
   const View view;
   const double samples_a_second;
-  PictureSight sight{stage.world(), stage.lights()};
+  VisibilityPass visibility{stage.world(), stage.lights()};
   SkinLight skin = make_skin_light(stage.world());
   Compositor compositor;
   Keyframe backdrop;
@@ -119,7 +119,7 @@ struct Visit {
     smooth_skin(stage.world(), skin, time == 0 ? 6 : 2);
   }
   void draw() {
-    compositor.draw_moving(stage.world(), backdrop, sight, Tonemap{stage.exhibit().exposure}, light,
+    compositor.draw_moving(stage.world(), backdrop, visibility, Tonemap{stage.exhibit().exposure}, light,
                            moving);
   }
   void show(double time) {
@@ -154,10 +154,10 @@ void measure(BenchReport& report, const VisitStage& stage, const View& view) {
   uint32_t shown = 0;
   for (const SkinPlace& place : visit.skin.places)
     shown += stage.world().is_visible(place.instance);
-  report.add("show.teller.places", double(shown), "", {{"all", visit.skin.places.size()}});
-  report.add("show.teller.bytes", double(memory_bytes(visit.skin)), "B");
+  report.add("show.storyteller.places", double(shown), "", {{"all", visit.skin.places.size()}});
+  report.add("show.storyteller.bytes", double(memory_bytes(visit.skin)), "B");
   auto add = [&](const char* part, const auto& work) {
-    report.add("show.teller.ms", milliseconds_of(work), "ms of one core", {{"part", part}});
+    report.add("show.storyteller.ms", milliseconds_of(work), "ms of one core", {{"part", part}});
   };
   add("draw", [&] { visit.draw(); });
   add("smooth", [&] { smooth_skin(stage.world(), visit.skin); });
@@ -170,7 +170,7 @@ void measure(BenchReport& report, const VisitStage& stage, const View& view) {
 
 }  // namespace
 
-void bench_show_teller(BenchReport& report, const BenchOptions& options) {
+void bench_show_storyteller(BenchReport& report, const BenchOptions& options) {
   VisitStage stage(options.content + "/castle", "gather");
   VisitTrace trace;
   const Viewpoint& at =
@@ -209,11 +209,11 @@ void bench_show_teller(BenchReport& report, const BenchOptions& options) {
     tonemap(truth.picture, curve, wanted);
     for (int k = 0; k < 2; k++) tonemap(truth.half[k], curve, halves[k]);
     save("true_" + time, wanted);
-    report.add("show.teller.truth_halves_flip", judge(halves[0], halves[1], mask), "FLIP",
+    report.add("show.storyteller.truth_halves_flip", judge(halves[0], halves[1], mask), "FLIP",
                {{"seconds", frame / rate}, {"spp", truths.spp}});
     for (auto& visit : visits) {
       save(std::to_string(int(visit->samples_a_second / 1000)) + "k_" + time, visit->picture);
-      report.add("show.teller.flip", judge(visit->picture, wanted, mask), "FLIP",
+      report.add("show.storyteller.flip", judge(visit->picture, wanted, mask), "FLIP",
                  {{"scene", "castle"},
                   {"seconds", frame / rate},
                   {"samples_a_second", visit->samples_a_second},

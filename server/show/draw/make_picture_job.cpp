@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/draw/order_picture.h"
+#include "show/draw/make_picture_job.h"
 
 #include <algorithm>
 
@@ -28,11 +28,11 @@ double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
 
 }  // namespace
 
-PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy,
+PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
                            Purpose purpose) {
   const VisitorPicture& picture = visitor.picture;
   const VisitorPlace& place = visitor.place;
-  PictureOrder order;
+  PictureJob order;
   order.time = show.time;
   order.time_us = show.time_us;
   order.tick = show.ticks;
@@ -40,12 +40,12 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy,
   order.expected = order.view = order.ahead = now;
   order.seq = place.seq;
   order.figure = sees_figure(show, now);
-  order.leaps = place.leaps;
+  order.camera_cuts = place.camera_cuts;
   order.still = show.time - place.moved_at > still_after;
   order.keep = show.settings.background;
-  const PictureOrder& before = picture.order;
+  const PictureJob& before = picture.order;
   // Of a place that was never seen, nothing is known.
-  bool seen = picture.drawn_at >= 0 && place.leaps == before.leaps;
+  bool seen = picture.drawn_at >= 0 && place.camera_cuts == before.camera_cuts;
   float guessed = seen ? picture.stats.filled + picture.stats.empty : 1;
   order.learns = show.pass.denoiser && in_steps(order);
   order.settled = order.learns
@@ -94,9 +94,9 @@ PictureOrder order_picture(const Show& show, const Visitor& visitor, int busy,
   return order;
 }
 
-bool is_outdated(const Show& show, const PictureOrder& order, const Visitor& visitor) {
-  if (visitor.left || visitor.place.leaps != order.leaps) return true;
-  bool has_one = visitor.picture.drawn_at >= 0 && visitor.picture.order.leaps == order.leaps;
+bool is_outdated(const Show& show, const PictureJob& order, const Visitor& visitor) {
+  if (visitor.left || visitor.place.camera_cuts != order.camera_cuts) return true;
+  bool has_one = visitor.picture.drawn_at >= 0 && visitor.picture.order.camera_cuts == order.camera_cuts;
   return has_one && order.still &&
          (visitor.place.last_view != order.expected || lamps_wait(show) ||
           order.figure != sees_figure(show, visitor.place.last_view));
