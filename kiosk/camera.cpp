@@ -72,8 +72,7 @@ class FileCamera : public Camera {
     for (int reader : {cv::CAP_FFMPEG, cv::CAP_GSTREAMER, cv::CAP_OPENCV_MJPEG}) {
       try {
         if (capture_.open(settings_.source, reader)) break;
-      } catch (const cv::Exception&) {
-      }
+      } catch (const cv::Exception&) {}
     }
     double fps = capture_.isOpened() ? capture_.get(cv::CAP_PROP_FPS) : 0;
     fps_ = std::isfinite(fps) && fps >= 1 && fps <= 1000 ? fps : 25;

@@ -27,12 +27,12 @@ class Camera {
 };
 
 struct CameraSettings {
-  std::string source;       // number of a V4L2 device, a device's path, a file, or "synthetic"
-  int width = 640;          // asked of a device; wider frames are brought down to it
-  double rate = 30;         // frames a second asked of a device and made by the synthetic one
-  bool loop = false;        // a file starts again at its end; times go on
+  std::string source;           // number of a V4L2 device, a device's path, a file, or "synthetic"
+  int width = 640;              // asked of a device; wider frames are brought down to it
+  double rate = 30;             // frames a second asked of a device and made by the synthetic one
+  bool loop = false;            // a file starts again at its end; times go on
   bool synthetic_ends = false;  // the synthetic camera ends after one round
-  Mount mount;              // of the synthetic camera
+  Mount mount;                  // of the synthetic camera
 };
 
 // Throws LoadError for a file that is missing or holds no picture. A device that is not there is no

@@ -13,8 +13,8 @@ namespace wellspring {
 
 namespace {
 
-constexpr int follow_side = 44;  // pixels of a followed face in its window
-constexpr int eyes_side = 110;   // pixels of a face in which eyes are searched
+constexpr int follow_side = 44;     // pixels of a followed face in its window
+constexpr int eyes_side = 110;      // pixels of a face in which eyes are searched
 constexpr float least_tilt = 0.2f;  // radians; cascades do not mind less
 
 cv::CascadeClassifier load_cascade(const std::string& folder, const char* name) {
@@ -25,8 +25,7 @@ cv::CascadeClassifier load_cascade(const std::string& folder, const char* name) 
   bool good = false;
   try {
     good = cascade.load(path);
-  } catch (const cv::Exception&) {
-  }
+  } catch (const cv::Exception&) {}
   if (!good) throw LoadError(path, "", "not a cascade; reinstall the Debian package opencv-data");
   return cascade;
 }
@@ -200,8 +199,10 @@ std::vector<Face> FaceFinder::search_thoroughly(const GrayFrame& frame, const Bo
   std::vector<int> votes;
   auto found = m.detect(m.haar, window->pixels, 3, 24, 1e6f, &votes);
   for (size_t i = 0; i < found.size(); i++)
-    m.add(faces, {window->to_frame(found[i]), FaceView::frontal,
-                  std::min(1.f, 0.3f + 0.04f * float(votes[i])), {}});
+    m.add(faces, {window->to_frame(found[i]),
+                  FaceView::frontal,
+                  std::min(1.f, 0.3f + 0.04f * float(votes[i])),
+                  {}});
   Impl::largest_first(faces);
   return faces;
 }

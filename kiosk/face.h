@@ -22,16 +22,16 @@ enum class FaceView : uint8_t {
 };  // a profile looks to that side of the image
 
 struct Face {
-  Box box;                  // the frontal cascade's square
+  Box box;  // the frontal cascade's square
   FaceView view = FaceView::frontal;
-  float confidence = 0;     // 0..1: how clearly the cascade answered
+  float confidence = 0;                     // 0..1: how clearly the cascade answered
   std::optional<std::array<vec2, 2>> eyes;  // pixels: the eye at image left, then at image right
 };
 
 struct FaceSettings {
   std::string cascades = "/usr/share/opencv4";
-  int search_width = 320;      // whole frames are searched at this width
-  float smallest = 1 / 13.f;   // box side over frame width: smaller faces are too far away to greet
+  int search_width = 320;     // whole frames are searched at this width
+  float smallest = 1 / 13.f;  // box side over frame width: smaller faces are too far away to greet
 };
 
 class FaceFinder {

@@ -34,20 +34,20 @@ float head_albedo(vec3 p) {
   float skin = 0.72f;
   if (p.z > 0) {
     for (float side : {-1.f, 1.f}) {
-      skin -= 0.20f * blob(p, side * 0.031f, 0.014f, 0.022f, 0.017f);   // socket
-      skin += 0.28f * blob(p, side * 0.031f, 0.011f, 0.013f, 0.006f);   // white of the eye
-      skin -= 0.62f * blob(p, side * 0.031f, 0.012f, 0.0065f, 0.0065f); // iris
-      skin -= 0.25f * blob(p, side * 0.031f, 0.018f, 0.016f, 0.0025f);  // lid
-      skin -= 0.42f * blob(p, side * 0.032f, 0.033f, 0.021f, 0.0045f);  // brow
-      skin += 0.06f * blob(p, side * 0.042f, -0.022f, 0.020f, 0.020f);  // cheek
-      skin -= 0.32f * blob(p, side * 0.008f, -0.033f, 0.0055f, 0.003f); // nostril
-      skin -= 0.12f * blob(p, side * 0.016f, -0.027f, 0.004f, 0.008f);  // wing of the nose
+      skin -= 0.20f * blob(p, side * 0.031f, 0.014f, 0.022f, 0.017f);    // socket
+      skin += 0.28f * blob(p, side * 0.031f, 0.011f, 0.013f, 0.006f);    // white of the eye
+      skin -= 0.62f * blob(p, side * 0.031f, 0.012f, 0.0065f, 0.0065f);  // iris
+      skin -= 0.25f * blob(p, side * 0.031f, 0.018f, 0.016f, 0.0025f);   // lid
+      skin -= 0.42f * blob(p, side * 0.032f, 0.033f, 0.021f, 0.0045f);   // brow
+      skin += 0.06f * blob(p, side * 0.042f, -0.022f, 0.020f, 0.020f);   // cheek
+      skin -= 0.32f * blob(p, side * 0.008f, -0.033f, 0.0055f, 0.003f);  // nostril
+      skin -= 0.12f * blob(p, side * 0.016f, -0.027f, 0.004f, 0.008f);   // wing of the nose
     }
-    skin += 0.08f * blob(p, 0, -0.005f, 0.006f, 0.028f);                // bridge
-    skin += 0.07f * blob(p, 0, 0.060f, 0.045f, 0.018f);                 // forehead
-    skin -= 0.30f * blob(p, 0, -0.062f, 0.025f, 0.0035f);               // mouth
-    skin -= 0.14f * blob(p, 0, -0.065f, 0.023f, 0.009f);                // lips
-    skin -= 0.10f * blob(p, 0, -0.080f, 0.014f, 0.004f);                // under the lip
+    skin += 0.08f * blob(p, 0, -0.005f, 0.006f, 0.028f);   // bridge
+    skin += 0.07f * blob(p, 0, 0.060f, 0.045f, 0.018f);    // forehead
+    skin -= 0.30f * blob(p, 0, -0.062f, 0.025f, 0.0035f);  // mouth
+    skin -= 0.14f * blob(p, 0, -0.065f, 0.023f, 0.009f);   // lips
+    skin -= 0.10f * blob(p, 0, -0.080f, 0.014f, 0.004f);   // under the lip
   }
   float hairline = 0.078f - 6.f * p.x * p.x;
   float hair = std::max(smooth(hairline - 0.004f, hairline + 0.004f, p.y),
@@ -70,12 +70,12 @@ float hit_ellipsoid(const Ray& ray, vec3 center, vec3 radii) {
 // Grey level 0..1 of the empty room behind (u, v), each 0..1 over the picture.
 float room_at(float u, float v) {
   float wall = 0.52f + 0.10f * (1 - v) - 0.14f * u;
-  if (v > 0.82f) wall = 0.32f + 0.1f * (v - 0.82f);                                  // floor
-  if (u > 0.06f && u < 0.24f && v > 0.12f && v < 0.42f) {                            // picture
+  if (v > 0.82f) wall = 0.32f + 0.1f * (v - 0.82f);        // floor
+  if (u > 0.06f && u < 0.24f && v > 0.12f && v < 0.42f) {  // picture
     bool frame = u < 0.075f || u > 0.225f || v < 0.14f || v > 0.40f;
     wall = frame ? 0.22f : 0.45f + 0.15f * std::sin(40 * u) * std::sin(25 * v);
   }
-  if (u > 0.86f) wall *= 0.8f;                                                       // door
+  if (u > 0.86f) wall *= 0.8f;  // door
   return wall;
 }
 

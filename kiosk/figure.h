@@ -26,9 +26,9 @@ FigurePose figure_at(double time);
 
 struct FigureRoom {
   int width = 640, height = 480;
-  float light = 1;      // brightness of the lamp
-  float noise = 2.5f;   // sensor noise, standard deviation in grey levels
-  uint64_t seed = 1;    // of the noise; the same seed and time give the same picture
+  float light = 1;     // brightness of the lamp
+  float noise = 2.5f;  // sensor noise, standard deviation in grey levels
+  uint64_t seed = 1;   // of the noise; the same seed and time give the same picture
 };
 
 // The picture that a camera mounted as `mount` says would take. Deterministic.

@@ -75,8 +75,8 @@ vec3 rotation_on_screen(const Mount& mount, const mat3& seen, vec3 camera) {
 }
 
 mat3 rotation_as_seen(const Mount& mount, vec3 angles, vec3 camera) {
-  return unmirrored(mount, glm::transpose(lens_axes(mount, unmirrored(mount, camera))) *
-                               rotation_matrix(angles));
+  return unmirrored(
+      mount, glm::transpose(lens_axes(mount, unmirrored(mount, camera))) * rotation_matrix(angles));
 }
 
 vec3 rotation_to_center(vec3 position) {

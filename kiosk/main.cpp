@@ -86,8 +86,8 @@ bool print(const std::string& line) {
 }
 
 void watch(const Options& options, Observer& observer, Feed& feed, ServerLink* link) {
-  constexpr double patience = 2;      // seconds without a picture before nobody is seen
-  constexpr double blind_every = 0.5; // seconds between observations of a blind camera
+  constexpr double patience = 2;       // seconds without a picture before nobody is seen
+  constexpr double blind_every = 0.5;  // seconds between observations of a blind camera
   const double step = 1 / options.camera.rate;
   double frame_at = seconds_now(), frame_time = frame_at, blind_at = 0, due = -1e9;
   Presence told = Presence::absent;

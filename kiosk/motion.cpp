@@ -10,9 +10,9 @@ namespace wellspring {
 
 namespace {
 
-constexpr float changed_levels = 12;   // grey levels between two frames that noise does not reach
-constexpr double changed_memory = 1;   // seconds a change is remembered
-constexpr int smallest_region = 40;    // pixels of the working picture
+constexpr float changed_levels = 12;  // grey levels between two frames that noise does not reach
+constexpr double changed_memory = 1;  // seconds a change is remembered
+constexpr int smallest_region = 40;   // pixels of the working picture
 
 double median(cv::Mat values) {  // of an 8-bit picture
   int counts[256] = {};
@@ -33,7 +33,7 @@ struct MotionWatch::Impl {
   cv::Mat changed_at;   // double: when each pixel last changed
   cv::Mat changed_now;  // 8 bit
   double last_time = 0;
-  float scale = 1;      // working pixels per frame pixel
+  float scale = 1;  // working pixels per frame pixel
   int frame_width = 0, frame_height = 0;
 
   void restart(const cv::Mat& small, double time) {

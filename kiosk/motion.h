@@ -13,17 +13,17 @@
 namespace wellspring {
 
 struct MotionSettings {
-  int width = 160;             // pixels of the working picture's longer side
-  double adapt = 15;           // seconds until a changed background is believed
-  float moving_share = 0.015f; // of the picture: less is not motion
-  float light_share = 0.7f;    // more at once is a change of light: the background starts anew
+  int width = 160;              // pixels of the working picture's longer side
+  double adapt = 15;            // seconds until a changed background is believed
+  float moving_share = 0.015f;  // of the picture: less is not motion
+  float light_share = 0.7f;     // more at once is a change of light: the background starts anew
 };
 
 struct Motion {
-  float share = 0;          // of the picture that belongs to moving regions, 0 to 1
-  bool moving = false;      // share >= moving_share
+  float share = 0;      // of the picture that belongs to moving regions, 0 to 1
+  bool moving = false;  // share >= moving_share
   bool light_changed = false;
-  std::vector<Box> zones;   // of the frame, largest first, at most 4
+  std::vector<Box> zones;  // of the frame, largest first, at most 4
 };
 
 class MotionWatch {

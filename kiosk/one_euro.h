@@ -10,8 +10,8 @@
 namespace wellspring {
 
 struct OneEuroSettings {
-  float min_cutoff = 1;  // Hz
-  float beta = 0;        // Hz per (unit a second)
+  float min_cutoff = 1;    // Hz
+  float beta = 0;          // Hz per (unit a second)
   float speed_cutoff = 1;  // Hz, of the speed's own filter
 };
 

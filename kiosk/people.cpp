@@ -9,10 +9,10 @@ namespace wellspring {
 
 namespace {
 
-constexpr int patch_side = 28;         // pixels of the remembered texture
-constexpr float same_texture = 0.72f;  // correlation from which a patch is the same face
-constexpr float stirred_share = 0.01f; // of the face's surroundings: less is noise
-constexpr int hits_to_count = 3;       // detections before a face is believed
+constexpr int patch_side = 28;          // pixels of the remembered texture
+constexpr float same_texture = 0.72f;   // correlation from which a patch is the same face
+constexpr float stirred_share = 0.01f;  // of the face's surroundings: less is noise
+constexpr int hits_to_count = 3;        // detections before a face is believed
 
 float distance(const Box& a, const Box& b) {
   return std::hypot(a.center_x() - b.center_x(), a.center_y() - b.center_y());
@@ -149,8 +149,8 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
     somebody = std::any_of(m.tracks.begin(), m.tracks.end(), [](auto& t) { return t.who.visible; });
   }
   const bool worth = !somebody || !motion.zones.empty();
-  if (worth && time - m.searched_thoroughly >=
-                   (somebody ? m.settings.thorough_more : m.settings.thorough)) {
+  if (worth &&
+      time - m.searched_thoroughly >= (somebody ? m.settings.thorough_more : m.settings.thorough)) {
     m.searched_thoroughly = time;
     Box zone{0, 0, float(frame.width), float(frame.height)};
     if (!motion.zones.empty()) {  // with room for the head above a body in plain clothes

@@ -13,24 +13,24 @@
 namespace wellspring {
 
 struct PeopleSettings {
-  double search_alone = 0.1;   // seconds between searches of the frame while nobody is followed
-  double search_more = 0.5;    // ... while somebody is
-  double thorough = 0.6;       // ... with the slower detector, while nobody is followed
-  double thorough_more = 2;    // ... while somebody is and something moves
-  double carry = 1.2;          // seconds a face is carried on by texture alone
-  double recall = 4;           // seconds after which a lost face's number is forgotten
-  double still = 20;           // seconds without any movement: a picture
-  int most = 6;                // faces followed at once
+  double search_alone = 0.1;  // seconds between searches of the frame while nobody is followed
+  double search_more = 0.5;   // ... while somebody is
+  double thorough = 0.6;      // ... with the slower detector, while nobody is followed
+  double thorough_more = 2;   // ... while somebody is and something moves
+  double carry = 1.2;         // seconds a face is carried on by texture alone
+  double recall = 4;          // seconds after which a lost face's number is forgotten
+  double still = 20;          // seconds without any movement: a picture
+  int most = 6;               // faces followed at once
 };
 
 struct Followed {
   uint32_t id = 0;
   Face face;
-  bool seen = false;           // in this frame, by a detector
-  bool visible = false;        // seen or carried on
-  bool picture = false;        // has not stirred for too long
+  bool seen = false;     // in this frame, by a detector
+  bool visible = false;  // seen or carried on
+  bool picture = false;  // has not stirred for too long
   double first_time = 0, seen_time = 0, moved_time = 0;
-  int hits = 0;                // frames in which a detector saw it
+  int hits = 0;  // frames in which a detector saw it
 };
 
 class People {

@@ -17,7 +17,7 @@ struct PresenceSettings {
 
 struct PresenceState {
   Presence now = Presence::absent;
-  double since = 0;            // time of the last change
+  double since = 0;  // time of the last change
   // Evidence in seconds: grows with the time a cue is there, falls as fast while it is not, never
   // below 0.
   double motion_evidence = 0, face_evidence = 0;

@@ -52,7 +52,8 @@ int read_options(Options& options, int argc, char** argv) {
   app.add_option("--cache", options.recordings.cache,
                  "folder that keeps speech and words of recordings; empty: nothing is kept");
   app.add_option("--fps", options.show.fps, "pictures a second for each visitor")
-      ->check(CLI::Range(1.0, 120.0))->capture_default_str();
+      ->check(CLI::Range(1.0, 120.0))
+      ->capture_default_str();
   app.add_option("--max-visitors", options.show.max_visitors)
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

@@ -176,8 +176,7 @@ int run(Options options) {
   if (!options.motion.empty()) {
     Motion motion = find_motion(character, options.motion);
     Retarget retarget = make_retarget(motion, character);
-    if (!retarget.fits)
-      throw LoadError(options.motion, "", "moves no joint that this figure has");
+    if (!retarget.fits) throw LoadError(options.motion, "", "moves no joint that this figure has");
     apply_motion(motion, retarget, character, options.time, motion.loop, 1, pose);
   }
   if (!options.expressions.empty()) {
@@ -198,10 +197,10 @@ int run(Options options) {
   follow_expression_rules(character, pose);
   follow_constraints(character, pose);
   std::vector<std::string> warnings;
-  Frame frame = options.sheet.empty()
-                    ? render_portrait(character, pose, shot, warnings)
-                    : render_sheet(character, sheet_cells(character, options.sheet, pose), shot, 0,
-                                   warnings);
+  Frame frame =
+      options.sheet.empty()
+          ? render_portrait(character, pose, shot, warnings)
+          : render_sheet(character, sheet_cells(character, options.sheet, pose), shot, 0, warnings);
   for (const std::string& warning : warnings) std::cerr << "note: " << warning << "\n";
   save_picture(options.out, frame, Tonemap{});
   return 0;
@@ -245,7 +244,8 @@ int main(int argc, char** argv) {
   app.add_option("--expression", options.expressions,
                  "NAME or NAME=WEIGHT instead of the pose's face, may repeat and is summed");
   app.add_option("--point", options.point, "points at x,y,z, as a story would have it")
-      ->delimiter(',')->expected(3);
+      ->delimiter(',')
+      ->expected(3);
   app.add_option("--look", options.appearance, "looks at x,y,z")->delimiter(',')->expected(3);
   app.add_option("--gesture", options.gesture,
                  "motion of the gesture library, seen --time seconds after it began");

@@ -46,9 +46,9 @@ void paste(const Image8& picture, Image8& sheet, int left, int top) {
 bool make_film(const std::string& folder, double fps) {
   std::string rate = fmt::format("{}", fps), pictures = folder + "/%04d.png",
               sound = folder + "/sound.wav", film = folder + "/clip.mp4";
-  std::vector<std::string> words = {"ffmpeg", "-y",   "-loglevel", "error", "-framerate", rate,
-                                    "-i",     pictures, "-i",      sound,   "-pix_fmt",   "yuv420p",
-                                    "-shortest", film};
+  std::vector<std::string> words = {"ffmpeg",   "-y",      "-loglevel", "error", "-framerate",
+                                    rate,       "-i",      pictures,    "-i",    sound,
+                                    "-pix_fmt", "yuv420p", "-shortest", film};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);

@@ -33,7 +33,7 @@ namespace {
 namespace protocol = wellspring::speech_protocol;
 using nlohmann::json;
 
-constexpr int seconds_for_one = 20;         // a child that takes longer is ended by SIGALRM
+constexpr int seconds_for_one = 20;        // a child that takes longer is ended by SIGALRM
 constexpr size_t memory_bytes = 1u << 30;  // address space of one child
 
 bool read_all(char* to, size_t size) {
@@ -69,8 +69,13 @@ bool answer(const json& head, const std::vector<short>& sound = {}) {
 // What the library's callback collects; it takes no pointer of ours.
 struct Spoken {
   std::vector<short> sound;
-  struct Word { int sample, character, characters; };
-  struct Phoneme { int sample, word; std::string name; };
+  struct Word {
+    int sample, character, characters;
+  };
+  struct Phoneme {
+    int sample, word;
+    std::string name;
+  };
   std::vector<Word> words;
   std::vector<Phoneme> phonemes;
   bool too_long = false;
@@ -93,8 +98,8 @@ int collect(short* sound, int count, espeak_EVENT* events) {
 
 int initialise(bool ipa) {
   int names = espeakINITIALIZE_PHONEME_EVENTS | (ipa ? espeakINITIALIZE_PHONEME_IPA : 0);
-  int rate = espeak_Initialize(AUDIO_OUTPUT_SYNCHRONOUS, 200, nullptr,
-                               names | espeakINITIALIZE_DONT_EXIT);
+  int rate =
+      espeak_Initialize(AUDIO_OUTPUT_SYNCHRONOUS, 200, nullptr, names | espeakINITIALIZE_DONT_EXIT);
   espeak_SetSynthCallback(collect);
   return rate;
 }
@@ -190,8 +195,11 @@ json make_answer(const json& request, const std::vector<Language>& languages, in
     phonemes.push_back({phoneme.sample, phoneme.word, phoneme.name, second.phonemes[i].name});
   }
   sound = std::move(first.sound);
-  return {{"id", id},       {"rate", rate},       {"voice", language->name},
-          {"words", words}, {"phonemes", phonemes}};
+  return {{"id", id},
+          {"rate", rate},
+          {"voice", language->name},
+          {"words", words},
+          {"phonemes", phonemes}};
 }
 
 void limit_child() {

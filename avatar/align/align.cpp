@@ -14,7 +14,7 @@ namespace wellspring {
 
 namespace {
 
-constexpr size_t band_frames = 150;        // either side of the way before
+constexpr size_t band_frames = 150;              // either side of the way before
 constexpr int rounds = 10, whitening_round = 4;  // of learning and dividing anew
 
 // Costs of dividing by the learnt models, where a right frame costs 1/2 more than the constant.
@@ -70,9 +70,9 @@ std::vector<int32_t> to_pieces(const std::vector<int32_t>& way,
   std::vector<int32_t> piece_of;
   size_t k = 0;
   for (const SoundState& state : states) {
-    while (k + 1 < pieces.size() && (pieces[k].phoneme < state.phoneme ||
-                                     (pieces[k + 1].phoneme == state.phoneme &&
-                                      pieces[k + 1].frame <= state.frame)))
+    while (k + 1 < pieces.size() &&
+           (pieces[k].phoneme < state.phoneme ||
+            (pieces[k + 1].phoneme == state.phoneme && pieces[k + 1].frame <= state.frame)))
       k++;
     piece_of.push_back(int32_t(k));
   }

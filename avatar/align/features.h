@@ -8,13 +8,13 @@
 
 namespace wellspring {
 
-inline constexpr int cepstra = 13;              // the zeroth is loudness
+inline constexpr int cepstra = 13;                 // the zeroth is loudness
 inline constexpr int feature_count = 2 * cepstra;  // and the slopes of all of them
-inline constexpr double feature_hop = 0.01;     // seconds from frame to frame
-inline constexpr float quietest_speech = -55;   // dB of Features::loudness; less is nothing
+inline constexpr double feature_hop = 0.01;        // seconds from frame to frame
+inline constexpr float quietest_speech = -55;      // dB of Features::loudness; less is nothing
 
 struct Features {
-  std::vector<float> values;  // feature_count a frame, frame after frame
+  std::vector<float> values;    // feature_count a frame, frame after frame
   std::vector<float> loudness;  // of each frame: mean level of its bands, dB
   size_t size() const { return loudness.size(); }
   const float* frame(size_t i) const { return &values[i * feature_count]; }

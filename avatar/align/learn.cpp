@@ -13,8 +13,7 @@ constexpr double prior_frames = 12;  // how many recorded frames the template's 
 constexpr double prior_variance_frames = 100;  // the same for the variance of all kinds
 constexpr double round_frames = 100;  // the same for the belief that features are independent
 
-float gaussian_cost(const float* mean, const float* inverse, float constant,
-                    const float* frame) {
+float gaussian_cost(const float* mean, const float* inverse, float constant, const float* frame) {
   float sum = 0;
   for (size_t c = 0; c < feature_count; c++) {
     float d = frame[c] - mean[c];

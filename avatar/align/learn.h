@@ -11,9 +11,9 @@
 namespace wellspring {
 
 struct SoundModel {
-  std::vector<float> mean;              // feature_count a kind
-  std::vector<float> inverse_variance;  // the same
-  std::vector<float> constant;          // a kind: half the mean log variance
+  std::vector<float> mean;                                    // feature_count a kind
+  std::vector<float> inverse_variance;                        // the same
+  std::vector<float> constant;                                // a kind: half the mean log variance
   std::vector<float> silence_mean, silence_inverse_variance;  // of frames left out
   float silence_constant = 0;
 };

@@ -62,7 +62,7 @@ std::vector<WarpGap> gaps_before(const std::vector<SoundState>& states, bool blo
   std::vector<WarpGap> gaps;
   for (size_t i = 0; i < states.size(); i++) {
     bool phoneme_begins = i == 0 || states[i].phoneme != states[i - 1].phoneme;
-    gaps.push_back(states[i].word_begins       ? WarpGap::anything
+    gaps.push_back(states[i].word_begins      ? WarpGap::anything
                    : blocks && phoneme_begins ? WarpGap::silence
                                               : WarpGap::none);
   }

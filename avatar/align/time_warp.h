@@ -26,14 +26,14 @@ struct WarpTask {
   size_t frames = 0, templates = 0;
   // Cost of a frame at templates [first, last), written to `out`; called once a frame, in order.
   std::function<void(size_t frame, size_t first, size_t last, float* out)> costs;
-  std::vector<float> gap_cost;       // of leaving a frame out, for each frame
-  std::vector<float> silence_cost;   // the same in gaps that must be silent
-  std::vector<WarpGap> gap_before;   // for each template; one entry more for the end
+  std::vector<float> gap_cost;             // of leaving a frame out, for each frame
+  std::vector<float> silence_cost;         // the same in gaps that must be silent
+  std::vector<WarpGap> gap_before;         // for each template; one entry more for the end
   float enter_gap = 0, enter_silence = 0;  // once for every stretch left out, by the gap's kind
   // For each template those after which the way may come back to it, themselves included; empty:
   // it never goes back.
   std::vector<std::vector<WarpReturn>> returns;
-  float stay = 0, skip = 0;          // added for staying at a template, and for skipping one
+  float stay = 0, skip = 0;  // added for staying at a template, and for skipping one
   // Frames each template is expected to last; empty: 1. Staying costs the more the longer it lasts
   // already: `stay` times the frames spent there over the frames expected. The frames spent are
   // those of the cheapest way so far, so this one rule is followed greedily.

@@ -178,8 +178,8 @@ void pose_eye(const Rig& rig, int side, vec3 point, Pose& pose) {
 void pose_drawn_eyes(const Rig& rig, vec3 point, Pose& pose) {
   int joint = rig.skull >= 0 ? rig.skull : rig.root;
   JointFrame head = eval_joint_frame(*rig.character, pose, joint);
-  vec3 eyes = head.center +
-              head.rotation * (rig.eyes_center - rig.character->joints[size_t(joint)].center);
+  vec3 eyes =
+      head.center + head.rotation * (rig.eyes_center - rig.character->joints[size_t(joint)].center);
   vec3 way = glm::conjugate(head.rotation) * (point - eyes);
   if (dot(way, way) < 1e-6f) return;
   float yaw = std::atan2(way.x, way.z), pitch = std::atan2(way.y, glm::length(vec2(way.x, way.z)));

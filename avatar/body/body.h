@@ -24,10 +24,10 @@ struct BodyPlan {
   vec3 head{0};         // of the head, humanoid space (not over the heading); pitch positive up
   vec3 gaze_point{0, 1.6f, 4};
   std::array<ArmPose, 2> arm;
-  vec3 point{0, 1.2f, 4};  // what arms point at, humanoid space
+  vec3 point{0, 1.2f, 4};                                 // what arms point at, humanoid space
   std::array<float, 2> finger_aim{0, 0}, palm_aim{0, 0};  // how far they do, 0..1
-  bool fingers = true;     // false: they stay as they are drawn
-  float shoulders_up = 0;  // collar bones, radians
+  bool fingers = true;                                    // false: they stay as they are drawn
+  float shoulders_up = 0;                                 // collar bones, radians
   std::array<FootPlan, 2> foot;
 };
 

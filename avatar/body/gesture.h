@@ -14,16 +14,16 @@ namespace wellspring {
 
 // What is asked of the arms in one tick.
 struct GestureOrder {
-  int clip = -1;       // begins now; -1: nothing new
-  float size = 1;      // 0..1: how large the clip is played
-  float lead = 0;      // seconds until its stroke is due; < 0: as the clip has it
-  float seconds = 0;   // how long it shall last; longer than the clip: its held moment is drawn out
+  int clip = -1;      // begins now; -1: nothing new
+  float size = 1;     // 0..1: how large the clip is played
+  float lead = 0;     // seconds until its stroke is due; < 0: as the clip has it
+  float seconds = 0;  // how long it shall last; longer than the clip: its held moment is drawn out
   bool mirrored = false;  // left for right
 };
 
 struct GestureState {
   int clip = -1;
-  float time = 0;  // since the clip began; negative: it waits for its word
+  float time = 0;            // since the clip began; negative: it waits for its word
   float size = 1, hold = 0;  // hold: seconds added to the held moment
   bool mirrored = false;
   // What earlier motions left, one spring a channel of GestureMotion; at rest when `blending` is

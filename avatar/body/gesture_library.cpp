@@ -11,8 +11,8 @@ namespace wellspring {
 namespace {
 
 constexpr std::array<std::string_view, 13> arm_fields = {
-    "forward", "side", "turn", "elbow", "pronate", "flex", "tilt",
-    "curl",    "thumb", "index", "middle", "ring", "little"};
+    "forward", "side",  "turn",  "elbow",  "pronate", "flex",  "tilt",
+    "curl",    "thumb", "index", "middle", "ring",    "little"};
 constexpr std::array<std::string_view, 6> trunk_fields = {"head.turn",  "head.nod",  "head.tilt",
                                                           "chest.turn", "chest.bow", "chest.lean"};
 static_assert(told_channels == 2 * arm_fields.size() + 2 + trunk_fields.size() + 1);

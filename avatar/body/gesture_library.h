@@ -28,7 +28,7 @@ struct GestureMotion {
   std::array<float, 2> weight{0, 0};  // of them over the resting arms, 0..1
   vec3 head{0};  // over the gaze: turn to its own left, nod (down positive), tilt to its own right;
                  // radians
-  vec3 chest{0};  // turn to its own left, bow, lean to its own right; radians
+  vec3 chest{0};        // turn to its own left, bow, lean to its own right; radians
   float shoulders = 0;  // collar bones raised, radians
   // How far finger or hand are turned to the place spoken of, 0..1 (left, right); not in the data,
   // made of the clip's `aim` and weight.
@@ -54,7 +54,7 @@ struct GestureClip {
   float stroke = 0;  // when its meaning is plain: meets the word it belongs to
   float hold = -1;   // the moment that is drawn out when it shall last longer; < 0: none
   Aim aim = Aim::none;
-  std::vector<float> times;  // of the keys, growing, from 0 to seconds
+  std::vector<float> times;              // of the keys, growing, from 0 to seconds
   std::vector<GestureRow> rows, slopes;  // values at the keys and their change a second
   std::vector<Swing> swings;
   std::array<bool, 2> uses_arm{false, false};

@@ -51,8 +51,8 @@ struct Reader : LibraryReader {
   }
 
   // Channels that this key names, over those of the key before.
-  void read_arm(const json& arm, const std::string& where, const std::string& side,
-                GestureRow& row, std::vector<bool>& said) const {
+  void read_arm(const json& arm, const std::string& where, const std::string& side, GestureRow& row,
+                std::vector<bool>& said) const {
     auto set = [&](const std::string& field, float value) {
       size_t channel = channel_of(side + "." + field);
       row[channel] = value;

@@ -137,8 +137,7 @@ float point_arm(const Rig& rig, int side, Aim with, vec3 target, float weight, P
   // Within the reach of the joint, as seen from the chest.
   int below = character.joints[size_t(bones.shoulder)].parent;
   if (bones.collar >= 0) below = character.joints[size_t(bones.collar)].parent;
-  quat chest =
-      below >= 0 ? eval_joint_frame(character, pose, below).rotation : quat(1, 0, 0, 0);
+  quat chest = below >= 0 ? eval_joint_frame(character, pose, below).rotation : quat(1, 0, 0, 0);
   vec3 mirror(side == 0 ? 1.0f : -1.0f, 1, 1);
   vec3 arm = glm::conjugate(chest) * (swing * glm::normalize(fore.center - center)) * mirror;
   vec3 allowed = limited(arm);

@@ -24,8 +24,8 @@ struct StanceState {
       -1e30;  // since when what is looked at has been far to the side; < 0: it is not
 };
 
-// `aim`: yaw of what is looked at. `prior weight`: seconds and `reach`: angle before the body turns to
-// it; reach < 0: nobody is looked at, and the body turns back to the front after `prior weight`.
+// `aim`: yaw of what is looked at. `prior weight`: seconds and `reach`: angle before the body turns
+// to it; reach < 0: nobody is looked at, and the body turns back to the front after `prior weight`.
 // Without legs it just turns.
 void tick_stance(StanceState& state, bool has_legs, float aim, float reach, float patience,
                  double now, float dt);

@@ -8,12 +8,12 @@ namespace {
 
 // [seen][shown]: joy, sadness, anger, fear, disgust, surprise.
 constexpr float answers[emotion_count][emotion_count] = {
-    {0.9f, 0, 0, 0, 0, 0},            // joy is shared
-    {0, 0.6f, 0, 0, 0, 0},            // sadness: concern
-    {0, 0.25f, 0, 0, 0, 0},           // anger is met with calm attention
-    {0, 0.3f, 0, 0, 0, 0.1f},         // fear: concern
-    {0, 0, 0, 0, 0, 0.25f},           // disgust: is something wrong?
-    {0.15f, 0, 0, 0, 0, 0.6f},        // surprise is shared, with pleasure
+    {0.9f, 0, 0, 0, 0, 0},      // joy is shared
+    {0, 0.6f, 0, 0, 0, 0},      // sadness: concern
+    {0, 0.25f, 0, 0, 0, 0},     // anger is met with calm attention
+    {0, 0.3f, 0, 0, 0, 0.1f},   // fear: concern
+    {0, 0, 0, 0, 0, 0.25f},     // disgust: is something wrong?
+    {0.15f, 0, 0, 0, 0, 0.6f},  // surprise is shared, with pleasure
 };
 
 }  // namespace

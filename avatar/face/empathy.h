@@ -20,8 +20,8 @@ inline constexpr float empathy_rate = 3;
 // Weight of this layer near the storyteller; 0 in the other zones (lod.h).
 inline constexpr float empathy_weight = 0.6f;
 
-// The face that answers `seen` once it has settled. Weak signals (below 0.2) are prior variance, not
-// emotion.
+// The face that answers `seen` once it has settled. Weak signals (below 0.2) are prior variance,
+// not emotion.
 Emotions answer_to(const Emotions& seen);
 // `seen` null: nobody, or nothing known of the face; the feeling fades.
 Emotions tick_empathy(EmpathyState& state, const Emotions* seen, float dt);

@@ -99,7 +99,7 @@ struct Reader : LibraryReader {
   }
 
   NamedExpression read_expression(const json& entry, const std::string& where,
-                             const ExpressionSet& set) const {
+                                  const ExpressionSet& set) const {
     only(entry, where, {"name", "about", "rotate", "deform", "group", "otherwise"});
     NamedExpression expression;
     expression.name = name(entry, where);

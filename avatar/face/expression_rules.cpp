@@ -47,10 +47,11 @@ void follow_expression_rules(const Character& character, Pose& pose) {
 }
 
 void eval_appearance_changes(const Character& character, const Pose& pose,
-                       std::vector<AppearanceChange>& changes) {
+                             std::vector<AppearanceChange>& changes) {
   changes.assign(character.appearances.size(), {});
   for (const AppearanceChange& change : character.appearance_changes) {
-    if (size_t(change.displacer) >= pose.displacers.size() || size_t(change.appearance) >= changes.size())
+    if (size_t(change.displacer) >= pose.displacers.size() ||
+        size_t(change.appearance) >= changes.size())
       continue;
     float weight = between_0_and_1(pose.displacers[size_t(change.displacer)]);
     if (weight == 0) continue;

@@ -12,9 +12,9 @@ namespace wellspring {
 // finite count as none.
 void follow_expression_rules(const Character& character, Pose& pose);
 
-// What the pose's displacers add to each look, by character.appearance_changes; weights are taken as 0
-// to 1. All zero where nothing does. Overwrites `changes`.
+// What the pose's displacers add to each look, by character.appearance_changes; weights are taken
+// as 0 to 1. All zero where nothing does. Overwrites `changes`.
 void eval_appearance_changes(const Character& character, const Pose& pose,
-                       std::vector<AppearanceChange>& changes);
+                             std::vector<AppearanceChange>& changes);
 
 }  // namespace wellspring

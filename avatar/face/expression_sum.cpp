@@ -67,8 +67,7 @@ void flatten(ExpressionRig& rig) {
       nothing = rig.controls[e].empty() && rig.rotations[e].empty();
     }
     // What is only there to be fallen back on or grouped ("_name") is not missed.
-    if (nothing && expression.name[0] != '_')
-      rig.missing.push_back(expression.name);
+    if (nothing && expression.name[0] != '_') rig.missing.push_back(expression.name);
   }
 }
 

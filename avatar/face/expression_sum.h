@@ -21,17 +21,17 @@ namespace wellspring {
 
 // A set as one figure can show it. Made once for each figure; everything nested is flattened.
 struct ExpressionRig {
-  const ExpressionSet* set = nullptr;  // borrowed
+  const ExpressionSet* set = nullptr;                  // borrowed
   std::vector<std::vector<ExpressionPart>> controls;   // of each expression
   std::vector<std::vector<ExpressionPart>> rotations;  // of each expression: rotators
   struct Drive {
     int displacer = -1, rotator = -1;  // both -1: the figure lacks the control
     float scale = 1;
   };
-  std::vector<Drive> drives;                           // of each control
-  std::vector<int> joints;                             // of each rotator; -1: the figure lacks it
-  std::array<int, emotion_count> emotion{};            // expressions by their names, -1: none
-  std::array<int, 15> viseme{};                        // in the order of Viseme
+  std::vector<Drive> drives;                 // of each control
+  std::vector<int> joints;                   // of each rotator; -1: the figure lacks it
+  std::array<int, emotion_count> emotion{};  // expressions by their names, -1: none
+  std::array<int, 15> viseme{};              // in the order of Viseme
   int breathe = -1;
   std::array<std::array<std::array<int, 2>, 2>, flex_count> flex;  // of [left, right][minus, plus]
   std::vector<std::string> missing;  // expressions that the figure has nothing to show with

@@ -96,8 +96,8 @@ void tick_face(FaceState& state, const ExpressionRig& rig, const FaceInput& inpu
   set_target(perlin, Flex::brows, input.brows);
   if (!full)
     for (size_t i = 0; i < emotion_count; i++) add_targets(perlin, Emotion(i), wanted.weight[i]);
-  work.flex_noise += uint64_t(tick_perlin(perlin, full && input.humanlike ? stir : 0,
-                                          situation_settle, now, dt));
+  work.flex_noise +=
+      uint64_t(tick_perlin(perlin, full && input.humanlike ? stir : 0, situation_settle, now, dt));
   add_flexes(perlin, rig, sum, work);
   if (state.beat.value > 1e-3f)
     for (size_t side = 0; side < 2; side++)

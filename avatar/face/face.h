@@ -27,11 +27,11 @@ struct FaceInput {
   Detail detail = Detail::full;
   float speaking = 0;                              // 0..1
   const std::array<float, 15>* visemes = nullptr;  // null: made-up syllables
-  float smile = 0, brows = 0;     // what the situation asks for, 0..1
-  Emotions story;                 // what the story asks for
-  bool parting = false;           // a farewell overrides the story's face
-  float beat = 0;                 // an emphasised word begins
-  const Emotions* visitor = nullptr;  // the guest's face, if known
+  float smile = 0, brows = 0;                      // what the situation asks for, 0..1
+  Emotions story;                                  // what the story asks for
+  bool parting = false;                            // a farewell overrides the story's face
+  float beat = 0;                                  // an emphasised word begins
+  const Emotions* visitor = nullptr;               // the guest's face, if known
   bool humanlike = true;
 };
 

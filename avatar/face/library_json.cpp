@@ -77,8 +77,8 @@ std::string LibraryReader::name(const json& object, const std::string& where,
   if (!value->is_string()) fail(where + "/" + field, "a name is expected");
   std::string text = value->get<std::string>();
   auto fits = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           c == '_' || c == '-' || c == '.';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
   };
   if (text.empty() || text.size() > 64 || !std::all_of(text.begin(), text.end(), fits))
     fail(where + "/" + field, "a name of 1 to 64 letters, digits, '_', '-', '.' is expected");

@@ -16,7 +16,18 @@
 namespace wellspring {
 
 enum class Flex : uint8_t {
-  turn, nod, tilt, say_ah, blink, brows, look_x, look_y, lids, say_oo, smile, sneer
+  turn,
+  nod,
+  tilt,
+  say_ah,
+  blink,
+  brows,
+  look_x,
+  look_y,
+  lids,
+  say_oo,
+  smile,
+  sneer
 };
 inline constexpr size_t flex_count = 12;
 extern const std::array<const char*, flex_count>

@@ -151,8 +151,8 @@ void Namer::name_trunk(const std::array<Limb, 2>& arms, const std::array<Limb, 2
   for (int i = head >= 0 ? bones[size_t(head)].parent : top; i >= 0 && i != hips;
        i = bones[size_t(i)].parent) {
     if (!joints[size_t(i)].empty()) continue;
-    bool above_arms = chest >= 0 ? i != chest && is_below(i, chest)
-                                 : words[size_t(i)].part == BonePart::neck;
+    bool above_arms =
+        chest >= 0 ? i != chest && is_below(i, chest) : words[size_t(i)].part == BonePart::neck;
     (above_arms ? neck : spine).push_back(i);
   }
   std::reverse(spine.begin(), spine.end());

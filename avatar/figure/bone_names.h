@@ -34,9 +34,37 @@ quat upright_turn(const std::vector<std::string>& joints, const std::vector<vec3
 
 // What a bone's name says by itself.
 enum class BonePart {
-  none, root, hips, spine, neck, head, eye, jaw, lid, brow, collar, shoulder, upper_arm, arm,
-  forearm, wrist, hand, hip, thigh, leg, shin, ankle, foot, toe, thumb, index, middle, ring,
-  little, finger, helper  // helper: twists, targets, ends, cloth: never a joint of the body
+  none,
+  root,
+  hips,
+  spine,
+  neck,
+  head,
+  eye,
+  jaw,
+  lid,
+  brow,
+  collar,
+  shoulder,
+  upper_arm,
+  arm,
+  forearm,
+  wrist,
+  hand,
+  hip,
+  thigh,
+  leg,
+  shin,
+  ankle,
+  foot,
+  toe,
+  thumb,
+  index,
+  middle,
+  ring,
+  little,
+  finger,
+  helper  // helper: twists, targets, ends, cloth: never a joint of the body
 };
 struct BoneWord {
   BonePart part = BonePart::none;

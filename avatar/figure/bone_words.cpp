@@ -246,14 +246,20 @@ std::string vrm_bone_joint(std::string_view bone, int version) {
     const char *bone, *joint;
   };
   static constexpr Row centre[] = {
-      {"hips", "humanoid_root"}, {"spine", "vl5"},        {"chest", "vt10"},
-      {"upperChest", "vt6"},     {"neck", "vc4"},         {"head", "skullbase"},
+      {"hips", "humanoid_root"},   {"spine", "vl5"}, {"chest", "vt10"},
+      {"upperChest", "vt6"},       {"neck", "vc4"},  {"head", "skullbase"},
       {"jaw", "temporomandibular"}};
-  static constexpr Row sided[] = {
-      {"Eye", "eyeball_joint"}, {"UpperLeg", "hip"}, {"LowerLeg", "knee"}, {"Foot", "talocrural"},
-      {"Toes", "metatarsophalangeal_2"}, {"Shoulder", "sternoclavicular"}, {"UpperArm", "shoulder"},
-      {"LowerArm", "elbow"}, {"Hand", "radiocarpal"}, {"ThumbMetacarpal", "carpometacarpal_1"},
-      {"ThumbDistal", "carpal_interphalangeal_1"}};
+  static constexpr Row sided[] = {{"Eye", "eyeball_joint"},
+                                  {"UpperLeg", "hip"},
+                                  {"LowerLeg", "knee"},
+                                  {"Foot", "talocrural"},
+                                  {"Toes", "metatarsophalangeal_2"},
+                                  {"Shoulder", "sternoclavicular"},
+                                  {"UpperArm", "shoulder"},
+                                  {"LowerArm", "elbow"},
+                                  {"Hand", "radiocarpal"},
+                                  {"ThumbMetacarpal", "carpometacarpal_1"},
+                                  {"ThumbDistal", "carpal_interphalangeal_1"}};
   for (const Row& row : centre)
     if (bone == row.bone) return row.joint;
   std::string side;

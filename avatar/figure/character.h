@@ -21,7 +21,7 @@ struct Joint {
   // H-Anim default pose (no joint turned); a Pose of these rotations shows the figure as the file
   // does.
   quat rest_rotation{1, 0, 0, 0};
-  std::vector<vec2> limits;  // empty, or lower/upper radians for x, y, z (joint_limits.h)
+  std::vector<vec2> limits;            // empty, or lower/upper radians for x, y, z (joint_limits.h)
   quat limit_orientation{1, 0, 0, 0};  // of their axes
   vec3 stiffness{0};                   // 0..1: how unwillingly it turns about x, y, z
 };
@@ -125,9 +125,9 @@ struct JointConstraint {
   enum class Kind : uint8_t { roll, aim, rotation };
   int joint = 0, source = 0;
   Kind kind = Kind::rotation;
-  float weight = 1;               // 0..1: how far it takes the turn
-  vec3 axis{0};                   // that is rolled about, or aimed: unit, humanoid space at rest
-  quat between{1, 0, 0, 0};       // of roll and rotation: axes of the source's turn to the joint's
+  float weight = 1;          // 0..1: how far it takes the turn
+  vec3 axis{0};              // that is rolled about, or aimed: unit, humanoid space at rest
+  quat between{1, 0, 0, 0};  // of roll and rotation: axes of the source's turn to the joint's
 };
 
 // What swinging bones keep clear of: a ball, a capsule from `place` to `tail`, or half a space.
@@ -163,8 +163,8 @@ struct Character {
   EyeRanges eye_ranges;
   std::vector<AppearanceChange> appearance_changes;
   std::vector<ExpressionRule> expression_rules;  // one a displacer at most; empty: nothing is asked
-  std::vector<JointConstraint> constraints;  // in the order they are to be followed
-  std::vector<SpringBone> springs;  // by joint, parents first
+  std::vector<JointConstraint> constraints;      // in the order they are to be followed
+  std::vector<SpringBone> springs;               // by joint, parents first
   std::vector<SpringCollider> spring_colliders;
   std::vector<Motion> motions;
   // What the file says of its maker and licence: "author" -> "Jane Doe".

@@ -272,13 +272,14 @@ void complete_face(Character& character) {
     if (!face.make(recipe, displacer, changes, binary)) continue;
     done.insert(recipe.control);
     int index = int(character.displacers.size() + made.size());
-    for (AppearanceChange& change : changes) change.displacer = index, all_changes.push_back(change);
+    for (AppearanceChange& change : changes)
+      change.displacer = index, all_changes.push_back(change);
     if (binary) rules.push_back({index, true, -1, {}});
     made.push_back(std::move(displacer));
   }
   for (Displacer& displacer : made) character.displacers.push_back(std::move(displacer));
   character.appearance_changes.insert(character.appearance_changes.end(), all_changes.begin(),
-                                all_changes.end());
+                                      all_changes.end());
   character.expression_rules.insert(character.expression_rules.end(), rules.begin(), rules.end());
   complete_rules(character);
 }

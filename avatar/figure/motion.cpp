@@ -23,8 +23,8 @@ void eval_track(const MotionTrack& track, float time, float* out) {
   auto key = [&](size_t k, size_t part) {
     return track.values.data() + (cubic ? k * 3 + part : k) * width;
   };
-  size_t next = size_t(std::upper_bound(track.times.begin(), track.times.end(), time) -
-                       track.times.begin());
+  size_t next =
+      size_t(std::upper_bound(track.times.begin(), track.times.end(), time) - track.times.begin());
   size_t first = next == 0 ? 0 : next - 1;
   next = std::min(next, keys - 1);
   float span = track.times[next] - track.times[first];

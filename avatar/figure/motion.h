@@ -27,8 +27,8 @@ enum class TrackCurve : uint8_t { step, linear, cubic };
 struct MotionTrack {
   TrackKind kind = TrackKind::rotation;
   TrackCurve curve = TrackCurve::linear;
-  int target = 0;             // of Motion::joints or Motion::displacers
-  std::vector<float> times;   // seconds, not decreasing, at least one
+  int target = 0;            // of Motion::joints or Motion::displacers
+  std::vector<float> times;  // seconds, not decreasing, at least one
   std::vector<float>
       values;  // a key: x y z w, x y z or one weight; cubic: in-tangent, value, out-tangent
   quat frame{1, 0, 0, 0};

@@ -15,12 +15,12 @@ struct Retarget {
     quat align{1, 0, 0, 0};  // the figure's rest pose to the motion's, humanoid space
     bool moves = false;      // the motion has a say about this joint
   };
-  std::vector<Link> links;       // one a joint of the figure
-  std::vector<int> displacers;   // one a displacer of the motion; -1: the figure has none such
+  std::vector<Link> links;          // one a joint of the figure
+  std::vector<int> displacers;      // one a displacer of the motion; -1: the figure has none such
   int root = -1, motion_root = -1;  // humanoid_root in the figure and in the motion
-  float scale = 1;               // height of the figure's hips over the motion's
-  bool same = false;             // one skeleton: every number is taken as it is
-  bool fits = false;             // anything moves at all
+  float scale = 1;                  // height of the figure's hips over the motion's
+  bool same = false;                // one skeleton: every number is taken as it is
+  bool fits = false;                // anything moves at all
 };
 
 Retarget make_retarget(const Motion& motion, const Character& character);

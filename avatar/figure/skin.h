@@ -24,8 +24,8 @@ struct SkinFolds {
 
 // Working memory of skin(); one per figure and thread. Made by the first call.
 struct SkinScratch {
-  std::vector<mat4> joints;       // after skin(): eval_joints() of the pose
-  std::vector<glm::mat3x4> rows;  // the same in the world, first three rows of each
+  std::vector<mat4> joints;           // after skin(): eval_joints() of the pose
+  std::vector<glm::mat3x4> rows;      // the same in the world, first three rows of each
   std::vector<DualQuaternion> rigid;  // for dual quaternions: each joint's turn and way ...
   std::vector<mat3> stretches;        // ... and what it stretches; empty: nothing
   std::vector<vec3> displaced, displaced_normals;

@@ -33,8 +33,8 @@ Character character_from_gltf(const std::string& path) {
   for (const Joint& joint : character.joints) names.push_back(joint.name);
   character.loa = level_of_articulation(names);
   if (character.parts.empty())
-    gltf::warn(figure.file, "", figure.vrm.animation ? "a motion without a figure"
-                                                     : "the figure has no surface");
+    gltf::warn(figure.file, "",
+               figure.vrm.animation ? "a motion without a figure" : "the figure has no surface");
   for (std::string& warning : figure.file.warnings)
     character.warnings.push_back(std::move(warning));
   complete_face(character);

@@ -19,11 +19,11 @@ struct GltfFigure {
   std::vector<gltf::Node> nodes;  // with their transforms at rest
   Vrm vrm;
   Character character;
-  std::vector<int> joint_of;      // per node; -1: none
+  std::vector<int> joint_of;       // per node; -1: none
   std::vector<int> nearest_joint;  // per node: its own joint or that of the nearest node above
-  std::vector<size_t> node_of;    // per joint
-  dmat4 to_humanoid{1};           // the file's world to humanoid space
-  std::vector<dmat4> rest;        // per node: to the file's world, in the figure's rest pose
+  std::vector<size_t> node_of;     // per joint
+  dmat4 to_humanoid{1};            // the file's world to humanoid space
+  std::vector<dmat4> rest;         // per node: to the file's world, in the figure's rest pose
   std::map<std::pair<size_t, size_t>, Displacer> moves;  // what morph target (node, target) does
 };
 

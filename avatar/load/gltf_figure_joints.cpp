@@ -29,8 +29,9 @@ std::vector<dmat4> read_binds(GltfFigure& figure, size_t skin) {
   if (form.components != 16 || form.component_type != gltf::float_component)
     gltf::refuse(figure.file, where, "must be MAT4 of FLOAT");
   if (form.count < int64_t(binds.size()))
-    gltf::refuse(figure.file, where, "has " + std::to_string(form.count) + " matrices for " +
-                                         std::to_string(binds.size()) + " joints");
+    gltf::refuse(figure.file, where,
+                 "has " + std::to_string(form.count) + " matrices for " +
+                     std::to_string(binds.size()) + " joints");
   auto values = gltf::read_floats(figure.file, accessor->get<size_t>());
   for (size_t j = 0; j < binds.size(); j++) {
     for (size_t i = 0; i < 16; i++) {

@@ -97,8 +97,12 @@ struct Converter {
     for (const auto& [name, node] : figure.vrm.expression_nodes) {
       if (node != track.node) continue;
       if (track.path != gltf::Path::translation) return true;
-      MotionTrack made{TrackKind::displacer, curve_of(track.curve), displacer_index(motion, name),
-                       track.times, {}, {}};
+      MotionTrack made{TrackKind::displacer,
+                       curve_of(track.curve),
+                       displacer_index(motion, name),
+                       track.times,
+                       {},
+                       {}};
       for (size_t i = 0; i < track.values.size(); i += 3) made.values.push_back(track.values[i]);
       motion.tracks.push_back(std::move(made));
       return true;

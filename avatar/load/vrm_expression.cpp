@@ -20,12 +20,23 @@ const char* const unseen =
     "and outline colours, which cartoons have, are not shown";
 
 std::string preset_of_version_0(std::string preset) {
-  static const std::map<std::string, std::string> names = {
-      {"a", "aa"}, {"i", "ih"}, {"u", "ou"}, {"e", "ee"}, {"o", "oh"}, {"joy", "happy"},
-      {"angry", "angry"}, {"sorrow", "sad"}, {"fun", "relaxed"}, {"blink", "blink"},
-      {"blink_l", "blinkLeft"}, {"blink_r", "blinkRight"}, {"lookup", "lookUp"},
-      {"lookdown", "lookDown"}, {"lookleft", "lookLeft"}, {"lookright", "lookRight"},
-      {"neutral", "neutral"}};
+  static const std::map<std::string, std::string> names = {{"a", "aa"},
+                                                           {"i", "ih"},
+                                                           {"u", "ou"},
+                                                           {"e", "ee"},
+                                                           {"o", "oh"},
+                                                           {"joy", "happy"},
+                                                           {"angry", "angry"},
+                                                           {"sorrow", "sad"},
+                                                           {"fun", "relaxed"},
+                                                           {"blink", "blink"},
+                                                           {"blink_l", "blinkLeft"},
+                                                           {"blink_r", "blinkRight"},
+                                                           {"lookup", "lookUp"},
+                                                           {"lookdown", "lookDown"},
+                                                           {"lookleft", "lookLeft"},
+                                                           {"lookright", "lookRight"},
+                                                           {"neutral", "neutral"}};
   std::transform(preset.begin(), preset.end(), preset.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   auto found = names.find(preset);

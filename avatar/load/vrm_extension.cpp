@@ -101,7 +101,8 @@ void read_version_0(File& file, const json& object, Vrm& vrm) {
                            "yRange"};
   std::string type = text_in(appearance, "lookAtTypeName");
   if (type == "Bone" || type == "BlendShape")
-    vrm.eye_ranges = read_ranges(file, appearance, type == "BlendShape", keys, root + "/firstPerson");
+    vrm.eye_ranges =
+        read_ranges(file, appearance, type == "BlendShape", keys, root + "/firstPerson");
   read_first_person(file, appearance, "mesh", "meshes", "firstPersonFlag", root + "/firstPerson",
                     vrm.hidden_meshes);
 }
@@ -144,10 +145,14 @@ void read_animation(File& file, const json& object, Vrm& vrm) {
 }  // namespace
 
 const std::set<std::string>& vrm_extensions() {
-  static const std::set<std::string> known = {
-      "VRM", "VRMC_vrm", "VRMC_vrm_animation", "VRMC_springBone", "VRMC_node_constraint",
-      "VRMC_materials_mtoon", "VRMC_materials_hdr_emissiveMultiplier",
-      "VRMC_springBone_extended_collider"};
+  static const std::set<std::string> known = {"VRM",
+                                              "VRMC_vrm",
+                                              "VRMC_vrm_animation",
+                                              "VRMC_springBone",
+                                              "VRMC_node_constraint",
+                                              "VRMC_materials_mtoon",
+                                              "VRMC_materials_hdr_emissiveMultiplier",
+                                              "VRMC_springBone_extended_collider"};
   return known;
 }
 

@@ -71,16 +71,16 @@ struct VrmConstraint {
 };
 
 struct Vrm {
-  int version = -1;                   // 0, 1; -1: no VRM file
-  bool animation = false;             // VRMC_vrm_animation
+  int version = -1;                      // 0, 1; -1: no VRM file
+  bool animation = false;                // VRMC_vrm_animation
   std::map<size_t, std::string> joints;  // node -> H-Anim joint
   std::vector<VrmExpression> expressions;
   std::map<std::string, size_t> expression_nodes;  // of an animation: whose x is its weight
   EyeRanges eye_ranges;
-  std::set<size_t> matt;  // materials that are drawn as cartoons
+  std::set<size_t> matt;                         // materials that are drawn as cartoons
   std::set<size_t> hidden_nodes, hidden_meshes;  // that only whoever is the figure itself sees
-  std::vector<VrmConstraint> constraints;  // no node twice
-  std::vector<VrmSpringJoint> springs;  // no node twice
+  std::vector<VrmConstraint> constraints;        // no node twice
+  std::vector<VrmSpringJoint> springs;           // no node twice
   std::vector<VrmCollider> colliders;
   std::vector<std::pair<std::string, std::string>> metadata;
 };

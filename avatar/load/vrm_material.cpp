@@ -98,7 +98,8 @@ void tell_unseen(File& file, const json& mtoon, const std::string& where) {
   tell(gltf::find(mtoon, "shadeMultiplyTexture") != nullptr, "colours of the shade");
   tell(number_in(mtoon, "uvAnimationScrollXSpeedFactor", 0) != 0 ||
            number_in(mtoon, "uvAnimationScrollYSpeedFactor", 0) != 0 ||
-           number_in(mtoon, "uvAnimationRotationSpeedFactor", 0) != 0, "moving pictures");
+           number_in(mtoon, "uvAnimationRotationSpeedFactor", 0) != 0,
+       "moving pictures");
 }
 
 void tell_unseen_of_version_0(File& file, const json& properties, const std::string& where) {

@@ -84,7 +84,8 @@ X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3
     vec3 emissive = glm::max(vec3_of(file, m, "emissiveColor", vec3(0)), vec3(0));
     if (m.type == "PhysicalMaterial") {
       if (!color)
-        appearance.base_color = glm::clamp(vec3_of(file, m, "baseColor", vec3(1)), vec3(0), vec3(1));
+        appearance.base_color =
+            glm::clamp(vec3_of(file, m, "baseColor", vec3(1)), vec3(0), vec3(1));
       appearance.metallic = glm::clamp(float_of(file, m, "metallic", 1), 0.0f, 1.0f);
       appearance.roughness = glm::clamp(float_of(file, m, "roughness", 1), 0.0f, 1.0f);
       appearance.emission = emissive;
@@ -101,7 +102,8 @@ X3dAppearance make_x3d_appearance(X3dFile& file, int appearance_node, const vec3
       appearance.base_color = vec3(0);
       appearance.emission = linear_from_srgb(vec3_of(file, m, "emissiveColor", vec3(1)));
     } else {
-      if (!color) appearance.base_color = linear_from_srgb(vec3_of(file, m, "diffuseColor", vec3(0.8f)));
+      if (!color)
+        appearance.base_color = linear_from_srgb(vec3_of(file, m, "diffuseColor", vec3(0.8f)));
       appearance.emission = linear_from_srgb(emissive);
       // Blinn-Phong exponent 128 * shininess as a GGX roughness, as far as there is a highlight at
       // all.

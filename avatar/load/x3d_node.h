@@ -39,7 +39,7 @@ struct X3dFile {
   std::string path;
   std::vector<X3dNode> nodes;  // nodes[0] is the scene; no cycles
   std::vector<X3dRoute> routes;
-  float length_unit = 1;       // metres
+  float length_unit = 1;  // metres
   std::vector<std::string> warnings;
 };
 

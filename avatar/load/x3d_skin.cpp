@@ -109,16 +109,18 @@ void HumanoidReader::add_shape(int shape, const mat4& matrix, int joint, const S
     throw LoadError(file.path, where(node),
                     "more than " + std::to_string(max_vertices) + " vertices");
   int appearance_node = find_child(file, node, "appearance", {"Appearance"});
-  X3dAppearance appearance = make_x3d_appearance(file, appearance_node, mesh.color ? &*mesh.color : nullptr);
+  X3dAppearance appearance =
+      make_x3d_appearance(file, appearance_node, mesh.color ? &*mesh.color : nullptr);
   auto [place, added] =
       appearances.emplace(std::tuple(appearance_node, mesh.color ? geometry : -1, int(mesh.solid)),
-                    int(character.appearances.size()));
+                          int(character.appearances.size()));
   if (added) {
     appearance.appearance.double_sided = appearance.appearance.double_sided || !mesh.solid;
     character.appearances.push_back(appearance.appearance);
   }
-  Part part{
-      .name = node.def.empty() ? appearance.appearance.name : node.def, .appearance = place->second, .triangles = {}};
+  Part part{.name = node.def.empty() ? appearance.appearance.name : node.def,
+            .appearance = place->second,
+            .triangles = {}};
   if (!character.segments.empty() && !skin && node.def.empty())
     part.name = character.segments.back().name;
 

@@ -23,8 +23,8 @@ void release(GestureState& gesture, const GestureLibrary& library) {
 
 GestureOrder point_at(const GestureLibrary& library, const vec3& place, const mat4& to_here) {
   vec3 here(to_here * vec4(place, 1));
-  GestureOrder order = play(library, glm::length(vec2(here.x, here.z)) < near_place ? "point_near"
-                                                                                    : "point_far");
+  GestureOrder order =
+      play(library, glm::length(vec2(here.x, here.z)) < near_place ? "point_near" : "point_far");
   order.seconds = seconds_held;
   order.mirrored = here.x > 0;  // the hand that is nearer
   return order;

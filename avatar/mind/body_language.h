@@ -20,8 +20,8 @@ struct BodyLanguageState {
   vec3 pointed{0};                 // where; world
 };
 
-// Seconds of prior weight with a guest to whom nothing happens, before the first invitation and between
-// the next ones.
+// Seconds of prior weight with a guest to whom nothing happens, before the first invitation and
+// between the next ones.
 inline constexpr double patience_seconds = 18, patience_again_seconds = 40;
 inline constexpr int most_invitations = 3;
 

@@ -37,7 +37,7 @@ struct GazeInput {
   std::optional<vec3> look;       // what the story wants looked at instead, humanoid space
   float heading = 0;              // where the body faces
   bool kiosk_motion = false, humanlike = true;
-  bool saccades = true;           // false: nobody is near enough to see them
+  bool saccades = true;  // false: nobody is near enough to see them
 };
 
 // Times after which eyes, head and chest have made nine tenths of a turn (3.9 / rate of their

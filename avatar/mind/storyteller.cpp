@@ -54,10 +54,7 @@ void tick_stance_and_gaze(StorytellerState& state, const Rig& rig, const GazeInp
   bool kiosk =
       state.behaviour.company || state.mood == Mood::greeting || state.mood == Mood::farewell;
   bool shows = look.look && !state.gaze.at_guest;
-  float reach = shows                   ? 50_deg
-                : kiosk                 ? 30_deg
-                : state.gaze.at_guest   ? 60_deg
-                                        : -1.0f;
+  float reach = shows ? 50_deg : kiosk ? 30_deg : state.gaze.at_guest ? 60_deg : -1.0f;
   float patience = state.mood == Mood::greeting ? 0.15f
                    : kiosk || shows             ? 0.5f
                    : state.gaze.at_guest        ? 1.2f
@@ -174,18 +171,21 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   state.mood = state.behaviour.mood;
 
   // Look, turn, gesture.
-  GazeInput look{guests, place_to_look(input.story, to_here), state.stance.heading.value,
-                 now - state.behaviour.last_motion < 2.5, input.humanlike, full};
+  GazeInput look{guests,
+                 place_to_look(input.story, to_here),
+                 state.stance.heading.value,
+                 now - state.behaviour.last_motion < 2.5,
+                 input.humanlike,
+                 full};
   tick_stance_and_gaze(state, rig, look, dt);
   if (full && input.humanlike) state.work.saccades++;
-  const GestureLibrary& library =
-      storyteller.gestures ? *storyteller.gestures : default_gestures();
+  const GestureLibrary& library = storyteller.gestures ? *storyteller.gestures : default_gestures();
   GestureOrder order = choose_gesture(state.body_language, state.gesture, library, here, events,
                                       state.mood, to_here, state.rng, now);
   int clip = order.clip >= 0 ? order.clip : state.gesture.clip;
-  bool hands_busy = clip >= 0 && size_t(clip) < library.clips.size() &&
-                    (library.clips[size_t(clip)].uses_arm[0] ||
-                     library.clips[size_t(clip)].uses_arm[1]);
+  bool hands_busy =
+      clip >= 0 && size_t(clip) < library.clips.size() &&
+      (library.clips[size_t(clip)].uses_arm[0] || library.clips[size_t(clip)].uses_arm[1]);
   bool noise = input.humanlike && seen;
   if (noise) state.work.body_noise++;
   IdleMotion idle =
@@ -201,8 +201,8 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   }
   GestureMotion gesture = tick_gesture(state.gesture, library, order,
                                        arms_at_rest(rig, idle, state.idle.fold.value), dt);
-  bool points = gesture.finger_aim[0] + gesture.finger_aim[1] + gesture.palm_aim[0] +
-                    gesture.palm_aim[1] > 0;
+  bool points =
+      gesture.finger_aim[0] + gesture.finger_aim[1] + gesture.palm_aim[0] + gesture.palm_aim[1] > 0;
   vec3 point = tick_point(state, input, to_here, points, dt);
 
   // What the face is to say; it nods and tilts the head, too.

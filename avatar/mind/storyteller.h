@@ -47,7 +47,7 @@ struct StorytellerState {
   Detail detail = Detail::full;
   StorytellerWork work;
   std::array<Spring, 3> point;  // what hands point at, humanoid space, gliding from place to place
-  std::shared_ptr<const Rig> rig;  // of the character last seen; immutable
+  std::shared_ptr<const Rig> rig;                    // of the character last seen; immutable
   std::shared_ptr<const ExpressionRig> expressions;  // of that rig and set; immutable
 };
 
@@ -63,7 +63,7 @@ struct StorytellerGaze {
   vec3 target{0};            // world: what it wants to look at
   float yaw = 0, pitch = 0;  // of its line of sight as posed now, from the way the placement faces;
                              // radians, yaw positive to its own left, pitch positive up
-  uint32_t guest = 0;  // whom it looks at; 0: nobody
+  uint32_t guest = 0;        // whom it looks at; 0: nobody
 };
 StorytellerGaze eval_gaze(const StorytellerState& state, const Storyteller& storyteller,
                           const Pose& pose);

@@ -16,9 +16,9 @@ namespace wellspring {
 // Somebody the storyteller can be aware of. Coordinates are the world's (as `placement`).
 struct Guest {
   uint32_t id = 0;
-  vec3 head{0};      // between the eyes
-  vec3 rotation{0};  // yaw, pitch, roll of the head relative to facing the storyteller squarely;
-                     // yaw positive to the guest's right, pitch positive up
+  vec3 head{0};        // between the eyes
+  vec3 rotation{0};    // yaw, pitch, roll of the head relative to facing the storyteller squarely;
+                       // yaw positive to the guest's right, pitch positive up
   bool kiosk = false;  // a person in front of a kiosk (is greeted); else a remote visitor's camera
                        // (is looked at)
   std::optional<Emotions> expression{};  // as far as the kiosk sees it

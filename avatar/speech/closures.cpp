@@ -11,10 +11,10 @@ namespace wellspring {
 
 namespace {
 
-constexpr double window = 0.0025;           // seconds
-constexpr double quiet = 1e-4;              // of the loudest window's energy
-constexpr double longest_closure = 0.15;    // seconds
-constexpr double least_left = 0.02;         // seconds, of the sound before
+constexpr double window = 0.0025;         // seconds
+constexpr double quiet = 1e-4;            // of the loudest window's energy
+constexpr double longest_closure = 0.15;  // seconds
+constexpr double least_left = 0.02;       // seconds, of the sound before
 
 bool is_voiceless_stop(const SpeechPhoneme& phoneme) {
   for (std::string_view stop : {"p", "t", "k", "c", "q", "ʈ", "ʔ"})

@@ -94,7 +94,10 @@ void place(const Part& part, Hold& hold) {
     return;
   }
   switch (part.shape.kind) {
-    case MouthKind::closure: at(0, 0.7); hold.closed = true; break;
+    case MouthKind::closure:
+      at(0, 0.7);
+      hold.closed = true;
+      break;
     case MouthKind::tight: at(0.1, 0.75); break;
     case MouthKind::consonant: at(0.3, 0.6); break;
     case MouthKind::vowel: at(0.35, 0.65); break;
@@ -141,8 +144,7 @@ VisemeTrack make_visemes(const std::vector<MouthSound>& sounds) {
   for (size_t i = 0; i + 1 < holds.size(); i++) part_holds(holds[i], holds[i + 1]);
 
   // The mouth prepares before the first sound where there is time, and rests after the last.
-  if (!parts.front().pause)
-    add_key(track, std::max(0.0, holds.front().begin - 0.1), rest);
+  if (!parts.front().pause) add_key(track, std::max(0.0, holds.front().begin - 0.1), rest);
   for (const Hold& hold : holds) {
     add_key(track, hold.begin, hold.weights);
     if (hold.end > hold.begin + 1e-3) add_key(track, hold.end, hold.weights);

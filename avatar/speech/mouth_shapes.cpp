@@ -48,11 +48,11 @@ bool contains(const char32_t* symbols, char32_t c) {
 // Sounds of the throat, which no lip shows, and signs that change a sound but not the mouth:
 // length, stress, tones, nasality, aspiration, ties.
 bool is_silent_symbol(char32_t c) {
-  if (c >= 0x300 && c <= 0x36f) return true;                // combining
+  if (c >= 0x300 && c <= 0x36f) return true;               // combining
   if (c >= 0x2b0 && c <= 0x2ff && c != U'ʲ') return true;  // raised letters, stress, length, tones
-  if (c >= U'0' && c <= U'9') return true;                  // tone numbers
+  if (c >= U'0' && c <= U'9') return true;                 // tone numbers
   if (c >= 0x1d2c && c <= 0x1d6a && c != U'ᵊ') return true;  // small raised letters
-  if (c == 0x200d) return true;                             // joins a tie
+  if (c == 0x200d) return true;                              // joins a tie
   return contains(U"hɦʔʕħʜʢʡⁿ-[].'`|‖‿ꜛꜜ↑↓→^_:;,!?*~#()", c);
 }
 

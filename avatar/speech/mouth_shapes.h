@@ -22,7 +22,7 @@ struct MouthShape {
   Viseme viseme = Viseme::sil;
   float share = 1;  // 0..1 of the mouth that it claims; the vowels around have the rest
   MouthKind kind = MouthKind::vowel;
-  float part = 1;   // of the sound's time; all shapes of a sound sum to 1
+  float part = 1;  // of the sound's time; all shapes of a sound sum to 1
 };
 
 // Shapes in order of time. Symbols that are not known are appended to `unknown` (once a call each)

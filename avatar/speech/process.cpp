@@ -99,9 +99,9 @@ struct SpeechProcess::Impl {
   pid_t child = 0;
   int socket = -1;
   int64_t next_id = 1;
-  int vain_starts = 0;      // since the last good answer
-  double rest_until = 0;    // no start before
-  std::string last_error;   // said already
+  int vain_starts = 0;     // since the last good answer
+  double rest_until = 0;   // no start before
+  std::string last_error;  // said already
   std::vector<std::string> languages;
 
   void stop() {
@@ -139,8 +139,8 @@ struct SpeechProcess::Impl {
     posix_spawnattr_setsigmask(&attributes, &none);
     posix_spawnattr_setsigdefault(&attributes, &defaults);
     posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
-                                              POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setflags(
+        &attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
     char* arguments[] = {program.path.data(), nullptr};
     int failed =
         posix_spawn(&child, program.path.c_str(), &actions, &attributes, arguments, environ);
@@ -225,8 +225,8 @@ std::shared_ptr<const Speech> SpeechProcess::speak(const SpeechRequest& request,
       return read_speech_answer(request, answer, std::move(pcm), error);
     }
     bool late = state == Transfer::late;
-    error = impl_->give_up(late ? "the voice program hung and was ended"
-                                : "the voice program died");
+    error =
+        impl_->give_up(late ? "the voice program hung and was ended" : "the voice program died");
     if (late) return nullptr;
   }
   return nullptr;

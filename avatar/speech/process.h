@@ -34,7 +34,7 @@ class SpeechProcess {
   // the program once each time it changes.
   std::shared_ptr<const Speech> speak(const SpeechRequest& request, std::string& error);
 
-  int process_id() const;  // 0: not running
+  int process_id() const;                             // 0: not running
   const std::vector<std::string>& languages() const;  // empty before the first start
 
  private:

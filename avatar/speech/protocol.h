@@ -22,8 +22,8 @@
 namespace wellspring::speech_protocol {
 
 inline constexpr size_t header_bytes = 8;
-inline constexpr size_t max_text_bytes = 10000;             // of one request, some ten minutes
-inline constexpr uint32_t max_request_json = 128 * 1024;    // escapes make a text longer
+inline constexpr size_t max_text_bytes = 10000;           // of one request, some ten minutes
+inline constexpr uint32_t max_request_json = 128 * 1024;  // escapes make a text longer
 inline constexpr uint32_t max_answer_json = 32 * 1024 * 1024;
 inline constexpr uint32_t max_sound_bytes = 128 * 1024 * 1024;
 inline constexpr int min_words_per_minute = 80, max_words_per_minute = 450;

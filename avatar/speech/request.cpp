@@ -23,8 +23,7 @@ std::string check_speech_request(const SpeechRequest& request) {
     return "the text has " + std::to_string(request.text.size()) + " bytes; at most " +
            std::to_string(protocol::max_text_bytes) + " can be spoken at once";
   size_t broken = find_broken_utf8(request.text);
-  if (broken != std::string::npos)
-    return "the text is no UTF-8 at byte " + std::to_string(broken);
+  if (broken != std::string::npos) return "the text is no UTF-8 at byte " + std::to_string(broken);
   if (request.text.find_first_not_of(" \t\r\n") == std::string::npos) return "the text is empty";
   if (request.lang.empty() || request.lang.size() > 40 ||
       !std::all_of(request.lang.begin(), request.lang.end(), is_tag_character))

@@ -9,8 +9,8 @@
 namespace wellspring {
 
 struct SpeechRequest {
-  std::string text;         // UTF-8, at most 10,000 bytes
-  std::string lang = "en";  // BCP 47
+  std::string text;            // UTF-8, at most 10,000 bytes
+  std::string lang = "en";     // BCP 47
   int words_per_minute = 155;  // 80 to 450
   int pitch = 45;              // 0 to 100
   std::string variant{};       // of the voice: eSpeak NG's "f3", "m2", ...; empty: its own

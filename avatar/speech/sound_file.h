@@ -8,8 +8,8 @@
 namespace wellspring {
 
 struct Sound {
-  int rate = 22050;             // samples a second
-  std::vector<float> samples;   // mono, -1 to 1; channels are averaged
+  int rate = 22050;            // samples a second
+  std::vector<float> samples;  // mono, -1 to 1; channels are averaged
 };
 
 inline constexpr double longest_recording = 1200;  // seconds; what is longer is refused

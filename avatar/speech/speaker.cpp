@@ -45,9 +45,9 @@ struct Speaker::Impl {
   mutable std::mutex mutex;
   std::condition_variable wake;
   bool ending = false;
-  std::map<std::string, Job> jobs;             // waiting and under way, by key
-  std::deque<std::string> urgent, prepared;    // keys of those that wait
-  std::list<Kept> kept;                        // most recently used first
+  std::map<std::string, Job> jobs;           // waiting and under way, by key
+  std::deque<std::string> urgent, prepared;  // keys of those that wait
+  std::list<Kept> kept;                      // most recently used first
   std::map<std::string, std::list<Kept>::iterator> kept_by_key;
   Counts counts;
   std::thread thread;
@@ -72,7 +72,8 @@ struct Speaker::Impl {
     }
   }
 
-  // With the lock held. The job of a request, made or made of high priority; null when too many wait.
+  // With the lock held. The job of a request, made or made of high priority; null when too many
+  // wait.
   Job* add(const SpeechRequest& request, const std::string& key, bool at_once) {
     auto found = jobs.find(key);
     if (found == jobs.end()) {

@@ -28,10 +28,10 @@ struct SpeechAnswer {
 
 struct SpeakerOptions {
   VoiceProgram voice;
-  size_t memory_bytes = 64 << 20;  // of speech kept; the least recently used goes first
-  std::string folder;              // kept on disk here as well; made if missing; empty: not kept
+  size_t memory_bytes = 64 << 20;   // of speech kept; the least recently used goes first
+  std::string folder;               // kept on disk here as well; made if missing; empty: not kept
   size_t folder_bytes = 256 << 20;  // the oldest files go first
-  size_t most_waiting = 2000;      // requests; what comes on top is refused with an error
+  size_t most_waiting = 2000;       // requests; what comes on top is refused with an error
 };
 
 class Speaker {
@@ -49,8 +49,8 @@ class Speaker {
   std::shared_ptr<const Speech> find(const SpeechRequest& request) const;
 
   struct Counts {
-    int process_id = 0;      // of the voice program after the last request; 0: not running
-    uint64_t starts = 0;     // of the voice program
+    int process_id = 0;   // of the voice program after the last request; 0: not running
+    uint64_t starts = 0;  // of the voice program
     size_t waiting = 0, kept = 0, kept_bytes = 0;  // requests; speeches and bytes in memory
     uint64_t spoken = 0, from_folder = 0, from_memory = 0, failed = 0;  // since the start
   };

@@ -26,13 +26,13 @@ struct SpeechPhoneme {
 };
 
 struct Speech {
-  std::string text, lang;  // UTF-8; BCP 47 as it was asked for
-  int rate = 22050;        // samples a second
+  std::string text, lang;    // UTF-8; BCP 47 as it was asked for
+  int rate = 22050;          // samples a second
   std::vector<int16_t> pcm;  // mono
   std::vector<SpeechWord> words;
   std::vector<SpeechPhoneme> phonemes;  // pauses included
   VisemeTrack visemes;
-  double duration = 0;  // of pcm
+  double duration = 0;    // of pcm
   bool recorded = false;  // by a narrator, with his own silence around it
 };
 

@@ -84,7 +84,8 @@ std::shared_ptr<const Speech> SpeechFolder::load(const SpeechRequest& request) c
   if (!in.read(reinterpret_cast<char*>(bytes), sizeof bytes)) return nullptr;
   protocol::Header header = protocol::read_header(bytes);
   std::error_code code, none;
-  if (auto made = fs::last_write_time(made_by_, none); !none && fs::last_write_time(file, code) < made)
+  if (auto made = fs::last_write_time(made_by_, none);
+      !none && fs::last_write_time(file, code) < made)
     return nullptr;
   uintmax_t size = fs::file_size(file, code);
   if (code || size != sizeof bytes + uintmax_t(header.json) + header.sound ||

@@ -16,7 +16,8 @@ std::string speech_key(const SpeechRequest& request);
 class SpeechFolder {
  public:
   // `path` empty: keeps nothing. Files beyond `most_bytes` are removed, the oldest first. What is
-  // older than the file `made_by`, the voice program, counts as missing: it may speak otherwise now.
+  // older than the file `made_by`, the voice program, counts as missing: it may speak otherwise
+  // now.
   SpeechFolder(std::string path, size_t most_bytes, std::string made_by = {});
   std::shared_ptr<const Speech> load(const SpeechRequest& request) const;
   void save(const SpeechRequest& request, const Speech& speech);

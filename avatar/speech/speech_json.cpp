@@ -145,8 +145,7 @@ std::string write_speech_json(const Speech& speech) {
     words.push_back({{"text", text.substr(word.text_begin, word.text_end - word.text_begin)},
                      {"start", rounded(word.begin)},
                      {"end", rounded(word.end)},
-                     {"characters",
-                      {character(word.text_begin), character(word.text_end)}}});
+                     {"characters", {character(word.text_begin), character(word.text_end)}}});
   for (const SpeechPhoneme& phoneme : speech.phonemes)
     phonemes.push_back({{"phoneme", phoneme.mnemonic},
                         {"ipa", phoneme.ipa},

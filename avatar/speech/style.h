@@ -10,11 +10,11 @@
 namespace wellspring {
 
 struct SpeechStyle {
-  uint32_t begin = 0, end = 0;  // bytes of the text; equal: only the pause
+  uint32_t begin = 0, end = 0;            // bytes of the text; equal: only the pause
   float rate = 1, pitch = 1, volume = 1;  // times the speaker's own
-  int emphasis = 0;   // -1 reduced, 0 none, 1 moderate, 2 strong
-  std::string alias{};  // said instead of what is written
-  float pause = 0;    // seconds of silence before it
+  int emphasis = 0;                       // -1 reduced, 0 none, 1 moderate, 2 strong
+  std::string alias{};                    // said instead of what is written
+  float pause = 0;                        // seconds of silence before it
   bool operator==(const SpeechStyle&) const = default;
 };
 

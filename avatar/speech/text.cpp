@@ -45,8 +45,12 @@ size_t find_broken_utf8(std::string_view text) {
   for (size_t i = 0; i < text.size();) {
     auto byte = [&](size_t k) { return static_cast<unsigned char>(text[k]); };
     unsigned char first = byte(i);
-    size_t more = first < 0x80 ? 0 : first < 0xc2 ? 4 : first < 0xe0 ? 1 : first < 0xf0 ? 2
-                  : first < 0xf5 ? 3 : 4;
+    size_t more = first < 0x80   ? 0
+                  : first < 0xc2 ? 4
+                  : first < 0xe0 ? 1
+                  : first < 0xf0 ? 2
+                  : first < 0xf5 ? 3
+                                 : 4;
     if (more == 4 || first == 0 || i + more >= text.size()) return i;
     for (size_t k = 1; k <= more; k++)
       if ((byte(i + k) & 0xc0) != 0x80) return i;

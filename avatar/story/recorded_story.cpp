@@ -17,9 +17,9 @@ namespace wellspring {
 
 namespace {
 
-constexpr double doubtful_rate = 2;    // times as fast or slow as the sentences' median
-constexpr double doubtful_words = 2;   // seconds of words that are not in the text
-constexpr double doubtful_word = 3;    // times as long as its letters let expect
+constexpr double doubtful_rate = 2;   // times as fast or slow as the sentences' median
+constexpr double doubtful_words = 2;  // seconds of words that are not in the text
+constexpr double doubtful_word = 3;   // times as long as its letters let expect
 constexpr double shortest_overlap = 1e-3;
 
 // Words of the lines' text: those of line i are [first[i], first[i + 1]).
@@ -134,7 +134,7 @@ std::vector<StoryNote> doubtful_places(const Speech& marked, const std::vector<S
   double median = sorted.empty() ? 0 : sorted[sorted.size() / 2];
   for (size_t i = 0; i < lines.size(); i++) {
     if (first[i] == first[i + 1]) continue;
-    bool fast = rate[i] * doubtful_rate < median, slow = rate[i] > median * doubtful_rate;
+    bool fast = rate[i] * doubtful_rate<median, slow = rate[i]> median * doubtful_rate;
     if (fast || slow)
       notes.push_back({lines[i].place, std::string("this sentence is said unusually ") +
                                            (fast ? "fast" : "slowly") + " in the recording, at " +

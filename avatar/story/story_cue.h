@@ -12,17 +12,17 @@ namespace wellspring {
 
 struct StoryCue {
   // Held until the story says otherwise.
-  std::string emotion;          // joy sadness anger fear disgust surprise; empty: none
-  float emotion_weight = 0;     // 0..1
-  std::optional<vec3> look;     // instead of the guest
+  std::string emotion;       // joy sadness anger fear disgust surprise; empty: none
+  float emotion_weight = 0;  // 0..1
+  std::optional<vec3> look;  // instead of the guest
   std::optional<vec3>
       point;  // held out at by the hand that is nearer; look too, unless told otherwise
   // Begins in this tick.
-  std::string gesture;          // name of the library; empty: none begins
-  float gesture_weight = 1;     // 0..1, how large
-  float gesture_lead = 0;       // seconds until the word that its stroke belongs to
-  float beat = 0;               // 0..1: an emphasised word begins (brows and head)
-  uint32_t seed = 0;            // of the story: what is random in telling it starts from here
+  std::string gesture;       // name of the library; empty: none begins
+  float gesture_weight = 1;  // 0..1, how large
+  float gesture_lead = 0;    // seconds until the word that its stroke belongs to
+  float beat = 0;            // 0..1: an emphasised word begins (brows and head)
+  uint32_t seed = 0;         // of the story: what is random in telling it starts from here
 };
 
 }  // namespace wellspring

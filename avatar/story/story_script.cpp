@@ -179,8 +179,7 @@ struct Builder {
     const std::string* text = find_attribute(piece, name);
     if (!text) return otherwise;
     std::optional<T> value = read(*text);
-    if (!value)
-      fail(piece.place, "<" + piece.name + ">: '" + *text + "' is no value for " + name);
+    if (!value) fail(piece.place, "<" + piece.name + ">: '" + *text + "' is no value for " + name);
     return *value;
   }
 

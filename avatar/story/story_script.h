@@ -23,17 +23,17 @@ struct StoryMark {
   uint32_t at = 0;   // byte of StoryLine::text that it stands before; its size: after the last word
   std::string name;  // emotion, gesture, object, viewpoint or mark; empty: back to none
   float weight = 1;  // 0..1
-  MarkupPlace place; // in the file
+  MarkupPlace place;  // in the file
 };
 
 // A sentence: one subtitle, spoken in one breath.
 struct StoryLine {
-  std::string text;                 // as subtitles show it
-  std::vector<SpeechStyle> styles;  // in its bytes
-  std::vector<StoryMark> marks;     // in order of `at`
-  float pause = 0;                  // seconds of silence after it, besides the breath
+  std::string text;                           // as subtitles show it
+  std::vector<SpeechStyle> styles;            // in its bytes
+  std::vector<StoryMark> marks;               // in order of `at`
+  float pause = 0;                            // seconds of silence after it, besides the breath
   std::shared_ptr<const Speech> recording{};  // a narrator's, instead of a synthesis; null: none
-  std::string file;                 // and the place in it, for messages
+  std::string file;                           // and the place in it, for messages
   MarkupPlace place;
 };
 

@@ -16,8 +16,8 @@ namespace wellspring {
 inline constexpr double story_breath = 0.55;  // between two sentences of a show: breath and lead
 
 struct StorySpeech {
-  Speech speech;                   // of all sentences; its text has a line for each
-  std::vector<double> begins;      // of every sentence's first sample
+  Speech speech;               // of all sentences; its text has a line for each
+  std::vector<double> begins;  // of every sentence's first sample
   std::vector<SubtitleCue> cues;
 };
 

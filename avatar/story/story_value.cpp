@@ -60,8 +60,12 @@ std::optional<float> read_seconds(const std::string& text) {
 }
 
 std::optional<float> read_break_strength(const std::string& text) {
-  return find_word(text, {{"none", 0.0f}, {"x-weak", 0.1f}, {"weak", 0.2f}, {"medium", 0.35f},
-                          {"strong", 0.7f}, {"x-strong", 1.2f}});
+  return find_word(text, {{"none", 0.0f},
+                          {"x-weak", 0.1f},
+                          {"weak", 0.2f},
+                          {"medium", 0.35f},
+                          {"strong", 0.7f},
+                          {"x-strong", 1.2f}});
 }
 
 std::optional<float> read_rate(const std::string& text) {
@@ -75,14 +79,23 @@ std::optional<float> read_rate(const std::string& text) {
 }
 
 std::optional<float> read_pitch(const std::string& text) {
-  auto word = find_word(text, {{"x-low", 0.7f}, {"low", 0.85f}, {"medium", 1.0f}, {"default", 1.0f},
-                               {"high", 1.15f}, {"x-high", 1.35f}});
+  auto word = find_word(text, {{"x-low", 0.7f},
+                               {"low", 0.85f},
+                               {"medium", 1.0f},
+                               {"default", 1.0f},
+                               {"high", 1.15f},
+                               {"x-high", 1.35f}});
   return word ? word : read_factor(text, false);
 }
 
 std::optional<float> read_volume(const std::string& text) {
-  auto word = find_word(text, {{"silent", 0.3f}, {"x-soft", 0.4f}, {"soft", 0.7f}, {"medium", 1.0f},
-                               {"default", 1.0f}, {"loud", 1.4f}, {"x-loud", 2.0f}});
+  auto word = find_word(text, {{"silent", 0.3f},
+                               {"x-soft", 0.4f},
+                               {"soft", 0.7f},
+                               {"medium", 1.0f},
+                               {"default", 1.0f},
+                               {"loud", 1.4f},
+                               {"x-loud", 2.0f}});
   return word ? word : read_factor(text, true);
 }
 

@@ -12,7 +12,9 @@ struct LoadError : std::runtime_error {
   std::string what_;  // one sentence, no full stop needed
   LoadError(std::string file_, std::string where_, std::string what__)
       : std::runtime_error(file_ + (where_.empty() ? "" : ": " + where_) + ": " + what__),
-        file(std::move(file_)), where(std::move(where_)), what_(std::move(what__)) {}
+        file(std::move(file_)),
+        where(std::move(where_)),
+        what_(std::move(what__)) {}
 };
 
 }  // namespace wellspring

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loops that somebody waits for while all cores are at work on others. oneTBB sends its threads to
 // them when their loop is done, which is too late for a picture that is due: threads within loops
-// of base/parallel.h take pieces of an of high priority one as soon as they have finished one of their own.
+// of base/parallel.h take pieces of an of high priority one as soon as they have finished one of
+// their own.
 #pragma once
 #include <atomic>
 
@@ -22,7 +23,8 @@ void run_with_priority(PriorityLoop& loop);
 
 // As parallel_ranges, but before all other loops. Pieces are of `grain` items: of a twentieth to
 // a tenth of a millisecond, say. Bodies may be called on any thread, within any other loop, so they
-// must not take locks, nor begin loops of their own. Of of high priority loops the first alone comes first.
+// must not take locks, nor begin loops of their own. Of of high priority loops the first alone
+// comes first.
 template <class Body>
 void priority_ranges(int count, int grain, const Body& body) {
   if (count <= 0) return;

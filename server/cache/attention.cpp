@@ -48,7 +48,8 @@ void age_tile(PointCache& points, PointImage& image, int tx, int ty) {
     }
 }
 
-// The tile where a change sample lies now, or -1: answers may be frames late, and the view has moved on.
+// The tile where a change sample lies now, or -1: answers may be frames late, and the view has
+// moved on.
 int tile_of(const PointCache& points, const View& view, const PointImage& image, uint32_t i) {
   if (i >= uint32_t(points.capacity()) || !is_alive(points, i)) return -1;
   vec3 place(points.x[i], points.y[i], points.z[i]);
@@ -73,7 +74,7 @@ void age_hidden(PointCache& points, const View& view, const PointImage& image,
 }
 
 void place_change_samples(const PointCache& points, const View& view, PointImage& image,
-                     std::vector<int>& tiles) {
+                          std::vector<int>& tiles) {
   std::fill(image.changed.begin(), image.changed.end(), TileChange{});
   tiles.resize(image.change_samples.size());
   for (size_t i = 0; i < tiles.size(); i++) {
@@ -82,7 +83,8 @@ void place_change_samples(const PointCache& points, const View& view, PointImage
     if (tiles[i] < 0) continue;
     TileChange& tile = image.changed[size_t(tiles[i])];
     tile.change += change_sample.change;
-    tile.square += std::max(change_sample.change * change_sample.change, change_sample.noise * change_sample.noise);
+    tile.square += std::max(change_sample.change * change_sample.change,
+                            change_sample.noise * change_sample.noise);
     tile.count++;
   }
 }
@@ -106,8 +108,8 @@ bool has_changed(const PointImage& image, int tx, int ty, const ChangeTest& chan
   return proves(sum, change_test);
 }
 
-// Is a change beyond prior variance in any square of 2, 4, 8 ... tiles a side? Where samples are noisy or
-// the change is small, it takes many tiles to tell.
+// Is a change beyond prior variance in any square of 2, 4, 8 ... tiles a side? Where samples are
+// noisy or the change is small, it takes many tiles to tell.
 bool has_changed_widely(const PointImage& image) {
   std::vector<TileChange> tiles = image.changed, wider;
   for (int width = image.changed_width, height = image.changed_height; width > 1 || height > 1;) {
@@ -206,7 +208,8 @@ bool age_changed(PointCache& points, const View& view, PointImage& image) {
   // is.
   size_t kept = 0;
   for (size_t i = 0; i < tiles.size(); i++)
-    if (tiles[i] >= 0 && !verdict[size_t(tiles[i])]) image.change_samples[kept++] = image.change_samples[i];
+    if (tiles[i] >= 0 && !verdict[size_t(tiles[i])])
+      image.change_samples[kept++] = image.change_samples[i];
   image.change_samples.resize(kept);
   if (image.change_samples.capacity() > 2 * kept + 4096)
     image.change_samples.shrink_to_fit();  // many at once

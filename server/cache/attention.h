@@ -8,8 +8,8 @@
 
 namespace wellspring {
 
-// Where the change samples of 3x3 tiles agree that the light has changed, by more than their noise can
-// explain, points of the tile get older by an eighth of the scale and forget their light as
+// Where the change samples of 3x3 tiles agree that the light has changed, by more than their noise
+// can explain, points of the tile get older by an eighth of the scale and forget their light as
 // invalidate_light() does, and image.renewed says so. The image is projected for `view`.
 // Witnesses that were heard and those who are not in view are dismissed. Returns whether there was
 // such a place.

@@ -33,7 +33,7 @@ struct Piece {
 };
 
 struct Answer {
-  Piece piece;      // as it was taken
+  Piece piece;        // as it was taken
   uint64_t pose = 0;  // of the world that was traced, as the application counts its commits
   std::vector<Sample> samples;  // one a request
 };

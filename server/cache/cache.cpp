@@ -24,7 +24,7 @@ namespace {
 constexpr int largest_side = 16384;
 // Times the pixels of a picture: what lies around is no more to remember.
 constexpr size_t most_around = 2;
-constexpr int still_project_period = 8;  // frames
+constexpr int still_project_period = 8;                // frames
 constexpr uint8_t moving_mean = 48, still_mean = 255;  // samples a point's mean looks back on
 constexpr uint8_t moving_specular = 4;                 // of what moves with the view
 
@@ -196,8 +196,7 @@ void RenderCache::predict(const View& ahead, int most, uint64_t seed,
   predict_requests(impl_->points, ahead, most, seed, impl_->work->occupied, requests);
 }
 
-std::span<const uint32_t> RenderCache::remember(const View& view,
-                                                std::span<const Request> requests,
+std::span<const uint32_t> RenderCache::remember(const View& view, std::span<const Request> requests,
                                                 std::span<const Sample> samples) {
   Impl& c = *impl_;
   RememberSettings settings;

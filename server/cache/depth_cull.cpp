@@ -19,7 +19,7 @@ using ShortLanes = int16_t __attribute__((vector_size(2 * run)));
 
 // 1024 steps an octave from 2^-14 m to 2^50 m: fine enough for a threshold of some percent.
 constexpr int32_t least_depth = (127 - 14) << 23;
-constexpr int16_t nothing = 32767;    // an empty pixel: nearer than none
+constexpr int16_t nothing = 32767;  // an empty pixel: nearer than none
 constexpr int16_t nearest = -32768;
 
 int16_t code_of(float depth) {
@@ -45,8 +45,7 @@ struct Codes {
       return;
     }
     const float* depth = image.depth.data() + size_t(y) * size_t(image.width);
-    for (int x = 0; x < image.width; x++)
-      codes[x] = depth[x] > 0.0f ? code_of(depth[x]) : nothing;
+    for (int x = 0; x < image.width; x++) codes[x] = depth[x] > 0.0f ? code_of(depth[x]) : nothing;
   }
   void read_limit(const PointImage& image, int y, float share) {
     const float* depth = image.depth.data() + size_t(y) * size_t(image.width);
@@ -69,7 +68,7 @@ ShortLanes judge(const int16_t* const* rows, const int16_t* limits) {
   ShortLanes several = nearer >= 3;
   if (!any_lane(several)) return several;
   ShortLanes sx = 2 * (columns[4] - columns[0]) + columns[3] - columns[1],
-        sy = 2 * (lines[4] - lines[0]) + lines[3] - lines[1], others = ShortLanes{} - 1;
+             sy = 2 * (lines[4] - lines[0]) + lines[3] - lines[1], others = ShortLanes{} - 1;
   for (int dy = 0; dy < window; dy++)
     for (int dx = 0; dx < window; dx++)
       others -= load_lanes<ShortLanes>(rows[dy] + dx - reach) != nothing;

@@ -130,9 +130,10 @@ bool invalidate_paint(PointCache& points, const World& world, const std::vector<
                    !world.material_of(a.instance).unlit;
       if (!known) continue;
       // As far as this place tells; the next sample knows.
-      bool metal = surface.metallic >= all_metal && surface.roughness >= least_demodulated_roughness;
-      points.color[i].albedo = pack_albedo(
-          demodulated_albedo(surface, metal ? MetalDemodulation::reflectance : MetalDemodulation::none));
+      bool metal =
+          surface.metallic >= all_metal && surface.roughness >= least_demodulated_roughness;
+      points.color[i].albedo = pack_albedo(demodulated_albedo(
+          surface, metal ? MetalDemodulation::reflectance : MetalDemodulation::none));
     }
   });
   return found;

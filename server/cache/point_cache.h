@@ -18,10 +18,10 @@ enum PointFlags : uint8_t {
   point_used = 1,
   point_infinite = 2,  // position is a unit direction
   point_specular = 4,
-  point_moving = 8,     // has an anchor
-  point_visible = 16,   // shows in the current projection
-  point_verified = 32,  // was sampled from exactly the current view: surely not hidden
-  point_relit = 64,     // the light has changed since it was sampled: see invalidate_light()
+  point_moving = 8,       // has an anchor
+  point_visible = 16,     // shows in the current projection
+  point_verified = 32,    // was sampled from exactly the current view: surely not hidden
+  point_relit = 64,       // the light has changed since it was sampled: see invalidate_light()
   point_reference = 128,  // began with a sample of the reference: see RenderCache::set_reference()
 };
 

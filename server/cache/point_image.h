@@ -32,12 +32,13 @@ struct TileChange {
 
 struct PointImage {
   int width = 0, height = 0;
-  BigVector<uint32_t> point;      // index into the cache, or no_point
-  BigVector<float> depth;         // along the viewing axis; 0 where there is no point
-  std::vector<uint8_t> priority;  // 0: nothing to learn or already asked; 255: most of high priority
-  std::vector<uint8_t> renewed;   // not 0: the light there is another than in the last picture
-  std::vector<ChangeSample> change_samples;   // the newest, oldest first; see age_changed()
-  std::vector<TileChange> changed;  // scratch of age_changed()
+  BigVector<uint32_t> point;  // index into the cache, or no_point
+  BigVector<float> depth;     // along the viewing axis; 0 where there is no point
+  std::vector<uint8_t>
+      priority;                  // 0: nothing to learn or already asked; 255: most of high priority
+  std::vector<uint8_t> renewed;  // not 0: the light there is another than in the last picture
+  std::vector<ChangeSample> change_samples;  // the newest, oldest first; see age_changed()
+  std::vector<TileChange> changed;           // scratch of age_changed()
   int changed_width = 0, changed_height = 0;
   int alarm = 0;  // pictures for which smaller changes are looked for, too
 };
@@ -61,8 +62,10 @@ inline size_t most_change_samples(const PointImage& image) {
 inline void keep_newest_change_samples(PointImage& image, size_t more = 0) {
   size_t count = image.change_samples.size(), most = most_change_samples(image),
          kept = std::min(count, most - std::min(more, most));
-  image.change_samples.erase(image.change_samples.begin(), image.change_samples.begin() + ptrdiff_t(count - kept));
-  if (image.change_samples.capacity() > 2 * most) image.change_samples.shrink_to_fit();  // after an alarm
+  image.change_samples.erase(image.change_samples.begin(),
+                             image.change_samples.begin() + ptrdiff_t(count - kept));
+  if (image.change_samples.capacity() > 2 * most)
+    image.change_samples.shrink_to_fit();  // after an alarm
 }
 
 // Empties the image when its size changes.

@@ -20,8 +20,8 @@ constexpr float same_albedo = 0.03f;
 constexpr float no_noise = 0.01f, little_noise = 0.1f;  // standard deviation over the mean
 constexpr int few_samples = 2, many_samples = 8;
 constexpr int enough_surprises = 2;
-constexpr float unseen_bonus = 96;   // in age: unseen points are overwritten before seen ones
-constexpr int noise_memory = 64;     // samples the noise estimate looks back on
+constexpr float unseen_bonus = 96;  // in age: unseen points are overwritten before seen ones
+constexpr int noise_memory = 64;    // samples the noise estimate looks back on
 
 bool is_usable(const Sample& sample) {
   return is_finite(sample.position) && is_finite(sample.normal) && is_finite(sample.albedo) &&
@@ -71,10 +71,8 @@ void place_point(PointCache& points, uint32_t i, const View& view, const Found& 
   const Sample& sample = found.sample;
   vec3 p = sample.position, n = sample.normal;
   // At infinity, and where a technique gave no normal, the point faces the viewer.
-  if (is_infinite(sample))
-    n = -p;
-  else if (!(dot(n, n) > 0))
-    n = view.position - p;
+  if (is_infinite(sample)) n = -p;
+  else if (!(dot(n, n) > 0)) n = view.position - p;
   points.x[i] = p.x;
   points.y[i] = p.y;
   points.z[i] = p.z;
@@ -118,7 +116,7 @@ struct Heard {
 };
 // `deviations`: of one sample's smooth and rest. The change is no number where all is black.
 ChangeSample add_change_sample(uint32_t point, int n, vec3 reflectance, const Heard<vec3>& smooth,
-                const Heard<float>& rest, const vec2& deviations) {
+                               const Heard<float>& rest, const vec2& deviations) {
   float before = luminance(reflectance * smooth.before) + rest.before,
         now = luminance(reflectance * max(smooth.now, vec3(0))) + rest.now,
         share = 1 / float(n + 1), mean = before + (now - before) * share;
@@ -141,8 +139,7 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
     return effect;
   }
   float deviation = unpack_deviation(color.noise);
-  float before = luminance(rest), now = luminance(found.rest),
-        step = std::abs(now - before);
+  float before = luminance(rest), now = luminance(found.rest), step = std::abs(now - before);
   float level = std::max(before, now);
   vec3 reflectance = unpack_albedo(color.albedo);
   float whole = luminance(reflectance * smooth) + level;
@@ -154,10 +151,11 @@ Effect improve_point(PointCache& points, uint32_t i, const View& view, const Fou
   float varies = light * unpack_relative(color.doubts >> 2);
   // Of two techniques one may be biased.
   bool comparable = bool(points.flags[i] & point_reference) == settings.reference;
-  effect.change_sample = add_change_sample(i, n, reflectance, {smooth, comparable ? sample.smooth : smooth},
-                           {before, now}, {comparable ? varies : 0.0f, deviation});
-  effect.tells &=
-      std::isfinite(effect.change_sample.change);  // of black that stays black there is nothing to say
+  effect.change_sample =
+      add_change_sample(i, n, reflectance, {smooth, comparable ? sample.smooth : smooth},
+                        {before, now}, {comparable ? varies : 0.0f, deviation});
+  effect.tells &= std::isfinite(
+      effect.change_sample.change);  // of black that stays black there is nothing to say
   int surprises = color.doubts & 3;
   bool alike = n >= few_samples && deviation <= no_noise * before;
   bool surprising = effect.tells && step > settings.color_change * whole && step > 4 * deviation &&

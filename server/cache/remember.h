@@ -18,8 +18,8 @@ struct RememberSettings {
   // `view` is the one the image was projected for: answers show at once, in the pixel that asked.
   // Others (asked frames ago, or for what is not in view yet) find their place by where they are.
   bool current = true;
-  bool still = false;   // answers are spread over their pixel and join the point that shows there
-  uint8_t longest_mean = 64;  // samples a mean looks back on
+  bool still = false;  // answers are spread over their pixel and join the point that shows there
+  uint8_t longest_mean = 64;      // samples a mean looks back on
   uint8_t longest_specular = 64;  // likewise, of what moves with the view
   bool reference = false;  // answers are of the reference; of a point that others know, smooth
                            // light tells no change

@@ -99,15 +99,14 @@ void Denoiser::finish(std::span<vec3> color) const {
   parallel_ranges(int(encoded.size()), 1 << 13, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++)
       for (int c = 0; c < 3; c++)
-        color[i][c] = std::min(decode_radiance(encoded[i][c]) / scale_,
-                               std::numeric_limits<float>::max());
+        color[i][c] =
+            std::min(decode_radiance(encoded[i][c]) / scale_, std::numeric_limits<float>::max());
   });
 }
 
 void Denoiser::run(const DenoiseInput& input, std::span<vec3> color) {
   start(input);
-  while (advance(1)) {
-  }
+  while (advance(1)) {}
   finish(color);
 }
 

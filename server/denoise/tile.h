@@ -68,8 +68,7 @@ void copy_part(const Part& part, int width, int height, size_t pixel_bytes, std:
       continue;
     }
     std::memset(to, 0, size_t(first) * pixel_bytes);
-    if (last > first)
-      copy(row, part.left + first, last - first, to + size_t(first) * pixel_bytes);
+    if (last > first) copy(row, part.left + first, last - first, to + size_t(first) * pixel_bytes);
     std::memset(to + size_t(last) * pixel_bytes, 0, size_t(part.width - last) * pixel_bytes);
   }
 }

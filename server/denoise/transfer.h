@@ -12,9 +12,9 @@ namespace wellspring {
 namespace transfer {
 inline constexpr float a = 1412.83765f, b = 1.64593172f, c = 0.431384981f, d = -0.00294139609f,
                        e = 0.192653254f, f = 0.00626026094f, g = 0.998620152f;
-inline constexpr float y0 = 1.5794576e-6f, y1 = 0.0322087631f;        // where the pieces meet
-inline constexpr float x0 = 0.00223151711f, x1 = 0.370974749f;        // the same, encoded
-inline constexpr float most = 65504;  // the largest half: is encoded as 1
+inline constexpr float y0 = 1.5794576e-6f, y1 = 0.0322087631f;  // where the pieces meet
+inline constexpr float x0 = 0.00223151711f, x1 = 0.370974749f;  // the same, encoded
+inline constexpr float most = 65504;                            // the largest half: is encoded as 1
 
 inline float piece(float y) {
   if (y <= y0) return a * y;

@@ -31,8 +31,7 @@ dnnl::memory::data_type type_of(const Format& format) {
   return format.bfloat16 ? dnnl::memory::data_type::bf16 : dnnl::memory::data_type::f32;
 }
 dnnl::memory::format_tag tag_of(const Format& format) {
-  return format.block == 16 ? dnnl::memory::format_tag::nChw16c
-                            : dnnl::memory::format_tag::nChw8c;
+  return format.block == 16 ? dnnl::memory::format_tag::nChw16c : dnnl::memory::format_tag::nChw8c;
 }
 
 // The features of one level: planes of `block` channels, rows, pixels.
@@ -206,8 +205,9 @@ void UNet::Impl::prepare_layer(Layer& layer, const Stage& stage, int across, int
       attributes, engine);
 #endif
   // Channels that only fill blocks have weight 0.
-  memory plain({{layer.outputs, layer.inputs, 3, 3}, memory::data_type::f32,
-                memory::format_tag::oihw}, engine);
+  memory plain(
+      {{layer.outputs, layer.inputs, 3, 3}, memory::data_type::f32, memory::format_tag::oihw},
+      engine);
   auto* filled = static_cast<float*>(plain.get_data_handle());
   std::fill(filled, filled + size_t(layer.outputs) * size_t(layer.inputs) * 9, 0.0f);
   bool first = &layer == &stage.layers[0];
@@ -283,8 +283,8 @@ void UNet::Impl::gather(const Stage& stage, const Part& part, std::byte* to) con
         continue;
       }
       const Features& of = features[size_t(source.features)];
-      const std::byte* data = of.data.data() + size_t(first / block) * size_t(of.width) *
-                                                   size_t(of.height) * pixel;
+      const std::byte* data =
+          of.data.data() + size_t(first / block) * size_t(of.width) * size_t(of.height) * pixel;
       copy_part(part, stage.width, stage.height, pixel, to,
                 [&](int y, int x, int n, std::byte* row) {
                   if (!source.enlarged) {
@@ -315,12 +315,12 @@ void UNet::Impl::pool(const Stage& stage, const Part& part, const std::byte* fro
   int across = std::min(part.width, stage.width - part.left) / 2,
       down = std::min(part.height, stage.height - part.top) / 2;
   for (int block = 0; block < target.channels / format.block; block++) {
-    std::byte* to = target.data.data() +
-                    size_t(block) * size_t(target.width) * size_t(target.height) * pixel;
+    std::byte* to =
+        target.data.data() + size_t(block) * size_t(target.width) * size_t(target.height) * pixel;
     for (int y = 0; y < down; y++) {
       const std::byte* upper = from + (size_t(block) * size_t(part.height) + size_t(2 * y)) * row;
-      std::byte* line = to + (size_t(part.top / 2 + y) * size_t(target.width) +
-                              size_t(part.left / 2)) * pixel;
+      std::byte* line =
+          to + (size_t(part.top / 2 + y) * size_t(target.width) + size_t(part.left / 2)) * pixel;
       if (format.bfloat16)
         pool_row(reinterpret_cast<const int16_t*>(upper),
                  reinterpret_cast<const int16_t*>(upper + row), across, format.block,
@@ -339,8 +339,9 @@ void UNet::Impl::keep(const Stage& stage, const Part& part, const std::byte* fro
       down = std::min(part.height, stage.height - part.top);
   for (int block = 0; block < target.channels / format.block; block++)
     for (int y = 0; y < down; y++) {
-      size_t to = (size_t(block) * size_t(target.height) + size_t(part.top + y)) *
-                      size_t(target.width) + size_t(part.left);
+      size_t to =
+          (size_t(block) * size_t(target.height) + size_t(part.top + y)) * size_t(target.width) +
+          size_t(part.left);
       size_t at = (size_t(block) * size_t(part.height) + size_t(y)) * size_t(part.width);
       std::memcpy(target.data.data() + to * pixel, from + at * pixel, size_t(across) * pixel);
     }
@@ -365,8 +366,7 @@ void UNet::Impl::compute_tile(const Stage& stage, int tile) {
   own.pad.resize(pad_bytes);
   if (!own.stream) own.stream = dnnl::stream(engine);
   const Part target{tile % stage.columns * stage.tile_width,
-                    tile / stage.columns * stage.tile_height, stage.tile_width,
-                    stage.tile_height};
+                    tile / stage.columns * stage.tile_height, stage.tile_width, stage.tile_height};
   int beyond = int(stage.layers.size());
   auto reaching = [&](int pixels) {
     return Part{target.left - pixels, target.top - pixels, target.width + 2 * pixels,
@@ -450,7 +450,8 @@ std::string UNet::implementation() const {
       const char* name = nullptr;
       if (layer.run &&
           dnnl_primitive_desc_query(layer.run.get_primitive_desc(), dnnl_query_impl_info_str, 0,
-                                    &name) == dnnl_success && name)
+                                    &name) == dnnl_success &&
+          name)
         names.insert(name);
     }
   std::string all;

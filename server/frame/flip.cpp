@@ -31,9 +31,8 @@ constexpr float xyz_of_green[3] = {8788810.0f / 24577794, 8788810.0f / 12288897,
                                    8788810.0f / 73733382};
 constexpr float xyz_of_blue[3] = {4435075.0f / 24577794, 887015.0f / 12288897,
                                   70074185.0f / 73733382};
-const mat3 rgb_to_xyz(xyz_of_red[0], xyz_of_red[1], xyz_of_red[2], xyz_of_green[0],
-                      xyz_of_green[1], xyz_of_green[2], xyz_of_blue[0], xyz_of_blue[1],
-                      xyz_of_blue[2]);
+const mat3 rgb_to_xyz(xyz_of_red[0], xyz_of_red[1], xyz_of_red[2], xyz_of_green[0], xyz_of_green[1],
+                      xyz_of_green[2], xyz_of_blue[0], xyz_of_blue[1], xyz_of_blue[2]);
 const mat3 xyz_to_rgb = glm::inverse(rgb_to_xyz);
 const vec3 white = rgb_to_xyz * vec3(1);
 
@@ -51,8 +50,7 @@ vec3 lab_of(vec3 rgb) {
   constexpr float delta = 6.0f / 29;
   vec3 c = rgb_to_xyz * rgb / white;
   for (int i = 0; i < 3; i++)
-    c[i] = c[i] > delta * delta * delta ? std::cbrt(c[i])
-                                        : c[i] / (3 * delta * delta) + 4.0f / 29;
+    c[i] = c[i] > delta * delta * delta ? std::cbrt(c[i]) : c[i] / (3 * delta * delta) + 4.0f / 29;
   float lightness = 116 * c.y - 16;
   return {lightness, 0.01f * lightness * 500 * (c.x - c.y), 0.01f * lightness * 200 * (c.y - c.z)};
 }
@@ -126,9 +124,8 @@ Plane filter(const Plane& in, const Kernel& across, const Kernel& down) {
 struct Sensitivity {
   float a[2], b[2];
 };
-constexpr Sensitivity sensitivities[3] = {{{1, 0}, {0.0047f, 1e-5f}},
-                                          {{1, 0}, {0.0053f, 1e-5f}},
-                                          {{34.1f, 13.5f}, {0.04f, 0.025f}}};
+constexpr Sensitivity sensitivities[3] = {
+    {{1, 0}, {0.0047f, 1e-5f}}, {{1, 0}, {0.0053f, 1e-5f}}, {{34.1f, 13.5f}, {0.04f, 0.025f}}};
 
 Plane blur_as_seen(const Plane& in, const Sensitivity& s, float pixels_per_degree) {
   constexpr float widest = 0.04f;
@@ -172,8 +169,8 @@ Opponent make_opponent(const Image8& image) {
   parallel_ranges(image.height, 16, [&](int begin, int end) {
     for (size_t i = size_t(begin) * size_t(image.width); i < size_t(end) * size_t(image.width);
          i++) {
-      vec3 c = opponent_of({linear[image.rgb[3 * i]], linear[image.rgb[3 * i + 1]],
-                            linear[image.rgb[3 * i + 2]]});
+      vec3 c = opponent_of(
+          {linear[image.rgb[3 * i]], linear[image.rgb[3 * i + 1]], linear[image.rgb[3 * i + 2]]});
       for (size_t k = 0; k < 3; k++) out[k].value[i] = c[int(k)];
     }
   });
@@ -207,9 +204,8 @@ Features make_features(const Plane& lightness, float pixels_per_degree) {
   Kernel across = make_kernel(radius, gaussian);
   scale(across, 1 / sum(across));
   Kernel first = make_kernel(radius, [&](float x) { return -x * gaussian(x); });
-  Kernel second = make_kernel(radius, [&](float x) {
-    return (x * x / (deviation * deviation) - 1) * gaussian(x);
-  });
+  Kernel second = make_kernel(
+      radius, [&](float x) { return (x * x / (deviation * deviation) - 1) * gaussian(x); });
   balance(first);
   balance(second);
   Plane y = lightness;
@@ -250,17 +246,15 @@ FlipMap eval_flip(const Image8& test, const Image8& reference, const FlipSetting
   Features features_a = make_features(a[0], density), features_b = make_features(b[0], density);
   a = make_seen(a, density);
   b = make_seen(b, density);
-  float largest =
-      std::pow(hyab(lab_of(vec3(0, 1, 0)), lab_of(vec3(0, 0, 1))), color_exponent);
+  float largest = std::pow(hyab(lab_of(vec3(0, 1, 0)), lab_of(vec3(0, 0, 1))), color_exponent);
   FlipMap map{test.width, test.height, std::vector<float>(a[0].value.size()), 0};
   parallel_ranges(int(map.error.size()), 4096, [&](int begin, int end) {
     for (size_t i = size_t(begin); i < size_t(end); i++) {
       float distance = hyab({a[0].value[i], a[1].value[i], a[2].value[i]},
                             {b[0].value[i], b[1].value[i], b[2].value[i]});
       float color = redistribute(std::pow(distance, color_exponent), largest);
-      float feature =
-          std::max(std::abs(features_a.edge.value[i] - features_b.edge.value[i]),
-                   std::abs(features_a.point.value[i] - features_b.point.value[i]));
+      float feature = std::max(std::abs(features_a.edge.value[i] - features_b.edge.value[i]),
+                               std::abs(features_a.point.value[i] - features_b.point.value[i]));
       feature = std::pow(feature / std::sqrt(2.0f), feature_exponent);
       map.error[i] = std::pow(std::clamp(color, 0.0f, 1.0f), 1 - std::clamp(feature, 0.0f, 1.0f));
     }

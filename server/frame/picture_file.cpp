@@ -64,8 +64,8 @@ void add_png_comment(const std::string& comment, std::vector<char>& png) {
   auto number = [](uint32_t value) {
     return std::string{char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
   };
-  uint32_t sum = uint32_t(
-      crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), uInt(chunk.size())));
+  uint32_t sum =
+      uint32_t(crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), uInt(chunk.size())));
   chunk = number(uint32_t(chunk.size() - 4)) + chunk + number(sum);
   png.insert(png.begin() + header_end, chunk.begin(), chunk.end());
 }

@@ -12,8 +12,8 @@ namespace wellspring {
 
 // The shoulder of the Khronos PBR Neutral tone mapper (KhronosGroup/ToneMapping, PBR_Neutral):
 // colours up to 0.8 are shown as they are, brighter ones keep their hue while their peak approaches
-// 1 and then fade to white. Its toe, which takes away a portrait scene's 4 % reflection, is left out: it
-// would crush the shadows of a room that is lit by its windows.
+// 1 and then fade to white. Its toe, which takes away a portrait scene's 4 % reflection, is left
+// out: it would crush the shadows of a room that is lit by its windows.
 inline constexpr float shoulder_start = 0.8f;
 inline constexpr float shoulder_height = 1 - shoulder_start;
 inline constexpr float shoulder_desaturation = 0.15f;

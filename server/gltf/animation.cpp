@@ -100,20 +100,11 @@ std::vector<double> eval_track(const Track& track, double time) {
 void apply(const Track& track, double time, Node& node) {
   std::vector<double> v = eval_track(track, time);
   switch (track.path) {
-    case Path::translation:
-      node.translation = {v[0], v[1], v[2]};
-      break;
-    case Path::scale:
-      node.scale = {v[0], v[1], v[2]};
-      break;
-    case Path::rotation:
-      node.rotation = glm::dquat(v[3], v[0], v[1], v[2]);
-      break;
-    case Path::weights:
-      node.weights = v;
-      break;
-    case Path::none:
-      break;
+    case Path::translation: node.translation = {v[0], v[1], v[2]}; break;
+    case Path::scale: node.scale = {v[0], v[1], v[2]}; break;
+    case Path::rotation: node.rotation = glm::dquat(v[3], v[0], v[1], v[2]); break;
+    case Path::weights: node.weights = v; break;
+    case Path::none: break;
   }
 }
 

@@ -94,8 +94,7 @@ void check_primitive(File& file, const json& primitive, const std::string& where
   int64_t count = -1;
   if (const json* position = find(attributes, "POSITION"))
     count = form_of(file, position->get<size_t>()).count;
-  else
-    warn(file, where, "a primitive without positions is not drawn");
+  else warn(file, where, "a primitive without positions is not drawn");
   check_attributes(file, attributes, count, false, where + "/attributes");
   const json& targets = items(primitive, "targets");
   for (size_t i = 0; i < targets.size(); i++)

@@ -23,32 +23,23 @@ const NamedType* type_named(const std::string& name) {
 int component_size(int component_type) {
   switch (component_type) {
     case byte_component:
-    case unsigned_byte:
-      return 1;
+    case unsigned_byte: return 1;
     case short_component:
-    case unsigned_short:
-      return 2;
+    case unsigned_short: return 2;
     case unsigned_int:
-    case float_component:
-      return 4;
+    case float_component: return 4;
   }
   return 0;
 }
 
 const char* component_name(int component_type) {
   switch (component_type) {
-    case byte_component:
-      return "BYTE";
-    case unsigned_byte:
-      return "UNSIGNED_BYTE";
-    case short_component:
-      return "SHORT";
-    case unsigned_short:
-      return "UNSIGNED_SHORT";
-    case unsigned_int:
-      return "UNSIGNED_INT";
-    case float_component:
-      return "FLOAT";
+    case byte_component: return "BYTE";
+    case unsigned_byte: return "UNSIGNED_BYTE";
+    case short_component: return "SHORT";
+    case unsigned_short: return "UNSIGNED_SHORT";
+    case unsigned_int: return "UNSIGNED_INT";
+    case float_component: return "FLOAT";
   }
   return "an unknown component type";
 }
@@ -74,8 +65,7 @@ template <class T>
 float component(const uint8_t* p, bool normalized) {
   T value;
   std::memcpy(&value, p, sizeof value);
-  if constexpr (std::is_same_v<T, float>)
-    return value;
+  if constexpr (std::is_same_v<T, float>) return value;
   else {
     if (!normalized) return float(value);
     // Section 3.11: signed ones reach -1 twice.
@@ -94,18 +84,14 @@ void read_elements(const uint8_t* data, int64_t count, int64_t stride, const Ele
 void read_elements(int component_type, const uint8_t* data, int64_t count, int64_t stride,
                    const ElementLayout& layout, bool normalized, float* out) {
   switch (component_type) {
-    case byte_component:
-      return read_elements<int8_t>(data, count, stride, layout, normalized, out);
-    case unsigned_byte:
-      return read_elements<uint8_t>(data, count, stride, layout, normalized, out);
+    case byte_component: return read_elements<int8_t>(data, count, stride, layout, normalized, out);
+    case unsigned_byte: return read_elements<uint8_t>(data, count, stride, layout, normalized, out);
     case short_component:
       return read_elements<int16_t>(data, count, stride, layout, normalized, out);
     case unsigned_short:
       return read_elements<uint16_t>(data, count, stride, layout, normalized, out);
-    case unsigned_int:
-      return read_elements<uint32_t>(data, count, stride, layout, normalized, out);
-    default:
-      return read_elements<float>(data, count, stride, layout, normalized, out);
+    case unsigned_int: return read_elements<uint32_t>(data, count, stride, layout, normalized, out);
+    default: return read_elements<float>(data, count, stride, layout, normalized, out);
   }
 }
 

@@ -29,10 +29,8 @@ void check_depth(const File& file, const char* begin, const char* end) {
   bool in_string = false;
   for (const char* p = begin; p < end; p++) {
     if (in_string) {
-      if (*p == '\\')
-        p++;
-      else if (*p == '"')
-        in_string = false;
+      if (*p == '\\') p++;
+      else if (*p == '"') in_string = false;
     } else if (*p == '"') {
       in_string = true;
     } else if (*p == '[' || *p == '{') {
@@ -283,12 +281,9 @@ std::string at(const std::string& where, size_t index) {
 std::string at(const std::string& where, const std::string& key) {
   std::string escaped = where + "/";
   for (char c : key.substr(0, 100)) {
-    if (c == '~')
-      escaped += "~0";
-    else if (c == '/')
-      escaped += "~1";
-    else
-      escaped += c;
+    if (c == '~') escaped += "~0";
+    else if (c == '/') escaped += "~1";
+    else escaped += c;
   }
   return escaped;
 }

@@ -67,8 +67,8 @@ std::optional<Bytes> read_uri(const File& file, const std::string& where, const 
 Bytes read_bytes(const std::string& path, size_t limit);
 
 // The steps of load_gltf.
-void check_schema(File& file);      // types, required properties, ranges, references
-void check_layout(File& file);      // buffer views within buffers, accessors within buffer views
+void check_schema(File& file);  // types, required properties, ranges, references
+void check_layout(File& file);  // buffer views within buffers, accessors within buffer views
 // Required extensions must be known.
 void check_extensions(File& file, const std::set<std::string>& further);
 

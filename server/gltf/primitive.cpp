@@ -36,12 +36,9 @@ std::vector<uvec3> read_triangles(File& file, const json& primitive, const std::
   triangles.reserve(count);
   for (size_t i = 0; i < count; i++) {
     uvec3 t;  // section 3.7.2.1: the order keeps the winding
-    if (mode == 4)
-      t = {list[3 * i], list[3 * i + 1], list[3 * i + 2]};
-    else if (mode == 5)
-      t = {list[i], list[i + 1 + i % 2], list[i + 2 - i % 2]};
-    else
-      t = {list[i + 1], list[i + 2], list[0]};
+    if (mode == 4) t = {list[3 * i], list[3 * i + 1], list[3 * i + 2]};
+    else if (mode == 5) t = {list[i], list[i + 1 + i % 2], list[i + 2 - i % 2]};
+    else t = {list[i + 1], list[i + 2], list[0]};
     if (t.x != t.y && t.y != t.z && t.z != t.x) triangles.push_back(t);
   }
   return triangles;

@@ -228,10 +228,8 @@ class Walker {
     if (rules != rules_of_.end())
       for (const Rule* rule : rules->second) {
         auto found = value.find(rule->property);
-        if (found != value.end())
-          check_value(*found, *rule, where + "/" + rule->property);
-        else if (rule->required)
-          refuse(file_, where, type + " has no \"" + rule->property + "\"");
+        if (found != value.end()) check_value(*found, *rule, where + "/" + rule->property);
+        else if (rule->required) refuse(file_, where, type + " has no \"" + rule->property + "\"");
       }
     if (const json* name = find(value, "name"); name && !name->is_string())
       refuse(file_, where + "/name", "must be a string");
@@ -248,26 +246,15 @@ class Walker {
       case Kind::boolean:
         if (!value.is_boolean()) refuse(file_, where, "must be true or false");
         break;
-      case Kind::integer:
-        check_integer(value, rule.low, where);
-        break;
-      case Kind::number:
-        check_number(value, where);
-        break;
+      case Kind::integer: check_integer(value, rule.low, where); break;
+      case Kind::number: check_number(value, where); break;
       case Kind::text:
         if (!value.is_string()) refuse(file_, where, "must be a string");
         break;
-      case Kind::index:
-        check_index(value, rule.target, where);
-        break;
-      case Kind::object:
-        check_object(value, rule.target, where);
-        break;
-      case Kind::map:
-        check_map(value, rule.target, where);
-        break;
-      default:
-        check_list(value, rule, where);
+      case Kind::index: check_index(value, rule.target, where); break;
+      case Kind::object: check_object(value, rule.target, where); break;
+      case Kind::map: check_map(value, rule.target, where); break;
+      default: check_list(value, rule, where);
     }
   }
 
@@ -308,20 +295,13 @@ class Walker {
     for (size_t i = 0; i < value.size(); i++) {
       const std::string place = at(where, i);
       switch (rule.kind) {
-        case Kind::numbers:
-          check_number(value[i], place);
-          break;
+        case Kind::numbers: check_number(value[i], place); break;
         case Kind::texts:
           if (!value[i].is_string()) refuse(file_, place, "must be a string");
           break;
-        case Kind::indices:
-          check_index(value[i], rule.target, place);
-          break;
-        case Kind::objects:
-          check_object(value[i], rule.target, place);
-          break;
-        default:
-          check_map(value[i], rule.target, place);
+        case Kind::indices: check_index(value[i], rule.target, place); break;
+        case Kind::objects: check_object(value[i], rule.target, place); break;
+        default: check_map(value[i], rule.target, place);
       }
     }
   }

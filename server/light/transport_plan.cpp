@@ -148,21 +148,19 @@ void decide_lights(const Scene& scene, const Census& c, Deciding& d) {
   const std::string unlit = "no surface in use is lit by anything";
   std::string emitters = count_of(c.emitting, "emitting triangle", "emitting triangles");
   bool area = c.emitting > 0 && c.lit > 0;
-  d.decide(area_lights, area,
-           emitters + ": " + materials_where(scene, c, &MaterialUse::emits),
+  d.decide(area_lights, area, emitters + ": " + materials_where(scene, c, &MaterialUse::emits),
            c.emitting > 0 ? unlit : "no surface in use emits light");
   d.decide(light_tree, area && c.emitting > 2, "a choice among " + emitters,
            area ? "a choice of one or two triangles needs no tree" : "there are no area lights");
   d.decide(emission_texture, area && any_where(c, &MaterialUse::emission_varies),
            "emission varies over " + materials_where(scene, c, &MaterialUse::emission_varies),
            area ? "every emitter has one radiance all over" : "there are no area lights");
-  std::string dark = c.dark_lamps ? " (" + count_of(c.dark_lamps, "light", "lights") +
-                                        " without power)"
-                                  : "";
-  d.decide(punctual_lights, c.lamps > 0 && c.lit > 0,
-           count_of(c.lamps, "point, spot or distant light", "point, spot and distant lights") +
-               dark,
-           c.lamps > 0 ? unlit : "the scene has none that shines" + dark);
+  std::string dark =
+      c.dark_lamps ? " (" + count_of(c.dark_lamps, "light", "lights") + " without power)" : "";
+  d.decide(
+      punctual_lights, c.lamps > 0 && c.lit > 0,
+      count_of(c.lamps, "point, spot or distant light", "point, spot and distant lights") + dark,
+      c.lamps > 0 ? unlit : "the scene has none that shines" + dark);
   d.decide(environment, c.sky || c.sun,
            c.sun ? "light comes from infinity, with a sun" : "light comes from infinity",
            "nothing shines from infinity");
@@ -170,8 +168,8 @@ void decide_lights(const Scene& scene, const Census& c, Deciding& d) {
            c.sun ? "the sun's disc is brighter than the rest"
                  : "the sky's picture is brighter here than there",
            !c.sky && !c.sun ? "nothing shines from infinity"
-           : !c.sky_varies ? "the sky is equally bright everywhere: scattering finds it best"
-                           : unlit);
+           : !c.sky_varies  ? "the sky is equally bright everywhere: scattering finds it best"
+                            : unlit);
 }
 
 void decide_materials(Deciding& d) {
@@ -187,10 +185,9 @@ void decide_materials(Deciding& d) {
   d.by_material(dispersion, &MaterialUse::disperses, "splits colours",
                 "nothing splits colours: walks have no wavelength",
                 [](const Material& m) { return m.dispersion > 0; });
-  d.by_material(coats, &MaterialUse::coated, "clearcoat or sheen", "no clearcoat, no sheen",
-                [](const Material& m) {
-                  return m.clearcoat > 0 || max_component(m.sheen_color) > 0;
-                });
+  d.by_material(
+      coats, &MaterialUse::coated, "clearcoat or sheen", "no clearcoat, no sheen",
+      [](const Material& m) { return m.clearcoat > 0 || max_component(m.sheen_color) > 0; });
 }
 
 void decide_results(const Scene& scene, const Census& c, Deciding& d) {
@@ -202,9 +199,9 @@ void decide_results(const Scene& scene, const Census& c, Deciding& d) {
            : !casts       ? "every surface is too rough to focus light"
                           : "no rough surface to see them on");
   std::string except =
-      c.moving ? "; " + count_of(c.moving, "moving triangle is", "moving triangles are") +
-                     " lit afresh"
-               : "";
+      c.moving
+          ? "; " + count_of(c.moving, "moving triangle is", "moving triangles are") + " lit afresh"
+          : "";
   d.decide(cached_radiance, c.still_rough > 0 && c.any_light(),
            "lights and " + count_of(c.still_rough, "rough triangle", "rough triangles") +
                " stand still" + except,

@@ -30,7 +30,7 @@ enum class TransportPart : uint8_t {
   dispersion,              // and bend wavelengths apart; else no walk has a wavelength
   coats,                   // clearcoat or sheen over the base
   caustics,                // light from a specular thing onto a rough one: photons
-  cached_radiance,              // results may persist: what stands still, lit by what stands still
+  cached_radiance,         // results may persist: what stands still, lit by what stands still
   count
 };
 inline constexpr size_t transport_parts = size_t(TransportPart::count);

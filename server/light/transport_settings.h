@@ -14,9 +14,9 @@ struct InstantRadiositySettings {
   int edge_rays = 2;          // more eye rays for a pixel at an edge of a surface or colour
   int candidates = 16;  // times as many places and walks are drawn as numbered here; 1: all kept
   float clip = -1;      // metres: shortest distance that counts; 0: none; <0: by the scene's size
-  bool compensate = true;     // what clipping took is gathered by a ray, else it is missing
-  int photons = 12000;        // emitted towards specular things
-  float photon_radius = 0;    // metres; 0: by the scene's size, shrinking from pass to pass
+  bool compensate = true;   // what clipping took is gathered by a ray, else it is missing
+  int photons = 12000;      // emitted towards specular things
+  float photon_radius = 0;  // metres; 0: by the scene's size, shrinking from pass to pass
 };
 
 struct TransportSettings {

@@ -14,7 +14,7 @@ namespace wellspring {
 // are packed together, and four cells around. Groups begin half a group before a tile. `Scale`:
 // pixels a side of one of the light; where that is 1 two groups lie side by side in the lanes.
 template <int Scale>
-constexpr int group = cell_size * Scale;
+constexpr int group = cell_size* Scale;
 template <int Scale>
 constexpr int together = lane_count / group<Scale>;
 static_assert(cell_size == packed_four && together<light_scale> == 1 && together<1> == 2);

@@ -174,9 +174,8 @@ void take_cells(Cells& cells, int width, int height, Scratch& scratch) {
     }
     std::fill(plane.begin() + cells.index(-cell_pad, cells.height), plane.end(), empty);
   };
-  for (auto* triple :
-       {&cells.albedo, &cells.rest, &cells.smooth, &cells.spare, &cells.rest_spare, &cells.normal,
-        &cells.plane})
+  for (auto* triple : {&cells.albedo, &cells.rest, &cells.smooth, &cells.spare, &cells.rest_spare,
+                       &cells.normal, &cells.plane})
     for (auto& plane : *triple) take(plane, 0.0f);
   for (auto* plane : {&cells.depth, &cells.samples, &cells.points, &cells.sum, &cells.sum2,
                       &cells.prior_weight, &cells.rest_sum, &cells.rest_sum2, &cells.rest_noise,

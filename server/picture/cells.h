@@ -21,7 +21,7 @@ struct Cells {
   int width = 0, height = 0, stride = 0;
   std::array<std::span<float>, 3> albedo, rest, smooth;
   std::array<std::span<float>, 3> spare, rest_spare;  // the other side of the a-trous steps
-  std::array<std::span<float>, 3> normal;  // world coordinates, unit
+  std::array<std::span<float>, 3> normal;             // world coordinates, unit
   // Inverse depth along the cell's plane is dot(plane, (ray x, ray y, 1)).
   std::array<std::span<float>, 3> plane;
   std::span<float> depth;    // of the plane at the cell's centre
@@ -35,8 +35,8 @@ struct Cells {
   std::span<float> pairs, pair_sum;
   std::span<float> prior_weight;  // samples a pixel needs before its own light counts for half
   // `rest` is sharp where it repeats itself and noise where it does not (glossy reflections).
-  std::span<float> rest_sum;   // of its luminance over samples
-  std::span<float> rest_sum2;  // second moment likewise; then variance of its detail
+  std::span<float> rest_sum;    // of its luminance over samples
+  std::span<float> rest_sum2;   // second moment likewise; then variance of its detail
   std::span<float> rest_noise;  // sum of known variances of one sample; then variance of one sample
   std::span<float> rest_known;  // points with a known variance; then variance of the cell's mean
   std::span<uint32_t> object;   // no_object: nothing known here

@@ -19,12 +19,12 @@ constexpr float plane_tolerance =
 // count for `unsure_variance` times as much.
 constexpr float light_tolerance = 4, unsure_variance = 6;
 constexpr float least_samples = 1 / 512.0f;  // of a cell that remembers none
-constexpr float most_samples = 64;    // that a cell counts for: its neighbours show other places
+constexpr float most_samples = 64;      // that a cell counts for: its neighbours show other places
 constexpr float plenty_of_points = 48;  // in nine cells, to tell how light deviates there
 constexpr float enough_pairs = 12;      // of neighbours, likewise
 constexpr float least_detail =
     1 / 48.0f;  // of smooth light among nine cells: a variance over the mean squared
-constexpr float most_prior_weight = 192;       // samples
+constexpr float most_prior_weight = 192;  // samples
 
 Lanes load_at(std::span<const float> plane, size_t i) { return load_lanes(plane.data() + i); }
 Lanes clamped(const Lanes& v, float low, float high) {
@@ -129,7 +129,7 @@ Estimate estimate_cells(const Pool& pool, const Pool& wide, const Brightest& bri
   Lanes detail = paired * positive_lanes(variance - deviates) * pool.points * per_pooled;
   variance += paired * (deviates - variance);
   e.prior_weight = clamped(variance / (detail + least_detail * expected * expected + 1e-6f), 0.5f,
-                       most_prior_weight);
+                           most_prior_weight);
   Lanes known_badly = 1.0f + (unsure_variance - 1) * (1.0f - paired);
   e.mean_variance = variance * per_sample * known_badly;
   // What varies from place to place beyond what varies from sample to sample is detail.
@@ -240,9 +240,8 @@ void estimate_variance(Cells& cells) {
         Lanes spread = samples * rest_sum2 - rest_sum * rest_sum;
         LaneMask unsure = (load_at(cells.rest_known, i) < load_at(cells.points, i)) &
                           (spread > 0.25f * rest_sum * rest_sum);
-        Estimate e =
-            estimate_cells(pool, wide, brightest_around(cells, i, object), samples,
-                           load_at(cells.sum, i), rest_sum, unsure, rest_share);
+        Estimate e = estimate_cells(pool, wide, brightest_around(cells, i, object), samples,
+                                    load_at(cells.sum, i), rest_sum, unsure, rest_share);
         for (size_t c = 0; c < 3; c++) {
           store_lanes(&cells.smooth[c][i], load_at(cells.smooth[c], i) * e.scale);
           store_lanes(&cells.rest[c][i], load_at(cells.rest[c], i) * e.rest_scale);

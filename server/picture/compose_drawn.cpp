@@ -71,7 +71,8 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
 // or chance nobody knows.
 constexpr float calm_counts = 1 / 64.0f;
 constexpr float moving_prior_variance = 3;
-constexpr float still_told = 0.4f;  // at rest: guessed share of the light at which prior variance begins
+constexpr float still_told =
+    0.4f;  // at rest: guessed share of the light at which prior variance begins
 constexpr float smooth_prior_variances = 4;  // of these, for smooth light, where chance is larger
 // Of what is so narrow that no cell stands for it: samples that count as much as its surroundings
 // do, in moving pictures and in those at rest; and how much the cells beside it count for that show
@@ -164,7 +165,8 @@ LaneMask light_as_neighbours(const Cells& cells, const CellPlaces& at, const Cel
 }
 
 // The light of a lamp does not end where a picture on the wall does.
-void light_as(Surroundings& around, const LaneMask& mirrors, const Lanes& prior_variances, Drawn& d) {
+void light_as(Surroundings& around, const LaneMask& mirrors, const Lanes& prior_variances,
+              Drawn& d) {
   auto rest = [&](const Lanes& rest, const Lanes& smooth, const Lanes& albedo,
                   const Lanes& theirs) {
     return mirrors ? theirs * smooth + rest : under(rest, albedo, theirs);
@@ -178,8 +180,9 @@ void light_as(Surroundings& around, const LaneMask& mirrors, const Lanes& prior_
 // `asked`: lanes that matter.
 template <class Cell, class FindNearby>
 void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* corners,
-                 const LaneMask& flat, const Lanes* weights, float prior_variance, float thin_prior_variance,
-                 const LaneMask& asked, const FindNearby& find_nearby, Drawn& d) {
+                 const LaneMask& flat, const Lanes* weights, float prior_variance,
+                 float thin_prior_variance, const LaneMask& asked, const FindNearby& find_nearby,
+                 Drawn& d) {
   Surroundings around = look_around(corners, flat, weights, d.pixels);
   LaneMask lonely = asked & around.lonely, unsure = asked & (around.known < 1.0f);
   around.lonely = LaneMask{};
@@ -194,8 +197,8 @@ void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* co
   find_nearby(unsure, thin);
   LaneMask mirrors = unsure & (d.albedo.r + d.albedo.g + d.albedo.b < no_reflectance);
   Lanes prior_weight = all_lanes(thin_prior_variance);
-  LaneMask told =
-      light_as_neighbours(cells, at, corners, weights, unsure, mirrors, d.pixels, prior_weight, theirs);
+  LaneMask told = light_as_neighbours(cells, at, corners, weights, unsure, mirrors, d.pixels,
+                                      prior_weight, theirs);
   light_as(theirs, mirrors, told ? prior_weight : prior_variances, thin);
   light_as(around, LaneMask{}, prior_variances, d);
   Lanes known = unsure ? (lonely ? Lanes{} : around.known) : all_lanes(1);
@@ -216,8 +219,8 @@ struct Composer {
   PixelRays rays, light_rays;
   vec2 offset{0.5f};
   float prior_variance = moving_prior_variance, thin = thin_prior_weight;
-  int left = 0, top = 0;   // where in the picture the light's begins, whole groups
-  float own_counts = 1;  // samples of a pixel's own point, each
+  int left = 0, top = 0;            // where in the picture the light's begins, whole groups
+  float own_counts = 1;             // samples of a pixel's own point, each
   const SkinLight* skin = nullptr;  // what moves is lit by; null: as everything else
 
   // Eight lanes each.
@@ -296,8 +299,7 @@ void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
   Lanes weights[4] = {(1.0f - fx) * (1 - fy), fx * (1 - fy), (1.0f - fx) * fy, fx * fy};
   const int g = n * together<Scale>;
   using Cell = CellRows<Scale>::Cell;
-  const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g),
-                            &rows.at(1, g + 1)};
+  const Cell* corners[4] = {&rows.at(0, g), &rows.at(0, g + 1), &rows.at(1, g), &rows.at(1, g + 1)};
   auto find_nearby = [&](const LaneMask& lonely, Drawn& of) { light_thin(lonely, lx, ly, of); };
   constexpr Lanes beside = together<Scale> == 1 ? Lanes{} : Lanes{0, 0, 0, 0, 1, 1, 1, 1};
   CellPlaces at{fx + beside + float(rows.first + g), float(rows.row) + fy};
@@ -306,9 +308,9 @@ void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
 }
 
 template <int Scale>
-Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p, const RunGlow& emitting,
-                                  const RunMoving& moving, const CellRows<Scale>& rows, int n,
-                                  LanePart part) const {
+Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
+                                  const RunGlow& emitting, const RunMoving& moving,
+                                  const CellRows<Scale>& rows, int n, LanePart part) const {
   const int i = n * lane_count - half_group;
   const unsigned here = part.bits(), moves = bits_at(moving.pixels, i) & here;
   Drawn d;
@@ -362,15 +364,14 @@ template <class Planes>
 std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const View& lit,
                                                        const VisibilityPass& visibility,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light,
-                                                       const SkinLight* skin, bool calm,
-                                                       const Planes& planes) {
+                                                       const Frame& light, const SkinLight* skin,
+                                                       bool calm, const Planes& planes) {
   auto draw = [&](auto composer) {
     if (calm) composer.own_counts = calm_counts;
     composer.skin = skin;
     auto differ = [&planes](uint32_t a, uint32_t b) { return planes.differ(a, b); };
     return visibility.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
-                           differ);
+                                differ);
   };
   PixelRays rays(view);
   if (lit == view) return draw(FineComposer{view, cells, known, light, rays, rays});
@@ -379,7 +380,8 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const V
 
 // What moves, in runs within the window that show any of it. Returns its edges.
 template <class Take>
-std::span<const std::vector<EdgeShare>> see_moving(const View& view, const VisibilityPass& visibility,
+std::span<const std::vector<EdgeShare>> see_moving(const View& view,
+                                                   const VisibilityPass& visibility,
                                                    const PictureWindow& window, const Take& take) {
   auto take_what_is_there = [&](const VisibleRun& run) {
     bool inside = run.x >= window.left && run.x + run.count <= window.left + window.width &&
@@ -392,16 +394,17 @@ std::span<const std::vector<EdgeShare>> see_moving(const View& view, const Visib
 
 }  // namespace
 
-void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility, const Cells& cells,
-                   bool known, const Frame& light, const SkinLight* skin, Frame& frame) {
+void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
+                   const Cells& cells, bool known, const Frame& light, const SkinLight* skin,
+                   Frame& frame) {
   FramePlanes planes{frame};
   soften_edges(compose_moment(view, lit, visibility, cells, known, light, skin, false, planes),
                frame.color);
 }
 
-void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility, const Cells& cells,
-                   bool known, const Frame& light, const SkinLight* skin, const Tonemap& tonemap,
-                   bool calm, std::vector<uint8_t>& peaks, Image8& image,
+void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
+                   const Cells& cells, bool known, const Frame& light, const SkinLight* skin,
+                   const Tonemap& tonemap, bool calm, std::vector<uint8_t>& peaks, Image8& image,
                    std::vector<float>* depth) {
   size_t pixels = size_t(view.width) * size_t(view.height);
   image.width = view.width, image.height = view.height;
@@ -410,25 +413,40 @@ void compose_drawn(const View& view, const View& lit, const VisibilityPass& visi
   if (depth) depth->resize(pixels);
   EyePlanes planes{tonemap.exposure, image.rgb.data(), peaks.data(),
                    depth ? depth->data() : nullptr};
-  soften_edges(compose_moment(view, lit, visibility, cells, known, light, skin, calm, planes), image,
-               peaks);
+  soften_edges(compose_moment(view, lit, visibility, cells, known, light, skin, calm, planes),
+               image, peaks);
 }
 
-void compose_still(const View& view, const VisibilityPass& visibility, vec2 offset, const Cells& cells,
-                   bool known, const Frame& light, float guessed, Frame& frame) {
-  FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), offset,
-                        still_prior_variance(guessed), still_prior_weight};
+void compose_still(const View& view, const VisibilityPass& visibility, vec2 offset,
+                   const Cells& cells, bool known, const Frame& light, float guessed,
+                   Frame& frame) {
+  FineComposer composer{view,
+                        cells,
+                        known,
+                        light,
+                        PixelRays(view),
+                        PixelRays(view),
+                        offset,
+                        still_prior_variance(guessed),
+                        still_prior_weight};
   FramePlanes planes{frame};
   visibility.see(view, offset, taker(composer, planes), RasterShows::still, still_blur);
 }
 
-std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const VisibilityPass& visibility,
+std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
+                                                       const VisibilityPass& visibility,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light,
-                                                       const SkinLight* skin, float guessed,
-                                                       Frame& frame) {
-  FineComposer composer{view, cells, known, light, PixelRays(view), PixelRays(view), vec2(0.5f),
-                        still_prior_variance(guessed), still_prior_weight};
+                                                       const Frame& light, const SkinLight* skin,
+                                                       float guessed, Frame& frame) {
+  FineComposer composer{view,
+                        cells,
+                        known,
+                        light,
+                        PixelRays(view),
+                        PixelRays(view),
+                        vec2(0.5f),
+                        still_prior_variance(guessed),
+                        still_prior_weight};
   composer.skin = skin;
   return see_moving(view, visibility, {0, 0, view.width, view.height},
                     taker(composer, NearerPlanes{frame}));

@@ -16,31 +16,32 @@ struct SkinLight;  // light/known/skin_light.h
 // Overwrites all planes of `frame`. `light`: of the view `lit`, which is light_view(view) or `view`
 // itself, its planes packed as read_surface() leaves them, with `cells` filled from it; `known`:
 // what fill_cells() said. `skin`: what moves is lit by (null: by points like everything else).
-void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility, const Cells& cells,
-                   bool known, const Frame& light, const SkinLight* skin, Frame& frame);
+void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
+                   const Cells& cells, bool known, const Frame& light, const SkinLight* skin,
+                   Frame& frame);
 // The same for the eye at once, as frame/tonemap.h would show it: writing colours to memory and
 // reading them again takes longer than the curve. Resizes `image` and `depth` (null: not wanted;
 // metres along the viewing axis, infinity: nothing there). `calm`: light is that of the cells,
 // which are means; each point for itself would show as a square where pixels are as large as those
 // of surroundings. `peaks` is scratch: light beyond white, until edges are softened.
-void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility, const Cells& cells,
-                   bool known, const Frame& light, const SkinLight* skin, const Tonemap& tonemap,
-                   bool calm, std::vector<uint8_t>& peaks, Image8& image,
+void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
+                   const Cells& cells, bool known, const Frame& light, const SkinLight* skin,
+                   const Tonemap& tonemap, bool calm, std::vector<uint8_t>& peaks, Image8& image,
                    std::vector<float>* depth);
 
 // What does not move of a picture at rest, in light of its own resolution, `light` being of `view`
 // itself, seen at one place of every pixel, `offset` (0 to 1): the mean over several such pictures
 // is antialiased. `guessed`: the share of its light that no point tells, by which a pixel's own few
 // samples are doubted as they are while the visitor moves.
-void compose_still(const View& view, const VisibilityPass& visibility, vec2 offset, const Cells& cells,
-                   bool known, const Frame& light, float guessed, Frame& frame);
+void compose_still(const View& view, const VisibilityPass& visibility, vec2 offset,
+                   const Cells& cells, bool known, const Frame& light, float guessed, Frame& frame);
 // What moves, laid over that, always at the middle of the pixels, so that nothing trembles. Returns
 // its edges, good until the sight's next picture: see soften_edges().
-std::span<const std::vector<EdgeShare>> compose_moving(const View& view, const VisibilityPass& visibility,
+std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
+                                                       const VisibilityPass& visibility,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light,
-                                                       const SkinLight* skin, float guessed,
-                                                       Frame& frame);
+                                                       const Frame& light, const SkinLight* skin,
+                                                       float guessed, Frame& frame);
 
 // The same over what the eye sees already, in the light that is kept on its skin, where it is
 // nearer than `disparity` (as Keyframe's) says of the picture. Of pixels that it covers

@@ -82,8 +82,7 @@ void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass
 }
 
 void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
-                      const Tonemap& tonemap, Image8& image, std::vector<float>* depth,
-                      bool calm) {
+                      const Tonemap& tonemap, Image8& image, std::vector<float>* depth, bool calm) {
   View lit = light_of(cache, view);
   if (!cache.has_projected(lit)) cache.project(lit);
   begin(cache);
@@ -101,8 +100,8 @@ void Compositor::draw_still(RenderCache& cache, const View& view, const Visibili
   const bool changes = cache.image().alarm > 0;
   draw(cache, view, [&](float told) {
     const float guessed = 1 - told;
-    compose_still(view, visibility, spread_in_pixel(cache.still_frames()), cells_, known_, work_->light,
-                  guessed, frame);
+    compose_still(view, visibility, spread_in_pixel(cache.still_frames()), cells_, known_,
+                  work_->light, guessed, frame);
     std::span<const std::vector<EdgeShare>> edges;
     if (shows == StillShows::all && visibility.anything_moves())
       edges = compose_moving(view, visibility, cells_, known_, work_->light, skin_, guessed, frame);
@@ -136,8 +135,8 @@ void Compositor::add_samples(const View& view, std::span<const Request> requests
 void Compositor::invalidate_samples() { samples_ = {}; }
 
 void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
-                             const VisibilityPass& visibility, const Tonemap& tonemap, MovingLight& work,
-                             MovingPicture& picture) {
+                             const VisibilityPass& visibility, const Tonemap& tonemap,
+                             MovingLight& work, MovingPicture& picture) {
   const View& view = backdrop.view;
   picture.view = view;
   picture.window = moving_window(world, view);

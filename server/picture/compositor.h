@@ -20,7 +20,7 @@ namespace wellspring {
 struct Keyframe;       // picture/keyframe.h
 struct MovingPicture;  // picture/moving_picture.h: what moves in a picture at rest
 struct MovingLight;
-struct SkinLight;      // light/known/skin_light.h
+struct SkinLight;                                   // light/known/skin_light.h
 enum class StillShows : uint8_t { all, backdrop };  // backdrop: but for what moves
 
 // What a picture needs and nobody afterwards. Those that are never under way at the same time may
@@ -48,8 +48,8 @@ class Compositor {
             bool calm = false);
   // The same at rest, in light of the view's own resolution: what does not move is antialiased in
   // time, seen at another place of the pixels each time.
-  void draw_still(RenderCache& cache, const View& view, const VisibilityPass& visibility, Frame& frame,
-                  StillShows shows = StillShows::all);
+  void draw_still(RenderCache& cache, const View& view, const VisibilityPass& visibility,
+                  Frame& frame, StillShows shows = StillShows::all);
   // At rest, after RenderCache::remember(): samples of pixels whose light it found changed since
   // the last picture are forgotten.
   void follow_changes(const RenderCache& cache);
@@ -70,7 +70,7 @@ class Compositor {
   // What the pixels of a view at rest have been found to be by samples; empty before.
   const StillSamples& samples() const { return samples_; }
   float drawing_ms() const { return drawing_ms_; }  // visibility and shading of the last picture
-  size_t memory_bytes() const;  // without work that is shared
+  size_t memory_bytes() const;                      // without work that is shared
 
  private:
   View light_of(const RenderCache& cache, const View& view) const;
@@ -86,7 +86,7 @@ class Compositor {
   bool known_ = false;  // any light
   StillImage still_;
   StillSamples samples_;
-  View sampled_;             // the view of samples_
+  View sampled_;  // the view of samples_
   bool reconstructed_ = false;
   uint64_t projection_ = 0;  // RenderCache::projection() of what is kept
   uint32_t pictures_ = 0;

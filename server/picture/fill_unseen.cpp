@@ -17,8 +17,8 @@ using Cell = FillScratch::Cell;
 using BlockCells = FillScratch::BlockCells;
 constexpr int block = Unseen::block;
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr int longest_walk = 256;   // pixels along an epipolar line to what is known
-constexpr float known_at = 0.25f;   // share of a cell's pixels that are enough to know it
+constexpr int longest_walk = 256;  // pixels along an epipolar line to what is known
+constexpr float known_at = 0.25f;  // share of a cell's pixels that are enough to know it
 constexpr float may_be_nearer =
     0.75f;  // pixels that what is around a hole may move against what lies behind
 constexpr float opens_at_least =
@@ -118,8 +118,13 @@ Cell read_plain(const Unseen& u, const Image8& out, int x0, int y0, unsigned (&s
   sum.behind = infinity;
   if (count == 0) return sum;
   float share = 1 / float(count);
-  return {float(red) * share, float(green) * share, float(blue) * share,
-          std::min(float(count) * (0.25f / known_at), 1.0f), disparity, infinity, true};
+  return {float(red) * share,
+          float(green) * share,
+          float(blue) * share,
+          std::min(float(count) * (0.25f / known_at), 1.0f),
+          disparity,
+          infinity,
+          true};
 }
 
 // Two by two of the block's pixels, some of which are hidden or nearer than what lies behind such

@@ -21,7 +21,7 @@ struct Unseen {
   int width = 0, height = 0, columns = 0, rows = 0;
   // Bits of eight pixels side by side each, `columns` a row of the picture. No pixel is both.
   std::vector<uint8_t> hidden, outside;
-  std::vector<float> flat;       // of blocks: all their pixels' disparity, or `many`
+  std::vector<float> flat;  // of blocks: all their pixels' disparity, or `many`
   std::vector<float>
       disparity;  // of pixels of blocks of many; of hidden ones that of what hid them
 };
@@ -32,9 +32,9 @@ void resize_unseen(int width, int height, Unseen& unseen);
 struct FillScratch {
   struct Cell {
     float red = 0, green = 0, blue = 0;
-    float weight = 0;     // how much of it is known: 0 to 1
-    float disparity = 0;  // of that
-    float behind = 0;     // the farthest that its hidden pixels show; infinity: it has none
+    float weight = 0;       // how much of it is known: 0 to 1
+    float disparity = 0;    // of that
+    float behind = 0;       // the farthest that its hidden pixels show; infinity: it has none
     bool complete = false;  // what is not known of it has been guessed; or nothing needs to be
   };
   struct BlockCells {

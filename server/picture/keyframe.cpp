@@ -13,10 +13,10 @@ namespace {
 
 // On each side, of width and height: turning goes sideways.
 constexpr int margin_across = 40, margin_down = 45;
-constexpr int widest_across = 10;  // of quick turns
-constexpr float widest_tangent = 3;  // from the middle of surroundings to their border
+constexpr int widest_across = 10;                 // of quick turns
+constexpr float widest_tangent = 3;               // from the middle of surroundings to their border
 constexpr int asked_across = 16, asked_down = 9;  // directions that stand for a view
-constexpr float nearest_depth = 1e-4f;  // metres, as in project_points()
+constexpr float nearest_depth = 1e-4f;            // metres, as in project_points()
 
 float disparity_of(float depth) {
   return depth > 0 ? 1 / std::max(depth, nearest_depth)

@@ -13,9 +13,9 @@
 namespace wellspring {
 
 struct Keyframe {
-  static constexpr int block = 8;             // pixels a side
-  static constexpr float step_scale = 4096;   // steps a unit of disparity
-  View view;  // whose size is the picture's
+  static constexpr int block = 8;            // pixels a side
+  static constexpr float step_scale = 4096;  // steps a unit of disparity
+  View view;                                 // whose size is the picture's
   // Red in the lowest byte, then green, blue and the step: how far apart the disparities of this
   // pixel and those to its right, below, and both are, times step_scale, rounded up, at most 255.
   // One pixel more than there are, since they are read in pairs; disparities likewise.

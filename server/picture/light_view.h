@@ -13,8 +13,7 @@ inline View light_view(const View& view) {
   View light = view;
   light.width = (view.width + light_scale - 1) / light_scale;
   light.height = (view.height + light_scale - 1) / light_scale;
-  light.tan_half_fov =
-      view.tan_half_fov * float(light.height * light_scale) / float(view.height);
+  light.tan_half_fov = view.tan_half_fov * float(light.height * light_scale) / float(view.height);
   return light;
 }
 

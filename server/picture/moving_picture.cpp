@@ -16,7 +16,7 @@ namespace wellspring {
 namespace {
 
 constexpr int run_pixels = RasterRun::most;
-constexpr float margin = 2;  // pixels around what moves
+constexpr float margin = 2;          // pixels around what moves
 constexpr float near_depth = 1e-3f;  // metres: what is nearer may be anywhere
 
 // Where places fall in a picture.
@@ -51,9 +51,7 @@ int whole(float v, int most) { return int(std::clamp(v, 0.0f, float(most))); }
 }  // namespace
 
 size_t memory_bytes(const MovingPicture& picture) { return bytes_of(picture.rgb); }
-size_t memory_bytes(const MovingLight& light) {
-  return bytes_of(light.picture.rgb, light.peaks);
-}
+size_t memory_bytes(const MovingLight& light) { return bytes_of(light.picture.rgb, light.peaks); }
 
 void lay_over(const MovingPicture& picture, Image8& image) {
   const PictureWindow& w = picture.window;

@@ -11,7 +11,7 @@ namespace wellspring {
 namespace {
 
 constexpr int rings = 5;
-constexpr int enough_points = 6;      // found by a ring: no other is needed
+constexpr int enough_points = 6;  // found by a ring: no other is needed
 // Cosines squared: from no less on it is the same surface, and certainly from there on.
 constexpr float turned_away = 0.49f, same_direction = 0.75f;
 constexpr float reach2 = (rings + 0.5f) * (rings + 0.5f);

@@ -10,9 +10,9 @@ namespace wellspring {
 
 // What is seen at one place of a picture.
 struct SeenPlace {
-  int x = 0, y = 0;       // the light's pixel that it falls in
-  vec2 ray{0};            // to it, in view coordinates (right, up; forward is 1)
-  float depth = 0;        // along the viewing axis
+  int x = 0, y = 0;           // the light's pixel that it falls in
+  vec2 ray{0};                // to it, in view coordinates (right, up; forward is 1)
+  float depth = 0;            // along the viewing axis
   vec3 normal{0}, albedo{0};  // the normal need not be unit
   uint32_t object = 0;
 };

@@ -9,7 +9,7 @@ namespace {
 // Cells to each side. Most find their object near; only for others more is read.
 constexpr int nearest = 3, farthest = 6;
 static_assert(farthest <= cell_pad && 2 * farthest + 1 <= 2 * lane_count);
-constexpr float far_weight = 0.02f;    // what those count for that near ones are not enough for
+constexpr float far_weight = 0.02f;   // what those count for that near ones are not enough for
 constexpr float near_enough = 0.02f;  // weight
 constexpr float turned_away = 0.05f;  // what such cells count for
 constexpr float most_samples = 16, no_sample = 0.1f;  // likewise of many and of what was filled in
@@ -58,9 +58,9 @@ void add_window(const Cells& cells, const CellPlaces& at, const Pixels& p,
           rest[c] = cells.rest[c][i];
         }
         bool dark = albedo[0] + albedo[1] + albedo[2] < no_reflectance;
-        if (dark)
-          weight = keep_lanes(mirrors & (p.object == cells.object[i]), weight);
-        else for (int c = 0; c < 3; c++) rest[c] = std::min(rest[c], most_rest * smooth[c]);
+        if (dark) weight = keep_lanes(mirrors & (p.object == cells.object[i]), weight);
+        else
+          for (int c = 0; c < 3; c++) rest[c] = std::min(rest[c], most_rest * smooth[c]);
         weight = keep_lanes(here, weight);
         add(sum.smooth, weight, smooth[0], smooth[1], smooth[2]);
         add(sum.rest, weight, rest[0], rest[1], rest[2]);

@@ -81,7 +81,7 @@ LaneMask find_flat(const PixelRays& rays, const Cells& cells, int bx, int by);
 struct Surroundings {
   Color smooth, rest;
   Lanes prior_weight{}, detail{}, noise{};
-  Color albedo;  // of cells that tell it
+  Color albedo;       // of cells that tell it
   LaneMask lonely{};  // no cell lies on this surface
   Lanes known{};      // 0 to 1: cells hardly do, or some certainly do
 };
@@ -173,9 +173,9 @@ inline Lanes cut_to(const Lanes& own, const Lanes& most) {
 
 // Smooth light: the more of the pixel's own the more samples it has. Rest: the more of its own the
 // more of what varies around is detail rather than noise (Lee 1980, the local Wiener filter).
-// `prior variance`: samples that make the own rest count for half of what it would. What few samples vary by
-// may be alike by chance, most of all where now and then one finds a light: what those around vary
-// by counts as so many of them.
+// `prior variance`: samples that make the own rest count for half of what it would. What few
+// samples vary by may be alike by chance, most of all where now and then one finds a light: what
+// those around vary by counts as so many of them.
 inline constexpr float prior_samples = 4;
 inline void blend_light(const Surroundings& s, Pixels& p, const Lanes& prior_variance = Lanes{}) {
   const LaneMask& lonely = s.lonely;

@@ -64,8 +64,7 @@ struct ShownPicture {
     return invert_tone_curve({linear[p.code[0]], linear[p.code[1]], linear[p.code[2]]}, p.peak);
   }
   void mix(const EdgeShare& edge, const Pixel& own, const Pixel& beyond) const {
-    vec3 light =
-        mix_in(edge.share, light_of(own), light_of(beyond), light_of(read(edge.pixel)));
+    vec3 light = mix_in(edge.share, light_of(own), light_of(beyond), light_of(read(edge.pixel)));
     write(edge.pixel, light);
   }
   void write(uint32_t pixel, vec3 light) const {

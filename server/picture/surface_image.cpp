@@ -38,10 +38,8 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
       }
     }
     LaneBits index = LaneBits{} + no_point;
-    if (x + lane_count <= width)
-      index = load_lanes<LaneBits>(row + x);
-    else
-      std::memcpy(&index, row + x, size_t(width - x) * sizeof(uint32_t));
+    if (x + lane_count <= width) index = load_lanes<LaneBits>(row + x);
+    else std::memcpy(&index, row + x, size_t(width - x) * sizeof(uint32_t));
     LaneBits known = lanes_as<LaneBits>(index != no_point);
     store_lanes(point, index & known);
     LaneBits a, s, r, o;
@@ -50,7 +48,8 @@ int read_points(const PointCache& points, const PointImage& image, int y, Surfac
     auto more = [&](int i) {
       uint32_t word;
       std::memcpy(&word, &colors[point[i]].normal, sizeof word);
-      return (word & 0xff00ffffu) | uint32_t(counts[point[i]]) << 16;  // in place of its prior variances
+      return (word & 0xff00ffffu) | uint32_t(counts[point[i]])
+                                        << 16;  // in place of its prior variances
     };
     LaneBits m{more(0), more(1), more(2), more(3), more(4), more(5), more(6), more(7)};
     m &= known;

@@ -18,11 +18,11 @@ namespace {
 using namespace warping;
 constexpr int block = Keyframe::block;
 static_assert(block == lane_count);
-constexpr int most_steps = 96;         // along an epipolar line
+constexpr int most_steps = 96;   // along an epipolar line
 constexpr int most_blocks = 24;  // written per block, on average, when bounds are carried forward
-constexpr int seam_across = 64;        // of its width, a keyframe passes into what is around
-constexpr float found = 0.5f;          // pixels between a place and itself, carried there and back
-constexpr float same = 0.125f;  // pixels between places of a block that one disparity stands for
+constexpr int seam_across = 64;  // of its width, a keyframe passes into what is around
+constexpr float found = 0.5f;    // pixels between a place and itself, carried there and back
+constexpr float same = 0.125f;   // pixels between places of a block that one disparity stands for
 
 // Bounds of disparities of every block of the new view, from the keyframe's blocks carried forward.
 // False: they would move too far for that.
@@ -101,9 +101,7 @@ Search plan_search(const Source& source, float x, float y, float near, float far
     return vec3(h.x / z, h.y / z, z);
   };
   vec3 a = at(near), b = at(far);
-  auto speed = [&](vec3 p) {
-    return length(vec2(m.baseline) - vec2(p) * m.baseline.z) / p.z;
-  };
+  auto speed = [&](vec3 p) { return length(vec2(m.baseline) - vec2(p) * m.baseline.z) / p.z; };
   float apart = length(vec2(a) - vec2(b));
   Search search;
   search.pixels = std::max(speed(a), speed(b));
@@ -169,8 +167,8 @@ struct RowBits {
 // `disparity`: of the pixels, written if search.steps > 0; `share`: how much of 255 the keyframe
 // has in them, written if any is not all its own. No more than `count`.
 [[gnu::always_inline]] inline RowBits warp_row(const Source& source, float x, float y, int count,
-                                               const Search& search, uint8_t* to,
-                                               float* disparity, uint8_t* share) {
+                                               const Search& search, uint8_t* to, float* disparity,
+                                               uint8_t* share) {
   const Mapping& m = source.to;
   Lanes px = x + Lanes{0, 1, 2, 3, 4, 5, 6, 7};
   Place base{m.one.x + px * m.across.x + y * m.down.x, m.one.y + px * m.across.y + y * m.down.y,
@@ -331,8 +329,8 @@ float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View&
           search.steps == 0 ? search.nearest : Unseen::many;
     unseen.hidden[word] = row.hidden, unseen.outside[word] = row.outside;
     if (!around.empty()) scratch.at_seam[word] = row.at_seam;
-    unsigned are = (row.hidden ? hidden : 0) | (row.outside ? outside : 0) |
-                   (row.at_seam ? at_seam : 0);
+    unsigned are =
+        (row.hidden ? hidden : 0) | (row.outside ? outside : 0) | (row.at_seam ? at_seam : 0);
     if (are & ~bits.load(std::memory_order_relaxed)) bits |= are;
   });
   if (!around.empty() && (bits & (outside | at_seam))) {
@@ -341,9 +339,9 @@ float warp_picture(const Keyframe& keyframe, const Keyframe& around, const View&
     if (carry_bounds(wide, view, scratch)) warp_around(wide, view, scratch, out);
   }
   if (!(bits & (hidden | outside))) return 0;
-  float unknown = bits & outside ? float(count_bits(unseen.outside)) /
-                                        (float(view.width) * float(view.height))
-                                  : 0;
+  float unknown = bits & outside
+                      ? float(count_bits(unseen.outside)) / (float(view.width) * float(view.height))
+                      : 0;
   if (!(unknown > most_unknown)) fill_unseen(unseen, source.back.baseline, scratch.fill, out);
   return unknown;
 }

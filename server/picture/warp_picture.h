@@ -21,8 +21,8 @@ struct WarpScratch {
   std::vector<float> farthest, nearest;
   Unseen unseen;
   std::vector<uint8_t>
-      at_seam;  // bits of eight pixels side by side each: near the keyframe's border
-  std::vector<uint8_t> share;    // of 255, that the keyframe has in such pixels
+      at_seam;                 // bits of eight pixels side by side each: near the keyframe's border
+  std::vector<uint8_t> share;  // of 255, that the keyframe has in such pixels
   FillScratch fill;
 };
 size_t memory_bytes(const WarpScratch& scratch);

@@ -28,7 +28,7 @@ constexpr double agent_interval = 0.1;  // seconds between agent messages while 
 constexpr double state_interval = 0.5;
 constexpr double heard_state_interval = 0.1;  // while there is sound to be heard from somewhere
 constexpr double behave_interval = 0.04;
-constexpr double least_wait = 0.001;  // between ticks, whatever is due
+constexpr double least_wait = 0.001;         // between ticks, whatever is due
 constexpr double listening_interval = 0.01;  // between looks at what visitors want, pictures or not
 
 void welcome_links(Show& show, Arrivals& arrivals) {
@@ -234,8 +234,8 @@ void pace_tour(Visitor& visitor) {
   double seconds = 0.001 * double(std::max(visitor.times.interval, visitor.times.whole));
   const PictureWishes& wants = visitor.wants;
   VisitorPlace& place = visitor.place;
-  float across = 2 * std::atan(std::tan(0.5f * place.view.fov) * float(wants.width) /
-                               float(wants.height));
+  float across =
+      2 * std::atan(std::tan(0.5f * place.view.fov) * float(wants.width) / float(wants.height));
   place.tour.most_pace = tour_pace(turn_ahead(place.tour, seconds), across);
 }
 
@@ -274,7 +274,8 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   }
   send_sounds(show);
   std::optional<dvec3> person;
-  if (const StorytellerPlace* storyteller_place = show.storyteller_visible ? storyteller_of(show) : nullptr)
+  if (const StorytellerPlace* storyteller_place =
+          show.storyteller_visible ? storyteller_of(show) : nullptr)
     person = storyteller_place->position;
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
@@ -286,7 +287,8 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   }
   watch_pass(show);
   Renderer& renderer = show.renderer;
-  if (renderer.drawn && is_outdated(show, renderer.order, *renderer.drawn)) renderer.given_up = true;
+  if (renderer.drawn && is_outdated(show, renderer.order, *renderer.drawn))
+    renderer.given_up = true;
   if (!show.settings.background) draw_now(show, demand.waiting);
   else if (free) use_renderer(show, demand.waiting);
   for (Visitor& visitor : show.visitors) {
@@ -310,8 +312,8 @@ double seconds_to_next_tick(const Show& show, double now) {
 void wait_for_tick(const Show& show, double now) {
   double seconds = seconds_to_next_tick(show, now);
   const Renderer& renderer = show.renderer;
-  bool nothing_comes = !renderer.drawn && renderer.brokers.empty() && !show.pass.at_work &&
-                       !renderer.skin.at_work;
+  bool nothing_comes =
+      !renderer.drawn && renderer.brokers.empty() && !show.pass.at_work && !renderer.skin.at_work;
   if (nothing_comes) std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   else renderer.worker.wait_for(seconds);
 }

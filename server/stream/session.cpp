@@ -12,10 +12,8 @@ void fail(const error_code& ec, const char* where) {
                      ec == beast::error::timeout || ec == websocket::error::closed ||
                      ec.category() == make_error_code(http::error::end_of_stream).category() ||
                      ec.category() == make_error_code(websocket::error::closed).category();
-  if (usual)
-    log::debug("{}: {}", where, ec.message());
-  else
-    log::warn("{}: {}", where, ec.message());
+  if (usual) log::debug("{}: {}", where, ec.message());
+  else log::warn("{}: {}", where, ec.message());
 }
 
 void Signal::raise() {
@@ -78,12 +76,9 @@ net::awaitable<void> Session::run(bool refused) {
 void Session::stop(bool politely) {
   net::post(ws_.get_executor(), [self = shared_from_this(), politely] {
     self->stopping_ = true;
-    if (!politely)
-      self->cut("server stops");
-    else if (self->link_)
-      self->want_close(websocket::close_code::going_away, "server stops");
-    else if (self->reading_)
-      self->stream().close();
+    if (!politely) self->cut("server stops");
+    else if (self->link_) self->want_close(websocket::close_code::going_away, "server stops");
+    else if (self->reading_) self->stream().close();
   });
 }
 

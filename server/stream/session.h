@@ -95,8 +95,8 @@ class Session : public std::enable_shared_from_this<Session> {
   uint64_t deadline_number_ = 0;
   websocket::close_reason close_reason_{websocket::close_code::none};
   bool ended_ = false;
-  RateBound messages_{max_messages_a_second, max_messages_a_second * burst_seconds};
-  RateBound bytes_{max_bytes_a_second, max_bytes_a_second * burst_seconds};
+  RateBound messages_{max_messages_a_second, max_messages_a_second* burst_seconds};
+  RateBound bytes_{max_bytes_a_second, max_bytes_a_second* burst_seconds};
 };
 
 }  // namespace wellspring

@@ -113,8 +113,7 @@ net::awaitable<bool> Session::read_messages() {
     const bool counted = count_input(1, double(bytes));
     if (counted && !ws_.got_text())
       want_close(websocket::close_code::unknown_data, "text messages only");
-    else if (counted)
-      link_->push_text_in(beast::buffers_to_string(buffer.data()));
+    else if (counted) link_->push_text_in(beast::buffers_to_string(buffer.data()));
     buffer.consume(buffer.size());
   }
   co_return true;
@@ -172,10 +171,8 @@ net::awaitable<void> Session::write_messages() {
     const bool closing = link_->close_requested(reason);
     Link::Out out;
     if (!link_->take_out(out)) {
-      if (closing)
-        want_close(websocket::close_code::normal, reason);
-      else
-        co_await writable_.wait();
+      if (closing) want_close(websocket::close_code::normal, reason);
+      else co_await writable_.wait();
       continue;
     }
     ws_.binary(out.binary);

@@ -42,9 +42,9 @@ struct StreamSettings {
   std::string host = "127.0.0.1";
   uint16_t port = 8080;  // 0: any free one
   int threads = 2;
-  int max_connections = 256;          // beyond: 503 and closed
-  double header_timeout = 10;         // seconds for a request's header and body
-  double write_timeout = 5;           // a WebSocket write pending longer closes the connection
+  int max_connections = 256;   // beyond: 503 and closed
+  double header_timeout = 10;  // seconds for a request's header and body
+  double write_timeout = 5;    // a WebSocket write pending longer closes the connection
   double idle_timeout = 20;    // a silent WebSocket is pinged after half of it, closed after all
   std::string allowed_origin;  // besides same-host: an Origin that may open WebSockets; "*": any
 };

@@ -27,8 +27,7 @@ struct WsClient::Impl {
     const auto end = std::chrono::steady_clock::now() + seconds(timeout);
     io.restart();
     for (;;) {
-      while (!done() && io.poll_one() > 0) {
-      }
+      while (!done() && io.poll_one() > 0) {}
       if (done()) return true;
       if (std::chrono::steady_clock::now() >= end) return false;
       io.restart();

@@ -22,16 +22,15 @@ struct MessageDescriber {
             const char* about, Need = Need::optional) {
     out[name] = about;
   }
-  void choice(const char* name, std::initializer_list<const char*>, const auto&,
-              const char* about, Need = Need::optional) {
+  void choice(const char* name, std::initializer_list<const char*>, const auto&, const char* about,
+              Need = Need::optional) {
     out[name] = about;
   }
   void number(const char* name, double, double, const auto&, const char* about,
               Need = Need::optional) {
     out[name] = about;
   }
-  void integer(const char* name, int, int, const auto&, const char* about,
-               Need = Need::optional) {
+  void integer(const char* name, int, int, const auto&, const char* about, Need = Need::optional) {
     out[name] = about;
   }
   void u32(const char* name, uint32_t, const char* about, Need = Need::optional) {

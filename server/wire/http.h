@@ -8,8 +8,8 @@
 namespace wellspring {
 
 struct HttpQuestion {
-  std::string method;                        // "GET", "HEAD", ...
-  std::string path;  // percent-decoded, starts with '/', holds no "..", no NUL, no '\\'
+  std::string method;  // "GET", "HEAD", ...
+  std::string path;    // percent-decoded, starts with '/', holds no "..", no NUL, no '\\'
   std::map<std::string, std::string> query;  // percent-decoded; the last of equal names
   std::string if_none_match;
 };

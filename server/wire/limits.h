@@ -9,17 +9,17 @@ inline constexpr size_t max_message_bytes = 64 * 1024;
 inline constexpr int max_message_depth = 32;
 
 // Limits of single fields; outside of them a message is refused with bad_field.
-inline constexpr size_t max_name_bytes = 200;    // every string: UTF-8 without control characters
-inline constexpr double max_speed = 20;          // m/s, length of input.move
-inline constexpr double max_angle = 100;         // radians, every angle; the user wraps it
-inline constexpr double max_coordinate = 1e6;    // metres, camera.position
+inline constexpr size_t max_name_bytes = 200;      // every string: UTF-8 without control characters
+inline constexpr double max_speed = 20;            // m/s, length of input.move
+inline constexpr double max_angle = 100;           // radians, every angle; the user wraps it
+inline constexpr double max_coordinate = 1e6;      // metres, camera.position
 inline constexpr double max_kiosk_distance = 100;  // metres, each coordinate of a person's position
-inline constexpr double max_time = 1e12;         // seconds, observation.time, both signs
-inline constexpr double max_decoded_ms = 600e3;  // ack.decoded_ms, from 0
+inline constexpr double max_time = 1e12;           // seconds, observation.time, both signs
+inline constexpr double max_decoded_ms = 600e3;    // ack.decoded_ms, from 0
 inline constexpr int min_side = 16, max_side = 4096;  // width and height in pixels
 inline constexpr double min_fps = 0, max_fps = 240;   // settings.fps; 0: as the server likes
 inline constexpr int min_jpeg_quality = 1,
-                     max_jpeg_quality = 100;     // settings.quality and .max_quality
-inline constexpr size_t max_people = 32;         // in one observation
+                     max_jpeg_quality = 100;  // settings.quality and .max_quality
+inline constexpr size_t max_people = 32;      // in one observation
 
 }  // namespace wellspring

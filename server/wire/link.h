@@ -38,15 +38,15 @@ class Link {
 
   // ---- called by the show ----
   std::vector<std::string> take_texts();  // all that arrived since the last call, in order
-  void send_text(std::string text);                  // small JSON
+  void send_text(std::string text);       // small JSON
   void send_picture(std::shared_ptr<const Packet>);  // replaces an unsent one
   // Kept in order with texts. False: the peer is too slow, all unsent sound is gone with this one.
   bool send_sound(std::shared_ptr<const Packet>);
   void drop_sound();  // whatever has not been sent yet
   bool picture_pending() const {
     return picture_.full();
-  }                                                  // the last picture has not been taken yet
-  void close(std::string reason);                    // asks the socket to close
+  }                                // the last picture has not been taken yet
+  void close(std::string reason);  // asks the socket to close
   bool closed() const { return closed_; }
 
   // ---- called by stream ----
@@ -56,15 +56,15 @@ class Link {
     std::string text;
     std::shared_ptr<const Packet> packet;
   };
-  bool take_out(Out& out);          // texts and sounds before pictures; false: nothing to send
-  void push_text_in(std::string);   // a message arrived
+  bool take_out(Out& out);         // texts and sounds before pictures; false: nothing to send
+  void push_text_in(std::string);  // a message arrived
   void set_wake(
       std::function<void()> wake);  // called (from any thread) after something became sendable
   void mark_closed();               // the socket is gone; the show will notice
   bool close_requested(std::string& reason) const;
   uint64_t pictures_dropped() const { return picture_.dropped(); }
   uint64_t sounds_dropped() const { return sounds_dropped_; }  // packets, by slowness or drop_sound
-  uint64_t texts_dropped() const { return texts_dropped_; }  // arrived, never read by the show
+  uint64_t texts_dropped() const { return texts_dropped_; }    // arrived, never read by the show
   std::atomic<uint64_t> bytes_sent{0}, pictures_sent{0};
 
  private:

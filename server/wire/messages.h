@@ -125,8 +125,8 @@ struct StorytellerOrder {
   static constexpr const char* type = "storyteller";
   std::optional<bool> visible, humanlike;
   std::string teller{};  // id of the storyteller that shall be there; empty: no change
-  std::string story;   // id of a story to tell; empty: no change
-  std::string action;  // "play", "pause", "stop", "restart", "skip" or empty
+  std::string story;     // id of a story to tell; empty: no change
+  std::string action;    // "play", "pause", "stop", "restart", "skip" or empty
   static void list(auto& message, auto& fields) {
     fields.boolean("visible", message.visible, "boolean");
     fields.boolean("humanlike", message.humanlike, "boolean");
@@ -157,8 +157,7 @@ struct Settings {
     fields.number("fps", min_fps, max_fps, message.fps,
                   "pictures a second, 0 for the server's choice");
     fields.boolean("attention", message.attention, "boolean");
-    fields.boolean("sound", message.sound,
-                   "boolean: whether speech is to be sent; at first it is");
+    fields.boolean("sound", message.sound, "boolean: whether speech is to be sent; at first it is");
     fields.integer("quality", min_jpeg_quality, max_jpeg_quality, message.quality,
                    "JPEG quality in motion");
     fields.integer("max_quality", min_jpeg_quality, max_jpeg_quality, message.max_quality,

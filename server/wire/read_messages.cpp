@@ -57,8 +57,7 @@ class MessageReader {
     fields_.vector(name, limit, value, need);
   }
   // Metres a second: so is its length.
-  void speed(const char* name, double limit, vec3& value, const char*,
-             Need need = Need::optional) {
+  void speed(const char* name, double limit, vec3& value, const char*, Need need = Need::optional) {
     dvec3 speed{0};
     if (!fields_.vector(name, limit, speed, need)) return;
     if (glm::length(speed) > limit)

@@ -55,8 +55,7 @@ class MessageWriter {
   explicit MessageWriter(const char* type) { out = {{"type", type}}; }
   json out;
 
-  void text(const char* name, const std::string& value, const char*,
-            Need need = Need::optional) {
+  void text(const char* name, const std::string& value, const char*, Need need = Need::optional) {
     if (need == Need::required || !value.empty()) out[name] = value;
   }
   void word(const char* name, std::initializer_list<const char*>, const std::string& value,
@@ -64,8 +63,8 @@ class MessageWriter {
     text(name, value, about, need);
   }
   template <class Choice>
-  void choice(const char* name, std::initializer_list<const char*> words, Choice value,
-              const char*, Need = Need::optional) {
+  void choice(const char* name, std::initializer_list<const char*> words, Choice value, const char*,
+              Need = Need::optional) {
     out[name] = words.begin()[size_t(value)];
   }
   template <class Value>
@@ -74,8 +73,7 @@ class MessageWriter {
     put(name, value);
   }
   template <class Value>
-  void integer(const char* name, int, int, const Value& value, const char*,
-               Need = Need::optional) {
+  void integer(const char* name, int, int, const Value& value, const char*, Need = Need::optional) {
     put(name, value);
   }
   void u32(const char* name, uint32_t value, const char*, Need = Need::optional) {
@@ -86,8 +84,7 @@ class MessageWriter {
     put(name, value);
   }
   template <class Vector>
-  void vector(const char* name, double, const Vector& value, const char*,
-              Need = Need::optional) {
+  void vector(const char* name, double, const Vector& value, const char*, Need = Need::optional) {
     json numbers = json::array();
     for (int i = 0; i < value.length(); i++) numbers.push_back(value[i]);
     out[name] = std::move(numbers);

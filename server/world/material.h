@@ -17,7 +17,7 @@ struct Material {
   std::string name;
   vec4 base_color{1};
   TextureRef base_color_texture;
-  float metallic = 1, roughness = 1;  // perceptual roughness; alpha = roughness^2
+  float metallic = 1, roughness = 1;      // perceptual roughness; alpha = roughness^2
   TextureRef metallic_roughness_texture;  // G roughness, B metallic
   TextureRef normal_texture;
   float normal_scale = 1;
@@ -42,14 +42,14 @@ struct Material {
   float clearcoat = 0, clearcoat_roughness = 0;
   TextureRef clearcoat_texture;            // R
   TextureRef clearcoat_roughness_texture;  // G
-  TextureRef clearcoat_normal_texture;  // none: the coat is smooth, whatever lies beneath
+  TextureRef clearcoat_normal_texture;     // none: the coat is smooth, whatever lies beneath
   float clearcoat_normal_scale = 1;
   vec3 sheen_color{0};
   float sheen_roughness = 0;
   TextureRef sheen_color_texture;
-  TextureRef sheen_roughness_texture;  // A
+  TextureRef sheen_roughness_texture;             // A
   float anisotropy = 0, anisotropy_rotation = 0;  // 0..1; radians from the tangent
-  TextureRef anisotropy_texture;  // RG: direction, B: strength
+  TextureRef anisotropy_texture;                  // RG: direction, B: strength
   // World::repaint() may change its colours and how its pictures lie: nothing may be concluded from
   // those.
   bool repaints = false;

@@ -86,10 +86,8 @@ int repair_normals(Mesh& mesh) {
   for (size_t i = 0; i < mesh.normals.size(); i++) {
     vec3& n = mesh.normals[i];
     double length = is_finite(n) ? glm::length(dvec3(n)) : 0;
-    if (length > 1e-12)
-      n = vec3(dvec3(n) / length);
-    else
-      bad.push_back(uint32_t(i)), is_bad[i] = 1;
+    if (length > 1e-12) n = vec3(dvec3(n) / length);
+    else bad.push_back(uint32_t(i)), is_bad[i] = 1;
   }
   if (bad.empty()) return 0;
   std::vector<dvec3> sum(mesh.normals.size(), dvec3(0));
@@ -131,8 +129,7 @@ std::vector<uint32_t> make_tangents(Mesh& mesh, int uv_set) {
       if (!sides[i].used[side] && !(side == 0 && !sides[i].used[1])) continue;
       sides[i].vertex[side] = uint32_t(from.size());
       from.push_back(uint32_t(i));
-      tangents.push_back(
-          vec4(upright(sides[i].sum[side], mesh.normals[i]), side ? -1.0f : 1.0f));
+      tangents.push_back(vec4(upright(sides[i].sum[side], mesh.normals[i]), side ? -1.0f : 1.0f));
     }
   mesh.tangents.clear();
   gather_vertices(mesh, from);

@@ -20,7 +20,7 @@ struct Mesh {
   std::vector<vec3> normals;   // unit length
   std::vector<vec4> tangents;  // w: sign of the bitangent
   std::vector<vec2> uv[2];
-  std::vector<vec4> colors;    // linear, multiply base_color
+  std::vector<vec4> colors;  // linear, multiply base_color
   std::vector<uvec3> triangles;
   int material = 0;
 };

@@ -137,10 +137,10 @@ struct Atmosphere {
       double at = glm::length(place);
       Air air = air_at(at - earth, turbidity);
       dvec3 lit = sunlight(at, dot(place, sun) / at), all = air.rayleigh + air.haze;
-      dvec3 scatters = once ? all * lit / (4 * pi_)
-                            : lit * (air.rayleigh * rayleigh_phase(cosine) +
-                                     air.haze * haze_phase(cosine)) +
-                                  all * further_at(at);
+      dvec3 scatters =
+          once ? all * lit / (4 * pi_)
+               : lit * (air.rayleigh * rayleigh_phase(cosine) + air.haze * haze_phase(cosine)) +
+                     all * further_at(at);
       dvec3 kept = glm::exp(-air.lost * step);
       dvec3 share =
           (1.0 - kept) / glm::max(air.lost, dvec3(1e-20));  // of the step, as it thins out
@@ -222,8 +222,8 @@ void add_sky(const SkySettings& settings, Scene& scene) {
                       -std::sin(theta) * std::cos(phi));
       dvec3 radiance = scale * air.gather(earth + eye_height, direction, 48, false, nullptr);
       image.texels[size_t(y) * width + size_t(x)] = vec4(vec3(radiance), 1);
-      sky_irradiance[size_t(y)] += radiance * (std::cos(theta) * std::sin(theta) * pi_ / height *
-                                               2 * pi_ / width);
+      sky_irradiance[size_t(y)] +=
+          radiance * (std::cos(theta) * std::sin(theta) * pi_ / height * 2 * pi_ / width);
     }
   });
   dvec3 sun = sun_irradiance(settings, air.sunlight);

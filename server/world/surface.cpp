@@ -221,8 +221,7 @@ Face make_face(const PlacedMesh& placed, uint32_t triangle) {
     vec3 off = shading_normal(placed, corner, face.normal) - face.normal;
     if (!(max_component(glm::abs(off)) <= same)) face.flat = 0;
   }
-  bool one_color =
-      placed.material->base_color_texture.texture < 0 && placed.mesh->colors.empty();
+  bool one_color = placed.material->base_color_texture.texture < 0 && placed.mesh->colors.empty();
   face.plain = face.flat == 1 && one_color && face.normal != vec3(0);
   return face;
 }
@@ -277,8 +276,8 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
   const Material& material = *placed.material;
   vec3 mapped = shading;
   if (material.normal_texture.texture >= 0)
-    mapped = mapped_normal(scene, placed, at, shading, material.normal_texture,
-                           material.normal_scale);
+    mapped =
+        mapped_normal(scene, placed, at, shading, material.normal_texture, material.normal_scale);
   surface.normal = turned_to_viewer(mapped, surface.geometric_normal, surface.front);
   resolve_material(scene, placed, at, surface);
   if (material.anisotropy > 0) resolve_anisotropy(scene, placed, at, shading, surface);

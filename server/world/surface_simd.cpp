@@ -17,8 +17,8 @@ inline int next_lane(unsigned& bits) {
 
 }  // namespace
 
-LambertSurfaceLanes eval_lambert_surfaces(const World& world, const Lanes3& direction, const Hit* hits,
-                                    unsigned active) {
+LambertSurfaceLanes eval_lambert_surfaces(const World& world, const Lanes3& direction,
+                                          const Hit* hits, unsigned active) {
   static const Face nowhere{};
   LambertSurfaceLanes s;
   const Face* faces[lane_count];
@@ -73,8 +73,8 @@ Lanes3 offset_origins(const LambertSurfaceLanes& s, const Lanes3& direction) {
   const Lanes one = all_lanes(1), zero{};
   Lanes small = lanes_min(s.extent, one), unit = s.extent > zero ? small : one;
   Lanes near_zero = unit / 32, near_step = unit / 65536 * small;
-  Lanes3 n = choose(dot(s.geometric_normal, direction) < zero, -s.geometric_normal,
-                    s.geometric_normal);
+  Lanes3 n =
+      choose(dot(s.geometric_normal, direction) < zero, -s.geometric_normal, s.geometric_normal);
   auto move = [&](Lanes p, Lanes normal) {
     LaneMask steps = __builtin_convertvector(256 * normal, LaneMask);
     Lanes stepped = Lanes(LaneMask(p) + (p < zero ? -steps : steps));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What surface.h says of Lambertian surfaces, of eight hits side by side. Each lane's answer is its own:
-// what the other lanes hold does not matter.
+// What surface.h says of Lambertian surfaces, of eight hits side by side. Each lane's answer is its
+// own: what the other lanes hold does not matter.
 #pragma once
 #include "base/simd3.h"
 #include "world/surface.h"
@@ -20,8 +20,8 @@ struct LambertSurfaceLanes {
   }
 };
 // eval_lambert_surface of hits[i] for the bits of `active`, met by rays of those unit directions.
-LambertSurfaceLanes eval_lambert_surfaces(const World& world, const Lanes3& direction, const Hit* hits,
-                                    unsigned active);
+LambertSurfaceLanes eval_lambert_surfaces(const World& world, const Lanes3& direction,
+                                          const Hit* hits, unsigned active);
 Lanes3 offset_origins(const LambertSurfaceLanes& surface, const Lanes3& direction);
 
 }  // namespace wellspring

@@ -20,16 +20,12 @@ struct Taps {
 // size].
 inline float wrapped(float coordinate, int size, Wrap wrap) {
   switch (wrap) {
-    case Wrap::repeat:
-      coordinate -= std::floor(coordinate);
-      break;
+    case Wrap::repeat: coordinate -= std::floor(coordinate); break;
     case Wrap::mirror:
       coordinate -= 2 * std::floor(0.5f * coordinate);
       if (coordinate > 1) coordinate = 2 - coordinate;
       break;
-    case Wrap::clamp:
-      coordinate = glm::clamp(coordinate, 0.0f, 1.0f);
-      break;
+    case Wrap::clamp: coordinate = glm::clamp(coordinate, 0.0f, 1.0f); break;
   }
   return coordinate * float(size);
 }

@@ -24,7 +24,9 @@ View make_view_towards(const Scene& scene, dvec3 eye, dvec3 target, vec3 up, flo
 // Ray through picture position (x, y) in pixels; unit direction.
 Ray view_ray(const View& view, float x, float y);
 // Picture position and depth along the axis of a point; depth <= 0: behind.
-struct Projected { float x, y, depth; };
+struct Projected {
+  float x, y, depth;
+};
 inline Projected project_point(const View& view, vec3 p) {
   vec3 d = p - view.position;
   float depth = dot(d, view.forward);

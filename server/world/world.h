@@ -54,7 +54,7 @@ struct alignas(64) Face {
   float flat;  // 1: the mesh's normals there are `normal`
   vec3 edge2;
   float plain = 0;  // 1: flat, with an area, and the material's base colour is the same all over
-  vec3 normal;  // unit, towards the side the winding faces; 0: a triangle without area
+  vec3 normal;      // unit, towards the side the winding faces; 0: a triangle without area
 };
 
 // All there is to know about an instance of a World, in one place for the shading loop.
@@ -93,7 +93,7 @@ class World {
   const mat4& to_world(uint32_t instance) const;         // identity for moving ones
   const mat3& normal_to_world(uint32_t instance) const;  // as in PlacedMesh
   bool is_moving(uint32_t instance) const;
-  bool is_visible(uint32_t instance) const;  // false: moving, and hidden by show()
+  bool is_visible(uint32_t instance) const;           // false: moving, and hidden by show()
   const PlacedMesh& placed(uint32_t instance) const;  // all of the above at once
 
   // Replaces a moving mesh's vertices (same counts) and shows or hides it. Call commit()

@@ -287,8 +287,8 @@ World::World(const Scene& scene, std::vector<Mesh> moving, std::vector<uint32_t>
   };
   for (size_t i = 0; i < w.moving.size(); i++)
     w.placed.push_back({&w.moving[i], worn(w.moving[i].material),
-                        i < moving_object.size() ? moving_object[i] : 0, true, true, false,
-                        mat4(1), mat3(1)});
+                        i < moving_object.size() ? moving_object[i] : 0, true, true, false, mat4(1),
+                        mat3(1)});
   w.tags.reserve(scene.instances.size() + scene.meshes.size() + w.moving.size());
   w.build_still();
   w.build_moving();

@@ -56,10 +56,10 @@ struct World::Impl {
   std::vector<char> visible;
   std::vector<Bounds> moving_boxes;
   std::vector<int> moving_tangent_uv;  // texture coordinates of its tangents; -1: it has none
-  std::vector<float> built_area;  // of a moving mesh's box when its tree was last built anew
-  Bounds moving_bounds;           // of all that is visible
-  bool any_moving = false;        // that is visible
-  bool moved = false;             // since the last commit
+  std::vector<float> built_area;       // of a moving mesh's box when its tree was last built anew
+  Bounds moving_bounds;                // of all that is visible
+  bool any_moving = false;             // that is visible
+  bool moved = false;                  // since the last commit
 
   ~Impl() {
     for (RTCGeometry geometry : moving_geometry) rtcReleaseGeometry(geometry);
@@ -85,10 +85,8 @@ struct World::Impl {
     hit.t = t;
     hit.triangle = primitive;
     hit.barycentric = {u, v};
-    if (is_moving_hit)
-      hit.instance = uint32_t(scene->instances.size()) + geometry;
-    else
-      hit.instance = still_instance[instance != RTC_INVALID_GEOMETRY_ID ? instance : geometry];
+    if (is_moving_hit) hit.instance = uint32_t(scene->instances.size()) + geometry;
+    else hit.instance = still_instance[instance != RTC_INVALID_GEOMETRY_ID ? instance : geometry];
     return hit;
   }
   void intersect8(const Ray* rays, Hit* hits, int count) const;

@@ -54,9 +54,9 @@ bool cross_triangle(const Search& s, uint32_t instance, uint32_t triangle, Hit& 
 bool collect(RTCPointQueryFunctionArguments* a) {
   Search& s = *static_cast<Search*>(a->userPtr);
   uint32_t instance =
-      s.is_moving ? s.first_moving + a->geomID
-                  : s.still_instance[a->context->instStackSize > 0 ? a->context->instID[0]
-                                                                   : a->geomID];
+      s.is_moving
+          ? s.first_moving + a->geomID
+          : s.still_instance[a->context->instStackSize > 0 ? a->context->instID[0] : a->geomID];
   Hit hit;
   if (s.count < s.most && cross_triangle(s, instance, a->primID, hit)) s.hits[s.count++] = hit;
   return false;  // the radius stays
@@ -71,9 +71,17 @@ int World::find_near(vec3 place, vec3 way, float before, float after, Hit* hits,
   vec3 size = glm::abs(place);
   if (!(size.x <= farthest && size.y <= farthest && size.z <= farthest && radius <= farthest))
     return 0;
-  Search search{this,   glm::dvec3(place), glm::dvec3(way),         double(before), double(after),
-                double(radius), uint32_t(w.scene->instances.size()), 0,
-                w.still_instance.data(), hits, most};
+  Search search{this,
+                glm::dvec3(place),
+                glm::dvec3(way),
+                double(before),
+                double(after),
+                double(radius),
+                uint32_t(w.scene->instances.size()),
+                0,
+                w.still_instance.data(),
+                hits,
+                most};
   RTCPointQuery query;
   query.x = place.x, query.y = place.y, query.z = place.z;
   query.radius = radius;

@@ -53,8 +53,7 @@ uint32_t meeting(const Bounds& box, const RayPacket& p, uint32_t active) {
   cut(p.origin_y, p.direction_y, box.low.y, box.high.y);
   cut(p.origin_z, p.direction_z, box.low.z, box.high.z);
   uint32_t met = 0;
-  for (int i = 0; i < RayPacket::lanes; i++)
-    met |= uint32_t(near[i] <= far[i] * 1.00001f) << i;
+  for (int i = 0; i < RayPacket::lanes; i++) met |= uint32_t(near[i] <= far[i] * 1.00001f) << i;
   return active & met;
 }
 

@@ -171,7 +171,8 @@ Character make_avatar(const MadeAvatar& what, const std::string& normals) {
     AppearanceChange blush;
     blush.appearance = 1, blush.base_color = vec4(0.1f, -0.1f, -0.1f, 0);
     for (const char* name : {"happy", "viseme_aa", "viseme_E"})
-      blush.displacer = find_displacer(character, name), character.appearance_changes.push_back(blush);
+      blush.displacer = find_displacer(character, name),
+      character.appearance_changes.push_back(blush);
   }
   return character;
 }

@@ -38,7 +38,9 @@ struct Ticking {
   std::vector<double> animate, skinned, refit, whole;  // milliseconds of each tick
 
   Ticking(const Character& of, const Scene& place)
-      : character(of), scene(place), figure(make_figure(of, scene, moving, objects)),
+      : character(of),
+        scene(place),
+        figure(make_figure(of, scene, moving, objects)),
         world(scene, std::move(moving), std::move(objects)) {}
 
   // `clock`: seconds by the wall, or of this thread.

@@ -19,8 +19,7 @@ void bench_cache_display(BenchReport& report, const BenchOptions& options) {
       bool one_core = value.name == "cache.display.ms_one_core";
       if (!one_core && value.name != "cache.display.ms") continue;
       report.add(one_core ? "cache.display.size_ms_one_core" : "cache.display.size_ms", value.value,
-                 value.unit,
-                 {{"size", std::to_string(across) + "x" + std::to_string(down)}});
+                 value.unit, {{"size", std::to_string(across) + "x" + std::to_string(down)}});
     }
 }
 

@@ -40,7 +40,9 @@ void starve(BenchReport& report, const BenchOptions& options, const VisitMoment&
       method->show(moment, budget, shown);
     }
     report.add("cache.starve.flip", flip(shown.frame, truth.picture), "FLIP",
-               {{"scene", place.scene}, {"view", place.name}, {"method", name},
+               {{"scene", place.scene},
+                {"view", place.name},
+                {"method", name},
                 {"samples_a_pixel", double(budget) * pictures / pixels}});
     if (options.visit_pictures.empty()) continue;
     save_picture(options.visit_pictures + "/starve_" + place.name + "_" + name + "_" +

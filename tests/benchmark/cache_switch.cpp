@@ -149,8 +149,10 @@ void run(BenchReport& report, const BenchOptions& options, const Switch& scene, 
     for (int i = 0; i < before; i++) visitor.show(was, mismatch);
   if (news == News::told) {
     Told told = tell(was, is, visitor.cache);
-    nlohmann::json fields = {{"scene", scene.scene}, {"way", way_names[int(way)]},
-                             {"light", on ? "on" : "off"}, {"mismatch", mismatch}};
+    nlohmann::json fields = {{"scene", scene.scene},
+                             {"way", way_names[int(way)]},
+                             {"light", on ? "on" : "off"},
+                             {"mismatch", mismatch}};
     if (!is.lamps.empty()) {
       report.add("cache.switch.light_ms", told.light_ms, "ms", fields);
       report.add("cache.switch.visitor_ms", told.visitor_ms, "ms", fields);
@@ -170,8 +172,9 @@ void run(BenchReport& report, const BenchOptions& options, const Switch& scene, 
                 {"pictures", after}});
     if (options.visit_pictures.empty()) continue;
     std::string file = options.visit_pictures + "/switch_" + scene.scene + "_" +
-                       way_names[int(way)] + "_" + event_names[int(news)] + (on ? "_on_" : "_off_") +
-                       std::to_string(mismatch) + "_" + std::to_string(after);
+                       way_names[int(way)] + "_" + event_names[int(news)] +
+                       (on ? "_on_" : "_off_") + std::to_string(mismatch) + "_" +
+                       std::to_string(after);
     save_picture(file + ".png", visitor.frame, {});
     save_picture(file + "_right.png", map, {});
   }
@@ -252,8 +255,7 @@ void bench_cache_switch(BenchReport& report, const BenchOptions& options) {
     truths.max_depth = bench.max_depth;
     scene.off.scene = bench.scene, scene.on.scene = bench.scene;
     // Light that falls directly owes little to chance: what is wrong then is the cache's fault.
-    if (what == "box_points")
-      scene.technique = "path", scene.max_depth = truths.max_depth = 2;
+    if (what == "box_points") scene.technique = "path", scene.max_depth = truths.max_depth = 2;
     if (exhibit) make_exhibit_lamps(what, scene.off, scene.on);
     else make_lamps(what, scene.off.scene, scene.on.scene);
     for (Lit* lit : {&scene.off, &scene.on}) prepare(scene.technique, bench, truths, width, *lit);

@@ -16,7 +16,7 @@ struct VisitSettings {
   int width = 192, height = 108;
   std::vector<int> mismatches{4, 8, 16, 32, 64, 128};  // pixels over samples a frame
   int instants = 8;       // judged against a converged picture, evenly spread over each trace
-  int truth_spp = 128;   // samples a pixel of each of a converged picture's two halves
+  int truth_spp = 128;    // samples a pixel of each of a converged picture's two halves
   int jpeg_quality = 82;  // as a visitor's pictures while it moves, 4:2:0
   std::string technique = "gather";
   std::string exhibit, traces, truths;  // folders: package, traces, kept converged pictures

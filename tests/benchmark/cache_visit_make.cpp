@@ -140,13 +140,13 @@ VisitTrace make_tour(const Exhibit& castle, const World& world) {
   Voice narration;
   Viewpoint from = viewpoint(castle, "paintings");
   glide_to(ride, find_viewpoint(castle, "crown"), from);
-  return record("tour", "the guided tour from the paintings to the crown, and a rest there", 7.5,
-                from, [&](double time, Viewpoint& view) {
-                  float before = view.yaw;
-                  view = advance_tour(ride, narration, castle, roads, time == 0 ? 0 : 1.0f / rate)
-                             .view;
-                  view.yaw = before + std::remainder(view.yaw - before, 2 * pi);
-                });
+  return record(
+      "tour", "the guided tour from the paintings to the crown, and a rest there", 7.5, from,
+      [&](double time, Viewpoint& view) {
+        float before = view.yaw;
+        view = advance_tour(ride, narration, castle, roads, time == 0 ? 0 : 1.0f / rate).view;
+        view.yaw = before + std::remainder(view.yaw - before, 2 * pi);
+      });
 }
 
 // Between two viewpoints there is no way: the samples before and after lie less than a picture

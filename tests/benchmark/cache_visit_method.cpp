@@ -135,7 +135,8 @@ class Deferred : public VisitMethod {
       if (!passing) compositor_.add_samples(view, batch_.requests, batch_.samples);
     }
     if (passing) compositor_.draw(cache_, moment.view, visibility(moment), shown.frame);
-    else if (passed_ == 0) compositor_.draw_still(cache_, moment.view, visibility(moment), shown.frame);
+    else if (passed_ == 0)
+      compositor_.draw_still(cache_, moment.view, visibility(moment), shown.frame);
     if (learns && !reconstruct(moment, shown.frame) && passed_ > 0) cache_.end_frame();
     shown.stats = cache_.stats();
     shown.empty = shown.stats.empty;
@@ -157,11 +158,10 @@ class Deferred : public VisitMethod {
     passed_ = kept;
     compositor_.draw_still(cache_, moment.view, visibility(moment), frame);
     for (int place = 0; place < guide_places; place++)
-      add_still_guides(*moment.world, *moment.lights, visibility(moment), moment.view, RasterShows::all,
-                       place, work_.guides, work_.followed);
+      add_still_guides(*moment.world, *moment.lights, visibility(moment), moment.view,
+                       RasterShows::all, place, work_.guides, work_.followed);
     begin_reconstruction(compositor_.samples(), frame, *denoiser_, work_);
-    while (denoiser_->advance(1)) {
-    }
+    while (denoiser_->advance(1)) {}
     finish_reconstruction(compositor_.samples(), *denoiser_, work_, frame);
     return true;
   }
@@ -220,8 +220,7 @@ class ReconstructedInMotion : public VisitMethod {
       }
     GuidePlanes guides = make_guides(*moment.world, *moment.lights, view, 4);
     found_.resize(low_.color.size());
-    denoiser_->run({view.width, view.height, low_.color, guides.albedo, guides.normal},
-                   found_);
+    denoiser_->run({view.width, view.height, low_.color, guides.albedo, guides.normal}, found_);
     constexpr float dark = 1e-3f;
     for (size_t i = 0; i < found_.size(); i++)
       low_.color[i] = clamp((found_[i] + dark) / (low_.color[i] + dark), 0.25f, 4.0f);

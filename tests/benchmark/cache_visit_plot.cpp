@@ -14,9 +14,8 @@ namespace wellspring {
 namespace {
 
 // Told apart by colour-blind readers too (Okabe and Ito's palette), and by the marks.
-constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73",
-                                   "#cc79a7", "#e69f00", "#56b4e9",
-                                   "#222222"};
+constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                   "#e69f00", "#56b4e9", "#222222"};
 
 struct Curve {
   std::string name;

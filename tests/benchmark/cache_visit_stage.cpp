@@ -72,8 +72,8 @@ void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
   StorytellerEvents events;
   tick_storyteller(show.mind, show.storyteller, input, show.pose, events);
   advance_voice(show.voice, dt);
-  pose_figure(*show.world, show.figures[show.storyteller_index], storyteller_of(show)->character, show.pose,
-              show.storyteller.placement, show.scratch);
+  pose_figure(*show.world, show.figures[show.storyteller_index], storyteller_of(show)->character,
+              show.pose, show.storyteller.placement, show.scratch);
   show.world->commit();
 }
 

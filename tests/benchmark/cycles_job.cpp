@@ -128,7 +128,7 @@ void write_shared_copy(const fs::path& glb, bool metals, const fs::path& out) {
   json gltf = json::parse(bytes.substr(20, head[3]));
   for (json& material : gltf["materials"]) {
     json shared = {{"name", material.value("name", "")},
-                  {"doubleSided", material.value("doubleSided", false)}};
+                   {"doubleSided", material.value("doubleSided", false)}};
     for (const char* key : {"emissiveFactor", "emissiveTexture", "alphaMode", "alphaCutoff"})
       if (material.contains(key)) shared[key] = material[key];
     json& surface = shared["pbrMetallicRoughness"] = {{"metallicFactor", 0}};

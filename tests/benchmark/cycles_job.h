@@ -13,7 +13,7 @@ namespace wellspring {
 struct CyclesRender {
   int samples = 1;
   uint32_t seed = 1;
-  Frame frame;         // out
+  Frame frame;  // out
   // Out: sampling alone, by the clock and of all its threads together; scene, BVH and textures were
   // ready before.
   double seconds = 0, processor_seconds = 0;

@@ -70,8 +70,7 @@ void time_nets(BenchReport& report, const BenchOptions& options) {
         double began = seconds_now();
         denoiser->start(input.get());
         double encoded = seconds_now();
-        while (denoiser->advance(10)) {
-        }
+        while (denoiser->advance(10)) {}
         encoding.push_back(1000 * (encoded - began));
         running.push_back(1000 * (seconds_now() - encoded));
       }
@@ -112,8 +111,9 @@ void judge_nets(BenchReport& report, const BenchOptions& options) {
       report.add("denoise.flip", flip(frame, truth.picture), "FLIP",
                  {{"net", net}, {"spp", spp}, {"scene", "castle"}, {"width", width}});
       if (!options.visit_pictures.empty())
-        save_picture(options.visit_pictures + "/denoise_" + net + "_" + std::to_string(spp) +
-                     ".png", frame, {});
+        save_picture(
+            options.visit_pictures + "/denoise_" + net + "_" + std::to_string(spp) + ".png", frame,
+            {});
     };
     add("none", noisy);
     for (NetSize size : {NetSize::small, NetSize::base, NetSize::large}) {

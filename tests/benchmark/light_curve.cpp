@@ -24,8 +24,8 @@ CurvePoint measure(const Technique& technique, const World& world, const Lights&
     seconds.push_back(seconds_now() - began);
     cpu_seconds.push_back(double(std::clock() - cpu) / CLOCKS_PER_SEC);
   } while (seconds.size() < 3 && seconds[0] < 0.1);
-  return {settings.spp, quantile(seconds, 0.5), flip(frame, reference), rmse(frame, reference),
-          relative_mse(frame, reference), quantile(cpu_seconds, 0.5)};
+  return {settings.spp,           quantile(seconds, 0.5),         flip(frame, reference),
+          rmse(frame, reference), relative_mse(frame, reference), quantile(cpu_seconds, 0.5)};
 }
 
 }  // namespace

@@ -50,8 +50,8 @@ struct Workspace {
   }
 };
 
-PicturePair render_ours(const World& world, const Lights& lights, const View& view,
-                        int spp, uint64_t seed) {
+PicturePair render_ours(const World& world, const Lights& lights, const View& view, int spp,
+                        uint64_t seed) {
   oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
   StillSettings settings;
   settings.spp = spp;
@@ -74,19 +74,18 @@ struct Reached {
   int spp = 4;
   double seconds = 0, processor_seconds = 0;
 };
-Reached reach_noise(const World& world, const Lights& lights, const View& view,
-                    double target, int most) {
+Reached reach_noise(const World& world, const Lights& lights, const View& view, double target,
+                    int most) {
   Reached reached;
   PicturePair before;
   double before_error = 0;
   for (;; reached.spp *= 2) {
-    reached.pair =
-        render_ours(world, lights, view, reached.spp, uint64_t(reached.spp) * 2);
+    reached.pair = render_ours(world, lights, view, reached.spp, uint64_t(reached.spp) * 2);
     double error = noise(reached.pair);
     auto interpolate = [&](double last, double now) {
       if (!(error <= target && before_error > target)) return now;
-      return last * std::pow(now / last, std::log(before_error / target) /
-                                             std::log(before_error / error));
+      return last *
+             std::pow(now / last, std::log(before_error / target) / std::log(before_error / error));
     };
     reached.seconds = interpolate(before.seconds, reached.pair.seconds);
     reached.processor_seconds =
@@ -140,8 +139,8 @@ void bench_case(BenchReport& report, const BenchOptions& options, const Case& on
                            {"path_processor_seconds", ours.processor_seconds}};
   nlohmann::json of_scene = {{"scene", one.name}};
   report.add("light.path.cycles_time_ratio", ours.seconds / theirs.seconds, "1", fields);
-  report.add("light.path.cycles_processor_ratio",
-             ours.processor_seconds / theirs.processor_seconds, "1", of_scene);
+  report.add("light.path.cycles_processor_ratio", ours.processor_seconds / theirs.processor_seconds,
+             "1", of_scene);
   report.add("light.path.cycles_relative_mean", agreement.relative_mean, "1",
              {{"scene", one.name}, {"standard_error", agreement.relative_error}});
   report.add("light.path.cycles_block_z", agreement.block_z, "1", of_scene);

@@ -46,8 +46,8 @@ void bench_light_photons(BenchReport& report, const BenchOptions& options) {
   parallel_for(sets, [&](int set) {
     uint32_t first = 0;
     while (photons[size_t(set)].size() * sets < wanted) {
-      std::vector<Photon> more = shoot_caustic_photons(
-          transport, lights.tables->casters, 8, uint64_t(set), first, 1000, 1e-3f);
+      std::vector<Photon> more = shoot_caustic_photons(transport, lights.tables->casters, 8,
+                                                       uint64_t(set), first, 1000, 1e-3f);
       if (more.empty() && first > 100'000) break;  // nothing arrives
       photons[size_t(set)].insert(photons[size_t(set)].end(), more.begin(), more.end());
       first += 1000;

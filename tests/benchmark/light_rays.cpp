@@ -135,8 +135,8 @@ Yardstick load_yardstick(const std::filesystem::path& settings) {
   if (!lit || triangle_count(box.scene) == 0)
     throw std::runtime_error(settings.string() + ": not the Cornell box this benchmark knows");
   box.scene.lights.push_back(light);
-  box.view = make_view_towards(box.scene, eye, target, vec3(up), glm::radians(float(fov)), width,
-                               height);
+  box.view =
+      make_view_towards(box.scene, eye, target, vec3(up), glm::radians(float(fov)), width, height);
   return box;
 }
 
@@ -237,8 +237,8 @@ void bench_light_rays(BenchReport& report, const BenchOptions& options) {
     processor_ratios.push_back(other.processor_seconds_per_ray / own_processor);
   }
   double samples = double(width) * height * settings.spp;
-  nlohmann::json fields = {{"scene", "embree cornell_box"}, {"technique", "path"},
-                           {"rays_per_sample", rays / samples}};
+  nlohmann::json fields = {
+      {"scene", "embree cornell_box"}, {"technique", "path"}, {"rays_per_sample", rays / samples}};
   report.add("light.path.rays_per_second", quantile(ours, 0.5), "1/s", fields);
   report.add("light.embree_pathtracer.rays_per_second", quantile(theirs, 0.5), "1/s",
              {{"scene", "embree cornell_box"}});

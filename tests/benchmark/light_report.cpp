@@ -118,7 +118,7 @@ void bench_scene(BenchReport& report, const BenchOptions& options, const BenchSc
     if (technique.prepare) technique.prepare(world, std::span(&view.position, 1), own);
     double preparation = seconds_now() - began;
     std::vector<CurvePoint> curve = measure_curve(technique, world, own, view, transport,
-                                             reference.frame, budget.longest_picture);
+                                                  reference.frame, budget.longest_picture);
     add_curve(report, bench.name, technique, preparation, curve);
     Curve drawn{technique.name, {}};
     if (preparation > 0.05) {

@@ -256,12 +256,9 @@ std::string print_run(const json& report) {
 std::string escape_cell(std::string_view text) {
   std::string escaped;
   for (char c : text) {
-    if (c == '|')
-      escaped += "\\|";
-    else if (c == '<')
-      escaped += "&lt;";
-    else
-      escaped += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    if (c == '|') escaped += "\\|";
+    else if (c == '<') escaped += "&lt;";
+    else escaped += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   }
   return escaped;
 }

@@ -106,8 +106,7 @@ std::string draw_axis(const Axis& axis, bool vertical) {
                       : line(at, top, at, height - bottom, style);
       if (digit != 1 && (sparse || (digit != 2 && digit != 5))) continue;
       out += vertical ? text(left - 8, at + 4, tick_label(value), "text-anchor=\"end\"")
-                      : text(at, height - bottom + 18, tick_label(value),
-                             "text-anchor=\"middle\"");
+                      : text(at, height - bottom + 18, tick_label(value), "text-anchor=\"middle\"");
     }
   return out;
 }

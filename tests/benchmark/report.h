@@ -11,8 +11,8 @@ struct BenchOptions {
   bool quick = false;
   std::string content = "content", web = "web";
   std::string scenes = "tests/benchmark/scenes";
-  std::string plots;     // what the names of pictures of curves begin with
-  std::string programs;  // folder of the other programs
+  std::string plots;        // what the names of pictures of curves begin with
+  std::string programs;     // folder of the other programs
   std::string cycles_case;  // light.cycles: only this one
   // Of the simulated visits: one trace only, what answers samples, where to leave judged pictures.
   std::vector<std::string> visit_methods;  // cache: only these; empty: all

@@ -139,13 +139,15 @@ Walk walk(const ServerProcess& server, const std::vector<Pose>& poses) {
     }
     auto got = client.receive(message, std::clamp(due - seconds_now(), 0.0, 0.03));
     if (got == WsClient::Got::closed) throw std::runtime_error("the server closed the visit");
-    auto packet = got == WsClient::Got::message && message.binary ? read_packet(message.bytes)
-                                                                   : std::nullopt;
+    auto packet =
+        got == WsClient::Got::message && message.binary ? read_packet(message.bytes) : std::nullopt;
     if (!packet) continue;
     client.send_text(write_message(Ack{packet->header.frame, 1, true}));
     uint32_t seq = packet->header.seq;
     if (asked.size() < 2 || seq < 1 || seq > asked.size()) continue;
-    walk.pictures.push_back({seq, seconds_now() - began, asked[seq - 1] - began,
+    walk.pictures.push_back({seq,
+                             seconds_now() - began,
+                             asked[seq - 1] - began,
                              {packet->payload.begin(), packet->payload.end()}});
   }
   walk.seconds = seconds_now() - began;
@@ -308,8 +310,8 @@ void bench_show_load(BenchReport& report, const BenchOptions& options) {
     for (bool busy : {false, true}) {
       if (options.quick && (cores == 4 || (cores == 1) != busy)) continue;
       if (cores > all.size()) {
-        if (!busy) std::printf("show.load: left out with %zu cores: there are %zu\n", cores,
-                               all.size());
+        if (!busy)
+          std::printf("show.load: left out with %zu cores: there are %zu\n", cores, all.size());
         continue;
       }
       const Cores some(all.begin(), all.begin() + long(cores));
@@ -318,8 +320,7 @@ void bench_show_load(BenchReport& report, const BenchOptions& options) {
       runs.push_back({cores, busy, walk(*server.process, poses)});
       report_rates(report, runs.back().walk, runs.back().where());
     }
-  for (const Run& run : runs)
-    report_errors(report, options, run.walk, poses, judge, run.where());
+  for (const Run& run : runs) report_errors(report, options, run.walk, poses, judge, run.where());
 }
 
 }  // namespace wellspring

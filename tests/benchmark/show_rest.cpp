@@ -49,8 +49,7 @@ struct Museum {
   Exhibit exhibit;
   World world;
   Lights lights;
-  explicit Museum(const std::string& folder)
-      : exhibit(load_exhibit(folder)), world(exhibit.scene) {
+  explicit Museum(const std::string& folder) : exhibit(load_exhibit(folder)), world(exhibit.scene) {
     world.commit();
     lights = make_lights(world);
   }

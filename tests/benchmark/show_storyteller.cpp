@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// show.storyteller.flip: a visitor stands before the storyteller of the castle, who tells a story. FLIP
-// of her head, where she is seen, in pictures of what moves as the show lays them over a backdrop,
-// against `path` with many samples of the same moment. A simulated clock: samples are those that so
-// many a second allow, so that the machine's speed is stated and not in the result.
-// show.storyteller.ms, by `part`: what a picture of her costs one core, and what finding her light does,
-// which is done skin_rate times a second. show.storyteller.places, .bytes: of the light kept on figures.
+// show.storyteller.flip: a visitor stands before the storyteller of the castle, who tells a story.
+// FLIP of her head, where she is seen, in pictures of what moves as the show lays them over a
+// backdrop, against `path` with many samples of the same moment. A simulated clock: samples are
+// those that so many a second allow, so that the machine's speed is stated and not in the result.
+// show.storyteller.ms, by `part`: what a picture of her costs one core, and what finding her light
+// does, which is done skin_rate times a second. show.storyteller.places, .bytes: of the light kept
+// on figures.
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -27,11 +28,11 @@ namespace wellspring {
 namespace {
 
 constexpr int width = 1280, height = 720;
-constexpr double rate = 25;      // pictures a second of what moves
+constexpr double rate = 25;                          // pictures a second of what moves
 constexpr double skin_rate = 5, skin_share = 0.125;  // as the show finds its light
 constexpr int head_width = 240, head_height = 160;
-constexpr float moving_clamp = 4;                    // as ShowSettings
-constexpr float head = 0.29f;                        // metres from the crown down
+constexpr float moving_clamp = 4;  // as ShowSettings
+constexpr float head = 0.29f;      // metres from the crown down
 
 float crown_of(const World& world) {
   float top = -INFINITY;
@@ -119,8 +120,8 @@ struct Visit {
     smooth_skin(stage.world(), skin, time == 0 ? 6 : 2);
   }
   void draw() {
-    compositor.draw_moving(stage.world(), backdrop, visibility, Tonemap{stage.exhibit().exposure}, light,
-                           moving);
+    compositor.draw_moving(stage.world(), backdrop, visibility, Tonemap{stage.exhibit().exposure},
+                           light, moving);
   }
   void show(double time) {
     find_light(time);
@@ -164,8 +165,7 @@ void measure(BenchReport& report, const VisitStage& stage, const View& view) {
   SkinUpdate update;
   update.samples = 1000;
   update.eyes = std::span(&view.position, 1);
-  add("thousand samples",
-      [&] { update_skin(stage.world(), stage.lights(), update, visit.skin); });
+  add("thousand samples", [&] { update_skin(stage.world(), stage.lights(), update, visit.skin); });
 }
 
 }  // namespace
@@ -179,8 +179,8 @@ void bench_show_storyteller(BenchReport& report, const BenchOptions& options) {
   trace.samples = {{0, at.position, at.yaw, at.pitch, at.fov}};
   const View whole = stage.view(trace, 0, width, height);
   // At once, half a second after, and while she tells.
-  const std::vector<int> judged = options.quick ? std::vector{0, 12, 75}
-                                                : std::vector{0, 5, 12, 25, 50, 75, 100, 125};
+  const std::vector<int> judged =
+      options.quick ? std::vector{0, 12, 75} : std::vector{0, 5, 12, 25, 50, 75, 100, 125};
   TruthSettings truths;
   truths.spp = options.visit_spp > 0 ? options.visit_spp : options.quick ? 32 : 256;
   truths.content = hash_files(options.content + "/castle");

@@ -48,8 +48,7 @@ ServerProcess::ServerProcess(const BenchOptions& options, const std::string& exh
   }
   close(out[0]);
   size_t colon = text.rfind(':');
-  if (colon == std::string::npos)
-    throw std::runtime_error(program + ": did not print its address");
+  if (colon == std::string::npos) throw std::runtime_error(program + ": did not print its address");
   port = uint16_t(std::stoi(text.substr(colon + 1)));
 }
 

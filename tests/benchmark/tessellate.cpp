@@ -19,8 +19,8 @@ Mesh cut_mesh(const Mesh& mesh, int n) {
         vec3 w(float(n - row) / float(n), float(row - i) / float(n), float(i) / float(n));
         fine.positions.push_back(w.x * mesh.positions[t.x] + w.y * mesh.positions[t.y] +
                                  w.z * mesh.positions[t.z]);
-        fine.normals.push_back(normalize(w.x * mesh.normals[t.x] + w.y * mesh.normals[t.y] +
-                                         w.z * mesh.normals[t.z]));
+        fine.normals.push_back(
+            normalize(w.x * mesh.normals[t.x] + w.y * mesh.normals[t.y] + w.z * mesh.normals[t.z]));
       }
     auto corner = [&](int row, int i) { return first + uint32_t(row * (row + 1) / 2 + i); };
     for (int row = 0; row < n; row++)

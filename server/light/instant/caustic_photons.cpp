@@ -34,8 +34,7 @@ EmittedRay aim_at_casters(const Transport& transport, std::span<const CasterSphe
     if (!(pdf > 0) || !(cosine > 0)) return emitted;
     emitted.ray.direction = direction;
     emitted.ray.origin = offset_origin(place.surface, direction);
-    emitted.flux =
-        place.radiance * (cosine * tables.emitters[pick.index].area / (pdf * chance));
+    emitted.flux = place.radiance * (cosine * tables.emitters[pick.index].area / (pdf * chance));
     return emitted;
   }
   const PunctualLight* light =
@@ -46,8 +45,7 @@ EmittedRay aim_at_casters(const Transport& transport, std::span<const CasterSphe
     if (!(pdf > 0)) return emitted;
     emitted.ray.origin = light->position;
     emitted.ray.direction = direction;
-    emitted.flux =
-        eval_intensity(tables, pick.index - triangles, direction) / (pdf * chance);
+    emitted.flux = eval_intensity(tables, pick.index - triangles, direction) / (pdf * chance);
     emitted.range = light->range;
     return emitted;
   }
@@ -107,8 +105,8 @@ void for_each_counting(const PhotonGrid& grid, vec3 place, vec3 normal, int deep
                             grid.normal.z.at(at) * normal.z);
     Lanes side = grid.direction.x.at(at) * normal.x + grid.direction.y.at(at) * normal.y +
                  grid.direction.z.at(at) * normal.z;
-    LaneMask counts = within & (alike >= same_surface) & (side > grazing) &
-                      (grid.depth.at(at) <= float(deepest));
+    LaneMask counts =
+        within & (alike >= same_surface) & (side > grazing) & (grid.depth.at(at) <= float(deepest));
     if (negative_lanes(counts)) visit(at, counts);
   });
 }
@@ -147,12 +145,12 @@ Scattered sum_scattered(const PhotonGrid& grid, vec3 place, const Bsdf& bsdf, in
       return a;
     };
     Lanes3 direction = gather(grid.direction, normal), flux = gather(grid.flux, vec3(0));
-    Lanes spread =
-        1 / (direction.x * normal.x + direction.y * normal.y + direction.z * normal.z);
+    Lanes spread = 1 / (direction.x * normal.x + direction.y * normal.y + direction.z * normal.z);
     if (!lanes) lanes = make_bsdf_lanes(bsdf);
     BsdfLanesValue value = eval_bsdf_lanes(*lanes, direction);
     Lanes lambertian = value.diffuse * spread;
-    diffuse.x += lambertian * flux.x, diffuse.y += lambertian * flux.y, diffuse.z += lambertian * flux.z;
+    diffuse.x += lambertian * flux.x, diffuse.y += lambertian * flux.y,
+        diffuse.z += lambertian * flux.z;
     specular.x += value.specular.x * spread * flux.x;
     specular.y += value.specular.y * spread * flux.y;
     specular.z += value.specular.z * spread * flux.z;
@@ -173,8 +171,7 @@ Scattered sum_scattered(const PhotonGrid& grid, vec3 place, const Bsdf& bsdf, in
 
 std::vector<Photon> shoot_caustic_photons(const Transport& transport,
                                           std::span<const CasterSphere> casters, int max_depth,
-                                          uint64_t seed, uint32_t first, int count,
-                                          float share) {
+                                          uint64_t seed, uint32_t first, int count, float share) {
   std::vector<Photon> photons;
   if (casters.empty() || transport.tables.emission.caustics.cells.empty()) return photons;
   for (int i = 0; i < count; i++) {
@@ -188,9 +185,9 @@ std::vector<Photon> shoot_caustic_photons(const Transport& transport,
     bool sharp = false;
     while (walk.depth < max_depth && arrive(transport, walk, arrival) && arrival.lit) {
       if (sharp && has_rough(arrival.bsdf, sharp_alpha))
-        photons.push_back({arrival.surface.position, uint32_t(walk.depth),
-                           arrival.flux * share, -walk.ray.direction,
-                           arrival.surface.geometric_normal, hue_of(walk.wavelengths)});
+        photons.push_back({arrival.surface.position, uint32_t(walk.depth), arrival.flux * share,
+                           -walk.ray.direction, arrival.surface.geometric_normal,
+                           hue_of(walk.wavelengths)});
       if (!has_sharp(arrival.bsdf, sharp_alpha)) break;
       int before = walk.depth;
       std::optional<WavelengthSpread> spread;
@@ -245,9 +242,8 @@ void shade_by_photons(const PhotonGrid& grid, int max_depth, const LitPlace& pla
 float shrunk_radius(float first, uint32_t index) {
   constexpr double alpha = 2.0 / 3;
   double i = double(index);
-  return first *
-         float(std::exp(0.5 * (std::lgamma(i + 1 + alpha) - std::lgamma(1 + alpha) -
-                               std::lgamma(i + 2))));
+  return first * float(std::exp(0.5 * (std::lgamma(i + 1 + alpha) - std::lgamma(1 + alpha) -
+                                       std::lgamma(i + 2))));
 }
 
 }  // namespace wellspring

@@ -14,8 +14,7 @@ namespace wellspring {
 // light.
 std::vector<Photon> shoot_caustic_photons(const Transport& transport,
                                           std::span<const CasterSphere> casters, int max_depth,
-                                          uint64_t seed, uint32_t first, int count,
-                                          float share);
+                                          uint64_t seed, uint32_t first, int count, float share);
 
 // Adds the light of the photons around a place, scattered to the viewer. `cells`: of this grid, to
 // be kept from one place to the next.

@@ -246,8 +246,7 @@ bool is_continuous(const Sample& a, const Sample& b, const DiscontinuitySettings
   return apart <= settings.distance * pixel * std::min(a.distance, b.distance);
 }
 
-bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& settings,
-             float pixel) {
+bool is_edge(const Sample& a, const Sample& b, const DiscontinuitySettings& settings, float pixel) {
   if ((a.flags & sample_hit) != (b.flags & sample_hit)) return true;
   if (!(a.flags & sample_hit)) return false;
   if (max_component(glm::abs(a.albedo - b.albedo)) > color_step) return true;

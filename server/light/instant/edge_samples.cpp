@@ -137,8 +137,17 @@ void refine_edges(const World& world, const Lights& lights, const TransportSetti
                   uint64_t seed, uint32_t index, std::span<const uint8_t> edges,
                   std::span<Sample> samples) {
   if (rays < 1 || settings.max_depth < 1) return;
-  Refining refining{world, lights, settings, view,    continuity, rays,
-                    seed,  index,  edges,    samples, 2 * view.tan_half_fov / float(view.height)};
+  Refining refining{world,
+                    lights,
+                    settings,
+                    view,
+                    continuity,
+                    rays,
+                    seed,
+                    index,
+                    edges,
+                    samples,
+                    2 * view.tan_half_fov / float(view.height)};
   std::vector<std::vector<Refined>> rows(size_t(view.height));
   parallel_each(view.height, [&](int y) { refine_row(refining, y, rows[size_t(y)]); });
   parallel_for(view.height, [&](int y) {

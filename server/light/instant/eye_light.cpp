@@ -41,8 +41,8 @@ vec3 eval_rough(const EyeLight& eye, const Walk& walk, const Surface& surface, c
   for (int i = 0; i < asked; i++) {
     RegionLight chosen[most_lights];
     int set = (eye.set + i) % all;
-    int count = choose_place_lights(eye.pass, set, surface.position, bsdf, lights, sampler.next(),
-                                    chosen);
+    int count =
+        choose_place_lights(eye.pass, set, surface.position, bsdf, lights, sampler.next(), chosen);
     if (count > 0)
       shade_by_point_lights(eye.transport, eye.pass,
                             {set, 0, 1, 0, -1, 0, std::span(chosen, size_t(count))}, eye.max_depth,
@@ -138,8 +138,7 @@ void gather_rest(const EyeLight& eye, const LitPlace& place, Sampler& sampler, P
   const Bsdf& bsdf = *place.bsdf;
   bool sharp = has_sharp(bsdf, place.sharp);
   if (sharp && !has_diffuse(bsdf)) return;
-  BsdfSample scattered =
-      sample_bsdf(bsdf, sharp ? Lobes::diffuse : Lobes::all, sampler);
+  BsdfSample scattered = sample_bsdf(bsdf, sharp ? Lobes::diffuse : Lobes::all, sampler);
   if (!(scattered.pdf > 0)) return;
   BsdfValue value = eval_bsdf(bsdf, scattered.direction);
   Walk walk;
@@ -161,8 +160,7 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
     if (!hit.valid()) return radiance + walk.throughput * walk_met_sky(transport, walk);
     Met met;
     meet(transport, hit, sampler, walk, met);
-    radiance +=
-        walk.throughput * walk_met_emission(transport, walk, met.surface, *met.material);
+    radiance += walk.throughput * walk_met_emission(transport, walk, met.surface, *met.material);
     if (met.material->unlit) return radiance;
     bool last = walk.depth >= eye.max_depth;
     if (!last) {
@@ -179,9 +177,9 @@ vec3 follow_mirrors(const EyeLight& eye, Walk walk, Sampler& sampler) {
     } else {
       if (!has_sharp(met.bsdf, mirror_alpha)) return radiance;
       if (has_blurred(met.bsdf))
-        radiance += walk.throughput * sample_direct_light(transport, walk, met.surface, met.bsdf,
-                                                          true, sampler)
-                                          .specular;
+        radiance +=
+            walk.throughput *
+            sample_direct_light(transport, walk, met.surface, met.bsdf, true, sampler).specular;
       scattered = sample_bsdf(met.bsdf, Lobes::specular, sampler);
       if (met.spread)
         carry_wavelengths(*met.spread, met.bsdf, Lobes::specular, scattered, walk.wavelengths);

@@ -102,8 +102,8 @@ size_t GroupOrder::take(size_t begin, size_t most, uint32_t* items, PixelGroup& 
 }
 
 std::vector<uint32_t> trace_lambert_hits(const Transport& transport, const InstantPass& pass,
-                                      int max_depth, std::span<const Request> requests,
-                                      std::span<Sample> samples) {
+                                         int max_depth, std::span<const Request> requests,
+                                         std::span<Sample> samples) {
   LambertHits seen = see_lambert(transport, requests, samples);
   const std::vector<LambertHit>& eyes = seen.eyes;
   GroupOrder order;
@@ -123,8 +123,8 @@ std::vector<uint32_t> trace_lambert_hits(const Transport& transport, const Insta
     const LitGroup group = make_group(packet);
     LambertLight light{};
     int set = set_of_list(pass, name.list);
-    shade_lambert_by_point_lights(transport, pass, {set, 0, 1, 0, name.region, name.list}, max_depth,
-                               group, light);
+    shade_lambert_by_point_lights(transport, pass, {set, 0, 1, 0, name.region, name.list},
+                                  max_depth, group, light);
     if (clipped) gather_clipped({transport, pass, max_depth, set}, requests, packet, group, light);
     for (int i = 0; i < packet.count; i++) {
       Sample& sample = samples[packet.eye(i).request];

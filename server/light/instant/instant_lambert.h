@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shortest way through `instant_radiosity`: Lambertian places that the eye sees first, whose light is
-// one irradiance, side by side from the eye's ray to the last light.
+// The shortest way through `instant_radiosity`: Lambertian places that the eye sees first, whose
+// light is one irradiance, side by side from the eye's ray to the last light.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,11 +10,12 @@
 
 namespace wellspring {
 
-// Answers the requests that see something Lambertian, or nothing; returns the numbers of the others. Not
-// for passes with caustics, where more may be seen from a Lambertian place than point lights.
+// Answers the requests that see something Lambertian, or nothing; returns the numbers of the
+// others. Not for passes with caustics, where more may be seen from a Lambertian place than point
+// lights.
 std::vector<uint32_t> trace_lambert_hits(const Transport& transport, const InstantPass& pass,
-                                      int max_depth, std::span<const Request> requests,
-                                      std::span<Sample> samples);
+                                         int max_depth, std::span<const Request> requests,
+                                         std::span<Sample> samples);
 
 // Pixels of a pass that ask the same lights.
 struct PixelGroup {

@@ -12,7 +12,7 @@
 namespace wellspring {
 
 enum class PointLightKind : uint8_t {
-  lambertian,        // as seen by Lambert: area light, or light scattered by a Lambertian surface
+  lambertian,  // as seen by Lambert: area light, or light scattered by a Lambertian surface
   scattering,  // whatever the surface does: `arrival`
   distant,     // from infinity
   punctual,    // of the scene
@@ -21,10 +21,10 @@ enum class PointLightKind : uint8_t {
 struct PointLight {
   PointLightKind kind = PointLightKind::lambertian;
   bool double_sided = false;
-  bool exact = false;  // in every set alike: what it lights needs no filter
-  uint16_t depth = 0;  // edges from the source
-  uint32_t index = 0;  // of what its kind needs: arrival or punctual light
-  vec3 position{0};    // distant: unit direction to it
+  bool exact = false;    // in every set alike: what it lights needs no filter
+  uint16_t depth = 0;    // edges from the source
+  uint32_t index = 0;    // of what its kind needs: arrival or punctual light
+  vec3 position{0};      // distant: unit direction to it
   vec3 normal{0, 1, 0};  // geometric
   vec3 target{0};        // a shadow ray ends here, clear of the surface
   vec3 radiance{0};      // Lambertian: intensity at cosine 1; scattering: flux; else a factor
@@ -39,10 +39,10 @@ struct RegionLight {
 struct RegionLights {
   static constexpr int across = 4;  // pixels of one list in a row of a region: 16 are a packet
   static constexpr int finer =
-      2;  // lists interleave as sets do, in a pattern so many times as wide
-  int width = 0, height = 0;        // pixels of a region
-  int columns = 0;                  // 0: no regions, every pixel asks its whole set
-  std::vector<uint32_t> first;      // of region * lists + list, and the end
+      2;                        // lists interleave as sets do, in a pattern so many times as wide
+  int width = 0, height = 0;    // pixels of a region
+  int columns = 0;              // 0: no regions, every pixel asks its whole set
+  std::vector<uint32_t> first;  // of region * lists + list, and the end
   std::vector<RegionLight> lights;
 };
 

@@ -20,8 +20,7 @@ namespace {
 
 constexpr uint64_t place_stream = 0x706c616365ull, walk_stream = 0x77616c6bull,
                    photon_stream = 0x70686f746full, probe_stream = 0x70726f6265ull,
-                   choice_stream = 0x63686f696365ull,
-                   region_stream = 0x726567696f6eull;
+                   choice_stream = 0x63686f696365ull, region_stream = 0x726567696f6eull;
 
 struct DrawnSet {
   std::vector<PointLight> lights;
@@ -154,9 +153,9 @@ void draw_photons(const Transport& transport, const TransportSettings& settings,
     int begin = int(int64_t(photons) * piece / pieces),
         end = int(int64_t(photons) * (piece + 1) / pieces);
     uint32_t before = (index * uint32_t(pass.sets()) + uint32_t(set)) * uint32_t(photons);
-    shot[size_t(i)] = shoot_caustic_photons(transport, casters, settings.max_depth,
-                                            mix64(seed ^ photon_stream), before + uint32_t(begin),
-                                            end - begin, 1 / float(photons));
+    shot[size_t(i)] =
+        shoot_caustic_photons(transport, casters, settings.max_depth, mix64(seed ^ photon_stream),
+                              before + uint32_t(begin), end - begin, 1 / float(photons));
   });
   pass.photons.resize(size_t(pass.sets()));
   parallel_for(pass.sets(), [&](int set) {
@@ -235,11 +234,11 @@ void join_kept(const LightTables& tables, const InstantPass& pool, const DrawnSe
   parallel_for(int(kept.size()), [&](int k) {
     std::vector<KeptPointLight>& lights = kept[size_t(k)];
     auto depth = [&](const KeptPointLight& one) { return pool.lights[one.light].depth; };
-    std::stable_sort(lights.begin(), lights.end(), [&](const KeptPointLight& a, const KeptPointLight& b) {
-      return depth(a) < depth(b);
-    });
-    first_arrival[size_t(k) + 1] = uint32_t(
-        std::count_if(lights.begin(), lights.end(), [&](const KeptPointLight& one) {
+    std::stable_sort(
+        lights.begin(), lights.end(),
+        [&](const KeptPointLight& a, const KeptPointLight& b) { return depth(a) < depth(b); });
+    first_arrival[size_t(k) + 1] =
+        uint32_t(std::count_if(lights.begin(), lights.end(), [&](const KeptPointLight& one) {
           return pool.lights[one.light].kind == PointLightKind::scattering;
         }));
   });
@@ -268,8 +267,8 @@ void join_kept(const LightTables& tables, const InstantPass& pool, const DrawnSe
 }
 
 // `places` or `walks` from the number `before` of their sequences on, side by side.
-void draw_candidates(const Transport& transport, int deepest, int places, int walks,
-                     uint64_t seed, uint32_t index, InstantPass& pool) {
+void draw_candidates(const Transport& transport, int deepest, int places, int walks, uint64_t seed,
+                     uint32_t index, InstantPass& pool) {
   constexpr int at_once = 32;
   int place_parts = (places + at_once - 1) / at_once, walk_parts = (walks + at_once - 1) / at_once;
   std::vector<DrawnSet> parts(size_t(place_parts + walk_parts));

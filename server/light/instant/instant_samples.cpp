@@ -45,11 +45,10 @@ void follow_first(const EyeLight& light, Eye& eye) {
   if (!has_sharp(bsdf, mirror_alpha)) return;
   vec3 rest(0);
   if (has_blurred(bsdf))
-    rest += sample_direct_light(transport, first.walk, first.surface, bsdf, true, eye.sampler)
-                .specular;
+    rest +=
+        sample_direct_light(transport, first.walk, first.surface, bsdf, true, eye.sampler).specular;
   // A faint gloss over a diffuse layer is followed now and then, a strong one each time.
-  float chance =
-      has_diffuse(bsdf) ? glm::clamp(4 * (1 - bsdf.diffuse_share), 0.25f, 1.0f) : 1.0f;
+  float chance = has_diffuse(bsdf) ? glm::clamp(4 * (1 - bsdf.diffuse_share), 0.25f, 1.0f) : 1.0f;
   if (chance == 1 || eye.sampler.next() < chance) {
     Walk next = first.walk;
     BsdfSample scattered = sample_bsdf(bsdf, Lobes::specular, eye.sampler);
@@ -57,16 +56,15 @@ void follow_first(const EyeLight& light, Eye& eye) {
       carry_wavelengths(**eye.spread, bsdf, Lobes::specular, scattered, next.wavelengths);
     scattered.weight /= chance;
     next.area_share = scattered.pdf > 0 && transport.tables.area_share > 0 ? 1.0f : 0.0f;
-    if (advance(next, first.surface, scattered))
-      rest += follow_mirrors(light, next, eye.sampler);
+    if (advance(next, first.surface, scattered)) rest += follow_mirrors(light, next, eye.sampler);
   }
   eye.sample.rest += first.tint * rest;
 }
 
 void finish(const EyeLight& light, Eye& eye) {
   if (eye.first.scatters) {
-    LitPlace place{&eye.first.surface, &eye.first.bsdf, &eye.first.walk.media,
-                   eye.first.walk.depth, mirror_alpha};
+    LitPlace place{&eye.first.surface, &eye.first.bsdf, &eye.first.walk.media, eye.first.walk.depth,
+                   mirror_alpha};
     gather_rest(light, place, eye.sampler, eye.light);
     Sample& sample = eye.sample;
     const PlaceLight& got = eye.light;
@@ -92,8 +90,7 @@ void trace_others(const Transport& transport, const InstantPass& pass, int max_d
   GroupOrder order;
   for (size_t i = 0; i < numbers.size(); i++) {
     const Request& request = requests[numbers[i]];
-    Eye& eye =
-        eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, {}, {}, {}, {}});
+    Eye& eye = eyes.emplace_back(Eye{Sampler(request.seed, request.index), {}, {}, {}, {}, {}, {}});
     eye.group = group_of_pixel(pass, request.pixel);
     if (max_depth < 1) continue;
     eye.first = find_first_surface(transport, max_depth, request, eye.sampler, eye.sample);
@@ -116,8 +113,8 @@ void trace_others(const Transport& transport, const InstantPass& pass, int max_d
     begin += size_t(count);
     for (int i = 0; i < count; i++) {
       const Eye& eye = eyes[items[i]];
-      places[i] = {&eye.first.surface, &eye.first.bsdf, &eye.first.walk.media,
-                   eye.first.walk.depth, mirror_alpha};
+      places[i] = {&eye.first.surface, &eye.first.bsdf, &eye.first.walk.media, eye.first.walk.depth,
+                   mirror_alpha};
     }
     int set = set_of_list(pass, group.list);
     shade_by_point_lights(transport, pass, {set, 0, 1, 0, group.region, group.list}, max_depth,
@@ -138,9 +135,8 @@ void trace_others(const Transport& transport, const InstantPass& pass, int max_d
 
 }  // namespace
 
-void trace_many_instant(const World& world, const Lights& lights,
-                        const TransportSettings& settings, std::span<const Request> requests,
-                        std::span<Sample> samples) {
+void trace_many_instant(const World& world, const Lights& lights, const TransportSettings& settings,
+                        std::span<const Request> requests, std::span<Sample> samples) {
   static const InstantPass nothing = [] {
     InstantPass pass;
     pass.first = {0, 0};

@@ -12,8 +12,7 @@ namespace wellspring {
 
 Sample trace_instant(const World& world, const Lights& lights, const TransportSettings& settings,
                      const Request& request);
-void trace_many_instant(const World& world, const Lights& lights,
-                        const TransportSettings& settings, std::span<const Request> requests,
-                        std::span<Sample> samples);
+void trace_many_instant(const World& world, const Lights& lights, const TransportSettings& settings,
+                        std::span<const Request> requests, std::span<Sample> samples);
 
 }  // namespace wellspring

@@ -32,7 +32,7 @@ LightClusters make_light_clusters(const LightTables& tables, const InstantPass& 
 
 // Shares of clusters in what places get, nothing in between; all shares together are 1.
 struct ClusterShares {
-  std::vector<float> of_cluster;   // whole rows
+  std::vector<float> of_cluster;    // whole rows
   std::vector<uint32_t> detail_of;  // number in `details`; none: by power
   std::vector<Lanes> details;       // shares of the lights of a cluster
   static constexpr uint32_t none = 0xffffffffu;

@@ -25,9 +25,9 @@ struct GroupLane3 {
 };
 
 struct LitGroup {
-  uint32_t used = 0;     // lanes with a place
-  uint32_t lambertian = 0;     // that are Lambert's, and nothing else
-  uint32_t through = 0;  // that scatter light from behind, too
+  uint32_t used = 0;        // lanes with a place
+  uint32_t lambertian = 0;  // that are Lambert's, and nothing else
+  uint32_t through = 0;     // that scatter light from behind, too
   GroupLane3 position, normal, face;
   GroupLane3 origin;  // of a ray that leaves to the side of `face`
   GroupLane extent;   // SurfacePlace

@@ -15,7 +15,7 @@ namespace wellspring {
 
 struct Photon {
   vec3 position{0};
-  uint32_t depth = 1;    // edges from the source
+  uint32_t depth = 1;  // edges from the source
   vec3 flux{0};
   vec3 direction{0};     // to where it came from
   vec3 normal{0, 1, 0};  // geometric, of the surface it hit
@@ -43,8 +43,9 @@ struct PhotonGrid {
   PhotonColumn hue;  // empty: none has any
   size_t size() const { return first.empty() ? 0 : first.back(); }
   Photon photon(size_t i) const {
-    return {position.at(i), uint32_t(depth.values[i]), flux.at(i), direction.at(i), normal.at(i),
-            hue.values.empty() ? -1.0f : hue.values[i]};
+    return {position.at(i), uint32_t(depth.values[i]),
+            flux.at(i),     direction.at(i),
+            normal.at(i),   hue.values.empty() ? -1.0f : hue.values[i]};
   }
 };
 

@@ -67,17 +67,16 @@ void add_lane(const Transport& transport, const LitPlace& place, const PointLigh
                 std::max(seen.distance2[i], pass.clip * pass.clip);
   else radiance *= seen.strength[i];
   if (transport.tables.any_tint)
-    radiance *= eval_absorption(transport, medium_towards(*place.media, *place.surface, direction),
-                                std::isfinite(seen.rays.t_max[i])
-                                    ? distance
-                                    : std::numeric_limits<float>::infinity());
+    radiance *= eval_absorption(
+        transport, medium_towards(*place.media, *place.surface, direction),
+        std::isfinite(seen.rays.t_max[i]) ? distance : std::numeric_limits<float>::infinity());
   (light.exact ? sum.exact_diffuse : sum.diffuse) += value.diffuse * radiance;
   (light.exact ? sum.exact_specular : sum.specular) += value.specular * radiance;
 }
 
 // Of Lambertian lanes.
 void add_lambert_lanes(const PointLight& light, const InstantPass& pass, const SeenLight& seen,
-                    vec3 radiance, uint32_t clear, LambertLight& sum) {
+                       vec3 radiance, uint32_t clear, LambertLight& sum) {
   GroupLane3& to = light.exact ? sum.exact : sum.smooth;
   if (light.kind == PointLightKind::scattering) {
     for (; clear; clear &= clear - 1) {
@@ -121,8 +120,8 @@ void for_each_asked(const InstantPass& pass, const SetShare& choice, const Visit
 }  // namespace
 
 void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
-                           const SetShare& choice, int max_depth, const LitPlace* places,
-                           int count, PlaceLight* light) {
+                           const SetShare& choice, int max_depth, const LitPlace* places, int count,
+                           PlaceLight* light) {
   const LitGroup group = make_group(places, count);
   int deepest = 0;
   for (int i = 0; i < count; i++) deepest = std::max(deepest, max_depth - 1 - places[i].depth);
@@ -137,11 +136,11 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
     for (int i = 0; i < count; i++)
       if (places[i].depth + 1 + int(source.depth) > max_depth) seen.active &= ~(1u << i);
     if (seen.active == 0) return;
-    uint32_t blocked = choice.few.empty()
-                           ? transport.world.occluded_packet(seen.rays, seen.active)
-                           : transport.world.occluded_each(seen.rays, seen.active);
+    uint32_t blocked = choice.few.empty() ? transport.world.occluded_packet(seen.rays, seen.active)
+                                          : transport.world.occluded_each(seen.rays, seen.active);
     uint32_t clear = seen.active & ~blocked;
-    if (clear & group.lambertian) add_lambert_lanes(source, pass, seen, radiance, clear & group.lambertian, sum);
+    if (clear & group.lambertian)
+      add_lambert_lanes(source, pass, seen, radiance, clear & group.lambertian, sum);
     for (uint32_t slow = clear & ~group.lambertian; slow; slow &= slow - 1) {
       int i = std::countr_zero(slow);
       add_lane(transport, places[i], source, pass, seen, radiance, i, light[i]);
@@ -163,8 +162,8 @@ void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
 }
 
 void shade_lambert_by_point_lights(const Transport& transport, const InstantPass& pass,
-                                const SetShare& choice, int max_depth, const LitGroup& group,
-                                LambertLight& sum) {
+                                   const SetShare& choice, int max_depth, const LitGroup& group,
+                                   LambertLight& sum) {
   float clip2 = pass.clip * pass.clip;
   SeenLight seen;
   for_each_asked(pass, choice, [&](const PointLight& source, float factor) {

@@ -14,9 +14,9 @@ namespace wellspring {
 struct LitPlace {
   const Surface* surface = nullptr;
   const Bsdf* bsdf = nullptr;
-  const Media* media = nullptr;  // never null
-  int depth = 1;  // number of the eye's ray that ends here
-  float sharp = mirror_alpha;  // its lobes smoother than this are somebody else's
+  const Media* media = nullptr;              // never null
+  int depth = 1;                             // number of the eye's ray that ends here
+  float sharp = mirror_alpha;                // its lobes smoother than this are somebody else's
   const Wavelengths* wavelengths = nullptr;  // of the eye's walk; nullptr: none
   float hue() const { return wavelengths ? hue_of(*wavelengths) : -1; }
 };
@@ -40,8 +40,8 @@ struct SetShare {
 // Adds to light[i] that of places[i], i below `count`, at most 16. What one place gets does not
 // depend on the others.
 void shade_by_point_lights(const Transport& transport, const InstantPass& pass,
-                           const SetShare& choice, int max_depth, const LitPlace* places,
-                           int count, PlaceLight* light);
+                           const SetShare& choice, int max_depth, const LitPlace* places, int count,
+                           PlaceLight* light);
 
 // Irradiance by lights of the set alone, and by those that every set has alike.
 struct LambertLight {
@@ -49,7 +49,7 @@ struct LambertLight {
 };
 // The same of Lambertian places in air that the eye's first ray found: adds their irradiance.
 void shade_lambert_by_point_lights(const Transport& transport, const InstantPass& pass,
-                                const SetShare& choice, int max_depth, const LitGroup& group,
-                                LambertLight& sum);
+                                   const SetShare& choice, int max_depth, const LitGroup& group,
+                                   LambertLight& sum);
 
 }  // namespace wellspring

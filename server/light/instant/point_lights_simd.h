@@ -14,14 +14,14 @@ namespace wellspring {
 // dark lights of number none.
 struct LightLanes {
   static constexpr uint32_t none = 0xffffffffu;
-  std::vector<uint32_t> number;        // in the pass, of each lane
-  std::vector<Lanes> x, y, z;          // position, or direction to it
-  std::vector<Lanes> nx, ny, nz;       // normal
-  std::vector<Lanes> power;            // of the brightest colour
-  std::vector<Lanes> near, back;       // 1 or 0: falls with distance; emits light to both sides
-  std::vector<Lanes> even;             // 1: alike to all sides; 0: by Lambert
-  std::vector<uint8_t> plain;          // of a group: all are near, by Lambert, to one side
-  std::vector<uint32_t> first;         // group of each set, and the end
+  std::vector<uint32_t> number;   // in the pass, of each lane
+  std::vector<Lanes> x, y, z;     // position, or direction to it
+  std::vector<Lanes> nx, ny, nz;  // normal
+  std::vector<Lanes> power;       // of the brightest colour
+  std::vector<Lanes> near, back;  // 1 or 0: falls with distance; emits light to both sides
+  std::vector<Lanes> even;        // 1: alike to all sides; 0: by Lambert
+  std::vector<uint8_t> plain;     // of a group: all are near, by Lambert, to one side
+  std::vector<uint32_t> first;    // group of each set, and the end
 };
 
 LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass);
@@ -29,8 +29,8 @@ LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass);
 LightLanes make_light_lanes(const LightTables& tables, const InstantPass& pass,
                             std::span<const uint32_t> lights);
 
-// A place as the estimate knows it. What is glossy, place or light, may emit light where Lambert would
-// not: it is taken for partly even.
+// A place as the estimate knows it. What is glossy, place or light, may emit light where Lambert
+// would not: it is taken for partly even.
 struct LitPoint {
   vec3 position{0}, normal{0, 1, 0};
   bool both_sides = false;

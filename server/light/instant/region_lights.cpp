@@ -53,8 +53,7 @@ std::vector<uint32_t> turns_of_lists(const InstantPass& pass) {
 // Chooses about `wanted` lights. Systematic sampling: neighbours in the order of lights are much
 // alike, so that every so many-th of those chosen are from everywhere.
 void choose_lights(const LightClusters& clusters, const ClusterShares& shares, bool lit,
-                   double wanted, double worth, float choose_u,
-                   std::vector<RegionLight>& chosen) {
+                   double wanted, double worth, float choose_u, std::vector<RegionLight>& chosen) {
   chosen.clear();
   const float even = float(wanted * (lit ? blind : 1) / double(clusters.number));
   const float by_share = lit ? float(wanted * (1 - blind)) : 0;
@@ -71,8 +70,8 @@ void choose_lights(const LightClusters& clusters, const ClusterShares& shares, b
     float here = float(sum);
     for (int lane = 0; lane < held; lane++)
       for (here += often[lane]; here > 0; here--)
-        chosen.push_back({clusters.lights.number[c * lane_count + size_t(lane)],
-                          float(worth) / often[lane]});
+        chosen.push_back(
+            {clusters.lights.number[c * lane_count + size_t(lane)], float(worth) / often[lane]});
     sum = double(here);
   }
 }

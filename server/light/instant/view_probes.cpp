@@ -32,8 +32,7 @@ bool is_even(const std::vector<double>& effect) {
 bool look_behind_mirrors(const Transport& transport, FirstSurface& first, Sampler& sampler) {
   for (int i = 0; i < most_mirrors && first.scatters; i++) {
     if (has_rough(first.bsdf, mirror_alpha)) return true;
-    if (!advance(first.walk, first.surface,
-                 sample_bsdf(first.bsdf, Lobes::specular, sampler)))
+    if (!advance(first.walk, first.surface, sample_bsdf(first.bsdf, Lobes::specular, sampler)))
       return false;
     Hit hit = transport.world.intersect(first.walk.ray);
     if (!hit.valid()) return false;
@@ -96,9 +95,9 @@ float probe_free_path(const Transport& transport, const ViewProbes& probes) {
 }
 
 std::vector<ChosenLight> choose_lights(const Transport& transport, const ViewProbes& probes,
-                                       const InstantPass& candidates, uint32_t begin,
-                                       uint32_t end, int max_depth, int wanted, int sets,
-                                       float choose_u, float deal_u) {
+                                       const InstantPass& candidates, uint32_t begin, uint32_t end,
+                                       int max_depth, int wanted, int sets, float choose_u,
+                                       float deal_u) {
   std::vector<ChosenLight> chosen;
   if (end <= begin || wanted < 1 || sets < 1) return chosen;
   std::vector<double> effect(end - begin, 0.0);

@@ -35,8 +35,8 @@ struct ChosenLight {
   float factor = 1;  // on its radiance
 };
 std::vector<ChosenLight> choose_lights(const Transport& transport, const ViewProbes& probes,
-                                       const InstantPass& candidates, uint32_t begin,
-                                       uint32_t end, int max_depth, int wanted, int sets,
-                                       float choose_u, float deal_u);
+                                       const InstantPass& candidates, uint32_t begin, uint32_t end,
+                                       int max_depth, int wanted, int sets, float choose_u,
+                                       float deal_u);
 
 }  // namespace wellspring

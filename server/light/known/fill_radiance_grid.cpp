@@ -15,8 +15,8 @@ namespace wellspring {
 namespace {
 
 constexpr int batch_paths = 1 << 16;
-constexpr int most_vertices = 12;    // of a walk that are remembered
-constexpr float lamp_cells = 2;      // times as wide as cells of light are those of lamps seen
+constexpr int most_vertices = 12;        // of a walk that are remembered
+constexpr float lamp_cells = 2;          // times as wide as cells of light are those of lamps seen
 constexpr float clear_roughness = 0.3f;  // surfaces smoother than this mirror too clearly
 
 // What walks have learnt: of each vertex a key, 0 for none, the reflectance, and the light of each

@@ -15,7 +15,7 @@ struct RadianceGridSettings {
   int max_depth = 9;
   int kept_depth = 5;  // surfaces met later have too little of their walk left to know their light
   uint64_t seed = 1;
-  float cell = 0;      // metres; 0: a twenty-fourth of the median free view from the places
+  float cell = 0;  // metres; 0: a twenty-fourth of the median free view from the places
 };
 
 // Walks start at `places` (scene coordinates: where eyes are likely to be) in all directions; every

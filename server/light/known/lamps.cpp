@@ -11,8 +11,8 @@
 namespace wellspring {
 namespace {
 
-constexpr float noticed = 0.1f;       // change of light, of the brighter
-constexpr float darkest = 0.02f;      // reflectance by which light can be told
+constexpr float noticed = 0.1f;   // change of light, of the brighter
+constexpr float darkest = 0.02f;  // reflectance by which light can be told
 constexpr size_t most_cells = 1 << 20;
 constexpr int never = 1 << 28;
 

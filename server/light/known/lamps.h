@@ -16,9 +16,9 @@ namespace wellspring {
 Lights relit(const Lights& all, const World& world);
 
 // Where light changes by more than a tenth between two states of the lamps (one char each, 0: off),
-// and what becomes of it, as cached radiance knows it; of places that it does not know it is guessed by
-// the nearest. Without cached radiance: everywhere, and nobody knows how. Made in milliseconds, asked in
-// nanoseconds.
+// and what becomes of it, as cached radiance knows it; of places that it does not know it is
+// guessed by the nearest. Without cached radiance: everywhere, and nobody knows how. Made in
+// milliseconds, asked in nanoseconds.
 class LightChange {
  public:
   // `all`: as for relit().

@@ -13,18 +13,18 @@
 namespace wellspring {
 namespace {
 
-constexpr float window = 8;         // samples, before they count as older
-constexpr float most_older = 48;    // samples that are remembered of those
-constexpr float least_judged = 4;   // older samples that newer ones are compared with
-constexpr float surprise = 4;       // standard errors between them that say light has changed
-constexpr float kept_nearby = 0.5f; // samples, of older ones beside such a place
-constexpr float blocked_window = 16;  // samples
-constexpr uint32_t sure_samples = 4;  // that say that a place is hidden
-constexpr float hidden = 0.8f;      // of them blocked
+constexpr float window = 8;              // samples, before they count as older
+constexpr float most_older = 48;         // samples that are remembered of those
+constexpr float least_judged = 4;        // older samples that newer ones are compared with
+constexpr float surprise = 4;            // standard errors between them that say light has changed
+constexpr float kept_nearby = 0.5f;      // samples, of older ones beside such a place
+constexpr float blocked_window = 16;     // samples
+constexpr uint32_t sure_samples = 4;     // that say that a place is hidden
+constexpr float hidden = 0.8f;           // of them blocked
 constexpr uint32_t longest_period = 16;  // turns from sample to sample of a place
 constexpr uint32_t most_tries = 4, again = 48;  // at a direction; dimension of the others
-constexpr float most_over_known = 3;  // times what is known there and of all
-constexpr float gather_blunt = 0.14f;  // as technique `gather` has it
+constexpr float most_over_known = 3;            // times what is known there and of all
+constexpr float gather_blunt = 0.14f;           // as technique `gather` has it
 
 struct Asked {
   uint32_t place = 0, index = 0;

@@ -61,7 +61,7 @@ struct SkinMean {
 };
 struct SkinHistory {
   SkinMean newer, older;
-  float blocked = 0;  // share of the last samples
+  float blocked = 0;   // share of the last samples
   uint32_t asked = 0;  // samples so far, whatever became of them
 };
 
@@ -79,12 +79,12 @@ struct SkinLight {
   size_t pieces = 0;
   // What samples say.
   std::vector<SkinHistory> history;
-  std::vector<vec4> light;  // of each place; w: 0 where nothing is known
-  vec3 mean{0};         // of all that is known of what is visible
-  float noise = 0.5f;   // relative variance of a sample, measured
-  float samples = 0;    // of a place that is visible and known, on average
-  float reach = 0;      // metres: what is hit nearer than that blocks
-  float usual_area = 0;  // of places
+  std::vector<vec4> light;        // of each place; w: 0 where nothing is known
+  vec3 mean{0};                   // of all that is known of what is visible
+  float noise = 0.5f;             // relative variance of a sample, measured
+  float samples = 0;              // of a place that is visible and known, on average
+  float reach = 0;                // metres: what is hit nearer than that blocks
+  float usual_area = 0;           // of places
   uint32_t cursor = 0, turn = 0;  // whose turn it is
 };
 // About 250 bytes a place.
@@ -126,8 +126,7 @@ inline vec3 eval_skin(const SkinTriangle& light, vec2 barycentric) {
 // Of the World's moving instances, which are visible.
 std::vector<uint8_t> find_visible(const World& world, const SkinLight& skin);
 
-inline SkinTriangle find_skin(const SkinLight& skin, uint32_t instance, uvec3 vertices,
-                              bool back) {
+inline SkinTriangle find_skin(const SkinLight& skin, uint32_t instance, uvec3 vertices, bool back) {
   const std::vector<uint32_t>& place = back ? skin.back : skin.front;
   const uint32_t* of = &place[skin.first_vertex[instance - skin.first_instance]];
   vec3 a(skin.light[of[vertices.x]]), b(skin.light[of[vertices.y]]), c(skin.light[of[vertices.z]]);

@@ -14,7 +14,7 @@
 namespace wellspring {
 namespace {
 
-constexpr float same_normal = 0.8f;  // cosine from which vertices at one position share light
+constexpr float same_normal = 0.8f;    // cosine from which vertices at one position share light
 constexpr float one_position = 1e-5f;  // of the largest coordinate
 // The other side of a thin thing is lit otherwise: but where nothing can be known, as of the root
 // of a strand of hair, it is better than black.
@@ -39,8 +39,8 @@ vec3 unit_or_up(vec3 v) {
 struct Builder {
   const World& world;
   SkinLight& skin;
-  std::vector<vec3> position, normal;                // of places, at rest, towards their side
-  float near = 1;  // metres: positions no farther apart are one
+  std::vector<vec3> position, normal;              // of places, at rest, towards their side
+  float near = 1;                                  // metres: positions no farther apart are one
   std::unordered_multimap<uint64_t, uint32_t> at;  // places, by position
 
   bool is_same(uint32_t place, uint32_t instance, vec3 p, vec3 n) const {
@@ -277,9 +277,9 @@ SkinLight make_skin_light(const World& world) {
 }
 
 size_t memory_bytes(const SkinLight& skin) {
-  size_t bytes = bytes_of(skin.first_vertex, skin.front, skin.back, skin.places, skin.first_corner,
-                          skin.first_edge, skin.corners, skin.edges, skin.piece, skin.history,
-                          skin.light);
+  size_t bytes =
+      bytes_of(skin.first_vertex, skin.front, skin.back, skin.places, skin.first_corner,
+               skin.first_edge, skin.corners, skin.edges, skin.piece, skin.history, skin.light);
   for (const SkinLevel& level : skin.levels)
     bytes += bytes_of(level.parent, level.first_edge, level.edges);
   return bytes;

@@ -14,8 +14,8 @@ constexpr float open_below = 0.6f, shut_above = 0.85f, shut_weight = 1e-4f;  // 
 constexpr float least_noise = 0.02f, most_noise = 4;  // relative variance of a sample
 constexpr double prior_noise = 0.4, prior_samples = 1000;
 constexpr float kept_after_switch = 0.25f;  // samples that all light before a switch counts as
-constexpr float least_known = 0.5f;        // samples
-constexpr float damping = 0.8f;  // of Jacobi steps
+constexpr float least_known = 0.5f;         // samples
+constexpr float damping = 0.8f;             // of Jacobi steps
 constexpr int coarse_steps = 2, coarsest_steps = 8;
 constexpr int grain = 2048;  // places
 
@@ -148,7 +148,7 @@ void smooth_skin(const World& world, SkinLight& skin, int cycles) {
       if (active[i]) said[i] = told(skin.history[i]);
   });
   mark_known(said, active, skin);
-  Equations of{skin.first_edge,    skin.edges, skin.noise, std::move(active),
+  Equations of{skin.first_edge, skin.edges, skin.noise, std::move(active),
                std::move(said), skin.light, {}};
   of.before.resize(count);
   for (vec4& r : of.residual) r = vec4(vec3(r) * r.w, r.w);

@@ -60,12 +60,10 @@ AlbedoTable loss_table(const Value& kept) {
       row[a] = 1 - kept(tilted(std::max(t * t, 1e-6f)), root * root);
     }
     float slope = (at_end - row[last]) / (end - float(last) * step);
-    for (int a = last + 1; a < angles; a++)
-      row[a] = row[last] + slope * (float(a - last) * step);
+    for (int a = last + 1; a < angles; a++) row[a] = row[last] + slope * (float(a - last) * step);
   }
-  set_averages(table, [](const AlbedoRow& row, float root, float t) {
-    return eval_loss(row, root, t);
-  });
+  set_averages(table,
+               [](const AlbedoRow& row, float root, float t) { return eval_loss(row, root, t); });
   return table;
 }
 
@@ -77,8 +75,8 @@ std::unique_ptr<DielectricAlbedo> make_dielectric(float eta) {
     float root = root_of_row(float(r));
     for (int a = 0; a < angles; a++) {
       float t = float(a) / (angles - 1);
-      FacetAlbedo sum = sum_albedo(tilted(std::max(t * t, 1e-6f)), vec2(root * root), eta, false,
-                                   table_points);
+      FacetAlbedo sum =
+          sum_albedo(tilted(std::max(t * t, 1e-6f)), vec2(root * root), eta, false, table_points);
       made->fresnel.value[r][a] = sum.kept > 0 ? sum.reflected / sum.kept : 0;
     }
   }

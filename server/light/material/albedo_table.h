@@ -80,9 +80,9 @@ const DielectricAlbedo& dielectric_albedo(float ior, bool glass = true);
 
 // The same for one direction by summing over facets, for surfaces that no table knows.
 struct FacetAlbedo {
-  float kept = 1;      // by a mirror
-  float reflected = 1; // by a dielectric
-  float passed = 1;    // reflected or refracted by it: what glass keeps
+  float kept = 1;       // by a mirror
+  float reflected = 1;  // by a dielectric
+  float passed = 1;     // reflected or refracted by it: what glass keeps
 };
 FacetAlbedo sum_albedo(vec3 view, vec2 alpha, float eta, bool glass, int points);
 

@@ -62,8 +62,7 @@ Bsdf make_bsdf(const Surface& surface, const Material& material, vec3 direction,
     else b.eta = b.eta < 1 ? 0.998f : 1.002f;
   }
   if (b.metallic > 0) b.metal = base;
-  set_gloss(b, albedo, transmission, clean(surface.specular),
-            clean(surface.specular_color, 1e9f));
+  set_gloss(b, albedo, transmission, clean(surface.specular), clean(surface.specular_color, 1e9f));
   if (surface.clearcoat > 0 || max_component(surface.sheen_color) > 0) set_layers(b, surface, v);
 
   float diffuse = luminance(b.diffuse) * b.coat_passes * b.beneath;
@@ -196,8 +195,7 @@ vec3 pane_transmittance(const Surface& surface, const Material& material, vec3 d
   vec3 v = -direction;
   vec3 normal = usable_normal(surface.normal, surface.geometric_normal, v);
   b.metallic = clean(surface.metallic);
-  b.transmit =
-      clean(surface.base_color) * ((1 - b.metallic) * clean(surface.transmission));
+  b.transmit = clean(surface.base_color) * ((1 - b.metallic) * clean(surface.transmission));
   b.eta = refractive_index(material);
   set_facets(b, clean(surface.specular), clean(surface.specular_color, 1e9f));
   return facet_color(b, glm::clamp(dot(v, normal), 1e-4f, 1.0f)).transmit;

@@ -81,10 +81,12 @@ int largest_channel(vec3 c) { return c.x >= c.y && c.x >= c.z ? 0 : c.y >= c.z ?
 // inside what follows from reciprocity.
 void set_glass_again(Bsdf& b, const DielectricAlbedo& albedo, float loss, float transmission) {
   bool inside = !b.thin && b.eta < 1;  // or in what is denser than the solid
-  const AlbedoTable& here = b.thin ? mirror_loss() : inside ? albedo.glass->out_of
-                                                            : albedo.glass->into;
-  const AlbedoTable& beyond = b.thin ? mirror_loss() : inside ? albedo.glass->into
-                                                              : albedo.glass->out_of;
+  const AlbedoTable& here = b.thin   ? mirror_loss()
+                            : inside ? albedo.glass->out_of
+                                     : albedo.glass->into;
+  const AlbedoTable& beyond = b.thin   ? mirror_loss()
+                              : inside ? albedo.glass->into
+                                       : albedo.glass->out_of;
   b.glass_here = albedo_row(here, b.alpha);
   b.glass_beyond = albedo_row(beyond, b.alpha);
   float average_here = std::max(b.glass_here.average, least_loss);
@@ -165,8 +167,8 @@ void set_gloss(Bsdf& b, const DielectricAlbedo& albedo, float transmission, floa
   bool strong = max_component(dielectric_again) > faint;
   strong = strong && !inside;
   if (strong) b.coat_loss = dielectric_again[channel];
-  float coat_average = b.coat_loss * loss + b.coat_mirror * (1 - loss) +
-                       b.coat_fresnel * b.fresnel.average;
+  float coat_average =
+      b.coat_loss * loss + b.coat_mirror * (1 - loss) + b.coat_fresnel * b.fresnel.average;
   b.coat_scale = 1 / std::max(1 - coat_average, 1e-3f);
 
   bool clear = transmission > 0 && b.metallic < 1;
@@ -187,7 +189,7 @@ void set_gloss(Bsdf& b, const DielectricAlbedo& albedo, float transmission, floa
   b.again = again * (lost / (pi * std::max(loss, least_loss)));
   if (clear) {
     if (!brushed) {
-      const AlbedoTable& here = b.thin ? mirror_loss()
+      const AlbedoTable& here = b.thin      ? mirror_loss()
                                 : b.eta < 1 ? albedo.glass->out_of
                                             : albedo.glass->into;
       glass_lost = row_loss(albedo_row(here, b.alpha), b.root_alpha, b.view.z);
@@ -195,8 +197,8 @@ void set_gloss(Bsdf& b, const DielectricAlbedo& albedo, float transmission, floa
     set_glass_again(b, albedo, glass_lost, transmission);
   }
   // Chances by what each brings; any would do.
-  float here = max_component(again) * lost +
-               max_component(b.glass_again) * pi * b.glass_here.average;
+  float here =
+      max_component(again) * lost + max_component(b.glass_again) * pi * b.glass_here.average;
   float beyond = max_component(b.glass_again_beyond) * pi * b.glass_beyond.average *
                  (b.thin ? 1 : b.eta * b.eta);
   float once = b.metallic * max_component(b.metal) * (1 - lost) +
@@ -242,8 +244,7 @@ vec3 sample_gloss(const Bsdf& b, Sampler& sampler) {
   if (cosine <= 0) return vec3(0);
   vec3 reflected = 2 * cosine * h - b.view;
   if (u < facet_color(b, cosine).reflect_share) return reflected.z > 0 ? reflected : vec3(0);
-  if (b.thin)
-    return reflected.z > 0 ? vec3(reflected.x, reflected.y, -reflected.z) : vec3(0);
+  if (b.thin) return reflected.z > 0 ? vec3(reflected.x, reflected.y, -reflected.z) : vec3(0);
   vec3 l;
   if (!refract_at(b.view, h, b.eta, l) || l.z >= 0) return vec3(0);
   return normalize(l);

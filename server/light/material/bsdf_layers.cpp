@@ -59,8 +59,8 @@ float eval_white_sheen(vec3 v, vec3 l, float alpha) {
   vec3 h = normalize(v + l);
   float sine2 = std::max(h.x * h.x + h.y * h.y, 0.0f), power = 1 / alpha;
   float distribution = (2 + power) * std::pow(sine2, 0.5f * power) / (2 * pi);
-  float seen = 1 / (1 + sheen_lambda(std::min(v.z, 1.0f), alpha) +
-                    sheen_lambda(std::min(l.z, 1.0f), alpha));
+  float seen =
+      1 / (1 + sheen_lambda(std::min(v.z, 1.0f), alpha) + sheen_lambda(std::min(l.z, 1.0f), alpha));
   return distribution * seen / (4 * v.z);
 }
 

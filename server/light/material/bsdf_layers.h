@@ -4,8 +4,8 @@
 //   clearcoat   GGX, exact Fresnel of index 1.5 (KHR_materials_clearcoat)
 //   sheen       the distribution and masking of Estevez and Kulla 2017, "Production friendly
 //               microfacet sheen BRDF", sections 2 and 3; sampled by the root of the cosine,
-//               as it emits light near the horizon. Its model of smooth cloth gains light there: that is
-//               scaled to 1
+//               as it emits light near the horizon. Its model of smooth cloth gains light there:
+//               that is scaled to 1
 // Each dims what lies beneath by what it reflects in all towards the viewer, so that the sum loses
 // and gains nothing. That is not reciprocal: with viewer and light exchanged the base differs by
 // (1 - reflected(v)) / (1 - reflected(l)).

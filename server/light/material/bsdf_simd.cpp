@@ -90,8 +90,8 @@ BsdfLanesValue eval_bsdf_lanes(const BsdfLanes& b, const Lanes3& direction) {
   Lanes cosine = lit ? lanes_min(l.z, one) : one;
   // How much one meeting with a facet keeps back, of light along l.
   Lanes root = lanes_sqrt(cosine);
-  Lanes loss = lanes_max(eval_rows(b.loss, b.loss_weight, root / (root + b.root_alpha)),
-                         all_lanes(1e-7f));
+  Lanes loss =
+      lanes_max(eval_rows(b.loss, b.loss_weight, root / (root + b.root_alpha)), all_lanes(1e-7f));
   Lanes once = b.coat_mirror + b.coat_fresnel * eval_rows(b.fresnel, b.fresnel_weight, root);
   Lanes coat = lanes_min(b.coat_loss * loss + (1 - loss) * once, one);
   Lanes passes = b.coated > 0 ? b.coat_scale * (1 - coat) : one;

@@ -16,7 +16,7 @@ struct BsdfLanes {
   Lanes glossy;  // 1 or 0: there are facets
   Lanes coat_loss, coat_mirror, coat_fresnel, coat_scale, coated;
   Lanes loss_weight, fresnel_weight;
-  const float* loss[2][lane_count];     // rows of the albedo tables, the smoother and the rougher
+  const float* loss[2][lane_count];  // rows of the albedo tables, the smoother and the rougher
   const float* fresnel[2][lane_count];
 };
 

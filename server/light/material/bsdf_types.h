@@ -11,8 +11,8 @@ namespace wellspring {
 
 // Layers on top; the base gets what they leave.
 struct Clearcoat {
-  float strength = 0;  // 0: none, and the rest is not set
-  float alpha, share;  // probability that sampling the specular lobes takes it
+  float strength = 0;                     // 0: none, and the rest is not set
+  float alpha, share;                     // probability that sampling the specular lobes takes it
   vec3 tangent, bitangent, normal, view;  // its own frame, and the viewer in it
   float reflected;                        // at the viewer's angle
 };
@@ -41,13 +41,13 @@ struct Bsdf {
 
   // Shares of light by angle, all at this roughness.
   float root_alpha = 1;
-  AlbedoRow loss, fresnel;       // of facets; not set where smooth
+  AlbedoRow loss, fresnel;             // of facets; not set where smooth
   AlbedoRow glass_here, glass_beyond;  // what glass loses, from either side
   // What scatters more than once: each times the loss at the other direction and its cosine.
   vec3 again{0}, glass_again{0}, glass_again_beyond{0};
   float again_share = 0, again_here = 1;  // that sampling takes it, and then to this side
   float again_scale = 0;                  // of its density
-  bool has_coat = false;  // the dielectric keeps something from the diffuse layer
+  bool has_coat = false;                  // the dielectric keeps something from the diffuse layer
   // That is coat_loss * loss + coat_mirror * (1 - loss) + coat_fresnel * (1 - loss) *
   // fresnel.
   float coat_loss = 0, coat_mirror = 0, coat_fresnel = 0;
@@ -57,7 +57,7 @@ struct Bsdf {
 
   Clearcoat clearcoat;
   Sheen sheen;
-  float beneath = 1;  // what the layers leave to all of the above
+  float beneath = 1;                                // what the layers leave to all of the above
   const struct WavelengthSpread* spread = nullptr;  // colours parted here (wavelengths.h); borrowed
 };
 

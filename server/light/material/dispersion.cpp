@@ -31,8 +31,8 @@ vec3 sum_of(const BsdfValue& value, Lobes lobes) {
 
 float index_at(const Material& material, float wavelength) {
   float abbe = 20 / material.dispersion;
-  float bent = material.ior + (material.ior - 1) / abbe *
-                                  (523655 / (wavelength * wavelength) - 1.5168f);
+  float bent =
+      material.ior + (material.ior - 1) / abbe * (523655 / (wavelength * wavelength) - 1.5168f);
   return std::isfinite(bent) ? std::max(bent, 1.0f) : material.ior;
 }
 

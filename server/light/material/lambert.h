@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lambert's law alone, for surfaces that is_lambertian: what make_bsdf, eval_bsdf and sample_bsdf come to
-// there, without the lobes that are not.
+// Lambert's law alone, for surfaces that is_lambertian: what make_bsdf, eval_bsdf and sample_bsdf
+// come to there, without the lobes that are not.
 #pragma once
 #include "light/material/bsdf_frame.h"
 

@@ -26,8 +26,8 @@ inline LambertLobeLanes make_lambert(const LambertSurfaceLanes& surface, const L
   unsigned grazing = negative_lanes(dot(surface.normal, direction) >= 0);
   for (unsigned bits = grazing | surface.bent; bits; bits &= bits - 1) {
     int i = std::countr_zero(bits);
-    lobes.normal.set(i, usable_normal(surface.normal.at(i), surface.geometric_normal.at(i),
-                                      -direction.at(i)));
+    lobes.normal.set(
+        i, usable_normal(surface.normal.at(i), surface.geometric_normal.at(i), -direction.at(i)));
   }
   return lobes;
 }

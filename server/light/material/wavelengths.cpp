@@ -22,10 +22,10 @@ vec3 raw_response(float nm) {
             0.065f * lobe(nm, 501.1f, 20.4f, 26.2f);
   float y = 0.821f * lobe(nm, 568.8f, 46.9f, 40.5f) + 0.286f * lobe(nm, 530.9f, 16.3f, 31.1f);
   float z = 1.217f * lobe(nm, 437.0f, 11.8f, 36.0f) + 0.681f * lobe(nm, 459.0f, 26.0f, 13.8f);
-  return glm::max(vec3(3.2406f * x - 1.5372f * y - 0.4986f * z,
-                       -0.9689f * x + 1.8758f * y + 0.0415f * z,
-                       0.0557f * x - 0.2040f * y + 1.0570f * z),
-                  vec3(0));
+  return glm::max(
+      vec3(3.2406f * x - 1.5372f * y - 0.4986f * z, -0.9689f * x + 1.8758f * y + 0.0415f * z,
+           0.0557f * x - 0.2040f * y + 1.0570f * z),
+      vec3(0));
 }
 
 struct Spectrum {

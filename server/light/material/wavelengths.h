@@ -15,8 +15,8 @@ inline constexpr int wavelength_count = 4;
 
 // What a walk carries.
 struct Wavelengths {
-  int carried = 0;  // 0: none yet, and the rest is not set; 1: the hero alone
-  float place;      // of the hero in [0, 1); the others follow at equal steps
+  int carried = 0;                  // 0: none yet, and the rest is not set; 1: the hero alone
+  float place;                      // of the hero in [0, 1); the others follow at equal steps
   vec3 value[wavelength_count];     // of the way so far, for each
   float density[wavelength_count];  // with which each had led along it
 };

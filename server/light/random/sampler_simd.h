@@ -50,8 +50,7 @@ struct SamplerLanes {
     LaneBits shuffled = reverse_bits(permute_upwards(reversed_index, hashes.low()));
     x = unit_float(reverse_bits(permute_upwards(shuffled, hashes.high())));
     for (uint64_t& of_lane : hashes.of) of_lane = mix64(of_lane);
-    y = unit_float(
-        reverse_bits(permute_upwards(sobol_second_reversed(shuffled), hashes.low())));
+    y = unit_float(reverse_bits(permute_upwards(sobol_second_reversed(shuffled), hashes.low())));
   }
 
  private:

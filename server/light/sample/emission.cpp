@@ -78,8 +78,8 @@ void leave_environment(const Transport& transport, float chance, Sampler& sample
 }  // namespace
 
 EmissionChoice make_emission_choice(const LightTables& tables, std::span<const float> emitter_power,
-                                    std::span<const float> punctual_power,
-                                    float environment_power, const Bounds& bounds) {
+                                    std::span<const float> punctual_power, float environment_power,
+                                    const Bounds& bounds) {
   EmissionChoice choice;
   choice.exact_punctual = tables.punctual.size() <= most_exact_punctual;
   vec3 size = bounds.high - bounds.low;
@@ -129,8 +129,7 @@ EmitterPlace eval_emitter_place(const Transport& transport, uint32_t triangle, v
 EmitterPlace sample_emitter_place(const Transport& transport, uint32_t triangle, vec2 u) {
   int picture = transport.tables.emitters[triangle].picture;
   if (picture < 0) return eval_emitter_place(transport, triangle, sample_triangle(u));
-  PicturePlace chosen =
-      sample_emission_picture(transport.tables.pictures[size_t(picture)], u);
+  PicturePlace chosen = sample_emission_picture(transport.tables.pictures[size_t(picture)], u);
   EmitterPlace place = eval_emitter_place(transport, triangle, chosen.barycentric);
   place.radiance = chosen.density > 0 ? place.radiance / chosen.density : vec3(0);
   return place;
@@ -146,12 +145,10 @@ EmittedRay sample_emitted_ray(const Transport& transport, Sampler& sampler) {
   float chance = tables.emission.rays.cells[pick.index].probability;
   if (!(chance > 0)) return emitted;
   size_t triangles = tables.emitters.size(), punctual = tables.punctual.size();
-  if (pick.index < triangles)
-    leave_emitter(transport, pick.index, u, chance, sampler, emitted);
+  if (pick.index < triangles) leave_emitter(transport, pick.index, u, chance, sampler, emitted);
   else if (pick.index < triangles + punctual)
     leave_punctual(transport, pick.index - triangles, u, chance, emitted);
-  else
-    leave_environment(transport, chance, sampler, emitted);
+  else leave_environment(transport, chance, sampler, emitted);
   return emitted;
 }
 

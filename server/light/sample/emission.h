@@ -16,8 +16,8 @@ struct Transport;
 
 // `power` of each triangle and of each punctual light of `tables`.
 EmissionChoice make_emission_choice(const LightTables& tables, std::span<const float> emitter_power,
-                                    std::span<const float> punctual_power,
-                                    float environment_power, const Bounds& bounds);
+                                    std::span<const float> punctual_power, float environment_power,
+                                    const Bounds& bounds);
 
 // A place on an emitting triangle, and the radiance it shows on its bright side.
 struct EmitterPlace {
@@ -33,7 +33,7 @@ EmitterPlace sample_emitter_place(const Transport& transport, uint32_t triangle,
 // A ray of light. Sums over many, each divided by their number, are the light of the scene.
 struct EmittedRay {
   Ray ray;
-  vec3 flux{0};  // zero: nothing leaves this way
+  vec3 flux{0};                                          // zero: nothing leaves this way
   float range = std::numeric_limits<float>::infinity();  // KHR_lights_punctual: light ends here
 };
 EmittedRay sample_emitted_ray(const Transport& transport, Sampler& sampler);

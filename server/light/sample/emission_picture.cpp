@@ -76,8 +76,7 @@ PicturePlace sample_emission_picture(const EmissionPicture& picture, vec2 u) {
   vec2 inside = sample_triangle({pick.u, u.y});
   PicturePlace place;
   place.barycentric = place_in(picture.n, cell_of(picture.n, int(pick.index)), inside);
-  place.density =
-      picture.cells.cells[pick.index].probability * float(picture.n) * float(picture.n);
+  place.density = picture.cells.cells[pick.index].probability * float(picture.n) * float(picture.n);
   return place;
 }
 

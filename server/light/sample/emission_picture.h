@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where on a triangle its picture emits light: the triangle cut into n * n equal ones by its barycentric
-// weights, each with its chance by mean brightness. Made only where the picture varies enough over
-// the triangle to pay for the look-up.
+// Where on a triangle its picture emits light: the triangle cut into n * n equal ones by its
+// barycentric weights, each with its chance by mean brightness. Made only where the picture varies
+// enough over the triangle to pay for the look-up.
 #pragma once
 #include <functional>
 

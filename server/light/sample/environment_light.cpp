@@ -38,7 +38,7 @@ bool meets_sun(const EnvironmentLight& light, vec3 direction) {
 void add_sun(const SunDisc& sun, bool importance, EnvironmentLight& light) {
   float length2 = dot(sun.direction, sun.direction);
   bool emits = luminance(sun.radiance) > 0 && is_finite(sun.radiance) && length2 > 0 &&
-                std::isfinite(length2) && sun.angular_radius > 0;
+               std::isfinite(length2) && sun.angular_radius > 0;
   if (!emits) return;
   float half = std::sin(0.5f * std::min(sun.angular_radius, 0.5f * pi));
   light.sun_direction = sun.direction / std::sqrt(length2);
@@ -106,8 +106,7 @@ EnvironmentSample sample_environment(const EnvironmentLight& light, vec2 u) {
     vec2 rim = std::sqrt(below * (2 - below)) * unit_circle(u.y);
     vec3 tangent, bitangent;
     make_frame_axes(light.sun_direction, tangent, bitangent);
-    vec3 direction = tangent * rim.x + bitangent * rim.y +
-                     light.sun_direction * (1 - below);
+    vec3 direction = tangent * rim.x + bitangent * rim.y + light.sun_direction * (1 - below);
     return {direction, sample_environment_pdf(light, direction)};
   }
   u.x = std::min((u.x - light.sun_share) / (1 - light.sun_share), 0x1.fffffep-1f);

@@ -30,8 +30,8 @@ FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const
   return few;
 }
 
-void eval_effects(const FewLights& f, vec3 place, vec3 normal, bool through,
-                  const LobeHint& lobe, LightEffects& effects) {
+void eval_effects(const FewLights& f, vec3 place, vec3 normal, bool through, const LobeHint& lobe,
+                  LightEffects& effects) {
   // A share whatever the lobe says keeps a chance for what it does not know of.
   constexpr float unknown = 0.05f;
   const float diffuse = lobe.diffuse + unknown * (lobe.diffuse + lobe.specular);

@@ -23,7 +23,7 @@ struct FewLights {
   Lanes range2_inverse[groups];        // 0: it reaches everywhere
   Lanes strength[groups];              // luminance; 0 beyond the last light
   bool is_near[most];
-  int count = 0;                       // 0: there are none, or more than `most`
+  int count = 0;  // 0: there are none, or more than `most`
 };
 FewLights make_few_lights(std::span<const PunctualLight> lights, std::span<const SpotCone> cones);
 
@@ -33,8 +33,8 @@ struct LightEffects {
   alignas(Lanes) float effect[FewLights::most];
   float near_sum = 0, distant_sum = 0;
 };
-// What a surface does with light, as far as the choice among lights asks: a Lambertian part and a GGX
-// lobe of reflection. A highlight whose lamp is rarely chosen is a firefly.
+// What a surface does with light, as far as the choice among lights asks: a Lambertian part and a
+// GGX lobe of reflection. A highlight whose lamp is rarely chosen is a firefly.
 struct LobeHint {
   float diffuse = 1, specular = 0;  // reflectances; specular 0: the rest is not set
   vec3 view{0};                     // towards the viewer, unit

@@ -12,15 +12,15 @@
 namespace wellspring {
 namespace {
 
-constexpr int steps = 6;              // surfaces that a walk visits
+constexpr int steps = 6;  // surfaces that a walk visits
 constexpr uint32_t table_size = 1 << 17;
-constexpr int batch = 1 << 13;        // walks between two looks at what is known
+constexpr int batch = 1 << 13;         // walks between two looks at what is known
 constexpr uint16_t enough_tests = 64;  // of a lamp from a cell
 
 // What a walk found out at one of its places.
 struct Visit {
-  uint64_t key = 0;      // 0: nothing
-  uint32_t tested = 0;   // bits of lamps
+  uint64_t key = 0;     // 0: nothing
+  uint32_t tested = 0;  // bits of lamps
   std::array<float, FewLights::most> arrived{};
 };
 struct Tally {
@@ -56,8 +56,8 @@ void visit(const Transport& transport, const LampsSeen& seen, const std::vector<
   }
 }
 
-// A walk over the scene's surfaces, which scatter it as Lambertian ones do, whatever they are; glass lets
-// it pass.
+// A walk over the scene's surfaces, which scatter it as Lambertian ones do, whatever they are;
+// glass lets it pass.
 void walk_once(const Transport& transport, const LampsSeen& seen, const std::vector<Tally>& tallies,
                vec3 origin, Sampler& sampler, Visit* visits) {
   const World& world = transport.world;

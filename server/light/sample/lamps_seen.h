@@ -4,8 +4,8 @@
 // light that arrive, learned by shadow rays from random places before the first sample, weigh the
 // choice among the lamps (Vevoda, Kondapaneni, Krivanek 2018, "Bayesian online regression for
 // adaptive direct illumination sampling", learned beforehand, so that a sample remains a function
-// of its ray and seed). Every lamp keeps a chance wherever it might emit light, so nothing is biased,
-// whatever moves into the light later.
+// of its ray and seed). Every lamp keeps a chance wherever it might emit light, so nothing is
+// biased, whatever moves into the light later.
 #pragma once
 #include <array>
 #include <memory>
@@ -21,8 +21,8 @@ struct Transport;
 struct LampsSeen {
   using Shares =
       std::array<uint8_t, FewLights::most>;  // of 255, at least 1; by LightTables::punctual_index
-  float cell = 0.5f;           // metres
-  std::vector<uint64_t> keys;  // place_key, where find_place_slot() says; 0: free
+  float cell = 0.5f;                         // metres
+  std::vector<uint64_t> keys;                // place_key, where find_place_slot() says; 0: free
   std::vector<Shares> shares;
 };
 

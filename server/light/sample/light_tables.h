@@ -42,14 +42,14 @@ struct LightTables {
   std::vector<EmitterTriangle> emitters;  // whole instances, in order of their triangles
   std::vector<float> emitter_power;       // of each of them
   std::vector<EmissionPicture> pictures;
-  size_t picture_cells = 0;               // of all of them
-  LightTree emitter_choice;               // by power and place
-  std::vector<uint32_t> first_emitter;    // of each instance, or no_emitter
+  size_t picture_cells = 0;             // of all of them
+  LightTree emitter_choice;             // by power and place
+  std::vector<uint32_t> first_emitter;  // of each instance, or no_emitter
   EnvironmentLight environment;
-  std::vector<PunctualLight> punctual;  // those of any power
-  std::vector<SpotCone> cones;          // of each of them
+  std::vector<PunctualLight> punctual;   // those of any power
+  std::vector<SpotCone> cones;           // of each of them
   std::vector<uint32_t> punctual_index;  // of each of them, in that list where all lamps are on
-  FewLights few_punctual;               // all of them, where they are few
+  FewLights few_punctual;                // all of them, where they are few
   // Where there are many: the near ones (point, spot) by power and place, the distant ones by
   // power.
   LightTree near_choice, distant_choice;
@@ -59,11 +59,11 @@ struct LightTables {
   EmissionChoice emission;  // of techniques that follow light from its sources
   std::vector<CasterSphere> casters;  // of caustics, that stand still
   std::vector<MaterialTraits> materials;
-  bool any_lambertian = false;   // else no sample asks whether it may take the shortest way
-  bool any_pane = false;   // else shadow rays only ask whether anything is in between
-  PaneBoxes pane_boxes;  // and elsewhere than in these, too
-  bool any_solid = false;  // else walks do not ask what they run in
-  bool any_tint = false;   // else what they run in takes no light
+  bool any_lambertian = false;  // else no sample asks whether it may take the shortest way
+  bool any_pane = false;        // else shadow rays only ask whether anything is in between
+  PaneBoxes pane_boxes;         // and elsewhere than in these, too
+  bool any_solid = false;       // else walks do not ask what they run in
+  bool any_tint = false;        // else what they run in takes no light
   SolidBounds solids;
 };
 

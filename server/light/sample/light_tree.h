@@ -50,7 +50,7 @@ struct LightTree {
   // Where the choice is by strength alone: lights that are not dark, each `leaf_of` its place here.
   AliasTable strengths;
   std::vector<uint32_t> emitting;
-  double total = 0;               // strength of all
+  double total = 0;  // strength of all
   bool empty() const { return !(total > 0); }
 };
 

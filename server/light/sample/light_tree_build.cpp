@@ -62,8 +62,9 @@ float cost_of(const LightBounds& b) {
   float spread = angle_of(b.cos_spread);
   float most = std::min(spread + angle_of(b.cos_reach), pi);
   float angle = 2 * pi * (1 - std::cos(spread)) +
-                0.5f * pi * (2 * most * std::sin(spread) - std::cos(spread - 2 * most) -
-                             2 * spread * std::sin(spread) + std::cos(spread));
+                0.5f * pi *
+                    (2 * most * std::sin(spread) - std::cos(spread - 2 * most) -
+                     2 * spread * std::sin(spread) + std::cos(spread));
   vec3 d = b.high - b.low;
   float area = 2 * (d.x * d.y + d.y * d.z + d.z * d.x) + 1e-3f * dot(d, d);
   return b.strength * (b.two_sided ? 2 : 1) * std::max(angle, 1e-3f) * area;
@@ -198,7 +199,7 @@ LightTree make_light_tree(std::span<const LightBounds> lights, LightChoice choic
   for (uint32_t i = 0; i < lights.size(); i++) {
     const LightBounds& b = lights[i];
     bool emits = b.strength > 0 && std::isfinite(b.strength) && is_finite(b.low) &&
-                  is_finite(b.high) && is_finite(b.axis);
+                 is_finite(b.high) && is_finite(b.axis);
     strength.push_back(emits ? b.strength * (b.two_sided ? 2 : 1) : 0);
     if (!emits) continue;
     builder.order.push_back(i);

@@ -148,9 +148,8 @@ void choose_sources(const Scene& scene, const EmittingSources& emitting, LightTa
   float radius = 0.5f * length(tables.bounds.high - tables.bounds.low);
   if (!std::isfinite(radius)) radius = 1;
   const EnvironmentLight& sky = tables.environment;
-  double environment_power = sky.cells.cells.empty() ? 0
-                                                             : double(sky.mean_luminance) *
-                                                                   pi * pi * 4 * radius * radius;
+  double environment_power =
+      sky.cells.cells.empty() ? 0 : double(sky.mean_luminance) * pi * pi * 4 * radius * radius;
   double sun_power = double(luminance(sky.sun_radiance)) * double(sky.sun_chord2) * pi * pi *
                      double(radius) * double(radius);
   environment_power += sun_power;
@@ -177,9 +176,8 @@ void choose_sources(const Scene& scene, const EmittingSources& emitting, LightTa
     punctual_powers.push_back(p);
     punctual_power += double(p);
   }
-  float sky_power = luminance(sky.radiance) > 0
-                        ? sky.mean_luminance * 4 * pi * pi * radius * radius
-                        : 0.0f;
+  float sky_power =
+      luminance(sky.radiance) > 0 ? sky.mean_luminance * 4 * pi * pi * radius * radius : 0.0f;
   tables.emission = make_emission_choice(tables, tables.emitter_power, punctual_powers,
                                          sky_power + float(sun_power), tables.bounds);
   tables.area_share = share_of(emitter_power + environment_power, punctual_power);
@@ -206,11 +204,10 @@ Lights make_lights(const World& world, const TransportPlan& plan) {
   for (size_t i = 0; i < scene.materials.size(); i++) {
     const Material& m = scene.materials[i];
     const DielectricAlbedo* albedo =
-        plan.materials[i].visible
-            ? &dielectric_albedo(m.ior, m.transmission > 0 && m.thickness > 0)
-            : nullptr;
-    tables->materials.push_back({albedo, plan.materials[i].pane, is_lambertian(m),
-                                 plan.materials[i].metal});
+        plan.materials[i].visible ? &dielectric_albedo(m.ior, m.transmission > 0 && m.thickness > 0)
+                                  : nullptr;
+    tables->materials.push_back(
+        {albedo, plan.materials[i].pane, is_lambertian(m), plan.materials[i].metal});
     tables->any_lambertian |= plan.materials[i].visible && is_lambertian(m);
   }
   tables->casters = find_casters(world, plan, false);

@@ -9,11 +9,11 @@
 
 namespace wellspring {
 
-struct InstantPass;    // light/instant/instant_pass.h
-struct LightTables;    // light/sample/light_tables.h
-struct RadianceGrid;   // light/sample/radiance_grid.h
-struct EmittingSources;        // light/sample/emitting.h
-struct TransportPlan;  // light/transport_plan.h
+struct InstantPass;      // light/instant/instant_pass.h
+struct LightTables;      // light/sample/light_tables.h
+struct RadianceGrid;     // light/sample/radiance_grid.h
+struct EmittingSources;  // light/sample/emitting.h
+struct TransportPlan;    // light/transport_plan.h
 
 struct Lights {
   std::shared_ptr<const LightTables> tables;

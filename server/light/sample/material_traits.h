@@ -8,8 +8,8 @@ namespace wellspring {
 
 struct MaterialTraits {
   const DielectricAlbedo* albedo = nullptr;  // null: nothing in use is made of it
-  bool maybe_pane = false;  // some place of it may be a thin smooth pane
-  bool lambertian = false;        // is_lambertian
+  bool maybe_pane = false;                   // some place of it may be a thin smooth pane
+  bool lambertian = false;                   // is_lambertian
   MetalDemodulation metal = MetalDemodulation::none;
 };
 

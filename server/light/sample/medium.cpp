@@ -91,12 +91,10 @@ bool find_coincident(const World& world, const Surface& surface, bool pass_opaqu
 // A body that ends where another of its material begins is no boundary, nor is one met on its edge.
 // Of several solids entered at once the smaller is taken as the inner one.
 void cross(const World& world, Crossings& all, Media& media) {
-  Crossing* end = std::remove_if(all.list, all.list + all.count, [](const Crossing& c) {
-    return c.enters && c.leaves;
-  });
-  Crossing* enters = std::stable_partition(all.list, end, [](const Crossing& c) {
-    return c.leaves;
-  });
+  Crossing* end = std::remove_if(all.list, all.list + all.count,
+                                 [](const Crossing& c) { return c.enters && c.leaves; });
+  Crossing* enters =
+      std::stable_partition(all.list, end, [](const Crossing& c) { return c.leaves; });
   for (Crossing* c = all.list; c < enters; c++)
     if (count_of(media.here, c->material) == 0) enter_before_all(media.here, c->material);
   if (end - enters > 1)
@@ -109,8 +107,7 @@ void cross(const World& world, Crossings& all, Media& media) {
   for (Crossing* c = enters; c < end; c++) enter_solid(media.beyond, c->material);
 }
 
-Surface meet(const Transport& transport, const Ray& ray, bool pass_opaque, Hit& hit,
-             Media& media) {
+Surface meet(const Transport& transport, const Ray& ray, bool pass_opaque, Hit& hit, Media& media) {
   const World& world = transport.world;
   Surface surface = eval_surface(world, ray, hit);
   media.beyond = media.here;

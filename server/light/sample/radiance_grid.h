@@ -17,8 +17,8 @@ namespace wellspring {
 struct RadianceGrid {
   float cell = 0.25f;          // metres
   std::vector<uint64_t> keys;  // place_key, where find_place_slot() says; 0: free
-  std::vector<vec3> light;  // radiance scattered back, textures and all; of the lamps that are on
-  std::vector<float> count;    // samples behind it
+  std::vector<vec3> light;   // radiance scattered back, textures and all; of the lamps that are on
+  std::vector<float> count;  // samples behind it
   std::shared_ptr<const LampsSeen> lamps;  // may be null
   std::vector<uint8_t> keeps;  // of each material: opaque, dark of itself and too rough to mirror
   // Where lamps can be switched: the slots in use, the mean reflectance there, and the light of

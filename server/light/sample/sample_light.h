@@ -14,7 +14,7 @@ struct LightSample {
   vec3 radiance{0};  // punctual: intensity over squared distance, as if pdf were 1
   vec3 target{0};    // end of the shadow ray, already clear of the emitter
   float distance = std::numeric_limits<float>::infinity();
-  float pdf = 0;  // over solid angle; 0: nothing
+  float pdf = 0;    // over solid angle; 0: nothing
   float share = 1;  // of a punctual one: the chance with which it was drawn, of all that may matter
 };
 

@@ -41,8 +41,8 @@ LightSample eval_punctual(const PunctualLight& punctual, const SpotCone& spot,
 namespace {
 
 // The distant one's chance. Two draws, near lights and distant ones, and then one of the two: the
-// sun outshines every lamp wherever it would emit light, and indoors it rarely does, so it may not crowd
-// the lamps out.
+// sun outshines every lamp wherever it would emit light, and indoors it rarely does, so it may not
+// crowd the lamps out.
 float distant_chance(float near_sum, float distant_sum) {
   if (near_sum == 0) return 1;
   if (distant_sum == 0) return 0;
@@ -134,8 +134,7 @@ LightSample draw_of_many(const LightTables& tables, const SurfacePlace& from, ve
 LightSample sample_punctual_light(const Transport& transport, const SurfacePlace& from, vec3 normal,
                                   bool through, Sampler& sampler, const LobeHint& lobe) {
   const LightTables& tables = transport.tables;
-  if (tables.punctual.size() == 1)
-    return eval_punctual(tables.punctual[0], tables.cones[0], from);
+  if (tables.punctual.size() == 1) return eval_punctual(tables.punctual[0], tables.cones[0], from);
   if (tables.few_punctual.count > 0)
     return draw_of_few(transport, from, normal, through, lobe, sampler.next2());
   return draw_of_many(tables, from, normal, through, sampler.next2());

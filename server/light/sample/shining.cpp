@@ -6,9 +6,10 @@
 namespace wellspring {
 namespace {
 
-EmittingSources emitting(const Scene& scene, char others, const std::function<char(size_t lamp)>& is_on) {
+EmittingSources emitting(const Scene& scene, char others,
+                         const std::function<char(size_t lamp)>& is_on) {
   EmittingSources emitting{std::vector<char>(scene.materials.size(), others),
-                  std::vector<char>(scene.lights.size(), others), bool(others)};
+                           std::vector<char>(scene.lights.size(), others), bool(others)};
   for (size_t lamp = 0; lamp < scene.lamps.size(); lamp++) {
     for (int material : scene.lamps[lamp].materials)
       emitting.materials[size_t(material)] = is_on(lamp);

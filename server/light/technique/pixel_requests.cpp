@@ -15,8 +15,8 @@ Lanes3 view_directions(const View& view, Lanes x, Lanes y) {
   const float scale = 2 * view.tan_half_fov / float(view.height);
   Lanes along = (x - 0.5f * float(view.width)) * scale;
   Lanes upwards = (0.5f * float(view.height) - y) * scale;
-  Lanes3 way = all_lanes(view.forward) + all_lanes(view.right) * along +
-               all_lanes(view.up) * upwards;
+  Lanes3 way =
+      all_lanes(view.forward) + all_lanes(view.right) * along + all_lanes(view.up) * upwards;
   return way * (1 / lanes_sqrt(dot(way, way)));
 }
 

@@ -168,8 +168,8 @@ void render_passes(const Technique& technique, const World& world, Lights lights
 Sample replay_sample(const Technique& technique, const World& world, Lights lights,
                      const View& view, const StillSettings& settings, int x, int y, int index) {
   if (technique.begin_pass)
-    technique.begin_pass(world, settings.transport, view, pass_seed(settings.seed),
-                         uint32_t(index), lights);
+    technique.begin_pass(world, settings.transport, view, pass_seed(settings.seed), uint32_t(index),
+                         lights);
   return technique.trace(world, lights, settings.transport,
                          pixel_request(view, settings.seed, x, y, index));
 }

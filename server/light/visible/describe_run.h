@@ -14,8 +14,8 @@ struct RunPixels {
   float glow_red[RasterRun::most], glow_green[RasterRun::most], glow_blue[RasterRun::most];
 };
 
-// A run's pixels, a bit each: those that emit light by themselves, and of these the ones that do nothing
-// else.
+// A run's pixels, a bit each: those that emit light by themselves, and of these the ones that do
+// nothing else.
 struct RunGlow {
   uint64_t some = 0, only = 0;
 };

@@ -17,11 +17,11 @@ struct Facet {
   const PlacedMesh* placed = nullptr;
   const Material* material = nullptr;
   uvec3 corner{0};
-  vec3 normal[3];      // of the mesh at the corners, world, not unit, on the winding's side
-  vec3 face{0};        // geometric, unit, on the winding's side
+  vec3 normal[3];       // of the mesh at the corners, world, not unit, on the winding's side
+  vec3 face{0};         // geometric, unit, on the winding's side
   float root_area = 0;  // of the face, metres
   bool one_normal = false;
-  bool front = false;  // the eye is on the winding's side
+  bool front = false;        // the eye is on the winding's side
   FacetPicture base, shine;  // base colour; metallic and roughness
 };
 Facet make_facet(const World& world, uint32_t instance, uint32_t triangle, vec3 eye);

@@ -13,9 +13,9 @@
 namespace wellspring {
 namespace {
 
-constexpr int most_specular = 8;      // surfaces on the way: mirrors may face mirrors
-constexpr float least_tint = 0.02f;   // of what is followed further
-constexpr int grain = 256;            // rays
+constexpr int most_specular = 8;     // surfaces on the way: mirrors may face mirrors
+constexpr float least_tint = 0.02f;  // of what is followed further
+constexpr int grain = 256;           // rays
 
 bool is_polished(const Bsdf& bsdf) { return bsdf.alpha < sharp_alpha; }
 
@@ -79,8 +79,9 @@ Guide eval_guide(const Transport& transport, const Ray& ray) {
     Bsdf bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
     bool last = material.unlit || met == most_specular || !is_polished(bsdf);
     bool clear = max_component(bsdf.transmit) > 0 && !last;
-    albedo += tint * share(surface_emission(surface, material) +
-                           (material.unlit ? vec3(0) : last ? reflectance(bsdf) : bsdf.diffuse));
+    albedo += tint * share(surface_emission(surface, material) + (material.unlit ? vec3(0)
+                                                                  : last         ? reflectance(bsdf)
+                                                                                 : bsdf.diffuse));
     if (!clear && guide.normal == vec3(0) && (last || has_diffuse(bsdf)))
       guide.normal = bsdf.normal;
     if (last) break;
@@ -109,8 +110,7 @@ void eval_guides(const World& world, const Lights& lights, std::span<const Ray> 
   if (rays.size() != guides.size()) throw std::invalid_argument("eval_guides: one answer a ray");
   Transport transport{world, *lights.tables};
   parallel_ranges(int(rays.size()), grain, [&](int begin, int end) {
-    for (size_t i = size_t(begin); i < size_t(end); i++)
-      guides[i] = eval_guide(transport, rays[i]);
+    for (size_t i = size_t(begin); i < size_t(end); i++) guides[i] = eval_guide(transport, rays[i]);
   });
 }
 

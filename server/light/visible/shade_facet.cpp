@@ -47,8 +47,8 @@ float pixel_width(const Facet& f, float depth, vec3 direction, float pixel_angle
   return depth * length * pixel_angle / std::sqrt(std::max(cosine, 0.02f));
 }
 
-PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f, MetalDemodulation metal,
-               const Hit& hit, float pixel) {
+PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f,
+                     MetalDemodulation metal, const Hit& hit, float pixel) {
   const Mesh& mesh = *f.placed->mesh;
   const Material& m = *f.material;
   vec2 at = hit.barycentric;

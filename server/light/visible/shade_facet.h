@@ -29,7 +29,7 @@ inline bool emits(const Facet& f) {
 }
 
 // `metal`: its material's; `pixel`: its width on the surface, metres.
-PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f, MetalDemodulation metal,
-               const Hit& hit, float pixel);
+PrimaryHit see_facet(const Pictures& pictures, const World& world, const Facet& f,
+                     MetalDemodulation metal, const Hit& hit, float pixel);
 
 }  // namespace wellspring

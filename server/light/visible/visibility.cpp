@@ -23,10 +23,10 @@ struct VisibilityPass::Impl {
   Raster raster;
   Pictures pictures;
   std::vector<Reflectance> reflectance;  // of each material
-  std::vector<DemodulationScale> scale;          // of those scaled
+  std::vector<DemodulationScale> scale;  // of those scaled
   std::vector<uint8_t> panes;            // of each material: is one everywhere
   std::vector<uint8_t> polished;         // of each material: some place of it may be
-  std::vector<uint8_t> moving_object;  // by object
+  std::vector<uint8_t> moving_object;    // by object
   MetalDemodulation metal_of(int material) const {
     return lights.tables->materials[size_t(material)].metal;
   }
@@ -48,8 +48,8 @@ VisibilityPass::VisibilityPass(const World& world, const Lights& lights)
     const Material& m = scene.materials[i];
     DemodulationScale scale;
     impl_->polished.push_back(may_be_polished(m, ranges));
-    impl_->reflectance.push_back(
-        m.unlit ? Reflectance::base : find_reflectance(m, impl_->metal_of(int(i)), scale));
+    impl_->reflectance.push_back(m.unlit ? Reflectance::base
+                                         : find_reflectance(m, impl_->metal_of(int(i)), scale));
     impl_->scale.push_back(scale);
     impl_->panes.push_back(pane_kind(m));
   }
@@ -72,9 +72,9 @@ namespace {
 struct Stretch {
   int begin, end;
   const Material* material;
-  int index;                        // of the material in the scene
+  int index;                           // of the material in the scene
   float base_texels, emission_texels;  // a pixel's width
-  bool alone;                       // each pixel has to be looked up by itself
+  bool alone;                          // each pixel has to be looked up by itself
   bool goes_on_with(const Stretch& s) const {
     return end == s.begin && material == s.material && index == s.index && alone == s.alone &&
            pyramid_level(base_texels) == pyramid_level(s.base_texels) &&
@@ -137,8 +137,7 @@ struct VisibleRun::Impl {
 // As demodulated_albedo(), eight base colours at a time.
 static void keep_lanes(MetalDemodulation metal, Lanes metallic, Lanes (&rgb)[3]) {
   if (metal == MetalDemodulation::none) {
-    LaneMask diffuse =
-        lanes_max(lanes_max(rgb[0], rgb[1]), rgb[2]) * (1 - metallic) > least_albedo;
+    LaneMask diffuse = lanes_max(lanes_max(rgb[0], rgb[1]), rgb[2]) * (1 - metallic) > least_albedo;
     for (Lanes& channel : rgb) channel = diffuse ? channel * (1 - metallic) : all_lanes(0);
   } else {
     for (Lanes& channel : rgb) channel = lanes_max(channel, least_demodulated_metal * metallic);
@@ -147,7 +146,7 @@ static void keep_lanes(MetalDemodulation metal, Lanes metallic, Lanes (&rgb)[3])
 
 // Eight pixels from `i` on, those before `end`; false: they have to be looked up one by one.
 bool VisibleRun::Impl::read_lanes(const PicturePlaces& places, const TextureRef& reference,
-                                float texels, int i, int end, Lanes (&rgb)[3]) const {
+                                  float texels, int i, int end, Lanes (&rgb)[3]) const {
   constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
   const Texture& texture = visibility.pictures.scene->textures[size_t(reference.texture)];
   Lanes u = load_lanes(places.u + i), v = load_lanes(places.v + i);
@@ -155,8 +154,8 @@ bool VisibleRun::Impl::read_lanes(const PicturePlaces& places, const TextureRef&
   LaneMask here = lane < float(end - i);
   u = here ? u : all_lanes(places.u[end - 1]), v = here ? v : all_lanes(places.v[end - 1]);
   size_t image = size_t(texture.image);
-  return eval_pyramid(visibility.pictures.scene->images[image], visibility.pictures.pyramids[image], texture,
-                      u, v, texels, rgb);
+  return eval_pyramid(visibility.pictures.scene->images[image], visibility.pictures.pyramids[image],
+                      texture, u, v, texels, rgb);
 }
 
 void VisibleRun::Impl::describe_normals(const Facet& f, int begin, int end, RunSurface& to) const {
@@ -186,10 +185,11 @@ void VisibleRun::Impl::describe_normals(const Facet& f, int begin, int end, RunS
 bool VisibleRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) const {
   const Material& m = *f.material;
   int index = f.placed->mesh->material;
-  if (m.unlit || visibility.reflectance[size_t(index)] == Reflectance::traced || emits(f)) return false;
+  if (m.unlit || visibility.reflectance[size_t(index)] == Reflectance::traced || emits(f))
+    return false;
   bool base = reads_base(m, index), shine = reads_emission(m, index);
-  bool alone = !f.placed->mesh->colors.empty() || (base && !f.base.known) ||
-               (shine && !f.shine.known);
+  bool alone =
+      !f.placed->mesh->colors.empty() || (base && !f.base.known) || (shine && !f.shine.known);
   for (int i = begin; i < end; i += lane_count) {
     Stretch s{i, std::min(i + lane_count, end), &m, index, 0, 0, alone};
     if (!alone && (base || shine)) {
@@ -205,7 +205,8 @@ bool VisibleRun::Impl::place(const Facet& f, int begin, int end, Stretches& to) 
   return true;
 }
 
-void VisibleRun::Impl::describe(const Stretches& stretches, const Stretch& s, RunSurface& to) const {
+void VisibleRun::Impl::describe(const Stretches& stretches, const Stretch& s,
+                                RunSurface& to) const {
   const Material& m = *s.material;
   Reflectance way = visibility.reflectance[size_t(s.index)];
   bool blended = way == Reflectance::base;
@@ -329,8 +330,8 @@ PrimaryHit VisibleRun::Impl::see(int i) const {
       return seen;
     }
     float pixel = pixel_width(f, run->depth[i], direction(i), blurred_angle);
-    seen = see_facet(visibility.pictures, visibility.world, f, visibility.metal_of(f.placed->mesh->material), hit,
-                     pixel);
+    seen = see_facet(visibility.pictures, visibility.world, f,
+                     visibility.metal_of(f.placed->mesh->material), hit, pixel);
   }
   if (run->veil) {
     const Veil& veil = run->veil[i];
@@ -348,8 +349,8 @@ bool VisibilityPass::anything_moves() const {
 }
 
 void VisibilityPass::see(const View& view, vec2 offset,
-                       const std::function<void(const VisibleRun&)>& take, RasterShows shows,
-                       float blur) const {
+                         const std::function<void(const VisibleRun&)>& take, RasterShows shows,
+                         float blur) const {
   RasterSettings settings;
   settings.shows = shows;
   settings.offset = offset;
@@ -370,7 +371,7 @@ std::span<const std::vector<EdgeShare>> VisibilityPass::see_edges(
 
 // Row by row, 64 pixels at a time.
 void VisibilityPass::cast(const View& view, vec2 offset, uint64_t picture,
-                        const std::function<void(const VisibleRun&)>& take) const {
+                          const std::function<void(const VisibleRun&)>& take) const {
   constexpr int most = RasterRun::most;
   parallel_for(view.height, [&](int y) {
     for (int x = 0; x < view.width; x += most) {
@@ -397,7 +398,7 @@ void VisibilityPass::cast(const View& view, vec2 offset, uint64_t picture,
 
 // Whether edges may be asked for: it was rasterised.
 bool VisibilityPass::draw(const View& view, RasterSettings settings, float blur,
-                        const std::function<void(const VisibleRun&)>& take) const {
+                          const std::function<void(const VisibleRun&)>& take) const {
   static std::atomic<uint64_t> pictures = 0;
   const uint64_t picture = ++pictures;
   if (!rasterises(view)) {

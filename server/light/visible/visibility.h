@@ -38,8 +38,8 @@ class VisibleRun {
   // Arrays may be read, not trusted, up to RasterRun::most + 8.
   const float* depth = nullptr;      // along the viewing axis; infinity: nothing there
   const uint32_t* object = nullptr;  // 0: nothing there
-  // Of the pixels whose bit is set, and maybe of others. Returns those of the set bits that emit light,
-  // or of which see() knows more or only see() knows.
+  // Of the pixels whose bit is set, and maybe of others. Returns those of the set bits that emit
+  // light, or of which see() knows more or only see() knows.
   uint64_t describe(uint64_t wanted, RunSurface& to) const;
   // Pixels that may see what is polished: their guides are those of what it shows
   // (light/visible/guides.h).

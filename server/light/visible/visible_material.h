@@ -18,11 +18,13 @@ enum class Reflectance : uint8_t {
 struct DemodulationScale {
   float factor = 1, floor = 0;
 };
-inline Reflectance find_reflectance(const Material& m, MetalDemodulation metal, DemodulationScale& scale) {
+inline Reflectance find_reflectance(const Material& m, MetalDemodulation metal,
+                                    DemodulationScale& scale) {
   if (m.transmission > 0 || m.anisotropy > 0) return Reflectance::traced;
   if (m.metallic > 0 && m.metallic_roughness_texture.texture >= 0) return Reflectance::base;
   bool kept = metal != MetalDemodulation::none;
-  scale = {kept ? 1 : 1 - clean(m.metallic), kept ? least_demodulated_metal * clean(m.metallic) : 0};
+  scale = {kept ? 1 : 1 - clean(m.metallic),
+           kept ? least_demodulated_metal * clean(m.metallic) : 0};
   return Reflectance::scaled;
 }
 

@@ -34,8 +34,9 @@ void add_emission(vec3 tint, vec3 emission, Sample& sample) {
 
 vec3 keep(vec3 diffuse, vec3 metal, float metallic, MetalDemodulation kept) {
   vec3 albedo = max_component(diffuse) > least_albedo ? diffuse : vec3(0);
-  return kept == MetalDemodulation::none ? albedo
-                                 : max(albedo + metal, vec3(least_demodulated_metal * metallic));
+  return kept == MetalDemodulation::none
+             ? albedo
+             : max(albedo + metal, vec3(least_demodulated_metal * metallic));
 }
 
 }  // namespace
@@ -118,8 +119,7 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
         is_pane(surface, material) && !has_diffuse(bsdf) && bsdf.metallic == 0 && !material.unlit;
     if (clear && walk.panes < most_panes) {
       add_emission(first.tint, surface.emission, sample);
-      if (max_depth > 1)
-        add_reflection(first, reflections, surface, eval_mirror(bsdf), sampler);
+      if (max_depth > 1) add_reflection(first, reflections, surface, eval_mirror(bsdf), sampler);
       BsdfSample straight;
       straight.direction = walk.ray.direction;
       straight.weight = vec3(1);

@@ -13,7 +13,7 @@ struct FirstSurface {
   Walk walk;              // that met it
   Surface surface;
   Bsdf bsdf;
-  vec3 tint{1};  // by panes and by what the ray ran in
+  vec3 tint{1};                                       // by panes and by what the ray ran in
   MetalDemodulation metal = MetalDemodulation::none;  // its material's
   bool mirrored = false;
   Walk reflection;  // if mirrored: carries what the panes reflect, divided by the chance of the
@@ -36,9 +36,9 @@ void describe_sky(const Transport& transport, vec3 direction, vec3 tint, Sample&
 inline constexpr float least_albedo = 1e-4f;  // below it nothing is diffuse
 
 // What of a first surface's reflectance is kept apart as Sample::albedo: the diffuse layer's, and
-// of metals that of materials which are nothing else (MetalDemodulation). Where paint and bare metal are
-// one material, what metal reflects is none of their common light. So no threshold lies within what
-// a texture says, on whose sides neighbours would be lit differently.
+// of metals that of materials which are nothing else (MetalDemodulation). Where paint and bare
+// metal are one material, what metal reflects is none of their common light. So no threshold lies
+// within what a texture says, on whose sides neighbours would be lit differently.
 inline constexpr float least_demodulated_metal = 0.02f;  // of every channel, by how metallic it is
 inline constexpr float least_soft_roughness = 0.346f;
 struct DemodulatedReflectance {

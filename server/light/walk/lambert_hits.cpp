@@ -36,7 +36,7 @@ void describe_lanes(const Transport& transport, const RayPacket& rays, const Hit
 }  // namespace
 
 LambertHits see_lambert(const Transport& transport, std::span<const Request> requests,
-                  std::span<Sample> samples) {
+                        std::span<Sample> samples) {
   LambertHits seen;
   seen.eyes.reserve(requests.size());
   for (size_t first = 0; first < requests.size(); first += lane_count) {
@@ -46,8 +46,8 @@ LambertHits see_lambert(const Transport& transport, std::span<const Request> req
     uint32_t asked = 0, lambertian = 0;
     for (int i = 0; i < count; i++) {
       const Request& request = requests[first + size_t(i)];
-      bool in_solid = transport.tables.any_solid &&
-                      find_media(transport, request.ray.origin).count > 0;
+      bool in_solid =
+          transport.tables.any_solid && find_media(transport, request.ray.origin).count > 0;
       if (!transport.tables.any_lambertian || in_solid || request.ray.t_min != 0) continue;
       set_ray(request.ray, i, rays);
       asked |= 1u << i;

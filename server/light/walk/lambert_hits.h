@@ -25,6 +25,6 @@ struct LambertHits {
 };
 // Describes the samples of requests that see something Lambertian, or nothing.
 LambertHits see_lambert(const Transport& transport, std::span<const Request> requests,
-                  std::span<Sample> samples);
+                        std::span<Sample> samples);
 
 }  // namespace wellspring

@@ -58,8 +58,7 @@ bool arrive(const Transport& transport, LightWalk& walk, Arrival& arrival) {
   arrival.flux = walk.flux * range_window(walk.run, walk.range);
   arrival.lit = !material.unlit;
   if (arrival.lit)
-    arrival.bsdf =
-        make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
+    arrival.bsdf = make_bsdf_in(transport, walk.media, surface, material, walk.ray.direction);
   return true;
 }
 
@@ -80,8 +79,7 @@ bool scatter(LightWalk& walk, const Arrival& arrival, const BsdfSample& scattere
   walk.ray.origin = offset_origin(arrival.surface, scattered.direction);
   walk.ray.direction = scattered.direction;
   if (passes) return ++walk.panes <= most_panes;
-  if (scattered.bounce == Bounce::refract)
-    walk.media.here = walk.media.beyond;
+  if (scattered.bounce == Bounce::refract) walk.media.here = walk.media.beyond;
   walk.panes = 0;
   walk.run = 0;
   walk.range = std::numeric_limits<float>::infinity();
@@ -98,14 +96,13 @@ void part_arrival(const Transport& transport, const LightWalk& walk, Sampler& sa
   arrival.bsdf.spread = nullptr;  // which does not live as long
 }
 
-bool scatter(LightWalk& walk, const Arrival& arrival,
-             const std::optional<WavelengthSpread>& spread, Lobes lobes, Sampler& sampler) {
+bool scatter(LightWalk& walk, const Arrival& arrival, const std::optional<WavelengthSpread>& spread,
+             Lobes lobes, Sampler& sampler) {
   BsdfSample scattered = sample_bsdf(arrival.bsdf, lobes, sampler);
   // What is refracted is squeezed by each wavelength's own index: the hero goes on alone.
   if (spread && scattered.bounce == Bounce::refract)
     carry_hero(*spread, scattered, walk.wavelengths);
-  else if (spread)
-    carry_wavelengths(*spread, arrival.bsdf, lobes, scattered, walk.wavelengths);
+  else if (spread) carry_wavelengths(*spread, arrival.bsdf, lobes, scattered, walk.wavelengths);
   return scatter(walk, arrival, scattered, sampler);
 }
 

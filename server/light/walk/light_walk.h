@@ -27,7 +27,7 @@ struct LightWalk {
   Ray ray;
   vec3 flux{0};
   int depth = 1;  // this ray's number, counted from the source
-  Media media;  // that it runs in, found where it starts, and beyond the surface it met last
+  Media media;    // that it runs in, found where it starts, and beyond the surface it met last
   int panes = 0;
   float run = 0;  // since the source or the last scattering, panes looked through
   float range = std::numeric_limits<float>::infinity();  // of the source, for the first ray
@@ -36,7 +36,7 @@ struct LightWalk {
 
 struct Arrival {
   Surface surface;
-  Bsdf bsdf;  // its view is where the light comes from
+  Bsdf bsdf;         // its view is where the light comes from
   vec3 flux{0};      // that arrives
   bool lit = false;  // the surface scatters at all
 };
@@ -54,8 +54,8 @@ bool scatter(LightWalk& walk, const Arrival& arrival, const BsdfSample& scattere
 void part_arrival(const Transport& transport, const LightWalk& walk, Sampler& sampler,
                   Arrival& arrival, std::optional<WavelengthSpread>& spread);
 // Sends the walk on by a sample of some lobes; `spread`: part_arrival's.
-bool scatter(LightWalk& walk, const Arrival& arrival,
-             const std::optional<WavelengthSpread>& spread, Lobes lobes, Sampler& sampler);
+bool scatter(LightWalk& walk, const Arrival& arrival, const std::optional<WavelengthSpread>& spread,
+             Lobes lobes, Sampler& sampler);
 
 // Intensity that flux of 1 leaves towards a direction, by the rough lobes.
 vec3 eval_scattered(const Arrival& arrival, vec3 direction);

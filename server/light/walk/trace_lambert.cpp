@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eight samples side by side, each at its own depth, for as long as all that they meet is Lambertian:
-// what shade_first_lambert and scatter_lambert do one by one. Rays are traced one by one all the same,
-// because they have nothing in common. A sample that meets anything else goes on alone, and the
-// next one takes its lane. Nothing in a lane depends on the others.
+// Eight samples side by side, each at its own depth, for as long as all that they meet is
+// Lambertian: what shade_first_lambert and scatter_lambert do one by one. Rays are traced one by
+// one all the same, because they have nothing in common. A sample that meets anything else goes on
+// alone, and the next one takes its lane. Nothing in a lane depends on the others.
 #include <bit>
 #include <cmath>
 
@@ -17,7 +17,8 @@ namespace wellspring {
 namespace {
 
 struct LambertWalks {
-  uint32_t held = 0;  // lanes that hold a sample, which has arrived at hits[lane], a Lambertian surface
+  uint32_t held =
+      0;  // lanes that hold a sample, which has arrived at hits[lane], a Lambertian surface
   Hit hits[lane_count];
   size_t sample[lane_count];
   SamplerLanes samplers;
@@ -47,15 +48,15 @@ void for_each_lane(uint32_t lanes, const Body& body) {
   for (; lanes; lanes &= lanes - 1) body(std::countr_zero(lanes));
 }
 
-// Whether the sample that the eye's ray belongs to begins on something Lambertian; else it is answered.
+// Whether the sample that the eye's ray belongs to begins on something Lambertian; else it is
+// answered.
 bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
   const Transport& transport = batch.transport;
   const Request& request = batch.requests[walks.sample[lane]];
   Sample& sample = batch.samples[walks.sample[lane]];
   Hit& hit = walks.hits[lane];
   if (request.ray.t_min != 0) hit = transport.world.intersect(request.ray);  // not in packets
-  bool in_solid =
-      transport.tables.any_solid && find_media(transport, request.ray.origin).count > 0;
+  bool in_solid = transport.tables.any_solid && find_media(transport, request.ray.origin).count > 0;
   if (!hit.valid() || in_solid || !met_lambertian(transport, hit)) {
     sample = trace_sample(transport, batch.rules, request, hit);
     return false;
@@ -70,8 +71,8 @@ bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
   return true;
 }
 
-// Gives each of those lanes the next sample that the eye sees on something Lambertian; what lies before
-// it is answered on the way.
+// Gives each of those lanes the next sample that the eye sees on something Lambertian; what lies
+// before it is answered on the way.
 void fill_lanes(Batch& batch, uint32_t lanes, RayPacket& rays, LambertWalks& walks) {
   while (lanes && batch.next < batch.requests.size()) {
     uint32_t asking = 0;
@@ -158,8 +159,8 @@ DirectLanes light_by_lamp(const Transport& transport, const LambertSurfaceLanes&
 }
 
 DirectLanes light_by_choice(const Batch& batch, const LambertSurfaceLanes& surface,
-                            const LambertLobeLanes& lobes, const LambertWalks& walks, LaneBits dimensions,
-                            uint32_t lanes) {
+                            const LambertLobeLanes& lobes, const LambertWalks& walks,
+                            LaneBits dimensions, uint32_t lanes) {
   DirectLanes direct;
   const Walk in_air{};
   for_each_lane(lanes, [&](int i) {
@@ -198,9 +199,8 @@ uint32_t scatter_lanes(Batch& batch, LambertWalks& walks, RayPacket& rays) {
   });
   const LaneBits dimensions = dimensions_of(walks.depth);
   const bool one_lamp = tables.punctual.size() == 1 && tables.area_share <= 0;
-  DirectLanes direct =
-      one_lamp ? light_by_lamp(transport, surface, lobes, lanes, rays)
-               : light_by_choice(batch, surface, lobes, walks, dimensions, lanes);
+  DirectLanes direct = one_lamp ? light_by_lamp(transport, surface, lobes, lanes, rays)
+                                : light_by_choice(batch, surface, lobes, walks, dimensions, lanes);
   const LaneMask lit = lanes_of_bits(lanes);
   Lanes3 later = walks.throughput * lobes.reflectance * (direct.area + direct.punctual);
   walks.smooth = walks.smooth + choose(lit, choose(first, direct.area, later), Lanes3{});
@@ -288,9 +288,8 @@ void trace_samples(const Transport& transport, const WalkRules& rules,
   while (walks.held) {
     uint32_t going = scatter_lanes(batch, walks, rays), arrived = 0;
     transport.world.intersect_each(rays, going, walks.hits);
-    for_each_lane(going, [&](int i) {
-      arrived |= uint32_t(goes_on(batch, rays, i, sky, walks)) << i;
-    });
+    for_each_lane(going,
+                  [&](int i) { arrived |= uint32_t(goes_on(batch, rays, i, sky, walks)) << i; });
     const uint32_t ended = walks.held & ~arrived;
     for_each_lane(ended, [&](int i) { end_walk(batch, i, walks); });
     fill_lanes(batch, ended, rays, walks);

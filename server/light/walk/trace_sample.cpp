@@ -72,15 +72,14 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
 
 // The same where that surface is Lambertian: one lobe and no gloss.
 void shade_first_lambert(const Transport& transport, const WalkRules& rules, Walk& walk,
-                      const Hit& hit, Sampler& sampler, Sample& sample) {
+                         const Hit& hit, Sampler& sampler, Sample& sample) {
   LambertSurface surface = eval_lambert_surface(transport.world, walk.ray, hit);
   describe_place(transport.world, hit, surface, surface.normal, hit.t, sample);
   sample.flags |= sample_sure;
   if (rules.max_depth < 2) return;
   LambertLobe lobe = make_lambert(surface, walk.ray.direction);
   if (!(max_component(lobe.reflectance) > least_albedo)) return;
-  sample.albedo =
-      lobe.reflectance * eval_absorption(transport, walk.media.here.innermost(), hit.t);
+  sample.albedo = lobe.reflectance * eval_absorption(transport, walk.media.here.innermost(), hit.t);
   const uint32_t base = Dimensions::first_surface;
   sampler.seek(base);
   DirectLight direct = sample_direct_light(transport, walk, surface, lobe, true, sampler);
@@ -117,11 +116,9 @@ Sample trace_sample(const Transport& transport, const WalkRules& rules, const Re
     shade_first_lambert(transport, rules, walk, hit, sampler, sample);
     return sample;
   }
-  FirstSurface first =
-      find_first_surface(transport, rules.max_depth, walk, hit, sampler, sample);
+  FirstSurface first = find_first_surface(transport, rules.max_depth, walk, hit, sampler, sample);
   sample.flags |= sample_sure;  // until chance comes in
-  if (first.scatters)
-    shade_first(transport, rules, first, sampler, sample);
+  if (first.scatters) shade_first(transport, rules, first, sampler, sample);
   if (first.mirrored) {
     sample.flags &= uint8_t(~sample_sure);
     sampler.seek(3 * Dimensions::walk);

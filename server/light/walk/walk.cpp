@@ -31,9 +31,8 @@ vec3 walk_met_emission(const Transport& transport, const Walk& walk, const Surfa
                        const Material& material) {
   vec3 emission = surface_emission(surface, material);
   if (walk.pdf <= 0 || walk.area_share <= 0 || !(max_component(emission) > 0)) return emission;
-  float other = walk.area_share *
-                sample_emitter_pdf(transport.tables, walk.from, walk.from_normal,
-                                   walk.ray.direction, surface);
+  float other = walk.area_share * sample_emitter_pdf(transport.tables, walk.from, walk.from_normal,
+                                                     walk.ray.direction, surface);
   return emission * mis_weight(walk.pdf, other);
 }
 
@@ -130,7 +129,8 @@ DirectLight direct_light(const Transport& transport, const Walk& walk, const Sur
   auto arriving = [&](const LightSample& light, float chance) {
     return light.radiance * eval_visibility(transport, place, light) *
            eval_absorption(transport, medium_towards(walk.media, place, light.direction),
-                           light.distance) / chance;
+                           light.distance) /
+           chance;
   };
   if (area) {
     sampler.seek(base + 1);
@@ -195,7 +195,7 @@ void make_blunt(const WalkRules& rules, const Walk& walk, Surface& surface) {
 
 // One step of the walk at a Lambertian surface. False: it ends here.
 bool scatter_lambert(const Transport& transport, const WalkRules& rules, Walk& walk, const Hit& hit,
-                  uint32_t base, Sampler& sampler, vec3& radiance) {
+                     uint32_t base, Sampler& sampler, vec3& radiance) {
   bool last = walk.scattered >= rules.scatterings || walk.depth >= rules.max_depth;
   if (last) return false;
   LambertSurface surface = eval_lambert_surface(transport.world, walk.ray, hit);

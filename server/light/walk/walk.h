@@ -25,15 +25,15 @@ struct WalkRules {
 struct Walk {
   Ray ray;
   vec3 throughput{1};
-  int depth = 1;         // this ray's number, counted from the eye
-  float pdf = 0;         // density of its direction where it last scattered; 0: perfect, or the eye
+  int depth = 1;  // this ray's number, counted from the eye
+  float pdf = 0;  // density of its direction where it last scattered; 0: perfect, or the eye
   vec3 from_normal{0, 1, 0};  // the side from which light was sampled there
-  vec3 from{0};          // there
-  float area_share = 0;  // chance that area light was sampled there; 0: it was not
-  Media media;           // that it runs in, and beyond the surface it met last
-  float density = 1;     // in there radiance is denser by this (squared index), says the roulette
+  vec3 from{0};               // there
+  float area_share = 0;       // chance that area light was sampled there; 0: it was not
+  Media media;                // that it runs in, and beyond the surface it met last
+  float density = 1;  // in there radiance is denser by this (squared index), says the roulette
   int scattered = 0;
-  int panes = 0;  // passed in a row
+  int panes = 0;            // passed in a row
   Wavelengths wavelengths;  // once it has met something dispersive
 };
 

@@ -19,7 +19,7 @@ constexpr float guessed =
     8;  // samples that the picture's own relation of variance to light is worth
 constexpr float placed =
     0.1f;  // of the square of what neighbours differ by: of where in it a pixel is seen
-constexpr float unsure = 3;      // samples
+constexpr float unsure = 3;  // samples
 constexpr float least_variance = 1e-8f;
 constexpr float third = 1 / 3.0f;
 // Noise of what a square differs by from the next scale: 1 - 2 * 9/64 + (9/16)^2/4 + ..., with
@@ -63,8 +63,7 @@ LaneBits read_words(const T* from, int count) {
   else
     return LaneBits(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))));
 #else
-  else
-    return LaneBits{from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]};
+  else return LaneBits{from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]};
 #endif
 }
 void read_colors(const vec3* from, int count, Lanes (&color)[3]) {
@@ -270,8 +269,8 @@ struct Detail {
 };
 
 // Row `y` at twice the resolution, bilinear between the squares' centres. `line` is scratch.
-void enlarge(const std::vector<float>& from, int columns, int rows, int y,
-             std::vector<float>& line, std::vector<float>& to) {
+void enlarge(const std::vector<float>& from, int columns, int rows, int y, std::vector<float>& line,
+             std::vector<float>& to) {
   int near = y / 2, far = std::clamp(near + (y % 2 ? 1 : -1), 0, rows - 1);
   const float *a = from.data() + size_t(near) * size_t(columns),
               *b = from.data() + size_t(far) * size_t(columns);
@@ -314,8 +313,8 @@ void find_detail(const float* const* row, const ResidualLevel& next, int y, int 
 }
 
 // Of the middle one of three rows: what is to be added.
-void add_detail(const Detail& above, const Detail& row, const Detail& below, int width, float prior_variance,
-                std::vector<float>& column, float* const* to) {
+void add_detail(const Detail& above, const Detail& row, const Detail& below, int width,
+                float prior_variance, std::vector<float>& column, float* const* to) {
   column.resize(size_t(width) + 2);
   for (int x = 0; x < width; x++)
     column[size_t(x) + 1] =

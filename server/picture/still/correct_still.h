@@ -28,11 +28,11 @@ struct ResidualLevel {
 
 // Scratch, overwritten by every call.
 struct StillCorrection {
-  int columns = 0, rows = 0;                // blocks of 4x4 pixels
+  int columns = 0, rows = 0;                       // blocks of 4x4 pixels
   std::vector<float> block_spread, block_samples;  // of one sample's variance: sums, and of what
-  std::vector<float> spread, samples;       // the same over 3x3 blocks
-  std::vector<vec3> color;                  // corrected
-  std::array<ResidualLevel, 5> levels;      // squares of 2 to 32 pixels a side
+  std::vector<float> spread, samples;              // the same over 3x3 blocks
+  std::vector<vec3> color;                         // corrected
+  std::array<ResidualLevel, 5> levels;             // squares of 2 to 32 pixels a side
 };
 size_t memory_bytes(const StillCorrection& work);
 

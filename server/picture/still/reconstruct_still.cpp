@@ -55,8 +55,8 @@ void find_shares(const StillSamples& samples, StillReconstruction& work) {
   parallel_ranges(rows, 1, [&](int begin, int end) {
     for (int y = begin * square; y < std::min(end * square, work.height); y++)
       for (int x = 0; x < work.width; x++) {
-        Difference one = difference_of(samples, work.color,
-                                       size_t(y) * size_t(work.width) + size_t(x));
+        Difference one =
+            difference_of(samples, work.color, size_t(y) * size_t(work.width) + size_t(x));
         sums[size_t(y / square) * size_t(columns) + size_t(x / square)].add(one);
       }
   });
@@ -87,8 +87,7 @@ float share_at(const std::vector<float>& shares, int columns, int rows, int x, i
 }  // namespace
 
 size_t memory_bytes(const StillReconstruction& work) {
-  return bytes_of(work.guides.albedo, work.guides.normal, work.followed, work.color,
-                  work.shares);
+  return bytes_of(work.guides.albedo, work.guides.normal, work.followed, work.color, work.shares);
 }
 
 double mean_count(const StillSamples& samples) {

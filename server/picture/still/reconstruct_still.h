@@ -19,11 +19,11 @@
 namespace wellspring {
 
 struct StillReconstruction {
-  int width = 0, height = 0;  // of the picture
-  GuidePlanes guides;  // of its pixels
+  int width = 0, height = 0;      // of the picture
+  GuidePlanes guides;             // of its pixels
   std::vector<uint8_t> followed;  // picture/still/still_guides.h
-  std::vector<vec3> color;    // of its pixels: the input, then what was found
-  std::vector<float> shares;  // of the mean, for squares of pixels
+  std::vector<vec3> color;        // of its pixels: the input, then what was found
+  std::vector<float> shares;      // of the mean, for squares of pixels
 };
 size_t memory_bytes(const StillReconstruction& work);
 

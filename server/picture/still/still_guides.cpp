@@ -57,8 +57,7 @@ void GuidePass::take(const VisibleRun& run) const {
     Guide guide;
     if (!(emitting.only & bit))
       guide.albedo = vec3(p.surface.red[i], p.surface.green[i], p.surface.blue[i]);
-    if (emitting.some & bit)
-      guide.albedo += vec3(p.glow_red[i], p.glow_green[i], p.glow_blue[i]);
+    if (emitting.some & bit) guide.albedo += vec3(p.glow_red[i], p.glow_green[i], p.glow_blue[i]);
     guide.albedo = clamp(guide.albedo, vec3(0), vec3(1));
     if (std::isfinite(run.depth[i])) {
       vec3 n(p.surface.nx[i], p.surface.ny[i], p.surface.nz[i]);
@@ -81,7 +80,8 @@ void add_still_guides(const World& world, const Lights& lights, const Visibility
     followed.assign(pixels, uint8_t(0));
   }
   GuidePass pass{world, lights, view, spread_in_pixel(place), place == 0, planes, followed};
-  visibility.see(view, pass.place, [&](const VisibleRun& run) { pass.take(run); }, shows);
+  visibility.see(
+      view, pass.place, [&](const VisibleRun& run) { pass.take(run); }, shows);
 }
 
 }  // namespace wellspring

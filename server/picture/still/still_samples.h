@@ -14,7 +14,7 @@
 namespace wellspring {
 
 struct StillSamples {
-  std::vector<uint32_t> mean;      // pack_rgb9e5
+  std::vector<uint32_t> mean;  // pack_rgb9e5
   std::vector<uint8_t>
       deviation;               // pack_deviation: of one sample, root mean square over the channels
   std::vector<uint8_t> count;  // at most most_still_samples, over which the mean then looks back

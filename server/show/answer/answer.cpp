@@ -48,7 +48,8 @@ json describe(const Exhibit& exhibit) {
          {"fov", viewpoint.view.fov}});
   for (const StoryText& story : exhibit.stories) {
     json& entry = about["stories"].emplace_back(json{{"id", story.id}, {"title", story.title}});
-    if (story.storyteller_index >= 0) entry["teller"] = exhibit.storytellers[size_t(story.storyteller_index)].id;
+    if (story.storyteller_index >= 0)
+      entry["teller"] = exhibit.storytellers[size_t(story.storyteller_index)].id;
   }
   for (const TourPlan& tour : exhibit.tours)
     about["tours"].push_back(
@@ -62,7 +63,8 @@ json describe(const Exhibit& exhibit) {
       exhibit.storytellers.empty() ? json(nullptr) : json(exhibit.storytellers.front().name);
   about["storytellers"] = json::array();
   for (const StorytellerPlace& storyteller_place : exhibit.storytellers)
-    about["storytellers"].push_back({{"id", storyteller_place.id}, {"name", storyteller_place.name}});
+    about["storytellers"].push_back(
+        {{"id", storyteller_place.id}, {"name", storyteller_place.name}});
   about["start"] = exhibit.viewpoints[size_t(exhibit.start)].view.name;
   return about;
 }

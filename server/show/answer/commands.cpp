@@ -52,8 +52,9 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   visitor.name = hello.kiosk;
   set_size(visitor.wants, show.settings, hello.width, hello.height);
   const StorytellerPlace* storyteller_place = storyteller_of(show);
-  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
-                  visitor.kiosk && storyteller_place ? storyteller_place->kiosk_viewpoint : show.exhibit.start);
+  go_to_viewpoint(
+      visitor.place, visitor.hearing.narration.voice, show.exhibit,
+      visitor.kiosk && storyteller_place ? storyteller_place->kiosk_viewpoint : show.exhibit.start);
   visitor.welcomed = true;
   show.totals.visits++;
   visitor.link->send_text(welcome_message(show, visitor));
@@ -118,8 +119,8 @@ Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
   Voice& narrator = visitor.hearing.narration.voice;
   switch (order.action) {
     case TourAction::play: {
-      bool resume = order.name.empty() && place.tour.state == TourRide::State::paused &&
-                    place.tour.tour >= 0;
+      bool resume =
+          order.name.empty() && place.tour.state == TourRide::State::paused && place.tour.tour >= 0;
       int tour = resume ? place.tour.tour : find_tour(show.exhibit, order.name);
       if (tour < 0) return WireError{"unknown_tour", "there is no tour '" + order.name + "'"};
       place.move = place.velocity = vec3(0);

@@ -14,7 +14,7 @@ std::string welcome_message(const Show& show, const Visitor& visitor);
 std::string state_message(const Show& show, const Visitor& visitor);
 // Empty text: the subtitle disappears.
 std::string subtitle_message(const std::string& text, const std::string& lang,
-                          const std::string& speaker, float seconds);
+                             const std::string& speaker, float seconds);
 // An utterance that is heard: what, when each word of it comes (seconds from its first sample), and
 // where.
 std::string speech_message(uint32_t utterance, const Speech& speech, dvec3 mouth);

@@ -18,15 +18,15 @@ void metric(std::string& out, const char* name, const char* type, const char* he
 
 // As the value of a label: quotes, or a backslash, would end it.
 std::string label(std::string text) {
-  std::replace_if(text.begin(), text.end(),
-                  [](char c) { return c == '"' || c == '\\' || c == '\n'; }, '\'');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '"' || c == '\\' || c == '\n'; }, '\'');
   return text;
 }
 
 // Which of its states something is in: 1 for that one, 0 for the others.
 template <class State>
-void states(std::string& out, const char* name, const char* help,
-            std::initializer_list<State> all, State now) {
+void states(std::string& out, const char* name, const char* help, std::initializer_list<State> all,
+            State now) {
   out += fmt::format("# HELP wellspring_{0} {1}\n# TYPE wellspring_{0} gauge\n", name, help);
   for (State state : all)
     out += fmt::format("wellspring_{}{{state=\"{}\"}} {}\n", name, to_string(state),
@@ -85,8 +85,8 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "warps_given_up_total", "counter",
          "Pictures not made since earlier ones show too little of the view",
          double(totals.unwarpable));
-  metric(out, "moving_drawn_total", "counter",
-         "What moves in pictures at rest, drawn by itself", double(totals.posed));
+  metric(out, "moving_drawn_total", "counter", "What moves in pictures at rest, drawn by itself",
+         double(totals.posed));
   metric(out, "surroundings_drawn_total", "counter",
          "Small wide pictures drawn of what a quick turn may show", double(totals.surroundings));
   metric(out, "drawings_given_up_total", "counter",
@@ -105,10 +105,10 @@ std::string write_metrics(const ShowReport& report) {
          double(totals.observations));
   states(out, "audience", "What the kiosks' cameras see",
          {Presence::absent, Presence::motion, Presence::person}, report.audience);
-  states(out, "storyteller_mood", "What the storyteller is about",
-         {Mood::idle, Mood::noticing, Mood::greeting, Mood::attending, Mood::telling,
-          Mood::farewell},
-         report.mood);
+  states(
+      out, "storyteller_mood", "What the storyteller is about",
+      {Mood::idle, Mood::noticing, Mood::greeting, Mood::attending, Mood::telling, Mood::farewell},
+      report.mood);
   metric(out, "greetings_total", "counter", "Greetings said", double(totals.greetings));
   metric(out, "farewells_total", "counter", "Farewells said", double(totals.farewells));
   metric(out, "lamps_switched_total", "counter", "Lamps switched on or off",

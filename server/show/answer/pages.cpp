@@ -16,11 +16,16 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::map<std::string, std::string> content_types = {
-    {".html", "text/html; charset=utf-8"}, {".js", "text/javascript; charset=utf-8"},
-    {".css", "text/css; charset=utf-8"},   {".svg", "image/svg+xml"},
-    {".png", "image/png"},                 {".jpg", "image/jpeg"},
-    {".ico", "image/x-icon"},              {".webmanifest", "application/manifest+json"},
-    {".json", "application/json; charset=utf-8"}, {".woff2", "font/woff2"}};
+    {".html", "text/html; charset=utf-8"},
+    {".js", "text/javascript; charset=utf-8"},
+    {".css", "text/css; charset=utf-8"},
+    {".svg", "image/svg+xml"},
+    {".png", "image/png"},
+    {".jpg", "image/jpeg"},
+    {".ico", "image/x-icon"},
+    {".webmanifest", "application/manifest+json"},
+    {".json", "application/json; charset=utf-8"},
+    {".woff2", "font/woff2"}};
 
 std::string make_etag(const std::string& body) {
   uint64_t hash = body.size();

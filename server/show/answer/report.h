@@ -15,8 +15,8 @@ namespace wellspring {
 struct VisitorReport {
   uint64_t id = 0;
   int width = 0, height = 0, budget = 0, quality = 0;
-  float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, drawing_ms = 0,
-        tonemap_ms = 0, encode_ms = 0,
+  float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, drawing_ms = 0, tonemap_ms = 0,
+        encode_ms = 0,
         decode_ms = 0;  // the last: as the browser measures it
   float drawn_fps = 0, warp_ms = 0, moving_ms = 0, whole_ms = 0;
   float fresh = 0, empty = 0, converged = 0, mean_age = 0;

@@ -94,7 +94,8 @@ bool take_finished(Show& show) {
     return true;
   }
   if (!renderer.drawn || renderer.step != DrawingStep::done) return true;
-  if (std::exchange(renderer.surrounds, false)) finish_surroundings(show, renderer.order, *renderer.drawn);
+  if (std::exchange(renderer.surrounds, false))
+    finish_surroundings(show, renderer.order, *renderer.drawn);
   else finish_picture(show, renderer.order, *renderer.drawn);
   renderer.drawn->picture.at_work = false;
   renderer.drawn = nullptr;

@@ -7,11 +7,11 @@
 
 namespace wellspring {
 
-// What the renderer has finished. Returns whether it may be given the next: asked once a tick, as what
-// it finishes later in the tick has not been taken.
+// What the renderer has finished. Returns whether it may be given the next: asked once a tick, as
+// what it finishes later in the tick has not been taken.
 bool take_finished(Show& show);
-// `decision` is of show.visitors in their order, while the renderer is idle. `waiting` visitors share
-// the time.
+// `decision` is of show.visitors in their order, while the renderer is idle. `waiting` visitors
+// share the time.
 void carry_out(Show& show, const Decision& decision, int waiting);
 // All that are due, one after the other, while the tick waits: where nothing is drawn in the
 // background.

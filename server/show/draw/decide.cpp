@@ -46,8 +46,7 @@ int next_to_draw(double now, std::span<const VisitorDrawState> states,
                  const RendererState& renderer) {
   auto wants = [&](int i) {
     const VisitorDrawState& state = states[size_t(i)];
-    return wants_picture(now, state, renderer) &&
-           (renderer.waiting == 0 || !keeps_picture(state));
+    return wants_picture(now, state, renderer) && (renderer.waiting == 0 || !keeps_picture(state));
   };
   return longest_waiting(states, wants, [](const VisitorDrawState& one) { return one.drawn_at; });
 }
@@ -70,7 +69,7 @@ bool wants_moving(double now, const VisitorDrawState& state) {
 }
 
 bool wants_skin_light(double now, std::span<const VisitorDrawState> states,
-                const RendererState& renderer) {
+                      const RendererState& renderer) {
   if (!renderer.has_skin || now - renderer.skin_at < 1 / skin_rate - on_time) return false;
   auto sees = [](const VisitorDrawState& one) { return one.welcomed && one.sees_figure; };
   return std::any_of(states.begin(), states.end(), sees);

@@ -28,7 +28,7 @@ struct VisitorDrawState {
   bool backdrop = false;     // it is without what moves
   bool in_pass = false;      // a reconstruction of it is under way
   double drawn_at = -1e9, posed_at = -1e9;  // when the last picture, and what moves, was ordered
-  double moved_at = 0;       // when the view changed last
+  double moved_at = 0;                      // when the view changed last
   double picture_rate = 1, drawing_rate = 1, moving_rate = 1;
   double asked_seconds = 0;  // of all cores, for samples that it has asked for
   RestState rest;
@@ -36,15 +36,15 @@ struct VisitorDrawState {
 
 // What of the renderer, and of what all visitors share.
 struct RendererState {
-  bool idle = true;          // it has nothing in hand
-  bool background = true;    // pictures are drawn while ticks go on; else the tick draws all
-  int drawn = -1;            // whose picture is begun, index of the states; -1: nobody's
-  bool traces = false;       // the next step of that are samples
+  bool idle = true;              // it has nothing in hand
+  bool background = true;        // pictures are drawn while ticks go on; else the tick draws all
+  int drawn = -1;                // whose picture is begun, index of the states; -1: nobody's
+  bool traces = false;           // the next step of that are samples
   bool can_reconstruct = false;  // there is a network
-  bool in_pass = false;      // a reconstruction of somebody's picture is under way
-  bool has_skin = false;     // what moves keeps light on its skin
-  double skin_at = -1e9;     // when that was last ordered
-  int waiting = 0;           // visitors who waited for a picture when the tick began
+  bool in_pass = false;          // a reconstruction of somebody's picture is under way
+  bool has_skin = false;         // what moves keeps light on its skin
+  double skin_at = -1e9;         // when that was last ordered
+  int waiting = 0;               // visitors who waited for a picture when the tick began
 };
 
 enum class Drawing : uint8_t {
@@ -66,8 +66,8 @@ enum class Purpose : uint8_t {
 
 struct Decision {
   Drawing what = Drawing::nothing;
-  int visitor = -1;     // index of the states: whose, of moving, go_on and picture
-  bool hurry = false;   // of go_on: others wait, so samples that are not traced yet are left out
+  int visitor = -1;    // index of the states: whose, of moving, go_on and picture
+  bool hurry = false;  // of go_on: others wait, so samples that are not traced yet are left out
   Purpose purpose = Purpose::shown;  // of picture
   bool operator==(const Decision&) const = default;
 };
@@ -92,7 +92,7 @@ bool has_backdrop(const VisitorDrawState& state);
 bool wants_moving(double now, const VisitorDrawState& state);
 // Light on what moves, that all visitors share, is due, and somebody may see it.
 bool wants_skin_light(double now, std::span<const VisitorDrawState> states,
-                const RendererState& renderer);
+                      const RendererState& renderer);
 // A picture is due, and the browser could take it.
 bool wants_picture(double now, const VisitorDrawState& state, const RendererState& renderer);
 // Its picture is a reconstruction and stays: only samples are wanted.

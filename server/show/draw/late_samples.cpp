@@ -27,7 +27,7 @@ void trace_samples(const Show& show, Renderer& renderer) {
   std::mutex guard;
   double began = seconds_now();
   renderer.traced = trace_waiting(renderer.brokers, *show.world, show.lights, show.pose_number,
-                               began + renderer.seconds, guard);
+                                  began + renderer.seconds, guard);
   renderer.traced_seconds = seconds_now() - began;
 }
 
@@ -37,9 +37,11 @@ void finish_samples(Show& show) {
   if (renderer.traced > 0 && renderer.traced_seconds > 0)
     smooth(show.samples_per_second, float(double(renderer.traced) / renderer.traced_seconds));
   for (Visitor& visitor : show.visitors) {
-    auto found = std::find(renderer.brokers.begin(), renderer.brokers.end(), &visitor.picture.broker);
+    auto found =
+        std::find(renderer.brokers.begin(), renderer.brokers.end(), &visitor.picture.broker);
     if (found == renderer.brokers.end()) continue;
-    smooth(visitor.times.trace, float(1000 * renderer.traced_seconds / double(renderer.brokers.size())));
+    smooth(visitor.times.trace,
+           float(1000 * renderer.traced_seconds / double(renderer.brokers.size())));
     visitor.picture.at_work = false;
   }
   renderer.brokers.clear();

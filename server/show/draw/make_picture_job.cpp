@@ -14,8 +14,8 @@ namespace wellspring {
 
 namespace {
 
-constexpr double slack = 0.0015;       // seconds kept free of every period
-constexpr double least_share = 0.2;    // of a period that goes to samples, even if the rate suffers
+constexpr double slack = 0.0015;     // seconds kept free of every period
+constexpr double least_share = 0.2;  // of a period that goes to samples, even if the rate suffers
 constexpr double predicted_pictures = 2;
 constexpr double settled_samples = 8;  // a pixel, after which the reference takes over
 
@@ -28,8 +28,7 @@ double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
 
 }  // namespace
 
-PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
-                           Purpose purpose) {
+PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, Purpose purpose) {
   const VisitorPicture& picture = visitor.picture;
   const VisitorPlace& place = visitor.place;
   PictureJob order;
@@ -64,8 +63,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
   DrawingCosts costs = drawing_costs(show, visitor);
   double factor = keyframe_cost(order.scale) / keyframe_cost(before.scale);
   costs.drawing_seconds *= factor, costs.light_seconds *= factor;
-  order.samples =
-      sample_budget(seconds_to_trace(show, visitor, busy), size_t(pixels), costs, fine);
+  order.samples = sample_budget(seconds_to_trace(show, visitor, busy), size_t(pixels), costs, fine);
   // When all is known, what changes is looked for.
   if (order.samples_only && has_all_samples(picture.rest))
     order.samples = samples_to_watch(order.samples);
@@ -96,7 +94,8 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
 
 bool is_outdated(const Show& show, const PictureJob& order, const Visitor& visitor) {
   if (visitor.left || visitor.place.camera_cuts != order.camera_cuts) return true;
-  bool has_one = visitor.picture.drawn_at >= 0 && visitor.picture.order.camera_cuts == order.camera_cuts;
+  bool has_one =
+      visitor.picture.drawn_at >= 0 && visitor.picture.order.camera_cuts == order.camera_cuts;
   return has_one && order.still &&
          (visitor.place.last_view != order.expected || lamps_wait(show) ||
           order.figure != sees_figure(show, visitor.place.last_view));

@@ -28,8 +28,8 @@ void begin_skin_light(Show& show) {
   for (const Visitor& visitor : show.visitors)
     if (visitor.welcomed) order.eyes.push_back(visitor.place.last_view.position);
   order.update.eyes = order.eyes;
-  double seconds = most_skin_seconds *
-                   std::clamp(double(enough_samples / show.skin.samples), least_share, 1.0);
+  double seconds =
+      most_skin_seconds * std::clamp(double(enough_samples / show.skin.samples), least_share, 1.0);
   order.update.samples = int(seconds * double(show.samples_per_second));
   order.update.seed = mix64(show.ticks);
   order.update.transport = show.settings.transport;
@@ -54,8 +54,8 @@ void draw_moving(Show& show, Visitor& visitor) {
   Renderer& renderer = show.renderer;
   double began = seconds_now();
   visitor.picture.compositor.draw_moving(*show.world, visitor.picture.keyframe, *show.visibility,
-                                 Tonemap{show.exhibit.exposure}, renderer.work.moving_light,
-                                 renderer.work.moving);
+                                         Tonemap{show.exhibit.exposure}, renderer.work.moving_light,
+                                         renderer.work.moving);
   renderer.posed_seconds = seconds_now() - began;
 }
 

@@ -17,7 +17,7 @@ constexpr double learning_rate = 1.5;  // of pictures before the first reconstru
 constexpr double learning_backdrop_rate = 0.75;  // likewise of what does not move
 constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
 constexpr double most_moving_share = 0.5;  // of the time, for what moves
-constexpr float nearly_all = 0.999f;   // converged
+constexpr float nearly_all = 0.999f;       // converged
 
 // Of draw_state() what does not depend on rates.
 VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
@@ -101,8 +101,8 @@ double picture_rate(const Show& show, const Visitor& visitor) {
   double rate = visitor.wants.fps > 0 ? double(visitor.wants.fps) : double(show.settings.fps);
   if (stands(show, visitor)) {
     rate = std::min(rate, sees_figure(show, visitor.place.last_view) ? still_rate
-                          : rests(show, visitor)               ? resting_rate
-                                                               : settling_rate);
+                          : rests(show, visitor)                     ? resting_rate
+                                                                     : settling_rate);
   } else if (show.settings.background && visitor.times.warp > 0) {
     // A warp takes all cores, its JPEG one.
     double milliseconds = double(visitor.times.warp) +
@@ -116,9 +116,8 @@ double drawing_rate(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = visitor.picture;
   double rate = picture_rate(show, visitor);
   if (!stands(show, visitor))
-    return show.settings.background
-               ? std::min(rate, 1 / plan_next_keyframe(show, visitor).period)
-               : rate;
+    return show.settings.background ? std::min(rate, 1 / plan_next_keyframe(show, visitor).period)
+                                    : rate;
   if (picture.backdrop) rate = backdrop_rate;
   // Until the first reconstruction, samples do more for it than pictures.
   bool first = show.pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
@@ -167,8 +166,7 @@ VisitorDrawState draw_state(const Show& show, const Visitor& visitor) {
 std::vector<VisitorDrawState> draw_states(const Show& show) {
   const int backdrops = count_backdrops(show);
   std::vector<VisitorDrawState> states;
-  for (const Visitor& visitor : show.visitors)
-    states.push_back(state_of(show, visitor, backdrops));
+  for (const Visitor& visitor : show.visitors) states.push_back(state_of(show, visitor, backdrops));
   return states;
 }
 

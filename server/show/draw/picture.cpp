@@ -22,7 +22,6 @@ constexpr double around_kept = 2;  // seconds that what lies around is good for:
 // What resolution is decided by: follows a change of load within some three keyframes.
 constexpr float soon = 0.3f;
 
-
 // Times measured in one resolution, as they are to be expected in another.
 void carry_times(double factor, StageTimes& times) {
   for (float* one : {&times.drawing, &times.light, &times.whole, &times.interval})
@@ -61,8 +60,7 @@ DrawingStep trace_more(Show& show, const PictureJob& order, const Technique& tec
   return more ? DrawingStep::trace : DrawingStep::draw;
 }
 
-DrawingStep paint_picture(Show& show, const PictureJob& order, const View& lit,
-                          Visitor& visitor) {
+DrawingStep paint_picture(Show& show, const PictureJob& order, const View& lit, Visitor& visitor) {
   RenderCache& cache = visitor.picture.cache;
   Compositor& compositor = visitor.picture.compositor;
   DrawingWork& work = show.renderer.work;
@@ -112,8 +110,7 @@ DrawingStep find_guides(Show& show, const PictureJob& order, VisitorPicture& pic
     add_still_guides(*show.world, show.lights, *show.visibility, order.view,
                      picture.costs.backdrop ? RasterShows::still : RasterShows::all, work.guided++,
                      pass.work.guides, pass.work.followed);
-  else
-    begin_reconstruction(picture.compositor.samples(), pass.frame, *pass.denoiser, pass.work);
+  else begin_reconstruction(picture.compositor.samples(), pass.frame, *pass.denoiser, pass.work);
   picture.costs.guide_seconds += seconds_now() - began;
   return all ? DrawingStep::done : DrawingStep::guide;
 }
@@ -194,8 +191,7 @@ void finish_picture(Show& show, const PictureJob& order, Visitor& visitor) {
   }
   picture.drawn_at = order.time;
   picture.broker_seconds =
-      costs.late ? double(order.samples) / std::max(double(show.samples_per_second), 1.0)
-                 : 0;
+      costs.late ? double(order.samples) / std::max(double(show.samples_per_second), 1.0) : 0;
   picture.stats = picture.cache.stats();
   picture.cache_bytes = picture.cache.memory_bytes() + picture.compositor.memory_bytes();
   // Else its keyframe has the colours.

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing one picture for one visitor, in three steps: make_picture_job() (show/draw/make_picture_job.h)
-// decides what and how, draw_picture() does it without looking at anything that the tick may change
-// (view -> project -> attend -> plan -> trace -> remember -> draw), finish_picture() takes it over.
-// In the background the middle one runs on the renderer (show/state/renderer.h), for a view predicted
-// for when it will be seen; show/draw/present.h shows it. The time that is left of the visitor's
-// share goes to samples; those of a walking visitor are traced when its picture is done, and land
-// in the next (show/draw/late_samples.h).
+// Drawing one picture for one visitor, in three steps: make_picture_job()
+// (show/draw/make_picture_job.h) decides what and how, draw_picture() does it without looking at
+// anything that the tick may change (view -> project -> attend -> plan -> trace -> remember ->
+// draw), finish_picture() takes it over. In the background the middle one runs on the renderer
+// (show/state/renderer.h), for a view predicted for when it will be seen; show/draw/present.h shows
+// it. The time that is left of the visitor's share goes to samples; those of a walking visitor are
+// traced when its picture is done, and land in the next (show/draw/late_samples.h).
 #pragma once
 #include "show/state/show.h"
 
 namespace wellspring {
 
-// Changes nothing but what of the visitor is the renderer's, and what techniques keep in show.lights.
-// Ends early, with costs.given_up and all samples traced by then, once renderer.given_up is set.
+// Changes nothing but what of the visitor is the renderer's, and what techniques keep in
+// show.lights. Ends early, with costs.given_up and all samples traced by then, once
+// renderer.given_up is set.
 void draw_picture(Show& show, const PictureJob& order, Visitor& visitor);
 // The same step by step, between which the world may move and nothing but moving.h may be drawn.
 // Returns the next one; DrawingStep::done: none.

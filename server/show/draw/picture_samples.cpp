@@ -12,13 +12,13 @@
 namespace wellspring {
 namespace {
 
-constexpr float predicted_share = 0.3f;    // of the samples, at most
-constexpr float barely_covered = 0.1f;  // of the pixels by points
-constexpr size_t least_slice = 2048;  // samples
+constexpr float predicted_share = 0.3f;  // of the samples, at most
+constexpr float barely_covered = 0.1f;   // of the pixels by points
+constexpr size_t least_slice = 2048;     // samples
 // Seconds of tracing at a time, while it may be given up, and where what moves is due soon.
 constexpr double slice = 0.025, least_slice_seconds = 0.006;
-constexpr double spread_from = 0.8;    // samples a pixel
-constexpr float more_asked = 1.2f;  // than there is time for, by what was measured: none is idle
+constexpr double spread_from = 0.8;  // samples a pixel
+constexpr float more_asked = 1.2f;   // than there is time for, by what was measured: none is idle
 
 // Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a
 // still camera's picture, waits for its own.
@@ -36,8 +36,7 @@ TransportSettings transport_of(const Show& show, const PictureJob& order) {
 
 // Where pictures are reconstructed, the first samples serve the drawn picture that it begins with;
 // later ones are spread evenly, but for some, aimed at points, to find what changes.
-bool spreads_samples(const PictureJob& order, const Technique& technique,
-                     const RestState& rest) {
+bool spreads_samples(const PictureJob& order, const Technique& technique, const RestState& rest) {
   return order.learns && !technique.begin_pass && rest.samples >= spread_from &&
          !has_all_samples(rest);
 }
@@ -50,8 +49,8 @@ size_t slice_of_samples(const Show& show) {
 
 }  // namespace
 
-void plan_samples(Show& show, const PictureJob& order, const Technique& technique,
-                  const View& lit, DrawingWork& work, Visitor& visitor) {
+void plan_samples(Show& show, const PictureJob& order, const Technique& technique, const View& lit,
+                  DrawingWork& work, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   RenderCache& cache = picture.cache;
   follow_lamps(show, visitor);
@@ -83,8 +82,8 @@ void plan_samples(Show& show, const PictureJob& order, const Technique& techniqu
   picture.costs.late = late;
 }
 
-bool begin_samples(Show& show, const PictureJob& order, const Technique& technique,
-                   const View& lit, DrawingWork& work, Visitor& visitor) {
+bool begin_samples(Show& show, const PictureJob& order, const Technique& technique, const View& lit,
+                   DrawingWork& work, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   work.samples.clear();
   work.traced = 0;
@@ -112,8 +111,8 @@ bool trace_slice(Show& show, const PictureJob& order, const Technique& technique
   return work.traced < all;
 }
 
-void remember_traced(const Show& show, const PictureJob& order, const View& lit,
-                     DrawingWork& work, Visitor& visitor) {
+void remember_traced(const Show& show, const PictureJob& order, const View& lit, DrawingWork& work,
+                     Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   if (picture.costs.late) return;
   work.requests.resize(work.traced);

@@ -17,8 +17,8 @@ namespace wellspring {
 
 namespace {
 
-constexpr double on_time = 0.0005;     // seconds that a picture may come too early
-constexpr double fade_rate = 12;       // pictures a second from one picture at rest to the next
+constexpr double on_time = 0.0005;  // seconds that a picture may come too early
+constexpr double fade_rate = 12;    // pictures a second from one picture at rest to the next
 constexpr float most_unknown =
     0.8f;  // of a warped picture: beyond, the one before is as near to the truth (cache.warp)
 constexpr int animated_gain = 5;  // JPEG quality above the moving one while the storyteller moves
@@ -71,8 +71,7 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   shown.sent_at = show.time;
   // Where ticks come a little late, pictures keep their rate all the same.
   double period = 1 / picture_rate(show, visitor);
-  shown.pictured_at =
-      std::clamp(shown.pictured_at + period, show.time - 0.5 * period, show.time);
+  shown.pictured_at = std::clamp(shown.pictured_at + period, show.time - 0.5 * period, show.time);
   shown.seq = seq;
   shown.view = view;
   visitor.picture.unshown = false;

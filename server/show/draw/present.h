@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a visitor is sent, and when: the picture that was drawn last, warped to where the visitor is
 // now (picture/warp_picture.h), at the rate of the display whatever drawing takes. It says the last
-// input that the view it shows has followed. After a camera cut, or where a warp would show too much that
-// was never drawn, nothing is sent until a picture of the new place is there.
+// input that the view it shows has followed. After a camera cut, or where a warp would show too
+// much that was never drawn, nothing is sent until a picture of the new place is there.
 #pragma once
 #include "show/state/show.h"
 

@@ -35,10 +35,10 @@ int sample_budget(double seconds, size_t pixels, const DrawingCosts& costs, bool
                             least_light * seconds);
   // Who stands gains by light what fewer pictures cost; who moves, by pictures.
   if (fine)
-    tracing = std::max(tracing,
-                       least_light / (1 - least_light) * (display + costs.drawing_seconds));
-  double samples = std::clamp(tracing * costs.samples_per_second, 0.0,
-                              most_a_pixel * double(pixels));
+    tracing =
+        std::max(tracing, least_light / (1 - least_light) * (display + costs.drawing_seconds));
+  double samples =
+      std::clamp(tracing * costs.samples_per_second, 0.0, most_a_pixel * double(pixels));
   return int(std::max(samples, std::min(least_samples, double(pixels))));
 }
 
@@ -52,9 +52,7 @@ bool affords_fine_light(double samples, bool before) {
   return samples >= (before ? leave_fine : enter_fine);
 }
 
-double keyframe_cost(float scale) {
-  return double(scale);
-}
+double keyframe_cost(float scale) { return double(scale); }
 
 KeyframePlan plan_keyframe(double seconds, float before) {
   constexpr double most = (1 - sample_share) * longest_period;
@@ -62,8 +60,7 @@ KeyframePlan plan_keyframe(double seconds, float before) {
   auto fits = [&](float scale) { return cost(scale) <= (scale > before ? climbing * most : most); };
   const float* found = std::find_if(std::begin(keyframe_scales), std::end(keyframe_scales), fits);
   float scale = found == std::end(keyframe_scales) ? *std::prev(found) : *found;
-  return {scale,
-          std::clamp(cost(scale) / (1 - sample_share), shortest_period, longest_period)};
+  return {scale, std::clamp(cost(scale) / (1 - sample_share), shortest_period, longest_period)};
 }
 
 float tour_pace(float turn, float fov) {

@@ -10,7 +10,7 @@ struct DrawingCosts {
   double samples_per_second = 0;  // all cores
   double drawing_seconds = 0;     // visibility and shading of a picture, all cores
   double display_seconds = 0;     // what a picture takes besides: reprojection, tone mapping
-  double light_seconds = 0;  // the same of one drawn for who moves; 0: never measured
+  double light_seconds = 0;       // the same of one drawn for who moves; 0: never measured
 };
 
 // `seconds`: what there is for all. `fine`: see wants_fine_light(); then at least a quarter of a

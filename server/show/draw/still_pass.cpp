@@ -25,9 +25,10 @@ void begin_pass(Show& show, const PictureJob& order, Visitor& visitor) {
   pass.step = StillPass::Step::compute;
   pass.given_up = false;
   pass.seconds = picture.costs.guide_seconds;
-  log::debug("visitor {}: reconstruction begins at {:.2f} samples a pixel, drawn and guided in "
-             "{:.0f} ms",
-             visitor.link->id, picture.rest.samples, 1000 * pass.seconds);
+  log::debug(
+      "visitor {}: reconstruction begins at {:.2f} samples a pixel, drawn and guided in "
+      "{:.0f} ms",
+      visitor.link->id, picture.rest.samples, 1000 * pass.seconds);
   picture.rest.passed_samples = picture.rest.samples;
 }
 

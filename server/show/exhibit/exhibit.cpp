@@ -9,7 +9,7 @@ namespace {
 // The entry for `lang`, its base language, or the first of `languages` that has one, else any.
 template <class Map>
 const typename Map::value_type* entry_in(const Map& map, const std::string& lang,
-                                          const std::vector<std::string>& languages) {
+                                         const std::vector<std::string>& languages) {
   if (auto found = map.find(lang); found != map.end()) return &*found;
   if (auto found = map.find(lang.substr(0, lang.find('-'))); found != map.end()) return &*found;
   for (const std::string& other : languages)

@@ -15,7 +15,7 @@
 
 namespace wellspring {
 
-using LocalText = std::map<std::string, std::string>;                // language tag -> text
+using LocalText = std::map<std::string, std::string>;               // language tag -> text
 using LocalLine = std::map<std::string, StoryLine>;                 // language tag -> a sentence
 using LocalScript = std::map<std::string, std::vector<StoryLine>>;  // language tag -> sentences
 
@@ -41,9 +41,9 @@ struct ExhibitViewpoint {
 };
 
 struct TourStop {
-  int viewpoint = 0;         // index into Exhibit::viewpoints
-  float travel_seconds = 0;  // the way there takes at least this long
-  float stay_seconds = 1.5;  // and the stay, and as long as its text takes
+  int viewpoint = 0;           // index into Exhibit::viewpoints
+  float travel_seconds = 0;    // the way there takes at least this long
+  float stay_seconds = 1.5;    // and the stay, and as long as its text takes
   LocalScript way_text, text;  // told on the way, and there
   LocalText way_sound, sound;  // language tag -> file of a recording of it
 };
@@ -57,7 +57,7 @@ struct StoryText {
   std::string id;
   LocalText title;
   LocalScript text;
-  LocalText sound;  // language tag -> file of a recording of the text
+  LocalText sound;             // language tag -> file of a recording of the text
   int storyteller_index = -1;  // index into Exhibit::storytellers; -1: whoever is there
 };
 
@@ -81,8 +81,8 @@ struct StorytellerPlace {
   std::string id;
   std::string figure;  // file beside exhibit.json
   LocalText name;
-  dvec3 position{0};  // of the feet
-  float yaw = 0;      // as Viewpoint: 0 faces -Z
+  dvec3 position{0};                 // of the feet
+  float yaw = 0;                     // as Viewpoint: 0 faces -Z
   LocalScript greetings, farewells;  // a line each
   VoiceManner voice;
   int kiosk_viewpoint = 0;

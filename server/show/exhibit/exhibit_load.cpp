@@ -186,7 +186,8 @@ void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>
     story.sound = read_sounds(exhibit, fields, "sound", story.text);
     if (std::string id = fields.text("teller", false); !id.empty()) {
       story.storyteller_index = find_storyteller(exhibit, id);
-      if (story.storyteller_index < 0) fields.problem("teller", "there is no storyteller '" + id + "'");
+      if (story.storyteller_index < 0)
+        fields.problem("teller", "there is no storyteller '" + id + "'");
     }
     fields.finish();
     exhibit.stories.push_back(std::move(story));
@@ -258,8 +259,7 @@ void read_points(Exhibit& exhibit, Fields& root) {
     auto found = std::find(names.begin(), names.end(), point.node);
     if (found == names.end() || point.node.empty())
       fields.problem("node", "the scene has no node '" + point.node + "'");
-    else
-      point.object = uint32_t(found - names.begin());
+    else point.object = uint32_t(found - names.begin());
     dvec3 middle = exhibit.scene.origin + dvec3(object_middle(exhibit.scene, point.object));
     point.place = fields.triple("at", false, middle);
     fields.finish();

@@ -80,10 +80,13 @@ struct Checker {
   // Whether every storyteller has it.
   bool knows_gesture(const std::string& name) const {
     if (exhibit.storytellers.empty()) return find_gesture(default_gestures(), name) >= 0;
-    return std::all_of(
-        exhibit.storytellers.begin(), exhibit.storytellers.end(), [&](const auto& storyteller_place) {
-          return find_gesture(storyteller_place.gestures ? *storyteller_place.gestures : default_gestures(), name) >= 0;
-        });
+    return std::all_of(exhibit.storytellers.begin(), exhibit.storytellers.end(),
+                       [&](const auto& storyteller_place) {
+                         return find_gesture(storyteller_place.gestures
+                                                 ? *storyteller_place.gestures
+                                                 : default_gestures(),
+                                             name) >= 0;
+                       });
   }
 
   void check_mark(const StoryLine& line, const StoryMark& mark) {

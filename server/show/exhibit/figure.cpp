@@ -136,7 +136,8 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
   }
 
   std::vector<char> changes(character.appearances.size(), 0);
-  for (const AppearanceChange& change : character.appearance_changes) changes[size_t(change.appearance)] = 1;
+  for (const AppearanceChange& change : character.appearance_changes)
+    changes[size_t(change.appearance)] = 1;
   constexpr uint32_t none = 0xffffffffu;
   std::vector<uint32_t> place_of(character.positions.size(), none);
   for (const Part& part : character.parts) {

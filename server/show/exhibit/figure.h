@@ -24,7 +24,7 @@ struct FigurePaint {
 struct Figure {
   std::vector<FigurePart> parts;
   std::vector<FigurePaint> paints;  // of the looks in use alone
-  uint32_t object = 0;  // in Scene::objects, named as the character
+  uint32_t object = 0;              // in Scene::objects, named as the character
   // Working memory of pose_figure.
   std::vector<vec3> positions, normals, part_positions, part_normals;
   std::vector<AppearanceChange> appearance_changes;

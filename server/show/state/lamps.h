@@ -25,7 +25,8 @@ void light_lamps(Show& show);
 // Before anything is drawn for a visitor, by whoever draws: its cache forgets what another light
 // was.
 void follow_lamps(Show& show, Visitor& visitor);
-// What only visitors need who have yet to follow is kept no longer. Only while the renderer is idle.
+// What only visitors need who have yet to follow is kept no longer. Only while the renderer is
+// idle.
 void invalidate_light_steps(Show& show);
 
 }  // namespace wellspring

@@ -32,7 +32,8 @@ void enter(Show& show) {
   show.mind = {};
   show.pose = make_rest_pose(place.character);
   for (size_t i = 0; i < show.figures.size(); i++)
-    show_figure(*show.world, show.figures[i], i == show.storyteller_index && show.storyteller_visible);
+    show_figure(*show.world, show.figures[i],
+                i == show.storyteller_index && show.storyteller_visible);
   StorytellerEvents events;
   tick_storyteller(show.mind, show.storyteller, StorytellerInput{}, show.pose, events);
   pose_figure(*show.world, show.figures[show.storyteller_index], place.character, show.pose,
@@ -43,7 +44,8 @@ void enter(Show& show) {
 }  // namespace
 
 void change_storyteller(Show& show, size_t storyteller_index) {
-  if (storyteller_index == show.storyteller_index || storyteller_index >= show.figures.size()) return;
+  if (storyteller_index == show.storyteller_index || storyteller_index >= show.figures.size())
+    return;
   show.renderer.worker.wait();  // the world changes
   hush(show.voice);
   show.storyteller_index = storyteller_index;

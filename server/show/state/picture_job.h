@@ -10,24 +10,24 @@ namespace wellspring {
 
 // All that a picture's drawing depends on besides the world and what the visitor's cache remembers.
 struct PictureJob {
-  double time = 0;       // of the tick that ordered it
+  double time = 0;  // of the tick that ordered it
   uint64_t time_us = 0, tick = 0;
-  View expected;         // what the visitor will see when it is shown
-  View view;             // drawn: that, and some around
-  View ahead;            // in the picture after that, when answers to its requests are shown
-  uint32_t seq = 0;      // of the visitor's last input
-  uint32_t camera_cuts = 0;    // of the visitor, by then
-  bool still = false;    // without motion for a moment
-  bool figure = false;   // the storyteller may be in it
-  bool learns = false;   // its samples are kept for each pixel, for reconstructions
-  bool reconstruct = false;  // it becomes a reconstruction instead of being shown
+  View expected;              // what the visitor will see when it is shown
+  View view;                  // drawn: that, and some around
+  View ahead;                 // in the picture after that, when answers to its requests are shown
+  uint32_t seq = 0;           // of the visitor's last input
+  uint32_t camera_cuts = 0;   // of the visitor, by then
+  bool still = false;         // without motion for a moment
+  bool figure = false;        // the storyteller may be in it
+  bool learns = false;        // its samples are kept for each pixel, for reconstructions
+  bool reconstruct = false;   // it becomes a reconstruction instead of being shown
   bool samples_only = false;  // nothing is drawn
-  bool settled = false;  // for long: the reference takes over
-  bool passing = false;  // drawn for a moment, and some around (picture/compose_drawn.h)
-  bool coarse = false;   // that in coarser light
-  float scale = 1;       // sides of its view, in pixels, over those of the visitor's picture
+  bool settled = false;       // for long: the reference takes over
+  bool passing = false;       // drawn for a moment, and some around (picture/compose_drawn.h)
+  bool coarse = false;        // that in coarser light
+  float scale = 1;            // sides of its view, in pixels, over those of the visitor's picture
   bool attention = true;
-  bool keep = false;     // as a keyframe, for others to be made of
+  bool keep = false;  // as a keyframe, for others to be made of
   uint64_t seed = 0;
   std::optional<View>
       around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels

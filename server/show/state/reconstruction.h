@@ -24,13 +24,13 @@ struct StillPass {
   PictureJob order;
   bool backdrop = false;  // it is without what moves (show/draw/moving.h)
   Step step = Step::compute;
-  bool at_work = false;            // the renderer is at it
+  bool at_work = false;  // the renderer is at it
   std::atomic<bool> given_up{false};
-  double seconds = 0;              // of computing, so far
-  Frame frame;                     // drawn; then as it is shown
+  double seconds = 0;  // of computing, so far
+  Frame frame;         // drawn; then as it is shown
   StillReconstruction work;
   Image8 picture;
-  Keyframe keyframe;               // when it is finished the visitor's old one
+  Keyframe keyframe;                   // when it is finished the visitor's old one
   std::unique_ptr<Denoiser> denoiser;  // null: there is none
   std::string problem;                 // why
 };
@@ -38,11 +38,11 @@ size_t memory_bytes(const StillPass& pass);
 
 // What of a visitor's rest, since the view or the light last changed, passes depend on.
 struct RestState {
-  uint64_t asked = 0;          // samples of the view's sequence (picture/still/plan_still.h)
-  double samples = 0;          // a pixel, that are kept
-  double passed_samples = 0;   // of these, in the last pass
+  uint64_t asked = 0;         // samples of the view's sequence (picture/still/plan_still.h)
+  double samples = 0;         // a pixel, that are kept
+  double passed_samples = 0;  // of these, in the last pass
   double passed_at = -1e9, passed_seconds = 0;  // show time of its end; what it took
-  bool reconstructed = false;  // its picture is the one shown
+  bool reconstructed = false;                   // its picture is the one shown
 };
 
 // Samples a pixel, on average, beyond which more would be kept no more.

@@ -31,11 +31,11 @@ namespace wellspring {
 struct PictureCosts {
   float display = 0, light = 0, trace = 0, drawing = 0, tonemap = 0;
   size_t samples = 0;
-  bool late = false;     // its samples are still to be traced
-  bool given_up = false;  // there is no picture
+  bool late = false;         // its samples are still to be traced
+  bool given_up = false;     // there is no picture
   double guide_seconds = 0;  // for what a reconstruction begins with
-  bool backdrop = false;  // of what does not move: the rest is to be laid over it
-  double seconds = 0;    // from its order on, without others' in between
+  bool backdrop = false;     // of what does not move: the rest is to be laid over it
+  double seconds = 0;        // from its order on, without others' in between
 };
 
 // A picture at rest is drawn in steps, so that what moves in it need not wait for all of them.
@@ -48,8 +48,8 @@ struct DrawingWork {
   std::shared_ptr<CacheWork> cache = make_cache_work();  // of all visitors' caches
   std::shared_ptr<CompositorWork> compositor = std::make_shared<CompositorWork>();  // likewise
   Frame frame;
-  std::vector<float> depth;  // of what is drawn for a moment
-  Image8 picture;            // when it is finished the visitor's old one
+  std::vector<float> depth;   // of what is drawn for a moment
+  Image8 picture;             // when it is finished the visitor's old one
   Keyframe keyframe, around;  // likewise
   std::vector<Request> requests, ahead;
   std::vector<Sample> samples;
@@ -83,7 +83,7 @@ struct Renderer {
   uint64_t posed_us = 0;
   double posed_seconds = 0;  // that it took
   bool surrounds = false;    // only `order.around` of it
-  PictureJob order;        // for it
+  PictureJob order;          // for it
   // By the tick: nobody needs that picture any more (is_outdated), so what is not drawn of it yet
   // is left out.
   std::atomic<bool> given_up{false};

@@ -28,17 +28,17 @@
 namespace wellspring {
 
 struct ShowSettings {
-  float fps = 60;             // pictures a second a walking visitor gets, machine permitting
-  int max_visitors = 16;      // more are told to come back
-  std::string technique = "gather";      // while anything moves
+  float fps = 60;                    // pictures a second a walking visitor gets, machine permitting
+  int max_visitors = 16;             // more are told to come back
+  std::string technique = "gather";  // while anything moves
   std::string still_technique =
       "path";  // while the visitor stands still: the picture becomes the reference
   TransportSettings transport{.max_depth = 6, .clamp = 12, .instant = {}};
-  bool background = true;     // pictures are drawn while the show goes on, and warped meanwhile
+  bool background = true;  // pictures are drawn while the show goes on, and warped meanwhile
   // Folder of the networks' weights (denoise/denoise.h); empty: pictures at rest are drawn only.
   std::string weights;
-  bool late_samples = true;   // of who walks are traced behind the picture, for the next
-  float moving_clamp = 4;     // instead of transport.clamp while the visitor moves: fewer sparks
+  bool late_samples = true;  // of who walks are traced behind the picture, for the next
+  float moving_clamp = 4;    // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
 };
 
@@ -60,7 +60,7 @@ struct Show {
   Lights lights;
   Switches switches;
   std::unique_ptr<VisibilityPass> visibility;  // one picture at a time
-  SkinLight skin;                       // on what moves, for all visitors
+  SkinLight skin;                              // on what moves, for all visitors
   const Technique* technique = nullptr;
   const Technique* still_technique = nullptr;
 
@@ -77,7 +77,7 @@ struct Show {
   uint32_t utterances = 0;  // numbers of what is heard, the storyteller's and narrators' alike
   size_t greetings = 0, farewells = 0;
   bool storyteller_visible = true, humanlike = true;
-  std::string kiosk_message;   // the last kiosk message, to send only changes
+  std::string kiosk_message;  // the last kiosk message, to send only changes
   double agent_sent_at = -1e9;
   double behaved_at = -1;  // when the storyteller was last moved
   Mood agent_mood = Mood::idle;
@@ -88,10 +88,10 @@ struct Show {
   Audience audience;
 
   uint64_t ticks = 0;
-  uint64_t pose_number = 1;    // of the world: counts commits
-  double time = 0;             // of the present tick, seconds
-  uint64_t time_us = 0;        // of the present tick on the clock of pictures and sound
-  float picture_lead = 0.02f;  // seconds from a tick to the times of its pictures, smoothed
+  uint64_t pose_number = 1;           // of the world: counts commits
+  double time = 0;                    // of the present tick, seconds
+  uint64_t time_us = 0;               // of the present tick on the clock of pictures and sound
+  float picture_lead = 0.02f;         // seconds from a tick to the times of its pictures, smoothed
   float samples_per_second = 200000;  // measured, all cores
   ShowTotals totals;
   WarpScratch warp;  // of all visitors, whose pictures are warped one after the other

@@ -8,11 +8,11 @@ namespace wellspring {
 // Counters since the start, unless said otherwise.
 struct ShowTotals {
   uint64_t drawn = 0, warped = 0, unwarpable = 0;  // pictures; warps given up
-  uint64_t posed = 0;         // what moves in pictures at rest, drawn by itself
-  uint64_t reconstructed = 0;  // pictures at rest, by the network
+  uint64_t posed = 0;           // what moves in pictures at rest, drawn by itself
+  uint64_t reconstructed = 0;   // pictures at rest, by the network
   float reconstruction_ms = 0;  // of the last of these
-  uint64_t surroundings = 0;  // drawn of quick turns
-  uint64_t given_up = 0;      // pictures that nobody needed any more before they were drawn
+  uint64_t surroundings = 0;    // drawn of quick turns
+  uint64_t given_up = 0;        // pictures that nobody needed any more before they were drawn
   uint64_t pictures = 0, picture_bytes = 0, samples = 0, messages = 0, refused_messages = 0;
   float tick_ms = 0, animate_ms = 0;  // of the last tick
   uint64_t utterances = 0, sounds = 0,

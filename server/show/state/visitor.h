@@ -33,7 +33,7 @@ struct Encoder {
   float milliseconds = 0;
   size_t bytes = 0;
   size_t memory_bytes = 0;  // of it and of what it makes, when it last ended
-  Worker task;  // the last member: a picture may be half made
+  Worker task;              // the last member: a picture may be half made
 };
 
 // What the visitor was sent, and how it goes down (show/draw/present.h).
@@ -53,19 +53,19 @@ struct Visitor {
   bool welcomed = false, left = false;
   bool kiosk = false;
   std::string lang = "en";
-  std::string name;  // of a kiosk, as its page says it; may be empty
+  std::string name;             // of a kiosk, as its page says it; may be empty
   double state_sent_at = -1e9;  // show time of the last state message
   VisitorSound hearing;         // show/answer/sound.h
   VisitorPlace place;           // show/visit
   PictureWishes wants;
-  VisitorPicture picture;       // show/draw
-  VisitorDelivery shown;        // show/draw/present.h
+  VisitorPicture picture;  // show/draw
+  VisitorDelivery shown;   // show/draw/present.h
   StageTimes times;
 };
 
 // All memory that pictures of one visitor take, between them; its encoder's as noted there, the
-// rest as it is: not while the renderer is at work on it. Bounded by the picture's size: at most 64 MB
-// (of 10^6 bytes) at 1280x720 while the visitor walks, 64 MiB at rest.
+// rest as it is: not while the renderer is at work on it. Bounded by the picture's size: at most 64
+// MB (of 10^6 bytes) at 1280x720 while the visitor walks, 64 MiB at rest.
 size_t picture_memory(const Visitor& visitor);
 
 }  // namespace wellspring

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is kept of one visitor for drawing its pictures (show/draw): the light that is known, the
-// picture that was drawn last, and what is laid over it. The renderer's (show/state/renderer.h) while
-// `at_work`, but for what the tick asks: when it was drawn, for what, and whether it was sent.
+// picture that was drawn last, and what is laid over it. The renderer's (show/state/renderer.h)
+// while `at_work`, but for what the tick asks: when it was drawn, for what, and whether it was
+// sent.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -22,23 +23,23 @@ namespace wellspring {
 // As the visitor's page asks for it.
 struct PictureWishes {
   int width = 1280, height = 720;
-  float fps = 0;  // 0: the show's
+  float fps = 0;                              // 0: the show's
   int best_quality = 82, still_quality = 92;  // of JPEGs, in motion and at rest
-  bool attention = true;  // CacheSettings::attention
+  bool attention = true;                      // CacheSettings::attention
 };
 
 // Of a quick turn what lies around the keyframe, in fewer pixels.
 struct Surroundings {
   Keyframe keyframe;         // empty: nothing
   double ordered_at = -1e9;  // show time
-  uint32_t camera_cuts = 0;        // of the visitor, by then
+  uint32_t camera_cuts = 0;  // of the visitor, by then
   bool drawn = false;        // since the last picture was
 };
 
 struct VisitorPicture {
   bool at_work = false;  // a picture of this visitor is drawn or its samples are traced
   // The light that is known.
-  std::vector<char> lamps;    // whose light the cache knows: see show/state/lamps.h
+  std::vector<char> lamps;  // whose light the cache knows: see show/state/lamps.h
   RenderCache cache;
   Compositor compositor;
   Broker broker;              // what is traced after its picture, for the next
@@ -48,16 +49,16 @@ struct VisitorPicture {
   PictureJob order;
   PictureCosts costs;
   CacheStats stats;
-  double drawn_at = -1e9;     // show time of its order
+  double drawn_at = -1e9;  // show time of its order
   float drawn_fps = 0;
-  Image8 image;               // until it is shown
-  Keyframe keyframe;          // what pictures are warped from until the next
+  Image8 image;       // until it is shown
+  Keyframe keyframe;  // what pictures are warped from until the next
   Surroundings around;
-  Fade fade;                  // to the keyframe
-  bool backdrop = false;      // the keyframe is without what moves (show/draw/moving.h)
-  MovingPicture moving;       // that, to be laid over it; empty: nothing
-  double posed_at = -1e9;     // show time of its order
-  bool unshown = false;       // nothing of it has been sent yet
+  Fade fade;               // to the keyframe
+  bool backdrop = false;   // the keyframe is without what moves (show/draw/moving.h)
+  MovingPicture moving;    // that, to be laid over it; empty: nothing
+  double posed_at = -1e9;  // show time of its order
+  bool unshown = false;    // nothing of it has been sent yet
   size_t cache_bytes = 0, memory_bytes = 0;  // of its cache; of all that is kept for its pictures
 };
 

@@ -71,7 +71,7 @@ void add_panel(Scene& scene, vec3 place, vec3 at, float side, vec3 radiance) {
 }  // namespace
 
 Frame render_portrait(const Character& character, const Pose& pose, const PortraitShot& shot,
-                    std::vector<std::string>& warnings) {
+                      std::vector<std::string>& warnings) {
   SkinScratch scratch;
   std::vector<vec3> positions, normals;
   skin(character, pose, mat4(1), scratch, positions, normals);

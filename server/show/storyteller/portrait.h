@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A figure in a photographer's portrait scene, to look at: soft area lights, a floor that curves up into
-// the background.
+// A figure in a photographer's portrait scene, to look at: soft area lights, a floor that curves up
+// into the background.
 #pragma once
 #include "avatar/figure/character.h"
 #include "avatar/figure/pose.h"
@@ -17,6 +17,6 @@ struct PortraitShot {
 
 // All cores; seconds. Pictures of the figure that cannot be read are named in `warnings`.
 Frame render_portrait(const Character& character, const Pose& pose, const PortraitShot& shot,
-                    std::vector<std::string>& warnings);
+                      std::vector<std::string>& warnings);
 
 }  // namespace wellspring

@@ -36,7 +36,8 @@ std::vector<SpeechRequest> lines_of(const Exhibit& exhibit) {
     const StorytellerPlace& storyteller_place = exhibit.storytellers[i];
     add(storyteller_place.greetings, storyteller_place.voice);
     for (const StoryText& story : exhibit.stories)
-      if (story.storyteller_index < 0 ? i == 0 : story.storyteller_index == int(i)) add(story.text, storyteller_place.voice);
+      if (story.storyteller_index < 0 ? i == 0 : story.storyteller_index == int(i))
+        add(story.text, storyteller_place.voice);
     add(storyteller_place.farewells, storyteller_place.voice);
   }
   const VoiceManner narrator =

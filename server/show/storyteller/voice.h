@@ -30,19 +30,19 @@ struct Voice {
   float waited = 0;             // seconds the front has waited for its speech
   bool started = false;         // the front's subtitle has been shown
   bool paused = false;
-  size_t cursor = 0;            // into the front's timeline
-  StoryHold held;               // emotion and gaze that the marks so far ask for
-  std::string story;            // id of the story being told; "" for greetings and the like
-  int sentence = 0;             // of the story
-  uint32_t cuts = 0;            // how often what was being said has been broken off
-  uint64_t asked_by = 0;        // link id of the visitor who asked for it; 0: nobody
+  size_t cursor = 0;      // into the front's timeline
+  StoryHold held;         // emotion and gaze that the marks so far ask for
+  std::string story;      // id of the story being told; "" for greetings and the like
+  int sentence = 0;       // of the story
+  uint32_t cuts = 0;      // how often what was being said has been broken off
+  uint64_t asked_by = 0;  // link id of the visitor who asked for it; 0: nobody
 };
 
 struct VoiceEvents {
   const Utterance* begun = nullptr;  // points into the queue; valid until the next change
   bool ended = false;                // the one before has been said to its end
   bool fell_silent = false;
-  std::vector<ActionEvent> acts;     // marks whose time has come, in order
+  std::vector<ActionEvent> acts;  // marks whose time has come, in order
 };
 
 // The speech of a sentence that is due: there, on its way, or none.

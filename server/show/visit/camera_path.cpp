@@ -10,13 +10,13 @@ namespace {
 
 using Key = CameraPath::Key;
 
-constexpr double key_spacing = 0.25;       // metres between control points
-constexpr double key_turn = 0.14;          // radians
-constexpr double look_ahead = 1.5;         // metres in which the gaze turns to the way, and from it
-constexpr double least_walk = 3;           // shorter ways are gone with the eyes on where they lead
-constexpr double soften = 0.5;             // seconds over which the law of time is averaged
-constexpr int pieces = 8;                  // of the law of time, between control points
-constexpr double level_gaze = -0.04;       // pitch of somebody who looks where he goes
+constexpr double key_spacing = 0.25;  // metres between control points
+constexpr double key_turn = 0.14;     // radians
+constexpr double look_ahead = 1.5;    // metres in which the gaze turns to the way, and from it
+constexpr double least_walk = 3;      // shorter ways are gone with the eyes on where they lead
+constexpr double soften = 0.5;        // seconds over which the law of time is averaged
+constexpr int pieces = 8;             // of the law of time, between control points
+constexpr double level_gaze = -0.04;  // pitch of somebody who looks where he goes
 
 Key operator+(const Key& a, const Key& b) {
   return {a.position + b.position, a.yaw + b.yaw, a.pitch + b.pitch, a.fov + b.fov};

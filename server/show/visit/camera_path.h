@@ -10,9 +10,9 @@
 namespace wellspring {
 
 struct CameraLimits {
-  float speed = 1.2f;         // metres a second
-  float turn = 0.698f;        // radians a second: 40 degrees, of yaw and of pitch
-  float acceleration = 0.8f;  // metres a second squared, along the way
+  float speed = 1.2f;              // metres a second
+  float turn = 0.698f;             // radians a second: 40 degrees, of yaw and of pitch
+  float acceleration = 0.8f;       // metres a second squared, along the way
   float turn_acceleration = 1.2f;  // radians a second squared
 };
 

@@ -7,7 +7,7 @@ namespace wellspring {
 
 namespace {
 constexpr size_t max_in_flight = 4;
-constexpr double silence = 2;   // seconds without an acknowledgement before a trickle is sent
+constexpr double silence = 2;  // seconds without an acknowledgement before a trickle is sent
 constexpr int worst_quality = 30;
 }  // namespace
 

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double motion_seconds =
     0.05;  // in which motion is measured: inputs may come thirty times a second
-constexpr double longest_gap = 0.5;      // between two views that tell motion
-constexpr size_t most_past = 32;         // views of that time
-constexpr float fastest = 25;            // metres a second; more is a jump
-constexpr float smallest_cut = 0.5f;    // metres
+constexpr double longest_gap = 0.5;   // between two views that tell motion
+constexpr size_t most_past = 32;      // views of that time
+constexpr float fastest = 25;         // metres a second; more is a jump
+constexpr float smallest_cut = 0.5f;  // metres
 
 constexpr float much_missing = 0.12f;          // of a picture
 constexpr float surrounding_share = 1 / 8.0f;  // of its pixels that its surroundings have

@@ -11,8 +11,7 @@ namespace {
 constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
 }
 
-void go_to_viewpoint(VisitorPlace& place, Voice& narrator, const Exhibit& exhibit,
-                     int viewpoint) {
+void go_to_viewpoint(VisitorPlace& place, Voice& narrator, const Exhibit& exhibit, int viewpoint) {
   place.view = exhibit.viewpoints[size_t(viewpoint)].view;
   place.viewpoint = viewpoint;
   place.camera_cuts++;

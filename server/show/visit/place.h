@@ -21,8 +21,8 @@ struct VisitorPlace {
       0;  // index of the named viewpoint last jumped to, while the visitor stays there; else -1
   TourRide tour;
   // Noticed once a tick (show/draw/pace.h).
-  View last_view;       // of the last tick
-  uint32_t camera_cuts = 0;   // to other places, so that nothing seen before helps
+  View last_view;            // of the last tick
+  uint32_t camera_cuts = 0;  // to other places, so that nothing seen before helps
   Heading heading;
   double moved_at = 0;  // show time of the last change of view
 };

@@ -10,8 +10,8 @@ namespace wellspring {
 
 namespace {
 
-constexpr float spacing = 0.15f;     // of the points of a way
-constexpr float thin_cost = 3;     // how much dearer a metre is where there is no room to spare
+constexpr float spacing = 0.15f;  // of the points of a way
+constexpr float thin_cost = 3;    // how much dearer a metre is where there is no room to spare
 constexpr int smoothing_rounds = 150;
 
 std::string name_place(vec3 p) { return fmt::format("({:.2f}, {:.2f}, {:.2f})", p.x, p.y, p.z); }

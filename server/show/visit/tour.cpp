@@ -15,7 +15,7 @@ constexpr float pace_seconds = 0.35f;  // how softly a ride stops and goes on
 constexpr float look_hold = 1.5f,
                 look_return = 0.8f;  // seconds until the gaze goes back, and its lag
 constexpr float farthest_look = 2.1f, steepest = 1.45f;  // radians
-constexpr float storyteller_room = 0.35f;  // metres around her axis
+constexpr float storyteller_room = 0.35f;                // metres around her axis
 
 const Viewpoint& view_of(const Exhibit& exhibit, int viewpoint) {
   return exhibit.viewpoints[size_t(viewpoint)].view;

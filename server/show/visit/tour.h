@@ -31,24 +31,24 @@ std::shared_ptr<const CameraPath> make_leg(const Exhibit& exhibit, const TourRoa
 
 struct TourRide {
   enum class State : uint8_t { none, playing, paused } state = State::none;
-  int tour = -1;              // -1 with a state: a story's camera, no tour
-  int stop = 0;               // travelling to or staying at this stop
-  bool staying = false;       // there, and its text has begun
-  int target = 0;             // viewpoint that `path` leads to
+  int tour = -1;         // -1 with a state: a story's camera, no tour
+  int stop = 0;          // travelling to or staying at this stop
+  bool staying = false;  // there, and its text has begun
+  int target = 0;        // viewpoint that `path` leads to
   std::shared_ptr<const CameraPath> path;
-  double time = 0;            // on the path
-  float pace = 0;  // 0..1 of the path's own speed: eased when paused, played on and slowed down
+  double time = 0;  // on the path
+  float pace = 0;   // 0..1 of the path's own speed: eased when paused, played on and slowed down
   float most_pace = 1;  // 0..1: of that, so that pictures follow its turns
-  float stayed = 0;           // seconds since the stop was reached
-  Viewpoint view;  // where the tour has the camera, the visitor's own looking round left out
-  vec2 look{0};               // that: yaw, pitch
-  float looked = 0;           // seconds since the visitor last did
-  std::vector<int> wanted;    // viewpoints that marks of the text ask for, next first
+  float stayed = 0;     // seconds since the stop was reached
+  Viewpoint view;       // where the tour has the camera, the visitor's own looking round left out
+  vec2 look{0};         // that: yaw, pitch
+  float looked = 0;     // seconds since the visitor last did
+  std::vector<int> wanted;  // viewpoints that marks of the text ask for, next first
 };
 
 struct TourStep {
-  Viewpoint view;        // where the visitor is now
-  int arrived = -1;      // stop reached in this step, if any
+  Viewpoint view;    // where the visitor is now
+  int arrived = -1;  // stop reached in this step, if any
   bool finished = false;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::array<int, 2>, 8> around = {
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
-constexpr float head_room = 0.15f;   // above the eyes
+constexpr float head_room = 0.15f;         // above the eyes
 constexpr float knee = walk_step + 0.05f;  // what is lower does not stop anybody
 
 // The ground below a point, not farther down than `reach`; NaN: none.

@@ -12,13 +12,13 @@
 namespace wellspring {
 
 struct WalkPlace {
-  vec3 ground{0};     // relative to the scene's origin
-  float clear = 0;    // metres, horizontally, to the nearest obstacle; at most WalkMap::farthest
+  vec3 ground{0};   // relative to the scene's origin
+  float clear = 0;  // metres, horizontally, to the nearest obstacle; at most WalkMap::farthest
   std::array<int32_t, 8> next{-1, -1, -1, -1, -1, -1, -1, -1};  // places around it; -1: no way
 };
 
 struct WalkMap {
-  float cell = 0.1f;      // metres between places
+  float cell = 0.1f;  // metres between places
   float eye_height = 1.65f, radius = 0.25f;
   float farthest = 0.6f;  // to which obstacles are told apart
   vec3 corner{0};         // of the grid, at x = z = 0 of its columns
@@ -35,7 +35,7 @@ struct WalkObstacle {
   float radius = 0.3f;
 };
 
-inline constexpr float walk_step = 0.4f;        // what is climbed without thinking
+inline constexpr float walk_step = 0.4f;          // what is climbed without thinking
 inline constexpr int most_walk_places = 400'000;  // larger grounds get wider cells
 
 // `seeds`: eyes of people who can stand where they are. Exact against triangles: nothing is too

@@ -103,12 +103,9 @@ class Materials {
 
   void alpha(const json& object, const std::string& where, Material& m) {
     std::string mode = text(object, "alphaMode", "OPAQUE");
-    if (mode == "MASK")
-      m.alpha_mode = AlphaMode::mask;
-    else if (mode == "BLEND")
-      m.alpha_mode = AlphaMode::blend;
-    else if (mode != "OPAQUE")
-      warn(file_, where + "/alphaMode", "unknown; shown opaque");
+    if (mode == "MASK") m.alpha_mode = AlphaMode::mask;
+    else if (mode == "BLEND") m.alpha_mode = AlphaMode::blend;
+    else if (mode != "OPAQUE") warn(file_, where + "/alphaMode", "unknown; shown opaque");
     m.alpha_cutoff = factor(object, "alphaCutoff", where, 0.5f, 0, 1e9f);
   }
 
@@ -241,12 +238,9 @@ class Materials {
 
   Wrap wrap(const json& sampler, const char* key, const std::string& where) {
     switch (integer(sampler, key, 10497)) {
-      case 33071:
-        return Wrap::clamp;
-      case 33648:
-        return Wrap::mirror;
-      case 10497:
-        return Wrap::repeat;
+      case 33071: return Wrap::clamp;
+      case 33648: return Wrap::mirror;
+      case 10497: return Wrap::repeat;
     }
     warn(file_, where + "/" + key, "unknown wrap mode; the picture repeats");
     return Wrap::repeat;

@@ -180,8 +180,7 @@ BuiltMesh build_primitive(File& file, size_t mesh_index, size_t primitive_index,
   built.centre = choose_centre(draft);
   mesh.positions.reserve(draft.positions.size());
   for (const dvec3& p : draft.positions) mesh.positions.push_back(vec3(p - built.centre));
-  if (mesh.normals.empty())
-    make_flat_normals(mesh);
+  if (mesh.normals.empty()) make_flat_normals(mesh);
   else if (int count = repair_normals(mesh); count > 0)
     warn(file, where, std::to_string(count) + " normals without a direction are replaced");
   finish_tangents(file, where, mesh, tangent_uv);

@@ -7,8 +7,8 @@ namespace wellspring {
 
 struct LampNames {
   std::string name;
-  // Lights, and things of which something emits light, by their nodes or by nodes above these; all of a
-  // name.
+  // Lights, and things of which something emits light, by their nodes or by nodes above these; all
+  // of a name.
   std::vector<std::string> nodes;
   std::vector<std::string> materials;  // all that is made of them, wherever it is
 };

@@ -124,9 +124,8 @@ class Builder {
 
   // Index of the new scene mesh, -1 if it has no triangles.
   int add_mesh(size_t mesh, size_t primitive, const Deformation& deformation) {
-    BuiltMesh built =
-        build_primitive(file_, mesh, primitive, deformation,
-                        tangent_uv(material_of(mesh, primitive)));
+    BuiltMesh built = build_primitive(file_, mesh, primitive, deformation,
+                                      tangent_uv(material_of(mesh, primitive)));
     if (built.mesh.triangles.empty()) return -1;
     check_texture_coordinates(built.mesh, mesh, primitive);
     scene_.meshes.push_back(std::move(built.mesh));
@@ -208,10 +207,8 @@ class Builder {
     PunctualLight light;
     light.name = text(items(file_.root, "nodes")[index], "name", text(object, "name"));
     std::string type = text(object, "type");
-    if (type == "directional")
-      light.type = PunctualType::directional;
-    else if (type == "spot")
-      light.type = PunctualType::spot;
+    if (type == "directional") light.type = PunctualType::directional;
+    else if (type == "spot") light.type = PunctualType::spot;
     else if (type != "point") {
       warn(file_, where, "a light of unknown type is ignored");
       return;

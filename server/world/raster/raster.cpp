@@ -66,8 +66,8 @@ struct Raster::Impl {
   const World& world;
   std::vector<MeshClusters> meshes;        // of the scene's, then of what moves
   std::vector<MeshNeighbours> neighbours;  // of the same
-  std::vector<uint32_t> mesh_of;     // of every instance
-  std::vector<uint8_t> has_alpha;    // of every instance
+  std::vector<uint32_t> mesh_of;           // of every instance
+  std::vector<uint8_t> has_alpha;          // of every instance
   float near = 0;
   std::vector<RasterPiece> pieces;
   std::vector<Bounds> moving;  // of every instance that moves
@@ -390,8 +390,8 @@ void Raster::draw(const View& view, const RasterSettings& settings,
     return first;
   };
   auto draw_tile = [&](int i, size_t first) {
-    any_veil[size_t(i)] |= r.draw_opaque(corner_of(i), i, first, view, raster, settings.offset,
-                                         r.tiles[size_t(i)]);
+    any_veil[size_t(i)] |=
+        r.draw_opaque(corner_of(i), i, first, view, raster, settings.offset, r.tiles[size_t(i)]);
   };
   fill(put_hiding_first(r.pieces));
   parallel_for(columns * rows, [&](int i) {
@@ -406,8 +406,8 @@ void Raster::draw(const View& view, const RasterSettings& settings,
   r.hidden -= r.pieces.size();
   size_t second = fill(r.pieces.size());
   auto triangle_of = [&r](uint32_t number) { return &r.triangle_of(number); };
-  SurfaceWalk walk{r.world, r.neighbours, r.mesh_of, view, raster,
-                   0.5f * float(view.height) / view.tan_half_fov};
+  SurfaceWalk walk{r.world, r.neighbours, r.mesh_of,
+                   view,    raster,       0.5f * float(view.height) / view.tan_half_fov};
   EdgeFinder finder{walk, raster, columns, settings.differ, r.tiles, triangle_of};
   parallel_for(columns * rows, [&](int i) {
     draw_tile(i, second);

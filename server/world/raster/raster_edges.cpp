@@ -59,8 +59,7 @@ EdgeCover find_gap(const EdgeSide& first, const EdgeSide& second, int x, int y, 
   if (here.at + there.at > 1 - least_gap) return {};  // they have an edge in common, or no end
   EdgeLine one = walk.end_of(*first.triangle, here, x, y, 1, vertical),
            other = walk.end_of(*second.triangle, there, next_x, next_y, -1, vertical);
-  if (one.at + other.at > 1 - least_gap || !is_across(one, vertical) ||
-      !is_across(other, vertical))
+  if (one.at + other.at > 1 - least_gap || !is_across(one, vertical) || !is_across(other, vertical))
     return {};
   return {share_between(one, other), share_between(other, one)};
 }
@@ -68,8 +67,8 @@ EdgeCover find_gap(const EdgeSide& first, const EdgeSide& second, int x, int y, 
 EdgeCover find_edge(const EdgeSide& first, const EdgeSide& second, int x, int y, bool vertical,
                     const SurfaceWalk& walk) {
   // Where all lies on one wall, what is between two of its strips looks much as these do.
-  bool apart = std::min(first.depth, second.depth) <
-               behind_both * std::max(first.depth, second.depth);
+  bool apart =
+      std::min(first.depth, second.depth) < behind_both * std::max(first.depth, second.depth);
   auto surface_end = [&](bool own) -> EdgeLine {
     const EdgeSide& side = own ? first : second;
     int from_x = own ? x : x + !vertical, from_y = own ? y : y + vertical, step = own ? 1 : -1;

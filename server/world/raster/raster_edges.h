@@ -40,14 +40,14 @@ inline constexpr float smooth_bend = 0.24f;
 
 // What is worth mixing: codes between neighbours, changed codes, and a share.
 inline constexpr float alike = 9, least_change = 0.75f, least_share = 1 / 256.0f;
-inline constexpr float behind_both = 0.97f;       // of inverse depths
+inline constexpr float behind_both = 0.97f;  // of inverse depths
 
 // Goes through the tiles of a picture.
 template <class TriangleOf>
 struct EdgeFinder {
   const SurfaceWalk& walk;
   const RasterView& view;
-  int columns;  // of tiles
+  int columns;                                           // of tiles
   const std::function<int(uint32_t, uint32_t)>& differ;  // RasterSettings'
   std::span<const TilePixels> tiles;
   TriangleOf triangle_of;  // of a number in the tiles
@@ -122,8 +122,7 @@ struct EdgeFinder {
     bool differs = codes > alike;
     if (!thin && !differs) return;
     ivec2 behind(-1);
-    if (thin)
-      behind = find_behind(tile1, place1, std::min(one.depth[place1], other.depth[place2]));
+    if (thin) behind = find_behind(tile1, place1, std::min(one.depth[place1], other.depth[place2]));
     if (behind.x < 0 && !differs) return;
     EdgeSide first = side_of(tile1, place1), second = side_of(tile2, place2);
     auto add = [&](const EdgeCover& edge, uint32_t seen_by_a, uint32_t seen_by_b, float least) {
@@ -146,8 +145,8 @@ struct EdgeFinder {
     for (int far = 1; far <= farthest; far++) {
       int left = std::max(from.x - far, 0), right = std::min(from.x + far, last.x);
       int top = std::max(from.y - far, 0), bottom = std::min(from.y + far, last.y);
-      for (ivec2 at : {ivec2(right, from.y), ivec2(left, from.y), ivec2(from.x, bottom),
-                       ivec2(from.x, top)})
+      for (ivec2 at :
+           {ivec2(right, from.y), ivec2(left, from.y), ivec2(from.x, bottom), ivec2(from.x, top)})
         if (depths[at.y * tile_width + at.x] < behind_both * depth) return corner_of(tile) + at;
     }
     return ivec2(-1);

@@ -92,16 +92,11 @@ constexpr int planes = 5;
 // centre.
 float inside(const RasterView& view, const RasterCorner& c, int i) {
   switch (i) {
-    case 0:
-      return c.w - view.near;
-    case 1:
-      return raster_reach * c.w - c.x;
-    case 2:
-      return raster_reach * c.w + c.x;
-    case 3:
-      return raster_reach * c.w - c.y;
-    default:
-      return raster_reach * c.w + c.y;
+    case 0: return c.w - view.near;
+    case 1: return raster_reach * c.w - c.x;
+    case 2: return raster_reach * c.w + c.x;
+    case 3: return raster_reach * c.w - c.y;
+    default: return raster_reach * c.w + c.y;
   }
 }
 

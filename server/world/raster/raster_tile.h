@@ -14,7 +14,7 @@ inline constexpr int tile_width = 64, tile_height = 32;  // depths and numbers f
 inline constexpr uint32_t no_triangle = 0xffffffffu;
 
 struct TilePixels {
-  alignas(32) float depth[tile_width * tile_height];  // inverse; 0: nothing there
+  alignas(32) float depth[tile_width * tile_height];                   // inverse; 0: nothing there
   alignas(32) uint32_t number[tile_width * tile_height + lane_count];  // read beyond its end
   // Tells instances apart, and where thin_kind is set triangles; set by hand_out().
   uint16_t kind[tile_width * tile_height + lane_count];

@@ -22,8 +22,8 @@ vec3 normal_of(const Mesh& mesh, uint32_t triangle) {
 float length_of(const Mesh& mesh, uint32_t triangle) {  // of the longest edge
   float longest = 0;
   for (int k = 0; k < 3; k++)
-    longest = std::max(longest, length(corner_of(mesh, triangle, k + 1) -
-                                       corner_of(mesh, triangle, k)));
+    longest =
+        std::max(longest, length(corner_of(mesh, triangle, k + 1) - corner_of(mesh, triangle, k)));
   return longest;
 }
 // The least distance from an edge to the corner on its other side.

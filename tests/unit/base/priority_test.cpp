@@ -34,7 +34,8 @@ TEST(Priority, ThreadsWithinOtherLoopsComeBetweenTheirPieces) {
   std::atomic<bool> in_time{false};
   std::thread other([&] {
     parallel_for(2, [&](int i) {
-      if (i == 1) in_time = high_priority[0] != std::thread::id() && high_priority[1] != std::thread::id();
+      if (i == 1)
+        in_time = high_priority[0] != std::thread::id() && high_priority[1] != std::thread::id();
       else at_work.set_value(), begun.get_future().wait();
     });
   });

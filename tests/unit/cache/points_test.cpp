@@ -28,8 +28,7 @@ struct Stage {
   // A point that faces the viewer.
   void put(uint32_t i, vec3 p, uint32_t object = 1, bool infinite = false) {
     points.x[i] = p.x, points.y[i] = p.y, points.z[i] = p.z;
-    points.normal[i] = points.color[i].normal =
-        pack_normal(infinite ? -p : view.position - p);
+    points.normal[i] = points.color[i].normal = pack_normal(infinite ? -p : view.position - p);
     points.flags[i] = uint8_t(point_used | (infinite ? point_infinite : 0));
     points.age[i] = 0;
     points.count[i] = 1;
@@ -373,8 +372,8 @@ TEST(Remember, OneSurpriseIsAveragedTwoBeginAnew) {
   EXPECT_EQ(stage.points.count[20], 1);
 }
 
-// What points are compared of smooth light, of which one sample in eight brings nearly all: nothing on
-// average while it stays, with the noise that it has, and the change when it changes.
+// What points are compared of smooth light, of which one sample in eight brings nearly all: nothing
+// on average while it stays, with the noise that it has, and the change when it changes.
 TEST(Remember, WitnessesOfNoisyLightAreFair) {
   constexpr int samples_each = 12, visits = 4000;
   Rng rng(21);

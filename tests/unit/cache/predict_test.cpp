@@ -32,8 +32,8 @@ TEST(Extrapolate, GoesOnStraightAndRound) {
 TEST(Extrapolate, StaysWhereThereIsNoMotionToGoOnWith) {
   View now = turned(0.4f, 0.2f);
   EXPECT_EQ(extrapolate(now, now, 3), now);
-  EXPECT_EQ(extrapolate(turned(2), now, 3), now);           // a jump
-  EXPECT_EQ(extrapolate(turned(0.4f + pi), now, 3), now);   // half a turn has no axis
+  EXPECT_EQ(extrapolate(turned(2), now, 3), now);          // a jump
+  EXPECT_EQ(extrapolate(turned(0.4f + pi), now, 3), now);  // half a turn has no axis
   View nowhere = now;
   nowhere.position.y = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(extrapolate(nowhere, now, 3), now);

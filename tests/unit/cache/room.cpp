@@ -40,12 +40,9 @@ vec3 wall_albedo(uint32_t object, vec3 p) {
   switch (object) {
     case 1:
       return mix(vec3(0.25f, 0.16f, 0.1f), vec3(0.75f, 0.68f, 0.55f), checker(p.x * 2, p.z * 2));
-    case 2:
-      return vec3(0.85f);
-    case 3:
-      return vec3(0.7f, 0.25f, 0.2f);
-    case 4:
-      return vec3(0.25f, 0.4f, 0.7f);
+    case 2: return vec3(0.85f);
+    case 3: return vec3(0.7f, 0.25f, 0.2f);
+    case 4: return vec3(0.25f, 0.4f, 0.7f);
     default: {
       // Back and front walls carry pictures of fine stripes.
       bool frame = std::abs(std::fmod(p.x + 8, 2.0f) - 1) < 0.7f && p.y > 1 && p.y < 2.2f;
@@ -271,8 +268,8 @@ Scene make_room_scene(const Room& room) {
     return add_material(scene, diffuse(wall_albedo(object, vec3(0))));
   };
   const vec3 front = low + z, back = low + x;
-  add_quad(scene, add_material(scene, paint_wall(scene, 1, front, x, -z, 512, 640)), front, x,
-           -z, "floor");
+  add_quad(scene, add_material(scene, paint_wall(scene, 1, front, x, -z, 512, 640)), front, x, -z,
+           "floor");
   add_quad(scene, plain(2), low + y, x, z, "ceiling");
   add_quad(scene, plain(3), front, -z, y, "left");
   add_quad(scene, plain(4), back, z, y, "right");
@@ -282,10 +279,9 @@ Scene make_room_scene(const Room& room) {
            -x, y, "front");
   if (room.lamp)
     add_quad(scene, add_material(scene, emitter(lamp_radiance)),
-             {-lamp_half, high.y - 1e-3f, -lamp_half}, {2 * lamp_half, 0, 0},
-             {0, 0, 2 * lamp_half}, "lamp");
-  else
-    scene.objects.push_back("lamp");
+             {-lamp_half, high.y - 1e-3f, -lamp_half}, {2 * lamp_half, 0, 0}, {0, 0, 2 * lamp_half},
+             "lamp");
+  else scene.objects.push_back("lamp");
   for (const Ball& ball : balls)
     add_mesh(scene, sphere_mesh(add_material(scene, diffuse(ball.albedo)), ball.radius, 64), "ball",
              at(ball.center));

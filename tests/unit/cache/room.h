@@ -15,7 +15,7 @@ namespace wellspring {
 
 struct Room {
   bool lamp = true, spot = true;
-  bool noisy = true;    // false: smooth light is a plain function of the place, no randomness
+  bool noisy = true;  // false: smooth light is a plain function of the place, no randomness
   int bounces = 3;
 };
 

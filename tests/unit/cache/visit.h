@@ -46,7 +46,8 @@ struct Visit {
     Scene scene;
     World world{scene};
     VisibilityPass visibility;
-    explicit Place(Scene made) : scene(std::move(made)), visibility(commit(world), make_lights(world)) {}
+    explicit Place(Scene made)
+        : scene(std::move(made)), visibility(commit(world), make_lights(world)) {}
     static const World& commit(World& world) {
       world.commit();
       return world;

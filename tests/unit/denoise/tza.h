@@ -22,8 +22,8 @@ class TzaFile {
     }
     add_entry(name, sizes, layout, type, offset);
   }
-  void add_halves(const std::string& name, const std::vector<int>& sizes,
-                  const std::string& layout, const std::vector<uint16_t>& bits) {
+  void add_halves(const std::string& name, const std::vector<int>& sizes, const std::string& layout,
+                  const std::vector<uint16_t>& bits) {
     size_t offset = 12 + data_.size();
     for (uint16_t one : bits) append(data_, one, 2);
     add_entry(name, sizes, layout, 'h', offset);
@@ -48,8 +48,8 @@ class TzaFile {
     return uint16_t((bits >> 16 & 0x8000) | (((bits >> 23 & 255) - 112) << 10) |
                     (bits >> 13 & 0x3ff));
   }
-  void add_entry(const std::string& name, const std::vector<int>& sizes,
-                 const std::string& layout, char type, size_t offset) {
+  void add_entry(const std::string& name, const std::vector<int>& sizes, const std::string& layout,
+                 char type, size_t offset) {
     append(table_, name.size(), 2);
     for (char c : name) append(table_, uint8_t(c), 1);
     append(table_, sizes.size(), 1);

@@ -135,8 +135,8 @@ void expect_as_loops(int width, int height, bool large) {
   Weights weights = make_weights(large);
   InputPixels input = random_input(width, height);
   Planes padded{(width + 15) / 16 * 16, (height + 15) / 16 * 16, {}};
-  padded.planes.assign(input_channels, std::vector<float>(size_t(padded.width) *
-                                                          size_t(padded.height), 0.0f));
+  padded.planes.assign(input_channels,
+                       std::vector<float>(size_t(padded.width) * size_t(padded.height), 0.0f));
   for (int y = 0; y < height; y++)
     for (int x = 0; x < width; x++)
       for (size_t c = 0; c < input_channels; c++)
@@ -145,8 +145,7 @@ void expect_as_loops(int width, int height, bool large) {
   Planes expected = run_by_loops(padded, weights, large);
   UNet net(weights, "test");
   net.start(width, height, input);
-  while (net.advance(0)) {
-  }
+  while (net.advance(0)) {}
   double most = 0, largest = 0;
   for (int y = 0; y < height; y++)
     for (int x = 0; x < width; x++)
@@ -175,8 +174,7 @@ RawVector<vec3> run_with(UNet& net, int threads, const InputPixels& input, int w
   oneapi::tbb::task_arena arena(threads);
   return arena.execute([&] {
     net.start(width, height, input);
-    while (net.advance(threads == 1 ? 0 : 1)) {
-    }
+    while (net.advance(threads == 1 ? 0 : 1)) {}
     return net.output();
   });
 }
@@ -234,7 +232,9 @@ TEST(UNet, RefusesWeightsOfAnotherNetwork) {
             "net.tza: dec_conv2b.weight: is missing");
   EXPECT_EQ(error_with([](Weights& w) { w["dec_conv2b.bias"].sizes = {4}; }),
             "net.tza: dec_conv2b.bias: has another shape");
-  EXPECT_EQ(error_with([](Weights& w) { w["dec_conv3a.weight"].sizes = {7, 15, 1, 9}; }),
+  EXPECT_EQ(error_with([](Weights& w) {
+              w["dec_conv3a.weight"].sizes = {7, 15, 1, 9};
+            }),
             "net.tza: dec_conv3a.weight: has another shape");
   EXPECT_EQ(error_with([](Weights& w) { w["more.bias"].sizes = {1}; }),
             "net.tza: more.bias: belongs to no layer of the network");

@@ -30,8 +30,7 @@ TEST(Weights, ReadsHalvesAndFloats) {
   Weights weights = read_weights(file.bytes(), "net.tza");
   ASSERT_EQ(weights.size(), 2u);
   EXPECT_EQ(weights["a.weight"].sizes, (std::vector<int>{2, 3, 1, 1}));
-  EXPECT_EQ(weights["a.weight"].values,
-            (std::vector<float>{0, 1, -2, 0.5f, 65504, 6.1035156e-5f}));
+  EXPECT_EQ(weights["a.weight"].values, (std::vector<float>{0, 1, -2, 0.5f, 65504, 6.1035156e-5f}));
   EXPECT_EQ(weights["a.bias"].values, (std::vector<float>{3.25f, -1e-20f}));
 }
 

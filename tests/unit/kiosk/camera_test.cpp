@@ -26,7 +26,8 @@ std::unique_ptr<Camera> open(const std::string& source, bool loop = false) {
 
 TEST(Camera, a_missing_file_and_a_file_that_is_no_video_are_named) {
   for (auto [name, content] : {std::pair<const char*, const char*>{"missing.mp4", nullptr},
-                               {"empty.mp4", ""}, {"text.mp4", "not a video at all\n"}}) {
+                               {"empty.mp4", ""},
+                               {"text.mp4", "not a video at all\n"}}) {
     const auto path = std::filesystem::path(testing::TempDir()) / (std::string("kiosk_") + name);
     std::filesystem::remove(path);
     if (content) std::ofstream(path) << content;

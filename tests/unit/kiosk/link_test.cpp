@@ -141,8 +141,7 @@ TEST(Link, a_server_that_reads_nothing_costs_one_text) {
   link.send("last");
   EXPECT_LT(link.sent(), 400u);
   std::string text;
-  while ((text = read(stream)) == big) {
-  }
+  while ((text = read(stream)) == big) {}
   EXPECT_EQ(text, "last");
 }
 

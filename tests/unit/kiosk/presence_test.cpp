@@ -35,7 +35,8 @@ struct Script {
     }
   }
   void run(double seconds, bool moving, bool face) {
-    play(seconds, [=](double) { return moving; }, [=](double) { return face; });
+    play(
+        seconds, [=](double) { return moving; }, [=](double) { return face; });
   }
 };
 

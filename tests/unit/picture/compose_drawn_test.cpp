@@ -68,7 +68,8 @@ void expect_light(const Frame& frame) {
 
 // What is drawn for the eye at once is the frame, tone-mapped; along edges light is mixed as the
 // codes tell it.
-void expect_same_for_the_eye(DrawnVisit& drawn, const View& view, const VisibilityPass& visibility) {
+void expect_same_for_the_eye(DrawnVisit& drawn, const View& view,
+                             const VisibilityPass& visibility) {
   for (float exposure : {1.0f, 3.5f}) {
     Image8 expected, shown, alone;
     std::vector<float> depth;
@@ -213,8 +214,7 @@ TEST(Drawn, SurroundingsInFineLightCostNoPoint) {
     drawn.cache.remember(seen, drawn.requests, drawn.samples);
     if (kind == PictureOf::still)
       drawn.compositor.draw_still(drawn.cache, seen, *stage.visibility, drawn.frame);
-    else
-      drawn.compositor.draw(drawn.cache, seen, *stage.visibility, drawn.frame);
+    else drawn.compositor.draw(drawn.cache, seen, *stage.visibility, drawn.frame);
     EXPECT_EQ(drawn.frame.width, seen.width);
     expect_light(drawn.frame);
   };

@@ -241,9 +241,7 @@ TEST(DrawnHardCases, AnEyeWithinGlass) {
            at(vec3(-0.4f, 1.2f, 1)));
   Stage stage(std::move(scene));
   Visitor visitor;
-  auto view = [&](int i) {
-    return view_of(stage, {-0.4, 1.2, 1.8 - 0.04 * i}, 0.1f);
-  };
+  auto view = [&](int i) { return view_of(stage, {-0.4, 1.2, 1.8 - 0.04 * i}, 0.1f); };
   int inside = 0;
   for (int i = 0; i <= 40; i++) {
     inside += !stage.visibility->rasterises(view(i));

@@ -88,7 +88,8 @@ Bars look_at_bars(const Stage& stage, const Shown& shown) {
 TEST(FewPoints, NarrowThingsAreNeitherBlackNorGlaring) {
   Scene scene = make_barred_box(vec3(0.7f), 0.004f);
   Material sky = emitter(vec3(8));
-  sky.base_color = vec4(0.9f);  // a picture that emits light tells nothing of light that falls there
+  sky.base_color =
+      vec4(0.9f);  // a picture that emits light tells nothing of light that falls there
   add_quad(scene, add_material(scene, sky), {-0.2f, 0.2f, -0.54f}, {0.4f, 0, 0}, {0, 0.3f, 0},
            "sky");
   Stage lambertian(make_barred_box(vec3(0.7f), 0.004f)), before_sky(scene);
@@ -149,7 +150,8 @@ TEST(FewPoints, LightHasNoSquares) {
   }
 }
 
-// Who has just come to rest: what lamps do on a floor that emits light is seen by one sample in many.
+// Who has just come to rest: what lamps do on a floor that emits light is seen by one sample in
+// many.
 TEST(FewPoints, FloorsThatShineAreNotPepperedAtRest) {
   Scene scene = make_cornell_box();
   for (Material& material : scene.materials)

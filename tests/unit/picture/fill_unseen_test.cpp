@@ -14,7 +14,7 @@ namespace {
 
 enum class Kind { seen, hidden, outside };
 struct Pixel {
-  int level = 0;  // of red; green is half of it, blue a third
+  int level = 0;        // of red; green is half of it, blue a third
   float disparity = 0;  // of hidden ones: of what hid them
   Kind kind = Kind::seen;
 };
@@ -183,7 +183,9 @@ TEST(FillUnseen, StaysWithinWhatIsSeen) {
       };
       Filled filled = fill(width, height, paint, parallax);
       for (size_t i = 0; i < filled.after.rgb.size(); i += 3)
-        if (filled.after.rgb[i] != unset) { ASSERT_NEAR(filled.after.rgb[i], 116, 16); }
+        if (filled.after.rgb[i] != unset) {
+          ASSERT_NEAR(filled.after.rgb[i], 116, 16);
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces that emit light a little here and there and are lit by others, too: screens, dials, coals.
+// Surfaces that emit light a little here and there and are lit by others, too: screens, dials,
+// coals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,7 +61,8 @@ Mean compare(const Frame& frame, const Frame& truth, const View& view, int strip
   return mean;
 }
 
-// However little a place emits light, the light that falls on it is not lost, and none counts twice.
+// However little a place emits light, the light that falls on it is not lost, and none counts
+// twice.
 TEST(Glow, IsAddedToTheLightThatFallsThere) {
   Stage stage(make_board());
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 2 * std::atan(0.3f), size, size);

@@ -82,7 +82,8 @@ struct Rested {
   Keyframe draw_backdrop(const Stage& stage, const View& view) {
     visit.cache.move_points(*stage.world);
     visit.cache.project(view);
-    visit.compositor.draw_still(visit.cache, view, *stage.visibility, backdrop, StillShows::backdrop);
+    visit.compositor.draw_still(visit.cache, view, *stage.visibility, backdrop,
+                                StillShows::backdrop);
     return keyframe_of(view, backdrop);
   }
   Image8 draw_over(const Stage& stage, const Keyframe& keyframe) {
@@ -200,8 +201,8 @@ TEST(MovingPicture, FollowsItsMesh) {
   copy_colors(keyframe, {0, 0, width, height}, ground);
   std::vector<char> was(pixels);
   for (int i = 0; i < pixels; i++)
-    was[size_t(i)] = stage.object_at(view, float(i % width) + 0.5f, float(i / width) + 0.5f) ==
-                     ball_of(stage);
+    was[size_t(i)] =
+        stage.object_at(view, float(i % width) + 0.5f, float(i / width) + 0.5f) == ball_of(stage);
   stage.push_ball(0.17f);
   Image8 after = rested.draw_over(stage, keyframe), truth = shown(stage.truth(view, 256));
   int here = 0, left = 0, left_wrong = 0;
@@ -211,8 +212,8 @@ TEST(MovingPicture, FollowsItsMesh) {
       bool inner = true, outer = true;  // not at its silhouette
       for (int dy = -2; dy <= 2; dy++)
         for (int dx = -2; dx <= 2; dx++) {
-          bool is = stage.object_at(view, float(x + dx) + 0.5f, float(y + dy) + 0.5f) ==
-                    ball_of(stage);
+          bool is =
+              stage.object_at(view, float(x + dx) + 0.5f, float(y + dy) + 0.5f) == ball_of(stage);
           inner = inner && is;
           outer = outer && !is;
         }
@@ -242,8 +243,8 @@ TEST(MovingPicture, WhatWasCoveredBecomesRight) {
   pictures(12);
   std::vector<char> was(pixels);
   for (int i = 0; i < pixels; i++)
-    was[size_t(i)] = stage.object_at(view, float(i % width) + 0.5f, float(i / width) + 0.5f) ==
-                     ball_of(stage);
+    was[size_t(i)] =
+        stage.object_at(view, float(i % width) + 0.5f, float(i / width) + 0.5f) == ball_of(stage);
   stage.push_ball(0.17f);
   Keyframe keyframe = rested.draw_backdrop(stage, view);
   rested.draw_over(stage, keyframe);

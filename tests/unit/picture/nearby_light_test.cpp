@@ -83,8 +83,7 @@ TEST(NearbyLight, IsTrustedLessTheFartherItIs) {
   make_points(0, 1, frame);
   size_t middle = 9 * width + 18;
   frame.object[middle] = thing;
-  frame.confidence[middle] =
-      std::bit_cast<float>(uint32_t(pack_normal(vec3(0, 0, 1))) | 16u << 16);
+  frame.confidence[middle] = std::bit_cast<float>(uint32_t(pack_normal(vec3(0, 0, 1))) | 16u << 16);
   packed_word(frame, 18, 9, plane_smooth) = pack_rgb9e5(vec3(4));
   float before = 17;
   for (int away = 0; away <= 5; away++) {

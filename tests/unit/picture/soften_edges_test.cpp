@@ -19,8 +19,7 @@ void expect_mixed_before_the_curve(std::vector<vec3> light,
   Image8 image, expected;
   tonemap(frame, {}, image);
   std::vector<uint8_t> peaks;
-  for (vec3 c : light)
-    peaks.push_back(uint8_t(eval_peak_codes(all_lanes(max_component(c)))[0]));
+  for (vec3 c : light) peaks.push_back(uint8_t(eval_peak_codes(all_lanes(max_component(c)))[0]));
   soften_edges(edges, image, peaks);
   soften_edges(edges, frame.color);
   tonemap(frame, {}, expected);

@@ -16,7 +16,7 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 struct SeenPlace {
-  vec3 color{0};  // 0 to 255
+  vec3 color{0};              // 0 to 255
   float distance = infinity;  // along the ray
 };
 using Place = std::function<SeenPlace(const Ray&)>;

@@ -84,10 +84,8 @@ Appearance make_diffuse(Conversion& c, pugi::xml_node bsdf) {
   pugi::xml_node value = resolve(c.document, reflectance);
   if (value && std::string(value.name()) == "texture") {
     look.material.base_color = vec4(1);
-    if (type_of(value) == "mesh_attribute")
-      look.attribute = text(value, "name", "");
-    else
-      add_texture(c, value, look.material.base_color_texture);
+    if (type_of(value) == "mesh_attribute") look.attribute = text(value, "name", "");
+    else add_texture(c, value, look.material.base_color_texture);
   } else {
     look.material.base_color = vec4(color_value(value, vec3(0.5f)), 1);
   }

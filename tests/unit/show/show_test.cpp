@@ -101,9 +101,8 @@ TEST_F(ShowTest, StandingStillConvergesToTheReference) {
   StillSettings settings;
   settings.spp = 768;
   settings.transport = show->settings.transport;
-  Frame reference =
-      render_still(*show->still_technique, *show->world, show->lights, visitor.place.last_view,
-                   settings);
+  Frame reference = render_still(*show->still_technique, *show->world, show->lights,
+                                 visitor.place.last_view, settings);
   double error = 0, size = 0;
   for (size_t i = 0; i < reference.color.size(); i++) {
     // As it is shown: of lamps no more than white.

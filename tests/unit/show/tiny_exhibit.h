@@ -31,9 +31,9 @@ inline Exhibit make_tiny_exhibit(dvec3 origin = dvec3(0)) {
   lamp.double_sided = true;
   scene.materials = {grey, lamp};
   Mesh room;
-  add_quad(room, {-4, 0, -4}, {0, 0, 8}, {8, 0, 0});   // floor, facing up
-  add_quad(room, {-4, 4, -4}, {8, 0, 0}, {0, 0, 8});   // ceiling
-  add_quad(room, {-4, 0, -4}, {8, 0, 0}, {0, 4, 0});   // walls
+  add_quad(room, {-4, 0, -4}, {0, 0, 8}, {8, 0, 0});  // floor, facing up
+  add_quad(room, {-4, 4, -4}, {8, 0, 0}, {0, 0, 8});  // ceiling
+  add_quad(room, {-4, 0, -4}, {8, 0, 0}, {0, 4, 0});  // walls
   add_quad(room, {-4, 0, 4}, {0, 4, 0}, {8, 0, 0});
   add_quad(room, {-4, 0, -4}, {0, 4, 0}, {0, 0, 8});
   add_quad(room, {4, 0, -4}, {0, 0, 8}, {0, 4, 0});

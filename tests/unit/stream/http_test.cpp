@@ -150,8 +150,7 @@ TEST(Http, slow_headers_are_cut_while_others_are_served) {
   std::atomic<bool> cut{false};
   std::thread dripping([&] {
     const auto start = std::chrono::steady_clock::now();
-    while (std::chrono::steady_clock::now() - start <
-           std::chrono::duration<double>(patience)) {
+    while (std::chrono::steady_clock::now() - start < std::chrono::duration<double>(patience)) {
       slow.send("X: y\r\n");
       slow.more(0.02);
       if (slow.ends(0.001)) {

@@ -113,14 +113,13 @@ Asset extended(const json& extensions, const std::string& uri = "unused") {
 }
 
 TEST(Material, LayersAndGlossAreRead) {
-  Scene scene = load(
-      extended({{"KHR_materials_specular",
-                 {{"specularFactor", 0.25}, {"specularColorFactor", {0.5, 2, 1}}}},
-                {"KHR_materials_clearcoat",
-                 {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.125}}},
-                {"KHR_materials_sheen",
-                 {{"sheenColorFactor", {0.5, 0.25, 1}}, {"sheenRoughnessFactor", 0.5}}},
-                {"KHR_materials_dispersion", {{"dispersion", 0.36}}}}));
+  Scene scene = load(extended(
+      {{"KHR_materials_specular", {{"specularFactor", 0.25}, {"specularColorFactor", {0.5, 2, 1}}}},
+       {"KHR_materials_clearcoat",
+        {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.125}}},
+       {"KHR_materials_sheen",
+        {{"sheenColorFactor", {0.5, 0.25, 1}}, {"sheenRoughnessFactor", 0.5}}},
+       {"KHR_materials_dispersion", {{"dispersion", 0.36}}}}));
   EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
   const Material& m = scene.materials[1];
   EXPECT_EQ(m.specular, 0.25f);

@@ -109,7 +109,12 @@ TEST(Sky, EverywhereFiniteAndSymmetricAboutTheSun) {
 
 TEST(Sky, WhatMakesNoSenseIsSaid) {
   double nan = std::nan("");
-  for (SkySettings s : {SkySettings{91, 0, 2, 1}, {-19, 0, 2, 1}, {nan, 0, 2, 1}, {0, nan, 2, 1},
-                        {0, 0, 0.5, 1}, {0, 0, 2, -1}, {0, 0, nan, 1}})
+  for (SkySettings s : {SkySettings{91, 0, 2, 1},
+                        {-19, 0, 2, 1},
+                        {nan, 0, 2, 1},
+                        {0, nan, 2, 1},
+                        {0, 0, 0.5, 1},
+                        {0, 0, 2, -1},
+                        {0, 0, nan, 1}})
     EXPECT_NE(sky_problem(s), nullptr);
 }

@@ -20,10 +20,12 @@ TEST(GestureLibrary, HasTheWordsOfBodyLanguage) {
   const GestureLibrary& library = default_gestures();
   EXPECT_GE(library.clips.size(), 25u);
   for (const char* name :
-       {"greet", "wave", "point_near", "point_far", "count_one", "count_two", "count_three",
-        "invite", "think", "bow", "farewell", "listen", "nod", "shake_head", "shrug", "explain",
-        "large", "small", "heart", "wonder", "hush", "beckon", "present_left", "present_right",
-        "clap", "hands_folded", "look_around", "laugh", "sigh", "open_arms", "emphasize", "stop"})
+       {"greet",       "wave",         "point_near",  "point_far", "count_one",    "count_two",
+        "count_three", "invite",       "think",       "bow",       "farewell",     "listen",
+        "nod",         "shake_head",   "shrug",       "explain",   "large",        "small",
+        "heart",       "wonder",       "hush",        "beckon",    "present_left", "present_right",
+        "clap",        "hands_folded", "look_around", "laugh",     "sigh",         "open_arms",
+        "emphasize",   "stop"})
     EXPECT_GE(find_gesture(name), 0) << name;
   EXPECT_EQ(find_gesture("no such gesture"), -1);
   for (const GestureClip& clip : library.clips) {

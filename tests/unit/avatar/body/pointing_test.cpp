@@ -115,8 +115,9 @@ TEST(Pointing, KeepsToTheLimitsOfTheJoint) {
   EXPECT_LT(beyond, 1200);
   Pose pose = make_rest_pose(boxes());
   EXPECT_EQ(point_arm(rig, 1, Aim::finger, {NAN, 0, 0}, 1, pose), pi);
-  EXPECT_EQ(point_arm(rig, 1, Aim::finger,
-                      boxes().joints[size_t(rig.arm[1].shoulder)].center, 1, pose), pi);
+  EXPECT_EQ(
+      point_arm(rig, 1, Aim::finger, boxes().joints[size_t(rig.arm[1].shoulder)].center, 1, pose),
+      pi);
 }
 
 TEST(Pointing, GoesOverFromPlaceToPlaceWithoutAJump) {
@@ -175,8 +176,7 @@ TEST(Feet, DoNotSlideDuringAnyGesture) {
     int ankle[2] = {find_joint(*figure, "l_talocrural"), find_joint(*figure, "r_talocrural")};
     stage.run(1);
     vec3 planted[2];
-    for (int s = 0; s < 2; s++)
-      planted[s] = eval_joint_frame(*figure, stage.pose, ankle[s]).center;
+    for (int s = 0; s < 2; s++) planted[s] = eval_joint_frame(*figure, stage.pose, ankle[s]).center;
     float drift = 0;
     for (const GestureClip& clip : default_gestures().clips) {
       stage.input.story.gesture = clip.name;

@@ -166,17 +166,17 @@ TEST(Detail, WhatIsNotNeededIsNotComputed) {
   StorytellerWork nothing;
   nothing.ticks = far.ticks;
   EXPECT_EQ(far, nothing) << "far away the body alone moves";
-  for (uint64_t StorytellerWork::* none :
+  for (uint64_t StorytellerWork::*none :
        {&StorytellerWork::saccades, &StorytellerWork::flex_noise, &StorytellerWork::expressions,
         &StorytellerWork::mirror, &StorytellerWork::empathy})
     EXPECT_EQ(middle.*none, 0u);
-  for (uint64_t StorytellerWork::* some :
+  for (uint64_t StorytellerWork::*some :
        {&StorytellerWork::fingers, &StorytellerWork::eyes, &StorytellerWork::blinks,
         &StorytellerWork::visemes, &StorytellerWork::flexes, &StorytellerWork::body_noise}) {
     EXPECT_GT(middle.*some, 0u);
     EXPECT_GT(near.*some, 0u);
   }
-  for (uint64_t StorytellerWork::* all :
+  for (uint64_t StorytellerWork::*all :
        {&StorytellerWork::saccades, &StorytellerWork::flex_noise, &StorytellerWork::expressions,
         &StorytellerWork::mirror, &StorytellerWork::empathy})
     EXPECT_GT(near.*all, 0u);

@@ -14,10 +14,11 @@ TEST(Expressions, TheSetHasTheSixTheVisemesAndWhatAFaceDoes) {
   for (std::string_view name : emotion_names) EXPECT_GE(find_expression(set, name), 0) << name;
   for (const char* name : viseme_names)
     EXPECT_GE(find_expression(set, std::string("viseme_") + name), 0) << name;
-  for (const char* name : {"blink", "blink_l", "blink_r", "brows_up", "brows_down", "brows_worried",
-                           "squint", "eyes_wide", "smile", "frown", "sneer", "pucker", "mouth_wide",
-                           "lips_press", "mouth_open", "cheek_puff", "wink", "contempt", "interest",
-                           "concern", "head_nod", "head_turn", "head_tilt", "breathe"})
+  for (const char* name :
+       {"blink",      "blink_l",    "blink_r",    "brows_up",   "brows_down", "brows_worried",
+        "squint",     "eyes_wide",  "smile",      "frown",      "sneer",      "pucker",
+        "mouth_wide", "lips_press", "mouth_open", "cheek_puff", "wink",       "contempt",
+        "interest",   "concern",    "head_nod",   "head_turn",  "head_tilt",  "breathe"})
     EXPECT_GE(find_expression(set, name), 0) << name;
 }
 

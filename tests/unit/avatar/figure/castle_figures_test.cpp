@@ -14,13 +14,12 @@ namespace wellspring {
 namespace {
 
 const char* const displacer_names[] = {
-    "breathe",       "blink_l",     "blink_r",      "lid_wide",     "squint",
-    "brow_up_l",     "brow_up_r",   "brow_inner_up", "brow_down",   "cheek_up",  "smile_l",
-    "smile_r",       "frown",       "mouth_open",   "lips_pucker",  "lips_wide",
-    "lips_press",    "upper_lip_up", "lower_lip_down", "cheek_puff", "nose_wrinkle",
-    "viseme_pp",     "viseme_ff",   "viseme_th",    "viseme_dd",    "viseme_kk",
-    "viseme_ch",     "viseme_ss",   "viseme_nn",    "viseme_rr",    "viseme_aa",
-    "viseme_e",      "viseme_ih",   "viseme_oh",    "viseme_ou"};
+    "breathe",        "blink_l",       "blink_r",      "lid_wide",  "squint",     "brow_up_l",
+    "brow_up_r",      "brow_inner_up", "brow_down",    "cheek_up",  "smile_l",    "smile_r",
+    "frown",          "mouth_open",    "lips_pucker",  "lips_wide", "lips_press", "upper_lip_up",
+    "lower_lip_down", "cheek_puff",    "nose_wrinkle", "viseme_pp", "viseme_ff",  "viseme_th",
+    "viseme_dd",      "viseme_kk",     "viseme_ch",    "viseme_ss", "viseme_nn",  "viseme_rr",
+    "viseme_aa",      "viseme_e",      "viseme_ih",    "viseme_oh", "viseme_ou"};
 
 class CastleFigure : public testing::TestWithParam<const char*> {
  protected:
@@ -28,8 +27,8 @@ class CastleFigure : public testing::TestWithParam<const char*> {
     static std::map<std::string, Character> loaded;
     auto [place, added] = loaded.try_emplace(GetParam());
     if (added)
-      place->second = load_character(std::string(WELLSPRING_SOURCE) + "/content/castle/figures/" +
-                                     GetParam());
+      place->second =
+          load_character(std::string(WELLSPRING_SOURCE) + "/content/castle/figures/" + GetParam());
     return place->second;
   }
 
@@ -83,8 +82,10 @@ TEST_P(CastleFigure, IsWholeAndKnownToTheRig) {
   EXPECT_EQ(c.displacers.size(), std::size(displacer_names));
   for (const char* name : displacer_names) EXPECT_GE(find_displacer(c, name), 0) << name;
   for (const Appearance& appearance : c.appearances)
-    if (!appearance.texture.empty()) EXPECT_TRUE(std::filesystem::exists(appearance.texture)) << appearance.texture;
-  for (const Appearance& appearance : c.appearances)  // what is near the eye has relief too fine for triangles
+    if (!appearance.texture.empty())
+      EXPECT_TRUE(std::filesystem::exists(appearance.texture)) << appearance.texture;
+  for (const Appearance& appearance :
+       c.appearances)  // what is near the eye has relief too fine for triangles
     if (appearance.texture.find("_skin.") != std::string::npos ||
         appearance.texture.find("_hair.") != std::string::npos)
       EXPECT_TRUE(std::filesystem::exists(appearance.normal_texture)) << appearance.texture;
@@ -195,8 +196,11 @@ TEST_P(CastleFigure, GladnessShowsTeethAndReachesTheEyes) {
   const Character& c = character();
   vec3 mouth = site("mouth_pt");
   std::vector<vec3> rest = posed({});
-  std::vector<vec3> glad = posed({{"smile_l", 1.0f}, {"smile_r", 1.0f}, {"cheek_up", 0.75f},
-                                  {"upper_lip_up", 0.5f}, {"mouth_open", 0.1f}});
+  std::vector<vec3> glad = posed({{"smile_l", 1.0f},
+                                  {"smile_r", 1.0f},
+                                  {"cheek_up", 0.75f},
+                                  {"upper_lip_up", 0.5f},
+                                  {"mouth_open", 0.1f}});
   for (float x : {-0.008f, -0.004f, 0.004f, 0.008f}) {
     bool teeth = false;
     for (float dy = -0.008f; dy <= 0.008f; dy += 0.0005f)

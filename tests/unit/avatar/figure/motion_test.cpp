@@ -245,7 +245,7 @@ TEST(Retarget, HipsGoAsFarAsTheFigureIsTall) {
 
 TEST(Retarget, OneSpineJointBecomesMany) {
   Character person = test::load_text(make_person().gltf(), ".gltf");  // vl5 and vt10
-  Character recorded = load_bvh(bvh(true, one_frame({{7, 40}})));      // Chest bends forward
+  Character recorded = load_bvh(bvh(true, one_frame({{7, 40}})));     // Chest bends forward
   Pose pose = play(recorded.motions[0], person);
   quat half = glm::angleAxis(20 * pi / 180, vec3(1, 0, 0));
   EXPECT_GT(std::abs(dot(pose.rotations[size_t(find_joint(person, "vl5"))], half)), 1 - 1e-5f);

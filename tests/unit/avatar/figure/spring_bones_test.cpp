@@ -202,7 +202,9 @@ TEST(SpringBones, WithACentreOnlyMovementAgainstItCounts) {
       most = std::max(most, 2 * std::acos(std::min(pose.rotations[1].w, 1.0f)));
     }
     EXPECT_EQ(most > 0.05f, !centred) << most;
-    if (centred) { EXPECT_LT(most, 1e-3f); }
+    if (centred) {
+      EXPECT_LT(most, 1e-3f);
+    }
   }
 }
 

@@ -186,8 +186,7 @@ TEST(Encodings, EveryTruncationAndFlippedByte) {
         try {
           Character c = load_character(file.path());
           EXPECT_FALSE(c.joints.empty());
-        } catch (const LoadError&) {
-        }
+        } catch (const LoadError&) {}
       }
     }
   }

@@ -257,8 +257,7 @@ TEST(GltfFigure, EveryTruncationAndFlippedByteIsRefusedOrLoads) {
         Character c = load_character(file.path());
         EXPECT_FALSE(cut) << at;
         for (vec3 p : c.positions) ASSERT_TRUE(is_finite(p));
-      } catch (const LoadError&) {
-      }
+      } catch (const LoadError&) {}
     }
 }
 

@@ -40,11 +40,11 @@ inline const std::vector<PersonBone>& person_bones() {
 }
 
 struct PersonOptions {
-  quat world{1, 0, 0, 0};   // turns the whole person: facing -Z, lying in Z-up
-  float unit = 1;           // file units a metre
-  quat axes{1, 0, 0, 0};    // every bone's own axes
-  bool odd_axes = false;    // and a different turn each
-  std::map<std::string, quat> posed;  // turn of a bone about world axes, after binding
+  quat world{1, 0, 0, 0};                    // turns the whole person: facing -Z, lying in Z-up
+  float unit = 1;                            // file units a metre
+  quat axes{1, 0, 0, 0};                     // every bone's own axes
+  bool odd_axes = false;                     // and a different turn each
+  std::map<std::string, quat> posed;         // turn of a bone about world axes, after binding
   std::map<std::string, std::string> names;  // of bones; absent: VRM's
   bool named = true;
 };

@@ -440,8 +440,7 @@ TEST(Refuse, EveryFlippedByteIsRefusedOrLoads) {
       for (const Part& part : c.parts)
         for (uvec3 t : part.triangles) EXPECT_LT(std::max({t.x, t.y, t.z}), c.positions.size());
       loaded++;
-    } catch (const LoadError&) {
-    }
+    } catch (const LoadError&) {}
   }
   EXPECT_GT(loaded, 10);
 }

@@ -29,25 +29,26 @@ gltf::File rewritten(const Asset& asset) {
 Asset cartoon_person() {
   Asset asset = dressed_person();
   add_vrm_0(asset);
-  asset.root["extensions"]["VRM"]["materialProperties"] = {{{"name", "skin"},
-                 {"shader", "VRM/MToon"},
-                 {"floatProperties",
-                  {{"_Cutoff", 0.25},
-                   {"_CullMode", 0},
-                   {"_BumpScale", 0.5},
-                   {"_OutlineWidthMode", 1},
-                   {"_OutlineWidth", 0.1}}},
-                 {"vectorProperties",
-                  {{"_Color", {0.5, 1, 0, 0.75}},
-                   {"_EmissionColor", {0, 1, 0, 1}},
-                   {"_MainTex", {0.125, 0.25, 2, 0.5}}}},
-                 {"textureProperties", {{"_MainTex", 0}, {"_BumpMap", 0}, {"_EmissionMap", 0}}},
-                 {"keywordMap", {{"_ALPHATEST_ON", true}}}},
-                {{"name", "ring"},
-                 {"shader", "VRM/UnlitTransparent"},
-                 {"floatProperties", json::object()},
-                 {"vectorProperties", json::object()},
-                 {"textureProperties", {{"_MainTex", 0}}}}};
+  asset.root["extensions"]["VRM"]["materialProperties"] = {
+      {{"name", "skin"},
+       {"shader", "VRM/MToon"},
+       {"floatProperties",
+        {{"_Cutoff", 0.25},
+         {"_CullMode", 0},
+         {"_BumpScale", 0.5},
+         {"_OutlineWidthMode", 1},
+         {"_OutlineWidth", 0.1}}},
+       {"vectorProperties",
+        {{"_Color", {0.5, 1, 0, 0.75}},
+         {"_EmissionColor", {0, 1, 0, 1}},
+         {"_MainTex", {0.125, 0.25, 2, 0.5}}}},
+       {"textureProperties", {{"_MainTex", 0}, {"_BumpMap", 0}, {"_EmissionMap", 0}}},
+       {"keywordMap", {{"_ALPHATEST_ON", true}}}},
+      {{"name", "ring"},
+       {"shader", "VRM/UnlitTransparent"},
+       {"floatProperties", json::object()},
+       {"vectorProperties", json::object()},
+       {"textureProperties", {{"_MainTex", 0}}}}};
   return asset;
 }
 

@@ -59,8 +59,7 @@ Asset full_person_1() {
       {"overrideBlink", "block"},
       {"overrideLookAt", "blend"},
       {"materialColorBinds", {color}},
-      {"textureTransformBinds",
-       {{{"material", 0}, {"scale", {3, 0.5}}, {"offset", {0.75, 0.5}}}}}};
+      {"textureTransformBinds", {{{"material", 0}, {"scale", {3, 0.5}}, {"offset", {0.75, 0.5}}}}}};
   presets(asset)["blink"] = presets(asset)["aa"];
   asset.root["extensions"]["VRMC_vrm"]["firstPerson"]["meshAnnotations"] = {
       {{"node", 17}, {"type", "both"}}};
@@ -68,8 +67,7 @@ Asset full_person_1() {
       {"specVersion", "1.0"},
       {"constraint", {{"roll", {{"source", 2}, {"rollAxis", "Y"}, {"weight", 0.5}}}}}};
   asset.root["nodes"][7]["extensions"]["VRMC_node_constraint"] = {
-      {"specVersion", "1.0"},
-      {"constraint", {{"aim", {{"source", 4}, {"aimAxis", "PositiveX"}}}}}};
+      {"specVersion", "1.0"}, {"constraint", {{"aim", {{"source", 4}, {"aimAxis", "PositiveX"}}}}}};
   asset.root["materials"][0]["extensions"]["VRMC_materials_mtoon"] = {
       {"outlineWidthMode", "none"}, {"shadeColorFactor", {0, 0, 0}}};
   return asset;

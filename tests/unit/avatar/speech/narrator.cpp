@@ -76,9 +76,7 @@ struct Telling {
       if (phoneme.word == int(word)) list.push_back(&phoneme);
     return list;
   }
-  void say(size_t word) {
-    append(out, part(speech.words[word].begin, speech.words[word].end));
-  }
+  void say(size_t word) { append(out, part(speech.words[word].begin, speech.words[word].end)); }
   void stutter(size_t word) {
     auto sounds = phonemes(word);
     if (sounds.size() < 2) return;
@@ -119,7 +117,10 @@ struct Telling {
 
 Samples reverberate(const Samples& sound, double seconds, int rate, Rng& rng) {
   // Sparse echoes, denser than the ear tells apart, falling by 60 dB in the time given.
-  struct Echo { size_t delay; float gain; };
+  struct Echo {
+    size_t delay;
+    float gain;
+  };
   std::vector<Echo> echoes;
   for (int i = 0; i < 400; i++) {
     double time = seconds * double(rng.uniform());

@@ -75,8 +75,7 @@ TEST(SpeechSound, DamagedFilesNeverCrash) {
     try {
       Sound sound = load_sound(file);
       EXPECT_LE(sound.samples.size(), damaged.size());
-    } catch (const LoadError&) {
-    }
+    } catch (const LoadError&) {}
   }
 }
 
@@ -224,8 +223,7 @@ TEST(SpeechMarksFile, DamagedMarksNeverCrash) {
         ASSERT_LE(phoneme.end, speech.duration + 1e-9);
         ASSERT_GE(phoneme.begin, 0);
       }
-    } catch (const LoadError&) {
-    }
+    } catch (const LoadError&) {}
   }
 }
 

@@ -231,8 +231,7 @@ TEST(StoryScript, DamagedTextsAreReadOrRefused) {
         Ssml ssml = make_ssml(line.text, line.styles);
         for (uint32_t byte : ssml.source) ASSERT_LE(byte, line.text.size());
       }
-    } catch (const LoadError&) {
-    }
+    } catch (const LoadError&) {}
   }
   EXPECT_GT(read, 100);
 }
@@ -251,9 +250,15 @@ TEST(SpeechStyle, SsmlNamesTheByteOfEveryCharacter) {
   for (size_t i = 0; i < ssml.text.size(); i++) {
     if ((ssml.text[i] & 0xc0) == 0x80) continue;
     uint32_t byte = ssml.source.at(character++);
-    if (ssml.text.substr(i, 2) == "go") { EXPECT_EQ(byte, 10u); }
-    if (ssml.text.substr(i, 6) == "twelve") { EXPECT_EQ(byte, 7u); }
-    if (ssml.text.substr(i, 4) == "&lt;") { EXPECT_EQ(byte, 3u); }
+    if (ssml.text.substr(i, 2) == "go") {
+      EXPECT_EQ(byte, 10u);
+    }
+    if (ssml.text.substr(i, 6) == "twelve") {
+      EXPECT_EQ(byte, 7u);
+    }
+    if (ssml.text.substr(i, 4) == "&lt;") {
+      EXPECT_EQ(byte, 3u);
+    }
   }
   EXPECT_EQ(character, ssml.source.size());
 }
@@ -263,8 +268,9 @@ TEST(SpeechStyle, NestedFactorsMultiplyAndNonsenseIsCut) {
   more.emphasis = 2;
   more.pitch = NAN;
   Ssml ssml = make_ssml("abcd", {half, more});
-  EXPECT_EQ(ssml.text, "<speak><prosody rate=\"50%\">ab</prosody><prosody rate=\"30%\">"
-                       "<emphasis level=\"strong\">cd</emphasis></prosody></speak>");
+  EXPECT_EQ(ssml.text,
+            "<speak><prosody rate=\"50%\">ab</prosody><prosody rate=\"30%\">"
+            "<emphasis level=\"strong\">cd</emphasis></prosody></speak>");
 }
 
 TEST(StoryValue, AsSsmlWritesThem) {

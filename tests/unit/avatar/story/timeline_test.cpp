@@ -36,8 +36,8 @@ TEST(Timeline, MarksComeWithTheirWords) {
   ASSERT_FALSE(speech.words.empty());
   Timeline timeline = make_timeline(line, &speech, 0);
   ASSERT_EQ(timeline.actions.size(), 4u);
-  const auto& [emotion, gesture, beat, look] = std::tie(timeline.actions[0], timeline.actions[1],
-                                                        timeline.actions[2], timeline.actions[3]);
+  const auto& [emotion, gesture, beat, look] =
+      std::tie(timeline.actions[0], timeline.actions[1], timeline.actions[2], timeline.actions[3]);
   EXPECT_EQ(emotion.event.kind, StoryMarkKind::emotion);
   EXPECT_NEAR(emotion.time, begin_of(speech, "The"), 1e-9);
   EXPECT_EQ(gesture.event.name, "invite");
@@ -99,9 +99,9 @@ TEST(SpeechStyleSound, PausesSlownessAndOtherWordsAreHeard) {
   auto length = [](const Speech& speech, size_t word) {
     return speech.words[word].end - speech.words[word].begin;
   };
-  EXPECT_GT(length(styled, 5), 1.4 * length(plain, 5));              // "silent"
-  EXPECT_LT(length(styled, 1), 0.7 * length(plain, 1));              // "that year" for "1786"
-  EXPECT_GT(styled.words[6].begin - styled.words[5].end, 0.6);       // the pause before "at"
+  EXPECT_GT(length(styled, 5), 1.4 * length(plain, 5));         // "silent"
+  EXPECT_LT(length(styled, 1), 0.7 * length(plain, 1));         // "that year" for "1786"
+  EXPECT_GT(styled.words[6].begin - styled.words[5].end, 0.6);  // the pause before "at"
   EXPECT_NEAR(length(styled, 7), length(plain, 7), 0.35 * length(plain, 7));
 }
 

@@ -80,8 +80,7 @@ TEST(Discontinuity, PatternOfSetsVanishesOnAPlane) {
     std::vector<Sample> samples = see_plane({0, 1, 0.3f});
     float mean = float(n * n - 1) / 2;
     for (int y = 0; y < height; y++)
-      for (int x = 0; x < width; x++)
-        samples[at(x, y)].smooth = vec3(float(y % n * n + x % n));
+      for (int x = 0; x < width; x++) samples[at(x, y)].smooth = vec3(float(y % n * n + x % n));
     filter_smooth(flat_view(), {n, n}, samples);
     for (int y = 2 * n; y < height - 2 * n; y++)
       for (int x = 2 * n; x < width - 2 * n; x++)
@@ -159,8 +158,8 @@ TEST(Discontinuity, EdgesAreWhereNeighboursDiffer) {
       bool edge = false;
       for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); v++)
         for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); u++)
-          edge |= (u != x || v != y) &&
-                  is_edge(samples[at(x, y)], samples[at(u, v)], settings, pixel);
+          edge |=
+              (u != x || v != y) && is_edge(samples[at(x, y)], samples[at(u, v)], settings, pixel);
       ASSERT_EQ(edges[at(x, y)] != 0, edge) << x << "," << y;
       found += edge;
     }
@@ -191,7 +190,7 @@ TEST(Discontinuity, TexturesAndEverythingElseStay) {
     s.albedo = vec3(0.1f + rng.uniform());
     s.rest = vec3(rng.uniform());
   }
-  samples[at(5, 5)].flags = 0;  // nothing hit
+  samples[at(5, 5)].flags = 0;         // nothing hit
   samples[at(9, 9)].albedo = vec3(0);  // a mirror: no irradiance is known there
   samples[at(9, 9)].smooth = vec3(0);
   std::vector<Sample> filtered = samples;

@@ -89,8 +89,7 @@ TEST(InstantRadiosity, QuasiRandomLightsVaryLessThanRandomOnes) {
   const vec3 place(0.05f, 0, -0.2f);
   TransportSettings together, alone;
   together.instant.places = together.instant.walks = 16;
-  together.instant.columns = together.instant.rows = alone.instant.columns =
-      alone.instant.rows = 1;
+  together.instant.columns = together.instant.rows = alone.instant.columns = alone.instant.rows = 1;
   alone.instant.places = alone.instant.walks = 1;
   Mean quasi, random;
   for (uint64_t seed = 0; seed < 100; seed++) {
@@ -210,8 +209,8 @@ TEST(InstantRadiosity, ClippedIsDarkerCompensatedIsPath) {
   settings.max_depth = clipped.max_depth = 5;
   settings.instant.clip = clipped.instant.clip = 0.15f;
   clipped.instant.compensate = false;
-  Estimate path = estimate_radiance(*find_technique("path"), world, lights, view, settings,
-                                    {24, 24, 1});
+  Estimate path =
+      estimate_radiance(*find_technique("path"), world, lights, view, settings, {24, 24, 1});
   Estimate full = estimate_radiance(instant(), world, lights, view, settings, {36, 6, 2});
   Estimate less = estimate_radiance(instant(), world, lights, view, clipped, {24, 3, 3});
   Family same;
@@ -224,10 +223,9 @@ TEST(InstantRadiosity, ClippedIsDarkerCompensatedIsPath) {
   clipped.max_depth = settings.max_depth = 2;
   view = make_view_towards(scene, {0, 0.3, -0.1}, {0, 0, -0.2}, {0, 1, 0}, 0.3f, 12, 12);
   Family inactive;
-  inactive.add_same("clip is inactive",
-                    estimate_radiance(instant(), world, lights, view, clipped, {24, 4, 3}),
-                    estimate_radiance(*find_technique("path"), world, lights, view, settings,
-                                      {24, 16, 1}));
+  inactive.add_same(
+      "clip is inactive", estimate_radiance(instant(), world, lights, view, clipped, {24, 4, 3}),
+      estimate_radiance(*find_technique("path"), world, lights, view, settings, {24, 16, 1}));
   expect_family(inactive, 0.02);
 }
 
@@ -319,10 +317,10 @@ TEST(InstantRadiosity, SunlightBetweenSurfacesIsPaths) {
     View view = make_view_towards(scene, {0, 1.5, 0.6}, {0, 0, 0.6}, {0, 0, -1}, 0.1f, 6, 6);
     TransportSettings settings;
     settings.max_depth = 4;
-    family.add_same("sky " + std::to_string(sky),
-                    estimate_radiance(instant(), world, lights, view, settings, {24, 64, 1}),
-                    estimate_radiance(*find_technique("path"), world, lights, view, settings,
-                                      {24, 64, 2}));
+    family.add_same(
+        "sky " + std::to_string(sky),
+        estimate_radiance(instant(), world, lights, view, settings, {24, 64, 1}),
+        estimate_radiance(*find_technique("path"), world, lights, view, settings, {24, 64, 2}));
   }
   expect_family(family, 0.05);
 }

@@ -26,8 +26,7 @@ Scene make_ball_scene(Material ball, float lamp = 0.5f) {
   return scene;
 }
 
-std::vector<Photon> shoot(const Transport& transport, int count, uint64_t seed,
-                          int max_depth = 8) {
+std::vector<Photon> shoot(const Transport& transport, int count, uint64_t seed, int max_depth = 8) {
   return shoot_caustic_photons(transport, transport.tables.casters, max_depth, seed, 0, count,
                                1 / float(count));
 }
@@ -41,9 +40,9 @@ TEST(PhotonGrid, FindsWhatAnExactSearchFinds) {
     for (int i = 0; i < 3000; i++) {
       Photon p;
       p.position = {2 * rng.uniform() - 1, 2 * rng.uniform() - 1, 2 * rng.uniform() - 1};
-      if (i % 3 == 0) p.position *= 0.05f;                             // a dense place
+      if (i % 3 == 0) p.position *= 0.05f;                                    // a dense place
       if (i % 5 == 0) p.position = glm::round(p.position / radius) * radius;  // on cells' edges
-      p.flux = vec3(float(i));  // its name
+      p.flux = vec3(float(i));                                                // its name
       photons.push_back(p);
     }
     PhotonCells cells;  // kept from query to query
@@ -76,8 +75,7 @@ TEST(CausticPhotons, CastersHoldWhatIsSharpAndNothingElse) {
   for (vec3 p : scene.meshes[1].positions) {
     p += vec3(0, 0.4f, 0);
     bool held = false;
-    for (const CasterSphere& c : lights.tables->casters)
-      held |= length(p - c.center) <= c.radius;
+    for (const CasterSphere& c : lights.tables->casters) held |= length(p - c.center) <= c.radius;
     ASSERT_TRUE(held);
   }
   for (const CasterSphere& c : lights.tables->casters) EXPECT_LT(c.radius, 0.5f);
@@ -91,8 +89,8 @@ TEST(CausticPhotons, CastersHoldWhatIsSharpAndNothingElse) {
 // The density of directions is that of their choice: the mean of 1 / density over chosen directions
 // is the solid angle of the spheres together, which overlap, and one of which holds the place.
 TEST(CausticPhotons, DirectionsHaveTheirDensity) {
-  std::vector<CasterSphere> casters{{{0, 0, -3}, 1, 1}, {{0.8f, 0, -3}, 1, 0.2f},
-                                    {{0, 4, 0}, 0.3f, 1}};
+  std::vector<CasterSphere> casters{
+      {{0, 0, -3}, 1, 1}, {{0.8f, 0, -3}, 1, 0.2f}, {{0, 4, 0}, 0.3f, 1}};
   for (bool inside : {false, true}) {
     if (inside) casters.push_back({{0, 0, 0.5f}, 1, 0.1f});
     Rng rng(3);
@@ -104,10 +102,9 @@ TEST(CausticPhotons, DirectionsHaveTheirDensity) {
       ASSERT_NEAR(length(d), 1, 1e-4);
       solid.add(1 / double(pdf));
       float z = 2 * rng.uniform() - 1, phi = 2 * pi * rng.uniform(), r = std::sqrt(1 - z * z);
-      uniform.add(
-          sample_caster_pdf(casters, vec3(0), {r * std::cos(phi), r * std::sin(phi), z}) > 0
-              ? 4 * double(pi)
-              : 0.0);
+      uniform.add(sample_caster_pdf(casters, vec3(0), {r * std::cos(phi), r * std::sin(phi), z}) > 0
+                      ? 4 * double(pi)
+                      : 0.0);
     }
     expect_same_mean(solid, uniform, "solid angle of all spheres");
     EXPECT_LT(solid.error(), 0.02 * solid.mean());
@@ -155,15 +152,14 @@ TEST(CausticPhotons, WithEverythingElseTheyArePath) {
     settings.max_depth = 6;
     settings.instant.photons = 300;
     settings.instant.photon_radius = 0.02f;
-    Estimate path = estimate_radiance(*find_technique("path"), world, lights, view, settings,
-                                      {16, 48, 1});
+    Estimate path =
+        estimate_radiance(*find_technique("path"), world, lights, view, settings, {16, 48, 1});
     Estimate ours = estimate_radiance(*find_technique("instant_radiosity"), world, lights, view,
                                       settings, {16, 6, 2});
     double error = std::hypot(path.error, ours.error);
-    EXPECT_LE(std::abs(path.mean - ours.mean),
-              significance_z * error + border_bias * path.mean)
-        << c.name << ": " << ours.mean << " +- " << ours.error << " against " << path.mean
-        << " +- " << path.error;
+    EXPECT_LE(std::abs(path.mean - ours.mean), significance_z * error + border_bias * path.mean)
+        << c.name << ": " << ours.mean << " +- " << ours.error << " against " << path.mean << " +- "
+        << path.error;
     EXPECT_LT(error, 0.01 * path.mean) << c.name;
     // And the caustic is a part that would be missed.
     settings.instant.photons = 0;

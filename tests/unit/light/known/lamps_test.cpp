@@ -116,7 +116,8 @@ TEST(SwitchedLamps, KeptLightIsThatOfASceneWithoutThem) {
     World world(other);
     Lights lights = make_lights(world);
     find_technique("gather")->prepare(world, std::span(&place, 1), lights);
-    double kept = cached_radiance(*switched.light(lamp, spot).grid), wanted = cached_radiance(*lights.grid);
+    double kept = cached_radiance(*switched.light(lamp, spot).grid),
+           wanted = cached_radiance(*lights.grid);
     // Both are means over some 1e6 vertices of 4e5 walks, whose light deviates by about its mean.
     EXPECT_NEAR(kept / wanted, 1, 5 * std::sqrt(2.0 / 4e5)) << states;
   }

@@ -85,8 +85,8 @@ void add_panel(Scene& scene, float radiance = 20) {
 void add_ceiling(Scene& scene) {
   scenes::add_quad(scene, scenes::add_material(scene, scenes::emitter(vec3(100))),
                    {0.4f, 0.4f, 0.1f}, {0.1f, 0, 0}, {0, 0, -0.1f}, "lamp");
-  scenes::add_quad(scene, scenes::add_material(scene, scenes::diffuse(vec3(0.8f))),
-                   {-1, 0.6f, -1}, {2, 0, 0}, {0, 0, 2}, "ceiling");
+  scenes::add_quad(scene, scenes::add_material(scene, scenes::diffuse(vec3(0.8f))), {-1, 0.6f, -1},
+                   {2, 0, 0}, {0, 0, 2}, "ceiling");
 }
 // As the ball would be lit after very many samples.
 std::vector<vec3> converged(Stage& stage) {
@@ -185,7 +185,8 @@ TEST(SkinLight, FollowsTheMeshThatMoves) {
   EXPECT_NEAR(eval_skin(light, {1, 0}).x, before[stage.place_of(t.y)].x, 1e-5f);
   EXPECT_NEAR(eval_skin(light, {0, 1}).x, before[stage.place_of(t.z)].x, 1e-5f);
   vec3 third = (vec3(before[stage.place_of(t.x)]) + vec3(before[stage.place_of(t.y)]) +
-                vec3(before[stage.place_of(t.z)])) / 3.0f;
+                vec3(before[stage.place_of(t.z)])) /
+               3.0f;
   EXPECT_NEAR(eval_skin(light, vec2(1 / 3.0f)).x, third.x, 1e-4f);
 }
 
@@ -422,7 +423,8 @@ TEST(SkinLight, NothingToDo) {
 TEST(SkinLight, WhatIsUnknownIsNotBlack) {
   Stage stage;
   int lambertian = stage.add_lambert();
-  stage.moving = {scenes::sphere_mesh(lambertian, 0.1f, 8), scenes::sphere_mesh(lambertian, 0.1f, 8)};
+  stage.moving = {scenes::sphere_mesh(lambertian, 0.1f, 8),
+                  scenes::sphere_mesh(lambertian, 0.1f, 8)};
   for (vec3& p : stage.moving[1].positions) p.x += 1;
   stage.scene.environment.radiance = vec3(1);
   stage.begin();

@@ -151,9 +151,9 @@ TEST(BsdfSampling, IsReciprocalButForLayersAndBrushing) {
 // What the layers' dimming by the viewer's angle alone costs: the base differs by the ratio of what
 // the layers leave to either direction, and by nothing else.
 TEST(BsdfSampling, LayersAreNotReciprocalByWhatTheyLeave) {
-  for (const Material& m : {coated(plastic(vec3(1), 0.5f), 1, 0),
-                            coated(metal(vec3(1), 0.5f), 1, 0),
-                            with_sheen(diffuse(vec3(1)), vec3(1), 0.5f)})
+  for (const Material& m :
+       {coated(plastic(vec3(1), 0.5f), 1, 0), coated(metal(vec3(1), 0.5f), 1, 0),
+        with_sheen(diffuse(vec3(1)), vec3(1), 0.5f)})
     for (float from : {10.0f, 45.0f, 70.0f})
       for (float to : {30.0f, 60.0f}) {
         vec3 v = direction_at(from), l = direction_at(to, 140);

@@ -15,9 +15,9 @@ namespace {
 
 // Any opaque surface without coats; some with a mapped normal, brushed, tinted, of infinite index.
 Bsdf draw_bsdf(Rng& rng, Material& m) {
-  m = rng.uniform() < 0.3f ? metal({0.9f, 0.6f, 0.2f}, 0.05f + 0.95f * rng.uniform())
-                           : plastic({0.3f, 0.5f, 0.8f}, 0.05f + 0.95f * rng.uniform(),
-                                     1 + 1.5f * rng.uniform());
+  m = rng.uniform() < 0.3f
+          ? metal({0.9f, 0.6f, 0.2f}, 0.05f + 0.95f * rng.uniform())
+          : plastic({0.3f, 0.5f, 0.8f}, 0.05f + 0.95f * rng.uniform(), 1 + 1.5f * rng.uniform());
   if (rng.uniform() < 0.2f) m.ior = 0;
   if (rng.uniform() < 0.2f) m.ior = 1;
   if (rng.uniform() < 0.3f) m.metallic = rng.uniform();
@@ -26,8 +26,8 @@ Bsdf draw_bsdf(Rng& rng, Material& m) {
   Surface surface = surface_of(m);
   if (rng.uniform() < 0.3f) surface.anisotropy = rng.uniform();
   if (rng.uniform() < 0.5f)
-    surface.normal = normalize(surface.geometric_normal +
-                               0.3f * sample_sphere({rng.uniform(), rng.uniform()}));
+    surface.normal =
+        normalize(surface.geometric_normal + 0.3f * sample_sphere({rng.uniform(), rng.uniform()}));
   vec3 view = sample_sphere({rng.uniform(), rng.uniform()});
   if (dot(view, surface.geometric_normal) < 0) view = -view;
   return make_bsdf(surface, m, -view, dielectric_albedo(m.ior, false));
@@ -87,8 +87,7 @@ TEST(BsdfLanes, OneSurfaceAgainstEightDirections) {
 TEST(BsdfLanes, WhatDoesNotFitIsToldApart) {
   for (const Material& m : {glass(1.5f, 0.3f, 1), glass(1.5f, 0, 0), metal(vec3(1), 0)}) {
     Surface surface = surface_of(m);
-    EXPECT_FALSE(fits_lanes(
-        make_bsdf(surface, m, -direction_at(30), dielectric_albedo(m.ior))));
+    EXPECT_FALSE(fits_lanes(make_bsdf(surface, m, -direction_at(30), dielectric_albedo(m.ior))));
   }
   Material coated = plastic(vec3(0.5f), 0.4f);
   coated.clearcoat = 1;

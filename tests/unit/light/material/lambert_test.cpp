@@ -62,9 +62,9 @@ Scene heaps() {
   scene.objects = {""};
   scene.instances.resize(2);
   scene.instances[1].mesh = 1;
-  scene.instances[1].to_world = glm::scale(
-      glm::rotate(glm::translate(mat4(1), vec3(0.3f, 0, 0.2f)), 0.7f, vec3(1, 1, 0)),
-      vec3(-1, 0.6f, 1.3f));
+  scene.instances[1].to_world =
+      glm::scale(glm::rotate(glm::translate(mat4(1), vec3(0.3f, 0, 0.2f)), 0.7f, vec3(1, 1, 0)),
+                 vec3(-1, 0.6f, 1.3f));
   return scene;
 }
 
@@ -119,7 +119,8 @@ TEST(Lambert, StillAndMovingMeshesLookTheSame) {
     Hit same = made.intersect(ray);
     ASSERT_TRUE(same.valid());
     ASSERT_EQ(same.triangle, hit.triangle);
-    LambertSurface a = eval_lambert_surface(kept, ray, hit), b = eval_lambert_surface(made, ray, same);
+    LambertSurface a = eval_lambert_surface(kept, ray, hit),
+                   b = eval_lambert_surface(made, ray, same);
     EXPECT_LE(length(a.position - b.position), 1e-5f);
     EXPECT_LE(length(a.normal - b.normal), 1e-4f);
     EXPECT_LE(length(a.base_color - b.base_color), 1e-3f);

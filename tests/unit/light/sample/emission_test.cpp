@@ -12,7 +12,8 @@ using namespace wellspring;
 using namespace wellspring::scenes;
 using namespace wellspring::test;
 
-// Rays leave a textured lamp where it emits light: as much light as without that choice, less scattered.
+// Rays leave a textured lamp where it emits light: as much light as without that choice, less
+// scattered.
 TEST(Emission, RaysLeaveWhereThePictureShines) {
   Scene scene = make_plane_with_rect_light(1);
   Image image;

@@ -132,8 +132,10 @@ TEST(Environment, TexelsThatAreNoNumbersAreDark) {
 
 TEST(Environment, TheSunsDiscIsSampledOverItsSolidAngle) {
   SunDisc sun{normalize(vec3(1, 2, -3)), vec3(2e5f), 0.0046f};
-  Sky with_sky(32, 16, [](int, int y) { return vec3(y < 8 ? 1.0f : 0.2f); }, sun);
-  Sky alone(1, 1, [](int, int) { return vec3(0); }, sun);
+  Sky with_sky(
+      32, 16, [](int, int y) { return vec3(y < 8 ? 1.0f : 0.2f); }, sun);
+  Sky alone(
+      1, 1, [](int, int) { return vec3(0); }, sun);
   double solid = 2 * double(pi) * (1 - std::cos(0.0046));
   for (const Sky* sky : {&with_sky, &alone}) {
     Sampler sampler(4);

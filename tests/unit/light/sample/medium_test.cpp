@@ -98,8 +98,8 @@ TEST(Media, EqualIndicesAreInvisible) {
   auto picture = [](bool nested) {
     Scene scene = empty_scene();
     for (int i = 0; i < 6; i++)  // stripes
-      add_quad(scene, add_material(scene, emitter(vec3(1 + float(i % 3)))),
-               {-3 + float(i), -3, -2}, {1, 0, 0}, {0, 6, 0}, "backdrop");
+      add_quad(scene, add_material(scene, emitter(vec3(1 + float(i % 3)))), {-3 + float(i), -3, -2},
+               {1, 0, 0}, {0, 6, 0}, "backdrop");
     scene.environment.radiance = vec3(0.5f);
     int outer = add_material(scene, glass(1.5f, 0, 1)),
         inner = add_material(scene, glass(1.5f, 0, 1));

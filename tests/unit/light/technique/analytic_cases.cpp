@@ -213,8 +213,7 @@ void add_suns(std::vector<AnalyticCase>& cases) {
       sun.angular_radius = radius;
       scene.environment.radiance = vec3(sky);
       scene.environment.sun = sun;
-      double e = double(sun.radiance.x) * size * double(sun.direction.y) +
-                 double(sky) * double(pi);
+      double e = double(sun.radiance.x) * size * double(sun.direction.y) + double(sky) * double(pi);
       cases.push_back({sky > 0 ? "sun in a plain sky" : "sun alone", scene, at_floor({0, 0, 0}),
                        e * albedo * over_pi, sky_light});
       cases.push_back({"the sun's disc", scene,

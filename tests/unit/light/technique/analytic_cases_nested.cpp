@@ -85,11 +85,12 @@ std::vector<AnalyticCase> nested_glass_cases() {
     add_slab(touching.scene, p.water, -0.2f, 0.2f);
     add_case(cases, "water that touches panes", touching,
              {clear(0.3), water(0.4), clear(0.3), air});
-    add_inner_eye(cases, "water that touches panes", touching, double(water_index),
-                  water(0.2).kept, {clear(0.3), air});
+    add_inner_eye(cases, "water that touches panes", touching, double(water_index), water(0.2).kept,
+                  {clear(0.3), air});
     // To and fro the overlap belongs to the one or the other: without tint that is all the same.
-    for (int m : {p.glass, p.water}) overlapping.scene.materials[size_t(m)].attenuation_distance =
-        std::numeric_limits<float>::infinity();
+    for (int m : {p.glass, p.water})
+      overlapping.scene.materials[size_t(m)].attenuation_distance =
+          std::numeric_limits<float>::infinity();
     add_slab(overlapping.scene, p.water, -0.25f, 0.25f);
     Layer pane{double(glass_index), 1}, liquid{double(water_index), 1};
     add_case(cases, "water that reaches into panes", overlapping, {pane, liquid, pane, air});

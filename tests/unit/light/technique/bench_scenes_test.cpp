@@ -27,9 +27,9 @@ std::vector<vec3> corners(const Scene& scene) {
   for (const Instance& instance : scene.instances)
     for (uvec3 t : scene.meshes[size_t(instance.mesh)].triangles)
       for (uint32_t v : {t.x, t.y, t.z})
-        all.push_back(vec3(instance.to_world *
-                           vec4(scene.meshes[size_t(instance.mesh)].positions[v], 1)) +
-                      vec3(scene.origin));
+        all.push_back(
+            vec3(instance.to_world * vec4(scene.meshes[size_t(instance.mesh)].positions[v], 1)) +
+            vec3(scene.origin));
   return all;
 }
 

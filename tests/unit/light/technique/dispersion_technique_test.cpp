@@ -65,9 +65,8 @@ Scene make_prism_scene(Material prism, Material wall = diffuse(vec3(0.7f))) {
 // Channels of the left and the right half of a picture: what glass parts lies on one side or the
 // other.
 using Colors = std::array<Estimate, 6>;
-Colors estimate_colors(const char* name, const World& world, const Lights& lights,
-                       const View& view, const TransportSettings& transport,
-                       const Effort& effort) {
+Colors estimate_colors(const char* name, const World& world, const Lights& lights, const View& view,
+                       const TransportSettings& transport, const Effort& effort) {
   std::array<std::vector<double>, 6> replicates;
   for (auto& r : replicates) r.resize(size_t(effort.replicates));
   parallel_for(effort.replicates, [&](int i) {
@@ -123,8 +122,8 @@ TEST(Dispersion, EveryTechniqueBringsTheSameColors) {
       double error = std::hypot(path[i].error, ours[i].error);
       EXPECT_LE(std::abs(path[i].mean - ours[i].mean),
                 significance_z * error + moved * path[i].mean)
-          << c.name << ", half " << i / 3 << ", channel " << i % 3 << ": " << ours[i].mean
-          << " +- " << ours[i].error << " against " << path[i].mean << " +- " << path[i].error;
+          << c.name << ", half " << i / 3 << ", channel " << i % 3 << ": " << ours[i].mean << " +- "
+          << ours[i].error << " against " << path[i].mean << " +- " << path[i].error;
       EXPECT_LT(error, 0.02 * brightest) << c.name;  // a wrong hue would be noticed
     }
     EXPECT_EQ(lights.bad_samples->load(), 0u) << c.name;

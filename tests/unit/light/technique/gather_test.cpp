@@ -164,7 +164,7 @@ TEST(Gather, NarrowFootprintsLampsMirrorsAndMovingMeshesAreNotAsked) {
   EXPECT_TRUE(ask({1, 0.2f, -1}, 10));
   EXPECT_FALSE(ask({1, 0.2f, -1}, grid.cell));
   EXPECT_FALSE(ask({-0.27f, 0.13f, -0.3f}, 10));  // the mirror
-  EXPECT_FALSE(ask({0, 0.28f, -0.38f}, 10));  // the lamp
+  EXPECT_FALSE(ask({0, 0.28f, -0.38f}, 10));      // the lamp
 }
 
 }  // namespace

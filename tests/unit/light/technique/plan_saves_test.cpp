@@ -254,8 +254,8 @@ TEST(PlanSaves, TheWholeFullPlan) {
   View view = make_view_towards(scene, {0.1, 0.5, 0.9}, {0, 0.25, 0}, {0, 1, 0}, 1.0f, 12, 8);
   Family family;
   for (const char* name : {"path", "direct"})
-    family.add_same(
-        name, estimate_radiance(*find_technique(name), world, planned, view, {}, {48, 64, 8}),
-        estimate_radiance(*find_technique(name), world, full, view, {}, {48, 64, 9}));
+    family.add_same(name,
+                    estimate_radiance(*find_technique(name), world, planned, view, {}, {48, 64, 8}),
+                    estimate_radiance(*find_technique(name), world, full, view, {}, {48, 64, 9}));
   expect_family(family, 0.02);
 }

@@ -134,8 +134,7 @@ TEST_F(RenderProgram, LampsAreAsTheExhibitBeginsUnlessToldOtherwise) {
       "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
       "bufferViews":[{"buffer":0,"byteLength":36}],
       "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
-  std::ofstream(folder / "exhibit.json")
-      << R"({"title":{"en":"Lit"},"scene":"lit.gltf",
+  std::ofstream(folder / "exhibit.json") << R"({"title":{"en":"Lit"},"scene":"lit.gltf",
         "viewpoints":[{"name":"front","title":{"en":"Front"},"position":[0,0,2]}],"lamps":[
         {"id":"warm","title":{"en":"Fire"},"nodes":["fire"],"on":false},
         {"id":"cold","title":{"en":"Moon"},"nodes":["moon"]}]})";
@@ -178,8 +177,8 @@ TEST_F(RenderProgram, ExposureIsTheExhibitsUnlessToldOtherwise) {
   };
   auto write = [&](const char* exposure) {
     std::ofstream(folder / "exhibit.json")
-        << R"({"title":{"en":"Lit"},"scene":"scene.gltf",)" << exposure <<
-        R"("viewpoints":[{"name":"front","title":{"en":"Front"},"position":[0,0,2]}]})";
+        << R"({"title":{"en":"Lit"},"scene":"scene.gltf",)" << exposure
+        << R"("viewpoints":[{"name":"front","title":{"en":"Front"},"position":[0,0,2]}]})";
   };
   int plain = brightness(scene(), "");
   EXPECT_GT(plain, 20);

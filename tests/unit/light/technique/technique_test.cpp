@@ -283,7 +283,7 @@ TEST(Technique, MaxDepthCountsEdges) {
 
 TEST(Technique, ClampBoundsASampleAndKeepsItsHue) {
   Scene scene = make_cornell_box();
-  for (bool polished : {false, true}) {  // light by chance in `smooth`, and in `rest`
+  for (bool polished : {false, true}) {    // light by chance in `smooth`, and in `rest`
     Material& white = scene.materials[1];  // of the floor
     white.metallic = polished ? 1.0f : 0.0f;
     white.roughness = polished ? 0.3f : 1.0f;

@@ -96,8 +96,7 @@ TEST(Guides, LampsAndSkyCountWithTheirColourAtMostWhite) {
 TEST(Guides, OfAPictureAreAntialiased) {
   Scene scene = empty_scene();
   add_quad(scene, add_material(scene, diffuse(red)), {-9, -9, -3}, {9, 0, 0}, {0, 18, 0}, "left");
-  add_quad(scene, add_material(scene, diffuse(green)), {0, -9, -3}, {9, 0, 0}, {0, 18, 0},
-           "right");
+  add_quad(scene, add_material(scene, diffuse(green)), {0, -9, -3}, {9, 0, 0}, {0, 18, 0}, "right");
   World world(scene);
   world.commit();
   Lights lights = make_lights(world);

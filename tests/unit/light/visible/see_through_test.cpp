@@ -13,8 +13,8 @@ using namespace wellspring::scenes;
 
 namespace {
 
-// One of everything: Lambertian, glossy, mirror, rough metal, brushed, unlit, a lamp, a pane; and sky
-// where there is no wall.
+// One of everything: Lambertian, glossy, mirror, rough metal, brushed, unlit, a lamp, a pane; and
+// sky where there is no wall.
 Scene make_assembly(bool solid) {
   Scene scene = empty_scene();
   scene.environment.radiance = {0.2f, 0.3f, 0.5f};
@@ -23,8 +23,12 @@ Scene make_assembly(bool solid) {
   Material brushed = metal({0.7f, 0.6f, 0.5f}, 0.3f), unlit = diffuse({0.3f, 0.8f, 0.2f});
   brushed.anisotropy = 0.8f;
   unlit.unlit = true;
-  Material balls[] = {diffuse({0.2f, 0.4f, 0.6f}), metal({0.9f, 0.8f, 0.6f}, 0),
-                      metal({0.8f, 0.5f, 0.4f}, 0.6f), brushed, unlit, emitter({3, 2, 1})};
+  Material balls[] = {diffuse({0.2f, 0.4f, 0.6f}),
+                      metal({0.9f, 0.8f, 0.6f}, 0),
+                      metal({0.8f, 0.5f, 0.4f}, 0.6f),
+                      brushed,
+                      unlit,
+                      emitter({3, 2, 1})};
   float x = -2.5f;
   for (const Material& ball : balls)
     add_mesh(scene, sphere_mesh(add_material(scene, ball), 0.45f), "ball",
@@ -87,8 +91,8 @@ TEST_P(See, AgreesWithTheSamplesOfTechniques) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, See, testing::Values(false, true));
 
-// A emitting pane before a emitting board: what each emits is light of the sample, and told by itself
-// where other light falls there, too.
+// A emitting pane before a emitting board: what each emits is light of the sample, and told by
+// itself where other light falls there, too.
 TEST(SeeRays, WhatPanesAndSurfacesEmitIsLightAndToldByItself) {
   Scene scene = empty_scene();
   Material pane = glass(1.5f, 0, 0), board = diffuse(vec3(0.5f));

@@ -44,9 +44,9 @@ struct Drawn {
 
 Drawn draw(const VisibilityPass& visibility, const View& view) {
   size_t pixels = size_t(view.width) * size_t(view.height);
-  Drawn d{std::vector<PrimaryHit>(pixels), std::vector<vec3>(pixels), std::vector<vec3>(pixels),
-          std::vector<uint8_t>(pixels), std::vector<uint32_t>(pixels),
-          std::vector<float>(pixels)};
+  Drawn d{std::vector<PrimaryHit>(pixels), std::vector<vec3>(pixels),
+          std::vector<vec3>(pixels),       std::vector<uint8_t>(pixels),
+          std::vector<uint32_t>(pixels),   std::vector<float>(pixels)};
   visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
     size_t first = size_t(run.y) * size_t(view.width) + size_t(run.x);
     RunSurface r;
@@ -75,8 +75,9 @@ std::vector<PrimaryHit> trace_picture(const World& world, const Lights& lights, 
   return seen;
 }
 
-// A shelf of everything: Lambertian, gloss, soft and sharp metal, textures near and repeated, colours of
-// corners, a lamp, an unlit sign, a pane before half of it, coloured glass, sky beside it.
+// A shelf of everything: Lambertian, gloss, soft and sharp metal, textures near and repeated,
+// colours of corners, a lamp, an unlit sign, a pane before half of it, coloured glass, sky beside
+// it.
 Scene make_shelf() {
   Scene scene = empty_scene();
   scene.environment.radiance = vec3(0.2f, 0.4f, 0.9f);
@@ -169,16 +170,16 @@ TEST(SeePicture, SmallTrianglesSideBySideKeepTheirReflectance) {
   shiny.metallic_roughness_texture.texture = add_texture(scene, checks(16, false));
   Material both = shiny;
   both.base_color_texture = textured.base_color_texture;
-  const int materials[] = {
-      add_material(scene, textured), add_material(scene, textured), add_material(scene, both),
-      add_material(scene, shiny), add_material(scene, diffuse(vec3(0.2f, 0.5f, 0.7f)))};
+  const int materials[] = {add_material(scene, textured), add_material(scene, textured),
+                           add_material(scene, both), add_material(scene, shiny),
+                           add_material(scene, diffuse(vec3(0.2f, 0.5f, 0.7f)))};
   Rng rng(5);
   constexpr int across = 50, down = 10;
   for (int y = 0; y < down; y++)
     for (int x = 0; x < across; x++) {
-      int made = add_quad(scene, materials[rng.next() % 5],
-                          {0.04f * float(x) - 1, 0.1f * float(y) - 0.5f, -2}, {0.04f, 0, 0},
-                          {0, 0.1f, 0});
+      int made =
+          add_quad(scene, materials[rng.next() % 5],
+                   {0.04f * float(x) - 1, 0.1f * float(y) - 0.5f, -2}, {0.04f, 0, 0}, {0, 0.1f, 0});
       float turns = rng.next() % 3 == 0 ? 0.5f : 0.05f;
       vec2 from(float(rng.next() % 64) / 64, float(rng.next() % 64) / 64);
       for (vec2& uv : scene.meshes[size_t(scene.instances[size_t(made)].mesh)].uv[0])
@@ -268,6 +269,7 @@ TEST(SeePicture, AnEyeInSolidGlassIsServedByRays) {
   EXPECT_GT(std::count(lamp.begin(), lamp.end(), 1), 100);
   EXPECT_LT(std::count(lamp.begin(), lamp.end(), 1), 75 * 20 / 2);
   int moving = 0;
-  visibility.see(view, offset, [&](const VisibleRun&) { moving++; }, RasterShows::moving);
+  visibility.see(
+      view, offset, [&](const VisibleRun&) { moving++; }, RasterShows::moving);
   EXPECT_EQ(moving, 0);
 }

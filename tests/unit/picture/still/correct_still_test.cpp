@@ -138,8 +138,7 @@ TEST(CorrectStill, WhatMovesStaysAsItIsDrawn) {
   p.correct();
   int changed = 0;
   for (int i = 0; i < pixels; i++)
-    if (p.still.count[size_t(i)] == 0)
-      EXPECT_EQ(p.frame.color[size_t(i)], drawn[size_t(i)]) << i;
+    if (p.still.count[size_t(i)] == 0) EXPECT_EQ(p.frame.color[size_t(i)], drawn[size_t(i)]) << i;
     else changed += p.frame.color[size_t(i)] != drawn[size_t(i)];
   EXPECT_GT(changed, pixels / 2);
 }

@@ -37,8 +37,7 @@ struct Rest {
   }
   void reconstruct(Denoiser& denoiser) {
     begin_reconstruction(samples, frame, denoiser, work);
-    while (denoiser.advance(1)) {
-    }
+    while (denoiser.advance(1)) {}
     finish_reconstruction(samples, denoiser, work, frame);
   }
   double error(const std::function<float(size_t)>& light) const {

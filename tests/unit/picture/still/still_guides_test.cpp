@@ -40,8 +40,7 @@ TEST(StillGuides, AgreeWithThoseOfRays) {
   std::vector<uint8_t> followed;
   GuidePlanes drawn, traced = make_guides(world, lights, view, 16);
   for (int place = 0; place < guide_places; place++)
-    add_still_guides(world, lights, visibility, view, RasterShows::all, place, drawn,
-                     followed);
+    add_still_guides(world, lights, visibility, view, RasterShows::all, place, drawn, followed);
   ASSERT_EQ(drawn.albedo.size(), traced.albedo.size());
   double albedo = 0, normal = 0;
   int far = 0;
@@ -53,7 +52,8 @@ TEST(StillGuides, AgreeWithThoseOfRays) {
     far += max_component(a) > 0.2f;
   }
   const double pixels = double(traced.albedo.size());
-  EXPECT_LT(albedo / pixels, 0.03);  // the gloss of Lambertian surfaces is left out, edges are coarser
+  EXPECT_LT(albedo / pixels,
+            0.03);  // the gloss of Lambertian surfaces is left out, edges are coarser
   EXPECT_LT(normal / pixels, 0.03);
   EXPECT_LT(far / pixels, 0.03);
 }

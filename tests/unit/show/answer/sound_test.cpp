@@ -313,7 +313,9 @@ TEST(VoiceWithSpeech, MarksBecomeEventsAtTheirWordsOnce) {
     }
     for (const ActionEvent& act : advance_voice(voice, 0.01f, ask).acts)
       seen.emplace_back(act.kind, at);
-    if (voice.started && voice.elapsed > 0.1f) { EXPECT_EQ(voice.held.emotion, "joy"); }
+    if (voice.started && voice.elapsed > 0.1f) {
+      EXPECT_EQ(voice.held.emotion, "joy");
+    }
   }
   ASSERT_EQ(seen.size(), 2u);
   EXPECT_EQ(seen[0].first, StoryMarkKind::emotion);

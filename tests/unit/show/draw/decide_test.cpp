@@ -107,7 +107,9 @@ const std::vector<Row> rows = {
      },
      {}},
     {"a walker gets pictures at its rate",
-     [](States& all, RendererState&) { all = {due(walker(), 0.99), due(walker(), 1)}; },
+     [](States& all, RendererState&) {
+       all = {due(walker(), 0.99), due(walker(), 1)};
+     },
      {Drawing::picture, 1}},
     {"who walks fast enough for it gets them as often as they are shown, not as they are drawn",
      [](States& all, RendererState&) {
@@ -165,7 +167,9 @@ const std::vector<Row> rows = {
      },
      {Drawing::picture, 1}},
     {"of two who wait alike the first comes first",
-     [](States& all, RendererState&) { all = {due(walker()), due(walker())}; },
+     [](States& all, RendererState&) {
+       all = {due(walker()), due(walker())};
+     },
      {Drawing::picture, 0}},
     {"what moves is drawn over a picture at rest, at its own rate",
      [](States& all, RendererState&) {
@@ -173,7 +177,9 @@ const std::vector<Row> rows = {
      },
      {Drawing::moving, 1}},
     {"what moves comes before pictures",
-     [](States& all, RendererState&) { all = {due(walker()), moving_due(listener())}; },
+     [](States& all, RendererState&) {
+       all = {due(walker()), moving_due(listener())};
+     },
      {Drawing::moving, 1}},
     {"what moves comes between the steps of the same visitor's picture",
      [](States& all, RendererState& renderer) {

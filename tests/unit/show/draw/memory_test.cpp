@@ -57,14 +57,13 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
       k++;
     }
     for (auto& link : links)
-      for (Link::Out out; link->take_out(out);) {
-      }
+      for (Link::Out out; link->take_out(out);) {}
   }
   EXPECT_TRUE(still[0] && still[1]);
   EXPECT_GT(widest, 1280);  // how much depends on the pace of the machine
   EXPECT_LE(walking, 64'000'000u);
   EXPECT_LE(most[0], size_t(64) << 20);  // samples at rest are kept by themselves, too
-  EXPECT_GE(most[0], 50'000'000u);  // all of it is counted
+  EXPECT_GE(most[0], 50'000'000u);       // all of it is counted
   EXPECT_LE(most[1], (size_t(64) << 20) * 9 / 4);
   EXPECT_GE(double(most[1]), 2.0 * double(most[0]));
   EXPECT_GT(show->renderer.work_bytes, size_t(40) << 20);

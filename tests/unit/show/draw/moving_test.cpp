@@ -124,9 +124,8 @@ TEST_F(Moving, ShowsWhereItIs) {
 TEST_F(Moving, IsInWhatIsWarped) {
   ASSERT_TRUE(rested());
   steps(200);
-  ASSERT_TRUE(step_until([&] {
-    return visitor().picture.backdrop && !visitor().picture.moving.empty();
-  }));
+  ASSERT_TRUE(
+      step_until([&] { return visitor().picture.backdrop && !visitor().picture.moving.empty(); }));
   vec3 here(-2, 1, 0.5f);
   double shown = red_at(picture(), here);
   link->push_text_in(R"({"type":"input","seq":1,"move":[0,0,0],"look":[0.02,0]})");

@@ -83,13 +83,20 @@ TEST(PlanKeyframe, ResolutionFallsBeforeKeyframesComeLate) {
     float before, scale;
     double period;
   } const table[] = {
-      {0.005, 1, 1, 1 / 30.0},     {0.05, 1, 1, 0.05 / 0.7},     {0.069, 1, 1, 0.069 / 0.7},
-      {0.08, 1, 0.75f, 0.06 / 0.7}, {0.12, 1, 0.5f, 0.06 / 0.7}, {0.6, 1, 0.375f, 0.1},
+      {0.005, 1, 1, 1 / 30.0},
+      {0.05, 1, 1, 0.05 / 0.7},
+      {0.069, 1, 1, 0.069 / 0.7},
+      {0.08, 1, 0.75f, 0.06 / 0.7},
+      {0.12, 1, 0.5f, 0.06 / 0.7},
+      {0.6, 1, 0.375f, 0.1},
       {0, 1, 1, 1 / 30.0},  // nothing measured yet
       // It climbs back when there is time to spare.
-      {0.06, 0.75f, 0.75f, 0.06 / 0.7},  {0.04, 0.75f, 0.75f, 0.04 / 0.7},
-      {0.03, 0.75f, 1, 0.04 / 0.7},      {0.01, 0.375f, 1, 0.08 / 3 / 0.7},
-      {0.07, 0.375f, 0.375f, 0.1},       {0.35, 0.375f, 0.375f, 0.1},
+      {0.06, 0.75f, 0.75f, 0.06 / 0.7},
+      {0.04, 0.75f, 0.75f, 0.04 / 0.7},
+      {0.03, 0.75f, 1, 0.04 / 0.7},
+      {0.01, 0.375f, 1, 0.08 / 3 / 0.7},
+      {0.07, 0.375f, 0.375f, 0.1},
+      {0.35, 0.375f, 0.375f, 0.1},
   };
   for (const auto& one : table) {
     KeyframePlan plan = plan_keyframe(one.seconds, one.before);
@@ -123,7 +130,7 @@ TEST(SampleBudget, TheReferenceComesLast) {
   EXPECT_TRUE(wants_reference(30, false, false, 0.05f, 0.6f));
   EXPECT_TRUE(
       wants_reference(30, true, false, 0.15f, 0.4f));  // the storyteller moves: what she hid is new
-  EXPECT_FALSE(wants_reference(0.5, true, false, 0, 1));       // walks again
+  EXPECT_FALSE(wants_reference(0.5, true, false, 0, 1));  // walks again
 }
 
 TEST(SampleBudget, NothingMeasuredYetIsNoDivisionByZero) {

@@ -171,7 +171,8 @@ ChestSeen see_chest(const Scene& scene, const World& world, const Lights& lights
 }
 
 TEST(FigureOfGltf, ExpressionsRepaintMaterials) {
-  Asset asset = painted({{"name", "skin"}, {"doubleSided", true},
+  Asset asset = painted({{"name", "skin"},
+                         {"doubleSided", true},
                          {"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.2, 0.2, 1}}}},
                          {"extensions", {{"VRMC_materials_mtoon", json::object()}}}});
   test::add_vrm_1(asset);

@@ -196,8 +196,7 @@ TEST_F(Lamps, AnswersOfTheOldLightAreNotTaken) {
   Visitor& visitor = show->visitors.front();
   View view = view_of(*show, visitor);
   std::vector<Request> requests(64);
-  for (size_t i = 0; i < requests.size(); i++)
-    requests[i] = pixel_request(view, 5, int(i), 20, 0);
+  for (size_t i = 0; i < requests.size(); i++) requests[i] = pixel_request(view, 5, int(i), 20, 0);
   visitor.picture.broker.ask(view, {show->technique, show->settings.transport}, requests);
   std::optional<Piece> piece = visitor.picture.broker.take();
   ASSERT_TRUE(piece);

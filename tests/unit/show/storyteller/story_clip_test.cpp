@@ -72,7 +72,9 @@ TEST(StoryClip, WhatTheBodyIsAskedForDependsOnTheStoryAlone) {
       Asked now{voice.sentence,       cue.emotion,           cue.gesture,
                 cue.look.has_value(), cue.point.has_value(), cue.seed};
       if (!voice.queue.empty() && (asked.empty() || asked.back() != now)) asked.push_back(now);
-      if (cue.look) { EXPECT_EQ(*cue.look, vec3(1, 0.8f, -2)); }
+      if (cue.look) {
+        EXPECT_EQ(*cue.look, vec3(1, 0.8f, -2));
+      }
     }
     return asked;
   };

@@ -96,14 +96,14 @@ TEST(CameraPath, HardLayouts) {
     std::vector<dvec3> eyes;
     float yaw_from, yaw_to;
   };
-  for (const Hard& hard : std::vector<Hard>{
-           {"zigzag", zigzag, 0, 3},
-           {"circle", circle, 3, -3},
-           {"there and back", {{0, 1.6, 0}, {4, 1.6, 0}, {0.1, 1.6, 0.1}}, 0, 3.1f},
-           {"half a turn on the spot", {{1, 1.6, 1}, {1, 1.6, 1}}, -1.5f, 1.6f},
-           {"a millimetre", {{1, 1.6, 1}, {1.001, 1.6, 1}}, 0, 0},
-           {"far from zero", {{1e6, 1.6, -1e6}, {1e6 + 5, 1.6, -1e6}}, 0, 1},
-           {"a kilometre", {{0, 1.6, 0}, {1000, 1.6, 0}}, 0, 1}}) {
+  for (const Hard& hard :
+       std::vector<Hard>{{"zigzag", zigzag, 0, 3},
+                         {"circle", circle, 3, -3},
+                         {"there and back", {{0, 1.6, 0}, {4, 1.6, 0}, {0.1, 1.6, 0.1}}, 0, 3.1f},
+                         {"half a turn on the spot", {{1, 1.6, 1}, {1, 1.6, 1}}, -1.5f, 1.6f},
+                         {"a millimetre", {{1, 1.6, 1}, {1.001, 1.6, 1}}, 0, 0},
+                         {"far from zero", {{1e6, 1.6, -1e6}, {1e6 + 5, 1.6, -1e6}}, 0, 1},
+                         {"a kilometre", {{0, 1.6, 0}, {1000, 1.6, 0}}, 0, 1}}) {
     Viewpoint from = view(hard.eyes.front(), hard.yaw_from),
               to = view(hard.eyes.back(), hard.yaw_to, -0.3f);
     CameraPath path = make_camera_path(hard.eyes, from, to, {});
@@ -207,7 +207,7 @@ TEST(Route, NothingIsTooThin) {
 
 TEST(Route, UnderWhatHangsHighAndOverWhatLiesLow) {
   Exhibit exhibit = make_tiny_exhibit();
-  add_quad(room_of(exhibit), {1, 1.9f, -2}, {3, 0, 0}, {0, 0, 4});   // a gallery above
+  add_quad(room_of(exhibit), {1, 1.9f, -2}, {3, 0, 0}, {0, 0, 4});      // a gallery above
   add_quad(room_of(exhibit), {1, 0.05f, -1}, {3, 0, 0}, {0, 0.1f, 0});  // a sill
   Ground ground(std::move(exhibit));
   EXPECT_FALSE(find_route(ground.map, {3, 1.6f, 3}, {3, 1.6f, -3}).points.empty());

@@ -155,8 +155,12 @@ TEST(InView, AgreesWithProjectionAtTheEdge) {
     bool inside = at.depth > 0 && at.x >= 0 && at.x < 160 && at.y >= 0 && at.y < 90;
     float round = std::hypot(at.x - 80, at.y - 45) / std::hypot(80.0f, 45.0f);
     shown += inside;
-    if (inside) { EXPECT_TRUE(in_view(view, p, 0)); }
-    if (at.depth <= 0 || round > 1.01f) { EXPECT_FALSE(in_view(view, p, 0)) << i; }
+    if (inside) {
+      EXPECT_TRUE(in_view(view, p, 0));
+    }
+    if (at.depth <= 0 || round > 1.01f) {
+      EXPECT_FALSE(in_view(view, p, 0)) << i;
+    }
   }
   EXPECT_GT(shown, 50);
 }

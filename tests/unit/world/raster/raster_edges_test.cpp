@@ -111,8 +111,8 @@ TEST(Raster, EdgesTellHowMuchOfAPixelIsCovered) {
     add_quad(scene, grey, corner, across, up, "square");
     if (background == 1) add_quad(scene, grey, {-9, -9, -7}, {18, 0, 0}, {0, 18, 0}, "wall");
     if (background == 2)  // in its plane, a hair behind
-      add_quad(scene, grey, corner - 4.0f * across - 4.0f * up + vec3(0, 0, -0.002f),
-               9.0f * across, 9.0f * up, "board");
+      add_quad(scene, grey, corner - 4.0f * across - 4.0f * up + vec3(0, 0, -0.002f), 9.0f * across,
+               9.0f * up, "board");
     World world(scene);
     world.commit();
     Raster raster(world);
@@ -189,7 +189,7 @@ TEST(Raster, TrianglesKnowTheirNeighbours) {
   EXPECT_NEAR(found.width[1], std::sqrt(0.5f), 1e-5f);
   EXPECT_NEAR(found.width[0], 0.25f / std::sqrt(1 + 0.0625f), 1e-5f);  // its neighbour's
   EXPECT_EQ(found.bar, (std::vector<uint8_t>{1, 0, 1, 1}));  // one is wide, as its neighbour is
-  box.triangles.push_back({1, 2, 3});  // a third at the same edge
+  box.triangles.push_back({1, 2, 3});                        // a third at the same edge
   found = find_neighbours(box);
   EXPECT_EQ(found.over[0][1], MeshNeighbours::none);
   Mesh ball = sphere_mesh(0, 1, 64);

@@ -107,11 +107,10 @@ mat4 placed_at(vec3 place, float scale) {
 TEST(Watertight, ClosedMeshesThatStandStill) {
   const std::pair<const char*, Mesh> shapes[] = {{"ball", closed_ball(1, 48)},
                                                  {"box", box_mesh(0, vec3(2), true)}};
-  const std::pair<vec3, float> places[] = {
-      {vec3(0), 1.0f},
-      {vec3(3, -7, 11), 0.01f},
-      {vec3(1000, 300, -2000), 1.0f},
-      {vec3(0), 5000.0f}};
+  const std::pair<vec3, float> places[] = {{vec3(0), 1.0f},
+                                           {vec3(3, -7, 11), 0.01f},
+                                           {vec3(1000, 300, -2000), 1.0f},
+                                           {vec3(0), 5000.0f}};
   for (const auto& [name, shape] : shapes)
     for (auto [place, scale] : places) {
       Scene scene = empty_scene();
