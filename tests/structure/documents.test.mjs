@@ -14,7 +14,12 @@ function files(folder, kind) {
       .map((entry) => join(entry.parentPath ?? entry.path, entry.name));
 }
 const code = ['server', 'avatar', 'kiosk', 'tests/unit', 'tests/benchmark']
-    .flatMap((top) => files(top, /\.(h|cpp)$/)).map((file) => readFileSync(file, 'utf8')).join('\n');
+    .flatMap((top) => files(top, /\.(h|cpp)$/)).map((file) => readFileSync(file, 'utf8'))
+    .join('\n');
+
+const tops = 'server|avatar|kiosk|tests|docs|base|wire|frame|denoise|gltf|world|light|cache|' +
+    'picture|show|stream';
+const place = new RegExp(`\`((?:${tops})/[\\w./]*)\``, 'g');
 
 // `a/b`, `a/b.h`, `a/b/` or a stem of files: a place in the tree, seen from its root or server/.
 function is_place(name) {
@@ -37,9 +42,7 @@ test('every function in ARCHITECTURE.md exists', () => {
 test('every file and folder that a document names exists', () => {
   const wrong = [];
   for (const document of documents) {
-    const places = [...read(document).matchAll(
-        /`((?:server|avatar|kiosk|tests|docs|base|wire|frame|denoise|gltf|world|light|cache|picture|show|stream)\/[\w./]*)`/g)];
-    for (const [, name] of places)
+    for (const [, name] of read(document).matchAll(place))
       if (!is_place(name) && !/NAME/.test(name)) wrong.push(`${document}: ${name}`);
   }
   assert.deepEqual(wrong, []);
@@ -52,7 +55,8 @@ test('every mechanism in docs/mechanisms.md is there', () => {
   for (const row of rows.slice(1))
     for (const [, name] of row.split('|')[1].matchAll(/`([\w/]+)\*?`/g)) {
       const known = is_place(name) || new RegExp(`\\b${name}`).test(code) ||
-          ['cache', 'picture', 'picture/still', 'world/raster'].some((f) => is_place(`${f}/${name}`));
+          ['cache', 'picture', 'picture/still', 'world/raster']
+              .some((folder) => is_place(`${folder}/${name}`));
       if (!known) wrong.push(name);
     }
   assert.deepEqual(wrong, []);
@@ -62,7 +66,8 @@ test('lines of documents end at 100 columns, but in tables', () => {
   const wrong = [];
   for (const document of documents)
     read(document).split('\n').forEach((line, i) => {
-      if ([...line].length > 100 && !/^\s*\||https?:/.test(line)) wrong.push(`${document}:${i + 1}`);
+      const free = /^\s*\||https?:/.test(line);
+      if ([...line].length > 100 && !free) wrong.push(`${document}:${i + 1}`);
     });
   assert.deepEqual(wrong, []);
 });

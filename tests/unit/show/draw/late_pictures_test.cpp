@@ -212,11 +212,11 @@ TEST_F(LatePictures, NothingAroundTheOldPlaceAfterALeap) {
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   for (int i = 0; i < 6; i++) {
     step();
-    if (visitor().picture.order.camera_cuts == visitor().place.camera_cuts) {
+    if (visitor().picture.job.camera_cuts == visitor().place.camera_cuts) {
       EXPECT_TRUE(visitor().picture.around.keyframe.empty());
     }
   }
-  EXPECT_EQ(visitor().picture.order.camera_cuts, visitor().place.camera_cuts);
+  EXPECT_EQ(visitor().picture.job.camera_cuts, visitor().place.camera_cuts);
 }
 
 // What a still picture waits for is samples, which whoever moves on needs no more.
@@ -225,24 +225,24 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   steps(60);
   hold_renderer();
   Visitor& one = visitor();
-  PictureJob order = make_picture_job(*show, one, 1);
-  ASSERT_TRUE(order.still);
-  EXPECT_FALSE(is_outdated(*show, order, one));
+  PictureJob job = make_picture_job(*show, one, 1);
+  ASSERT_TRUE(job.still);
+  EXPECT_FALSE(is_outdated(*show, job, one));
   show->renderer.drawn = &one;  // as if the renderer were at work on it
-  show->renderer.order = order;
+  show->renderer.job = job;
   one.picture.at_work = true;
   step(false);
   EXPECT_FALSE(show->renderer.given_up);
   turn(0.02);
   step(false);
-  EXPECT_TRUE(is_outdated(*show, order, one));
+  EXPECT_TRUE(is_outdated(*show, job, one));
   EXPECT_TRUE(show->renderer.given_up);
   EXPECT_EQ(header(pictures.size() - 1).seq, seq);  // meanwhile warped
 
   Keyframe keyframe = one.picture.keyframe;
   uint64_t drawn = show->totals.drawn;
   release_renderer();
-  draw_picture(*show, order, one);
+  draw_picture(*show, job, one);
   EXPECT_TRUE(one.picture.costs.given_up);
   EXPECT_EQ(one.picture.costs.samples, 0u);
   turn(0.02);
@@ -253,27 +253,27 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   EXPECT_EQ(header(pictures.size() - 1).seq, seq);
   step();
   EXPECT_EQ(show->totals.drawn, drawn + 1);  // at once the next, of where the visitor is now
-  EXPECT_FALSE(one.picture.order.still);
+  EXPECT_FALSE(one.picture.job.still);
   EXPECT_FALSE(one.picture.costs.given_up);
 }
 
 TEST_F(LatePictures, AreOutdatedByLeapsAndByMotionAfterRest) {
   begin();
   Visitor unseen;
-  PictureJob order;
-  order.still = true;
-  order.expected = unseen.place.last_view;
+  PictureJob job;
+  job.still = true;
+  job.expected = unseen.place.last_view;
   unseen.place.last_view.position.x += 1;
-  EXPECT_FALSE(is_outdated(*show, order, unseen));  // there is nothing else to show
+  EXPECT_FALSE(is_outdated(*show, job, unseen));  // there is nothing else to show
   unseen.place.camera_cuts++;
-  EXPECT_TRUE(is_outdated(*show, order, unseen));
-  unseen.picture.order.camera_cuts = order.camera_cuts = unseen.place.camera_cuts;
+  EXPECT_TRUE(is_outdated(*show, job, unseen));
+  unseen.picture.job.camera_cuts = job.camera_cuts = unseen.place.camera_cuts;
   unseen.picture.drawn_at = 1;
-  EXPECT_TRUE(is_outdated(*show, order, unseen));
-  order.still = false;  // pictures of who moves are for views to come
-  EXPECT_FALSE(is_outdated(*show, order, unseen));
+  EXPECT_TRUE(is_outdated(*show, job, unseen));
+  job.still = false;  // pictures of who moves are for views to come
+  EXPECT_FALSE(is_outdated(*show, job, unseen));
   unseen.left = true;
-  EXPECT_TRUE(is_outdated(*show, order, unseen));
+  EXPECT_TRUE(is_outdated(*show, job, unseen));
 }
 
 TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {

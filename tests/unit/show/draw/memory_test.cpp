@@ -49,11 +49,11 @@ TEST(Memory, PicturesOf1280x720KeepBoundedMemoryAVisitor) {
       visitor.shown.encoder->task.wait();
       const VisitorPicture& picture = visitor.picture;
       most[k] = std::max(most[k], picture.memory_bytes);
-      if (k == 0 && !picture.order.still) walking = std::max(walking, picture.memory_bytes);
+      if (k == 0 && !picture.job.still) walking = std::max(walking, picture.memory_bytes);
       if (k == 0) widest = std::max(widest, picture.keyframe.view.width);
       still[k] = pictures[k] >= 8;
-      if (!picture.order.passing && picture.order.tick != last[k]) pictures[k]++;
-      last[k] = picture.order.tick;
+      if (!picture.job.passing && picture.job.tick != last[k]) pictures[k]++;
+      last[k] = picture.job.tick;
       k++;
     }
     for (auto& link : links)

@@ -23,7 +23,7 @@ Exhibit make_exhibit() {
   storyteller_place.character = make_tiny_figure();
   storyteller_place.character.positions = {{-0.4f, 0.6f, 0}, {0.4f, 0.6f, 0}, {0, 2.2f, 0}};
   storyteller_place.character.normals.assign(3, {0, 0, 1});
-  storyteller_place.character.looks[0].base_color = vec4(0.8f, 0.05f, 0.05f, 1);
+  storyteller_place.character.appearances[0].base_color = vec4(0.8f, 0.05f, 0.05f, 1);
   storyteller_place.position = dvec3(-2, 0, 0.5);
   return exhibit;
 }
@@ -171,7 +171,7 @@ TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   vec3 here(-2, 1, 0.5f);
   EXPECT_GT(red_at(picture(), here), 40);
   show->storyteller_visible = false;
-  ASSERT_TRUE(step_until([&] { return !visitor().picture.order.figure; }));
+  ASSERT_TRUE(step_until([&] { return !visitor().picture.job.figure; }));
   steps(30);
   EXPECT_LT(red_at(picture(), here), 20);
   EXPECT_FALSE(visitor().picture.backdrop);
