@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one-euro filter (Casiez, Roussel, Vogel, CHI 2012, section 3): a low pass whose cut-off rises
-// with the speed of the signal, so a resting head is calm and a quick one is not late. First lower
+// with the speed of the signal, so a resting head rests and a quick one is not late. First lower
 // `min_cutoff` until rest is still, then raise `beta` until motion does not lag.
 #pragma once
 #include <cmath>

@@ -10,7 +10,7 @@ namespace {
 constexpr const char* names[] = {
     "area lights",     "light tree", "emission pictures", "punctual lights", "environment",
     "environment map", "panes",      "refraction",        "absorption",      "dispersion",
-    "coats",           "caustics",   "kept light"};
+    "coats",           "caustics",   "cached radiance"};
 static_assert(std::size(names) == transport_parts);
 
 // What the decisions are made from.
@@ -249,7 +249,8 @@ std::span<const char* const> technique_notes(TransportPart part) {
       "both "
       "do, hues within 1/8 of the spectrum meet"};
   static constexpr const char* caustics[] = {
-      "path: by rays that come upon the light; gather: in its kept light as well; direct: none",
+      "path: by rays that come upon the light; gather: in its cached radiance as well; direct: "
+      "none",
       "instant_radiosity: photons, spread over a radius that shrinks from pass to pass"};
   static constexpr const char* kept[] = {"gather alone asks for it"};
   if (part == TransportPart::dispersion) return dispersion;

@@ -69,7 +69,7 @@ OwnLight read_own(const Frame& light, int lx, int ly) {
 
 // Of a moving picture's points most hold one sample or two, and whether its rest is a shadow's edge
 // or chance nobody knows.
-constexpr float calm_counts = 1 / 64.0f;
+constexpr float filtered_counts = 1 / 64.0f;
 constexpr float moving_prior_variance = 3;
 constexpr float still_told =
     0.4f;  // at rest: guessed share of the light at which prior variance begins
@@ -365,9 +365,9 @@ std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const V
                                                        const VisibilityPass& visibility,
                                                        const Cells& cells, bool known,
                                                        const Frame& light, const SkinLight* skin,
-                                                       bool calm, const Planes& planes) {
+                                                       bool filtered, const Planes& planes) {
   auto draw = [&](auto composer) {
-    if (calm) composer.own_counts = calm_counts;
+    if (filtered) composer.own_counts = filtered_counts;
     composer.skin = skin;
     auto differ = [&planes](uint32_t a, uint32_t b) { return planes.differ(a, b); };
     return visibility.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
@@ -404,8 +404,8 @@ void compose_drawn(const View& view, const View& lit, const VisibilityPass& visi
 
 void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
                    const Cells& cells, bool known, const Frame& light, const SkinLight* skin,
-                   const Tonemap& tonemap, bool calm, std::vector<uint8_t>& peaks, Image8& image,
-                   std::vector<float>* depth) {
+                   const Tonemap& tonemap, bool filtered, std::vector<uint8_t>& peaks,
+                   Image8& image, std::vector<float>* depth) {
   size_t pixels = size_t(view.width) * size_t(view.height);
   image.width = view.width, image.height = view.height;
   image.rgb.resize(3 * pixels);
@@ -413,7 +413,7 @@ void compose_drawn(const View& view, const View& lit, const VisibilityPass& visi
   if (depth) depth->resize(pixels);
   EyePlanes planes{tonemap.exposure, image.rgb.data(), peaks.data(),
                    depth ? depth->data() : nullptr};
-  soften_edges(compose_moment(view, lit, visibility, cells, known, light, skin, calm, planes),
+  soften_edges(compose_moment(view, lit, visibility, cells, known, light, skin, filtered, planes),
                image, peaks);
 }
 

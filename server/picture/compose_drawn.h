@@ -21,13 +21,13 @@ void compose_drawn(const View& view, const View& lit, const VisibilityPass& visi
                    Frame& frame);
 // The same for the eye at once, as frame/tonemap.h would show it: writing colours to memory and
 // reading them again takes longer than the curve. Resizes `image` and `depth` (null: not wanted;
-// metres along the viewing axis, infinity: nothing there). `calm`: light is that of the cells,
+// metres along the viewing axis, infinity: nothing there). `filtered`: light is that of the cells,
 // which are means; each point for itself would show as a square where pixels are as large as those
 // of surroundings. `peaks` is scratch: light beyond white, until edges are softened.
 void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
                    const Cells& cells, bool known, const Frame& light, const SkinLight* skin,
-                   const Tonemap& tonemap, bool calm, std::vector<uint8_t>& peaks, Image8& image,
-                   std::vector<float>* depth);
+                   const Tonemap& tonemap, bool filtered, std::vector<uint8_t>& peaks,
+                   Image8& image, std::vector<float>* depth);
 
 // What does not move of a picture at rest, in light of its own resolution, `light` being of `view`
 // itself, seen at one place of every pixel, `offset` (0 to 1): the mean over several such pictures

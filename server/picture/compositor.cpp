@@ -82,12 +82,13 @@ void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass
 }
 
 void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
-                      const Tonemap& tonemap, Image8& image, std::vector<float>* depth, bool calm) {
+                      const Tonemap& tonemap, Image8& image, std::vector<float>* depth,
+                      bool filtered) {
   View lit = light_of(cache, view);
   if (!cache.has_projected(lit)) cache.project(lit);
   begin(cache);
   draw(cache, lit, [&](float) {
-    compose_drawn(view, lit, visibility, cells_, known_, work_->light, skin_, tonemap, calm,
+    compose_drawn(view, lit, visibility, cells_, known_, work_->light, skin_, tonemap, filtered,
                   work_->peaks, image, depth);
   });
 }

@@ -40,12 +40,12 @@ class Compositor {
   void set_skin(const SkinLight* skin) { skin_ = skin; }
   // A picture of `view` in the light of `view` or of light_view(view) (picture/compose_drawn.h),
   // whichever was projected (neither: the latter). The second for the eye at once, and of a `depth`
-  // that is not null metres along the viewing axis, infinity: nothing there. `calm`: of pixels so
-  // large that a point's own light would show as a square.
+  // that is not null metres along the viewing axis, infinity: nothing there. `filtered`: of pixels
+  // so large that a point's own light would show as a square.
   void draw(RenderCache& cache, const View& view, const VisibilityPass& visibility, Frame& frame);
   void draw(RenderCache& cache, const View& view, const VisibilityPass& visibility,
             const Tonemap& tonemap, Image8& image, std::vector<float>* depth = nullptr,
-            bool calm = false);
+            bool filtered = false);
   // The same at rest, in light of the view's own resolution: what does not move is antialiased in
   // time, seen at another place of the pixels each time.
   void draw_still(RenderCache& cache, const View& view, const VisibilityPass& visibility,

@@ -14,7 +14,7 @@
 // and Held 2005, section 2): the least squares of what samples say, each weighed by its count, and
 // of differences along edges, weighed by how alike light is there. Multigrid by aggregation solves
 // that (Briggs, Henson, McCormick 2000, "A Multigrid Tutorial", chapter 8), a V-cycle a call, going
-// on from the last. So one sample a place already gives calm light.
+// on from the last. So one sample a place already gives light of little noise.
 //
 // A place whose hemisphere is blocked within millimetres (skin under cloth, a strand's root) is
 // hidden: it says nothing and takes the light of its neighbours.

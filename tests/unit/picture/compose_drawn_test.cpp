@@ -155,9 +155,9 @@ TEST(Drawn, CalmLightIsThatOfCells) {
   DrawnVisit drawn;
   View view = view_from(stage, 0, width, height);
   for (int i = 0; i < 6; i++) drawn.step(stage, view, pixels / 20, PictureOf::moving);
-  Image8 own, calm;
+  Image8 own, filtered;
   drawn.compositor.draw(drawn.cache, view, *stage.visibility, Tonemap{1}, own);
-  drawn.compositor.draw(drawn.cache, view, *stage.visibility, Tonemap{1}, calm, nullptr, true);
+  drawn.compositor.draw(drawn.cache, view, *stage.visibility, Tonemap{1}, filtered, nullptr, true);
   auto sum = [](const Image8& image) {
     double sum = 0;
     for (uint8_t c : image.rgb) sum += c;
@@ -176,8 +176,8 @@ TEST(Drawn, CalmLightIsThatOfCells) {
       }
     return sum;
   };
-  EXPECT_NEAR(sum(calm), sum(own), 0.03 * sum(own));
-  EXPECT_LT(roughness(calm), 0.8 * roughness(own));
+  EXPECT_NEAR(sum(filtered), sum(own), 0.03 * sum(own));
+  EXPECT_LT(roughness(filtered), 0.8 * roughness(own));
 }
 
 // Light of the picture's own resolution is nearer to what is there.

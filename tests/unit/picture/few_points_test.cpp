@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawn pictures of who moves, of one sample for dozens of pixels: calm, and nothing in them black
-// or glaring by chance.
+// Drawn pictures of who moves, of one sample for dozens of pixels: filtered, and nothing in them
+// black or glaring by chance.
 #include <gtest/gtest.h>
 
 #include <cmath>
