@@ -57,7 +57,7 @@ Pose pose_at(const Character& character, const Options& options) {
     return at.size() == 3 ? std::optional(vec3(at[0], at[1], at[2])) : std::nullopt;
   };
   input.story.point = place(options.point);
-  input.story.appearance = place(options.appearance);
+  input.story.look = place(options.appearance);
   input.story.gesture = options.gesture;
   input.story.gesture_lead = 60;  // from its beginning
   if (int clip = find_gesture(options.gesture); clip >= 0)

@@ -287,8 +287,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   }
   watch_pass(show);
   Renderer& renderer = show.renderer;
-  if (renderer.drawn && is_outdated(show, renderer.order, *renderer.drawn))
-    renderer.given_up = true;
+  if (renderer.drawn && is_outdated(show, renderer.job, *renderer.drawn)) renderer.given_up = true;
   if (!show.settings.background) draw_now(show, demand.waiting);
   else if (free) use_renderer(show, demand.waiting);
   for (Visitor& visitor : show.visitors) {

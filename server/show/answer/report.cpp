@@ -32,7 +32,7 @@ ShowReport make_report(const Show& show) {
     one.id = visitor.link->id;
     one.width = visitor.wants.width;
     one.height = visitor.wants.height;
-    one.budget = visitor.picture.order.samples;
+    one.budget = visitor.picture.job.samples;
     one.drawing_ms = visitor.times.drawing;
     one.quality = suggest_quality(visitor.shown.flow, visitor.wants.best_quality);
     one.fps = visitor.shown.measured_fps;

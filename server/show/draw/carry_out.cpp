@@ -50,12 +50,12 @@ void go_on_drawing(Show& show) {
   use_cores(show, [&show] {
     Renderer& renderer = show.renderer;
     if (renderer.surrounds) {
-      draw_surroundings(show, renderer.order, *renderer.drawn);
+      draw_surroundings(show, renderer.job, *renderer.drawn);
       renderer.step = DrawingStep::done;
     }
     while (renderer.step != DrawingStep::done) {
-      renderer.step = draw_step(show, renderer.order, renderer.step, *renderer.drawn);
-      if (in_steps(renderer.order)) break;
+      renderer.step = draw_step(show, renderer.job, renderer.step, *renderer.drawn);
+      if (in_steps(renderer.job)) break;
     }
   });
 }
@@ -63,8 +63,8 @@ void go_on_drawing(Show& show) {
 void begin_picture(Show& show, Visitor& visitor, int waiting, Purpose purpose) {
   Renderer& renderer = show.renderer;
   renderer.drawn = &visitor;
-  renderer.order = make_picture_job(show, visitor, std::max(waiting, 1), purpose);
-  renderer.surrounds = renderer.order.around && !visitor.picture.around.drawn;
+  renderer.job = make_picture_job(show, visitor, std::max(waiting, 1), purpose);
+  renderer.surrounds = renderer.job.around && !visitor.picture.around.drawn;
   if (!renderer.surrounds) pose_world(show);
   visitor.picture.at_work = true;
   renderer.given_up = false;
@@ -95,8 +95,8 @@ bool take_finished(Show& show) {
   }
   if (!renderer.drawn || renderer.step != DrawingStep::done) return true;
   if (std::exchange(renderer.surrounds, false))
-    finish_surroundings(show, renderer.order, *renderer.drawn);
-  else finish_picture(show, renderer.order, *renderer.drawn);
+    finish_surroundings(show, renderer.job, *renderer.drawn);
+  else finish_picture(show, renderer.job, *renderer.drawn);
   renderer.drawn->picture.at_work = false;
   renderer.drawn = nullptr;
   return true;
@@ -130,9 +130,9 @@ void draw_now(Show& show, int waiting) {
   const RendererState renderer = renderer_state(show);
   for (Visitor& visitor : show.visitors) {
     if (!wants_picture(show.time, draw_state(show, visitor), renderer)) continue;
-    PictureJob order = make_picture_job(show, visitor, waiting);
-    draw_picture(show, order, visitor);
-    finish_picture(show, order, visitor);
+    PictureJob job = make_picture_job(show, visitor, waiting);
+    draw_picture(show, job, visitor);
+    finish_picture(show, job, visitor);
     present(show, visitor);
   }
   if (!request_samples(show)) return;

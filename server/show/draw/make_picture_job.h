@@ -10,9 +10,9 @@ namespace wellspring {
 // `busy` visitors share the time.
 PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy,
                             Purpose purpose = Purpose::shown);
-// The picture of this order would not be shown, since the visitor is somewhere else by now or has
+// The picture of this job would not be shown, since the visitor is somewhere else by now or has
 // left; or one at rest would wait for samples of what is no longer so: its visitor moves on, lamps
 // were switched, the storyteller came or went.
-bool is_outdated(const Show& show, const PictureJob& order, const Visitor& visitor);
+bool is_outdated(const Show& show, const PictureJob& job, const Visitor& visitor);
 
 }  // namespace wellspring

@@ -22,27 +22,27 @@ bool may_be_laid_over(const PictureWindow& window, const View& view) {
 }
 
 void begin_skin_light(Show& show) {
-  SkinJob& order = show.renderer.skin;
-  order.update = {};
-  order.eyes.clear();
+  SkinJob& job = show.renderer.skin;
+  job.update = {};
+  job.eyes.clear();
   for (const Visitor& visitor : show.visitors)
-    if (visitor.welcomed) order.eyes.push_back(visitor.place.last_view.position);
-  order.update.eyes = order.eyes;
+    if (visitor.welcomed) job.eyes.push_back(visitor.place.last_view.position);
+  job.update.eyes = job.eyes;
   double seconds =
       most_skin_seconds * std::clamp(double(enough_samples / show.skin.samples), least_share, 1.0);
-  order.update.samples = int(seconds * double(show.samples_per_second));
-  order.update.seed = mix64(show.ticks);
-  order.update.transport = show.settings.transport;
-  order.update.transport.clamp = show.settings.moving_clamp;
-  order.cycles = show.time - order.time > 1 ? first_cycles : cycles;
-  order.time = show.time;
-  order.at_work = true;
+  job.update.samples = int(seconds * double(show.samples_per_second));
+  job.update.seed = mix64(show.ticks);
+  job.update.transport = show.settings.transport;
+  job.update.transport.clamp = show.settings.moving_clamp;
+  job.cycles = show.time - job.time > 1 ? first_cycles : cycles;
+  job.time = show.time;
+  job.at_work = true;
 }
 
 void compute_skin_light(Show& show) {
-  SkinJob& order = show.renderer.skin;
-  order.traced = size_t(update_skin(*show.world, show.lights, order.update, show.skin));
-  smooth_skin(*show.world, show.skin, order.cycles);
+  SkinJob& job = show.renderer.skin;
+  job.traced = size_t(update_skin(*show.world, show.lights, job.update, show.skin));
+  smooth_skin(*show.world, show.skin, job.cycles);
 }
 
 void finish_skin_light(Show& show) {
@@ -71,7 +71,7 @@ void finish_moving(Show& show, Visitor& visitor) {
   float milliseconds = float(1000 * renderer.posed_seconds);
   smoothed = smoothed > 0 ? smoothed + (milliseconds - smoothed) * 0.1f : milliseconds;
   std::swap(moving, picture.moving);
-  picture.order.time_us = renderer.posed_us;
+  picture.job.time_us = renderer.posed_us;
   picture.unshown = true;
   show.totals.posed++;
 }

@@ -28,11 +28,11 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.at_work = picture.at_work;
   state.can_take = may_take(show, visitor);
   state.stands = stands(show, visitor);
-  state.new_place = place.camera_cuts != picture.order.camera_cuts;
-  state.same_view = picture.order.view == place.last_view;
+  state.new_place = place.camera_cuts != picture.job.camera_cuts;
+  state.same_view = picture.job.view == place.last_view;
   state.other_light = picture.lamps != show.switches.lit;
   state.sees_figure = visitor.welcomed && sees_figure(show, place.last_view);
-  state.drew_figure = picture.order.figure;
+  state.drew_figure = picture.job.figure;
   state.unshown = picture.unshown;
   state.backdrop = picture.backdrop;
   state.in_pass = show.pass.visitor == &visitor;
@@ -121,7 +121,7 @@ double drawing_rate(const Show& show, const Visitor& visitor) {
   if (picture.backdrop) rate = backdrop_rate;
   // Until the first reconstruction, samples do more for it than pictures.
   bool first = show.pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
-  first &= picture.backdrop || !picture.order.figure;
+  first &= picture.backdrop || !picture.job.figure;
   return first ? std::min(rate, picture.backdrop ? learning_backdrop_rate : learning_rate) : rate;
 }
 
@@ -156,7 +156,7 @@ KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor) {
   const DrawingCosts costs = drawing_costs(show, visitor);
   double light = costs.light_seconds > 0 ? costs.light_seconds : costs.display_seconds;
   return plan_keyframe((costs.drawing_seconds + light) * std::max(count_moving(show), 1),
-                       visitor.picture.order.scale);
+                       visitor.picture.job.scale);
 }
 
 VisitorDrawState draw_state(const Show& show, const Visitor& visitor) {

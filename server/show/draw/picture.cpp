@@ -29,85 +29,85 @@ void carry_times(double factor, StageTimes& times) {
 }
 
 // What moves is drawn by itself where that is little of the picture, as what it covers is kept.
-bool draws_backdrop(const Show& show, const PictureJob& order) {
-  if (!in_steps(order) || !order.figure || order.passing) return false;
-  if (!show.visibility->rasterises(order.view)) return false;
-  PictureWindow window = moving_window(*show.world, order.view);
-  return !window.empty() && may_be_laid_over(window, order.view);
+bool draws_backdrop(const Show& show, const PictureJob& job) {
+  if (!in_steps(job) || !job.figure || job.passing) return false;
+  if (!show.visibility->rasterises(job.view)) return false;
+  PictureWindow window = moving_window(*show.world, job.view);
+  return !window.empty() && may_be_laid_over(window, job.view);
 }
 
-DrawingStep plan_picture(Show& show, const PictureJob& order, const Technique& technique,
+DrawingStep plan_picture(Show& show, const PictureJob& job, const Technique& technique,
                          const View& lit, Visitor& visitor) {
   DrawingWork& work = show.renderer.work;
   PictureCosts& costs = visitor.picture.costs = {};
   double began = seconds_now();
-  plan_samples(show, order, technique, lit, work, visitor);
+  plan_samples(show, job, technique, lit, work, visitor);
   double planned = seconds_now();
   costs.display = float(1000 * (planned - began));
   bool more = false;
-  if (begin_samples(show, order, technique, lit, work, visitor) && !show.renderer.given_up) {
-    more = trace_slice(show, order, technique, work);
+  if (begin_samples(show, job, technique, lit, work, visitor) && !show.renderer.given_up) {
+    more = trace_slice(show, job, technique, work);
   }
   costs.trace = float(1000 * (seconds_now() - planned));
   return more ? DrawingStep::trace : DrawingStep::draw;
 }
 
-DrawingStep trace_more(Show& show, const PictureJob& order, const Technique& technique,
+DrawingStep trace_more(Show& show, const PictureJob& job, const Technique& technique,
                        Visitor& visitor) {
   double began = seconds_now();
-  bool more = trace_slice(show, order, technique, show.renderer.work);
+  bool more = trace_slice(show, job, technique, show.renderer.work);
   visitor.picture.costs.trace += float(1000 * (seconds_now() - began));
   return more ? DrawingStep::trace : DrawingStep::draw;
 }
 
-DrawingStep paint_picture(Show& show, const PictureJob& order, const View& lit, Visitor& visitor) {
+DrawingStep paint_picture(Show& show, const PictureJob& job, const View& lit, Visitor& visitor) {
   RenderCache& cache = visitor.picture.cache;
   Compositor& compositor = visitor.picture.compositor;
   DrawingWork& work = show.renderer.work;
   PictureCosts& costs = visitor.picture.costs;
   double began = seconds_now();
-  remember_traced(show, order, lit, work, visitor);
-  if (order.samples_only) {
+  remember_traced(show, job, lit, work, visitor);
+  if (job.samples_only) {
     cache.end_frame();
     return DrawingStep::done;
   }
   const Tonemap curve{show.exhibit.exposure};
-  costs.backdrop = draws_backdrop(show, order);
-  if (order.passing)
-    compositor.draw(cache, order.view, *show.visibility, curve, work.picture,
-                    order.keep ? &work.depth : nullptr);
+  costs.backdrop = draws_backdrop(show, job);
+  if (job.passing)
+    compositor.draw(cache, job.view, *show.visibility, curve, work.picture,
+                    job.keep ? &work.depth : nullptr);
   else
-    compositor.draw_still(cache, order.view, *show.visibility, work.frame,
+    compositor.draw_still(cache, job.view, *show.visibility, work.frame,
                           costs.backdrop ? StillShows::backdrop : StillShows::all);
-  if (order.reconstruct) {
+  if (job.reconstruct) {
     std::swap(work.frame, show.pass.frame);
     work.guided = 0;
     costs.guide_seconds = seconds_now() - began;
     return DrawingStep::guide;
   }
   double painted = seconds_now();
-  if (!order.passing) tonemap(work.frame, curve, work.picture);
-  if (order.keep)
-    make_keyframe(order.view, work.picture, order.passing ? work.depth : work.frame.depth,
+  if (!job.passing) tonemap(work.frame, curve, work.picture);
+  if (job.keep)
+    make_keyframe(job.view, work.picture, job.passing ? work.depth : work.frame.depth,
                   work.keyframe);
   double finished = seconds_now();
 
   costs.drawing = compositor.drawing_ms();
   costs.display += float(1000 * (painted - began)) - costs.drawing;
   costs.tonemap = float(1000 * (finished - painted));
-  if (order.passing)
+  if (job.passing)
     costs.light = std::exchange(costs.display, 0.0f) + std::exchange(costs.tonemap, 0.0f);
   return DrawingStep::done;
 }
 
 // One visibility pass of a reconstruction's guides; the last also encodes its input.
-DrawingStep find_guides(Show& show, const PictureJob& order, VisitorPicture& picture) {
+DrawingStep find_guides(Show& show, const PictureJob& job, VisitorPicture& picture) {
   DrawingWork& work = show.renderer.work;
   StillPass& pass = show.pass;
   double began = seconds_now();
   bool all = work.guided == guide_places;
   if (!all)
-    add_still_guides(*show.world, show.lights, *show.visibility, order.view,
+    add_still_guides(*show.world, show.lights, *show.visibility, job.view,
                      picture.costs.backdrop ? RasterShows::still : RasterShows::all, work.guided++,
                      pass.work.guides, pass.work.followed);
   else begin_reconstruction(picture.compositor.samples(), pass.frame, *pass.denoiser, pass.work);
@@ -117,30 +117,30 @@ DrawingStep find_guides(Show& show, const PictureJob& order, VisitorPicture& pic
 
 }  // namespace
 
-DrawingStep draw_step(Show& show, const PictureJob& order, DrawingStep step, Visitor& visitor) {
+DrawingStep draw_step(Show& show, const PictureJob& job, DrawingStep step, Visitor& visitor) {
   double began = seconds_now();
-  const Technique& technique = order.settled ? *show.still_technique : *show.technique;
-  const View lit = order.coarse ? light_view(order.view) : order.view;
+  const Technique& technique = job.settled ? *show.still_technique : *show.technique;
+  const View lit = job.coarse ? light_view(job.view) : job.view;
   if (step == DrawingStep::plan) {
-    step = plan_picture(show, order, technique, lit, visitor);
+    step = plan_picture(show, job, technique, lit, visitor);
   } else if (show.renderer.given_up) {
-    if (step != DrawingStep::guide) remember_traced(show, order, lit, show.renderer.work, visitor);
+    if (step != DrawingStep::guide) remember_traced(show, job, lit, show.renderer.work, visitor);
     visitor.picture.costs.given_up = true;
     step = DrawingStep::done;
   } else if (step == DrawingStep::trace) {
-    step = trace_more(show, order, technique, visitor);
+    step = trace_more(show, job, technique, visitor);
   } else if (step == DrawingStep::draw) {
-    step = paint_picture(show, order, lit, visitor);
+    step = paint_picture(show, job, lit, visitor);
   } else {
-    step = find_guides(show, order, visitor.picture);
+    step = find_guides(show, job, visitor.picture);
   }
   visitor.picture.costs.seconds += seconds_now() - began;
   return step;
 }
 
-void draw_picture(Show& show, const PictureJob& order, Visitor& visitor) {
+void draw_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   for (DrawingStep step = DrawingStep::plan; step != DrawingStep::done;)
-    step = draw_step(show, order, step, visitor);
+    step = draw_step(show, job, step, visitor);
 }
 
 // What was drawn in the memory of somebody else's larger picture does not keep it.
@@ -153,7 +153,7 @@ static void fit_memory(VisitorPicture& picture) {
   fit(picture.image.rgb);
 }
 
-void finish_picture(Show& show, const PictureJob& order, Visitor& visitor) {
+void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   const PictureCosts& costs = picture.costs;
   StageTimes& times = visitor.times;
@@ -166,66 +166,66 @@ void finish_picture(Show& show, const PictureJob& order, Visitor& visitor) {
     return;
   }
   if (!costs.late) smooth(times.trace, costs.trace);
-  if (order.samples_only || order.reconstruct) {
-    picture.drawn_at = order.time;
-    picture.order.settled = order.settled;
-    if (order.reconstruct) begin_pass(show, order, visitor);
+  if (job.samples_only || job.reconstruct) {
+    picture.drawn_at = job.time;
+    picture.job.settled = job.settled;
+    if (job.reconstruct) begin_pass(show, job, visitor);
     show.renderer.work_bytes = memory_bytes(show.renderer.work) + memory_bytes(show.pass);
     return;
   }
-  if (order.scale != picture.order.scale)
-    carry_times(keyframe_cost(order.scale) / keyframe_cost(picture.order.scale), times);
-  const float share = order.still ? 0.1f : soon;
-  if (order.passing) {
+  if (job.scale != picture.job.scale)
+    carry_times(keyframe_cost(job.scale) / keyframe_cost(picture.job.scale), times);
+  const float share = job.still ? 0.1f : soon;
+  if (job.passing) {
     smooth(times.light, costs.light, share);
   } else {
     smooth(times.display, costs.display);
     smooth(times.tonemap, costs.tonemap);
   }
   smooth(times.drawing, costs.drawing, share);
-  if (!order.still) smooth(times.whole, float(1000 * costs.seconds), share);
-  double interval = order.time - picture.drawn_at;
+  if (!job.still) smooth(times.whole, float(1000 * costs.seconds), share);
+  double interval = job.time - picture.drawn_at;
   if (interval > 0 && interval < 1) {
     smooth(picture.drawn_fps, float(1 / interval));
-    if (!order.still) smooth(times.interval, float(1000 * interval), share);
+    if (!job.still) smooth(times.interval, float(1000 * interval), share);
   }
-  picture.drawn_at = order.time;
+  picture.drawn_at = job.time;
   picture.broker_seconds =
-      costs.late ? double(order.samples) / std::max(double(show.samples_per_second), 1.0) : 0;
+      costs.late ? double(job.samples) / std::max(double(show.samples_per_second), 1.0) : 0;
   picture.stats = picture.cache.stats();
   picture.cache_bytes = picture.cache.memory_bytes() + picture.compositor.memory_bytes();
   // Else its keyframe has the colours.
-  if (!order.keep) std::swap(show.renderer.work.picture, picture.image);
+  if (!job.keep) std::swap(show.renderer.work.picture, picture.image);
   std::swap(show.renderer.work.keyframe, picture.keyframe);
   picture.around.drawn = false;
-  bool settles = order.still && !order.passing;  // samples of its pixels take that memory
-  if (settles || order.camera_cuts != picture.around.camera_cuts ||
+  bool settles = job.still && !job.passing;  // samples of its pixels take that memory
+  if (settles || job.camera_cuts != picture.around.camera_cuts ||
       show.time - picture.around.ordered_at > around_kept)
     picture.around.keyframe = {};
   fit_memory(picture);
   picture.memory_bytes = picture_memory(visitor);
   show.renderer.work_bytes = memory_bytes(show.renderer.work) + memory_bytes(show.pass);
-  picture.order = order;
+  picture.job = job;
   finish_backdrop(picture);
   show.totals.drawn++;
 }
 
-void draw_surroundings(Show& show, const PictureJob& order, Visitor& visitor) {
+void draw_surroundings(Show& show, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   DrawingWork& work = show.renderer.work;
   follow_lamps(show, visitor);
   land(picture.broker.collect(), *show.world, show.pose_number, picture.cache);
-  picture.compositor.draw(picture.cache, *order.around, *show.visibility,
+  picture.compositor.draw(picture.cache, *job.around, *show.visibility,
                           Tonemap{show.exhibit.exposure}, work.picture, &work.depth, true);
-  make_keyframe(*order.around, work.picture, work.depth, work.around);
+  make_keyframe(*job.around, work.picture, work.depth, work.around);
 }
 
-void finish_surroundings(Show& show, const PictureJob& order, Visitor& visitor) {
+void finish_surroundings(Show& show, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   Surroundings& around = picture.around;
   std::swap(show.renderer.work.around, around.keyframe);
-  around.ordered_at = order.time;
-  around.camera_cuts = order.camera_cuts;
+  around.ordered_at = job.time;
+  around.camera_cuts = job.camera_cuts;
   around.drawn = true;
   fit_memory(picture);
   picture.memory_bytes = picture_memory(visitor);

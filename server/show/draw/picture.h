@@ -14,13 +14,13 @@ namespace wellspring {
 // Changes nothing but what of the visitor is the renderer's, and what techniques keep in
 // show.lights. Ends early, with costs.given_up and all samples traced by then, once
 // renderer.given_up is set.
-void draw_picture(Show& show, const PictureJob& order, Visitor& visitor);
+void draw_picture(Show& show, const PictureJob& job, Visitor& visitor);
 // The same step by step, between which the world may move and nothing but moving.h may be drawn.
 // Returns the next one; DrawingStep::done: none.
-DrawingStep draw_step(Show& show, const PictureJob& order, DrawingStep step, Visitor& visitor);
-void finish_picture(Show& show, const PictureJob& order, Visitor& visitor);
-// Before that, where the order has something around: it is shown as soon as it is there.
-void draw_surroundings(Show& show, const PictureJob& order, Visitor& visitor);
-void finish_surroundings(Show& show, const PictureJob& order, Visitor& visitor);
+DrawingStep draw_step(Show& show, const PictureJob& job, DrawingStep step, Visitor& visitor);
+void finish_picture(Show& show, const PictureJob& job, Visitor& visitor);
+// Before that, where the job has something around: it is shown as soon as it is there.
+void draw_surroundings(Show& show, const PictureJob& job, Visitor& visitor);
+void finish_surroundings(Show& show, const PictureJob& job, Visitor& visitor);
 
 }  // namespace wellspring

@@ -28,16 +28,16 @@ bool may_be_late(const Show& show, const RenderCache& cache, const Technique& te
          samples <= BrokerSettings{}.most_waiting && cache.covered() > barely_covered;
 }
 
-TransportSettings transport_of(const Show& show, const PictureJob& order) {
+TransportSettings transport_of(const Show& show, const PictureJob& job) {
   TransportSettings transport = show.settings.transport;
-  if (!order.settled) transport.clamp = show.settings.moving_clamp;
+  if (!job.settled) transport.clamp = show.settings.moving_clamp;
   return transport;
 }
 
 // Where pictures are reconstructed, the first samples serve the drawn picture that it begins with;
 // later ones are spread evenly, but for some, aimed at points, to find what changes.
-bool spreads_samples(const PictureJob& order, const Technique& technique, const RestState& rest) {
-  return order.learns && !technique.begin_pass && rest.samples >= spread_from &&
+bool spreads_samples(const PictureJob& job, const Technique& technique, const RestState& rest) {
+  return job.learns && !technique.begin_pass && rest.samples >= spread_from &&
          !has_all_samples(rest);
 }
 
@@ -49,31 +49,31 @@ size_t slice_of_samples(const Show& show) {
 
 }  // namespace
 
-void plan_samples(Show& show, const PictureJob& order, const Technique& technique, const View& lit,
+void plan_samples(Show& show, const PictureJob& job, const Technique& technique, const View& lit,
                   DrawingWork& work, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   RenderCache& cache = picture.cache;
   follow_lamps(show, visitor);
-  View ahead = order.coarse ? light_view(order.ahead) : order.ahead;
-  cache.set_attention(order.attention);
-  cache.set_reference(order.settled);
-  picture.compositor.set_reconstructed(order.learns);
+  View ahead = job.coarse ? light_view(job.ahead) : job.ahead;
+  cache.set_attention(job.attention);
+  cache.set_reference(job.settled);
+  picture.compositor.set_reconstructed(job.learns);
   // What is around has light of half its size.
-  cache.resize(order.expected.width, order.expected.height);
+  cache.resize(job.expected.width, job.expected.height);
   cache.move_points(*show.world);
   land(picture.broker.collect(), *show.world, show.pose_number, cache);
   cache.project(lit);
   cache.attend();
-  int most_asked = int(more_asked * float(order.samples));
-  bool late = !order.still && may_be_late(show, cache, technique, most_asked);
-  int asked = late ? most_asked : order.samples;
+  int most_asked = int(more_asked * float(job.samples));
+  bool late = !job.still && may_be_late(show, cache, technique, most_asked);
+  int asked = late ? most_asked : job.samples;
   work.ahead.clear();
   if (ahead != lit && !technique.begin_pass)
-    cache.predict(ahead, int(predicted_share * float(asked)), order.seed, work.ahead);
+    cache.predict(ahead, int(predicted_share * float(asked)), job.seed, work.ahead);
   const int planned = asked - int(work.ahead.size());
-  const bool spread = spreads_samples(order, technique, picture.rest);
+  const bool spread = spreads_samples(job, technique, picture.rest);
   const int aimed = spread ? samples_to_watch(planned) : planned;
-  cache.plan(lit, aimed, order.seed, work.requests);
+  cache.plan(lit, aimed, job.seed, work.requests);
   if (spread) {
     plan_still(lit, picture.rest.asked, planned - aimed, visitor.link->id, work.requests);
     picture.rest.asked += uint64_t(planned - aimed);
@@ -82,36 +82,35 @@ void plan_samples(Show& show, const PictureJob& order, const Technique& techniqu
   picture.costs.late = late;
 }
 
-bool begin_samples(Show& show, const PictureJob& order, const Technique& technique, const View& lit,
+bool begin_samples(Show& show, const PictureJob& job, const Technique& technique, const View& lit,
                    DrawingWork& work, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   work.samples.clear();
   work.traced = 0;
   if (picture.costs.late) {
-    picture.broker.ask(lit, {&technique, transport_of(show, order)}, work.requests);
+    picture.broker.ask(lit, {&technique, transport_of(show, job)}, work.requests);
     return false;
   }
   picture.broker.forget();  // what was asked for on the way
   work.pose = show.pose_number;
   if (technique.begin_pass)
-    technique.begin_pass(*show.world, transport_of(show, order), lit, visitor.link->id,
-                         uint32_t(order.tick), show.lights);
+    technique.begin_pass(*show.world, transport_of(show, job), lit, visitor.link->id,
+                         uint32_t(job.tick), show.lights);
   return true;
 }
 
-bool trace_slice(Show& show, const PictureJob& order, const Technique& technique,
-                 DrawingWork& work) {
+bool trace_slice(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work) {
   size_t all = work.requests.size(), count = all - work.traced;
   if (!technique.begin_pass) count = std::min(count, slice_of_samples(show));
   work.samples.resize(all);
-  trace(technique, *show.world, show.lights, transport_of(show, order),
+  trace(technique, *show.world, show.lights, transport_of(show, job),
         std::span(work.requests).subspan(work.traced, count),
         std::span(work.samples).subspan(work.traced, count));
   work.traced += count;
   return work.traced < all;
 }
 
-void remember_traced(const Show& show, const PictureJob& order, const View& lit, DrawingWork& work,
+void remember_traced(const Show& show, const PictureJob& job, const View& lit, DrawingWork& work,
                      Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   if (picture.costs.late) return;
@@ -121,8 +120,8 @@ void remember_traced(const Show& show, const PictureJob& order, const View& lit,
   picture.cache.remember(lit, work.requests, work.samples);
   picture.costs.samples = work.samples.size();
   // A picture that is drawn, not reconstructed, has a use for them only when it is kept for long.
-  bool kept_long = !order.passing && picture.cache.is_still();
-  if (!order.still || order.coarse || !(order.learns || kept_long)) return;
+  bool kept_long = !job.passing && picture.cache.is_still();
+  if (!job.still || job.coarse || !(job.learns || kept_long)) return;
   picture.compositor.follow_changes(picture.cache);
   picture.compositor.add_samples(lit, work.requests, work.samples);
   picture.rest.samples = mean_count(picture.compositor.samples());

@@ -54,7 +54,7 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   header.frame = ++shown.frame_number;
   header.seq = seq;
   header.time_us = microseconds_now();
-  note_lead(show, visitor.picture.order.time_us, header.time_us);
+  note_lead(show, visitor.picture.job.time_us, header.time_us);
   header.width = uint16_t(view.width);
   header.height = uint16_t(view.height);
   int quality = suggest_quality(shown.flow, visitor.wants.best_quality);
@@ -100,13 +100,13 @@ bool warp(Show& show, Visitor& visitor, const View& view) {
 void present(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   VisitorDelivery& shown = visitor.shown;
-  const PictureJob& order = picture.order;
-  if (order.camera_cuts != visitor.place.camera_cuts || picture.drawn_at < 0) return;
+  const PictureJob& job = picture.job;
+  if (job.camera_cuts != visitor.place.camera_cuts || picture.drawn_at < 0) return;
   if (!may_take(show, visitor)) return;
   const View view = visitor.place.last_view;
-  bool stood = order.still && order.view == view;
+  bool stood = job.still && job.view == view;
   bool fades = !picture.fade.from.rgb.empty() && show.time - shown.sent_at >= 1 / fade_rate;
-  if (!picture.unshown && !fades && (!order.keep || view == shown.view)) return;
+  if (!picture.unshown && !fades && (!job.keep || view == shown.view)) return;
   if (!stood && show.time - shown.pictured_at < 1 / picture_rate(show, visitor) - on_time) return;
 
   Encoder& encoder = *shown.encoder;
@@ -118,13 +118,13 @@ void present(Show& show, Visitor& visitor) {
     smooth(visitor.times.encode, encoder.milliseconds);
   }
   const float newer = fade_share(picture.fade, view, show.time);
-  if ((picture.unshown || fades) && order.view == view) {  // drawn for this very view
-    if (order.keep) copy_colors(picture.keyframe, {0, 0, view.width, view.height}, encoder.image);
+  if ((picture.unshown || fades) && job.view == view) {  // drawn for this very view
+    if (job.keep) copy_colors(picture.keyframe, {0, 0, view.width, view.height}, encoder.image);
     else std::swap(encoder.image, picture.image);
     if (newer < 1) mix_fade(picture.fade, newer, encoder.image);
     else picture.fade = {};
     if (!picture.moving.empty()) lay_over(picture.moving, encoder.image);
-    send(show, visitor, view, visitor.place.seq, order.still && newer == 1);
+    send(show, visitor, view, visitor.place.seq, job.still && newer == 1);
     return;
   }
   picture.fade = {};
@@ -132,9 +132,8 @@ void present(Show& show, Visitor& visitor) {
   merge_moving(picture);
   if (warp(show, visitor, view)) {
     send(show, visitor, view, visitor.place.seq, false);
-  } else if (picture.unshown && is_later(order.seq, shown.seq) &&
-             warp(show, visitor, order.expected)) {
-    send(show, visitor, order.expected, order.seq,
+  } else if (picture.unshown && is_later(job.seq, shown.seq) && warp(show, visitor, job.expected)) {
+    send(show, visitor, job.expected, job.seq,
          false);  // so quick a turn: what can be shown of it
   }
 }

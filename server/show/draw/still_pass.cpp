@@ -16,11 +16,11 @@ constexpr double slice = 0.02, least_slice = 0.004;  // seconds
 
 }  // namespace
 
-void begin_pass(Show& show, const PictureJob& order, Visitor& visitor) {
+void begin_pass(Show& show, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   StillPass& pass = show.pass;
   pass.visitor = &visitor;
-  pass.order = order;
+  pass.job = job;
   pass.backdrop = picture.costs.backdrop;
   pass.step = StillPass::Step::compute;
   pass.given_up = false;
@@ -42,7 +42,7 @@ void go_on_with_pass(Show& show) {
     finish_reconstruction(pass.visitor->picture.compositor.samples(), *pass.denoiser, pass.work,
                           pass.frame);
     tonemap(pass.frame, Tonemap{show.exhibit.exposure}, pass.picture);
-    make_keyframe(pass.order.view, pass.picture, pass.frame.depth, pass.keyframe);
+    make_keyframe(pass.job.view, pass.picture, pass.frame.depth, pass.keyframe);
     pass.step = StillPass::Step::done;
   }
   pass.seconds += seconds_now() - began;
@@ -62,7 +62,7 @@ void take_pass(Show& show) {
   if (visitor.picture.keyframe.view == pass.keyframe.view)
     begin_fade(visitor.picture.keyframe, show.time, visitor.picture.fade);
   std::swap(pass.keyframe, visitor.picture.keyframe);
-  visitor.picture.order = pass.order;
+  visitor.picture.job = pass.job;
   visitor.picture.costs.backdrop = pass.backdrop;
   finish_backdrop(visitor.picture);
   RestState& rest = visitor.picture.rest;
@@ -78,7 +78,7 @@ void take_pass(Show& show) {
 void watch_pass(Show& show) {
   StillPass& pass = show.pass;
   if (!pass.visitor) return;
-  if (is_outdated(show, pass.order, *pass.visitor)) pass.given_up = true;
+  if (is_outdated(show, pass.job, *pass.visitor)) pass.given_up = true;
   if (pass.given_up && !pass.at_work) {
     pass.visitor = nullptr;
     show.totals.given_up++;

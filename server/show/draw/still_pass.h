@@ -11,8 +11,8 @@
 
 namespace wellspring {
 
-// By the tick, while the renderer is idle: the order's picture is drawn, and `pass` begins with it.
-void begin_pass(Show& show, const PictureJob& order, Visitor& visitor);
+// By the tick, while the renderer is idle: the job's picture is drawn, and `pass` begins with it.
+void begin_pass(Show& show, const PictureJob& job, Visitor& visitor);
 // On the renderer: one slice.
 void go_on_with_pass(Show& show);
 // By the tick, when a slice is done: takes over what is finished, lets go what was given up.

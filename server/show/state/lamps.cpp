@@ -63,8 +63,8 @@ void light_lamps(Show& show) {
   for (Visitor& visitor : show.visitors) {
     visitor.picture.around.keyframe = {}, visitor.picture.fade = {};  // they show another light
     visitor.picture.rest = {};
-    visitor.picture.stats.converged = 0;    // who rests looks again,
-    visitor.picture.order.settled = false;  // and first at what is soon to be known
+    visitor.picture.stats.converged = 0;  // who rests looks again,
+    visitor.picture.job.settled = false;  // and first at what is soon to be known
   }
 }
 

@@ -35,6 +35,6 @@ struct PictureJob {
 };
 
 // It is drawn in steps, between which the world may move and what moves be drawn.
-inline bool in_steps(const PictureJob& order) { return order.still && order.keep; }
+inline bool in_steps(const PictureJob& job) { return job.still && job.keep; }
 
 }  // namespace wellspring

@@ -21,7 +21,7 @@ struct Visitor;
 struct StillPass {
   enum class Step : uint8_t { compute, finish, done };
   Visitor* visitor = nullptr;  // whose picture it is; null: none is under way
-  PictureJob order;
+  PictureJob job;
   bool backdrop = false;  // it is without what moves (show/draw/moving.h)
   Step step = Step::compute;
   bool at_work = false;  // the renderer is at it

@@ -35,7 +35,7 @@ struct PictureCosts {
   bool given_up = false;     // there is no picture
   double guide_seconds = 0;  // for what a reconstruction begins with
   bool backdrop = false;     // of what does not move: the rest is to be laid over it
-  double seconds = 0;        // from its order on, without others' in between
+  double seconds = 0;        // from its job on, without others' in between
 };
 
 // A picture at rest is drawn in steps, so that what moves in it need not wait for all of them.
@@ -79,11 +79,11 @@ struct Renderer {
   DrawingStep step = DrawingStep::done;  // of that, to be done next
   double until_moving = 1;   // seconds from the step's beginning, until what moves is due
   Visitor* posed = nullptr;  // for whom what moves is being drawn, between two such steps
-  double posed_at = 0;       // show time of its order
+  double posed_at = 0;       // show time of its job
   uint64_t posed_us = 0;
   double posed_seconds = 0;  // that it took
-  bool surrounds = false;    // only `order.around` of it
-  PictureJob order;          // for it
+  bool surrounds = false;    // only `job.around` of it
+  PictureJob job;            // for it
   // By the tick: nobody needs that picture any more (is_outdated), so what is not drawn of it yet
   // is left out.
   std::atomic<bool> given_up{false};

@@ -46,10 +46,10 @@ struct VisitorPicture {
   double broker_seconds = 0;  // of all cores, for what was last asked
   RestState rest;
   // What was drawn last, and for what.
-  PictureJob order;
+  PictureJob job;
   PictureCosts costs;
   CacheStats stats;
-  double drawn_at = -1e9;  // show time of its order
+  double drawn_at = -1e9;  // show time of its job
   float drawn_fps = 0;
   Image8 image;       // until it is shown
   Keyframe keyframe;  // what pictures are warped from until the next
@@ -57,7 +57,7 @@ struct VisitorPicture {
   Fade fade;               // to the keyframe
   bool backdrop = false;   // the keyframe is without what moves (show/draw/moving.h)
   MovingPicture moving;    // that, to be laid over it; empty: nothing
-  double posed_at = -1e9;  // show time of its order
+  double posed_at = -1e9;  // show time of its job
   bool unshown = false;    // nothing of it has been sent yet
   size_t cache_bytes = 0, memory_bytes = 0;  // of its cache; of all that is kept for its pictures
 };

@@ -2,6 +2,8 @@
 // The judge is judged: it lets right techniques pass as often as it says, and finds a bias of 1 %.
 #include "judge.h"
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include "scenes/scenes.h"
 #include "statistics.h"
 

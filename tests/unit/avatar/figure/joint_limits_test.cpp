@@ -99,7 +99,7 @@ TEST(JointLimits, LookingPointingAndGesturesKeepToThem) {
   for (const char* gesture : {"point_far", "wave", "count_three", "open_arms", "bow", "think"})
     for (int i = 0; i < 90; i++, frame++) {
       float angle = 0.05f * float(frame);
-      input.story.appearance =
+      input.story.look =
           vec3(2 * std::sin(angle), 1.5f + std::cos(1.7f * angle), 2 * std::cos(angle));
       input.story.point = vec3(std::sin(angle), 1 + 0.5f * std::sin(2 * angle), 1.2f);
       input.story.gesture = i == 0 ? gesture : "";

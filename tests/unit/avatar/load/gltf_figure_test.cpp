@@ -140,14 +140,14 @@ TEST(GltfFigure, EyesLookAsTheirAuthorDrewThem) {
   Character c = load_asset(asset);
   Rig rig = make_rig(c);
   ASSERT_FALSE(rig.eyes_move);
-  for (int appearance : rig.appearance) ASSERT_GE(appearance, 0);
+  for (int appearance : rig.look) ASSERT_GE(appearance, 0);
   Pose pose = make_rest_pose(c);
   aim_eyes(rig, rig.eyes_center + vec3(1, 0, 4), pose);  // to its own left
-  EXPECT_NEAR(pose.displacers[size_t(rig.appearance[2])], std::atan(0.25f) / eye_limit_yaw, 1e-3f);
-  EXPECT_EQ(pose.displacers[size_t(rig.appearance[3])], 0);
+  EXPECT_NEAR(pose.displacers[size_t(rig.look[2])], std::atan(0.25f) / eye_limit_yaw, 1e-3f);
+  EXPECT_EQ(pose.displacers[size_t(rig.look[3])], 0);
   aim_eyes(rig, rig.eyes_center + vec3(-100, -1000, 0.1f), pose);
-  EXPECT_EQ(pose.displacers[size_t(rig.appearance[2])], 0);
-  EXPECT_EQ(pose.displacers[size_t(rig.appearance[1])], 1);
+  EXPECT_EQ(pose.displacers[size_t(rig.look[2])], 0);
+  EXPECT_EQ(pose.displacers[size_t(rig.look[1])], 1);
 
   Character eyed = test::load_text(test::whole_figure());
   Rig eyed_rig = make_rig(eyed);

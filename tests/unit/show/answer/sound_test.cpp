@@ -103,8 +103,8 @@ struct SoundTest : testing::Test {
     character.joints[0].name = "humanoid_root";
     character.positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
     character.normals.assign(3, {0, 0, 1});
-    character.looks.resize(1);
-    character.parts = {{.name = "all", .look = 0, .triangles = {{0, 1, 2}}}};
+    character.appearances.resize(1);
+    character.parts = {{.name = "all", .appearance = 0, .triangles = {{0, 1, 2}}}};
     character.first_weight = {0, 1, 2, 3};
     character.weights.assign(3, {0, 1});
     exhibit.storytellers.resize(2);

@@ -33,7 +33,7 @@ TEST(Sheet, CellsStandInRowsWithTheirLabels) {
   character.normals.assign(3, vec3(0, 0, 1));
   character.first_weight = {0, 1, 2, 3};
   character.weights.assign(3, {0, 1});
-  character.looks.push_back({});
+  character.appearances.push_back({});
   character.parts.push_back({"flag", 0, {{0, 1, 2}}});
   std::vector<SheetCell> cells(3, {"one", make_rest_pose(character)});
   PortraitShot shot{.width = 32, .height = 32, .spp = 1};
