@@ -100,6 +100,8 @@ endforeach()
 include_directories(SYSTEM ${STB_INCLUDE})
 include_directories(${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/server)
 
+# Half the time to compile, but the same products and sums in one rounding (fused multiply-add).
+set(WELLSPRING_LITTLE -O1 -fexpensive-optimizations)
 # Headers that nearly every file reads are compiled once: for all layers, and with GoogleTest for
 # tests. Without them (WELLSPRING_PRECOMPILE=OFF) everything compiles as well, only slower. JSON is
 # not among them: reading what was compiled of it takes longer than most files that do without.
@@ -115,7 +117,7 @@ if(WELLSPRING_PRECOMPILE)
   wellspring_precompiled(std)
   wellspring_precompiled(test <gtest/gtest.h>)
   target_link_libraries(precompiled_test PRIVATE GTest::gtest)
-  target_compile_options(precompiled_test PRIVATE -O1)
+  target_compile_options(precompiled_test PRIVATE ${WELLSPRING_LITTLE})
 endif()
 function(wellspring_precompile target name)
   if(WELLSPRING_PRECOMPILE)
@@ -124,11 +126,10 @@ function(wellspring_precompile target name)
 endfunction()
 
 # wellspring_load_once(FOLDER ...): files of these folders read what is read once, and write messages.
-# They take half the time to compile at -O1.
 function(wellspring_load_once)
   foreach(folder ${ARGN})
     file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
-    set_property(SOURCE ${sources} APPEND PROPERTY COMPILE_OPTIONS -O1)
+    set_property(SOURCE ${sources} APPEND PROPERTY COMPILE_OPTIONS ${WELLSPRING_LITTLE})
   endforeach()
 endfunction()
 

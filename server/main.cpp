@@ -49,8 +49,9 @@ int read_options(Options& options, int argc, char** argv) {
   app.add_option("--weights", options.show.weights,
                  "folder of the networks' weights; without it pictures at rest are not denoised")
       ->envname("WELLSPRING_WEIGHTS");
-  app.add_option("--cache", options.recordings.cache,
-                 "folder that keeps speech and words of recordings; empty: nothing is kept");
+  app.add_option(
+      "--cache", options.recordings.cache,
+      "folder that keeps light, speech and words of recordings; empty: none of it is kept");
   app.add_option("--fps", options.show.fps, "pictures a second for each visitor")
       ->check(CLI::Range(1.0, 120.0))
       ->capture_default_str();
@@ -115,7 +116,9 @@ int serve(const Options& options) {
   auto pages = load_pages(options.web);
   Exhibit exhibit = load_exhibit(folder);
   read_recordings_or_fail(exhibit, options.recordings);
-  auto show = make_show(std::move(exhibit), options.show);
+  ShowSettings settings = options.show;
+  settings.cache = options.recordings.cache;
+  auto show = make_show(std::move(exhibit), settings);
   SpeakerOptions speaker;
   if (!options.recordings.cache.empty()) speaker.folder = options.recordings.cache + "/speech";
   show->speech = make_speech_source(std::make_shared<Speaker>(speaker));

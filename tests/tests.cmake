@@ -13,7 +13,7 @@ function(wellspring_unit_test folder)
   add_executable(unit_${folder} ${sources})
   target_link_libraries(unit_${folder} PRIVATE ${ARGN} GTest::gtest_main)
   target_include_directories(unit_${folder} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_options(unit_${folder} PRIVATE -O1)  # what they test is compiled as ever
+  target_compile_options(unit_${folder} PRIVATE ${WELLSPRING_LITTLE})  # what they test is compiled as ever
   wellspring_precompile(unit_${folder} test)
   target_compile_definitions(unit_${folder} PRIVATE
     WELLSPRING_SOURCE="${PROJECT_SOURCE_DIR}" WELLSPRING_DATA="${WELLSPRING_DATA}"

@@ -71,3 +71,13 @@ test('lines of documents end at 100 columns, but in tables', () => {
     });
   assert.deepEqual(wrong, []);
 });
+
+test('slow tests that are listed exist, each with a reason', () => {
+  const lines = read('tests/slow.txt').split('\n').filter((line) => line && line[0] !== '#');
+  assert.ok(lines.length > 0);
+  for (const line of lines) {
+    const [, suite, name, reason] = /^(\w+)\.(\w+) +(.+)$/.exec(line) ?? [];
+    assert.ok(reason, line);
+    assert.ok(new RegExp(`TEST(_F|_P)?\\(${suite},\\s*${name}\\)`).test(code), line);
+  }
+});

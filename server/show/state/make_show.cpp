@@ -4,7 +4,9 @@
 #include <stdexcept>
 
 #include "base/log.h"
+#include "light/known/radiance_grid_file.h"
 #include "show/exhibit/exhibit_scene.h"
+#include "show/exhibit/fingerprint.h"
 #include "show/state/lamps.h"
 
 namespace wellspring {
@@ -53,6 +55,29 @@ void change_storyteller(Show& show, size_t storyteller_index) {
   show.agent_sent_at = -1e9;
 }
 
+namespace {
+
+// What techniques must know before the first sample: a radiance grid, if anything, which is the
+// same at every start.
+void prepare(Show& show) {
+  const std::string& cache = show.settings.cache;
+  const std::string file = cache + "/" + show.exhibit.id + ".grid";
+  uint64_t key = 0;
+  bool used = show.technique->prepare || show.still_technique->prepare;
+  if (!cache.empty() && used) {
+    key = exhibit_fingerprint(show.exhibit.folder);
+    show.lights.grid = load_radiance_grid(file, key);
+    if (show.lights.grid) return;
+  }
+  std::vector<vec3> places = places_of(show.exhibit);
+  for (const Technique* technique : {show.technique, show.still_technique})
+    if (technique->prepare) technique->prepare(*show.world, places, show.lights);
+  if (!cache.empty() && show.lights.grid && !save_radiance_grid(*show.lights.grid, file, key))
+    log::warn("{} cannot be written: the next start takes as long as this one", file);
+}
+
+}  // namespace
+
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   auto show = std::make_unique<Show>();
   show->settings = settings;
@@ -78,9 +103,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   StillPass& pass = show->pass;
   if (show->settings.weights.empty()) pass.problem = "no folder of weights was named";
   else pass.denoiser = load_denoiser(NetSize::small, pass.problem, show->settings.weights);
-  std::vector<vec3> places = places_of(show->exhibit);
-  for (const Technique* technique : {show->technique, show->still_technique})
-    if (technique->prepare) technique->prepare(*show->world, places, show->lights);
+  prepare(*show);
   begin_lamps(*show);
   log::info("exhibit '{}': {} triangles, {} viewpoints, {} materials", show->exhibit.id,
             triangle_count(scene), show->exhibit.viewpoints.size(), scene.materials.size());

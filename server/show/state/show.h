@@ -37,6 +37,8 @@ struct ShowSettings {
   bool background = true;  // pictures are drawn while the show goes on, and warped meanwhile
   // Folder of the networks' weights (denoise/denoise.h); empty: pictures at rest are drawn only.
   std::string weights;
+  // Folder for what is found out about an exhibit once and kept for the next start; empty: nothing.
+  std::string cache;
   bool late_samples = true;  // of who walks are traced behind the picture, for the next
   float moving_clamp = 4;    // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;

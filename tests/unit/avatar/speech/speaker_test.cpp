@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "avatar/speech/speaker.h"
-#include "unit/avatar/folder.h"
+#include "unit/folder.h"
 
 namespace wellspring {
 namespace {

@@ -15,7 +15,7 @@
 #include "avatar/speech/sound_file.h"
 #include "base/load_error.h"
 #include "base/rng.h"
-#include "unit/avatar/folder.h"
+#include "unit/folder.h"
 
 namespace wellspring {
 namespace {

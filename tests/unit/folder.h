@@ -12,7 +12,7 @@ struct Folder {
   std::filesystem::path path;
   Folder() {
     std::string name =
-        (std::filesystem::temp_directory_path() / "wellspring-speech-XXXXXX").string();
+        (std::filesystem::temp_directory_path() / "wellspring-test-XXXXXX").string();
     path = mkdtemp(name.data());
   }
   Folder(const Folder&) = delete;
