@@ -1,6 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake --build --preset format   rewrites sources as .clang-format has them
 # cmake --build --preset tidy     clang-tidy over all production code; what it finds is an error
+# Clang reads no precompiled header of GCC, so both belong to a preset without any, whose compile
+# database lies where editors look for it.
+if(NOT WELLSPRING_PRECOMPILE)
+  file(CREATE_LINK ${CMAKE_BINARY_DIR}/compile_commands.json
+    ${PROJECT_SOURCE_DIR}/build/compile_commands.json SYMBOLIC RESULT ignored)
+endif()
 cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
 find_program(CLANG_FORMAT clang-format)
 find_program(CLANG_TIDY clang-tidy)
