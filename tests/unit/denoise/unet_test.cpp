@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The network against loops that do what its definition says, on small weights made here.
+#include "denoise/tile.h"
 #include "denoise/unet.h"
 
 #include <gtest/gtest.h>
@@ -156,7 +157,9 @@ void expect_as_loops(int width, int height, bool large) {
         largest = std::max(largest, double(want));
       }
   EXPECT_GT(largest, 0.01);
-  EXPECT_LT(most, 2e-5 * std::max(1.0, largest));
+  // In bfloat16 each of 16 layers rounds what it hands on to 8 bits.
+  const double rounding = best_format().bfloat16 ? 16 * std::ldexp(1.0, -9) : 2e-5;
+  EXPECT_LT(most, rounding * std::max(1.0, largest));
 }
 
 TEST(UNet, ComputesWhatLoopsDo) {
