@@ -351,7 +351,7 @@ ReportPage light_cycles_page() {
 ReportPage light_photons_page() {
   return {"light.photons",
           "What do caustic photons cost? Stored in grids and asked by every pixel.",
-          {"Processor time over the cores."},
+          {"Storing and asking: processor time of both over four cores."},
           {{.caption = "",
             .columns = {{"photons_ms", "storing and asking"},
                         {"photons_ms", "photons", 1, "", "photons"},
