@@ -150,7 +150,7 @@ TEST(Drawn, DarkBarsBeforeABrightSkyAreThoseOfAllOfThePixel) {
 
 // Light of cells is as bright as that with each point's own, but neighbours differ less, as few
 // samples are noisy.
-TEST(Drawn, CalmLightIsThatOfCells) {
+TEST(Drawn, LightOfCellsIsAsBrightAndLessNoisy) {
   Stage stage(make_room());
   DrawnVisit drawn;
   View view = view_from(stage, 0, width, height);
@@ -276,7 +276,7 @@ TEST(Drawn, StartingAndStoppingLosesNoPoint) {
 }
 
 // Lamps and the sky are as they are without a single sample.
-TEST(Drawn, ShinesWithoutASample) {
+TEST(Drawn, EmitsWithoutASample) {
   Stage stage(make_emitting());
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 1, 101, 67);
   for (PictureOf kind : {PictureOf::moving, PictureOf::still})

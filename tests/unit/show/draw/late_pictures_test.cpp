@@ -150,7 +150,7 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   EXPECT_EQ(show->totals.surroundings, drawn);
 }
 
-TEST_F(LatePictures, NothingAroundTheOldPlaceAfterALeap) {
+TEST_F(LatePictures, NothingAroundTheOldPlaceAfterACameraCut) {
   begin();
   for (int i = 0; i < 60; i++) turn(0.3), step(0.08);  // a slow machine
   ASSERT_FALSE(visitor().picture.around.keyframe.empty());
@@ -202,7 +202,7 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   EXPECT_FALSE(one.picture.costs.given_up);
 }
 
-TEST_F(LatePictures, AreOutdatedByLeapsAndByMotionAfterRest) {
+TEST_F(LatePictures, AreOutdatedByCameraCutsAndByMotionAfterRest) {
   begin();
   Visitor unseen;
   PictureJob job;
@@ -221,7 +221,7 @@ TEST_F(LatePictures, AreOutdatedByLeapsAndByMotionAfterRest) {
   EXPECT_TRUE(is_outdated(*show, job, unseen));
 }
 
-TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {
+TEST_F(LatePictures, NothingOfTheOldPlaceAfterACameraCut) {
   begin();
   turn(0, 1);
   steps(20);
@@ -236,7 +236,7 @@ TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {
   EXPECT_EQ(header(before).seq, 900u);
   Image8 there = truth();
   EXPECT_LT(mean_difference(image(before), there), 25);
-  // A camera that is put elsewhere has leapt as well; a small step is no camera cut.
+  // A camera that is put elsewhere is a camera cut as well; a small step is none.
   hold_renderer();
   before = pictures().size();
   say(R"({"type":"camera","seq":901,"position":[3,1.6,-2.95],"yaw":2,"pitch":0})");
@@ -248,7 +248,7 @@ TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {
   release_renderer();
 }
 
-TEST_F(LatePictures, ALeapWhileDrawingDiscardsThatPicture) {
+TEST_F(LatePictures, ACameraCutWhileDrawingDiscardsThatPicture) {
   begin();
   turn(0, 1);
   steps(20);

@@ -91,7 +91,7 @@ TEST(Storytellers, OneIsInFinishedPictures) {
   EXPECT_TRUE(picture({behind_the_wall, in_view}) == nobody);
 }
 
-TEST_F(StorytellersTest, AStoryBringsItsOwnTellerAndVoice) {
+TEST_F(StorytellersTest, AStoryBringsItsOwnStorytellerAndVoice) {
   join("visitor");
   order(R"({"type":"storyteller","story":"tale"})");
   ASSERT_FALSE(asked.empty());
