@@ -408,7 +408,7 @@ TEST(Remember, WitnessesOfNoisyLightAreFair) {
 }
 
 // What a point remembers besides its light stays out of the number of samples that it is worth.
-TEST(ReadPoints, TellsSamplesWhateverTheDoubts) {
+TEST(ReadPoints, TellsSamplesWhateverElseIsKept) {
   Stage stage(64);
   stage.put(20, vec3(0, 0, -3), 3);
   stage.points.count[20] = 5, stage.points.color[20].doubts = 0xfa,

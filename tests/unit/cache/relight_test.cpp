@@ -7,10 +7,8 @@
 
 #include "cache/packing.h"
 #include "cache/point_cache.h"
-#include "light/technique/technique.h"
-#include "picture/compose_drawn.h"
-#include "scenes/scenes.h"
 #include "unit/cache/visit.h"
+#include "unit/picture/drawn_visit.h"
 
 namespace wellspring {
 namespace {
@@ -88,74 +86,53 @@ TEST(Relight, NineOfTenAffectedPixelsAreAsRightAsEverInHalfASecond) {
 // A box whose lamp stays while a spot light, and a shadow with it, comes and goes; of light that
 // falls directly, whose converged picture is soon to be had. Shapes are drawn, as visitors see
 // them.
-struct Box {
+Scene make_box(bool spot) {
   Scene scene = scenes::make_cornell_box();
-  std::unique_ptr<World> world;
-  Lights lights;
-  std::unique_ptr<VisibilityPass> visibility;
+  for (Material& material : scene.materials) material.emission = vec3(0);
+  PunctualLight lamp;
+  lamp.position = {0.02f, 0.45f, 0.05f};
+  lamp.intensity = {0.15f, 0.15f, 0.17f};
+  scene.lights.push_back(lamp);
+  lamp.type = PunctualType::spot;
+  lamp.position = {-0.2f, 0.5f, 0.1f};
+  lamp.direction = normalize(vec3(0.45f, -0.75f, -0.6f));
+  lamp.inner_cone = 0.5f, lamp.outer_cone = 0.7f;
+  lamp.intensity = {0.7f, 0.65f, 0.5f};
+  if (spot) scene.lights.push_back(lamp);
+  return scene;
+}
+struct Box : Stage {
   TransportSettings transport;
-  explicit Box(bool spot) {
-    for (Material& material : scene.materials) material.emission = vec3(0);
-    PunctualLight lamp;
-    lamp.position = {0.02f, 0.45f, 0.05f};
-    lamp.intensity = {0.15f, 0.15f, 0.17f};
-    scene.lights.push_back(lamp);
-    lamp.type = PunctualType::spot;
-    lamp.position = {-0.2f, 0.5f, 0.1f};
-    lamp.direction = normalize(vec3(0.45f, -0.75f, -0.6f));
-    lamp.inner_cone = 0.5f, lamp.outer_cone = 0.7f;
-    lamp.intensity = {0.7f, 0.65f, 0.5f};
-    if (spot) scene.lights.push_back(lamp);
-    world = std::make_unique<World>(scene);
-    world->commit();
-    lights = make_lights(*world);
-    visibility = std::make_unique<VisibilityPass>(*world, lights);
-    transport.max_depth = 2;
-  }
+  explicit Box(bool spot) : Stage(make_box(spot)) { transport.max_depth = 2; }
   View view() const { return make_view(scene, {0, 0.25, 0.6}, 0, 0, 0.75f, 160, 120); }
-  Frame truth() const {
-    StillSettings settings;
-    settings.spp = 256;
-    settings.transport = transport;
-    return render_still(*find_technique("path"), *world, lights, view(), settings);
-  }
+  Frame truth() const { return Stage::truth(view(), 256, transport); }
 };
-
-enum class Shown { moving, still };
 
 // Share of the affected pixels within 10 % of right after `pictures` in the new light.
 float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<vec3>& before,
-                              const std::vector<vec3>& after, Shown shown, bool told, int mismatch,
-                              int pictures) {
-  RenderCache cache;
-  Compositor compositor;
-  std::vector<Request> requests;
-  std::vector<Sample> samples;
-  Frame frame;
+                              const std::vector<vec3>& after, PictureOf shown, bool told,
+                              int mismatch, int pictures) {
+  DrawnVisit visit;
   for (int i = -60; i < pictures; i++) {
     const Box& box = i < 0 ? was : is;
     View view = box.view();
-    if (shown == Shown::moving && (pictures - i) % 2 == 0)
+    if (shown == PictureOf::moving && (pictures - i) % 2 == 0)
       view.position.x += 0.004f;  // the last is seen from the place
-    const View seen = shown == Shown::moving ? light_view(view) : view;
-    if (i == 0 && told) cache.relight(everywhere);
-    cache.resize(view.width, view.height);
-    cache.move_points(*box.world);
-    cache.project(seen);
-    cache.attend();
-    cache.plan(seen, view.width * view.height / mismatch, uint64_t(i + 100), requests);
-    samples.resize(requests.size());
-    trace(*find_technique("path"), *box.world, box.lights, box.transport, requests, samples);
-    cache.remember(seen, requests, samples);
-    compositor.follow_changes(cache);
-    compositor.add_samples(seen, requests, samples);
-    if (shown == Shown::moving) compositor.draw(cache, view, *box.visibility, frame);
-    else compositor.draw_still(cache, view, *box.visibility, frame);
+    const View seen = shown == PictureOf::moving ? light_view(view) : view;
+    if (i == 0 && told) visit.cache.relight(everywhere);
+    visit.transport = box.transport;
+    visit.sample(box, view.width, view.height, seen, view.width * view.height / mismatch);
+    visit.cache.remember(seen, visit.requests, visit.samples);
+    visit.compositor.follow_changes(visit.cache);
+    visit.compositor.add_samples(seen, visit.requests, visit.samples);
+    if (shown == PictureOf::moving)
+      visit.compositor.draw(visit.cache, view, *box.visibility, visit.frame);
+    else visit.compositor.draw_still(visit.cache, view, *box.visibility, visit.frame);
   }
   int affected = 0, right = 0;
   for (size_t i = 0; i < after.size(); i++) {
     float old = luminance(before[i]), wanted = luminance(after[i]),
-          light = luminance(frame.color[i]);
+          light = luminance(visit.frame.color[i]);
     if (std::abs(old - wanted) <= 0.1f * std::max(old, wanted) + 1e-4f) continue;
     affected++;
     right += std::abs(light - wanted) <= 0.1f * wanted + 1e-4f;
@@ -169,9 +146,9 @@ float right_in_drawn_pictures(const Box& was, const Box& is, const std::vector<v
 TEST(Relight, DrawnPicturesAreRightInHalfASecond) {
   Box dark(false), lit(true);
   std::vector<vec3> without = dark.truth().color, with = lit.truth().color;
-  for (Shown shown : {Shown::still, Shown::moving})
+  for (PictureOf shown : {PictureOf::still, PictureOf::moving})
     for (bool told : {true, false}) {
-      float least = shown == Shown::still ? 0.9f : 0.85f;
+      float least = shown == PictureOf::still ? 0.9f : 0.85f;
       EXPECT_GE(right_in_drawn_pictures(dark, lit, without, with, shown, told, 16, 30), least)
           << told;
       EXPECT_GE(right_in_drawn_pictures(lit, dark, with, without, shown, told, 16, 30), least)

@@ -80,7 +80,7 @@ TEST(Cells, OneDarkSampleFarFromOthersIsNotSureOfItself) {
   }
 }
 
-TEST(Cells, WhatIsFilledInIsAsCalmAsWhatIsKnown) {
+TEST(Cells, FilteringTakesNoiseFromWhatIsFilledIn) {
   SparseWall wall(4);
   ASSERT_TRUE(fill_cells(wall.view, wall.cells));
   double filled = wall.error();

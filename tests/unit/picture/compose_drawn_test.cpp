@@ -148,9 +148,9 @@ TEST(Drawn, DarkBarsBeforeABrightSkyAreThoseOfAllOfThePixel) {
   EXPECT_LT(error, 9);
 }
 
-// Calm light is as bright as that with each point's own, but neighbours differ less, as few samples
-// are noisy.
-TEST(Drawn, CalmLightIsThatOfCells) {
+// Light of cells is as bright as that with each point's own, but neighbours differ less, as few
+// samples are noisy.
+TEST(Drawn, LightOfCellsIsAsBrightAndLessNoisy) {
   Stage stage(make_room());
   DrawnVisit drawn;
   View view = view_from(stage, 0, width, height);
@@ -204,13 +204,7 @@ TEST(Drawn, SurroundingsInFineLightCostNoPoint) {
   around.width += 64, around.height += 32;
   around.tan_half_fov *= float(around.height) / float(view.height);
   auto step = [&](const View& seen, PictureOf kind, int budget) {
-    drawn.cache.resize(width, height);  // as the show says it, every picture
-    drawn.cache.move_points(*stage.world);
-    drawn.cache.project(seen);
-    drawn.cache.attend();
-    drawn.cache.plan(seen, budget, drawn.tick++, drawn.requests);
-    drawn.samples.resize(drawn.requests.size());
-    trace(*find_technique("path"), *stage.world, stage.lights, {}, drawn.requests, drawn.samples);
+    drawn.sample(stage, width, height, seen, budget);  // of that size, whatever is drawn
     drawn.cache.remember(seen, drawn.requests, drawn.samples);
     if (kind == PictureOf::still)
       drawn.compositor.draw_still(drawn.cache, seen, *stage.visibility, drawn.frame);
@@ -282,7 +276,7 @@ TEST(Drawn, StartingAndStoppingLosesNoPoint) {
 }
 
 // Lamps and the sky are as they are without a single sample.
-TEST(Drawn, ShinesWithoutASample) {
+TEST(Drawn, EmitsWithoutASample) {
   Stage stage(make_emitting());
   View view = make_view(stage.scene, {0, 0, 0}, 0, 0, 1, 101, 67);
   for (PictureOf kind : {PictureOf::moving, PictureOf::still})

@@ -32,9 +32,10 @@ struct Stage {
     Hit hit = world->intersect(view_ray(view, x, y));
     return hit.valid() ? world->object_of(hit.instance) : 0;
   }
-  Frame truth(const View& view, int samples) const {
+  Frame truth(const View& view, int samples, const TransportSettings& transport = {}) const {
     StillSettings settings;
     settings.spp = samples;
+    settings.transport = transport;
     return render_still(*find_technique("path"), *world, lights, view, settings);
   }
 
@@ -93,23 +94,30 @@ struct DrawnVisit {
   std::vector<Sample> samples;
   Frame frame;
   uint64_t tick = 1;
+  const char* technique = "path";
+  TransportSettings transport;
 
   size_t memory_bytes() const { return cache.memory_bytes() + compositor.memory_bytes(); }
 
   void step(const Stage& stage, const View& view, int budget, PictureOf kind) {
     View light = kind == PictureOf::moving ? light_view(view) : view;
-    cache.resize(view.width, view.height);
-    cache.move_points(*stage.world);
-    cache.project(light);
-    cache.attend();
-    cache.plan(light, budget, tick++, requests);
-    samples.resize(requests.size());
-    trace(*find_technique("path"), *stage.world, stage.lights, {}, requests, samples);
+    sample(stage, view.width, view.height, light, budget);
     cache.remember(light, requests, samples);
     compositor.follow_changes(cache);
     if (kind == PictureOf::still) compositor.add_samples(light, requests, samples);
     if (kind == PictureOf::still) compositor.draw_still(cache, view, *stage.visibility, frame);
     else compositor.draw(cache, view, *stage.visibility, frame);
+  }
+  // All before the samples are remembered. `light`: the view in the resolution of its light, in a
+  // picture of `width` x `height` pixels.
+  void sample(const Stage& stage, int width, int height, const View& light, int budget) {
+    cache.resize(width, height);
+    cache.move_points(*stage.world);
+    cache.project(light);
+    cache.attend();
+    cache.plan(light, budget, tick++, requests);
+    samples.resize(requests.size());
+    trace(*find_technique(technique), *stage.world, stage.lights, transport, requests, samples);
   }
 };
 

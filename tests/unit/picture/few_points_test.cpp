@@ -59,7 +59,7 @@ Outliers count_outliers(const Shown& shown) {
   return found;
 }
 
-TEST(FewPoints, WallsAreNotPeppered) {
+TEST(FewPoints, WallsHaveFewOutliers) {
   Stage stage(make_cornell_box());
   Shown shown = stroll(stage, 64);
   const auto [outliers, inside] = count_outliers(shown);
@@ -85,7 +85,7 @@ Bars look_at_bars(const Stage& stage, const Shown& shown) {
 }
 
 // Bars a pixel wide, of which most pixels have no sample of their own.
-TEST(FewPoints, NarrowThingsAreNeitherBlackNorGlaring) {
+TEST(FewPoints, NarrowThingsAreAboutAsBrightAsTheReference) {
   Scene scene = make_barred_box(vec3(0.7f), 0.004f);
   Material sky = emitter(vec3(8));
   sky.base_color =
@@ -107,7 +107,7 @@ TEST(FewPoints, NarrowThingsAreNeitherBlackNorGlaring) {
 
 // A bumpy ball before the box, which moves, and hardly a point on either: light may be wrong, but
 // has no borders where there are none, and nothing is lit by what is before or behind it.
-TEST(FewPoints, LightHasNoSquares) {
+TEST(FewPoints, LightHasNoBordersOfItsOwn) {
   Scene scene = make_cornell_box();
   scene.environment.radiance = vec3(0.4f, 0.5f, 0.7f);
   Mesh ball = sphere_mesh(add_material(scene, diffuse(vec3(0.6f))), 0.2f, 48);
@@ -150,9 +150,8 @@ TEST(FewPoints, LightHasNoSquares) {
   }
 }
 
-// Who has just come to rest: what lamps do on a floor that emits light is seen by one sample in
-// many.
-TEST(FewPoints, FloorsThatShineAreNotPepperedAtRest) {
+// Who has just come to rest: what lamps do on a glossy floor is seen by one sample in many.
+TEST(FewPoints, GlossyFloorsHaveFewOutliersAtRest) {
   Scene scene = make_cornell_box();
   for (Material& material : scene.materials)
     if (material.emission == vec3(0)) material.roughness = 0.4f, material.specular = 1;

@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "frame/flip.h"
-#include "light/technique/technique.h"
-#include "picture/compositor.h"
-#include "scenes/scenes.h"
+#include "unit/picture/drawn_visit.h"
 
 namespace wellspring {
 namespace {
@@ -13,27 +11,17 @@ namespace {
 using namespace scenes;
 
 // A picture after five times one sample for 25 pixels. `told`: hints reach the cache.
-Frame show(const World& world, const Lights& lights, const View& view, bool told) {
-  VisibilityPass visibility(world, lights);
-  RenderCache cache;
-  Compositor compositor;
-  std::vector<Request> requests;
-  std::vector<Sample> samples;
-  Frame frame;
-  for (uint64_t tick = 1; tick <= 5; tick++) {
-    cache.resize(view.width, view.height);
-    cache.move_points(world);
-    cache.project(view);
-    cache.attend();
-    cache.plan(view, view.width * view.height / 25, tick, requests);
-    samples.resize(requests.size());
-    trace(*find_technique("gather"), world, lights, {}, requests, samples);
-    for (Sample& sample : samples)
+Frame show(const Stage& stage, const View& view, bool told) {
+  DrawnVisit visit;
+  visit.technique = "gather";
+  for (int i = 0; i < 5; i++) {
+    visit.sample(stage, view.width, view.height, view, view.width * view.height / 25);
+    for (Sample& sample : visit.samples)
       if (!told) sample.flags &= uint8_t(~sample_sure);
-    cache.remember(view, requests, samples);
-    compositor.draw(cache, view, visibility, frame);
+    visit.cache.remember(view, visit.requests, visit.samples);
+    visit.compositor.draw(visit.cache, view, *stage.visibility, visit.frame);
   }
-  return frame;
+  return visit.frame;
 }
 
 // Shadows of a lamp without a size are shadows, not noise; with a sample for five pixels no place
@@ -45,15 +33,11 @@ TEST(Hint, ShadowsOfALampWithoutASizeAreSure) {
   lamp.position = {0, 0.54f, -0.28f};
   lamp.intensity = {0.25f, 0.2f, 0.12f};
   scene.lights.push_back(lamp);
-  World world(scene);
-  world.commit();
-  Lights lights = make_lights(world);
-  View view = make_view(scene, {0, 0.275, 0.8}, 0, 0, 0.7f, 160, 120);
-  StillSettings settings;
-  settings.spp = 64;
-  Frame truth = render_still(*find_technique("path"), world, lights, view, settings);
-  double told = flip(show(world, lights, view, true), truth),
-         untold = flip(show(world, lights, view, false), truth);
+  Stage stage(std::move(scene));
+  View view = make_view(stage.scene, {0, 0.275, 0.8}, 0, 0, 0.7f, 160, 120);
+  Frame truth = stage.truth(view, 64);
+  double told = flip(show(stage, view, true), truth),
+         untold = flip(show(stage, view, false), truth);
   EXPECT_LT(told, 0.97 * untold);
 }
 

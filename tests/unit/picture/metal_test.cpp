@@ -69,17 +69,21 @@ void expect_board(Scene scene, float most) {
 }
 
 // All of it reflects the same light, whatever side of a threshold its texels are on.
-TEST(Metal, ShowsNoThresholdOfRoughness) { expect_board(make_board({0.3f, 0.4f}, vec2(1)), 0.1f); }
-TEST(Metal, ShowsNoThresholdOfMetal) { expect_board(make_board(vec2(0.5f), {1, 0.98f}), 0.1f); }
+TEST(Metal, LightIsContinuousAcrossRoughness) {
+  expect_board(make_board({0.3f, 0.4f}, vec2(1)), 0.1f);
+}
+TEST(Metal, LightIsContinuousAcrossMetallic) {
+  expect_board(make_board(vec2(0.5f), {1, 0.98f}), 0.1f);
+}
 // Of one material with paint, as compression leaves it.
-TEST(Metal, ShowsNoThresholdBesidePaint) {
+TEST(Metal, LightIsContinuousBesidePaint) {
   Scene scene = make_board({0.3f, 0.4f}, {0.97f, 1});
   for (size_t i = 0; i < 4 * 64 * 8; i += 4) scene.images.back().texels8[i + 2] = 0;
   expect_board(std::move(scene), 0.2f);
 }
 
 // What samples and drawn pictures keep as a reflectance is the same.
-TEST(Metal, IsKeptAlikeByAllWhoSee) {
+TEST(Metal, HasOneReflectanceInSamplesAndDrawnPictures) {
   for (vec2 metallic : {vec2(1), vec2(0.9f, 1), vec2(0, 1), vec2(0.3f, 0.3f)})
     for (vec2 roughness : {vec2(0.05f, 0.1f), vec2(0.25f, 0.3f), vec2(0.5f, 0.9f)}) {
       Stage stage(make_board(roughness, metallic));

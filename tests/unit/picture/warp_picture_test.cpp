@@ -213,7 +213,7 @@ TEST(WarpPicture, SaysHowMuchTheKeyframeDoesNotShow) {
 }
 
 // Of a room teleported from nothing is known; the picture asked for is left alone.
-TEST(WarpPicture, ALeapIsRefused) {
+TEST(WarpPicture, ACameraCutIsRefused) {
   Keyframe keyframe = keyframe_of(wall, look_at({0, 0, 0}, 0));
   WarpScratch scratch;
   Image8 out;

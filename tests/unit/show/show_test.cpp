@@ -7,55 +7,27 @@
 #include "frame/jpeg.h"
 #include "show/answer/answer.h"
 #include "show/state/make_show.h"
-#include "show/state/show.h"
-#include "show/tick.h"
-#include "tiny_exhibit.h"
+#include "unit/show/show_stage.h"
 #include "wire/json.h"
 
 namespace wellspring {
 namespace {
 
-struct ShowTest : testing::Test {
-  std::unique_ptr<Show> show;
-  Arrivals arrivals;
-  std::shared_ptr<Link> link = std::make_shared<Link>(1, LinkKind::visit, "test");
-  double now = 0;
-  std::vector<nlohmann::json> texts;
-  std::vector<Packet> pictures;
-
+struct ShowTest : testing::Test, ShowStage {
   void begin(dvec3 origin = dvec3(0), ShowSettings settings = {}) {
     settings.fps = 50;
     settings.background = false;
-    show = make_show(make_tiny_exhibit(origin), settings);
-    arrivals.put(link);
-    say(R"({"type":"hello","exhibit":"","width":96,"height":64,"lang":"en","role":"visitor"})");
+    ShowStage::begin(make_tiny_exhibit(origin), settings);
+    join(96, 64);
   }
-  void say(const std::string& text) { link->push_text_in(text); }
-  void run(double seconds) {
-    for (double end = now + seconds; now < end; now += 0.02) {
-      tick(*show, arrivals, now);
-      for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-      Link::Out out;
-      while (link->take_out(out)) {
-        if (out.binary) pictures.push_back(*out.packet);
-        else texts.push_back(nlohmann::json::parse(out.text));
-      }
-    }
-  }
-  nlohmann::json last(const std::string& type) {
-    for (auto found = texts.rbegin(); found != texts.rend(); ++found)
-      if ((*found)["type"] == type) return *found;
-    return nullptr;
-  }
-  PacketHeader last_header() { return read_packet(pictures.back())->header; }
 };
 
 TEST_F(ShowTest, WelcomesAndSendsPicturesThatDecode) {
   begin();
   run(0.5);
   EXPECT_EQ(last("welcome")["exhibit"], "tiny");
-  ASSERT_GT(pictures.size(), 10u);
-  auto packet = read_packet(pictures.back());
+  ASSERT_GT(pictures().size(), 10u);
+  auto packet = read_packet(pictures().back());
   ASSERT_TRUE(packet);
   Image8 image = decode_jpeg(packet->payload, "picture");
   EXPECT_EQ(image.width, 96);
@@ -73,9 +45,8 @@ TEST_F(ShowTest, PicturesCarryTheLastSeqAndGrowingNumbers) {
   say(R"({"type":"input","seq":7,"move":[0,0,0],"look":[0.2,0]})");
   run(0.1);
   EXPECT_EQ(last_header().seq, 7u);
-  for (size_t i = 1; i < pictures.size(); i++)
-    EXPECT_EQ(read_packet(pictures[i])->header.frame,
-              read_packet(pictures[i - 1])->header.frame + 1);
+  for (size_t i = 1; i < pictures().size(); i++)
+    EXPECT_EQ(header(i).frame, header(i - 1).frame + 1);
 }
 
 TEST_F(ShowTest, WalksOnUntilTheNextInput) {
@@ -118,7 +89,6 @@ TEST_F(ShowTest, FarFromTheOriginThePictureIsTheSame) {
   begin();
   run(2);
   std::vector<vec3> near = show->renderer.work.frame.color;
-  link = std::make_shared<Link>(2, LinkKind::visit, "test");
   begin(dvec3(1e6, 0, -1e6));
   run(2);
   double error = 0, size = 0;
@@ -170,11 +140,10 @@ TEST_F(ShowTest, ByeAndClosedLinksLeave) {
   say(R"({"type":"bye"})");
   run(0.1);
   EXPECT_TRUE(show->visitors.empty());
-  auto other = std::make_shared<Link>(2, LinkKind::visit, "test");
-  arrivals.put(other);
+  size_t other = connect();
   run(0.05);
   EXPECT_EQ(show->visitors.size(), 1u);
-  other->mark_closed();
+  browsers[other].link->mark_closed();
   run(0.05);
   EXPECT_TRUE(show->visitors.empty());
 }
@@ -184,14 +153,11 @@ TEST_F(ShowTest, AFullHouseTurnsVisitorsAway) {
   settings.max_visitors = 1;
   begin(dvec3(0), settings);
   run(0.1);
-  auto late = std::make_shared<Link>(2, LinkKind::visit, "test");
-  arrivals.put(late);
+  size_t late = connect();
   run(0.05);
-  Link::Out out;
-  ASSERT_TRUE(late->take_out(out));
-  EXPECT_EQ(nlohmann::json::parse(out.text)["code"], "full");
+  EXPECT_EQ(last("error", late)["code"], "full");
   std::string reason;
-  EXPECT_TRUE(late->close_requested(reason));
+  EXPECT_TRUE(browsers[late].link->close_requested(reason));
   EXPECT_EQ(show->visitors.size(), 1u);
 }
 

@@ -3,6 +3,7 @@
 // viewpoints, a tour and a story.
 #pragma once
 #include "show/exhibit/exhibit.h"
+#include "unit/show/tiny_figure.h"
 
 namespace wellspring {
 
@@ -70,6 +71,14 @@ inline Exhibit make_tiny_exhibit(dvec3 origin = dvec3(0)) {
   exhibit.walk = WalkSettings{};
   exhibit.walk->eye_height = 1.6f;
   return exhibit;
+}
+
+inline StorytellerPlace& add_storyteller(Exhibit& exhibit, const std::string& id, dvec3 position) {
+  StorytellerPlace& added = exhibit.storytellers.emplace_back();
+  added.id = id;
+  added.character = make_tiny_figure();
+  added.position = position;
+  return added;
 }
 
 }  // namespace wellspring

@@ -64,7 +64,7 @@ class ReconstructStill : public testing::Test {
   std::unique_ptr<Denoiser> denoiser;
 };
 
-TEST_F(ReconstructStill, FewSamplesMakeACalmPicture) {
+TEST_F(ReconstructStill, TwoSamplesAPixelComeNearTheReference) {
   Rest rest;
   rest.sample(step, 2);
   rest.reconstruct(*denoiser);

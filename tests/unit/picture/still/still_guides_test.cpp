@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "scenes/scenes.h"
+#include "unit/picture/drawn_visit.h"
 
 using namespace wellspring;
 using namespace wellspring::scenes;
@@ -31,16 +31,13 @@ Scene make_assembly() {
 }  // namespace
 
 TEST(StillGuides, AgreeWithThoseOfRays) {
-  Scene scene = make_assembly();
-  World world(scene);
-  world.commit();
-  Lights lights = make_lights(world);
-  VisibilityPass visibility(world, lights);
-  View view = make_view_towards(scene, {0, 0.5, 4}, {0, -0.2, 0}, {0, 1, 0}, 1.0f, 160, 90);
+  const Stage stage(make_assembly());
+  View view = make_view_towards(stage.scene, {0, 0.5, 4}, {0, -0.2, 0}, {0, 1, 0}, 1.0f, 160, 90);
   std::vector<uint8_t> followed;
-  GuidePlanes drawn, traced = make_guides(world, lights, view, 16);
+  GuidePlanes drawn, traced = make_guides(*stage.world, stage.lights, view, 16);
   for (int place = 0; place < guide_places; place++)
-    add_still_guides(world, lights, visibility, view, RasterShows::all, place, drawn, followed);
+    add_still_guides(*stage.world, stage.lights, *stage.visibility, view, RasterShows::all, place,
+                     drawn, followed);
   ASSERT_EQ(drawn.albedo.size(), traced.albedo.size());
   double albedo = 0, normal = 0;
   int far = 0;
@@ -65,16 +62,15 @@ TEST(StillGuides, OfWhatStandsStillLeaveOutWhatMoves) {
            {0, 18, 0}, "wall");
   int red = add_material(scene, diffuse({0.8f, 0.1f, 0.1f}));
   scene.objects.push_back("moving");
-  World world(scene, {sphere_mesh(red, 1)}, {uint32_t(scene.objects.size() - 1)});
-  world.commit();
-  Lights lights = make_lights(world);
-  VisibilityPass visibility(world, lights);
-  View view = make_view_towards(scene, {0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 1.0f, 65, 65);
+  const Stage stage(std::move(scene), sphere_mesh(red, 1));
+  View view = make_view_towards(stage.scene, {0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 1.0f, 65, 65);
   std::vector<uint8_t> followed, others;
   GuidePlanes all, still;
   for (int place = 0; place < guide_places; place++) {
-    add_still_guides(world, lights, visibility, view, RasterShows::all, place, all, followed);
-    add_still_guides(world, lights, visibility, view, RasterShows::still, place, still, others);
+    add_still_guides(*stage.world, stage.lights, *stage.visibility, view, RasterShows::all, place,
+                     all, followed);
+    add_still_guides(*stage.world, stage.lights, *stage.visibility, view, RasterShows::still, place,
+                     still, others);
   }
   const size_t middle = 32 * 65 + 32;
   EXPECT_NEAR(all.albedo[middle].x, 0.8f, 0.05f);

@@ -7,10 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "show/answer/events.h"
-#include "show/state/make_show.h"
-#include "show/state/show.h"
-#include "show/tick.h"
-#include "unit/show/tiny_exhibit.h"
+#include "unit/show/show_stage.h"
 #include "wire/sound_packet.h"
 
 namespace wellspring {
@@ -81,42 +78,22 @@ TEST(VoiceWithSpeech, WaitsABoundedTimeThenTellsBySubtitles) {
 }
 
 // A show with a storyteller of one joint, and a speaker of 2 s a line.
-struct SoundTest : testing::Test {
-  std::unique_ptr<Show> show;
-  Arrivals arrivals;
+struct SoundTest : testing::Test, ShowStage {
   std::map<std::string, std::shared_ptr<const Speech>> kept;
   std::vector<SpeechRequest> asked;
   int spoken = 0;
-  double now = 0;
-  struct Peer {
-    std::shared_ptr<Link> link;
-    std::vector<SoundView> sounds;
-    std::vector<nlohmann::json> speech, subtitles;
-    bool reads = true;
-  };
-  std::vector<Peer> peers;
 
   void SetUp() override {
     Exhibit exhibit = make_tiny_exhibit();
-    Character character;
-    character.joints.resize(1);
-    character.joints[0].name = "humanoid_root";
-    character.positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
-    character.normals.assign(3, {0, 0, 1});
-    character.appearances.resize(1);
-    character.parts = {{.name = "all", .appearance = 0, .triangles = {{0, 1, 2}}}};
-    character.first_weight = {0, 1, 2, 3};
-    character.weights.assign(3, {0, 1});
-    exhibit.storytellers.resize(2);
-    for (size_t i = 0; i < 2; i++) {
-      StorytellerPlace& storyteller_place = exhibit.storytellers[i];
-      storyteller_place.id = i == 0 ? "anna" : "otto";
-      storyteller_place.character = character;
-      storyteller_place.position = {1, 0, 2 - 0.5 * double(i)};
+    for (int i : {0, 1}) {
+      StorytellerPlace& storyteller_place =
+          add_storyteller(exhibit, i == 0 ? "anna" : "otto", {1, 0, 2 - 0.5 * i});
+      storyteller_place.character.positions = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
+      storyteller_place.character.normals.assign(3, {0, 0, 1});
     }
     exhibit.storytellers[1].voice.variant = "m2";
-    show = make_show(std::move(exhibit),
-                     {.technique = "direct", .still_technique = "direct", .background = false});
+    tick_seconds = 0.04;
+    begin(std::move(exhibit), settings_for("direct", false));
     show->speech.find = [this](const SpeechRequest& r) {
       return kept.contains(r.text) ? kept[r.text] : nullptr;
     };
@@ -129,136 +106,118 @@ struct SoundTest : testing::Test {
       return promise.get_future().share();
     };
   }
-  size_t join(const std::string& lang) {
-    peers.push_back(
-        {std::make_shared<Link>(peers.size() + 1, LinkKind::visit, "test"), {}, {}, {}});
-    arrivals.put(peers.back().link);
-    order(peers.size() - 1,
-          R"({"type":"hello","width":32,"height":32,"lang":")" + lang + R"(","role":"visitor"})");
-    return peers.size() - 1;
-  }
-  void order(size_t peer, const std::string& text) { peers[peer].link->push_text_in(text); }
-  void run(double seconds) {
-    for (double end = now + seconds; now < end; now += 0.04) {
-      tick(*show, arrivals, now);
-      for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-      for (Peer& peer : peers) {
-        Link::Out out;
-        while (peer.reads && peer.link->take_out(out)) {
-          if (out.binary) {
-            if (auto sound = read_sound_packet(*out.packet))
-              peer.sounds.push_back(std::move(*sound));
-            continue;
-          }
-          auto message = nlohmann::json::parse(out.text);
-          if (message["type"] == "speech") peer.speech.push_back(message);
-          if (message["type"] == "subtitle") peer.subtitles.push_back(message);
-        }
-      }
-    }
+  size_t join(const std::string& lang) { return ShowStage::join(32, 32, lang); }
+  std::vector<nlohmann::json> speech(size_t visitor) { return told("speech", visitor); }
+  std::vector<nlohmann::json> subtitles(size_t visitor) { return told("subtitle", visitor); }
+  std::vector<SoundView> sounds(size_t visitor) {
+    std::vector<SoundView> read;
+    for (const Packet& packet : browsers[visitor].sounds)
+      if (auto sound = read_sound_packet(packet)) read.push_back(std::move(*sound));
+    return read;
   }
 };
 
 TEST_F(SoundTest, AWholeLineArrivesInOrderAndAheadOfItsTime) {
   size_t a = join("en");
   run(0.2);
-  order(a, R"({"type":"storyteller","story":"tale"})");
+  say(R"({"type":"storyteller","story":"tale"})", a);
   run(2.4);
-  ASSERT_EQ(peers[a].speech.size(), 1u);
-  EXPECT_EQ(peers[a].speech[0]["action"], "start");
-  EXPECT_EQ(peers[a].speech[0]["text"], "One.");
-  EXPECT_EQ(peers[a].speech[0]["seconds"], 2.0);
-  const auto& sounds = peers[a].sounds;
-  ASSERT_EQ(sounds.size(), 8u);
+  ASSERT_EQ(speech(a).size(), 1u);
+  EXPECT_EQ(speech(a)[0]["action"], "start");
+  EXPECT_EQ(speech(a)[0]["text"], "One.");
+  EXPECT_EQ(speech(a)[0]["seconds"], 2.0);
+  const std::vector<SoundView> pieces = sounds(a);
+  ASSERT_EQ(pieces.size(), 8u);
   std::vector<int16_t> all;
-  for (const SoundView& sound : sounds) {
+  for (const SoundView& sound : pieces) {
     EXPECT_EQ(sound.header.start, all.size());
     EXPECT_EQ(sound.header.total, 16000u);
-    EXPECT_EQ(sound.header.utterance, peers[a].speech[0]["utterance"]);
-    EXPECT_EQ(sound.header.time_us - sounds[0].header.time_us, uint64_t(sound.header.start) * 125);
+    EXPECT_EQ(sound.header.utterance, speech(a)[0]["utterance"]);
+    EXPECT_EQ(sound.header.time_us - pieces[0].header.time_us, uint64_t(sound.header.start) * 125);
     EXPECT_NEAR(glm::length(sound.header.mouth - dvec3(1, 1.5, 2)), 0, 0.2);
     all.insert(all.end(), sound.samples.begin(), sound.samples.end());
   }
   EXPECT_EQ(all, kept["One."]->pcm);
   run(2);
-  ASSERT_EQ(peers[a].speech.size(), 2u) << "an end is no stop";
-  EXPECT_EQ(peers[a].speech[1]["text"], "Two.");
+  ASSERT_EQ(speech(a).size(), 2u) << "an end is no stop";
+  EXPECT_EQ(speech(a)[1]["text"], "Two.");
 }
 
 TEST_F(SoundTest, StopPauseAndRestartAreHeardAtOnce) {
   size_t a = join("en");
   run(0.2);
-  order(a, R"({"type":"storyteller","story":"tale"})");
+  say(R"({"type":"storyteller","story":"tale"})", a);
   run(0.4);
-  size_t sent = peers[a].sounds.size();
+  size_t sent = sounds(a).size();
   EXPECT_LT(sent, 8u) << "no more than is due soon";
-  order(a, R"({"type":"storyteller","action":"pause"})");
+  say(R"({"type":"storyteller","action":"pause"})", a);
   run(0.2);
-  ASSERT_EQ(peers[a].speech.size(), 2u);
-  EXPECT_EQ(peers[a].speech[1]["action"], "stop");
-  EXPECT_EQ(peers[a].sounds.size(), sent);
-  order(a, R"({"type":"storyteller","action":"play"})");
+  ASSERT_EQ(speech(a).size(), 2u);
+  EXPECT_EQ(speech(a)[1]["action"], "stop");
+  EXPECT_EQ(sounds(a).size(), sent);
+  say(R"({"type":"storyteller","action":"play"})", a);
   run(0.1);
-  ASSERT_EQ(peers[a].speech.size(), 3u);
-  EXPECT_GT(peers[a].speech[2]["utterance"], peers[a].speech[0]["utterance"]);
-  EXPECT_GT(peers[a].sounds.back().header.start, 0u) << "it goes on where it was";
-  order(a, R"({"type":"storyteller","action":"restart"})");
+  ASSERT_EQ(speech(a).size(), 3u);
+  EXPECT_GT(speech(a)[2]["utterance"], speech(a)[0]["utterance"]);
+  EXPECT_GT(sounds(a).back().header.start, 0u) << "it goes on where it was";
+  say(R"({"type":"storyteller","action":"restart"})", a);
   run(0.1);
-  ASSERT_EQ(peers[a].speech.size(), 5u) << "the same line again is another utterance";
-  EXPECT_EQ(peers[a].speech[3]["action"], "stop");
-  order(a, R"({"type":"storyteller","action":"stop"})");
+  ASSERT_EQ(speech(a).size(), 5u) << "the same line again is another utterance";
+  EXPECT_EQ(speech(a)[3]["action"], "stop");
+  say(R"({"type":"storyteller","action":"stop"})", a);
   run(0.1);
-  EXPECT_EQ(peers[a].speech.back()["action"], "stop");
-  sent = peers[a].sounds.size();
+  EXPECT_EQ(speech(a).back()["action"], "stop");
+  sent = sounds(a).size();
   run(1);
-  EXPECT_EQ(peers[a].sounds.size(), sent);
+  EXPECT_EQ(sounds(a).size(), sent);
 }
 
 TEST_F(SoundTest, OneLanguageIsSpokenAndEverybodyReadsTheirOwn) {
   size_t a = join("en"), b = join("de");
   run(0.2);
-  order(b, R"({"type":"storyteller","story":"tale"})");
+  say(R"({"type":"storyteller","story":"tale"})", b);
   run(0.5);
   for (size_t peer : {a, b}) {
-    ASSERT_FALSE(peers[peer].speech.empty());
-    EXPECT_EQ(peers[peer].speech[0]["lang"], "de");
-    EXPECT_EQ(peers[peer].speech[0]["text"], "Eins.");
+    ASSERT_FALSE(speech(peer).empty());
+    EXPECT_EQ(speech(peer)[0]["lang"], "de");
+    EXPECT_EQ(speech(peer)[0]["text"], "Eins.");
   }
-  EXPECT_EQ(peers[a].subtitles[0]["text"], "One.");
-  EXPECT_EQ(peers[b].subtitles[0]["text"], "Eins.");
+  EXPECT_EQ(subtitles(a)[0]["text"], "One.");
+  EXPECT_EQ(subtitles(b)[0]["text"], "Eins.");
 }
 
 TEST_F(SoundTest, NothingIsMadeForThoseWhoDoNotListenAndALateListenerHearsTheRest) {
   size_t a = join("en");
-  order(a, R"({"type":"settings","sound":false})");
+  say(R"({"type":"settings","sound":false})", a);
   run(0.2);
-  order(a, R"({"type":"storyteller","story":"tale"})");
+  say(R"({"type":"storyteller","story":"tale"})", a);
   run(0.2);
   EXPECT_EQ(spoken, 0);
-  EXPECT_EQ(peers[a].subtitles.size(), 1u) << "told by subtitles, at once";
+  EXPECT_EQ(subtitles(a).size(), 1u) << "told by subtitles, at once";
   kept["Two."] = make_speech("Two.", "en", 2);
   run(2.0);
-  EXPECT_EQ(peers[a].subtitles.size(), 2u);
-  EXPECT_TRUE(peers[a].sounds.empty() && peers[a].speech.empty());
+  EXPECT_EQ(subtitles(a).size(), 2u);
+  EXPECT_TRUE(sounds(a).empty() && speech(a).empty());
   EXPECT_EQ(show->totals.sounds, 0u);
   EXPECT_TRUE(heard(show->voice)) << "the mouth follows what was prepared all the same";
-  order(a, R"({"type":"settings","sound":true})");
+  say(R"({"type":"settings","sound":true})", a);
   run(0.1);
-  ASSERT_FALSE(peers[a].sounds.empty());
-  EXPECT_GT(peers[a].sounds[0].header.start, 4000u);
+  ASSERT_FALSE(sounds(a).empty());
+  EXPECT_GT(sounds(a)[0].header.start, 4000u);
 }
 
 TEST_F(SoundTest, AListenerWhoDoesNotReadLosesTheWholeUtterance) {
   size_t a = join("en"), b = join("en");
   run(0.2);
   for (const char* text : {"One.", "Two."}) kept[text] = make_speech(text, "en", 20, 32000);
-  order(b, R"({"type":"storyteller","story":"tale"})");
-  peers[a].reads = false;
+  say(R"({"type":"storyteller","story":"tale"})", b);
+  browsers[a].reads = false;
   run(6);
   EXPECT_EQ(show->totals.sounds_given_up, 1u);
-  EXPECT_GE(peers[b].sounds.size(), 20u);
+  EXPECT_GE(sounds(b).size(), 20u);
   Link::Out out;
-  while (peers[a].link->take_out(out)) EXPECT_FALSE(out.binary && read_sound_packet(*out.packet));
+  while (browsers[a].link->take_out(out))
+    EXPECT_FALSE(out.binary && read_sound_packet(*out.packet));
 }
 
 // ---- what a story's marks do ----
@@ -344,15 +303,15 @@ TEST(VoiceWithSpeech, SkippingLeavesTheFaceAsIfAllHadBeenTold) {
 TEST_F(SoundTest, AnybodyMayStopWhatAnotherAskedForAndBothAreTold) {
   size_t a = join("en"), b = join("en");
   run(0.2);
-  order(a, R"({"type":"storyteller","story":"tale"})");
+  say(R"({"type":"storyteller","story":"tale"})", a);
   run(0.4);
-  EXPECT_EQ(peers[b].speech.at(0)["text"], "One.") << "who is there listens in";
-  order(b, R"({"type":"storyteller","action":"stop"})");
+  EXPECT_EQ(speech(b).at(0)["text"], "One.") << "who is there listens in";
+  say(R"({"type":"storyteller","action":"stop"})", b);
   run(0.2);
   EXPECT_EQ(show->voice.story, "");
   for (size_t peer : {a, b}) {
-    EXPECT_EQ(peers[peer].speech.back()["action"], "stop");
-    EXPECT_EQ(peers[peer].subtitles.back()["text"], "");
+    EXPECT_EQ(speech(peer).back()["action"], "stop");
+    EXPECT_EQ(subtitles(peer).back()["text"], "");
   }
 }
 
@@ -360,14 +319,14 @@ TEST_F(SoundTest, AStoryGoesOnWithoutWhoAskedUnlessItWasPaused) {
   for (bool paused : {false, true}) {
     size_t a = join("en"), b = join("en");
     run(0.2);
-    order(a, R"({"type":"storyteller","story":"tale"})");
+    say(R"({"type":"storyteller","story":"tale"})", a);
     run(0.4);
-    if (paused) order(a, R"({"type":"storyteller","action":"pause"})");
+    if (paused) say(R"({"type":"storyteller","action":"pause"})", a);
     run(0.2);
-    order(a, R"({"type":"bye"})");
+    say(R"({"type":"bye"})", a);
     run(0.2);
     EXPECT_EQ(show->voice.story, paused ? "" : "tale");
-    order(b, R"({"type":"bye"})");
+    say(R"({"type":"bye"})", b);
     run(0.2);
     EXPECT_EQ(show->voice.story, "") << "nobody is left to hear it";
     EXPECT_TRUE(show->voice.queue.empty());
@@ -378,27 +337,27 @@ TEST_F(SoundTest, NobodyFarAwayTakesTheStorytellerFromWhoStandsBeforeIt) {
   size_t a = join("en"), b = join("en");
   run(0.2);
   show->visitors.front().kiosk = true;
-  order(a, R"({"type":"storyteller","story":"tale"})");
+  say(R"({"type":"storyteller","story":"tale"})", a);
   run(0.4);
   uint64_t refused = show->totals.refused_messages;
   for (const char* text : {R"("action":"stop")", R"("action":"pause")", R"("visible":false)",
                            R"("teller":"otto")", R"("story":"tale")"}) {
-    order(b, R"({"type":"storyteller",)" + std::string(text) + "}");
+    say(R"({"type":"storyteller",)" + std::string(text) + "}", b);
     run(0.08);
   }
   EXPECT_EQ(show->totals.refused_messages, refused + 5);
   EXPECT_EQ(show->voice.story, "tale");
-  EXPECT_EQ(show->voice.asked_by, peers[a].link->id);
+  EXPECT_EQ(show->voice.asked_by, browsers[a].link->id);
   EXPECT_TRUE(show->storyteller_visible);
   EXPECT_EQ(show->storyteller_index, 0u);
   EXPECT_FALSE(show->voice.paused);
   // The kiosk may, and afterwards everybody may again.
-  order(a, R"({"type":"storyteller","action":"stop"})");
+  say(R"({"type":"storyteller","action":"stop"})", a);
   run(0.1);
-  order(b, R"({"type":"storyteller","story":"tale"})");
+  say(R"({"type":"storyteller","story":"tale"})", b);
   run(0.1);
-  EXPECT_EQ(show->voice.asked_by, peers[b].link->id);
-  order(a, R"({"type":"storyteller","action":"stop"})");
+  EXPECT_EQ(show->voice.asked_by, browsers[b].link->id);
+  say(R"({"type":"storyteller","action":"stop"})", a);
   run(0.1);
   EXPECT_EQ(show->voice.story, "") << "who stands before it comes first";
 }
@@ -408,50 +367,50 @@ TEST_F(SoundTest, NobodyFarAwayTakesTheStorytellerFromWhoStandsBeforeIt) {
 TEST_F(SoundTest, ATourIsHeardByItsVisitorAloneAndEverywhere) {
   size_t a = join("en"), b = join("en");
   run(0.2);
-  order(a, R"({"type":"tour","action":"play"})");
+  say(R"({"type":"tour","action":"play"})", a);
   run(1.5);
-  ASSERT_FALSE(peers[a].speech.empty());
-  EXPECT_EQ(peers[a].speech[0]["text"], "Here");
-  ASSERT_FALSE(peers[a].sounds.empty());
-  EXPECT_EQ(peers[a].sounds[0].header.flags & 1, 1);
-  EXPECT_EQ(peers[a].subtitles.at(0)["text"], "Here");
-  EXPECT_EQ(peers[a].subtitles.at(0)["speaker"], "");
-  EXPECT_TRUE(peers[b].speech.empty() && peers[b].sounds.empty() && peers[b].subtitles.empty());
+  ASSERT_FALSE(speech(a).empty());
+  EXPECT_EQ(speech(a)[0]["text"], "Here");
+  ASSERT_FALSE(sounds(a).empty());
+  EXPECT_EQ(sounds(a)[0].header.flags & 1, 1);
+  EXPECT_EQ(subtitles(a).at(0)["text"], "Here");
+  EXPECT_EQ(subtitles(a).at(0)["speaker"], "");
+  EXPECT_TRUE(speech(b).empty() && sounds(b).empty() && subtitles(b).empty());
   // The storyteller tells somebody else something meanwhile: not to who is on the tour.
-  order(b, R"({"type":"storyteller","story":"tale"})");
+  say(R"({"type":"storyteller","story":"tale"})", b);
   run(0.5);
-  EXPECT_EQ(peers[b].speech.at(0)["text"], "One.");
-  EXPECT_EQ(peers[a].speech.size(), 1u);
+  EXPECT_EQ(speech(b).at(0)["text"], "One.");
+  EXPECT_EQ(speech(a).size(), 1u);
   // Pause is heard at once; the same line goes on later under another number.
-  order(a, R"({"type":"tour","action":"pause"})");
+  say(R"({"type":"tour","action":"pause"})", a);
   run(0.1);
-  EXPECT_EQ(peers[a].speech.at(1)["action"], "stop");
-  order(a, R"({"type":"tour","action":"play"})");
+  EXPECT_EQ(speech(a).at(1)["action"], "stop");
+  say(R"({"type":"tour","action":"play"})", a);
   run(0.3);
-  EXPECT_EQ(peers[a].speech.back()["action"], "start");
-  EXPECT_EQ(peers[a].speech.back()["text"], "Here");
-  order(a, R"({"type":"tour","action":"stop"})");
+  EXPECT_EQ(speech(a).back()["action"], "start");
+  EXPECT_EQ(speech(a).back()["text"], "Here");
+  say(R"({"type":"tour","action":"stop"})", a);
   run(0.03);
-  EXPECT_EQ(peers[a].subtitles.back()["text"], "") << "the line goes with the voice";
+  EXPECT_EQ(subtitles(a).back()["text"], "") << "the line goes with the voice";
   run(0.07);
   // What the storyteller says to the other is heard again.
-  ASSERT_GE(peers[a].speech.size(), 5u);
-  EXPECT_EQ(peers[a].speech[3]["action"], "stop");
-  EXPECT_NE(peers[a].speech[4]["text"], "Here");
+  ASSERT_GE(speech(a).size(), 5u);
+  EXPECT_EQ(speech(a)[3]["action"], "stop");
+  EXPECT_NE(speech(a)[4]["text"], "Here");
 }
 
 TEST_F(SoundTest, AFarewellCutsTheStoryShort) {
   size_t a = join("en");
   run(0.2);
-  order(a, R"({"type":"storyteller","story":"tale"})");
+  say(R"({"type":"storyteller","story":"tale"})", a);
   run(0.4);
   EXPECT_EQ(show->voice.story, "tale");
-  say(show->voice, plain_line({{"en", "Goodbye."}}), true);
+  wellspring::say(show->voice, plain_line({{"en", "Goodbye."}}), true);
   run(0.4);
   EXPECT_EQ(show->voice.story, "");
-  ASSERT_GE(peers[a].speech.size(), 3u);
-  EXPECT_EQ(peers[a].speech[1]["action"], "stop");
-  EXPECT_EQ(peers[a].speech[2]["text"], "Goodbye.");
+  ASSERT_GE(speech(a).size(), 3u);
+  EXPECT_EQ(speech(a)[1]["action"], "stop");
+  EXPECT_EQ(speech(a)[2]["text"], "Goodbye.");
 }
 
 }  // namespace

@@ -7,58 +7,21 @@
 #include <utility>
 
 #include "base/rng.h"
-#include "frame/jpeg.h"
-#include "frame/tonemap.h"
 #include "show/answer/answer.h"
 #include "show/draw/make_picture_job.h"
 #include "show/draw/picture.h"
-#include "show/state/make_show.h"
-#include "show/state/show.h"
 #include "show/tick.h"
-#include "unit/show/tiny_exhibit.h"
+#include "unit/show/show_stage.h"
 
 namespace wellspring {
 namespace {
 
-struct LatePictures : testing::Test {
-  Arrivals arrivals;
-  std::vector<std::shared_ptr<Link>> links;
-  std::vector<Packet> pictures;  // of the first visitor
-  double now = 0;
-  uint32_t seq = 0;
+struct LatePictures : testing::Test, ShowStage {
   std::promise<void> held;
-  std::unique_ptr<Show> show;
 
   void begin(int visitors = 1) {
-    ShowSettings settings;
-    settings.fps = 50;
-    settings.technique = settings.still_technique = "direct";
-    show = make_show(make_tiny_exhibit(), settings);
-    for (int i = 0; i < visitors; i++) {
-      links.push_back(std::make_shared<Link>(uint64_t(i + 1), LinkKind::visit, "test"));
-      arrivals.put(links.back());
-      say(R"({"type":"hello","exhibit":"","width":96,"height":64,"lang":"en","role":"visitor"})",
-          i);
-    }
-  }
-  void say(const std::string& text, int visitor = 0) { links[size_t(visitor)]->push_text_in(text); }
-  void turn(double yaw, double forward = 0) {
-    say(R"({"type":"input","seq":)" + std::to_string(++seq) + R"(,"move":[0,0,)" +
-        std::to_string(forward) + R"(],"look":[)" + std::to_string(yaw) + ",0]}");
-  }
-  // `finish`: what the renderer has begun is finished before the next tick.
-  void step(bool finish = true, double seconds = 0.02) {
-    tick(*show, arrivals, now += seconds);
-    for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-    if (finish) show->renderer.worker.wait();
-    for (const auto& link : links) {
-      Link::Out out;
-      while (link->take_out(out))
-        if (out.picture && link == links.front()) pictures.push_back(*out.packet);
-    }
-  }
-  void steps(int count) {
-    for (int i = 0; i < count; i++) step();
+    ShowStage::begin(make_tiny_exhibit(), settings_for("direct", true, 50));
+    for (int i = 0; i < visitors; i++) join(96, 64);
   }
   // From now on the renderer is busy, as if a picture took long.
   void hold_renderer() {
@@ -75,46 +38,29 @@ struct LatePictures : testing::Test {
   ~LatePictures() override {
     if (show && !show->renderer.idle()) held.set_value();
   }
-  Visitor& visitor() { return show->visitors.front(); }
-  PacketHeader header(size_t i) { return read_packet(pictures[i])->header; }
-  Image8 image(size_t i) { return decode_jpeg(read_packet(pictures[i])->payload, "picture"); }
-  Image8 truth(const View& view) {
-    StillSettings settings;
-    settings.spp = 64;
-    settings.transport = show->settings.transport;
-    Image8 picture;
-    tonemap(render_still(*show->still_technique, *show->world, show->lights, view, settings),
-            Tonemap{show->exhibit.exposure}, picture);
-    return picture;
-  }
-  static double difference(const Image8& a, const Image8& b) {
-    EXPECT_EQ(a.rgb.size(), b.rgb.size());
-    double sum = 0;
-    for (size_t i = 0; i < std::min(a.rgb.size(), b.rgb.size()); i++)
-      sum += std::abs(int(a.rgb[i]) - int(b.rgb[i]));
-    return sum / double(a.rgb.size());
-  }
+  using ShowStage::truth;
+  Image8 truth() { return truth(visitor().place.last_view, 64); }
 };
 
 TEST_F(LatePictures, GoOnWhileOneIsDrawn) {
   begin();
   steps(60);
   hold_renderer();
-  Image8 before = image(pictures.size() - 1);
-  size_t first = pictures.size();
+  Image8 before = last_image();
+  size_t first = pictures().size();
   uint64_t drawn = show->totals.drawn, warped = show->totals.warped;
   for (int i = 0; i < 6; i++) {
     turn(0.02, 0.5);
-    step(false);
+    step_on();
   }
-  ASSERT_EQ(pictures.size(), first + 6);  // one a tick, each of the newest input
-  for (size_t i = first; i < pictures.size(); i++)
+  ASSERT_EQ(pictures().size(), first + 6);  // one a tick, each of the newest input
+  for (size_t i = first; i < pictures().size(); i++)
     EXPECT_EQ(header(i).seq, seq - 5 + uint32_t(i - first));
   EXPECT_EQ(show->totals.drawn, drawn);
   EXPECT_EQ(show->totals.warped, warped + 6);
   // What is sent shows the view as it is, not as it was.
-  Image8 now = truth(visitor().place.last_view), shown = image(pictures.size() - 1);
-  EXPECT_LT(difference(shown, now), 0.5 * difference(before, now));
+  Image8 now = truth(), shown = last_image();
+  EXPECT_LT(mean_difference(shown, now), 0.5 * mean_difference(before, now));
   release_renderer();
 }
 
@@ -122,9 +68,9 @@ TEST_F(LatePictures, StandingStillIsShownAsDrawn) {
   begin();
   for (int i = 0; i < 20; i++) turn(0.01), step();
   steps(200);
-  EXPECT_TRUE(header(pictures.size() - 1).flags & packet_still);
+  EXPECT_TRUE(last_header().flags & packet_still);
   EXPECT_EQ(visitor().picture.keyframe.view, visitor().place.last_view);
-  EXPECT_LT(difference(image(pictures.size() - 1), truth(visitor().place.last_view)), 4);
+  EXPECT_LT(mean_difference(last_image(), truth()), 4);
 }
 
 TEST_F(LatePictures, SeqNeverGoesBack) {
@@ -132,38 +78,38 @@ TEST_F(LatePictures, SeqNeverGoesBack) {
   steps(10);
   for (int i = 0; i < 150; i++) {
     turn(i % 50 < 10 ? 0.9 : 0.03, 1);  // at times too quick for warps
-    step(i % 3 == 0);
+    i % 3 == 0 ? step() : step_on();
   }
   turn(0);
   steps(30);
-  ASSERT_GT(pictures.size(), 60u);
-  for (size_t i = 1; i < pictures.size(); i++) {
+  ASSERT_GT(pictures().size(), 60u);
+  for (size_t i = 1; i < pictures().size(); i++) {
     EXPECT_GE(header(i).seq, header(i - 1).seq);
     EXPECT_EQ(header(i).frame, header(i - 1).frame + 1);
   }
-  EXPECT_EQ(header(pictures.size() - 1).seq, seq);
+  EXPECT_EQ(last_header().seq, seq);
 }
 
 TEST_F(LatePictures, QuickTurnsShowWhatIsDrawn) {
   begin();
   steps(20);
-  size_t before = pictures.size();
+  size_t before = pictures().size();
   for (int i = 0; i < 50; i++) turn(0.5), step();  // four turns a second: some of it is there
   EXPECT_EQ(show->totals.unwarpable, 0u);
-  EXPECT_GT(pictures.size(), before + 40);
-  before = pictures.size();
+  EXPECT_GT(pictures().size(), before + 40);
+  before = pictures().size();
   Rng rng(5);  // nothing is to be foreseen of that
   for (int i = 0; i < 50; i++) turn(1.2 + 0.2 * double(rng.next() % 20)), step();
   EXPECT_GT(show->totals.unwarpable, 5u);
-  EXPECT_GT(pictures.size(), before + 15);
+  EXPECT_GT(pictures().size(), before + 15);
 }
 
 TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   begin();
-  for (int i = 0; i < 30; i++) turn(0.01, 0.5), step(true, 0.08);
+  for (int i = 0; i < 30; i++) turn(0.01, 0.5), step(0.08);
   EXPECT_EQ(show->totals.surroundings, 0u);
   EXPECT_TRUE(visitor().picture.around.keyframe.empty());
-  for (int i = 0; i < 30; i++) turn(0.3), step(true, 0.08);  // a slow machine
+  for (int i = 0; i < 30; i++) turn(0.3), step(0.08);  // a slow machine
   ASSERT_GT(show->totals.surroundings, 0u);
   ASSERT_FALSE(visitor().picture.around.keyframe.empty());
   const View& around = visitor().picture.around.keyframe.view;
@@ -185,15 +131,14 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   const View& seen = visitor().place.last_view;
   for (int i = 0; i < 60 && unknown < 0.17f; i++) {
     turn(to_the_left ? 0.03 : -0.03);
-    step(false);
+    step_on();
     unknown = warp_picture(picture.keyframe, seen, 1, scratch, alone);
   }
   EXPECT_GE(unknown, 0.17f);
   EXPECT_LT(warp_picture(picture.keyframe, picture.around.keyframe, seen, 1, scratch, with),
             0.6f * unknown);
-  EXPECT_EQ(header(pictures.size() - 1).seq, seq);
-  EXPECT_LT(difference(image(pictures.size() - 1), with),
-            difference(image(pictures.size() - 1), alone));
+  EXPECT_EQ(last_header().seq, seq);
+  EXPECT_LT(mean_difference(last_image(), with), mean_difference(last_image(), alone));
   release_renderer();
 
   // Soon it is no longer true.
@@ -205,9 +150,9 @@ TEST_F(LatePictures, OfQuickTurnsWhatLiesAroundIsDrawnToo) {
   EXPECT_EQ(show->totals.surroundings, drawn);
 }
 
-TEST_F(LatePictures, NothingAroundTheOldPlaceAfterALeap) {
+TEST_F(LatePictures, NothingAroundTheOldPlaceAfterACameraCut) {
   begin();
-  for (int i = 0; i < 60; i++) turn(0.3), step(true, 0.08);  // a slow machine
+  for (int i = 0; i < 60; i++) turn(0.3), step(0.08);  // a slow machine
   ASSERT_FALSE(visitor().picture.around.keyframe.empty());
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
   for (int i = 0; i < 6; i++) {
@@ -231,13 +176,13 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   show->renderer.drawn = &one;  // as if the renderer were at work on it
   show->renderer.job = job;
   one.picture.at_work = true;
-  step(false);
+  step_on();
   EXPECT_FALSE(show->renderer.given_up);
   turn(0.02);
-  step(false);
+  step_on();
   EXPECT_TRUE(is_outdated(*show, job, one));
   EXPECT_TRUE(show->renderer.given_up);
-  EXPECT_EQ(header(pictures.size() - 1).seq, seq);  // meanwhile warped
+  EXPECT_EQ(last_header().seq, seq);  // meanwhile warped
 
   Keyframe keyframe = one.picture.keyframe;
   uint64_t drawn = show->totals.drawn;
@@ -250,14 +195,14 @@ TEST_F(LatePictures, AreGivenUpWhenNobodyNeedsThem) {
   EXPECT_EQ(show->totals.given_up, 1u);
   EXPECT_EQ(show->totals.drawn, drawn);
   EXPECT_EQ(one.picture.keyframe.color, keyframe.color);
-  EXPECT_EQ(header(pictures.size() - 1).seq, seq);
+  EXPECT_EQ(last_header().seq, seq);
   step();
   EXPECT_EQ(show->totals.drawn, drawn + 1);  // at once the next, of where the visitor is now
   EXPECT_FALSE(one.picture.job.still);
   EXPECT_FALSE(one.picture.costs.given_up);
 }
 
-TEST_F(LatePictures, AreOutdatedByLeapsAndByMotionAfterRest) {
+TEST_F(LatePictures, AreOutdatedByCameraCutsAndByMotionAfterRest) {
   begin();
   Visitor unseen;
   PictureJob job;
@@ -276,45 +221,45 @@ TEST_F(LatePictures, AreOutdatedByLeapsAndByMotionAfterRest) {
   EXPECT_TRUE(is_outdated(*show, job, unseen));
 }
 
-TEST_F(LatePictures, NothingOfTheOldPlaceAfterALeap) {
+TEST_F(LatePictures, NothingOfTheOldPlaceAfterACameraCut) {
   begin();
   turn(0, 1);
   steps(20);
   hold_renderer();
-  size_t before = pictures.size();
+  size_t before = pictures().size();
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
-  for (int i = 0; i < 10; i++) step(false);
-  EXPECT_EQ(pictures.size(), before);
+  for (int i = 0; i < 10; i++) step_on();
+  EXPECT_EQ(pictures().size(), before);
   release_renderer();
   steps(4);
-  ASSERT_GT(pictures.size(), before);
+  ASSERT_GT(pictures().size(), before);
   EXPECT_EQ(header(before).seq, 900u);
-  Image8 there = truth(visitor().place.last_view);
-  EXPECT_LT(difference(image(before), there), 25);
-  // A camera that is put elsewhere has leapt as well; a small step is no camera cut.
+  Image8 there = truth();
+  EXPECT_LT(mean_difference(image(before), there), 25);
+  // A camera that is put elsewhere is a camera cut as well; a small step is none.
   hold_renderer();
-  before = pictures.size();
+  before = pictures().size();
   say(R"({"type":"camera","seq":901,"position":[3,1.6,-2.95],"yaw":2,"pitch":0})");
-  step(false);
-  EXPECT_EQ(pictures.size(), before + 1);
+  step_on();
+  EXPECT_EQ(pictures().size(), before + 1);
   say(R"({"type":"camera","seq":902,"position":[-2,1.6,3],"yaw":2,"pitch":0})");
-  for (int i = 0; i < 5; i++) step(false);
-  EXPECT_EQ(pictures.size(), before + 1);
+  for (int i = 0; i < 5; i++) step_on();
+  EXPECT_EQ(pictures().size(), before + 1);
   release_renderer();
 }
 
-TEST_F(LatePictures, ALeapWhileDrawingDiscardsThatPicture) {
+TEST_F(LatePictures, ACameraCutWhileDrawingDiscardsThatPicture) {
   begin();
   turn(0, 1);
   steps(20);
-  while (!visitor().picture.at_work) step(false);
+  while (!visitor().picture.at_work) step_on();
   ASSERT_NE(show->renderer.drawn, nullptr);
   say(R"({"type":"viewpoint","seq":900,"name":"corner"})");
-  size_t before = pictures.size();
+  size_t before = pictures().size();
   steps(6);
-  ASSERT_GT(pictures.size(), before);
-  for (size_t i = before; i < pictures.size(); i++) EXPECT_EQ(header(i).seq, 900u);
-  EXPECT_LT(difference(image(before), truth(visitor().place.last_view)), 25);
+  ASSERT_GT(pictures().size(), before);
+  for (size_t i = before; i < pictures().size(); i++) EXPECT_EQ(header(i).seq, 900u);
+  EXPECT_LT(mean_difference(image(before), truth()), 25);
 }
 
 TEST_F(LatePictures, SizesChangeWhileOneIsDrawn) {
@@ -323,23 +268,24 @@ TEST_F(LatePictures, SizesChangeWhileOneIsDrawn) {
   steps(20);
   for (int width : {64, 120, 16, 96}) {
     say(R"({"type":"settings","width":)" + std::to_string(width) + R"(,"height":64})");
-    step(false);
+    step_on();
     steps(3);
-    EXPECT_EQ(header(pictures.size() - 1).width, width);
-    EXPECT_EQ(image(pictures.size() - 1).width, width);
+    EXPECT_EQ(last_header().width, width);
+    EXPECT_EQ(last_image().width, width);
   }
 }
 
 TEST_F(LatePictures, VisitorsLeaveWhileTheirsIsDrawn) {
   begin(3);
-  for (int i = 0; i < 3; i++) say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0.1,0]})", i);
+  for (int i = 0; i < 3; i++)
+    say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0.1,0]})", size_t(i));
   steps(30);
   for (int i = 2; i >= 0; i--) {
-    say(R"({"type":"input","seq":2,"move":[0,0,1],"look":[0.1,0]})", i);
-    step(false);
-    if (i == 1) links[size_t(i)]->mark_closed();
-    else say(R"({"type":"bye"})", i);
-    step(false);
+    say(R"({"type":"input","seq":2,"move":[0,0,1],"look":[0.1,0]})", size_t(i));
+    step_on();
+    if (i == 1) browsers[size_t(i)].link->mark_closed();
+    else say(R"({"type":"bye"})", size_t(i));
+    step_on();
     steps(3);
     EXPECT_EQ(show->visitors.size(), size_t(i));
   }
@@ -350,15 +296,13 @@ TEST_F(LatePictures, VisitorsLeaveWhileTheirsIsDrawn) {
 // next.
 TEST_F(LatePictures, NoVisitorIsForgottenWhenOneIsFinishedDuringATick) {
   begin(3);
-  for (int i = 0; i < 3; i++) say(R"({"type":"input","seq":1,"move":[0,0,0.2],"look":[0.1,0]})", i);
+  for (int i = 0; i < 3; i++)
+    say(R"({"type":"input","seq":1,"move":[0,0,0.2],"look":[0.1,0]})", size_t(i));
   steps(10);
   for (int i = 0; i < 300; i++) {
     for (int k = 0; k < 100; k++) turn(0.001);  // much to hear, which takes most of the tick
     tick(*show, arrivals, now += 0.02);
-    for (const auto& link : links) {
-      Link::Out out;
-      while (link->take_out(out)) {}
-    }
+    take_sent();
     auto at_work = std::count_if(show->visitors.begin(), show->visitors.end(),
                                  [](auto& one) { return one.picture.at_work; });
     ASSERT_EQ(size_t(at_work), show->renderer.brokers.size() + (show->renderer.drawn ? 1 : 0))
@@ -369,7 +313,8 @@ TEST_F(LatePictures, NoVisitorIsForgottenWhenOneIsFinishedDuringATick) {
 
 TEST_F(LatePictures, AllVisitorsGetDrawnPictures) {
   begin(3);
-  for (int i = 0; i < 3; i++) say(R"({"type":"input","seq":1,"move":[0,0,0.2],"look":[0.1,0]})", i);
+  for (int i = 0; i < 3; i++)
+    say(R"({"type":"input","seq":1,"move":[0,0,0.2],"look":[0.1,0]})", size_t(i));
   std::vector<int> drawn(3, 0);
   for (int i = 0; i < 120; i++) {
     step();
@@ -382,9 +327,10 @@ TEST_F(LatePictures, AllVisitorsGetDrawnPictures) {
 
 TEST_F(LatePictures, TheShowEndsWhileOneIsDrawn) {
   begin(2);
-  for (int i = 0; i < 2; i++) say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0,0]})", i);
-  for (int i = 0; i < 20; i++) step(false);
-  while (!show->renderer.drawn) step(false);
+  for (int i = 0; i < 2; i++)
+    say(R"({"type":"input","seq":1,"move":[0,0,1],"look":[0,0]})", size_t(i));
+  for (int i = 0; i < 20; i++) step_on();
+  while (!show->renderer.drawn) step_on();
   show.reset();
 }
 

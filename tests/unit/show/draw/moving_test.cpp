@@ -4,12 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "frame/jpeg.h"
 #include "show/draw/picture.h"
-#include "show/state/make_show.h"
-#include "show/tick.h"
-#include "unit/show/tiny_exhibit.h"
-#include "unit/show/tiny_figure.h"
+#include "unit/show/show_stage.h"
 
 namespace wellspring {
 namespace {
@@ -17,47 +13,22 @@ namespace {
 // A storyteller as flat as a door stands before the visitor.
 Exhibit make_exhibit() {
   Exhibit exhibit = make_tiny_exhibit();
-  exhibit.storytellers.resize(1);
-  StorytellerPlace& storyteller_place = exhibit.storytellers[0];
-  storyteller_place.id = "anna";
-  storyteller_place.character = make_tiny_figure();
+  StorytellerPlace& storyteller_place = add_storyteller(exhibit, "anna", {-2, 0, 0.5});
   storyteller_place.character.positions = {{-0.4f, 0.6f, 0}, {0.4f, 0.6f, 0}, {0, 2.2f, 0}};
   storyteller_place.character.normals.assign(3, {0, 0, 1});
   storyteller_place.character.appearances[0].base_color = vec4(0.8f, 0.05f, 0.05f, 1);
-  storyteller_place.position = dvec3(-2, 0, 0.5);
   return exhibit;
 }
 
-struct Moving : testing::Test {
-  Arrivals arrivals;
-  std::shared_ptr<Link> link = std::make_shared<Link>(1, LinkKind::visit, "test");
-  std::unique_ptr<Show> show;
-  std::vector<Packet> pictures;
-  double now = 0;
-
+struct Moving : testing::Test, ShowStage {
   void SetUp() override {
-    ShowSettings settings;
-    settings.technique = settings.still_technique = "direct";
-    show = make_show(make_exhibit(), settings);
-    arrivals.put(link);
-    link->push_text_in(
-        R"({"type":"hello","exhibit":"","width":192,"height":128,"lang":"en","role":"visitor"})");
-  }
-  Visitor& visitor() { return show->visitors.front(); }
-  void step() {
-    tick(*show, arrivals, now += 0.01);
-    for (Visitor& one : show->visitors) one.shown.encoder->task.wait();
-    show->renderer.worker.wait();
-    for (Link::Out out; link->take_out(out);)
-      if (out.picture) pictures.push_back(*out.packet);
-  }
-  void steps(int count) {
-    for (int i = 0; i < count; i++) step();
+    tick_seconds = 0.01;
+    begin(make_exhibit(), settings_for("direct"));
+    join(192, 128);
   }
   template <class Condition>
-  bool step_until(const Condition& condition, int most = 600) {
-    while (most-- > 0 && !condition()) step();
-    return condition();
+  bool step_until(const Condition& holds, int most = 600) {
+    return ShowStage::step_until(holds, most);
   }
   // A picture of the rest is begun, and not finished.
   bool is_between_steps() {
@@ -68,7 +39,6 @@ struct Moving : testing::Test {
     return step_until([&] { return !show->visitors.empty() && visitor().picture.backdrop; }) &&
            step_until([&] { return show->totals.posed > 20; });
   }
-  Image8 picture() { return decode_jpeg(read_packet(pictures.back())->payload, "picture"); }
   // Red over green about where the place falls: the room is grey.
   double red_at(const Image8& image, vec3 place) {
     Projected at = project_point(visitor().place.last_view, place);
@@ -85,14 +55,14 @@ struct Moving : testing::Test {
 TEST_F(Moving, IsDrawnMoreOftenThanTheRest) {
   ASSERT_TRUE(rested());
   uint64_t drawn = show->totals.drawn, posed = show->totals.posed;
-  size_t sent = pictures.size();
+  size_t sent = pictures().size();
   for (int i = 0; i < 200; i++) {
     visitor().times.moving = 1;  // however slow the machine is, which would draw it less often
     step();
   }
   EXPECT_GE(show->totals.drawn, drawn + 2);
   EXPECT_GT(show->totals.posed - posed, 2 * (show->totals.drawn - drawn));
-  EXPECT_NEAR(double(pictures.size() - sent), double(show->totals.posed - posed), 2);
+  EXPECT_NEAR(double(pictures().size() - sent), double(show->totals.posed - posed), 2);
   EXPECT_TRUE(visitor().picture.backdrop);
   EXPECT_FALSE(visitor().picture.moving.empty());
   const PictureWindow& window = visitor().picture.moving.window;
@@ -107,12 +77,12 @@ TEST_F(Moving, ShowsWhereItIs) {
   vec3 here(-2, 1, 0.5f), there(-1, 1, 0.5f);
   ASSERT_TRUE(is_between_steps());
   uint64_t drawn = show->totals.drawn, posed = show->totals.posed;
-  Image8 before = picture();
+  Image8 before = last_image();
   show->storyteller.placement[3].x += 1;
   ASSERT_TRUE(step_until([&] { return show->totals.posed > posed; }));
-  size_t sent = pictures.size();
-  ASSERT_TRUE(step_until([&] { return pictures.size() > sent; }));
-  Image8 after = picture();
+  size_t sent = pictures().size();
+  ASSERT_TRUE(step_until([&] { return pictures().size() > sent; }));
+  Image8 after = last_image();
   EXPECT_LE(show->totals.drawn, drawn + 1);
   EXPECT_GT(red_at(before, here), 40);
   EXPECT_LT(red_at(before, there), 20);
@@ -127,14 +97,14 @@ TEST_F(Moving, IsInWhatIsWarped) {
   ASSERT_TRUE(
       step_until([&] { return visitor().picture.backdrop && !visitor().picture.moving.empty(); }));
   vec3 here(-2, 1, 0.5f);
-  double shown = red_at(picture(), here);
-  link->push_text_in(R"({"type":"input","seq":1,"move":[0,0,0],"look":[0.02,0]})");
+  double shown = red_at(last_image(), here);
+  turn(0.02);
   EXPECT_GT(shown, 40);
   uint64_t warped = show->totals.warped, drawn = show->totals.drawn;
   ASSERT_TRUE(step_until([&] { return show->totals.warped > warped; }));
   EXPECT_LE(show->totals.drawn, drawn + 1);
   step();
-  EXPECT_NEAR(red_at(picture(), here), shown, 8);
+  EXPECT_NEAR(red_at(last_image(), here), shown, 8);
   EXPECT_FALSE(visitor().picture.backdrop);
   EXPECT_TRUE(visitor().picture.moving.empty());
 }
@@ -148,10 +118,7 @@ TEST_F(Moving, OthersNeedNotWaitForLight) {
   }));
   size_t traced = show->renderer.work.traced;
   ASSERT_LT(traced, show->renderer.work.requests.size());
-  auto other = std::make_shared<Link>(2, LinkKind::visit, "test");
-  arrivals.put(other);
-  other->push_text_in(
-      R"({"type":"hello","exhibit":"","width":64,"height":64,"lang":"en","role":"visitor"})");
+  join(64, 64);
   ASSERT_TRUE(step_until([&] { return show->renderer.drawn != &visitor(); }, 8));
   EXPECT_EQ(visitor().picture.costs.samples, traced);
   EXPECT_TRUE(step_until([&] { return show->visitors.back().picture.drawn_at > 0; }, 8));
@@ -161,7 +128,7 @@ TEST_F(Moving, OthersNeedNotWaitForLight) {
 TEST_F(Moving, WhoLeavesBetweenStepsIsForgotten) {
   ASSERT_TRUE(rested());
   ASSERT_TRUE(is_between_steps());
-  link->mark_closed();
+  browsers[0].link->mark_closed();
   EXPECT_TRUE(step_until([&] { return show->visitors.empty(); }, 50));
   EXPECT_EQ(show->renderer.drawn, nullptr);
 }
@@ -169,11 +136,11 @@ TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   ASSERT_TRUE(rested());
   steps(200);
   vec3 here(-2, 1, 0.5f);
-  EXPECT_GT(red_at(picture(), here), 40);
+  EXPECT_GT(red_at(last_image(), here), 40);
   show->storyteller_visible = false;
   ASSERT_TRUE(step_until([&] { return !visitor().picture.job.figure; }));
   steps(30);
-  EXPECT_LT(red_at(picture(), here), 20);
+  EXPECT_LT(red_at(last_image(), here), 20);
   EXPECT_FALSE(visitor().picture.backdrop);
 }
 

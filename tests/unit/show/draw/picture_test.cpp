@@ -1,43 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A visitor's pictures where hardly anything can be rasterised.
 #include "show/draw/picture.h"
-#include "show/state/make_show.h"
-#include "show/tick.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
-#include "frame/jpeg.h"
-#include "frame/tonemap.h"
-#include "unit/show/tiny_exhibit.h"
-#include "wire/packet.h"
+#include "unit/show/show_stage.h"
 
 namespace wellspring {
 namespace {
-
-// A visitor of the first viewpoint, after two seconds, and the last picture sent.
-struct Visited {
-  std::unique_ptr<Show> show;
-  Packet picture;
-  explicit Visited(Exhibit exhibit) {
-    ShowSettings settings;
-    settings.background = false;
-    settings.technique = settings.still_technique = "direct";
-    show = make_show(std::move(exhibit), settings);
-    Arrivals arrivals;
-    auto link = std::make_shared<Link>(1, LinkKind::visit, "test");
-    arrivals.put(link);
-    link->push_text_in(
-        R"({"type":"hello","exhibit":"","width":160,"height":90,"lang":"en","role":"visitor"})");
-    for (int i = 0; i < 40; i++) {
-      tick(*show, arrivals, 0.05 * i);
-      for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-      for (Link::Out out; link->take_out(out);)
-        if (out.picture) picture = *out.packet;
-    }
-  }
-};
 
 // The viewpoint's eye in the middle of a cube of solid glass, or of one that is nothing but pale.
 Exhibit make_cubed(bool glass) {
@@ -62,26 +32,22 @@ Exhibit make_cubed(bool glass) {
 
 TEST(Picture, IsRightForAnEyeInSolidGlassToo) {
   for (bool glass : {true, false}) {
-    Visited visited(make_cubed(glass));
-    const Show& show = *visited.show;
-    const View& view = show.visitors.front().place.last_view;
-    EXPECT_EQ(show.visibility->rasterises(view), !glass);
-    StillSettings settings;
-    settings.spp = 64;
-    settings.transport = show.settings.transport;
-    Image8 truth, shown = decode_jpeg(read_packet(visited.picture)->payload, "picture");
-    tonemap(render_still(*show.still_technique, *show.world, show.lights, view, settings),
-            Tonemap{show.exhibit.exposure}, truth);
+    ShowStage stage;  // a visitor of the first viewpoint, after two seconds
+    stage.tick_seconds = 0.05;
+    stage.begin(make_cubed(glass), settings_for("direct", false));
+    stage.join(160, 90);
+    stage.run(2);
+    const View& view = stage.visitor().place.last_view;
+    EXPECT_EQ(stage.show->visibility->rasterises(view), !glass);
+    Image8 truth = stage.truth(view, 64), shown = stage.last_image();
     ASSERT_EQ(shown.rgb.size(), truth.rgb.size());
-    double difference = 0, light = 0, shown_light = 0;
-    for (size_t i = 0; i < truth.rgb.size(); i++) {
-      difference += std::abs(int(shown.rgb[i]) - int(truth.rgb[i]));
+    double light = 0, shown_light = 0;
+    for (size_t i = 0; i < truth.rgb.size(); i++)
       light += truth.rgb[i], shown_light += shown.rgb[i];
-    }
     if (glass) {
       EXPECT_GT(light, 20 * double(truth.rgb.size())) << "else there is nothing to see";
     }
-    EXPECT_LT(difference, 7 * double(truth.rgb.size())) << glass;
+    EXPECT_LT(mean_difference(shown, truth), 7) << glass;
     EXPECT_NEAR(shown_light, light, 0.05 * light) << glass;
   }
 }

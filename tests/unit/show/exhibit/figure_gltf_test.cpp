@@ -65,7 +65,7 @@ TEST(FigureOfGltf, WearsTheFilesMaterial) {
   EXPECT_EQ(made.scene.materials[0].name, "") << "the scene's own stay";
 }
 
-TEST(FigureOfGltf, CartoonsAreShownMatt) {
+TEST(FigureOfGltf, CartoonsAreShownLambertian) {
   Made made = make(painted({{"name", "toon"},
                             {"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.4, 0.6, 1}}}},
                             {"extensions", {{"KHR_materials_unlit", json::object()}}}}));

@@ -9,15 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "frame/jpeg.h"
 #include "show/answer/answer.h"
 #include "show/exhibit/exhibit_lamps.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/state/in_view.h"
-#include "show/state/make_show.h"
-#include "show/state/show.h"
-#include "show/tick.h"
-#include "unit/show/tiny_exhibit.h"
+#include "unit/show/show_stage.h"
 #include "world/load/lamp.h"
 
 namespace wellspring {
@@ -38,79 +34,43 @@ Exhibit make_lit_exhibit(bool on_at_first = true) {
   return exhibit;
 }
 
-struct Lamps : testing::Test {
-  Arrivals arrivals;
-  std::vector<std::shared_ptr<Link>> links;
-  std::vector<std::vector<json>> told;
-  std::vector<Image8> picture;  // the last, of each visitor
-  double now = 0;
-  std::unique_ptr<Show> show;
-
-  void begin(Exhibit exhibit, int visitors, const char* technique = "gather",
+struct Lamps : testing::Test, ShowStage {
+  void begin(Exhibit exhibit, int visitors, const std::string& technique = "gather",
              bool background = false) {
-    ShowSettings settings;
-    settings.fps = 50;
-    settings.background = background;
-    settings.technique = technique;
-    settings.still_technique = std::string(technique) == "gather" ? "path" : technique;
-    show = make_show(std::move(exhibit), settings);
-    for (int i = 0; i < visitors; i++) {
-      links.push_back(std::make_shared<Link>(uint64_t(i + 1), LinkKind::visit, "test"));
-      arrivals.put(links.back());
-      say(i, std::string(R"({"type":"hello","width":96,"height":64,"lang":")") + (i ? "de" : "en") +
-                 R"(","role":")" + (i ? "kiosk" : "visitor") + "\"}");
-    }
-    told.resize(size_t(visitors)), picture.resize(size_t(visitors));
+    ShowStage::begin(std::move(exhibit), settings_for(technique, background, 50));
+    for (int i = 0; i < visitors; i++) join(96, 64, i ? "de" : "en", i ? "kiosk" : "visitor");
   }
-  void say(int visitor, const std::string& text) { links[size_t(visitor)]->push_text_in(text); }
-  void lamp(int visitor, const char* name, bool on) {
-    say(visitor, json{{"type", "lamp"}, {"name", name}, {"on", on}}.dump());
+  void lamp(size_t visitor, const char* name, bool on) {
+    say(json{{"type", "lamp"}, {"name", name}, {"on", on}}.dump(), visitor);
   }
-  void step() {
-    tick(*show, arrivals, now += 0.02);
-    for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-    show->renderer.worker.wait();
-    for (size_t i = 0; i < links.size(); i++)
-      for (Link::Out out; links[i]->take_out(out);) {
-        if (out.picture) picture[i] = decode_jpeg(read_packet(*out.packet)->payload, "picture");
-        else if (!out.text.empty()) told[i].push_back(json::parse(out.text));
-      }
-  }
-  void run(double seconds) {
-    for (double end = now + seconds; now < end;) step();
-  }
-  json last(int visitor, const std::string& type) {
-    for (auto it = told[size_t(visitor)].rbegin(); it != told[size_t(visitor)].rend(); ++it)
-      if ((*it)["type"] == type) return *it;
-    return {};
-  }
-  double level(int visitor) {
+  double level(size_t visitor) {
+    Image8 shown = last_image(visitor);
     double sum = 0;
-    for (uint8_t value : picture[size_t(visitor)].rgb) sum += value;
-    return sum / double(picture[size_t(visitor)].rgb.size());
+    for (uint8_t value : shown.rgb) sum += value;
+    return sum / double(shown.rgb.size());
   }
 };
 
 TEST_F(Lamps, OneSwitchesAndAllAreToldAndSeeIt) {
   for (bool background : {false, true}) {
-    links.clear(), told.clear(), picture.clear();
+    browsers.clear();
     begin(make_lit_exhibit(), 2, "gather", background);
     run(1.5);
-    EXPECT_EQ(last(0, "welcome")["lamps"],
+    EXPECT_EQ(last("welcome")["lamps"],
               json::parse(R"([{"name":"ceiling","title":"Ceiling","on":true}])"));
-    EXPECT_EQ(last(1, "welcome")["lamps"][0]["title"], "Decke");
+    EXPECT_EQ(last("welcome", 1)["lamps"][0]["title"], "Decke");
     double lit[2] = {level(0), level(1)};
     lamp(1, "ceiling", false);
     step();
     step();
-    for (int i : {0, 1})
-      EXPECT_EQ(last(i, "state")["lamps"], json::parse(R"({"ceiling":false})")) << i;
+    for (size_t i : {0, 1})
+      EXPECT_EQ(last("state", i)["lamps"], json::parse(R"({"ceiling":false})")) << i;
     run(0.5);
     double dark[2] = {level(0), level(1)};
-    for (int i : {0, 1}) EXPECT_LT(dark[i], 0.6 * lit[i]) << i;
+    for (size_t i : {0, 1}) EXPECT_LT(dark[i], 0.6 * lit[i]) << i;
     lamp(0, "ceiling", true);
     run(1);
-    for (int i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
+    for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
     EXPECT_EQ(make_report(*show).totals.lamps_switched, 2u);
   }
 }
@@ -152,7 +112,7 @@ TEST_F(Lamps, UnknownOnesAreRefusedAndNothingChanges) {
   run(0.1);
   lamp(0, "moon", false);
   run(0.1);
-  EXPECT_EQ(last(0, "error")["code"], "unknown_lamp");
+  EXPECT_EQ(last("error")["code"], "unknown_lamp");
   EXPECT_TRUE(show->world->is_on(0));
   lamp(0, "ceiling", true);  // it is
   run(0.1);
@@ -162,7 +122,7 @@ TEST_F(Lamps, UnknownOnesAreRefusedAndNothingChanges) {
 TEST_F(Lamps, WhatIsOffAtFirstIsOffForStillsAndForWhoComes) {
   begin(make_lit_exhibit(false), 1, "path");
   run(0.2);
-  EXPECT_EQ(last(0, "welcome")["lamps"][0]["on"], false);
+  EXPECT_EQ(last("welcome")["lamps"][0]["on"], false);
   EXPECT_FALSE(show->world->is_on(0));
   run(0.5);
   double dark = level(0);

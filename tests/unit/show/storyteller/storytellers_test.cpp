@@ -6,41 +6,30 @@
 
 #include "show/answer/still.h"
 #include "show/state/make_show.h"
-#include "show/state/show.h"
 #include "show/storyteller/sounding.h"
-#include "show/tick.h"
-#include "unit/show/tiny_exhibit.h"
-#include "unit/show/tiny_figure.h"
+#include "unit/show/show_stage.h"
 
 namespace wellspring {
 namespace {
 
-struct StorytellersTest : testing::Test {
-  std::unique_ptr<Show> show;
-  Arrivals arrivals;
-  std::shared_ptr<Link> link = std::make_shared<Link>(1, LinkKind::visit, "test");
+struct StorytellersTest : testing::Test, ShowStage {
   std::vector<SpeechRequest> asked;
-  std::map<std::string, nlohmann::json> last;
-  double now = 0;
 
   void SetUp() override {
     Exhibit exhibit = make_tiny_exhibit();
-    exhibit.storytellers.resize(2);
-    for (size_t i = 0; i < 2; i++) {
-      StorytellerPlace& storyteller_place = exhibit.storytellers[i];
-      storyteller_place.id = i == 0 ? "anna" : "otto";
+    for (int i : {0, 1}) {
+      StorytellerPlace& storyteller_place = add_storyteller(
+          exhibit, i == 0 ? "anna" : "otto", i == 0 ? dvec3(-2, 0, 2) : dvec3(3, 0, -2));
       storyteller_place.name = {{"en", i == 0 ? "Anna" : "Otto"}};
-      storyteller_place.character = make_tiny_figure();
-      storyteller_place.position = i == 0 ? dvec3(-2, 0, 2) : dvec3(3, 0, -2);
-      storyteller_place.kiosk_viewpoint = int(i);
+      storyteller_place.kiosk_viewpoint = i;
       storyteller_place.voice.variant = i == 0 ? "f3" : "m3";
       storyteller_place.greetings["en"].emplace_back().text = i == 0 ? "I am Anna." : "I am Otto.";
     }
     exhibit.stories.push_back(exhibit.stories[0]);
     exhibit.stories[1].id = "bell";
     exhibit.stories[1].storyteller_index = 1;
-    show = make_show(std::move(exhibit),
-                     {.technique = "direct", .still_technique = "direct", .background = false});
+    tick_seconds = 0.04;
+    begin(std::move(exhibit), settings_for("direct", false));
     show->speech.find = [](const SpeechRequest&) { return nullptr; };
     show->speech.speak = [this](const SpeechRequest& request) {
       asked.push_back(request);
@@ -48,25 +37,10 @@ struct StorytellersTest : testing::Test {
       promise.set_value({nullptr, "mute"});
       return promise.get_future().share();
     };
-    arrivals.put(link);
   }
   void join(const char* role) {
-    order(R"({"type":"hello","width":32,"height":32,"role":")" + std::string(role) + "\"}");
-  }
-  void order(const std::string& text) {
-    link->push_text_in(text);
+    ShowStage::join(32, 32, "en", role);
     run(0.1);
-  }
-  void run(double seconds) {
-    for (double end = now + seconds; now < end; now += 0.04) {
-      tick(*show, arrivals, now);
-      for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-      for (Link::Out out; link->take_out(out);)
-        if (!out.binary) {
-          auto message = nlohmann::json::parse(out.text);
-          last[message["type"]] = message;
-        }
-    }
   }
   // Who is to be seen: rays from above onto the places where the two stand.
   std::string seen() {
@@ -83,17 +57,17 @@ struct StorytellersTest : testing::Test {
 
 TEST_F(StorytellersTest, OneIsThereAndTheOtherComesWhenCalled) {
   join("visitor");
-  EXPECT_EQ(last["welcome"]["storyteller"]["id"], "anna");
-  ASSERT_EQ(last["welcome"]["storytellers"].size(), 2u);
-  EXPECT_EQ(last["welcome"]["storytellers"][1]["name"], "Otto");
-  EXPECT_EQ(last["welcome"]["storytellers"][1]["viewpoint"], "corner");
-  EXPECT_EQ(last["agent"]["teller"], "anna");
+  EXPECT_EQ(last("welcome")["storyteller"]["id"], "anna");
+  ASSERT_EQ(last("welcome")["storytellers"].size(), 2u);
+  EXPECT_EQ(last("welcome")["storytellers"][1]["name"], "Otto");
+  EXPECT_EQ(last("welcome")["storytellers"][1]["viewpoint"], "corner");
+  EXPECT_EQ(last("agent")["teller"], "anna");
   EXPECT_EQ(seen(), "anna");
   order(R"({"type":"storyteller","teller":"otto"})");
-  EXPECT_EQ(last["agent"]["teller"], "otto");
+  EXPECT_EQ(last("agent")["teller"], "otto");
   EXPECT_EQ(seen(), "otto");
   order(R"({"type":"storyteller","teller":"emil"})");
-  EXPECT_EQ(last["error"]["code"], "unknown_storyteller");
+  EXPECT_EQ(last("error")["code"], "unknown_storyteller");
   EXPECT_EQ(seen(), "otto");
   order(R"({"type":"storyteller","visible":false,"teller":"anna"})");
   EXPECT_EQ(seen(), "");
@@ -103,18 +77,12 @@ TEST_F(StorytellersTest, OneIsThereAndTheOtherComesWhenCalled) {
 TEST(Storytellers, OneIsInFinishedPictures) {
   auto picture = [](std::vector<dvec3> places) {
     Exhibit exhibit = make_tiny_exhibit();
-    exhibit.storytellers.resize(places.size());
-    for (size_t i = 0; i < places.size(); i++) {
-      exhibit.storytellers[i].id = "teller" + std::to_string(i);
-      exhibit.storytellers[i].character = make_tiny_figure();
-      exhibit.storytellers[i].position = places[i];
-    }
+    for (size_t i = 0; i < places.size(); i++)
+      add_storyteller(exhibit, "storyteller" + std::to_string(i), places[i]);
     exhibit.tours.clear();
     exhibit.viewpoints[0].view.position = {0, 1.6, 3.5};  // sees the world's origin, too
     exhibit.viewpoints[0].view.yaw = 0, exhibit.viewpoints[0].view.pitch = -0.3f;
-    std::unique_ptr<Show> show =
-        make_show(std::move(exhibit),
-                  {.technique = "direct", .still_technique = "direct", .background = false});
+    std::unique_ptr<Show> show = make_show(std::move(exhibit), settings_for("direct", false));
     return StillRoom(*show).make({.width = 64, .height = 48, .spp = 4});
   };
   const dvec3 in_view(0, 0, 1.5), behind_the_wall(-3, 0, -3);
@@ -123,19 +91,19 @@ TEST(Storytellers, OneIsInFinishedPictures) {
   EXPECT_TRUE(picture({behind_the_wall, in_view}) == nobody);
 }
 
-TEST_F(StorytellersTest, AStoryBringsItsOwnTellerAndVoice) {
+TEST_F(StorytellersTest, AStoryBringsItsOwnStorytellerAndVoice) {
   join("visitor");
   order(R"({"type":"storyteller","story":"tale"})");
   ASSERT_FALSE(asked.empty());
   EXPECT_EQ(asked.back().variant, "f3");
-  EXPECT_EQ(last["agent"]["teller"], "anna") << "whoever is there tells what is nobody's own";
+  EXPECT_EQ(last("agent")["teller"], "anna") << "whoever is there tells what is nobody's own";
   order(R"({"type":"storyteller","story":"bell"})");
   EXPECT_EQ(asked.back().variant, "m3");
-  EXPECT_EQ(last["agent"]["teller"], "otto");
-  EXPECT_EQ(last["agent"]["story"], "bell");
-  EXPECT_EQ(last["subtitle"]["speaker"], "Otto");
+  EXPECT_EQ(last("agent")["teller"], "otto");
+  EXPECT_EQ(last("agent")["story"], "bell");
+  EXPECT_EQ(last("subtitle")["speaker"], "Otto");
   order(R"({"type":"storyteller","teller":"anna"})");
-  EXPECT_EQ(last["agent"]["story"], nullptr) << "who goes falls silent";
+  EXPECT_EQ(last("agent")["story"], nullptr) << "who goes falls silent";
 }
 
 TEST_F(StorytellersTest, AKioskStandsBeforeWhoeverIsThereAndIsGreeted) {

@@ -75,7 +75,7 @@ TEST(Heading, WhoStopsIsExpectedToStaySoon) {
   EXPECT_EQ(expected_turn(heading, view, 0.2), 0.0f);
 }
 
-TEST(Heading, ALeapLeadsNowhere) {
+TEST(Heading, AfterACameraCutTheViewIsExpectedToStay) {
   Heading heading;
   for (int i = 0; i < 5; i++)
     EXPECT_FALSE(note_view(heading, i / 60.0, facing(0, vec3(0.02f * float(i), 0, 0))));

@@ -4,11 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "show/state/in_view.h"
-#include "show/state/make_show.h"
-#include "show/state/show.h"
-#include "show/tick.h"
-#include "unit/show/tiny_exhibit.h"
-#include "unit/show/tiny_figure.h"
+#include "unit/show/show_stage.h"
 
 namespace wellspring {
 namespace {
@@ -28,26 +24,20 @@ std::shared_ptr<const Speech> make_vowel(const std::string& text) {
   return speech;
 }
 
-struct TourLips : testing::Test {
-  std::unique_ptr<Show> show;
-  Arrivals arrivals;
-  std::vector<std::shared_ptr<Link>> links;
+struct TourLips : testing::Test, ShowStage {
   std::map<std::string, std::shared_ptr<const Speech>> kept;
-  double now = 0;
 
   void SetUp() override {
     Exhibit exhibit = make_tiny_exhibit();
-    StorytellerPlace& storyteller_place = exhibit.storytellers.emplace_back();
-    storyteller_place.id = "anna";
-    storyteller_place.character = make_tiny_figure();
+    // 2 m before the viewpoint where the tour begins.
+    StorytellerPlace& storyteller_place = add_storyteller(exhibit, "anna", {-2, 0, 1});
     Displacer open;
     open.name = "viseme_aa";
     open.vertices = {0};
     open.displacements = {{0, 0.01f, 0}};
     storyteller_place.character.displacers = {open};
-    storyteller_place.position = {-2, 0, 1};  // 2 m before the viewpoint where the tour begins
-    show = make_show(std::move(exhibit),
-                     {.technique = "direct", .still_technique = "direct", .background = false});
+    tick_seconds = 0.04;
+    begin(std::move(exhibit), settings_for("direct", false));
     show->speech.find = [this](const SpeechRequest& request) {
       auto& speech = kept[request.text];
       if (!speech) speech = make_vowel(request.text);
@@ -56,21 +46,8 @@ struct TourLips : testing::Test {
     show->speech.speak = [](const SpeechRequest&) { return std::shared_future<SpeechAnswer>(); };
   }
   void join() {
-    links.push_back(std::make_shared<Link>(links.size() + 1, LinkKind::visit, "test"));
-    arrivals.put(links.back());
-    order(links.size() - 1, R"({"type":"hello","width":32,"height":32,"role":"visitor"})");
-  }
-  void order(size_t peer, const std::string& text) {
-    links[peer]->push_text_in(text);
+    ShowStage::join(32, 32);
     run(0.1);
-  }
-  void run(double seconds) {
-    for (double end = now + seconds; now < end; now += 0.04) {
-      tick(*show, arrivals, now);
-      for (Visitor& visitor : show->visitors) visitor.shown.encoder->task.wait();
-      for (auto& link : links)
-        for (Link::Out out; link->take_out(out);) {}
-    }
   }
   float lips() const { return show->pose.displacers.at(0); }
 };
@@ -79,24 +56,24 @@ TEST_F(TourLips, MoveWhileTheTourIsTold) {
   join();
   run(1);
   EXPECT_LT(lips(), 0.05f);
-  order(0, R"({"type":"tour","action":"play"})");
+  order(R"({"type":"tour","action":"play"})");
   run(1.5);
   ASSERT_TRUE(heard(show->visitors.front().hearing.narration.voice));
   EXPECT_GT(lips(), 0.5f);
-  order(0, R"({"type":"tour","action":"pause"})");
+  order(R"({"type":"tour","action":"pause"})");
   run(1);
   EXPECT_LT(lips(), 0.05f);
 }
 
 TEST_F(TourLips, NothingOfTheFaceRunsBehindTheVisitorsBack) {
   join();
-  order(0, R"({"type":"tour","action":"play"})");
+  order(R"({"type":"tour","action":"play"})");
   run(1);
   StorytellerWork before = show->mind.work;
   EXPECT_GT(before.visemes, 0u);
   EXPECT_GT(before.blinks, 0u);
   // Half round; the tour goes on.
-  order(0, R"({"type":"input","seq":1,"move":[0,0,0],"look":[3.1416,0]})");
+  order(R"({"type":"input","seq":1,"move":[0,0,0],"look":[3.1416,0]})");
   ASSERT_FALSE(sees_head(*show, view_of(*show, show->visitors.front())));
   ASSERT_TRUE(heard(show->visitors.front().hearing.narration.voice));
   before = show->mind.work;
@@ -119,10 +96,10 @@ TEST_F(TourLips, HerOwnWordsComeFirst) {
     key.weights[size_t(Viseme::sil)] = 1;
   }
   kept["One."] = silence;
-  order(0, R"({"type":"tour","action":"play"})");
+  order(R"({"type":"tour","action":"play"})");
   run(1);
   EXPECT_GT(lips(), 0.5f);
-  order(1, R"({"type":"storyteller","story":"tale"})");
+  order(R"({"type":"storyteller","story":"tale"})", 1);
   run(1);
   ASSERT_TRUE(heard(show->visitors.front().hearing.narration.voice)) << "the tour goes on";
   EXPECT_LT(lips(), 0.05f);
@@ -131,7 +108,7 @@ TEST_F(TourLips, HerOwnWordsComeFirst) {
 TEST_F(TourLips, OfTwoToursTheNearerOneInViewCounts) {
   join();
   join();
-  for (size_t i = 0; i < 2; i++) order(i, R"({"type":"tour","action":"play"})");
+  for (size_t i = 0; i < 2; i++) order(R"({"type":"tour","action":"play"})", i);
   Visitor &far = show->visitors.front(), &near = show->visitors.back();
   far.place.view.position = {-2, 1.6, 3.5};
   near.place.view.position = {-2, 1.6, 2.5};
