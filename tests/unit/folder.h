@@ -11,8 +11,7 @@ namespace wellspring::test {
 struct Folder {
   std::filesystem::path path;
   Folder() {
-    std::string name =
-        (std::filesystem::temp_directory_path() / "wellspring-test-XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "wellspring-test-XXXXXX").string();
     path = mkdtemp(name.data());
   }
   Folder(const Folder&) = delete;
