@@ -104,12 +104,13 @@ set(WELLSPRING_LITTLE -O1 -fexpensive-optimizations)
 # tests. Without them (WELLSPRING_PRECOMPILE=OFF) everything compiles as well, only slower. JSON is
 # not among them: reading what was compiled of it takes longer than most files that do without.
 option(WELLSPRING_PRECOMPILE "precompiled headers" ON)
+set(WELLSPRING_HEADERS <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional>
+  <limits> <map> <memory> <optional> <span> <sstream> <string> <string_view> <vector>
+  <oneapi/tbb/parallel_for.h> ${PROJECT_SOURCE_DIR}/server/base/vec.h)
 function(wellspring_precompiled name)
   add_library(precompiled_${name} OBJECT ${PROJECT_SOURCE_DIR}/cmake/precompiled.cpp)
   target_link_libraries(precompiled_${name} PRIVATE glm::glm TBB::tbb)
-  target_precompile_headers(precompiled_${name} PRIVATE <algorithm> <array> <cmath> <cstdint> <cstring>
-    <filesystem> <fstream> <functional> <limits> <map> <memory> <optional> <span> <sstream> <string>
-    <string_view> <vector> <oneapi/tbb/parallel_for.h> ${PROJECT_SOURCE_DIR}/server/base/vec.h ${ARGN})
+  target_precompile_headers(precompiled_${name} PRIVATE ${WELLSPRING_HEADERS} ${ARGN})
 endfunction()
 if(WELLSPRING_PRECOMPILE)
   wellspring_precompiled(std)
@@ -123,10 +124,10 @@ function(wellspring_precompile target name)
   endif()
 endfunction()
 
-# wellspring_load_once(FOLDER ...): files of these folders read what is read once, and write messages.
+# wellspring_load_once(PATTERN ...): these files read what is read once, and write messages.
 function(wellspring_load_once)
-  foreach(folder ${ARGN})
-    file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+  foreach(pattern ${ARGN})
+    file(GLOB sources CONFIGURE_DEPENDS ${pattern})
     set_property(SOURCE ${sources} APPEND PROPERTY COMPILE_OPTIONS ${WELLSPRING_LITTLE})
   endforeach()
 endfunction()

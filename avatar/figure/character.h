@@ -61,7 +61,7 @@ struct Appearance {
   // Where the figure has a material_file: its material there, which says more than the fields
   // above.
   int material = -1;
-  bool matt =
+  bool lambertian =
       false;  // of a shading model that is not physical: shown without gloss, lit as all else
 };
 

@@ -48,7 +48,7 @@ void Reader::read_appearances() {
       const json& material = materials[m - 1];
       appearance.name = gltf::text(material, "name");
       appearance.double_sided = gltf::boolean(material, "doubleSided", false);
-      appearance.matt = figure.vrm.matt.count(m - 1) > 0;
+      appearance.lambertian = figure.vrm.lambertian.count(m - 1) > 0;
       if (const json* pbr = gltf::find(material, "pbrMetallicRoughness")) {
         if (const json* color = gltf::find(*pbr, "baseColorFactor")) {
           for (int c = 0; c < 3; c++)
@@ -58,7 +58,7 @@ void Reader::read_appearances() {
         appearance.metallic = gltf::to_float(gltf::number(*pbr, "metallicFactor", 1));
         appearance.roughness = gltf::to_float(gltf::number(*pbr, "roughnessFactor", 1));
       }
-      if (appearance.matt)
+      if (appearance.lambertian)
         gltf::warn(file, at("/materials", m - 1),
                    "materials drawn as cartoons (MToon, unlit) are shown matt, lit as all else is");
     }

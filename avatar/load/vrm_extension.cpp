@@ -158,7 +158,7 @@ const std::set<std::string>& vrm_extensions() {
 
 Vrm read_vrm(File& file) {
   Vrm vrm;
-  vrm.matt = rewrite_vrm_materials(file);
+  vrm.lambertian = rewrite_vrm_materials(file);
   if (const json* object = gltf::extension(file.root, "VRMC_vrm"))
     read_version_1(file, *object, vrm);
   else if (const json* older = gltf::extension(file.root, "VRM")) read_version_0(file, *older, vrm);

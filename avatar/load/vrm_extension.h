@@ -77,7 +77,7 @@ struct Vrm {
   std::vector<VrmExpression> expressions;
   std::map<std::string, size_t> expression_nodes;  // of an animation: whose x is its weight
   EyeRanges eye_ranges;
-  std::set<size_t> matt;                         // materials that are drawn as cartoons
+  std::set<size_t> lambertian;                   // materials that are drawn as cartoons
   std::set<size_t> hidden_nodes, hidden_meshes;  // that only whoever is the figure itself sees
   std::vector<VrmConstraint> constraints;        // no node twice
   std::vector<VrmSpringJoint> springs;           // no node twice

@@ -129,7 +129,7 @@ Figure make_figure(const Character& character, Scene& scene, std::vector<Mesh>& 
   for (const Appearance& appearance : character.appearances) {
     if (appearance.material >= 0 && first_of_file >= 0) {
       scene.materials.push_back(scene.materials[size_t(first_of_file + appearance.material)]);
-      if (appearance.matt) make_lambert(scene.materials.back());
+      if (appearance.lambertian) make_lambert(scene.materials.back());
       continue;
     }
     scene.materials.push_back(make_material(appearance, pictures));

@@ -75,7 +75,7 @@ TEST(VrmMaterials, OfVersion0AreAsTheirShaderHasThem) {
   EXPECT_TRUE(says(c, "outlines of cartoon materials (MToon) are not drawn"));
   EXPECT_TRUE(says(c, "are shown matt"));
   ASSERT_EQ(c.appearances.size(), 3u);
-  EXPECT_TRUE(c.appearances[1].matt && c.appearances[2].matt);
+  EXPECT_TRUE(c.appearances[1].lambertian && c.appearances[2].lambertian);
   EXPECT_TRUE(c.appearances[1].double_sided);
 }
 
