@@ -15,10 +15,10 @@ if(CLANG_FORMAT)
   add_custom_target(format VERBATIM WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     COMMAND sh -c "git ls-files '*.h' '*.cpp' | xargs -P ${cores} -n 20 ${CLANG_FORMAT} -i")
   if(version MATCHES "version 14\\.")  # others break some lines otherwise
-  add_test(NAME structure.format COMMAND sh -c
-    "git ls-files '*.h' '*.cpp' | xargs -P ${cores} -n 20 ${CLANG_FORMAT} --dry-run --Werror"
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-  set_tests_properties(structure.format PROPERTIES LABELS structure)
+    add_test(NAME structure.format COMMAND sh -c
+      "git ls-files '*.h' '*.cpp' | xargs -P ${cores} -n 20 ${CLANG_FORMAT} --dry-run --Werror"
+      WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    set_tests_properties(structure.format PROPERTIES LABELS structure)
   endif()
 endif()
 if(CLANG_TIDY)

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame/picture_file.h"
 
-#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -12,6 +10,7 @@
 #include <span>
 
 #include "base/load_error.h"
+#include "base/write_file.h"
 #include "frame/jpeg.h"
 #include "frame/linear_picture.h"
 
@@ -37,22 +36,6 @@ std::string ending_of(const std::string& path) {
 bool is_linear(const std::string& ending) { return ending == "pfm" || ending == "exr"; }
 bool is_8bit(const std::string& ending) {
   return ending == "png" || ending == "jpg" || ending == "jpeg";
-}
-
-// The whole file or none of it: written beside its place, then renamed over it.
-void write_file(const std::string& path, std::span<const char> bytes) {
-  static std::atomic<unsigned> count{0};
-  std::string temporary = path + ".part" + std::to_string(getpid()) + "-" + std::to_string(count++);
-  FILE* file = std::fopen(temporary.c_str(), "wb");
-  if (!file) throw LoadError(path, "", std::string("cannot be written: ") + std::strerror(errno));
-  bool good = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  int reason = errno;
-  if (std::fclose(file) != 0 && good) good = false, reason = errno;
-  if (good && std::rename(temporary.c_str(), path.c_str()) != 0) good = false, reason = errno;
-  if (!good) {
-    std::remove(temporary.c_str());
-    throw LoadError(path, "", std::string("cannot be written: ") + std::strerror(reason));
-  }
 }
 
 // A tEXt chunk behind the header (PNG specification, section 11.3.4.3).

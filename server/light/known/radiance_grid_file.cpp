@@ -7,7 +7,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/load_error.h"
 #include "base/rng.h"
+#include "base/write_file.h"
 #include "light/sample/lamps_seen.h"
 
 namespace wellspring {
@@ -123,17 +125,15 @@ bool save_radiance_grid(const RadianceGrid& grid, const std::string& file, uint6
   list_fields(put, grid, lamps, parts, parts.light);
   const uint64_t head[4] = {format, key, checksum(put.bytes),
                             grid.parts ? parts.light.size() + 1 : 0};
+  put.bytes.insert(0, reinterpret_cast<const char*>(head), sizeof head);
   std::error_code code;
   std::filesystem::create_directories(std::filesystem::path(file).parent_path(), code);
-  const std::string part = file + ".part";
-  {
-    std::ofstream out(part, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(head), sizeof head);
-    out.write(put.bytes.data(), std::streamsize(put.bytes.size()));
-    if (!out.flush()) return false;
+  try {
+    write_file(file, put.bytes);
+  } catch (const LoadError&) {
+    return false;
   }
-  std::filesystem::rename(part, file, code);
-  return !code;
+  return true;
 }
 
 }  // namespace wellspring
