@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame/picture_file.h"
 
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
