@@ -36,6 +36,7 @@ struct Options {
 int read_options(Options& options, int argc, char** argv) {
   CLI::App app{"Serves a museum exhibit to browsers and kiosks."};
   int port = 8080;
+  std::string display = display_names[0];
   app.add_option("--exhibit", options.exhibit, "the exhibit's id: a folder below content")
       ->capture_default_str();
   app.add_option("--port", port, "0: any free one")
@@ -66,6 +67,12 @@ int read_options(Options& options, int argc, char** argv) {
                "pictures are drawn while visitors are shown earlier ones as they look from where "
                "they are now")
       ->capture_default_str();
+  app.add_option("--display", display, "how diffuse light is shown: automatic, points or maps")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(std::begin(display_names), std::end(display_names))))
+      ->capture_default_str();
+  app.add_flag("--bake,!--no-bake", options.show.bakes,
+               "illumination maps are baked while nobody needs the cores");
   app.add_flag("--late-samples,!--no-late-samples", options.show.late_samples,
                "samples of a walking visitor are traced when its picture is on its way, and show "
                "in the next")
@@ -78,6 +85,9 @@ int read_options(Options& options, int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  options.show.display =
+      Display(std::find(std::begin(display_names), std::end(display_names), display) -
+              std::begin(display_names));
   for (const std::string& name : {options.show.technique, options.show.still_technique}) {
     if (find_technique(name)) continue;
     std::cerr << "--technique: there is no '" << name << "'; there are:";

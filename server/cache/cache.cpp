@@ -252,7 +252,8 @@ void RenderCache::relight(const Changes& changes) {
   auto forgotten = [&](uint32_t i, vec3& kept, vec3& added) {
     if (c.points.flags[i] & point_infinite) return false;
     vec3 place(c.points.x[i], c.points.y[i], c.points.z[i]);
-    return changes(place, unpack_normal(c.points.normal[i]), kept, added);
+    return changes({place, unpack_normal(c.points.normal[i]), c.points.color[i].object}, kept,
+                   added);
   };
   invalidate_light(c.points, forgotten);
   c.relit = true;

@@ -73,7 +73,11 @@ class RenderCache {
   // for first. Until newer light is known, `kept` of it, 1 unless changed, and the light `added`
   // are shown. Not where the lamp is little of the light: there a change that resampling finds
   // costs less.
-  using Changes = std::function<bool(vec3 place, vec3 normal, vec3& kept, vec3& added)>;
+  struct Surface {
+    vec3 place, normal;
+    uint32_t object = 0;
+  };
+  using Changes = std::function<bool(const Surface& surface, vec3& kept, vec3& added)>;
   void relight(const Changes& changes);
   // Forgets everything (another exhibit).
   void clear();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a technique is asked (Request) and what it answers (Sample). The answer keeps apart what the
 // render cache treats differently: reflectance, light that is smooth and does not depend on the
-// view, and the rest. Radiance towards the eye = albedo * smooth + rest.
+// view, and the rest. Radiance towards the eye = albedo * smooth * known + rest.
 #pragma once
 #include <cstdint>
 
@@ -26,6 +26,7 @@ enum SampleFlags : uint8_t {
   sample_moving = 4,  // on a moving mesh: (instance, triangle, barycentric) place it in later ticks
   sample_sure =
       8,  // hint: `rest` owes next to nothing to chance, one more sample there would repeat it
+  sample_mapped = 16,  // `known` is an illumination map's
 };
 
 // Clear thin panes (a vitrine's glass) are looked through: the sample describes what is behind
@@ -45,8 +46,11 @@ struct Sample {
   // Of `rest`, what the surface emits, and panes before it, where it reflects light, too: a picture
   // that is drawn (VisibilityPass) knows that exactly. 0 of the sky and of what only emits light.
   vec3 glow{0};
+  // Where an illumination map tells the diffuse light of the surface (sample_mapped): that light.
+  // `smooth` counts in multiples of it, and the light of punctual lights is part of it.
+  vec3 known{1};
   uint8_t flags = 0;
-  vec3 radiance() const { return albedo * smooth + rest; }
+  vec3 radiance() const { return albedo * smooth * known + rest; }
 };
 
 }  // namespace wellspring

@@ -85,6 +85,8 @@ Lanes under(const Lanes& light, const Lanes& albedo, const Lanes& theirs) {
 struct Drawn {
   Pixels pixels;
   Color albedo;
+  Color unit{all_lanes(1), all_lanes(1), all_lanes(1)};  // Sample::known
+  LaneMask mapped{};                                     // where a map tells it
 };
 
 // Own light of the pixels, as far as their light pixel's point lies on the same surface.
@@ -203,6 +205,10 @@ void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* co
   light_as(around, LaneMask{}, prior_variances, d);
   Lanes known = unsure ? (lonely ? Lanes{} : around.known) : all_lanes(1);
   Pixels &p = d.pixels, &q = thin.pixels;
+  // Where no point of the surface says otherwise, light is what the map says.
+  LaneMask as_mapped = d.mapped & (q.samples <= 0.0f);
+  for (Lanes* channel : {&q.smooth.r, &q.smooth.g, &q.smooth.b})
+    *channel = as_mapped ? all_lanes(1) : *channel;
   p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
   p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);
   p.samples = lonely ? q.samples : p.samples;
@@ -219,9 +225,9 @@ struct Composer {
   PixelRays rays, light_rays;
   vec2 offset{0.5f};
   float prior_variance = moving_prior_variance, thin = thin_prior_weight;
-  int left = 0, top = 0;            // where in the picture the light's begins, whole groups
-  float own_counts = 1;             // samples of a pixel's own point, each
-  const SkinLight* skin = nullptr;  // what moves is lit by; null: as everything else
+  int left = 0, top = 0;  // where in the picture the light's begins, whole groups
+  float own_counts = 1;   // samples of a pixel's own point, each
+  KeptLight kept = {};
 
   // Eight lanes each.
   static int parts_of(const VisibleRun& run) {
@@ -232,8 +238,8 @@ struct Composer {
   void light_run(const RunPixels& p, const VisibleRun& run, const CellRows<Scale>& rows,
                  const RunGlow& emitting, int n, LanePart part, Drawn& d) const;
   Shown light_part(const VisibleRun& run, const RunPixels& p, const RunGlow& emitting,
-                   const RunMoving& moving, const CellRows<Scale>& rows, int n,
-                   LanePart part) const;
+                   const RunMoving& moving, const RunMapped& mapped, const CellRows<Scale>& rows,
+                   int n, LanePart part) const;
 };
 
 template <int Scale>
@@ -292,7 +298,11 @@ void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
   take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
                   light_rays.y(float(ly) + 0.5f), d);
   q.samples *= own_counts;
-  if (!known) return;
+  if (!known) {
+    for (Lanes* channel : {&q.smooth.r, &q.smooth.g, &q.smooth.b})
+      *channel = d.mapped & (q.samples <= 0.0f) ? all_lanes(1) : *channel;
+    return;
+  }
   constexpr Lanes across = group == lane_count ? lane : Lanes{0, 1, 2, 3, 0, 1, 2, 3};
   const Lanes fx = (across + 0.5f) * (1.0f / group);
   float fy = (float(run.y - top - (rows.row + 1) * group + half_group) + 0.5f) / group;
@@ -310,7 +320,8 @@ void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
 template <int Scale>
 Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
                                   const RunGlow& emitting, const RunMoving& moving,
-                                  const CellRows<Scale>& rows, int n, LanePart part) const {
+                                  const RunMapped& mapped, const CellRows<Scale>& rows, int n,
+                                  LanePart part) const {
   const int i = n * lane_count - half_group;
   const unsigned here = part.bits(), moves = bits_at(moving.pixels, i) & here;
   Drawn d;
@@ -322,10 +333,16 @@ Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
               q.depth < 0.5f * infinite_depth ? q.depth : all_lanes(INFINITY),
               q.object};
   if (moves != here) {
+    if (unsigned maps = bits_at(mapped.pixels, i)) {
+      d.mapped = lanes_of_bits(maps);
+      d.unit = {d.mapped ? lanes_at(mapped.unit.red, i) : d.unit.r,
+                d.mapped ? lanes_at(mapped.unit.green, i) : d.unit.g,
+                d.mapped ? lanes_at(mapped.unit.blue, i) : d.unit.b};
+    }
     light_run(p, run, rows, emitting, n, part, d);
-    shown.color = {positive_lanes(d.albedo.r * q.smooth.r + q.rest.r),
-                   positive_lanes(d.albedo.g * q.smooth.g + q.rest.g),
-                   positive_lanes(d.albedo.b * q.smooth.b + q.rest.b)};
+    shown.color = {positive_lanes(d.albedo.r * q.smooth.r * d.unit.r + q.rest.r),
+                   positive_lanes(d.albedo.g * q.smooth.g * d.unit.g + q.rest.g),
+                   positive_lanes(d.albedo.b * q.smooth.b * d.unit.b + q.rest.b)};
     shown.samples = q.samples;
   }
   if (moves) put_moving(p, moving.light, i, lanes_of_bits(moves), shown);
@@ -340,14 +357,17 @@ auto taker(const Composer<Scale>& composer, const Planes& planes) {
     RunPixels p;
     RunMoving moving;
     RunGlow emitting = describe_run(run, p);
-    if (composer.skin) moving.pixels = run.light(*composer.skin, p.surface, moving.light);
+    const KeptLight& kept = composer.kept;
+    if (kept.skin) moving.pixels = run.light(*kept.skin, p.surface, moving.light);
+    RunMapped mapped;
+    if (kept.maps) mapped.pixels = run.known(*kept.maps, mapped.unit);
     const CellRows<Scale>& rows = composer.rows_around(run);
     size_t row = size_t(run.y) * size_t(composer.view.width) + size_t(run.x);
     for (int n = 0, parts = composer.parts_of(run); n < parts; n++) {
       int i = n * lane_count - composer.half_group;
       LanePart part{std::max(-i, 0), std::min(run.count - i, lane_count)};
       planes.put(row + size_t(i + part.begin), part,
-                 composer.light_part(run, p, emitting, moving, rows, n, part));
+                 composer.light_part(run, p, emitting, moving, mapped, rows, n, part));
     }
   };
 }
@@ -364,11 +384,11 @@ template <class Planes>
 std::span<const std::vector<EdgeShare>> compose_moment(const View& view, const View& lit,
                                                        const VisibilityPass& visibility,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light, const SkinLight* skin,
+                                                       const Frame& light, const KeptLight& kept,
                                                        bool filtered, const Planes& planes) {
   auto draw = [&](auto composer) {
     if (filtered) composer.own_counts = filtered_counts;
-    composer.skin = skin;
+    composer.kept = kept;
     auto differ = [&planes](uint32_t a, uint32_t b) { return planes.differ(a, b); };
     return visibility.see_edges(view, composer.offset, taker(composer, planes), RasterShows::all,
                                 differ);
@@ -395,15 +415,15 @@ std::span<const std::vector<EdgeShare>> see_moving(const View& view,
 }  // namespace
 
 void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
-                   const Cells& cells, bool known, const Frame& light, const SkinLight* skin,
+                   const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
                    Frame& frame) {
   FramePlanes planes{frame};
-  soften_edges(compose_moment(view, lit, visibility, cells, known, light, skin, false, planes),
+  soften_edges(compose_moment(view, lit, visibility, cells, known, light, kept, false, planes),
                frame.color);
 }
 
 void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
-                   const Cells& cells, bool known, const Frame& light, const SkinLight* skin,
+                   const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
                    const Tonemap& tonemap, bool filtered, std::vector<uint8_t>& peaks,
                    Image8& image, std::vector<float>* depth) {
   size_t pixels = size_t(view.width) * size_t(view.height);
@@ -413,13 +433,13 @@ void compose_drawn(const View& view, const View& lit, const VisibilityPass& visi
   if (depth) depth->resize(pixels);
   EyePlanes planes{tonemap.exposure, image.rgb.data(), peaks.data(),
                    depth ? depth->data() : nullptr};
-  soften_edges(compose_moment(view, lit, visibility, cells, known, light, skin, filtered, planes),
+  soften_edges(compose_moment(view, lit, visibility, cells, known, light, kept, filtered, planes),
                image, peaks);
 }
 
 void compose_still(const View& view, const VisibilityPass& visibility, vec2 offset,
-                   const Cells& cells, bool known, const Frame& light, float guessed,
-                   Frame& frame) {
+                   const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
+                   float guessed, Frame& frame) {
   FineComposer composer{view,
                         cells,
                         known,
@@ -429,6 +449,7 @@ void compose_still(const View& view, const VisibilityPass& visibility, vec2 offs
                         offset,
                         still_prior_variance(guessed),
                         still_prior_weight};
+  composer.kept = kept;
   FramePlanes planes{frame};
   visibility.see(view, offset, taker(composer, planes), RasterShows::still, still_blur);
 }
@@ -436,7 +457,7 @@ void compose_still(const View& view, const VisibilityPass& visibility, vec2 offs
 std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
                                                        const VisibilityPass& visibility,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light, const SkinLight* skin,
+                                                       const Frame& light, const KeptLight& kept,
                                                        float guessed, Frame& frame) {
   FineComposer composer{view,
                         cells,
@@ -447,7 +468,7 @@ std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
                         vec2(0.5f),
                         still_prior_variance(guessed),
                         still_prior_weight};
-  composer.skin = skin;
+  composer.kept = kept;
   return see_moving(view, visibility, {0, 0, view.width, view.height},
                     taker(composer, NearerPlanes{frame}));
 }

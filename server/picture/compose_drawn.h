@@ -11,13 +11,20 @@
 
 namespace wellspring {
 
-struct SkinLight;  // light/known/skin_light.h
+struct IlluminationMap;  // light/sample/illumination_map.h
+struct SkinLight;        // light/known/skin_light.h
+
+// Light that need not be found, borrowed; null: all is lit by points.
+struct KeptLight {
+  const SkinLight* skin = nullptr;        // what moves is lit by
+  const IlluminationMap* maps = nullptr;  // what still surfaces' points count in multiples of
+};
 
 // Overwrites all planes of `frame`. `light`: of the view `lit`, which is light_view(view) or `view`
 // itself, its planes packed as read_surface() leaves them, with `cells` filled from it; `known`:
-// what fill_cells() said. `skin`: what moves is lit by (null: by points like everything else).
+// what fill_cells() said.
 void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
-                   const Cells& cells, bool known, const Frame& light, const SkinLight* skin,
+                   const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
                    Frame& frame);
 // The same for the eye at once, as frame/tonemap.h would show it: writing colours to memory and
 // reading them again takes longer than the curve. Resizes `image` and `depth` (null: not wanted;
@@ -25,7 +32,7 @@ void compose_drawn(const View& view, const View& lit, const VisibilityPass& visi
 // which are means; each point for itself would show as a square where pixels are as large as those
 // of surroundings. `peaks` is scratch: light beyond white, until edges are softened.
 void compose_drawn(const View& view, const View& lit, const VisibilityPass& visibility,
-                   const Cells& cells, bool known, const Frame& light, const SkinLight* skin,
+                   const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
                    const Tonemap& tonemap, bool filtered, std::vector<uint8_t>& peaks,
                    Image8& image, std::vector<float>* depth);
 
@@ -34,13 +41,14 @@ void compose_drawn(const View& view, const View& lit, const VisibilityPass& visi
 // is antialiased. `guessed`: the share of its light that no point tells, by which a pixel's own few
 // samples are doubted as they are while the visitor moves.
 void compose_still(const View& view, const VisibilityPass& visibility, vec2 offset,
-                   const Cells& cells, bool known, const Frame& light, float guessed, Frame& frame);
+                   const Cells& cells, bool known, const Frame& light, const KeptLight& kept,
+                   float guessed, Frame& frame);
 // What moves, laid over that, always at the middle of the pixels, so that nothing trembles. Returns
 // its edges, good until the sight's next picture: see soften_edges().
 std::span<const std::vector<EdgeShare>> compose_moving(const View& view,
                                                        const VisibilityPass& visibility,
                                                        const Cells& cells, bool known,
-                                                       const Frame& light, const SkinLight* skin,
+                                                       const Frame& light, const KeptLight& kept,
                                                        float guessed, Frame& frame);
 
 // The same over what the eye sees already, in the light that is kept on its skin, where it is

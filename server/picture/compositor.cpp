@@ -77,7 +77,7 @@ void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass
   begin(cache);
   fit_frame(view.width, view.height, frame);
   draw(cache, lit, [&](float) {
-    compose_drawn(view, lit, visibility, cells_, known_, work_->light, skin_, frame);
+    compose_drawn(view, lit, visibility, cells_, known_, work_->light, kept_, frame);
   });
 }
 
@@ -88,7 +88,7 @@ void Compositor::draw(RenderCache& cache, const View& view, const VisibilityPass
   if (!cache.has_projected(lit)) cache.project(lit);
   begin(cache);
   draw(cache, lit, [&](float) {
-    compose_drawn(view, lit, visibility, cells_, known_, work_->light, skin_, tonemap, filtered,
+    compose_drawn(view, lit, visibility, cells_, known_, work_->light, kept_, tonemap, filtered,
                   work_->peaks, image, depth);
   });
 }
@@ -102,10 +102,10 @@ void Compositor::draw_still(RenderCache& cache, const View& view, const Visibili
   draw(cache, view, [&](float told) {
     const float guessed = 1 - told;
     compose_still(view, visibility, spread_in_pixel(cache.still_frames()), cells_, known_,
-                  work_->light, guessed, frame);
+                  work_->light, kept_, guessed, frame);
     std::span<const std::vector<EdgeShare>> edges;
     if (shows == StillShows::all && visibility.anything_moves())
-      edges = compose_moving(view, visibility, cells_, known_, work_->light, skin_, guessed, frame);
+      edges = compose_moving(view, visibility, cells_, known_, work_->light, kept_, guessed, frame);
     const bool corrects = !reconstructed_ && sampled_ == view && !samples_.count.empty();
     if (corrects) wellspring::invalidate_samples(still_, samples_);
     accumulate_drawn([&](uint32_t object) { return visibility.moves(object); }, changes, pictures_,
@@ -146,7 +146,8 @@ void Compositor::draw_moving(const World& world, const Keyframe& backdrop,
   copy_colors(backdrop, runs, work.picture);
   guess_peaks(work.picture, runs, work.peaks);
   still_.count.resize(backdrop.disparity.size(), 0);
-  compose_moving(view, visibility, runs, tonemap, backdrop.disparity, still_.count, *skin_, work);
+  compose_moving(view, visibility, runs, tonemap, backdrop.disparity, still_.count, *kept_.skin,
+                 work);
   take_window(work.picture, picture);
 }
 

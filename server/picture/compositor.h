@@ -11,6 +11,7 @@
 #include "frame/tonemap.h"
 #include "light/visible/visibility.h"
 #include "picture/cells.h"
+#include "picture/compose_drawn.h"
 #include "picture/still/correct_still.h"
 #include "picture/still/still_image.h"
 #include "picture/still/still_samples.h"
@@ -37,7 +38,13 @@ class Compositor {
   explicit Compositor(std::shared_ptr<CompositorWork> shared = nullptr);
 
   // What moves is lit by it from now on (borrowed; null: by points like everything else).
-  void set_skin(const SkinLight* skin) { skin_ = skin; }
+  void set_skin(const SkinLight* skin) { kept_.skin = skin; }
+  // Still surfaces are lit by these as far as points do not say otherwise, whose light counts in
+  // multiples of theirs (Sample::known); null: by points alone.
+  void set_maps(std::shared_ptr<const IlluminationMap> maps) {
+    kept_.maps = maps.get();
+    maps_ = std::move(maps);
+  }
   // A picture of `view` in the light of `view` or of light_view(view) (picture/compose_drawn.h),
   // whichever was projected (neither: the latter). The second for the eye at once, and of a `depth`
   // that is not null metres along the viewing axis, infinity: nothing there. `filtered`: of pixels
@@ -81,9 +88,10 @@ class Compositor {
 
   bool shares_;
   std::shared_ptr<CompositorWork> work_;
-  const SkinLight* skin_ = nullptr;
-  Cells cells_;         // in the cache's scratch
-  bool known_ = false;  // any light
+  KeptLight kept_;
+  std::shared_ptr<const IlluminationMap> maps_;  // keeps those of kept_
+  Cells cells_;                                  // in the cache's scratch
+  bool known_ = false;                           // any light
   StillImage still_;
   StillSamples samples_;
   View sampled_;  // the view of samples_

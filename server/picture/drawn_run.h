@@ -26,6 +26,12 @@ struct RunMoving {
   RunSkin light;
 };
 
+// What of a run an illumination map lights.
+struct RunMapped {
+  uint64_t pixels = 0;  // a bit each
+  RunKnown unit;
+};
+
 // Eight of a run's bits, from lane `i` on, which may begin before it.
 inline unsigned bits_at(uint64_t bits, int i) {
   return unsigned(i < 0 ? bits << -i : bits >> i) & 0xff;

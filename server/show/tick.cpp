@@ -28,6 +28,7 @@ constexpr double agent_interval = 0.1;  // seconds between agent messages while 
 constexpr double state_interval = 0.5;
 constexpr double heard_state_interval = 0.1;  // while there is sound to be heard from somewhere
 constexpr double behave_interval = 0.04;
+constexpr double idle_before_bake = 5;       // seconds in which nothing was drawn
 constexpr double least_wait = 0.001;         // between ticks, whatever is due
 constexpr double listening_interval = 0.01;  // between looks at what visitors want, pictures or not
 
@@ -229,6 +230,16 @@ void use_renderer(Show& show, int waiting) {
   carry_out(show, decide(show.time, draw_states(show), renderer), waiting);
 }
 
+// The cores are free while there are no visitors, or while all have been at rest for long. What
+// changes the kind of light is taken over while nobody looks.
+void watch_baker(Show& show) {
+  if (!show.baker) return;
+  const bool alone = show.visitors.empty();
+  if (alone || show.lights.maps)
+    if (auto maps = show.baker->take()) use_maps(show, std::move(maps));
+  show.baker->allow(alone || show.time - show.drew_at > idle_before_bake);
+}
+
 // A tour's camera waits for keyframes that are slow; a visitor's own turn does not.
 void pace_tour(Visitor& visitor) {
   double seconds = 0.001 * double(std::max(visitor.times.interval, visitor.times.whole));
@@ -256,11 +267,13 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   double began = seconds_now();
 
   bool free = take_finished(show);
+  if (!free || show.renderer.drawn) show.drew_at = show.time;
   welcome_links(show, arrivals);
   read_visitors(show);
   read_cameras(show);
   if (free) invalidate_light_steps(show);
   if (free && !show.renderer.drawn && lamps_wait(show)) light_lamps(show);
+  if (free && !show.renderer.drawn) watch_baker(show);
   narrate(show, dt);
   Demand demand;
   if (free) demand = find_demand(show.time, draw_states(show), renderer_state(show));

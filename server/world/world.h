@@ -93,6 +93,7 @@ class World {
   const mat4& to_world(uint32_t instance) const;         // identity for moving ones
   const mat3& normal_to_world(uint32_t instance) const;  // as in PlacedMesh
   bool is_moving(uint32_t instance) const;
+  Bounds moving_bounds() const;  // of all moving meshes that are visible; empty: low above high
   bool is_visible(uint32_t instance) const;           // false: moving, and hidden by show()
   const PlacedMesh& placed(uint32_t instance) const;  // all of the above at once
 

@@ -73,6 +73,7 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 const Scene& World::scene() const { return *impl_->scene; }
+Bounds World::moving_bounds() const { return impl_->moving_bounds; }
 int World::instance_count() const { return int(impl_->placed.size()); }
 const PlacedMesh& World::placed(uint32_t instance) const { return impl_->placed[instance]; }
 const Mesh& World::mesh_of(uint32_t instance) const { return *placed(instance).mesh; }

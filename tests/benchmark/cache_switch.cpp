@@ -123,7 +123,7 @@ struct Told {
 };
 Told tell(const Lit& was, const Lit& is, RenderCache& cache) {
   if (is.lamps.empty()) {
-    cache.relight([](vec3, vec3, vec3&, vec3&) { return true; });
+    cache.relight([](const RenderCache::Surface&, vec3&, vec3&) { return true; });
     return {};
   }
   auto put = [&](const std::vector<char>& lamps) {
@@ -135,8 +135,8 @@ Told tell(const Lit& was, const Lit& is, RenderCache& cache) {
   Lights lights = relit(is.all, *is.world);
   double lit = seconds_now();
   LightChange change(is.scene, is.all, was.lamps, is.lamps);
-  cache.relight([&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
-    return change.changes(place, normal, kept, added);
+  cache.relight([&](const RenderCache::Surface& at, vec3& kept, vec3& added) {
+    return change.changes(at.place, at.normal, kept, added);
   });
   return {1e3 * (lit - start), 1e3 * (seconds_now() - lit)};
 }

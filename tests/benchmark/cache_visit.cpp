@@ -164,6 +164,7 @@ void simulate(const VisitSettings& settings, VisitStage& stage, const VisitTrace
     VisitMoment moment;
     moment.world = &stage.world();
     moment.lights = &stage.lights();
+    moment.maps = stage.maps();
     bool settled = time - moved_at > settled_after;
     moment.technique = settled ? &stage.still_technique() : &stage.moving_technique();
     moment.transport = show.transport;
@@ -194,6 +195,9 @@ VisitResult simulate_visits(const VisitSettings& settings) {
   std::vector<VisitTrace> traces = load_visit_traces(settings.traces);
   refuse_unknown_names(settings, traces);
   VisitStage stage(settings.exhibit, settings.technique);
+  if (std::find(settings.methods.begin(), settings.methods.end(), "mapped") !=
+      settings.methods.end())
+    stage.find_maps(settings.truths, settings.bake_seconds);
   TruthSettings truths;
   truths.spp = settings.truth_spp;
   truths.max_depth = stage.settings().transport.max_depth;

@@ -89,6 +89,11 @@ class Deferred : public VisitMethod {
     if (denoises) denoiser_ = load_denoiser(NetSize::small, problem);
     if (!problem.empty()) throw std::runtime_error(problem);
   }
+  // Points of now on count in multiples of the light of these maps; null: by themselves.
+  void use_maps(std::shared_ptr<const IlluminationMap> maps) {
+    cache_.clear();
+    compositor_.set_maps(std::move(maps));
+  }
   void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
     if (moment.frame == 0 || moment.view != last_view_) moved_ = moment.frame;
     last_view_ = moment.view;
@@ -188,6 +193,22 @@ class Deferred : public VisitMethod {
   Broker broker_{
       {.piece = 512, .most_waiting = 1 << 20, .most_traced = 1 << 20, .most_answered = 1 << 20}};
   VisitPicture before_;
+};
+
+class Mapped : public VisitMethod {
+ public:
+  void show(const VisitMoment& moment, int budget, VisitPicture& shown) override {
+    if (moment.maps != maps_) drawn_.use_maps(maps_ = moment.maps);
+    Lights lights = *moment.lights;
+    lights.maps = maps_;
+    VisitMoment mapped = moment;
+    mapped.lights = &lights;
+    drawn_.show(mapped, budget, shown);
+  }
+
+ private:
+  Deferred drawn_{Answers::at_once};
+  std::shared_ptr<const IlluminationMap> maps_;
 };
 
 // Each moving picture goes through the network, at a part of its resolution: what changes there
@@ -372,6 +393,7 @@ constexpr VisitMethodEntry list[] = {
     {"cache", "render cache as published, points alone", false, make_published_cache},
     {"primary", "shapes and reflectances drawn in the cache's light", false,
      [] { return make_deferred(Answers::at_once); }},
+    {"mapped", "primary, with illumination maps", false, make_mapped, true},
     {"primary_late", "the same, answers a frame late", false,
      [] { return make_deferred(Answers::next_frame); }},
     {"primary_behind", "the same, pictures a frame late", false,
@@ -394,6 +416,7 @@ std::unique_ptr<VisitMethod> make_visit_method(const std::string& name) {
   return nullptr;
 }
 std::unique_ptr<VisitMethod> make_published_cache() { return std::make_unique<PublishedCache>(); }
+std::unique_ptr<VisitMethod> make_mapped() { return std::make_unique<Mapped>(); }
 std::unique_ptr<VisitMethod> make_deferred(Answers answers) {
   return std::make_unique<Deferred>(answers);
 }

@@ -16,6 +16,7 @@ namespace wellspring {
 struct VisitMoment {
   const World* world = nullptr;
   const Lights* lights = nullptr;
+  std::shared_ptr<const IlluminationMap> maps;  // of the same lights; for who uses them
   const Technique* technique = nullptr;
   TransportSettings transport;
   View view;            // wanted now
@@ -57,6 +58,8 @@ std::unique_ptr<VisitMethod> make_published_cache();
 // they come through a broker for the next; or the picture waits for them and is shown a frame late.
 enum class Answers { at_once, next_frame, waited_for };
 std::unique_ptr<VisitMethod> make_deferred(Answers answers);
+// The first of these, in the light of illumination maps where there are some.
+std::unique_ptr<VisitMethod> make_mapped();
 // That pipeline, at rest with learned reconstruction. Throws std::runtime_error where there are no
 // weights.
 // make_deferred(at_once), each picture through the small network at 1 / scale of its resolution.

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cache_visit_stage.h"
 
+#include "base/clock.h"
+#include "base/log.h"
 #include "base/parallel.h"
+#include "light/bake/bake_file.h"
+#include "light/bake/map_file.h"
+#include "show/exhibit/eye_places.h"
 #include "light/technique/technique.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/answer/events.h"
@@ -22,6 +27,23 @@ std::unique_ptr<Show> open_show(const std::string& folder, const std::string& te
   return make_show(std::move(exhibit), settings);
 }
 
+std::shared_ptr<const IlluminationMap> find_baked(const Show& show, const std::string& file,
+                                                  double seconds) {
+  const Scene& scene = show.exhibit.scene;
+  const uint64_t key = hash_scene(scene);
+  if (auto kept = load_map(scene, file, key)) return kept;
+  const World world(scene);
+  const std::vector<vec3> places = eye_places(show.exhibit);
+  const BakeScene baked = make_bake_scene(world, places, show.lights.grid);
+  Bake bake = begin_bake(world, places);
+  const double began = seconds_now();
+  go_on(baked, bake, [&] { return seconds_now() - began > seconds && bake.passes > 0; });
+  auto maps = finish_map(bake);
+  log::info("{}: {} passes, error {:.1f} %", file, bake.passes, 100 * maps->error);
+  save_map(*maps, file, key);
+  return maps;
+}
+
 }  // namespace
 
 VisitStage::VisitStage(const std::string& folder, const std::string& technique)
@@ -34,6 +56,15 @@ VisitStage::VisitStage(const std::string& folder, const std::string& technique)
 Show& VisitStage::dark() {
   if (!dark_) dark_ = open_show(folder_, technique_, false);
   return *dark_;
+}
+
+void VisitStage::find_maps(const std::string& folder, double seconds) {
+  lit_maps_ = find_baked(*lit_, folder + "/lit.maps", seconds);
+  dark_maps_ = find_baked(dark(), folder + "/dark.maps", seconds);
+}
+
+std::shared_ptr<const IlluminationMap> VisitStage::maps() const {
+  return now_ == lit_.get() ? lit_maps_ : dark_maps_;
 }
 
 void VisitStage::begin(const VisitTrace& trace) {

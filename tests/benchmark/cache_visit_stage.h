@@ -29,6 +29,9 @@ class VisitStage {
 
   const World& world() const { return *now_->world; }
   const Lights& lights() const { return now_->lights; }
+  // Illumination maps of the lights there are, baked for so long where `folder` keeps none.
+  void find_maps(const std::string& folder, double seconds);
+  std::shared_ptr<const IlluminationMap> maps() const;
   bool switched() const { return switched_; }  // the lamps, in the last advance
   View view(const VisitTrace& trace, double time, int width, int height) const;
 
@@ -42,6 +45,7 @@ class VisitStage {
   std::unique_ptr<Show> lit_, dark_;
   Show* now_ = nullptr;
   bool switched_ = false;
+  std::shared_ptr<const IlluminationMap> lit_maps_, dark_maps_;
   StorytellerState mind_;  // at a visit's beginning
   Pose pose_;
   std::vector<std::vector<vec3>> before_;  // vertices of the moving meshes, a frame ago

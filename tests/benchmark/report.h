@@ -19,6 +19,7 @@ struct BenchOptions {
   std::vector<int> visit_mismatches;
   std::string visit_trace, visit_technique = "gather", visit_pictures;
   std::vector<std::string> server_words;  // stream: more of the server's command line
+  double bake_seconds = 0;                // of illumination maps; 0: the run's own
   int visit_width = 0, visit_instants = 0, visit_spp = 0;  // 0: the run's own
 };
 // Where converged pictures are kept from run to run.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "light/sample/illumination_map.h"
 #include "light/sample/light_tables.h"
 #include "light/sample/radiance_grid.h"
 #include "light/sample/shining.h"
@@ -35,6 +36,7 @@ Lights relit(const Lights& all, const World& world) {
   Lights lights = all;
   lights.tables = relit(*all.tables, world.scene(), find_emitting(world));
   if (all.grid && all.grid->parts) lights.grid = relit(*all.grid, states_of(world));
+  if (all.maps && all.maps->layers->size() > 1) lights.maps = relit(*all.maps, states_of(world));
   lights.pass = nullptr;
   return lights;
 }

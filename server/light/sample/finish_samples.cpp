@@ -34,9 +34,12 @@ void finish_samples(const Lights& lights, const TransportSettings& settings,
     if (!(settings.clamp > 0)) continue;
     // What owes nothing to chance, such as a lamp that is looked at, is as bright as it is.
     vec3 sure = sample.flags & sample_sure ? sample.rest : sample.glow;
-    float largest = max_component(sample.radiance() - sure), share = settings.clamp / largest;
+    // Nor does what a map knows.
+    vec3 mapped = sample.flags & sample_mapped ? min(sample.smooth, vec3(1)) : vec3(0);
+    vec3 chance = sample.radiance() - sure - sample.albedo * sample.known * mapped;
+    float largest = max_component(chance), share = settings.clamp / largest;
     if (!(largest > settings.clamp)) continue;
-    sample.smooth *= share;
+    sample.smooth = mapped + (sample.smooth - mapped) * share;
     sample.rest = sure + (sample.rest - sure) * share;
   }
 }

@@ -9,6 +9,7 @@
 
 namespace wellspring {
 
+struct IlluminationMap;  // light/sample/illumination_map.h
 struct InstantPass;      // light/instant/instant_pass.h
 struct LightTables;      // light/sample/light_tables.h
 struct RadianceGrid;     // light/sample/radiance_grid.h
@@ -21,6 +22,8 @@ struct Lights {
   std::shared_ptr<std::atomic<uint64_t>> bad_samples;
   // Of techniques that keep light; null until they prepare it.
   std::shared_ptr<const RadianceGrid> grid = nullptr;
+  // Diffuse light of what stands still, baked; null: none is known. Of techniques that use it.
+  std::shared_ptr<const IlluminationMap> maps = nullptr;
   // Of techniques that draw light anew for each pass; null until one begins.
   std::shared_ptr<const InstantPass> pass = nullptr;
 };

@@ -24,8 +24,10 @@ void trace_many_gather(const World& world, const Lights& lights, const Transport
   WalkRules rules;
   rules.max_depth = settings.max_depth;
   if (lights.grid) rules.blunt = blunt;
+  rules.reads_maps = true;
   const LampsSeen* lamps = lights.grid ? lights.grid->lamps.get() : nullptr;
-  trace_samples({world, *lights.tables, lights.grid.get(), lamps}, rules, requests, samples);
+  trace_samples({world, *lights.tables, lights.grid.get(), lamps, lights.maps.get()}, rules,
+                requests, samples);
   finish_samples(lights, settings, samples);
 }
 

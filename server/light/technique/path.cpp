@@ -10,7 +10,9 @@ void trace_many_path(const World& world, const Lights& lights, const TransportSe
                      std::span<const Request> requests, std::span<Sample> samples) {
   WalkRules rules;
   rules.max_depth = settings.max_depth;
-  trace_samples({world, *lights.tables}, rules, requests, samples);
+  Transport transport{world, *lights.tables};
+  transport.maps = lights.maps.get();
+  trace_samples(transport, rules, requests, samples);
   finish_samples(lights, settings, samples);
 }
 

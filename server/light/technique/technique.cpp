@@ -18,13 +18,13 @@ namespace {
 
 constexpr Technique list[] = {
     {"path", "unbiased path tracing: all light, the reference", trace_path, nullptr, nullptr,
-     nullptr, trace_many_path},
+     nullptr, trace_many_path, true},
     {"direct", "emission, direct light and chains of perfect mirrors and glass", trace_direct,
      nullptr, nullptr, nullptr, trace_many_direct},
     {"gather",
      "path to the first rough surface beyond the eye's, cached radiance from there: quick, "
      "a little biased",
-     trace_gather, prepare_gather, nullptr, nullptr, trace_many_gather},
+     trace_gather, prepare_gather, nullptr, nullptr, trace_many_gather, true},
     {"instant_radiosity",
      "point lights along paths of light, neighbours filtered together: quick, right after many "
      "passes",

@@ -37,6 +37,8 @@ struct Technique {
   // by one.
   void (*trace_many)(const World& world, const Lights& lights, const TransportSettings& settings,
                      std::span<const Request> requests, std::span<Sample> samples) = nullptr;
+  // Its samples tell diffuse light in multiples of Lights::maps where these know it.
+  bool uses_maps = false;
 };
 
 std::span<const Technique> techniques();

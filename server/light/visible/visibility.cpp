@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "light/known/skin_light.h"
 #include "light/material/gloss_albedo.h"
+#include "light/sample/illumination_map.h"
 #include "light/sample/medium.h"
 #include "light/visible/facet.h"
 #include "light/visible/shade_facet.h"
@@ -311,6 +312,31 @@ uint64_t VisibleRun::light(const SkinLight& skin, const RunSurface& surface, Run
                                            load_lanes(share + i), cosine));
   }
   return moving;
+}
+
+uint64_t VisibleRun::known(const IlluminationMap& map, RunKnown& to) const {
+  if (seen_) return 0;
+  const RasterRun& r = *impl_->run;
+  uint64_t known = 0;
+  for (int p = 0, begin = 0; p < r.pieces; begin = r.end[p++]) {
+    if (r.instance[begin] == RasterRun::nothing) continue;
+    const Facet& f = impl_->facet(begin);
+    if (f.placed->moving) continue;
+    uint32_t found = map.places->find(f.instance, f.triangle, f.front);
+    if (found == no_chart) continue;
+    const IlluminationChart& chart = map.places->charts[found];
+    Face face = make_face(*f.placed, f.triangle);
+    auto along = [&](vec3 way) { return vec2(dot(way, chart.along_u), dot(way, chart.along_v)); };
+    const vec2 corner = along(face.corner - chart.origin), edge1 = along(face.edge1),
+               edge2 = along(face.edge2);
+    for (int i = begin; i < r.end[p]; i++) {
+      vec3 light =
+          known_light(map, eval_illumination(map, chart, corner + r.u[i] * edge1 + r.v[i] * edge2));
+      to.red[i] = light.x, to.green[i] = light.y, to.blue[i] = light.z;
+      known |= uint64_t(1) << i;
+    }
+  }
+  return known;
 }
 
 PrimaryHit VisibleRun::see(int i) const { return seen_ ? seen_[i] : impl_->see(i); }

@@ -28,6 +28,11 @@ struct RunSkin {
   float gloss[RunSurface::most];  // albedo of the dielectric's reflection, 0 to 1
 };
 
+// Of a run's pixels, Sample::known: what the light of points counts in multiples of.
+struct RunKnown {
+  float red[RunSurface::most], green[RunSurface::most], blue[RunSurface::most];
+};
+
 // Up to 64 pixels of a row, from (x, y) to the right. As light/visible/see_through.h answers for
 // rays through the pixels' sampling places, but that normals are those of the mesh, without normal
 // maps, pictures are averaged over the pixel, and clear panes tint a part of the picture alike.
@@ -47,6 +52,9 @@ class VisibleRun {
   // Of its pixels that show what moves, as `surface` describes it (light/known/skin_light.h); of
   // others anything. Returns those, a bit each; none where rays have seen them.
   uint64_t light(const struct SkinLight& skin, const RunSurface& surface, RunSkin& to) const;
+  // Of its pixels whose diffuse light the map knows (light/sample/illumination_map.h); of others
+  // anything. Returns those, a bit each; none where rays have seen them.
+  uint64_t known(const struct IlluminationMap& map, RunKnown& to) const;
   // Everything of pixel i; costs as much as a dozen descriptions.
   PrimaryHit see(int i) const;
 

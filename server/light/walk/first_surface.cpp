@@ -130,6 +130,7 @@ FirstSurface find_first_surface(const Transport& transport, int max_depth, const
     }
     describe_place(world, hit, surface, surface.normal, distance, sample);
     add_emission(first.tint, surface_emission(surface, material), sample);
+    first.hit = hit;
     first.scatters = !material.unlit && max_depth > 1;
     first.metal = traits_of(transport, hit).metal;
     break;

@@ -11,6 +11,7 @@ namespace wellspring {
 struct FirstSurface {
   bool scatters = false;  // there is a surface, it is not unlit, and edges are left
   Walk walk;              // that met it
+  Hit hit;                // where
   Surface surface;
   Bsdf bsdf;
   vec3 tint{1};                                       // by panes and by what the ray ran in

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "light/walk/first_surface.h"
+#include "light/walk/known_light.h"
 #include "light/material/lambert_simd.h"
 #include "light/sample/radiance_grid.h"
 #include "light/random/sampler_simd.h"
@@ -22,7 +23,9 @@ struct LambertWalks {
   Hit hits[lane_count];
   size_t sample[lane_count];
   SamplerLanes samplers;
-  LaneMask depth{};  // 1: seen by the eye
+  LaneMask depth{};    // 1: seen by the eye
+  uint32_t known = 0;  // lanes whose first surface's light a map tells
+  KnownLight map[lane_count];
   Lanes3 direction, throughput, smooth, rest;
   // Where the ray left.
   Lanes3 from, from_normal;
@@ -61,6 +64,14 @@ bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
     sample = trace_sample(transport, batch.rules, request, hit);
     return false;
   }
+  KnownLight& known = walks.map[lane];
+  known = find_known_light(transport, request.ray, hit,
+                           request.ray.origin + hit.t * request.ray.direction);
+  walks.known = (walks.known & ~(1u << lane)) | uint32_t(known.known) << lane;
+  if (known.known && batch.rules.reads_maps) {
+    sample = trace_sample(transport, batch.rules, request, hit);
+    return false;
+  }
   sample = Sample();
   walks.samplers.set(lane, Sampler(request.seed, request.index));
   walks.depth[lane] = 1;
@@ -95,6 +106,11 @@ void end_walk(Batch& batch, int lane, LambertWalks& walks) {
   Sample& sample = batch.samples[walks.sample[lane]];
   sample.smooth = walks.smooth.at(lane);
   sample.rest = walks.rest.at(lane);
+  if (walks.known >> lane & 1) {
+    sample.known = walks.map[lane].unit;
+    sample.flags |= sample_mapped;
+    sample.smooth = in_units(batch.transport, walks.map[lane], sample.smooth);
+  }
   walks.held &= ~(1u << lane);
 }
 
@@ -203,8 +219,11 @@ uint32_t scatter_lanes(Batch& batch, LambertWalks& walks, RayPacket& rays) {
                                 : light_by_choice(batch, surface, lobes, walks, dimensions, lanes);
   const LaneMask lit = lanes_of_bits(lanes);
   Lanes3 later = walks.throughput * lobes.reflectance * (direct.area + direct.punctual);
-  walks.smooth = walks.smooth + choose(lit, choose(first, direct.area, later), Lanes3{});
-  walks.rest = walks.rest + choose(lit & first, lobes.reflectance * direct.punctual, Lanes3{});
+  const LaneMask known = lanes_of_bits(walks.known);
+  Lanes3 seen = direct.area + choose(known, direct.punctual, Lanes3{});
+  walks.smooth = walks.smooth + choose(lit, choose(first, seen, later), Lanes3{});
+  walks.rest =
+      walks.rest + choose(lit & first & ~known, lobes.reflectance * direct.punctual, Lanes3{});
 
   Lanes u, v;
   walks.samplers.pair(dimensions + (Dimensions::scatter + 1), u, v);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "light/walk/first_surface.h"
+#include "light/walk/known_light.h"
 
 namespace wellspring {
 namespace {
@@ -23,6 +24,10 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
   part_colors(transport, walk, surface, base, sampler, bsdf, spread);
   DemodulatedReflectance kept = demodulated_reflectance(first);
   bool diffuse = kept.diffuse;
+  KnownLight known;
+  if (diffuse && first.metal == MetalDemodulation::none && walk.media.here.count == 0)
+    known = find_known_light(transport, walk.ray, first.hit, surface.position);
+  const bool read = known.known && rules.reads_maps && !may_be_shaded(transport, surface.position);
   vec3 albedo = kept.albedo, diffuse_albedo = kept.diffuse ? bsdf.diffuse : vec3(0);
   auto add_gloss = [&](vec3 light, float filtered) {
     if (filtered > 0) sample.smooth += filtered * light / albedo;
@@ -35,12 +40,16 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
   sampler.seek(base);
   if (!is_smooth(bsdf)) {
     DirectLight direct = sample_direct_light(transport, walk, surface, bsdf, true, sampler);
-    sample.smooth += walk.throughput * kept.diffuse_share * direct.area_diffuse;
-    sample.rest += tint * walk.throughput * diffuse_albedo * direct.punctual_diffuse;
+    if (known.known) direct.area_diffuse += direct.punctual_diffuse;
+    if (!read) sample.smooth += walk.throughput * kept.diffuse_share * direct.area_diffuse;
+    if (!known.known)
+      sample.rest += tint * walk.throughput * diffuse_albedo * direct.punctual_diffuse;
     add_gloss(walk.throughput * direct.specular, kept.lit_gloss);
     if (!direct.sure_of_punctual()) sample.flags &= uint8_t(~sample_sure);
   }
-  if (diffuse) {
+  if (read) {
+    sample.smooth += known.light * (bsdf.beneath * (bsdf.has_coat ? bsdf.coat_passes : 1.0f));
+  } else if (diffuse) {
     Walk next = walk;
     next.area_share = transport.tables.area_share > 0 ? 1.0f : 0.0f;
     sampler.seek(base + Dimensions::scatter);
@@ -68,6 +77,11 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
       add_gloss(follow(transport, rules, next, sampler), kept.other_gloss);
     }
   }
+  if (known.known) {
+    sample.known = known.unit;
+    sample.flags |= sample_mapped;
+    sample.smooth = in_units(transport, known, sample.smooth);
+  }
 }
 
 // The same where that surface is Lambertian: one lobe and no gloss.
@@ -80,19 +94,33 @@ void shade_first_lambert(const Transport& transport, const WalkRules& rules, Wal
   LambertLobe lobe = make_lambert(surface, walk.ray.direction);
   if (!(max_component(lobe.reflectance) > least_albedo)) return;
   sample.albedo = lobe.reflectance * eval_absorption(transport, walk.media.here.innermost(), hit.t);
+  KnownLight known;
+  if (walk.media.here.count == 0)
+    known = find_known_light(transport, walk.ray, hit, surface.position);
+  if (known.known) {
+    sample.known = known.unit;
+    sample.flags |= sample_mapped;
+    if (rules.reads_maps && !may_be_shaded(transport, surface.position)) {
+      sample.smooth = vec3(1);
+      return;
+    }
+  }
   const uint32_t base = Dimensions::first_surface;
   sampler.seek(base);
   DirectLight direct = sample_direct_light(transport, walk, surface, lobe, true, sampler);
   sample.smooth += direct.area_diffuse;
-  sample.rest += sample.albedo * direct.punctual_diffuse;
+  if (known.known) sample.smooth += direct.punctual_diffuse;
+  else sample.rest += sample.albedo * direct.punctual_diffuse;
   if (!direct.sure_of_punctual()) sample.flags &= uint8_t(~sample_sure);
   sampler.seek(base + Dimensions::scatter + 1);
   BsdfSample scattered = sample_lambert(lobe, sampler.next2());
   if (scattered.pdf > 0) scattered.weight = vec3(1);
-  if (!advance(walk, surface, scattered)) return;
-  walk.area_share = transport.tables.area_share > 0 ? 1.0f : 0.0f;
-  sampler.seek(Dimensions::walk);
-  sample.smooth += follow(transport, rules, walk, sampler);
+  if (advance(walk, surface, scattered)) {
+    walk.area_share = transport.tables.area_share > 0 ? 1.0f : 0.0f;
+    sampler.seek(Dimensions::walk);
+    sample.smooth += follow(transport, rules, walk, sampler);
+  }
+  if (known.known) sample.smooth = in_units(transport, known, sample.smooth);
 }
 
 }  // namespace

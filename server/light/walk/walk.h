@@ -19,6 +19,9 @@ struct WalkRules {
   // `blunt` over the root of its density. A highlight of a small lamp that a wide ray comes upon is
   // a spark (Kaplanyan and Dachsbacher 2013, "Path Space Regularization"). Biased.
   float blunt = 0;
+  // The first surface's diffuse light is read from Transport::maps, where nothing that moves is
+  // likely to change it; else it is found, and told as a multiple of what the map says.
+  bool reads_maps = false;
 };
 
 // One walk in flight: the ray that comes next, and what must be known of where it left.

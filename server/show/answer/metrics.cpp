@@ -74,6 +74,22 @@ std::string write_metrics(const ShowReport& report) {
          double(totals.reconstructed));
   metric(out, "reconstruction_milliseconds", "gauge", "What the last of them took, all cores",
          double(totals.reconstruction_ms));
+  out +=
+      "# HELP wellspring_display How pictures get their diffuse light\n"
+      "# TYPE wellspring_display gauge\n";
+  for (const char* name : {"points", "maps"})
+    out += fmt::format("wellspring_display{{method=\"{}\"}} {}\n", name,
+                       int(std::string_view(name) == report.display));
+  metric(out, "illumination_map_texels", "gauge", "Of the illumination maps in use; 0: none are",
+         double(report.map_texels));
+  metric(out, "illumination_map_error", "gauge",
+         "Their estimated standard error over their mean light; 1: there are none",
+         double(report.map_error));
+  metric(out, "bake_working", "gauge", "Maps are being baked at the moment", report.bake.works);
+  metric(out, "bake_passes_total", "counter", "Passes over all texels so far",
+         double(report.bake.passes));
+  metric(out, "bake_error", "gauge", "Estimated error of what is baked so far; 1: nothing is",
+         double(report.bake.error));
   metric(out, "bad_samples_total", "counter", "Samples dropped for not being finite or positive",
          double(report.bad_samples));
   metric(out, "pictures_total", "counter", "Pictures sent", double(totals.pictures));

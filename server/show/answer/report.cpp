@@ -14,6 +14,12 @@ ShowReport make_report(const Show& show) {
   report.bad_samples = show.lights.bad_samples ? show.lights.bad_samples->load() : 0;
   report.samples_per_second = show.samples_per_second;
   report.denoiser_problem = show.pass.problem;
+  if (const IlluminationMap* maps = show.lights.maps.get()) {
+    report.display = "maps";
+    report.map_error = maps->error;
+    report.map_texels = maps->light.size();
+  }
+  if (show.baker) report.bake = show.baker->status();
   report.kiosks = int(show.eyes.size());
   report.audience = show.audience.state;
   report.mood = show.mind.mood;

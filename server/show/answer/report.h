@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "avatar/mind/storyteller_io.h"
+#include "show/state/baker.h"
 #include "show/state/totals.h"
 #include "wire/messages.h"
 
@@ -35,6 +36,10 @@ struct ShowReport {
   Presence audience = Presence::absent;  // before the kiosks' cameras
   Mood mood = Mood::idle;                // of the storyteller
   ShowTotals totals;
+  const char* display = "points";  // how visitors' pictures get their diffuse light
+  float map_error = 1;             // of the illumination maps in use; 1: there are none
+  size_t map_texels = 0;
+  BakerStatus bake;
   bool voice_running = false;
   uint64_t voice_restarts = 0, voice_lines = 0, voice_waiting = 0, voice_failed = 0;
   std::vector<VisitorReport> visitors;

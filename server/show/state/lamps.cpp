@@ -21,6 +21,19 @@ const LightChange& change_since(Show& show, const std::vector<char>& before) {
 
 }  // namespace
 
+void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
+  const bool first = !show.lights.maps;
+  show.mapped = mapped_objects(show.exhibit.scene, *maps);
+  show.lights.maps = maps;
+  if (!show.exhibit.lamps.empty()) {
+    show.switches.all.maps = std::move(maps);
+    light_lamps(show);
+  }
+  // Points know their light by itself, not in multiples of what maps know.
+  if (first)
+    for (Visitor& visitor : show.visitors) visitor.picture.cache.clear();
+}
+
 void begin_lamps(Show& show) {
   show.switches.lit.assign(show.exhibit.lamps.size(), 1);
   show.switches.wanted = first_lamps(show.exhibit);
@@ -70,12 +83,16 @@ void light_lamps(Show& show) {
 
 void follow_lamps(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
+  picture.compositor.set_maps(show.lights.maps);
   const std::vector<char>& lit = show.switches.lit;
   if (picture.lamps == lit) return;
   if (picture.lamps.size() == lit.size()) {
     const LightChange& change = change_since(show, picture.lamps);
-    picture.cache.relight([&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
-      return change.changes(place, normal, kept, added);
+    picture.cache.relight([&](const RenderCache::Surface& at, vec3& kept, vec3& added) {
+      if (!change.changes(at.place, at.normal, kept, added)) return false;
+      // What counts in multiples of a map's light changes with the map.
+      if (at.object < show.mapped.size() && show.mapped[at.object]) kept = vec3(1), added = vec3(0);
+      return true;
     });
   }
   picture.broker.forget();

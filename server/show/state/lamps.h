@@ -15,6 +15,8 @@
 namespace wellspring {
 
 // Puts the lamps as they are at first. show.lights were made, and are prepared, while all were on.
+// Maps of the exhibit's scene, of all lamps, from now on. While nothing is drawn.
+void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);
 void begin_lamps(Show& show);
 // Everybody hears of it with the next tick. False: there is no such lamp.
 bool switch_lamp(Show& show, std::string_view name, bool on);

@@ -4,24 +4,18 @@
 #include <stdexcept>
 
 #include "base/log.h"
+#include "light/bake/bake_file.h"
+#include "light/bake/map_file.h"
+#include "light/sample/light_tables.h"
 #include "light/known/radiance_grid_file.h"
 #include "show/exhibit/exhibit_scene.h"
+#include "show/exhibit/eye_places.h"
 #include "show/exhibit/fingerprint.h"
 #include "show/state/lamps.h"
 
 namespace wellspring {
 
 namespace {
-
-// Where visitors' eyes are likely to be: the viewpoints, and places on the way between them.
-std::vector<vec3> places_of(const Exhibit& exhibit) {
-  std::vector<vec3> places;
-  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints)
-    places.push_back(vec3(viewpoint.view.position - exhibit.scene.origin));
-  for (size_t i = 1, count = places.size(); i < count; i++)
-    places.push_back(0.5f * (places[i - 1] + places[i]));
-  return places;
-}
 
 // The storyteller as it stands when it has just come.
 void enter(Show& show) {
@@ -69,11 +63,32 @@ void prepare(Show& show) {
     show.lights.grid = load_radiance_grid(file, key);
     if (show.lights.grid) return;
   }
-  std::vector<vec3> places = places_of(show.exhibit);
+  std::vector<vec3> places = eye_places(show.exhibit);
   for (const Technique* technique : {show.technique, show.still_technique})
     if (technique->prepare) technique->prepare(*show.world, places, show.lights);
   if (!cache.empty() && show.lights.grid && !save_radiance_grid(*show.lights.grid, file, key))
     log::warn("{} cannot be written: the next start takes as long as this one", file);
+}
+
+// Maps that were baked before, and who goes on with that.
+void begin_maps(Show& show) {
+  const ShowSettings& settings = show.settings;
+  bool used = settings.display != Display::points && show.technique->uses_maps &&
+              show.still_technique->uses_maps &&
+              show.lights.tables->plan.uses(TransportPart::cached_radiance);
+  if (!used || settings.cache.empty()) return;
+  BakerSettings baker;
+  baker.file = settings.cache + "/" + show.exhibit.id;
+  baker.source = show.exhibit.folder;
+  baker.places = eye_places(show.exhibit);
+  if (auto maps =
+          load_map(show.exhibit.scene, baker.file + ".maps", hash_scene(show.exhibit.scene))) {
+    log::info("illumination maps: {} texels, error {:.1f} %", maps->light.size(),
+              100 * maps->error);
+    use_maps(show, std::move(maps));
+  }
+  if (settings.bakes && settings.background)
+    show.baker = std::make_unique<Baker>(show.exhibit.scene, show.lights.grid, std::move(baker));
 }
 
 }  // namespace
@@ -105,6 +120,7 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   else pass.denoiser = load_denoiser(NetSize::small, pass.problem, show->settings.weights);
   prepare(*show);
   begin_lamps(*show);
+  begin_maps(*show);
   log::info("exhibit '{}': {} triangles, {} viewpoints, {} materials", show->exhibit.id,
             triangle_count(scene), show->exhibit.viewpoints.size(), scene.materials.size());
   return show;

@@ -18,6 +18,7 @@
 #include "show/exhibit/figure.h"
 #include "show/state/reconstruction.h"
 #include "show/state/renderer.h"
+#include "show/state/baker.h"
 #include "show/state/switches.h"
 #include "show/state/totals.h"
 #include "show/state/visitor.h"
@@ -26,6 +27,14 @@
 #include "show/storyteller/voice.h"
 
 namespace wellspring {
+
+// How a visitor's pictures get their diffuse light.
+enum class Display : uint8_t {
+  automatic,  // by illumination maps, where there are some
+  points,     // by the points of the visitor's render cache alone
+  maps,       // by illumination maps; until there are some by points
+};
+inline constexpr const char* display_names[] = {"automatic", "points", "maps"};
 
 struct ShowSettings {
   float fps = 60;                    // pictures a second a walking visitor gets, machine permitting
@@ -39,6 +48,8 @@ struct ShowSettings {
   std::string weights;
   // Folder for what is found out about an exhibit once and kept for the next start; empty: nothing.
   std::string cache;
+  bool bakes = true;  // while nobody needs the cores, where there is a cache
+  Display display = Display::automatic;
   bool late_samples = true;  // of who walks are traced behind the picture, for the next
   float moving_clamp = 4;    // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
@@ -61,6 +72,8 @@ struct Show {
   std::unique_ptr<World> world;
   Lights lights;
   Switches switches;
+  std::vector<char> mapped;      // of each object: lights.maps knows the light of some of it
+  std::unique_ptr<Baker> baker;  // null: maps are as they were at the start
   std::unique_ptr<VisibilityPass> visibility;  // one picture at a time
   SkinLight skin;                              // on what moves, for all visitors
   const Technique* technique = nullptr;
@@ -81,6 +94,7 @@ struct Show {
   bool storyteller_visible = true, humanlike = true;
   std::string kiosk_message;  // the last kiosk message, to send only changes
   double agent_sent_at = -1e9;
+  double drew_at = 0;      // when anything was drawn, samples traced or light found
   double behaved_at = -1;  // when the storyteller was last moved
   Mood agent_mood = Mood::idle;
 

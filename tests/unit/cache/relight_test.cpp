@@ -18,7 +18,7 @@ View hall() { return look_at(vec3(-1, 1.6f, 4), vec3(-0.2f, 0.9f, -2), 60, 160, 
 constexpr int pixels = 160 * 90;
 
 // Of the light nothing is known but that it changes.
-bool everywhere(vec3, vec3, vec3&, vec3&) { return true; }
+bool everywhere(const RenderCache::Surface&, vec3&, vec3&) { return true; }
 
 // Of the pixels that look different in the other light: how many are within 10 % of right.
 struct Affected {
@@ -201,7 +201,8 @@ TEST(Relight, AsksForNothingAtInfinity) {
   }
   v.cache.remember(view, v.requests, v.samples);
   std::atomic<int> surfaces = 0, others = 0;
-  v.cache.relight([&](vec3 place, vec3, vec3&, vec3&) {
+  v.cache.relight([&](const RenderCache::Surface& at, vec3&, vec3&) {
+    const vec3 place = at.place;
     (length(place) > 4 ? surfaces : others)++;
     return true;
   });
@@ -213,14 +214,15 @@ TEST(Relight, SwitchedAgainAndAgainStaysFinite) {
   Visit v;
   for (int i = 0; i < 40; i++) {
     v.room.spot = i % 3 != 0;
-    v.cache.relight([&](vec3 place, vec3, vec3& kept, vec3& added) {
+    v.cache.relight([&](const RenderCache::Surface& at, vec3& kept, vec3& added) {
+      const vec3 place = at.place;
       if (i % 4 == 0) kept = vec3(v.room.spot ? 1.0f : 0.5f), added = vec3(v.room.spot);
       return i % 2 == 0 || length(place - vec3(2.5f, 2.8f, 2.0f)) < 3;
     });
     v.step(hall(), i % 5 == 0 ? 0 : 500);
     for (vec3 c : v.frame.color) ASSERT_TRUE(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);
   }
-  v.cache.relight([](vec3, vec3, vec3& kept, vec3& added) {
+  v.cache.relight([](const RenderCache::Surface&, vec3& kept, vec3& added) {
     kept = vec3(-1, 0, NAN), added = vec3(NAN, -1, 0);
     return true;
   });

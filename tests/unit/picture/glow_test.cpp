@@ -93,7 +93,7 @@ TEST(Glow, FollowsTheLampThatIsSwitched) {
   float lit = compare(visit.frame, visit.frame, view, 3).shown.x;
   EXPECT_GT(lit, 2);
   stage.world->switch_lamp(0, false);
-  visit.cache.relight([](vec3, vec3, vec3&, vec3&) { return true; });
+  visit.cache.relight([](const RenderCache::Surface&, vec3&, vec3&) { return true; });
   visit.step(stage, view, 0, PictureOf::moving_fine);
   EXPECT_NEAR(compare(visit.frame, visit.frame, view, 3).shown.x, 0.5f, 0.05f);
 }

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/bake/bake.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "light/bake/finish_bake.h"
+#include "light/material/bsdf.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int pilot_samples = 8;  // of a node, by which its tile is refined or not
+constexpr int refine_rounds = 3;
+constexpr int gathers_a_pass = 4;  // samples of a gathering node for one of a direct node
+constexpr int tiles_a_step = 64;
+constexpr double tile_nodes = 64;  // of a tile, on average, before refinement
+// Neighbouring nodes that differ by that share of their light, of which a share of the scene's mean
+// counts as there everywhere.
+constexpr float rough_contrast = 0.15f, contrast_floor = 0.25f;
+
+uint64_t node_seed(const Bake& bake, int field, uint32_t tile, uint32_t node) {
+  return mix64(bake.settings.seed + mix64(uint64_t(tile) << 32 | node << 1 | uint32_t(field)));
+}
+
+void add_light(BakeField& field, size_t node, std::span<const vec3> light, float scale) {
+  vec3 sum(0);
+  for (vec3 l : light) sum += l;
+  if (!is_finite(sum)) return;
+  vec3* to = field.light_of(node);
+  for (size_t p = 0; p < light.size(); p++) to[p] += scale * light[p];
+  float whole = scale * luminance(sum);
+  field.squares[node] += whole * whole;
+  field.count[node] += 1;
+}
+
+// A place around a node, ready to be lit: a white Lambertian surface but for its coat.
+struct LitPlace {
+  Surface surface;
+  Bsdf bsdf;
+  float uncoated = 1;  // what undoes the coat's darkening towards the viewer
+};
+LitPlace light_place(const BakeScene& scene, const NodePlace& place) {
+  LitPlace lit;
+  lit.surface = eval_surface(scene.world, place.ray, place.hit);
+  const Material& material = scene.world.material_of(place.hit.instance);
+  lit.bsdf = make_bsdf_in(scene.parts.front(), Media{}, lit.surface, material, place.ray.direction);
+  lit.bsdf.diffuse = vec3(1);
+  float passes = (lit.bsdf.has_coat ? lit.bsdf.coat_passes : 1) * lit.bsdf.beneath;
+  lit.uncoated = passes > 0.05f ? 1 / passes : 1;
+  return lit;
+}
+
+// The ray over the cosine that leaves the place. False: none does.
+bool leave(const LitPlace& lit, Sampler& sampler, Walk& walk) {
+  sampler.seek(Dimensions::first_surface + Dimensions::scatter);
+  BsdfSample scattered = sample_bsdf(lit.bsdf, Lobes::diffuse, sampler);
+  if (!advance(walk, lit.surface, scattered)) return false;
+  walk.from_normal = lit.surface.geometric_normal;
+  return true;
+}
+
+void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, std::span<vec3> light) {
+  BakeField& field = bake.direct;
+  const IlluminationTile& grid = field.tiles[tile];
+  const uint32_t number = field.asked[tile]++;
+  for (uint32_t i = 0; i < grid.nodes(); i++) {
+    const size_t node = grid.first + i;
+    Sampler sampler(node_seed(bake, 0, tile, i), number);
+    float choice = sampler.next();
+    NodePlace place = sample_node(scene.world, bake.charts, field, bake.places[tile], tile, i,
+                                  choice, sampler.next2());
+    if (!place.valid) continue;
+    LitPlace lit = light_place(scene, place);
+    if (number < pilot_samples || field.hidden[node] > 0) {
+      Walk probe;
+      if (leave(lit, sampler, probe) &&
+          is_inside(scene.world, probe, scene.world.intersect(probe.ray))) {
+        field.hidden[node] += 1;
+        continue;
+      }
+    }
+    for (size_t p = 0; p < light.size(); p++) {
+      sampler.seek(Dimensions::first_surface);
+      DirectLight direct =
+          sample_direct_light(scene.parts[p], Walk{}, lit.surface, lit.bsdf, true, sampler);
+      light[p] = direct.area_diffuse + direct.punctual_diffuse;
+    }
+    add_light(field, node, light, lit.uncoated);
+  }
+}
+
+void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, std::span<vec3> light) {
+  BakeField& field = bake.gather;
+  const IlluminationTile& grid = field.tiles[tile];
+  const uint32_t number = field.asked[tile]++;
+  for (uint32_t i = 0; i < grid.nodes(); i++) {
+    const size_t node = grid.first + i;
+    Sampler sampler(node_seed(bake, 1, tile, i), number);
+    float choice = sampler.next();
+    NodePlace place = sample_node(scene.world, bake.charts, field, bake.places[tile], tile, i,
+                                  choice, sampler.next2());
+    if (!place.valid) continue;
+    LitPlace lit = light_place(scene, place);
+    Walk walk;
+    std::fill(light.begin(), light.end(), vec3(0));
+    bool inside = false;
+    if (leave(lit, sampler, walk)) gather_light(scene, walk, sampler, light, inside);
+    if (inside) field.hidden[node] += 1;
+    else add_light(field, node, light, lit.uncoated);
+  }
+}
+
+// How much a tile's neighbouring nodes differ, beyond what chance explains.
+float contrast_of(const BakeField& field, const IlluminationTile& tile, float floor) {
+  auto mean_of = [&](uint32_t i, float& variance) {
+    size_t node = tile.first + i;
+    vec3 sum(0);
+    for (int p = 0; p < field.layers; p++) sum += field.light_of(node)[p];
+    float n = field.count[node], mean = luminance(sum) / n;
+    variance = std::max(field.squares[node] / n - mean * mean, 0.0f) / n;
+    return mean;
+  };
+  float most = 0;
+  auto compare = [&](uint32_t a, uint32_t b) {
+    if (field.count[tile.first + a] < 2 || field.count[tile.first + b] < 2) return;
+    float va, vb, ma = mean_of(a, va), mb = mean_of(b, vb);
+    float differ = std::abs(ma - mb) - 2 * std::sqrt(va + vb);
+    most = std::max(most, differ / (0.5f * (ma + mb) + floor));
+  };
+  const uint32_t stride = tile.columns + 1u;
+  for (uint32_t j = 0; j <= tile.rows; j++)
+    for (uint32_t i = 0; i <= tile.columns; i++) {
+      if (i < tile.columns) compare(j * stride + i, j * stride + i + 1);
+      if (j < tile.rows) compare(j * stride + i, (j + 1) * stride + i);
+    }
+  return most;
+}
+
+float mean_light(const BakeField& field) {
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < field.nodes(); i++) {
+    if (!(field.count[i] > 0)) continue;
+    vec3 all(0);
+    for (int p = 0; p < field.layers; p++) all += field.light_of(i)[p];
+    sum += double(luminance(all) / field.count[i]), count++;
+  }
+  return count > 0 ? float(sum / count) : 0;
+}
+
+// Tiles whose light differs most from node to node get nodes twice as close, as far as there are
+// more to be had; what their coarser nodes have found is given up.
+void refine(const BakeScene& scene, Bake& bake) {
+  const BakeField& old = bake.direct;
+  std::vector<float> contrast(old.tiles.size(), 0);
+  const float floor = contrast_floor * mean_light(old);
+  parallel_for(int(contrast.size()), [&](int t) {
+    if (old.tiles[size_t(t)].first != no_tile)
+      contrast[size_t(t)] = contrast_of(old, old.tiles[size_t(t)], floor);
+  });
+  std::vector<uint32_t> order;
+  for (uint32_t t = 0; t < contrast.size(); t++)
+    if (contrast[t] > rough_contrast) order.push_back(t);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return contrast[a] > contrast[b]; });
+  std::vector<TileCells> cells = cells_of(old);
+  size_t nodes = old.nodes();
+  for (uint32_t t : order) {
+    TileCells& c = cells[t];
+    TileCells finer{uint8_t(std::min(2 * c.columns, most_cells_a_tile)),
+                    uint8_t(std::min(2 * c.rows, most_cells_a_tile))};
+    size_t more = (finer.columns + 1u) * (finer.rows + 1u) - old.tiles[t].nodes();
+    if (nodes + more > bake.settings.direct_nodes) break;
+    nodes += more;
+    c = finer;
+  }
+  BakeField field = make_field(scene.world, bake.charts, cells, old.layers);
+  for (uint32_t t = 0; t < cells.size(); t++) {
+    const IlluminationTile &from = old.tiles[t], &to = field.tiles[t];
+    if (from.nodes() != to.nodes() || from.columns != to.columns) continue;
+    field.asked[t] = old.asked[t];
+    std::copy_n(old.count.data() + from.first, from.nodes(), field.count.data() + to.first);
+    std::copy_n(old.hidden.data() + from.first, from.nodes(), field.hidden.data() + to.first);
+    std::copy_n(old.squares.data() + from.first, from.nodes(), field.squares.data() + to.first);
+    std::copy_n(old.light_of(from.first), from.nodes() * size_t(old.layers),
+                field.light_of(to.first));
+  }
+  bake.direct = std::move(field);
+}
+
+// Tiles from `cursor` on; the next one, or their number.
+uint32_t do_step(const BakeScene& scene, Bake& bake) {
+  const uint32_t tiles = bake.charts.tiles, first = bake.cursor;
+  const bool pilot = bake.pilot();
+  const uint32_t shards = pilot ? 1 : uint32_t(bake.settings.shards),
+                 shard = pilot ? 0 : uint32_t(bake.settings.shard);
+  const uint32_t end = uint32_t(std::min<uint64_t>(tiles, first + uint64_t(tiles_a_step) * shards));
+  parallel_for(int(end - first), [&](int i) {
+    const uint32_t tile = first + uint32_t(i);
+    if (tile % shards != shard || bake.gather.tiles[tile].first == no_tile) return;
+    thread_local std::vector<vec3> light;
+    light.resize(size_t(scene.layers()));
+    if (pilot) {
+      while (bake.direct.asked[tile] < pilot_samples) sample_direct(scene, bake, tile, light);
+    } else {
+      sample_direct(scene, bake, tile, light);
+      for (int k = 0; k < gathers_a_pass; k++) sample_gather(scene, bake, tile, light);
+    }
+  });
+  return end;
+}
+
+}  // namespace
+
+bool Bake::pilot() const { return refined <= refine_rounds; }
+
+size_t memory_bytes(const Bake& bake) {
+  return memory_bytes(bake.direct) + memory_bytes(bake.gather) + bytes_of(bake.places) +
+         bytes_of(bake.charts.triangles) + bytes_of(bake.charts.places->chart_of);
+}
+
+size_t vertex_bytes(const Bake& bake) {
+  return bake.direct.nodes() *
+         (2 * sizeof(vec3) + 2 * sizeof(uvec3) + sizeof(uint32_t) * size_t(bake.direct.layers));
+}
+
+Bake begin_bake(const World& world, std::span<const vec3> places, const BakeSettings& settings) {
+  Bake bake;
+  bake.settings = settings;
+  double area = charted_area(world);
+  double tiles = std::max(double(settings.gather_nodes) / tile_nodes, 1.0);
+  bake.tile = float(std::max(std::sqrt(area / tiles), 1e-20));
+  bake.shards_done = {settings.shard};
+  bake.charts = make_charts(world, bake.tile);
+  bake.places = tile_places(bake.charts);
+  std::vector<TileCells> cells = choose_cells(world, bake.charts, places, settings.gather_nodes);
+  const size_t lamps = world.scene().lamps.size();
+  bake.gather = make_field(world, bake.charts, cells, lamps > 0 ? int(lamps) + 1 : 1);
+  bake.direct = bake.gather;
+  return bake;
+}
+
+void go_on(const BakeScene& scene, Bake& bake, const std::function<bool()>& stop) {
+  if (bake.charts.tiles == 0) return;
+  do {
+    bake.cursor = do_step(scene, bake);
+    if (bake.cursor < bake.charts.tiles) continue;
+    bake.cursor = 0;
+    if (!bake.pilot()) bake.passes++;
+    else if (bake.refined++ < refine_rounds) refine(scene, bake);
+  } while (!stop());
+}
+
+void bake_passes(const BakeScene& scene, Bake& bake, uint64_t passes) {
+  if (passes > 0) go_on(scene, bake, [&] { return bake.passes >= passes; });
+}
+
+float bake_error(const Bake& bake) {
+  double sums[2] = {0, 0}, variances[2] = {0, 0};
+  const BakeField* fields[2] = {&bake.direct, &bake.gather};
+  for (int f = 0; f < 2; f++) {
+    const BakeField& field = *fields[f];
+    double sum = 0, variance = 0, count = 0;
+    for (size_t i = 0; i < field.nodes(); i++) {
+      double n = double(field.count[i]);
+      if (n < 2) continue;
+      vec3 all(0);
+      for (int p = 0; p < field.layers; p++) all += field.light_of(i)[p];
+      double mean = double(luminance(all)) / n;
+      sum += mean, count++;
+      variance += std::max(double(field.squares[i]) / n - mean * mean, 0.0) / (n - 1);
+    }
+    if (count > 0) sums[f] = sum / count, variances[f] = variance / count;
+  }
+  double mean = sums[0] + sums[1];
+  return mean > 0 ? float(std::sqrt(variances[0] + variances[1]) / mean) : 0.0f;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Baking: the light of illumination maps, found sample by sample for as long as there is time.
+//
+// Two fields of nodes. Light that has scattered before is smooth: few nodes gather it, each sample
+// a ray over the cosine that ends where cached radiance is known (as technique `gather`), or goes
+// on as a path. Light straight from its sources has shadows with edges: its nodes become finer
+// where neighbours differ, and each sample is next-event estimation. The parts of the light that
+// belong to each lamp are kept apart.
+//
+// A sample is a function of its node, its number and the seed, so a bake that was interrupted goes
+// on to the same bits, and shards, each with every n-th tile, add up to those of one run of as many
+// passes.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "light/bake/bake_field.h"
+#include "light/bake/bake_scene.h"
+
+namespace wellspring {
+
+struct BakeSettings {
+  size_t gather_nodes = 250000, direct_nodes = 1000000;  // at most, about
+  uint64_t seed = 1;
+  int shard = 0, shards = 1;
+};
+
+struct Bake {
+  BakeSettings settings;
+  std::string source;  // the exhibit's folder, for who merges
+  BakeCharts charts;
+  std::vector<TilePlace> places;  // of each tile
+  BakeField direct, gather;
+  std::vector<int> shards_done;  // whose tiles are here: those merged, and its own
+  float tile = 0;                // as of make_charts()
+  int refined = 0;               // rounds of finer direct nodes so far
+  uint64_t passes = 0;           // of all tiles
+  uint32_t cursor = 0;           // the next tile of the pass under way
+  bool pilot() const;            // refinement goes on: it looks at all tiles, whatever the shard
+};
+size_t memory_bytes(const Bake& bake);
+
+// Seconds for a large scene.
+Bake begin_bake(const World& world, std::span<const vec3> places,
+                const BakeSettings& settings = {});
+// Goes on, on all cores, until `stop` says so, which is asked every few milliseconds; at least one
+// step is done.
+void go_on(const BakeScene& scene, Bake& bake, const std::function<bool()>& stop);
+// Until so many passes are done.
+void bake_passes(const BakeScene& scene, Bake& bake, uint64_t passes);
+
+// The standard error of the light at the nodes over its mean, estimated from the samples.
+float bake_error(const Bake& bake);
+
+// Of storage at vertices of a mesh that is divided as finely: place, normal, two triangles, light.
+size_t vertex_bytes(const Bake& bake);
+// What is known so far: holes are filled from their neighbours, and neighbouring tiles and charts
+// made to agree where they meet. Null before the first pass after the refinement is done. Tenths of
+// a second.
+std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake);
+
+}  // namespace wellspring

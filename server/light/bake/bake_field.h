@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nodes of a bake, in the tiles of its charts, and what samples around them have found. A node
+// stands for the surface within half a cell of it: its samples are spread over that.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "light/bake/charts.h"
+
+namespace wellspring {
+
+// A triangle's part of what a node stands for.
+struct NodeSupport {
+  uint32_t triangle = 0;  // of the chart's instance
+  float area = 0;         // in cells
+};
+
+struct BakeField {
+  std::vector<IlluminationTile> tiles;
+  std::vector<uint32_t> first_support;  // of each node, and the end
+  std::vector<NodeSupport> supports;
+  int layers = 1;
+  std::vector<vec3> light;           // sums: of each node, each layer's
+  std::vector<float> squares;        // of each node: of the luminance of all layers
+  std::vector<float> count, hidden;  // samples that count, and those within something solid
+  std::vector<uint32_t> asked;       // of each tile: samples of each of its nodes
+  size_t nodes() const { return count.size(); }
+  vec3* light_of(size_t node) { return &light[node * size_t(layers)]; }
+  const vec3* light_of(size_t node) const { return &light[node * size_t(layers)]; }
+};
+size_t memory_bytes(const BakeField& field);
+
+// How many cells a tile has along its sides, powers of two; 0: nothing of the surface is in it.
+struct TileCells {
+  uint8_t columns = 0, rows = 0;
+};
+inline constexpr int most_cells_a_tile = 64;
+
+// Which tiles hold some of their chart: one cell each.
+std::vector<TileCells> find_occupied(const World& world, const BakeCharts& charts);
+// The largest cells of which there are no more than about `nodes` nodes. Cells are as large as they
+// look from the nearest of `places` (scene coordinates); without any as large as each other.
+std::vector<TileCells> choose_cells(const World& world, const BakeCharts& charts,
+                                    std::span<const vec3> places, size_t nodes);
+size_t node_count(std::span<const TileCells> cells);
+std::vector<TileCells> cells_of(const BakeField& field);
+
+BakeField make_field(const World& world, const BakeCharts& charts, std::span<const TileCells> cells,
+                     int layers);
+
+// The chart of each tile, and where it is in it.
+struct TilePlace {
+  uint32_t chart = 0;
+  int column = 0, row = 0;
+};
+std::vector<TilePlace> tile_places(const BakeCharts& charts);
+
+// A place in what a node stands for.
+struct NodePlace {
+  bool valid = false;
+  Hit hit;
+  Ray ray;  // towards it, from its lit side
+};
+NodePlace sample_node(const World& world, const BakeCharts& charts, const BakeField& field,
+                      const TilePlace& at, uint32_t tile, uint32_t node_of_tile, float choice,
+                      vec2 u);
+
+}  // namespace wellspring

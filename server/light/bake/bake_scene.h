@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a bake samples: a world without what moves, under light that is told apart by lamps.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "light/sample/lights.h"
+#include "light/walk/walk.h"
+
+namespace wellspring {
+
+struct BakeScene {
+  const World& world;
+  Lights lights;  // of all lamps
+  // What belongs to no lamp, then each lamp alone; one where there are no lamps.
+  std::vector<std::shared_ptr<const LightTables>> tables;
+  std::vector<Transport> parts;
+  std::vector<uint8_t> part_of;     // of each material: what its own light belongs to
+  std::vector<uint32_t> number_of;  // of each slot of lights.grid, in its parts; not set: no grid
+  int layers() const { return int(parts.size()); }
+};
+
+// `world` is borrowed, and should not have moving meshes: they would be baked. Walks end on cached
+// radiance `grid`, of the same scene with all lamps on and its parts; null: it is made here for
+// eyes near `places` (seconds).
+BakeScene make_bake_scene(const World& world, std::span<const vec3> places,
+                          std::shared_ptr<const RadianceGrid> grid = nullptr);
+// Walks go on until they end by chance: no bias, more noise.
+BakeScene make_bake_scene_of_paths(const World& world);
+
+// Whether the walk's next ray, which leaves a node, shows that it is within something solid.
+bool is_inside(const World& world, const Walk& walk, const Hit& hit);
+
+// Light that arrives along the walk's next ray, which left a node scattered by Lambert's law:
+// added to `light`, a value for each part. `inside`: the node is within something solid, where
+// nothing is added.
+void gather_light(const BakeScene& scene, Walk walk, Sampler& sampler, std::span<vec3> light,
+                  bool& inside);
+
+}  // namespace wellspring

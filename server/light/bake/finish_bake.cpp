@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/bake/finish_bake.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "light/bake/bake.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int seam_sweeps = 3, border_rounds = 2;
+constexpr int most_places_a_seam = 64;
+
+// Nodes that are not known take the mean of their known neighbours, ring by ring.
+void fill_holes(const IlluminationTile& tile, std::vector<uint8_t>& known,
+                std::vector<vec3>& light) {
+  const int columns = tile.columns + 1, rows = tile.rows + 1;
+  std::vector<std::pair<uint32_t, vec3>> found;
+  for (bool more = true; more;) {
+    found.clear();
+    for (int j = 0; j < rows; j++)
+      for (int i = 0; i < columns; i++) {
+        uint32_t node = tile.first + uint32_t(j * columns + i);
+        if (known[node]) continue;
+        vec3 sum(0);
+        float count = 0;
+        for (int y = std::max(j - 1, 0); y <= std::min(j + 1, rows - 1); y++)
+          for (int x = std::max(i - 1, 0); x <= std::min(i + 1, columns - 1); x++) {
+            uint32_t beside = tile.first + uint32_t(y * columns + x);
+            if (known[beside]) sum += light[beside], count++;
+          }
+        if (count > 0) found.push_back({node, sum / count});
+      }
+    for (const auto& [node, value] : found) light[node] = value, known[node] = 1;
+    more = !found.empty();
+  }
+}
+
+// Four nodes around a place of a chart, and how much each counts.
+struct NodeTaps {
+  uint32_t node[4] = {0, 0, 0, 0};
+  float weight[4] = {0, 0, 0, 0};
+};
+
+NodeTaps taps_in(const IlluminationTile& tile, float u, float v) {
+  u *= float(tile.columns), v *= float(tile.rows);
+  int i = std::clamp(int(u), 0, tile.columns - 1), j = std::clamp(int(v), 0, tile.rows - 1);
+  u = std::clamp(u - float(i), 0.0f, 1.0f), v = std::clamp(v - float(j), 0.0f, 1.0f);
+  uint32_t node = tile.first + uint32_t(j) * (tile.columns + 1u) + uint32_t(i);
+  return {{node, node + 1, node + tile.columns + 1u, node + tile.columns + 2u},
+          {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
+}
+
+struct TileAt {
+  const IlluminationTile* tile = nullptr;
+  float u = 0, v = 0;  // in it, 0 to 1
+};
+TileAt find_tile(const IlluminationChart& chart, std::span<const IlluminationTile> tiles,
+                 vec3 place) {
+  vec3 to = place - chart.origin;
+  float u = glm::clamp(dot(to, chart.along_u), 0.0f, float(chart.columns)),
+        v = glm::clamp(dot(to, chart.along_v), 0.0f, float(chart.rows));
+  int column = std::min(int(u), chart.columns - 1), row = std::min(int(v), chart.rows - 1);
+  const IlluminationTile& tile = tiles[chart.first_tile + uint32_t(row * chart.columns + column)];
+  if (tile.first == no_tile) return {};
+  return {&tile, u - float(column), v - float(row)};
+}
+
+// How many nodes lie along a line in the tile at its middle.
+float nodes_along(const IlluminationChart& chart, std::span<const IlluminationTile> tiles,
+                  const ChartSeam& seam) {
+  TileAt at = find_tile(chart, tiles, 0.5f * (seam.from + seam.to));
+  if (!at.tile) return 0;
+  vec3 line = seam.to - seam.from;
+  return std::max(std::abs(dot(line, chart.along_u)) * float(at.tile->columns),
+                  std::abs(dot(line, chart.along_v)) * float(at.tile->rows));
+}
+
+vec3 read(const NodeTaps& taps, std::span<const vec3> light) {
+  vec3 sum(0);
+  for (int k = 0; k < 4; k++) sum += taps.weight[k] * light[taps.node[k]];
+  return sum;
+}
+
+// Two rows of nodes that lie on one line.
+struct Border {
+  uint32_t first, step, cells;
+  uint32_t node(uint32_t i) const { return first + i * step; }
+};
+
+void match(const Border& a, const Border& b, std::vector<vec3>& light) {
+  const uint32_t coarse = std::min(a.cells, b.cells);
+  for (uint32_t k = 0; k <= coarse; k++) {
+    vec3 &x = light[a.node(k * (a.cells / coarse))], &y = light[b.node(k * (b.cells / coarse))];
+    x = y = 0.5f * (x + y);
+  }
+  const Border& fine = a.cells > b.cells ? a : b;
+  const uint32_t parts = fine.cells / coarse;
+  for (uint32_t k = 0; k < coarse && parts > 1; k++)
+    for (uint32_t i = 1; i < parts; i++)
+      light[fine.node(k * parts + i)] = glm::mix(
+          light[fine.node(k * parts)], light[fine.node((k + 1) * parts)], float(i) / float(parts));
+}
+
+}  // namespace
+
+std::vector<vec3> layer_means(const BakeField& field, int layer) {
+  std::vector<vec3> light(field.nodes(), vec3(0));
+  std::vector<uint8_t> known(field.nodes(), 0);
+  parallel_for(int(field.tiles.size()), [&](int t) {
+    const IlluminationTile& tile = field.tiles[size_t(t)];
+    for (uint32_t node = tile.first; node < tile.first + tile.nodes(); node++) {
+      known[node] = field.count[node] > 0;
+      if (known[node]) light[node] = field.light_of(node)[layer] / field.count[node];
+    }
+    if (tile.nodes() > 0) fill_holes(tile, known, light);
+  });
+  return light;
+}
+
+void add_coarser(std::span<const IlluminationTile> coarse_tiles, std::span<const vec3> coarse,
+                 std::span<const IlluminationTile> tiles, std::vector<vec3>& fine) {
+  parallel_for(int(tiles.size()), [&](int t) {
+    const IlluminationTile& tile = tiles[size_t(t)];
+    for (uint32_t i = 0; i < tile.nodes(); i++) {
+      float u = float(i % (tile.columns + 1u)) / float(tile.columns),
+            v = float(i / (tile.columns + 1u)) / float(tile.rows);
+      fine[tile.first + i] += read(taps_in(coarse_tiles[size_t(t)], u, v), coarse);
+    }
+  });
+}
+
+void match_borders(const BakeCharts& charts, std::span<const IlluminationTile> tiles,
+                   std::vector<vec3>& light) {
+  parallel_for(int(charts.surfaces.size()), [&](int c) {
+    const IlluminationChart& chart = charts.places->charts[size_t(c)];
+    // A corner that four tiles share is matched twice along each way.
+    for (int round = 0; round < 2; round++)
+      for (int row = 0; row < chart.rows; row++)
+        for (int column = 0; column < chart.columns; column++) {
+          auto at = [&](int x, int y) -> const IlluminationTile& {
+            return tiles[chart.first_tile + uint32_t(y * chart.columns + x)];
+          };
+          const IlluminationTile& tile = at(column, row);
+          if (tile.first == no_tile) continue;
+          const uint32_t stride = tile.columns + 1u;
+          if (column + 1 < chart.columns && at(column + 1, row).first != no_tile) {
+            const IlluminationTile& right = at(column + 1, row);
+            match({tile.first + tile.columns, stride, tile.rows},
+                  {right.first, right.columns + 1u, right.rows}, light);
+          }
+          if (row + 1 < chart.rows && at(column, row + 1).first != no_tile) {
+            const IlluminationTile& above = at(column, row + 1);
+            match({tile.first + tile.rows * stride, 1, tile.columns},
+                  {above.first, 1, above.columns}, light);
+          }
+        }
+  });
+}
+
+void match_seams(const BakeCharts& charts, std::span<const IlluminationTile> tiles,
+                 std::vector<vec3>& light) {
+  for (int sweep = 0; sweep < seam_sweeps; sweep++)
+    for (const ChartSeam& seam : charts.seams) {
+      const IlluminationChart &a = charts.places->charts[seam.chart[0]],
+                              &b = charts.places->charts[seam.chart[1]];
+      float nodes = std::max(nodes_along(a, tiles, seam), nodes_along(b, tiles, seam));
+      int places = int(std::clamp(nodes, 2.0f, float(most_places_a_seam)));
+      for (int i = 0; i < places; i++) {
+        vec3 place = mix(seam.from, seam.to, (float(i) + 0.5f) / float(places));
+        TileAt at[2] = {find_tile(a, tiles, place), find_tile(b, tiles, place)};
+        if (!at[0].tile || !at[1].tile) continue;
+        NodeTaps taps[2] = {taps_in(*at[0].tile, at[0].u, at[0].v),
+                            taps_in(*at[1].tile, at[1].u, at[1].v)};
+        float squares = 0;
+        for (const NodeTaps& t : taps)
+          for (float w : t.weight) squares += w * w;
+        vec3 step = (read(taps[0], light) - read(taps[1], light)) / squares;
+        for (int k = 0; k < 4; k++) {
+          light[taps[0].node[k]] -= taps[0].weight[k] * step;
+          light[taps[1].node[k]] += taps[1].weight[k] * step;
+        }
+      }
+    }
+}
+
+std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake) {
+  if (bake.passes == 0) return nullptr;
+  auto map = std::make_shared<IlluminationMap>();
+  map->places = bake.charts.places;
+  map->tiles = bake.direct.tiles;
+  const size_t nodes = bake.direct.nodes();
+  auto layers = std::make_shared<std::vector<std::vector<uint32_t>>>(size_t(bake.direct.layers));
+  parallel_each(bake.direct.layers, [&](int layer) {
+    std::vector<vec3> light = layer_means(bake.direct, layer);
+    add_coarser(bake.gather.tiles, layer_means(bake.gather, layer), map->tiles, light);
+    for (int round = 0; round < border_rounds; round++) {
+      match_seams(bake.charts, map->tiles, light);
+      match_borders(bake.charts, map->tiles, light);
+    }
+    std::vector<uint32_t>& packed = (*layers)[size_t(layer)];
+    packed.resize(nodes);
+    for (size_t i = 0; i < nodes; i++) packed[i] = pack_rgb9e5(light[i]);
+  });
+  double mean = 0;
+  map->light.resize(nodes);
+  for (size_t i = 0; i < nodes; i++) {
+    vec3 sum(0);
+    for (const auto& layer : *layers) sum += unpack_rgb9e5(layer[i]);
+    map->light[i] = pack_rgb9e5(sum);
+    mean += double(luminance(sum));
+  }
+  map->mean = nodes > 0 ? float(mean / double(nodes)) : 0;
+  map->error = bake_error(bake);
+  map->layers = layers;
+  return map;
+}
+
+}  // namespace wellspring

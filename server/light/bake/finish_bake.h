@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// From sums of samples to a map: means, holes filled, borders that agree.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "light/bake/bake_field.h"
+
+namespace wellspring {
+
+// Means of one layer at the nodes. Nodes without samples get their neighbours' in the tile.
+std::vector<vec3> layer_means(const BakeField& field, int layer);
+// `coarse` read at the nodes of finer tiles of the same charts, and added to `fine`.
+void add_coarser(std::span<const IlluminationTile> coarse_tiles, std::span<const vec3> coarse,
+                 std::span<const IlluminationTile> tiles, std::vector<vec3>& fine);
+// Tiles of one chart are made to agree at their common borders: the finer one follows the coarser.
+void match_borders(const BakeCharts& charts, std::span<const IlluminationTile> tiles,
+                   std::vector<vec3>& light);
+// Charts are made to agree at their seams as far as their grids allow, by Kaczmarz's iteration
+// (least change of the nodes).
+void match_seams(const BakeCharts& charts, std::span<const IlluminationTile> tiles,
+                 std::vector<vec3>& light);
+
+}  // namespace wellspring

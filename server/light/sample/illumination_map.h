@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Illumination maps: the diffuse light that falls on what stands still, baked once, kept in charts
+// (Haber, Myszkowski, Yamauchi, Seidel 2001, "Perceptually Guided Corrective Splatting", sections 1
+// and 4.1; mesh-to-texture). A chart is a connected part of a surface that faces about one way,
+// projected along that direction and cut into tiles; light is kept at the nodes of a grid in each
+// tile and is bilinear in between. Frozen once made.
+//
+// What is kept is Sample::smooth of a Lambertian surface under all light of the scene, punctual
+// light too: irradiance over pi. A coat's darkening towards the viewer is not in it.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/rgb9e5.h"
+#include "world/world.h"
+
+namespace wellspring {
+
+inline constexpr uint32_t no_chart = 0xffffffffu, no_tile = 0xffffffffu;
+
+// Place p lies at (dot(p - origin, along_u), dot(p - origin, along_v)), counted in tiles.
+struct IlluminationChart {
+  vec3 origin{0}, along_u{0}, along_v{0};
+  uint32_t first_tile = 0;  // row by row
+  int columns = 1, rows = 1;
+};
+
+// A grid of (columns + 1) x (rows + 1) nodes, row by row.
+struct IlluminationTile {
+  uint32_t first = no_tile;  // node; no_tile: nothing of the surface is here
+  uint16_t columns = 1, rows = 1;
+  uint32_t nodes() const { return first == no_tile ? 0u : (columns + 1u) * (rows + 1u); }
+};
+
+// Where charts lie: shared by all maps of a bake.
+struct IlluminationCharts {
+  std::vector<uint32_t> first_triangle;  // of instance * 2 + (1: seen from the back) in chart_of
+  std::vector<uint32_t> chart_of;        // of each triangle of those; or no_chart
+  std::vector<IlluminationChart> charts;
+  // The chart of a triangle as seen from one side, or no_chart.
+  uint32_t find(uint32_t instance, uint32_t triangle, bool front) const {
+    size_t side = size_t(instance) * 2 + (front ? 0 : 1);
+    if (side >= first_triangle.size() || first_triangle[side] == no_chart) return no_chart;
+    return chart_of[first_triangle[side] + triangle];
+  }
+};
+
+struct IlluminationMap {
+  std::shared_ptr<const IlluminationCharts> places;
+  std::vector<IlluminationTile> tiles;
+  std::vector<uint32_t> light;  // of each node, pack_rgb9e5; of the lamps that are on
+  // The light of what belongs to no lamp, then of each lamp alone. Copies share them.
+  std::shared_ptr<const std::vector<std::vector<uint32_t>>> layers;
+  float error = 1;  // estimated: standard error of the nodes over their mean light
+  float mean = 0;   // luminance of the mean light
+  float least_known() const { return 0.01f * mean; }  // see known_light()
+};
+size_t memory_bytes(const IlluminationMap& map);
+
+// Its light where lamps[i] says whether lamp i is on. Milliseconds.
+std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
+                                             std::span<const char> lamps);
+
+// Of each of the scene's objects: whether the map knows the light of any part of it.
+std::vector<char> mapped_objects(const Scene& scene, const IlluminationMap& map);
+
+// The light at a place of a chart: scene coordinates, or in tiles as IlluminationChart has them.
+vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec3 place);
+vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at);
+
+// What Sample::known is of light that a map gives: a little more, so that no ratio to it is
+// without bounds.
+inline vec3 known_light(const IlluminationMap& map, vec3 light) {
+  return light + vec3(map.least_known());
+}
+
+}  // namespace wellspring

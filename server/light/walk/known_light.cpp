@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "light/walk/known_light.h"
+
+#include <algorithm>
+
+namespace wellspring {
+namespace {
+
+constexpr float near_radii = 2.5f;  // of the sphere around what moves: it takes a tenth of the sky
+
+// Whether the line from `a` to `b`, or on and on towards `b`, passes the sphere.
+bool passes(vec3 a, vec3 b, bool endless, vec3 centre, float radius) {
+  vec3 line = b - a, to = centre - a;
+  float length2 = dot(line, line);
+  if (!(length2 > 0)) return false;
+  float at = std::max(dot(to, line) / length2, 0.0f);
+  if (!endless) at = std::min(at, 1.0f);
+  vec3 away = to - at * line;
+  return dot(away, away) < radius * radius;
+}
+
+}  // namespace
+
+KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
+                            vec3 position) {
+  KnownLight known;
+  if (!transport.maps || transport.world.is_moving(hit.instance)) return known;
+  const IlluminationCharts& places = *transport.maps->places;
+  bool front = dot(eval_face(transport.world, hit.instance, hit.triangle), ray.direction) < 0;
+  uint32_t chart = places.find(hit.instance, hit.triangle, front);
+  if (chart == no_chart) return known;
+  known.known = true;
+  known.light = eval_illumination(*transport.maps, places.charts[chart], position);
+  known.unit = known_light(*transport.maps, known.light);
+  return known;
+}
+
+bool may_be_shaded(const Transport& transport, vec3 position) {
+  const Bounds box = transport.world.moving_bounds();
+  if (!(box.low.x <= box.high.x)) return false;
+  const vec3 centre = 0.5f * (box.low + box.high);
+  const float radius = 0.5f * length(box.high - box.low);
+  vec3 away = position - centre;
+  if (dot(away, away) < near_radii * near_radii * radius * radius) return true;
+  for (const PunctualLight& light : transport.tables.punctual) {
+    bool distant = light.type == PunctualType::directional;
+    if (passes(position, distant ? position - light.direction : light.position, distant, centre,
+               radius))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace wellspring

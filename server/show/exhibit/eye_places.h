@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where visitors' eyes are likely to be.
+#pragma once
+#include <vector>
+
+#include "show/exhibit/exhibit.h"
+
+namespace wellspring {
+
+// The viewpoints, and places on the way between them, in scene coordinates.
+std::vector<vec3> eye_places(const Exhibit& exhibit);
+
+}  // namespace wellspring

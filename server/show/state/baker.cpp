@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/state/baker.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "light/bake/bake_file.h"
+#include "light/bake/map_file.h"
+
+namespace wellspring {
+namespace {
+
+constexpr double look_every = 0.05, save_every = 120, at_a_time = 1;  // seconds
+constexpr float worth_showing = 0.15f;  // error; above it points say more
+constexpr float much_better = 0.8f;     // of the last error
+
+}  // namespace
+
+Baker::Baker(const Scene& scene, std::shared_ptr<const RadianceGrid> grid, BakerSettings settings)
+    : scene_(scene), grid_(std::move(grid)), settings_(std::move(settings)) {
+  thread_ = std::thread([this] { live(); });
+}
+
+Baker::~Baker() {
+  end_ = true;
+  thread_.join();
+}
+
+std::shared_ptr<const IlluminationMap> Baker::take() {
+  std::lock_guard lock(mutex_);
+  return std::exchange(found_, nullptr);
+}
+
+BakerStatus Baker::status() const {
+  std::lock_guard lock(mutex_);
+  return status_;
+}
+
+bool Baker::wait_until_allowed() {
+  while (!allowed_ && !end_) std::this_thread::sleep_for(std::chrono::duration<double>(look_every));
+  return !end_;
+}
+
+void Baker::publish(const Bake& bake, uint64_t key) {
+  std::shared_ptr<const IlluminationMap> map = finish_map(bake);
+  if (!map) return;
+  if (!save_map(*map, settings_.file + ".maps", key))
+    log::warn("{}.maps cannot be written: the next start knows less light", settings_.file);
+  std::lock_guard lock(mutex_);
+  found_ = std::move(map);
+}
+
+void Baker::live() {
+  if (!wait_until_allowed()) return;
+  const World world(scene_);
+  const uint64_t key = hash_scene(scene_);
+  const BakeScene scene = make_bake_scene(world, settings_.places, grid_);
+  const std::string file = settings_.file + ".bake";
+  Bake bake;
+  KeyedFile found = load_bake(world, file, key, bake);
+  if (found == KeyedFile::another_key)
+    log::info("{} is stale: the scene has changed; it is baked anew", file);
+  if (found == KeyedFile::damaged) log::warn("{} is damaged; it is baked anew", file);
+  if (found != KeyedFile::read || bake.settings.shards > 1)
+    bake = begin_bake(world, settings_.places);
+  bake.source = settings_.source;
+  float error = bake.passes > 0 ? bake_error(bake) : 1, shown = std::min(error, worth_showing);
+  double saved = seconds_now();
+  auto tell = [&](bool works) {
+    std::lock_guard lock(mutex_);
+    status_ = {works, bake.passes, error};
+  };
+  while (wait_until_allowed() && error > settings_.least_error) {
+    tell(true);
+    const double began = seconds_now();
+    go_on(scene, bake, [&] { return !allowed_ || end_ || seconds_now() - began > at_a_time; });
+    if (!bake.pilot() && bake.passes > 1) error = bake_error(bake);
+    if (error < worth_showing && error < much_better * shown) {
+      publish(bake, key);
+      shown = error;
+    }
+    if (seconds_now() - saved > save_every) {
+      if (!save_bake(bake, file, key)) log::warn("{} cannot be written", file);
+      saved = seconds_now();
+    }
+    tell(false);
+  }
+  if (bake.passes > 0 && !save_bake(bake, file, key)) log::warn("{} cannot be written", file);
+}
+
+}  // namespace wellspring

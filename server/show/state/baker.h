@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Illumination maps come by themselves: a thread that goes on with the exhibit's bake while nobody
+// needs the cores, keeps it on disk, and hands over a map whenever it has become much better.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "light/sample/illumination_map.h"
+#include "light/sample/lights.h"
+
+namespace wellspring {
+
+struct BakerSettings {
+  std::string file;            // without its ending: .bake is what goes on, .maps what is shown
+  std::string source;          // the exhibit's folder
+  std::vector<vec3> places;    // scene coordinates: where eyes will be
+  double least_error = 0.004;  // of the mean light: good enough for ever
+};
+
+struct BakerStatus {
+  bool works = false;  // at the moment
+  uint64_t passes = 0;
+  float error = 1;  // of what is known so far; 1: nothing is
+};
+
+class Baker {
+ public:
+  // Borrows the scene. `grid`: cached radiance of the same scene, may be null.
+  Baker(const Scene& scene, std::shared_ptr<const RadianceGrid> grid, BakerSettings settings);
+  ~Baker();  // what has been found is saved
+  Baker(const Baker&) = delete;
+  Baker& operator=(const Baker&) = delete;
+
+  // From now on the cores are free, or not: then it stops within a tenth of a second.
+  void allow(bool on) { allowed_ = on; }
+  // A better map than the last one taken, or null.
+  std::shared_ptr<const IlluminationMap> take();
+  BakerStatus status() const;
+
+ private:
+  void live();
+  void publish(const struct Bake& bake, uint64_t key);
+  bool wait_until_allowed();
+  const Scene& scene_;
+  std::shared_ptr<const RadianceGrid> grid_;
+  BakerSettings settings_;
+  std::atomic<bool> allowed_ = false, end_ = false;
+  mutable std::mutex mutex_;
+  std::shared_ptr<const IlluminationMap> found_;
+  BakerStatus status_;
+  std::thread thread_;
+};
+
+}  // namespace wellspring
