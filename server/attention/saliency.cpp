@@ -113,32 +113,6 @@ void begin_pyramids(const Image8& picture, SaliencyWork& work) {
 // What rounding leaves of the differences within an even picture.
 constexpr float rounding = 1e-5f;
 
-// |centre - surround|. Of colours this is the double-opponent cell: R-G in the centre against G-R
-// in the surround answers (R-G)(c) + (G-R)(s), which is 0 where the colour does not change.
-// Leaves the map, promoted, at scale 4 in feature.sum.
-void eval_feature(const std::array<Plane, scale_count>& pyramid, int centre, int surround,
-                  SaliencyWork::Feature& feature) {
-  const Plane* far = &pyramid[size_t(surround)];
-  for (int scale = surround - 1; scale >= centre; scale--) {
-    const Plane& like = pyramid[size_t(scale)];
-    Plane& finer = far == &feature.one ? feature.other : feature.one;
-    expand(*far, like.width, like.height, feature.narrow, finer);
-    far = &finer;
-  }
-  const Plane& near = pyramid[size_t(centre)];
-  Plane& map = centre == saliency_scale ? feature.sum : feature.map;
-  fit_plane(near.width, near.height, map);
-  for (size_t i = 0; i < map.value.size(); i++)
-    map.value[i] = std::max(std::abs(near.value[i] - far->value[i]) - rounding, 0.0f);
-  promote_peaks(map);
-  const Plane* from = &map;
-  for (int scale = centre + 1; scale <= saliency_scale; scale++) {
-    Plane& coarser = scale == saliency_scale ? feature.sum : feature.one;
-    reduce(*from, feature.narrow, coarser);
-    from = &coarser;
-  }
-}
-
 void add_plane(const Plane& from, Plane& to) {
   for (size_t i = 0; i < to.value.size(); i++) to.value[i] += from.value[i];
 }
@@ -185,6 +159,47 @@ void scale_plane(float by, Plane& map) {
   for (float& value : map.value) value *= by;
 }
 
+// Times (M - m)^2, where M is the largest value and m the mean of the other local maxima.
+void weigh_by_peaks(Plane& map) {
+  float largest = largest_of(map), apart = largest - mean_of_lesser_peaks(map, largest);
+  scale_plane(apart * apart, map);
+}
+
+// Centre minus surround. Of colours this is the double-opponent cell: R-G in the centre against G-R
+// in the surround answers (R-G)(c) + (G-R)(s), which is 0 where the colour does not change.
+// Leaves the map, promoted, at scale 4 in feature.sum.
+void eval_feature(const std::array<Plane, scale_count>& pyramid, int centre, int surround,
+                  SaliencyWork::Feature& feature) {
+  const Plane* far = &pyramid[size_t(surround)];
+  for (int scale = surround - 1; scale >= centre; scale--) {
+    const Plane& like = pyramid[size_t(scale)];
+    Plane& finer = far == &feature.one ? feature.other : feature.one;
+    expand(*far, like.width, like.height, feature.narrow, finer);
+    far = &finer;
+  }
+  const Plane& near = pyramid[size_t(centre)];
+  Plane& map = centre == saliency_scale ? feature.sum : feature.map;
+  fit_plane(near.width, near.height, map);
+  fit_plane(near.width, near.height, feature.less);
+  for (size_t i = 0; i < map.value.size(); i++) {
+    float difference = near.value[i] - far->value[i];
+    map.value[i] = std::max(difference - rounding, 0.0f);
+    feature.less.value[i] = std::max(-difference - rounding, 0.0f);
+  }
+  float range = std::max({largest_of(map), largest_of(feature.less), least_range});
+  for (Plane* polarity : {&map, &feature.less}) {
+    scale_plane(1 / range, *polarity);
+    weigh_by_peaks(*polarity);
+  }
+  add_plane(feature.less, map);
+  const Plane* from = &map;
+  for (int scale = centre + 1; scale <= saliency_scale; scale++) {
+    Plane& coarser = scale == saliency_scale ? feature.sum : feature.one;
+    reduce(*from, feature.narrow, coarser);
+    from = &coarser;
+  }
+}
+
 }  // namespace
 
 Opponents eval_opponents(float r, float g, float b, float dark) {
@@ -201,8 +216,7 @@ void promote_peaks(Plane& map) {
   float least = *std::min_element(map.value.begin(), map.value.end());
   float factor = 1 / std::max(largest_of(map) - least, least_range);
   for (float& value : map.value) value = (value - least) * factor;
-  float largest = largest_of(map), apart = largest - mean_of_lesser_peaks(map, largest);
-  scale_plane(apart * apart, map);
+  weigh_by_peaks(map);
 }
 
 void eval_saliency(const Image8& picture, SaliencyWork& work, SaliencyMap& saliency) {
@@ -260,7 +274,8 @@ size_t memory_bytes(const SaliencyWork& work) {
     for (const Plane& plane : pyramid) bytes += bytes_of(plane.value);
   for (const Plane& plane : work.narrow) bytes += bytes_of(plane.value);
   for (const auto& f : work.feature)
-    bytes += bytes_of(f.narrow.value, f.one.value, f.other.value, f.map.value, f.sum.value);
+    bytes += bytes_of(f.narrow.value, f.one.value, f.other.value, f.less.value, f.map.value,
+                      f.sum.value);
   for (const Plane& plane : work.conspicuity) bytes += bytes_of(plane.value);
   return bytes;
 }

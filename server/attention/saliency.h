@@ -6,6 +6,11 @@
 //   picture -> intensity, R-G, B-Y -> Gaussian pyramids -> centre-surround: feature maps
 //   -> N -> sums over scales: conspicuity maps of intensity and of colour -> N -> mean: saliency
 //
+// A feature map holds |centre - surround| as in the paper, but where the centre has more (bright on
+// dark, R-G, B-Y) and where it has less (dark on bright, G-R, Y-B) N promotes apart, as Frintrop
+// 2006 ("VOCUS") does: else one red thing among green ones would be one of many alike. Both keep
+// their common scale.
+//
 // Deterministic for any number of threads; a mirrored picture has the mirrored map.
 #pragma once
 #include <array>
@@ -37,7 +42,8 @@ float eval_saliency_at(const SaliencyMap& saliency, vec2 place);
 struct SaliencyWork {
   struct Feature {
     Plane narrow, one, other, map;
-    Plane sum;  // the promoted map at scale 4
+    Plane less;  // where the centre has less than the surround
+    Plane sum;   // the promoted map at scale 4
   };
   std::array<std::array<Plane, scale_count>, channel_count> pyramid;  // [0] is not filled
   std::array<Plane, channel_count> narrow;
