@@ -14,7 +14,6 @@
 // Deterministic for any number of threads; a mirrored picture has the mirrored map.
 #pragma once
 #include <array>
-#include <span>
 
 #include "attention/pyramid.h"
 #include "frame/frame.h"
@@ -65,10 +64,10 @@ struct Opponents {
 };
 Opponents eval_opponents(float r, float g, float b, float dark);
 
-// The operator N: the map's values become 0 to 1, then are multiplied by (1 - m)^2, where m is the
-// mean of its local maxima but the largest. It promotes maps with few strong peaks and suppresses
-// maps with many alike. A map whose values differ by less than `least_range` is noise rather than
-// signal: it is scaled as if they differed by that much.
+// The operator N: the map's values become 0 to 1, then are multiplied by (M - m)^2, where M is the
+// largest and m the mean of the other local maxima. It promotes maps with few strong peaks and
+// suppresses maps with many alike. A map whose values differ by less than `least_range` is noise
+// rather than signal: it is scaled as if they differed by that much.
 inline constexpr float least_range = 0.01f;
 void promote_peaks(Plane& map);
 

@@ -89,7 +89,7 @@ void sum_saliency(const SaliencyMap& saliency, int y, int width, const TaskWork&
   }
 }
 
-struct View {
+struct ObjectPlane {
   std::span<const uint32_t> object;
   int width, height;
   const SaliencyMap& saliency;
@@ -97,7 +97,7 @@ struct View {
 };
 
 // Adds the runs of equal objects of a row.
-void add_row(const View& view, int y, const TaskWork& work, Band& band) {
+void add_row(const ObjectPlane& view, int y, const TaskWork& work, Band& band) {
   bool is_salient = !view.saliency.map.value.empty();
   if (is_salient) sum_saliency(view.saliency, y, view.width, work, band.salient);
   const uint32_t* row = view.object.data() + size_t(y) * size_t(view.width);
@@ -135,7 +135,7 @@ void place_columns(const SaliencyMap& saliency, int width, TaskWork& work) {
   }
 }
 
-SeenObject finish(const Sums& sums, const float* near, const View& view) {
+SeenObject finish(const Sums& sums, const float* near, const ObjectPlane& view) {
   SeenObject seen{sums.object, sums.pixels, sums.low, sums.high};
   vec2 size = vec2(float(view.width), float(view.height));
   vec2 middle = 0.5f * vec2(sums.low + sums.high + 1);
@@ -158,7 +158,7 @@ float eval_importance(float distance, float coverage, float hint_gap) {
 void eval_objects(std::span<const uint32_t> object, int width, int height,
                   const SaliencyMap& saliency, std::span<const AttentionHint> hints, TaskWork& work,
                   std::vector<SeenObject>& seen) {
-  View view{object, width, height, saliency, hints};
+  ObjectPlane view{object, width, height, saliency, hints};
   place_columns(saliency, width, work);
   work.bands.resize(size_t((height + rows_a_band - 1) / rows_a_band));
   parallel_for(int(work.bands.size()), [&](int i) {

@@ -30,8 +30,9 @@ struct Bars {
   int count = 6;
   ivec2 place{0};  // the target's cell
 };
+inline vec2 cell_size(const Bars& bars, ivec2 size) { return vec2(size) / float(bars.count); }
 inline vec2 bar_middle(const Bars& bars, ivec2 cell, ivec2 size) {
-  return (vec2(cell) + 0.5f) * vec2(size) / float(bars.count);
+  return (vec2(cell) + 0.5f) * cell_size(bars, size);
 }
 inline Image8 make_bars(const Bars& bars, int width, int height) {
   Image8 picture = even_picture(width, height, bars.ground);
