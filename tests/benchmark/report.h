@@ -74,6 +74,7 @@ void bench_light_error(BenchReport& report, const BenchOptions& options);
 void bench_light_hall(BenchReport& report, const BenchOptions& options);  // one scene of it
 void bench_light_frame(BenchReport& report, const BenchOptions& options);
 void bench_light_scaling(BenchReport& report, const BenchOptions& options);
+void bench_attention(BenchReport& report, const BenchOptions& options);
 void bench_avatar(BenchReport& report, const BenchOptions& options);
 
 }  // namespace wellspring

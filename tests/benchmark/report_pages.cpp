@@ -40,6 +40,19 @@ ReportPage avatar_page() {
             .columns = parts}}};
 }
 
+ReportPage attention_page() {
+  return {"attention",
+          "What does it cost to predict where a visitor looks? Saliency of a picture with 400 "
+          "coloured things, their measures with two hints, and an order of 1000 shares. Medians.",
+          {"Wanted: at most 8 ms for the saliency of 512x512 pixels, and cost linear in pixels."},
+          {{.caption = "",
+            .rows = {{"width", "width"}, {"height", "height"}, {"cores", "cores"}},
+            .columns = {{"attention.ms", "saliency"},
+                        {"ns_a_pixel", "of it a pixel"},
+                        {"objects_ms", "objects and order"},
+                        {"memory", "memory kept"}}}}};
+}
+
 ReportPage cache_display_page() {
   return {
       "cache.display",
@@ -363,6 +376,7 @@ ReportPage light_photons_page() {
 std::vector<ReportPage> declared_pages() {
   return {stream_page(),
           avatar_page(),
+          attention_page(),
           cache_display_page(),
           cache_warp_page(),
           cache_visit_page(),

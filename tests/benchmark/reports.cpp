@@ -18,6 +18,7 @@ using nlohmann::json;
 
 constexpr ReportEntry entries[] = {{"stream", bench_stream},
                                    {"avatar", bench_avatar},
+                                   {"attention", bench_attention},
                                    {"cache.display", bench_cache_display},
                                    {"cache.warp", bench_cache_warp},
                                    {"cache.visit", bench_cache_visit},

@@ -17,8 +17,8 @@ const code = ['server', 'avatar', 'kiosk', 'tests/unit', 'tests/benchmark']
     .flatMap((top) => files(top, /\.(h|cpp)$/)).map((file) => readFileSync(file, 'utf8'))
     .join('\n');
 
-const tops = 'server|avatar|kiosk|tests|docs|base|wire|frame|denoise|gltf|world|light|cache|' +
-    'picture|show|stream';
+const tops = 'server|avatar|kiosk|tests|docs|base|wire|frame|attention|denoise|gltf|world|light|' +
+    'cache|picture|show|stream';
 const place = new RegExp(`\`((?:${tops})/[\\w./]*)\``, 'g');
 
 // `a/b`, `a/b.h`, `a/b/` or a stem of files: a place in the tree, seen from its root or server/.

@@ -12,6 +12,7 @@ const may_include = {
   base: [],
   wire: ['base'],
   frame: ['base'],
+  attention: ['frame', 'base'],
   denoise: ['base'],
   gltf: ['base'],
   world: ['gltf', 'base'],
@@ -19,8 +20,8 @@ const may_include = {
   cache: ['light', 'world', 'frame', 'base'],
   picture: ['cache', 'denoise', 'light', 'world', 'frame', 'base'],
   avatar: ['gltf', 'base'],
-  show: ['picture', 'cache', 'denoise', 'light', 'world', 'gltf', 'frame', 'avatar', 'wire',
-    'base'],
+  show: ['picture', 'cache', 'denoise', 'light', 'world', 'gltf', 'attention', 'frame', 'avatar',
+    'wire', 'base'],
   stream: ['wire', 'base'],
   kiosk: ['wire', 'base'],
 };

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "attention/saliency.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/simd.h"
+
+namespace wellspring {
+namespace {
+
+// --- Channels --------------------------------------------------------------------------------
+
+// Hue is seen where intensity exceeds this share of the picture's largest (Itti et al., section 2).
+constexpr float dark_share = 0.1f;
+
+// For numbers and for eight of them. Y = (r + g) / 2 - |r - g| / 2 - b = min(r, g) - b.
+template <class T, class Least, class Positive, class Choose>
+void eval_channels(T r, T g, T b, T dark, const Least& least, const Positive& positive,
+                   const Choose& choose, T (&out)[channel_count]) {
+  T sum = r + g + b;
+  T red = positive(r - 0.5f * (g + b)), green = positive(g - 0.5f * (r + b)),
+    blue = positive(b - 0.5f * (r + g)), yellow = positive(least(r, g) - b);
+  out[0] = sum * (1 / 765.0f);
+  out[1] = choose(sum > dark, (red - green) / sum);
+  out[2] = choose(sum > dark, (blue - yellow) / sum);
+}
+
+struct Codes {
+  Lanes r, g, b;
+};
+// Eight pixels of three bytes; 28 bytes are read.
+Codes load_codes(const uint8_t* rgb) {
+  using Bytes = uint8_t __attribute__((vector_size(16)));
+  auto four = [](const uint8_t* from) {
+    Bytes all = load_lanes<Bytes>(from);
+    return lanes_as<HalfLaneBits>(
+        __builtin_shufflevector(all, all, 0, 1, 2, 3, 3, 4, 5, 6, 6, 7, 8, 9, 9, 10, 11, 12));
+  };
+  LaneBits pixel = join_halves(four(rgb), four(rgb + 12));
+  return {to_float(pixel & 255u), to_float(pixel >> 8 & 255u), to_float(pixel >> 16 & 255u)};
+}
+
+// Channels of `count` pixels; `limit` is the end of what may be read.
+void fill_channels(const uint8_t* rgb, const uint8_t* limit, int count, float dark,
+                   float* const (&to)[channel_count]) {
+  auto least = [](Lanes a, Lanes b) { return lanes_min(a, b); };
+  auto positive = [](Lanes a) { return positive_lanes(a); };
+  auto choose = [](LaneMask mask, Lanes a) { return keep_lanes(mask, a); };
+  for (int x = 0; x < count; x += lane_count) {
+    uint8_t some[28] = {};
+    const uint8_t* from = rgb + 3 * x;
+    if (limit - from < ptrdiff_t(sizeof some)) {
+      std::memcpy(some, from, size_t(std::min(3 * (count - x), 3 * lane_count)));
+      from = some;
+    }
+    Codes codes = load_codes(from);
+    Lanes out[channel_count];
+    eval_channels(codes.r, codes.g, codes.b, all_lanes(dark), least, positive, choose, out);
+    for (int c = 0; c < channel_count; c++) {
+      if (count - x >= lane_count) store_lanes(to[c] + x, out[c]);
+      else std::memcpy(to[c] + x, &out[c], size_t(count - x) * sizeof(float));
+    }
+  }
+}
+
+// The largest r + g + b.
+int find_brightest(const Image8& picture) {
+  std::atomic<int> brightest = 0;
+  parallel_ranges(picture.height, 1 + (1 << 16) / (picture.width + 1), [&](int begin, int end) {
+    const uint8_t* rgb = picture.rgb.data();
+    size_t row = 3 * size_t(picture.width);
+    int most = 0;
+    for (size_t i = size_t(begin) * row; i < size_t(end) * row; i += 3)
+      most = std::max(most, rgb[i] + rgb[i + 1] + rgb[i + 2]);
+    int known = brightest.load();
+    while (known < most && !brightest.compare_exchange_weak(known, most)) {}
+  });
+  return brightest;
+}
+
+// Scale 1 of all channels. Scale 0 exists only a piece of a row at a time.
+void begin_pyramids(const Image8& picture, SaliencyWork& work) {
+  float dark = dark_share * float(find_brightest(picture));
+  int width = picture.width;
+  for (Plane& narrow : work.narrow) fit_plane(half_size(width), picture.height, narrow);
+  const uint8_t* limit = picture.rgb.data() + picture.rgb.size();
+  auto narrow_row = [&](int y) {
+    float piece[channel_count][fine_piece_size];
+    const uint8_t* row = picture.rgb.data() + 3 * size_t(y) * size_t(width);
+    for (int begin = 0; begin < half_size(width); begin += piece_size) {
+      int count = std::min(piece_size, half_size(width) - begin), left = 2 * begin - 2;
+      int from = std::max(left, 0), to = std::min(left + 2 * count + 4, width);
+      fill_channels(row + 3 * from, limit, to - from, dark,
+                    {piece[0] + (from - left), piece[1] + (from - left), piece[2] + (from - left)});
+      for (int c = 0; c < channel_count; c++) {
+        std::fill(piece[c], piece[c] + (from - left), piece[c][from - left]);
+        std::fill(piece[c] + (to - left), piece[c] + 2 * count + 4, piece[c][to - left - 1]);
+        reduce_piece(piece[c], width, count, work.narrow[size_t(c)].row(y) + begin);
+      }
+    }
+  };
+  parallel_ranges(picture.height, 1 + (1 << 13) / (width + 1), [&](int begin, int end) {
+    for (int y = begin; y < end; y++) narrow_row(y);
+  });
+  for (size_t c = 0; c < channel_count; c++) reduce_rows(work.narrow[c], work.pyramid[c][1]);
+}
+
+// --- Maps ------------------------------------------------------------------------------------
+
+// What rounding leaves of the differences within an even picture.
+constexpr float rounding = 1e-5f;
+
+void add_plane(const Plane& from, Plane& to) {
+  for (size_t i = 0; i < to.value.size(); i++) to.value[i] += from.value[i];
+}
+
+// Peaks below this share of the largest are not counted: they are the background's unevenness
+// (as in the authors' own toolkit).
+constexpr float least_peak = 0.1f;
+
+// Whether the value at x is a local maximum among its eight neighbours. Of equal neighbours the
+// first in reading order is.
+bool is_peak(const float* above, const float* row, const float* below, int x, int width) {
+  float value = row[x];
+  bool left = x > 0, right = x + 1 < width;
+  if (left && row[x - 1] >= value) return false;
+  if (right && row[x + 1] > value) return false;
+  if (above &&
+      (above[x] >= value || (left && above[x - 1] >= value) || (right && above[x + 1] >= value)))
+    return false;
+  return !below ||
+         !(below[x] > value || (left && below[x - 1] > value) || (right && below[x + 1] > value));
+}
+
+// The mean of a map's local maxima but the largest, 0 where there is none.
+float mean_of_lesser_peaks(const Plane& map, float largest) {
+  double sum = 0;
+  int count = 0;
+  for (int y = 0; y < map.height; y++) {
+    const float *row = map.row(y), *above = y > 0 ? map.row(y - 1) : nullptr,
+                *below = y + 1 < map.height ? map.row(y + 1) : nullptr;
+    for (int x = 0; x < map.width; x++)
+      if (row[x] > least_peak * largest && is_peak(above, row, below, x, map.width)) {
+        sum += double(row[x]);
+        count++;
+      }
+  }
+  return count > 1 ? float((sum - double(largest)) / (count - 1)) : 0;
+}
+
+float largest_of(const Plane& map) {
+  return map.value.empty() ? 0 : *std::max_element(map.value.begin(), map.value.end());
+}
+
+void scale_plane(float by, Plane& map) {
+  for (float& value : map.value) value *= by;
+}
+
+// Times (M - m)^2, where M is the largest value and m the mean of the other local maxima.
+void weigh_by_peaks(Plane& map) {
+  float largest = largest_of(map), apart = largest - mean_of_lesser_peaks(map, largest);
+  scale_plane(apart * apart, map);
+}
+
+// Centre minus surround. Of colours this is the double-opponent cell: R-G in the centre against G-R
+// in the surround answers (R-G)(c) + (G-R)(s), which is 0 where the colour does not change.
+// Leaves the map, promoted, at scale 4 in feature.sum.
+void eval_feature(const std::array<Plane, scale_count>& pyramid, int centre, int surround,
+                  SaliencyWork::Feature& feature) {
+  const Plane* far = &pyramid[size_t(surround)];
+  for (int scale = surround - 1; scale >= centre; scale--) {
+    const Plane& like = pyramid[size_t(scale)];
+    Plane& finer = far == &feature.one ? feature.other : feature.one;
+    expand(*far, like.width, like.height, feature.narrow, finer);
+    far = &finer;
+  }
+  const Plane& near = pyramid[size_t(centre)];
+  Plane& map = centre == saliency_scale ? feature.sum : feature.map;
+  fit_plane(near.width, near.height, map);
+  fit_plane(near.width, near.height, feature.less);
+  for (size_t i = 0; i < map.value.size(); i++) {
+    float difference = near.value[i] - far->value[i];
+    map.value[i] = std::max(difference - rounding, 0.0f);
+    feature.less.value[i] = std::max(-difference - rounding, 0.0f);
+  }
+  float range = std::max({largest_of(map), largest_of(feature.less), least_range});
+  for (Plane* polarity : {&map, &feature.less}) {
+    scale_plane(1 / range, *polarity);
+    weigh_by_peaks(*polarity);
+  }
+  add_plane(feature.less, map);
+  const Plane* from = &map;
+  for (int scale = centre + 1; scale <= saliency_scale; scale++) {
+    Plane& coarser = scale == saliency_scale ? feature.sum : feature.one;
+    reduce(*from, feature.narrow, coarser);
+    from = &coarser;
+  }
+}
+
+}  // namespace
+
+Opponents eval_opponents(float r, float g, float b, float dark) {
+  float out[channel_count];
+  eval_channels(
+      r, g, b, dark, [](float x, float y) { return std::min(x, y); },
+      [](float x) { return std::max(x, 0.0f); }, [](bool is, float x) { return is ? x : 0.0f; },
+      out);
+  return {out[0], out[1], out[2]};
+}
+
+void promote_peaks(Plane& map) {
+  if (map.value.empty()) return;
+  float least = *std::min_element(map.value.begin(), map.value.end());
+  float factor = 1 / std::max(largest_of(map) - least, least_range);
+  for (float& value : map.value) value = (value - least) * factor;
+  weigh_by_peaks(map);
+}
+
+void eval_saliency(const Image8& picture, SaliencyWork& work, SaliencyMap& saliency) {
+  saliency.offset = vec2(0);
+  if (picture.width <= 0 || picture.height <= 0) return fit_plane(0, 0, saliency.map);
+  begin_pyramids(picture, work);
+  parallel_for(channel_count, [&](int c) {
+    auto& pyramid = work.pyramid[size_t(c)];
+    for (size_t scale = 2; scale < scale_count; scale++)
+      reduce(pyramid[scale - 1], work.narrow[size_t(c)], pyramid[scale]);
+  });
+  parallel_for(feature_count, [&](int i) {
+    int centre = 2 + i / 2 % 3, surround = centre + 3 + i % 2;
+    eval_feature(work.pyramid[size_t(i / maps_a_channel)], centre, surround,
+                 work.feature[size_t(i)]);
+  });
+  const Plane& like = work.pyramid[0][saliency_scale];
+  for (Plane& conspicuity : work.conspicuity) {
+    fit_plane(like.width, like.height, conspicuity);
+    std::fill(conspicuity.value.begin(), conspicuity.value.end(), 0.0f);
+  }
+  for (size_t i = 0; i < feature_count; i++)
+    add_plane(work.feature[i].sum, work.conspicuity[i < maps_a_channel ? 0 : 1]);
+  for (Plane& conspicuity : work.conspicuity) promote_peaks(conspicuity);
+  fit_plane(like.width, like.height, saliency.map);
+  for (size_t i = 0; i < saliency.map.value.size(); i++)
+    saliency.map.value[i] = 0.5f * (work.conspicuity[0].value[i] + work.conspicuity[1].value[i]);
+  scale_plane(1 / std::max(largest_of(saliency.map), least_range), saliency.map);
+  int width = picture.width, height = picture.height;
+  for (int scale = 0; scale < saliency_scale; scale++) {
+    saliency.offset =
+        vec2(coarser_place(saliency.offset.x, width), coarser_place(saliency.offset.y, height));
+    width = half_size(width);
+    height = half_size(height);
+  }
+}
+
+float eval_saliency_at(const SaliencyMap& saliency, vec2 place) {
+  const Plane& map = saliency.map;
+  if (map.value.empty()) return 0;
+  auto clamp = [](float x, int size) { return std::clamp(x, 0.0f, float(size - 1)); };
+  vec2 at = saliency.offset + place / float(1 << saliency_scale);
+  float x = clamp(at.x, map.width), y = clamp(at.y, map.height);
+  int left = int(x), top = int(y);
+  int right = std::min(left + 1, map.width - 1), bottom = std::min(top + 1, map.height - 1);
+  const float *above = map.row(top), *below = map.row(bottom);
+  vec2 share = vec2(x - float(left), y - float(top));
+  return glm::mix(glm::mix(above[left], above[right], share.x),
+                  glm::mix(below[left], below[right], share.x), share.y);
+}
+
+size_t memory_bytes(const SaliencyWork& work) {
+  size_t bytes = 0;
+  for (const auto& pyramid : work.pyramid)
+    for (const Plane& plane : pyramid) bytes += bytes_of(plane.value);
+  for (const Plane& plane : work.narrow) bytes += bytes_of(plane.value);
+  for (const auto& f : work.feature)
+    bytes += bytes_of(f.narrow.value, f.one.value, f.other.value, f.less.value, f.map.value,
+                      f.sum.value);
+  for (const Plane& plane : work.conspicuity) bytes += bytes_of(plane.value);
+  return bytes;
+}
+
+}  // namespace wellspring
