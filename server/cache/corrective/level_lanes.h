@@ -2,7 +2,6 @@
 // Samples of a list, eight at a time; the last of a list may be fewer.
 #pragma once
 #include "base/simd3.h"
-#include "cache/corrective/object_samples.h"
 
 namespace wellspring {
 
@@ -14,7 +13,9 @@ inline V load_some(const T* from, int count) {
   std::memcpy(&v, from, size_t(count) * sizeof(T));
   return v;
 }
-inline Lanes3 load_places(const LevelSamples& list, int begin, int count) {
+// Of what has arrays x, y and z.
+template <class Samples>
+inline Lanes3 load_places(const Samples& list, int begin, int count) {
   size_t i = size_t(begin);
   return {load_some(&list.x[i], count), load_some(&list.y[i], count), load_some(&list.z[i], count)};
 }
