@@ -139,7 +139,10 @@ TEST(CorrectionQueue, ANewPlanOfTheSameViewChangesPrioritiesAndGoesOn) {
   EXPECT_EQ(job.object, 2u);
   EXPECT_EQ(job.plan, 2u);
   jobs.push_back(job);
-  for (const CorrectionJob& later : take_all(queue)) jobs.push_back(later);
+  std::vector<CorrectionJob> rest = take_all(queue);
+  EXPECT_EQ(rest.back().object, 1u);
+  EXPECT_FLOAT_EQ(rest.back().priority, 0.1f * 0.85f * 0.85f * 0.85f);
+  jobs.insert(jobs.end(), rest.begin(), rest.end());
   EXPECT_EQ(count_places(jobs), size_t(size * size));  // nothing twice
   queue.submit(halves(1, 1));
   EXPECT_TRUE(queue.empty());  // all is done
@@ -158,6 +161,13 @@ TEST(CorrectionQueue, APlanOfAnotherViewBeginsAnew) {
   EXPECT_EQ(count_places(jobs), size_t(48 * size));
   EXPECT_EQ(jobs[0].view.position.x, 1);
   EXPECT_EQ(jobs[0].age, 7u);
+  // So does one where other pixels show the object.
+  moved.object.assign(moved.object.size(), 2);
+  moved.object[7 * size + 9] = 1;
+  queue.submit(moved);
+  jobs = take_all(queue);
+  ASSERT_EQ(jobs.size(), 1u);
+  EXPECT_EQ(jobs[0].places, std::vector<ivec2>{ivec2(9, 7)});
 }
 
 TEST(CorrectionQueue, ManyThreadsTakeEachPlaceOnce) {

@@ -126,6 +126,10 @@ TEST(WarpAndSplat, FinerLevelsCoverCoarserAndNearerSamplesThoseBehind) {
   EXPECT_EQ(one.from(4).color[middle], vec3(3));
   one.add(2, 0.7f, 5, 1);  // as near, and newer
   EXPECT_EQ(one.from(4).color[middle], vec3(5));
+  one.add(4, 0.2f, 6);  // a single pixel
+  one.add(4, 0.2f, 7, 1);
+  one.add(4, 0.1f, 8, 1);
+  EXPECT_EQ(one.from(4).color[middle], vec3(7));
 }
 
 TEST(WarpAndSplat, FootprintsGrowAsTheEyeComesNearerUpToFourTimes) {
@@ -154,8 +158,9 @@ TEST(WarpAndSplat, FootprintsReachIntoThePictureFromOutside) {
   EXPECT_EQ(picture.level[50 * 101 + 3], 0);
   aside.position.x += 100;
   EXPECT_EQ(splat(one.store, aside, one.object).stats.splats, 0);
-  aside.forward = vec3(0, 0, 1), aside.right = vec3(-1, 0, 0);  // it is behind
-  EXPECT_EQ(splat(one.store, aside, one.object).stats.splats, 0);
+  View turned = one.view;  // the sample is behind
+  turned.forward = vec3(0, 0, 1), turned.right = vec3(-1, 0, 0);
+  EXPECT_EQ(splat(one.store, turned, one.object).stats.splats, 0);
 }
 
 TEST(WarpAndSplat, ASurfaceThatShowsItsOtherSideIsLeftOut) {
