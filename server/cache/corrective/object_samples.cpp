@@ -33,13 +33,20 @@ int drop_samples(LevelSamples& list, const Drops& drops) {
   size_t count = list.age.size(), first = 0;
   while (first < count && !drops(first)) first++;
   if (first == count) return 0;
-  std::vector<uint32_t> kept;
-  for (size_t i = first + 1; i < count; i++)
-    if (!drops(i)) kept.push_back(uint32_t(i));
+  struct Run {
+    size_t begin, end;
+  };
+  std::vector<Run> kept;  // samples of one age mostly lie side by side
+  for (size_t i = first + 1; i < count; i++) {
+    if (drops(i)) continue;
+    if (kept.empty() || kept.back().end != i) kept.push_back({i, i});
+    kept.back().end++;
+  }
   each_array(list, [&](auto& array) {
-    size_t to = first;
-    for (uint32_t from : kept) array[to++] = array[from];
-    array.resize(to);
+    auto to = array.begin() + ptrdiff_t(first);
+    for (Run run : kept)
+      to = std::copy(array.begin() + ptrdiff_t(run.begin), array.begin() + ptrdiff_t(run.end), to);
+    array.erase(to, array.end());
   });
   return int(count - list.age.size());
 }
