@@ -40,7 +40,11 @@ int main(int argc, char** argv) {
   std::vector<std::string> read;
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only,
+<<<<<<< HEAD
                  "one part: stream, cache, show, denoise, avatar, attention, light (or one of its "
+=======
+                 "one part: stream, cache, corrective, show, denoise, avatar, light (or one of its "
+>>>>>>> splat
                  "own: light.error ...)");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
   app.add_option("--markdown", pages,

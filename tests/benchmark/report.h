@@ -68,6 +68,7 @@ void bench_cache_rest(BenchReport& report, const BenchOptions& options);
 void bench_cache_starve(BenchReport& report, const BenchOptions& options);
 void bench_cache_turns(BenchReport& report, const BenchOptions& options);
 void bench_cache_switch(BenchReport& report, const BenchOptions& options);
+void bench_corrective(BenchReport& report, const BenchOptions& options);
 void bench_denoise_time(BenchReport& report, const BenchOptions& options);
 void bench_denoise_flip(BenchReport& report, const BenchOptions& options);
 void bench_light_error(BenchReport& report, const BenchOptions& options);

@@ -54,6 +54,10 @@ const may_enter = {
     instant: ['', 'walk', 'sample', 'material', 'random'],
     technique: ['', 'instant', 'known', 'walk', 'sample', 'material', 'random'],
   },
+  cache: {
+    '': [],
+    corrective: [''],
+  },
   picture: {
     still: [],
     '': ['still'],
