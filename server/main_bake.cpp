@@ -15,6 +15,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "light/bake/bake_file.h"
+#include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/exhibit/eye_places.h"

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "light/bake/bake_file.h"
+#include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
 #include "show/exhibit/eye_places.h"
 #include "light/technique/technique.h"

@@ -40,12 +40,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> read;
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option("--only", only,
-<<<<<<< HEAD
-                 "one part: stream, cache, show, denoise, avatar, attention, light (or one of its "
-=======
-                 "one part: stream, cache, corrective, show, denoise, avatar, light (or one of its "
->>>>>>> splat
-                 "own: light.error ...)");
+                 "one part: stream, cache, corrective, show, denoise, avatar, attention, light (or "
+                 "one of its own: light.error ...)");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
   app.add_option("--markdown", pages,
                  "where to write it for readers: a file.md, or a folder for a page of each");

@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "light/bake/finish_bake.h"
 #include "light/material/bsdf.h"
 
 namespace wellspring {

@@ -55,9 +55,4 @@ float bake_error(const Bake& bake);
 
 // Of storage at vertices of a mesh that is divided as finely: place, normal, two triangles, light.
 size_t vertex_bytes(const Bake& bake);
-// What is known so far: holes are filled from their neighbours, and neighbouring tiles and charts
-// made to agree where they meet. Null before the first pass after the refinement is done. Tenths of
-// a second.
-std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake);
-
 }  // namespace wellspring

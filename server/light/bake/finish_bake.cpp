@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "light/bake/bake.h"
 
 namespace wellspring {
 namespace {

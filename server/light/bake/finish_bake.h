@@ -5,10 +5,16 @@
 #include <span>
 #include <vector>
 
-#include "light/bake/bake_field.h"
+#include "light/bake/bake.h"
 
 namespace wellspring {
 
+// What is known so far: holes are filled from their neighbours, and neighbouring tiles and charts
+// made to agree where they meet. Null before the first pass after the refinement is done. Tenths of
+// a second.
+std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake);
+
+// Its parts.
 // Means of one layer at the nodes. Nodes without samples get their neighbours' in the tile.
 std::vector<vec3> layer_means(const BakeField& field, int layer);
 // `coarse` read at the nodes of finer tiles of the same charts, and added to `fine`.

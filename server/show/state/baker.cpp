@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "light/bake/bake_file.h"
+#include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
 
 namespace wellspring {
