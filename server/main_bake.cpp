@@ -75,10 +75,11 @@ void describe(const Bake& bake) {
 }
 
 // The bake, and unless it is a shard the map that comes of it. Empty, or what is wrong.
-std::string save(const Bake& bake, const std::string& file, uint64_t key) {
+std::string save(const Exhibit& exhibit, const World& world, Bake& bake, const std::string& file,
+                 uint64_t key) {
   if (!save_bake(bake, file, key)) return file + ": cannot be written";
   std::shared_ptr<const IlluminationMap> map =
-      bake.settings.shards > 1 ? nullptr : finish_map(bake);
+      bake.settings.shards > 1 ? nullptr : finish_map(world, all_eye_places(exhibit), bake);
   const std::string maps = std::filesystem::path(file).replace_extension(".maps").string();
   if (map && !save_map(*map, maps, key)) return maps + ": cannot be written";
   return {};
@@ -114,7 +115,8 @@ int run(const Options& options, const BakeSettings& settings, double seconds) {
     if (bake.settings.shards > 1)
       return fail("shards are missing: " + std::to_string(bake.shards_done.size()) + " of " +
                   std::to_string(bake.settings.shards) + " are there");
-    if (std::string wrong = save(bake, file, key); !wrong.empty()) return fail(wrong);
+    if (std::string wrong = save(exhibit, world, bake, file, key); !wrong.empty())
+      return fail(wrong);
     std::cout << file << ": " << bake.passes << " passes, error " << 100 * bake_error(bake)
               << " %\n";
     return 0;
@@ -147,7 +149,7 @@ int run(const Options& options, const BakeSettings& settings, double seconds) {
     saved = seconds_now();
   }
   if (isatty(2)) std::cerr << "\r\033[K";
-  if (std::string wrong = save(bake, file, key); !wrong.empty()) return fail(wrong);
+  if (std::string wrong = save(exhibit, world, bake, file, key); !wrong.empty()) return fail(wrong);
   describe(bake);
   std::cout << file << ": " << bake.passes << " passes, error " << 100 * bake_error(bake) << " %"
             << (interrupted ? ", interrupted: --resume goes on" : "") << "\n";

@@ -39,7 +39,7 @@ std::shared_ptr<const IlluminationMap> find_baked(const Show& show, const std::s
   Bake bake = begin_bake(world, places);
   const double began = seconds_now();
   go_on(baked, bake, [&] { return seconds_now() - began > seconds && bake.passes > 0; });
-  auto maps = finish_map(bake);
+  auto maps = finish_map(world, all_eye_places(show.exhibit), bake);
   log::info("{}: {} passes, error {:.1f} %", file, bake.passes, 100 * maps->error);
   save_map(*maps, file, key);
   return maps;

@@ -42,9 +42,24 @@ struct LitPlace {
   Bsdf bsdf;
   float uncoated = 1;  // what undoes the coat's darkening towards the viewer
 };
+// The mesh's own normal: what a map of normals adds is finer than nodes.
+vec3 mesh_normal(const World& world, const Hit& hit, const Surface& place) {
+  const PlacedMesh& placed = world.placed(hit.instance);
+  const std::vector<vec3>& normals = placed.mesh->normals;
+  uvec3 corner = placed.mesh->triangles[hit.triangle];
+  vec2 b = hit.barycentric;
+  vec3 normal = placed.normal_to_world * ((1 - b.x - b.y) * normals[corner.x] +
+                                          b.x * normals[corner.y] + b.y * normals[corner.z]);
+  float length2 = dot(normal, normal);
+  if (!(length2 > 1e-20f) || !std::isfinite(length2)) return place.geometric_normal;
+  normal *= (place.front ? 1 : -1) / std::sqrt(length2);
+  return dot(normal, place.geometric_normal) > 0 ? normal : place.geometric_normal;
+}
+
 LitPlace light_place(const BakeScene& scene, const NodePlace& place) {
   LitPlace lit;
   lit.surface = eval_surface(scene.world, place.ray, place.hit);
+  lit.surface.normal = mesh_normal(scene.world, place.hit, lit.surface);
   const Material& material = scene.world.material_of(place.hit.instance);
   lit.bsdf = make_bsdf_in(scene.parts.front(), Media{}, lit.surface, material, place.ray.direction);
   lit.bsdf.diffuse = vec3(1);

@@ -34,10 +34,12 @@ struct Bake {
   BakeField direct, gather;
   std::vector<int> shards_done;  // whose tiles are here: those merged, and its own
   float tile = 0;                // as of make_charts()
-  int refined = 0;               // rounds of finer direct nodes so far
-  uint64_t passes = 0;           // of all tiles
-  uint32_t cursor = 0;           // the next tile of the pass under way
-  bool pilot() const;            // refinement goes on: it looks at all tiles, whatever the shard
+  std::vector<uint8_t> direct_sight, gather_sight;  // NodeSight (light/bake/unseen.h), as far as
+                                                    // it was asked for; not kept on disk
+  int refined = 0;                                  // rounds of finer direct nodes so far
+  uint64_t passes = 0;                              // of all tiles
+  uint32_t cursor = 0;                              // the next tile of the pass under way
+  bool pilot() const;  // refinement goes on: it looks at all tiles, whatever the shard
 };
 size_t memory_bytes(const Bake& bake);
 

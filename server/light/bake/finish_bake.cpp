@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "light/bake/unseen.h"
 
 namespace wellspring {
 namespace {
@@ -105,13 +106,13 @@ void match(const Border& a, const Border& b, std::vector<vec3>& light) {
 
 }  // namespace
 
-std::vector<vec3> layer_means(const BakeField& field, int layer) {
+std::vector<vec3> layer_means(const BakeField& field, int layer, std::span<const uint8_t> leaks) {
   std::vector<vec3> light(field.nodes(), vec3(0));
   std::vector<uint8_t> known(field.nodes(), 0);
   parallel_for(int(field.tiles.size()), [&](int t) {
     const IlluminationTile& tile = field.tiles[size_t(t)];
     for (uint32_t node = tile.first; node < tile.first + tile.nodes(); node++) {
-      known[node] = field.count[node] > 0;
+      known[node] = field.count[node] > 0 && (leaks.empty() || !leaks[node]);
       if (known[node]) light[node] = field.light_of(node)[layer] / field.count[node];
     }
     if (tile.nodes() > 0) fill_holes(tile, known, light);
@@ -185,16 +186,22 @@ void match_seams(const BakeCharts& charts, std::span<const IlluminationTile> til
     }
 }
 
-std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake) {
+std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<const vec3> eyes,
+                                                  Bake& bake) {
   if (bake.passes == 0) return nullptr;
   auto map = std::make_shared<IlluminationMap>();
   map->places = bake.charts.places;
   map->tiles = bake.direct.tiles;
   const size_t nodes = bake.direct.nodes();
+  const std::vector<uint8_t> direct_leaks = find_leaks(world, bake.charts, bake.places, eyes,
+                                                       bake.direct, bake.direct_sight),
+                             gather_leaks = find_leaks(world, bake.charts, bake.places, eyes,
+                                                       bake.gather, bake.gather_sight);
   auto layers = std::make_shared<std::vector<std::vector<uint32_t>>>(size_t(bake.direct.layers));
   parallel_each(bake.direct.layers, [&](int layer) {
-    std::vector<vec3> light = layer_means(bake.direct, layer);
-    add_coarser(bake.gather.tiles, layer_means(bake.gather, layer), map->tiles, light);
+    std::vector<vec3> light = layer_means(bake.direct, layer, direct_leaks);
+    add_coarser(bake.gather.tiles, layer_means(bake.gather, layer, gather_leaks), map->tiles,
+                light);
     for (int round = 0; round < border_rounds; round++) {
       match_seams(bake.charts, map->tiles, light);
       match_borders(bake.charts, map->tiles, light);

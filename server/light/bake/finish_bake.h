@@ -12,11 +12,15 @@ namespace wellspring {
 // What is known so far: holes are filled from their neighbours, and neighbouring tiles and charts
 // made to agree where they meet. Null before the first pass after the refinement is done. Tenths of
 // a second.
-std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake);
+// `eyes`, scene coordinates: what no eye can see does not count where it is unlike what one sees.
+std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<const vec3> eyes,
+                                                  Bake& bake);
 
 // Its parts.
-// Means of one layer at the nodes. Nodes without samples get their neighbours' in the tile.
-std::vector<vec3> layer_means(const BakeField& field, int layer);
+// Means of one layer at the nodes. Nodes without samples, and those that `leaks` names, get their
+// neighbours' in the tile.
+std::vector<vec3> layer_means(const BakeField& field, int layer,
+                              std::span<const uint8_t> leaks = {});
 // `coarse` read at the nodes of finer tiles of the same charts, and added to `fine`.
 void add_coarser(std::span<const IlluminationTile> coarse_tiles, std::span<const vec3> coarse,
                  std::span<const IlluminationTile> tiles, std::vector<vec3>& fine);

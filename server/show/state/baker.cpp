@@ -45,8 +45,8 @@ bool Baker::wait_until_allowed() {
   return !end_;
 }
 
-void Baker::publish(const Bake& bake, uint64_t key) {
-  std::shared_ptr<const IlluminationMap> map = finish_map(bake);
+void Baker::publish(const World& world, Bake& bake, uint64_t key) {
+  std::shared_ptr<const IlluminationMap> map = finish_map(world, settings_.eyes, bake);
   if (!map) return;
   if (!save_map(*map, settings_.file + ".maps", key))
     log::warn("{}.maps cannot be written: the next start knows less light", settings_.file);
@@ -80,7 +80,7 @@ void Baker::live() {
     go_on(scene, bake, [&] { return !allowed_ || end_ || seconds_now() - began > at_a_time; });
     if (!bake.pilot() && bake.passes > 1) error = bake_error(bake);
     if (error < worth_showing && error < much_better * shown) {
-      publish(bake, key);
+      publish(world, bake, key);
       shown = error;
     }
     if (seconds_now() - saved > save_every) {

@@ -18,6 +18,7 @@ struct BakerSettings {
   std::string file;            // without its ending: .bake is what goes on, .maps what is shown
   std::string source;          // the exhibit's folder
   std::vector<vec3> places;    // scene coordinates: where eyes will be
+  std::vector<vec3> eyes;      // and wherever they may be
   double least_error = 0.004;  // of the mean light: good enough for ever
 };
 
@@ -43,7 +44,7 @@ class Baker {
 
  private:
   void live();
-  void publish(const struct Bake& bake, uint64_t key);
+  void publish(const World& world, struct Bake& bake, uint64_t key);
   bool wait_until_allowed();
   const Scene& scene_;
   std::shared_ptr<const RadianceGrid> grid_;

@@ -81,6 +81,7 @@ void begin_maps(Show& show) {
   baker.file = settings.cache + "/" + show.exhibit.id;
   baker.source = show.exhibit.folder;
   baker.places = eye_places(show.exhibit);
+  baker.eyes = all_eye_places(show.exhibit);
   if (auto maps =
           load_map(show.exhibit.scene, baker.file + ".maps", hash_scene(show.exhibit.scene))) {
     log::info("illumination maps: {} texels, error {:.1f} %", maps->light.size(),
