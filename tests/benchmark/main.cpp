@@ -39,9 +39,10 @@ int main(int argc, char** argv) {
   std::string only, file, traces, pages;
   std::vector<std::string> read;
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
-  app.add_option("--only", only,
-                 "one part: stream, cache, corrective, show, denoise, avatar, attention, light (or "
-                 "one of its own: light.error ...)");
+  app.add_option(
+      "--only", only,
+      "one part: stream, cache, corrective, bake, show, denoise, avatar, attention, light (or "
+      "one of its own: light.error ...)");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
   app.add_option("--markdown", pages,
                  "where to write it for readers: a file.md, or a folder for a page of each");

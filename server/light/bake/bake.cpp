@@ -14,7 +14,7 @@ namespace {
 
 constexpr int pilot_samples = 8;  // of a node, by which its tile is refined or not
 constexpr int refine_rounds = 3;
-constexpr int gathers_a_pass = 4;  // samples of a gathering node for one of a direct node
+constexpr int gathers_a_pass = 8;  // samples of a gathering node for one of a direct node
 constexpr int tiles_a_step = 64;
 constexpr double tile_nodes = 64;  // of a tile, on average, before refinement
 // Neighbouring nodes that differ by that share of their light, of which a share of the scene's mean

@@ -52,7 +52,8 @@ void go_on(const BakeScene& scene, Bake& bake, const std::function<bool()>& stop
 // Until so many passes are done.
 void bake_passes(const BakeScene& scene, Bake& bake, uint64_t passes);
 
-// The standard error of the light at the nodes over its mean, estimated from the samples.
+// The standard error of the light at the nodes over its mean, estimated from the samples, before
+// noise is filtered (light/bake/filter_nodes.h).
 float bake_error(const Bake& bake);
 
 // Of storage at vertices of a mesh that is divided as finely: place, normal, two triangles, light.

@@ -106,7 +106,8 @@ void match(const Border& a, const Border& b, std::vector<vec3>& light) {
 
 }  // namespace
 
-std::vector<vec3> layer_means(const BakeField& field, int layer, std::span<const uint8_t> leaks) {
+std::vector<vec3> layer_means(const BakeField& field, int layer, std::span<const uint8_t> leaks,
+                              const NodeFilter* filter) {
   std::vector<vec3> light(field.nodes(), vec3(0));
   std::vector<uint8_t> known(field.nodes(), 0);
   parallel_for(int(field.tiles.size()), [&](int t) {
@@ -115,7 +116,10 @@ std::vector<vec3> layer_means(const BakeField& field, int layer, std::span<const
       known[node] = field.count[node] > 0 && (leaks.empty() || !leaks[node]);
       if (known[node]) light[node] = field.light_of(node)[layer] / field.count[node];
     }
-    if (tile.nodes() > 0) fill_holes(tile, known, light);
+  });
+  if (filter) filter_nodes(field, *filter, known, light);
+  parallel_for(int(field.tiles.size()), [&](int t) {
+    if (field.tiles[size_t(t)].nodes() > 0) fill_holes(field.tiles[size_t(t)], known, light);
   });
   return light;
 }
@@ -197,11 +201,13 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
                                                        bake.direct, bake.direct_sight),
                              gather_leaks = find_leaks(world, bake.charts, bake.places, eyes,
                                                        bake.gather, bake.gather_sight);
+  const NodeFilter direct = make_node_filter(bake.direct, direct_leaks),
+                   gather = make_node_filter(bake.gather, gather_leaks);
   auto layers = std::make_shared<std::vector<std::vector<uint32_t>>>(size_t(bake.direct.layers));
   parallel_each(bake.direct.layers, [&](int layer) {
-    std::vector<vec3> light = layer_means(bake.direct, layer, direct_leaks);
-    add_coarser(bake.gather.tiles, layer_means(bake.gather, layer, gather_leaks), map->tiles,
-                light);
+    std::vector<vec3> light = layer_means(bake.direct, layer, direct_leaks, &direct);
+    add_coarser(bake.gather.tiles, layer_means(bake.gather, layer, gather_leaks, &gather),
+                map->tiles, light);
     for (int round = 0; round < border_rounds; round++) {
       match_seams(bake.charts, map->tiles, light);
       match_borders(bake.charts, map->tiles, light);
@@ -219,7 +225,8 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
     mean += double(luminance(sum));
   }
   map->mean = nodes > 0 ? float(mean / double(nodes)) : 0;
-  map->error = bake_error(bake);
+  const double light = direct.light + gather.light;
+  map->error = light > 0 ? float(std::sqrt(direct.variance + gather.variance) / light) : 0;
   map->layers = layers;
   return map;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "light/bake/bake.h"
+#include "light/bake/filter_nodes.h"
 
 namespace wellspring {
 
@@ -20,7 +21,8 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
 // Means of one layer at the nodes. Nodes without samples, and those that `leaks` names, get their
 // neighbours' in the tile.
 std::vector<vec3> layer_means(const BakeField& field, int layer,
-                              std::span<const uint8_t> leaks = {});
+                              std::span<const uint8_t> leaks = {},
+                              const NodeFilter* filter = nullptr);
 // `coarse` read at the nodes of finer tiles of the same charts, and added to `fine`.
 void add_coarser(std::span<const IlluminationTile> coarse_tiles, std::span<const vec3> coarse,
                  std::span<const IlluminationTile> tiles, std::vector<vec3>& fine);

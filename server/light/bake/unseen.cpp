@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "light/bake/beside.h"
 #include "light/random/sampler.h"
 #include "world/surface.h"
 
@@ -20,16 +21,6 @@ float brightness(const BakeField& field, size_t node) {
   vec3 sum(0);
   for (int p = 0; p < field.layers; p++) sum += field.light_of(node)[p];
   return luminance(sum) / field.count[node];
-}
-
-// Calls visit(node beside) for the up to eight nodes around node `i` of the tile.
-template <class Visit>
-void for_each_beside(const IlluminationTile& tile, uint32_t i, const Visit& visit) {
-  const int columns = tile.columns + 1, rows = tile.rows + 1;
-  const int x = int(i) % columns, y = int(i) / columns;
-  for (int row = std::max(y - 1, 0); row <= std::min(y + 1, rows - 1); row++)
-    for (int column = std::max(x - 1, 0); column <= std::min(x + 1, columns - 1); column++)
-      if (row != y || column != x) visit(uint32_t(row * columns + column));
 }
 
 bool is_seen(const World& world, const BakeCharts& charts, const BakeField& field,
