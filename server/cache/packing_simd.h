@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What cache/packing.h packs and unpacks, of eight points at a time.
 #pragma once
+#include "base/rgb9e5_simd.h"
 #include "base/simd.h"
 
 namespace wellspring {
 
-inline void unpack_rgb9e5(const LaneBits& p, Lanes& r, Lanes& g, Lanes& b) {
-  Lanes unit = lanes_as<Lanes>(((p >> 27) + (127 - 24)) << 23);
-  r = to_float(p & 511u) * unit;
-  g = to_float((p >> 9) & 511u) * unit;
-  b = to_float((p >> 18) & 511u) * unit;
-}
 inline void unpack_albedo(const LaneBits& p, Lanes& r, Lanes& g, Lanes& b) {
   r = to_float(p & 2047u) * (1.0f / 2047);
   g = to_float((p >> 11) & 2047u) * (1.0f / 2047);

@@ -20,6 +20,7 @@ constexpr double tile_nodes = 64;  // of a tile, on average, before refinement
 // Neighbouring nodes that differ by that share of their light, of which a share of the scene's mean
 // counts as there everywhere.
 constexpr float rough_contrast = 0.15f, contrast_floor = 0.25f;
+constexpr float sure_deviations = 4;  // by which they must differ beyond chance
 
 uint64_t node_seed(const Bake& bake, int field, uint32_t tile, uint32_t node) {
   return mix64(bake.settings.seed + mix64(uint64_t(tile) << 32 | node << 1 | uint32_t(field)));
@@ -138,11 +139,19 @@ float contrast_of(const BakeField& field, const IlluminationTile& tile, float fl
     variance = std::max(field.squares[node] / n - mean * mean, 0.0f) / n;
     return mean;
   };
+  // Few samples do not tell each node's noise: that of the whole tile does.
+  double squares = 0, variances = 0;
+  for (uint32_t i = 0; i < tile.nodes(); i++) {
+    if (field.count[tile.first + i] < 2) continue;
+    float variance, mean = mean_of(i, variance);
+    squares += double(mean) * double(mean), variances += double(variance);
+  }
+  const float noise = squares > 0 ? float(variances / squares) : 0;
   float most = 0;
   auto compare = [&](uint32_t a, uint32_t b) {
     if (field.count[tile.first + a] < 2 || field.count[tile.first + b] < 2) return;
     float va, vb, ma = mean_of(a, va), mb = mean_of(b, vb);
-    float differ = std::abs(ma - mb) - 2 * std::sqrt(va + vb);
+    float differ = std::abs(ma - mb) - sure_deviations * std::sqrt(noise * (ma * ma + mb * mb));
     most = std::max(most, differ / (0.5f * (ma + mb) + floor));
   };
   const uint32_t stride = tile.columns + 1u;

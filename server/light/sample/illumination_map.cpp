@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/sample/illumination_map.h"
 
+#include <bit>
+
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/rgb9e5_simd.h"
 
 namespace wellspring {
 
@@ -58,6 +61,58 @@ vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& char
   vec3 low = glm::mix(unpack_rgb9e5(node[0]), unpack_rgb9e5(node[1]), u);
   vec3 high = glm::mix(unpack_rgb9e5(above[0]), unpack_rgb9e5(above[1]), u);
   return glm::mix(low, high, v);
+}
+
+// Of places in one tile.
+static IlluminationLanes eval_tile(const IlluminationMap& map, const IlluminationTile& tile,
+                                   Lanes u, Lanes v) {
+  const Lanes zero{};
+  u = lanes_min(lanes_max(u, zero), all_lanes(1)) * float(tile.columns);
+  v = lanes_min(lanes_max(v, zero), all_lanes(1)) * float(tile.rows);
+  LaneBits i = to_whole(lanes_min(u, all_lanes(float(tile.columns - 1)))),
+           j = to_whole(lanes_min(v, all_lanes(float(tile.rows - 1))));
+  u -= to_float(i), v -= to_float(j);
+  const uint32_t stride = tile.columns + 1u;
+  const LaneBits node = tile.first + j * stride + i;
+  LaneBits words[4];
+  for (int k = 0; k < lane_count; k++) {
+    const uint32_t* at = &map.light[node[k]];
+    words[0][k] = at[0], words[1][k] = at[1];
+    words[2][k] = at[stride], words[3][k] = at[stride + 1];
+  }
+  const Lanes weights[4] = {(1.0f - u) * (1.0f - v), u * (1.0f - v), (1.0f - u) * v, u * v};
+  IlluminationLanes light{};
+  for (int k = 0; k < 4; k++) {
+    Lanes r, g, b;
+    unpack_rgb9e5(words[k], r, g, b);
+    light.red += weights[k] * r, light.green += weights[k] * g, light.blue += weights[k] * b;
+  }
+  return light;
+}
+
+IlluminationLanes eval_illumination(const IlluminationMap& map, const IlluminationChart& chart,
+                                    Lanes u, Lanes v, LaneMask asked) {
+  const Lanes zero{};
+  u = lanes_min(lanes_max(u, zero), all_lanes(float(chart.columns)));
+  v = lanes_min(lanes_max(v, zero), all_lanes(float(chart.rows)));
+  const LaneBits column = to_whole(lanes_min(u, all_lanes(float(chart.columns - 1)))),
+                 row = to_whole(lanes_min(v, all_lanes(float(chart.rows - 1)))),
+                 tile = row * uint32_t(chart.columns) + column;
+  u -= to_float(column), v -= to_float(row);
+  IlluminationLanes light{};
+  // Neighbours mostly lie in one tile, else in two.
+  for (unsigned left = negative_lanes(asked); left != 0;) {
+    const uint32_t first = tile[std::countr_zero(left)];
+    const LaneMask here = lanes_of_bits(left) & (tile == first);
+    left &= ~negative_lanes(here);
+    const IlluminationTile& at = map.tiles[chart.first_tile + first];
+    if (at.first == no_tile) continue;
+    IlluminationLanes one = eval_tile(map, at, u, v);
+    light.red = here ? one.red : light.red;
+    light.green = here ? one.green : light.green;
+    light.blue = here ? one.blue : light.blue;
+  }
+  return light;
 }
 
 }  // namespace wellspring

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/rgb9e5.h"
+#include "base/simd.h"
 #include "world/world.h"
 
 namespace wellspring {
@@ -68,6 +69,14 @@ std::vector<char> mapped_objects(const Scene& scene, const IlluminationMap& map)
 // The light at a place of a chart: scene coordinates, or in tiles as IlluminationChart has them.
 vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec3 place);
 vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at);
+
+// The same of eight places, as `eval_illumination(map, chart, vec2)`; those that are not `asked`
+// give anything finite.
+struct IlluminationLanes {
+  Lanes red, green, blue;
+};
+IlluminationLanes eval_illumination(const IlluminationMap& map, const IlluminationChart& chart,
+                                    Lanes u, Lanes v, LaneMask asked);
 
 // What Sample::known is of light that a map gives: a little more, so that no ratio to it is
 // without bounds.

@@ -329,11 +329,17 @@ uint64_t VisibleRun::known(const IlluminationMap& map, RunKnown& to) const {
     auto along = [&](vec3 way) { return vec2(dot(way, chart.along_u), dot(way, chart.along_v)); };
     const vec2 corner = along(face.corner - chart.origin), edge1 = along(face.edge1),
                edge2 = along(face.edge2);
-    for (int i = begin; i < r.end[p]; i++) {
-      vec3 light =
-          known_light(map, eval_illumination(map, chart, corner + r.u[i] * edge1 + r.v[i] * edge2));
-      to.red[i] = light.x, to.green[i] = light.y, to.blue[i] = light.z;
-      known |= uint64_t(1) << i;
+    const Lanes more = all_lanes(map.least_known());
+    for (int i = begin; i < r.end[p]; i += lane_count) {
+      constexpr Lanes lane{0, 1, 2, 3, 4, 5, 6, 7};
+      const LaneMask here = lane < float(r.end[p] - i);
+      const Lanes a = load_lanes(r.u + i), b = load_lanes(r.v + i);
+      IlluminationLanes light = eval_illumination(map, chart, corner.x + edge1.x * a + edge2.x * b,
+                                                  corner.y + edge1.y * a + edge2.y * b, here);
+      store_lanes(to.red + i, light.red + more);
+      store_lanes(to.green + i, light.green + more);
+      store_lanes(to.blue + i, light.blue + more);
+      known |= uint64_t(negative_lanes(here)) << i;
     }
   }
   return known;
