@@ -41,6 +41,17 @@ function denoiser(metrics) {
       + `${number(one('reconstruction_milliseconds'))} ms`;
 }
 
+function maps(metrics) {
+  const one = (name) => metrics.find((metric) => metric.name === name)?.value;
+  const percent = (share) => `${number(100 * share, 1)} %`;
+  const baked = one('bake_passes_total') > 0
+    ? `; ${one('bake_working') ? 'baking' : 'baked'}: ${number(one('bake_passes_total'))} passes, `
+      + `error ${percent(one('bake_error'))}` : '';
+  if (!one('illumination_map_texels')) return `none yet${baked}`;
+  return `${number(one('illumination_map_texels'))} texels, `
+    + `error ${percent(one('illumination_map_error'))}${baked}`;
+}
+
 async function refresh() {
   const badge = by_id('health');
   try {
@@ -60,6 +71,7 @@ async function refresh() {
         `${number(one('samples_per_second'))} a second while tracing; dropped as invalid: `
           + number(one('bad_samples_total'))],
       ['Learned reconstruction', denoiser(metrics)],
+      ['Illumination maps', maps(metrics)],
       ['Pictures',
         `${number(one('pictures_total'))} (${mebibytes(one('picture_bytes_total') ?? 0)})`],
       ['Connections',
