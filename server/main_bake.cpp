@@ -54,106 +54,123 @@ bool parse_shard(const std::string& text, BakeSettings& settings) {
   return true;
 }
 
-void say(const Bake& bake, double left) {
-  char line[160];
-  std::snprintf(line, sizeof line, "bake: %.0f s left, %llu passes, error %.1f %%", left,
-                (unsigned long long)bake.passes, 100.0 * double(bake_error(bake)));
-  if (isatty(2)) std::cerr << "\r\033[K" << line << std::flush;
-  else std::cerr << line << "\n";
-}
+using Failure = std::runtime_error;  // the input is wrong: said on stderr, exit status 1
 
-void describe(const Bake& bake) {
-  std::cout << bake.charts.surfaces.size() << " charts, " << bake.direct.nodes() << " texels, "
-            << bake.direct.layers
-            << " layers: " << bake.direct.nodes() * 4 * size_t(bake.direct.layers) << " bytes, "
-            << vertex_bytes(bake) << " if the mesh were divided as finely\n";
-}
+// What is baked, and where it is kept.
+struct Bakery {
+  Exhibit exhibit;
+  uint64_t key;
+  World world;
+  std::string file;
 
-[[nodiscard]] int fail(const std::string& what) {
-  std::cerr << "wellspring bake: " << what << "\n";
-  return 1;
-}
-
-// The bake, and unless it is a shard the map that comes of it. Empty, or what is wrong.
-std::string save(const Exhibit& exhibit, const World& world, Bake& bake, const std::string& file,
-                 uint64_t key) {
-  if (!save_bake(bake, file, key)) return file + ": cannot be written";
-  std::shared_ptr<const IlluminationMap> map =
-      bake.settings.shards > 1 ? nullptr : finish_map(world, all_eye_places(exhibit), bake);
-  const std::string maps = std::filesystem::path(file).replace_extension(".maps").string();
-  if (map && !save_map(*map, maps, key)) return maps + ": cannot be written";
-  return {};
-}
-
-int run(const Options& options, const BakeSettings& settings, double seconds) {
-  std::vector<Problem> problems;
-  Exhibit exhibit = read_exhibit(options.package, problems);
-  const std::vector<vec3> places = eye_places(exhibit);
-  const uint64_t key = hash_scene(exhibit.scene);
-  World world(exhibit.scene);
-  std::string file = options.out;
-  if (file.empty()) {
+  Bakery(const Options& options, const BakeSettings& settings)
+      : exhibit(load_exhibit(options.package)),
+        key(hash_scene(exhibit.scene)),
+        world(exhibit.scene),
+        file(options.out) {
+    if (!file.empty()) return;
     file = options.cache + "/" + exhibit.id;
     if (settings.shards > 1)
       file += "." + std::to_string(settings.shard + 1) + "of" + std::to_string(settings.shards);
     file += ".bake";
   }
-  Bake bake;
-  if (!options.merge.empty()) {
-    for (size_t i = 0; i < options.merge.size(); i++) {
-      Bake part;
-      KeyedFile found = load_bake(world, options.merge[i], key, part);
-      if (found == KeyedFile::another_key)
-        return fail(options.merge[i] + ": stale: the scene of " + options.package + " has changed");
-      if (found != KeyedFile::read)
-        return fail(options.merge[i] + (found == KeyedFile::missing ? ": not found" : ": damaged"));
-      if (i == 0) bake = std::move(part);
-      else if (!merge_bake(part, bake))
-        return fail(options.merge[i] + ": not another shard of the same bake as " +
-                    options.merge[0]);
+  void keep(const Bake& bake) const {
+    if (!save_bake(bake, file, key)) throw Failure(file + ": cannot be written");
+  }
+  // And unless it is a shard the map that comes of it.
+  void finish(Bake& bake) const {
+    keep(bake);
+    if (bake.settings.shards > 1) return;
+    const std::string maps = std::filesystem::path(file).replace_extension(".maps").string();
+    std::shared_ptr<const IlluminationMap> map = finish_map(world, all_eye_places(exhibit), bake);
+    if (map && !save_map(*map, maps, key)) throw Failure(maps + ": cannot be written");
+    std::cout << file << ": " << bake.passes << " passes, error "
+              << 100 * (map ? map->error : bake_error(bake)) << " %\n";
+  }
+};
+
+Bake merge(const Bakery& bakery, const Options& options) {
+  Bake whole;
+  for (size_t i = 0; i < options.merge.size(); i++) {
+    const std::string& file = options.merge[i];
+    Bake part;
+    switch (load_bake(bakery.world, file, bakery.key, part)) {
+      case KeyedFile::read: break;
+      case KeyedFile::missing: throw Failure(file + ": not found");
+      case KeyedFile::damaged: throw Failure(file + ": damaged");
+      case KeyedFile::another_key:
+        throw Failure(file + ": stale: the scene of " + options.package + " has changed");
     }
-    if (bake.settings.shards > 1)
-      return fail("shards are missing: " + std::to_string(bake.shards_done.size()) + " of " +
-                  std::to_string(bake.settings.shards) + " are there");
-    if (std::string wrong = save(exhibit, world, bake, file, key); !wrong.empty())
-      return fail(wrong);
-    std::cout << file << ": " << bake.passes << " passes, error " << 100 * bake_error(bake)
-              << " %\n";
-    return 0;
+    if (i == 0) whole = std::move(part);
+    else if (!merge_bake(part, whole))
+      throw Failure(file + ": not another shard of the same bake as " + options.merge[0]);
   }
-  bool fresh = true;
-  if (options.resume) {
-    KeyedFile found = load_bake(world, file, key, bake);
-    if (found == KeyedFile::another_key)
-      std::cerr << "wellspring bake: " << file
-                << ": stale: the scene has changed; it begins anew\n";
-    else if (found == KeyedFile::damaged)
-      std::cerr << "wellspring bake: " << file << ": damaged; it begins anew\n";
-    fresh = found != KeyedFile::read;
-    if (!fresh &&
-        (bake.settings.shard != settings.shard || bake.settings.shards != settings.shards))
-      return fail(file + ": is of another shard");
+  if (whole.settings.shards > 1)
+    throw Failure("shards are missing: " + std::to_string(whole.shards_done.size()) + " of " +
+                  std::to_string(whole.settings.shards) + " are there");
+  return whole;
+}
+
+// Where the last one ended, if that is wanted and possible.
+Bake begin(const Bakery& bakery, const Options& options, const BakeSettings& settings) {
+  Bake bake;
+  KeyedFile found =
+      options.resume ? load_bake(bakery.world, bakery.file, bakery.key, bake) : KeyedFile::missing;
+  if (found == KeyedFile::another_key)
+    std::cerr << "wellspring bake: " << bakery.file
+              << ": stale: the scene has changed; it begins anew\n";
+  if (found == KeyedFile::damaged)
+    std::cerr << "wellspring bake: " << bakery.file << ": damaged; it begins anew\n";
+  if (found != KeyedFile::read) {
+    bake = begin_bake(bakery.world, eye_places(bakery.exhibit), settings);
+    bake.source = options.package;
+  } else if (bake.settings.shard != settings.shard || bake.settings.shards != settings.shards) {
+    throw Failure(bakery.file + ": is of another shard");
   }
-  if (fresh) bake = begin_bake(world, places, settings);
-  bake.source = options.package;
-  const BakeScene scene = make_bake_scene(world, places);
-  const double began = seconds_now();
-  double said = 0, saved = began;
-  while (!interrupted && seconds_now() - began < seconds) {
-    const double until = std::min(seconds_now() + say_every, began + seconds);
+  return bake;
+}
+
+void say(const Bake& bake, double done, double seconds) {
+  constexpr int width = 30;
+  char line[160], bar[width + 1] = {};
+  for (int i = 0; i < width; i++) bar[i] = double(i) < width * done / seconds ? '#' : '.';
+  std::snprintf(line, sizeof line, "bake [%s] %.0f s left, %llu passes, error %.1f %%", bar,
+                std::max(seconds - done, 0.0), (unsigned long long)bake.passes,
+                100.0 * double(bake_error(bake)));
+  if (isatty(2)) std::cerr << "\r\033[K" << line << std::flush;
+  else std::cerr << line << "\n";
+}
+
+void go_on_for(double seconds, const Bakery& bakery, Bake& bake) {
+  const BakeScene scene = make_bake_scene(bakery.world, eye_places(bakery.exhibit));
+  const double began = seconds_now(), pause = isatty(2) ? say_every : 10 * say_every;
+  double said = -pause, saved = began;
+  for (double now = began; !interrupted && now - began < seconds; now = seconds_now()) {
+    const double until = std::min(now + say_every, began + seconds);
     go_on(scene, bake, [&] { return interrupted || seconds_now() >= until; });
-    if (double now = seconds_now(); now - said >= (isatty(2) ? say_every : 10 * say_every))
-      say(bake, seconds - (now - began)), said = now;
-    if (seconds_now() - saved < save_every) continue;
-    if (!save_bake(bake, file, key)) return fail(file + ": cannot be written");
-    saved = seconds_now();
+    if (now - said >= pause) say(bake, now - began, seconds), said = now;
+    if (now - saved < save_every) continue;
+    bakery.keep(bake);
+    saved = now;
   }
   if (isatty(2)) std::cerr << "\r\033[K";
-  if (std::string wrong = save(exhibit, world, bake, file, key); !wrong.empty()) return fail(wrong);
-  describe(bake);
-  std::cout << file << ": " << bake.passes << " passes, error " << 100 * bake_error(bake) << " %"
-            << (interrupted ? ", interrupted: --resume goes on" : "") << "\n";
-  return 0;
+}
+
+void run(const Options& options, const BakeSettings& settings, double seconds) {
+  const Bakery bakery(options, settings);
+  Bake bake;
+  if (!options.merge.empty()) {
+    bake = merge(bakery, options);
+  } else {
+    bake = begin(bakery, options, settings);
+    go_on_for(seconds, bakery, bake);
+    const size_t texels = bake.direct.nodes(), layers = size_t(bake.direct.layers);
+    std::cout << bake.charts.surfaces.size() << " charts, " << texels << " texels, " << layers
+              << " layers: " << texels * 4 * layers << " bytes, " << vertex_bytes(bake)
+              << " at vertices of a mesh as fine\n";
+    if (interrupted) std::cout << "interrupted: --resume goes on\n";
+  }
+  bakery.finish(bake);
 }
 
 }  // namespace
@@ -178,7 +195,10 @@ int main(int argc, char** argv) {
   if (options.package.empty() && !options.merge.empty())
     options.package = read_bake_source(options.merge.front());
   if (options.package.empty()) {
-    if (!options.merge.empty()) return fail(options.merge.front() + ": not a bake");
+    if (!options.merge.empty()) {
+      std::cerr << "wellspring bake: " << options.merge.front() << ": not a bake\n";
+      return 1;
+    }
     std::cerr << "a folder such as content/castle is expected\n";
     return 2;
   }
@@ -195,8 +215,10 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
   try {
-    return run(options, settings, seconds);
+    run(options, settings, seconds);
+    return 0;
   } catch (const std::exception& error) {
-    return fail(error.what());
+    std::cerr << "wellspring bake: " << error.what() << "\n";
+    return 1;
   }
 }
