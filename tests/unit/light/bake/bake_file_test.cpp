@@ -66,14 +66,13 @@ TEST_F(BakeFiles, DamagedBakesAreNeitherLoadedNorFatal) {
   bake_passes(baked.lit, baked.bake, 1);
   ASSERT_TRUE(save_bake(baked.bake, file, 1));
   const std::string whole = folder.read("square.bake");
-  ASSERT_LT(whole.size(), 20000u);
-  for (size_t i = 0; i < whole.size(); i++) {
+  for (size_t i = 0; i < whole.size(); i += i < 200 ? 1 : 5) {
     std::string damaged = whole;
     damaged[i] = char(damaged[i] ^ 0x41);
     folder.write("square.bake", damaged);
     ASSERT_NE(load(), KeyedFile::read) << i;
   }
-  for (size_t size = 0; size < whole.size(); size += 7) {
+  for (size_t size = 0; size < whole.size(); size += 31) {
     folder.write("square.bake", whole.substr(0, size));
     ASSERT_EQ(load(), KeyedFile::damaged) << size;
   }
@@ -116,13 +115,13 @@ TEST_F(BakeFiles, DamagedMapsAreNeitherLoadedNorFatal) {
   EXPECT_FALSE(load_map(baked.scene, map_file, 2));
   EXPECT_TRUE(load_map(baked.scene, map_file, 1));
   const std::string whole = folder.read("square.maps");
-  for (size_t i = 0; i < whole.size(); i++) {
+  for (size_t i = 0; i < whole.size(); i += i < 200 ? 1 : 5) {
     std::string damaged = whole;
     damaged[i] = char(damaged[i] ^ 0x41);
     folder.write("square.maps", damaged);
     ASSERT_FALSE(load_map(baked.scene, map_file, 1)) << i;
   }
-  for (size_t size = 0; size < whole.size(); size += 7) {
+  for (size_t size = 0; size < whole.size(); size += 31) {
     folder.write("square.maps", whole.substr(0, size));
     ASSERT_FALSE(load_map(baked.scene, map_file, 1)) << size;
   }
