@@ -85,8 +85,7 @@ std::string save(const Bake& bake, const std::string& file, uint64_t key) {
 }
 
 int run(const Options& options, const BakeSettings& settings, double seconds) {
-  std::vector<Problem> problems;
-  Exhibit exhibit = read_exhibit(options.package, problems);
+  const Exhibit exhibit = load_exhibit(options.package);
   const std::vector<vec3> places = eye_places(exhibit);
   const uint64_t key = hash_scene(exhibit.scene);
   World world(exhibit.scene);
@@ -137,7 +136,7 @@ int run(const Options& options, const BakeSettings& settings, double seconds) {
   const BakeScene scene = make_bake_scene(world, places);
   const double began = seconds_now();
   double said = 0, saved = began;
-  while (!interrupted && seconds_now() - began < seconds) {
+  while (!interrupted && bake.charts.tiles > 0 && seconds_now() - began < seconds) {
     const double until = std::min(seconds_now() + say_every, began + seconds);
     go_on(scene, bake, [&] { return interrupted || seconds_now() >= until; });
     if (double now = seconds_now(); now - said >= (isatty(2) ? say_every : 10 * say_every))
