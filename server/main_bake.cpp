@@ -49,7 +49,7 @@ bool parse_shard(const std::string& text, BakeSettings& settings) {
   if (std::sscanf(text.c_str(), "%d/%d%n", &shard, &shards, &used) != 2 ||
       size_t(used) != text.size() || shards < 1 || shards > 4096 || shard < 0 || shard > shards)
     return false;
-  settings.shard = shard % shards;  // counted from 0 or from 1
+  settings.shard = (shard + shards - 1) % shards;  // counted from 1, or from 0
   settings.shards = shards;
   return true;
 }
