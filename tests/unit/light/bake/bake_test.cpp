@@ -204,6 +204,26 @@ TEST(Bake, NodesAreFinerAtTheEdgeOfAShadow) {
   EXPECT_LE(baked.bake.direct.nodes(), 8000u);
 }
 
+// Walks that end on cached radiance find the light that paths find, lamp by lamp.
+TEST(Bake, CachedRadianceIsTheLightOfPaths) {
+  Scene scene = make_cornell_box();
+  scene.lights.push_back(point_light({-0.1f, 0.3f, -0.1f}, {0.1f, 0.2f, 0.3f}));
+  scene.lamps.push_back({"bulb", {0}, {}});
+  const BakeSettings few{.gather_nodes = 200, .direct_nodes = 400};
+  Baked paths(scene, few), cached(scene, few);
+  const vec3 eye(0, 0.27f, 0.3f);
+  BakeScene with_grid = make_bake_scene(cached.world, std::span(&eye, 1));
+  ASSERT_TRUE(with_grid.lights.grid);
+  bake_passes(with_grid, cached.bake, 32);
+  bake_passes(paths.lit, paths.bake, 32);
+  for (int layer : {0, 1}) {
+    vec3 a(0), b(0);
+    for (vec3 light : layer_means(cached.bake.gather, layer)) a += light;
+    for (vec3 light : layer_means(paths.bake.gather, layer)) b += light;
+    for (int c = 0; c < 3; c++) EXPECT_NEAR(a[c] / b[c], 1, 0.04) << layer;
+  }
+}
+
 Scene make_two_lamps(bool first, bool second) {
   Scene scene = make_cornell_box();
   for (Material& m : scene.materials)

@@ -131,6 +131,30 @@ TEST(KnownLight, GatheredSamplesOfCoatedSurfacesHaveTheMapsLightBeneathTheCoat) 
   EXPECT_GT(plain, coated / 3);
 }
 
+// What a bake finds beneath a coat, read again: as bright as traced, from above and at a slant.
+TEST(KnownLight, BakedCoatedSurfacesAreAsBrightAsTracedOnes) {
+  Scene scene = empty_scene();
+  Material coated = plastic(vec3(0.6f), 0.4f);
+  coated.clearcoat = 1, coated.clearcoat_roughness = 0.1f;
+  test::add_fan(scene, add_material(scene, coated), {-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
+  scene.lights.push_back(test::point_light({0.2f, 1, 0.1f}, vec3(3)));
+  scene.environment.radiance = vec3(0.5f);
+  test::Baked baked(scene, {.gather_nodes = 300, .direct_nodes = 600});
+  Lights lights = make_lights(baked.world), mapped = lights;
+  mapped.maps = baked.map(64);
+  for (vec3 eye : {vec3(0, 2, 0.01f), vec3(0, 1, 2), vec3(0, 0.3f, 2)}) {
+    View view = make_view_towards(scene, dvec3(eye), {0, 0, 0}, {0, 1, 0}, 0.3f, 24, 24);
+    vec3 traced(0), read(0);
+    for (int i = 0; i < 24 * 24 * 64; i++) {
+      Request request = pixel_request(view, 5, i % 24, i / 24 % 24, i / 576);
+      const Technique &path = *find_technique("path"), &gather = *find_technique("gather");
+      traced += path.trace(baked.world, lights, {}, request).radiance();
+      read += gather.trace(baked.world, mapped, {}, request).radiance();
+    }
+    EXPECT_NEAR(read.y / traced.y, 1, 0.03) << eye.y;
+  }
+}
+
 TEST(KnownLight, SurfacesWithoutAChartAreAsBefore) {
   Room room;
   for (const char* technique : {"path", "gather"}) {
