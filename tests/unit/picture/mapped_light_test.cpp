@@ -22,8 +22,8 @@ struct MappedStage {
   Stage stage{make_cornell_box()};
   View view = cornell_view(stage.scene, width, height);
   std::shared_ptr<const IlluminationMap> map;
-  explicit MappedStage(float scale = 1)
-      : map(test::paint_map(*stage.world, 0.03f, {[=](vec3 p) { return scale * painted(p); }})) {
+  explicit MappedStage(const test::PaintedLight& light = painted)
+      : map(test::paint_map(*stage.world, 0.03f, {light})) {
     stage.lights.maps = map;
   }
 
@@ -79,6 +79,18 @@ TEST(MappedLight, IsThereBeforeTheFirstSample) {
   }
 }
 
+// A fiftieth of the mean light is no more than that.
+TEST(MappedLight, LeavesTheDarkDark) {
+  MappedStage mapped([](vec3 p) { return vec3(p.x > 0 ? 2.0f : 0.02f); });
+  for (const char* technique : {"path", "gather"})
+    for (PictureOf kind : kinds) {
+      DrawnVisit visit = mapped.visit(technique);
+      const int budget = technique[0] == 'g' ? pixels / 8 : 0;
+      for (int i = 0; i < 4; i++) visit.step(mapped.stage, mapped.view, budget, kind);
+      EXPECT_LT(mapped.wrong(visit.frame, 1, 0.05f), 0.1) << technique << int(kind);
+    }
+}
+
 // The eye sees at once what the frame holds.
 TEST(MappedLight, IsThereForTheEyeToo) {
   MappedStage mapped;
@@ -128,7 +140,7 @@ TEST(MappedLight, IsDarkerWherePointsSaySo) {
 
 // Whatever the map says, and were it ten times too much, many samples are right.
 TEST(MappedLight, ConvergesToTheLightThereIs) {
-  MappedStage mapped(10);
+  MappedStage mapped([](vec3 p) { return 10.0f * painted(p); });
   DrawnVisit visit = mapped.visit("path");
   for (int i = 0; i < 40; i++) visit.step(mapped.stage, mapped.view, pixels, PictureOf::still);
   mapped.stage.lights.maps = nullptr;
