@@ -49,7 +49,7 @@ bool parse_shard(const std::string& text, BakeSettings& settings) {
   if (std::sscanf(text.c_str(), "%d/%d%n", &shard, &shards, &used) != 2 ||
       size_t(used) != text.size() || shards < 1 || shards > 4096 || shard < 0 || shard > shards)
     return false;
-  settings.shard = shard % shards;  // counted from 0 or from 1
+  settings.shard = (shard + shards - 1) % shards;  // counted from 1, or from 0
   settings.shards = shards;
   return true;
 }
@@ -145,7 +145,8 @@ void go_on_for(double seconds, const Bakery& bakery, Bake& bake) {
   const BakeScene scene = make_bake_scene(bakery.world, eye_places(bakery.exhibit));
   const double began = seconds_now(), pause = isatty(2) ? say_every : 10 * say_every;
   double said = -pause, saved = began;
-  for (double now = began; !interrupted && now - began < seconds; now = seconds_now()) {
+  for (double now = began; !interrupted && bake.charts.tiles > 0 && now - began < seconds;
+       now = seconds_now()) {
     const double until = std::min(now + say_every, began + seconds);
     go_on(scene, bake, [&] { return interrupted || seconds_now() >= until; });
     if (now - said >= pause) say(bake, now - began, seconds), said = now;

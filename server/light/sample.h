@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a technique is asked (Request) and what it answers (Sample). The answer keeps apart what the
 // render cache treats differently: reflectance, light that is smooth and does not depend on the
-// view, and the rest. Radiance towards the eye = albedo * smooth * known + rest.
+// view, and the rest. Radiance towards the eye = albedo * (smooth * known - raised) + rest.
 #pragma once
 #include <cstdint>
 
@@ -49,8 +49,9 @@ struct Sample {
   // Where an illumination map tells the diffuse light of the surface (sample_mapped): that light.
   // `smooth` counts in multiples of it, and the light of punctual lights is part of it.
   vec3 known{1};
+  float raised = 0;  // `known` is more than the map's light by that, and `smooth` counts it, too
   uint8_t flags = 0;
-  vec3 radiance() const { return albedo * smooth * known + rest; }
+  vec3 radiance() const { return albedo * max(smooth * known - vec3(raised), vec3(0)) + rest; }
 };
 
 }  // namespace wellspring

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "light/sample/illumination_map.h"
 #include "picture/cell_rows.h"
 #include "picture/drawn_planes.h"
 #include "picture/drawn_run.h"
@@ -87,6 +88,7 @@ struct Drawn {
   Color albedo;
   Color unit{all_lanes(1), all_lanes(1), all_lanes(1)};  // Sample::known
   LaneMask mapped{};                                     // where a map tells it
+  Lanes raised{};                                        // Sample::raised
 };
 
 // Own light of the pixels, as far as their light pixel's point lies on the same surface.
@@ -335,14 +337,15 @@ Shown Composer<Scale>::light_part(const VisibleRun& run, const RunPixels& p,
   if (moves != here) {
     if (unsigned maps = bits_at(mapped.pixels, i)) {
       d.mapped = lanes_of_bits(maps);
+      d.raised = keep_lanes(d.mapped, all_lanes(kept.maps->least_known()));
       d.unit = {d.mapped ? lanes_at(mapped.unit.red, i) : d.unit.r,
                 d.mapped ? lanes_at(mapped.unit.green, i) : d.unit.g,
                 d.mapped ? lanes_at(mapped.unit.blue, i) : d.unit.b};
     }
     light_run(p, run, rows, emitting, n, part, d);
-    shown.color = {positive_lanes(d.albedo.r * q.smooth.r * d.unit.r + q.rest.r),
-                   positive_lanes(d.albedo.g * q.smooth.g * d.unit.g + q.rest.g),
-                   positive_lanes(d.albedo.b * q.smooth.b * d.unit.b + q.rest.b)};
+    shown.color = {positive_lanes(d.albedo.r * (q.smooth.r * d.unit.r - d.raised) + q.rest.r),
+                   positive_lanes(d.albedo.g * (q.smooth.g * d.unit.g - d.raised) + q.rest.g),
+                   positive_lanes(d.albedo.b * (q.smooth.b * d.unit.b - d.raised) + q.rest.b)};
     shown.samples = q.samples;
   }
   if (moves) put_moving(p, moving.light, i, lanes_of_bits(moves), shown);

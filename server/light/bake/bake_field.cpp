@@ -208,8 +208,8 @@ std::vector<TileCells> choose_cells(const World& world, const BakeCharts& charts
   const float least = std::max(nearest_eye * sorted[sorted.size() / 2], 1e-12f);
   float low = 1e-6f, high = 1e3f;  // cells as large as that, a metre away
   std::vector<TileCells> chosen = cells;
-  for (int step = 0; step < 40; step++) {
-    float size = std::sqrt(low * high);
+  for (int step = 0; step <= 40; step++) {
+    float size = step < 40 ? std::sqrt(low * high) : high;  // which was not too fine
     for (size_t t = 0; t < cells.size(); t++) {
       if (cells[t].columns == 0) continue;
       const IlluminationChart& chart = charts.places->charts[at[t].chart];

@@ -190,17 +190,13 @@ void match_seams(const BakeCharts& charts, std::span<const IlluminationTile> til
     }
 }
 
-std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<const vec3> eyes,
-                                                  Bake& bake) {
-  if (bake.passes == 0) return nullptr;
+static std::shared_ptr<const IlluminationMap> finish(const Bake& bake,
+                                                     std::span<const uint8_t> direct_leaks,
+                                                     std::span<const uint8_t> gather_leaks) {
   auto map = std::make_shared<IlluminationMap>();
   map->places = bake.charts.places;
   map->tiles = bake.direct.tiles;
   const size_t nodes = bake.direct.nodes();
-  const std::vector<uint8_t> direct_leaks = find_leaks(world, bake.charts, bake.places, eyes,
-                                                       bake.direct, bake.direct_sight),
-                             gather_leaks = find_leaks(world, bake.charts, bake.places, eyes,
-                                                       bake.gather, bake.gather_sight);
   const NodeFilter direct = make_node_filter(bake.direct, direct_leaks),
                    gather = make_node_filter(bake.gather, gather_leaks);
   auto layers = std::make_shared<std::vector<std::vector<uint32_t>>>(size_t(bake.direct.layers));
@@ -229,6 +225,20 @@ std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<
   map->error = light > 0 ? float(std::sqrt(direct.variance + gather.variance) / light) : 0;
   map->layers = layers;
   return map;
+}
+
+std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake) {
+  return bake.passes == 0 ? nullptr : finish(bake, {}, {});
+}
+
+std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<const vec3> eyes,
+                                                  Bake& bake) {
+  if (bake.passes == 0) return nullptr;
+  const std::vector<uint8_t> direct = find_leaks(world, bake.charts, bake.places, eyes, bake.direct,
+                                                 bake.direct_sight),
+                             gather = find_leaks(world, bake.charts, bake.places, eyes, bake.gather,
+                                                 bake.gather_sight);
+  return finish(bake, direct, gather);
 }
 
 }  // namespace wellspring

@@ -16,6 +16,8 @@ namespace wellspring {
 // `eyes`, scene coordinates: what no eye can see does not count where it is unlike what one sees.
 std::shared_ptr<const IlluminationMap> finish_map(const World& world, std::span<const vec3> eyes,
                                                   Bake& bake);
+// The same where everything may be seen.
+std::shared_ptr<const IlluminationMap> finish_map(const Bake& bake);
 
 // Its parts.
 // Means of one layer at the nodes. Nodes without samples, and those that `leaks` names, get their

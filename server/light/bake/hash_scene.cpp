@@ -33,7 +33,7 @@ void add_material(const Scene& scene, const Material& m, std::vector<char>& know
            m.alpha_cutoff, m.double_sided, m.unlit, m.ior, m.transmission, m.thickness,
            m.attenuation_color, m.attenuation_distance, m.dispersion, m.specular, m.specular_color,
            m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, m.sheen_color,
-           m.sheen_roughness, m.anisotropy, m.anisotropy_rotation);
+           m.sheen_roughness, m.anisotropy, m.anisotropy_rotation, m.repaints);
   each_texture(m, [&](const TextureRef& reference) {
     hash.add(reference.texture, reference.uv_set, reference.uv_transform);
     if (reference.texture < 0) return;

@@ -55,7 +55,7 @@ struct IlluminationMap {
   std::shared_ptr<const std::vector<std::vector<uint32_t>>> layers;
   float error = 1;  // estimated: standard error of the nodes over their mean light
   float mean = 0;   // luminance of the mean light
-  float least_known() const { return 0.01f * mean; }  // see known_light()
+  float least_known() const { return mean > 0 ? 0.01f * mean : 1.0f; }  // see known_light()
 };
 size_t memory_bytes(const IlluminationMap& map);
 
@@ -78,8 +78,8 @@ struct IlluminationLanes {
 IlluminationLanes eval_illumination(const IlluminationMap& map, const IlluminationChart& chart,
                                     Lanes u, Lanes v, LaneMask asked);
 
-// What Sample::known is of light that a map gives: a little more, so that no ratio to it is
-// without bounds.
+// What Sample::known is of light that a map gives: a little more (Sample::raised), so that no ratio
+// to it is without bounds.
 inline vec3 known_light(const IlluminationMap& map, vec3 light) {
   return light + vec3(map.least_known());
 }

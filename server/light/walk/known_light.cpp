@@ -32,6 +32,7 @@ KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hi
   known.known = true;
   known.light = eval_illumination(*transport.maps, places.charts[chart], position);
   known.unit = known_light(*transport.maps, known.light);
+  known.raised = transport.maps->least_known();
   return known;
 }
 

@@ -8,8 +8,9 @@ namespace wellspring {
 
 struct KnownLight {
   bool known = false;
-  vec3 light{0};  // Sample::smooth times Sample::known, of a surface without a coat
-  vec3 unit{1};   // Sample::known
+  vec3 light{0};     // of a surface without a coat
+  vec3 unit{1};      // Sample::known
+  float raised = 0;  // Sample::raised
 };
 // Of what a ray has met at `position` in air.
 KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
@@ -18,9 +19,13 @@ KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hi
 // close to the way from a punctual light.
 bool may_be_shaded(const Transport& transport, vec3 position);
 
-// Light as a multiple of the known: a little is added to both, so that the dark has no noise.
-inline vec3 in_units(const Transport& transport, const KnownLight& known, vec3 light) {
-  return (light + vec3(transport.maps->least_known())) / known.unit;
+// Says in the sample that light is counted in multiples of the known; `light` is what it has
+// found. A little is added to both, so that the dark has no noise.
+inline void tell_in_units(const KnownLight& known, vec3 light, Sample& sample) {
+  sample.known = known.unit;
+  sample.raised = known.raised;
+  sample.flags |= sample_mapped;
+  sample.smooth = (light + vec3(known.raised)) / known.unit;
 }
 
 }  // namespace wellspring

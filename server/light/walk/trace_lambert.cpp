@@ -106,11 +106,7 @@ void end_walk(Batch& batch, int lane, LambertWalks& walks) {
   Sample& sample = batch.samples[walks.sample[lane]];
   sample.smooth = walks.smooth.at(lane);
   sample.rest = walks.rest.at(lane);
-  if (walks.known >> lane & 1) {
-    sample.known = walks.map[lane].unit;
-    sample.flags |= sample_mapped;
-    sample.smooth = in_units(batch.transport, walks.map[lane], sample.smooth);
-  }
+  if (walks.known >> lane & 1) tell_in_units(walks.map[lane], sample.smooth, sample);
   walks.held &= ~(1u << lane);
 }
 

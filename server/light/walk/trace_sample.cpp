@@ -77,11 +77,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
       add_gloss(follow(transport, rules, next, sampler), kept.other_gloss);
     }
   }
-  if (known.known) {
-    sample.known = known.unit;
-    sample.flags |= sample_mapped;
-    sample.smooth = in_units(transport, known, sample.smooth);
-  }
+  if (known.known) tell_in_units(known, sample.smooth, sample);
 }
 
 // The same where that surface is Lambertian: one lobe and no gloss.
@@ -97,14 +93,8 @@ void shade_first_lambert(const Transport& transport, const WalkRules& rules, Wal
   KnownLight known;
   if (walk.media.here.count == 0)
     known = find_known_light(transport, walk.ray, hit, surface.position);
-  if (known.known) {
-    sample.known = known.unit;
-    sample.flags |= sample_mapped;
-    if (rules.reads_maps && !may_be_shaded(transport, surface.position)) {
-      sample.smooth = vec3(1);
-      return;
-    }
-  }
+  if (known.known && rules.reads_maps && !may_be_shaded(transport, surface.position))
+    return tell_in_units(known, known.light, sample);
   const uint32_t base = Dimensions::first_surface;
   sampler.seek(base);
   DirectLight direct = sample_direct_light(transport, walk, surface, lobe, true, sampler);
@@ -120,7 +110,7 @@ void shade_first_lambert(const Transport& transport, const WalkRules& rules, Wal
     sampler.seek(Dimensions::walk);
     sample.smooth += follow(transport, rules, walk, sampler);
   }
-  if (known.known) sample.smooth = in_units(transport, known, sample.smooth);
+  if (known.known) tell_in_units(known, sample.smooth, sample);
 }
 
 }  // namespace

@@ -66,7 +66,8 @@ void Baker::live() {
     log::info("{} is stale: the scene has changed; it is baked anew", file);
   if (found == KeyedFile::damaged) log::warn("{} is damaged; it is baked anew", file);
   if (found != KeyedFile::read || bake.settings.shards > 1)
-    bake = begin_bake(world, settings_.places);
+    bake = begin_bake(world, settings_.places, settings_.bake);
+  if (bake.charts.tiles == 0) return;  // nothing is diffuse
   bake.source = settings_.source;
   float error = bake.passes > 0 ? bake_error(bake) : 1, shown = std::min(error, worth_showing);
   double saved = seconds_now();

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "light/bake/bake.h"
 #include "light/sample/illumination_map.h"
 #include "light/sample/lights.h"
 
@@ -20,6 +21,7 @@ struct BakerSettings {
   std::vector<vec3> places;    // scene coordinates: where eyes will be
   std::vector<vec3> eyes;      // and wherever they may be
   double least_error = 0.004;  // of the mean light: good enough for ever
+  BakeSettings bake;           // of one that is begun
 };
 
 struct BakerStatus {
@@ -44,7 +46,7 @@ class Baker {
 
  private:
   void live();
-  void publish(const World& world, struct Bake& bake, uint64_t key);
+  void publish(const World& world, Bake& bake, uint64_t key);
   bool wait_until_allowed();
   const Scene& scene_;
   std::shared_ptr<const RadianceGrid> grid_;

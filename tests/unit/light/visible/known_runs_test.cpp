@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a map says of a drawn picture's pixels is what it says of the places that rays meet there.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "light/visible/visibility.h"
+#include "unit/light/bake/bake_cases.h"
+
+namespace wellspring {
+namespace {
+
+using namespace scenes;
+
+constexpr int width = 100, height = 75;
+
+// The Cornell box, a smooth ball in it, a mirror, a two-sided sheet, and a ball that moves.
+Scene make_hall() {
+  Scene scene = make_cornell_box();
+  add_mesh(scene, sphere_mesh(1, 0.09f, 12), "ball", at({0.12f, 0.4f, -0.1f}));
+  add_mesh(scene, sphere_mesh(add_material(scene, metal(vec3(0.9f), 0.02f)), 0.07f), "mirror",
+           at({-0.15f, 0.07f, -0.08f}));
+  Material sheet = diffuse(vec3(0.5f));
+  sheet.double_sided = true;
+  add_quad(scene, add_material(scene, sheet), {-0.25f, 0.3f, -0.3f}, {0, 0.2f, 0}, {0.2f, 0, 0},
+           "sheet");  // seen from behind
+  return scene;
+}
+
+TEST(KnownRuns, AreLitAsThePlacesThatRaysMeet) {
+  Scene scene = make_hall();
+  scene.objects.push_back("moving");
+  Mesh moving = sphere_mesh(1, 0.06f, 12);
+  for (vec3& p : moving.positions) p += vec3(0, 0.15f, 0);
+  World world(scene, {moving}, {uint32_t(scene.objects.size() - 1)});
+  world.commit();
+  Lights lights = make_lights(world);
+  VisibilityPass visibility(world, lights);
+  auto map = test::paint_map(world, 0.03f, {[](vec3 p) { return vec3(1) + p; }});
+  View view = cornell_view(scene, width, height);
+  std::atomic<int> known = 0, unknown = 0, differ = 0, moved = 0;
+  visibility.see(view, vec2(0.5f), [&](const VisibleRun& run) {
+    RunKnown told;
+    const uint64_t bits = run.known(*map, told);
+    for (int i = 0; i < run.count; i++) {
+      Ray ray = view_ray(view, float(run.x + i) + 0.5f, float(run.y) + 0.5f);
+      Hit hit = world.intersect(ray);
+      if (!hit.valid() || world.object_of(hit.instance) != run.object[i]) continue;  // an edge
+      const bool says = bits >> i & 1;
+      bool front = dot(eval_face(world, hit.instance, hit.triangle), ray.direction) < 0;
+      bool moves = world.is_moving(hit.instance);
+      uint32_t chart = moves ? no_chart : map->places->find(hit.instance, hit.triangle, front);
+      moved += moves;
+      EXPECT_EQ(says, chart != no_chart) << scene.objects[run.object[i]];
+      (says ? known : unknown)++;
+      if (!says || chart == no_chart) continue;
+      vec3 light = known_light(
+          *map,
+          eval_illumination(*map, map->places->charts[chart],
+                            eval_position(world, hit.instance, hit.triangle, hit.barycentric)));
+      vec3 off = vec3(told.red[i], told.green[i], told.blue[i]) - light;
+      differ += !(length(off) < 0.01f);
+    }
+  });
+  EXPECT_GT(known, width * height / 3);
+  EXPECT_GT(unknown, 20);
+  EXPECT_GT(moved, 20);
+  // Where a triangle's edge runs through the middle of a pixel.
+  EXPECT_LE(differ, known / 500);
+}
+
+}  // namespace
+}  // namespace wellspring

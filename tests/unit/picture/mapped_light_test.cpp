@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures in the light of an illumination map, with few points or none.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "unit/light/bake/bake_cases.h"
+#include "unit/picture/drawn_visit.h"
+
+namespace wellspring {
+namespace {
+
+using namespace scenes;
+
+constexpr int width = 120, height = 90, pixels = width * height;
+constexpr PictureOf kinds[] = {PictureOf::moving, PictureOf::moving_fine, PictureOf::still};
+
+vec3 painted(vec3 place) { return {0.5f + place.x, 0.2f + 0.5f * place.y, 0.2f - 0.3f * place.z}; }
+
+struct MappedStage {
+  Stage stage{make_cornell_box()};
+  View view = cornell_view(stage.scene, width, height);
+  std::shared_ptr<const IlluminationMap> map;
+  explicit MappedStage(const test::PaintedLight& light = painted)
+      : map(test::paint_map(*stage.world, 0.03f, {light})) {
+    stage.lights.maps = map;
+  }
+
+  // What the map makes of a pixel's middle; negative: it does not know it, or it emits light.
+  vec3 expected(int x, int y) const {
+    Ray ray = view_ray(view, float(x) + 0.5f, float(y) + 0.5f);
+    Hit hit = stage.world->intersect(ray);
+    if (!hit.valid()) return vec3(-1);
+    const Material& material = stage.world->material_of(hit.instance);
+    bool front = dot(eval_face(*stage.world, hit.instance, hit.triangle), ray.direction) < 0;
+    uint32_t chart = map->places->find(hit.instance, hit.triangle, front);
+    if (chart == no_chart || material.emission != vec3(0)) return vec3(-1);
+    vec3 place = eval_position(*stage.world, hit.instance, hit.triangle, hit.barycentric);
+    return vec3(material.base_color) * eval_illumination(*map, map->places->charts[chart], place);
+  }
+  // Pixels that are not within `share` of `scale` times what the map says; about edges many are
+  // mixed.
+  double wrong(const Frame& frame, float scale, float share) const {
+    int wrong = 0, known = 0;
+    for (int y = 0; y < height; y++)
+      for (int x = 0; x < width; x++) {
+        vec3 wanted = scale * expected(x, y), shown = frame.color[size_t(y * width + x)];
+        if (wanted.x < 0) continue;
+        known++;
+        EXPECT_GT(max_component(shown), 0) << x << ", " << y;
+        wrong += !(length(shown - wanted) < share * length(wanted));
+      }
+    EXPECT_GT(known, pixels / 3);
+    return double(wrong) / known;
+  }
+  DrawnVisit visit(const char* technique) const {
+    DrawnVisit visit;
+    visit.compositor.set_maps(map);
+    visit.technique = technique;
+    return visit;
+  }
+};
+
+TEST(MappedLight, IsThereBeforeTheFirstSample) {
+  MappedStage mapped;
+  for (PictureOf kind : kinds) {
+    DrawnVisit visit = mapped.visit("path");
+    visit.step(mapped.stage, mapped.view, 0, kind);
+    EXPECT_EQ(visit.requests.size(), 0u);
+    EXPECT_LT(mapped.wrong(visit.frame, 1, 0.03f), 0.05) << int(kind);
+    // Without them it is dark, but for the lamp.
+    visit.compositor.set_maps(nullptr);
+    DrawnVisit dark;
+    dark.step(mapped.stage, mapped.view, 0, kind);
+    int lit = 0;
+    for (vec3 color : dark.frame.color) lit += color != vec3(0);
+    EXPECT_LT(lit, pixels / 20);
+  }
+}
+
+// A fiftieth of the mean light is no more than that.
+TEST(MappedLight, LeavesTheDarkDark) {
+  MappedStage mapped([](vec3 p) { return vec3(p.x > 0 ? 2.0f : 0.02f); });
+  for (const char* technique : {"path", "gather"})
+    for (PictureOf kind : kinds) {
+      DrawnVisit visit = mapped.visit(technique);
+      const int budget = technique[0] == 'g' ? pixels / 8 : 0;
+      for (int i = 0; i < 4; i++) visit.step(mapped.stage, mapped.view, budget, kind);
+      EXPECT_LT(mapped.wrong(visit.frame, 1, 0.05f), 0.1) << technique << int(kind);
+    }
+}
+
+// The eye sees at once what the frame holds.
+TEST(MappedLight, IsThereForTheEyeToo) {
+  MappedStage mapped;
+  DrawnVisit visit = mapped.visit("path");
+  visit.step(mapped.stage, mapped.view, 0, PictureOf::moving);
+  Image8 shown, expected;
+  visit.compositor.draw(visit.cache, mapped.view, *mapped.stage.visibility, Tonemap{1}, shown);
+  tonemap(visit.frame, {1}, expected);
+  int differ = 0;
+  for (size_t i = 0; i < shown.rgb.size(); i++)
+    differ += std::abs(shown.rgb[i] - expected.rgb[i]) > 6;
+  EXPECT_EQ(differ, 0);
+}
+
+// Samples that say what the map says change nothing, however few or many.
+TEST(MappedLight, StaysWherePointsAgree) {
+  MappedStage mapped;
+  for (PictureOf kind : kinds)
+    for (int budget : {pixels / 100, pixels / 4}) {
+      DrawnVisit visit = mapped.visit("gather");
+      for (int i = 0; i < 8; i++) visit.step(mapped.stage, mapped.view, budget, kind);
+      EXPECT_GT(visit.requests.size(), 0u);
+      EXPECT_LT(mapped.wrong(visit.frame, 1, 0.03f), 0.05) << int(kind) << ", " << budget;
+    }
+}
+
+TEST(MappedLight, IsDarkerWherePointsSaySo) {
+  MappedStage mapped;
+  const float raised = mapped.map->least_known();
+  for (PictureOf kind : {PictureOf::moving, PictureOf::moving_fine}) {
+    DrawnVisit visit = mapped.visit("gather");
+    View light = kind == PictureOf::moving ? light_view(mapped.view) : mapped.view;
+    for (int i = 0; i < 16; i++) {
+      visit.sample(mapped.stage, width, height, light, pixels / 4);
+      for (Sample& sample : visit.samples)
+        if (sample.flags & sample_mapped) {
+          // Half of the light.
+          vec3 half = 0.5f * (sample.smooth * sample.known - vec3(raised));
+          sample.smooth = (half + vec3(raised)) / sample.known;
+        }
+      visit.cache.remember(light, visit.requests, visit.samples);
+      visit.compositor.draw(visit.cache, mapped.view, *mapped.stage.visibility, visit.frame);
+    }
+    EXPECT_LT(mapped.wrong(visit.frame, 0.5f, 0.1f), 0.08) << int(kind);
+  }
+}
+
+// Whatever the map says, and were it ten times too much, many samples are right.
+TEST(MappedLight, ConvergesToTheLightThereIs) {
+  MappedStage mapped([](vec3 p) { return 10.0f * painted(p); });
+  DrawnVisit visit = mapped.visit("path");
+  for (int i = 0; i < 40; i++) visit.step(mapped.stage, mapped.view, pixels, PictureOf::still);
+  mapped.stage.lights.maps = nullptr;
+  Frame truth = mapped.stage.truth(mapped.view, 64);
+  double shown = 0, wanted = 0;
+  for (size_t i = 0; i < truth.color.size(); i++) {
+    if (max_component(truth.color[i]) > 4) continue;  // the lamp
+    shown += double(luminance(visit.frame.color[i]));
+    wanted += double(luminance(truth.color[i]));
+  }
+  EXPECT_NEAR(shown / wanted, 1, 0.02);
+}
+
+}  // namespace
+}  // namespace wellspring

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Waits are bounded and long; nothing depends on how quick the machine is.
+#include "show/state/baker.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "light/bake/map_file.h"
+#include "unit/folder.h"
+#include "unit/light/bake/bake_cases.h"
+
+namespace wellspring {
+namespace {
+
+void wait(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
+template <class Condition>
+bool wait_until(const Condition& holds) {
+  for (int i = 0; i < 6000; i++) {
+    if (holds()) return true;
+    wait(0.01);
+  }
+  return false;
+}
+
+struct BakerTest : testing::Test {
+  test::Folder folder;
+  Scene scene = scenes::make_cornell_box();
+  uint64_t key = hash_scene(scene);
+  BakerSettings settings{.file = folder.file("deep/box"),
+                         .source = "content/box",
+                         .places = {},
+                         .least_error = 0.01,
+                         .bake = {.gather_nodes = 300, .direct_nodes = 600}};
+  bool is_idle(const Baker& baker) {  // for a while
+    const uint64_t passes = baker.status().passes;
+    for (int i = 0; i < 10; i++) {
+      wait(0.02);
+      if (baker.status().works || baker.status().passes != passes) return false;
+    }
+    return true;
+  }
+};
+
+TEST_F(BakerTest, DoesNothingUnlessAllowed) {
+  {
+    Baker baker(scene, nullptr, settings);
+    EXPECT_TRUE(is_idle(baker));
+    EXPECT_EQ(baker.status().passes, 0u);
+    EXPECT_EQ(baker.status().error, 1);
+    EXPECT_FALSE(baker.take());
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.file("deep/box.bake")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("deep/box.maps")));
+}
+
+TEST_F(BakerTest, HandsOverMapsAndKeepsThem) {
+  std::shared_ptr<const IlluminationMap> map;
+  {
+    Baker baker(scene, nullptr, settings);
+    baker.allow(true);
+    ASSERT_TRUE(wait_until([&] { return (map = baker.take()) != nullptr; }));
+    EXPECT_LT(map->error, 0.15f);
+    EXPECT_GT(map->mean, 0.01f);
+    EXPECT_GT(baker.status().passes, 0u);
+    EXPECT_LT(baker.status().error, 0.15f);
+  }
+  auto kept = load_map(scene, folder.file("deep/box.maps"), key);
+  ASSERT_TRUE(kept);
+  EXPECT_LE(kept->error, map->error);
+  Bake bake;
+  World world(scene);
+  ASSERT_EQ(load_bake(world, folder.file("deep/box.bake"), key, bake), KeyedFile::read);
+  EXPECT_GT(bake.passes, 0u);
+  EXPECT_EQ(bake.source, "content/box");
+}
+
+TEST_F(BakerTest, StopsWhenItMayNotAndGoesOnWhenItMay) {
+  settings.least_error = 0;
+  Baker baker(scene, nullptr, settings);
+  baker.allow(true);
+  ASSERT_TRUE(wait_until([&] { return baker.status().passes > 2; }));
+  baker.allow(false);
+  ASSERT_TRUE(wait_until([&] { return is_idle(baker); }));
+  const uint64_t passes = baker.status().passes;
+  EXPECT_TRUE(is_idle(baker));
+  baker.allow(true);
+  EXPECT_TRUE(wait_until([&] { return baker.status().passes > passes; }));
+}
+
+TEST_F(BakerTest, GoesOnWhereTheLastOneEnded) {
+  uint64_t passes = 0;
+  for (double error : {0.1, 0.03}) {
+    settings.least_error = error;
+    Baker baker(scene, nullptr, settings);
+    baker.allow(true);
+    EXPECT_TRUE(wait_until([&] { return baker.status().error <= float(error); }));
+    EXPECT_GT(baker.status().passes, passes);
+    passes = baker.status().passes;
+  }
+  // What is good enough already is left as it is.
+  Baker baker(scene, nullptr, settings);
+  baker.allow(true);
+  EXPECT_TRUE(is_idle(baker));
+}
+
+TEST_F(BakerTest, WhatIsDamagedOrOfAnotherSceneIsBakedAnew) {
+  {
+    Baker baker(scene, nullptr, settings);
+    baker.allow(true);
+    ASSERT_TRUE(wait_until([&] { return baker.take() != nullptr; }));
+  }
+  scene.materials[1].base_color.x = 0.5f;
+  const std::string broken = folder.read("deep/box.bake").substr(0, 1000);
+  for (bool damaged : {false, true}) {
+    if (damaged) folder.write("deep/box.bake", broken);
+    std::shared_ptr<const IlluminationMap> map;
+    {
+      Baker baker(scene, nullptr, settings);
+      baker.allow(true);
+      ASSERT_TRUE(wait_until([&] { return (map = baker.take()) != nullptr; })) << damaged;
+    }
+    EXPECT_TRUE(load_map(scene, folder.file("deep/box.maps"), hash_scene(scene)));
+    EXPECT_FALSE(load_map(scene, folder.file("deep/box.maps"), key));
+  }
+}
+
+TEST_F(BakerTest, WhereNothingIsDiffuseItRests) {
+  scene = scenes::empty_scene();
+  scenes::add_mesh(scene, scenes::box_mesh(0, vec3(1)), "metal");
+  Baker baker(scene, nullptr, settings);
+  baker.allow(true);
+  EXPECT_TRUE(is_idle(baker));
+  EXPECT_TRUE(is_idle(baker));
+  EXPECT_FALSE(baker.take());
+}
+
+}  // namespace
+}  // namespace wellspring

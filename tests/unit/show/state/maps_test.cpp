@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Illumination maps of a running exhibit: where they come from, and what lamps make of them.
+#include <gtest/gtest.h>
+
+#include "light/bake/map_file.h"
+#include "show/answer/answer.h"
+#include "show/state/lamps.h"
+#include "unit/folder.h"
+#include "unit/light/bake/bake_cases.h"
+#include "unit/show/show_stage.h"
+#include "world/load/lamp.h"
+
+namespace wellspring {
+namespace {
+
+vec3 daylight(vec3) { return {0.25f, 0.5f, 0.75f}; }
+vec3 lamplight(vec3 place) { return vec3(1 + 0.1f * place.y); }
+
+struct Maps : testing::Test, ShowStage {
+  test::Folder folder;
+  Exhibit exhibit = make_tiny_exhibit();
+  std::shared_ptr<const IlluminationMap> saved;
+
+  void add_switch(bool on) {
+    add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
+    exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}, on}};
+  }
+  // Keeps a map for the next start.
+  void keep_map(std::vector<test::PaintedLight> layers = {daylight}) {
+    World world(exhibit.scene);
+    saved = test::paint_map(world, 0.5f, layers);
+    ASSERT_TRUE(save_map(*saved, folder.file("tiny.maps"), hash_scene(exhibit.scene)));
+  }
+  // By paths, which nothing has to be found out for.
+  void open(Display display = Display::automatic, const std::string& technique = "path") {
+    ShowSettings settings = settings_for(technique, false);
+    settings.cache = folder.path.string();
+    settings.display = display;
+    begin(std::move(exhibit), settings);
+  }
+  bool says(const char* line) {
+    return write_metrics(make_report(*show)).find(line) != std::string::npos;
+  }
+};
+
+TEST_F(Maps, KeptOnesAreUsedFromTheStart) {
+  keep_map();
+  add_storyteller(exhibit, "guide", {0, 0, 2});  // whose materials and pictures make no difference
+  open();
+  ASSERT_TRUE(show->lights.maps);
+  EXPECT_EQ(show->lights.maps->light, saved->light);
+  EXPECT_FALSE(show->baker) << "nothing is done in the background";
+  ASSERT_GT(show->mapped.size(), 2u);
+  EXPECT_TRUE(show->mapped[1]);
+  EXPECT_TRUE(says("wellspring_display{method=\"maps\"} 1\n"));
+  EXPECT_TRUE(says("wellspring_display{method=\"points\"} 0\n"));
+}
+
+// The first picture is lit everywhere.
+TEST_F(Maps, LightTheFirstPicture) {
+  keep_map();
+  open();
+  join(96, 64);
+  ASSERT_TRUE(step_until([&] { return !pictures().empty(); }));
+  Image8 first = image(0);
+  int dark = 0;
+  for (size_t i = 0; i < first.rgb.size(); i += 3)
+    dark += first.rgb[i] + first.rgb[i + 1] + first.rgb[i + 2] < 60;
+  EXPECT_LT(dark, 96 * 64 / 100);
+}
+
+TEST_F(Maps, ThoseOfAnotherSceneAreNotUsed) {
+  keep_map();
+  exhibit.scene.materials[0].base_color.x = 0.5f;
+  open();
+  EXPECT_FALSE(show->lights.maps);
+  EXPECT_TRUE(says("wellspring_display{method=\"maps\"} 0\n"));
+  EXPECT_TRUE(says("wellspring_display{method=\"points\"} 1\n"));
+}
+
+TEST_F(Maps, DamagedOnesAreNotUsed) {
+  keep_map();
+  std::string bytes = folder.read("tiny.maps");
+  bytes[bytes.size() / 2] ^= 1;
+  folder.write("tiny.maps", bytes);
+  open();
+  EXPECT_FALSE(show->lights.maps);
+}
+
+TEST_F(Maps, WhoWantsPointsGetsThem) {
+  keep_map();
+  open(Display::points);
+  EXPECT_FALSE(show->lights.maps);
+  EXPECT_FALSE(show->baker);
+}
+
+TEST_F(Maps, TechniquesThatKnowNothingOfThemGetNone) {
+  keep_map();
+  open(Display::maps, "direct");
+  EXPECT_FALSE(show->lights.maps);
+}
+
+TEST_F(Maps, WithoutACacheThereAreNone) {
+  keep_map();
+  ShowSettings settings = settings_for("path", false);
+  begin(std::move(exhibit), settings);
+  EXPECT_FALSE(show->lights.maps);
+  EXPECT_FALSE(show->baker);
+}
+
+TEST_F(Maps, FollowTheLampsAtOnce) {
+  add_switch(true);
+  keep_map({daylight, lamplight});
+  open();
+  join(96, 64);
+  run(0.5);
+  ASSERT_TRUE(show->lights.maps);
+  const auto& layers = *saved->layers;
+  auto expect = [&](bool lamp) {
+    const std::vector<uint32_t>& light = show->lights.maps->light;
+    ASSERT_EQ(light.size(), layers[0].size());
+    for (size_t i = 0; i < light.size(); i++) {
+      vec3 wanted = unpack_rgb9e5(layers[0][i]);
+      if (lamp) wanted += unpack_rgb9e5(layers[1][i]);
+      ASSERT_LT(length(unpack_rgb9e5(light[i]) - wanted), 0.005f * length(wanted));
+    }
+  };
+  expect(true);
+  for (bool on : {false, true}) {
+    show->switches.wanted[0] = on;
+    light_lamps(*show);
+    expect(on);
+  }
+  // And by a visitor's word.
+  say(R"({"type":"lamp","name":"ceiling","on":false})");
+  ASSERT_TRUE(step_until([&] { return !show->world->is_on(0); }));
+  expect(false);
+}
+
+TEST_F(Maps, OfLampsThatAreOffAtFirstAreDark) {
+  add_switch(false);
+  keep_map({daylight, lamplight});
+  open();
+  ASSERT_TRUE(show->lights.maps);
+  for (size_t i = 0; i < saved->light.size(); i++) {
+    vec3 light = unpack_rgb9e5(show->lights.maps->light[i]);
+    ASSERT_LT(length(light - daylight({})), 0.01f);
+  }
+}
+
+// New ones come while it runs: caches begin anew once, when light begins to count in their units.
+TEST_F(Maps, AreTakenOverWhileItRuns) {
+  keep_map();
+  folder.write("tiny.maps", "");
+  open();
+  join(96, 64);
+  run(0.5);
+  ASSERT_FALSE(show->lights.maps);
+  ASSERT_GT(visitor().picture.cache.stats().points, 100);
+  use_maps(*show, saved);
+  EXPECT_EQ(show->lights.maps, saved);
+  EXPECT_TRUE(says("wellspring_display{method=\"maps\"} 1\n"));
+  run(0.5);
+  EXPECT_EQ(make_report(*show).bad_samples, 0u);
+  EXPECT_GT(visitor().picture.cache.stats().points, 100);
+}
+
+}  // namespace
+}  // namespace wellspring
