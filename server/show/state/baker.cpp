@@ -69,18 +69,21 @@ void Baker::live() {
     bake = begin_bake(world, settings_.places, settings_.bake);
   if (bake.charts.tiles == 0) return;  // nothing is diffuse
   bake.source = settings_.source;
-  float error = bake.passes > 0 ? bake_error(bake) : 1, shown = std::min(error, worth_showing);
+  float error = bake.passes > 0 ? bake_error(bake) : 1;
+  const bool kept = load_map(scene_, settings_.file + ".maps", key) != nullptr;
+  float shown = kept ? std::min(error, worth_showing) : worth_showing;
   double saved = seconds_now();
   auto tell = [&](bool works) {
     std::lock_guard lock(mutex_);
     status_ = {works, bake.passes, error};
   };
+  tell(false);
   while (wait_until_allowed() && error > settings_.least_error) {
     tell(true);
     const double began = seconds_now();
     go_on(scene, bake, [&] { return !allowed_ || end_ || seconds_now() - began > at_a_time; });
     if (!bake.pilot() && bake.passes > 1) error = bake_error(bake);
-    if (error < worth_showing && error < much_better * shown) {
+    if (error < much_better * shown) {
       publish(world, bake, key);
       shown = error;
     }

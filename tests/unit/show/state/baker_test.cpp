@@ -91,15 +91,15 @@ TEST_F(BakerTest, StopsWhenItMayNotAndGoesOnWhenItMay) {
 
 TEST_F(BakerTest, GoesOnWhereTheLastOneEnded) {
   uint64_t passes = 0;
-  for (double error : {0.1, 0.03}) {
-    settings.least_error = error;
+  settings.least_error = 0;
+  for (int time = 0; time < 2; time++) {
     Baker baker(scene, nullptr, settings);
     baker.allow(true);
-    EXPECT_TRUE(wait_until([&] { return baker.status().error <= float(error); }));
-    EXPECT_GT(baker.status().passes, passes);
+    EXPECT_TRUE(wait_until([&] { return baker.status().passes > passes; })) << time;
     passes = baker.status().passes;
   }
   // What is good enough already is left as it is.
+  settings.least_error = 1;
   Baker baker(scene, nullptr, settings);
   baker.allow(true);
   EXPECT_TRUE(is_idle(baker));
