@@ -7,7 +7,19 @@ const walk_keys = {
 const turn_keys = { ArrowLeft: 1, ArrowRight: -1, KeyQ: 1, KeyE: -1 };
 const turn_speed = 1.5;  // radians a second
 
-// send({move, look}) at most 60 times a second and only on change; fov() vertical radians of the
+const pointer_interval = 200, least_pointer_step = 0.01;  // milliseconds; of the picture
+
+// Where a pointer is in the picture, 0 to 1 from its upper left; the canvas cuts what does not fit.
+function place_in_picture(canvas, event) {
+  const box = canvas.getBoundingClientRect();
+  const scale = Math.max(box.width / canvas.width, box.height / canvas.height);
+  const x = (event.clientX - box.left - box.width / 2) / (canvas.width * scale) + 0.5,
+      y = (event.clientY - box.top - box.height / 2) / (canvas.height * scale) + 0.5;
+  return [x, y].map((v) => Math.round(Math.min(1, Math.max(0, v)) * 1000) / 1000);
+}
+
+// send({move, look, pointer, moved}) at most 60 times a second and only on change, where pointer is
+// left out if it is nothing new and moved tells whether the rest is; fov() vertical radians of the
 // picture; place(n) for the number keys.
 export function make_controls(canvas, stick, knob, { send, fov, speed, place }) {
   const down = new Set();
@@ -33,6 +45,9 @@ export function make_controls(canvas, stick, knob, { send, fov, speed, place }) 
 
   // Dragging takes hold of the picture: what is under the pointer stays under it.
   const pointers = new Map();
+  let pointed = null, sent_pointed = [-1, -1], sent_at = 0;
+  for (const kind of ['pointerdown', 'pointermove'])
+    canvas.addEventListener(kind, (event) => { pointed = place_in_picture(canvas, event); });
   canvas.addEventListener('pointerdown', (event) => {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, [event.clientX, event.clientY]);
@@ -91,8 +106,15 @@ export function make_controls(canvas, stick, knob, { send, fov, speed, place }) 
     const scale = length > 1 ? pace / length : pace;
     const move = [right * scale, 0, forward * scale].map((v) => Math.round(v * 1000) / 1000);
     const moved = move.some((v, i) => v !== last_move[i]);
-    if (moved || look[0] !== 0 || look[1] !== 0) {
-      send({ move, look: look.map((v) => Math.round(v * 1e5) / 1e5) });
+    const turned = look[0] !== 0 || look[1] !== 0;
+    const points = pointed && now - sent_at >= pointer_interval
+        && pointed.some((v, i) => Math.abs(v - sent_pointed[i]) >= least_pointer_step);
+    if (moved || turned || points) {
+      send({
+        move, look: look.map((v) => Math.round(v * 1e5) / 1e5), moved: moved || turned,
+        ...(points && { pointer: pointed }),
+      });
+      if (points) { sent_pointed = pointed; sent_at = now; }
       last_move = move;
       look = [0, 0];
     }

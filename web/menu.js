@@ -28,7 +28,7 @@ function lamp_switch({ name, title, on }, on_change) {
 }
 
 // orders: {viewpoint(name), tour(action, id), story(id), storyteller(fields), lamp(name, on),
-// lang(tag), subtitles(on)}
+// lang(tag), subtitles(on), attention(share)}
 export function make_menu(orders) {
   const menu = by_id('menu'), opener = by_id('menu-button');
   let lang = 'en', viewpoints = [];
@@ -49,10 +49,23 @@ export function make_menu(orders) {
   by_id('subtitles-on').addEventListener('change',
       (event) => orders.subtitles(event.target.checked));
 
+  const attention = by_id('attention'), kept = localStorage.getItem('wellspring.attention');
+  if (kept !== null && Number(kept) >= 0 && Number(kept) <= 1) attention.value = kept;
+  const tell_attention = () => {
+    const side = attention.value < 0.4 ? 'eye' : attention.value > 0.6 ? 'look' : 'both';
+    attention.setAttribute('aria-valuetext', word(lang, `attention_${side}`));
+  };
+  attention.addEventListener('input', tell_attention);
+  attention.addEventListener('change', () => orders.attention(Number(attention.value)));
+
   return {
+    // As the visitor chose, now or earlier; null: never.
+    attention: () => (localStorage.getItem('wellspring.attention') === null
+        ? null : Number(attention.value)),
     welcome(message) {
       lang = message.lang;
       translate_page(lang);
+      tell_attention();
       document.title = message.title;
       by_id('title').textContent = message.title;
       by_id('description').textContent = message.description;

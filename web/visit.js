@@ -48,6 +48,8 @@ connection = make_connection({
     seq = 0;
     asked.clear();
     sound.joined();
+    if (menu.attention() !== null)
+      connection.send({ type: 'settings', attention: menu.attention() });
     // After a broken line: back to where the visitor stood.
     if (state?.viewpoint)
       connection.send({ type: 'viewpoint', seq: next(), name: state.viewpoint });
@@ -124,10 +126,16 @@ const menu = make_menu({
     connection.send({ type: 'settings', lang: tag });
   },
   subtitles: (on) => subtitles.enable(on),
+  attention(share) {
+    localStorage.setItem('wellspring.attention', String(share));
+    connection.send({ type: 'settings', attention: share });
+  },
 });
 
 make_controls(canvas, by_id('stick'), by_id('stick-knob'), {
-  send: ({ move, look }) => connection.send({ type: 'input', seq: next(), move, look }),
+  // A pointer alone changes no picture: nothing to measure a round trip by.
+  send: ({ moved, ...fields }) =>
+      connection.send({ type: 'input', seq: moved ? next() : ++seq, ...fields }),
   fov: () => state?.fov ?? 1,
   speed: () => walk_speed,
   place(index) {

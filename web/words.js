@@ -13,6 +13,8 @@ const words = {
     full: 'The museum is full just now. Please come back in a moment.',
     busy: 'The storyteller is telling somebody at the museum a story.', sound_on: 'Turn sound on',
     sound_off: 'Turn sound off', sound_is_on: 'Sound is on.', sound_is_off: 'Sound is off.',
+    attention: 'Sharp first', attention_eye: 'what catches the eye',
+    attention_look: 'what I look at', attention_both: 'both alike',
     invite: 'Step closer, and the castle will tell you its story.',
   },
   de: {
@@ -27,6 +29,8 @@ const words = {
     full: 'Das Museum ist gerade voll. Bitte kommen Sie gleich wieder.',
     busy: 'Im Museum wird gerade jemandem eine Geschichte erzählt.', sound_on: 'Ton einschalten',
     sound_off: 'Ton ausschalten', sound_is_on: 'Der Ton ist an.', sound_is_off: 'Der Ton ist aus.',
+    attention: 'Zuerst scharf', attention_eye: 'was ins Auge fällt',
+    attention_look: 'was ich ansehe', attention_both: 'beides gleich',
     invite: 'Treten Sie näher, dann erzählt die Burg ihre Geschichte.',
   },
   sk: {
@@ -41,6 +45,8 @@ const words = {
     full: 'Múzeum je práve plné. Príďte, prosím, o chvíľu.',
     busy: 'V múzeu práve niekto počúva príbeh.', sound_on: 'Zapnúť zvuk', sound_off: 'Vypnúť zvuk',
     sound_is_on: 'Zvuk je zapnutý.', sound_is_off: 'Zvuk je vypnutý.',
+    attention: 'Najprv ostré', attention_eye: 'čo upúta oko',
+    attention_look: 'na čo sa pozerám', attention_both: 'oboje rovnako',
     invite: 'Pristúpte bližšie a hrad vám rozpovie svoj príbeh.',
   },
 };

@@ -76,4 +76,19 @@ void eval_sample_shares(std::span<const SeenObject> seen, std::span<const float>
   }
 }
 
+void eval_weights(std::span<const SeenObject> seen, std::span<const float> attention,
+                  std::vector<float>& weights) {
+  const double largest = largest_of(attention);
+  std::vector<float> sharper;
+  for (float one : attention)
+    sharper.push_back(float(std::pow(relative(one, largest), attention_contrast)));
+  std::vector<SampleShare> shares;
+  eval_sample_shares(seen, sharper, shares);
+  weights.clear();
+  for (size_t i = 0; i < seen.size(); i++) {
+    if (seen[i].object >= weights.size()) weights.resize(size_t(seen[i].object) + 1, 1.0f);
+    weights[seen[i].object] = shares[i].factor * shares[i].factor;
+  }
+}
+
 }  // namespace wellspring

@@ -49,4 +49,14 @@ struct SampleShare {
 void eval_sample_shares(std::span<const SeenObject> seen, std::span<const float> attention,
                         std::vector<SampleShare>& shares);
 
+// The same, told sharper, as a factor of how urgently an object's pixels want samples. Attention
+// tells whom the eye prefers, but what is looked at is one object at a time: shares are those of
+// attention to this power.
+inline constexpr float attention_contrast = 3;
+// Pixels that are sampled often want samples less: n times as many take n^2 times the urgency.
+// Overwrites `weights`: of each object by its number the square of SampleShare::factor. 1: not
+// seen.
+void eval_weights(std::span<const SeenObject> seen, std::span<const float> attention,
+                  std::vector<float>& weights);
+
 }  // namespace wellspring

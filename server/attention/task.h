@@ -18,6 +18,7 @@ struct AttentionHint {
   vec2 place{0};
   float radius = 0;  // pixels: beyond it the hint says nothing; 0: only the pixel at the place
   float weight = 1;  // 0 (nothing) to 1 (surely meant)
+  bool operator==(const AttentionHint&) const = default;
 };
 
 // An object as the view shows it.

@@ -186,6 +186,20 @@ using Levels = std::array<uint8_t, 256>;
   }
 }
 
+// Of the first pixel with a point from the one on whose turn it is.
+uint8_t weight_of_cell(const PointCache& points, std::span<const uint8_t> of_object, uint32_t turn,
+                       const PointImage& image, int x, int y) {
+  const int width = std::min(weight_cell, image.width - x),
+            height = std::min(weight_cell, image.height - y), count = width * height;
+  for (int i = 0, k = int(turn % uint32_t(count)); i < count; i++, k = k + 1 < count ? k + 1 : 0) {
+    size_t at = size_t(y + k / width) * size_t(image.width) + size_t(x + k % width);
+    if (image.point[at] == no_point) continue;
+    uint32_t object = points.color[image.point[at]].object;
+    return object < of_object.size() ? of_object[object] : uint8_t(weight_one);
+  }
+  return weight_one;
+}
+
 }  // namespace
 
 bool age_changed(PointCache& points, const View& view, PointImage& image) {
@@ -268,6 +282,20 @@ void prioritise(const PointCache& points, const CacheSettings& settings, PointIm
       prioritise_points(row, points.age.data(), points.count.data(), by_age, by_count, width,
                         priority);
     }
+  });
+}
+
+void weigh(const PointCache& points, std::span<const uint8_t> of_object, uint32_t turn,
+           PointImage& image) {
+  image.weight.clear();
+  if (of_object.empty()) return;
+  const int columns = weight_cells(image.width), rows = weight_cells(image.height);
+  image.weight.resize(size_t(columns) * size_t(rows));
+  parallel_ranges(rows, 8, [&](int begin, int end) {
+    for (int row = begin; row < end; row++)
+      for (int column = 0; column < columns; column++)
+        image.weight[size_t(row) * size_t(columns) + size_t(column)] =
+            weight_of_cell(points, of_object, turn, image, column * weight_cell, row * weight_cell);
   });
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // How of high priority a new sample is at every pixel (Walter 1999, section 4 and 4.1).
 #pragma once
+#include <cstdint>
+#include <span>
+
 #include "cache/cache_settings.h"
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
@@ -25,5 +28,11 @@ bool lend_light(PointCache& points, const PointImage& image);
 // point by its age (up to 127) and by how few samples it holds. 255 everywhere counts when
 // attention is off.
 void prioritise(const PointCache& points, const CacheSettings& settings, PointImage& image);
+
+// Overwrites image.weight: of each cell that of the object of one of its points, in turns with
+// `turn`, so that of a cell with several objects all count; weight_one where there is no point or
+// no weight of its object. No weights at all: none of cells.
+void weigh(const PointCache& points, std::span<const uint8_t> of_object, uint32_t turn,
+           PointImage& image);
 
 }  // namespace wellspring

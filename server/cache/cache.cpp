@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <utility>
 
 #include "base/memory.h"
@@ -52,12 +53,14 @@ struct RenderCache::Impl {
   View view;                  // of the last projection
   bool projected = false;
   uint64_t projection = 0;
-  int still_frames = 0;     // projections of the same view before the last
-  bool reference = false;   // set_reference()
-  bool relit = false;       // points may wait for a sample of their new light
-  bool image_stale = true;  // points have changed since, and the image was not told
-  float new_points = 0;     // a frame, smoothed
-  int fresh = 0;            // samples of this frame that show
+  int still_frames = 0;          // projections of the same view before the last
+  bool reference = false;        // set_reference()
+  bool relit = false;            // points may wait for a sample of their new light
+  bool image_stale = true;       // points have changed since, and the image was not told
+  float new_points = 0;          // a frame, smoothed
+  int fresh = 0;                 // samples of this frame that show
+  std::vector<uint8_t> weights;  // of objects, times weight_one; empty: all are 1
+  uint32_t turn = 0;             // of the pixels of weight cells
   CacheStats stats;
   uint64_t paints = 0;  // World::paints() and those of each instance, when last looked at
   std::vector<uint32_t> paints_of;
@@ -87,6 +90,18 @@ RenderCache::RenderCache(const CacheSettings& settings, std::shared_ptr<CacheWor
 RenderCache::~RenderCache() = default;
 void RenderCache::set_reference(bool on) { impl_->reference = on; }
 void RenderCache::set_attention(bool on) { impl_->settings.attention = on; }
+void RenderCache::set_weights(std::span<const float> of_object) {
+  std::vector<uint8_t>& weights = impl_->weights;
+  weights.clear();
+  bool all_one = true;
+  for (float factor : of_object) {
+    if (!std::isfinite(factor)) factor = 1;
+    factor = std::clamp(factor, least_weight, most_weight);
+    weights.push_back(uint8_t(std::lround(factor * weight_one)));
+    all_one &= weights.back() == weight_one;
+  }
+  if (all_one) weights.clear();
+}
 RenderCache::RenderCache(RenderCache&&) noexcept = default;
 RenderCache& RenderCache::operator=(RenderCache&&) noexcept = default;
 
@@ -178,6 +193,8 @@ void RenderCache::attend() {
   c.borrow_priority();
   c.relit |= age_changed(c.points, c.view, c.image);
   prioritise(c.points, c.settings, c.image);
+  using Weights = std::span<const uint8_t>;
+  weigh(c.points, c.settings.attention ? Weights(c.weights) : Weights(), c.turn++, c.image);
 }
 
 void RenderCache::plan(const View& view, int budget, uint64_t seed,
@@ -303,9 +320,9 @@ const CacheStats& RenderCache::stats() const { return impl_->stats; }
 
 size_t RenderCache::memory_bytes() const {
   const Impl& c = *impl_;
-  size_t sum = points_bytes(c.points) + bytes_of(c.paints_of, c.repainted) +
+  size_t sum = points_bytes(c.points) + bytes_of(c.paints_of, c.repainted, c.weights) +
                bytes_of(c.image.point, c.image.depth, c.image.priority, c.image.renewed,
-                        c.image.changed, c.image.change_samples);
+                        c.image.changed, c.image.change_samples, c.image.weight);
   return sum + (c.shares ? 0 : wellspring::memory_bytes(*c.work));
 }
 

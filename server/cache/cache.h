@@ -68,6 +68,12 @@ class RenderCache {
   // ones might be taken for a change of the light). Its light is not expected to be that of others.
   void set_reference(bool on);
   void set_attention(bool on);  // CacheSettings::attention
+  // Of each object, by its number: a factor of the priority of the pixels that show it, counted
+  // from least_weight to most_weight. Others', and what is not a number, is 1; where all are 1 they
+  // change nothing. Of the objects' points: where nothing is known yet, and while attention is off,
+  // there are no weights.
+  static constexpr float least_weight = 0.25f, most_weight = 8;
+  void set_weights(std::span<const float> of_object);
   // A lamp was switched, dimmed or moved, and is much of the light where `changes` says so of a
   // surface, on many threads: what was remembered of the light there counts no more, and is asked
   // for first. Until newer light is known, `kept` of it, 1 unless changed, and the light `added`

@@ -43,9 +43,41 @@ Request make_request(const PointCache& points, const View& view, const PlanSetti
 // addition and a shift only.
 constexpr int fraction_bits = 8;
 
+// Of the pixels of rows that start where cells do.
+struct RowWeights {
+  const uint8_t* cells = nullptr;  // of the row; null: all count as they are
+  // Times weight_one.
+  int64_t at(int x) const { return cells ? cells[x / weight_cell] : weight_one; }
+};
+constexpr int weight_bits = 4;
+static_assert(1 << weight_bits == weight_one && weight_bits <= fraction_bits);
+
+RowWeights weights_of_row(const PointImage& image, size_t y) {
+  if (image.weight.empty()) return {};
+  return {image.weight.data() + y / weight_cell * size_t(weight_cells(image.width))};
+}
+
+// What the priorities of a row add up to, times weight_one.
+uint64_t sum_of_row(const PointImage& image, size_t y) {
+  const uint8_t* priority = image.priority.data() + y * size_t(image.width);
+  const RowWeights weights = weights_of_row(image, y);
+  uint64_t sum = 0;
+  if (!weights.cells) {
+    for (int x = 0; x < image.width; x++) sum += priority[x];
+    return sum * weight_one;
+  }
+  for (int x = 0; x < image.width; x += weight_cell) {
+    uint32_t cell = 0;
+    for (int k = x; k < std::min(x + weight_cell, image.width); k++) cell += priority[k];
+    sum += uint64_t(cell) * uint64_t(weights.at(x));
+  }
+  return sum;
+}
+
 // Dithers the rows [begin, end) with `share` requests to give away; returns how many it chose. A
 // band whose first row started from nothing would starve there, so its first rows are dithered once
 // for practice.
+template <bool weighted>
 int dither_band(PointImage& image, int begin, int end, int share, int64_t threshold, uint64_t seed,
                 uint32_t* chosen) {
   int width = image.width, rows = end - begin, count = 0;
@@ -65,12 +97,16 @@ int dither_band(PointImage& image, int begin, int end, int share, int64_t thresh
   for (int i = -std::min(warm_rows, rows); i < rows; i++) {
     bool practice = i < 0;
     int line = practice ? -1 - i : i;
-    size_t start = size_t(upwards ? end - 1 - line : begin + line) * size_t(width);
+    size_t y = size_t(upwards ? end - 1 - line : begin + line), start = y * size_t(width);
+    const RowWeights weights = weights_of_row(image, y);
     uint8_t* priority = image.priority.data() + start;
     int64_t* rest = below.data();
     int step = ((i ^ int(seed)) & 1) ? -1 : 1, x = step > 0 ? 0 : width - 1;
     for (int n = 0; n < width; n++, x += step) {
-      int64_t value = (int64_t(priority[x]) << fraction_bits) + rest[x] + carry;
+      int64_t own = int64_t(priority[x]) << fraction_bits;
+      if constexpr (weighted)
+        own = int64_t(priority[x]) * weights.at(x) << (fraction_bits - weight_bits);
+      int64_t value = own + rest[x] + carry;
       if (value >= threshold) {
         if (priority[x] != 0) {
           if (!practice && count < share) {
@@ -95,7 +131,10 @@ void top_up(PointImage& image, uint64_t seed, size_t budget, std::vector<uint32_
   for (size_t tries = (budget - chosen.size()) * 16; tries > 0 && chosen.size() < budget; tries--) {
     size_t pixel = size_t(uint64_t(rng.next()) * pixels >> 32);
     uint8_t& priority = image.priority[pixel];
-    if (priority == 0 || priority < (rng.next() & 127)) continue;
+    if (priority == 0) continue;
+    size_t width = size_t(image.width);
+    int64_t weight = weights_of_row(image, pixel / width).at(int(pixel % width));
+    if (priority * weight / weight_one < int64_t(rng.next() & 127)) continue;
     priority = 0;
     chosen.push_back(uint32_t(pixel));
   }
@@ -113,7 +152,7 @@ void top_up(PointImage& image, uint64_t seed, size_t budget, std::vector<uint32_
 void plan_requests(const PointCache& points, const View& view, const PlanSettings& settings,
                    PointImage& image, std::vector<Request>& requests) {
   requests.clear();
-  int width = image.width, height = image.height;
+  const int height = image.height;
   size_t pixels = image.priority.size();
   size_t budget = size_t(std::max(settings.budget, 0));
   budget = std::min(budget, pixels);
@@ -123,16 +162,15 @@ void plan_requests(const PointCache& points, const View& view, const PlanSetting
   // What each band's priorities add up to decides its share.
   std::vector<uint64_t> sums(size_t(bands) + 1, 0);
   parallel_for(bands, [&](int band) {
-    size_t first = size_t(band) * band_rows * size_t(width);
-    size_t last = std::min(pixels, first + size_t(band_rows) * size_t(width));
     uint64_t sum = 0;
-    for (size_t i = first; i < last; i++) sum += image.priority[i];
+    for (int y = band * band_rows; y < std::min((band + 1) * band_rows, height); y++)
+      sum += sum_of_row(image, size_t(y));
     sums[size_t(band) + 1] = sum;
   });
   std::partial_sum(sums.begin(), sums.end(), sums.begin());
   uint64_t total = sums.back();
   if (total == 0) return;
-  int64_t threshold = int64_t(double(total << fraction_bits) / double(budget));
+  int64_t threshold = int64_t(double(total << (fraction_bits - weight_bits)) / double(budget));
   auto share_before = [&](int band) {
     return size_t(double(budget) * (double(sums[size_t(band)]) / double(total)));
   };
@@ -140,11 +178,12 @@ void plan_requests(const PointCache& points, const View& view, const PlanSetting
   std::vector<uint32_t> chosen(budget);
   std::vector<int> counts(static_cast<size_t>(bands));
   uint64_t seed = mix64(settings.seed);
+  const auto dither = image.weight.empty() ? dither_band<false> : dither_band<true>;
   parallel_for(bands, [&](int band) {
     size_t from = share_before(band), to = band + 1 == bands ? budget : share_before(band + 1);
     int begin = band * band_rows, end = std::min(height, begin + band_rows);
     counts[size_t(band)] =
-        dither_band(image, begin, end, int(to - from), threshold, seed, chosen.data() + from);
+        dither(image, begin, end, int(to - from), threshold, seed, chosen.data() + from);
   });
   size_t used = 0;
   for (int band = 0; band < bands; band++) {

@@ -14,6 +14,8 @@ namespace wellspring {
 inline constexpr uint32_t no_point = 0xffffffffu;
 inline constexpr float infinite_depth = 1e18f;  // of points at infinity; Frame::depth says infinity
 inline constexpr int change_tile = 16;          // pixels a side of one cell of `changed`
+inline constexpr int weight_cell = 4;           // pixels a side of one cell of `weight`
+inline constexpr int weight_one = 16;           // `weight` of what counts as it is
 
 // What one sample says of a change in the light of a point that was known before.
 struct ChangeSample {
@@ -35,7 +37,10 @@ struct PointImage {
   BigVector<uint32_t> point;  // index into the cache, or no_point
   BigVector<float> depth;     // along the viewing axis; 0 where there is no point
   std::vector<uint8_t>
-      priority;                  // 0: nothing to learn or already asked; 255: most of high priority
+      priority;  // 0: nothing to learn or already asked; 255: most of high priority
+  // Of cells, row after row: factor of their pixels' priorities, times weight_one. Empty: all count
+  // as they are.
+  std::vector<uint8_t> weight;
   std::vector<uint8_t> renewed;  // not 0: the light there is another than in the last picture
   std::vector<ChangeSample> change_samples;  // the newest, oldest first; see age_changed()
   std::vector<TileChange> changed;           // scratch of age_changed()
@@ -52,6 +57,8 @@ inline void reserve_image(PointImage& image, int width, int height) {
   image.renewed.reserve(pixels);
   image.changed.reserve(tiles(width) * tiles(height));
 }
+
+inline int weight_cells(int side) { return (side + weight_cell - 1) / weight_cell; }
 
 // Enough change samples of each tile to tell change from noise.
 inline size_t most_change_samples(const PointImage& image) {
@@ -80,6 +87,7 @@ inline void resize_image(PointImage& image, int width, int height) {
   image.depth.assign(pixels, 0.0f);
   image.priority.assign(pixels, uint8_t(0));
   image.renewed.assign(pixels, uint8_t(0));
+  image.weight.clear();
   image.changed.assign(size_t(image.changed_width) * size_t(image.changed_height), TileChange{});
 }
 

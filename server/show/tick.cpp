@@ -14,6 +14,7 @@
 #include "show/draw/make_picture_job.h"
 #include "show/draw/pace.h"
 #include "show/draw/present.h"
+#include "show/draw/steer.h"
 #include "show/draw/still_pass.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
@@ -303,6 +304,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   if (renderer.drawn && is_outdated(show, renderer.job, *renderer.drawn)) renderer.given_up = true;
   if (!show.settings.background) draw_now(show, demand.waiting);
   else if (free) use_renderer(show, demand.waiting);
+  steer(show);
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
     if (show.settings.background) present(show, visitor);

@@ -39,6 +39,13 @@ struct MessageDescriber {
   void boolean(const char* name, const auto&, const char* about, Need = Need::optional) {
     out[name] = about;
   }
+  void switch_or_number(const char* name, double, double, const auto&, const char* about,
+                        Need = Need::optional) {
+    out[name] = about;
+  }
+  void place(const char* name, const auto&, const char* about, Need = Need::optional) {
+    out[name] = about;
+  }
   void vector(const char* name, double, const auto&, const char* about, Need = Need::optional) {
     out[name] = about;
   }

@@ -103,6 +103,18 @@ bool Fields::boolean(const char* name, bool& value, Need need) {
   return true;
 }
 
+bool Fields::switch_or_number(const char* name, double low, double high,
+                              std::optional<std::variant<bool, float>>& value, Need need) {
+  const json* field = find(name, need);
+  if (!field) return false;
+  double number = 0;
+  if (field->is_boolean()) value = field->get<bool>();
+  else if (!field->is_number()) return fail(name, "must be true, false or a number"), false;
+  else if (!check_number(name, *field, low, high, number)) return false;
+  else value = float(number);
+  return true;
+}
+
 bool Fields::text(const char* name, std::string& value, Need need) {
   const json* field = find(name, need);
   if (!field) return false;

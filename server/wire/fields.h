@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "base/vec.h"
 #include "wire/json.h"
@@ -25,6 +26,9 @@ class Fields {
   bool u32(const char* name, uint32_t& value, Need need = Need::optional);
   bool integer(const char* name, int low, int high, int& value, Need need = Need::optional);
   bool boolean(const char* name, bool& value, Need need = Need::optional);
+  bool switch_or_number(const char* name, double low, double high,
+                        std::optional<std::variant<bool, float>>& value,
+                        Need need = Need::optional);
   // At most max_name_bytes, no control characters; required ones must not be empty.
   bool text(const char* name, std::string& value, Need need = Need::optional);
   // One of `words`; with Need::optional also the empty string.

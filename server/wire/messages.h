@@ -74,8 +74,9 @@ struct Hello {
 struct Input {
   static constexpr const char* type = "input";
   uint32_t seq = 0;
-  vec3 move{0};  // right, up, forward, metres a second, kept until the next input
-  vec2 look{0};  // yaw, pitch to turn by now
+  vec3 move{0};                 // right, up, forward, metres a second, kept until the next input
+  vec2 look{0};                 // yaw, pitch to turn by now
+  std::optional<vec2> pointer;  // in the picture; absent: no news of it
   static void list(auto& message, auto& fields) {
     fields.u32("seq", message.seq, "u32, grows by one", Need::required);
     fields.vector("look", max_angle, message.look,
@@ -83,6 +84,8 @@ struct Input {
                   "up");
     fields.speed("move", max_speed, message.move,
                  "[right, up, forward] m/s, kept until the next input");
+    fields.place("pointer", message.pointer,
+                 "[x, y] of the pointer or finger in the picture, 0..1 from its upper left");
   }
   bool operator==(const Input&) const = default;
 };
@@ -150,13 +153,19 @@ struct LampOrder {
 struct Settings {
   static constexpr const char* type = "settings";
   std::optional<float> fps;
-  std::optional<bool> attention, sound;
+  // False: samples are spread evenly. A number: how much what the visitor looks at counts beside
+  // what catches the eye.
+  std::optional<std::variant<bool, float>> attention;
+  std::optional<bool> sound;
   std::optional<int> quality, max_quality, width, height;
   std::string lang;
   static void list(auto& message, auto& fields) {
     fields.number("fps", min_fps, max_fps, message.fps,
                   "pictures a second, 0 for the server's choice");
-    fields.boolean("attention", message.attention, "boolean");
+    fields.switch_or_number(
+        "attention", 0, 1, message.attention,
+        "boolean: samples go where they are needed and looked at, or evenly everywhere; or 0..1, "
+        "from what catches the eye to what the visitor looks at");
     fields.boolean("sound", message.sound, "boolean: whether speech is to be sent; at first it is");
     fields.integer("quality", min_jpeg_quality, max_jpeg_quality, message.quality,
                    "JPEG quality in motion");

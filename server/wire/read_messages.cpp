@@ -50,11 +50,25 @@ class MessageReader {
   void boolean(const char* name, Value& value, const char*, Need need = Need::optional) {
     read(value, [&](bool& v) { return fields_.boolean(name, v, need); });
   }
+  // True or false, or a number.
+  void switch_or_number(const char* name, double low, double high,
+                        std::optional<std::variant<bool, float>>& value, const char*,
+                        Need need = Need::optional) {
+    fields_.switch_or_number(name, low, high, value, need);
+  }
   // Each of its numbers is at most `limit`, of either sign.
   template <class Vector>
   void vector(const char* name, double limit, Vector& value, const char*,
               Need need = Need::optional) {
     fields_.vector(name, limit, value, need);
+  }
+  // In a picture: both numbers from 0 to 1.
+  void place(const char* name, std::optional<vec2>& value, const char*,
+             Need need = Need::optional) {
+    vec2 place{0};
+    if (!fields_.vector(name, 1, place, need)) return;
+    if (place.x < 0 || place.y < 0) return fields_.fail(name, "must be of numbers from 0 to 1");
+    value = place;
   }
   // Metres a second: so is its length.
   void speed(const char* name, double limit, vec3& value, const char*, Need need = Need::optional) {

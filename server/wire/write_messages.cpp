@@ -83,6 +83,15 @@ class MessageWriter {
   void boolean(const char* name, const Value& value, const char*, Need = Need::optional) {
     put(name, value);
   }
+  void switch_or_number(const char* name, double, double,
+                        const std::optional<std::variant<bool, float>>& value, const char*,
+                        Need = Need::optional) {
+    if (value) std::visit([&](auto one) { out[name] = one; }, *value);
+  }
+  void place(const char* name, const std::optional<vec2>& value, const char* about,
+             Need need = Need::optional) {
+    if (value) vector(name, 1, *value, about, need);
+  }
   template <class Vector>
   void vector(const char* name, double, const Vector& value, const char*, Need = Need::optional) {
     json numbers = json::array();

@@ -104,6 +104,11 @@ test('places, menu, language and story', { skip }, async () => {
   await page.locator('#languages button', { hasText: 'Deutsch' }).click();
   await page.waitForFunction(() => document.documentElement.lang === 'de');
   await shot(page, 'menu');
+  assert.equal(await page.locator('#attention-title').textContent(), 'Zuerst scharf');
+  await page.locator('#attention').focus();
+  await page.keyboard.press('ArrowRight');
+  assert.equal(await page.evaluate(() => localStorage.getItem('wellspring.attention')), '0.6');
+  assert.equal(await page.getAttribute('#attention', 'aria-valuetext'), 'beides gleich');
   await page.locator('#stories button').first().click();
   await page.waitForFunction(() => !document.getElementById('subtitle').hidden);
   assert.equal(await page.getAttribute('#subtitle', 'lang'), 'de');

@@ -63,8 +63,9 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   return {};
 }
 
-Answer handle_one(Show&, Visitor& visitor, const Input& input) {
+Answer handle_one(Show& show, Visitor& visitor, const Input& input) {
   VisitorPlace& place = visitor.place;
+  if (input.pointer) visitor.looks.pointer = input.pointer, visitor.looks.pointed_at = show.time;
   place.seq = input.seq;
   place.move = input.move;
   if (input.look != vec2(0) && place.tour.state == TourRide::State::playing) {
@@ -208,7 +209,11 @@ Answer handle_one(Show& show, Visitor& visitor, const Settings& settings) {
   if (settings.quality) wants.best_quality = *settings.quality;
   if (settings.max_quality) wants.still_quality = *settings.max_quality;
   wants.best_quality = std::min(wants.best_quality, wants.still_quality);
-  if (settings.attention) wants.attention = *settings.attention;
+  if (settings.attention) {
+    const bool* on = std::get_if<bool>(&*settings.attention);
+    wants.attention = !on || *on;
+    if (!on) wants.task_weight = std::get<float>(*settings.attention);
+  }
   if (settings.width || settings.height)
     set_size(visitor.wants, show.settings, settings.width.value_or(wants.width),
              settings.height.value_or(wants.height));

@@ -103,6 +103,11 @@ std::string write_metrics(const ShowReport& report) {
          double(totals.unwarpable));
   metric(out, "moving_drawn_total", "counter", "What moves in pictures at rest, drawn by itself",
          double(totals.posed));
+  metric(out, "attention_analyses_total", "counter",
+         "Analyses of where a visitor looks, none while nothing asks for samples",
+         double(totals.attention_analyses));
+  metric(out, "attention_milliseconds", "gauge", "What the last of them took, one core",
+         double(totals.attention_ms));
   metric(out, "surroundings_drawn_total", "counter",
          "Small wide pictures drawn of what a quick turn may show", double(totals.surroundings));
   metric(out, "drawings_given_up_total", "counter",

@@ -7,6 +7,7 @@
 #include "picture/compose_drawn.h"
 #include "show/draw/pace.h"
 #include "show/draw/sample_budget.h"
+#include "show/draw/steer.h"
 #include "show/state/in_view.h"
 #include "show/state/lamps.h"
 
@@ -55,6 +56,8 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   job.samples_only = job.learns && purpose == Purpose::samples;
   bool fine = job.learns || wants_fine_light(job.still, !seen || before.coarse, guessed);
   job.attention = visitor.wants.attention;
+  job.weights = visitor.looks.weights;
+  job.note_seen = wants_seen(show, visitor);
   job.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
   const bool moves = job.keep && !job.still && visitor.shown.frame_number > 0;
   if (moves) job.scale = plan_next_keyframe(show, visitor).scale;

@@ -83,9 +83,13 @@ bool stands(const Show& show, const Visitor& visitor) {
 }
 
 bool rests(const Show& show, const Visitor& visitor) {
-  if (!stands(show, visitor) || sees_figure(show, visitor.place.last_view)) return false;
-  return keeps_picture(facts_of(show, visitor)) ? has_all_samples(visitor.picture.rest)
-                                                : visitor.picture.stats.converged >= nearly_all;
+  return !asks_for_samples(show, visitor) && !sees_figure(show, visitor.place.last_view);
+}
+
+bool asks_for_samples(const Show& show, const Visitor& visitor) {
+  if (!stands(show, visitor)) return true;
+  return keeps_picture(facts_of(show, visitor)) ? !has_all_samples(visitor.picture.rest)
+                                                : visitor.picture.stats.converged < nearly_all;
 }
 
 int count_moving(const Show& show) {

@@ -19,6 +19,8 @@ void watch(const Show& show, Visitor& visitor);
 bool stands(const Show& show, const Visitor& visitor);
 // Nothing in the picture changes any more.
 bool rests(const Show& show, const Visitor& visitor);
+// More samples would make the picture of what stands still better.
+bool asks_for_samples(const Show& show, const Visitor& visitor);
 // Visitors who do not stand: the time is divided among them.
 int count_moving(const Show& show);
 // The visitor's browser and socket can take a picture.

@@ -11,6 +11,7 @@
 #include "show/draw/moving.h"
 #include "show/draw/picture_samples.h"
 #include "show/draw/sample_budget.h"
+#include "show/draw/steer.h"
 #include "show/draw/still_pass.h"
 #include "show/state/lamps.h"
 
@@ -87,6 +88,7 @@ DrawingStep paint_picture(Show& show, const PictureJob& job, const View& lit, Vi
   }
   double painted = seconds_now();
   if (!job.passing) tonemap(work.frame, curve, work.picture);
+  work.seen = job.note_seen ? note_seen(job, lit, work.picture, cache) : nullptr;
   if (job.keep)
     make_keyframe(job.view, work.picture, job.passing ? work.depth : work.frame.depth,
                   work.keyframe);
@@ -157,6 +159,7 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   const PictureCosts& costs = picture.costs;
   StageTimes& times = visitor.times;
+  const auto seen = std::exchange(show.renderer.work.seen, nullptr);
   if (costs.samples > 0 && costs.trace > 0)
     smooth(show.samples_per_second, float(costs.samples) / (0.001f * costs.trace));
   show.totals.samples += costs.samples;
@@ -194,6 +197,7 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
       costs.late ? double(job.samples) / std::max(double(show.samples_per_second), 1.0) : 0;
   picture.stats = picture.cache.stats();
   picture.cache_bytes = picture.cache.memory_bytes() + picture.compositor.memory_bytes();
+  if (seen) visitor.looks.seen = seen, visitor.looks.seen_at = job.time;
   // Else its keyframe has the colours.
   if (!job.keep) std::swap(show.renderer.work.picture, picture.image);
   std::swap(show.renderer.work.keyframe, picture.keyframe);

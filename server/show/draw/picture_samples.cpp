@@ -47,6 +47,19 @@ size_t slice_of_samples(const Show& show) {
   return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
 }
 
+void spread_samples(const View& view, int count, Visitor& visitor, std::vector<Request>& requests) {
+  VisitorPicture& picture = visitor.picture;
+  uint64_t& asked = picture.rest.asked;
+  const PointImage& image = picture.cache.image();
+  if (image.weight.empty()) {
+    plan_still(view, asked, count, visitor.link->id, requests);
+    asked += uint64_t(count);
+  } else {
+    asked = plan_still(view, asked, count, visitor.link->id, image, picture.compositor.samples(),
+                       requests);
+  }
+}
+
 }  // namespace
 
 void plan_samples(Show& show, const PictureJob& job, const Technique& technique, const View& lit,
@@ -56,6 +69,7 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   follow_lamps(show, visitor);
   View ahead = job.coarse ? light_view(job.ahead) : job.ahead;
   cache.set_attention(job.attention);
+  cache.set_weights(job.weights ? std::span(*job.weights) : std::span<const float>());
   cache.set_reference(job.settled);
   picture.compositor.set_reconstructed(job.learns);
   // What is around has light of half its size.
@@ -75,8 +89,7 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   const int aimed = spread ? samples_to_watch(planned) : planned;
   cache.plan(lit, aimed, job.seed, work.requests);
   if (spread) {
-    plan_still(lit, picture.rest.asked, planned - aimed, visitor.link->id, work.requests);
-    picture.rest.asked += uint64_t(planned - aimed);
+    spread_samples(lit, planned - aimed, visitor, work.requests);
   }
   work.requests.insert(work.requests.end(), work.ahead.begin(), work.ahead.end());
   picture.costs.late = late;

@@ -2,7 +2,9 @@
 // What a picture is to be, decided before it is drawn (show/draw/picture.h).
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "world/view.h"
 
@@ -27,7 +29,9 @@ struct PictureJob {
   bool coarse = false;        // that in coarser light
   float scale = 1;            // sides of its view, in pixels, over those of the visitor's picture
   bool attention = true;
-  bool keep = false;  // as a keyframe, for others to be made of
+  std::shared_ptr<const std::vector<float>> weights;  // of objects; null: all are 1
+  bool note_seen = false;                             // for the next of these
+  bool keep = false;                                  // as a keyframe, for others to be made of
   uint64_t seed = 0;
   std::optional<View>
       around;  // of a quick turn: what else may be asked for; drawn before, in fewer pixels

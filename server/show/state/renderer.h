@@ -24,6 +24,7 @@
 #include "picture/keyframe.h"
 #include "picture/moving_picture.h"
 #include "show/state/picture_job.h"
+#include "show/state/visitor_attention.h"
 
 namespace wellspring {
 
@@ -48,9 +49,10 @@ struct DrawingWork {
   std::shared_ptr<CacheWork> cache = make_cache_work();  // of all visitors' caches
   std::shared_ptr<CompositorWork> compositor = std::make_shared<CompositorWork>();  // likewise
   Frame frame;
-  std::vector<float> depth;   // of what is drawn for a moment
-  Image8 picture;             // when it is finished the visitor's old one
-  Keyframe keyframe, around;  // likewise
+  std::vector<float> depth;                 // of what is drawn for a moment
+  Image8 picture;                           // when it is finished the visitor's old one
+  Keyframe keyframe, around;                // likewise
+  std::shared_ptr<const SeenPicture> seen;  // of it, for attention; null: not wanted
   std::vector<Request> requests, ahead;
   std::vector<Sample> samples;
   size_t traced = 0;  // of the requests

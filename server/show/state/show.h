@@ -112,7 +112,8 @@ struct Show {
   ShowTotals totals;
   WarpScratch warp;  // of all visitors, whose pictures are warped one after the other
   StillPass pass;
-  Renderer renderer;  // reads much of the above: ends before it
+  AttentionAnalysis analysis;  // show/draw/steer.h
+  Renderer renderer;           // reads much of the above: ends before it
 };
 
 // Who is there now; null: the exhibit has no storyteller.

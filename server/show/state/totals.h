@@ -19,6 +19,8 @@ struct ShowTotals {
            sounds_given_up = 0;  // spoken; packets sent; too slow a reader
   uint64_t visits = 0, turned_away = 0, observations = 0, greetings = 0, farewells = 0, stories = 0;
   uint64_t lamps_switched = 0;
+  uint64_t attention_analyses = 0;
+  float attention_ms = 0;  // of the last of these
 };
 
 }  // namespace wellspring

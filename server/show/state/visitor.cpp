@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/visitor.h"
 
+#include "base/memory.h"
+
 namespace wellspring {
 
 size_t picture_memory(const Visitor& visitor) {
-  return memory_bytes(visitor.picture) + visitor.shown.encoder->memory_bytes;
+  const SeenPicture* seen = visitor.looks.seen.get();
+  return memory_bytes(visitor.picture) + visitor.shown.encoder->memory_bytes +
+         (seen ? bytes_of(seen->picture.rgb, seen->object) : 0);
 }
 
 }  // namespace wellspring

@@ -6,6 +6,7 @@
 
 #include "base/worker.h"
 #include "frame/tonemap.h"
+#include "show/state/visitor_attention.h"
 #include "show/state/visitor_picture.h"
 #include "show/storyteller/sounding.h"
 #include "show/visit/flow.h"
@@ -58,6 +59,7 @@ struct Visitor {
   VisitorSound hearing;         // show/answer/sound.h
   VisitorPlace place;           // show/visit
   PictureWishes wants;
+  VisitorAttention looks;  // show/draw/steer.h
   VisitorPicture picture;  // show/draw
   VisitorDelivery shown;   // show/draw/present.h
   StageTimes times;

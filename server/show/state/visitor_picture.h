@@ -26,6 +26,8 @@ struct PictureWishes {
   float fps = 0;                              // 0: the show's
   int best_quality = 82, still_quality = 92;  // of JPEGs, in motion and at rest
   bool attention = true;                      // CacheSettings::attention
+  // Of attention (attention/attended.h): 0 what catches the eye, 1 what the visitor looks at.
+  float task_weight = 0.5f;
 };
 
 // Of a quick turn what lies around the keyframe, in fewer pixels.

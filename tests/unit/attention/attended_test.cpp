@@ -115,3 +115,20 @@ TEST(Attended, NobodyIsLeftWithoutSamples) {
   eval_sample_shares({}, {}, shares);
   EXPECT_TRUE(shares.empty());
 }
+
+TEST(Attended, WeightsAreSharperThanShares) {
+  std::vector<float> attention{0.8f, 0.4f}, weights;
+  std::vector<SeenObject> seen = two_objects();
+  seen[0].object = 4, seen[1].object = 2;
+  eval_weights(seen, attention, weights);
+  // 100 pixels of 1 and 300 of an eighth, but for the least attention.
+  float less = std::max(1 / 8.0f, least_attention), mean = (100 + 300 * less) / 400;
+  ASSERT_EQ(weights.size(), 5u);
+  EXPECT_FLOAT_EQ(weights[4], 1 / (mean * mean));
+  EXPECT_FLOAT_EQ(weights[2], less * less / (mean * mean));
+  EXPECT_EQ(weights[3], 1);  // not seen
+  eval_weights(seen, std::vector<float>{0, 0}, weights);
+  EXPECT_EQ(weights, (std::vector<float>{1, 1, 1, 1, 1}));
+  eval_weights({}, {}, weights);
+  EXPECT_TRUE(weights.empty());
+}

@@ -79,3 +79,37 @@ TEST(PlanStill, AnyPartIsSpreadOverThePicture) {
     for (int count : parts) EXPECT_NEAR(count, 128, 70) << first;
   }
 }
+
+// A third of the picture counts four times, a third as it is, a third a quarter. What is kept is as
+// many as were asked for.
+TEST(PlanStill, CellsHaveAsManySamplesAsTheyCount) {
+  View view = view_of(96, 36);
+  PointImage image;
+  resize_image(image, 96, 36);
+  for (int cell = 0; cell < 24 * 9; cell++)
+    image.weight.push_back(uint8_t(cell % 24 < 8    ? 4 * weight_one
+                                   : cell % 24 < 16 ? weight_one
+                                                    : weight_one / 4));
+  StillSamples kept;
+  resize_samples(kept, 96 * 36);
+  std::map<std::pair<uint32_t, uint32_t>, int> samples;  // of a pixel, its number
+  double thirds[3] = {};
+  uint64_t next = 0;
+  for (int piece = 0; piece < 40; piece++) {
+    std::vector<Request> requests;
+    next = plan_still(view, next, 900, 3, image, kept, requests);
+    EXPECT_EQ(requests.size(), 900u);
+    for (const Request& request : requests) {
+      EXPECT_EQ(samples[std::pair(request.pixel, request.index)]++, 0);
+      kept.count[request.pixel]++;
+      thirds[request.pixel % 96 / 32]++;
+    }
+  }
+  EXPECT_NEAR(thirds[0] / thirds[1], 4, 0.2);
+  EXPECT_NEAR(thirds[2] / thirds[1], 0.25, 0.05);
+  // Who has all that are kept asks for no more.
+  std::fill(kept.count.begin(), kept.count.end(), uint8_t(most_still_samples));
+  std::vector<Request> requests;
+  EXPECT_EQ(plan_still(view, 7, 900, 3, image, kept, requests), 7u + 96 * 36);
+  EXPECT_TRUE(requests.empty());
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is known of where one visitor looks, and the analysis of that which is under way
+// (show/draw/steer.h).
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <oneapi/tbb/task_arena.h>
+#include <optional>
+#include <vector>
+
+#include "attention/attended.h"
+#include "base/worker.h"
+#include "frame/frame.h"
+#include "world/view.h"
+
+namespace wellspring {
+
+// A drawn picture, made small, and the object that each of its pixels shows; 0: none.
+struct SeenPicture {
+  View view;      // that was drawn
+  int scale = 1;  // pixels of it a side of one of these
+  Image8 picture;
+  std::vector<uint32_t> object;
+};
+using ObjectWeights = std::vector<float>;  // RenderCache::set_weights()
+
+// What an analysis is made of; equal ones have equal answers.
+struct AttentionCause {
+  std::shared_ptr<const SeenPicture> seen;
+  std::vector<AttentionHint> hints;  // in pixels of that
+  float task_weight = 0;
+  std::vector<char> known;  // objects that need no samples: nobody's attention makes them better
+  bool operator==(const AttentionCause&) const = default;
+};
+
+struct VisitorAttention {
+  std::optional<vec2> pointer;              // 0 to 1, from the upper left of the visitor's picture
+  double pointed_at = -1e9;                 // show time of it
+  std::shared_ptr<const SeenPicture> seen;  // the newest; null: none
+  double seen_at = -1e9;                    // show time of its job
+  AttentionCause cause;                     // of the last analysis
+  double analysed_at = -1e9;                // show time of its beginning
+  std::shared_ptr<const ObjectWeights> weights;  // null: all are 1
+};
+
+// One for all visitors, who take turns.
+struct AttentionAnalysis {
+  uint64_t visitor = 0;  // link id of whose it is; 0: none is under way
+  AttentionCause cause;
+  std::shared_ptr<const ObjectWeights> weights;  // what came out
+  double seconds = 0;                            // that it took
+  // What it keeps from one to the next.
+  SaliencyWork work;
+  SaliencyMap saliency;
+  TaskWork task;
+  std::vector<SeenObject> objects;
+  std::vector<float> attention;
+  // One core, so that pictures have the others.
+  oneapi::tbb::task_arena cores{1, 1, oneapi::tbb::task_arena::priority::low};
+  Worker worker;  // the last member: it is waited for before the others end
+};
+
+}  // namespace wellspring
