@@ -79,7 +79,9 @@ uint64_t plan_still(const View& view, uint64_t first, int count, uint64_t seed,
     const size_t pixel = y * size_t(view.width) + x;
     const int known = pixel < kept.count.size() ? kept.count[pixel] : 0;
     const uint64_t weight = image.weight[y / weight_cell * cells + x / weight_cell];
-    int samples = int((turn.before + 1) * weight / weight_one - turn.before * weight / weight_one);
+    // Not all of those that count less than one in the same turn.
+    const uint64_t phase = mix64(seed ^ pixel) % weight_one, done = turn.before * weight + phase;
+    int samples = int((done + weight) / weight_one - done / weight_one);
     samples = std::min(samples, most_still_samples - known);
     for (int k = 0; k < samples && which.size() < size_t(count); k++)
       which.push_back({turn.pixel.x, turn.pixel.y, known + k});
