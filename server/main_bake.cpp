@@ -80,12 +80,14 @@ struct Bakery {
   // And unless it is a shard the map that comes of it.
   void finish(Bake& bake) const {
     keep(bake);
-    if (bake.settings.shards > 1) return;
-    const std::string maps = std::filesystem::path(file).replace_extension(".maps").string();
-    std::shared_ptr<const IlluminationMap> map = finish_map(world, all_eye_places(exhibit), bake);
-    if (map && !save_map(*map, maps, key)) throw Failure(maps + ": cannot be written");
-    std::cout << file << ": " << bake.passes << " passes, error "
-              << 100 * (map ? map->error : bake_error(bake)) << " %\n";
+    float error = bake_error(bake);
+    if (bake.settings.shards == 1) {
+      const std::string maps = std::filesystem::path(file).replace_extension(".maps").string();
+      std::shared_ptr<const IlluminationMap> map = finish_map(world, all_eye_places(exhibit), bake);
+      if (map && !save_map(*map, maps, key)) throw Failure(maps + ": cannot be written");
+      if (map) error = map->error;
+    }
+    std::cout << file << ": " << bake.passes << " passes, error " << 100 * error << " %\n";
   }
 };
 

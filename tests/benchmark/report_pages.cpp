@@ -232,16 +232,19 @@ ReportPage bake_page() {
             .columns = {{"bake.rmse", "error"},
                         {"bake.bias", "of the mean"},
                         {"bake.estimate", "estimated by itself"},
-                        {"bake.known", "pixels known", 100, "%"}}},
+                        {"bake.known", "pixels known", 100, "%"}},
+            .most_rows = 14},
            {.caption = "Storage, after the longest time",
             .rows = {{"scene", "scene"}},
             .columns = {{"bake.texels", "texels"},
                         {"bake.bytes", "all layers", 1e-6, "MB"},
                         {"bake.vertex_bytes", "at vertices of a mesh as fine", 1e-6, "MB"},
-                        {"bake.seam", "mean jump at seams of charts"}}},
+                        {"bake.seam", "mean jump at seams of charts"}},
+            .most_rows = 2},
            {.caption = "A picture, 1280x720, without samples",
             .rows = {{"technique", "light"}, {"cores", "cores"}},
-            .columns = {{"bake.picture.ms", "ms"}}}}};
+            .columns = {{"bake.picture.ms", "ms"}},
+            .most_rows = 4}}};
 }
 
 ReportPage denoise_time_page() {
