@@ -188,11 +188,24 @@ void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* co
                  float thin_prior_variance, const LaneMask& asked, const FindNearby& find_nearby,
                  Drawn& d) {
   Surroundings around = look_around(corners, flat, weights, d.pixels);
-  LaneMask lonely = asked & around.lonely, unsure = asked & (around.known < 1.0f);
+  // Where nothing of the surface has a point, and a map knows its light, there is nothing to
+  // search.
+  const LaneMask untold = d.mapped & around.lonely & (d.pixels.samples <= 0.0f);
+  LaneMask lonely = asked & around.lonely & ~untold,
+           unsure = asked & (around.known < 1.0f) & ~untold;
   around.lonely = LaneMask{};
   Lanes prior_variances = all_lanes(prior_variance);
   around.prior_weight = lanes_max(around.prior_weight, smooth_prior_variances * prior_variances);
-  if (!any_lane(unsure)) return light_as(around, LaneMask{}, prior_variances, d);
+  auto show_map = [&] {
+    for (Lanes* channel : {&d.pixels.smooth.r, &d.pixels.smooth.g, &d.pixels.smooth.b})
+      *channel = untold ? all_lanes(1) : *channel;
+    for (Lanes* channel : {&d.pixels.rest.r, &d.pixels.rest.g, &d.pixels.rest.b})
+      *channel = untold ? Lanes{} : *channel;
+  };
+  if (!any_lane(unsure)) {
+    light_as(around, LaneMask{}, prior_variances, d);
+    return show_map();
+  }
   // Narrow things have few points of their own: what these say is weighed against what is around.
   // Between those and others light passes gradually.
   Drawn thin = d;
@@ -214,6 +227,7 @@ void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* co
   p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
   p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);
   p.samples = lonely ? q.samples : p.samples;
+  show_map();
 }
 
 // All that pixels are lit by, and where in them they are seen.
