@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Compiler settings, packages, and the two words CMakeLists.txt is written in:
-# wellspring_layer(NAME FOLDER LINKS ...)  a static library of every .cpp below FOLDER but main*.cpp
+# wellspring_layer(NAME FOLDER [EXCEPT PART] LINKS ...)  a static library of every .cpp below FOLDER but
+#   main*.cpp and what has PART in its path
 # wellspring_program(NAME FILES LINKS ...)  an executable of one main file, or of all that match
 
 set(CMAKE_CXX_STANDARD 20)
@@ -42,6 +43,8 @@ find_package(ZLIB REQUIRED)
 find_package(GTest REQUIRED)
 find_package(Boost REQUIRED)
 find_package(pugixml QUIET)
+pkg_check_modules(QRCODE REQUIRED IMPORTED_TARGET qrcodegencpp)
+pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 pkg_check_modules(SNDFILE REQUIRED IMPORTED_TARGET sndfile)
 pkg_check_modules(ESPEAK_NG REQUIRED IMPORTED_TARGET espeak-ng)  # wellspring_voice alone: GPL-3+
 
@@ -68,6 +71,12 @@ find_library(PUGIXML pugixml REQUIRED)
 add_library(pugixml_any INTERFACE)
 target_link_libraries(pugixml_any INTERFACE ${PUGIXML})
 
+find_path(SQLITE_INCLUDE sqlite3.h REQUIRED)
+find_library(SQLITE sqlite3 REQUIRED)
+add_library(sqlite_any INTERFACE)
+target_include_directories(sqlite_any SYSTEM INTERFACE ${SQLITE_INCLUDE})
+target_link_libraries(sqlite_any INTERFACE ${SQLITE})
+
 find_path(STB_INCLUDE stb_image.h PATH_SUFFIXES stb REQUIRED)
 
 find_path(CLI11_INCLUDE CLI/CLI.hpp REQUIRED)
@@ -85,14 +94,28 @@ if(WELLSPRING_SANITIZE MATCHES thread)  # it does not know memory fences, Asio d
   target_compile_definitions(boost_any PUBLIC BOOST_ASIO_DISABLE_FENCED_BLOCK)
 endif()
 
+pkg_check_modules(SECCOMP REQUIRED IMPORTED_TARGET libseccomp)
+
 # Headers and libraries by name: OpenCV's own CMake files come only with the whole libopencv-dev.
 find_path(OPENCV_INCLUDE opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
 add_library(opencv_any INTERFACE)
 target_include_directories(opencv_any SYSTEM INTERFACE ${OPENCV_INCLUDE})
-foreach(module core imgproc videoio objdetect video)
+foreach(module core imgproc imgcodecs videoio objdetect video calib3d dnn)
   find_library(OPENCV_${module} opencv_${module} REQUIRED)
   target_link_libraries(opencv_any INTERFACE ${OPENCV_${module}})
 endforeach()
+
+# Another opinion on landmarks, for a measurement; where it is not installed that one is left out.
+find_path(DLIB_INCLUDE dlib/image_processing.h)
+find_library(DLIB dlib)
+find_library(DLIB_BLAS NAMES blas libblas.so.3)
+find_library(DLIB_LAPACK NAMES lapack liblapack.so.3)
+add_library(dlib_any INTERFACE)
+if(DLIB_INCLUDE AND DLIB AND DLIB_BLAS AND DLIB_LAPACK)
+  target_include_directories(dlib_any SYSTEM INTERFACE ${DLIB_INCLUDE})
+  target_link_libraries(dlib_any INTERFACE ${DLIB} ${DLIB_LAPACK} ${DLIB_BLAS})
+  target_compile_definitions(dlib_any INTERFACE WELLSPRING_DLIB)
+endif()
 
 # World reads pictures and frame writes PNG through stb: headers, not part of a layer's interface.
 include_directories(SYSTEM ${STB_INCLUDE})
@@ -133,8 +156,11 @@ function(wellspring_load_once)
 endfunction()
 
 function(wellspring_layer name folder)
-  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "EXCEPT" "LINKS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+  if(ARG_EXCEPT)
+    list(FILTER sources EXCLUDE REGEX "${ARG_EXCEPT}")
+  endif()
   list(FILTER sources EXCLUDE REGEX "/main[^/]*\\.cpp$")
   if(sources)
     add_library(${name} STATIC ${sources})

@@ -3,20 +3,40 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
+#include <thread>
 
 #include "base/clock.h"
 #include "base/load_error.h"
+#include "base/log.h"
 #include "kiosk/figure.h"
 
 namespace wellspring {
 
 namespace {
+
+// The small picture in colour; none of a picture without.
+void to_color(const cv::Mat& picture, GrayFrame& frame) {
+  constexpr int width = 320;
+  frame.color_width = frame.color_height = 0;
+  frame.bgr.clear();
+  if (picture.channels() != 3) return;
+  cv::Mat small = picture;
+  if (picture.cols > width)
+    cv::resize(picture, small, {width, std::max(16, picture.rows * width / picture.cols)}, 0, 0,
+               cv::INTER_AREA);
+  frame.color_width = small.cols;
+  frame.color_height = small.rows;
+  frame.bgr.resize(size_t(small.cols) * size_t(small.rows) * 3);
+  small.copyTo(cv::Mat(small.rows, small.cols, CV_8UC3, frame.bgr.data()));
+}
 
 // Luminance at no more than `width` pixels across. False for what is not a picture.
 bool to_gray(const cv::Mat& picture, int width, GrayFrame& frame) {
@@ -36,6 +56,7 @@ bool to_gray(const cv::Mat& picture, int width, GrayFrame& frame) {
   frame.height = gray.rows;
   frame.pixels.resize(size_t(gray.cols) * size_t(gray.rows));
   gray.copyTo(cv::Mat(gray.rows, gray.cols, CV_8U, frame.pixels.data()));
+  to_color(picture, frame);
   return true;
 }
 
@@ -108,6 +129,67 @@ class FileCamera : public Camera {
   double begin_ = 0, last_ = 0, fps_ = 25;
 };
 
+bool is_picture_name(const std::filesystem::path& path) {
+  std::string end = path.extension().string();
+  std::transform(end.begin(), end.end(), end.begin(), ::tolower);
+  return end == ".png" || end == ".jpg" || end == ".jpeg";
+}
+
+class FolderCamera : public Camera {
+ public:
+  explicit FolderCamera(const CameraSettings& settings) : settings_(settings) {
+    const std::string& path = settings.source;
+    std::error_code ec;
+    for (std::filesystem::directory_iterator at(path, ec), end; !ec && at != end; at.increment(ec))
+      if (is_picture_name(at->path())) files_.push_back(at->path().string());
+    if (ec) throw LoadError(path, "", "cannot be read: " + ec.message());
+    if (files_.empty()) throw LoadError(path, "", "no picture (.png, .jpg, .jpeg) in this folder");
+    std::sort(files_.begin(), files_.end());
+    if (!read(first_)) throw LoadError(path, "", "no picture in this folder can be read");
+    has_first_ = true;
+  }
+  bool live() const override { return false; }
+
+  Got next(GrayFrame& frame) override {
+    if (has_first_) {
+      has_first_ = false;
+      std::swap(frame, first_);
+      return Got::frame;
+    }
+    if (read(frame)) return Got::frame;
+    if (!settings_.loop) return Got::end;
+    next_ = 0;
+    return read(frame) ? Got::frame : Got::end;
+  }
+
+ private:
+  // The next picture that can be read. Others are named once and left out.
+  bool read(GrayFrame& frame) {
+    while (next_ < files_.size()) {
+      cv::Mat picture;
+      try {
+        picture = cv::imread(files_[next_], cv::IMREAD_COLOR);
+      } catch (const cv::Exception&) {  // damaged, or larger than OpenCV takes
+      }
+      if (to_gray(picture, settings_.width, frame)) {
+        next_++;
+        frame.time = double(index_++) / settings_.rate;
+        return true;
+      }
+      log::warn("{} is no picture that can be read: passed over", files_[next_]);
+      files_.erase(files_.begin() + ptrdiff_t(next_));
+    }
+    return false;
+  }
+
+  CameraSettings settings_;
+  std::vector<std::string> files_;
+  GrayFrame first_;
+  bool has_first_ = false;
+  size_t next_ = 0;
+  long index_ = 0;
+};
+
 class DeviceCamera : public Camera {
  public:
   explicit DeviceCamera(const CameraSettings& settings) : settings_(settings) {
@@ -164,22 +246,32 @@ class DeviceCamera : public Camera {
 
 class SyntheticCamera : public Camera {
  public:
-  explicit SyntheticCamera(const CameraSettings& settings) : settings_(settings) {
+  SyntheticCamera(const CameraSettings& settings, bool live) : settings_(settings), live_(live) {
     room_.width = std::clamp(settings.width, 160, 1280);
     room_.height = room_.width * 3 / 4;
   }
-  bool live() const override { return false; }
+  bool live() const override { return live_; }
   Got next(GrayFrame& frame) override {
     double time = double(index_++) / settings_.rate;
-    if (settings_.synthetic_ends && time >= figure_round) return Got::end;
+    if (settings_.synthetic_ends && !live_ && time >= figure_round) return Got::end;
     frame = draw_figure(room_, settings_.mount, figure_at(time), time);
+    if (!live_) return Got::frame;
+    // As a device: at its rate, and one that comes late is not made up for.
+    auto now = [] { return duration(std::chrono::steady_clock::now().time_since_epoch()).count(); };
+    std::this_thread::sleep_for(duration(due_ - now()));
+    frame.time = now();
+    if (frame.time - due_ > 1 / settings_.rate) due_ = frame.time;
+    due_ += 1 / settings_.rate;
     return Got::frame;
   }
 
  private:
+  using duration = std::chrono::duration<double>;
   CameraSettings settings_;
+  bool live_;
   FigureRoom room_;
   long index_ = 0;
+  double due_ = 0;  // steady clock
 };
 
 }  // namespace
@@ -189,10 +281,13 @@ std::unique_ptr<Camera> make_camera(const CameraSettings& settings) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   const std::string& source = settings.source;
-  if (source == "synthetic") return std::make_unique<SyntheticCamera>(settings);
+  if (source == "synthetic" || source == "synthetic-live")
+    return std::make_unique<SyntheticCamera>(settings, source == "synthetic-live");
   bool number =
       !source.empty() && source.size() < 4 && std::all_of(source.begin(), source.end(), ::isdigit);
   if (number || source.rfind("/dev/", 0) == 0) return std::make_unique<DeviceCamera>(settings);
+  std::error_code ec;
+  if (std::filesystem::is_directory(source, ec)) return std::make_unique<FolderCamera>(settings);
   return std::make_unique<FileCamera>(settings);
 }
 

@@ -5,54 +5,20 @@
 #include <cmath>
 
 #include "base/rng.h"
+#include "kiosk/figure_head.h"
 
 namespace wellspring {
 
 namespace {
 
-// Head frame: x to the visitor's right, y up, z out of the face; origin between the eyes' depth and
-// the neck. Metres.
-const vec3 head_radii{0.077f, 0.118f, 0.095f};
-const vec3 eyes_to_center{0, -0.012f, -0.085f};  // from between the eyes to the ellipsoid's centre
-// What stands out of the face: the mouth's part with the chin, and the nose. {centre, radii}
-const vec3 jaw_center{0, -0.058f, 0.045f}, jaw_radii{0.050f, 0.056f, 0.056f};
-const vec3 nose_center{0, -0.012f, 0.090f}, nose_radii{0.014f, 0.028f, 0.026f};
+const vec3 eyes_to_center{0, -0.012f, -0.085f};  // from between the eyes to the head's middle
+// Metres of distance per row and column of rays in a pixel: what is far away must not flicker.
+constexpr float rays_per_metre = 1;
+constexpr int most_rays = 4;
 
 float smooth(float a, float b, float x) {
   float t = glm::clamp((x - a) / (b - a), 0.f, 1.f);
   return t * t * (3 - 2 * t);
-}
-
-// 1 inside the ellipse about (x, y), 0 outside, with a soft rim.
-float blob(vec3 p, float x, float y, float rx, float ry) {
-  float d = std::sqrt((p.x - x) * (p.x - x) / (rx * rx) + (p.y - y) * (p.y - y) / (ry * ry));
-  return 1 - smooth(0.8f, 1.2f, d);
-}
-
-// Reflectance of skin, hair and features at a point of the head's surface.
-float head_albedo(vec3 p) {
-  float skin = 0.72f;
-  if (p.z > 0) {
-    for (float side : {-1.f, 1.f}) {
-      skin -= 0.20f * blob(p, side * 0.031f, 0.014f, 0.022f, 0.017f);    // socket
-      skin += 0.28f * blob(p, side * 0.031f, 0.011f, 0.013f, 0.006f);    // white of the eye
-      skin -= 0.62f * blob(p, side * 0.031f, 0.012f, 0.0065f, 0.0065f);  // iris
-      skin -= 0.25f * blob(p, side * 0.031f, 0.018f, 0.016f, 0.0025f);   // lid
-      skin -= 0.42f * blob(p, side * 0.032f, 0.033f, 0.021f, 0.0045f);   // brow
-      skin += 0.06f * blob(p, side * 0.042f, -0.022f, 0.020f, 0.020f);   // cheek
-      skin -= 0.32f * blob(p, side * 0.008f, -0.033f, 0.0055f, 0.003f);  // nostril
-      skin -= 0.12f * blob(p, side * 0.016f, -0.027f, 0.004f, 0.008f);   // wing of the nose
-    }
-    skin += 0.08f * blob(p, 0, -0.005f, 0.006f, 0.028f);   // bridge
-    skin += 0.07f * blob(p, 0, 0.060f, 0.045f, 0.018f);    // forehead
-    skin -= 0.30f * blob(p, 0, -0.062f, 0.025f, 0.0035f);  // mouth
-    skin -= 0.14f * blob(p, 0, -0.065f, 0.023f, 0.009f);   // lips
-    skin -= 0.10f * blob(p, 0, -0.080f, 0.014f, 0.004f);   // under the lip
-  }
-  float hairline = 0.078f - 6.f * p.x * p.x;
-  float hair = std::max(smooth(hairline - 0.004f, hairline + 0.004f, p.y),
-                        smooth(0.012f, -0.012f, p.z + 0.02f) * smooth(-0.06f, -0.04f, p.y));
-  return glm::mix(skin, 0.10f, hair);
 }
 
 struct Ray {
@@ -115,7 +81,7 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
   const float focal = focal_length(mount, room.width);
   const mat3 head =
       rotation_matrix(pose.rotation);  // head axes in screen axes; z points away from the screen
-  // Head frame of the texture: z out of the face, towards the screen; x stays the visitor's right.
+  // Head frame (figure_head.h): z out of the face, towards the screen; x stays the visitor's right.
   const mat3 to_head = glm::transpose(mat3(head[0], head[1], -head[2]));
   const vec3 center = pose.position + glm::transpose(to_head) * eyes_to_center;
   const vec3 lens = mount.offset;
@@ -134,46 +100,41 @@ GrayFrame draw_figure(const FigureRoom& room, const Mount& mount, const FigurePo
     left = std::min(left, u), right = std::max(right, u);
     top = std::min(top, v), bottom = std::max(bottom, v);
   }
+  // What a ray through the picture at (x, y) sees of the figure; below 0: nothing.
+  auto look = [&](float x, float y) {
+    vec3 camera{(x - room.width / 2.f) / focal, (y - room.height / 2.f) / focal, 1};
+    Ray ray{lens, camera_to_screen(mount, camera) - lens};
+    float best = 1e9f, seen = -1;
+    auto shade = [&](float at, vec3 normal, float albedo) {
+      best = at;
+      seen = albedo * (0.38f + 0.62f * std::max(0.f, glm::dot(normal, lamp)));
+    };
+    if (auto hit = hit_head(to_head * (ray.origin - pose.position), to_head * ray.direction))
+      shade(hit->t, glm::transpose(to_head) * hit->normal, hit->albedo);
+    auto body = [&](vec3 c, vec3 radii, float albedo) {
+      float at = hit_ellipsoid(ray, c, radii);
+      if (at > 0 && at < best) {
+        vec3 p = ray.origin + at * ray.direction;
+        shade(at, glm::normalize((p - c) / (radii * radii)), albedo);
+      }
+    };
+    body(neck, {0.055f, 0.12f, 0.055f}, 0.60f);
+    body(torso, {0.24f, 0.34f, 0.13f}, 0.24f);
+    return seen;
+  };
+  const float away = screen_to_camera(mount, pose.position).z;
+  const int rays = std::clamp(int(std::lround(away * rays_per_metre)), 1, most_rays);
   for (int y = 0; y < room.height; y++)
     for (int x = 0; x < room.width; x++) {
       float grey = room_at((x + 0.5f) / room.width, (y + 0.5f) / room.height);
       if (x >= left && x <= right && y >= top && y <= bottom) {
-        vec3 camera{(x + 0.5f - room.width / 2.f) / focal, (y + 0.5f - room.height / 2.f) / focal,
-                    1};
-        Ray ray{lens, camera_to_screen(mount, camera) - lens};
-        Ray in_head{to_head * (ray.origin - center), to_head * ray.direction};
-        float t = hit_ellipsoid(in_head, vec3(0), head_radii);
-        float nose = hit_ellipsoid(in_head, nose_center, nose_radii);
-        float jaw = hit_ellipsoid(in_head, jaw_center, jaw_radii);
-        float best = 1e9f;
-        auto shade = [&](float at, vec3 normal, float albedo) {
-          best = at;
-          grey = albedo * (0.38f + 0.62f * std::max(0.f, glm::dot(normal, lamp)));
-        };
-        if (t > 0) {
-          vec3 p = in_head.origin + t * in_head.direction;
-          shade(t, glm::transpose(to_head) * glm::normalize(p / (head_radii * head_radii)),
-                head_albedo(p));
+        float sum = 0;
+        for (int k = 0; k < rays * rays; k++) {
+          const float seen = look(float(x) + (float(k % rays) + 0.5f) / float(rays),
+                                  float(y) + (float(k / rays) + 0.5f) / float(rays));
+          sum += seen < 0 ? grey : seen;
         }
-        // Features are drawn by where they lie across the face, whatever bulges below them.
-        auto feature = [&](float at, vec3 c, vec3 radii, float soften) {
-          if (!(at > 0 && at < best)) return;
-          vec3 p = in_head.origin + at * in_head.direction;
-          vec3 n = glm::normalize(
-              glm::mix((p - c) / (radii * radii), p / (head_radii * head_radii), soften));
-          shade(at, glm::transpose(to_head) * n, head_albedo({p.x, p.y, 0.05f}));
-        };
-        feature(jaw, jaw_center, jaw_radii, 0.7f);
-        feature(nose, nose_center, nose_radii, 0.3f);
-        auto body = [&](vec3 c, vec3 radii, float albedo) {
-          float at = hit_ellipsoid(ray, c, radii);
-          if (at > 0 && at < best) {
-            vec3 p = ray.origin + at * ray.direction;
-            shade(at, glm::normalize((p - c) / (radii * radii)), albedo);
-          }
-        };
-        body(neck, {0.055f, 0.12f, 0.055f}, 0.60f);
-        body(torso, {0.24f, 0.34f, 0.13f}, 0.24f);
+        grey = sum / float(rays * rays);
       }
       size_t i = size_t(y) * room.width + x;
       float level = 255 * room.light * grey + room.noise * normal[rng.next() & (normal.size() - 1)];

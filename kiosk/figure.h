@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The synthetic camera's world: a room with a wall and a picture frame, and a visitor who walks in,
-// stands, looks about and leaves. The head is ray-cast (an ellipsoid with a nose, drawn features
-// and one lamp), so its position and rotation are known exactly and the same cascades that find
-// people find it.
+// stands, looks about and leaves. The head is ray-cast (figure_head.h, one lamp), so its position
+// and rotation are known exactly and what finds people finds it.
 #pragma once
 #include "base/vec.h"
-#include "kiosk/gray_frame.h"
-#include "kiosk/head.h"
+#include "kiosk/frame/gray_frame.h"
+#include "kiosk/frame/head.h"
 
 namespace wellspring {
 

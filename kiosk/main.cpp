@@ -3,19 +3,34 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
+#include <functional>
 #include <iostream>
+#include <mutex>
 #include <opencv2/core/utility.hpp>
+#include <sys/prctl.h>
+#include <thread>
 
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "kiosk/calibrate.h"
 #include "kiosk/camera.h"
+#include "kiosk/camera_watch.h"
+#include "kiosk/config.h"
+#include "kiosk/process/eye_process.h"
 #include "kiosk/feed.h"
-#include "kiosk/link.h"
+#include "kiosk/gesture/gesture_file.h"
+#include "kiosk/gesture/train.h"
+#include "kiosk/gesture/writer.h"
+#include "kiosk/process/link.h"
 #include "kiosk/observe.h"
+#include "kiosk/options.h"
+#include "kiosk/process/recording.h"
+#include "kiosk/process/sandbox.h"
 #include "wire/json.h"
 
 namespace {
@@ -25,74 +40,59 @@ using namespace wellspring;
 std::atomic<bool> stop_asked{false};
 void ask_to_stop(int) { stop_asked = true; }
 
-struct Options {
-  CameraSettings camera;
-  ObserverSettings observer;
-  std::string server = "ws://127.0.0.1:8080";
-  bool server_given = false, print = false, pace = true;
-  double fov = 60, pitch = 0;
-  std::vector<float> offset{0, 0, 0};
-};
-
-// Fills options; a wrong command line throws CLI::ParseError.
-void parse(Options& options, int argc, char** argv, CLI::App& app) {
-  app.add_option("--camera", options.camera.source,
-                 "number of a webcam, a device's path, a video file, or 'synthetic'")
-      ->required();
-  auto* server = app.add_option("--server", options.server,
-                                "where observations go; without it and with --print nowhere")
-                     ->capture_default_str();
-  app.add_flag("--print", options.print, "one JSON observation a line on stdout");
-  app.add_flag("!--no-pace", options.pace, "read a file as fast as possible, every frame of it");
-  app.add_flag("--loop", options.camera.loop, "start a file again at its end");
-  app.add_option("--fov", options.fov, "horizontal field of view, degrees")
-      ->check(CLI::Range(10.0, 170.0))
-      ->capture_default_str();
-  app.add_option("--mount-offset", options.offset,
-                 "the lens from the screen's centre, metres: right as the visitor sees it, up, "
-                 "towards the visitor")
-      ->delimiter(',')
-      ->expected(3)
-      ->check(CLI::Range(-10.0, 10.0))
-      ->capture_default_str();
-  app.add_option("--mount-pitch", options.pitch, "tilt of the camera, degrees, upwards positive")
-      ->check(CLI::Range(-80.0, 80.0))
-      ->capture_default_str();
-  app.add_flag("--mirrored", options.camera.mount.mirrored, "the camera delivers a mirror image");
-  app.add_option("--width", options.camera.width,
-                 "pixels across: asked of a webcam; wider frames are reduced")
-      ->check(CLI::Range(160, 1920))
-      ->capture_default_str();
-  app.add_option("--rate", options.camera.rate,
-                 "frames a second at most; all of a file with --no-pace")
-      ->check(CLI::Range(1.0, 120.0))
-      ->capture_default_str();
-  app.add_option("--cascades", options.observer.face.cascades, "folder of OpenCV's cascades")
-      ->capture_default_str();
-  app.parse(argc, argv);
-  options.server_given = server->count() > 0;
-  Mount& mount = options.camera.mount;
-  mount.fov = float(options.fov) * pi / 180;
-  mount.pitch = float(options.pitch) * pi / 180;
-  mount.offset = {options.offset[0], options.offset[1], options.offset[2]};
-  options.camera.synthetic_ends = !options.pace && !options.camera.loop;
-  options.observer.mount = mount;
-}
-
 // False when stdout is gone: whoever read us has left.
 bool print(const std::string& line) {
   return std::fputs(line.c_str(), stdout) >= 0 && std::fputc('\n', stdout) != EOF &&
          std::fflush(stdout) == 0;
 }
 
-void watch(const Options& options, Observer& observer, Feed& feed, ServerLink* link) {
+// Who gets observations besides the server: stdout, a file. For one camera's thread or another.
+class Readers {
+ public:
+  explicit Readers(const KioskOptions& given) : options_(given) {
+    if (!given.record.empty()) recorder_ = std::make_unique<Recorder>(given.record);
+  }
+  // False: whoever reads stdout has left.
+  bool tell(const std::string& text) {
+    std::lock_guard lock(mutex_);
+    if (options_.print && !print(text)) return false;
+    if (recorder_ && !recorder_->write(text)) {
+      log::warn("{} is full or gone: nothing more is recorded", options_.record);
+      recorder_ = nullptr;
+    }
+    return true;
+  }
+
+ private:
+  const KioskOptions& options_;
+  std::mutex mutex_;
+  std::unique_ptr<Recorder> recorder_;
+};
+
+// Null: observations go to stdout alone.
+std::unique_ptr<ServerLink> make_link(const KioskOptions& options) {
+  if (!options.server_given && options.print) return nullptr;
+  return std::make_unique<ServerLink>(*parse_address(options.server));
+}
+
+// What the camera shows, as numbers, until it ends.
+void watch(const KioskOptions& options, const CameraSettings& settings, Observer& observer,
+           Feed& feed) {
   constexpr double patience = 2;       // seconds without a picture before nobody is seen
   constexpr double blind_every = 0.5;  // seconds between observations of a blind camera
-  const double step = 1 / options.camera.rate;
+  constexpr double idle_step = 0.5;    // seconds between looks while the house is closed
+  const double step = 1 / settings.rate;
+  double looked_at = -1e9;
+  bool idle = false;
   double frame_at = seconds_now(), frame_time = frame_at, blind_at = 0, due = -1e9;
   Presence told = Presence::absent;
+  CameraWatch camera;
+  CameraState known = CameraState::good;
   GrayFrame frame;
+  Orders orders;
   while (!stop_asked) {
+    if (options.observe_to >= 0)
+      if (const auto order = orders.take()) observer.need(order->needs), idle = order->idle;
     const Fed fed = feed.take(frame, 0.1);
     if (fed == Fed::end) return;
     Observation seen;
@@ -103,19 +103,186 @@ void watch(const Options& options, Observer& observer, Feed& feed, ServerLink* l
       // just as fast.
       if (options.pace && frame.time < due - 0.5 * step) continue;
       due = std::max(due, frame.time - step) + step;
+      const CameraState state = camera.step(frame);
+      if (idle && std::abs(frame.time - looked_at) < idle_step) continue;
+      looked_at = frame.time;
       seen = observer.step(frame);
+      seen.camera = state;
     } else {
       const double now = seconds_now();
       if (now - frame_at < patience || now - blind_at < blind_every) continue;
       blind_at = now;
       seen = observer.step_blind(frame_time + now - frame_at);
+      seen.camera = camera.step_blind();
     }
-    if (seen.state != told) log::info("{} -> {}", to_string(told), to_string(seen.state));
+    if (seen.camera != known)
+      log::warn("{}: camera {} -> {}", settings.name, camera_states[size_t(known)],
+                camera_states[size_t(seen.camera)]);
+    known = seen.camera;
+    if (seen.state != told)
+      log::info("{}: {} -> {}", settings.name, to_string(told), to_string(seen.state));
     told = seen.state;
-    std::string text = write_observation(seen);
-    if (options.print && !print(text)) return;
-    if (link) link->send(std::move(text));
+    seen.name = settings.name;
+    seen.kiosk = options.name;
+    if (!write_line(options.observe_to, write_observation(seen))) return;
   }
+}
+
+// 42 of each gesture, as many as the paper trains with; learnt from within a second.
+std::vector<HandPath> generated_set() { return write_set(WriterGroup::training, 21, 2, 1); }
+
+int learn(const KioskOptions& options) {
+  const auto paths =
+      options.recordings == "generated" ? generated_set() : load_recordings(options.recordings);
+  const GestureModels models = train_gestures(paths);
+  for (const HandPath& path : paths) {
+    auto is_learnt = [&](const GestureModel& model) { return model.label == path.label; };
+    if (!path.label.empty() &&
+        std::none_of(models.gestures.begin(), models.gestures.end(), is_learnt))
+      throw LoadError(options.recordings, "",
+                      "fewer than three recordings of '" + path.label + "' move far enough");
+  }
+  if (models.gestures.empty()) throw LoadError(options.recordings, "", "no recording has a label");
+  save_gestures(models, options.gestures);
+  std::printf("%zu recordings, %zu models -> %s\n", paths.size(), models.gestures.size(),
+              options.gestures.c_str());
+  return 0;
+}
+
+// The eye: sees pictures; what it has opened by then is all that it may use.
+void look(KioskOptions options) {
+  const CameraSettings& settings = options.cameras[options.eye];
+  GestureModels gestures;
+  if (options.hands) {
+    gestures = options.gestures.empty() ? train_gestures(generated_set())
+                                        : load_gestures(options.gestures);
+    options.observer.gestures = &gestures;
+  }
+  options.observer.mount = settings.mount;
+  Observer observer(options.observer);
+  auto camera = make_camera(settings);
+  if (options.sandbox) enter_sandbox({camera->live()});
+  Feed feed(std::move(camera), options.pace);
+  watch(options, settings, observer, feed);
+}
+
+int replay(const KioskOptions& options) {
+  Replay file(options.replay);
+  Readers readers(options);
+  const auto link = make_link(options);
+  Observation seen;
+  std::string text;
+  double began = 0;
+  for (bool first = true; !stop_asked && file.next(seen, text); first = false) {
+    if (first) began = seconds_now() - seen.time;
+    while (options.pace && !stop_asked && seconds_now() < began + seen.time)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (!readers.tell(text)) break;
+    if (link) link->send(text);
+  }
+  return 0;
+}
+
+// An observation as it came, and its text. False: nothing more is wanted.
+using Tell = std::function<bool(const Observation& seen, const std::string& text)>;
+
+// A camera's eye in a process of its own, begun again when it dies: a codec that crashes, a driver
+// that takes it along. `link`: who says what is needed of it; may be null. Returns its exit status.
+int supervise(const std::vector<std::string>& arguments, size_t which, const std::string& name,
+              ServerLink* link, const Tell& tell) {
+  constexpr double longest_pause = 30;  // seconds
+  std::string order;                    // the server's last
+  for (int deaths = 0; !stop_asked;) {
+    EyeProcess eye(arguments, which);
+    if (!order.empty()) eye.tell(order);
+    const double began = seconds_now();
+    std::string text;
+    for (;;) {
+      const EyeProcess::Heard heard = eye.take(text, 0.1);
+      if (const auto said = link ? link->take_order() : std::nullopt)
+        eye.tell(order = write_eye_order(*said));
+      if (stop_asked) return 0;
+      if (heard == EyeProcess::Heard::ended) break;
+      if (heard != EyeProcess::Heard::line) continue;
+      // Numbers as they ought to be, and nothing else, go on.
+      const auto read = read_observation(text);
+      const Observation* seen = std::get_if<Observation>(&read);
+      if (seen && !tell(*seen, text)) return 0;
+    }
+    const int status = eye.status();
+    if (status >= 0) return status;
+    if (seconds_now() - began > longest_pause) deaths = 0;
+    const double pause = std::min(0.5 * std::pow(2.0, std::min(deaths++, 10)), longest_pause);
+    log::error("{}: the process that sees pictures died of signal {}; begun again in {:.1f} s",
+               name, -status, pause);
+    for (double until = seconds_now() + pause; !stop_asked && seconds_now() < until;)
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return 0;
+}
+
+// All cameras, each in a thread of its own with its own way to the server: what happens to one is
+// nothing to the others. Until the last of them ends.
+int watch_all(const KioskOptions& options, const std::vector<std::string>& arguments) {
+  Readers readers(options);
+  std::atomic<int> worst{0};
+  auto watch_one = [&](size_t which) {
+    const std::string& name = options.cameras[which].name;
+    try {
+      const auto link = make_link(options);
+      const int status = supervise(arguments, which, name, link.get(),
+                                   [&](const Observation&, const std::string& text) {
+                                     if (link) link->send(text);
+                                     if (readers.tell(text)) return true;
+                                     stop_asked = true;
+                                     return false;
+                                   });
+      if (status > worst) worst = status;
+    } catch (const std::exception& error) {
+      log::error("{}: {}", name, error.what());
+      worst = 1;
+    }
+  };
+  std::vector<std::thread> threads;
+  for (size_t i = 0; i < options.cameras.size(); i++) threads.emplace_back(watch_one, i);
+  for (std::thread& thread : threads) thread.join();
+  return worst;
+}
+
+int calibrate(const KioskOptions& options, const std::vector<std::string>& arguments) {
+  const CameraSettings& camera = options.cameras[0];
+  const auto link = make_link(options);
+  Calibration calibration;
+  std::string advice;
+  Observation last;
+  auto tell_screen = [&](const CalibrationStep& step) {
+    last.calibration = step;
+    if (link) link->send(write_observation(last));
+  };
+  bool done = false;
+  int status = supervise(arguments, 0, camera.name, nullptr, [&](const Observation& seen, auto&) {
+    done = calibration.step(seen);
+    if (std::string now = calibration.advice(); now != advice) print(advice = now);
+    last = seen;
+    if (!done) tell_screen(calibration.now());
+    return !done;
+  });
+  if (!done) return std::max(status, 1);
+  try {
+    const Mount mount =
+        solve_mount(camera.mount, calibration.at_near(), calibration.at_far(),
+                    options.eyes_given ? std::optional(options.eyes) : std::nullopt);
+    save_mount(options.config, camera.source, mount);
+    std::printf(
+        "field of view %.1f degrees, pitch %.1f degrees, lens at %.2f, %.2f, %.2f m -> %s\n",
+        double(mount.fov * 180 / pi), double(mount.pitch * 180 / pi), double(mount.offset.x),
+        double(mount.offset.y), double(mount.offset.z), options.config.c_str());
+  } catch (const std::exception&) {
+    tell_screen({CalibrationStep::What::failed});
+    throw;
+  }
+  tell_screen(calibration.now());
+  return 0;
 }
 
 }  // namespace
@@ -125,17 +292,19 @@ int main(int argc, char** argv) {
       "Watches a camera and tells the museum's server who stands there: presence, heads in metres, "
       "how they are turned. Pictures never leave this program."};
   app.name("wellspring kiosk");
-  Options options;
+  KioskOptions options;
   try {
-    parse(options, argc, argv, app);
+    options = parse_options(argc, argv, app);
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
     app.exit(error);
     return 2;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 2;
   }
-  auto address = parse_address(options.server);
-  if (!address) {
+  if (!parse_address(options.server)) {
     std::cerr << "--server: '" << options.server << "' is not ws://HOST[:PORT][/PATH]\n";
     return 2;
   }
@@ -145,12 +314,13 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   cv::setNumThreads(1);  // one core for the eyes; the others belong to the museum
   try {
-    Observer observer(options.observer);
-    auto camera = make_camera(options.camera);
-    std::unique_ptr<ServerLink> link;
-    if (options.server_given || !options.print) link = std::make_unique<ServerLink>(*address);
-    Feed feed(std::move(camera), options.pace);
-    watch(options, observer, feed, link.get());
+    if (!options.recordings.empty()) return learn(options);
+    if (!options.replay.empty()) return replay(options);
+    const std::vector<std::string> arguments{argv, argv + argc};
+    if (options.observe_to < 0)
+      return options.calibrate ? calibrate(options, arguments) : watch_all(options, arguments);
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // not left over by who started it
+    look(options);
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

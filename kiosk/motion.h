@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "kiosk/gray_frame.h"
+#include "kiosk/frame/gray_frame.h"
 
 namespace wellspring {
 

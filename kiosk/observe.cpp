@@ -5,8 +5,11 @@
 #include <cmath>
 #include <map>
 
-#include "kiosk/one_euro.h"
-#include "kiosk/turn.h"
+#include "base/load_error.h"
+#include "base/log.h"
+#include "kiosk/face/face_finder.h"
+#include "kiosk/face/head_pose.h"
+#include "kiosk/person_gestures.h"
 
 namespace wellspring {
 
@@ -16,45 +19,90 @@ namespace {
 // few per cent.
 constexpr OneEuroSettings bearing_filter{1.5f, 8.f, 1.f};    // tangents
 constexpr OneEuroSettings distance_filter{0.5f, 1.5f, 1.f};  // logarithm of metres
-constexpr OneEuroSettings rotation_filter{1.2f, 1.5f, 1.f};  // radians
 
 }  // namespace
 
 struct Observer::Impl {
   ObserverSettings settings;
-  FaceFinder finder;
+  std::unique_ptr<FaceFinder> finder;
   MotionWatch motion;
   People people;
   PresenceState presence;
+  PersonGestures gestures;
+  EyeNeeds needs;
   struct Head {
     OneEuro bearing, distance, rotation;
-    Turn turn;
+    ExpressionState expression;
     Person person;
     double seen_time = 0;
   };
   std::map<uint32_t, Head> heads;
-  GrayFrame previous;
   double last_time = -1e9;
+  std::optional<ClassReader> classes;  // only while expressions are asked for
+  bool read_classes = false;           // in this frame: one look a frame
 
   explicit Impl(const ObserverSettings& s)
-      : settings(s), finder(s.face), motion(s.motion), people(finder, s.people) {}
+      : settings(s),
+        finder(make_face_finder(s.face)),
+        motion(s.motion),
+        people(*finder, s.people),
+        gestures(s.gestures, s.mount.mirrored) {
+    if (!s.expression) return;
+    const std::string folder = weights_folder(s.face);
+    try {
+      classes.emplace(folder);
+      log::info("expressions are estimated: visitors must be told before they are seen");
+    } catch (const LoadError& error) {
+      log::warn("no expressions: {}", error.what());
+    }
+  }
+
+  void express(Head& head, const GrayFrame& frame, const FaceMarks& marks, const HeadPose& pose) {
+    FaceClasses now;
+    const bool read =
+        !read_classes && frame.time - head.expression.read_time >= settings.expressions.read_every;
+    if (read)
+      now = classes->read({frame.pixels.data(), frame.width, frame.height}, cut_of_marks(marks));
+    read_classes |= read;
+    const float focal = focal_length(settings.mount, frame.width);
+    head.person.expression = step_expression(
+        head.expression, settings.expressions, frame.time,
+        face_plane(marks, pose, focal, frame.width, frame.height), read ? &now : nullptr);
+  }
+
+  // Without landmarks: of somebody who looks at the screen, but for what eyes and profiles tell.
+  vec3 crude_rotation(const Person& person, const Followed& who, vec3 camera) {
+    const Mount& mount = settings.mount;
+    constexpr float profile_yaw = 0.9f;  // radians
+    vec3 angles =
+        yaw_pitch_roll(rotation_as_seen(mount, rotation_to_center(person.position), camera));
+    if (who.face.view != FaceView::frontal)
+      angles.x = who.face.view == FaceView::image_left ? profile_yaw : -profile_yaw;
+    if (who.face.eyes) {
+      const vec2 d = (*who.face.eyes)[1] - (*who.face.eyes)[0];
+      angles.z = std::atan2(-d.y, d.x);
+    }
+    people.tilt(who.id, angles.z);
+    return rotation_on_screen(mount, rotation_matrix(angles), camera);
+  }
 
   const Person& place(Head& head, const GrayFrame& frame, const Followed& who) {
     const Mount& mount = settings.mount;
     const float focal = focal_length(mount, frame.width);
-    vec3 raw = face_in_camera(who.face.box, focal, frame.width, frame.height);
+    std::optional<HeadPose> pose;
+    if (who.face.marks) pose = solve_head_pose(*who.face.marks, focal, frame.width, frame.height);
+    vec3 raw =
+        pose ? pose->position : face_in_camera(who.face.box, focal, frame.width, frame.height);
     vec3 bearing =
         step_one_euro(head.bearing, bearing_filter, frame.time, {raw.x / raw.z, raw.y / raw.z, 0});
     vec3 away = step_one_euro(head.distance, distance_filter, frame.time, {std::log(raw.z), 0, 0});
     vec3 camera = vec3(bearing.x, bearing.y, 1) * std::exp(away.x);
     head.person.id = who.id;
     head.person.position = camera_to_screen(mount, camera);
-    const float rest =
-        yaw_pitch_roll(rotation_as_seen(mount, rotation_to_center(head.person.position), camera)).y;
-    const mat3 seen = head.turn.step(previous, frame, who.face, who.seen, rest);
-    people.tilt(who.id, yaw_pitch_roll(seen).z);
-    const vec3 rotation = rotation_on_screen(mount, seen, camera);
+    const vec3 rotation =
+        pose ? rotation_on_screen(mount, pose->rotation) : crude_rotation(head.person, who, camera);
     head.person.rotation = step_one_euro(head.rotation, rotation_filter, frame.time, rotation);
+    if (classes && pose && needs.expression) express(head, frame, *who.face.marks, *pose);
     head.person.confidence = std::clamp(who.face.confidence, 0.f, 1.f);
     head.seen_time = frame.time;
     return head.person;
@@ -90,6 +138,7 @@ Observation Observer::step(const GrayFrame& frame) {
   m.last_time = frame.time;
   Motion motion = m.motion.step(frame);
   bool face = false;
+  m.read_classes = false;
   for (const Followed& who : m.people.step(frame, motion, m.motion)) {
     if (who.picture) {
       m.heads.erase(who.id);
@@ -98,12 +147,24 @@ Observation Observer::step(const GrayFrame& frame) {
     if (!who.visible) continue;
     face = true;
     m.place(m.heads[who.id], frame, who);
+    std::string& gesture = m.heads[who.id].person.gesture;
+    if (m.needs.gestures) gesture = m.gestures.step(frame, who.id, who.face.box);
   }
   std::erase_if(m.heads, [&](const auto& head) {
-    return frame.time - head.second.seen_time > m.settings.people.recall;
+    const bool gone = frame.time - head.second.seen_time > m.settings.people.recall;
+    if (gone) m.gestures.forget(head.first);
+    return gone;
   });
-  m.previous = frame;
   return m.finish(frame.time, motion.moving, face);
+}
+
+void Observer::need(const EyeNeeds& needs) {
+  Impl& m = *impl_;
+  m.needs = needs;
+  for (auto& [id, head] : m.heads) {
+    if (!needs.expression) head.expression = {}, head.person.expression.reset();
+    if (!needs.gestures) m.gestures.forget(id), head.person.gesture.clear();
+  }
 }
 
 Observation Observer::step_blind(double time) {

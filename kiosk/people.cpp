@@ -83,6 +83,7 @@ struct People::Impl {
     who.face.box.x = left + float(at.x) * b.width / patch_side;
     who.face.box.y = top + float(at.y) * b.width / patch_side;
     who.face.eyes.reset();
+    who.face.marks.reset();
     who.face.confidence *= 0.95f;
     who.visible = true;
   }
@@ -129,7 +130,7 @@ const std::vector<Followed>& People::step(const GrayFrame& frame, const Motion& 
     who.seen = false;
     // A face long lost is left to the search; its window would only meet others.
     auto face = time - who.seen_time < m.settings.carry
-                    ? m.finder.follow(frame, who.face.box, track.roll)
+                    ? m.finder.follow(frame, who.face, track.roll)
                     : std::optional<Face>();
     if (face) m.see(track, frame, *face);
     else m.carry(track, frame);

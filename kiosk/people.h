@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "kiosk/face.h"
+#include "kiosk/face/face.h"
 #include "kiosk/motion.h"
 
 namespace wellspring {

@@ -16,6 +16,7 @@
 #include "avatar/mind/storyteller.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "base/near_name.h"
 #include "frame/picture_file.h"
 #include "show/storyteller/contact_sheet.h"
 
@@ -29,7 +30,7 @@ struct Options {
   std::vector<std::string> expressions;
   std::vector<float> point, appearance;
   std::vector<float> guest;
-  bool info = false, json = false, close = false, rest = false, calm = false;
+  bool list_gestures = false, info = false, json = false, close = false, rest = false, calm = false;
   double time = 0;
   float turn = 0, speaking = 0;
   int spp = 64;
@@ -73,6 +74,30 @@ Pose pose_at(const Character& character, const Options& options) {
   return pose;
 }
 
+std::vector<std::string> gesture_names() {
+  std::vector<std::string> names;
+  for (const GestureClip& clip : default_gestures().clips) names.push_back(clip.name);
+  return names;
+}
+
+std::vector<std::string> expression_names() {
+  std::vector<std::string> names;
+  for (const NamedExpression& known : default_expressions().expressions)
+    if (known.name[0] != '_') names.push_back(known.name);
+  return names;
+}
+
+// What stories and the options below may name.
+void print_gestures() {
+  std::cout << "gestures\n";
+  for (const GestureClip& clip : default_gestures().clips)
+    std::cout << "  " << clip.name << std::string(16 - std::min<size_t>(15, clip.name.size()), ' ')
+              << clip.about << "\n";
+  std::cout << "emotions\n  neutral";
+  for (std::string_view name : emotion_names) std::cout << " " << name;
+  std::cout << "\nexpressions\n  " << list_names(expression_names(), 200) << "\n";
+}
+
 // The motion of that name in the figure's file, else the first one of the file `wanted` names.
 Motion find_motion(const Character& character, const std::string& wanted) {
   for (const Motion& motion : character.motions)
@@ -100,11 +125,11 @@ void show_expressions(const Character& character, const std::vector<std::string>
     size_t equals = setting.find('=');
     int expression = find_expression(set, setting.substr(0, equals));
     if (expression < 0) {
-      std::string names;
-      for (const NamedExpression& known : set.expressions)
-        if (known.name[0] != '_') names += " " + known.name;
-      throw std::invalid_argument("--expression: '" + setting.substr(0, equals) + "' is none of" +
-                                  names);
+      const std::string name = setting.substr(0, equals);
+      const std::vector<std::string> names = expression_names();
+      throw std::invalid_argument("--expression: there is no '" + name + "'" +
+                                  did_you_mean(name, names) + "; there are " +
+                                  list_names(names, 200));
     }
     add(sum, rig, expression,
         equals == std::string::npos ? 1 : float(std::atof(setting.c_str() + equals + 1)));
@@ -152,9 +177,10 @@ int run(Options options) {
     return fail("--time wants 0 to 86400 seconds", 2);
   if (!options.guest.empty() && options.guest.size() != 3) return fail("--guest wants x,y,z", 2);
   if (!options.gesture.empty() && find_gesture(options.gesture) < 0) {
-    std::string names;
-    for (const GestureClip& clip : default_gestures().clips) names += " " + clip.name;
-    return fail("--gesture: '" + options.gesture + "' is none of" + names, 2);
+    const std::vector<std::string> names = gesture_names();
+    return fail("--gesture: there is no '" + options.gesture + "'" +
+                    did_you_mean(options.gesture, names) + "; there are " + list_names(names, 200),
+                2);
   }
   shot.close = options.close || !options.sheet.empty();
   shot.turn = options.turn * pi / 180;
@@ -215,8 +241,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Inspects an H-Anim figure and takes pictures of it."};
   Options options;
   app.add_option("file", options.file,
-                 "file of the figure: X3D, VRML97, glTF, VRM; or BVH, a motion")
-      ->required();
+                 "file of the figure: X3D, VRML97, glTF, VRM; or BVH, a motion");
+  app.add_flag("--list-gestures", options.list_gestures,
+               "print the gestures, emotions and expressions that there are, and end");
   app.add_flag("--info", options.info,
                "tell what the figure consists of (the default without --out)");
   app.add_flag("--json", options.json, "the same for programs");
@@ -256,6 +283,11 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  if (options.list_gestures) {
+    print_gestures();
+    return 0;
+  }
+  if (options.file.empty()) return fail("file is required: a figure, or a motion", 2);
   try {
     return run(options);
   } catch (const std::exception& error) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // wellspring bake content/ID: illumination maps of an exhibit, kept where its server finds them.
 // Exit status: 0 done, 1 the input is wrong, 2 the command line is wrong.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <cmath>
@@ -11,9 +9,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <fmt/core.h>
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "light/bake/bake_file.h"
 #include "light/bake/finish_bake.h"
 #include "light/bake/map_file.h"
@@ -24,7 +24,7 @@ using namespace wellspring;
 
 namespace {
 
-constexpr double save_every = 60, say_every = 1;  // seconds
+constexpr double save_every = 60, look_every = 1, say_elsewhere = 10;  // seconds
 
 std::atomic<bool> interrupted = false;
 void interrupt(int) { interrupted = true; }
@@ -132,31 +132,21 @@ Bake begin(const Bakery& bakery, const Options& options, const BakeSettings& set
   return bake;
 }
 
-void say(const Bake& bake, double done, double seconds) {
-  constexpr int width = 30;
-  char line[160], bar[width + 1] = {};
-  for (int i = 0; i < width; i++) bar[i] = double(i) < width * done / seconds ? '#' : '.';
-  std::snprintf(line, sizeof line, "bake [%s] %.0f s left, %llu passes, error %.1f %%", bar,
-                std::max(seconds - done, 0.0), (unsigned long long)bake.passes,
-                100.0 * double(bake_error(bake)));
-  if (isatty(2)) std::cerr << "\r\033[K" << line << std::flush;
-  else std::cerr << line << "\n";
-}
-
 void go_on_for(double seconds, const Bakery& bakery, Bake& bake) {
   const BakeScene scene = make_bake_scene(bakery.world, eye_places(bakery.exhibit));
-  const double began = seconds_now(), pause = isatty(2) ? say_every : 10 * say_every;
-  double said = -pause, saved = began;
+  const double began = seconds_now();
+  double saved = began;
+  Progress progress("bake", say_elsewhere);
   for (double now = began; !interrupted && bake.charts.tiles > 0 && now - began < seconds;
        now = seconds_now()) {
-    const double until = std::min(now + say_every, began + seconds);
+    const double until = std::min(now + look_every, began + seconds);
     go_on(scene, bake, [&] { return interrupted || seconds_now() >= until; });
-    if (now - said >= pause) say(bake, now - began, seconds), said = now;
+    progress.tell((now - began) / seconds,
+                  fmt::format("{} passes, error {:.1f} %", bake.passes, 100 * bake_error(bake)));
     if (now - saved < save_every) continue;
     bakery.keep(bake);
     saved = now;
   }
-  if (isatty(2)) std::cerr << "\r\033[K";
 }
 
 void run(const Options& options, const BakeSettings& settings, double seconds) {

@@ -5,7 +5,9 @@
 #include <iostream>
 
 #include "base/log.h"
+#include "show/exhibit/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
+#include "show/house/house_file.h"
 #include "show/storyteller/recordings.h"
 #include "show/visit/tour.h"
 #include "show/visit/walk.h"
@@ -15,6 +17,8 @@ int main(int argc, char** argv) {
   CLI::App app{"Validates an exhibit package and lists every problem with file and place."};
   std::string folder;
   app.add_option("package", folder, "folder of the exhibit, e.g. content/castle")->required();
+  std::string house;
+  app.add_option("--house", house, "a house file that goes with it");
   wellspring::RecordingOptions recordings;
   app.add_option("--cache", recordings.cache,
                  "folder that keeps what is found out about recordings");
@@ -28,10 +32,13 @@ int main(int argc, char** argv) {
   try {
     wellspring::Exhibit exhibit = wellspring::read_exhibit(folder, problems);
     wellspring::read_recordings(exhibit, recordings, problems);
+    if (!house.empty()) wellspring::read_house(house, exhibit, problems);
     bool usable =
         std::none_of(problems.begin(), problems.end(), [](const auto& p) { return p.fatal; });
-    if (usable && (exhibit.walk || !exhibit.tours.empty())) {
+    if (usable) {
       wellspring::World world(exhibit.scene);
+      wellspring::check_places(exhibit, world, problems);
+      wellspring::check_light(exhibit, world, problems);
       wellspring::check_ground(exhibit, world, problems);
       wellspring::make_tour_roads(exhibit, world, problems);
     }

@@ -15,6 +15,7 @@
 #include "avatar/story/story_speech.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "frame/picture_file.h"
 #include "show/storyteller/story_clip.h"
 #include "show/storyteller/portrait.h"
@@ -116,7 +117,10 @@ int run(Options& options) {
   Image8 sheet{columns * shot.width, rows * shot.height, {}};
   sheet.rgb.resize(size_t(sheet.width) * size_t(sheet.height) * 3);
   std::vector<std::string> warnings;
+  Progress progress("clip");
   for (size_t i = 0; i < moments.size(); i++) {
+    progress.tell(double(i) / double(moments.size()),
+                  fmt::format("{} of {} pictures", i, moments.size()));
     Frame frame = render_portrait(character, moments[i].pose, shot, warnings);
     Image8 picture;
     tonemap(frame, Tonemap{}, picture);
@@ -125,6 +129,7 @@ int run(Options& options) {
     if (i % every == 0)
       paste(picture, sheet, place % columns * shot.width, place / columns * shot.height);
   }
+  progress.clear();
   save_image8(options.out + "/sheet.png", sheet);
   bool film = make_film(options.out, options.clip.fps);
   std::cout << fmt::format("{} pictures of {:.1f} s, sheet.png, sound.wav, subtitles.vtt{} in {}\n",

@@ -17,6 +17,7 @@
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "denoise/denoise.h"
 #include "frame/picture_file.h"
 #include "light/visible/guides.h"
@@ -26,6 +27,7 @@
 #include "show/exhibit/exhibit_lamps.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/exhibit/exhibit_scene.h"
+#include "world/fit_view.h"
 #include "world/load/scene_load.h"
 #include "world/sky.h"
 
@@ -233,10 +235,9 @@ void apply_environment(const std::string& text, Scene& scene) {
     if (radiance.x < 0 || radiance.y < 0 || radiance.z < 0)
       throw UsageError("--environment " + text + ": radiance is not negative");
     scene.environment = {vec3(radiance), -1};
-  } else if (!has_light(scene)) {
+  } else if (add_missing_light(scene)) {
     std::cerr << "the scene has no light: lit by a uniform environment of radiance 1 "
                  "(--environment none to see it dark)\n";
-    scene.environment = {vec3(1), -1};
   } else if (scene.lights.empty() && max_component(scene.environment.radiance) <= 0) {
     std::cerr << "the scene is lit by its emitting surfaces alone (--environment 1,1,1 adds light "
                  "from everywhere)\n";
@@ -249,15 +250,8 @@ View frame_scene(const Scene& scene, float fov, ivec2 size) {
   if (!is_finite(bounds.low) || !is_finite(bounds.high)) bounds = {vec3(-1), vec3(1)};
   vec3 center = 0.5f * (bounds.low + bounds.high), half = 0.5f * (bounds.high - bounds.low);
   vec3 back = normalize(vec3(0.45f, 0.35f, 1));
-  vec3 right = normalize(cross(vec3(0, 1, 0), back)), up = cross(back, right);
-  float tan_y = std::tan(0.5f * fov), tan_x = tan_y * float(size.x) / float(size.y),
-        distance = 1e-3f;
-  for (int corner = 0; corner < 8; corner++) {
-    vec3 p = half * vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-    float towards = dot(p, back);
-    distance = std::max(distance, std::abs(dot(p, right)) / tan_x + towards);
-    distance = std::max(distance, std::abs(dot(p, up)) / tan_y + towards);
-  }
+  float tan_y = std::tan(0.5f * fov), tan_x = tan_y * float(size.x) / float(size.y);
+  float distance = distance_to_fit(half, back, tan_x, tan_y);
   dvec3 target = scene.origin + dvec3(center);
   return make_view_towards(scene, target + dvec3(back * (distance * 1.06f)), target, {0, 1, 0}, fov,
                            size.x, size.y);
@@ -416,7 +410,10 @@ void render(const Options& o) {
   settings.transport.max_depth = o.max_depth;
   if (!o.replay.empty()) return print_replay(o, world, lights, view, settings);
   double start = seconds_now();
+  Progress progress("render");
+  settings.progress = [&](double done) { progress.tell(done); };
   Frame frame = render_still(*find_technique(o.technique), world, lights, view, settings);
+  progress.clear();
   double seconds = seconds_now() - start;
   std::string comment = std::to_string(o.spp) + " samples a pixel by " + o.technique + ", " +
                         use_guides(o, denoiser.get(), world, lights, view, frame);

@@ -29,7 +29,10 @@ export function run(name, args, { timeout = 60000 } = {}) {
 }
 
 // A running server: {port, url, ws, child, stop()}. Resolves when it has printed its address.
-export function start_server(args = [], { port = 0, content = join(source, 'content') } = {}) {
+// Serves the castle where nothing else is said.
+export function start_server(words = [], { port = 0, content } = {}) {
+  const args = content || words.includes('--exhibit') ? words : ['--exhibit', 'castle', ...words];
+  content ??= join(source, 'content');
   return new Promise((resolve, reject) => {
     const child = spawn(join(bin, 'wellspring_server'),
       ['--content', content, '--web', join(source, 'web'), '--port', String(port), ...args],

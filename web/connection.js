@@ -9,7 +9,7 @@ export function make_connection(handlers) {
 
   function address() {
     const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
-    const base = new URL('api/v1/visit', location.href);
+    const base = new URL('api/v1/visit', document.baseURI);
     return `${scheme}//${base.host}${base.pathname}`;
   }
 

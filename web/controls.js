@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys, pointer and touch made into the two numbers the server wants: how fast to move, how far to
-// turn.
+// Keys, pointer, touch and gamepad made into the two numbers the server wants: how fast to move,
+// how far to turn.
+import { make_pointers } from './pointers.js';
+
 const walk_keys = {
   KeyW: [0, 1], KeyS: [0, -1], KeyA: [-1, 0], KeyD: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
 };
@@ -9,28 +11,23 @@ const turn_speed = 1.5;  // radians a second
 
 const pointer_interval = 200, least_pointer_step = 0.01;  // milliseconds; of the picture
 
-// Where a pointer is in the picture, 0 to 1 from its upper left; the canvas cuts what does not fit.
-function place_in_picture(canvas, event) {
-  const box = canvas.getBoundingClientRect();
-  const scale = Math.max(box.width / canvas.width, box.height / canvas.height);
-  const x = (event.clientX - box.left - box.width / 2) / (canvas.width * scale) + 0.5,
-      y = (event.clientY - box.top - box.height / 2) / (canvas.height * scale) + 0.5;
-  return [x, y].map((v) => Math.round(Math.min(1, Math.max(0, v)) * 1000) / 1000);
-}
-
 // send({move, look, pointer, moved}) at most 60 times a second and only on change, where pointer is
 // left out if it is nothing new and moved tells whether the rest is; fov() vertical radians of the
-// picture; place(n) for the number keys.
-export function make_controls(canvas, stick, knob, { send, fov, speed, place }) {
+// picture; place(n) for the number keys: 1 to 9, 0 for the tenth, and with Shift ten more;
+// tap(place in the picture, event) for a click or a tap that is no drag; pad() as of
+// make_gamepad().
+export function make_controls(canvas, stick, knob,
+    { send, fov, speed, place, tap = () => {}, pad = () => null }) {
   const down = new Set();
   let look = [0, 0], last_move = [0, 0, 0], stick_move = [0, 0], last_time = performance.now(),
       turning = 0;
 
-  const busy = (target) => target instanceof Element
-      && target.closest('input, select, textarea, button, a');
+  const busy = (target, kinds = 'input, select, textarea, button, a') =>
+    target instanceof Element && target.closest(kinds);
   addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
-    if (/^Digit[1-9]$/.test(event.code) && !event.repeat) place(Number(event.code[5]) - 1);
+    if (/^Digit[0-9]$/.test(event.code) && !event.repeat && !busy(event.target, 'input'))
+      place((Number(event.code[5]) + 9) % 10 + (event.shiftKey ? 10 : 0));
     if (!(event.code in walk_keys) && !(event.code in turn_keys)) return;
     if (busy(event.target) && event.code.startsWith('Arrow')) return;
     event.preventDefault();
@@ -44,30 +41,16 @@ export function make_controls(canvas, stick, knob, { send, fov, speed, place }) 
   addEventListener('blur', () => { down.clear(); stick_move = [0, 0]; });
 
   // Dragging takes hold of the picture: what is under the pointer stays under it.
-  const pointers = new Map();
-  let pointed = null, sent_pointed = [-1, -1], sent_at = 0;
-  for (const kind of ['pointerdown', 'pointermove'])
-    canvas.addEventListener(kind, (event) => { pointed = place_in_picture(canvas, event); });
-  canvas.addEventListener('pointerdown', (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    pointers.set(event.pointerId, [event.clientX, event.clientY]);
-    canvas.classList.add('dragging');
-    canvas.focus({ preventScroll: true });
+  let sent_pointed = [-1, -1], sent_at = 0, pulled = [0, 0];
+  const pointers = make_pointers(canvas, {
+    turn(x, y) {
+      const per_pixel = fov() / Math.max(1, canvas.clientHeight);
+      look[0] += x * per_pixel;
+      look[1] += y * per_pixel;
+    },
+    pull(right, forward) { pulled[0] += right; pulled[1] += forward; },
+    tap,
   });
-  canvas.addEventListener('pointermove', (event) => {
-    const before = pointers.get(event.pointerId);
-    if (!before) return;
-    const per_pixel = fov() / Math.max(1, canvas.clientHeight);
-    look[0] += (event.clientX - before[0]) * per_pixel;
-    look[1] += (event.clientY - before[1]) * per_pixel;
-    pointers.set(event.pointerId, [event.clientX, event.clientY]);
-  });
-  for (const end of ['pointerup', 'pointercancel']) {
-    canvas.addEventListener(end, (event) => {
-      pointers.delete(event.pointerId);
-      if (pointers.size === 0) canvas.classList.remove('dragging');
-    });
-  }
   // The wheel takes a step.
   let step = 0;
   canvas.addEventListener('wheel',
@@ -98,15 +81,27 @@ export function make_controls(canvas, stick, knob, { send, fov, speed, place }) 
       if (walk_keys[code]) { right += walk_keys[code][0]; forward += walk_keys[code][1]; }
       if (turn_keys[code]) turn += turn_keys[code];
     }
+    const stick_pad = pad();
+    if (stick_pad) {
+      right += stick_pad.right;
+      forward += stick_pad.forward;
+      look[0] += stick_pad.turn * turn_speed * dt;
+      look[1] += stick_pad.tilt * turn_speed * 0.7 * dt;
+    }
     if (step !== 0) { forward += step * 2; step *= 0.85; if (Math.abs(step) < 0.05) step = 0; }
     turning += (Math.sign(turn) - turning) * (1 - Math.exp(-dt / 0.07));
     if (Math.abs(turning) < 0.01) turning = 0;
     look[0] += turning * turn_speed * dt;
     const length = Math.hypot(right, forward), pace = speed() * (down.has('Shift') ? 1.8 : 1);
     const scale = length > 1 ? pace / length : pace;
-    const move = [right * scale, 0, forward * scale].map((v) => Math.round(v * 1000) / 1000);
+    // Two fingers pull as fast as they go, the rest of it with the next frames.
+    const pulls = pulled.map((v) => Math.max(-4, Math.min(4, v / 0.15)));
+    pulled = pulled.map((v, i) => (Math.abs(v) < 0.005 ? 0 : v - pulls[i] * dt));
+    const move = [right * scale + pulls[0], 0, forward * scale + pulls[1]]
+        .map((v) => Math.round(v * 1000) / 1000);
     const moved = move.some((v, i) => v !== last_move[i]);
     const turned = look[0] !== 0 || look[1] !== 0;
+    const pointed = pointers.at();
     const points = pointed && now - sent_at >= pointer_interval
         && pointed.some((v, i) => Math.abs(v - sent_pointed[i]) >= least_pointer_step);
     if (moved || turned || points) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The side menu and the row of places: made from what the server says there is.
+// The side menu: made from what the server says there is.
+import { by_id } from './element.js';
 import { language_names, translate_page, word } from './words.js';
-
-const by_id = (id) => document.getElementById(id);
 
 function button(text, on_click) {
   const element = document.createElement('button');
@@ -27,15 +26,20 @@ function lamp_switch({ name, title, on }, on_change) {
   return label;
 }
 
-// orders: {viewpoint(name), tour(action, id), story(id), storyteller(fields), lamp(name, on),
-// lang(tag), subtitles(on), attention(share)}
+// orders: {viewpoint(name), object(id), tour(action, id), story(id), storyteller(fields),
+// lamp(name, on), lang(tag), subtitles(on), attention(share)}
 export function make_menu(orders) {
   const menu = by_id('menu'), opener = by_id('menu-button');
-  let lang = 'en', viewpoints = [];
+  let lang = 'en', before = opener;  // before: what had the focus when it was opened
   const open = (yes) => {
+    if (yes) {
+      const focused = document.activeElement;
+      before = !focused || focused === document.body ? opener : focused;
+    }
     menu.hidden = !yes;
     opener.setAttribute('aria-expanded', String(yes));
-    (yes ? by_id('menu-close') : by_id('picture')).focus();
+    if (yes) by_id('menu-close').focus();
+    else (before.isConnected && !before.closest('[hidden]') ? before : opener).focus();
   };
   opener.addEventListener('click', () => open(menu.hidden));
   by_id('menu-close').addEventListener('click', () => open(false));
@@ -69,12 +73,12 @@ export function make_menu(orders) {
       document.title = message.title;
       by_id('title').textContent = message.title;
       by_id('description').textContent = message.description;
-      viewpoints = message.viewpoints;
-      by_id('places').replaceChildren(...viewpoints.map(({ name, title }) => {
-        const element = button(title, () => orders.viewpoint(name));
-        element.dataset.viewpoint = name;
+      by_id('objects').replaceChildren(...message.objects.map(({ id, title }) => {
+        const element = button(title, () => { open(false); orders.object(id); });
+        element.dataset.object = id;
         return element;
       }));
+      by_id('objects-section').hidden = message.objects.length === 0;
       by_id('tours').replaceChildren(...message.tours.map((tour) => button(tour.title, () => {
         orders.tour('play', tour.id);
         open(false);
@@ -107,9 +111,6 @@ export function make_menu(orders) {
       }));
     },
     state(message) {
-      for (const element of by_id('places').children)
-        element.setAttribute('aria-current',
-            String(element.dataset.viewpoint === message.viewpoint));
       for (const input of by_id('lamps').querySelectorAll('input'))
         input.checked = message.lamps?.[input.dataset.lamp] ?? input.checked;
     },
@@ -122,6 +123,14 @@ export function make_menu(orders) {
         element.setAttribute('aria-pressed', String(element.dataset.story === message.story));
     },
     figures(text) { if (!menu.hidden) by_id('figures').textContent = text; },
-    place: (index) => viewpoints[index]?.name,
+    is_open: () => !menu.hidden,
+    toggle: () => open(menu.hidden),
+    // For those without pointer and keys: the focus to the next control, or the one before.
+    step(by) {
+      const all = [...menu.querySelectorAll('button, input')]
+          .filter((element) => !element.closest('[hidden]'));
+      const at = all.indexOf(document.activeElement);
+      all[(at + by + all.length) % all.length]?.focus();
+    },
   };
 }

@@ -47,7 +47,7 @@ export function make_picture(canvas, on_shown) {
 // screen has.
 export function wanted_size(most = 1280 * 720) {
   const ratio = Math.min(window.devicePixelRatio || 1, 2);
-  let width = Math.max(64, innerWidth * ratio), height = Math.max(64, innerHeight * ratio);
+  const width = Math.max(64, innerWidth * ratio), height = Math.max(64, innerHeight * ratio);
   const scale = Math.min(1, Math.sqrt(most / (width * height)));
   return { width: Math.round(width * scale / 8) * 8, height: Math.round(height * scale / 8) * 8 };
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is being told, and the buttons for it: pause, skip, from the start, stop. A tour when there
 // is one, else the story.
+import { by_id } from './element.js';
 import { word } from './words.js';
 
-const by_id = (id) => document.getElementById(id);
-
-// orders: {tour(action), story_action(action)}; on_pause(bool): whether what is told rests.
+/**
+ * @param {any} orders {tour(action), story_action(action)}
+ * @param {(rests: boolean) => void} on_pause whether what is told rests
+ */
 export function make_player(orders, on_pause = () => {}) {
   const bar = by_id('player'), pause = by_id('player-pause');
   let lang = 'en', titles = { tour: {}, story: {} }, tour = null, story = null, paused = null;

@@ -11,10 +11,11 @@ const slip = 0.06;                 // seconds a piece may be off before it is pu
 export const loudness = (distance) => Math.max(faintest, near / Math.max(near, distance));
 
 // Where a world position is for somebody at `state` {position, yaw}: [right, up, back] metres.
-export function in_front_of(state, position) {
+// `behind`: metres that the listener stands behind that place.
+export function in_front_of(state, position, behind = 0) {
   const [x, y, z] = position.map((v, i) => v - state.position[i]);
   const c = Math.cos(state.yaw), s = Math.sin(state.yaw);
-  return [x * c - z * s, y, x * s + z * c];
+  return [x * c - z * s, y, x * s + z * c - behind];
 }
 
 // How long after its server time a picture is seen, on performance.now()'s clock: the median of the
@@ -35,7 +36,9 @@ export function make_delay(most = 31) {
 // at once (kiosks whose browser allows it). label(name): the words of this page.
 export function make_sound(button, { on_wanted, label, eager = false }) {
   let muted = localStorage.getItem('wellspring.sound') === 'off', wanted = null;
-  let context = null, loud = null, panner = null, mouth = null, everywhere = false, state = null;
+  let context = null, loud = null, master = null, volume = 1, panner = null;
+  let mouth = null, everywhere = false, state = null;
+  let behind = 0;
   let current = null, ended = 0;  // utterance: {number, at, sources}
   const delay = make_delay();
 
@@ -57,14 +60,19 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
     if (!window.AudioContext) return;
     if (!context) {
       context = new AudioContext({ latencyHint: 'interactive' });
+      master = new GainNode(context, { gain: muted ? 0 : volume });
       loud = new GainNode(context, { gain: 1 });
       // Direction only; distance is `loudness`.
       panner = new PannerNode(context, { panningModel: 'equalpower', rolloffFactor: 0 });
-      panner.connect(loud).connect(context.destination);
+      panner.connect(loud).connect(master).connect(context.destination);
       context.onstatechange = show;
       place();
     }
     if (context.state !== 'running') context.resume().then(show, () => {});
+  }
+
+  function set_loudness() {
+    if (context) master.gain.setTargetAtTime(muted ? 0 : volume, context.currentTime, 0.05);
   }
 
   function stop() {
@@ -82,7 +90,8 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
       return;
     }
     if (!context || !mouth || !state) return;
-    const at = in_front_of(state, mouth), distance = Math.hypot(...at), now = context.currentTime;
+    const at = in_front_of(state, mouth, behind), distance = Math.hypot(...at);
+    const now = context.currentTime;
     loud.gain.setTargetAtTime(loudness(distance), now, 0.06);
     const away = Math.max(distance, 1e-3);
     [panner.positionX, panner.positionY, panner.positionZ].forEach(
@@ -133,6 +142,7 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
     muted = on;
     localStorage.setItem('wellspring.sound', muted ? 'off' : 'on');
     if (muted) stop(); else open();
+    set_loudness();
     show();
   });
   const touched = (event) => {
@@ -157,8 +167,22 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
     stop,
     shown: (picture) => delay.shown(picture.time_us, performance.now()),
     moved(to) { state = to; place(); },
+    // Who listens stands so many metres behind the picture's camera.
+    stands_behind(metres) { behind = metres; place(); },
     // A new line: numbers of utterances begin anew, and the server must be told again.
     joined() { stop(); ended = 0; wanted = null; show(); },
     relabel: show,
+    // 0..1, of everything that this page plays.
+    volume(value) { volume = value; set_loudness(); },
+    // As a new guest finds it: sound is on.
+    reset() {
+      muted = false;
+      localStorage.removeItem('wellspring.sound');
+      set_loudness();
+      show();
+    },
+    // Where other sounds go: {context, to}; null until the browser allows any.
+    output: () => (context?.state === 'running' ? { context, to: master } : null),
+    is_heard: () => !!current && current.at > context.currentTime,
   };
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The technician's page: /metrics read once a second and put into words.
-const by_id = (id) => document.getElementById(id);
+// The technician's page: what is wrong in words, as the server judges it, and figures, once a
+// second.
+import { by_id } from './element.js';
+import { colours, draw_speeds, time_text } from './speeds.js';
 
 // Prometheus text to [{name, labels, value}].
-export function parse_metrics(text) {
+function parse_metrics(text) {
   const found = [];
   for (const line of text.split('\n')) {
     const match = /^wellspring_(\w+?)(?:\{(.*)\})? (\S+)$/.exec(line);
@@ -16,33 +18,106 @@ export function parse_metrics(text) {
   return found;
 }
 
-function rows(table, list) {
-  table.replaceChildren(...list.map((cells, index) => {
-    const row = document.createElement('tr');
-    row.append(...cells.map((cell, column) => {
-      const element =
-          document.createElement(column === 0 || (index === 0 && cells.length > 2) ? 'th' : 'td');
-      element.textContent = cell;
-      return element;
-    }));
-    return row;
-  }));
+function make(name, text, class_name = '') {
+  const element = document.createElement(name);
+  element.textContent = text;
+  element.className = class_name;
+  return element;
 }
 
+// heads: names of columns, or null: the first cell of each row is its name. A cell is a text, or
+// {text, bad}.
+function fill(table, heads, list) {
+  const cell = (one, kind, scope) => {
+    const element = make(kind, one.text ?? one, one.bad ? 'bad' : '');
+    if (scope) element.scope = scope;
+    return element;
+  };
+  const rows = list.map((cells) => {
+    const row = document.createElement('tr');
+    row.append(...cells.map((one, i) => cell(one, i ? 'td' : 'th', i ? '' : 'row')));
+    return row;
+  });
+  const body = document.createElement('tbody'), head = document.createElement('thead');
+  body.append(...rows);
+  if (heads) {
+    const row = document.createElement('tr');
+    row.append(...heads.map((name) => cell(name, 'th', 'col')));
+    head.append(row);
+    table.replaceChildren(head, body);
+  } else table.replaceChildren(body);
+}
+
+// "14:03", or with its day where that is another.
+function since_text(seconds) {
+  const then = new Date(Date.now() - 1000 * seconds);
+  const clock = then.toLocaleTimeString('en-GB', { hour: '2-digit', minute: '2-digit' });
+  return then.toDateString() === new Date().toDateString() ? clock
+    : `${then.toLocaleDateString('en-GB', { day: 'numeric', month: 'long' })}, ${clock}`;
+}
+const duration = (seconds) => seconds < 120 ? `${Math.round(seconds)} s`
+  : seconds < 7200 ? `${Math.round(seconds / 60)} min` : `${Math.round(seconds / 3600)} h`;
 const mebibytes = (bytes) => `${Math.round(bytes / 2 ** 20)} MiB`;
 const number = (value, digits = 0) => value === undefined
   ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits });
 
+let told = '';
+function tell(state, headline, findings) {
+  const lines = findings.map(({ what, seconds, why, remedy, grave }) =>
+    ({ line: `${what}${seconds === null ? '' : ` since ${since_text(seconds)}`}`
+      + `${why ? `: ${why}` : ''}.`, remedy, grave }));
+  const all = JSON.stringify([state, headline, lines]);
+  if (all === told) return;  // screen readers hear of changes alone
+  told = all;
+  by_id('verdict').dataset.state = state;
+  by_id('verdict-word').textContent = headline;
+  by_id('findings').replaceChildren(...lines.map(({ line, remedy, grave }) => {
+    const item = make('li', '', grave ? 'grave' : '');
+    item.append(make('p', line), make('p', remedy, 'remedy'));
+    return item;
+  }));
+}
+
+function judge({ findings }) {
+  const grave = findings.filter((one) => one.grave).length, others = findings.length - grave;
+  if (grave)
+    tell('bad', grave === 1 ? 'Something is wrong' : `${grave} things are wrong`, findings);
+  else if (others) tell('note', 'Guests are well; something could be better', findings);
+  else tell('fine', 'Everything is fine', []);
+}
+
+const camera_words = { good: 'works', dark: 'sees only black', frozen: 'stands still',
+  missing: 'gives no picture', slow: 'is slow', silent: 'says nothing',
+  disconnected: 'not connected', calibrating: 'is being calibrated' };
+
+function show_kiosks({ kiosks, cameras }) {
+  fill(by_id('kiosks'), ['Kiosk', 'Stage', 'People', 'Storyteller', 'Screens', 'Cameras'],
+      kiosks.map((one) => [one.name || 'without a name', one.stage, one.people,
+        one.storyteller ? 'here' : '–', one.screens, one.cameras]));
+  fill(by_id('cameras'), ['Camera', 'Kiosk', 'State', 'For'], cameras.map((one) => [
+    one.name, one.kiosk || '–', { text: camera_words[one.state] ?? one.state,
+      bad: !['good', 'calibrating'].includes(one.state) }, duration(one.seconds)]));
+  by_id('kiosks-section').hidden = kiosks.length === 0;
+  by_id('cameras-section').hidden = cameras.length === 0;
+}
+
+// What is counted of all exhibits together; of what is measured the largest.
+const reader = (metrics) => (name) => {
+  const values = metrics.filter((metric) => metric.name === name).map(({ value }) => value);
+  if (values.length === 0) return undefined;
+  return name.endsWith('_total') ? values.reduce((a, b) => a + b) : Math.max(...values);
+};
+
 function denoiser(metrics) {
   const found = metrics.find((metric) => metric.name === 'denoiser');
   if (!found?.value) return `off: ${found?.labels.problem ?? 'unknown'}`;
-  const one = (name) => metrics.find((metric) => metric.name === name)?.value;
+  const one = reader(metrics);
   return `${number(one('reconstructions_total'))} pictures at rest, the last in `
       + `${number(one('reconstruction_milliseconds'))} ms`;
 }
 
 function maps(metrics) {
-  const one = (name) => metrics.find((metric) => metric.name === name)?.value;
+  const one = reader(metrics);
   const percent = (share) => `${number(100 * share, 1)} %`;
   const baked = one('bake_passes_total') > 0
     ? `; ${one('bake_working') ? 'baking' : 'baked'}: ${number(one('bake_passes_total'))} passes, `
@@ -52,73 +127,128 @@ function maps(metrics) {
     + `error ${percent(one('illumination_map_error'))}${baked}`;
 }
 
+function show_figures(metrics) {
+  const one = reader(metrics);
+  const seconds = one('up_seconds') ?? 0;
+  fill(by_id('server'), null, [
+    ['Up', `${Math.floor(seconds / 3600)} h ${Math.floor(seconds / 60) % 60} min`],
+    ['Memory', mebibytes(one('resident_bytes') ?? 0)],
+    ['Tick', `${number(one('tick_milliseconds'), 1)} ms, of it the storyteller `
+      + `${number(one('animate_milliseconds'), 1)} ms`],
+    ['Samples', `${number(one('samples_per_second'))} a second while tracing; dropped as invalid: `
+      + number(one('bad_samples_total'))],
+    ['Network', denoiser(metrics)],
+    ['Light maps', maps(metrics)],
+    ['Pictures',
+      `${number(one('pictures_total'))} (${mebibytes(one('picture_bytes_total') ?? 0)})`],
+    ['Connections', `${number(one('connections'))} open, `
+      + `${number(one('slow_readers_closed_total'))} closed for reading too slowly`],
+    ['Messages',
+      `${number(one('messages_total'))}, refused ${number(one('refused_messages_total'))}`],
+  ]);
+  const ids = [...new Set(metrics.filter((m) => m.labels.visitor).map((m) => m.labels.visitor))];
+  const state_of = (name) =>
+    metrics.find((metric) => metric.name === name && metric.value === 1)?.labels.state ?? '–';
+  const name_of = (id) => {
+    const kiosk = metrics.find((m) => m.labels.visitor === id && m.labels.kiosk)?.labels.kiosk;
+    return kiosk ? `${id} (${kiosk})` : id;
+  };
+  const value_of = (id, name) =>
+    metrics.find((m) => m.labels.visitor === id && m.name === `visitor_${name}`)?.value;
+  by_id('visitors-section').hidden = ids.length === 0;
+  const of = (id, name, digits) => number(value_of(id, name), digits);
+  fill(by_id('visitors'), ['Visitor', 'Pictures/s', 'Round trip ms', 'Display ms', 'Trace ms',
+    'Tone ms', 'Encode ms', 'Decode ms', 'Samples', 'Quality', 'Converged %'],
+  ids.map((id) => [
+    name_of(id), of(id, 'pictures_per_second', 1), of(id, 'round_trip_milliseconds'),
+    of(id, 'display_milliseconds', 1), of(id, 'trace_milliseconds', 1),
+    of(id, 'tonemap_milliseconds', 1), of(id, 'encode_milliseconds', 1),
+    of(id, 'decode_milliseconds', 1), of(id, 'samples_per_picture'), of(id, 'jpeg_quality'),
+    number(100 * (value_of(id, 'converged_ratio') ?? 0), 1)]));
+  fill(by_id('storyteller'), null, [
+    ['House', `${one('house_open') ? 'open' : 'closed'}${one('house_quiet') ? ', quiet' : ''}`],
+    ['Before her', state_of('audience')],
+    ['Mood', state_of('storyteller_mood')],
+    ['Greetings', `${number(one('greetings_total'))}, farewells ${number(one('farewells_total'))}`],
+    ['Stories', number(one('stories_total'))],
+    ['Observations', number(one('kiosk_observations_total'))],
+    ['Voice', `${one('voice_running') ? 'running' : 'not running'}, `
+      + `restarts ${number(one('voice_restarts_total'))}, `
+      + `lines kept ${number(one('voice_lines'))}, `
+      + `waiting ${number(one('voice_lines_waiting'))}, `
+      + `failed ${number(one('voice_failed_total'))}`],
+  ]);
+}
+
+// Where the server has a token, who wants its sums is asked for it once.
+let token = '';
+by_id('sums-link').addEventListener('click', async (event) => {
+  if (by_id('sums').dataset.who !== 'token') return;
+  event.preventDefault();
+  token = token || prompt('The token of those who may announce') || '';
+  if (!token) return;
+  const answer = await fetch('api/v1/sums.csv', { headers: { Authorization: `Bearer ${token}` } });
+  if (!answer.ok) { token = ''; alert('The server does not know this token.'); return; }
+  const link = make('a', '');
+  link.href = URL.createObjectURL(await answer.blob());
+  link.download = 'sums.csv';
+  link.click();
+  URL.revokeObjectURL(link.href);
+});
+
+const ask = (path) => fetch(path, { cache: 'no-store' });
+
 async function refresh() {
-  const badge = by_id('health');
   try {
-    const health = await fetch('healthz', { cache: 'no-store' });
-    const metrics = parse_metrics(await (await fetch('metrics', { cache: 'no-store' })).text());
-    badge.textContent = health.ok ? 'serving' : 'starting';
-    badge.className = health.ok ? 'badge good' : 'badge';
-    const one = (name) => metrics.find((metric) => metric.name === name)?.value;
-    const seconds = one('up_seconds') ?? 0;
-    rows(by_id('server'), [
-      ['Up', `${Math.floor(seconds / 3600)} h ${Math.floor(seconds / 60) % 60} min`],
-      ['Memory', mebibytes(one('resident_bytes') ?? 0)],
-      ['Tick',
-        `${number(one('tick_milliseconds'), 1)} ms, of it the storyteller `
-          + `${number(one('animate_milliseconds'), 1)} ms`],
-      ['Samples',
-        `${number(one('samples_per_second'))} a second while tracing; dropped as invalid: `
-          + number(one('bad_samples_total'))],
-      ['Learned reconstruction', denoiser(metrics)],
-      ['Illumination maps', maps(metrics)],
-      ['Pictures',
-        `${number(one('pictures_total'))} (${mebibytes(one('picture_bytes_total') ?? 0)})`],
-      ['Connections',
-        `${number(one('connections'))} open, ${number(one('slow_readers_closed_total'))} closed `
-          + 'for reading too slowly'],
-      ['Messages',
-        `${number(one('messages_total'))}, refused ${number(one('refused_messages_total'))}`],
-    ]);
-    const ids = [...new Set(metrics.filter((m) => m.labels.visitor).map((m) => m.labels.visitor))];
-    const state_of = (name) =>
-      metrics.find((metric) => metric.name === name && metric.value === 1)?.labels.state ?? '–';
-    const name_of = (id) => {
-      const kiosk = metrics.find((m) => m.labels.visitor === id && m.labels.kiosk)?.labels.kiosk;
-      return kiosk ? `${id} (${kiosk})` : id;
-    };
-    const value_of = (id, name) =>
-      metrics.find((m) => m.labels.visitor === id && m.name === `visitor_${name}`)?.value;
-    const of = (id, name, digits) => number(value_of(id, name), digits);
-    rows(by_id('visitors'), [
-      ['Visitor', 'Pictures/s', 'Round trip ms', 'Display ms', 'Trace ms', 'Tone ms', 'Encode ms',
-        'Decode ms', 'Samples', 'Quality', 'Converged %'],
-      ...ids.map((id) => [
-        name_of(id), of(id, 'pictures_per_second', 1), of(id, 'round_trip_milliseconds'),
-        of(id, 'display_milliseconds', 1), of(id, 'trace_milliseconds', 1),
-        of(id, 'tonemap_milliseconds', 1), of(id, 'encode_milliseconds', 1),
-        of(id, 'decode_milliseconds', 1), of(id, 'samples_per_picture'), of(id, 'jpeg_quality'),
-        number(100 * (value_of(id, 'converged_ratio') ?? 0), 1)])]);
-    rows(by_id('kiosks'), [
-      ['Cameras', number(one('kiosk_cameras'))],
-      ['Before them', state_of('audience')],
-      ['Storyteller', state_of('storyteller_mood')],
-      ['Observations', number(one('kiosk_observations_total'))],
-      ['Greetings', number(one('greetings_total'))],
-      ['Farewells', number(one('farewells_total'))],
-      ['Stories', number(one('stories_total'))],
-      ['Voice',
-        `${one('voice_running') ? 'running' : 'not running'}, `
-          + `restarts ${number(one('voice_restarts_total'))}, `
-          + `lines kept ${number(one('voice_lines'))}, `
-          + `waiting ${number(one('voice_lines_waiting'))}, `
-          + `failed ${number(one('voice_failed_total'))}`],
-    ]);
+    const [answer, figures] = await Promise.all([ask('api/v1/status'), ask('metrics')]);
+    const status = await answer.json();
+    judge(status);
+    show_kiosks(status);
+    by_id('sums').hidden = status.sums === 'none';
+    by_id('sums').dataset.who = status.sums;
+    show_figures(parse_metrics(await figures.text()));
   } catch {
-    badge.textContent = 'no answer';
-    badge.className = 'badge bad';
+    tell('bad', 'The server does not answer', []);
   }
   setTimeout(refresh, 1000);
 }
+
+async function show_speeds() {
+  const speeds = await (await ask('api/v1/speeds')).json();
+  if (speeds.problem) {
+    by_id('speeds-about').textContent =
+        `${speeds.problem[0].toUpperCase()}${speeds.problem.slice(1)}.`;
+    return;
+  }
+  by_id('speeds-about').textContent =
+    `Left and low is best. Measured ${speeds.date} on ${speeds.cores} cores of ${speeds.cpu}.`;
+  const scenes = [...new Set(speeds.points.map((point) => point.scene))];
+  const techniques = [...new Set(speeds.points.map((point) => point.technique))];
+  const legend = make('ul', '');
+  legend.id = 'legend';
+  legend.append(...techniques.map((name, index) => {
+    const item = make('li', ''), dot = make('i', '');
+    dot.style.background = colours[index % colours.length];
+    item.append(dot, name);
+    return item;
+  }));
+  const draw = () => {
+    const scene = by_id('scene').value;
+    const points = speeds.points.filter((point) => point.scene === scene);
+    by_id('chart').replaceChildren(legend,
+        draw_speeds(points, techniques, scene, by_id('chart').clientWidth));
+    fill(by_id('speeds-table'), ['Technique', 'Samples a pixel', 'Time', 'FLIP'],
+        points.map((point) =>
+          [point.technique, point.spp, time_text(point.seconds), point.flip.toFixed(3)]));
+  };
+  by_id('scene').replaceChildren(...scenes.map((name) => make('option', name)));
+  by_id('scene').addEventListener('change', draw);
+  addEventListener('resize', draw);
+  by_id('scene-label').hidden = scenes.length < 2;
+  by_id('speeds-numbers').hidden = false;
+  draw();
+}
+
 by_id('address').textContent = location.origin;
 refresh();
+show_speeds().catch(() => { by_id('speeds-about').textContent = 'The server does not tell.'; });

@@ -5,7 +5,7 @@ export function make_subtitles(element) {
   const hide = () => { element.hidden = true; };
   const start = () => { since = performance.now(); timer = setTimeout(hide, left); };
   return {
-    show({ text, speaker, seconds, lang }) {
+    show({ text = '', speaker = '', seconds = 0, lang = '' }) {
       clearTimeout(timer);
       if (!text || !on) return hide();
       element.replaceChildren();
@@ -16,7 +16,7 @@ export function make_subtitles(element) {
         element.append(who);
       }
       element.append(text);
-      element.lang = lang ?? '';
+      element.lang = lang;
       element.hidden = false;
       left = (seconds + 1) * 1000;
       if (!held) start();

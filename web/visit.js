@@ -1,18 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 // The visitor's page: joins connection, picture, controls and menu.
+import { asked_exhibit, asked_place, asked_story, asked_viewpoint, read_place }
+  from './address.js';
+import { make_ambience } from './ambience.js';
+import { announce } from './announce.js';
+import { make_ask } from './ask.js';
+import { make_card } from './card.js';
+import { make_comfort } from './comfort.js';
 import { make_connection } from './connection.js';
 import { make_controls } from './controls.js';
+import { make_description } from './describe.js';
+import { by_id } from './element.js';
+import { make_gamepad } from './gamepad.js';
+import { make_group } from './group.js';
+import { make_leap } from './leap.js';
+import { make_map } from './map.js';
 import { make_menu } from './menu.js';
-import { make_picture, wanted_size } from './picture.js';
+import { make_picture } from './picture.js';
+import { make_places } from './places.js';
 import { make_player } from './player.js';
+import { make_share } from './share.js';
 import { make_sound } from './sound.js';
 import { make_subtitles } from './subtitles.js';
-import { first_language, translate_page, word } from './words.js';
+import { make_watch } from './watch.js';
+import { asked_language, first_language, knows, language_names, translate_page, word }
+  from './words.js';
 
-const by_id = (id) => document.getElementById(id);
 const canvas = by_id('picture');
 let lang = first_language(), seq = 0, state = null, walk_speed = 1.4, round_trip = 0, full = false;
-let connection = null;
+let connection = null, place = null;  // place: the viewpoint where the visitor was last
+let exhibit = asked_exhibit, unknown_exhibit = '';
+// What the address asks for, until it is there; null: nothing. told: the story that a kiosk's guest
+// took along.
+let start = asked_viewpoint, start_place = asked_place(), told = asked_story;
+const visit_key = `wellspring.visit.${exhibit}`;  // where a visit that goes on is, sealed
 const asked = new Map();  // seq -> time it was sent, until a picture shows it
 translate_page(lang);
 by_id('veil-text').textContent = word(lang, 'opening');
@@ -28,6 +49,7 @@ const picture = make_picture(canvas, (shown) => {
   for (const old of asked.keys()) if (old <= shown.seq) asked.delete(old);
   canvas.dataset.frame = shown.frame;
   canvas.dataset.seq = shown.seq;
+  dark.shown(shown.seq);
 });
 
 const sound = make_sound(by_id('sound-button'), {
@@ -35,27 +57,91 @@ const sound = make_sound(by_id('sound-button'), {
   label: (name) => word(lang, name),
 });
 
-function notice(text) {
+const ambience = make_ambience(sound);
+
+// For some seconds, if it says how many.
+let notice_timer = 0;
+function notice(text, seconds) {
+  clearTimeout(notice_timer);
   by_id('notice').textContent = text;
   by_id('notice').hidden = !text;
+  if (seconds) notice_timer = setTimeout(() => { if (!full) notice(''); }, 1000 * seconds);
 }
 
+const dark = make_leap(canvas);
+const leap = () => dark.begin(seq);
+
+const hello = () => ({ type: 'hello', exhibit, lang, role: 'visitor', ...comfort.size(),
+  resume: sessionStorage.getItem(visit_key) ?? '' });
+
+// What the address asked for that is not there.
+function say_what_is_unknown(message) {
+  const tag = asked_language(), spoken = message.languages;
+  if (unknown_exhibit) {
+    notice(word(lang, 'unknown_exhibit')
+        .replace('{asked}', unknown_exhibit).replace('{title}', message.title), 12);
+    unknown_exhibit = '';
+  } else if (tag && !knows(tag, spoken)) {
+    lang = spoken[0];
+    connection.send({ type: 'settings', lang });
+    const names = spoken.map((one) => language_names[one] ?? one).join(', ');
+    notice(word(lang, 'unknown_lang').replace('{asked}', tag).replace('{spoken}', names), 12);
+  }
+}
+
+const send_settings = (fields) => connection?.send({ type: 'settings', ...fields });
+const comfort = make_comfort(send_settings, () => places.load());
+const card = make_card({ story: (story) => connection.send({ type: 'storyteller', story }) });
+const map = make_map((to) => go({ to }));
+const watch = make_watch(() => state, notice);
+const places = make_places((name) => go_to_viewpoint(name), () => !comfort.saves());
+
+// fields: at, to or object, as `go` has them.
+function go(fields) {
+  connection.send({ type: 'go', seq: next(), ...fields });
+  if (comfort.leaps()) leap();
+}
+
+function go_to_viewpoint(name) {
+  connection.send({ type: 'viewpoint', seq: next(), name });
+  card.close();
+  leap();
+}
+
+// place: as in an address.
+function go_to_place(to) {
+  connection.send({ type: 'camera', seq: next(), ...to });
+  leap();
+}
+addEventListener('hashchange', () => {
+  const to = read_place(location.hash);
+  if (to) go_to_place(to);
+});
+
+const group = make_group({
+  group: (action, code) => connection.send({ type: 'group', action, ...(code && { code }) }),
+  notice: (text) => notice(text, 6),
+  close: () => { if (menu.is_open()) menu.toggle(); },
+});
+const share = make_share(() => state, () => [canvas.width, canvas.height]);
+const description = make_description(by_id('scene'));
+
 connection = make_connection({
-  hello: () => ({ type: 'hello', exhibit: '', lang, role: 'visitor', ...wanted_size() }),
+  hello,
   open() {
     notice('');
     full = false;
     seq = 0;
     asked.clear();
     sound.joined();
+    send_settings(comfort.wishes());
     if (menu.attention() !== null)
       connection.send({ type: 'settings', attention: menu.attention() });
-    // After a broken line: back to where the visitor stood.
-    if (state?.viewpoint)
-      connection.send({ type: 'viewpoint', seq: next(), name: state.viewpoint });
-    else if (state)
-      connection.send({ type: 'camera', seq: next(), position: state.position, yaw: state.yaw,
-          pitch: state.pitch });
+    if (start_place) go_to_place(start_place);
+    else if (start) connection.send({ type: 'viewpoint', seq: next(), name: start });
+    start = start_place = null;
+    if (told) connection.send({ type: 'storyteller', story: told });
+    told = null;
   },
   lost() { if (!full) notice(word(lang, 'lost')); },
   message(message) {
@@ -64,19 +150,39 @@ connection = make_connection({
         walk_speed = message.walk_speed;
         lang = message.lang;
         menu.welcome(message);
+        places.welcome(message);
+        card.welcome(message);
+        ask.welcome(message);
+        map.welcome(message);
+        group.welcome(message);
+        share.welcome(message);
+        description.welcome(message);
+        watch.welcome(message);
+        say_what_is_unknown(message);
         player.welcome(message);
         sound.relabel();
+        ambience.places(message.sounds);
         by_id('veil-title').textContent = message.title;
         break;
       case 'state':
         state = message;
+        place = message.viewpoint ?? place;
         menu.state(message);
+        places.state(message);
+        map.state(message);
         player.state(message);
         sound.moved(message);
+        ambience.moved(message);
+        description.state(message);
         menu.figures(
             `${picture.rate()} fps · ${Math.round(round_trip)} ms · `
             + `${canvas.width}×${canvas.height} · ${Math.round(message.converged * 100)} %`);
         break;
+      case 'went':
+        if (message.object) card.open(message.object); else card.close();
+        break;
+      case 'reply': ask.reply(message); break;
+      case 'keep': sessionStorage.setItem(visit_key, message.token); break;
       case 'speech': sound.speech(message); break;
       case 'subtitle': subtitles.show(message); break;
       case 'agent':
@@ -84,13 +190,21 @@ connection = make_connection({
         player.agent(message);
         document.body.dataset.mood = message.mood;
         break;
+      case 'group': group.message(message); break;
+      case 'announce': announce(message, lang); break;
+      case 'problems': watch.problems(message); break;
       case 'kiosk': document.body.dataset.kiosk = message.state; break;
       case 'error':
         if (message.code === 'full') { full = true; notice(word(lang, 'full')); }
-        else if (message.code === 'storyteller_busy') {
-          notice(word(lang, 'busy'));
-          setTimeout(() => { if (!full) notice(''); }, 4000);
-        } else console.warn(`${message.code}: ${message.message}`);
+        else if (message.code === 'storyteller_busy') notice(word(lang, 'busy'), 4);
+        else if (message.code === 'no_way' || message.code === 'nothing_there') {
+          notice(word(lang, 'no_way'), 2.5);
+          dark.end();
+        } else if (message.code === 'unknown_exhibit' && exhibit) {
+          unknown_exhibit = exhibit;
+          exhibit = '';
+          connection.send(hello());
+        } else if (!group.error(message)) console.warn(`${message.code}: ${message.message}`);
         break;
     }
   },
@@ -115,7 +229,8 @@ function story_action(action) {
 
 const player = make_player({ tour: tour_action, story_action }, (rests) => subtitles.hold(rests));
 const menu = make_menu({
-  viewpoint: (name) => connection.send({ type: 'viewpoint', seq: next(), name }),
+  viewpoint: go_to_viewpoint,
+  object: (object) => go({ object }),
   tour: tour_action,
   story: (story) => connection.send({ type: 'storyteller', story }),
   storyteller: (fields) => connection.send({ type: 'storyteller', ...fields }),
@@ -132,6 +247,12 @@ const menu = make_menu({
   },
 });
 
+const ask = make_ask({
+  ask: (text) => connection.send({ type: 'ask', text }),
+  close: () => { if (menu.is_open()) menu.toggle(); },
+});
+
+let ring_timer = 0;
 make_controls(canvas, by_id('stick'), by_id('stick-knob'), {
   // A pointer alone changes no picture: nothing to measure a round trip by.
   send: ({ moved, ...fields }) =>
@@ -139,19 +260,30 @@ make_controls(canvas, by_id('stick'), by_id('stick-knob'), {
   fov: () => state?.fov ?? 1,
   speed: () => walk_speed,
   place(index) {
-    const name = menu.place(index);
-    if (name) connection.send({ type: 'viewpoint', seq: next(), name });
+    const name = places.name(index);
+    if (name) go_to_viewpoint(name);
   },
+  tap(at, event) {
+    const ring = by_id('tapped');
+    ring.style.translate = `${event.clientX}px ${event.clientY}px`;
+    ring.hidden = true;
+    void ring.offsetWidth;  // its movement begins anew
+    ring.hidden = false;
+    clearTimeout(ring_timer);
+    ring_timer = setTimeout(() => { ring.hidden = true; }, 700);
+    go({ at });
+  },
+  pad: make_gamepad({
+    next_place() {
+      const name = places.after(place);
+      if (name) go_to_viewpoint(name);
+    },
+    toggle_menu: menu.toggle,
+    in_menu: menu.is_open,
+    step: menu.step,
+    choose: () => /** @type {HTMLElement} */ (document.activeElement)?.click(),
+  }),
 });
-
-let resize_timer = 0;
-addEventListener('resize', () => {
-  clearTimeout(resize_timer);
-  resize_timer = setTimeout(() => connection.send({ type: 'settings', ...wanted_size() }), 200);
-});
-// A hidden page costs next to nothing.
-document.addEventListener('visibilitychange',
-    () => connection.send({ type: 'settings', fps: document.hidden ? 1 : 0 }));
 
 // Controls fade while nobody touches them.
 let quiet_timer = 0;

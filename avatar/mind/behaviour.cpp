@@ -80,6 +80,12 @@ const char* to_string(Mood mood) {
 void decide(BehaviourState& state, const StorytellerInput& input, double now,
             StorytellerEvents& events) {
   events = {};
+  if (input.visit != state.visit) {
+    state.visit = input.visit;
+    state.people.clear();
+    state.company = false;
+    state.last_greeting = -1e30;
+  }
   see_people(state, input, now);
   bool anyone = false;
   for (const Person& person : state.people) anyone = anyone || person.here;
@@ -96,7 +102,7 @@ void decide(BehaviourState& state, const StorytellerInput& input, double now,
     person.greeted = true;
     person.greeted_at = now;
     state.company = true;
-    if (now - state.last_greeting < group_seconds) continue;
+    if (input.met || now - state.last_greeting < group_seconds) continue;
     state.last_greeting = now;
     state.addressed = person.id;
     events.greeted = true;
@@ -104,7 +110,8 @@ void decide(BehaviourState& state, const StorytellerInput& input, double now,
     state.mood = Mood::greeting;
     state.since = now;
   }
-  if (state.company && !anyone && now - state.last_company >= lost_seconds) {
+  const bool lost = state.company && !anyone && now - state.last_company >= lost_seconds;
+  if (input.parting || (lost && !input.staying)) {
     events.farewelled = true;
     events.guest = state.addressed;
     state.company = false;
@@ -112,7 +119,8 @@ void decide(BehaviourState& state, const StorytellerInput& input, double now,
     become(Mood::farewell);
   }
   bool greeting = state.mood == Mood::greeting && now - state.since < greeting_seconds;
-  bool parting = state.mood == Mood::farewell && now - state.since < farewell_seconds;
+  bool parting =
+      state.mood == Mood::farewell && now - state.since < farewell_seconds && !input.staying;
   if (greeting || parting) return;
   bool stirred =
       anyone || now - state.last_motion < motion_hold || (!state.people.empty() && !state.company);

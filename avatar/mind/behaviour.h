@@ -22,6 +22,7 @@ struct BehaviourState {
   double last_motion = -1e30;
   double last_company = -1e30;  // when a kiosk guest was last seen
   double last_greeting = -1e30;
+  uint64_t visit = 0;      // of the people
   bool company = false;    // somebody was greeted and not yet bid farewell
   uint32_t addressed = 0;  // the last one greeted
 };

@@ -199,6 +199,9 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   } else {
     state.mirror = {};
   }
+  tick_bow(state.bow, guest ? std::optional(guest->head) : std::nullopt,
+           eyes_origin(rig, state.stance.heading.value), dt);
+  const float bow = state.bow.share.value;
   GestureMotion gesture = tick_gesture(state.gesture, library, order,
                                        arms_at_rest(rig, idle, state.idle.fold.value), dt);
   bool points =
@@ -224,10 +227,11 @@ void tick_storyteller(StorytellerState& state, const Storyteller& storyteller,
   // Body.
   BodyPlan plan;
   plan.heading = state.stance.heading.value;
-  plan.pelvis = idle.pelvis + vec3(state.stance.lean.value, -0.006f, 0);
+  plan.pelvis = idle.pelvis + vec3(state.stance.lean.value, -0.006f - bow_sink * bow, 0);
   plan.pelvis_turn = idle.pelvis_turn;
   plan.pelvis_turn.y += 0.4f * gesture.chest.y;
   plan.torso = idle.torso_turn + vec3(state.gaze.torso_yaw.value, 0, 0) + gesture.chest;
+  plan.torso.y += bow_lean * bow;
   plan.head = {state.gaze.head_yaw.value + state.mirror.angle.x,
                state.gaze.head_pitch.value + state.mirror.angle.y, 0};
   plan.head += vec3(idle.head_turn.x, -idle.head_turn.y, idle.head_turn.z);

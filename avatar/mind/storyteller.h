@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "avatar/face/blink.h"
+#include "avatar/mind/bow.h"
 #include "avatar/mind/body_language.h"
 #include "avatar/face/face.h"
 #include "avatar/mind/gaze.h"
@@ -42,6 +43,7 @@ struct StorytellerState {
   GestureState gesture;
   BodyLanguageState body_language;
   StanceState stance;
+  BowState bow;
   FaceState face;
   SpringBonesState springs;
   Detail detail = Detail::full;

@@ -34,6 +34,10 @@ struct StorytellerInput {
   float dt = 0;               // since the last tick; any size from 0 to hours is safe
   bool kiosk_motion = false;  // something moves before a kiosk but nobody is recognised yet
   std::vector<Guest> guests;
+  bool staying = false;   // a kiosk's guest is taken to be there still, seen or not: no farewell
+  bool met = false;       // the kiosk's guests were greeted before, and are not again
+  bool parting = false;   // they have just left: farewell
+  uint64_t visit = 0;     // of these guests: who was known from another is forgotten
   bool humanlike = true;  // noise for human-like behaviour; off: bit-identical replays
   float speaking = 0;     // mouth activity 0..1: it says something right now
   // Mouth shapes of the speech that is heard (order of Rig::viseme); without them the mouth moves

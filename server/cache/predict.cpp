@@ -18,13 +18,13 @@ int cells_across(int pixels) { return (pixels + cell_pixels - 1) / cell_pixels; 
 
 struct Grid {
   int columns, rows;
-  float focal, half_width, half_height;
+  float focal;
+  vec2 axis;
   explicit Grid(const View& view)
       : columns(cells_across(view.width)),
         rows(cells_across(view.height)),
         focal(float(view.height) * 0.5f / view.tan_half_fov / cell_pixels),
-        half_width(0.5f * float(view.width) / cell_pixels),
-        half_height(0.5f * float(view.height) / cell_pixels) {}
+        axis(axis_place(view) / float(cell_pixels)) {}
 };
 
 // The cell of each point, or the one behind the last: branch-free, so that it vectorises.
@@ -46,7 +46,7 @@ void place_chunk(const PointCache& points, const View& view, const Grid& grid, i
     float across = dx * view.right.x + dy * view.right.y + dz * view.right.z;
     float above = dx * view.up.x + dy * view.up.y + dz * view.up.z;
     float scale = grid.focal / depth;
-    float sx = across * scale + grid.half_width, sy = grid.half_height - above * scale;
+    float sx = across * scale + grid.axis.x, sy = grid.axis.y - above * scale;
     int32_t good = int32_t(depth > near_depth) & int32_t(sx >= 0.0f) & int32_t(sx < columns) &
                    int32_t(sy >= 0.0f) & int32_t(sy < rows) & int32_t(age[i] != evicted_age) & flag;
     float cx = sx > 0.0f ? sx : 0.0f, cy = sy > 0.0f ? sy : 0.0f;
@@ -72,6 +72,7 @@ View extrapolate(const View& before, const View& now, float steps) {
   if (!is_finite(step) || !(angle <= largest_turn)) return now;
   View ahead = now;
   ahead.position += step * steps;
+  ahead.middle += (now.middle - before.middle) * steps;
   if (sine < 1e-6f) return ahead;
   axis = normalize(axis);
   angle *= steps;

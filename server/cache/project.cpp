@@ -31,7 +31,7 @@ int chunks_of(int capacity) { return (capacity + chunk_points - 1) / chunk_point
 // Everything a point needs to find its pixel.
 struct Transform {
   vec3 eye, right, up, forward;
-  float focal, half_width, half_height, width, height;
+  float focal, axis_x, axis_y, width, height;
   int tiles_x, no_tile;
 };
 
@@ -63,7 +63,7 @@ void transform_chunk(const Transform& t, const PointCache& points, int begin, in
     float across = dx * t.right.x + dy * t.right.y + dz * t.right.z;
     float above = dx * t.up.x + dy * t.up.y + dz * t.up.z;
     float scale = t.focal / depth;
-    float sx = across * scale + t.half_width, sy = t.half_height - above * scale;
+    float sx = across * scale + t.axis_x, sy = t.axis_y - above * scale;
 
     int32_t packed = normal[i];
     float ox = float(packed & 255) * (1.0f / 127) - 1, oy = float(packed >> 8) * (1.0f / 127) - 1;
@@ -149,13 +149,14 @@ void project_points(PointCache& points, const WindowView& view, bool same_view, 
   std::span<uint64_t> entries = scratch.take<uint64_t>(size_t(capacity));
   std::span<uint16_t> offsets = scratch.take<uint16_t>(size_t(chunks) * size_t(tile_count + 1));
 
+  const vec2 axis = axis_place(view) - view.shift;
   Transform transform{view.position,
                       view.right,
                       view.up,
                       view.forward,
                       float(view.height) * 0.5f / view.tan_half_fov,
-                      0.5f * float(view.width) - view.shift.x,
-                      0.5f * float(view.height) - view.shift.y,
+                      axis.x,
+                      axis.y,
                       float(view.width),
                       float(view.height),
                       tiles.x,

@@ -103,22 +103,6 @@ int hex_digit(char c) {
   return -1;
 }
 
-std::string percent_decode(const File& file, const std::string& where, const std::string& uri) {
-  std::string decoded;
-  for (size_t i = 0; i < uri.size(); i++) {
-    if (uri[i] != '%') {
-      decoded += uri[i];
-      continue;
-    }
-    int high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
-    int low = i + 2 < uri.size() ? hex_digit(uri[i + 2]) : -1;
-    if (high < 0 || low < 0) refuse(file, where, "bad percent escape in URI");
-    decoded += char(high * 16 + low);
-    i += 2;
-  }
-  return decoded;
-}
-
 Bytes decode_base64(const File& file, const std::string& where, const char* p, const char* end) {
   auto value = [](char c) {
     if (c >= 'A' && c <= 'Z') return c - 'A';
@@ -180,6 +164,22 @@ Bytes read_bytes(const std::string& path, size_t limit) {
   if (!stream || size_t(stream.gcount()) != (size > 0 ? size : 0))
     throw LoadError(path, "", "cannot be read");
   return bytes;
+}
+
+std::string percent_decode(const File& file, const std::string& where, const std::string& uri) {
+  std::string decoded;
+  for (size_t i = 0; i < uri.size(); i++) {
+    if (uri[i] != '%') {
+      decoded += uri[i];
+      continue;
+    }
+    int high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
+    int low = i + 2 < uri.size() ? hex_digit(uri[i + 2]) : -1;
+    if (high < 0 || low < 0) refuse(file, where, "bad percent escape in URI");
+    decoded += char(high * 16 + low);
+    i += 2;
+  }
+  return decoded;
 }
 
 std::optional<Bytes> read_uri(const File& file, const std::string& where, const std::string& uri) {

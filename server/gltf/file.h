@@ -63,6 +63,8 @@ void warn(File& file, const std::string& where, const std::string& what);
 // Bytes of a data URI or of a file inside the package; nothing if the package has no such file.
 // Throws LoadError for all else that is wrong.
 std::optional<Bytes> read_uri(const File& file, const std::string& where, const std::string& uri);
+// The path that a URI means. Throws LoadError.
+std::string percent_decode(const File& file, const std::string& where, const std::string& uri);
 // A whole file, at most `limit` bytes.
 Bytes read_bytes(const std::string& path, size_t limit);
 

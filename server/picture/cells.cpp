@@ -204,8 +204,8 @@ void build_cells(const WindowView& view, const SurfaceRows& rows, int cy, Cells&
     };
     Lanes left = (steps + float(cx)) * float(cell_size), top = all_lanes(float(cy * cell_size));
     auto ray_to = [&](const Lanes& x, const Lanes& y) {
-      return Vec{(left + x - rays.half_width) * rays.inverse_focal,
-                 (rays.half_height - top - y) * rays.inverse_focal, all_lanes(1)};
+      return Vec{(left + x - rays.axis.x) * rays.inverse_focal,
+                 (rays.axis.y - top - y) * rays.inverse_focal, all_lanes(1)};
     };
     Lanes mean = g.inverse_depth * share;
     Vec plane = inverse_depth_plane({along(axes[0]), along(axes[1]), along(axes[2])},

@@ -91,6 +91,12 @@ struct Drawn {
   Lanes raised{};                                        // Sample::raised
 };
 
+// Those of the pixels are lit as their map says.
+void light_as_mapped(const LaneMask& which, Pixels& p) {
+  for (Lanes* channel : {&p.smooth.r, &p.smooth.g, &p.smooth.b})
+    *channel = which ? all_lanes(1) : *channel;
+}
+
 // Own light of the pixels, as far as their light pixel's point lies on the same surface.
 template <int Scale>
 void take_own(const View& view, const PixelRays& rays, const OwnLight& own, float light_x,
@@ -197,8 +203,7 @@ void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* co
   Lanes prior_variances = all_lanes(prior_variance);
   around.prior_weight = lanes_max(around.prior_weight, smooth_prior_variances * prior_variances);
   auto show_map = [&] {
-    for (Lanes* channel : {&d.pixels.smooth.r, &d.pixels.smooth.g, &d.pixels.smooth.b})
-      *channel = untold ? all_lanes(1) : *channel;
+    light_as_mapped(untold, d.pixels);
     for (Lanes* channel : {&d.pixels.rest.r, &d.pixels.rest.g, &d.pixels.rest.b})
       *channel = untold ? Lanes{} : *channel;
   };
@@ -221,9 +226,7 @@ void light_group(const Cells& cells, const CellPlaces& at, const Cell* const* co
   Lanes known = unsure ? (lonely ? Lanes{} : around.known) : all_lanes(1);
   Pixels &p = d.pixels, &q = thin.pixels;
   // Where no point of the surface says otherwise, light is what the map says.
-  LaneMask as_mapped = d.mapped & (q.samples <= 0.0f);
-  for (Lanes* channel : {&q.smooth.r, &q.smooth.g, &q.smooth.b})
-    *channel = as_mapped ? all_lanes(1) : *channel;
+  light_as_mapped(d.mapped & (q.samples <= 0.0f), q);
   p.smooth = weighted_sum(p.smooth, known, q.smooth, 1.0f - known);
   p.rest = weighted_sum(p.rest, known, q.rest, 1.0f - known);
   p.samples = lonely ? q.samples : p.samples;
@@ -314,11 +317,7 @@ void Composer<Scale>::light_run(const RunPixels& p, const VisibleRun& run,
   take_own<Scale>(view, rays, read_own<Scale>(light, lx, ly), light_rays.x(float(lx) + 0.5f),
                   light_rays.y(float(ly) + 0.5f), d);
   q.samples *= own_counts;
-  if (!known) {
-    for (Lanes* channel : {&q.smooth.r, &q.smooth.g, &q.smooth.b})
-      *channel = d.mapped & (q.samples <= 0.0f) ? all_lanes(1) : *channel;
-    return;
-  }
+  if (!known) return light_as_mapped(d.mapped & (q.samples <= 0.0f), q);
   constexpr Lanes across = group == lane_count ? lane : Lanes{0, 1, 2, 3, 0, 1, 2, 3};
   const Lanes fx = (across + 0.5f) * (1.0f / group);
   float fy = (float(run.y - top - (rows.row + 1) * group + half_group) + 0.5f) / group;

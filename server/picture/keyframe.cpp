@@ -56,7 +56,8 @@ View keyframe_view(View view, float turn) {
   int height = view.height;
   auto margin = [](int pixels, int share) { return (pixels / share + 7) / 8 * 8; };
   // At the sides a turn moves more than in the middle.
-  float middle = 0.5f * float(height) / view.tan_half_fov, side = 0.5f * float(view.width) / middle;
+  float middle = 0.5f * float(height) / view.tan_half_fov,
+        side = 0.5f * float(view.width) / middle + std::abs(view.middle.x);
   float moves = turn > 0 ? middle * (1 + side * side) * turn : 0.0f,
         most = float(view.width / widest_across);
   int turning = margin(int(std::min(moves, most)), 1);
@@ -74,7 +75,8 @@ View scaled_view(View view, float scale) {
 
 static vec3 direction_at(const View& view, float across, float down) {  // of the picture, 0 to 1
   float high = view.tan_half_fov, wide = high * float(view.width) / float(view.height);
-  return view.forward + view.right * (wide * (2 * across - 1)) + view.up * (high * (1 - 2 * down));
+  return view.forward + view.right * (view.middle.x + wide * (2 * across - 1)) +
+         view.up * (view.middle.y + high * (1 - 2 * down));
 }
 
 View surrounding_view(std::span<const View> views, float share) {
@@ -82,6 +84,7 @@ View surrounding_view(std::span<const View> views, float share) {
   around.width = around.height = 0;
   if (views.empty() || views[0].width < 1 || views[0].height < 1) return around;
   around = views[0];
+  around.middle = vec2(0);
   vec3 middle(0);
   for (const View& view : views) middle += view.forward;
   if (length(middle) > 0.5f * float(views.size())) {
@@ -118,8 +121,8 @@ float missing_share(const View& drawn, const View& wanted) {
       vec3 d =
           direction_at(wanted, (float(x) + 0.5f) / asked_across, (float(y) + 0.5f) / asked_down);
       float z = dot(d, drawn.forward);
-      missing +=
-          !(std::abs(dot(d, drawn.right)) <= wide * z && std::abs(dot(d, drawn.up)) <= high * z);
+      missing += !(std::abs(dot(d, right_of_middle(drawn))) <= wide * z &&
+                   std::abs(dot(d, above_middle(drawn))) <= high * z);
     }
   return float(missing) / float(asked_across * asked_down);
 }

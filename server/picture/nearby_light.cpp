@@ -48,8 +48,8 @@ Lanes alike(const View& view, const PixelRays& rays, const SeenPlace& place, con
   Lanes same = positive_lanes(cosine2 - turned_away) * (1 / (same_direction - turned_away));
   same = keep_lanes(facing > 0.0f, lanes_min(same, all_lanes(1)));
   Lanes depth = lanes_as<Lanes>(load_lanes<LaneBits>(points.words[plane_depth]));
-  Lanes across = (load_lanes(points.x) + 0.5f - rays.half_width) * rays.inverse_focal,
-        up = (rays.half_height - load_lanes(points.y) - 0.5f) * rays.inverse_focal;
+  Lanes across = (load_lanes(points.x) + 0.5f - rays.axis.x) * rays.inverse_focal,
+        up = (rays.axis.y - load_lanes(points.y) - 0.5f) * rays.inverse_focal;
   Lanes off = (place.depth * place.ray.x - depth * across) * dot(view.right, n) +
               (place.depth * place.ray.y - depth * up) * dot(view.up, n) +
               (place.depth - depth) * dot(view.forward, n);

@@ -20,13 +20,13 @@ inline constexpr uint32_t no_object = 0xffffffffu;  // nothing known here
 
 // Rays through pixel centres in view coordinates (right, up, forward = 1).
 struct PixelRays {
-  float half_width, half_height, inverse_focal;
+  vec2 axis;  // in pixels
+  float inverse_focal;
   explicit PixelRays(const WindowView& view)
-      : half_width(0.5f * float(view.width) - view.shift.x),
-        half_height(0.5f * float(view.height) - view.shift.y),
+      : axis(axis_place(view) - view.shift),
         inverse_focal(view.tan_half_fov * 2 / float(view.height)) {}
-  float x(float column) const { return (column - half_width) * inverse_focal; }
-  float y(float row) const { return (half_height - row) * inverse_focal; }
+  float x(float column) const { return (column - axis.x) * inverse_focal; }
+  float y(float row) const { return (axis.y - row) * inverse_focal; }
 };
 
 // One word a pixel each: the point's albedo, rest and smooth as in PointColor, its object, the bits

@@ -28,15 +28,15 @@ struct Mapping {
 inline Mapping make_mapping(const View& from, const View& to) {
   float scale = 2 * from.tan_half_fov / float(from.height);
   float focal = float(to.height) * 0.5f / to.tan_half_fov;
+  dvec2 axis = axis_place(to);
   auto seen = [&](vec3 d) {
     double x = dot(dvec3(d), dvec3(to.right)), y = dot(dvec3(d), dvec3(to.up)),
            z = dot(dvec3(d), dvec3(to.forward));
-    return vec3(float(focal * x + 0.5 * to.width * z), float(0.5 * to.height * z - focal * y),
-                float(z));
+    return vec3(float(focal * x + axis.x * z), float(axis.y * z - focal * y), float(z));
   };
   vec3 right = from.right * scale, down = from.up * -scale;
-  vec3 corner =
-      from.forward - right * (0.5f * float(from.width)) - down * (0.5f * float(from.height));
+  vec2 from_axis = axis_place(from);
+  vec3 corner = from.forward - right * from_axis.x - down * from_axis.y;
   return {seen(corner), seen(right), seen(down), seen(from.position - to.position)};
 }
 

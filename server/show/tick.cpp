@@ -7,9 +7,17 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "show/answer/cameras.h"
+#include "show/answer/come_back.h"
 #include "show/answer/commands.h"
 #include "show/answer/events.h"
+#include "show/answer/follow_house.h"
+#include "show/answer/groups.h"
+#include "show/answer/kiosk_window.h"
+#include "show/answer/kiosks.h"
 #include "show/answer/sound.h"
+#include "show/answer/storyteller_orders.h"
+#include "show/count/count.h"
 #include "show/draw/carry_out.h"
 #include "show/draw/make_picture_job.h"
 #include "show/draw/pace.h"
@@ -36,8 +44,7 @@ constexpr double listening_interval = 0.01;  // between looks at what visitors w
 void welcome_links(Show& show, Arrivals& arrivals) {
   for (std::shared_ptr<Link>& link : arrivals.take()) {
     if (link->kind == LinkKind::eye) {
-      log::info("kiosk camera {} connected from {}", link->id, link->peer);
-      show.eyes.push_back(Eye{std::move(link), {}, -1e9, 0, 0});
+      welcome_camera(show, std::move(link));
     } else if (int(show.visitors.size()) >= show.settings.max_visitors) {
       show.totals.turned_away++;
       link->send_text(write_error({"full",
@@ -63,56 +70,31 @@ void read_visitors(Show& show) {
       std::optional<WireError> error;
       if (const WireError* bad = std::get_if<WireError>(&message)) error = *bad;
       else error = handle(show, visitor, std::get<BrowserMessage>(message));
+      if (!error) note_touch(visitor, std::get<BrowserMessage>(message));
       if (!error) continue;
       show.totals.refused_messages++;
       visitor.link->send_text(write_error(*error));
     }
-  std::erase_if(show.visitors, [&show](Visitor& visitor) {
-    bool gone = visitor.left || visitor.link->closed();
-    if (gone) {
-      visitor.left = true;
-      visitor.welcomed = false;
-      visitor.link->close("bye");
-      bool in_pass = show.pass.visitor == &visitor;
-      if (in_pass) show.pass.given_up = true;
-      if (visitor.picture.at_work || in_pass) return false;  // soon
-      log::info("visitor {} left", visitor.link->id);
-    }
-    return gone;
-  });
+  for (auto next = show.visitors.begin(); next != show.visitors.end();) {
+    auto visitor = next++;
+    if (!visitor->left && !visitor->link->closed()) continue;
+    visitor->left = true;
+    visitor->welcomed = false;
+    visitor->link->close("bye");
+    bool in_pass = show.pass.visitor == &*visitor;
+    if (in_pass) show.pass.given_up = true;
+    if (visitor->picture.at_work || in_pass) continue;  // soon
+    log::info("visitor {} left", visitor->link->id);
+    keep_visit(show, visitor);
+  }
+  forget_visits(show);
   forget_absent_listeners(show);
-}
-
-void read_cameras(Show& show) {
-  for (Eye& eye : show.eyes)
-    for (const std::string& text : eye.link->take_texts()) {
-      auto observation = read_observation(text);
-      if (const WireError* bad = std::get_if<WireError>(&observation)) {
-        eye.refused++;
-        show.totals.refused_messages++;
-        eye.link->send_text(write_error(*bad));
-        continue;
-      }
-      eye.seen = std::move(std::get<Observation>(observation));
-      eye.received = show.time;
-      eye.observations++;
-      show.totals.observations++;
-    }
-  std::erase_if(show.eyes, [](const Eye& eye) {
-    if (eye.link->closed()) log::info("kiosk camera {} disconnected", eye.link->id);
-    return eye.link->closed();
-  });
-}
-
-void broadcast(Show& show, const std::string& message) {
-  for (Visitor& visitor : show.visitors)
-    if (visitor.welcomed) visitor.link->send_text(message);
 }
 
 void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utterance,
                    bool storyteller) {
   const Exhibit& exhibit = show.exhibit;
-  const StorytellerPlace* storyteller_place = storyteller_of(show);
+  const StorytellerPlace* storyteller_place = storyteller_of(show, teller_of(show, visitor));
   std::string text, speaker;
   if (const auto* line =
           utterance ? line_in(utterance->line, visitor.lang, exhibit.languages) : nullptr)
@@ -123,22 +105,26 @@ void show_subtitle(const Show& show, Visitor& visitor, const Utterance* utteranc
       subtitle_message(text, visitor.lang, speaker, utterance ? utterance->seconds : 0));
 }
 
-bool is_narrated(const Visitor& visitor) {
-  return !visitor.hearing.narration.voice.queue.empty() && !visitor.hearing.narration.voice.paused;
+// Of a tour of their own, or of their leader's.
+bool is_narrated(const Show& show, const Visitor& visitor) {
+  const Visitor* leader = leader_of(show, visitor);
+  const Voice& voice = (leader ? *leader : visitor).hearing.narration.voice;
+  return !voice.queue.empty() && !voice.paused;
 }
 
-void show_subtitles(Show& show, const Utterance* utterance) {
+void show_subtitles(Show& show, const Teller& teller, const Utterance* utterance) {
   for (Visitor& visitor : show.visitors)
-    if (visitor.welcomed && !is_narrated(visitor)) show_subtitle(show, visitor, utterance, true);
+    if (!is_narrated(show, visitor) && listens_to(show, visitor, teller))
+      show_subtitle(show, visitor, utterance, true);
 }
 
 // The camera of whoever asked for the story goes where its marks want it.
-void follow_story(Show& show, const VoiceEvents& events) {
+void follow_story(Show& show, const Teller& teller, const VoiceEvents& events) {
   for (const ActionEvent& act : events.acts) {
     int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
     if (viewpoint < 0) continue;
     for (Visitor& visitor : show.visitors)
-      if (visitor.link->id == show.voice.asked_by && visitor.place.tour.tour < 0 &&
+      if (visitor.link->id == teller.voice.asked_by && visitor.place.tour.tour < 0 &&
           visitor.place.move == vec3(0))
         glide_to(visitor.place.tour, viewpoint, visitor.place.view);
   }
@@ -151,8 +137,11 @@ void narrate(Show& show, float dt) {
     if (!visitor.welcomed || narration.voice.queue.empty()) continue;
     if (dt >= 1) narration.sounding.going = false;  // the show stood still while the sound went on
     VoiceEvents said = advance_narration(show, visitor, dt);
-    if (said.begun) show_subtitle(show, visitor, said.begun, false);
-    else if (said.fell_silent) show_subtitle(show, visitor, nullptr, false);
+    for (Visitor& listener : show.visitors) {
+      if (&listener != &visitor && leader_of(show, listener) != &visitor) continue;
+      if (said.begun) show_subtitle(show, listener, said.begun, false);
+      else if (said.fell_silent) show_subtitle(show, listener, nullptr, false);
+    }
     for (const ActionEvent& act : said.acts) {
       int viewpoint = act.kind == StoryMarkKind::view ? find_viewpoint(show.exhibit, act.name) : -1;
       if (viewpoint >= 0) glide_to(visitor.place.tour, viewpoint, visitor.place.view);
@@ -160,68 +149,106 @@ void narrate(Show& show, float dt) {
   }
 }
 
-View kiosk_view(const Show& show) {
-  const Viewpoint& at = show.exhibit.viewpoints[size_t(storyteller_of(show)->kiosk_viewpoint)].view;
-  return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, 16, 9);
+// Guests of the kiosk that the storyteller is with; motion before any, while she is with none.
+void see_guests(Show& show, StorytellerInput& input) {
+  const Kiosk* kiosk = her_kiosk(show);
+  input.visit = show.her_visits;
+  if (kiosk) {
+    input.kiosk_motion = kiosk->audience.state == Presence::motion;
+    input.guests = guests_of(*kiosk, kiosk_window(show, kiosk->settings.name));
+    input.staying = has_guest(kiosk->stage.now);
+    input.met = kiosk->visit.greeted;
+    input.parting = kiosk->changed && kiosk->stage.now == Stage::farewell;
+  } else {
+    for (const Kiosk& other : show.kiosks)
+      input.kiosk_motion |= other.audience.state == Presence::motion;
+  }
 }
 
-// Storyteller: notices, decides, speaks, poses. Left out while nobody could see or hear it.
-void behave(Show& show, float dt) {
-  if (show.figures.empty()) return;
-  show.audience = gather_audience(show.eyes, kiosk_view(show), show.time);
-  std::string message = kiosk_message(show.audience, show.eyes.size());
-  if (message != show.kiosk_message) broadcast(show, show.kiosk_message = message);
-  if (show.visitors.empty() && show.eyes.empty()) return;
+void greet_or_part(Show& show, Teller& teller, const StorytellerEvents& events) {
+  const StorytellerPlace& place = *storyteller_of(show, teller);
+  if (events.greeted) {
+    show.totals.greetings++;
+    if (Kiosk* kiosk = her_kiosk(show)) {
+      const std::string& name = kiosk->settings.name;
+      if (!kiosk->visit.greeted) count(show, "kiosk_visits", name.empty() ? "-" : name);
+      kiosk->visit.greeted = true;
+    }
+    if (teller.voice.story.empty())
+      say(teller.voice, nth_line(place.greetings, show.greetings++), true);
+  }
+  if (events.farewelled) {
+    show.totals.farewells++;
+    say(teller.voice, nth_line(place.farewells, show.farewells++), true);
+  }
+}
 
-  if (dt >= 1) show.sounding.going = false;  // the show stood still while the sound went on
-  VoiceEvents said = advance_speech(show, dt);
-  if (said.begun) show_subtitles(show, said.begun);
-  else if (said.fell_silent) show_subtitles(show, nullptr);
-  follow_story(show, said);
+// Notices, decides, speaks, poses.
+void behave(Show& show, Teller& teller, float dt) {
+  if (dt >= 1) teller.sounding.going = false;  // the show stood still while the sound went on
+  const std::string story = teller.voice.story;
+  VoiceEvents said = advance_speech(show, teller, dt);
+  if (said.fell_silent && !story.empty()) count(show, "stories_heard", story);
+  if (said.begun) show_subtitles(show, teller, said.begun);
+  else if (said.fell_silent) show_subtitles(show, teller, nullptr);
+  follow_story(show, teller, said);
 
   StorytellerInput input;
   input.time = show.time;
   input.dt = dt;
-  input.kiosk_motion = show.audience.state == Presence::motion;
-  input.guests = show.audience.guests;
-  input.humanlike = show.humanlike;
+  if (&teller == &show.teller) see_guests(show, input);
+  input.humanlike = teller.humanlike;
   // The pose is made for the moment that its picture will carry.
   // Its own words come before those of a tour, which are heard by one visitor alone.
-  const Voice* told = &show.voice;
-  if (const Visitor* on_tour = show.voice.queue.empty() ? heard_on_tour(show) : nullptr)
+  const Voice* told = &teller.voice;
+  if (const Visitor* on_tour = teller.voice.queue.empty() ? heard_on_tour(show, teller) : nullptr)
     told = &on_tour->hearing.narration.voice;
   input.speaking = speaking(*told, show.picture_lead);
   if (heard(*told)) input.visemes = mouth_shape(*told, show.picture_lead);
-  input.telling = !show.voice.story.empty();
-  input.story = make_cue(show.exhibit, show.voice, said);
+  input.telling = !teller.voice.story.empty();
+  input.story = make_cue(show.exhibit, teller.voice, said);
   for (const Visitor& visitor : show.visitors) {
-    if (!visitor.welcomed || visitor.kiosk) continue;  // a kiosk page's eyes are its camera
+    if (visitor.kiosk || !listens_to(show, visitor, teller))
+      continue;  // a kiosk page's eyes are its camera
     Guest guest;
     guest.id = uint32_t(visitor.link->id);
     guest.head = vec3(visitor.place.view.position - show.exhibit.scene.origin);
     input.guests.push_back(guest);
   }
-  input.viewer_distance = viewer_distance(show);
+  if (const PointOfInterest* point =
+          teller.voice.queue.empty() ? looked_at_beside_her(show, teller) : nullptr)
+    input.story.look = vec3(point->place - show.exhibit.scene.origin);
+  input.viewer_distance = viewer_distance(show, teller);
   StorytellerEvents events;
-  tick_storyteller(show.mind, show.storyteller, input, show.pose, events);
-  const StorytellerPlace& place = *storyteller_of(show);
-  if (events.greeted) {
-    show.totals.greetings++;
-    if (show.voice.story.empty())
-      say(show.voice, nth_line(place.greetings, show.greetings++), true);
-  }
-  if (events.farewelled) {
-    show.totals.farewells++;
-    say(show.voice, nth_line(place.farewells, show.farewells++), true);
-  }
+  tick_storyteller(teller.mind, teller.storyteller, input, teller.pose, events);
+  greet_or_part(show, teller, events);
 
   bool message_due =
-      show.time - show.agent_sent_at >= agent_interval || show.mind.mood != show.agent_mood;
-  if (message_due) {
-    show.agent_sent_at = show.time;
-    show.agent_mood = show.mind.mood;
-    broadcast(show, agent_message(show));
-  }
+      show.time - teller.agent_sent_at >= agent_interval || teller.mind.mood != teller.agent_mood;
+  if (!message_due) return;
+  teller.agent_sent_at = show.time;
+  teller.agent_mood = teller.mind.mood;
+  const std::string message = agent_message(show, teller);
+  for (Visitor& visitor : show.visitors)
+    if (visitor.welcomed && &teller_of(show, visitor) == &teller) visitor.link->send_text(message);
+}
+
+// A visitor's own does nothing while it is silent and not to be seen; nor does the house's while
+// nobody shares it.
+bool is_noticed(const Show& show, const Teller& teller) {
+  if (&teller == &show.teller && connected_cameras(show) > 0) return true;
+  const bool news = !teller.voice.queue.empty() || teller.agent_sent_at < 0;
+  return std::any_of(show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
+    if (&teller_of(show, visitor) != &teller) return false;
+    return &teller == &show.teller || news || sees_figure(show, teller, visitor.place.last_view);
+  });
+}
+
+void behave(Show& show, float dt) {
+  follow_kiosks(show);
+  if (show.figures.empty()) return;
+  for (Teller* teller : tellers_of(show))
+    if (is_noticed(show, *teller)) behave(show, *teller, dt);
 }
 
 // The next thing, if there is any, of what is due by now.
@@ -241,14 +268,18 @@ void watch_baker(Show& show) {
   show.baker->allow(alone || show.time - show.drew_at > idle_before_bake);
 }
 
-// A tour's camera waits for keyframes that are slow; a visitor's own turn does not.
+// A camera on its way waits for keyframes that are slow; a visitor's own turn does not.
 void pace_tour(Visitor& visitor) {
   double seconds = 0.001 * double(std::max(visitor.times.interval, visitor.times.whole));
   const PictureWishes& wants = visitor.wants;
   VisitorPlace& place = visitor.place;
   float across =
       2 * std::atan(std::tan(0.5f * place.view.fov) * float(wants.width) / float(wants.height));
-  place.tour.most_pace = tour_pace(turn_ahead(place.tour, seconds), across);
+  auto pace = [&](const std::shared_ptr<const CameraPath>& path, double time) {
+    return tour_pace(path ? turn_ahead(*path, time, seconds) : 0, across);
+  };
+  place.tour.most_pace = pace(place.tour.path, place.tour.time);
+  place.glide.most_pace = pace(place.glide.path, place.glide.time);
 }
 
 void send_state(Show& show, Visitor& visitor) {
@@ -270,10 +301,14 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   bool free = take_finished(show);
   if (!free || show.renderer.drawn) show.drew_at = show.time;
   welcome_links(show, arrivals);
+  follow_house(show, arrivals);
   read_visitors(show);
   read_cameras(show);
-  if (free) invalidate_light_steps(show);
-  if (free && !show.renderer.drawn && lamps_wait(show)) light_lamps(show);
+  if (free) forget_lights(show);
+  for (Visitor& visitor : show.visitors)
+    if (visitor.welcomed && !visitor.picture.at_work && show.renderer.drawn != &visitor &&
+        lamps_wait(show, visitor))
+      light_lamps(show, visitor);
   if (free && !show.renderer.drawn) watch_baker(show);
   narrate(show, dt);
   Demand demand;
@@ -287,16 +322,19 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     show.totals.animate_ms = float(1000 * (seconds_now() - began));
   }
   send_sounds(show);
-  std::optional<dvec3> person;
-  if (const StorytellerPlace* storyteller_place =
-          show.storyteller_visible ? storyteller_of(show) : nullptr)
-    person = storyteller_place->position;
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
+    std::optional<dvec3> person;
+    const Teller& teller = teller_of(show, visitor);
+    if (const StorytellerPlace* who = teller.visible ? storyteller_of(show, teller) : nullptr)
+      person = who->position;
     pace_tour(visitor);
     TourStep step = move_visitor(visitor.place, visitor.hearing.narration.voice, *show.world,
                                  show.exhibit, show.roads, person, dt);
+    count_place(show, visitor, step.finished, double(dt));
     if (step.arrived >= 0 || step.finished) visitor.state_sent_at = -1e9;
+    follow_leader(show, visitor, dt);
+    look_through(show, visitor, dt);
     watch(show, visitor);
   }
   watch_pass(show);
@@ -309,6 +347,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
     if (!visitor.welcomed) continue;
     if (show.settings.background) present(show, visitor);
     send_state(show, visitor);
+    send_token(show, visitor);
   }
   show.totals.tick_ms = float(1000 * (seconds_now() - began));
 }

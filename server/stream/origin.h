@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may open a WebSocket: browsers name the page's origin and cannot be made to lie about it, so
-// a page of somebody else's site cannot use its visitor's browser to reach this server. Scripts
-// name none.
+// Who may open a WebSocket, or post: browsers name the page's origin and cannot be made to lie
+// about it, so a page of somebody else's site cannot use its visitor's browser to reach this
+// server. Scripts name none.
 #pragma once
 #include <string>
 #include <string_view>

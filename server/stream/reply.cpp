@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/log.h"
+#include "stream/range.h"
 
 namespace wellspring {
 
@@ -16,7 +17,7 @@ std::span<const std::pair<const char*, const char*>> security_headers() {
       {"Content-Security-Policy",
        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
        "connect-src 'self'; media-src 'self' blob:; worker-src 'self' blob:; font-src 'self'; "
-       "base-uri 'none'; frame-ancestors 'self'; form-action 'none'"},
+       "base-uri 'self'; frame-ancestors 'self'; form-action 'none'"},
       {"Permissions-Policy", "camera=(), microphone=()"},
   };
   return headers;
@@ -60,7 +61,8 @@ void finish_reply(const HttpQuestion& question, HttpReply& reply) {
       etag != reply.headers.end() && reply.status == 200 && !question.if_none_match.empty() &&
       etag_matches(question.if_none_match, etag->second))
     reply.status = 304;
-  if (reply.status == 304) reply.body.clear();
+  if (reply.status == 304) reply.body.clear(), reply.file.reset();
+  if (reply.status == 200 && reply.file) narrow_to_range(question, reply);
   reply.headers.try_emplace("Cache-Control", "no-cache");
   std::erase_if(reply.headers, [&](const auto& header) {
     const bool bad = header.first.empty() || !fits_a_line(header.first) ||

@@ -17,8 +17,9 @@ std::span<const std::pair<const char*, const char*>> security_headers();
 // {"error": {"status":.., "message":..}}
 HttpReply make_refusal(int status, const std::string& message);
 
-// Makes a good reply whose ETag the asker already has a 304 without body, sets Cache-Control:
-// no-cache where nothing is said, and drops headers that no header line can hold.
+// Makes a good reply whose ETag the asker already has a 304 without body, narrows one of a file to
+// the range asked for (206, or 416), sets Cache-Control: no-cache where nothing is said, and drops
+// headers that no header line can hold.
 void finish_reply(const HttpQuestion& question, HttpReply& reply);
 
 // If-None-Match as RFC 9110 section 13.1.2: "*", or a list with an equal tag (weak comparison).

@@ -36,14 +36,15 @@ struct Server::Impl {
   void stop_sessions(bool politely);
 };
 
-void Server::Impl::listen() {
-  const StreamSettings& settings = core->settings;
+// Binds and listens. Throws std::runtime_error.
+static void listen_on(net::io_context& io, const StreamSettings& settings,
+                      tcp::acceptor& acceptor) {
   const auto throw_error = [&](const error_code& ec) {
     throw std::runtime_error("cannot listen on " + settings.host + ":" +
                              std::to_string(settings.port) + ": " + ec.message());
   };
   error_code ec;
-  tcp::resolver resolver(core->io);
+  tcp::resolver resolver(io);
   const auto found = resolver.resolve(settings.host, std::to_string(settings.port),
                                       tcp::resolver::passive | tcp::resolver::numeric_service, ec);
   if (ec) throw_error(ec);
@@ -61,6 +62,16 @@ void Server::Impl::listen() {
     if (!ec) break;
   }
   if (ec) throw_error(ec);
+}
+
+void try_port(const StreamSettings& settings) {
+  net::io_context io;
+  tcp::acceptor acceptor(io);
+  listen_on(io, settings, acceptor);
+}
+
+void Server::Impl::listen() {
+  listen_on(core->io, core->settings, acceptor);
   port = acceptor.local_endpoint().port();
 }
 

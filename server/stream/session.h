@@ -16,9 +16,11 @@ namespace wellspring {
 
 inline constexpr size_t max_header_bytes = 16 * 1024;
 inline constexpr size_t max_body_bytes = 64 * 1024;
-inline constexpr double http_write_timeout = 30;       // seconds for a whole reply
-inline constexpr double max_messages_a_second = 400;   // WebSocket, pings and pongs included
-inline constexpr double max_bytes_a_second = 1 << 20;  // WebSocket
+inline constexpr size_t max_posted_bytes = 16 * 1024;
+inline constexpr double http_write_timeout = 30;        // seconds for a reply, or a piece of a file
+inline constexpr size_t file_piece_bytes = 256 * 1024;  // in memory at a time
+inline constexpr double max_messages_a_second = 400;    // WebSocket, pings and pongs included
+inline constexpr double max_bytes_a_second = 1 << 20;   // WebSocket
 inline constexpr double burst_seconds = 2;
 
 // Stale pictures must not pile up where newest-wins cannot reach them, in the kernel. A send buffer
@@ -58,11 +60,16 @@ class Session : public std::enable_shared_from_this<Session> {
   // session_http.cpp
   net::awaitable<void> serve_http();  // returns at the end or with upgrade_ set
   net::awaitable<int> read_request(Request& request);
-  net::awaitable<void> write_refusal(HttpQuestion question, int status, std::string message);
+  net::awaitable<void> write_refusal(HttpQuestion question, int status, std::string message,
+                                     std::string allowed = "");
   net::awaitable<HttpReply> ask(HttpQuestion question);
   net::awaitable<bool> write_reply(HttpQuestion question, HttpReply reply, unsigned version,
                                    bool keep_alive);
+  net::awaitable<error_code> write_file(const FilePart& part,
+                                        http::response<http::buffer_body>& message);
   net::awaitable<void> linger();
+  bool is_from_here(const Request& request) const;  // as origin.h has it
+  HttpReply judge_post(const Request& request) const;
   HttpReply judge_upgrade(const HttpQuestion& question, const Request& request) const;
 
   // session_websocket.cpp

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The HTTP half of a session: read a request, judge it, let a worker answer, write, and again.
+#include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <fstream>
 
 #include "base/log.h"
 #include "stream/origin.h"
@@ -12,6 +14,9 @@
 namespace wellspring {
 
 static constexpr std::string_view subprotocol = "wellspring.v1";
+
+// The one path that takes a body, and nothing but a POST.
+static constexpr std::string_view posted_path = "/api/v1/admin/announce";
 
 static std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -24,7 +29,23 @@ static std::string http_date() {
   return text;
 }
 
-// 200 with `request` filled, a status to refuse with, or 0: nobody there to be told.
+static bool is_posted_path(std::string_view target) {
+  return target.substr(0, target.find('?')) == posted_path;
+}
+
+static const char* allowed_methods(const Request& request) {
+  return is_posted_path(view(request.target())) ? "POST" : "GET, HEAD";
+}
+
+// Of a Content-Type; its parameters are left out.
+static bool is_json(std::string_view type) {
+  type = type.substr(0, type.find(';'));
+  while (type.ends_with(' ') || type.ends_with('\t')) type.remove_suffix(1);
+  return beast::iequals(beast::string_view(type.data(), type.size()), "application/json");
+}
+
+// 200 with `request` filled, a status to refuse with, or 0: nobody there to be told. At 405 its
+// target is there.
 net::awaitable<int> Session::read_request(Request& request) {
   http::request_parser<http::string_body> parser;
   parser.header_limit(max_header_bytes);
@@ -34,14 +55,24 @@ net::awaitable<int> Session::read_request(Request& request) {
   reading_ = true;  // stop() may close
   co_await http::async_read_header(stream(), buffer_, parser,
                                    net::redirect_error(net::use_awaitable, ec));
-  const http::verb method = ec ? http::verb::unknown : parser.get().method();
-  if (!ec && method != http::verb::get && method != http::verb::head) co_return 405;
+  if (!ec) {
+    const http::verb method = parser.get().method();
+    const bool posts = is_posted_path(view(parser.get().target()));
+    const bool reads = method == http::verb::get || method == http::verb::head;
+    if (posts ? method != http::verb::post : !reads) {
+      request.target(parser.get().target());
+      co_return 405;
+    }
+    const auto length = parser.content_length();
+    if (posts && length && *length > max_posted_bytes) co_return 413;
+  }
   if (!ec && !parser.is_done())
     co_await http::async_read(stream(), buffer_, parser,
                               net::redirect_error(net::use_awaitable, ec));
   if (!ec) {
     request = parser.release();
-    co_return 200;
+    const bool too_large = request.body().size() > max_posted_bytes;
+    co_return request.method() == http::verb::post&& too_large ? 413 : 200;
   }
   if (ec == http::error::header_limit || ec == http::error::buffer_overflow) co_return 431;
   if (ec == http::error::body_limit) co_return 413;
@@ -60,8 +91,12 @@ net::awaitable<void> Session::serve_http() {
     if (status == 0) co_return;
     core_->http_requests++;
     if (status != 200) {
-      const char* what = status == 405   ? "only GET and HEAD"
-                         : status == 413 ? "request body too large"
+      if (status == 405) {
+        co_await write_refusal(std::move(question), status, "method not allowed",
+                               allowed_methods(request));
+        co_return;
+      }
+      const char* what = status == 413   ? "request body too large"
                          : status == 431 ? "request header too large"
                                          : "not an HTTP request";
       co_await write_refusal(std::move(question), status, what);
@@ -78,6 +113,10 @@ net::awaitable<void> Session::serve_http() {
       co_return;
     }
     question.if_none_match = std::string(request[http::field::if_none_match]);
+    question.accept = std::string(request[http::field::accept]);
+    question.range = std::string(request[http::field::range]);
+    question.if_range = std::string(request[http::field::if_range]);
+    question.authorization = std::string(request[http::field::authorization]);
 
     const bool websocket_path = question.path == "/api/v1/visit" || question.path == "/api/v1/eye";
     const bool upgrade = websocket::is_upgrade(request);
@@ -88,6 +127,12 @@ net::awaitable<void> Session::serve_http() {
         upgrade_ = std::make_unique<Request>(std::move(request));
         co_return;
       }
+    } else if (request.method() == http::verb::post) {
+      reply = judge_post(request);
+      if (reply.status == 200) {
+        question.body = std::move(request.body());
+        reply = co_await ask(question);
+      }
     } else {
       reply = co_await ask(question);
     }
@@ -97,6 +142,21 @@ net::awaitable<void> Session::serve_http() {
     if (!go_on) break;
   }
   co_await linger();
+}
+
+bool Session::is_from_here(const Request& request) const {
+  std::vector<std::string_view> origins;
+  const auto range = request.equal_range(http::field::origin);
+  for (auto it = range.first; it != range.second; ++it) origins.push_back(view(it->value()));
+  return origin_allowed(origins, view(request[http::field::host]), core_->settings.allowed_origin);
+}
+
+// 200 when a body may be handed on, else the refusal.
+HttpReply Session::judge_post(const Request& request) const {
+  if (!is_from_here(request)) return make_refusal(403, "this origin may not post here");
+  if (!is_json(view(request[http::field::content_type])))
+    return make_refusal(415, "Content-Type is application/json");
+  return {};
 }
 
 // 101 when a WebSocket may be opened, else the refusal.
@@ -117,11 +177,7 @@ HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& re
     return make_refusal(400, "bad Sec-WebSocket-Key");
   if (buffer_.size() != 0) return make_refusal(400, "WebSocket data before the handshake");
 
-  std::vector<std::string_view> origins;
-  const auto origin_range = request.equal_range(http::field::origin);
-  for (auto it = origin_range.first; it != origin_range.second; ++it)
-    origins.push_back(view(it->value()));
-  if (!origin_allowed(origins, view(request[http::field::host]), core_->settings.allowed_origin)) {
+  if (!is_from_here(request)) {
     log::debug("session {}: WebSocket from foreign origin refused", peer_);
     return make_refusal(403, "this origin may not open WebSockets here");
   }
@@ -158,10 +214,10 @@ net::awaitable<HttpReply> Session::ask(HttpQuestion question) {
   co_return std::move(*reply);
 }
 
-net::awaitable<void> Session::write_refusal(HttpQuestion question, int status,
-                                            std::string message) {
+net::awaitable<void> Session::write_refusal(HttpQuestion question, int status, std::string message,
+                                            std::string allowed) {
   HttpReply reply = make_refusal(status, message);
-  if (status == 405) reply.headers["Allow"] = "GET, HEAD";
+  if (!allowed.empty()) reply.headers["Allow"] = allowed;
   co_await write_reply(std::move(question), std::move(reply), 11, false);
   co_await linger();
 }
@@ -183,6 +239,29 @@ static void put_headers(const HttpReply& reply, unsigned version, bool keep_aliv
     message.set(http::field::connection, keep_alive ? "Upgrade" : "Upgrade, close");
 }
 
+// A part of the file at a time. A file that ends early, or cannot be read, ends the connection: its
+// length has been promised.
+net::awaitable<error_code> Session::write_file(const FilePart& part,
+                                               http::response<http::buffer_body>& message) {
+  std::ifstream in(part.path, std::ios::binary);
+  in.seekg(std::streamoff(part.begin));
+  std::vector<char> piece(size_t(std::min<uint64_t>(part.size, file_piece_bytes)));
+  http::response_serializer<http::buffer_body> serializer(message);
+  for (uint64_t left = part.size;;) {
+    const size_t count = size_t(std::min<uint64_t>(left, piece.size()));
+    if (!in.read(piece.data(), std::streamsize(count))) {
+      log::error("{} cannot be read", part.path);
+      co_return net::error::make_error_code(net::error::misc_errors::eof);
+    }
+    left -= count;
+    message.body() = {piece.data(), count, left > 0};
+    stream().expires_after(seconds(http_write_timeout));
+    error_code ec;
+    co_await http::async_write(stream(), serializer, net::redirect_error(net::use_awaitable, ec));
+    if (ec != http::error::need_buffer) co_return ec;  // all is written, or nothing more will be
+  }
+}
+
 // True: the connection may be used again.
 net::awaitable<bool> Session::write_reply(HttpQuestion question, HttpReply reply, unsigned version,
                                           bool keep_alive) {
@@ -191,7 +270,7 @@ net::awaitable<bool> Session::write_reply(HttpQuestion question, HttpReply reply
     reply = make_refusal(500, "internal error");
   }
   finish_reply(question, reply);
-  const size_t body_bytes = reply.body.size();
+  const uint64_t body_bytes = reply.file ? reply.file->size : reply.body.size();
   const bool may_have_body = reply.status != 304 && reply.status != 204;
   stream().expires_after(seconds(http_write_timeout));
   error_code ec;
@@ -200,6 +279,11 @@ net::awaitable<bool> Session::write_reply(HttpQuestion question, HttpReply reply
     put_headers(reply, version, keep_alive, message);
     if (may_have_body) message.content_length(body_bytes);
     co_await http::async_write(stream(), message, net::redirect_error(net::use_awaitable, ec));
+  } else if (reply.file) {
+    http::response<http::buffer_body> message;
+    put_headers(reply, version, keep_alive, message);
+    message.content_length(body_bytes);
+    ec = co_await write_file(*reply.file, message);
   } else {
     http::response<http::string_body> message;
     put_headers(reply, version, keep_alive, message);

@@ -3,9 +3,10 @@
 // rendering: questions go to Doors::answer, connected peers to Doors::joined as Links.
 //
 // What a stranger gets (limits not in StreamSettings are in session.h):
-// - HTTP/1.1 with keep-alive, GET and HEAD only; header 16 KiB (431), body 64 KiB and ignored
-// (413); targets
-//   as in target.h. Every reply carries the headers of reply.h; ETag and If-None-Match make a 304.
+// - HTTP/1.1 with keep-alive, GET and HEAD only (405); header 16 KiB (431), body 64 KiB and ignored
+//   (413); targets as in target.h. /api/v1/admin/announce takes a POST and nothing else: a body of
+//   at most 16 KiB (413) of application/json (415), Origin as in origin.h (403). Every reply
+//   carries the headers of reply.h; ETag and If-None-Match make a 304.
 // - WebSocket at /api/v1/visit and /api/v1/eye; a plain GET there is told 426. Origin as in
 // origin.h (403).
 //   Subprotocol wellspring.v1 is echoed when offered; offering none is fine, offering only others
@@ -53,6 +54,9 @@ struct StreamCounters {  // since the start, but for open and websockets: now
   uint64_t accepted = 0, refused = 0, open = 0, http_requests = 0, websockets = 0, slow_closed = 0;
   uint64_t flood_closed = 0, accept_errors = 0;
 };
+
+// Throws what Server would throw if the port cannot be had now; else lets go of it again.
+void try_port(const StreamSettings& settings);
 
 class Server {
  public:

@@ -18,6 +18,7 @@ struct MessageDescriber {
   void text(const char* name, const std::string&, const char* about, Need = Need::optional) {
     out[name] = about;
   }
+  void token(const char* name, const std::string&, const char* about) { out[name] = about; }
   void word(const char* name, std::initializer_list<const char*>, const std::string&,
             const char* about, Need = Need::optional) {
     out[name] = about;
@@ -44,6 +45,9 @@ struct MessageDescriber {
     out[name] = about;
   }
   void place(const char* name, const auto&, const char* about, Need = Need::optional) {
+    out[name] = about;
+  }
+  void spot(const char* name, double, const auto&, const char* about, Need = Need::optional) {
     out[name] = about;
   }
   void vector(const char* name, double, const auto&, const char* about, Need = Need::optional) {

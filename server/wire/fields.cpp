@@ -115,13 +115,13 @@ bool Fields::switch_or_number(const char* name, double low, double high,
   return true;
 }
 
-bool Fields::text(const char* name, std::string& value, Need need) {
+bool Fields::text(const char* name, std::string& value, Need need, size_t most_bytes) {
   const json* field = find(name, need);
   if (!field) return false;
   if (!field->is_string()) return fail(name, "must be a string"), false;
   const auto& text = field->get_ref<const std::string&>();
-  if (text.size() > max_name_bytes)
-    return fail(name, "must be at most " + std::to_string(max_name_bytes) + " bytes"), false;
+  if (text.size() > most_bytes)
+    return fail(name, "must be at most " + std::to_string(most_bytes) + " bytes"), false;
   if (has_control_character(text)) return fail(name, "must have no control characters"), false;
   if (need == Need::required && text.empty()) return fail(name, "must not be empty"), false;
   value = text;

@@ -11,6 +11,7 @@
 
 #include "base/vec.h"
 #include "wire/json.h"
+#include "wire/limits.h"
 
 namespace wellspring {
 
@@ -30,7 +31,8 @@ class Fields {
                         std::optional<std::variant<bool, float>>& value,
                         Need need = Need::optional);
   // At most max_name_bytes, no control characters; required ones must not be empty.
-  bool text(const char* name, std::string& value, Need need = Need::optional);
+  bool text(const char* name, std::string& value, Need need = Need::optional,
+            size_t most_bytes = max_name_bytes);
   // One of `words`; with Need::optional also the empty string.
   bool word(const char* name, std::initializer_list<const char*> words, std::string& value,
             Need need = Need::optional);

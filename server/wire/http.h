@@ -2,7 +2,9 @@
 // A question over HTTP and its reply, free of any socket library. `show/answer` makes replies with
 // pure functions; `stream` carries them.
 #pragma once
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace wellspring {
@@ -11,13 +13,21 @@ struct HttpQuestion {
   std::string method;  // "GET", "HEAD", ...
   std::string path;    // percent-decoded, starts with '/', holds no "..", no NUL, no '\\'
   std::map<std::string, std::string> query;  // percent-decoded; the last of equal names
-  std::string if_none_match;
+  std::string if_none_match, range, if_range, accept, authorization;  // headers of those names
+  std::string body;                                                   // of a POST: what was posted
+};
+
+// Bytes of a file on disk.
+struct FilePart {
+  std::string path;
+  uint64_t begin = 0, size = 0;
 };
 
 struct HttpReply {
   int status = 200;
   std::string content_type = "application/json; charset=utf-8";
   std::string body;
+  std::optional<FilePart> file;  // instead of `body`, and never held in memory as a whole
   std::map<std::string, std::string> headers;  // Cache-Control, ETag, Retry-After, ...
 };
 

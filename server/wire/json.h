@@ -7,7 +7,7 @@
 // refused, not guessed. Whole numbers may be written 3 or 3.0. Absent fields keep the default of
 // messages.h, but for those that have no sensible one: seq (input, camera, viewpoint), position
 // (camera), name (viewpoint), action (tour), frame (ack); and time, id, position, rotation and
-// confidence of an observation.
+// confidence of an observation; showing of a browser's kiosk, stage of a server's.
 #pragma once
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -29,10 +29,13 @@ std::variant<BrowserMessage, WireError> read_browser_message(std::string_view te
 // People come out nearest first whatever their order in the text. `state` rules; where only
 // `presence` is given, true means person and false absent.
 std::variant<Observation, WireError> read_observation(std::string_view text);
+// What a server says to an eye; needs that are left out are there.
+std::variant<EyeOrder, WireError> read_eye_order(std::string_view text);
 
 // Compact, numbers rounded to 4 decimals. A value that is not finite becomes null, which no reader
 // takes.
 std::string write_observation(const Observation& observation);
+std::string write_eye_order(const EyeOrder& order);
 std::string write_error(const WireError& error);  // {"type":"error","code":..,"message":..}
 // Browser messages as clients write them (bench, tests): read_browser_message(write_message(m)) ==
 // m.

@@ -10,10 +10,12 @@ inline constexpr int max_message_depth = 32;
 
 // Limits of single fields; outside of them a message is refused with bad_field.
 inline constexpr size_t max_name_bytes = 200;      // every string: UTF-8 without control characters
+inline constexpr size_t max_token_bytes = 4000;    // hello.resume
 inline constexpr double max_speed = 20;            // m/s, length of input.move
 inline constexpr double max_angle = 100;           // radians, every angle; the user wraps it
 inline constexpr double max_coordinate = 1e6;      // metres, camera.position
 inline constexpr double max_kiosk_distance = 100;  // metres, each coordinate of a person's position
+inline constexpr double max_mark = 20;             // metres of a calibration's mark from the screen
 inline constexpr double max_time = 1e12;           // seconds, observation.time, both signs
 inline constexpr double max_decoded_ms = 600e3;    // ack.decoded_ms, from 0
 inline constexpr int min_side = 16, max_side = 4096;  // width and height in pixels

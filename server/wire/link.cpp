@@ -12,6 +12,19 @@ std::vector<std::string> Link::take_texts() {
   return texts;
 }
 
+std::optional<std::string> Link::first_text() const {
+  std::lock_guard lock(mutex_);
+  if (in_.empty()) return {};
+  return in_.front();
+}
+
+void Link::drop_first_text() {
+  std::lock_guard lock(mutex_);
+  if (in_.empty()) return;
+  bytes_in_ -= in_.front().size();
+  in_.pop_front();
+}
+
 void Link::send_text(std::string text) {
   Out out;
   out.text = std::move(text);

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,10 @@ class Link {
   const std::string peer;  // address, for the log
 
   // ---- called by the show ----
-  std::vector<std::string> take_texts();  // all that arrived since the last call, in order
-  void send_text(std::string text);       // small JSON
+  std::vector<std::string> take_texts();          // all that arrived since the last call, in order
+  std::optional<std::string> first_text() const;  // of those, left there; empty: there is none
+  void drop_first_text();
+  void send_text(std::string text);                  // small JSON
   void send_picture(std::shared_ptr<const Packet>);  // replaces an unsent one
   // Kept in order with texts. False: the peer is too slow, all unsent sound is gone with this one.
   bool send_sound(std::shared_ptr<const Packet>);

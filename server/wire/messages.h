@@ -38,11 +38,52 @@ struct Person {
 enum class Presence : uint8_t { absent, motion, person };
 const char* to_string(Presence presence);
 
+// What is wrong with a kiosk's camera.
+enum class CameraState : uint8_t {
+  good,
+  dark,     // the picture is black
+  frozen,   // it does not change at all, not even by noise
+  missing,  // there is none
+  slow,     // fewer than 8 a second
+};
+inline constexpr const char* camera_states[] = {"good", "dark", "frozen", "missing", "slow"};
+
+// While a kiosk finds out how its camera sits: where the person is to stand, and for how much of
+// the time it takes they have been steady there.
+struct CalibrationStep {
+  enum class What : uint8_t { near_mark, far_mark, done, failed };
+  What what = What::near_mark;
+  float metres = 0;    // of the mark from the screen; 0 once it is done or has failed
+  float progress = 0;  // 0..1
+  bool operator==(const CalibrationStep&) const = default;
+};
+inline constexpr const char* calibration_steps[] = {"near", "far", "done", "failed"};
+
 struct Observation {
   double time = 0;  // seconds, the kiosk's clock (a video file's own time)
   Presence state = Presence::absent;
   std::vector<Person> people;  // nearest first
+  CameraState camera = CameraState::good;
+  std::string name;  // of kiosk and camera, for people who look after them; may be empty
+  std::optional<CalibrationStep> calibration;  // then nobody is a guest
+  std::string kiosk{};                         // its name; empty: the only one of the house
   bool operator==(const Observation&) const = default;
+};
+
+// ---- server to kiosk ----
+
+// What of a kiosk's cameras is used at the moment; the rest need not be computed.
+struct EyeNeeds {
+  bool faces = true;  // false: presence is enough
+  bool expression = true, gestures = true;
+  bool operator==(const EyeNeeds&) const = default;
+};
+
+struct EyeOrder {
+  std::string stage;  // of the kiosk (show/kiosk/stage.h)
+  EyeNeeds needs;
+  bool idle = false;  // the house is closed: a look now and then is enough
+  bool operator==(const EyeOrder&) const = default;
 };
 
 // ---- browser to server ----
@@ -61,8 +102,11 @@ struct Hello {
   std::string exhibit, lang, role,
       kiosk;  // role: "visitor" or "kiosk"; empty exhibit: the default one
   int width = 1280, height = 720;
+  std::string resume;  // of the last `keep`; empty: a new visit
   static void list(auto& message, auto& fields) {
     fields.text("exhibit", message.exhibit, "id, empty for the one shown");
+    fields.token("resume", message.resume,
+                 "of the last keep of a visit that is to go on; optional");
     fields.text("lang", message.lang, "BCP 47");
     fields.text("kiosk", message.kiosk, "name, optional");
     fields.word("role", {"visitor", "kiosk"}, message.role, "visitor or kiosk");
@@ -112,6 +156,23 @@ struct ViewpointTo {
   }
   bool operator==(const ViewpointTo&) const = default;
 };
+// To where the visitor points: at a place of the picture, at the ground or an object. One of them.
+struct GoTo {
+  static constexpr const char* type = "go";
+  uint32_t seq = 0;
+  std::optional<vec2> at;
+  std::optional<dvec3> to;
+  std::string object;
+  static void list(auto& message, auto& fields) {
+    fields.u32("seq", message.seq, "u32", Need::required);
+    fields.place("at", message.at,
+                 "[x, y] of the picture, 0..1 from its upper left: to the ground that is seen "
+                 "there, or to look closer at the object");
+    fields.spot("to", max_coordinate, message.to, "[x, y, z] m on the ground");
+    fields.text("object", message.object, "an object's id, to look closer at it");
+  }
+  bool operator==(const GoTo&) const = default;
+};
 enum class TourAction : uint8_t { play, pause, stop };
 struct Tour {
   static constexpr const char* type = "tour";
@@ -146,9 +207,54 @@ struct LampOrder {
   bool on = true;
   static void list(auto& message, auto& fields) {
     fields.text("name", message.name, "a lamp's name", Need::required);
-    fields.boolean("on", message.on, "boolean: for everybody who is there", Need::required);
+    fields.boolean("on", message.on,
+                   "boolean: for this visitor, or for everybody where it is shared",
+                   Need::required);
   }
   bool operator==(const LampOrder&) const = default;
+};
+// What a kiosk's page shows: the well or anything that lies under its water.
+enum class Showing : uint8_t { well, book, topics, partners, slides, museum, story, tour, walk };
+// What a guest does at a kiosk's screen.
+struct KioskTouch {
+  static constexpr const char* type = "kiosk";
+  bool touched = false;  // a finger was there just now
+  Showing showing = Showing::well;
+  bool playing = false;  // something goes on without touches
+  static void list(auto& message, auto& fields) {
+    fields.boolean("touched", message.touched, "boolean: a finger was there just now");
+    fields.choice(
+        "showing",
+        {"well", "book", "topics", "partners", "slides", "museum", "story", "tour", "walk"},
+        message.showing,
+        "what the kiosk's page shows: well, book, topics, partners, slides, "
+        "museum, story, tour or walk",
+        Need::required);
+    fields.boolean("playing", message.playing,
+                   "boolean: something goes on there that needs no touches");
+  }
+  bool operator==(const KioskTouch&) const = default;
+};
+enum class GroupAction : uint8_t { lead, follow, rejoin, leave };
+struct GroupOrder {
+  static constexpr const char* type = "group";
+  GroupAction action = GroupAction::lead;
+  std::string code;  // of the leader, to follow
+  static void list(auto& message, auto& fields) {
+    fields.choice("action", {"lead", "follow", "rejoin", "leave"}, message.action,
+                  "lead, follow, rejoin (after walking off) or leave", Need::required);
+    fields.text("code", message.code, "the leader's code, to follow");
+  }
+  bool operator==(const GroupOrder&) const = default;
+};
+// A question to the storyteller, in the visitor's language.
+struct Ask {
+  static constexpr const char* type = "ask";
+  std::string text;
+  static void list(auto& message, auto& fields) {
+    fields.text("text", message.text, "what is asked", Need::required);
+  }
+  bool operator==(const Ask&) const = default;
 };
 struct Settings {
   static constexpr const char* type = "settings";
@@ -156,7 +262,7 @@ struct Settings {
   // False: samples are spread evenly. A number: how much what the visitor looks at counts beside
   // what catches the eye.
   std::optional<std::variant<bool, float>> attention;
-  std::optional<bool> sound;
+  std::optional<bool> sound, comfort;
   std::optional<int> quality, max_quality, width, height;
   std::string lang;
   static void list(auto& message, auto& fields) {
@@ -167,6 +273,8 @@ struct Settings {
         "boolean: samples go where they are needed and looked at, or evenly everywhere; or 0..1, "
         "from what catches the eye to what the visitor looks at");
     fields.boolean("sound", message.sound, "boolean: whether speech is to be sent; at first it is");
+    fields.boolean("comfort", message.comfort,
+                   "boolean: the camera leaps instead of gliding, on tours too");
     fields.integer("quality", min_jpeg_quality, max_jpeg_quality, message.quality,
                    "JPEG quality in motion");
     fields.integer("max_quality", min_jpeg_quality, max_jpeg_quality, message.max_quality,
@@ -195,7 +303,8 @@ struct Bye {
   bool operator==(const Bye&) const = default;
 };
 
-using BrowserMessage = std::variant<Hello, Input, CameraTo, ViewpointTo, Tour, StorytellerOrder,
-                                    LampOrder, Settings, Ack, Bye>;
+using BrowserMessage =
+    std::variant<Hello, Input, CameraTo, ViewpointTo, GoTo, Tour, StorytellerOrder, LampOrder,
+                 KioskTouch, GroupOrder, Ask, Settings, Ack, Bye>;
 
 }  // namespace wellspring

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Text to a tree of values, stopping at the first bracket beyond the depth limit.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "wire/json.h"
@@ -14,7 +15,7 @@ namespace {
 // costs no stack while parsing.
 class TreeBuilder {
  public:
-  explicit TreeBuilder(int max_depth) : max_depth_(max_depth) {}
+  TreeBuilder(std::string_view text, int max_depth) : text_(text), max_depth_(max_depth) {}
   json root;
   WireError error;
 
@@ -35,12 +36,19 @@ class TreeBuilder {
   }
   bool parse_error(size_t position, const std::string&, const nlohmann::detail::exception& e) {
     if (e.id == 406)  // a number beyond double
-      return fail("bad_field", "number out of range near byte " + std::to_string(position) +
+      return fail("bad_field", "number out of range at " + place_of(position) +
                                    (key_.empty() ? "" : " (field '" + key_.substr(0, 64) + "')"));
-    return fail("bad_json", "not JSON near byte " + std::to_string(position));
+    return fail("bad_json", "not JSON at " + place_of(position));
   }
 
  private:
+  // Of the last character read, counted from 1; a column is a byte.
+  std::string place_of(size_t position) const {
+    std::string_view read = text_.substr(0, position > 0 ? position - 1 : 0);
+    size_t line = 1 + size_t(std::count(read.begin(), read.end(), '\n'));
+    size_t begin = read.rfind('\n') + 1;  // npos + 1 is 0
+    return "line " + std::to_string(line) + ", column " + std::to_string(read.size() - begin + 1);
+  }
   json* add(json&& value, json*& place) {
     if (open_.empty()) {
       root = std::move(value);
@@ -74,6 +82,7 @@ class TreeBuilder {
     return false;
   }
 
+  std::string_view text_;
   int max_depth_;
   std::string key_;
   std::vector<json*> open_;
@@ -82,7 +91,7 @@ class TreeBuilder {
 }  // namespace
 
 std::variant<json, WireError> parse_json(std::string_view text, int max_depth) {
-  TreeBuilder builder(max_depth);
+  TreeBuilder builder(text, max_depth);
   if (!json::sax_parse(text.begin(), text.end(), &builder)) return std::move(builder.error);
   return std::move(builder.root);
 }

@@ -19,6 +19,10 @@ class MessageReader {
   void text(const char* name, std::string& value, const char*, Need need = Need::optional) {
     fields_.text(name, value, need);
   }
+  // What was sealed here before (wire/seal.h).
+  void token(const char* name, std::string& value, const char*) {
+    fields_.text(name, value, Need::optional, max_token_bytes);
+  }
   // One of `words`, or empty.
   void word(const char* name, std::initializer_list<const char*> words, std::string& value,
             const char*, Need need = Need::optional) {
@@ -69,6 +73,12 @@ class MessageReader {
     if (!fields_.vector(name, 1, place, need)) return;
     if (place.x < 0 || place.y < 0) return fields_.fail(name, "must be of numbers from 0 to 1");
     value = place;
+  }
+  // In the world: each number at most `limit`, of either sign.
+  void spot(const char* name, double limit, std::optional<dvec3>& value, const char*,
+            Need need = Need::optional) {
+    dvec3 place{0};
+    if (fields_.vector(name, limit, place, need)) value = place;
   }
   // Metres a second: so is its length.
   void speed(const char* name, double limit, vec3& value, const char*, Need need = Need::optional) {
@@ -150,6 +160,18 @@ static Person read_person(const json& object, const std::string& prefix,
   return person;
 }
 
+static CalibrationStep read_calibration(const json& object, std::optional<WireError>& error) {
+  CalibrationStep calibration;
+  Fields fields(object, "observation.calibration.", error);
+  std::string what = calibration_steps[0];
+  fields.word("step", {"near", "far", "done", "failed"}, what, Need::required);
+  calibration.what = CalibrationStep::What(std::ranges::find(calibration_steps, what) -
+                                           std::begin(calibration_steps));
+  fields.number("metres", 0, max_mark, calibration.metres);
+  fields.number("progress", 0, 1, calibration.progress);
+  return calibration;
+}
+
 std::variant<Observation, WireError> read_observation(std::string_view text) {
   auto opened = open_envelope(text);
   if (auto* error = std::get_if<WireError>(&opened)) return std::move(*error);
@@ -160,7 +182,7 @@ std::variant<Observation, WireError> read_observation(std::string_view text) {
   Fields fields(object, "observation.", error);
   Observation observation;
   bool present = false;
-  std::string state;
+  std::string state, camera = "good";
   fields.number("time", -max_time, max_time, observation.time, Need::required);
   const bool has_presence = fields.boolean("presence", present);
   fields.word("state", {"absent", "motion", "person"}, state,
@@ -172,11 +194,41 @@ std::variant<Observation, WireError> read_observation(std::string_view text) {
     for (size_t i = 0; i < people->size() && !error; i++)
       observation.people.push_back(
           read_person((*people)[i], "observation.people[" + std::to_string(i) + "].", error));
+  fields.word("camera_state", {"good", "dark", "frozen", "missing", "slow"}, camera,
+              Need::optional);
+  observation.camera =
+      CameraState(std::ranges::find(camera_states, camera) - std::begin(camera_states));
+  fields.text("camera_name", observation.name);
+  if (const json* calibration = fields.object("calibration"))
+    observation.calibration = read_calibration(*calibration, error);
+  fields.text("kiosk", observation.kiosk);
   if (error) return std::move(*error);
 
   const auto distance = [](const Person& person) { return glm::length(person.position); };
   std::ranges::stable_sort(observation.people, {}, distance);
   return observation;
+}
+
+std::variant<EyeOrder, WireError> read_eye_order(std::string_view text) {
+  auto opened = open_envelope(text);
+  if (auto* error = std::get_if<WireError>(&opened)) return std::move(*error);
+  const auto& [object, type] = std::get<Envelope>(opened);
+  if (type != "kiosk") return WireError{"unknown_type", "unknown type " + short_quote(type)};
+
+  std::optional<WireError> error;
+  Fields fields(object, "kiosk.", error);
+  EyeOrder order;
+  fields.word("stage", {"sleep", "awake", "person", "engaged", "farewell"}, order.stage,
+              Need::required);
+  if (const json* needs = fields.object("needs")) {
+    Fields of(*needs, "kiosk.needs.", error);
+    of.boolean("faces", order.needs.faces);
+    of.boolean("expression", order.needs.expression);
+    of.boolean("gestures", order.needs.gestures);
+  }
+  fields.boolean("idle", order.idle);
+  if (error) return std::move(*error);
+  return order;
 }
 
 }  // namespace wellspring

@@ -36,11 +36,31 @@ std::string write_observation(const Observation& observation) {
     if (!person.gesture.empty()) item["gesture"] = person.gesture;
     people.push_back(std::move(item));
   }
-  return to_text({{"type", "observation"},
+  json message = {{"type", "observation"},
                   {"time", rounded(observation.time)},
                   {"presence", observation.state == Presence::person},
                   {"state", to_string(observation.state)},
-                  {"people", std::move(people)}});
+                  {"people", std::move(people)}};
+  if (observation.camera != CameraState::good)
+    message["camera_state"] = camera_states[size_t(observation.camera)];
+  if (!observation.name.empty()) message["camera_name"] = observation.name;
+  if (const auto& step = observation.calibration)
+    message["calibration"] = {{"step", calibration_steps[size_t(step->what)]},
+                              {"metres", rounded(step->metres)},
+                              {"progress", rounded(step->progress)}};
+  if (!observation.kiosk.empty()) message["kiosk"] = observation.kiosk;
+  return to_text(message);
+}
+
+std::string write_eye_order(const EyeOrder& order) {
+  const EyeNeeds& needs = order.needs;
+  json message = {
+      {"type", "kiosk"},
+      {"stage", order.stage},
+      {"needs",
+       {{"faces", needs.faces}, {"expression", needs.expression}, {"gestures", needs.gestures}}}};
+  if (order.idle) message["idle"] = true;
+  return to_text(message);
 }
 
 std::string write_error(const WireError& error) {
@@ -55,6 +75,9 @@ class MessageWriter {
   explicit MessageWriter(const char* type) { out = {{"type", type}}; }
   json out;
 
+  void token(const char* name, const std::string& value, const char* about) {
+    text(name, value, about);
+  }
   void text(const char* name, const std::string& value, const char*, Need need = Need::optional) {
     if (need == Need::required || !value.empty()) out[name] = value;
   }
@@ -91,6 +114,10 @@ class MessageWriter {
   void place(const char* name, const std::optional<vec2>& value, const char* about,
              Need need = Need::optional) {
     if (value) vector(name, 1, *value, about, need);
+  }
+  void spot(const char* name, double limit, const std::optional<dvec3>& value, const char* about,
+            Need need = Need::optional) {
+    if (value) vector(name, limit, *value, about, need);
   }
   template <class Vector>
   void vector(const char* name, double, const Vector& value, const char*, Need = Need::optional) {

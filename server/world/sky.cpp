@@ -241,4 +241,10 @@ void add_sky(const SkySettings& settings, Scene& scene) {
   scene.environment = environment;
 }
 
+bool add_missing_light(Scene& scene) {
+  if (has_light(scene)) return false;
+  scene.environment = {vec3(1), -1};
+  return true;
+}
+
 }  // namespace wellspring

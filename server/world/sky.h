@@ -28,6 +28,9 @@ const char* sky_problem(const SkySettings& settings);
 // reflects 0.2. About a tenth of a second. Settings without a problem only.
 void add_sky(const SkySettings& settings, Scene& scene);
 
+// Gives a scene without light of any kind a radiance of 1 from everywhere; true where it did.
+bool add_missing_light(Scene& scene);
+
 // Irradiance of the sun on a surface that faces it, from its elevation in degrees.
 vec3 eval_sun_irradiance(const SkySettings& settings);
 

@@ -285,6 +285,14 @@ Surface eval_surface(const World& world, const Ray& ray, const Hit& hit) {
   return surface;
 }
 
+vec3 eval_mesh_normal(const World& world, const Hit& hit, const Surface& surface) {
+  const PlacedMesh& placed = world.placed(hit.instance);
+  vec3 winding = surface.front ? surface.geometric_normal : -surface.geometric_normal;
+  Corners at = corners_of(*placed.mesh, hit.triangle, hit.barycentric);
+  return turned_to_viewer(shading_normal(placed, at, winding), surface.geometric_normal,
+                          surface.front);
+}
+
 vec3 eval_position(const World& world, uint32_t instance, uint32_t triangle, vec2 barycentric) {
   Face own;
   const Face& face = face_of(world.placed(instance), triangle, own);

@@ -48,8 +48,9 @@ View make_view_towards(const Scene& scene, dvec3 eye, dvec3 target, vec3 up, flo
 
 Ray view_ray(const View& view, float x, float y) {
   float scale = 2 * view.tan_half_fov / float(view.height);
-  vec3 direction = view.forward + view.right * ((x - 0.5f * float(view.width)) * scale) +
-                   view.up * ((0.5f * float(view.height) - y) * scale);
+  vec2 axis = axis_place(view);
+  vec3 direction =
+      view.forward + view.right * ((x - axis.x) * scale) + view.up * ((axis.y - y) * scale);
   Ray ray;
   ray.origin = view.position;
   ray.direction = normalize(direction);

@@ -10,8 +10,11 @@ namespace wellspring {
 struct View {
   vec3 position{0};
   vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
-  float tan_half_fov = 0.5f;  // vertical
+  float tan_half_fov = 0.5f;  // vertical: half of the picture's height at a depth of 1
   int width = 1, height = 1;
+  // Where the picture's middle lies at a depth of 1, to the right of the axis and above it. Not 0:
+  // the eye is not opposite the middle of the window that it looks through.
+  vec2 middle{0};
   bool operator==(const View&) const = default;
 };
 
@@ -21,6 +24,16 @@ View make_view(const Scene& scene, dvec3 position, float yaw, float pitch, float
 // From a target; `up` may not be parallel to the line of sight (then another is chosen).
 View make_view_towards(const Scene& scene, dvec3 eye, dvec3 target, vec3 up, float fov, int width,
                        int height);
+// Where the axis (`forward`) meets the picture, in pixels from its top left.
+inline vec2 axis_place(const View& view) {
+  float focal = 0.5f * float(view.height) / view.tan_half_fov;
+  return {0.5f * float(view.width) - view.middle.x * focal,
+          0.5f * float(view.height) + view.middle.y * focal};
+}
+// What of a place is to the right of the picture's middle and above it, at the place's depth: dot()
+// with these.
+inline vec3 right_of_middle(const View& view) { return view.right - view.middle.x * view.forward; }
+inline vec3 above_middle(const View& view) { return view.up - view.middle.y * view.forward; }
 // Ray through picture position (x, y) in pixels; unit direction.
 Ray view_ray(const View& view, float x, float y);
 // Picture position and depth along the axis of a point; depth <= 0: behind.
@@ -31,8 +44,8 @@ inline Projected project_point(const View& view, vec3 p) {
   vec3 d = p - view.position;
   float depth = dot(d, view.forward);
   float scale = float(view.height) * 0.5f / (view.tan_half_fov * depth);
-  return {dot(d, view.right) * scale + 0.5f * float(view.width),
-          0.5f * float(view.height) - dot(d, view.up) * scale, depth};
+  vec2 axis = axis_place(view);
+  return {dot(d, view.right) * scale + axis.x, axis.y - dot(d, view.up) * scale, depth};
 }
 
 }  // namespace wellspring

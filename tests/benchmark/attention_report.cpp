@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // attention: what predicting where a visitor looks costs, by the size of the picture: the saliency
 // of a photograph-like picture (attention.ms), and its objects' measures with two hints, their
-// attention and an order of a thousand shares (attention.objects_ms). Medians.
+// attention and an order of a thousand shares (attention.objects_ms). Medians. Then what it is
+// worth: attention_steer.cpp.
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 
@@ -92,6 +93,7 @@ void bench_attention(BenchReport& report, const BenchOptions& options) {
     report.add("attention.memory", double(memory_bytes(made.work)) / 1e6, "MB",
                {{"width", size}, {"height", size}, {"cores", all}});
   }
+  bench_attention_steer(report, options);
 }
 
 }  // namespace wellspring

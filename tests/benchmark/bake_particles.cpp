@@ -23,23 +23,20 @@ void for_each_node_at(const Bake& bake, const BakeField& field, const Surface& s
   uint32_t found = places.find(surface.instance, surface.triangle, surface.front);
   if (found == no_chart) return;
   const IlluminationChart& chart = places.charts[found];
-  vec3 to = surface.position - chart.origin;
-  float u = std::clamp(dot(to, chart.along_u), 0.0f, float(chart.columns)),
-        v = std::clamp(dot(to, chart.along_v), 0.0f, float(chart.rows));
-  auto tile_at = [&](int column, int row) -> const IlluminationTile& {
-    return field.tiles[chart.first_tile + uint32_t(row * chart.columns + column)];
-  };
-  const IlluminationTile& any =
-      tile_at(std::min(int(u), chart.columns - 1), std::min(int(v), chart.rows - 1));
-  if (any.first == no_tile) return;
-  const int x = int(std::lround(u * float(any.columns))), y = int(std::lround(v * float(any.rows)));
-  for (int row = std::max((y - 1) / any.rows, 0); row <= std::min(y / any.rows, chart.rows - 1);
-       row++)
-    for (int column = std::max((x - 1) / any.columns, 0);
-         column <= std::min(x / any.columns, chart.columns - 1); column++)
-      if (const IlluminationTile& tile = tile_at(column, row); tile.first != no_tile)
-        visit(size_t(tile.first) + size_t(y - row * any.rows) * (tile.columns + 1u) +
-              size_t(x - column * any.columns));
+  const vec2 at = place_in_chart(chart, surface.position);
+  const PlaceInTile any = find_tile(chart, field.tiles, at);
+  if (!any.tile) return;
+  const int columns = any.tile->columns, rows = any.tile->rows;
+  const int x = int(std::lround(std::clamp(at.x, 0.0f, float(chart.columns)) * float(columns))),
+            y = int(std::lround(std::clamp(at.y, 0.0f, float(chart.rows)) * float(rows)));
+  for (int row = std::max((y - 1) / rows, 0); row <= std::min(y / rows, chart.rows - 1); row++)
+    for (int column = std::max((x - 1) / columns, 0);
+         column <= std::min(x / columns, chart.columns - 1); column++)
+      if (const IlluminationTile& tile =
+              field.tiles[chart.first_tile + uint32_t(row * chart.columns + column)];
+          tile.first != no_tile)
+        visit(size_t(tile.first) + size_t(y - row * rows) * (tile.columns + 1u) +
+              size_t(x - column * columns));
 }
 
 void add(float& to, float value) {

@@ -50,7 +50,7 @@ DiffuseView find_diffuse(const World& world, const Lights& lights, const View& v
       Bsdf bsdf =
           make_bsdf_in(transport, Media{}, surface, world.material_of(hit.instance), ray.direction);
       bsdf.diffuse = vec3(1);
-      const float passes = (bsdf.has_coat ? bsdf.coat_passes : 1) * bsdf.beneath;
+      const float passes = bsdf.coat_passes * bsdf.beneath;
       sampler.seek(Dimensions::first_surface);
       DirectLight direct = sample_direct_light(transport, Walk{}, surface, bsdf, true, sampler);
       vec3 light = direct.area_diffuse + direct.punctual_diffuse;

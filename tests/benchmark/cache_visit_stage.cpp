@@ -50,8 +50,8 @@ std::shared_ptr<const IlluminationMap> find_baked(const Show& show, const std::s
 VisitStage::VisitStage(const std::string& folder, const std::string& technique)
     : folder_(folder), technique_(technique), lit_(open_show(folder, technique, true)) {
   now_ = lit_.get();
-  mind_ = lit_->mind;
-  pose_ = lit_->pose;
+  mind_ = lit_->teller.mind;
+  pose_ = lit_->teller.pose;
 }
 
 Show& VisitStage::dark() {
@@ -59,21 +59,27 @@ Show& VisitStage::dark() {
   return *dark_;
 }
 
-void VisitStage::find_maps(const std::string& folder, double seconds) {
-  lit_maps_ = find_baked(*lit_, folder + "/lit.maps", seconds);
-  dark_maps_ = find_baked(dark(), folder + "/dark.maps", seconds);
+void VisitStage::use_maps(const std::string& folder, double seconds) {
+  maps_folder_ = folder;
+  bake_seconds_ = seconds;
 }
 
-std::shared_ptr<const IlluminationMap> VisitStage::maps() const {
-  return now_ == lit_.get() ? lit_maps_ : dark_maps_;
+std::shared_ptr<const IlluminationMap> VisitStage::maps() {
+  if (maps_folder_.empty()) return nullptr;
+  const bool lit = now_ == lit_.get();
+  auto& maps = lit ? lit_maps_ : dark_maps_;
+  if (!maps)
+    maps = find_baked(*now_, maps_folder_ + (lit ? "/lit.maps" : "/dark.maps"), bake_seconds_);
+  return maps;
 }
 
 void VisitStage::begin(const VisitTrace& trace) {
   now_ = lamps_on(trace, 0) ? lit_.get() : &dark();
-  now_->mind = mind_;
-  now_->pose = pose_;
-  now_->voice = Voice{};
-  if (trace.telling && !exhibit().stories.empty()) tell(now_->voice, exhibit().stories.front());
+  now_->teller.mind = mind_;
+  now_->teller.pose = pose_;
+  now_->teller.voice = Voice{};
+  if (trace.telling && !exhibit().stories.empty())
+    tell(now_->teller.voice, exhibit().stories.front());
 }
 
 void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
@@ -81,9 +87,9 @@ void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
   now_ = lamps_on(trace, time) ? lit_.get() : &dark();
   switched_ = now_ != before;
   if (switched_) {
-    now_->mind = before->mind;
-    now_->pose = before->pose;
-    now_->voice = before->voice;
+    now_->teller.mind = before->teller.mind;
+    now_->teller.pose = before->teller.pose;
+    now_->teller.voice = before->teller.voice;
   }
   int first = int(exhibit().scene.instances.size()), count = before->world->instance_count();
   before_.resize(size_t(count - first));
@@ -95,17 +101,18 @@ void VisitStage::advance(const VisitTrace& trace, double time, float dt) {
   StorytellerInput input;
   input.time = time;
   input.dt = dt;
-  input.speaking = speaking(show.voice);
-  input.telling = !show.voice.story.empty();
+  input.speaking = speaking(show.teller.voice);
+  input.telling = !show.teller.voice.story.empty();
   Guest guest;
   guest.id = 1;
   guest.head = vec3(eval_trace(trace, time).position - exhibit().scene.origin);
   input.guests.push_back(guest);
   StorytellerEvents events;
-  tick_storyteller(show.mind, show.storyteller, input, show.pose, events);
-  advance_voice(show.voice, dt);
-  pose_figure(*show.world, show.figures[show.storyteller_index], storyteller_of(show)->character,
-              show.pose, show.storyteller.placement, show.scratch);
+  tick_storyteller(show.teller.mind, show.teller.storyteller, input, show.teller.pose, events);
+  advance_voice(show.teller.voice, dt);
+  pose_figure(*show.world, show.figures[show.teller.index],
+              storyteller_of(show, show.teller)->character, show.teller.pose,
+              show.teller.storyteller.placement, show.scratch);
   show.world->commit();
 }
 

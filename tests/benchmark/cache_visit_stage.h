@@ -29,9 +29,10 @@ class VisitStage {
 
   const World& world() const { return *now_->world; }
   const Lights& lights() const { return now_->lights; }
-  // Illumination maps of the lights there are, baked for so long where `folder` keeps none.
-  void find_maps(const std::string& folder, double seconds);
-  std::shared_ptr<const IlluminationMap> maps() const;
+  // maps() are those of `folder` from now on, baked for so long where it keeps none.
+  void use_maps(const std::string& folder, double seconds);
+  // Of the lights there are; null without use_maps().
+  std::shared_ptr<const IlluminationMap> maps();
   bool switched() const { return switched_; }  // the lamps, in the last advance
   View view(const VisitTrace& trace, double time, int width, int height) const;
 
@@ -43,6 +44,8 @@ class VisitStage {
   Show& dark();
   std::string folder_, technique_;
   std::unique_ptr<Show> lit_, dark_;
+  std::string maps_folder_;
+  double bake_seconds_ = 0;
   Show* now_ = nullptr;
   bool switched_ = false;
   std::shared_ptr<const IlluminationMap> lit_maps_, dark_maps_;

@@ -8,6 +8,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include "base/clock.h"
+#include "base/rgb9e5.h"
 #include "cache/corrective/warp_and_splat.h"
 #include "report.h"
 
@@ -47,7 +48,7 @@ CorrectiveSample trace(const View& view, ivec2 pixel) {
     vec2 at = vec2(float(i % balls_a_row), float(i / balls_a_row)) - 0.5f * (balls_a_row - 1);
     meet(uint32_t(2 + i), vec3(0.6f * at, 0), 0.27f);
   }
-  sample.radiance = abs(sample.normal);
+  sample.words[0] = pack_rgb9e5(abs(sample.normal));
   return sample;
 }
 
@@ -112,13 +113,13 @@ void measure_with(BenchReport& report, const SampleStore& made, int cores, doubl
   std::vector<uint32_t> object;
   for (int i = 0; i < size * size; i++)
     object.push_back(trace(view, ivec2(i % size, i / size)).object);
-  std::vector<vec3> color(object.size());
+  std::vector<SampleWords> words(object.size());
   std::vector<uint8_t> level(object.size());
   SplatScratch scratch;
   SplatStats stats;
   double ms = measure(
       runs, now, [] {},
-      [&](int) { stats = warp_and_splat(made, view, object, scratch, color, level); });
+      [&](int) { stats = warp_and_splat(made, view, object, scratch, words, level); });
   report.add("corrective.splat.ms", ms, "ms",
              {{"cores", cores}, {"samples", samples}, {"pixels", stats.pixels}});
 }

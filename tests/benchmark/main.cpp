@@ -2,10 +2,16 @@
 // wellspring bench: measures the parts and the whole, prints and saves the report, as JSON and as
 // pages of Markdown.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
+#include <fmt/core.h>
 #include <iostream>
+#include <unistd.h>
 
+#include "base/clock.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "cache_visit_trace.h"
 #include "report.h"
 #include "reports.h"
@@ -20,13 +26,29 @@ std::vector<std::string> words_of(const CLI::App& app) {
     const std::string name = option->get_name();
     bool is_place = name == "--json" || name == "--markdown" || name == "--plots" ||
                     name == "--scenes" || name == "--content" || name == "--web" ||
-                    name == "--visit-pictures";
+                    name == "--visit-pictures" || name == "--last";
     if (option->count() == 0 || is_place) continue;
     words.push_back(name);
     if (option->get_items_expected_max() > 0)
       for (const std::string& value : option->results()) words.push_back(value);
   }
   return words;
+}
+
+// A line of its own for each part, since results are printed between. Parts take times of their
+// own: what is left is a rough guess.
+void say_part(const char* name, size_t part, size_t parts, double seconds) {
+  if (!isatty(STDERR_FILENO)) return;
+  const std::string more = fmt::format("{} ({} of {})", name, part + 1, parts);
+  const double done = double(part) / double(parts);
+  std::fprintf(stderr, "%s\n", wellspring::progress_line("bench", done, seconds, more).c_str());
+}
+
+bool has_curves(const wellspring::BenchReport& report) {
+  const nlohmann::json all = report.to_json();
+  return std::ranges::any_of(all["results"], [](const nlohmann::json& result) {
+    return result.value("report", "") == "light.error";
+  });
 }
 
 }  // namespace
@@ -36,14 +58,16 @@ int main(int argc, char** argv) {
   log::start("bench");
   CLI::App app{"Speed against error, measured on this machine."};
   BenchOptions options;
-  std::string only, file, traces, pages;
+  std::string only, file, traces, pages, last;
   std::vector<std::string> read;
   app.add_flag("--quick", options.quick, "shorter runs: rougher figures");
   app.add_option(
       "--only", only,
-      "one part: stream, cache, corrective, bake, show, denoise, avatar, attention, light (or "
-      "one of its own: light.error ...)");
+      "one part: stream, cache, corrective, bake, show, denoise, avatar, attention, kiosk, light "
+      "(or one of its own: light.error ...)");
   CLI::Option* json = app.add_option("--json", file, "where to write the report");
+  app.add_option("--last", last,
+                 "where to keep it, too, if it has error over time: /status shows that");
   app.add_option("--markdown", pages,
                  "where to write it for readers: a file.md, or a folder for a page of each");
   app.add_option("--from", read, "instead of measuring: the JSON files that --markdown shows")
@@ -109,19 +133,28 @@ int main(int argc, char** argv) {
       make_visit_traces(castle, World(castle.scene), traces);
       return 0;
     }
+    std::vector<const ReportEntry*> asked;
     for (const ReportEntry& entry : report_entries()) {
       std::string_view name = entry.name;
       bool is_asked = only.empty() || name.starts_with(only + ".");
-      if (name != only && (entry.is_part || !is_asked)) continue;
+      if (name == only || (!entry.is_part && is_asked)) asked.push_back(&entry);
+    }
+    const double began = seconds_now();
+    for (size_t i = 0; i < asked.size(); i++) {
       found = true;
-      report.begin(entry.name);
-      entry.run(report, options);
+      say_part(asked[i]->name, i, asked.size(), seconds_now() - began);
+      report.begin(asked[i]->name);
+      asked[i]->run(report, options);
     }
     if (!found) {
       std::cerr << "--only: there is no part '" << only << "'\n";
       return 2;
     }
     report.save(file);
+    if (!last.empty() && has_curves(report)) {
+      std::filesystem::create_directories(std::filesystem::path(last).parent_path());
+      report.save(last);
+    }
     if (!pages.empty()) write_pages(report.to_json(), pages);
   } catch (const std::exception& error) {
     std::cerr << "error: " << error.what() << "\n";

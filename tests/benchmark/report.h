@@ -77,6 +77,14 @@ void bench_light_hall(BenchReport& report, const BenchOptions& options);  // one
 void bench_light_frame(BenchReport& report, const BenchOptions& options);
 void bench_light_scaling(BenchReport& report, const BenchOptions& options);
 void bench_attention(BenchReport& report, const BenchOptions& options);
+void bench_attention_steer(BenchReport& report, const BenchOptions& options);  // a part of it
 void bench_avatar(BenchReport& report, const BenchOptions& options);
+void bench_kiosk_face(BenchReport& report, const BenchOptions& options);
+void bench_kiosk_eye(BenchReport& report, const BenchOptions& options);
+void bench_kiosk_figures(BenchReport& report, const BenchOptions& options);
+void bench_kiosk_expression(BenchReport& report, const BenchOptions& options);
+void bench_kiosk_hard(BenchReport& report, const BenchOptions& options);
+void bench_kiosk_screen(BenchReport& report, const BenchOptions& options);
+void bench_kiosk_gestures(BenchReport& report, const BenchOptions& options);
 
 }  // namespace wellspring

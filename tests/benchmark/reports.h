@@ -17,8 +17,18 @@ struct ReportEntry {
 
 std::span<const ReportEntry> report_entries();
 
+// A page that stands beside what it shows.
+ReportPage kiosk_face_page();
+ReportPage kiosk_eye_page();
+ReportPage kiosk_screen_page();
+ReportPage kiosk_figures_page();
+ReportPage kiosk_expression_page();
+ReportPage kiosk_hard_page();
+
 // What is declared for this report, else plain_page.
 ReportPage find_page(const std::string& name);
+
+ReportPage kiosk_gestures_page();
 
 // Writes a page for each report of `report`: into the file `where` if that ends with .md, one below
 // the other, else into that folder as NAME.md. A page that is there is replaced. Throws

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // HTTP as scripts and browsers use it, and as attackers do.
 import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import net from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { start_server } from '../server.mjs';
+import { Visitor, run, source, start_server } from '../server.mjs';
 
+const token = 'a token of the tests';
 let server;
-before(async () => { server = await start_server(); });
+before(async () => {
+  process.env.WELLSPRING_ADMIN_TOKEN = token;
+  server = await start_server();
+  delete process.env.WELLSPRING_ADMIN_TOKEN;
+});
 after(async () => { if (server) assert.equal(await server.stop(), 0); });
 const get = (path, options) => fetch(server.url + path, options);
 
@@ -95,6 +103,161 @@ test('what is not there, and what may not be asked', async () => {
   const head = await get('/', { method: 'HEAD' });
   assert.equal(head.status, 200);
   assert.equal((await head.text()).length, 0);
+});
+
+const announce = (body, { headers = {}, on = server, method = 'POST' } = {}) =>
+  fetch(`${on.url}/api/v1/admin/announce`, { method,
+    body: typeof body === 'string' ? body : JSON.stringify(body),
+    headers: { 'content-type': 'application/json', authorization: `Bearer ${token}`,
+      ...headers } });
+
+test('announcements reach visitors and kiosks, and those that come later', async () => {
+  const visitor = new Visitor(server), kiosk = new Visitor(server);
+  await visitor.hello();
+  await kiosk.hello({ role: 'kiosk' });
+  const heard = [visitor, kiosk].map((page) => page.message('announce'));
+  const text = { en: 'We close in ten minutes.', sk: 'O desať minút zatvárame.' };
+  const reply = await announce({ text, seconds: 600, urgent: true });
+  assert.equal(reply.status, 200);
+  const { id } = await reply.json();
+  for (const said of await Promise.all(heard))
+    assert.deepEqual(said, { type: 'announce', id, text, seconds: 600, urgent: true });
+  const later = new Visitor(server), told = later.message('announce');
+  await later.hello();
+  const { seconds, ...rest } = await told;
+  assert.deepEqual(rest, { type: 'announce', id, text, urgent: true });
+  assert.ok(seconds > 0 && seconds <= 600);
+  const back = visitor.message('announce', (message) => message.id > id);
+  assert.equal((await announce({ text: '' })).status, 200);
+  assert.deepEqual((await back).text, {});
+  assert.match(await (await get('/metrics')).text(), /^wellspring_house_open 1$/m);
+  assert.ok(!server.log().includes(token));
+  await Promise.all([visitor, kiosk, later].map((page) => page.close()));
+});
+
+test('only who has the token announces, and only what is right', async () => {
+  const text = 'Hello.';
+  for (const authorization of ['', 'Bearer', `Bearer ${token}x`, `Basic ${token}`, token]) {
+    const reply = await announce({ text }, { headers: { authorization } });
+    assert.equal(reply.status, 401, authorization);
+    assert.equal(reply.headers.get('www-authenticate'), 'Bearer');
+  }
+  for (const [body, names] of [[{}, 'text'], [{ text, seconds: 0 }, 'seconds'],
+      [{ text, urgent: 'yes' }, 'urgent'], [{ text, loud: 1 }, 'loud'], ['{', 'JSON']]) {
+    const reply = await announce(body);
+    assert.equal(reply.status, 400);
+    const { error } = await reply.json();
+    assert.ok(error.message.includes(names), error.message);
+  }
+  assert.equal((await announce('x'.repeat(17000))).status, 413);
+  const other = { headers: { 'content-type': 'text/plain' } };
+  assert.equal((await announce({ text }, other)).status, 415);
+  const evil = { headers: { origin: 'http://evil.example' } };
+  assert.equal((await announce({ text }, evil)).status, 403);
+  const read = await get('/api/v1/admin/announce');
+  assert.equal(read.status, 405);
+  assert.equal(read.headers.get('allow'), 'POST');
+  const api = await (await get('/api/v1/')).json();
+  assert.ok(api.paths.some(({ method, path }) =>
+    method === 'POST' && path === '/api/v1/admin/announce'));
+});
+
+test('without a token nobody announces; a closed house says so', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'wellspring-'));
+  const file = (name, content) => {
+    writeFileSync(join(folder, name), content);
+    return join(folder, name);
+  };
+  const house = file('house.json', JSON.stringify({ hours: {}, kiosks: [{ name: 'hall' }] }));
+  const closed = await start_server(['--house', house]);
+  try {
+    const reply = await announce({ text: 'Hello.' }, { on: closed });
+    assert.equal(reply.status, 403);
+    assert.match((await reply.json()).error.message, /WELLSPRING_ADMIN_TOKEN/);
+    const kiosk = new Visitor(closed), told = kiosk.message('house');
+    await kiosk.hello({ role: 'kiosk' });
+    assert.equal((await told).open, false);
+    const metrics = await (await fetch(`${closed.url}/metrics`)).text();
+    assert.match(metrics, /^wellspring_house_open 0$/m);
+    await kiosk.close();
+  } finally {
+    await closed.stop();
+  }
+  const bad = file('bad.json', JSON.stringify({ hours: { mon: ['9', '17'] }, volume: 2 }));
+  const refused = await run('wellspring_server', ['--content', join(source, 'content'), '--web',
+    join(source, 'web'), '--port', '0', '--house', bad]);
+  assert.equal(refused.status, 1);
+  for (const place of ['bad.json: /hours/mon', 'bad.json: /volume'])
+    assert.ok(refused.stderr.includes(place), refused.stderr);
+  const short = await run('wellspring_server', ['--admin-token-file', file('token', 'short\n')]);
+  assert.equal(short.status, 1);
+  assert.match(short.stderr, /16 characters/);
+  assert.ok(!short.stderr.includes('short'));
+  rmSync(folder, { recursive: true });
+});
+
+test('the book, and the files that it names', async () => {
+  const { book } = await (await get('/api/v1/exhibits/castle')).json();
+  assert.ok(book.topics.length >= 4);
+  assert.ok(book.partners.length >= 2);
+  assert.equal(book.presentations.length, 3);
+  const things = [...book.topics, ...book.partners];
+  for (const { slides } of book.presentations) things.push(...slides);
+  const types = { jpg: 'image/jpeg', webm: 'video/webm' };
+  for (const thing of things) {
+    const path = thing.image ?? thing.video;
+    assert.ok(path.startsWith('/api/v1/exhibits/castle/files/'), path);
+    for (const lang of ['en', 'de', 'sk']) assert.ok(thing.alt[lang], `${path} in ${lang}`);
+    const reply = await get(path);
+    assert.equal(reply.status, 200, path);
+    assert.equal(reply.headers.get('content-type'), types[path.split('.').pop()], path);
+    const body = await reply.arrayBuffer();
+    assert.equal(Number(reply.headers.get('content-length')), body.byteLength);
+    const again = await get(path, { headers: { 'if-none-match': reply.headers.get('etag') } });
+    assert.equal(again.status, 304, path);
+  }
+});
+
+test('parts of a film, as browsers ask for them', async () => {
+  const { book } = await (await get('/api/v1/exhibits/castle')).json();
+  const path = book.presentations.flatMap(({ slides }) => slides).find(({ video }) => video).video;
+  const whole = await get(path);
+  assert.equal(whole.headers.get('accept-ranges'), 'bytes');
+  const etag = whole.headers.get('etag'), all = Buffer.from(await whole.arrayBuffer());
+  const part = async (range, more = {}) => {
+    const reply = await get(path, { headers: { range, ...more } });
+    return [reply.status, reply.headers.get('content-range'),
+      Buffer.from(await reply.arrayBuffer())];
+  };
+  const size = all.length;
+  for (const [range, begin, end] of [['bytes=0-', 0, size], ['bytes=1000-1999', 1000, 2000],
+      ['bytes=-7', size - 7, size], [`bytes=${size - 1}-${size + 5}`, size - 1, size]]) {
+    const [status, where, bytes] = await part(range, { 'if-range': etag });
+    assert.equal(status, 206, range);
+    assert.equal(where, `bytes ${begin}-${end - 1}/${size}`);
+    assert.ok(bytes.equals(all.subarray(begin, end)), range);
+  }
+  const [status, where] = await part(`bytes=${size}-`);
+  assert.deepEqual([status, where], [416, `bytes */${size}`]);
+  const [other, , bytes] = await part('bytes=5-9', { 'if-range': '"of another"' });
+  assert.equal(other, 200);
+  assert.ok(bytes.equals(all));
+  const head = await get(path, { method: 'HEAD' });
+  assert.equal(Number(head.headers.get('content-length')), size);
+});
+
+test('no other file of a package can be asked for', async () => {
+  const files = '/api/v1/exhibits/castle/files/';
+  for (const name of ['exhibit.json', 'scene.glb', 'book/paper.py', 'book/', 'book', '',
+      'book/../exhibit.json', 'book/%2e%2e/exhibit.json', 'book/%252e%252e/exhibit.json',
+      '..%2f..%2f..%2fetc%2fpasswd', '/etc/passwd', '%2fetc%2fpasswd', 'book//plan.jpg',
+      './book/plan.jpg', 'book\\plan.jpg', 'book/plan.jpg%00', 'book/plan.jpg/', 'BOOK/PLAN.JPG']) {
+    const host = `127.0.0.1:${server.port}`;
+    const line = await raw(
+        `GET ${files}${name} HTTP/1.1\r\nHost: ${host}\r\nConnection: close\r\n\r\n`);
+    assert.match(line, /^HTTP\/1\.1 40[04] /, name);
+  }
+  assert.equal((await get(`${files}book/plan.jpg`)).status, 200);
 });
 
 test('no path leaves the pages', async () => {

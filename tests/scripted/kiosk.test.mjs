@@ -2,31 +2,50 @@
 // The kiosk end to end: camera program -> server -> storyteller -> page.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { existsSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, readdirSync, readlinkSync, rmSync, writeFileSync }
+  from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
-import { Visitor, data, sleep, start_server } from '../server.mjs';
+import { after, before, beforeEach, test } from 'node:test';
+import { Visitor, data, run, sleep, source, start_server } from '../server.mjs';
 
 let server;
 before(async () => { server = await start_server(); });
 after(async () => { if (server) assert.equal(await server.stop(), 0); });
 
-function start_kiosk(camera, more = []) {
+// Whom an earlier test has seen is gone.
+const is_empty = [/^wellspring_kiosk_cameras 0$/m, /^wellspring_audience\{state="absent"\} 1$/m];
+beforeEach(async () => {
+  await until_async(async () => {
+    const metrics = await (await fetch(`${server.url}/metrics`)).text();
+    return is_empty.every((line) => line.test(metrics));
+  }, 60000);
+  await sleep(2200);  // what a camera said last counts for two seconds
+});
+
+function start_kiosk(cameras, more = [], on = server) {
   const child = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_kiosk'),
-      ['--camera', camera, '--server', server.ws, '--print', ...more],
+      [...[cameras].flat().flatMap((camera) => ['--camera', camera]), '--server', on.ws,
+        '--print', ...more],
     { stdio: ['ignore', 'pipe', 'pipe'] });
   const observations = [];
   let rest = '';
   child.stdout.on('data', (chunk) => {
     const lines = (rest + chunk).split('\n');
     rest = lines.pop();
-    for (const line of lines) observations.push(JSON.parse(line));
+    for (const line of lines)
+      if (line.startsWith('{')) observations.push(JSON.parse(line));  // else advice
   });
   child.stderr.resume();
   const ended = new Promise((resolve) => child.on('close', resolve));
   return { child, observations, ended, stop: () => { child.kill('SIGTERM'); return ended; } };
 }
 
+async function until_async(holds, patience = 20000) {
+  for (const end = performance.now() + patience; performance.now() < end; await sleep(100))
+    if (await holds()) return;
+  assert.fail(`not within ${patience} ms: ${holds}`);
+}
 async function eye() {
   const visitor = new Visitor(server, { path: '/api/v1/eye', protocol: [] });
   await visitor.opened;
@@ -48,7 +67,9 @@ test('a scripted person is soon greeted, looked at, and seen off', async () => {
   assert.ok(performance.now() - appeared < 3000,
       `greeted after ${performance.now() - appeared} ms`);
   assert.equal(subtitle.lang, 'en');
-  assert.equal(page.messages.filter((message) => message.type === 'kiosk').at(-1).state, 'person');
+  const seen = page.messages.filter((message) => message.type === 'kiosk').at(-1);
+  assert.equal(seen.state, 'person');
+  assert.equal(seen.distance, 1);
   await sleep(1500);
   const left = (await page.message('agent')).gaze[0];
   x = 0.3;
@@ -65,6 +86,59 @@ test('a scripted person is soon greeted, looked at, and seen off', async () => {
   clearInterval(timer);
   await camera.close();
   await page.close();
+});
+
+test('what is wrong with a camera is told in the metrics', async () => {
+  const camera = await eye();
+  camera.send({ ...nobody(1), camera_state: 'dark' });
+  const told = async () => (await (await fetch(`${server.url}/metrics`)).text())
+      .match(/^wellspring_kiosk_camera_seconds\{.*$/m)?.[0] ?? '';
+  await until_async(async () => (await told()).includes('state="dark"'));
+  camera.send(nobody(2));
+  await until_async(async () => (await told()).includes('state="good"'));
+  await until_async(async () => (await told()).includes('state="silent"'));
+  await camera.close();
+});
+
+test('two cameras of one kiosk see one guest, and one of them may be missing', async () => {
+  const page = new Visitor(server);
+  await page.hello({ role: 'kiosk' });
+  // Both look at the same room: what one sees to its left the other sees to its right.
+  const kiosk = start_kiosk(['synthetic', 'synthetic', '/dev/wellspring_no_such_camera'],
+      ['--name', 'hall', ...['-0.3,0.1,0', '0.3,0.1,0', '0,0,0'].flatMap((offset) =>
+        ['--mount-offset', offset]), '--width', '320', '--rate', '15']);
+  const names = ['hall, synthetic', 'hall, synthetic 2'];
+  const last = (name) => kiosk.observations.filter((one) => one.camera_name === name).at(-1);
+  await until_async(() => names.every((name) => last(name)?.people.length === 1), 60000);
+  const before = page.messages.length;
+  await sleep(1000);
+  const [left, right] = names.map((name) => last(name).people[0].position);
+  assert.ok(Math.hypot(...left.map((value, i) => value - right[i])) < 0.4, `${left} and ${right}`);
+  const told = page.messages.map((message) => message.type === 'kiosk' ? message.people : null);
+  const people = (list) => list.filter((count) => count !== null);
+  assert.deepEqual([people(told).at(-1), ...people(told.slice(before))].filter((n) => n !== 1), []);
+  const metrics = await (await fetch(`${server.url}/metrics`)).text();
+  const state = (name) => new RegExp('^wellspring_kiosk_camera_seconds'
+      + `\\{kiosk="hall",camera="\\d+",name="${name}",state="(\\w+)"\\}`, 'm').exec(metrics)?.[1];
+  assert.deepEqual([...names, 'hall, wellspring_no_such_camera'].map(state),
+      ['good', 'good', 'missing']);
+  await kiosk.stop();
+  await page.close();
+});
+
+test('the calibration of a camera is shown, and its program ends with what is wrong', async () => {
+  const page = new Visitor(server);
+  await page.hello({ role: 'kiosk' });
+  const folder = mkdtempSync(join(tmpdir(), 'wellspring-kiosk-'));
+  const kiosk = start_kiosk('synthetic', ['--config', join(folder, 'kiosk.json'), '--calibrate']);
+  const near = await page.message('kiosk', (message) => message.calibration?.step === 'near');
+  assert.equal(near.calibration.metres, 1);
+  assert.equal(near.people, 0);
+  await page.message('kiosk', (message) => message.calibration?.progress > 0.2);
+  await kiosk.stop();
+  await page.message('kiosk', (message) => !message.calibration);
+  await page.close();
+  rmSync(folder, { recursive: true });
 });
 
 test('bad observations are answered, and the connection lives on', async () => {
@@ -105,6 +179,31 @@ test('the synthetic camera brings a person, and the kiosk program survives a ser
   await kiosk.stop();
 });
 
+test('a kiosk\'s camera and screen find one another by name, and the eye hears what is needed',
+    async (context) => {
+  const hall = new Visitor(server), attic = new Visitor(server);
+  await hall.hello({ role: 'kiosk', kiosk: 'hall' });
+  await attic.hello({ role: 'kiosk', kiosk: 'attic' });
+  const kiosk = start_kiosk('synthetic', ['--name', 'hall']);
+  context.after(() => kiosk.stop());
+  const last_of = (page) => page.messages.filter((message) => message.type === 'kiosk').at(-1);
+  await until_async(() => kiosk.observations.at(-1)?.state === 'person'
+      && last_of(hall)?.stage === 'person', 60000);
+  assert.deepEqual([last_of(hall).kiosk, last_of(hall).cameras], ['hall', 1]);
+  assert.equal(kiosk.observations.at(-1).kiosk, 'hall');
+  const other = last_of(attic);
+  assert.deepEqual([other.stage, other.cameras, other.people], ['sleep', 0, 0]);
+  const camera = await eye(), needs = camera.message('kiosk');
+  camera.send({ ...nobody(1), kiosk: 'attic' });
+  assert.deepEqual(await needs, { type: 'kiosk', stage: 'sleep',
+    needs: { faces: false, expression: false, gestures: false } });
+  attic.send({ type: 'kiosk', showing: 'book', touched: true });
+  await attic.next((item) => item.message?.stage === 'engaged', 'engaged', 5000);
+  await until_async(async () => /^wellspring_kiosk_stage\{kiosk="attic",stage="engaged"\} 1$/m
+      .test(await (await fetch(`${server.url}/metrics`)).text()));
+  await Promise.all([camera.close(), hall.close(), attic.close()]);
+});
+
 const video = join(data, '5_faces', 'headtrackr', 'capture4.mp4');
 test('a filmed man: the storyteller\'s gaze follows his head',
     { skip: !existsSync(video) && 'no real videos beside this checkout' }, async (context) => {
@@ -139,4 +238,121 @@ test('a filmed man: the storyteller\'s gaze follows his head',
   const best = Math.max(...[0, 1, 2, 3, 4, 5].map(correlation));
   assert.ok(best > 0.6, `correlation of head and gaze is ${best}`);
   await page.close();
+});
+
+const weights = process.env.WELLSPRING_WEIGHTS ?? join(source, 'build', 'weights');
+test('a visitor who smiles is smiled at',
+    { skip: !existsSync(join(weights, 'face')) && 'no weights of the face\'s networks' },
+    async (context) => {
+  // A figure's neutral face, then its happy one, as a film: JPEGs in a row, 25 a second.
+  const folder = mkdtempSync(join(tmpdir(), 'smile-'));
+  context.after(() => rmSync(folder, { recursive: true }));
+  const draw = async (name, more) => {
+    const file = join(folder, name);
+    const drawn = await run('wellspring_avatar', [
+      join(source, 'content/castle/figures/storyteller.x3d'), '--close', '--rest', '--spp', '4',
+      '--size', '640x480', '--out', file, ...more]);
+    assert.equal(drawn.status, 0, drawn.stderr);
+    return readFileSync(file);
+  };
+  const calm = await draw('calm.jpg', []), happy = await draw('happy.jpg', ['--expression', 'joy']);
+  const film = join(folder, 'smile.mjpeg');
+  writeFileSync(film, Buffer.concat([...Array(125).fill(calm), ...Array(375).fill(happy)]));
+  const page = new Visitor(server);
+  await page.hello({ role: 'kiosk' });
+  const joys = () => page.messages.filter((message) => message.type === 'agent')
+      .map((message) => message.face.joy ?? 0);
+  const joy_seen = (kiosk) => kiosk.observations.at(-1)?.people[0]?.expression?.joy ?? 0;
+  const kiosk = start_kiosk(film, ['--expression', 'on', '--fov', '23']);
+  context.after(() => kiosk.stop());
+  await until(() => joy_seen(kiosk) > 0.4, 'joy in what the eye sees', 40000);
+  const calm_seen = kiosk.observations.filter((one) => one.people[0]?.expression);
+  assert.ok(calm_seen.filter((one) => one.people[0].expression.joy < 0.1).length > 20,
+      'at first the face is calm');
+  const before = joys().length;
+  await until(() => joys().slice(before).some((joy) => joy > 0.15), 'joy in the answering face');
+  await page.close();
+});
+
+// Children of a process and its threads, by the kernel's own list.
+function children(pid) {
+  return readdirSync(`/proc/${pid}/task`).flatMap((task) =>
+    readFileSync(`/proc/${pid}/task/${task}/children`, 'utf8').split(' ').filter(Boolean))
+      .map(Number);
+}
+const until = async (condition, what, patience = 20000) => {
+  for (const end = performance.now() + patience; performance.now() < end; await sleep(50))
+    if (condition()) return;
+  assert.fail(`${what}: not within ${patience} ms`);
+};
+
+test('the process that sees pictures has no network, and is begun again when it dies',
+    async (context) => {
+  const kiosk = start_kiosk('synthetic');
+  context.after(() => kiosk.stop());
+  await until(() => kiosk.observations.length > 3, 'observations');
+  const [eye_pid] = children(kiosk.child.pid);
+  const status = readFileSync(`/proc/${eye_pid}/status`, 'utf8');
+  assert.match(status, /^Seccomp:\t2$/m, 'it is in a sandbox');
+  let files = [];
+  try {
+    // But for what whoever started us reads.
+    files = readdirSync(`/proc/${eye_pid}/fd`).filter((fd) => fd > 2)
+        .map((fd) => readlinkSync(`/proc/${eye_pid}/fd/${fd}`));
+  } catch (error) {
+    assert.equal(error.code, 'EACCES');  // as it cannot be looked into, but by root
+  }
+  assert.deepEqual(files.filter((name) => name.startsWith('socket:')), []);
+  const before = kiosk.observations.length;
+  process.kill(eye_pid, 'SIGSEGV');
+  await until(() => kiosk.observations.length > before + 10, 'observations after it died');
+  assert.notEqual(children(kiosk.child.pid)[0], eye_pid);
+  const [second] = children(kiosk.child.pid);
+  assert.equal(await kiosk.stop(), 0);
+  await until(() => !existsSync(`/proc/${second}`), 'the end of both');
+});
+
+test('what was recorded is played again', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'kiosk-')), file = join(folder, 'seen.jsonl');
+  const run = (args) => {
+    const child = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_kiosk'), args);
+    let out = '', problem = '';
+    child.stdout.on('data', (chunk) => { out += chunk; });
+    child.stderr.on('data', (chunk) => { problem += chunk; });
+    return new Promise((resolve) => child.on('close', (code) => resolve({ code, out, problem })));
+  };
+  const first = await run(['--camera', 'synthetic', '--no-pace', '--print', '--rate', '5',
+    '--record', file]);
+  assert.equal(first.code, 0);
+  assert.ok(first.out.split('\n').length > 20);
+  assert.equal(readFileSync(file, 'utf8'), first.out);
+  const again = await run(['--replay', file, '--no-pace', '--print']);
+  assert.deepEqual([again.code, again.out], [0, first.out]);
+  writeFileSync(file, '{"type":"observation"}\n');
+  const bad = await run(['--replay', file, '--no-pace', '--print']);
+  assert.equal(bad.code, 1);
+  assert.match(bad.problem, /seen\.jsonl: line 1: /);
+  const config = join(folder, 'kiosk.json');
+  writeFileSync(config, '{"presence": {"hold": 3}}');
+  const wrong = await run(['--camera', 'synthetic', '--config', config]);
+  assert.equal(wrong.code, 2);
+  assert.match(wrong.problem, /kiosk\.json: \/presence\/hold: is unknown/);
+  rmSync(folder, { recursive: true });
+});
+
+test('while the house is closed an eye looks now and then', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'wellspring-')), house = join(folder, 'house.json');
+  writeFileSync(house, JSON.stringify({ hours: {} }));
+  const closed = await start_server(['--house', house]);
+  const kiosk = start_kiosk('synthetic-live', ['--loop'], closed);
+  const idles = () => {
+    const last = kiosk.observations.slice(-6);
+    return last.length === 6
+        && last.slice(1).every(({ time }, i) => Math.abs(time - last[i].time) >= 0.49);
+  };
+  await until_async(idles, 60000);
+  kiosk.stop();
+  await kiosk.ended;
+  await closed.stop();
+  rmSync(folder, { recursive: true });
 });

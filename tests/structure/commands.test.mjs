@@ -33,6 +33,7 @@ test('render writes linear and tone-mapped pictures', async () => {
         '50', '--size', '32x24', '--spp', '4', '--seed', '3', '--out', out];
     const { status, stderr } = await run('wellspring_render', args);
     assert.equal(status, 0, stderr);
+    assert.doesNotMatch(stderr, /\[[#.]+\]/, 'how far it is, is for terminals');
     assert.ok(statSync(out).size > 100);
   }
   // The middle of the picture is the emitter's radiance, exactly.
@@ -95,6 +96,30 @@ test('wrong input is 1 and named', async () => {
       .status, 1);
 });
 
+test('the kiosk learns gestures from recordings, and names a bad one', async () => {
+  const recordings = join(folder, 'recordings'), learnt = join(folder, 'gestures.json');
+  mkdirSync(recordings);
+  const made = await run('wellspring_kiosk', ['--train', 'generated', '--gestures', learnt]);
+  assert.equal(made.status, 0, made.stderr);
+  const labels = JSON.parse(readFileSync(learnt)).gestures.map((gesture) => gesture.label);
+  for (const label of ['0', '9', 'wave', 'point', 'swipe_left']) assert.ok(labels.includes(label));
+  const places = [...Array(30).keys()].map((i) => [i / 20, i / 40, 0.5]);
+  for (const name of ['a.json', 'c.json'])
+    writeFileSync(join(recordings, name), JSON.stringify({ label: 'dash', places }));
+  const few = await run('wellspring_kiosk', ['--train', recordings, '--gestures', learnt]);
+  assert.equal(few.status, 1);
+  assert.match(few.stderr, /three recordings of 'dash'/);
+  writeFileSync(join(recordings, 'd.json'), JSON.stringify({ label: 'dash', places }));
+  const train = ['--train', recordings, '--gestures', learnt];
+  assert.equal((await run('wellspring_kiosk', train)).status, 0);
+  assert.equal(JSON.parse(readFileSync(learnt)).gestures[0].label, 'dash');
+  writeFileSync(join(recordings, 'b.json'), JSON.stringify({ label: 'dash', places: [[0, 0]] }));
+  const bad = await run('wellspring_kiosk', train);
+  assert.equal(bad.status, 1);
+  assert.match(bad.stderr, /b\.json: \/places/);
+  assert.equal((await run('wellspring_kiosk', ['--train', recordings])).status, 2);
+});
+
 test('check accepts the castle and lists every problem of a bad package', async () => {
   const good = await run('wellspring_check', [castle]);
   assert.equal(good.status, 0, good.stdout);
@@ -121,9 +146,9 @@ test('check notes where nobody can walk', async () => {
   const rotation = [-Math.SQRT1_2, 0, 0, Math.SQRT1_2];
   const lying = { ...triangle, nodes: [{ mesh: 0, rotation }] };
   writeFileSync(join(folly, 'scene.gltf'), JSON.stringify(lying));
-  const at = (name, position) => ({ name, position });
+  const at = (name, position, yaw_deg, pitch_deg) => ({ name, position, yaw_deg, pitch_deg });
   const exhibit = { title: { en: 'Folly' }, scene: 'scene.gltf', walk: {},
-    viewpoints: [at('on', [0, 1.65, 0.5]), at('beside', [3, 1.65, 0])] };
+    viewpoints: [at('on', [0, 1.65, 0.5], 0, -80), at('beside', [3, 1.65, 0], 90, -35)] };
   writeFileSync(join(folly, 'exhibit.json'), JSON.stringify(exhibit));
   const { status, stdout } = await run('wellspring_check', [folly]);
   assert.equal(status, 0, stdout);

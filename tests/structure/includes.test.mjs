@@ -11,6 +11,7 @@ const root = process.env.WELLSPRING_SOURCE;
 const may_include = {
   base: [],
   wire: ['base'],
+  ledger: ['base'],
   frame: ['base'],
   attention: ['frame', 'base'],
   denoise: ['base'],
@@ -21,7 +22,8 @@ const may_include = {
   picture: ['cache', 'denoise', 'light', 'world', 'frame', 'base'],
   avatar: ['gltf', 'base'],
   show: ['picture', 'cache', 'denoise', 'light', 'world', 'gltf', 'attention', 'frame', 'avatar',
-    'wire', 'base'],
+    'wire', 'ledger', 'base'],
+  museum: ['show', 'wire', 'ledger', 'base'],
   stream: ['wire', 'base'],
   kiosk: ['wire', 'base'],
 };
@@ -63,14 +65,31 @@ const may_enter = {
     still: [],
     '': ['still'],
   },
+  kiosk: {
+    frame: [],
+    gesture: [],
+    network: [],
+    process: [],
+    face: ['frame', 'network'],
+    '': ['face', 'frame', 'gesture', 'network', 'process'],
+  },
   show: {
     exhibit: [],
+    proposal: ['exhibit'],
+    house: ['exhibit'],
+    questions: ['exhibit'],
     storyteller: ['exhibit'],
+    kiosk: ['storyteller', 'exhibit'],
     visit: ['storyteller', 'exhibit'],
-    state: ['visit', 'storyteller', 'exhibit'],
-    answer: ['state', 'visit', 'storyteller', 'exhibit'],
-    draw: ['state', 'visit', 'storyteller', 'exhibit'],
-    '': ['draw', 'answer', 'state', 'visit', 'storyteller', 'exhibit'],  // the tick
+    state: ['house', 'questions', 'kiosk', 'visit', 'storyteller', 'exhibit'],
+    count: ['state', 'house', 'questions', 'kiosk', 'visit', 'storyteller', 'exhibit'],
+    answer: ['count', 'state', 'house', 'questions', 'kiosk', 'visit', 'storyteller', 'exhibit'],
+    http: ['answer', 'state', 'house', 'questions', 'kiosk', 'visit', 'storyteller', 'exhibit'],
+    status: ['http', 'answer', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'exhibit'],
+    watch: ['state', 'house', 'kiosk', 'visit', 'storyteller', 'exhibit'],
+    draw: ['state', 'house', 'kiosk', 'visit', 'storyteller', 'exhibit'],
+    // The tick.
+    '': ['draw', 'answer', 'count', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'exhibit'],
   },
 };
 // Files in a layer's own folder where that is no room.
@@ -86,6 +105,7 @@ const heavy = [
   [/^espeak-ng\//, []],  // GPL: the voice program's one file
   [/^(turbojpeg|OpenEXR|Imf)/, ['frame']],
   [/^(dnnl|omp)/, ['denoise']],
+  [/^sqlite3/, ['ledger']],
 ];
 
 // The one header of a folder through which its own files reach a heavy library; no other folder may
@@ -140,7 +160,7 @@ function circles(graph) {
 }
 
 // A layer's folder and the rest of a file's path.
-const folder_of = (layer) => layer === 'avatar' ? 'avatar/' : `server/${layer}/`;
+const folder_of = (layer) => ['avatar', 'kiosk'].includes(layer) ? `${layer}/` : `server/${layer}/`;
 const room_of = (layer, name) => {
   const rest = name.slice(folder_of(layer).length);
   return rest.includes('/') ? rest.slice(0, rest.lastIndexOf('/')) : '';

@@ -23,7 +23,7 @@ void each_array(Samples& list, const Function& function) {
   function(list.facing);
   function(list.width);
   function(list.age);
-  function(list.radiance);
+  function(list.words);
 }
 
 // The others stay in their order. `drops(i)` is asked once for each i, in order. Returns how many
@@ -193,8 +193,7 @@ int add_samples(SampleStore& store, const View& view, uint32_t age,
     float length = glm::length(sample.normal),
           distance = glm::length(view.position - sample.position);
     float width = dot(sample.position - view.position, view.forward) * pixel;
-    bool finite = is_finite(sample.position) && is_finite(sample.radiance) &&
-                  std::isfinite(length) && std::isfinite(distance);
+    bool finite = is_finite(sample.position) && std::isfinite(length) && std::isfinite(distance);
     if (!finite || !(length > 0) || !(distance > 0) || !(width > 0)) continue;
     uint32_t normal = pack_fine_normal(sample.normal / length);
     vec3 as_kept = unpack_fine_normal(all_lane_bits(normal)).at(0);
@@ -206,7 +205,7 @@ int add_samples(SampleStore& store, const View& view, uint32_t age,
     list.facing.push_back(dot(as_kept, view.position - sample.position) / distance);
     list.width.push_back(width);
     list.age.push_back(age);
-    list.radiance.push_back(sample.radiance);
+    list.words.push_back(sample.words);
     if (grown.empty() || grown.back() != sample.object) grown.push_back(sample.object);
     added++;
   }

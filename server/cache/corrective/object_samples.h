@@ -3,6 +3,7 @@
 // as long as they hold (Haber, Myszkowski, Yamauchi, Seidel 2001, section 4.5). Each object has its
 // own lists of samples, one for each level of the hierarchy of places (sqrt5_grid.h).
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,23 +13,26 @@
 
 namespace wellspring {
 
+// What a sample shows, towards the view that asked: words of the caller's, kept as they are.
+using SampleWords = std::array<uint32_t, 4>;
+
 // A traced place.
 struct CorrectiveSample {
   uint32_t object = 0;  // as Frame::object; 0, where nothing is, has no samples
   int level = 1;        // of the place, see level_of_pixel()
   vec3 position{0};     // relative to Scene::origin, as View::position
   vec3 normal{0};       // of any length but 0
-  vec3 radiance{0};     // towards the view that asked
+  SampleWords words{};
 };
 
-// Samples of one object and level, in the order they came in; 40 bytes each.
+// Samples of one object and level, in the order they came in; 44 bytes each.
 struct LevelSamples {
   std::vector<float> x, y, z;
   std::vector<uint32_t> normal;  // pack_fine_normal
   std::vector<float> facing;     // cosine between normal and direction to the eye, when traced
   std::vector<float> width;      // metres that a pixel was wide there, when traced
   std::vector<uint32_t> age;     // the camera's, when traced
-  std::vector<vec3> radiance;
+  std::vector<SampleWords> words;
   int count() const { return int(age.size()); }
 };
 

@@ -33,7 +33,7 @@ struct Tiles {
 // Everything a sample needs to find its pixels.
 struct Warp {
   Lanes3 eye, right, up, forward;
-  float focal, half_width, half_height;  // pixels
+  float focal, axis_x, axis_y;  // pixels
   int width, height;
 };
 
@@ -59,8 +59,8 @@ uint32_t warp_piece(const Warp& warp, const SplatScratch::Piece& piece, int leve
     int here = std::min(lane_count, piece.begin + piece.count - i);
     Lanes3 d = load_places(list, i, here) - warp.eye;
     Lanes depth = dot(d, warp.forward), share = 1.0f / depth, scale = warp.focal * share;
-    Lanes x = dot(d, warp.right) * scale + warp.half_width;
-    Lanes y = warp.half_height - dot(d, warp.up) * scale;
+    Lanes x = dot(d, warp.right) * scale + warp.axis_x;
+    Lanes y = warp.axis_y - dot(d, warp.up) * scale;
     Lanes width = load_some(&list.width[size_t(i)], here);
     Lanes wide = lanes_min(lanes_max(width * share * side_now, all_lanes(1)), all_lanes(most_side));
     Lanes3 normal = unpack_fine_normal(load_some<LaneBits>(&list.normal[size_t(i)], here));
@@ -81,13 +81,9 @@ uint32_t warp_piece(const Warp& warp, const SplatScratch::Piece& piece, int leve
     LaneBits key = level_bits | (most_nearness - (lanes_as<LaneBits>(depth) >> depth_cut));
     for (; bits != 0; bits &= bits - 1) {
       int k = std::countr_zero(bits);
-      splats[written++] = {uint16_t(x0[k]),
-                           uint16_t(y0[k]),
-                           uint16_t(x1[k]),
-                           uint16_t(y1[k]),
-                           key[k],
-                           piece.object,
-                           list.radiance[size_t(i + k)]};
+      splats[written++] = {uint16_t(x0[k]),          uint16_t(y0[k]), uint16_t(x1[k]),
+                           uint16_t(y1[k]),          key[k],          piece.object,
+                           list.words[size_t(i + k)]};
     }
   }
   return written;
@@ -178,12 +174,12 @@ void draw_splat(const Splat& splat, uint32_t index, int left, int top, TilePixel
 
 // A row of a tile into the planes; returns how many pixels show a sample.
 int write_row(const uint32_t* key, const uint32_t* splat, const Splat* splats, int columns,
-              vec3* __restrict color, uint8_t* __restrict level) {
+              SampleWords* __restrict words, uint8_t* __restrict level) {
   int shown = 0;
   for (int x = 0; x < columns; x++) level[x] = uint8_t(key[x] >> level_shift);
   for (int x = 0; x < columns; x++) {
     if (key[x] == 0) continue;
-    color[x] = splats[splat[x]].radiance;
+    words[x] = splats[splat[x]].words;
     shown++;
   }
   return shown;
@@ -193,7 +189,7 @@ int write_row(const uint32_t* key, const uint32_t* splat, const Splat* splats, i
 
 SplatStats warp_and_splat(const SampleStore& store, const View& view,
                           std::span<const uint32_t> object, SplatScratch& scratch,
-                          std::span<vec3> color, std::span<uint8_t> level) {
+                          std::span<SampleWords> words, std::span<uint8_t> level) {
   SplatStats stats;
   stats.samples = cut_into_chunks(store, scratch);
   if (stats.samples == 0) {
@@ -202,13 +198,14 @@ SplatStats warp_and_splat(const SampleStore& store, const View& view,
   }
   const Tiles tiles{(view.width + tile_width - 1) / tile_width,
                     (view.height + tile_height - 1) / tile_height};
+  const vec2 axis = axis_place(view);
   const Warp warp{all_lanes(view.position),
                   all_lanes(view.right),
                   all_lanes(view.up),
                   all_lanes(view.forward),
                   float(view.height) * 0.5f / view.tan_half_fov,
-                  0.5f * float(view.width),
-                  0.5f * float(view.height),
+                  axis.x,
+                  axis.y,
                   view.width,
                   view.height};
 
@@ -245,7 +242,7 @@ SplatStats warp_and_splat(const SampleStore& store, const View& view,
           draw_splat(scratch.splats[chunk.entries[i]], chunk.entries[i], left, top, tile_pixels);
       for (int y = 0; y < rows; y++)
         shown += write_row(tile_pixels.key + y * tile_stride, tile_pixels.splat + y * tile_stride,
-                           scratch.splats.data(), columns, &color[at(y)], &level[at(y)]);
+                           scratch.splats.data(), columns, &words[at(y)], &level[at(y)]);
     }
     pixels += shown;
   });

@@ -16,7 +16,7 @@ namespace wellspring {
 struct SplatStats {
   int samples = 0;  // that were warped
   int splats = 0;   // that fall into the picture
-  int pixels = 0;   // that got a sample's colour
+  int pixels = 0;   // that show a sample
 };
 
 // A sample where the view sees it: pixels [x0, x1) x [y0, y1) of the picture.
@@ -24,7 +24,7 @@ struct Splat {
   uint16_t x0, y0, x1, y1;
   uint32_t key;  // the greater is shown: level, then nearness
   uint32_t object;
-  vec3 radiance;
+  SampleWords words;
 };
 
 // Memory that is kept from picture to picture.
@@ -46,12 +46,12 @@ struct SplatScratch {
 };
 
 // `object`: of each pixel, as Frame::object. Writes every pixel's level, 0 where no sample is
-// shown, and the colour where one is; other colours stay. All planes are view.width * view.height
+// shown, and its words where one is; others stay. All planes are view.width * view.height
 // long, at most 65535 each way. A footprint is as wide as its level's when it was traced, less or
 // more as its distance has changed, up to four times. Samples whose surface shows its other side
 // now are left out. Many threads; the result does not depend on them.
 SplatStats warp_and_splat(const SampleStore& store, const View& view,
                           std::span<const uint32_t> object, SplatScratch& scratch,
-                          std::span<vec3> color, std::span<uint8_t> level);
+                          std::span<SampleWords> words, std::span<uint8_t> level);
 
 }  // namespace wellspring

@@ -43,28 +43,16 @@ struct LitPlace {
   Bsdf bsdf;
   float uncoated = 1;  // what undoes the coat's darkening towards the viewer
 };
-// The mesh's own normal: what a map of normals adds is finer than nodes.
-vec3 mesh_normal(const World& world, const Hit& hit, const Surface& place) {
-  const PlacedMesh& placed = world.placed(hit.instance);
-  const std::vector<vec3>& normals = placed.mesh->normals;
-  uvec3 corner = placed.mesh->triangles[hit.triangle];
-  vec2 b = hit.barycentric;
-  vec3 normal = placed.normal_to_world * ((1 - b.x - b.y) * normals[corner.x] +
-                                          b.x * normals[corner.y] + b.y * normals[corner.z]);
-  float length2 = dot(normal, normal);
-  if (!(length2 > 1e-20f) || !std::isfinite(length2)) return place.geometric_normal;
-  normal *= (place.front ? 1 : -1) / std::sqrt(length2);
-  return dot(normal, place.geometric_normal) > 0 ? normal : place.geometric_normal;
-}
 
 LitPlace light_place(const BakeScene& scene, const NodePlace& place) {
   LitPlace lit;
   lit.surface = eval_surface(scene.world, place.ray, place.hit);
-  lit.surface.normal = mesh_normal(scene.world, place.hit, lit.surface);
+  // What a map of normals adds is finer than nodes.
+  lit.surface.normal = eval_mesh_normal(scene.world, place.hit, lit.surface);
   const Material& material = scene.world.material_of(place.hit.instance);
   lit.bsdf = make_bsdf_in(scene.parts.front(), Media{}, lit.surface, material, place.ray.direction);
   lit.bsdf.diffuse = vec3(1);
-  float passes = (lit.bsdf.has_coat ? lit.bsdf.coat_passes : 1) * lit.bsdf.beneath;
+  float passes = lit.bsdf.coat_passes * lit.bsdf.beneath;
   lit.uncoated = passes > 0.05f ? 1 / passes : 1;
   return lit;
 }
@@ -78,25 +66,31 @@ bool leave(const LitPlace& lit, Sampler& sampler, Walk& walk) {
   return true;
 }
 
-void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, std::span<vec3> light) {
-  BakeField& field = bake.direct;
+// One more sample of each node of a tile: visit(node, place, number of the sample, sampler).
+template <class Visit>
+void for_each_sample(const BakeScene& scene, const Bake& bake, uint32_t tile, BakeField& field,
+                     const Visit& visit) {
   const IlluminationTile& grid = field.tiles[tile];
+  const int which = &field == &bake.gather;
   const uint32_t number = field.asked[tile]++;
   for (uint32_t i = 0; i < grid.nodes(); i++) {
-    const size_t node = grid.first + i;
-    Sampler sampler(node_seed(bake, 0, tile, i), number);
+    Sampler sampler(node_seed(bake, which, tile, i), number);
     float choice = sampler.next();
     NodePlace place = sample_node(scene.world, bake.charts, field, bake.places[tile], tile, i,
                                   choice, sampler.next2());
-    if (!place.valid) continue;
-    LitPlace lit = light_place(scene, place);
-    if (number < pilot_samples || field.hidden[node] > 0) {
-      Walk probe;
-      if (leave(lit, sampler, probe) &&
-          is_inside(scene.world, probe, scene.world.intersect(probe.ray))) {
-        field.hidden[node] += 1;
-        continue;
-      }
+    if (place.valid) visit(size_t(grid.first) + i, light_place(scene, place), number, sampler);
+  }
+}
+
+void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, std::span<vec3> light) {
+  BakeField& field = bake.direct;
+  auto sample = [&](size_t node, const LitPlace& lit, uint32_t number, Sampler& sampler) {
+    Walk probe;
+    bool probes = number < pilot_samples || field.hidden[node] > 0;
+    if (probes && leave(lit, sampler, probe) &&
+        is_inside(scene.world, probe, scene.world.intersect(probe.ray))) {
+      field.hidden[node] += 1;
+      return;
     }
     for (size_t p = 0; p < light.size(); p++) {
       sampler.seek(Dimensions::first_surface);
@@ -105,52 +99,38 @@ void sample_direct(const BakeScene& scene, Bake& bake, uint32_t tile, std::span<
       light[p] = direct.area_diffuse + direct.punctual_diffuse;
     }
     add_light(field, node, light, lit.uncoated);
-  }
+  };
+  for_each_sample(scene, bake, tile, field, sample);
 }
 
 void sample_gather(const BakeScene& scene, Bake& bake, uint32_t tile, std::span<vec3> light) {
   BakeField& field = bake.gather;
-  const IlluminationTile& grid = field.tiles[tile];
-  const uint32_t number = field.asked[tile]++;
-  for (uint32_t i = 0; i < grid.nodes(); i++) {
-    const size_t node = grid.first + i;
-    Sampler sampler(node_seed(bake, 1, tile, i), number);
-    float choice = sampler.next();
-    NodePlace place = sample_node(scene.world, bake.charts, field, bake.places[tile], tile, i,
-                                  choice, sampler.next2());
-    if (!place.valid) continue;
-    LitPlace lit = light_place(scene, place);
+  auto sample = [&](size_t node, const LitPlace& lit, uint32_t, Sampler& sampler) {
     Walk walk;
     std::fill(light.begin(), light.end(), vec3(0));
     bool inside = false;
     if (leave(lit, sampler, walk)) gather_light(scene, walk, sampler, light, inside);
     if (inside) field.hidden[node] += 1;
     else add_light(field, node, light, lit.uncoated);
-  }
+  };
+  for_each_sample(scene, bake, tile, field, sample);
 }
 
 // How much a tile's neighbouring nodes differ, beyond what chance explains.
 float contrast_of(const BakeField& field, const IlluminationTile& tile, float floor) {
-  auto mean_of = [&](uint32_t i, float& variance) {
-    size_t node = tile.first + i;
-    vec3 sum(0);
-    for (int p = 0; p < field.layers; p++) sum += field.light_of(node)[p];
-    float n = field.count[node], mean = luminance(sum) / n;
-    variance = std::max(field.squares[node] / n - mean * mean, 0.0f) / n;
-    return mean;
-  };
   // Few samples do not tell each node's noise: that of the whole tile does.
   double squares = 0, variances = 0;
   for (uint32_t i = 0; i < tile.nodes(); i++) {
-    if (field.count[tile.first + i] < 2) continue;
-    float variance, mean = mean_of(i, variance);
-    squares += double(mean) * double(mean), variances += double(variance);
+    const size_t node = tile.first + i;
+    if (field.count[node] < 2) continue;
+    const double mean = field.mean_of(node);
+    squares += mean * mean, variances += field.variance_of(node) / double(field.count[node]);
   }
   const float noise = squares > 0 ? float(variances / squares) : 0;
   float most = 0;
   auto compare = [&](uint32_t a, uint32_t b) {
     if (field.count[tile.first + a] < 2 || field.count[tile.first + b] < 2) return;
-    float va, vb, ma = mean_of(a, va), mb = mean_of(b, vb);
+    float ma = float(field.mean_of(tile.first + a)), mb = float(field.mean_of(tile.first + b));
     float differ = std::abs(ma - mb) - sure_deviations * std::sqrt(noise * (ma * ma + mb * mb));
     most = std::max(most, differ / (0.5f * (ma + mb) + floor));
   };
@@ -167,9 +147,7 @@ float mean_light(const BakeField& field) {
   double sum = 0, count = 0;
   for (size_t i = 0; i < field.nodes(); i++) {
     if (!(field.count[i] > 0)) continue;
-    vec3 all(0);
-    for (int p = 0; p < field.layers; p++) all += field.light_of(i)[p];
-    sum += double(luminance(all) / field.count[i]), count++;
+    sum += field.mean_of(i), count++;
   }
   return count > 0 ? float(sum / count) : 0;
 }
@@ -204,12 +182,7 @@ void refine(const BakeScene& scene, Bake& bake) {
   for (uint32_t t = 0; t < cells.size(); t++) {
     const IlluminationTile &from = old.tiles[t], &to = field.tiles[t];
     if (from.nodes() != to.nodes() || from.columns != to.columns) continue;
-    field.asked[t] = old.asked[t];
-    std::copy_n(old.count.data() + from.first, from.nodes(), field.count.data() + to.first);
-    std::copy_n(old.hidden.data() + from.first, from.nodes(), field.hidden.data() + to.first);
-    std::copy_n(old.squares.data() + from.first, from.nodes(), field.squares.data() + to.first);
-    std::copy_n(old.light_of(from.first), from.nodes() * size_t(old.layers),
-                field.light_of(to.first));
+    copy_tile(old, t, field, t);
   }
   bake.direct = std::move(field);
 }
@@ -260,8 +233,7 @@ Bake begin_bake(const World& world, std::span<const vec3> places, const BakeSett
   bake.charts = make_charts(world, bake.tile);
   bake.places = tile_places(bake.charts);
   std::vector<TileCells> cells = choose_cells(world, bake.charts, places, settings.gather_nodes);
-  const size_t lamps = world.scene().lamps.size();
-  bake.gather = make_field(world, bake.charts, cells, lamps > 0 ? int(lamps) + 1 : 1);
+  bake.gather = make_field(world, bake.charts, cells, int(layer_count(world.scene())));
   bake.direct = bake.gather;
   return bake;
 }
@@ -290,11 +262,8 @@ float bake_error(const Bake& bake) {
     for (size_t i = 0; i < field.nodes(); i++) {
       double n = double(field.count[i]);
       if (n < 2) continue;
-      vec3 all(0);
-      for (int p = 0; p < field.layers; p++) all += field.light_of(i)[p];
-      double mean = double(luminance(all)) / n;
-      sum += mean, count++;
-      variance += std::max(double(field.squares[i]) / n - mean * mean, 0.0) / (n - 1);
+      sum += field.mean_of(i), count++;
+      variance += field.variance_of(i) / (n - 1);
     }
     if (count > 0) sums[f] = sum / count, variances[f] = variance / count;
   }

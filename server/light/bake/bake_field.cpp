@@ -146,6 +146,27 @@ uint8_t cell_count(float side, float spacing) {
 
 }  // namespace
 
+double BakeField::mean_of(size_t node) const {
+  vec3 sum(0);
+  for (int p = 0; p < layers; p++) sum += light_of(node)[p];
+  return double(luminance(sum)) / double(count[node]);
+}
+
+double BakeField::variance_of(size_t node) const {
+  const double mean = mean_of(node);
+  return std::max(double(squares[node]) / double(count[node]) - mean * mean, 0.0);
+}
+
+void copy_tile(const BakeField& from, uint32_t from_tile, BakeField& to, uint32_t to_tile) {
+  const size_t a = from.tiles[from_tile].first, b = to.tiles[to_tile].first,
+               nodes = to.tiles[to_tile].nodes();
+  to.asked[to_tile] = from.asked[from_tile];
+  std::copy_n(from.count.data() + a, nodes, to.count.data() + b);
+  std::copy_n(from.hidden.data() + a, nodes, to.hidden.data() + b);
+  std::copy_n(from.squares.data() + a, nodes, to.squares.data() + b);
+  std::copy_n(from.light_of(a), nodes * size_t(to.layers), to.light_of(b));
+}
+
 size_t memory_bytes(const BakeField& f) {
   return bytes_of(f.tiles) + bytes_of(f.first_support) + bytes_of(f.supports) + bytes_of(f.light) +
          bytes_of(f.squares) + bytes_of(f.count) + bytes_of(f.hidden) + bytes_of(f.asked);

@@ -25,10 +25,16 @@ struct BakeField {
   std::vector<float> count, hidden;  // samples that count, and those within something solid
   std::vector<uint32_t> asked;       // of each tile: samples of each of its nodes
   size_t nodes() const { return count.size(); }
+  // Luminance of all layers: the mean of a node's samples, of which there must be some, and the
+  // variance of one sample.
+  double mean_of(size_t node) const;
+  double variance_of(size_t node) const;
   vec3* light_of(size_t node) { return &light[node * size_t(layers)]; }
   const vec3* light_of(size_t node) const { return &light[node * size_t(layers)]; }
 };
 size_t memory_bytes(const BakeField& field);
+// What a tile's samples have found, into a tile of as many nodes.
+void copy_tile(const BakeField& from, uint32_t from_tile, BakeField& to, uint32_t to_tile);
 
 // How many cells a tile has along its sides, powers of two; 0: nothing of the surface is in it.
 struct TileCells {

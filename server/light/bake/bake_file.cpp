@@ -51,15 +51,6 @@ bool take_field(const World& world, const BakeCharts& charts, int layers, FieldB
   return true;
 }
 
-void copy_tile(const BakeField& from, uint32_t tile, BakeField& to) {
-  const IlluminationTile& t = to.tiles[tile];
-  to.asked[tile] = from.asked[tile];
-  std::copy_n(&from.count[t.first], t.nodes(), &to.count[t.first]);
-  std::copy_n(&from.hidden[t.first], t.nodes(), &to.hidden[t.first]);
-  std::copy_n(&from.squares[t.first], t.nodes(), &to.squares[t.first]);
-  std::copy_n(from.light_of(t.first), t.nodes() * size_t(to.layers), to.light_of(t.first));
-}
-
 bool same_cells(const BakeField& a, const BakeField& b) {
   auto alike = [](const IlluminationTile& x, const IlluminationTile& y) {
     return x.first == y.first && x.columns == y.columns && x.rows == y.rows;
@@ -89,8 +80,7 @@ KeyedFile load_bake(const World& world, const std::string& file, uint64_t key, B
   std::vector<char> source;
   list_fields(take, loaded.settings, loaded, source, direct, gather);
   loaded.source.assign(source.begin(), source.end());
-  const size_t lamps = world.scene().lamps.size();
-  const int layers = lamps > 0 ? int(lamps) + 1 : 1;
+  const int layers = int(layer_count(world.scene()));
   if (!take.complete() || !(loaded.tile > 0)) return KeyedFile::damaged;
   loaded.charts = make_charts(world, loaded.tile);
   loaded.places = tile_places(loaded.charts);
@@ -124,8 +114,8 @@ bool merge_bake(const Bake& part, Bake& bake) {
   for (uint32_t tile = 0; tile < bake.charts.tiles; tile++) {
     if (tile % uint32_t(a.shards) != uint32_t(a.shard)) continue;
     if (bake.gather.tiles[tile].first == no_tile) continue;
-    copy_tile(part.direct, tile, bake.direct);
-    copy_tile(part.gather, tile, bake.gather);
+    copy_tile(part.direct, tile, bake.direct, tile);
+    copy_tile(part.gather, tile, bake.gather, tile);
   }
   bake.shards_done.push_back(a.shard);
   bake.passes = std::min(bake.passes, part.passes);

@@ -8,7 +8,6 @@
 #include "light/random/warp.h"
 #include "light/sample/light_tables.h"
 #include "light/sample/radiance_grid.h"
-#include "light/sample/shining.h"
 
 namespace wellspring {
 namespace {
@@ -44,14 +43,9 @@ static void set_parts(BakeScene& bake) {
 
 static BakeScene make_lamp_parts(const World& world) {
   const Scene& scene = world.scene();
-  BakeScene bake{world, make_lights(world), {}, {}, {}, {}};
-  for (int lamp = -1; lamp < int(scene.lamps.size()) && !scene.lamps.empty(); lamp++)
-    bake.tables.push_back(relit(*bake.lights.tables, scene, find_emitting_of(scene, lamp)));
-  if (scene.lamps.empty()) bake.tables.push_back(bake.lights.tables);
-  bake.part_of.assign(scene.materials.size(), 0);
-  for (size_t lamp = 0; lamp < scene.lamps.size(); lamp++)
-    for (int material : scene.lamps[lamp].materials)
-      bake.part_of[size_t(material)] = uint8_t(lamp + 1);
+  BakeScene bake{world, make_lights(world), {}, {}, find_lamp_parts(scene), {}};
+  if (scene.lamps.empty()) bake.tables = {bake.lights.tables};
+  else bake.tables = make_lamp_tables(*bake.lights.tables, scene);
   return bake;
 }
 

@@ -21,11 +21,8 @@ Noisy measure(const BakeField& field, std::span<const uint8_t> leaks) {
   for (size_t i = 0; i < field.nodes(); i++) {
     const float n = field.count[i];
     if (!(n > 1) || (!leaks.empty() && leaks[i])) continue;
-    vec3 sum(0);
-    for (int p = 0; p < field.layers; p++) sum += field.light_of(i)[p];
-    nodes.light[i] = luminance(sum) / n;
-    nodes.variance[i] =
-        std::max(field.squares[i] / n - nodes.light[i] * nodes.light[i], 0.0f) / (n - 1);
+    nodes.light[i] = float(field.mean_of(i));
+    nodes.variance[i] = float(field.variance_of(i)) / (n - 1);
   }
   return nodes;
 }

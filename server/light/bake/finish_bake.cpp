@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "light/bake/beside.h"
 #include "light/bake/unseen.h"
 
 namespace wellspring {
@@ -16,23 +17,18 @@ constexpr int most_places_a_seam = 64;
 // Nodes that are not known take the mean of their known neighbours, ring by ring.
 void fill_holes(const IlluminationTile& tile, std::vector<uint8_t>& known,
                 std::vector<vec3>& light) {
-  const int columns = tile.columns + 1, rows = tile.rows + 1;
   std::vector<std::pair<uint32_t, vec3>> found;
   for (bool more = true; more;) {
     found.clear();
-    for (int j = 0; j < rows; j++)
-      for (int i = 0; i < columns; i++) {
-        uint32_t node = tile.first + uint32_t(j * columns + i);
-        if (known[node]) continue;
-        vec3 sum(0);
-        float count = 0;
-        for (int y = std::max(j - 1, 0); y <= std::min(j + 1, rows - 1); y++)
-          for (int x = std::max(i - 1, 0); x <= std::min(i + 1, columns - 1); x++) {
-            uint32_t beside = tile.first + uint32_t(y * columns + x);
-            if (known[beside]) sum += light[beside], count++;
-          }
-        if (count > 0) found.push_back({node, sum / count});
-      }
+    for (uint32_t i = 0; i < tile.nodes(); i++) {
+      if (known[tile.first + i]) continue;
+      vec3 sum(0);
+      float count = 0;
+      for_each_beside(tile, i, [&](uint32_t beside) {
+        if (known[tile.first + beside]) sum += light[tile.first + beside], count++;
+      });
+      if (count > 0) found.push_back({tile.first + i, sum / count});
+    }
     for (const auto& [node, value] : found) light[node] = value, known[node] = 1;
     more = !found.empty();
   }
@@ -53,25 +49,10 @@ NodeTaps taps_in(const IlluminationTile& tile, float u, float v) {
           {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
 }
 
-struct TileAt {
-  const IlluminationTile* tile = nullptr;
-  float u = 0, v = 0;  // in it, 0 to 1
-};
-TileAt find_tile(const IlluminationChart& chart, std::span<const IlluminationTile> tiles,
-                 vec3 place) {
-  vec3 to = place - chart.origin;
-  float u = glm::clamp(dot(to, chart.along_u), 0.0f, float(chart.columns)),
-        v = glm::clamp(dot(to, chart.along_v), 0.0f, float(chart.rows));
-  int column = std::min(int(u), chart.columns - 1), row = std::min(int(v), chart.rows - 1);
-  const IlluminationTile& tile = tiles[chart.first_tile + uint32_t(row * chart.columns + column)];
-  if (tile.first == no_tile) return {};
-  return {&tile, u - float(column), v - float(row)};
-}
-
 // How many nodes lie along a line in the tile at its middle.
 float nodes_along(const IlluminationChart& chart, std::span<const IlluminationTile> tiles,
                   const ChartSeam& seam) {
-  TileAt at = find_tile(chart, tiles, 0.5f * (seam.from + seam.to));
+  PlaceInTile at = find_tile(chart, tiles, 0.5f * (seam.from + seam.to));
   if (!at.tile) return 0;
   vec3 line = seam.to - seam.from;
   return std::max(std::abs(dot(line, chart.along_u)) * float(at.tile->columns),
@@ -174,7 +155,7 @@ void match_seams(const BakeCharts& charts, std::span<const IlluminationTile> til
       int places = int(std::clamp(nodes, 2.0f, float(most_places_a_seam)));
       for (int i = 0; i < places; i++) {
         vec3 place = mix(seam.from, seam.to, (float(i) + 0.5f) / float(places));
-        TileAt at[2] = {find_tile(a, tiles, place), find_tile(b, tiles, place)};
+        PlaceInTile at[2] = {find_tile(a, tiles, place), find_tile(b, tiles, place)};
         if (!at[0].tile || !at[1].tile) continue;
         NodeTaps taps[2] = {taps_in(*at[0].tile, at[0].u, at[0].v),
                             taps_in(*at[1].tile, at[1].u, at[1].v)};

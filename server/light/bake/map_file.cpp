@@ -63,7 +63,7 @@ std::shared_ptr<const IlluminationMap> load_map(const Scene& scene, const std::s
   TakeBytes take{bytes};
   uint64_t count = 0;
   take.value(count);
-  if (count != (scene.lamps.empty() ? 1 : scene.lamps.size() + 1)) return nullptr;
+  if (count != layer_count(scene)) return nullptr;
   std::vector<std::vector<uint32_t>> layers{size_t(count)};
   list_fields(take, *map, *places, layers);
   if (!take.complete() || !fits(scene, *map, *places, layers)) return nullptr;

@@ -17,12 +17,6 @@ constexpr float floor_share = 0.15f;   // of the mean light
 constexpr int places_a_node = 4;       // from which eyes are looked for
 constexpr uint64_t look_seed = 0x6c6f6f6b;
 
-float brightness(const BakeField& field, size_t node) {
-  vec3 sum(0);
-  for (int p = 0; p < field.layers; p++) sum += field.light_of(node)[p];
-  return luminance(sum) / field.count[node];
-}
-
 bool is_seen(const World& world, const BakeCharts& charts, const BakeField& field,
              const TilePlace& at, uint32_t tile, uint32_t i, std::span<const vec3> eyes) {
   for (int k = 0; k < places_a_node; k++) {
@@ -59,7 +53,7 @@ std::vector<uint8_t> find_leaks(const World& world, const BakeCharts& charts,
   std::vector<float> light(field.nodes(), -1);  // below 0: nothing is known
   double sum = 0, count = 0;
   for (size_t n = 0; n < field.nodes(); n++)
-    if (field.count[n] > 0) light[n] = brightness(field, n), sum += double(light[n]), count++;
+    if (field.count[n] > 0) light[n] = float(field.mean_of(n)), sum += double(light[n]), count++;
   const float floor = count > 0 ? floor_share * float(sum / count) : 0;
   auto differ = [&](float a, float b) {
     return a >= 0 && b >= 0 && std::max(a, b) + floor > another_light * (std::min(a, b) + floor);

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "light/random/place_key.h"
 #include "light/random/warp.h"
+#include "light/sample/lights.h"
 #include "light/sample/medium.h"
 #include "light/walk/light_walk.h"
 #include "light/walk/walk.h"
@@ -189,9 +190,7 @@ Walker make_walker(const Transport& transport,
   Walker walker{settings, grid, {}, std::vector<uint8_t>(scene.materials.size(), 0)};
   for (const auto& tables : parts) walker.parts.push_back({transport.world, *tables});
   if (parts.empty()) walker.parts.push_back(transport);
-  for (size_t lamp = 0; lamp + 1 < walker.parts.size(); lamp++)
-    for (int material : scene.lamps[lamp].materials)
-      walker.part_of[size_t(material)] = uint8_t(lamp + 1);
+  if (parts.size() > 1) walker.part_of = find_lamp_parts(scene);
   return walker;
 }
 

@@ -40,20 +40,26 @@ std::vector<char> mapped_objects(const Scene& scene, const IlluminationMap& map)
   return mapped;
 }
 
-vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec3 place) {
-  const vec3 to = place - chart.origin;
-  return eval_illumination(map, chart, vec2(dot(to, chart.along_u), dot(to, chart.along_v)));
-}
-
-vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at) {
-  // A place beside the chart by rounding is taken for its edge.
+PlaceInTile find_tile(const IlluminationChart& chart, std::span<const IlluminationTile> tiles,
+                      vec2 at) {
   float u = glm::clamp(at.x, 0.0f, float(chart.columns)),
         v = glm::clamp(at.y, 0.0f, float(chart.rows));
   int column = std::min(int(u), chart.columns - 1), row = std::min(int(v), chart.rows - 1);
   const IlluminationTile& tile =
-      map.tiles[chart.first_tile + size_t(row) * size_t(chart.columns) + size_t(column)];
-  if (tile.first == no_tile) return vec3(0);
-  u = (u - float(column)) * float(tile.columns), v = (v - float(row)) * float(tile.rows);
+      tiles[chart.first_tile + size_t(row) * size_t(chart.columns) + size_t(column)];
+  if (tile.first == no_tile) return {};
+  return {&tile, u - float(column), v - float(row)};
+}
+
+vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec3 place) {
+  return eval_illumination(map, chart, place_in_chart(chart, place));
+}
+
+vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec2 at) {
+  const PlaceInTile place = find_tile(chart, map.tiles, at);
+  if (!place.tile) return vec3(0);
+  const IlluminationTile& tile = *place.tile;
+  float u = place.u * float(tile.columns), v = place.v * float(tile.rows);
   int i = std::min(int(u), tile.columns - 1), j = std::min(int(v), tile.rows - 1);
   u -= float(i), v -= float(j);
   const uint32_t* node = &map.light[tile.first + size_t(j) * (tile.columns + 1u) + size_t(i)];

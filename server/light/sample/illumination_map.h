@@ -58,6 +58,8 @@ struct IlluminationMap {
   float least_known() const { return mean > 0 ? 0.01f * mean : 1.0f; }  // see known_light()
 };
 size_t memory_bytes(const IlluminationMap& map);
+// Of a scene's map: one for each lamp, and one for what belongs to none.
+inline size_t layer_count(const Scene& scene) { return scene.lamps.size() + 1; }
 
 // Its light where lamps[i] says whether lamp i is on. Milliseconds.
 std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
@@ -65,6 +67,23 @@ std::shared_ptr<const IlluminationMap> relit(const IlluminationMap& all,
 
 // Of each of the scene's objects: whether the map knows the light of any part of it.
 std::vector<char> mapped_objects(const Scene& scene, const IlluminationMap& map);
+
+// The tile that a place of a chart lies in, and where in it, 0 to 1; null: nothing of the surface
+// is there. A place beside the chart by rounding is taken for its edge.
+struct PlaceInTile {
+  const IlluminationTile* tile = nullptr;
+  float u = 0, v = 0;
+};
+PlaceInTile find_tile(const IlluminationChart& chart, std::span<const IlluminationTile> tiles,
+                      vec2 at);
+inline vec2 place_in_chart(const IlluminationChart& chart, vec3 place) {
+  vec3 to = place - chart.origin;
+  return {dot(to, chart.along_u), dot(to, chart.along_v)};
+}
+inline PlaceInTile find_tile(const IlluminationChart& chart,
+                             std::span<const IlluminationTile> tiles, vec3 place) {
+  return find_tile(chart, tiles, place_in_chart(chart, place));
+}
 
 // The light at a place of a chart: scene coordinates, or in tiles as IlluminationChart has them.
 vec3 eval_illumination(const IlluminationMap& map, const IlluminationChart& chart, vec3 place);

@@ -234,4 +234,19 @@ std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& sc
   return tables;
 }
 
+std::vector<std::shared_ptr<const LightTables>> make_lamp_tables(const LightTables& all,
+                                                                 const Scene& scene) {
+  std::vector<std::shared_ptr<const LightTables>> tables;
+  for (int lamp = -1; lamp < int(scene.lamps.size()); lamp++)
+    tables.push_back(relit(all, scene, find_emitting_of(scene, lamp)));
+  return tables;
+}
+
+std::vector<uint8_t> find_lamp_parts(const Scene& scene) {
+  std::vector<uint8_t> parts(scene.materials.size(), 0);
+  for (size_t lamp = 0; lamp < scene.lamps.size(); lamp++)
+    for (int material : scene.lamps[lamp].materials) parts[size_t(material)] = uint8_t(lamp + 1);
+  return parts;
+}
+
 }  // namespace wellspring

@@ -38,4 +38,10 @@ TransportPlan make_plan(const World& world);  // of its scene and what moves in 
 std::shared_ptr<const LightTables> relit(const LightTables& all, const Scene& scene,
                                          const EmittingSources& emitting);
 
+// Those of what belongs to no lamp, then of each lamp alone.
+std::vector<std::shared_ptr<const LightTables>> make_lamp_tables(const LightTables& all,
+                                                                 const Scene& scene);
+// Of each of the scene's materials, which of those its own light belongs to.
+std::vector<uint8_t> find_lamp_parts(const Scene& scene);
+
 }  // namespace wellspring

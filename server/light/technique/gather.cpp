@@ -7,7 +7,6 @@
 #include "light/sample/finish_samples.h"
 #include "light/sample/light_tables.h"
 #include "light/sample/radiance_grid.h"
-#include "light/sample/shining.h"
 #include "light/technique/technique_list.h"
 #include "light/walk/walk.h"
 
@@ -40,10 +39,8 @@ Sample trace_gather(const World& world, const Lights& lights, const TransportSet
 
 void prepare_gather(const World& world, std::span<const vec3> places, Lights& lights) {
   if (!lights.tables->plan.uses(TransportPart::cached_radiance)) return;
-  const Scene& scene = world.scene();
   std::vector<std::shared_ptr<const LightTables>> parts;
-  for (int lamp = -1; lamp < int(scene.lamps.size()) && !scene.lamps.empty(); lamp++)
-    parts.push_back(relit(*lights.tables, scene, find_emitting_of(scene, lamp)));
+  if (!world.scene().lamps.empty()) parts = make_lamp_tables(*lights.tables, world.scene());
   lights.grid = make_radiance_grid({world, *lights.tables}, places, {}, parts);
 }
 

@@ -13,8 +13,9 @@ namespace {
 // view_ray's directions, a place inside each pixel.
 Lanes3 view_directions(const View& view, Lanes x, Lanes y) {
   const float scale = 2 * view.tan_half_fov / float(view.height);
-  Lanes along = (x - 0.5f * float(view.width)) * scale;
-  Lanes upwards = (0.5f * float(view.height) - y) * scale;
+  const vec2 axis = axis_place(view);
+  Lanes along = (x - axis.x) * scale;
+  Lanes upwards = (axis.y - y) * scale;
   Lanes3 way =
       all_lanes(view.forward) + all_lanes(view.right) * along + all_lanes(view.up) * upwards;
   return way * (1 / lanes_sqrt(dot(way, way)));

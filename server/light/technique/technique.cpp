@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/technique/technique.h"
 
+#include <atomic>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -153,6 +154,7 @@ void render_passes(const Technique& technique, const World& world, Lights lights
       }
     });
     if (technique.finish_pass) technique.finish_pass(world, lights, view, samples);
+    if (settings.progress) settings.progress(double(i + 1) / settings.spp);
     parallel_ranges(int(samples.size()), 4096, [&](int begin, int end) {
       for (size_t pixel = size_t(begin); pixel < size_t(end); pixel++) {
         dvec3 radiance(samples[pixel].radiance());
@@ -185,12 +187,16 @@ Frame render_still(const Technique& technique, const World& world, const Lights&
   frame.color.resize(pixels);
   frame.depth.resize(pixels);
   frame.object.resize(pixels);
-  if (technique.begin_pass || technique.finish_pass)
+  if (technique.begin_pass || technique.finish_pass) {
     render_passes(technique, world, lights, view, settings, frame);
-  else
-    for_each_tile(view, 16, [&](int left, int top, int right, int bottom) {
-      render_tile(technique, world, lights, view, settings, {left, top}, {right, bottom}, frame);
-    });
+    return frame;
+  }
+  std::atomic<size_t> done = 0;  // pixels
+  for_each_tile(view, 16, [&](int left, int top, int right, int bottom) {
+    render_tile(technique, world, lights, view, settings, {left, top}, {right, bottom}, frame);
+    const size_t own = size_t(right - left) * size_t(bottom - top);
+    if (settings.progress) settings.progress(double(done += own) / double(pixels));
+  });
   return frame;
 }
 

@@ -3,6 +3,7 @@
 // its own beyond Lights, so samples can be computed on any thread, in any order, and replayed one
 // by one.
 #pragma once
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -56,6 +57,7 @@ struct StillSettings {
   int spp = 16;
   uint64_t seed = 1;
   TransportSettings transport;
+  std::function<void(double)> progress;  // told how much is done, 0 to 1, by any thread; or empty
 };
 // Sample `index` of pixel (x, y) as render_still asks for it: tracing it alone gives the same bits.
 Request pixel_request(const View& view, uint64_t seed, int x, int y, int index);

@@ -106,8 +106,8 @@ struct VisibleRun::Impl {
   const RasterRun* run = nullptr;
   // Towards pixel i, at depth 1.
   vec3 direction(int i) const {
-    float x = float(run->x + i) + offset.x - 0.5f * float(view.width),
-          y = 0.5f * float(view.height) - float(run->y) - offset.y;
+    vec2 axis = axis_place(view);
+    float x = float(run->x + i) + offset.x - axis.x, y = axis.y - float(run->y) - offset.y;
     return view.forward + view.right * (x * pixel_angle) + view.up * (y * pixel_angle);
   }
   const Facet& facet(int i) const {

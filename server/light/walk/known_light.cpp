@@ -21,16 +21,23 @@ bool passes(vec3 a, vec3 b, bool endless, vec3 centre, float radius) {
 
 }  // namespace
 
+static uint32_t find_chart(const Transport& transport, const Ray& ray, const Hit& hit) {
+  if (!transport.maps || transport.world.is_moving(hit.instance)) return no_chart;
+  bool front = dot(eval_face(transport.world, hit.instance, hit.triangle), ray.direction) < 0;
+  return transport.maps->places->find(hit.instance, hit.triangle, front);
+}
+
+bool has_known_light(const Transport& transport, const Ray& ray, const Hit& hit) {
+  return find_chart(transport, ray, hit) != no_chart;
+}
+
 KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
                             vec3 position) {
   KnownLight known;
-  if (!transport.maps || transport.world.is_moving(hit.instance)) return known;
-  const IlluminationCharts& places = *transport.maps->places;
-  bool front = dot(eval_face(transport.world, hit.instance, hit.triangle), ray.direction) < 0;
-  uint32_t chart = places.find(hit.instance, hit.triangle, front);
+  const uint32_t chart = find_chart(transport, ray, hit);
   if (chart == no_chart) return known;
   known.known = true;
-  known.light = eval_illumination(*transport.maps, places.charts[chart], position);
+  known.light = eval_illumination(*transport.maps, transport.maps->places->charts[chart], position);
   known.unit = known_light(*transport.maps, known.light);
   known.raised = transport.maps->least_known();
   return known;

@@ -12,6 +12,8 @@ struct KnownLight {
   vec3 unit{1};      // Sample::known
   float raised = 0;  // Sample::raised
 };
+// Whether a map knows the light of what a ray has met, in air.
+bool has_known_light(const Transport& transport, const Ray& ray, const Hit& hit);
 // Of what a ray has met at `position` in air.
 KnownLight find_known_light(const Transport& transport, const Ray& ray, const Hit& hit,
                             vec3 position);

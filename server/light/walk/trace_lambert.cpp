@@ -64,14 +64,14 @@ bool begins_lambertian(Batch& batch, int lane, LambertWalks& walks) {
     sample = trace_sample(transport, batch.rules, request, hit);
     return false;
   }
+  if (batch.rules.reads_maps && has_known_light(transport, request.ray, hit)) {
+    sample = trace_sample(transport, batch.rules, request, hit);
+    return false;
+  }
   KnownLight& known = walks.map[lane];
   known = find_known_light(transport, request.ray, hit,
                            request.ray.origin + hit.t * request.ray.direction);
   walks.known = (walks.known & ~(1u << lane)) | uint32_t(known.known) << lane;
-  if (known.known && batch.rules.reads_maps) {
-    sample = trace_sample(transport, batch.rules, request, hit);
-    return false;
-  }
   sample = Sample();
   walks.samplers.set(lane, Sampler(request.seed, request.index));
   walks.depth[lane] = 1;

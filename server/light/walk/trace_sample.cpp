@@ -48,7 +48,7 @@ void shade_first(const Transport& transport, const WalkRules& rules, FirstSurfac
     if (!direct.sure_of_punctual()) sample.flags &= uint8_t(~sample_sure);
   }
   if (read) {
-    sample.smooth += known.light * (bsdf.beneath * (bsdf.has_coat ? bsdf.coat_passes : 1.0f));
+    sample.smooth += known.light * (bsdf.coat_passes * bsdf.beneath);
   } else if (diffuse) {
     Walk next = walk;
     next.area_share = transport.tables.area_share > 0 ? 1.0f : 0.0f;

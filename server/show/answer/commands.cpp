@@ -4,7 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "show/answer/come_back.h"
 #include "show/answer/events.h"
+#include "show/answer/follow_house.h"
+#include "show/answer/go.h"
+#include "show/answer/groups.h"
+#include "show/answer/kiosk_window.h"
+#include "show/answer/storyteller_orders.h"
+#include "show/count/count.h"
 #include "show/state/lamps.h"
 #include "show/state/make_show.h"
 
@@ -37,12 +44,6 @@ int find_tour(const Exhibit& exhibit, const std::string& id) {
   return -1;
 }
 
-const StoryText* find_story(const Exhibit& exhibit, const std::string& id) {
-  for (const StoryText& story : exhibit.stories)
-    if (story.id == id) return &story;
-  return nullptr;
-}
-
 Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   if (!hello.exhibit.empty() && hello.exhibit != show.exhibit.id)
     return WireError{"unknown_exhibit", "there is no exhibit '" + hello.exhibit +
@@ -51,15 +52,21 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = hello.kiosk;
   set_size(visitor.wants, show.settings, hello.width, hello.height);
-  const StorytellerPlace* storyteller_place = storyteller_of(show);
-  go_to_viewpoint(
-      visitor.place, visitor.hearing.narration.voice, show.exhibit,
-      visitor.kiosk && storyteller_place ? storyteller_place->kiosk_viewpoint : show.exhibit.start);
+  const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
-  show.totals.visits++;
-  visitor.link->send_text(welcome_message(show, visitor));
-  visitor.link->send_text(agent_message(show));
-  if (!show.kiosk_message.empty()) visitor.link->send_text(show.kiosk_message);
+  const std::string kiosk = kiosk_name(show, visitor.name);
+  go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
+                  visitor.kiosk ? kiosk_viewpoint(show, kiosk) : show.exhibit.start);
+  const bool goes_on = !hello.resume.empty() && come_back(show, visitor, hello.resume);
+  if (!goes_on) show.totals.visits++;
+  if (is_first) count_visit(show, visitor, goes_on);
+  visitor.link->send_text(welcome_message(show, visitor, goes_on));
+  visitor.link->send_text(agent_message(show, teller_of(show, visitor)));
+  const Kiosk* own = kiosk_of(show, visitor);
+  const std::string& state = own ? own->message : show.kiosk_message;
+  if (!state.empty() && (own || !visitor.kiosk)) visitor.link->send_text(state);
+  tell_house(show, visitor);
+  if (!show.problems_message.empty()) visitor.link->send_text(show.problems_message);
   return {};
 }
 
@@ -67,10 +74,18 @@ Answer handle_one(Show& show, Visitor& visitor, const Input& input) {
   VisitorPlace& place = visitor.place;
   if (input.pointer) visitor.looks.pointer = input.pointer, visitor.looks.pointed_at = show.time;
   place.seq = input.seq;
+  if (input.move != vec3(0)) go_away(visitor);
+  if (leader_of(show, visitor)) {  // looks round from the leader's place
+    VisitorGroup& group = visitor.group;
+    group.look = glm::clamp(group.look + input.look, vec2(-pi), vec2(pi));
+    if (input.look != vec2(0)) group.looked_at = show.time;
+    return {};
+  }
   place.move = input.move;
   if (input.look != vec2(0) && place.tour.state == TourRide::State::playing) {
     look_round(place.tour, input.look);
   } else if (input.look != vec2(0)) {
+    place.glide = {};
     place.view.yaw = std::remainder(place.view.yaw + input.look.x, 2 * pi);
     place.view.pitch = std::clamp(place.view.pitch + input.look.y, -steepest, steepest);
     place.viewpoint = -1;
@@ -83,12 +98,14 @@ Answer handle_one(Show& show, Visitor& visitor, const CameraTo& camera) {
   VisitorPlace& place = visitor.place;
   if (glm::length(camera.position - show.exhibit.scene.origin) > farthest)
     return WireError{"bad_field", "camera.position: is farther than 1e7 m from the exhibit"};
+  go_away(visitor);
   place.seq = camera.seq;
   place.view.position = camera.position;
   place.view.yaw = std::remainder(camera.yaw, 2 * pi);
   place.view.pitch = std::clamp(camera.pitch, -steepest, steepest);
   place.move = place.velocity = vec3(0);
   place.viewpoint = -1;
+  stand(place);
   stop_tour(place.tour, visitor.hearing.narration.voice);
   return {};
 }
@@ -96,28 +113,20 @@ Answer handle_one(Show& show, Visitor& visitor, const CameraTo& camera) {
 Answer handle_one(Show& show, Visitor& visitor, const ViewpointTo& to) {
   int index = find_viewpoint(show.exhibit, to.name);
   if (index < 0) return WireError{"unknown_viewpoint", "there is no viewpoint '" + to.name + "'"};
+  go_away(visitor);
   visitor.place.seq = to.seq;
   go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit, index);
   return {};
 }
 
-// Subtitles go with what is broken off.
-void clear_subtitle(Visitor& visitor) {
-  visitor.link->send_text(subtitle_message("", visitor.lang, "", 0));
-}
-
-void fall_silent(Show& show) {
-  bool shown = show.voice.started;
-  hush(show.voice);
-  for (Visitor& visitor : show.visitors) {
-    const Voice& own = visitor.hearing.narration.voice;
-    if (shown && visitor.welcomed && (own.queue.empty() || own.paused)) clear_subtitle(visitor);
-  }
+Answer handle_one(Show& show, Visitor& visitor, const GoTo& order) {
+  return go(show, visitor, order);
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
   VisitorPlace& place = visitor.place;
   Voice& narrator = visitor.hearing.narration.voice;
+  if (Answer wrong = check_not_following(show, visitor)) return wrong;
   switch (order.action) {
     case TourAction::play: {
       bool resume =
@@ -125,7 +134,10 @@ Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
       int tour = resume ? place.tour.tour : find_tour(show.exhibit, order.name);
       if (tour < 0) return WireError{"unknown_tour", "there is no tour '" + order.name + "'"};
       place.move = place.velocity = vec3(0);
-      if (show.voice.asked_by == visitor.link->id) fall_silent(show);  // one voice at a time
+      stand(place);
+      Teller& teller = teller_of(show, visitor);
+      if (teller.voice.asked_by == visitor.link->id)
+        fall_silent(show, teller);  // one voice at a time
       start_tour(place.tour, narrator, tour, show.exhibit, show.roads, place.view);
       break;
     }
@@ -139,73 +151,34 @@ Answer handle_one(Show& show, Visitor& visitor, const Tour& order) {
   return {};
 }
 
-// Kiosks stand before whoever is there.
-void call_storyteller(Show& show, size_t storyteller_index) {
-  if (storyteller_index == show.storyteller_index) return;
-  fall_silent(show);
-  change_storyteller(show, storyteller_index);
-  for (Visitor& visitor : show.visitors)
-    if (visitor.welcomed && visitor.kiosk && visitor.place.tour.state == TourRide::State::none)
-      go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
-                      storyteller_of(show)->kiosk_viewpoint);
-}
-
-const Visitor* who_asked(const Show& show) {
-  for (const Visitor& visitor : show.visitors)
-    if (visitor.link->id == show.voice.asked_by) return &visitor;
-  return nullptr;
-}
-
-// Visitors share the storyteller as equals, but nobody far away takes it from a person who stands
-// before it and is being told a story.
-bool belongs_to_a_kiosk(const Show& show, const Visitor& other) {
-  if (show.voice.story.empty() || other.kiosk) return false;
-  const Visitor* asked = who_asked(show);
-  return asked && asked->kiosk;
+Answer handle_one(Show& show, Visitor& visitor, const LampOrder& order) {
+  if (Answer wrong = check_not_following(show, visitor)) return wrong;
+  if (switch_lamp(show, visitor, order.name, order.on)) return {};
+  return WireError{"unknown_lamp", "there is no lamp '" + order.name + "'"};
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {
-  if (!storyteller_of(show)) return WireError{"no_storyteller", "this exhibit has no storyteller"};
-  if (belongs_to_a_kiosk(show, visitor))
-    return WireError{"storyteller_busy", "somebody at the kiosk is being told a story"};
-  if (!order.teller.empty()) {
-    int storyteller_index = find_storyteller(show.exhibit, order.teller);
-    if (storyteller_index < 0)
-      return WireError{"unknown_storyteller", "there is no storyteller '" + order.teller + "'"};
-    call_storyteller(show, size_t(storyteller_index));
-  }
-  if (order.visible) show.storyteller_visible = *order.visible;
-  if (order.humanlike) show.humanlike = *order.humanlike;
-  if (!order.story.empty()) {
-    const StoryText* story = find_story(show.exhibit, order.story);
-    if (!story) return WireError{"unknown_story", "there is no story '" + order.story + "'"};
-    if (story->storyteller_index >= 0) call_storyteller(show, size_t(story->storyteller_index));
-    tell(show.voice, *story);
-    pause_tour(visitor.place.tour, visitor.hearing.narration.voice);
-    show.voice.asked_by = visitor.link->id;
-    show.totals.stories++;
-  }
-  const StoryText* telling = find_story(show.exhibit, show.voice.story);
-  uint64_t asked_by = show.voice.asked_by;
-  if (order.action == "pause") pause_voice(show.voice);
-  else if (order.action == "play") resume_voice(show.voice);
-  else if (order.action == "stop") fall_silent(show);
-  else if (order.action == "restart" && telling) tell(show.voice, *telling);
-  else if (order.action == "skip" && telling) tell(show.voice, *telling, show.voice.sentence + 1);
-  if (!show.voice.queue.empty()) show.voice.asked_by = asked_by;
-  show.agent_sent_at = -1e9;  // everybody hears of the change with the next tick
-  return {};
+  return handle_storyteller(show, visitor, order);
 }
 
-Answer handle_one(Show& show, Visitor&, const LampOrder& order) {
-  if (switch_lamp(show, order.name, order.on)) return {};
-  return WireError{"unknown_lamp", "there is no lamp '" + order.name + "'"};
+Answer handle_one(Show& show, Visitor& visitor, const Ask& question) {
+  return ask(show, visitor, question);
+}
+
+Answer handle_one(Show& show, Visitor& visitor, const GroupOrder& order) {
+  return handle_group(show, visitor, order);
+}
+
+Answer handle_one(Show&, Visitor& visitor, const KioskTouch&) {
+  if (visitor.kiosk) return {};  // note_touch()
+  return WireError{"no_kiosk", "only the page of a kiosk says what is done there"};
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const Settings& settings) {
   PictureWishes& wants = visitor.wants;
   if (settings.fps) wants.fps = std::clamp(*settings.fps, 0.0f, 120.0f);
   if (settings.sound) visitor.hearing.wanted = *settings.sound;
+  if (settings.comfort) visitor.place.comfort = *settings.comfort;
   if (settings.quality) wants.best_quality = *settings.quality;
   if (settings.max_quality) wants.still_quality = *settings.max_quality;
   wants.best_quality = std::min(wants.best_quality, wants.still_quality);
@@ -235,15 +208,6 @@ Answer handle_one(Show&, Visitor& visitor, const Bye&) {
 }
 
 }  // namespace
-
-void forget_absent_listeners(Show& show) {
-  if (show.voice.queue.empty()) return;
-  bool nobody = show.visitors.empty();
-  bool abandoned = show.voice.paused && show.voice.asked_by != 0 && !who_asked(show);
-  if (!nobody && !abandoned) return;
-  fall_silent(show);
-  show.agent_sent_at = -1e9;
-}
 
 std::optional<WireError> handle(Show& show, Visitor& visitor, const BrowserMessage& message) {
   bool may_speak = visitor.welcomed || std::holds_alternative<Hello>(message) ||

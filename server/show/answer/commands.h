@@ -11,8 +11,4 @@ namespace wellspring {
 // Applies one message; the error to send back, if any.
 std::optional<WireError> handle(Show& show, Visitor& visitor, const BrowserMessage& message);
 
-// The storyteller is there for those who are there: a story that was paused by somebody who has
-// left since is over, and so is any story when nobody is left. After visitors have left.
-void forget_absent_listeners(Show& show);
-
 }  // namespace wellspring

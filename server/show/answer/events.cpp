@@ -2,7 +2,13 @@
 #include "show/answer/events.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "show/answer/book.h"
+#include "show/answer/cameras.h"
+#include "show/answer/objects.h"
+#include "show/state/lamps.h"
 
 namespace wellspring {
 
@@ -25,7 +31,7 @@ const char* tour_word(TourRide::State state) {
 
 }  // namespace
 
-std::string welcome_message(const Show& show, const Visitor& visitor) {
+std::string welcome_message(const Show& show, const Visitor& visitor, bool resumed) {
   const Exhibit& exhibit = show.exhibit;
   auto text = [&](const LocalText& local) {
     return text_in(local, visitor.lang, exhibit.languages);
@@ -36,6 +42,7 @@ std::string welcome_message(const Show& show, const Visitor& visitor) {
                   {"exhibit", exhibit.id},
                   {"title", text(exhibit.title)},
                   {"description", text(exhibit.description)},
+                  {"resumed", resumed},
                   {"lang", visitor.lang},
                   {"languages", exhibit.languages},
                   {"width", visitor.wants.width},
@@ -60,10 +67,19 @@ std::string welcome_message(const Show& show, const Visitor& visitor) {
                           ? json(nullptr)
                           : json(exhibit.storytellers[size_t(story.storyteller_index)].id);
   }
+  const std::vector<char> lamps = lamps_of(show, visitor);
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     message["lamps"].push_back({{"name", exhibit.lamps[i].id},
                                 {"title", text(exhibit.lamps[i].title)},
-                                {"on", bool(show.switches.wanted[i])}});
+                                {"on", bool(lamps[i])},
+                                {"shared", exhibit.lamps[i].shared}});
+  message["sounds"] = describe_sounds(exhibit);
+  message["objects"] = describe_objects(exhibit, visitor.lang);
+  message["map"] = show.roads.map.has_value();
+  if (show.settings.watched) message["watched"] = true;
+  message["questions"] = json::array();
+  for (const AnsweredQuestion& one : exhibit.questions)
+    message["questions"].push_back(text(one.question.front()));
   auto about = [&](const StorytellerPlace& storyteller_place) {
     std::string name = text(storyteller_place.name);
     return json{
@@ -73,9 +89,10 @@ std::string welcome_message(const Show& show, const Visitor& visitor) {
         {"viewpoint", exhibit.viewpoints[size_t(storyteller_place.kiosk_viewpoint)].view.name}};
   };
   message["storyteller"] = nullptr;
-  if (const StorytellerPlace* storyteller_place = storyteller_of(show)) {
+  const Teller& teller = teller_of(show, visitor);
+  if (const StorytellerPlace* storyteller_place = storyteller_of(show, teller)) {
     message["storyteller"] = about(*storyteller_place);
-    message["storyteller"]["visible"] = show.storyteller_visible;
+    message["storyteller"]["visible"] = teller.visible;
   }
   message["storytellers"] = json::array();
   for (const StorytellerPlace& storyteller_place : exhibit.storytellers)
@@ -97,8 +114,9 @@ std::string state_message(const Show& show, const Visitor& visitor) {
                   {"viewpoint", nullptr},
                   {"tour", nullptr}};
   if (!exhibit.lamps.empty()) message["lamps"] = json::object();
+  const std::vector<char> lamps = lamps_of(show, visitor);
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
-    message["lamps"][exhibit.lamps[i].id] = bool(show.switches.wanted[i]);
+    message["lamps"][exhibit.lamps[i].id] = bool(lamps[i]);
   if (place.viewpoint >= 0)
     message["viewpoint"] = exhibit.viewpoints[size_t(place.viewpoint)].view.name;
   if (place.tour.state != TourRide::State::none && place.tour.tour >= 0)
@@ -106,6 +124,15 @@ std::string state_message(const Show& show, const Visitor& visitor) {
                        {"state", tour_word(place.tour.state)},
                        {"stop", place.tour.stop},
                        {"stops", exhibit.tours[size_t(place.tour.tour)].stops.size()}};
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string went_message(uint32_t seq, const std::string& object, dvec3 place, double seconds) {
+  json message = {{"type", "went"},
+                  {"seq", seq},
+                  {"object", object.empty() ? json(nullptr) : json(object)},
+                  {"place", triple(place)},
+                  {"seconds", std::round(seconds * 100) / 100}};
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -141,43 +168,152 @@ std::string speech_stop_message(uint32_t utterance) {
 }
 
 // The mouth as the next picture shows it, in the utterance's own time.
-json mouth_message(const Show& show) {
-  const Speech* speech = show.sounding.going ? heard(show.voice) : nullptr;
+json mouth_message(const Show& show, const Teller& teller) {
+  const Speech* speech = teller.sounding.going ? heard(teller.voice) : nullptr;
   if (!speech) return nullptr;
-  double at = double(show.voice.elapsed + show.picture_lead);
-  VisemeWeights weights = mouth_shape(show.voice, show.picture_lead);
+  double at = double(teller.voice.elapsed + show.picture_lead);
+  VisemeWeights weights = mouth_shape(teller.voice, show.picture_lead);
   size_t strongest = size_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
-  return {{"utterance", show.sounding.number},
+  return {{"utterance", teller.sounding.number},
           {"seconds", std::round(at * 1e3) / 1e3},
           {"viseme", viseme_names[strongest]}};
 }
 
-std::string agent_message(const Show& show) {
+// The emotions that its face shows, as far as anybody would see them.
+json face_message(const FaceState& face) {
+  constexpr float least = 0.05f;
+  json shown = json::object();
+  for (size_t i = 0; i < emotion_count; i++)
+    if (face.emotion[i].value >= least)
+      shown[std::string(emotion_names[i])] = std::round(100 * double(face.emotion[i].value)) / 100;
+  return shown;
+}
+
+std::string agent_message(const Show& show, const Teller& teller) {
+  const StorytellerPlace* place = storyteller_of(show, teller);
   json message = {
       {"type", "agent"},
-      {"mood", to_string(show.mind.mood)},
-      {"teller", storyteller_of(show) ? json(storyteller_of(show)->id) : json(nullptr)},
-      {"visible", show.storyteller_visible},
-      {"humanlike", show.humanlike},
-      {"story", show.voice.story.empty() ? json(nullptr) : json(show.voice.story)},
-      {"sentence", show.voice.story.empty() ? 0 : show.voice.sentence},
+      {"mood", to_string(teller.mind.mood)},
+      {"teller", place ? json(place->id) : json(nullptr)},
+      {"visible", teller.visible},
+      {"humanlike", teller.humanlike},
+      {"story", teller.voice.story.empty() ? json(nullptr) : json(teller.voice.story)},
+      {"sentence", teller.voice.story.empty() ? 0 : teller.voice.sentence},
       {"sentences",
-       show.voice.story.empty() ? 0 : show.voice.sentence + int(show.voice.queue.size())},
-      {"paused", show.voice.paused}};
-  StorytellerGaze gaze = eval_gaze(show.mind, show.storyteller, show.pose);
+       teller.voice.story.empty() ? 0 : teller.voice.sentence + int(teller.voice.queue.size())},
+      {"paused", teller.voice.paused}};
+  StorytellerGaze gaze = eval_gaze(teller.mind, teller.storyteller, teller.pose);
   message["looking_at"] = triple(dvec3(gaze.target) + show.exhibit.scene.origin);
   message["gaze"] = {std::round(gaze.yaw * 1e4) / 1e4, std::round(gaze.pitch * 1e4) / 1e4};
   message["guest"] = gaze.guest;
-  message["mouth"] = mouth_message(show);
+  message["face"] = face_message(teller.mind.face);
+  message["mouth"] = mouth_message(show, teller);
   return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string kiosk_message(const Audience& audience, size_t cameras) {
+namespace {
+
+// Tenths of a metre, so that nobody's breath is news.
+void put_distance(json& message, float nearest) {
+  if (nearest > 0) message["distance"] = std::round(10 * double(nearest)) / 10;
+}
+
+double hundredths(float value) { return std::round(100 * double(value)) / 100; }
+
+}  // namespace
+
+std::string kiosk_message(const Show& show) {
+  Presence state = Presence::absent;
+  size_t people = 0;
+  float nearest = 0;
+  for (const Kiosk& kiosk : show.kiosks) {
+    const Audience& audience = kiosk.audience;
+    state = std::max(state, audience.state);
+    people += audience.guests.size();
+    if (!audience.guests.empty() && (nearest == 0 || audience.nearest < nearest))
+      nearest = audience.nearest;
+  }
   json message = {{"type", "kiosk"},
-                  {"state", to_string(audience.state)},
-                  {"people", audience.guests.size()},
-                  {"cameras", cameras}};
+                  {"state", to_string(state)},
+                  {"people", people},
+                  {"cameras", connected_cameras(show)}};
+  put_distance(message, nearest);
   return message.dump();
+}
+
+std::string kiosk_message(const Show& show, const Kiosk& kiosk) {
+  const std::string& name = kiosk.settings.name;
+  const Audience& audience = kiosk.audience;
+  json message = {
+      {"type", "kiosk"},
+      {"kiosk", name},
+      {"state", to_string(audience.state)},
+      {"stage", to_string(kiosk.stage.now)},
+      {"people", audience.guests.size()},
+      {"cameras",
+       std::ranges::count_if(show.eyes,
+                             [&](const Eye& eye) { return eye.kiosk == name && !is_lost(eye); })},
+      {"storyteller", !show.her_kiosk           ? "none"
+                      : *show.her_kiosk == name ? "here"
+                                                : "elsewhere"},
+      {"volume", hundredths(kiosk_volume(show.settings.house, show.house, kiosk.settings.volume))},
+      {"heard", kiosk.visit.heard}};
+  put_distance(message, audience.guests.empty() ? 0 : audience.nearest);
+  if (!audience.guests.empty()) message["aside"] = std::round(10 * double(audience.aside)) / 10;
+  if (const auto& step = audience.calibration)
+    message["calibration"] = {{"step", calibration_steps[size_t(step->what)]},
+                              {"metres", std::round(10 * double(step->metres)) / 10},
+                              {"progress", std::round(20 * double(step->progress)) / 20}};
+  if (kiosk.gesture_number > 0 && turns_pages(kiosk.showing))
+    message["gesture"] = {{"name", kiosk.gesture}, {"number", kiosk.gesture_number}};
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string house_message(const Show& show, bool reload) {
+  const HouseSettings& settings = show.settings.house;
+  return json{{"type", "house"},
+              {"open", show.house.open},
+              {"quiet", show.house.quiet},
+              {"headphones", show.house.quiet && settings.headphones},
+              {"volume", hundredths(kiosk_volume(settings, show.house, 1))},
+              {"reload", reload},
+              {"take_along", !settings.address.empty()}}
+      .dump();
+}
+
+std::string announce_message(const Announcement& announcement, double seconds) {
+  return json{{"type", "announce"},
+              {"id", announcement.id},
+              {"text", announcement.text},
+              {"seconds", seconds},
+              {"urgent", announcement.urgent}}
+      .dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string reply_message(const Show& show, const Visitor& visitor, const std::string& question,
+                          const FoundAnswer& found, const LocalScript& said) {
+  constexpr const char* kinds[] = {"none", "partly", "sure"};
+  const Exhibit& exhibit = show.exhibit;
+  std::string text;
+  for (size_t i = 0; i < line_count(said); i++) {
+    const LocalLine line = line_at(said, i);
+    if (const auto* spoken = line_in(line, visitor.lang, exhibit.languages))
+      text += (text.empty() ? "" : " ") + spoken->second.text;
+  }
+  json message = {{"type", "reply"},
+                  {"question", question},
+                  {"text", text},
+                  {"found", kinds[int(found.kind)]},
+                  {"words", found.words},
+                  {"score", std::round(found.score * 100) / 100},
+                  {"share", std::round(found.share * 100) / 100}};
+  if (found.passage >= 0) {
+    const Passage& passage = show.questions.passages[size_t(found.passage)];
+    message["from"] = {{"kind", passage_kinds[int(passage.kind)]},
+                       {"id", passage.id},
+                       {"title", text_in(passage.title, visitor.lang, exhibit.languages)}};
+  }
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace wellspring

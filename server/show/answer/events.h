@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The server's words to a browser: JSON text of welcome, state, subtitle, agent and kiosk. Pure
-// functions.
+// The server's words to a browser: JSON text of welcome, state, subtitle, agent, kiosk, house
+// and announce. Pure functions.
 #pragma once
 #include <string>
 
@@ -10,8 +10,12 @@
 
 namespace wellspring {
 
-std::string welcome_message(const Show& show, const Visitor& visitor);
+// `resumed`: the visit goes on where it was.
+std::string welcome_message(const Show& show, const Visitor& visitor, bool resumed = false);
 std::string state_message(const Show& show, const Visitor& visitor);
+// The visitor is on its way to an eye's `place`, or has leapt there (0 seconds); to look closer at
+// `object`, if that is not empty.
+std::string went_message(uint32_t seq, const std::string& object, dvec3 place, double seconds);
 // Empty text: the subtitle disappears.
 std::string subtitle_message(const std::string& text, const std::string& lang,
                              const std::string& speaker, float seconds);
@@ -19,7 +23,17 @@ std::string subtitle_message(const std::string& text, const std::string& lang,
 // where.
 std::string speech_message(uint32_t utterance, const Speech& speech, dvec3 mouth);
 std::string speech_stop_message(uint32_t utterance);
-std::string agent_message(const Show& show);
-std::string kiosk_message(const Audience& audience, size_t cameras);
+std::string agent_message(const Show& show, const Teller& teller);
+// Of all kiosks together, for visitors; of one, for its page.
+std::string kiosk_message(const Show& show);
+std::string kiosk_message(const Show& show, const Kiosk& kiosk);
+// To kiosks' pages. `reload`: the page shall begin anew.
+std::string house_message(const Show& show, bool reload);
+// To all pages. `seconds`: that are left of it.
+std::string announce_message(const Announcement& announcement, double seconds);
+
+// What is said to a question, and why.
+std::string reply_message(const Show& show, const Visitor& visitor, const std::string& question,
+                          const FoundAnswer& found, const LocalScript& said);
 
 }  // namespace wellspring

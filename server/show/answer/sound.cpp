@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/log.h"
 #include "show/answer/events.h"
@@ -12,8 +13,8 @@ namespace wellspring {
 
 namespace {
 
-VoiceManner manner_of(const Show& show) {
-  const StorytellerPlace* storyteller_place = storyteller_of(show);
+VoiceManner manner_of(const Show& show, const Teller& teller) {
+  const StorytellerPlace* storyteller_place = storyteller_of(show, teller);
   return storyteller_place ? storyteller_place->voice : VoiceManner{};
 }
 
@@ -21,8 +22,15 @@ constexpr uint8_t heard_everywhere = 1;  // flag of a sound packet
 
 bool listens(const Visitor& visitor) { return visitor.welcomed && visitor.hearing.wanted; }
 
-// A voice, what is heard of it, and the language it speaks.
+bool has_listener(const Show& show, const Teller& teller) {
+  return std::any_of(show.visitors.begin(), show.visitors.end(), [&](const Visitor& visitor) {
+    return visitor.hearing.wanted && listens_to(show, visitor, teller);
+  });
+}
+
+// A voice, whose it is, what is heard of it, and the language it speaks.
 struct Channel {
+  const Teller& teller;
   Voice& voice;
   Sounding& sounding;
   std::string lang;
@@ -33,7 +41,7 @@ SpeechState ask_speech(Show& show, Channel& channel, const Utterance& utterance)
   Sounding& sounding = channel.sounding;
   const auto* line = line_in(utterance.line, channel.lang, show.exhibit.languages);
   if (line->second.recording) return {line->second.recording, false, line->first};
-  SpeechRequest request = request_of(line->second, line->first, manner_of(show));
+  SpeechRequest request = request_of(line->second, line->first, manner_of(show, channel.teller));
   std::string lang = request.lang;
   if (!show.speech.find || !show.speech.speak) return {nullptr, false, channel.lang};
   if (auto speech = show.speech.find(request)) return {speech, false, lang};
@@ -64,7 +72,8 @@ VoiceEvents advance_channel(Show& show, Channel channel, float dt) {
     if (show.speech.prepare && events.begun->speech && channel.voice.queue.size() > 1) {
       const auto* next = line_in(channel.voice.queue[1].line, channel.lang, show.exhibit.languages);
       if (!next->second.recording)
-        show.speech.prepare({request_of(next->second, next->first, manner_of(show))});
+        show.speech.prepare(
+            {request_of(next->second, next->first, manner_of(show, channel.teller))});
     }
   }
   return events;
@@ -142,11 +151,12 @@ void start_sound(Visitor& visitor, const Source& source) {
 
 }  // namespace
 
-std::string spoken_language(const Show& show) {
+std::string spoken_language(const Show& show, const Teller& teller) {
   const Visitor *kiosk = nullptr, *first = nullptr;
   for (const Visitor& visitor : show.visitors) {
-    if (!visitor.welcomed) continue;
-    if (show.voice.asked_by != 0 && visitor.link->id == show.voice.asked_by) return visitor.lang;
+    if (!listens_to(show, visitor, teller)) continue;
+    if (teller.voice.asked_by != 0 && visitor.link->id == teller.voice.asked_by)
+      return visitor.lang;
     if (!kiosk && visitor.kiosk) kiosk = &visitor;
     if (!first && visitor.hearing.wanted) first = &visitor;
   }
@@ -154,28 +164,36 @@ std::string spoken_language(const Show& show) {
   return first ? first->lang : show.exhibit.languages.front();
 }
 
-VoiceEvents advance_speech(Show& show, float dt) {
-  bool anybody = std::any_of(show.visitors.begin(), show.visitors.end(), listens);
-  return advance_channel(show, {show.voice, show.sounding, spoken_language(show), anybody}, dt);
+VoiceEvents advance_speech(Show& show, Teller& teller, float dt) {
+  const bool anybody = has_listener(show, teller);
+  return advance_channel(
+      show, {teller, teller.voice, teller.sounding, spoken_language(show, teller), anybody}, dt);
 }
 
 VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt) {
   Narration& narration = visitor.hearing.narration;
   return advance_channel(show,
-                         {narration.voice, narration.sounding, visitor.lang, listens(visitor)}, dt);
+                         {teller_of(show, visitor), narration.voice, narration.sounding,
+                          visitor.lang, listens(visitor)},
+                         dt);
 }
 
 void send_sounds(Show& show) {
-  const Speech* told = update_sounding(show, show.voice, show.sounding);
-  const bool anybody = told && std::any_of(show.visitors.begin(), show.visitors.end(), listens);
-  Source storyteller_place{&show.voice, told ? &show.sounding : nullptr, dvec3(0), false};
-  if (anybody)
-    storyteller_place.mouth =
-        dvec3(eval_mouth(show.mind, show.storyteller, show.pose)) + show.exhibit.scene.origin;
+  std::map<const Teller*, Source> told;
+  for (Teller* teller : tellers_of(show)) {
+    if (!update_sounding(show, teller->voice, teller->sounding)) continue;
+    if (!has_listener(show, *teller)) continue;
+    const vec3 mouth = eval_mouth(teller->mind, teller->storyteller, teller->pose);
+    told[teller] = {&teller->voice, &teller->sounding, dvec3(mouth) + show.exhibit.scene.origin};
+  }
+  for (Visitor& visitor : show.visitors)
+    update_sounding(show, visitor.hearing.narration.voice, visitor.hearing.narration.sounding);
   for (Visitor& visitor : show.visitors) {
-    Source source = storyteller_place;
-    Narration& narration = visitor.hearing.narration;
-    const Speech* narrated = update_sounding(show, narration.voice, narration.sounding);
+    const auto own = told.find(&teller_of(show, visitor));
+    Source source = own != told.end() && hears_storyteller(show, visitor) ? own->second : Source{};
+    const Visitor* leader = leader_of(show, visitor);
+    const Narration& narration = (leader ? *leader : visitor).hearing.narration;
+    const bool narrated = narration.sounding.going;
     if (!narration.voice.queue.empty())
       source = {&narration.voice, narrated ? &narration.sounding : nullptr,
                 visitor.place.view.position, true};

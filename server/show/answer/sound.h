@@ -16,10 +16,10 @@ inline constexpr double sound_piece = 0.25;  // seconds of one packet
 inline constexpr double sound_ahead = 1.2;   // seconds sent before they are due
 
 // The language the storyteller speaks now.
-std::string spoken_language(const Show& show);
+std::string spoken_language(const Show& show, const Teller& teller);
 
 // advance_voice with the speech of the show, and what follows from it.
-VoiceEvents advance_speech(Show& show, float dt);
+VoiceEvents advance_speech(Show& show, Teller& teller, float dt);
 VoiceEvents advance_narration(Show& show, Visitor& visitor, float dt);
 
 // Sends what is due to every visitor who listens, and stops what has been stopped. After orders and

@@ -13,22 +13,11 @@
 #include "show/draw/picture.h"
 #include "show/draw/present.h"
 #include "show/draw/still_pass.h"
+#include "show/state/visitor_world.h"
 
 namespace wellspring {
 
 namespace {
-
-// The world as it is now. Nothing may be drawn meanwhile.
-void pose_world(Show& show) {
-  if (show.figures.empty()) return;
-  Figure& figure = show.figures[show.storyteller_index];
-  show_figure(*show.world, figure, show.storyteller_visible);
-  if (show.storyteller_visible && !show.visitors.empty())
-    pose_figure(*show.world, figure, storyteller_of(show)->character, show.pose,
-                show.storyteller.placement, show.scratch);
-  show.world->commit();
-  show.pose_number++;
-}
 
 void use_cores(Show& show, std::function<void()> work) {
   show.renderer.worker.run([&show, work = std::move(work)] { show.renderer.cores.execute(work); });
@@ -36,7 +25,7 @@ void use_cores(Show& show, std::function<void()> work) {
 
 void draw_what_moves(Show& show, Visitor& visitor) {
   Renderer& renderer = show.renderer;
-  pose_world(show);
+  begin_world_of(show, visitor);
   renderer.posed = &visitor;
   renderer.posed_at = show.time;
   renderer.posed_us = show.time_us;
@@ -46,6 +35,7 @@ void draw_what_moves(Show& show, Visitor& visitor) {
 
 // The next of its steps, or all of them.
 void go_on_drawing(Show& show) {
+  go_on_in_world_of(show, *show.renderer.drawn);
   show.renderer.until_moving = seconds_to_moving(show);
   use_cores(show, [&show] {
     Renderer& renderer = show.renderer;
@@ -65,7 +55,7 @@ void begin_picture(Show& show, Visitor& visitor, int waiting, Purpose purpose) {
   renderer.drawn = &visitor;
   renderer.job = make_picture_job(show, visitor, std::max(waiting, 1), purpose);
   renderer.surrounds = renderer.job.around && !visitor.picture.around.drawn;
-  if (!renderer.surrounds) pose_world(show);
+  begin_world_of(show, visitor);
   visitor.picture.at_work = true;
   renderer.given_up = false;
   renderer.step = DrawingStep::plan;
@@ -108,6 +98,7 @@ void carry_out(Show& show, const Decision& decision, int waiting) {
     case Drawing::nothing: return;
     case Drawing::moving: return draw_what_moves(show, visitor());
     case Drawing::skin:
+      go_on_in_world_of(show, visitor());
       begin_skin_light(show);
       return use_cores(show, [&show] { compute_skin_light(show); });
     case Drawing::go_on:
@@ -122,14 +113,16 @@ void carry_out(Show& show, const Decision& decision, int waiting) {
 }
 
 void draw_now(Show& show, int waiting) {
-  if (waiting > 0) {
-    pose_world(show);
-    if (wants_skin_light(show.time, draw_states(show), renderer_state(show)))
-      begin_skin_light(show), compute_skin_light(show), finish_skin_light(show);
+  const int lit =
+      waiting > 0 ? next_to_light(show.time, draw_states(show), renderer_state(show)) : -1;
+  if (lit >= 0) {
+    begin_world_of(show, *std::next(show.visitors.begin(), lit));
+    begin_skin_light(show), compute_skin_light(show), finish_skin_light(show);
   }
   const RendererState renderer = renderer_state(show);
   for (Visitor& visitor : show.visitors) {
     if (!wants_picture(show.time, draw_state(show, visitor), renderer)) continue;
+    begin_world_of(show, visitor);
     PictureJob job = make_picture_job(show, visitor, waiting);
     draw_picture(show, job, visitor);
     finish_picture(show, job, visitor);

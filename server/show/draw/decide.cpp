@@ -68,11 +68,15 @@ bool wants_moving(double now, const VisitorDrawState& state) {
   return now - state.posed_at >= 1 / state.moving_rate - on_time;
 }
 
-bool wants_skin_light(double now, std::span<const VisitorDrawState> states,
-                      const RendererState& renderer) {
-  if (!renderer.has_skin || now - renderer.skin_at < 1 / skin_rate - on_time) return false;
+int next_to_light(double now, std::span<const VisitorDrawState> states,
+                  const RendererState& renderer) {
+  if (!renderer.has_skin || now - renderer.skin_at < 1 / skin_rate - on_time) return -1;
   auto sees = [](const VisitorDrawState& one) { return one.welcomed && one.sees_figure; };
-  return std::any_of(states.begin(), states.end(), sees);
+  const auto count = std::count_if(states.begin(), states.end(), sees);
+  if (count == 0) return -1;
+  uint64_t left = renderer.skin_turn % uint64_t(count);
+  for (size_t i = 0;; i++)
+    if (sees(states[i]) && left-- == 0) return int(i);
 }
 
 bool wants_picture(double now, const VisitorDrawState& state, const RendererState& renderer) {
@@ -120,7 +124,7 @@ Decision decide(double now, std::span<const VisitorDrawState> states,
                 const RendererState& renderer) {
   if (!renderer.idle || !renderer.background) return {};
   if (int next = next_to_pose(now, states, renderer); next >= 0) return {Drawing::moving, next};
-  if (wants_skin_light(now, states, renderer)) return {Drawing::skin};
+  if (int next = next_to_light(now, states, renderer); next >= 0) return {Drawing::skin, next};
   if (renderer.drawn >= 0)
     return {Drawing::go_on, renderer.drawn, renderer.traces && renderer.waiting > 0};
   auto asks = [](const VisitorDrawState& one) { return one.asked_seconds > 0; };

@@ -44,6 +44,7 @@ struct RendererState {
   bool in_pass = false;          // a reconstruction of somebody's picture is under way
   bool has_skin = false;         // what moves keeps light on its skin
   double skin_at = -1e9;         // when that was last ordered
+  uint64_t skin_turn = 0;        // how often
   int waiting = 0;               // visitors who waited for a picture when the tick began
 };
 
@@ -66,7 +67,7 @@ enum class Purpose : uint8_t {
 
 struct Decision {
   Drawing what = Drawing::nothing;
-  int visitor = -1;    // index of the states: whose, of moving, go_on and picture
+  int visitor = -1;    // index of the states: whose, of moving, skin, go_on and picture
   bool hurry = false;  // of go_on: others wait, so samples that are not traced yet are left out
   Purpose purpose = Purpose::shown;  // of picture
   bool operator==(const Decision&) const = default;
@@ -90,9 +91,10 @@ Demand find_demand(double now, std::span<const VisitorDrawState> states,
 bool has_backdrop(const VisitorDrawState& state);
 // What moves is due, and the browser could take a picture.
 bool wants_moving(double now, const VisitorDrawState& state);
-// Light on what moves, that all visitors share, is due, and somebody may see it.
-bool wants_skin_light(double now, std::span<const VisitorDrawState> states,
-                      const RendererState& renderer);
+// Light on what moves, which is kept once, is due: who may see it, in turn; -1: it is not, or
+// nobody.
+int next_to_light(double now, std::span<const VisitorDrawState> states,
+                  const RendererState& renderer);
 // A picture is due, and the browser could take it.
 bool wants_picture(double now, const VisitorDrawState& state, const RendererState& renderer);
 // Its picture is a reconstruction and stays: only samples are wanted.

@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "cache/trace_waiting.h"
+#include "show/state/visitor_world.h"
 
 namespace wellspring {
 
@@ -14,8 +15,11 @@ bool request_samples(Show& show) {
   Renderer& renderer = show.renderer;
   renderer.brokers.clear();
   renderer.seconds = 0;
+  Visitor* first = nullptr;  // who sees another world waits for the next turn
   for (Visitor& visitor : show.visitors) {
     if (visitor.picture.broker_seconds <= 0) continue;
+    if (!first) go_on_in_world_of(show, *(first = &visitor));
+    else if (!see_the_same(show, *first, visitor)) continue;
     renderer.brokers.push_back(&visitor.picture.broker);
     renderer.seconds += std::exchange(visitor.picture.broker_seconds, 0.0);
     visitor.picture.at_work = true;

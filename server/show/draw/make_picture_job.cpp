@@ -39,7 +39,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   const View& now = place.last_view;
   job.expected = job.view = job.ahead = now;
   job.seq = place.seq;
-  job.figure = sees_figure(show, now);
+  job.figure = sees_figure(show, teller_of(show, visitor), now);
   job.camera_cuts = place.camera_cuts;
   job.still = show.time - place.moved_at > still_after;
   job.keep = show.settings.background;
@@ -100,8 +100,8 @@ bool is_outdated(const Show& show, const PictureJob& job, const Visitor& visitor
   bool has_one =
       visitor.picture.drawn_at >= 0 && visitor.picture.job.camera_cuts == job.camera_cuts;
   return has_one && job.still &&
-         (visitor.place.last_view != job.expected || lamps_wait(show) ||
-          job.figure != sees_figure(show, visitor.place.last_view));
+         (visitor.place.last_view != job.expected || lamps_wait(show, visitor) ||
+          job.figure != sees_figure(show, teller_of(show, visitor), visitor.place.last_view));
 }
 
 }  // namespace wellspring

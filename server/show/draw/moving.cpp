@@ -36,6 +36,7 @@ void begin_skin_light(Show& show) {
   job.update.transport.clamp = show.settings.moving_clamp;
   job.cycles = show.time - job.time > 1 ? first_cycles : cycles;
   job.time = show.time;
+  job.turn++;
   job.at_work = true;
 }
 

@@ -13,6 +13,7 @@ constexpr double still_rate = 25;      // pictures a second while only the story
 constexpr double settling_rate = 7;    // while nothing moves: more time for samples
 constexpr double resting_rate = 4;     // when nothing in the picture changes any more
 constexpr double backdrop_rate = 4;    // pictures a second of what does not move
+constexpr double closed_rate = 1;      // before a kiosk while the house is closed
 constexpr double learning_rate = 1.5;  // of pictures before the first reconstruction,
 constexpr double learning_backdrop_rate = 0.75;  // likewise of what does not move
 constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
@@ -30,8 +31,9 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.stands = stands(show, visitor);
   state.new_place = place.camera_cuts != picture.job.camera_cuts;
   state.same_view = picture.job.view == place.last_view;
-  state.other_light = picture.lamps != show.switches.lit;
-  state.sees_figure = visitor.welcomed && sees_figure(show, place.last_view);
+  state.other_light = picture.lamps != visitor.lamps.lit;
+  state.sees_figure =
+      visitor.welcomed && sees_figure(show, teller_of(show, visitor), place.last_view);
   state.drew_figure = picture.job.figure;
   state.unshown = picture.unshown;
   state.backdrop = picture.backdrop;
@@ -83,7 +85,8 @@ bool stands(const Show& show, const Visitor& visitor) {
 }
 
 bool rests(const Show& show, const Visitor& visitor) {
-  return !asks_for_samples(show, visitor) && !sees_figure(show, visitor.place.last_view);
+  return !asks_for_samples(show, visitor) &&
+         !sees_figure(show, teller_of(show, visitor), visitor.place.last_view);
 }
 
 bool asks_for_samples(const Show& show, const Visitor& visitor) {
@@ -104,15 +107,17 @@ bool may_take(const Show& show, const Visitor& visitor) {
 double picture_rate(const Show& show, const Visitor& visitor) {
   double rate = visitor.wants.fps > 0 ? double(visitor.wants.fps) : double(show.settings.fps);
   if (stands(show, visitor)) {
-    rate = std::min(rate, sees_figure(show, visitor.place.last_view) ? still_rate
-                          : rests(show, visitor)                     ? resting_rate
-                                                                     : settling_rate);
+    rate = std::min(rate, sees_figure(show, teller_of(show, visitor), visitor.place.last_view)
+                              ? still_rate
+                          : rests(show, visitor) ? resting_rate
+                                                 : settling_rate);
   } else if (show.settings.background && visitor.times.warp > 0) {
     // A warp takes all cores, its JPEG one.
     double milliseconds = double(visitor.times.warp) +
                           double(visitor.times.encode) / oneapi::tbb::info::default_concurrency();
     rate = std::min(rate, warping_share / (0.001 * milliseconds * std::max(count_moving(show), 1)));
   }
+  if (visitor.kiosk && !show.house.open) rate = closed_rate;
   return std::clamp(rate, 1.0, 120.0);
 }
 
@@ -122,7 +127,7 @@ double drawing_rate(const Show& show, const Visitor& visitor) {
   if (!stands(show, visitor))
     return show.settings.background ? std::min(rate, 1 / plan_next_keyframe(show, visitor).period)
                                     : rate;
-  if (picture.backdrop) rate = backdrop_rate;
+  if (picture.backdrop) rate = std::min(rate, backdrop_rate);
   // Until the first reconstruction, samples do more for it than pictures.
   bool first = show.pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
   first &= picture.backdrop || !picture.job.figure;
@@ -189,6 +194,7 @@ RendererState renderer_state(const Show& show) {
   state.in_pass = show.pass.visitor != nullptr;
   state.has_skin = !show.skin.places.empty();
   state.skin_at = renderer.skin.time;
+  state.skin_turn = renderer.skin.turn;
   return state;
 }
 

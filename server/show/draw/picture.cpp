@@ -61,13 +61,14 @@ DrawingStep trace_more(Show& show, const PictureJob& job, const Technique& techn
   return more ? DrawingStep::trace : DrawingStep::draw;
 }
 
-DrawingStep paint_picture(Show& show, const PictureJob& job, const View& lit, Visitor& visitor) {
+DrawingStep paint_picture(Show& show, const PictureJob& job, const Technique& technique,
+                          const View& lit, Visitor& visitor) {
   RenderCache& cache = visitor.picture.cache;
   Compositor& compositor = visitor.picture.compositor;
   DrawingWork& work = show.renderer.work;
   PictureCosts& costs = visitor.picture.costs;
   double began = seconds_now();
-  remember_traced(show, job, lit, work, visitor);
+  remember_traced(show, job, technique, lit, work, visitor);
   if (job.samples_only) {
     cache.end_frame();
     return DrawingStep::done;
@@ -126,13 +127,14 @@ DrawingStep draw_step(Show& show, const PictureJob& job, DrawingStep step, Visit
   if (step == DrawingStep::plan) {
     step = plan_picture(show, job, technique, lit, visitor);
   } else if (show.renderer.given_up) {
-    if (step != DrawingStep::guide) remember_traced(show, job, lit, show.renderer.work, visitor);
+    if (step != DrawingStep::guide)
+      remember_traced(show, job, technique, lit, show.renderer.work, visitor);
     visitor.picture.costs.given_up = true;
     step = DrawingStep::done;
   } else if (step == DrawingStep::trace) {
     step = trace_more(show, job, technique, visitor);
   } else if (step == DrawingStep::draw) {
-    step = paint_picture(show, job, lit, visitor);
+    step = paint_picture(show, job, technique, lit, visitor);
   } else {
     step = find_guides(show, job, visitor.picture);
   }
@@ -218,7 +220,7 @@ void draw_surroundings(Show& show, const PictureJob& job, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   DrawingWork& work = show.renderer.work;
   follow_lamps(show, visitor);
-  land(picture.broker.collect(), *show.world, show.pose_number, picture.cache);
+  take_answers(show, picture);
   picture.compositor.draw(picture.cache, *job.around, *show.visibility,
                           Tonemap{show.exhibit.exposure}, work.picture, &work.depth, true);
   make_keyframe(*job.around, work.picture, work.depth, work.around);

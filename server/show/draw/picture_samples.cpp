@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "cache/trace_waiting.h"
+#include "light/technique/pixel_requests.h"
 #include "picture/compose_drawn.h"
 #include "picture/still/plan_still.h"
 #include "show/draw/sample_budget.h"
@@ -17,8 +18,9 @@ constexpr float barely_covered = 0.1f;   // of the pixels by points
 constexpr size_t least_slice = 2048;     // samples
 // Seconds of tracing at a time, while it may be given up, and where what moves is due soon.
 constexpr double slice = 0.025, least_slice_seconds = 0.006;
-constexpr double spread_from = 0.8;  // samples a pixel
-constexpr float more_asked = 1.2f;   // than there is time for, by what was measured: none is idle
+constexpr double spread_from = 0.8;      // samples a pixel
+constexpr float corrected_share = 0.2f;  // of the samples, at most, for what shines
+constexpr float more_asked = 1.2f;  // than there is time for, by what was measured: none is idle
 
 // Who walks is shown answers of the picture before, and the sooner. A place never seen yet, or a
 // still camera's picture, waits for its own.
@@ -47,6 +49,51 @@ size_t slice_of_samples(const Show& show) {
   return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
 }
 
+bool corrects(const Show& show, const PictureJob& job, const Technique& technique) {
+  return show.settings.display == Display::corrected && show.lights.maps && job.passing &&
+         !technique.begin_pass;
+}
+
+// Requests for what shines, asked for from coarse to fine; the rest is the cache's to plan.
+void plan_corrections(Show& show, const PictureJob& job, const View& lit, int most,
+                      VisitorPicture& picture, std::vector<Request>& requests) {
+  Corrections& corrections = picture.compositor.corrections();
+  corrections.begin(lit, *show.visibility, show.shining);
+  corrections.request(job.weights ? std::span(*job.weights) : std::span<const float>(), most,
+                      job.seed, requests);
+  show.totals.corrected += corrections.pixels() > 0;
+  show.totals.corrective_samples += requests.size();
+}
+
+// The same view in as many pixels as there are samples.
+View pass_view(const View& view, int samples) {
+  const double pixels = double(view.width) * double(view.height);
+  const double side = std::sqrt(std::min(std::max(double(samples), 1.0) / pixels, 1.0));
+  View pass = view;
+  pass.width = std::max(int(view.width * side), 1);
+  pass.height = std::max(int(view.height * side), 1);
+  return pass;
+}
+
+// A sample for each pixel of a pass.
+void plan_pass(const View& pass, uint64_t seed, uint32_t index, std::vector<Request>& requests) {
+  std::vector<PixelSample> which;
+  which.reserve(size_t(pass.width) * size_t(pass.height));
+  for (int y = 0; y < pass.height; y++)
+    for (int x = 0; x < pass.width; x++) which.push_back({x, y, int(index)});
+  requests.resize(which.size());
+  make_pixel_requests(pass, seed, which, requests);
+}
+
+// Requests of a pass belong to the pixels of `view` that their rays run through.
+void name_pixels(const View& view, std::vector<Request>& requests) {
+  for (Request& request : requests) {
+    Projected at = project_point(view, request.ray.origin + request.ray.direction);
+    bool inside = at.x >= 0 && at.y >= 0 && at.x < float(view.width) && at.y < float(view.height);
+    request.pixel = inside ? uint32_t(at.y) * uint32_t(view.width) + uint32_t(at.x) : no_pixel;
+  }
+}
+
 void spread_samples(const View& view, int count, Visitor& visitor, std::vector<Request>& requests) {
   VisitorPicture& picture = visitor.picture;
   uint64_t& asked = picture.rest.asked;
@@ -62,6 +109,14 @@ void spread_samples(const View& view, int count, Visitor& visitor, std::vector<R
 
 }  // namespace
 
+void take_answers(const Show& show, VisitorPicture& picture) {
+  const std::vector<Answer> answers = picture.broker.collect();
+  land(answers, *show.world, show.pose_number, picture.cache);
+  for (const Answer& answer : answers)
+    picture.compositor.corrections().remember(answer.piece.view, answer.piece.requests,
+                                              answer.samples);
+}
+
 void plan_samples(Show& show, const PictureJob& job, const Technique& technique, const View& lit,
                   DrawingWork& work, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
@@ -75,8 +130,12 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   // What is around has light of half its size.
   cache.resize(job.expected.width, job.expected.height);
   cache.move_points(*show.world);
-  land(picture.broker.collect(), *show.world, show.pose_number, cache);
+  take_answers(show, picture);
   cache.project(lit);
+  if (technique.finish_pass) {
+    work.pass = pass_view(lit, job.samples);
+    return plan_pass(work.pass, visitor.link->id, uint32_t(job.tick), work.requests);
+  }
   cache.attend();
   int most_asked = int(more_asked * float(job.samples));
   bool late = !job.still && may_be_late(show, cache, technique, most_asked);
@@ -84,14 +143,18 @@ void plan_samples(Show& show, const PictureJob& job, const Technique& technique,
   work.ahead.clear();
   if (ahead != lit && !technique.begin_pass)
     cache.predict(ahead, int(predicted_share * float(asked)), job.seed, work.ahead);
-  const int planned = asked - int(work.ahead.size());
+  work.corrective.clear();
+  if (corrects(show, job, technique))
+    plan_corrections(show, job, lit, int(corrected_share * float(asked)), picture, work.corrective);
+  const int planned = asked - int(work.ahead.size()) - int(work.corrective.size());
   const bool spread = spreads_samples(job, technique, picture.rest);
   const int aimed = spread ? samples_to_watch(planned) : planned;
   cache.plan(lit, aimed, job.seed, work.requests);
   if (spread) {
     spread_samples(lit, planned - aimed, visitor, work.requests);
   }
-  work.requests.insert(work.requests.end(), work.ahead.begin(), work.ahead.end());
+  for (const auto* more : {&work.ahead, &work.corrective})
+    work.requests.insert(work.requests.end(), more->begin(), more->end());
   picture.costs.late = late;
 }
 
@@ -107,7 +170,8 @@ bool begin_samples(Show& show, const PictureJob& job, const Technique& technique
   picture.broker.forget();  // what was asked for on the way
   work.pose = show.pose_number;
   if (technique.begin_pass)
-    technique.begin_pass(*show.world, transport_of(show, job), lit, visitor.link->id,
+    technique.begin_pass(*show.world, transport_of(show, job),
+                         technique.finish_pass ? work.pass : lit, pass_seed(visitor.link->id),
                          uint32_t(job.tick), show.lights);
   return true;
 }
@@ -120,17 +184,21 @@ bool trace_slice(Show& show, const PictureJob& job, const Technique& technique, 
         std::span(work.requests).subspan(work.traced, count),
         std::span(work.samples).subspan(work.traced, count));
   work.traced += count;
+  if (technique.finish_pass)
+    technique.finish_pass(*show.world, show.lights, work.pass, work.samples);
   return work.traced < all;
 }
 
-void remember_traced(const Show& show, const PictureJob& job, const View& lit, DrawingWork& work,
-                     Visitor& visitor) {
+void remember_traced(const Show& show, const PictureJob& job, const Technique& technique,
+                     const View& lit, DrawingWork& work, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
   if (picture.costs.late) return;
   work.requests.resize(work.traced);
   work.samples.resize(work.traced);
+  if (technique.finish_pass) name_pixels(lit, work.requests);
   if (show.pose_number != work.pose) follow_meshes(*show.world, work.samples);
   picture.cache.remember(lit, work.requests, work.samples);
+  picture.compositor.corrections().remember(lit, work.requests, work.samples);
   picture.costs.samples = work.samples.size();
   // A picture that is drawn, not reconstructed, has a use for them only when it is kept for long.
   bool kept_long = !job.passing && picture.cache.is_still();

@@ -17,7 +17,9 @@ bool begin_samples(Show& show, const PictureJob& job, const Technique& technique
 // A slice of them. Returns whether some are left.
 bool trace_slice(Show& show, const PictureJob& job, const Technique& technique, DrawingWork& work);
 // Those traced, for the visitor's cache and, at rest, for each pixel by itself.
-void remember_traced(const Show& show, const PictureJob& job, const View& lit, DrawingWork& work,
-                     Visitor& visitor);
+void remember_traced(const Show& show, const PictureJob& job, const Technique& technique,
+                     const View& lit, DrawingWork& work, Visitor& visitor);
+// Answers that came after the picture they were asked for.
+void take_answers(const Show& show, VisitorPicture& picture);
 
 }  // namespace wellspring

@@ -10,6 +10,8 @@
 #include "cache/point_image.h"
 #include "picture/light_view.h"
 #include "show/draw/pace.h"
+#include "show/kiosk/screen_window.h"
+#include "show/state/in_view.h"
 
 namespace wellspring {
 namespace {
@@ -20,8 +22,7 @@ struct HintKind {
   float radius, weight;
 };
 constexpr HintKind pointer_hint{0.02f, 1}, head_hint{0.15f, 0.5f}, shown_hint{0.04f, 0.8f};
-constexpr float far_away = 1e4f;     // metres
-constexpr float least_matte = 0.5f;  // roughness, from which nothing shines
+constexpr float far_away = 1e4f;  // metres
 
 // Mean of `scale` x `scale` pixels.
 void reduce_row(const Image8& image, int scale, int y, Image8& small) {
@@ -64,10 +65,11 @@ vec3 place_in_picture(const View& view, vec2 place) {
   return ray.origin + ray.direction * far_away;
 }
 
-const Person* nearest_person(const Show& show) {
+const Person* nearest_person(const Show& show, const Visitor& visitor) {
   const Person* nearest = nullptr;
+  const std::string kiosk = kiosk_name(show, visitor.name);
   for (const Eye& eye : show.eyes) {
-    if (show.time - eye.received > observation_lifetime) continue;
+    if (eye.kiosk != kiosk || show.time - eye.received > observation_lifetime) continue;
     for (const Person& person : eye.seen.people)
       if (!nearest || glm::length(person.position) < glm::length(nearest->position))
         nearest = &person;
@@ -75,13 +77,12 @@ const Person* nearest_person(const Show& show) {
   return nearest;
 }
 
-// Where on the screen a head is turned to: 0 to 1 within, any number beside it. The screen is so
-// large that the picture's camera is viewing_distance before it.
-vec2 faced_place(const Person& person, const View& view) {
+// Where on the screen a head is turned to: 0 to 1 within, any number beside it.
+vec2 faced_place(const Person& person, const ScreenSize& screen, const View& rest) {
   vec2 at = vec2(person.position) +
             person.position.z * vec2(std::tan(person.rotation.x), std::tan(person.rotation.y));
-  float half_height = viewing_distance * view.tan_half_fov;
-  float half_width = half_height * float(view.width) / float(view.height);
+  float half_height = 0.5f * picture_height(screen, rest);
+  float half_width = half_height * float(rest.width) / float(rest.height);
   return {0.5f + 0.5f * at.x / half_width, 0.5f - 0.5f * at.y / half_height};
 }
 
@@ -94,7 +95,7 @@ const PointOfInterest* find_shown(const Show& show, const Voice& voice) {
 AttentionCause find_cause(const Show& show, const Visitor& visitor) {
   const VisitorAttention& looks = visitor.looks;
   return {looks.seen, find_hints(show, visitor, *looks.seen), visitor.wants.task_weight,
-          known_objects(show)};
+          show.known};
 }
 
 // Whose turn it is, longest ago first; null: nobody's.
@@ -201,33 +202,20 @@ std::vector<AttentionHint> find_hints(const Show& show, const Visitor& visitor,
   const VisitorAttention& looks = visitor.looks;
   if (looks.pointer && show.time - looks.pointed_at < pointer_lifetime)
     add_hint(seen, place_in_picture(now, *looks.pointer), pointer_hint, hints);
-  if (const Person* person = visitor.kiosk ? nearest_person(show) : nullptr) {
+  if (const Person* person = visitor.kiosk ? nearest_person(show, visitor) : nullptr) {
     HintKind kind = head_hint;
     kind.weight *= std::clamp(person->confidence, 0.0f, 1.0f);
-    vec2 place = faced_place(*person, now);
+    const Kiosk* kiosk = kiosk_of(show, visitor);
+    vec2 place = faced_place(*person, kiosk ? kiosk->settings.screen : ScreenSize(),
+                             rest_view(show, visitor));
     bool faces =
         std::abs(person->rotation.x) < 0.4f * pi && std::abs(person->rotation.y) < 0.4f * pi;
     if (faces) add_hint(seen, place_in_picture(now, place), kind, hints);
   }
   const PointOfInterest* shown = find_shown(show, visitor.hearing.narration.voice);
-  if (!shown) shown = find_shown(show, show.voice);
+  if (!shown) shown = find_shown(show, teller_of(show, visitor).voice);
   if (shown) add_hint(seen, vec3(shown->place - show.exhibit.scene.origin), shown_hint, hints);
   return hints;
-}
-
-std::vector<char> known_objects(const Show& show) {
-  if (!show.lights.maps || show.mapped.empty()) return {};
-  const Scene& scene = show.exhibit.scene;
-  std::vector<char> known = show.mapped;
-  for (const Instance& instance : scene.instances) {
-    if (instance.object >= known.size()) continue;
-    const Material& material =
-        scene.materials[size_t(scene.meshes[size_t(instance.mesh)].material)];
-    bool shines = material.metallic > 0 || material.roughness < least_matte ||
-                  material.transmission > 0 || material.clearcoat > 0;
-    if (shines) known[instance.object] = 0;
-  }
-  return known;
 }
 
 }  // namespace wellspring

@@ -34,8 +34,5 @@ void analyse(AttentionAnalysis& analysis);
 // out.
 std::vector<AttentionHint> find_hints(const Show& show, const Visitor& visitor,
                                       const SeenPicture& seen);
-// Objects whose light is known without samples: illumination maps know it, and nothing of them
-// shines.
-std::vector<char> known_objects(const Show& show);
 
 }  // namespace wellspring

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/near_name.h"
+
 namespace wellspring {
 
 namespace {
@@ -77,6 +79,31 @@ const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id) {
   for (const PointOfInterest& point : exhibit.points)
     if (point.id == id) return &point;
   return nullptr;
+}
+
+namespace {
+template <class List, class Name>
+std::string nothing_called(const char* kind, const std::string& name, const List& list,
+                           const Name& name_of) {
+  std::vector<std::string> names;
+  for (const auto& one : list) names.push_back(name_of(one));
+  return std::string("there is no ") + kind + " '" + name + "'" + did_you_mean(name, names);
+}
+}  // namespace
+
+std::string unknown_viewpoint(const Exhibit& exhibit, const std::string& name) {
+  return nothing_called("viewpoint", name, exhibit.viewpoints,
+                        [](const ExhibitViewpoint& one) { return one.view.name; });
+}
+
+std::string unknown_storyteller(const Exhibit& exhibit, const std::string& id) {
+  return nothing_called("storyteller", id, exhibit.storytellers,
+                        [](const StorytellerPlace& one) { return one.id; });
+}
+
+std::string unknown_object(const Exhibit& exhibit, const std::string& id) {
+  return nothing_called("object", id, exhibit.points,
+                        [](const PointOfInterest& one) { return one.id; });
 }
 
 }  // namespace wellspring

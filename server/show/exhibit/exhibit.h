@@ -11,6 +11,8 @@
 #include "avatar/face/expression.h"
 #include "avatar/body/gesture_library.h"
 #include "avatar/story/story_script.h"
+#include "show/exhibit/kiosk_settings.h"
+#include "world/load/credit.h"
 #include "world/scene.h"
 
 namespace wellspring {
@@ -93,32 +95,95 @@ struct StorytellerPlace {
 
 struct PointOfInterest {
   std::string id, node;
-  uint32_t object = 0;  // index into Scene::objects
-  dvec3 place{0};       // its middle, where one looks or points; absolute
-  LocalText title;
+  std::vector<uint32_t> objects;  // what it is made of: indices into Scene::objects
+  dvec3 place{0};                 // its middle, where one looks or points; absolute
+  LocalText title, text;
+  std::string story;                            // id of the one about it; may be empty
+  std::map<std::string, LocalText> provenance;  // element of Dublin Core -> value
+  std::string manifest;                         // IIIF; https or empty
+  struct Door {
+    std::string exhibit, viewpoint;  // empty viewpoint: that exhibit's start
+  } door;                            // to another exhibit; empty exhibit: it leads nowhere
 };
+
+// What visitors may ask the storyteller, and what the curator wants said.
+struct AnsweredQuestion {
+  std::vector<LocalText> question;  // ways to ask it, one or more; the first is offered
+  LocalText answer;
+};
+inline constexpr size_t most_questions = 200;
 
 // What visitors may switch: scene.lamps[i] is what it is made of.
 struct ExhibitLamp {
   std::string id;
   LocalText title;
-  bool on = true;  // at first
+  bool on = true;       // at first
+  bool shared = false;  // who switches it does so for everybody
 };
 inline constexpr size_t most_lamps = 32;
+
+// A topic of the book, or a partner of the museum. Files are named as in exhibit.json.
+struct BookPage {
+  std::string id;
+  LocalText title;
+  std::vector<LocalText> text;  // paragraphs
+  std::string image;            // may be empty
+  LocalText alt, credit;        // what the picture shows, in words; whose it is
+  std::string link;             // of a partner; https or empty
+};
+struct BookSlide {
+  LocalText title, text;
+  std::string image, video;  // at most one of them
+  LocalText alt;
+  double seconds = 10;  // shown so long
+};
+struct BookPresentation {
+  std::string id;
+  LocalText title;
+  std::vector<BookSlide> slides;
+};
+// What a kiosk's guests read.
+struct Book {
+  std::vector<BookPage> topics, partners;
+  std::vector<BookPresentation> presentations;
+};
+
+// Heard from a place, or everywhere: made by the page (`kind`), or a file.
+struct AmbientSound {
+  std::string id, kind, file;  // kind: one of sound_kinds; empty where there is a file
+  std::optional<dvec3> position;
+  double gain = 1, radius = 8;  // 0 to 1; metres at which it is gone
+};
+
+// A file of the package that browsers may have, as it was when it was checked.
+struct ServedFile {
+  std::string path, type;  // type: "image/jpeg", ...
+  uint64_t bytes = 0;
+  int64_t changed = 0;  // its last change, in the file system's own count
+  std::string etag;     // of its bytes
+};
 
 struct Exhibit {
   std::string id, folder;
   LocalText title, description;
   std::vector<std::string> languages{"en"};
-  float exposure = 1;
+  float exposure = 1;  // multiplies radiance; measured where exhibit.json says "auto"
+  bool auto_exposure = false;
   std::optional<WalkSettings> walk;
   std::vector<ExhibitViewpoint> viewpoints;  // never empty
   int start = 0;
   std::vector<StorytellerPlace> storytellers;  // one is there at a time, the first to begin with
+  bool shared_storyteller = false;             // there is one for all visitors
   std::vector<TourPlan> tours;
   std::vector<StoryText> stories;
   std::vector<PointOfInterest> points;
   std::vector<ExhibitLamp> lamps;  // of each of the scene's
+  std::optional<Book> book;
+  std::vector<AnsweredQuestion> questions;
+  std::vector<AmbientSound> sounds;
+  std::map<std::string, ServedFile> files;  // by the name that exhibit.json gives
+  std::vector<KioskSettings> kiosks;
+  std::vector<Credit> credits;  // of those of its glTF files that say whose they are
   Scene scene;
 };
 
@@ -126,5 +191,10 @@ int find_viewpoint(const Exhibit& exhibit, std::string_view name);  // -1: none
 int find_storyteller(const Exhibit& exhibit, std::string_view id);  // likewise
 int find_lamp(const Exhibit& exhibit, std::string_view id);         // likewise
 const PointOfInterest* find_point(const Exhibit& exhibit, std::string_view id);
+
+// That there is none of that name, and which was perhaps meant.
+std::string unknown_viewpoint(const Exhibit& exhibit, const std::string& name);
+std::string unknown_storyteller(const Exhibit& exhibit, const std::string& id);
+std::string unknown_object(const Exhibit& exhibit, const std::string& id);
 
 }  // namespace wellspring

@@ -4,15 +4,6 @@
 #include "world/load/lamp.h"
 
 namespace wellspring {
-namespace {
-
-bool read_switch(Fields& fields) {
-  const nlohmann::json* on = fields.value("on");
-  if (on && !on->is_boolean()) fields.problem("on", "must be true or false");
-  return !on || !on->is_boolean() || on->get<bool>();
-}
-
-}  // namespace
 
 void read_lamps(Exhibit& exhibit, Fields& root) {
   root.objects("lamps", false, [&](Fields fields) {
@@ -24,7 +15,8 @@ void read_lamps(Exhibit& exhibit, Fields& root) {
     for (const std::string& lang : exhibit.languages)
       if (!lamp.title.empty() && !lamp.title.contains(lang))
         fields.problem("title", "has nothing in '" + lang + "'", false);
-    lamp.on = read_switch(fields);
+    lamp.on = fields.flag("on", true);
+    lamp.shared = fields.flag("shared", false);
     LampNames names{lamp.id, fields.texts("nodes"), fields.texts("materials")};
     if (names.nodes.empty() && names.materials.empty())
       fields.problem("", "names neither \"nodes\" nor \"materials\" of the scene");
@@ -34,9 +26,11 @@ void read_lamps(Exhibit& exhibit, Fields& root) {
           "", "is one more than the " + std::to_string(most_lamps) + " lamps an exhibit may have");
       return;
     }
+    const bool loaded = !exhibit.scene.objects.empty();  // else every name would be missed
     for (const LampFault& fault : add_lamp(names, exhibit.scene))
-      fields.problem((fault.is_material ? "materials/" : "nodes/") + std::to_string(fault.index),
-                     fault.what);
+      if (loaded)
+        fields.problem((fault.is_material ? "materials/" : "nodes/") + std::to_string(fault.index),
+                       fault.what);
     exhibit.lamps.push_back(std::move(lamp));
   });
 }

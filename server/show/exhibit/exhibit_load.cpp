@@ -3,35 +3,43 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "avatar/load/character_load.h"
 #include "avatar/face/expression_sum.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "show/exhibit/exhibit_book.h"
+#include "show/exhibit/exhibit_files.h"
+#include "show/exhibit/exhibit_kiosks.h"
 #include "show/exhibit/exhibit_lamps.h"
+#include "show/exhibit/exhibit_light.h"
+#include "show/exhibit/exhibit_objects.h"
+#include "show/exhibit/exhibit_questions.h"
 #include "show/exhibit/exhibit_story.h"
 #include "show/exhibit/json_fields.h"
 #include "show/exhibit/package_file.h"
-#include "wire/json.h"
-#include "world/load/scene_load.h"
-#include "world/sky.h"
 
 namespace wellspring {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 namespace {
 
-constexpr size_t max_manifest_bytes = 8 << 20;
 constexpr double degree = 3.14159265358979323846 / 180;
 
 bool is_identifier(const std::string& id) {
   return !id.empty() && id.size() <= 100 && std::all_of(id.begin(), id.end(), [](unsigned char c) {
     return std::isalnum(c) || c == '-' || c == '_' || c == '.';
   });
+}
+
+void read_exposure(Exhibit& exhibit, Fields& root) {
+  const nlohmann::json* value = root.value("exposure");
+  exhibit.auto_exposure = value && *value == "auto";
+  if (value && value->is_string() && !exhibit.auto_exposure)
+    root.problem("exposure", "must be a number, or \"auto\"");
+  else if (!exhibit.auto_exposure)
+    exhibit.exposure = float(root.number("exposure", false, 1, 1e-6, 1e6));
 }
 
 void read_walk(Exhibit& exhibit, Fields fields) {
@@ -71,7 +79,7 @@ int read_viewpoint_name(const Exhibit& exhibit, Fields& fields, const char* name
   std::string viewpoint = fields.text(name, required);
   if (viewpoint.empty()) return 0;
   int index = find_viewpoint(exhibit, viewpoint);
-  if (index < 0) fields.problem(name, "there is no viewpoint '" + viewpoint + "'");
+  if (index < 0) fields.problem(name, unknown_viewpoint(exhibit, viewpoint));
   return std::max(index, 0);
 }
 
@@ -154,6 +162,7 @@ void read_storytellers(Exhibit& exhibit, Fields& root, std::vector<Problem>& pro
   root.objects("storytellers", false, [&](Fields fields) {
     read_storyteller(exhibit, std::move(fields), true, problems);
   });
+  exhibit.shared_storyteller = root.flag("shared_storyteller", false);
 }
 
 void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
@@ -186,84 +195,10 @@ void read_tours_and_stories(Exhibit& exhibit, Fields& root, std::vector<Problem>
     story.sound = read_sounds(exhibit, fields, "sound", story.text);
     if (std::string id = fields.text("teller", false); !id.empty()) {
       story.storyteller_index = find_storyteller(exhibit, id);
-      if (story.storyteller_index < 0)
-        fields.problem("teller", "there is no storyteller '" + id + "'");
+      if (story.storyteller_index < 0) fields.problem("teller", unknown_storyteller(exhibit, id));
     }
     fields.finish();
     exhibit.stories.push_back(std::move(story));
-  });
-}
-
-void read_scene(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) {
-  std::string path = package_file(root, "scene", exhibit.folder, root.text("scene", true));
-  if (!path.empty()) {
-    try {
-      SceneLoadOptions options;
-      options.package = exhibit.folder;
-      exhibit.scene = load_scene(path, options);
-      for (const std::string& warning : exhibit.scene.warnings)
-        problems.push_back({path, "", warning, false});
-    } catch (const LoadError& error) {
-      problems.push_back({error.file, error.where, error.what_});
-    }
-  }
-  root.object("environment", false, [&](Fields fields) {
-    exhibit.scene.environment.radiance = vec3(fields.triple("radiance", false, dvec3(1)));
-    std::string picture = fields.text("image", false);
-    std::string picture_path = package_file(fields, "image", exhibit.folder, picture);
-    if (!picture_path.empty()) {
-      try {
-        load_environment(picture_path, exhibit.scene);
-      } catch (const LoadError& error) {
-        problems.push_back({error.file, error.where, error.what_});
-      }
-    }
-    fields.object("sky", false, [&](Fields sky) {
-      SkySettings settings;
-      settings.elevation = sky.number("elevation_deg", true, settings.elevation, -18, 90);
-      settings.azimuth = sky.number("azimuth_deg", true, settings.azimuth, -360, 360);
-      settings.turbidity = sky.number("turbidity", false, settings.turbidity, 1, 10);
-      settings.strength = sky.number("strength", false, settings.strength, 0, 1e6);
-      sky.finish();
-      if (!picture.empty()) fields.problem("sky", "is there beside an \"image\": one of them only");
-      else if (!sky_problem(settings)) add_sky(settings, exhibit.scene);
-    });
-    fields.finish();
-  });
-  if (!path.empty() && !has_light(exhibit.scene))
-    root.problem("environment", "the scene has no light of any kind; it will be black", false);
-}
-
-// The middle of all that belongs to an object, relative to the scene's origin.
-vec3 object_middle(const Scene& scene, uint32_t object) {
-  Bounds bounds;
-  for (const Instance& instance : scene.instances) {
-    if (instance.object != object) continue;
-    for (vec3 position : scene.meshes[size_t(instance.mesh)].positions) {
-      vec3 p = vec3(instance.to_world * vec4(position, 1));
-      bounds.low = min(bounds.low, p);
-      bounds.high = max(bounds.high, p);
-    }
-  }
-  vec3 middle = 0.5f * (bounds.low + bounds.high);
-  return is_finite(middle) ? middle : vec3(0);
-}
-
-void read_points(Exhibit& exhibit, Fields& root) {
-  root.members("objects", [&](const std::string& id, Fields fields) {
-    PointOfInterest point;
-    point.id = id;
-    point.node = fields.text("node", true);
-    point.title = fields.local_text("title", false);
-    const auto& names = exhibit.scene.objects;
-    auto found = std::find(names.begin(), names.end(), point.node);
-    if (found == names.end() || point.node.empty())
-      fields.problem("node", "the scene has no node '" + point.node + "'");
-    else point.object = uint32_t(found - names.begin());
-    dvec3 middle = exhibit.scene.origin + dvec3(object_middle(exhibit.scene, point.object));
-    point.place = fields.triple("at", false, middle);
-    fields.finish();
-    exhibit.points.push_back(std::move(point));
   });
 }
 
@@ -277,31 +212,17 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
   std::string file = (fs::path(folder) / "exhibit.json").string();
   if (!is_identifier(exhibit.id))
     problems.push_back({folder, "", "the folder's name must be letters, digits, '-', '_' or '.'"});
-  std::ifstream in(file, std::ios::binary);
-  auto size = fs::file_size(file, ec);
-  if (!in || ec) {
-    problems.push_back({file, "", "cannot be read"});
-    return exhibit;
-  }
-  if (size > max_manifest_bytes) {
-    problems.push_back({file, "", "is larger than 8 MiB"});
-    return exhibit;
-  }
-  std::stringstream text;
-  text << in.rdbuf();
-  auto parsed = parse_json(text.str());
-  if (const WireError* error = std::get_if<WireError>(&parsed)) {
-    problems.push_back({file, "", error->message});
-    return exhibit;
-  }
-  Fields root(std::get<json>(parsed), file, "", problems);
+  const auto manifest = read_json_file(file, problems);
+  if (!manifest) return exhibit;
+  Fields root(*manifest, file, "", problems);
+  root.text("$schema", false);  // for editors
   std::string id = root.text("id", false, exhibit.id);
   if (id != exhibit.id)
     root.problem("id", "'" + id + "' is not the folder's name '" + exhibit.id + "'");
   exhibit.title = root.local_text("title", true);
   exhibit.description = root.local_text("description", false);
   if (auto languages = root.texts("languages"); !languages.empty()) exhibit.languages = languages;
-  exhibit.exposure = float(root.number("exposure", false, 1, 1e-6, 1e6));
+  read_exposure(exhibit, root);
   root.object("walk", false, [&](Fields fields) { read_walk(exhibit, std::move(fields)); });
   read_scene(exhibit, root, problems);
   read_lamps(exhibit, root);
@@ -312,10 +233,20 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
     root.problem("viewpoints", "there is no viewpoint here and no camera in the scene");
   exhibit.start = read_viewpoint_name(exhibit, root, "start", false);
   read_storytellers(exhibit, root, problems);
+  read_kiosks(exhibit, root);
   read_tours_and_stories(exhibit, root, problems);
-  read_points(exhibit, root);
+  read_objects(exhibit, root);
   check_marks(exhibit, problems);
+  read_book(exhibit, root);
+  read_questions(exhibit, root);
+  read_ambient_sounds(exhibit, root);
   root.finish();
+  const bool usable =
+      std::none_of(problems.begin(), problems.end(), [](const Problem& p) { return p.fatal; });
+  if (exhibit.auto_exposure && usable) {
+    exhibit.exposure = measure_exposure(exhibit);
+    log::info("{}: exposure {:.3g}", exhibit.id, exhibit.exposure);
+  }
   return exhibit;
 }
 

@@ -8,6 +8,7 @@
 #include "avatar/body/gesture_library.h"
 #include "avatar/story/story_load.h"
 #include "base/load_error.h"
+#include "base/near_name.h"
 #include "show/exhibit/package_file.h"
 
 namespace wellspring {
@@ -77,29 +78,46 @@ struct Checker {
     problems.push_back({line.file, to_string(place), what, false});
   }
 
-  // Whether every storyteller has it.
-  bool knows_gesture(const std::string& name) const {
-    if (exhibit.storytellers.empty()) return find_gesture(default_gestures(), name) >= 0;
-    return std::all_of(exhibit.storytellers.begin(), exhibit.storytellers.end(),
-                       [&](const auto& storyteller_place) {
-                         return find_gesture(storyteller_place.gestures
-                                                 ? *storyteller_place.gestures
-                                                 : default_gestures(),
-                                             name) >= 0;
-                       });
+  static bool knows(const GestureLibrary& library, const std::string& name) {
+    return find_gesture(library, name) >= 0;
+  }
+
+  // The libraries of all storytellers.
+  std::vector<const GestureLibrary*> libraries() const {
+    std::vector<const GestureLibrary*> list;
+    for (const StorytellerPlace& one : exhibit.storytellers)
+      list.push_back(one.gestures ? &*one.gestures : &default_gestures());
+    if (list.empty()) list.push_back(&default_gestures());
+    return list;
+  }
+
+  void check_gesture(const StoryLine& line, const StoryMark& mark) {
+    for (const GestureLibrary* library : libraries()) {
+      if (knows(*library, mark.name)) continue;
+      std::vector<std::string> names;
+      for (const GestureClip& clip : library->clips) names.push_back(clip.name);
+      note(line, mark.place,
+           "there is no gesture '" + mark.name + "'" + did_you_mean(mark.name, names));
+      return;
+    }
+  }
+
+  void check_emotion(const StoryLine& line, const StoryMark& mark) {
+    if (find_emotion(mark.name) >= 0) return;
+    const std::vector<std::string> names(emotion_names.begin(), emotion_names.end());
+    note(line, mark.place,
+         "there is no emotion '" + mark.name + "'" + did_you_mean(mark.name, names));
   }
 
   void check_mark(const StoryLine& line, const StoryMark& mark) {
     if (mark.name.empty()) return;
     bool object = mark.kind == StoryMarkKind::look || mark.kind == StoryMarkKind::point;
     if (object && !find_point(exhibit, mark.name))
-      note(line, mark.place, "the exhibit has no object '" + mark.name + "'");
+      note(line, mark.place, unknown_object(exhibit, mark.name));
     if (mark.kind == StoryMarkKind::view && find_viewpoint(exhibit, mark.name) < 0)
-      note(line, mark.place, "the exhibit has no viewpoint '" + mark.name + "'");
-    if (mark.kind == StoryMarkKind::emotion && find_emotion(mark.name) < 0)
-      note(line, mark.place, "there is no emotion '" + mark.name + "'");
-    if (mark.kind == StoryMarkKind::gesture && !knows_gesture(mark.name))
-      note(line, mark.place, "there is no gesture '" + mark.name + "'");
+      note(line, mark.place, unknown_viewpoint(exhibit, mark.name));
+    if (mark.kind == StoryMarkKind::emotion) check_emotion(line, mark);
+    if (mark.kind == StoryMarkKind::gesture) check_gesture(line, mark);
   }
 
   void check(const std::string& what, const LocalScript& script) {

@@ -2,7 +2,13 @@
 #include "show/exhibit/json_fields.h"
 
 #include <cmath>
+#include <filesystem>
 #include <fmt/core.h>
+#include <fstream>
+#include <sstream>
+
+#include "base/near_name.h"
+#include "wire/json.h"
 
 namespace wellspring {
 
@@ -10,7 +16,25 @@ using nlohmann::json;
 
 namespace {
 const json empty_object = json::object();
+constexpr size_t max_file_bytes = 8 << 20;
 }  // namespace
+
+std::optional<json> read_json_file(const std::string& file, std::vector<Problem>& problems) {
+  std::error_code ec;
+  std::ifstream in(file, std::ios::binary);
+  const auto size = std::filesystem::file_size(file, ec);
+  auto refuse = [&](std::string what) {
+    problems.push_back({file, "", std::move(what)});
+    return std::nullopt;
+  };
+  if (!in || ec) return refuse("cannot be read");
+  if (size > max_file_bytes) return refuse("is larger than 8 MiB");
+  std::stringstream text;
+  text << in.rdbuf();
+  auto parsed = parse_json(text.str());
+  if (const WireError* error = std::get_if<WireError>(&parsed)) return refuse(error->message);
+  return std::get<json>(std::move(parsed));
+}
 
 bool is_language_tag(const std::string& tag) {
   if (tag.size() < 2 || tag.size() > 35) return false;
@@ -73,6 +97,11 @@ double Fields::number(const char* name, bool required, double otherwise, double 
   return number;
 }
 
+bool Fields::flag(const char* name, bool otherwise) {
+  const json* value = get(name, false, json::value_t::boolean, "true or false");
+  return value ? value->get<bool>() : otherwise;
+}
+
 dvec3 Fields::triple(const char* name, bool required, dvec3 otherwise) {
   const json* value = get(name, required, json::value_t::array, "three numbers");
   if (!value) return otherwise;
@@ -93,22 +122,30 @@ dvec3 Fields::triple(const char* name, bool required, dvec3 otherwise) {
   return result;
 }
 
-LocalText Fields::local_text(const char* name, bool required) {
+LocalText Fields::read_local_text(const json& value, const std::string& place) {
   LocalText result;
-  auto found = object_.find(name);
-  if (found != object_.end() && found->is_string()) {
-    read_.insert(name);
-    result["en"] = found->get<std::string>();
-    return result;
-  }
-  const json* value = get(name, required, json::value_t::object, "a text, or texts by language");
-  if (!value) return result;
-  for (const auto& [tag, text] : value->items()) {
-    if (!is_language_tag(tag))
-      problem(std::string(name) + "/" + tag, "is no language tag such as en");
-    else if (!text.is_string()) problem(std::string(name) + "/" + tag, "must be a text");
-    else result[tag] = text.get<std::string>();
-  }
+  if (value.is_string()) result["en"] = value.get<std::string>();
+  else if (!value.is_object()) problem(place, "must be a text, or texts by language");
+  else
+    for (const auto& [tag, text] : value.items()) {
+      if (!is_language_tag(tag)) problem(place + "/" + tag, "is no language tag such as en");
+      else if (!text.is_string()) problem(place + "/" + tag, "must be a text");
+      else result[tag] = text.get<std::string>();
+    }
+  return result;
+}
+
+LocalText Fields::local_text(const char* name, bool required) {
+  const json* found = value(name);
+  if (!found && required) problem(name, "is missing");
+  return found ? read_local_text(*found, name) : LocalText{};
+}
+
+std::vector<LocalText> Fields::local_texts(const char* name, bool required) {
+  std::vector<LocalText> result;
+  if (const json* list = get(name, required, json::value_t::array, "a list of texts"))
+    for (size_t i = 0; i < list->size(); i++)
+      result.push_back(read_local_text((*list)[i], std::string(name) + "/" + std::to_string(i)));
   return result;
 }
 
@@ -129,8 +166,11 @@ std::vector<std::string> Fields::texts(const char* name) {
 }
 
 void Fields::finish() {
+  const std::vector<std::string> known(read_.begin(), read_.end());
   for (const auto& [name, value] : object_.items())
-    if (!read_.contains(name)) problem(name, "is not a field of this object and is ignored", false);
+    if (!read_.contains(name))
+      problem(name, "is not a field of this object and is ignored" + did_you_mean(name, known),
+              false);
 }
 
 }  // namespace wellspring

@@ -3,6 +3,7 @@
 // on.
 #pragma once
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,6 +14,10 @@
 namespace wellspring {
 
 bool is_language_tag(const std::string& tag);
+
+// Nothing, and a fatal problem: it cannot be read, is larger than 8 MiB, or is no JSON.
+std::optional<nlohmann::json> read_json_file(const std::string& file,
+                                             std::vector<Problem>& problems);
 
 // A JSON object and its place. Reading a missing optional field gives the default; a wrong one
 // gives the default and a fatal problem. finish() notes fields nobody read (a misspelt name) as not
@@ -25,9 +30,12 @@ class Fields {
   bool has(const char* name) const;
   std::string text(const char* name, bool required, const std::string& otherwise = "");
   double number(const char* name, bool required, double otherwise, double low, double high);
+  bool flag(const char* name, bool otherwise);
   dvec3 triple(const char* name, bool required, dvec3 otherwise = dvec3(0));
   // A text, or an object of texts by language tag.
   LocalText local_text(const char* name, bool required);
+  // A list of these.
+  std::vector<LocalText> local_texts(const char* name, bool required);
   std::vector<std::string> texts(const char* name);
   // Calls each(Fields) for every object in the array (or, for `members`, of the object: name,
   // Fields).
@@ -61,6 +69,7 @@ class Fields {
  private:
   const nlohmann::json* get(const char* name, bool required, nlohmann::json::value_t type,
                             const char* type_name);
+  LocalText read_local_text(const nlohmann::json& value, const std::string& place);
   const nlohmann::json& object_;
   std::string file_, where_;
   std::vector<Problem>& problems_;

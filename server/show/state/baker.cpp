@@ -58,7 +58,6 @@ void Baker::live() {
   if (!wait_until_allowed()) return;
   const World world(scene_);
   const uint64_t key = hash_scene(scene_);
-  const BakeScene scene = make_bake_scene(world, settings_.places, grid_);
   const std::string file = settings_.file + ".bake";
   Bake bake;
   KeyedFile found = load_bake(world, file, key, bake);
@@ -70,14 +69,15 @@ void Baker::live() {
   if (bake.charts.tiles == 0) return;  // nothing is diffuse
   bake.source = settings_.source;
   float error = bake.passes > 0 ? bake_error(bake) : 1;
-  const bool kept = load_map(scene_, settings_.file + ".maps", key) != nullptr;
-  float shown = kept ? std::min(error, worth_showing) : worth_showing;
+  float shown = settings_.has_map ? std::min(error, worth_showing) : worth_showing;
   double saved = seconds_now();
   auto tell = [&](bool works) {
     std::lock_guard lock(mutex_);
     status_ = {works, bake.passes, error};
   };
   tell(false);
+  if (error <= settings_.least_error) return;
+  const BakeScene scene = make_bake_scene(world, settings_.places, grid_);
   while (wait_until_allowed() && error > settings_.least_error) {
     tell(true);
     const double began = seconds_now();

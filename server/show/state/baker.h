@@ -22,6 +22,7 @@ struct BakerSettings {
   std::vector<vec3> eyes;      // and wherever they may be
   double least_error = 0.004;  // of the mean light: good enough for ever
   BakeSettings bake;           // of one that is begun
+  bool has_map = false;        // one of earlier is shown already
 };
 
 struct BakerStatus {

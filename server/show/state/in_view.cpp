@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/in_view.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "show/kiosk/screen_window.h"
 
 namespace wellspring {
 
@@ -11,16 +14,23 @@ constexpr float head_height = 1.5f, head_reach = 0.45f;  // metres; bowing and l
 constexpr float body_height = 0.9f, body_reach = 1.3f;
 constexpr float nobody_near = 1e6f;
 
-vec3 above_feet(const Show& show, float height) {
-  return vec3(show.storyteller.placement * vec4(0, height, 0, 1));
+vec3 above_feet(const Teller& teller, float height) {
+  return vec3(teller.storyteller.placement * vec4(0, height, 0, 1));
 }
 
-// Metres to the storyteller's head for who may see it, else nobody_near.
-float distance_to_head(const Show& show, const Visitor& visitor) {
-  if (!visitor.welcomed) return nobody_near;
+// Metres to the teller's head for who may see it, else nobody_near.
+float distance_to_head(const Show& show, const Visitor& visitor, const Teller& teller) {
+  if (!visitor.welcomed || &teller_of(show, visitor) != &teller) return nobody_near;
   View view = view_of(show, visitor);
-  return sees_head(show, view) ? glm::length(view.position - above_feet(show, head_height))
-                               : nobody_near;
+  if (!sees_head(show, teller, view)) return nobody_near;
+  const vec3 head = above_feet(teller, head_height);
+  const Kiosk* kiosk = kiosk_of(show, visitor);
+  if (!kiosk || kiosk->audience.guests.empty()) return glm::length(view.position - head);
+  // The screen is a window: who stands before it sees her from there.
+  float nearest = nobody_near;
+  for (const Guest& guest : kiosk->audience.guests)
+    nearest = std::min(nearest, glm::length(guest.head - head));
+  return nearest;
 }
 
 }  // namespace
@@ -30,43 +40,57 @@ bool in_view(const View& view, vec3 centre, float radius) {
   float depth = dot(d, view.forward);
   if (depth < -radius) return false;
   float aspect = float(view.width) / float(view.height);
-  float slope = view.tan_half_fov * std::sqrt(1 + aspect * aspect);
+  float slope = view.tan_half_fov * std::sqrt(1 + aspect * aspect) + glm::length(view.middle);
   return glm::length(d - view.forward * depth) <
          slope * std::max(depth, 0.0f) + radius * std::sqrt(1 + slope * slope);
 }
 
-View view_of(const Show& show, const Visitor& visitor) {
+View rest_view(const Show& show, const Visitor& visitor) {
   const Viewpoint& at = visitor.place.view;
   return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, visitor.wants.width,
                    visitor.wants.height);
 }
 
-bool sees_head(const Show& show, const View& view) {
-  return !show.figures.empty() && show.storyteller_visible &&
-         in_view(view, above_feet(show, head_height), head_reach);
+View view_of(const Show& show, const Visitor& visitor) {
+  const View rest = rest_view(show, visitor);
+  const Kiosk* kiosk = kiosk_of(show, visitor);
+  return kiosk ? through_window(rest, kiosk->settings.screen, visitor.window.place) : rest;
 }
 
-bool sees_figure(const Show& show, const View& view) {
-  return !show.figures.empty() && show.storyteller_visible &&
-         in_view(view, above_feet(show, body_height), body_reach);
+bool sees_head(const Show& show, const Teller& teller, const View& view) {
+  return !show.figures.empty() && teller.visible &&
+         in_view(view, above_feet(teller, head_height), head_reach);
 }
 
-const Visitor* heard_on_tour(const Show& show) {
+bool sees_figure(const Show& show, const Teller& teller, const View& view) {
+  return !show.figures.empty() && teller.visible &&
+         in_view(view, above_feet(teller, body_height), body_reach);
+}
+
+const Visitor* heard_on_tour(const Show& show, const Teller& teller) {
   const Visitor* nearest = nullptr;
   float least = nobody_near;
   for (const Visitor& visitor : show.visitors) {
     const Voice& voice = visitor.hearing.narration.voice;
     if (voice.queue.empty() || voice.paused) continue;
-    if (float distance = distance_to_head(show, visitor); distance < least)
+    if (float distance = distance_to_head(show, visitor, teller); distance < least)
       least = distance, nearest = &visitor;
   }
   return nearest;
 }
 
-float viewer_distance(const Show& show) {
+const PointOfInterest* looked_at_beside_her(const Show& show, const Teller& teller) {
+  for (const Visitor& visitor : show.visitors)
+    if (visitor.welcomed && visitor.place.closer >= 0 && listens_to(show, visitor, teller) &&
+        sees_head(show, teller, view_of(show, visitor)))
+      return &show.exhibit.points[size_t(visitor.place.closer)];
+  return nullptr;
+}
+
+float viewer_distance(const Show& show, const Teller& teller) {
   float nearest = nobody_near;
   for (const Visitor& visitor : show.visitors)
-    nearest = std::min(nearest, distance_to_head(show, visitor));
+    nearest = std::min(nearest, distance_to_head(show, visitor, teller));
   return nearest;
 }
 

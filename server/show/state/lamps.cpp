@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "picture/corrections.h"
 #include "show/exhibit/exhibit_lamps.h"
 
 namespace wellspring {
@@ -10,75 +11,134 @@ namespace {
 
 constexpr double least_between = 0.2;  // seconds from one change of the light to the next
 
-const LightChange& change_since(Show& show, const std::vector<char>& before) {
+const LightChange& change_between(Show& show, const std::vector<char>& before,
+                                  const std::vector<char>& after) {
   Switches& switches = show.switches;
   for (const LightStep& step : switches.steps)
-    if (step.before == before) return step.change;
+    if (step.before == before && step.after == after) return step.change;
   switches.steps.push_back(
-      {before, LightChange(show.exhibit.scene, switches.all, before, switches.lit)});
+      {before, after, LightChange(show.exhibit.scene, switches.all, before, after)});
   return switches.steps.back().change;
+}
+
+// The light on what moves, guessed from another state's until samples say more.
+SkinLight changed_skin(Show& show, const std::vector<char>& before,
+                       const std::vector<char>& after) {
+  SkinLight skin = show.skin;
+  if (skin.places.empty()) return skin;
+  const LightChange& change = change_between(show, before, after);
+  auto changes = [&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
+    return change.changes(place, normal, kept, added);
+  };
+  relight_skin(*show.world, changes, skin);
+  return skin;
+}
+
+void switch_world(Show& show, const std::vector<char>& lamps) {
+  for (size_t lamp = 0; lamp < lamps.size(); lamp++)
+    show.world->switch_lamp(int(lamp), lamps[lamp]);
+  show.switches.lit = lamps;
+}
+
+void look_anew(VisitorPicture& picture) {
+  picture.around.keyframe = {}, picture.fade = {};  // they show another light
+  picture.rest = {};
+  picture.stats.converged = 0;  // who rests looks again,
+  picture.job.settled = false;  // and first at what is soon to be known
 }
 
 }  // namespace
 
 void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps) {
   const bool first = !show.lights.maps;
-  show.mapped = mapped_objects(show.exhibit.scene, *maps);
+  const Scene& scene = show.exhibit.scene;
+  show.mapped = mapped_objects(scene, *maps);
+  if (first) show.shining = find_shining(scene);
+  show.known = show.mapped;
+  for (size_t i = 0; i < show.known.size(); i++)
+    if (show.shining[i] > 0) show.known[i] = 0;
   show.lights.maps = maps;
   if (!show.exhibit.lamps.empty()) {
     show.switches.all.maps = std::move(maps);
-    light_lamps(show);
+    show.switches.others.clear();
+    show.lights = relit(show.switches.all, *show.world);
   }
-  // Points know their light by itself, not in multiples of what maps know.
-  if (first)
-    for (Visitor& visitor : show.visitors) visitor.picture.cache.clear();
+  for (Visitor& visitor : show.visitors) {
+    look_anew(visitor.picture);
+    if (!first) continue;
+    // Points know their light by itself, not in multiples of what maps know.
+    visitor.picture.cache.clear();
+    visitor.picture.compositor.corrections().clear();
+  }
 }
 
 void begin_lamps(Show& show) {
-  show.switches.lit.assign(show.exhibit.lamps.size(), 1);
   show.switches.wanted = first_lamps(show.exhibit);
   if (show.exhibit.lamps.empty()) return;
   show.switches.all = show.lights;
-  light_lamps(show);
+  switch_world(show, show.switches.wanted);
+  show.lights = relit(show.switches.all, *show.world);
 }
 
-bool switch_lamp(Show& show, std::string_view name, bool on) {
-  int lamp = find_lamp(show.exhibit, name);
-  if (lamp < 0) return false;
-  if (bool(show.switches.wanted[size_t(lamp)]) == on) return true;
-  show.switches.wanted[size_t(lamp)] = on;
+std::vector<char> lamps_of(const Show& show, const Visitor& visitor) {
+  std::vector<char> lamps = show.switches.wanted;
+  const Visitor* leader = leader_of(show, visitor);
+  const VisitorLamps& own = (leader ? *leader : visitor).lamps;
+  for (size_t i = 0; i < own.own.size(); i++)
+    if (own.own[i]) lamps[i] = own.wish[i];
+  return lamps;
+}
+
+bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, bool on) {
+  const int found = find_lamp(show.exhibit, name);
+  if (found < 0) return false;
+  const size_t lamp = size_t(found);
+  if (bool(lamps_of(show, visitor)[lamp]) == on) return true;
   show.totals.lamps_switched++;
-  for (Visitor& visitor : show.visitors) visitor.state_sent_at = -1e9;
+  if (show.exhibit.lamps[lamp].shared) {
+    show.switches.wanted[lamp] = on;
+    for (Visitor& other : show.visitors) other.state_sent_at = -1e9;
+    return true;
+  }
+  VisitorLamps& own = visitor.lamps;
+  own.own.resize(show.exhibit.lamps.size());
+  own.wish.resize(own.own.size());
+  own.own[lamp] = true;
+  own.wish[lamp] = on;
+  visitor.state_sent_at = -1e9;
   return true;
 }
 
-bool lamps_wait(const Show& show) {
-  const Switches& switches = show.switches;
-  return switches.wanted != switches.lit && show.time - switches.lit_at >= least_between;
+bool lamps_wait(const Show& show, const Visitor& visitor) {
+  const VisitorLamps& lamps = visitor.lamps;
+  return lamps.lit != lamps_of(show, visitor) && show.time - lamps.lit_at >= least_between;
 }
 
-void light_lamps(Show& show) {
+void light_lamps(Show& show, Visitor& visitor) {
+  VisitorLamps& lamps = visitor.lamps;
+  const bool first = lamps.lit.empty();
+  lamps.lit = lamps_of(show, visitor);
+  if (first) return;
+  lamps.lit_at = show.time;
+  look_anew(visitor.picture);
+}
+
+void light_world(Show& show, const std::vector<char>& lamps) {
   Switches& switches = show.switches;
+  if (lamps == switches.lit) return;
   const std::vector<char> before = switches.lit;
-  for (size_t lamp = 0; lamp < switches.wanted.size(); lamp++)
-    show.world->switch_lamp(int(lamp), switches.wanted[lamp]);
-  show.lights = relit(switches.all, *show.world);
-  switches.lit = switches.wanted;
-  switches.lit_at = show.time;
-  switches.steps.clear();
-  if (before != switches.lit && !show.skin.places.empty()) {
-    const LightChange& change = change_since(show, before);
-    auto changes = [&](vec3 place, vec3 normal, vec3& kept, vec3& added) {
-      return change.changes(place, normal, kept, added);
-    };
-    relight_skin(*show.world, changes, show.skin);
+  auto known = switches.others.extract(lamps);
+  KnownLight next;
+  if (known) {
+    next = std::move(known.mapped());
+    switch_world(show, lamps);
+  } else {
+    next.skin = changed_skin(show, before, lamps);
+    switch_world(show, lamps);
+    next.lights = relit(switches.all, *show.world);
   }
-  for (Visitor& visitor : show.visitors) {
-    visitor.picture.around.keyframe = {}, visitor.picture.fade = {};  // they show another light
-    visitor.picture.rest = {};
-    visitor.picture.stats.converged = 0;  // who rests looks again,
-    visitor.picture.job.settled = false;  // and first at what is soon to be known
-  }
+  switches.others[before] = {std::exchange(show.lights, std::move(next.lights)),
+                             std::exchange(show.skin, std::move(next.skin))};
 }
 
 void follow_lamps(Show& show, Visitor& visitor) {
@@ -87,7 +147,7 @@ void follow_lamps(Show& show, Visitor& visitor) {
   const std::vector<char>& lit = show.switches.lit;
   if (picture.lamps == lit) return;
   if (picture.lamps.size() == lit.size()) {
-    const LightChange& change = change_since(show, picture.lamps);
+    const LightChange& change = change_between(show, picture.lamps, lit);
     picture.cache.relight([&](const RenderCache::Surface& at, vec3& kept, vec3& added) {
       if (!change.changes(at.place, at.normal, kept, added)) return false;
       // What counts in multiples of a map's light changes with the map.
@@ -97,14 +157,22 @@ void follow_lamps(Show& show, Visitor& visitor) {
   }
   picture.broker.forget();
   picture.compositor.invalidate_samples();
+  picture.compositor.corrections().clear();
   picture.lamps = lit;
 }
 
-void invalidate_light_steps(Show& show) {
+void forget_lights(Show& show) {
   Switches& switches = show.switches;
+  auto anybody = [&](const auto& needs) {
+    return std::any_of(show.visitors.begin(), show.visitors.end(), needs);
+  };
   std::erase_if(switches.steps, [&](const LightStep& step) {
-    auto needs = [&](const Visitor& visitor) { return visitor.picture.lamps == step.before; };
-    return std::none_of(show.visitors.begin(), show.visitors.end(), needs);
+    return !anybody([&](const Visitor& visitor) {
+      return visitor.picture.lamps == step.before && visitor.lamps.lit == step.after;
+    });
+  });
+  std::erase_if(switches.others, [&](const auto& other) {
+    return !anybody([&](const Visitor& visitor) { return visitor.lamps.lit == other.first; });
   });
 }
 

@@ -1,34 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lamps of a running exhibit. All visitors share them: whoever switches one does it for
-// everybody.
+// The lamps of a running exhibit. Who switches one does it for themselves, or for everybody where
+// the exhibit says that it is shared.
 //
-// What is wanted changes at once and is told to everybody; the light follows when the renderer is
-// idle, a fifth of a second after the last change at the earliest, so that nobody makes it flash
-// more than three times a second (WCAG 2.2, success criterion 2.3.1: six changes). Each visitor's
-// cache learns of it before its next picture, and what was asked for in the old light is not taken
-// any more.
+// What is wanted changes at once and is told; the light follows between two pictures, a fifth of a
+// second after the last change at the earliest, so that nobody makes it flash more than three times
+// a second (WCAG 2.2, success criterion 2.3.1: six changes). The world has one state at a time: it
+// is put into the visitor's before each picture, and what is known of the light in each state is
+// kept. Each visitor's cache learns of a change before its next picture, and what was asked for in
+// the old light is not taken any more.
 #pragma once
 #include <string_view>
+#include <vector>
 
 #include "show/state/show.h"
 
 namespace wellspring {
 
-// Puts the lamps as they are at first. show.lights were made, and are prepared, while all were on.
 // Maps of the exhibit's scene, of all lamps, from now on. While nothing is drawn.
 void use_maps(Show& show, std::shared_ptr<const IlluminationMap> maps);
+// Puts the lamps as they are at first. show.lights were made, and are prepared, while all were on.
 void begin_lamps(Show& show);
-// Everybody hears of it with the next tick. False: there is no such lamp.
-bool switch_lamp(Show& show, std::string_view name, bool on);
-// Is the light to follow now?
-bool lamps_wait(const Show& show);
-// The world and its lights as they are wanted; milliseconds. Only while the renderer is idle.
-void light_lamps(Show& show);
+// As the visitor wants them: of each lamp, the visitor's own wish or the house's.
+std::vector<char> lamps_of(const Show& show, const Visitor& visitor);
+// Who sees it hears of it with the next tick. False: there is no such lamp.
+bool switch_lamp(Show& show, Visitor& visitor, std::string_view name, bool on);
+// Is the visitor's light to follow now?
+bool lamps_wait(const Show& show, const Visitor& visitor);
+// It follows from the next picture on. While none is drawn for that visitor.
+void light_lamps(Show& show, Visitor& visitor);
+// The world and its lights in that state. Only while the renderer is idle.
+void light_world(Show& show, const std::vector<char>& lamps);
 // Before anything is drawn for a visitor, by whoever draws: its cache forgets what another light
 // was.
 void follow_lamps(Show& show, Visitor& visitor);
-// What only visitors need who have yet to follow is kept no longer. Only while the renderer is
+// What nobody sees any more, or has yet to follow, is kept no longer. Only while the renderer is
 // idle.
-void invalidate_light_steps(Show& show);
+void forget_lights(Show& show);
 
 }  // namespace wellspring

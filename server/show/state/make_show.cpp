@@ -12,41 +12,34 @@
 #include "show/exhibit/eye_places.h"
 #include "show/exhibit/fingerprint.h"
 #include "show/state/lamps.h"
+#include "show/state/visitor_world.h"
 
 namespace wellspring {
 
 namespace {
 
 // The storyteller as it stands when it has just come.
-void enter(Show& show) {
-  const StorytellerPlace& place = show.exhibit.storytellers[show.storyteller_index];
-  show.storyteller = {};
-  show.storyteller.character = &place.character;
-  if (place.expressions) show.storyteller.expressions = &*place.expressions;
-  if (place.gestures) show.storyteller.gestures = &*place.gestures;
-  show.storyteller.placement = place_storyteller(place, show.exhibit.scene);
-  show.mind = {};
-  show.pose = make_rest_pose(place.character);
-  for (size_t i = 0; i < show.figures.size(); i++)
-    show_figure(*show.world, show.figures[i],
-                i == show.storyteller_index && show.storyteller_visible);
+void enter(const Show& show, Teller& teller) {
+  const StorytellerPlace& place = show.exhibit.storytellers[teller.index];
+  teller.storyteller = {};
+  teller.storyteller.character = &place.character;
+  if (place.expressions) teller.storyteller.expressions = &*place.expressions;
+  if (place.gestures) teller.storyteller.gestures = &*place.gestures;
+  teller.storyteller.placement = place_storyteller(place, show.exhibit.scene);
+  teller.mind = {};
+  teller.pose = make_rest_pose(place.character);
   StorytellerEvents events;
-  tick_storyteller(show.mind, show.storyteller, StorytellerInput{}, show.pose, events);
-  pose_figure(*show.world, show.figures[show.storyteller_index], place.character, show.pose,
-              show.storyteller.placement, show.scratch);
-  show.world->commit();
+  tick_storyteller(teller.mind, teller.storyteller, StorytellerInput{}, teller.pose, events);
 }
 
 }  // namespace
 
-void change_storyteller(Show& show, size_t storyteller_index) {
-  if (storyteller_index == show.storyteller_index || storyteller_index >= show.figures.size())
-    return;
-  show.renderer.worker.wait();  // the world changes
-  hush(show.voice);
-  show.storyteller_index = storyteller_index;
-  enter(show);
-  show.agent_sent_at = -1e9;
+void change_storyteller(const Show& show, Teller& teller, size_t storyteller_index) {
+  if (storyteller_index == teller.index || storyteller_index >= show.figures.size()) return;
+  hush(teller.voice);
+  teller.index = storyteller_index;
+  enter(show, teller);
+  teller.agent_sent_at = -1e9;
 }
 
 namespace {
@@ -84,6 +77,7 @@ void begin_maps(Show& show) {
   baker.eyes = all_eye_places(show.exhibit);
   if (auto maps =
           load_map(show.exhibit.scene, baker.file + ".maps", hash_scene(show.exhibit.scene))) {
+    baker.has_map = true;
     log::info("illumination maps: {} texels, error {:.1f} %", maps->light.size(),
               100 * maps->error);
     use_maps(show, std::move(maps));
@@ -97,6 +91,7 @@ void begin_maps(Show& show) {
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   auto show = std::make_unique<Show>();
   show->settings = settings;
+  show->seal = std::make_shared<Seal>(settings.cache.empty() ? "" : settings.cache + "/visits.key");
   show->technique = find_technique(settings.technique);
   show->still_technique = find_technique(settings.still_technique);
   for (const auto& [technique, name] : {std::pair(show->technique, settings.technique),
@@ -110,10 +105,14 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
     show->figures.push_back(make_figure(place.character, scene, moving, moving_object));
   show->world = std::make_unique<World>(scene, std::move(moving), std::move(moving_object));
   show->skin = make_skin_light(*show->world);
-  if (!show->figures.empty()) enter(*show);
+  if (!show->figures.empty()) {
+    enter(*show, show->teller);
+    pose_world(*show, show->teller);
+  }
   std::vector<Problem> problems;
   show->roads = make_tour_roads(show->exhibit, *show->world, problems);
   if (!problems.empty()) throw ExhibitError(std::move(problems));
+  show->questions = make_question_index(show->exhibit);
   show->lights = make_lights(*show->world);
   show->visibility = std::make_unique<VisibilityPass>(*show->world, show->lights);
   StillPass& pass = show->pass;

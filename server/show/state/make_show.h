@@ -12,7 +12,7 @@ namespace wellspring {
 std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings);
 
 // Another storyteller comes in place of the one that is there, who falls silent; knows nobody yet
-// and greets anew. Nothing happens when it is there already.
-void change_storyteller(Show& show, size_t storyteller_index);
+// and greets anew. Nothing happens when it is there already. It is seen from the next picture on.
+void change_storyteller(const Show& show, Teller& teller, size_t storyteller_index);
 
 }  // namespace wellspring

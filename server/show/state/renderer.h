@@ -53,8 +53,9 @@ struct DrawingWork {
   Image8 picture;                           // when it is finished the visitor's old one
   Keyframe keyframe, around;                // likewise
   std::shared_ptr<const SeenPicture> seen;  // of it, for attention; null: not wanted
-  std::vector<Request> requests, ahead;
+  std::vector<Request> requests, ahead, corrective;
   std::vector<Sample> samples;
+  View pass;          // whose pixels all are asked for, where whole passes are filtered
   size_t traced = 0;  // of the requests
   int guided = 0;     // visibility passes done of a reconstruction's guides
   uint64_t pose = 0;  // of the world, when they were made
@@ -67,6 +68,7 @@ size_t memory_bytes(const DrawingWork& work);
 struct SkinJob {
   bool at_work = false;
   double time = -1e9;  // show time
+  uint64_t turn = 0;   // how many there were
   SkinUpdate update;
   std::vector<vec3> eyes;
   int cycles = 1;     // of smoothing

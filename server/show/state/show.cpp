@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/show.h"
 
+#include <set>
 #include <utility>
 
 namespace wellspring {
@@ -15,8 +16,75 @@ std::vector<std::shared_ptr<Link>> Arrivals::take() {
   return std::exchange(links_, {});
 }
 
-const StorytellerPlace* storyteller_of(const Show& show) {
-  return show.figures.empty() ? nullptr : &show.exhibit.storytellers[show.storyteller_index];
+uint32_t Arrivals::announce(Announcement announcement) {
+  std::lock_guard lock(mutex_);
+  announcement.id = ++announced_;
+  announcements_.push_back(std::move(announcement));
+  return announced_;
+}
+
+std::vector<Announcement> Arrivals::take_announcements() {
+  std::lock_guard lock(mutex_);
+  return std::exchange(announcements_, {});
+}
+
+const Visitor* leader_of(const Show& show, const Visitor& visitor) {
+  const VisitorGroup& group = visitor.group;
+  if (group.follows.empty() || group.away) return nullptr;
+  for (const Visitor& other : show.visitors)
+    if (other.group.leads == group.follows && !other.left) return &other;
+  return nullptr;
+}
+
+const Teller& teller_of(const Show& show, const Visitor& visitor) {
+  const Visitor* leader = leader_of(show, visitor);
+  const Visitor& who = leader ? *leader : visitor;
+  return who.own_teller ? *who.own_teller : show.teller;
+}
+
+Teller& teller_of(Show& show, Visitor& visitor) {
+  return const_cast<Teller&>(teller_of(std::as_const(show), std::as_const(visitor)));
+}
+
+std::vector<Teller*> tellers_of(Show& show) {
+  std::vector<Teller*> all{&show.teller};
+  for (Visitor& visitor : show.visitors)
+    if (visitor.own_teller) all.push_back(visitor.own_teller.get());
+  return all;
+}
+
+const StorytellerPlace* storyteller_of(const Show& show, const Teller& teller) {
+  return show.figures.empty() ? nullptr : &show.exhibit.storytellers[teller.index];
+}
+
+std::string kiosk_name(const Show& show, const std::string& said) {
+  if (!said.empty()) return said;
+  std::set<std::string> names;
+  for (const KioskSettings& kiosk : show.exhibit.kiosks) names.insert(kiosk.name);
+  for (const Eye& eye : show.eyes) names.insert(eye.seen.kiosk);
+  for (const Visitor& visitor : show.visitors)
+    if (visitor.welcomed && visitor.kiosk) names.insert(visitor.name);
+  names.erase("");
+  return names.size() == 1 ? *names.begin() : "";
+}
+
+const Kiosk* find_kiosk(const Show& show, const std::string& name) {
+  for (const Kiosk& kiosk : show.kiosks)
+    if (kiosk.settings.name == name) return &kiosk;
+  return nullptr;
+}
+
+const Kiosk* kiosk_of(const Show& show, const Visitor& visitor) {
+  return visitor.kiosk ? find_kiosk(show, kiosk_name(show, visitor.name)) : nullptr;
+}
+
+bool hears_storyteller(const Show& show, const Visitor& visitor) {
+  return !visitor.kiosk || !show.her_kiosk || *show.her_kiosk == kiosk_name(show, visitor.name);
+}
+
+bool listens_to(const Show& show, const Visitor& visitor, const Teller& teller) {
+  return visitor.welcomed && &teller_of(show, visitor) == &teller &&
+         hears_storyteller(show, visitor);
 }
 
 }  // namespace wellspring

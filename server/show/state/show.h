@@ -6,25 +6,31 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "avatar/mind/storyteller.h"
+#include "ledger/sums.h"
 #include "light/known/skin_light.h"
 #include "light/technique/technique.h"
 #include "light/visible/visibility.h"
 #include "picture/warp_picture.h"
 #include "show/exhibit/exhibit.h"
 #include "show/exhibit/figure.h"
+#include "show/exhibit/problem.h"
+#include "show/house/announcement.h"
+#include "show/house/house.h"
+#include "show/questions/question_index.h"
+#include "show/kiosk/kiosk.h"
 #include "show/state/reconstruction.h"
 #include "show/state/renderer.h"
 #include "show/state/baker.h"
 #include "show/state/switches.h"
+#include "show/state/teller.h"
 #include "show/state/totals.h"
 #include "show/state/visitor.h"
 #include "show/storyteller/audience.h"
-#include "show/storyteller/sounding.h"
-#include "show/storyteller/voice.h"
+#include "wire/seal.h"
 
 namespace wellspring {
 
@@ -33,8 +39,9 @@ enum class Display : uint8_t {
   automatic,  // by illumination maps, where there are some
   points,     // by the points of the visitor's render cache alone
   maps,       // by illumination maps; until there are some by points
+  corrected,  // likewise, and in motion what shines by samples of its own (picture/corrections.h)
 };
-inline constexpr const char* display_names[] = {"automatic", "points", "maps"};
+inline constexpr const char* display_names[] = {"automatic", "points", "maps", "corrected"};
 
 struct ShowSettings {
   float fps = 60;                    // pictures a second a walking visitor gets, machine permitting
@@ -53,17 +60,30 @@ struct ShowSettings {
   bool late_samples = true;  // of who walks are traced behind the picture, for the next
   float moving_clamp = 4;    // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
+  HouseSettings house;
+  bool watched = false;  // a curator works at it: pages show what helps with that
 };
 
-// New links, handed over by the I/O threads.
+// New links and announcements, handed over by the threads of the server.
 class Arrivals {
  public:
   void put(std::shared_ptr<Link> link);
   std::vector<std::shared_ptr<Link>> take();
+  uint32_t announce(Announcement announcement);  // its number
+  std::vector<Announcement> take_announcements();
 
  private:
   std::mutex mutex_;
   std::vector<std::shared_ptr<Link>> links_;
+  std::vector<Announcement> announcements_;
+  uint32_t announced_ = 0;
+};
+
+// One that was broken off and may go on (show/answer/come_back.h).
+struct KeptVisit {
+  std::string id;              // Visitor::id
+  double since = 0;            // show time
+  std::list<Visitor> visitor;  // the one
 };
 
 struct Show {
@@ -72,39 +92,51 @@ struct Show {
   std::unique_ptr<World> world;
   Lights lights;
   Switches switches;
-  std::vector<char> mapped;      // of each object: lights.maps knows the light of some of it
-  std::unique_ptr<Baker> baker;  // null: maps are as they were at the start
+  // While there are lights.maps, of each object:
+  std::vector<char> mapped;                    // they know the light of some of it
+  std::vector<float> shining;                  // find_shining()
+  std::vector<char> known;                     // mapped and not shining: it needs no samples
+  std::unique_ptr<Baker> baker;                // null: maps are as they were at the start
   std::unique_ptr<VisibilityPass> visibility;  // one picture at a time
   SkinLight skin;                              // on what moves, for all visitors
   const Technique* technique = nullptr;
   const Technique* still_technique = nullptr;
 
-  // The storyteller: who of the exhibit's is there, and how it is.
-  std::vector<Figure> figures;  // of all of them; the others are hidden
-  size_t storyteller_index = 0;
-  Storyteller storyteller;
-  StorytellerState mind;
-  Pose pose;
+  std::vector<Figure> figures;  // of all the exhibit's storytellers; hidden but for one
+  Teller teller;  // of the house: kiosks' and those visitors' who have none of their own
   SkinScratch scratch;
-  Voice voice;
-  SpeechSource speech;  // empty: the storyteller speaks by subtitles
-  Sounding sounding;
+  SpeechSource speech;      // empty: the storyteller speaks by subtitles
   uint32_t utterances = 0;  // numbers of what is heard, the storyteller's and narrators' alike
   size_t greetings = 0, farewells = 0;
-  bool storyteller_visible = true, humanlike = true;
-  std::string kiosk_message;  // the last kiosk message, to send only changes
-  double agent_sent_at = -1e9;
-  double drew_at = 0;      // when anything was drawn, samples traced or light found
-  double behaved_at = -1;  // when the storyteller was last moved
-  Mood agent_mood = Mood::idle;
+  std::string kiosk_message;  // the last of all kiosks that visitors were sent
+  double drew_at = 0;         // when anything was drawn, samples traced or light found
+  double behaved_at = -1;     // when the storyteller was last moved
 
   TourRoads roads;
+  QuestionIndex questions;
   std::list<Visitor> visitors;
+  std::list<KeptVisit> kept;         // who left first comes first
+  std::shared_ptr<const Seal> seal;  // of what pages keep of visits
   std::vector<Eye> eyes;
-  Audience audience;
+  std::vector<Kiosk> kiosks;             // show/answer/kiosks.h
+  std::optional<std::string> her_kiosk;  // the storyteller's guests are those of that name
+  uint64_t her_visits = 0;               // of kiosks' guests that the storyteller has been with
+
+  LocalTime local_time;           // set before a tick by whoever has a clock
+  HouseState house;               // at that time
+  std::string house_message;      // the last that kiosk pages were sent
+  Announcement announced;         // the last; id 0: none yet
+  double announced_until = -1e9;  // show time
+
+  // Where it is watched: what is wrong with its files as they are now (show/watch/problems.h).
+  std::vector<Problem> problems;
+  std::string problems_message;  // the last that visitors were sent
+
+  Sums sums;  // counted since they were last taken (show/count)
 
   uint64_t ticks = 0;
   uint64_t pose_number = 1;           // of the world: counts commits
+  const Teller* posed_as = nullptr;   // as whom its figures stand; may be gone meanwhile
   double time = 0;                    // of the present tick, seconds
   uint64_t time_us = 0;               // of the present tick on the clock of pictures and sound
   float picture_lead = 0.02f;         // seconds from a tick to the times of its pictures, smoothed
@@ -116,7 +148,24 @@ struct Show {
   Renderer renderer;           // reads much of the above: ends before it
 };
 
-// Who is there now; null: the exhibit has no storyteller.
-const StorytellerPlace* storyteller_of(const Show& show);
+// Whose place, storyteller and lamps the visitor follows at the moment; null: nobody's.
+const Visitor* leader_of(const Show& show, const Visitor& visitor);
+// Whom the visitor sees and hears.
+Teller& teller_of(Show& show, Visitor& visitor);
+const Teller& teller_of(const Show& show, const Visitor& visitor);
+std::vector<Teller*> tellers_of(Show& show);  // the house's, then visitors' own
+// Who of the exhibit's a teller is; null: it has none.
+const StorytellerPlace* storyteller_of(const Show& show, const Teller& teller);
+
+// The name of the kiosk that a page or a camera means by what it calls itself: without a name it
+// belongs to the only one that has one, if there is just one.
+std::string kiosk_name(const Show& show, const std::string& said);
+const Kiosk* find_kiosk(const Show& show, const std::string& name);  // null: there is none
+// The kiosk of a kiosk's page; null: of a visitor's.
+const Kiosk* kiosk_of(const Show& show, const Visitor& visitor);
+// The house's is with one kiosk at a time; pages of others neither hear nor read what she says.
+bool hears_storyteller(const Show& show, const Visitor& visitor);
+// Whether what `teller` says is for the visitor.
+bool listens_to(const Show& show, const Visitor& visitor, const Teller& teller);
 
 }  // namespace wellspring

@@ -2,24 +2,43 @@
 // The lamps of a running exhibit as values: how they are wanted, and how the world is lit
 // (show/state/lamps.h).
 #pragma once
+#include <map>
 #include <vector>
 
 #include "light/known/lamps.h"
+#include "light/known/skin_light.h"
 
 namespace wellspring {
 
-// What became of the light between the lamps as they were and as the world is.
+// What became of the light between two states of the lamps.
 struct LightStep {
-  std::vector<char> before;
+  std::vector<char> before, after;
   LightChange change;
 };
 
+// What is known of the light in one state of the lamps.
+struct KnownLight {
+  Lights lights;
+  SkinLight skin;
+};
+
 struct Switches {
-  std::vector<char> wanted, lit;  // of each lamp: as it was asked for, as the world is
-  double lit_at = -1e9;           // show time
-  Lights all;                     // made while all were on; empty where there are none
-  // To `lit`, while visitors have yet to follow: of each state that any cache knew, one for all.
+  std::vector<char>
+      wanted;             // of each lamp: the house's, for who has not switched it for themselves
+  std::vector<char> lit;  // as the world is
+  Lights all;             // made while all were on; empty where there are none
+  // Of the other states in which somebody sees the world, while the world is in `lit`.
+  std::map<std::vector<char>, KnownLight> others;
+  // While visitors have yet to follow: of each pair of states, one for all.
   std::vector<LightStep> steps;
+};
+
+// A visitor's own.
+struct VisitorLamps {
+  std::vector<char> own;   // of each lamp: whether it is the visitor's own wish, not the house's
+  std::vector<char> wish;  // of those
+  std::vector<char> lit;   // as the visitor's pictures are to show them; empty: none yet
+  double lit_at = -1e9;    // show time of the last change of that
 };
 
 }  // namespace wellspring

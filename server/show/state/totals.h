@@ -18,9 +18,12 @@ struct ShowTotals {
   uint64_t utterances = 0, sounds = 0,
            sounds_given_up = 0;  // spoken; packets sent; too slow a reader
   uint64_t visits = 0, turned_away = 0, observations = 0, greetings = 0, farewells = 0, stories = 0;
+  uint64_t gestures = 0;  // of guests, that were followed
   uint64_t lamps_switched = 0;
+  uint64_t announcements = 0;
   uint64_t attention_analyses = 0;
-  float attention_ms = 0;  // of the last of these
+  float attention_ms = 0;                          // of the last of these
+  uint64_t corrected = 0, corrective_samples = 0;  // pictures that show what shines; asked for it
 };
 
 }  // namespace wellspring

@@ -6,12 +6,16 @@
 
 #include "base/worker.h"
 #include "frame/tonemap.h"
+#include "show/kiosk/screen_window.h"
+#include "show/state/switches.h"
+#include "show/state/teller.h"
 #include "show/state/visitor_attention.h"
 #include "show/state/visitor_picture.h"
 #include "show/storyteller/sounding.h"
 #include "show/visit/flow.h"
 #include "show/visit/place.h"
 #include "wire/link.h"
+#include "wire/messages.h"
 #include "world/view.h"
 
 namespace wellspring {
@@ -49,20 +53,38 @@ struct VisitorDelivery {
   float measured_fps = 0;
 };
 
+// A group's visit (show/answer/groups.h).
+struct VisitorGroup {
+  std::string leads, follows;  // the group's code; empty: no group
+  bool away = false;           // has walked off by themselves
+  vec2 look{0};                // yaw and pitch from where the leader looks
+  double looked_at = -1e9;     // show time of the last turn
+};
+
 struct Visitor {
   std::shared_ptr<Link> link;
   bool welcomed = false, left = false;
   bool kiosk = false;
   std::string lang = "en";
-  std::string name;             // of a kiosk, as its page says it; may be empty
-  double state_sent_at = -1e9;  // show time of the last state message
-  VisitorSound hearing;         // show/answer/sound.h
-  VisitorPlace place;           // show/visit
+  std::string name;                    // of a kiosk, as its page says it; may be empty
+  std::string id;                      // of the visit, over all its links; empty: not told yet
+  std::string told;                    // of the visit, that its page keeps (answer/come_back.h)
+  double told_at = -1e9;               // show time of that
+  KioskTouch screen;                   // of a kiosk's; touched: since the last step of the kiosk
+  int64_t loaded_night = 0;            // of a kiosk's: HouseState::night when its page was loaded
+  double state_sent_at = -1e9;         // show time of the last state message
+  VisitorSound hearing;                // show/answer/sound.h
+  std::unique_ptr<Teller> own_teller;  // since they called her; null: the house's
+  VisitorLamps lamps;
+  VisitorGroup group;
+  VisitorPlace place;  // show/visit
+  WindowEye window;    // of a kiosk's page
   PictureWishes wants;
   VisitorAttention looks;  // show/draw/steer.h
   VisitorPicture picture;  // show/draw
   VisitorDelivery shown;   // show/draw/present.h
   StageTimes times;
+  int counted_tour = -1;  // show/count
 };
 
 // All memory that pictures of one visitor take, between them; its encoder's as noted there, the

@@ -253,4 +253,9 @@ Viewpoint eval_camera_path(const CameraPath& path, double time) {
   return view;
 }
 
+float turn_ahead(const CameraPath& path, double time, double seconds) {
+  Viewpoint now = eval_camera_path(path, time), then = eval_camera_path(path, time + seconds);
+  return std::hypot(then.yaw - now.yaw, then.pitch - now.pitch);
+}
+
 }  // namespace wellspring

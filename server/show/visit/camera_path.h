@@ -37,4 +37,7 @@ CameraPath make_camera_path(const std::vector<dvec3>& eyes, const Viewpoint& fro
 // `to`'s.
 Viewpoint eval_camera_path(const CameraPath& path, double time);
 
+// Radians that it turns within `seconds` from `time` on.
+float turn_ahead(const CameraPath& path, double time, double seconds);
+
 }  // namespace wellspring

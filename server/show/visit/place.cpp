@@ -11,11 +11,17 @@ namespace {
 constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
 }
 
+void stand(VisitorPlace& place) {
+  place.glide = {};
+  place.closer = -1;
+}
+
 void go_to_viewpoint(VisitorPlace& place, Voice& narrator, const Exhibit& exhibit, int viewpoint) {
   place.view = exhibit.viewpoints[size_t(viewpoint)].view;
   place.viewpoint = viewpoint;
   place.camera_cuts++;
   place.move = place.velocity = vec3(0);
+  stand(place);
   stop_tour(place.tour, narrator);
 }
 
@@ -26,7 +32,14 @@ TourStep move_visitor(VisitorPlace& place, Voice& narrator, const World& world,
   if (glm::length(place.move) > 0) {  // the visitor walks off: the tour waits
     pause_tour(ride, narrator);
     ride.pace = 0;
+    stand(place);
   }
+  if (place.glide.path) {
+    place.view = advance_glide(place.glide, place.comfort, dt);
+    place.viewpoint = -1;
+    return {};
+  }
+  ride.leaps = place.comfort;
   bool rides = ride.state == TourRide::State::playing ||
                (ride.state == TourRide::State::paused && ride.pace > 0);
   if (rides) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "show/exhibit/exhibit.h"
+#include "show/visit/glide.h"
 #include "show/visit/heading.h"
 #include "show/visit/tour.h"
 #include "world/view.h"
@@ -20,6 +21,9 @@ struct VisitorPlace {
   int viewpoint =
       0;  // index of the named viewpoint last jumped to, while the visitor stays there; else -1
   TourRide tour;
+  Glide glide;
+  int closer = -1;       // index into Exhibit::points: what the visitor went to look at
+  bool comfort = false;  // leaps instead of gliding
   // Noticed once a tick (show/draw/pace.h).
   View last_view;            // of the last tick
   uint32_t camera_cuts = 0;  // to other places, so that nothing seen before helps
@@ -32,6 +36,8 @@ struct VisitorPlace {
 TourStep move_visitor(VisitorPlace& place, Voice& narrator, const World& world,
                       const Exhibit& exhibit, const TourRoads& roads,
                       const std::optional<dvec3>& person, float dt);
+// Neither on the way to anything nor looking closer at it any more.
+void stand(VisitorPlace& place);
 // There is then nothing left to be seen of where the visitor was.
 void go_to_viewpoint(VisitorPlace& place, Voice& narrator, const Exhibit& exhibit, int viewpoint);
 

@@ -161,4 +161,36 @@ Route find_route(const WalkMap& map, vec3 from, vec3 to) {
   return route;
 }
 
+std::vector<int> reachable_places(const WalkMap& map, vec3 eye) {
+  const float need = need_of(map);
+  std::vector<int> places;
+  const int first = find_place(map, eye - vec3(0, map.eye_height, 0), lean, need);
+  if (first < 0) {
+    for (size_t i = 0; i < map.places.size(); i++)
+      if (map.places[i].clear >= need) places.push_back(int(i));
+    return places;
+  }
+  std::vector<bool> found(map.places.size());
+  found[size_t(first)] = true;
+  places.push_back(first);
+  for (size_t i = 0; i < places.size(); i++)
+    for (int next : map.places[size_t(places[i])].next) {
+      if (next < 0 || found[size_t(next)] || map.places[size_t(next)].clear < need) continue;
+      found[size_t(next)] = true;
+      places.push_back(next);
+    }
+  return places;
+}
+
+int nearest_of(const WalkMap& map, const std::vector<int>& places, vec3 ground) {
+  int best = -1;
+  float least = INFINITY;
+  for (int place : places) {
+    // Another storey is farther than it looks.
+    vec3 way = (map.places[size_t(place)].ground - ground) * vec3(1, 3, 1);
+    if (float distance = dot(way, way); distance < least) least = distance, best = place;
+  }
+  return best;
+}
+
 }  // namespace wellspring

@@ -21,4 +21,9 @@ struct Route {
 inline constexpr float lean = 0.45f;
 Route find_route(const WalkMap& map, vec3 from, vec3 to);
 
+// Places of the map that can be walked to from an eye; all of them where it stands nowhere itself.
+std::vector<int> reachable_places(const WalkMap& map, vec3 eye);
+// Of these the one nearest to a point on the ground; -1: there are none.
+int nearest_of(const WalkMap& map, const std::vector<int>& places, vec3 ground);
+
 }  // namespace wellspring

@@ -80,7 +80,8 @@ Viewpoint with_appearance(const TourRide& ride) {
 
 std::shared_ptr<const CameraPath> make_leg(const Exhibit& exhibit, const TourRoads& roads,
                                            const Viewpoint& from, const Viewpoint& to,
-                                           float least_seconds, std::string& problem) {
+                                           float least_seconds, std::string& problem,
+                                           const CameraLimits& limits) {
   std::vector<dvec3> eyes{from.position, to.position};
   if (roads.map && glm::length(from.position - to.position) > 1e-3) {
     const dvec3 origin = exhibit.scene.origin;
@@ -100,14 +101,12 @@ std::shared_ptr<const CameraPath> make_leg(const Exhibit& exhibit, const TourRoa
     }
     eyes.push_back(to.position);
   }
-  return std::make_shared<CameraPath>(
-      make_camera_path(eyes, from, to, CameraLimits{}, least_seconds));
+  return std::make_shared<CameraPath>(make_camera_path(eyes, from, to, limits, least_seconds));
 }
 
 TourRoads make_tour_roads(const Exhibit& exhibit, const World& world,
                           std::vector<Problem>& problems) {
   TourRoads roads;
-  if (exhibit.tours.empty()) return roads;
   const dvec3 origin = exhibit.scene.origin;
   if (exhibit.walk) {
     std::vector<vec3> seeds;
@@ -158,6 +157,13 @@ void start_tour(TourRide& ride, Voice& narration, int tour, const Exhibit& exhib
   go_to(ride, exhibit, roads, ride.target, 0);
 }
 
+void go_on_from_stop(TourRide& ride, Voice& narration, const Exhibit& exhibit,
+                     const TourRoads& roads, int stop) {
+  hush(narration);
+  ride.stop = stop;
+  go_to_stop(ride, narration, exhibit, roads);
+}
+
 void pause_tour(TourRide& ride, Voice& narration) {
   if (ride.state != TourRide::State::playing) return;
   ride.state = TourRide::State::paused;
@@ -185,13 +191,6 @@ void look_round(TourRide& ride, vec2 by) {
   ride.looked = 0;
 }
 
-float turn_ahead(const TourRide& ride, double seconds) {
-  if (!ride.path) return 0;
-  Viewpoint now = eval_camera_path(*ride.path, ride.time),
-            then = eval_camera_path(*ride.path, ride.time + seconds);
-  return std::hypot(then.yaw - now.yaw, then.pitch - now.pitch);
-}
-
 TourStep advance_tour(TourRide& ride, Voice& narration, const Exhibit& exhibit,
                       const TourRoads& roads, float dt) {
   TourStep step;
@@ -201,7 +200,7 @@ TourStep advance_tour(TourRide& ride, Voice& narration, const Exhibit& exhibit,
   ride.pace += (goal - ride.pace) * (1 - std::exp(-dt / pace_seconds));
   if (std::abs(ride.pace - goal) < 0.01f) ride.pace = goal;
   if (ride.path) {
-    ride.time += double(dt * ride.pace);
+    ride.time = ride.leaps ? ride.path->seconds : ride.time + double(dt * ride.pace);
     ride.view = eval_camera_path(*ride.path, ride.time);
   }
   if (plays) ease_look(ride, dt);

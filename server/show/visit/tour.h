@@ -15,7 +15,7 @@ namespace wellspring {
 
 // What tours of an exhibit need, made once: where one can walk, and the ways between stops.
 struct TourRoads {
-  std::optional<WalkMap> map;  // none: the exhibit has no tours, or its visitors fly
+  std::optional<WalkMap> map;  // none: its visitors fly
   // [tour][stop]: to it from the one before.
   std::vector<std::vector<std::shared_ptr<const CameraPath>>> legs;
 };
@@ -27,7 +27,8 @@ TourRoads make_tour_roads(const Exhibit& exhibit, const World& world,
 // The way between two views; null with `problem` set when there is none.
 std::shared_ptr<const CameraPath> make_leg(const Exhibit& exhibit, const TourRoads& roads,
                                            const Viewpoint& from, const Viewpoint& to,
-                                           float least_seconds, std::string& problem);
+                                           float least_seconds, std::string& problem,
+                                           const CameraLimits& limits = {});
 
 struct TourRide {
   enum class State : uint8_t { none, playing, paused } state = State::none;
@@ -36,8 +37,9 @@ struct TourRide {
   bool staying = false;  // there, and its text has begun
   int target = 0;        // viewpoint that `path` leads to
   std::shared_ptr<const CameraPath> path;
-  double time = 0;  // on the path
-  float pace = 0;   // 0..1 of the path's own speed: eased when paused, played on and slowed down
+  double time = 0;     // on the path
+  float pace = 0;      // 0..1 of the path's own speed: eased when paused, played on and slowed down
+  bool leaps = false;  // at once to the end of every way
   float most_pace = 1;  // 0..1: of that, so that pictures follow its turns
   float stayed = 0;     // seconds since the stop was reached
   Viewpoint view;       // where the tour has the camera, the visitor's own looking round left out
@@ -56,14 +58,14 @@ struct TourStep {
 // from where he is. A stop that no way leads to from there is jumped to.
 void start_tour(TourRide& ride, Voice& narration, int tour, const Exhibit& exhibit,
                 const TourRoads& roads, const Viewpoint& from);
+// With a stop that need not be the next one, from where the ride is.
+void go_on_from_stop(TourRide& ride, Voice& narration, const Exhibit& exhibit,
+                     const TourRoads& roads, int stop);
 void pause_tour(TourRide& ride, Voice& narration);
 void stop_tour(TourRide& ride, Voice& narration);
 // The camera shall go to a viewpoint as soon as it rests; from `from` when no ride is under way.
 void glide_to(TourRide& ride, int viewpoint, const Viewpoint& from);
 void look_round(TourRide& ride, vec2 by);
-
-// Radians that the way turns within the next `seconds` at its own speed.
-float turn_ahead(const TourRide& ride, double seconds);
 
 // Moves on by `dt` seconds, 0 to 0.25; longer steps are cut. Adds to the narrator's queue.
 TourStep advance_tour(TourRide& ride, Voice& narration, const Exhibit& exhibit,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a visitor can stand: the ground that can be walked to from the viewpoints, as a grid of
-// places with the distance to what stands in the way. Made once for an exhibit that has tours.
+// places with the distance to what stands in the way. Made once for an exhibit.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "base/near_name.h"
+
 namespace wellspring {
 namespace {
 
@@ -114,6 +116,15 @@ void take_instances(const std::vector<size_t>& instances, int material, Scene& s
   }
 }
 
+std::vector<std::string> names_in(const Scene& scene, bool of_materials) {
+  std::vector<std::string> names;
+  if (of_materials)
+    for (const Material& material : scene.materials) names.push_back(material.name);
+  else
+    for (const SceneNode& node : scene.nodes) names.push_back(node.name);
+  return names;
+}
+
 }  // namespace
 
 std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene) {
@@ -123,6 +134,7 @@ std::vector<LampFault> add_lamp(const LampNames& names, Scene& scene) {
   std::vector<size_t> instances;
   auto take = [&](const Gathered& found, bool is_material, size_t index, const std::string& name) {
     std::string fault = found.fault(is_material ? "material" : "node", name);
+    if (!found.exists) fault += did_you_mean(name, names_in(scene, is_material));
     if (!fault.empty()) faults.push_back({is_material, index, fault});
     for (int light : found.lights)
       if (!has(lamp.lights, light)) lamp.lights.push_back(light);

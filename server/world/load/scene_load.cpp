@@ -66,7 +66,8 @@ class Builder {
     }
     for (size_t i = 0; i < scene_.lights.size(); i++)
       scene_.lights[i].position = vec3(light_positions_[i] - scene_.origin);
-    if (scene_.instances.empty()) warn(file_, "", "there is nothing to see in this file");
+    if (scene_.instances.empty() && scene_.lights.empty())
+      warn(file_, "", "there is nothing to see in this file");
   }
 
  private:

@@ -30,13 +30,13 @@ struct Block {
   std::vector<uint16_t> drawn;
 };
 
-// World to the picture before division: x and y in pixels from the centre, w in metres.
+// World to the picture before division: x and y in pixels from its middle, w in metres.
 struct Camera {
   vec3 eye, right, down, forward;
   explicit Camera(const View& view) : eye(view.position), forward(view.forward) {
     float scale = 0.5f * float(view.height) / view.tan_half_fov;
-    right = view.right * scale;
-    down = view.up * -scale;
+    right = right_of_middle(view) * scale;
+    down = above_middle(view) * -scale;
   }
 };
 

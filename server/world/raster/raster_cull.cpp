@@ -18,13 +18,17 @@ void find_pieces(const View& view, const PlacedMesh& placed, const MeshClusters&
                  uint32_t instance, const Bounds& box, float near,
                  std::vector<RasterPiece>& pieces) {
   float up = view.tan_half_fov, side = up * float(view.width) / float(view.height);
-  float up_norm = 1 / std::sqrt(1 + up * up), side_norm = 1 / std::sqrt(1 + side * side);
+  // Of the border planes the farther from the axis, so that nothing in sight is left out.
+  vec2 far_border = glm::abs(view.middle) + vec2(side, up);
+  float up_norm = 1 / std::sqrt(1 + far_border.y * far_border.y),
+        side_norm = 1 / std::sqrt(1 + far_border.x * far_border.x);
+  vec3 to_right = right_of_middle(view), above = above_middle(view);
   // The depth of the nearest place of a sphere, infinite where none of it is in sight.
   auto nearest = [&](vec3 centre, float radius) {
     vec3 d = centre - view.position;
     float w = dot(d, view.forward);
-    bool beside = (std::abs(dot(d, view.right)) - side * w) * side_norm > radius ||
-                  (std::abs(dot(d, view.up)) - up * w) * up_norm > radius;
+    bool beside = (std::abs(dot(d, to_right)) - side * w) * side_norm > radius ||
+                  (std::abs(dot(d, above)) - up * w) * up_norm > radius;
     return w < -radius || beside ? INFINITY : w - radius;
   };
   auto add = [&](uint32_t cluster, float depth, float area, float size) {
@@ -89,8 +93,8 @@ bool is_hidden(const View& view, const RasterView& raster, const Bounds& box, co
   if (negative_lanes(LaneMask(nearest > raster.near)) != 255) return false;
   float scale = 0.5f * float(view.height) / view.tan_half_fov;
   Lanes inverse = 1 / nearest;
-  Lanes column = along(view.right) * scale / w + raster.centre_x,
-        row = raster.centre_y - along(view.up) * scale / w;
+  Lanes column = along(right_of_middle(view)) * scale / w + raster.centre_x,
+        row = raster.centre_y - along(above_middle(view)) * scale / w;
   float low_x = column[0], high_x = low_x, low_y = row[0], high_y = low_y, most = inverse[0];
   for (int k = 1; k < lane_count; k++) {
     low_x = std::min(low_x, column[k]), high_x = std::max(high_x, column[k]);

@@ -130,8 +130,8 @@ EdgeLine SurfaceWalk::end_of(const RasterTriangle& t, const TriangleExit& exit, 
     p -= view.position;
     float w = dot(p, view.forward), scale = focal / w;
     seen &= w >= raster.near;
-    return on_the_way({dot(p, view.right) * scale + raster.centre_x - float(x),
-                       -dot(p, view.up) * scale + raster.centre_y - float(y)});
+    return on_the_way({dot(p, right_of_middle(view)) * scale + raster.centre_x - float(x),
+                       -dot(p, above_middle(view)) * scale + raster.centre_y - float(y)});
   };
   auto corner = [&](int i) {  // of the triangle itself
     return on_the_way({float(t.from_x[i] + raster.centre_steps_x) / raster_steps - float(x),

@@ -97,10 +97,16 @@ TEST(Packing, NormalsWithinADegree) {
 }
 
 TEST(Project, EveryPointFallsWhereTheViewSays) {
-  for (float fov : {5.0f, 60.0f, 150.0f}) {
+  struct Case {
+    float fov;
+    vec2 middle;  // in half heights of the picture
+  };
+  for (auto [fov, middle] : {Case{5, {0, 0}}, Case{60, {0, 0}}, Case{150, {0, 0}},
+                             Case{60, {0.7f, -0.4f}}, Case{60, {-1.5f, 1}}}) {
     Stage stage(4096);
     vec3 eye(1e4f, -20, 300);
     stage.view = look_at(eye, eye + vec3(0.3f, -0.2f, -1), fov, 100, 70);
+    stage.view.middle = middle * stage.view.tan_half_fov;
     resize_image(stage.image, 100, 70);
     Rng rng(7);
     for (uint32_t i = 0; i < 4096; i++) {
@@ -130,8 +136,40 @@ TEST(Project, EveryPointFallsWhereTheViewSays) {
       EXPECT_NEAR(at.x, float(i % 100) + 0.5f, 0.51f);
       EXPECT_NEAR(at.y, float(i / 100) + 0.5f, 0.51f);
     }
-    EXPECT_GT(compared, fov < 10 ? 3 : 200);
+    EXPECT_GT(compared, fov < 10 ? 3 : middle == vec2(0) ? 200 : 150);
     EXPECT_NEAR(stage.shown(), compared, std::max(2, compared / 100));
+  }
+}
+
+// Eyes at any place before one window see a point that lies in the window at one pixel of it, and
+// points behind it where the lines of sight cross the window.
+TEST(Project, PointsOfTheWindowStayWhileTheEyeMoves) {
+  Rng rng(5);
+  const float half_height = 0.5f;  // of the window, 1 m before the eye at rest
+  for (int i = 0; i < 50; i++) {
+    Stage stage;
+    const vec3 eye(rng.uniform() - 0.5f, 0.6f * rng.uniform() - 0.3f, rng.uniform() - 0.5f);
+    const vec3 in_window(0.1f, -0.2f, -1), behind(0.4f, 0.3f, -3);
+    stage.view.position = eye;
+    stage.view.tan_half_fov = half_height / (1 + eye.z);
+    stage.view.middle = -vec2(eye) / (1 + eye.z);
+    stage.put(0, in_window), stage.put(1, behind);
+    stage.project();
+    const vec3 seen = eye + (behind - eye) * ((1 + eye.z) / (3 + eye.z));
+    auto shows = [&](vec3 place, uint32_t point) {  // rounding may carry it to a neighbour
+      const float x = 32 + 24 * place.x / half_height, y = 24 - 24 * place.y / half_height;
+      if (!(x > 1 && y > 1 && x < 63 && y < 47)) return true;
+      for (float dx : {-1e-3f, 1e-3f})
+        for (float dy : {-1e-3f, 1e-3f})
+          if (stage.at(int(x + dx), int(y + dy)) == point) return true;
+      return false;
+    };
+    EXPECT_TRUE(shows(in_window, 0)) << i;
+    EXPECT_TRUE(shows(seen, 1)) << i;
+    PixelRays rays(stage.view);
+    const Projected at = project_point(stage.view, behind);
+    EXPECT_NEAR(rays.x(at.x), dot(behind - eye, stage.view.right) / at.depth, 1e-5f);
+    EXPECT_NEAR(rays.y(at.y), dot(behind - eye, stage.view.up) / at.depth, 1e-5f);
   }
 }
 

@@ -29,6 +29,15 @@ TEST(Extrapolate, GoesOnStraightAndRound) {
   EXPECT_NEAR(length(ahead.up), 1, 1e-6f);
 }
 
+TEST(Extrapolate, CarriesTheWindowOn) {
+  View before = turned(0.1f), now = before;
+  now.position += vec3(0.1f, 0, 0), now.middle = vec2(-0.1f, 0.05f);
+  View ahead = extrapolate(before, now, 2);
+  EXPECT_NEAR(ahead.middle.x, -0.3f, 1e-6f);
+  EXPECT_NEAR(ahead.middle.y, 0.15f, 1e-6f);
+  EXPECT_NEAR(ahead.position.x, before.position.x + 0.3f, 1e-6f);
+}
+
 TEST(Extrapolate, StaysWhereThereIsNoMotionToGoOnWith) {
   View now = turned(0.4f, 0.2f);
   EXPECT_EQ(extrapolate(now, now, 3), now);
@@ -48,7 +57,8 @@ struct Cloud {
   std::vector<uint8_t> cells;
   std::vector<Request> requests;
   // A point in the middle of every pixel of the columns [from, to).
-  Cloud(int from, int to) {
+  Cloud(int from, int to, vec2 middle = vec2(0)) {
+    view.middle = middle;
     resize_points(points, 160 * 90);
     uint32_t i = 0;
     for (int y = 0; y < 90; y++)
@@ -62,20 +72,22 @@ struct Cloud {
 };
 
 TEST(Predict, AsksWhereNoPointFallsAndNowhereElse) {
-  Cloud c(0, 120);
-  find_occupied(c.points, c.view, c.cells);
-  ASSERT_EQ(c.cells.size(), size_t(40 * 23));
-  for (int y = 0; y < 22; y++)
-    for (int x = 0; x < 40; x++) EXPECT_EQ(c.cells[size_t(y * 40 + x)], x < 30) << x << " " << y;
-  predict_requests(c.points, c.view, 100000, 5, c.cells, c.requests);
-  EXPECT_EQ(c.requests.size(), size_t(10 * 23));
-  std::set<int> asked;
-  for (const Request& r : c.requests) {
-    Projected at = project_point(c.view, r.ray.origin + r.ray.direction);
-    EXPECT_GE(at.x, 119.99f);
-    EXPECT_TRUE(at.x <= 160.01f && at.y >= -0.01f && at.y <= 90.01f);
-    EXPECT_TRUE(asked.insert(int(at.y / 4) * 40 + int(at.x / 4)).second);
-    EXPECT_EQ(r.pixel, no_pixel);
+  for (vec2 middle : {vec2(0), vec2(0.4f, -0.3f)}) {
+    Cloud c(0, 120, middle);
+    find_occupied(c.points, c.view, c.cells);
+    ASSERT_EQ(c.cells.size(), size_t(40 * 23));
+    for (int y = 0; y < 22; y++)
+      for (int x = 0; x < 40; x++) EXPECT_EQ(c.cells[size_t(y * 40 + x)], x < 30) << x << " " << y;
+    predict_requests(c.points, c.view, 100000, 5, c.cells, c.requests);
+    EXPECT_EQ(c.requests.size(), size_t(10 * 23));
+    std::set<int> asked;
+    for (const Request& r : c.requests) {
+      Projected at = project_point(c.view, r.ray.origin + r.ray.direction);
+      EXPECT_GE(at.x, 119.99f);
+      EXPECT_TRUE(at.x <= 160.01f && at.y >= -0.01f && at.y <= 90.01f);
+      EXPECT_TRUE(asked.insert(int(at.y / 4) * 40 + int(at.x / 4)).second);
+      EXPECT_EQ(r.pixel, no_pixel);
+    }
   }
 }
 

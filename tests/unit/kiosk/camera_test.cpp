@@ -7,12 +7,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 #include <thread>
 
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "kiosk/feed.h"
 #include "kiosk/figure.h"
+#include "unit/folder.h"
 
 namespace wellspring {
 namespace {
@@ -40,7 +42,70 @@ TEST(Camera, a_missing_file_and_a_file_that_is_no_video_are_named) {
     }
     std::filesystem::remove(path);
   }
-  EXPECT_THROW(open(testing::TempDir()), LoadError);
+}
+
+struct PictureFolder : testing::Test {
+  test::Folder folder;
+  void put(const std::string& name, int level) {
+    cv::imwrite(folder.file(name), cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(level)));
+  }
+  void put_text(const std::string& name) { std::ofstream(folder.file(name)) << "no picture\n"; }
+  std::string problem() {
+    try {
+      open(folder.path.string());
+    } catch (const LoadError& error) {
+      EXPECT_EQ(error.file, folder.path.string());
+      return error.what_;
+    }
+    return "none";
+  }
+};
+
+TEST_F(PictureFolder, PlaysInTheOrderOfNamesAtTheRateAndPassesOverWhatIsBroken) {
+  put("b.png", 120);
+  put("c.JPG", 180);
+  put("a.jpeg", 60);
+  put_text("aa.png");
+  put_text("notes.txt");
+  CameraSettings settings;
+  settings.source = folder.path.string();
+  settings.rate = 8;
+  for (int rounds : {1, 3}) {
+    settings.loop = rounds > 1;
+    auto camera = make_camera(settings);
+    EXPECT_FALSE(camera->live());
+    GrayFrame frame;
+    for (int i = 0; i < 3 * rounds; i++) {
+      ASSERT_EQ(camera->next(frame), Got::frame);
+      EXPECT_EQ(frame.time, i / 8.0);
+      EXPECT_EQ(frame.width, 64);
+      EXPECT_EQ(frame.height, 48);
+      EXPECT_NEAR(int(frame.pixels[1000]), 60 * (i % 3 + 1), 2);
+      EXPECT_EQ(frame.bgr.size(), 64u * 48 * 3);
+    }
+    if (rounds == 1) {
+      EXPECT_EQ(camera->next(frame), Got::end);
+    }
+  }
+}
+
+TEST_F(PictureFolder, WithoutAnyPictureIsAnError) {
+  EXPECT_EQ(problem(), "no picture (.png, .jpg, .jpeg) in this folder");
+  put_text("notes.txt");
+  EXPECT_EQ(problem(), "no picture (.png, .jpg, .jpeg) in this folder");
+  put_text("a.png");
+  EXPECT_EQ(problem(), "no picture in this folder can be read");
+  put("b.png", 9);
+  EXPECT_EQ(problem(), "none");
+}
+
+TEST_F(PictureFolder, EndsOnceAllItsPicturesAreGone) {
+  put("a.png", 50);
+  auto camera = open(folder.path.string(), true);
+  std::filesystem::remove(folder.file("a.png"));
+  GrayFrame frame;
+  EXPECT_EQ(camera->next(frame), Got::frame);
+  EXPECT_EQ(camera->next(frame), Got::end);
 }
 
 TEST(Camera, a_device_that_is_not_there_is_lost_and_stays_patient) {
@@ -67,6 +132,29 @@ TEST(Camera, the_synthetic_one_repeats_itself_exactly_and_ends_on_demand) {
     frames++;
   }
   EXPECT_EQ(frames, int(figure_round * 4));
+}
+
+TEST(Camera, the_synthetic_one_can_be_as_live_as_a_device) {
+  CameraSettings settings;
+  settings.source = "synthetic-live";
+  settings.width = 160;
+  settings.rate = 50;
+  settings.synthetic_ends = true;
+  auto camera = make_camera(settings);
+  EXPECT_TRUE(camera->live());
+  auto now = [] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch());
+  };
+  GrayFrame frame;
+  double first = 0;
+  for (int i = 0; i < 4; i++) {
+    const double before = now().count();
+    ASSERT_EQ(camera->next(frame), Got::frame);
+    EXPECT_GE(frame.time, before);
+    EXPECT_LE(frame.time, now().count());
+    if (i == 0) first = frame.time;
+    EXPECT_GE(frame.time, first + i / 50.0 - 1e-4) << "not before it is due";
+  }
 }
 
 TEST(Camera, a_mirrored_mount_draws_the_mirror_image) {

@@ -42,12 +42,18 @@ TEST(Clips, the_head_of_a_man_at_his_webcam_is_followed_without_a_gap) {
     EXPECT_EQ(p.id, 1u);
     EXPECT_GT(p.position.z, 0.3f);
     EXPECT_LT(p.position.z, 0.9f);
-    if (last) EXPECT_LT(glm::length(p.position - last->position), 0.08f) << "at " << o.time;
+    if (last) {
+      EXPECT_LT(glm::length(p.position - last->position), 0.08f) << "at " << o.time;
+    }
     last = &p;
     left = std::min(left, p.position.x), right = std::max(right, p.position.x);
     // At 3.93 s his head is at the image's right edge: on the left as he sees the screen.
-    if (std::abs(o.time - 3.933) < 0.02) EXPECT_LT(p.position.x, -0.1f);
-    if (std::abs(o.time - 2.0) < 0.03) EXPECT_GT(p.position.x, 0.01f);
+    if (std::abs(o.time - 3.933) < 0.02) {
+      EXPECT_LT(p.position.x, -0.1f);
+    }
+    if (std::abs(o.time - 2.0) < 0.03) {
+      EXPECT_GT(p.position.x, 0.01f);
+    }
   }
   EXPECT_GT(right - left, 0.15f);
 }

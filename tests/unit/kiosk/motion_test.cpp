@@ -66,7 +66,9 @@ TEST(Motion, what_was_left_behind_stops_being_motion) {
     Motion m =
         watch.step(room(i / rate, 1, 2.5f, true, 0));  // appears and then stands like a statue
     began |= m.moving;
-    if (i > 50) EXPECT_FALSE(m.moving) << "frame " << i;
+    if (i > 50) {
+      EXPECT_FALSE(m.moving) << "frame " << i;
+    }
   }
   EXPECT_TRUE(began);
 }

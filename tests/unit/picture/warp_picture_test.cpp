@@ -122,6 +122,18 @@ TEST(WarpPicture, ApproachedWallGrowsAsItShould) {
   EXPECT_LE(largest_difference(warp(keyframe_of(wall, before), now), draw(wall, now).picture), 2);
 }
 
+// The eye goes aside before a window whose frame stays.
+TEST(WarpPicture, BesideTheAxis) {
+  View before = look_at({0, 0, 0}, 0.1f), now = before;
+  before.width = 260, before.height = 160;
+  before.tan_half_fov *= 160 / 120.0f;
+  before.middle = {0.1f, 0.05f};
+  now.position += 0.12f * now.right - 0.05f * now.up;
+  now.middle = {-0.02f, 0.1f};
+  EXPECT_LE(largest_difference(warp(keyframe_of(wall, before), now), draw(wall, now).picture), 2);
+  EXPECT_LE(largest_difference(warp(keyframe_of(sky, before), now), draw(sky, now).picture), 2);
+}
+
 // Another field of view is one more mapping of the same kind.
 TEST(WarpPicture, AnotherFieldOfView) {
   View before = look_at({0, 0, 0}, 0), now = before;
@@ -332,10 +344,13 @@ TEST(SurroundingView, HoldsAllViewsInFewPixels) {
   up.forward = normalize(a.forward + 0.5f * a.up);
   up.up = cross(up.right, up.forward);
   for (float share : {1 / 4.0f, 1 / 16.0f}) {
-    const View views[] = {a, b, up};
+    View aside = b;
+    aside.middle = {0.3f, -0.2f};
+    const View views[] = {a, b, up, aside};
     View around = surrounding_view(views, share);
     for (const View& view : views) EXPECT_EQ(missing_share(around, view), 0.0f);
     EXPECT_NEAR(float(around.width * around.height), share * 200 * 120, 0.1f * share * 200 * 120);
+    EXPECT_EQ(around.middle, vec2(0));
     EXPECT_NEAR(dot(around.forward, around.up), 0, 1e-6f);
     EXPECT_NEAR(length(around.right), 1, 1e-6f);
   }
@@ -362,6 +377,12 @@ TEST(SurroundingView, TellsWhatIsMissing) {
               0.1f);  // half of its columns are; edges are not upright there
   EXPECT_EQ(missing_share(view, look_at({0, 0, 0}, 3.14159f)), 1.0f);
   EXPECT_EQ(missing_share(keyframe_view(view), view), 0.0f);
+  View aside = view;
+  aside.middle.x = view.tan_half_fov * 200 / 120;  // half of its picture
+  EXPECT_EQ(missing_share(aside, aside), 0.0f);
+  EXPECT_EQ(missing_share(view, aside), 0.5f);
+  EXPECT_EQ(missing_share(aside, view), 0.5f);
+  EXPECT_EQ(missing_share(keyframe_view(aside), aside), 0.0f);
 }
 
 TEST(MakeKeyframe, RefusesWhatDoesNotFit) {

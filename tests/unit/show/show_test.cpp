@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "frame/jpeg.h"
-#include "show/answer/answer.h"
+#include "show/http/answer.h"
 #include "show/state/make_show.h"
 #include "unit/show/show_stage.h"
 #include "wire/json.h"

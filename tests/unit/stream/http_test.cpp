@@ -3,6 +3,8 @@
 
 #include <future>
 
+#include "stream/session.h"
+#include "unit/folder.h"
 #include "unit/stream/fixture.h"
 
 using namespace wellspring;
@@ -81,6 +83,34 @@ TEST(Http, etag_makes_a_304_without_body) {
   EXPECT_EQ(same.header("ETag"), "\"v1\"");
   EXPECT_EQ(same.body, "");
   EXPECT_EQ(client.ask("/tagged", "If-None-Match: \"v0\"\r\n").body, "/tagged");
+}
+
+TEST(Http, files_come_in_pieces_and_in_parts) {
+  Folder folder;
+  std::string bytes(2 * file_piece_bytes + 12345, ' ');
+  for (size_t i = 0; i < bytes.size(); i++) bytes[i] = char(i * 31 + i / 977);
+  const std::string path = folder.write("film", bytes);
+  House house(quick_settings(), [&](const HttpQuestion& question) {
+    HttpReply reply;
+    // "/long" is shorter on the disk than was promised.
+    reply.file = FilePart{path, 0, bytes.size() + (question.path == "/long" ? 1000 : 0)};
+    return reply;
+  });
+  RawClient client(house.port());
+  const auto whole = client.ask("/film");
+  EXPECT_EQ(whole.status, 200);
+  EXPECT_TRUE(whole.body == bytes);
+  const auto part = client.ask("/film", "Range: bytes=1000-300000\r\n");
+  EXPECT_EQ(part.status, 206);
+  EXPECT_TRUE(part.body == bytes.substr(1000, 299001));
+  EXPECT_EQ(part.header("Content-Range"), "bytes 1000-300000/" + std::to_string(bytes.size()));
+  const auto none = client.ask("/film", "Range: bytes=" + std::to_string(bytes.size()) + "-\r\n");
+  EXPECT_EQ(none.status, 416);
+  EXPECT_EQ(client.ask("/film", "", "HEAD").header("Content-Length"), std::to_string(bytes.size()));
+  EXPECT_EQ(house.server.counters().accepted, 1u) << "one connection for all of them";
+  RawClient cut(house.port());
+  cut.send("GET /long HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_TRUE(cut.ends()) << "the rest will not come";
 }
 
 TEST(Http, an_answer_that_throws_is_a_500_and_no_end) {

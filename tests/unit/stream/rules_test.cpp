@@ -6,6 +6,7 @@
 #include <future>
 
 #include "stream/origin.h"
+#include "stream/range.h"
 #include "stream/rate.h"
 #include "stream/reply.h"
 #include "stream/target.h"
@@ -157,6 +158,68 @@ TEST(EntityTag, comparison) {
   EXPECT_FALSE(etag_matches("a", "\"a\""));
   EXPECT_FALSE(etag_matches("\"x", "\"a\""));
   EXPECT_FALSE(etag_matches(",,", "\"a\""));
+}
+
+TEST(Range, first_last_and_length) {
+  auto range = [](const char* value, uint64_t size = 10) -> std::string {
+    auto found = read_range(value, size);
+    if (!found) return "ignored";
+    return std::to_string(found->begin) + "+" + std::to_string(found->size);
+  };
+  EXPECT_EQ(range("bytes=0-0"), "0+1");
+  EXPECT_EQ(range("bytes=2-5"), "2+4");
+  EXPECT_EQ(range("bytes=2-"), "2+8");
+  EXPECT_EQ(range("bytes=9-"), "9+1");
+  EXPECT_EQ(range("bytes=8-99"), "8+2");
+  EXPECT_EQ(range("bytes=0-18446744073709551615"), "0+10");
+  EXPECT_EQ(range("bytes=-3"), "7+3");
+  EXPECT_EQ(range("bytes=-99"), "0+10");
+  for (const char* outside : {"bytes=10-", "bytes=10-12", "bytes=99999999999-"})
+    EXPECT_EQ(range(outside), "0+0") << outside;
+  EXPECT_EQ(read_range("bytes=-0", 10)->size, 0u);
+  for (const char* other :
+       {"", "bytes", "bytes=", "bytes=-", "bytes=5-2", "bytes=a-b", "lines=0-1", "bytes=0-1,3-4",
+        "bytes= 0-1", "bytes=0--1", "bytes=0x1-2", "bytes=99999999999999999999-"})
+    EXPECT_EQ(range(other), "ignored") << other;
+}
+
+TEST(Range, narrows_replies_of_files_only_for_whom_it_is_meant) {
+  auto reply_to = [](const HttpQuestion& question) {
+    HttpReply reply;
+    reply.headers["ETag"] = "\"a\"";
+    reply.file = FilePart{"f", 100, 10};
+    finish_reply(question, reply);
+    return reply;
+  };
+  HttpQuestion question{"GET", "/", {}, "", "bytes=2-5", ""};
+  HttpReply part = reply_to(question);
+  EXPECT_EQ(part.status, 206);
+  EXPECT_EQ(part.headers["Content-Range"], "bytes 2-5/10");
+  EXPECT_EQ(part.headers["ETag"], "\"a\"");
+  EXPECT_EQ(part.file->begin, 102u);
+  EXPECT_EQ(part.file->size, 4u);
+  question.if_range = "\"a\"";
+  EXPECT_EQ(reply_to(question).status, 206);
+  for (const char* other : {"\"b\"", "W/\"a\"", "Mon, 23 Nov 2026 19:00:00 GMT"}) {
+    question.if_range = other;
+    HttpReply whole = reply_to(question);
+    EXPECT_EQ(whole.status, 200) << other;
+    EXPECT_EQ(whole.file->size, 10u);
+    EXPECT_EQ(whole.headers["Accept-Ranges"], "bytes");
+  }
+  question.if_range = "";
+  question.if_none_match = "\"a\"";
+  EXPECT_EQ(reply_to(question).status, 304);
+  EXPECT_FALSE(reply_to(question).file);
+  question.if_none_match = "";
+  question.range = "bytes=10-";
+  HttpReply none = reply_to(question);
+  EXPECT_EQ(none.status, 416);
+  EXPECT_EQ(none.headers["Content-Range"], "bytes */10");
+  EXPECT_FALSE(none.file);
+  question.range = "bytes=2-5";
+  question.method = "HEAD";
+  EXPECT_EQ(reply_to(question).status, 200);
 }
 
 TEST(Reply, a_header_cannot_smuggle_a_line) {

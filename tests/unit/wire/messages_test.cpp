@@ -82,6 +82,22 @@ TEST(Messages, bad_observations_are_refused_naming_the_field) {
   }
 }
 
+TEST(Messages, orders_to_eyes_mean_what_the_golden_files_say) {
+  for (const json& row : golden("eye_order_good.jsonl")) {
+    const auto order = read_eye_order(row["text"].dump());
+    ASSERT_EQ(error_of(order), "") << row;
+    EXPECT_EQ(json::parse(write_eye_order(std::get<EyeOrder>(order))), row["means"]);
+  }
+  for (const json& row : golden("eye_order_bad.jsonl")) {
+    const auto order = read_eye_order(row["text"].get<std::string>());
+    ASSERT_TRUE(std::holds_alternative<WireError>(order)) << row;
+    const auto& error = std::get<WireError>(order);
+    EXPECT_EQ(error.code, row["code"]) << row << error.message;
+    EXPECT_NE(error.message.find(row["names"].get<std::string>()), std::string::npos)
+        << row << error.message;
+  }
+}
+
 TEST(Messages, fields_get_their_own_values) {
   const auto message = read_browser_message(
       R"({"type":"camera","seq":9,"position":[1,2,3],"yaw":0.5,"pitch":-0.25})");

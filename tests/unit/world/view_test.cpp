@@ -53,6 +53,41 @@ TEST(View, RayAndProjectionAreInverse) {
     }
 }
 
+// A picture is a screen, known by its corners, that an eye looks through.
+TEST(View, RaysThroughCornersMeetTheCornersOfTheScreen) {
+  Rng rng(11);
+  for (int i = 0; i < 500; i++) {
+    View view = make_view(Scene(), dvec3(0), 6 * rng.uniform(), 2 * rng.uniform() - 1, 1,
+                          64 + int(500 * rng.uniform()), 64 + int(500 * rng.uniform()));
+    const vec3 centre = 4.0f * vec3(rng.uniform(), rng.uniform(), rng.uniform());
+    const float height = 0.2f + 2 * rng.uniform(), aspect = float(view.width) / float(view.height),
+                away = 0.3f + 2 * rng.uniform();
+    const vec2 aside = 2.0f * vec2(rng.uniform(), rng.uniform()) - 1.0f;
+    view.position = centre + view.right * aside.x + view.up * aside.y - view.forward * away;
+    view.tan_half_fov = 0.5f * height / away;
+    view.middle = -aside / away;
+    for (float u : {0.0f, 0.5f, 1.0f})
+      for (float v : {0.0f, 0.5f, 1.0f}) {
+        const vec3 place =
+            centre + view.right * (height * aspect * (u - 0.5f)) + view.up * (height * (0.5f - v));
+        const float x = u * float(view.width), y = v * float(view.height);
+        const Ray ray = view_ray(view, x, y);
+        const float t = away / dot(ray.direction, view.forward);
+        EXPECT_LT(length(ray.origin + t * ray.direction - place), 1e-4f * (1 + t));
+        const Projected at = project_point(view, place);
+        EXPECT_NEAR(at.x, x, 0.02f);
+        EXPECT_NEAR(at.y, y, 0.02f);
+        EXPECT_NEAR(at.depth, away, 1e-5f * (1 + away + length(centre)));
+        const vec3 d = (place - view.position) / away;  // at a depth of 1
+        EXPECT_NEAR(dot(d, right_of_middle(view)), (2 * u - 1) * aspect * view.tan_half_fov, 1e-4f);
+        EXPECT_NEAR(dot(d, above_middle(view)), (1 - 2 * v) * view.tan_half_fov, 1e-4f);
+      }
+    const Projected axis = project_point(view, view.position + view.forward);
+    EXPECT_NEAR(axis.x, axis_place(view).x, 1e-2f);
+    EXPECT_NEAR(axis.y, axis_place(view).y, 1e-2f);
+  }
+}
+
 TEST(View, FieldOfViewSpansTheHeight) {
   View view = make_view(Scene(), dvec3(0), 0, 0, 90 * degrees, 200, 100);
   EXPECT_NEAR(view_ray(view, 100, 0).direction.y, std::sqrt(0.5f), 1e-5f);

@@ -34,6 +34,49 @@ struct Play {
   }
 };
 
+TEST(Behaviour, AKioskSaysWhoStaysAndWhoLeaves) {
+  Play play;
+  play.input.staying = true;
+  play.present({7});
+  play.run(5);
+  EXPECT_EQ(play.greeted, 1);
+  play.input.met = true;
+  play.present({});
+  play.run(60);
+  EXPECT_EQ(play.farewelled, 0) << "unseen, and there";
+  EXPECT_EQ(play.state.mood, Mood::attending);
+  play.input.staying = false;
+  play.input.parting = true;
+  play.tick(0.05);
+  play.input.parting = false;
+  EXPECT_EQ(play.farewelled, 1);
+  EXPECT_EQ(play.state.mood, Mood::farewell);
+  play.run(1);
+  EXPECT_EQ(play.state.mood, Mood::farewell);
+  play.input.staying = true;
+  play.present({8}, 2);
+  play.run(1);
+  EXPECT_EQ(play.state.mood, Mood::attending) << "back: nothing more of goodbye";
+  EXPECT_EQ(play.greeted, 1) << "met before";
+  EXPECT_EQ(play.farewelled, 1);
+}
+
+TEST(Behaviour, WhoStandsWhereAGuestOfAnotherVisitStoodIsGreeted) {
+  Play play;
+  play.present({7});
+  play.run(2);
+  EXPECT_EQ(play.greeted, 1);
+  play.present({});  // the kiosk is switched off: nobody has seen them leave
+  play.run(1);
+  play.input.visit++;
+  play.present({7});
+  play.run(2);
+  EXPECT_EQ(play.greeted, 2);
+  play.run(60);
+  EXPECT_EQ(play.greeted, 2);
+  EXPECT_EQ(play.farewelled, 0);
+}
+
 TEST(Behaviour, AWholeVisit) {
   Play play;
   play.run(5);

@@ -94,6 +94,27 @@ TEST(Gaze, EyesLeadTheHeadAndTheHeadLeadsTheBody) {
   EXPECT_LT(yaw("vt6"), yaw("skullbase"));
 }
 
+// Eyes above the floor after eight seconds with somebody there.
+float eye_height(vec3 guest) {
+  Stage stage;
+  stage.input.humanlike = false;
+  stage.input.guests = {{5, guest, vec3(0), true}};
+  stage.run(8);
+  EXPECT_LT(eye_error(stage, "l_eyeball_joint", guest), 2 * deg);
+  return stage.frame("l_eyeball_joint").center.y;
+}
+
+TEST(Bow, MeetsWhoIsLowAndNear) {
+  const float upright = eye_height({0, 1.6f, 1.2f}), child = eye_height({0, 1.0f, 1.2f});
+  EXPECT_LT(child, upright - 0.12f);
+  EXPECT_GT(child, upright - 0.4f) << "it does not go down on its knees";
+  EXPECT_NEAR(eye_height({0, 1.0f, 4.5f}), upright, 0.02f) << "not to somebody far off";
+  EXPECT_NEAR(eye_height({0, 1.9f, 1.2f}), upright, 0.02f);
+  const float seated = eye_height({0, 1.25f, 1.2f});
+  EXPECT_LT(seated, upright - 0.03f);
+  EXPECT_GT(seated, child);
+}
+
 TEST(Gaze, WorksInAnyPlacement) {
   Stage stage;
   stage.storyteller.placement =

@@ -26,10 +26,7 @@ CorrectiveSample Stage::trace(const View& view, ivec2 pixel) const {
   }
   uint64_t bits =
       mix64(uint64_t(sample.object) << 40 | uint64_t(pixel.y) << 20 | uint64_t(pixel.x));
-  auto number = [&](int shift) {
-    return std::bit_cast<float>(0x3f000000u + (uint32_t(bits >> shift) & 0xffffffu));
-  };
-  sample.radiance = vec3(number(0), number(20), number(40));
+  sample.words = {uint32_t(bits), uint32_t(bits >> 20), uint32_t(bits >> 32), ~uint32_t(bits)};
   return sample;
 }
 
@@ -75,9 +72,11 @@ View view_of_balls(int width, int height, float angle, float distance, float uni
   return view;
 }
 
+SampleWords number_words(float number) { return {std::bit_cast<uint32_t>(number), 1, 2, 3}; }
+
 Picture splat(const SampleStore& store, const View& view, std::span<const uint32_t> object) {
   Picture picture;
-  picture.color.assign(object.size(), vec3(-1));
+  picture.color.assign(object.size(), number_words(-1));
   picture.level.assign(object.size(), 77);
   SplatScratch scratch;
   picture.stats = warp_and_splat(store, view, object, scratch, picture.color, picture.level);
@@ -90,7 +89,7 @@ int count_wrong(const Picture& picture, const Stage& stage, const View& view) {
     for (int x = 0; x < view.width; x++) {
       CorrectiveSample truth = stage.trace(view, {x, y});
       size_t i = size_t(y) * size_t(view.width) + size_t(x);
-      vec3 expected = truth.object ? truth.radiance : vec3(-1);
+      SampleWords expected = truth.object ? truth.words : number_words(-1);
       bool right = picture.color[i] == expected && (picture.level[i] != 0) == (truth.object != 0);
       wrong += !right;
     }

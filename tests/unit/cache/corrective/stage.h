@@ -18,8 +18,8 @@ struct Ball {
 
 struct Stage {
   std::vector<Ball> balls;
-  // The first ball that the ray through the centre of a pixel meets; object 0: none. The radiance
-  // is a function of object and pixel that uses all bits of its numbers.
+  // The first ball that the ray through the centre of a pixel meets; object 0: none. The words
+  // are a function of object and pixel.
   CorrectiveSample trace(const View& view, ivec2 pixel) const;
   std::vector<uint32_t> objects(const View& view) const;  // of each pixel
   // A sample for each pixel of the level that shows something, or of all levels.
@@ -34,12 +34,15 @@ Stage two_balls(float unit = 1);
 // From `distance` units before them, turned by `angle` round the first.
 View view_of_balls(int width, int height, float angle = 0, float distance = 4, float unit = 1);
 
+// A number for each pixel, bit by bit.
+SampleWords number_words(float number);
+
 struct Picture {
-  std::vector<vec3> color;
+  std::vector<SampleWords> color;
   std::vector<uint8_t> level;
   SplatStats stats;
 };
-// Colours are -1 where no sample is shown.
+// Words are number_words(-1) where no sample is shown.
 Picture splat(const SampleStore& store, const View& view, std::span<const uint32_t> object);
 
 // Pixels that differ in a bit from what is traced there, or show something where nothing is.

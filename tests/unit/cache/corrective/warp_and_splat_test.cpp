@@ -16,6 +16,7 @@ namespace wellspring {
 namespace {
 
 using test::count_wrong;
+using test::number_words;
 using test::Picture;
 using test::splat;
 using test::Stage;
@@ -36,7 +37,7 @@ struct OneSample {
   View view = view_of_balls(101, 101);
   std::vector<uint32_t> object = std::vector<uint32_t>(101 * 101, 1);
   void add(int level, float z, float color, uint32_t age = 0) {
-    CorrectiveSample sample{1, level, vec3(0, 0, z), vec3(0, 0, 1), vec3(color)};
+    CorrectiveSample sample{1, level, vec3(0, 0, z), vec3(0, 0, 1), number_words(color)};
     ASSERT_EQ(add_samples(store, view, age, {&sample, 1}), 1);
   }
   Picture from(float z) {
@@ -48,7 +49,7 @@ struct OneSample {
 
 bool same(const Picture& a, const Picture& b) {
   return a.level == b.level && a.color.size() == b.color.size() &&
-         std::memcmp(a.color.data(), b.color.data(), a.color.size() * sizeof(vec3)) == 0;
+         std::memcmp(a.color.data(), b.color.data(), a.color.size() * sizeof(SampleWords)) == 0;
 }
 
 TEST(WarpAndSplat, AllLevelsOfOneViewAreTheTracedPictureBitForBit) {
@@ -97,14 +98,14 @@ TEST(WarpAndSplat, SamplesTouchOnlyPixelsOfTheirOwnObject) {
   View view = view_of_balls(150, 121), now = view_of_balls(150, 121, 0.2f, 3.6f);
   SampleStore store;
   std::vector<CorrectiveSample> samples = stage.trace_all(view, store.grid);
-  for (CorrectiveSample& sample : samples) sample.radiance = vec3(float(sample.object));
+  for (CorrectiveSample& sample : samples) sample.words = number_words(float(sample.object));
   add_samples(store, view, 0, samples);
   std::vector<uint32_t> object = stage.objects(now);
   Picture picture = splat(store, now, object);
   int shown = 0, seen = 0;
   for (size_t i = 0; i < object.size(); i++) {
     float expected = picture.level[i] ? float(object[i]) : -1.0f;
-    ASSERT_EQ(picture.color[i], vec3(expected));
+    ASSERT_EQ(picture.color[i], number_words(float(expected)));
     shown += picture.level[i] != 0;
     seen += object[i] != 0;
   }
@@ -118,18 +119,18 @@ TEST(WarpAndSplat, FinerLevelsCoverCoarserAndNearerSamplesThoseBehind) {
   one.add(1, 0.9f, 1);  // nearer, but coarse
   Picture picture = one.from(4);
   size_t middle = 50 * 101 + 50;
-  EXPECT_EQ(picture.color[middle], vec3(2));
+  EXPECT_EQ(picture.color[middle], number_words(2));
   EXPECT_EQ(picture.level[middle], 2);
   EXPECT_EQ(picture.level[middle + 5], 1);
   one.add(2, 0.7f, 3);
   one.add(2, 0.1f, 4);
-  EXPECT_EQ(one.from(4).color[middle], vec3(3));
+  EXPECT_EQ(one.from(4).color[middle], number_words(3));
   one.add(2, 0.7f, 5, 1);  // as near, and newer
-  EXPECT_EQ(one.from(4).color[middle], vec3(5));
+  EXPECT_EQ(one.from(4).color[middle], number_words(5));
   one.add(4, 0.2f, 6);  // a single pixel
   one.add(4, 0.2f, 7, 1);
   one.add(4, 0.1f, 8, 1);
-  EXPECT_EQ(one.from(4).color[middle], vec3(7));
+  EXPECT_EQ(one.from(4).color[middle], number_words(7));
 }
 
 TEST(WarpAndSplat, FootprintsGrowAsTheEyeComesNearerUpToFourTimes) {
@@ -169,7 +170,7 @@ TEST(WarpAndSplat, ASurfaceThatShowsItsOtherSideIsLeftOut) {
   View behind = view_of_balls(101, 101, pi);
   EXPECT_EQ(splat(one.store, behind, one.object).stats.splats, 0);
   // A sample traced from behind is shown from there.
-  CorrectiveSample sample{1, 2, vec3(0), vec3(0, 0, 1), vec3(1)};
+  CorrectiveSample sample{1, 2, vec3(0), vec3(0, 0, 1), {}};
   add_samples(one.store, behind, 0, {&sample, 1});
   EXPECT_EQ(splat(one.store, behind, one.object).stats.splats, 1);
   EXPECT_EQ(one.from(4).stats.splats, 1);
@@ -184,13 +185,13 @@ TEST(WarpAndSplat, AnObjectOnePixelWideHasItsOwnPixels) {
   for (int y = 0; y < 64; y++) {
     Ray ray = view_ray(view, 30.5f, float(y) + 0.5f);
     samples.push_back({2, level_of_pixel(store.grid, {30, y}), ray.origin + ray.direction * 3.0f,
-                       vec3(0, 0, 1), vec3(float(y))});
+                       vec3(0, 0, 1), number_words(float(y))});
   }
   add_samples(store, view, 0, samples);
   Picture picture = splat(store, view, object);
   EXPECT_EQ(picture.stats.pixels, 64);
   for (size_t i = 0; i < object.size(); i++)
-    EXPECT_EQ(picture.color[i], object[i] == 2 ? vec3(float(i / 64)) : vec3(-1));
+    EXPECT_EQ(picture.color[i], number_words(object[i] == 2 ? float(i / 64) : -1));
 }
 
 TEST(WarpAndSplat, HundredsOfObjectsEachShowTheirOwn) {
@@ -212,14 +213,15 @@ TEST(WarpAndSplat, WithoutSamplesNothingIsShownAndColoursStay) {
   EXPECT_EQ(picture.stats.samples + picture.stats.splats + picture.stats.pixels, 0);
   for (size_t i = 0; i < picture.level.size(); i++) {
     EXPECT_EQ(picture.level[i], 0);
-    EXPECT_EQ(picture.color[i], vec3(-1));
+    EXPECT_EQ(picture.color[i], number_words(-1));
   }
 }
 
 // The same without tiles, lanes or threads.
 Picture plain_splat(const SampleStore& store, const View& view, std::span<const uint32_t> object) {
-  Picture picture{
-      std::vector<vec3>(object.size(), vec3(-1)), std::vector<uint8_t>(object.size(), 0), {}};
+  Picture picture{std::vector<SampleWords>(object.size(), number_words(-1)),
+                  std::vector<uint8_t>(object.size(), 0),
+                  {}};
   std::vector<float> nearest(object.size());
   for (const ObjectSamples& samples : store.objects)
     for (size_t level = 0; level < samples.levels.size(); level++) {
@@ -238,7 +240,7 @@ Picture plain_splat(const SampleStore& store, const View& view, std::span<const 
             size_t at = size_t(y) * size_t(view.width) + size_t(x);
             if (object[at] != samples.object || p.depth >= nearest[at]) continue;
             nearest[at] = p.depth;
-            picture.color[at] = list.radiance[i];
+            picture.color[at] = list.words[i];
             picture.level[at] = uint8_t(level + 1);
           }
       }
@@ -248,14 +250,18 @@ Picture plain_splat(const SampleStore& store, const View& view, std::span<const 
 
 TEST(WarpAndSplat, TilesAndLanesAgreeWithAPlainLoop) {
   View view = view_of_balls(401, 203), now = view_of_balls(401, 203, 0.05f, 3.3f);
+  now.middle = {0.21f, -0.13f};
   std::vector<uint32_t> object(401 * 203);
   for (size_t i = 0; i < object.size(); i++) object[i] = 1 + uint32_t(i / 7 % 3);
   std::vector<CorrectiveSample> samples;
   for (uint32_t i = 0; i < 20000; i++) {
     auto number = [&](uint32_t k) { return float(mix64(i * 8 + k) >> 40) * 0x1p-24f; };
     vec3 place = vec3(5 * number(0) - 2.5f, 2.4f * number(1) - 1.2f, number(2));
-    samples.push_back({1 + i % 3, 1 + int(number(3) * 4), place, vec3(0, 0, 1),
-                       vec3(number(4), number(5), number(6))});
+    samples.push_back({1 + i % 3,
+                       1 + int(number(3) * 4),
+                       place,
+                       vec3(0, 0, 1),
+                       {uint32_t(number(4) * 1e9f), i, 0, 0}});
   }
   SampleStore store;
   add_samples(store, view, 0, samples);

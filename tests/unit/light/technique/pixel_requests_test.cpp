@@ -14,7 +14,9 @@ namespace {
 
 View slanted_view() {
   Scene scene;
-  return make_view_towards(scene, {1, 2, 3}, {-2, 1.5, -4}, {0.1f, 1, 0}, 1.1f, 37, 21);
+  View view = make_view_towards(scene, {1, 2, 3}, {-2, 1.5, -4}, {0.1f, 1, 0}, 1.1f, 37, 21);
+  view.middle = {0.4f, -0.25f};
+  return view;
 }
 
 std::vector<PixelSample> all_samples(const View& view, int spp) {

@@ -93,6 +93,7 @@ struct SoundTest : testing::Test, ShowStage {
     }
     exhibit.storytellers[1].voice.variant = "m2";
     tick_seconds = 0.04;
+    exhibit.shared_storyteller = true;
     begin(std::move(exhibit), settings_for("direct", false));
     show->speech.find = [this](const SpeechRequest& r) {
       return kept.contains(r.text) ? kept[r.text] : nullptr;
@@ -199,7 +200,7 @@ TEST_F(SoundTest, NothingIsMadeForThoseWhoDoNotListenAndALateListenerHearsTheRes
   EXPECT_EQ(subtitles(a).size(), 2u);
   EXPECT_TRUE(sounds(a).empty() && speech(a).empty());
   EXPECT_EQ(show->totals.sounds, 0u);
-  EXPECT_TRUE(heard(show->voice)) << "the mouth follows what was prepared all the same";
+  EXPECT_TRUE(heard(show->teller.voice)) << "the mouth follows what was prepared all the same";
   say(R"({"type":"settings","sound":true})", a);
   run(0.1);
   ASSERT_FALSE(sounds(a).empty());
@@ -308,7 +309,7 @@ TEST_F(SoundTest, AnybodyMayStopWhatAnotherAskedForAndBothAreTold) {
   EXPECT_EQ(speech(b).at(0)["text"], "One.") << "who is there listens in";
   say(R"({"type":"storyteller","action":"stop"})", b);
   run(0.2);
-  EXPECT_EQ(show->voice.story, "");
+  EXPECT_EQ(show->teller.voice.story, "");
   for (size_t peer : {a, b}) {
     EXPECT_EQ(speech(peer).back()["action"], "stop");
     EXPECT_EQ(subtitles(peer).back()["text"], "");
@@ -325,11 +326,11 @@ TEST_F(SoundTest, AStoryGoesOnWithoutWhoAskedUnlessItWasPaused) {
     run(0.2);
     say(R"({"type":"bye"})", a);
     run(0.2);
-    EXPECT_EQ(show->voice.story, paused ? "" : "tale");
+    EXPECT_EQ(show->teller.voice.story, paused ? "" : "tale");
     say(R"({"type":"bye"})", b);
     run(0.2);
-    EXPECT_EQ(show->voice.story, "") << "nobody is left to hear it";
-    EXPECT_TRUE(show->voice.queue.empty());
+    EXPECT_EQ(show->teller.voice.story, "") << "nobody is left to hear it";
+    EXPECT_TRUE(show->teller.voice.queue.empty());
   }
 }
 
@@ -346,20 +347,20 @@ TEST_F(SoundTest, NobodyFarAwayTakesTheStorytellerFromWhoStandsBeforeIt) {
     run(0.08);
   }
   EXPECT_EQ(show->totals.refused_messages, refused + 5);
-  EXPECT_EQ(show->voice.story, "tale");
-  EXPECT_EQ(show->voice.asked_by, browsers[a].link->id);
-  EXPECT_TRUE(show->storyteller_visible);
-  EXPECT_EQ(show->storyteller_index, 0u);
-  EXPECT_FALSE(show->voice.paused);
+  EXPECT_EQ(show->teller.voice.story, "tale");
+  EXPECT_EQ(show->teller.voice.asked_by, browsers[a].link->id);
+  EXPECT_TRUE(show->teller.visible);
+  EXPECT_EQ(show->teller.index, 0u);
+  EXPECT_FALSE(show->teller.voice.paused);
   // The kiosk may, and afterwards everybody may again.
   say(R"({"type":"storyteller","action":"stop"})", a);
   run(0.1);
   say(R"({"type":"storyteller","story":"tale"})", b);
   run(0.1);
-  EXPECT_EQ(show->voice.asked_by, browsers[b].link->id);
+  EXPECT_EQ(show->teller.voice.asked_by, browsers[b].link->id);
   say(R"({"type":"storyteller","action":"stop"})", a);
   run(0.1);
-  EXPECT_EQ(show->voice.story, "") << "who stands before it comes first";
+  EXPECT_EQ(show->teller.voice.story, "") << "who stands before it comes first";
 }
 
 // ---- the narrator of a tour ----
@@ -399,15 +400,36 @@ TEST_F(SoundTest, ATourIsHeardByItsVisitorAloneAndEverywhere) {
   EXPECT_NE(speech(a)[4]["text"], "Here");
 }
 
+TEST_F(SoundTest, WhoHasTheirOwnStorytellerHearsHerAlone) {
+  show->exhibit.shared_storyteller = false;
+  size_t a = join("en"), b = join("de");
+  run(0.2);
+  say(R"({"type":"storyteller","story":"tale"})", a);
+  run(0.4);
+  say(R"({"type":"storyteller","story":"tale"})", b);
+  run(0.4);
+  ASSERT_EQ(speech(a).size(), 1u);
+  ASSERT_EQ(speech(b).size(), 1u);
+  EXPECT_EQ(speech(a)[0]["lang"], "en");
+  EXPECT_EQ(speech(b)[0]["lang"], "de");
+  EXPECT_NE(speech(a)[0]["utterance"], speech(b)[0]["utterance"]);
+  for (const SoundView& sound : sounds(b))
+    EXPECT_EQ(sound.header.utterance, speech(b)[0]["utterance"]);
+  say(R"({"type":"storyteller","action":"stop"})", a);
+  run(0.4);
+  EXPECT_EQ(speech(a).back()["action"], "stop");
+  EXPECT_EQ(speech(b).size(), 1u);
+}
+
 TEST_F(SoundTest, AFarewellCutsTheStoryShort) {
   size_t a = join("en");
   run(0.2);
   say(R"({"type":"storyteller","story":"tale"})", a);
   run(0.4);
-  EXPECT_EQ(show->voice.story, "tale");
-  wellspring::say(show->voice, plain_line({{"en", "Goodbye."}}), true);
+  EXPECT_EQ(show->teller.voice.story, "tale");
+  wellspring::say(show->teller.voice, plain_line({{"en", "Goodbye."}}), true);
   run(0.4);
-  EXPECT_EQ(show->voice.story, "");
+  EXPECT_EQ(show->teller.voice.story, "");
   ASSERT_GE(speech(a).size(), 3u);
   EXPECT_EQ(speech(a)[1]["action"], "stop");
   EXPECT_EQ(speech(a)[2]["text"], "Goodbye.");

@@ -212,7 +212,14 @@ const std::vector<Row> rows = {
        renderer.has_skin = true;
        renderer.skin_at = now - 0.2;
      },
-     {Drawing::skin}},
+     {Drawing::skin, 0}},
+    {"in the world of each who sees it in turn",
+     [](States& all, RendererState& renderer) {
+       all = {listener(), stander(), listener()};
+       renderer.has_skin = true;
+       renderer.skin_turn = 7;
+     },
+     {Drawing::skin, 2}},
     {"and not more often",
      [](States& all, RendererState& renderer) {
        all = {listener()};
@@ -232,7 +239,7 @@ const std::vector<Row> rows = {
        renderer.has_skin = true;
        renderer.drawn = 0;
      },
-     {Drawing::skin}},
+     {Drawing::skin, 1}},
     {"a picture that is begun goes on before the next",
      [](States& all, RendererState& renderer) {
        all = {due(stander()), due(walker(), 9)};

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/rng.h"
-#include "show/answer/answer.h"
+#include "show/http/answer.h"
 #include "show/draw/make_picture_job.h"
 #include "show/draw/picture.h"
 #include "show/tick.h"

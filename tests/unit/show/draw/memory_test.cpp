@@ -2,7 +2,7 @@
 // What a visitor's pictures take of memory is bounded, and told.
 #include <gtest/gtest.h>
 
-#include "show/answer/answer.h"
+#include "show/http/answer.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring {

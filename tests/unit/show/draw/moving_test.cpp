@@ -78,7 +78,7 @@ TEST_F(Moving, ShowsWhereItIs) {
   ASSERT_TRUE(is_between_steps());
   uint64_t drawn = show->totals.drawn, posed = show->totals.posed;
   Image8 before = last_image();
-  show->storyteller.placement[3].x += 1;
+  show->teller.storyteller.placement[3].x += 1;
   ASSERT_TRUE(step_until([&] { return show->totals.posed > posed; }));
   size_t sent = pictures().size();
   ASSERT_TRUE(step_until([&] { return pictures().size() > sent; }));
@@ -137,7 +137,7 @@ TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   steps(200);
   vec3 here(-2, 1, 0.5f);
   EXPECT_GT(red_at(last_image(), here), 40);
-  show->storyteller_visible = false;
+  show->teller.visible = false;
   ASSERT_TRUE(step_until([&] { return !visitor().picture.job.figure; }));
   steps(30);
   EXPECT_LT(red_at(last_image(), here), 20);

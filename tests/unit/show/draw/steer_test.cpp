@@ -10,7 +10,7 @@
 
 #include "cache/point_cache.h"
 #include "cache/point_image.h"
-#include "show/answer/answer.h"
+#include "show/http/answer.h"
 #include "show/draw/pace.h"
 #include "unit/show/show_stage.h"
 
@@ -32,7 +32,7 @@ void add_cube(Exhibit& exhibit, vec3 middle, const char* name) {
   scene.objects.push_back(name);
   const uint32_t object = uint32_t(scene.objects.size()) - 1;
   scene.instances.push_back({int(scene.meshes.size()) - 1, mat4(1), object});
-  exhibit.points.push_back({name, name, object, dvec3(middle), {}});
+  exhibit.points.push_back({name, name, {object}, dvec3(middle), {}});
 }
 
 // Two cubes alike, left and right of the middle of the picture.
@@ -57,7 +57,7 @@ struct Steering : testing::Test, ShowStage {
   vec2 place_of(uint32_t object) {
     const View& view = visitor().place.last_view;
     for (const PointOfInterest& point : show->exhibit.points)
-      if (point.object == object) {
+      if (point.objects.front() == object) {
         Projected at = project_point(view, vec3(point.place));
         return {at.x / float(view.width), at.y / float(view.height)};
       }
@@ -219,28 +219,14 @@ TEST_F(Steering, WhatIsToldOfIsLookedAt) {
   begin();
   steps(10);
   const SeenPicture& seen = *visitor().looks.seen;
-  show->voice.queue.emplace_back();
+  show->teller.voice.queue.emplace_back();
   EXPECT_TRUE(find_hints(*show, visitor(), seen).empty());
-  show->voice.held.point = "right";
+  show->teller.voice.held.point = "right";
   std::vector<AttentionHint> hints = find_hints(*show, visitor(), seen);
   ASSERT_EQ(hints.size(), 1u);
   EXPECT_NEAR(hints[0].place.x / float(seen.picture.width), place_of(right).x, 0.02);
   EXPECT_NEAR(hints[0].place.y / float(seen.picture.height), place_of(right).y, 0.02);
-  show->voice.queue.clear();
-}
-
-// Of objects that maps know, those that shine still need samples.
-TEST_F(Steering, WhatMapsKnowNeedsNoSamples) {
-  begin();
-  EXPECT_TRUE(known_objects(*show).empty());
-  show->lights.maps = std::make_shared<IlluminationMap>();
-  show->mapped = {0, 1, 0, 1, 1};
-  Material polished = show->exhibit.scene.materials[0];
-  polished.roughness = 0.1f;
-  show->exhibit.scene.materials.push_back(polished);
-  show->exhibit.scene.meshes.back().material = int(show->exhibit.scene.materials.size()) - 1;
-  EXPECT_EQ(known_objects(*show), (std::vector<char>{0, 1, 0, 1, 0}));
-  show->lights.maps = nullptr;
+  show->teller.voice.queue.clear();
 }
 
 }  // namespace

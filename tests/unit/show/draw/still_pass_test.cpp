@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "show/answer/report.h"
+#include "show/http/report.h"
 #include "unit/show/show_stage.h"
 
 namespace wellspring {
@@ -80,7 +80,7 @@ TEST_F(StillPassTest, WhoMovesOnLeavesItBehind) {
   EXPECT_GE(show->totals.given_up, 1u);
   EXPECT_FALSE(visitor().picture.rest.reconstructed);
   ASSERT_TRUE(step_until([&] { return show->totals.reconstructed >= 1; }));
-  ASSERT_TRUE(step_until([&] { return !visitor().picture.unshown; }));
+  ASSERT_TRUE(step_until([&] { return is_shown(); }));
   EXPECT_LT(error_of_last(), 6);  // of where the visitor is now
 }
 

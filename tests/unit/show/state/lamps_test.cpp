@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps of a running exhibit: switched by visitors, for all of them.
+// Lamps of a running exhibit: switched by visitors, for themselves or for all of them.
 #include "show/state/lamps.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "show/answer/answer.h"
+#include "show/http/answer.h"
 #include "show/exhibit/exhibit_lamps.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/state/in_view.h"
@@ -30,7 +30,7 @@ Exhibit make_lit_exhibit(bool on_at_first = true) {
   weak.intensity = vec3(0.5f);
   exhibit.scene.lights.push_back(weak);
   add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
-  exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}, {"de", "Decke"}}, on_at_first}};
+  exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}, {"de", "Decke"}}, on_at_first, true}};
   return exhibit;
 }
 
@@ -57,7 +57,7 @@ TEST_F(Lamps, OneSwitchesAndAllAreToldAndSeeIt) {
     begin(make_lit_exhibit(), 2, "gather", background);
     run(1.5);
     EXPECT_EQ(last("welcome")["lamps"],
-              json::parse(R"([{"name":"ceiling","title":"Ceiling","on":true}])"));
+              json::parse(R"([{"name":"ceiling","title":"Ceiling","on":true,"shared":true}])"));
     EXPECT_EQ(last("welcome", 1)["lamps"][0]["title"], "Decke");
     double lit[2] = {level(0), level(1)};
     lamp(1, "ceiling", false);
@@ -80,7 +80,7 @@ TEST_F(Lamps, OneSwitchesAndAllAreToldAndSeeIt) {
 TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   Exhibit exhibit = make_lit_exhibit();
   add_lamp({"corner", {"weak"}, {}}, exhibit.scene);
-  exhibit.lamps.push_back({"corner", {{"en", "Corner"}}, true});
+  exhibit.lamps.push_back({"corner", {{"en", "Corner"}}, true, true});
   begin(std::move(exhibit), 4);
   run(1);
   lamp(0, "ceiling", false);
@@ -102,9 +102,38 @@ TEST_F(Lamps, VisitorsShareWhatBecomesOfTheLight) {
   EXPECT_EQ(steps[0].before, known[0]);
   EXPECT_EQ(steps[1].before, known[1]);
   show->visitors.front().picture.lamps = known[1];  // as if it had yet to follow
-  invalidate_light_steps(*show);
+  forget_lights(*show);
   ASSERT_EQ(steps.size(), 1u);
   EXPECT_EQ(steps[0].before, known[1]);
+}
+
+// Each sees the room in their own light, in one world that is lit for one after the other.
+TEST_F(Lamps, WhatIsNotSharedIsSwitchedForOneselfAlone) {
+  for (bool background : {false, true}) {
+    browsers.clear();
+    Exhibit exhibit = make_lit_exhibit();
+    exhibit.lamps[0].shared = false;
+    begin(std::move(exhibit), 3, "gather", background);
+    run(1.5);
+    EXPECT_EQ(last("welcome")["lamps"][0]["shared"], false);
+    double lit[3] = {level(0), level(1), level(2)};
+    lamp(1, "ceiling", false);
+    run(1);
+    EXPECT_EQ(last("state", 0)["lamps"]["ceiling"], true);
+    EXPECT_EQ(last("state", 1)["lamps"]["ceiling"], false);
+    EXPECT_LT(level(1), 0.6 * lit[1]);
+    for (size_t i : {0, 2}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
+    EXPECT_EQ(show->switches.others.size(), 1u);
+    lamp(2, "ceiling", false);
+    lamp(1, "ceiling", true);
+    run(1);
+    EXPECT_LT(level(2), 0.6 * lit[2]);
+    for (size_t i : {0, 1}) EXPECT_NEAR(level(i) / lit[i], 1, 0.05) << i;
+    lamp(2, "ceiling", true);
+    run(1);
+    EXPECT_TRUE(show->switches.others.empty()) << "nobody sees it any more";
+    EXPECT_TRUE(show->switches.steps.empty());
+  }
 }
 
 TEST_F(Lamps, UnknownOnesAreRefusedAndNothingChanges) {

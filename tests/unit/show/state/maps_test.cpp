@@ -3,11 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "light/bake/map_file.h"
-#include "show/answer/answer.h"
+#include "show/http/answer.h"
 #include "show/state/lamps.h"
 #include "unit/folder.h"
 #include "unit/light/bake/bake_cases.h"
 #include "unit/show/show_stage.h"
+#include "scenes/scenes.h"
 #include "world/load/lamp.h"
 
 namespace wellspring {
@@ -127,8 +128,7 @@ TEST_F(Maps, FollowTheLampsAtOnce) {
   };
   expect(true);
   for (bool on : {false, true}) {
-    show->switches.wanted[0] = on;
-    light_lamps(*show);
+    light_world(*show, {char(on)});
     expect(on);
   }
   // And by a visitor's word.
@@ -163,6 +163,70 @@ TEST_F(Maps, AreTakenOverWhileItRuns) {
   run(0.5);
   EXPECT_EQ(make_report(*show).bad_samples, 0u);
   EXPECT_GT(visitor().picture.cache.stats().points, 100);
+}
+
+// A ball of bronze before the visitor of the first viewpoint.
+void add_bronze(Exhibit& exhibit) {
+  Material bronze;
+  bronze.metallic = 1;
+  bronze.roughness = 0.1f;
+  exhibit.scene.materials.push_back(bronze);
+  Mesh ball = scenes::sphere_mesh(int(exhibit.scene.materials.size()) - 1, 0.5f);
+  for (vec3& p : ball.positions) p += vec3(-2, 1.4f, 1);
+  exhibit.scene.meshes.push_back(ball);
+  exhibit.scene.objects.push_back("ball");
+  exhibit.scene.instances.push_back({2, mat4(1), 3});
+}
+
+struct Corrected : Maps {
+  void walk(Display display, double seconds = 0.6) {
+    keep_map();
+    open(display);
+    join(96, 64);
+    steps(3);
+    for (double t = 0; t < seconds; t += tick_seconds) turn(0.02 * t, 0.1), step();
+  }
+};
+
+TEST_F(Corrected, WhatShinesHasSamplesOfItsOwn) {
+  add_bronze(exhibit);
+  walk(Display::corrected);
+  EXPECT_TRUE(says("wellspring_display{method=\"corrected\"} 1\n"));
+  EXPECT_GT(show->totals.corrected, 5u);
+  EXPECT_GT(show->totals.corrective_samples, 100u);
+  EXPECT_GT(visitor().picture.compositor.corrections().counts().kept, 100u);
+  EXPECT_EQ(show->known[3], 0);
+  EXPECT_EQ(show->known[1], 1);
+}
+
+TEST_F(Corrected, NothingIsDoneWhereNothingShines) {
+  walk(Display::corrected);
+  ASSERT_GT(show->totals.drawn, 5u);
+  EXPECT_EQ(show->totals.corrected + show->totals.corrective_samples, 0u);
+}
+
+TEST_F(Corrected, NothingIsDoneUnlessItIsAskedFor) {
+  add_bronze(exhibit);
+  walk(Display::automatic);
+  ASSERT_GT(show->totals.drawn, 5u);
+  EXPECT_EQ(show->totals.corrected + show->totals.corrective_samples, 0u);
+}
+
+TEST_F(Corrected, ALampThatIsSwitchedForgetsThem) {
+  add_bronze(exhibit);
+  add_switch(true);
+  keep_map({daylight, lamplight});
+  open(Display::corrected);
+  join(96, 64);
+  for (int i = 0; i < 30; i++) turn(0.01 * i, 0.1), step();
+  const Corrections& corrections = visitor().picture.compositor.corrections();
+  const size_t before = corrections.memory_bytes();
+  ASSERT_GT(corrections.counts().kept, 100u);
+  ASSERT_TRUE(switch_lamp(*show, show->visitors.front(), "ceiling", false));
+  const uint64_t kept = corrections.counts().kept;
+  for (int i = 0; i < 20; i++) turn(0.3 + 0.01 * i, 0.1), step();
+  EXPECT_GT(corrections.counts().kept, kept);
+  EXPECT_LT(corrections.memory_bytes(), 2 * before);
 }
 
 }  // namespace

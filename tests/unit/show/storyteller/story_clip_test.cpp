@@ -49,7 +49,8 @@ TEST(StoryClip, ToldAgainItIsTheSame) {
 
 TEST(StoryClip, WhatTheBodyIsAskedForDependsOnTheStoryAlone) {
   Exhibit exhibit = make_tiny_exhibit();
-  exhibit.points.push_back({"well", "Well", 0, dvec3(1, 0.8, -2), {}});
+  PointOfInterest& well = exhibit.points.emplace_back();
+  well.id = "well", well.node = "Well", well.place = dvec3(1, 0.8, -2);
   StoryText story = make_story();
   story.text["en"] = read_story(
                          "<look at='well'/>One <point at='well'/>two. <gesture "

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "show/answer/still.h"
+#include "show/http/still.h"
 #include "show/state/make_show.h"
 #include "show/storyteller/sounding.h"
 #include "unit/show/show_stage.h"

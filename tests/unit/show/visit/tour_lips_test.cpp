@@ -29,6 +29,7 @@ struct TourLips : testing::Test, ShowStage {
 
   void SetUp() override {
     Exhibit exhibit = make_tiny_exhibit();
+    exhibit.shared_storyteller = true;
     // 2 m before the viewpoint where the tour begins.
     StorytellerPlace& storyteller_place = add_storyteller(exhibit, "anna", {-2, 0, 1});
     Displacer open;
@@ -49,7 +50,7 @@ struct TourLips : testing::Test, ShowStage {
     ShowStage::join(32, 32);
     run(0.1);
   }
-  float lips() const { return show->pose.displacers.at(0); }
+  float lips() const { return show->teller.pose.displacers.at(0); }
 };
 
 TEST_F(TourLips, MoveWhileTheTourIsTold) {
@@ -69,21 +70,21 @@ TEST_F(TourLips, NothingOfTheFaceRunsBehindTheVisitorsBack) {
   join();
   order(R"({"type":"tour","action":"play"})");
   run(1);
-  StorytellerWork before = show->mind.work;
+  StorytellerWork before = show->teller.mind.work;
   EXPECT_GT(before.visemes, 0u);
   EXPECT_GT(before.blinks, 0u);
   // Half round; the tour goes on.
   order(R"({"type":"input","seq":1,"move":[0,0,0],"look":[3.1416,0]})");
-  ASSERT_FALSE(sees_head(*show, view_of(*show, show->visitors.front())));
+  ASSERT_FALSE(sees_head(*show, show->teller, view_of(*show, show->visitors.front())));
   ASSERT_TRUE(heard(show->visitors.front().hearing.narration.voice));
-  before = show->mind.work;
+  before = show->teller.mind.work;
   run(0.8);
-  EXPECT_GT(show->mind.work.ticks, before.ticks);
-  EXPECT_EQ(show->mind.work.visemes, before.visemes);
-  EXPECT_EQ(show->mind.work.blinks, before.blinks);
-  EXPECT_EQ(show->mind.work.flexes, before.flexes);
-  EXPECT_EQ(show->mind.work.expressions, before.expressions);
-  EXPECT_EQ(show->mind.work.eyes, before.eyes);
+  EXPECT_GT(show->teller.mind.work.ticks, before.ticks);
+  EXPECT_EQ(show->teller.mind.work.visemes, before.visemes);
+  EXPECT_EQ(show->teller.mind.work.blinks, before.blinks);
+  EXPECT_EQ(show->teller.mind.work.flexes, before.flexes);
+  EXPECT_EQ(show->teller.mind.work.expressions, before.expressions);
+  EXPECT_EQ(show->teller.mind.work.eyes, before.eyes);
   EXPECT_EQ(lips(), 0);
 }
 
@@ -113,12 +114,30 @@ TEST_F(TourLips, OfTwoToursTheNearerOneInViewCounts) {
   far.place.view.position = {-2, 1.6, 3.5};
   near.place.view.position = {-2, 1.6, 2.5};
   far.place.view.yaw = near.place.view.yaw = 0;
-  EXPECT_EQ(heard_on_tour(*show), &near);
+  EXPECT_EQ(heard_on_tour(*show, show->teller), &near);
   near.place.view.yaw = 3.1f;
-  EXPECT_EQ(heard_on_tour(*show), &far);
-  EXPECT_NEAR(viewer_distance(*show), 2.5f, 0.15f);
-  show->storyteller_visible = false;
-  EXPECT_EQ(heard_on_tour(*show), nullptr);
+  EXPECT_EQ(heard_on_tour(*show, show->teller), &far);
+  EXPECT_NEAR(viewer_distance(*show, show->teller), 2.5f, 0.15f);
+  show->teller.visible = false;
+  EXPECT_EQ(heard_on_tour(*show, show->teller), nullptr);
+}
+
+// Who stands before a kiosk sees her from there, not from where the picture's camera is.
+TEST_F(TourLips, ThePersonBeforeAKioskIsTheViewer) {
+  ShowStage::join(32, 32, "en", "kiosk");
+  run(0.1);
+  visitor().place.view.position = {-2, 1.6, 2.5};
+  visitor().place.view.yaw = 0;
+  Audience& audience = show->kiosks.at(0).audience;
+  audience.guests.clear();
+  const float camera = viewer_distance(*show, show->teller);
+  const View view = view_of(*show, visitor());
+  for (float away : {0.6f, 1.6f, 4.6f}) {
+    Person person;
+    person.position = {0, 0, away};
+    audience.guests = {place_person(person, view, 0)};
+    EXPECT_NEAR(viewer_distance(*show, show->teller), camera + away - viewing_distance, 0.1f);
+  }
 }
 
 TEST(InView, AgreesWithProjectionAtTheEdge) {

@@ -124,6 +124,24 @@ TEST(Raster, SeesWhatRaysSee) {
   }
 }
 
+// Through windows that the eye is not opposite of: nothing in sight is left out at any border.
+TEST(Raster, SeesWhatRaysSeeBesideTheAxis) {
+  Scene scene = empty_scene();
+  add_mesh(scene, soup(1, 3000), "soup");
+  World world(scene);
+  world.commit();
+  Raster raster(world);
+  for (int i = 0; i < 6; i++) {
+    View view = view_of(scene, i);
+    view.middle = vec2(1.3f * std::cos(float(i)), 0.9f * std::sin(float(i)));
+    RasterSettings settings;
+    settings.offset = {0.3f, 0.8f};
+    Picture picture = draw(raster, view, settings);
+    EXPECT_EQ(picture.taken, 160 * 90);
+    EXPECT_EQ(wrong_pixels(world, view, picture, settings.offset), 0) << "view " << i;
+  }
+}
+
 // Rooms behind a wall with a slit: what the wall hides costs nothing, what the slit shows is there.
 TEST(Raster, LeavesOutWhatIsHidden) {
   Scene scene = empty_scene();

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kiosk/gesture/train.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "kiosk/gesture/spot.h"
+
+namespace wellspring {
+
+namespace {
+
+constexpr double false_a_minute = 3;  // of all gestures, in other motion of the training set
+constexpr double floor_share = 0.01;  // of all outputs, spread over all codes
+// No measure is trusted to be nearer than this: training sets are small.
+constexpr double least_deviation = 0.03;      // of displacements over length
+constexpr double least_log_deviation = 0.15;  // of length and speed
+constexpr double least_height_deviation = 0.2;
+constexpr double least_edge_deviation = 0.4;  // of speed at begin and end
+
+// Straight pieces of the polygon between two steps (Douglas and Peucker 1973).
+int count_pieces(std::span<const CodedStep> steps, float tolerance) {
+  const vec2 a = steps.front().from, b = steps.back().to;
+  const float length = glm::length(b - a);
+  float worst = 0;
+  size_t at = 0;
+  for (size_t i = 0; i + 1 < steps.size(); i++) {
+    const vec2 p = steps[i].to - a;
+    const float along =
+        length > 0 ? std::clamp(glm::dot(p, b - a) / (length * length), 0.f, 1.f) : 0;
+    const float away = glm::length(p - along * (b - a));
+    if (away > worst) worst = away, at = i + 1;
+  }
+  if (worst <= tolerance) return 1;
+  return count_pieces(steps.first(at), tolerance) + count_pieces(steps.subspan(at), tolerance);
+}
+
+int states_of(std::span<const std::vector<CodedStep>> paths) {
+  std::vector<int> pieces;
+  for (const auto& steps : paths) {
+    vec2 low = steps[0].from, high = low;
+    for (const CodedStep& step : steps)
+      low = glm::min(low, step.to), high = glm::max(high, step.to);
+    pieces.push_back(count_pieces(steps, 0.12f * glm::length(high - low)));
+  }
+  std::nth_element(pieces.begin(), pieces.begin() + ptrdiff_t(pieces.size() / 2), pieces.end());
+  return std::clamp(pieces[pieces.size() / 2], least_states, most_states);
+}
+
+using Paths = std::vector<std::vector<CodedStep>>;
+
+// Mean and deviation of each measure of `paths`; a deviation is never below its floor. False
+// where fewer than three of them can be this gesture at all.
+bool learn_measures(const Hmm& hmm, const Paths& paths, std::vector<double>& mean,
+                    std::vector<double>& deviation) {
+  const size_t count = count_measures(hmm.states);
+  std::vector<double> sum(count), squares(count);
+  int seen = 0;
+  for (const auto& steps : paths) {
+    double score = 0;
+    const std::vector<int> entries = find_entries(hmm, codes_of(steps), score);
+    if (entries.empty()) continue;
+    const std::vector<double> measures = measure_motion(steps, entries);
+    for (size_t k = 0; k < count; k++)
+      sum[k] += measures[k], squares[k] += measures[k] * measures[k];
+    seen++;
+  }
+  if (seen < 3) return false;
+  mean.assign(count, 0);
+  deviation.assign(count, 0);
+  for (size_t k = 0; k < count; k++) {
+    const size_t left = count - k;
+    const double least = left > 8   ? least_deviation
+                         : left > 5 ? least_log_deviation
+                         : left > 2 ? least_height_deviation
+                                    : least_edge_deviation;
+    mean[k] = sum[k] / seen;
+    const double variance = squares[k] / seen - mean[k] * mean[k];
+    deviation[k] = std::max(least, std::sqrt(std::max(0.0, variance)));
+  }
+  return true;
+}
+
+Hmm make_other(std::span<const GestureModel> gestures, const NonGestureSettings& settings) {
+  std::vector<Hmm> hmms;
+  std::vector<double> last_stay;
+  for (const GestureModel& gesture : gestures) {
+    const size_t n = size_t(gesture.hmm.states);
+    // The length of the last state's piece, in codes of the mean motion.
+    const vec2 last(float(gesture.mean[2 * n - 2]), float(gesture.mean[2 * n - 1]));
+    last_stay.push_back(double(glm::length(last)) * std::exp(gesture.mean[2 * n]) / code_step);
+    hmms.push_back(gesture.hmm);
+  }
+  return make_non_gesture(hmms, last_stay, settings);
+}
+
+void learn_usual(GestureModel& model, const Hmm& other, const Paths& paths) {
+  std::vector<double> differences, evidence;
+  for (const auto& steps : paths) {
+    const std::vector<Code> codes = codes_of(steps);
+    double score = 0;
+    const std::vector<int> entries = find_entries(model.hmm, codes, score);
+    if (entries.empty()) continue;
+    differences.push_back(score - viterbi(other, codes));
+    evidence.push_back(eval_evidence(model, measure_motion(steps, entries)));
+  }
+  model.usual_difference = median(differences);
+  model.usual_evidence = median(evidence);
+}
+
+GestureModel train_gesture(std::span<const HandPath* const> recordings) {
+  GestureModel model;
+  model.label = recordings[0]->label;
+  model.variant = recordings[0]->variant;
+  Paths paths;
+  std::vector<std::vector<Code>> codes;
+  std::vector<double> dwells;
+  for (const HandPath* recording : recordings) {
+    std::vector<CodedStep> steps = code_path(*recording);
+    if (int(steps.size()) < most_states) continue;
+    codes.push_back(codes_of(steps));
+    dwells.push_back(dwell_after(*recording, steps));
+    paths.push_back(std::move(steps));
+  }
+  if (paths.empty()) return model;
+  model.hmm = make_banded(states_of(paths), codes);
+  train(model.hmm, codes);
+  smooth_outputs(model.hmm, 0.5);  // people who tilt their hand otherwise
+  raise_outputs(model.hmm, floor_share);
+  learn_measures(model.hmm, paths, model.mean, model.deviation);
+  // A rest belongs to the gesture where nearly everybody made one.
+  std::nth_element(dwells.begin(), dwells.begin() + ptrdiff_t(dwells.size() / 20), dwells.end());
+  const double dwell = dwells[dwells.size() / 20];
+  model.dwell = dwell > 1.2 * OrientationCoder::rest ? 0.8 * dwell : 0;
+  return model;
+}
+
+// What other motion of the training set reaches too often is no gesture.
+void learn_least(GestureModels& models, std::span<const HandPath> paths) {
+  double minutes = 0;
+  std::map<std::string, std::vector<double>> scores;
+  for (const HandPath& path : paths) {
+    if (!path.label.empty() || path.places.empty()) continue;
+    minutes += (path.places.back().time - path.places.front().time) / 60;
+    for (const SpottedGesture& found : spot_path(models, {}, path))
+      scores[found.label].push_back(found.score);
+  }
+  const size_t allowed = size_t(minutes * false_a_minute / double(models.gestures.size()));
+  for (auto& [label, found] : scores) {
+    if (found.size() <= allowed) continue;
+    std::sort(found.rbegin(), found.rend());
+    for (GestureModel& model : models.gestures)
+      if (model.label == label) model.least = found[allowed];
+  }
+}
+
+}  // namespace
+
+GestureModels train_gestures(std::span<const HandPath> paths, const NonGestureSettings& settings) {
+  std::map<std::pair<std::string, std::string>, std::vector<const HandPath*>> groups;
+  for (const HandPath& path : paths)
+    if (!path.label.empty() && !path.places.empty())
+      groups[{path.label, path.variant}].push_back(&path);
+  GestureModels models;
+  for (const auto& [name, group] : groups)
+    if (GestureModel model = train_gesture(group); !model.mean.empty())
+      models.gestures.push_back(std::move(model));
+  if (models.gestures.empty()) return models;
+  models.other = make_other(models.gestures, settings);
+  for (GestureModel& model : models.gestures) {
+    Paths own, others;
+    for (const HandPath& path : paths) {
+      if (path.label.empty()) continue;
+      if (path.label != model.label)
+        for (auto& motion : code_motions(path)) others.push_back(std::move(motion));
+      else if (path.variant == model.variant) own.push_back(code_path(path));
+    }
+    // A single gesture has nothing to be told from.
+    if (!learn_measures(model.hmm, others, model.other_mean, model.other_deviation))
+      model.other_mean = model.mean, model.other_deviation = model.deviation;
+    learn_usual(model, models.other, own);
+  }
+  learn_least(models, paths);
+  return models;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// A hand's way as orientation codes (Elmezain et al. 2009, section 3.1).
+// Places are in shoulder widths from the middle of the face: x to the right as the visitor sees the
+// screen, y down. Times are seconds and grow.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+#include "kiosk/gesture/hmm.h"
+
+namespace wellspring {
+
+struct HandPlace {
+  double time = 0;
+  vec2 place{0};
+};
+
+// One movement, and what it means.
+struct HandPath {
+  std::string label;    // "3", "wave"; empty: no gesture
+  std::string variant;  // one of several orders of strokes; each has a model of its own
+  std::vector<HandPlace> places;
+};
+
+// The angle of a step as one of 18 sectors of 20 degrees: 0 is to the right, 4 or 5 down (y grows
+// downwards), 9 to the left. `step` must not be 0.
+Code orientation_code(vec2 step);
+
+// The hand went from one place straight to another, always `code_step` apart: so a code means a
+// piece of the way, however quick it was, and places trembling by less are no motion.
+inline constexpr float code_step = 0.06f;  // shoulder widths: 2.5 cm
+struct CodedStep {
+  Code code = 0;
+  double begin = 0, end = 0;
+  vec2 from{0}, to{0};
+};
+
+class OrientationCoder {
+ public:
+  // Adds the steps that the hand made up to here to `out` and says whether motion begins anew: at
+  // the first place, where the hand rested for `rest` seconds, was away for `away`, or is too far
+  // from its last place to have moved there. A place that is not finite or beyond `reach`, and one
+  // not later than the last, is passed over.
+  bool step(const HandPlace& seen, std::vector<CodedStep>& out);
+  // Seconds for which the hand has stayed within one and a half steps of one place.
+  double resting(double time) const;
+
+  static constexpr double rest = 0.5, away = 0.5;   // seconds
+  static constexpr float reach = 5, quickest = 12;  // shoulder widths, and a second
+
+ private:
+  bool started_ = false;
+  double last_time_ = 0, anchor_time_ = 0, stay_time_ = 0;
+  vec2 last_{0}, before_{0}, anchor_{0}, stay_{0};
+};
+
+// The steps of a path, one list for each motion; and its longest motion.
+std::vector<std::vector<CodedStep>> code_motions(const HandPath& path);
+std::vector<CodedStep> code_path(const HandPath& path);
+
+}  // namespace wellspring

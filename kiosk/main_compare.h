@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts of wellspring_kiosk_compare; each prints its results by tell().
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace wellspring {
+
+struct CompareOptions {
+  std::string weights, data, kiosk;  // folders, and the kiosk's program
+  bool quick = false;
+};
+
+// A JSON object on a line: {"name","value","unit",...}. What is no number is left out.
+void tell(const std::string& name, double value, const std::string& unit,
+          nlohmann::json fields = {});
+double mean(const std::vector<double>& values);  // NAN of none
+
+// One-euro filter and Kalman filter after the same raw poses.
+void compare_filters(const CompareOptions& options);
+// The landmarks of dlib's regression trees and of the kiosk's network in the same recordings.
+void compare_landmarks(const CompareOptions& options);
+// From a picture given to the eye's process to its observation at the other end of the socket.
+void measure_way(const CompareOptions& options);
+// Of the eye's process, over simulated minutes.
+void measure_memory(const CompareOptions& options);
+
+}  // namespace wellspring

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kiosk/process/link.h"
+
+#include <utility>  // first: Boost 1.74's awaitable.hpp uses it without including it
+
+#include <algorithm>
+#include <atomic>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <cmath>
+#include <random>
+#include <thread>
+
+#include "base/latest.h"
+#include "base/log.h"
+#include "wire/json.h"
+
+namespace wellspring {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+namespace {
+
+constexpr size_t largest_answer = 64 * 1024;  // what a server may say to a kiosk in one message
+
+std::chrono::steady_clock::duration seconds(double s) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(s));
+}
+auto into(error_code& ec) { return asio::redirect_error(asio::use_awaitable, ec); }
+
+}  // namespace
+
+std::optional<ServerAddress> parse_address(const std::string& url) {
+  const std::string scheme = "ws://";
+  if (url.rfind(scheme, 0) != 0) return {};
+  std::string rest = url.substr(scheme.size());
+  for (unsigned char c : rest)
+    if (c <= ' ' || c == 127 || c == '#' || c == '@' || c == '\\') return {};
+  ServerAddress address;
+  size_t slash = rest.find('/');
+  address.path = slash == std::string::npos ? "" : rest.substr(slash);
+  if (address.path.empty() || address.path == "/") address.path = "/api/v1/eye";
+  std::string place = rest.substr(0, slash);
+  size_t colon = place.rfind(':');
+  if (!place.empty() && place[0] == '[') {
+    size_t end = place.find(']');
+    if (end == std::string::npos) return {};
+    address.host = place.substr(1, end - 1);
+    if (end + 1 == place.size()) colon = std::string::npos;
+    else if (place[end + 1] != ':') return {};
+    else colon = end + 1;
+  } else {
+    address.host = place.substr(0, colon);
+    if (address.host.find(':') != std::string::npos) return {};
+  }
+  if (address.host.empty()) return {};
+  if (colon != std::string::npos) {
+    address.port = place.substr(colon + 1);
+    if (address.port.empty() || address.port.size() > 5 ||
+        address.port.find_first_not_of("0123456789") != std::string::npos)
+      return {};
+    int port = std::stoi(address.port);
+    if (port < 1 || port > 65535) return {};
+  }
+  return address;
+}
+
+double retry_pause(int attempt, double first, double longest, double jitter) {
+  double pause = first * std::pow(2.0, std::clamp(attempt - 1, 0, 30));
+  return std::min(pause, longest) * (0.5 + 0.5 * std::clamp(jitter, 0.0, 1.0));
+}
+
+struct ServerLink::Impl {
+  ServerAddress address;
+  ServerLinkSettings settings;
+  asio::io_context io{1};
+  asio::steady_timer wake{io};  // cancelled when there is something to send or it is time to go
+  Latest<std::string> newest;
+  Latest<EyeOrder> order;
+  std::atomic<bool> connected{false}, leaving{false};
+  std::atomic<uint64_t> sent{0}, connections{0};
+  std::thread thread;
+  using Socket = websocket::stream<beast::tcp_stream>;
+
+  void nudge() {
+    asio::post(io, [this] { wake.cancel(); });
+  }
+
+  // Reads what the server says, also so that pings are answered and a close is noticed.
+  asio::awaitable<void> listen(std::shared_ptr<Socket> socket, std::shared_ptr<bool> open) {
+    beast::flat_buffer buffer;
+    error_code ec;
+    while (!ec) {
+      co_await socket->async_read(buffer, into(ec));
+      auto said = read_eye_order(beast::buffers_to_string(buffer.data()));
+      if (EyeOrder* found = ec ? nullptr : std::get_if<EyeOrder>(&said))
+        order.put(std::move(*found));
+      buffer.consume(buffer.size());
+    }
+    *open = false;
+    wake.cancel();
+  }
+
+  // One connection from its start to its end. Returns why it ended.
+  asio::awaitable<error_code> talk() {
+    error_code ec;
+    tcp::resolver resolver(io);
+    auto places = co_await resolver.async_resolve(address.host, address.port, into(ec));
+    if (ec) co_return ec;
+    auto socket = std::make_shared<Socket>(io);
+    beast::get_lowest_layer(*socket).expires_after(seconds(settings.patience));
+    co_await beast::get_lowest_layer(*socket).async_connect(places, into(ec));
+    if (ec) co_return ec;
+    error_code ignored;
+    beast::get_lowest_layer(*socket).socket().set_option(tcp::no_delay(true), ignored);
+    socket->read_message_max(largest_answer);
+    socket->set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
+      request.set(beast::http::field::user_agent, "wellspring-kiosk");
+    }));
+    const std::string host =
+        address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
+    co_await socket->async_handshake(host + ":" + address.port, address.path, into(ec));
+    if (ec) co_return ec;
+    beast::get_lowest_layer(*socket).expires_never();
+    // A server that vanished without a word is noticed by its missing answer to a ping.
+    websocket::stream_base::timeout limits{seconds(settings.patience),
+                                           seconds(2 * settings.patience), true};
+    socket->set_option(limits);
+    socket->text(true);
+
+    connections++;
+    connected = true;
+    log::info("connected to ws://{}:{}{}", host, address.port, address.path);
+    auto open = std::make_shared<bool>(true);
+    asio::co_spawn(io, listen(socket, open), asio::detached);
+    while (*open && !ec) {
+      std::optional<std::string> text = newest.take();
+      if (!text) {
+        if (leaving) break;
+        wake.expires_at(std::chrono::steady_clock::time_point::max());
+        error_code woken;
+        co_await wake.async_wait(into(woken));
+        continue;
+      }
+      // The stream's own limits do not cover writes: a server that stops reading is given up here.
+      asio::steady_timer patience(io, seconds(settings.patience));
+      patience.async_wait([socket](error_code expired) {
+        if (!expired) beast::get_lowest_layer(*socket).close();
+      });
+      co_await socket->async_write(asio::buffer(*text), into(ec));
+      if (!ec) sent++;
+    }
+    connected = false;
+    if (*open && !ec) co_await socket->async_close(websocket::close_code::normal, into(ignored));
+    beast::get_lowest_layer(*socket).close();
+    co_return ec ? ec : error_code(websocket::error::closed);
+  }
+
+  asio::awaitable<void> run() {
+    std::mt19937 random(std::random_device{}());
+    std::uniform_real_distribution<double> uniform(0, 1);
+    int attempt = 0;
+    bool told = false;
+    while (!leaving) {
+      uint64_t before = connections;
+      error_code ec = co_await talk();
+      if (leaving) break;
+      if (connections != before) attempt = 0, told = false;
+      if (!told)
+        log::warn("no connection to {}:{} ({}); trying again", address.host, address.port,
+                  ec.message());
+      told = true;
+      asio::steady_timer pause(io, seconds(retry_pause(++attempt, settings.first_pause,
+                                                       settings.longest_pause, uniform(random))));
+      error_code ignored;
+      co_await pause.async_wait(into(ignored));
+    }
+    io.stop();
+  }
+};
+
+ServerLink::ServerLink(const ServerAddress& address, const ServerLinkSettings& settings)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->address = address;
+  impl_->settings = settings;
+  asio::co_spawn(impl_->io, impl_->run(), asio::detached);
+  impl_->thread = std::thread([impl = impl_.get()] { impl->io.run(); });
+}
+
+ServerLink::~ServerLink() {
+  impl_->leaving = true;
+  // One second for the last words where somebody listens; none where nobody does.
+  auto limit =
+      std::make_shared<asio::steady_timer>(impl_->io, seconds(impl_->connected ? 1.0 : 0.0));
+  limit->async_wait([impl = impl_.get(), limit](error_code) { impl->io.stop(); });
+  impl_->nudge();
+  impl_->thread.join();
+}
+
+void ServerLink::send(std::string text) {
+  impl_->newest.put(std::move(text));
+  impl_->nudge();
+}
+std::optional<EyeOrder> ServerLink::take_order() { return impl_->order.take(); }
+bool ServerLink::connected() const { return impl_->connected; }
+uint64_t ServerLink::sent() const { return impl_->sent; }
+uint64_t ServerLink::connections() const { return impl_->connections; }
+
+}  // namespace wellspring

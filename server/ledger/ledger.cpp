@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ledger/ledger.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "base/log.h"
+#include "ledger/sums_file.h"
+
+namespace wellspring {
+
+struct Ledger::Impl {
+  const LedgerSettings settings;
+  mutable std::mutex mutex;  // of what follows
+  std::condition_variable changed;
+  Sums waiting;
+  std::string problem;
+  int64_t last_day = 0;
+  bool hurry = false, end = false;
+  mutable std::mutex file;  // is being used; taken before `mutex`
+  std::thread thread;
+
+  explicit Impl(LedgerSettings given) : settings(std::move(given)) {
+    thread = std::thread([this] { live(); });
+  }
+  ~Impl() {
+    {
+      std::lock_guard lock(mutex);
+      end = true;
+    }
+    changed.notify_all();
+    thread.join();
+    if (!write()) log::error("the last sums are lost");
+  }
+
+  void live() {
+    std::unique_lock lock(mutex);
+    while (!end) {
+      changed.wait_for(lock, std::chrono::duration<double>(settings.seconds),
+                       [this] { return end || hurry; });
+      if (end) return;  // the rest is written by whoever ends it
+      hurry = false;
+      lock.unlock();
+      write();
+      lock.lock();
+    }
+  }
+
+  bool write() {
+    std::lock_guard use(file);
+    Sums sums;
+    {
+      std::lock_guard lock(mutex);
+      sums.swap(waiting);
+    }
+    if (sums.empty()) return true;
+    std::string wrong;
+    try {
+      add_to_file(settings.file, sums, settings.patience);
+    } catch (const std::exception& error) {
+      wrong = error.what();
+    }
+    std::lock_guard lock(mutex);
+    if (!wrong.empty()) wellspring::add(waiting, sums);  // later
+    if (!wrong.empty() && problem.empty()) log::warn("sums cannot be written: {}", wrong);
+    if (wrong.empty() && !problem.empty()) log::info("sums are written again");
+    problem = wrong;
+    return wrong.empty();
+  }
+};
+
+Ledger::Ledger(LedgerSettings settings) : impl_(std::make_unique<Impl>(std::move(settings))) {}
+Ledger::~Ledger() = default;
+
+void Ledger::add(const Sums& sums) {
+  if (sums.empty()) return;
+  {
+    std::lock_guard lock(impl_->mutex);
+    wellspring::add(impl_->waiting, sums);
+    const int64_t day = sums.rbegin()->first.day;
+    impl_->hurry |= impl_->last_day != 0 && day > impl_->last_day;
+    impl_->last_day = std::max(impl_->last_day, day);
+    if (!impl_->hurry) return;
+  }
+  impl_->changed.notify_all();
+}
+
+bool Ledger::write() { return impl_->write(); }
+
+Sums Ledger::read(int64_t from, int64_t to) const {
+  std::lock_guard use(impl_->file);  // nothing is on its way from memory to the file
+  Sums sums = read_from_file(impl_->settings.file, from, to, impl_->settings.patience);
+  std::lock_guard lock(impl_->mutex);
+  for (const auto& [key, value] : impl_->waiting)
+    if (key.day >= from && key.day <= to) sums[key] += value;
+  return sums;
+}
+
+std::string Ledger::problem() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->problem;
+}
+
+}  // namespace wellspring

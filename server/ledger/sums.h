@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a museum's director reads: how much of what there was on a day. Sums and nothing else: no
+// visitor, no address, no time of day.
+#pragma once
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace wellspring {
+
+struct SumKey {
+  int64_t day = 0;   // since 1970-01-01, of the local calendar
+  std::string what;  // "visits", "dwell_seconds" ...
+  std::string key;   // the exhibit's id, and of what of it: "castle/well"
+  auto operator<=>(const SumKey&) const = default;
+};
+using Sums = std::map<SumKey, double>;
+
+void add(Sums& to, const Sums& more);
+
+// "2026-05-31"
+std::string day_text(int64_t day);
+// Empty: is no such day.
+std::optional<int64_t> parse_day(std::string_view text);
+
+// RFC 4180, with a first line of names: day,what,key,value. Values have at most one decimal. A text
+// that a spreadsheet would take for a formula begins with '.
+std::string write_csv(const Sums& sums);
+
+}  // namespace wellspring

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// All exhibits that one process serves, each a show that ticks on a thread of its own.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ledger/sums.h"
+#include "show/http/answer.h"
+#include "show/state/show.h"
+#include "show/storyteller/recordings.h"
+
+namespace wellspring {
+
+struct MuseumSettings {
+  std::string content = "content";  // folder of exhibit packages
+  std::string exhibit;              // id of the only one; empty: all of the folder, by name
+  ShowSettings show;
+  RecordingOptions recordings;
+  std::string house;  // house file, whose kiosks are the first exhibit's; empty: none
+  std::string sums;   // file of daily sums; empty: none are kept
+};
+
+// Ids of the packages in a folder, sorted.
+std::vector<std::string> exhibits_in(const std::string& content);
+
+class Museum {
+ public:
+  // Loads all that is to be served, one after the other. What cannot be shown is logged and listed
+  // in sources().failed. Throws ExhibitError or std::runtime_error where nothing can be shown,
+  // naming the exhibits that there are, or where the house file is wrong.
+  explicit Museum(const MuseumSettings& settings);
+  ~Museum();
+  // What answers are made from. Its pages, desk.token and stream_metrics are the caller's to add.
+  AnswerSources& sources();
+  void join(std::shared_ptr<Link> link);  // from any thread
+  // GET /api/v1/status; `sums`: who may read them. From any thread.
+  std::string status(const char* sums) const;
+  Sums read_sums(int64_t from, int64_t to) const;  // Ledger::read(); nothing where none are kept
+  // Ticks all shows until `ended` says so: false. Or, where they are watched, until one of them has
+  // changed: true. Then take_over() shows it as it is now, when nobody asks sources() or joins.
+  bool run(const std::function<bool()>& ended);
+  void take_over();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace wellspring

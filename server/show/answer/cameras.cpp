@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/answer/cameras.h"
+
+#include <algorithm>
+
+#include "base/log.h"
+#include "wire/json.h"
+
+namespace wellspring {
+
+bool is_lost(const Eye& eye) { return eye.gone >= 0; }
+bool is_silent(const Eye& eye, double now) { return now - eye.received > observation_lifetime; }
+
+namespace {
+
+// The lost or silent camera of the same name makes way for the one that has come back.
+void come_back(Show& show, Eye& eye) {
+  auto same = std::ranges::find_if(show.eyes, [&](const Eye& other) {
+    return &other != &eye && other.seen.name == eye.seen.name &&
+           (is_lost(other) || is_silent(other, show.time));
+  });
+  if (same == show.eyes.end()) return;
+  log::info("kiosk camera {} is back", eye.seen.name);
+  same->link->close("the same camera has connected again");
+  eye.number = same->number;
+  same->number = 0;  // to be erased
+}
+
+void read_texts(Show& show, Eye& eye) {
+  for (const std::string& text : eye.link->take_texts()) {
+    auto observation = read_observation(text);
+    if (const WireError* bad = std::get_if<WireError>(&observation)) {
+      eye.refused++;
+      show.totals.refused_messages++;
+      eye.link->send_text(write_error(*bad));
+      continue;
+    }
+    Observation& seen = std::get<Observation>(observation);
+    if (is_silent(eye, show.time) || seen.camera != eye.seen.camera) eye.camera_since = show.time;
+    const bool named = !seen.name.empty() && seen.name != eye.seen.name;
+    eye.seen = std::move(seen);
+    eye.received = show.time;
+    eye.observations++;
+    show.totals.observations++;
+    if (named) come_back(show, eye);
+  }
+}
+
+}  // namespace
+
+void welcome_camera(Show& show, std::shared_ptr<Link> link) {
+  log::info("kiosk camera {} connected from {}", link->id, link->peer);
+  Eye eye{std::move(link), {}, -1e9, show.time};
+  auto is_taken = [&](const Eye& other) { return other.number == eye.number; };
+  while (std::ranges::any_of(show.eyes, is_taken)) eye.number++;
+  show.eyes.push_back(std::move(eye));
+}
+
+void read_cameras(Show& show) {
+  for (Eye& eye : show.eyes) {
+    read_texts(show, eye);
+    if (is_lost(eye) || !eye.link->closed()) continue;
+    log::info("kiosk camera {} disconnected", eye.link->id);
+    eye.gone = show.time;
+  }
+  std::erase_if(show.eyes, [&](const Eye& eye) {
+    return eye.number == 0 ||
+           (is_lost(eye) && (eye.seen.name.empty() || show.time - eye.gone > lost_camera_listed));
+  });
+  while (show.eyes.size() - connected_cameras(show) > most_lost_cameras)
+    show.eyes.erase(std::ranges::min_element(
+        show.eyes, {}, [&](const Eye& eye) { return is_lost(eye) ? eye.gone : show.time + 1; }));
+}
+
+size_t connected_cameras(const Show& show) {
+  return size_t(std::ranges::count_if(show.eyes, [](const Eye& eye) { return !is_lost(eye); }));
+}
+
+}  // namespace wellspring

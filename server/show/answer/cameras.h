@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kiosks' cameras, as they come, speak and go. A camera is known by the name that its kiosk
+// gives it: one that comes back under its name is the one that went. Until then a lost one stays
+// listed, so that a technician can read since when there has been no connection, and is forgotten
+// after a while. One without a name cannot come back: it goes with its connection.
+#pragma once
+#include <memory>
+
+#include "show/state/show.h"
+
+namespace wellspring {
+
+inline constexpr double lost_camera_listed = 600;  // seconds
+inline constexpr size_t most_lost_cameras = 32;    // more: the one longest lost is forgotten
+
+void welcome_camera(Show& show, std::shared_ptr<Link> link);
+// What they have said since the last call.
+void read_cameras(Show& show);
+size_t connected_cameras(const Show& show);
+bool is_lost(const Eye& eye);
+bool is_silent(const Eye& eye, double now);  // it says nothing, connected or not
+
+}  // namespace wellspring

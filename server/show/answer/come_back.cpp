@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/answer/come_back.h"
+#include "show/count/count.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "base/log.h"
+#include "show/answer/groups.h"
+#include "show/answer/storyteller_orders.h"
+#include "show/state/lamps.h"
+
+namespace wellspring {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr double token_interval = 2;  // seconds
+
+std::string make_id() {
+  std::random_device random;
+  return std::to_string((uint64_t(random()) << 32) | random());
+}
+
+double rounded(double value) { return std::round(value * 1e4) / 1e4; }
+
+json place_of(const Viewpoint& view) {
+  return {rounded(view.position.x), rounded(view.position.y), rounded(view.position.z),
+          rounded(view.yaw),        rounded(view.pitch),      rounded(view.fov)};
+}
+
+// All but the day.
+json describe(const Show& show, const Visitor& visitor) {
+  const VisitorPlace& place = visitor.place;
+  json about = {{"id", visitor.id},
+                {"exhibit", show.exhibit.id},
+                {"place", place_of(place.view)},
+                {"viewpoint", place.viewpoint}};
+  for (size_t i = 0; i < visitor.lamps.own.size(); i++)
+    if (visitor.lamps.own[i])
+      about["lamps"][show.exhibit.lamps[i].id] = bool(visitor.lamps.wish[i]);
+  if (const TourRide& ride = place.tour; ride.state != TourRide::State::none && ride.tour >= 0)
+    about["tour"] = {{"id", show.exhibit.tours[size_t(ride.tour)].id},
+                     {"stop", ride.stop},
+                     {"paused", ride.state == TourRide::State::paused}};
+  if (const Teller* teller = visitor.own_teller.get()) {
+    about["teller"] = {{"id", show.exhibit.storytellers[teller->index].id},
+                       {"visible", teller->visible},
+                       {"humanlike", teller->humanlike}};
+    if (!teller->voice.story.empty() && !teller->voice.queue.empty())
+      about["story"] = {{"id", teller->voice.story},
+                        {"sentence", teller->voice.sentence},
+                        {"paused", teller->voice.paused}};
+  }
+  if (!visitor.group.leads.empty()) about["leads"] = visitor.group.leads;
+  if (!visitor.group.follows.empty()) about["follows"] = visitor.group.follows;
+  return about;
+}
+
+bool is_story(const Exhibit& exhibit, const std::string& id) {
+  return std::ranges::find(exhibit.stories, id, &StoryText::id) != exhibit.stories.end();
+}
+
+// What the exhibit does not have any more is left out.
+void restore(Show& show, Visitor& visitor, const json& about) {
+  VisitorPlace& place = visitor.place;
+  const json& at = about.at("place");
+  place.view.position = {at.at(0), at.at(1), at.at(2)};
+  place.view.yaw = at.at(3), place.view.pitch = at.at(4), place.view.fov = at.at(5);
+  place.viewpoint = about.at("viewpoint").get<int>();
+  if (place.viewpoint >= int(show.exhibit.viewpoints.size())) place.viewpoint = -1;
+  const json lamps = about.value("lamps", json::object());
+  for (const auto& [name, on] : lamps.items()) switch_lamp(show, visitor, name, on.get<bool>());
+  if (about.contains("leads")) {
+    const std::string code = about["leads"];
+    const bool taken = std::ranges::any_of(
+        show.visitors, [&](const Visitor& other) { return other.group.leads == code; });
+    if (!taken) visitor.group.leads = code;
+  }
+  if (about.contains("follows")) {
+    GroupOrder order;
+    order.action = GroupAction::follow;
+    order.code = about["follows"];
+    if (!handle_group(show, visitor, order)) return;
+  }
+  if (about.contains("tour")) {
+    const json& ride = about["tour"];
+    auto found =
+        std::ranges::find(show.exhibit.tours, ride.at("id").get<std::string>(), &TourPlan::id);
+    if (found != show.exhibit.tours.end()) {
+      start_tour(place.tour, visitor.hearing.narration.voice,
+                 int(found - show.exhibit.tours.begin()), show.exhibit, show.roads, place.view);
+      const int last = int(show.exhibit.tours[size_t(place.tour.tour)].stops.size()) - 1;
+      go_on_from_stop(place.tour, visitor.hearing.narration.voice, show.exhibit, show.roads,
+                      std::clamp(ride.at("stop").get<int>(), 0, last));
+      if (ride.at("paused")) pause_tour(place.tour, visitor.hearing.narration.voice);
+    }
+  }
+  if (!about.contains("teller") || show.exhibit.shared_storyteller) return;
+  const json& who = about["teller"];
+  StorytellerOrder order;
+  order.teller = who.at("id");
+  order.visible = who.at("visible").get<bool>();
+  order.humanlike = who.at("humanlike").get<bool>();
+  const json story = about.value("story", json::object());
+  const std::string id = story.value("id", std::string());
+  if (is_story(show.exhibit, id)) order.story = id;
+  if (handle_storyteller(show, visitor, order) || order.story.empty()) return;
+  Teller& teller = *visitor.own_teller;
+  tell(teller.voice, *std::ranges::find(show.exhibit.stories, id, &StoryText::id),
+       std::max(0, story.at("sentence").get<int>()));
+  teller.voice.asked_by = visitor.link->id;
+  if (story.at("paused")) pause_voice(teller.voice);
+}
+
+// As it was when its line broke.
+bool take_kept(Show& show, Visitor& visitor, const std::string& id) {
+  auto kept = std::ranges::find(show.kept, id, &KeptVisit::id);
+  if (kept == show.kept.end()) return false;
+  Visitor& before = kept->visitor.front();
+  if (before.own_teller && before.own_teller->voice.asked_by == before.link->id)
+    before.own_teller->voice.asked_by = visitor.link->id;
+  const uint32_t seq = visitor.place.seq;
+  visitor.place = std::move(before.place);
+  visitor.place.seq = seq;
+  visitor.place.move = visitor.place.velocity = vec3(0);
+  visitor.own_teller = std::move(before.own_teller);
+  visitor.lamps = std::move(before.lamps);
+  visitor.group = std::move(before.group);
+  visitor.hearing.narration = std::move(before.hearing.narration);
+  visitor.picture = std::move(before.picture);
+  show.kept.erase(kept);
+  return true;
+}
+
+}  // namespace
+
+void send_token(Show& show, Visitor& visitor) {
+  if (visitor.kiosk || show.time - visitor.told_at < token_interval) return;
+  if (visitor.id.empty()) visitor.id = make_id();
+  visitor.told_at = show.time;
+  std::string now = describe(show, visitor).dump();
+  if (now == visitor.told) return;
+  visitor.told = std::move(now);
+  json dated = json::parse(visitor.told);
+  dated["day"] = show.local_time.day;
+  visitor.link->send_text(json{{"type", "keep"}, {"token", show.seal->close(dated.dump())}}.dump());
+}
+
+void keep_visit(Show& show, std::list<Visitor>::iterator gone) {
+  if (gone->kiosk || gone->id.empty()) {
+    count_leaving(show, *gone);
+    show.visitors.erase(gone);
+    return;
+  }
+  KeptVisit& kept = show.kept.emplace_back();
+  kept.id = gone->id;
+  kept.since = show.time;
+  kept.visitor.splice(kept.visitor.begin(), show.visitors, gone);
+  if (show.kept.size() <= most_kept) return;
+  count_leaving(show, show.kept.front().visitor.front());
+  show.kept.pop_front();
+}
+
+void forget_visits(Show& show) {
+  std::erase_if(show.kept, [&](KeptVisit& kept) {
+    const bool over = show.time - kept.since > kept_seconds;
+    if (over) count_leaving(show, kept.visitor.front());
+    return over;
+  });
+}
+
+bool come_back(Show& show, Visitor& visitor, const std::string& token) {
+  const auto text = show.seal->open(token);
+  if (!text || visitor.kiosk) return false;
+  const json about = json::parse(*text, nullptr, false);
+  if (about.is_discarded() || about.value("exhibit", "") != show.exhibit.id) return false;
+  if (show.local_time.day - about.value("day", int64_t(0)) > token_days) return false;
+  visitor.id = about.value("id", std::string());
+  if (take_kept(show, visitor, visitor.id)) return true;
+  visitor.place.camera_cuts++;
+  try {
+    restore(show, visitor, about);
+  } catch (const json::exception& error) {  // sealed by an older program: as much as there is
+    log::info("visitor {} comes back in part: {}", visitor.link->id, error.what());
+  }
+  return true;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/exhibit/check_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "base/near_name.h"
+#include "show/exhibit/exhibit_light.h"
+#include "show/exhibit/scene_scale.h"
+#include "world/view.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int directions = 64;
+constexpr float solid_share = 0.85f;  // of the directions that meet backs first
+constexpr float too_bright = 200;     // light on a surface, of which 3.14 makes white paper white
+constexpr float white_light = pi;
+constexpr float off_exposure = 30;  // so many times more or less is a mistake
+
+// Evenly over the sphere (Fibonacci).
+vec3 direction_of(int i, int count) {
+  float y = 1 - 2 * (float(i) + 0.5f) / float(count), r = std::sqrt(std::max(0.0f, 1 - y * y));
+  float turn = float(i) * pi * (3 - std::sqrt(5.0f));
+  return {r * std::cos(turn), y, r * std::sin(turn)};
+}
+
+// The nearest hit on what stands still and is no glass.
+Hit first_solid(const World& world, vec3 from, vec3 way) {
+  Ray ray{from, 0, way};
+  for (int passed = 0; passed < 32; passed++) {
+    Hit hit = world.intersect(ray);
+    if (!hit.valid()) return hit;
+    if (!world.is_moving(hit.instance) && world.material_of(hit.instance).transmission == 0)
+      return hit;
+    ray.t_min = hit.t * 1.0001f + 1e-5f;
+  }
+  return {};
+}
+
+bool is_back(const World& world, const Hit& hit, vec3 way) {
+  const Mesh& mesh = world.mesh_of(hit.instance);
+  const uvec3 corner = mesh.triangles[hit.triangle];
+  vec3 normal = world.normal_to_world(hit.instance) *
+                cross(mesh.positions[corner.y] - mesh.positions[corner.x],
+                      mesh.positions[corner.z] - mesh.positions[corner.x]);
+  return dot(normal, way) > 0;
+}
+
+float eye_height_of(const Exhibit& exhibit) {
+  return exhibit.walk ? exhibit.walk->eye_height : WalkSettings{}.eye_height;
+}
+
+struct Noter {
+  const Exhibit& exhibit;
+  std::vector<Problem>& problems;
+  void note(const std::string& where, const std::string& what) {
+    problems.push_back({exhibit.folder + "/exhibit.json", where, what, false});
+  }
+};
+
+void check_size(const Exhibit& exhibit, Noter& noter) {
+  const Bounds bounds = scene_bounds(exhibit.scene);
+  const vec3 size = bounds.high - bounds.low;
+  if (!is_finite(size)) return noter.note("/scene", "there is nothing to see in the scene");
+  const float largest = max_component(size), eye = eye_height_of(exhibit);
+  const double factor = propose_scale(largest, eye);
+  if (largest <= 0) noter.note("/scene", "the whole scene is one point");
+  else if (largest < eye && factor != 1)
+    noter.note("/scene", fmt::format("the whole scene is {:.3g} m across, and a visitor's eye is "
+                                     "{:.3g} m high: were these metres? Else try \"scale\": {:g}",
+                                     largest, eye, factor));
+  else if (largest > eye && factor != 1)
+    noter.note("/scene", fmt::format("the scene is {:.4g} m across, and a visitor's eye is {:.3g} "
+                                     "m high: were these metres? Else try \"scale\": {:g}",
+                                     largest, eye, factor));
+}
+
+void check_view(const Exhibit& exhibit, const World& world, const ExhibitViewpoint& viewpoint,
+                Noter& noter) {
+  const Viewpoint& at = viewpoint.view;
+  const std::string where = viewpoint.where.empty() ? "/scene" : viewpoint.where + "/position";
+  const std::string who = (viewpoint.where.empty() ? "camera '" : "viewpoint '") + at.name + "'";
+  std::string inside;
+  vec3 eye = vec3(at.position - exhibit.scene.origin);
+  if (is_in_solid(world, eye, inside))
+    return noter.note(where,
+                      who + " is inside '" + inside +
+                          "', whose surfaces show it their backs; if that is your room, turn "
+                          "its faces inwards (Blender: Mesh > Normals > Flip)");
+  constexpr int width = 32, height = 18;
+  View view = make_view(exhibit.scene, at.position, at.yaw, at.pitch, at.fov, width, height);
+  for (int i = 0; i < width * height; i++) {
+    Ray ray = view_ray(view, float(i % width) + 0.5f, float(i / width) + 0.5f);
+    Hit hit = world.intersect(ray);
+    if (hit.valid() && !world.is_moving(hit.instance)) return;
+  }
+  noter.note(where, "nothing of the scene is in view of " + who);
+}
+
+void check_storyteller(const Exhibit& exhibit, const World& world, size_t index, Noter& noter) {
+  const StorytellerPlace& place = exhibit.storytellers[index];
+  for (float height : {0.9f, 1.5f}) {
+    std::string inside;
+    vec3 body = vec3(place.position - exhibit.scene.origin) + vec3(0, height, 0);
+    if (!is_in_solid(world, body, inside)) continue;
+    return noter.note("/storyteller", "'" + place.id + "' stands inside '" + inside + "'");
+  }
+}
+
+// Light that falls on what the lamp reaches: its median over the directions it shines in.
+float light_on_surfaces(const World& world, const PunctualLight& light) {
+  const float strength = max_component(light.intensity);
+  if (light.type == PunctualType::directional) return strength;
+  std::vector<float> found;
+  for (int i = 0; i < directions * 4; i++) {
+    vec3 way = direction_of(i, directions * 4);
+    if (light.type == PunctualType::spot && dot(way, light.direction) < std::cos(light.outer_cone))
+      continue;
+    Hit hit = world.intersect({light.position, 0.02f, way});
+    if (hit.valid() && hit.t < light.range) found.push_back(strength / (hit.t * hit.t));
+  }
+  if (found.empty()) return 0;
+  auto middle = found.begin() + std::ptrdiff_t(found.size() / 2);
+  std::nth_element(found.begin(), middle, found.end());
+  return *middle;
+}
+
+}  // namespace
+
+bool is_in_solid(const World& world, vec3 place, std::string& inside) {
+  int backs = 0;
+  Hit nearest;
+  for (int i = 0; i < directions; i++) {
+    vec3 way = direction_of(i, directions);
+    Hit hit = first_solid(world, place, way);
+    if (!hit.valid() || !is_back(world, hit, way)) continue;
+    backs++;
+    if (hit.t < nearest.t) nearest = hit;
+  }
+  if (float(backs) < solid_share * directions) return false;
+  inside = world.scene().objects[world.object_of(nearest.instance)];
+  return true;
+}
+
+void check_places(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems) {
+  Noter noter{exhibit, problems};
+  check_size(exhibit, noter);
+  if (exhibit.scene.instances.empty()) return;
+  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints)
+    check_view(exhibit, world, viewpoint, noter);
+  for (size_t i = 0; i < exhibit.storytellers.size(); i++)
+    check_storyteller(exhibit, world, i, noter);
+}
+
+void check_light(const Exhibit& exhibit, World& world, std::vector<Problem>& problems) {
+  Noter noter{exhibit, problems};
+  std::vector<std::string> names;
+  float strongest = 0;
+  for (const PunctualLight& light : exhibit.scene.lights) {
+    float here = light_on_surfaces(world, light) * exhibit.exposure;
+    if (here < too_bright) continue;
+    names.push_back("'" + light.name + "'");
+    strongest = std::max(strongest, here);
+  }
+  if (!names.empty())
+    noter.note("/scene",
+               fmt::format("these lamps are up to {:.0f} times too bright, pictures are white: {}. "
+                           "Export them with the lighting mode Unitless; or write "
+                           "\"light_scale\": {:.2g}, or \"exposure\": \"auto\"",
+                           strongest / white_light, list_names(names, 8),
+                           names.size() == 1 ? white_light / strongest : 1.0f / 683));
+  if (exhibit.auto_exposure) return;
+  std::optional<float> wanted = measure_exposure(exhibit, world);
+  if (!wanted) return noter.note("/exposure", "no light falls on anything in view");
+  float off = exhibit.exposure / *wanted;
+  if (off > off_exposure || off < 1 / off_exposure)
+    noter.note("/exposure", fmt::format("pictures will be {}: {:.2g} would suit the light that is "
+                                        "there (\"exposure\": \"auto\" measures it)",
+                                        off > 1 ? "white" : "black", *wanted));
+}
+
+}  // namespace wellspring

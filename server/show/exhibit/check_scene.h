@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a curator sees wrong at once when looking, found by rays: somebody stands in a wall, there
+// is nothing to see, the scene is tiny or huge, lamps are far too bright.
+#pragma once
+#include "show/exhibit/exhibit.h"
+#include "show/exhibit/problem.h"
+#include "world/world.h"
+
+namespace wellspring {
+
+// Whether `place` (relative to Scene::origin) lies in something solid: nearly all around there are
+// first the backs of surfaces that are no glass. What moves does not count. The name of what the
+// nearest of them belongs to goes to `inside`.
+bool is_in_solid(const World& world, vec3 place, std::string& inside);
+
+// Notes about places, views and size. Milliseconds.
+void check_places(const Exhibit& exhibit, const World& world, std::vector<Problem>& problems);
+
+// Notes about lamps and exposure; draws coarse pictures, as exhibit_light.h has it. `world` is of
+// exhibit.scene alone.
+void check_light(const Exhibit& exhibit, World& world, std::vector<Problem>& problems);
+
+}  // namespace wellspring

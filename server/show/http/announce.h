@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// POST /api/v1/admin/announce: words of the house for all screens, by whoever has the token.
+#pragma once
+#include <functional>
+#include <string>
+
+#include "show/house/announcement.h"
+#include "wire/http.h"
+
+namespace wellspring {
+
+inline constexpr size_t least_token_bytes = 16;
+inline constexpr size_t most_announced_bytes = 2000;       // of the text in one language
+inline constexpr double longest_announcement = 24 * 3600;  // seconds
+
+// Where announcements are handed in.
+struct AnnouncementDesk {
+  std::string token;                          // empty: nothing may be announced
+  std::function<uint32_t(Announcement)> put;  // tells the announcement's number
+};
+
+// 403 where there is no token, 401 without the right one, 400 for a body that is wrong: naming the
+// field. Else hands the announcement over and tells its number.
+HttpReply answer_announce(const AnnouncementDesk& desk, const HttpQuestion& question);
+
+// Whether an Authorization header carries the token. Its time does not depend on how much of it is
+// right.
+bool is_authorised(const std::string& authorization, const std::string& token);
+
+}  // namespace wellspring

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/http/answer.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "show/answer/book.h"
+#include "show/answer/objects.h"
+#include "show/http/still_question.h"
+#include "show/http/take_along.h"
+
+namespace wellspring {
+
+using nlohmann::json;
+
+namespace {
+
+HttpReply json_reply(const json& body, int status = 200) {
+  HttpReply reply;
+  reply.status = status;
+  reply.body = body.dump(-1, ' ', false, json::error_handler_t::replace);
+  reply.headers["Cache-Control"] = "no-store";
+  return reply;
+}
+
+// JSON that changes all the time.
+HttpReply text_reply(std::string body) {
+  HttpReply reply;
+  reply.body = std::move(body);
+  reply.headers["Cache-Control"] = "no-store";
+  return reply;
+}
+
+HttpReply error_reply(int status, const std::string& code, const std::string& message) {
+  return json_reply({{"error", {{"code", code}, {"message", message}}}}, status);
+}
+
+json describe(const Exhibit& exhibit) {
+  json about = {{"id", exhibit.id},
+                {"title", exhibit.title},
+                {"description", exhibit.description},
+                {"languages", exhibit.languages},
+                {"viewpoints", json::array()},
+                {"stories", json::array()},
+                {"tours", json::array()},
+                {"objects", describe_objects(exhibit)}};
+  for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints)
+    about["viewpoints"].push_back(
+        {{"name", viewpoint.view.name},
+         {"title", viewpoint.title},
+         {"position",
+          {viewpoint.view.position.x, viewpoint.view.position.y, viewpoint.view.position.z}},
+         {"yaw", viewpoint.view.yaw},
+         {"pitch", viewpoint.view.pitch},
+         {"fov", viewpoint.view.fov}});
+  for (const StoryText& story : exhibit.stories) {
+    json& entry = about["stories"].emplace_back(json{{"id", story.id}, {"title", story.title}});
+    if (story.storyteller_index >= 0)
+      entry["teller"] = exhibit.storytellers[size_t(story.storyteller_index)].id;
+  }
+  for (const TourPlan& tour : exhibit.tours)
+    about["tours"].push_back(
+        {{"id", tour.id}, {"title", tour.title}, {"stops", tour.stops.size()}});
+  about["lamps"] = json::array();
+  for (const ExhibitLamp& lamp : exhibit.lamps)
+    about["lamps"].push_back({{"name", lamp.id}, {"title", lamp.title}, {"on_at_first", lamp.on}});
+  about["storyteller"] =
+      exhibit.storytellers.empty() ? json(nullptr) : json(exhibit.storytellers.front().name);
+  about["storytellers"] = json::array();
+  for (const StorytellerPlace& storyteller_place : exhibit.storytellers)
+    about["storytellers"].push_back(
+        {{"id", storyteller_place.id}, {"name", storyteller_place.name}});
+  about["book"] = describe_book(exhibit);
+  about["credits"] = json::array();
+  for (const Credit& credit : exhibit.credits)
+    about["credits"].push_back({{"file", credit.file},
+                                {"title", credit.title},
+                                {"author", credit.author},
+                                {"license", credit.licence},
+                                {"source", credit.source},
+                                {"copyright", credit.copyright}});
+  about["start"] = exhibit.viewpoints[size_t(exhibit.start)].view.name;
+  return about;
+}
+
+HttpReply answer_still(const ServedExhibit& sources, const HttpQuestion& question) {
+  StillQuestion asked = read_still_question(*sources.exhibit, question.query);
+  if (asked.status != 200) return error_reply(asked.status, asked.code, asked.problem);
+  HttpReply reply;
+  reply.content_type = "image/jpeg";
+  reply.headers["Cache-Control"] = "public, max-age=60";
+  if (question.method != "HEAD") reply.body = sources.make_still(asked.job);
+  return reply;
+}
+
+HttpReply answer_map(const ServedExhibit& sources) {
+  if (!sources.walk_map)
+    return error_reply(404, "no_map", "visitors of this exhibit fly: there is no ground to map");
+  HttpReply reply;
+  reply.headers["Cache-Control"] = "public, max-age=60";
+  reply.body = describe_map(*sources.exhibit, *sources.walk_map);
+  return reply;
+}
+
+// A person's browser, not a program that reads JSON.
+bool prefers_html(const std::string& accept) {
+  const size_t html = accept.find("text/html"), json = accept.find("application/json");
+  return html != std::string::npos && (json == std::string::npos || html < json);
+}
+
+HttpReply answer_page(const PageFile& page, const HttpQuestion& question) {
+  HttpReply reply;
+  reply.content_type = page.content_type;
+  reply.headers["ETag"] = page.etag;
+  reply.headers["Cache-Control"] = "no-cache";
+  reply.body = page.body;
+  return reply;
+}
+
+const ServedExhibit* find_exhibit(const AnswerSources& sources, const std::string& id) {
+  auto found = std::ranges::find_if(
+      sources.exhibits, [&](const ServedExhibit& one) { return one.exhibit->id == id; });
+  return found == sources.exhibits.end() ? nullptr : &*found;
+}
+
+// What may change is not kept by browsers.
+HttpReply fresh(HttpReply reply, const AnswerSources& sources) {
+  if (sources.changes) reply.headers["Cache-Control"] = "no-store";
+  return reply;
+}
+
+HttpReply answer_exhibit(const AnswerSources& sources, const HttpQuestion& question,
+                         const std::string& rest) {
+  const std::string id = rest.substr(0, rest.find('/')), tail = rest.substr(id.size());
+  const ServedExhibit* served = find_exhibit(sources, id);
+  if (!served) return error_reply(404, "unknown_exhibit", "there is no exhibit '" + id + "' here");
+  if (tail.empty() || tail == "/") return json_reply(describe(*served->exhibit));
+  if (tail == "/map") return fresh(answer_map(*served), sources);
+  if (tail == "/qr.svg") return answer_qr(*served->exhibit, served->address, question);
+  if (tail == "/still.jpg") return fresh(answer_still(*served, question), sources);
+  if (const ServedFile* file = find_served_file(*served->exhibit, tail)) return answer_file(*file);
+  return error_reply(404, "not_found", "there is no '" + tail + "' in an exhibit");
+}
+
+HttpReply answer_exhibits(const AnswerSources& sources) {
+  json all = {{"exhibits", json::array()}, {"failed", json::array()}};
+  for (const ServedExhibit& one : sources.exhibits)
+    all["exhibits"].push_back(describe(*one.exhibit));
+  for (const FailedExhibit& one : sources.failed)
+    all["failed"].push_back({{"id", one.id}, {"problems", one.problems}});
+  return json_reply(all);
+}
+
+HttpReply answer_metrics(const AnswerSources& sources) {
+  HttpReply reply;
+  reply.content_type = "text/plain; version=0.0.4; charset=utf-8";
+  reply.headers["Cache-Control"] = "no-store";
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (const ServedExhibit& one : sources.exhibits)
+    texts.push_back({one.exhibit->id, write_metrics(one.board->read())});
+  reply.body = texts.size() == 1 ? texts.front().second : join_metrics(texts);
+  reply.body += failure_metrics(sources.failed);
+  if (sources.stream_metrics) reply.body += sources.stream_metrics();
+  return reply;
+}
+
+// The page of a path; null: there is none. Where there are several exhibits, "/" lists them, and
+// each has the visitor's page at /e/ID.
+const PageFile* find_page(const AnswerSources& sources, const std::string& path) {
+  const std::string below = "/e/";
+  std::string name = path;
+  if (path == "/" && sources.exhibits.size() > 1) name = "/front.html";
+  if (path.starts_with(below))
+    name = find_exhibit(sources, path.substr(below.size())) ? exhibit_page : "";
+  auto page = sources.pages->find(name);
+  return page == sources.pages->end() ? nullptr : &page->second;
+}
+
+}  // namespace
+
+HttpReply answer(const AnswerSources& sources, const HttpQuestion& question) {
+  const std::string& path = question.path;
+  if (path == "/healthz") {
+    bool ready = std::ranges::all_of(
+        sources.exhibits, [](const ServedExhibit& one) { return one.board->read().ready; });
+    return json_reply({{"status", ready ? "ok" : "starting"}}, ready ? 200 : 503);
+  }
+  if (path == "/metrics") return answer_metrics(sources);
+  if (path == "/api/v1/" || path == "/api/v1") {
+    HttpReply reply;
+    reply.body = describe_api();
+    return reply;
+  }
+  if (path == "/api/v1/status" && sources.status) return text_reply(sources.status());
+  if (path == "/api/v1/speeds" && sources.speeds) return text_reply(sources.speeds());
+  if (path == "/api/v1/sums.csv" && sources.sums) return sources.sums(question);
+  if (path == "/api/v1/admin/announce") return answer_announce(sources.desk, question);
+  const std::string exhibits = "/api/v1/exhibits";
+  if (path == exhibits || path == exhibits + "/") return answer_exhibits(sources);
+  if (path.starts_with(exhibits + "/"))
+    return answer_exhibit(sources, question, path.substr(exhibits.size() + 1));
+  if (const PageFile* page = find_page(sources, path)) return answer_page(*page, question);
+  if (auto page = sources.pages->find("/missing.html");
+      page != sources.pages->end() && prefers_html(question.accept)) {
+    HttpReply reply = answer_page(page->second, question);
+    reply.status = 404;
+    reply.headers["Vary"] = "Accept";
+    return reply;
+  }
+  return error_reply(404, "not_found", "there is nothing at " + path);
+}
+
+}  // namespace wellspring

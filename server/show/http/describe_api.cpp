@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "show/http/answer.h"
+#include "wire/json.h"
+
+namespace wellspring {
+
+// The machine-readable twin of the protocol's description in ARCHITECTURE.md. What a browser may
+// say comes from the messages' own lists of fields (wire/messages.h).
+std::string describe_api() {
+  static const char* text = R"json({
+  "name": "Wellspring", "version": "v1",
+  "paths": [
+    {"method": "GET", "path": "/", "answers": "the visitor's page"},
+    {"method": "GET", "path": "/kiosk", "answers": "the kiosk's screen"},
+    {"method": "GET", "path": "/status", "answers": "a page for the technician"},
+    {"method": "GET", "path": "/healthz", "answers": "200 {\"status\":\"ok\"} once it can serve"},
+    {"method": "GET", "path": "/metrics", "answers": "Prometheus text"},
+    {"method": "GET", "path": "/api/v1/", "answers": "this description"},
+    {"method": "GET", "path": "/e/ID", "answers": "the visitor's page of one of several exhibits, which / lists then"},
+    {"method": "GET", "path": "/api/v1/exhibits", "answers": "what there is to visit; failed: [{id, problems}]"},
+    {"method": "GET", "path": "/api/v1/exhibits/ID", "answers": "title, languages, viewpoints, stories, tours, lamps, credits; objects: [{id, title, position, text, story, provenance: [{element of Dublin Core, value}], manifest: IIIF, door: {exhibit, viewpoint}}]; book: {topics, partners, presentations} or null"},
+    {"method": "GET", "path": "/api/v1/exhibits/ID/map", "answers": "the ground from above: {cell: m, corner: [x, z], eye_height, rows: texts of o (room to walk), x (something stands there) and . (no ground), viewpoints, objects}; 404 where visitors fly"},
+    {"method": "GET", "path": "/api/v1/exhibits/ID/qr.svg", "query": {"story": "id; none", "lang": "tag; the phone's"},
+      "answers": "a QR code that opens the exhibit, with the story, on a phone; 404 without an address in the house file"},
+    {"method": "GET", "path": "/api/v1/exhibits/ID/files/NAME", "answers": "a file that the book or a sound names, or a range of its bytes"},
+    {"method": "GET", "path": "/api/v1/exhibits/ID/still.jpg",
+     "query": {"viewpoint": "name; the exhibit's start", "width": "1..3840; 640", "height": "1..3840; 360",
+               "spp": "samples a pixel, 1..1024; 16", "denoise": "1, or 0: its samples as they are; 1",
+               "position": "x,y,z m, in place of the viewpoint's", "yaw": "radians, likewise", "pitch": "radians, likewise",
+               "fov": "radians of its height, 0.02..3, likewise"},
+     "answers": "one finished picture; its JPEG comment says whether it was denoised"},
+    {"method": "GET", "path": "/api/v1/status", "answers": "{fine, findings: [{about, grave, what, seconds: that it has been so, why, remedy}], house, kiosks, cameras, sums: none, open or token}"},
+    {"method": "GET", "path": "/api/v1/speeds", "answers": "speed against error, as last measured on this machine: {date, commit, cpu, cores, points: [{technique, scene, spp, seconds, flip}]} or {problem}"},
+    {"method": "GET", "path": "/api/v1/sums.csv", "query": {"from": "YYYY-MM-DD; the first day", "to": "likewise; the last"},
+     "headers": "Authorization: Bearer TOKEN, where the server has one",
+     "answers": "sums of each local day: day,what,key,value; without a token only of a server that listens on its own machine alone"},
+    {"method": "POST", "path": "/api/v1/admin/announce", "headers": "Authorization: Bearer TOKEN, Content-Type: application/json",
+     "body": {"text": "text, or texts by language tag, up to 2000 bytes each; empty: the last is taken back", "seconds": "1..86400; 60",
+              "urgent": "boolean: over everything; false"},
+     "answers": "{id}; the words are on all pages, and on those that come later, while it lasts"},
+    {"method": "WS", "path": "/api/v1/visit", "subprotocol": "wellspring.v1", "answers": "a visit"},
+    {"method": "WS", "path": "/api/v1/eye", "answers": "a kiosk's observations in"}],
+  "server_to_browser": {
+    "welcome": {"protocol": "wellspring.v1", "session": "number", "resumed": "boolean: it goes on where it was", "exhibit": "id", "title": "text",
+                "languages": "tags", "width": "px", "height": "px", "walk_speed": "m/s",
+                "viewpoints": "[{name, title}]", "tours": "[{id, title, stops}]", "stories": "[{id, title, teller: id or null}]",
+                "lamps": "[{name, title, on}]: what may be switched",
+                "sounds": "[{id, kind: fire, water, room or wind, or file: address, position: [x, y, z] or left out, gain: 0..1, radius: m}]",
+                "objects": "[{id, title, position, text, story, provenance, manifest, door: {exhibit, viewpoint}}]: what may be looked at closer; but for the first three left out where there is none",
+                "map": "boolean: there is one", "questions": "texts: some to ask",
+                "watched": "true: a curator works at the exhibit; else left out",
+                "storyteller": "{id, name, visible, position, viewpoint} or null: who is there",
+                "storytellers": "[{id, name, position, viewpoint}]: who may be called"},
+    "state": {"seq": "u32", "position": "[x, y, z]", "yaw": "radians", "pitch": "radians", "fov": "radians",
+              "fps": "number", "converged": "0..1", "viewpoint": "name or null",
+              "tour": "{id, state, stop, stops} or null",
+              "lamps": "{name: whether it is on} where there are any; at once when somebody switches one"},
+    "went": {"seq": "u32, of the go that it answers", "object": "id of what is looked at closer, or null",
+             "place": "[x, y, z] of the eye when it is there", "seconds": "that takes; 0: it has leapt"},
+    "subtitle": {"text": "empty: it disappears", "lang": "tag", "speaker": "name", "seconds": "number"},
+    "agent": {"mood": "idle, noticing, greeting, attending, telling or farewell",
+              "teller": "id of who is there", "visible": "boolean",
+              "humanlike": "boolean", "story": "id or null", "sentence": "number",
+              "sentences": "number", "paused": "boolean",
+              "looking_at": "[x, y, z] the storyteller's gaze target",
+              "gaze": "[yaw, pitch] of its line of sight from straight ahead, radians", "guest": "id or 0",
+              "face": "{emotion: 0..1} that it shows, of its own story or with its guest; MPEG-4's six",
+              "mouth": "{utterance, seconds of it, viseme} as the next picture shows it, or null"},
+    "speech": {"utterance": "number, grows", "action": "start or stop", "text": "what is said",
+               "lang": "tag, the language spoken", "seconds": "number", "position": "[x, y, z] of the mouth",
+               "words": "[{text, begin, end}] seconds from the first sample"},
+    "group": {"role": "leader, follower or none", "code": "by which others follow", "followers": "number",
+              "away": "boolean: a follower who has walked off"},
+    "kiosk": {"state": "absent, motion or person", "people": "number", "cameras": "number",
+              "distance": "metres of the nearest from the screen; left out: nobody is there",
+              "kiosk": "to a kiosk's page, of that kiosk alone, as all that follows: its name",
+              "stage": "sleep, awake, person, engaged or farewell",
+              "storyteller": "here, elsewhere (with another kiosk's guests) or none",
+              "aside": "metres, how far right of the screen's middle that one stands",
+              "volume": "0..1", "heard": "[ids of the stories told to these guests]",
+              "calibration": "as the kiosk's observation has it; left out: there is none",
+              "gesture": "{name, number: grows with each} while the page shows book, topics, partners or slides"},
+    "house": {"open": "to a kiosk's page: boolean; closed, nothing is shown", "quiet": "boolean",
+              "headphones": "boolean: they are to be offered", "volume": "0..1, of a kiosk with no own",
+              "reload": "boolean: once a night, while nobody is there: load the page anew",
+              "take_along": "boolean: there is a qr.svg for phones"},
+    "reply": {"question": "as it was asked", "text": "what the storyteller says to it", "found": "sure, partly or none",
+              "from": {"kind": "answer, object, story, tour or topic", "id": "of that", "title": "text"},
+              "words": "of the question that led there", "score": "BM25", "share": "0..1 of the question's words, by weight"},
+    "keep": {"token": "where the visit is, sealed: with it in hello.resume it goes on there"},
+    "problems": {"list": "[{file, where, what}]: what is wrong with the files of a watched exhibit, which goes on as it was; empty: nothing any more"},
+    "announce": {"id": "number, grows", "text": "{language tag: text}; empty: the last is taken back",
+                 "seconds": "that it stays", "urgent": "boolean: over everything"},
+    "error": {"code": "word, storyteller_busy among them: the one storyteller of all visitors is taken; no_way, nothing_there, unknown_object: to go",
+              "message": "sentence"}},
+  "binary": {
+    "picture": {"magic": "WSF1", "fields": [
+      {"offset": 4, "type": "u32", "name": "frame"}, {"offset": 8, "type": "u32", "name": "seq"},
+      {"offset": 12, "type": "u64", "name": "server time, microseconds"}, {"offset": 20, "type": "u16", "name": "width"},
+      {"offset": 22, "type": "u16", "name": "height"}, {"offset": 24, "type": "u8", "name": "quality"},
+      {"offset": 25, "type": "u8", "name": "flags: 1 still, 2 complete picture"},
+      {"offset": 26, "type": "u16", "name": "header length, 28 or more"}], "payload": "JPEG"},
+    "sound": {"magic": "WSA1", "fields": [
+      {"offset": 4, "type": "u32", "name": "utterance"},
+      {"offset": 8, "type": "u32", "name": "first sample of this piece within the utterance"},
+      {"offset": 12, "type": "u64", "name": "server time in microseconds at which that sample is to sound: with the picture of that time"},
+      {"offset": 20, "type": "u32", "name": "samples of the whole utterance"}, {"offset": 24, "type": "u8", "name": "channels: 1"},
+      {"offset": 25, "type": "u8", "name": "flags: 1 heard the same everywhere"}, {"offset": 26, "type": "u16", "name": "header length, 56 or more"},
+      {"offset": 28, "type": "u32", "name": "samples a second"}, {"offset": 32, "type": "3 x f64", "name": "world position of the mouth, m"}],
+      "payload": "16-bit samples, in order; pieces come about a second before they are due"}},
+  "eye_to_server": {
+    "observation": {"time": "seconds", "presence": "boolean", "state": "absent, motion or person",
+      "people": "[{id, position [x, y, z] m from the screen's centre, rotation [yaw, pitch, roll], confidence, expression?, gesture?}]",
+      "camera_state": "good (or left out), dark, frozen, missing or slow",
+      "camera_name": "of kiosk and camera, optional: who comes back under it is the same camera",
+      "calibration": "{step: near, far, done or failed, metres of that mark from the screen, progress 0..1}, while the person is asked to stand at two marks; then nobody is a guest",
+      "kiosk": "its kiosk's name; left out: the only one of the house"}},
+  "server_to_eye": {
+    "kiosk": {"stage": "sleep, awake, person, engaged or farewell",
+      "needs": "{faces, expression, gestures}: booleans, what is used at the moment",
+      "idle": "true while the house is closed: a look now and then is enough"}}
+})json";
+  static const std::string body = [] {
+    nlohmann::json api = nlohmann::json::parse(text);
+    api["browser_to_server"] = describe_browser_messages();
+    return api.dump();
+  }();
+  return body;
+}
+
+}  // namespace wellspring

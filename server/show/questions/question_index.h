@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds the words of an exhibit that answer a question. Ranking is BM25 (Robertson, Zaragoza: The
+// Probabilistic Relevance Framework, 2009, section 3.4) over passages; how sure it is says the
+// share of the question's words, each by its weight, that the passage has.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "show/exhibit/exhibit.h"
+
+namespace wellspring {
+
+// Something that can be said in answer.
+struct Passage {
+  enum class Kind : uint8_t { answer, object, story, tour, topic };
+  Kind kind = Kind::answer;
+  std::string id;     // of the object, story, tour or topic; of an answer empty
+  LocalText title;    // of that; of an answer its question
+  LocalScript said;   // a few sentences
+  LocalText further;  // words to find it by that are not said
+};
+inline constexpr const char* passage_kinds[] = {"answer", "object", "story", "tour", "topic"};
+
+struct QuestionIndex {
+  std::vector<Passage> passages;
+  struct Entry {
+    std::map<std::string, float> counts;  // stem -> how often, weighted
+    float length = 0;
+  };
+  struct Language {
+    std::vector<Entry> entries;            // of each passage; empty: it has no words in it
+    std::map<std::string, int> documents;  // stem -> passages that have it
+    float mean_length = 1;
+  };
+  std::map<std::string, Language> languages;
+};
+
+struct FoundAnswer {
+  enum class Kind : uint8_t { none, partly, sure } kind = Kind::none;
+  int passage = -1;                // index; -1 for none
+  float score = 0;                 // BM25
+  float share = 0;                 // of the question's words that the passage has, 0 to 1
+  std::vector<std::string> words;  // these, as they were asked
+};
+
+QuestionIndex make_question_index(const Exhibit& exhibit);
+// In `lang`, else in its base language, else in the exhibit's first.
+FoundAnswer find_answer(const QuestionIndex& index, const Exhibit& exhibit,
+                        const std::string& question, const std::string& lang);
+// What is said in answer: the passage, after a word of caution where it is not sure, or kind words
+// where there is none.
+LocalScript words_for(const QuestionIndex& index, const FoundAnswer& found);
+
+}  // namespace wellspring

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes a new show of an exhibit whenever its files have changed, while the old one goes on.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "show/exhibit/problem.h"
+
+namespace wellspring {
+
+struct Show;
+
+class Rehearsal {
+ public:
+  // `make` runs on a thread of the rehearsal's own; throws what is wrong with the files.
+  Rehearsal(std::string folder, std::function<std::unique_ptr<Show>()> make);
+  ~Rehearsal();  // waits for a show that is being made
+
+  struct Outcome {
+    std::unique_ptr<Show> show;     // null: it cannot be shown, for
+    std::vector<Problem> problems;  // these reasons; files by their names below the folder
+  };
+  // Of the last change, once.
+  std::optional<Outcome> take();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace wellspring

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/load/scene_files.h"
+
+#include <algorithm>
+
+#include "gltf/file.h"
+
+namespace wellspring {
+
+using namespace gltf;
+
+std::vector<std::string> list_scene_files(const std::string& path) {
+  File file = load_gltf(path, "");
+  std::vector<std::string> names;
+  for (const char* kind : {"buffers", "images"}) {
+    const json& list = items(file.root, kind);
+    for (size_t i = 0; i < list.size(); i++) {
+      const std::string uri = text(list[i], "uri"), where = at(std::string("/") + kind, i);
+      if (uri.empty() || uri.starts_with("data:") || !read_uri(file, where, uri)) continue;
+      const std::string name = percent_decode(file, where, uri);
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+}  // namespace wellspring

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/load/scene_join.h"
+
+#include <iterator>
+#include <utility>
+
+namespace wellspring {
+namespace {
+
+// Farther than this from zero floats lose millimetres: the scene gets an origin of its own.
+constexpr double far = 1000;
+
+template <class T>
+void append(std::vector<T>& list, std::vector<T>& more) {
+  list.insert(list.end(), std::make_move_iterator(more.begin()),
+              std::make_move_iterator(more.end()));
+}
+
+void shift(int& index, size_t by) {
+  if (index >= 0) index += int(by);
+}
+
+}  // namespace
+
+void place_scene(Scene& scene, const ScenePlace& place) {
+  if (place.is_own()) return;
+  const dmat4 turn = glm::rotate(dmat4(1), place.yaw, dvec3(0, 1, 0));
+  const dmat4 move =
+      glm::translate(dmat4(1), place.position) * glm::scale(turn, dvec3(place.scale));
+  const dvec3 old_origin = scene.origin;
+  dvec3 middle = dvec3(move * dvec4(old_origin, 1));
+  scene.origin = glm::length(middle) > far ? glm::round(middle) : dvec3(0);
+  const dmat4 own =
+      glm::translate(dmat4(1), -scene.origin) * move * glm::translate(dmat4(1), old_origin);
+  for (Instance& instance : scene.instances)
+    instance.to_world = mat4(own * dmat4(instance.to_world));
+  for (PunctualLight& light : scene.lights) {
+    light.position = vec3(own * dvec4(dvec3(light.position), 1));
+    light.direction = normalize(vec3(turn * dvec4(dvec3(light.direction), 0)));
+    light.range *= float(place.scale);
+    if (light.type != PunctualType::directional)
+      light.intensity *= float(place.scale * place.scale);
+  }
+  for (Viewpoint& view : scene.viewpoints) {
+    view.position = dvec3(move * dvec4(view.position, 1));
+    view.yaw += float(place.yaw);
+  }
+}
+
+void join_scene(Scene& into, Scene part) {
+  const vec3 offset = vec3(part.origin - into.origin);
+  const size_t images = into.images.size(), textures = into.textures.size(),
+               materials = into.materials.size(), meshes = into.meshes.size(),
+               objects = into.objects.size(), nodes = into.nodes.size();
+  for (Texture& texture : part.textures) shift(texture.image, images);
+  for (Material& material : part.materials)
+    each_texture(material, [&](TextureRef& use) { shift(use.texture, textures); });
+  for (Mesh& mesh : part.meshes) shift(mesh.material, materials);
+  for (Instance& instance : part.instances) {
+    shift(instance.mesh, meshes);
+    instance.object += uint32_t(objects);
+    instance.to_world = glm::translate(mat4(1), offset) * instance.to_world;
+  }
+  for (SceneNode& node : part.nodes) shift(node.parent, nodes);
+  for (int& node : part.object_nodes) shift(node, nodes);
+  for (int& node : part.light_nodes) shift(node, nodes);
+  for (PunctualLight& light : part.lights) light.position += offset;
+  append(into.images, part.images);
+  append(into.textures, part.textures);
+  append(into.materials, part.materials);
+  append(into.meshes, part.meshes);
+  append(into.instances, part.instances);
+  append(into.objects, part.objects);
+  append(into.nodes, part.nodes);
+  append(into.object_nodes, part.object_nodes);
+  append(into.light_nodes, part.light_nodes);
+  append(into.lights, part.lights);
+  append(into.viewpoints, part.viewpoints);
+  append(into.warnings, part.warnings);
+}
+
+void scale_light(Scene& scene, float factor) {
+  for (PunctualLight& light : scene.lights) light.intensity *= factor;
+  for (Material& material : scene.materials) material.emission *= factor;
+}
+
+}  // namespace wellspring

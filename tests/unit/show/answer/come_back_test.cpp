@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/answer/come_back.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "show/exhibit/exhibit_lamps.h"
+#include "unit/folder.h"
+#include "unit/show/show_stage.h"
+#include "world/load/lamp.h"
+
+namespace wellspring {
+namespace {
+
+using nlohmann::json;
+
+struct ComeBack : testing::Test, ShowStage {
+  test::Folder folder;
+  void open(int64_t day = 100) {
+    browsers.clear();
+    show.reset();
+    Exhibit exhibit = make_tiny_exhibit();
+    add_storyteller(exhibit, "anna", {-2, 0, 1});
+    add_storyteller(exhibit, "otto", {-2, 0, 2});
+    add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
+    exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}}};
+    ShowSettings settings = settings_for("direct", false, 10);
+    settings.cache = folder.path;
+    settings.bakes = false;
+    tick_seconds = 0.1;
+    begin(std::move(exhibit), settings);
+    show->local_time.day = day;
+  }
+  void SetUp() override { open(); }
+  std::string token(size_t visitor = 0) { return last("keep", visitor)["token"]; }
+  size_t come(const std::string& token) {
+    const size_t number = connect();
+    say(json{{"type", "hello"}, {"width", 32}, {"height", 32}, {"resume", token}}.dump(), number);
+    run(0.1);
+    return number;
+  }
+  void break_line(size_t visitor = 0) {
+    browsers[visitor].link->mark_closed();
+    run(0.2);
+  }
+  // Lets a visitor do what shall last.
+  void begin_visit() {
+    join(32, 32);
+    order(R"({"type":"viewpoint","seq":1,"name":"corner"})");
+    order(R"({"type":"lamp","name":"ceiling","on":false})");
+    order(R"({"type":"storyteller","teller":"otto","humanlike":false})");
+    order(R"({"type":"storyteller","story":"tale"})");
+    order(R"({"type":"storyteller","action":"skip"})");
+    order(R"({"type":"storyteller","action":"pause"})");
+    order(R"({"type":"group","action":"lead"})");
+    run(2.5);
+  }
+  void expect_visit(size_t visitor) {
+    EXPECT_EQ(last("welcome", visitor)["resumed"], true);
+    EXPECT_EQ(last("welcome", visitor)["lamps"][0]["on"], false);
+    EXPECT_EQ(last("state", visitor)["viewpoint"], "corner");
+    EXPECT_EQ(last("agent", visitor)["teller"], "otto");
+    EXPECT_EQ(last("agent", visitor)["story"], "tale");
+    EXPECT_EQ(last("agent", visitor)["paused"], true);
+    const Visitor& now = show->visitors.back();
+    ASSERT_TRUE(now.own_teller);
+    EXPECT_EQ(now.own_teller->voice.sentence, 1);
+    EXPECT_FALSE(now.own_teller->humanlike);
+  }
+};
+
+TEST_F(ComeBack, AVisitWhoseLineBrokeGoesOnWithWhatItKnows) {
+  begin_visit();
+  const size_t points = visitor().picture.cache.stats().points;
+  ASSERT_GT(points, 0u);
+  const std::string code = last("group")["code"];
+  break_line();
+  EXPECT_TRUE(show->visitors.empty());
+  EXPECT_EQ(show->totals.visits, 1u);
+  const size_t again = come(token());
+  expect_visit(again);
+  EXPECT_GE(show->visitors.front().picture.cache.stats().points, points);
+  EXPECT_EQ(show->visitors.front().group.leads, code);
+  EXPECT_EQ(show->totals.visits, 1u);
+  EXPECT_TRUE(show->kept.empty());
+}
+
+TEST_F(ComeBack, LaterAndAfterANewStartItIsWhereItWas) {
+  begin_visit();
+  const std::string code = last("group")["code"], sealed = token();
+  break_line();
+  run(kept_seconds + 1);
+  EXPECT_TRUE(show->kept.empty());
+  expect_visit(come(sealed));
+  EXPECT_EQ(show->visitors.front().group.leads, code);
+  open();
+  expect_visit(come(sealed));
+  const size_t second = come(sealed);
+  expect_visit(second);
+  EXPECT_EQ(show->visitors.back().group.leads, "") << "a group has one leader";
+}
+
+TEST_F(ComeBack, ATourGoesOnAtItsStop) {
+  join(32, 32);
+  order(R"({"type":"tour","action":"play"})");
+  ASSERT_TRUE(step_until([&] { return visitor().place.tour.stop == 1; }));
+  run(2.5);
+  const std::string sealed = token();
+  open();
+  come(sealed);
+  EXPECT_EQ(visitor().place.tour.stop, 1);
+  EXPECT_EQ(visitor().place.tour.state, TourRide::State::playing);
+  EXPECT_TRUE(told("error").empty());
+}
+
+TEST_F(ComeBack, FollowersWaitForALeaderWhoComesBack) {
+  join(32, 32);
+  join(32, 32);
+  order(R"({"type":"group","action":"lead"})", 0);
+  const std::string code = last("group", 0)["code"];
+  order(R"({"type":"group","action":"follow","code":")" + code + R"("})", 1);
+  run(2.5);
+  const std::string sealed = token(0);
+  break_line(0);
+  EXPECT_EQ(show->visitors.front().group.follows, code);
+  const size_t leader = come(sealed);
+  order(R"({"type":"viewpoint","seq":1,"name":"corner"})", leader);
+  EXPECT_EQ(last("state", 1)["position"], last("state", leader)["position"]);
+  break_line(leader);
+  run(kept_seconds + 1);
+  EXPECT_EQ(last("group", 1)["role"], "none");
+}
+
+TEST_F(ComeBack, TextsThatAreNotOursChangeNothing) {
+  begin_visit();
+  const std::string sealed = token();
+  std::string broken = sealed;
+  broken[5] ^= 1;
+  const std::string elsewhere = show->seal->close(R"({"exhibit":"other","day":100})");
+  const std::string no_json = show->seal->close("{");
+  for (const std::string& text : {std::string("x"), broken, elsewhere, no_json}) {
+    const size_t number = come(text);
+    EXPECT_EQ(last("welcome", number)["resumed"], false) << text;
+    EXPECT_NE(last("state", number)["viewpoint"], "corner");
+  }
+  open(100 + token_days + 1);
+  EXPECT_EQ(last("welcome", come(sealed))["resumed"], false) << "too old";
+  const size_t odd = come(show->seal->close(R"({"exhibit":"tiny","day":108,"place":[1]})"));
+  EXPECT_EQ(last("welcome", odd)["resumed"], true);
+  EXPECT_FALSE(told("state", odd).empty());
+}
+
+TEST_F(ComeBack, FewAreKeptAndWhatDidNotChangeIsNotToldAgain) {
+  for (size_t i = 0; i < most_kept + 2; i++) join(32, 32);
+  run(2.5);
+  const size_t told_before = told("keep").size();
+  run(5);
+  EXPECT_EQ(told("keep").size(), told_before);
+  order(R"({"type":"viewpoint","seq":1,"name":"corner"})");
+  run(2.5);
+  EXPECT_EQ(told("keep").size(), told_before + 1);
+  for (size_t i = 0; i < most_kept + 2; i++) break_line(i);
+  EXPECT_EQ(show->kept.size(), most_kept);
+}
+
+}  // namespace
+}  // namespace wellspring

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/http/still_question.h"
+
+#include <gtest/gtest.h>
+
+#include "show/state/make_show.h"
+#include "unit/show/show_stage.h"
+
+namespace wellspring {
+namespace {
+
+TEST(StillQuestion, AsksForAViewpointOrForAnyView) {
+  const Exhibit exhibit = make_tiny_exhibit();
+  StillQuestion plain = read_still_question(exhibit, {});
+  EXPECT_EQ(plain.status, 200);
+  EXPECT_EQ(plain.job.viewpoint, exhibit.start);
+  EXPECT_FALSE(plain.job.position || plain.job.yaw || plain.job.pitch || plain.job.fov);
+  StillQuestion view = read_still_question(exhibit, {{"position", "50.5,1.6,-2e-1"},
+                                                     {"yaw", "-1.5"},
+                                                     {"pitch", "0.25"},
+                                                     {"fov", "0.8"},
+                                                     {"width", "320"}});
+  ASSERT_EQ(view.status, 200) << view.problem;
+  EXPECT_EQ(view.job.position, dvec3(50.5, 1.6, -0.2));
+  EXPECT_EQ(view.job.yaw, -1.5f);
+  EXPECT_EQ(view.job.pitch, 0.25f);
+  EXPECT_EQ(view.job.fov, 0.8f);
+  EXPECT_EQ(view.job.width, 320);
+  EXPECT_NE(view.job, plain.job) << "no kept picture of another view";
+}
+
+TEST(StillQuestion, NamesTheFieldThatIsWrong) {
+  const Exhibit exhibit = make_tiny_exhibit();
+  for (const auto& [name, text] :
+       std::vector<std::pair<std::string, std::string>>{{"position", "1,2"},
+                                                        {"position", "1,2,3,4"},
+                                                        {"position", "1,2,3,"},
+                                                        {"position", "1,2,nan"},
+                                                        {"position", "inf,2,3"},
+                                                        {"position", "1,2,1e7"},
+                                                        {"position", "1;2;3"},
+                                                        {"yaw", "north"},
+                                                        {"yaw", "101"},
+                                                        {"pitch", "-inf"},
+                                                        {"pitch", "1 "},
+                                                        {"fov", "0"},
+                                                        {"fov", "3.2"},
+                                                        {"fov", "nan"},
+                                                        {"spp", "0"},
+                                                        {"width", "1e3"}}) {
+    StillQuestion asked = read_still_question(exhibit, {{name, text}});
+    EXPECT_EQ(asked.status, 400) << name << "=" << text;
+    EXPECT_TRUE(asked.problem.starts_with(name + ": ")) << asked.problem;
+  }
+  EXPECT_EQ(read_still_question(exhibit, {{"viewpoint", "moon"}, {"spp", "0"}}).status, 404);
+}
+
+// What is asked for is seen: the view of a viewpoint, told by numbers, is that picture.
+TEST(StillQuestion, AViewInNumbersIsThePictureFromThere) {
+  Exhibit exhibit = make_tiny_exhibit();
+  const Viewpoint first = exhibit.viewpoints[0].view;
+  std::unique_ptr<Show> show = make_show(std::move(exhibit), settings_for("direct", false));
+  StillRoom room(*show);
+  StillJob job{.width = 64, .height = 48, .spp = 1, .denoise = false};
+  const std::string there = room.make(job);
+  job.position = first.position, job.yaw = first.yaw, job.pitch = first.pitch, job.fov = first.fov;
+  EXPECT_TRUE(room.make(job) == there);
+  for (int field = 0; field < 4; field++) {
+    StillJob other = job;
+    if (field == 0) *other.position += dvec3(0.3, 0, 0);
+    if (field == 1) *other.yaw += 0.4f;
+    if (field == 2) *other.pitch -= 0.4f;
+    if (field == 3) *other.fov *= 0.5f;
+    EXPECT_FALSE(room.make(other) == there) << field;
+  }
+}
+
+}  // namespace
+}  // namespace wellspring

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a guest before a kiosk does with a hand.
+#include <gtest/gtest.h>
+
+#include "unit/show/show_stage.h"
+
+namespace wellspring {
+namespace {
+
+struct GuestGestures : testing::Test, ShowStage {
+  void SetUp() override {
+    Exhibit exhibit = make_tiny_exhibit();
+    add_storyteller(exhibit, "anna", {-2, 0, 1});
+    exhibit.stories.push_back(exhibit.stories[0]);
+    exhibit.stories[1].id = "other";
+    begin(std::move(exhibit), settings_for("direct", false));
+    show->eyes.push_back(Eye{std::make_shared<Link>(99, LinkKind::eye, "test"), {}, -1e9, 0});
+  }
+  // Seen for a second, as the kiosk's program tells it.
+  void make(const std::string& gesture, double seconds = 0.4) {
+    for (const std::string& now : {gesture, std::string()})
+      for (double end = this->now + seconds; this->now < end;) {
+        Eye& eye = show->eyes.front();
+        eye.seen.state = Presence::person;
+        eye.seen.people.assign(1, Person{});
+        eye.seen.people[0].id = 1;
+        eye.seen.people[0].gesture = now;
+        eye.received = show->time;
+        step();
+      }
+  }
+  const std::string& told() const { return show->teller.voice.story; }
+};
+
+TEST_F(GuestGestures, ADigitChoosesAStory) {
+  join(32, 32, "en", "kiosk");
+  steps(3);
+  make("2");
+  EXPECT_EQ(told(), "other");
+  make("1");
+  EXPECT_EQ(told(), "tale");
+  make("7");
+  EXPECT_EQ(told(), "tale") << "there is no such story";
+  EXPECT_EQ(show->totals.gestures, 2u) << "each once";
+  make("swipe_down");
+  EXPECT_EQ(told(), "");
+}
+
+TEST_F(GuestGestures, SwipesTurnThePages) {
+  join(32, 32, "en", "kiosk");
+  steps(3);
+  make("swipe_left", 0.1);
+  EXPECT_EQ(told(), "tale");
+  EXPECT_EQ(show->teller.voice.sentence, 0);
+  make("swipe_left", 0.1);
+  EXPECT_EQ(show->teller.voice.sentence, 1);
+  make("swipe_right", 0.1);
+  EXPECT_EQ(show->teller.voice.sentence, 0);
+  make("swipe_down", 0.1);
+  make("swipe_left", 0.1);
+  EXPECT_EQ(told(), "other") << "the next";
+  make("swipe_down", 0.1);
+  make("swipe_right", 0.1);
+  EXPECT_EQ(told(), "other") << "again";
+}
+
+TEST_F(GuestGestures, MeanNothingWithoutAScreen) {
+  join(32, 32);
+  steps(3);
+  make("1");
+  EXPECT_EQ(told(), "");
+  make("wave");
+  make("point");
+  EXPECT_EQ(show->totals.gestures, 0u);
+}
+
+}  // namespace
+}  // namespace wellspring

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wire/seal.h"
+
+#include <gtest/gtest.h>
+
+#include "unit/folder.h"
+
+namespace wellspring {
+namespace {
+
+TEST(Seal, WhatWasSealedOpensAndNothingElse) {
+  const Seal seal, other;
+  for (const std::string& text :
+       {std::string(), std::string("{\"a\":1}"), std::string("\0\xff\n", 3)}) {
+    const std::string sealed = seal.close(text);
+    EXPECT_EQ(seal.open(sealed), text);
+    EXPECT_FALSE(other.open(sealed)) << "another key";
+    EXPECT_EQ(sealed.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                       "0123456789-_."),
+              std::string::npos);
+    for (size_t i = 0; i < sealed.size(); i++) {
+      std::string changed = sealed;
+      changed[i] = changed[i] == 'A' ? 'B' : 'A';
+      EXPECT_FALSE(seal.open(changed)) << i;
+    }
+  }
+  for (const char* text : {"", ".", "a", "a.b", "....", "YQ.", ".YQ", "\xff.\xff"})
+    EXPECT_FALSE(seal.open(text)) << text;
+}
+
+TEST(Seal, TheKeyIsKeptForItsOwnerAlone) {
+  test::Folder folder;
+  const std::string file = folder.file("new/visits.key");
+  const std::string sealed = Seal(file).close("here");
+  EXPECT_EQ(Seal(file).open(sealed), "here");
+  const auto rights = std::filesystem::status(file).permissions();
+  EXPECT_EQ(rights & std::filesystem::perms::all,
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST(Seal, WithoutAFileThatHoldsAKeyItStillSeals) {
+  test::Folder folder;
+  const Seal seal(folder.write("short", "abc"));
+  EXPECT_EQ(seal.open(seal.close("x")), "x");
+  EXPECT_EQ(folder.read("short"), "abc") << "what is there is somebody's";
+  const Seal nowhere("/proc/nothing/key");
+  EXPECT_EQ(nowhere.open(nowhere.close("x")), "x");
+}
+
+}  // namespace
+}  // namespace wellspring

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page's address asks for, and addresses to give away.
+const asks = new URLSearchParams(location.search);
+// A wish counts where the address has just been opened, not when the page is loaded again.
+const [opening] = /** @type {any[]} */ (performance.getEntriesByType('navigation'));
+const fresh = opening?.type !== 'reload';
+
+export const asked_exhibit = decodeURIComponent(/\/e\/([^/]+)$/.exec(location.pathname)?.[1] ?? '')
+    || (asks.get('exhibit') ?? '');
+export const asked_viewpoint = fresh ? asks.get('viewpoint') : null;
+export const asked_story = fresh ? asks.get('story') : null;
+export const asked_group = fresh ? asks.get('group') : null;
+
+// #place=x,y,z,yaw,pitch in metres and radians: {position, yaw, pitch}; null: none, or a wrong one.
+export function read_place(hash) {
+  const text = /^#place=(.*)$/.exec(decodeURIComponent(hash))?.[1];
+  const numbers = text?.split(',').map((word) => (word.trim() ? Number(word) : NaN));
+  if (numbers?.length !== 5 || !numbers.every(Number.isFinite)) return null;
+  return { position: numbers.slice(0, 3), yaw: numbers[3], pitch: numbers[4] };
+}
+export const asked_place = () => (fresh ? read_place(location.hash) : null);
+
+// Of this page and exhibit alone.
+function clean_address() {
+  const url = new URL(location.href);
+  const exhibit = url.searchParams.get('exhibit');
+  url.search = exhibit ? new URLSearchParams({ exhibit }).toString() : '';
+  url.hash = '';
+  return url;
+}
+export function group_address(code) {
+  const url = clean_address();
+  url.searchParams.set('group', code);
+  return url.href;
+}
+// To a centimetre, and a twentieth of a degree.
+export function place_address({ position, yaw, pitch }) {
+  const url = clean_address();
+  const numbers = [...position.map((v) => v.toFixed(2)), yaw.toFixed(3), pitch.toFixed(3)];
+  url.hash = `place=${numbers.map(Number).join(',')}`;
+  return url.href;
+}

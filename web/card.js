@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The card of an object that is looked at closer: its label, where it comes from, its story.
+import { by_id } from './element.js';
+import { text_in, word } from './words.js';
+
+// orders: {story(id), closed()}
+export function make_card(orders) {
+  const card = by_id('card');
+  let objects = [], lang = 'en', shown = null, opener = null;
+
+  function close() {
+    if (card.hidden) return;
+    const focused = card.contains(document.activeElement);
+    card.hidden = true;
+    shown = null;
+    document.body.classList.remove('reads');
+    if (focused) (opener?.isConnected ? opener : by_id('picture')).focus();
+  }
+  by_id('card-close').addEventListener('click', close);
+  addEventListener('keydown', (event) => {
+    if (event.key === 'Escape' && by_id('menu').hidden) close();
+  });
+  by_id('card-story').addEventListener('click', () => orders.story(shown.story));
+
+  // A door leads to another exhibit, if that is open.
+  async function offer_door(object) {
+    const door = by_id('card-door');
+    door.hidden = true;
+    if (!object.door) return;
+    const { exhibit, viewpoint } = object.door;
+    const answer = await fetch(`api/v1/exhibits/${exhibit}`).catch(() => null);
+    if (!answer?.ok || shown !== object) return;
+    const { title, languages } = await answer.json();
+    door.href = `e/${exhibit}${viewpoint ? `?viewpoint=${encodeURIComponent(viewpoint)}` : ''}`;
+    door.textContent = word(lang, 'enter').replace('{title}', text_in(title, lang, languages));
+    door.hidden = false;
+  }
+
+  function fill(object) {
+    by_id('card-title').textContent = object.title;
+    by_id('card-text').textContent = object.text ?? '';
+    by_id('card-text').hidden = !object.text;
+    by_id('card-facts').replaceChildren(...(object.provenance ?? []).flatMap((fact) => {
+      const name = document.createElement('dt'), value = document.createElement('dd');
+      name.textContent = word(lang, `dc_${fact.element}`);
+      value.textContent = fact.value;
+      return [name, value];
+    }));
+    by_id('card-facts').hidden = !object.provenance;
+    by_id('card-story').hidden = !object.story;
+    by_id('card-manifest').hidden = !object.manifest;
+    if (object.manifest) by_id('card-manifest').href = object.manifest;
+    offer_door(object);
+  }
+
+  return {
+    welcome(message) {
+      ({ objects, lang } = message);
+      const now = shown && objects.find(({ id }) => id === shown.id);
+      if (now) fill(shown = now);
+    },
+    objects: () => objects,
+    open(id) {
+      const object = objects.find((one) => one.id === id);
+      if (!object) return close();
+      opener = document.activeElement;
+      shown = object;
+      fill(object);
+      card.hidden = false;
+      document.body.classList.add('reads');
+      card.scrollTop = 0;
+    },
+    close,
+  };
+}

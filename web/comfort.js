@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a visitor chooses for eyes and line: leaps instead of glides, how good pictures are, the
+// whole screen, figures for technicians. Kept by the browser.
+import { all, by_id } from './element.js';
+import { wanted_size } from './picture.js';
+
+const kept = (name) => localStorage.getItem(`wellspring.${name}`);
+const keep = (name, value) => localStorage.setItem(`wellspring.${name}`, String(value));
+// most: pixels; the rest as `settings` has it.
+const qualities = {
+  fine: { most: 1920 * 1080, fps: 0, quality: 90, max_quality: 95 },
+  plain: { most: 1280 * 720, fps: 0, quality: 82, max_quality: 92 },
+  saver: { most: 640 * 360, fps: 12, quality: 55, max_quality: 70 },
+};
+
+// send(fields): of a settings message. on_change(): the saver is on, or off again.
+export function make_comfort(send, on_change) {
+  const reduced = matchMedia('(prefers-reduced-motion: reduce)');
+  const calm = by_id('comfort'), figures = by_id('figures-on');
+  let chosen = kept('quality') in qualities ? kept('quality')
+      : /** @type {any} */ (navigator).connection?.saveData ? 'saver' : 'plain';
+
+  const wishes = () => {
+    const { most, fps, ...rest } = qualities[chosen];
+    return { ...rest, ...wanted_size(most), fps: document.hidden ? 1 : fps };
+  };
+  calm.checked = kept('comfort') === null ? reduced.matches : kept('comfort') === 'true';
+  const tell_comfort = () => send({ comfort: calm.checked });
+  calm.addEventListener('change', () => { keep('comfort', calm.checked); tell_comfort(); });
+  reduced.addEventListener('change', () => {
+    if (kept('comfort') !== null) return;
+    calm.checked = reduced.matches;
+    tell_comfort();
+  });
+
+  for (const input of all('input[name=quality]')) {
+    input.checked = input.value === chosen;
+    input.addEventListener('change', () => {
+      if (!input.checked) return;
+      chosen = input.value;
+      keep('quality', chosen);
+      send(wishes());
+      on_change();
+    });
+  }
+
+  figures.checked = kept('figures') === 'true';
+  const show_figures = () => { by_id('figures').hidden = !figures.checked; };
+  figures.addEventListener('change', () => { keep('figures', figures.checked); show_figures(); });
+  show_figures();
+
+  const whole = by_id('whole-screen');
+  whole.hidden = !document.fullscreenEnabled;
+  whole.addEventListener('click', () => {
+    if (document.fullscreenElement) document.exitFullscreen();
+    else document.documentElement.requestFullscreen().catch(() => {});
+  });
+  document.addEventListener('fullscreenchange', () => whole.setAttribute('aria-pressed',
+      String(!!document.fullscreenElement)));
+
+  let resize_timer = 0;
+  addEventListener('resize', () => {
+    clearTimeout(resize_timer);
+    resize_timer = setTimeout(() => send(wishes()), 200);
+  });
+  // A hidden page costs next to nothing.
+  document.addEventListener('visibilitychange', () => send({ fps: wishes().fps }));
+
+  return {
+    size: () => wanted_size(qualities[chosen].most),
+    wishes: () => ({ comfort: calm.checked, ...wishes() }),
+    leaps: () => calm.checked,
+    saves: () => chosen === 'saver',
+  };
+}
