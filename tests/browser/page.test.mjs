@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page in headless Chromium: the picture follows keys, places change it, a restart is survived.
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync } from 'node:fs';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -16,9 +16,11 @@ const skip = !executable && 'no Chromium on this machine';
 const pictures = process.env.WELLSPRING_PICTURES;
 
 let server, browser;
+// with what one process keeps for the next: the key of visits' tokens among it
+const cache = ['--cache', mkdtempSync(join(tmpdir(), 'wellspring-cache-'))];
 before(async () => {
   if (skip) return;
-  server = await start_server();
+  server = await start_server(cache);
   const profile = mkdtempSync(join(tmpdir(), 'wellspring-chromium-'));
   browser = await chromium.launchPersistentContext(profile, {
     executablePath: executable, headless: true, viewport: { width: 960, height: 540 },
@@ -29,6 +31,7 @@ before(async () => {
 after(async () => {
   if (browser) await browser.close();
   if (server) await server.stop();
+  rmSync(cache[1], { recursive: true, force: true });
 });
 
 async function open(path = '/', size) {
@@ -288,7 +291,7 @@ test('the page comes back after a server restart, where the visitor stood', { sk
   await server.stop();
   await page.waitForFunction(() => !document.getElementById('notice').hidden);
   await shot(page, 'lost');
-  server = await start_server([], { port });
+  server = await start_server(cache, { port });
   await page.waitForFunction(() => document.getElementById('notice').hidden, null,
       { timeout: 30000 });
   await page.waitForFunction(() => Number(document.getElementById('picture').dataset.frame) > 3,

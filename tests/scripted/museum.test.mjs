@@ -5,7 +5,7 @@ import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } f
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, run, start_server } from '../server.mjs';
+import { Visitor, run, source, start_server } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-museum-'));
@@ -104,7 +104,8 @@ test('figures of all exhibits, told apart', async () => {
 test('without any exhibit that can be shown it says what is wrong', async () => {
   const bad = join(folder, 'bad');
   cpSync(join(content, 'ruin'), join(bad, 'ruin'), { recursive: true });
-  const { status, stderr } = await run('wellspring_server', ['--content', bad, '--port', '0']);
+  const { status, stderr } = await run('wellspring_server',
+      ['--content', bad, '--web', join(source, 'web'), '--port', '0']);
   assert.equal(status, 1);
   assert.match(stderr, /ruin\/exhibit\.json.*line 2/);
 });

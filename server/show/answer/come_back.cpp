@@ -19,6 +19,7 @@ using nlohmann::json;
 namespace {
 
 constexpr double token_interval = 2;  // seconds
+constexpr double rest = 0.25;         // seconds without a move after which a visitor stands
 
 std::string make_id() {
   std::random_device random;
@@ -139,7 +140,10 @@ bool take_kept(Show& show, Visitor& visitor, const std::string& id) {
 }  // namespace
 
 void send_token(Show& show, Visitor& visitor) {
-  if (visitor.kiosk || show.time - visitor.told_at < token_interval) return;
+  if (visitor.kiosk) return;
+  const double rests_at = visitor.place.moved_at + rest;
+  const bool came_to_rest = visitor.told_at < rests_at && show.time >= rests_at;
+  if (!came_to_rest && show.time - visitor.told_at < token_interval) return;
   if (visitor.id.empty()) visitor.id = make_id();
   visitor.told_at = show.time;
   std::string now = describe(show, visitor).dump();

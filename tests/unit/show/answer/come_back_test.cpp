@@ -101,6 +101,17 @@ TEST_F(ComeBack, LaterAndAfterANewStartItIsWhereItWas) {
   EXPECT_EQ(show->visitors.back().group.leads, "") << "a group has one leader";
 }
 
+TEST_F(ComeBack, TheTokenOfWhoCameToRestIsNotOlderThanTheMove) {
+  join(32, 32);
+  run(2.1);  // one has just been sent
+  order(R"({"type":"viewpoint","seq":1,"name":"corner"})");
+  run(0.5);
+  const std::string sealed = token();
+  open();
+  come(sealed);
+  EXPECT_EQ(last("state", 0)["viewpoint"], "corner");
+}
+
 TEST_F(ComeBack, ATourGoesOnAtItsStop) {
   join(32, 32);
   order(R"({"type":"tour","action":"play"})");
