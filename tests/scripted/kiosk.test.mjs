@@ -268,7 +268,8 @@ test('a visitor who smiles is smiled at',
     '--expression', 'on', '--fov', '23', '--record', file]);
   assert.equal(eye_run.status, 0, eye_run.stderr);
   const joy_of = (one) => one.people[0]?.expression?.joy;
-  const seen = readFileSync(file, 'utf8').trim().split('\n').map((line) => joy_of(JSON.parse(line)));
+  const lines = readFileSync(file, 'utf8').trim().split('\n');
+  const seen = lines.map((line) => joy_of(JSON.parse(line)));
   assert.ok(seen.filter((joy) => joy < 0.1).length > 20, 'at first the face is calm');
   assert.ok(seen.filter((joy) => joy > 0.4).length > 20, 'then joy is seen');
   const kiosk = spawn(join(process.env.WELLSPRING_BIN, 'wellspring_kiosk'),
