@@ -17,7 +17,7 @@ const pointer_interval = 200, least_pointer_step = 0.01;  // milliseconds; of th
 // tap(place in the picture, event) for a click or a tap that is no drag; pad() as of
 // make_gamepad().
 export function make_controls(canvas, stick, knob,
-    { send, fov, speed, place, tap = () => {}, pad = () => null }) {
+    { send, fov, speed, place, tap = (..._) => {}, pad = () => null }) {
   const down = new Set();
   let look = [0, 0], last_move = [0, 0, 0], stick_move = [0, 0], last_time = performance.now(),
       turning = 0;
@@ -49,7 +49,11 @@ export function make_controls(canvas, stick, knob,
       look[1] += y * per_pixel;
     },
     pull(right, forward) { pulled[0] += right; pulled[1] += forward; },
-    tap,
+    // What was turned before the tap is sent before it: a later turn would end the way it begins.
+    tap(at, event) {
+      if (look[0] !== 0 || look[1] !== 0) tell(last_move, true);
+      tap(at, event);
+    },
   });
   // The wheel takes a step.
   let step = 0;
@@ -73,6 +77,11 @@ export function make_controls(canvas, stick, knob,
   for (const end of ['pointerup', 'pointercancel'])
     stick.addEventListener(end, () => { stick_move = [0, 0]; knob.style.transform = ''; });
 
+  function tell(move, moved, rest = {}) {
+    send({ move, look: look.map((v) => Math.round(v * 1e5) / 1e5), moved, ...rest });
+    last_move = move;
+    look = [0, 0];
+  }
   function frame(now) {
     const dt = Math.min(0.1, (now - last_time) / 1000);
     last_time = now;
@@ -105,13 +114,8 @@ export function make_controls(canvas, stick, knob,
     const points = pointed && now - sent_at >= pointer_interval
         && pointed.some((v, i) => Math.abs(v - sent_pointed[i]) >= least_pointer_step);
     if (moved || turned || points) {
-      send({
-        move, look: look.map((v) => Math.round(v * 1e5) / 1e5), moved: moved || turned,
-        ...(points && { pointer: pointed }),
-      });
+      tell(move, moved || turned, points ? { pointer: pointed } : {});
       if (points) { sent_pointed = pointed; sent_at = now; }
-      last_move = move;
-      look = [0, 0];
     }
     requestAnimationFrame(frame);
   }
