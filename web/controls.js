@@ -17,7 +17,7 @@ const pointer_interval = 200, least_pointer_step = 0.01;  // milliseconds; of th
 // tap(place in the picture, event) for a click or a tap that is no drag; pad() as of
 // make_gamepad().
 export function make_controls(canvas, stick, knob,
-    { send, fov, speed, place, tap = (..._) => {}, pad = () => null }) {
+    { send, fov, speed, place, tap = null, pad = () => null }) {
   const down = new Set();
   let look = [0, 0], last_move = [0, 0, 0], stick_move = [0, 0], last_time = performance.now(),
       turning = 0;
@@ -52,7 +52,7 @@ export function make_controls(canvas, stick, knob,
     // What was turned before the tap is sent before it: a later turn would end the way it begins.
     tap(at, event) {
       if (look[0] !== 0 || look[1] !== 0) tell(last_move, true);
-      tap(at, event);
+      tap?.(at, event);
     },
   });
   // The wheel takes a step.
