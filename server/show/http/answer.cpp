@@ -6,6 +6,7 @@
 
 #include "show/answer/book.h"
 #include "show/answer/objects.h"
+#include "show/answer/transcript.h"
 #include "show/http/still_question.h"
 #include "show/http/take_along.h"
 
@@ -135,6 +136,7 @@ HttpReply answer_exhibit(const AnswerSources& sources, const HttpQuestion& quest
   const ServedExhibit* served = find_exhibit(sources, id);
   if (!served) return error_reply(404, "unknown_exhibit", "there is no exhibit '" + id + "' here");
   if (tail.empty() || tail == "/") return json_reply(describe(*served->exhibit));
+  if (tail == "/transcript") return json_reply(describe_transcript(*served->exhibit));
   if (tail == "/map") return fresh(answer_map(*served), sources);
   if (tail == "/qr.svg") return answer_qr(*served->exhibit, served->address, question);
   if (tail == "/still.jpg") return fresh(answer_still(*served, question), sources);

@@ -21,6 +21,8 @@ std::string describe_api() {
     {"method": "GET", "path": "/e/ID", "answers": "the visitor's page of one of several exhibits, which / lists then"},
     {"method": "GET", "path": "/api/v1/exhibits", "answers": "what there is to visit; failed: [{id, problems}]"},
     {"method": "GET", "path": "/api/v1/exhibits/ID", "answers": "title, languages, viewpoints, stories, tours, lamps, credits; objects: [{id, title, position, text, story, provenance: [{element of Dublin Core, value}], manifest: IIIF, door: {exhibit, viewpoint}}]; book: {topics, partners, presentations} or null"},
+    {"method": "GET", "path": "/api/v1/exhibits/ID/transcript", "answers": "all that is told, to be read: {stories: [{id, title, teller, text: {lang: [sentence]}}], tours: [{id, title, stops: [{title, way_text, text}]}]}"},
+    {"method": "GET", "path": "/read", "answers": "the page of these texts, and of whose models they are; ?exhibit=ID"},
     {"method": "GET", "path": "/api/v1/exhibits/ID/map", "answers": "the ground from above: {cell: m, corner: [x, z], eye_height, rows: texts of o (room to walk), x (something stands there) and . (no ground), viewpoints, objects}; 404 where visitors fly"},
     {"method": "GET", "path": "/api/v1/exhibits/ID/qr.svg", "query": {"story": "id; none", "lang": "tag; the phone's"},
       "answers": "a QR code that opens the exhibit, with the story, on a phone; 404 without an address in the house file"},

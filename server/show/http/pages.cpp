@@ -58,7 +58,7 @@ std::map<std::string, PageFile> load_pages(const std::string& folder) {
   inner.etag = make_etag(inner.body);
   if (auto icon = pages.find("/icon.svg"); icon != pages.end())  // asked for without being named
     pages.try_emplace("/favicon.ico", icon->second);
-  for (const char* name : {"/kiosk", "/status"})
+  for (const char* name : {"/kiosk", "/status", "/read"})
     if (auto page = pages.find(std::string(name) + ".html"); page != pages.end())
       pages[name] = page->second;
   return pages;

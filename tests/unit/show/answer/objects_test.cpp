@@ -83,6 +83,24 @@ TEST_F(ObjectsTest, TheMapShowsRoomWallsAndPlaces) {
   EXPECT_EQ(ask("/api/v1/exhibits/tiny/map").status, 404);
 }
 
+TEST_F(ObjectsTest, WhatIsToldCanBeRead) {
+  ExhibitViewpoint& end = exhibit.viewpoints.back();
+  end.title = {{"en", "The end"}};
+  StoryLine line{.text = "It began here."};
+  line.marks.push_back({StoryMarkKind::gesture, 3, "wave", 1, {}});
+  exhibit.stories = {
+      {"tale", {{"en", "A tale"}}, {{"en", {line, {.text = "And ended."}}}}, {}, -1}};
+  TourStop stop;
+  stop.viewpoint = int(exhibit.viewpoints.size()) - 1;
+  stop.way_text = {{"de", {{.text = "Komm mit."}}}};
+  exhibit.tours = {{"round", {{"en", "Round"}}, {stop}}};
+  json all = json::parse(ask("/api/v1/exhibits/tiny/transcript").body);
+  EXPECT_EQ(all["stories"], json::parse(R"([{"id": "tale", "title": {"en": "A tale"},
+      "text": {"en": ["It began here.", "And ended."]}}])"));
+  EXPECT_EQ(all["tours"], json::parse(R"([{"id": "round", "title": {"en": "Round"}, "stops":
+      [{"title": {"en": "The end"}, "way_text": {"de": ["Komm mit."]}, "text": {}}]}])"));
+}
+
 TEST_F(ObjectsTest, APersonsBrowserIsToldKindlyThatThereIsNothing) {
   pages["/missing.html"] = {"text/html", "<h1>Nothing</h1>", "\"tag\""};
   const char* browser = "text/html,application/xhtml+xml,*/*;q=0.8";
