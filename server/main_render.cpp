@@ -26,7 +26,7 @@
 #include "light/transport_plan.h"
 #include "show/exhibit/exhibit_lamps.h"
 #include "show/exhibit/exhibit_load.h"
-#include "show/exhibit/exhibit_scene.h"
+#include "show/moving/exhibit_scene.h"
 #include "world/fit_view.h"
 #include "world/load/scene_load.h"
 #include "world/sky.h"

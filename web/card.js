@@ -3,14 +3,15 @@
 import { by_id } from './element.js';
 import { text_in, word } from './words.js';
 
-// orders: {story(id), closed()}
+// orders: {story(id), play(id, on), around(id, on)}
 export function make_card(orders) {
   const card = by_id('card');
-  let objects = [], lang = 'en', shown = null, opener = null;
+  let objects = [], animations = [], lang = 'en', shown = null, opener = null, turned = false;
 
   function close() {
     if (card.hidden) return;
     const focused = card.contains(document.activeElement);
+    if (turned) orders.around(shown.id, false);
     card.hidden = true;
     shown = null;
     document.body.classList.remove('reads');
@@ -20,6 +21,7 @@ export function make_card(orders) {
   addEventListener('keydown', (event) => {
     if (event.key === 'Escape' && by_id('menu').hidden) close();
   });
+  by_id('card-around').addEventListener('click', () => orders.around(shown.id, !turned));
   by_id('card-story').addEventListener('click', () => orders.story(shown.story));
 
   // A door leads to another exhibit, if that is open.
@@ -36,6 +38,20 @@ export function make_card(orders) {
     door.hidden = false;
   }
 
+  // What a touch of the object starts.
+  function offer_animations(object) {
+    const own = animations.filter((animation) => animation.object === object.id);
+    by_id('card-animations').replaceChildren(...own.map((animation) => {
+      const button = document.createElement('button');
+      button.type = 'button';
+      button.textContent = animation.title || word(lang, 'set_going');
+      button.setAttribute('aria-pressed', String(animation.on));
+      button.dataset.animation = animation.id;
+      button.addEventListener('click', () => orders.play(animation.id, !animation.on));
+      return button;
+    }));
+  }
+
   function fill(object) {
     by_id('card-title').textContent = object.title;
     by_id('card-text').textContent = object.text ?? '';
@@ -48,6 +64,8 @@ export function make_card(orders) {
     }));
     by_id('card-facts').hidden = !object.provenance;
     by_id('card-story').hidden = !object.story;
+    by_id('card-around').hidden = !object.around;
+    offer_animations(object);
     by_id('card-manifest').hidden = !object.manifest;
     if (object.manifest) by_id('card-manifest').href = object.manifest;
     offer_door(object);
@@ -55,9 +73,20 @@ export function make_card(orders) {
 
   return {
     welcome(message) {
-      ({ objects, lang } = message);
+      ({ objects, animations, lang } = message);
       const now = shown && objects.find(({ id }) => id === shown.id);
       if (now) fill(shown = now);
+    },
+    state(message) {
+      for (const animation of animations) {
+        animation.on = message.animations?.[animation.id] ?? animation.on;
+        card.querySelector(`[data-animation="${CSS.escape(animation.id)}"]`)
+            ?.setAttribute('aria-pressed', String(animation.on));
+      }
+      turned = Boolean(message.around) && message.around === shown?.id;
+      by_id('card-around').setAttribute('aria-pressed', String(turned));
+      by_id('card-around-hint').hidden = !turned;
+      document.body.classList.toggle('turns', turned);
     },
     objects: () => objects,
     open(id) {

@@ -91,7 +91,11 @@ function say_what_is_unknown(message) {
 
 const send_settings = (fields) => connection?.send({ type: 'settings', ...fields });
 const comfort = make_comfort(send_settings, () => places.load());
-const card = make_card({ story: (story) => connection.send({ type: 'storyteller', story }) });
+const card = make_card({
+  story: (story) => connection.send({ type: 'storyteller', story }),
+  play: (name, on) => connection.send({ type: 'play', name, on }),
+  around: (object, around) => connection.send({ type: 'go', seq: next(), object, around }),
+});
 const map = make_map((to) => go({ to }));
 const watch = make_watch(() => state, notice);
 const places = make_places((name) => go_to_viewpoint(name), () => !comfort.saves());
@@ -169,6 +173,7 @@ connection = make_connection({
         place = message.viewpoint ?? place;
         menu.state(message);
         places.state(message);
+        card.state(message);
         map.state(message);
         player.state(message);
         sound.moved(message);

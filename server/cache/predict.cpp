@@ -37,6 +37,7 @@ void place_chunk(const PointCache& points, const View& view, const Grid& grid, i
   const uint8_t* age = points.age.data() + begin;
   float columns = float(grid.columns), rows = float(grid.rows);
   int32_t nowhere = grid.columns * grid.rows;
+  const float near = std::max(view.near, near_depth);
   for (int i = 0; i < count; i++) {
     int32_t flag = flags[i], infinite = (flag >> 1) & 1;
     float here = float(1 - infinite);
@@ -47,7 +48,7 @@ void place_chunk(const PointCache& points, const View& view, const Grid& grid, i
     float above = dx * view.up.x + dy * view.up.y + dz * view.up.z;
     float scale = grid.focal / depth;
     float sx = across * scale + grid.axis.x, sy = grid.axis.y - above * scale;
-    int32_t good = int32_t(depth > near_depth) & int32_t(sx >= 0.0f) & int32_t(sx < columns) &
+    int32_t good = int32_t(depth > near) & int32_t(sx >= 0.0f) & int32_t(sx < columns) &
                    int32_t(sy >= 0.0f) & int32_t(sy < rows) & int32_t(age[i] != evicted_age) & flag;
     float cx = sx > 0.0f ? sx : 0.0f, cy = sy > 0.0f ? sy : 0.0f;
     cx = cx < columns ? cx : 0.0f;

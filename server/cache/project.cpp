@@ -31,7 +31,7 @@ int chunks_of(int capacity) { return (capacity + chunk_points - 1) / chunk_point
 // Everything a point needs to find its pixel.
 struct Transform {
   vec3 eye, right, up, forward;
-  float focal, axis_x, axis_y, width, height;
+  float focal, axis_x, axis_y, width, height, near;
   int tiles_x, no_tile;
 };
 
@@ -73,7 +73,7 @@ void transform_chunk(const Transform& t, const PointCache& points, int begin, in
     oy += oy >= 0 ? -fold : fold;
     float away = ox * dx + oy * dy + oz * dz;
 
-    int32_t good = int32_t(depth > near_depth) & int32_t(sx >= 0.0f) & int32_t(sx < t.width) &
+    int32_t good = int32_t(depth > t.near) & int32_t(sx >= 0.0f) & int32_t(sx < t.width) &
                    int32_t(sy >= 0.0f) & int32_t(sy < t.height) &
                    int32_t(away <= facing_away * depth) & int32_t(age[i] != evicted_age) & flag;
     float cx = sx > 0.0f ? sx : 0.0f, cy = sy > 0.0f ? sy : 0.0f;
@@ -159,6 +159,7 @@ void project_points(PointCache& points, const WindowView& view, bool same_view, 
                       axis.y,
                       float(view.width),
                       float(view.height),
+                      std::max(view.near, near_depth),
                       tiles.x,
                       tile_count};
   uint8_t keep = uint8_t(~(point_visible | (same_view ? 0 : point_verified)));

@@ -62,52 +62,6 @@ void read_track(File& file, const json& sampler, const std::string& where, Track
     if (!std::isfinite(value)) refuse(file, where + "/output", "holds a value that is not finite");
 }
 
-// Appendix C.3 to C.5. Cubic keys are laid out in-tangent, value, out-tangent.
-std::vector<double> eval_track(const Track& track, double time) {
-  size_t width = track.width, keys = track.times.size();
-  bool cubic = track.curve == Curve::cubic;
-  auto value = [&](size_t key, size_t part, size_t i) {
-    return double(track.values[(cubic ? (key * 3 + part) : key) * width + i]);
-  };
-  size_t next = size_t(std::upper_bound(track.times.begin(), track.times.end(), float(time)) -
-                       track.times.begin());
-  size_t first = next == 0 ? 0 : next - 1;
-  next = std::min(next, keys - 1);
-  double span = double(track.times[next]) - track.times[first];
-  double t = span > 0 ? glm::clamp((time - track.times[first]) / span, 0.0, 1.0) : 0.0;
-  std::vector<double> result(width);
-  if (track.curve == Curve::step || span <= 0) {
-    for (size_t i = 0; i < width; i++) result[i] = value(first, 1, i);
-  } else if (cubic) {
-    double t2 = t * t, t3 = t2 * t;
-    for (size_t i = 0; i < width; i++)
-      result[i] = (2 * t3 - 3 * t2 + 1) * value(first, 1, i) +
-                  span * (t3 - 2 * t2 + t) * value(first, 2, i) +
-                  (-2 * t3 + 3 * t2) * value(next, 1, i) + span * (t3 - t2) * value(next, 0, i);
-  } else if (track.path == Path::rotation) {
-    auto key = [&](size_t k) {
-      return glm::dquat(value(k, 1, 3), value(k, 1, 0), value(k, 1, 1), value(k, 1, 2));
-    };
-    glm::dquat q = glm::slerp(key(first), key(next), t);
-    result = {q.x, q.y, q.z, q.w};
-  } else {
-    for (size_t i = 0; i < width; i++)
-      result[i] = value(first, 1, i) * (1 - t) + value(next, 1, i) * t;
-  }
-  return result;
-}
-
-void apply(const Track& track, double time, Node& node) {
-  std::vector<double> v = eval_track(track, time);
-  switch (track.path) {
-    case Path::translation: node.translation = {v[0], v[1], v[2]}; break;
-    case Path::scale: node.scale = {v[0], v[1], v[2]}; break;
-    case Path::rotation: node.rotation = glm::dquat(v[3], v[0], v[1], v[2]); break;
-    case Path::weights: node.weights = v; break;
-    case Path::none: break;
-  }
-}
-
 // The clip's tracks that have something to move; their data too if `with_data`.
 Clip read_clip(File& file, const json& animation, const std::string& where,
                const std::vector<Node>& nodes, bool with_data) {
@@ -173,7 +127,7 @@ void animate(File& file, double time, std::vector<Node>& nodes) {
   for (size_t a = 0; a < animations.size(); a++) {
     Clip clip = read_clip(file, animations[a], at("/animations", a), nodes, a == 0);
     if (a > 0 || time == 0 || !std::isfinite(time)) continue;
-    for (const Track& track : clip.tracks) apply(track, time, nodes[track.node]);
+    move_nodes(clip, time, nodes);
   }
   if (animations.size() > 1 && time != 0)
     warn(file, "/animations", "has several animations; the first one is shown");

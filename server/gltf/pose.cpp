@@ -69,7 +69,7 @@ Node read_node(File& file, size_t index) {
 }
 
 // One parent each and no cycles, so that walking down costs no more than the nodes there are.
-std::vector<size_t> parents_first(File& file, std::vector<Node>& nodes) {
+std::vector<uint32_t> link_parents(File& file, std::vector<Node>& nodes) {
   const json& list = items(file.root, "nodes");
   for (size_t i = 0; i < nodes.size(); i++) {
     const json& children = items(list[i], "children");
@@ -83,15 +83,10 @@ std::vector<size_t> parents_first(File& file, std::vector<Node>& nodes) {
       nodes[child].parent = int(i);
     }
   }
-  std::vector<size_t> order;
-  for (size_t i = 0; i < nodes.size(); i++)
-    if (nodes[i].parent < 0) order.push_back(i);
-  for (size_t done = 0; done < order.size(); done++)
-    for (const json& child : items(list[order[done]], "children"))
-      order.push_back(child.get<size_t>());
+  std::vector<uint32_t> order = parents_first(nodes);
   if (order.size() < nodes.size()) {
     std::vector<char> reached(nodes.size(), 0);
-    for (size_t i : order) reached[i] = 1;
+    for (uint32_t i : order) reached[i] = 1;
     size_t first = size_t(std::find(reached.begin(), reached.end(), 0) - reached.begin());
     refuse(file, at("/nodes", first), "is part of a cycle: a node cannot be its own ancestor");
   }
@@ -99,7 +94,7 @@ std::vector<size_t> parents_first(File& file, std::vector<Node>& nodes) {
 }
 
 // Marks the default scene's nodes and what hangs below them.
-void mark_shown(File& file, std::vector<Node>& nodes, const std::vector<size_t>& order) {
+void mark_shown(File& file, std::vector<Node>& nodes, const std::vector<uint32_t>& order) {
   const json& scenes = items(file.root, "scenes");
   if (scenes.empty()) {
     if (!nodes.empty()) warn(file, "/scenes", "the file has no scene; all its nodes are shown");
@@ -115,18 +110,30 @@ void mark_shown(File& file, std::vector<Node>& nodes, const std::vector<size_t>&
       warn(file, at(at("/scenes", index) + "/nodes", i), "a scene lists a node that has a parent");
     node.shown = true;
   }
-  for (size_t i : order)
+  for (uint32_t i : order)
     if (nodes[i].parent >= 0 && nodes[size_t(nodes[i].parent)].shown) nodes[i].shown = true;
 }
 
 }  // namespace
 
-std::vector<Node> make_pose(File& file, double time) {
-  std::vector<Node> nodes;
-  for (size_t i = 0; i < items(file.root, "nodes").size(); i++) nodes.push_back(read_node(file, i));
-  std::vector<size_t> order = parents_first(file, nodes);
-  animate(file, time, nodes);
-  for (size_t i : order) {
+std::vector<uint32_t> parents_first(const std::vector<Node>& nodes) {
+  std::vector<uint32_t> order, first(nodes.size() + 1, 0), children;
+  for (const Node& node : nodes)
+    if (node.parent >= 0) first[size_t(node.parent) + 1]++;
+  for (size_t i = 0; i < nodes.size(); i++) first[i + 1] += first[i];
+  children.resize(first.back());
+  std::vector<uint32_t> next = first;
+  for (uint32_t i = 0; i < uint32_t(nodes.size()); i++)
+    if (nodes[i].parent < 0) order.push_back(i);
+    else children[next[size_t(nodes[i].parent)]++] = i;
+  for (size_t done = 0; done < order.size(); done++)
+    for (uint32_t c = first[order[done]]; c < first[order[done] + 1]; c++)
+      order.push_back(children[c]);
+  return order;
+}
+
+void place_nodes(const std::vector<uint32_t>& order, std::vector<Node>& nodes) {
+  for (uint32_t i : order) {
     Node& node = nodes[i];
     if (!node.has_matrix) {
       node.matrix =
@@ -134,10 +141,19 @@ std::vector<Node> make_pose(File& file, double time) {
       node.matrix = glm::scale(node.matrix, node.scale);
     }
     node.global = node.parent < 0 ? node.matrix : nodes[size_t(node.parent)].global * node.matrix;
-    for (int k = 0; k < 16; k++)
-      if (!(std::abs(node.global[k / 4][k % 4]) < 1e18))
-        refuse(file, at("/nodes", i), "stands at no finite place");
   }
+}
+
+std::vector<Node> make_pose(File& file, double time) {
+  std::vector<Node> nodes;
+  for (size_t i = 0; i < items(file.root, "nodes").size(); i++) nodes.push_back(read_node(file, i));
+  std::vector<uint32_t> order = link_parents(file, nodes);
+  animate(file, time, nodes);
+  place_nodes(order, nodes);
+  for (size_t i = 0; i < nodes.size(); i++)
+    for (int k = 0; k < 16; k++)
+      if (!(std::abs(nodes[i].global[k / 4][k % 4]) < 1e18))
+        refuse(file, at("/nodes", i), "stands at no finite place");
   mark_shown(file, nodes, order);
   return nodes;
 }

@@ -11,4 +11,9 @@ namespace wellspring::gltf {
 // nodes with two parents, cycles, and animations that cannot be read.
 std::vector<Node> make_pose(File& file, double time);
 
+// All nodes that hang together without a cycle, each after its parent.
+std::vector<uint32_t> parents_first(const std::vector<Node>& nodes);
+// Finds Node::global of all, in that order, after any have been moved.
+void place_nodes(const std::vector<uint32_t>& order, std::vector<Node>& nodes);
+
 }  // namespace wellspring::gltf

@@ -163,6 +163,7 @@ struct GoTo {
   std::optional<vec2> at;
   std::optional<dvec3> to;
   std::string object;
+  bool around = false;
   static void list(auto& message, auto& fields) {
     fields.u32("seq", message.seq, "u32", Need::required);
     fields.place("at", message.at,
@@ -170,6 +171,9 @@ struct GoTo {
                  "there, or to look closer at the object");
     fields.spot("to", max_coordinate, message.to, "[x, y, z] m on the ground");
     fields.text("object", message.object, "an object's id, to look closer at it");
+    fields.boolean("around", message.around,
+                   "boolean: to look at the object from all sides, where it says so; look turns it "
+                   "and move goes nearer then, until the next go");
   }
   bool operator==(const GoTo&) const = default;
 };
@@ -213,6 +217,20 @@ struct LampOrder {
   }
   bool operator==(const LampOrder&) const = default;
 };
+// Starts an animation that is started by touch, or sends it back.
+struct PlayOrder {
+  static constexpr const char* type = "play";
+  std::string name;
+  bool on = true;
+  static void list(auto& message, auto& fields) {
+    fields.text("name", message.name, "an animation's id", Need::required);
+    fields.boolean("on", message.on,
+                   "boolean: for this visitor, or for everybody where it is shared",
+                   Need::required);
+  }
+  bool operator==(const PlayOrder&) const = default;
+};
+
 // What a kiosk's page shows: the well or anything that lies under its water.
 enum class Showing : uint8_t { well, book, topics, partners, slides, museum, story, tour, walk };
 // What a guest does at a kiosk's screen.
@@ -305,6 +323,6 @@ struct Bye {
 
 using BrowserMessage =
     std::variant<Hello, Input, CameraTo, ViewpointTo, GoTo, Tour, StorytellerOrder, LampOrder,
-                 KioskTouch, GroupOrder, Ask, Settings, Ack, Bye>;
+                 PlayOrder, KioskTouch, GroupOrder, Ask, Settings, Ack, Bye>;
 
 }  // namespace wellspring

@@ -61,7 +61,7 @@ vec3 upright(dvec3 sum, vec3 normal) {
 
 }  // namespace
 
-void make_flat_normals(Mesh& mesh) {
+std::vector<uint32_t> make_flat_normals(Mesh& mesh) {
   std::vector<uint32_t> from;
   std::vector<vec3> normals;
   from.reserve(mesh.triangles.size() * 3);
@@ -78,6 +78,7 @@ void make_flat_normals(Mesh& mesh) {
   mesh.normals = std::move(normals);
   for (size_t i = 0; i < mesh.triangles.size(); i++)
     mesh.triangles[i] = uvec3(uint32_t(3 * i)) + uvec3(0, 1, 2);
+  return from;
 }
 
 int repair_normals(Mesh& mesh) {

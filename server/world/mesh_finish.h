@@ -5,8 +5,9 @@
 
 namespace wellspring {
 
-// Splits the vertices so that no two triangles share one, and gives each its face's normal.
-void make_flat_normals(Mesh& mesh);
+// Splits the vertices so that no two triangles share one, and gives each its face's normal. Vertex
+// i of the result is vertex answer[i] of the mesh before.
+std::vector<uint32_t> make_flat_normals(Mesh& mesh);
 // Replaces normals that are zero or not finite by the mean of the faces around; the rest become
 // unit. Returns how many were replaced.
 int repair_normals(Mesh& mesh);

@@ -3,6 +3,7 @@
 // not pointers. Positions are relative to `origin`, so that a scene far from zero keeps its
 // precision.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +47,15 @@ struct SceneNode {
   int parent = -1;  // index into Scene::nodes
 };
 
+struct SceneMotion;  // world/motion/scene_motion.h
+
+// What the animations of one of the scene's files can move.
+struct PlacedMotion {
+  std::shared_ptr<const SceneMotion> of;
+  dmat4 to_world{1};           // absolute world coordinates of the file's
+  std::vector<int> instances;  // of each mover, its place in Scene::instances; -1: taken out
+};
+
 struct Scene {
   std::string name;
   dvec3 origin{0};  // absolute world position of this scene's (0, 0, 0)
@@ -62,6 +72,7 @@ struct Scene {
   std::vector<Lamp> lamps;  // what of them, and of emissive materials, can be switched
   Environment environment;
   std::vector<Viewpoint> viewpoints;
+  std::vector<PlacedMotion> motions;  // where they were asked for
   std::vector<std::string> warnings;  // what the file asks for that is not done, each said once
 };
 

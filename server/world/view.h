@@ -15,6 +15,9 @@ struct View {
   // Where the picture's middle lies at a depth of 1, to the right of the axis and above it. Not 0:
   // the eye is not opposite the middle of the window that it looks through.
   vec2 middle{0};
+  // Depth along the axis from which on anything is shown: what stands before an object that is
+  // looked at from all sides is cut away. 0: everything is shown. Light does not know of it.
+  float near = 0;
   bool operator==(const View&) const = default;
 };
 

@@ -12,7 +12,7 @@
 #include "frame/picture_file.h"
 #include "report.h"
 #include "show/exhibit/exhibit_load.h"
-#include "show/exhibit/figure.h"
+#include "show/moving/figure.h"
 
 namespace wellspring {
 namespace {

@@ -51,4 +51,7 @@ export default {
   copy_viewpoint: 'Meinen Standort kopieren',
   viewpoint_copied: 'Kopiert: einzufügen unter „viewpoints“ in exhibit.json.',
   problems: 'Wegen dieser Fehler ist die geänderte Ausstellung noch nicht zu sehen:',
+  look_around: 'Von allen Seiten ansehen',
+  around_hint: 'Ziehen oder Pfeiltasten drehen es, Mausrad, zwei Finger, W und S holen es näher.',
+  set_going: 'In Gang setzen',
 };

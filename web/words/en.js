@@ -50,4 +50,7 @@ export default {
   copy_viewpoint: 'Copy my viewpoint',
   viewpoint_copied: 'Copied: paste it into “viewpoints” of exhibit.json.',
   problems: 'These mistakes keep the changed exhibit from being shown:',
+  look_around: 'Look at it from all sides',
+  around_hint: 'Drag it or press arrow keys to turn it; wheel, two fingers, W and S bring it nearer.',
+  set_going: 'Set it going',
 };

@@ -52,4 +52,7 @@ export default {
   copy_viewpoint: 'Copiar mi punto de vista',
   viewpoint_copied: 'Copiado: péguelo en «viewpoints» de exhibit.json.',
   problems: 'Por estos fallos la exposición cambiada aún no se muestra:',
+  look_around: 'Mirarlo por todos los lados',
+  around_hint: 'Se gira arrastrando o con las flechas; la rueda, dos dedos, W y S lo acercan.',
+  set_going: 'Ponerlo en marcha',
 };

@@ -52,4 +52,7 @@ export default {
   copy_viewpoint: 'Copier mon point de vue',
   viewpoint_copied: 'Copié : à coller sous « viewpoints » dans exhibit.json.',
   problems: 'À cause de ces fautes, l’exposition modifiée ne se montre pas encore :',
+  look_around: 'Regarder de tous les côtés',
+  around_hint: 'Glissez ou pressez les flèches : il tourne. Molette, deux doigts, W et S : plus près.',
+  set_going: 'Mettre en mouvement',
 };

@@ -48,4 +48,7 @@ export default {
   copy_viewpoint: 'Kopírovať moje miesto',
   viewpoint_copied: 'Skopírované: vložte do „viewpoints“ v exhibit.json.',
   problems: 'Pre tieto chyby sa zmenená výstava ešte nezobrazuje:',
+  look_around: 'Pozrieť zo všetkých strán',
+  around_hint: 'Otáča sa ťahaním alebo šípkami, priblíži ho koliesko, dva prsty, W a S.',
+  set_going: 'Uviesť do pohybu',
 };

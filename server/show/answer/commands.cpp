@@ -12,6 +12,7 @@
 #include "show/answer/kiosk_window.h"
 #include "show/answer/storyteller_orders.h"
 #include "show/count/count.h"
+#include "show/state/animations.h"
 #include "show/state/lamps.h"
 #include "show/state/make_show.h"
 
@@ -82,7 +83,8 @@ Answer handle_one(Show& show, Visitor& visitor, const Input& input) {
     return {};
   }
   place.move = input.move;
-  if (input.look != vec2(0) && place.tour.state == TourRide::State::playing) {
+  if (place.around.point >= 0) turn_around(input.look, place.around);
+  else if (input.look != vec2(0) && place.tour.state == TourRide::State::playing) {
     look_round(place.tour, input.look);
   } else if (input.look != vec2(0)) {
     place.glide = {};
@@ -155,6 +157,13 @@ Answer handle_one(Show& show, Visitor& visitor, const LampOrder& order) {
   if (Answer wrong = check_not_following(show, visitor)) return wrong;
   if (switch_lamp(show, visitor, order.name, order.on)) return {};
   return WireError{"unknown_lamp", "there is no lamp '" + order.name + "'"};
+}
+
+Answer handle_one(Show& show, Visitor& visitor, const PlayOrder& order) {
+  if (Answer wrong = check_not_following(show, visitor)) return wrong;
+  if (play_animation(show, visitor, order.name, order.on)) return {};
+  return WireError{"unknown_animation",
+                   "there is no animation '" + order.name + "' that is started by touch"};
 }
 
 Answer handle_one(Show& show, Visitor& visitor, const StorytellerOrder& order) {

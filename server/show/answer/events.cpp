@@ -8,6 +8,7 @@
 #include "show/answer/book.h"
 #include "show/answer/cameras.h"
 #include "show/answer/objects.h"
+#include "show/state/animations.h"
 #include "show/state/lamps.h"
 
 namespace wellspring {
@@ -51,7 +52,8 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
                   {"viewpoints", json::array()},
                   {"tours", json::array()},
                   {"stories", json::array()},
-                  {"lamps", json::array()}};
+                  {"lamps", json::array()},
+                  {"animations", json::array()}};
   for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints) {
     std::string title = text(viewpoint.title);
     message["viewpoints"].push_back(
@@ -73,6 +75,15 @@ std::string welcome_message(const Show& show, const Visitor& visitor, bool resum
                                 {"title", text(exhibit.lamps[i].title)},
                                 {"on", bool(lamps[i])},
                                 {"shared", exhibit.lamps[i].shared}});
+  for (size_t i = 0; i < exhibit.animations.size(); i++) {
+    const ExhibitAnimation& animation = exhibit.animations[i];
+    if (animation.start != ExhibitAnimation::Start::touch) continue;
+    message["animations"].push_back({{"id", animation.id},
+                                     {"title", text(animation.title)},
+                                     {"object", exhibit.points[size_t(animation.point)].id},
+                                     {"on", is_on(show, visitor, i)},
+                                     {"shared", animation.shared}});
+  }
   message["sounds"] = describe_sounds(exhibit);
   message["objects"] = describe_objects(exhibit, visitor.lang);
   message["map"] = show.roads.map.has_value();
@@ -112,11 +123,17 @@ std::string state_message(const Show& show, const Visitor& visitor) {
                   {"fps", std::round(visitor.shown.measured_fps * 10) / 10},
                   {"converged", std::round(visitor.picture.stats.converged * 1000) / 1000},
                   {"viewpoint", nullptr},
+                  {"around", nullptr},
                   {"tour", nullptr}};
+  if (place.around.point >= 0 && !place.around.leaves)
+    message["around"] = exhibit.points[size_t(place.around.point)].id;
   if (!exhibit.lamps.empty()) message["lamps"] = json::object();
   const std::vector<char> lamps = lamps_of(show, visitor);
   for (size_t i = 0; i < exhibit.lamps.size(); i++)
     message["lamps"][exhibit.lamps[i].id] = bool(lamps[i]);
+  for (size_t i = 0; i < exhibit.animations.size(); i++)
+    if (exhibit.animations[i].start == ExhibitAnimation::Start::touch)
+      message["animations"][exhibit.animations[i].id] = is_on(show, visitor, i);
   if (place.viewpoint >= 0)
     message["viewpoint"] = exhibit.viewpoints[size_t(place.viewpoint)].view.name;
   if (place.tour.state != TourRide::State::none && place.tour.tour >= 0)

@@ -6,6 +6,7 @@
 
 #include "show/answer/events.h"
 #include "show/answer/groups.h"
+#include "show/state/animations.h"
 #include "show/state/in_view.h"
 #include "show/visit/closer.h"
 #include "show/visit/route.h"
@@ -33,7 +34,7 @@ void set_out(Show& show, Visitor& visitor, const GoTo& order, const Viewpoint& t
   place.seq = order.seq;
   place.move = place.velocity = vec3(0);
   place.viewpoint = -1;
-  place.glide = {};
+  stand(place);
   place.closer = point;
   const bool leaps = place.comfort || !path;  // who stands where nobody can walks from nowhere
   if (leaps) place.view = to;
@@ -101,14 +102,49 @@ Answer look_closer(Show& show, Visitor& visitor, const GoTo& order, int point,
   return {};
 }
 
+// Lifts it out of its place; the visitor stays.
+Answer look_around(Show& show, Visitor& visitor, const GoTo& order, const PointOfInterest& point) {
+  if (!point.around)
+    return WireError{"no_way", "the exhibit does not show '" + point.id + "' from all sides"};
+  const Bounds bounds = object_bounds(*show.world, point);
+  if (bounds.low.x > bounds.high.x)
+    return WireError{"no_way", "nothing is to be seen of '" + point.id + "'"};
+  VisitorPlace& place = visitor.place;
+  go_away(visitor);
+  pause_tour(place.tour, visitor.hearing.narration.voice);
+  place.tour.pace = 0;
+  stand(place);
+  place.seq = order.seq;
+  place.move = place.velocity = vec3(0);
+  place.closer = int(&point - show.exhibit.points.data());
+  begin_around(show.exhibit, place.closer, bounds, place.view,
+               float(visitor.wants.width) / float(visitor.wants.height), place.around);
+  visitor.state_sent_at = -1e9;
+  return {};
+}
+
+Answer put_back(Visitor& visitor, const GoTo& order) {
+  visitor.place.seq = order.seq;
+  visitor.place.move = vec3(0);
+  visitor.place.around.leaves = true;
+  visitor.state_sent_at = -1e9;
+  return {};
+}
+
 }  // namespace
 
 std::optional<WireError> go(Show& show, Visitor& visitor, const GoTo& order) {
   if (int(order.at.has_value()) + int(order.to.has_value()) + int(!order.object.empty()) != 1)
     return WireError{"bad_field", "go: takes one of at, to and object"};
+  if (order.around && order.object.empty())
+    return WireError{"bad_field", "go.around: is about an object"};
   if (!order.object.empty()) {
     const PointOfInterest* point = find_point(show.exhibit, order.object);
     if (!point) return WireError{"unknown_object", "there is no object '" + order.object + "'"};
+    Around& around = visitor.place.around;
+    const bool same = around.point == int(point - show.exhibit.points.data());
+    if (order.around) return look_around(show, visitor, order, *point);
+    if (same) return put_back(visitor, order);
     return look_closer(show, visitor, order, int(point - show.exhibit.points.data()), {});
   }
   if (order.to)
@@ -117,6 +153,7 @@ std::optional<WireError> go(Show& show, Visitor& visitor, const GoTo& order) {
   const View view = visitor.shown.frame_number > 0 ? visitor.shown.view : view_of(show, visitor);
   const auto pointed = point_at(show.exhibit, *show.world, view, *order.at);
   if (!pointed) return WireError{"nothing_there", "there is nothing at that place"};
+  if (pointed->point >= 0) touch_object(show, visitor, pointed->point);
   if (pointed->point >= 0) return look_closer(show, visitor, order, pointed->point, pointed->place);
   return go_to_ground(show, visitor, order, pointed->ground);
 }

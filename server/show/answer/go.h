@@ -8,7 +8,8 @@
 
 namespace wellspring {
 
-// The visitor is on its way afterwards, and told so ("went"); else the error: no_way,
+// The visitor is on its way afterwards, and told so ("went"), or looks at an object from all sides
+// ("state"); else the error: no_way,
 // nothing_there, unknown_object or bad_field.
 std::optional<WireError> go(Show& show, Visitor& visitor, const GoTo& order);
 

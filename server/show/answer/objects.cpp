@@ -27,6 +27,7 @@ json describe(const PointOfInterest& point, const Say& say) {
   if (!point.text.empty()) about["text"] = say(point.text);
   if (!point.story.empty()) about["story"] = point.story;
   if (!point.manifest.empty()) about["manifest"] = point.manifest;
+  if (point.around) about["around"] = true;
   if (!point.door.exhibit.empty()) {
     about["door"] = {{"exhibit", point.door.exhibit}};
     if (!point.door.viewpoint.empty()) about["door"]["viewpoint"] = point.door.viewpoint;

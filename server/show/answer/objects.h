@@ -9,8 +9,9 @@
 
 namespace wellspring {
 
-// [{id, title, position, text, story, provenance, manifest}], texts in all languages; of the last
-// four those that there are. provenance: [{element, value}] in the order of the Dublin Core.
+// [{id, title, position, text, story, provenance, manifest, around}], texts in all languages; of
+// the last five those that there are. provenance: [{element, value}] in the order of the Dublin
+// Core.
 nlohmann::json describe_objects(const Exhibit& exhibit);
 // The same with texts in one language; those that have a title.
 nlohmann::json describe_objects(const Exhibit& exhibit, const std::string& lang);

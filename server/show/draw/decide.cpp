@@ -71,7 +71,7 @@ bool wants_moving(double now, const VisitorDrawState& state) {
 int next_to_light(double now, std::span<const VisitorDrawState> states,
                   const RendererState& renderer) {
   if (!renderer.has_skin || now - renderer.skin_at < 1 / skin_rate - on_time) return -1;
-  auto sees = [](const VisitorDrawState& one) { return one.welcomed && one.sees_figure; };
+  auto sees = [](const VisitorDrawState& one) { return one.welcomed && one.sees_moving; };
   const auto count = std::count_if(states.begin(), states.end(), sees);
   if (count == 0) return -1;
   uint64_t left = renderer.skin_turn % uint64_t(count);
@@ -85,7 +85,7 @@ bool wants_picture(double now, const VisitorDrawState& state, const RendererStat
   const bool walks = moves(state, renderer);
   if ((state.unshown || state.in_pass) && !walks) return false;
   // Other light, or the storyteller came or went: who rests sees it at once.
-  bool changed = state.other_light || state.drew_figure != state.sees_figure;
+  bool changed = state.other_light || state.drew_moving != state.sees_moving;
   if (!walks && changed) return true;
   double rate = walks ? state.picture_rate : state.drawing_rate;
   return now - state.drawn_at >= 1 / rate - on_time;
@@ -102,7 +102,7 @@ bool wants_pass(double now, const VisitorDrawState& state, const RendererState& 
   if (!state.stands || now - state.moved_at < first_after || rest.samples < least_samples)
     return false;
   // What moves is not in it.
-  if (state.drew_figure && !state.backdrop) return false;
+  if (state.drew_moving && !state.backdrop) return false;
   if (!rest.reconstructed) return true;
   double pause = rest.passed_seconds * (1 / most_share - 1);
   bool enough = rest.samples >= growth * rest.passed_samples ||

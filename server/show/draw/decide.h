@@ -22,8 +22,8 @@ struct VisitorDrawState {
   bool new_place = false;    // nothing was drawn yet of where it is now
   bool same_view = false;    // the last picture was drawn for the view that it has now
   bool other_light = false;  // lamps were switched since that picture
-  bool sees_figure = false;  // the storyteller may be in view
-  bool drew_figure = false;  // and may have been in that picture
+  bool sees_moving = false;  // something that can move may be in view
+  bool drew_moving = false;  // and may have been in that picture
   bool unshown = false;      // that picture has not been sent yet
   bool backdrop = false;     // it is without what moves
   bool in_pass = false;      // a reconstruction of it is under way

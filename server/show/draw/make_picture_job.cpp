@@ -8,7 +8,7 @@
 #include "show/draw/pace.h"
 #include "show/draw/sample_budget.h"
 #include "show/draw/steer.h"
-#include "show/state/in_view.h"
+#include "show/state/animations.h"
 #include "show/state/lamps.h"
 
 namespace wellspring {
@@ -39,7 +39,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   const View& now = place.last_view;
   job.expected = job.view = job.ahead = now;
   job.seq = place.seq;
-  job.figure = sees_figure(show, teller_of(show, visitor), now);
+  job.moving = sees_moving(show, visitor, now);
   job.camera_cuts = place.camera_cuts;
   job.still = show.time - place.moved_at > still_after;
   job.keep = show.settings.background;
@@ -101,7 +101,7 @@ bool is_outdated(const Show& show, const PictureJob& job, const Visitor& visitor
       visitor.picture.drawn_at >= 0 && visitor.picture.job.camera_cuts == job.camera_cuts;
   return has_one && job.still &&
          (visitor.place.last_view != job.expected || lamps_wait(show, visitor) ||
-          job.figure != sees_figure(show, teller_of(show, visitor), visitor.place.last_view));
+          job.moving != sees_moving(show, visitor, visitor.place.last_view));
 }
 
 }  // namespace wellspring

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <oneapi/tbb/info.h>
 
+#include "show/state/animations.h"
 #include "show/state/in_view.h"
 
 namespace wellspring {
@@ -32,9 +33,8 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.new_place = place.camera_cuts != picture.job.camera_cuts;
   state.same_view = picture.job.view == place.last_view;
   state.other_light = picture.lamps != visitor.lamps.lit;
-  state.sees_figure =
-      visitor.welcomed && sees_figure(show, teller_of(show, visitor), place.last_view);
-  state.drew_figure = picture.job.figure;
+  state.sees_moving = visitor.welcomed && sees_moving(show, visitor, place.last_view);
+  state.drew_moving = picture.job.moving;
   state.unshown = picture.unshown;
   state.backdrop = picture.backdrop;
   state.in_pass = show.pass.visitor == &visitor;
@@ -85,8 +85,7 @@ bool stands(const Show& show, const Visitor& visitor) {
 }
 
 bool rests(const Show& show, const Visitor& visitor) {
-  return !asks_for_samples(show, visitor) &&
-         !sees_figure(show, teller_of(show, visitor), visitor.place.last_view);
+  return !asks_for_samples(show, visitor) && !sees_motion(show, visitor, visitor.place.last_view);
 }
 
 bool asks_for_samples(const Show& show, const Visitor& visitor) {
@@ -107,10 +106,9 @@ bool may_take(const Show& show, const Visitor& visitor) {
 double picture_rate(const Show& show, const Visitor& visitor) {
   double rate = visitor.wants.fps > 0 ? double(visitor.wants.fps) : double(show.settings.fps);
   if (stands(show, visitor)) {
-    rate = std::min(rate, sees_figure(show, teller_of(show, visitor), visitor.place.last_view)
-                              ? still_rate
-                          : rests(show, visitor) ? resting_rate
-                                                 : settling_rate);
+    rate = std::min(rate, sees_motion(show, visitor, visitor.place.last_view) ? still_rate
+                          : rests(show, visitor)                              ? resting_rate
+                                                                              : settling_rate);
   } else if (show.settings.background && visitor.times.warp > 0) {
     // A warp takes all cores, its JPEG one.
     double milliseconds = double(visitor.times.warp) +
@@ -130,7 +128,7 @@ double drawing_rate(const Show& show, const Visitor& visitor) {
   if (picture.backdrop) rate = std::min(rate, backdrop_rate);
   // Until the first reconstruction, samples do more for it than pictures.
   bool first = show.pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
-  first &= picture.backdrop || !picture.job.figure;
+  first &= picture.backdrop || !picture.job.moving;
   return first ? std::min(rate, picture.backdrop ? learning_backdrop_rate : learning_rate) : rate;
 }
 

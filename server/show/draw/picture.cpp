@@ -31,7 +31,7 @@ void carry_times(double factor, StageTimes& times) {
 
 // What moves is drawn by itself where that is little of the picture, as what it covers is kept.
 bool draws_backdrop(const Show& show, const PictureJob& job) {
-  if (!in_steps(job) || !job.figure || job.passing) return false;
+  if (!in_steps(job) || !job.moving || job.passing) return false;
   if (!show.visibility->rasterises(job.view)) return false;
   PictureWindow window = moving_window(*show.world, job.view);
   return !window.empty() && may_be_laid_over(window, job.view);

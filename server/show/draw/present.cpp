@@ -10,6 +10,7 @@
 #include "frame/jpeg.h"
 #include "show/draw/moving.h"
 #include "show/draw/pace.h"
+#include "show/state/animations.h"
 #include "show/state/in_view.h"
 #include "wire/packet.h"
 
@@ -58,7 +59,7 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   header.width = uint16_t(view.width);
   header.height = uint16_t(view.height);
   int quality = suggest_quality(shown.flow, visitor.wants.best_quality);
-  bool fine = still && !sees_figure(show, teller_of(show, visitor),
+  bool fine = still && !sees_motion(show, visitor,
                                     view);  // pictures that are looked at for long, few a second
   const int still_quality = visitor.wants.still_quality;
   if (still) quality = fine ? still_quality : std::min(still_quality, quality + animated_gain);

@@ -101,6 +101,7 @@ struct PointOfInterest {
   std::string story;                            // id of the one about it; may be empty
   std::map<std::string, LocalText> provenance;  // element of Dublin Core -> value
   std::string manifest;                         // IIIF; https or empty
+  bool around = false;                          // may be looked at from all sides
   struct Door {
     std::string exhibit, viewpoint;  // empty viewpoint: that exhibit's start
   } door;                            // to another exhibit; empty exhibit: it leads nowhere
@@ -112,6 +113,26 @@ struct AnsweredQuestion {
   LocalText answer;
 };
 inline constexpr size_t most_questions = 200;
+
+// An animation of the scene's files, as the curator wants it played.
+struct ExhibitAnimation {
+  enum class Start : uint8_t { loop, touch };
+  std::string id;
+  LocalText title;
+  Start start = Start::loop;
+  int motion = 0, clip = 0;  // of scene.motions, of its clips
+  double seconds = 0;        // that it takes; above 0
+  int point = -1;            // index into Exhibit::points: whose touch starts it; -1: nobody's
+  bool shared = false;       // who starts it does so for everybody
+};
+inline constexpr size_t most_animations = 64;
+
+// What an animation moves: it is no part of the scene any more.
+struct ExhibitMover {
+  int motion = 0, mover = 0;  // of scene.motions, of its movers
+  int material = 0;           // of the scene
+  uint32_t object = 0;        // of the scene
+};
 
 // What visitors may switch: scene.lamps[i] is what it is made of.
 struct ExhibitLamp {
@@ -178,6 +199,8 @@ struct Exhibit {
   std::vector<StoryText> stories;
   std::vector<PointOfInterest> points;
   std::vector<ExhibitLamp> lamps;  // of each of the scene's
+  std::vector<ExhibitAnimation> animations;
+  std::vector<ExhibitMover> movers;
   std::optional<Book> book;
   std::vector<AnsweredQuestion> questions;
   std::vector<AmbientSound> sounds;

@@ -24,6 +24,7 @@ std::optional<Scene> read_file(Exhibit& exhibit, Fields& fields, const char* fie
   try {
     SceneLoadOptions options;
     options.package = exhibit.folder;
+    options.motion = true;
     Scene scene = load_scene(path, options);
     for (const std::string& warning : scene.warnings)
       problems.push_back({path, "", warning, false});

@@ -8,6 +8,7 @@
 #include "avatar/face/expression_sum.h"
 #include "base/load_error.h"
 #include "base/log.h"
+#include "show/exhibit/exhibit_animations.h"
 #include "show/exhibit/exhibit_book.h"
 #include "show/exhibit/exhibit_files.h"
 #include "show/exhibit/exhibit_kiosks.h"
@@ -236,6 +237,7 @@ Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems) 
   read_kiosks(exhibit, root);
   read_tours_and_stories(exhibit, root, problems);
   read_objects(exhibit, root);
+  read_animations(exhibit, root);
   check_marks(exhibit, problems);
   read_book(exhibit, root);
   read_questions(exhibit, root);
@@ -256,6 +258,7 @@ Exhibit load_exhibit(const std::string& folder) {
   if (std::any_of(problems.begin(), problems.end(), [](const Problem& p) { return p.fatal; }))
     throw ExhibitError(std::move(problems));
   for (const Problem& problem : problems) log::warn("{}", to_string(problem));
+  take_movers(exhibit);
   return exhibit;
 }
 

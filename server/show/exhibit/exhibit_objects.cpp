@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 
 #include "base/near_name.h"
 
 namespace wellspring {
 
 namespace {
+
+constexpr double largest_around = 1.5;  // metres: half of what is looked at from all sides
 
 // Of each node of the scene: does it, or one above it, have that number?
 bool is_below(const Scene& scene, int node, int above) {
@@ -34,8 +37,8 @@ std::vector<uint32_t> find_objects(const Scene& scene, const std::string& name) 
   return found;
 }
 
-// The middle of all that belongs to the objects, relative to the scene's origin.
-vec3 middle_of(const Scene& scene, const std::vector<uint32_t>& objects) {
+// Of all that belongs to the objects, relative to the scene's origin; empty: low above high.
+Bounds bounds_of(const Scene& scene, const std::vector<uint32_t>& objects) {
   Bounds bounds;
   for (const Instance& instance : scene.instances) {
     if (std::find(objects.begin(), objects.end(), instance.object) == objects.end()) continue;
@@ -45,8 +48,7 @@ vec3 middle_of(const Scene& scene, const std::vector<uint32_t>& objects) {
       bounds.high = max(bounds.high, p);
     }
   }
-  vec3 middle = 0.5f * (bounds.low + bounds.high);
-  return is_finite(middle) ? middle : vec3(0);
+  return bounds;
 }
 
 std::string no_node(const Scene& scene, const std::string& name) {
@@ -82,6 +84,7 @@ void read_label(const Exhibit& exhibit, PointOfInterest& point, Fields& fields) 
   point.manifest = fields.text("manifest", false);
   if (!point.manifest.empty() && !is_address(point.manifest))
     fields.problem("manifest", "must be an address that begins with https://");
+  point.around = fields.flag("around", false);
   fields.object("door", false, [&](Fields door) {
     point.door.exhibit = door.text("exhibit", true);
     point.door.viewpoint = door.text("viewpoint", false);
@@ -104,7 +107,16 @@ void read_objects(Exhibit& exhibit, Fields& root) {
     point.objects = find_objects(scene, point.node);
     if (point.objects.empty() && !scene.objects.empty())
       fields.problem("node", no_node(scene, point.node));
-    dvec3 middle = scene.origin + dvec3(middle_of(scene, point.objects));
+    const Bounds bounds = bounds_of(scene, point.objects);
+    const bool empty = !(bounds.low.x <= bounds.high.x);
+    const vec3 size = empty ? vec3(0) : bounds.high - bounds.low;
+    if (point.around && 0.5 * double(glm::length(size)) > largest_around)
+      fields.problem("around",
+                     fmt::format("is for things up to {:g} m; this is {:.3g} m from end "
+                                 "to end",
+                                 2 * largest_around, glm::length(size)),
+                     false);
+    dvec3 middle = scene.origin + (empty ? dvec3(0) : dvec3(0.5f * (bounds.low + bounds.high)));
     point.place = fields.triple("at", false, middle);
     fields.finish();
     exhibit.points.push_back(std::move(point));

@@ -65,6 +65,16 @@ json describe(const Exhibit& exhibit) {
   about["lamps"] = json::array();
   for (const ExhibitLamp& lamp : exhibit.lamps)
     about["lamps"].push_back({{"name", lamp.id}, {"title", lamp.title}, {"on_at_first", lamp.on}});
+  about["animations"] = json::array();
+  for (const ExhibitAnimation& animation : exhibit.animations) {
+    const bool touched = animation.start == ExhibitAnimation::Start::touch;
+    about["animations"].push_back({{"id", animation.id},
+                                   {"title", animation.title},
+                                   {"play", touched ? "touch" : "loop"},
+                                   {"shared", animation.shared}});
+    if (animation.point >= 0)
+      about["animations"].back()["object"] = exhibit.points[size_t(animation.point)].id;
+  }
   about["storyteller"] =
       exhibit.storytellers.empty() ? json(nullptr) : json(exhibit.storytellers.front().name);
   about["storytellers"] = json::array();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/proposal/new_exhibit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include "world/load/scene_files.h"
 #include "world/load/scene_join.h"
 #include "world/load/scene_load.h"
+#include "world/motion/scene_motion.h"
 #include "world/sky.h"
 
 namespace wellspring {
@@ -46,6 +48,13 @@ void copy_model(const std::string& model, const fs::path& folder) {
   }
 }
 
+bool shares_node(const gltf::Clip& a, const gltf::Clip& b) {
+  for (const gltf::Track& one : a.tracks)
+    for (const gltf::Track& other : b.tracks)
+      if (one.node == other.node && one.path == other.path) return true;
+  return false;
+}
+
 // The exhibit while it is made.
 struct Maker {
   const std::string id, model;
@@ -58,7 +67,9 @@ struct Maker {
   std::vector<std::string> told;
 
   void load() {
-    exhibit.scene = load_scene(model);
+    SceneLoadOptions options;
+    options.motion = true;
+    exhibit.scene = load_scene(model, options);
     Bounds box = scene_bounds(exhibit.scene);
     float largest = max_component(box.high - box.low);
     if (!std::isfinite(largest) || !(largest > 0))
@@ -149,6 +160,30 @@ struct Maker {
     return list;
   }
 
+  // What moves plays by itself; of clips that pull at the same nodes the first.
+  json animations() {
+    json list = json::array();
+    std::vector<const gltf::Clip*> played;
+    for (const PlacedMotion& placed : exhibit.scene.motions)
+      for (const gltf::Clip& clip : placed.of->clips) {
+        const bool is_seen = std::ranges::any_of(
+            placed.of->movers, [&](const Mover& one) { return moves(*placed.of, clip, one); });
+        const bool pulls = std::ranges::any_of(
+            played, [&](const gltf::Clip* other) { return shares_node(clip, *other); });
+        if (!is_seen || pulls || gltf::length_of(clip) <= 0 || list.size() == most_animations)
+          continue;
+        played.push_back(&clip);
+        list.push_back({{"id", fmt::format("animation-{}", list.size() + 1)},
+                        {"clip", clip.name},
+                        {"play", "loop"}});
+      }
+    if (!list.empty())
+      told.push_back(fmt::format("{} of its animations {} by {}", list.size(),
+                                 list.size() == 1 ? "plays" : "play",
+                                 list.size() == 1 ? "itself" : "themselves"));
+    return list;
+  }
+
   void write() {
     Credit credit = load_credit(model);
     json all;
@@ -171,6 +206,7 @@ struct Maker {
     if (proposed.is_room) all["walk"] = {{"eye_height", 1.65}, {"speed", 1.4}, {"radius", 0.25}};
     all["start"] = proposed.views.front().name;
     all["viewpoints"] = viewpoints();
+    if (json list = animations(); !list.empty()) all["animations"] = std::move(list);
     write_file((folder / "exhibit.json").string(), all.dump(2) + "\n");
   }
 };

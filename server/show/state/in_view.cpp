@@ -46,9 +46,12 @@ bool in_view(const View& view, vec3 centre, float radius) {
 }
 
 View rest_view(const Show& show, const Visitor& visitor) {
-  const Viewpoint& at = visitor.place.view;
-  return make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov, visitor.wants.width,
-                   visitor.wants.height);
+  const Around& around = visitor.place.around;
+  const Viewpoint& at = around.point >= 0 ? around.view : visitor.place.view;
+  View view = make_view(show.exhibit.scene, at.position, at.yaw, at.pitch, at.fov,
+                        visitor.wants.width, visitor.wants.height);
+  view.near = around.near;
+  return view;
 }
 
 View view_of(const Show& show, const Visitor& visitor) {

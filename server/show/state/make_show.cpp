@@ -8,7 +8,7 @@
 #include "light/bake/map_file.h"
 #include "light/sample/light_tables.h"
 #include "light/known/radiance_grid_file.h"
-#include "show/exhibit/exhibit_scene.h"
+#include "show/moving/exhibit_scene.h"
 #include "show/exhibit/eye_places.h"
 #include "show/exhibit/fingerprint.h"
 #include "show/state/lamps.h"
@@ -103,11 +103,13 @@ std::unique_ptr<Show> make_show(Exhibit exhibit, const ShowSettings& settings) {
   std::vector<uint32_t> moving_object;
   for (const StorytellerPlace& place : show->exhibit.storytellers)
     show->figures.push_back(make_figure(place.character, scene, moving, moving_object));
+  show->movers = make_movers(show->exhibit, moving, moving_object);
+  show->plays.resize(show->exhibit.animations.size());
   show->world = std::make_unique<World>(scene, std::move(moving), std::move(moving_object));
   show->skin = make_skin_light(*show->world);
   if (!show->figures.empty()) {
     enter(*show, show->teller);
-    pose_world(*show, show->teller);
+    pose_world(*show, show->teller, show->movers.posed);
   }
   std::vector<Problem> problems;
   show->roads = make_tour_roads(show->exhibit, *show->world, problems);

@@ -20,7 +20,7 @@ struct PictureJob {
   uint32_t seq = 0;           // of the visitor's last input
   uint32_t camera_cuts = 0;   // of the visitor, by then
   bool still = false;         // without motion for a moment
-  bool figure = false;        // the storyteller may be in it
+  bool moving = false;        // something that can move may be in it
   bool learns = false;        // its samples are kept for each pixel, for reconstructions
   bool reconstruct = false;   // it becomes a reconstruction instead of being shown
   bool samples_only = false;  // nothing is drawn

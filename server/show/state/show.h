@@ -16,8 +16,9 @@
 #include "light/visible/visibility.h"
 #include "picture/warp_picture.h"
 #include "show/exhibit/exhibit.h"
-#include "show/exhibit/figure.h"
+#include "show/moving/figure.h"
 #include "show/exhibit/problem.h"
+#include "show/moving/movers.h"
 #include "show/house/announcement.h"
 #include "show/house/house.h"
 #include "show/questions/question_index.h"
@@ -104,6 +105,8 @@ struct Show {
 
   std::vector<Figure> figures;  // of all the exhibit's storytellers; hidden but for one
   Teller teller;  // of the house: kiosks' and those visitors' who have none of their own
+  Movers movers;           // of the exhibit's animations
+  std::vector<Play> plays;  // of each animation: the house's, and the shared ones
   SkinScratch scratch;
   SpeechSource speech;      // empty: the storyteller speaks by subtitles
   uint32_t utterances = 0;  // numbers of what is heard, the storyteller's and narrators' alike
@@ -137,6 +140,7 @@ struct Show {
   uint64_t ticks = 0;
   uint64_t pose_number = 1;           // of the world: counts commits
   const Teller* posed_as = nullptr;   // as whom its figures stand; may be gone meanwhile
+  const Visitor* posed_for = nullptr;  // whose own animations it shows; likewise; null: nobody's
   double time = 0;                    // of the present tick, seconds
   uint64_t time_us = 0;               // of the present tick on the clock of pictures and sound
   float picture_lead = 0.02f;         // seconds from a tick to the times of its pictures, smoothed

@@ -7,6 +7,7 @@
 #include "base/worker.h"
 #include "frame/tonemap.h"
 #include "show/kiosk/screen_window.h"
+#include "show/moving/play.h"
 #include "show/state/switches.h"
 #include "show/state/teller.h"
 #include "show/state/visitor_attention.h"
@@ -76,6 +77,7 @@ struct Visitor {
   VisitorSound hearing;                // show/answer/sound.h
   std::unique_ptr<Teller> own_teller;  // since they called her; null: the house's
   VisitorLamps lamps;
+  std::vector<Play> plays;  // of each animation, their own; empty: they have touched none
   VisitorGroup group;
   VisitorPlace place;  // show/visit
   WindowEye window;    // of a kiosk's page

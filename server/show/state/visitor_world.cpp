@@ -1,35 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/state/visitor_world.h"
 
+#include "show/state/animations.h"
 #include "show/state/lamps.h"
 
 namespace wellspring {
 
-void pose_world(Show& show, const Teller& teller) {
+void pose_world(Show& show, const Teller& teller, const std::vector<double>& times) {
+  const bool moved = pose_movers(show.exhibit, times, show.movers, *show.world);
+  show.posed_as = &teller;
   for (size_t i = 0; i < show.figures.size(); i++)
     show_figure(*show.world, show.figures[i], i == teller.index && teller.visible);
-  if (show.figures.empty()) return;
-  if (teller.visible)
+  if (show.figures.empty() && !moved) return;
+  if (teller.visible && !show.figures.empty())
     pose_figure(*show.world, show.figures[teller.index], storyteller_of(show, teller)->character,
                 teller.pose, teller.storyteller.placement, show.scratch);
   show.world->commit();
-  show.posed_as = &teller;
   show.pose_number++;
 }
 
 void begin_world_of(Show& show, Visitor& visitor) {
   light_world(show, visitor.lamps.lit);
-  pose_world(show, teller_of(show, visitor));
+  pose_world(show, teller_of(show, visitor), animation_times(show, visitor));
+  show.posed_for = who_touched(show, visitor);
 }
 
 void go_on_in_world_of(Show& show, Visitor& visitor) {
   light_world(show, visitor.lamps.lit);
-  const Teller& teller = teller_of(show, visitor);
-  if (show.posed_as != &teller) pose_world(show, teller);
+  if (show.posed_as == &teller_of(show, visitor) && show.posed_for == who_touched(show, visitor))
+    return;
+  begin_world_of(show, visitor);
 }
 
 bool see_the_same(const Show& show, const Visitor& a, const Visitor& b) {
-  return &teller_of(show, a) == &teller_of(show, b) && a.lamps.lit == b.lamps.lit;
+  return &teller_of(show, a) == &teller_of(show, b) && a.lamps.lit == b.lamps.lit &&
+         who_touched(show, a) == who_touched(show, b);
 }
 
 }  // namespace wellspring

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "light/technique/technique.h"
-#include "show/exhibit/figure.h"
+#include "show/moving/figure.h"
 #include "world/view.h"
 
 namespace wellspring {

@@ -53,23 +53,28 @@ vec3 normal_of(const World& world, const Hit& hit) {
   return length > 0 ? normal / length : vec3(0);
 }
 
+// Of a storyteller: an object that no node of the scene's files is.
+bool is_figure(const World& world, uint32_t instance) {
+  const uint32_t object = world.object_of(instance);
+  const std::vector<int>& nodes = world.scene().object_nodes;
+  return world.is_moving(instance) && (object >= nodes.size() || nodes[object] < 0);
+}
+
 // Of objects, or of the part of them around `near`: the middles of its triangles.
 std::vector<SurfaceSample> samples_of(const World& world, const Objects& objects,
                                       const std::optional<vec3>& near) {
   std::vector<SurfaceSample> samples;
-  const Scene& scene = world.scene();
-  for (size_t i = 0; i < scene.instances.size(); i++) {
-    const Instance& instance = scene.instances[i];
-    if (!has(objects, instance.object)) continue;
-    const Mesh& mesh = scene.meshes[size_t(instance.mesh)];
+  for (uint32_t i = 0; i < uint32_t(world.instance_count()); i++) {
+    if (!has(objects, world.object_of(i))) continue;
+    const Mesh& mesh = world.mesh_of(i);
     for (size_t t = 0; t < mesh.triangles.size(); t++) {
       uvec3 corner = mesh.triangles[t];
       vec3 middle =
           (mesh.positions[corner.x] + mesh.positions[corner.y] + mesh.positions[corner.z]) / 3.0f;
-      vec3 place = vec3(instance.to_world * vec4(middle, 1));
+      vec3 place = vec3(world.to_world(i) * vec4(middle, 1));
       vec3 away = near ? abs(place - *near) : vec3(0);
       if (std::max({away.x, away.y, away.z}) > part) continue;
-      samples.push_back({place, normal_of(world, {0, uint32_t(i), uint32_t(t), vec2(0)})});
+      samples.push_back({place, normal_of(world, {0, i, uint32_t(t), vec2(0)})});
     }
   }
   return samples;
@@ -135,7 +140,7 @@ Hit first_solid(const World& world, Ray ray) {
   for (int i = 0; i < most_panes; i++) {
     Hit hit = world.intersect(ray);
     if (!hit.valid()) return hit;
-    if (!world.is_moving(hit.instance) && !is_glass(world.material_of(hit.instance))) return hit;
+    if (!is_figure(world, hit.instance) && !is_glass(world.material_of(hit.instance))) return hit;
     ray.t_min = hit.t + 1e-3f;
   }
   return {};

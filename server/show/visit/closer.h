@@ -11,7 +11,7 @@
 
 namespace wellspring {
 
-// The first surface along a ray that is neither glass nor what moves; the storyteller is passed.
+// The first surface along a ray that is neither glass nor a storyteller.
 Hit first_solid(const World& world, Ray ray);
 
 struct Pointed {

@@ -14,6 +14,7 @@ constexpr float ease_seconds = 0.09f;  // how softly a visitor starts and stops
 void stand(VisitorPlace& place) {
   place.glide = {};
   place.closer = -1;
+  place.around = {};
 }
 
 void go_to_viewpoint(VisitorPlace& place, Voice& narrator, const Exhibit& exhibit, int viewpoint) {
@@ -29,6 +30,10 @@ TourStep move_visitor(VisitorPlace& place, Voice& narrator, const World& world,
                       const Exhibit& exhibit, const TourRoads& roads,
                       const std::optional<dvec3>& person, float dt) {
   TourRide& ride = place.tour;
+  if (place.around.point >= 0) {
+    advance_around(place.view, place.move.z, place.comfort, dt, place.around);
+    return {};
+  }
   if (glm::length(place.move) > 0) {  // the visitor walks off: the tour waits
     pause_tour(ride, narrator);
     ride.pace = 0;

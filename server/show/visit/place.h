@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "show/exhibit/exhibit.h"
+#include "show/visit/around.h"
 #include "show/visit/glide.h"
 #include "show/visit/heading.h"
 #include "show/visit/tour.h"
@@ -23,6 +24,7 @@ struct VisitorPlace {
   TourRide tour;
   Glide glide;
   int closer = -1;       // index into Exhibit::points: what the visitor went to look at
+  Around around;         // what is looked at from all sides, instead of from `view`
   bool comfort = false;  // leaps instead of gliding
   // Noticed once a tick (show/draw/pace.h).
   View last_view;            // of the last tick
@@ -36,7 +38,7 @@ struct VisitorPlace {
 TourStep move_visitor(VisitorPlace& place, Voice& narrator, const World& world,
                       const Exhibit& exhibit, const TourRoads& roads,
                       const std::optional<dvec3>& person, float dt);
-// Neither on the way to anything nor looking closer at it any more.
+// Neither on the way to anything nor looking closer at it, or round it, any more.
 void stand(VisitorPlace& place);
 // There is then nothing left to be seen of where the visitor was.
 void go_to_viewpoint(VisitorPlace& place, Voice& narrator, const Exhibit& exhibit, int viewpoint);

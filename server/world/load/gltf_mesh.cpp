@@ -128,7 +128,17 @@ dvec3 choose_centre(const Draft& draft) {
   return distance > 64 * size ? dvec3(vec3(middle)) : dvec3(0);
 }
 
-void finish_tangents(File& file, const std::string& where, Mesh& mesh, int tangent_uv) {
+std::vector<uint32_t> chosen(const std::vector<uint32_t>& values,
+                             const std::vector<uint32_t>& indices) {
+  std::vector<uint32_t> result;
+  result.reserve(indices.size());
+  for (uint32_t i : indices) result.push_back(values[i]);
+  return result;
+}
+
+// `from`: of each vertex the file's, kept so.
+void finish_tangents(File& file, const std::string& where, int tangent_uv, Mesh& mesh,
+                     std::vector<uint32_t>& from) {
   bool usable = tangent_uv >= 0 && !mesh.tangents.empty();
   for (vec4& tangent : mesh.tangents) {
     vec3 t(tangent);
@@ -143,7 +153,7 @@ void finish_tangents(File& file, const std::string& where, Mesh& mesh, int tange
          "a normal map or anisotropy without tangents or texture coordinates has no effect");
     return;
   }
-  make_tangents(mesh, tangent_uv);
+  from = chosen(from, make_tangents(mesh, tangent_uv));
 }
 
 }  // namespace
@@ -180,10 +190,12 @@ BuiltMesh build_primitive(File& file, size_t mesh_index, size_t primitive_index,
   built.centre = choose_centre(draft);
   mesh.positions.reserve(draft.positions.size());
   for (const dvec3& p : draft.positions) mesh.positions.push_back(vec3(p - built.centre));
-  if (mesh.normals.empty()) make_flat_normals(mesh);
+  built.from = std::move(draft.used);
+  built.flat = mesh.normals.empty();
+  if (built.flat) built.from = chosen(built.from, make_flat_normals(mesh));
   else if (int count = repair_normals(mesh); count > 0)
     warn(file, where, std::to_string(count) + " normals without a direction are replaced");
-  finish_tangents(file, where, mesh, tangent_uv);
+  finish_tangents(file, where, tangent_uv, mesh, built.from);
   built.mesh = std::move(mesh);
   return built;
 }

@@ -18,6 +18,8 @@ struct Deformation {
 struct BuiltMesh {
   Mesh mesh;
   dvec3 centre{0};
+  std::vector<uint32_t> from;  // vertex i is the file's vertex from[i]
+  bool flat = false;           // the file has no normals: they are its faces'
 };
 
 // Builds primitive `primitive` of mesh `mesh`. No triangles: points, lines or nothing at all; a

@@ -41,6 +41,7 @@ void place_scene(Scene& scene, const ScenePlace& place) {
     if (light.type != PunctualType::directional)
       light.intensity *= float(place.scale * place.scale);
   }
+  for (PlacedMotion& motion : scene.motions) motion.to_world = move * motion.to_world;
   for (Viewpoint& view : scene.viewpoints) {
     view.position = dvec3(move * dvec4(view.position, 1));
     view.yaw += float(place.yaw);
@@ -51,7 +52,8 @@ void join_scene(Scene& into, Scene part) {
   const vec3 offset = vec3(part.origin - into.origin);
   const size_t images = into.images.size(), textures = into.textures.size(),
                materials = into.materials.size(), meshes = into.meshes.size(),
-               objects = into.objects.size(), nodes = into.nodes.size();
+               objects = into.objects.size(), nodes = into.nodes.size(),
+               instances = into.instances.size();
   for (Texture& texture : part.textures) shift(texture.image, images);
   for (Material& material : part.materials)
     each_texture(material, [&](TextureRef& use) { shift(use.texture, textures); });
@@ -65,6 +67,8 @@ void join_scene(Scene& into, Scene part) {
   for (int& node : part.object_nodes) shift(node, nodes);
   for (int& node : part.light_nodes) shift(node, nodes);
   for (PunctualLight& light : part.lights) light.position += offset;
+  for (PlacedMotion& motion : part.motions)
+    for (int& instance : motion.instances) shift(instance, instances);
   append(into.images, part.images);
   append(into.textures, part.textures);
   append(into.materials, part.materials);
@@ -76,6 +80,7 @@ void join_scene(Scene& into, Scene part) {
   append(into.light_nodes, part.light_nodes);
   append(into.lights, part.lights);
   append(into.viewpoints, part.viewpoints);
+  append(into.motions, part.motions);
   append(into.warnings, part.warnings);
 }
 

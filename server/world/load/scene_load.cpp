@@ -12,6 +12,7 @@
 #include "world/load/gltf_image.h"
 #include "world/load/gltf_material.h"
 #include "world/load/gltf_mesh.h"
+#include "world/load/load_motion.h"
 #include "world/mesh_finish.h"
 #include "gltf/pose.h"
 
@@ -52,6 +53,9 @@ class Builder {
       scene.nodes.push_back({text(list[i], "name"), nodes_[i].parent});
   }
 
+  // Before build(): notes what clips move.
+  void keep_motion() { motion_.emplace(file_, nodes_); }
+
   void build() {
     for (size_t i = 0; i < nodes_.size(); i++)
       if (nodes_[i].shown) build_node(i);
@@ -66,6 +70,7 @@ class Builder {
     }
     for (size_t i = 0; i < scene_.lights.size(); i++)
       scene_.lights[i].position = vec3(light_positions_[i] - scene_.origin);
+    if (motion_) motion_->finish(scene_);
     if (scene_.instances.empty() && scene_.lights.empty())
       warn(file_, "", "there is nothing to see in this file");
   }
@@ -119,6 +124,11 @@ class Builder {
       placement.object = id;
       placement.to_world =
           glm::translate(skinned ? dmat4(1) : nodes_[index].global, centres_[size_t(made)]);
+      if (motion_) {
+        const json* skin = skinned ? find(object, "skin") : nullptr;
+        motion_->note({int(placements_.size()), index, mesh_index, p, skin ? skin->get<int>() : -1,
+                       tangent_uv(material_of(mesh_index, p))});
+      }
       placements_.push_back(placement);
     }
   }
@@ -276,6 +286,7 @@ class Builder {
   std::vector<Node> nodes_;
   std::vector<dmat4> global_;
   std::vector<char> used_;
+  std::optional<MotionLoad> motion_;
   std::vector<Placement> placements_;
   std::vector<dvec3> centres_;  // of scene_.meshes
   std::vector<dvec3> light_positions_;
@@ -291,7 +302,9 @@ Scene load_scene(const std::string& path, const SceneLoadOptions& options) {
   const json& scenes = items(file.root, "scenes");
   if (!scenes.empty())
     scene.name = text(scenes[size_t(integer(file.root, "scene", 0))], "name", scene.name);
-  Builder(file, scene, options.time).build();
+  Builder builder(file, scene, options.time);
+  if (options.motion) builder.keep_motion();
+  builder.build();
   scene.warnings = std::move(file.warnings);
   return scene;
 }

@@ -15,6 +15,8 @@ struct SceneLoadOptions {
   double time = 0;
   // Folder that referenced files must stay inside; empty: the file's own folder.
   std::string package;
+  // Keeps the file's animations and what they move: Scene::motions. The scene is at rest.
+  bool motion = false;
 };
 
 // Throws LoadError naming file, JSON pointer and problem. What is only odd is told in

@@ -147,7 +147,8 @@ void Raster::Impl::find_pieces(const View& view, const RasterSettings& settings)
     if (settings.shows == RasterShows::still && placed.moving) continue;
     if (settings.shows == RasterShows::moving && !placed.moving && !veils(placed)) continue;
     moving[i] = moving_box(placed);
-    wellspring::find_pieces(view, placed, meshes[mesh_of[i]], i, moving[i], near, pieces);
+    wellspring::find_pieces(view, placed, meshes[mesh_of[i]], i, moving[i],
+                            std::max(near, view.near), pieces);
   }
 }
 
@@ -358,7 +359,7 @@ void Raster::draw(const View& view, const RasterSettings& settings,
   r.hidden = 0;
   if (view.width > most_pixels || view.height > most_pixels) return;
   auto steps = [](float x) { return int32_t(std::lrint(x * raster_steps)); };
-  RasterView raster{r.near, view.width, view.height};
+  RasterView raster{std::max(r.near, view.near), view.width, view.height};
   raster.centre_steps_x = view.width * (raster_steps / 2) - steps(settings.offset.x);
   raster.centre_steps_y = view.height * (raster_steps / 2) - steps(settings.offset.y);
   raster.centre_x = float(raster.centre_steps_x) / raster_steps;

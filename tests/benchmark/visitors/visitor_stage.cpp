@@ -13,7 +13,7 @@
 #include "base/parallel.h"
 #include "frame/tonemap.h"
 #include "light/technique/technique.h"
-#include "show/exhibit/figure.h"
+#include "show/moving/figure.h"
 #include "visitor_things.h"
 
 namespace wellspring {

@@ -147,6 +147,27 @@ TEST(Cache, TeleportLeavesNothingOfTheOldView) {
   EXPECT_LT(wrong_objects(v.frame, render_room(v.room, other, 1)), 0.02);
 }
 
+// Points of what was seen before the view began later are not shown before it.
+TEST(Cache, WhatIsCutAwayIsNotShownFromMemory) {
+  Visitor v;
+  for (int i = 0; i < 60; i++) v.step(hall(), 400);
+  View cut = hall();
+  cut.near = 4;
+  for (int i = 0; i < 60; i++) v.step(cut, 400);
+  int wrong = 0, gone = 0;
+  for (int y = 0; y < cut.height; y++)
+    for (int x = 0; x < cut.width; x++) {
+      auto object_at = [&](const View& view) {
+        const Hit hit = v.room.world->intersect(view_ray(view, float(x) + 0.5f, float(y) + 0.5f));
+        return hit.valid() ? v.room.world->object_of(hit.instance) : 0u;
+      };
+      gone += object_at(hall()) != object_at(cut);
+      wrong += v.frame.object[size_t(y * cut.width + x)] != object_at(cut);
+    }
+  EXPECT_GT(gone, 700);
+  EXPECT_LT(wrong, 400);
+}
+
 TEST(Cache, SpinningAndOddFieldsOfViewStaySound) {
   Visitor v;
   for (float fov : {5.0f, 60.0f, 150.0f})

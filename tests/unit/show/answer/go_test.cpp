@@ -219,6 +219,79 @@ TEST_F(GoTest, WhereVisitorsFlyTheyFlyThere) {
   EXPECT_NEAR(here().y, 1.6, 1e-4);
 }
 
+// Of the statue alone: how many pixels of the last picture's view, and whether they touch a side.
+struct SeenStatue {
+  int pixels = 0;
+  bool cut = false;
+};
+SeenStatue see_statue(const Show& show, const View& view) {
+  SeenStatue seen;
+  for (int y = 0; y < view.height; y++)
+    for (int x = 0; x < view.width; x++) {
+      const Hit hit = first_solid(*show.world, view_ray(view, float(x) + 0.5f, float(y) + 0.5f));
+      if (!hit.valid() || show.world->object_of(hit.instance) != 3) continue;
+      seen.pixels++;
+      seen.cut |= x == 0 || y == 0 || x == view.width - 1 || y == view.height - 1;
+    }
+  return seen;
+}
+
+TEST_F(GoTest, AnObjectIsLookedAtFromAllSidesThroughWhatStandsInTheWay) {
+  go({{"object", "statue"}, {"around", true}});
+  EXPECT_EQ(last("error")["code"], "no_way") << "the exhibit does not say so";
+  show->exhibit.points[0].around = true;
+  stand_at({-2, 1.6f, 3}, 0, 0);  // behind the wall, where it cannot be seen
+  const Viewpoint before = place().view;
+  go({{"object", "statue"}, {"around", true}});
+  run(1.5);
+  EXPECT_EQ(last("state")["around"], "statue");
+  EXPECT_EQ(place().view.position, before.position) << "the visitor stays";
+  std::vector<vec3> eyes;
+  for (int i = 0; i < 8; i++) {
+    const View view = rest_view(*show, show->visitors.front());
+    const SeenStatue seen = see_statue(*show, view);
+    EXPECT_GT(seen.pixels, 96 * 64 / 20) << i;
+    EXPECT_FALSE(seen.cut) << i;
+    eyes.push_back(view.position);
+    say(R"({"type":"input","seq":70,"look":[0.39269908,0]})");  // turned by twice that
+    run(1);
+  }
+  EXPECT_LT(glm::length(eyes[0] + eyes[4] - 2.0f * vec3(-3.05f, eyes[0].y, -3.05f)), 0.05f);
+  for (vec3 eye : eyes) EXPECT_NEAR(eye.y, eyes[0].y, 1e-3);
+  say(R"({"type":"input","seq":71,"look":[0,-9]})");
+  run(1);
+  EXPECT_FALSE(see_statue(*show, rest_view(*show, show->visitors.front())).cut) << "from above";
+  const float far = glm::length(rest_view(*show, show->visitors.front()).position - eyes[0]);
+  EXPECT_GT(far, 0.1f);
+  const double far_away = place().around.distance;
+  say(R"({"type":"input","seq":72,"move":[0,0,2]})");
+  run(1);
+  say(R"({"type":"input","seq":73,"move":[0,0,0]})");
+  EXPECT_LT(place().around.distance, 0.5 * far_away);
+  go({{"object", "statue"}, {"around", false}});
+  run(2);
+  EXPECT_TRUE(last("state")["around"].is_null());
+  EXPECT_EQ(place().around.point, -1);
+  EXPECT_EQ(rest_view(*show, show->visitors.front()).near, 0);
+  EXPECT_EQ(place().view.position, before.position);
+}
+
+TEST_F(GoTest, WhoGoesAwayFromAnObjectThatIsTurnedStandsWhereTheyStood) {
+  show->exhibit.points[0].around = true;
+  stand_at({-2, 1.6f, 3}, 0, 0);
+  const dvec3 before = place().view.position;
+  go({{"object", "statue"}, {"around", true}});
+  run(1);
+  say(R"({"type":"input","seq":80,"move":[0,0,1]})");
+  run(0.5);
+  EXPECT_EQ(place().view.position, before) << "moving brings it nearer";
+  dvec3 to = origin + dvec3(-2, 0, 2);
+  go({{"to", {to.x, to.y, to.z}}});
+  EXPECT_EQ(place().around.point, -1);
+  go({{"to", {to.x, to.y, to.z}}, {"around", true}});
+  EXPECT_EQ(last("error")["code"], "bad_field");
+}
+
 TEST_F(GoTest, TheStorytellerTurnsToWhatIsLookedAtInHerSight) {
   Exhibit exhibit = make_room();
   add_storyteller(exhibit, "anna", origin + dvec3(-2.2, 0, -2.4));

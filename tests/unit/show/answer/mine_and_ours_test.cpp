@@ -66,6 +66,7 @@ const std::vector<std::string> orders = {
     R"({"type":"storyteller","action":"stop"})",
     R"({"type":"ask","text":"What is this?"})",
     R"({"type":"lamp","name":"ceiling","on":false})",
+    R"({"type":"play","name":"door","on":true})",
     R"({"type":"group","action":"lead"})",
     R"({"type":"kiosk","showing":"book","touched":true,"playing":true})",
     R"({"type":"settings","fps":10,"quality":30,"attention":false,"lang":"de","width":64})",

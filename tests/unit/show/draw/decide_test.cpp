@@ -47,7 +47,7 @@ VisitorDrawState stander() {
 // Before whom the storyteller stands, drawn by herself over a picture at rest.
 VisitorDrawState listener() {
   VisitorDrawState state = stander();
-  state.sees_figure = state.drew_figure = state.backdrop = true;
+  state.sees_moving = state.drew_moving = state.backdrop = true;
   state.posed_at = now;
   return state;
 }
@@ -158,7 +158,7 @@ const std::vector<Row> rows = {
     {"who rests sees at once that the storyteller came or went",
      [](States& all, RendererState&) {
        all = {stander()};
-       all[0].sees_figure = true;
+       all[0].sees_moving = true;
      },
      {Drawing::picture, 0}},
     {"who has waited longest comes first",

@@ -138,7 +138,7 @@ TEST_F(Moving, WhoIsHiddenIsGoneFromThePicture) {
   vec3 here(-2, 1, 0.5f);
   EXPECT_GT(red_at(last_image(), here), 40);
   show->teller.visible = false;
-  ASSERT_TRUE(step_until([&] { return !visitor().picture.job.figure; }));
+  ASSERT_TRUE(step_until([&] { return !visitor().picture.job.moving; }));
   steps(30);
   EXPECT_LT(red_at(last_image(), here), 20);
   EXPECT_FALSE(visitor().picture.backdrop);

@@ -50,6 +50,17 @@ inline void add_point_light(Asset& asset, const std::string& name, vec3 at, floa
                   {"extensions", {{"KHR_lights_punctual", {{"light", lights.size() - 1}}}}}});
 }
 
+// Moves a node by `way` and back in two seconds, or there in one.
+inline void add_clip(Asset& asset, const std::string& name, int node, vec3 way, bool back) {
+  std::vector<float> times = {0, 1}, values = {0, 0, 0, way.x, way.y, way.z};
+  if (back) times.push_back(2), values.insert(values.end(), {0, 0, 0});
+  const int in = asset.add_floats("SCALAR", 1, times), out = asset.add_floats("VEC3", 3, values);
+  asset.root["animations"].push_back(
+      {{"name", name},
+       {"samplers", {{{"input", in}, {"output", out}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", "translation"}}}}}}});
+}
+
 // 8 x 3 x 6 m with a table in the middle and a lamp over it.
 inline Asset room_asset(float candela = 8) {
   Asset asset;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/load_error.h"
+#include "show/exhibit/exhibit_animations.h"
 #include "unit/show/exhibit/room_package.h"
 #include "world/view.h"
 
@@ -81,6 +82,28 @@ TEST(NewExhibit, MillimetresBecomeMetres) {
   EXPECT_TRUE(made.exhibit.walk.has_value());
   Bounds box = scene_bounds(made.exhibit.scene);
   EXPECT_NEAR(box.high.x, 4, 1e-3);
+}
+
+TEST(NewExhibit, WhatMovesPlaysByItself) {
+  Asset asset = room_asset();
+  add_clip(asset, "Lift", 1, {0, 0.4f, 0}, true);
+  add_clip(asset, "Lift more", 1, {0, 0.8f, 0}, true);  // of the same node
+  add_clip(asset, "Lamp", 2, {1, 0, 0}, true);          // nothing is seen of that
+  Made made(asset);
+  EXPECT_EQ(made.told(), "");
+  ASSERT_EQ(made.manifest["animations"].size(), 1u);
+  EXPECT_EQ(made.manifest["animations"][0]["clip"], "Lift");
+}
+
+TEST(NewExhibit, AModelOfWhichAllMovesIsAnExhibitToo) {
+  Asset asset;
+  add_box(asset, "Block", {1, 0, 1}, {2, 1.5f, 1.7f}, false);
+  add_clip(asset, "Turn", 0, {0, 0.4f, 0}, true);
+  Made made(asset);
+  EXPECT_EQ(made.told(), "");
+  take_movers(made.exhibit);
+  EXPECT_EQ(made.exhibit.movers.size(), 1u);
+  EXPECT_TRUE(made.exhibit.scene.instances.empty());
 }
 
 TEST(NewExhibit, AClosedRoomWithoutLightGetsLamps) {

@@ -142,6 +142,30 @@ TEST(Raster, SeesWhatRaysSeeBesideTheAxis) {
   }
 }
 
+// What is nearer than the view begins is cut away, for rays and for the raster alike.
+TEST(Raster, SeesWhatRaysSeeBehindTheViewsBeginning) {
+  Scene scene = empty_scene();
+  add_mesh(scene, soup(1, 3000), "soup");
+  World world(scene);
+  world.commit();
+  Raster raster(world);
+  for (int i = 0; i < 6; i++) {
+    View view = view_of(scene, i);
+    const Picture whole = draw(raster, view);
+    view.near = 1.5f;
+    const Picture picture = draw(raster, view);
+    EXPECT_LE(wrong_pixels(world, view, picture), 2) << "view " << i;  // at the cut's own edge
+    int cut = 0;
+    for (size_t p = 0; p < picture.hits.size(); p++) {
+      const Ray ray = view_ray(view, float(p % 160) + 0.5f, float(p / 160) + 0.5f);
+      const float depth = picture.hits[p].t * dot(ray.direction, view.forward);
+      EXPECT_GE(depth, 1.499f);
+      cut += picture.hits[p].t != whole.hits[p].t;
+    }
+    EXPECT_GT(cut, 100) << "view " << i;
+  }
+}
+
 // Rooms behind a wall with a slit: what the wall hides costs nothing, what the slit shows is there.
 TEST(Raster, LeavesOutWhatIsHidden) {
   Scene scene = empty_scene();

@@ -8,7 +8,7 @@
 #include "frame/picture_file.h"
 #include "light/visible/visibility.h"
 #include "light/technique/technique.h"
-#include "show/exhibit/figure.h"
+#include "show/moving/figure.h"
 #include "unit/avatar/load/gltf_person.h"
 
 namespace wellspring {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/exhibit/figure.h"
+#include "show/moving/figure.h"
 
 #include <gtest/gtest.h>
 

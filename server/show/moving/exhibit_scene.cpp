@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "show/exhibit/exhibit_scene.h"
+#include "show/moving/exhibit_scene.h"
 
 #include <algorithm>
 
 #include "avatar/mind/storyteller.h"
-#include "show/exhibit/figure.h"
+#include "show/moving/figure.h"
+#include "show/moving/movers.h"
+#include "show/moving/play.h"
 
 namespace wellspring {
 
@@ -19,6 +21,13 @@ Scene make_exhibit_scene(Exhibit exhibit, double time) {
   scene.viewpoints.clear();
   for (const ExhibitViewpoint& viewpoint : exhibit.viewpoints)
     scene.viewpoints.push_back(viewpoint.view);
+  std::vector<double> times;
+  for (const ExhibitAnimation& animation : exhibit.animations)
+    times.push_back(time_of(animation, {}, time));
+  for (size_t i = 0; i < exhibit.movers.size(); i++) {
+    scene.instances.push_back({int(scene.meshes.size()), mat4(1), exhibit.movers[i].object});
+    scene.meshes.push_back(mover_mesh(exhibit, i, times));
+  }
   if (exhibit.storytellers.empty()) return std::move(scene);
   const StorytellerPlace& place = exhibit.storytellers.front();
   const Character& character = place.character;
