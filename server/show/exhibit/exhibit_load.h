@@ -11,9 +11,10 @@
 namespace wellspring {
 
 // `folder` holds exhibit.json; the folder's name is the exhibit's id. Appends to `problems`; the
-// exhibit is usable when none of them is fatal.
+// exhibit is usable when none of them is fatal. All of the scene stands at rest.
 Exhibit read_exhibit(const std::string& folder, std::vector<Problem>& problems);
-// Throws ExhibitError when a problem is fatal; logs the others.
+// The same as it is played: what its animations move is no part of the scene any more. Throws
+// ExhibitError when a problem is fatal; logs the others.
 Exhibit load_exhibit(const std::string& folder);
 
 }  // namespace wellspring
