@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card of an object that is looked at closer: its label, where it comes from, its story.
+import { read_address } from './address.js';
 import { by_id } from './element.js';
 import { text_in, word } from './words.js';
 
 // orders: {story(id), closed()}
 export function make_card(orders) {
   const card = by_id('card');
-  let objects = [], lang = 'en', shown = null, opener = null;
+  let objects = [], lang = 'en', exhibit = '', shown = null, opener = null;
 
   function close() {
     if (card.hidden) return;
@@ -47,7 +48,8 @@ export function make_card(orders) {
       return [name, value];
     }));
     by_id('card-facts').hidden = !object.provenance;
-    by_id('card-story').hidden = !object.story;
+    by_id('card-story').hidden = by_id('card-read').hidden = !object.story;
+    if (object.story) by_id('card-read').href = read_address(exhibit, lang, object.story);
     by_id('card-manifest').hidden = !object.manifest;
     if (object.manifest) by_id('card-manifest').href = object.manifest;
     offer_door(object);
@@ -55,7 +57,7 @@ export function make_card(orders) {
 
   return {
     welcome(message) {
-      ({ objects, lang } = message);
+      ({ objects, lang, exhibit } = message);
       const now = shown && objects.find(({ id }) => id === shown.id);
       if (now) fill(shown = now);
     },

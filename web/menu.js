@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The side menu: made from what the server says there is.
+import { read_address } from './address.js';
 import { by_id } from './element.js';
 import { language_names, translate_page, word } from './words.js';
 
@@ -90,6 +91,7 @@ export function make_menu(orders) {
         return element;
       }));
       by_id('stories-section').hidden = message.stories.length === 0 || !message.storyteller;
+      by_id('read-link').href = read_address(message.exhibit, lang);
       by_id('storyteller-section').hidden = !message.storyteller;
       by_id('tellers').replaceChildren(...message.storytellers.map(({ id, name, viewpoint }) => {
         const element = button(name || id, () => {

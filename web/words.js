@@ -33,11 +33,12 @@ export function translate_page(lang) {
 // In the address; null: none.
 export const asked_language = () => new URLSearchParams(location.search).get('lang');
 
-// Of a text in languages: in `lang`, else in the first of the `spoken` ones that it has.
-export function text_in(text, lang, spoken) {
-  const tag = [lang, lang.split('-')[0], ...spoken].find((one) => text?.[one]);
-  return tag ? text[tag] : '';
-}
+// Of a text in languages: `lang`, else the first of the `spoken` ones that it has; undefined: none.
+export const tag_in = (text, lang, spoken) =>
+  [lang, lang.split('-')[0], ...spoken].find((one) => text?.[one]);
+
+// The text in that language.
+export const text_in = (text, lang, spoken) => text?.[tag_in(text, lang, spoken)] ?? '';
 
 // Whether one of the `spoken` languages is that one, whatever its country.
 export const knows = (tag, spoken) =>

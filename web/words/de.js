@@ -51,4 +51,9 @@ export default {
   copy_viewpoint: 'Meinen Standort kopieren',
   viewpoint_copied: 'Kopiert: einzufügen unter „viewpoints“ in exhibit.json.',
   problems: 'Wegen dieser Fehler ist die geänderte Ausstellung noch nicht zu sehen:',
+  read: 'Zum Mitlesen', read_all: 'Alles Erzählte als Text', read_story: 'Geschichte lesen',
+  read_which: 'Was möchten Sie lesen?', read_nothing: 'Hier wird noch nichts erzählt.',
+  read_unknown: 'Eine Ausstellung „{asked}“ gibt es hier nicht. Diese sind zu lesen:',
+  to_exhibit: 'Zur Ausstellung', contents: 'Inhalt', told_by: 'Es erzählt: {name}',
+  credits: 'Von wem die Modelle sind', licence: 'Lizenz',
 };

@@ -50,4 +50,9 @@ export default {
   copy_viewpoint: 'Copy my viewpoint',
   viewpoint_copied: 'Copied: paste it into “viewpoints” of exhibit.json.',
   problems: 'These mistakes keep the changed exhibit from being shown:',
+  read: 'Read along', read_all: 'All that is told, as text', read_story: 'Read its story',
+  read_which: 'What would you like to read?', read_nothing: 'Nothing is told here yet.',
+  read_unknown: 'There is no exhibit “{asked}” here. These can be read:',
+  to_exhibit: 'To the exhibit', contents: 'Contents', told_by: 'Told by {name}',
+  credits: 'Whose models these are', licence: 'Licence',
 };

@@ -52,4 +52,9 @@ export default {
   copy_viewpoint: 'Copiar mi punto de vista',
   viewpoint_copied: 'Copiado: péguelo en «viewpoints» de exhibit.json.',
   problems: 'Por estos fallos la exposición cambiada aún no se muestra:',
+  read: 'Para leer', read_all: 'Todo lo que se cuenta, en texto', read_story: 'Leer su relato',
+  read_which: '¿Qué desea leer?', read_nothing: 'Aquí todavía no se cuenta nada.',
+  read_unknown: 'Aquí no hay ninguna exposición «{asked}». Estas se pueden leer:',
+  to_exhibit: 'A la exposición', contents: 'Índice', told_by: 'Cuenta: {name}',
+  credits: 'De quién son los modelos', licence: 'Licencia',
 };

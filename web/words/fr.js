@@ -52,4 +52,9 @@ export default {
   copy_viewpoint: 'Copier mon point de vue',
   viewpoint_copied: 'Copié : à coller sous « viewpoints » dans exhibit.json.',
   problems: 'À cause de ces fautes, l’exposition modifiée ne se montre pas encore :',
+  read: 'À lire', read_all: 'Tout ce qui se raconte, en texte', read_story: 'Lire son récit',
+  read_which: 'Que voulez-vous lire ?', read_nothing: 'Ici, rien ne se raconte encore.',
+  read_unknown: 'Il n’y a pas d’exposition « {asked} » ici. Voici ce qui peut se lire :',
+  to_exhibit: 'Vers l’exposition', contents: 'Sommaire', told_by: 'Raconté par {name}',
+  credits: 'De qui sont les modèles', licence: 'Licence',
 };

@@ -48,4 +48,9 @@ export default {
   copy_viewpoint: 'Kopírovať moje miesto',
   viewpoint_copied: 'Skopírované: vložte do „viewpoints“ v exhibit.json.',
   problems: 'Pre tieto chyby sa zmenená výstava ešte nezobrazuje:',
+  read: 'Na čítanie', read_all: 'Všetko rozprávané ako text', read_story: 'Prečítať príbeh',
+  read_which: 'Čo si chcete prečítať?', read_nothing: 'Zatiaľ sa tu nič nerozpráva.',
+  read_unknown: 'Výstava „{asked}“ tu nie je. Prečítať si môžete tieto:',
+  to_exhibit: 'Na výstavu', contents: 'Obsah', told_by: 'Rozpráva: {name}',
+  credits: 'Kto vytvoril modely', licence: 'Licencia',
 };
