@@ -71,6 +71,8 @@ export function make_card(orders) {
       card.hidden = false;
       document.body.classList.add('reads');
       card.scrollTop = 0;
+      // Whoever chose it by a button reads on here; who walks goes on walking.
+      if (opener?.closest('button')) by_id('card-title').focus({ preventScroll: true });
     },
     close,
   };

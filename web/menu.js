@@ -73,6 +73,7 @@ export function make_menu(orders) {
       tell_attention();
       document.title = message.title;
       by_id('title').textContent = message.title;
+      by_id('title').hidden = false;
       by_id('description').textContent = message.description;
       by_id('objects').replaceChildren(...message.objects.map(({ id, title }) => {
         const element = button(title, () => { open(false); orders.object(id); });

@@ -294,5 +294,9 @@ function wake() {
 }
 for (const event of ['pointermove', 'pointerdown', 'keydown', 'touchstart'])
   addEventListener(event, wake, { passive: true });
+// Who goes on by keys sees where he is, on the picture too.
+addEventListener('keydown',
+    (event) => { if (event.key === 'Tab') document.body.classList.add('keys'); });
+addEventListener('pointerdown', () => document.body.classList.remove('keys'));
 wake();
 canvas.focus();
