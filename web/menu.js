@@ -2,6 +2,7 @@
 // The side menu: made from what the server says there is.
 import { read_address } from './address.js';
 import { by_id } from './element.js';
+import { kept } from './kept.js';
 import { language_names, translate_page, word } from './words.js';
 
 function button(text, on_click) {
@@ -54,8 +55,8 @@ export function make_menu(orders) {
   by_id('subtitles-on').addEventListener('change',
       (event) => orders.subtitles(event.target.checked));
 
-  const attention = by_id('attention'), kept = localStorage.getItem('wellspring.attention');
-  if (kept !== null && Number(kept) >= 0 && Number(kept) <= 1) attention.value = kept;
+  const attention = by_id('attention'), chosen = kept.get('attention');
+  if (chosen !== null && Number(chosen) >= 0 && Number(chosen) <= 1) attention.value = chosen;
   const tell_attention = () => {
     const side = attention.value < 0.4 ? 'eye' : attention.value > 0.6 ? 'look' : 'both';
     attention.setAttribute('aria-valuetext', word(lang, `attention_${side}`));
@@ -65,8 +66,7 @@ export function make_menu(orders) {
 
   return {
     // As the visitor chose, now or earlier; null: never.
-    attention: () => (localStorage.getItem('wellspring.attention') === null
-        ? null : Number(attention.value)),
+    attention: () => (kept.get('attention') === null ? null : Number(attention.value)),
     welcome(message) {
       lang = message.lang;
       translate_page(lang);

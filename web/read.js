@@ -2,6 +2,7 @@
 // All that an exhibit tells, to be read and printed, and whose models it is made of.
 import { asked_exhibit } from './address.js';
 import { by_id, element } from './element.js';
+import { kept } from './kept.js';
 import { asked_language, first_language, language_names, tag_in, text_in, translate_page, word }
   from './words.js';
 
@@ -99,7 +100,7 @@ function show_languages(tags) {
 
 function speak(tag) {
   lang = tag;
-  localStorage.setItem('wellspring.lang', tag);
+  kept.set('lang', tag);
   if (asked_language()) {
     const url = new URL(location.href);
     url.searchParams.set('lang', tag);
@@ -142,6 +143,7 @@ async function get(path) {
 }
 
 translate_page(lang);
+document.body.classList.add('runs');
 try {
   ({ exhibits: all } = await get(api));
   exhibit = asked_exhibit || all.length > 1

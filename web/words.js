@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's own words. The exhibit's words come from the server.
 import { all } from './element.js';
+import { kept } from './kept.js';
 import de from './words/de.js';
 import en from './words/en.js';
 import es from './words/es.js';
@@ -46,5 +47,5 @@ export const knows = (tag, spoken) =>
 
 // The visitor's language: asked for in the address, chosen before, or the browser's.
 export function first_language() {
-  return asked_language() ?? localStorage.getItem('wellspring.lang') ?? navigator.language ?? 'en';
+  return asked_language() ?? kept.get('lang') ?? navigator.language ?? 'en';
 }
