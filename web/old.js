@@ -9,11 +9,15 @@ addEventListener('load', function () {
     fr: 'Cette page a besoin d’un navigateur plus récent.',
     es: 'Esta página necesita un navegador más nuevo.',
   };
-  const lang = (navigator.language || 'en').slice(0, 2), line = document.createElement('p');
+  const lang = (navigator.language || 'en').slice(0, 2);
+  let line = document.getElementById('veil-text');
+  if (!line) {
+    line = document.createElement('p');
+    line.className = 'notice';
+    document.body.appendChild(line);
+  }
   line.id = 'too-old';
-  line.className = 'notice';
   line.lang = texts[lang] ? lang : 'en';
   line.setAttribute('role', 'alert');
-  line.appendChild(document.createTextNode(texts[line.lang]));
-  document.body.appendChild(line);
+  line.textContent = texts[line.lang];
 });

@@ -127,6 +127,11 @@ for (const [size, options] of Object.entries(sizes)) {
       await page.waitForSelector(wanted, { state: 'attached' });
       await see(page, state);
     }
+    const book = await open('/kiosk', options);
+    await book.waitForFunction(() => document.getElementById('title').textContent);
+    await click(book, '#open-book');
+    await book.waitForSelector('#book:not([hidden]) .page:not([hidden])');
+    await see(book, 'book');
     // The veil stays where no server answers.
     const waits = await browser.newContext(options), veil = await waits.newPage();
     await veil.routeWebSocket(/visit$/, () => {});

@@ -96,6 +96,7 @@ test('without a WebSocket the page says what it needs', { skip }, async () => {
   const page = await open(() => { delete /** @type {any} */ (window).WebSocket; });
   await page.waitForSelector('#too-old');
   assert.match(await page.textContent('#too-old'), /needs a newer browser/);
+  assert.doesNotMatch(await page.textContent('#veil'), /Opening/);
   await close(page, 'modest-socket');
   // And in the visitor's language.
   const german = await open(() => { delete /** @type {any} */ (window).WebSocket; }, '/',
@@ -185,7 +186,7 @@ test('without WebGL the kiosk\'s well is a still picture, and its book opens', {
       await page.waitForSelector('body.still-water');
       await page.waitForFunction(() => document.getElementById('title').textContent);
       await page.click('#open-book');
-      await page.waitForSelector('#book:not([hidden]) .page');
+      await page.waitForSelector('#book:not([hidden]) .page:not([hidden])');
       assert.deepEqual(page.problems, []);
       await close(page, 'modest-kiosk');
     });
