@@ -45,7 +45,10 @@ export function make_comfort(send, on_change) {
 
   figures.checked = kept.get('figures') === 'true';
   const show_figures = () => { by_id('figures').hidden = !figures.checked; };
-  figures.addEventListener('change', () => { kept.set('figures', figures.checked); show_figures(); });
+  figures.addEventListener('change', () => {
+    kept.set('figures', figures.checked);
+    show_figures();
+  });
   show_figures();
 
   const whole = by_id('whole-screen');

@@ -2,7 +2,7 @@
 // All pages for all people: the rules of WCAG 2.2 AA by axe-core, in every state and size; and what
 // no rule finds: the way of the Tab key, targets for fingers, large print, less motion, contrast.
 import assert from 'node:assert/strict';
-import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { cpSync, existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
