@@ -40,3 +40,6 @@ export function place_address({ position, yaw, pitch }) {
   url.hash = `place=${numbers.map(Number).join(',')}`;
   return url.href;
 }
+// The page of all texts, in a language; story: the one to begin with.
+export const read_address = (exhibit, lang, story = '') =>
+  `read?${new URLSearchParams({ exhibit, lang })}${story && `#story-${story}`}`;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card of an object that is looked at closer: its label, where it comes from, its story.
+import { read_address } from './address.js';
 import { by_id } from './element.js';
 import { text_in, word } from './words.js';
 
 // orders: {story(id), play(id, on), around(id, on)}
 export function make_card(orders) {
   const card = by_id('card');
-  let objects = [], animations = [], lang = 'en', shown = null, opener = null, turned = false;
+  let objects = [], animations = [], lang = 'en', exhibit = '', shown = null, opener = null,
+      turned = false;
 
   function close() {
     if (card.hidden) return;
@@ -63,7 +65,8 @@ export function make_card(orders) {
       return [name, value];
     }));
     by_id('card-facts').hidden = !object.provenance;
-    by_id('card-story').hidden = !object.story;
+    by_id('card-story').hidden = by_id('card-read').hidden = !object.story;
+    if (object.story) by_id('card-read').href = read_address(exhibit, lang, object.story);
     by_id('card-around').hidden = !object.around;
     offer_animations(object);
     by_id('card-manifest').hidden = !object.manifest;
@@ -73,7 +76,7 @@ export function make_card(orders) {
 
   return {
     welcome(message) {
-      ({ objects, animations, lang } = message);
+      ({ objects, animations, lang, exhibit } = message);
       const now = shown && objects.find(({ id }) => id === shown.id);
       if (now) fill(shown = now);
     },
@@ -98,6 +101,8 @@ export function make_card(orders) {
       card.hidden = false;
       document.body.classList.add('reads');
       card.scrollTop = 0;
+      // Whoever chose it by a button reads on here; who walks goes on walking.
+      if (opener?.closest('button')) by_id('card-title').focus({ preventScroll: true });
     },
     close,
   };

@@ -2,10 +2,9 @@
 // What a visitor chooses for eyes and line: leaps instead of glides, how good pictures are, the
 // whole screen, figures for technicians. Kept by the browser.
 import { all, by_id } from './element.js';
+import { kept } from './kept.js';
 import { wanted_size } from './picture.js';
 
-const kept = (name) => localStorage.getItem(`wellspring.${name}`);
-const keep = (name, value) => localStorage.setItem(`wellspring.${name}`, String(value));
 // most: pixels; the rest as `settings` has it.
 const qualities = {
   fine: { most: 1920 * 1080, fps: 0, quality: 90, max_quality: 95 },
@@ -17,18 +16,18 @@ const qualities = {
 export function make_comfort(send, on_change) {
   const reduced = matchMedia('(prefers-reduced-motion: reduce)');
   const calm = by_id('comfort'), figures = by_id('figures-on');
-  let chosen = kept('quality') in qualities ? kept('quality')
+  let chosen = kept.get('quality') in qualities ? kept.get('quality')
       : /** @type {any} */ (navigator).connection?.saveData ? 'saver' : 'plain';
 
   const wishes = () => {
     const { most, fps, ...rest } = qualities[chosen];
     return { ...rest, ...wanted_size(most), fps: document.hidden ? 1 : fps };
   };
-  calm.checked = kept('comfort') === null ? reduced.matches : kept('comfort') === 'true';
+  calm.checked = kept.get('comfort') === null ? reduced.matches : kept.get('comfort') === 'true';
   const tell_comfort = () => send({ comfort: calm.checked });
-  calm.addEventListener('change', () => { keep('comfort', calm.checked); tell_comfort(); });
+  calm.addEventListener('change', () => { kept.set('comfort', calm.checked); tell_comfort(); });
   reduced.addEventListener('change', () => {
-    if (kept('comfort') !== null) return;
+    if (kept.get('comfort') !== null) return;
     calm.checked = reduced.matches;
     tell_comfort();
   });
@@ -38,15 +37,18 @@ export function make_comfort(send, on_change) {
     input.addEventListener('change', () => {
       if (!input.checked) return;
       chosen = input.value;
-      keep('quality', chosen);
+      kept.set('quality', chosen);
       send(wishes());
       on_change();
     });
   }
 
-  figures.checked = kept('figures') === 'true';
+  figures.checked = kept.get('figures') === 'true';
   const show_figures = () => { by_id('figures').hidden = !figures.checked; };
-  figures.addEventListener('change', () => { keep('figures', figures.checked); show_figures(); });
+  figures.addEventListener('change', () => {
+    kept.set('figures', figures.checked);
+    show_figures();
+  });
   show_figures();
 
   const whole = by_id('whole-screen');

@@ -24,6 +24,7 @@ function tile(exhibit) {
 }
 
 translate_page(lang);
+document.body.classList.add('runs');
 document.title = 'Wellspring';
 try {
   const answer = await fetch('api/v1/exhibits');

@@ -3,9 +3,10 @@
 import { asked_group, group_address } from './address.js';
 import { copy } from './copy.js';
 import { by_id } from './element.js';
+import { of_tab } from './kept.js';
 import { word } from './words.js';
 
-const kept_name = 'wellspring.group';  // role and code, for as long as the browser's tab lives
+const kept_name = 'group';  // role and code, for as long as the browser's tab lives
 
 // orders: {group(action, code), notice(text), close()}: a message to the server, quiet words over
 // the picture, and the menu is in the way
@@ -62,18 +63,18 @@ export function make_group(orders) {
     welcome(message) {
       ({ lang } = message);
       show();
-      const kept = JSON.parse(sessionStorage.getItem(kept_name) ?? 'null');
+      const before = JSON.parse(of_tab.get(kept_name) ?? 'null');
       if (wish) follow(wish);
-      else if (kept && message.resumed) orders.group('rejoin');
-      else if (kept?.role === 'follower') follow(kept.code);
+      else if (before && message.resumed) orders.group('rejoin');
+      else if (before?.role === 'follower') follow(before.code);
     },
     // As the server tells it; what it leaves out has not changed.
     message(news) {
       const before = now.role, focused = document.activeElement;
       now = { ...now, away: false, ...news };
       show();
-      if (now.role === 'none') sessionStorage.removeItem(kept_name);
-      else sessionStorage.setItem(kept_name, JSON.stringify({ role: now.role, code: now.code }));
+      if (now.role === 'none') of_tab.remove(kept_name);
+      else of_tab.set(kept_name, JSON.stringify({ role: now.role, code: now.code }));
       if (now.role === before) return;
       say('');
       wish = null;
@@ -94,14 +95,14 @@ export function make_group(orders) {
       if (code === 'unknown_group') {
         const text = word(lang, 'group_unknown').replace('{asked}', wish ?? '');
         wish = null;
-        sessionStorage.removeItem(kept_name);
+        of_tab.remove(kept_name);
         if (by_id('menu').hidden) orders.notice(text);
         else say(text);
       } else if (code === 'in_group') {
         orders.notice(word(lang, 'group_decides'));
       } else if (code === 'no_group') {
         now = { ...now, role: 'none' };
-        sessionStorage.removeItem(kept_name);
+        of_tab.remove(kept_name);
         show();
       } else {
         return false;

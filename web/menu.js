@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The side menu: made from what the server says there is.
+import { read_address } from './address.js';
 import { by_id } from './element.js';
+import { kept } from './kept.js';
 import { language_names, translate_page, word } from './words.js';
 
 function button(text, on_click) {
@@ -53,8 +55,8 @@ export function make_menu(orders) {
   by_id('subtitles-on').addEventListener('change',
       (event) => orders.subtitles(event.target.checked));
 
-  const attention = by_id('attention'), kept = localStorage.getItem('wellspring.attention');
-  if (kept !== null && Number(kept) >= 0 && Number(kept) <= 1) attention.value = kept;
+  const attention = by_id('attention'), chosen = kept.get('attention');
+  if (chosen !== null && Number(chosen) >= 0 && Number(chosen) <= 1) attention.value = chosen;
   const tell_attention = () => {
     const side = attention.value < 0.4 ? 'eye' : attention.value > 0.6 ? 'look' : 'both';
     attention.setAttribute('aria-valuetext', word(lang, `attention_${side}`));
@@ -64,14 +66,14 @@ export function make_menu(orders) {
 
   return {
     // As the visitor chose, now or earlier; null: never.
-    attention: () => (localStorage.getItem('wellspring.attention') === null
-        ? null : Number(attention.value)),
+    attention: () => (kept.get('attention') === null ? null : Number(attention.value)),
     welcome(message) {
       lang = message.lang;
       translate_page(lang);
       tell_attention();
       document.title = message.title;
       by_id('title').textContent = message.title;
+      by_id('title').hidden = false;
       by_id('description').textContent = message.description;
       by_id('objects').replaceChildren(...message.objects.map(({ id, title }) => {
         const element = button(title, () => { open(false); orders.object(id); });
@@ -90,6 +92,7 @@ export function make_menu(orders) {
         return element;
       }));
       by_id('stories-section').hidden = message.stories.length === 0 || !message.storyteller;
+      by_id('read-link').href = read_address(message.exhibit, lang);
       by_id('storyteller-section').hidden = !message.storyteller;
       by_id('tellers').replaceChildren(...message.storytellers.map(({ id, name, viewpoint }) => {
         const element = button(name || id, () => {

@@ -3,6 +3,19 @@
 // kept.
 import { read_picture } from './packet.js';
 
+/** @param {Blob} blob @returns {Promise<ImageBitmap | HTMLImageElement>} */
+async function decode_jpeg(blob) {
+  if ('createImageBitmap' in window) return createImageBitmap(blob);
+  const image = new Image();
+  image.src = URL.createObjectURL(blob);
+  try {
+    await image.decode();
+    return image;
+  } finally {
+    URL.revokeObjectURL(image.src);
+  }
+}
+
 // on_shown({frame, seq, decoded_ms, ...}) after a picture is on the canvas.
 export function make_picture(canvas, on_shown) {
   const context = canvas.getContext('2d', { alpha: false, desynchronized: true });
@@ -13,14 +26,14 @@ export function make_picture(canvas, on_shown) {
     decoding = true;
     const began = performance.now();
     try {
-      const bitmap = await createImageBitmap(new Blob([picture.payload], { type: 'image/jpeg' }));
+      const bitmap = await decode_jpeg(new Blob([picture.payload], { type: 'image/jpeg' }));
       const decoded_ms = performance.now() - began;
       if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
         canvas.width = bitmap.width;
         canvas.height = bitmap.height;
       }
       context.drawImage(bitmap, 0, 0);
-      bitmap.close();
+      if ('close' in bitmap) bitmap.close();
       shown++;
       times.push(performance.now());
       while (times.length && times[times.length - 1] - times[0] > 1000) times.shift();

@@ -2,6 +2,7 @@
 // The storyteller's voice: pieces of sound played with the picture of the same server time, from
 // where the mouth is. Browsers allow sound after a visitor has touched the page; until then none is
 // asked for.
+import { kept } from './kept.js';
 import { read_sound } from './packet.js';
 
 const near = 1.5, faintest = 0.1;  // metres of full loudness; a far voice stays audible
@@ -35,7 +36,7 @@ export function make_delay(most = 31) {
 // button: turns sound on and off. on_wanted(bool): whether the server should send any. eager: try
 // at once (kiosks whose browser allows it). label(name): the words of this page.
 export function make_sound(button, { on_wanted, label, eager = false }) {
-  let muted = localStorage.getItem('wellspring.sound') === 'off', wanted = null;
+  let muted = kept.get('sound') === 'off', wanted = null;
   let context = null, loud = null, master = null, volume = 1, panner = null;
   let mouth = null, everywhere = false, state = null;
   let behind = 0;
@@ -140,7 +141,7 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
   button.addEventListener('click', () => {
     const on = !muted && context?.state === 'running';
     muted = on;
-    localStorage.setItem('wellspring.sound', muted ? 'off' : 'on');
+    kept.set('sound', muted ? 'off' : 'on');
     if (muted) stop(); else open();
     set_loudness();
     show();
@@ -150,6 +151,7 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
       open();
   };
   for (const event of ['pointerup', 'keydown']) addEventListener(event, touched, { passive: true });
+  button.hidden = !window.AudioContext;
   if (eager && !muted) open();
   show();
 
@@ -177,7 +179,7 @@ export function make_sound(button, { on_wanted, label, eager = false }) {
     // As a new guest finds it: sound is on.
     reset() {
       muted = false;
-      localStorage.removeItem('wellspring.sound');
+      kept.remove('sound');
       set_loudness();
       show();
     },

@@ -13,6 +13,7 @@ import { make_description } from './describe.js';
 import { by_id } from './element.js';
 import { make_gamepad } from './gamepad.js';
 import { make_group } from './group.js';
+import { kept, of_tab } from './kept.js';
 import { make_leap } from './leap.js';
 import { make_map } from './map.js';
 import { make_menu } from './menu.js';
@@ -33,7 +34,7 @@ let exhibit = asked_exhibit, unknown_exhibit = '';
 // What the address asks for, until it is there; null: nothing. told: the story that a kiosk's guest
 // took along.
 let start = asked_viewpoint, start_place = asked_place(), told = asked_story;
-const visit_key = `wellspring.visit.${exhibit}`;  // where a visit that goes on is, sealed
+const visit_key = `visit.${exhibit}`;  // where a visit that goes on is, sealed
 const asked = new Map();  // seq -> time it was sent, until a picture shows it
 translate_page(lang);
 by_id('veil-text').textContent = word(lang, 'opening');
@@ -72,7 +73,7 @@ const dark = make_leap(canvas);
 const leap = () => dark.begin(seq);
 
 const hello = () => ({ type: 'hello', exhibit, lang, role: 'visitor', ...comfort.size(),
-  resume: sessionStorage.getItem(visit_key) ?? '' });
+  resume: of_tab.get(visit_key) ?? '' });
 
 // What the address asked for that is not there.
 function say_what_is_unknown(message) {
@@ -187,7 +188,7 @@ connection = make_connection({
         if (message.object) card.open(message.object); else card.close();
         break;
       case 'reply': ask.reply(message); break;
-      case 'keep': sessionStorage.setItem(visit_key, message.token); break;
+      case 'keep': of_tab.set(visit_key, message.token); break;
       case 'speech': sound.speech(message); break;
       case 'subtitle': subtitles.show(message); break;
       case 'agent':
@@ -242,12 +243,12 @@ const menu = make_menu({
   lamp: (name, on) => connection.send({ type: 'lamp', name, on }),
   lang(tag) {
     lang = tag;
-    localStorage.setItem('wellspring.lang', tag);
+    kept.set('lang', tag);
     connection.send({ type: 'settings', lang: tag });
   },
   subtitles: (on) => subtitles.enable(on),
   attention(share) {
-    localStorage.setItem('wellspring.attention', String(share));
+    kept.set('attention', share);
     connection.send({ type: 'settings', attention: share });
   },
 });
@@ -299,5 +300,10 @@ function wake() {
 }
 for (const event of ['pointermove', 'pointerdown', 'keydown', 'touchstart'])
   addEventListener(event, wake, { passive: true });
+// Who goes on by keys sees where he is, on the picture too.
+addEventListener('keydown',
+    (event) => { if (event.key === 'Tab') document.body.classList.add('keys'); });
+addEventListener('pointerdown', () => document.body.classList.remove('keys'));
 wake();
 canvas.focus();
+document.body.classList.add('runs');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's own words. The exhibit's words come from the server.
 import { all } from './element.js';
+import { kept } from './kept.js';
 import de from './words/de.js';
 import en from './words/en.js';
 import es from './words/es.js';
@@ -33,11 +34,12 @@ export function translate_page(lang) {
 // In the address; null: none.
 export const asked_language = () => new URLSearchParams(location.search).get('lang');
 
-// Of a text in languages: in `lang`, else in the first of the `spoken` ones that it has.
-export function text_in(text, lang, spoken) {
-  const tag = [lang, lang.split('-')[0], ...spoken].find((one) => text?.[one]);
-  return tag ? text[tag] : '';
-}
+// Of a text in languages: `lang`, else the first of the `spoken` ones that it has; undefined: none.
+export const tag_in = (text, lang, spoken) =>
+  [lang, lang.split('-')[0], ...spoken].find((one) => text?.[one]);
+
+// The text in that language.
+export const text_in = (text, lang, spoken) => text?.[tag_in(text, lang, spoken)] ?? '';
 
 // Whether one of the `spoken` languages is that one, whatever its country.
 export const knows = (tag, spoken) =>
@@ -45,5 +47,5 @@ export const knows = (tag, spoken) =>
 
 // The visitor's language: asked for in the address, chosen before, or the browser's.
 export function first_language() {
-  return asked_language() ?? localStorage.getItem('wellspring.lang') ?? navigator.language ?? 'en';
+  return asked_language() ?? kept.get('lang') ?? navigator.language ?? 'en';
 }

@@ -32,7 +32,7 @@ export function make_pages({ about, lang, wide, heard, orders }) {
       image ? element('img', { src: image, alt: '', draggable: false }) : null,
       element('span', {}, element('b', { textContent: title }),
           detail ? element('small', { textContent: detail }) : null));
-  const list = (entries) => element('nav.entries', {}, ...entries);
+  const list = (entries) => element('div.entries', {}, ...entries);
 
   add('title', () => [element('div.plate', {},
       element('p.sign', { ariaHidden: 'true', textContent: '❦' }),

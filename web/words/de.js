@@ -54,4 +54,9 @@ export default {
   look_around: 'Von allen Seiten ansehen',
   around_hint: 'Ziehen oder Pfeiltasten drehen es, Mausrad, zwei Finger, W und S holen es näher.',
   set_going: 'In Gang setzen',
+  read: 'Zum Mitlesen', read_all: 'Alles Erzählte als Text', read_story: 'Geschichte lesen',
+  read_which: 'Was möchten Sie lesen?', read_nothing: 'Hier wird noch nichts erzählt.',
+  read_unknown: 'Eine Ausstellung „{asked}“ gibt es hier nicht. Diese sind zu lesen:',
+  to_exhibit: 'Zur Ausstellung', contents: 'Inhalt', told_by: 'Es erzählt: {name}',
+  credits: 'Von wem die Modelle sind', licence: 'Lizenz',
 };

@@ -53,4 +53,9 @@ export default {
   look_around: 'Look at it from all sides',
   around_hint: 'Drag it or press arrow keys to turn it; wheel, two fingers, W and S bring it nearer.',
   set_going: 'Set it going',
+  read: 'Read along', read_all: 'All that is told, as text', read_story: 'Read its story',
+  read_which: 'What would you like to read?', read_nothing: 'Nothing is told here yet.',
+  read_unknown: 'There is no exhibit “{asked}” here. These can be read:',
+  to_exhibit: 'To the exhibit', contents: 'Contents', told_by: 'Told by {name}',
+  credits: 'Whose models these are', licence: 'Licence',
 };

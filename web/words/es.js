@@ -55,4 +55,9 @@ export default {
   look_around: 'Mirarlo por todos los lados',
   around_hint: 'Se gira arrastrando o con las flechas; la rueda, dos dedos, W y S lo acercan.',
   set_going: 'Ponerlo en marcha',
+  read: 'Para leer', read_all: 'Todo lo que se cuenta, en texto', read_story: 'Leer su relato',
+  read_which: '¿Qué desea leer?', read_nothing: 'Aquí todavía no se cuenta nada.',
+  read_unknown: 'Aquí no hay ninguna exposición «{asked}». Estas se pueden leer:',
+  to_exhibit: 'A la exposición', contents: 'Índice', told_by: 'Cuenta: {name}',
+  credits: 'De quién son los modelos', licence: 'Licencia',
 };

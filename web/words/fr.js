@@ -55,4 +55,9 @@ export default {
   look_around: 'Regarder de tous les côtés',
   around_hint: 'Glissez ou pressez les flèches : il tourne. Molette, deux doigts, W et S : plus près.',
   set_going: 'Mettre en mouvement',
+  read: 'À lire', read_all: 'Tout ce qui se raconte, en texte', read_story: 'Lire son récit',
+  read_which: 'Que voulez-vous lire ?', read_nothing: 'Ici, rien ne se raconte encore.',
+  read_unknown: 'Il n’y a pas d’exposition « {asked} » ici. Voici ce qui peut se lire :',
+  to_exhibit: 'Vers l’exposition', contents: 'Sommaire', told_by: 'Raconté par {name}',
+  credits: 'De qui sont les modèles', licence: 'Licence',
 };

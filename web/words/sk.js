@@ -51,4 +51,9 @@ export default {
   look_around: 'Pozrieť zo všetkých strán',
   around_hint: 'Otáča sa ťahaním alebo šípkami, priblíži ho koliesko, dva prsty, W a S.',
   set_going: 'Uviesť do pohybu',
+  read: 'Na čítanie', read_all: 'Všetko rozprávané ako text', read_story: 'Prečítať príbeh',
+  read_which: 'Čo si chcete prečítať?', read_nothing: 'Zatiaľ sa tu nič nerozpráva.',
+  read_unknown: 'Výstava „{asked}“ tu nie je. Prečítať si môžete tieto:',
+  to_exhibit: 'Na výstavu', contents: 'Obsah', told_by: 'Rozpráva: {name}',
+  credits: 'Kto vytvoril modely', licence: 'Licencia',
 };
