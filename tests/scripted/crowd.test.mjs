@@ -61,13 +61,14 @@ class Guest {
     this.visits = 0;
     this.resumed = 0;
     this.seq = 0;
+    this.lamps = {};
+    this.follows = '';
   }
 
   async enter() {
     const resume = this.token && this.dice.next() < 0.7 ? this.token : '';
     const lang = this.lang = this.dice.among(['en', 'de', 'sk']);
     this.visitor = new Visitor(server);
-    this.lamps = {};
     this.visitor.waiting.push((item) => { if (item.message) this.hear(item.message); });
     this.home = await this.visitor.hello(
         { lang, width: this.dice.among([160, 240, 320]), height: 180, ...(resume && { resume }) });
@@ -79,10 +80,12 @@ class Guest {
   hear(message) {
     const { type } = message;
     if (type === 'welcome') {
+      if (message.resumed) return;  // what was asked for before goes on, and lamps are as they were
       for (const lamp of message.lamps) this.lamps[lamp.name] = [lamp.on];
-      // Who comes back is told on what was asked for before.
-      if (!message.resumed) this.asked = this.asked_story = this.asked_tour = false;
+      this.asked = this.asked_story = this.asked_tour = false;
+      this.follows = '';
     } else if (type === 'error') {
+      if (message.code === 'unknown_group' && this.follows === 'perhaps') this.follows = '';
       const recent = this.sent.filter(({ at }) => performance.now() - at < settled);
       if (!recent.some(({ what }) => may_refuse[what]?.includes(message.code)))
         this.wrong.push(`${message.code}: ${message.message}, after ${this.sent.at(-1)?.what}`);
@@ -99,9 +102,10 @@ class Guest {
       if (!this.asked_story) this.wrong.push(`the story '${message.story}'`);
     } else if (type === 'state' && message.lamps) {
       for (const [name, on] of Object.entries(message.lamps))
-        if (!this.lamps[name].includes(on)) this.wrong.push(`lamp ${name}`);
+        if (!this.follows && !this.lamps[name].includes(on)) this.wrong.push(`lamp ${name}`);
       if (message.tour && !this.asked_tour) this.wrong.push(`the tour ${message.tour.id}`);
     } else if (type === 'group') {
+      this.follows = message.role === 'follower' ? 'surely' : '';  // its leader's lamps are its own
       if (message.role === 'leader') codes.add(this.leads = message.code);
       else if (this.leads) codes.delete(this.leads), this.leads = '';
     } else if (type === 'keep') {
@@ -140,7 +144,7 @@ class Guest {
       [2, () => this.send('storyteller', { teller: dice.among(home.storytellers).id })],
       [7, () => {
         const { name } = dice.among(home.lamps), on = dice.next() < 0.5;
-        // Until the order has come, and where a leader decides, it may be either.
+        // Until the order has come it may be either.
         this.lamps[name] = [true, false];
         this.send('lamp', { name, on });
       }],
@@ -167,7 +171,7 @@ class Guest {
     const code = this.dice.among([...codes, '']);
     const action = this.dice.among(code ? ['lead', 'follow', 'rejoin', 'leave', 'leave']
         : ['lead', 'leave']);
-    if (action === 'follow') this.asked_tour = true;
+    if (action === 'follow') this.asked_tour = true, this.follows ||= 'perhaps';
     this.send('group', { action, ...(action === 'follow' && { code }) });
   }
 
@@ -233,7 +237,8 @@ test('a crowd does what it likes, and everybody is by themselves',
   const grown = highest(warm.slice(-third)) - highest(warm.slice(0, third));
   console.log(JSON.stringify({
     seconds, seed, visits: sum((guest) => guest.visits),
-    resumed: sum((guest) => guest.resumed), done, onlooker: onlooker.lasting, mib: { first: memory[0]?.size, warm: warm[0], last: warm.at(-1),
+    resumed: sum((guest) => guest.resumed), done, onlooker: onlooker.lasting,
+    mib: { first: memory[0]?.size, warm: warm[0], last: warm.at(-1),
       highest: highest(memory.map((m) => m.size)), grown } }));
   const wrong = everybody.flatMap((guest) => guest.wrong.map((what) => `${guest.name}: ${what}`));
   assert.deepEqual(wrong.slice(0, 20), [], `${wrong.length} in all`);
