@@ -175,7 +175,7 @@ def painting():
 
 def window_view():
     return hills(512, 512, ('dfe8ee', '9fc0e4', 'ffffff'),
-                 ('8ea2b4', '566e6c', '465a3e', '37472c'), 44)
+                 ('8d9bac', '5c676e', '49533f', '3b442e'), 44)
 
 
 def dial():
