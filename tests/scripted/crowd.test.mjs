@@ -90,7 +90,8 @@ class Guest {
     if (type === 'welcome') {
       if (message.resumed) return;  // what was asked for before goes on, and lamps are as they were
       for (const lamp of message.lamps) this.lamps[lamp.name] = [lamp.on];
-      this.asked = this.asked_story = this.asked_tour = false;
+      this.asked = new Set();
+      this.asked_story = this.asked_tour = false;
       this.follows = '';
     } else if (type === 'error') {
       if (message.code === 'unknown_group' && this.follows === 'perhaps') this.follows = '';
@@ -98,13 +99,13 @@ class Guest {
       if (!recent.some(({ what }) => may_refuse[what]?.includes(message.code)))
         this.wrong.push(`${message.code}: ${message.message}, after ${this.sent.at(-1)?.what}`);
     } else if (type === 'reply') {
-      if (message.question !== this.asked) this.wrong.push(`a reply to '${message.question}'`);
+      if (!this.asked.has(message.question)) this.wrong.push(`a reply to '${message.question}'`);
     } else if (type === 'subtitle' && message.text) {
       if (message.lang !== this.lang) this.wrong.push(`a subtitle in ${message.lang}`);
-      if (!this.asked && !this.asked_story && !this.asked_tour)
+      if (!this.asked.size && !this.asked_story && !this.asked_tour)
         this.wrong.push(`a subtitle '${message.text}'`);
     } else if (type === 'speech' && message.action === 'start') {
-      if (!this.asked && !this.asked_story && !this.asked_tour)
+      if (!this.asked.size && !this.asked_story && !this.asked_tour)
         this.wrong.push(`sound '${message.text}'`);
     } else if (type === 'agent' && message.story) {
       if (!this.asked_story) this.wrong.push(`the story '${message.story}'`);
@@ -157,8 +158,9 @@ class Guest {
         this.send('lamp', { name, on });
       }],
       [3, () => {
-        this.asked = dice.among(home.questions);
-        this.send('ask', { text: this.asked });
+        const text = dice.among(home.questions);
+        this.asked.add(text);
+        this.send('ask', { text });
       }],
       [3, () => {
         this.asked_tour = true;
@@ -175,11 +177,13 @@ class Guest {
   }
 
   lead_or_follow() {
-    // A leader's tour is seen by the group; its words are not.
     const code = this.dice.among([...codes, '']);
     const action = this.dice.among(code ? ['lead', 'follow', 'rejoin', 'leave', 'leave']
         : ['lead', 'leave']);
-    if (action === 'follow') this.asked_tour = true, this.follows ||= 'perhaps';
+    if (action === 'follow') {  // what its leader is told it hears, too
+      this.asked_story = this.asked_tour = true;
+      this.follows ||= 'perhaps';
+    }
     this.send('group', { action, ...(action === 'follow' && { code }) });
   }
 
