@@ -6,7 +6,7 @@ import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
-import { run, source, start_server } from '../server.mjs';
+import { data, run, source, start_server } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-curator-'));
@@ -39,6 +39,54 @@ test('a model becomes an exhibit that is good and can be visited', async () => {
   assert.match(again.stderr, /there already/);
   assert.equal(readFileSync(join(content, 'giza', 'exhibit.json'), 'utf8'), before);
   assert.equal((await run('wellspring_new', ['giza'])).status, 2);
+});
+
+// Scenes that others made, each of its kind: what is said of it, how many views it gets at least,
+// and the notes that it may have.
+const scenes = [
+  { file: 'khronos/Duck/glTF-Binary/Duck.glb', told: /a sky was added/, views: 5 },
+  { file: 'khronos/CesiumMilkTruck/glTF-Binary/CesiumMilkTruck.glb', told: /is 4\.8\d m across/ },
+  { file: 'khronos/CesiumMan/glTF-Binary/CesiumMan.glb', told: /is 1\.5\d* m across/ },
+  { file: 'khronos/Suzanne/glTF/Suzanne.gltf', told: /seen from outside/ },
+  { file: 'khronos/TextureCoordinateTest/glTF/TextureCoordinateTest.gltf', views: 3 },  // flat
+  { file: 'khronos/TwoSidedPlane/glTF/TwoSidedPlane.gltf', views: 3 },                  // lying
+  { file: 'khronos/Cameras/glTF/Cameras.gltf', views: 5, notes: /not perspective/ },
+  { file: 'khronos/BoxAnimated/glTF-Binary/BoxAnimated.glb' },
+  { file: 'khronos/AnimatedMorphSphere/glTF-Binary/AnimatedMorphSphere.glb' },
+  { file: 'castle/gltf/multiple_animated_lights/multiple_animated_lights.gltf',
+    told: /its own light is enough/, notes: /too bright/ },
+  { file: 'castle/gltf/normal_maps_scaled_object/normal_maps_scaled_object.glb', views: 3 },
+  { file: 'castle/gltf/camera_animation/camera_animation.glb', notes: /normals without/ },
+  { file: 'ozz/rigged_simple.gltf', told: /is 9\.\d+ m across/ },
+];
+const gltf = join(data, '1_gltf');
+const no_scenes = !existsSync(gltf) && `there are no scenes in ${gltf}`;
+
+test('scenes that others made become exhibits', { skip: no_scenes }, async () => {
+  for (const [n, { file, told = /sky|light/, views = 1, notes = /^$/ }] of scenes.entries()) {
+    const id = `scene-${n}`, place = join(content, id);
+    const made = await run('wellspring_new', [id, join(gltf, file), '--content', content]);
+    assert.equal(made.status, 0, `${file}: ${made.stderr}`);
+    assert.match(made.stdout + made.stderr, told, file);
+    const exhibit = JSON.parse(readFileSync(join(place, 'exhibit.json')));
+    assert.ok(exhibit.viewpoints.length >= views, `${file}: ${exhibit.viewpoints.length} views`);
+    const checked = await run('wellspring_check', [place]);
+    assert.equal(checked.status, 0, `${file}: ${checked.stdout}`);
+    for (const note of `${checked.stdout}${checked.stderr}`.match(/^note: .*/gm) ?? [])
+      assert.match(note, notes, file);
+    rmSync(place, { recursive: true });
+  }
+});
+
+test('what cannot be shown is refused, and nothing is left', { skip: no_scenes }, async () => {
+  for (const [file, why] of [['castle/gltf/lines/lines.gltf', /there is nothing to see/],
+      ['assimp/draco/2CylinderEngine.gltf', /KHR_draco_mesh_compression, .* not supported/]]) {
+    const { status, stderr } = await run('wellspring_new',
+        ['refused', join(gltf, file), '--content', content]);
+    assert.equal(status, 1);
+    assert.match(stderr, why);
+    assert.ok(!existsSync(join(content, 'refused')));
+  }
 });
 
 test('an exhibit that is not there: those that are', async () => {
