@@ -482,6 +482,7 @@ def main():
         known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
         bpy.ops.export_scene.gltf(
             filepath=out, export_format='GLB', export_apply=True, export_lights=True,
+            export_copyright='The Wellspring authors, Apache License 2.0',
             export_animations=True, export_frame_range=False, export_image_format='AUTO',
             **{key: value for key, value in unitless.items() if key in known})
 

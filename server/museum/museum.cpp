@@ -49,6 +49,7 @@ struct Room {
   ReportBoard board;
   StatusDesk status;
   Arrivals arrivals;
+  std::atomic<bool> draws = false;       // its visitors need the cores
   std::unique_ptr<Rehearsal> rehearsal;  // null: it is not watched
   std::unique_ptr<Show> next;            // what has come of it, to be taken over
   std::thread thread;                    // of its ticks
@@ -80,12 +81,20 @@ void look_at_rehearsal(Room& room, std::atomic<bool>& changed) {
   if (room.next) changed = true;
 }
 
-void keep_ticking(Room& room, Ledger* ledger, const std::atomic<bool>& stopping,
-                  std::atomic<bool>& changed) {
+// While visitors of one need the cores, no other is baked.
+void share_cores(Room& room, const std::list<Room>& rooms) {
+  room.draws = draws(*room.show);
+  room.show->others_draw =
+      std::ranges::any_of(rooms, [&](const Room& other) { return &other != &room && other.draws; });
+}
+
+void keep_ticking(Room& room, const std::list<Room>& rooms, Ledger* ledger,
+                  const std::atomic<bool>& stopping, std::atomic<bool>& changed) {
   double reported = -1;
   while (!stopping) {
     const double began = seconds_now();
     room.show->local_time = local_time(std::time(nullptr));
+    share_cores(room, rooms);
     tick(*room.show, room.arrivals, began);
     if (began - reported > report_interval) {
       reported = began;
@@ -240,8 +249,9 @@ bool Museum::run(const std::function<bool()>& ended) {
   Impl& impl = *impl_;
   impl.stopping = impl.changed = false;
   for (Room& room : impl.rooms)
-    room.thread = std::thread(
-        [&impl, &room] { keep_ticking(room, impl.ledger.get(), impl.stopping, impl.changed); });
+    room.thread = std::thread([&impl, &room] {
+      keep_ticking(room, impl.rooms, impl.ledger.get(), impl.stopping, impl.changed);
+    });
   while (!ended() && !impl.changed) {
     if (!impl.reception) {
       std::this_thread::sleep_for(std::chrono::duration<double>(wait_at_reception));

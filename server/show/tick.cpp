@@ -41,6 +41,14 @@ constexpr double idle_before_bake = 5;       // seconds in which nothing was dra
 constexpr double least_wait = 0.001;         // between ticks, whatever is due
 constexpr double listening_interval = 0.01;  // between looks at what visitors want, pictures or not
 
+}  // namespace
+
+bool draws(const Show& show) {
+  return !show.visitors.empty() && show.time - show.drew_at <= idle_before_bake;
+}
+
+namespace {
+
 void welcome_links(Show& show, Arrivals& arrivals) {
   for (std::shared_ptr<Link>& link : arrivals.take()) {
     if (link->kind == LinkKind::eye) {
@@ -265,7 +273,7 @@ void watch_baker(Show& show) {
   const bool alone = show.visitors.empty();
   if (alone || show.lights.maps)
     if (auto maps = show.baker->take()) use_maps(show, std::move(maps));
-  show.baker->allow(alone || show.time - show.drew_at > idle_before_bake);
+  show.baker->allow(!show.others_draw && (alone || !draws(show)));
 }
 
 // A camera on its way waits for keyframes that are slow; a visitor's own turn does not.

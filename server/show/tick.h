@@ -10,6 +10,9 @@ namespace wellspring {
 // second are taken as one second). Never throws, never waits for a peer.
 void tick(Show& show, Arrivals& arrivals, double now);
 
+// Somebody is there, and something was drawn for them lately: the cores are not free.
+bool draws(const Show& show);
+
 // How long the caller may sleep after a tick, at time `now` on the same clock.
 double seconds_to_next_tick(const Show& show, double now);
 // Sleeps until the next tick is due, or what is drawn meanwhile is finished.

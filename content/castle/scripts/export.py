@@ -27,6 +27,7 @@ def settle(path):
     assert kind == b'JSON'
     document, rest = json.loads(data[20:20 + length]), data[20 + length:]
     document['asset']['generator'] = 'content/castle/make_scene.py'
+    document['asset']['copyright'] = 'The Wellspring authors, Apache License 2.0'
     used = {'KHR_lights_punctual'}
     for material in document['materials']:
         spec = BY_NAME[material['name']]

@@ -168,9 +168,10 @@ void check_light(const Exhibit& exhibit, World& world, std::vector<Problem>& pro
     noter.note("/scene",
                fmt::format("these lamps are up to {:.0f} times too bright, pictures are white: {}. "
                            "Export them with the lighting mode Unitless; or write "
-                           "\"light_scale\": {:.2g}, or \"exposure\": \"auto\"",
+                           "\"light_scale\": {:.2g}{}",
                            strongest / white_light, list_names(names, 8),
-                           names.size() == 1 ? white_light / strongest : 1.0f / 683));
+                           names.size() == 1 ? white_light / strongest : 1.0f / 683,
+                           exhibit.auto_exposure ? "" : ", or \"exposure\": \"auto\""));
   if (exhibit.auto_exposure) return;
   std::optional<float> wanted = measure_exposure(exhibit, world);
   if (!wanted) return noter.note("/exposure", "no light falls on anything in view");

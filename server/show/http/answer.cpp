@@ -177,11 +177,14 @@ HttpReply answer_metrics(const AnswerSources& sources) {
 }
 
 // The page of a path; null: there is none. Where there are several exhibits, "/" lists them, and
-// each has the visitor's page at /e/ID.
-const PageFile* find_page(const AnswerSources& sources, const std::string& path) {
+// each has the visitor's page at /e/ID and at /?exhibit=ID.
+const PageFile* find_page(const AnswerSources& sources, const HttpQuestion& question) {
+  const std::string& path = question.path;
+  const auto asked = question.query.find("exhibit");
+  const bool is_one = asked != question.query.end() && find_exhibit(sources, asked->second);
   const std::string below = "/e/";
   std::string name = path;
-  if (path == "/" && sources.exhibits.size() > 1) name = "/front.html";
+  if (path == "/" && sources.exhibits.size() > 1 && !is_one) name = "/front.html";
   if (path.starts_with(below))
     name = find_exhibit(sources, path.substr(below.size())) ? exhibit_page : "";
   auto page = sources.pages->find(name);
@@ -211,7 +214,7 @@ HttpReply answer(const AnswerSources& sources, const HttpQuestion& question) {
   if (path == exhibits || path == exhibits + "/") return answer_exhibits(sources);
   if (path.starts_with(exhibits + "/"))
     return answer_exhibit(sources, question, path.substr(exhibits.size() + 1));
-  if (const PageFile* page = find_page(sources, path)) return answer_page(*page, question);
+  if (const PageFile* page = find_page(sources, question)) return answer_page(*page, question);
   if (auto page = sources.pages->find("/missing.html");
       page != sources.pages->end() && prefers_html(question.accept)) {
     HttpReply reply = answer_page(page->second, question);

@@ -20,8 +20,11 @@ constexpr float narrowest = 0.42f;         // radians, as if one leant over it
 constexpr size_t most_looks = 240;         // places tried with rays
 constexpr size_t sample_count = 16;        // of an object's surface
 
+// A triangle: its middle, and the box around it.
 struct SurfaceSample {
   vec3 place, normal;
+  float area = 0;  // m^2
+  vec3 low, high;
 };
 
 bool is_glass(const Material& material) { return material.transmission > 0.5f; }
@@ -60,7 +63,7 @@ bool is_figure(const World& world, uint32_t instance) {
   return world.is_moving(instance) && (object >= nodes.size() || nodes[object] < 0);
 }
 
-// Of objects, or of the part of them around `near`: the middles of its triangles.
+// Of objects, or of the part of them around `near`: its triangles.
 std::vector<SurfaceSample> samples_of(const World& world, const Objects& objects,
                                       const std::optional<vec3>& near) {
   std::vector<SurfaceSample> samples;
@@ -69,12 +72,15 @@ std::vector<SurfaceSample> samples_of(const World& world, const Objects& objects
     const Mesh& mesh = world.mesh_of(i);
     for (size_t t = 0; t < mesh.triangles.size(); t++) {
       uvec3 corner = mesh.triangles[t];
-      vec3 middle =
-          (mesh.positions[corner.x] + mesh.positions[corner.y] + mesh.positions[corner.z]) / 3.0f;
-      vec3 place = vec3(world.to_world(i) * vec4(middle, 1));
+      auto at = [&](uint32_t k) { return vec3(world.to_world(i) * vec4(mesh.positions[k], 1)); };
+      const vec3 a = at(corner.x), b = at(corner.y), c = at(corner.z), place = (a + b + c) / 3.0f;
       vec3 away = near ? abs(place - *near) : vec3(0);
       if (std::max({away.x, away.y, away.z}) > part) continue;
-      samples.push_back({place, normal_of(world, {0, i, uint32_t(t), vec2(0)})});
+      const vec3 across = cross(b - a, c - a);
+      const float twice = glm::length(across);
+      vec3 low = min(a, min(b, c)), high = max(a, max(b, c));
+      if (near) low = max(low, *near - part), high = min(high, *near + part);
+      samples.push_back({place, twice > 0 ? across / twice : vec3(0), 0.5f * twice, low, high});
     }
   }
   return samples;
@@ -83,10 +89,24 @@ std::vector<SurfaceSample> samples_of(const World& world, const Objects& objects
 Bounds bounds_of(const std::vector<SurfaceSample>& samples) {
   Bounds bounds;
   for (const SurfaceSample& sample : samples) {
-    bounds.low = min(bounds.low, sample.place);
-    bounds.high = max(bounds.high, sample.place);
+    bounds.low = min(bounds.low, sample.low);
+    bounds.high = max(bounds.high, sample.high);
   }
   return bounds;
+}
+
+// Some, evenly by area: a knob of many triangles counts no more than it is large.
+std::vector<SurfaceSample> thin_out(const std::vector<SurfaceSample>& samples) {
+  float all = 0, sum = 0;
+  for (const SurfaceSample& sample : samples) all += sample.area;
+  std::vector<SurfaceSample> few;
+  for (const SurfaceSample& sample : samples) {
+    sum += sample.area;
+    while (few.size() < sample_count && sum * sample_count > all * (float(few.size()) + 0.5f))
+      few.push_back(sample);
+  }
+  if (few.empty()) few = samples, few.resize(std::min(few.size(), sample_count));  // no area at all
+  return few;
 }
 
 struct Look {
@@ -121,17 +141,17 @@ Look look_from(vec3 eye, const Bounds& box, float aspect) {
 vec2 seen_from(const World& world, vec3 eye, const Objects& objects,
                const std::vector<SurfaceSample>& samples) {
   float seen = 0, square = 0;
-  const size_t step = std::max<size_t>(1, samples.size() / sample_count);
-  size_t count = 0;
-  for (size_t i = step / 2; i < samples.size(); i += step, count++) {
-    vec3 way = samples[i].place - eye;
+  for (const SurfaceSample& sample : samples) {
+    vec3 way = sample.place - eye;
     float distance = glm::length(way);
     if (distance < 1e-3f) continue;
     Hit hit = first_solid(world, {eye, 0, way / distance, distance + 0.02f});
-    if (hit.valid() && has(objects, world.object_of(hit.instance))) seen++;
-    square += std::abs(dot(samples[i].normal, way / distance));
+    if (!hit.valid() || hit.t < distance - 0.02f || !has(objects, world.object_of(hit.instance)))
+      continue;
+    seen++;
+    square += std::abs(dot(sample.normal, way / distance));
   }
-  return vec2(seen, square) / float(std::max<size_t>(count, 1));
+  return vec2(seen, square) / float(std::max<size_t>(samples.size(), 1));
 }
 
 }  // namespace
@@ -216,6 +236,7 @@ std::optional<Viewpoint> good_view(const Exhibit& exhibit, const World& world, c
     }
     looks.resize(most_looks);
   }
+  samples = thin_out(samples);
   const Look* best = nullptr;
   float most = 0, best_seen = 0;
   for (const Look& look : looks) {

@@ -154,12 +154,14 @@ TEST(Cache, WhatIsCutAwayIsNotShownFromMemory) {
   View cut = hall();
   cut.near = 4;
   for (int i = 0; i < 60; i++) v.step(cut, 400);
+  const Scene scene = make_room_scene(v.room);
+  const World world(scene);
   int wrong = 0, gone = 0;
   for (int y = 0; y < cut.height; y++)
     for (int x = 0; x < cut.width; x++) {
       auto object_at = [&](const View& view) {
-        const Hit hit = v.room.world->intersect(view_ray(view, float(x) + 0.5f, float(y) + 0.5f));
-        return hit.valid() ? v.room.world->object_of(hit.instance) : 0u;
+        const Hit hit = world.intersect(view_ray(view, float(x) + 0.5f, float(y) + 0.5f));
+        return hit.valid() ? world.object_of(hit.instance) : 0u;
       };
       gone += object_at(hall()) != object_at(cut);
       wrong += v.frame.object[size_t(y * cut.width + x)] != object_at(cut);
