@@ -82,7 +82,7 @@ class Statement {
 
 void add_rows(const std::string& file, const Sums& sums, int patience) {
   Database database(file, true, patience);
-  database.run("PRAGMA journal_mode=WAL; BEGIN IMMEDIATE;");
+  database.run("BEGIN IMMEDIATE;");
   database.run(
       "CREATE TABLE IF NOT EXISTS sums (day TEXT NOT NULL, what TEXT NOT NULL, key TEXT NOT NULL,"
       " value REAL NOT NULL, PRIMARY KEY (day, what, key)) WITHOUT ROWID");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page in headless Chromium: things that move when they are touched, and objects that are looked
-// at from all sides.
+// The page in headless Chromium: things that move when they are touched, and objects that are
+// looked at from all sides.
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { join } from 'node:path';

@@ -71,8 +71,8 @@ test('what dies comes back, and nothing is left at the end', async () => {
       return await (await fetch(`http://127.0.0.1:${port}${path}`)).text();
     } catch { return ''; }
   };
-  const observations = async () => Number(
-      /^wellspring_kiosk_observations_total (\S+)$/m.exec(await get('/metrics'))?.[1] ?? -1);
+  const observed = /^wellspring_kiosk_observations_total\{exhibit="castle"\} (\S+)$/m;
+  const observations = async () => Number(observed.exec(await get('/metrics'))?.[1] ?? -1);
   const serves = async () => (await get('/healthz')).includes('ok');
   const sees = async () => {
     const before = await observations();

@@ -42,7 +42,8 @@ const may_enter = {
   },
   world: {
     '': [],
-    load: [''],
+    motion: [''],
+    load: ['', 'motion'],
     raster: [''],
   },
   light: {
@@ -84,13 +85,17 @@ const may_enter = {
     visit: ['storyteller', 'moving', 'exhibit'],
     state: ['house', 'questions', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
     count: ['state', 'house', 'questions', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
-    answer: ['count', 'state', 'house', 'questions', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
-    http: ['answer', 'state', 'house', 'questions', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
-    status: ['http', 'answer', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
+    answer: ['count', 'state', 'house', 'questions', 'kiosk', 'visit', 'storyteller', 'moving',
+      'exhibit'],
+    http: ['answer', 'state', 'house', 'questions', 'kiosk', 'visit', 'storyteller', 'moving',
+      'exhibit'],
+    status: ['http', 'answer', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'moving',
+      'exhibit'],
     watch: ['state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
     draw: ['state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
     // The tick.
-    '': ['draw', 'answer', 'count', 'state', 'house', 'kiosk', 'visit', 'storyteller', 'moving', 'exhibit'],
+    '': ['draw', 'answer', 'count', 'state', 'house', 'kiosk', 'visit', 'storyteller',
+      'moving', 'exhibit'],
   },
 };
 // Files in a layer's own folder where that is no room.

@@ -73,7 +73,8 @@ bool is_inside_out(const Mesh& mesh) {
   double sum = 0;
   for (const uvec3& t : mesh.triangles) {
     const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
-    sum += dot(cross(b - a, c - a), dvec3(mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]));
+    sum +=
+        dot(cross(b - a, c - a), dvec3(mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z]));
   }
   return sum < 0;
 }

@@ -104,8 +104,8 @@ struct Show {
   const Technique* still_technique = nullptr;
 
   std::vector<Figure> figures;  // of all the exhibit's storytellers; hidden but for one
-  Teller teller;  // of the house: kiosks' and those visitors' who have none of their own
-  Movers movers;           // of the exhibit's animations
+  Teller teller;            // of the house: kiosks' and those visitors' who have none of their own
+  Movers movers;            // of the exhibit's animations
   std::vector<Play> plays;  // of each animation: the house's, and the shared ones
   SkinScratch scratch;
   SpeechSource speech;      // empty: the storyteller speaks by subtitles
@@ -139,13 +139,13 @@ struct Show {
   Sums sums;  // counted since they were last taken (show/count)
 
   uint64_t ticks = 0;
-  uint64_t pose_number = 1;           // of the world: counts commits
-  const Teller* posed_as = nullptr;   // as whom its figures stand; may be gone meanwhile
+  uint64_t pose_number = 1;            // of the world: counts commits
+  const Teller* posed_as = nullptr;    // as whom its figures stand; may be gone meanwhile
   const Visitor* posed_for = nullptr;  // whose own animations it shows; likewise; null: nobody's
-  double time = 0;                    // of the present tick, seconds
-  uint64_t time_us = 0;               // of the present tick on the clock of pictures and sound
-  float picture_lead = 0.02f;         // seconds from a tick to the times of its pictures, smoothed
-  float samples_per_second = 200000;  // measured, all cores
+  double time = 0;                     // of the present tick, seconds
+  uint64_t time_us = 0;                // of the present tick on the clock of pictures and sound
+  float picture_lead = 0.02f;          // seconds from a tick to the times of its pictures, smoothed
+  float samples_per_second = 200000;   // measured, all cores
   ShowTotals totals;
   WarpScratch warp;  // of all visitors, whose pictures are warped one after the other
   StillPass pass;
