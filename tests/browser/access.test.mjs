@@ -68,6 +68,9 @@ async function visit(options, path = '/e/castle') {
 // What axe-core finds on the page as it is: a line each.
 async function look(page, state) {
   await page.evaluate(() => document.body.classList.remove('quiet'));
+  // What appears slowly is there.
+  await page.waitForFunction(() => document.getAnimations().every((one) =>
+    one.playState !== 'running' || one.effect.getComputedTiming().endTime === Infinity));
   if (pictures) await page.screenshot({ path: join(pictures, `access-${state}.png`) });
   if (!await page.evaluate('!!window.axe')) await page.evaluate(axe);
   const found = await page.evaluate(async (values) => {

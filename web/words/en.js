@@ -51,7 +51,7 @@ export default {
   viewpoint_copied: 'Copied: paste it into “viewpoints” of exhibit.json.',
   problems: 'These mistakes keep the changed exhibit from being shown:',
   look_around: 'Look at it from all sides',
-  around_hint: 'Drag it or press arrow keys to turn it; wheel, two fingers, W and S bring it nearer.',
+  around_hint: 'Drag it or press arrow keys to turn it; wheel, two fingers, W and S come nearer.',
   set_going: 'Set it going',
   read: 'Read along', read_all: 'All that is told, as text', read_story: 'Read its story',
   read_which: 'What would you like to read?', read_nothing: 'Nothing is told here yet.',

@@ -53,7 +53,7 @@ export default {
   viewpoint_copied: 'Copié : à coller sous « viewpoints » dans exhibit.json.',
   problems: 'À cause de ces fautes, l’exposition modifiée ne se montre pas encore :',
   look_around: 'Regarder de tous les côtés',
-  around_hint: 'Glissez ou pressez les flèches : il tourne. Molette, deux doigts, W et S : plus près.',
+  around_hint: 'Glisser ou flèches : il tourne. Molette, deux doigts, W et S : plus près.',
   set_going: 'Mettre en mouvement',
   read: 'À lire', read_all: 'Tout ce qui se raconte, en texte', read_story: 'Lire son récit',
   read_which: 'Que voulez-vous lire ?', read_nothing: 'Ici, rien ne se raconte encore.',
