@@ -2,20 +2,15 @@
 // All pages for all people: the rules of WCAG 2.2 AA by axe-core, in every state and size; and what
 // no rule finds: the way of the Tab key, targets for fingers, large print, less motion, contrast.
 import assert from 'node:assert/strict';
-import { cpSync, existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { write_pyramid } from '../scripted/pyramid.mjs';
-import { load_module, run, source, start_server } from '../server.mjs';
+import { make_two_exhibits } from '../scripted/pyramid.mjs';
+import { load_module, start_server } from '../server.mjs';
+import { launch, pictures, skip } from './chromium.mjs';
 
-const { chromium } = load_module('playwright-core');
 const axe = load_module('axe-core').source;
-const executable = [
-  '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome',
-].find(existsSync);
-const skip = !executable && 'no Chromium on this machine';
-const pictures = process.env.WELLSPRING_PICTURES;
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-access-'));
 const patience = { timeout: 60000 };
 const rules = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
@@ -33,16 +28,9 @@ const others = [['front', '/', '#exhibits a'], ['read', '/read?exhibit=castle', 
 let server, browser;
 before(async () => {
   if (skip) return;
-  const content = join(folder, 'content');
-  const made = await run('wellspring_new', ['giza', write_pyramid(folder), '--content', content]);
-  assert.equal(made.status, 0, made.stderr);
-  cpSync(join(source, 'content', 'castle'), join(content, 'castle'), { recursive: true });
+  const content = await make_two_exhibits(folder);
   server = await start_server(['--cache', join(folder, 'cache'), '--no-bake'], { content });
-  browser = await chromium.launch({
-    executablePath: executable,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-        '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-  });
+  browser = await launch();
 });
 after(async () => {
   await browser?.close();

@@ -2,18 +2,13 @@
 // Slow lines and old or locked browsers: how much the page weighs, and what it does where something
 // is missing that others have.
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync, rmSync, statSync } from 'node:fs';
+import { mkdtempSync, rmSync, statSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { load_module, source, start_server } from '../server.mjs';
+import { source, start_server } from '../server.mjs';
+import { launch, pictures, skip } from './chromium.mjs';
 
-const { chromium } = load_module('playwright-core');
-const executable = [
-  '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome',
-].find(existsSync);
-const skip = !executable && 'no Chromium on this machine';
-const pictures = process.env.WELLSPRING_PICTURES;
 const cache = mkdtempSync(join(tmpdir(), 'wellspring-modest-'));
 const heaviest = 200000;  // bytes of the visitor's page, without pictures and sound
 
@@ -21,11 +16,7 @@ let server, browser;
 before(async () => {
   if (skip) return;
   server = await start_server(['--cache', cache, '--no-bake']);
-  browser = await chromium.launch({
-    executablePath: executable,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-        '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-  });
+  browser = await launch();
 });
 after(async () => {
   await browser?.close();

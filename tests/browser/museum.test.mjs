@@ -2,19 +2,14 @@
 // The page in headless Chromium: the front door of several exhibits, a visit that goes on, and
 // questions to the storyteller.
 import assert from 'node:assert/strict';
-import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { write_pyramid } from '../scripted/pyramid.mjs';
-import { load_module, run, sleep, source, start_server } from '../server.mjs';
+import { make_two_exhibits } from '../scripted/pyramid.mjs';
+import { sleep, start_server } from '../server.mjs';
+import { launch, pictures, skip } from './chromium.mjs';
 
-const { chromium } = load_module('playwright-core');
-const executable = [
-  '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome',
-].find(existsSync);
-const skip = !executable && 'no Chromium on this machine';
-const pictures = process.env.WELLSPRING_PICTURES;
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-front-'));
 const content = join(folder, 'content'), keys = join(folder, 'cache');
 
@@ -22,20 +17,14 @@ let server, browser;
 const start = (port = 0) => start_server(['--cache', keys, '--no-bake'], { content, port });
 before(async () => {
   if (skip) return;
-  const model = write_pyramid(folder);
-  assert.equal((await run('wellspring_new', ['giza', model, '--content', content])).status, 0);
-  cpSync(join(source, 'content', 'castle'), join(content, 'castle'), { recursive: true });
+  await make_two_exhibits(folder);
   const file = join(content, 'giza', 'exhibit.json');
   writeFileSync(file, JSON.stringify({ ...JSON.parse(readFileSync(file, 'utf8')),
     title: { en: 'Pyramid', de: 'Pyramide' }, description: { en: 'A pyramid made of six faces.' },
     objects: { stone: { node: 'Pyramid', title: { en: 'The stones' },
       door: { exhibit: 'castle', viewpoint: 'well' } } } }));
   server = await start();
-  browser = await chromium.launch({
-    executablePath: executable,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-        '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-  });
+  browser = await launch();
 });
 after(async () => {
   if (browser) await browser.close();

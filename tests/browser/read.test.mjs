@@ -1,33 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of texts: all that is told, in the visitor's language, and whose models are shown.
 import assert from 'node:assert/strict';
-import { cpSync, existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { write_pyramid } from '../scripted/pyramid.mjs';
-import { load_module, run, source, start_server } from '../server.mjs';
+import { make_two_exhibits } from '../scripted/pyramid.mjs';
+import { start_server } from '../server.mjs';
+import { launch, skip } from './chromium.mjs';
 
-const { chromium } = load_module('playwright-core');
-const executable = [
-  '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome',
-].find(existsSync);
-const skip = !executable && 'no Chromium on this machine';
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-read-'));
 
 let server, browser;
 before(async () => {
   if (skip) return;
-  const content = join(folder, 'content');
-  const made = await run('wellspring_new', ['giza', write_pyramid(folder), '--content', content]);
-  assert.equal(made.status, 0, made.stderr);
-  cpSync(join(source, 'content', 'castle'), join(content, 'castle'), { recursive: true });
+  const content = await make_two_exhibits(folder);
   server = await start_server(['--cache', join(folder, 'cache'), '--no-bake'], { content });
-  browser = await chromium.launch({
-    executablePath: executable,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-        '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-  });
+  browser = await launch();
 });
 after(async () => {
   await browser?.close();

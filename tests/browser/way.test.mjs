@@ -2,27 +2,16 @@
 // The page in headless Chromium: finding one's way, looking closer, and what new visitors stumble
 // over.
 import assert from 'node:assert/strict';
-import { existsSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { load_module, sleep, start_server } from '../server.mjs';
-
-const { chromium } = load_module('playwright-core');
-const executable = [
-  '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome',
-].find(existsSync);
-const skip = !executable && 'no Chromium on this machine';
-const pictures = process.env.WELLSPRING_PICTURES;
+import { sleep, start_server } from '../server.mjs';
+import { launch, pictures, skip } from './chromium.mjs';
 
 let server, browser;
 before(async () => {
   if (skip) return;
   server = await start_server();
-  browser = await chromium.launch({
-    executablePath: executable,
-    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-        '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-  });
+  browser = await launch();
 });
 after(async () => {
   if (browser) await browser.close();

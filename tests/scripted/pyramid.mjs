@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A model for curators' tests.
-import { writeFileSync } from 'node:fs';
+import assert from 'node:assert/strict';
+import { cpSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { run, source } from '../server.mjs';
 
 const corners = [[0, 1, 0], [-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]];
 const faces = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [1, 4, 3], [1, 3, 2]];
@@ -23,4 +25,13 @@ export function write_pyramid(folder) {
     buffers: [{ byteLength: positions.byteLength, uri: 'pyramid.bin' }],
   }));
   return model;
+}
+
+// A folder of packages below that folder: the castle, and the pyramid as `giza`.
+export async function make_two_exhibits(folder) {
+  const content = join(folder, 'content');
+  const made = await run('wellspring_new', ['giza', write_pyramid(folder), '--content', content]);
+  assert.equal(made.status, 0, made.stderr);
+  cpSync(join(source, 'content', 'castle'), join(content, 'castle'), { recursive: true });
+  return content;
 }

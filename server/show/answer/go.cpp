@@ -23,18 +23,24 @@ constexpr float steepest_gaze = 0.2f;  // radians: who walks looks ahead
 
 const WireError no_way{"no_way", "there is no way to that place"};
 
-// Sets out for a view, or leaps there; `point`: what is looked at closer, -1: nothing.
-void set_out(Show& show, Visitor& visitor, const GoTo& order, const Viewpoint& to, int point) {
+// Breaks off whatever the visitor is on.
+void halt(Visitor& visitor, const GoTo& order) {
   VisitorPlace& place = visitor.place;
-  std::string problem;
   go_away(visitor);
-  auto path = make_leg(show.exhibit, show.roads, place.view, to, 0, problem, glide_limits);
   pause_tour(place.tour, visitor.hearing.narration.voice);
   place.tour.pace = 0;
   place.seq = order.seq;
   place.move = place.velocity = vec3(0);
-  place.viewpoint = -1;
   stand(place);
+}
+
+// Sets out for a view, or leaps there; `point`: what is looked at closer, -1: nothing.
+void set_out(Show& show, Visitor& visitor, const GoTo& order, const Viewpoint& to, int point) {
+  VisitorPlace& place = visitor.place;
+  std::string problem;
+  halt(visitor, order);
+  auto path = make_leg(show.exhibit, show.roads, place.view, to, 0, problem, glide_limits);
+  place.viewpoint = -1;
   place.closer = point;
   const bool leaps = place.comfort || !path;  // who stands where nobody can walks from nowhere
   if (leaps) place.view = to;
@@ -110,12 +116,7 @@ Answer look_around(Show& show, Visitor& visitor, const GoTo& order, const PointO
   if (bounds.low.x > bounds.high.x)
     return WireError{"no_way", "nothing is to be seen of '" + point.id + "'"};
   VisitorPlace& place = visitor.place;
-  go_away(visitor);
-  pause_tour(place.tour, visitor.hearing.narration.voice);
-  place.tour.pace = 0;
-  stand(place);
-  place.seq = order.seq;
-  place.move = place.velocity = vec3(0);
+  halt(visitor, order);
   place.closer = int(&point - show.exhibit.points.data());
   begin_around(show.exhibit, place.closer, bounds, place.view,
                float(visitor.wants.width) / float(visitor.wants.height), place.around);

@@ -25,7 +25,9 @@ void set_animation(Show& show, Visitor& visitor, size_t i, bool on) {
   if (!animation.shared && visitor.plays.empty()) visitor.plays.resize(show.plays.size());
   Play& play = animation.shared ? show.plays[i] : visitor.plays[i];
   set_on(animation, on, show.time, play);
-  for (Visitor& one : show.visitors) one.state_sent_at = -1e9;
+  visitor.state_sent_at = -1e9;
+  if (!animation.shared) return;
+  for (Visitor& other : show.visitors) other.state_sent_at = -1e9;
 }
 
 }  // namespace

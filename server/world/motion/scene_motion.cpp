@@ -38,6 +38,17 @@ void set_face_normals(const Mesh& mesh, const std::vector<vec3>& positions,
   }
 }
 
+// How places and normals go from one space to another.
+struct Turn {
+  dmat4 places{1};
+  glm::dmat3 normals{1};
+};
+
+Turn make_turn(const dmat4& m) {
+  const double mirrored = glm::determinant(glm::dmat3(m)) < 0 ? -1 : 1;
+  return {m, mirrored * cofactor(m)};
+}
+
 // A skinned mesh's own node does not move it: section 3.7.3.
 std::vector<dmat4> joint_matrices(const ScenePose& pose, const Mover& mover,
                                   const dmat4& to_scene) {
@@ -73,7 +84,8 @@ void pose_mover(const ScenePose& pose, const Mover& mover, const dmat4& to_scene
   const size_t count = mesh.positions.size();
   positions.resize(count), normals.resize(count);
   const std::vector<dmat4> joints = joint_matrices(pose, mover, to_scene);
-  const dmat4 rigid = to_scene * node.global;
+  Turn turn;  // of the whole mesh, or, with a skin, of each vertex
+  if (joints.empty()) turn = make_turn(to_scene * node.global);
   for (size_t v = 0; v < count; v++) {
     dvec3 p(mesh.positions[v]), n(mesh.normals[v]);
     for (size_t t = 0; t < std::min(mover.targets.size(), node.weights.size()); t++) {
@@ -81,16 +93,14 @@ void pose_mover(const ScenePose& pose, const Mover& mover, const dmat4& to_scene
       if (!target.positions.empty()) p += node.weights[t] * dvec3(target.positions[v]);
       if (!target.normals.empty()) n += node.weights[t] * dvec3(target.normals[v]);
     }
-    dmat4 m = rigid;
     if (!joints.empty()) {
-      m = dmat4(0);
+      dmat4 blend(0);
       for (uint32_t i = mover.first_influence[v]; i < mover.first_influence[v + 1]; i++)
-        m += joints[mover.influences[i].joint] * double(mover.influences[i].weight);
+        blend += joints[mover.influences[i].joint] * double(mover.influences[i].weight);
+      turn = make_turn(blend);
     }
-    positions[v] = vec3(m * dvec4(p + mover.centre, 1));
-    const glm::dmat3 turn = cofactor(m);
-    const double mirrored = glm::determinant(glm::dmat3(m)) < 0 ? -1 : 1;
-    normals[v] = unit_or(mirrored * (turn * n), mesh.normals[v]);
+    positions[v] = vec3(turn.places * dvec4(p + mover.centre, 1));
+    normals[v] = unit_or(turn.normals * n, mesh.normals[v]);
   }
   if (mover.flat) set_face_normals(mesh, positions, normals);
 }
