@@ -10,6 +10,7 @@ const root = process.env.WELLSPRING_SOURCE;
 // layer -> layers it may include, besides itself.
 const may_include = {
   base: [],
+  config: ['base'],
   wire: ['base'],
   ledger: ['base'],
   frame: ['base'],

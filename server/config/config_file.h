@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program's configuration file. Every option of its command line is a key of it:
+//   # a comment stands on a line of its own
+//   port = 8080
+// The key is the option's long name without dashes, the value is the rest of the line without
+// spaces around it. Switches take true or false. A key stands once, but for options that take a
+// list, which has a line for each of its values. What comes first wins: the command line, the
+// environment, the file.
+#pragma once
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace wellspring {
+
+// All that is wrong with a file: "FILE: line N: what".
+struct ConfigError : std::runtime_error {
+  explicit ConfigError(std::vector<std::string> problems);
+  std::vector<std::string> problems;
+};
+
+// Adds --config and --print-config. `standard`: the file that is read where --config names none
+// and it is there; "": none.
+void add_config(CLI::App& app, const std::string& standard);
+
+// A switch that knows its default: names as CLI::App::add_flag takes them, "--x,!--no-x".
+CLI::Option* add_switch(CLI::App& app, const std::string& names, bool& value,
+                        const std::string& what);
+
+// Reads the command line, then the file, which also checks the values that do not win.
+// --print-config writes to stdout and throws CLI::Success. Throws CLI::ParseError for a wrong
+// command line, ConfigError for a wrong file.
+void parse_with_config(CLI::App& app, int argc, char** argv);
+
+// All options as such a file, with what they are for. Those that nobody has set are comments with
+// their defaults. `app` has been parsed.
+std::string write_config(const CLI::App& app);
+
+}  // namespace wellspring
