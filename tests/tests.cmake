@@ -2,7 +2,6 @@
 # tests/unit mirrors the tree: every folder of tests there becomes one program, unit_<folder>,
 # linked to the layer of that name.
 enable_testing()
-include(GoogleTest)
 set(WELLSPRING_DATA "${PROJECT_SOURCE_DIR}/../shared/data" CACHE PATH "real files for the corpus tests; they are skipped without it")
 
 function(wellspring_unit_test folder)
@@ -19,7 +18,20 @@ function(wellspring_unit_test folder)
     WELLSPRING_SOURCE="${PROJECT_SOURCE_DIR}" WELLSPRING_DATA="${WELLSPRING_DATA}"
     WELLSPRING_WEIGHTS_FOLDER="${PROJECT_SOURCE_DIR}/build/weights")
   set_target_properties(unit_${folder} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
-  gtest_discover_tests(unit_${folder} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS unit)
+  # GoogleTest's own shards: some dozen tests a process, not a process for each.
+  set(tests)
+  foreach(file ${sources})
+    file(STRINGS ${file} found REGEX "^TEST")
+    list(APPEND tests ${found})
+  endforeach()
+  list(LENGTH tests count)
+  math(EXPR shards "${count} / 30 + 1")
+  foreach(shard RANGE 1 ${shards})
+    math(EXPR index "${shard} - 1")
+    add_test(NAME unit.${folder}.${shard} COMMAND unit_${folder} --gtest_brief=1)
+    set_tests_properties(unit.${folder}.${shard} PROPERTIES TIMEOUT 900 LABELS unit
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${shards};GTEST_SHARD_INDEX=${index}")
+  endforeach()
 endfunction()
 
 wellspring_unit_test(base   base)
@@ -44,42 +56,18 @@ wellspring_unit_test(benchmark benchmark)
 add_dependencies(unit_avatar wellspring_voice)
 add_dependencies(unit_show wellspring_voice)
 
-# Every header compiles alone: one that its own .cpp includes first has done so when that is built.
-# The others are built, not only checked, when the test runs.
-file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} server/*.h avatar/*.h kiosk/*.h)
-set(header_sources)
-foreach(header ${headers})
-  string(REGEX REPLACE "h$" "cpp" own ${header})
-  if(EXISTS ${PROJECT_SOURCE_DIR}/${own})
-    file(STRINGS ${PROJECT_SOURCE_DIR}/${own} first REGEX "^#include" LIMIT_COUNT 1)
-    get_filename_component(file ${header} NAME)
-    if(first MATCHES "/${file}\"$")
-      continue()
-    endif()
-  endif()
-  string(REPLACE "/" "_" name ${header})
-  set(source ${CMAKE_BINARY_DIR}/headers/${name}.cpp)
-  if(NOT EXISTS ${source})
-    file(WRITE ${source} "#include \"${header}\"\n")
-  endif()
-  list(APPEND header_sources ${source})
-endforeach()
-add_library(headers_alone OBJECT EXCLUDE_FROM_ALL ${header_sources})
-target_link_libraries(headers_alone PRIVATE museum stream kiosk config)
-set_target_properties(headers_alone PROPERTIES COMPILE_OPTIONS "-fsyntax-only" CXX_COMPILER_LAUNCHER "")
-add_test(NAME headers_compile_alone COMMAND ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target headers_alone)
-set_tests_properties(headers_compile_alone PROPERTIES RUN_SERIAL ON TIMEOUT 900 LABELS structure)
-
 # Scripts in Node: structure of the tree, HTTP and WebSocket, the page in a browser, the kiosk end to end.
+# Of those that are `serial` one runs at a time, beside other tests; what may take longest begins first.
 find_program(NODE node)
 function(wellspring_script_test file timeout)
   get_filename_component(name ${file} NAME_WE)
   get_filename_component(label ${file} DIRECTORY)
+  math(EXPR limit "2 * ${timeout}")  # other tests take turns with it
   add_test(NAME ${label}.${name} COMMAND ${NODE} --test ${PROJECT_SOURCE_DIR}/tests/${file})
-  set_tests_properties(${label}.${name} PROPERTIES TIMEOUT ${timeout} LABELS ${label} ENVIRONMENT
+  set_tests_properties(${label}.${name} PROPERTIES TIMEOUT ${limit} LABELS ${label} ENVIRONMENT
     "WELLSPRING_BIN=${CMAKE_BINARY_DIR}/bin;WELLSPRING_NODE=${CMAKE_BINARY_DIR}/node;WELLSPRING_SOURCE=${PROJECT_SOURCE_DIR};WELLSPRING_DATA=${WELLSPRING_DATA}")
   if(ARGN)
-    set_tests_properties(${label}.${name} PROPERTIES RUN_SERIAL ON)
+    set_tests_properties(${label}.${name} PROPERTIES RESOURCE_LOCK screen COST ${timeout})
   endif()
 endfunction()
 if(NODE AND NOT WELLSPRING_SANITIZE)

@@ -251,6 +251,39 @@ test(`no folder holds more than ${most_files_a_folder} source files`, () => {
   assert.deepEqual(wrong, []);
 });
 
+test('files see a declaration of the types that they name', () => {
+  // Files of a folder are compiled together: the compiler finds a missing include only by chance.
+  const declares = /\b(?:struct|class|enum(?: class)?|using|concept)\s+([A-Z]\w*)/g;
+  const bare = (text) => text.replace(/R"(\w*)\([\s\S]*?\)\1"/g, '').replace(/\/\/.*/g, '')
+      .replace(/"(\\.|[^"\\\n])*"/g, '').replace(/alignas\([^)]*\)/g, '');
+  const code = new Map(all.map(({ name, text }) => [name, bare(text)]));
+  const declared = new Map([...code].map(([name, text]) =>
+      [name, new Set([...text.matchAll(declares)].map((match) => match[1]))]));
+  const layer_of = (name) => by_name.get(name).layer;
+  const reach = (name, found = new Set([name])) => {
+    for (const next of included(by_name.get(name)))
+      if (!found.has(next)) found.add(next), reach(next, found);
+    return found;
+  };
+  const homes = new Map();  // type at the beginning of a line -> headers that define it
+  for (const [name, text] of code)
+    if (name.endsWith('.h'))
+      for (const [line, type] of text.matchAll(new RegExp(`^${declares.source}.*`, 'gm')))
+        if (!line.endsWith(';') || line.startsWith('using'))
+          homes.set(type, [...(homes.get(type) ?? []), name]);
+  const wrong = [];
+  for (const [name, text] of code) {
+    const seen = [...reach(name)];
+    const near = [layer_of(name), ...(may_include[layer_of(name)] ?? [])];
+    for (const type of new Set(text.match(/\b[A-Z]\w*/g)))
+      if (homes.get(type)?.some((home) => near.includes(layer_of(home))) &&
+          !seen.some((file) => declared.get(file).has(type)))
+        wrong.push(`${name} names ${type} of ${homes.get(type)}`);
+  }
+  assert.ok(homes.size > 500);
+  assert.deepEqual(wrong, []);
+});
+
 test('heavy headers stay in .cpp files of their own layer', () => {
   const wrong = [];
   for (const { name, layer, includes } of all)
