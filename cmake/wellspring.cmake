@@ -94,6 +94,12 @@ if(WELLSPRING_SANITIZE MATCHES thread)  # it does not know memory fences, Asio d
   target_compile_definitions(boost_any PUBLIC BOOST_ASIO_DISABLE_FENCED_BLOCK)
 endif()
 
+# Asio's TLS likewise, by OpenSSL.
+find_package(OpenSSL REQUIRED)
+file(GENERATE OUTPUT ${CMAKE_BINARY_DIR}/boost_tls.cpp CONTENT "#include <boost/asio/ssl/impl/src.hpp>\n")
+add_library(boost_tls STATIC EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/boost_tls.cpp)
+target_link_libraries(boost_tls PUBLIC boost_any OpenSSL::SSL)
+
 pkg_check_modules(SECCOMP REQUIRED IMPORTED_TARGET libseccomp)
 
 # Headers and libraries by name: OpenCV's own CMake files come only with the whole libopencv-dev.

@@ -2,7 +2,6 @@
 // wellspring run: options -> load -> threads. The only place that knows both `museum` and `stream`.
 #include <csignal>
 #include <iostream>
-#include <fmt/core.h>
 
 #include "base/log.h"
 #include "museum/museum.h"
@@ -17,19 +16,6 @@ namespace {
 using namespace wellspring;
 
 volatile std::sig_atomic_t asked_to_stop = 0;
-
-std::string stream_metrics(const Server& server) {
-  StreamCounters counters = server.counters();
-  auto line = [](const char* name, const char* type, uint64_t value) {
-    return fmt::format("# TYPE wellspring_{0} {1}\nwellspring_{0} {2}\n", name, type, value);
-  };
-  return line("connections_accepted_total", "counter", counters.accepted) +
-         line("connections_refused_total", "counter", counters.refused) +
-         line("connections", "gauge", counters.open) +
-         line("http_requests_total", "counter", counters.http_requests) +
-         line("websockets_total", "counter", counters.websockets) +
-         line("slow_readers_closed_total", "counter", counters.slow_closed);
-}
 
 // Listening to nobody but this machine.
 bool is_own_address(const std::string& host) {
@@ -46,12 +32,13 @@ SumsDesk open_sums(const ServerOptions& options, const Museum& museum) {
   return desk;
 }
 
-void say_address(const AnswerSources& sources, const std::string& host, uint16_t port) {
+void say_address(const AnswerSources& sources, const StreamSettings& stream) {
   std::string names;
   for (const ServedExhibit& one : sources.exhibits)
     names += (names.empty() ? "'" : ", '") + one.exhibit->id + "'";
-  std::cout << "Wellspring serves " << names << " at http://" << host << ":" << port << "/"
-            << std::endl;
+  std::cout << "Wellspring serves " << names << " at "
+            << (stream.certificate.empty() ? "http://" : "https://") << stream.host << ":"
+            << stream.port << "/" << std::endl;
 }
 
 int serve(const ServerOptions& options) {
@@ -66,7 +53,7 @@ int serve(const ServerOptions& options) {
   sources.sums = [&](const HttpQuestion& question) { return answer_sums(sums, question); };
   sources.status = [&] { return museum.status(sums_access(sums)); };
   sources.speeds = [&] { return read_speeds(options.bench); };
-  sources.stream_metrics = [&] { return server ? stream_metrics(*server) : std::string(); };
+  sources.stream_metrics = [&] { return server ? to_metrics(server->counters()) : std::string(); };
   Doors doors;
   doors.answer = [&](const HttpQuestion& question) { return answer(sources, question); };
   doors.slow = [](const HttpQuestion& question) {
@@ -77,7 +64,7 @@ int serve(const ServerOptions& options) {
   for (bool changed = true; changed;) {
     server = std::make_unique<Server>(stream, doors);
     stream.port = server->port();  // the same, when it comes back
-    say_address(sources, stream.host, stream.port);
+    say_address(sources, stream);
     changed = museum.run([] { return asked_to_stop != 0; });
     if (!changed) log::info("stopping");
     server->stop();

@@ -33,8 +33,19 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
                  "id of the only one that is served: a folder below content; without it all are");
   app.add_option("--port", words.port, "0: any free one")->check(CLI::Range(0, 65535));
   app.add_option("--host", options.stream.host, "address to listen on");
-  app.add_option("--allow-origin", options.stream.allowed_origin,
-                 "a further Origin whose pages may open a visit; * for any");
+  app.add_option("--allow-origin", options.stream.allowed_origins,
+                 "a further Origin whose pages may open a visit; * for any; several may be named");
+  app.add_option("--allow-host", options.stream.allowed_hosts,
+                 "a further name under which this server may be asked; several may be named");
+  app.add_option("--trusted", options.stream.trusted,
+                 "address or network without limits by address, as loopback is; several");
+  app.add_option("--trusted-proxy", options.stream.proxies,
+                 "reverse proxy whose X-Forwarded-For is believed; several may be named");
+  app.add_option("--max-connections", options.stream.limits.connections, "of all kinds together")
+      ->check(CLI::Range(16, 100000));
+  app.add_option("--tls-cert", options.stream.certificate,
+                 "certificate in PEM, with those that sign it; read anew when it changes");
+  app.add_option("--tls-key", options.stream.key, "its key in PEM");
   app.add_option("--content", options.museum.content, "folder of exhibit packages");
   app.add_option("--web", options.web, "folder of the pages");
   app.add_option("--house", options.museum.house,

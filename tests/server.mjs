@@ -49,7 +49,7 @@ export function start_server(words = [], { port = 0, content } = {}) {
     });
     child.stdout.on('data', (chunk) => {
       stdout += chunk;
-      const match = /http:\/\/[^:]+:(\d+)\//.exec(stdout);
+      const match = /https?:\/\/[^:]+:(\d+)\//.exec(stdout);
       if (!match) return;
       clearTimeout(timer);
       const found = Number(match[1]);

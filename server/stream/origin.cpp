@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stream/origin.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <optional>
+
+#include "stream/address.h"
 
 namespace wellspring {
 
@@ -42,12 +46,12 @@ static std::optional<Authority> read_authority(std::string_view text,
 }
 
 bool origin_allowed(const std::vector<std::string_view>& origins, std::string_view host,
-                    std::string_view allowed) {
+                    const std::vector<std::string>& allowed) {
   if (origins.empty()) return true;
   if (origins.size() > 1) return false;
-  if (allowed == "*") return true;
   const std::string origin = lower(origins[0]);
-  if (!allowed.empty() && origin == lower(allowed)) return true;
+  for (const std::string& one : allowed)
+    if (one == "*" || (!one.empty() && origin == lower(one))) return true;
   const size_t colon = origin.find("://");
   if (colon == origin.npos) return false;  // also "null"
   const std::string scheme = origin.substr(0, colon);
@@ -56,6 +60,49 @@ bool origin_allowed(const std::vector<std::string_view>& origins, std::string_vi
   const auto theirs = read_authority(std::string_view(origin).substr(colon + 3), default_port);
   const auto ours = read_authority(lower(host), default_port);
   return theirs && ours && *theirs == *ours;
+}
+
+std::string host_name(std::string_view host_header) {
+  const auto authority = read_authority(lower(host_header), "80");
+  if (!authority) return "";
+  std::string name = authority->host;
+  if (name.ends_with('.')) name.pop_back();
+  const bool plain = std::ranges::all_of(name, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ||
+           std::string_view(".-_:[]").find(c) != std::string_view::npos;
+  });
+  return plain ? name : "";
+}
+
+HostNames::HostNames(const std::vector<std::string>& hosts, const std::vector<std::string>& origins,
+                     const std::string& listens_on) {
+  add("localhost");
+  add(listens_on);
+  char own[256] = "";
+  if (gethostname(own, sizeof(own) - 1) == 0) {
+    const std::string name = own, first = name.substr(0, name.find('.'));
+    for (const std::string& one : {name, first, first + ".local"}) add(one);
+  }
+  for (const std::string& host : hosts) {
+    any_ = any_ || host == "*";
+    add(host);
+  }
+  for (const std::string& origin : origins)
+    if (const size_t colon = origin.find("://"); colon != origin.npos)
+      add(origin.substr(colon + 3));
+}
+
+void HostNames::add(std::string name) {
+  name = host_name(name);
+  if (!name.empty()) names_.insert(std::move(name));
+}
+
+bool HostNames::hold(std::string_view host_header) const {
+  if (any_) return true;
+  const std::string name = host_name(host_header);
+  if (name.empty()) return false;
+  if (names_.contains(name)) return true;
+  return name.starts_with('[') == (name.find(':') != name.npos) && read_address(name).has_value();
 }
 
 bool offers_protocol(std::string_view header, std::string_view wanted) {

@@ -1,20 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who may open a WebSocket, or post: browsers name the page's origin and cannot be made to lie
 // about it, so a page of somebody else's site cannot use its visitor's browser to reach this
-// server. Scripts name none.
+// server. Scripts name none. And under which names this server answers at all: a foreign name that
+// is made to lead here (DNS rebinding) would make a foreign page one of ours.
 #pragma once
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace wellspring {
 
-// `origins`: every Origin header of the request; `host`: its Host header; `allowed`: one more
-// origin that is welcome, "*" for any, empty for none. True without an origin, or with exactly one
-// that names the same host and port as `host` (a port left out is the scheme's) or is `allowed`.
-// Letter case does not count.
+// `origins`: every Origin header of the request; `host`: its Host header; `allowed`: more origins
+// that are welcome, "*" for any. True without an origin, or with exactly one that names the same
+// host and port as `host` (a port left out is the scheme's) or is one of `allowed`. Letter case
+// does not count.
 bool origin_allowed(const std::vector<std::string_view>& origins, std::string_view host,
-                    std::string_view allowed);
+                    const std::vector<std::string>& allowed);
+
+// The names under which the server may be asked: addresses, "localhost", this machine's name (also
+// without its domain, and as NAME.local), the one it listens on, those of `origins`, and `hosts`,
+// where "*" is any. Ports and letter case do not count, nor a dot at the end.
+class HostNames {
+ public:
+  HostNames(const std::vector<std::string>& hosts, const std::vector<std::string>& origins,
+            const std::string& listens_on);
+  bool hold(std::string_view host_header) const;
+
+ private:
+  void add(std::string name);
+  std::set<std::string> names_;
+  bool any_ = false;
+};
+
+// The name of a Host header without its port, in small letters; empty where it is none: what is
+// returned consists of letters, digits and ".-_:[]".
+std::string host_name(std::string_view host_header);
 
 // The offers of a Sec-WebSocket-Protocol header hold `wanted`.
 bool offers_protocol(std::string_view header, std::string_view wanted);

@@ -10,7 +10,7 @@
 
 namespace wellspring {
 
-std::span<const std::pair<const char*, const char*>> security_headers() {
+std::span<const std::pair<const char*, const char*>> security_headers(bool secure) {
   static constexpr std::pair<const char*, const char*> headers[] = {
       {"X-Content-Type-Options", "nosniff"},
       {"Referrer-Policy", "no-referrer"},
@@ -19,8 +19,12 @@ std::span<const std::pair<const char*, const char*>> security_headers() {
        "connect-src 'self'; media-src 'self' blob:; worker-src 'self' blob:; font-src 'self'; "
        "base-uri 'self'; frame-ancestors 'self'; form-action 'none'"},
       {"Permissions-Policy", "camera=(), microphone=()"},
+      {"X-Frame-Options", "SAMEORIGIN"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Cross-Origin-Resource-Policy", "same-site"},
+      {"Strict-Transport-Security", "max-age=31536000"},  // the last: with TLS alone
   };
-  return headers;
+  return std::span(headers).first(std::size(headers) - (secure ? 0 : 1));
 }
 
 HttpReply make_refusal(int status, const std::string& message) {

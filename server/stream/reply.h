@@ -10,9 +10,10 @@
 namespace wellspring {
 
 // Headers of every reply, WebSocket handshakes included: what the page may load (all from here),
-// that types are not guessed, that no page of others frames ours, that no page gets the camera or
-// microphone.
-std::span<const std::pair<const char*, const char*>> security_headers();
+// that types are not guessed, that no page of others frames ours, shares its window
+// or embeds what is here, that no page gets the camera or microphone; over TLS, that it stays at
+// that.
+std::span<const std::pair<const char*, const char*>> security_headers(bool secure);
 
 // {"error": {"status":.., "message":..}}
 HttpReply make_refusal(int status, const std::string& message);

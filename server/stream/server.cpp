@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Listens, accepts, and ends everything in order.
+#include <fmt/core.h>
+#include <sys/resource.h>
+
 #include <stdexcept>
 #include <thread>
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "stream/session.h"
 
 namespace wellspring {
 
 // Connections being told 503 at a time; more are just closed.
-static constexpr size_t max_refusals = 64;
+static constexpr int max_refusals = 64;
+static constexpr rlim_t other_descriptors = 512;  // files, pipes, and connections being refused
 static constexpr auto accept_pause = std::chrono::milliseconds(100);
 static constexpr auto polite_stop = std::chrono::seconds(1);
 static constexpr auto forced_stop = std::chrono::seconds(5);
@@ -18,6 +23,7 @@ struct Server::Impl {
   std::shared_ptr<Core> core;
   net::executor_work_guard<net::io_context::executor_type> work;
   tcp::acceptor acceptor;
+  net::steady_timer certificate_pause;
   uint16_t port = 0;
   std::vector<std::thread> threads;
   std::once_flag stopped;
@@ -25,11 +31,16 @@ struct Server::Impl {
   Impl(const StreamSettings& settings, Doors doors)
       : core(std::make_shared<Core>(settings, std::move(doors))),
         work(core->io.get_executor()),
-        acceptor(net::make_strand(core->io)) {}
+        acceptor(net::make_strand(core->io)),
+        certificate_pause(acceptor.get_executor()) {}
 
   void listen();
   net::awaitable<void> accept();
   void admit(tcp::socket socket, uint64_t id);
+  void drop(uint64_t id);
+  void forget(uint64_t id);
+  net::awaitable<void> watch_certificate();
+  void spawn(net::awaitable<void> (Impl::*work)());
   void stop();
   template <class Duration>
   bool wait_until_empty(Duration limit);
@@ -104,20 +115,47 @@ void Server::Impl::admit(tcp::socket socket, uint64_t id) {
   if (ec) return;
   socket.set_option(tcp::no_delay(true), ec);
   core->accepted++;
-  bool refused = false;
-  std::shared_ptr<Session> session;
+  const auto session = std::make_shared<Session>(core, std::move(socket), id, remote);
   {
     std::lock_guard lock(core->mutex);
     if (core->stopping) return;
-    const size_t open = core->sessions.size(), allowed = size_t(core->settings.max_connections);
-    refused = open >= allowed;
-    core->refused += refused;
-    if (open >= allowed + max_refusals) return;
-    const std::string peer = remote.address().to_string() + ":" + std::to_string(remote.port());
-    session = std::make_shared<Session>(core, std::move(socket), id, peer);
     core->sessions[id] = session;
   }
-  session->start(refused);
+  const Admission::Entry entry =
+      core->admission.enter(id, session->address(), session->standing(), seconds_now());
+  if (entry.drop) drop(*entry.drop);
+  if (entry.reserved) session->set_reserved();
+  if (entry.answer == Admission::Answer::welcome) {
+    session->start();
+    return;
+  }
+  core->refused++;
+  if (core->being_refused < max_refusals)
+    session->start_refusal(entry.answer == Admission::Answer::full ? 503 : 429);
+  else forget(id);
+}
+
+void Server::Impl::drop(uint64_t id) {
+  std::lock_guard lock(core->mutex);
+  const auto found = core->sessions.find(id);
+  const auto session = found == core->sessions.end() ? nullptr : found->second.lock();
+  if (session) session->drop();
+}
+
+void Server::Impl::forget(uint64_t id) {
+  std::lock_guard lock(core->mutex);
+  core->sessions.erase(id);
+  core->session_ended.notify_all();
+}
+
+// The files of the certificate may change while the server runs.
+net::awaitable<void> Server::Impl::watch_certificate() {
+  while (core->certificate && acceptor.is_open()) {
+    error_code ec;
+    certificate_pause.expires_after(seconds(core->settings.certificate_interval));
+    co_await certificate_pause.async_wait(net::redirect_error(net::use_awaitable, ec));
+    if (!ec) core->certificate->look_again();
+  }
 }
 
 void Server::Impl::stop_sessions(bool politely) {
@@ -138,10 +176,12 @@ void Server::Impl::stop() {
     net::post(acceptor.get_executor(), [this] {
       error_code ec;
       acceptor.close(ec);
+      certificate_pause.cancel();
     });
     stop_sessions(true);
     core->workers.stop();
     core->slow_workers.stop();
+    core->health_workers.stop();
     if (!wait_until_empty(polite_stop)) stop_sessions(false);
     if (!wait_until_empty(forced_stop)) {
       log::error("connections do not end; they are left behind");
@@ -152,11 +192,9 @@ void Server::Impl::stop() {
   });
 }
 
-Server::Server(const StreamSettings& settings, Doors doors)
-    : impl_(std::make_unique<Impl>(settings, std::move(doors))) {
-  impl_->listen();
+void Server::Impl::spawn(net::awaitable<void> (Impl::*work)()) {
   net::co_spawn(
-      impl_->acceptor.get_executor(), [impl = impl_.get()] { return impl->accept(); },
+      acceptor.get_executor(), [this, work] { return (this->*work)(); },
       [](std::exception_ptr error) {
         try {
           if (error) std::rethrow_exception(error);
@@ -164,6 +202,32 @@ Server::Server(const StreamSettings& settings, Doors doors)
           log::error("accept: {}", e.what());
         }
       });
+}
+
+// A connection takes a descriptor. Asks the kernel for as many as it allows, and makes do with
+// fewer connections where it allows fewer.
+static StreamSettings fit_to_descriptors(StreamSettings settings) {
+  rlimit files{};
+  if (getrlimit(RLIMIT_NOFILE, &files) != 0) return settings;
+  const rlim_t wanted = rlim_t(settings.limits.connections) + other_descriptors;
+  if (files.rlim_cur < wanted) {
+    files.rlim_cur = std::min(wanted, files.rlim_max);
+    setrlimit(RLIMIT_NOFILE, &files);
+    getrlimit(RLIMIT_NOFILE, &files);
+  }
+  if (files.rlim_cur >= wanted) return settings;
+  const rlim_t left = files.rlim_cur - std::min(files.rlim_cur / 2, other_descriptors);
+  settings.limits.connections = int(left);
+  log::warn("only {} connections at a time: the limit of open files is {} (ulimit -n)", left,
+            files.rlim_cur);
+  return settings;
+}
+
+Server::Server(const StreamSettings& settings, Doors doors)
+    : impl_(std::make_unique<Impl>(fit_to_descriptors(settings), std::move(doors))) {
+  impl_->listen();
+  impl_->spawn(&Impl::accept);
+  impl_->spawn(&Impl::watch_certificate);
   for (int i = 0; i < std::max(1, settings.threads); i++)
     impl_->threads.emplace_back([core = impl_->core] {
       for (;;) {
@@ -193,9 +257,33 @@ StreamCounters Server::counters() const {
   counters.slow_closed = core.slow_closed;
   counters.flood_closed = core.flood_closed;
   counters.accept_errors = core.accept_errors;
+  counters.limited = core.limited;
+  counters.dropped = core.dropped;
+  counters.silent_closed = core.silent_closed;
   std::lock_guard lock(core.mutex);
   counters.open = core.sessions.size();
   return counters;
+}
+
+std::string to_metrics(const StreamCounters& counters) {
+  std::string text;
+  const auto line = [&](const char* name, uint64_t value) {
+    const bool total = std::string_view(name).ends_with("_total");
+    text += fmt::format("# TYPE wellspring_{0} {1}\nwellspring_{0} {2}\n", name,
+                        total ? "counter" : "gauge", value);
+  };
+  line("connections_accepted_total", counters.accepted);
+  line("connections_refused_total", counters.refused);
+  line("connections_dropped_total", counters.dropped);
+  line("connections", counters.open);
+  line("accept_errors_total", counters.accept_errors);
+  line("http_requests_total", counters.http_requests);
+  line("address_limited_total", counters.limited);
+  line("websockets_total", counters.websockets);
+  line("slow_readers_closed_total", counters.slow_closed);
+  line("floods_closed_total", counters.flood_closed);
+  line("silent_closed_total", counters.silent_closed);
+  return text;
 }
 
 }  // namespace wellspring

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stream/session.h"
 
+#include <stdexcept>
+
 #include "base/log.h"
 #include "stream/reply.h"
 
@@ -30,47 +32,114 @@ net::awaitable<void> Signal::wait() {
   raised_ = false;
 }
 
-Session::Session(std::shared_ptr<Core> core, tcp::socket socket, uint64_t id, std::string peer)
+static std::vector<Network> read_networks(const std::vector<std::string>& texts) {
+  std::vector<Network> networks;
+  for (const std::string& text : texts) networks.push_back(read_network(text));
+  return networks;
+}
+
+Core::Core(const StreamSettings& settings, Doors doors)
+    : settings(settings),
+      doors(std::move(doors)),
+      hosts(settings.allowed_hosts, settings.allowed_origins, settings.host),
+      trusted(read_networks(settings.trusted)),
+      proxies(read_networks(settings.proxies)),
+      admission(settings.limits) {
+  if (settings.trust_loopback)
+    for (const char* own : {"127.0.0.1", "::1"}) trusted.push_back(read_network(own));
+  if (settings.certificate.empty() != settings.key.empty())
+    throw std::runtime_error("TLS needs both a certificate and its key");
+  if (!settings.certificate.empty())
+    certificate = std::make_unique<Certificate>(settings.certificate, settings.key);
+}
+
+Session::Session(std::shared_ptr<Core> core, tcp::socket socket, uint64_t id,
+                 const tcp::endpoint& remote)
     : core_(std::move(core)),
       id_(id),
-      peer_(std::move(peer)),
+      peer_(remote.address().to_string() + ":" + std::to_string(remote.port())),
+      address_(read_address(remote.address().to_string()).value_or(Address{})),
       ws_(std::move(socket)),
       buffer_(max_header_bytes + max_body_bytes),
       answered_(ws_.get_executor()),
       writable_(ws_.get_executor()),
       writer_ended_(ws_.get_executor()),
-      deadline_(ws_.get_executor()) {}
+      deadline_(ws_.get_executor()),
+      first_deadline_(ws_.get_executor()),
+      flood_deadline_(ws_.get_executor()) {}
 
-void Session::start(bool refused) {
-  net::co_spawn(
-      ws_.get_executor(), [self = shared_from_this(), refused] { return self->run(refused); },
-      [self = shared_from_this()](std::exception_ptr error) {
-        try {
-          if (error) std::rethrow_exception(error);
-        } catch (const std::exception& e) {
-          log::error("session {}: {}", self->peer_, e.what());
-        }
-        error_code ec;
-        self->stream().socket().close(ec);
-        if (self->link_) self->link_->mark_closed();
-        // Notified under the lock: the waiter may be the destructor of what the lock lives in.
-        std::lock_guard lock(self->core_->mutex);
-        self->core_->sessions.erase(self->id_);
-        self->core_->session_ended.notify_all();
-      });
+Session::~Session() { stream().watch(nullptr); }
+
+Standing Session::standing() const {
+  if (any_holds(core_->proxies, address_)) return Standing::proxy;
+  return any_holds(core_->trusted, address_) ? Standing::trusted : Standing::stranger;
 }
 
-net::awaitable<void> Session::run(bool refused) {
-  if (refused) {
+template <class Work>
+void Session::spawn(Work work) {
+  net::co_spawn(ws_.get_executor(), std::move(work),
+                [self = shared_from_this()](std::exception_ptr error) {
+                  try {
+                    if (error) std::rethrow_exception(error);
+                  } catch (const std::exception& e) {
+                    log::error("session {}: {}", self->peer_, e.what());
+                  }
+                  self->stream().close();
+                  if (self->link_) self->link_->mark_closed();
+                  if (self->counted_websocket_)
+                    self->core_->admission.close_websocket(self->caller_.address);
+                  self->core_->admission.leave(self->id_);
+                  // Notified under the lock: the waiter may be the destructor of what the lock
+                  // lives in.
+                  std::lock_guard lock(self->core_->mutex);
+                  self->core_->sessions.erase(self->id_);
+                  self->core_->session_ended.notify_all();
+                });
+}
+
+void Session::start() {
+  spawn([self = shared_from_this()] { return self->run(); });
+}
+
+void Session::start_refusal(int status) {
+  core_->being_refused++;
+  spawn([self = shared_from_this(), status] { return self->refuse(status); });
+}
+
+net::awaitable<void> Session::refuse(int status) {
+  if (!core_->certificate) {  // a handshake is not worth it
     HttpQuestion nothing_read;
-    HttpReply reply = make_refusal(503, "too many connections");
+    HttpReply reply = make_refusal(status, "too many connections");
     reply.headers["Retry-After"] = "5";
     co_await write_reply(std::move(nothing_read), std::move(reply), 11, false);
     co_await linger();
-    co_return;
+  }
+  core_->being_refused--;
+}
+
+net::awaitable<void> Session::run() {
+  if (core_->certificate) {
+    const bool ready = co_await start_tls();
+    if (!ready) co_return;
   }
   co_await serve_http();
   if (upgrade_) co_await serve_websocket();
+}
+
+// What begins as TLS does is TLS. False: the connection is over.
+net::awaitable<bool> Session::start_tls() {
+  static constexpr uint8_t handshake_record = 22;
+  stream().expires_after(core_->settings.header_timeout);
+  reading_ = true;
+  error_code ec;
+  const size_t bytes = co_await stream().async_read_some(
+      buffer_.prepare(512), net::redirect_error(net::use_awaitable, ec));
+  buffer_.commit(bytes);
+  if (!ec && *static_cast<const uint8_t*>(buffer_.data().data()) == handshake_record)
+    ec = co_await stream().shake_hands(core_->certificate->context(), buffer_);
+  reading_ = false;
+  if (ec) log::debug("session {}: TLS: {}", peer_, ec.message());  // scanners abound
+  co_return !ec;
 }
 
 void Session::stop(bool politely) {
@@ -82,12 +151,17 @@ void Session::stop(bool politely) {
   });
 }
 
-// Resets the connection: what the kernel still holds for this peer is thrown away with it.
+void Session::drop() {
+  net::post(ws_.get_executor(), [self = shared_from_this()] {
+    self->core_->dropped++;
+    self->cut("made place for another");
+  });
+}
+
+// What the kernel still holds for this peer is thrown away.
 void Session::cut(const char* why) {
   log::debug("session {}: cut, {}", peer_, why);
-  error_code ec;
-  stream().socket().set_option(net::socket_base::linger(true, 0), ec);
-  stream().close();
+  stream().cut();
 }
 
 }  // namespace wellspring

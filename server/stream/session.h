@@ -8,7 +8,9 @@
 
 #include "stream/asio.h"
 #include "stream/core.h"
+#include "stream/frames.h"
 #include "stream/rate.h"
+#include "stream/transport.h"
 #include "wire/http.h"
 #include "wire/link.h"
 
@@ -19,9 +21,10 @@ inline constexpr size_t max_body_bytes = 64 * 1024;
 inline constexpr size_t max_posted_bytes = 16 * 1024;
 inline constexpr double http_write_timeout = 30;        // seconds for a reply, or a piece of a file
 inline constexpr size_t file_piece_bytes = 256 * 1024;  // in memory at a time
-inline constexpr double max_messages_a_second = 400;    // WebSocket, pings and pongs included
+inline constexpr double max_frames_a_second = 400;      // WebSocket, of all kinds
 inline constexpr double max_bytes_a_second = 1 << 20;   // WebSocket
 inline constexpr double burst_seconds = 2;
+inline constexpr double flood_linger = 1;  // seconds in which a peer that is closed may read why
 
 // Stale pictures must not pile up where newest-wins cannot reach them, in the kernel. A send buffer
 // of 256 KiB holds one large or two usual pictures of 1280x720 and still fills 40 Mbit/s at 50 ms;
@@ -45,16 +48,33 @@ class Signal {
   bool raised_ = false;
 };
 
+// Who asks: the peer, or whom a proxy asks for.
+struct Caller {
+  Address address;
+  bool trusted = false;
+  std::string name;  // for the log
+};
+
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  Session(std::shared_ptr<Core> core, tcp::socket socket, uint64_t id, std::string peer);
-  void start(bool refused);  // refused: 503 whatever it asks
+  Session(std::shared_ptr<Core> core, tcp::socket socket, uint64_t id, const tcp::endpoint& remote);
+  ~Session();
+  void start();
+  void start_refusal(int status);  // 503 or 429, whatever it asks
+  Standing standing() const;       // of the peer
+  const Address& address() const { return address_; }
+  void set_reserved() { reserved_ = true; }  // its place is one of those for trusted callers
   // From any thread. Politely: the answer being made is still written, a WebSocket closed with
   // 1001. Else the socket is closed at once.
   void stop(bool politely);
+  void drop();  // from any thread: it makes place for another
 
  private:
-  net::awaitable<void> run(bool refused);
+  template <class Work>
+  void spawn(Work work);
+  net::awaitable<void> run();
+  net::awaitable<void> refuse(int status);
+  net::awaitable<bool> start_tls();
   void cut(const char* why);
 
   // session_http.cpp
@@ -68,9 +88,12 @@ class Session : public std::enable_shared_from_this<Session> {
   net::awaitable<error_code> write_file(const FilePart& part,
                                         http::response<http::buffer_body>& message);
   net::awaitable<void> linger();
+  std::optional<Caller> find_caller(const Request& request) const;
+  HttpReply judge_caller(const Request& request);  // 200, or the refusal; sets caller_
+  HttpReply judge_host(const Request& request) const;
   bool is_from_here(const Request& request) const;  // as origin.h has it
   HttpReply judge_post(const Request& request) const;
-  HttpReply judge_upgrade(const HttpQuestion& question, const Request& request) const;
+  HttpReply judge_upgrade(const HttpQuestion& question, const Request& request);
 
   // session_websocket.cpp
   net::awaitable<void> serve_websocket();
@@ -78,31 +101,41 @@ class Session : public std::enable_shared_from_this<Session> {
   net::awaitable<bool> read_messages();
   net::awaitable<void> write_messages();
   void want_close(websocket::close_code code, std::string reason);
-  bool count_input(double messages, double bytes);
+  void hear(std::string text);
+  bool count_input(double frames, double bytes);
+  void start_first_deadline();
   void start_deadline();
   void end_deadline();
   void wake_writer();  // from any thread
 
-  beast::tcp_stream& stream() { return ws_.next_layer(); }
+  Transport& stream() { return ws_.next_layer(); }
+  const Transport& stream() const { return ws_.next_layer(); }
 
   const std::shared_ptr<Core> core_;
   const uint64_t id_;
   const std::string peer_;
-  websocket::stream<beast::tcp_stream, false> ws_;  // false: no permessage-deflate, JPEG is packed
+  const Address address_;
+  bool reserved_ = false;
+  Caller caller_;  // of the request that is being answered, or of the WebSocket
+  websocket::stream<Transport, false> ws_;  // false: no permessage-deflate, JPEG is packed
   beast::flat_buffer buffer_;
   bool stopping_ = false;  // stop() was called
   bool reading_ = false;   // HTTP: waiting for a request
   Signal answered_;
 
   std::unique_ptr<Request> upgrade_;  // the request that asked for a WebSocket
+  bool counted_websocket_ = false;    // by the caller's address
   std::shared_ptr<Link> link_;
+  bool joined_ = false;   // it has said something
+  bool flooded_ = false;  // it has said too much
   Signal writable_, writer_ended_;
   std::atomic<bool> wake_posted_{false};
-  net::steady_timer deadline_;
+  net::steady_timer deadline_, first_deadline_, flood_deadline_;
   uint64_t deadline_number_ = 0;
   websocket::close_reason close_reason_{websocket::close_code::none};
   bool ended_ = false;
-  RateBound messages_{max_messages_a_second, max_messages_a_second* burst_seconds};
+  FrameCounter frame_counter_;
+  RateBound frames_{max_frames_a_second, max_frames_a_second* burst_seconds};
   RateBound bytes_{max_bytes_a_second, max_bytes_a_second* burst_seconds};
 };
 

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <fstream>
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "stream/origin.h"
 #include "stream/reply.h"
@@ -50,7 +51,7 @@ net::awaitable<int> Session::read_request(Request& request) {
   http::request_parser<http::string_body> parser;
   parser.header_limit(max_header_bytes);
   parser.body_limit(max_body_bytes);
-  stream().expires_after(seconds(core_->settings.header_timeout));  // for all of it, however slow
+  stream().expires_after(core_->settings.header_timeout);  // for all of it, however slow
   error_code ec;
   reading_ = true;  // stop() may close
   co_await http::async_read_header(stream(), buffer_, parser,
@@ -86,7 +87,9 @@ net::awaitable<void> Session::serve_http() {
   while (!stopping_) {
     Request request;
     HttpQuestion question;
+    core_->admission.begin_waiting(id_);
     const int status = co_await read_request(request);
+    core_->admission.end_waiting(id_);
     reading_ = false;
     if (status == 0) co_return;
     core_->http_requests++;
@@ -107,6 +110,12 @@ net::awaitable<void> Session::serve_http() {
       co_await write_refusal(std::move(question), 400, "exactly one Host header");
       co_return;
     }
+    HttpReply reply = judge_caller(request);
+    if (reply.status == 200) reply = judge_host(request);
+    if (reply.status != 200) {
+      co_await write_reply(std::move(question), std::move(reply), request.version(), false);
+      break;
+    }
     const int target_status = read_target(view(request.target()), question);
     if (target_status != 200) {
       co_await write_refusal(std::move(question), target_status, "bad request target");
@@ -120,7 +129,6 @@ net::awaitable<void> Session::serve_http() {
 
     const bool websocket_path = question.path == "/api/v1/visit" || question.path == "/api/v1/eye";
     const bool upgrade = websocket::is_upgrade(request);
-    HttpReply reply;
     if (websocket_path || upgrade) {
       reply = judge_upgrade(question, request);
       if (reply.status == 101) {
@@ -144,11 +152,77 @@ net::awaitable<void> Session::serve_http() {
   co_await linger();
 }
 
+// Nothing for a proxy's header that names no address.
+std::optional<Caller> Session::find_caller(const Request& request) const {
+  std::string forwarded;
+  const auto range = request.equal_range("X-Forwarded-For");
+  for (auto it = range.first; it != range.second; ++it)
+    forwarded += (forwarded.empty() ? "" : ",") + std::string(view(it->value()));
+  const auto client = find_client(address_, forwarded, core_->proxies);
+  if (!client) return std::nullopt;
+  Caller caller{*client, any_holds(core_->trusted, *client), peer_};
+  if (*client != address_) caller.name = to_string(*client) + " by " + peer_;
+  // A proxy that nobody told about must not lend its visitors what this machine may.
+  if (!forwarded.empty() && *client == address_ && caller.trusted) {
+    caller.trusted = false;
+    if (!core_->proxy_told.exchange(true))
+      log::warn(
+          "{} forwards requests of others, who share its limits: if it is a reverse proxy, "
+          "start with --trusted-proxy {}",
+          to_string(address_), to_string(address_));
+  }
+  return caller;
+}
+
+static HttpReply make_too_many(Core& core, const char* what) {
+  core.limited++;
+  HttpReply reply = make_refusal(429, what);
+  reply.headers["Retry-After"] = "5";
+  return reply;
+}
+
+HttpReply Session::judge_caller(const Request& request) {
+  auto caller = find_caller(request);
+  if (!caller) return make_refusal(400, "X-Forwarded-For names no address");
+  caller_ = std::move(*caller);
+  if (!caller_.trusted && reserved_) {
+    HttpReply reply = make_refusal(503, "too many connections");
+    reply.headers["Retry-After"] = "5";
+    return reply;
+  }
+  if (!caller_.trusted && !core_->admission.take_request(caller_.address, seconds_now()))
+    return make_too_many(*core_, "too many requests from your address");
+  return {};
+}
+
+// Where this server is called by a name that is not its own, and where TLS is asked for, but not
+// spoken.
+HttpReply Session::judge_host(const Request& request) const {
+  if (request.count(http::field::host) == 0) return {};  // HTTP/1.0: no browser
+  const std::string_view header = view(request[http::field::host]);
+  const std::string name = host_name(header);
+  if (!core_->hosts.hold(header)) {
+    if (name.empty()) return make_refusal(400, "bad Host header");
+    if (!core_->host_told.exchange(true))
+      log::warn(
+          "refused a request for the host '{0}': if that is this server's name, start it "
+          "with --allow-host {0}",
+          name);
+    return make_refusal(421, "this server is not known as '" + name +
+                                 "'; if it should be, start it with --allow-host " + name);
+  }
+  if (!core_->certificate || stream().secure() || caller_.trusted) return {};
+  HttpReply reply = make_refusal(308, "this server speaks TLS: ask https://");
+  reply.headers["Location"] =
+      "https://" + std::string(header) + std::string(view(request.target()));
+  return reply;
+}
+
 bool Session::is_from_here(const Request& request) const {
   std::vector<std::string_view> origins;
   const auto range = request.equal_range(http::field::origin);
   for (auto it = range.first; it != range.second; ++it) origins.push_back(view(it->value()));
-  return origin_allowed(origins, view(request[http::field::host]), core_->settings.allowed_origin);
+  return origin_allowed(origins, view(request[http::field::host]), core_->settings.allowed_origins);
 }
 
 // 200 when a body may be handed on, else the refusal.
@@ -160,7 +234,7 @@ HttpReply Session::judge_post(const Request& request) const {
 }
 
 // 101 when a WebSocket may be opened, else the refusal.
-HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& request) const {
+HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& request) {
   const bool visit = question.path == "/api/v1/visit", eye = question.path == "/api/v1/eye";
   if (!visit && !eye) return make_refusal(404, "no WebSocket here");
   if (!websocket::is_upgrade(request)) {
@@ -186,6 +260,10 @@ HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& re
   for (auto it = offers.first; it != offers.second; ++it)
     offered = offered || offers_protocol(view(it->value()), subprotocol);
   if (!offered) return make_refusal(400, "subprotocol is wellspring.v1");
+  if (!caller_.trusted) {
+    counted_websocket_ = core_->admission.open_websocket(caller_.address);
+    if (!counted_websocket_) return make_too_many(*core_, "too many visits from your address");
+  }
   HttpReply reply;
   reply.status = 101;
   return reply;
@@ -195,7 +273,9 @@ HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& re
 net::awaitable<HttpReply> Session::ask(HttpQuestion question) {
   auto reply = std::make_shared<HttpReply>();
   const bool slow = core_->doors.slow && core_->doors.slow(question);
-  Workers& workers = slow ? core_->slow_workers : core_->workers;
+  const bool health =
+      caller_.trusted && (question.path == "/healthz" || question.path == "/metrics");
+  Workers& workers = health ? core_->health_workers : slow ? core_->slow_workers : core_->workers;
   const bool posted = workers.post([self = shared_from_this(), question, reply](bool run) {
     try {
       *reply = run ? self->core_->doors.answer(question) : make_refusal(503, "server stops");
@@ -224,13 +304,13 @@ net::awaitable<void> Session::write_refusal(HttpQuestion question, int status, s
 
 // Headers of any message but Content-Length.
 template <class Message>
-static void put_headers(const HttpReply& reply, unsigned version, bool keep_alive,
+static void put_headers(const HttpReply& reply, bool secure, unsigned version, bool keep_alive,
                         Message& message) {
   message.version(version);
   message.result(unsigned(reply.status));
   message.set(http::field::server, "wellspring");
   message.set(http::field::date, http_date());
-  for (const auto& [name, value] : security_headers()) message.set(name, value);
+  for (const auto& [name, value] : security_headers(secure)) message.set(name, value);
   if (reply.status != 304 && reply.status != 204)
     message.set(http::field::content_type, reply.content_type);
   for (const auto& [name, value] : reply.headers) message.set(name, value);
@@ -255,7 +335,7 @@ net::awaitable<error_code> Session::write_file(const FilePart& part,
     }
     left -= count;
     message.body() = {piece.data(), count, left > 0};
-    stream().expires_after(seconds(http_write_timeout));
+    stream().expires_after(http_write_timeout);
     error_code ec;
     co_await http::async_write(stream(), serializer, net::redirect_error(net::use_awaitable, ec));
     if (ec != http::error::need_buffer) co_return ec;  // all is written, or nothing more will be
@@ -272,42 +352,35 @@ net::awaitable<bool> Session::write_reply(HttpQuestion question, HttpReply reply
   finish_reply(question, reply);
   const uint64_t body_bytes = reply.file ? reply.file->size : reply.body.size();
   const bool may_have_body = reply.status != 304 && reply.status != 204;
-  stream().expires_after(seconds(http_write_timeout));
+  stream().expires_after(http_write_timeout);
   error_code ec;
   if (!may_have_body || question.method == "HEAD") {
     http::response<http::empty_body> message;
-    put_headers(reply, version, keep_alive, message);
+    put_headers(reply, stream().secure(), version, keep_alive, message);
     if (may_have_body) message.content_length(body_bytes);
     co_await http::async_write(stream(), message, net::redirect_error(net::use_awaitable, ec));
   } else if (reply.file) {
     http::response<http::buffer_body> message;
-    put_headers(reply, version, keep_alive, message);
+    put_headers(reply, stream().secure(), version, keep_alive, message);
     message.content_length(body_bytes);
     ec = co_await write_file(*reply.file, message);
   } else {
     http::response<http::string_body> message;
-    put_headers(reply, version, keep_alive, message);
+    put_headers(reply, stream().secure(), version, keep_alive, message);
     message.content_length(body_bytes);
     message.body() = std::move(reply.body);
     co_await http::async_write(stream(), message, net::redirect_error(net::use_awaitable, ec));
   }
-  log::debug("{} {} {} {} {}", peer_, question.method, question.path, reply.status, body_bytes);
+  log::debug("{} {} {} {} {}", caller_.name, question.method, question.path, reply.status,
+             body_bytes);
   if (ec) fail(ec, "write reply");
   co_return !ec && keep_alive;
 }
 
-// Ends the connection so that the peer gets the reply whole: closing a socket with unread input
-// would reset it.
 net::awaitable<void> Session::linger() {
-  error_code ec;
-  stream().socket().shutdown(tcp::socket::shutdown_send, ec);
-  stream().expires_after(std::chrono::seconds(1));
-  reading_ = true;
-  std::array<char, 4096> thrown_away;
-  for (size_t total = 0; !ec && !stopping_ && total < 256 * 1024;)
-    total += co_await stream().async_read_some(net::buffer(thrown_away),
-                                               net::redirect_error(net::use_awaitable, ec));
-  stream().close();
+  reading_ = true;  // stop() may close
+  if (!stopping_) co_await stream().linger(1);
+  else stream().close();
 }
 
 }  // namespace wellspring

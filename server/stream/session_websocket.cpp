@@ -37,13 +37,13 @@ net::awaitable<bool> Session::accept_websocket() {
   ws_.read_message_max(max_message_bytes);
   ws_.auto_fragment(false);  // a picture is one frame, written from where it lies
   const bool echo = upgrade_->count(http::field::sec_websocket_protocol) > 0;
-  ws_.set_option(websocket::stream_base::decorator([echo](websocket::response_type& response) {
+  const bool secure = stream().secure();
+  ws_.set_option(websocket::stream_base::decorator([=](websocket::response_type& response) {
     response.set(http::field::server, "wellspring");
-    for (const auto& [name, value] : security_headers()) response.set(name, value);
+    for (const auto& [name, value] : security_headers(secure)) response.set(name, value);
     if (echo) response.set(http::field::sec_websocket_protocol, "wellspring.v1");
   }));
   ws_.control_callback([this](websocket::frame_type type, beast::string_view) {
-    count_input(1, 0);
     // The visit is over, though the peer may take its time to close the socket.
     if (type == websocket::frame_type::close && link_) link_->mark_closed();
   });
@@ -59,12 +59,12 @@ net::awaitable<void> Session::serve_websocket() {
   const beast::string_view target = upgrade_->target();
   const bool eye = target.substr(0, target.find('?')).ends_with("/eye");
   upgrade_.reset();
-  link_ = std::make_shared<Link>(core_->next_link++, eye ? LinkKind::eye : LinkKind::visit, peer_);
+  link_ = std::make_shared<Link>(core_->next_link++, eye ? LinkKind::eye : LinkKind::visit,
+                                 caller_.name);
   link_->set_wake([weak = weak_from_this()] {
     if (auto self = weak.lock()) self->wake_writer();
   });
   core_->websockets++;
-  log::info("{} {} joined from {}", eye ? "eye" : "visit", link_->id, peer_);
   net::co_spawn(
       ws_.get_executor(), [self = shared_from_this()] { return self->write_messages(); },
       [self = shared_from_this()](std::exception_ptr error) {
@@ -74,12 +74,11 @@ net::awaitable<void> Session::serve_websocket() {
         }
         self->writer_ended_.raise();
       });
-  try {
-    if (core_->doors.joined) core_->doors.joined(link_);
-  } catch (const std::exception& e) {
-    log::error("joined: {}", e.what());
-    want_close(websocket::close_code::internal_error, "internal error");
-  }
+  stream().watch([this](std::span<const uint8_t> bytes) {
+    return count_input(double(frame_counter_.count(bytes)), double(bytes.size()));
+  });
+  core_->admission.begin_waiting(id_);
+  start_first_deadline();
   if (stopping_) want_close(websocket::close_code::going_away, "server stops");
   const bool connected = co_await read_messages();
   if (!connected) {
@@ -90,9 +89,37 @@ net::awaitable<void> Session::serve_websocket() {
   }
   co_await writer_ended_.wait();
   end_deadline();
+  first_deadline_.cancel();
+  flood_deadline_.cancel();
   core_->websockets--;
+  if (!joined_) co_return;
   log::info("{} {} left, {} pictures, {} bytes sent", eye ? "eye" : "visit", link_->id,
             link_->pictures_sent.load(), link_->bytes_sent.load());
+}
+
+// A text came. With its first one the peer joins: who says nothing takes no place among visitors.
+void Session::hear(std::string text) {
+  link_->push_text_in(std::move(text));
+  if (joined_) return;
+  joined_ = true;
+  core_->admission.end_waiting(id_);
+  log::info("{} {} joined from {}", link_->kind == LinkKind::eye ? "eye" : "visit", link_->id,
+            caller_.name);
+  try {
+    if (core_->doors.joined) core_->doors.joined(link_);
+  } catch (const std::exception& e) {
+    log::error("joined: {}", e.what());
+    want_close(websocket::close_code::internal_error, "internal error");
+  }
+}
+
+void Session::start_first_deadline() {
+  first_deadline_.expires_after(seconds(core_->settings.first_message_timeout));
+  first_deadline_.async_wait([self = shared_from_this()](error_code ec) {
+    if (ec || self->joined_) return;
+    self->core_->silent_closed++;
+    self->want_close(websocket::close_code::policy_error, "no first message came");
+  });
 }
 
 // Until the connection ends (false) or is to be closed (true; the writer's async_close then reads
@@ -104,29 +131,37 @@ net::awaitable<bool> Session::read_messages() {
   beast::flat_buffer buffer;
   while (close_reason_.code == websocket::close_code::none) {
     error_code ec;
-    const size_t bytes =
-        co_await ws_.async_read(buffer, net::redirect_error(net::use_awaitable, ec));
+    co_await ws_.async_read(buffer, net::redirect_error(net::use_awaitable, ec));
     if (ec) {
       fail(ec, "WebSocket read");
       co_return false;
     }
-    const bool counted = count_input(1, double(bytes));
-    if (counted && !ws_.got_text())
-      want_close(websocket::close_code::unknown_data, "text messages only");
-    else if (counted) link_->push_text_in(beast::buffers_to_string(buffer.data()));
+    if (!ws_.got_text()) want_close(websocket::close_code::unknown_data, "text messages only");
+    else if (close_reason_.code == websocket::close_code::none)
+      hear(beast::buffers_to_string(buffer.data()));
     buffer.consume(buffer.size());
   }
   co_return true;
 }
 
-// False: more than a peer may say, the connection is being closed.
-bool Session::count_input(double messages, double bytes) {
-  if (close_reason_.code != websocket::close_code::none) return false;
+// Of bytes as they come. False: more than a peer may say, the connection is being closed, and
+// nothing more is read: the peer has a moment to read why.
+bool Session::count_input(double frames, double bytes) {
+  if (flooded_) return false;
   const double now = seconds_now();
-  if (messages_.take(messages, now) && bytes_.take(bytes, now)) return true;
+  const bool own = frames_.take(frames, now) && bytes_.take(bytes, now);
+  const bool shared =
+      own && (caller_.trusted || core_->admission.take_frames(caller_.address, frames, now));
+  if (shared) return true;
+  flooded_ = true;
   core_->flood_closed++;
-  log::warn("session {}: too many messages, closed", peer_);
+  log::warn("session {}: too many messages{}, closed", caller_.name,
+            own ? " from its address" : "");
   want_close(websocket::close_code::policy_error, "too many messages");
+  flood_deadline_.expires_after(seconds(flood_linger));
+  flood_deadline_.async_wait([self = shared_from_this()](error_code ec) {
+    if (!ec) self->cut("too many messages");
+  });
   return false;
 }
 

@@ -3,6 +3,11 @@
 // rendering: questions go to Doors::answer, connected peers to Doors::joined as Links.
 //
 // What a stranger gets (limits not in StreamSettings are in session.h):
+// - Names: a request whose Host is none of HostNames (origin.h) gets 421, whatever it asks.
+// - Limits by address and in all, a reserve for trusted addresses: admission.h. What is too much is
+//   429 or 503 with Retry-After.
+// - TLS where there is a certificate; plain requests are then sent to https:// (308), but for those
+//   of trusted addresses.
 // - HTTP/1.1 with keep-alive, GET and HEAD only (405); header 16 KiB (431), body 64 KiB and ignored
 //   (413); targets as in target.h. /api/v1/admin/announce takes a POST and nothing else: a body of
 //   at most 16 KiB (413) of application/json (415), Origin as in origin.h (403). Every reply
@@ -11,10 +16,11 @@
 // origin.h (403).
 //   Subprotocol wellspring.v1 is echoed when offered; offering none is fine, offering only others
 //   is a 400.
-// - Close codes of a WebSocket: 1003 binary message, 1007 not UTF-8, 1008 more than 400 messages
-// (pings count)
-//   or 1 MiB a second for longer than a burst of two seconds' worth, 1009 message above 64 KiB,
-//   1001 the server stops, 1000 the show closed the link.
+// - A WebSocket becomes a Link with its first message, which must come within
+//   first_message_timeout.
+// - Close codes of a WebSocket: 1003 binary message, 1007 not UTF-8, 1008 no first message, or more
+//   than 400 frames of any kind or 1 MiB a second for longer than a burst of two seconds' worth,
+//   1009 message above 64 KiB, 1001 the server stops, 1000 the show closed the link.
 // - A peer that is silent (not even pongs) is dropped after idle_timeout + half of it at most; one
 // that does not
 //   read what it is sent after write_timeout, whatever it says meanwhile.
@@ -23,7 +29,9 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "stream/admission.h"
 #include "wire/http.h"
 #include "wire/link.h"
 
@@ -32,7 +40,8 @@ namespace wellspring {
 struct Doors {
   // Runs on a worker thread of its own pool, may take seconds (a still picture); must not throw.
   std::function<HttpReply(const HttpQuestion&)> answer;
-  // A peer passed the WebSocket handshake. Runs on an I/O thread; must not block.
+  // A peer passed the WebSocket handshake and said something. Runs on an I/O thread; must not
+  // block.
   std::function<void(std::shared_ptr<Link>)> joined;
   // Optional: questions that may take long. They get two threads and a short queue of their own, so
   // that pictures being made never keep a health check waiting. Both queues answer 503 when full.
@@ -43,17 +52,29 @@ struct StreamSettings {
   std::string host = "127.0.0.1";
   uint16_t port = 8080;  // 0: any free one
   int threads = 2;
-  int max_connections = 256;   // beyond: 503 and closed
   double header_timeout = 10;  // seconds for a request's header and body
   double write_timeout = 5;    // a WebSocket write pending longer closes the connection
   double idle_timeout = 20;    // a silent WebSocket is pinged after half of it, closed after all
-  std::string allowed_origin;  // besides same-host: an Origin that may open WebSockets; "*": any
+  double first_message_timeout = 10;         // seconds after the handshake of a WebSocket
+  std::vector<std::string> allowed_origins;  // besides same-host: may open WebSockets; "*": any
+  std::vector<std::string> allowed_hosts;    // names besides this machine's; "*": any
+  Limits limits;
+  bool trust_loopback = true;        // 127.0.0.1 and ::1 are trusted
+  std::vector<std::string> trusted;  // addresses and networks without limits by address
+  std::vector<std::string> proxies;  // whose X-Forwarded-For is believed; likewise
+  std::string certificate, key;      // files for TLS, in PEM; both or none
+  double certificate_interval = 2;   // seconds between looks whether they have changed
 };
 
 struct StreamCounters {  // since the start, but for open and websockets: now
   uint64_t accepted = 0, refused = 0, open = 0, http_requests = 0, websockets = 0, slow_closed = 0;
   uint64_t flood_closed = 0, accept_errors = 0;
+  uint64_t limited = 0;        // requests and WebSockets refused by their address's limits
+  uint64_t dropped = 0;        // connections that waited and made place for others
+  uint64_t silent_closed = 0;  // WebSockets that said nothing
 };
+// As Prometheus reads it.
+std::string to_metrics(const StreamCounters& counters);
 
 // Throws what Server would throw if the port cannot be had now; else lets go of it again.
 void try_port(const StreamSettings& settings);

@@ -33,6 +33,7 @@ struct House {
   std::mutex mutex;
   std::condition_variable news;
   std::vector<std::shared_ptr<Link>> links;
+  std::string first_texts;  // of the links, in order, each with a semicolon
   Server server;
 
   explicit House(const StreamSettings& settings = quick_settings(),
@@ -42,6 +43,7 @@ struct House {
                           .joined =
                               [this](std::shared_ptr<Link> link) {
                                 std::lock_guard lock(mutex);
+                                first_texts += link->take_texts().at(0) + ";";
                                 links.push_back(std::move(link));
                                 news.notify_all();
                               },

@@ -30,7 +30,7 @@ TEST(Http, get_and_head_on_one_connection) {
 TEST(Http, pipelined_requests_are_answered_in_order) {
   House house;
   RawClient client(house.port());
-  const std::string rest = " HTTP/1.1\r\nHost: a\r\n\r\n";
+  const std::string rest = " HTTP/1.1\r\nHost: localhost\r\n\r\n";
   client.send("GET /1" + rest + "GET /2" + rest + "GET /3" + rest);
   EXPECT_EQ(client.reply().body, "/1");
   EXPECT_EQ(client.reply().body, "/2");
@@ -109,7 +109,7 @@ TEST(Http, files_come_in_pieces_and_in_parts) {
   EXPECT_EQ(client.ask("/film", "", "HEAD").header("Content-Length"), std::to_string(bytes.size()));
   EXPECT_EQ(house.server.counters().accepted, 1u) << "one connection for all of them";
   RawClient cut(house.port());
-  cut.send("GET /long HTTP/1.1\r\nHost: a\r\n\r\n");
+  cut.send("GET /long HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_TRUE(cut.ends()) << "the rest will not come";
 }
 
@@ -138,10 +138,10 @@ TEST(Http, what_is_not_http_is_refused_and_closed) {
   for (const char* bytes :
        {"hello\r\n\r\n", "GET\r\n\r\n", "GET /a\r\n\r\n", "GET /a HTTP/9.9\r\n\r\n",
         "GET /a b HTTP/1.1\r\n\r\n", "GET /a HTTP/1.1\r\nHost localhost\r\n\r\n",
-        "GET /a HTTP/1.1\r\nHost: a\r\nContent-Length: x\r\n\r\n",
-        "GET /a HTTP/1.1\r\nHost: a\r\nContent-Length: -1\r\n\r\n", "GET /a HTTP/1.1\r\n\r\n",
-        "GET /a HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n",
-        "GET /a HTTP/1.1\r\nHost: a\r\nContent-Length: 1\r\nTransfer-Encoding: "
+        "GET /a HTTP/1.1\r\nHost: localhost\r\nContent-Length: x\r\n\r\n",
+        "GET /a HTTP/1.1\r\nHost: localhost\r\nContent-Length: -1\r\n\r\n",
+        "GET /a HTTP/1.1\r\n\r\n", "GET /a HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n",
+        "GET /a HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1\r\nTransfer-Encoding: "
         "chunked\r\n\r\n0\r\n\r\n",
         "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n"}) {
     RawClient client(house.port());
@@ -162,11 +162,11 @@ TEST(Http, too_large_headers_targets_and_bodies) {
   RawClient huge(house.port());
   EXPECT_EQ(huge.ask("/a", "Content-Length: 99999999999999\r\n").status, 413);
   RawClient chunks(house.port());
-  chunks.send("GET /a HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n");
+  chunks.send("GET /a HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n");
   for (int i = 0; i < 5; i++) chunks.send("4000\r\n" + std::string(0x4000, 'x') + "\r\n");
   EXPECT_EQ(chunks.reply().status, 413);
   RawClient fine(house.port());
-  fine.send("GET /a HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\nhello");
+  fine.send("GET /a HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhello");
   EXPECT_EQ(fine.reply().status, 200);
   EXPECT_EQ(fine.ask("/b").body, "/b");
 }
@@ -208,7 +208,7 @@ TEST(Http, a_slow_answer_holds_up_nobody_else) {
   House house(quick_settings(), answer, [](const HttpQuestion& q) { return q.path == "/still"; });
   // Two threads and eight places: more are told to come back.
   std::vector<std::unique_ptr<RawClient>> waiting;
-  const std::string request = "GET /still HTTP/1.1\r\nHost: a\r\n\r\n";
+  const std::string request = "GET /still HTTP/1.1\r\nHost: localhost\r\n\r\n";
   for (int i = 0; i < 2; i++) {
     waiting.push_back(std::make_unique<RawClient>(house.port()));
     waiting.back()->send(request);
@@ -232,7 +232,7 @@ TEST(Http, a_slow_answer_holds_up_nobody_else) {
 
 TEST(Http, beyond_the_limit_of_connections_503_with_retry_after) {
   auto settings = quick_settings();
-  settings.max_connections = 2;
+  settings.limits.connections = 2;
   House house(settings);
   RawClient first(house.port()), second(house.port());
   EXPECT_EQ(first.ask("/a").status, 200);
@@ -297,7 +297,7 @@ TEST(Http, stop_finishes_the_answer_under_way_and_is_idempotent) {
     return House::echo(question);
   });
   RawClient busy(house.port()), idle(house.port()), half(house.port());
-  busy.send("GET /late HTTP/1.1\r\nHost: a\r\n\r\n");
+  busy.send("GET /late HTTP/1.1\r\nHost: localhost\r\n\r\n");
   half.send("GET /half HT");
   asked.get_future().wait();
   house.server.stop();

@@ -34,7 +34,7 @@ TEST_F(Post, body_and_authorization_are_handed_on) {
   EXPECT_EQ(post("Content-Type: Application/JSON ; charset=utf-8\r\n", "x").body, "POST||x");
   EXPECT_EQ(post(as_json, "x", "POST", std::string(path) + "?a=b").body, "POST||x");
   RawClient chunks(house.port());
-  chunks.send("POST " + std::string(path) + " HTTP/1.1\r\nHost: a\r\n" + as_json +
+  chunks.send("POST " + std::string(path) + " HTTP/1.1\r\nHost: localhost\r\n" + as_json +
               "Transfer-Encoding: chunked\r\n\r\n2\r\nab\r\n1\r\nc\r\n0\r\n\r\n");
   EXPECT_EQ(chunks.reply().body, "POST||abc");
   EXPECT_EQ(chunks.ask("/a").body, "GET||") << "the connection may be used again";
@@ -61,7 +61,7 @@ TEST_F(Post, bodies_are_json_of_at_most_16_kib) {
   EXPECT_EQ(post(as_json, std::string(16384, 'x')).status, 200);
   EXPECT_EQ(post(as_json, std::string(16385, 'x')).status, 413);
   RawClient chunks(house.port());
-  chunks.send("POST " + std::string(path) + " HTTP/1.1\r\nHost: a\r\n" + as_json +
+  chunks.send("POST " + std::string(path) + " HTTP/1.1\r\nHost: localhost\r\n" + as_json +
               "Transfer-Encoding: chunked\r\n\r\n4001\r\n" + std::string(0x4001, 'x') +
               "\r\n0\r\n\r\n");
   EXPECT_EQ(chunks.reply().status, 413);

@@ -2,6 +2,8 @@
 // Pure rules: targets, origins, subprotocols, entity tags, rates, the worker pool.
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <atomic>
 #include <future>
 
@@ -100,11 +102,11 @@ TEST(Target, ways_out_are_refused) {
 }
 
 static bool allowed(const char* origin, const char* host, const char* extra = "") {
-  return origin_allowed({origin}, host, extra);
+  return origin_allowed({origin}, host, {"https://tickets.example", extra});
 }
 
 TEST(Origin, same_host_and_port_only) {
-  EXPECT_TRUE(origin_allowed({}, "museum.org", ""));
+  EXPECT_TRUE(origin_allowed({}, "museum.org", {}));
   EXPECT_TRUE(allowed("http://museum.org:8080", "museum.org:8080"));
   EXPECT_TRUE(allowed("http://museum.org", "museum.org"));
   EXPECT_TRUE(allowed("http://museum.org", "museum.org:80"));
@@ -128,8 +130,8 @@ TEST(Origin, same_host_and_port_only) {
 }
 
 TEST(Origin, two_are_one_too_many_whatever_they_are) {
-  EXPECT_FALSE(origin_allowed({"http://a", "http://a"}, "a", ""));
-  EXPECT_FALSE(origin_allowed({"http://a", "http://b"}, "a", "*"));
+  EXPECT_FALSE(origin_allowed({"http://a", "http://a"}, "a", {}));
+  EXPECT_FALSE(origin_allowed({"http://a", "http://b"}, "a", {"*"}));
 }
 
 TEST(Origin, the_allowed_one_is_exact) {
@@ -139,6 +141,24 @@ TEST(Origin, the_allowed_one_is_exact) {
       allowed("https://www.museum.org.evil.net", "10.0.0.1:8080", "https://www.museum.org"));
   EXPECT_FALSE(allowed("https://www.museum", "10.0.0.1:8080", "https://www.museum.org"));
   EXPECT_TRUE(allowed("https://anybody.net", "10.0.0.1:8080", "*"));
+}
+
+TEST(HostNames, addresses_own_names_and_those_named_only) {
+  const HostNames hosts({"Museum.example", "kiosk"}, {"https://www.museum.org:8443"}, "hall.lan");
+  for (const char* host : {"127.0.0.1", "10.1.2.3:8080", "[::1]", "[2001:db8::7]:80", "localhost",
+                           "LOCALHOST:8080", "localhost.", "museum.example", "museum.example.:443",
+                           "kiosk:80", "www.museum.org", "hall.lan:1"})
+    EXPECT_TRUE(hosts.hold(host)) << host;
+  for (const char* host :
+       {"", "evil.example", "evil.example:8080", "museum.example.evil.net", "xmuseum.example",
+        "127.0.0.1.evil.net", "127.0.0.1.nip.io", "::1", "[evil]", "[127.0.0.1]", "2130706433",
+        "0x7f.1", "localhost:x", "localhost evil.example", "museum.example@evil.net", "127.0.0.1,x",
+        "museum.org", "/", "*"})
+    EXPECT_FALSE(hosts.hold(host)) << host;
+  char own[256] = "";
+  ASSERT_EQ(gethostname(own, sizeof(own) - 1), 0);
+  EXPECT_TRUE(hosts.hold(own));
+  EXPECT_TRUE(HostNames({"*"}, {}, "0.0.0.0").hold("evil.example"));
 }
 
 TEST(Subprotocol, is_found_in_a_list) {

@@ -21,10 +21,11 @@ TEST(SlowReader, is_cut_although_it_pings_while_others_see_on) {
   settings.write_timeout = 1;
   House house(settings);
   RawClient slow(house.port(), 4096);
-  ASSERT_EQ(slow.upgrade().status, 101);
+  ASSERT_EQ(slow.join().status, 101);
   auto slow_link = house.link(0);
   WsClient good;
   good.connect({.port = house.port()});
+  good.send_text("first");
   auto good_link = house.link(1);
   ASSERT_TRUE(slow_link && good_link);
 
@@ -69,7 +70,7 @@ TEST(SlowReader, that_is_sent_nothing_stays) {
   settings.write_timeout = 0.2;
   House house(settings);
   RawClient quiet(house.port());
-  quiet.upgrade();
+  quiet.join();
   auto link = house.link();
   ASSERT_TRUE(link);
   link->send_picture(picture(1));
@@ -84,7 +85,7 @@ TEST(SlowReader, that_is_sent_nothing_stays) {
 TEST(SlowReader, gets_the_newest_picture_when_it_reads_again) {
   House house;
   RawClient client(house.port(), 4096);
-  client.upgrade();
+  client.join();
   auto link = house.link();
   ASSERT_TRUE(link);
   constexpr uint32_t count = 100;
@@ -118,7 +119,7 @@ TEST(SlowReader, does_not_hold_up_the_stop) {
   settings.write_timeout = 60;
   House house(settings);
   RawClient stuck(house.port(), 4096);
-  stuck.upgrade();
+  stuck.join();
   auto link = house.link();
   ASSERT_TRUE(link);
   for (int i = 0; i < 3; i++) {
@@ -135,7 +136,7 @@ TEST(SlowReader, sixty_four_texts_behind_is_closed) {
   settings.write_timeout = 0.5;
   House house(settings);
   RawClient stuck(house.port(), 4096);
-  stuck.upgrade();
+  stuck.join();
   auto link = house.link();
   ASSERT_TRUE(link);
   for (size_t i = 0; i < 2 * Link::max_texts_out; i++) {

@@ -17,7 +17,7 @@ struct Talk {
   std::shared_ptr<Link> link;
   explicit Talk(const StreamSettings& settings = quick_settings())
       : house(settings), client(house.port()) {
-    EXPECT_EQ(client.upgrade().status, 101);
+    EXPECT_EQ(client.join().status, 101);
     link = house.link();
     EXPECT_TRUE(link);
   }

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much of the server one address may have, and who is let in when places are short. Keeps
+// counts alone: no sockets, time is an argument (seconds of a clock that does not run backwards).
+// Every call may come from any thread.
+//
+// - Strangers share all places but a reserve, which is for trusted addresses: health checks and
+//   kiosks get in whatever strangers do. Trusted addresses have no limits of their own.
+// - A connection waits from its start until its request is whole, from one request to the next, and
+//   as a WebSocket until its first message. Where places are short, in all or for one address, the
+//   stranger's connection that has waited longest makes place for the newcomer.
+// - A proxy's connections are not counted by address: what it forwards is.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <unordered_map>
+
+#include "stream/address.h"
+#include "stream/rate.h"
+
+namespace wellspring {
+
+// The defaults let forty visitors in who come at once from one address, as a school class does:
+// each browser opens up to six connections, asks for about thirty files, and sends up to 120
+// messages a second.
+struct Limits {
+  int connections = 4096;            // in all; beyond: 503
+  int reserve = 64;                  // of these, for trusted addresses; at most a quarter
+  int connections_an_address = 512;  // what is by address: beyond, 429
+  double new_connections_a_second = 50, new_connections_at_once = 600;
+  int websockets_an_address = 128;
+  double requests_a_second = 100, requests_at_once = 3000;  // HTTP
+  double frames_a_second = 8000, frames_at_once = 16000;    // of all its WebSockets
+};
+
+enum class Standing : uint8_t { stranger, proxy, trusted };
+
+class Admission {
+ public:
+  explicit Admission(const Limits& limits);
+
+  enum class Answer : uint8_t { welcome, full, too_many };
+  struct Entry {
+    Answer answer = Answer::welcome;
+    std::optional<uint64_t> drop;  // the connection that makes place: the caller ends it
+    bool reserved = false;         // it has a place of the reserve
+  };
+  // A connection begins, and waits. `id`: never used before. One that is not welcome is not kept.
+  Entry enter(uint64_t id, const Address& from, Standing standing, double now);
+  void leave(uint64_t id);  // also of one that is not kept
+  void begin_waiting(uint64_t id);
+  void end_waiting(uint64_t id);
+
+  // False: too much for this address.
+  bool take_request(const Address& from, double now);
+  bool take_frames(const Address& from, double frames, double now);
+  bool open_websocket(const Address& from);
+  void close_websocket(const Address& from);
+
+  size_t connections() const;
+  size_t addresses() const;  // that are remembered
+
+ private:
+  struct Place {
+    Address part;
+    Standing standing = Standing::stranger;
+    uint64_t waits = 0;  // its number in the queue; 0: it does not wait
+  };
+  struct Guest {  // what one address has and does
+    int connections = 0, websockets = 0;
+    std::set<uint64_t> waiting;  // numbers in the queue
+    RateBound new_connections, requests, frames;
+  };
+  Guest& guest(const Address& part);
+  std::optional<uint64_t> take_oldest(const std::set<uint64_t>& numbers);
+  std::optional<uint64_t> take_oldest();
+  void stop_waiting(Place& place);
+
+  const Limits limits_;
+  const size_t reserve_;
+  mutable std::mutex mutex_;
+  std::unordered_map<uint64_t, Place> places_;
+  std::map<uint64_t, uint64_t> queue_;  // strangers who wait, oldest first: number to id
+  std::map<Address, Guest> guests_;
+  uint64_t next_number_ = 1;
+};
+
+}  // namespace wellspring
