@@ -49,12 +49,12 @@ export function start_server(words = [], { port = 0, content } = {}) {
     });
     child.stdout.on('data', (chunk) => {
       stdout += chunk;
-      const match = /https?:\/\/[^:]+:(\d+)\//.exec(stdout);
+      const match = /http(s?):\/\/[^:]+:(\d+)\//.exec(stdout);
       if (!match) return;
       clearTimeout(timer);
-      const found = Number(match[1]);
+      const found = Number(match[2]), place = `${match[1]}://127.0.0.1:${found}`;
       resolve({
-        child, port: found, url: `http://127.0.0.1:${found}`, ws: `ws://127.0.0.1:${found}`,
+        child, port: found, url: `http${place}`, ws: `ws${place}`,
         log: () => stderr,
         stop: (signal = 'SIGTERM') => new Promise((done) => {
           if (child.exitCode !== null || child.signalCode !== null) return done(child.exitCode);
@@ -92,12 +92,12 @@ export function read_sound(bytes) {
 // A scripted visitor: collects messages and pictures, acknowledges every picture.
 export class Visitor {
   constructor(server,
-      { path = '/api/v1/visit', protocol = 'wellspring.v1', acknowledge = true } = {}) {
+      { path = '/api/v1/visit', protocol = 'wellspring.v1', acknowledge = true, options = {} } = {}) {
     this.messages = [];
     this.pictures = 0;
     this.sounds = [];
     this.waiting = [];
-    this.socket = new WebSocket(server.ws + path, protocol);
+    this.socket = new WebSocket(server.ws + path, protocol, options);
     this.closed = new Promise((resolve) =>
         this.socket.on('close', (code, reason) => resolve({ code, reason: String(reason) })));
     this.socket.on('error', () => {});

@@ -76,6 +76,7 @@ static void listen_on(net::io_context& io, const StreamSettings& settings,
 }
 
 void try_port(const StreamSettings& settings) {
+  const Core core(settings, {});  // reads addresses and certificate
   net::io_context io;
   tcp::acceptor acceptor(io);
   listen_on(io, settings, acceptor);

@@ -76,7 +76,8 @@ struct StreamCounters {  // since the start, but for open and websockets: now
 // As Prometheus reads it.
 std::string to_metrics(const StreamCounters& counters);
 
-// Throws what Server would throw if the port cannot be had now; else lets go of it again.
+// Throws what Server would throw if it were made now, for its settings or because the port cannot
+// be had; else lets go of it again.
 void try_port(const StreamSettings& settings);
 
 class Server {

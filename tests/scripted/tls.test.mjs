@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// TLS by the server itself: pages and visits, what is refused, and a certificate that is renewed
+// while visitors are there.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import http from 'node:http';
+import https from 'node:https';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import tls from 'node:tls';
+import { Visitor, run, sleep, source, start_server } from '../server.mjs';
+import { write_pyramid } from './pyramid.mjs';
+
+const folder = mkdtempSync(join(tmpdir(), 'wellspring-tls-'));
+const path = (name) => join(folder, name);
+const cert = path('cert.pem'), key = path('key.pem');
+let server, ca;
+
+// A certificate that signs itself, for museum.test and 127.0.0.1.
+function make_certificate(name) {
+  execFileSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256',
+    '-nodes', '-days', '2', '-subj', `/CN=${name}`, '-addext',
+    'subjectAltName=DNS:museum.test,IP:127.0.0.1', '-keyout', path(`${name}.key`), '-out',
+    path(`${name}.crt`)], { stdio: 'ignore' });
+  return readFileSync(path(`${name}.crt`));
+}
+
+before(async () => {
+  ca = [make_certificate('first'), make_certificate('second')];
+  copyFileSync(path('first.crt'), cert);
+  copyFileSync(path('first.key'), key);
+  const content = path('content');
+  const made = await run('wellspring_new', ['giza', write_pyramid(folder), '--content', content]);
+  assert.equal(made.status, 0, made.stderr);
+  server = await start_server(['--exhibit', 'giza', '--tls-cert', cert, '--tls-key', key],
+      { content });
+});
+after(async () => {
+  if (server) assert.equal(await server.stop(), 0);
+  rmSync(folder, { recursive: true });
+});
+
+// One reply: {status, headers, body}.
+function ask(url, options = {}) {
+  const { request } = url.startsWith('https') ? https : http;
+  return new Promise((resolve, reject) => {
+    const asked = request(url, { ca, agent: false, ...options }, (reply) => {
+      const parts = [];
+      reply.on('data', (part) => parts.push(part));
+      reply.on('end', () => resolve({ status: reply.statusCode, headers: reply.headers,
+        body: Buffer.concat(parts) }));
+    });
+    asked.on('error', reject);
+    asked.end();
+  });
+}
+
+// What a handshake comes to: {protocol, cipher, name}, or the error's code.
+function shake_hands(options = {}) {
+  return new Promise((resolve) => {
+    const socket = tls.connect({ host: '127.0.0.1', port: server.port, ca, ...options }, () => {
+      resolve({ protocol: socket.getProtocol(), cipher: socket.getCipher().name,
+        alpn: socket.alpnProtocol, name: socket.getPeerCertificate().subject.CN });
+      socket.destroy();
+    });
+    socket.on('error', (error) => resolve(error.code));
+  });
+}
+
+test('pages and files come whole, with the header that asks for TLS from now on', async () => {
+  assert.ok(server.url.startsWith('https://'));
+  const page = await ask(`${server.url}/`);
+  assert.equal(page.status, 200);
+  assert.match(page.headers['strict-transport-security'], /^max-age=\d{8}/);
+  const plain = `http://127.0.0.1:${server.port}`;
+  for (const file of ['/visit.js', '/api/v1/']) {
+    const here = await ask(plain + file);  // loopback alone may do without TLS
+    assert.equal(here.status, 200);
+    assert.equal(here.headers['strict-transport-security'], undefined);
+    assert.ok((await ask(server.url + file)).body.equals(here.body), file);
+  }
+});
+
+test('only sound versions and ciphers', async () => {
+  assert.equal((await shake_hands()).protocol, 'TLSv1.3');
+  const older = await shake_hands({ maxVersion: 'TLSv1.2' });
+  assert.equal(older.protocol, 'TLSv1.2');
+  assert.match(older.cipher, /^ECDHE-ECDSA-.*(GCM|POLY1305)/);
+  assert.equal((await shake_hands({ ALPNProtocols: ['h2', 'http/1.1'] })).alpn, 'http/1.1');
+  const weak = { minVersion: 'TLSv1', maxVersion: 'TLSv1.1', ciphers: 'DEFAULT@SECLEVEL=0' };
+  assert.match(await shake_hands(weak), /ALERT|VERSION/);
+  for (const ciphers of ['ECDHE-ECDSA-AES128-SHA', 'ECDHE-ECDSA-AES256-SHA384'])
+    assert.match(await shake_hands({ maxVersion: 'TLSv1.2', ciphers }), /HANDSHAKE_FAILURE/);
+  assert.match(await shake_hands({ ALPNProtocols: ['h2'] }), /NO_APPLICATION_PROTOCOL/);
+});
+
+test('strangers who do without TLS are sent to it', async () => {
+  const from = { localAddress: '127.0.0.2' };
+  const reply = await ask(`http://127.0.0.1:${server.port}/kiosk?a=b`, from);
+  assert.equal(reply.status, 308);
+  assert.equal(reply.headers.location, `https://127.0.0.1:${server.port}/kiosk?a=b`);
+  assert.equal((await ask(`${server.url}/kiosk`, from)).status, 200);
+});
+
+test('what is no handshake harms nobody', async () => {
+  for (const bytes of [Buffer.from([22]), Buffer.from([22, 3, 1, 0, 4, 1, 0, 0, 0]),
+    Buffer.from([22, ...Array(300).fill(255)]), Buffer.from([0x80, 0x2e, 1, 3, 1])])
+    await new Promise((resolve) => {
+      const socket = http.Agent.prototype.createConnection.call(null,
+          { host: '127.0.0.1', port: server.port });
+      socket.on('error', () => {});
+      socket.on('close', resolve);
+      socket.on('data', () => {});
+      socket.end(bytes);
+    });
+  assert.equal((await ask(`${server.url}/healthz`)).status, 200);
+});
+
+test('a certificate is renewed under a visit; a bad one is refused', async () => {
+  const visitor = new Visitor(server, { options: { ca } });
+  await visitor.hello();
+  await visitor.picture();
+  assert.equal((await shake_hands()).name, 'first');
+  const until = async (holds) => {
+    for (let i = 0; i < 200; i++) {
+      if (await holds()) return;
+      await sleep(100);
+    }
+    assert.fail(server.log());
+  };
+  copyFileSync(path('second.crt'), cert);  // its key comes later: both are read then
+  copyFileSync(path('second.key'), key);
+  await until(async () => (await shake_hands()).name === 'second');
+  writeFileSync(cert, 'no certificate\n');
+  await until(() => server.log().includes('the old one stays'));
+  assert.match(server.log(), /cert\.pem: no certificate in PEM/);
+  assert.equal((await shake_hands()).name, 'second');
+  const next = visitor.picture((picture) => picture.seq === 1);
+  visitor.send({ type: 'input', seq: 1, move: [0, 0, 0], look: [0.3, 0] });
+  await next;
+  await visitor.close();
+  assert.ok(!server.log().includes('PRIVATE'));
+});
+
+test('a key of another certificate, or none, is an error that names the file', async () => {
+  const args = ['--content', join(source, 'content'), '--web', join(source, 'web'), '--port', '0',
+    '--tls-cert', path('first.crt')];
+  const wrong = await run('wellspring_server', [...args, '--tls-key', path('second.key')]);
+  assert.equal(wrong.status, 1);
+  assert.match(wrong.stderr, /second\.key: no key in PEM that belongs to .*first\.crt/);
+  const none = await run('wellspring_server', args);
+  assert.equal(none.status, 1);
+  assert.match(none.stderr, /both a certificate and its key/);
+});
