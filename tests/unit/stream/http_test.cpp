@@ -49,17 +49,46 @@ TEST(Http, http_1_0_and_connection_close_end_the_connection) {
 }
 
 TEST(Http, every_reply_carries_the_security_headers) {
-  House house;
-  for (const char* target : {"/a", "/missing", "/throws", "/../x", "/api/v1/visit"}) {
+  auto settings = quick_settings();
+  settings.limits.connections = 9;
+  House house(settings);
+  std::map<int, std::string> heads;  // of each status, one
+  const auto note = [&](const RawClient::Reply& reply) { heads[reply.status] = reply.head; };
+  const auto ask = [&](const std::string& line, const std::string& more = "") {
     RawClient client(house.port());
-    const auto reply = client.ask(target);
-    EXPECT_EQ(reply.header("X-Content-Type-Options"), "nosniff") << target;
-    EXPECT_EQ(reply.header("Referrer-Policy"), "no-referrer") << target;
-    EXPECT_TRUE(reply.header("Content-Security-Policy").starts_with("default-src 'none'; "))
-        << target;
-    EXPECT_EQ(reply.header("Permissions-Policy"), "camera=(), microphone=()") << target;
-    EXPECT_FALSE(reply.header("Cache-Control").empty()) << target;
-    EXPECT_FALSE(reply.header("Date").empty()) << target;
+    client.send(line + " HTTP/1.1\r\n" + more + "\r\n");
+    note(client.reply(line.starts_with("HEAD")));
+  };
+  const std::string host = "Host: localhost\r\n";
+  for (const char* target : {"/a", "/missing", "/throws", "/../x", "/api/v1/visit"})
+    ask("GET " + std::string(target), host);
+  ask("GET /tagged", host + "If-None-Match: \"v1\"\r\n");
+  ask("PUT /a", host);
+  ask("GET /" + std::string(3000, 'a'), host);
+  ask("GET /a", host + "X: " + std::string(20000, 'a') + "\r\n");
+  ask("GET /a", host + "Content-Length: 999999\r\n");
+  ask("GET /a", "Host: evil.example\r\n");
+  ask("POST /api/v1/admin/announce", host + "Content-Length: 0\r\n");
+  ask("POST /api/v1/admin/announce", host + "Origin: http://a\r\nContent-Length: 0\r\n");
+  std::vector<std::unique_ptr<RawClient>> visits;
+  while (!heads.contains(503) && visits.size() < 100) {
+    visits.push_back(std::make_unique<RawClient>(house.port()));
+    note(visits.back()->join());
+  }
+  for (const int status :
+       {101, 200, 304, 400, 403, 404, 405, 413, 414, 415, 421, 426, 431, 500, 503})
+    EXPECT_TRUE(heads.contains(status)) << status;
+  for (const auto& [status, head] : heads) {
+    for (const char* line :
+         {"X-Content-Type-Options: nosniff", "Referrer-Policy: no-referrer",
+          "Content-Security-Policy: default-src 'none'; script-src 'self'; ",
+          "Permissions-Policy: camera=(), microphone=()", "X-Frame-Options: SAMEORIGIN",
+          "Cross-Origin-Opener-Policy: same-origin", "Cross-Origin-Resource-Policy: same-site"})
+      EXPECT_NE(head.find("\r\n" + std::string(line)), std::string::npos) << status << line;
+    EXPECT_EQ(head.find("Strict-Transport-Security"), std::string::npos) << "without TLS";
+    if (status == 101) continue;
+    EXPECT_NE(head.find("\r\nCache-Control: "), std::string::npos) << status;
+    EXPECT_NE(head.find("\r\nDate: "), std::string::npos) << status;
   }
 }
 
