@@ -91,8 +91,8 @@ export function read_sound(bytes) {
 
 // A scripted visitor: collects messages and pictures, acknowledges every picture.
 export class Visitor {
-  constructor(server,
-      { path = '/api/v1/visit', protocol = 'wellspring.v1', acknowledge = true, options = {} } = {}) {
+  constructor(server, { path = '/api/v1/visit', protocol = 'wellspring.v1', acknowledge = true,
+    options = {} } = {}) {
     this.messages = [];
     this.pictures = 0;
     this.sounds = [];

@@ -93,7 +93,8 @@ async function others_go_on(address = '127.0.0.77') {
   const newcomer = new Visitor(server, { options: { localAddress: address } });
   const welcome = newcomer.next((item) => item.message?.type === 'welcome', 'welcome', 60000);
   await newcomer.opened;
-  newcomer.send({ type: 'hello', exhibit: '', width: 160, height: 90, lang: 'en', role: 'visitor' });
+  newcomer.send(
+      { type: 'hello', exhibit: '', width: 160, height: 90, lang: 'en', role: 'visitor' });
   await welcome;
   await newcomer.close();
 }
@@ -181,33 +182,10 @@ test('visitors who stop reading hold up nobody', async () => {
   for (const one of lazy) one.socket.terminate();
 });
 
-// A program with a connection in every state there is, each from an address of its own.
-const states = `
-  const net = require('node:net');
-  const upgrade = ${JSON.stringify(upgrade('/api/v1/visit'))}, hello = (fields) => {
-    const text = Buffer.from(JSON.stringify({ type: 'hello', exhibit: '', width: 160, height: 90,
-      lang: 'en', role: 'visitor', ...fields }));
-    return Buffer.concat([Buffer.from([0x81, 0xfe, text.length >> 8, text.length, 0, 0, 0, 0]), text]);
-  };
-  const whole = hello({});
-  const all = ['', 'G', 'GET / HTTP/1.1\\r\\nHost: loc', 'GET / HTTP/1.1\\r\\nHost: localhost\\r\\n\\r\\n',
-    'POST /api/v1/admin/announce HTTP/1.1\\r\\nHost: localhost\\r\\nContent-Length: 99\\r\\n\\r\\n{',
-    'GET /api/v1/exhibits/giza/still.jpg?width=64&height=64&spp=64 HTTP/1.1\\r\\nHost: localhost\\r\\n\\r\\n',
-    upgrade.slice(0, -2), [upgrade], [upgrade, whole.subarray(0, 1)], [upgrade, whole.subarray(0, 20)],
-    [upgrade, whole], [upgrade, whole, Buffer.from([0x01, 0x81, 0, 0, 0, 0, 0x7b])],
-    [upgrade, whole, Buffer.from([0x88, 0x80, 0, 0, 0, 0])]];
-  let left = all.length;
-  for (const [i, parts] of all.entries()) {
-    const socket = net.connect({ port: ${'PORT'}, host: '127.0.0.1', localAddress: '127.0.4.' + (i + 1) });
-    socket.on('error', () => {});
-    const [first, ...rest] = [parts].flat();
-    socket.on('connect', () => { socket.write(first); if (--left === 0) console.log('ready'); });
-    if (rest.length) socket.once('data', () => { for (const part of rest) socket.write(part); });
-  }`;
-
 test('clients that are killed in any state leave nothing behind', async () => {
   for (const signals of [['SIGKILL'], ['SIGSTOP', 'SIGKILL']]) {  // stopped: nobody answers
-    const child = spawn(process.execPath, ['-e', states.replace('PORT', server.port)],
+    const program = join(import.meta.dirname, 'clients_in_states.mjs');
+    const child = spawn(process.execPath, [program, server.port],
         { stdio: ['ignore', 'pipe', 'inherit'] });
     await new Promise((resolve) => child.stdout.once('data', resolve));
     await sleep(300);
@@ -232,7 +210,7 @@ test('without descriptors nobody new comes in, and then again', async () => {
   watcher.send({ type: 'input', seq, move: [0, 0, 0], look: [0.1, 0] });
   await next;
   execFileSync('prlimit', ['--pid', pid, `--nofile=${before}`]);
-  await until(() => waiting.every((one) => one.reply().includes(' 200 ')), 'who waited is answered');
+  await until(() => waiting.every((one) => one.reply().includes(' 200 ')), 'all are answered');
   await end_all(waiting);
   await others_go_on();
   assert.ok(await metric('accept_errors_total') > 0);
@@ -247,7 +225,8 @@ test('a server that was stopped for a while goes on', async () => {
 
 test('a full disk is said, and harms no visit', async (t) => {
   const disk = mkdtempSync(join(folder, 'disk-'));
-  const mount = `mount -t tmpfs -o size=64k tmpfs ${disk} && head -c 60000 /dev/zero > ${disk}/full`;
+  const mount = `mount -t tmpfs -o size=64k tmpfs ${disk} && ` +
+    `head -c 60000 /dev/zero > ${disk}/full`;
   if (spawnSync('unshare', ['-m', 'sh', '-c', mount]).status !== 0)
     return t.skip('only root may mount a small disk');
   const program = join(process.env.WELLSPRING_BIN, 'wellspring_server');
@@ -260,8 +239,7 @@ test('a full disk is said, and harms no visit', async (t) => {
   child.stdout.on('data', (chunk) => { out += chunk; });
   const ended = new Promise((resolve) => child.on('close', resolve));
   await until(() => /http:\S+:\d+\//.test(out) || child.exitCode !== null, 'it starts');
-  const place = { ws: /http:(\/\/\S+?)\/(\s|$)/.exec(out) && `ws:${/http:(\/\/\S+?)\/(\s|$)/.exec(out)[1]}` };
-  const visitor = new Visitor(place);
+  const visitor = new Visitor({ ws: `ws:${/http:(\/\/\S+:\d+)\//.exec(out)[1]}` });
   await visitor.hello();
   await visitor.picture();
   await visitor.close();
@@ -300,8 +278,9 @@ test('after all of it connections, descriptors and memory are given back', async
   await until(async () => await metric('connections') <= 2, 'connections end');
   await until(() => descriptors() <= descriptors_at_first + 1, 'descriptors are given back');
   const grown = (await metric('resident_bytes') - memory_at_first) / 2 ** 20;
-  console.log(JSON.stringify({ grown_mib: Math.round(grown),
-    high_water: /VmHWM:\s+(.*)/.exec(readFileSync(`/proc/${server.child.pid}/status`, 'utf8'))[1] }));
+  const status = readFileSync(`/proc/${server.child.pid}/status`, 'utf8');
+  console.log(JSON.stringify(
+      { grown_mib: Math.round(grown), most: /VmHWM:\s+(.*)/.exec(status)[1] }));
   assert.ok(grown < may_grow, `memory grew by ${grown} MiB`);
   assert.equal(await metric('bad_samples_total'), 0);
 });

@@ -60,7 +60,8 @@ function adapt(file, changes) {
 const proxies = {
   nginx: ([plain, secure]) => {
     const site = adapt('nginx.conf', [['listen 80;', `listen 127.0.0.1:${plain};`],
-      ['listen 443 ', `listen 127.0.0.1:${secure} `], ['127.0.0.1:8080', `127.0.0.1:${server.port}`],
+      ['listen 443 ', `listen 127.0.0.1:${secure} `],
+      ['127.0.0.1:8080', `127.0.0.1:${server.port}`],
       ['/etc/ssl/museum.example.crt', path('site.crt')],
       ['/etc/ssl/private/museum.example.key', path('site.key')]]);
     mkdirSync(path('nginx'));
@@ -126,7 +127,8 @@ for (const [name, configure] of Object.entries(proxies)) {
       await visitor.close();
       assert.match(server.log(), /joined from 127\.0\.0\.9 by 127\.0\.0\.1:/);
       assert.doesNotMatch(server.log(), /joined from 127\.0\.0\.1:/);
-      const foreign = new Visitor(place, { options: { ...options, origin: 'https://evil.example' } });
+      const evil = { ...options, origin: 'https://evil.example' };
+      const foreign = new Visitor(place, { options: evil });
       await assert.rejects(foreign.opened, /403/);
     } finally {
       child.kill('SIGTERM');

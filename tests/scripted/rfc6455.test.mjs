@@ -64,7 +64,8 @@ const rows = [
   ...[125, 126, 127, 128, 65535, limit].map((size) =>
     [`a text of ${size} bytes`, frame(fin | text, long_message(size)), [['answer', 'long']]]),
   [`a text of ${limit + 1} bytes`, frame(fin | text, long_message(limit + 1)), 1009],
-  ['a huge length, by its header alone', frame(fin | text, '', { size: 64, length: 2 ** 40 }), 1009],
+  ['a huge length, by its header alone',
+    frame(fin | text, '', { size: 64, length: 2 ** 40 }), 1009],
   ['a length with its highest bit set',
     frame(fin | text, '', { size: 64, length: 2n ** 63n }), 1009],
   ['16 bits for a short length', frame(fin | text, 'x', { size: 16 }), 1002],
@@ -148,8 +149,8 @@ const rows = [
     frame(fin | close, code(number)), [number, 1002]]),
   ['a reason that is not UTF-8',
     frame(fin | close, Buffer.concat([code(1000), bytes(0xff)])), [1002, 1007]],
-  ['what comes after a close is not read',
-    Buffer.concat([frame(fin | close, code(1000)), whole('late'), frame(fin | ping, 'late')]), 1000],
+  ['what comes after a close is not read', Buffer.concat([frame(fin | close, code(1000)),
+    whole('late'), frame(fin | ping, 'late')]), 1000],
   ['two closes', Buffer.concat([frame(fin | close, code(1001)), frame(fin | close, code(1000))]),
     1001],
   ['a close between fragments',
@@ -179,7 +180,8 @@ function talk(sent, wanted) {
   return new Promise((resolve, reject) => {
     const socket = net.connect(server.port, '127.0.0.1');
     const input = { bytes: Buffer.alloc(0) }, frames = [];
-    let open = false, pieces = [sent].flat(), said_close = false;
+    const pieces = [sent].flat();
+    let open = false, said_close = false;
     const timer = setTimeout(() => socket.destroy(new Error('nothing more within 30 s')), 30000);
     const done = (error) => {
       clearTimeout(timer);
