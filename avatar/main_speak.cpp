@@ -8,6 +8,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "about/version.h"
 #include "avatar/align/align.h"
 #include "avatar/speech/process.h"
 #include "avatar/speech/sound_file.h"
@@ -187,6 +188,7 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  if (answer_version(argc, argv)) return 0;
   log::start("speak");
   CLI::App app{"Speaks a text, and tells when each word, phoneme and mouth shape of it comes."};
   Options options;

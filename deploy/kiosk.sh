@@ -3,6 +3,7 @@
 # A kiosk: server, camera program and screen (docs/kiosk.md, "Installing a kiosk").
 # kiosk.sh: keeps all three running until it is told to end.
 # kiosk.sh server|eye|screen: becomes one of them, as the systemd units beside this file want it.
+# kiosk.sh serves: whether the server is on this machine.
 set -euo pipefail
 self="$(realpath "${BASH_SOURCE[0]}")"
 here="$(dirname "$(dirname "$self")")"
@@ -12,8 +13,15 @@ config="${WELLSPRING_CONFIG:-${XDG_CONFIG_HOME:-$HOME/.config}/wellspring/kiosk.
 # shellcheck disable=SC1090
 [ ! -f "$config" ] || . "$config"
 port="${WELLSPRING_PORT:-8080}"
-page="${WELLSPRING_PAGE:-http://127.0.0.1:$port/kiosk}"
+host="${WELLSPRING_HOST:-127.0.0.1}"
+page="${WELLSPRING_PAGE:-http://$host:$port/kiosk}"
+token_file="${WELLSPRING_TOKEN_FILE:-}"
+state="${XDG_STATE_HOME:-$HOME/.local/state}/wellspring"
 programs="${WELLSPRING_BIN:-$here/build/release/bin}"
+
+serves() {
+  [[ $host == 127.* || $host == localhost ]]
+}
 
 become_server() {
   # As ./wellspring run.
@@ -28,18 +36,41 @@ become_server() {
 become_eye() {
   export WELLSPRING_WEIGHTS="${WELLSPRING_WEIGHTS:-$here/build/weights}"
   # shellcheck disable=SC2086
-  exec "$programs/wellspring_kiosk" --server "ws://127.0.0.1:$port/api/v1/eye" \
-    ${WELLSPRING_EYE_OPTIONS:---camera 0}
+  exec "$programs/wellspring_kiosk" --server "ws://$host:$port/api/v1/eye" \
+    ${token_file:+--token-file "$token_file"} ${WELLSPRING_EYE_OPTIONS:---camera 0}
+}
+
+# As an address has it: letters, digits and a few more, the rest by their numbers.
+encode() {
+  local LC_ALL=C text="$1" i letter
+  for ((i = 0; i < ${#text}; i++)); do
+    letter="${text:i:1}"
+    if [[ $letter == [A-Za-z0-9._~-] ]]; then printf %s "$letter"; else printf '%%%02X' "'$letter"; fi
+  done
+}
+
+# Every user of a machine can read command lines: the browser gets the token by a page of a file
+# that is its user's alone.
+write_page() {
+  local token
+  token="$(awk '!/^[[:space:]]*(#|$)/ { print $NF; exit }' "$token_file")"
+  [ -n "$token" ] || { echo "kiosk: $token_file holds no token" >&2; exit 1; }
+  mkdir -p "$state"
+  rm -f "$state/screen.html"
+  (umask 077; printf '<!doctype html>\n<script>location.replace("%s#token=%s")</script>\n' \
+    "$page" "$(encode "$token")" >"$state/screen.html")
+  page="file://$state/screen.html"
 }
 
 # A browser that finds no server shows its own page, and stays there.
 become_screen() {
-  until (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do sleep 0.5; done
+  until (exec 3<>"/dev/tcp/$host/$port") 2>/dev/null; do sleep 0.5; done
+  [ -z "$token_file" ] || write_page
   [ -z "${WELLSPRING_SCREEN:-}" ] || exec "$WELLSPRING_SCREEN" "$page"
   exec chromium --kiosk --autoplay-policy=no-user-gesture-required --noerrdialogs --no-first-run \
     --disable-session-crashed-bubble --disable-infobars --disable-pinch \
     --overscroll-history-navigation=0 --check-for-update-interval=31536000 \
-    --user-data-dir="${XDG_STATE_HOME:-$HOME/.local/state}/wellspring/screen" "$page"
+    --user-data-dir="$state/screen" "$page"
 }
 
 # Ends what this shell has started, by force where ten seconds are not enough.
@@ -81,12 +112,13 @@ case "${1:-}" in
   server) become_server ;;
   eye) become_eye ;;
   screen) become_screen ;;
+  serves) serves; exit ;;
   "") ;;
-  *) echo "usage: kiosk.sh [server | eye | screen]" >&2; exit 2 ;;
+  *) echo "usage: kiosk.sh [server | eye | screen | serves]" >&2; exit 2 ;;
 esac
 
 exec 9>"${XDG_RUNTIME_DIR:-/tmp}/wellspring-kiosk.lock"
 flock -n 9 || { echo "kiosk: is running already" >&2; exit 1; }
 trap 'end_all 15' TERM INT HUP
-for part in server eye screen; do keep "$part" & done
+for part in $(! serves || echo server) eye screen; do keep "$part" & done
 wait

@@ -9,6 +9,7 @@
 //   expression  true or false
 //   hands       true or false
 //   name        the kiosk's, as its page says it (/kiosk?kiosk=NAME)
+//   token_file  of the token by which a server on another machine trusts it
 #pragma once
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct KioskConfig {
   PresenceSettings presence;
   bool expression = false, hands = true;
   std::string name;  // the kiosk's; empty: the only one of the house
+  std::string token_file;
 };
 
 // Changes what the file names. Throws LoadError naming the first thing that is unknown, of another

@@ -14,6 +14,7 @@
 #include <sys/prctl.h>
 #include <thread>
 
+#include "about/version.h"
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
@@ -72,7 +73,9 @@ class Readers {
 // Null: observations go to stdout alone.
 std::unique_ptr<ServerLink> make_link(const KioskOptions& options) {
   if (!options.server_given && options.print) return nullptr;
-  return std::make_unique<ServerLink>(*parse_address(options.server));
+  ServerLinkSettings settings;
+  settings.token = options.token;
+  return std::make_unique<ServerLink>(*parse_address(options.server), settings);
 }
 
 // What the camera shows, as numbers, until it ends.
@@ -288,6 +291,7 @@ int calibrate(const KioskOptions& options, const std::vector<std::string>& argum
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (answer_version(argc, argv, {"Boost", "CLI11", "GLM", "nlohmann-json", "stb"})) return 0;
   CLI::App app{
       "Watches a camera and tells the museum's server who stands there: presence, heads in metres, "
       "how they are turned. Pictures never leave this program."};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // wellspring_kiosk_compare: what the kiosk's eye could have been made of otherwise, and what the
 // whole program costs, for `wellspring bench --only kiosk.eye`, which starts it.
+#include "about/version.h"
 #include "kiosk/main_compare.h"
 
 #include <CLI/CLI.hpp>
@@ -31,6 +32,7 @@ double mean(const std::vector<double>& values) {
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  if (answer_version(argc, argv, {"Boost", "CLI11", "GLM", "nlohmann-json", "stb"})) return 0;
   CLI::App app{"Compares parts of the kiosk's eye for wellspring bench."};
   CompareOptions options;
   app.add_option("--weights", options.weights, "folder of the networks' weights");

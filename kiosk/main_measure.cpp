@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 
+#include "about/version.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "kiosk/camera.h"
@@ -270,6 +271,7 @@ void measure_cost(const Options& options, const std::string& finder, bool expres
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (answer_version(argc, argv)) return 0;
   CLI::App app{"Measures the kiosk's eye for wellspring bench."};
   Options options;
   app.add_option("--weights", options.weights, "folder of the networks' weights");

@@ -14,6 +14,7 @@
 #define STB_IMAGE_IMPLEMENTATION
 #include <stb_image.h>
 
+#include "about/version.h"
 #include "base/load_error.h"
 #include "base/log.h"
 #include "base/rng.h"
@@ -77,6 +78,7 @@ json describe(const Person& person) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (answer_version(argc, argv)) return 0;
   CLI::App app{"Tells what the kiosk's eye sees in a folder of pictures."};
   std::string folder;
   ObserverSettings settings;

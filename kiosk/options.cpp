@@ -12,6 +12,7 @@
 #include "kiosk/config.h"
 #include "kiosk/process/eye_process.h"
 #include "wire/json.h"
+#include "wire/tokens.h"
 
 namespace wellspring {
 namespace {
@@ -158,6 +159,7 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   options.observer.presence = config.presence;
   options.hands = config.hands;
   options.name = config.name;
+  std::string token_file = config.token_file;
   Written written;
   written.expression = config.expression ? "on" : "off";
 
@@ -180,6 +182,10 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   auto* server = app.add_option("--server", options.server,
                                 "where observations go; without it and with --print nowhere")
                      ->capture_default_str();
+  app.add_option(
+      "--token-file", token_file,
+      "file of the token by which a server on another machine trusts this kiosk; without "
+      "it WELLSPRING_KIOSK_TOKEN");
   app.add_option("--name", options.name,
                  "the kiosk's, as its page says it (/kiosk?kiosk=NAME); without it the only one");
   app.add_flag("--print", options.print, "one JSON observation a line on stdout");
@@ -211,6 +217,8 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   if (const WireError* error = std::get_if<WireError>(&read))
     throw CLI::ValidationError("--name", error->message);
   options.server_given = server->count() > 0;
+  // An eye needs none, and the environment has none for it.
+  if (options.observe_to < 0) options.token = read_token(token_file, "WELLSPRING_KIOSK_TOKEN");
   options.eyes_given = eyes->count() > 0;
   put_each(options.cameras, "--fov", written.fovs,
            [](CameraSettings& to, double fov) { to.mount.fov = float(fov) * degree; });

@@ -18,6 +18,7 @@ struct KioskOptions {
   ObserverSettings observer;            // the mount is its camera's
   std::string server = "ws://127.0.0.1:8080";
   bool server_given = false, print = false, pace = true;
+  std::string token;           // shown to the server; empty: none
   std::string config;          // file; empty: none
   std::string name;            // the kiosk's; empty: the only one of the house
   std::string recordings;      // folder to learn gestures from; empty: watch

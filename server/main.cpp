@@ -2,7 +2,10 @@
 // wellspring run: options -> load -> threads. The only place that knows both `museum` and `stream`.
 #include <csignal>
 #include <iostream>
+#include <sys/prctl.h>
+#include <unistd.h>
 
+#include "about/version.h"
 #include "base/log.h"
 #include "museum/museum.h"
 #include "options.h"
@@ -17,19 +20,11 @@ using namespace wellspring;
 
 volatile std::sig_atomic_t asked_to_stop = 0;
 
-// Listening to nobody but this machine.
-bool is_own_address(const std::string& host) {
-  return host.starts_with("127.") || host == "::1" || host == "localhost";
-}
-
-// Who may read the daily sums, and where.
-SumsDesk open_sums(const ServerOptions& options, const Museum& museum) {
-  SumsDesk desk;
-  desk.token = options.admin_token;
-  desk.open = is_own_address(options.stream.host);
-  if (!options.museum.sums.empty())
-    desk.read = [&museum](int64_t from, int64_t to) { return museum.read_sums(from, to); };
-  return desk;
+// Programs that are started here get no more rights than this one has (set-user-ID).
+void renounce_rights() {
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  if (geteuid() == 0)
+    log::warn("runs as root, which it needs for nothing: an ordinary user is safer");
 }
 
 void say_address(const AnswerSources& sources, const StreamSettings& stream) {
@@ -45,20 +40,27 @@ int serve(const ServerOptions& options) {
   try_port(options.stream);  // before what takes seconds
   auto pages = load_pages(options.web);
   Museum museum(options.museum);
-  const SumsDesk sums = open_sums(options, museum);
   std::unique_ptr<Server> server;
   AnswerSources& sources = museum.sources();
   sources.pages = &pages;
-  sources.desk.token = options.admin_token;
+  sources.access = options.access;
+  ReadSums sums;
+  if (!options.museum.sums.empty())
+    sums = [&](int64_t from, int64_t to) { return museum.read_sums(from, to); };
   sources.sums = [&](const HttpQuestion& question) { return answer_sums(sums, question); };
-  sources.status = [&] { return museum.status(sums_access(sums)); };
+  sources.status = [&] { return museum.status(); };
   sources.speeds = [&] { return read_speeds(options.bench); };
   sources.stream_metrics = [&] { return server ? to_metrics(server->counters()) : std::string(); };
+  sources.door_counts = [&] {
+    const StreamCounters counters = server ? server->counters() : StreamCounters{};
+    return DoorCounts{counters.flood_closed, counters.accept_errors};
+  };
   Doors doors;
   doors.answer = [&](const HttpQuestion& question) { return answer(sources, question); };
   doors.slow = [](const HttpQuestion& question) {
     return question.path.ends_with("/still.jpg") || question.path.ends_with("/sums.csv");
   };
+  doors.admit = [&](const HttpQuestion& question) { return admit(options.access, question); };
   doors.joined = [&](std::shared_ptr<Link> link) { museum.join(std::move(link)); };
   StreamSettings stream = options.stream;
   for (bool changed = true; changed;) {
@@ -78,9 +80,11 @@ int serve(const ServerOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (answer_version(argc, argv, {"Boost", "CLI11", "GLM", "nlohmann-json", "stb"})) return 0;
   log::start("server");
   ServerOptions options;
   if (int status = read_options(options, argc, argv); status >= 0) return status;
+  renounce_rights();
   std::signal(SIGINT, [](int) { asked_to_stop = 1; });
   std::signal(SIGTERM, [](int) { asked_to_stop = 1; });
   std::signal(SIGPIPE, SIG_IGN);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "about/version.h"
 #include "avatar/figure/bone_surface.h"
 #include "avatar/load/character_load.h"
 #include "avatar/figure/describe.h"
@@ -237,6 +238,7 @@ int run(Options options) {
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  if (answer_version(argc, argv)) return 0;
   log::start("avatar");
   CLI::App app{"Inspects an H-Anim figure and takes pictures of it."};
   Options options;

@@ -11,6 +11,7 @@
 #include <iostream>
 #include <fmt/core.h>
 
+#include "about/version.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -169,6 +170,7 @@ void run(const Options& options, const BakeSettings& settings, double seconds) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (answer_version(argc, argv)) return 0;
   log::start("bake");
   CLI::App app{"Bakes illumination maps: the diffuse light of what stands still."};
   Options options;

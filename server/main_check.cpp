@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "about/version.h"
 #include "base/log.h"
 #include "show/exhibit/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
@@ -13,6 +14,7 @@
 #include "show/visit/walk.h"
 
 int main(int argc, char** argv) {
+  if (wellspring::answer_version(argc, argv)) return 0;
   wellspring::log::start("check");
   CLI::App app{"Validates an exhibit package and lists every problem with file and place."};
   std::string folder;

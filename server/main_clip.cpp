@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <sys/wait.h>
 
+#include "about/version.h"
 #include "avatar/load/character_load.h"
 #include "avatar/speech/process.h"
 #include "avatar/speech/sound_file.h"
@@ -142,6 +143,7 @@ int run(Options& options) {
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  if (answer_version(argc, argv)) return 0;
   log::start("clip");
   CLI::App app{
       "A figure acts a story: pictures, sound, subtitles, and a film where ffmpeg is installed."};

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "about/version.h"
 #include "base/log.h"
 #include "show/exhibit/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
@@ -11,6 +12,7 @@
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  if (answer_version(argc, argv)) return 0;
   log::start("new");
   CLI::App app{"Makes an exhibit of a glTF file."};
   std::string id, model, content = "content";

@@ -14,6 +14,7 @@
 #include <optional>
 #include <oneapi/tbb/global_control.h>
 
+#include "about/version.h"
 #include "base/clock.h"
 #include "base/load_error.h"
 #include "base/log.h"
@@ -434,6 +435,7 @@ void render(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (answer_version(argc, argv)) return 0;
   log::start("render");
   Options options;
   CLI::App app{"Renders a still picture of a scene."};

@@ -3,8 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
-#include <fstream>
 #include <iostream>
 
 #include "base/installed.h"
@@ -16,7 +14,7 @@ namespace {
 // What is no setting yet when it is read.
 struct Words {
   int port = 8080;
-  std::string token_file, display = display_names[0];
+  std::string token_file, kiosk_token_file, display = display_names[0];
 };
 
 std::vector<std::string> technique_names() {
@@ -50,8 +48,15 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
   app.add_option("--web", options.web, "folder of the pages");
   app.add_option("--house", options.museum.house,
                  "house file: opening and quiet hours, volumes, kiosks (docs/kiosk.md)");
-  app.add_option("--admin-token-file", words.token_file,
-                 "file of the token of those who may announce; without it WELLSPRING_ADMIN_TOKEN");
+  app.add_option(
+      "--admin-token-file", words.token_file,
+      "file of the token of who may announce, and read how the server is from elsewhere; "
+      "without it WELLSPRING_ADMIN_TOKEN");
+  app.add_option("--kiosk-token-file", words.kiosk_token_file,
+                 "file of tokens of kiosks on other machines: TOKEN, or NAME TOKEN, a line each; "
+                 "without it WELLSPRING_KIOSK_TOKEN (docs/kiosk.md)");
+  add_switch(app, "--open-status", options.access.open_status,
+             "everybody may read /status, /metrics and the daily sums");
   app.add_option("--sums", options.museum.sums,
                  "file of daily sums for the museum's director; without it none are kept");
   app.add_option("--bench", options.bench, "report of wellspring bench that /status shows");
@@ -87,23 +92,6 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
       ->check(CLI::Range(1, 64));
 }
 
-// The token of a file, or of the environment, from which it is taken: programs that are started
-// here need not know it. Throws std::runtime_error for one that is too short.
-std::string read_admin_token(const std::string& file) {
-  const char* variable = "WELLSPRING_ADMIN_TOKEN";
-  std::string token = getenv(variable) ? getenv(variable) : "";
-  unsetenv(variable);
-  std::string place = variable;
-  if (!file.empty()) {
-    place = file;
-    std::ifstream in(file);
-    if (!in || !(in >> token)) throw std::runtime_error(file + ": holds no token");
-  }
-  if (!token.empty() && token.size() < least_token_bytes)
-    throw std::runtime_error(place + ": a token has at least 16 characters");
-  return token;
-}
-
 }  // namespace
 
 int read_options(ServerOptions& options, int argc, char** argv) {
@@ -117,7 +105,9 @@ int read_options(ServerOptions& options, int argc, char** argv) {
         std::find(std::begin(display_names), std::end(display_names), words.display);
     options.museum.show.display = Display(display - std::begin(display_names));
     options.stream.port = uint16_t(words.port);
-    options.admin_token = read_admin_token(words.token_file);
+    options.access.admin_token = read_token(words.token_file, "WELLSPRING_ADMIN_TOKEN");
+    options.access.kiosk_tokens = read_tokens(words.kiosk_token_file, "WELLSPRING_KIOSK_TOKEN");
+    options.museum.show.kiosk_tokens = options.access.kiosk_tokens;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const ConfigError& error) {

@@ -10,14 +10,14 @@ namespace wellspring {
 
 struct ServerOptions {
   std::string web = "web";  // folder of the pages
-  std::string admin_token;  // of those who may announce; empty: nobody may
   std::string bench;        // report that /status shows; empty: none
+  AccessRules access;       // show/http/access.h
   StreamSettings stream;
   MuseumSettings museum;
 };
 
 // The exit status with which the program ends at once, or -1: it goes on. What is wrong is on
-// stderr. Takes WELLSPRING_ADMIN_TOKEN from the environment.
+// stderr. Takes WELLSPRING_ADMIN_TOKEN and WELLSPRING_KIOSK_TOKEN from the environment.
 int read_options(ServerOptions& options, int argc, char** argv);
 
 }  // namespace wellspring

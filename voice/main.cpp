@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "about/version.h"
 #include "avatar/speech/protocol.h"
 
 namespace {
@@ -257,7 +258,8 @@ bool serve_one(const std::vector<Language>& languages, int rate) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (wellspring::answer_version(argc, argv, {"nlohmann-json"})) return 0;
   signal(SIGPIPE, SIG_IGN);
   int rate = initialise(false);
   if (rate <= 0) {

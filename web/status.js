@@ -2,6 +2,7 @@
 // The technician's page: what is wrong in words, as the server judges it, and figures, once a
 // second.
 import { by_id } from './element.js';
+import { of_tab } from './kept.js';
 import { colours, draw_speeds, time_text } from './speeds.js';
 
 // Prometheus text to [{name, labels, value}].
@@ -142,7 +143,9 @@ function show_figures(metrics) {
     ['Pictures',
       `${number(one('pictures_total'))} (${mebibytes(one('picture_bytes_total') ?? 0)})`],
     ['Connections', `${number(one('connections'))} open, `
-      + `${number(one('slow_readers_closed_total'))} closed for reading too slowly`],
+      + `${number(one('slow_readers_closed_total'))} closed for reading too slowly, `
+      + `${number(one('floods_closed_total'))} for sending too much; `
+      + `could not be accepted: ${number(one('accept_errors_total'))}`],
     ['Messages',
       `${number(one('messages_total'))}, refused ${number(one('refused_messages_total'))}`],
   ]);
@@ -180,15 +183,37 @@ function show_figures(metrics) {
   ]);
 }
 
-// Where the server has a token, who wants its sums is asked for it once.
-let token = '';
-by_id('sums-link').addEventListener('click', async (event) => {
-  if (by_id('sums').dataset.who !== 'token') return;
+// From another machine the server tells all of this to who has the admin token alone. It stays in
+// the tab.
+function ask(path) {
+  const token = of_tab.get('admin-token');
+  const headers = token ? { Authorization: `Bearer ${token}` } : undefined;
+  return fetch(path, { cache: 'no-store', headers });
+}
+by_id('sign-in').addEventListener('submit', (event) => {
   event.preventDefault();
-  token = token || prompt('The token of those who may announce') || '';
-  if (!token) return;
-  const answer = await fetch('api/v1/sums.csv', { headers: { Authorization: `Bearer ${token}` } });
-  if (!answer.ok) { token = ''; alert('The server does not know this token.'); return; }
+  const field = /** @type {HTMLInputElement} */ (by_id('token'));
+  of_tab.set('admin-token', field.value.trim());
+  field.value = '';
+  refresh();
+});
+
+// Says what the server says to who may not read it.
+function stay_out({ error }) {
+  const { code, message } = error, tried = of_tab.get('admin-token') !== null;
+  of_tab.remove('admin-token');
+  document.body.classList.add('closed');
+  by_id('sign-in').hidden = code !== 'wrong_token';
+  tell('note', tried ? 'The server does not know this token'
+    : code === 'wrong_token' ? 'The server tells this to who has its admin token'
+      : `${message[0].toUpperCase()}${message.slice(1)}.`, []);
+}
+
+by_id('sums-link').addEventListener('click', async (event) => {
+  if (!of_tab.get('admin-token')) return;  // a plain link will do
+  event.preventDefault();
+  const answer = await ask('api/v1/sums.csv');
+  if (!answer.ok) return;
   const link = make('a', '');
   link.href = URL.createObjectURL(await answer.blob());
   link.download = 'sums.csv';
@@ -196,32 +221,44 @@ by_id('sums-link').addEventListener('click', async (event) => {
   URL.revokeObjectURL(link.href);
 });
 
-const ask = (path) => fetch(path, { cache: 'no-store' });
-
+let next = 0, speeds_shown = false;
 async function refresh() {
+  clearTimeout(next);
+  let pause = 1000;
+  const token = of_tab.get('admin-token');
   try {
     const [answer, figures] = await Promise.all([ask('api/v1/status'), ask('metrics')]);
     const status = await answer.json();
-    judge(status);
-    show_kiosks(status);
-    by_id('sums').hidden = status.sums === 'none';
-    by_id('sums').dataset.who = status.sums;
-    show_figures(parse_metrics(await figures.text()));
+    if (token !== of_tab.get('admin-token')) return;  // given meanwhile: another refresh has it
+    if (answer.status === 401) {
+      stay_out(status);
+      pause = 10000;
+    } else {
+      document.body.classList.remove('closed');
+      by_id('sign-in').hidden = true;
+      judge(status);
+      show_kiosks(status);
+      by_id('sums').hidden = !status.sums;
+      show_figures(parse_metrics(await figures.text()));
+      if (!speeds_shown) show_speeds().catch(() => say_speeds('The server does not tell.'));
+      speeds_shown = true;
+    }
   } catch {
     tell('bad', 'The server does not answer', []);
   }
-  setTimeout(refresh, 1000);
+  clearTimeout(next);
+  next = setTimeout(refresh, pause);
 }
 
+const say_speeds = (text) => { by_id('speeds-about').textContent = text; };
 async function show_speeds() {
   const speeds = await (await ask('api/v1/speeds')).json();
   if (speeds.problem) {
-    by_id('speeds-about').textContent =
-        `${speeds.problem[0].toUpperCase()}${speeds.problem.slice(1)}.`;
+    say_speeds(`${speeds.problem[0].toUpperCase()}${speeds.problem.slice(1)}.`);
     return;
   }
-  by_id('speeds-about').textContent =
-    `Left and low is best. Measured ${speeds.date} on ${speeds.cores} cores of ${speeds.cpu}.`;
+  say_speeds(
+      `Left and low is best. Measured ${speeds.date} on ${speeds.cores} cores of ${speeds.cpu}.`);
   const scenes = [...new Set(speeds.points.map((point) => point.scene))];
   const techniques = [...new Set(speeds.points.map((point) => point.technique))];
   const legend = make('ul', '');
@@ -251,4 +288,3 @@ async function show_speeds() {
 
 by_id('address').textContent = location.origin;
 refresh();
-show_speeds().catch(() => { by_id('speeds-about').textContent = 'The server does not tell.'; });

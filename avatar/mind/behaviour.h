@@ -9,7 +9,7 @@ namespace wellspring {
 
 struct BehaviourState {
   struct Person {
-    uint32_t id = 0;
+    uint64_t id = 0;
     vec3 head{0};
     vec3 rotation{0};
     double first_seen = 0, last_seen = 0, greeted_at = -1e30;
@@ -24,7 +24,7 @@ struct BehaviourState {
   double last_greeting = -1e30;
   uint64_t visit = 0;      // of the people
   bool company = false;    // somebody was greeted and not yet bid farewell
-  uint32_t addressed = 0;  // the last one greeted
+  uint64_t addressed = 0;  // the last one greeted
 };
 
 inline constexpr double confirm_seconds = 0.25, lost_seconds = 2.0, greeting_seconds = 3.0,

@@ -18,7 +18,7 @@ inline constexpr float remote_radius = 8;  // metres within which a visitor's ca
 struct GazeState {
   bool begun = false;
   bool at_guest = false;
-  uint32_t guest = 0;
+  uint64_t guest = 0;
   bool kiosk_known = false;
   vec3 kiosk_place{0};      // where the last kiosk guest's eyes were, humanoid space
   double glance_until = 0;  // remote guests: not stared at without end

@@ -65,7 +65,7 @@ struct StorytellerGaze {
   vec3 target{0};            // world: what it wants to look at
   float yaw = 0, pitch = 0;  // of its line of sight as posed now, from the way the placement faces;
                              // radians, yaw positive to its own left, pitch positive up
-  uint32_t guest = 0;        // whom it looks at; 0: nobody
+  uint64_t guest = 0;        // whom it looks at; 0: nobody
 };
 StorytellerGaze eval_gaze(const StorytellerState& state, const Storyteller& storyteller,
                           const Pose& pose);

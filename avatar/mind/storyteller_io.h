@@ -15,7 +15,7 @@ namespace wellspring {
 
 // Somebody the storyteller can be aware of. Coordinates are the world's (as `placement`).
 struct Guest {
-  uint32_t id = 0;
+  uint64_t id = 0;
   vec3 head{0};        // between the eyes
   vec3 rotation{0};    // yaw, pitch, roll of the head relative to facing the storyteller squarely;
                        // yaw positive to the guest's right, pitch positive up
@@ -53,7 +53,7 @@ struct StorytellerInput {
 // What happened in this tick, for subtitles and messages.
 struct StorytellerEvents {
   bool greeted = false, farewelled = false;
-  uint32_t guest = 0;  // whom it concerns
+  uint64_t guest = 0;  // whom it concerns
 };
 
 }  // namespace wellspring

@@ -117,26 +117,38 @@ struct ServerLink::Impl {
     wake.cancel();
   }
 
+  // Why the server did not open the connection.
+  std::string refusal(const error_code& ec, unsigned status) const {
+    if (ec != websocket::error::upgrade_declined) return ec.message();
+    if (status != 401) return "HTTP status " + std::to_string(status);
+    return settings.token.empty()
+               ? "it trusts cameras on other machines by a kiosk token alone: --token-file FILE"
+               : "it does not know this kiosk token";
+  }
+
   // One connection from its start to its end. Returns why it ended.
-  asio::awaitable<error_code> talk() {
+  asio::awaitable<std::string> talk() {
     error_code ec;
     tcp::resolver resolver(io);
     auto places = co_await resolver.async_resolve(address.host, address.port, into(ec));
-    if (ec) co_return ec;
+    if (ec) co_return ec.message();
     auto socket = std::make_shared<Socket>(io);
     beast::get_lowest_layer(*socket).expires_after(seconds(settings.patience));
     co_await beast::get_lowest_layer(*socket).async_connect(places, into(ec));
-    if (ec) co_return ec;
+    if (ec) co_return ec.message();
     error_code ignored;
     beast::get_lowest_layer(*socket).socket().set_option(tcp::no_delay(true), ignored);
     socket->read_message_max(largest_answer);
-    socket->set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
+    socket->set_option(websocket::stream_base::decorator([this](websocket::request_type& request) {
       request.set(beast::http::field::user_agent, "wellspring-kiosk");
+      if (!settings.token.empty())
+        request.set(beast::http::field::authorization, "Bearer " + settings.token);
     }));
     const std::string host =
         address.host.find(':') == std::string::npos ? address.host : "[" + address.host + "]";
-    co_await socket->async_handshake(host + ":" + address.port, address.path, into(ec));
-    if (ec) co_return ec;
+    websocket::response_type response;
+    co_await socket->async_handshake(response, host + ":" + address.port, address.path, into(ec));
+    if (ec) co_return refusal(ec, response.result_int());
     beast::get_lowest_layer(*socket).expires_never();
     // A server that vanished without a word is noticed by its missing answer to a ping.
     websocket::stream_base::timeout limits{seconds(settings.patience),
@@ -169,23 +181,22 @@ struct ServerLink::Impl {
     connected = false;
     if (*open && !ec) co_await socket->async_close(websocket::close_code::normal, into(ignored));
     beast::get_lowest_layer(*socket).close();
-    co_return ec ? ec : error_code(websocket::error::closed);
+    co_return ec ? ec.message() : "closed";
   }
 
   asio::awaitable<void> run() {
     std::mt19937 random(std::random_device{}());
     std::uniform_real_distribution<double> uniform(0, 1);
     int attempt = 0;
-    bool told = false;
+    std::string told;  // why there was none
     while (!leaving) {
       uint64_t before = connections;
-      error_code ec = co_await talk();
+      const std::string why = co_await talk();
       if (leaving) break;
-      if (connections != before) attempt = 0, told = false;
-      if (!told)
-        log::warn("no connection to {}:{} ({}); trying again", address.host, address.port,
-                  ec.message());
-      told = true;
+      if (connections != before) attempt = 0, told.clear();
+      if (told != why)
+        log::warn("no connection to {}:{} ({}); trying again", address.host, address.port, why);
+      told = why;
       asio::steady_timer pause(io, seconds(retry_pause(++attempt, settings.first_pause,
                                                        settings.longest_pause, uniform(random))));
       error_code ignored;

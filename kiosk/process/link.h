@@ -26,6 +26,7 @@ double retry_pause(int attempt, double first, double longest, double jitter);
 struct ServerLinkSettings {
   double first_pause = 0.25, longest_pause = 5;  // seconds
   double patience = 5;                           // for connecting and for a write
+  std::string token{};                           // shown to the server; empty: none
 };
 
 class ServerLink {

@@ -61,13 +61,20 @@ std::vector<std::string> kiosks_of(const Exhibit& exhibit) {
   return names;
 }
 
-// What others may know of it; what it has counted goes to the ledger, where there is one.
-void publish(Room& room, Ledger* ledger) {
+// What all rooms use of the process.
+struct SharedParts {
+  Ledger* ledger = nullptr;  // where there is one, it gets what is counted
+  std::function<DoorCounts()> doors;
+};
+
+// What others may know of it.
+void publish(Room& room, const SharedParts& shared) {
   ShowReport report = make_report(*room.show);
-  if (ledger) {
-    ledger->add(std::exchange(room.show->sums, {}));
-    report.sums_problem = ledger->problem();
+  if (shared.ledger) {
+    shared.ledger->add(std::exchange(room.show->sums, {}));
+    report.sums_problem = shared.ledger->problem();
   }
+  if (shared.doors) report.doors = shared.doors();
   room.status.see(report);
   room.board.publish(std::move(report));
 }
@@ -88,7 +95,7 @@ void share_cores(Room& room, const std::list<Room>& rooms) {
       std::ranges::any_of(rooms, [&](const Room& other) { return &other != &room && other.draws; });
 }
 
-void keep_ticking(Room& room, const std::list<Room>& rooms, Ledger* ledger,
+void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& shared,
                   const std::atomic<bool>& stopping, std::atomic<bool>& changed) {
   double reported = -1;
   while (!stopping) {
@@ -98,12 +105,12 @@ void keep_ticking(Room& room, const std::list<Room>& rooms, Ledger* ledger,
     tick(*room.show, room.arrivals, began);
     if (began - reported > report_interval) {
       reported = began;
-      publish(room, ledger);
+      publish(room, shared);
       look_at_rehearsal(room, changed);
     }
     wait_for_tick(*room.show, seconds_now());
   }
-  publish(room, ledger);
+  publish(room, shared);
 }
 
 }  // namespace
@@ -129,6 +136,8 @@ struct Museum::Impl {
   std::atomic<bool> stopping = false, changed = false;
 
   explicit Impl(const MuseumSettings& settings) : settings(settings) {}
+
+  SharedParts shared() const { return {ledger.get(), sources.door_counts}; }
 
   std::vector<std::string> find_ids() const {
     const std::vector<std::string> ids = exhibits_in(settings.content);
@@ -160,7 +169,7 @@ struct Museum::Impl {
     const bool is_first = rooms.empty();
     Room& room = rooms.emplace_back(prepare(id, is_first));
     if (is_first) house = room.show->settings.house;
-    publish(room, ledger.get());
+    publish(room, shared());
     if (settings.show.watched)
       room.rehearsal = std::make_unique<Rehearsal>(
           settings.content + "/" + id, [this, id, is_first] { return prepare(id, is_first); });
@@ -235,10 +244,10 @@ void Museum::join(std::shared_ptr<Link> link) {
   else impl_->rooms.front().arrivals.put(std::move(link));
 }
 
-std::string Museum::status(const char* sums) const {
+std::string Museum::status() const {
   std::vector<Standing> all;
   for (const Room& room : impl_->rooms) all.push_back(room.status.tell());
-  return write_status(all, impl_->sources.failed, sums);
+  return write_status(all, impl_->sources.failed, impl_->ledger != nullptr);
 }
 
 Sums Museum::read_sums(int64_t from, int64_t to) const {
@@ -250,7 +259,7 @@ bool Museum::run(const std::function<bool()>& ended) {
   impl.stopping = impl.changed = false;
   for (Room& room : impl.rooms)
     room.thread = std::thread([&impl, &room] {
-      keep_ticking(room, impl.rooms, impl.ledger.get(), impl.stopping, impl.changed);
+      keep_ticking(room, impl.rooms, impl.shared(), impl.stopping, impl.changed);
     });
   while (!ended() && !impl.changed) {
     if (!impl.reception) {
@@ -275,7 +284,7 @@ void Museum::take_over() {
     room.stills.reset();
     room.show = std::move(room.next);
     room.stills = std::make_unique<StillRoom>(*room.show);
-    publish(room, impl_->ledger.get());
+    publish(room, impl_->shared());
   }
   impl_->put_up_signs();
 }

@@ -32,11 +32,11 @@ class Museum {
   // naming the exhibits that there are, or where the house file is wrong.
   explicit Museum(const MuseumSettings& settings);
   ~Museum();
-  // What answers are made from. Its pages, desk.token and stream_metrics are the caller's to add.
+  // What answers are made from. Its pages, access, stream_metrics and door_counts
+  // are the caller's to add.
   AnswerSources& sources();
-  void join(std::shared_ptr<Link> link);  // from any thread
-  // GET /api/v1/status; `sums`: who may read them. From any thread.
-  std::string status(const char* sums) const;
+  void join(std::shared_ptr<Link> link);           // from any thread
+  std::string status() const;                      // GET /api/v1/status; from any thread
   Sums read_sums(int64_t from, int64_t to) const;  // Ledger::read(); nothing where none are kept
   // Ticks all shows until `ended` says so: false. Or, where they are watched, until one of them has
   // changed: true. Then take_over() shows it as it is now, when nobody asks sources() or joins.

@@ -219,7 +219,7 @@ void behave(Show& show, Teller& teller, float dt) {
     if (visitor.kiosk || !listens_to(show, visitor, teller))
       continue;  // a kiosk page's eyes are its camera
     Guest guest;
-    guest.id = uint32_t(visitor.link->id);
+    guest.id = visitor.link->id;
     guest.head = vec3(visitor.place.view.position - show.exhibit.scene.origin);
     input.guests.push_back(guest);
   }

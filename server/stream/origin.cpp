@@ -105,6 +105,26 @@ bool HostNames::hold(std::string_view host_header) const {
   return name.starts_with('[') == (name.find(':') != name.npos) && read_address(name).has_value();
 }
 
+static bool is_loopback(std::string_view address) {
+  if (address.starts_with("::ffff:")) address.remove_prefix(7);  // IPv4 on a socket of both
+  return address == "::1" || address.starts_with("127.");
+}
+
+bool is_from_this_machine(std::string_view peer, bool proxied, std::string_view host) {
+  if (proxied || !is_loopback(peer.substr(0, peer.rfind(':')))) return false;
+  const auto named = read_authority(lower(host), "80");
+  if (!named) return false;
+  const std::string& name = named->host;
+  const bool is_number = name.find_first_not_of("0123456789.") == std::string::npos;
+  return name == "localhost" || name == "[::1]" || (is_number && is_loopback(name));
+}
+
+bool is_proxy_header(std::string_view name) {
+  const std::string small = lower(name);
+  return small.starts_with("x-forwarded") || small == "forwarded" || small == "x-real-ip" ||
+         small == "via";
+}
+
 bool offers_protocol(std::string_view header, std::string_view wanted) {
   while (!header.empty()) {
     const size_t end = std::min(header.find(','), header.size());

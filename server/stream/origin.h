@@ -37,6 +37,13 @@ class HostNames {
 // returned consists of letters, digits and ".-_:[]".
 std::string host_name(std::string_view host_header);
 
+// Whether a request comes from the machine that serves it. `peer`: "address:port"; `proxied`: it
+// has a header that proxies add; `host`: its Host header. A page of others whose name leads to this
+// machine all at once (DNS rebinding) has a Host that is not this machine's.
+bool is_from_this_machine(std::string_view peer, bool proxied, std::string_view host);
+// A header by which a proxy says for whom it asks.
+bool is_proxy_header(std::string_view name);
+
 // The offers of a Sec-WebSocket-Protocol header hold `wanted`.
 bool offers_protocol(std::string_view header, std::string_view wanted);
 

@@ -101,8 +101,8 @@ net::awaitable<void> Server::Impl::accept() {
       admit(std::move(socket), id);
       continue;
     }
-    core->accept_errors++;
     if (ec == net::error::connection_aborted) continue;  // came and went
+    core->accept_errors++;
     if (errors_in_a_row++ % 50 == 0)
       log::warn("accept: {}; trying again every {} ms", ec.message(), accept_pause.count());
     pause.expires_after(accept_pause);

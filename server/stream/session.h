@@ -92,6 +92,7 @@ class Session : public std::enable_shared_from_this<Session> {
   HttpReply judge_caller(const Request& request);  // 200, or the refusal; sets caller_
   HttpReply judge_host(const Request& request) const;
   bool is_from_here(const Request& request) const;  // as origin.h has it
+  bool is_local(const Request& request) const;      // likewise
   HttpReply judge_post(const Request& request) const;
   HttpReply judge_upgrade(const HttpQuestion& question, const Request& request);
 
@@ -125,6 +126,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
   std::unique_ptr<Request> upgrade_;  // the request that asked for a WebSocket
   bool counted_websocket_ = false;    // by the caller's address
+  UpgradeAnswer admitted_;            // of it
   std::shared_ptr<Link> link_;
   bool joined_ = false;   // it has said something
   bool flooded_ = false;  // it has said too much

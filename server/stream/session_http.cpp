@@ -126,6 +126,7 @@ net::awaitable<void> Session::serve_http() {
     question.range = std::string(request[http::field::range]);
     question.if_range = std::string(request[http::field::if_range]);
     question.authorization = std::string(request[http::field::authorization]);
+    question.local = is_local(request);
 
     const bool websocket_path = question.path == "/api/v1/visit" || question.path == "/api/v1/eye";
     const bool upgrade = websocket::is_upgrade(request);
@@ -225,6 +226,13 @@ bool Session::is_from_here(const Request& request) const {
   return origin_allowed(origins, view(request[http::field::host]), core_->settings.allowed_origins);
 }
 
+bool Session::is_local(const Request& request) const {
+  const bool proxied = std::any_of(request.begin(), request.end(), [](const auto& field) {
+    return is_proxy_header(view(field.name_string()));
+  });
+  return is_from_this_machine(peer_, proxied, view(request[http::field::host]));
+}
+
 // 200 when a body may be handed on, else the refusal.
 HttpReply Session::judge_post(const Request& request) const {
   if (!is_from_here(request)) return make_refusal(403, "this origin may not post here");
@@ -260,6 +268,8 @@ HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& re
   for (auto it = offers.first; it != offers.second; ++it)
     offered = offered || offers_protocol(view(it->value()), subprotocol);
   if (!offered) return make_refusal(400, "subprotocol is wellspring.v1");
+  if (core_->doors.admit) admitted_ = core_->doors.admit(question);
+  if (admitted_.refusal) return *admitted_.refusal;
   if (!caller_.trusted) {
     counted_websocket_ = core_->admission.open_websocket(caller_.address);
     if (!counted_websocket_) return make_too_many(*core_, "too many visits from your address");

@@ -58,9 +58,12 @@ net::awaitable<void> Session::serve_websocket() {
   if (!accepted) co_return;
   const beast::string_view target = upgrade_->target();
   const bool eye = target.substr(0, target.find('?')).ends_with("/eye");
+  const bool local = is_local(*upgrade_);
   upgrade_.reset();
   link_ = std::make_shared<Link>(core_->next_link++, eye ? LinkKind::eye : LinkKind::visit,
                                  caller_.name);
+  link_->local = local;
+  link_->kiosk = admitted_.kiosk;
   link_->set_wake([weak = weak_from_this()] {
     if (auto self = weak.lock()) self->wake_writer();
   });

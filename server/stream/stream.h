@@ -40,12 +40,15 @@ namespace wellspring {
 struct Doors {
   // Runs on a worker thread of its own pool, may take seconds (a still picture); must not throw.
   std::function<HttpReply(const HttpQuestion&)> answer;
+  // Optional: whether a WebSocket may be opened; without it every one may. Runs on an I/O thread;
+  // must not block.
+  std::function<UpgradeAnswer(const HttpQuestion&)> admit{};
   // A peer passed the WebSocket handshake and said something. Runs on an I/O thread; must not
   // block.
   std::function<void(std::shared_ptr<Link>)> joined;
   // Optional: questions that may take long. They get two threads and a short queue of their own, so
   // that pictures being made never keep a health check waiting. Both queues answer 503 when full.
-  std::function<bool(const HttpQuestion&)> slow;
+  std::function<bool(const HttpQuestion&)> slow{};
 };
 
 struct StreamSettings {

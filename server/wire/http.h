@@ -15,6 +15,7 @@ struct HttpQuestion {
   std::map<std::string, std::string> query;  // percent-decoded; the last of equal names
   std::string if_none_match, range, if_range, accept, authorization;  // headers of those names
   std::string body;                                                   // of a POST: what was posted
+  bool local = false;  // from this machine itself, and through no proxy (stream/origin.h)
 };
 
 // Bytes of a file on disk.
@@ -29,6 +30,12 @@ struct HttpReply {
   std::string body;
   std::optional<FilePart> file;  // instead of `body`, and never held in memory as a whole
   std::map<std::string, std::string> headers;  // Cache-Control, ETag, Retry-After, ...
+};
+
+// Whether a WebSocket may be opened, and who its peer is by what it has shown.
+struct UpgradeAnswer {
+  std::optional<HttpReply> refusal;  // empty: it may
+  std::string kiosk{};               // Link::kiosk
 };
 
 }  // namespace wellspring

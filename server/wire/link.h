@@ -36,6 +36,9 @@ class Link {
   const uint64_t id;
   const LinkKind kind;
   const std::string peer;  // address, for the log
+  // Set before the show gets the link, and never changed after.
+  bool local = false;  // HttpQuestion::local
+  std::string kiosk;   // an eye whose token is for the kiosk of that name alone; empty: any
 
   // ---- called by the show ----
   std::vector<std::string> take_texts();          // all that arrived since the last call, in order

@@ -103,12 +103,14 @@ struct Hello {
       kiosk;  // role: "visitor" or "kiosk"; empty exhibit: the default one
   int width = 1280, height = 720;
   std::string resume;  // of the last `keep`; empty: a new visit
+  std::string token;   // of a kiosk (wire/tokens.h); empty: none is shown
   static void list(auto& message, auto& fields) {
     fields.text("exhibit", message.exhibit, "id, empty for the one shown");
     fields.token("resume", message.resume,
                  "of the last keep of a visit that is to go on; optional");
     fields.text("lang", message.lang, "BCP 47");
     fields.text("kiosk", message.kiosk, "name, optional");
+    fields.token("token", message.token, "of a kiosk on another machine than the server; optional");
     fields.word("role", {"visitor", "kiosk"}, message.role, "visitor or kiosk");
     fields.integer("width", min_side, max_side, message.width, "16..4096");
     fields.integer("height", min_side, max_side, message.height, "16..4096");

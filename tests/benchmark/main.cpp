@@ -9,6 +9,7 @@
 #include <iostream>
 #include <unistd.h>
 
+#include "about/version.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -55,6 +56,7 @@ bool has_curves(const wellspring::BenchReport& report) {
 
 int main(int argc, char** argv) {
   using namespace wellspring;
+  if (answer_version(argc, argv, {"Boost", "CLI11", "GLM", "nlohmann-json", "stb"})) return 0;
   log::start("bench");
   CLI::App app{"Speed against error, measured on this machine."};
   BenchOptions options;

@@ -574,3 +574,23 @@ test('the rooms are heard from their places, quieter under a voice, and off with
     await here.stop();
   }
 });
+
+test('a screen that is not trusted says what to do, and keeps the token it is given', { skip },
+    async () => {
+  const { page, problems } = await open(undefined, { address: '/kiosk?lang=en' });
+  assert.equal(last('hello').token, undefined);
+  server.send({ type: 'error', code: 'not_trusted', message: 'a kiosk token is needed' });
+  await page.waitForFunction(() => /#token=/.test(document.getElementById('notice').textContent));
+  assert.ok(await page.isVisible('#notice'));
+  assert.ok(await page.isHidden('#open-book'), 'nothing else is offered');
+  await shot(page, 'not-trusted');
+  // Typed into the address of the open page, which loads anew with it.
+  await page.evaluate(() => { location.hash = 'token=sixteen%20letters%25'; });
+  await heard((message) => message.token === 'sixteen letters%', 'its token');
+  assert.equal(await page.evaluate(() => location.hash), '');
+  await page.waitForFunction(() => document.getElementById('notice').hidden);
+  server.heard.length = 0;
+  await page.reload();
+  await heard((message) => message.token === 'sixteen letters%', 'its token after a reload');
+  assert.deepEqual(problems, []);
+});

@@ -18,6 +18,7 @@ const pictures = process.env.WELLSPRING_PICTURES;  // a folder for screenshots, 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-status-'));
 const bench = join(folder, 'last.json');
 const weights = process.env.WELLSPRING_WEIGHTS;
+const token = 'the token of the house';
 
 let server, browser;
 before(async () => {
@@ -25,8 +26,10 @@ before(async () => {
   delete process.env.WELLSPRING_WEIGHTS;
   const content = join(folder, 'content');
   await run('wellspring_new', ['giza', write_pyramid(folder), '--content', content]);
+  process.env.WELLSPRING_ADMIN_TOKEN = token;
   server = await start_server(['--sums', join(folder, 'sums.sqlite'), '--bench', bench],
       { content });
+  delete process.env.WELLSPRING_ADMIN_TOKEN;
   if (weights) process.env.WELLSPRING_WEIGHTS = weights;
   browser = await chromium.launch({
     executablePath: executable, headless: true,
@@ -140,6 +143,31 @@ test('on a phone nothing is wider than the screen, and sums are linked', { skip 
   assert.equal(download.suggestedFilename(), 'sums.csv');
   assert.deepEqual(problems, []);
   await page.close();
+});
+
+test('from another machine the page asks for the token, once', { skip }, async () => {
+  const context = await browser.newContext({ viewport: sizes[1],
+    extraHTTPHeaders: { 'X-Forwarded-For': '192.0.2.7' } });
+  const page = await context.newPage();
+  await page.goto(`${server.url}/status`);
+  await says(page, 'verdict', 'The server tells this to who has its admin token');
+  assert.ok(await page.isHidden('#server'));
+  const sign_in = async (text) => {
+    await page.fill('#token', text);
+    await page.click('#sign-in button');
+  };
+  await sign_in('a token of somebody else');
+  await says(page, 'verdict', 'The server does not know this token');
+  assert.ok(await page.isHidden('#server'));
+  await sign_in(token);
+  await says(page, 'server', 'Memory');
+  assert.ok(await page.isHidden('#sign-in'));
+  await page.waitForSelector('#chart svg circle');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#sums-link')]);
+  assert.equal(download.suggestedFilename(), 'sums.csv');
+  await page.reload();
+  await says(page, 'server', 'Memory');
+  await context.close();
 });
 
 test('a server that is gone is said', { skip }, async () => {

@@ -2,7 +2,7 @@
 // What a kiosk is started with: whatever dies of it comes back, and all of it ends.
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { cpSync, mkdirSync, mkdtempSync, readdirSync, rmSync, symlinkSync,
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, symlinkSync,
   writeFileSync } from 'node:fs';
 import net from 'node:net';
 import { tmpdir } from 'node:os';
@@ -118,6 +118,32 @@ test('the pause grows while something dies again and again', async () => {
   kiosk.child.kill('SIGTERM');
   assert.equal(await kiosk.ended, 0, kiosk.said());
   await until(() => !is_left(kiosk.child.pid), kiosk.said);
+});
+
+test('a kiosk of a server elsewhere shows its token, and no command line has it', async () => {
+  const bin = join(folder, 'bin-elsewhere'), state = join(folder, 'state');
+  mkdirSync(bin);
+  for (const name of ['wellspring_server', 'wellspring_kiosk'])
+    cpSync(program(name, `echo "${name} gets $*"; exec sleep 1000000`), join(bin, name));
+  const token = 'sixteen or more&"letters'.replaceAll(' ', '-'), file = join(folder, 'token');
+  writeFileSync(file, `# of this kiosk\nhall ${token}\n`, { mode: 0o600 });
+  const port = await free_port();
+  const listens = net.createServer().listen(port, '127.0.0.1');
+  const kiosk = start({ WELLSPRING_BIN: bin, WELLSPRING_PORT: String(port),
+    WELLSPRING_HOST: '0.0.0.0', WELLSPRING_TOKEN_FILE: file, XDG_STATE_HOME: state,
+    WELLSPRING_SCREEN: program('screen', 'echo "screen shows $1"; exec sleep 1000000') });
+  const shown = join(state, 'wellspring', 'screen.html');
+  await until(() => kiosk.said().includes(`screen shows file://${shown}\n`), kiosk.said);
+  await until(() => kiosk.said().includes(`wellspring_kiosk gets --server ws://0.0.0.0:${port}`
+    + `/api/v1/eye --token-file ${file} --camera synthetic-live --loop\n`), kiosk.said);
+  assert.equal(statSync(shown).mode & 0o777, 0o600);
+  const address = /location\.replace\("(.*)"\)/.exec(readFileSync(shown, 'utf8'))[1];
+  assert.equal(address, `http://0.0.0.0:${port}/kiosk#token=${encodeURIComponent(token)}`);
+  assert.ok(!kiosk.said().includes('server is process'), 'there is none here');
+  assert.ok(!kiosk.said().includes(token));
+  kiosk.child.kill('SIGTERM');
+  assert.equal(await kiosk.ended, 0, kiosk.said());
+  listens.close();
 });
 
 test('systemd takes the units', (context) => {

@@ -11,6 +11,7 @@ const root = process.env.WELLSPRING_SOURCE;
 const may_include = {
   base: [],
   config: ['base'],
+  about: ['base'],
   wire: ['base'],
   ledger: ['base'],
   frame: ['base'],

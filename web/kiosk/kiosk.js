@@ -16,6 +16,7 @@ import { make_book } from './book.js';
 import { show_calibration } from './calibration.js';
 import { make_slides } from './slides.js';
 import { make_take_along } from './take_along.js';
+import { kiosk_token } from './token.js';
 import { make_well } from './well.js';
 import { kiosk_word } from './words.js';
 
@@ -199,12 +200,13 @@ function label() {
   sound.relabel();
   if (about) book.fill(about, lang);
 }
-let lost = false, elsewhere = false;
+let lost = false, elsewhere = false, untrusted = false;
 function notice() {
-  const text = lost ? word(lang, 'lost')
+  const text = untrusted ? kiosk_word(lang, 'not_trusted') : lost ? word(lang, 'lost')
     : stage === 'farewell' ? kiosk_word(lang, 'goodbye')
       : elsewhere && view === 'museum' ? kiosk_word(lang, 'elsewhere')
         : quiet && stage === 'person' ? kiosk_word(lang, 'headphones') : '';
+  document.body.classList.toggle('untrusted', untrusted);
   by_id('notice').textContent = text;
   by_id('notice').hidden = !text;
 }
@@ -276,9 +278,9 @@ async function read_exhibit(message) {
 
 connection = make_connection({
   hello: () => ({ type: 'hello', exhibit: '', lang, role: 'kiosk', kiosk: asked.get('kiosk') ?? '',
-      ...wanted_size() }),
+      token: kiosk_token(), ...wanted_size() }),
   open() {
-    lost = false;
+    lost = untrusted = false;
     fps = null;
     told = '';
     gesture_seen = null;
@@ -329,7 +331,10 @@ connection = make_connection({
         take_along.follow(exhibit, message.story, lang);
         follow_player();
         break;
-      case 'error': console.warn(`${message.code}: ${message.message}`); break;
+      case 'error':
+        console.warn(`${message.code}: ${message.message}`);
+        if (message.code === 'not_trusted') { untrusted = true; notice(); }
+        break;
     }
   },
   binary: (buffer) => { if (!sound.receive(buffer)) picture.receive(buffer); },

@@ -2,6 +2,8 @@
 // The kiosk's own words, in the house's languages; the exhibit's words come from the server.
 export const words = {
   en: {
+    not_trusted: 'This screen is not known to the museum yet. Whoever looks after it opens it '
+      + 'once with its token: /kiosk#token=…',
     touch_water: 'Touch the water', touch_twice: 'Touch the water twice: the book of this house '
       + 'will rise', contents: 'Contents', topics: 'To read', presentations: 'To watch',
     museum: 'The museum', partners: 'With thanks to', close_book: 'Let the book sink',
@@ -19,6 +21,8 @@ export const words = {
       + 'hang beside the screen.',
   },
   de: {
+    not_trusted: 'Das Museum kennt diesen Bildschirm noch nicht. Wer ihn betreut, öffnet ihn '
+      + 'einmal mit seinem Schlüssel: /kiosk#token=…',
     touch_water: 'Berühren Sie das Wasser', touch_twice: 'Zweimal das Wasser berühren: Das Buch '
       + 'des Hauses steigt auf', contents: 'Inhalt', topics: 'Zum Lesen',
     presentations: 'Zum Ansehen', museum: 'Das Museum', partners: 'Mit Dank an',
@@ -37,6 +41,8 @@ export const words = {
       + 'dem Bildschirm.',
   },
   sk: {
+    not_trusted: 'Múzeum túto obrazovku ešte nepozná. Kto sa o ňu stará, otvorí ju raz s jej '
+      + 'kľúčom: /kiosk#token=…',
     take_along: 'Vezmite si príbeh so sebou',
     touch_water: 'Dotknite sa vody', touch_twice: 'Dotknite sa vody dvakrát: vynorí sa kniha '
       + 'tohto domu', contents: 'Obsah', topics: 'Na čítanie', presentations: 'Na pozeranie',
@@ -53,6 +59,8 @@ export const words = {
     headphones: 'V dome je čas ticha. Slúchadlá visia vedľa obrazovky.',
   },
   fr: {
+    not_trusted: 'Le musée ne connaît pas encore cet écran. La personne qui s’en occupe l’ouvre '
+      + 'une fois avec sa clé : /kiosk#token=…',
     touch_water: 'Touchez l’eau', touch_twice: 'Touchez l’eau deux fois : le livre de cette maison '
       + 'remontera', contents: 'Sommaire', topics: 'À lire', presentations: 'À regarder',
     museum: 'Le musée', partners: 'Avec nos remerciements à',
@@ -70,6 +78,8 @@ export const words = {
     headphones: 'C’est l’heure calme dans cette maison. Des casques pendent à côté de l’écran.',
   },
   es: {
+    not_trusted: 'El museo aún no conoce esta pantalla. Quien la cuida la abre una vez con su '
+      + 'clave: /kiosk#token=…',
     touch_water: 'Toque el agua', touch_twice: 'Toque el agua dos veces: subirá el libro de esta '
       + 'casa', contents: 'Índice', topics: 'Para leer', presentations: 'Para ver',
     museum: 'El museo', partners: 'Con nuestro agradecimiento a',

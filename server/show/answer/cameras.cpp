@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/log.h"
+#include "show/answer/trust.h"
 #include "wire/json.h"
 
 namespace wellspring {
@@ -26,29 +27,54 @@ void come_back(Show& show, Eye& eye) {
   same->number = 0;  // to be erased
 }
 
+// As many cameras of its kiosk as there may be are at work.
+bool is_kiosk_full(const Show& show, const Eye& eye, const std::string& kiosk) {
+  return size_t(std::ranges::count_if(show.eyes, [&](const Eye& other) {
+           return &other != &eye && other.observations > 0 && other.seen.kiosk == kiosk &&
+                  !is_lost(other) && !is_silent(other, show.time);
+         })) >= most_kiosk_cameras;
+}
+
+// What is wrong with it.
+std::optional<WireError> read_text(Show& show, Eye& eye, const std::string& text) {
+  auto observation = read_observation(text);
+  if (const WireError* bad = std::get_if<WireError>(&observation)) return *bad;
+  Observation& seen = std::get<Observation>(observation);
+  if (auto wrong = check_camera(*eye.link, seen)) return wrong;
+  const bool moves = eye.observations == 0 || seen.kiosk != eye.seen.kiosk;
+  if (moves && is_kiosk_full(show, eye, seen.kiosk)) {
+    eye.link->close("too many cameras");
+    return WireError{"too_many_cameras", "this kiosk has as many cameras as it may have"};
+  }
+  if (is_silent(eye, show.time) || seen.camera != eye.seen.camera) eye.camera_since = show.time;
+  const bool named = !seen.name.empty() && seen.name != eye.seen.name;
+  eye.seen = std::move(seen);
+  eye.received = show.time;
+  eye.observations++;
+  show.totals.observations++;
+  if (named) come_back(show, eye);
+  return {};
+}
+
 void read_texts(Show& show, Eye& eye) {
   for (const std::string& text : eye.link->take_texts()) {
-    auto observation = read_observation(text);
-    if (const WireError* bad = std::get_if<WireError>(&observation)) {
-      eye.refused++;
-      show.totals.refused_messages++;
-      eye.link->send_text(write_error(*bad));
-      continue;
-    }
-    Observation& seen = std::get<Observation>(observation);
-    if (is_silent(eye, show.time) || seen.camera != eye.seen.camera) eye.camera_since = show.time;
-    const bool named = !seen.name.empty() && seen.name != eye.seen.name;
-    eye.seen = std::move(seen);
-    eye.received = show.time;
-    eye.observations++;
-    show.totals.observations++;
-    if (named) come_back(show, eye);
+    const auto wrong = read_text(show, eye, text);
+    if (!wrong) continue;
+    eye.refused++;
+    show.totals.refused_messages++;
+    eye.link->send_text(write_error(*wrong));
   }
 }
 
 }  // namespace
 
 void welcome_camera(Show& show, std::shared_ptr<Link> link) {
+  if (connected_cameras(show) >= most_cameras) {
+    link->send_text(
+        write_error({"too_many_cameras", "this exhibit has as many cameras as it may have"}));
+    link->close("too many cameras");
+    return;
+  }
   log::info("kiosk camera {} connected from {}", link->id, link->peer);
   Eye eye{std::move(link), {}, -1e9, show.time};
   auto is_taken = [&](const Eye& other) { return other.number == eye.number; };

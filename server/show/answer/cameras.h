@@ -2,7 +2,7 @@
 // The kiosks' cameras, as they come, speak and go. A camera is known by the name that its kiosk
 // gives it: one that comes back under its name is the one that went. Until then a lost one stays
 // listed, so that a technician can read since when there has been no connection, and is forgotten
-// after a while. One without a name cannot come back: it goes with its connection.
+// after a week. One without a name cannot come back: it goes with its connection.
 #pragma once
 #include <memory>
 
@@ -10,8 +10,10 @@
 
 namespace wellspring {
 
-inline constexpr double lost_camera_listed = 600;  // seconds
-inline constexpr size_t most_lost_cameras = 32;    // more: the one longest lost is forgotten
+inline constexpr double lost_camera_listed = 7 * 24 * 3600;  // seconds
+inline constexpr size_t most_lost_cameras = 32;  // more: the one longest lost is forgotten
+// More are told so and sent away: of an exhibit, and of one kiosk.
+inline constexpr size_t most_cameras = 64, most_kiosk_cameras = 8;
 
 void welcome_camera(Show& show, std::shared_ptr<Link> link);
 // What they have said since the last call.

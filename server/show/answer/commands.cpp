@@ -11,6 +11,7 @@
 #include "show/answer/groups.h"
 #include "show/answer/kiosk_window.h"
 #include "show/answer/storyteller_orders.h"
+#include "show/answer/trust.h"
 #include "show/count/count.h"
 #include "show/state/animations.h"
 #include "show/state/lamps.h"
@@ -49,13 +50,15 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   if (!hello.exhibit.empty() && hello.exhibit != show.exhibit.id)
     return WireError{"unknown_exhibit", "there is no exhibit '" + hello.exhibit +
                                             "' here; this is '" + show.exhibit.id + "'"};
+  std::string kiosk;
+  if (Answer wrong = check_page(show, *visitor.link, hello, kiosk)) return wrong;
   visitor.lang = hello.lang.empty() ? show.exhibit.languages.front() : hello.lang;
   visitor.kiosk = hello.role == "kiosk";
-  visitor.name = hello.kiosk;
+  visitor.name = kiosk;
   set_size(visitor.wants, show.settings, hello.width, hello.height);
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
-  const std::string kiosk = kiosk_name(show, visitor.name);
+  kiosk = kiosk_name(show, visitor.name);
   go_to_viewpoint(visitor.place, visitor.hearing.narration.voice, show.exhibit,
                   visitor.kiosk ? kiosk_viewpoint(show, kiosk) : show.exhibit.start);
   const bool goes_on = !hello.resume.empty() && come_back(show, visitor, hello.resume);

@@ -52,7 +52,7 @@ StorytellerOrder order_of(const Show& show, const KioskVisit& visit, const std::
 }  // namespace
 
 void follow_gestures(Show& show, Kiosk& kiosk) {
-  std::vector<std::pair<uint32_t, std::string>> now;
+  std::vector<std::pair<uint64_t, std::string>> now;
   for (const Guest& guest : kiosk.audience.guests)
     if (!guest.gesture.empty()) now.emplace_back(guest.id, guest.gesture);
   const auto before = std::exchange(kiosk.gestures, std::move(now));

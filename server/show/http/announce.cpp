@@ -2,7 +2,6 @@
 #include "show/http/announce.h"
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "show/exhibit/json_fields.h"
@@ -42,33 +41,17 @@ Announcement read_announcement(const json& body, std::vector<Problem>& problems)
 
 }  // namespace
 
-bool is_authorised(const std::string& authorization, const std::string& token) {
-  constexpr std::string_view scheme = "bearer ";
-  bool is_bearer = authorization.size() > scheme.size();
-  for (size_t i = 0; is_bearer && i < scheme.size(); i++)
-    is_bearer = std::tolower(static_cast<unsigned char>(authorization[i])) == scheme[i];
-  if (!is_bearer || token.empty()) return false;
-  const std::string_view given = std::string_view(authorization).substr(scheme.size());
-  unsigned wrong = given.size() != token.size();
-  for (size_t i = 0; i < given.size(); i++)
-    wrong |= unsigned(static_cast<unsigned char>(given[i] ^ token[i % token.size()]));
-  return wrong == 0;
-}
-
-HttpReply answer_announce(const AnnouncementDesk& desk, const HttpQuestion& question) {
+HttpReply answer_announce(const AnnouncementDesk& desk, const Access& access,
+                          const HttpQuestion& question) {
   if (question.method != "POST") {
     HttpReply reply = refuse(405, "method_not_allowed", "POST only");
     reply.headers["Allow"] = "POST";
     return reply;
   }
-  if (desk.token.empty())
+  if (!access.has_token)
     return refuse(403, "no_admin_token",
                   "this server was started without WELLSPRING_ADMIN_TOKEN and --admin-token-file");
-  if (!is_authorised(question.authorization, desk.token)) {
-    HttpReply reply = refuse(401, "wrong_token", "Authorization: Bearer TOKEN is needed");
-    reply.headers["WWW-Authenticate"] = "Bearer";
-    return reply;
-  }
+  if (!access.admin) return refuse_access(access);
   const auto body = parse_json(question.body);
   if (const WireError* error = std::get_if<WireError>(&body))
     return refuse(400, error->code.c_str(), error->message);

@@ -5,26 +5,22 @@
 #include <string>
 
 #include "show/house/announcement.h"
+#include "show/http/access.h"
 #include "wire/http.h"
 
 namespace wellspring {
 
-inline constexpr size_t least_token_bytes = 16;
 inline constexpr size_t most_announced_bytes = 2000;       // of the text in one language
 inline constexpr double longest_announcement = 24 * 3600;  // seconds
 
 // Where announcements are handed in.
 struct AnnouncementDesk {
-  std::string token;                          // empty: nothing may be announced
   std::function<uint32_t(Announcement)> put;  // tells the announcement's number
 };
 
-// 403 where there is no token, 401 without the right one, 400 for a body that is wrong: naming the
+// 403 where there is no admin token, 401 without it, 400 for a body that is wrong: naming the
 // field. Else hands the announcement over and tells its number.
-HttpReply answer_announce(const AnnouncementDesk& desk, const HttpQuestion& question);
-
-// Whether an Authorization header carries the token. Its time does not depend on how much of it is
-// right.
-bool is_authorised(const std::string& authorization, const std::string& token);
+HttpReply answer_announce(const AnnouncementDesk& desk, const Access& access,
+                          const HttpQuestion& question);
 
 }  // namespace wellspring

@@ -154,12 +154,14 @@ HttpReply answer_exhibit(const AnswerSources& sources, const HttpQuestion& quest
   return error_reply(404, "not_found", "there is no '" + tail + "' in an exhibit");
 }
 
-HttpReply answer_exhibits(const AnswerSources& sources) {
+// What is wrong with those that failed names files: that is the technician's.
+HttpReply answer_exhibits(const AnswerSources& sources, const Access& access) {
   json all = {{"exhibits", json::array()}, {"failed", json::array()}};
   for (const ServedExhibit& one : sources.exhibits)
     all["exhibits"].push_back(describe(*one.exhibit));
   for (const FailedExhibit& one : sources.failed)
-    all["failed"].push_back({{"id", one.id}, {"problems", one.problems}});
+    all["failed"].push_back(
+        {{"id", one.id}, {"problems", access.status ? one.problems : std::vector<std::string>{}}});
   return json_reply(all);
 }
 
@@ -191,27 +193,40 @@ const PageFile* find_page(const AnswerSources& sources, const HttpQuestion& ques
   return page == sources.pages->end() ? nullptr : &page->second;
 }
 
+// How the server is: for who has Access::status. Empty: the path is another.
+std::optional<HttpReply> answer_status(const AnswerSources& sources, const Access& access,
+                                       const HttpQuestion& question) {
+  const std::string& path = question.path;
+  const bool known = path == "/metrics" || path == "/api/v1/status" || path == "/api/v1/speeds" ||
+                     path == "/api/v1/sums.csv";
+  if (!known) return {};
+  if (!access.status) return refuse_access(access);
+  if (path == "/metrics") return answer_metrics(sources);
+  if (path == "/api/v1/status" && sources.status) return text_reply(sources.status());
+  if (path == "/api/v1/speeds" && sources.speeds) return text_reply(sources.speeds());
+  if (path == "/api/v1/sums.csv" && sources.sums) return sources.sums(question);
+  return {};
+}
+
 }  // namespace
 
 HttpReply answer(const AnswerSources& sources, const HttpQuestion& question) {
   const std::string& path = question.path;
+  const Access access = access_of(sources.access, question);
   if (path == "/healthz") {
     bool ready = std::ranges::all_of(
         sources.exhibits, [](const ServedExhibit& one) { return one.board->read().ready; });
     return json_reply({{"status", ready ? "ok" : "starting"}}, ready ? 200 : 503);
   }
-  if (path == "/metrics") return answer_metrics(sources);
+  if (auto reply = answer_status(sources, access, question)) return std::move(*reply);
   if (path == "/api/v1/" || path == "/api/v1") {
     HttpReply reply;
     reply.body = describe_api();
     return reply;
   }
-  if (path == "/api/v1/status" && sources.status) return text_reply(sources.status());
-  if (path == "/api/v1/speeds" && sources.speeds) return text_reply(sources.speeds());
-  if (path == "/api/v1/sums.csv" && sources.sums) return sources.sums(question);
-  if (path == "/api/v1/admin/announce") return answer_announce(sources.desk, question);
+  if (path == "/api/v1/admin/announce") return answer_announce(sources.desk, access, question);
   const std::string exhibits = "/api/v1/exhibits";
-  if (path == exhibits || path == exhibits + "/") return answer_exhibits(sources);
+  if (path == exhibits || path == exhibits + "/") return answer_exhibits(sources, access);
   if (path.starts_with(exhibits + "/"))
     return answer_exhibit(sources, question, path.substr(exhibits.size() + 1));
   if (const PageFile* page = find_page(sources, question)) return answer_page(*page, question);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "show/http/access.h"
 #include "show/http/announce.h"
 #include "show/exhibit/exhibit.h"
 #include "show/http/pages.h"
@@ -37,6 +38,8 @@ struct AnswerSources {
   std::vector<FailedExhibit> failed;
   const std::map<std::string, PageFile>* pages = nullptr;
   std::function<std::string()> stream_metrics;  // further Prometheus lines; may be empty
+  std::function<DoorCounts()> door_counts;      // from any thread; may be empty
+  AccessRules access;
   AnnouncementDesk desk;
   std::function<HttpReply(const HttpQuestion&)> sums;  // GET /api/v1/sums.csv (show/status/sums.h)
   std::function<std::string()> status;  // GET /api/v1/status: JSON (show/status/status.h)

@@ -46,6 +46,12 @@ struct CameraReport {
   double since = 0;  // seconds that it has been so
 };
 
+// Of the server's sockets, since the start.
+struct DoorCounts {
+  uint64_t floods_closed = 0;  // connections, for sending more than any page does
+  uint64_t accept_errors = 0;  // times that a connection could not be taken
+};
+
 struct ShowReport {
   bool ready = false;
   double time = 0;
@@ -69,6 +75,7 @@ struct ShowReport {
   std::vector<VisitorReport> visitors;
   size_t exhibit_problems = 0;  // Show::problems
   std::string sums_problem;     // why the ledger cannot be written; whoever has one sets it
+  DoorCounts doors;             // likewise
 };
 
 // One writer, many readers; the lock is held for a copy.

@@ -9,7 +9,7 @@ namespace wellspring {
 
 namespace {
 
-constexpr uint32_t unseen_guest = 0xffffff;  // no camera's number is in it
+constexpr uint64_t unseen_guest = 0xffffffff;  // no camera's number is in it
 
 bool sees(const Eye& eye, double now) {
   const CameraState camera = eye.seen.camera;

@@ -27,7 +27,7 @@ struct Kiosk {
   bool changed = false;             // its stage, in the last step
   Showing showing = Showing::well;  // of its page
   KioskVisit visit;
-  std::vector<std::pair<uint32_t, std::string>> gestures;  // of its guests, by their ids, last tick
+  std::vector<std::pair<uint64_t, std::string>> gestures;  // of its guests, by their ids, last tick
   std::string gesture;                                     // the last that was handed to its page
   uint32_t gesture_number = 0;                             // of that one; 0: none yet
   std::string message;                                     // the last that its pages were sent

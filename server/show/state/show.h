@@ -32,6 +32,7 @@
 #include "show/state/visitor.h"
 #include "show/storyteller/audience.h"
 #include "wire/seal.h"
+#include "wire/tokens.h"
 
 namespace wellspring {
 
@@ -62,7 +63,8 @@ struct ShowSettings {
   float moving_clamp = 4;    // instead of transport.clamp while the visitor moves: fewer sparks
   int max_pixels = 1920 * 1200;
   HouseSettings house;
-  bool watched = false;  // a curator works at it: pages show what helps with that
+  std::vector<Token> kiosk_tokens;  // show/answer/trust.h
+  bool watched = false;             // a curator works at it: pages show what helps with that
 };
 
 // New links and announcements, handed over by the threads of the server.

@@ -5,15 +5,18 @@
 #include <fmt/core.h>
 #include <set>
 
+#include "show/answer/cameras.h"
+
 namespace wellspring {
 
 namespace {
 
-constexpr double told_after_count = 600;     // seconds
-constexpr double kiosk_missed = 24 * 3600.;  // seconds after which it is taken to be gone for good
-constexpr float late_interval = 400;         // milliseconds between pictures drawn of who walks
-constexpr float least_rate = 12;             // pictures a second shown to who walks
-constexpr float slow_line = 500;             // milliseconds, there and back
+constexpr double told_after_count = 600;  // seconds
+// Seconds after which it is taken to be gone for good.
+constexpr double kiosk_missed = lost_camera_listed;
+constexpr float late_interval = 400;  // milliseconds between pictures drawn of who walks
+constexpr float least_rate = 12;      // pictures a second shown to who walks
+constexpr float slow_line = 500;      // milliseconds, there and back
 
 struct Patience {
   double before = 0, after = 0;  // seconds until it is told, and that it is told longer
@@ -211,10 +214,28 @@ void judge_pictures(Judge& judge, const ShowReport& report) {
                {});
 }
 
+std::string times(uint64_t count) {
+  return count == 1 ? std::string("once") : fmt::format("{} times", count);
+}
+
+void judge_doors(Judge& judge, const DoorCounts& doors) {
+  if (uint64_t refused = judge.growth("accept", doors.accept_errors))
+    judge.tell_counted({.about = "accept",
+                        .grave = true,
+                        .what = "Newcomers could not be let in " + times(refused),
+                        .why = "the system gave no connection",
+                        .remedy = "The server's log says why. For too many open files raise their "
+                                  "limit (LimitNOFILE= of the unit, ulimit -n)."});
+  if (uint64_t closed = judge.growth("floods", doors.floods_closed))
+    judge.tell_counted({.about = "floods",
+                        .what = many(closed, "connection was", "connections were") +
+                                " closed for sending too much",
+                        .why = "no page of this museum sends so much",
+                        .remedy = "If that goes on, the server's log has the address: bar it at "
+                                  "the firewall or the proxy."});
+}
+
 void judge_voice(Judge& judge, const ShowReport& report) {
-  auto times = [](uint64_t count) {
-    return count == 1 ? std::string("once") : fmt::format("{} times", count);
-  };
   if (uint64_t failed = judge.growth("voice failed", report.voice_failed))
     judge.tell_counted({.about = "voice failed",
                         .grave = true,
@@ -237,6 +258,7 @@ std::vector<Finding> judge(const ShowReport& report, JudgeMemory& memory) {
   judge_screens(judge, report, memory);
   judge_pictures(judge, report);
   judge_voice(judge, report);
+  judge_doors(judge, report.doors);
   if (!report.sums_problem.empty())
     judge.tell({.about = "sums",
                 .what = "The daily sums cannot be written",

@@ -47,7 +47,7 @@ void put_kiosks(json& status, const Standing& one) {
 }  // namespace
 
 std::string write_status(const std::vector<Standing>& exhibits,
-                         const std::vector<FailedExhibit>& failed, const char* sums) {
+                         const std::vector<FailedExhibit>& failed, bool sums) {
   json findings = json::array();
   json status = {
       {"house", nullptr}, {"kiosks", json::array()}, {"cameras", json::array()}, {"sums", sums}};

@@ -18,10 +18,10 @@ struct Standing {
 
 // {"fine", "findings": [{exhibit, about, grave, what, seconds (that it has been so), why, remedy}],
 //  "house": {open, quiet}, "kiosks": [{name, exhibit, stage, people, storyteller, screens,
-//  cameras}], "cameras": [{kiosk, name, state, seconds}], "sums": none, open or token: who may read
-//  them}. What is wrong in several exhibits alike is told once; what failed to load is told, too.
+//  cameras}], "cameras": [{kiosk, name, state, seconds}], "sums": boolean: there are some}. What is
+//  wrong in several exhibits alike is told once; what failed to load is told, too.
 std::string write_status(const std::vector<Standing>& exhibits,
-                         const std::vector<FailedExhibit>& failed, const char* sums);
+                         const std::vector<FailedExhibit>& failed, bool sums);
 
 // One thread sees reports of an exhibit, others ask.
 class StatusDesk {

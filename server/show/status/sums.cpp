@@ -3,8 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "show/http/announce.h"
-
 namespace wellspring {
 
 namespace {
@@ -27,24 +25,8 @@ std::optional<int64_t> day_of(const HttpQuestion& question, const char* name, in
 
 }  // namespace
 
-const char* sums_access(const SumsDesk& desk) {
-  if (!desk.read) return "none";
-  if (!desk.token.empty()) return "token";
-  return desk.open ? "open" : "none";
-}
-
-HttpReply answer_sums(const SumsDesk& desk, const HttpQuestion& question) {
-  if (!desk.read)
-    return refuse(404, "no_sums", "this server was started without --sums: it keeps none");
-  if (desk.token.empty() && !desk.open)
-    return refuse(403, "no_admin_token",
-                  "others reach this server: it needs WELLSPRING_ADMIN_TOKEN or "
-                  "--admin-token-file to tell its sums");
-  if (!desk.token.empty() && !is_authorised(question.authorization, desk.token)) {
-    HttpReply reply = refuse(401, "wrong_token", "Authorization: Bearer TOKEN is needed");
-    reply.headers["WWW-Authenticate"] = "Bearer";
-    return reply;
-  }
+HttpReply answer_sums(const ReadSums& read, const HttpQuestion& question) {
+  if (!read) return refuse(404, "no_sums", "this server was started without --sums: it keeps none");
   const auto from = day_of(question, "from", *parse_day("0000-01-01")),
              to = day_of(question, "to", *parse_day("9999-12-31"));
   if (!from || !to)
@@ -54,7 +36,7 @@ HttpReply answer_sums(const SumsDesk& desk, const HttpQuestion& question) {
   reply.headers["Cache-Control"] = "no-store";
   reply.headers["Content-Disposition"] = "attachment; filename=\"sums.csv\"";
   try {
-    reply.body = write_csv(desk.read(*from, *to));
+    reply.body = write_csv(read(*from, *to));
   } catch (const std::exception& error) {
     return refuse(503, "unreadable", error.what());
   }

@@ -7,8 +7,8 @@ namespace wellspring {
 
 Guest place_person(const Person& person, const View& kiosk_view, uint32_t eye, float away) {
   Guest guest;
-  // Ids of different cameras are kept apart in the upper bits.
-  guest.id = eye << 24 | (person.id & 0xffffffu);
+  // Ids of different cameras are kept apart in the upper bits, those of visitors are below them.
+  guest.id = uint64_t(eye) << 32 | person.id;
   guest.kiosk = true;
   guest.rotation = person.rotation;
   guest.gesture = person.gesture;
@@ -34,7 +34,7 @@ struct SeenPerson {
   size_t known = 0;  // of Audience::known
 };
 
-KnownPerson& find_known(std::vector<KnownPerson>& known, uint32_t person, double now) {
+KnownPerson& find_known(std::vector<KnownPerson>& known, uint64_t person, double now) {
   for (KnownPerson& one : known)
     if (one.person == person) return one;
   known.push_back({person, person, now, now});
@@ -61,7 +61,7 @@ void join_people(const std::vector<SeenPerson>& seen, std::vector<KnownPerson>& 
     }
   std::stable_sort(pairs.begin(), pairs.end(),
                    [](const Pair& a, const Pair& b) { return a.away < b.away; });
-  auto has_one_of = [&](uint32_t guest, size_t eye) {
+  auto has_one_of = [&](uint64_t guest, size_t eye) {
     return std::any_of(seen.begin(), seen.end(), [&](const SeenPerson& other) {
       return other.eye == eye && known[other.known].guest == guest;
     });
@@ -78,7 +78,7 @@ void join_people(const std::vector<SeenPerson>& seen, std::vector<KnownPerson>& 
 
 // Places by how sure cameras are of them; the rest is as the surest has it.
 void add_guest(std::vector<Guest>& guests, std::vector<float>& weights, const SeenPerson& one,
-               uint32_t id) {
+               uint64_t id) {
   const float weight = std::max(one.confidence, 1e-3f);
   for (size_t i = 0; i < guests.size(); i++) {
     Guest& guest = guests[i];

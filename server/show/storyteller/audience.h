@@ -28,8 +28,8 @@ struct Eye {
 
 // Whom a camera's person is taken for.
 struct KnownPerson {
-  uint32_t person = 0;         // as place_person() numbers it
-  uint32_t guest = 0;          // Guest::id
+  uint64_t person = 0;         // as place_person() numbers it
+  uint64_t guest = 0;          // Guest::id
   double since = 0, seen = 0;  // show time: first, last
 };
 

@@ -32,6 +32,7 @@ size_t ShowStage::connect() {
   size_t number = browsers.size();
   Browser& browser = browsers.emplace_back();
   browser.link = std::make_shared<Link>(number + 1, LinkKind::visit, "test");
+  browser.link->local = true;
   arrivals.put(browser.link);
   return number;
 }

@@ -101,6 +101,30 @@ TEST(Target, ways_out_are_refused) {
   EXPECT_EQ(read_target("/" + std::string(max_target_bytes, 'a'), q), 414);
 }
 
+TEST(ThisMachine, is_a_loopback_peer_by_its_own_name_and_through_no_proxy) {
+  for (const char* peer : {"127.0.0.1:5", "127.9.9.9:65000", "::1:80", "::ffff:127.0.0.1:80"})
+    for (const char* host :
+         {"localhost", "LocalHost:8080", "127.0.0.1:8080", "127.0.1.1", "[::1]", "[::1]:8080"}) {
+      EXPECT_TRUE(is_from_this_machine(peer, false, host)) << peer << " " << host;
+      EXPECT_FALSE(is_from_this_machine(peer, true, host)) << peer << " " << host;
+    }
+  for (const char* peer : {"10.0.0.7:5", "192.168.127.1:80", "2001:db8::1:80", "::ffff:10.0.0.1:80",
+                           "12.7.0.1:80", "::2:1:80", ""})
+    EXPECT_FALSE(is_from_this_machine(peer, false, "localhost")) << peer;
+  // A name of somebody else that leads here.
+  for (const char* host :
+       {"", "museum.org", "127.0.0.1.evil.net", "localhost.evil.net:8080", "evil.net:8080",
+        "localhost@evil.net", "10.0.0.7", "127.0.0.1, evil.net"})
+    EXPECT_FALSE(is_from_this_machine("127.0.0.1:5", false, host)) << host;
+}
+
+TEST(ThisMachine, proxies_are_known_by_their_headers) {
+  for (const char* name : {"Forwarded", "x-forwarded-for", "X-Forwarded-Proto", "X-REAL-IP", "Via"})
+    EXPECT_TRUE(is_proxy_header(name)) << name;
+  for (const char* name : {"Host", "X-Forward", "Viaduct", ""})
+    EXPECT_FALSE(is_proxy_header(name)) << name;
+}
+
 static bool allowed(const char* origin, const char* host, const char* extra = "") {
   return origin_allowed({origin}, host, {"https://tickets.example", extra});
 }

@@ -118,6 +118,39 @@ TEST(Upgrade, foreign_origins_are_refused_before_it) {
             403);
 }
 
+TEST(Upgrade, who_is_not_admitted_is_told_before_it) {
+  std::atomic<int> asked = 0;
+  Server server(quick_settings(),
+                {.answer = House::echo,
+                 .admit = [&](const HttpQuestion& question) -> UpgradeAnswer {
+                   asked++;
+                   if (question.authorization == "Bearer right") return {{}, "hall"};
+                   HttpReply reply;
+                   reply.status = 401;
+                   reply.headers["WWW-Authenticate"] = "Bearer";
+                   reply.body = question.local ? "local" : "elsewhere";
+                   return {reply};
+                 },
+                 .joined =
+                     [&](std::shared_ptr<Link> link) {
+                       link->send_text((link->local ? "local " : "elsewhere ") + link->kiosk);
+                     }});
+  RawClient own(server.port()), proxied(server.port()), kiosk(server.port());
+  const auto reply = own.upgrade("/api/v1/eye");
+  EXPECT_EQ(reply.status, 401);
+  EXPECT_EQ(reply.header("WWW-Authenticate"), "Bearer");
+  EXPECT_EQ(reply.body, "local");
+  const std::string by_proxy = "X-Forwarded-For: 10.0.0.7\r\n";
+  EXPECT_EQ(proxied.upgrade("/api/v1/eye", by_proxy).body, "elsewhere");
+  EXPECT_EQ(kiosk.upgrade("/api/v1/eye", by_proxy + "Authorization: Bearer right\r\n").status, 101);
+  kiosk.send(RawClient::frame(0x81, "{}"));
+  const auto said = kiosk.next_frame();
+  ASSERT_TRUE(said);
+  EXPECT_EQ(said->payload, "elsewhere hall");
+  EXPECT_EQ(asked, 3);
+  EXPECT_EQ(server.counters().websockets, 1u);
+}
+
 TEST(Upgrade, more_origins_can_be_allowed) {
   auto settings = museum_settings();
   settings.allowed_origins = {"https://www.museum.org", "https://Tickets.example"};

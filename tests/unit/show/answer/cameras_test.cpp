@@ -32,8 +32,9 @@ struct Cameras : testing::Test, ShowStage {
     link.push_text_in(write_observation(seen));
     step();
   }
-  void wait(double seconds) {  // in long ticks
-    for (double end = now + seconds; now < end;) step(std::min(1.0, end - now));
+  void wait(double seconds) {  // in long ticks, and in longer ones where nothing is to happen
+    for (double end = now + seconds; now < end;)
+      step(std::min(end - now > 7200 ? 3600.0 : 1.0, end - now));
   }
   // "number name state seconds" of each.
   std::vector<std::string> listed() const {
@@ -100,7 +101,68 @@ TEST_F(Cameras, FewOfManyLostOnesAreListed) {
   EXPECT_EQ(show->eyes.front().seen.name, "kiosk 18");
 }
 
+TEST_F(Cameras, ThereAreNotMoreThanMayBe) {
+  std::vector<std::shared_ptr<Link>> links;
+  for (size_t i = 0; i < 2 * most_cameras; i++) {
+    seen.kiosk = "kiosk " + std::to_string(i / most_kiosk_cameras);
+    links.push_back(connect_camera("camera " + std::to_string(i)));
+  }
+  EXPECT_EQ(show->eyes.size(), most_cameras);
+  std::string reason;
+  EXPECT_FALSE(links[most_cameras - 1]->close_requested(reason));
+  ASSERT_TRUE(links[most_cameras]->close_requested(reason));
+  EXPECT_EQ(reason, "too many cameras");
+  Link::Out out;
+  ASSERT_TRUE(links[most_cameras]->take_out(out));
+  EXPECT_EQ(nlohmann::json::parse(out.text)["code"], "too_many_cameras");
+  links[3]->mark_closed();
+  step();
+  seen.kiosk = "kiosk 0";
+  connect_camera("camera 3");
+  EXPECT_EQ(show->eyes.size(), most_cameras) << "one that comes back has its place";
+}
+
+TEST_F(Cameras, OneKioskHasFewerThanAll) {
+  seen.kiosk = "hall";
+  for (size_t i = 0; i < most_kiosk_cameras; i++) connect_camera("camera " + std::to_string(i));
+  auto one_more = connect_camera("one more");
+  std::string reason;
+  EXPECT_TRUE(one_more->close_requested(reason));
+  EXPECT_EQ(listed().size(), most_kiosk_cameras + 1);
+  one_more->mark_closed();
+  step();
+  EXPECT_EQ(listed().size(), most_kiosk_cameras) << "it was never at work";
+  seen.kiosk = "yard";
+  auto yard = connect_camera("yard");
+  EXPECT_FALSE(yard->close_requested(reason));
+  seen.kiosk = "hall";
+  speak(*yard, "yard");
+  EXPECT_TRUE(yard->close_requested(reason)) << "nor by going there";
+}
+
+TEST_F(Cameras, ATokenOfOneKioskIsGoodForNoOther) {
+  auto link = std::make_shared<Link>(next_link++, LinkKind::eye, "test");
+  link->kiosk = "hall";
+  arrivals.put(link);
+  speak(*link, "");
+  EXPECT_EQ(show->eyes.at(0).kiosk, "hall") << "it need not say so";
+  seen.kiosk = "hall";
+  speak(*link, "");
+  EXPECT_EQ(show->eyes.at(0).refused, 0u);
+  seen.kiosk = "yard";
+  seen.state = Presence::person;
+  seen.people = {Person{.id = 7}};
+  speak(*link, "");
+  EXPECT_EQ(show->eyes.at(0).refused, 1u);
+  EXPECT_EQ(show->eyes.at(0).kiosk, "hall");
+  for (const Kiosk& kiosk : show->kiosks) EXPECT_TRUE(kiosk.audience.guests.empty());
+  std::string answer;
+  for (Link::Out out; link->take_out(out);) answer = out.text;
+  EXPECT_EQ(nlohmann::json::parse(answer)["code"], "not_trusted");
+}
+
 TEST_F(Cameras, WhoStaysBeforeOneKeepsTheirNumberWhenAnotherGoes) {
+  wait(lost_camera_listed);
   auto left = connect_camera("left");
   auto right = connect_camera("right");
   Person person;
@@ -110,9 +172,12 @@ TEST_F(Cameras, WhoStaysBeforeOneKeepsTheirNumberWhenAnotherGoes) {
   speak(*right, "right");
   step(0.1);
   ASSERT_EQ(show->kiosks.at(0).audience.guests.size(), 1u);
-  const uint32_t guest = show->kiosks.at(0).audience.guests[0].id;
+  const uint64_t guest = show->kiosks.at(0).audience.guests[0].id;
   left->mark_closed();
-  for (int i = 0; i < 620; i++) speak(*right, "right"), step(1.0);
+  for (int i = 0; i < 10; i++) speak(*right, "right"), step(1.0);
+  ASSERT_EQ(show->eyes.size(), 2u);
+  show->eyes.front().gone -= lost_camera_listed;
+  for (int i = 0; i < 10; i++) speak(*right, "right"), step(1.0);
   EXPECT_EQ(show->eyes.size(), 1u);
   ASSERT_EQ(show->kiosks.at(0).audience.guests.size(), 1u);
   EXPECT_EQ(show->kiosks.at(0).audience.guests[0].id, guest);

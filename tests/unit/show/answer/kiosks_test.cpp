@@ -39,7 +39,7 @@ TEST_F(Kiosks, OneCameraLessSilencesNoOtherKiosk) {
   see(in_hall, {near_screen});
   see(in_attic, {near_screen});
   go(1);
-  const uint32_t guest = find_kiosk(*show, "attic")->audience.guests.at(0).id;
+  const uint64_t guest = find_kiosk(*show, "attic")->audience.guests.at(0).id;
   cameras[in_hall].on = false;
   cameras[in_hall].link->mark_closed();
   go(3);

@@ -16,17 +16,18 @@ const std::string token = "a token of many letters";
 
 struct Announce : testing::Test {
   std::vector<Announcement> put;
-  AnnouncementDesk desk{token, [this](Announcement one) {
-                          put.push_back(std::move(one));
-                          return uint32_t(put.size());
-                        }};
+  AccessRules rules{.admin_token = token, .kiosk_tokens = {}};
+  AnnouncementDesk desk{[this](Announcement one) {
+    put.push_back(std::move(one));
+    return uint32_t(put.size());
+  }};
   HttpReply post(const std::string& body, const std::string& authorization = "Bearer " + token) {
     HttpQuestion question;
     question.method = "POST";
     question.path = "/api/v1/admin/announce";
     question.authorization = authorization;
     question.body = body;
-    return answer_announce(desk, question);
+    return answer_announce(desk, access_of(rules, question), question);
   }
 };
 
@@ -94,7 +95,7 @@ TEST_F(Announce, NeedsTheToken) {
 }
 
 TEST_F(Announce, WithoutATokenNobodyMay) {
-  desk.token.clear();
+  rules.admin_token.clear();
   for (const char* authorization : {"", "Bearer ", "Bearer a token of many letters"}) {
     const HttpReply reply = post(R"({"text": "a"})", authorization);
     EXPECT_EQ(reply.status, 403);
@@ -106,7 +107,7 @@ TEST_F(Announce, WithoutATokenNobodyMay) {
 TEST_F(Announce, IsPosted) {
   HttpQuestion question;
   question.method = "GET";
-  const HttpReply reply = answer_announce(desk, question);
+  const HttpReply reply = answer_announce(desk, access_of(rules, question), question);
   EXPECT_EQ(reply.status, 405);
   EXPECT_EQ(reply.headers.at("Allow"), "POST");
 }

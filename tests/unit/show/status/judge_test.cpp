@@ -99,6 +99,23 @@ TEST_F(Judged, OneCameraOfTwoIsNamed) {
   EXPECT_EQ(all(), "The camera 'right' at kiosk 'hall' is gone\n");
 }
 
+TEST_F(Judged, WhatIsGoneIsSaidForAWeek) {
+  report.kiosks = {{.name = "hall", .screens = 1, .cameras = 1}};
+  wait(1);
+  report.kiosks[0] = {.name = "hall"};
+  wait(20);
+  const double lost = report.time - 20;
+  const std::string both = "No camera at kiosk 'hall'\nNo screen at kiosk 'hall'\n";
+  for (int hours = 0; hours < 7 * 24 - 1; hours++, report.time += 3600) {
+    wait(0);
+    ASSERT_EQ(all(), both) << "after " << hours << " hours";
+    ASSERT_NEAR(findings[0].since, lost, 0.6);
+  }
+  report.time += 2 * 3600;
+  wait(0);
+  EXPECT_EQ(all(), "") << "it is taken to be gone for good";
+}
+
 TEST_F(Judged, AKioskWhoseScreenHasGone) {
   report.kiosks = {{.name = "hall", .screens = 1}};
   wait(1);
@@ -169,7 +186,11 @@ TEST_F(Judged, WhatIsCountedIsToldForTenMinutes) {
       {report.voice_failed, "The voice has failed once", "The voice has failed 3 times"},
       {report.voice_restarts, "The voice's program has ended once",
        "The voice's program has ended 3 times"},
-      {report.totals.turned_away, "1 visitor was turned away", "3 visitors were turned away"}};
+      {report.totals.turned_away, "1 visitor was turned away", "3 visitors were turned away"},
+      {report.doors.floods_closed, "1 connection was closed for sending too much",
+       "3 connections were closed for sending too much"},
+      {report.doors.accept_errors, "Newcomers could not be let in once",
+       "Newcomers could not be let in 3 times"}};
   for (const Case& one : cases) {
     const double since = report.time;
     one.count += 1;
@@ -223,9 +244,9 @@ TEST(Status, TellsFindingsAndTablesAsJson) {
   report.time = 100;
   StatusDesk desk("castle");
   desk.see(report);
-  auto status = nlohmann::json::parse(write_status({desk.tell()}, {}, "open"));
+  auto status = nlohmann::json::parse(write_status({desk.tell()}, {}, true));
   EXPECT_EQ(status["fine"], true);
-  EXPECT_EQ(status["sums"], "open");
+  EXPECT_EQ(status["sums"], true);
   report.time = 130;
   report.sums_problem = "full \xff";
   report.kiosks = {{"hall", Stage::engaged, 2, true, 1, 1}};
@@ -233,7 +254,7 @@ TEST(Status, TellsFindingsAndTablesAsJson) {
   desk.see(report);
   report.time = 160;
   desk.see(report);
-  status = nlohmann::json::parse(write_status({desk.tell()}, {}, "open"));
+  status = nlohmann::json::parse(write_status({desk.tell()}, {}, true));
   EXPECT_EQ(status["fine"], false);
   ASSERT_EQ(status["findings"].size(), 1u);
   EXPECT_EQ(status["findings"][0]["seconds"], 30);
@@ -257,7 +278,7 @@ TEST(Status, OfSeveralExhibitsTellsWhatIsAlikeOnceAndWhatFailed) {
   report.sums_problem = "full";
   hill.see(report);
   const auto status = nlohmann::json::parse(
-      write_status({castle.tell(), hill.tell()}, {{"ruin", {"ruin/exhibit.json: no"}}}, "none"));
+      write_status({castle.tell(), hill.tell()}, {{"ruin", {"ruin/exhibit.json: no"}}}, false));
   std::vector<std::string> told;
   for (const auto& one : status["findings"]) told.push_back(one["about"]);
   EXPECT_EQ(told, (std::vector<std::string>{"failed ruin", "denoiser", "sums"}));

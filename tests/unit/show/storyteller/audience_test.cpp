@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <optional>
+#include <set>
 
 #include "show/storyteller/audience.h"
 
@@ -105,7 +106,7 @@ TEST_F(TwoCameras, OnePersonSeenTwiceIsOneGuest) {
 
 TEST_F(TwoCameras, AGuestKeepsItsNumberWhicheverCameraHasIt) {
   see(vec3(0, 0, 1), {});
-  const uint32_t id = audience.guests.at(0).id;
+  const uint64_t id = audience.guests.at(0).id;
   see(vec3(0, 0, 1), vec3(0.1f, 0, 1));
   EXPECT_EQ(audience.guests.at(0).id, id);
   see({}, vec3(0.3f, 0, 1));
@@ -135,6 +136,18 @@ TEST_F(TwoCameras, WhoWasTakenForOneByMistakePartsAgain) {
   ASSERT_EQ(audience.guests.size(), 2u);
   see({}, vec3(0.7f, 0, 1));
   EXPECT_EQ(audience.guests.size(), 1u);
+}
+
+TEST(Audience, GuestsOfAnyNumberOfCamerasAreKeptApart) {
+  std::set<uint64_t> ids;
+  const uint32_t cameras[] = {1, 2, 255, 256, 257, 511, 512, 0x1000000},
+                 people[] = {0, 1, 0xffffff, 0x1000000, 0x1000001, 0xffffffff};
+  for (uint32_t camera : cameras)
+    for (uint32_t person : people) {
+      const Guest guest = place_person(Person{.id = person}, straight_view(), camera);
+      EXPECT_TRUE(ids.insert(guest.id).second) << "camera " << camera << ", person " << person;
+      EXPECT_GT(guest.id, 0xffffffffu) << "below are visitors, and who is seen by no camera";
+    }
 }
 
 TEST_F(TwoCameras, NumbersAreForgotten) {

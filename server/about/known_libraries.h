@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Libraries that our programs use, by the beginning of their files' names: name, licence (SPDX) and
+// what for. One that is linked and not here fails tests/scripted/version.test.mjs.
+#pragma once
+
+namespace wellspring {
+
+struct KnownLibrary {
+  const char *begins, *name, *licence, *purpose;
+};
+
+inline constexpr const char* gcc_runtime = "GPL-3.0-or-later WITH GCC-exception-3.1";
+
+inline constexpr KnownLibrary known_libraries[] = {
+    {"ld-linux", "GNU C Library", "LGPL-2.1-or-later", "loads programs"},
+    {"libc.", "GNU C Library", "LGPL-2.1-or-later", "C"},
+    {"libcrypto.", "OpenSSL", "Apache-2.0", "TLS"},
+    {"libdnnl.", "oneDNN", "Apache-2.0", "the network that cleans pictures at rest"},
+    {"libembree", "Embree", "Apache-2.0", "ray tracing"},
+    {"libespeak-ng.", "eSpeak NG", "GPL-3.0-or-later", "speech, in a program of its own"},
+    {"libFLAC.", "FLAC", "BSD-3-Clause", "recordings, for libsndfile"},
+    {"libfmt.", "{fmt}", "MIT", "texts"},
+    {"libgcc_s.", "GCC", gcc_runtime, "run-time support of C++"},
+    {"libgomp.", "GCC", gcc_runtime, "OpenMP, for oneDNN"},
+    {"libIex", "OpenEXR", "BSD-3-Clause", "OpenEXR pictures"},
+    {"libIlmThread", "OpenEXR", "BSD-3-Clause", "OpenEXR pictures"},
+    {"libImath", "Imath", "BSD-3-Clause", "OpenEXR pictures"},
+    {"libm.", "GNU C Library", "LGPL-2.1-or-later", "mathematics"},
+    {"libmp3lame.", "LAME", "LGPL-2.0-or-later", "recordings, for libsndfile"},
+    {"libmpg123.", "mpg123", "LGPL-2.1-only", "recordings, for libsndfile"},
+    {"libogg.", "Ogg", "BSD-3-Clause", "recordings, for libsndfile"},
+    {"libOpenCL.", "OpenCL ICD loader", "BSD-2-Clause", "for oneDNN; not used"},
+    {"libopencv_", "OpenCV", "Apache-2.0", "cameras and faces, in the kiosk's program"},
+    {"libOpenEXR", "OpenEXR", "BSD-3-Clause", "OpenEXR pictures"},
+    {"libopus.", "Opus", "BSD-3-Clause", "recordings, for libsndfile"},
+    {"libpugixml.", "pugixml", "MIT", "X3D figures"},
+    {"libqrcodegen", "QR Code generator", "MIT", "codes for guests' phones"},
+    {"libseccomp.", "libseccomp", "LGPL-2.1-only", "what a process gives up"},
+    {"libsndfile.", "libsndfile", "LGPL-2.1-or-later", "recordings"},
+    {"libsodium.", "libsodium", "ISC", "seals of visits, tokens"},
+    {"libspdlog.", "spdlog", "MIT", "the log"},
+    {"libsqlite3.", "SQLite", "blessing", "daily sums"},
+    {"libssl.", "OpenSSL", "Apache-2.0", "TLS"},
+    {"libstdc++.", "GCC", gcc_runtime, "the C++ library"},
+    {"libSvtAv1Enc.", "SVT-AV1", "BSD-3-Clause-Clear", "video"},
+    {"libsystemd.", "systemd", "LGPL-2.1-or-later", "what a service tells its manager"},
+    {"libtbb.", "oneTBB", "Apache-2.0", "loops over cores"},
+    {"libturbojpeg.", "libjpeg-turbo", "IJG AND BSD-3-Clause AND Zlib", "JPEG pictures"},
+    {"libvorbis", "Vorbis", "BSD-3-Clause", "recordings, for libsndfile"},
+    {"libvpx.", "libvpx", "BSD-3-Clause", "video"},
+    {"libz.", "zlib", "Zlib", "compression, for OpenEXR"},
+    // Headers that are compiled in.
+    {"Boost", "Boost (Asio, Beast)", "BSL-1.0", "HTTP and WebSocket"},
+    {"CLI11", "CLI11", "BSD-3-Clause", "options"},
+    {"GLM", "GLM", "MIT", "vectors"},
+    {"nlohmann-json", "JSON for Modern C++", "MIT", "JSON"},
+    {"stb", "stb", "MIT OR Unlicense", "PNG, JPEG and HDR pictures"},
+};
+
+}  // namespace wellspring
