@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # A kiosk: server, camera program and screen (docs/kiosk.md, "Installing a kiosk").
 # kiosk.sh: keeps all three running until it is told to end.
-# kiosk.sh server|eye|screen: becomes one of them, as the systemd units beside this file want it.
+# kiosk.sh server|eye|screen: becomes one of them; wellspring-screen.service is kiosk.sh screen.
 set -euo pipefail
 self="$(realpath "${BASH_SOURCE[0]}")"
 here="$(dirname "$(dirname "$self")")"

@@ -158,6 +158,7 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   options.observer.presence = config.presence;
   options.hands = config.hands;
   options.name = config.name;
+  if (!config.server.empty()) options.server = config.server;
   Written written;
   written.expression = config.expression ? "on" : "off";
 
@@ -210,7 +211,7 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   const auto read = read_observation(write_observation(named));
   if (const WireError* error = std::get_if<WireError>(&read))
     throw CLI::ValidationError("--name", error->message);
-  options.server_given = server->count() > 0;
+  options.server_given = server->count() > 0 || !config.server.empty();
   options.eyes_given = eyes->count() > 0;
   put_each(options.cameras, "--fov", written.fovs,
            [](CameraSettings& to, double fov) { to.mount.fov = float(fov) * degree; });

@@ -25,7 +25,7 @@ class ServiceManager {
   void ping(double now);
 
  private:
-  int socket_ = -1;  // connected; -1: nobody listens
+  int socket_ = -1;                      // connected; -1: nobody listens
   double interval_ = 0, pinged_ = -1e9;  // seconds; 0: no pings are asked for
 };
 

@@ -51,7 +51,7 @@ struct Room {
   ReportBoard board;
   StatusDesk status;
   Arrivals arrivals;
-  std::atomic<bool> draws = false;       // its visitors need the cores
+  std::atomic<bool> draws = false;  // its visitors need the cores
   Heartbeat heartbeat;
   std::unique_ptr<Rehearsal> rehearsal;
   std::unique_ptr<Show> next;  // what has come of it, to be taken over

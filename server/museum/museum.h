@@ -39,8 +39,8 @@ class Museum {
   std::string status(const char* sums) const;
   Sums read_sums(int64_t from, int64_t to) const;  // Ledger::read(); nothing where none are kept
   // Ticks all shows until `ended`, which is asked ten times a second, says so: false. Or until one
-  // of them has changed, where they are watched or reload() was called: true. Then take_over() shows
-  // it as it is now, when nobody asks sources() or joins.
+  // of them has changed, where they are watched or reload() was called: true. Then take_over()
+  // shows it as it is now, when nobody asks sources() or joins.
   bool run(const std::function<bool()>& ended);
   void take_over();
   // Looks once whether files of an exhibit or of the house have changed. From within `ended`.

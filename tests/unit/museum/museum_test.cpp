@@ -79,9 +79,9 @@ TEST(Museum, ReloadTakesOverWhatHasChangedAndNothingElse) {
   EXPECT_EQ(small.title(), "Room");
   small.package.manifest["title"]["en"] = "Another room";
   small.write();
-  std::filesystem::last_write_time(small.package.folder.path / "room" / "exhibit.json",
-                                   std::filesystem::file_time_type::clock::now() +
-                                       std::chrono::hours(1));
+  std::filesystem::last_write_time(
+      small.package.folder.path / "room" / "exhibit.json",
+      std::filesystem::file_time_type::clock::now() + std::chrono::hours(1));
   int looks = 0;
   EXPECT_FALSE(small.museum->run([&] { return ++looks > 5; })) << "nobody has asked";
   bool asked = false;
