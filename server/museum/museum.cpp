@@ -85,11 +85,12 @@ void look_at_rehearsal(Room& room, std::atomic<bool>& changed) {
   if (room.next) changed = true;
 }
 
-// While visitors of one need the cores, no other is baked.
+// While visitors of one need the cores, no other is baked; while one is made anew, none is.
 void share_cores(Room& room, const std::list<Room>& rooms) {
   room.draws = draws(*room.show);
-  room.show->others_draw =
-      std::ranges::any_of(rooms, [&](const Room& other) { return &other != &room && other.draws; });
+  room.show->others_draw = std::ranges::any_of(rooms, [&](const Room& other) {
+    return (&other != &room && other.draws) || (other.rehearsal && other.rehearsal->at_work());
+  });
 }
 
 void keep_ticking(Room& room, const std::list<Room>& rooms, Ledger* ledger,

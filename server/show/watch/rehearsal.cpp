@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/watch/rehearsal.h"
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -34,6 +35,7 @@ struct Rehearsal::Impl {
   std::mutex mutex;
   std::condition_variable changed;
   const bool watch;
+  std::atomic<bool> at_work = false;
   bool end = false, asked = false, anyway = false;
   std::thread thread;
 
@@ -66,6 +68,7 @@ struct Rehearsal::Impl {
 
   Outcome rehearse() {
     log::info("{} has changed", folder);
+    at_work = true;
     Outcome found;
     try {
       found.show = make();
@@ -78,6 +81,7 @@ struct Rehearsal::Impl {
       log::warn("{}", to_string(problem));
       shorten(problem, folder);
     }
+    at_work = false;
     return found;
   }
 };
@@ -94,6 +98,8 @@ void Rehearsal::look(bool anyway) {
   }
   impl_->changed.notify_all();
 }
+
+bool Rehearsal::at_work() const { return impl_->at_work; }
 
 std::optional<Rehearsal::Outcome> Rehearsal::take() { return impl_->outcome.take(); }
 

@@ -22,6 +22,8 @@ class Rehearsal {
 
   // Looks soon, and makes a show where the files have changed, or `anyway`. From any thread.
   void look(bool anyway);
+  // Whether it makes a show now, and so needs the cores. From any thread.
+  bool at_work() const;
 
   struct Outcome {
     std::unique_ptr<Show> show;     // null: it cannot be shown, for
