@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # A kiosk: server, camera program and screen (docs/kiosk.md, "Installing a kiosk").
 # kiosk.sh: keeps all three running until it is told to end.
-# kiosk.sh server|eye|screen: becomes one of them, as the systemd units beside this file want it.
-# kiosk.sh serves: whether the server is on this machine.
+# kiosk.sh server|eye|screen: becomes one of them; wellspring-screen.service is kiosk.sh screen.
 set -euo pipefail
 self="$(realpath "${BASH_SOURCE[0]}")"
 here="$(dirname "$(dirname "$self")")"
@@ -112,9 +111,8 @@ case "${1:-}" in
   server) become_server ;;
   eye) become_eye ;;
   screen) become_screen ;;
-  serves) serves; exit ;;
   "") ;;
-  *) echo "usage: kiosk.sh [server | eye | screen | serves]" >&2; exit 2 ;;
+  *) echo "usage: kiosk.sh [server | eye | screen]" >&2; exit 2 ;;
 esac
 
 exec 9>"${XDG_RUNTIME_DIR:-/tmp}/wellspring-kiosk.lock"

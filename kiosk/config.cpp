@@ -126,6 +126,7 @@ void load_config(const std::string& file, KioskConfig& config) {
   constexpr double longest = 600;  // seconds
   r.object(root, "",
            {{"name", r.text(config.name)},
+            {"server", r.text(config.server)},
             {"token_file", r.text(config.token_file)},
             {"camera", r.part(r.lens(camera))},
             {"mount", r.mount(camera.mount)},

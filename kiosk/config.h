@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // A kiosk's configuration file: JSON, all of it optional.
-//   name        of the kiosk
 //   cameras     a list, where there are several: source (as --camera takes it), name, mount, and
 //               what camera has; what one leaves out is as camera and mount have it
 //   camera      width (pixels), rate (frames a second), fov (degrees across), mirrored
@@ -9,6 +8,7 @@
 //   expression  true or false
 //   hands       true or false
 //   name        the kiosk's, as its page says it (/kiosk?kiosk=NAME)
+//   server      where observations go: ws://HOST[:PORT][/PATH]
 //   token_file  of the token by which a server on another machine trusts it
 #pragma once
 #include <string>
@@ -24,8 +24,9 @@ struct KioskConfig {
   std::vector<CameraSettings> cameras;  // empty: the file names none
   PresenceSettings presence;
   bool expression = false, hands = true;
-  std::string name;  // the kiosk's; empty: the only one of the house
-  std::string token_file;
+  std::string name;        // the kiosk's; empty: the only one of the house
+  std::string server;      // empty: the file names none
+  std::string token_file;  // likewise
 };
 
 // Changes what the file names. Throws LoadError naming the first thing that is unknown, of another

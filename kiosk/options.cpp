@@ -159,6 +159,7 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   options.observer.presence = config.presence;
   options.hands = config.hands;
   options.name = config.name;
+  if (!config.server.empty()) options.server = config.server;
   std::string token_file = config.token_file;
   Written written;
   written.expression = config.expression ? "on" : "off";
@@ -216,7 +217,7 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   const auto read = read_observation(write_observation(named));
   if (const WireError* error = std::get_if<WireError>(&read))
     throw CLI::ValidationError("--name", error->message);
-  options.server_given = server->count() > 0;
+  options.server_given = server->count() > 0 || !config.server.empty();
   // An eye needs none, and the environment has none for it.
   if (options.observe_to < 0) options.token = read_token(token_file, "WELLSPRING_KIOSK_TOKEN");
   options.eyes_given = eyes->count() > 0;

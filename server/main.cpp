@@ -2,11 +2,16 @@
 // wellspring run: options -> load -> threads. The only place that knows both `museum` and `stream`.
 #include <csignal>
 #include <iostream>
+#include <fmt/core.h>
+#include <functional>
 #include <sys/prctl.h>
 #include <unistd.h>
 
 #include "about/version.h"
+#include "base/clock.h"
 #include "base/log.h"
+#include "base/log_output.h"
+#include "base/service_manager.h"
 #include "museum/museum.h"
 #include "options.h"
 #include "show/http/pages.h"
@@ -18,7 +23,7 @@ namespace {
 
 using namespace wellspring;
 
-volatile std::sig_atomic_t asked_to_stop = 0;
+volatile std::sig_atomic_t asked_to_stop = 0, asked_to_reload = 0, asked_to_reopen = 0;
 
 // Programs that are started here get no more rights than this one has (set-user-ID).
 void renounce_rights() {
@@ -27,16 +32,21 @@ void renounce_rights() {
     log::warn("runs as root, which it needs for nothing: an ordinary user is safer");
 }
 
-void say_address(const AnswerSources& sources, const StreamSettings& stream) {
+// To whoever has started the program.
+std::string say_address(const AnswerSources& sources, const StreamSettings& stream) {
   std::string names;
   for (const ServedExhibit& one : sources.exhibits)
     names += (names.empty() ? "'" : ", '") + one.exhibit->id + "'";
-  std::cout << "Wellspring serves " << names << " at "
-            << (stream.certificate.empty() ? "http://" : "https://") << stream.host << ":"
-            << stream.port << "/" << std::endl;
+  const char* scheme = stream.certificate.empty() ? "http" : "https";
+  std::string said =
+      fmt::format("serves {} at {}://{}:{}/", names, scheme, stream.host, stream.port);
+  std::cout << "Wellspring " << said << std::endl;
+  return said;
 }
 
-int serve(const ServerOptions& options) {
+// `reread`: takes from the configuration what needs no restart.
+int serve(const ServerOptions& options, const std::function<void()>& reread) {
+  ServiceManager manager;
   try_port(options.stream);  // before what takes seconds
   auto pages = load_pages(options.web);
   Museum museum(options.museum);
@@ -66,9 +76,25 @@ int serve(const ServerOptions& options) {
   for (bool changed = true; changed;) {
     server = std::make_unique<Server>(stream, doors);
     stream.port = server->port();  // the same, when it comes back
-    say_address(sources, stream);
-    changed = museum.run([] { return asked_to_stop != 0; });
-    if (!changed) log::info("stopping");
+    const std::string said = say_address(sources, stream);
+    manager.say_ready(said);
+    changed = museum.run([&] {
+      if (asked_to_reopen || asked_to_reload) log::reopen();
+      asked_to_reopen = 0;
+      if (asked_to_reload) {
+        asked_to_reload = 0;
+        manager.say_reloading();
+        reread();
+        museum.reload();
+        manager.say_ready(said);
+      }
+      if (museum.has_gone_on()) manager.ping(seconds_now());
+      return asked_to_stop != 0;
+    });
+    if (!changed) {
+      manager.say("STOPPING=1");
+      log::info("stopping");
+    }
     server->stop();
     if (!changed) continue;
     server.reset();
@@ -88,8 +114,12 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, [](int) { asked_to_stop = 1; });
   std::signal(SIGTERM, [](int) { asked_to_stop = 1; });
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGUSR1, [](int) { asked_to_reopen = 1; });
+  // A service is told to reload, a program in a terminal that the terminal is gone.
+  if (isatty(STDERR_FILENO)) std::signal(SIGHUP, [](int) { asked_to_stop = 1; });
+  else std::signal(SIGHUP, [](int) { asked_to_reload = 1; });
   try {
-    return serve(options);
+    return serve(options, [&] { reread_options(options, argc, argv); });
   } catch (const ExhibitError& error) {
     for (const Problem& problem : error.problems)
       std::cerr << (problem.fatal ? "error: " : "note: ") << to_string(problem) << "\n";

@@ -6,6 +6,8 @@
 #include <iostream>
 
 #include "base/installed.h"
+#include "base/log.h"
+#include "base/log_output.h"
 #include "config/config_file.h"
 
 namespace wellspring {
@@ -45,7 +47,8 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
                  "certificate in PEM, with those that sign it; read anew when it changes");
   app.add_option("--tls-key", options.stream.key, "its key in PEM");
   app.add_option("--content", options.museum.content, "folder of exhibit packages");
-  app.add_option("--web", options.web, "folder of the pages");
+  app.add_option("--web", options.web,
+                 "folder of the pages; without it web, or what was installed");
   app.add_option("--house", options.museum.house,
                  "house file: opening and quiet hours, volumes, kiosks (docs/kiosk.md)");
   app.add_option(
@@ -62,8 +65,10 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
   app.add_option("--bench", options.bench, "report of wellspring bench that /status shows");
   add_switch(app, "--watch", show.watched,
              "a changed exhibit is shown at once; its pages tell mistakes in its files");
-  app.add_option("--weights", show.weights,
-                 "folder of the networks' weights; without it pictures at rest are not denoised")
+  app.add_option(
+         "--weights", show.weights,
+         "folder of the networks' weights; without it those that were installed, and without "
+         "any pictures at rest are not denoised")
       ->envname("WELLSPRING_WEIGHTS");
   app.add_option(
       "--cache", options.museum.recordings.cache,
@@ -88,8 +93,28 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
   add_switch(app, "--late-samples,!--no-late-samples", show.late_samples,
              "samples of a walking visitor are traced when its picture is on its way, and show "
              "in the next");
+  app.add_option("--log", options.log,
+                 "file of the log, opened anew at SIGUSR1 and SIGHUP; empty: stderr");
+  app.add_option("--log-level", options.log_level, "of the least urgent lines that are logged")
+      ->envname("WELLSPRING_LOG")
+      ->check(CLI::IsMember(log::levels()));
   app.add_option("--max-depth", show.transport.max_depth, "of light's walks, in reflections")
       ->check(CLI::Range(1, 64));
+}
+
+// Throws CLI::ParseError, ConfigError or std::runtime_error.
+void parse_options(CLI::App& app, ServerOptions& options, Words& words, int argc, char** argv) {
+  declare_options(app, options, words);
+  add_config(app, installed_config("server.conf"));
+  parse_with_config(app, argc, argv);
+  const auto display = std::find(std::begin(display_names), std::end(display_names), words.display);
+  options.museum.show.display = Display(display - std::begin(display_names));
+  options.stream.port = uint16_t(words.port);
+  if (options.web.empty()) options.web = installed_share("web");
+  if (options.web.empty()) options.web = "web";
+  std::string& weights = options.museum.show.weights;
+  if (weights.empty()) weights = installed_share("weights");
+  options.settings = config_values(app);
 }
 
 }  // namespace
@@ -97,17 +122,13 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
 int read_options(ServerOptions& options, int argc, char** argv) {
   CLI::App app{"Serves a museum exhibit to browsers and kiosks."};
   Words words;
-  declare_options(app, options, words);
-  add_config(app, installed_config("server.conf"));
   try {
-    parse_with_config(app, argc, argv);
-    const auto display =
-        std::find(std::begin(display_names), std::end(display_names), words.display);
-    options.museum.show.display = Display(display - std::begin(display_names));
-    options.stream.port = uint16_t(words.port);
+    parse_options(app, options, words, argc, argv);
     options.access.admin_token = read_token(words.token_file, "WELLSPRING_ADMIN_TOKEN");
     options.access.kiosk_tokens = read_tokens(words.kiosk_token_file, "WELLSPRING_KIOSK_TOKEN");
     options.museum.show.kiosk_tokens = options.access.kiosk_tokens;
+    log::set_level(options.log_level);
+    if (!options.log.empty()) log::send_to(options.log);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const ConfigError& error) {
@@ -118,6 +139,27 @@ int read_options(ServerOptions& options, int argc, char** argv) {
     return 1;
   }
   return -1;
+}
+
+void reread_options(ServerOptions& options, int argc, char** argv) {
+  CLI::App app;
+  Words words;
+  ServerOptions now;
+  try {
+    parse_options(app, now, words, argc, argv);
+  } catch (const ConfigError& error) {
+    for (const std::string& problem : error.problems) log::error("{}", problem);
+    return;
+  } catch (const std::exception& error) {
+    log::error("{}", error.what());
+    return;
+  }
+  log::set_level(options.log_level = now.log_level);
+  std::string changed;
+  for (const auto& [key, value] : now.settings)
+    if (key != "log-level" && options.settings[key] != value)
+      changed += (changed.empty() ? "" : ", ") + key;
+  if (!changed.empty()) log::warn("needs a restart to count: {}", changed);
 }
 
 }  // namespace wellspring

@@ -29,13 +29,15 @@ export function run(name, args, { timeout = 60000 } = {}) {
 }
 
 // A running server: {port, url, ws, child, stop()}. Resolves when it has printed its address.
-// Serves the castle where nothing else is said.
-export function start_server(words = [], { port = 0, content } = {}) {
+// Serves the castle where nothing else is said. `places` false: it finds content and pages itself.
+export function start_server(words = [],
+    { port = 0, content, programs = bin, places = true } = {}) {
   const args = content || words.includes('--exhibit') ? words : ['--exhibit', 'castle', ...words];
   content ??= join(source, 'content');
   return new Promise((resolve, reject) => {
-    const child = spawn(join(bin, 'wellspring_server'),
-      ['--content', content, '--web', join(source, 'web'), '--port', String(port), ...args],
+    const child = spawn(join(programs, 'wellspring_server'),
+      [...places ? ['--content', content, '--web', join(source, 'web')] : [],
+        '--port', String(port), ...args],
       { stdio: ['ignore', 'pipe', 'pipe'] });
     let stdout = '', stderr = '';
     const timer = setTimeout(() => {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The log: one line an event on stderr, level names as spdlog's. WELLSPRING_LOG=debug shows more.
-// Usage: log::info("exhibit {} loaded in {:.1f} s", id, seconds);
-// Formats are checked when they are compiled; lines are put together in log.cpp alone, since what
-// does that takes seconds to compile.
+// The log: one line an event on stderr, or where log_output.h says. WELLSPRING_LOG=debug shows
+// more. Usage: log::info("exhibit {} loaded in {:.1f} s", id, seconds); Formats are checked when
+// they are compiled; lines are put together in log.cpp alone, since what does that takes seconds to
+// compile.
 #pragma once
 #include <fmt/core.h>
 
@@ -30,7 +30,8 @@ void error(fmt::format_string<T...> format, T&&... arguments) {
   write(Level::error, format, fmt::make_format_args(arguments...));
 }
 
-// Sends the log to stderr and reads WELLSPRING_LOG. Call once at the start of main().
+// Sends the log to stderr, with the journal's marks where that is the journal (systemd), and reads
+// WELLSPRING_LOG. Call once at the start of main().
 void start(const char* program);
 
 }  // namespace wellspring::log

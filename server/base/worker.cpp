@@ -21,6 +21,7 @@ void Worker::run(std::function<void()> work) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return !work_; });
   work_ = std::move(work);
+  runs_++;
   lock.unlock();
   changed_.notify_all();
 }

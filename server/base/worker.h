@@ -4,6 +4,7 @@
 // loops nor is waited for by them. All calls come from the owner's thread.
 #pragma once
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -20,6 +21,7 @@ class Worker {
   // Begins when the work before is done. `work` must not throw. The first call starts the thread.
   void run(std::function<void()> work);
   bool busy() const;
+  uint64_t runs() const { return runs_; }  // how many there have been
   // What the work wrote may be read after either has said that it is done.
   void wait() const;
   bool wait_for(double seconds) const;  // false: it is still going on
@@ -30,6 +32,7 @@ class Worker {
   mutable std::condition_variable changed_;
   std::function<void()> work_;  // empty: nothing to do
   bool end_ = false;
+  uint64_t runs_ = 0;
   std::thread thread_;
 };
 

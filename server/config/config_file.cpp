@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <sstream>
 
 #include "base/near_name.h"
@@ -187,6 +186,14 @@ std::string write_config(const CLI::App& app) {
     else text += "#" + key + " = " + (is_list(*option) ? "" : standard) + "\n";
   }
   return text;
+}
+
+std::map<std::string, std::string> config_values(const CLI::App& app) {
+  std::map<std::string, std::string> values;
+  for (const CLI::Option* option : keys(const_cast<CLI::App&>(app)))
+    values[key_of(*option)] =
+        option->count() > 0 ? join_lines(option->reduced_results()) : option->get_default_str();
+  return values;
 }
 
 }  // namespace wellspring

@@ -7,6 +7,7 @@
 // list, which has a line for each of its values. What comes first wins: the command line, the
 // environment, the file.
 #pragma once
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -40,5 +41,8 @@ void parse_with_config(CLI::App& app, int argc, char** argv);
 // All options as such a file, with what they are for. Those that nobody has set are comments with
 // their defaults. `app` has been parsed.
 std::string write_config(const CLI::App& app);
+
+// The value of every key, those of a list on lines of their own. `app` has been parsed.
+std::map<std::string, std::string> config_values(const CLI::App& app);
 
 }  // namespace wellspring

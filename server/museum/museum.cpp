@@ -6,12 +6,14 @@
 #include <ctime>
 #include <filesystem>
 #include <list>
+#include <mutex>
 #include <thread>
 
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/near_name.h"
 #include "ledger/ledger.h"
+#include "museum/heartbeat.h"
 #include "museum/reception.h"
 #include "show/exhibit/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
@@ -49,10 +51,11 @@ struct Room {
   ReportBoard board;
   StatusDesk status;
   Arrivals arrivals;
-  std::atomic<bool> draws = false;       // its visitors need the cores
-  std::unique_ptr<Rehearsal> rehearsal;  // null: it is not watched
-  std::unique_ptr<Show> next;            // what has come of it, to be taken over
-  std::thread thread;                    // of its ticks
+  std::atomic<bool> draws = false;  // its visitors need the cores
+  Heartbeat heartbeat;
+  std::unique_ptr<Rehearsal> rehearsal;
+  std::unique_ptr<Show> next;  // what has come of it, to be taken over
+  std::thread thread;          // of its ticks
 };
 
 std::vector<std::string> kiosks_of(const Exhibit& exhibit) {
@@ -80,19 +83,21 @@ void publish(Room& room, const SharedParts& shared) {
 }
 
 void look_at_rehearsal(Room& room, std::atomic<bool>& changed) {
-  if (!room.rehearsal || room.next) return;
+  if (room.next) return;
   auto outcome = room.rehearsal->take();
   if (!outcome) return;
-  set_problems(*room.show, std::move(outcome->problems));
+  // Only who works on an exhibit wants its pages to tell.
+  if (room.show->settings.watched) set_problems(*room.show, std::move(outcome->problems));
   room.next = std::move(outcome->show);
   if (room.next) changed = true;
 }
 
-// While visitors of one need the cores, no other is baked.
+// While visitors of one need the cores, no other is baked; while one is made anew, none is.
 void share_cores(Room& room, const std::list<Room>& rooms) {
   room.draws = draws(*room.show);
-  room.show->others_draw =
-      std::ranges::any_of(rooms, [&](const Room& other) { return &other != &room && other.draws; });
+  room.show->others_draw = std::ranges::any_of(rooms, [&](const Room& other) {
+    return (&other != &room && other.draws) || (other.rehearsal && other.rehearsal->at_work());
+  });
 }
 
 void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& shared,
@@ -103,6 +108,8 @@ void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& s
     room.show->local_time = local_time(std::time(nullptr));
     share_cores(room, rooms);
     tick(*room.show, room.arrivals, began);
+    const Worker& worker = room.show->renderer.worker;
+    room.heartbeat.tick(began, worker.busy() ? worker.runs() : 0);
     if (began - reported > report_interval) {
       reported = began;
       publish(room, shared);
@@ -129,7 +136,9 @@ struct Museum::Impl {
   const MuseumSettings settings;
   std::shared_ptr<Speaker> speaker;  // one voice program for all
   std::unique_ptr<Ledger> ledger;    // null: no sums are kept
+  mutable std::mutex house_mutex;    // of:
   HouseSettings house;               // of the first exhibit, and so of all
+  fs::file_time_type house_time;     // of its file
   std::list<Room> rooms;
   AnswerSources sources;
   std::unique_ptr<Reception> reception;  // null: there is one exhibit only
@@ -148,13 +157,25 @@ struct Museum::Impl {
                              settings.content + did_you_mean(settings.exhibit, ids) + "; " + there);
   }
 
+  HouseSettings first_house() const {
+    std::lock_guard lock(house_mutex);
+    return house;
+  }
+
+  // The first exhibit's counts for all. Called while no show ticks.
+  void share_house() {
+    std::lock_guard lock(house_mutex);
+    house = rooms.front().show->settings.house;
+    for (Room& room : rooms) room.show->settings.house = house;
+  }
+
   // Loads, checks and lights an exhibit, ready to be ticked. The first is told the house's day.
   std::unique_ptr<Show> prepare(const std::string& id, bool is_first) const {
     Exhibit exhibit = load_exhibit(settings.content + "/" + id);
     read_recordings_or_fail(exhibit, settings.recordings);
     ShowSettings own = settings.show;
     own.cache = settings.recordings.cache;
-    if (!is_first) own.house = house;
+    if (!is_first) own.house = first_house();
     else if (!settings.house.empty()) own.house = load_house(settings.house, exhibit);
     auto show = make_show(std::move(exhibit), own);
     std::vector<Problem> notes;
@@ -165,14 +186,19 @@ struct Museum::Impl {
     return show;
   }
 
+  fs::file_time_type time_of_house() const {
+    std::error_code ec;
+    return settings.house.empty() ? fs::file_time_type() : fs::last_write_time(settings.house, ec);
+  }
+
   void open_room(const std::string& id) {
     const bool is_first = rooms.empty();
     Room& room = rooms.emplace_back(prepare(id, is_first));
-    if (is_first) house = room.show->settings.house;
+    if (is_first) share_house();
     publish(room, shared());
-    if (settings.show.watched)
-      room.rehearsal = std::make_unique<Rehearsal>(
-          settings.content + "/" + id, [this, id, is_first] { return prepare(id, is_first); });
+    room.rehearsal = std::make_unique<Rehearsal>(
+        settings.content + "/" + id, [this, id, is_first] { return prepare(id, is_first); },
+        settings.show.watched);
   }
 
   // What answers are made from, and where newcomers are led.
@@ -225,6 +251,7 @@ struct Museum::Impl {
 
 Museum::Museum(const MuseumSettings& settings) : impl_(std::make_unique<Impl>(settings)) {
   Impl& impl = *impl_;
+  impl.house_time = impl.time_of_house();
   if (!settings.sums.empty()) impl.ledger = std::make_unique<Ledger>(LedgerSettings{settings.sums});
   impl.open_all();
   impl.sources.changes = settings.show.watched;
@@ -276,6 +303,19 @@ bool Museum::run(const std::function<bool()>& ended) {
   return impl.changed && !ended();
 }
 
+void Museum::reload() {
+  const auto before = std::exchange(impl_->house_time, impl_->time_of_house());
+  const bool new_house = impl_->house_time != before;
+  for (Room& room : impl_->rooms) room.rehearsal->look(new_house && &room == &impl_->rooms.front());
+}
+
+bool Museum::has_gone_on() {
+  auto beats = [](const Room& room) { return room.heartbeat.beats(); };
+  if (!std::ranges::all_of(impl_->rooms, beats)) return false;
+  for (Room& room : impl_->rooms) room.heartbeat.forget();
+  return true;
+}
+
 void Museum::take_over() {
   for (Room& room : impl_->rooms) {
     if (!room.next) continue;
@@ -286,6 +326,7 @@ void Museum::take_over() {
     room.stills = std::make_unique<StillRoom>(*room.show);
     publish(room, impl_->shared());
   }
+  impl_->share_house();
   impl_->put_up_signs();
 }
 

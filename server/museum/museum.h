@@ -38,10 +38,15 @@ class Museum {
   void join(std::shared_ptr<Link> link);           // from any thread
   std::string status() const;                      // GET /api/v1/status; from any thread
   Sums read_sums(int64_t from, int64_t to) const;  // Ledger::read(); nothing where none are kept
-  // Ticks all shows until `ended` says so: false. Or, where they are watched, until one of them has
-  // changed: true. Then take_over() shows it as it is now, when nobody asks sources() or joins.
+  // Ticks all shows until `ended`, which is asked ten times a second, says so: false. Or until one
+  // of them has changed, where they are watched or reload() was called: true. Then take_over()
+  // shows it as it is now, when nobody asks sources() or joins.
   bool run(const std::function<bool()>& ended);
   void take_over();
+  // Looks once whether files of an exhibit or of the house have changed. From within `ended`.
+  void reload();
+  // Whether all shows have gone on since it last said so (museum/heartbeat.h). From within `ended`.
+  bool has_gone_on();
 
  private:
   struct Impl;

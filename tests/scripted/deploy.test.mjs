@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a kiosk is started with: whatever dies of it comes back, and all of it ends.
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
-import { cpSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, symlinkSync,
-  writeFileSync } from 'node:fs';
+import { spawn } from 'node:child_process';
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync }
+  from 'node:fs';
 import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -144,19 +144,4 @@ test('a kiosk of a server elsewhere shows its token, and no command line has it'
   kiosk.child.kill('SIGTERM');
   assert.equal(await kiosk.ended, 0, kiosk.said());
   listens.close();
-});
-
-test('systemd takes the units', (context) => {
-  if (spawnSync('systemd-analyze', ['--version']).error)
-    return context.skip('there is no systemd-analyze here');
-  const home = join(folder, 'home');
-  mkdirSync(home);
-  symlinkSync(source, join(home, 'wellspring'));
-  const units = readdirSync(join(source, 'deploy')).filter((name) => !name.endsWith('.sh'));
-  assert.equal(units.length, 4);
-  const { status, stdout, stderr } = spawnSync('systemd-analyze',
-      ['verify', '--user', '--man=no', ...units.map((name) => join(source, 'deploy', name))],
-      { env: { ...process.env, HOME: home, XDG_RUNTIME_DIR: folder }, encoding: 'utf8' });
-  assert.equal(status, 0, stdout + stderr);
-  for (const name of units) assert.ok(!stderr.includes(name), stderr);
 });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/watch/folder_watch.h"
 
+#include <utility>
+
 namespace wellspring {
 
 namespace fs = std::filesystem;
@@ -36,6 +38,11 @@ bool FolderWatch::changed(double now) {
   if (last_ == known_ || now - moved_at_ < still_) return false;
   known_ = last_;
   return true;
+}
+
+bool FolderWatch::changed() {
+  last_ = look(folder_);
+  return std::exchange(known_, last_) != last_;
 }
 
 }  // namespace wellspring

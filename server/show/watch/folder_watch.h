@@ -17,6 +17,9 @@ class FolderWatch {
   // At `now`, seconds. True once for each change, when the files have been still since `still`
   // seconds; not for one that is taken back before.
   bool changed(double now);
+  // Whether they are now other than they were known, without waiting: somebody says that they are
+  // complete.
+  bool changed();
 
  private:
   // Of all files below the folder but hidden ones and editors' copies (~).

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/watch/rehearsal.h"
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "base/clock.h"
 #include "base/latest.h"
@@ -32,11 +34,13 @@ struct Rehearsal::Impl {
   Latest<Outcome> outcome;
   std::mutex mutex;
   std::condition_variable changed;
-  bool end = false;
+  const bool watch;
+  std::atomic<bool> at_work = false;
+  bool end = false, asked = false, anyway = false;
   std::thread thread;
 
-  Impl(std::string folder_, std::function<std::unique_ptr<Show>()> make_)
-      : folder(std::move(folder_)), make(std::move(make_)), files(folder) {
+  Impl(std::string folder_, std::function<std::unique_ptr<Show>()> make_, bool watch)
+      : folder(std::move(folder_)), make(std::move(make_)), files(folder), watch(watch) {
     thread = std::thread([this] { live(); });
   }
   ~Impl() {
@@ -50,15 +54,21 @@ struct Rehearsal::Impl {
 
   void live() {
     std::unique_lock lock(mutex);
-    while (!changed.wait_for(lock, pause, [this] { return end; })) {
+    for (;;) {
+      if (watch) changed.wait_for(lock, pause, [this] { return end || asked; });
+      else changed.wait(lock, [this] { return end || asked; });
+      if (end) return;
+      const bool now = std::exchange(asked, false), in_any_case = std::exchange(anyway, false);
       lock.unlock();
-      if (files.changed(seconds_now())) outcome.put(rehearse());
+      const bool is_new = now ? files.changed() : files.changed(seconds_now());
+      if (is_new || in_any_case) outcome.put(rehearse());
       lock.lock();
     }
   }
 
   Outcome rehearse() {
     log::info("{} has changed", folder);
+    at_work = true;
     Outcome found;
     try {
       found.show = make();
@@ -71,13 +81,25 @@ struct Rehearsal::Impl {
       log::warn("{}", to_string(problem));
       shorten(problem, folder);
     }
+    at_work = false;
     return found;
   }
 };
 
-Rehearsal::Rehearsal(std::string folder, std::function<std::unique_ptr<Show>()> make)
-    : impl_(std::make_unique<Impl>(std::move(folder), std::move(make))) {}
+Rehearsal::Rehearsal(std::string folder, std::function<std::unique_ptr<Show>()> make, bool watch)
+    : impl_(std::make_unique<Impl>(std::move(folder), std::move(make), watch)) {}
 Rehearsal::~Rehearsal() = default;
+
+void Rehearsal::look(bool anyway) {
+  {
+    std::lock_guard lock(impl_->mutex);
+    impl_->asked = true;
+    impl_->anyway |= anyway;
+  }
+  impl_->changed.notify_all();
+}
+
+bool Rehearsal::at_work() const { return impl_->at_work; }
 
 std::optional<Rehearsal::Outcome> Rehearsal::take() { return impl_->outcome.take(); }
 

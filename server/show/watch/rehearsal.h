@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a new show of an exhibit whenever its files have changed, while the old one goes on.
+// Makes a new show of an exhibit when its files have changed, while the old one goes on.
 #pragma once
 #include <functional>
 #include <memory>
@@ -15,9 +15,15 @@ struct Show;
 
 class Rehearsal {
  public:
-  // `make` runs on a thread of the rehearsal's own; throws what is wrong with the files.
-  Rehearsal(std::string folder, std::function<std::unique_ptr<Show>()> make);
+  // `make` runs on a thread of the rehearsal's own; throws what is wrong with the files. `watch`:
+  // look at the files all the time; else only when look() asks for it.
+  Rehearsal(std::string folder, std::function<std::unique_ptr<Show>()> make, bool watch);
   ~Rehearsal();  // waits for a show that is being made
+
+  // Looks soon, and makes a show where the files have changed, or `anyway`. From any thread.
+  void look(bool anyway);
+  // Whether it makes a show now, and so needs the cores. From any thread.
+  bool at_work() const;
 
   struct Outcome {
     std::unique_ptr<Show> show;     // null: it cannot be shown, for
