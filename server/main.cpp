@@ -53,7 +53,9 @@ int serve(const ServerOptions& options) {
   sources.sums = [&](const HttpQuestion& question) { return answer_sums(sums, question); };
   sources.status = [&] { return museum.status(sums_access(sums)); };
   sources.speeds = [&] { return read_speeds(options.bench); };
-  sources.stream_metrics = [&] { return server ? to_metrics(server->counters()) : std::string(); };
+  sources.stream_metrics = [&] {
+    return museum.metrics() + (server ? to_metrics(server->counters()) : std::string());
+  };
   Doors doors;
   doors.answer = [&](const HttpQuestion& question) { return answer(sources, question); };
   doors.slow = [](const HttpQuestion& question) {

@@ -17,6 +17,8 @@ struct MuseumSettings {
   std::string content = "content";  // folder of exhibit packages
   std::string exhibit;              // id of the only one; empty: all of the folder, by name
   ShowSettings show;
+  CapacitySettings capacity;
+  size_t most_waiting = 2000;  // visitors, for a seat; more are told to come back
   RecordingOptions recordings;
   std::string house;  // house file, whose kiosks are the first exhibit's; empty: none
   std::string sums;   // file of daily sums; empty: none are kept
@@ -37,6 +39,8 @@ class Museum {
   void join(std::shared_ptr<Link> link);  // from any thread
   // GET /api/v1/status; `sums`: who may read them. From any thread.
   std::string status(const char* sums) const;
+  // Prometheus lines of what all exhibits have together. From any thread.
+  std::string metrics() const;
   Sums read_sums(int64_t from, int64_t to) const;  // Ledger::read(); nothing where none are kept
   // Ticks all shows until `ended` says so: false. Or, where they are watched, until one of them has
   // changed: true. Then take_over() shows it as it is now, when nobody asks sources() or joins.
