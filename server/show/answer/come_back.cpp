@@ -169,6 +169,7 @@ void keep_visit(Show& show, std::list<Visitor>::iterator gone) {
   kept.id = gone->id;
   kept.since = show.time;
   kept.visitor.splice(kept.visitor.begin(), show.visitors, gone);
+  kept.visitor.front().seat = nullptr;  // who comes back has found another
   if (show.kept.size() <= most_kept) return;
   count_leaving(show, show.kept.front().visitor.front());
   show.kept.pop_front();

@@ -149,13 +149,22 @@ TEST_F(Idle, AClockThatJumpsSendsNobodyToRest) {
   EXPECT_EQ(asked(), "");
 }
 
-TEST_F(Idle, WhoRestsGivesTheirSeatBack) {
+TEST_F(Idle, WhoRestsOrHasGoneGivesTheirSeatBack) {
   auto capacity = std::make_shared<Capacity>(CapacitySettings{.cores = 64});
-  const size_t number = browsers.size();
-  browsers.push_back({std::make_shared<Link>(number + 1, LinkKind::visit, "test")});
-  arrivals.put(browsers[number].link, capacity->find_seat(32 * 32));
-  say(R"({"type":"hello","width":64,"height":32})", number);
-  run(1);
+  auto come = [&] {
+    const size_t number = browsers.size();
+    browsers.push_back({std::make_shared<Link>(number + 1, LinkKind::visit, "test")});
+    arrivals.put(browsers[number].link, capacity->find_seat(32 * 32));
+    say(R"({"type":"hello","width":64,"height":32})", number);
+    run(1);
+    return number;
+  };
+  come();
+  const size_t gone = come();
+  EXPECT_EQ(capacity->standing().seats, 2);
+  browsers[gone].link->mark_closed();
+  run(0.5);
+  EXPECT_EQ(show->kept.size(), 1u);
   EXPECT_EQ(capacity->standing().seats, 1);
   const auto standing = capacity->standing();
   EXPECT_NEAR(standing.busy, cores_a_pixel(standing.cost, 15) * weighed_pixels(64 * 32), 1e-9)
