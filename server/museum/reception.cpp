@@ -15,7 +15,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto look_interval = std::chrono::milliseconds(5);  // at those who have said nothing yet
-constexpr double queue_interval = 0.05;  // seconds between looks at those who wait and rest
+constexpr auto queue_interval = std::chrono::milliseconds(50);  // at those who wait and rest
 
 // What somebody does who is there; a page by itself says the rest.
 bool tells_of_somebody(const BrowserMessage& message) {
@@ -153,7 +153,7 @@ void Reception::look_at_resting() {
 
 std::vector<Reception::Shown> Reception::find_ready(double now) {
   std::vector<Shown> ready;
-  if (now - looked_at_ >= queue_interval) {
+  if (now - looked_at_ >= std::chrono::duration<double>(queue_interval).count()) {
     looked_at_ = now;
     look_at_resting();
     auto find_seat = [&](const Newcomer& who) {
@@ -177,8 +177,10 @@ std::vector<Reception::Shown> Reception::show_in(double seconds) {
   for (;;) {
     std::vector<Shown> ready = find_ready(seconds_now());
     if (!ready.empty() || Clock::now() >= end) return ready;
-    if (strangers_.empty()) somebody_.wait_until(lock, end);
-    else somebody_.wait_until(lock, std::min(end, Clock::now() + look_interval));
+    auto until = end;
+    if (!strangers_.empty()) until = Clock::now() + look_interval;
+    else if (queue_.size() > 0 || !resting_.empty()) until = Clock::now() + queue_interval;
+    somebody_.wait_until(lock, std::min(end, until));
   }
 }
 

@@ -8,9 +8,10 @@
 namespace wellspring {
 namespace {
 
-constexpr double heartbeat = 4;      // seconds, after which the same is told again
-constexpr double tell_interval = 2;  // seconds
-constexpr double turns_kept = 600;   // seconds that a turn tells how long the next will take
+constexpr double heartbeat = 4;       // seconds, after which the same is told again
+constexpr double tell_interval = 2;   // seconds
+constexpr double turns_kept = 600;    // seconds that a turn tells how long the next will take
+constexpr double least_seconds = 10;  // since the first turn, that tell anything
 constexpr size_t turns_counted = 16;
 
 }  // namespace
@@ -67,7 +68,7 @@ std::vector<Newcomer> WaitingQueue::let_in(
 
 // As long a time for each as the last ones took.
 std::optional<double> WaitingQueue::seconds_for(size_t place, double now) const {
-  if (turns_.empty()) return {};
+  if (turns_.empty() || now - turns_.front() < least_seconds) return {};
   return double(place) * (now - turns_.front()) / double(turns_.size());
 }
 

@@ -2,19 +2,35 @@
 // More visitors than seats: they wait, come in by turn, rest while nobody is there, and cost little
 // meanwhile. WELLSPRING_CONNECTIONS: how many links are left idle at once.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Visitor, sleep, start_server } from '../server.mjs';
+import { write_pyramid } from './pyramid.mjs';
 
 const many = Number(process.env.WELLSPRING_CONNECTIONS ?? 100);
 const most_a_link = 256;  // KiB of the server's memory
 
+const content = mkdtempSync(join(tmpdir(), 'wellspring-queue-'));
 let server;
 before(async () => {
-  server = await start_server(['--max-visitors', '2', '--idle-after', '3', '--idle-answer', '1',
-    '--hidden-after', '1']);
+  const folder = join(content, 'giza');
+  mkdirSync(folder);
+  write_pyramid(folder);
+  const view = { position: [0, 0.5, 4], yaw_deg: 0, pitch_deg: 0, fov_deg: 55 };
+  writeFileSync(join(folder, 'exhibit.json'), JSON.stringify({ id: 'giza', title: { en: 'Giza' },
+    description: { en: 'A pyramid.' }, languages: ['en'], scene: 'pyramid.gltf', start: 'south',
+    environment: { radiance: [1, 1, 1] },
+    viewpoints: [{ ...view, name: 'south', title: { en: 'South' } },
+      { ...view, name: 'east', title: { en: 'East' }, position: [4, 0.5, 0], yaw_deg: 90 }] }));
+  server = await start_server(['--exhibit', 'giza', '--max-visitors', '2', '--idle-after', '3',
+    '--idle-answer', '1', '--hidden-after', '1'], { content });
 });
-after(async () => { assert.equal(await server.stop(), 0); });
+after(async () => {
+  assert.equal(await server?.stop(), 0);
+  rmSync(content, { recursive: true, force: true });
+});
 
 const size = { width: 64, height: 48 };
 async function say_hello(fields = {}) {
@@ -51,20 +67,21 @@ test('who finds no seat waits for their turn, and a kiosk does not', async () =>
   const kiosk = await come_in({ role: 'kiosk' });
   assert.equal(first.pictures + second.pictures, 0);
 
-  const turn = second.message('waiting', ({ place }) => place === 1);
-  await Promise.all([first.message('welcome'), inside[0].close()]);
-  await first.picture();
-  await turn;
   await kiosk.close();
-  // Sent away while others are inside: one leaves by a broken line.
+
+  const turn = second.message('waiting', ({ place }) => place === 1);
+  const welcome = first.message('welcome');
+  await inside[0].close();
+  await Promise.all([welcome, turn, first.picture()]);
+  const last = second.message('welcome');
   inside[1].socket.terminate();
-  await second.message('welcome');
+  await last;
   await Promise.all([first.close(), second.close()]);
 });
 
 test('who does nothing is asked, rests, and goes on where they were', async () => {
   const visitor = await come_in();
-  visitor.send({ type: 'viewpoint', seq: 1, name: 'paintings' });
+  visitor.send({ type: 'viewpoint', seq: 1, name: 'east' });
   const { seconds } = await visitor.message('idle', ({ state }) => state === 'asked');
   assert.equal(seconds, 1);
   await visitor.message('idle', ({ state }) => state === 'paused');
@@ -76,7 +93,7 @@ test('who does nothing is asked, rests, and goes on where they were', async () =
   const welcome = visitor.message('welcome'), state = visitor.message('state');
   visitor.send({ type: 'presence', here: true });
   assert.equal((await welcome).resumed, true);
-  assert.equal((await state).viewpoint, 'paintings');
+  assert.equal((await state).viewpoint, 'east');
   await visitor.picture();
   await visitor.close();
 });

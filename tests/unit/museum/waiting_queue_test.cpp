@@ -72,6 +72,8 @@ TEST_F(WaitingQueueTest, EachIsToldTheirPlaceAndWhenItChanges) {
 TEST_F(WaitingQueueTest, TheTimeIsThatOfTheTurnsBefore) {
   for (int i = 0; i < 4; i++) come();
   seats = 1, let_in(10);
+  queue.tell_places(10);
+  EXPECT_FALSE(told(*links[3]).contains("seconds")) << "one turn tells nothing yet";
   seats = 1, let_in(30);
   queue.tell_places(50);  // two turns in 40 s
   EXPECT_EQ(told(*links[3])["seconds"], 40);
