@@ -10,7 +10,7 @@ export default {
   key_space: 'Pause und weiter', opening: 'Die Türen öffnen sich…',
   lost: 'Die Verbindung zum Museum ist unterbrochen. Neuer Versuch…',
   waiting:
-    'Gerade sind alle Plätze besetzt. Sie sind Nummer {place} von {of} und kommen von selbst hinein.',
+    'Alle Plätze sind besetzt. Sie sind Nummer {place} von {of} und kommen von selbst hinein.',
   waiting_minute: 'Etwa eine Minute.', waiting_minutes: 'Etwa {minutes} Minuten.',
   still_there: 'Sind Sie noch da?', still_there_yes: 'Ja, weiter',
   still_there_until: 'Bitte berühren Sie etwas, noch {seconds} Sekunden. Sonst ruht der Besuch.',

@@ -10,7 +10,7 @@ export default {
   key_space: 'pausa y seguir', opening: 'Abrimos las puertas…',
   lost: 'Se ha cortado la línea con el museo. Nuevo intento…',
   waiting:
-    'Todas las plazas están ocupadas. Es usted el número {place} de {of} y entrará automáticamente.',
+    'No quedan plazas. Es usted el número {place} de {of} y entrará automáticamente.',
   waiting_minute: 'Cerca de un minuto.', waiting_minutes: 'Unos {minutes} minutos.',
   still_there: '¿Sigue usted ahí?', still_there_yes: 'Sí, seguir',
   still_there_until: 'Toque algo, quedan {seconds} segundos. Si no, la visita descansa.',

@@ -13,7 +13,7 @@ export default {
     'Toutes les places sont prises. Vous êtes numéro {place} sur {of} et entrerez automatiquement.',
   waiting_minute: 'Environ une minute.', waiting_minutes: 'Environ {minutes} minutes.',
   still_there: 'Êtes-vous toujours là ?', still_there_yes: 'Oui, continuer',
-  still_there_until: 'Touchez l\'écran, encore {seconds} secondes. Sinon la visite se met en pause.',
+  still_there_until: 'Touchez l\'écran, encore {seconds} secondes, ou la visite s\'arrêtera.',
   resting: 'La visite est en pause', resting_until: 'Elle reprendra là où vous étiez.',
   resting_back: 'Continuer',
   full: 'Le musée est plein en ce moment. Revenez dans un instant.',
