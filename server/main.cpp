@@ -60,7 +60,9 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
   sources.sums = [&](const HttpQuestion& question) { return answer_sums(sums, question); };
   sources.status = [&] { return museum.status(); };
   sources.speeds = [&] { return read_speeds(options.bench); };
-  sources.stream_metrics = [&] { return server ? to_metrics(server->counters()) : std::string(); };
+  sources.stream_metrics = [&] {
+    return museum.metrics() + (server ? to_metrics(server->counters()) : std::string());
+  };
   sources.door_counts = [&] {
     const StreamCounters counters = server ? server->counters() : StreamCounters{};
     return DoorCounts{counters.flood_closed, counters.accept_errors};

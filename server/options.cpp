@@ -75,8 +75,27 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
       "folder that keeps light, speech and words of recordings; empty: none of it is kept");
   app.add_option("--fps", show.fps, "pictures a second for each visitor")
       ->check(CLI::Range(1.0, 120.0));
-  app.add_option("--max-visitors", show.max_visitors, "in all exhibits together")
+  CapacitySettings& capacity = options.museum.capacity;
+  app.add_option("--max-visitors", capacity.most,
+                 "visitors who are shown pictures at once, in all exhibits together, however many "
+                 "the machine could serve")
       ->check(CLI::Range(1, 1000));
+  app.add_option(
+         "--least-fps", capacity.rate,
+         "pictures a second that everybody is to have who walks: while the machine makes no "
+         "more, newcomers wait")
+      ->check(CLI::Range(1.0, 120.0));
+  app.add_option("--max-waiting", options.museum.most_waiting,
+                 "visitors who wait; more are told to come back")
+      ->check(CLI::Range(0, 100000));
+  app.add_option("--idle-after", show.idle_after,
+                 "seconds until a visitor who does nothing is asked; 0: never")
+      ->check(CLI::Range(0.0, 86400.0));
+  app.add_option("--idle-answer", show.idle_answer, "seconds to answer in until the visit rests")
+      ->check(CLI::Range(1.0, 3600.0));
+  app.add_option("--hidden-after", show.hidden_after,
+                 "seconds until a visit rests whose page is hidden; 0: never")
+      ->check(CLI::Range(0.0, 86400.0));
   app.add_option("--technique", show.technique, "how light is sampled in motion")
       ->check(CLI::IsMember(technique_names()));
   app.add_option("--still-technique", show.still_technique, "how light is sampled at rest")

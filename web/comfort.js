@@ -21,7 +21,7 @@ export function make_comfort(send, on_change) {
 
   const wishes = () => {
     const { most, fps, ...rest } = qualities[chosen];
-    return { ...rest, ...wanted_size(most), fps: document.hidden ? 1 : fps };
+    return { ...rest, ...wanted_size(most), fps };
   };
   calm.checked = kept.get('comfort') === null ? reduced.matches : kept.get('comfort') === 'true';
   const tell_comfort = () => send({ comfort: calm.checked });
@@ -65,9 +65,6 @@ export function make_comfort(send, on_change) {
     clearTimeout(resize_timer);
     resize_timer = setTimeout(() => send(wishes()), 200);
   });
-  // A hidden page costs next to nothing.
-  document.addEventListener('visibilitychange', () => send({ fps: wishes().fps }));
-
   return {
     size: () => wanted_size(qualities[chosen].most),
     wishes: () => ({ comfort: calm.checked, ...wishes() }),

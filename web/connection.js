@@ -3,7 +3,7 @@
 // line breaks.
 
 // handlers: {hello() -> message, open(), lost(seconds_to_retry), message(object),
-// binary(ArrayBuffer)}
+// binary(ArrayBuffer), rests() -> whether the server is silent since nobody is here; optional}
 export function make_connection(handlers) {
   let socket = null, retry = 0, timer = 0, heard = 0, ended = false;
 
@@ -45,6 +45,7 @@ export function make_connection(handlers) {
 
   // A line that looks open but has been silent (a laptop that slept) is replaced.
   setInterval(() => {
+    if (handlers.rests?.()) heard = performance.now();
     if (socket && socket.readyState === WebSocket.OPEN && !document.hidden
         && performance.now() - heard > 8000) {
       const dead = socket;

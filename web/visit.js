@@ -20,6 +20,7 @@ import { make_menu } from './menu.js';
 import { make_picture } from './picture.js';
 import { make_places } from './places.js';
 import { make_player } from './player.js';
+import { make_presence } from './presence.js';
 import { make_share } from './share.js';
 import { make_sound } from './sound.js';
 import { make_subtitles } from './subtitles.js';
@@ -131,6 +132,10 @@ const group = make_group({
 const share = make_share(() => state, () => [canvas.width, canvas.height]);
 const description = make_description(by_id('scene'));
 
+const presence = make_presence({
+  here: (here) => connection?.send({ type: 'presence', here }),
+}, () => lang);
+
 connection = make_connection({
   hello,
   open() {
@@ -154,6 +159,7 @@ connection = make_connection({
       case 'welcome':
         walk_speed = message.walk_speed;
         lang = message.lang;
+        presence.welcome();
         menu.welcome(message);
         places.welcome(message);
         card.welcome(message);
@@ -188,6 +194,8 @@ connection = make_connection({
         if (message.object) card.open(message.object); else card.close();
         break;
       case 'reply': ask.reply(message); break;
+      case 'waiting': presence.waiting(message); break;
+      case 'idle': presence.idle(message); break;
       case 'keep': of_tab.set(visit_key, message.token); break;
       case 'speech': sound.speech(message); break;
       case 'subtitle': subtitles.show(message); break;
@@ -214,6 +222,7 @@ connection = make_connection({
         break;
     }
   },
+  rests: () => presence.rests(),
   binary: (buffer) => { if (!sound.receive(buffer)) picture.receive(buffer); },
 });
 

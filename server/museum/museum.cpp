@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <ctime>
+#include <fmt/core.h>
 #include <filesystem>
 #include <list>
 #include <mutex>
@@ -70,9 +71,15 @@ struct SharedParts {
   std::function<DoorCounts()> doors;
 };
 
-// What others may know of it.
-void publish(Room& room, const SharedParts& shared) {
+// What others may know of it. `reception`: of the first room, for what is told once of all; else
+// null.
+void publish(Room& room, const SharedParts& shared, const Reception* reception = nullptr) {
   ShowReport report = make_report(*room.show);
+  if (reception) {
+    const Reception::Standing standing = reception->standing();
+    report.waiting = standing.waiting;
+    report.turned_away = standing.turned_away;
+  }
   if (shared.ledger) {
     shared.ledger->add(std::exchange(room.show->sums, {}));
     report.sums_problem = shared.ledger->problem();
@@ -101,7 +108,9 @@ void share_cores(Room& room, const std::list<Room>& rooms) {
 }
 
 void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& shared,
+                  Reception& reception,
                   const std::atomic<bool>& stopping, std::atomic<bool>& changed) {
+  const Reception* told = &room == &rooms.front() ? &reception : nullptr;
   double reported = -1;
   while (!stopping) {
     const double began = seconds_now();
@@ -110,14 +119,16 @@ void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& s
     tick(*room.show, room.arrivals, began);
     const Worker& worker = room.show->renderer.worker;
     room.heartbeat.tick(began, worker.busy() ? worker.runs() : 0);
+    for (std::shared_ptr<Link>& link : std::exchange(room.show->resting, {}))
+      reception.rest(std::move(link));
     if (began - reported > report_interval) {
       reported = began;
-      publish(room, shared);
+      publish(room, shared, told);
       look_at_rehearsal(room, changed);
     }
     wait_for_tick(*room.show, seconds_now());
   }
-  publish(room, shared);
+  publish(room, shared, told);
 }
 
 }  // namespace
@@ -141,10 +152,12 @@ struct Museum::Impl {
   fs::file_time_type house_time;     // of its file
   std::list<Room> rooms;
   AnswerSources sources;
-  std::unique_ptr<Reception> reception;  // null: there is one exhibit only
+  std::shared_ptr<Capacity> capacity;  // of all rooms together
+  std::unique_ptr<Reception> reception;
   std::atomic<bool> stopping = false, changed = false;
 
-  explicit Impl(const MuseumSettings& settings) : settings(settings) {}
+  explicit Impl(const MuseumSettings& settings)
+      : settings(settings), capacity(std::make_shared<Capacity>(settings.capacity)) {}
 
   SharedParts shared() const { return {ledger.get(), sources.door_counts}; }
 
@@ -181,6 +194,7 @@ struct Museum::Impl {
     std::vector<Problem> notes;
     check_places(show->exhibit, *show->world, notes);
     for (const Problem& note : notes) log::warn("{}", to_string(note));
+    show->capacity = capacity;
     show->speech = make_speech_source(speaker);
     show->speech.prepare(lines_of(show->exhibit));
     return show;
@@ -213,7 +227,10 @@ struct Museum::Impl {
            show.roads.map ? &*show.roads.map : nullptr, show.settings.house.address});
       doors.push_back({show.exhibit.id, kiosks_of(show.exhibit)});
     }
-    if (doors.size() > 1) reception = std::make_unique<Reception>(std::move(doors));
+    reception = std::make_unique<Reception>(
+        std::move(doors), capacity,
+        ReceptionSettings{.most_waiting = settings.most_waiting,
+                          .most_pixels = double(settings.show.max_pixels)});
   }
 
   void note_failure(const std::string& id, const std::vector<Problem>& problems) {
@@ -239,13 +256,6 @@ struct Museum::Impl {
     put_up_signs();
   }
 
-  // As many visitors as a process may have, in all exhibits together.
-  bool is_full() const {
-    size_t visitors = 0;
-    for (const Room& room : rooms) visitors += room.board.read().visitors.size();
-    return int(visitors) >= settings.show.max_visitors;
-  }
-
   Room& room_at(size_t door) { return *std::next(rooms.begin(), long(door)); }
 };
 
@@ -266,15 +276,38 @@ Museum::~Museum() = default;
 
 AnswerSources& Museum::sources() { return impl_->sources; }
 
-void Museum::join(std::shared_ptr<Link> link) {
-  if (impl_->reception) impl_->reception->enter(std::move(link));
-  else impl_->rooms.front().arrivals.put(std::move(link));
-}
+void Museum::join(std::shared_ptr<Link> link) { impl_->reception->enter(std::move(link)); }
 
 std::string Museum::status() const {
   std::vector<Standing> all;
   for (const Room& room : impl_->rooms) all.push_back(room.status.tell());
   return write_status(all, impl_->sources.failed, impl_->ledger != nullptr);
+}
+
+std::string Museum::metrics() const {
+  const Reception::Standing people = impl_->reception->standing();
+  const Capacity::Standing cores = impl_->capacity->standing();
+  std::string text;
+  auto put = [&](const char* name, const char* type, const char* about, double value) {
+    text +=
+        fmt::format("# HELP wellspring_{0} {1}\n# TYPE wellspring_{0} {2}\nwellspring_{0} {3}\n",
+                    name, about, type, value);
+  };
+  put("visitors_waiting", "gauge", "Visitors for whom there is no seat yet",
+      double(people.waiting));
+  put("visits_resting", "gauge", "Visits that nobody is at, whose pages are open",
+      double(people.resting));
+  put("visits_turned_away_total", "counter", "Visits refused because too many waited",
+      double(people.turned_away));
+  put("seats_taken", "gauge", "Visitors who are shown pictures, of all exhibits", cores.seats);
+  put("capacity_cores", "gauge", "Cores that visitors' pictures may take", cores.cores);
+  put("capacity_cores_taken", "gauge",
+      "Cores that they take at the least rate while all visitors walk", cores.busy);
+  put("picture_shown_seconds_a_megapixel", "gauge", "Processor time of warping and encoding",
+      1e6 * cores.cost.shown);
+  put("picture_drawn_seconds_a_megapixel", "gauge", "Processor time of a whole keyframe",
+      1e6 * cores.cost.drawn);
+  return text;
 }
 
 Sums Museum::read_sums(int64_t from, int64_t to) const {
@@ -286,18 +319,11 @@ bool Museum::run(const std::function<bool()>& ended) {
   impl.stopping = impl.changed = false;
   for (Room& room : impl.rooms)
     room.thread = std::thread([&impl, &room] {
-      keep_ticking(room, impl.rooms, impl.shared(), impl.stopping, impl.changed);
+      keep_ticking(room, impl.rooms, impl.shared(), *impl.reception, impl.stopping, impl.changed);
     });
-  while (!ended() && !impl.changed) {
-    if (!impl.reception) {
-      std::this_thread::sleep_for(std::chrono::duration<double>(wait_at_reception));
-      continue;
-    }
-    for (Reception::Shown& one : impl.reception->show_in(wait_at_reception)) {
-      if (one.link->kind == LinkKind::visit && impl.is_full()) turn_away(*one.link);
-      else impl.room_at(one.door).arrivals.put(std::move(one.link));
-    }
-  }
+  while (!ended() && !impl.changed)
+    for (Reception::Shown& one : impl.reception->show_in(wait_at_reception))
+      impl.room_at(one.door).arrivals.put(std::move(one.link), std::move(one.seat));
   impl.stopping = true;
   for (Room& room : impl.rooms) room.thread.join();
   return impl.changed && !ended();

@@ -17,6 +17,8 @@ struct MuseumSettings {
   std::string content = "content";  // folder of exhibit packages
   std::string exhibit;              // id of the only one; empty: all of the folder, by name
   ShowSettings show;
+  CapacitySettings capacity;
+  size_t most_waiting = 2000;  // visitors, for a seat; more are told to come back
   RecordingOptions recordings;
   std::string house;  // house file, whose kiosks are the first exhibit's; empty: none
   std::string sums;   // file of daily sums; empty: none are kept
@@ -35,8 +37,10 @@ class Museum {
   // What answers are made from. Its pages, access, stream_metrics and door_counts
   // are the caller's to add.
   AnswerSources& sources();
-  void join(std::shared_ptr<Link> link);           // from any thread
-  std::string status() const;                      // GET /api/v1/status; from any thread
+  void join(std::shared_ptr<Link> link);  // from any thread
+  std::string status() const;             // GET /api/v1/status; from any thread
+  // Prometheus lines of what all exhibits have together. From any thread.
+  std::string metrics() const;
   Sums read_sums(int64_t from, int64_t to) const;  // Ledger::read(); nothing where none are kept
   // Ticks all shows until `ended`, which is asked ten times a second, says so: false. Or until one
   // of them has changed, where they are watched or reload() was called: true. Then take_over()

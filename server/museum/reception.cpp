@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
+#include "base/clock.h"
 #include "wire/json.h"
 
 namespace wellspring {
@@ -12,17 +14,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto look_interval = std::chrono::milliseconds(5);  // at those who wait
+constexpr auto look_interval = std::chrono::milliseconds(5);  // at those who have said nothing yet
+constexpr auto queue_interval = std::chrono::milliseconds(50);  // at those who wait and rest
+
+// What somebody does who is there; a page by itself says the rest.
+bool tells_of_somebody(const BrowserMessage& message) {
+  if (const PresenceNews* news = std::get_if<PresenceNews>(&message)) return news->here;
+  return !std::holds_alternative<Settings>(message) && !std::holds_alternative<Ack>(message) &&
+         !std::holds_alternative<KioskTouch>(message) && !std::holds_alternative<Bye>(message);
+}
 
 }  // namespace
-
-void turn_away(Link& link) {
-  link.send_text(
-      write_error({"full",
-                   "this museum has as many visitors as it can serve; please come back in a "
-                   "moment"}));
-  link.close("full");
-}
 
 int find_door(const std::vector<ExhibitDoor>& doors, LinkKind kind, const std::string& first_text) {
   std::string kiosk;
@@ -30,48 +32,141 @@ int find_door(const std::vector<ExhibitDoor>& doors, LinkKind kind, const std::s
     auto said = read_observation(first_text);
     if (const Observation* observation = std::get_if<Observation>(&said))
       kiosk = observation->kiosk;
-  } else {
-    auto said = read_browser_message(first_text);
-    const BrowserMessage* message = std::get_if<BrowserMessage>(&said);
-    const Hello* hello = message ? std::get_if<Hello>(message) : nullptr;
-    if (hello && !hello->exhibit.empty()) {
+  } else if (const auto hello = read_hello(first_text)) {
+    if (!hello->exhibit.empty()) {
       auto found = std::ranges::find(doors, hello->exhibit, &ExhibitDoor::id);
       return found == doors.end() ? -1 : int(found - doors.begin());
     }
-    if (hello) kiosk = hello->kiosk;
+    kiosk = hello->kiosk;
   }
   for (size_t i = 0; i < doors.size() && !kiosk.empty(); i++)
     if (std::ranges::find(doors[i].kiosks, kiosk) != doors[i].kiosks.end()) return int(i);
   return 0;
 }
 
+Reception::Reception(std::vector<ExhibitDoor> doors, std::shared_ptr<Capacity> capacity,
+                     const ReceptionSettings& settings)
+    : doors_(std::move(doors)),
+      capacity_(std::move(capacity)),
+      settings_(settings),
+      queue_(settings.most_waiting) {}
+
+void Reception::turn_away(Link& link) {
+  turned_away_++;
+  link.send_text(
+      write_error({"full", "as many wait as there is room for; please come back in a moment"}));
+  link.close("full");
+}
+
 void Reception::enter(std::shared_ptr<Link> link) {
   {
     std::lock_guard lock(mutex_);
-    if (waiting_.size() >= most_waiting_) {
-      turn_away(*link);
-      return;
-    }
-    waiting_.push_back(std::move(link));
+    if (strangers_.size() >= settings_.most_strangers) return turn_away(*link);
+    strangers_.push_back(std::move(link));
   }
   somebody_.notify_one();
 }
 
-std::vector<Reception::Shown> Reception::find_ready() {
-  std::vector<Shown> ready;
-  std::erase_if(waiting_, [&](std::shared_ptr<Link>& link) {
-    if (link->closed()) return true;
-    while (auto text = link->first_text()) {
-      const int door = find_door(doors_, link->kind, *text);
-      if (door >= 0) {
-        ready.push_back({size_t(door), std::move(link)});
+void Reception::rest(std::shared_ptr<Link> link) {
+  std::lock_guard lock(mutex_);
+  const auto hello = link->first_text();
+  if (!hello) return;
+  link->drop_first_text();
+  if (resting_.size() >= settings_.most_resting) {
+    turn_away(*resting_.front().link);
+    resting_.erase(resting_.begin());
+  }
+  resting_.push_back({std::move(link), *hello});
+}
+
+// Into the exhibit, or into the queue; false: not even that. `text` is the hello, which the link
+// does not have any more.
+bool Reception::place(std::shared_ptr<Link>& link, const Hello& hello, std::string text,
+                      size_t door, std::vector<Shown>& ready) {
+  const double pixels = std::min(double(hello.width) * hello.height, settings_.most_pixels);
+  std::unique_ptr<Seat> seat;
+  if (hello.role == "kiosk") seat = capacity_->give_seat(pixels);
+  else if (queue_.size() == 0) seat = capacity_->find_seat(pixels);
+  if (seat) {
+    link->put_back(std::move(text));
+    ready.push_back({door, std::move(link), std::move(seat)});
+    return true;
+  }
+  if (queue_.full()) return false;
+  queue_.join({std::move(link), std::move(text), door, pixels, {}});
+  return true;
+}
+
+// False: the link stays where it is.
+bool Reception::receive(const std::shared_ptr<Link>& stranger, std::vector<Shown>& ready) {
+  std::shared_ptr<Link> link = stranger;
+  if (link->closed()) return true;
+  while (auto text = link->first_text()) {
+    const int door = find_door(doors_, link->kind, *text);
+    if (link->kind == LinkKind::eye) {
+      ready.push_back({size_t(door), std::move(link), {}});
+      return true;
+    }
+    link->drop_first_text();
+    auto said = read_browser_message(*text);
+    if (const WireError* wrong = std::get_if<WireError>(&said)) {
+      link->send_text(write_error(*wrong));
+      continue;
+    }
+    if (std::holds_alternative<Bye>(std::get<BrowserMessage>(said))) {
+      link->close("bye");
+      return true;
+    }
+    const Hello* hello = std::get_if<Hello>(&std::get<BrowserMessage>(said));
+    if (!hello) {
+      link->send_text(write_error({"hello_first", "the first message must be hello"}));
+    } else if (door < 0) {
+      link->send_text(
+          write_error({"unknown_exhibit", "there is no exhibit '" + hello->exhibit + "' here"}));
+    } else {
+      if (!place(link, *hello, std::move(*text), size_t(door), ready)) turn_away(*link);
+      return true;
+    }
+  }
+  return false;
+}
+
+void Reception::look_at_resting() {
+  std::erase_if(resting_, [&](Resting& one) {
+    if (one.link->closed()) return true;
+    for (const std::string& text : one.link->take_texts()) {
+      auto said = read_browser_message(text);
+      const BrowserMessage* message = std::get_if<BrowserMessage>(&said);
+      if (!message) continue;
+      if (std::holds_alternative<Bye>(*message)) {
+        one.link->close("bye");
         return true;
       }
-      link->drop_first_text();
-      link->send_text(write_error({"unknown_exhibit", "there is no such exhibit here"}));
+      if (!tells_of_somebody(*message)) continue;
+      one.link->put_back(std::holds_alternative<Hello>(*message) ? text : one.hello);
+      strangers_.push_back(std::move(one.link));
+      return true;
     }
     return false;
   });
+}
+
+std::vector<Reception::Shown> Reception::find_ready(double now) {
+  std::vector<Shown> ready;
+  if (now - looked_at_ >= std::chrono::duration<double>(queue_interval).count()) {
+    looked_at_ = now;
+    look_at_resting();
+    auto find_seat = [&](const Newcomer& who) {
+      return capacity_->find_seat(std::min(who.pixels, settings_.most_pixels));
+    };
+    for (Newcomer& who : queue_.let_in(now, find_seat)) {
+      who.link->put_back(std::move(who.hello));
+      ready.push_back({who.door, std::move(who.link), std::move(who.seat)});
+    }
+  }
+  std::erase_if(strangers_,
+                [&](const std::shared_ptr<Link>& link) { return receive(link, ready); });
+  queue_.tell_places(now);
   return ready;
 }
 
@@ -80,11 +175,18 @@ std::vector<Reception::Shown> Reception::show_in(double seconds) {
                                       std::chrono::duration<double>(seconds));
   std::unique_lock lock(mutex_);
   for (;;) {
-    std::vector<Shown> ready = find_ready();
+    std::vector<Shown> ready = find_ready(seconds_now());
     if (!ready.empty() || Clock::now() >= end) return ready;
-    if (waiting_.empty()) somebody_.wait_until(lock, end);
-    else somebody_.wait_until(lock, std::min(end, Clock::now() + look_interval));
+    auto until = end;
+    if (!strangers_.empty()) until = Clock::now() + look_interval;
+    else if (queue_.size() > 0 || !resting_.empty()) until = Clock::now() + queue_interval;
+    somebody_.wait_until(lock, std::min(end, until));
   }
+}
+
+Reception::Standing Reception::standing() const {
+  std::lock_guard lock(mutex_);
+  return {queue_.size(), resting_.size(), turned_away_};
 }
 
 }  // namespace wellspring

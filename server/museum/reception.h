@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where peers wait until they have said which exhibit they want.
+// Where peers are until they are shown something: until they have said which exhibit they want;
+// until there is a seat for a visitor's pictures, in a queue; and while nobody is at a page any
+// more (show/answer/idle.h). Such links cost a socket and no pictures. Kiosks and their cameras
+// never wait.
 #pragma once
 #include <condition_variable>
 #include <memory>
@@ -7,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "museum/waiting_queue.h"
+#include "show/state/capacity.h"
 #include "wire/link.h"
 
 namespace wellspring {
@@ -21,30 +26,59 @@ struct ExhibitDoor {
 // one that has the kiosk of that name; else the first. -1: there is no exhibit of that name.
 int find_door(const std::vector<ExhibitDoor>& doors, LinkKind kind, const std::string& first_text);
 
-void turn_away(Link& link);  // tells it that the museum is full
+struct ReceptionSettings {
+  size_t most_waiting = 2000;        // in the queue; more are told to come back
+  size_t most_resting = 2000;        // more: who came first is told to come back
+  size_t most_strangers = 2000;      // who have not said hello; likewise
+  double most_pixels = 1920 * 1200;  // of a visitor's pictures, whatever it asks for
+};
 
 class Reception {
  public:
-  // At least one door; more people than `most_waiting` are told to come back.
-  explicit Reception(std::vector<ExhibitDoor> doors, size_t most_waiting = 64)
-      : doors_(std::move(doors)), most_waiting_(most_waiting) {}
+  // At least one door.
+  Reception(std::vector<ExhibitDoor> doors, std::shared_ptr<Capacity> capacity,
+            const ReceptionSettings& settings = {});
 
   void enter(std::shared_ptr<Link> link);  // from any thread; does not block
+  // Nobody is at its page. `link`'s first text is the hello by which its visit goes on as soon as
+  // its page says that somebody is there, or does anything that a visitor does.
+  void rest(std::shared_ptr<Link> link);
   struct Shown {
     size_t door = 0;
     std::shared_ptr<Link> link;  // its texts are still to be read
+    std::unique_ptr<Seat> seat;  // of visitors and kiosks
   };
-  // Who knows by now where to go, after at most `seconds` in which nobody does. Those who ask for
-  // what is not there are told so and may ask again; those who are gone are forgotten.
+  // Who may go in by now, after at most `seconds` in which nobody does. Those who ask for what is
+  // not there are told so and may ask again; those who are gone are forgotten.
   std::vector<Shown> show_in(double seconds);
+  struct Standing {
+    size_t waiting = 0, resting = 0;  // now
+    uint64_t turned_away = 0;         // ever
+  };
+  Standing standing() const;
 
  private:
-  std::vector<Shown> find_ready();  // with the lock held
+  struct Resting {
+    std::shared_ptr<Link> link;
+    std::string hello;
+  };
+  // All with the lock held.
+  std::vector<Shown> find_ready(double now);
+  bool receive(const std::shared_ptr<Link>& link, std::vector<Shown>& ready);
+  bool place(std::shared_ptr<Link>& link, const Hello& hello, std::string text, size_t door,
+             std::vector<Shown>& ready);
+  void look_at_resting();
+  void turn_away(Link& link);
   const std::vector<ExhibitDoor> doors_;
-  const size_t most_waiting_;
-  std::mutex mutex_;
+  const std::shared_ptr<Capacity> capacity_;
+  const ReceptionSettings settings_;
+  mutable std::mutex mutex_;
   std::condition_variable somebody_;
-  std::vector<std::shared_ptr<Link>> waiting_;
+  std::vector<std::shared_ptr<Link>> strangers_;
+  WaitingQueue queue_;
+  std::vector<Resting> resting_;
+  double looked_at_ = -1e9;  // at the queue and those who rest
+  uint64_t turned_away_ = 0;
 };
 
 }  // namespace wellspring

@@ -13,6 +13,7 @@
 #include "show/answer/events.h"
 #include "show/answer/follow_house.h"
 #include "show/answer/groups.h"
+#include "show/answer/idle.h"
 #include "show/answer/kiosk_window.h"
 #include "show/answer/kiosks.h"
 #include "show/answer/sound.h"
@@ -38,7 +39,7 @@ constexpr double state_interval = 0.5;
 constexpr double heard_state_interval = 0.1;  // while there is sound to be heard from somewhere
 constexpr double behave_interval = 0.04;
 constexpr double idle_before_bake = 5;       // seconds in which nothing was drawn
-constexpr double least_wait = 0.001;         // between ticks, whatever is due
+constexpr double least_wait = 0.002;         // between ticks, whatever is due
 constexpr double listening_interval = 0.01;  // between looks at what visitors want, pictures or not
 
 }  // namespace
@@ -50,27 +51,23 @@ bool draws(const Show& show) {
 namespace {
 
 void welcome_links(Show& show, Arrivals& arrivals) {
-  for (std::shared_ptr<Link>& link : arrivals.take()) {
-    if (link->kind == LinkKind::eye) {
-      welcome_camera(show, std::move(link));
-    } else if (int(show.visitors.size()) >= show.settings.max_visitors) {
-      show.totals.turned_away++;
-      link->send_text(write_error({"full",
-                                   "this exhibit has as many visitors as it can serve; please "
-                                   "come back in a moment"}));
-      link->close("full");
-    } else {
-      log::info("visitor {} connected from {}", link->id, link->peer);
-      Visitor& visitor = show.visitors.emplace_back();
-      visitor.link = std::move(link);
-      visitor.picture.cache = RenderCache({}, show.renderer.work.cache);
-      visitor.picture.compositor = Compositor(show.renderer.work.compositor);
-      visitor.picture.compositor.set_skin(&show.skin);
+  for (Arrival& one : arrivals.take()) {
+    if (one.link->kind == LinkKind::eye) {
+      welcome_camera(show, std::move(one.link));
+      continue;
     }
+    log::info("visitor {} connected from {}", one.link->id, one.link->peer);
+    Visitor& visitor = show.visitors.emplace_back();
+    visitor.link = std::move(one.link);
+    visitor.seat = std::move(one.seat);
+    visitor.came_at = show.time;
+    visitor.picture.cache = RenderCache({}, show.renderer.work.cache);
+    visitor.picture.compositor = Compositor(show.renderer.work.compositor);
+    visitor.picture.compositor.set_skin(&show.skin);
   }
 }
 
-void read_visitors(Show& show) {
+void read_visitors(Show& show, double dt) {
   for (Visitor& visitor : show.visitors)
     for (const std::string& text : visitor.link->take_texts()) {
       show.totals.messages++;
@@ -95,6 +92,7 @@ void read_visitors(Show& show) {
     log::info("visitor {} left", visitor->link->id);
     keep_visit(show, visitor);
   }
+  watch_presence(show, dt);
   forget_visits(show);
   forget_absent_listeners(show);
 }
@@ -310,7 +308,7 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   if (!free || show.renderer.drawn) show.drew_at = show.time;
   welcome_links(show, arrivals);
   follow_house(show, arrivals);
-  read_visitors(show);
+  read_visitors(show, double(dt));
   read_cameras(show);
   if (free) forget_lights(show);
   for (Visitor& visitor : show.visitors)
@@ -351,9 +349,9 @@ void tick(Show& show, Arrivals& arrivals, double now) {
   if (!show.settings.background) draw_now(show, demand.waiting);
   else if (free) use_renderer(show, demand.waiting);
   steer(show);
+  if (show.settings.background) present_all(show);
   for (Visitor& visitor : show.visitors) {
     if (!visitor.welcomed) continue;
-    if (show.settings.background) present(show, visitor);
     send_state(show, visitor);
     send_token(show, visitor);
   }
@@ -363,9 +361,11 @@ void tick(Show& show, Arrivals& arrivals, double now) {
 double seconds_to_next_tick(const Show& show, double now) {
   double wait = 1 / 20.0;  // nobody looks: only clocks and doors
   for (const Visitor& visitor : show.visitors)
-    if (visitor.welcomed) {
+    if (is_shown(visitor)) {
+      wait = std::min(wait, listening_interval);
+      if (!has_to_show(show, visitor)) continue;
       double due = visitor.shown.pictured_at + 1 / picture_rate(show, visitor);
-      wait = std::min({wait, listening_interval, due - now});
+      wait = std::min(wait, due - now);
     }
   return std::max(wait, least_wait);
 }

@@ -36,6 +36,7 @@ std::variant<EyeOrder, WireError> read_eye_order(std::string_view text);
 // takes.
 std::string write_observation(const Observation& observation);
 std::string write_eye_order(const EyeOrder& order);
+std::string write_waiting(const WaitingPlace& waiting);
 std::string write_error(const WireError& error);  // {"type":"error","code":..,"message":..}
 // Browser messages as clients write them (bench, tests): read_browser_message(write_message(m)) ==
 // m.

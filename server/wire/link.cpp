@@ -25,6 +25,12 @@ void Link::drop_first_text() {
   in_.pop_front();
 }
 
+void Link::put_back(std::string text) {
+  std::lock_guard lock(mutex_);
+  bytes_in_ += text.size();
+  in_.push_front(std::move(text));
+}
+
 void Link::send_text(std::string text) {
   Out out;
   out.text = std::move(text);

@@ -44,6 +44,7 @@ class Link {
   std::vector<std::string> take_texts();          // all that arrived since the last call, in order
   std::optional<std::string> first_text() const;  // of those, left there; empty: there is none
   void drop_first_text();
+  void put_back(std::string text);                   // as the first of those
   void send_text(std::string text);                  // small JSON
   void send_picture(std::shared_ptr<const Packet>);  // replaces an unsent one
   // Kept in order with texts. False: the peer is too slow, all unsent sound is gone with this one.

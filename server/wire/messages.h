@@ -317,14 +317,35 @@ struct Ack {
   }
   bool operator==(const Ack&) const = default;
 };
+// Whether somebody looks at the page: false while it is hidden, true when it is seen again and in
+// answer to the question whether somebody is still there.
+struct PresenceNews {
+  static constexpr const char* type = "presence";
+  bool here = true;
+  static void list(auto& message, auto& fields) {
+    fields.boolean("here", message.here,
+                   "boolean: somebody sees the page; false: no pictures until it is true",
+                   Need::required);
+  }
+  bool operator==(const PresenceNews&) const = default;
+};
 struct Bye {
   static constexpr const char* type = "bye";
   static void list(auto&, auto&) {}
   bool operator==(const Bye&) const = default;
 };
 
+// ---- server to browser ----
+
+// To who waits until a visitor's place is free.
+struct WaitingPlace {
+  size_t place = 1, of = 1;       // in the queue, and its length
+  std::optional<double> seconds;  // until their turn, about
+  bool operator==(const WaitingPlace&) const = default;
+};
+
 using BrowserMessage =
     std::variant<Hello, Input, CameraTo, ViewpointTo, GoTo, Tour, StorytellerOrder, LampOrder,
-                 PlayOrder, KioskTouch, GroupOrder, Ask, Settings, Ack, Bye>;
+                 PlayOrder, KioskTouch, GroupOrder, Ask, Settings, Ack, PresenceNews, Bye>;
 
 }  // namespace wellspring

@@ -63,6 +63,12 @@ std::string write_eye_order(const EyeOrder& order) {
   return to_text(message);
 }
 
+std::string write_waiting(const WaitingPlace& waiting) {
+  json message = {{"type", "waiting"}, {"place", waiting.place}, {"of", waiting.of}};
+  if (waiting.seconds) message["seconds"] = std::round(*waiting.seconds);
+  return to_text(message);
+}
+
 std::string write_error(const WireError& error) {
   return to_text({{"type", "error"}, {"code", error.code}, {"message", error.message}});
 }

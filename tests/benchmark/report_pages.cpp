@@ -337,6 +337,22 @@ ReportPage show_load_page() {
                     {"picture_bytes", "a picture, median", 1e-3, "kB"}}}}};
 }
 
+ReportPage load_visitors_page() {
+  return {"load.visitors",
+          "How many visitors does a machine serve? All stroll through the castle at 640x360, and "
+          "share the cores with the server.",
+          {"Fairness: pictures of whoever got the fewest, over those of whoever got the most.",
+           "Wanted on four cores: 15 pictures a second for each of 24, 120 ms, fairness 0.8."},
+          {{.caption = "",
+            .rows = {{"visitors", "visitors"}},
+            .columns = {{"fps", "pictures a second of each, median", 1, "1/s"},
+                        {"fairness", "fairness"},
+                        {"latency_p50_ms", "input to picture, median"},
+                        {"latency_p95_ms", "input to picture, 95th percentile"},
+                        {"longest_gap_ms", "longest time without a picture"},
+                        {"server_memory", "memory of the server"}}}}};
+}
+
 ReportPage light_frame_page() {
   return {"light.frame",
           "How long does one frame of the Cornell box take? 640x480, one sample a pixel.",
@@ -459,6 +475,7 @@ std::vector<ReportPage> declared_pages() {
           show_rest_page(),
           show_storyteller_page(),
           show_load_page(),
+          load_visitors_page(),
           light_frame_page(),
           light_scaling_page(),
           light_error_page("light.error"),

@@ -165,6 +165,37 @@ test('a museum that is full, or does not answer, says so before its doors', { sk
   }
 });
 
+test('who waits reads their place, and who is asked answers by any key', { skip }, async () => {
+  const context = await browser.newContext({ locale: 'en-GB' }), page = await context.newPage();
+  const said = [];
+  let socket = null;
+  await page.routeWebSocket(/visit$/, (one) => {
+    socket = one;
+    one.onMessage((text) => said.push(JSON.parse(String(text))));
+    one.send(JSON.stringify({ type: 'waiting', place: 3, of: 7, seconds: 130 }));
+  });
+  const tell = (message) => socket.send(JSON.stringify(message));
+  const answers = () => said.filter(({ type }) => type === 'presence').length;
+  const asked = (shown) => page.waitForFunction((wanted) =>
+    document.getElementById('presence').hidden !== wanted, shown);
+  await page.goto(server.url);
+  await page.waitForFunction(() =>
+    /number 3 of 7.*About 2 minutes/.test(document.getElementById('veil-text').textContent));
+  tell({ type: 'idle', state: 'asked', seconds: 60 });
+  await asked(true);
+  await page.keyboard.press('ArrowUp');
+  await asked(false);
+  assert.equal(answers(), 1);
+  assert.ok(!said.some(({ type }) => type === 'input'), 'the key was the answer, not a step');
+  tell({ type: 'idle', state: 'paused' });
+  await asked(true);
+  assert.match(await page.textContent('#presence-text'), /where you were/);
+  await page.click('#presence-back');
+  for (let k = 0; k < 100 && answers() < 2; k++) await page.waitForTimeout(50);
+  assert.equal(answers(), 2);
+  await close(page, 'modest-resting');
+});
+
 test('without WebGL the kiosk\'s well is a still picture, and its book opens', { skip },
     async () => {
       const page = await open(() => {

@@ -9,6 +9,13 @@ export default {
   restart: 'Von vorn', skip: 'Nächster Satz', key_space_name: 'Leertaste',
   key_space: 'Pause und weiter', opening: 'Die Türen öffnen sich…',
   lost: 'Die Verbindung zum Museum ist unterbrochen. Neuer Versuch…',
+  waiting:
+    'Alle Plätze sind besetzt. Sie sind Nummer {place} von {of} und kommen von selbst hinein.',
+  waiting_minute: 'Etwa eine Minute.', waiting_minutes: 'Etwa {minutes} Minuten.',
+  still_there: 'Sind Sie noch da?', still_there_yes: 'Ja, weiter',
+  still_there_until: 'Bitte berühren Sie etwas, noch {seconds} Sekunden. Sonst ruht der Besuch.',
+  resting: 'Der Besuch ruht', resting_until: 'Er geht weiter, wo Sie waren.',
+  resting_back: 'Weiter',
   full: 'Das Museum ist gerade voll. Bitte kommen Sie gleich wieder.',
   busy: 'Im Museum wird gerade jemandem eine Geschichte erzählt.', sound_on: 'Ton einschalten',
   sound_off: 'Ton ausschalten', sound_is_on: 'Der Ton ist an.', sound_is_off: 'Der Ton ist aus.',

@@ -9,6 +9,13 @@ export default {
   restart: 'From the start', skip: 'Next sentence', key_space_name: 'Space',
   key_space: 'pause and go on', opening: 'Opening the doors…',
   lost: 'The line to the museum is broken. Trying again…',
+  waiting:
+    'All places are taken just now. You are number {place} of {of}, and come in by yourself.',
+  waiting_minute: 'About a minute.', waiting_minutes: 'About {minutes} minutes.',
+  still_there: 'Are you still there?', still_there_yes: 'Yes, go on',
+  still_there_until: 'Touch anything within {seconds} seconds. Else the visit rests.',
+  resting: 'The visit rests', resting_until: 'It goes on where you were.',
+  resting_back: 'Go on',
   full: 'The museum is full just now. Please come back in a moment.',
   busy: 'The storyteller is telling somebody at the museum a story.', sound_on: 'Turn sound on',
   sound_off: 'Turn sound off', sound_is_on: 'Sound is on.', sound_is_off: 'Sound is off.',

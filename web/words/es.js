@@ -9,6 +9,13 @@ export default {
   restart: 'Desde el principio', skip: 'Frase siguiente', key_space_name: 'Espacio',
   key_space: 'pausa y seguir', opening: 'Abrimos las puertas…',
   lost: 'Se ha cortado la línea con el museo. Nuevo intento…',
+  waiting:
+    'No quedan plazas. Es usted el número {place} de {of} y entrará automáticamente.',
+  waiting_minute: 'Cerca de un minuto.', waiting_minutes: 'Unos {minutes} minutos.',
+  still_there: '¿Sigue usted ahí?', still_there_yes: 'Sí, seguir',
+  still_there_until: 'Toque algo, quedan {seconds} segundos. Si no, la visita descansa.',
+  resting: 'La visita descansa', resting_until: 'Seguirá donde usted estaba.',
+  resting_back: 'Seguir',
   full: 'El museo está lleno ahora mismo. Vuelva en un momento, por favor.',
   busy: 'En el museo alguien está escuchando un relato.', sound_on: 'Activar el sonido',
   sound_off: 'Silenciar', sound_is_on: 'El sonido está activado.',

@@ -9,6 +9,13 @@ export default {
   restart: 'Du début', skip: 'Phrase suivante', key_space_name: 'Espace',
   key_space: 'pause et reprise', opening: 'Les portes s’ouvrent…',
   lost: 'La liaison avec le musée est coupée. Nouvel essai…',
+  waiting:
+    'Toutes les places sont prises. Vous êtes numéro {place} sur {of} et entrerez automatiquement.',
+  waiting_minute: 'Environ une minute.', waiting_minutes: 'Environ {minutes} minutes.',
+  still_there: 'Êtes-vous toujours là ?', still_there_yes: 'Oui, continuer',
+  still_there_until: 'Touchez l\'écran, encore {seconds} secondes, ou la visite s\'arrêtera.',
+  resting: 'La visite est en pause', resting_until: 'Elle reprendra là où vous étiez.',
+  resting_back: 'Continuer',
   full: 'Le musée est plein en ce moment. Revenez dans un instant.',
   busy: 'Au musée, on raconte justement un récit à quelqu’un.', sound_on: 'Activer le son',
   sound_off: 'Couper le son', sound_is_on: 'Le son est activé.', sound_is_off: 'Le son est coupé.',

@@ -144,14 +144,19 @@ void send_token(Show& show, Visitor& visitor) {
   const double rests_at = visitor.place.moved_at + rest;
   const bool came_to_rest = visitor.told_at < rests_at && show.time >= rests_at;
   if (!came_to_rest && show.time - visitor.told_at < token_interval) return;
-  if (visitor.id.empty()) visitor.id = make_id();
   visitor.told_at = show.time;
+  if (visitor.id.empty()) visitor.id = make_id();
   std::string now = describe(show, visitor).dump();
   if (now == visitor.told) return;
   visitor.told = std::move(now);
-  json dated = json::parse(visitor.told);
+  visitor.link->send_text(json{{"type", "keep"}, {"token", visit_token(show, visitor)}}.dump());
+}
+
+std::string visit_token(const Show& show, Visitor& visitor) {
+  if (visitor.id.empty()) visitor.id = make_id();
+  json dated = describe(show, visitor);
   dated["day"] = show.local_time.day;
-  visitor.link->send_text(json{{"type", "keep"}, {"token", show.seal->close(dated.dump())}}.dump());
+  return show.seal->close(dated.dump());
 }
 
 void keep_visit(Show& show, std::list<Visitor>::iterator gone) {
@@ -164,6 +169,7 @@ void keep_visit(Show& show, std::list<Visitor>::iterator gone) {
   kept.id = gone->id;
   kept.since = show.time;
   kept.visitor.splice(kept.visitor.begin(), show.visitors, gone);
+  kept.visitor.front().seat = nullptr;  // who comes back has found another
   if (show.kept.size() <= most_kept) return;
   count_leaving(show, show.kept.front().visitor.front());
   show.kept.pop_front();

@@ -9,6 +9,7 @@
 #include "show/answer/follow_house.h"
 #include "show/answer/go.h"
 #include "show/answer/groups.h"
+#include "show/answer/idle.h"
 #include "show/answer/kiosk_window.h"
 #include "show/answer/storyteller_orders.h"
 #include "show/answer/trust.h"
@@ -40,6 +41,11 @@ void set_size(PictureWishes& wants, const ShowSettings& settings, int width, int
   wants.height = std::max(16, height / 8 * 8);
 }
 
+void set_size(Visitor& visitor, const ShowSettings& settings, int width, int height) {
+  set_size(visitor.wants, settings, width, height);
+  if (visitor.seat) visitor.seat->resize(double(visitor.wants.width) * visitor.wants.height);
+}
+
 int find_tour(const Exhibit& exhibit, const std::string& id) {
   for (size_t i = 0; i < exhibit.tours.size(); i++)
     if (exhibit.tours[i].id == id || id.empty()) return int(i);
@@ -55,7 +61,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   visitor.lang = hello.lang.empty() ? show.exhibit.languages.front() : hello.lang;
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = kiosk;
-  set_size(visitor.wants, show.settings, hello.width, hello.height);
+  set_size(visitor, show.settings, hello.width, hello.height);
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
   kiosk = kiosk_name(show, visitor.name);
@@ -200,7 +206,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Settings& settings) {
     if (!on) wants.task_weight = std::get<float>(*settings.attention);
   }
   if (settings.width || settings.height)
-    set_size(visitor.wants, show.settings, settings.width.value_or(wants.width),
+    set_size(visitor, show.settings, settings.width.value_or(wants.width),
              settings.height.value_or(wants.height));
   if (!settings.lang.empty() && settings.lang != visitor.lang) {
     visitor.lang = settings.lang;
@@ -214,6 +220,10 @@ Answer handle_one(Show& show, Visitor& visitor, const Ack& ack) {
   return {};
 }
 
+Answer handle_one(Show&, Visitor&, const PresenceNews&) {
+  return {};  // note_presence()
+}
+
 Answer handle_one(Show&, Visitor& visitor, const Bye&) {
   visitor.left = true;
   return {};
@@ -225,6 +235,7 @@ std::optional<WireError> handle(Show& show, Visitor& visitor, const BrowserMessa
   bool may_speak = visitor.welcomed || std::holds_alternative<Hello>(message) ||
                    std::holds_alternative<Bye>(message);
   if (!may_speak) return WireError{"hello_first", "the first message must be hello"};
+  note_presence(visitor, message);
   return std::visit([&](const auto& one) { return handle_one(show, visitor, one); }, message);
 }
 

@@ -298,6 +298,12 @@ std::string house_message(const Show& show, bool reload) {
       .dump();
 }
 
+std::string idle_message(const char* state, double seconds) {
+  json message = {{"type", "idle"}, {"state", state}};
+  if (message["state"] == "asked") message["seconds"] = seconds;
+  return message.dump();
+}
+
 std::string announce_message(const Announcement& announcement, double seconds) {
   return json{{"type", "announce"},
               {"id", announcement.id},

@@ -27,6 +27,8 @@ std::string agent_message(const Show& show, const Teller& teller);
 // Of all kiosks together, for visitors; of one, for its page.
 std::string kiosk_message(const Show& show);
 std::string kiosk_message(const Show& show, const Kiosk& kiosk);
+// To a page that nobody may be at: asked, with the seconds to answer within, here or paused.
+std::string idle_message(const char* state, double seconds);
 // To kiosks' pages. `reload`: the page shall begin anew.
 std::string house_message(const Show& show, bool reload);
 // To all pages. `seconds`: that are left of it.

@@ -48,7 +48,10 @@ int next_to_draw(double now, std::span<const VisitorDrawState> states,
     const VisitorDrawState& state = states[size_t(i)];
     return wants_picture(now, state, renderer) && (renderer.waiting == 0 || !keeps_picture(state));
   };
-  return longest_waiting(states, wants, [](const VisitorDrawState& one) { return one.drawn_at; });
+  // Newcomers wait since they came: they do not all come before those who are there.
+  return longest_waiting(states, wants, [](const VisitorDrawState& one) {
+    return std::max(one.drawn_at, one.came_at);
+  });
 }
 
 Purpose purpose_of(double now, const VisitorDrawState& state, const RendererState& renderer) {

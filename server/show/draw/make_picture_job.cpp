@@ -17,14 +17,20 @@ namespace {
 
 constexpr double slack = 0.0015;     // seconds kept free of every period
 constexpr double least_share = 0.2;  // of a period that goes to samples, even if the rate suffers
+constexpr double least_sampling_rate = 0.75;  // a second: rarer pictures are given no more samples
 constexpr double predicted_pictures = 2;
 constexpr double settled_samples = 8;  // a pixel, after which the reference takes over
 
 // Seconds of a picture's period that are left for samples.
 double seconds_to_trace(const Show& show, const Visitor& visitor, int busy) {
-  double period = (1 - moving_share(show)) / drawing_rate(show, visitor);
+  double period =
+      (1 - moving_share(show)) / std::max(drawing_rate(show, visitor), least_sampling_rate);
   double display = 0.001 * double(visitor.times.display + visitor.times.tonemap);
-  return std::max((period - slack) / std::max(busy, 1) - display, least_share * period);
+  double least = least_share * period;
+  // Where many walk, keyframes come late enough without: what one takes is what counts.
+  if (int walkers = count_moving(show); walkers > 1)
+    least = std::max(least / walkers, least_share * drawing_costs(show, visitor).drawing_seconds);
+  return std::max((period - slack) / std::max(busy, 1) - display, least);
 }
 
 }  // namespace
@@ -41,8 +47,11 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   job.seq = place.seq;
   job.moving = sees_moving(show, visitor, now);
   job.camera_cuts = place.camera_cuts;
-  job.still = show.time - place.moved_at > still_after;
   job.keep = show.settings.background;
+  // The first picture of a place, while others walk, is to be there soon.
+  const bool hurried = job.keep && place.camera_cuts != picture.job.camera_cuts &&
+                       count_moving(show) > int(!stands(show, visitor));
+  job.still = !hurried && show.time - place.moved_at > still_after;
   const PictureJob& before = picture.job;
   // Of a place that was never seen, nothing is known.
   bool seen = picture.drawn_at >= 0 && place.camera_cuts == before.camera_cuts;
@@ -59,7 +68,7 @@ PictureJob make_picture_job(const Show& show, const Visitor& visitor, int busy, 
   job.weights = visitor.looks.weights;
   job.note_seen = wants_seen(show, visitor);
   job.seed = mix64(show.ticks * 0x9e3779b9u + visitor.link->id);
-  const bool moves = job.keep && !job.still && visitor.shown.frame_number > 0;
+  const bool moves = job.keep && !job.still && (hurried || visitor.shown.frame_number > 0);
   if (moves) job.scale = plan_next_keyframe(show, visitor).scale;
   const View shown = scaled_view(now, job.scale);
   const double pixels = double(shown.width) * double(shown.height);

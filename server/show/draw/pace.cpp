@@ -10,34 +10,47 @@
 namespace wellspring {
 namespace {
 
-constexpr double still_rate = 25;      // pictures a second while only the storyteller moves
-constexpr double settling_rate = 7;    // while nothing moves: more time for samples
-constexpr double resting_rate = 4;     // when nothing in the picture changes any more
-constexpr double backdrop_rate = 4;    // pictures a second of what does not move
-constexpr double closed_rate = 1;      // before a kiosk while the house is closed
-constexpr double learning_rate = 1.5;  // of pictures before the first reconstruction,
+constexpr double still_rate = 25;    // pictures a second while only the storyteller moves
+constexpr double settling_rate = 7;  // while nothing moves: more time for samples
+constexpr double resting_rate = 4;   // when nothing in the picture changes any more
+constexpr double rested_rate = 0.2;  // likewise, when nothing has changed for long
+constexpr double settled_seconds = 5;
+constexpr double backdrop_rate = 4;              // pictures a second of what does not move
+constexpr double closed_rate = 1;                // before a kiosk while the house is closed
+constexpr double learning_rate = 1.5;            // of pictures before the first reconstruction,
 constexpr double learning_backdrop_rate = 0.75;  // likewise of what does not move
 constexpr double warping_share = 0.5;  // of the time, at most, for all visitors' warps and JPEGs
 constexpr double most_moving_share = 0.5;  // of the time, for what moves
 constexpr float nearly_all = 0.999f;       // converged
+
+// What a picture for each who moves takes: a warp takes all cores, its JPEG one.
+double showing_seconds(const Show& show) {
+  double milliseconds = 0;
+  for (const Visitor& visitor : show.visitors)
+    if (is_shown(visitor) && !stands(show, visitor))
+      milliseconds += double(visitor.times.warp) +
+                      double(visitor.times.encode) / oneapi::tbb::info::default_concurrency();
+  return 0.001 * milliseconds;
+}
 
 // Of draw_state() what does not depend on rates.
 VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = visitor.picture;
   const VisitorPlace& place = visitor.place;
   VisitorDrawState state;
-  state.welcomed = visitor.welcomed;
+  state.welcomed = is_shown(visitor);
   state.at_work = picture.at_work;
   state.can_take = may_take(show, visitor);
   state.stands = stands(show, visitor);
   state.new_place = place.camera_cuts != picture.job.camera_cuts;
   state.same_view = picture.job.view == place.last_view;
   state.other_light = picture.lamps != visitor.lamps.lit;
-  state.sees_moving = visitor.welcomed && sees_moving(show, visitor, place.last_view);
+  state.sees_moving = state.welcomed && sees_moving(show, visitor, place.last_view);
   state.drew_moving = picture.job.moving;
   state.unshown = picture.unshown;
   state.backdrop = picture.backdrop;
   state.in_pass = show.pass.visitor == &visitor;
+  state.came_at = visitor.came_at;
   state.drawn_at = picture.drawn_at;
   state.posed_at = picture.posed_at;
   state.moved_at = place.moved_at;
@@ -95,12 +108,13 @@ bool asks_for_samples(const Show& show, const Visitor& visitor) {
 }
 
 int count_moving(const Show& show) {
-  auto moves = [&](const Visitor& one) { return one.welcomed && !stands(show, one); };
+  auto moves = [&](const Visitor& one) { return is_shown(one) && !stands(show, one); };
   return int(std::count_if(show.visitors.begin(), show.visitors.end(), moves));
 }
 
 bool may_take(const Show& show, const Visitor& visitor) {
-  return !visitor.link->picture_pending() && may_send(visitor.shown.flow, show.time);
+  return is_shown(visitor) && !visitor.link->picture_pending() &&
+         may_send(visitor.shown.flow, show.time);
 }
 
 double picture_rate(const Show& show, const Visitor& visitor) {
@@ -109,15 +123,26 @@ double picture_rate(const Show& show, const Visitor& visitor) {
     rate = std::min(rate, sees_motion(show, visitor, visitor.place.last_view) ? still_rate
                           : rests(show, visitor)                              ? resting_rate
                                                                               : settling_rate);
-  } else if (show.settings.background && visitor.times.warp > 0) {
-    // A warp takes all cores, its JPEG one.
-    double milliseconds = double(visitor.times.warp) +
-                          double(visitor.times.encode) / oneapi::tbb::info::default_concurrency();
-    rate = std::min(rate, warping_share / (0.001 * milliseconds * std::max(count_moving(show), 1)));
+  } else if (show.settings.background) {
+    // The same for all, whosever warps cost most.
+    if (double seconds = showing_seconds(show); seconds > 0)
+      rate = std::min(rate, warping_share / seconds);
   }
   if (visitor.kiosk && !show.house.open) rate = closed_rate;
   return std::clamp(rate, 1.0, 120.0);
 }
+
+namespace {
+
+// Samples that are to find changes of the light, where none was found for as long: as many in a
+// minute as in the first few seconds.
+double watching_rate(const Show& show, const Visitor& visitor) {
+  const double since = show.time - std::max(visitor.place.moved_at, visitor.picture.rest.passed_at);
+  return std::clamp(resting_rate * settled_seconds / std::max(since, settled_seconds), rested_rate,
+                    resting_rate);
+}
+
+}  // namespace
 
 double drawing_rate(const Show& show, const Visitor& visitor) {
   const VisitorPicture& picture = visitor.picture;
@@ -125,6 +150,7 @@ double drawing_rate(const Show& show, const Visitor& visitor) {
   if (!stands(show, visitor))
     return show.settings.background ? std::min(rate, 1 / plan_next_keyframe(show, visitor).period)
                                     : rate;
+  if (rests(show, visitor)) rate = std::min(rate, watching_rate(show, visitor));
   if (picture.backdrop) rate = std::min(rate, backdrop_rate);
   // Until the first reconstruction, samples do more for it than pictures.
   bool first = show.pass.denoiser && !picture.rest.reconstructed && !rests(show, visitor);
@@ -155,8 +181,14 @@ double seconds_to_moving(const Show& show) {
 DrawingCosts drawing_costs(const Show& show, const Visitor& visitor) {
   const StageTimes& times = visitor.times;
   auto seconds = [](float milliseconds) { return 0.001 * double(milliseconds); };
-  return {show.samples_per_second, seconds(times.drawing), seconds(times.display + times.tonemap),
-          seconds(times.light)};
+  DrawingCosts costs{show.samples_per_second, seconds(times.drawing),
+                     seconds(times.display + times.tonemap), seconds(times.light)};
+  // Of a newcomer's first as others' have taken.
+  if (visitor.picture.drawn_at < 0 && costs.drawing_seconds == 0)
+    costs.drawing_seconds = show.capacity->standing().cost.drawn *
+                            weighed_pixels(double(visitor.wants.width) * visitor.wants.height) /
+                            oneapi::tbb::info::default_concurrency();
+  return costs;
 }
 
 KeyframePlan plan_next_keyframe(const Show& show, const Visitor& visitor) {

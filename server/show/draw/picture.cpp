@@ -2,6 +2,7 @@
 #include "show/draw/picture.h"
 
 #include <algorithm>
+#include <oneapi/tbb/info.h>
 #include <utility>
 
 #include "base/clock.h"
@@ -194,6 +195,11 @@ void finish_picture(Show& show, const PictureJob& job, Visitor& visitor) {
     smooth(picture.drawn_fps, float(1 / interval));
     if (!job.still) smooth(times.interval, float(1000 * interval), share);
   }
+  if (!job.still)
+    show.capacity->note_drawn(double(visitor.wants.width) * visitor.wants.height,
+                              0.001 * double(costs.drawing + costs.light) /
+                                  keyframe_cost(job.scale) *
+                                  oneapi::tbb::info::default_concurrency());
   picture.drawn_at = job.time;
   picture.broker_seconds =
       costs.late ? double(job.samples) / std::max(double(show.samples_per_second), 1.0) : 0;

@@ -11,5 +11,10 @@ namespace wellspring {
 // Sends a picture if one is due and there is something new to show: the place, the storyteller or
 // the light.
 void present(Show& show, Visitor& visitor);
+// All visitors, those first whose picture is due for longest; some milliseconds of them, and the
+// others with the next tick.
+void present_all(Show& show);
+// There is something that the visitor has not been shown, and would be if a picture were due.
+bool has_to_show(const Show& show, const Visitor& visitor);
 
 }  // namespace wellspring

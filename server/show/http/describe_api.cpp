@@ -95,11 +95,15 @@ std::string describe_api() {
     "reply": {"question": "as it was asked", "text": "what the storyteller says to it", "found": "sure, partly or none",
               "from": {"kind": "answer, object, story, tour or topic", "id": "of that", "title": "text"},
               "words": "of the question that led there", "score": "BM25", "share": "0..1 of the question's words, by weight"},
+    "waiting": {"place": "number: in the queue of those who come in by turn; then a welcome follows", "of": "its length",
+                "seconds": "until then, about; left out: not known"},
+    "idle": {"state": "asked: presence is to say that somebody is there, within seconds; here: they were; paused: presence brings the visit back, with a welcome",
+             "seconds": "of asked"},
     "keep": {"token": "where the visit is, sealed: with it in hello.resume it goes on there"},
     "problems": {"list": "[{file, where, what}]: what is wrong with the files of a watched exhibit, which goes on as it was; empty: nothing any more"},
     "announce": {"id": "number, grows", "text": "{language tag: text}; empty: the last is taken back",
                  "seconds": "that it stays", "urgent": "boolean: over everything"},
-    "error": {"code": "word, storyteller_busy among them: the one storyteller of all visitors is taken; no_way, nothing_there, unknown_object: to go; not_trusted: a kiosk's token is needed",
+    "error": {"code": "word, full (so many wait already) and storyteller_busy among them: the one storyteller of all visitors is taken; no_way, nothing_there, unknown_object: to go; not_trusted: a kiosk's token is needed",
               "message": "sentence"}},
   "binary": {
     "picture": {"magic": "WSF1", "fields": [

@@ -145,8 +145,6 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "refused_messages_total", "counter", "Messages refused",
          double(totals.refused_messages));
   metric(out, "visits_total", "counter", "Visits begun", double(totals.visits));
-  metric(out, "visits_turned_away_total", "counter", "Visits refused because the house was full",
-         double(totals.turned_away));
   metric(out, "visitors", "gauge", "Visitors now", double(report.visitors.size()));
   metric(out, "house_open", "gauge", "The house is open", report.open);
   metric(out, "house_quiet", "gauge", "It is one of its quiet hours", report.quiet);

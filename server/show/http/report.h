@@ -55,7 +55,7 @@ struct DoorCounts {
 struct ShowReport {
   bool ready = false;
   double time = 0;
-  int cores = 0, max_visitors = 0;
+  int cores = 0;
   uint64_t ticks = 0, bad_samples = 0, drawing_bytes = 0;
   std::string denoiser_problem;  // why there is no network; empty: there is one
   float samples_per_second = 0;
@@ -74,6 +74,9 @@ struct ShowReport {
   uint64_t voice_restarts = 0, voice_lines = 0, voice_waiting = 0, voice_failed = 0;
   std::vector<VisitorReport> visitors;
   size_t exhibit_problems = 0;  // Show::problems
+  // Of all exhibits of the process; who knows it sets it, in the report of the first.
+  size_t waiting = 0;        // visitors for whom there is no seat yet
+  uint64_t turned_away = 0;  // since so many waited already
   std::string sums_problem;     // why the ledger cannot be written; whoever has one sets it
   DoorCounts doors;             // likewise
 };

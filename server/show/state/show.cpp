@@ -6,14 +6,14 @@
 
 namespace wellspring {
 
-void Arrivals::put(std::shared_ptr<Link> link) {
+void Arrivals::put(std::shared_ptr<Link> link, std::unique_ptr<Seat> seat) {
   std::lock_guard lock(mutex_);
-  links_.push_back(std::move(link));
+  all_.push_back({std::move(link), std::move(seat)});
 }
 
-std::vector<std::shared_ptr<Link>> Arrivals::take() {
+std::vector<Arrival> Arrivals::take() {
   std::lock_guard lock(mutex_);
-  return std::exchange(links_, {});
+  return std::exchange(all_, {});
 }
 
 uint32_t Arrivals::announce(Announcement announcement) {

@@ -47,7 +47,6 @@ inline constexpr const char* display_names[] = {"automatic", "points", "maps", "
 
 struct ShowSettings {
   float fps = 60;                    // pictures a second a walking visitor gets, machine permitting
-  int max_visitors = 16;             // more are told to come back
   std::string technique = "gather";  // while anything moves
   std::string still_technique =
       "path";  // while the visitor stands still: the picture becomes the reference
@@ -65,19 +64,28 @@ struct ShowSettings {
   HouseSettings house;
   std::vector<Token> kiosk_tokens;  // show/answer/trust.h
   bool watched = false;             // a curator works at it: pages show what helps with that
+  // Seconds (show/answer/idle.h): without a word until visitors are asked whether they are there,
+  // and until they have answered; that a page is hidden until its visit rests. 0: never.
+  double idle_after = 300, idle_answer = 60, hidden_after = 20;
+};
+
+// Somebody new.
+struct Arrival {
+  std::shared_ptr<Link> link;
+  std::unique_ptr<Seat> seat;  // of a visitor's pictures; may be null
 };
 
 // New links and announcements, handed over by the threads of the server.
 class Arrivals {
  public:
-  void put(std::shared_ptr<Link> link);
-  std::vector<std::shared_ptr<Link>> take();
+  void put(std::shared_ptr<Link> link, std::unique_ptr<Seat> seat = nullptr);
+  std::vector<Arrival> take();
   uint32_t announce(Announcement announcement);  // its number
   std::vector<Announcement> take_announcements();
 
  private:
   std::mutex mutex_;
-  std::vector<std::shared_ptr<Link>> links_;
+  std::vector<Arrival> all_;
   std::vector<Announcement> announcements_;
   uint32_t announced_ = 0;
 };
@@ -120,8 +128,10 @@ struct Show {
   TourRoads roads;
   QuestionIndex questions;
   std::list<Visitor> visitors;
-  std::list<KeptVisit> kept;         // who left first comes first
-  std::shared_ptr<const Seal> seal;  // of what pages keep of visits
+  std::list<KeptVisit> kept;                   // who left first comes first
+  std::shared_ptr<const Seal> seal;            // of what pages keep of visits
+  std::vector<std::shared_ptr<Link>> resting;  // to be taken by who keeps them: answer/idle.h
+  std::shared_ptr<Capacity> capacity = std::make_shared<Capacity>();  // of all exhibits together
   std::vector<Eye> eyes;
   std::vector<Kiosk> kiosks;             // show/answer/kiosks.h
   std::optional<std::string> her_kiosk;  // the storyteller's guests are those of that name

@@ -17,7 +17,7 @@ struct ShowTotals {
   float tick_ms = 0, animate_ms = 0;  // of the last tick
   uint64_t utterances = 0, sounds = 0,
            sounds_given_up = 0;  // spoken; packets sent; too slow a reader
-  uint64_t visits = 0, turned_away = 0, observations = 0, greetings = 0, farewells = 0, stories = 0;
+  uint64_t visits = 0, observations = 0, greetings = 0, farewells = 0, stories = 0;
   uint64_t gestures = 0;  // of guests, that were followed
   uint64_t lamps_switched = 0;
   uint64_t announcements = 0;

@@ -8,6 +8,7 @@
 #include "frame/tonemap.h"
 #include "show/kiosk/screen_window.h"
 #include "show/moving/play.h"
+#include "show/state/capacity.h"
 #include "show/state/switches.h"
 #include "show/state/teller.h"
 #include "show/state/visitor_attention.h"
@@ -37,6 +38,7 @@ inline void smooth(float& value, float sample, float share = 0.1f) {
 struct Encoder {
   Image8 image;
   float milliseconds = 0;
+  double processor_seconds = 0;
   size_t bytes = 0;
   size_t memory_bytes = 0;  // of it and of what it makes, when it last ended
   Worker task;              // the last member: a picture may be half made
@@ -50,6 +52,7 @@ struct VisitorDelivery {
   View view;                  // that it showed
   double sent_at = -1e9;      // show time of it
   double pictured_at = -1e9;  // when it was due
+  double warp_seconds = 0;    // for the last, on all cores; 0: it was drawn for its view
   Flow flow;
   float measured_fps = 0;
 };
@@ -62,9 +65,20 @@ struct VisitorGroup {
   double looked_at = -1e9;     // show time of the last turn
 };
 
+// Whether anybody is there (show/answer/idle.h). In seconds.
+struct VisitorPresence {
+  Hello hello;         // by which the visit began, or went on
+  double quiet = 0;    // since anything was done
+  double hidden = -1;  // that the page has been so; below 0: it is seen
+  bool asked = false;  // whether somebody is still there
+};
+
 struct Visitor {
   std::shared_ptr<Link> link;
+  std::unique_ptr<Seat> seat;  // of the machine's capacity; null: nobody counts
+  VisitorPresence presence;
   bool welcomed = false, left = false;
+  double came_at = 0;  // show time
   bool kiosk = false;
   std::string lang = "en";
   std::string name;                    // of a kiosk, as its page says it; may be empty
@@ -88,6 +102,11 @@ struct Visitor {
   StageTimes times;
   int counted_tour = -1;  // show/count
 };
+
+// Gets pictures: has said hello, and its page is not hidden.
+inline bool is_shown(const Visitor& visitor) {
+  return visitor.welcomed && visitor.presence.hidden < 0;
+}
 
 // All memory that pictures of one visitor take, between them; its encoder's as noted there, the
 // rest as it is: not while the renderer is at work on it. Bounded by the picture's size: at most 64

@@ -199,12 +199,19 @@ void judge_pictures(Judge& judge, const ShowReport& report) {
          .why = fmt::format("a picture and its answer take {:.0f} ms", visitor.round_trip_ms),
          .remedy = "Check the network there."},
         {.before = 5, .after = 10});
-  if (uint64_t turned = judge.growth("full", report.totals.turned_away))
+  if (report.waiting > 0)
+    judge.tell({.about = "waiting",
+                .what = many(report.waiting, "visitor waits", "visitors wait") + " to be let in",
+                .why = many(report.visitors.size(), "visitor is", "visitors are") +
+                       " shown as many pictures as the machine makes",
+                .remedy = "Close other programs on the server. More cores serve more visitors."},
+               {.before = 5, .after = 5});
+  if (uint64_t turned = judge.growth("full", report.turned_away))
     judge.tell_counted({.about = "full",
                         .grave = true,
                         .what = many(turned, "visitor was", "visitors were") + " turned away",
-                        .why = fmt::format("there is room for {}", report.max_visitors),
-                        .remedy = "Where the cores allow it, --max-visitors lets more in."});
+                        .why = "as many waited as --max-waiting allows",
+                        .remedy = "More cores serve more visitors."});
   if (!report.denoiser_problem.empty())
     judge.tell({.about = "denoiser",
                 .what = "Pictures at rest take longer to become fine",

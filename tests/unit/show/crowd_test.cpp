@@ -33,7 +33,7 @@ struct Crowd : testing::Test, ShowStage {
     add_lamp({"ceiling", {"light"}, {}}, exhibit.scene);
     exhibit.lamps = {{"ceiling", {{"en", "Ceiling"}}}};
     ShowSettings settings = settings_for("direct", false, 1);
-    settings.max_visitors = 40;
+    settings.idle_after = 0;  // the quiet one stays
     tick_seconds = 0.25;
     begin(std::move(exhibit), settings);
   }

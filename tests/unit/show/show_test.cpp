@@ -148,19 +148,6 @@ TEST_F(ShowTest, ByeAndClosedLinksLeave) {
   EXPECT_TRUE(show->visitors.empty());
 }
 
-TEST_F(ShowTest, AFullHouseTurnsVisitorsAway) {
-  ShowSettings settings;
-  settings.max_visitors = 1;
-  begin(dvec3(0), settings);
-  run(0.1);
-  size_t late = connect();
-  run(0.05);
-  EXPECT_EQ(last("error", late)["code"], "full");
-  std::string reason;
-  EXPECT_TRUE(browsers[late].link->close_requested(reason));
-  EXPECT_EQ(show->visitors.size(), 1u);
-}
-
 TEST_F(ShowTest, ClockJumpsAreSurvived) {
   begin();
   run(0.2);

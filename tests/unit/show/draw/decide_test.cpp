@@ -166,6 +166,22 @@ const std::vector<Row> rows = {
        all = {due(walker(), 2), due(walker(), 4), due(walker(), 3)};
      },
      {Drawing::picture, 1}},
+    {"a newcomer comes before who was drawn since then, and after who was not",
+     [](States& all, RendererState&) {
+       all = {due(walker(), 2), due(walker(), 4), walker()};
+       all[2].drawn_at = -1e9;
+       all[2].came_at = now - 3;
+       all[2].new_place = true;
+     },
+     {Drawing::picture, 1}},
+    {"and does not wait until theirs are due",
+     [](States& all, RendererState&) {
+       all = {due(walker(), 0.9), due(walker(), 0.5), walker()};
+       all[2].drawn_at = -1e9;
+       all[2].came_at = now;
+       all[2].new_place = true;
+     },
+     {Drawing::picture, 2}},
     {"of two who wait alike the first comes first",
      [](States& all, RendererState&) {
        all = {due(walker()), due(walker())};

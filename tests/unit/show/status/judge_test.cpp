@@ -17,7 +17,6 @@ struct Judged : testing::Test {
   void SetUp() override {
     report.time = 1000;
     report.cores = 2;
-    report.max_visitors = 16;
     wait(0);
   }
   // `seconds` of such reports, four a second as the server makes them.
@@ -186,7 +185,7 @@ TEST_F(Judged, WhatIsCountedIsToldForTenMinutes) {
       {report.voice_failed, "The voice has failed once", "The voice has failed 3 times"},
       {report.voice_restarts, "The voice's program has ended once",
        "The voice's program has ended 3 times"},
-      {report.totals.turned_away, "1 visitor was turned away", "3 visitors were turned away"},
+      {report.turned_away, "1 visitor was turned away", "3 visitors were turned away"},
       {report.doors.floods_closed, "1 connection was closed for sending too much",
        "3 connections were closed for sending too much"},
       {report.doors.accept_errors, "Newcomers could not be let in once",
@@ -231,10 +230,21 @@ TEST_F(Judged, WhatIsMissingOrCannotBeWritten) {
   EXPECT_EQ(all(), "");
 }
 
+TEST_F(Judged, WaitingVisitorsAreToldAfterAWhile) {
+  report.waiting = 2;
+  wait(4);
+  EXPECT_EQ(all(), "");
+  wait(2);
+  EXPECT_EQ(all(), "2 visitors wait to be let in\n");
+  report.waiting = 0;
+  wait(1);
+  EXPECT_EQ(all(), "");
+}
+
 TEST_F(Judged, GraveOnesComeFirst) {
   report.denoiser_problem = "no weights";
   wait(10);
-  report.totals.turned_away = 2;
+  report.turned_away = 2;
   wait(1);
   EXPECT_EQ(all(), "2 visitors were turned away\nPictures at rest take longer to become fine\n");
 }

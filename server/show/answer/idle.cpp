@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "show/answer/idle.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/log.h"
+#include "show/answer/come_back.h"
+#include "show/answer/events.h"
+#include "show/count/count.h"
+#include "wire/json.h"
+
+namespace wellspring {
+namespace {
+
+// What the page of somebody who is not there says by itself.
+bool tells_of_nobody(const BrowserMessage& message) {
+  if (const Input* input = std::get_if<Input>(&message))
+    return input->move == vec3(0) && input->look == vec2(0) && !input->pointer;
+  return std::holds_alternative<Ack>(message) || std::holds_alternative<Settings>(message);
+}
+
+bool is_told_something(const Show& show, const Visitor& visitor) {
+  const Visitor* leader = leader_of(show, visitor);
+  const Voice& narrator = (leader ? *leader : visitor).hearing.narration.voice;
+  if (!narrator.queue.empty() && !narrator.paused) return true;
+  const Teller& teller = teller_of(show, visitor);
+  return !teller.voice.queue.empty() && !teller.voice.paused && listens_to(show, visitor, teller);
+}
+
+bool leads_somebody(const Show& show, const Visitor& visitor) {
+  return !visitor.group.leads.empty() &&
+         std::ranges::any_of(show.visitors, [&](const Visitor& other) {
+           return other.group.follows == visitor.group.leads;
+         });
+}
+
+void send_to_rest(Show& show, std::list<Visitor>::iterator visitor) {
+  log::info("visitor {} rests", visitor->link->id);
+  Hello hello = visitor->presence.hello;
+  hello.lang = visitor->lang;
+  hello.width = visitor->wants.width, hello.height = visitor->wants.height;
+  hello.resume = visit_token(show, *visitor);
+  visitor->link->drop_sound();
+  visitor->link->send_text(idle_message("paused", 0));
+  visitor->link->put_back(write_message(hello));
+  show.resting.push_back(visitor->link);
+  count_leaving(show, *visitor);
+  show.visitors.erase(visitor);
+}
+
+}  // namespace
+
+void note_presence(Visitor& visitor, const BrowserMessage& message) {
+  VisitorPresence& presence = visitor.presence;
+  if (const Hello* hello = std::get_if<Hello>(&message)) presence.hello = *hello;
+  const PresenceNews* news = std::get_if<PresenceNews>(&message);
+  if (news) presence.hidden = news->here ? -1 : std::max(presence.hidden, 0.0);
+  if (!(news && !news->here) && !tells_of_nobody(message)) presence.quiet = 0;
+}
+
+void watch_presence(Show& show, double dt) {
+  const ShowSettings& settings = show.settings;
+  for (auto next = show.visitors.begin(); next != show.visitors.end();) {
+    auto visitor = next++;
+    VisitorPresence& presence = visitor->presence;
+    if (!visitor->welcomed || visitor->kiosk) continue;
+    const bool busy = is_told_something(show, *visitor) || leads_somebody(show, *visitor);
+    if (busy || visitor->place.moved_at == show.time) presence.quiet = 0;
+    else presence.quiet += dt;
+    if (presence.hidden >= 0) presence.hidden = busy ? 0 : presence.hidden + dt;
+    const bool idle = settings.idle_after > 0 && presence.quiet > settings.idle_after;
+    if (idle != presence.asked)
+      visitor->link->send_text(idle_message(idle ? "asked" : "here", settings.idle_answer));
+    presence.asked = idle;
+    const bool silent = idle && presence.quiet > settings.idle_after + settings.idle_answer;
+    const bool unseen = settings.hidden_after > 0 && presence.hidden > settings.hidden_after;
+    if (!silent && !unseen) continue;
+    const bool in_pass = show.pass.visitor == &*visitor;
+    if (in_pass) show.pass.given_up = true;
+    if (!visitor->picture.at_work && !in_pass) send_to_rest(show, visitor);  // else soon
+  }
+}
+
+}  // namespace wellspring

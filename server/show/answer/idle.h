@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pages that nobody looks at make room for others. Who has done nothing for long, and is told
+// nothing meanwhile, is asked whether they are still there; who does not answer, or whose page has
+// been hidden for a while, is sent to rest: the visit leaves the show, and goes on where it was as
+// soon as somebody comes back and there is a seat (show/answer/come_back.h). While a page is
+// hidden, it gets no pictures. Kiosks are never asked, nor are leaders of a group that follows.
+#pragma once
+#include "show/state/show.h"
+
+namespace wellspring {
+
+// After a message was carried out.
+void note_presence(Visitor& visitor, const BrowserMessage& message);
+// Once a tick, `dt` seconds after the last: asks, and sends to rest those whose pictures nobody
+// works on. Their links are in show.resting from then on, each with the hello by which it comes
+// back as its first text.
+void watch_presence(Show& show, double dt);
+
+}  // namespace wellspring

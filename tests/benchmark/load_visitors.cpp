@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// load.visitors: so many visitors stroll through the castle at once, at 640x360 over loopback, each
+// let in whether its pictures will come quickly or not; they share the cores with the server.
+// Pictures a second of each, the least over the most, the longest time that anybody was without
+// one, and the time from an input to its picture, of all.
+#include <algorithm>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "report.h"
+#include "stream_server.h"
+#include "stroll.h"
+
+namespace wellspring {
+namespace {
+
+constexpr int width = 640, height = 360;
+
+std::vector<Stroll> stroll_together(uint16_t port, int visitors, double seconds) {
+  std::vector<Stroll> seen{size_t(visitors)};
+  std::string problem;
+  std::mutex mutex;
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < visitors; i++)
+      threads.emplace_back([&, i] {
+        try {
+          StrollPlan plan{port, width, height, 3, seconds, 0.7 * i};
+          seen[size_t(i)] = stroll_through(plan);
+        } catch (const std::exception& error) {
+          std::lock_guard lock(mutex);
+          problem = error.what();
+        }
+      });
+  }
+  if (!problem.empty()) throw std::runtime_error(problem);
+  return seen;
+}
+
+void measure(BenchReport& report, const BenchOptions& options, int visitors) {
+  ServerProcess server(options, "castle");
+  const std::vector<Stroll> seen = stroll_together(server.port, visitors, options.quick ? 6 : 20);
+  std::vector<double> rates, latencies, gaps;
+  for (const Stroll& one : seen) {
+    rates.push_back(one.fps());
+    latencies.insert(latencies.end(), one.latencies.begin(), one.latencies.end());
+    for (double gap : one.gaps()) gaps.push_back(gap);
+  }
+  const auto [least, most] = std::ranges::minmax(rates);
+  nlohmann::json where = {{"scene", "castle"}, {"size", "640x360"}, {"visitors", visitors}};
+  report.add("load.visitors.fps", quantile(rates, 0.5), "1/s", where);
+  report.add("load.visitors.fairness", most > 0 ? least / most : 0, "", where);
+  report.add("load.visitors.latency_p50_ms", quantile(latencies, 0.5), "ms", where);
+  report.add("load.visitors.latency_p95_ms", quantile(latencies, 0.95), "ms", where);
+  report.add("load.visitors.longest_gap_ms", quantile(gaps, 1), "ms", where);
+  report.add("load.visitors.server_memory", server.resident() / (1 << 20), "MiB", where);
+}
+
+}  // namespace
+
+void bench_load_visitors(BenchReport& report, const BenchOptions& options) {
+  BenchOptions all = options;
+  // Everybody is let in, at however few pictures.
+  if (all.server_words.empty()) all.server_words = {"--least-fps", "1", "--max-visitors", "1000"};
+  for (int visitors : {1, 2, 4, 8, 16, 32}) measure(report, all, visitors);
+}
+
+}  // namespace wellspring
