@@ -16,7 +16,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/weights DESTINATION share/wellspri
   PATTERN face EXCLUDE PATTERN "*.part" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/build/weights/face DESTINATION share/wellspring/weights
   COMPONENT kiosk OPTIONAL)
-install(FILES docs/operation.md docs/kiosk.md docs/stories.md README.md CHANGELOG.md
+install(FILES deploy/nginx.conf deploy/haproxy.cfg docs/operation.md docs/kiosk.md docs/stories.md README.md CHANGELOG.md
   DESTINATION share/doc/wellspring)
 install(FILES LICENSE DESTINATION share/doc/wellspring RENAME copyright)
 install(FILES LICENSE DESTINATION share/doc/wellspring-kiosk RENAME copyright COMPONENT kiosk)

@@ -104,6 +104,35 @@ test('SIGHUP takes what needs no restart, and begins the log anew', async () => 
   }
 });
 
+test('killed and started again it goes on with visits at their places', async () => {
+  const words = ['--exhibit', 'giza', '--no-bake', '--cache', join(folder, 'cache')];
+  const place = [0.5, 1.5, 3.25];
+  let token = '', port = 0;
+  for (let round = 0; round < 3; round++) {
+    const server = await start_server(words, { content, port });
+    port = server.port;
+    try {
+      const visitor = new Visitor(server);
+      const state = visitor.message('state');
+      const welcome = await visitor.hello({ resume: token });
+      if (round > 0) {
+        assert.equal(welcome.resumed, true);
+        const { position } = await state;
+        for (const axis of [0, 1, 2]) assert.ok(Math.abs(position[axis] - place[axis]) < 0.01);
+      }
+      const keeps = () => visitor.messages.filter(({ type }) => type === 'keep');
+      if (round === 0) {
+        visitor.send({ type: 'camera', seq: 1, position: place, yaw: 0.25, pitch: 0 });
+        await sleep(4500);  // the page is told where its visit is now and then
+      }
+      await until(() => keeps().length > 0, () => 'a token');
+      token = keeps().at(-1).token;
+    } finally {
+      assert.equal(await server.stop('SIGKILL'), null);
+    }
+  }
+});
+
 test('a full disk stops neither log nor server', async () => {
   const server = await serve(['--log', '/dev/full', '--sums', '/dev/full/sums.sqlite',
     '--cache', '/dev/full/cache']);

@@ -10,6 +10,7 @@ import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Visitor, start_server } from '../server.mjs';
+import { write_pyramid } from './pyramid.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-'));
 const build = dirname(process.env.WELLSPRING_BIN);
@@ -76,10 +77,12 @@ test('the server runs from where it is unpacked, with what lies beside it', asyn
   assert.match(printed, /^content = \/var\/lib\/wellspring\/exhibits$/m, 'it reads its own file');
   assert.equal(readFileSync(config, 'utf8'), printed);
   // What cannot be written here is elsewhere; what is changed counts.
-  writeFileSync(config, printed.replace('/var/lib/wellspring/exhibits',
-      join(root, 'usr/share/wellspring/content')).replaceAll('/var/', `${folder}/var/`)
-      .replace(/^#max-visitors = .*$/m, 'max-visitors = 3'));
-  const server = await start_server(['--exhibit', 'first-room', '--no-bake'],
+  const content = join(folder, 'content');
+  call(join(root, 'usr/bin/wellspring'),
+      ['new', 'giza', write_pyramid(folder), '--content', content]);
+  writeFileSync(config, printed.replace('/var/lib/wellspring/exhibits', content)
+      .replaceAll('/var/', `${folder}/var/`));
+  const server = await start_server(['--exhibit', 'giza', '--no-bake'],
       { programs, places: false });
   try {
     const visitor = new Visitor(server);
