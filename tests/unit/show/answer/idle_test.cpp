@@ -24,7 +24,7 @@ struct Idle : testing::Test, ShowStage {
   }
   std::string asked(size_t visitor = 0) {
     const json said = last("idle", visitor);
-    return said.is_null() ? "" : said["state"];
+    return said.is_null() ? "" : said["state"].get<std::string>();
   }
   bool is_there(size_t visitor = 0) {
     return std::ranges::any_of(
