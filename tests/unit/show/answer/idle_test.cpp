@@ -22,7 +22,10 @@ struct Idle : testing::Test, ShowStage {
     tick_seconds = 0.1;
     begin(std::move(exhibit), settings);
   }
-  std::string asked(size_t visitor = 0) { return last("idle", visitor).value("state", ""); }
+  std::string asked(size_t visitor = 0) {
+    const json said = last("idle", visitor);
+    return said.is_null() ? "" : said["state"].get<std::string>();
+  }
   bool is_there(size_t visitor = 0) {
     return std::ranges::any_of(
         show->visitors, [&](const Visitor& one) { return one.link == browsers[visitor].link; });
