@@ -152,7 +152,7 @@ test('systemd takes the units', (context) => {
   const home = join(folder, 'home');
   mkdirSync(home);
   symlinkSync(source, join(home, 'wellspring'));
-  const units = readdirSync(join(source, 'deploy')).filter((name) => !name.endsWith('.sh'));
+  const units = readdirSync(join(source, 'deploy')).filter((name) => name.startsWith('wellspring'));
   assert.equal(units.length, 4);
   const { status, stdout, stderr } = spawnSync('systemd-analyze',
       ['verify', '--user', '--man=no', ...units.map((name) => join(source, 'deploy', name))],
