@@ -120,6 +120,8 @@ struct ServerLink::Impl {
   // Why the server did not open the connection.
   std::string refusal(const error_code& ec, unsigned status) const {
     if (ec != websocket::error::upgrade_declined) return ec.message();
+    if (status == 308)
+      return "it asks for TLS but of those whom it trusts: --trusted ADDRESS there";
     if (status != 401) return "HTTP status " + std::to_string(status);
     return settings.token.empty()
                ? "it trusts cameras on other machines by a kiosk token alone: --token-file FILE"
