@@ -89,6 +89,7 @@ void Session::spawn(Work work) {
                   if (self->counted_websocket_)
                     self->core_->admission.close_websocket(self->caller_.address);
                   self->core_->admission.leave(self->id_);
+                  if (self->refused_) self->core_->being_refused--;
                   // Notified under the lock: the waiter may be the destructor of what the lock
                   // lives in.
                   std::lock_guard lock(self->core_->mutex);
@@ -103,18 +104,17 @@ void Session::start() {
 
 void Session::start_refusal(int status) {
   core_->being_refused++;
+  refused_ = true;
   spawn([self = shared_from_this(), status] { return self->refuse(status); });
 }
 
 net::awaitable<void> Session::refuse(int status) {
-  if (!core_->certificate) {  // a handshake is not worth it
-    HttpQuestion nothing_read;
-    HttpReply reply = make_refusal(status, "too many connections");
-    reply.headers["Retry-After"] = "5";
-    co_await write_reply(std::move(nothing_read), std::move(reply), 11, false);
-    co_await linger();
-  }
-  core_->being_refused--;
+  if (core_->certificate) co_return;  // a handshake is not worth it
+  HttpQuestion nothing_read;
+  HttpReply reply = make_refusal(status, "too many connections");
+  reply.headers["Retry-After"] = "5";
+  co_await write_reply(std::move(nothing_read), std::move(reply), 11, false);
+  co_await linger();
 }
 
 net::awaitable<void> Session::run() {

@@ -116,7 +116,7 @@ class Session : public std::enable_shared_from_this<Session> {
   const uint64_t id_;
   const std::string peer_;
   const Address address_;
-  bool reserved_ = false;
+  bool reserved_ = false, refused_ = false;
   Caller caller_;  // of the request that is being answered, or of the WebSocket
   websocket::stream<Transport, false> ws_;  // false: no permessage-deflate, JPEG is packed
   beast::flat_buffer buffer_;

@@ -10,6 +10,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import tls from 'node:tls';
+import { launch, skip } from '../browser/chromium.mjs';
 import { Visitor, run, sleep, source, start_server } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
@@ -116,6 +117,25 @@ test('what is no handshake harms nobody', async () => {
       socket.end(bytes);
     });
   assert.equal((await ask(`${server.url}/healthz`)).status, 200);
+});
+
+test('the page opens its visit over TLS, too', { skip }, async () => {
+  const browser = await launch();
+  try {
+    const page = await (await browser.newContext({ ignoreHTTPSErrors: true })).newPage();
+    const problems = [];
+    page.on('pageerror', (error) => problems.push(String(error)));
+    page.on('console', (said) => { if (said.type() === 'error') problems.push(said.text()); });
+    const visit = page.waitForEvent('websocket', { timeout: 60000 });
+    await page.goto(`${server.url}/`);
+    const socket = await visit;
+    assert.ok(socket.url().startsWith('wss://127.0.0.1'), socket.url());
+    await socket.waitForEvent('framereceived', { timeout: 60000,
+      predicate: ({ payload }) => payload.subarray?.(0, 4).toString('latin1') === 'WSF1' });
+    assert.deepEqual(problems, []);
+  } finally {
+    await browser.close();
+  }
 });
 
 test('a certificate is renewed under a visit; a bad one is refused', async () => {
