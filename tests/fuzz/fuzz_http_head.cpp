@@ -14,9 +14,9 @@ void fuzz_http_head(Bytes bytes) {
     require(path.starts_with('/'), "a path starts with /");
     require(path.find_first_of(std::string("\\\0", 2)) == std::string::npos,
             "a path holds no backslash and no NUL");
-    for (const char* part : {"//", "/./", "/../"})
-      require((path + "/").find(part) == std::string::npos || path == "/",
-              "a path has no segment that means another");
+    require(path.find("//") == std::string::npos, "a path has no empty segment");
+    for (const char* part : {"/./", "/../"})
+      require((path + "/").find(part) == std::string::npos, "a path goes nowhere else");
     require(question.query.size() <= max_query_fields, "queries are short");
   }
   const std::string host = text_of(take_until(bytes, '\n')),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A visitor's question in words.
 #include "fuzz/fuzz.h"
-#include "show/questions/questions.h"
+#include "show/questions/question_index.h"
 #include "unit/show/tiny_exhibit.h"
 
 namespace wellspring::fuzz {

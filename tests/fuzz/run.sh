@@ -43,6 +43,7 @@ words_of() {
   esac
 }
 
+export LSAN_OPTIONS="suppressions=$here/lsan.supp:print_suppressions=0"
 status=0
 printf '%-18s %12s %9s %8s %7s  %s\n' target runs runs/s edges corpus found
 for name in "$@"; do
@@ -56,11 +57,11 @@ for name in "$@"; do
     -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1 -use_value_profile=1 \
     -max_len=65536 -artifact_prefix="$found/" $([ -f "$words" ] && echo "-dict=$words") >"$log" 2>&1 ||
     { broken=" $(grep -m 1 -oE 'SUMMARY: .*' "$log" || tail -n 1 "$log")"; status=1; }
-  last="$(grep -E ' cov: [0-9]+' "$log" | tail -n 1)"
+  last="$(grep -E ' cov: [0-9]+' "$log" | tail -n 1 || true)"
   number() { sed -nE "s/.*$1:? *([0-9]+).*/\1/p" <<<"$2" | tail -n 1; }
   printf '%-18s %12s %9s %8s %7s %s\n' "$name" \
-    "$(number stat::number_of_executed_units "$(grep executed_units "$log")")" \
-    "$(number stat::average_exec_per_sec "$(grep exec_per_sec "$log")")" \
+    "$(number stat::number_of_executed_units "$(grep executed_units "$log" || true)")" \
+    "$(number stat::average_exec_per_sec "$(grep exec_per_sec "$log" || true)")" \
     "$(number 'cov' "$last")" "$(number 'corp' "$last")" "$broken"
 done
 exit $status

@@ -137,6 +137,31 @@ TEST_F(PictureFile, DamagedLinearPicturesAreRefused) {
   EXPECT_THROW(load_linear_picture(path("good.png")), LoadError);
 }
 
+// Before anything of that size is made: what is refused is named.
+TEST_F(PictureFile, SizesThatAnExrFileOnlyClaimsAreRefused) {
+  save_picture(path("good.exr"), make_frame(), {});
+  const std::string exr = bytes_of(path("good.exr"));
+  // With these numbers `skip` bytes behind a name and its type.
+  auto claims = [&](const std::string& name, size_t skip, std::vector<int32_t> numbers) {
+    std::string bytes = exr;
+    const size_t at = bytes.find(name) + name.size() + skip;
+    std::memcpy(bytes.data() + at, numbers.data(), numbers.size() * sizeof(int32_t));
+    write_bytes(path("claims.exr"), bytes);
+    try {
+      load_linear_picture(path("claims.exr"));
+    } catch (const LoadError& error) {
+      return error.where + ": " + error.what_;
+    }
+    return std::string("accepted");
+  };
+  const std::string channels("channels\0chlist\0", 16), window("dataWindow\0box2i\0", 17);
+  EXPECT_EQ(claims(channels, 0, {2'000'000'000}),
+            "byte 24: an attribute of 2000000000 bytes is cut off");
+  EXPECT_NE(claims(window, 4, {0, 0, 16383, 16383}).find("64 million"), std::string::npos);
+  EXPECT_NE(claims(window, 4, {-(1 << 30), 0, 4 - (1 << 30), 2}).find("from 0"), std::string::npos);
+  EXPECT_EQ(claims(window, 4, {0, 0, 4, 2}), "accepted");
+}
+
 TEST(PictureCorpus, MitsubaReferencesAreRead) {
   fs::path folder = fs::path(WELLSPRING_DATA) / "6_reference";
   if (!fs::exists(folder)) GTEST_SKIP() << "no reference pictures beside the checkout";
