@@ -163,7 +163,7 @@ void write_kept(const Corpus& corpus) {
   parts->slots = {3}, parts->albedo = {vec3(0.5f)}, parts->light = {{vec3(1)}, {vec3(2)}};
   grid.parts = parts;
   auto lamps = std::make_shared<LampsSeen>();
-  lamps->keys.assign(16, 5), lamps->shares.resize(16);
+  lamps->keys.assign(16, 0), lamps->keys[2] = 5, lamps->shares.resize(16);
   grid.lamps = lamps;
   save_radiance_grid(grid, corpus.folder.file("square.grid"), 1);
   corpus.put_contents("cached_map", "square.maps");
