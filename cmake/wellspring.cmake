@@ -26,7 +26,13 @@ add_compile_options(-Wall -Wextra -Wno-unused-parameter -fno-math-errno -pthread
 if(WELLSPRING_ARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   add_compile_options(-march=${WELLSPRING_ARCH})
 endif()
-if(WELLSPRING_SANITIZE)
+option(WELLSPRING_FUZZ "programs that look for bytes which break a reader (Clang's libFuzzer)" OFF)
+if(WELLSPRING_FUZZ)
+  set(WELLSPRING_SANITIZE address,undefined,float-cast-overflow)
+  add_compile_options(-fsanitize=fuzzer-no-link,${WELLSPRING_SANITIZE} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer -gline-tables-only)
+  add_link_options(-fsanitize=${WELLSPRING_SANITIZE})
+elseif(WELLSPRING_SANITIZE)
   add_compile_options(-fsanitize=${WELLSPRING_SANITIZE} -fno-omit-frame-pointer -g)
   add_link_options(-fsanitize=${WELLSPRING_SANITIZE})
 endif()
@@ -128,7 +134,7 @@ include_directories(SYSTEM ${STB_INCLUDE})
 include_directories(${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/server)
 
 # Half the time to compile, but the same products and sums in one rounding (fused multiply-add).
-set(WELLSPRING_LITTLE -O1 -fexpensive-optimizations)
+set(WELLSPRING_LITTLE -O1 $<$<CXX_COMPILER_ID:GNU>:-fexpensive-optimizations>)
 # Headers that nearly every file reads are compiled once: for all layers, and with GoogleTest for
 # tests. Without them (WELLSPRING_PRECOMPILE=OFF) everything compiles as well, only slower. JSON is
 # not among them: reading what was compiled of it takes longer than most files that do without.

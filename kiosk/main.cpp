@@ -146,7 +146,7 @@ int learn(const KioskOptions& options) {
                       "fewer than three recordings of '" + path.label + "' move far enough");
   }
   if (models.gestures.empty()) throw LoadError(options.recordings, "", "no recording has a label");
-  save_gestures(models, options.gestures);
+  save_gesture_models(models, options.gestures);
   std::printf("%zu recordings, %zu models -> %s\n", paths.size(), models.gestures.size(),
               options.gestures.c_str());
   return 0;
@@ -158,7 +158,7 @@ void look(KioskOptions options) {
   GestureModels gestures;
   if (options.hands) {
     gestures = options.gestures.empty() ? train_gestures(generated_set())
-                                        : load_gestures(options.gestures);
+                                        : load_gesture_models(options.gestures);
     options.observer.gestures = &gestures;
   }
   options.observer.mount = settings.mount;

@@ -53,6 +53,8 @@ wellspring_unit_test(stream stream boost_any)
 wellspring_unit_test(kiosk  kiosk)
 wellspring_unit_test(benchmark benchmark)
 
+include(tests/fuzz/fuzz.cmake)
+
 add_dependencies(unit_avatar wellspring_voice)
 add_dependencies(unit_show wellspring_voice)
 

@@ -2,6 +2,7 @@
 #include "avatar/speech/answer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "avatar/speech/closures.h"
@@ -13,6 +14,13 @@ namespace wellspring {
 namespace {
 
 using nlohmann::json;
+
+// Cut off towards 0.
+int whole(const json& value) {
+  const double number = value.get<double>();
+  if (!(std::abs(number) < 2e9)) throw std::runtime_error("a number is too large");
+  return int(number);
+}
 
 // Words of the text that the engine said as one ("of the" is one entry of its dictionary).
 struct SaidAsOne {
@@ -80,9 +88,9 @@ std::vector<int> read_words(const json& list, const std::vector<uint32_t>& start
   std::vector<Event> events;
   std::vector<uint32_t> cuts;
   for (const json& entry : list) {
-    long character = std::clamp<long>(entry.at(1).get<long>(), 0, long(starts.size()) - 1);
+    long character = std::clamp<long>(whole(entry.at(1)), 0, long(starts.size()) - 1);
     uint32_t byte = skip_spaces(speech.text, starts[size_t(character)]);
-    bool named = entry.at(2).get<long>() > 0 && byte < speech.text.size();
+    bool named = whole(entry.at(2)) > 0 && byte < speech.text.size();
     if (!named) byte = events.empty() ? 0 : events.back().byte;
     events.push_back({byte, 0});
     if (named) cuts.push_back(byte);
@@ -164,12 +172,13 @@ std::shared_ptr<const Speech> read_speech_answer(const SpeechRequest& request,
     json answer = json::parse(json_text);
     if (answer.contains("error")) {
       error = answer.at("error").get<std::string>();
+      if (error.empty()) error = "the voice program refuses without saying why";
       return nullptr;
     }
     auto speech = std::make_shared<Speech>();
     speech->text = request.text;
     speech->lang = request.lang;
-    speech->rate = answer.at("rate").get<int>();
+    speech->rate = whole(answer.at("rate"));
     if (speech->rate < 4000 || speech->rate > 192000) throw std::runtime_error("sample rate");
     speech->duration = double(pcm.size()) / speech->rate;
     speech->pcm = std::move(pcm);
@@ -183,7 +192,7 @@ std::shared_ptr<const Speech> read_speech_answer(const SpeechRequest& request,
       SpeechPhoneme phoneme;
       phoneme.begin = std::clamp(entry.at(0).get<double>() / speech->rate, last, speech->duration);
       last = phoneme.begin;
-      int word = entry.at(1).get<int>();
+      int word = whole(entry.at(1));
       if (word >= 0 && word < int(group_of.size())) phoneme.word = group_of[size_t(word)];
       phoneme.mnemonic = entry.at(2).get<std::string>();
       phoneme.ipa = entry.at(3).get<std::string>();

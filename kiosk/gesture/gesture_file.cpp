@@ -152,7 +152,7 @@ std::vector<HandPath> load_recordings(const std::string& folder) {
   return paths;
 }
 
-GestureModels load_gestures(const std::string& file) {
+GestureModels load_gesture_models(const std::string& file) {
   const json root = read_json(file);
   const Reader reader{file};
   GestureModels models;
@@ -184,7 +184,7 @@ GestureModels load_gestures(const std::string& file) {
   return models;
 }
 
-void save_gestures(const GestureModels& models, const std::string& file) {
+void save_gesture_models(const GestureModels& models, const std::string& file) {
   json gestures = json::array();
   for (const GestureModel& model : models.gestures) {
     json item = to_json(model.hmm);

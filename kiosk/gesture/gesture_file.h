@@ -22,8 +22,8 @@ inline constexpr size_t most_label = 32;  // bytes
 std::vector<HandPath> load_recordings(const std::string& folder);
 
 // Throws LoadError.
-GestureModels load_gestures(const std::string& file);
+GestureModels load_gesture_models(const std::string& file);
 // Throws LoadError when the file cannot be written.
-void save_gestures(const GestureModels& models, const std::string& file);
+void save_gesture_models(const GestureModels& models, const std::string& file);
 
 }  // namespace wellspring

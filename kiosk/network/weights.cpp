@@ -48,6 +48,11 @@ struct Reader {
     throw LoadError(manifest, where, what);
   }
 
+  // Whether the entry's dtype is this one; it may be missing or no text.
+  static bool has_type(const json& entry, const char* type) {
+    return entry.contains("dtype") && entry["dtype"] == type;
+  }
+
   float number(const json& entry, const char* key, const std::string& where) const {
     if (!entry.contains(key) || !entry[key].is_number())
       refuse(where, std::string("quantization has no number '") + key + "'");
@@ -69,7 +74,7 @@ struct Reader {
       out.shape.push_back(size.get<int>());
       count *= size.get<size_t>();
     }
-    if (entry.value("dtype", "") != "float32") refuse(where, "dtype is not float32");
+    if (!has_type(entry, "float32")) refuse(where, "dtype is not float32");
     const bool quantised = entry.contains("quantization");
     const size_t needed = quantised ? count : 4 * count;
     if (bytes.size() - at < needed)
@@ -78,7 +83,7 @@ struct Reader {
     out.values.resize(count);
     if (quantised) {
       const json& rule = entry["quantization"];
-      if (!rule.is_object() || rule.value("dtype", "") != "uint8")
+      if (!rule.is_object() || !has_type(rule, "uint8"))
         refuse(where, "quantization's dtype is not uint8");
       const float scale = number(rule, "scale", where), min = number(rule, "min", where);
       for (size_t i = 0; i < count; i++)

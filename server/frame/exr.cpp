@@ -7,7 +7,9 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <sstream>
 
 #include "base/load_error.h"
@@ -15,6 +17,10 @@
 
 namespace wellspring {
 namespace {
+
+// A file of a few bytes may claim any number of pixels, which take memory before they are read.
+constexpr int64_t most_exr_pixels = int64_t(1) << 26;
+constexpr int64_t farthest_window = 1 << 20;
 
 // The names of a file's red, green and blue: plain, a lone Y, or those of the first layer with all
 // three.
@@ -31,6 +37,29 @@ std::array<std::string, 3> color_channels(const Imf::ChannelList& channels,
       return {layer + "R", layer + "G", layer + "B"};
   }
   throw LoadError(path, "channels", "no R, G and B, and no Y");
+}
+
+// OpenEXR makes room for an attribute of any size before it looks for its bytes. Sizes beyond the
+// file's end are refused here (OpenEXR File Layout, "Header"): name, type, size, value; an empty
+// name ends a header, of which files of several parts have several.
+void check_attributes(const std::string& bytes, const std::string& path) {
+  if (bytes.size() < 8) return;  // OpenEXR says what is missing
+  const bool parts = bytes[5] & 0x10;
+  size_t at = 8;
+  for (bool first = true; at < bytes.size() && (first || parts) && bytes[at] != 0; at++) {
+    first = false;
+    while (at < bytes.size() && bytes[at] != 0) {
+      for (int text = 0; text < 2; text++) at = std::min(bytes.find('\0', at), bytes.size()) + 1;
+      if (at + 4 > bytes.size()) return;
+      uint32_t size = 0;
+      for (int i = 0; i < 4; i++) size |= uint32_t(uint8_t(bytes[at + size_t(i)])) << (8 * i);
+      at += 4;
+      if (size > bytes.size() - at)
+        throw LoadError(path, "byte " + std::to_string(at - 4),
+                        "an attribute of " + std::to_string(size) + " bytes is cut off");
+      at += size;
+    }
+  }
 }
 
 }  // namespace
@@ -68,6 +97,8 @@ Frame decode_exr(std::istream& in, const std::string& path) {
   try {
     std::ostringstream whole;
     whole << in.rdbuf();
+    check_attributes(whole.str(), path);
+    Imf::Header::setMaxImageSize(largest_picture_side, largest_picture_side);
     Imf::StdISStream stream;
     stream.str(whole.str());
     Imf::InputFile file(stream);
@@ -76,27 +107,30 @@ Frame decode_exr(std::istream& in, const std::string& path) {
             height = int64_t(window.max.y) - window.min.y + 1;
     if (width < 1 || height < 1 || width > largest_picture_side || height > largest_picture_side)
       throw LoadError(path, "dataWindow", "picture must have 1 to 16384 pixels a side");
+    if (width * height > most_exr_pixels)
+      throw LoadError(path, "dataWindow", "picture must have at most 64 million pixels");
+    if (std::max(std::abs(int64_t(window.min.x)), std::abs(int64_t(window.min.y))) >
+        farthest_window)
+      throw LoadError(path, "dataWindow", "begins more than a million pixels from 0");
     std::array<std::string, 3> names = color_channels(file.header().channels(), path);
+    const bool grey = names[0] == names[1];
     Frame frame;
     frame.width = int(width);
     frame.height = int(height);
-    std::vector<float> planes[3];
+    frame.color.resize(size_t(width * height));
     Imf::FrameBuffer buffer;
-    for (int c = 0; c < (names[0] == names[1] ? 1 : 3); c++) {
-      planes[c].resize(size_t(width * height));
+    for (int c = 0; c < (grey ? 1 : 3); c++) {
       // OpenEXR addresses pixels by their window coordinates.
       char* origin =
-          reinterpret_cast<char*>(planes[c].data()) -
-          (ptrdiff_t(window.min.x) + ptrdiff_t(window.min.y) * width) * ptrdiff_t(sizeof(float));
+          reinterpret_cast<char*>(&frame.color[0][c]) -
+          (ptrdiff_t(window.min.x) + ptrdiff_t(window.min.y) * width) * ptrdiff_t(sizeof(vec3));
       buffer.insert(names[size_t(c)],
-                    Imf::Slice(Imf::FLOAT, origin, sizeof(float), sizeof(float) * size_t(width)));
+                    Imf::Slice(Imf::FLOAT, origin, sizeof(vec3), sizeof(vec3) * size_t(width)));
     }
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
-    frame.color.resize(size_t(width * height));
-    for (size_t i = 0; i < frame.color.size(); i++)
-      frame.color[i] =
-          planes[1].empty() ? vec3(planes[0][i]) : vec3(planes[0][i], planes[1][i], planes[2][i]);
+    if (grey)
+      for (vec3& color : frame.color) color = vec3(color.x);
     return frame;
   } catch (const LoadError&) {
     throw;

@@ -29,6 +29,7 @@ std::string encode(const uint8_t* bytes, size_t size) {
 
 std::optional<std::vector<uint8_t>> decode(const std::string& text) {
   std::vector<uint8_t> bytes(text.size());
+  if (bytes.empty()) return bytes;  // libsodium wants a place to write to
   size_t size = 0;
   const char* end = nullptr;
   if (sodium_base642bin(bytes.data(), bytes.size(), text.data(), text.size(), nullptr, &size, &end,

@@ -2,6 +2,7 @@
 #include "light/known/radiance_grid_file.h"
 
 #include "base/keyed_file.h"
+#include "light/random/place_key.h"
 #include "light/sample/lamps_seen.h"
 
 namespace wellspring {
@@ -23,9 +24,15 @@ void list_fields(auto& to, auto& grid, auto& lamps, auto& parts, auto& lights) {
   for (auto& light : lights) to.array(light);
 }
 
+// Of cells of this size. Far places are still counted by whole numbers.
+bool is_table(const std::vector<uint64_t>& keys, float cell) {
+  return is_place_table(keys) && cell > 1e-4f && cell < 1e9f;
+}
+
 bool fits(const RadianceGrid& grid, const LampsSeen& lamps, const RadianceGrid::Parts& parts) {
   bool good = grid.light.size() == grid.keys.size() && grid.count.size() == grid.keys.size() &&
-              lamps.shares.size() == lamps.keys.size() && grid.cell > 0 &&
+              lamps.shares.size() == lamps.keys.size() && is_table(grid.keys, grid.cell) &&
+              (lamps.keys.empty() || is_table(lamps.keys, lamps.cell)) &&
               parts.albedo.size() == parts.slots.size();
   for (const auto& light : parts.light) good = good && light.size() == parts.slots.size();
   for (uint32_t slot : parts.slots) good = good && slot < grid.keys.size();

@@ -2,6 +2,8 @@
 // Cells of space and of a surface's main direction, by which light at places is remembered in hash
 // tables (Binder, Fricke, Keller 2019, "Massively Parallel Path Space Filtering", section 3).
 #pragma once
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -30,6 +32,12 @@ inline uint32_t find_place_slot(std::span<const uint64_t> keys, uint64_t key) {
   uint32_t slot = uint32_t(mix64(key)) & mask;
   while (keys[slot] != 0 && keys[slot] != key) slot = (slot + 1) & mask;
   return slot;
+}
+
+// Whether a table that was read can be asked: else a look-up would not end.
+inline bool is_place_table(std::span<const uint64_t> keys) {
+  return std::has_single_bit(keys.size()) && keys.size() <= (size_t(1) << 31) &&
+         std::find(keys.begin(), keys.end(), 0) != keys.end();
 }
 
 }  // namespace wellspring

@@ -409,7 +409,8 @@ void Raster::draw(const View& view, const RasterSettings& settings,
   auto triangle_of = [&r](uint32_t number) { return &r.triangle_of(number); };
   SurfaceWalk walk{r.world, r.neighbours, r.mesh_of,
                    view,    raster,       0.5f * float(view.height) / view.tan_half_fov};
-  EdgeFinder finder{walk, raster, columns, settings.differ, r.tiles, triangle_of};
+  EdgeFinder<decltype(triangle_of)> finder{walk,    raster,     columns, settings.differ,
+                                           r.tiles, triangle_of};
   parallel_for(columns * rows, [&](int i) {
     draw_tile(i, second);
     std::vector<Veil> veils;

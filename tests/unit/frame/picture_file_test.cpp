@@ -137,6 +137,34 @@ TEST_F(PictureFile, DamagedLinearPicturesAreRefused) {
   EXPECT_THROW(load_linear_picture(path("good.png")), LoadError);
 }
 
+// Before anything of that size is made: what is refused is named.
+TEST_F(PictureFile, SizesThatAnExrFileOnlyClaimsAreRefused) {
+  save_picture(path("good.exr"), make_frame(), {});
+  // With room for the table of many rows.
+  const std::string exr = bytes_of(path("good.exr")) + std::string(20'000, '\0');
+  // With these numbers `skip` bytes behind a name and its type.
+  auto claims = [&](const std::string& name, size_t skip, std::vector<int32_t> numbers) {
+    std::string bytes = exr;
+    const size_t at = bytes.find(name) + name.size() + skip;
+    std::memcpy(bytes.data() + at, numbers.data(), numbers.size() * sizeof(int32_t));
+    write_bytes(path("claims.exr"), bytes);
+    try {
+      load_linear_picture(path("claims.exr"));
+    } catch (const LoadError& error) {
+      return error.where + ": " + error.what_;
+    }
+    return std::string("accepted");
+  };
+  const std::string channels("channels\0chlist\0", 16), window("dataWindow\0box2i\0", 17);
+  EXPECT_EQ(claims(channels, 0, {2'000'000'000}),
+            "byte 24: an attribute of 2000000000 bytes is cut off");
+  EXPECT_EQ(claims(window, 4, {0, 0, 16383, 16383}),
+            "dataWindow: picture must have at most 64 million pixels");
+  EXPECT_EQ(claims(window, 4, {-(1 << 29), 0, 4 - (1 << 29), 2}),
+            "dataWindow: begins more than a million pixels from 0");
+  EXPECT_EQ(claims(window, 4, {0, 0, 4, 2}), "accepted");
+}
+
 TEST(PictureCorpus, MitsubaReferencesAreRead) {
   fs::path folder = fs::path(WELLSPRING_DATA) / "6_reference";
   if (!fs::exists(folder)) GTEST_SKIP() << "no reference pictures beside the checkout";

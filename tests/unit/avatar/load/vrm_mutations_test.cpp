@@ -19,6 +19,8 @@ using test::add_vrm_0;
 using test::add_vrm_1;
 using test::change_of;
 using test::dressed_person;
+using test::full_person_0;
+using test::full_person_1;
 using test::load_asset;
 using test::presets;
 
@@ -49,51 +51,6 @@ TEST(VrmMutations, FiguresWithoutSomeBonesStandAndBreathe) {
 
 // Any part of the extensions replaced by anything: refused with a place, or loaded; posed without a
 // crash.
-// People whose extensions have every field that the format has.
-Asset full_person_1() {
-  Asset asset = dressed_person();
-  add_vrm_1(asset);
-  json color = {{"material", 0}, {"type", "color"}, {"targetValue", {1, 0, 0.25, 1}}};
-  presets(asset)["happy"] = {
-      {"isBinary", true},
-      {"overrideBlink", "block"},
-      {"overrideLookAt", "blend"},
-      {"materialColorBinds", {color}},
-      {"textureTransformBinds", {{{"material", 0}, {"scale", {3, 0.5}}, {"offset", {0.75, 0.5}}}}}};
-  presets(asset)["blink"] = presets(asset)["aa"];
-  asset.root["extensions"]["VRMC_vrm"]["firstPerson"]["meshAnnotations"] = {
-      {{"node", 17}, {"type", "both"}}};
-  asset.root["nodes"][3]["extensions"]["VRMC_node_constraint"] = {
-      {"specVersion", "1.0"},
-      {"constraint", {{"roll", {{"source", 2}, {"rollAxis", "Y"}, {"weight", 0.5}}}}}};
-  asset.root["nodes"][7]["extensions"]["VRMC_node_constraint"] = {
-      {"specVersion", "1.0"}, {"constraint", {{"aim", {{"source", 4}, {"aimAxis", "PositiveX"}}}}}};
-  asset.root["materials"][0]["extensions"]["VRMC_materials_mtoon"] = {
-      {"outlineWidthMode", "none"}, {"shadeColorFactor", {0, 0, 0}}};
-  return asset;
-}
-
-Asset full_person_0() {
-  Asset asset = dressed_person();
-  add_vrm_0(asset);
-  auto& vrm = asset.root["extensions"]["VRM"];
-  vrm["blendShapeMaster"]["blendShapeGroups"][0]["materialValues"] = {
-      {{"materialName", "skin"}, {"propertyName", "_Color"}, {"targetValue", {0.5, 0, 1, 1}}},
-      {{"materialName", "skin"},
-       {"propertyName", "_MainTex_ST"},
-       {"targetValue", {1, 0.25, 0.5, 0.25}}}};
-  vrm["firstPerson"] = {{"lookAtTypeName", "BlendShape"},
-                        {"lookAtVerticalUp", {{"xRange", 60}, {"yRange", 1}}},
-                        {"meshAnnotations", {{{"mesh", 0}, {"firstPersonFlag", "Auto"}}}}};
-  vrm["materialProperties"] = {
-      {{"shader", "VRM/MToon"},
-       {"floatProperties", {{"_Cutoff", 0.5}}},
-       {"vectorProperties", {{"_Color", {1, 1, 1, 1}}, {"_MainTex", {0, 0, 1, 1}}}},
-       {"textureProperties", {{"_MainTex", 0}}},
-       {"keywordMap", {{"_ALPHATEST_ON", true}}}}};
-  return asset;
-}
-
 // All places of the extensions, each with those it lies in.
 std::vector<std::string> extension_places(const Asset& asset) {
   std::vector<std::string> places;

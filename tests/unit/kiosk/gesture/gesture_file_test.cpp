@@ -86,8 +86,8 @@ TEST_F(GestureFile, a_folder_without_recordings_is_an_error) {
 TEST_F(GestureFile, models_come_back_as_they_were) {
   const GestureModels models = train_gestures(write_set(WriterGroup::training, 3, 2, 1));
   const std::string file = (folder / "models.json").string();
-  save_gestures(models, file);
-  const GestureModels again = load_gestures(file);
+  save_gesture_models(models, file);
+  const GestureModels again = load_gesture_models(file);
   ASSERT_EQ(again.gestures.size(), models.gestures.size());
   for (size_t g = 0; g < models.gestures.size(); g++) {
     const GestureModel &a = models.gestures[g], &b = again.gestures[g];
@@ -107,7 +107,7 @@ TEST_F(GestureFile, models_come_back_as_they_were) {
 
 TEST_F(GestureFile, models_that_are_no_probabilities_are_refused) {
   const std::string file = (folder / "models.json").string();
-  save_gestures(train_gestures(write_set(WriterGroup::training, 3, 1, 1)), file);
+  save_gesture_models(train_gestures(write_set(WriterGroup::training, 3, 1, 1)), file);
   std::stringstream text;
   text << std::ifstream(file).rdbuf();
   auto with = [&](const std::string& from, const std::string& to) {
@@ -115,7 +115,7 @@ TEST_F(GestureFile, models_that_are_no_probabilities_are_refused) {
     const size_t at = changed.find(from);
     EXPECT_NE(at, std::string::npos) << from;
     write("models.json", changed.replace(at, from.size(), to));
-    return place_of_error(file, [&] { load_gestures(file); });
+    return place_of_error(file, [&] { load_gesture_models(file); });
   };
   EXPECT_EQ(with("\"initial\": [\n    1.0", "\"initial\": [\n    0.5"), "/gestures/0/initial");
   EXPECT_EQ(with("\"deviation\": [", "\"deviation\": [ 0,"), "/gestures/0/deviation");

@@ -98,6 +98,25 @@ TEST_F(RadianceGridFile, EveryDamagedByteAndLengthIsNoticed) {
   EXPECT_TRUE(load_radiance_grid(file, 1));
 }
 
+TEST_F(RadianceGridFile, ATableInWhichALookUpWouldNotEndIsNone) {
+  auto loads = [&](const RadianceGrid& one) {
+    EXPECT_TRUE(save_radiance_grid(one, file, 1));
+    return load_radiance_grid(file, 1) != nullptr;
+  };
+  RadianceGrid full = grid, odd = grid, fine = grid, dark = grid;
+  full.keys = {1, 77, 2, 5};
+  EXPECT_FALSE(loads(full));
+  odd.keys.resize(3), odd.light.resize(3), odd.count.resize(3), odd.parts = nullptr;
+  EXPECT_FALSE(loads(odd)) << "no power of two";
+  fine.cell = 1e-30f;
+  EXPECT_FALSE(loads(fine)) << "places have no whole numbers";
+  auto lamps = std::make_shared<LampsSeen>(*grid.lamps);
+  lamps->keys = {9, 8};
+  dark.lamps = lamps;
+  EXPECT_FALSE(loads(dark));
+  EXPECT_TRUE(loads(grid));
+}
+
 TEST_F(RadianceGridFile, AFolderThatCannotBeWrittenIsTold) {
   EXPECT_FALSE(save_radiance_grid(grid, "/proc/nowhere/hall.grid", 1));
 }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Target of a request, then Host, Origin, Sec-WebSocket-Protocol and Range, a line each.
+#include "fuzz/fuzz.h"
+#include "stream/origin.h"
+#include "stream/range.h"
+#include "stream/target.h"
+
+namespace wellspring::fuzz {
+
+void fuzz_http_head(Bytes bytes) {
+  HttpQuestion question;
+  if (read_target(text_of(take_until(bytes, '\n')), question) == 200) {
+    const std::string& path = question.path;
+    require(path.starts_with('/'), "a path starts with /");
+    require(path.find_first_of(std::string("\\\0", 2)) == std::string::npos,
+            "a path holds no backslash and no NUL");
+    require(path.find("//") == std::string::npos, "a path has no empty segment");
+    for (const char* part : {"/./", "/../"})
+      require((path + "/").find(part) == std::string::npos, "a path goes nowhere else");
+    require(question.query.size() <= max_query_fields, "queries are short");
+  }
+  const std::string host = text_of(take_until(bytes, '\n')),
+                    origin = text_of(take_until(bytes, '\n'));
+  origin_allowed({origin}, host, "https://museum.example");
+  offers_protocol(text_of(take_until(bytes, '\n')), "wellspring.v1");
+  for (uint64_t size : {uint64_t(0), uint64_t(1), uint64_t(1000), ~uint64_t(0)})
+    if (const auto range = read_range(text_of(bytes), size))
+      require(range->begin <= size && range->size <= size - range->begin, "ranges lie in the file");
+}
+
+}  // namespace wellspring::fuzz

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures and sound as a browser, or a program that measures, gets them.
+#include "fuzz/fuzz.h"
+#include "wire/packet.h"
+#include "wire/sound_packet.h"
+
+namespace wellspring::fuzz {
+
+void fuzz_packet(Bytes bytes) {
+  if (const auto picture = read_packet(bytes))
+    require(picture->payload.size() + packet_header_bytes <= bytes.size(), "payload lies within");
+  if (const auto sound = read_sound_packet(bytes))
+    require(sound->samples.size() * 2 + sound_header_bytes <= bytes.size(), "samples lie within");
+}
+
+}  // namespace wellspring::fuzz

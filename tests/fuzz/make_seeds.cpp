@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// fuzz_make_seeds FOLDER: writes those seeds of the corpus that are no text. Run it again when a
+// format of our own changes (build target fuzz_make_seeds).
+#include <sndfile.h>
+
+#include "frame/jpeg.h"
+#include "frame/linear_picture.h"
+#include "frame/picture_file.h"
+#include "fuzz/lit_square.h"
+#include "ledger/sums_file.h"
+#include "light/bake/map_file.h"
+#include "light/known/radiance_grid_file.h"
+#include "unit/avatar/load/vrm_person.h"
+#include "unit/denoise/tza.h"
+#include "unit/folder.h"
+#include "unit/show/exhibit/room_package.h"
+
+namespace wellspring {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Corpus {
+  fs::path root;
+  test::Folder folder;  // for what is made as a file
+
+  std::string path(const std::string& target, const std::string& name) const {
+    fs::create_directories(root / target);
+    return (root / target / name).string();
+  }
+  void put(const std::string& target, const std::string& name, const auto& bytes) const {
+    std::ofstream out(path(target, name), std::ios::binary);
+    out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+  }
+  // What stands behind the head of a kept file.
+  void put_contents(const std::string& target, const std::string& name) const {
+    put(target, name, folder.read(name).substr(24));
+  }
+};
+
+void write_recordings(const Corpus& corpus) {
+  std::vector<float> samples(2000);
+  for (size_t i = 0; i < samples.size(); i++) samples[i] = 0.3f * std::sin(0.05f * float(i));
+  const std::pair<const char*, int> kinds[] = {
+      {"tone.flac", SF_FORMAT_FLAC | SF_FORMAT_PCM_16},
+      {"tone.ogg", SF_FORMAT_OGG | SF_FORMAT_VORBIS},
+      {"tone.mp3", SF_FORMAT_MPEG | SF_FORMAT_MPEG_LAYER_III},
+      {"tone.wav", SF_FORMAT_WAV | SF_FORMAT_IMA_ADPCM},
+      {"tone.aiff", SF_FORMAT_AIFF | SF_FORMAT_FLOAT}};
+  for (const auto& [name, format] : kinds) {
+    SF_INFO info{};
+    info.samplerate = 16000, info.channels = 1, info.format = format;
+    SNDFILE* file = sf_open(corpus.path("recording", name).c_str(), SFM_WRITE, &info);
+    if (!file) continue;
+    sf_write_float(file, samples.data(), sf_count_t(samples.size()));
+    sf_close(file);
+  }
+}
+
+void write_pictures(const Corpus& corpus) {
+  Image8 image{6, 4, std::vector<uint8_t>(72)};
+  for (size_t i = 0; i < image.rgb.size(); i++) image.rgb[i] = uint8_t(i * 37);
+  save_image8(corpus.path("picture", "small.png"), image, "comment");
+  std::vector<uint8_t> jpeg;
+  encode_jpeg(image, 80, false, jpeg);
+  add_jpeg_comment("comment", jpeg);
+  corpus.put("picture", "small.jpg", jpeg);
+  Frame frame;
+  fit_frame(6, 4, frame);
+  for (size_t i = 0; i < frame.color.size(); i++) frame.color[i] = vec3(0.1f * float(i));
+  corpus.put("picture", "small.pfm", encode_pfm(frame));
+  corpus.put("picture", "small.exr", encode_exr(frame, "small.exr", "comment"));
+  corpus.put("picture", "small.hdr",
+             std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n") + "\x80\x40\x20\x81" +
+                 "\x10\x20\x30\x80");
+}
+
+void write_figures(const Corpus& corpus) {
+  corpus.put("gltf_figure", "person.gltf", test::make_person().gltf());
+  corpus.put("gltf_figure", "vrm_0.glb", test::full_person_0().glb());
+  Asset person = test::full_person_1();
+  person.root["extensionsUsed"].push_back("VRMC_springBone");
+  person.root["extensions"]["VRMC_springBone"] = {
+      {"specVersion", "1.0"},
+      {"colliders",
+       {{{"node", 4}, {"shape", {{"sphere", {{"offset", {0, 0.1, 0}}, {"radius", 0.1}}}}}},
+        {{"node", 2}, {"shape", {{"capsule", {{"radius", 0.1}, {"tail", {0, 0.2, 0}}}}}}}}},
+      {"colliderGroups", {{{"name", "head"}, {"colliders", {0, 1}}}}},
+      {"springs",
+       {{{"name", "hair"},
+         {"joints", {{{"node", 5}, {"hitRadius", 0.02}, {"stiffness", 1}}, {{"node", 6}}}},
+         {"colliderGroups", {0}}}}}};
+  const int in = person.add_floats("SCALAR", 1, {0, 1}),
+            out = person.add_floats("VEC4", 4, {0, 0, 0, 1, 0, 0.7f, 0, 0.7f});
+  person.root["animations"].push_back(
+      {{"name", "turn"},
+       {"samplers", {{{"input", in}, {"output", out}, {"interpolation", "STEP"}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", 3}, {"path", "rotation"}}}}}}});
+  corpus.put("gltf_figure", "vrm_1.gltf", person.gltf());
+}
+
+void write_scenes(const Corpus& corpus) {
+  Asset room = test::room_asset();
+  test::add_clip(room, "slide", 1, {1, 0, 0}, true);
+  corpus.put("gltf_scene", "room.gltf", room.gltf());
+  corpus.put("gltf_scene", "triangle.glb", triangle_asset().glb());
+  corpus.put("gltf_scene", "person.glb", test::dressed_person().glb());
+  // Pictures, sparse data, small numbers, extensions of materials.
+  Asset rich = triangle_asset();
+  json& root = rich.root;
+  const int uv = rich.add_accessor(rich.add_view(std::vector<uint16_t>{0, 0, 65535, 0, 0, 65535}),
+                                   5123, "VEC2", 3, {{"normalized", true}});
+  const int index = rich.add_view(std::vector<uint16_t>{1, 0}),
+            moved = rich.add_view(std::vector<float>{2, 0, 0});
+  const int sparse =
+      rich.add_accessor(-1, 5126, "VEC3", 3,
+                        {{"sparse",
+                          {{"count", 1},
+                           {"indices", {{"bufferView", index}, {"componentType", 5123}}},
+                           {"values", {{"bufferView", moved}}}}}});
+  json& primitive = root["meshes"][0]["primitives"][0];
+  primitive["attributes"]["TEXCOORD_0"] = uv;
+  primitive["targets"] = {{{"POSITION", sparse}}};
+  primitive["material"] = 0;
+  root["meshes"][0]["weights"] = {0.5};
+  std::ifstream png(corpus.path("picture", "small.png"), std::ios::binary);
+  const std::string picture{std::istreambuf_iterator<char>(png), {}};
+  root["images"] = {{{"uri", "data:image/png;base64," + base64(picture)}}};
+  root["samplers"] = {{{"wrapS", 33071}, {"magFilter", 9728}}};
+  root["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  root["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_ior",
+                            "KHR_materials_volume",       "KHR_materials_clearcoat",
+                            "KHR_materials_anisotropy",   "KHR_texture_transform"};
+  root["materials"] = {
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture",
+          {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"scale", {2, 2}}}}}}}},
+         {"roughnessFactor", 0.3}}},
+       {"normalTexture", {{"index", 0}, {"scale", 0.5}}},
+       {"alphaMode", "MASK"},
+       {"alphaCutoff", 0.4},
+       {"extensions",
+        {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+         {"KHR_materials_ior", {{"ior", 1.4}}},
+         {"KHR_materials_volume",
+          {{"attenuationDistance", 0.5}, {"attenuationColor", {1, 0.5, 0}}}},
+         {"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}},
+         {"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}}}}}};
+  root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}}};
+  rich.add_node({{"camera", 0}, {"name", "eye"}});
+  corpus.put("gltf_scene", "rich.gltf", rich.gltf());
+}
+
+void write_kept(const Corpus& corpus) {
+  test::Baked& baked = fuzz::baked_square();
+  const auto map = baked.map(2);
+  save_map(*map, corpus.folder.file("square.maps"), 1);
+  save_bake(baked.bake, corpus.folder.file("square.bake"), 1);
+  RadianceGrid grid;
+  grid.keys.assign(16, 0), grid.light.assign(16, vec3(1)), grid.count.assign(16, 20);
+  grid.keys[3] = 77, grid.keeps = {1, 0};
+  auto parts = std::make_shared<RadianceGrid::Parts>();
+  parts->slots = {3}, parts->albedo = {vec3(0.5f)}, parts->light = {{vec3(1)}, {vec3(2)}};
+  grid.parts = parts;
+  auto lamps = std::make_shared<LampsSeen>();
+  lamps->keys.assign(16, 0), lamps->keys[2] = 5, lamps->shares.resize(16);
+  grid.lamps = lamps;
+  save_radiance_grid(grid, corpus.folder.file("square.grid"), 1);
+  corpus.put_contents("cached_map", "square.maps");
+  corpus.put_contents("cached_bake", "square.bake");
+  corpus.put_contents("cached_grid", "square.grid");
+}
+
+void write_weights(const Corpus& corpus) {
+  TzaFile weights;
+  weights.add("enc.weight", {2, 1, 1, 1}, "oihw", 'h', {1, 2});
+  weights.add("enc.bias", {2}, "x", 'f', {0.5f, -1});
+  corpus.put("denoise_weights", "two.tza", weights.bytes());
+}
+
+void write_sums(const Corpus& corpus) {
+  const Sums sums = {{{20000, "visits", "castle"}, 3}};
+  add_to_file(corpus.folder.file("sums.sqlite"), sums, 100);
+  corpus.put("sums_file", "sums.sqlite", corpus.folder.read("sums.sqlite"));
+}
+
+}  // namespace
+}  // namespace wellspring
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  using namespace wellspring;
+  const Corpus corpus{argv[1], {}};
+  write_recordings(corpus);
+  write_pictures(corpus);
+  write_figures(corpus);
+  write_scenes(corpus);
+  write_kept(corpus);
+  write_weights(corpus);
+  write_sums(corpus);
+  return 0;
+}

@@ -1,0 +1,1 @@
+One sentence. <gesture name="wave"/>Another.
