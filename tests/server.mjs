@@ -13,6 +13,10 @@ export const load_module = (name) => require(name);
 
 export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
+// For tests that judge no picture: the server leaves the cores to the browser.
+export const little_light = ['--technique', 'direct', '--still-technique', 'direct', '--no-bake',
+  '--fps', '10'];
+
 // Runs a program to its end: {status, stdout, stderr}.
 export function run(name, args, { timeout = 60000 } = {}) {
   return new Promise((resolve) => {
@@ -30,15 +34,16 @@ export function run(name, args, { timeout = 60000 } = {}) {
 
 // A running server: {port, url, ws, child, stop()}. Resolves when it has printed its address.
 // Serves the castle where nothing else is said. `places` false: it finds content and pages itself.
+// `prefix`: a command that starts it, as `ip netns exec` does.
 export function start_server(words = [],
-    { port = 0, content, programs = bin, places = true } = {}) {
+    { port = 0, content, programs = bin, places = true, prefix = [] } = {}) {
   const args = content || words.includes('--exhibit') ? words : ['--exhibit', 'castle', ...words];
   content ??= join(source, 'content');
   return new Promise((resolve, reject) => {
-    const child = spawn(join(programs, 'wellspring_server'),
-      [...places ? ['--content', content, '--web', join(source, 'web')] : [],
-        '--port', String(port), ...args],
-      { stdio: ['ignore', 'pipe', 'pipe'] });
+    const command = [...prefix, join(programs, 'wellspring_server'),
+      ...places ? ['--content', content, '--web', join(source, 'web')] : [],
+      '--port', String(port), ...args];
+    const child = spawn(command[0], command.slice(1), { stdio: ['ignore', 'pipe', 'pipe'] });
     let stdout = '', stderr = '';
     const timer = setTimeout(() => {
       child.kill('SIGKILL');

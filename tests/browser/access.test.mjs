@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { make_two_exhibits } from '../scripted/pyramid.mjs';
-import { load_module, start_server } from '../server.mjs';
+import { little_light, load_module, start_server } from '../server.mjs';
 import { launch, pictures, skip } from './chromium.mjs';
 
 const axe = load_module('axe-core').source;
@@ -29,7 +29,7 @@ let server, browser;
 before(async () => {
   if (skip) return;
   const content = await make_two_exhibits(folder);
-  server = await start_server(['--cache', join(folder, 'cache'), '--no-bake'], { content });
+  server = await start_server(['--cache', join(folder, 'cache'), ...little_light], { content });
   browser = await launch();
 });
 after(async () => {

@@ -7,14 +7,14 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { make_two_exhibits } from '../scripted/pyramid.mjs';
-import { sleep, start_server } from '../server.mjs';
+import { little_light, sleep, start_server } from '../server.mjs';
 import { launch, pictures, skip } from './chromium.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-front-'));
 const content = join(folder, 'content'), keys = join(folder, 'cache');
 
 let server, browser;
-const start = (port = 0) => start_server(['--cache', keys, '--no-bake'], { content, port });
+const start = (port = 0) => start_server(['--cache', keys, ...little_light], { content, port });
 before(async () => {
   if (skip) return;
   await make_two_exhibits(folder);

@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { make_two_exhibits } from '../scripted/pyramid.mjs';
-import { start_server } from '../server.mjs';
+import { little_light, start_server } from '../server.mjs';
 import { launch, skip } from './chromium.mjs';
 
 const folder = mkdtempSync(join(tmpdir(), 'wellspring-read-'));
@@ -15,7 +15,7 @@ let server, browser;
 before(async () => {
   if (skip) return;
   const content = await make_two_exhibits(folder);
-  server = await start_server(['--cache', join(folder, 'cache'), '--no-bake'], { content });
+  server = await start_server(['--cache', join(folder, 'cache'), ...little_light], { content });
   browser = await launch();
 });
 after(async () => {
