@@ -2,6 +2,7 @@
 #include "show/draw/decide.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace wellspring {
 namespace {
@@ -48,7 +49,10 @@ int next_to_draw(double now, std::span<const VisitorDrawState> states,
     const VisitorDrawState& state = states[size_t(i)];
     return wants_picture(now, state, renderer) && (renderer.waiting == 0 || !keeps_picture(state));
   };
-  return longest_waiting(states, wants, [](const VisitorDrawState& one) { return one.drawn_at; });
+  auto since = [&](const VisitorDrawState& one) {
+    return std::pair(std::max(one.served, renderer.served), one.drawn_at);
+  };
+  return longest_waiting(states, wants, since);
 }
 
 Purpose purpose_of(double now, const VisitorDrawState& state, const RendererState& renderer) {
