@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // wellspring run: options -> load -> threads. The only place that knows both `museum` and `stream`.
+#include <unistd.h>
+
 #include <csignal>
 #include <iostream>
 
+#include "base/clock.h"
 #include "base/log.h"
+#include "museum/front.h"
 #include "museum/museum.h"
 #include "options.h"
 #include "show/http/pages.h"
@@ -15,7 +19,24 @@ namespace {
 
 using namespace wellspring;
 
-volatile std::sig_atomic_t asked_to_stop = 0;
+// Until it is serving there is nothing to be written before the end; sums are all that may be lost.
+enum Phase : int { loading, serving, written };
+volatile std::sig_atomic_t asked_to_stop = 0, phase = loading, seconds_to_drain = 0;
+constexpr unsigned seconds_to_end = 4;
+
+// The first time it ends in order, the second time at once.
+void stop(int signal) {
+  if (asked_to_stop != 0) _exit(128 + signal);
+  asked_to_stop = 1;
+  if (phase == loading) _exit(0);
+  alarm(unsigned(seconds_to_drain) + seconds_to_end);
+}
+
+void end_late(int) {
+  constexpr char words[] = "not all work could be ended in time; it is left\n";
+  if (write(STDERR_FILENO, words, sizeof(words) - 1) < 0) _exit(1);
+  _exit(phase == written ? 0 : 1);
+}
 
 // Listening to nobody but this machine.
 bool is_own_address(const std::string& host) {
@@ -42,31 +63,41 @@ void say_address(const AnswerSources& sources, const StreamSettings& stream) {
 }
 
 int serve(const ServerOptions& options) {
-  try_port(options.stream);  // before what takes seconds
-  auto pages = load_pages(options.web);
+  const auto pages = load_pages(options.web);
+  Front front(pages);
+  Doors doors;
+  doors.answer = [&](const HttpQuestion& question) { return front.answer(question); };
+  doors.answer_later = [&](const HttpQuestion& question, const std::shared_ptr<HttpAsker>& asker) {
+    return front.answer_later(question, asker);
+  };
+  doors.slow = [](const HttpQuestion& question) { return question.path.ends_with("/sums.csv"); };
+  doors.joined = [&](std::shared_ptr<Link> link) { front.join(std::move(link)); };
+  StreamSettings stream = options.stream;
+  auto server = std::make_unique<Server>(stream, doors);
+  stream.port = server->port();  // the same, when it comes back
   Museum museum(options.museum);
   const SumsDesk sums = open_sums(options, museum);
-  std::unique_ptr<Server> server;
   AnswerSources& sources = museum.sources();
   sources.pages = &pages;
   sources.desk.token = options.admin_token;
   sources.sums = [&](const HttpQuestion& question) { return answer_sums(sums, question); };
   sources.status = [&] { return museum.status(sums_access(sums)); };
   sources.speeds = [&] { return read_speeds(options.bench); };
+  sources.drains = [] { return asked_to_stop != 0; };
   sources.stream_metrics = [&] { return server ? to_metrics(server->counters()) : std::string(); };
-  Doors doors;
-  doors.answer = [&](const HttpQuestion& question) { return answer(sources, question); };
-  doors.slow = [](const HttpQuestion& question) {
-    return question.path.ends_with("/still.jpg") || question.path.ends_with("/sums.csv");
+  double ends_at = 0;  // when it is drained
+  const auto ended = [&] {
+    if (asked_to_stop == 0) return false;
+    if (ends_at == 0) ends_at = seconds_now() + options.drain;
+    return seconds_now() >= ends_at;
   };
-  doors.joined = [&](std::shared_ptr<Link> link) { museum.join(std::move(link)); };
-  StreamSettings stream = options.stream;
+  phase = serving;
+  front.open(museum);
   for (bool changed = true; changed;) {
-    server = std::make_unique<Server>(stream, doors);
-    stream.port = server->port();  // the same, when it comes back
+    if (!server) server = std::make_unique<Server>(stream, doors);
     say_address(sources, stream);
-    changed = museum.run([] { return asked_to_stop != 0; });
-    if (!changed) log::info("stopping");
+    changed = museum.run(ended);
+    if (!changed) phase = written, log::info("stopping");
     server->stop();
     if (!changed) continue;
     server.reset();
@@ -81,8 +112,10 @@ int main(int argc, char** argv) {
   log::start("server");
   ServerOptions options;
   if (int status = read_options(options, argc, argv); status >= 0) return status;
-  std::signal(SIGINT, [](int) { asked_to_stop = 1; });
-  std::signal(SIGTERM, [](int) { asked_to_stop = 1; });
+  seconds_to_drain = options.drain;
+  std::signal(SIGINT, stop);
+  std::signal(SIGTERM, stop);
+  std::signal(SIGALRM, end_late);
   std::signal(SIGPIPE, SIG_IGN);
   try {
     return serve(options);

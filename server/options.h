@@ -14,6 +14,7 @@ struct ServerOptions {
   std::string bench;        // report that /status shows; empty: none
   StreamSettings stream;
   MuseumSettings museum;
+  int drain = 0;  // seconds that it goes on serving after SIGTERM
 };
 
 // The exit status with which the program ends at once, or -1: it goes on. What is wrong is on

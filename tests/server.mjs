@@ -28,15 +28,27 @@ export function run(name, args, { timeout = 60000 } = {}) {
   });
 }
 
+const stop_child = (child) => (signal = 'SIGTERM') => new Promise((done) => {
+  if (child.exitCode !== null || child.signalCode !== null) return done(child.exitCode);
+  child.on('close', (status) => done(status));
+  child.kill(signal);
+});
+
+// A server that may not have loaded yet: {child, stop()}.
+export function start_program(args, content = join(source, 'content')) {
+  const child = spawn(join(bin, 'wellspring_server'),
+    ['--content', content, '--web', join(source, 'web'), ...args],
+    { stdio: ['ignore', 'pipe', 'pipe'] });
+  return { child, stop: stop_child(child) };
+}
+
 // A running server: {port, url, ws, child, stop()}. Resolves when it has printed its address.
 // Serves the castle where nothing else is said.
 export function start_server(words = [], { port = 0, content } = {}) {
   const args = content || words.includes('--exhibit') ? words : ['--exhibit', 'castle', ...words];
   content ??= join(source, 'content');
   return new Promise((resolve, reject) => {
-    const child = spawn(join(bin, 'wellspring_server'),
-      ['--content', content, '--web', join(source, 'web'), '--port', String(port), ...args],
-      { stdio: ['ignore', 'pipe', 'pipe'] });
+    const { child, stop } = start_program(['--port', String(port), ...args], content);
     let stdout = '', stderr = '';
     const timer = setTimeout(() => {
       child.kill('SIGKILL');
@@ -55,12 +67,7 @@ export function start_server(words = [], { port = 0, content } = {}) {
       const found = Number(match[2]), place = `${match[1]}://127.0.0.1:${found}`;
       resolve({
         child, port: found, url: `http${place}`, ws: `ws${place}`,
-        log: () => stderr,
-        stop: (signal = 'SIGTERM') => new Promise((done) => {
-          if (child.exitCode !== null || child.signalCode !== null) return done(child.exitCode);
-          child.on('close', (status) => done(status));
-          child.kill(signal);
-        }),
+        log: () => stderr, stop,
       });
     });
   });
