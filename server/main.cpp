@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/log_output.h"
 #include "base/service_manager.h"
+#include "museum/front.h"
 #include "museum/museum.h"
 #include "options.h"
 #include "show/http/pages.h"
@@ -23,7 +24,25 @@ namespace {
 
 using namespace wellspring;
 
+// Until it is serving there is nothing to be written before the end; sums are all that may be lost.
+enum Phase : int { loading, serving, written };
 volatile std::sig_atomic_t asked_to_stop = 0, asked_to_reload = 0, asked_to_reopen = 0;
+volatile std::sig_atomic_t phase = loading, seconds_to_drain = 0;
+constexpr unsigned seconds_to_end = 4;
+
+// The first time it ends in order, the second time at once.
+void stop(int signal) {
+  if (asked_to_stop != 0) _exit(128 + signal);
+  asked_to_stop = 1;
+  if (phase == loading) _exit(0);
+  alarm(unsigned(seconds_to_drain) + seconds_to_end);
+}
+
+void end_late(int) {
+  constexpr char words[] = "not all work could be ended in time; it is left\n";
+  if (write(STDERR_FILENO, words, sizeof(words) - 1) < 0) _exit(1);
+  _exit(phase == written ? 0 : 1);
+}
 
 // Programs that are started here get no more rights than this one has (set-user-ID).
 void renounce_rights() {
@@ -47,10 +66,20 @@ std::string say_address(const AnswerSources& sources, const StreamSettings& stre
 // `reread`: takes from the configuration what needs no restart.
 int serve(const ServerOptions& options, const std::function<void()>& reread) {
   ServiceManager manager;
-  try_port(options.stream);  // before what takes seconds
-  auto pages = load_pages(options.web);
+  const auto pages = load_pages(options.web);
+  Front front(pages);
+  Doors doors;
+  doors.answer = [&](const HttpQuestion& question) { return front.answer(question); };
+  doors.answer_later = [&](const HttpQuestion& question, const std::shared_ptr<HttpAsker>& asker) {
+    return front.answer_later(question, asker);
+  };
+  doors.slow = [](const HttpQuestion& question) { return question.path.ends_with("/sums.csv"); };
+  doors.admit = [&](const HttpQuestion& question) { return admit(options.access, question); };
+  doors.joined = [&](std::shared_ptr<Link> link) { front.join(std::move(link)); };
+  StreamSettings stream = options.stream;
+  auto server = std::make_unique<Server>(stream, doors);
+  stream.port = server->port();  // the same, when it comes back
   Museum museum(options.museum);
-  std::unique_ptr<Server> server;
   AnswerSources& sources = museum.sources();
   sources.pages = &pages;
   sources.access = options.access;
@@ -67,33 +96,33 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
     const StreamCounters counters = server ? server->counters() : StreamCounters{};
     return DoorCounts{counters.flood_closed, counters.accept_errors};
   };
-  Doors doors;
-  doors.answer = [&](const HttpQuestion& question) { return answer(sources, question); };
-  doors.slow = [](const HttpQuestion& question) {
-    return question.path.ends_with("/still.jpg") || question.path.ends_with("/sums.csv");
+  sources.drains = [] { return asked_to_stop != 0; };
+  std::string said;
+  double ends_at = 0;  // when it is drained
+  const auto ended = [&] {
+    if (asked_to_reopen || asked_to_reload) log::reopen();
+    asked_to_reopen = 0;
+    if (asked_to_reload) {
+      asked_to_reload = 0;
+      manager.say_reloading();
+      reread();
+      museum.reload();
+      manager.say_ready(said);
+    }
+    if (museum.has_gone_on()) manager.ping(seconds_now());
+    if (asked_to_stop == 0) return false;
+    if (ends_at == 0) ends_at = seconds_now() + options.drain;
+    return seconds_now() >= ends_at;
   };
-  doors.admit = [&](const HttpQuestion& question) { return admit(options.access, question); };
-  doors.joined = [&](std::shared_ptr<Link> link) { museum.join(std::move(link)); };
-  StreamSettings stream = options.stream;
+  phase = serving;
+  front.open(museum);
   for (bool changed = true; changed;) {
-    server = std::make_unique<Server>(stream, doors);
-    stream.port = server->port();  // the same, when it comes back
-    const std::string said = say_address(sources, stream);
+    if (!server) server = std::make_unique<Server>(stream, doors);
+    said = say_address(sources, stream);
     manager.say_ready(said);
-    changed = museum.run([&] {
-      if (asked_to_reopen || asked_to_reload) log::reopen();
-      asked_to_reopen = 0;
-      if (asked_to_reload) {
-        asked_to_reload = 0;
-        manager.say_reloading();
-        reread();
-        museum.reload();
-        manager.say_ready(said);
-      }
-      if (museum.has_gone_on()) manager.ping(seconds_now());
-      return asked_to_stop != 0;
-    });
+    changed = museum.run(ended);
     if (!changed) {
+      phase = written;
       manager.say("STOPPING=1");
       log::info("stopping");
     }
@@ -113,12 +142,14 @@ int main(int argc, char** argv) {
   ServerOptions options;
   if (int status = read_options(options, argc, argv); status >= 0) return status;
   renounce_rights();
-  std::signal(SIGINT, [](int) { asked_to_stop = 1; });
-  std::signal(SIGTERM, [](int) { asked_to_stop = 1; });
+  seconds_to_drain = options.drain;
+  std::signal(SIGINT, stop);
+  std::signal(SIGTERM, stop);
+  std::signal(SIGALRM, end_late);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGUSR1, [](int) { asked_to_reopen = 1; });
   // A service is told to reload, a program in a terminal that the terminal is gone.
-  if (isatty(STDERR_FILENO)) std::signal(SIGHUP, [](int) { asked_to_stop = 1; });
+  if (isatty(STDERR_FILENO)) std::signal(SIGHUP, stop);
   else std::signal(SIGHUP, [](int) { asked_to_reload = 1; });
   try {
     return serve(options, [&] { reread_options(options, argc, argv); });

@@ -73,6 +73,15 @@ void declare_options(CLI::App& app, ServerOptions& options, Words& words) {
   app.add_option(
       "--cache", options.museum.recordings.cache,
       "folder that keeps light, speech and words of recordings; empty: none of it is kept");
+  app.add_option("--seal-key", options.museum.seal_key,
+                 "file of the key that seals visits, made where there is none; servers that share "
+                 "it take over one another's visits; without it one in the folder of --cache");
+  app.add_option("--still-seconds", options.museum.stills.most_seconds,
+                 "seconds of this machine that one picture over HTTP may take")
+      ->check(CLI::Range(0.1, 3600.0));
+  app.add_option("--drain", options.drain,
+                 "seconds to go on serving after SIGTERM, while /healthz says 503, draining")
+      ->check(CLI::Range(0, 3600));
   app.add_option("--fps", show.fps, "pictures a second for each visitor")
       ->check(CLI::Range(1.0, 120.0));
   CapacitySettings& capacity = options.museum.capacity;

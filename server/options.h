@@ -17,6 +17,7 @@ struct ServerOptions {
   MuseumSettings museum;
   std::string log, log_level = "info";          // file; empty: stderr. base/log_output.h
   std::map<std::string, std::string> settings;  // all of them by key, as they were read
+  int drain = 0;                                // seconds that it goes on serving after SIGTERM
 };
 
 // The exit status with which the program ends at once, or -1: it goes on. What is wrong is on

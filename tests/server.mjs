@@ -32,6 +32,21 @@ export function run(name, args, { timeout = 60000 } = {}) {
   });
 }
 
+const stop_child = (child) => (signal = 'SIGTERM') => new Promise((done) => {
+  if (child.exitCode !== null || child.signalCode !== null) return done(child.exitCode);
+  child.on('close', (status) => done(status));
+  child.kill(signal);
+});
+
+// A server that may not have loaded yet: {child, stop()}.
+export function start_program(args,
+    { content = join(source, 'content'), programs = bin, places = true, prefix = [] } = {}) {
+  const command = [...prefix, join(programs, 'wellspring_server'),
+    ...places ? ['--content', content, '--web', join(source, 'web')] : [], ...args];
+  const child = spawn(command[0], command.slice(1), { stdio: ['ignore', 'pipe', 'pipe'] });
+  return { child, stop: stop_child(child) };
+}
+
 // A running server: {port, url, ws, child, stop()}. Resolves when it has printed its address.
 // Serves the castle where nothing else is said. `places` false: it finds content and pages itself.
 // `prefix`: a command that starts it, as `ip netns exec` does.
@@ -40,10 +55,8 @@ export function start_server(words = [],
   const args = content || words.includes('--exhibit') ? words : ['--exhibit', 'castle', ...words];
   content ??= join(source, 'content');
   return new Promise((resolve, reject) => {
-    const command = [...prefix, join(programs, 'wellspring_server'),
-      ...places ? ['--content', content, '--web', join(source, 'web')] : [],
-      '--port', String(port), ...args];
-    const child = spawn(command[0], command.slice(1), { stdio: ['ignore', 'pipe', 'pipe'] });
+    const { child, stop } =
+        start_program(['--port', String(port), ...args], { content, programs, places, prefix });
     let stdout = '', stderr = '';
     const timer = setTimeout(() => {
       child.kill('SIGKILL');
@@ -62,12 +75,7 @@ export function start_server(words = [],
       const found = Number(match[2]), place = `${match[1]}://127.0.0.1:${found}`;
       resolve({
         child, port: found, url: `http${place}`, ws: `ws${place}`,
-        log: () => stderr,
-        stop: (signal = 'SIGTERM') => new Promise((done) => {
-          if (child.exitCode !== null || child.signalCode !== null) return done(child.exitCode);
-          child.on('close', (status) => done(status));
-          child.kill(signal);
-        }),
+        log: () => stderr, stop,
       });
     });
   });

@@ -13,9 +13,11 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/near_name.h"
+#include "base/return_memory.h"
 #include "ledger/ledger.h"
 #include "museum/heartbeat.h"
 #include "museum/reception.h"
+#include "show/answer/come_back.h"
 #include "show/exhibit/check_scene.h"
 #include "show/exhibit/exhibit_load.h"
 #include "show/house/house_file.h"
@@ -40,6 +42,24 @@ void read_recordings_or_fail(Exhibit& exhibit, const RecordingOptions& options) 
   if (std::ranges::any_of(problems, &Problem::fatal)) throw ExhibitError(std::move(problems));
   for (const Problem& problem : problems) log::warn("{}", to_string(problem));
 }
+
+// When visitors have left, and again when their visits cannot be gone on with any more, memory that
+// they had goes back to the system.
+class MemoryReturn {
+ public:
+  void look(size_t visitors) {
+    const double now = seconds_now();
+    if (visitors < before_) due_ = now + soon_after, last_due_ = now + kept_seconds + soon_after;
+    before_ = visitors;
+    for (double* due : {&due_, &last_due_})
+      if (now >= *due) *due = never, return_memory();
+  }
+
+ private:
+  static constexpr double soon_after = 5, never = 1e18;  // seconds
+  size_t before_ = 0;
+  double due_ = never, last_due_ = never;
+};
 
 // One exhibit and what belongs to its show.
 struct Room {
@@ -151,15 +171,22 @@ struct Museum::Impl {
   HouseSettings house;               // of the first exhibit, and so of all
   fs::file_time_type house_time;     // of its file
   std::list<Room> rooms;
+  StillDesk stills;  // is closed before its rooms go
   AnswerSources sources;
   std::shared_ptr<Capacity> capacity;  // of all rooms together
   std::unique_ptr<Reception> reception;
   std::atomic<bool> stopping = false, changed = false;
 
   explicit Impl(const MuseumSettings& settings)
-      : settings(settings), capacity(std::make_shared<Capacity>(settings.capacity)) {}
+      : settings(settings),
+        stills(settings.stills, [this] { return somebody_draws(); }),
+        capacity(std::make_shared<Capacity>(settings.capacity)) {}
 
   SharedParts shared() const { return {ledger.get(), sources.door_counts}; }
+
+  bool somebody_draws() const {
+    return std::ranges::any_of(rooms, [](const Room& room) { return room.draws.load(); });
+  }
 
   std::vector<std::string> find_ids() const {
     const std::vector<std::string> ids = exhibits_in(settings.content);
@@ -191,6 +218,7 @@ struct Museum::Impl {
     if (!is_first) own.house = first_house();
     else if (!settings.house.empty()) own.house = load_house(settings.house, exhibit);
     auto show = make_show(std::move(exhibit), own);
+    if (!settings.seal_key.empty()) show->seal = std::make_shared<Seal>(settings.seal_key);
     std::vector<Problem> notes;
     check_places(show->exhibit, *show->world, notes);
     for (const Problem& note : notes) log::warn("{}", to_string(note));
@@ -221,10 +249,9 @@ struct Museum::Impl {
     std::vector<ExhibitDoor> doors;
     for (Room& room : rooms) {
       Show& show = *room.show;
-      sources.exhibits.push_back(
-          {&show.exhibit, &room.board,
-           [&room](const StillJob& order) { return room.stills->make(order); },
-           show.roads.map ? &*show.roads.map : nullptr, show.settings.house.address});
+      sources.exhibits.push_back({&show.exhibit, &room.board, room.stills.get(),
+                                  show.roads.map ? &*show.roads.map : nullptr,
+                                  show.settings.house.address});
       doors.push_back({show.exhibit.id, kiosks_of(show.exhibit)});
     }
     reception = std::make_unique<Reception>(
@@ -256,6 +283,12 @@ struct Museum::Impl {
     put_up_signs();
   }
 
+  size_t count_visitors() const {
+    size_t visitors = 0;
+    for (const Room& room : rooms) visitors += room.board.read().visitors.size();
+    return visitors;
+  }
+
   Room& room_at(size_t door) { return *std::next(rooms.begin(), long(door)); }
 };
 
@@ -264,6 +297,7 @@ Museum::Museum(const MuseumSettings& settings) : impl_(std::make_unique<Impl>(se
   impl.house_time = impl.time_of_house();
   if (!settings.sums.empty()) impl.ledger = std::make_unique<Ledger>(LedgerSettings{settings.sums});
   impl.open_all();
+  impl.sources.stills = &impl.stills;
   impl.sources.changes = settings.show.watched;
   impl.sources.desk.put = [&impl](const Announcement& one) {
     uint32_t number = 0;
@@ -317,15 +351,21 @@ Sums Museum::read_sums(int64_t from, int64_t to) const {
 bool Museum::run(const std::function<bool()>& ended) {
   Impl& impl = *impl_;
   impl.stopping = impl.changed = false;
+  impl.stills.open();
   for (Room& room : impl.rooms)
     room.thread = std::thread([&impl, &room] {
       keep_ticking(room, impl.rooms, impl.shared(), *impl.reception, impl.stopping, impl.changed);
     });
-  while (!ended() && !impl.changed)
+  MemoryReturn memory;
+  while (!ended() && !impl.changed) {
+    memory.look(impl.count_visitors());
     for (Reception::Shown& one : impl.reception->show_in(wait_at_reception))
       impl.room_at(one.door).arrivals.put(std::move(one.link), std::move(one.seat));
+  }
   impl.stopping = true;
+  impl.stills.close();
   for (Room& room : impl.rooms) room.thread.join();
+  if (impl.ledger) impl.ledger->write();
   return impl.changed && !ended();
 }
 

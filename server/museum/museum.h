@@ -22,6 +22,9 @@ struct MuseumSettings {
   RecordingOptions recordings;
   std::string house;  // house file, whose kiosks are the first exhibit's; empty: none
   std::string sums;   // file of daily sums; empty: none are kept
+  StillLimits stills;
+  // Of the key that seals visits, for servers that share them; empty: a file in the cache.
+  std::string seal_key;
 };
 
 // Ids of the packages in a folder, sorted.
@@ -44,7 +47,8 @@ class Museum {
   Sums read_sums(int64_t from, int64_t to) const;  // Ledger::read(); nothing where none are kept
   // Ticks all shows until `ended`, which is asked ten times a second, says so: false. Or until one
   // of them has changed, where they are watched or reload() was called: true. Then take_over()
-  // shows it as it is now, when nobody asks sources() or joins.
+  // shows it as it is now, when nobody asks sources() or joins. By then sums are written, and
+  // pictures that somebody waits for are given up.
   bool run(const std::function<bool()>& ended);
   void take_over();
   // Looks once whether files of an exhibit or of the house have changed. From within `ended`.

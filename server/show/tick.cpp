@@ -9,13 +9,13 @@
 #include "base/log.h"
 #include "show/answer/cameras.h"
 #include "show/answer/come_back.h"
-#include "show/answer/commands.h"
 #include "show/answer/events.h"
 #include "show/answer/follow_house.h"
 #include "show/answer/groups.h"
 #include "show/answer/idle.h"
 #include "show/answer/kiosk_window.h"
 #include "show/answer/kiosks.h"
+#include "show/answer/orders.h"
 #include "show/answer/sound.h"
 #include "show/answer/storyteller_orders.h"
 #include "show/count/count.h"
@@ -68,18 +68,7 @@ void welcome_links(Show& show, Arrivals& arrivals) {
 }
 
 void read_visitors(Show& show, double dt) {
-  for (Visitor& visitor : show.visitors)
-    for (const std::string& text : visitor.link->take_texts()) {
-      show.totals.messages++;
-      auto message = read_browser_message(text);
-      std::optional<WireError> error;
-      if (const WireError* bad = std::get_if<WireError>(&message)) error = *bad;
-      else error = handle(show, visitor, std::get<BrowserMessage>(message));
-      if (!error) note_touch(visitor, std::get<BrowserMessage>(message));
-      if (!error) continue;
-      show.totals.refused_messages++;
-      visitor.link->send_text(write_error(*error));
-    }
+  for (Visitor& visitor : show.visitors) follow_orders(show, visitor);
   for (auto next = show.visitors.begin(); next != show.visitors.end();) {
     auto visitor = next++;
     if (!visitor->left && !visitor->link->closed()) continue;

@@ -17,8 +17,8 @@
 #include <set>
 #include <unordered_map>
 
+#include "base/rate.h"
 #include "stream/address.h"
-#include "stream/rate.h"
 
 namespace wellspring {
 

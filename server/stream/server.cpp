@@ -75,13 +75,6 @@ static void listen_on(net::io_context& io, const StreamSettings& settings,
   if (ec) throw_error(ec);
 }
 
-void try_port(const StreamSettings& settings) {
-  const Core core(settings, {});  // reads addresses and certificate
-  net::io_context io;
-  tcp::acceptor acceptor(io);
-  listen_on(io, settings, acceptor);
-}
-
 void Server::Impl::listen() {
   listen_on(core->io, core->settings, acceptor);
   port = acceptor.local_endpoint().port();

@@ -2,6 +2,7 @@
 #include "stream/session.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "base/log.h"
 #include "stream/reply.h"
@@ -51,6 +52,15 @@ Core::Core(const StreamSettings& settings, Doors doors)
     throw std::runtime_error("TLS needs both a certificate and its key");
   if (!settings.certificate.empty())
     certificate = std::make_unique<Certificate>(settings.certificate, settings.key);
+}
+
+net::awaitable<bool> Signal::wait_for(std::chrono::milliseconds limit) {
+  if (!raised_) {
+    error_code ec;
+    timer_.expires_after(limit);
+    co_await timer_.async_wait(net::redirect_error(net::use_awaitable, ec));
+  }
+  co_return std::exchange(raised_, false);
 }
 
 Session::Session(std::shared_ptr<Core> core, tcp::socket socket, uint64_t id,

@@ -3,13 +3,14 @@
 // the other (session_http.cpp) and, after an upgrade, a WebSocket (session_websocket.cpp: this
 // coroutine reads, a second one writes). Only for the .cpp files of this folder (heavy).
 #pragma once
+#include <chrono>
 #include <memory>
 #include <string>
 
+#include "base/rate.h"
 #include "stream/asio.h"
 #include "stream/core.h"
 #include "stream/frames.h"
-#include "stream/rate.h"
 #include "stream/transport.h"
 #include "wire/http.h"
 #include "wire/link.h"
@@ -42,6 +43,7 @@ class Signal {
   explicit Signal(const net::any_io_executor& strand) : timer_(strand) {}
   void raise();
   net::awaitable<void> wait();
+  net::awaitable<bool> wait_for(std::chrono::milliseconds limit);  // false: it was not raised
 
  private:
   net::steady_timer timer_;
@@ -82,7 +84,8 @@ class Session : public std::enable_shared_from_this<Session> {
   net::awaitable<int> read_request(Request& request);
   net::awaitable<void> write_refusal(HttpQuestion question, int status, std::string message,
                                      std::string allowed = "");
-  net::awaitable<HttpReply> ask(HttpQuestion question);
+  net::awaitable<HttpReply> ask(HttpQuestion question);  // status 0: nobody there to be told
+  bool peer_has_left();
   net::awaitable<bool> write_reply(HttpQuestion question, HttpReply reply, unsigned version,
                                    bool keep_alive);
   net::awaitable<error_code> write_file(const FilePart& part,

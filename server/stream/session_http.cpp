@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The HTTP half of a session: read a request, judge it, let a worker answer, write, and again.
+#include <poll.h>
+
 #include <algorithm>
 #include <chrono>
 #include <ctime>
@@ -14,6 +16,7 @@
 
 namespace wellspring {
 
+static constexpr auto look_at_peer = std::chrono::milliseconds(200);  // whose answer takes long
 static constexpr std::string_view subprotocol = "wellspring.v1";
 
 // The one path that takes a body, and nothing but a POST.
@@ -127,6 +130,7 @@ net::awaitable<void> Session::serve_http() {
     question.if_range = std::string(request[http::field::if_range]);
     question.authorization = std::string(request[http::field::authorization]);
     question.local = is_local(request);
+    question.address = to_string(caller_.address);
 
     const bool websocket_path = question.path == "/api/v1/visit" || question.path == "/api/v1/eye";
     const bool upgrade = websocket::is_upgrade(request);
@@ -145,6 +149,7 @@ net::awaitable<void> Session::serve_http() {
     } else {
       reply = co_await ask(question);
     }
+    if (reply.status == 0) co_return;
     const bool keep = request.keep_alive() && !upgrade && !stopping_;
     const bool go_on =
         co_await write_reply(std::move(question), std::move(reply), request.version(), keep);
@@ -279,28 +284,47 @@ HttpReply Session::judge_upgrade(const HttpQuestion& question, const Request& re
   return reply;
 }
 
-// On a worker thread; this coroutine sleeps meanwhile.
+// It has closed its end of the line, or the line is broken.
+bool Session::peer_has_left() {
+  pollfd line{stream().socket().native_handle(), POLLRDHUP, 0};
+  if (line.fd < 0) return true;  // it was cut
+  return poll(&line, 1, 0) > 0 && (line.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;
+}
+
+// On a worker thread, or later on any; this coroutine looks meanwhile whether its peer still waits.
 net::awaitable<HttpReply> Session::ask(HttpQuestion question) {
   auto reply = std::make_shared<HttpReply>();
+  auto asker = std::make_shared<HttpAsker>([self = shared_from_this(), reply](HttpReply made) {
+    *reply = std::move(made);
+    net::post(self->ws_.get_executor(), [self] { self->answered_.raise(); });
+  });
   const bool slow = core_->doors.slow && core_->doors.slow(question);
   const bool health =
       caller_.trusted && (question.path == "/healthz" || question.path == "/metrics");
   Workers& workers = health ? core_->health_workers : slow ? core_->slow_workers : core_->workers;
-  const bool posted = workers.post([self = shared_from_this(), question, reply](bool run) {
+  const bool posted = workers.post([core = core_, question, asker](bool run) {
+    const Doors& doors = core->doors;
     try {
-      *reply = run ? self->core_->doors.answer(question) : make_refusal(503, "server stops");
+      if (!run) asker->answer(make_refusal(503, "server stops"));
+      else if (!doors.answer_later || !doors.answer_later(question, asker))
+        asker->answer(doors.answer(question));
     } catch (const std::exception& e) {
       log::error("answer to {}: {}", question.path, e.what());
-      *reply = make_refusal(500, "internal error");
+      asker->answer(make_refusal(500, "internal error"));
     }
-    net::post(self->ws_.get_executor(), [self] { self->answered_.raise(); });
   });
   if (!posted) {
     *reply = make_refusal(503, "too busy");
     reply->headers["Retry-After"] = "2";
     co_return std::move(*reply);
   }
-  co_await answered_.wait();
+  while (!co_await answered_.wait_for(look_at_peer)) {
+    if (!peer_has_left()) continue;
+    asker->leave();
+    HttpReply nobody;
+    nobody.status = 0;
+    co_return nobody;
+  }
   co_return std::move(*reply);
 }
 

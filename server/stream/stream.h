@@ -38,16 +38,19 @@
 namespace wellspring {
 
 struct Doors {
-  // Runs on a worker thread of its own pool, may take seconds (a still picture); must not throw.
+  // Runs on a worker thread of its own pool, may take seconds; must not throw.
   std::function<HttpReply(const HttpQuestion&)> answer;
   // Optional: whether a WebSocket may be opened; without it every one may. Runs on an I/O thread;
   // must not block.
   std::function<UpgradeAnswer(const HttpQuestion&)> admit{};
+  // Optional: asked before `answer`, likewise on a worker thread, and must not take long. True: it
+  // has taken the question, and answers the asker when it can, or not at all once that is gone.
+  std::function<bool(const HttpQuestion&, const std::shared_ptr<HttpAsker>&)> answer_later{};
   // A peer passed the WebSocket handshake and said something. Runs on an I/O thread; must not
   // block.
   std::function<void(std::shared_ptr<Link>)> joined;
   // Optional: questions that may take long. They get two threads and a short queue of their own, so
-  // that pictures being made never keep a health check waiting. Both queues answer 503 when full.
+  // that they never keep a health check waiting. Both queues answer 503 when full.
   std::function<bool(const HttpQuestion&)> slow{};
 };
 
@@ -78,10 +81,6 @@ struct StreamCounters {  // since the start, but for open and websockets: now
 };
 // As Prometheus reads it.
 std::string to_metrics(const StreamCounters& counters);
-
-// Throws what Server would throw if it were made now, for its settings or because the port cannot
-// be had; else lets go of it again.
-void try_port(const StreamSettings& settings);
 
 class Server {
  public:

@@ -2,10 +2,13 @@
 // A question over HTTP and its reply, free of any socket library. `show/answer` makes replies with
 // pure functions; `stream` carries them.
 #pragma once
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace wellspring {
 
@@ -15,7 +18,8 @@ struct HttpQuestion {
   std::map<std::string, std::string> query;  // percent-decoded; the last of equal names
   std::string if_none_match, range, if_range, accept, authorization;  // headers of those names
   std::string body;                                                   // of a POST: what was posted
-  bool local = false;  // from this machine itself, and through no proxy (stream/origin.h)
+  bool local = false;   // from this machine itself, and through no proxy (stream/origin.h)
+  std::string address;  // of who asks, without its port
 };
 
 // Bytes of a file on disk.
@@ -36,6 +40,21 @@ struct HttpReply {
 struct UpgradeAnswer {
   std::optional<HttpReply> refusal;  // empty: it may
   std::string kiosk{};               // Link::kiosk
+};
+
+// Who waits for the answer to a question. Any thread.
+class HttpAsker {
+ public:
+  explicit HttpAsker(std::function<void(HttpReply)> take) : take_(std::move(take)) {}
+  void answer(HttpReply reply) {  // the first counts
+    if (!answered_.exchange(true)) take_(std::move(reply));
+  }
+  void leave() { gone_ = true; }
+  bool gone() const { return gone_; }  // nobody waits any more
+
+ private:
+  const std::function<void(HttpReply)> take_;
+  std::atomic<bool> answered_{false}, gone_{false};
 };
 
 }  // namespace wellspring

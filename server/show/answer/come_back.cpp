@@ -108,9 +108,8 @@ void restore(Show& show, Visitor& visitor, const json& about) {
   order.humanlike = who.at("humanlike").get<bool>();
   const json story = about.value("story", json::object());
   const std::string id = story.value("id", std::string());
-  if (is_story(show.exhibit, id)) order.story = id;
-  if (handle_storyteller(show, visitor, order) || order.story.empty()) return;
-  Teller& teller = *visitor.own_teller;
+  if (handle_storyteller(show, visitor, order) || !is_story(show.exhibit, id)) return;
+  Teller& teller = *visitor.own_teller;  // goes on with it: it was counted when it was begun
   tell(teller.voice, *std::ranges::find(show.exhibit.stories, id, &StoryText::id),
        std::max(0, story.at("sentence").get<int>()));
   teller.voice.asked_by = visitor.link->id;

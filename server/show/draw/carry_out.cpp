@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/clock.h"
 #include "show/draw/late_samples.h"
 #include "show/draw/moving.h"
 #include "show/draw/make_picture_job.h"
@@ -20,7 +21,19 @@ namespace wellspring {
 namespace {
 
 void use_cores(Show& show, std::function<void()> work) {
-  show.renderer.worker.run([&show, work = std::move(work)] { show.renderer.cores.execute(work); });
+  show.renderer.worker.run([&show, work = std::move(work)] {
+    const double began = seconds_now();
+    show.renderer.cores.execute(work);
+    show.renderer.work_seconds = seconds_now() - began;
+  });
+}
+
+// Whoever has had the renderer's time comes later with the next picture, given up or not.
+void charge(Show& show, double seconds) {
+  Renderer& renderer = show.renderer;
+  if (show.pass.at_work) show.pass.visitor->picture.served += seconds;
+  else if (renderer.posed) renderer.posed->picture.served += seconds;
+  else if (renderer.drawn) renderer.drawn->picture.served += seconds;
 }
 
 void draw_what_moves(Show& show, Visitor& visitor) {
@@ -53,6 +66,7 @@ void go_on_drawing(Show& show) {
 void begin_picture(Show& show, Visitor& visitor, int waiting, Purpose purpose) {
   Renderer& renderer = show.renderer;
   renderer.drawn = &visitor;
+  renderer.served = visitor.picture.served = std::max(visitor.picture.served, renderer.served);
   renderer.job = make_picture_job(show, visitor, std::max(waiting, 1), purpose);
   renderer.surrounds = renderer.job.around && !visitor.picture.around.drawn;
   begin_world_of(show, visitor);
@@ -75,7 +89,9 @@ void use_cores_for_pass(Show& show) {
 bool take_finished(Show& show) {
   Renderer& renderer = show.renderer;
   if (!renderer.idle()) return false;
+  const double seconds = std::exchange(renderer.work_seconds, 0);
   if (!renderer.brokers.empty()) finish_samples(show);
+  else if (!renderer.skin.at_work) charge(show, seconds);
   if (show.pass.at_work) take_pass(show);
   if (renderer.skin.at_work) finish_skin_light(show);
   if (Visitor* posed = std::exchange(renderer.posed, nullptr)) {

@@ -2,6 +2,7 @@
 #include "show/draw/decide.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace wellspring {
 namespace {
@@ -49,9 +50,10 @@ int next_to_draw(double now, std::span<const VisitorDrawState> states,
     return wants_picture(now, state, renderer) && (renderer.waiting == 0 || !keeps_picture(state));
   };
   // Newcomers wait since they came: they do not all come before those who are there.
-  return longest_waiting(states, wants, [](const VisitorDrawState& one) {
-    return std::max(one.drawn_at, one.came_at);
-  });
+  auto since = [&](const VisitorDrawState& one) {
+    return std::pair(std::max(one.served, renderer.served), std::max(one.drawn_at, one.came_at));
+  };
+  return longest_waiting(states, wants, since);
 }
 
 Purpose purpose_of(double now, const VisitorDrawState& state, const RendererState& renderer) {

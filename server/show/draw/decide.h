@@ -4,7 +4,8 @@
 // Show, so that every rule is a row of a table in the test.
 //
 // What moves comes first, and its light, then what is begun, then samples that were asked for, then
-// the reconstruction that is under way, else the picture that has been waited for longest.
+// the reconstruction that is under way, else a picture: of those who want one, whoever has had
+// least of the renderer's time, so that nobody has more of it than others by asking for more.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -32,6 +33,7 @@ struct VisitorDrawState {
   double moved_at = 0;                      // when the view changed last
   double picture_rate = 1, drawing_rate = 1, moving_rate = 1;
   double asked_seconds = 0;  // of all cores, for samples that it has asked for
+  double served = 0;         // of the renderer's time: VisitorPicture::served
   RestState rest;
 };
 
@@ -46,6 +48,7 @@ struct RendererState {
   bool has_skin = false;         // what moves keeps light on its skin
   double skin_at = -1e9;         // when that was last ordered
   uint64_t skin_turn = 0;        // how often
+  double served = 0;             // Renderer::served
   int waiting = 0;               // visitors who waited for a picture when the tick began
 };
 

@@ -47,6 +47,7 @@ void finish_samples(Show& show) {
     smooth(visitor.times.trace,
            float(1000 * renderer.traced_seconds / double(renderer.brokers.size())));
     visitor.picture.at_work = false;
+    visitor.picture.served += renderer.traced_seconds / double(renderer.brokers.size());
   }
   renderer.brokers.clear();
 }

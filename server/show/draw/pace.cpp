@@ -55,6 +55,7 @@ VisitorDrawState facts_of(const Show& show, const Visitor& visitor) {
   state.posed_at = picture.posed_at;
   state.moved_at = place.moved_at;
   state.asked_seconds = picture.broker_seconds;
+  state.served = picture.served;
   state.rest = picture.rest;
   return state;
 }
@@ -225,6 +226,7 @@ RendererState renderer_state(const Show& show) {
   state.has_skin = !show.skin.places.empty();
   state.skin_at = renderer.skin.time;
   state.skin_turn = renderer.skin.turn;
+  state.served = renderer.served;
   return state;
 }
 

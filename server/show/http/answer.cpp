@@ -2,6 +2,7 @@
 #include "show/http/answer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "show/answer/book.h"
@@ -94,14 +95,26 @@ json describe(const Exhibit& exhibit) {
   return about;
 }
 
-HttpReply answer_still(const ServedExhibit& sources, const HttpQuestion& question) {
-  StillQuestion asked = read_still_question(*sources.exhibit, question.query);
-  if (asked.status != 200) return error_reply(asked.status, asked.code, asked.problem);
+HttpReply still_reply(StillOutcome outcome) {
   HttpReply reply;
-  reply.content_type = "image/jpeg";
-  reply.headers["Cache-Control"] = "public, max-age=60";
-  if (question.method != "HEAD") reply.body = sources.make_still(asked.job);
+  if (outcome.status == 200) {
+    reply.content_type = "image/jpeg";
+    reply.headers["Cache-Control"] = "public, max-age=60";
+    reply.headers["ETag"] = make_etag(outcome.jpeg);
+    reply.body = std::move(outcome.jpeg);
+  } else {
+    reply = error_reply(outcome.status, outcome.code, outcome.problem);
+    if (outcome.retry_seconds > 0)
+      reply.headers["Retry-After"] = std::to_string(int(std::ceil(outcome.retry_seconds)));
+  }
   return reply;
+}
+
+// Without a picture: of a wrong question, or to whoever does not want its body.
+HttpReply answer_still(const ServedExhibit& sources, const HttpQuestion& question) {
+  const StillQuestion asked = read_still_question(*sources.exhibit, question.query);
+  if (asked.status != 200) return error_reply(asked.status, asked.code, asked.problem);
+  return still_reply({});
 }
 
 HttpReply answer_map(const ServedExhibit& sources) {
@@ -174,6 +187,7 @@ HttpReply answer_metrics(const AnswerSources& sources) {
     texts.push_back({one.exhibit->id, write_metrics(one.board->read())});
   reply.body = texts.size() == 1 ? texts.front().second : join_metrics(texts);
   reply.body += failure_metrics(sources.failed);
+  if (sources.stills) reply.body += still_metrics(sources.stills->status());
   if (sources.stream_metrics) reply.body += sources.stream_metrics();
   return reply;
 }
@@ -210,8 +224,50 @@ std::optional<HttpReply> answer_status(const AnswerSources& sources, const Acces
 
 }  // namespace
 
+HttpReply answer_while_loading(const std::map<std::string, PageFile>& pages,
+                               const HttpQuestion& question) {
+  HttpReply reply =
+      error_reply(503, "loading", "the museum is opening; please come back in a moment");
+  if (question.path == "/healthz") return json_reply({{"status", "loading"}}, 503);
+  const auto found = pages.find(question.path), opening = pages.find("/opening.html");
+  if (found != pages.end() && !found->second.content_type.starts_with("text/html"))
+    return answer_page(found->second, question);
+  if (opening != pages.end() && prefers_html(question.accept)) {
+    reply.content_type = opening->second.content_type;
+    reply.body = opening->second.body;
+  }
+  reply.headers["Retry-After"] = "2";
+  return reply;
+}
+
+bool answer_later(const AnswerSources& sources, const HttpQuestion& question,
+                  const std::shared_ptr<HttpAsker>& asker) {
+  const std::string before = "/api/v1/exhibits/", after = "/still.jpg";
+  const std::string& path = question.path;
+  if (question.method != "GET" || !path.starts_with(before) || !path.ends_with(after)) return false;
+  if (!sources.stills || path.size() < before.size() + after.size()) return false;
+  const ServedExhibit* served =
+      find_exhibit(sources, path.substr(before.size(), path.size() - before.size() - after.size()));
+  if (!served) return false;
+  const StillQuestion asked = read_still_question(*served->exhibit, question.query);
+  if (asked.status != 200) return false;
+  const bool changes = sources.changes;
+  sources.stills->ask(*served->stills, asked.job,
+                      {.take =
+                           [asker, changes](StillOutcome outcome) {
+                             HttpReply reply = still_reply(std::move(outcome));
+                             if (changes) reply.headers["Cache-Control"] = "no-store";
+                             asker->answer(std::move(reply));
+                           },
+                       .gone = [asker] { return asker->gone(); },
+                       .address = question.address});
+  return true;
+}
+
 HttpReply answer(const AnswerSources& sources, const HttpQuestion& question) {
   const std::string& path = question.path;
+  if (path == "/healthz" && sources.drains && sources.drains())
+    return json_reply({{"status", "draining"}}, 503);
   const Access access = access_of(sources.access, question);
   if (path == "/healthz") {
     bool ready = std::ranges::all_of(

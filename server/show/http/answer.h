@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@
 #include "show/exhibit/exhibit.h"
 #include "show/http/pages.h"
 #include "show/http/report.h"
-#include "show/http/still.h"
+#include "show/http/still_desk.h"
 #include "show/visit/walk_map.h"
 #include "wire/http.h"
 
@@ -21,7 +22,7 @@ namespace wellspring {
 struct ServedExhibit {
   const Exhibit* exhibit = nullptr;
   const ReportBoard* board = nullptr;
-  std::function<std::string(const StillJob&)> make_still;
+  StillRoom* stills = nullptr;
   const WalkMap* walk_map = nullptr;  // null: visitors fly
   std::string address = {};           // HouseSettings::address
 };
@@ -40,15 +41,26 @@ struct AnswerSources {
   std::function<std::string()> stream_metrics;  // further Prometheus lines; may be empty
   std::function<DoorCounts()> door_counts;      // from any thread; may be empty
   AccessRules access;
+  StillDesk* stills = nullptr;
   AnnouncementDesk desk;
   std::function<HttpReply(const HttpQuestion&)> sums;  // GET /api/v1/sums.csv (show/status/sums.h)
   std::function<std::string()> status;  // GET /api/v1/status: JSON (show/status/status.h)
   std::function<std::string()> speeds;  // GET /api/v1/speeds: JSON (show/status/speeds.h)
+  std::function<bool()> drains;         // visitors are to go elsewhere; empty: never
   bool changes = false;                 // exhibits may: nothing of them is kept by browsers
 };
 
 // Never throws; unknown paths are 404, bad parameters 400 with {"error":{"code","message"}}.
 HttpReply answer(const AnswerSources& sources, const HttpQuestion& question);
+
+// Before there are any: 503, but for what pages are made of.
+HttpReply answer_while_loading(const std::map<std::string, PageFile>& pages,
+                               const HttpQuestion& question);
+
+// Takes a question for a finished picture, and answers when that is made; false: it is none, or a
+// wrong one, for answer().
+bool answer_later(const AnswerSources& sources, const HttpQuestion& question,
+                  const std::shared_ptr<HttpAsker>& asker);
 
 // GET /api/v1/: what this server answers and the messages it speaks.
 std::string describe_api();
@@ -57,5 +69,6 @@ std::string write_metrics(const ShowReport& report);
 // Of several exhibits, by id: each sample gets the label `exhibit`, each name its help once.
 std::string join_metrics(const std::vector<std::pair<std::string, std::string>>& texts);
 std::string failure_metrics(const std::vector<FailedExhibit>& failed);
+std::string still_metrics(const StillStatus& stills);
 
 }  // namespace wellspring

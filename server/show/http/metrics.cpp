@@ -144,6 +144,9 @@ std::string write_metrics(const ShowReport& report) {
   metric(out, "messages_total", "counter", "Messages from browsers", double(totals.messages));
   metric(out, "refused_messages_total", "counter", "Messages refused",
          double(totals.refused_messages));
+  metric(out, "orders_left_out_total", "counter",
+         "Orders not carried out since newer ones of the same visitor came before their turn",
+         double(totals.orders_left_out));
   metric(out, "visits_total", "counter", "Visits begun", double(totals.visits));
   metric(out, "visitors", "gauge", "Visitors now", double(report.visitors.size()));
   metric(out, "house_open", "gauge", "The house is open", report.open);
@@ -271,6 +274,28 @@ std::string join_metrics(const std::vector<std::pair<std::string, std::string>>&
   }
   std::string out;
   for (const std::string& name : names) out += families[name];
+  return out;
+}
+
+std::string still_metrics(const StillStatus& stills) {
+  std::string out;
+  metric(out, "stills_waiting", "gauge", "Finished pictures that are waited for",
+         double(stills.waiting));
+  metric(out, "stills_waiting_seconds", "gauge", "Of this machine, until all of these are made",
+         stills.waiting_seconds);
+  metric(out, "stills_samples_per_second", "gauge", "Samples a second of the last one, one thread",
+         stills.samples_per_second);
+  metric(out, "stills_made_total", "counter", "Finished pictures made", double(stills.made));
+  metric(out, "stills_shared_total", "counter",
+         "Questions answered by a finished picture that was there, or being made",
+         double(stills.shared));
+  metric(out, "stills_given_up_total", "counter", "Finished pictures that nobody waited for",
+         double(stills.given_up));
+  out +=
+      "# HELP wellspring_stills_refused_total Finished pictures refused\n"
+      "# TYPE wellspring_stills_refused_total counter\n";
+  out += fmt::format("wellspring_stills_refused_total{{cause=\"too_dear\"}} {}\n", stills.too_dear);
+  out += fmt::format("wellspring_stills_refused_total{{cause=\"too_many\"}} {}\n", stills.too_many);
   return out;
 }
 

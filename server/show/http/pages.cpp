@@ -27,13 +27,13 @@ const std::map<std::string, std::string> content_types = {
     {".json", "application/json; charset=utf-8"},
     {".woff2", "font/woff2"}};
 
+}  // namespace
+
 std::string make_etag(const std::string& body) {
   uint64_t hash = body.size();
   for (unsigned char c : body) hash = mix64(hash ^ c);
   return fmt::format("\"{:016x}\"", hash);
 }
-
-}  // namespace
 
 std::map<std::string, PageFile> load_pages(const std::string& folder) {
   std::map<std::string, PageFile> pages;

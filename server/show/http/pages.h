@@ -18,4 +18,6 @@ inline constexpr const char* exhibit_page = "/e/ID";
 // has no index.html. Files over 4 MiB and names starting with a dot are left out.
 std::map<std::string, PageFile> load_pages(const std::string& folder);
 
+std::string make_etag(const std::string& body);
+
 }  // namespace wellspring

@@ -2,9 +2,9 @@
 #include "show/http/still.h"
 
 #include <algorithm>
-#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include "base/thread_time.h"
 #include "denoise/denoise.h"
 #include "frame/jpeg.h"
 #include "frame/tonemap.h"
@@ -14,9 +14,13 @@
 namespace wellspring {
 
 namespace {
-constexpr size_t most_kept = 12;
+constexpr size_t most_kept_bytes = size_t(16) << 20;
 constexpr int still_jpeg_quality = 90;
 constexpr NetSize still_net = NetSize::base;
+constexpr double slice = 0.02;  // seconds of the network, between looks whether it is given up
+// Ends the loops of a picture that nobody waits for any more.
+struct GivenUp {};
+
 }  // namespace
 
 StillRoom::StillRoom(const Show& show)
@@ -42,7 +46,9 @@ StillRoom::StillRoom(const Show& show)
   transport_.clamp = 0;
 }
 
-Frame StillRoom::render(const StillJob& order, std::string& comment) const {
+std::optional<Frame> StillRoom::render(const StillJob& order, const std::function<bool()>& given_up,
+                                       StillCosts& costs, std::string& comment) const {
+  const auto ends = [&] { return given_up && given_up(); };
   const Viewpoint& at = exhibit_.viewpoints[size_t(order.viewpoint)].view;
   View view = make_view(exhibit_.scene, order.position.value_or(at.position),
                         order.yaw.value_or(at.yaw), order.pitch.value_or(at.pitch),
@@ -50,13 +56,25 @@ Frame StillRoom::render(const StillJob& order, std::string& comment) const {
   StillSettings settings;
   settings.spp = order.spp;
   settings.transport = transport_;
-  Frame frame = render_still(*technique_, *world_, lights_, view, settings);
+  settings.progress = [&](double) {
+    if (ends()) throw GivenUp{};
+  };
+  const double began = thread_seconds();
+  Frame frame;
+  try {
+    frame = render_still(*technique_, *world_, lights_, view, settings);
+  } catch (const GivenUp&) {}
+  costs.trace_seconds = thread_seconds() - began;
+  if (frame.color.empty()) return {};
   std::string problem;
   auto denoiser = order.denoise ? load_denoiser(still_net, problem, weights_) : nullptr;
   if (denoiser) {
     GuidePlanes guides = make_guides(*world_, lights_, view);
-    denoiser->run({view.width, view.height, frame.color, guides.albedo, guides.normal},
-                  frame.color);
+    denoiser->start({view.width, view.height, frame.color, guides.albedo, guides.normal});
+    while (denoiser->advance(slice))
+      if (ends()) return {};
+    denoiser->finish(frame.color);
+    costs.denoise_seconds = thread_seconds() - began - costs.trace_seconds;
   }
   comment = std::to_string(order.spp) + " samples a pixel by " + technique_->name +
             (denoiser ? std::string(", denoised by the network ") + net_name(still_net)
@@ -64,26 +82,48 @@ Frame StillRoom::render(const StillJob& order, std::string& comment) const {
   return frame;
 }
 
-std::string StillRoom::make(const StillJob& order) {
+StillCosts StillRoom::measure(const StillJob& order) {
+  StillCosts costs;
+  std::string comment;
+  oneapi::tbb::task_arena arena(1, 1, oneapi::tbb::task_arena::priority::low);
+  arena.execute([&] {
+    render(order, {}, costs, comment);  // what it needs is at hand then
+    render(order, {}, costs, comment);
+  });
+  return costs;
+}
+
+std::optional<std::string> StillRoom::find(const StillJob& order) {
   std::lock_guard lock(mutex_);
-  auto found = std::find_if(kept_.begin(), kept_.end(),
-                            [&](const Kept& kept) { return kept.order == order; });
-  if (found != kept_.end()) {
-    kept_.splice(kept_.begin(), kept_, found);
-    return kept_.front().jpeg;
-  }
+  auto found = std::ranges::find(kept_, order, &Kept::order);
+  if (found == kept_.end()) return {};
+  kept_.splice(kept_.begin(), kept_, found);
+  return kept_.front().jpeg;
+}
+
+std::string StillRoom::make(const StillJob& order, const std::function<bool()>& given_up, int cores,
+                            StillCosts* costs) {
+  if (auto kept = find(order)) return *kept;
   std::vector<uint8_t> bytes;
-  int cores = std::max(1, oneapi::tbb::info::default_concurrency() / 2);
+  StillCosts spent;
   oneapi::tbb::task_arena arena(cores, 1, oneapi::tbb::task_arena::priority::low);
   arena.execute([&] {
     std::string comment;
+    const std::optional<Frame> frame = render(order, given_up, spent, comment);
+    if (!frame) return;
     Image8 image;
-    tonemap(render(order, comment), Tonemap{exhibit_.exposure}, image);
+    tonemap(*frame, Tonemap{exhibit_.exposure}, image);
     encode_jpeg(image, still_jpeg_quality, true, bytes);
     add_jpeg_comment(comment, bytes);
   });
+  if (costs) *costs = spent;
+  if (bytes.empty()) return {};
+  std::lock_guard lock(mutex_);
   kept_.push_front({order, std::string(bytes.begin(), bytes.end())});
-  if (kept_.size() > most_kept) kept_.pop_back();
+  size_t kept_bytes = 0;
+  for (const Kept& kept : kept_) kept_bytes += kept.jpeg.size();
+  for (; kept_.size() > 1 && kept_bytes > most_kept_bytes; kept_.pop_back())
+    kept_bytes -= kept_.back().jpeg.size();
   return kept_.front().jpeg;
 }
 

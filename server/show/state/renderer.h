@@ -79,6 +79,8 @@ struct Renderer {
   DrawingWork work;
   SkinJob skin;
   size_t work_bytes = 0;     // of it, when last finished
+  double served = 0;         // VisitorPicture::served of the last picture begun, by then
+  double work_seconds = 0;   // what the last thing in hand took
   Visitor* drawn = nullptr;  // the visitor whose picture is being drawn or has just been
   DrawingStep step = DrawingStep::done;  // of that, to be done next
   double until_moving = 1;   // seconds from the step's beginning, until what moves is due

@@ -14,6 +14,7 @@ struct ShowTotals {
   uint64_t surroundings = 0;    // drawn of quick turns
   uint64_t given_up = 0;        // pictures that nobody needed any more before they were drawn
   uint64_t pictures = 0, picture_bytes = 0, samples = 0, messages = 0, refused_messages = 0;
+  uint64_t orders_left_out = 0;       // since newer ones of the same visitor came before their turn
   float tick_ms = 0, animate_ms = 0;  // of the last tick
   uint64_t utterances = 0, sounds = 0,
            sounds_given_up = 0;  // spoken; packets sent; too slow a reader

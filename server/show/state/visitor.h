@@ -12,6 +12,7 @@
 #include "show/state/switches.h"
 #include "show/state/teller.h"
 #include "show/state/visitor_attention.h"
+#include "show/state/visitor_orders.h"
 #include "show/state/visitor_picture.h"
 #include "show/storyteller/sounding.h"
 #include "show/visit/flow.h"
@@ -93,6 +94,7 @@ struct Visitor {
   VisitorLamps lamps;
   std::vector<Play> plays;  // of each animation, their own; empty: they have touched none
   VisitorGroup group;
+  VisitorOrders orders;
   VisitorPlace place;  // show/visit
   WindowEye window;    // of a kiosk's page
   PictureWishes wants;

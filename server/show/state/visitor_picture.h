@@ -46,6 +46,9 @@ struct VisitorPicture {
   Compositor compositor;
   Broker broker;              // what is traced after its picture, for the next
   double broker_seconds = 0;  // of all cores, for what was last asked
+  // The renderer's time that it has had, in seconds, on a clock that it shares with the others who
+  // want pictures (Renderer::served): whoever wanted none for a while begins where these are.
+  double served = 0;
   RestState rest;
   // What was drawn last, and for what.
   PictureJob job;

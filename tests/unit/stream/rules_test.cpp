@@ -7,9 +7,9 @@
 #include <atomic>
 #include <future>
 
+#include "base/rate.h"
 #include "stream/origin.h"
 #include "stream/range.h"
-#include "stream/rate.h"
 #include "stream/reply.h"
 #include "stream/target.h"
 #include "stream/workers.h"

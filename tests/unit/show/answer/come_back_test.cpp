@@ -96,6 +96,7 @@ TEST_F(ComeBack, LaterAndAfterANewStartItIsWhereItWas) {
   EXPECT_EQ(show->visitors.front().group.leads, code);
   open();
   expect_visit(come(sealed));
+  EXPECT_EQ(show->totals.stories, 0u) << "it was counted when it was begun";
   const size_t second = come(sealed);
   expect_visit(second);
   EXPECT_EQ(show->visitors.back().group.leads, "") << "a group has one leader";

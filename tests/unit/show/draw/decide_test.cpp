@@ -182,6 +182,18 @@ const std::vector<Row> rows = {
        all[2].new_place = true;
      },
      {Drawing::picture, 2}},
+    {"who has had least of the renderer's time comes before who has waited longest",
+     [](States& all, RendererState&) {
+       all = {due(walker(), 4), due(walker(), 2), due(walker(), 3)};
+       all[0].served = 0.3, all[1].served = 0.1, all[2].served = 0.2;
+     },
+     {Drawing::picture, 1}},
+    {"who wanted no pictures for a while has saved up no time",
+     [](States& all, RendererState& renderer) {
+       all = {due(walker(), 2), due(walker(), 4)};
+       all[0].served = 0.1, all[1].served = renderer.served = 0.5;
+     },
+     {Drawing::picture, 1}},
     {"of two who wait alike the first comes first",
      [](States& all, RendererState&) {
        all = {due(walker()), due(walker())};

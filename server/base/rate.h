@@ -18,6 +18,10 @@ struct RateBound {
     spent += amount;
     return true;
   }
+  // Of what was taken; a negative amount is taken besides, whatever there is.
+  void give_back(double amount) { spent = std::max(0.0, spent - amount); }
+  // Seconds after the last take() until one of `amount` is not too much.
+  double wait_for(double amount) const { return std::max(0.0, (spent + amount - burst) / rate); }
 };
 
 }  // namespace wellspring

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is there from the first moment, while exhibits are still being loaded: questions are told to
+// come back, peers wait, and are let in when the museum opens. Any thread.
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "museum/museum.h"
+
+namespace wellspring {
+
+class Front {
+ public:
+  explicit Front(const std::map<std::string, PageFile>& pages) : pages_(pages) {}
+  void open(Museum& museum);  // those who wait go in
+  void join(std::shared_ptr<Link> link);
+  HttpReply answer(const HttpQuestion& question);
+  bool answer_later(const HttpQuestion& question, const std::shared_ptr<HttpAsker>& asker);
+
+ private:
+  Museum* museum();
+  const std::map<std::string, PageFile>& pages_;
+  std::mutex mutex_;  // of what follows
+  Museum* museum_ = nullptr;
+  std::vector<std::shared_ptr<Link>> waiting_;
+};
+
+}  // namespace wellspring
