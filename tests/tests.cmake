@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # tests/unit mirrors the tree: every folder of tests there becomes one program, unit_<folder>,
-# linked to the layer of that name. TOGETHER as in wellspring_layer.
+# linked to the layer of that name.
 enable_testing()
 set(WELLSPRING_DATA "${PROJECT_SOURCE_DIR}/../shared/data" CACHE PATH "real files for the corpus tests; they are skipped without it")
 
