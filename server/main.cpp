@@ -98,6 +98,7 @@ int serve(const ServerOptions& options) {
     say_address(sources, stream);
     changed = museum.run(ended);
     if (!changed) phase = written, log::info("stopping");
+    museum.give_up_stills();
     server->stop();
     if (!changed) continue;
     server.reset();

@@ -294,11 +294,12 @@ bool Museum::run(const std::function<bool()>& ended) {
     }
   }
   impl.stopping = true;
-  impl.stills.close();
   for (Room& room : impl.rooms) room.thread.join();
   if (impl.ledger) impl.ledger->write();
   return impl.changed && !ended();
 }
+
+void Museum::give_up_stills() { impl_->stills.close(); }
 
 void Museum::take_over() {
   for (Room& room : impl_->rooms) {

@@ -43,8 +43,9 @@ class Museum {
   Sums read_sums(int64_t from, int64_t to) const;  // Ledger::read(); nothing where none are kept
   // Ticks all shows until `ended` says so: false. Or, where they are watched, until one of them has
   // changed: true. Then take_over() shows it as it is now, when nobody asks sources() or joins.
-  // By then sums are written, and pictures that somebody waits for are given up.
+  // Sums are written by then.
   bool run(const std::function<bool()>& ended);
+  void give_up_stills();  // that somebody waits for, after run()
   void take_over();
 
  private:
