@@ -126,6 +126,7 @@ int serve(const ServerOptions& options, const std::function<void()>& reread) {
       manager.say("STOPPING=1");
       log::info("stopping");
     }
+    museum.give_up_stills();
     server->stop();
     if (!changed) continue;
     server.reset();

@@ -363,11 +363,12 @@ bool Museum::run(const std::function<bool()>& ended) {
       impl.room_at(one.door).arrivals.put(std::move(one.link), std::move(one.seat));
   }
   impl.stopping = true;
-  impl.stills.close();
   for (Room& room : impl.rooms) room.thread.join();
   if (impl.ledger) impl.ledger->write();
   return impl.changed && !ended();
 }
+
+void Museum::give_up_stills() { impl_->stills.close(); }
 
 void Museum::reload() {
   const auto before = std::exchange(impl_->house_time, impl_->time_of_house());

@@ -47,9 +47,9 @@ class Museum {
   Sums read_sums(int64_t from, int64_t to) const;  // Ledger::read(); nothing where none are kept
   // Ticks all shows until `ended`, which is asked ten times a second, says so: false. Or until one
   // of them has changed, where they are watched or reload() was called: true. Then take_over()
-  // shows it as it is now, when nobody asks sources() or joins. By then sums are written, and
-  // pictures that somebody waits for are given up.
+  // shows it as it is now, when nobody asks sources() or joins. Sums are written by then.
   bool run(const std::function<bool()>& ended);
+  void give_up_stills();  // that somebody waits for, after run()
   void take_over();
   // Looks once whether files of an exhibit or of the house have changed. From within `ended`.
   void reload();

@@ -19,10 +19,10 @@ constexpr OrderBound bounds[] = {
     {Hello::type, 1, 4},             // the whole exhibit is described in answer
     {ViewpointTo::type, 10, 10},     // a place that nothing is known of
     {GoTo::type, 5, 5},              // a way is looked for
-    {Tour::type, 5, 5},              //
+    {Tour::type, 5, 5},              // a way, and words
     {StorytellerOrder::type, 5, 8},  // another figure, and words that are spoken for them
     {LampOrder::type, 10, 10},       // other light
-    {PlayOrder::type, 10, 10},       //
+    {PlayOrder::type, 10, 10},       // what moves
     {GroupOrder::type, 2, 5},        // codes are not to be guessed
     {Ask::type, 2, 4},               // an answer is looked for and spoken
     {Settings::type, 5, 8},          // another size: nothing is known of it

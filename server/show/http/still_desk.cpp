@@ -17,7 +17,7 @@ namespace wellspring {
 namespace {
 
 constexpr double look_every = 0.25;      // seconds: whether those who wait are still there
-constexpr int lowest_priority = 19;      // of the thread: what nobody else needs, or one part in 60
+constexpr int low_priority = 10;         // of the threads: where cores are short, a tenth of one
 constexpr float newest_share = 0.3f;     // of the speed that is told by the last picture
 constexpr double unknown_network = 4e5;  // pixels a second, until it was measured
 
@@ -232,7 +232,7 @@ bool StillDesk::make_next(std::unique_lock<std::mutex>& lock, double most) {
 }
 
 void StillDesk::live(double most) {
-  setpriority(PRIO_PROCESS, 0, lowest_priority);  // of this thread alone, on Linux
+  setpriority(PRIO_PROCESS, 0, low_priority);  // of this thread alone, on Linux
   std::unique_lock lock(mutex_);
   while (!closed_) {
     drop_gone();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where finished pictures are asked for. One is made at a time, and beside it a cheap one, at the
-// lowest priority, while visitors need the cores by one thread each; equal questions share one.
-// What a picture costs is known before it is begun, in seconds of this machine by the speed that
-// earlier ones had, and bounds who may ask for what:
+// Where finished pictures are asked for. One is made at a time, and beside it a cheap one, at low
+// priority, and while visitors need the cores by one thread each; equal questions share one. What a
+// picture costs is known before it is begun, in seconds of this machine by the speed that earlier
+// ones had, and bounds who may ask for what:
 //
 // - one that takes too long is refused, and told what would fit;
 // - each address, and all together, have so many seconds, which come back slowly;
