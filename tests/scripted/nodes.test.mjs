@@ -10,7 +10,8 @@ import net from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Visitor, little_light, run, sleep, source, start_server } from '../server.mjs';
+import { Visitor, little_light, read_picture, run, sleep, source,
+  start_server } from '../server.mjs';
 import { write_pyramid } from './pyramid.mjs';
 
 const count = Number(process.env.WELLSPRING_NODES_VISITORS ?? 6);
@@ -53,8 +54,9 @@ function make_space(name) {
 async function start_node(name) {
   if (spaces) make_space(name);
   nodes.set(name, await start_server(
-      [...little_light, '--exhibit', 'giza', '--host', host_of(name), '--max-visitors', String(count),
-        '--cache', join(folder, name), '--seal-key', join(folder, 'seal.key')],
+      [...little_light, '--exhibit', 'giza', '--host', host_of(name),
+        '--max-visitors', String(count), '--cache', join(folder, name),
+        '--seal-key', join(folder, 'seal.key')],
       { content, prefix: spaces ? ['ip', 'netns', 'exec', space_of(name)] : [] }));
 }
 
@@ -68,6 +70,7 @@ class Page {
     this.cookie = /wellspring=(\w+)/.exec(headers.get('set-cookie'))[1];
     this.first_node = this.cookie;
     await this.open();
+    await this.seen;
     const settled = this.line.message('state', (state) => state.seq === 1);
     this.line.send({ type: 'camera', seq: 1, ...this.pose });
     await settled;
@@ -82,34 +85,32 @@ class Page {
     return this.pose.position.every((v, i) => Math.abs(v - place[i]) < 1e-3);
   }
 
-  // Resolves when it is welcome; what follows of a broken line happens by itself.
+  // What follows of a broken line happens by itself. `seen`: what came first on this line.
   async open() {
-    const line = new Visitor(front, { options: { headers: { cookie: `wellspring=${this.cookie}` } } });
+    const headers = { cookie: `wellspring=${this.cookie}` };
+    const line = new Visitor(front, { options: { headers } });
     this.line = line;
     line.socket.on('upgrade', (response) => {
       const set = /wellspring=(\w+)/.exec(response.headers['set-cookie'] ?? '');
       if (set) this.cookie = set[1];
     });
-    line.socket.on('message', (bytes, binary) => {
-      const message = binary ? null : JSON.parse(String(bytes));
-      if (message?.type === 'keep') this.token = message.token;
+    this.seen = new Promise((resolve) => {
+      const first = {};
+      line.socket.on('message', (bytes, binary) => {
+        const message = binary ? { type: read_picture(bytes) ? 'picture' : 'sound' }
+          : JSON.parse(String(bytes));
+        if (message.type === 'keep') this.token = message.token;
+        if (message.type === 'welcome') this.lines++, this.retries = 0;
+        first[message.type] ??= { ...message, at: performance.now() };
+        if (first.welcome && first.state && first.picture) resolve(first);
+      });
     });
     line.closed.then(({ code }) => {
       if (!this.left) this.closes.push(code), this.later();
     });
-    this.seen = this.see(line);
-    this.seen.catch(() => {});  // of a line that broke before
-    const welcome = await line.hello(
-        { width: 64, height: 48, ...(this.token ? { resume: this.token } : {}) });
-    this.lines++, this.retries = 0;
-    return welcome;
-  }
-
-  // What the first picture of a line is of.
-  async see(line) {
-    const state = line.message('state'), welcome = line.message('welcome');
-    await line.picture(() => true, patience);
-    return { at: performance.now(), resumed: (await welcome).resumed, state: await state };
+    await line.opened;
+    line.send({ type: 'hello', exhibit: '', width: 64, height: 48, lang: 'en', role: 'visitor',
+      ...(this.token ? { resume: this.token } : {}) });
   }
 
   later() {
@@ -128,13 +129,13 @@ async function all_come_back(lost, since, say) {
   const took = await Promise.all(lost.map(async (page) => {
     for (const end = since + patience; page.lines <= lines.get(page); await sleep(10))
       assert.ok(performance.now() < end, `never back: closes ${page.closes}`);
-    const { at, resumed, state } = await page.seen;
-    assert.ok(resumed, 'the other server knows the text');
+    const { welcome, state, picture } = await page.seen;
+    assert.ok(welcome.resumed, 'the other server knows the text');
     state.position.forEach((v, i) => assert.ok(Math.abs(v - page.pose.position[i]) < 1e-3,
         `${state.position} was ${page.pose.position}`));
     assert.ok(Math.abs(state.yaw - page.pose.yaw) < 1e-3);
     assert.ok(Math.abs(state.pitch - page.pose.pitch) < 1e-3);
-    return (at - since) / 1000;
+    return (picture.at - since) / 1000;
   }));
   took.sort((a, b) => a - b);
   say(`${took.length} visits have a picture of the same pose again after ` +
@@ -196,7 +197,7 @@ test('visits of a server that is stopped go on with another', async (context) =>
   const ended = nodes.get('node2').stop();
   await all_come_back(lost, since, (text) => context.diagnostic(text));
   assert.equal(await ended, 0);
-  assert.ok(lost.every((page) => page.closes.at(-1) === 1001), 'they are told');
+  assert.ok(lost.every((page) => page.closes.includes(1001)), 'they are told');
   assert.deepEqual(others.map((page) => page.closes.length), before_it);
   assert.equal(on('node3').length, count);
 });
