@@ -158,6 +158,11 @@ net::awaitable<void> Session::serve_http() {
   co_await linger();
 }
 
+static bool is_proxied(const Request& request) {
+  return std::any_of(request.begin(), request.end(),
+                     [](const auto& field) { return is_proxy_header(view(field.name_string())); });
+}
+
 // Nothing for a proxy's header that names no address.
 std::optional<Caller> Session::find_caller(const Request& request) const {
   std::string forwarded;
@@ -168,14 +173,15 @@ std::optional<Caller> Session::find_caller(const Request& request) const {
   if (!client) return std::nullopt;
   Caller caller{*client, any_holds(core_->trusted, *client), peer_};
   if (*client != address_) caller.name = to_string(*client) + " by " + peer_;
-  // A proxy that nobody told about must not lend its visitors what this machine may.
-  if (!forwarded.empty() && *client == address_ && caller.trusted) {
+  // A proxy that nobody named, or that does not say for whom, must not lend its visitors what this
+  // machine may.
+  if (caller.trusted && *client == address_ && is_proxied(request)) {
     caller.trusted = false;
     if (!core_->proxy_told.exchange(true))
       log::warn(
-          "{} forwards requests of others, who share its limits: if it is a reverse proxy, "
-          "start with --trusted-proxy {}",
-          to_string(address_), to_string(address_));
+          "{0} forwards requests of others, who share its limits: if it is a reverse proxy that "
+          "sets X-Forwarded-For, start with --trusted-proxy {0}",
+          to_string(address_));
   }
   return caller;
 }
@@ -232,10 +238,7 @@ bool Session::is_from_here(const Request& request) const {
 }
 
 bool Session::is_local(const Request& request) const {
-  const bool proxied = std::any_of(request.begin(), request.end(), [](const auto& field) {
-    return is_proxy_header(view(field.name_string()));
-  });
-  return is_from_this_machine(peer_, proxied, view(request[http::field::host]));
+  return is_from_this_machine(peer_, is_proxied(request), view(request[http::field::host]));
 }
 
 // 200 when a body may be handed on, else the refusal.
