@@ -8,7 +8,7 @@ if(WELLSPRING_FUZZ)
   add_custom_target(fuzz)
   # The rest of that layer are coroutines, which Clang 14 cannot make of GCC's library.
   add_library(fuzz_requests STATIC EXCLUDE_FROM_ALL
-    server/stream/origin.cpp server/stream/range.cpp server/stream/target.cpp)
+    server/stream/address.cpp server/stream/origin.cpp server/stream/range.cpp server/stream/target.cpp)
   target_link_libraries(fuzz_requests PUBLIC wire)
   set(requests fuzz_requests)
 endif()

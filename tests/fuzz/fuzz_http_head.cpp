@@ -19,9 +19,15 @@ void fuzz_http_head(Bytes bytes) {
       require((path + "/").find(part) == std::string::npos, "a path goes nowhere else");
     require(question.query.size() <= max_query_fields, "queries are short");
   }
+  static const HostNames names({"museum.example"}, {"https://tickets.example"}, "::1");
   const std::string host = text_of(take_until(bytes, '\n')),
                     origin = text_of(take_until(bytes, '\n'));
-  origin_allowed({origin}, host, "https://museum.example");
+  names.hold(host);
+  is_from_this_machine("127.0.0.1:80", is_proxy_header(origin), host);
+  require(host_name(host).find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789.-_:[]") ==
+              std::string::npos,
+          "a name of a host has letters that can be shown anywhere");
+  origin_allowed({origin}, host, {"https://tickets.example"});
   offers_protocol(text_of(take_until(bytes, '\n')), "wellspring.v1");
   for (uint64_t size : {uint64_t(0), uint64_t(1), uint64_t(1000), ~uint64_t(0)})
     if (const auto range = read_range(text_of(bytes), size))
