@@ -68,7 +68,8 @@ void welcome_links(Show& show, Arrivals& arrivals) {
 }
 
 void read_visitors(Show& show, double dt) {
-  for (Visitor& visitor : show.visitors)
+  for (Visitor& visitor : show.visitors) {
+    note_deliveries(show, visitor);
     for (const std::string& text : visitor.link->take_texts()) {
       show.totals.messages++;
       auto message = read_browser_message(text);
@@ -80,6 +81,7 @@ void read_visitors(Show& show, double dt) {
       show.totals.refused_messages++;
       visitor.link->send_text(write_error(*error));
     }
+  }
   for (auto next = show.visitors.begin(); next != show.visitors.end();) {
     auto visitor = next++;
     if (!visitor->left && !visitor->link->closed()) continue;
