@@ -81,6 +81,17 @@ export function start_server(words = [],
   });
 }
 
+// Of a picture that is not complete: [{x, y, width, height, jpeg}]; else null.
+function read_parts(bytes) {
+  if (bytes[25] & 2) return null;
+  let at = bytes.readUInt16LE(26);
+  return Array.from({ length: bytes.readUInt16LE(28) }, (_, i) => {
+    const [x, y, width, height] = [0, 2, 4, 6].map((k) => bytes.readUInt16LE(30 + 12 * i + k));
+    const jpeg = bytes.subarray(at, at += bytes.readUInt32LE(38 + 12 * i));
+    return { x, y, width, height, jpeg };
+  });
+}
+
 export function read_picture(bytes) {
   if (bytes.length < 28 || bytes.toString('latin1', 0, 4) !== 'WSF1') return null;
   return {
@@ -88,6 +99,7 @@ export function read_picture(bytes) {
     width: bytes.readUInt16LE(20), height: bytes.readUInt16LE(22), quality: bytes[24],
     flags: bytes[25],
     header: bytes.readUInt16LE(26), jpeg: bytes.subarray(bytes.readUInt16LE(26)),
+    parts: read_parts(bytes), bytes: bytes.length,
   };
 }
 

@@ -7,9 +7,9 @@ import { wanted_size } from './picture.js';
 
 // most: pixels; the rest as `settings` has it.
 const qualities = {
-  fine: { most: 1920 * 1080, fps: 0, quality: 90, max_quality: 95 },
-  plain: { most: 1280 * 720, fps: 0, quality: 82, max_quality: 92 },
-  saver: { most: 640 * 360, fps: 12, quality: 55, max_quality: 70 },
+  fine: { most: 1920 * 1080, fps: 0, quality: 90, max_quality: 95, saver: false },
+  plain: { most: 1280 * 720, fps: 0, quality: 82, max_quality: 95, saver: false },
+  saver: { most: 640 * 360, fps: 12, quality: 55, max_quality: 70, saver: true },
 };
 
 // send(fields): of a settings message. on_change(): the saver is on, or off again.
@@ -19,9 +19,12 @@ export function make_comfort(send, on_change) {
   let chosen = kept.get('quality') in qualities ? kept.get('quality')
       : /** @type {any} */ (navigator).connection?.saveData ? 'saver' : 'plain';
 
+  const bandwidth = /** @type {HTMLSelectElement} */ (by_id('bandwidth'));
+  bandwidth.value = kept.get('bandwidth') ?? '0';
+  if (bandwidth.selectedIndex < 0) bandwidth.value = '0';
   const wishes = () => {
     const { most, fps, ...rest } = qualities[chosen];
-    return { ...rest, ...wanted_size(most), fps };
+    return { ...rest, ...wanted_size(most), fps, bandwidth: Number(bandwidth.value) };
   };
   calm.checked = kept.get('comfort') === null ? reduced.matches : kept.get('comfort') === 'true';
   const tell_comfort = () => send({ comfort: calm.checked });
@@ -42,6 +45,11 @@ export function make_comfort(send, on_change) {
       on_change();
     });
   }
+
+  bandwidth.addEventListener('change', () => {
+    kept.set('bandwidth', bandwidth.value);
+    send(wishes());
+  });
 
   figures.checked = kept.get('figures') === 'true';
   const show_figures = () => { by_id('figures').hidden = !figures.checked; };

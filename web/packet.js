@@ -2,21 +2,43 @@
 // Binary messages from the server, little-endian. Pictures: magic "WSF1"; sound: "WSA1".
 const magic_picture = 0x31465357;
 
-// {frame, seq, time_us, width, height, quality, still, payload: Blob-able bytes} or null.
+// The parts of a picture that is not complete, [{x, y, width, height, payload}], or null.
+function read_parts(buffer, view, header, width, height) {
+  if (header < 30) return null;
+  const count = view.getUint16(28, true), parts = [];
+  if (header < 30 + 12 * count) return null;
+  let at = header;
+  for (let i = 0; i < count; i++) {
+    const [x, y, w, h] = [0, 2, 4, 6].map((k) => view.getUint16(30 + 12 * i + k, true));
+    const bytes = view.getUint32(38 + 12 * i, true);
+    if (!w || !h || x + w > width || y + h > height || at + bytes > buffer.byteLength) return null;
+    parts.push({ x, y, width: w, height: h, payload: new Uint8Array(buffer, at, bytes) });
+    at += bytes;
+  }
+  return parts;
+}
+
+// {frame, seq, time_us, width, height, quality, still, parts, payload: Blob-able bytes} or null.
+// parts: null of a complete picture.
 export function read_picture(buffer) {
   if (buffer.byteLength < 28) return null;
   const view = new DataView(buffer);
   if (view.getUint32(0, true) !== magic_picture) return null;
   const header = view.getUint16(26, true);
   if (header < 28 || header > buffer.byteLength) return null;
+  const width = view.getUint16(20, true), height = view.getUint16(22, true);
+  const flags = view.getUint8(25), complete = (flags & 2) !== 0;
+  const parts = complete ? null : read_parts(buffer, view, header, width, height);
+  if (!complete && !parts) return null;
   return {
     frame: view.getUint32(4, true),
     seq: view.getUint32(8, true),
     time_us: Number(view.getBigUint64(12, true)),
-    width: view.getUint16(20, true),
-    height: view.getUint16(22, true),
+    width,
+    height,
     quality: view.getUint8(24),
-    still: (view.getUint8(25) & 1) !== 0,
+    still: (flags & 1) !== 0,
+    parts,
     payload: new Uint8Array(buffer, header),
   };
 }

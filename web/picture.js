@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows the newest picture: while one is being decoded only the latest that arrived meanwhile is
-// kept.
+// Shows the newest picture: while one is being decoded only the latest complete one that arrived
+// meanwhile is kept, and the parts that came after it.
 import { read_picture } from './packet.js';
 
 /** @param {Blob} blob @returns {Promise<ImageBitmap | HTMLImageElement>} */
@@ -16,42 +16,71 @@ async function decode_jpeg(blob) {
   }
 }
 
-// on_shown({frame, seq, decoded_ms, ...}) after a picture is on the canvas.
+function copy_of(canvas) {
+  const copy = document.createElement('canvas');
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  copy.getContext('2d').drawImage(canvas, 0, 0);
+  return copy;
+}
+
+const decode = (bytes) => decode_jpeg(new Blob([bytes], { type: 'image/jpeg' }));
+
+// on_shown({frame, seq, shown, decoded_ms, ...}) after a picture is on the canvas. shown: false: it
+// could not be decoded.
 export function make_picture(canvas, on_shown) {
   const context = canvas.getContext('2d', { alpha: false, desynchronized: true });
-  let decoding = false, waiting = null, shown = 0;
+  let busy = false, waiting = [], shown = 0, bytes = 0;
   const times = [];
 
-  async function decode(picture) {
-    decoding = true;
-    const began = performance.now();
-    try {
-      const bitmap = await decode_jpeg(new Blob([picture.payload], { type: 'image/jpeg' }));
-      const decoded_ms = performance.now() - began;
-      if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
-        canvas.width = bitmap.width;
-        canvas.height = bitmap.height;
-      }
-      context.drawImage(bitmap, 0, 0);
+  function fit(width, height, keeps) {
+    if (canvas.width === width && canvas.height === height) return;
+    const before = keeps ? copy_of(canvas) : null;
+    canvas.width = width;
+    canvas.height = height;
+    if (before) context.drawImage(before, 0, 0, width, height);
+  }
+
+  async function show(picture) {
+    const pieces = picture.parts ?? [{ x: 0, y: 0, payload: picture.payload }];
+    const bitmaps = await Promise.all(pieces.map((piece) => decode(piece.payload)));
+    if (picture.parts) fit(picture.width, picture.height, true);
+    else fit(bitmaps[0].width, bitmaps[0].height, false);
+    bitmaps.forEach((bitmap, i) => {
+      context.drawImage(bitmap, pieces[i].x, pieces[i].y);
       if ('close' in bitmap) bitmap.close();
+    });
+  }
+
+  async function work(picture) {
+    busy = true;
+    const began = performance.now();
+    let good = true;
+    try {
+      await show(picture);
       shown++;
       times.push(performance.now());
       while (times.length && times[times.length - 1] - times[0] > 1000) times.shift();
-      on_shown({ ...picture, payload: null, bytes: picture.payload.byteLength, decoded_ms });
     } catch {
-      // A broken picture is left out; the next one is on its way.
+      good = false;  // a broken picture is left out
     }
-    decoding = false;
-    if (waiting) { const next = waiting; waiting = null; decode(next); }
+    bytes += picture.payload.byteLength;
+    on_shown({ ...picture, parts: null, payload: null, bytes: picture.payload.byteLength,
+      shown: good, decoded_ms: performance.now() - began });
+    busy = false;
+    const next = waiting.shift();
+    if (next) work(next);
   }
 
   return {
     receive(buffer) {
       const picture = read_picture(buffer);
       if (!picture) return;
-      if (decoding) waiting = picture; else decode(picture);
+      if (!picture.parts) waiting = [];
+      if (busy) waiting.push(picture); else work(picture);
     },
     count: () => shown,
+    bytes: () => bytes,
     rate: () => Math.max(0, times.length - 1),
   };
 }

@@ -158,15 +158,20 @@ function show_figures(metrics) {
   };
   const value_of = (id, name) =>
     metrics.find((m) => m.labels.visitor === id && m.name === `visitor_${name}`)?.value;
+  const limit_of = (id) => metrics.find((m) => m.labels.visitor === id
+      && m.name === 'visitor_limit' && m.value === 1)?.labels.limit ?? '–';
   by_id('visitors-section').hidden = ids.length === 0;
   const of = (id, name, digits) => number(value_of(id, name), digits);
   fill(by_id('visitors'), ['Visitor', 'Pictures/s', 'Round trip ms', 'Display ms', 'Trace ms',
-    'Tone ms', 'Encode ms', 'Decode ms', 'Samples', 'Quality', 'Converged %'],
+    'Tone ms', 'Encode ms', 'Decode ms', 'Samples', 'Quality', 'Scale %', 'Line Mbit/s', 'Limit',
+    'Converged %'],
   ids.map((id) => [
     name_of(id), of(id, 'pictures_per_second', 1), of(id, 'round_trip_milliseconds'),
     of(id, 'display_milliseconds', 1), of(id, 'trace_milliseconds', 1),
     of(id, 'tonemap_milliseconds', 1), of(id, 'encode_milliseconds', 1),
     of(id, 'decode_milliseconds', 1), of(id, 'samples_per_picture'), of(id, 'jpeg_quality'),
+    number(100 * (value_of(id, 'picture_scale') ?? 1)),
+    number(8e-6 * (value_of(id, 'line_bytes_per_second') ?? 0), 1), limit_of(id),
     number(100 * (value_of(id, 'converged_ratio') ?? 0), 1)]));
   fill(by_id('storyteller'), null, [
     ['House', `${one('house_open') ? 'open' : 'closed'}${one('house_quiet') ? ', quiet' : ''}`],

@@ -43,7 +43,8 @@ by_id('veil-text').textContent = word(lang, 'opening');
 const subtitles = make_subtitles(by_id('subtitle'));
 const picture = make_picture(canvas, (shown) => {
   const decoded_ms = Math.round(shown.decoded_ms * 10) / 10;
-  connection.send({ type: 'ack', frame: shown.frame, decoded_ms, shown: true });
+  connection.send({ type: 'ack', frame: shown.frame, decoded_ms, shown: shown.shown });
+  if (!shown.shown) return;
   sound.shown(shown);
   by_id('veil').classList.add('lifted');
   const sent = asked.get(shown.seq);
@@ -73,8 +74,8 @@ function notice(text, seconds) {
 const dark = make_leap(canvas);
 const leap = () => dark.begin(seq);
 
-const hello = () => ({ type: 'hello', exhibit, lang, role: 'visitor', ...comfort.size(),
-  resume: of_tab.get(visit_key) ?? '' });
+const hello = () => ({ type: 'hello', exhibit, lang, role: 'visitor', parts: true,
+  ...comfort.size(), resume: of_tab.get(visit_key) ?? '' });
 
 // What the address asked for that is not there.
 function say_what_is_unknown(message) {
@@ -188,7 +189,8 @@ connection = make_connection({
         description.state(message);
         menu.figures(
             `${picture.rate()} fps · ${Math.round(round_trip)} ms · `
-            + `${canvas.width}×${canvas.height} · ${Math.round(message.converged * 100)} %`);
+            + `${canvas.width}×${canvas.height} · ${Math.round(message.converged * 100)} % · `
+            + word(lang, `limit_${message.limit}`));
         break;
       case 'went':
         if (message.object) card.open(message.object); else card.close();

@@ -24,18 +24,25 @@ using Handle = std::unique_ptr<void, CloseHandle>;
 
 void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector<uint8_t>& out,
                  size_t skip) {
-  if (image.width < 1 || image.height < 1 || image.width > largest_side ||
-      image.height > largest_side ||
+  encode_jpeg(image, {0, 0, image.width, image.height}, quality, full_chroma, out, skip);
+}
+
+void encode_jpeg(const Image8& image, const ImagePart& part, int quality, bool full_chroma,
+                 std::vector<uint8_t>& out, size_t skip) {
+  if (part.width < 1 || part.height < 1 || part.width > largest_side ||
+      part.height > largest_side || part.x < 0 || part.y < 0 || part.x + part.width > image.width ||
+      part.y + part.height > image.height ||
       image.rgb.size() != size_t(image.width) * size_t(image.height) * 3)
     throw std::invalid_argument("encode_jpeg: no picture of a size JPEG can hold");
   thread_local Handle handle{tjInitCompress()};
   int chroma = full_chroma ? TJSAMP_444 : TJSAMP_420;
-  unsigned long size = tjBufSize(image.width, image.height, chroma);
+  unsigned long size = tjBufSize(part.width, part.height, chroma);
   // Several times what most pictures need: of memory that is not written to, the system gives none.
   auto room = std::make_unique_for_overwrite<unsigned char[]>(size);
   unsigned char* bytes = room.get();
+  const uint8_t* first = &image.rgb[(size_t(part.y) * size_t(image.width) + size_t(part.x)) * 3];
   if (!handle ||
-      tjCompress2(handle.get(), image.rgb.data(), image.width, 0, image.height, TJPF_RGB, &bytes,
+      tjCompress2(handle.get(), first, part.width, image.width * 3, part.height, TJPF_RGB, &bytes,
                   &size, chroma, std::clamp(quality, 1, 100), TJFLAG_NOREALLOC) != 0)
     throw std::runtime_error(std::string("encode_jpeg: ") + tjGetErrorStr2(handle.get()));
   out.resize(skip);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frame/frame.h"
+#include "frame/tiles.h"
 
 namespace wellspring {
 
@@ -14,6 +15,9 @@ namespace wellspring {
 // bytes of `out`, which is grown to hold them; nothing but `out` is kept afterwards.
 void encode_jpeg(const Image8& image, int quality, bool full_chroma, std::vector<uint8_t>& out,
                  size_t skip = 0);
+// Likewise of a part of the picture, which must lie within it.
+void encode_jpeg(const Image8& image, const ImagePart& part, int quality, bool full_chroma,
+                 std::vector<uint8_t>& out, size_t skip = 0);
 // A comment of at most 65533 bytes (longer ones are cut) behind the beginning of a JPEG file.
 void add_jpeg_comment(const std::string& comment, std::vector<uint8_t>& jpeg);
 // Throws LoadError{file,...} when the bytes are no JPEG or larger than 16384 a side.

@@ -68,7 +68,10 @@ void welcome_links(Show& show, Arrivals& arrivals) {
 }
 
 void read_visitors(Show& show, double dt) {
-  for (Visitor& visitor : show.visitors) follow_orders(show, visitor);
+  for (Visitor& visitor : show.visitors) {
+    note_deliveries(show, visitor);
+    follow_orders(show, visitor);
+  }
   for (auto next = show.visitors.begin(); next != show.visitors.end();) {
     auto visitor = next++;
     if (!visitor->left && !visitor->link->closed()) continue;

@@ -4,6 +4,7 @@
 // coroutine reads, a second one writes). Only for the .cpp files of this folder (heavy).
 #pragma once
 #include <chrono>
+#include <deque>
 #include <memory>
 #include <string>
 
@@ -34,6 +35,11 @@ inline constexpr double flood_linger = 1;  // seconds in which a peer that is cl
 // being written.
 inline constexpr int send_buffer_bytes = 256 * 1024;
 inline constexpr int unsent_bytes = 64 * 1024;
+
+// A ping follows each picture and larger text, and now and then a small one, so that its answer
+// says when that arrived. A peer that does not answer is asked no more than this often.
+inline constexpr size_t most_pings = 16, pinged_bytes = 2000;
+inline constexpr double ping_interval = 1;  // seconds
 
 using Request = http::request<http::string_body>;
 
@@ -104,6 +110,8 @@ class Session : public std::enable_shared_from_this<Session> {
   net::awaitable<bool> accept_websocket();
   net::awaitable<bool> read_messages();
   net::awaitable<void> write_messages();
+  net::awaitable<error_code> ping(Delivery behind);
+  bool take_pong(beast::string_view payload);
   void want_close(websocket::close_code code, std::string reason);
   void hear(std::string text);
   bool count_input(double frames, double bytes);
@@ -135,6 +143,9 @@ class Session : public std::enable_shared_from_this<Session> {
   bool flooded_ = false;  // it has said too much
   Signal writable_, writer_ended_;
   std::atomic<bool> wake_posted_{false};
+  std::deque<Delivery> pinged_;  // not answered yet; the first is ping number first_ping_
+  uint64_t first_ping_ = 0;
+  double ping_at_ = -1e9;
   net::steady_timer deadline_, first_deadline_, flood_deadline_;
   uint64_t deadline_number_ = 0;
   websocket::close_reason close_reason_{websocket::close_code::none};

@@ -43,7 +43,8 @@ net::awaitable<bool> Session::accept_websocket() {
     for (const auto& [name, value] : security_headers(secure)) response.set(name, value);
     if (echo) response.set(http::field::sec_websocket_protocol, "wellspring.v1");
   }));
-  ws_.control_callback([this](websocket::frame_type type, beast::string_view) {
+  ws_.control_callback([this](websocket::frame_type type, beast::string_view payload) {
+    if (type == websocket::frame_type::pong && take_pong(payload)) return;
     // The visit is over, though the peer may take its time to close the socket.
     if (type == websocket::frame_type::close && link_) link_->mark_closed();
   });
@@ -202,7 +203,33 @@ void Session::end_deadline() {
   deadline_.cancel();
 }
 
+net::awaitable<error_code> Session::ping(Delivery behind) {
+  error_code ec;
+  const std::string number = std::to_string(first_ping_ + pinged_.size());
+  pinged_.push_back(behind);
+  ping_at_ = seconds_now();
+  start_deadline();
+  co_await ws_.async_ping(websocket::ping_data(number.data(), number.size()),
+                          net::redirect_error(net::use_awaitable, ec));
+  end_deadline();
+  co_return ec;
+}
+
+// Whether it answers a ping of ours; those before, too, have arrived then.
+bool Session::take_pong(beast::string_view payload) {
+  const std::string number(payload);
+  size_t answered = 0;
+  while (answered < pinged_.size() && std::to_string(first_ping_ + answered) != number) answered++;
+  if (answered == pinged_.size()) return false;
+  pinged_[answered].ended = seconds_now();
+  if (link_) link_->push_delivery(pinged_[answered]);
+  pinged_.erase(pinged_.begin(), pinged_.begin() + ptrdiff_t(answered) + 1);
+  first_ping_ += answered + 1;
+  return true;
+}
+
 net::awaitable<void> Session::write_messages() {
+  if (link_->kind == LinkKind::visit) co_await ping({0, seconds_now(), 0, true, false});
   while (!ended_ && close_reason_.code == websocket::close_code::none) {
     // Asked before the queue: what was sent before the close is still written.
     std::string reason;
@@ -216,9 +243,14 @@ net::awaitable<void> Session::write_messages() {
     ws_.binary(out.binary);
     const auto bytes = out.binary ? net::buffer(*out.packet) : net::buffer(std::as_const(out.text));
     error_code ec;
+    Delivery written{bytes.size(), seconds_now(), 0, pinged_.empty(), out.picture};
     start_deadline();
     co_await ws_.async_write(bytes, net::redirect_error(net::use_awaitable, ec));
     end_deadline();
+    const bool asks =
+        out.picture || written.bytes >= pinged_bytes || written.began - ping_at_ >= ping_interval;
+    if (!ec && asks && link_->kind == LinkKind::visit && pinged_.size() < most_pings)
+      ec = co_await ping(written);
     if (ec) {
       fail(ec, "WebSocket write");
       stream().close();

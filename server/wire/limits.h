@@ -22,6 +22,7 @@ inline constexpr int min_side = 16, max_side = 4096;  // width and height in pix
 inline constexpr double min_fps = 0, max_fps = 240;   // settings.fps; 0: as the server likes
 inline constexpr int min_jpeg_quality = 1,
                      max_jpeg_quality = 100;  // settings.quality and .max_quality
-inline constexpr size_t max_people = 32;      // in one observation
+inline constexpr int min_bandwidth = 0, max_bandwidth = 10'000'000;  // settings.bandwidth, kbit/s
+inline constexpr size_t max_people = 32;                             // in one observation
 
 }  // namespace wellspring

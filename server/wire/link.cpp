@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wire/link.h"
 
+#include <utility>
+
 namespace wellspring {
 
 std::vector<std::string> Link::take_texts() {
@@ -129,6 +131,17 @@ void Link::push_text_in(std::string text) {
     in_.pop_front();
     texts_dropped_++;
   }
+}
+
+void Link::push_delivery(const Delivery& delivery) {
+  std::lock_guard lock(mutex_);
+  if (deliveries_.size() >= max_deliveries) deliveries_.erase(deliveries_.begin());
+  deliveries_.push_back(delivery);
+}
+
+std::vector<Delivery> Link::take_deliveries() {
+  std::lock_guard lock(mutex_);
+  return std::exchange(deliveries_, {});
 }
 
 void Link::set_wake(std::function<void()> wake) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/latest.h"
+#include "wire/delivery.h"
 #include "wire/packet.h"
 
 namespace wellspring {
@@ -26,6 +27,7 @@ class Link {
  public:
   static constexpr size_t max_texts_in = 256;  // more unread: the oldest are dropped and counted
   static constexpr size_t max_bytes_in = 1 << 20;  // likewise
+  static constexpr size_t max_deliveries = 64;
   static constexpr size_t max_texts_out =
       128;  // more unsent: the link is closed (a reader this slow is gone)
 
@@ -52,8 +54,9 @@ class Link {
   void drop_sound();  // whatever has not been sent yet
   bool picture_pending() const {
     return picture_.full();
-  }                                // the last picture has not been taken yet
-  void close(std::string reason);  // asks the socket to close
+  }                                         // the last picture has not been taken yet
+  std::vector<Delivery> take_deliveries();  // since the last call, in order
+  void close(std::string reason);           // asks the socket to close
   bool closed() const { return closed_; }
 
   // ---- called by stream ----
@@ -65,6 +68,7 @@ class Link {
   };
   bool take_out(Out& out);         // texts and sounds before pictures; false: nothing to send
   void push_text_in(std::string);  // a message arrived
+  void push_delivery(const Delivery& delivery);
   void set_wake(
       std::function<void()> wake);  // called (from any thread) after something became sendable
   void mark_closed();               // the socket is gone; the show will notice
@@ -81,6 +85,7 @@ class Link {
   mutable std::mutex mutex_;
   std::deque<std::string> in_;
   size_t bytes_in_ = 0;
+  std::vector<Delivery> deliveries_;  // a few: the oldest are dropped
   std::deque<Out> out_;
   size_t texts_out_ = 0, sound_out_ = 0;  // of out_: texts, and bytes of sound
   Latest<std::shared_ptr<const Packet>> picture_;

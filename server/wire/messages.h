@@ -102,8 +102,9 @@ struct Hello {
   std::string exhibit, lang, role,
       kiosk;  // role: "visitor" or "kiosk"; empty exhibit: the default one
   int width = 1280, height = 720;
-  std::string resume;  // of the last `keep`; empty: a new visit
-  std::string token;   // of a kiosk (wire/tokens.h); empty: none is shown
+  std::string resume;         // of the last `keep`; empty: a new visit
+  std::string token;          // of a kiosk (wire/tokens.h); empty: none is shown
+  std::optional<bool> parts;  // packet.h
   static void list(auto& message, auto& fields) {
     fields.text("exhibit", message.exhibit, "id, empty for the one shown");
     fields.token("resume", message.resume,
@@ -114,6 +115,8 @@ struct Hello {
     fields.word("role", {"visitor", "kiosk"}, message.role, "visitor or kiosk");
     fields.integer("width", min_side, max_side, message.width, "16..4096");
     fields.integer("height", min_side, max_side, message.height, "16..4096");
+    fields.boolean("parts", message.parts,
+                   "boolean: pictures may come as parts of the one before; optional");
   }
   bool operator==(const Hello&) const = default;
 };
@@ -282,8 +285,8 @@ struct Settings {
   // False: samples are spread evenly. A number: how much what the visitor looks at counts beside
   // what catches the eye.
   std::optional<std::variant<bool, float>> attention;
-  std::optional<bool> sound, comfort;
-  std::optional<int> quality, max_quality, width, height;
+  std::optional<bool> sound, comfort, saver;
+  std::optional<int> quality, max_quality, bandwidth, width, height;
   std::string lang;
   static void list(auto& message, auto& fields) {
     fields.number("fps", min_fps, max_fps, message.fps,
@@ -299,6 +302,10 @@ struct Settings {
                    "JPEG quality in motion");
     fields.integer("max_quality", min_jpeg_quality, max_jpeg_quality, message.max_quality,
                    "JPEG quality at rest");
+    fields.integer("bandwidth", min_bandwidth, max_bandwidth, message.bandwidth,
+                   "kbit/s for pictures at most, 0 for no limit");
+    fields.boolean("saver", message.saver,
+                   "boolean: nothing is sent that can be done without, as finer pictures at rest");
     fields.integer("width", min_side, max_side, message.width, "16..4096");
     fields.integer("height", min_side, max_side, message.height, "16..4096");
     fields.text("lang", message.lang, "BCP 47");
@@ -313,7 +320,8 @@ struct Ack {
   static void list(auto& message, auto& fields) {
     fields.u32("frame", message.frame, "u32 frame number", Need::required);
     fields.number("decoded_ms", 0, max_decoded_ms, message.decoded_ms, "milliseconds");
-    fields.boolean("shown", message.shown, "boolean");
+    fields.boolean("shown", message.shown,
+                   "boolean; false: it could not be decoded, and a complete one is to follow");
   }
   bool operator==(const Ack&) const = default;
 };

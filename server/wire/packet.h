@@ -2,7 +2,12 @@
 // Binary messages to the browser, little-endian: pictures (magic WSF1); sound_packet.h has sound
 // (WSA1). Picture: 0 magic, 4 u32 frame number, 8 u32 last input/camera seq this picture shows, 12
 // u64 server time in microseconds, 20 u16 width, 22 u16 height, 24 u8 quality, 25 u8 flags, 26 u16
-// header length, payload.
+// header length, payload: a JPEG. A complete picture may be smaller than was asked for: it is shown
+// as large all the same. Without the flag `complete` it holds parts of a picture of that width and
+// height, for clients whose hello says that they take them; all else is as in the picture before,
+// which is first scaled to that size where it was of another. Its header goes on: 28 u16 number of
+// parts, then for each from 30 on: u16 x, u16 y, u16 width, u16 height, u32 bytes; the payload is
+// their JPEGs one after the other. No parts: nothing is new but seq.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -23,15 +28,29 @@ struct PacketHeader {
 };
 inline constexpr size_t packet_header_bytes = 28;
 
+struct PicturePart {
+  uint16_t x = 0, y = 0, width = 0, height = 0;  // pixels from the upper left
+  uint32_t bytes = 0;                            // of its JPEG
+  bool operator==(const PicturePart&) const = default;
+};
+inline constexpr size_t max_parts = 16;  // of a picture
+inline constexpr size_t parts_header_bytes(size_t parts) {
+  return packet_header_bytes + 2 + 12 * parts;
+}
+
 // A whole binary message, ready to be sent; shared, never changed after it is made.
 using Packet = std::vector<uint8_t>;
 
 // Writes the header over the first 28 bytes of `packet` (which must be at least that long).
 void write_packet_header(const PacketHeader& header, std::span<uint8_t> packet);
+// Likewise over the first parts_header_bytes() of it.
+void write_packet_header(const PacketHeader& header, std::span<const PicturePart> parts,
+                         std::span<uint8_t> packet);
 // Empty when the bytes are no picture message (short, other magic, header length < 28 or past the
-// end).
+// end; parts that are past the end, or not within the picture).
 struct PacketView {
   PacketHeader header;
+  std::vector<PicturePart> parts;  // of one that is not complete
   std::span<const uint8_t> payload;
 };
 std::optional<PacketView> read_packet(std::span<const uint8_t> bytes);

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "report.h"
+#include "stream_line.h"
 #include "stream_server.h"
 #include "stroll.h"
 
@@ -46,6 +47,7 @@ void walk(BenchReport& report, const BenchOptions& options, const std::string& n
 
 void bench_stream(BenchReport& report, const BenchOptions& options) {
   walk(report, options, "stream.walk");
+  bench_line(report, options);
 }
 
 }  // namespace wellspring

@@ -46,7 +46,8 @@ const sound = make_sound(by_id('sound-button'), {
 const ambience = make_ambience(sound);
 const picture = make_picture(by_id('picture'), (shown) => {
   const decoded_ms = Math.round(shown.decoded_ms * 10) / 10;
-  send({ type: 'ack', frame: shown.frame, decoded_ms, shown: true });
+  send({ type: 'ack', frame: shown.frame, decoded_ms, shown: shown.shown });
+  if (!shown.shown) return;
   sound.shown(shown);
   by_id('picture').dataset.frame = shown.frame;
 });
@@ -277,8 +278,8 @@ async function read_exhibit(message) {
 }
 
 connection = make_connection({
-  hello: () => ({ type: 'hello', exhibit: '', lang, role: 'kiosk', kiosk: asked.get('kiosk') ?? '',
-      token: kiosk_token(), ...wanted_size() }),
+  hello: () => ({ type: 'hello', exhibit: '', lang, role: 'kiosk', parts: true,
+    kiosk: asked.get('kiosk') ?? '', token: kiosk_token(), ...wanted_size() }),
   open() {
     lost = untrusted = false;
     fps = null;

@@ -66,4 +66,7 @@ export default {
   read_unknown: 'Eine Ausstellung „{asked}“ gibt es hier nicht. Diese sind zu lesen:',
   to_exhibit: 'Zur Ausstellung', contents: 'Inhalt', told_by: 'Es erzählt: {name}',
   credits: 'Von wem die Modelle sind', licence: 'Lizenz',
+  bandwidth: 'Leitung: höchstens', bandwidth_any: 'unbegrenzt',
+  limit_none: 'Leitung schnell genug', limit_network: 'Leitung langsam',
+  limit_server: 'Server langsam', limit_browser: 'dieses Gerät ist langsam',
 };

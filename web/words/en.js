@@ -65,4 +65,7 @@ export default {
   read_unknown: 'There is no exhibit “{asked}” here. These can be read:',
   to_exhibit: 'To the exhibit', contents: 'Contents', told_by: 'Told by {name}',
   credits: 'Whose models these are', licence: 'Licence',
+  bandwidth: 'Line: at most', bandwidth_any: 'no limit',
+  limit_none: 'the line is fast enough', limit_network: 'the line is slow',
+  limit_server: 'the server is slow', limit_browser: 'this device is slow',
 };

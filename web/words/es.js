@@ -67,4 +67,7 @@ export default {
   read_unknown: 'Aquí no hay ninguna exposición «{asked}». Estas se pueden leer:',
   to_exhibit: 'A la exposición', contents: 'Índice', told_by: 'Cuenta: {name}',
   credits: 'De quién son los modelos', licence: 'Licencia',
+  bandwidth: 'Línea: como máximo', bandwidth_any: 'sin límite',
+  limit_none: 'la línea basta', limit_network: 'la línea es lenta',
+  limit_server: 'el servidor es lento', limit_browser: 'este aparato es lento',
 };

@@ -67,4 +67,7 @@ export default {
   read_unknown: 'Il n’y a pas d’exposition « {asked} » ici. Voici ce qui peut se lire :',
   to_exhibit: 'Vers l’exposition', contents: 'Sommaire', told_by: 'Raconté par {name}',
   credits: 'De qui sont les modèles', licence: 'Licence',
+  bandwidth: 'Débit : au plus', bandwidth_any: 'sans limite',
+  limit_none: 'la ligne suffit', limit_network: 'la ligne est lente',
+  limit_server: 'le serveur est lent', limit_browser: 'cet appareil est lent',
 };

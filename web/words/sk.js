@@ -62,4 +62,7 @@ export default {
   read_unknown: 'Výstava „{asked}“ tu nie je. Prečítať si môžete tieto:',
   to_exhibit: 'Na výstavu', contents: 'Obsah', told_by: 'Rozpráva: {name}',
   credits: 'Kto vytvoril modely', licence: 'Licencia',
+  bandwidth: 'Linka: najviac', bandwidth_any: 'bez obmedzenia',
+  limit_none: 'linka stačí', limit_network: 'linka je pomalá',
+  limit_server: 'server je pomalý', limit_browser: 'toto zariadenie je pomalé',
 };

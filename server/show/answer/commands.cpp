@@ -62,6 +62,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Hello& hello) {
   visitor.kiosk = hello.role == "kiosk";
   visitor.name = kiosk;
   set_size(visitor, show.settings, hello.width, hello.height);
+  visitor.wants.parts = hello.parts.value_or(false);
   const bool is_first = !visitor.welcomed;
   visitor.welcomed = true;
   kiosk = kiosk_name(show, visitor.name);
@@ -200,6 +201,8 @@ Answer handle_one(Show& show, Visitor& visitor, const Settings& settings) {
   if (settings.quality) wants.best_quality = *settings.quality;
   if (settings.max_quality) wants.still_quality = *settings.max_quality;
   wants.best_quality = std::min(wants.best_quality, wants.still_quality);
+  if (settings.bandwidth) wants.bandwidth = 1000.0 / 8 * *settings.bandwidth;
+  if (settings.saver) wants.saver = *settings.saver;
   if (settings.attention) {
     const bool* on = std::get_if<bool>(&*settings.attention);
     wants.attention = !on || *on;
@@ -217,6 +220,7 @@ Answer handle_one(Show& show, Visitor& visitor, const Settings& settings) {
 
 Answer handle_one(Show& show, Visitor& visitor, const Ack& ack) {
   note_ack(visitor.shown.flow, ack.frame, ack.decoded_ms, show.time);
+  if (!ack.shown) visitor.shown.lost = true;
   return {};
 }
 

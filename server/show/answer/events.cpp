@@ -122,6 +122,7 @@ std::string state_message(const Show& show, const Visitor& visitor) {
                   {"fov", place.view.fov},
                   {"fps", std::round(visitor.shown.measured_fps * 10) / 10},
                   {"converged", std::round(visitor.picture.stats.converged * 1000) / 1000},
+                  {"limit", limit_names[size_t(limit(visitor.shown.way))]},
                   {"viewpoint", nullptr},
                   {"around", nullptr},
                   {"tour", nullptr}};

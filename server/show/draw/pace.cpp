@@ -5,6 +5,7 @@
 #include <oneapi/tbb/info.h>
 
 #include "show/state/animations.h"
+#include "show/state/delivery.h"
 #include "show/state/in_view.h"
 
 namespace wellspring {
@@ -119,7 +120,7 @@ bool may_take(const Show& show, const Visitor& visitor) {
 }
 
 double picture_rate(const Show& show, const Visitor& visitor) {
-  double rate = visitor.wants.fps > 0 ? double(visitor.wants.fps) : double(show.settings.fps);
+  double rate = picture_plan(show, visitor).rate;
   if (stands(show, visitor)) {
     rate = std::min(rate, sees_motion(show, visitor, visitor.place.last_view) ? still_rate
                           : rests(show, visitor)                              ? resting_rate

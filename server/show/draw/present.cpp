@@ -9,9 +9,12 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "frame/jpeg.h"
+#include "frame/shrink.h"
 #include "show/draw/moving.h"
 #include "show/draw/pace.h"
+#include "show/draw/parts.h"
 #include "show/state/animations.h"
+#include "show/state/delivery.h"
 #include "show/state/in_view.h"
 #include "wire/packet.h"
 
@@ -27,24 +30,67 @@ constexpr float most_unknown =
 // Seconds until a warp that showed too little is tried again, where no new keyframe comes before:
 // tried with each tick, it would take the cores from that keyframe.
 constexpr double tried_again = 0.1;
+constexpr int near_lossless = 95;  // JPEG quality of what has not changed for a moment
+// Seconds without a change until that; longer while better pictures are on their way.
+constexpr double quiet = 0.5, quiet_in_samples = 4;
+constexpr double refine_interval = 0.05;   // seconds between parts of it
+constexpr double most_part_bytes = 256e3;  // of one packet of parts
 constexpr int animated_gain = 5;  // JPEG quality above the moving one while the storyteller moves
+
+// One packet is being sent when the next is made.
+void publish(Encoder& encoder, Link& link, std::shared_ptr<Packet> packet, double began,
+             double processor_began) {
+  encoder.bytes = packet->size();
+  encoder.milliseconds = float(1000 * (seconds_now() - began));
+  encoder.processor_seconds = thread_seconds_now() - processor_began;
+  encoder.memory_bytes = bytes_of(encoder.image.rgb, encoder.has.image.rgb) + 2 * encoder.bytes;
+  if (packet->empty()) encoder.unsent = true;
+  else link.send_picture(std::move(packet));
+}
 
 // On another thread: the tick goes on meanwhile, and waits before it touches the image again.
 // The image of one that stands comes anew from its keyframe, should there be another: it is not
-// kept.
-void encode_and_publish(Visitor& visitor, const PacketHeader& header, bool full_chroma) {
+// kept, but for a browser that takes parts while these are made of it.
+// eighths: of the image's size, which is that of the header's.
+void encode_complete(Show& show, Visitor& visitor, const PacketHeader& header, bool full_chroma,
+                     int eighths) {
   Encoder* encoder = visitor.shown.encoder.get();
-  encoder->task.run([encoder, link = visitor.link, header, full_chroma] {
+  encoder->quality = header.quality;
+  encoder->full_chroma = full_chroma;
+  const Image8& whole = encoder->image;
+  encoder->pixels = counted_pixels(double(whole.width) * whole.height, eighths);
+  const bool keeps = visitor.wants.parts && stands(show, visitor);
+  encoder->task.run(
+      [encoder, link = visitor.link, header, full_chroma, eighths, keeps, now = show.time] {
+        double began = seconds_now(), processor_began = thread_seconds_now();
+        auto packet = std::make_shared<Packet>(packet_header_bytes);
+        write_packet_header(header, *packet);
+        const Image8& image = encoder->image;
+        encode_jpeg(eighths < 8 ? shrink(image, header.width, header.height) : image,
+                    header.quality, full_chroma, *packet, packet_header_bytes);
+        if (keeps) note_complete(image, header.quality, eighths == 8, now, encoder->has);
+        else encoder->has = {};
+        if ((header.flags & packet_still) && !keeps) encoder->image = Image8{};
+        publish(*encoder, *link, std::move(packet), began, processor_began);
+      });
+}
+
+void encode_parts(Visitor& visitor, const PacketHeader& header, const PartsOrder& order) {
+  Encoder* encoder = visitor.shown.encoder.get();
+  encoder->quality = header.quality;
+  encoder->pixels = 0;
+  encoder->task.run([encoder, link = visitor.link, header, order] {
     double began = seconds_now(), processor_began = thread_seconds_now();
-    auto packet = std::make_shared<Packet>(packet_header_bytes);
-    write_packet_header(header, *packet);
-    encode_jpeg(encoder->image, header.quality, full_chroma, *packet, packet_header_bytes);
-    if (header.flags & packet_still) encoder->image = Image8{};
-    encoder->bytes = packet->size();
-    encoder->milliseconds = float(1000 * (seconds_now() - began));
-    encoder->processor_seconds = thread_seconds_now() - processor_began;
-    link->send_picture(std::move(packet));
+    auto packet = std::make_shared<Packet>();
+    make_parts(encoder->image, order, header, encoder->has, *packet);
+    if (!encoder->has.pending) encoder->image = Image8{};
+    publish(*encoder, *link, std::move(packet), began, processor_began);
   });
+}
+
+// Whole JPEG blocks of a side.
+uint16_t side_of(int side, int eighths) {
+  return uint16_t(eighths == 8 ? side : std::max(side * eighths / 64 * 8, std::min(side, 16)));
 }
 
 // How much later than the pose was made for its pictures are dated: the mouth is posed for that
@@ -55,24 +101,79 @@ void note_lead(Show& show, uint64_t posed_us, uint64_t picture_us) {
         (std::min(1e-6f * float(picture_us - posed_us), 0.25f) - show.picture_lead) * 0.1f;
 }
 
-void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool still) {
-  VisitorDelivery& shown = visitor.shown;
+// The browser has a picture of this view, and takes what is new in it.
+bool takes_parts(const Show& show, const Visitor& visitor, const View& view) {
+  const Image8& has = visitor.shown.encoder->has.image;
+  return visitor.wants.parts && stands(show, visitor) && view == visitor.shown.view &&
+         !visitor.shown.lost && has.width == view.width && has.height == view.height &&
+         !has.rgb.empty();
+}
+
+// Of pictures at rest: they are looked at for long, few a second, and yet in the way of what comes
+// next.
+int quality_at_rest(const Show& show, const Visitor& visitor, const PicturePlan& plan,
+                    double pixels, bool fine) {
+  const int wanted = visitor.wants.still_quality;
+  const int best = fine ? wanted : std::min(wanted, plan.quality + animated_gain);
+  const Flow& flow = visitor.shown.flow;
+  return quality_within(flow, usable_bytes(flow), pixels, best, fine);
+}
+
+PacketHeader next_header(Show& show, Visitor& visitor, uint32_t seq, bool still) {
   PacketHeader header;
-  header.frame = ++shown.frame_number;
+  header.frame = ++visitor.shown.frame_number;
   header.seq = seq;
   header.time_us = microseconds_now();
-  note_lead(show, visitor.picture.job.time_us, header.time_us);
+  header.flags = uint8_t(packet_complete | (still ? packet_still : 0));
+  visitor.shown.encoder->frame = header.frame;
+  note_sent(visitor.shown.flow, header.frame, show.time);
+  return header;
+}
+
+void send_complete(Show& show, Visitor& visitor, const View& view, PacketHeader header) {
+  PicturePlan plan = picture_plan(show, visitor);
+  const bool still = header.flags & packet_still;
+  const bool fine = still && !sees_motion(show, visitor, view);
+  const double pixels = counted_pixels(double(view.width) * view.height, plan.eighths);
+  if (still) plan.quality = quality_at_rest(show, visitor, plan, pixels, fine);
+  header.width = side_of(view.width, plan.eighths);
+  header.height = side_of(view.height, plan.eighths);
+  header.quality = uint8_t(plan.quality);
+  encode_complete(show, visitor, header, fine, plan.eighths);
+  visitor.shown.lost = false;
+  show.totals.pictures++;
+}
+
+// must: even if nothing has changed.
+void send_parts(Show& show, Visitor& visitor, const View& view, PacketHeader header, bool must) {
+  VisitorDelivery& shown = visitor.shown;
+  const FlowWishes wishes = flow_wishes(show, visitor);
+  PartsOrder order;
+  const bool moves = sees_motion(show, visitor, view);
+  order.fine_quality =
+      visitor.wants.saver ? 0 : std::min(near_lossless, visitor.wants.still_quality);
+  order.quality =
+      std::min(picture_plan(show, visitor).quality + animated_gain, visitor.wants.still_quality);
+  order.quiet = asks_for_samples(show, visitor) ? quiet_in_samples : quiet;
+  order.now = show.time;
+  order.bytes = std::min(usable_bytes(shown.flow), most_part_bytes);
+  if (!moves)
+    order.bytes = std::min(order.bytes, usable_rate(shown.flow, wishes) * refine_interval);
+  order.bytes_per_pixel = double(shown.flow.bytes_per_pixel);
+  order.must = must;
   header.width = uint16_t(view.width);
   header.height = uint16_t(view.height);
-  int quality = suggest_quality(shown.flow, visitor.wants.best_quality);
-  bool fine = still && !sees_motion(show, visitor,
-                                    view);  // pictures that are looked at for long, few a second
-  const int still_quality = visitor.wants.still_quality;
-  if (still) quality = fine ? still_quality : std::min(still_quality, quality + animated_gain);
-  header.quality = uint8_t(quality);
-  header.flags = uint8_t(packet_complete | (still ? packet_still : 0));
-  note_sent(shown.flow, header.frame, show.time);
-  encode_and_publish(visitor, header, fine);
+  encode_parts(visitor, header, order);
+  const double seconds = order.bytes / usable_rate(shown.flow, wishes);
+  shown.refine_at = show.time + std::max(seconds, refine_interval);
+}
+
+void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool still) {
+  VisitorDelivery& shown = visitor.shown;
+  const PacketHeader header = next_header(show, visitor, seq, still);
+  note_lead(show, visitor.picture.job.time_us, header.time_us);
+  if (takes_parts(show, visitor, view)) send_parts(show, visitor, view, header, seq != shown.seq);
+  else send_complete(show, visitor, view, header);
   if (shown.sent_at > 0 && show.time > shown.sent_at)
     smooth(shown.measured_fps, float(1 / (show.time - shown.sent_at)));
   shown.sent_at = show.time;
@@ -82,7 +183,20 @@ void send(Show& show, Visitor& visitor, const View& view, uint32_t seq, bool sti
   shown.seq = seq;
   shown.view = view;
   visitor.picture.unshown = false;
-  show.totals.pictures++;
+}
+
+// What of the last picture the browser has not, or not as fine, or that nothing is new after an
+// input: while there is no newer picture to show.
+void refine(Show& show, Visitor& visitor) {
+  VisitorDelivery& shown = visitor.shown;
+  const Encoder& encoder = *shown.encoder;
+  const bool must = visitor.place.seq != shown.seq;
+  if (show.time < shown.refine_at || encoder.task.busy() || encoder.image.rgb.empty()) return;
+  if (!must && !encoder.has.pending) return;
+  if (!takes_parts(show, visitor, visitor.place.last_view)) return;
+  const PacketHeader header = next_header(show, visitor, visitor.place.seq, true);
+  send_parts(show, visitor, shown.view, header, must);
+  shown.seq = visitor.place.seq;
 }
 
 // Of a picture that was warped and has been encoded, for who asks whether there is a seat.
@@ -113,7 +227,31 @@ bool warp(Show& show, Visitor& visitor, const View& view) {
   return true;
 }
 
+// The last picture, once its encoder has done.
+void note_encoded(Show& show, Visitor& visitor) {
+  Encoder& encoder = *visitor.shown.encoder;
+  if (std::exchange(encoder.unsent, false)) note_unsent(visitor.shown.flow, encoder.frame);
+  if (encoder.bytes == 0) return;
+  note_cost(show, visitor);
+  const size_t bytes = std::exchange(encoder.bytes, 0);
+  show.totals.picture_bytes += bytes;
+  if (encoder.pixels > 0) {
+    smooth(visitor.times.encode, encoder.milliseconds);
+    note_encoded(visitor.shown.flow, bytes, encoder.pixels, encoder.quality, encoder.full_chroma);
+  } else {
+    show.totals.pictures++;
+  }
+}
+
 }  // namespace
+
+void note_deliveries(Show& show, Visitor& visitor) {
+  VisitorDelivery& shown = visitor.shown;
+  if (!shown.encoder->task.busy()) note_encoded(show, visitor);
+  for (const Delivery& delivery : visitor.link->take_deliveries())
+    note_delivery(shown.flow, delivery);
+  update(shown.way, shown.flow, flow_wishes(show, visitor), visitor.times.encode, show.time);
+}
 
 void present(Show& show, Visitor& visitor) {
   VisitorPicture& picture = visitor.picture;
@@ -125,7 +263,11 @@ void present(Show& show, Visitor& visitor) {
   const View view = visitor.place.last_view;
   bool stood = job.still && job.view == view;
   bool fades = !picture.fade.from.rgb.empty() && show.time - shown.sent_at >= 1 / fade_rate;
-  if (!picture.unshown && !fades && (!job.keep || view == shown.view)) return;
+  if (shown.lost && job.keep && stood) picture.unshown = true;
+  if (!picture.unshown && !fades && (!job.keep || view == shown.view)) {
+    refine(show, visitor);
+    return;
+  }
   const bool waits_for_keyframe = shown.pictured_at > show.time;
   if (waits_for_keyframe && !picture.unshown) return;
   if (!stood && !waits_for_keyframe &&
@@ -133,13 +275,8 @@ void present(Show& show, Visitor& visitor) {
     return;
 
   Encoder& encoder = *shown.encoder;
-  // One packet is being sent when the next is made.
-  if (encoder.bytes > 0) encoder.memory_bytes = bytes_of(encoder.image.rgb) + 2 * encoder.bytes;
-  if (shown.frame_number > 0 && encoder.bytes > 0) {
-    show.totals.picture_bytes += std::exchange(encoder.bytes, 0);
-    smooth(visitor.times.encode, encoder.milliseconds);
-    note_cost(show, visitor);
-  }
+  encoder.task.wait();
+  note_encoded(show, visitor);
   const float newer = fade_share(picture.fade, view, show.time);
   if ((picture.unshown || fades) && job.view == view) {  // drawn for this very view
     if (job.keep) copy_colors(picture.keyframe, {0, 0, view.width, view.height}, encoder.image);

@@ -8,6 +8,8 @@
 
 namespace wellspring {
 
+// What is known of the pictures before and of the line; before acknowledgements are read.
+void note_deliveries(Show& show, Visitor& visitor);
 // Sends a picture if one is due and there is something new to show: the place, the storyteller or
 // the light.
 void present(Show& show, Visitor& visitor);

@@ -58,7 +58,8 @@ std::string describe_api() {
                 "storyteller": "{id, name, visible, position, viewpoint} or null: who is there",
                 "storytellers": "[{id, name, position, viewpoint}]: who may be called"},
     "state": {"seq": "u32", "position": "[x, y, z]", "yaw": "radians", "pitch": "radians", "fov": "radians",
-              "fps": "number", "converged": "0..1", "viewpoint": "name or null",
+              "fps": "number", "limit": "none, network, server or browser: why pictures are fewer, or less fine, than asked for",
+              "converged": "0..1", "viewpoint": "name or null",
               "tour": "{id, state, stop, stops} or null",
               "around": "id of what is looked at from all sides, or null",
               "lamps": "{name: whether it is on} where there are any; at once when somebody switches one",
@@ -111,7 +112,10 @@ std::string describe_api() {
       {"offset": 12, "type": "u64", "name": "server time, microseconds"}, {"offset": 20, "type": "u16", "name": "width"},
       {"offset": 22, "type": "u16", "name": "height"}, {"offset": 24, "type": "u8", "name": "quality"},
       {"offset": 25, "type": "u8", "name": "flags: 1 still, 2 complete picture"},
-      {"offset": 26, "type": "u16", "name": "header length, 28 or more"}], "payload": "JPEG"},
+      {"offset": 26, "type": "u16", "name": "header length, 28 or more"}], "payload": "JPEG, perhaps smaller than was asked for: it is shown as large all the same",
+      "parts": {"when": "the picture is not complete (only after hello.parts): all else is as in the picture before, scaled to this width and height", "fields": [
+        {"offset": 28, "type": "u16", "name": "number of parts; 0: nothing is new but seq"},
+        {"offset": 30, "type": "12 bytes a part", "name": "u16 x, u16 y, u16 width, u16 height, u32 bytes"}], "payload": "their JPEGs, one after the other"}},
     "sound": {"magic": "WSA1", "fields": [
       {"offset": 4, "type": "u32", "name": "utterance"},
       {"offset": 8, "type": "u32", "name": "first sample of this piece within the utterance"},

@@ -48,6 +48,17 @@ void per_visitor(std::string& out, const ShowReport& report, const char* name, c
   }
 }
 
+void per_limit(std::string& out, const ShowReport& report) {
+  if (report.visitors.empty()) return;
+  out +=
+      "# HELP wellspring_visitor_limit Why pictures are fewer, or less fine, than asked for\n"
+      "# TYPE wellspring_visitor_limit gauge\n";
+  for (const VisitorReport& one : report.visitors)
+    for (const char* name : limit_names)
+      out += fmt::format("wellspring_visitor_limit{{visitor=\"{}\",limit=\"{}\"}} {}\n", one.id,
+                         name, int(name == limit_names[size_t(one.limit)]));
+}
+
 void per_kiosk(std::string& out, const ShowReport& report) {
   if (report.kiosks.empty()) return;
   out +=
@@ -237,6 +248,14 @@ std::string write_metrics(const ShowReport& report) {
               [](auto& v) { return v.mean_age; });
   per_visitor(out, report, "jpeg_quality", "Quality of moving pictures",
               [](auto& v) { return v.quality; });
+  per_visitor(out, report, "picture_scale", "Width of moving pictures over what was asked for",
+              [](auto& v) { return v.eighths / 8.0; });
+  per_visitor(out, report, "line_round_trip_milliseconds",
+              "The line there and back with nothing in the way; 0: not known",
+              [](auto& v) { return v.line_ms; });
+  per_visitor(out, report, "line_bytes_per_second", "What the line carries; 0: not known",
+              [](auto& v) { return v.line_rate; });
+  per_limit(out, report);
   per_visitor(out, report, "cache_bytes", "Memory of the render cache",
               [](auto& v) { return v.cache_bytes; });
   per_visitor(out, report, "memory_bytes",

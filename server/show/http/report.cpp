@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "show/answer/cameras.h"
+#include "show/state/delivery.h"
 #include "show/state/show.h"
 
 namespace wellspring {
@@ -69,7 +70,12 @@ ShowReport make_report(const Show& show) {
     one.height = visitor.wants.height;
     one.budget = visitor.picture.job.samples;
     one.drawing_ms = visitor.times.drawing;
-    one.quality = suggest_quality(visitor.shown.flow, visitor.wants.best_quality);
+    const PicturePlan plan = picture_plan(show, visitor);
+    one.quality = plan.quality;
+    one.eighths = plan.eighths;
+    one.limit = limit(visitor.shown.way);
+    one.line_ms = 1000 * visitor.shown.flow.line_trip;
+    one.line_rate = visitor.shown.flow.line_rate;
     one.fps = visitor.shown.measured_fps;
     one.round_trip_ms = 1000 * visitor.shown.flow.round_trip;
     one.display_ms = visitor.times.display;

@@ -10,6 +10,7 @@
 #include "show/kiosk/stage.h"
 #include "show/state/baker.h"
 #include "show/state/totals.h"
+#include "show/visit/give_way.h"
 #include "wire/messages.h"
 
 namespace wellspring {
@@ -19,7 +20,10 @@ struct VisitorReport {
   int width = 0, height = 0, budget = 0, quality = 0;
   float fps = 0, round_trip_ms = 0, display_ms = 0, trace_ms = 0, drawing_ms = 0, tonemap_ms = 0,
         encode_ms = 0,
-        decode_ms = 0;  // the last: as the browser measures it
+        decode_ms = 0;               // the last: as the browser measures it
+  int eighths = 8;                   // of the width and height asked for
+  Limit limit = Limit::none;         // why pictures are fewer, or less fine, than asked for
+  float line_ms = 0, line_rate = 0;  // there and back; bytes a second; 0: not known
   float drawn_fps = 0, warp_ms = 0, moving_ms = 0, whole_ms = 0;
   float fresh = 0, empty = 0, converged = 0, mean_age = 0;
   uint64_t cache_bytes = 0, memory_bytes = 0, dropped = 0;

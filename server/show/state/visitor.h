@@ -8,6 +8,7 @@
 #include "frame/tonemap.h"
 #include "show/kiosk/screen_window.h"
 #include "show/moving/play.h"
+#include "show/state/browser_picture.h"
 #include "show/state/capacity.h"
 #include "show/state/switches.h"
 #include "show/state/teller.h"
@@ -15,7 +16,7 @@
 #include "show/state/visitor_orders.h"
 #include "show/state/visitor_picture.h"
 #include "show/storyteller/sounding.h"
-#include "show/visit/flow.h"
+#include "show/visit/give_way.h"
 #include "show/visit/place.h"
 #include "wire/link.h"
 #include "wire/messages.h"
@@ -38,10 +39,16 @@ inline void smooth(float& value, float sample, float share = 0.1f) {
 // The JPEG made while the next tick begins.
 struct Encoder {
   Image8 image;
+  BrowserPicture has;   // of a browser that takes parts
+  uint32_t frame = 0;   // of the last picture
+  bool unsent = false;  // nothing had changed: it was none
+  double pixels = 0;    // of it, as they count for bytes; 0: of parts, which tell nothing of others
+  int quality = 0;
+  bool full_chroma = false;
   float milliseconds = 0;
   double processor_seconds = 0;
   size_t bytes = 0;
-  size_t memory_bytes = 0;  // of it and of what it makes, when it last ended
+  size_t memory_bytes = 0;  // of all this and of what it makes, when it last ended
   Worker task;              // the last member: a picture may be half made
 };
 
@@ -54,7 +61,10 @@ struct VisitorDelivery {
   double sent_at = -1e9;      // show time of it
   double pictured_at = -1e9;  // when it was due
   double warp_seconds = 0;    // for the last, on all cores; 0: it was drawn for its view
+  bool lost = false;          // the browser has not what it was sent
+  double refine_at = -1e9;    // when more of a picture at rest may be sent
   Flow flow;
+  GiveWay way;
   float measured_fps = 0;
 };
 

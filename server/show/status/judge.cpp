@@ -17,6 +17,7 @@ constexpr double kiosk_missed = lost_camera_listed;
 constexpr float late_interval = 400;  // milliseconds between pictures drawn of who walks
 constexpr float least_rate = 12;      // pictures a second shown to who walks
 constexpr float slow_line = 500;      // milliseconds, there and back
+constexpr float slow_decoding = 30;   // milliseconds
 
 struct Patience {
   double before = 0, after = 0;  // seconds until it is told, and that it is told longer
@@ -171,6 +172,42 @@ std::string many(uint64_t count, const char* one, const char* more) {
   return fmt::format("{} {}", count, count == 1 ? one : more);
 }
 
+std::string line_words(const VisitorReport& visitor) {
+  if (visitor.limit != Limit::network || visitor.line_rate <= 0)
+    return fmt::format("a picture and its answer take {:.0f} ms", visitor.round_trip_ms);
+  return fmt::format("it carries {:.1f} Mbit/s, there and back takes {:.0f} ms",
+                     8e-6 * double(visitor.line_rate), visitor.line_ms);
+}
+
+// A line that is slow, or a browser: each at its visitor's.
+void judge_delivery(Judge& judge, const VisitorReport& visitor) {
+  const std::string whose = visitor.kiosk ? "the screen " + at_kiosk(visitor.name)
+                                          : fmt::format("visitor {}", visitor.id);
+  const bool small = visitor.eighths < 8;  // resolution falls last
+  judge.judge(visitor.round_trip_ms > slow_line || (small && visitor.limit == Limit::network),
+              {.about = fmt::format("slow line {}", visitor.id),
+               .grave = visitor.kiosk,
+               .what = "The line to " + whose + " is slow",
+               .why = line_words(visitor),
+               .remedy = "Check the network there."},
+              {.before = 5, .after = 10});
+  judge.judge(visitor.limit == Limit::browser && visitor.decode_ms > slow_decoding,
+              {.about = fmt::format("slow browser {}", visitor.id),
+               .grave = visitor.kiosk,
+               .what = "The browser of " + whose + " is slow",
+               .why = fmt::format("decoding a picture takes {:.0f} ms", visitor.decode_ms),
+               .remedy = "Close other programs and tabs there, or choose smaller pictures in its "
+                         "menu."},
+              {.before = 5, .after = 10});
+  judge.judge(visitor.limit == Limit::server,
+              {.about = fmt::format("slow encoder {}", visitor.id),
+               .what = "Pictures for " + whose + " are made slowly",
+               .why = fmt::format("encoding one takes {:.0f} ms", visitor.encode_ms),
+               .remedy = "Close other programs on the server, or allow fewer visitors "
+                         "(--max-visitors)."},
+              {.before = 5, .after = 10});
+}
+
 void judge_pictures(Judge& judge, const ShowReport& report) {
   const bool late = std::ranges::any_of(report.visitors, [](const VisitorReport& visitor) {
     const bool line = visitor.round_trip_ms > 0.5f * slow_line;  // its own fault
@@ -189,16 +226,7 @@ void judge_pictures(Judge& judge, const ShowReport& report) {
                .remedy = "Close other programs on the server, or allow fewer visitors "
                          "(--max-visitors)."},
               {.before = 5, .after = 15});
-  for (const VisitorReport& visitor : report.visitors)
-    judge.judge(
-        visitor.round_trip_ms > slow_line,
-        {.about = fmt::format("slow line {}", visitor.id),
-         .grave = visitor.kiosk,
-         .what = visitor.kiosk ? "The line to the screen " + at_kiosk(visitor.name) + " is slow"
-                               : fmt::format("The line to visitor {} is slow", visitor.id),
-         .why = fmt::format("a picture and its answer take {:.0f} ms", visitor.round_trip_ms),
-         .remedy = "Check the network there."},
-        {.before = 5, .after = 10});
+  for (const VisitorReport& visitor : report.visitors) judge_delivery(judge, visitor);
   if (report.waiting > 0)
     judge.tell({.about = "waiting",
                 .what = many(report.waiting, "visitor waits", "visitors wait") + " to be let in",

@@ -74,3 +74,38 @@ TEST(Packet, what_is_no_picture_is_refused) {
   bad[27] = 0xff;
   EXPECT_FALSE(read_packet(bad));
 }
+
+TEST(Packet, parts_are_written_and_read_as_the_golden_bytes) {
+  const PacketHeader header{.frame = 5,
+                            .seq = 6,
+                            .time_us = 7,
+                            .width = 640,
+                            .height = 360,
+                            .quality = 90,
+                            .flags = packet_still};
+  const std::vector<PicturePart> parts = {{32, 64, 96, 32, 4}, {0, 320, 640, 40, 5}};
+  const Packet golden = test::read_golden("picture_parts.hex");
+  Packet packet = golden;
+  std::fill_n(packet.begin(), parts_header_bytes(2), uint8_t(0xee));
+  write_packet_header(header, parts, packet);
+  EXPECT_EQ(packet, golden);
+  const auto view = read_packet(golden);
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->parts, parts);
+  EXPECT_EQ(view->payload.size(), 9u);
+}
+
+TEST(Packet, parts_that_cannot_be_are_refused) {
+  const Packet golden = test::read_golden("picture_parts.hex");
+  for (size_t size = 0; size < golden.size(); size++)
+    EXPECT_FALSE(read_packet({golden.data(), size})) << size;
+  struct {
+    size_t at;
+    uint8_t value;
+  } const wrong[] = {{28, 3}, {29, 1}, {31, 3}, {34, 0}, {35, 3}, {38, 0xff}, {41, 0xff}, {43, 2}};
+  for (const auto& [at, value] : wrong) {
+    Packet packet = golden;
+    packet[at] = value;
+    EXPECT_FALSE(read_packet(packet)) << at;
+  }
+}

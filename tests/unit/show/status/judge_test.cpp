@@ -176,6 +176,30 @@ TEST_F(Judged, ALineThatIsSlowIsNotTheCores) {
   EXPECT_EQ(all(), "");
 }
 
+TEST_F(Judged, LineBrowserAndEncoderAreToldApart) {
+  report.visitors.resize(1);
+  VisitorReport& visitor = report.visitors[0];
+  visitor.id = 7;
+  visitor.limit = Limit::network;
+  visitor.line_rate = 1.25e5f, visitor.line_ms = 80, visitor.eighths = 4;
+  wait(6);
+  ASSERT_EQ(all(), "The line to visitor 7 is slow\n");
+  EXPECT_EQ(findings[0].why, "it carries 1.0 Mbit/s, there and back takes 80 ms");
+  visitor.eighths = 8;  // fewer colours are seen by nobody
+  wait(11);
+  EXPECT_EQ(all(), "");
+  visitor.limit = Limit::browser;
+  visitor.decode_ms = 120;
+  wait(6);
+  ASSERT_EQ(all(), "The browser of visitor 7 is slow\n");
+  EXPECT_EQ(findings[0].why, "decoding a picture takes 120 ms");
+  visitor.limit = Limit::server;
+  visitor.encode_ms = 90;
+  wait(11);
+  ASSERT_EQ(all(), "Pictures for visitor 7 are made slowly\n");
+  EXPECT_EQ(findings[0].why, "encoding one takes 90 ms");
+}
+
 TEST_F(Judged, WhatIsCountedIsToldForTenMinutes) {
   struct Case {
     uint64_t& count;

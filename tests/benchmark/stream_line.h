@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// stream.shaped.*: a visitor at the end of a slow line.
+#pragma once
+#include "report.h"
+
+namespace wellspring {
+
+void bench_line(BenchReport& report, const BenchOptions& options);
+
+}  // namespace wellspring
