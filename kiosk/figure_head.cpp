@@ -12,7 +12,7 @@ constexpr vec3 bound_center{0, -0.005f, -0.085f}, bound_radii{0.095f, 0.135f, 0.
 constexpr float touch = 2e-4f;  // metres: nearer is on the surface
 constexpr int most_steps = 48;
 
-float smooth(float a, float b, float x) {
+float smooth_between(float a, float b, float x) {
   float t = glm::clamp((x - a) / (b - a), 0.f, 1.f);
   return t * t * (3 - 2 * t);
 }
@@ -57,7 +57,7 @@ float distance(vec3 p) {
 // 1 inside the ellipse about (x, y), 0 outside, with a soft rim.
 float blob(vec2 p, float x, float y, float rx, float ry) {
   const float d = glm::length((p - vec2(x, y)) / vec2(rx, ry));
-  return 1 - smooth(0.8f, 1.2f, d);
+  return 1 - smooth_between(0.8f, 1.2f, d);
 }
 
 // Reflectance of skin, hair and what is painted on them.
@@ -75,17 +75,18 @@ float albedo_at(vec3 p) {
     const float along = (q.x - 0.014f) / 0.038f;  // of the brow, 0 to 1
     if (along > 0 && along < 1) {
       const float arch = 0.0195f + 0.006f * std::sin(pi * (0.15f + 0.7f * along)) - 0.004f * along;
-      out -= 0.42f * (1 - smooth(0.0022f, 0.0052f - 0.002f * along, std::abs(q.y - arch)));
+      out -= 0.42f * (1 - smooth_between(0.0022f, 0.0052f - 0.002f * along, std::abs(q.y - arch)));
     }
     const float lip = q.x < 0.026f ? std::sqrt(1 - q.x * q.x / (0.026f * 0.026f)) : 0.f;
     if (p.y < -0.0685f + 0.0085f * lip && p.y > -0.0685f - 0.0095f * lip) out -= 0.20f;
-    out -= 0.30f * (1 - smooth(0.0004f, 0.0018f, std::abs(p.y + 0.0685f))) * (lip > 0.2f);
+    out -= 0.30f * (1 - smooth_between(0.0004f, 0.0018f, std::abs(p.y + 0.0685f))) * (lip > 0.2f);
     if (p.z > 0.002f) out -= 0.45f * blob(q, 0.0065f, -0.0455f, 0.0042f, 0.0024f);  // nostrils
   }
   // Hair: above the forehead, behind the temples.
   const float line = 0.068f - 6 * p.x * p.x;
-  const float hair = std::max(smooth(line - 0.004f, line + 0.004f, p.y),
-                              smooth(-0.062f, -0.070f, p.z) * smooth(-0.05f, -0.035f, p.y));
+  const float hair =
+      std::max(smooth_between(line - 0.004f, line + 0.004f, p.y),
+               smooth_between(-0.062f, -0.070f, p.z) * smooth_between(-0.05f, -0.035f, p.y));
   const bool ear = q.x > 0.0775f && p.y < 0.022f && p.y > -0.045f;
   return ear ? out : glm::mix(out, 0.09f, hair);
 }

@@ -17,7 +17,7 @@
 namespace wellspring {
 namespace {
 
-constexpr float degree = pi / 180;
+constexpr float one_degree = pi / 180;
 
 // What --config names, before anything else is read.
 std::string config_of(int argc, char** argv) {
@@ -222,9 +222,9 @@ KioskOptions parse_options(int argc, char** argv, CLI::App& app) {
   if (options.observe_to < 0) options.token = read_token(token_file, "WELLSPRING_KIOSK_TOKEN");
   options.eyes_given = eyes->count() > 0;
   put_each(options.cameras, "--fov", written.fovs,
-           [](CameraSettings& to, double fov) { to.mount.fov = float(fov) * degree; });
+           [](CameraSettings& to, double fov) { to.mount.fov = float(fov) * one_degree; });
   put_each(options.cameras, "--mount-pitch", written.pitches,
-           [](CameraSettings& to, double pitch) { to.mount.pitch = float(pitch) * degree; });
+           [](CameraSettings& to, double pitch) { to.mount.pitch = float(pitch) * one_degree; });
   put_each(options.cameras, "--mount-offset", written.offsets,
            [](CameraSettings& to, const std::string& text) { to.mount.offset = read_place(text); });
   for (CameraSettings& one : options.cameras) {

@@ -10,9 +10,9 @@
 namespace wellspring {
 
 struct ServerOptions {
-  std::string web;          // folder of the pages
-  std::string bench;        // report that /status shows; empty: none
-  AccessRules access;       // show/http/access.h
+  std::string web;     // folder of the pages
+  std::string bench;   // report that /status shows; empty: none
+  AccessRules access;  // show/http/access.h
   StreamSettings stream;
   MuseumSettings museum;
   std::string log, log_level = "info";          // file; empty: stderr. base/log_output.h

@@ -1,19 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 # tests/unit mirrors the tree: every folder of tests there becomes one program, unit_<folder>,
-# linked to the layer of that name.
+# linked to the layer of that name. TOGETHER as in wellspring_layer.
 enable_testing()
 set(WELLSPRING_DATA "${PROJECT_SOURCE_DIR}/../shared/data" CACHE PATH "real files for the corpus tests; they are skipped without it")
 
 function(wellspring_unit_test folder)
+  cmake_parse_arguments(ARG "TOGETHER" "" "" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/unit/${folder}/*.cpp)
   if(NOT sources)
     return()
   endif()
   add_executable(unit_${folder} ${sources})
-  target_link_libraries(unit_${folder} PRIVATE ${ARGN} GTest::gtest_main)
+  target_link_libraries(unit_${folder} PRIVATE ${ARG_UNPARSED_ARGUMENTS} GTest::gtest_main)
   target_include_directories(unit_${folder} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_options(unit_${folder} PRIVATE ${WELLSPRING_LITTLE})  # what they test is compiled as ever
   wellspring_precompile(unit_${folder} test)
+  if(ARG_TOGETHER)
+    wellspring_together(unit_${folder} tests/unit/${folder})
+  endif()
   target_compile_definitions(unit_${folder} PRIVATE
     WELLSPRING_SOURCE="${PROJECT_SOURCE_DIR}" WELLSPRING_DATA="${WELLSPRING_DATA}"
     WELLSPRING_WEIGHTS_FOLDER="${PROJECT_SOURCE_DIR}/build/weights")
@@ -36,21 +40,21 @@ endfunction()
 
 wellspring_unit_test(base   base)
 wellspring_unit_test(config config)
-wellspring_unit_test(wire wire)
+wellspring_unit_test(wire TOGETHER wire)
 wellspring_unit_test(ledger ledger)
 wellspring_unit_test(frame  frame)
 wellspring_unit_test(attention attention)
 wellspring_unit_test(denoise denoise)
 wellspring_unit_test(world  world)
-wellspring_unit_test(light light frame)
+wellspring_unit_test(light TOGETHER light frame)
 wellspring_unit_test(reference light frame pugixml_any)
 wellspring_unit_test(cache  picture)  # whose pictures say what the cache knows
 wellspring_unit_test(picture picture)
-wellspring_unit_test(avatar avatar)
-wellspring_unit_test(show show)
+wellspring_unit_test(avatar TOGETHER avatar)
+wellspring_unit_test(show TOGETHER show)
 wellspring_unit_test(museum museum)
-wellspring_unit_test(stream stream boost_any)
-wellspring_unit_test(kiosk kiosk)
+wellspring_unit_test(stream TOGETHER stream boost_any)
+wellspring_unit_test(kiosk TOGETHER kiosk)
 wellspring_unit_test(benchmark benchmark)
 
 include(tests/fuzz/fuzz.cmake)

@@ -7,14 +7,14 @@
 namespace wellspring {
 namespace {
 
-float between_0_and_1(float v) { return v > 0 ? std::min(v, 1.0f) : 0; }  // NaN: 0
+float clamp_weight(float v) { return v > 0 ? std::min(v, 1.0f) : 0; }  // NaN: 0
 
 // How much is left of a group: nothing where an expression blocks it or several together fade it
 // out.
 float left_of(const Character& character, size_t group, const Pose& pose) {
   float taken = 0;
   for (const ExpressionRule& rule : character.expression_rules) {
-    float weight = between_0_and_1(pose.displacers[size_t(rule.displacer)]);
+    float weight = clamp_weight(pose.displacers[size_t(rule.displacer)]);
     if (weight == 0 || rule.group == int(group)) continue;  // a blink does not forbid blinking
     if (rule.overrides[group] == ExpressionOverride::block) return 0;
     if (rule.overrides[group] == ExpressionOverride::blend) taken += weight;
@@ -53,7 +53,7 @@ void eval_appearance_changes(const Character& character, const Pose& pose,
     if (size_t(change.displacer) >= pose.displacers.size() ||
         size_t(change.appearance) >= changes.size())
       continue;
-    float weight = between_0_and_1(pose.displacers[size_t(change.displacer)]);
+    float weight = clamp_weight(pose.displacers[size_t(change.displacer)]);
     if (weight == 0) continue;
     AppearanceChange& sum = changes[size_t(change.appearance)];
     sum.base_color += weight * change.base_color;

@@ -11,7 +11,7 @@ using Kind = JointConstraint::Kind;
 constexpr quat no_turn(1, 0, 0, 0);
 
 // The smallest turn from one unit vector to another.
-quat turn_between(vec3 from, vec3 to) {
+quat turn_from_to(vec3 from, vec3 to) {
   float w = 1 + dot(from, to);
   vec3 axis = cross(from, to);
   if (w < 1e-6f) {  // opposite: any axis across will do, the same each time
@@ -49,7 +49,7 @@ quat eval_constraint(const Character& character, const JointConstraint& constrai
     way = glm::conjugate(above) * way;
     float length = glm::length(way);
     if (!(length > 1e-6f) || !std::isfinite(length)) return no_turn;
-    target = turn_between(constraint.axis, way / length);
+    target = turn_from_to(constraint.axis, way / length);
   } else {
     quat source = pose.rotations[size_t(constraint.source)];
     if (!is_turn(source)) return no_turn;
@@ -58,7 +58,7 @@ quat eval_constraint(const Character& character, const JointConstraint& constrai
     // What of the turn is left when the axis has been brought to where the turn takes it.
     if (constraint.kind == Kind::roll)
       target =
-          glm::conjugate(turn_between(constraint.axis, glm::normalize(target * constraint.axis))) *
+          glm::conjugate(turn_from_to(constraint.axis, glm::normalize(target * constraint.axis))) *
           target;
   }
   if (!is_turn(target)) return no_turn;

@@ -12,7 +12,7 @@ using Frame = SpringBonesState::Frame;
 constexpr float rule_rate = 60;      // of the steps that the format's numbers are meant for, Hz
 constexpr float fastest_turn = 200;  // radians a second
 
-vec3 unit_or(vec3 v, vec3 otherwise) {
+vec3 direction_or(vec3 v, vec3 otherwise) {
   float length = glm::length(v);
   return length > 1e-9f && std::isfinite(length) ? v / length : otherwise;
 }
@@ -22,7 +22,7 @@ vec3 any_across(vec3 v) {
 }
 
 // The shortest turn from one direction to another, as axis times angle.
-vec3 turn_between(vec3 from, vec3 to) {
+vec3 turn_vector(vec3 from, vec3 to) {
   vec3 axis = cross(from, to);
   float sine = glm::length(axis), cosine = dot(from, to);
   if (sine < 1e-7f) return cosine > 0 ? vec3(0) : any_across(from) * pi;
@@ -80,8 +80,8 @@ vec3 keep_side(vec3 way, vec3 axis, float border, bool above) {
   float share = dot(way, axis);
   if (above ? share >= border : share <= border) return way;
   float h = std::clamp(border, -1.0f, 1.0f);
-  vec3 across = unit_or(way - axis * share, any_across(axis));
-  return unit_or(axis * h + across * std::sqrt(1 - h * h), way);
+  vec3 across = direction_or(way - axis * share, any_across(axis));
+  return direction_or(axis * h + across * std::sqrt(1 - h * h), way);
 }
 
 vec3 keep_clear(const SpringCollider& collider, const Character& character,
@@ -142,28 +142,28 @@ void tick_spring_bones(SpringBonesState& state, const Character& character, floa
     frame.changed = true;
     Frame base;
     if (bone.center >= 0) base = frames[size_t(bone.center)];
-    vec3 modelled = unit_or(frame.rotation * bone.tail, vec3(0, -1, 0));
+    vec3 modelled = direction_or(frame.rotation * bone.tail, vec3(0, -1, 0));
     float length = glm::length(bone.tail);
     vec3 force = modelled * bone.stiffness + bone.gravity;
     float strength = glm::length(force);
-    vec3 wanted = unit_or(force, modelled);
+    vec3 wanted = direction_or(force, modelled);
     vec3 way = wanted, turning(0);
     if (begun) {
-      way = unit_or(base.center + base.rotation * own.end - frame.center, wanted);
+      way = direction_or(base.center + base.rotation * own.end - frame.center, wanted);
       turning = base.rotation * own.turning;
-      vec3 off = turn_between(wanted, way);
+      vec3 off = turn_vector(wanted, way);
       turning -= wanted * dot(wanted, turning);
       float drag = -rule_rate * std::log(std::max(1 - bone.drag, 1e-6f));
       swing(off, turning, rule_rate * strength / length, drag, dt);
       float speed = glm::length(turning);
       if (speed > fastest_turn) turning *= fastest_turn / speed;
-      way = unit_or(rotation_of(off) * wanted, wanted);
+      way = direction_or(rotation_of(off) * wanted, wanted);
     }
     for (int c : bone.colliders) {
       vec3 clear = keep_clear(character.spring_colliders[size_t(c)], character, frames,
                               {frame.center, length, bone.radius}, way);
       if (clear == way) continue;
-      vec3 normal = unit_or(clear - way, vec3(0)), velocity = cross(turning, clear);
+      vec3 normal = direction_or(clear - way, vec3(0)), velocity = cross(turning, clear);
       velocity -= normal * std::min(dot(velocity, normal), 0.0f);  // what met it goes no further in
       turning = cross(clear, velocity);
       way = clear;
@@ -174,7 +174,7 @@ void tick_spring_bones(SpringBonesState& state, const Character& character, floa
     own.end = back * (frame.center + way * length - base.center);
     own.turning = back * turning;
     quat parent_rotation = parent < 0 ? quat(1, 0, 0, 0) : frames[size_t(parent)].rotation;
-    frame.rotation = glm::normalize(rotation_of(turn_between(modelled, way)) * frame.rotation);
+    frame.rotation = glm::normalize(rotation_of(turn_vector(modelled, way)) * frame.rotation);
     pose.rotations[j] = glm::normalize(glm::conjugate(parent_rotation) * frame.rotation);
   }
 }

@@ -15,7 +15,7 @@
 namespace wellspring {
 namespace {
 
-constexpr size_t joint_limit = 4096, depth_limit = 512;
+constexpr size_t most_joints = 4096, depth_limit = 512;
 
 enum class Channel : uint8_t {
   x_position,
@@ -39,7 +39,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-struct Reader {
+struct BvhReader {
   const std::string& path;
   std::string_view text;
   size_t at = 0;
@@ -161,7 +161,7 @@ struct Reader {
   }
 
   void add_joint(std::vector<int>& open) {
-    if (joints.size() >= joint_limit) fail("more than " + std::to_string(joint_limit) + " joints");
+    if (joints.size() >= most_joints) fail("more than " + std::to_string(most_joints) + " joints");
     if (open.size() >= depth_limit)
       fail("joints are nested deeper than " + std::to_string(depth_limit));
     BvhJoint joint;
@@ -243,10 +243,10 @@ bool is_bvh(const std::string& text) {
 }
 
 Character character_from_bvh(const std::string& path, const std::string& text) {
-  Reader reader{path, text};
+  BvhReader reader{path, text};
   if (text.compare(0, 3, "\xef\xbb\xbf") == 0) reader.at = 3;
   reader.read_hierarchy();
-  Reader::Frames frames = reader.read_motion();
+  BvhReader::Frames frames = reader.read_motion();
 
   std::vector<Bone> bones;
   std::vector<vec3> places;

@@ -12,7 +12,7 @@ namespace {
 using gltf::items;
 using gltf::json;
 
-struct Reader {
+struct MorphReader {
   GltfFigure& figure;
   Character& character = figure.character;
   size_t moved = 0;
@@ -34,7 +34,7 @@ std::vector<size_t> nodes_of(const GltfFigure& figure, const VrmBind& bind) {
   return nodes;
 }
 
-void Reader::add_moves(const VrmExpression& expression, Displacer& displacer) {
+void MorphReader::add_moves(const VrmExpression& expression, Displacer& displacer) {
   std::map<uint32_t, vec3> sum;
   for (const VrmBind& bind : expression.binds) {
     bool known = false;
@@ -65,7 +65,7 @@ vec2 pair_of(const json& object, const char* key, float otherwise) {
   return v;
 }
 
-void Reader::add_changes(const VrmExpression& expression, int displacer) {
+void MorphReader::add_changes(const VrmExpression& expression, int displacer) {
   const json& materials = items(figure.file.root, "materials");
   std::map<size_t, AppearanceChange> changes;  // by material
   for (const VrmColorBind& bind : expression.colors) {
@@ -110,7 +110,7 @@ void Reader::add_changes(const VrmExpression& expression, int displacer) {
   }
 }
 
-void Reader::add(const VrmExpression& expression) {
+void MorphReader::add(const VrmExpression& expression) {
   Displacer displacer{expression.name.substr(0, 200), {}, {}};
   add_moves(expression, displacer);
   bool shows =
@@ -131,7 +131,7 @@ void Reader::add(const VrmExpression& expression) {
 }  // namespace
 
 void read_gltf_expressions(GltfFigure& figure) {
-  Reader reader{figure};
+  MorphReader reader{figure};
   for (const VrmExpression& expression : figure.vrm.expressions) reader.add(expression);
   if (reader.made.empty()) return;
   // Expressions come first: of an expression and a morph target with one name, the expression

@@ -19,7 +19,7 @@ using gltf::Used;
 constexpr size_t vertex_limit = 3'000'000;
 constexpr float farthest = 1e15f;
 
-struct Reader {
+struct SkinReader {
   GltfFigure& figure;
   Character& character = figure.character;
   gltf::File& file = figure.file;
@@ -37,7 +37,7 @@ struct Reader {
                     const std::vector<double>& weights);
 };
 
-void Reader::read_appearances() {
+void SkinReader::read_appearances() {
   const json& materials = items(file.root, "materials");
   for (size_t m = 0; m <= materials.size(); m++) {
     Appearance appearance;
@@ -66,8 +66,8 @@ void Reader::read_appearances() {
   }
 }
 
-std::vector<dmat4> Reader::read_weights(size_t node, const json& primitive,
-                                        const std::string& where, const Used& used) {
+std::vector<dmat4> SkinReader::read_weights(size_t node, const json& primitive,
+                                            const std::string& where, const Used& used) {
   const json& attributes = primitive["attributes"];
   const json* skin = gltf::find(items(file.root, "nodes")[node], "skin");
   std::vector<dmat4> to_rest(used.size(), dmat4(0));
@@ -160,9 +160,10 @@ std::string target_name(const json& mesh, const json& primitive, size_t target) 
   return gltf::text(mesh, "name", "morph").substr(0, 100) + " " + std::to_string(target);
 }
 
-void Reader::read_targets(size_t node, const json& mesh, size_t mesh_index, const json& primitive,
-                          const Used& used, const std::vector<dmat4>& to_rest, uint32_t first,
-                          const std::vector<double>& weights) {
+void SkinReader::read_targets(size_t node, const json& mesh, size_t mesh_index,
+                              const json& primitive, const Used& used,
+                              const std::vector<dmat4>& to_rest, uint32_t first,
+                              const std::vector<double>& weights) {
   const json& targets = items(primitive, "targets");
   for (size_t t = 0; t < targets.size(); t++) {
     std::vector<vec3> moves = gltf::read_vec3s(file, targets[t], "POSITION", used);
@@ -182,7 +183,7 @@ void Reader::read_targets(size_t node, const json& mesh, size_t mesh_index, cons
   }
 }
 
-void Reader::read_primitive(size_t node, size_t mesh_index, size_t index) {
+void SkinReader::read_primitive(size_t node, size_t mesh_index, size_t index) {
   const json& mesh = items(file.root, "meshes")[mesh_index];
   const json& primitive = mesh["primitives"][index];
   const json& attributes = primitive["attributes"];
@@ -273,7 +274,7 @@ void Reader::read_primitive(size_t node, size_t mesh_index, size_t index) {
   if (!part.triangles.empty()) character.parts.push_back(std::move(part));
 }
 
-void Reader::read_node(size_t node) {
+void SkinReader::read_node(size_t node) {
   const json* mesh = gltf::find(items(file.root, "nodes")[node], "mesh");
   if (!mesh) return;
   size_t index = mesh->get<size_t>();
@@ -285,7 +286,7 @@ void Reader::read_node(size_t node) {
 }  // namespace
 
 void read_gltf_surfaces(GltfFigure& figure) {
-  Reader reader{figure};
+  SkinReader reader{figure};
   reader.read_appearances();
   for (size_t i = 0; i < figure.nodes.size(); i++)
     if (figure.nodes[i].shown) reader.read_node(i);

@@ -72,7 +72,7 @@ struct Form {
 constexpr Form version_0{"binds", "mesh", "meshes", 100},
     version_1{"morphTargetBinds", "node", "nodes", 1};
 
-struct Reader {
+struct ExpressionReader {
   File& file;
   Vrm& vrm;
   size_t binds = 0;
@@ -172,7 +172,7 @@ struct Reader {
 }  // namespace
 
 void read_vrm_expressions(File& file, const json& object, Vrm& vrm) {
-  Reader reader{file, vrm};
+  ExpressionReader reader{file, vrm};
   if (vrm.version == 0) {
     const std::string root = "/extensions/VRM/blendShapeMaster";
     const json& master = object_in(file, object, "blendShapeMaster", "/extensions/VRM");

@@ -14,7 +14,7 @@ using namespace vrm_json;
 constexpr size_t collider_limit = 1000, spring_limit = 4096, meeting_limit = 100'000;
 constexpr float leaf_length = 0.07f;  // of the last bone of a row in version 0, metres
 
-struct Reader {
+struct SpringReader {
   File& file;
   Vrm& vrm;
   std::set<size_t> taken;
@@ -77,7 +77,7 @@ struct Reader {
 
 // Version 0 writes collider offsets with z the other way round than glTF (UniVRM's left-handed
 // space).
-void Reader::read_version_0() {
+void SpringReader::read_version_0() {
   const std::string root = "/extensions/VRM/secondaryAnimation";
   const json& object =
       object_in(file, *gltf::extension(file.root, "VRM"), "secondaryAnimation", "/extensions/VRM");
@@ -140,7 +140,8 @@ void Reader::read_version_0() {
   }
 }
 
-void Reader::read_shape(size_t node, const json& shape, bool extended, const std::string& where) {
+void SpringReader::read_shape(size_t node, const json& shape, bool extended,
+                              const std::string& where) {
   VrmCollider collider;
   collider.node = node;
   for (const char* kind : {"sphere", "capsule", "plane"}) {
@@ -158,7 +159,7 @@ void Reader::read_shape(size_t node, const json& shape, bool extended, const std
   add_collider(collider);  // a point, so that indices stay
 }
 
-void Reader::read_version_1(const json& object) {
+void SpringReader::read_version_1(const json& object) {
   const std::string root = "/extensions/VRMC_springBone";
   const json& colliders = list_in(file, object, "colliders", root);
   for (size_t c = 0; c < colliders.size(); c++) {
@@ -210,7 +211,7 @@ void Reader::read_version_1(const json& object) {
 }  // namespace
 
 void read_vrm_springs(File& file, Vrm& vrm) {
-  Reader reader{file, vrm, {}};
+  SpringReader reader{file, vrm, {}};
   const json* springs = gltf::extension(file.root, "VRMC_springBone");
   if (springs) reader.read_version_1(*springs);
   else if (vrm.version == 0) reader.read_version_0();

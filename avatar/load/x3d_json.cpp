@@ -20,7 +20,7 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-struct Builder {
+struct JsonBuilder {
   X3dFile& file;
   std::vector<X3dPendingUse> uses;
 
@@ -172,7 +172,7 @@ X3dFile parse_x3d_json(const std::string& path, const std::string& text) {
       if (factor > 1e-6f && factor < 1e6f) file.length_unit = factor;
     }
   }
-  Builder builder{file, {}};
+  JsonBuilder builder{file, {}};
   for (const auto& [name, value] : root["Scene"].items())
     if (!name.empty() && name[0] == '-')
       builder.add_nodes(value, 0, name.substr(1), "/X3D/Scene/" + name, 1);

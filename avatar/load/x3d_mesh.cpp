@@ -136,7 +136,7 @@ std::vector<vec2> default_uv(const X3dMesh& mesh) {
   return uv;
 }
 
-struct Reader {
+struct MeshReader {
   X3dFile& file;
   const X3dNode& node;
   X3dMesh& mesh;
@@ -352,7 +352,7 @@ X3dMesh make_x3d_mesh(X3dFile& file, int geometry) {
        {"IndexedFaceSet", "IndexedTriangleSet", "TriangleSet", "IndexedTriangleStripSet",
         "TriangleStripSet", "IndexedTriangleFanSet", "TriangleFanSet", "IndexedQuadSet", "QuadSet"})
     if (node.type == type) {
-      Reader{file, node, mesh}.read();
+      MeshReader{file, node, mesh}.read();
       return mesh;
     }
   warn_once(file.warnings, "geometry of type " + node.type + " is not drawn");

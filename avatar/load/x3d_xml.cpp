@@ -38,7 +38,7 @@ bool is(const pugi::xml_node& node, const char* name) {
   return std::strcmp(local_name(node.name()), name) == 0;
 }
 
-struct Builder {
+struct XmlBuilder {
   X3dFile& file;
   const Lines& lines;
   std::vector<X3dPendingUse> uses;
@@ -156,7 +156,7 @@ X3dFile parse_x3d_xml(const std::string& path, const std::string& text) {
       }
   }
   if (!scene) throw LoadError(path, "", "the X3D element has no Scene");
-  Builder builder{file, lines, {}};
+  XmlBuilder builder{file, lines, {}};
   builder.build(scene);
   resolve_uses(file, builder.uses);
   return file;

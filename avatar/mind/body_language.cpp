@@ -5,7 +5,7 @@ namespace wellspring {
 namespace {
 
 constexpr float near_place = 1.3f;   // metres: nearer than this is pointed at with a bent arm
-constexpr float same_place = 0.25f;  // metres: no new gesture for the same thing
+constexpr float same_thing = 0.25f;  // metres: no new gesture for the same thing
 constexpr float seconds_held = 60;   // longest a hand points without being asked anew
 constexpr double answer_again = 8;   // seconds between answers to a visitor's gestures
 
@@ -38,7 +38,7 @@ GestureOrder choose_gesture(BodyLanguageState& state, GestureState& gesture,
                             Rng& rng, double now) {
   const StoryCue& story = input.story;
   bool points = story.point && is_finite(*story.point) && mood != Mood::farewell;
-  bool elsewhere = points && glm::length(*story.point - state.pointed) > same_place;
+  bool elsewhere = points && glm::length(*story.point - state.pointed) > same_thing;
   if (state.pointing && !points) release(gesture, library);
   bool begins = points && (!state.pointing || elsewhere);
   state.pointing = points;

@@ -7,8 +7,6 @@ namespace wellspring {
 
 namespace {
 
-bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
 bool is_ascii_mark(char c) {
   return (c >= '!' && c <= '/' && c != '%' && c != '$' && c != '&') || (c >= ':' && c <= '@') ||
          (c >= '[' && c <= '`') || (c >= '{' && c <= '~');

@@ -11,6 +11,8 @@
 
 namespace wellspring {
 
+inline bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
 // Number of characters (code points) in the first `bytes` bytes of `text`.
 size_t count_characters(std::string_view text, size_t bytes);
 // Byte of the first broken UTF-8 sequence or of a NUL, or npos. Overlong forms, surrogates and what

@@ -11,11 +11,10 @@ namespace wellspring {
 
 namespace {
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_tag_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_name(char c) {
-  return is_letter(c) || (c >= '0' && c <= '9') || c == '-' || c == ':' || c == '.';
+  return is_tag_letter(c) || (c >= '0' && c <= '9') || c == '-' || c == ':' || c == '.';
 }
-bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 std::string small(std::string_view text) {
   std::string result(text);
@@ -136,7 +135,7 @@ struct Reader {
   bool is_tag() const {
     if (text[at] != '<' || at + 1 >= text.size()) return false;
     char next = text[at + 1];
-    return is_letter(next) || next == '/' || next == '!' || next == '?';
+    return is_tag_letter(next) || next == '/' || next == '!' || next == '?';
   }
 
   void read_attributes(MarkupPiece& piece) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "avatar/speech/text.h"
 #include "avatar/story/story_sentence.h"
 #include "avatar/story/story_value.h"
 #include "base/load_error.h"
@@ -11,8 +12,6 @@
 namespace wellspring {
 
 namespace {
-
-bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 // A paragraph being collected: its text with single spaces, and what stands at its bytes.
 struct Paragraph {

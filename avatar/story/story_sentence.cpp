@@ -3,11 +3,12 @@
 
 #include <array>
 
+#include "avatar/speech/text.h"
+
 namespace wellspring {
 
 namespace {
 
-bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c & 0x80) || ((c | 32) >= 'a' && (c | 32) <= 'z'); }
 

@@ -33,7 +33,7 @@ constexpr int windows_a_call = 2;
 // A lens of 60 degrees: whether landmarks could be a head's hardly depends on it.
 constexpr float usual_focal = 0.87f;  // over the frame's width
 
-GrayView view_of(const GrayFrame& frame) {
+GrayView gray_view_of(const GrayFrame& frame) {
   return {frame.pixels.data(), frame.width, frame.height};
 }
 
@@ -80,7 +80,7 @@ class NetworkFinder : public FaceFinder {
 
   // The face that landmarks make near `square`; nothing where they make none.
   std::optional<Face> face_at(const GrayFrame& frame, Cut square, int reads) {
-    const GrayView view = view_of(frame);
+    const GrayView view = gray_view_of(frame);
     FaceMarks marks{};
     Cut next;
     for (int k = 0; k < reads; k++) {
@@ -109,7 +109,7 @@ class NetworkFinder : public FaceFinder {
   }
 
   void look(const GrayFrame& frame, const Cut& window, std::vector<Face>& faces) {
-    for (const FaceBox& box : boxes.find(view_of(frame), window, columns, rows, propose)) {
+    for (const FaceBox& box : boxes.find(gray_view_of(frame), window, columns, rows, propose)) {
       const float side = std::max(box.width, box.height);
       auto face = face_at(frame, {box.middle, side, side, 0}, 3);
       if (!face ||
@@ -125,7 +125,7 @@ class NetworkFinder : public FaceFinder {
     }
   }
 
-  static void largest_first(std::vector<Face>& faces) {
+  static void biggest_first(std::vector<Face>& faces) {
     std::sort(faces.begin(), faces.end(),
               [](auto& a, auto& b) { return a.box.width > b.box.width; });
     if (faces.size() > 8) faces.resize(8);
@@ -142,7 +142,7 @@ std::vector<Face> NetworkFinder::search(const GrayFrame& frame) {
     const auto windows = windows_over({0, 0, w, h}, w, w * rows / columns, coarse);
     look(frame, windows[coarse_turn++ % windows.size()], faces);
   }
-  largest_first(faces);
+  biggest_first(faces);
   return faces;
 }
 
@@ -156,7 +156,7 @@ std::vector<Face> NetworkFinder::search_thoroughly(const GrayFrame& frame, const
   const auto windows = windows_over(part, width, width * rows / columns, fine);
   for (int k = 0; k < std::min(windows_a_call, int(windows.size())); k++)
     look(frame, windows[fine_turn++ % windows.size()], faces);
-  largest_first(faces);
+  biggest_first(faces);
   return faces;
 }
 
@@ -178,8 +178,8 @@ std::optional<Face> NetworkFinder::follow(const GrayFrame& frame, const Face& la
     const float side = near_reach * now.width;
     face->score = 0;
     for (const FaceBox& box :
-         boxes.find(view_of(frame), {{now.center_x(), now.center_y()}, side, side, 0}, near_side,
-                    near_side, is_young ? agree_young : agree)) {
+         boxes.find(gray_view_of(frame), {{now.center_x(), now.center_y()}, side, side, 0},
+                    near_side, near_side, is_young ? agree_young : agree)) {
       const float square_side = std::max(box.width, box.height);
       if (overlap(now, {box.middle.x - square_side / 2, box.middle.y - square_side / 2, square_side,
                         square_side}) > 0.3f)

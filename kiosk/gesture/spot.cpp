@@ -10,7 +10,7 @@ namespace wellspring {
 
 namespace {
 
-constexpr float never = -1e30f;
+constexpr float no_score = -1e30f;
 constexpr long longest = 150;    // steps of a gesture: 9 shoulder widths
 constexpr long look = 4;         // steps to either side that tell an edge
 constexpr float hopeless = -12;  // nats below other motion: no gesture begins here
@@ -24,7 +24,7 @@ struct Followed {
 };
 
 struct Token {
-  float score = never;
+  float score = no_score;
   std::array<int16_t, most_states> entry{};  // steps from the beginning to each state
 };
 
@@ -60,7 +60,7 @@ struct GestureSpotter::Impl {
   std::vector<CodedStep> fresh;
 
   Impl(const GestureModels& models, const SpotSettings& s) : settings(s) {
-    auto ln = [](double p) { return p > 0 ? float(std::log(p)) : never; };
+    auto ln = [](double p) { return p > 0 ? float(std::log(p)) : no_score; };
     auto ln_rows = [&](const Hmm& hmm) {
       std::vector<std::array<float, orientation_codes>> rows(size_t(hmm.states));
       for (size_t i = 0; i < rows.size(); i++)
@@ -71,7 +71,7 @@ struct GestureSpotter::Impl {
       Followed g{&model, tokens, {}, {}, ln_rows(model.hmm)};
       for (int i = 0; i < model.hmm.states; i++) {
         g.stay.push_back(ln(model.hmm.at(i, i)));
-        g.next.push_back(i + 1 < model.hmm.states ? ln(model.hmm.at(i, i + 1)) : never);
+        g.next.push_back(i + 1 < model.hmm.states ? ln(model.hmm.at(i, i + 1)) : no_score);
       }
       tokens += g.stay.size();
       gestures.push_back(std::move(g));
@@ -81,14 +81,14 @@ struct GestureSpotter::Impl {
     for (int i = 0; i < other.states; i++) {
       other_initial.push_back(ln(other.initial[size_t(i)]));
       other_stay.push_back(ln(other.at(i, i)));
-      other_leave.push_back(other.states > 1 ? ln(other.at(i, (i + 1) % other.states)) : never);
+      other_leave.push_back(other.states > 1 ? ln(other.at(i, (i + 1) % other.states)) : no_score);
     }
   }
 
   // All states of the other motion lead to each other alike, so the best and the second best that
   // are left are enough. Returns the best score.
   float follow_other(std::vector<float>& delta, Code code, bool first) const {
-    float best = never;
+    float best = no_score;
     if (first) {
       for (size_t i = 0; i < delta.size(); i++) {
         delta[i] = other_initial[i] + other_output[i][code];
@@ -96,7 +96,7 @@ struct GestureSpotter::Impl {
       }
       return best;
     }
-    float left = never, left_second = never;
+    float left = no_score, left_second = no_score;
     size_t from = 0;
     for (size_t i = 0; i < delta.size(); i++) {
       const float score = delta[i] + other_leave[i];
@@ -114,19 +114,19 @@ struct GestureSpotter::Impl {
   // Returns the best score of any state. `age`: steps since the beginning.
   static float follow(const Followed& g, Token* token, Code code, long age) {
     const size_t states = g.stay.size();
-    float best = never;
+    float best = no_score;
     for (size_t j = states; j-- > 0;) {
-      if (age == 0) token[j].score = j == 0 ? 0 : never;
+      if (age == 0) token[j].score = j == 0 ? 0 : no_score;
       else {
         const float kept = token[j].score + g.stay[j];
-        const float moved = j > 0 ? token[j - 1].score + g.next[j - 1] : never;
+        const float moved = j > 0 ? token[j - 1].score + g.next[j - 1] : no_score;
         if (moved > kept) {
           token[j] = token[j - 1];
           token[j].score = moved;
           token[j].entry[j] = int16_t(age);
         } else token[j].score = kept;
       }
-      token[j].score = std::max(never, token[j].score + g.output[j][code]);
+      token[j].score = std::max(no_score, token[j].score + g.output[j][code]);
       best = std::max(best, token[j].score);
     }
     return best;
@@ -178,7 +178,7 @@ struct GestureSpotter::Impl {
   bool advance(Beginning& b, Code code, bool edge) {
     const long age = count - 1 - b.first;
     const float other = follow_other(b.other, code, age == 0);
-    b.ahead = never;
+    b.ahead = no_score;
     for (const Followed& g : gestures) {
       Token* token = b.tokens.data() + g.first;
       const float best = follow(g, token, code, age);

@@ -16,7 +16,7 @@
 namespace wellspring {
 namespace {
 
-[[noreturn]] void fail(const char* what, int error) {
+[[noreturn]] void refuse(const char* what, int error) {
   throw std::runtime_error("sandbox: " + std::string(what) + ": " + std::strerror(error));
 }
 
@@ -51,7 +51,7 @@ void refuse(const Filter& filter, int call, std::initializer_list<scmp_arg_cmp> 
       seccomp_rule_add_array(filter.get(), SCMP_ACT_ERRNO(EPERM), call, unsigned(where.size()),
                              where.size() ? where.begin() : nullptr);
   // A call that this processor does not have is none to refuse.
-  if (error != 0 && error != -EDOM && error != -EOPNOTSUPP) fail("a rule", -error);
+  if (error != 0 && error != -EDOM && error != -EOPNOTSUPP) refuse("a rule", -error);
 }
 
 // `flags`: which argument of the call they are.
@@ -68,12 +68,12 @@ void refuse_writing(const Filter& filter, int call, unsigned flags, bool device)
 
 void enter_sandbox(const SandboxSettings& settings) {
   const rlimit none{0, 0};
-  if (setrlimit(RLIMIT_CORE, &none) != 0) fail("core dumps", errno);
-  if (prctl(PR_SET_DUMPABLE, 0) != 0) fail("memory images", errno);
+  if (setrlimit(RLIMIT_CORE, &none) != 0) refuse("core dumps", errno);
+  if (prctl(PR_SET_DUMPABLE, 0) != 0) refuse("memory images", errno);
   mallopt(M_PERTURB, 0x55);  // memory that is given back is overwritten
 
   Filter filter(seccomp_init(SCMP_ACT_ALLOW));
-  if (!filter) fail("seccomp", ENOSYS);
+  if (!filter) refuse("seccomp", ENOSYS);
   seccomp_attr_set(filter.get(), SCMP_FLTATR_CTL_TSYNC, 1);  // threads that run already, too
   for (int call : refused) refuse(filter, call);
   refuse_writing(filter, SCMP_SYS(open), 1, settings.device);
@@ -83,8 +83,8 @@ void enter_sandbox(const SandboxSettings& settings) {
   refuse(filter, SCMP_SYS(clone), {SCMP_CMP(0, SCMP_CMP_MASKED_EQ, CLONE_THREAD, 0)});
   if (int error = seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0);
       error != 0 && error != -EDOM)
-    fail("a rule", -error);
-  if (int error = seccomp_load(filter.get()); error != 0) fail("seccomp", -error);
+    refuse("a rule", -error);
+  if (int error = seccomp_load(filter.get()); error != 0) refuse("seccomp", -error);
 }
 
 }  // namespace wellspring

@@ -128,8 +128,8 @@ void share_cores(Room& room, const std::list<Room>& rooms) {
 }
 
 void keep_ticking(Room& room, const std::list<Room>& rooms, const SharedParts& shared,
-                  Reception& reception,
-                  const std::atomic<bool>& stopping, std::atomic<bool>& changed) {
+                  Reception& reception, const std::atomic<bool>& stopping,
+                  std::atomic<bool>& changed) {
   const Reception* told = &room == &rooms.front() ? &reception : nullptr;
   double reported = -1;
   while (!stopping) {

@@ -11,7 +11,7 @@ constexpr double on_time = 0.0005;  // seconds that a picture may come too early
 constexpr double skin_rate = 5;     // times a second that light on what moves is found
 // Of reconstructions.
 constexpr double first_after = 0.5;     // seconds at rest
-constexpr double least_samples = 0.25;  // a pixel: of fewer it makes no better picture
+constexpr double least_a_pixel = 0.25;  // a pixel: of fewer it makes no better picture
 constexpr double growth = 1.4;          // times as many samples as in the pass before
 constexpr double most_share = 0.35;     // of the time goes to passes
 
@@ -104,7 +104,7 @@ bool keeps_picture(const VisitorDrawState& state) {
 bool wants_pass(double now, const VisitorDrawState& state, const RendererState& renderer) {
   const RestState& rest = state.rest;
   if (!renderer.background || !renderer.can_reconstruct || renderer.in_pass) return false;
-  if (!state.stands || now - state.moved_at < first_after || rest.samples < least_samples)
+  if (!state.stands || now - state.moved_at < first_after || rest.samples < least_a_pixel)
     return false;
   // What moves is not in it.
   if (state.drew_moving && !state.backdrop) return false;

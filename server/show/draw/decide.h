@@ -28,7 +28,7 @@ struct VisitorDrawState {
   bool unshown = false;      // that picture has not been sent yet
   bool backdrop = false;     // it is without what moves
   bool in_pass = false;      // a reconstruction of it is under way
-  double came_at = -1e9;                    // when the visit began
+  double came_at = -1e9;     // when the visit began
   double drawn_at = -1e9, posed_at = -1e9;  // when the last picture, and what moves, was ordered
   double moved_at = 0;                      // when the view changed last
   double picture_rate = 1, drawing_rate = 1, moving_rate = 1;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double most_skin_seconds = 0.025;  // of tracing, each time; when there are
 constexpr float enough_samples = 8;          // of a place, less, but
-constexpr double least_share = 0.25;         // of that at least: she moves
+constexpr double least_moving_share = 0.25;  // of that at least: she moves
 constexpr int cycles = 2, first_cycles = 6;  // of smoothing; when it was not found for a while
 
 }  // namespace
@@ -28,8 +28,8 @@ void begin_skin_light(Show& show) {
   for (const Visitor& visitor : show.visitors)
     if (visitor.welcomed) job.eyes.push_back(visitor.place.last_view.position);
   job.update.eyes = job.eyes;
-  double seconds =
-      most_skin_seconds * std::clamp(double(enough_samples / show.skin.samples), least_share, 1.0);
+  double seconds = most_skin_seconds *
+                   std::clamp(double(enough_samples / show.skin.samples), least_moving_share, 1.0);
   job.update.samples = int(seconds * double(show.samples_per_second));
   job.update.seed = mix64(show.ticks);
   job.update.transport = show.settings.transport;

@@ -17,7 +17,7 @@ constexpr float predicted_share = 0.3f;  // of the samples, at most
 constexpr float barely_covered = 0.1f;   // of the pixels by points
 constexpr size_t least_slice = 2048;     // samples
 // Seconds of tracing at a time, while it may be given up, and where what moves is due soon.
-constexpr double slice = 0.025, least_slice_seconds = 0.006;
+constexpr double longest_slice = 0.025, least_slice_seconds = 0.006;
 constexpr double spread_from = 0.8;      // samples a pixel
 constexpr float corrected_share = 0.2f;  // of the samples, at most, for what shines
 constexpr float more_asked = 1.2f;  // than there is time for, by what was measured: none is idle
@@ -45,7 +45,7 @@ bool spreads_samples(const PictureJob& job, const Technique& technique, const Re
 
 // So many are traced at a time.
 size_t slice_of_samples(const Show& show) {
-  double seconds = std::clamp(show.renderer.until_moving, least_slice_seconds, slice);
+  double seconds = std::clamp(show.renderer.until_moving, least_slice_seconds, longest_slice);
   return size_t(std::max(seconds * double(show.samples_per_second), double(least_slice)));
 }
 

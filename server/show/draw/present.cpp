@@ -23,7 +23,7 @@ namespace wellspring {
 namespace {
 
 constexpr double presenting = 0.012;  // seconds of a tick: then it reads what visitors ask for
-constexpr double on_time = 0.0005;    // seconds that a picture may come too early
+constexpr double early = 0.0005;      // seconds that a picture may come too early
 constexpr double fade_rate = 12;      // pictures a second from one picture at rest to the next
 constexpr float most_unknown =
     0.8f;  // of a warped picture: beyond, the one before is as near to the truth (cache.warp)
@@ -271,7 +271,7 @@ void present(Show& show, Visitor& visitor) {
   const bool waits_for_keyframe = shown.pictured_at > show.time;
   if (waits_for_keyframe && !picture.unshown) return;
   if (!stood && !waits_for_keyframe &&
-      show.time - shown.pictured_at < 1 / picture_rate(show, visitor) - on_time)
+      show.time - shown.pictured_at < 1 / picture_rate(show, visitor) - early)
     return;
 
   Encoder& encoder = *shown.encoder;

@@ -12,7 +12,7 @@
 namespace wellspring {
 namespace {
 
-constexpr double slice = 0.02, least_slice = 0.004;  // seconds
+constexpr double slice = 0.02, least_step = 0.004;  // seconds
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void go_on_with_pass(Show& show) {
   StillPass& pass = show.pass;
   double began = seconds_now();
   if (pass.step == StillPass::Step::compute) {
-    double seconds = std::clamp(show.renderer.until_moving, least_slice, slice);
+    double seconds = std::clamp(show.renderer.until_moving, least_step, slice);
     if (!pass.denoiser->advance(seconds, &pass.given_up)) pass.step = StillPass::Step::finish;
   } else if (pass.step == StillPass::Step::finish) {
     finish_reconstruction(pass.visitor->picture.compositor.samples(), *pass.denoiser, pass.work,

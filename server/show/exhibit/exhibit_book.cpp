@@ -9,7 +9,7 @@
 namespace wellspring {
 namespace {
 
-struct Reader {
+struct BookReader {
   Exhibit& exhibit;
 
   void want_languages(Fields& fields, const std::string& place, const LocalText& text) {
@@ -94,7 +94,7 @@ bool has_place(Fields& fields, size_t count, size_t most, const char* what) {
 }  // namespace
 
 void read_book(Exhibit& exhibit, Fields& root) {
-  Reader reader{exhibit};
+  BookReader reader{exhibit};
   root.object("book", false, [&](Fields book_fields) {
     Book book;
     std::set<std::string> topics, partners, presentations;
@@ -128,7 +128,7 @@ void read_book(Exhibit& exhibit, Fields& root) {
 }
 
 void read_ambient_sounds(Exhibit& exhibit, Fields& root) {
-  Reader reader{exhibit};
+  BookReader reader{exhibit};
   std::set<std::string> taken;
   root.objects("sounds", false, [&](Fields fields) {
     if (!has_place(fields, exhibit.sounds.size(), most_sounds, "sounds an exhibit may have"))

@@ -12,7 +12,7 @@
 namespace wellspring {
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double one_degree = 3.14159265358979323846 / 180;
 constexpr double least_scale = 1e-6, most_scale = 1e6;
 
 // The scene of the file that `field` names; nothing where it cannot be read, which is told.
@@ -51,7 +51,7 @@ void read_files(Exhibit& exhibit, Fields& root, std::vector<Problem>& problems) 
   root.objects("scenes", true, [&](Fields fields) {
     ScenePlace place;
     place.position = fields.triple("position", false);
-    place.yaw = fields.number("yaw_deg", false, 0, -720, 720) * degree;
+    place.yaw = fields.number("yaw_deg", false, 0, -720, 720) * one_degree;
     place.scale = fields.number("scale", false, 1, least_scale, most_scale);
     std::optional<Scene> scene = read_file(exhibit, fields, "file", problems);
     fields.finish();

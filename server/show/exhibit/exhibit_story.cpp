@@ -24,7 +24,7 @@ bool is_story_name(const std::string& text) {
   return known && text.find_first_of("<> \n") == std::string::npos;
 }
 
-struct Reader {
+struct StoryReader {
   const Exhibit& exhibit;
   Fields& fields;
   std::vector<Problem>& problems;
@@ -145,7 +145,7 @@ LocalScript read_script(const Exhibit& exhibit, Fields& fields, const char* name
     if (required) fields.problem(name, "is missing");
     return script;
   }
-  Reader reader{exhibit, fields, problems};
+  StoryReader reader{exhibit, fields, problems};
   if (value->is_string() && may_be_text) {
     reader.read(*value, name, may_be_text, script[exhibit.languages.front()]);
     return script;

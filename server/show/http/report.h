@@ -81,8 +81,8 @@ struct ShowReport {
   // Of all exhibits of the process; who knows it sets it, in the report of the first.
   size_t waiting = 0;        // visitors for whom there is no seat yet
   uint64_t turned_away = 0;  // since so many waited already
-  std::string sums_problem;     // why the ledger cannot be written; whoever has one sets it
-  DoorCounts doors;             // likewise
+  std::string sums_problem;  // why the ledger cannot be written; whoever has one sets it
+  DoorCounts doors;          // likewise
 };
 
 // One writer, many readers; the lock is held for a copy.

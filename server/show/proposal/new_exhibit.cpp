@@ -27,7 +27,7 @@ using json = nlohmann::ordered_json;
 
 constexpr float too_dark = 30;   // an exposure beyond says that the light is not meant to be all
 constexpr float lamp_light = 3;  // W/m^2 on a wall, of lamps that are added
-constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double one_degree = 3.14159265358979323846 / 180;
 constexpr SkySettings day{48, 155, 3, 0.2};  // behind the left shoulder of who sees the front
 
 double round_to(double value, double unit) { return std::round(value / unit) * unit + 0.0; }
@@ -153,9 +153,9 @@ struct Maker {
       list.push_back({{"name", view.name},
                       {"title", {{"en", title}}},
                       {"position", numbers(view.position)},
-                      {"yaw_deg", round_to(double(view.yaw) / degree, 0.1)},
-                      {"pitch_deg", round_to(double(view.pitch) / degree, 0.1)},
-                      {"fov_deg", round_to(double(view.fov) / degree, 0.1)}});
+                      {"yaw_deg", round_to(double(view.yaw) / one_degree, 0.1)},
+                      {"pitch_deg", round_to(double(view.pitch) / one_degree, 0.1)},
+                      {"fov_deg", round_to(double(view.fov) / one_degree, 0.1)}});
     }
     return list;
   }

@@ -15,7 +15,7 @@ constexpr float lowest = -1.45f, highest = 0.6f;  // radians of the eye's pitch
 constexpr double nearest = 1.15, farthest = 6;    // radii
 constexpr double zoom_rate = 0.8;                 // of the logarithm of the distance, for 1 m/s
 constexpr float way_seconds = 0.9f;
-constexpr float ease_seconds = 0.08f;
+constexpr float turn_seconds = 0.08f;
 constexpr double margin = 1.02;  // of the sphere that is not cut
 
 vec3 forward_of(vec2 look) {
@@ -80,7 +80,7 @@ void advance_around(const Viewpoint& from, float forward, bool leaps, float dt, 
   around.wanted_distance =
       std::clamp(around.wanted_distance * std::exp(-zoom_rate * double(forward) * double(dt)),
                  nearest * around.radius, farthest * around.radius);
-  const float ease = leaps ? 1 : 1 - std::exp(-dt / ease_seconds);
+  const float ease = leaps ? 1 : 1 - std::exp(-dt / turn_seconds);
   const vec2 rest = around.wanted_look - around.look;
   const double far = around.wanted_distance - around.distance;
   // Comes to an end, so that the picture rests.

@@ -14,7 +14,7 @@ constexpr float finger = 0.02f;            // of the picture's height
 constexpr float steepest_ground = 0.7f;    // cosine: what is steeper is no ground
 constexpr float storey = 20;               // metres in which ground is looked for below a place
 constexpr float largest = 3, part = 1.2f;  // metres: half of what is seen as one, and of a part
-constexpr float farthest = 14;             // metres from which an object is looked at
+constexpr float farthest_look = 14;        // metres from which an object is looked at
 constexpr float share = 0.75f;             // of the picture that it takes at most
 constexpr float narrowest = 0.42f;         // radians, as if one leant over it
 constexpr size_t most_looks = 240;         // places tried with rays
@@ -217,7 +217,7 @@ std::optional<Viewpoint> good_view(const Exhibit& exhibit, const World& world, c
   for (int i : places) {
     const WalkPlace& place = map.places[size_t(i)];
     const vec3 eye = place.ground + vec3(0, map.eye_height, 0);
-    if (glm::length(eye - middle) > farthest) continue;
+    if (glm::length(eye - middle) > farthest_look) continue;
     Look look = look_from(eye, box, aspect);
     float around =
         std::remainder(std::atan2(eye.x - middle.x, eye.z - middle.z) - direction, 2 * pi);

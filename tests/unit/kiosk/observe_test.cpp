@@ -16,14 +16,14 @@
 namespace wellspring {
 namespace {
 
-constexpr double rate = 10;
+constexpr double frame_rate = 10;
 
 std::vector<Observation> watch_round(const Mount& mount, double until = figure_round,
                                      const std::string& weights = "/nowhere") {
   CameraSettings settings;
   settings.source = "synthetic";
   settings.width = 320;
-  settings.rate = rate;
+  settings.rate = frame_rate;
   settings.synthetic_ends = true;
   settings.mount = mount;
   auto camera = make_camera(settings);
@@ -40,7 +40,7 @@ std::vector<Observation> watch_round(const Mount& mount, double until = figure_r
 
 TEST(Observe, a_visitor_comes_is_followed_and_leaves) {
   auto seen = watch_round({});
-  ASSERT_EQ(seen.size(), size_t(std::ceil(figure_round * rate)));
+  ASSERT_EQ(seen.size(), size_t(std::ceil(figure_round * frame_rate)));
   std::vector<std::pair<double, Presence>> changes;
   for (size_t i = 1; i < seen.size(); i++)
     if (seen[i].state != seen[i - 1].state) changes.push_back({seen[i].time, seen[i].state});

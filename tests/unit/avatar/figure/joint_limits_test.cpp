@@ -20,7 +20,7 @@ vec3 rotation_vector(quat q) {
   return sine < 1e-9f ? 2.0f * axis : axis * (2 * std::atan2(sine, q.w) / sine);
 }
 
-quat random_turn(Rng& rng) {
+quat random_rotation(Rng& rng) {
   quat q;
   do
     q = quat(rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f,
@@ -45,8 +45,9 @@ TEST(JointLimits, AreKeptWhateverTheTurn) {
     Joint joint;
     for (int axis = 0; axis < 3; axis++)
       joint.limits.push_back({-1.5f * rng.uniform(), 1.5f * rng.uniform()});
-    joint.limit_orientation = random_turn(rng);
-    quat turn = random_turn(rng), kept = limit_turn(joint, turn), same = limit_turn(joint, -turn);
+    joint.limit_orientation = random_rotation(rng);
+    quat turn = random_rotation(rng), kept = limit_turn(joint, turn),
+         same = limit_turn(joint, -turn);
     EXPECT_NEAR(std::abs(glm::dot(kept, same)), 1, 1e-5) << "the same turn, the other quaternion";
     EXPECT_NEAR(glm::length(kept), 1, 1e-4);
     EXPECT_LT(beyond(joint, kept), 1e-3f);

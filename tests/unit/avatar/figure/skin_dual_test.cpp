@@ -8,7 +8,7 @@
 namespace wellspring {
 namespace {
 
-quat random_turn(Rng& rng) {
+quat any_turn(Rng& rng) {
   quat q(rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f, rng.uniform() - 0.5f);
   return glm::normalize(q);
 }
@@ -30,7 +30,7 @@ TEST(SkinDual, ABlendOfRigidJointsIsRigid) {
     std::vector<JointWeight> weights;
     float sum = 0;
     for (uint16_t j = 0; j < 4; j++) {
-      quat turn = random_turn(rng);
+      quat turn = any_turn(rng);
       if (i % 5 == 0 && j) turn = -joints[0].real;  // antipodal twins of one turn
       joints.push_back(make_dual_quaternion(turn, random_point(rng)));
       weights.push_back({j, rng.uniform() + 1e-3f});
@@ -52,7 +52,7 @@ TEST(SkinDual, SignsDoNotMatter) {
   for (int i = 0; i < 500; i++) {
     std::vector<DualQuaternion> joints, flipped;
     for (int j = 0; j < 3; j++) {
-      joints.push_back(make_dual_quaternion(random_turn(rng), random_point(rng)));
+      joints.push_back(make_dual_quaternion(any_turn(rng), random_point(rng)));
       flipped.push_back({j % 2 ? -joints.back().real : joints.back().real,
                          j % 2 ? -joints.back().dual : joints.back().dual});
     }
@@ -74,10 +74,9 @@ TEST(SkinDual, SignsDoNotMatter) {
 TEST(SkinDual, OneJointIsItsMatrixWhateverItScales) {
   Rng rng(9);
   for (int i = 0; i < 500; i++) {
-    mat4 m = rigid(random_turn(rng), random_point(rng));
+    mat4 m = rigid(any_turn(rng), random_point(rng));
     if (i % 3 == 1) m = glm::scale(m, vec3(0.2f + rng.uniform(), 0.2f + 3 * rng.uniform(), 1));
-    if (i % 3 == 2)
-      m = m * rigid(random_turn(rng), vec3(0)) * glm::scale(mat4(1), vec3(1, 2, 0.5f));
+    if (i % 3 == 2) m = m * rigid(any_turn(rng), vec3(0)) * glm::scale(mat4(1), vec3(1, 2, 0.5f));
     RigidPart part = split_matrix(m);
     std::vector<JointWeight> one{{0, 1.0f}};
     glm::mat3x4 rows =

@@ -13,7 +13,7 @@ namespace {
 using namespace scenes;
 
 // Something of everything that light depends on.
-Scene make_hall() {
+Scene make_lit_hall() {
   Scene scene = make_cornell_box();
   Image image;
   image.width = image.height = 2;
@@ -67,10 +67,10 @@ TEST(HashScene, ChangesWithAllThatLightDependsOn) {
       {"what a lamp switches", [](Scene& s) { s.lamps[0].lights = {0}; }},
       {"no lamp", [](Scene& s) { s.lamps.clear(); }},
   };
-  std::set<uint64_t> found{hash_scene(make_hall())};
-  EXPECT_EQ(hash_scene(make_hall()), *found.begin());
+  std::set<uint64_t> found{hash_scene(make_lit_hall())};
+  EXPECT_EQ(hash_scene(make_lit_hall()), *found.begin());
   for (const auto& [what, change] : changes) {
-    Scene scene = make_hall();
+    Scene scene = make_lit_hall();
     change(scene);
     EXPECT_TRUE(found.insert(hash_scene(scene)).second) << what;
   }
@@ -78,8 +78,8 @@ TEST(HashScene, ChangesWithAllThatLightDependsOn) {
 
 // Figures bring materials, pictures and objects along, but nothing that stands still.
 TEST(HashScene, DoesNotChangeWithWhatNoInstanceShows) {
-  const uint64_t expected = hash_scene(make_hall());
-  Scene scene = make_hall();
+  const uint64_t expected = hash_scene(make_lit_hall());
+  Scene scene = make_lit_hall();
   scene.materials.push_back(diffuse(vec3(0.2f)));
   scene.materials.back().base_color_texture.texture = 2;
   scene.textures.push_back({});

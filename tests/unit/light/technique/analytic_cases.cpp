@@ -12,7 +12,7 @@ namespace {
 
 constexpr double over_pi = 1 / double(pi);
 
-constexpr Claim claims[] = {
+constexpr Claim claimed[] = {
     {"path", every_kind, ""},
     {"direct", every_kind & ~unsigned(interreflection | caustics),
      "light between surfaces is left out by definition"},
@@ -225,7 +225,7 @@ void add_suns(std::vector<AnalyticCase>& cases) {
 }  // namespace
 
 const Claim* find_claim(const std::string& technique) {
-  for (const Claim& claim : claims)
+  for (const Claim& claim : claimed)
     if (technique == claim.technique) return &claim;
   return nullptr;
 }

@@ -10,9 +10,9 @@ using namespace scenes;
 
 namespace {
 
-constexpr double over_pi = 1 / double(pi), albedo = 0.5;
+constexpr double by_pi = 1 / double(pi), gray = 0.5;
 
-Ray at_floor(vec3 p) { return ray_towards(p + vec3(0.3f, 0.5f, 0.8f), p); }
+Ray at_ground(vec3 p) { return ray_towards(p + vec3(0.3f, 0.5f, 0.8f), p); }
 
 void add_panes(std::vector<AnalyticCase>& cases) {
   TransportSettings two;  // what the panes mirror back at the floor is not asked for
@@ -29,8 +29,8 @@ void add_panes(std::vector<AnalyticCase>& cases) {
       add_quad(scene, pane, {-5, 1 + 0.1f * float(i), 5}, {10, 0, 0}, {0, 0, -10}, "pane");
     double c = 2 / std::sqrt(4.25);
     cases.push_back({"point light behind panes: " + std::to_string(count), scene,
-                     at_floor({0, 0, 0}),
-                     albedo * over_pi * 6 * c / 4.25 * std::pow(0.8 * (1 - fresnel(c, 1.5)), count),
+                     at_ground({0, 0, 0}),
+                     gray * by_pi * 6 * c / 4.25 * std::pow(0.8 * (1 - fresnel(c, 1.5)), count),
                      punctual_light | panes, two});
   }
   Scene scene = make_plane_with_rect_light(10);
@@ -44,7 +44,7 @@ void add_panes(std::vector<AnalyticCase>& cases) {
       double d2 = dot(q, q), c = 1 / std::sqrt(d2);
       irradiance += 10 * c * c / d2 * (1 - fresnel(c, 1.5)) * 1.5 / (n * n);
     }
-  cases.push_back({"lamp behind a pane", scene, at_floor({0, 0, 0}), irradiance * albedo * over_pi,
+  cases.push_back({"lamp behind a pane", scene, at_ground({0, 0, 0}), irradiance * gray * by_pi,
                    area_light | panes, two, 512});
   // Seen straight through two panes with what lies in front mirrored in them.
   Scene vitrine = empty_scene();
@@ -93,7 +93,7 @@ void add_mirrors(std::vector<AnalyticCase>& cases) {
       {"two mirrors", scene, ray_towards({-2, 0, 0}, {1, 0, 0}), 7 * f * f, chains | seen_lights});
   // A lamp that faces a perfect mirror overhead: its image lights the floor.
   Scene image = empty_scene();
-  add_floor(image, float(albedo));
+  add_floor(image, float(gray));
   int perfect = add_material(image, metal(vec3(1), 0)), up = add_material(image, emitter(vec3(9)));
   add_quad(image, perfect, {-30, 2, -30}, {60, 0, 0}, {0, 0, 60}, "mirror");
   add_quad(image, up, {1, 1, 2}, {2, 0, 0}, {0, 0, -4}, "lamp");
@@ -102,8 +102,8 @@ void add_mirrors(std::vector<AnalyticCase>& cases) {
   // Its own back would hide what is nearer or further than this.
   TransportSettings three;
   three.max_depth = 3;
-  cases.push_back({"a lamp's image in a mirror", image, at_floor({0, 0, 0}),
-                   9 * e * albedo * over_pi, area_light | caustics, three, 2048});
+  cases.push_back({"a lamp's image in a mirror", image, at_ground({0, 0, 0}), 9 * e * gray * by_pi,
+                   area_light | caustics, three, 2048});
 }
 
 }  // namespace

@@ -20,12 +20,12 @@ vec3 painted(vec3 place) { return {0.4f + place.x, 0.2f + 0.5f * place.y, 0.1f -
 vec3 nearly_dark(vec3 place) { return place.x > 0.1f ? vec3(1) : vec3(1e-6f); }
 
 // The Cornell box with a coated ball, a mirror, a pane before it all, and a bulb.
-struct Room {
+struct LitRoom {
   Scene scene;
   World world;
   Lights lights;
   std::vector<Request> requests;
-  explicit Room(bool pane = false, std::vector<Mesh> moving = {})
+  explicit LitRoom(bool pane = false, std::vector<Mesh> moving = {})
       : scene(make_scene(pane)), world(scene, std::move(moving)), lights(make_lights(world)) {
     world.commit();
     View view = cornell_view(scene, width, height);
@@ -74,7 +74,7 @@ void expect_near(vec3 a, vec3 b, float share, float floor, const char* what, siz
 TEST(KnownLight, TracedSamplesAreAsBrightAsWithoutMaps) {
   for (bool pane : {false, true})
     for (const test::PaintedLight& light : {test::PaintedLight(painted), {nearly_dark}}) {
-      Room room(pane);
+      LitRoom room(pane);
       std::vector<Sample> without = room.trace("path", false),
                           with = room.trace("path", true, light);
       int mapped = 0;
@@ -91,7 +91,7 @@ TEST(KnownLight, TracedSamplesAreAsBrightAsWithoutMaps) {
 }
 
 TEST(KnownLight, GatheredSamplesOfLambertianSurfacesAreWhatTheMapSays) {
-  Room room;
+  LitRoom room;
   std::vector<Sample> samples = room.trace("gather", true);
   int lambertian = 0;
   for (size_t i = 0; i < samples.size(); i++) {
@@ -110,7 +110,7 @@ TEST(KnownLight, GatheredSamplesOfLambertianSurfacesAreWhatTheMapSays) {
 }
 
 TEST(KnownLight, GatheredSamplesOfCoatedSurfacesHaveTheMapsLightBeneathTheCoat) {
-  Room room;
+  LitRoom room;
   std::vector<Sample> samples = room.trace("gather", true);
   int coated = 0, plain = 0;
   for (size_t i = 0; i < samples.size(); i++) {
@@ -156,7 +156,7 @@ TEST(KnownLight, BakedCoatedSurfacesAreAsBrightAsTracedOnes) {
 }
 
 TEST(KnownLight, SurfacesWithoutAChartAreAsBefore) {
-  Room room;
+  LitRoom room;
   for (const char* technique : {"path", "gather"}) {
     std::vector<Sample> without = room.trace(technique, false), with = room.trace(technique, true);
     int mirrors = 0;
@@ -174,7 +174,7 @@ TEST(KnownLight, SurfacesWithoutAChartAreAsBefore) {
 }
 
 TEST(KnownLight, PanesBeforeASurfaceTintAndMirrorOnly) {
-  Room room(true);
+  LitRoom room(true);
   std::vector<Sample> samples = room.trace("gather", true);
   int behind = 0;
   for (size_t i = 0; i < samples.size(); i++) {
@@ -197,7 +197,7 @@ TEST(KnownLight, PanesBeforeASurfaceTintAndMirrorOnly) {
 TEST(KnownLight, NearWhatMovesLightIsTraced) {
   Mesh ball = sphere_mesh(1, 0.05f, 16);
   for (vec3& p : ball.positions) p += vec3(0.15f, 0.2f, -0.3f);
-  Room room(false, {ball});
+  LitRoom room(false, {ball});
   std::vector<Sample> samples = room.trace("gather", true);
   const Transport transport{room.world, *room.lights.tables, nullptr, nullptr,
                             room.lights.maps.get()};

@@ -8,7 +8,7 @@
 namespace wellspring {
 namespace {
 
-std::vector<Problem> read(Exhibit& exhibit, const std::string& text) {
+std::vector<Problem> read_objects(Exhibit& exhibit, const std::string& text) {
   std::vector<Problem> problems;
   const nlohmann::json json = nlohmann::json::parse(text);
   Fields root(json, "exhibit.json", "", problems);
@@ -19,7 +19,7 @@ std::vector<Problem> read(Exhibit& exhibit, const std::string& text) {
 
 TEST(ExhibitObjects, AreReadWithTheirLabels) {
   Exhibit exhibit = make_tiny_exhibit(dvec3(100, 0, 0));
-  const auto problems = read(exhibit, R"({"objects": {
+  const auto problems = read_objects(exhibit, R"({"objects": {
       "plain": {"node": "light"},
       "lamp": {"node": "light", "title": {"en": "Lamp"}, "text": {"en": "It shines."},
                "story": "tale", "at": [1, 2, 3], "manifest": "https://example.org/lamp.json",
@@ -41,7 +41,7 @@ TEST(ExhibitObjects, AreReadWithTheirLabels) {
 
 TEST(ExhibitObjects, WhatIsWrongIsNamed) {
   Exhibit exhibit = make_tiny_exhibit();
-  const auto problems = read(exhibit, R"({"objects": {
+  const auto problems = read_objects(exhibit, R"({"objects": {
       "a": {"node": "moon"}, "b": {"node": "light", "story": "saga"},
       "c": {"node": "light", "manifest": "http://example.org/x"},
       "d": {"node": "light", "manifest": "https://example.org/a b"},

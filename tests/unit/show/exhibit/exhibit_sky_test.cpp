@@ -14,20 +14,20 @@ using namespace wellspring;
 
 namespace {
 
-struct Package {
+struct SkyPackage {
   std::string folder = std::string(testing::TempDir()) + "exhibit_sky_" +
                        testing::UnitTest::GetInstance()->current_test_info()->name();
   std::vector<Problem> problems;
   Exhibit exhibit;
 
-  explicit Package(const std::string& environment) {
+  explicit SkyPackage(const std::string& environment) {
     std::filesystem::create_directories(folder);
     std::ofstream(folder + "/scene.gltf") << R"({"asset": {"version": "2.0"}})";
     std::ofstream(folder + "/exhibit.json")
         << R"({"title": {"en": "Sky"}, "scene": "scene.gltf", "environment": )" + environment + "}";
     exhibit = read_exhibit(folder, problems);
   }
-  ~Package() { std::filesystem::remove_all(folder); }
+  ~SkyPackage() { std::filesystem::remove_all(folder); }
 
   // The problems that lie in the environment.
   std::vector<std::string> found() const {
@@ -46,7 +46,7 @@ using Places = std::vector<std::string>;
 }  // namespace
 
 TEST(ExhibitSky, IsTheSkyOfItsAnglesAndAir) {
-  Package package(
+  SkyPackage package(
       R"({"sky": {"elevation_deg": 30, "azimuth_deg": 90, "turbidity": 4, "strength": 0.5}})");
   EXPECT_EQ(package.found(), Places{});
   SkySettings settings;
@@ -67,7 +67,7 @@ TEST(ExhibitSky, IsTheSkyOfItsAnglesAndAir) {
 }
 
 TEST(ExhibitSky, MistakesHaveAPlace) {
-  auto places = [](const std::string& environment) { return Package(environment).found(); };
+  auto places = [](const std::string& environment) { return SkyPackage(environment).found(); };
   EXPECT_EQ(places(R"({"sky": {"azimuth_deg": 0}})"), Places{"/environment/sky/elevation_deg"});
   EXPECT_EQ(places(R"({"sky": {"elevation_deg": 30}})"), Places{"/environment/sky/azimuth_deg"});
   EXPECT_EQ(places(R"({"sky": {"elevation_deg": 91, "azimuth_deg": 0}})"),
