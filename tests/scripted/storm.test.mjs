@@ -10,7 +10,7 @@ const seconds = 1.5;    // of each count
 const least_kept = 0.3;  // of the pictures: half would be the other's by right
 
 let server;
-before(async () => { server = await start_server(['--exhibit', 'first-room', '--no-bake']); });
+before(async () => { server = await start_server(['--no-bake']); });
 after(async () => { if (server) assert.equal(await server.stop(), 0); });
 
 const turn = (list, i) => list[i % list.length];

@@ -12,7 +12,7 @@ constexpr int worst_quality = 30;
 constexpr double least_rate = 8;    // pictures a second, before resolution falls
 constexpr double trickle_rate = 1;  // likewise, whatever happens
 constexpr int least_eighths = 2;
-constexpr float highest = 3, step = 0.05f;
+constexpr float most_pressure = 3, step = 0.05f;
 constexpr double line_share = 0.85;   // of the line's rate: the rest lets its queue run empty
 constexpr double unknown_rate = 1e6;  // bytes a second of a line before it is known
 // A picture's time on the line: with its trip, far from the two trips and 100 ms it may take.
@@ -53,9 +53,9 @@ double line_rate(const Flow& flow) {
 
 template <class Fits>
 float first_that(const FlowWishes& wishes, const Fits& fits) {
-  for (float at = 0; at < highest; at += step)
+  for (float at = 0; at < most_pressure; at += step)
     if (fits(plan_at(at, wishes))) return at;
-  return highest;
+  return most_pressure;
 }
 
 float of_line(const Flow& flow, const FlowWishes& wishes) {
