@@ -46,7 +46,7 @@ wellspring_unit_test(frame  frame)
 wellspring_unit_test(attention attention)
 wellspring_unit_test(denoise denoise)
 wellspring_unit_test(world  world)
-wellspring_unit_test(light TOGETHER light frame)
+wellspring_unit_test(light  light frame)
 wellspring_unit_test(reference light frame pugixml_any)
 wellspring_unit_test(cache  picture)  # whose pictures say what the cache knows
 wellspring_unit_test(picture picture)

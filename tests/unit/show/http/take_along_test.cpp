@@ -10,26 +10,26 @@
 namespace wellspring {
 namespace {
 
-HttpReply ask(const std::string& address, std::map<std::string, std::string> query = {}) {
+HttpReply take_along(const std::string& address, std::map<std::string, std::string> query = {}) {
   HttpQuestion question;
   question.query = std::move(query);
   return answer_qr(make_tiny_exhibit(), address, question);
 }
 
 TEST(TakeAlong, TheCodeIsThatOfTheAddressTheStoryAndTheLanguage) {
-  const HttpReply reply = ask("https://m.example", {{"story", "tale"}, {"lang", "sk"}});
+  const HttpReply reply = take_along("https://m.example", {{"story", "tale"}, {"lang", "sk"}});
   EXPECT_EQ(reply.status, 200);
   EXPECT_EQ(reply.content_type, "image/svg+xml");
   EXPECT_EQ(reply.body, draw_qr_code("https://m.example/e/tiny?story=tale&lang=sk"));
-  EXPECT_EQ(ask("https://m.example", {{"lang", "a&b\"<"}}).body,
+  EXPECT_EQ(take_along("https://m.example", {{"lang", "a&b\"<"}}).body,
             draw_qr_code("https://m.example/e/tiny?lang=a%26b%22%3C"));
-  EXPECT_EQ(ask("https://m.example").body, draw_qr_code("https://m.example/e/tiny"));
+  EXPECT_EQ(take_along("https://m.example").body, draw_qr_code("https://m.example/e/tiny"));
 }
 
 TEST(TakeAlong, NoAddressOrNoSuchStoryIsNotFound) {
-  EXPECT_EQ(ask("").status, 404);
-  EXPECT_NE(ask("").body.find("no_address"), std::string::npos);
-  EXPECT_EQ(ask("https://m.example", {{"story", "nothing\""}}).status, 404);
+  EXPECT_EQ(take_along("").status, 404);
+  EXPECT_NE(take_along("").body.find("no_address"), std::string::npos);
+  EXPECT_EQ(take_along("https://m.example", {{"story", "nothing\""}}).status, 404);
 }
 
 // Three finder patterns, and a quiet zone all round.
