@@ -24,11 +24,16 @@ ReportPage kiosk_screen_page();
 ReportPage kiosk_figures_page();
 ReportPage kiosk_expression_page();
 ReportPage kiosk_hard_page();
+ReportPage kiosk_gestures_page();
+ReportPage light_frame_page();
+ReportPage light_scaling_page();
+ReportPage light_error_page(const std::string& name);
+ReportPage light_rays_page();
+ReportPage light_cycles_page();
+ReportPage light_photons_page();
 
 // What is declared for this report, else plain_page.
 ReportPage find_page(const std::string& name);
-
-ReportPage kiosk_gestures_page();
 
 // Writes a page for each report of `report`: into the file `where` if that ends with .md, one below
 // the other, else into that folder as NAME.md. A page that is there is replaced. Throws

@@ -60,12 +60,13 @@ TEST(Rehearsal, HandsOverAShowOrItsProblems) {
   test::Folder folder;
   folder.write("exhibit.json", "1");
   std::atomic<int> made = 0;
-  Rehearsal rehearsal(folder.path.string(), [&]() -> std::unique_ptr<Show> {
+  auto make = [&]() -> std::unique_ptr<Show> {
     if (made++ == 0)
       throw ExhibitError({{folder.file("exhibit.json"), "line 1", "is wrong"},
                           {folder.file("exhibit.json"), "line 2", "is worth a note", false}});
     return std::make_unique<Show>();
-  });
+  };
+  Rehearsal rehearsal(folder.path.string(), make, true);
   auto wait = [&] {
     std::optional<Rehearsal::Outcome> outcome;
     for (int i = 0; i < 400 && !(outcome = rehearsal.take()); i++)
