@@ -11,11 +11,12 @@ void fuzz_announcement(Bytes bytes) {
   question.authorization = "Bearer a token of many letters";
   question.body = text_of(bytes);
   bool put = false;
-  const AnnouncementDesk desk{"a token of many letters", [&](Announcement) {
-                                put = true;
-                                return 1u;
-                              }};
-  require((answer_announce(desk, question).status == 200) == put,
+  const AnnouncementDesk desk{[&](Announcement) {
+    put = true;
+    return 1u;
+  }};
+  const AccessRules rules{.admin_token = "a token of many letters"};
+  require((answer_announce(desk, access_of(rules, question), question).status == 200) == put,
           "what is announced is handed over");
 }
 

@@ -8,7 +8,7 @@ using namespace wellspring;
 
 static Packet golden_sound() { return test::read_golden("sound.hex"); }
 
-static const SoundHeader golden_sound{.utterance = 0x04030201,
+static const SoundHeader golden_header{.utterance = 0x04030201,
                                        .start = 2,
                                        .time_us = 0x2827262524232221,
                                        .total = 5,
@@ -17,19 +17,19 @@ static const SoundHeader golden_sound{.utterance = 0x04030201,
 static const std::vector<int16_t> golden_samples{1, -32768};
 
 TEST(SoundPacket, is_written_as_the_golden_bytes) {
-  EXPECT_EQ(make_sound_packet(golden_sound, golden_samples), golden_sound());
+  EXPECT_EQ(make_sound_packet(golden_header, golden_samples), golden_sound());
 }
 
 TEST(SoundPacket, is_read_from_the_golden_bytes) {
   const auto view = read_sound_packet(golden_sound());
   ASSERT_TRUE(view);
-  EXPECT_EQ(view->header.utterance, golden_sound.utterance);
+  EXPECT_EQ(view->header.utterance, golden_header.utterance);
   EXPECT_EQ(view->header.start, 2u);
-  EXPECT_EQ(view->header.time_us, golden_sound.time_us);
+  EXPECT_EQ(view->header.time_us, golden_header.time_us);
   EXPECT_EQ(view->header.total, 5u);
   EXPECT_EQ(view->header.rate, 22050u);
   EXPECT_EQ(view->header.channels, 1);
-  EXPECT_EQ(view->header.mouth, golden_sound.mouth);
+  EXPECT_EQ(view->header.mouth, golden_header.mouth);
   EXPECT_EQ(view->samples, golden_samples);
 }
 
