@@ -52,7 +52,9 @@ TEST_F(Tokens, WhatIsWrongIsNamedWithoutTheToken) {
   EXPECT_EQ(problem(), file + ": line 2: this token is there already");
   write("hall 0123456789abcdef\n");
   EXPECT_THROW(read_token(file, variable), LoadError) << "the house's own has no name";
-  write("0123456789\x01abcdef\n");
+  write(
+      "0123456789\x01"
+      "abcdef\n");
   EXPECT_EQ(problem(), file + ": line 1: a token has no control characters");
   file.clear();
   setenv(variable, "too short", 1);
