@@ -49,10 +49,13 @@ export function start_program(args,
 
 // A running server: {port, url, ws, child, stop()}. Resolves when it has printed its address.
 // Serves the castle where nothing else is said. `places` false: it finds content and pages itself.
-// `prefix`: a command that starts it, as `ip netns exec` does.
+// `prefix`: a command that starts it, as `ip netns exec` does. Nobody waits for a seat, however
+// busy the machine is, unless the test says at which rate.
 export function start_server(words = [],
     { port = 0, content, programs = bin, places = true, prefix = [] } = {}) {
-  const args = content || words.includes('--exhibit') ? words : ['--exhibit', 'castle', ...words];
+  const args = content || words.includes('--exhibit') ? [...words]
+      : ['--exhibit', 'castle', ...words];
+  if (!args.includes('--least-fps')) args.push('--least-fps', '1');
   content ??= join(source, 'content');
   return new Promise((resolve, reject) => {
     const { child, stop } =

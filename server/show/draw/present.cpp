@@ -258,7 +258,9 @@ void present(Show& show, Visitor& visitor) {
   VisitorDelivery& shown = visitor.shown;
   const PictureJob& job = picture.job;
   if (job.camera_cuts != visitor.place.camera_cuts || picture.drawn_at < 0) return;
-  // The tick does not wait for a picture that is still being encoded: others would wait, too.
+  // The tick does not wait for a picture that is still being encoded: others would wait, too. Where
+  // it draws itself, they do anyway.
+  if (!show.settings.background) shown.encoder->task.wait();
   if (!may_take(show, visitor) || shown.encoder->task.busy()) return;
   const View view = visitor.place.last_view;
   bool stood = job.still && job.view == view;

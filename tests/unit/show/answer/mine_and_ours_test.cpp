@@ -71,6 +71,7 @@ const std::vector<std::string> orders = {
     R"({"type":"kiosk","showing":"book","touched":true,"playing":true})",
     R"({"type":"settings","fps":10,"quality":30,"attention":false,"lang":"de","width":64})",
     R"({"type":"ack","frame":1,"decoded_ms":900})",
+    R"({"type":"presence","here":true})",
     R"({"type":"nonsense"})",
     R"({"type":"bye"})",
 };

@@ -69,6 +69,7 @@ TEST_F(Counts, SecondsAtTheNearestViewpoint) {
 }
 
 TEST_F(Counts, NobodyIsThereWhoHasNotMovedForLong) {
+  show->settings.idle_after = 0;  // else the visit would rest by then
   join(32, 32);
   for (int i = 0; i < 900; i++) step(1.0);
   EXPECT_NEAR(sum("dwell_seconds", "tiny/door"), dwell_at_most, 2);
