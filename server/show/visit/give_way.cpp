@@ -119,7 +119,9 @@ void update(GiveWay& way, const Flow& flow, const FlowWishes& wishes, float enco
   if (now - way.updated_at < update_interval) return;
   way.updated_at = now;
   const PicturePlan plan = plan_at(pressure(way), wishes);
-  move(way.pressures[0], of_line(flow, wishes), now);
+  // Of a line of which nothing is known only the guess is kept to: it is no reason to give way.
+  if (flow.line_rate > 0 || wishes.bandwidth > 0)
+    move(way.pressures[0], of_line(flow, wishes), now);
   move(way.pressures[1], of_work(0.001 * double(encode_ms), plan, wishes), now);
   move(way.pressures[2], of_work(0.001 * double(flow.decode_ms), plan, wishes), now);
 }

@@ -158,7 +158,13 @@ class RawClient {
                                                : uint8_t(payload[0]) * 256 + uint8_t(payload[1]);
     }
   };
+  // The next one, but for pings by which the server measures the line: these have a number.
   std::optional<Frame> next_frame(double timeout = patience) {
+    auto frame = any_frame(timeout);
+    while (frame && frame->opcode == 9 && !frame->payload.empty()) frame = any_frame(timeout);
+    return frame;
+  }
+  std::optional<Frame> any_frame(double timeout) {
     const auto need = [&](size_t bytes) {
       while (input.size() < bytes)
         if (!more(timeout)) return false;
