@@ -209,6 +209,7 @@ function talk(sent, wanted) {
         send_piece();
       }
       for (const one of take_frames(input)) {
+        if (one.opcode === ping) continue;  // by which the server measures the line
         frames.push(one);
         if (one.opcode === close && !said_close) {
           said_close = true;
