@@ -171,7 +171,7 @@ test('the Tab key goes from above to below, and what has the focus is seen', { s
   await page.keyboard.press('Enter');
   assert.equal((await focused(page)).name, 'menu-close');
   const wanted = await page.evaluate(() => {
-    const seen = [...document.querySelectorAll('#menu :is(button, input, a[href])')].filter(
+    const seen = [...document.querySelectorAll('#menu :is(button, input, select, a[href])')].filter(
         (one) => !one.closest('[hidden]') && (one.type !== 'radio' || one.checked));
     return seen.slice(1).map((one) => one.id || (one.closest('label') ?? one).textContent.trim());
   });
