@@ -20,9 +20,9 @@ class Worker {
 
   // Begins when the work before is done. `work` must not throw. The first call starts the thread.
   void run(std::function<void()> work);
-  bool busy() const;
   uint64_t runs() const { return runs_; }  // how many there have been
-  // What the work wrote may be read after either has said that it is done.
+  // What the work wrote may be read after any of these has said that it is done.
+  bool busy() const;
   void wait() const;
   bool wait_for(double seconds) const;  // false: it is still going on
 

@@ -2,7 +2,6 @@
 // The tick of figures on one core: animate, skin, and the refit of their meshes in the world. The
 // default storyteller, and an avatar made here that has what such files bring along, with and
 // without each of it.
-#include <ctime>
 #include <filesystem>
 #include <oneapi/tbb/global_control.h>
 
@@ -16,12 +15,6 @@
 
 namespace wellspring {
 namespace {
-
-double thread_seconds() {
-  timespec time;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-}
 
 // One figure in a world, ticking.
 struct Ticking {
@@ -112,7 +105,7 @@ void bench_made(BenchReport& report, int ticks) {
   for (int i = 0; i < ticks + ticks_before; i++) {
     if (i == ticks_before)
       for (auto& figure : figures) figure->forget();
-    for (auto& figure : figures) figure->tick(thread_seconds, true);
+    for (auto& figure : figures) figure->tick(thread_seconds_now, true);
   }
   for (size_t i = 0; i < figures.size(); i++)
     figures[i]->report(report, "avatar.made",

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 
 #include "base/clock.h"
 #include "base/parallel.h"
@@ -69,13 +68,6 @@ View stroll(int frame, int width, int height) {
   view.width = width;
   view.height = height;
   return view;
-}
-
-// Processor time of this thread: with one core, what others do on the machine does not count.
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + double(time.tv_nsec) * 1e-9;
 }
 
 struct Stroll {
@@ -163,7 +155,8 @@ double measure_yardstick(int width, int height, int points, int frames) {
   std::vector<double> times;
   for (int frame = 0; frame < frames; frame++) {
     view = stroll(frame, width, height);
-    double start = thread_seconds();
+    // With one core, what others do on the machine does not count.
+    double start = thread_seconds_now();
     std::fill(depth.begin(), depth.end(), 1e30f);
     float scale = float(height) * 0.5f / view.tan_half_fov;
     for (size_t i = 0; i < position.size(); i++) {
@@ -177,7 +170,7 @@ double measure_yardstick(int width, int height, int points, int frames) {
       depth[pixel] = z;
       shown[pixel] = color[i];
     }
-    times.push_back((thread_seconds() - start) * 1000);
+    times.push_back((thread_seconds_now() - start) * 1000);
   }
   return median(times);
 }
@@ -195,7 +188,7 @@ std::vector<NamedValue> report_cache_display(int width, int height, bool quick) 
   double yardstick = 0;
   {
     oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
-    stroll.now = thread_seconds;
+    stroll.now = thread_seconds_now;
     one = measure(stroll, width, height, frames);
     yardstick = measure_yardstick(width, height, stroll.cache.stats().points, frames);
     // As where a visitor looks at the second column.

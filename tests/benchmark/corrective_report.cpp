@@ -3,7 +3,6 @@
 // as a formula knows them.
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -74,12 +73,6 @@ SampleStore make_store() {
   return store;
 }
 
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + double(time.tv_nsec) * 1e-9;
-}
-
 // The median of `runs` in milliseconds.
 template <class Prepare, class Body>
 double measure(int runs, double (*now)(), const Prepare& prepare, const Body& body) {
@@ -131,7 +124,7 @@ void bench_corrective(BenchReport& report, const BenchOptions& options) {
   const int runs = options.quick ? 100 : 1000;
   measure_with(report, store, oneapi::tbb::this_task_arena::max_concurrency(), seconds_now, runs);
   oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
-  measure_with(report, store, 1, thread_seconds, runs);
+  measure_with(report, store, 1, thread_seconds_now, runs);
 }
 
 }  // namespace wellspring

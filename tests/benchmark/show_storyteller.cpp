@@ -8,7 +8,6 @@
 // on figures.
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 
 #include "base/clock.h"
@@ -134,17 +133,12 @@ struct Visit {
 template <class Work>
 double milliseconds_of(const Work& work) {
   constexpr int times = 20;
-  auto thread_seconds = [] {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-  };
   double spent = 0;
   oneapi::tbb::task_arena one(1);
   one.execute([&] {
-    double began = thread_seconds();
+    double began = thread_seconds_now();
     for (int i = 0; i < times; i++) work();
-    spent = thread_seconds() - began;
+    spent = thread_seconds_now() - began;
   });
   return 1000 * spent / times;
 }

@@ -277,7 +277,6 @@ void present(Show& show, Visitor& visitor) {
     return;
 
   Encoder& encoder = *shown.encoder;
-  encoder.task.wait();
   note_encoded(show, visitor);
   const float newer = fade_share(picture.fade, view, show.time);
   if ((picture.unshown || fades) && job.view == view) {  // drawn for this very view

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <oneapi/tbb/task_arena.h>
 
-#include "base/thread_time.h"
+#include "base/clock.h"
 #include "denoise/denoise.h"
 #include "frame/jpeg.h"
 #include "frame/tonemap.h"
@@ -59,12 +59,12 @@ std::optional<Frame> StillRoom::render(const StillJob& order, const std::functio
   settings.progress = [&](double) {
     if (ends()) throw GivenUp{};
   };
-  const double began = thread_seconds();
+  const double began = thread_seconds_now();
   Frame frame;
   try {
     frame = render_still(*technique_, *world_, lights_, view, settings);
   } catch (const GivenUp&) {}
-  costs.trace_seconds = thread_seconds() - began;
+  costs.trace_seconds = thread_seconds_now() - began;
   if (frame.color.empty()) return {};
   std::string problem;
   auto denoiser = order.denoise ? load_denoiser(still_net, problem, weights_) : nullptr;
@@ -74,7 +74,7 @@ std::optional<Frame> StillRoom::render(const StillJob& order, const std::functio
     while (denoiser->advance(slice))
       if (ends()) return {};
     denoiser->finish(frame.color);
-    costs.denoise_seconds = thread_seconds() - began - costs.trace_seconds;
+    costs.denoise_seconds = thread_seconds_now() - began - costs.trace_seconds;
   }
   comment = std::to_string(order.spp) + " samples a pixel by " + technique_->name +
             (denoiser ? std::string(", denoised by the network ") + net_name(still_net)
