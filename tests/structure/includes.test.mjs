@@ -58,7 +58,9 @@ const may_enter = {
     bake: ['', 'known', 'walk', 'sample', 'material', 'random'],
     visible: ['', 'known', 'walk', 'sample', 'material', 'random'],
     instant: ['', 'walk', 'sample', 'material', 'random'],
-    technique: ['', 'instant', 'known', 'walk', 'sample', 'material', 'random'],
+    splat: ['', 'visible', 'known', 'walk', 'sample', 'material', 'random'],
+    dynamic: ['', 'splat', 'visible', 'known', 'walk', 'sample', 'material', 'random'],
+    technique: ['', 'dynamic', 'splat', 'visible', 'instant', 'known', 'walk', 'sample', 'material', 'random'],
   },
   cache: {
     '': [],
